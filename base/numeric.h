@@ -1,0 +1,48 @@
+// Scalar conversions between number types: the only place where rounding is defined. Vector twins in the rooms must give
+// the same bits (tests compare them).
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace vitrine::base {
+
+inline std::uint32_t bits_of(float value) { return std::bit_cast<std::uint32_t>(value); }
+inline float float_of(std::uint32_t bits) { return std::bit_cast<float>(bits); }
+
+/// CVTPS2DQ: round to nearest even; NaN and out of range give 0x80000000 (lavapipe-rasterization.md section 0, rne).
+inline std::int32_t round_to_int(float value) {
+  if (!(value >= -2147483648.0f && value < 2147483648.0f)) return INT32_MIN;
+  return static_cast<std::int32_t>(std::nearbyintf(value));
+}
+
+/// CVTTPS2DQ: truncate; NaN and out of range give 0x80000000.
+inline std::int32_t truncate_to_int(float value) {
+  if (!(value >= -2147483648.0f && value < 2147483648.0f)) return INT32_MIN;
+  return static_cast<std::int32_t>(value);
+}
+
+/// VCVTTPS2UDQ: truncate; NaN, values <= -1 and >= 2^32 give 0xFFFFFFFF (lavapipe-shader-math.md 7.1).
+inline std::uint32_t truncate_to_uint(float value) {
+  if (!(value > -1.0f && value < 4294967296.0f)) return UINT32_MAX;
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+}
+
+/// Round half away from zero, by adding 0.5 in binary32 and truncating (lavapipe-rasterization.md section 0, iround).
+inline std::int32_t round_half_away(float value) {
+  return truncate_to_int(value >= 0.0f ? value + 0.5f : value - 0.5f);
+}
+
+/// MINPS / MAXPS: the second operand when the operands are equal or unordered.
+inline float min_second(float a, float b) { return a < b ? a : b; }
+inline float max_second(float a, float b) { return a > b ? a : b; }
+
+/// binary16 bits to binary32, exact, denormals included, independent of the floating-point mode.
+float half_to_float(std::uint16_t half);
+/// Round to nearest even; overflow to infinity; NaN becomes sign|0x7E00 (lavapipe-shader-math.md section 8).
+std::uint16_t float_to_half_nearest(float value);
+/// Truncate toward zero; finite overflow to 65504; infinities and NaN kept (lavapipe-texture-blend.md part D).
+std::uint16_t float_to_half_truncate(float value);
+
+}  // namespace vitrine::base

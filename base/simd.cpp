@@ -1,0 +1,39 @@
+// Chooses the SIMD target once per process.
+#include "base/simd.h"
+
+#include <hwy/targets.h>
+
+#include <cstdlib>
+#include <mutex>
+#include <string_view>
+
+namespace vitrine::base {
+namespace {
+
+constexpr auto kUsed = HWY_SSE4 | HWY_AVX2 | HWY_AVX3;
+
+auto wanted_targets() {
+  const char* value = std::getenv("VITRINE_TARGET");
+  const std::string_view name = value ? value : "";
+  if (name == "sse4") return HWY_SSE4;
+  if (name == "avx2") return HWY_SSE4 | HWY_AVX2;
+  return kUsed;
+}
+
+}  // namespace
+
+void select_simd_target() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    hwy::DisableTargets(~wanted_targets());
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  });
+}
+
+const char* simd_target_name() {
+  select_simd_target();
+  const auto supported = hwy::SupportedTargets();
+  return hwy::TargetName(supported & -supported);
+}
+
+}  // namespace vitrine::base

@@ -1,0 +1,155 @@
+// The worker pool: sleeping threads that share an atomic item counter per parallel loop.
+#include "base/workers.h"
+
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <cstdlib>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace vitrine::base {
+namespace {
+
+thread_local bool inside_loop = false;
+thread_local std::size_t current_worker = 0;
+
+std::size_t wanted_workers() {
+  if (const char* value = std::getenv("VITRINE_THREADS")) {
+    const long count = std::strtol(value, nullptr, 10);
+    if (count > 0) return static_cast<std::size_t>(std::min(count, 256L));
+  }
+  cpu_set_t cpus;
+  CPU_ZERO(&cpus);
+  if (sched_getaffinity(0, sizeof(cpus), &cpus) == 0) {
+    const int count = CPU_COUNT(&cpus);
+    if (count > 0) return static_cast<std::size_t>(count);
+  }
+  return 1;
+}
+
+struct Loop {
+  std::size_t count;
+  FunctionRef<void(std::size_t, std::size_t)> body;
+  std::atomic<std::size_t> next{0};
+
+  void run(std::size_t worker) {
+    for (std::size_t i = next.fetch_add(1, std::memory_order_relaxed); i < count;
+         i = next.fetch_add(1, std::memory_order_relaxed)) {
+      body(i, worker);
+    }
+  }
+};
+
+class Pool {
+ public:
+  explicit Pool(std::size_t threads) : size_(threads) {}
+
+  ~Pool() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    wake_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  std::size_t size() const { return size_; }
+
+  void run(Loop& loop) {
+    // One loop at a time: a second queue thread waits its turn instead of sharing workers.
+    const std::lock_guard one_loop(loop_mutex_);
+    start_threads();
+    {
+      const std::lock_guard lock(mutex_);
+      loop_ = &loop;
+      wanted_ = std::min(threads_.size(), loop.count - 1);
+      ++generation_;
+    }
+    if (wanted_ == threads_.size()) {
+      wake_.notify_all();
+    } else {
+      for (std::size_t i = 0; i < wanted_; ++i) wake_.notify_one();
+    }
+    inside_loop = true;
+    current_worker = 0;
+    loop.run(0);
+    inside_loop = false;
+    std::unique_lock lock(mutex_);
+    loop_ = nullptr;  // late risers find nothing to do
+    done_.wait(lock, [this] { return running_ == 0; });
+  }
+
+ private:
+  void start_threads() {
+    while (!exhausted_ && threads_.size() + 1 < size_) {
+      try {
+        threads_.emplace_back([this, worker = threads_.size() + 1] { work(worker); });
+      } catch (const std::system_error&) {
+        exhausted_ = true;  // the caller does the work alone
+      }
+    }
+  }
+
+  void work(std::size_t worker) {
+    pthread_setname_np(pthread_self(), "vitrine-worker");
+    inside_loop = true;
+    current_worker = worker;
+    std::uint64_t seen = 0;
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      wake_.wait(lock, [&] { return stopping_ || (loop_ && generation_ != seen); });
+      if (stopping_) return;
+      seen = generation_;
+      Loop* loop = loop_;
+      ++running_;
+      lock.unlock();
+      loop->run(worker);
+      lock.lock();
+      if (--running_ == 0) done_.notify_one();
+    }
+  }
+
+  const std::size_t size_;
+  std::mutex loop_mutex_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::condition_variable done_;
+  std::vector<std::thread> threads_;
+  Loop* loop_ = nullptr;
+  std::size_t wanted_ = 0;
+  std::size_t running_ = 0;
+  std::uint64_t generation_ = 0;
+  bool stopping_ = false;
+  bool exhausted_ = false;
+};
+
+Pool& pool() {
+  static Pool instance(wanted_workers());
+  return instance;
+}
+
+}  // namespace
+
+std::size_t worker_count() { return pool().size(); }
+
+void parallel_for(std::size_t count, FunctionRef<void(std::size_t, std::size_t)> body) {
+  if (count == 0) return;
+  if (count == 1 || inside_loop || pool().size() == 1) {
+    const bool nested = inside_loop;
+    if (!nested) current_worker = 0;
+    inside_loop = true;
+    for (std::size_t i = 0; i < count; ++i) body(i, current_worker);
+    inside_loop = nested;
+    return;
+  }
+  Loop loop{count, body};
+  pool().run(loop);
+}
+
+}  // namespace vitrine::base
