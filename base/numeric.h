@@ -1,5 +1,5 @@
-// Scalar conversions between number types: the only place where rounding is defined. Vector twins in the rooms must give
-// the same bits (tests compare them).
+// Scalar conversions between number types: the only place where rounding is defined. Vector twins in the rooms must
+// give the same bits (tests compare them).
 #pragma once
 
 #include <bit>

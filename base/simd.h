@@ -1,4 +1,5 @@
-// The SIMD targets of this library and how code picks one. Include this before <hwy/...> in every file with Highway code.
+// The SIMD targets of this library and how code picks one. Include this before <hwy/...> in every file with Highway
+// code.
 //
 // Files with SIMD code follow Highway's foreach_target pattern. Three targets: SSE4, AVX2, AVX3 (AVX-512 F/BW/DQ/VL).
 // Every target gives the same bits: an FMA is written lanes_fma() below, never hn::MulAdd, because Highway's MulAdd
@@ -13,8 +14,8 @@
 
 namespace vitrine::base {
 
-/// Applies VITRINE_TARGET (sse4, avx2 or avx3; unset: the best the CPU has) to Highway's dispatch. Idempotent, thread-safe;
-/// called once before the first SIMD dispatch of a process.
+/// Applies VITRINE_TARGET (sse4, avx2 or avx3; unset: the best the CPU has) to Highway's dispatch. Idempotent,
+/// thread-safe; called once before the first SIMD dispatch of a process.
 void select_simd_target();
 
 /// Name of the target in use, for the device summary and the benchmark.

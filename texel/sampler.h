@@ -1,0 +1,87 @@
+// The sampler: whole waves of coordinates in, whole waves of texels out. Bits: lavapipe-texture-blend.md parts A to C.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstdint>
+
+#include "base/lanes.h"
+#include "texel/view.h"
+
+namespace vitrine::texel {
+
+/// Sampler state, named after VkSamplerCreateInfo. Immutable.
+struct Sampler {
+  VkFilter mag_filter = VK_FILTER_NEAREST;
+  VkFilter min_filter = VK_FILTER_NEAREST;
+  VkSamplerMipmapMode mip_mode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
+  std::array<VkSamplerAddressMode, 3> address{VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                                              VK_SAMPLER_ADDRESS_MODE_REPEAT};
+  float mip_lod_bias = 0;
+  float min_lod = 0;
+  float max_lod = 0;
+  float max_anisotropy = 1;  ///< 1 when anisotropy is disabled
+  bool compare = false;
+  VkCompareOp compare_op = VK_COMPARE_OP_NEVER;
+  std::array<std::uint32_t, 4> border{};  ///< raw bits: floats or integers by the border colour's type
+  bool unnormalized = false;
+  VkSamplerReductionMode reduction = VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+};
+
+enum class SampleOp : std::uint8_t { kSample, kGather, kQueryLod };
+enum class LodMode : std::uint8_t {
+  kImplicit,  ///< from quad derivatives of the coordinates (fragment); stages without derivatives use kZero
+  kBias,      ///< implicit plus `lod` per lane
+  kExplicit,  ///< `lod` per lane
+  kGrad,      ///< `ddx`, `ddy` per lane
+  kZero,      ///< level 0 of the view
+};
+
+/// One image instruction for a wave. Pointers are to 64-lane registers holding float bits (integers where noted); null
+/// where the operand is absent. Lanes outside `active` may hold anything and must not fault.
+struct SampleRequest {
+  SampleOp op = SampleOp::kSample;
+  LodMode lod_mode = LodMode::kImplicit;
+  base::LaneMask active = base::kAllLanes;
+  std::array<const base::WaveRegister*, 4>
+      coord{};                               ///< s, t, r (as the dimension needs), then array layer, in this order
+  const base::WaveRegister* dref = nullptr;  ///< depth comparison reference
+  const base::WaveRegister* lod = nullptr;   ///< bias or explicit LOD
+  std::array<const base::WaveRegister*, 3> ddx{};
+  std::array<const base::WaveRegister*, 3> ddy{};
+  const base::WaveRegister* min_lod = nullptr;
+  std::array<const base::WaveRegister*, 3> offset{};  ///< int32 texel offsets (constant or per lane)
+  const std::array<std::array<std::int32_t, 2>, 4>* gather_offsets = nullptr;  ///< ConstOffsets
+  std::uint32_t gather_component = 0;
+};
+
+/// Samples, gathers or queries for every active lane; writes four components (raw bits). kQueryLod writes two.
+void sample(const ImageView& view, const Sampler& sampler, const SampleRequest& request, base::WaveRegister result[4]);
+
+/// texelFetch / OpImageRead / imageLoad: integer coordinates (x, y, z-or-layer...), level and sample index (null: 0).
+/// Out of range reads 0 in every channel present, missing alpha 1 (A10).
+struct FetchRequest {
+  base::LaneMask active = base::kAllLanes;
+  std::array<const base::WaveRegister*, 3> coord{};  ///< int32: x, y, z, with the array layer after the last dimension
+  const base::WaveRegister* lod = nullptr;
+  const base::WaveRegister* sample = nullptr;
+  std::array<const base::WaveRegister*, 3> offset{};
+};
+void fetch(const ImageView& view, const FetchRequest& request, base::WaveRegister result[4]);
+void fetch_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
+                  base::WaveRegister result[4]);
+
+/// imageStore (part B conversions): out of range is dropped. Lanes are stored in increasing order.
+void store(const ImageView& view, const FetchRequest& request, const base::WaveRegister value[4]);
+void store_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
+                  const base::WaveRegister value[4]);
+
+/// Address of a 32-bit texel for image atomics, null where out of range; lane by lane, by the caller.
+std::uint32_t* texel_address(const ImageView& view, std::int32_t x, std::int32_t y, std::int32_t z,
+                             std::uint32_t sample);
+
+/// OpImageQuerySize(Lod): components as the instruction returns them (layers last).
+std::array<std::uint32_t, 3> query_size(const ImageView& view, std::int32_t lod);
+
+}  // namespace vitrine::texel
