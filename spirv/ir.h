@@ -1,0 +1,186 @@
+// The intermediate representation between the SPIR-V front end and the lowering to Program: SSA values over a tree of
+// structured control flow. Front end: words -> Function. Rewrites: Function -> Function. Lowering: Function -> Program.
+//
+// Control flow is a tree, so there are no phi instructions: values cross joins as arguments.
+//   If    cond; each branch ends in Yield(values) or in a jump; results[i] is the i-th yielded value.
+//   Loop  params: initial values `init`, and per iteration the Yield of `continuing`. `body` ends in Yield (= falls
+//   into
+//         `continuing`, values for continue_params), or in a jump. Continue(values) jumps to `continuing` of the
+//         innermost loop; Break(values) leaves it, giving results. `continuing` ends in Yield(next params), in Break,
+//         or in If that may Break (the SPIR-V back-edge block with a conditional exit).
+//   Return / Kill end the invocation (functions are inlined). Demote is an ordinary instruction.
+// After lowering to scalars every ALU instruction has one component; loads, image instructions and constants may keep
+// up to 4.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "base/lanes.h"
+#include "spirv/shader.h"
+
+namespace vitrine::spirv::ir {
+
+enum class Op : std::uint16_t {
+#define VITRINE_ALU(name, sources, result, operands, effect) k##name,
+#include "spirv/ops.def"
+#undef VITRINE_ALU
+  kAluCount,
+#define VITRINE_INTRINSIC(name, sources, result, effect) k##name,
+#include "spirv/intrinsics.def"
+#undef VITRINE_INTRINSIC
+  kCount,
+};
+
+struct AluInfo {
+  const char* name;
+  std::uint8_t sources;
+  char result;  ///< F I U B
+  const char* operands;
+};
+/// Row of ops.def; `op` < kAluCount.
+const AluInfo& alu_info(Op op);
+/// Name of any op.
+const char* op_name(Op op);
+
+using ValueId = std::uint32_t;
+inline constexpr ValueId kNoValue = ~ValueId{0};
+
+/// One operand: a value and which of its components feed component i of the consumer.
+struct Src {
+  ValueId value = kNoValue;
+  std::array<std::uint8_t, 4> swizzle{0, 1, 2, 3};
+};
+
+/// Where an instruction came from.
+struct Origin {
+  std::uint32_t spirv_id = 0;  ///< result id, 0: none
+  std::uint32_t file = 0;      ///< OpString id, 0: none
+  std::uint32_t line = 0;
+};
+
+/// One instruction. `imm` and `data` mean what the op's row says.
+struct Instr {
+  Op op = Op::kMov;
+  std::uint8_t components = 1;  ///< of the result; 0: no result
+  bool boolean = false;         ///< result is a lane mask per component
+  bool exact = false;           ///< precise / NoContraction / feeds an invariant output: inexact rewrites do not apply
+  ValueId result = kNoValue;
+  std::vector<Src> src;
+  std::array<std::uint32_t, 4> imm{};             ///< constants: component bits (booleans: 0 / 1)
+  std::uint32_t data[4] = {};                     ///< intrinsic parameters
+  std::shared_ptr<const struct ImageInfo> image;  ///< image instructions
+  Origin origin;
+};
+
+/// Which image, how, with which operands present. Sources of an image instruction are in the order of ImageOperand,
+/// those that are present; each a vector of as many components as the operand has.
+enum class ImageOperand : std::uint8_t {
+  kImageIndex,
+  kSamplerIndex,  ///< array element of the descriptor (dynamic); absent: element 0 or constant in ImageInfo
+  kCoord,
+  kDref,
+  kLod,
+  kBias,
+  kGradX,
+  kGradY,
+  kMinLod,
+  kOffset,
+  kSample,
+  kValue,
+  kCompare,
+  kCount,
+};
+enum class ImageAccess : std::uint8_t {
+  kSample,
+  kGather,
+  kQueryLod,
+  kFetch,
+  kRead,
+  kWrite,
+  kAtomic,
+  kQuerySize,
+  kQueryLevels,
+  kQuerySamples,
+  kSubpass,
+};
+enum class AtomicOp : std::uint8_t {
+  kAdd,
+  kSub,
+  kIMin,
+  kIMax,
+  kUMin,
+  kUMax,
+  kAnd,
+  kOr,
+  kXor,
+  kExchange,
+  kCompareExchange,
+  kFAdd,
+  kFMin,
+  kFMax,
+  kLoad,
+  kStore,
+};
+struct ImageInfo {
+  ImageAccess access = ImageAccess::kSample;
+  std::uint32_t operands = 0;                  ///< bit i: ImageOperand i is present
+  std::uint32_t set = 0, slot = 0, count = 1;  ///< of the image (ResourceTable; slot of array element 0)
+  std::uint32_t sampler_set = 0, sampler_slot = 0, sampler_count = 1;
+  bool combined = false;  ///< image and sampler come from one descriptor
+  const texel::Sampler* immutable_sampler = nullptr;
+  std::uint8_t dim = 2;  ///< 1, 2, 3; 4 = cube; 5 = texel buffer; 6 = subpass input
+  bool arrayed = false, multisampled = false;
+  bool projective = false;         ///< divide already applied by the front end; kept for information
+  bool explicit_lod_zero = false;  ///< implicit LOD outside fragment shaders
+  std::uint32_t gather_component = 0;
+  bool has_gather_offsets = false;
+  std::array<std::array<std::int32_t, 2>, 4> gather_offsets{};
+  AtomicOp atomic = AtomicOp::kAdd;
+};
+
+struct Node;
+using NodeList = std::vector<std::unique_ptr<Node>>;
+
+struct Node {
+  enum class Kind : std::uint8_t { kInstr, kIf, kLoop } kind = Kind::kInstr;
+  Instr instr;                           ///< kInstr (Yield, Break, Continue, Return, Kill are instructions too)
+  Src condition;                         ///< kIf
+  NodeList then_list, else_list;         ///< kIf
+  NodeList body, continuing;             ///< kLoop
+  std::vector<ValueId> params;           ///< kLoop
+  std::vector<Src> init;                 ///< kLoop: one per param
+  std::vector<ValueId> continue_params;  ///< kLoop
+  std::vector<ValueId> results;          ///< kIf, kLoop
+};
+
+/// Type of a value: what lowering needs to know.
+struct ValueInfo {
+  std::uint8_t components = 1;
+  bool boolean = false;
+};
+
+/// A local (Function / Private) variable that did not become SSA: an array of 32-bit elements per invocation, indexed
+/// dynamically.
+struct Array {
+  std::uint32_t elements = 0;
+};
+
+struct Function {
+  ShaderInterface interface;  ///< registers are assigned by the lowering
+  NodeList body;
+  std::vector<ValueInfo> values;  ///< indexed by ValueId
+  std::vector<Array> arrays;
+  bool signed_zero_inf_nan_preserve = false;  ///< execution mode: inexact rewrites are off (section 4.1)
+  bool denorm_flush_to_zero = false;
+
+  ValueId new_value(std::uint8_t components, bool boolean) {
+    values.push_back({components, boolean});
+    return static_cast<ValueId>(values.size() - 1);
+  }
+};
+
+}  // namespace vitrine::spirv::ir

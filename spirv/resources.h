@@ -1,0 +1,38 @@
+// What a shader can reach: descriptors resolved to addresses and views, push constants. Filled by icd/ when a draw or
+// dispatch is replayed; constant while it runs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "texel/sampler.h"
+#include "texel/view.h"
+
+namespace vitrine::spirv {
+
+/// One array element of one binding. All zero is the null descriptor: buffers of size 0, images that read 0.
+struct Descriptor {
+  union {
+    std::byte* data = nullptr;             ///< uniform or storage buffer, offset applied
+    const texel::ImageView* image;         ///< sampled, storage, input attachment, combined
+    const texel::BufferTexelView* texels;  ///< uniform or storage texel buffer
+  };
+  union {
+    std::uint64_t size = 0;         ///< bytes of the bound range (buffers)
+    const texel::Sampler* sampler;  ///< sampler, combined image sampler
+  };
+};
+
+inline constexpr std::uint32_t kMaxSets = 32;
+/// Pseudo set of dynamic uniform/storage buffers: slot = running number of the dynamic descriptor in the pipeline
+/// layout, in set order, then binding order, then array element; dynamic offsets are already applied.
+inline constexpr std::uint32_t kDynamicSet = kMaxSets;
+inline constexpr std::uint32_t kMaxPushConstantBytes = 256;
+
+struct ResourceTable {
+  const Descriptor* set[kMaxSets + 1] = {};   ///< null where nothing is bound: reads 0, drops writes
+  std::uint32_t set_size[kMaxSets + 1] = {};  ///< descriptors in each
+  const std::byte* push_constants = nullptr;  ///< kMaxPushConstantBytes bytes
+};
+
+}  // namespace vitrine::spirv

@@ -1,0 +1,157 @@
+// The narrow interface between fixed function and shaders: whole waves in, whole waves out. raster/ includes only this
+// header of spirv/ (and resources.h); it never sees SPIR-V ids.
+//
+// Use: compile() once per pipeline stage -> Shader. Per draw: bind() runs the uniform preamble -> BoundShader, shared
+// by all threads. Per thread: a WaveRunner holds the memory of one wave; fill its inputs, run(), read its outputs.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/lanes.h"
+#include "spirv/resources.h"
+
+namespace vitrine::spirv {
+
+struct Program;  // spirv/program.h
+
+enum class BaseType : std::uint8_t { kFloat, kInt, kUint };
+enum class Interpolation : std::uint8_t { kPerspective, kLinear, kFlat };
+enum class SampleLocation : std::uint8_t { kCenter, kCentroid, kSample };
+
+/// Values fixed function supplies or takes, besides the numbered locations. Booleans are 0 / 0xffffffff.
+enum class BuiltIn : std::uint8_t {
+  kNone,
+  // vertex in
+  kVertexIndex,
+  kInstanceIndex,
+  kBaseVertex,
+  kBaseInstance,
+  kDrawIndex,
+  kViewIndex,
+  // vertex out
+  kPosition,
+  kPointSize,
+  kClipDistance,
+  kCullDistance,
+  kLayer,
+  kViewportIndex,
+  // fragment in (kLayer, kViewportIndex, kClipDistance, kCullDistance, kViewIndex too)
+  kFragCoord,
+  kFrontFacing,
+  kPointCoord,
+  kSampleId,
+  kSamplePosition,
+  kSampleMask,
+  kPrimitiveId,
+  kHelperInvocation,
+  // fragment out (kSampleMask too)
+  kFragDepth,
+  kFragStencilRef,
+};
+
+/// One scalar 32-bit component of the interface. `component` counts 0..3 in a location, or the element of a built-in
+/// (FragCoord.z = 2, ClipDistance[5] = 5).
+struct InterfaceSlot {
+  BuiltIn built_in = BuiltIn::kNone;
+  std::uint8_t component = 0;
+  std::uint16_t location = 0;
+  std::uint8_t index = 0;  ///< dual source blending: Index decoration
+  BaseType type = BaseType::kFloat;
+  Interpolation interpolation = Interpolation::kPerspective;
+  SampleLocation sample_location = SampleLocation::kCenter;
+  std::uint32_t reg = 0;  ///< register of the wave: WaveRunner::input(reg) / output(reg)
+};
+
+struct ShaderInterface {
+  VkShaderStageFlagBits stage = VK_SHADER_STAGE_VERTEX_BIT;
+  std::vector<InterfaceSlot> inputs;   ///< only those the shader reads
+  std::vector<InterfaceSlot> outputs;  ///< only those it may write
+  std::uint32_t local_size[3] = {1, 1, 1};
+  std::uint32_t shared_bytes = 0;
+
+  bool uses_discard = false;          ///< may end fragments (kill, terminate, demote)
+  bool writes_memory = false;         ///< stores or atomics to buffers or images
+  bool early_fragment_tests = false;  ///< execution mode
+  bool per_sample = false;            ///< reads SampleId/SamplePosition or a `sample` input
+  bool needs_helpers = false;         ///< derivatives or implicit LOD: quads must be complete
+  bool writes_depth() const { return writes(BuiltIn::kFragDepth); }
+  bool writes(BuiltIn built_in) const {
+    for (const InterfaceSlot& slot : outputs)
+      if (slot.built_in == built_in) return true;
+    return false;
+  }
+};
+
+/// An executable entry point. Immutable; shared by any number of threads.
+class Shader {
+ public:
+  Shader(ShaderInterface interface, std::unique_ptr<const Program> program);
+  ~Shader();
+  const ShaderInterface& interface() const { return interface_; }
+  const Program& program() const { return *program_; }
+
+ private:
+  ShaderInterface interface_;
+  std::unique_ptr<const Program> program_;
+};
+
+/// What went wrong while a shader ran (instruction budget exhausted, divergent barrier): set once, by any thread.
+struct Fault {
+  std::atomic<bool> raised{false};
+  std::string message;  ///< names the source line; valid once `raised` is true and all threads are done
+};
+
+/// A shader with its resources and the results of its uniform preamble. Built once per draw or dispatch, then constant.
+class BoundShader {
+ public:
+  /// Runs the preamble on the calling thread, in the floating-point mode of the shader's stage. `fault` outlives this.
+  BoundShader(const Shader& shader, const ResourceTable& resources, Fault& fault);
+  ~BoundShader();
+  BoundShader(BoundShader&&) noexcept;
+  const Shader& shader() const { return *shader_; }
+  const ResourceTable& resources() const { return resources_; }
+  const std::uint32_t* uniforms() const { return uniforms_; }
+  Fault& fault() const { return *fault_; }
+
+ private:
+  const Shader* shader_;
+  ResourceTable resources_;
+  Fault* fault_;
+  std::uint32_t* uniforms_;  ///< uniform file: constants, then preamble results; 64-byte aligned
+};
+
+/// The memory of one wave. One per thread; reusable for any shader: bind() grows it when needed (the only allocation).
+class WaveRunner {
+ public:
+  WaveRunner();
+  ~WaveRunner();
+  WaveRunner(const WaveRunner&) = delete;
+  WaveRunner& operator=(const WaveRunner&) = delete;
+
+  void bind(const BoundShader& shader);
+
+  /// Registers of InterfaceSlot::reg. Inputs must be written for every lane in `active` before each run() (run() may
+  /// reuse input registers for other values); outputs are valid after run() until the next.
+  base::WaveRegister& input(std::uint32_t reg);
+  const base::WaveRegister& output(std::uint32_t reg) const;
+
+  /// Runs the entry point for the lanes of `active`. `helpers` (a subset of `active`) execute for derivatives only:
+  /// their stores and atomics have no effect. Returns the lanes of active & ~helpers that were not discarded.
+  base::LaneMask run(base::LaneMask active, base::LaneMask helpers);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Runs a compute shader over group counts `groups` starting at `base`, spread over the workers. Returns when done;
+/// denormals are honoured. Faults are reported through the BoundShader's Fault.
+void dispatch(const BoundShader& shader, const std::uint32_t base[3], const std::uint32_t groups[3]);
+
+}  // namespace vitrine::spirv
