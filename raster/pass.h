@@ -1,0 +1,54 @@
+// A render pass instance (one subpass, or one dynamic rendering scope) being drawn: takes clears and draws in order,
+// bins them, and writes attachments when flushed. DESIGN.md section 3.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "raster/draw.h"
+#include "texel/view.h"
+
+namespace vitrine::raster {
+
+/// Attachments are views of one mip level; view.level[0] is that level. format == null: unused attachment.
+struct PassDesc {
+  std::array<texel::ImageView, kMaxColorAttachments> color{};
+  std::uint32_t color_count = 0;
+  texel::ImageView depth;    ///< the depth plane
+  texel::ImageView stencil;  ///< the stencil plane
+  VkRect2D render_area{};
+  std::uint32_t layers = 1;
+  std::uint32_t view_mask = 0;
+  std::uint32_t samples = 1;
+};
+
+class Pass {
+ public:
+  explicit Pass(const PassDesc& desc);
+  ~Pass();  ///< flushes
+  Pass(const Pass&) = delete;
+  Pass& operator=(const Pass&) = delete;
+
+  /// Load-op clears and vkCmdClearAttachments: encodes the value once (lavapipe-rasterization.md 11.1) and fills `rect`
+  /// (clipped to the attachment) of layers [base_layer, base_layer + layer_count), in order with draws.
+  void clear_color(std::uint32_t attachment, const VkClearColorValue& value, const VkRect2D& rect,
+                   std::uint32_t base_layer, std::uint32_t layer_count);
+  void clear_depth_stencil(VkImageAspectFlags aspects, const VkClearDepthStencilValue& value, const VkRect2D& rect,
+                           std::uint32_t base_layer, std::uint32_t layer_count);
+
+  /// Takes the draw: runs its front end now or later, bins its primitives; fragments are shaded at the latest in
+  /// flush().
+  void draw(const DrawCall& draw);
+
+  /// Everything recorded so far has reached memory, and query counters are final.
+  void flush();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vitrine::raster
