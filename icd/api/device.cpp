@@ -1,0 +1,67 @@
+// Devices and queues as objects (Vulkan 1.3.239, Devices and Queues: Device Creation, Queues).
+#include "icd/device.h"
+
+#include "icd/entry_points.h"
+#include "icd/util.h"
+
+namespace vitrine::icd {
+namespace {
+
+VkResult enable_device_extensions(const PhysicalDevice& parent, const VkDeviceCreateInfo& info, ExtensionSet& enabled) {
+  for (std::uint32_t i = 0; i < info.enabledExtensionCount; ++i) {
+    const Extension extension = find_extension(info.ppEnabledExtensionNames[i]);
+    if (extension == Extension::kCount || !parent.extensions.test(extension)) return VK_ERROR_EXTENSION_NOT_PRESENT;
+    enabled.set(extension);
+  }
+  return VK_SUCCESS;
+}
+
+VkResult enable_features(const PhysicalDevice& parent, const VkDeviceCreateInfo& info, FeatureSet& enabled) {
+  if (info.pEnabledFeatures) read_features(info.pEnabledFeatures, enabled);
+  read_feature_chain(info.pNext, enabled);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(Feature::kCount); ++i) {
+    const Feature feature = static_cast<Feature>(i);
+    if (enabled.test(feature) && !parent.features.test(feature)) return VK_ERROR_FEATURE_NOT_PRESENT;
+  }
+  return VK_SUCCESS;
+}
+
+}  // namespace
+
+namespace entry {
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physical_device, const VkDeviceCreateInfo* info,
+                                            const VkAllocationCallbacks* allocator, VkDevice* device) {
+  PhysicalDevice& parent = from_handle<PhysicalDevice>(physical_device);
+  ExtensionSet extensions;
+  FeatureSet features;
+  VkResult result = enable_device_extensions(parent, *info, extensions);
+  if (result == VK_SUCCESS) result = enable_features(parent, *info, features);
+  if (result != VK_SUCCESS) return result;
+  Device* object = create_object<Device>(parent.instance.memory, allocator, parent);
+  object->extensions = extensions;
+  object->features = features;
+  if (info->queueCreateInfoCount) object->queue.flags = info->pQueueCreateInfos[0].flags;
+  *device = to_handle(object);
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyDevice(VkDevice device, const VkAllocationCallbacks*) {
+  destroy_handle<Device>(device);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetDeviceQueue(VkDevice device, std::uint32_t family, std::uint32_t index, VkQueue* queue) {
+  VkDeviceQueueInfo2 info = make_struct<VkDeviceQueueInfo2>();
+  info.queueFamilyIndex = family;
+  info.queueIndex = index;
+  GetDeviceQueue2(device, &info, queue);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetDeviceQueue2(VkDevice device, const VkDeviceQueueInfo2* info, VkQueue* queue) {
+  Device& d = from_handle<Device>(device);
+  const bool exists = info->queueFamilyIndex == 0 && info->queueIndex == 0 && info->flags == d.queue.flags;
+  *queue = exists ? to_handle(&d.queue) : VK_NULL_HANDLE;
+}
+
+}  // namespace entry
+}  // namespace vitrine::icd

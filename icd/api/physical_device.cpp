@@ -1,0 +1,148 @@
+// Physical devices: properties, features, limits, queue families and memory (Vulkan 1.3.239, Devices and Queues;
+// Features; Limits; Memory Allocation: Device Memory Properties).
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+#include "base/simd.h"
+#include "base/workers.h"
+#include "icd/entry_points.h"
+#include "icd/instance.h"
+#include "icd/util.h"
+
+namespace vitrine::icd {
+namespace {
+
+/// VITRINE_DEVICE_TYPE=cpu|virtual|integrated|discrete: for applications that skip CPU devices.
+VkPhysicalDeviceType device_type(VkPhysicalDeviceType claimed) {
+  const char* wanted = std::getenv("VITRINE_DEVICE_TYPE");
+  if (!wanted) return claimed;
+  const std::string_view name(wanted);
+  if (name == "virtual") return VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU;
+  if (name == "integrated") return VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+  if (name == "discrete") return VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  return claimed;
+}
+
+/// A UUID of readable bytes: a tag and the driver version. Equal builds of one version share caches and memory.
+void write_uuid(std::uint8_t (&uuid)[VK_UUID_SIZE], const char (&tag)[9], std::uint32_t version) {
+  std::memset(uuid, 0, sizeof uuid);
+  std::memcpy(uuid, tag, 8);
+  std::memcpy(uuid + 8, &version, sizeof version);
+}
+
+VkPhysicalDeviceProperties make_properties() {
+  VkPhysicalDeviceProperties properties = claimed_properties();
+  base::select_simd_target();
+  std::snprintf(properties.deviceName, sizeof properties.deviceName, "%.100s (%.20s, %zu threads)",
+                claimed_properties().deviceName, base::simd_target_name(), base::worker_count());
+  properties.deviceType = device_type(properties.deviceType);
+  write_uuid(properties.pipelineCacheUUID, "vitrCACH", properties.driverVersion);
+  return properties;
+}
+
+/// One heap of three quarters of the machine's memory, and one type that is everything at once.
+VkPhysicalDeviceMemoryProperties make_memory_properties() {
+  VkPhysicalDeviceMemoryProperties properties{};
+  const long pages = sysconf(_SC_PHYS_PAGES);
+  const long page_size = sysconf(_SC_PAGESIZE);
+  const VkDeviceSize total = pages > 0 && page_size > 0 ? VkDeviceSize(pages) * VkDeviceSize(page_size) : 1ull << 30;
+  properties.memoryHeapCount = 1;
+  properties.memoryHeaps[0] = {total / 4 * 3, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
+  properties.memoryTypeCount = 1;
+  properties.memoryTypes[0].propertyFlags = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                            VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+  return properties;
+}
+
+FeatureSet make_features() {
+  FeatureSet features;
+  for (const Feature feature : claimed_features()) features.set(feature);
+  return features;
+}
+
+ExtensionSet make_device_extensions() {
+  ExtensionSet extensions;
+  for (const ExtensionInfo& info : extension_infos()) {
+    if (info.claimed && !info.is_instance) {
+      extensions.set(static_cast<Extension>(&info - extension_infos().data()));
+    }
+  }
+  return extensions;
+}
+
+/// Identity of the device: a UUID is the one property that depends on more than claims.
+template <class T>
+void write_identity(const PhysicalDevice& device, T& ids) {
+  write_uuid(ids.deviceUUID, "vitrDEVC", device.properties.driverVersion);
+  write_uuid(ids.driverUUID, "vitrDRVR", device.properties.driverVersion);
+}
+
+constexpr VkQueueFamilyProperties kUniversalFamily = {
+    VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT, 1, 64, {1, 1, 1}};
+
+}  // namespace
+
+PhysicalDevice::PhysicalDevice(const HostMemory& m, Instance& owner)
+    : DispatchableObject(m),
+      instance(owner),
+      properties(make_properties()),
+      features(make_features()),
+      extensions(make_device_extensions()),
+      memory_properties(make_memory_properties()) {}
+
+namespace entry {
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties(VkPhysicalDevice device, VkPhysicalDeviceProperties* out) {
+  *out = from_handle<PhysicalDevice>(device).properties;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice device, VkPhysicalDeviceProperties2* out) {
+  const PhysicalDevice& physical_device = from_handle<PhysicalDevice>(device);
+  out->properties = physical_device.properties;
+  write_property_chain(out->pNext);
+  if (auto* ids = find_in_out_chain<VkPhysicalDeviceIDProperties>(out->pNext)) write_identity(physical_device, *ids);
+  if (auto* core = find_in_out_chain<VkPhysicalDeviceVulkan11Properties>(out->pNext);
+      core && physical_device.properties.apiVersion >= VK_API_VERSION_1_2) {
+    write_identity(physical_device, *core);
+  }
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFeatures(VkPhysicalDevice device, VkPhysicalDeviceFeatures* out) {
+  write_features(out, from_handle<PhysicalDevice>(device).features);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFeatures2(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* out) {
+  write_feature_chain(out, from_handle<PhysicalDevice>(device).features);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevice, std::uint32_t* count,
+                                                                  VkQueueFamilyProperties* out) {
+  OutArray<VkQueueFamilyProperties> array(count, out);
+  array.push(kUniversalFamily);
+  array.result();
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties2(VkPhysicalDevice, std::uint32_t* count,
+                                                                   VkQueueFamilyProperties2* out) {
+  OutArray<VkQueueFamilyProperties2> array(count, out);
+  if (VkQueueFamilyProperties2* family = array.next()) family->queueFamilyProperties = kUniversalFamily;
+  array.result();
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties(VkPhysicalDevice device,
+                                                             VkPhysicalDeviceMemoryProperties* out) {
+  *out = from_handle<PhysicalDevice>(device).memory_properties;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties2(VkPhysicalDevice device,
+                                                              VkPhysicalDeviceMemoryProperties2* out) {
+  out->memoryProperties = from_handle<PhysicalDevice>(device).memory_properties;
+}
+
+}  // namespace entry
+}  // namespace vitrine::icd

@@ -1,0 +1,53 @@
+"""Reads the claims of manifest/: lines of fields separated by ';' (the last one may contain more), '#' starts a comment, blank lines are ignored."""
+import re
+from dataclasses import dataclass
+
+
+@dataclass
+class Limit:
+    value: str
+    minimum: str  # what the specification requires, or '-'
+    reason: str
+    line: str     # file:line, for messages
+
+
+def rows(path):
+    """Yields (fields, 'file:line') of every line that says something."""
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        line = re.sub(r"(^|\s)#.*", "", line).strip()
+        if line:
+            yield [f.strip() for f in line.split(";", 2)], f"{path.name}:{number}"
+
+
+class Claims:
+    def __init__(self, folder):
+        self.folder = folder
+        self.limits = {}
+        for file in ("device", "limits"):
+            for fields, where in rows(folder / file):
+                name, value = (f.strip() for f in fields[0].split("=", 1))
+                self._once(name, self.limits, where)
+                minimum = fields[1] if len(fields) > 1 else "-"
+                self.limits[name] = Limit(value, minimum, fields[2] if len(fields) > 2 else "", where)
+        self.features = {}
+        for fields, where in rows(folder / "features"):
+            self._once(fields[0], self.features, where)
+            self.features[fields[0]] = self._tests(fields, 1, where)
+        self.extensions = {}
+        for fields, where in rows(folder / "extensions"):
+            self._once(fields[0], self.extensions, where)
+            if len(fields) < 2 or not fields[1].isdigit():
+                raise SystemExit(f"{where}: expected 'name ; spec version ; tests'")
+            self.extensions[fields[0]] = (int(fields[1]), self._tests(fields, 2, where))
+        self.api_version = self.limits["apiVersion"].value
+
+    @staticmethod
+    def _once(name, known, where):
+        if name in known:
+            raise SystemExit(f"{where}: {name} is claimed twice")
+
+    @staticmethod
+    def _tests(fields, index, where):
+        if len(fields) <= index or not fields[index]:
+            raise SystemExit(f"{where}: a claim names the tests that back it")
+        return fields[index]

@@ -1,0 +1,314 @@
+#!/usr/bin/env python3
+"""Generates the tables that icd/ derives from the Vulkan registry and from the claims in manifest/.
+
+usage: generate.py VK_XML MANIFEST_FOLDER OUTPUT_FOLDER
+
+Output: enums.h (Extension, Feature), structure_types.h (sType of every structure), entry_points.h (declaration of every
+command), tables.cpp (entry points, extensions, feature and property structures as constexpr tables).
+"""
+import pathlib
+import re
+import sys
+
+import claims as claims_module
+import vkxml
+
+BANNER = "// Generated from vk.xml and manifest/ by icd/registry/generate.py.\n"
+
+
+def fail(message):
+    raise SystemExit(f"generate.py: {message}")
+
+
+def write(path, text):
+    """Leaves an unchanged file alone, so that nothing is rebuilt for it."""
+    text = BANNER + text
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
+
+
+def enumerator(extension):
+    return extension.removeprefix("VK_")
+
+
+class Generator:
+    def __init__(self, registry, claims):
+        self.registry = registry
+        self.claims = claims
+        self.version = vkxml.version_number(claims.api_version)
+        for name in claims.extensions:
+            if name not in registry.extensions:
+                # An older registry does not know the extension: the claim waits for newer headers.
+                print(f"note: {name} is claimed but not in this registry", file=sys.stderr)
+        self.claimed = {n for n in registry.extensions if n in claims.extensions}
+        self.feature_names = self.feature_structs = None
+        self._collect_features()
+        self._check()
+
+    def holds(self, gate):
+        return gate.version <= self.version and all(e in self.claimed for e in gate.extensions)
+
+    def available(self, thing):
+        return any(self.holds(g) for g in thing.gates)
+
+    def _collect_features(self):
+        structs = self.registry.structs
+        self.feature_structs = [structs["VkPhysicalDeviceFeatures"]]
+        self.feature_structs += [s for s in structs.values() if "VkPhysicalDeviceFeatures2" in s.extends]
+        names = {}
+        for struct in self.feature_structs:
+            for member in struct.members:
+                if member.type == "VkBool32":
+                    names[member.name] = True
+        self.feature_names = list(names)
+
+    def _check(self):
+        known = set(self.feature_names)
+        for name in self.claims.features:
+            if name not in known:
+                print(f"note: feature {name} is claimed but not in this registry", file=sys.stderr)
+        for name in self.claimed:
+            depends = self.registry.extensions[name].depends
+            if depends and not any(self.holds(g) for g in depends):
+                fail(f"{name} is claimed, but not what it depends on")
+
+    def enums(self):
+        extensions = "".join(f"  {enumerator(n)},\n" for n in sorted(self.registry.extensions))
+        features = "".join(f"  {n},\n" for n in self.feature_names)
+        return f"""#pragma once
+
+#include <cstdint>
+
+namespace vitrine::icd {{
+
+/// Every extension of the registry, without its VK_ prefix, sorted by name.
+enum class Extension : std::uint16_t {{
+{extensions}  kCount
+}};
+
+/// Every member of a feature structure. Promoted structures share the names and so the enumerators.
+enum class Feature : std::uint16_t {{
+{features}  kCount
+}};
+
+}}  // namespace vitrine::icd
+"""
+
+    def structure_types(self):
+        lines = "".join(f"template <>\ninline constexpr VkStructureType kStructureTypeOf<{s.name}> = {s.stype};\n"
+                        for s in self.registry.structs.values() if s.stype and "," not in s.stype)
+        return f"""#pragma once
+
+#include "icd/vulkan_api.h"
+
+namespace vitrine::icd {{
+
+/// The sType of a structure.
+template <class T>
+inline constexpr VkStructureType kStructureTypeOf = VK_STRUCTURE_TYPE_MAX_ENUM;
+{lines}
+}}  // namespace vitrine::icd
+"""
+
+    def entry_points(self):
+        names = sorted({c.implementation for c in self.registry.commands.values()})
+        lines = "".join(f"VITRINE_ENTRY({n.removeprefix('vk')});\n" for n in names)
+        return f"""#pragma once
+
+#include <type_traits>
+
+#include "icd/vulkan_api.h"
+
+/// Commands are ordinary functions named after the Vulkan command without "vk". They are declared weak: one that no
+/// source file defines is null, and icd/registry/ reports it if its version or extension is claimed.
+#define VITRINE_ENTRY(name) \\
+  __attribute__((weak, visibility("hidden"))) extern std::remove_pointer_t<PFN_vk##name> name
+
+namespace vitrine::icd::entry {{
+
+{lines}
+}}  // namespace vitrine::icd::entry
+
+#undef VITRINE_ENTRY
+"""
+
+    def _gate_rows(self, gates):
+        """The gates that can hold with our claims, as table rows. A version that holds alone makes the rest moot."""
+        rows = []
+        for gate in gates:
+            if not self.holds(gate):
+                continue
+            if len(gate.extensions) > 2:
+                fail(f"gate with more than two extensions: {gate}")
+            extensions = [f"Extension::{enumerator(e)}" for e in gate.extensions]
+            extensions += ["Extension::kCount"] * (2 - len(extensions))
+            row = f"{{{gate.version}u, {{{extensions[0]}, {extensions[1]}}}}}"
+            if row not in rows:
+                rows.append(row)
+        return rows
+
+    def _command_tables(self):
+        gates, commands = [], []
+        for name in sorted(self.registry.commands):
+            command = self.registry.commands[name]
+            rows = self._gate_rows(command.gates)
+            if not rows:
+                continue
+            first = len(gates)
+            gates += rows
+            target = command.implementation.removeprefix("vk")
+            scope = "k" + command.scope.title().replace("_", "")
+            commands.append(f'    {{"{name}", Scope::{scope}, {first}, {len(rows)}, address(&entry::{target}), '
+                            f'address(&Edge<&entry::{target}>::call)}},\n')
+        return gates, commands
+
+    def _extension_table(self):
+        lines = []
+        for name in sorted(self.registry.extensions):
+            extension = self.registry.extensions[name]
+            version = self.claims.extensions[name][0] if name in self.claimed else 0
+            lines.append(f'    {{"{name}", {min(version, extension.spec_version)}u, '
+                         f'{str(extension.is_instance).lower()}, {str(name in self.claimed).lower()}, '
+                         f'{extension.promoted_to}u}},\n')
+        return lines
+
+    def _feature_tables(self):
+        members, structs = [], []
+        for struct in self.feature_structs:
+            if not self.available(struct):
+                continue
+            booleans = [m for m in struct.members if m.type == "VkBool32"]
+            first = len(members)
+            offset_type = struct.name
+            members += [f"    {{Feature::{m.name}, offsetof({offset_type}, {m.name})}},\n" for m in booleans]
+            if struct.stype:
+                structs.append(f"    {{{struct.stype}, {first}, {len(booleans)}, sizeof({struct.name})}},\n")
+            else:
+                structs.insert(0, f"    {{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, {first}, {len(booleans)}, "
+                                  f"sizeof({struct.name})}},\n")
+        return members, structs
+
+    def _value(self, struct, member):
+        nested = self.registry.structs.get(member.type)
+        limit = self.claims.limits.get(member.name)
+        if limit is None and nested and nested.name != "VkConformanceVersion":
+            return "{" + self._initializer(nested) + "}"
+        if limit is None:
+            fail(f"{struct.name}::{member.name} has no value: add it to manifest/limits")
+        return limit.value
+
+    def _initializer(self, struct):
+        parts = []
+        for member in struct.members:
+            if member.name in ("sType", "pNext"):
+                continue
+            if struct.name == "VkPhysicalDeviceProperties" and member.name == "apiVersion":
+                value = f"VK_MAKE_API_VERSION(0, {self.version >> 22}, {self.version >> 12 & 0x3ff}, VK_HEADER_VERSION)"
+            else:
+                value = self._value(struct, member)
+            parts.append(f".{member.name} = {value}")
+        return ", ".join(parts)
+
+    def _property_tables(self):
+        constants, structs = [], []
+        for struct in self.registry.structs.values():
+            is_core = struct.name == "VkPhysicalDeviceProperties"
+            if not is_core and "VkPhysicalDeviceProperties2" not in struct.extends or not self.available(struct):
+                continue
+            start = "" if is_core else f".sType = {struct.stype}, .pNext = nullptr, "
+            constants.append(f"constexpr {struct.name} k{struct.name} = {{{start}{self._initializer(struct)}}};\n")
+            if not is_core:
+                structs.append(f"    {{{struct.stype}, sizeof({struct.name}), &k{struct.name}}},\n")
+        return constants, structs
+
+    def _limit_checks(self):
+        """One row per number of VkPhysicalDeviceLimits: value, required minimum, direction."""
+        lines = []
+        for member in self.registry.structs["VkPhysicalDeviceLimits"].members:
+            limit = self.claims.limits.get(member.name)
+            if limit is None or limit.minimum == "-":
+                continue
+            values = re.split(r",", limit.value.strip("{}"))
+            minima = re.split(r",", limit.minimum.strip("{}"))
+            for index, (value, minimum) in enumerate(zip(values, minima * len(values))):
+                kind = member.limittype.split(",")[0] if member.limittype else "max"
+                if kind == "range":
+                    kind = "min" if index == 0 else "max"
+                direction = {"min": "kAtMost", "bitmask": "kContains"}.get(kind, "kAtLeast")
+                lines.append(f'    {{"{member.name}", static_cast<double>({value}), '
+                             f'static_cast<double>({minimum}), LimitRule::{direction}}},\n')
+        return lines
+
+    def tables(self):
+        gates, commands = self._command_tables()
+        feature_members, feature_structs = self._feature_tables()
+        constants, property_structs = self._property_tables()
+        claimed_features = ["Feature::" + n for n in self.feature_names if n in self.claims.features]
+        return f"""#include <cstddef>
+
+#include "icd/edge.h"
+#include "icd/entry_points.h"
+#include "icd/registry/registry.h"
+
+namespace vitrine::icd {{
+namespace {{
+
+template <class F>
+VoidFunction address(F* function) {{
+  return reinterpret_cast<VoidFunction>(function);
+}}
+
+constexpr Gate kGates[] = {{
+    {(","+chr(10)+"    ").join(gates)}}};
+
+const EntryPoint kEntryPoints[] = {{
+{"".join(commands)}}};
+
+constexpr ExtensionInfo kExtensions[] = {{
+{"".join(self._extension_table())}}};
+
+constexpr Feature kClaimedFeatures[] = {{{", ".join(claimed_features)}}};
+
+constexpr FeatureMember kFeatureMembers[] = {{
+{"".join(feature_members)}}};
+
+constexpr FeatureStruct kFeatureStructs[] = {{
+{"".join(feature_structs)}}};
+
+{"".join(constants)}
+constexpr PropertyStruct kPropertyStructs[] = {{
+{"".join(property_structs)}}};
+
+constexpr LimitRule kLimitRules[] = {{
+{"".join(self._limit_checks())}}};
+
+}}  // namespace
+
+std::span<const EntryPoint> entry_points() {{ return kEntryPoints; }}
+std::span<const Gate> gates(const EntryPoint& entry) {{ return {{kGates + entry.first_gate, entry.gate_count}}; }}
+std::span<const ExtensionInfo> extension_infos() {{ return kExtensions; }}
+std::span<const Feature> claimed_features() {{ return kClaimedFeatures; }}
+std::span<const FeatureStruct> feature_structs() {{ return kFeatureStructs; }}
+std::span<const FeatureMember> feature_members(const FeatureStruct& structure) {{
+  return {{kFeatureMembers + structure.first_member, structure.member_count}};
+}}
+std::span<const PropertyStruct> property_structs() {{ return kPropertyStructs; }}
+std::span<const LimitRule> limit_rules() {{ return kLimitRules; }}
+const VkPhysicalDeviceProperties& claimed_properties() {{ return kVkPhysicalDeviceProperties; }}
+
+}}  // namespace vitrine::icd
+"""
+
+
+def main():
+    xml, manifest, output = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+    output.mkdir(parents=True, exist_ok=True)
+    generator = Generator(vkxml.Registry(xml), claims_module.Claims(manifest))
+    write(output / "enums.h", generator.enums())
+    write(output / "structure_types.h", generator.structure_types())
+    write(output / "entry_points.h", generator.entry_points())
+    write(output / "tables.cpp", generator.tables())
+
+
+if __name__ == "__main__":
+    main()
