@@ -1,0 +1,124 @@
+// Runs a case on the device and on the reference, compares, and writes pictures when they differ.
+#include "harness/execute.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "harness/options.h"
+#include "harness/run.h"
+
+namespace vitrine::cts {
+namespace {
+
+struct SideResult {
+  std::vector<Output> outputs;
+  std::string error, unsupported;
+  std::vector<std::string> validation;
+};
+
+SideResult run_side(Gpu& gpu, const Case& c) {
+  SideResult result;
+  take_validation_errors();
+  bool lost = false;
+  try {
+    Run run(gpu, case_seed(c), c.index);
+    c.body(run);
+    result.outputs = std::move(run.outputs);
+  } catch (const Unsupported& missing) {
+    result.unsupported = missing.what();
+  } catch (const VulkanError& error) {
+    result.error = error.what();
+    lost = error.code == VK_ERROR_DEVICE_LOST;
+  } catch (const std::exception& error) {
+    result.error = error.what();
+  }
+  result.validation = take_validation_errors();
+  if (lost) recreate(gpu);
+  return result;
+}
+
+std::string write_pictures(const Case& c, const Output& device, const Output& reference) {
+  std::string stem = full_name(c) + "." + reference.name;
+  std::replace(stem.begin(), stem.end(), '/', '_');
+  std::error_code ignored;
+  std::filesystem::create_directories(options().results, ignored);
+  const std::string path = options().results + "/" + stem;
+  write_png(path + ".device.png", device);
+  write_png(path + ".reference.png", reference);
+  write_difference_png(path + ".difference.png", device, reference);
+  return "  pictures: " + path + ".*.png\n";
+}
+
+/// Compares all outputs; fills the message with the first difference of each.
+bool compare_all(const Case& c, const SideResult& device, const SideResult& reference, Judgement& judgement) {
+  bool same = device.outputs.size() == reference.outputs.size();
+  if (!same) judgement.message += "  different number of outputs\n";
+  for (size_t i = 0; i < std::min(device.outputs.size(), reference.outputs.size()); ++i) {
+    const Comparison found = compare(device.outputs[i], reference.outputs[i]);
+    judgement.nan_bits |= found.nan_bits != 0;
+    if (found.first.empty()) continue;
+    same = false;
+    judgement.message += "  " + found.first + "\n" + write_pictures(c, device.outputs[i], reference.outputs[i]);
+  }
+  return same;
+}
+
+/// A reference that drew nothing proves nothing.
+void check_blank(const std::vector<Output>& outputs, Judgement& judgement) {
+  bool all_blank = !outputs.empty();
+  for (const Output& output : outputs) {
+    const bool blank = is_blank(output);
+    all_blank &= blank;
+    if (!blank || output.may_be_blank) continue;
+    judgement.verdict = Verdict::kDiffering;
+    judgement.message += "  " + output.name + ": the reference's output is blank, so the case tests nothing\n";
+  }
+  judgement.blank = all_blank;
+  if (outputs.empty()) {
+    judgement.verdict = Verdict::kDiffering;
+    judgement.message += "  the case put nothing out\n";
+  }
+}
+
+void judge_outputs(const Case& c, const SideResult& device, const SideResult& reference, Judgement& judgement) {
+  if (c.deviation.empty()) {
+    if (!compare_all(c, device, reference, judgement)) judgement.verdict = Verdict::kDiffering;
+    check_blank(reference.outputs, judgement);
+    return;
+  }
+  if (gpus().same_driver) return;  // nothing to deviate from
+  const std::string wrong = c.check(device.outputs, reference.outputs);
+  judgement.verdict = wrong.empty() ? Verdict::kDeviation : Verdict::kDiffering;
+  if (!wrong.empty()) judgement.message += "  deviation " + c.deviation + " is not as listed: " + wrong + "\n";
+}
+
+}  // namespace
+
+std::string full_name(const Case& c) { return c.group + "." + c.name; }
+
+uint64_t case_seed(const Case& c) { return hash_name(full_name(c), options().seed); }
+
+Judgement execute(const Case& c) {
+  Judgement judgement;
+  const SideResult reference = run_side(gpus().reference, c);
+  const SideResult device = run_side(gpus().device, c);
+  if (!reference.unsupported.empty() || !device.unsupported.empty()) {
+    judgement.verdict = Verdict::kUnsupported;
+    judgement.message = "  " + (device.unsupported.empty() ? reference.unsupported : device.unsupported) + "\n";
+    return judgement;
+  }
+  for (const auto* side : {&device, &reference}) {
+    const char* name = side == &device ? "device" : "reference";
+    if (!side->error.empty()) judgement.message += std::string("  ") + name + ": " + side->error + "\n";
+    for (const std::string& text : side->validation)
+      judgement.message += std::string("  ") + name + ": validation: " + text + "\n";
+  }
+  if (!judgement.message.empty()) {
+    judgement.verdict = Verdict::kDiffering;
+    return judgement;
+  }
+  judge_outputs(c, device, reference, judgement);
+  return judgement;
+}
+
+}  // namespace vitrine::cts

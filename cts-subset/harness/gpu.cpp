@@ -1,0 +1,199 @@
+// Finds both drivers through the loader, creates a device of each, and listens to the validation layer.
+#include "harness/gpu.h"
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <utility>
+
+#include "harness/options.h"
+
+namespace vitrine::cts {
+namespace {
+
+constexpr char kValidationLayer[] = "VK_LAYER_KHRONOS_validation";
+
+std::mutex g_messages_mutex;
+std::vector<std::string> g_messages;
+bool g_validation = false;
+VkDebugUtilsMessengerEXT g_messenger = VK_NULL_HANDLE;
+
+// The layer's own mistakes, or notes that are no errors of the case; each with its reason.
+constexpr const char* kIgnored[] = {
+    "UNASSIGNED-CoreValidation-Shader-OutputNotConsumed",  // a note about an unread output, not an error
+};
+
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void*) {
+  const char* id = data->pMessageIdName ? data->pMessageIdName : "";
+  for (const char* ignored : kIgnored)
+    if (std::strcmp(id, ignored) == 0) return VK_FALSE;
+  const std::lock_guard lock(g_messages_mutex);
+  std::string text = data->pMessage ? data->pMessage : "";
+  if (std::find(g_messages.begin(), g_messages.end(), text) == g_messages.end() && g_messages.size() < 20)
+    g_messages.push_back(std::move(text));
+  return VK_FALSE;
+}
+
+VkDebugUtilsMessengerCreateInfoEXT messenger_info() {
+  VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+  info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT;
+  info.pfnUserCallback = on_message;
+  return info;
+}
+
+bool layer_present() {
+  uint32_t count = 0;
+  vkEnumerateInstanceLayerProperties(&count, nullptr);
+  std::vector<VkLayerProperties> layers(count);
+  vkEnumerateInstanceLayerProperties(&count, layers.data());
+  return std::any_of(layers.begin(), layers.end(),
+                     [](const VkLayerProperties& layer) { return !std::strcmp(layer.layerName, kValidationLayer); });
+}
+
+VkInstance create_instance(bool validation, uint32_t api_version) {
+  VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
+  application.pApplicationName = "cts_subset";
+  application.apiVersion = api_version;
+  VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+  info.pApplicationInfo = &application;
+  const char* layer = kValidationLayer;
+  const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+  const VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info();
+  if (validation) {
+    info.enabledLayerCount = info.enabledExtensionCount = 1;
+    info.ppEnabledLayerNames = &layer;
+    info.ppEnabledExtensionNames = &extension;
+    info.pNext = &messenger;
+  }
+  VkInstance instance = VK_NULL_HANDLE;
+  CTS_VK(vkCreateInstance(&info, nullptr, &instance));
+  if (validation) {
+    const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
+    if (create) CTS_VK(create(instance, &messenger, nullptr, &g_messenger));
+  }
+  return instance;
+}
+
+void create_device(Gpu& gpu) {
+  uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(gpu.physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(gpu.physical, &count, families.data());
+  const VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  const auto family =
+      std::find_if(families.begin(), families.end(), [&](const auto& f) { return (f.queueFlags & wanted) == wanted; });
+  if (family == families.end()) throw std::runtime_error(gpu.name + " has no universal queue family");
+  gpu.family = static_cast<uint32_t>(family - families.begin());
+
+  const float priority = 1.0f;
+  VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+  queue.queueFamilyIndex = gpu.family;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+  info.pEnabledFeatures = &gpu.features;
+  CTS_VK(vkCreateDevice(gpu.physical, &info, nullptr, &gpu.device));
+  vkGetDeviceQueue(gpu.device, gpu.family, 0, &gpu.queue);
+}
+
+Gpu open(VkInstance instance, VkPhysicalDevice physical) {
+  Gpu gpu;
+  gpu.instance = instance;
+  gpu.physical = physical;
+  vkGetPhysicalDeviceProperties(physical, &gpu.properties);
+  vkGetPhysicalDeviceFeatures(physical, &gpu.features);
+  vkGetPhysicalDeviceMemoryProperties(physical, &gpu.memory);
+  gpu.name = gpu.properties.deviceName;
+  create_device(gpu);
+  return gpu;
+}
+
+Gpus create_gpus() {
+  Gpus result;
+  g_validation = options().validation && layer_present();
+  result.api_version = VK_API_VERSION_1_1;
+  result.instance = create_instance(g_validation, result.api_version);
+  uint32_t count = 0;
+  CTS_VK(vkEnumeratePhysicalDevices(result.instance, &count, nullptr));
+  std::vector<VkPhysicalDevice> list(count);
+  CTS_VK(vkEnumeratePhysicalDevices(result.instance, &count, list.data()));
+
+  VkPhysicalDevice reference = VK_NULL_HANDLE, device = VK_NULL_HANDLE;
+  std::string seen;
+  for (VkPhysicalDevice physical : list) {
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(physical, &properties);
+    seen += std::string(" '") + properties.deviceName + "'";
+    const bool is_reference = std::strncmp(properties.deviceName, "llvmpipe", 8) == 0;
+    (is_reference ? reference : device) = physical;
+    result.api_version = std::min(result.api_version, properties.apiVersion & ~0xfffu);
+  }
+  result.same_driver = options().icd == options().reference_icd;
+  if (result.same_driver) device = reference;
+  if (!reference || !device)
+    throw std::runtime_error("the loader found" + (seen.empty() ? " no device" : seen) + "; wanted one of " +
+                             options().icd + " and llvmpipe from " + options().reference_icd);
+  result.reference = open(result.instance, reference);
+  result.device = open(result.instance, device);
+  return result;
+}
+
+}  // namespace
+
+VulkanError::VulkanError(VkResult code, const char* call)
+    : std::runtime_error(std::string(call) + " returned " + std::to_string(code)), code(code) {}
+
+void check(VkResult result, const char* call) {
+  if (result < 0) throw VulkanError(result, call);
+}
+
+VkFormatFeatureFlags Gpu::features_of(VkFormat format, VkImageTiling tiling) const {
+  VkFormatProperties found;
+  vkGetPhysicalDeviceFormatProperties(physical, format, &found);
+  return tiling == VK_IMAGE_TILING_LINEAR ? found.linearTilingFeatures : found.optimalTilingFeatures;
+}
+
+uint32_t Gpu::memory_type(uint32_t allowed, VkMemoryPropertyFlags wanted) const {
+  for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
+    if ((allowed >> i & 1) && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+  throw std::runtime_error(name + ": no memory type fits");
+}
+
+Gpus& gpus() {
+  static Gpus both = create_gpus();
+  return both;
+}
+
+void recreate(Gpu& gpu) {
+  vkDestroyDevice(gpu.device, nullptr);
+  gpu.device = VK_NULL_HANDLE;
+  create_device(gpu);
+}
+
+void destroy_gpus() {
+  Gpus& both = gpus();
+  for (Gpu* gpu : {&both.device, &both.reference}) {
+    vkDeviceWaitIdle(gpu->device);
+    vkDestroyDevice(gpu->device, nullptr);
+  }
+  if (g_messenger) {
+    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(both.instance, "vkDestroyDebugUtilsMessengerEXT"));
+    destroy(both.instance, g_messenger, nullptr);
+  }
+  vkDestroyInstance(both.instance, nullptr);
+}
+
+std::vector<std::string> take_validation_errors() {
+  const std::lock_guard lock(g_messages_mutex);
+  return std::exchange(g_messages, {});
+}
+
+bool validation_is_on() { return g_validation; }
+
+}  // namespace vitrine::cts

@@ -1,0 +1,77 @@
+// Rendering in a few lines: render targets with their render pass, and graphics pipelines with defaults.
+#pragma once
+
+#include <optional>
+
+#include "harness/run.h"
+
+namespace vitrine::cts {
+
+struct TargetSpec {
+  std::vector<VkFormat> colors{VK_FORMAT_R8G8B8A8_UNORM};
+  VkFormat depth = VK_FORMAT_UNDEFINED;
+  uint32_t width = 64, height = 64;
+  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+  VkAttachmentLoadOp load = VK_ATTACHMENT_LOAD_OP_CLEAR;
+  bool resolve = false;  ///< adds a resolve attachment for every colour attachment
+};
+
+/// Attachments with a one-subpass render pass and a framebuffer.
+struct Target {
+  TargetSpec spec;
+  std::vector<Image> colors, resolves;
+  std::optional<Image> depth;
+  VkRenderPass pass = VK_NULL_HANDLE;
+  VkFramebuffer framebuffer = VK_NULL_HANDLE;
+  std::vector<VkClearValue> clears;  ///< may be changed before begin()
+
+  void begin(VkCommandBuffer cmd, VkSubpassContents contents = VK_SUBPASS_CONTENTS_INLINE) const;
+  void begin(VkCommandBuffer cmd, VkRect2D area, VkSubpassContents contents = VK_SUBPASS_CONTENTS_INLINE) const;
+  VkRect2D rect() const { return {{0, 0}, {spec.width, spec.height}}; }
+};
+
+/// A clear value of the right kind for a format.
+VkClearValue clear_value(VkFormat format, float r, float g, float b, float a);
+Target make_target(Run& run, const TargetSpec& spec);
+/// Adds every attachment (and resolve attachment) to the outputs.
+void out_target(Run& run, const Target& target);
+
+/// A graphics pipeline as Vulkan's own structures, filled with the plainest values.
+struct GraphicsSpec {
+  std::string vertex, fragment;  ///< GLSL; no fragment shader if empty
+  VkShaderModule vertex_module = VK_NULL_HANDLE, fragment_module = VK_NULL_HANDLE;  ///< used instead if set
+  VkPipelineLayout layout = VK_NULL_HANDLE;                                         ///< an empty one is made if null
+  std::vector<VkVertexInputBindingDescription> bindings;
+  std::vector<VkVertexInputAttributeDescription> attributes;
+  VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
+  std::vector<VkViewport> viewports;  ///< the whole target if empty
+  std::vector<VkRect2D> scissors;
+  VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
+  VkPipelineMultisampleStateCreateInfo multisample{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
+  VkPipelineDepthStencilStateCreateInfo depth{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
+  std::vector<VkPipelineColorBlendAttachmentState> blends;  ///< one per colour attachment; opaque if empty
+  VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
+  std::vector<VkDynamicState> dynamic;
+  const VkSpecializationInfo* vertex_special = nullptr;
+  const VkSpecializationInfo* fragment_special = nullptr;
+  VkPipelineCache cache = VK_NULL_HANDLE;
+
+  GraphicsSpec();
+  /// Adds a binding of tightly interleaved float attributes at locations 0..: one number of components each.
+  void floats(const std::vector<uint32_t>& components, VkVertexInputRate rate = VK_VERTEX_INPUT_RATE_VERTEX);
+};
+
+VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, const Target& target);
+VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, uint32_t subpass, uint32_t colors,
+                         VkExtent2D extent, VkSampleCountFlagBits samples);
+
+void bind_pipeline(VkCommandBuffer cmd, VkPipeline pipeline);
+void bind_vertices(VkCommandBuffer cmd, const Buffer& buffer, uint32_t binding = 0);
+
+/// A triangle over everything at depth 0.5; also passes `vec2 uv` (0..1) at location 0.
+extern const char kFullScreenVertex[];
+/// vec4 position at location 0, vec4 colour at location 1, passed on at location 0. Point size 1.
+extern const char kColorVertex[];
+extern const char kColorFragment[];
+
+}  // namespace vitrine::cts

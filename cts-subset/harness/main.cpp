@@ -1,0 +1,101 @@
+// The suite's entry: registers every case with GoogleTest, runs them, prints the totals per group.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "harness/execute.h"
+#include "harness/gpu.h"
+#include "harness/options.h"
+#include "harness/report.h"
+#include "harness/self_test.h"
+
+namespace vitrine::cts {
+namespace {
+
+Counts g_counts;
+int g_progress = -1;
+
+void tell_parent(std::string line) {
+  if (g_progress < 0) return;
+  for (char& c : line)
+    if (c == '\n') c = '\x1f';
+  line += '\n';
+  if (write(g_progress, line.data(), line.size()) < 0) std::_Exit(3);
+}
+
+class CaseTest : public testing::Test {
+ public:
+  CaseTest(const Case& c, uint32_t index) : case_(c), index_(index) {}
+
+  void TestBody() override {
+    tell_parent("B " + std::to_string(index_) + " " + full_name(case_));
+    const Judgement judgement = execute(case_);
+    count(g_counts, case_.group, judgement);
+    tell_parent("E " + std::to_string(static_cast<int>(judgement.verdict)) + " " + (judgement.nan_bits ? "1" : "0") +
+                " " + (judgement.blank ? "1" : "0") + " " + judgement.message);
+    if (judgement.verdict == Verdict::kUnsupported) GTEST_SKIP() << judgement.message;
+    if (judgement.verdict == Verdict::kDiffering)
+      ADD_FAILURE() << judgement.message << "  reproduce: cts_subset --seed=" << options().seed << " --gtest_filter='"
+                    << full_name(case_) << "'";
+  }
+
+ private:
+  const Case& case_;
+  uint32_t index_;
+};
+
+/// Expands the generators and registers all cases that this process is responsible for.
+void register_cases() {
+  static std::vector<Case> all = cases();
+  for (const Generator& generator : generators()) {
+    const uint32_t count = options().count ? options().count : generator.count;
+    for (uint32_t i = 0; i < count; ++i)
+      all.push_back({generator.group, generator.name + "/" + std::to_string(i), generator.body, {}, {}, i});
+  }
+  for (uint32_t i = 0; i < all.size(); ++i) {
+    if (i < options().first || (i - options().first) % options().stride != 0) continue;
+    const Case& c = all[i];
+    testing::RegisterTest(c.group.c_str(), c.name.c_str(), nullptr, nullptr, __FILE__, __LINE__,
+                          [&c, i]() -> CaseTest* { return new CaseTest(c, i); });
+  }
+}
+
+int run(int argc, char** argv) {
+  std::vector<std::string> original(argv, argv + argc);
+  testing::InitGoogleTest(&argc, argv);
+  Options parsed = parse_options(argc, argv);
+  set_options(parsed);
+  prepare_environment(parsed);
+  if (!parsed.progress.empty()) g_progress = std::atoi(parsed.progress.c_str());
+  const bool parent = parsed.isolate && g_progress < 0 && !GTEST_FLAG_GET(list_tests);
+  if (parent) {
+    std::vector<char*> words;
+    for (std::string& word : original) words.push_back(word.data());
+    return run_isolated(static_cast<int>(words.size()), words.data());
+  }
+  if (parsed.self_test) register_self_test();
+  register_cases();
+  if (GTEST_FLAG_GET(list_tests)) return RUN_ALL_TESTS();
+  const bool child = g_progress >= 0;
+  std::printf("device: %s\nreference: %s\n", gpus().device.name.c_str(), gpus().reference.name.c_str());
+  if (parsed.validation && !validation_is_on()) std::printf("the validation layer is not installed\n");
+  if (!child) probe_reference();
+  const int status = RUN_ALL_TESTS();
+  if (!child) print_counts(g_counts);
+  destroy_gpus();
+  return status;
+}
+
+}  // namespace
+}  // namespace vitrine::cts
+
+int main(int argc, char** argv) {
+  try {
+    return vitrine::cts::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "cts_subset: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,92 @@
+// Command line of the suite.
+#include "harness/options.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+namespace vitrine::cts {
+namespace {
+
+Options g_options;
+
+constexpr char kUsage[] =
+    "cts_subset [GoogleTest flags] [options]\n"
+    "  --icd=FILE        manifest of the device under test (or CTS_ICD)\n"
+    "  --reference=FILE  manifest of the reference (or CTS_REFERENCE_ICD)\n"
+    "  --results=DIR     where images of failing cases go\n"
+    "  --seed=N          seed of every random case (default 1)\n"
+    "  --count=N         cases per random generator\n"
+    "  --validation=0|1  validation layer (default 1)\n"
+    "  --isolate         run cases in child processes; a crash is counted and the rest goes on\n"
+    "  --jobs=N          child processes at a time\n"
+    "  --self-test       cases that must fail, to test the suite itself\n"
+    "  --timeout=S       a case running longer than this counts as crashed\n";
+
+std::string from_environment(const char* name, const char* fallback) {
+  const char* value = std::getenv(name);
+  return value && *value ? value : fallback;
+}
+
+}  // namespace
+
+const Options& options() { return g_options; }
+void set_options(Options value) { g_options = std::move(value); }
+
+Options parse_options(int argc, char** argv) {
+  Options result;
+  result.icd = from_environment("CTS_ICD", CTS_DEFAULT_ICD);
+  result.reference_icd = from_environment("CTS_REFERENCE_ICD", "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json");
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    const size_t equals = argument.find('=');
+    const std::string_view name = argument.substr(0, equals);
+    const std::string value(equals == std::string_view::npos ? "" : argument.substr(equals + 1));
+    const auto number = [&] { return std::strtoull(value.c_str(), nullptr, 0); };
+    const auto small = [&] { return static_cast<uint32_t>(number()); };
+    if (name == "--icd")
+      result.icd = value;
+    else if (name == "--reference")
+      result.reference_icd = value;
+    else if (name == "--results")
+      result.results = value;
+    else if (name == "--seed")
+      result.seed = number();
+    else if (name == "--count")
+      result.count = small();
+    else if (name == "--validation")
+      result.validation = number() != 0;
+    else if (name == "--isolate")
+      result.isolate = true;
+    else if (name == "--self-test")
+      result.self_test = true;
+    else if (name == "--jobs")
+      result.jobs = small() ? small() : 1;
+    else if (name == "--timeout")
+      result.timeout_s = small();
+    else if (name == "--child-first")
+      result.first = small();
+    else if (name == "--child-stride")
+      result.stride = small() ? small() : 1;
+    else if (name == "--child-progress")
+      result.progress = value;
+    else {
+      std::fputs(kUsage, stderr);
+      std::exit(2);
+    }
+  }
+  return result;
+}
+
+void prepare_environment(const Options& options) {
+  std::string files = options.icd;
+  if (options.reference_icd != options.icd) files += ":" + options.reference_icd;
+  setenv("VK_DRIVER_FILES", files.c_str(), 1);
+  unsetenv("VK_ICD_FILENAMES");
+  unsetenv("VK_INSTANCE_LAYERS");
+  setenv("VK_LOADER_LAYERS_DISABLE", "~implicit~", 1);
+  // The reference's 8-bit shortcut for BGRA8 targets makes pixels depend on their neighbours (deviations.md).
+  setenv("LP_PERF", "no_rast_linear", 1);
+}
+
+}  // namespace vitrine::cts

@@ -1,0 +1,35 @@
+// What the command line and the environment ask of one run of the suite.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace vitrine::cts {
+
+struct Options {
+  std::string icd;            ///< manifest of the device under test
+  std::string reference_icd;  ///< manifest of the reference
+  std::string results = "cts-results";
+  uint64_t seed = 1;
+  uint32_t count = 0;        ///< cases per random generator; 0 = each generator's default
+  bool validation = true;    ///< VK_LAYER_KHRONOS_validation on both devices
+  bool isolate = false;      ///< run cases in child processes and survive crashes
+  bool self_test = false;    ///< only the cases that must fail
+  uint32_t jobs = 1;         ///< child processes at a time (with isolate)
+  uint32_t timeout_s = 120;  ///< a case running longer counts as crashed (with isolate)
+  uint32_t first = 0;        ///< child: index of the first case to run
+  uint32_t stride = 1;       ///< child: distance between its cases
+  std::string progress;      ///< child: file that receives one line per case begun and ended
+};
+
+/// Parses what GoogleTest left of argv. Prints usage and exits for an unknown argument.
+Options parse_options(int argc, char** argv);
+
+/// The options of this process.
+const Options& options();
+void set_options(Options value);
+
+/// Points the loader at the two drivers. Call before anything touches Vulkan.
+void prepare_environment(const Options& options);
+
+}  // namespace vitrine::cts

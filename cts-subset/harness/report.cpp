@@ -1,0 +1,49 @@
+// Per-group totals.
+#include "harness/report.h"
+
+#include <cstdio>
+
+namespace vitrine::cts {
+namespace {
+
+void print_row(const char* name, const GroupCounts& c) {
+  std::printf("%-16s %6u cases  %6u identical  %4u listed deviation  %4u unsupported  %4u differing  %4u crashed", name,
+              c.cases, c.identical, c.deviation, c.unsupported, c.differing, c.crashed);
+  if (c.nan_bits) std::printf("  (%u with other NaN bits)", c.nan_bits);
+  if (c.blank) std::printf("  (%u blank)", c.blank);
+  std::printf("\n");
+}
+
+}  // namespace
+
+void count(Counts& counts, const std::string& group, const Judgement& judgement) {
+  GroupCounts& row = counts[group];
+  ++row.cases;
+  row.identical += judgement.verdict == Verdict::kIdentical;
+  row.deviation += judgement.verdict == Verdict::kDeviation;
+  row.unsupported += judgement.verdict == Verdict::kUnsupported;
+  row.differing += judgement.verdict == Verdict::kDiffering;
+  row.crashed += judgement.verdict == Verdict::kCrashed;
+  row.nan_bits += judgement.nan_bits;
+  row.blank += judgement.blank;
+}
+
+bool print_counts(const Counts& counts) {
+  GroupCounts total;
+  for (const auto& [name, row] : counts) {
+    print_row(name.c_str(), row);
+    total.cases += row.cases;
+    total.identical += row.identical;
+    total.deviation += row.deviation;
+    total.unsupported += row.unsupported;
+    total.differing += row.differing;
+    total.crashed += row.crashed;
+    total.nan_bits += row.nan_bits;
+    total.blank += row.blank;
+  }
+  print_row("total", total);
+  std::fflush(stdout);
+  return total.differing == 0 && total.crashed == 0;
+}
+
+}  // namespace vitrine::cts

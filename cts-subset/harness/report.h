@@ -1,0 +1,26 @@
+// Counts of a run of the suite, per group, and the lines that children write for their parent.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "harness/execute.h"
+
+namespace vitrine::cts {
+
+struct GroupCounts {
+  uint32_t cases = 0, identical = 0, deviation = 0, unsupported = 0, differing = 0, crashed = 0, nan_bits = 0,
+           blank = 0;
+};
+
+/// Group name -> counts.
+using Counts = std::map<std::string, GroupCounts>;
+
+void count(Counts& counts, const std::string& group, const Judgement& judgement);
+/// One line per group and a total. Returns whether nothing differed or crashed.
+bool print_counts(const Counts& counts);
+
+/// Runs the (filtered) cases in child processes, so that a crash costs one case. Returns the exit status.
+int run_isolated(int argc, char** argv);
+
+}  // namespace vitrine::cts

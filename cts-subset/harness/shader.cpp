@@ -1,0 +1,79 @@
+// Compiles the cases' shaders with glslang, or assembles them with SPIRV-Tools.
+#include "harness/shader.h"
+
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+#include <spirv-tools/libspirv.hpp>
+
+#include <map>
+#include <stdexcept>
+
+namespace vitrine::cts {
+namespace {
+
+EShLanguage language(VkShaderStageFlagBits stage) {
+  switch (stage) {
+    case VK_SHADER_STAGE_VERTEX_BIT:
+      return EShLangVertex;
+    case VK_SHADER_STAGE_FRAGMENT_BIT:
+      return EShLangFragment;
+    case VK_SHADER_STAGE_COMPUTE_BIT:
+      return EShLangCompute;
+    case VK_SHADER_STAGE_GEOMETRY_BIT:
+      return EShLangGeometry;
+    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
+      return EShLangTessControl;
+    default:
+      return EShLangTessEvaluation;
+  }
+}
+
+std::vector<uint32_t> compile(VkShaderStageFlagBits stage, const std::string& source) {
+  static const bool initialized = glslang::InitializeProcess();
+  (void)initialized;
+  const EShLanguage lang = language(stage);
+  const std::string text = source.starts_with("#version") ? source : "#version 450\n" + source;
+  const char* strings[] = {text.c_str()};
+  glslang::TShader shader(lang);
+  shader.setStrings(strings, 1);
+  shader.setEnvInput(glslang::EShSourceGlsl, lang, glslang::EShClientVulkan, 100);
+  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_0);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
+  constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+  if (!shader.parse(GetDefaultResources(), 450, false, kMessages))
+    throw std::runtime_error(std::string("GLSL: ") + shader.getInfoLog() + "\n" + text);
+  glslang::TProgram program;
+  program.addShader(&shader);
+  if (!program.link(kMessages)) throw std::runtime_error(std::string("GLSL: ") + program.getInfoLog() + "\n" + text);
+  std::vector<uint32_t> words;
+  glslang::SpvOptions spv;
+  spv.disableOptimizer = true;
+  glslang::GlslangToSpv(*program.getIntermediate(lang), words, &spv);
+  return words;
+}
+
+}  // namespace
+
+const std::vector<uint32_t>& compile_glsl(VkShaderStageFlagBits stage, const std::string& source) {
+  static std::map<std::pair<int, std::string>, std::vector<uint32_t>> cache;
+  const auto key = std::make_pair(static_cast<int>(stage), source);
+  if (const auto found = cache.find(key); found != cache.end()) return found->second;
+  if (cache.size() > 200) cache.clear();
+  return cache[key] = compile(stage, source);
+}
+
+const std::vector<uint32_t>& assemble_spirv(const std::string& source) {
+  static std::map<std::string, std::vector<uint32_t>> cache;
+  if (const auto found = cache.find(source); found != cache.end()) return found->second;
+  spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_0);
+  std::string message;
+  tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t& position, const char* text) {
+    message += "line " + std::to_string(position.line + 1) + ": " + text + "\n";
+  });
+  std::vector<uint32_t> words;
+  if (!tools.Assemble(source, &words) || !tools.Validate(words)) throw std::runtime_error("SPIR-V: " + message);
+  return cache[source] = words;
+}
+
+}  // namespace vitrine::cts
