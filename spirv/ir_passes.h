@@ -1,0 +1,26 @@
+// Passes over ir::Function that carry no arithmetic rule: used by the front end, the rewrites and tests.
+#pragma once
+
+#include <string>
+
+#include "spirv/ir.h"
+
+namespace vitrine::spirv::ir {
+
+/// Text form for tests and logs: one instruction per line, nesting by indentation.
+std::string dump(const Function& function);
+
+/// Checks the invariants of ir.h (operands defined in an enclosing list before use, component counts, arities of
+/// Yield / Break / Continue, jumps only at the end of a list). Empty: valid; otherwise what is wrong.
+std::string verify(const Function& function);
+
+/// Splits every ALU instruction of n components into n of one, rejoined by Vec where a vector is wanted.
+void scalarize(Function& function);
+
+/// Replaces uses of Mov / MovB / Vec by their sources, removes loop parameters and results that always carry one value.
+void propagate_copies(Function& function);
+
+/// Removes instructions, loop parameters, results and inputs that nothing uses.
+void remove_dead(Function& function);
+
+}  // namespace vitrine::spirv::ir
