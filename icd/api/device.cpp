@@ -38,15 +38,18 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physical_device, co
   VkResult result = enable_device_extensions(parent, *info, extensions);
   if (result == VK_SUCCESS) result = enable_features(parent, *info, features);
   if (result != VK_SUCCESS) return result;
-  Device* object = create_object<Device>(parent.instance.memory, allocator, parent);
+  Owned<Device> object(create_object<Device>(parent.instance.memory, allocator, parent));
   object->extensions = extensions;
   object->features = features;
   if (info->queueCreateInfoCount) object->queue.flags = info->pQueueCreateInfos[0].flags;
-  *device = to_handle(object);
+  if (start_queue) start_queue(object->queue);
+  *device = to_handle(object.release());
   return VK_SUCCESS;
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroyDevice(VkDevice device, const VkAllocationCallbacks*) {
+  if (!device) return;
+  if (stop_queue) stop_queue(from_handle<Device>(device).queue);
   destroy_handle<Device>(device);
 }
 

@@ -2,6 +2,13 @@
 import re
 from dataclasses import dataclass
 
+# Words of manifest/formats and the VK_FORMAT_FEATURE_*_BIT that they stand for.
+IMAGE_WORDS = {"sampled": "SAMPLED_IMAGE", "linear": "SAMPLED_IMAGE_FILTER_LINEAR", "storage": "STORAGE_IMAGE",
+               "atomic": "STORAGE_IMAGE_ATOMIC", "color": "COLOR_ATTACHMENT", "blend": "COLOR_ATTACHMENT_BLEND",
+               "depth_stencil": "DEPTH_STENCIL_ATTACHMENT", "blit_src": "BLIT_SRC", "blit_dst": "BLIT_DST"}
+BUFFER_WORDS = {"uniform_texel": "UNIFORM_TEXEL_BUFFER", "storage_texel": "STORAGE_TEXEL_BUFFER",
+                "storage_texel_atomic": "STORAGE_TEXEL_BUFFER_ATOMIC", "vertex": "VERTEX_BUFFER"}
+
 
 @dataclass
 class Limit:
@@ -39,12 +46,26 @@ class Claims:
             if len(fields) < 2 or not fields[1].isdigit():
                 raise SystemExit(f"{where}: expected 'name ; spec version ; tests'")
             self.extensions[fields[0]] = (int(fields[1]), self._tests(fields, 2, where))
+        self.formats = {}
+        for fields, where in rows(folder / "formats"):
+            self._once(fields[0], self.formats, where)
+            fields += [""] * (3 - len(fields))
+            image = [IMAGE_WORDS[w] for w in self._words(fields[1], IMAGE_WORDS, where)]
+            buffer = [BUFFER_WORDS[w] for w in self._words(fields[2], BUFFER_WORDS, where)]
+            self.formats[fields[0]] = (image + ["TRANSFER_SRC", "TRANSFER_DST"] if image else [], buffer)
         self.api_version = self.limits["apiVersion"].value
 
     @staticmethod
     def _once(name, known, where):
         if name in known:
             raise SystemExit(f"{where}: {name} is claimed twice")
+
+    @staticmethod
+    def _words(text, known, where):
+        for word in text.split():
+            if word not in known:
+                raise SystemExit(f"{where}: unknown format feature {word}")
+        return text.split()
 
     @staticmethod
     def _tests(fields, index, where):

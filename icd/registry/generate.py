@@ -239,6 +239,16 @@ namespace vitrine::icd::entry {{
                              f'static_cast<double>({minimum}), LimitRule::{direction}}},\n')
         return lines
 
+    def _format_table(self):
+        def bits(words):
+            return " | ".join(f"VK_FORMAT_FEATURE_{w}_BIT" for w in words) or "0"
+
+        lines = []
+        for name, (image, buffer) in self.claims.formats.items():
+            linear = [] if "DEPTH_STENCIL_ATTACHMENT" in image else image
+            lines.append(f"    {{VK_FORMAT_{name}, {{{bits(linear)}, {bits(image)}, {bits(buffer)}}}}},\n")
+        return lines
+
     def tables(self):
         gates, commands = self._command_tables()
         feature_members, feature_structs = self._feature_tables()
@@ -279,6 +289,9 @@ constexpr FeatureStruct kFeatureStructs[] = {{
 constexpr PropertyStruct kPropertyStructs[] = {{
 {"".join(property_structs)}}};
 
+constexpr FormatClaim kFormatClaims[] = {{
+{"".join(self._format_table())}}};
+
 constexpr LimitRule kLimitRules[] = {{
 {"".join(self._limit_checks())}}};
 
@@ -293,6 +306,7 @@ std::span<const FeatureMember> feature_members(const FeatureStruct& structure) {
   return {{kFeatureMembers + structure.first_member, structure.member_count}};
 }}
 std::span<const PropertyStruct> property_structs() {{ return kPropertyStructs; }}
+std::span<const FormatClaim> format_claims() {{ return kFormatClaims; }}
 std::span<const LimitRule> limit_rules() {{ return kLimitRules; }}
 const VkPhysicalDeviceProperties& claimed_properties() {{ return kVkPhysicalDeviceProperties; }}
 

@@ -86,6 +86,11 @@ struct LimitRule {
   Direction direction;
 };
 
+struct FormatClaim {
+  VkFormat format;
+  VkFormatProperties properties;
+};
+
 /// Commands whose version or extension is claimed, sorted by name.
 std::span<const EntryPoint> entry_points();
 std::span<const Gate> gates(const EntryPoint& entry);
@@ -95,6 +100,7 @@ std::span<const Feature> claimed_features();
 std::span<const FeatureStruct> feature_structs();
 std::span<const FeatureMember> feature_members(const FeatureStruct& structure);
 std::span<const PropertyStruct> property_structs();
+std::span<const FormatClaim> format_claims();
 std::span<const LimitRule> limit_rules();
 /// VkPhysicalDeviceProperties as claimed; name, type and UUIDs are filled in by the physical device.
 const VkPhysicalDeviceProperties& claimed_properties();

@@ -1,0 +1,62 @@
+// Format and image capabilities of physical devices (Vulkan 1.3.239, Capabilities; Sparse Resources).
+#include "icd/entry_points.h"
+#include "icd/format_properties.h"
+#include "icd/util.h"
+
+namespace vitrine::icd::entry {
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties(VkPhysicalDevice, VkFormat format,
+                                                             VkFormatProperties* out) {
+  *out = format_properties(format);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice, VkFormat format,
+                                                              VkFormatProperties2* out) {
+  out->formatProperties = format_properties(format);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysicalDevice, VkFormat format,
+                                                                      VkImageType type, VkImageTiling tiling,
+                                                                      VkImageUsageFlags usage, VkImageCreateFlags flags,
+                                                                      VkImageFormatProperties* out) {
+  VkPhysicalDeviceImageFormatInfo2 info = make_struct<VkPhysicalDeviceImageFormatInfo2>();
+  info.format = format;
+  info.type = type;
+  info.tiling = tiling;
+  info.usage = usage;
+  info.flags = flags;
+  return image_format_properties(info, out);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(VkPhysicalDevice,
+                                                                       const VkPhysicalDeviceImageFormatInfo2* info,
+                                                                       VkImageFormatProperties2* out) {
+  if (auto* external = find_in_out_chain<VkExternalImageFormatProperties>(out->pNext)) {
+    external->externalMemoryProperties = {};
+  }
+  if (auto* ycbcr = find_in_out_chain<VkSamplerYcbcrConversionImageFormatProperties>(out->pNext)) {
+    ycbcr->combinedImageSamplerDescriptorCount = 1;
+  }
+  const auto* external = find_in_chain<VkPhysicalDeviceExternalImageFormatInfo>(info->pNext);
+  if (external && external->handleType != 0) {
+    out->imageFormatProperties = {};
+    return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  }
+  return image_format_properties(*info, &out->imageFormatProperties);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceSparseImageFormatProperties(VkPhysicalDevice, VkFormat, VkImageType,
+                                                                        VkSampleCountFlagBits, VkImageUsageFlags,
+                                                                        VkImageTiling, std::uint32_t* count,
+                                                                        VkSparseImageFormatProperties*) {
+  *count = 0;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceSparseImageFormatProperties2(VkPhysicalDevice,
+                                                                         const VkPhysicalDeviceSparseImageFormatInfo2*,
+                                                                         std::uint32_t* count,
+                                                                         VkSparseImageFormatProperties2*) {
+  *count = 0;
+}
+
+}  // namespace vitrine::icd::entry
