@@ -6,11 +6,16 @@
 // rounds twice where the CPU has no FMA (SSE4).
 #pragma once
 
-#include <hwy/detect_targets.h>
-
+// These must be set before Highway is first seen. SSE4 is the baseline, although the compiler's flags say less (Highway
+// would add a scalar target otherwise): each target's code carries its own target attribute.
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #endif
+#ifndef HWY_BASELINE_TARGETS
+#define HWY_BASELINE_TARGETS HWY_SSE4
+#endif
+
+#include <hwy/detect_targets.h>
 
 namespace vitrine::base {
 
