@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "harness/options.h"
 #include "harness/run.h"
@@ -14,6 +15,7 @@ struct SideResult {
   std::vector<Output> outputs;
   std::string error, unsupported;
   std::vector<std::string> validation;
+  std::vector<std::pair<std::string, std::string>> notes;
 };
 
 SideResult run_side(Gpu& gpu, const Case& c) {
@@ -22,8 +24,17 @@ SideResult run_side(Gpu& gpu, const Case& c) {
   bool lost = false;
   try {
     Run run(gpu, case_seed(c), c.index);
-    c.body(run);
-    result.outputs = std::move(run.outputs);
+    const auto collect = [&] {
+      result.outputs = std::move(run.outputs);
+      result.notes = std::move(run.notes);
+    };
+    try {
+      c.body(run);
+    } catch (...) {
+      collect();
+      throw;
+    }
+    collect();
   } catch (const Unsupported& missing) {
     result.unsupported = missing.what();
   } catch (const VulkanError& error) {
@@ -37,12 +48,21 @@ SideResult run_side(Gpu& gpu, const Case& c) {
   return result;
 }
 
-std::string write_pictures(const Case& c, const Output& device, const Output& reference) {
-  std::string stem = full_name(c) + "." + reference.name;
+/// Path below the results folder for a part of a case's results.
+std::string result_path(const Case& c, const std::string& part) {
+  std::string stem = full_name(c) + "." + part;
   std::replace(stem.begin(), stem.end(), '/', '_');
   std::error_code ignored;
   std::filesystem::create_directories(options().results, ignored);
-  const std::string path = options().results + "/" + stem;
+  return options().results + "/" + stem;
+}
+
+void write_notes(const Case& c, const SideResult& side) {
+  for (const auto& [name, text] : side.notes) std::ofstream(result_path(c, name) + ".txt") << text;
+}
+
+std::string write_pictures(const Case& c, const Output& device, const Output& reference) {
+  const std::string path = result_path(c, reference.name);
   write_png(path + ".device.png", device);
   write_png(path + ".reference.png", reference);
   write_difference_png(path + ".difference.png", device, reference);
@@ -113,11 +133,11 @@ Judgement execute(const Case& c) {
     for (const std::string& text : side->validation)
       judgement.message += std::string("  ") + name + ": validation: " + text + "\n";
   }
-  if (!judgement.message.empty()) {
+  if (judgement.message.empty())
+    judge_outputs(c, device, reference, judgement);
+  else
     judgement.verdict = Verdict::kDiffering;
-    return judgement;
-  }
-  judge_outputs(c, device, reference, judgement);
+  if (judgement.verdict == Verdict::kDiffering) write_notes(c, reference);
   return judgement;
 }
 

@@ -76,6 +76,7 @@ Comparison compare(const Output& device, const Output& reference) {
                      std::to_string(reference.height) + "), " + place(reference, i) + ": device " +
                      describe_texel(reference.format, a) + ", reference " + describe_texel(reference.format, b);
   }
+  if (result.differing_texels && !reference.remark.empty()) result.first += "; " + reference.remark;
   if (result.differing_texels)
     result.first += "; " + std::to_string(result.differing_texels) + " of " + std::to_string(texels) + " differ";
   return result;

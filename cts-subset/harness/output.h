@@ -15,6 +15,7 @@ struct Output {
   uint32_t width = 1, height = 1, layers = 1;  ///< in texels, or blocks; layers also counts slices and samples
   std::vector<unsigned char> bytes;
   bool nan_bits_free = false;  ///< two NaNs are equal: SPIR-V leaves a NaN's sign and payload open
+  std::string remark;          ///< shown with a difference: where the values come from
   bool may_be_blank = false;   ///< one value everywhere is what the case is about
 };
 

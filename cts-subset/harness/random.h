@@ -1,4 +1,4 @@
-// A small deterministic generator, so that a case is the same on every C++ library: seed in, same numbers out.
+// A small deterministic generator, so that a seed gives the same numbers on every C++ library.
 #pragma once
 
 #include <cstddef>

@@ -83,6 +83,7 @@ class Run {
   Random random;   ///< same seed on both devices
   uint32_t index;  ///< number within the random generator
   std::vector<Output> outputs;
+  std::vector<std::pair<std::string, std::string>> notes;
 
   /// Ends the run as unsupported unless the device claims what the case needs.
   void require(bool claimed, const char* what) const;
@@ -126,6 +127,8 @@ class Run {
   Output& out(Output output);
   void out_samples(const std::string& name, const Image& image);
   void may_be_blank();
+  /// Text written beside the pictures when the case fails (a generated shader, a state).
+  void note(const std::string& name, const std::string& text) { notes.emplace_back(name, text); }
 
   /// Destroys at the end of the run, in reverse order.
   void defer(std::function<void()> destroy) { deferred_.push_back(std::move(destroy)); }

@@ -169,8 +169,15 @@ void Run::out(const std::string& name, const Image& image) {
       if (image.spec.levels > 1) full += ".level" + std::to_string(level);
       // A level of a few texels is often one colour without anything being wrong.
       const bool tiny = level > 0 || extent.width * extent.height <= 4;
-      out(Output{full, info, extent.width, extent.height, extent.depth * image.spec.layers,
-                 download(image, level, aspect), false, tiny});
+      out(Output{full,
+                 info,
+                 extent.width,
+                 extent.height,
+                 extent.depth * image.spec.layers,
+                 download(image, level, aspect),
+                 false,
+                 {},
+                 tiny});
     }
   }
 }

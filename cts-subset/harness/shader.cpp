@@ -42,10 +42,10 @@ std::vector<uint32_t> compile(VkShaderStageFlagBits stage, const std::string& so
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
   constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
   if (!shader.parse(GetDefaultResources(), 450, false, kMessages))
-    throw std::runtime_error(std::string("GLSL: ") + shader.getInfoLog() + "\n" + text);
+    throw std::runtime_error(std::string("GLSL: ") + shader.getInfoLog());
   glslang::TProgram program;
   program.addShader(&shader);
-  if (!program.link(kMessages)) throw std::runtime_error(std::string("GLSL: ") + program.getInfoLog() + "\n" + text);
+  if (!program.link(kMessages)) throw std::runtime_error(std::string("GLSL: ") + program.getInfoLog());
   std::vector<uint32_t> words;
   glslang::SpvOptions spv;
   spv.disableOptimizer = true;
