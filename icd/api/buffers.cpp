@@ -1,0 +1,50 @@
+// Buffers and buffer views (Vulkan 1.3.239, Resource Creation: Buffers, Buffer Views).
+#include "icd/device.h"
+#include "icd/entry_points.h"
+#include "icd/memory.h"
+#include "icd/util.h"
+
+namespace vitrine::icd {
+namespace {
+
+// An allocation can be no larger, so neither can a buffer (manifest/limits, maxMemoryAllocationSize).
+constexpr VkDeviceSize kMaxBufferSize = VkDeviceSize{1} << 36;
+
+}  // namespace
+
+namespace entry {
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateBuffer(VkDevice device, const VkBufferCreateInfo* info,
+                                            const VkAllocationCallbacks* allocator, VkBuffer* buffer) {
+  if (info->size > kMaxBufferSize) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  Buffer* object = create_object<Buffer>(from_handle<Device>(device).memory, allocator);
+  object->flags = info->flags;
+  object->usage = info->usage;
+  object->size = info->size;
+  *buffer = to_handle(object);
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyBuffer(VkDevice, VkBuffer buffer, const VkAllocationCallbacks*) {
+  destroy_handle<Buffer>(buffer);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateBufferView(VkDevice device, const VkBufferViewCreateInfo* info,
+                                                const VkAllocationCallbacks* allocator, VkBufferView* view) {
+  const Buffer& buffer = from_handle<Buffer>(info->buffer);
+  const texel::FormatDesc& format = texel::format_desc(info->format);
+  if (format.block_bytes == 0) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  BufferView* object = create_object<BufferView>(from_handle<Device>(device).memory, allocator);
+  object->view.data = buffer.data ? buffer.data + info->offset : nullptr;
+  object->view.count = object->view.data ? buffer.resolve_range(info->offset, info->range) / format.block_bytes : 0;
+  object->view.format = &format;
+  *view = to_handle(object);
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyBufferView(VkDevice, VkBufferView view, const VkAllocationCallbacks*) {
+  destroy_handle<BufferView>(view);
+}
+
+}  // namespace entry
+}  // namespace vitrine::icd

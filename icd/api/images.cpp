@@ -1,0 +1,121 @@
+// Images and image views (Vulkan 1.3.239, Resource Creation: Images, Image Views).
+#include "icd/image.h"
+
+#include "icd/device.h"
+#include "icd/entry_points.h"
+#include "icd/util.h"
+
+namespace vitrine::icd {
+namespace {
+
+constexpr VkDeviceSize kMaxImageSize = VkDeviceSize{1} << 36;  // as maxResourceSize of image_format_properties
+
+/// The first aspect of a view, as shaders and attachments see it; `second` is stencil where both are there.
+VkImageAspectFlagBits first_aspect(VkImageAspectFlags aspects) {
+  return static_cast<VkImageAspectFlagBits>(aspects & ~(aspects - 1));
+}
+
+}  // namespace
+
+VkResult init_image(Image& image, const VkImageCreateInfo& info) {
+  image.flags = info.flags;
+  image.usage = info.usage;
+  image.tiling = info.tiling;
+  texel::ImageDesc desc;
+  desc.type = info.imageType;
+  desc.format = info.format;
+  desc.extent = {info.extent.width, info.extent.height, info.extent.depth};
+  desc.levels = info.mipLevels;
+  desc.layers = info.arrayLayers;
+  desc.samples = static_cast<std::uint32_t>(info.samples);
+  desc.linear_tiling = info.tiling == VK_IMAGE_TILING_LINEAR;
+  const bool representable = info.mipLevels <= texel::kMaxLevels && info.samples <= VK_SAMPLE_COUNT_64_BIT;
+  if (!representable || texel::format_desc(info.format).block_bytes == 0 ||
+      !texel::make_image_layout(desc, image.layout) || image.layout.size > kMaxImageSize) {
+    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  }
+  return VK_SUCCESS;
+}
+
+VkImageSubresourceRange resolve_range(const Image& image, const VkImageSubresourceRange& range) {
+  VkImageSubresourceRange out = range;
+  // Slices of a 3D image count as layers where a 2D array view may show them.
+  const bool slices = image.desc().type == VK_IMAGE_TYPE_3D && (image.flags & VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT);
+  const std::uint32_t layers =
+      slices ? image.layout.plane[0].level[range.baseMipLevel].extent.depth : image.desc().layers;
+  if (out.levelCount == VK_REMAINING_MIP_LEVELS) out.levelCount = image.desc().levels - out.baseMipLevel;
+  if (out.layerCount == VK_REMAINING_ARRAY_LAYERS) out.layerCount = layers - out.baseArrayLayer;
+  return out;
+}
+
+texel::ImageView view_of_aspect(const Image& image, VkImageAspectFlagBits aspect, VkImageViewType type, VkFormat format,
+                                const VkImageSubresourceRange& range, const VkComponentMapping& components) {
+  texel::ImageViewDesc desc;
+  desc.type = type;
+  desc.format = format;
+  desc.components = components;
+  desc.aspect = aspect;
+  desc.base_level = range.baseMipLevel;
+  desc.level_count = range.levelCount;
+  desc.base_layer = range.baseArrayLayer;
+  desc.layer_count = range.layerCount;
+  return texel::make_image_view(image.layout, image.data, desc);
+}
+
+namespace entry {
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateImage(VkDevice device, const VkImageCreateInfo* info,
+                                           const VkAllocationCallbacks* allocator, VkImage* image) {
+  Owned<Image> object(create_object<Image>(from_handle<Device>(device).memory, allocator));
+  const VkResult result = init_image(*object, *info);
+  if (result != VK_SUCCESS) return result;
+  *image = to_handle(object.release());
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyImage(VkDevice, VkImage image, const VkAllocationCallbacks*) {
+  destroy_handle<Image>(image);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetImageSubresourceLayout(VkDevice, VkImage image, const VkImageSubresource* subresource,
+                                                     VkSubresourceLayout* out) {
+  const texel::ImageLayout& layout = from_handle<Image>(image).layout;
+  const auto aspect = static_cast<VkImageAspectFlagBits>(subresource->aspectMask);
+  const texel::PlaneLayout& plane = layout.plane[texel::plane_of_aspect(layout, aspect)];
+  const texel::LevelLayout& level = plane.level[subresource->mipLevel];
+  out->offset = plane.offset + level.offset + subresource->arrayLayer * plane.layer_stride;
+  out->size = level.slice_pitch * level.extent.depth;
+  out->rowPitch = level.row_pitch;
+  out->arrayPitch = plane.layer_stride;
+  out->depthPitch = level.slice_pitch;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageViewCreateInfo* info,
+                                               const VkAllocationCallbacks* allocator, VkImageView* view) {
+  Image& image = from_handle<Image>(info->image);
+  if (!image.data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;  // views of unbound images are invalid
+  ImageView* object = create_object<ImageView>(from_handle<Device>(device).memory, allocator);
+  object->image = &image;
+  object->type = info->viewType;
+  object->format = info->format;
+  object->usage = image.usage;
+  if (const auto* usage = find_in_chain<VkImageViewUsageCreateInfo>(info->pNext)) object->usage = usage->usage;
+  object->range = resolve_range(image, info->subresourceRange);
+  const VkImageAspectFlags aspects = info->subresourceRange.aspectMask;
+  object->view =
+      view_of_aspect(image, first_aspect(aspects), info->viewType, info->format, object->range, info->components);
+  object->stencil = object->view;
+  constexpr VkImageAspectFlags kBoth = VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
+  if ((aspects & kBoth) == kBoth) {
+    object->stencil = view_of_aspect(image, VK_IMAGE_ASPECT_STENCIL_BIT, info->viewType, info->format, object->range);
+  }
+  *view = to_handle(object);
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyImageView(VkDevice, VkImageView view, const VkAllocationCallbacks*) {
+  destroy_handle<ImageView>(view);
+}
+
+}  // namespace entry
+}  // namespace vitrine::icd

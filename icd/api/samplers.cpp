@@ -1,0 +1,69 @@
+// Samplers and Y'CbCr conversions (Vulkan 1.3.239, Samplers). samplerYcbcrConversion is not claimed.
+#include "base/check.h"
+#include "icd/device.h"
+#include "icd/entry_points.h"
+#include "icd/image.h"
+#include "icd/util.h"
+
+namespace vitrine::icd {
+namespace {
+
+constexpr std::uint32_t kOneF = 0x3f800000;
+
+std::array<std::uint32_t, 4> border_bits(VkBorderColor color) {
+  switch (color) {
+    case VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK:
+      return {0, 0, 0, kOneF};
+    case VK_BORDER_COLOR_INT_OPAQUE_BLACK:
+      return {0, 0, 0, 1};
+    case VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE:
+      return {kOneF, kOneF, kOneF, kOneF};
+    case VK_BORDER_COLOR_INT_OPAQUE_WHITE:
+      return {1, 1, 1, 1};
+    default:
+      return {0, 0, 0, 0};
+  }
+}
+
+}  // namespace
+
+namespace entry {
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCreateInfo* info,
+                                             const VkAllocationCallbacks* allocator, VkSampler* sampler) {
+  Sampler* object = create_object<Sampler>(from_handle<Device>(device).memory, allocator);
+  texel::Sampler& state = object->state;
+  state.mag_filter = info->magFilter;
+  state.min_filter = info->minFilter;
+  state.mip_mode = info->mipmapMode;
+  state.address = {info->addressModeU, info->addressModeV, info->addressModeW};
+  state.mip_lod_bias = info->mipLodBias;
+  state.min_lod = info->minLod;
+  state.max_lod = info->maxLod;
+  state.max_anisotropy = info->anisotropyEnable ? info->maxAnisotropy : 1.0f;
+  state.compare = info->compareEnable;
+  state.compare_op = info->compareOp;
+  state.border = border_bits(info->borderColor);
+  state.unnormalized = info->unnormalizedCoordinates;
+  if (const auto* reduction = find_in_chain<VkSamplerReductionModeCreateInfo>(info->pNext)) {
+    state.reduction = reduction->reductionMode;
+  }
+  *sampler = to_handle(object);
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice, VkSampler sampler, const VkAllocationCallbacks*) {
+  destroy_handle<Sampler>(sampler);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateSamplerYcbcrConversion(VkDevice, const VkSamplerYcbcrConversionCreateInfo*,
+                                                            const VkAllocationCallbacks*, VkSamplerYcbcrConversion*) {
+  VITRINE_UNSUPPORTED("samplerYcbcrConversion");
+  return VK_ERROR_OUT_OF_DEVICE_MEMORY;  // the command may return nothing that says more
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroySamplerYcbcrConversion(VkDevice, VkSamplerYcbcrConversion,
+                                                         const VkAllocationCallbacks*) {}
+
+}  // namespace entry
+}  // namespace vitrine::icd

@@ -1,0 +1,147 @@
+// Fences, semaphores and events: their host side (Vulkan 1.3.239, Synchronization and Cache Control).
+#include <algorithm>
+#include <chrono>
+
+#include "icd/diagnostics.h"
+#include "icd/entry_points.h"
+#include "icd/sync.h"
+#include "icd/util.h"
+
+namespace vitrine::icd {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Waits on the device's condition variable until `done` or the timeout. VK_TIMEOUT, VK_SUCCESS or device lost.
+template <class Done>
+VkResult wait_until(Device& device, std::uint64_t timeout_ns, Done done) {
+  // About a century: beyond it the deadline would overflow the clock.
+  constexpr std::uint64_t kForever = std::uint64_t{3} * 1000 * 1000 * 1000 * 1000 * 1000 * 1000;
+  std::unique_lock lock(device.sync_mutex);
+  const auto ready = [&] { return device.lost || done(); };
+  if (timeout_ns >= kForever) {
+    device.sync_changed.wait(lock, ready);
+  } else if (!device.sync_changed.wait_until(lock, Clock::now() + std::chrono::nanoseconds(timeout_ns), ready)) {
+    return VK_TIMEOUT;
+  }
+  if (done()) return VK_SUCCESS;
+  return VK_ERROR_DEVICE_LOST;
+}
+
+template <class Change>
+void change_state(Device& device, Change change) {
+  {
+    const std::lock_guard lock(device.sync_mutex);
+    change();
+  }
+  device.sync_changed.notify_all();
+}
+
+}  // namespace
+
+void signal_fence(Device& device, Fence& fence) {
+  change_state(device, [&] { fence.signaled = true; });
+}
+
+void signal_semaphore(Device& device, Semaphore& semaphore) {
+  change_state(device, [&] { semaphore.signaled = true; });
+}
+
+void set_event(Device& device, Event& event, bool set) {
+  change_state(device, [&] { event.set = set; });
+}
+
+bool wait_semaphore(Device& device, Semaphore& semaphore) {
+  std::unique_lock lock(device.sync_mutex);
+  device.sync_changed.wait(lock, [&] { return device.lost || semaphore.signaled; });
+  return std::exchange(semaphore.signaled, false);
+}
+
+bool wait_events(Device& device, const VkEvent* events, std::uint32_t count) {
+  const auto all_set = [&] {
+    return std::all_of(events, events + count, [](VkEvent e) { return from_handle<Event>(e).set; });
+  };
+  std::unique_lock lock(device.sync_mutex);
+  device.sync_changed.wait(lock, [&] { return device.lost || all_set(); });
+  return all_set();
+}
+
+void lose_device(Device& device, const char* reason) {
+  report_error(device, ref(device), "device-lost", reason);
+  change_state(device, [&] { device.lost = true; });
+}
+
+namespace entry {
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateFence(VkDevice device, const VkFenceCreateInfo* info,
+                                           const VkAllocationCallbacks* allocator, VkFence* fence) {
+  Fence* object = create_object<Fence>(from_handle<Device>(device).memory, allocator);
+  object->signaled = info->flags & VK_FENCE_CREATE_SIGNALED_BIT;
+  *fence = to_handle(object);
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyFence(VkDevice, VkFence fence, const VkAllocationCallbacks*) {
+  destroy_handle<Fence>(fence);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL ResetFences(VkDevice device, std::uint32_t count, const VkFence* fences) {
+  const std::lock_guard lock(from_handle<Device>(device).sync_mutex);
+  for (std::uint32_t i = 0; i < count; ++i) from_handle<Fence>(fences[i]).signaled = false;
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetFenceStatus(VkDevice device, VkFence fence) {
+  Device& d = from_handle<Device>(device);
+  const std::lock_guard lock(d.sync_mutex);
+  if (from_handle<Fence>(fence).signaled) return VK_SUCCESS;
+  return d.lost ? VK_ERROR_DEVICE_LOST : VK_NOT_READY;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL WaitForFences(VkDevice device, std::uint32_t count, const VkFence* fences,
+                                             VkBool32 wait_all, std::uint64_t timeout) {
+  const auto signaled = [](VkFence fence) { return from_handle<Fence>(fence).signaled; };
+  return wait_until(from_handle<Device>(device), timeout, [&] {
+    return wait_all ? std::all_of(fences, fences + count, signaled) : std::any_of(fences, fences + count, signaled);
+  });
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateSemaphore(VkDevice device, const VkSemaphoreCreateInfo*,
+                                               const VkAllocationCallbacks* allocator, VkSemaphore* semaphore) {
+  *semaphore = to_handle(create_object<Semaphore>(from_handle<Device>(device).memory, allocator));
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroySemaphore(VkDevice, VkSemaphore semaphore, const VkAllocationCallbacks*) {
+  destroy_handle<Semaphore>(semaphore);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateEvent(VkDevice device, const VkEventCreateInfo*,
+                                           const VkAllocationCallbacks* allocator, VkEvent* event) {
+  *event = to_handle(create_object<Event>(from_handle<Device>(device).memory, allocator));
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyEvent(VkDevice, VkEvent event, const VkAllocationCallbacks*) {
+  destroy_handle<Event>(event);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetEventStatus(VkDevice device, VkEvent event) {
+  Device& d = from_handle<Device>(device);
+  const std::lock_guard lock(d.sync_mutex);
+  if (d.lost) return VK_ERROR_DEVICE_LOST;
+  return from_handle<Event>(event).set ? VK_EVENT_SET : VK_EVENT_RESET;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL SetEvent(VkDevice device, VkEvent event) {
+  set_event(from_handle<Device>(device), from_handle<Event>(event), true);
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL ResetEvent(VkDevice device, VkEvent event) {
+  set_event(from_handle<Device>(device), from_handle<Event>(event), false);
+  return VK_SUCCESS;
+}
+
+}  // namespace entry
+}  // namespace vitrine::icd
