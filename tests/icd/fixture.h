@@ -1,0 +1,113 @@
+// What the icd tests share: the driver's functions by name, and an instance with a device whose host allocations can be
+// made to fail.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "icd/util.h"
+#include "icd/vulkan_api.h"
+
+extern "C" VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vk_icdGetInstanceProcAddr(VkInstance instance, const char* name);
+
+namespace vitrine::icd::test {
+
+template <class F>
+F get(VkInstance instance, const char* name) {
+  return reinterpret_cast<F>(vk_icdGetInstanceProcAddr(instance, name));
+}
+#define VK_GET(instance, name) ::vitrine::icd::test::get<PFN_vk##name>(instance, "vk" #name)
+
+/// Allocation callbacks that count, fail at will and know what is still alive.
+class CountingAllocator {
+ public:
+  CountingAllocator() {
+    callbacks_.pUserData = this;
+    callbacks_.pfnAllocation = [](void* self, std::size_t size, std::size_t alignment, VkSystemAllocationScope) {
+      return static_cast<CountingAllocator*>(self)->allocate(size, alignment);
+    };
+    callbacks_.pfnReallocation = [](void*, void*, std::size_t, std::size_t, VkSystemAllocationScope) -> void* {
+      return nullptr;
+    };
+    callbacks_.pfnFree = [](void* self, void* memory) { static_cast<CountingAllocator*>(self)->release(memory); };
+  }
+
+  const VkAllocationCallbacks* callbacks() const { return &callbacks_; }
+  /// The n-th allocation from now on fails (0: the next one), and all after it.
+  void fail_after(std::size_t n) { remaining_ = n; }
+  void never_fail() { remaining_ = ~std::size_t{0}; }
+  std::size_t live() const { return live_.size(); }
+  std::size_t total() const { return total_; }
+  bool failed() const { return failed_; }
+  void clear_failed() { failed_ = false; }
+
+ private:
+  void* allocate(std::size_t size, std::size_t alignment) {
+    if (remaining_ == 0) {
+      failed_ = true;
+      return nullptr;
+    }
+    if (remaining_ != ~std::size_t{0}) --remaining_;
+    void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    live_[memory] = size;
+    ++total_;
+    return memory;
+  }
+  void release(void* memory) {
+    if (!memory) return;
+    EXPECT_EQ(live_.erase(memory), 1u) << "freed twice or not ours";
+    std::free(memory);
+  }
+
+  VkAllocationCallbacks callbacks_{};
+  std::map<void*, std::size_t> live_;
+  std::size_t remaining_ = ~std::size_t{0};
+  std::size_t total_ = 0;
+  bool failed_ = false;
+};
+
+inline VkResult create_instance(VkInstance* instance, const VkAllocationCallbacks* allocator = nullptr,
+                                std::initializer_list<const char*> extensions = {}) {
+  VkApplicationInfo application = make_struct<VkApplicationInfo>();
+  application.apiVersion = VK_API_VERSION_1_1;
+  VkInstanceCreateInfo info = make_struct<VkInstanceCreateInfo>();
+  info.pApplicationInfo = &application;
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.begin();
+  return VK_GET(nullptr, CreateInstance)(&info, allocator, instance);
+}
+
+inline VkResult create_device(VkInstance instance, VkPhysicalDevice physical_device, VkDevice* device,
+                              const VkAllocationCallbacks* allocator = nullptr, const void* next = nullptr) {
+  const float priority = 1;
+  VkDeviceQueueCreateInfo queue = make_struct<VkDeviceQueueCreateInfo>();
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  VkDeviceCreateInfo info = make_struct<VkDeviceCreateInfo>(const_cast<void*>(next));
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+  return VK_GET(instance, CreateDevice)(physical_device, &info, allocator, device);
+}
+
+/// An instance, its physical device and a device.
+class DeviceTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(create_instance(&instance, nullptr, {VK_EXT_DEBUG_UTILS_EXTENSION_NAME}), VK_SUCCESS);
+    std::uint32_t count = 1;
+    ASSERT_EQ(VK_GET(instance, EnumeratePhysicalDevices)(instance, &count, &physical_device), VK_SUCCESS);
+    ASSERT_EQ(create_device(instance, physical_device, &device), VK_SUCCESS);
+  }
+  void TearDown() override {
+    if (device) VK_GET(instance, DestroyDevice)(device, nullptr);
+    if (instance) VK_GET(instance, DestroyInstance)(instance, nullptr);
+  }
+
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+};
+
+}  // namespace vitrine::icd::test

@@ -1,0 +1,94 @@
+// The generated tables: sorted, complete, gated, and every claim is backed by code.
+#include "icd/registry/registry.h"
+
+#include <algorithm>
+#include <string>
+
+#include "tests/icd/fixture.h"
+
+namespace vitrine::icd {
+namespace {
+
+TEST(Registry, EveryClaimedCommandIsImplemented) {
+  std::string missing;
+  for (const EntryPoint& entry : entry_points()) {
+    if (!entry.implementation) missing += std::string(" ") + entry.name;
+  }
+  EXPECT_EQ(missing, "");
+}
+
+TEST(Registry, NamesAreSortedForSearch) {
+  const auto by_name = [](const auto& a, const auto& b) { return std::string_view(a.name) < b.name; };
+  EXPECT_TRUE(std::is_sorted(entry_points().begin(), entry_points().end(), by_name));
+  EXPECT_TRUE(std::is_sorted(extension_infos().begin(), extension_infos().end(), by_name));
+  EXPECT_EQ(extension_infos().size(), static_cast<std::size_t>(Extension::kCount));
+}
+
+TEST(Registry, PromotedNamesAreTheSameFunction) {
+  const EntryPoint* core = find_entry_point("vkGetPhysicalDeviceFeatures2");
+  const EntryPoint* promoted = find_entry_point("vkGetPhysicalDeviceFeatures2KHR");
+  ASSERT_TRUE(core && promoted);
+  EXPECT_EQ(core->implementation, promoted->implementation);
+  EXPECT_NE(core->implementation, nullptr);
+}
+
+TEST(Registry, UnclaimedAndUnknownCommandsAreAbsent) {
+  EXPECT_EQ(find_entry_point("vkCmdDrawMeshTasksNV"), nullptr);
+  EXPECT_EQ(find_entry_point("vkNoSuchCommand"), nullptr);
+  EXPECT_EQ(find_entry_point(""), nullptr);
+}
+
+TEST(Registry, ExtensionCommandsNeedTheirExtension) {
+  const EntryPoint* entry = find_entry_point("vkGetPhysicalDeviceFeatures2KHR");
+  ASSERT_TRUE(entry);
+  ExtensionSet extensions;
+  EXPECT_FALSE(is_open(*entry, VK_API_VERSION_1_1, extensions));
+  extensions.set(Extension::KHR_get_physical_device_properties2);
+  EXPECT_TRUE(is_open(*entry, VK_API_VERSION_1_0, extensions));
+}
+
+TEST(Registry, LimitsMeetTheSpecification) {
+  EXPECT_GT(limit_rules().size(), 80u);
+  for (const LimitRule& rule : limit_rules()) {
+    const auto value = static_cast<std::int64_t>(rule.value);
+    const auto required = static_cast<std::int64_t>(rule.required);
+    const bool met = rule.direction == LimitRule::kAtLeast  ? rule.value >= rule.required
+                     : rule.direction == LimitRule::kAtMost ? rule.value <= rule.required
+                                                            : (value & required) == required;
+    EXPECT_TRUE(met) << rule.name << " is " << rule.value << ", required " << rule.required;
+  }
+}
+
+TEST(Registry, FeatureChainIsAnsweredFromOneList) {
+  FeatureSet features;
+  features.set(Feature::multiview);
+  features.set(Feature::robustBufferAccess);
+  auto multiview = make_struct<VkPhysicalDeviceMultiviewFeatures>();
+  multiview.multiviewGeometryShader = VK_TRUE;
+  auto chain = make_struct<VkPhysicalDeviceFeatures2>(&multiview);
+  write_feature_chain(&chain, features);
+  EXPECT_EQ(multiview.multiview, VK_TRUE);
+  EXPECT_EQ(multiview.multiviewGeometryShader, VK_FALSE);
+  EXPECT_EQ(chain.features.robustBufferAccess, VK_TRUE);
+  EXPECT_EQ(chain.features.geometryShader, VK_FALSE);
+
+  FeatureSet enabled;
+  read_feature_chain(&chain, enabled);
+  EXPECT_TRUE(enabled.test(Feature::multiview));
+  EXPECT_TRUE(enabled.test(Feature::robustBufferAccess));
+  EXPECT_FALSE(enabled.test(Feature::geometryShader));
+}
+
+TEST(Registry, UnknownStructuresInChainsAreLeftAlone) {
+  auto unknown = make_struct<VkPhysicalDeviceMeshShaderPropertiesNV>();
+  unknown.maxDrawMeshTasksCount = 1234;
+  auto subgroup = make_struct<VkPhysicalDeviceSubgroupProperties>();
+  unknown.pNext = &subgroup;
+  write_property_chain(&unknown);
+  EXPECT_EQ(unknown.maxDrawMeshTasksCount, 1234u);
+  EXPECT_EQ(subgroup.subgroupSize, 64u);
+  EXPECT_EQ(subgroup.pNext, nullptr);
+}
+
+}  // namespace
+}  // namespace vitrine::icd
