@@ -45,6 +45,8 @@ TEST(Format, KindsAndAspects) {
   EXPECT_EQ(format_desc(VK_FORMAT_R16G16_SNORM).kind, Kind::kFloat);
   EXPECT_TRUE(format_desc(VK_FORMAT_D24_UNORM_S8_UINT).has_stencil());
   EXPECT_FALSE(format_desc(VK_FORMAT_D16_UNORM).has_stencil());
+  EXPECT_EQ(format_desc(VK_FORMAT_X8_D24_UNORM_PACK32).aspects, VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT});
+  EXPECT_EQ(format_desc(VK_FORMAT_S8_UINT).aspects, VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT});
   EXPECT_TRUE(format_desc(VK_FORMAT_BC7_SRGB_BLOCK).is_srgb());
   EXPECT_EQ(format_desc(VK_FORMAT_BC7_SRGB_BLOCK).block_bytes, 16);
   EXPECT_EQ(format_desc(VK_FORMAT_BC4_SNORM_BLOCK).channel[0].numeric, Numeric::kSnorm);

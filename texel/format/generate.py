@@ -35,9 +35,9 @@ class Format:
         self.numeric_of = {c.get("name"): c.get("numericFormat") for c in self.components}
         if len(named) == 1:
             self.numeric_of = dict.fromkeys(CHANNELS, named[0])
-        self.channels = self._compressed() if element.get("compressed") else self._plain()
-        if self.planes > 1 or len(self.channels) > 4 or element.get("chroma"):
-            self.channels = []
+        self.channels = []  # fixed-point and chroma-subsampled formats have none: they are not plain
+        if named and not element.get("chroma"):
+            self.channels = self._compressed() if element.get("compressed") else self._plain()
 
     def _compressed(self):
         return [(c.get("name"), self.numeric_of[c.get("name")], 0, 0) for c in self.components]
@@ -72,7 +72,7 @@ class Format:
         return {"UINT": "kUint", "SINT": "kSint"}.get(first, "kFloat")
 
     def aspects(self):
-        names = set(self.numeric_of)
+        names = {c.get("name") for c in self.components}
         if names <= {"D", "S"}:
             return " | ".join(f"VK_IMAGE_ASPECT_{'DEPTH' if n == 'D' else 'STENCIL'}_BIT" for n in sorted(names))
         if self.planes > 1:
