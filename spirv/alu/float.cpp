@@ -1,0 +1,30 @@
+// Wave handlers of float arithmetic and the float superinstructions.
+#include "spirv/alu/family.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "spirv/alu/float.cpp"
+#include "base/simd.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "spirv/alu/float_ops-inl.h"
+#include "spirv/alu/wave_handlers-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::spirv::alu::HWY_NAMESPACE {
+
+Family float_handlers() { return kHandlers.data(); }
+
+}  // namespace vitrine::spirv::alu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vitrine::spirv::alu {
+
+HWY_EXPORT(float_handlers);
+
+Family float_family() { return HWY_DYNAMIC_DISPATCH(float_handlers)(); }
+
+}  // namespace vitrine::spirv::alu
+#endif  // HWY_ONCE

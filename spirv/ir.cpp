@@ -1,0 +1,32 @@
+// The rows of ops.def and intrinsics.def as data.
+#include "spirv/ir.h"
+
+namespace vitrine::spirv::ir {
+namespace {
+
+constexpr char kF = 'F', kI = 'I', kU = 'U', kB = 'B';
+#define VITRINE_STRING(x) #x
+constexpr AluInfo kAluInfos[] = {
+#define VITRINE_ALU(name, sources, result, operands, effect) {#name, sources, k##result, VITRINE_STRING(operands)},
+#include "spirv/ops.def"
+#undef VITRINE_ALU
+};
+#undef VITRINE_STRING
+
+constexpr const char* kIntrinsicNames[] = {
+#define VITRINE_INTRINSIC(name, sources, result, effect) #name,
+#include "spirv/intrinsics.def"
+#undef VITRINE_INTRINSIC
+};
+
+}  // namespace
+
+const AluInfo& alu_info(Op op) { return kAluInfos[static_cast<std::size_t>(op)]; }
+
+const char* op_name(Op op) {
+  if (op < Op::kAluCount) return alu_info(op).name;
+  if (op == Op::kAluCount || op >= Op::kCount) return "?";
+  return kIntrinsicNames[static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::kAluCount) - 1];
+}
+
+}  // namespace vitrine::spirv::ir
