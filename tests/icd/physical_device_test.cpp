@@ -1,0 +1,184 @@
+// Physical devices: identity, features, limits, queue families, memory, formats.
+#include <bit>
+#include <cstring>
+#include <string>
+
+#include "tests/icd/fixture.h"
+
+namespace vitrine::icd::test {
+namespace {
+
+using PhysicalDevice = DeviceTest;
+using Formats = DeviceTest;
+
+TEST_F(PhysicalDevice, SaysWhatItIs) {
+  VkPhysicalDeviceProperties properties;
+  VK_GET(instance, GetPhysicalDeviceProperties)(physical_device, &properties);
+  EXPECT_EQ(std::string(properties.deviceName).rfind("Vitrine (", 0), 0u) << properties.deviceName;
+  EXPECT_EQ(properties.deviceType, VK_PHYSICAL_DEVICE_TYPE_CPU);
+  EXPECT_GE(properties.apiVersion, VK_API_VERSION_1_1);
+  EXPECT_EQ(properties.limits.maxPushConstantsSize, 256u);
+}
+
+TEST_F(PhysicalDevice, PropertiesChainAgreesWithThePlainQuery) {
+  VkPhysicalDeviceProperties plain;
+  VK_GET(instance, GetPhysicalDeviceProperties)(physical_device, &plain);
+  auto ids = make_struct<VkPhysicalDeviceIDProperties>();
+  auto subgroup = make_struct<VkPhysicalDeviceSubgroupProperties>(&ids);
+  auto maintenance3 = make_struct<VkPhysicalDeviceMaintenance3Properties>(&subgroup);
+  auto chain = make_struct<VkPhysicalDeviceProperties2>(&maintenance3);
+  VK_GET(instance, GetPhysicalDeviceProperties2)(physical_device, &chain);
+  EXPECT_EQ(std::memcmp(&plain.limits, &chain.properties.limits, sizeof plain.limits), 0);
+  EXPECT_STREQ(plain.deviceName, chain.properties.deviceName);
+  EXPECT_EQ(subgroup.subgroupSize, 64u);
+  EXPECT_TRUE(subgroup.supportedOperations & VK_SUBGROUP_FEATURE_BASIC_BIT);
+  EXPECT_TRUE(subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT);
+  EXPECT_GE(maintenance3.maxMemoryAllocationSize, 1u << 30);
+  EXPECT_EQ(ids.deviceLUIDValid, VK_FALSE);
+  EXPECT_NE(std::memcmp(ids.deviceUUID, ids.driverUUID, VK_UUID_SIZE), 0);
+}
+
+TEST_F(PhysicalDevice, FeaturesChainAgreesWithThePlainQuery) {
+  VkPhysicalDeviceFeatures plain;
+  VK_GET(instance, GetPhysicalDeviceFeatures)(physical_device, &plain);
+  auto chain = make_struct<VkPhysicalDeviceFeatures2>();
+  VK_GET(instance, GetPhysicalDeviceFeatures2)(physical_device, &chain);
+  EXPECT_EQ(std::memcmp(&plain, &chain.features, sizeof plain), 0);
+  EXPECT_EQ(plain.robustBufferAccess, VK_TRUE);
+  EXPECT_EQ(plain.sparseBinding, VK_FALSE);
+}
+
+TEST_F(PhysicalDevice, OneUniversalQueueFamily) {
+  std::uint32_t count = 0;
+  VK_GET(instance, GetPhysicalDeviceQueueFamilyProperties)(physical_device, &count, nullptr);
+  ASSERT_EQ(count, 1u);
+  auto family = make_struct<VkQueueFamilyProperties2>();
+  VK_GET(instance, GetPhysicalDeviceQueueFamilyProperties2)(physical_device, &count, &family);
+  EXPECT_EQ(family.queueFamilyProperties.queueFlags & 7u,
+            VkQueueFlags{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT});
+  EXPECT_EQ(family.queueFamilyProperties.queueCount, 1u);
+}
+
+TEST_F(PhysicalDevice, OneMemoryTypeIsEverything) {
+  VkPhysicalDeviceMemoryProperties memory;
+  VK_GET(instance, GetPhysicalDeviceMemoryProperties)(physical_device, &memory);
+  EXPECT_EQ(memory.memoryTypeCount, 1u);
+  EXPECT_EQ(memory.memoryHeapCount, 1u);
+  EXPECT_EQ(memory.memoryTypes[0].propertyFlags, 0xfu);
+  EXPECT_GT(memory.memoryHeaps[0].size, 1u << 20);
+}
+
+TEST_F(PhysicalDevice, ExternalHandlesAreUnsupported) {
+  auto buffer_info = make_struct<VkPhysicalDeviceExternalBufferInfo>();
+  buffer_info.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+  auto buffer = make_struct<VkExternalBufferProperties>();
+  VK_GET(instance, GetPhysicalDeviceExternalBufferProperties)(physical_device, &buffer_info, &buffer);
+  EXPECT_EQ(buffer.externalMemoryProperties.externalMemoryFeatures, 0u);
+}
+
+TEST_F(PhysicalDevice, UnclaimedFeatureIsRefused) {
+  auto features = make_struct<VkPhysicalDeviceFeatures2>();
+  features.features.sparseBinding = VK_TRUE;
+  VkDevice other = VK_NULL_HANDLE;
+  EXPECT_EQ(create_device(instance, physical_device, &other, nullptr, &features), VK_ERROR_FEATURE_NOT_PRESENT);
+}
+
+struct Required {
+  VkFormat format;
+  VkFormatFeatureFlags features;
+};
+
+/// Vulkan 1.3.239, Required Format Support: the mandatory optimal-tiling features of the colour formats most used.
+TEST_F(Formats, MandatoryImageFeaturesAreClaimed) {
+  constexpr VkFormatFeatureFlags kSampled = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_BLIT_SRC_BIT;
+  constexpr VkFormatFeatureFlags kFiltered = kSampled | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  constexpr VkFormatFeatureFlags kTarget = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
+  constexpr VkFormatFeatureFlags kBlended = kTarget | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
+  constexpr VkFormatFeatureFlags kStorage = VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+  constexpr Required kTable[] = {
+      {VK_FORMAT_R5G6B5_UNORM_PACK16, kFiltered | kBlended},
+      {VK_FORMAT_A1R5G5B5_UNORM_PACK16, kFiltered | kBlended},
+      {VK_FORMAT_B4G4R4A4_UNORM_PACK16, kFiltered},
+      {VK_FORMAT_R8_UNORM, kFiltered | kBlended},
+      {VK_FORMAT_R8_SNORM, kFiltered},
+      {VK_FORMAT_R8_UINT, kSampled | kTarget},
+      {VK_FORMAT_R8G8_UNORM, kFiltered | kBlended},
+      {VK_FORMAT_R8G8B8A8_UNORM, kFiltered | kBlended | kStorage},
+      {VK_FORMAT_R8G8B8A8_SNORM, kFiltered | kStorage},
+      {VK_FORMAT_R8G8B8A8_UINT, kSampled | kTarget | kStorage},
+      {VK_FORMAT_R8G8B8A8_SRGB, kFiltered | kBlended},
+      {VK_FORMAT_B8G8R8A8_UNORM, kFiltered | kBlended},
+      {VK_FORMAT_B8G8R8A8_SRGB, kFiltered | kBlended},
+      {VK_FORMAT_A8B8G8R8_UNORM_PACK32, kFiltered | kBlended},
+      {VK_FORMAT_A8B8G8R8_SRGB_PACK32, kFiltered | kBlended},
+      {VK_FORMAT_A2B10G10R10_UNORM_PACK32, kFiltered | kBlended},
+      {VK_FORMAT_A2B10G10R10_UINT_PACK32, kSampled | kTarget},
+      {VK_FORMAT_R16_UINT, kSampled | kTarget},
+      {VK_FORMAT_R16_SFLOAT, kFiltered | kBlended},
+      {VK_FORMAT_R16G16_SFLOAT, kFiltered | kBlended},
+      {VK_FORMAT_R16G16B16A16_SFLOAT, kFiltered | kBlended | kStorage},
+      {VK_FORMAT_R32_UINT, kSampled | kTarget | kStorage | VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT},
+      {VK_FORMAT_R32_SINT, kSampled | kTarget | kStorage | VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT},
+      {VK_FORMAT_R32_SFLOAT, kSampled | kTarget | kStorage},
+      {VK_FORMAT_R32G32B32A32_SFLOAT, kSampled | kTarget | kStorage},
+      {VK_FORMAT_R32G32B32A32_UINT, kSampled | kTarget | kStorage},
+      {VK_FORMAT_B10G11R11_UFLOAT_PACK32, kFiltered},
+      {VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, kFiltered},
+      {VK_FORMAT_D16_UNORM, kSampled | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT},
+      {VK_FORMAT_D32_SFLOAT, kSampled | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT},
+      {VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT},
+  };
+  for (const Required& row : kTable) {
+    VkFormatProperties properties;
+    VK_GET(instance, GetPhysicalDeviceFormatProperties)(physical_device, row.format, &properties);
+    EXPECT_EQ(properties.optimalTilingFeatures & row.features, row.features) << "format " << row.format;
+  }
+}
+
+TEST_F(Formats, MandatoryBufferFeaturesAreClaimed) {
+  constexpr VkFormatFeatureFlags kVertex = VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT;
+  constexpr VkFormatFeatureFlags kTexels = VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT;
+  constexpr VkFormatFeatureFlags kStores = VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT;
+  constexpr Required kTable[] = {
+      {VK_FORMAT_R8_UNORM, kVertex | kTexels},
+      {VK_FORMAT_R8G8B8A8_UNORM, kVertex | kTexels | kStores},
+      {VK_FORMAT_B8G8R8A8_UNORM, kVertex | kTexels},
+      {VK_FORMAT_A2B10G10R10_UNORM_PACK32, kVertex | kTexels},
+      {VK_FORMAT_R16G16B16A16_SFLOAT, kVertex | kTexels | kStores},
+      {VK_FORMAT_R32_UINT, kVertex | kTexels | kStores | VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_ATOMIC_BIT},
+      {VK_FORMAT_R32G32B32_SFLOAT, kVertex},
+      {VK_FORMAT_R32G32B32A32_SFLOAT, kVertex | kTexels | kStores},
+  };
+  for (const Required& row : kTable) {
+    VkFormatProperties properties;
+    VK_GET(instance, GetPhysicalDeviceFormatProperties)(physical_device, row.format, &properties);
+    EXPECT_EQ(properties.bufferFeatures & row.features, row.features) << "format " << row.format;
+  }
+}
+
+TEST_F(Formats, ImagePropertiesFollowFeatures) {
+  const auto query = VK_GET(instance, GetPhysicalDeviceImageFormatProperties);
+  VkImageFormatProperties out;
+  EXPECT_EQ(query(physical_device, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
+                  VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0, &out),
+            VK_SUCCESS);
+  EXPECT_EQ(out.sampleCounts, VkSampleCountFlags{VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_4_BIT});
+  EXPECT_EQ(out.maxMipLevels, static_cast<std::uint32_t>(std::bit_width(out.maxExtent.width)));
+  EXPECT_GE(out.maxResourceSize, VkDeviceSize{1} << 31);
+  EXPECT_EQ(query(physical_device, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
+                  VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, 0, &out),
+            VK_ERROR_FORMAT_NOT_SUPPORTED);
+  EXPECT_EQ(out.maxMipLevels, 0u);
+  EXPECT_EQ(query(physical_device, VK_FORMAT_D32_SFLOAT, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_LINEAR,
+                  VK_IMAGE_USAGE_SAMPLED_BIT, 0, &out),
+            VK_ERROR_FORMAT_NOT_SUPPORTED);
+  EXPECT_EQ(query(physical_device, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
+                  VK_IMAGE_USAGE_SAMPLED_BIT, VK_IMAGE_CREATE_SPARSE_BINDING_BIT, &out),
+            VK_ERROR_FORMAT_NOT_SUPPORTED);
+  EXPECT_EQ(query(physical_device, static_cast<VkFormat>(0x7ffffff0), VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
+                  VK_IMAGE_USAGE_SAMPLED_BIT, 0, &out),
+            VK_ERROR_FORMAT_NOT_SUPPORTED);
+}
+
+}  // namespace
+}  // namespace vitrine::icd::test
