@@ -17,13 +17,14 @@ constexpr std::array kSurfaceFormats{
     VkSurfaceFormatKHR{VK_FORMAT_R8G8B8A8_UNORM, VK_COLOR_SPACE_SRGB_NONLINEAR_KHR},
 };
 
-constexpr std::array kPresentModes{VK_PRESENT_MODE_IMMEDIATE_KHR, VK_PRESENT_MODE_MAILBOX_KHR, VK_PRESENT_MODE_FIFO_KHR};
+constexpr std::array kPresentModes{VK_PRESENT_MODE_IMMEDIATE_KHR, VK_PRESENT_MODE_MAILBOX_KHR,
+                                   VK_PRESENT_MODE_FIFO_KHR};
 
 /// "If the swapchain decides, width and height are 0xFFFFFFFF": our windows then take any size an image can have.
 constexpr std::uint32_t kSwapchainDecides = 0xFFFFFFFF;
 
-VkResult create_surface(VkInstance instance, const VkAllocationCallbacks* allocator, std::unique_ptr<wsi::Window> window,
-                        VkSurfaceKHR* surface) {
+VkResult create_surface(VkInstance instance, const VkAllocationCallbacks* allocator,
+                        std::unique_ptr<wsi::Window> window, VkSurfaceKHR* surface) {
   // The create functions may only fail for lack of memory; a client library that cannot be loaded is the nearest to it.
   if (!window) return VK_ERROR_OUT_OF_HOST_MEMORY;
   *surface = to_handle(create_object<Surface>(from_handle<Instance>(instance).memory, allocator, std::move(window)));

@@ -1,0 +1,38 @@
+// Swapchain images: who has them, and showing them (Vulkan 1.3.239, WSI Swapchain).
+#include "icd/wsi/swapchain.h"
+
+namespace vitrine::icd {
+namespace {
+
+wsi::Frame frame_of(const Swapchain& swapchain, const Image& image) {
+  const texel::PlaneLayout& plane = image.layout.plane[0];
+  wsi::Frame frame;
+  frame.pixels = image.data + plane.offset + plane.level[0].offset;
+  frame.row_pitch = plane.level[0].row_pitch;
+  frame.extent = swapchain.extent;
+  frame.red_first = swapchain.red_first;
+  return frame;
+}
+
+}  // namespace
+
+Swapchain::~Swapchain() {
+  for (const Slot& slot : slots) {
+    destroy_object(slot.image);
+    destroy_object(slot.backing);
+  }
+}
+
+void show_image(Swapchain& swapchain, std::uint32_t index) {
+  const wsi::Frame frame = frame_of(swapchain, *swapchain.slots[index].image);
+  const VkResult shown = swapchain.surface->window->present(frame, swapchain.mode == VK_PRESENT_MODE_FIFO_KHR);
+  {
+    const std::lock_guard lock(swapchain.mutex);
+    swapchain.slots[index].owner = Swapchain::Owner::kSwapchain;
+    swapchain.slots[index].released = ++swapchain.release_count;
+    if (shown < 0 || swapchain.status == VK_SUCCESS || swapchain.status == VK_SUBOPTIMAL_KHR) swapchain.status = shown;
+  }
+  swapchain.image_released.notify_all();
+}
+
+}  // namespace vitrine::icd

@@ -1,0 +1,111 @@
+// Compute: streaming, matrix products, all-pairs forces, reduction with shared memory and barriers.
+#include <string>
+
+#include "bench.h"
+
+namespace vitrine::bench {
+namespace {
+
+struct Kernel {
+  std::string text;
+  std::vector<VkDeviceSize> buffers;  ///< bytes of bindings 0, 1, ...
+  std::uint32_t groups[3];
+  double work;  ///< units of the row per dispatch
+};
+
+double measure(Run& run, const Kernel& kernel) {
+  std::vector<cts::Binding> bindings;
+  for (std::uint32_t i = 0; i < kernel.buffers.size(); ++i) {
+    const cts::Buffer buffer = run.buffer(kernel.buffers[i]);
+    for (VkDeviceSize k = 0; k < kernel.buffers[i] / 4; ++k) buffer.as<float>()[k] = static_cast<float>(k % 97) * 0.01f;
+    bindings.push_back(cts::storage_buffer(i, buffer));
+  }
+  const cts::Resources resources = run.resources(bindings);
+  const VkPipeline pipeline = run.compute(resources.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, kernel.text));
+  VkCommandBuffer cmd = begin_repeatable(run);
+  vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+  resources.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+  vkCmdDispatch(cmd, kernel.groups[0], kernel.groups[1], kernel.groups[2]);
+  return kernel.work / time_submissions(run, finish(cmd));
+}
+
+std::string storage(const char* names) {
+  std::string text;
+  int binding = 0;
+  for (const char* name = names; *name; ++name, ++binding) {
+    text += "layout(binding=" + std::to_string(binding) + ") buffer B" + *name + " { float " + *name + "[]; };\n";
+  }
+  return text;
+}
+
+Kernel saxpy() {
+  constexpr std::uint32_t kCount = 1 << 22;
+  return {"layout(local_size_x=256) in;" + storage("xy") +
+              "void main() { uint i = gl_GlobalInvocationID.x; y[i] = 2.5 * x[i] + y[i]; }",
+          {kCount * 4, kCount * 4},
+          {kCount / 256, 1, 1},
+          kCount * 12.0 / 1e9};
+}
+
+Kernel matmul_tiled() {
+  constexpr std::uint32_t kSide = 256;
+  return {
+      "layout(local_size_x=16, local_size_y=16) in;" + storage("abc") +
+          "shared float s[16][16], t[16][16]; void main() { uint x = gl_LocalInvocationID.x, y = "
+          "gl_LocalInvocationID.y;"
+          "uint gx = gl_GlobalInvocationID.x, gy = gl_GlobalInvocationID.y; float sum = 0.0;"
+          "for (uint k = 0u; k < 256u; k += 16u) { s[y][x] = a[gy * 256u + k + x]; t[y][x] = b[(k + y) * 256u + gx];"
+          "barrier(); for (uint i = 0u; i < 16u; ++i) sum += s[y][i] * t[i][x]; barrier(); } c[gy * 256u + gx] = sum; "
+          "}",
+      {kSide * kSide * 4, kSide * kSide * 4, kSide * kSide * 4},
+      {kSide / 16, kSide / 16, 1},
+      2.0 * kSide * kSide * kSide / 1e9};
+}
+
+Kernel matmul_naive() {
+  constexpr std::uint32_t kSide = 256;
+  return {"layout(local_size_x=16, local_size_y=16) in;" + storage("abc") +
+              "void main() { uint gx = gl_GlobalInvocationID.x, gy = gl_GlobalInvocationID.y; float sum = 0.0;"
+              "for (uint k = 0u; k < 256u; ++k) sum += a[gy * 256u + k] * b[k * 256u + gx]; c[gy * 256u + gx] = sum; }",
+          {kSide * kSide * 4, kSide * kSide * 4, kSide * kSide * 4},
+          {kSide / 16, kSide / 16, 1},
+          2.0 * kSide * kSide * kSide / 1e9};
+}
+
+Kernel nbody() {
+  constexpr std::uint32_t kBodies = 4096;
+  return {
+      "layout(local_size_x=64) in; layout(binding=0) buffer P { vec4 p[]; }; layout(binding=1) buffer F { vec4 f[]; };"
+      "void main() { uint i = gl_GlobalInvocationID.x; vec3 me = p[i].xyz, sum = vec3(0); for (uint k = 0u; k < 4096u; "
+      "++k) {"
+      "vec3 d = p[k].xyz - me; float r = inversesqrt(dot(d, d) + 0.01); sum += d * (r * r * r * p[k].w); }"
+      "f[i] = vec4(sum, 0.0); }",
+      {kBodies * 16, kBodies * 16},
+      {kBodies / 64, 1, 1},
+      double{kBodies} * kBodies / 1e9};
+}
+
+Kernel reduce() {
+  constexpr std::uint32_t kCount = 1 << 22;
+  return {"layout(local_size_x=256) in;" + storage("xy") +
+              "shared float s[256]; void main() { uint l = gl_LocalInvocationID.x, i = gl_WorkGroupID.x * 1024u + l;"
+              "s[l] = x[i] + x[i + 256u] + x[i + 512u] + x[i + 768u]; barrier();"
+              "for (uint k = 128u; k > 0u; k >>= 1) { if (l < k) s[l] += s[l + k]; barrier(); }"
+              "if (l == 0u) y[gl_WorkGroupID.x] = s[0]; }",
+          {kCount * 4, kCount / 1024 * 4},
+          {kCount / 1024, 1, 1},
+          kCount / 1e9};
+}
+
+}  // namespace
+
+std::vector<Workload> compute_workloads() {
+  const auto row = [](const char* name, const char* unit, Kernel (*kernel)()) {
+    return Workload{name, unit, false, [kernel](Run& run) { return measure(run, kernel()); }};
+  };
+  return {row("c_saxpy", "GB/s", saxpy), row("c_matmul_tiled", "GFLOP/s", matmul_tiled),
+          row("c_matmul_naive", "GFLOP/s", matmul_naive), row("c_nbody", "Ginter/s", nbody),
+          row("c_reduce", "Gelem/s", reduce)};
+}
+
+}  // namespace vitrine::bench

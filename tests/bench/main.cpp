@@ -1,0 +1,223 @@
+// The benchmark's driver: runs each workload in a child process on Vitrine, lavapipe and SwiftShader in turn, several
+// rounds, and prints medians and ratios. Usage: vitrine_bench [--rounds=N] [--filter=TEXT] [--icd=NAME=MANIFEST]...
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <string>
+
+#include "bench.h"
+#include "harness/shader.h"
+
+namespace vitrine::bench {
+namespace {
+
+struct Driver {
+  std::string name, manifest;
+};
+
+cts::Gpu open_gpu() {
+  VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
+  application.apiVersion = VK_API_VERSION_1_1;
+  VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+  info.pApplicationInfo = &application;
+  cts::Gpu gpu;
+  CTS_VK(vkCreateInstance(&info, nullptr, &gpu.instance));
+  std::uint32_t count = 1;
+  CTS_VK(vkEnumeratePhysicalDevices(gpu.instance, &count, &gpu.physical));
+  if (count == 0) throw std::runtime_error("no device");
+  vkGetPhysicalDeviceProperties(gpu.physical, &gpu.properties);
+  vkGetPhysicalDeviceFeatures(gpu.physical, &gpu.features);
+  vkGetPhysicalDeviceMemoryProperties(gpu.physical, &gpu.memory);
+  const float priority = 1;
+  VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  VkDeviceCreateInfo device{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+  device.queueCreateInfoCount = 1;
+  device.pQueueCreateInfos = &queue;
+  device.pEnabledFeatures = &gpu.features;
+  CTS_VK(vkCreateDevice(gpu.physical, &device, nullptr, &gpu.device));
+  vkGetDeviceQueue(gpu.device, 0, 0, &gpu.queue);
+  return gpu;
+}
+
+constexpr char kFirstFragment[] =
+    "layout(location=0) in vec2 uv; layout(location=0) out vec4 o; void main() { o = vec4(uv, 0.5, 1.0); }";
+
+/// From the first Vulkan call to a pixel on the host: a triangle with everything it needs.
+void first_pixel(cts::Gpu& gpu) {
+  Run run(gpu, 1, 0);
+  cts::TargetSpec target_spec;
+  const cts::Target target = cts::make_target(run, target_spec);
+  cts::GraphicsSpec spec;
+  spec.vertex = cts::kFullScreenVertex;
+  spec.fragment = kFirstFragment;
+  const VkPipeline pipeline = cts::make_pipeline(run, spec, target);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    cts::bind_pipeline(cmd, pipeline);
+    vkCmdDraw(cmd, 3, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  if (run.download(target.colors[0], 0).at(2) == 0) throw std::runtime_error("the first pixel is blank");
+}
+
+/// Start-up rows: time without GLSL compilation (a dry run fills the shader cache), memory growth.
+void run_startup() {
+  cts::compile_glsl(VK_SHADER_STAGE_VERTEX_BIT, cts::kFullScreenVertex);
+  cts::compile_glsl(VK_SHADER_STAGE_FRAGMENT_BIT, kFirstFragment);
+  const double memory = resident_megabytes(), start = now();
+  cts::Gpu gpu = open_gpu();
+  first_pixel(gpu);
+  std::printf("start_to_pixel %.6g\nstart_rss %.6g\n", (now() - start) * 1e3, resident_megabytes() - memory);
+}
+
+int run_child(const std::string& name) {
+  try {
+    if (name == "startup") {
+      run_startup();
+      return 0;
+    }
+    cts::Gpu gpu = open_gpu();
+    for (const Workload& workload : workloads()) {
+      if (name != workload.name) continue;
+      Run run(gpu, 1, 0);
+      std::printf("%s %.6g\n", workload.name, workload.measure(run));
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), error.what());
+    return 1;
+  }
+  return 0;
+}
+
+/// Runs one child and adds what it printed to `samples` ("row value" lines).
+void spawn(const Driver& driver, const std::string& workload, std::map<std::string, std::vector<double>>& samples) {
+  int pipe_ends[2];
+  if (pipe(pipe_ends) != 0) return;
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(pipe_ends[1], STDOUT_FILENO);
+    close(pipe_ends[0]);
+    setenv("VK_DRIVER_FILES", driver.manifest.c_str(), 1);
+    setenv("VK_ICD_FILENAMES", driver.manifest.c_str(), 1);
+    setenv("LP_PERF", "no_rast_linear", 1);
+    setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    setenv("VK_LOADER_LAYERS_DISABLE", "~all~", 1);
+    const std::string argument = "--child=" + workload;
+    execl("/proc/self/exe", "vitrine_bench", argument.c_str(), nullptr);
+    _exit(127);
+  }
+  close(pipe_ends[1]);
+  if (FILE* output = fdopen(pipe_ends[0], "r")) {
+    char row[64];
+    double value;
+    while (std::fscanf(output, "%63s %lf", row, &value) == 2) samples[row].push_back(value);
+    std::fclose(output);
+  }
+  waitpid(child, nullptr, 0);
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+struct Row {
+  std::string name, unit;
+  bool lower_is_better;
+};
+
+/// One table row; the ratios say how many times better the first driver is than each other one.
+void print_row(const Row& row, const std::vector<Driver>& drivers,
+               const std::map<std::string, std::vector<double>>* samples, std::vector<double>& log_ratios) {
+  std::printf("| %-16s | %-9s |", row.name.c_str(), row.unit.c_str());
+  std::vector<double> values;
+  for (std::size_t d = 0; d < drivers.size(); ++d) {
+    const auto found = samples[d].find(row.name);
+    values.push_back(found == samples[d].end() ? NAN : median(found->second));
+    std::printf(" %11.4g |", values.back());
+  }
+  for (std::size_t d = 1; d < drivers.size(); ++d) {
+    const double ratio = row.lower_is_better ? values[d] / values[0] : values[0] / values[d];
+    std::printf(" %10.2f |", ratio);
+    if (d == 1 && std::isfinite(ratio)) log_ratios.push_back(std::log(ratio));
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+std::vector<Driver> default_drivers() {
+  std::vector<Driver> drivers{{"vitrine", BENCH_DEFAULT_ICD},
+                              {"lavapipe", "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json"}};
+  const char* swiftshader = "/usr/lib/chromium/vk_swiftshader_icd.json";
+  if (access(swiftshader, R_OK) == 0) drivers.push_back({"swiftshader", swiftshader});
+  return drivers;
+}
+
+int run_parent(std::vector<Driver> drivers, int rounds, const std::string& filter) {
+  if (drivers.empty()) drivers = default_drivers();
+  std::vector<std::vector<Row>> groups{{{"start_to_pixel", "ms", true}, {"start_rss", "MB", true}}};
+  for (const Workload& workload : workloads())
+    groups.push_back({{workload.name, workload.unit, workload.lower_is_better}});
+  std::printf("| %-16s | %-9s |", "workload", "unit");
+  for (const Driver& driver : drivers) std::printf(" %11s |", driver.name.c_str());
+  for (std::size_t d = 1; d < drivers.size(); ++d) std::printf(" x %-8.8s |", drivers[d].name.c_str());
+  std::printf("\n|---|---|");
+  for (std::size_t column = 0; column < drivers.size() * 2 - 1; ++column) std::printf("---:|");
+  std::printf("\n");
+  std::vector<double> log_ratios;
+  for (const std::vector<Row>& group : groups) {
+    if (group[0].name.find(filter) == std::string::npos) continue;
+    std::vector<std::map<std::string, std::vector<double>>> samples(drivers.size());
+    const std::string child = group.size() > 1 ? "startup" : group[0].name;
+    for (int round = 0; round < rounds; ++round) {
+      for (std::size_t d = 0; d < drivers.size(); ++d) spawn(drivers[d], child, samples[d]);
+    }
+    for (const Row& row : group) print_row(row, drivers, samples.data(), log_ratios);
+  }
+  double sum = 0;
+  for (const double value : log_ratios) sum += value;
+  if (!log_ratios.empty()) {
+    std::printf("geometric mean against %s over %zu rows: %.2f\n", drivers.at(1).name.c_str(), log_ratios.size(),
+                std::exp(sum / static_cast<double>(log_ratios.size())));
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace vitrine::bench
+
+int main(int argc, char** argv) {
+  using namespace vitrine::bench;
+  std::vector<Driver> drivers;
+  std::string filter;
+  int rounds = 3;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const auto value = [&](const char* name) {
+      const std::size_t length = std::strlen(name);
+      return argument.compare(0, length, name) == 0 ? argument.c_str() + length : nullptr;
+    };
+    if (const char* child = value("--child=")) return run_child(child);
+    if (const char* text = value("--rounds=")) {
+      rounds = std::max(1, std::atoi(text));
+    } else if (const char* pattern = value("--filter=")) {
+      filter = pattern;
+    } else if (const char* icd = value("--icd=")) {
+      const char* equals = std::strchr(icd, '=');
+      if (equals) drivers.push_back({std::string(icd, equals), equals + 1});
+    } else {
+      std::fprintf(stderr, "usage: %s [--rounds=N] [--filter=TEXT] [--icd=NAME=MANIFEST]...\n", argv[0]);
+      return 2;
+    }
+  }
+  return run_parent(drivers, rounds, filter);
+}

@@ -1,0 +1,110 @@
+// Shader-bound full-screen fragments: arithmetic, transcendental functions, integers, divergence, texture filters.
+#include <string>
+
+#include "bench.h"
+
+namespace vitrine::bench {
+namespace {
+
+double measure(Run& run, const std::string& body, const cts::Resources* resources = nullptr) {
+  constexpr std::uint32_t kWidth = 1280, kHeight = 720;
+  const cts::Target target = make_screen(run, kWidth, kHeight);
+  cts::GraphicsSpec spec;
+  spec.vertex = cts::kFullScreenVertex;
+  spec.fragment = body;
+  if (resources) spec.layout = resources->layout;
+  const VkPipeline pipeline = cts::make_pipeline(run, spec, target);
+  VkCommandBuffer cmd = begin_repeatable(run);
+  target.begin(cmd);
+  cts::bind_pipeline(cmd, pipeline);
+  if (resources) resources->bind(cmd);
+  vkCmdDraw(cmd, 3, 1, 0, 0);
+  vkCmdEndRenderPass(cmd);
+  return kWidth * kHeight / time_submissions(run, finish(cmd)) / 1e6;
+}
+
+const std::string kHead = "layout(location=0) in vec2 uv; layout(location=0) out vec4 o;\n";
+
+std::string fma200() {
+  std::string text = kHead + "void main() { vec4 a = vec4(uv, uv.yx);\n";
+  for (int i = 0; i < 50; ++i) text += "a = a * vec4(0.99, 1.01, 0.98, 1.02) + vec4(0.01, -0.01, 0.02, -0.02);\n";
+  return text + "o = a; }";
+}
+
+const std::string kTransc = kHead +
+                            "void main() { vec4 a = vec4(uv, uv.yx) + 0.5; for (int i = 0; i < 4; ++i) {"
+                            " a = sin(a) + 1.5; a = log2(a); a = exp2(a * 0.5); } o = a; }";
+const std::string kIntHash =
+    kHead +
+    "void main() { uvec2 p = uvec2(gl_FragCoord.xy); uint h = p.x * 1973u + p.y * 9277u;"
+    "for (int i = 0; i < 24; ++i) { h ^= h >> 16; h *= 0x7feb352du; h ^= h >> 15; h *= 0x846ca68bu;"
+    "h ^= h >> 16; h += uint(i); } o = vec4(float(h & 255u) / 255.0); }";
+const std::string kNoise =
+    kHead +
+    "float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }"
+    "float noise(vec2 p) { vec2 i = floor(p), f = fract(p); f = f * f * (3.0 - 2.0 * f);"
+    "return mix(mix(hash(i), hash(i + vec2(1, 0)), f.x), mix(hash(i + vec2(0, 1)), hash(i + vec2(1, 1)), f.x), f.y); }"
+    "void main() { float s = 0.0, a = 0.5; vec2 p = uv * 8.0; for (int i = 0; i < 5; ++i) { s += a * noise(p); p *= "
+    "2.03;"
+    "a *= 0.5; } o = vec4(s); }";
+const std::string kMandel = kHead +
+                            "void main() { vec2 c = uv * vec2(3.0, 2.0) - vec2(2.2, 1.0), z = vec2(0); int n = 0;"
+                            "for (; n < 64 && dot(z, z) < 4.0; ++n) z = vec2(z.x * z.x - z.y * z.y, 2.0 * z.x * z.y) + "
+                            "c; o = vec4(float(n) / 64.0); }";
+const std::string kSdf =
+    kHead +
+    "float map(vec3 p) { vec3 q = abs(p) - vec3(0.6); float box = length(max(q, 0.0)) - 0.1;"
+    "float ball = length(p - vec3(0.7, 0.5, 0.0)) - 0.6; return min(min(box, ball), p.y + 1.0); }"
+    "void main() { vec3 ro = vec3(0, 0.5, -3), rd = normalize(vec3(uv * 2.0 - 1.0, 1.5)); float t = 0.0;"
+    "for (int i = 0; i < 48; ++i) { float d = map(ro + rd * t); if (d < 0.001) break; t += d; if (t > 20.0) break; }"
+    "vec3 p = ro + rd * t; vec2 e = vec2(0.001, 0); vec3 n = normalize(vec3(map(p + e.xyy) - map(p - e.xyy),"
+    "map(p + e.yxy) - map(p - e.yxy), map(p + e.yyx) - map(p - e.yyx))); o = vec4(n * 0.5 + 0.5, 1.0) * exp(-0.1 * t); "
+    "}";
+
+double measure_texture(Run& run, VkFilter filter, VkSamplerMipmapMode mip, bool mips, const char* body,
+                       VkFormat format = VK_FORMAT_R8G8B8A8_UNORM) {
+  cts::ImageSpec image_spec;
+  image_spec.format = format;
+  image_spec.extent = {512, 512, 1};
+  image_spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  image_spec.levels = mips ? 10 : 1;
+  const cts::Image image = run.image(image_spec);
+  run.fill_random(image);
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = filter;
+  info.mipmapMode = mip;
+  info.maxLod = mips ? 1000.0f : 0.0f;
+  const cts::Resources resources = run.resources({cts::sampled(0, image, run.sampler(info))});
+  return measure(run, kHead + "layout(binding=0) uniform sampler2D t;" + body, &resources);
+}
+
+}  // namespace
+
+std::vector<Workload> shader_workloads() {
+  const auto row = [](const char* name, std::string text) {
+    return Workload{name, "Mpix/s", false, [text](Run& run) { return measure(run, text); }};
+  };
+  const auto texture = [](const char* name, VkFilter filter, VkSamplerMipmapMode mip, bool mips, const char* body,
+                          VkFormat format = VK_FORMAT_R8G8B8A8_UNORM) {
+    return Workload{name, "Mpix/s", false,
+                    [=](Run& run) { return measure_texture(run, filter, mip, mips, body, format); }};
+  };
+  static constexpr char kOnce[] = "void main() { o = texture(t, uv * vec2(3.1, 2.3)); }";
+  static constexpr char kBlur[] =
+      "void main() { vec4 s = vec4(0); for (int i = -4; i < 4; ++i) s += texture(t, uv + vec2(float(i) * 0.004, 0.0));"
+      "o = s * 0.125; }";
+  return {row("fs_fma200", fma200()),
+          row("fs_mandel", kMandel),
+          row("fs_noise", kNoise),
+          row("fs_transc", kTransc),
+          row("fs_inthash", kIntHash),
+          row("scene_sdf", kSdf),
+          texture("tex_nearest", VK_FILTER_NEAREST, VK_SAMPLER_MIPMAP_MODE_NEAREST, false, kOnce),
+          texture("tex_bilinear", VK_FILTER_LINEAR, VK_SAMPLER_MIPMAP_MODE_NEAREST, false, kOnce),
+          texture("tex_trilinear", VK_FILTER_LINEAR, VK_SAMPLER_MIPMAP_MODE_LINEAR, true, kOnce),
+          texture("tex_blur8", VK_FILTER_LINEAR, VK_SAMPLER_MIPMAP_MODE_NEAREST, false, kBlur),
+          texture("tex_rgba16f", VK_FILTER_LINEAR, VK_SAMPLER_MIPMAP_MODE_NEAREST, false, kOnce,
+                  VK_FORMAT_R16G16B16A16_SFLOAT)};
+}
+
+}  // namespace vitrine::bench

@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""Checks the shape of the tree: include directions, rooms in the README, commands behind claims, long files.
+
+usage: structure.py SOURCE_FOLDER
+Exit status 1 and one line per fault. The tail of file sizes is printed, never a fault.
+"""
+import pathlib
+import re
+import sys
+
+# DESIGN.md section 2: a room may include itself and what stands to its right.
+ORDER = ["icd", "raster", "spirv", "texel", "base"]
+FREE = ["tests", "cts-subset"]
+DATA = ["manifest"]
+LONG_FILE = 350
+
+
+def sources(root, folder):
+    for pattern in ("*.h", "*.cpp", "*.def"):
+        yield from sorted((root / folder).rglob(pattern))
+
+
+def include_faults(root):
+    """A room includes only rooms below it; raster sees of spirv the shader interface alone."""
+    for position, room in enumerate(ORDER):
+        allowed = set(ORDER[position:])
+        for path in sources(root, room):
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                match = re.match(r'\s*#\s*include\s+"([^"/]+)/([^"]+)"', line)
+                if not match:
+                    continue
+                target, header = match.groups()
+                where = f"{path.relative_to(root)}:{number}"
+                if target in ORDER + FREE and target not in allowed:
+                    yield f"{where}: {room} must not include {target}/{header}"
+                if room == "raster" and target == "spirv" and header not in ("shader.h", "resources.h"):
+                    yield f"{where}: raster sees spirv through spirv/shader.h, not {header}"
+                if room != "icd" and "vk_icd" in header:
+                    yield f"{where}: only icd knows the loader"
+
+
+def room_faults(root):
+    """Every room exists and the README's map names it, and the reverse."""
+    rooms = ORDER + FREE + DATA
+    for room in rooms:
+        if not (root / room).is_dir():
+            yield f"{room}/: the room is missing"
+    readme = root / "README.md"
+    if not readme.exists():
+        yield "README.md is missing"
+        return
+    named = set(re.findall(r"^\|\s*`([\w-]+)/`", readme.read_text(), re.MULTILINE))
+    for room in rooms:
+        if room not in named:
+            yield f"README.md: the map of rooms lacks `{room}/`"
+    for name in sorted(named - set(rooms)):
+        if not (root / name).is_dir():
+            yield f"README.md: names `{name}/`, which does not exist"
+
+
+def claim_faults(root):
+    """Every claim in manifest/ names a test that exists: the room's test program, or a cts-subset group."""
+    for file in ("features", "extensions"):
+        for number, line in enumerate((root / "manifest" / file).read_text().splitlines(), 1):
+            line = re.sub(r"(^|\s)#.*", "", line).strip()
+            if not line:
+                continue
+            tests = line.split(";")[-1].strip()
+            for test in tests.split(","):
+                words = test.split()
+                known = ORDER + ["cts-subset"]
+                if len(words) != 2 or words[0] not in known:
+                    yield f"manifest/{file}:{number}: '{test}' is not '<room or cts-subset> <test pattern>'"
+
+
+def shape_faults(root):
+    for folder in ORDER + FREE:
+        for path in sources(root, folder):
+            text = path.read_text()
+            where = path.relative_to(root)
+            if path.suffix == ".cpp" and not text.startswith("//"):
+                yield f"{where}: does not open with its purpose"
+            if re.search(r"^\s*#\s*if\s+0\b", text, re.MULTILINE):
+                yield f"{where}: dead code under #if 0"
+            for number, line in enumerate(text.splitlines(), 1):
+                if re.search(r"\bstd::(cout|printf|puts)\b|(^|[^\w.>])printf\(", line) and folder in ORDER:
+                    yield f"{where}:{number}: the library never prints to stdout"
+
+
+def report_tail(root):
+    sizes = sorted(((len(p.read_text().splitlines()), p) for f in ORDER + FREE for p in sources(root, f)), reverse=True)
+    print("longest files:")
+    for lines, path in sizes[:10]:
+        print(f"  {lines:5} {path.relative_to(root)}{'  (long)' if lines > LONG_FILE else ''}")
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    faults = [f for check in (include_faults, room_faults, claim_faults, shape_faults) for f in check(root)]
+    report_tail(root)
+    for fault in faults:
+        print(f"FAULT {fault}")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,68 @@
+// Makes views of images: level and layer ranges, component mapping, compatible formats (Vulkan 1.3.239, Image Views).
+#include "texel/view.h"
+
+#include <algorithm>
+
+namespace vitrine::texel {
+namespace {
+
+std::uint8_t resolve_swizzle(VkComponentSwizzle swizzle, std::uint8_t identity) {
+  switch (swizzle) {
+    case VK_COMPONENT_SWIZZLE_ZERO:
+      return 4;
+    case VK_COMPONENT_SWIZZLE_ONE:
+      return 5;
+    case VK_COMPONENT_SWIZZLE_R:
+      return 0;
+    case VK_COMPONENT_SWIZZLE_G:
+      return 1;
+    case VK_COMPONENT_SWIZZLE_B:
+      return 2;
+    case VK_COMPONENT_SWIZZLE_A:
+      return 3;
+    default:
+      return identity;
+  }
+}
+
+/// A view whose blocks are texels of an image of larger blocks (BLOCK_TEXEL_VIEW_COMPATIBLE) counts blocks.
+Extent convert_extent(Extent extent, const FormatDesc& from, const FormatDesc& to) {
+  if (from.block_width == to.block_width && from.block_height == to.block_height) return extent;
+  return {(extent.width + from.block_width - 1) / from.block_width * to.block_width,
+          (extent.height + from.block_height - 1) / from.block_height * to.block_height, extent.depth};
+}
+
+bool is_3d(VkImageViewType type) { return type == VK_IMAGE_VIEW_TYPE_3D; }
+
+}  // namespace
+
+ImageView make_image_view(const ImageLayout& layout, std::byte* memory, const ImageViewDesc& desc) {
+  const PlaneLayout& plane = layout.plane[plane_of_aspect(layout, desc.aspect)];
+  const FormatDesc& stored = format_desc(plane.format);
+  ImageView view;
+  // An aspect of a depth/stencil image is read as the plain format of its plane.
+  view.format = stored.is_depth_stencil() ? &stored : &format_desc(desc.format);
+  view.type = desc.type;
+  view.level_count = std::min(desc.level_count, kMaxLevels - std::min(desc.base_level, kMaxLevels - 1));
+  view.layer_count = desc.layer_count;
+  view.samples = layout.desc.samples;
+  view.base_level = desc.base_level;
+  view.level0_extent = convert_extent(plane.level[0].extent, stored, *view.format);
+  const VkComponentSwizzle mapping[4] = {desc.components.r, desc.components.g, desc.components.b, desc.components.a};
+  for (std::uint8_t i = 0; i < 4; ++i) view.swizzle[i] = resolve_swizzle(mapping[i], i);
+  for (std::uint32_t i = 0; i < view.level_count; ++i) {
+    view.level[i] = plane.level[desc.base_level + i];
+    view.level[i].extent = convert_extent(view.level[i].extent, stored, *view.format);
+  }
+  view.layer_stride = plane.layer_stride;
+  if (layout.desc.type == VK_IMAGE_TYPE_3D && !is_3d(desc.type)) {
+    // 2D views of a 3D image (2D_ARRAY_COMPATIBLE): slices are layers, and there is one level.
+    view.layer_stride = view.level[0].slice_pitch;
+    view.level[0].extent.depth = 1;
+    view.level0_extent.depth = 1;
+  }
+  view.base = memory + plane.offset + desc.base_layer * view.layer_stride;
+  return view;
+}
+
+}  // namespace vitrine::texel
