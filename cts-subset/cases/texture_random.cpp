@@ -1,0 +1,292 @@
+// Random textures, samplers and coordinates: every dimensionality, format class, filter, address mode and kind of LOD.
+//
+// Left out here, because the reference's value then depends on neighbouring invocations (deviations.md): different min
+// and mag filters on its float path, and linear filtering at the corners of a cube.
+#include "harness/case.h"
+#include "harness/graphics.h"
+
+namespace vitrine::cts {
+namespace {
+
+enum class Kind { kImplicit, kBias, kLod, kGrad, kOffset, kProj, kGather, kFetch, kQuery, kShadow };
+
+struct Shape {
+  VkImageViewType view;
+  const char* suffix;    ///< of the GLSL sampler type
+  uint32_t coordinates;  ///< components of a coordinate, with the layer
+  uint32_t dimensions;   ///< components of a gradient
+};
+constexpr Shape k1D{VK_IMAGE_VIEW_TYPE_1D, "1D", 1, 1}, k1DArray{VK_IMAGE_VIEW_TYPE_1D_ARRAY, "1DArray", 2, 1},
+    k2D{VK_IMAGE_VIEW_TYPE_2D, "2D", 2, 2}, k2DArray{VK_IMAGE_VIEW_TYPE_2D_ARRAY, "2DArray", 3, 2},
+    k3D{VK_IMAGE_VIEW_TYPE_3D, "3D", 3, 3}, kCube{VK_IMAGE_VIEW_TYPE_CUBE, "Cube", 3, 3},
+    kCubeArray{VK_IMAGE_VIEW_TYPE_CUBE_ARRAY, "CubeArray", 4, 3};
+
+constexpr uint32_t kSize = 64;  // of the target
+
+struct Family {
+  const char* name;
+  Kind kind;
+  std::vector<Shape> shapes;
+  uint32_t count;
+  bool compressed = false, anisotropic = false;
+};
+
+bool fits_8_bit(const FormatInfo& info) {
+  return (info.numeric == Numeric::kUnorm && info.bits[0] <= 8) || info.numeric == Numeric::kBlock;
+}
+
+VkFormat random_format(Random& random, const Family& family) {
+  const auto usable = [&](const FormatInfo& info) {
+    if ((info.numeric == Numeric::kBlock) != family.compressed) return false;
+    if ((info.numeric == Numeric::kDepth) != (family.kind == Kind::kShadow)) return false;
+    if (family.kind == Kind::kShadow && info.format == VK_FORMAT_S8_UINT) return false;
+    const VkFormatFeatureFlags needed =
+        family.anisotropic ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT : VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
+    return (gpus().reference.features_of(info.format) & needed) != 0;
+  };
+  std::vector<VkFormat> formats;
+  for (const FormatInfo& info : all_formats())
+    if (usable(info)) formats.push_back(info.format);
+  if (!family.compressed && family.kind != Kind::kShadow && random.chance(0.4f))
+    return random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R8G8B8A8_SRGB});
+  return random.pick(formats);
+}
+
+ImageSpec random_image(Random& random, const Shape& shape, VkFormat format) {
+  ImageSpec spec;
+  spec.format = format;
+  spec.view = shape.view;
+  spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  const bool cube = shape.view == VK_IMAGE_VIEW_TYPE_CUBE || shape.view == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
+  const auto side = [&] { return random.chance(0.5f) ? 1u << random.below(7) : 1 + random.below(60); };
+  spec.extent = {side(), 1, 1};
+  if (shape.dimensions > 1) spec.extent.height = cube ? spec.extent.width : side();
+  if (cube) spec.extent.width = spec.extent.height = std::max(spec.extent.width, 12u);
+  if (shape.view == VK_IMAGE_VIEW_TYPE_3D) spec.extent.depth = 1 + random.below(20);
+  if (shape.coordinates > shape.dimensions) spec.layers = 1 + random.below(4);
+  if (cube) spec.layers *= 6;
+  const uint32_t largest = std::max({spec.extent.width, spec.extent.height, spec.extent.depth});
+  uint32_t possible = 1;
+  while (largest >> possible) ++possible;
+  if (random.chance(0.6f)) spec.levels = 1 + random.below(possible);
+  if (random.chance(0.2f)) {
+    const auto swizzle = [&] { return static_cast<VkComponentSwizzle>(random.below(7)); };
+    spec.components = {swizzle(), swizzle(), swizzle(), swizzle()};
+  }
+  return spec;
+}
+
+VkSamplerCreateInfo random_sampler(Run& run, const Family& family, const Shape& shape, const ImageSpec& image) {
+  Random& random = run.random;
+  const FormatInfo& format = format_info(image.format);
+  const bool cube = shape.view == VK_IMAGE_VIEW_TYPE_CUBE || shape.view == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
+  const bool filterable =
+      gpus().reference.features_of(image.format) & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = filterable && random.chance(0.6f) ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  info.mipmapMode = filterable && random.chance(0.5f) ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+  const auto address = [&] { return static_cast<VkSamplerAddressMode>(random.below(4)); };
+  info.addressModeU = address();
+  info.addressModeV = random.chance(0.7f) ? info.addressModeU : address();
+  info.addressModeW = random.chance(0.7f) ? info.addressModeU : address();
+  info.borderColor = is_integer(format)
+                         ? random.pick({VK_BORDER_COLOR_INT_TRANSPARENT_BLACK, VK_BORDER_COLOR_INT_OPAQUE_BLACK,
+                                        VK_BORDER_COLOR_INT_OPAQUE_WHITE})
+                         : random.pick({VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK, VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK,
+                                        VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE});
+  info.maxLod = random.chance(0.7f) ? VK_LOD_CLAMP_NONE : random.real(0.0f, 4.0f);
+  if (random.chance(0.3f)) info.minLod = std::min(random.real(0.0f, 3.0f), info.maxLod);
+  if (random.chance(0.3f)) info.mipLodBias = random.real(-2.0f, 2.0f);
+  const auto plain = [](VkSamplerAddressMode m) {
+    return m == VK_SAMPLER_ADDRESS_MODE_REPEAT || m == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  };
+  const bool fixed_point_path = fits_8_bit(format) && family.kind == Kind::kImplicit && !cube &&
+                                plain(info.addressModeU) && plain(info.addressModeV) && plain(info.addressModeW);
+  if (fixed_point_path && random.chance(0.3f))
+    info.minFilter = info.magFilter == VK_FILTER_LINEAR ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
+  if (cube && info.magFilter == VK_FILTER_LINEAR) info.maxLod = info.minLod = 0.0f;
+  if (family.anisotropic) {
+    run.require(run.gpu.features.samplerAnisotropy, "samplerAnisotropy");
+    info.anisotropyEnable = VK_TRUE;
+    info.maxAnisotropy = random.pick({2.0f, 4.0f, 16.0f});
+    info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+    info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+  }
+  if (family.kind == Kind::kShadow) {
+    info.compareEnable = VK_TRUE;
+    info.compareOp = static_cast<VkCompareOp>(random.below(8));
+  }
+  return info;
+}
+
+std::string coordinate(const std::string& source, uint32_t components) {
+  return components == 1 ? source + ".x" : source + "." + std::string("xyzw").substr(0, components);
+}
+
+std::string lookup(Random& random, Kind kind, const Shape& shape) {
+  const std::string c = coordinate("c", shape.coordinates);
+  const std::string whole = shape.dimensions == 1 ? "int" : "ivec" + std::to_string(shape.dimensions);
+  const auto offset = [&] {
+    std::string text = whole + "(" + std::to_string(random.between(-8, 7));
+    for (uint32_t i = 1; i < shape.dimensions; ++i) text += ", " + std::to_string(random.between(-8, 7));
+    return text + ")";
+  };
+  switch (kind) {
+    case Kind::kImplicit:
+      return "texture(t, " + c + ")";
+    case Kind::kBias:
+      return "texture(t, " + c + ", extra.w)";
+    case Kind::kLod:
+      return "textureLod(t, " + c + ", extra.w * 6.0)";
+    case Kind::kGrad:
+      return "textureGrad(t, " + c + ", " + coordinate("gx", shape.dimensions) + ", " +
+             coordinate("gy", shape.dimensions) + ")";
+    case Kind::kOffset:
+      return random.chance(0.5f) ? "textureOffset(t, " + c + ", " + offset() + ")"
+                                 : "textureLodOffset(t, " + c + ", extra.w * 6.0, " + offset() + ")";
+    case Kind::kProj:
+      return "textureProj(t, " + coordinate("vec4(c.xyz, 1.5 + c.w)", shape.coordinates + 1) + ")";
+    case Kind::kGather: {
+      const std::string component = std::to_string(random.below(4));
+      return random.chance(0.5f) ? "textureGather(t, " + c + ", " + component + ")"
+                                 : "textureGatherOffset(t, " + c + ", " + offset() + ", " + component + ")";
+    }
+    case Kind::kFetch: {
+      const std::string integer = shape.coordinates == 1 ? "int" : "ivec" + std::to_string(shape.coordinates);
+      const std::string real = shape.coordinates == 1 ? "float" : "vec" + std::to_string(shape.coordinates);
+      return "texelFetch(t, " + integer + "(floor(" + c + " * " + real +
+             "(textureSize(t, 0)) * 1.1)), int(floor(extra.w * 3.0)))";
+    }
+    case Kind::kQuery:
+      return "vec4(textureQueryLod(t, " + coordinate("c", shape.dimensions) +
+             "), float(textureQueryLevels(t)), float(textureSize(t, int(extra.w * 4.0))" +
+             (shape.coordinates > 1 ? ".y" : "") + "))";
+    default: {
+      const std::string with_reference = shape.coordinates == 1
+                                             ? "vec3(c.x, 0.0, extra.x)"
+                                             : "vec" + std::to_string(shape.coordinates + 1) + "(" + c + ", extra.x)";
+      return random.chance(0.5f) || shape.dimensions > 2 || shape.coordinates > 2
+                 ? "vec4(texture(t, " + with_reference + "), 0.0, 0.0, 1.0)"
+                 : "vec4(textureLod(t, " + with_reference + ", extra.w * 4.0), 0.0, 0.0, 1.0)";
+    }
+  }
+}
+
+std::string fragment_text(Random& random, const Family& family, const Shape& shape, const FormatInfo& format) {
+  const std::string prefix = format.numeric == Numeric::kUint ? "u" : format.numeric == Numeric::kSint ? "i" : "";
+  const std::string result = family.kind == Kind::kQuery ? "" : prefix;
+  std::string text = "layout(binding = 0) uniform " + prefix + "sampler" + shape.suffix +
+                     (family.kind == Kind::kShadow ? "Shadow" : "") + " t;\n" +
+                     "layout(std430, binding = 1) readonly buffer Coordinates { vec4 table[]; };\n"
+                     "layout(push_constant) uniform P { vec4 base, dx, dy; };\n"
+                     "layout(location = 0) out " +
+                     result +
+                     "vec4 color;\n"
+                     "void main() {\n"
+                     "  uint id = uint(gl_FragCoord.x) + 64u * uint(gl_FragCoord.y);\n"
+                     "  vec4 extra = table[id * 2u + 1u];\n"
+                     "  vec4 gx = extra.xyzx * 0.1, gy = extra.yzxz * 0.07;\n";
+  const bool derivatives = family.kind == Kind::kImplicit || family.kind == Kind::kBias ||
+                           family.kind == Kind::kQuery || family.kind == Kind::kProj || family.kind == Kind::kOffset ||
+                           family.kind == Kind::kShadow;
+  text += derivatives && random.chance(0.85f)
+              ? "  precise vec4 c = (base + gl_FragCoord.x * dx) + gl_FragCoord.y * dy;\n"
+              : "  vec4 c = table[id * 2u];\n";
+  return text + "  color = " + lookup(random, family.kind, shape) + ";\n}\n";
+}
+
+/// Coordinates inside and outside the texture. Cubes: directions away from corners, so that one texel suffices.
+std::vector<float> random_coordinates(Random& random, const Shape& shape) {
+  const bool cube = shape.dimensions == 3 && shape.view != VK_IMAGE_VIEW_TYPE_3D;
+  std::vector<float> values;
+  for (uint32_t i = 0; i < kSize * kSize; ++i) {
+    float c[4];
+    for (float& v : c) v = random.chance(0.6f) ? random.unit() : random.real(-3.0f, 4.0f);
+    if (cube) {
+      const uint32_t major = random.below(3);
+      for (uint32_t k = 0; k < 3; ++k) c[k] = random.real(-0.8f, 0.8f);
+      c[(major + 1) % 3] = random.real(-0.999f, 0.999f);
+      c[major] = random.chance(0.5f) ? 1.0f : -1.0f;
+      const float scale = random.real(0.1f, 3.0f);
+      for (uint32_t k = 0; k < 3; ++k) c[k] *= scale;
+    }
+    if (shape.coordinates > shape.dimensions) c[shape.coordinates - 1] = random.real(-1.0f, 5.0f);
+    values.insert(values.end(), c, c + 4);
+    for (int k = 0; k < 4; ++k) values.push_back(random.unit());
+  }
+  return values;
+}
+
+void random_texture(Run& run, const Family& family) {
+  Random& random = run.random;
+  const Shape shape = random.pick(family.shapes);
+  const VkFormat format = random_format(random, family);
+  const FormatInfo& info = format_info(format);
+  const ImageSpec image_spec = random_image(random, shape, format);
+  if (shape.view == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY) run.require(run.gpu.features.imageCubeArray, "imageCubeArray");
+  const Image image = run.image(image_spec);
+  run.fill_random(image);
+  const VkSampler sampler = run.sampler(random_sampler(run, family, shape, image_spec));
+  const Buffer table = run.buffer_of(random_coordinates(random, shape));
+  const Resources res = run.resources({sampled(0, image, sampler), storage_buffer(1, table)}, 48);
+  TargetSpec target_spec;
+  const bool floats = !is_integer(info) || family.kind == Kind::kQuery;
+  target_spec.colors = {floats                           ? VK_FORMAT_R32G32B32A32_SFLOAT
+                        : info.numeric == Numeric::kUint ? VK_FORMAT_R32G32B32A32_UINT
+                                                         : VK_FORMAT_R32G32B32A32_SINT};
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  spec.layout = res.layout;
+  spec.vertex = kFullScreenVertex;
+  spec.fragment = fragment_text(random, family, shape, info);
+  run.note("fragment", std::string(info.name) + " " + std::to_string(image_spec.extent.width) + "x" +
+                           std::to_string(image_spec.extent.height) + "x" + std::to_string(image_spec.extent.depth) +
+                           " levels " + std::to_string(image_spec.levels) + " layers " +
+                           std::to_string(image_spec.layers) + "\n" + spec.fragment);
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  float push[12];
+  const float step = random.pick({0.002f, 0.01f, 0.05f, 0.2f});
+  for (int k = 0; k < 4; ++k) push[k] = random.real(-1.0f, 1.0f);
+  for (int k = 4; k < 12; ++k) push[k] = random.real(-step, step);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    res.bind(cmd);
+    vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, sizeof push, push);
+    vkCmdDraw(cmd, 3, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  run.out("color", target.colors[0]);
+  run.outputs.back().nan_bits_free = true;
+  run.may_be_blank();
+}
+
+const std::vector<Family>& families() {
+  static const std::vector<Family> list = {
+      {"random_implicit_lod", Kind::kImplicit, {k1D, k1DArray, k2D, k2D, k2D, k2DArray, k3D}, 200},
+      {"random_bias", Kind::kBias, {k1D, k2D, k2D, k2DArray, k3D}, 60},
+      {"random_explicit_lod", Kind::kLod, {k1D, k1DArray, k2D, k2D, k2DArray, k3D}, 120},
+      {"random_gradients", Kind::kGrad, {k1D, k2D, k2D, k2DArray, k3D}, 80},
+      {"random_offset", Kind::kOffset, {k1D, k2D, k2DArray, k3D}, 60},
+      {"random_projection", Kind::kProj, {k1D, k2D}, 30},
+      {"random_gather", Kind::kGather, {k2D, k2DArray}, 60},
+      {"random_fetch", Kind::kFetch, {k1D, k1DArray, k2D, k2DArray, k3D}, 80},
+      {"random_query", Kind::kQuery, {k1D, k2D, k2DArray, k3D}, 30},
+      {"random_shadow", Kind::kShadow, {k1D, k2D, k2D, k2DArray}, 60},
+      {"random_cube", Kind::kLod, {kCube, kCubeArray}, 60},
+      {"random_cube_implicit", Kind::kImplicit, {kCube}, 40},
+      {"random_compressed", Kind::kImplicit, {k2D, k2DArray}, 60, true},
+      {"random_compressed_fetch", Kind::kFetch, {k2D}, 40, true},
+      {"random_anisotropic", Kind::kImplicit, {k2D}, 40, false, true},
+  };
+  return list;
+}
+
+const bool kRegistered = [] {
+  for (const Family& family : families())
+    AddGenerator("texture", family.name, family.count, [&family](Run& run) { random_texture(run, family); });
+  return true;
+}();
+
+}  // namespace
+}  // namespace vitrine::cts
