@@ -90,7 +90,8 @@ TEST_F(Memory, RequirementsOfBothQueriesAgree) {
   auto query = make_struct<VkImageMemoryRequirementsInfo2>();
   query.image = image;
   VK_GET(instance, GetImageMemoryRequirements2)(device, &query, &second);
-  EXPECT_EQ(std::memcmp(&plain, &second.memoryRequirements, sizeof plain), 0);
+  EXPECT_EQ(plain.size, second.memoryRequirements.size);
+  EXPECT_EQ(plain.alignment, second.memoryRequirements.alignment);
   EXPECT_GE(plain.size, 33u * 17 * 4);
   EXPECT_EQ(plain.memoryTypeBits, 1u);
   EXPECT_EQ(dedicated.requiresDedicatedAllocation, VK_FALSE);
