@@ -58,19 +58,31 @@ def room_faults(root):
             yield f"README.md: names `{name}/`, which does not exist"
 
 
+def known_tests(root):
+    """{room: suite names of its unit tests}; cts-subset: the words of its case names."""
+    suites = {}
+    for room in ORDER:
+        text = "".join(p.read_text() for p in (root / "tests" / room).rglob("*_test.cpp"))
+        suites[room] = set(re.findall(r"^TEST(?:_[FP])?\((\w+),", text, re.MULTILINE))
+    text = "".join(p.read_text() for p in (root / "cts-subset").rglob("*.cpp"))
+    suites["cts-subset"] = set(re.findall(r'"([a-z_]+)[."]', text))
+    return suites
+
+
 def claim_faults(root):
-    """Every claim in manifest/ names a test that exists: the room's test program, or a cts-subset group."""
+    """Every claim in manifest/ names tests that exist: '<room> <Suite>.<pattern>' or 'cts-subset <group>.<pattern>'."""
+    suites = known_tests(root)
     for file in ("features", "extensions"):
         for number, line in enumerate((root / "manifest" / file).read_text().splitlines(), 1):
             line = re.sub(r"(^|\s)#.*", "", line).strip()
             if not line:
                 continue
-            tests = line.split(";")[-1].strip()
-            for test in tests.split(","):
+            for test in line.split(";")[-1].split(","):
                 words = test.split()
-                known = ORDER + ["cts-subset"]
-                if len(words) != 2 or words[0] not in known:
-                    yield f"manifest/{file}:{number}: '{test}' is not '<room or cts-subset> <test pattern>'"
+                if len(words) != 2 or words[0] not in suites:
+                    yield f"manifest/{file}:{number}: '{test.strip()}' is not '<room or cts-subset> <test pattern>'"
+                elif words[1].split(".")[0] not in suites[words[0]]:
+                    yield f"manifest/{file}:{number}: no test {words[1]} in {words[0]}"
 
 
 def shape_faults(root):
