@@ -30,6 +30,8 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
     if (std::strcmp(id, ignored) == 0) return VK_FALSE;
   const std::lock_guard lock(g_messages_mutex);
   std::string text = data->pMessage ? data->pMessage : "";
+  constexpr size_t kEnough = 500;  // the rest quotes the specification
+  if (text.size() > kEnough) text = text.substr(0, kEnough) + "...";
   if (std::find(g_messages.begin(), g_messages.end(), text) == g_messages.end() && g_messages.size() < 20)
     g_messages.push_back(std::move(text));
   return VK_FALSE;
