@@ -38,6 +38,23 @@ inline std::int32_t round_half_away(float value) {
 inline float min_second(float a, float b) { return a < b ? a : b; }
 inline float max_second(float a, float b) { return a > b ? a : b; }
 
+/// fma(a, b, c) with one rounding, also at compile time and where the CPU has no such instruction: the product is exact in
+/// binary64, and its sum with c is rounded to odd there, so that the rounding to binary32 is the only visible one.
+constexpr float fma_exact(float a, float b, float c) {
+  const double product = static_cast<double>(a) * static_cast<double>(b);
+  const double addend = static_cast<double>(c);
+  const double sum = product + addend;
+  const double product_share = sum - addend;
+  const double addend_share = sum - product_share;
+  const double error = (product - product_share) + (addend - addend_share);
+  std::uint64_t bits = std::bit_cast<std::uint64_t>(sum);
+  if ((error < 0.0 || error > 0.0) && (bits & 1) == 0) {
+    const bool toward_zero = (error < 0.0) != (sum < 0.0);
+    bits += toward_zero ? ~std::uint64_t{0} : std::uint64_t{1};
+  }
+  return static_cast<float>(std::bit_cast<double>(bits));
+}
+
 /// binary16 bits to binary32, exact, denormals included, independent of the floating-point mode.
 float half_to_float(std::uint16_t half);
 /// Round to nearest even; overflow to infinity; NaN becomes sign|0x7E00 (lavapipe-shader-math.md section 8).
