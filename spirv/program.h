@@ -11,8 +11,10 @@
 // target.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/lanes.h"
@@ -65,7 +67,81 @@ struct Wave {
   std::uint32_t first_invocation = 0;  ///< compute: LocalInvocationIndex of lane 0
   std::int64_t budget = 0;             ///< back edges left; below 0: fault
   enum class Status : std::uint8_t { kRunning, kDone, kAtBarrier, kFault } status = Status::kRunning;
-  const Instruction* resume = nullptr;  ///< where to go on after a barrier
+  const Instruction* resume = nullptr;  ///< after a barrier: where to go on; after a fault: the instruction at fault
 };
+
+/// Bytes from one register of the varying file to the next.
+inline constexpr std::uint32_t kRegisterStride = sizeof(base::WaveRegister);
+/// Operand offset that means "none".
+inline constexpr std::uint32_t kNoOperand = ~std::uint32_t{0};
+
+/// An operand whose file is known only to the instruction's side table. Index operands of descriptor arrays.
+struct IndexOperand {
+  enum class File : std::uint8_t { kConstant, kUniform, kVarying } file = File::kConstant;
+  std::uint32_t value = 0;  ///< the element, or a byte offset into the file
+};
+
+/// Side table row of a buffer, push constant, shared memory or local array access (Instruction::extra[0] is its index).
+struct MemoryOp {
+  std::uint32_t set = 0, slot = 0, count = 1;  ///< buffers: descriptor of array element 0
+  IndexOperand index;                          ///< buffers: array element
+  std::uint32_t added = 0;                     ///< constant byte offset
+  std::uint32_t components = 1;                ///< loads: consecutive words
+  std::uint32_t write_mask = 0;                ///< stores: bit i = component i
+  std::array<std::uint32_t, 4> data{kNoOperand, kNoOperand, kNoOperand, kNoOperand};  ///< result / value operands
+  std::uint32_t compare = kNoOperand;
+  ir::AtomicOp atomic = ir::AtomicOp::kAdd;
+  std::uint32_t array_base = 0, array_elements = 0;    ///< local arrays: byte offset of element 0, number of elements
+  std::uint32_t length_offset = 0, length_stride = 1;  ///< ArrayLength
+};
+
+/// Side table row of an image instruction.
+struct ImageOp {
+  ir::ImageInfo info;
+  IndexOperand image_index, sampler_index;
+  /// Varying operands, by ImageOperand and component.
+  std::array<std::array<std::uint32_t, 4>, static_cast<std::size_t>(ir::ImageOperand::kCount)> operand;
+  std::array<std::uint32_t, 4> result{kNoOperand, kNoOperand, kNoOperand, kNoOperand};
+};
+
+/// What instruction i is, for the disassembler, faults and the debugger: kept beside the code, not in it.
+struct InstructionNote {
+  const char* name = "";
+  char files[4] = {' ', ' ', ' ', ' '};  ///< of dst, src[0..2]: r varying, u uniform, m mask, ' ' none
+  ir::Origin origin;
+  bool jumps = false;  ///< extra[0] is a jump distance
+};
+
+/// A word of the uniform file that bind() copies once into a mask (0 / ~0) or a whole register that no instruction
+/// writes. Byte offsets.
+struct Preset {
+  std::uint32_t to = 0;
+  std::uint32_t uniform = 0;
+};
+
+struct Program {
+  std::vector<Instruction> preamble;  ///< draw-uniform work on the uniform file alone
+  std::vector<Instruction> code;
+  std::vector<InstructionNote> preamble_notes, notes;
+  std::vector<std::uint32_t> constants;  ///< first words of the uniform file
+  std::uint32_t draw_words = 0;          ///< words of constants and preamble results
+  std::uint32_t uniform_words = 0;       ///< all, wave-uniform scratch included
+  std::uint32_t register_count = 0;
+  std::uint32_t mask_count = 0;
+  std::uint32_t array_bytes = 0;
+  std::vector<Preset> mask_presets, register_presets;
+  std::vector<MemoryOp> memory_ops;
+  std::vector<ImageOp> image_ops;
+  bool has_barrier = false;
+  bool flush_denormals = false;  ///< floating-point mode of the preamble
+  std::uint32_t local_size[3] = {1, 1, 1};
+  std::uint32_t shared_bytes = 0;
+};
+
+/// Runs from `start` until the wave ends, stops at a barrier or faults (Wave::status).
+void execute(Wave& wave, const Instruction* start);
+
+/// Text form: one instruction per line with its registers, jump targets and source lines.
+std::string disassemble(const Program& program);
 
 }  // namespace vitrine::spirv

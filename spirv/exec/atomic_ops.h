@@ -1,0 +1,132 @@
+// One atomic operation on a 32-bit word, and many of them on the same word at once.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+
+#include "base/lanes.h"
+#include "base/numeric.h"
+#include "spirv/ir.h"
+
+namespace vitrine::spirv::exec {
+
+/// The new value of a word, for operations that always write.
+inline std::uint32_t combine(ir::AtomicOp op, std::uint32_t old, std::uint32_t operand) {
+  const auto a = static_cast<std::int32_t>(old), b = static_cast<std::int32_t>(operand);
+  switch (op) {
+    case ir::AtomicOp::kAdd:
+      return old + operand;
+    case ir::AtomicOp::kSub:
+      return old - operand;
+    case ir::AtomicOp::kIMin:
+      return static_cast<std::uint32_t>(std::min(a, b));
+    case ir::AtomicOp::kIMax:
+      return static_cast<std::uint32_t>(std::max(a, b));
+    case ir::AtomicOp::kUMin:
+      return std::min(old, operand);
+    case ir::AtomicOp::kUMax:
+      return std::max(old, operand);
+    case ir::AtomicOp::kAnd:
+      return old & operand;
+    case ir::AtomicOp::kOr:
+      return old | operand;
+    case ir::AtomicOp::kXor:
+      return old ^ operand;
+    case ir::AtomicOp::kFAdd:
+      return base::bits_of(base::float_of(old) + base::float_of(operand));
+    case ir::AtomicOp::kFMin:
+      return base::bits_of(base::min_second(base::float_of(old), base::float_of(operand)));
+    case ir::AtomicOp::kFMax:
+      return base::bits_of(base::max_second(base::float_of(old), base::float_of(operand)));
+    case ir::AtomicOp::kExchange:
+    case ir::AtomicOp::kStore:
+      return operand;
+    case ir::AtomicOp::kCompareExchange:
+    case ir::AtomicOp::kLoad:
+      break;
+  }
+  return old;
+}
+
+/// Returns the old value. kAtomic false: the word belongs to this thread.
+template <bool kAtomic>
+inline std::uint32_t apply_atomic(ir::AtomicOp op, std::uint32_t* word, std::uint32_t operand, std::uint32_t compare) {
+  if constexpr (!kAtomic) {
+    const std::uint32_t old = *word;
+    *word = op == ir::AtomicOp::kCompareExchange ? (old == compare ? operand : old) : combine(op, old, operand);
+    return old;
+  } else {
+    std::atomic_ref<std::uint32_t> shared(*word);
+    switch (op) {
+      case ir::AtomicOp::kAdd:
+        return shared.fetch_add(operand, std::memory_order_relaxed);
+      case ir::AtomicOp::kSub:
+        return shared.fetch_sub(operand, std::memory_order_relaxed);
+      case ir::AtomicOp::kAnd:
+        return shared.fetch_and(operand, std::memory_order_relaxed);
+      case ir::AtomicOp::kOr:
+        return shared.fetch_or(operand, std::memory_order_relaxed);
+      case ir::AtomicOp::kXor:
+        return shared.fetch_xor(operand, std::memory_order_relaxed);
+      case ir::AtomicOp::kExchange:
+        return shared.exchange(operand, std::memory_order_relaxed);
+      case ir::AtomicOp::kLoad:
+        return shared.load(std::memory_order_relaxed);
+      case ir::AtomicOp::kStore:
+        shared.store(operand, std::memory_order_relaxed);
+        return 0;
+      case ir::AtomicOp::kCompareExchange: {
+        std::uint32_t expected = compare;
+        shared.compare_exchange_strong(expected, operand, std::memory_order_relaxed);
+        return expected;
+      }
+      default: {
+        std::uint32_t old = shared.load(std::memory_order_relaxed);
+        while (!shared.compare_exchange_weak(old, combine(op, old, operand), std::memory_order_relaxed)) {
+        }
+        return old;
+      }
+    }
+  }
+}
+
+/// All lanes of `active` (not empty) on one word, as if one after the other in lane order with nobody in between: one
+/// memory operation. False where the operation does not combine.
+template <bool kAtomic>
+inline bool combine_lanes(ir::AtomicOp op, std::uint32_t* word, const std::uint32_t* operand, base::LaneMask active,
+                          std::uint32_t* result) {
+  switch (op) {
+    case ir::AtomicOp::kAdd:
+      break;
+    case ir::AtomicOp::kIMin:
+    case ir::AtomicOp::kIMax:
+    case ir::AtomicOp::kUMin:
+    case ir::AtomicOp::kUMax:
+    case ir::AtomicOp::kAnd:
+    case ir::AtomicOp::kOr:
+    case ir::AtomicOp::kXor:
+      if (result != nullptr) return false;
+      break;
+    default:
+      return false;
+  }
+  const int first = std::countr_zero(active);
+  std::uint32_t total = operand[first];
+  if (op == ir::AtomicOp::kAdd && result != nullptr) {
+    std::uint32_t sum = 0;
+    base::for_each_lane(active, [&](std::size_t lane) {
+      const std::uint32_t before = sum;
+      sum += operand[lane];
+      result[lane] = before;
+    });
+    const std::uint32_t old = apply_atomic<kAtomic>(op, word, sum, 0);
+    base::for_each_lane(active, [&](std::size_t lane) { result[lane] += old; });
+    return true;
+  }
+  base::for_each_lane(active & (active - 1), [&](std::size_t lane) { total = combine(op, total, operand[lane]); });
+  apply_atomic<kAtomic>(op, word, total, 0);
+  return true;
+}
+
+}  // namespace vitrine::spirv::exec

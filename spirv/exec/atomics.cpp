@@ -1,0 +1,67 @@
+// Atomic operations on buffers (really atomic: other workers may work on the same words) and on shared memory (owned by
+// one thread). Lanes act in increasing order.
+#include <algorithm>
+#include <atomic>
+
+#include "base/numeric.h"
+#include "spirv/exec/atomic_ops.h"
+#include "spirv/exec/buffers.h"
+#include "spirv/exec/handlers.h"
+
+namespace vitrine::spirv::exec {
+namespace {
+
+std::uint32_t* aligned_word(const Bytes& bytes, std::uint32_t offset) {
+  offset &= ~3u;
+  return contains_word(bytes, offset) ? reinterpret_cast<std::uint32_t*>(bytes.data + offset) : nullptr;
+}
+
+template <bool kAtomic>
+void run(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes, base::LaneMask active,
+         bool uniform) {
+  static const base::WaveRegister zero{};
+  const std::uint32_t shared_offset = uniform ? uniform_word(wave, i->src[0]) : 0;
+  const std::uint32_t* offset = uniform ? nullptr : reg(wave, i->src[0]).lane;
+  const std::uint32_t* operand = row.data[0] != kNoOperand ? reg(wave, row.data[0]).lane : zero.lane;
+  const std::uint32_t* compare = row.compare != kNoOperand ? reg(wave, row.compare).lane : zero.lane;
+  std::uint32_t* result = i->dst != kNoOperand ? reg(wave, i->dst).lane : nullptr;
+  if (uniform && active != 0) {
+    std::uint32_t* word = aligned_word(bytes, shared_offset + row.added);
+    if (word != nullptr && combine_lanes<kAtomic>(row.atomic, word, operand, active, result)) return;
+  }
+  base::for_each_lane(active, [&](std::size_t lane) {
+    std::uint32_t* word = aligned_word(bytes, (offset ? offset[lane] : shared_offset) + row.added);
+    const std::uint32_t old = word ? apply_atomic<kAtomic>(row.atomic, word, operand[lane], compare[lane]) : 0;
+    if (result) result[lane] = old;
+  });
+}
+
+/// Lanes that do not take part (helpers) read 0.
+void clear_result(Wave& wave, const Instruction* i) {
+  if (i->dst == kNoOperand) return;
+  base::for_each_lane(wave.active & ~wave.live, [&](std::size_t lane) { reg(wave, i->dst).lane[lane] = 0; });
+}
+
+template <bool kUniform>
+const Instruction* on_buffer(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  clear_result(wave, i);
+  for_each_buffer(wave, row, wave.active & wave.live,
+                  [&](const Bytes& bytes, base::LaneMask active) { run<true>(wave, i, row, bytes, active, kUniform); });
+  return i + 1;
+}
+
+template <bool kUniform>
+const Instruction* on_shared(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  clear_result(wave, i);
+  run<false>(wave, i, row, shared_bytes(wave), wave.active & wave.live, kUniform);
+  return i + 1;
+}
+
+}  // namespace
+
+Handler atomic_buffer(bool uniform) { return uniform ? on_buffer<true> : on_buffer<false>; }
+Handler atomic_shared(bool uniform) { return uniform ? on_shared<true> : on_shared<false>; }
+
+}  // namespace vitrine::spirv::exec

@@ -1,0 +1,125 @@
+// Compute dispatch: workgroups over the workers, waves of a workgroup one after the other; a barrier suspends a wave
+// until the others have reached it.
+#include <algorithm>
+#include <cstring>
+#include <deque>
+#include <vector>
+
+#include "base/float_mode.h"
+#include "base/workers.h"
+#include "spirv/exec/wave_memory.h"
+
+namespace vitrine::spirv {
+namespace {
+
+constexpr std::uint64_t kWidth = base::kWaveWidth;
+
+/// Work below this many (instructions x waves) is done on the caller: waking a worker costs more.
+constexpr std::uint64_t kInlineWork = 20000;
+/// Workgroups are handed out in items of about this much work.
+constexpr std::uint64_t kItemWork = 4000;
+
+struct Launch {
+  const BoundShader& shader;
+  const Program& program;
+  const std::uint32_t* base;
+  const std::uint32_t* groups;
+  std::uint64_t invocations = 0;
+  std::uint32_t waves = 0;
+};
+
+/// Memory of one thread's workgroup; kept between dispatches.
+struct GroupMemory {
+  std::deque<exec::WaveMemory> memory;  ///< one per wave when waves may be suspended, else one for all
+  std::vector<Wave> waves;
+  std::vector<std::uint32_t> shared;  ///< words, so that atomics are aligned
+};
+
+GroupMemory& thread_memory() {
+  thread_local GroupMemory memory;
+  return memory;
+}
+
+void bind(GroupMemory& memory, const Launch& launch) {
+  const std::size_t resident = launch.program.has_barrier ? launch.waves : 1;
+  while (memory.memory.size() < resident) memory.memory.emplace_back();
+  memory.waves.assign(resident, Wave{});
+  memory.shared.resize((launch.program.shared_bytes + 3) / 4);
+  for (std::size_t w = 0; w < resident; ++w) {
+    memory.memory[w].bind(launch.shader, memory.waves[w]);
+    memory.waves[w].shared = reinterpret_cast<std::byte*>(memory.shared.data());
+    std::copy_n(launch.groups, 3, memory.waves[w].num_workgroups);
+  }
+}
+
+void start(Wave& wave, const Launch& launch, std::uint32_t index, const std::uint32_t group[3]) {
+  std::copy_n(group, 3, wave.workgroup_id);
+  wave.first_invocation = static_cast<std::uint32_t>(index * kWidth);
+  wave.launched = base::first_lanes(static_cast<std::size_t>(
+      std::min<std::uint64_t>(kWidth, launch.invocations - std::uint64_t{wave.first_invocation})));
+  wave.active = wave.live = wave.launched;
+  wave.budget = exec::shader_budget();
+  wave.resume = launch.program.code.data();
+}
+
+/// Runs a wave to its end or next barrier. False after a fault.
+bool run(Wave& wave, const Launch& launch) {
+  execute(wave, wave.resume);
+  if (wave.status != Wave::Status::kFault) return true;
+  exec::raise_fault(launch.shader.fault(), wave);
+  return false;
+}
+
+void run_group(GroupMemory& memory, const Launch& launch, const std::uint32_t group[3]) {
+  std::fill(memory.shared.begin(), memory.shared.end(), 0u);
+  if (!launch.program.has_barrier) {
+    for (std::uint32_t w = 0; w < launch.waves; ++w) {
+      start(memory.waves[0], launch, w, group);
+      if (!run(memory.waves[0], launch)) return;
+    }
+    return;
+  }
+  for (std::uint32_t w = 0; w < launch.waves; ++w) start(memory.waves[w], launch, w, group);
+  for (bool waiting = true; waiting;) {
+    waiting = false;
+    for (Wave& wave : memory.waves) {
+      if (wave.status == Wave::Status::kDone) continue;
+      if (!run(wave, launch)) return;
+      waiting |= wave.status == Wave::Status::kAtBarrier;
+    }
+  }
+}
+
+void run_range(const Launch& launch, std::uint64_t first, std::uint64_t last) {
+  const base::ScopedFloatMode mode(base::Denormals::kHonour);
+  GroupMemory& memory = thread_memory();
+  bind(memory, launch);
+  for (std::uint64_t g = first; g < last && !launch.shader.fault().raised.load(std::memory_order_relaxed); ++g) {
+    const std::uint64_t x = launch.groups[0], y = launch.groups[1];
+    const std::uint32_t group[3] = {launch.base[0] + static_cast<std::uint32_t>(g % x),
+                                    launch.base[1] + static_cast<std::uint32_t>(g / x % y),
+                                    launch.base[2] + static_cast<std::uint32_t>(g / x / y)};
+    for (Wave& wave : memory.waves) wave.status = Wave::Status::kRunning;
+    run_group(memory, launch, group);
+  }
+}
+
+}  // namespace
+
+void dispatch(const BoundShader& shader, const std::uint32_t base[3], const std::uint32_t groups[3]) {
+  const std::uint64_t total = std::uint64_t{groups[0]} * groups[1] * groups[2];
+  if (total == 0) return;
+  Launch launch{shader, shader.shader().program(), base, groups};
+  const std::uint32_t* size = launch.program.local_size;
+  launch.invocations = std::uint64_t{size[0]} * size[1] * size[2];
+  launch.waves = static_cast<std::uint32_t>((launch.invocations + kWidth - 1) / kWidth);
+  const std::uint64_t group_work = launch.waves * launch.program.code.size();
+  if (group_work * total <= kInlineWork) return run_range(launch, 0, total);
+  const std::uint64_t per_item =
+      std::clamp<std::uint64_t>(kItemWork / group_work, 1, std::max<std::uint64_t>(1, total / base::worker_count()));
+  base::parallel_for(static_cast<std::size_t>((total + per_item - 1) / per_item), [&](std::size_t item, std::size_t) {
+    run_range(launch, item * per_item, std::min(total, (item + 1) * per_item));
+  });
+}
+
+}  // namespace vitrine::spirv

@@ -1,0 +1,70 @@
+// Values that an invocation learns from where it runs: workgroup, lane, helper state.
+#include "spirv/exec/handlers.h"
+#include "spirv/exec/operands.h"
+
+namespace vitrine::spirv::exec {
+namespace {
+
+template <class F>
+const Instruction* fill(Wave& wave, const Instruction* i, F&& value) {
+  std::uint32_t* to = reg(wave, i->dst).lane;
+  for (std::uint32_t lane = 0; lane < base::kWaveWidth; ++lane) to[lane] = value(lane);
+  return i + 1;
+}
+
+}  // namespace
+
+const Instruction* helper_invocation(Wave& wave, const Instruction* i) {
+  mask(wave, i->dst) = ~wave.live;
+  return i + 1;
+}
+
+const Instruction* elect(Wave& wave, const Instruction* i) {
+  mask(wave, i->dst) = wave.active & (~wave.active + 1);
+  return i + 1;
+}
+
+const Instruction* read_first(Wave& wave, const Instruction* i) {
+  const int lane = wave.active != 0 ? std::countr_zero(wave.active) : 0;
+  uniform_word(wave, i->dst) = reg(wave, i->src[0]).lane[lane];
+  return i + 1;
+}
+
+const Instruction* read_first_mask(Wave& wave, const Instruction* i) {
+  const int lane = wave.active != 0 ? std::countr_zero(wave.active) : 0;
+  uniform_word(wave, i->dst) = static_cast<std::uint32_t>(mask(wave, i->src[0]) >> lane & 1);
+  return i + 1;
+}
+
+const Instruction* workgroup_id(Wave& wave, const Instruction* i) {
+  uniform_word(wave, i->dst) = wave.workgroup_id[i->extra[0]];
+  return i + 1;
+}
+
+const Instruction* num_workgroups(Wave& wave, const Instruction* i) {
+  uniform_word(wave, i->dst) = wave.num_workgroups[i->extra[0]];
+  return i + 1;
+}
+
+const Instruction* subgroup_id(Wave& wave, const Instruction* i) {
+  uniform_word(wave, i->dst) = wave.first_invocation / static_cast<std::uint32_t>(base::kWaveWidth);
+  return i + 1;
+}
+
+const Instruction* local_invocation_id(Wave& wave, const Instruction* i) {
+  const std::uint32_t* size = wave.program->local_size;
+  const std::uint32_t stride = i->extra[0] == 0 ? 1 : i->extra[0] == 1 ? size[0] : size[0] * size[1];
+  const std::uint32_t extent = size[i->extra[0]];
+  if (extent == 1) return fill(wave, i, [](std::uint32_t) { return 0u; });
+  return fill(wave, i, [&](std::uint32_t lane) { return (wave.first_invocation + lane) / stride % extent; });
+}
+
+const Instruction* local_invocation_index(Wave& wave, const Instruction* i) {
+  return fill(wave, i, [&](std::uint32_t lane) { return wave.first_invocation + lane; });
+}
+
+const Instruction* subgroup_invocation(Wave& wave, const Instruction* i) {
+  return fill(wave, i, [](std::uint32_t lane) { return lane; });
+}
+
+}  // namespace vitrine::spirv::exec

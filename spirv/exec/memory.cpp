@@ -1,0 +1,270 @@
+// Loads and stores of buffers, push constants and shared memory with one address per lane. Addresses that are equal,
+// adjacent or evenly spaced become vector loads; the rest are gathers. Words out of range read 0, stores there are
+// dropped (lavapipe-shader-math.md section 10).
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "spirv/exec/memory.cpp"
+#include "base/simd.h"
+
+#include <hwy/foreach_target.h>
+
+#include "base/lane_math-inl.h"
+#include "spirv/exec/buffers.h"
+#include "spirv/exec/handlers.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::spirv::exec::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+namespace lanes = vitrine::base::HWY_NAMESPACE;
+
+using Words = hn::ScalableTag<std::uint32_t>;
+using Register = base::WaveRegister;
+
+/// Offset of lane i is start + i*stride for the first `count` lanes.
+struct Linear {
+  bool valid = false;
+  std::uint32_t start = 0, stride = 0;
+};
+
+Linear find_linear(const Register& offset, std::size_t count) {
+  const Words d;
+  Linear linear{true, offset.lane[0], count > 1 ? offset.lane[1] - offset.lane[0] : 4};
+  const auto step = hn::Set(d, linear.stride * static_cast<std::uint32_t>(hn::Lanes(d)));
+  auto expected = hn::Add(hn::Set(d, linear.start), hn::Mul(hn::Iota(d, 0), hn::Set(d, linear.stride)));
+  auto different = hn::Zero(d);
+  std::size_t lane = 0;
+  for (; lane + hn::Lanes(d) <= count; lane += hn::Lanes(d), expected = hn::Add(expected, step))
+    different = hn::Or(different, hn::Xor(expected, hn::Load(d, offset.lane + lane)));
+  linear.valid = hn::AllTrue(d, hn::Eq(different, hn::Zero(d)));
+  for (; lane < count && linear.valid; ++lane)
+    linear.valid = offset.lane[lane] == linear.start + static_cast<std::uint32_t>(lane) * linear.stride;
+  return linear;
+}
+
+/// All words of an evenly spaced access lie inside.
+bool inside(const Bytes& bytes, const Linear& linear, std::size_t count, std::uint32_t added, std::uint32_t words) {
+  const std::uint64_t first = std::uint64_t{linear.start} + added;
+  const std::uint64_t last = first + std::uint64_t{linear.stride} * (count - 1) + 4 * words;
+  return last <= bytes.size && last <= UINT32_MAX;
+}
+
+void fill(std::uint32_t* to, std::uint32_t value) {
+  const Words d;
+  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d)) hn::Store(hn::Set(d, value), d, to + lane);
+}
+
+void load_adjacent(const std::byte* from, std::uint32_t* to, std::size_t count) {
+  if (count < base::kWaveWidth) {
+    std::memcpy(to, from, count * 4);
+    return;
+  }
+  const Words d;
+  const auto* words = reinterpret_cast<const std::uint32_t*>(from);
+  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d))
+    hn::Store(hn::LoadU(d, words + lane), d, to + lane);
+}
+
+/// Structures of 2, 3 or 4 words, one per lane: transposed in registers.
+void load_structures(const std::byte* from, std::uint32_t words, std::uint32_t* const to[4]) {
+  const Words d;
+  const auto* source = reinterpret_cast<const std::uint32_t*>(from);
+  hn::Vec<Words> v[4];
+  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d), source += words * hn::Lanes(d)) {
+    if (words == 2) {
+      hn::LoadInterleaved2(d, source, v[0], v[1]);
+    } else if (words == 3) {
+      hn::LoadInterleaved3(d, source, v[0], v[1], v[2]);
+    } else {
+      hn::LoadInterleaved4(d, source, v[0], v[1], v[2], v[3]);
+    }
+    for (std::uint32_t c = 0; c < words; ++c)
+      if (to[c] != nullptr) hn::Store(v[c], d, to[c] + lane);
+  }
+}
+
+void gather(const Bytes& bytes, const Register& offset, std::uint32_t added, std::uint32_t* to, base::LaneMask active) {
+  const Words d;
+  const hn::RebindToSigned<Words> di;
+  if (bytes.size < 4 || bytes.size > INT32_MAX) {
+    base::for_each_lane(active, [&](std::size_t lane) { to[lane] = load_word(bytes, offset.lane[lane] + added); });
+    return;
+  }
+  const auto last = hn::Set(d, static_cast<std::uint32_t>(bytes.size - 4));
+  const auto* base_word = reinterpret_cast<const std::uint32_t*>(bytes.data);
+  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d)) {
+    const auto wanted = hn::Add(hn::Load(d, offset.lane + lane), hn::Set(d, added));
+    const auto in_range =
+        hn::And(lanes::lanes_mask_from_bits(d, active >> lane), hn::Eq(hn::Min(wanted, last), wanted));
+    const auto safe = hn::BitCast(di, hn::IfThenElseZero(in_range, wanted));
+    hn::Store(hn::IfThenElseZero(in_range, hn::GatherOffset(d, base_word, safe)), d, to + lane);
+  }
+}
+
+/// Lanes are the first ones of the wave, so that an even spacing can be looked for: how many; 0 if not.
+std::size_t prefix_length(base::LaneMask active) {
+  const auto count = static_cast<std::size_t>(std::countr_one(active));
+  return active == base::first_lanes(count) ? count : 0;
+}
+
+void load_words(const Bytes& bytes, const MemoryOp& row, const Register& offset, base::LaneMask active,
+                std::uint32_t* const to[4]) {
+  const std::size_t count = prefix_length(active);
+  const Linear linear = count != 0 ? find_linear(offset, count) : Linear{};
+  if (linear.valid && inside(bytes, linear, count, row.added, row.components)) {
+    const std::byte* from = bytes.data + linear.start + row.added;
+    const std::uint32_t words = linear.stride / 4;
+    if (linear.stride == 0 || linear.stride == 4) {
+      for (std::uint32_t c = 0; c < row.components; ++c) {
+        if (to[c] == nullptr) continue;
+        if (linear.stride == 4) {
+          load_adjacent(from + 4 * c, to[c], count);
+        } else {
+          std::uint32_t word;
+          std::memcpy(&word, from + 4 * c, sizeof(word));
+          fill(to[c], word);
+        }
+      }
+      return;
+    }
+    const bool whole = inside(bytes, linear, count, row.added, words) && count == base::kWaveWidth;
+    if (linear.stride % 4 == 0 && words <= 4 && row.components <= words && whole)
+      return load_structures(from, words, to);
+  }
+  for (std::uint32_t c = 0; c < row.components; ++c)
+    if (to[c] != nullptr) gather(bytes, offset, row.added + 4 * c, to[c], active);
+}
+
+void results(Wave& wave, const MemoryOp& row, std::uint32_t* to[4]) {
+  for (std::uint32_t c = 0; c < 4; ++c) to[c] = row.data[c] == kNoOperand ? nullptr : reg(wave, row.data[c]).lane;
+}
+
+/// `offset` for an address that all lanes share.
+const Register& offsets(Wave& wave, const Instruction* i, bool uniform, Register& spare) {
+  if (!uniform) return reg(wave, i->src[0]);
+  fill(spare.lane, uniform_word(wave, i->src[0]));
+  return spare;
+}
+
+template <bool kUniform>
+const Instruction* load_buffer_target(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  std::uint32_t* to[4];
+  results(wave, row, to);
+  Register spare;
+  const Register& offset = offsets(wave, i, kUniform, spare);
+  if (row.index.file != IndexOperand::File::kVarying) {
+    for_each_buffer(wave, row, wave.active,
+                    [&](const Bytes& bytes, base::LaneMask active) { load_words(bytes, row, offset, active, to); });
+    return i + 1;
+  }
+  for_each_buffer(wave, row, wave.active, [&](const Bytes& bytes, base::LaneMask active) {
+    base::for_each_lane(active, [&](std::size_t lane) {
+      for (std::uint32_t c = 0; c < row.components; ++c)
+        if (to[c] != nullptr) to[c][lane] = load_word(bytes, offset.lane[lane] + row.added + 4 * c);
+    });
+  });
+  return i + 1;
+}
+
+const Instruction* load_push_target(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  std::uint32_t* to[4];
+  results(wave, row, to);
+  load_words(push_bytes(wave), row, reg(wave, i->src[0]), wave.active, to);
+  return i + 1;
+}
+
+const Instruction* load_shared_target(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  std::uint32_t* to[4];
+  results(wave, row, to);
+  load_words(shared_bytes(wave), row, reg(wave, i->src[0]), wave.active, to);
+  return i + 1;
+}
+
+void store_adjacent(std::byte* to, const std::uint32_t* from, std::size_t count) { std::memcpy(to, from, count * 4); }
+
+void store_structures(std::byte* to, std::uint32_t words, const std::uint32_t* const from[4]) {
+  const Words d;
+  auto* target = reinterpret_cast<std::uint32_t*>(to);
+  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d), target += words * hn::Lanes(d)) {
+    const auto a = hn::Load(d, from[0] + lane), b = hn::Load(d, from[1] + lane);
+    if (words == 2) {
+      hn::StoreInterleaved2(a, b, d, target);
+    } else if (words == 3) {
+      hn::StoreInterleaved3(a, b, hn::Load(d, from[2] + lane), d, target);
+    } else {
+      hn::StoreInterleaved4(a, b, hn::Load(d, from[2] + lane), hn::Load(d, from[3] + lane), d, target);
+    }
+  }
+}
+
+void store_words(const Bytes& bytes, const MemoryOp& row, const Register& offset, base::LaneMask active,
+                 const std::uint32_t* const from[4]) {
+  const auto words = static_cast<std::uint32_t>(std::popcount(row.write_mask));
+  const bool dense = row.write_mask == (1u << words) - 1;
+  const std::size_t count = prefix_length(active);
+  if (dense && count != 0) {
+    const Linear linear = find_linear(offset, count);
+    if (linear.valid && linear.stride == 4 * words && inside(bytes, linear, count, row.added, words)) {
+      std::byte* to = bytes.data + linear.start + row.added;
+      if (words == 1) return store_adjacent(to, from[0], count);
+      if (count == base::kWaveWidth) return store_structures(to, words, from);
+    }
+  }
+  base::for_each_lane(active, [&](std::size_t lane) {
+    for (std::uint32_t c = 0; c < 4; ++c) {
+      const std::uint32_t at = offset.lane[lane] + row.added + 4 * c;
+      if ((row.write_mask >> c & 1) && contains_word(bytes, at)) std::memcpy(bytes.data + at, from[c] + lane, 4);
+    }
+  });
+}
+
+template <bool kUniform>
+const Instruction* store_buffer_target(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  std::uint32_t* from[4];
+  results(wave, row, from);
+  Register spare;
+  const Register& offset = offsets(wave, i, kUniform, spare);
+  for_each_buffer(wave, row, wave.active & wave.live,
+                  [&](const Bytes& bytes, base::LaneMask active) { store_words(bytes, row, offset, active, from); });
+  return i + 1;
+}
+
+template <bool kUniform>
+const Instruction* store_shared_target(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  std::uint32_t* from[4];
+  results(wave, row, from);
+  Register spare;
+  store_words(shared_bytes(wave), row, offsets(wave, i, kUniform, spare), wave.active & wave.live, from);
+  return i + 1;
+}
+
+Handler load_buffer_handler(bool uniform) { return uniform ? load_buffer_target<true> : load_buffer_target<false>; }
+Handler load_push_handler() { return load_push_target; }
+Handler load_shared_handler() { return load_shared_target; }
+Handler store_buffer_handler(bool uniform) { return uniform ? store_buffer_target<true> : store_buffer_target<false>; }
+Handler store_shared_handler(bool uniform) { return uniform ? store_shared_target<true> : store_shared_target<false>; }
+
+}  // namespace vitrine::spirv::exec::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vitrine::spirv::exec {
+
+HWY_EXPORT(load_buffer_handler);
+HWY_EXPORT(load_push_handler);
+HWY_EXPORT(load_shared_handler);
+HWY_EXPORT(store_buffer_handler);
+HWY_EXPORT(store_shared_handler);
+
+Handler load_buffer(bool uniform) { return HWY_DYNAMIC_DISPATCH(load_buffer_handler)(uniform); }
+Handler load_push() { return HWY_DYNAMIC_DISPATCH(load_push_handler)(); }
+Handler load_shared() { return HWY_DYNAMIC_DISPATCH(load_shared_handler)(); }
+Handler store_buffer(bool uniform) { return HWY_DYNAMIC_DISPATCH(store_buffer_handler)(uniform); }
+Handler store_shared(bool uniform) { return HWY_DYNAMIC_DISPATCH(store_shared_handler)(uniform); }
+
+}  // namespace vitrine::spirv::exec
+#endif

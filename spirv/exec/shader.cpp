@@ -1,0 +1,77 @@
+// Shader, its binding to resources, and the memory of one wave.
+#include "spirv/shader.h"
+
+#include <cstdlib>
+#include <new>
+#include <utility>
+
+#include "base/float_mode.h"
+#include "spirv/exec/wave_memory.h"
+#include "spirv/program.h"
+
+namespace vitrine::spirv {
+
+Shader::Shader(ShaderInterface interface, std::unique_ptr<const Program> program)
+    : interface_(std::move(interface)), program_(std::move(program)) {}
+
+Shader::~Shader() = default;
+
+BoundShader::BoundShader(const Shader& shader, const ResourceTable& resources, Fault& fault)
+    : shader_(&shader), resources_(resources), fault_(&fault) {
+  const Program& program = shader.program();
+  uniforms_ = static_cast<std::uint32_t*>(
+      ::operator new ((program.draw_words + 1) * sizeof(std::uint32_t), std::align_val_t{64}));
+  std::copy(program.constants.begin(), program.constants.end(), uniforms_);
+  if (program.preamble.size() <= 1) return;
+  const base::ScopedFloatMode mode(program.flush_denormals ? base::Denormals::kFlush : base::Denormals::kHonour);
+  Wave wave;
+  wave.uniforms = uniforms_;
+  wave.resources = &resources_;
+  wave.program = &program;
+  wave.active = wave.live = wave.launched = 1;
+  execute(wave, program.preamble.data());
+}
+
+BoundShader::~BoundShader() {
+  if (uniforms_) ::operator delete (uniforms_, std::align_val_t{64});
+}
+
+BoundShader::BoundShader(BoundShader&& other) noexcept
+    : shader_(other.shader_),
+      resources_(other.resources_),
+      fault_(other.fault_),
+      uniforms_(std::exchange(other.uniforms_, nullptr)) {}
+
+struct WaveRunner::State {
+  exec::WaveMemory memory;
+  Wave wave;
+  const BoundShader* shader = nullptr;
+};
+
+WaveRunner::WaveRunner() : state_(std::make_unique<State>()) {}
+WaveRunner::~WaveRunner() = default;
+
+void WaveRunner::bind(const BoundShader& shader) {
+  state_->shader = &shader;
+  state_->memory.bind(shader, state_->wave);
+}
+
+base::WaveRegister& WaveRunner::input(std::uint32_t reg) {
+  return *reinterpret_cast<base::WaveRegister*>(state_->wave.registers + std::size_t{reg} * kRegisterStride);
+}
+
+const base::WaveRegister& WaveRunner::output(std::uint32_t reg) const {
+  return *reinterpret_cast<const base::WaveRegister*>(state_->wave.registers + std::size_t{reg} * kRegisterStride);
+}
+
+base::LaneMask WaveRunner::run(base::LaneMask active, base::LaneMask helpers) {
+  Wave& wave = state_->wave;
+  wave.active = wave.launched = active;
+  wave.live = active & ~helpers;
+  wave.budget = exec::shader_budget();
+  execute(wave, wave.program->code.data());
+  if (wave.status == Wave::Status::kFault) exec::raise_fault(state_->shader->fault(), wave);
+  return wave.live;
+}
+
+}  // namespace vitrine::spirv

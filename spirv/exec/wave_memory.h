@@ -1,0 +1,33 @@
+// The memory behind a wave, the instruction budget and how a fault is reported.
+#pragma once
+
+#include "spirv/program.h"
+#include "spirv/shader.h"
+
+namespace vitrine::spirv::exec {
+
+/// Registers, masks, local arrays and a private uniform file for one wave at a time. Grows, never shrinks.
+class WaveMemory {
+ public:
+  WaveMemory() = default;
+  ~WaveMemory();
+  WaveMemory(const WaveMemory&) = delete;
+  WaveMemory& operator=(const WaveMemory&) = delete;
+
+  /// Makes `wave` ready to run `shader`: files, resources, presets. Throws std::bad_alloc.
+  void bind(const BoundShader& shader, Wave& wave);
+
+ private:
+  void reserve(std::size_t bytes);
+
+  std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// Back edges a wave may take: 2^31, or VITRINE_SHADER_BUDGET.
+std::int64_t shader_budget();
+
+/// Records that `wave` exhausted its budget; the first fault wins.
+void raise_fault(Fault& fault, const Wave& wave);
+
+}  // namespace vitrine::spirv::exec

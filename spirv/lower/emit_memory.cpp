@@ -1,0 +1,205 @@
+// Emission of intrinsics: side table rows of memory and image instructions, environment values.
+#include "spirv/lower/emitter.h"
+
+namespace vitrine::spirv::lowering {
+namespace {
+
+using ir::Op;
+
+/// A slot that lies in no set: the null descriptor.
+constexpr std::uint32_t kNullSlot = ~std::uint32_t{0};
+
+}  // namespace
+
+bool Emitter::intrinsic(const ScalarOp& op) {
+  switch (op.op) {
+    case Op::kLoadPush:
+    case Op::kLoadUniform:
+    case Op::kLoadStorage:
+    case Op::kLoadShared:
+    case Op::kArrayLength:
+      load(op);
+      return true;
+    case Op::kStoreStorage:
+    case Op::kStoreShared:
+      store(op);
+      return true;
+    case Op::kAtomicStorage:
+    case Op::kAtomicShared:
+      atomic(op);
+      return true;
+    case Op::kLoadArray:
+    case Op::kStoreArray:
+      local_array(op);
+      return true;
+    case Op::kImage:
+      image(op);
+      return true;
+    case Op::kReadFirst:
+      read_first(op);
+      return true;
+    default:
+      environment(op);
+      return true;
+  }
+}
+
+/// An element known now is added to `slot`; elements out of range are the null descriptor.
+IndexOperand Emitter::index_operand(ScalarId id, std::uint32_t& slot, std::uint32_t count) {
+  if (level(id) == Level::kConstant) {
+    const std::uint32_t element = f_.scalars[id].bits;
+    slot = element < count ? slot + element : kNullSlot;
+    return {};
+  }
+  const Place at = place(id);
+  return {at.file == 'r' ? IndexOperand::File::kVarying : IndexOperand::File::kUniform, at.offset};
+}
+
+MemoryOp Emitter::buffer_row(const ScalarOp& op, bool indexed) {
+  MemoryOp row;
+  if (indexed) {
+    row.set = op.instr->data[0];
+    row.slot = op.instr->data[1];
+    row.count = op.instr->data[2];
+    row.index = index_operand(source(op, 0), row.slot, row.count);
+  }
+  row.added = op.instr->data[3];
+  return row;
+}
+
+void Emitter::memory(const ScalarOp& op, MemoryOp row, std::uint32_t address, Handler wave, Handler uniform,
+                     const char* name) {
+  const Place at = place(source(op, address));
+  Instruction& instruction = append(at.file == 'u' ? uniform : wave, name, op.instr, {}, at);
+  instruction.extra[0] = static_cast<std::uint32_t>(program->memory_ops.size());
+  program->memory_ops.push_back(row);
+}
+
+void Emitter::load(const ScalarOp& op) {
+  const bool buffer = op.op == Op::kLoadUniform || op.op == Op::kLoadStorage || op.op == Op::kArrayLength;
+  MemoryOp row = buffer_row(op, buffer);
+  const bool varying = level(result(op, 0)) == Level::kVarying;
+  if (op.op == Op::kArrayLength) {
+    row.length_offset = op.instr->imm[0];
+    row.length_stride = op.instr->imm[1];
+    Instruction& instruction = append(varying ? exec::array_length : exec::array_length_uniform, "array_length",
+                                      op.instr, place(result(op, 0)));
+    instruction.extra[0] = static_cast<std::uint32_t>(program->memory_ops.size());
+    program->memory_ops.push_back(row);
+    return;
+  }
+  if (op.op == Op::kLoadPush) row.added = op.instr->data[0];
+  row.components = op.dst.count;
+  for (std::uint32_t c = 0; c < op.dst.count && c < 4; ++c) row.data[c] = place(result(op, c)).offset;
+  if (op.op == Op::kLoadPush) {
+    memory(op, row, 0, exec::load_push(), exec::load_push_uniform, "load_push");
+  } else if (op.op == Op::kLoadShared) {
+    memory(op, row, 0, exec::load_shared(), exec::load_shared_uniform, "load_shared");
+  } else {
+    memory(op, row, 1, exec::load_buffer(false), varying ? exec::load_buffer(true) : exec::load_buffer_uniform,
+           op.op == Op::kLoadUniform ? "load_uniform" : "load_storage");
+  }
+}
+
+void Emitter::store(const ScalarOp& op) {
+  const bool buffer = op.op == Op::kStoreStorage;
+  MemoryOp row = buffer_row(op, buffer);
+  row.write_mask = op.instr->imm[0] & 15;
+  std::uint32_t next = buffer ? 2 : 1;
+  for (std::uint32_t c = 0; c < 4; ++c)
+    if (row.write_mask >> c & 1) row.data[c] = in_register(source(op, next++)).offset;
+  if (buffer) {
+    memory(op, row, 1, exec::store_buffer(false), exec::store_buffer(true), "store_storage");
+  } else {
+    memory(op, row, 0, exec::store_shared(false), exec::store_shared(true), "store_shared");
+  }
+}
+
+void Emitter::atomic(const ScalarOp& op) {
+  const bool buffer = op.op == Op::kAtomicStorage;
+  MemoryOp row = buffer_row(op, buffer);
+  row.atomic = static_cast<ir::AtomicOp>(op.instr->imm[0]);
+  const std::uint32_t address = buffer ? 1 : 0;
+  if (op.src.count > address + 1) row.data[0] = in_register(source(op, address + 1)).offset;
+  if (op.src.count > address + 2) row.compare = in_register(source(op, address + 2)).offset;
+  const Place at = place(source(op, address));
+  const bool uniform = at.file == 'u';
+  Instruction& instruction =
+      append(buffer ? exec::atomic_buffer(uniform) : exec::atomic_shared(uniform), buffer ? "atomic" : "atomic_shared",
+             op.instr, op.dst.count != 0 ? place(result(op, 0)) : Place{}, at);
+  instruction.extra[0] = static_cast<std::uint32_t>(program->memory_ops.size());
+  program->memory_ops.push_back(row);
+}
+
+void Emitter::local_array(const ScalarOp& op) {
+  const std::uint32_t array = op.instr->data[0];
+  if (array >= array_base_.size()) return fail("local array that does not exist");
+  MemoryOp row;
+  row.array_base = array_base_[array];
+  row.array_elements = f_.ir->arrays[array].elements;
+  row.added = op.instr->data[1];
+  const Place element = place(source(op, 0));
+  const bool uniform = element.file == 'u';
+  if (op.op == Op::kLoadArray) {
+    append(exec::load_array(uniform), "load_array", op.instr, place(result(op, 0)), element);
+  } else {
+    append(exec::store_array(uniform), "store_array", op.instr, {}, element, in_register(source(op, 1)));
+  }
+  program->code.back().extra[0] = static_cast<std::uint32_t>(program->memory_ops.size());
+  program->memory_ops.push_back(row);
+}
+
+void Emitter::image(const ScalarOp&) { fail("image instructions wait for the sampler"); }
+
+void Emitter::read_first(const ScalarOp& op) {
+  const ScalarId from = source(op, 0), to = result(op, 0);
+  if (level(from) != Level::kVarying) {
+    append(alu_scalar_handler(Op::kMov), "read_first", op.instr, place(to), place(from));
+  } else {
+    append(f_.scalars[from].boolean ? exec::read_first_mask : exec::read_first, "read_first", op.instr, place(to),
+           place(from));
+  }
+}
+
+void Emitter::environment(const ScalarOp& op) {
+  Handler handler = nullptr;
+  switch (op.op) {
+    case Op::kBarrier:
+      program->has_barrier = true;
+      append(exec::barrier, "barrier", op.instr);
+      return;
+    case Op::kHelperInvocation:
+      handler = exec::helper_invocation;
+      break;
+    case Op::kElect:
+      handler = exec::elect;
+      break;
+    case Op::kWorkgroupId:
+      handler = exec::workgroup_id;
+      break;
+    case Op::kNumWorkgroups:
+      handler = exec::num_workgroups;
+      break;
+    case Op::kSubgroupId:
+      handler = exec::subgroup_id;
+      break;
+    case Op::kLocalInvocationId:
+      handler = exec::local_invocation_id;
+      break;
+    case Op::kLocalInvocationIndex:
+      handler = exec::local_invocation_index;
+      break;
+    case Op::kSubgroupInvocation:
+      handler = exec::subgroup_invocation;
+      break;
+    default:
+      return fail("intrinsic that the lowering does not cover");
+  }
+  for (std::uint32_t c = 0; c < op.dst.count; ++c) {
+    const Place to = place(result(op, c));
+    if (to.file == ' ') continue;
+    append(handler, ir::op_name(op.op), op.instr, to).extra[0] = c;
+  }
+}
+
+}  // namespace vitrine::spirv::lowering

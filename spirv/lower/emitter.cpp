@@ -1,0 +1,202 @@
+// Operands, instructions and labels of the emission; parallel moves.
+#include "spirv/lower/emitter.h"
+
+#include <algorithm>
+
+namespace vitrine::spirv::lowering {
+
+Emitter::Emitter(const ScalarFunction& function, const Allocation& allocation, std::string& error)
+    : f_(function), allocation_(allocation), error_(error) {
+  program->register_count = allocation.register_count;
+  program->mask_count = allocation.mask_count;
+  mask_preset_.assign(f_.scalars.size(), kNoIndex);
+  for (const ir::Array& array : f_.ir->arrays) {
+    array_base_.push_back(program->array_bytes);
+    program->array_bytes += array.elements * kRegisterStride;
+  }
+  assign_words();
+  for (const ScalarId id : f_.preset) {
+    const std::uint32_t offset = program->register_count++ * kRegisterStride;
+    program->register_presets.push_back({offset, word(id).offset});
+  }
+}
+
+void Emitter::assign_word(ScalarId id) {
+  if (id == kNoScalar || words_[id] != kNoIndex || level(id) == Level::kVarying) return;
+  words_[id] = program->uniform_words++;
+}
+
+void Emitter::assign_words() {
+  words_.assign(f_.scalars.size(), kNoIndex);
+  const auto visit = [&](const std::vector<ScalarOp>& list, auto&& wanted) {
+    for (const ScalarOp& op : list) {
+      if (op.dead) continue;
+      if (op.cond != kNoScalar && wanted(op.cond)) assign_word(op.cond);
+      for (const ScalarId id : f_.of(op.src))
+        if (wanted(id)) assign_word(id);
+      for (const ScalarId id : f_.of(op.dst))
+        if (wanted(id)) assign_word(id);
+    }
+  };
+  const auto constant = [&](ScalarId id) { return level(id) == Level::kConstant; };
+  visit(f_.preamble, constant);
+  visit(f_.body, constant);
+  for (const ScalarId id : f_.preset)
+    if (constant(id)) assign_word(id);
+  program->constants.resize(program->uniform_words);
+  for (ScalarId id = 0; id < f_.scalars.size(); ++id)
+    if (words_[id] != kNoIndex) program->constants[words_[id]] = f_.scalars[id].bits;
+  visit(f_.preamble, [&](ScalarId id) { return level(id) == Level::kUniform; });
+  program->draw_words = program->uniform_words;
+  visit(f_.body, [&](ScalarId id) { return level(id) == Level::kWave; });
+}
+
+Place Emitter::place(ScalarId id) {
+  if (level(id) != Level::kVarying) return word(id);
+  const std::uint32_t at = allocation_.place[id];
+  if (at == kNoIndex) return {};
+  return f_.scalars[id].boolean ? Place{'m', at * 8} : Place{'r', at * kRegisterStride};
+}
+
+Place Emitter::in_register(ScalarId id) {
+  if (level(id) == Level::kVarying) return place(id);
+  if (f_.scalars[id].boolean) {
+    if (level(id) == Level::kWave) fail("wave-uniform boolean without a mask");
+    if (mask_preset_[id] == kNoIndex) {
+      mask_preset_[id] = program->mask_count++;
+      program->mask_presets.push_back({mask_preset_[id] * 8, word(id).offset});
+    }
+    return {'m', mask_preset_[id] * 8};
+  }
+  const auto it = std::find(f_.preset.begin(), f_.preset.end(), id);
+  if (it == f_.preset.end()) {
+    fail("uniform operand without a register");
+    return {};
+  }
+  return {'r', program->register_presets[static_cast<std::size_t>(it - f_.preset.begin())].to};
+}
+
+bool Emitter::same_place(ScalarId a, ScalarId b) {
+  const Place x = place(a), y = place(b);
+  return x.file == y.file && x.offset == y.offset;
+}
+
+Instruction& Emitter::append(Handler handler, const char* name, const ir::Instr* instr, Place dst, Place a, Place b,
+                             Place c) {
+  if (handler == nullptr) fail("operation without a handler for its operands");
+  std::vector<Instruction>& code = in_preamble ? program->preamble : program->code;
+  code.push_back({handler, dst.offset, {a.offset, b.offset, c.offset}, {0, 0}});
+  (in_preamble ? program->preamble_notes : program->notes)
+      .push_back({name, {dst.file, a.file, b.file, c.file}, instr ? instr->origin : ir::Origin{}, false});
+  return code.back();
+}
+
+Label Emitter::new_label() {
+  label_.push_back(kNoIndex);
+  return static_cast<Label>(label_.size() - 1);
+}
+
+void Emitter::bind(Label label) { label_[label] = static_cast<std::uint32_t>(program->code.size()); }
+
+void Emitter::append_jump(Handler handler, const char* name, Label to, Place dst, Place a) {
+  fixups_.push_back({static_cast<std::uint32_t>(program->code.size()), to});
+  append(handler, name, nullptr, dst, a);
+  program->notes.back().jumps = true;
+}
+
+void Emitter::alu(const ScalarOp& op) {
+  const ScalarId result = f_.operands[op.dst.begin];
+  std::array<Place, 3> sources;
+  if (level(result) != Level::kVarying) {
+    for (std::uint32_t i = 0; i < op.src.count; ++i) sources[i] = place(source(op, i));
+    append(alu_scalar_handler(op.op), ir::op_name(op.op), op.instr, place(result), sources[0], sources[1], sources[2]);
+    return;
+  }
+  UniformSources uniform = 0;
+  for (std::uint32_t i = 0; i < op.src.count; ++i) {
+    const ScalarId id = source(op, i);
+    sources[i] = f_.scalars[id].boolean ? in_register(id) : place(id);
+    if (sources[i].file == 'u') uniform = static_cast<UniformSources>(uniform | 1u << i);
+  }
+  append(alu_handler(op.op, uniform), ir::op_name(op.op), op.instr, place(result), sources[0], sources[1], sources[2]);
+}
+
+Place Emitter::temporary(char file) {
+  std::uint32_t& index = temporary_[file == 'm'];
+  if (index == kNoIndex) index = file == 'm' ? program->mask_count++ : program->register_count++;
+  return file == 'm' ? Place{'m', index * 8} : Place{'r', index * kRegisterStride};
+}
+
+void Emitter::one_move(Place to, Place from, bool masked, const ir::Instr* instr) {
+  Handler handler = nullptr;
+  if (to.file == 'u') {
+    handler = alu_scalar_handler(ir::Op::kMov);
+  } else if (to.file == 'm') {
+    if (from.file == 'm') {
+      handler = masked ? exec::move_mask_active : exec::move_mask;
+    } else {
+      handler = masked ? exec::broadcast_mask_active : exec::broadcast_mask;
+    }
+  } else if (masked) {
+    handler = from.file == 'r' ? exec::move_active() : exec::broadcast_active();
+  } else {
+    handler = alu_handler(ir::Op::kMov, from.file == 'u' ? 1 : 0);
+  }
+  append(handler, masked ? "move.active" : "move", instr, to, from);
+}
+
+void Emitter::moves(std::vector<Move> list, const ir::Instr* instr) {
+  struct Pending {
+    Place to, from;
+    bool masked;
+  };
+  std::vector<Pending> pending;
+  for (const Move& move : list) {
+    const Place to = place(move.to), from = place(move.from);
+    if (to.file == ' ' || (to.file == from.file && to.offset == from.offset)) continue;
+    pending.push_back({to, from, move.masked});
+  }
+  const auto is_read = [&](Place place, const Pending* except) {
+    return std::any_of(pending.begin(), pending.end(), [&](const Pending& p) {
+      return &p != except && p.from.file == place.file && p.from.offset == place.offset;
+    });
+  };
+  while (!pending.empty()) {
+    const auto ready =
+        std::find_if(pending.begin(), pending.end(), [&](const Pending& p) { return !is_read(p.to, &p); });
+    if (ready != pending.end()) {
+      one_move(ready->to, ready->from, ready->masked, instr);
+      pending.erase(ready);
+      continue;
+    }
+    // Only cycles are left: keep one target's old value aside.
+    const Place target = pending.front().to;
+    Place spare = temporary(target.file);
+    if (target.file == 'u') spare = {'u', program->uniform_words++ * 4};
+    one_move(spare, target, false, instr);
+    for (Pending& p : pending)
+      if (p.from.file == target.file && p.from.offset == target.offset) p.from = spare;
+  }
+}
+
+std::unique_ptr<Program> Emitter::finish(ShaderInterface& interface) {
+  for (const Fixup& fixup : fixups_)
+    program->code[fixup.instruction].extra[0] = label_[fixup.label] - fixup.instruction;
+  std::vector<InterfaceSlot> inputs, outputs;
+  for (ScalarId id = 0; id < f_.scalars.size(); ++id) {
+    if (f_.scalars[id].input == kNoIndex || place(id).file == ' ') continue;
+    inputs.push_back(interface.inputs[f_.scalars[id].input]);
+    inputs.back().reg = place(id).offset / kRegisterStride;
+  }
+  for (std::size_t i = 0; i < f_.outputs.size(); ++i) {
+    if (f_.outputs[i] == kNoScalar) continue;
+    outputs.push_back(interface.outputs[i]);
+    outputs.back().reg = in_register(f_.outputs[i]).offset / kRegisterStride;
+  }
+  interface.inputs = std::move(inputs);
+  interface.outputs = std::move(outputs);
+  program->uniform_words = std::max(program->uniform_words, program->draw_words);
+  return std::move(program);
+}
+
+}  // namespace vitrine::spirv::lowering

@@ -1,0 +1,38 @@
+// The passes of the lowering in their order.
+#include "spirv/lower/lower.h"
+
+#include "base/log.h"
+#include "base/simd.h"
+#include "spirv/lower/emit.h"
+#include "spirv/lower/registers.h"
+#include "spirv/lower/scalar.h"
+
+namespace vitrine::spirv {
+namespace {
+
+/// Varying registers of a program: 16 MiB of wave memory.
+constexpr std::uint32_t kMaxRegisters = 65536;
+
+}  // namespace
+
+base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function) {
+  base::select_simd_target();
+  std::string error;
+  lowering::ScalarFunction scalars = lowering::scalarize(function, error);
+  if (!error.empty()) return base::Error{error};
+  lowering::remove_dead(scalars);
+  lowering::find_wave_uniform(scalars);
+  lowering::select_operations(scalars);
+  const lowering::Allocation allocation = lowering::allocate(scalars);
+  if (allocation.register_count > kMaxRegisters) return base::Error{"the shader keeps too many values alive"};
+  ShaderInterface interface = function.interface;
+  std::unique_ptr<Program> program = lowering::emit(scalars, allocation, interface, error);
+  if (!error.empty()) return base::Error{error};
+  program->flush_denormals = interface.stage != VK_SHADER_STAGE_COMPUTE_BIT;
+  for (int i = 0; i < 3; ++i) program->local_size[i] = interface.local_size[i];
+  program->shared_bytes = interface.shared_bytes;
+  if (base::log_enabled("shader")) base::log("shader", disassemble(*program));
+  return std::make_unique<Shader>(std::move(interface), std::unique_ptr<const Program>(std::move(program)));
+}
+
+}  // namespace vitrine::spirv

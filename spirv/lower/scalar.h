@@ -1,0 +1,111 @@
+// What the passes of the lowering share: a function as scalar values and two linear lists of operations. The preamble
+// is straight-line code on draw-uniform values. The body keeps the structure of control flow as markers, so that a
+// position in it is also a position in time for live ranges.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "spirv/ir.h"
+
+namespace vitrine::spirv::lowering {
+
+using ScalarId = std::uint32_t;
+inline constexpr ScalarId kNoScalar = ~ScalarId{0};
+inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
+
+/// How widely a value is shared, narrowest last.
+enum class Level : std::uint8_t {
+  kConstant,
+  kUniform,  ///< the same for the whole draw or dispatch, computed in the preamble
+  kWave,     ///< the same for all active lanes whenever it is computed: a word of the wave's uniform file
+  kVarying,
+};
+
+struct Scalar {
+  bool boolean = false;
+  Level level = Level::kVarying;
+  bool join = false;               ///< parameter or result of control flow: written by moves
+  std::uint32_t bits = 0;          ///< kConstant: the value (booleans 0 / 1)
+  std::uint32_t input = kNoIndex;  ///< index in interface.inputs
+};
+
+enum class Kind : std::uint8_t {
+  kAlu,
+  kIntrinsic,
+  kMove,        ///< dst (varying or mask) = src of any level
+  kMaskedMove,  ///< the same for active lanes only
+  kIf,          ///< cond
+  kElse,        ///< src = values of the then-branch, dst = results
+  kEndIf,       ///< src = values of the else-branch, dst = results
+  kLoop,        ///< src = initial values, dst = parameters
+  kContinuing,  ///< src = values of the body that falls through, dst = continue parameters
+  kEndLoop,     ///< src = next values, dst = parameters
+  kBreak,       ///< src = values, dst = results of the loop; cond or kNoScalar
+  kContinue,    ///< src = values, dst = continue parameters; cond or kNoScalar
+  kReturn,      ///< cond or kNoScalar
+  kKill,        ///< cond or kNoScalar
+};
+
+/// Part of ScalarFunction::operands.
+struct Range {
+  std::uint32_t begin = 0, count = 0;
+};
+
+struct ScalarOp {
+  Kind kind = Kind::kAlu;
+  ir::Op op = ir::Op::kMov;
+  bool masked = false;  ///< kIf: divergent; kLoop: lanes leave it or continue separately
+  bool falls = true;    ///< kElse, kEndIf, kContinuing, kEndLoop: control reaches this marker from the list before it
+  bool dead = false;
+  ScalarId cond = kNoScalar;
+  /// kIf -> kElse -> kEndIf -> kIf; kLoop -> kContinuing -> kEndLoop -> kLoop; kBreak, kContinue -> kLoop.
+  std::uint32_t partner = kNoIndex;
+  Range dst, src;
+  const ir::Instr* instr = nullptr;  ///< parameters of intrinsics, origin
+};
+
+struct ScalarFunction {
+  const ir::Function* ir = nullptr;
+  std::vector<Scalar> scalars;
+  std::vector<ScalarId> operands;
+  std::vector<ScalarOp> preamble, body;
+  /// For each join: the values it may take.
+  std::vector<std::vector<ScalarId>> join_sources;
+  bool writes_memory = false;
+  std::vector<ScalarId> outputs;  ///< per interface.outputs: the value that leaves (kNoScalar: never stored)
+  std::vector<ScalarId> preset;   ///< constants and uniforms that bind() keeps broadcast in registers
+
+  ScalarId add(bool boolean, Level level) {
+    scalars.push_back({boolean, level, false, 0, kNoIndex});
+    join_sources.emplace_back();
+    return static_cast<ScalarId>(scalars.size() - 1);
+  }
+  Range add_operands(std::span<const ScalarId> ids) {
+    const Range range{static_cast<std::uint32_t>(operands.size()), static_cast<std::uint32_t>(ids.size())};
+    operands.insert(operands.end(), ids.begin(), ids.end());
+    return range;
+  }
+  std::span<ScalarId> of(Range range) { return std::span(operands).subspan(range.begin, range.count); }
+  std::span<const ScalarId> of(Range range) const { return std::span(operands).subspan(range.begin, range.count); }
+};
+
+/// Number of components of operand `operand` of an image instruction.
+std::uint32_t image_operand_components(const ir::ImageInfo& info, ir::ImageOperand operand);
+
+/// Splits values into scalars, folds constants, merges equal expressions, moves draw-uniform work to the preamble and
+/// turns small branches into selects. `function` must outlive the result. `error` says what is not covered.
+ScalarFunction scalarize(const ir::Function& function, std::string& error);
+
+/// Marks operations and joins that nothing needs as dead / removes them from the operand lists.
+void remove_dead(ScalarFunction& function);
+
+/// Sets Level::kWave where it holds, and ScalarOp::masked.
+void find_wave_uniform(ScalarFunction& function);
+
+/// Replaces operand combinations that have no handler by moves, and combines operations into superinstructions.
+void select_operations(ScalarFunction& function);
+
+}  // namespace vitrine::spirv::lowering
