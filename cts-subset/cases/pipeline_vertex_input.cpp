@@ -12,20 +12,55 @@ struct Attribute {
   char kind;  ///< f, u or i: what the shader declares
 };
 
-#define ROW(name, bytes, kind) {VK_FORMAT_##name, #name, bytes, kind}
+#define ROW(name, bytes, kind) \
+  { VK_FORMAT_##name, #name, bytes, kind }
 const Attribute kAttributes[] = {
-    ROW(R8_UNORM, 1, 'f'), ROW(R8G8_UNORM, 2, 'f'), ROW(R8G8B8A8_UNORM, 4, 'f'), ROW(B8G8R8A8_UNORM, 4, 'f'),
-    ROW(R8_SNORM, 1, 'f'), ROW(R8G8_SNORM, 2, 'f'), ROW(R8G8B8A8_SNORM, 4, 'f'), ROW(R8G8B8A8_USCALED, 4, 'f'),
-    ROW(R8G8B8A8_SSCALED, 4, 'f'), ROW(R8_UINT, 1, 'u'), ROW(R8G8_UINT, 2, 'u'), ROW(R8G8B8A8_UINT, 4, 'u'),
-    ROW(R8_SINT, 1, 'i'), ROW(R8G8B8A8_SINT, 4, 'i'), ROW(R16_UNORM, 2, 'f'), ROW(R16G16_UNORM, 4, 'f'),
-    ROW(R16G16B16A16_UNORM, 8, 'f'), ROW(R16G16_SNORM, 4, 'f'), ROW(R16G16B16A16_SNORM, 8, 'f'),
-    ROW(R16G16B16A16_USCALED, 8, 'f'), ROW(R16G16B16A16_SSCALED, 8, 'f'), ROW(R16_UINT, 2, 'u'), ROW(R16G16_UINT, 4, 'u'),
-    ROW(R16G16B16A16_UINT, 8, 'u'), ROW(R16G16_SINT, 4, 'i'), ROW(R16G16B16A16_SINT, 8, 'i'), ROW(R16_SFLOAT, 2, 'f'),
-    ROW(R16G16_SFLOAT, 4, 'f'), ROW(R16G16B16A16_SFLOAT, 8, 'f'), ROW(R32_UINT, 4, 'u'), ROW(R32G32_UINT, 8, 'u'),
-    ROW(R32G32B32_UINT, 12, 'u'), ROW(R32G32B32A32_UINT, 16, 'u'), ROW(R32_SINT, 4, 'i'), ROW(R32G32B32A32_SINT, 16, 'i'),
-    ROW(R32_SFLOAT, 4, 'f'), ROW(R32G32_SFLOAT, 8, 'f'), ROW(R32G32B32_SFLOAT, 12, 'f'), ROW(R32G32B32A32_SFLOAT, 16, 'f'),
-    ROW(A2B10G10R10_UNORM_PACK32, 4, 'f'), ROW(A2B10G10R10_SNORM_PACK32, 4, 'f'), ROW(A2R10G10B10_UNORM_PACK32, 4, 'f'),
-    ROW(B10G11R11_UFLOAT_PACK32, 4, 'f'), ROW(A8B8G8R8_UNORM_PACK32, 4, 'f'), ROW(R8G8B8_UNORM, 3, 'f'), ROW(R16G16B16_SFLOAT, 6, 'f'),
+    ROW(R8_UNORM, 1, 'f'),
+    ROW(R8G8_UNORM, 2, 'f'),
+    ROW(R8G8B8A8_UNORM, 4, 'f'),
+    ROW(B8G8R8A8_UNORM, 4, 'f'),
+    ROW(R8_SNORM, 1, 'f'),
+    ROW(R8G8_SNORM, 2, 'f'),
+    ROW(R8G8B8A8_SNORM, 4, 'f'),
+    ROW(R8G8B8A8_USCALED, 4, 'f'),
+    ROW(R8G8B8A8_SSCALED, 4, 'f'),
+    ROW(R8_UINT, 1, 'u'),
+    ROW(R8G8_UINT, 2, 'u'),
+    ROW(R8G8B8A8_UINT, 4, 'u'),
+    ROW(R8_SINT, 1, 'i'),
+    ROW(R8G8B8A8_SINT, 4, 'i'),
+    ROW(R16_UNORM, 2, 'f'),
+    ROW(R16G16_UNORM, 4, 'f'),
+    ROW(R16G16B16A16_UNORM, 8, 'f'),
+    ROW(R16G16_SNORM, 4, 'f'),
+    ROW(R16G16B16A16_SNORM, 8, 'f'),
+    ROW(R16G16B16A16_USCALED, 8, 'f'),
+    ROW(R16G16B16A16_SSCALED, 8, 'f'),
+    ROW(R16_UINT, 2, 'u'),
+    ROW(R16G16_UINT, 4, 'u'),
+    ROW(R16G16B16A16_UINT, 8, 'u'),
+    ROW(R16G16_SINT, 4, 'i'),
+    ROW(R16G16B16A16_SINT, 8, 'i'),
+    ROW(R16_SFLOAT, 2, 'f'),
+    ROW(R16G16_SFLOAT, 4, 'f'),
+    ROW(R16G16B16A16_SFLOAT, 8, 'f'),
+    ROW(R32_UINT, 4, 'u'),
+    ROW(R32G32_UINT, 8, 'u'),
+    ROW(R32G32B32_UINT, 12, 'u'),
+    ROW(R32G32B32A32_UINT, 16, 'u'),
+    ROW(R32_SINT, 4, 'i'),
+    ROW(R32G32B32A32_SINT, 16, 'i'),
+    ROW(R32_SFLOAT, 4, 'f'),
+    ROW(R32G32_SFLOAT, 8, 'f'),
+    ROW(R32G32B32_SFLOAT, 12, 'f'),
+    ROW(R32G32B32A32_SFLOAT, 16, 'f'),
+    ROW(A2B10G10R10_UNORM_PACK32, 4, 'f'),
+    ROW(A2B10G10R10_SNORM_PACK32, 4, 'f'),
+    ROW(A2R10G10B10_UNORM_PACK32, 4, 'f'),
+    ROW(B10G11R11_UFLOAT_PACK32, 4, 'f'),
+    ROW(A8B8G8R8_UNORM_PACK32, 4, 'f'),
+    ROW(R8G8B8_UNORM, 3, 'f'),
+    ROW(R16G16B16_SFLOAT, 6, 'f'),
 };
 #undef ROW
 
@@ -55,7 +90,8 @@ void main() {
   spec.attributes = {{3, 2, attribute.format, 4}};
   const VkPipeline pipeline = make_pipeline(run, spec, target);
   const Buffer vertices = run.buffer(stride * 4096 + 64);
-  for (VkDeviceSize i = 0; i < vertices.size; ++i) vertices.data[i] = static_cast<unsigned char>(run.random.bits() >> 24);
+  for (VkDeviceSize i = 0; i < vertices.size; ++i)
+    vertices.data[i] = static_cast<unsigned char>(run.random.bits() >> 24);
   run.once([&](VkCommandBuffer cmd) {
     target.begin(cmd);
     bind_pipeline(cmd, pipeline);
@@ -69,7 +105,8 @@ void main() {
 
 const bool kRegistered = [] {
   for (const Attribute& attribute : kAttributes)
-    AddCase("pipeline", std::string("vertex_input.") + attribute.name, [&attribute](Run& run) { fetch_format(run, attribute); });
+    AddCase("pipeline", std::string("vertex_input.") + attribute.name,
+            [&attribute](Run& run) { fetch_format(run, attribute); });
   return true;
 }();
 
@@ -87,9 +124,13 @@ void main() {
   gl_Position = vec4(position * 0.5 + m[0].xy, m[0].z * 0.25 + 0.5, 1.0);
 })";
   spec.fragment = kColorFragment;
-  spec.bindings = {{0, 8, VK_VERTEX_INPUT_RATE_VERTEX}, {1, 32, VK_VERTEX_INPUT_RATE_INSTANCE}, {5, 16, VK_VERTEX_INPUT_RATE_VERTEX}};
-  spec.attributes = {{0, 0, VK_FORMAT_R32G32_SFLOAT, 0},       {1, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 0},
-                     {2, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 16}, {4, 5, VK_FORMAT_R32G32B32_SFLOAT, 0},
+  spec.bindings = {{0, 8, VK_VERTEX_INPUT_RATE_VERTEX},
+                   {1, 32, VK_VERTEX_INPUT_RATE_INSTANCE},
+                   {5, 16, VK_VERTEX_INPUT_RATE_VERTEX}};
+  spec.attributes = {{0, 0, VK_FORMAT_R32G32_SFLOAT, 0},
+                     {1, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 0},
+                     {2, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 16},
+                     {4, 5, VK_FORMAT_R32G32B32_SFLOAT, 0},
                      {5, 5, VK_FORMAT_R32_SFLOAT, 12}};
   const VkPipeline pipeline = make_pipeline(run, spec, target);
   std::vector<float> values(4096);

@@ -46,8 +46,10 @@ Plan random_plan(Run& run) {
   spec.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   const auto op = [&] { return static_cast<VkAttachmentLoadOp>(random.below(2)); };  // LOAD or CLEAR
   for (uint32_t n = 1 + random.below(3); n > 0; --n) {
-    spec.format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT});
-    plan.colors.push_back({run.image(spec), op(), op(), clear_value(spec.format, random.unit(), random.unit(), random.unit(), 1.0f)});
+    spec.format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT,
+                               VK_FORMAT_R16G16B16A16_SFLOAT});
+    plan.colors.push_back(
+        {run.image(spec), op(), op(), clear_value(spec.format, random.unit(), random.unit(), random.unit(), 1.0f)});
     ImageSpec single = spec;
     single.samples = VK_SAMPLE_COUNT_1_BIT;
     plan.resolves.push_back(plan.samples == VK_SAMPLE_COUNT_1_BIT ? Image{} : run.image(single));
@@ -55,15 +57,18 @@ Plan random_plan(Run& run) {
   if (plan.has_depth) {
     spec.format = random.pick({VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT, VK_FORMAT_D24_UNORM_S8_UINT});
     spec.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-    plan.depth = {run.image(spec), op(), op(), clear_value(spec.format, 0.6f + 0.4f * random.unit(), random.unit(), 0, 0)};
+    plan.depth = {run.image(spec), op(), op(),
+                  clear_value(spec.format, 0.6f + 0.4f * random.unit(), random.unit(), 0, 0)};
   }
   std::vector<bool> used(plan.colors.size());  // the first use of a cleared attachment may not be as an input
   for (uint32_t n = 1 + random.below(4); n > 0; --n) {
     Subpass subpass;
     for (uint32_t i = 0; i < plan.colors.size(); ++i) {
       const bool readable = used[i] || plan.colors[i].load == VK_ATTACHMENT_LOAD_OP_LOAD;
-      if (readable && random.chance(0.4f) && !(subpass.colors.empty() && i + 1 == plan.colors.size())) subpass.inputs.push_back(i);
-      else if (random.chance(0.8f) || subpass.colors.empty()) subpass.colors.push_back(i);
+      if (readable && random.chance(0.4f) && !(subpass.colors.empty() && i + 1 == plan.colors.size()))
+        subpass.inputs.push_back(i);
+      else if (random.chance(0.8f) || subpass.colors.empty())
+        subpass.colors.push_back(i);
     }
     subpass.depth = plan.has_depth && random.chance(0.7f);
     subpass.resolve = plan.samples != VK_SAMPLE_COUNT_1_BIT && random.chance(0.5f);
@@ -91,7 +96,8 @@ VkRenderPass make_pass(Run& run, const Plan& plan) {
   std::vector<VkAttachmentDescription> attachments;
   for (const Attachment& color : plan.colors) attachments.push_back(describe(color.image, color.load, color.load));
   if (multisampled)
-    for (const Image& image : plan.resolves) attachments.push_back(describe(image, VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_LOAD_OP_LOAD));
+    for (const Image& image : plan.resolves)
+      attachments.push_back(describe(image, VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_LOAD_OP_LOAD));
   const auto depth_number = static_cast<uint32_t>(attachments.size());
   if (plan.has_depth) attachments.push_back(describe(plan.depth.image, plan.depth.load, plan.depth.stencil_load));
 
@@ -135,8 +141,8 @@ VkRenderPass make_pass(Run& run, const Plan& plan) {
   std::vector<VkSubpassDependency> dependencies;
   constexpr VkAccessFlags kAll = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
   for (uint32_t i = 0; i + 1 < subpasses.size(); ++i)
-    dependencies.push_back({i, i + 1, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT, kAll, kAll,
-                            VK_DEPENDENCY_BY_REGION_BIT});
+    dependencies.push_back({i, i + 1, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT, kAll,
+                            kAll, VK_DEPENDENCY_BY_REGION_BIT});
   VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
   info.attachmentCount = static_cast<uint32_t>(attachments.size());
   info.pAttachments = attachments.data();
@@ -168,16 +174,19 @@ VkFramebuffer make_framebuffer(Run& run, const Plan& plan, VkRenderPass pass) {
 }
 
 std::string fragment_text(Random& random, const Subpass& subpass, bool multisampled) {
-  std::string text = "layout(location = 0) in vec4 passed;\n", sum = "passed * " + std::string(random.pick({"1.0", "0.5", "passed"}));
+  std::string text = "layout(location = 0) in vec4 passed;\n",
+              sum = "passed * " + std::string(random.pick({"1.0", "0.5", "passed"}));
   for (uint32_t i = 0; i < subpass.inputs.size(); ++i) {
     const std::string n = std::to_string(i);
-    text += "layout(input_attachment_index = " + n + ", binding = " + n + ") uniform subpassInput" + (multisampled ? "MS" : "") +
-            " input" + n + ";\n";
+    text += "layout(input_attachment_index = " + n + ", binding = " + n + ") uniform subpassInput" +
+            (multisampled ? "MS" : "") + " input" + n + ";\n";
     sum += " + subpassLoad(input" + n + (multisampled ? ", 2" : "") + ") * 0.5";
   }
-  for (uint32_t i = 0; i < subpass.colors.size(); ++i) text += "layout(location = " + std::to_string(i) + ") out vec4 result" + std::to_string(i) + ";\n";
+  for (uint32_t i = 0; i < subpass.colors.size(); ++i)
+    text += "layout(location = " + std::to_string(i) + ") out vec4 result" + std::to_string(i) + ";\n";
   text += "void main() {\n  vec4 sum = " + sum + ";\n";
-  for (uint32_t i = 0; i < subpass.colors.size(); ++i) text += "  result" + std::to_string(i) + " = sum * " + std::to_string(i + 1) + ".0;\n";
+  for (uint32_t i = 0; i < subpass.colors.size(); ++i)
+    text += "  result" + std::to_string(i) + " = sum * " + std::to_string(i + 1) + ".0;\n";
   return text + "}\n";
 }
 
@@ -199,7 +208,8 @@ void random_render_pass(Run& run) {
       }
       const VkClearDepthStencilValue depth{0.5f, 3};
       const VkImageSubresourceRange range = plan.has_depth ? plan.depth.image.range() : VkImageSubresourceRange{};
-      if (plan.has_depth) vkCmdClearDepthStencilImage(cmd, plan.depth.image.handle, VK_IMAGE_LAYOUT_GENERAL, &depth, 1, &range);
+      if (plan.has_depth)
+        vkCmdClearDepthStencilImage(cmd, plan.depth.image.handle, VK_IMAGE_LAYOUT_GENERAL, &depth, 1, &range);
     });
   }
   std::vector<VkPipeline> pipelines;
@@ -207,7 +217,8 @@ void random_render_pass(Run& run) {
   for (uint32_t i = 0; i < plan.subpasses.size(); ++i) {
     const Subpass& subpass = plan.subpasses[i];
     std::vector<Binding> bindings;
-    for (uint32_t n = 0; n < subpass.inputs.size(); ++n) bindings.push_back(input_attachment(n, plan.colors[subpass.inputs[n]].image));
+    for (uint32_t n = 0; n < subpass.inputs.size(); ++n)
+      bindings.push_back(input_attachment(n, plan.colors[subpass.inputs[n]].image));
     resources.push_back(run.resources(bindings));
     GraphicsSpec spec;
     spec.vertex = kVertex;
@@ -216,7 +227,8 @@ void random_render_pass(Run& run) {
     spec.layout = resources.back().layout;
     spec.floats({4, 4});
     spec.depth.depthTestEnable = spec.depth.depthWriteEnable = subpass.depth;
-    pipelines.push_back(make_pipeline(run, spec, pass, i, static_cast<uint32_t>(subpass.colors.size()), {plan.width, plan.height}, plan.samples));
+    pipelines.push_back(make_pipeline(run, spec, pass, i, static_cast<uint32_t>(subpass.colors.size()),
+                                      {plan.width, plan.height}, plan.samples));
   }
   std::vector<float> values;
   for (int i = 0; i < 4 * 12; ++i) {
@@ -272,7 +284,8 @@ CTS_RANDOM("renderpass", "random_render_area", 40) {
   graphics.floats({4, 4});
   graphics.depth.depthTestEnable = graphics.depth.depthWriteEnable = spec.depth != 0;
   const uint32_t x = random.below(20), y = random.below(20);
-  const VkRect2D area{{static_cast<int32_t>(x), static_cast<int32_t>(y)}, {1 + random.below(spec.width - x), 1 + random.below(spec.height - y)}};
+  const VkRect2D area{{static_cast<int32_t>(x), static_cast<int32_t>(y)},
+                      {1 + random.below(spec.width - x), 1 + random.below(spec.height - y)}};
   // Drawing outside the render area is undefined: the scissor keeps inside.
   graphics.scissors = {area};
   const VkPipeline pipeline = make_pipeline(run, graphics, target);

@@ -14,7 +14,7 @@ namespace {
 #define BLOCK(name, bytes) \
   FormatInfo { VK_FORMAT_##name, #name, bytes, {8, 8, 8, 8}, Numeric::kBlock, 4 }
 
-const std::vector<FormatInfo> kColor = {
+constexpr FormatInfo kColor[] = {
     ROW(R8_UNORM, 1, 8, 0, 0, 0, kUnorm),
     ROW(R8_SNORM, 1, 8, 0, 0, 0, kSnorm),
     ROW(R8_UINT, 1, 8, 0, 0, 0, kUint),
@@ -64,7 +64,7 @@ const std::vector<FormatInfo> kColor = {
     ROW(E5B9G9R9_UFLOAT_PACK32, 4, 9, 9, 9, 5, kPackedFloat),
 };
 
-const std::vector<FormatInfo> kOther = {
+constexpr FormatInfo kOther[] = {
     ROW(R32G32B32_SFLOAT, 12, 32, 32, 32, 0, kFloat),
     ROW(D16_UNORM, 2, 16, 0, 0, 0, kDepth),
     ROW(X8_D24_UNORM_PACK32, 4, 24, 0, 0, 0, kDepth),
@@ -131,12 +131,15 @@ double channel_value(const FormatInfo& info, uint32_t bits, int c) {
 
 }  // namespace
 
-const std::vector<FormatInfo>& color_formats() { return kColor; }
+const std::vector<FormatInfo>& color_formats() {
+  static const std::vector<FormatInfo> list(std::begin(kColor), std::end(kColor));
+  return list;
+}
 
 const std::vector<FormatInfo>& all_formats() {
   static const std::vector<FormatInfo> all = [] {
-    std::vector<FormatInfo> list = kColor;
-    list.insert(list.end(), kOther.begin(), kOther.end());
+    std::vector<FormatInfo> list = color_formats();
+    list.insert(list.end(), std::begin(kOther), std::end(kOther));
     return list;
   }();
   return all;

@@ -42,7 +42,11 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(VkPhysica
     out->imageFormatProperties = {};
     return VK_ERROR_FORMAT_NOT_SUPPORTED;
   }
-  return image_format_properties(*info, &out->imageFormatProperties);
+  VkPhysicalDeviceImageFormatInfo2 all = *info;
+  if (const auto* stencil = find_in_chain<VkImageStencilUsageCreateInfo>(info->pNext)) {
+    all.usage |= stencil->stencilUsage;  // what the format can do, every aspect of it can
+  }
+  return image_format_properties(all, &out->imageFormatProperties);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceSparseImageFormatProperties(VkPhysicalDevice, VkFormat, VkImageType,

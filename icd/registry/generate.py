@@ -158,8 +158,9 @@ namespace vitrine::icd::entry {{
             gates += rows
             target = command.implementation.removeprefix("vk")
             scope = "k" + command.scope.title().replace("_", "")
-            commands.append(f'    {{"{name}", Scope::{scope}, {first}, {len(rows)}, address(&entry::{target}), '
-                            f'address(&Edge<&entry::{target}>::call)}},\n')
+            commands.append(f'    {{"{name}", Scope::{scope}, {first}, {len(rows)}, '
+                            f'reinterpret_cast<VoidFunction>(&entry::{target}), '
+                            f'reinterpret_cast<VoidFunction>(&Edge<&entry::{target}>::call)}},\n')
         return gates, commands
 
     def _extension_table(self):
@@ -263,14 +264,10 @@ namespace vitrine::icd::entry {{
 namespace vitrine::icd {{
 namespace {{
 
-template <class F>
-VoidFunction address(F* function) {{
-  return reinterpret_cast<VoidFunction>(function);
-}}
-
 constexpr Gate kGates[] = {{
     {(","+chr(10)+"    ").join(gates)}}};
 
+// Addresses of functions cannot be constexpr behind a cast, but they are link-time constants: no constructor runs.
 const EntryPoint kEntryPoints[] = {{
 {"".join(commands)}}};
 

@@ -3,7 +3,10 @@
 #include <cstring>
 #include <string>
 
+#include "icd/registry/registry.h"
 #include "tests/icd/fixture.h"
+#include "texel/capabilities.h"
+#include "texel/view.h"
 
 namespace vitrine::icd::test {
 namespace {
@@ -153,6 +156,50 @@ TEST_F(Formats, MandatoryBufferFeaturesAreClaimed) {
     VkFormatProperties properties;
     VK_GET(instance, GetPhysicalDeviceFormatProperties)(physical_device, row.format, &properties);
     EXPECT_EQ(properties.bufferFeatures & row.features, row.features) << "format " << row.format;
+  }
+}
+
+struct Backing {
+  VkFormatFeatureFlags feature;
+  bool (*can)(const texel::FormatDesc& format);
+};
+
+/// A claim that the texel room cannot keep is a wrong picture waiting.
+TEST_F(Formats, ClaimsDoNotExceedWhatTexelDoes) {
+  constexpr Backing kImage[] = {
+      {VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT, texel::can_sample},
+      {VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT, texel::can_filter},
+      {VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT, texel::can_store},
+      {VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT, texel::can_atomic},
+      {VK_FORMAT_FEATURE_TRANSFER_SRC_BIT, texel::can_copy},
+      {VK_FORMAT_FEATURE_BLIT_SRC_BIT, texel::can_decode},
+      {VK_FORMAT_FEATURE_BLIT_DST_BIT, texel::can_encode},
+      {VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT, texel::can_encode},
+      {VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT,
+       [](const texel::FormatDesc& format) { return format.is_depth_stencil(); }},
+  };
+  constexpr Backing kBuffer[] = {
+      {VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT, texel::can_decode},
+      {VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT, texel::can_decode},
+      {VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT, texel::can_store},
+  };
+  for (const FormatClaim& claim : format_claims()) {
+    texel::ImageDesc desc;
+    desc.format = claim.format;
+    texel::ImageLayout layout;
+    ASSERT_TRUE(texel::make_image_layout(desc, layout)) << texel::format_desc(claim.format).name;
+    // Depth and stencil of a combined format are planes of their own.
+    for (std::uint32_t plane = 0; plane < layout.plane_count; ++plane) {
+      const texel::FormatDesc& format = texel::format_desc(layout.plane[plane].format);
+      for (const Backing& row : kImage) {
+        const bool claimed = claim.properties.optimalTilingFeatures & row.feature;
+        EXPECT_TRUE(!claimed || row.can(format)) << format.name << " image feature " << row.feature;
+      }
+      for (const Backing& row : kBuffer) {
+        const bool claimed = claim.properties.bufferFeatures & row.feature;
+        EXPECT_TRUE(!claimed || row.can(format)) << format.name << " buffer feature " << row.feature;
+      }
+    }
   }
 }
 

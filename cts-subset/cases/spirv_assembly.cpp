@@ -1,0 +1,223 @@
+// Modules that no GLSL compiler writes: undefined values, selects of composites, phis, switches, odd but valid forms.
+#include "harness/case.h"
+#include "harness/graphics.h"
+#include "harness/shader.h"
+
+namespace vitrine::cts {
+namespace {
+
+/// Runs 64 invocations of a body between buffers `in` (uint[]) and `out` (uint[]); %x is the input, %r must be set.
+void run_body(Run& run, const std::string& body, const std::string& types = "") {
+  const std::string text = R"(
+OpCapability Shader
+%glsl = OpExtInstImport "GLSL.std.450"
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %id
+OpExecutionMode %main LocalSize 64 1 1
+OpDecorate %id BuiltIn GlobalInvocationId
+OpDecorate %array ArrayStride 4
+OpMemberDecorate %block 0 Offset 0
+OpDecorate %block BufferBlock
+OpDecorate %in DescriptorSet 0
+OpDecorate %in Binding 0
+OpDecorate %out DescriptorSet 0
+OpDecorate %out Binding 1
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%bool = OpTypeBool
+%uint = OpTypeInt 32 0
+%int = OpTypeInt 32 1
+%float = OpTypeFloat 32
+%v2uint = OpTypeVector %uint 2
+%v3uint = OpTypeVector %uint 3
+%v4uint = OpTypeVector %uint 4
+%v4float = OpTypeVector %float 4
+%v3ptr = OpTypePointer Input %v3uint
+%id = OpVariable %v3ptr Input
+%array = OpTypeRuntimeArray %uint
+%block = OpTypeStruct %array
+%block_ptr = OpTypePointer Uniform %block
+%uint_ptr = OpTypePointer Uniform %uint
+%in = OpVariable %block_ptr Uniform
+%out = OpVariable %block_ptr Uniform
+%u0 = OpConstant %uint 0
+%u1 = OpConstant %uint 1
+%u2 = OpConstant %uint 2
+%u3 = OpConstant %uint 3
+%u5 = OpConstant %uint 5
+%i3 = OpConstant %int 3
+%f1 = OpConstant %float 1
+)" + types + R"(
+%main = OpFunction %void None %fn
+%entry = OpLabel
+%gid = OpLoad %v3uint %id
+%n = OpCompositeExtract %uint %gid 0
+%from = OpAccessChain %uint_ptr %in %u0 %n
+%x = OpLoad %uint %from
+)" + body + R"(
+%to = OpAccessChain %uint_ptr %out %u0 %n
+OpStore %to %r
+OpReturn
+OpFunctionEnd
+)";
+  std::vector<uint32_t> words(64);
+  for (uint32_t& word : words) word = run.random.chance(0.5f) ? run.random.bits() : run.random.below(10);
+  const Buffer in = run.buffer_of(words), out = run.buffer(256);
+  const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
+  const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, 1, 1, 1);
+  });
+  run.out("out", out);
+}
+
+CTS_CASE("spirv_assembly", "vector_shuffle_and_insert") {
+  run_body(run, R"(
+%a = OpCompositeConstruct %v4uint %x %n %u1 %u2
+%b = OpVectorShuffle %v4uint %a %a 7 0 5 2
+%c = OpCompositeInsert %v4uint %u5 %b 1
+%d = OpVectorExtractDynamic %uint %c %u3
+%k = OpBitwiseAnd %uint %x %u3
+%e = OpVectorExtractDynamic %uint %c %k
+%f = OpVectorInsertDynamic %v4uint %c %x %k
+%g = OpCompositeExtract %uint %f 2
+%h = OpIAdd %uint %d %e
+%r = OpBitwiseXor %uint %h %g
+)");
+}
+
+CTS_CASE("spirv_assembly", "phi_swap") {
+  run_body(run, R"(
+OpBranch %head
+%head = OpLabel
+%p = OpPhi %uint %x %entry %q %again
+%q = OpPhi %uint %n %entry %p %again
+%k = OpPhi %uint %u0 %entry %k1 %again
+OpLoopMerge %done %again None
+OpBranch %test
+%test = OpLabel
+%trips = OpBitwiseAnd %uint %x %u3
+%more = OpULessThan %bool %k %trips
+OpBranchConditional %more %again %done
+%again = OpLabel
+%k1 = OpIAdd %uint %k %u1
+OpBranch %head
+%done = OpLabel
+%t = OpShiftLeftLogical %uint %p %u1
+%r = OpIAdd %uint %t %q
+)");
+}
+
+CTS_CASE("spirv_assembly", "switch_fallthrough") {
+  run_body(run, R"(
+%s = OpUMod %uint %x %u5
+OpSelectionMerge %done None
+OpSwitch %s %default 0 %zero 2 %two 3 %three
+%zero = OpLabel
+%a = OpIAdd %uint %n %u5
+OpBranch %two
+%two = OpLabel
+%b = OpPhi %uint %u1 %entry %a %zero
+OpBranch %done
+%three = OpLabel
+OpBranch %done
+%default = OpLabel
+OpBranch %done
+%done = OpLabel
+%r = OpPhi %uint %b %two %x %three %n %default
+)");
+}
+
+CTS_CASE("spirv_assembly", "composite_select_and_copy") {
+  run_body(run, R"(
+%a = OpCompositeConstruct %v2uint %x %n
+%b = OpCompositeConstruct %v2uint %n %u5
+%c0 = OpULessThan %bool %x %u5
+%c1 = OpINotEqual %bool %n %u3
+%c = OpCompositeConstruct %v2bool %c0 %c1
+%d = OpSelect %v2uint %c %a %b
+%e = OpCopyObject %v2uint %d
+%s = OpCompositeConstruct %pair %e %f1
+%f = OpCompositeExtract %uint %s 0 0
+%g = OpCompositeExtract %uint %s 0 1
+%r = OpIMul %uint %f %g
+)",
+           "%v2bool = OpTypeVector %bool 2\n%pair = OpTypeStruct %v2uint %float\n");
+}
+
+CTS_CASE("spirv_assembly", "unordered_compare") {
+  run_body(run, R"(
+%f = OpBitcast %float %x
+%a = OpFUnordLessThan %bool %f %f1
+%b = OpFOrdGreaterThanEqual %bool %f %f1
+%c = OpFUnordNotEqual %bool %f %f
+%d = OpLogicalEqual %bool %a %b
+%e = OpLogicalNotEqual %bool %d %c
+%p = OpSelect %uint %a %u1 %u2
+%q = OpSelect %uint %e %u5 %u3
+%r = OpIMul %uint %p %q
+)");
+}
+
+CTS_CASE("spirv_assembly", "signed_and_unsigned_mixed") {
+  run_body(run, R"(
+%i = OpBitcast %int %x
+%a = OpShiftRightArithmetic %int %i %u3
+%b = OpShiftRightLogical %uint %x %u3
+%c = OpIAdd %uint %a %b
+%d = OpSDiv %int %i %i3
+%e = OpIMul %uint %c %d
+%f = OpSNegate %int %e
+%g = OpNot %uint %f
+%h = OpSLessThan %bool %i %f
+%k = OpSelect %uint %h %g %e
+%m = OpBitReverse %uint %k
+%r = OpBitCount %uint %m
+)");
+}
+
+CTS_CASE("spirv_assembly", "extended_arithmetic") {
+  run_body(run, R"(
+%k = OpIMul %uint %x %u5
+%a = OpIAddCarry %two %x %k
+%b = OpISubBorrow %two %n %x
+%c = OpUMulExtended %two %x %k
+%a0 = OpCompositeExtract %uint %a 0
+%a1 = OpCompositeExtract %uint %a 1
+%b1 = OpCompositeExtract %uint %b 1
+%c1 = OpCompositeExtract %uint %c 1
+%s = OpIAdd %uint %a0 %a1
+%t = OpBitwiseXor %uint %b1 %c1
+%r = OpIAdd %uint %s %t
+)",
+           "%two = OpTypeStruct %uint %uint\n");
+}
+
+CTS_CASE("spirv_assembly", "function_variables_and_access_chains") {
+  run_body(run, R"(
+%k = OpUMod %uint %x %u5
+%p0 = OpAccessChain %uint_local %local %u0
+OpStore %p0 %x
+%p1 = OpAccessChain %uint_local %local %u1
+OpStore %p1 %n
+%p2 = OpAccessChain %uint_local %local %k
+OpStore %p2 %u3
+%all = OpLoad %five %local
+OpStore %second %all
+%p3 = OpInBoundsAccessChain %uint_local %second %k
+%a = OpLoad %uint %p3
+%b = OpCompositeExtract %uint %all 0
+%c = OpCompositeExtract %uint %all 1
+%d = OpIAdd %uint %a %b
+%r = OpIAdd %uint %d %c
+)",
+           "%five = OpTypeArray %uint %u5\n%five_private = OpTypePointer Private %five\n%uint_local = OpTypePointer "
+           "Private %uint\n"
+           "%zeros = OpConstantNull %five\n%local = OpVariable %five_private Private %zeros\n%second = OpVariable "
+           "%five_private Private %zeros\n");
+}
+
+}  // namespace
+}  // namespace vitrine::cts

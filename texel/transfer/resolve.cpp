@@ -1,0 +1,97 @@
+// Resolves multisampled texels (lavapipe-rasterization.md 8.8): floats are averaged in sample order, integers, depth
+// and stencil take sample 0.
+#include <algorithm>
+#include <cstring>
+
+#include "base/float_mode.h"
+#include "base/numeric.h"
+#include "texel/capabilities.h"
+#include "texel/transfer/box.h"
+
+namespace vitrine::texel {
+namespace {
+
+constexpr std::size_t kChunk = 256;  ///< texels decoded at a time
+
+void average_chunk(const FormatDesc& from, const FormatDesc& to, const std::byte* source, std::uint64_t sample_stride,
+                   std::uint32_t samples, std::size_t count, std::byte* destination) {
+  std::array<Texel, kChunk> decoded;
+  std::array<std::array<float, 4>, kChunk> sum{};
+  for (std::uint32_t s = 0; s < samples; ++s) {
+    decode_row(from, source + s * sample_stride, count, decoded.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t c = 0; c < 4; ++c) sum[i][c] += base::float_of(decoded[i][c]);
+    }
+  }
+  const float scale = 1.0f / static_cast<float>(samples);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t c = 0; c < 4; ++c) decoded[i][c] = base::bits_of(sum[i][c] * scale);
+  }
+  encode_row(to, Encoding::kAttachment, decoded.data(), count, destination);
+}
+
+void resolve_box(const Box& source, Box destination) {
+  destination.columns = std::min(destination.columns, source.columns);
+  destination.rows = std::min(destination.rows, source.rows);
+  destination.slices = std::min(destination.slices, source.slices);
+  destination.samples = 1;
+  if (destination.empty()) return;
+  const FormatDesc& from = *source.format;
+  const FormatDesc& to = *destination.format;
+  const bool average = !from.is_integer() && !from.is_depth_stencil() && source.samples > 1;
+  if ((average && (!can_decode(from) || !can_encode(to))) || (!average && from.block_bytes != to.block_bytes)) return;
+  const std::size_t cost = destination.row_bytes() * source.samples * 8;  // conversions cost more than bytes
+  for_each_band(destination, cost, [&](std::uint32_t first, std::uint32_t count, std::uint32_t slice, std::uint32_t) {
+    const base::ScopedFloatMode mode(base::Denormals::kFlush);  // the reference resolves in a fragment shader
+    for (std::uint32_t y = first; y < first + count; ++y) {
+      std::byte* row = destination.row(slice, 0, y);
+      const std::byte* samples = source.row(slice, 0, y);
+      if (!average) {
+        std::memcpy(row, samples, destination.row_bytes());
+        continue;
+      }
+      for (std::size_t x = 0; x < destination.columns; x += kChunk) {
+        average_chunk(from, to, samples + x * from.block_bytes, source.sample_stride, source.samples,
+                      std::min(kChunk, destination.columns - x), row + x * to.block_bytes);
+      }
+    }
+  });
+}
+
+/// Level 0 of a view, `area` cut to it, one slice per layer.
+Box view_box(const ImageView& view, const VkRect2D& area, std::uint32_t base_layer, std::uint32_t layer_count) {
+  Box box;
+  const LevelLayout& level = view.level[0];
+  if (base_layer >= view.layer_count || area.offset.x < 0 || area.offset.y < 0) return box;
+  const auto x = static_cast<std::uint32_t>(area.offset.x);
+  const auto y = static_cast<std::uint32_t>(area.offset.y);
+  if (x >= level.extent.width || y >= level.extent.height) return box;
+  box.format = view.format;
+  box.columns = std::min(area.extent.width, level.extent.width - x);
+  box.rows = std::min(area.extent.height, level.extent.height - y);
+  box.slices = std::min(layer_count, view.layer_count - base_layer);
+  box.samples = view.samples;
+  box.row_pitch = level.row_pitch;
+  box.slice_pitch = view.layer_stride;
+  box.sample_stride = level.sample_stride;
+  box.origin = view.block(0, base_layer, 0, x, y, 0);
+  return box;
+}
+
+}  // namespace
+
+void resolve_image(const ImageMemory& source, const ImageMemory& destination, const VkImageResolve& region) {
+  const Box from = make_box(source, VK_IMAGE_ASPECT_COLOR_BIT, region.srcSubresource, region.srcOffset, region.extent);
+  const Box to =
+      make_box(destination, VK_IMAGE_ASPECT_COLOR_BIT, region.dstSubresource, region.dstOffset, region.extent);
+  if (!from.empty() && !to.empty()) resolve_box(from, to);
+}
+
+void resolve_view(const ImageView& source, const ImageView& destination, const VkRect2D& area, std::uint32_t base_layer,
+                  std::uint32_t layer_count) {
+  const Box from = view_box(source, area, base_layer, layer_count);
+  const Box to = view_box(destination, area, base_layer, layer_count);
+  if (!from.empty() && !to.empty()) resolve_box(from, to);
+}
+
+}  // namespace vitrine::texel
