@@ -1,0 +1,330 @@
+// Fast colour output for the most common targets: four UNORM bytes in any order, with and without blending, and 32-bit
+// floats. Same bits as the general function of color.cpp (tests compare them).
+#include "raster/color_fast.h"
+
+#include <cstring>
+
+#include "raster/blend.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/color_fast.cpp"
+#include "base/simd.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "base/lane_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::raster::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace base::HWY_NAMESPACE;  // NOLINT: lane arithmetic
+using base::kWaveWidth;
+
+/// One channel of a wave as bytes widened to 16 bits.
+struct alignas(64) Bytes {
+  std::uint16_t lane[kWaveWidth];
+};
+/// Pixels of a wave as they lie in memory.
+struct alignas(64) Words {
+  std::uint32_t lane[kWaveWidth];
+};
+
+/// Part D: MIN(1, x) * 255, to nearest even, saturated.
+template <class V>
+HWY_INLINE auto to_byte(V x) {
+  const auto scaled = hn::Mul(lanes_min_second(lanes_set<V>(1.0f), x), lanes_set<V>(255.0f));
+  const auto rounded = lanes_round_to_int(scaled);
+  using I = decltype(rounded);
+  return hn::Min(hn::Max(rounded, lanes_set<I>(0)), lanes_set<I>(255));
+}
+
+HWY_INLINE void bytes_of(const base::WaveRegister& color, Bytes& out) {
+  const hn::CappedTag<float, kWaveWidth> d;
+  const hn::Rebind<std::int32_t, decltype(d)> di;
+  const hn::Rebind<std::int16_t, decltype(d)> d16;
+  for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d)) {
+    const auto x = hn::BitCast(d, hn::Load(di, reinterpret_cast<const std::int32_t*>(color.lane + i)));
+    hn::Store(hn::DemoteTo(d16, to_byte(x)), d16, reinterpret_cast<std::int16_t*>(out.lane + i));
+  }
+}
+
+/// Channel `shift` bits up in each word.
+HWY_INLINE void merge(const Bytes& bytes, int shift, Words& words, bool first) {
+  const hn::CappedTag<std::uint32_t, kWaveWidth> d;
+  const hn::Rebind<std::uint16_t, decltype(d)> d16;
+  for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d)) {
+    const auto moved = hn::ShiftLeftSame(hn::PromoteTo(d, hn::Load(d16, bytes.lane + i)), shift);
+    hn::Store(first ? moved : hn::Or(moved, hn::Load(d, words.lane + i)), d, words.lane + i);
+  }
+}
+
+HWY_INLINE void extract(const Words& words, int shift, Bytes& bytes) {
+  const hn::CappedTag<std::int32_t, kWaveWidth> d;
+  const hn::Rebind<std::int16_t, decltype(d)> d16;
+  for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d)) {
+    const auto word = hn::BitCast(hn::RebindToUnsigned<decltype(d)>(),
+                                  hn::Load(d, reinterpret_cast<const std::int32_t*>(words.lane + i)));
+    const auto byte = hn::And(hn::ShiftRightSame(word, shift), hn::Set(hn::RebindToUnsigned<decltype(d)>(), 255u));
+    hn::Store(hn::DemoteTo(d16, hn::BitCast(d, byte)), d16, reinterpret_cast<std::int16_t*>(bytes.lane + i));
+  }
+}
+
+int shift_of(const ColorWriter& writer, std::size_t component) {
+  return writer.format->channel[static_cast<std::size_t>(writer.format->rgba[component])].offset;
+}
+
+HWY_INLINE std::uint32_t write_word(const ColorWriter& writer) {
+  std::uint32_t word;
+  std::memcpy(&word, writer.write_bits.bytes.data(), sizeof(word));
+  return word;
+}
+
+/// Stores the lanes of `mask`: two rows of two pixels per quad.
+void scatter(const ColorWave& wave, base::LaneMask mask, const Words& words) {
+  const texel::LevelLayout& level = wave.view->level[0];
+  std::byte* const origin = wave.view->block(0, wave.layer, wave.sample, 0, 0, 0);
+  for (std::size_t q = 0; q < base::kQuadsPerWave; ++q) {
+    const auto covered = static_cast<std::uint32_t>(mask >> (4 * q) & 0xf);
+    if (covered == 0) continue;
+    std::byte* const top = origin + wave.quads->y[q] * level.row_pitch + std::size_t{wave.quads->x[q]} * 4;
+    std::byte* const bottom = top + level.row_pitch;
+    const std::uint32_t* const quad = words.lane + 4 * q;
+    if (covered == 0xf) {
+      std::memcpy(top, quad, 8);
+      std::memcpy(bottom, quad + 2, 8);
+      continue;
+    }
+    if (covered & 1) std::memcpy(top, quad, 4);
+    if (covered & 2) std::memcpy(top + 4, quad + 1, 4);
+    if (covered & 4) std::memcpy(bottom, quad + 2, 4);
+    if (covered & 8) std::memcpy(bottom + 4, quad + 3, 4);
+  }
+}
+
+/// Loads the covered lanes of these quads; others are left as they are.
+void gather(const ColorWave& wave, base::LaneMask mask, Words& words) {
+  const texel::LevelLayout& level = wave.view->level[0];
+  const std::byte* const origin = wave.view->block(0, wave.layer, wave.sample, 0, 0, 0);
+  for (std::size_t q = 0; q < base::kQuadsPerWave; ++q) {
+    const auto covered = static_cast<std::uint32_t>(mask >> (4 * q) & 0xf);
+    if (covered == 0) continue;
+    const std::byte* const top = origin + wave.quads->y[q] * level.row_pitch + std::size_t{wave.quads->x[q]} * 4;
+    const std::byte* const bottom = top + level.row_pitch;
+    std::uint32_t* const quad = words.lane + 4 * q;
+    if (covered == 0xf) {
+      std::memcpy(quad, top, 8);
+      std::memcpy(quad + 2, bottom, 8);
+      continue;
+    }
+    if (covered & 1) std::memcpy(quad, top, 4);
+    if (covered & 2) std::memcpy(quad + 1, top + 4, 4);
+    if (covered & 4) std::memcpy(quad + 2, bottom, 4);
+    if (covered & 8) std::memcpy(quad + 3, bottom + 4, 4);
+  }
+}
+
+/// Lanes of a set of quads.
+base::LaneMask lanes_of(std::uint32_t quads) {
+  base::LaneMask lanes = 0;
+  for (; quads; quads &= quads - 1) lanes |= base::LaneMask{0xf} << (4 * std::countr_zero(quads));
+  return lanes;
+}
+
+void store_bytes(const ColorWriter& writer, const ColorWave& wave) {
+  Words words;
+  for (std::size_t c = 0; c < 4; ++c) {
+    Bytes bytes;
+    bytes_of(wave.color[c], bytes);
+    merge(bytes, shift_of(writer, c), words, c == 0);
+  }
+  const std::uint32_t keep = ~write_word(writer);
+  if (keep == 0) {
+    scatter(wave, wave.mask, words);
+    return;
+  }
+  for_each_pass(wave, [&](std::uint32_t quads) {
+    const base::LaneMask mask = wave.mask & lanes_of(quads);
+    Words old{};
+    gather(wave, mask, old);
+    for (std::size_t i = 0; i < kWaveWidth; ++i) old.lane[i] = (old.lane[i] & keep) | (words.lane[i] & ~keep);
+    scatter(wave, mask, old);
+  });
+}
+
+using U16 = hn::CappedTag<std::uint16_t, kWaveWidth>;
+using V16 = hn::Vec<U16>;
+
+/// E2: a * b / 255, rounded.
+HWY_INLINE V16 mul8(V16 a, V16 b) {
+  const V16 t = hn::Mul(a, b);
+  const V16 u = hn::Add(t, hn::ShiftRight<8>(t));
+  return hn::ShiftRight<8>(hn::Add(u, hn::Set(U16(), 128)));
+}
+
+/// Everything blending a wave needs, one channel at a time.
+struct ByteOperands {
+  Bytes src[4], dst[4];
+  std::uint16_t constants[4];
+};
+
+HWY_INLINE V16 factor8(VkBlendFactor factor, const ByteOperands& in, std::size_t c, std::size_t i) {
+  const U16 d;
+  const V16 one = hn::Set(d, 255);
+  const auto src = [&](std::size_t k) { return hn::Load(d, in.src[k].lane + i); };
+  const auto dst = [&](std::size_t k) { return hn::Load(d, in.dst[k].lane + i); };
+  const auto constant = [&](std::size_t k) { return hn::Set(d, in.constants[k]); };
+  switch (factor) {
+    case VK_BLEND_FACTOR_ONE:
+      return one;
+    case VK_BLEND_FACTOR_SRC_COLOR:
+      return src(c);
+    case VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR:
+      return hn::Sub(one, src(c));
+    case VK_BLEND_FACTOR_DST_COLOR:
+      return dst(c);
+    case VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR:
+      return hn::Sub(one, dst(c));
+    case VK_BLEND_FACTOR_SRC_ALPHA:
+      return src(3);
+    case VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA:
+      return hn::Sub(one, src(3));
+    case VK_BLEND_FACTOR_DST_ALPHA:
+      return dst(3);
+    case VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA:
+      return hn::Sub(one, dst(3));
+    case VK_BLEND_FACTOR_CONSTANT_COLOR:
+      return constant(c);
+    case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR:
+      return hn::Sub(one, constant(c));
+    case VK_BLEND_FACTOR_CONSTANT_ALPHA:
+      return constant(3);
+    case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA:
+      return hn::Sub(one, constant(3));
+    case VK_BLEND_FACTOR_SRC_ALPHA_SATURATE:
+      return c == 3 ? one : hn::Min(src(3), hn::Sub(one, dst(3)));
+    default:
+      return hn::Zero(d);
+  }
+}
+
+HWY_INLINE V16 combine8(VkBlendOp op, V16 src, V16 dst) {
+  switch (op) {
+    case VK_BLEND_OP_ADD:
+      return hn::Min(hn::Add(src, dst), hn::Set(U16(), 255));
+    case VK_BLEND_OP_SUBTRACT:
+      return hn::SaturatedSub(src, dst);
+    case VK_BLEND_OP_REVERSE_SUBTRACT:
+      return hn::SaturatedSub(dst, src);
+    case VK_BLEND_OP_MIN:
+      return hn::Min(src, dst);
+    default:
+      return hn::Max(src, dst);
+  }
+}
+
+void blend_channel8(const BlendEquation& equation, const ByteOperands& in, std::size_t c, Bytes& out) {
+  const U16 d;
+  for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d)) {
+    const V16 src = mul8(hn::Load(d, in.src[c].lane + i), factor8(equation.src, in, c, i));
+    const V16 dst = mul8(hn::Load(d, in.dst[c].lane + i), factor8(equation.dst, in, c, i));
+    hn::Store(combine8(equation.op, src, dst), d, out.lane + i);
+  }
+}
+
+void blend_bytes(const ColorWriter& writer, const ColorWave& wave) {
+  ByteOperands in;
+  for (std::size_t c = 0; c < 4; ++c) {
+    bytes_of(wave.color[c], in.src[c]);
+    in.constants[c] = static_cast<std::uint16_t>(constant_to_byte(writer.constants[c]));
+  }
+  const std::uint32_t keep = ~write_word(writer);
+  for_each_pass(wave, [&](std::uint32_t quads) {
+    const base::LaneMask mask = wave.mask & lanes_of(quads);
+    Words old{}, words;
+    gather(wave, mask, old);
+    for (std::size_t c = 0; c < 4; ++c) extract(old, shift_of(writer, c), in.dst[c]);
+    for (std::size_t c = 0; c < 4; ++c) {
+      Bytes result;
+      blend_channel8(c < 3 ? writer.rgb : writer.alpha, in, c, result);
+      merge(result, shift_of(writer, c), words, c == 0);
+    }
+    if (keep != 0) {
+      for (std::size_t i = 0; i < kWaveWidth; ++i) words.lane[i] = (old.lane[i] & keep) | (words.lane[i] & ~keep);
+    }
+    scatter(wave, mask, words);
+  });
+}
+
+}  // namespace
+
+ByteColorFunctions byte_functions() { return {store_bytes, blend_bytes}; }
+
+}  // namespace vitrine::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vitrine::raster {
+
+HWY_EXPORT(byte_functions);
+
+ByteColorFunctions byte_color_functions() {
+  base::select_simd_target();
+  return HWY_DYNAMIC_DISPATCH(byte_functions)();
+}
+
+namespace {
+
+bool is_four_bytes(const texel::FormatDesc& format) {
+  if (format.channel_count != 4 || format.block_bytes != 4) return false;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const texel::Channel& channel = format.channel[c];
+    if (channel.bits != 8 || channel.numeric != texel::Numeric::kUnorm || format.rgba[c] < 0) return false;
+  }
+  return true;
+}
+
+/// 32-bit floats and integers are stored as they are.
+void store_words(const ColorWriter& writer, const ColorWave& wave) {
+  const texel::FormatDesc& format = *writer.format;
+  const std::size_t channels = format.channel_count;
+  base::for_each_lane(wave.mask, [&](std::size_t lane) {
+    std::uint32_t texel[4];
+    for (std::size_t c = 0; c < channels; ++c) texel[c] = wave.color[c].lane[lane];
+    std::memcpy(pixel_address(wave, lane), texel, channels * 4);
+  });
+}
+
+bool is_words(const texel::FormatDesc& format) {
+  for (std::size_t c = 0; c < format.channel_count; ++c) {
+    const texel::Channel& channel = format.channel[c];
+    const bool raw = channel.numeric == texel::Numeric::kSfloat || channel.numeric == texel::Numeric::kUint ||
+                     channel.numeric == texel::Numeric::kSint;
+    if (channel.bits != 32 || !raw || format.rgba[c] != static_cast<std::int8_t>(c)) return false;
+  }
+  return format.channel_count != 0;
+}
+
+bool dual_source(const ColorWriter& writer) {
+  for (const VkBlendFactor factor : {writer.rgb.src, writer.rgb.dst, writer.alpha.src, writer.alpha.dst}) {
+    if (factor >= VK_BLEND_FACTOR_SRC1_COLOR) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+ColorFunction fast_color_function(const ColorWriter& writer) {
+  if (writer.logic) return nullptr;
+  if (is_four_bytes(*writer.format)) {
+    if (writer.blend == BlendType::kNone) return byte_color_functions().store;
+    return dual_source(writer) ? nullptr : byte_color_functions().blend;
+  }
+  if (writer.blend == BlendType::kNone && !writer.masked && is_words(*writer.format)) return store_words;
+  return nullptr;
+}
+
+}  // namespace vitrine::raster
+#endif  // HWY_ONCE

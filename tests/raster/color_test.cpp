@@ -1,0 +1,165 @@
+// Colour output: the fast functions against the general one bit by bit, and the general one against known values.
+#include "raster/color.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "base/float_mode.h"
+#include "base/numeric.h"
+#include "raster/blend.h"
+
+namespace vitrine::raster {
+namespace {
+
+constexpr std::uint32_t kSide = 16;
+
+/// A small target with its memory.
+struct Target {
+  texel::ImageLayout layout;
+  std::vector<std::byte> memory;
+  texel::ImageView view;
+
+  explicit Target(VkFormat format) {
+    texel::ImageDesc desc;
+    desc.format = format;
+    desc.extent = {kSide, kSide, 1};
+    EXPECT_TRUE(texel::make_image_layout(desc, layout));
+    memory.resize(layout.size + 64);
+    texel::ImageViewDesc view_desc;
+    view_desc.format = format;
+    view = texel::make_image_view(layout, memory.data(), view_desc);
+  }
+};
+
+struct Inputs {
+  QuadPositions quads;
+  base::LaneMask mask;
+  base::WaveRegister color[4], second[4];
+};
+
+float random_value(std::mt19937& random) {
+  switch (random() % 8) {
+    case 0:
+      return base::float_of(static_cast<std::uint32_t>(random()));
+    case 1:
+      return static_cast<float>(random() % 256) / 255.0f;
+    case 2:
+      return 0.0f;
+    case 3:
+      return 1.0f;
+    default:
+      return static_cast<float>(random() % 10000) / 8000.0f - 0.1f;
+  }
+}
+
+Inputs random_inputs(std::mt19937& random) {
+  Inputs in;
+  for (std::size_t q = 0; q < base::kQuadsPerWave; ++q) {
+    in.quads.x[q] = static_cast<std::uint16_t>(random() % (kSide / 2) * 2);
+    in.quads.y[q] = static_cast<std::uint16_t>(random() % (kSide / 4) * 2);  // crowded: pixels repeat in a wave
+  }
+  in.mask = (std::uint64_t{random()} << 32 | random()) | (random() % 2 ? base::kAllLanes : 0);
+  for (std::size_t c = 0; c < 4; ++c) {
+    for (std::size_t i = 0; i < base::kWaveWidth; ++i) {
+      in.color[c].lane[i] = base::bits_of(random_value(random));
+      in.second[c].lane[i] = base::bits_of(random_value(random));
+    }
+  }
+  return in;
+}
+
+BlendAttachment random_blend(std::mt19937& random) {
+  BlendAttachment blend;
+  blend.enable = random() % 4 != 0;
+  blend.src_color = static_cast<VkBlendFactor>(random() % 15);
+  blend.dst_color = static_cast<VkBlendFactor>(random() % 15);
+  blend.src_alpha = static_cast<VkBlendFactor>(random() % 15);
+  blend.dst_alpha = static_cast<VkBlendFactor>(random() % 15);
+  blend.color_op = static_cast<VkBlendOp>(random() % 5);
+  blend.alpha_op = static_cast<VkBlendOp>(random() % 5);
+  blend.write_mask = random() % 3 ? 0xf : random() % 16;
+  return blend;
+}
+
+TEST(Color, FastFunctionsEqualTheGeneralOne) {
+  const base::ScopedFloatMode mode(base::Denormals::kFlush);
+  std::mt19937 random(7);
+  std::size_t changed = 0;
+  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_A8B8G8R8_UNORM_PACK32,
+                                VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_UINT}) {
+    for (int n = 0; n < 400; ++n) {
+      State state;
+      for (float& constant : state.blend_constants) constant = random_value(random);
+      const BlendAttachment blend = random_blend(random);
+      const ColorWriter fast = make_color_writer(format, blend, state);
+      const ColorWriter general = make_general_color_writer(format, blend, state);
+      const Inputs in = random_inputs(random);
+      Target a(format), b(format);
+      for (std::byte& byte : a.memory) byte = static_cast<std::byte>(random());
+      // A destination of ordinary floats, where the format has floats.
+      if (format == VK_FORMAT_R32G32B32A32_SFLOAT || format == VK_FORMAT_R32_SFLOAT) {
+        for (std::size_t i = 0; i + 4 <= a.memory.size(); i += 4) {
+          const float value = random_value(random);
+          std::memcpy(a.memory.data() + i, &value, 4);
+        }
+      }
+      std::memcpy(b.memory.data(), a.memory.data(), a.memory.size());
+      const std::vector<std::byte> before = a.memory;
+      write_color(fast, {&a.view, 0, 0, &in.quads, in.mask, in.color, in.second});
+      write_color(general, {&b.view, 0, 0, &in.quads, in.mask, in.color, in.second});
+      ASSERT_EQ(a.memory, b.memory) << "format " << format << " case " << n;
+      changed += a.memory != before;
+    }
+  }
+  EXPECT_GT(changed, 1500u);
+}
+
+/// The reference's formula: within one of the rounded product, exact for 0 and 255.
+TEST(Color, ByteProductsAreNearlyRounded) {
+  for (std::uint32_t a = 0; a < 256; ++a) {
+    for (std::uint32_t b = 0; b < 256; ++b) {
+      EXPECT_NEAR(NormalizedBlend<8>::mul(a, b), (a * b * 2 + 255) / 510, 1) << a << " " << b;
+    }
+    EXPECT_EQ(NormalizedBlend<8>::mul(a, 255), a);
+    EXPECT_EQ(NormalizedBlend<8>::mul(a, 0), 0u);
+  }
+  EXPECT_EQ(NormalizedBlend<8>::mul(253, 191), 189u);  // 189.5 is rounded down
+}
+
+TEST(Color, ComplementaryFactorsAreRecognisedBothWays) {
+  using Lerp = BlendShape::Lerp;
+  EXPECT_EQ(complementary(VK_BLEND_FACTOR_SRC_ALPHA, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA), Lerp::kSource);
+  EXPECT_EQ(complementary(VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR, VK_BLEND_FACTOR_DST_COLOR), Lerp::kDestination);
+  EXPECT_EQ(complementary(VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ZERO), Lerp::kSource);
+  EXPECT_EQ(complementary(VK_BLEND_FACTOR_ZERO, VK_BLEND_FACTOR_ONE), Lerp::kDestination);
+  EXPECT_EQ(complementary(VK_BLEND_FACTOR_SRC1_ALPHA, VK_BLEND_FACTOR_ONE_MINUS_SRC1_ALPHA), Lerp::kSource);
+  EXPECT_EQ(complementary(VK_BLEND_FACTOR_SRC_COLOR, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA), Lerp::kNone);
+  EXPECT_EQ(complementary(VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE), Lerp::kNone);
+}
+
+/// Writes one colour to pixel (0, 0) and returns the stored word.
+std::uint32_t store_one(VkFormat format, std::array<float, 4> color) {
+  const base::ScopedFloatMode mode(base::Denormals::kFlush);
+  Target target(format);
+  Inputs in{};
+  for (std::size_t c = 0; c < 4; ++c) in.color[c].lane[0] = base::bits_of(color[c]);
+  write_color(make_color_writer(format, {}, {}), {&target.view, 0, 0, &in.quads, 1, in.color, nullptr});
+  std::uint32_t word;
+  std::memcpy(&word, target.view.block(0, 0, 0, 0, 0, 0), 4);
+  return word;
+}
+
+TEST(Color, StoresRoundAsTheTablesSay) {
+  EXPECT_EQ(store_one(VK_FORMAT_R8G8B8A8_UNORM, {0.1f, 0.3f, 0.5f, 0.7f}), 0xb2804c1au);
+  EXPECT_EQ(store_one(VK_FORMAT_B8G8R8A8_UNORM, {0.1f, 0.3f, 0.5f, 0.7f}), 0xb21a4c80u);
+  EXPECT_EQ(store_one(VK_FORMAT_R8G8B8A8_UNORM, {NAN, -1.0f, 2.0f, INFINITY}), 0xffff0000u);
+  // A shader's 5 and 6 bits truncate the byte: 0.5 -> 0x80 -> 16, 32.
+  EXPECT_EQ(store_one(VK_FORMAT_R5G6B5_UNORM_PACK16, {0.5f, 0.5f, 0.5f, 1.0f}) & 0xffff, 16u << 11 | 32u << 5 | 16u);
+  EXPECT_EQ(store_one(VK_FORMAT_R16_SFLOAT, {0.7f, 0, 0, 0}) & 0xffff, 0x3999u);
+}
+
+}  // namespace
+}  // namespace vitrine::raster
