@@ -1,6 +1,8 @@
 // Random triangles, lines and points with random state: culling, depth, stencil, blending, viewports, scissors,
 // formats.
+#include <cmath>
 #include "harness/case.h"
+
 #include "harness/graphics.h"
 
 namespace vitrine::cts {
@@ -47,7 +49,7 @@ std::string fragment_text(Random& random, const TargetSpec& target) {
 }
 
 /// Clip coordinates: mostly in view, often across the planes, sometimes with w < 0; some shared and degenerate.
-std::vector<float> random_vertices(Random& random, uint32_t count, bool clipped) {
+std::vector<float> random_vertices(Random& random, uint32_t count, bool clipped, bool inside_xy) {
   std::vector<float> values;
   const float size = random.pick({0.05f, 0.3f, 1.0f, 1.0f});
   float cx = 0, cy = 0;
@@ -60,10 +62,15 @@ std::vector<float> random_vertices(Random& random, uint32_t count, bool clipped)
                     : random.chance(0.5f)          ? 1.0f
                                                    : random.real(0.2f, 4.0f);
     const float reach = clipped ? random.pick({1.0f, 2.0f, 20.0f}) : 1.0f;
-    const float x = clipped ? cx + random.real(-1, 1) * size * reach
-                            : std::min(std::max(cx + random.real(-1, 1) * size, -1.0f), 1.0f);
-    const float y = clipped ? cy + random.real(-1, 1) * size * reach
-                            : std::min(std::max(cy + random.real(-1, 1) * size, -1.0f), 1.0f);
+    float x = clipped ? cx + random.real(-1, 1) * size * reach
+                      : std::min(std::max(cx + random.real(-1, 1) * size, -1.0f), 1.0f);
+    float y = clipped ? cy + random.real(-1, 1) * size * reach
+                      : std::min(std::max(cy + random.real(-1, 1) * size, -1.0f), 1.0f);
+    // The reference draws points whose centre lies outside the volume (deviations.md, point-clipping).
+    if (inside_xy) {
+      x = std::min(std::max(x, -1.0f), 1.0f);
+      y = std::min(std::max(y, -1.0f), 1.0f);
+    }
     const float z = clipped ? random.real(-0.5f, 1.5f) : random.unit();
     for (const float v : {x * w, y * w, z * w, w}) values.push_back(v);
     for (int c = 0; c < 8; ++c) values.push_back(random.unit());
@@ -117,6 +124,9 @@ TargetSpec random_target(Run& run, bool multisample) {
   if (random.chance(0.6f))
     spec.depth = random.pick({VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT, VK_FORMAT_X8_D24_UNORM_PACK32,
                               VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT});
+  // A single BGRA8 target without depth sends the reference on a route of its own (deviations.md, bgra8-route).
+  if (spec.colors == std::vector{VK_FORMAT_B8G8R8A8_UNORM} && !spec.depth && !multisample)
+    spec.colors = {VK_FORMAT_R8G8B8A8_UNORM};
   if (multisample) {
     spec.samples = VK_SAMPLE_COUNT_4_BIT;
     spec.resolve = random.chance(0.5f);
@@ -144,7 +154,7 @@ void random_state(Run& run, GraphicsSpec& spec, const TargetSpec& target, Shape 
     spec.depth.depthTestEnable = random.chance(0.8f);
     spec.depth.depthWriteEnable = random.chance(0.8f);
     spec.depth.depthCompareOp = random.chance(0.5f) ? VK_COMPARE_OP_LESS : static_cast<VkCompareOp>(random.below(8));
-    spec.depth.stencilTestEnable = random.chance(0.5f);
+    spec.depth.stencilTestEnable = random.chance(0.4f);
     spec.depth.front = random_stencil(random);
     spec.depth.back = random_stencil(random);
   }
@@ -155,16 +165,23 @@ void random_state(Run& run, GraphicsSpec& spec, const TargetSpec& target, Shape 
     spec.blends.push_back(blend);
   }
   for (float& constant : spec.blend.blendConstants) constant = random.unit();
+  // The reference cuts lines, points and samples at the viewport's and scissor's pixels (deviations.md,
+  // viewport-scissor and multisample-scissor).
+  if (shape != Shape::kTriangles) return;
+  const bool multisample = target.samples != VK_SAMPLE_COUNT_1_BIT;
   const auto width = static_cast<float>(target.width), height = static_cast<float>(target.height);
   if (random.chance(0.4f)) {
-    const float x = random.unit() * width * 0.4f, y = random.unit() * height * 0.4f;
-    VkViewport viewport{x, y, width - x * 1.5f, height - y * 1.5f, 0.0f, 1.0f};
-    if (random.chance(0.3f)) viewport = {x, height - y, width * 0.5f, -(height - y * 1.5f), 0.0f, 1.0f};
+    const float step = multisample ? 1.0f : 0.125f;
+    const auto length = [&](float limit) { return std::floor(random.unit() * limit / step) * step; };
+    const float x = length(width * 0.4f), y = length(height * 0.4f);
+    const float w = width - x - length(width * 0.3f), h = height - y - length(height * 0.3f);
+    VkViewport viewport{x, y, w, h, 0.0f, 1.0f};
+    if (random.chance(0.3f)) viewport = {x, y + h, w, -h, 0.0f, 1.0f};
     if (random.chance(0.4f)) viewport.minDepth = random.unit();
     if (random.chance(0.4f)) viewport.maxDepth = random.unit();
     spec.viewports = {viewport};
   }
-  if (random.chance(0.3f)) {
+  if (random.chance(0.3f) && !multisample) {
     const auto x = static_cast<int32_t>(random.below(target.width / 2)),
                y = static_cast<int32_t>(random.below(target.height / 2));
     spec.scissors = {{{x, y}, {random.below(target.width), random.below(target.height)}}};
@@ -202,7 +219,7 @@ void random_draws(Run& run, Shape shape, bool multisample, bool clipped) {
   run.note("fragment", spec.fragment);
   const VkPipeline pipeline = make_pipeline(run, spec, target);
   const uint32_t count = 3 * (1 + random.below(40)) + (random.chance(0.1f) ? 1 : 0);
-  const Buffer vertices = run.buffer_of(random_vertices(random, count, clipped));
+  const Buffer vertices = run.buffer_of(random_vertices(random, count, clipped, shape == Shape::kPoints));
   run.once([&](VkCommandBuffer cmd) {
     target.begin(cmd);
     bind_pipeline(cmd, pipeline);

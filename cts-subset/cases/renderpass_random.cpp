@@ -46,8 +46,8 @@ Plan random_plan(Run& run) {
   spec.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   const auto op = [&] { return static_cast<VkAttachmentLoadOp>(random.below(2)); };  // LOAD or CLEAR
   for (uint32_t n = 1 + random.below(3); n > 0; --n) {
-    spec.format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT,
-                               VK_FORMAT_R16G16B16A16_SFLOAT});
+    spec.format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+                               VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT});
     plan.colors.push_back(
         {run.image(spec), op(), op(), clear_value(spec.format, random.unit(), random.unit(), random.unit(), 1.0f)});
     ImageSpec single = spec;

@@ -1,0 +1,289 @@
+// One case per row of deviations.md: the devices differ exactly as the row says, so that the row cannot rot.
+#include <array>
+
+#include "harness/case.h"
+#include "harness/graphics.h"
+
+namespace vitrine::cts {
+namespace {
+
+std::string same(const Output& a, const Output& b, const char* what) {
+  const Comparison found = compare(a, b);
+  return found.first.empty() ? "" : std::string(what) + ": " + found.first;
+}
+std::string different(const Output& a, const Output& b, const char* what) {
+  return compare(a, b).first.empty() ? std::string(what) + " does not show" : "";
+}
+std::string first_of(std::initializer_list<std::string> messages) {
+  for (const std::string& message : messages)
+    if (!message.empty()) return message;
+  return "";
+}
+
+/// Output 0 is the case; output 1 is the same picture made in a way that the reference gets right.
+std::string case_against_control(const std::vector<Output>& device, const std::vector<Output>& reference) {
+  return first_of({same(device[1], reference[1], "the control"),
+                   different(reference[0], reference[1], "the reference's fault"),
+                   same(device[0], reference[1], "the device")});
+}
+
+/// Draws vertices (vec4 position, vec4 colour) into a fresh target and puts its colour out.
+void draw(Run& run, const std::string& name, const TargetSpec& target_spec, GraphicsSpec spec,
+          const std::vector<float>& values) {
+  const Target target = make_target(run, target_spec);
+  if (spec.vertex.empty()) spec.vertex = kColorVertex;
+  if (spec.fragment.empty()) spec.fragment = kColorFragment;
+  if (spec.bindings.empty()) spec.floats({4, 4});
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  const Buffer vertices = run.buffer_of(values);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, static_cast<uint32_t>(values.size() / 8), 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  run.out(name, target.colors[0]);
+  run.outputs.back().may_be_blank = true;
+}
+
+std::vector<float> colored(const std::vector<std::array<float, 4>>& positions) {
+  std::vector<float> values;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    values.insert(values.end(), positions[i].begin(), positions[i].end());
+    for (const float c : {0.25f + 0.5f * static_cast<float>(i % 2), 0.5f, 0.75f, 1.0f}) values.push_back(c);
+  }
+  return values;
+}
+
+const AddCase kNine("rasterization", "deviation.nine_vertices", "nine-vertices", case_against_control, [](Run& run) {
+  std::vector<std::array<float, 4>> positions = {{-0.9f, -0.8f, 0, 1}, {0.2f, -0.7f, 0, 1}, {-0.5f, 0.6f, 0, 1},
+                                                 {0.1f, -0.2f, 0, 1},  {0.9f, 0.1f, 0, 1},  {0.3f, 0.8f, 0, 1},
+                                                 {0.1f, 0.3f, 0, 1},   {0.4f, 0.3f, 0, 1},  {0.7f, 0.3f, 0, 1}};
+  draw(run, "nine", {}, {}, colored(positions));
+  for (int k = 0; k < 3; ++k) positions.push_back({0.5f, 0.5f, 0, 1});
+  draw(run, "twelve", {}, {}, colored(positions));
+});
+
+const AddCase kScissor(
+    "rasterization", "deviation.multisample_scissor", "multisample-scissor",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) {
+      // The control has no scissor: inside the rectangle the device equals it, outside it holds the clear value.
+      Output expected = reference[1];
+      for (uint32_t s = 0; s < expected.layers; ++s)
+        for (uint32_t y = 0; y < expected.height; ++y)
+          for (uint32_t x = 0; x < expected.width; ++x)
+            if (x < 20 || x >= 44 || y < 17 || y >= 50)
+              std::memcpy(&expected.bytes[((size_t{s} * expected.height + y) * expected.width + x) * 16],
+                          &expected.bytes[0], 16);
+      return first_of({same(device[1], reference[1], "the control"),
+                       different(reference[0], expected, "the reference's fault"),
+                       same(device[0], expected, "the device")});
+    },
+    [](Run& run) {
+      TargetSpec target;
+      target.samples = VK_SAMPLE_COUNT_4_BIT;
+      const std::vector<float> values = colored({{-0.9f, -0.9f, 0, 1}, {0.9f, -0.8f, 0, 1}, {-0.1f, 0.9f, 0, 1}});
+      GraphicsSpec spec;
+      spec.scissors = {{{20, 17}, {24, 33}}};
+      draw(run, "scissored", target, spec, values);
+      draw(run, "whole", target, {}, values);
+    });
+
+const char kBigPoint[] = R"(
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 passed;
+void main() { passed = color; gl_Position = position; gl_PointSize = 11.0; })";
+
+const AddCase kViewport("rasterization", "deviation.viewport_scissor", "viewport-scissor", case_against_control,
+                        [](Run& run) {
+                          run.require(run.gpu.features.largePoints, "largePoints");
+                          GraphicsSpec spec;
+                          spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+                          spec.vertex = kBigPoint;
+                          GraphicsSpec inner = spec;
+                          inner.viewports = {{16.0f, 16.0f, 32.0f, 32.0f, 0.0f, 1.0f}};
+                          draw(run, "small_viewport", {}, inner, colored({{-0.875f, 0.5f, 0.5f, 1.0f}}));
+                          draw(run, "whole_viewport", {}, spec, colored({{-0.4375f, 0.25f, 0.5f, 1.0f}}));
+                        });
+
+const AddCase kPoint("clipping", "deviation.point_clipping", "point-clipping", case_against_control, [](Run& run) {
+  run.require(run.gpu.features.largePoints, "largePoints");
+  GraphicsSpec spec;
+  spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+  spec.vertex = kBigPoint;
+  draw(run, "outside", {}, spec, colored({{-1.0625f, 0.25f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 1.0f}}));
+  draw(run, "inside_only", {}, spec, colored({{-5.0f, 0.25f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 1.0f}}));
+});
+
+/// The same triangles, crossing the view volume, into BGRA8 with and without a depth attachment.
+const AddCase kBgra("clipping", "deviation.bgra8_route", "bgra8-route", case_against_control, [](Run& run) {
+  std::vector<float> values;
+  for (int i = 0; i < 3 * 12; ++i) {
+    const float w = run.random.real(0.7f, 1.4f);
+    for (const float v : {run.random.real(-1.7f, 1.7f) * w, run.random.real(-1.7f, 1.7f) * w, 0.5f * w, w})
+      values.push_back(v);
+    for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
+  }
+  TargetSpec target;
+  target.colors = {VK_FORMAT_B8G8R8A8_UNORM};
+  target.width = target.height = 200;
+  draw(run, "alone", target, {}, values);
+  target.depth = VK_FORMAT_D32_SFLOAT;
+  draw(run, "with_depth", target, {}, values);
+});
+
+const AddCase kIdentity(
+    "rasterization", "deviation.identity_viewport", "identity-viewport", case_against_control, [](Run& run) {
+      TargetSpec target;
+      target.colors = {VK_FORMAT_R32G32B32A32_SFLOAT};
+      target.width = target.height = 8;
+      const std::vector<float> values = colored({{0, 0, 0.5f, 2}, {2, 0, 0.5f, 2}, {0, 2, 0.5f, 2}});
+      GraphicsSpec spec;
+      spec.fragment =
+          "layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n"
+          "void main() { result = gl_FragCoord.zwzw; }\n";
+      spec.viewports = {{-1.0f, -1.0f, 2.0f, 2.0f, 0.0f, 1.0f}};
+      draw(run, "identity", target, spec, values);
+      spec.viewports = {{-1.0f, -1.0f, 2.0f, 2.0f, 0.0f, 0.99999994f}};
+      spec.fragment =
+          "layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n"
+          "void main() { result = vec4(0.25, 0.5, 0.25, 0.5) + 0.0 * gl_FragCoord; }\n";
+      draw(run, "not_identity", target, spec, values);
+    });
+
+/// Runs 64 invocations of `expression` over (int x, int y) pairs.
+void integers(Run& run, const std::string& name, const std::string& statements, const std::vector<int32_t>& in) {
+  const Buffer input = run.buffer_of(in), out = run.buffer(in.size() * 2);
+  const Resources res = run.resources({storage_buffer(0, input), storage_buffer(1, out)});
+  const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, R"(
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) buffer A { ivec2 a[]; };
+layout(std430, binding = 1) buffer R { int r[]; };
+void main() {
+  uint id = gl_GlobalInvocationID.x;
+  int x = a[id].x, y = a[id].y;
+)" + statements + "\n}\n"));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, static_cast<uint32_t>(in.size() / 2), 1, 1);
+  });
+  run.out(name, out, VK_FORMAT_R32_SINT);
+}
+
+const AddCase kModulo("glsl", "deviation.signed_modulo", "signed-modulo", case_against_control, [](Run& run) {
+  const std::vector<int32_t> pairs = {-7, 3, 7, -3, -7, -3, 7, 3, -1, 5, 100, -7, 0, -4, -6, 3};
+  integers(run, "smod", "  r[id] = x % y;", pairs);
+  integers(run, "floored", "  int q = x / y; int m = x - q * y; r[id] = m != 0 && (m < 0) != (y < 0) ? m + y : m;",
+           pairs);
+});
+
+const AddCase kBudget("glsl", "deviation.loop_budget", "loop-budget", case_against_control, [](Run& run) {
+  integers(run, "long_loop", "  int n = 0;\n  for (int k = 0; k < x; ++k) n += (k ^ y) & 3;\n  r[id] = n + x;",
+           {70000, 1, 10, 2});
+  integers(
+      run, "short_loops",
+      "  int n = 0;\n  if (x > 60000) n = 105000; else for (int k = 0; k < x; ++k) n += (k ^ y) & 3;\n  r[id] = n + x;",
+      {70000, 1, 10, 2});
+});
+
+/// A derivative of a value loaded from a storage buffer, at the edges of a triangle.
+const AddCase kHelper("glsl", "deviation.helper_lane_loads", "helper-lane-loads", case_against_control, [](Run& run) {
+  run.require(run.gpu.features.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
+  TargetSpec target;
+  target.colors = {VK_FORMAT_R32G32B32A32_SFLOAT};
+  std::vector<float> hundred(64 * 64, 100.0f);
+  for (size_t i = 0; i < hundred.size(); ++i) hundred[i] += static_cast<float>(i % 64);
+  const Buffer table = run.buffer_of(hundred);
+  const Resources res = run.resources({storage_buffer(0, table)});
+  for (const bool loaded : {true, false}) {
+    const Target where = make_target(run, target);
+    GraphicsSpec spec;
+    spec.layout = res.layout;
+    spec.vertex = kColorVertex;
+    spec.fragment =
+        std::string("layout(std430, binding = 0) readonly buffer T { float t[]; };\n") +
+        "layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n" + "void main() { float x = " +
+        (loaded ? "t[uint(gl_FragCoord.y) * 64u + uint(gl_FragCoord.x)]" : "100.0 + floor(gl_FragCoord.x)") +
+        "; result = vec4(dFdx(x), dFdy(x), x, 1.0); }\n";
+    spec.floats({4, 4});
+    const VkPipeline pipeline = make_pipeline(run, spec, where);
+    const Buffer vertices = run.buffer_of(colored({{-0.8f, -0.7f, 0, 1}, {0.7f, -0.3f, 0, 1}, {-0.1f, 0.9f, 0, 1}}));
+    run.once([&](VkCommandBuffer cmd) {
+      where.begin(cmd);
+      bind_pipeline(cmd, pipeline);
+      res.bind(cmd);
+      bind_vertices(cmd, vertices);
+      vkCmdDraw(cmd, 3, 1, 0, 0);
+      vkCmdEndRenderPass(cmd);
+    });
+    run.out(loaded ? "loaded" : "computed", where.colors[0]);
+  }
+});
+
+/// Samples with explicit LOD where neighbouring invocations want different filters, or one is at a cube's corner; the
+/// control makes all invocations of a group alike.
+void neighbours(Run& run, bool cube) {
+  ImageSpec spec;
+  spec.format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  spec.extent = {8, 8, 1};
+  spec.levels = cube ? 1 : 4;
+  if (cube) {
+    spec.view = VK_IMAGE_VIEW_TYPE_CUBE;
+    spec.layers = 6;
+  }
+  const Image image = run.image(spec);
+  run.fill_random(image);
+  VkSamplerCreateInfo sampler_info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  sampler_info.magFilter = cube ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  sampler_info.minFilter = VK_FILTER_LINEAR;
+  sampler_info.addressModeU = sampler_info.addressModeV = sampler_info.addressModeW =
+      VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  sampler_info.maxLod = 3.0f;
+  const VkSampler sampler = run.sampler(sampler_info);
+  std::vector<float> coordinates;
+  for (int i = 0; i < 512; ++i) {
+    const bool corner = i % 8 == 3;
+    if (cube) {
+      for (const float v :
+           {1.0f, corner ? 0.99f : run.random.real(-0.8f, 0.8f), corner ? -0.98f : run.random.real(-0.8f, 0.8f), 0.0f})
+        coordinates.push_back(v);
+    } else {
+      for (const float v : {run.random.unit(), run.random.unit(), 0.0f, corner ? 1.5f : -1.0f})
+        coordinates.push_back(v);
+    }
+  }
+  const Buffer table = run.buffer_of(coordinates);
+  for (const bool alone : {false, true}) {
+    const Buffer out = run.buffer(512 * 16);
+    const Resources res = run.resources({sampled(0, image, sampler), storage_buffer(1, table), storage_buffer(2, out)});
+    const VkPipeline pipeline = run.compute(
+        res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT,
+                               std::string("layout(local_size_x = 8) in;\n") + "layout(binding = 0) uniform sampler" +
+                                   (cube ? "Cube" : "2D") +
+                                   " t;\n"
+                                   "layout(std430, binding = 1) buffer A { vec4 a[]; };\nlayout(std430, binding = 2) "
+                                   "buffer R { vec4 r[]; };\n"
+                                   "void main() {\n  uint id = gl_WorkGroupID.x" +
+                                   (alone ? ";\n" : " * 8u + gl_LocalInvocationIndex;\n") +
+                                   "  vec4 v = textureLod(t, a[id]." + (cube ? "xyz" : "xy") + ", a[id].w);\n  " +
+                                   (alone ? "if (gl_LocalInvocationIndex == 0u) " : "") + "r[id] = v;\n}\n"));
+    run.once([&](VkCommandBuffer cmd) {
+      vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+      res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+      vkCmdDispatch(cmd, alone ? 512 : 64, 1, 1);
+    });
+    run.out(alone ? "alone" : "together", out, VK_FORMAT_R32G32B32A32_SFLOAT);
+  }
+}
+
+const AddCase kFilters("texture", "deviation.mixed_filters", "mixed-filters", case_against_control,
+                       [](Run& run) { neighbours(run, false); });
+const AddCase kCorners("texture", "deviation.cube_corners", "cube-corners", case_against_control,
+                       [](Run& run) { neighbours(run, true); });
+
+}  // namespace
+}  // namespace vitrine::cts
