@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <map>
+#include <mutex>
 
 #include "icd/util.h"
 #include "icd/vulkan_api.h"
@@ -20,7 +21,7 @@ F get(VkInstance instance, const char* name) {
 }
 #define VK_GET(instance, name) ::vitrine::icd::test::get<PFN_vk##name>(instance, "vk" #name)
 
-/// Allocation callbacks that count, fail at will and know what is still alive.
+/// Allocation callbacks that count, fail at will and know what is still alive. Thread-safe: queues allocate too.
 class CountingAllocator {
  public:
   CountingAllocator() {
@@ -37,14 +38,13 @@ class CountingAllocator {
   const VkAllocationCallbacks* callbacks() const { return &callbacks_; }
   /// The n-th allocation from now on fails (0: the next one), and all after it.
   void fail_after(std::size_t n) { remaining_ = n; }
-  void never_fail() { remaining_ = ~std::size_t{0}; }
   std::size_t live() const { return live_.size(); }
-  std::size_t total() const { return total_; }
   bool failed() const { return failed_; }
   void clear_failed() { failed_ = false; }
 
  private:
   void* allocate(std::size_t size, std::size_t alignment) {
+    const std::lock_guard lock(mutex_);
     if (remaining_ == 0) {
       failed_ = true;
       return nullptr;
@@ -52,19 +52,19 @@ class CountingAllocator {
     if (remaining_ != ~std::size_t{0}) --remaining_;
     void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
     live_[memory] = size;
-    ++total_;
     return memory;
   }
   void release(void* memory) {
     if (!memory) return;
+    const std::lock_guard lock(mutex_);
     EXPECT_EQ(live_.erase(memory), 1u) << "freed twice or not ours";
     std::free(memory);
   }
 
   VkAllocationCallbacks callbacks_{};
+  std::mutex mutex_;
   std::map<void*, std::size_t> live_;
   std::size_t remaining_ = ~std::size_t{0};
-  std::size_t total_ = 0;
   bool failed_ = false;
 };
 
