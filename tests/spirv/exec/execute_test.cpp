@@ -1,42 +1,13 @@
 // The executor on hand-written functions: interface, preamble, branches, loops, buffers, compute.
-#include <gtest/gtest.h>
+#include <cstdlib>
 
-#include <numeric>
-
-#include "spirv/lower/lower.h"
-#include "spirv/program.h"
-#include "tests/spirv/ir_builder.h"
+#include "tests/spirv/shader_run.h"
 
 namespace vitrine::spirv::test {
 namespace {
 
 /// Read once per process, at the first run of a wave: set before any test.
 const int budget_is_set = setenv("VITRINE_SHADER_BUDGET", "1000000", 1);
-
-/// A shader with its draw: inputs are set and outputs read by location.
-struct ShaderRun {
-  explicit ShaderRun(Builder& builder, const ResourceTable& table = {}) {
-    auto lowered = lower(std::move(builder.function));
-    EXPECT_TRUE(lowered.ok()) << lowered.message();
-    shader = lowered.take();
-    bound.emplace(*shader, table, fault);
-    wave.bind(*bound);
-  }
-  base::WaveRegister* input(std::uint32_t location) {
-    for (const InterfaceSlot& slot : shader->interface().inputs)
-      if (slot.location == location) return &wave.input(slot.reg);
-    return nullptr;
-  }
-  const base::WaveRegister& output(std::uint32_t location) {
-    for (const InterfaceSlot& slot : shader->interface().outputs)
-      if (slot.location == location) return wave.output(slot.reg);
-    throw std::runtime_error("no such output");
-  }
-  Fault fault;
-  std::unique_ptr<Shader> shader;
-  std::optional<BoundShader> bound;
-  WaveRunner wave;
-};
 
 TEST(Execute, StraightLine) {
   Builder b;
