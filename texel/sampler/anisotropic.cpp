@@ -1,0 +1,134 @@
+// Anisotropic filtering as the reference does it: texels inside an ellipse, weighted by a table of a Gaussian
+// (lavapipe-texture-blend.md A8). Its steps are numbered as there.
+#include "texel/sampler/anisotropic.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/numeric.h"
+#include "texel/sampler/address.h"
+
+namespace vitrine::texel {
+namespace {
+
+using base::float_of;
+
+constexpr std::size_t kWeights = 1024;
+/// An ellipse wider than this is only met with non-finite derivatives.
+constexpr std::int64_t kMaxSpan = 4096;
+
+constexpr double exponential(double x) {
+  double term = 1, sum = 1;
+  for (int i = 1; i < 40; ++i) {
+    term = term * x / i;
+    sum += term;
+  }
+  return sum;
+}
+
+/// exp(-2 i / 1023) to six decimals; the reference's table differs in the last digit of a few entries.
+constexpr std::array<float, kWeights> kWeightTable = [] {
+  std::array<float, kWeights> table{};
+  for (std::size_t i = 0; i < kWeights; ++i) {
+    const double value = exponential(-2.0 * static_cast<double>(i) / 1023.0);
+    const auto millionths = static_cast<std::int64_t>(value * 1e6 + 0.5);
+    table[i] = static_cast<float>(static_cast<double>(millionths) / 1e6);
+  }
+  table[44] = 0.917575f;
+  table[388] = 0.468343f;
+  table[493] = 0.381429f;
+  table[538] = 0.349306f;
+  table[580] = 0.321770f;
+  table[864] = 0.184676f;
+  table[909] = 0.169124f;
+  table[911] = 0.168463f;
+  table[939] = 0.159489f;
+  return table;
+}();
+
+float weight_of(float q) {
+  const std::int32_t i = base::round_to_int(q);
+  return i <= 1023 ? kWeightTable[static_cast<std::size_t>(std::max(i, 0))] : 0.0f;
+}
+
+/// The ellipse in texels of the level: centre, bounds, and the quadratic form A, B, C scaled for the table.
+struct Ellipse {
+  float tu = 0, tv = 0;
+  float a = 0, b = 0, c = 0;
+  std::int32_t u0 = 0, u1 = 0, v0 = 0, v1 = 0;
+};
+
+Ellipse make_ellipse(const LanePoint& point, const Extent& size, std::uint32_t image_level) {
+  Ellipse e;
+  const float scaling = 1.0f / static_cast<float>(1u << image_level);
+  const float width = static_cast<float>(size.width), height = static_cast<float>(size.height);
+  const float ux = point.ddx[0] * width * scaling, uy = point.ddy[0] * width * scaling;
+  const float vx = point.ddx[1] * height * scaling, vy = point.ddy[1] * height * scaling;
+  e.a = (vx * vx + vy * vy) + 1.0f;
+  e.b = (ux * vx + uy * vy) * -2.0f;
+  e.c = (ux * ux + uy * uy) + 1.0f;
+  const float f = e.a * e.c - (e.b * e.b) / 4.0f;
+  const float d = (0.0f - e.b * e.b) + (e.a * e.c) * 4.0f;
+  const float box_u = (2.0f / d) * std::sqrt((d * e.c) * f);
+  const float box_v = (2.0f / d) * std::sqrt((e.a * d) * f);
+  const float g = 1023.0f / f;
+  e.a = e.a * g;
+  e.b = e.b * g;
+  e.c = e.c * g;
+  e.tu = point.coord[0] * (width * scaling) + -0.5f;
+  e.tv = point.coord[1] * (height * scaling) + -0.5f;
+  e.u0 = floor_to_int(e.tu - box_u);
+  e.u1 = base::truncate_to_int(std::ceil(e.tu + box_u));
+  e.v0 = floor_to_int(e.tv - box_v);
+  e.v1 = base::truncate_to_int(std::ceil(e.tv + box_v));
+  return e;
+}
+
+Texel nearest_at(LaneSample lane, std::uint32_t level, float u, float v) {
+  const Extent& extent = lane.plan->view->level[level].extent;
+  const std::uint32_t size[2] = {extent.width, extent.height};
+  lane.coord = {u / static_cast<float>(extent.width), v / static_cast<float>(extent.height), 0};
+  std::int32_t at[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    Axis axis{lane.plan->address[i], lane.plan->pot[i], true, static_cast<std::int32_t>(size[i]),
+              lane.offset[i],        lane.has_offset};
+    at[i] = nearest_texel(axis, lane.coord[i]);
+  }
+  return texel_or_border(lane, level, lane.layer + (lane.plan->cube ? lane.face : 0), at[0], at[1], 0);
+}
+
+bool reasonable(std::int64_t first, std::int64_t last) { return last - first < kMaxSpan; }
+
+}  // namespace
+
+Texel sample_anisotropic(const LaneSample& lane, const LanePoint& point, std::uint32_t level) {
+  const ImageView& view = *lane.plan->view;
+  const Ellipse e = make_ellipse(point, view.level0_extent, view.base_level + level);
+  float color[4] = {};
+  float total = 0;
+  const float u_start = static_cast<float>(e.u0) - e.tu;
+  const float dq_start = (u_start * 2.0f + 1.0f) * e.a;
+  const float q_start = (u_start * u_start) * e.a;
+  const float ddq = e.a * 2.0f;
+  const bool finite = reasonable(e.u0, e.u1) && reasonable(e.v0, e.v1);
+  for (std::int64_t v = e.v0; finite && v <= e.v1; ++v) {
+    const float offset = static_cast<float>(v) - e.tv;
+    float dq = offset * e.b + dq_start;
+    float q = (e.c * offset + e.b * u_start) * offset + q_start;
+    for (std::int64_t u = e.u0; u <= e.u1; ++u) {
+      const float weight = weight_of(q);
+      const Texel texel = nearest_at(lane, level, static_cast<float>(u), static_cast<float>(v));
+      for (std::size_t c = 0; c < 4; ++c) color[c] = color[c] + float_of(texel[c]) * weight;
+      total = total + weight;
+      q = q + dq;
+      dq = dq + ddq;
+    }
+  }
+  if (total == 0.0f) return sample_level(lane, level, true);
+  Texel result;
+  for (std::size_t c = 0; c < 4; ++c) result[c] = base::bits_of(color[c] / total);
+  return result;
+}
+
+}  // namespace vitrine::texel
