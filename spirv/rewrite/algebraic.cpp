@@ -1,0 +1,387 @@
+// The engine that applies the rule table the way the reference's compiler does (lavapipe-shader-math.md 4.1): users
+// before producers, the first matching rule in table order; replaced values wake those of their users for whom the
+// change of structure matters; replaced instructions' operands stay, and count as uses, until dead code is removed.
+#include <array>
+#include <bit>
+#include <deque>
+
+#include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/pattern.h"
+#include "spirv/rewrite/range.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+using Swizzle = std::array<std::uint8_t, 4>;
+
+/// Bit per shape that an instruction has.
+using State = std::array<std::uint64_t, kMaxShapes / 64>;
+
+constexpr unsigned kMaxOrders = 8;  ///< commutative operations of one search that are tried in both orders
+
+struct Match {
+  std::array<Src, 8> variable;
+  std::uint32_t seen = 0;
+  std::uint32_t orders = 0;  ///< bit i: commutative operation i has its operands swapped
+  bool inexact = false;      ///< both stick over the attempts with other orders, as in the reference
+  bool has_exact = false;
+};
+
+class Rewriter {
+ public:
+  Rewriter(Graph& graph, const Rules& rules) : graph_(graph), rules_(rules), ranges_(graph) {
+    states_.resize(graph.values.size());
+    inexact_off_ = graph.function.signed_zero_inf_nan_preserve || graph.function.denorm_flush_to_zero;
+  }
+
+  bool run() {
+    std::vector<InstId> order;
+    auto visit = [&](InstId id) {
+      if (graph_.insts[id].kind != Kind::kAlu) return;
+      update_state(id);
+      order.push_back(id);
+    };
+    for_each_inst(graph_, graph_.root, visit);
+    queue_.assign(order.rbegin(), order.rend());
+    bool changed = false;
+    while (!queue_.empty()) {
+      const InstId id = queue_.front();
+      queue_.pop_front();
+      if (!graph_.insts[id].removed && !graph_.insts[id].opaque) changed |= rewrite(id);
+    }
+    return changed;
+  }
+
+ private:
+  // ---- states
+
+  bool has_shape(ValueId value, std::uint16_t shape) const {
+    if (shape == kAnyShape) return true;
+    if (shape == kConstShape) return graph_.constant(value) != nullptr;
+    return (states_[value][shape / 64] >> (shape % 64) & 1) != 0;
+  }
+
+  bool fits(const Inst& inst, const Shape& shape) const {
+    const auto child = [&](unsigned operand, unsigned pattern) {
+      return has_shape(graph_.source(inst, operand).value, shape.child[pattern]);
+    };
+    bool straight = true;
+    for (unsigned i = 0; i < shape.children && straight; ++i) straight = child(i, i);
+    return straight || (shape.commutative && child(0, 1) && child(1, 0));
+  }
+
+  /// True when the state changed.
+  bool update_state(InstId id) {
+    const Inst& inst = graph_.insts[id];
+    State state{};
+    if (!inst.opaque)
+      for (const std::uint16_t shape : rules_.shapes_by_op[static_cast<std::size_t>(inst.op)])
+        if (fits(inst, rules_.shapes[shape])) state[shape / 64] |= std::uint64_t{1} << (shape % 64);
+    if (states_[inst.result] == state) return false;
+    states_[inst.result] = state;
+    return true;
+  }
+
+  void wake_users(ValueId value) {
+    std::vector<ValueId> pending{value};
+    for (std::size_t next = 0; next < pending.size(); ++next) {
+      for (Slot slot = graph_.values[pending[next]].first_use; slot != kNone; slot = graph_.sources[slot].next) {
+        const InstId user = graph_.sources[slot].user;
+        if (graph_.insts[user].kind != Kind::kAlu || !update_state(user)) continue;
+        queue_.push_back(user);
+        pending.push_back(graph_.insts[user].result);
+      }
+    }
+  }
+
+  // ---- conditions
+
+  bool used_as_float_only(ValueId value) const {
+    for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next) {
+      const Inst& user = graph_.insts[graph_.sources[slot].user];
+      if (user.kind != Kind::kAlu || ir::alu_info(user.op).operands[slot - user.first] != 'F') return false;
+    }
+    return true;
+  }
+
+  bool holds_for_inst(Condition condition, const Inst& inst) const {
+    switch (condition) {
+      case Condition::kOnce:
+        return graph_.values[inst.result].uses == 1;
+      case Condition::kUsed:
+        return graph_.values[inst.result].uses != 0;
+      case Condition::kFloatOnly:
+        return used_as_float_only(inst.result);
+      default:
+        return true;
+    }
+  }
+
+  bool is_product(ValueId value) const {
+    const Inst* inst = graph_.def(value);
+    if (!inst || inst->kind != Kind::kAlu || inst->opaque) return false;
+    if (inst->op == Op::kFNeg) return is_product(graph_.source(*inst, 0).value);
+    return inst->op == Op::kFMul;
+  }
+
+  /// Every component that is read is a power of two (or minus one) in the operand's type.
+  bool is_power_of_two(const Inst& inst, std::uint32_t index, const Swizzle& swizzle, unsigned components,
+                       bool negative) const {
+    const Inst* constant = graph_.constant(graph_.source(inst, index).value);
+    if (!constant) return false;
+    const bool is_unsigned = ir::alu_info(inst.op).operands[index] == 'U';
+    for (unsigned c = 0; c < components; ++c) {
+      const std::uint32_t bits = constant->imm[swizzle[c]];
+      const bool sign = (bits & 0x80000000u) != 0;
+      const std::uint32_t magnitude = negative ? 0u - bits : bits;
+      if (negative && (!sign || bits == 0x80000000u)) return false;
+      if (!negative && sign && !is_unsigned) return false;
+      if (magnitude == 0 || (magnitude & (magnitude - 1)) != 0) return false;
+    }
+    return true;
+  }
+
+  bool holds_for_range(Condition condition, const Range& range) const {
+    const bool not_negative = (range.signs & Range::kNegative) == 0,
+               not_positive = (range.signs & Range::kPositive) == 0;
+    switch (condition) {
+      case Condition::kNumber:
+        return range.number;
+      case Condition::kFinite:
+        return range.finite;
+      case Condition::kIntegral:
+        return range.integral;
+      case Condition::kNotNegative:
+        return not_negative;
+      case Condition::kNotPositive:
+        return not_positive;
+      case Condition::kNotZero:
+        return (range.signs & Range::kZero) == 0;
+      case Condition::kGt0:
+        return range.signs == Range::kPositive;
+      case Condition::kLt0:
+        return range.signs == Range::kNegative;
+      case Condition::kNumberNotNegative:
+        return range.number && not_negative;
+      case Condition::kNumberNotPositive:
+        return range.number && not_positive;
+      case Condition::kNumberGt0:
+        return range.number && range.signs == Range::kPositive;
+      case Condition::kNumberLt0:
+        return range.number && range.signs == Range::kNegative;
+      default:
+        return true;
+    }
+  }
+
+  bool holds_for_operand(Condition condition, const Inst& inst, std::uint32_t index, const Swizzle& swizzle,
+                         unsigned components) {
+    const ValueId value = graph_.source(inst, index).value;
+    switch (condition) {
+      case Condition::kNone:
+        return true;
+      case Condition::kNotConst:
+        return graph_.constant(value) == nullptr;
+      case Condition::kFmul:
+        return is_product(value);
+      case Condition::kNotFmul:
+        return !is_product(value);
+      case Condition::kPosPow2:
+        return is_power_of_two(inst, index, swizzle, components, false);
+      case Condition::kNegPow2:
+        return is_power_of_two(inst, index, swizzle, components, true);
+      default:
+        return holds_for_range(condition, ranges_.of_source(inst, index));
+    }
+  }
+
+  // ---- matching
+
+  bool match_constant(const Pattern& pattern, ValueId value, const Swizzle& swizzle, unsigned components) const {
+    const Inst* constant = graph_.constant(value);
+    if (!constant) return false;
+    const bool wants_boolean = pattern.kind == Pattern::Kind::kBoolean;
+    if (constant->boolean != wants_boolean) return false;
+    for (unsigned c = 0; c < components; ++c) {
+      const std::uint32_t bits = constant->imm[swizzle[c]];
+      if (pattern.kind == Pattern::Kind::kFloat) {
+        if (static_cast<double>(std::bit_cast<float>(bits)) != pattern.number) return false;
+      } else if (bits != pattern.bits) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  bool match_variable(const Pattern& pattern, const Inst& inst, std::uint32_t index, const Swizzle& swizzle,
+                      unsigned components, Match& match) {
+    const ValueId value = graph_.source(inst, index).value;
+    Src& bound = match.variable[pattern.variable];
+    if (match.seen >> pattern.variable & 1) {
+      if (bound.value != value) return false;
+      for (unsigned c = 0; c < components; ++c)
+        if (bound.swizzle[c] != swizzle[c]) return false;
+      return true;
+    }
+    if (pattern.constant && !graph_.constant(value)) return false;
+    if (!holds_for_operand(pattern.condition, inst, index, swizzle, components)) return false;
+    match.seen |= 1u << pattern.variable;
+    bound = {value, {}};
+    for (unsigned c = 0; c < components; ++c) bound.swizzle[c] = swizzle[c];
+    return true;
+  }
+
+  bool match_operand(std::uint16_t index, const Inst& inst, std::uint32_t operand, unsigned components,
+                     const Swizzle& outer, Match& match) {
+    const Src& src = graph_.source(inst, operand);
+    Swizzle swizzle{};
+    for (unsigned c = 0; c < components; ++c) swizzle[c] = src.swizzle[outer[c]];
+    const Pattern& pattern = rules_.patterns[index];
+    if (pattern.kind == Pattern::Kind::kVariable)
+      return match_variable(pattern, inst, operand, swizzle, components, match);
+    if (pattern.kind != Pattern::Kind::kOp) return match_constant(pattern, src.value, swizzle, components);
+    const Inst* def = graph_.def(src.value);
+    return def && def->kind == Kind::kAlu && !def->opaque && match_op(pattern, *def, components, swizzle, match);
+  }
+
+  bool match_op(const Pattern& pattern, const Inst& inst, unsigned components, const Swizzle& swizzle, Match& match) {
+    if (pattern.op != inst.op || !holds_for_inst(pattern.condition, inst)) return false;
+    match.inexact |= pattern.inexact;
+    match.has_exact |= inst.exact;
+    if (match.inexact && match.has_exact) return false;
+    const bool swap = pattern.commutative >= 0 && pattern.commutative < static_cast<int>(kMaxOrders) &&
+                      (match.orders >> pattern.commutative & 1) != 0;
+    for (unsigned i = 0; i < pattern.children; ++i) {
+      const unsigned operand = swap && i < 2 ? i ^ 1 : i;
+      if (!match_operand(pattern.child[i], inst, operand, components, swizzle, match)) return false;
+    }
+    return true;
+  }
+
+  bool try_rule(const Rule& rule, const Inst& inst, Match& match) {
+    const Pattern& search = rules_.patterns[rule.search];
+    if (search.inexact && inexact_off_) return false;
+    if (rule.needs_free_zeros && graph_.function.signed_zero_inf_nan_preserve) return false;
+    if (!has_shape(inst.result, search.shape)) return false;
+    match = {};
+    const std::uint32_t attempts = 1u << std::min<unsigned>(rule.commutative, kMaxOrders);
+    for (match.orders = 0; match.orders < attempts; ++match.orders) {
+      match.seen = 0;
+      if (match_op(search, inst, inst.components, {0, 1, 2, 3}, match)) return true;
+    }
+    return false;
+  }
+
+  // ---- replacing
+
+  void place(InstId made) {
+    if (after_) {
+      graph_.insert_after(cursor_, made);
+      cursor_ = made;
+    } else {
+      graph_.insert_before(cursor_, made);
+    }
+    graph_.insts[made].origin = origin_;
+  }
+
+  Src build_constant(const Pattern& pattern) {
+    const std::uint32_t bits = pattern.kind == Pattern::Kind::kFloat
+                                   ? std::bit_cast<std::uint32_t>(static_cast<float>(pattern.number))
+                                   : pattern.bits;
+    const InstId made = graph_.create_const(1, pattern.kind == Pattern::Kind::kBoolean, &bits);
+    place(made);
+    states_.resize(graph_.values.size());
+    return {graph_.insts[made].result, {0, 0, 0, 0}};
+  }
+
+  Src build(std::uint16_t index, unsigned components, const Match& match) {
+    const Pattern& pattern = rules_.patterns[index];
+    if (pattern.kind == Pattern::Kind::kVariable) return match.variable[pattern.variable];
+    if (pattern.kind != Pattern::Kind::kOp) return build_constant(pattern);
+    std::array<Src, 3> operand;
+    for (unsigned i = 0; i < pattern.children; ++i) operand[i] = build(pattern.child[i], components, match);
+    const bool boolean = ir::alu_info(pattern.op).result == 'B';
+    const InstId made =
+        graph_.create(Kind::kAlu, pattern.op, static_cast<std::uint8_t>(components), boolean, pattern.children);
+    graph_.insts[made].exact = match.has_exact || pattern.exact;
+    for (unsigned i = 0; i < pattern.children; ++i) graph_.set_source(made, i, operand[i]);
+    place(made);
+    states_.resize(graph_.values.size());
+    update_state(made);
+    return {graph_.insts[made].result, {0, 1, 2, 3}};
+  }
+
+  /// A value of its own for a replacement that is a part or a rearrangement of another value.
+  ValueId as_value(const Src& src, unsigned components, bool boolean) {
+    bool whole = graph_.values[src.value].components == components;
+    for (unsigned c = 0; c < components; ++c) whole &= src.swizzle[c] == c;
+    if (whole) return src.value;
+    const InstId move =
+        graph_.create(Kind::kAlu, boolean ? Op::kMovB : Op::kMov, static_cast<std::uint8_t>(components), boolean, 1);
+    graph_.set_source(move, 0, src);
+    place(move);
+    states_.resize(graph_.values.size());
+    return graph_.insts[move].result;
+  }
+
+  /// Replacements of unary operations go where their operand is, so that they do not prolong other values' lives.
+  void choose_cursor(InstId id) {
+    const Inst& inst = graph_.insts[id];
+    origin_ = inst.origin;
+    cursor_ = id;
+    after_ = false;
+    switch (inst.op) {
+      case Op::kFNeg:
+      case Op::kFAbs:
+      case Op::kINeg:
+      case Op::kIAbs:
+      case Op::kNot:
+      case Op::kNotB:
+        break;
+      default:
+        return;
+    }
+    const InstId def = graph_.values[graph_.source(inst, 0).value].def;
+    if (def == kNone || graph_.insts[def].kind != Kind::kAlu) return;
+    cursor_ = def;
+    after_ = true;
+  }
+
+  bool rewrite(InstId id) {
+    const Op op = graph_.insts[id].op;
+    for (const std::uint16_t number : rules_.by_op[static_cast<std::size_t>(op)]) {
+      const Rule& rule = rules_.rules[number];
+      Match match;
+      if (!try_rule(rule, graph_.insts[id], match)) continue;
+      choose_cursor(id);
+      const unsigned components = graph_.insts[id].components;
+      const Src built = build(rule.replacement, components, match);
+      const ValueId value = as_value(built, components, graph_.insts[id].boolean);
+      graph_.replace_uses(graph_.insts[id].result, value);
+      graph_.remove(id);
+      wake_users(value);
+      ranges_.clear();
+      return true;
+    }
+    return false;
+  }
+
+  Graph& graph_;
+  const Rules& rules_;
+  RangeAnalysis ranges_;
+  std::vector<State> states_;
+  std::deque<InstId> queue_;
+  bool inexact_off_ = false;
+  InstId cursor_ = kNone;
+  bool after_ = false;
+  ir::Origin origin_;
+};
+
+}  // namespace
+
+bool apply_rules(Graph& graph, RuleSet rules) {
+  return Rewriter(graph, rules == RuleSet::kMain ? main_rules() : late_rules()).run();
+}
+
+}  // namespace vitrine::spirv::rewriting

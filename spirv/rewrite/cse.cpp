@@ -1,0 +1,197 @@
+// Common subexpressions: an instruction equal to one that dominates it is replaced by that one. A scope's entries are
+// forgotten when its block ends.
+#include "spirv/rewrite/passes.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+bool is_uniform_load(const Inst& inst) {
+  if (inst.kind != Kind::kIntrinsic) return false;
+  return inst.op == Op::kLoadInput || inst.op == Op::kLoadPush || inst.op == Op::kLoadUniform;
+}
+
+bool is_invocation_constant(const Inst& inst) {
+  if (inst.kind != Kind::kIntrinsic) return false;
+  switch (inst.op) {
+    case Op::kWorkgroupId:
+    case Op::kNumWorkgroups:
+    case Op::kLocalInvocationId:
+    case Op::kGlobalInvocationId:
+    case Op::kLocalInvocationIndex:
+    case Op::kSubgroupSize:
+    case Op::kSubgroupInvocation:
+    case Op::kSubgroupId:
+    case Op::kNumSubgroups:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Two first operands may be swapped (the reference compares them that way too).
+bool is_commutative(Op op) {
+  switch (op) {
+    case Op::kFAdd:
+    case Op::kFMul:
+    case Op::kFMin:
+    case Op::kFMax:
+    case Op::kFEq:
+    case Op::kFNeu:
+    case Op::kIAdd:
+    case Op::kIMul:
+    case Op::kIMulHigh:
+    case Op::kUMulHigh:
+    case Op::kIMin:
+    case Op::kIMax:
+    case Op::kUMin:
+    case Op::kUMax:
+    case Op::kIEq:
+    case Op::kINe:
+    case Op::kAnd:
+    case Op::kOr:
+    case Op::kXor:
+    case Op::kAndB:
+    case Op::kOrB:
+    case Op::kXorB:
+      return true;
+    default:
+      return false;
+  }
+}
+
+class Merger {
+ public:
+  Merger(Graph& graph, CseScope scope) : graph_(graph), scope_(scope), table_(256, kNone) {}
+
+  bool run() {
+    visit(graph_.root);
+    return changed_;
+  }
+
+ private:
+  bool candidate(const Inst& inst) const {
+    if (is_uniform_load(inst)) return true;
+    if (scope_ == CseScope::kLoads) return false;
+    return inst.kind == Kind::kAlu || inst.kind == Kind::kConst || inst.kind == Kind::kVec ||
+           is_invocation_constant(inst);
+  }
+
+  unsigned components_of_operand(const Inst& inst) const { return inst.kind == Kind::kAlu ? inst.components : 1; }
+
+  std::uint32_t hash_operand(const Inst& inst, std::uint32_t index) const {
+    const Src& src = graph_.source(inst, index);
+    std::uint32_t h = src.value * 0x9E3779B1u;
+    for (unsigned c = 0; c < components_of_operand(inst); ++c) h = (h ^ src.swizzle[c]) * 0x85EBCA6Bu;
+    return h;
+  }
+
+  std::uint32_t hash(const Inst& inst) const {
+    std::uint32_t h = static_cast<std::uint32_t>(inst.op) * 0xC2B2AE35u + inst.components;
+    const bool swap = inst.kind == Kind::kAlu && is_commutative(inst.op);
+    for (std::uint32_t i = 0; i < inst.count; ++i) {
+      const std::uint32_t operand = hash_operand(inst, i);
+      h = swap ? h + operand : (h ^ operand) * 0x27D4EB2Fu + (h >> 15);
+    }
+    if (inst.kind == Kind::kConst)
+      for (unsigned c = 0; c < inst.components; ++c) h = (h ^ inst.imm[c]) * 0x165667B1u;
+    if (inst.node != kNone)
+      for (const std::uint32_t data : graph_.nodes[inst.node]->instr.data) h = (h ^ data) * 0x165667B1u;
+    return h ^ (h >> 16);
+  }
+
+  bool same_operand(const Inst& a, std::uint32_t i, const Inst& b, std::uint32_t j) const {
+    const Src& x = graph_.source(a, i);
+    const Src& y = graph_.source(b, j);
+    if (x.value != y.value) return false;
+    for (unsigned c = 0; c < components_of_operand(a); ++c)
+      if (x.swizzle[c] != y.swizzle[c]) return false;
+    return true;
+  }
+
+  bool same_details(const Inst& a, const Inst& b) const {
+    if (a.kind == Kind::kConst)
+      for (unsigned c = 0; c < a.components; ++c)
+        if (a.imm[c] != b.imm[c]) return false;
+    if (a.node == kNone) return true;
+    const ir::Instr& x = graph_.nodes[a.node]->instr;
+    const ir::Instr& y = graph_.nodes[b.node]->instr;
+    for (int i = 0; i < 4; ++i)
+      if (x.data[i] != y.data[i] || x.imm[static_cast<std::size_t>(i)] != y.imm[static_cast<std::size_t>(i)])
+        return false;
+    return true;
+  }
+
+  bool equal(const Inst& a, const Inst& b) const {
+    if (a.op != b.op || a.kind != b.kind || a.components != b.components || a.boolean != b.boolean ||
+        a.count != b.count || a.opaque != b.opaque || !same_details(a, b))
+      return false;
+    bool same = true;
+    for (std::uint32_t i = 0; i < a.count && same; ++i) same = same_operand(a, i, b, i);
+    if (same || a.kind != Kind::kAlu || !is_commutative(a.op)) return same;
+    return same_operand(a, 0, b, 1) && same_operand(a, 1, b, 0);
+  }
+
+  void merge(InstId id) {
+    const std::uint32_t mask = static_cast<std::uint32_t>(table_.size()) - 1;
+    std::uint32_t at = hash(graph_.insts[id]) & mask;
+    for (; table_[at] != kNone; at = (at + 1) & mask) {
+      Inst& kept = graph_.insts[table_[at]];
+      if (kept.removed || !equal(kept, graph_.insts[id])) continue;
+      kept.exact |= graph_.insts[id].exact;
+      graph_.replace_uses(graph_.insts[id].result, kept.result);
+      graph_.remove(id);
+      changed_ = true;
+      return;
+    }
+    table_[at] = id;
+    entered_.push_back(at);
+    if (entered_.size() * 2 > table_.size()) grow();
+  }
+
+  /// Rebuilds a larger table with the entries in their order.
+  void grow() {
+    std::vector<InstId> ids;
+    for (const std::uint32_t at : entered_) ids.push_back(table_[at]);
+    table_.assign(table_.size() * 4, kNone);
+    const std::uint32_t mask = static_cast<std::uint32_t>(table_.size()) - 1;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      std::uint32_t at = hash(graph_.insts[ids[i]]) & mask;
+      while (table_[at] != kNone) at = (at + 1) & mask;
+      table_[at] = ids[i];
+      entered_[i] = at;
+    }
+  }
+
+  void visit(BlockId block) {
+    const std::size_t scope = entered_.size();
+    for (InstId id = graph_.blocks[block].head; id != kNone;) {
+      const InstId next = graph_.insts[id].next;
+      if (candidate(graph_.insts[id])) {
+        merge(id);
+      } else {
+        for (const BlockId child : {graph_.insts[id].child[0], graph_.insts[id].child[1]})
+          if (child != kNone) visit(child);
+      }
+      id = next;
+    }
+    // Last in, first out: probing chains of what remains stay whole.
+    while (entered_.size() > scope) {
+      table_[entered_.back()] = kNone;
+      entered_.pop_back();
+    }
+  }
+
+  Graph& graph_;
+  CseScope scope_;
+  std::vector<InstId> table_;           ///< open addressing, a power of two
+  std::vector<std::uint32_t> entered_;  ///< slots in use, in order of entry
+  bool changed_ = false;
+};
+
+}  // namespace
+
+bool merge_equal(Graph& graph, CseScope scope) { return Merger(graph, scope).run(); }
+
+}  // namespace vitrine::spirv::rewriting

@@ -1,0 +1,46 @@
+// The steps of rewrite(), each one walk over the graph. All return whether they changed anything.
+#pragma once
+
+#include <cstdint>
+
+#include "spirv/rewrite/graph.h"
+
+namespace vitrine::spirv::rewriting {
+
+/// Uses of Mov, MovB and of components of Vec read the source instead.
+bool propagate_copies(Graph& graph);
+
+/// Removes what has no effect and whose results nobody uses, and results and parameters that nobody uses.
+bool remove_dead(Graph& graph);
+
+enum class CseScope : std::uint8_t { kLoads, kAll };
+/// Merges equal instructions, the later into the one that dominates it. kLoads: only reads of inputs, push constants
+/// and uniform buffers.
+bool merge_equal(Graph& graph, CseScope scope);
+
+/// Splits ALU instructions into components, rejoined by Vec.
+bool scalarize(Graph& graph);
+
+/// Evaluates ALU instructions whose operands are all constant, with C semantics and denormals (section 1).
+bool fold_constants(Graph& graph);
+
+/// An If on a constant becomes its branch; small branches become unconditional code and selects (3.2: limit 8).
+bool flatten_branches(Graph& graph);
+
+/// Results and parameters that always carry one value are replaced by it.
+bool remove_trivial_results(Graph& graph);
+
+enum class RuleSet : std::uint8_t { kMain, kLate };
+/// One run of the rule table (section 4.1).
+bool apply_rules(Graph& graph, RuleSet rules);
+
+/// Spelling that the executor likes and that keeps every bit: subtractions, plain minima, reciprocals.
+void choose_spelling(Graph& graph);
+
+/// True when removing the instruction changes nothing if its result is unused.
+bool is_pure(const Graph& graph, const Inst& inst);
+
+/// Result bits of `op` for constant operands (booleans 0 / 1). False: this op is not folded.
+bool evaluate(ir::Op op, const std::uint32_t operand[3], std::uint32_t& result);
+
+}  // namespace vitrine::spirv::rewriting

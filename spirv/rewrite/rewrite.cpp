@@ -1,0 +1,58 @@
+// The order of the steps, which decides bits: that of the reference (lavapipe-shader-math.md 3.2).
+#include "spirv/rewrite/rewrite.h"
+
+#include "spirv/rewrite/passes.h"
+
+namespace vitrine::spirv {
+namespace {
+
+using rewriting::Graph;
+
+/// A shader that still changes after so many rounds would never stop (rules that undo each other): what it is then is
+/// correct, only its spelling differs from the reference's.
+constexpr int kMaxRounds = 64;
+
+/// One round of the reference's first loop (3.2 step 3).
+bool optimize_once(Graph& graph) {
+  bool changed = rewriting::merge_equal(graph, rewriting::CseScope::kLoads);
+  changed |= rewriting::propagate_copies(graph);
+  changed |= rewriting::remove_dead(graph);
+  changed |= rewriting::flatten_branches(graph);
+  changed |= rewriting::apply_rules(graph, rewriting::RuleSet::kMain);
+  changed |= rewriting::fold_constants(graph);
+  changed |= rewriting::remove_trivial_results(graph);
+  changed |= rewriting::merge_equal(graph, rewriting::CseScope::kAll);
+  changed |= rewriting::scalarize(graph);
+  return changed;
+}
+
+/// The reference's finalisation (3.2 step 4).
+void finish(Graph& graph) {
+  for (int round = 0; round < kMaxRounds; ++round) {
+    bool changed = rewriting::fold_constants(graph);
+    changed |= rewriting::apply_rules(graph, rewriting::RuleSet::kMain);
+    if (!changed) break;
+  }
+  for (int round = 0; round < kMaxRounds; ++round) {
+    if (!rewriting::apply_rules(graph, rewriting::RuleSet::kLate)) break;
+    rewriting::propagate_copies(graph);
+    rewriting::remove_dead(graph);
+    rewriting::merge_equal(graph, rewriting::CseScope::kAll);
+  }
+  rewriting::propagate_copies(graph);
+  rewriting::remove_dead(graph);
+}
+
+}  // namespace
+
+void rewrite(ir::Function& function) {
+  Graph graph(function);
+  for (int round = 0; round < kMaxRounds; ++round)
+    if (!optimize_once(graph)) break;
+  finish(graph);
+  rewriting::choose_spelling(graph);
+  rewriting::remove_dead(graph);
+  graph.write_back();
+}
+
+}  // namespace vitrine::spirv
