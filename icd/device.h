@@ -4,11 +4,13 @@
 #include <condition_variable>
 
 #include "icd/instance.h"
+#include "icd/shader_table.h"
 
 namespace vitrine::icd {
 
 struct Device;
 struct QueueWorker;
+struct ReplayState;
 
 /// The one queue of the universal family. What runs on it is the queue chapter's business: it hangs its thread and
 /// lists on `worker`.
@@ -22,12 +24,14 @@ struct Queue : DispatchableObject<VkQueue, VK_OBJECT_TYPE_QUEUE> {
 
 struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {
   Device(const HostMemory& m, PhysicalDevice& parent)
-      : DispatchableObject(m), physical_device(parent), queue(m, *this) {}
+      : DispatchableObject(m), physical_device(parent), queue(m, *this), shaders(m) {}
 
   PhysicalDevice& physical_device;
   ExtensionSet extensions;  ///< enabled
   FeatureSet features;      ///< enabled
   Queue queue;
+  ShaderTable shaders;
+  std::shared_ptr<ReplayState> replay;  ///< made with the first command pool; used by whoever runs a batch of the queue
 
   /// Guards the states of fences, semaphores and events, and `lost` (icd/sync.h).
   std::mutex sync_mutex;

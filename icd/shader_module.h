@@ -1,6 +1,9 @@
 // VkShaderModule and VkPipelineCache.
 #pragma once
 
+#include <memory>
+#include <mutex>
+
 #include "icd/object.h"
 
 namespace vitrine::icd {
@@ -11,9 +14,15 @@ struct ShaderModule : Object<VkShaderModule, VK_OBJECT_TYPE_SHADER_MODULE> {
   Vector<std::uint32_t> words;
 };
 
-/// Interpreted pipelines are ready in microseconds, so nothing is worth keeping: the data is a valid header alone.
+struct CompiledShader;
+
+/// Keeps compiled shaders alive (icd/shader_cache.h). Nothing is worth writing down, because a pipeline is ready in
+/// microseconds: the data is a valid header alone.
 struct PipelineCache : Object<VkPipelineCache, VK_OBJECT_TYPE_PIPELINE_CACHE> {
-  using Object::Object;
+  explicit PipelineCache(const HostMemory& m) : Object(m), kept(m) {}
+
+  std::mutex mutex;
+  Vector<std::shared_ptr<const CompiledShader>> kept;
 };
 
 }  // namespace vitrine::icd

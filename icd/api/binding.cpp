@@ -1,0 +1,50 @@
+// Recording what draws and dispatches use: pipelines, descriptor sets, push constants, vertex and index buffers (Vulkan
+// 1.3.239, Pipelines: Pipeline Binding; Resource Descriptors: Descriptor Set Binding, Push Constant Updates;
+// Fixed-Function Vertex Processing; Drawing Commands).
+#include "icd/command_buffer.h"
+#include "icd/descriptors.h"
+#include "icd/entry_points.h"
+#include "icd/memory.h"
+#include "icd/pipeline.h"
+
+namespace vitrine::icd::entry {
+
+VKAPI_ATTR void VKAPI_CALL CmdBindPipeline(VkCommandBuffer buffer, VkPipelineBindPoint, VkPipeline pipeline) {
+  record(buffer, icd::CmdBindPipeline{&from_handle<Pipeline>(pipeline)});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBindDescriptorSets(VkCommandBuffer buffer, VkPipelineBindPoint bind_point,
+                                                 VkPipelineLayout layout, std::uint32_t first, std::uint32_t count,
+                                                 const VkDescriptorSet* sets, std::uint32_t offset_count,
+                                                 const std::uint32_t* offsets) {
+  CommandArena& arena = from_handle<CommandBuffer>(buffer).arena;
+  const PipelineLayoutShape& shape = *from_handle<PipelineLayout>(layout).shape;
+  if (first + count > spirv::kMaxSets || first + count > shape.first_dynamic.size()) return;
+  const auto recorded = arena.add_array<DescriptorSet*>(count);
+  for (std::uint32_t i = 0; i < count; ++i) recorded[i] = from_nullable<DescriptorSet>(sets[i]);
+  // The layout may be gone when the command is replayed.
+  record(buffer, icd::CmdBindDescriptorSets{bind_point, first, recorded,
+                                            arena.copy_array(shape.first_dynamic.data() + first, count),
+                                            arena.copy_array(offsets, offset_count)});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdPushConstants(VkCommandBuffer buffer, VkPipelineLayout, VkShaderStageFlags,
+                                            std::uint32_t offset, std::uint32_t size, const void* values) {
+  if (offset > spirv::kMaxPushConstantBytes || size > spirv::kMaxPushConstantBytes - offset) return;
+  record(buffer, icd::CmdPushConstants{offset, copy_array(buffer, static_cast<const std::byte*>(values), size)});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
+                                                const VkBuffer* buffers, const VkDeviceSize* offsets) {
+  if (first + count > raster::kMaxVertexBindings) return;
+  const auto recorded = from_handle<CommandBuffer>(buffer).arena.add_array<const Buffer*>(count);
+  for (std::uint32_t i = 0; i < count; ++i) recorded[i] = from_nullable<Buffer>(buffers[i]);
+  record(buffer, icd::CmdBindVertexBuffers{first, recorded, copy_array(buffer, offsets, count)});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBindIndexBuffer(VkCommandBuffer buffer, VkBuffer index_buffer, VkDeviceSize offset,
+                                              VkIndexType type) {
+  record(buffer, icd::CmdBindIndexBuffer{from_nullable<Buffer>(index_buffer), offset, type});
+}
+
+}  // namespace vitrine::icd::entry

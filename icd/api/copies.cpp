@@ -1,0 +1,216 @@
+// Recording copies, blits and resolves (Vulkan 1.3.239, Copy Commands). The commands of VK_KHR_copy_commands2 are the
+// implementation; the older ones call them.
+#include <algorithm>
+#include <bit>
+
+#include "icd/command_buffer.h"
+#include "icd/entry_points.h"
+#include "icd/image.h"
+#include "icd/memory.h"
+#include "icd/util.h"
+
+namespace vitrine::icd {
+namespace {
+
+constexpr std::uint64_t kBytesPerNanosecond = 8;
+constexpr std::uint64_t kCopyCost = 300;
+
+/// A region of the second form is one of the first behind sType and pNext.
+template <class Old, class New>
+Old downgrade(const New& region) {
+  static_assert(sizeof(New) >= sizeof(Old) + 16);
+  Old out;
+  std::memcpy(&out, reinterpret_cast<const std::byte*>(&region) + offsetof(New, pNext) + sizeof(void*), sizeof out);
+  return out;
+}
+
+template <class Old, class New>
+std::span<const Old> copy_regions(VkCommandBuffer buffer, const New* regions, std::uint32_t count) {
+  const auto out = from_handle<CommandBuffer>(buffer).arena.add_array<Old>(count);
+  std::transform(regions, regions + count, out.begin(), [](const New& r) { return downgrade<Old>(r); });
+  return out;
+}
+
+/// Calls `command` with the regions of the first form dressed as the second.
+template <class New, class Old, class Command>
+void with_upgraded(VkCommandBuffer buffer, const Old* regions, std::uint32_t count, Command command) {
+  Vector<New> out(from_handle<CommandBuffer>(buffer).memory);
+  out.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    New region = make_struct<New>();
+    std::memcpy(reinterpret_cast<std::byte*>(&region) + offsetof(New, pNext) + sizeof(void*), &regions[i], sizeof(Old));
+    out.push_back(region);
+  }
+  command(out.data());
+}
+
+std::uint64_t texels(const VkExtent3D& extent) { return std::uint64_t{extent.width} * extent.height * extent.depth; }
+
+void add_cost(VkCommandBuffer buffer, std::uint64_t bytes) {
+  from_handle<CommandBuffer>(buffer).cost += kCopyCost + bytes / kBytesPerNanosecond;
+}
+
+template <class Region>
+void add_texel_cost(VkCommandBuffer buffer, const Image& image, std::span<const Region> regions) {
+  const std::uint64_t bytes = texel::format_desc(image.desc().format).block_bytes;
+  for (const Region& r : regions) {
+    if constexpr (requires { r.extent; }) {
+      add_cost(buffer, texels(r.extent) * bytes);
+    } else {
+      add_cost(buffer, texels(r.imageExtent) * bytes);
+    }
+  }
+}
+
+}  // namespace
+
+namespace entry {
+
+VKAPI_ATTR void VKAPI_CALL CmdCopyBuffer(VkCommandBuffer buffer, VkBuffer source, VkBuffer target, std::uint32_t count,
+                                         const VkBufferCopy* regions) {
+  with_upgraded<VkBufferCopy2>(buffer, regions, count, [&](const VkBufferCopy2* upgraded) {
+    VkCopyBufferInfo2 info = make_struct<VkCopyBufferInfo2>();
+    info.srcBuffer = source;
+    info.dstBuffer = target;
+    info.regionCount = count;
+    info.pRegions = upgraded;
+    CmdCopyBuffer2(buffer, &info);
+  });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdCopyBuffer2(VkCommandBuffer buffer, const VkCopyBufferInfo2* info) {
+  const auto regions = copy_regions<VkBufferCopy>(buffer, info->pRegions, info->regionCount);
+  record(buffer,
+         icd::CmdCopyBuffer{&from_handle<Buffer>(info->srcBuffer), &from_handle<Buffer>(info->dstBuffer), regions});
+  for (const VkBufferCopy& r : regions) add_cost(buffer, r.size);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdCopyImage(VkCommandBuffer buffer, VkImage source, VkImageLayout source_layout,
+                                        VkImage target, VkImageLayout target_layout, std::uint32_t count,
+                                        const VkImageCopy* regions) {
+  with_upgraded<VkImageCopy2>(buffer, regions, count, [&](const VkImageCopy2* upgraded) {
+    VkCopyImageInfo2 info = make_struct<VkCopyImageInfo2>();
+    info.srcImage = source;
+    info.srcImageLayout = source_layout;
+    info.dstImage = target;
+    info.dstImageLayout = target_layout;
+    info.regionCount = count;
+    info.pRegions = upgraded;
+    CmdCopyImage2(buffer, &info);
+  });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdCopyImage2(VkCommandBuffer buffer, const VkCopyImageInfo2* info) {
+  const auto regions = copy_regions<VkImageCopy>(buffer, info->pRegions, info->regionCount);
+  const Image& source = from_handle<Image>(info->srcImage);
+  record(buffer, icd::CmdCopyImage{&source, &from_handle<Image>(info->dstImage), regions});
+  add_texel_cost(buffer, source, regions);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBlitImage(VkCommandBuffer buffer, VkImage source, VkImageLayout source_layout,
+                                        VkImage target, VkImageLayout target_layout, std::uint32_t count,
+                                        const VkImageBlit* regions, VkFilter filter) {
+  with_upgraded<VkImageBlit2>(buffer, regions, count, [&](const VkImageBlit2* upgraded) {
+    VkBlitImageInfo2 info = make_struct<VkBlitImageInfo2>();
+    info.srcImage = source;
+    info.srcImageLayout = source_layout;
+    info.dstImage = target;
+    info.dstImageLayout = target_layout;
+    info.regionCount = count;
+    info.pRegions = upgraded;
+    info.filter = filter;
+    CmdBlitImage2(buffer, &info);
+  });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBlitImage2(VkCommandBuffer buffer, const VkBlitImageInfo2* info) {
+  const auto regions = copy_regions<VkImageBlit>(buffer, info->pRegions, info->regionCount);
+  record(buffer, icd::CmdBlitImage{&from_handle<Image>(info->srcImage), &from_handle<Image>(info->dstImage), regions,
+                                   info->filter});
+  for (const VkImageBlit& r : regions) {
+    const std::int64_t width = std::abs(std::int64_t{r.dstOffsets[1].x} - r.dstOffsets[0].x);
+    const std::int64_t height = std::abs(std::int64_t{r.dstOffsets[1].y} - r.dstOffsets[0].y);
+    add_cost(buffer, static_cast<std::uint64_t>(width * height) * 16);
+  }
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdCopyBufferToImage(VkCommandBuffer buffer, VkBuffer source, VkImage target,
+                                                VkImageLayout target_layout, std::uint32_t count,
+                                                const VkBufferImageCopy* regions) {
+  with_upgraded<VkBufferImageCopy2>(buffer, regions, count, [&](const VkBufferImageCopy2* upgraded) {
+    VkCopyBufferToImageInfo2 info = make_struct<VkCopyBufferToImageInfo2>();
+    info.srcBuffer = source;
+    info.dstImage = target;
+    info.dstImageLayout = target_layout;
+    info.regionCount = count;
+    info.pRegions = upgraded;
+    CmdCopyBufferToImage2(buffer, &info);
+  });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdCopyBufferToImage2(VkCommandBuffer buffer, const VkCopyBufferToImageInfo2* info) {
+  const auto regions = copy_regions<VkBufferImageCopy>(buffer, info->pRegions, info->regionCount);
+  const Image& target = from_handle<Image>(info->dstImage);
+  record(buffer, icd::CmdCopyBufferToImage{&from_handle<Buffer>(info->srcBuffer), &target, regions});
+  add_texel_cost(buffer, target, regions);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdCopyImageToBuffer(VkCommandBuffer buffer, VkImage source, VkImageLayout source_layout,
+                                                VkBuffer target, std::uint32_t count,
+                                                const VkBufferImageCopy* regions) {
+  with_upgraded<VkBufferImageCopy2>(buffer, regions, count, [&](const VkBufferImageCopy2* upgraded) {
+    VkCopyImageToBufferInfo2 info = make_struct<VkCopyImageToBufferInfo2>();
+    info.srcImage = source;
+    info.srcImageLayout = source_layout;
+    info.dstBuffer = target;
+    info.regionCount = count;
+    info.pRegions = upgraded;
+    CmdCopyImageToBuffer2(buffer, &info);
+  });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdCopyImageToBuffer2(VkCommandBuffer buffer, const VkCopyImageToBufferInfo2* info) {
+  const auto regions = copy_regions<VkBufferImageCopy>(buffer, info->pRegions, info->regionCount);
+  const Image& source = from_handle<Image>(info->srcImage);
+  record(buffer, icd::CmdCopyImageToBuffer{&source, &from_handle<Buffer>(info->dstBuffer), regions});
+  add_texel_cost(buffer, source, regions);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdResolveImage(VkCommandBuffer buffer, VkImage source, VkImageLayout source_layout,
+                                           VkImage target, VkImageLayout target_layout, std::uint32_t count,
+                                           const VkImageResolve* regions) {
+  with_upgraded<VkImageResolve2>(buffer, regions, count, [&](const VkImageResolve2* upgraded) {
+    VkResolveImageInfo2 info = make_struct<VkResolveImageInfo2>();
+    info.srcImage = source;
+    info.srcImageLayout = source_layout;
+    info.dstImage = target;
+    info.dstImageLayout = target_layout;
+    info.regionCount = count;
+    info.pRegions = upgraded;
+    CmdResolveImage2(buffer, &info);
+  });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdResolveImage2(VkCommandBuffer buffer, const VkResolveImageInfo2* info) {
+  const auto regions = copy_regions<VkImageResolve>(buffer, info->pRegions, info->regionCount);
+  const Image& source = from_handle<Image>(info->srcImage);
+  record(buffer, icd::CmdResolveImage{&source, &from_handle<Image>(info->dstImage), regions});
+  add_texel_cost(buffer, source, regions);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdUpdateBuffer(VkCommandBuffer buffer, VkBuffer target, VkDeviceSize offset,
+                                           VkDeviceSize size, const void* data) {
+  record(buffer, icd::CmdUpdateBuffer{&from_handle<Buffer>(target), offset,
+                                      copy_array(buffer, static_cast<const std::byte*>(data), size)});
+  add_cost(buffer, size);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdFillBuffer(VkCommandBuffer buffer, VkBuffer target, VkDeviceSize offset,
+                                         VkDeviceSize size, std::uint32_t value) {
+  const Buffer& t = from_handle<Buffer>(target);
+  record(buffer, icd::CmdFillBuffer{&t, offset, size, value});
+  add_cost(buffer, t.resolve_range(offset, size));
+}
+
+}  // namespace entry
+}  // namespace vitrine::icd

@@ -1,0 +1,125 @@
+// Descriptor set layouts and pipeline layouts (Vulkan 1.3.239, Resource Descriptors: Descriptor Set Layout, Pipeline
+// Layouts).
+#include <algorithm>
+
+#include "icd/descriptors.h"
+#include "icd/entry_points.h"
+#include "icd/image.h"
+#include "icd/util.h"
+
+namespace vitrine::icd {
+namespace {
+
+template <class T>
+std::shared_ptr<T> make_shape(const HostMemory& memory) {
+  return std::allocate_shared<T>(HostAllocator<T>(memory), memory);
+}
+
+bool takes_sampler(VkDescriptorType type) {
+  return type == VK_DESCRIPTOR_TYPE_SAMPLER || type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+}
+
+/// Copies the immutable samplers of all bindings into the shape and points the bindings at them.
+void copy_immutable_samplers(const VkDescriptorSetLayoutCreateInfo& info, SetShape& shape) {
+  const auto samplers_of = [&](const SetBinding& b) -> const VkSampler* {
+    const auto* source = std::find_if(info.pBindings, info.pBindings + info.bindingCount,
+                                      [&](const VkDescriptorSetLayoutBinding& s) { return s.binding == b.binding; });
+    return takes_sampler(b.type) ? source->pImmutableSamplers : nullptr;
+  };
+  for (const SetBinding& b : shape.bindings) {
+    const VkSampler* samplers = samplers_of(b);
+    for (std::uint32_t i = 0; samplers && i < b.count; ++i) {
+      shape.samplers.push_back(from_handle<Sampler>(samplers[i]).state);
+    }
+  }
+  for (const texel::Sampler& sampler : shape.samplers) shape.sampler_pointers.push_back(&sampler);
+  std::size_t next = 0;
+  for (SetBinding& b : shape.bindings) {
+    if (!samplers_of(b)) continue;
+    b.immutable_samplers = shape.sampler_pointers.data() + next;
+    next += b.count;
+  }
+}
+
+std::shared_ptr<const SetShape> make_set_shape(const HostMemory& memory, const VkDescriptorSetLayoutCreateInfo& info) {
+  std::shared_ptr<SetShape> shape = make_shape<SetShape>(memory);
+  for (std::uint32_t i = 0; i < info.bindingCount; ++i) {
+    const VkDescriptorSetLayoutBinding& source = info.pBindings[i];
+    SetBinding b;
+    b.binding = source.binding;
+    b.type = source.descriptorType;
+    b.stages = source.stageFlags;
+    b.count = source.descriptorCount;
+    shape->bindings.push_back(b);
+  }
+  std::sort(shape->bindings.begin(), shape->bindings.end(),
+            [](const SetBinding& a, const SetBinding& b) { return a.binding < b.binding; });
+  for (SetBinding& b : shape->bindings) {
+    std::uint32_t& counter = is_dynamic(b.type) ? shape->dynamic_count : shape->slot_count;
+    b.first_slot = counter;
+    counter += b.count;
+  }
+  copy_immutable_samplers(info, *shape);
+  return shape;
+}
+
+}  // namespace
+
+std::vector<spirv::SetLayoutInfo> set_layout_infos(const PipelineLayoutShape& layout) {
+  std::vector<spirv::SetLayoutInfo> infos(layout.sets.size());
+  for (std::uint32_t set = 0; set < layout.sets.size(); ++set) {
+    if (!layout.sets[set]) continue;
+    for (const SetBinding& b : layout.sets[set]->bindings) {
+      if (b.count == 0) continue;
+      spirv::BindingInfo info;
+      info.binding = b.binding;
+      info.type = b.type;
+      info.set = is_dynamic(b.type) ? spirv::kDynamicSet : set;
+      info.first_slot = is_dynamic(b.type) ? layout.first_dynamic[set] + b.first_slot : b.first_slot;
+      info.count = b.count;
+      info.immutable_samplers = b.immutable_samplers;
+      infos[set].bindings.push_back(info);
+    }
+  }
+  return infos;
+}
+
+namespace entry {
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorSetLayout(VkDevice device, const VkDescriptorSetLayoutCreateInfo* info,
+                                                         const VkAllocationCallbacks* allocator,
+                                                         VkDescriptorSetLayout* layout) {
+  Device& d = from_handle<Device>(device);
+  Owned<DescriptorSetLayout> object(create_object<DescriptorSetLayout>(d.memory, allocator));
+  object->shape = make_set_shape(d.memory, *info);
+  *layout = to_handle(object.release());
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyDescriptorSetLayout(VkDevice, VkDescriptorSetLayout layout,
+                                                      const VkAllocationCallbacks*) {
+  destroy_handle<DescriptorSetLayout>(layout);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreatePipelineLayout(VkDevice device, const VkPipelineLayoutCreateInfo* info,
+                                                    const VkAllocationCallbacks* allocator, VkPipelineLayout* layout) {
+  Device& d = from_handle<Device>(device);
+  Owned<PipelineLayout> object(create_object<PipelineLayout>(d.memory, allocator));
+  std::shared_ptr<PipelineLayoutShape> shape = make_shape<PipelineLayoutShape>(d.memory);
+  for (std::uint32_t i = 0; i < info->setLayoutCount; ++i) {
+    const auto* set = from_nullable<DescriptorSetLayout>(info->pSetLayouts[i]);
+    shape->sets.push_back(set ? set->shape : nullptr);
+    shape->first_dynamic.push_back(shape->dynamic_count);
+    if (set) shape->dynamic_count += set->shape->dynamic_count;
+  }
+  object->shape = std::move(shape);
+  *layout = to_handle(object.release());
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyPipelineLayout(VkDevice, VkPipelineLayout layout, const VkAllocationCallbacks*) {
+  destroy_handle<PipelineLayout>(layout);
+}
+
+}  // namespace entry
+}  // namespace vitrine::icd

@@ -1,0 +1,159 @@
+// Query pools, their results and the recording of queries (Vulkan 1.3.239, Queries).
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "icd/command_buffer.h"
+#include "icd/entry_points.h"
+#include "icd/memory.h"
+#include "icd/query_pool.h"
+#include "icd/util.h"
+
+namespace vitrine::icd {
+namespace {
+
+/// Writes one value of a result in 32 or 64 bits; values that do not fit in 32 saturate.
+class ResultWriter {
+ public:
+  ResultWriter(std::byte* out, std::size_t size, bool wide) : out_(out), size_(size), wide_(wide) {}
+
+  void put(std::uint64_t value) {
+    const std::size_t bytes = wide_ ? 8 : 4;
+    if (size_ >= bytes) {
+      const std::uint64_t stored = wide_ ? value : std::min<std::uint64_t>(value, UINT32_MAX);
+      std::memcpy(out_, &stored, bytes);  // little endian: the low word comes first
+      out_ += bytes;
+      size_ -= bytes;
+    }
+  }
+  void skip() {
+    const std::size_t bytes = std::min<std::size_t>(size_, wide_ ? 8 : 4);
+    out_ += bytes;
+    size_ -= bytes;
+  }
+
+ private:
+  std::byte* out_;
+  std::size_t size_;
+  bool wide_;
+};
+
+void write_values(const QueryPool& pool, std::uint32_t query, bool write, ResultWriter& writer) {
+  const std::atomic<std::uint64_t>* counters = pool.counters_of(query);
+  const bool statistics = pool.type == VK_QUERY_TYPE_PIPELINE_STATISTICS;
+  for (std::uint32_t bit = 0; bit < pool.stride; ++bit) {
+    if (statistics && !(pool.statistics & (1u << bit))) continue;
+    if (write) {
+      writer.put(counters[bit].load(std::memory_order_relaxed));
+    } else {
+      writer.skip();
+    }
+  }
+}
+
+}  // namespace
+
+QueryPool::QueryPool(const HostMemory& m, const VkQueryPoolCreateInfo& info)
+    : Object(m),
+      type(info.queryType),
+      statistics(info.pipelineStatistics),
+      count(info.queryCount),
+      stride(info.queryType == VK_QUERY_TYPE_PIPELINE_STATISTICS ? kStatisticsCounters : 1) {
+  const std::size_t counter_bytes = sizeof(*counters) * count * stride;
+  auto* storage =
+      static_cast<std::byte*>(m.allocate(counter_bytes + sizeof(*available) * count,
+                                         alignof(std::atomic<std::uint64_t>), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT));
+  counters = reinterpret_cast<std::atomic<std::uint64_t>*>(storage);
+  available = reinterpret_cast<std::atomic<std::uint8_t>*>(storage + counter_bytes);
+  std::uninitialized_value_construct_n(counters, std::size_t{count} * stride);
+  std::uninitialized_value_construct_n(available, count);
+}
+
+QueryPool::~QueryPool() { memory.free(counters); }
+
+void reset_queries(QueryPool& pool, std::uint32_t first, std::uint32_t count) {
+  for (std::uint32_t q = first; q < first + count && q < pool.count; ++q) {
+    for (std::uint32_t i = 0; i < pool.stride; ++i) pool.counters_of(q)[i].store(0, std::memory_order_relaxed);
+    pool.available[q].store(0, std::memory_order_release);
+  }
+}
+
+VkResult write_query_results(const QueryPool& pool, std::uint32_t first, std::uint32_t count, std::byte* out,
+                             std::size_t size, VkDeviceSize stride, VkQueryResultFlags flags) {
+  VkResult result = VK_SUCCESS;
+  for (std::uint32_t i = 0; i < count && first + i < pool.count; ++i) {
+    const std::uint64_t offset = i * stride;
+    if (offset >= size) break;
+    const bool available = pool.available[first + i].load(std::memory_order_acquire);
+    if (!available) result = VK_NOT_READY;
+    ResultWriter writer(out + offset, size - offset, flags & VK_QUERY_RESULT_64_BIT);
+    write_values(pool, first + i, available || (flags & VK_QUERY_RESULT_PARTIAL_BIT), writer);
+    if (flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT) writer.put(available);
+  }
+  return result;
+}
+
+namespace entry {
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateQueryPool(VkDevice device, const VkQueryPoolCreateInfo* info,
+                                               const VkAllocationCallbacks* allocator, VkQueryPool* pool) {
+  *pool = to_handle(create_object<QueryPool>(from_handle<Device>(device).memory, allocator, *info));
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyQueryPool(VkDevice, VkQueryPool pool, const VkAllocationCallbacks*) {
+  destroy_handle<QueryPool>(pool);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetQueryPoolResults(VkDevice device, VkQueryPool pool, std::uint32_t first,
+                                                   std::uint32_t count, std::size_t size, void* data,
+                                                   VkDeviceSize stride, VkQueryResultFlags flags) {
+  Device& d = from_handle<Device>(device);
+  const QueryPool& p = from_handle<QueryPool>(pool);
+  if (flags & VK_QUERY_RESULT_WAIT_BIT) {
+    const auto available = [&] {
+      for (std::uint32_t q = first; q < first + count && q < p.count; ++q) {
+        if (!p.available[q].load(std::memory_order_acquire)) return false;
+      }
+      return true;
+    };
+    std::unique_lock lock(d.sync_mutex);
+    d.sync_changed.wait(lock, [&] { return d.lost || available(); });
+    if (!available()) return VK_ERROR_DEVICE_LOST;
+  }
+  return write_query_results(p, first, count, static_cast<std::byte*>(data), size, stride, flags);
+}
+
+VKAPI_ATTR void VKAPI_CALL ResetQueryPool(VkDevice, VkQueryPool pool, std::uint32_t first, std::uint32_t count) {
+  reset_queries(from_handle<QueryPool>(pool), first, count);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBeginQuery(VkCommandBuffer buffer, VkQueryPool pool, std::uint32_t query,
+                                         VkQueryControlFlags flags) {
+  record(buffer, icd::CmdBeginQuery{&from_handle<QueryPool>(pool), query, flags});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdEndQuery(VkCommandBuffer buffer, VkQueryPool pool, std::uint32_t query) {
+  record(buffer, icd::CmdEndQuery{&from_handle<QueryPool>(pool), query});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdResetQueryPool(VkCommandBuffer buffer, VkQueryPool pool, std::uint32_t first,
+                                             std::uint32_t count) {
+  record(buffer, icd::CmdResetQueryPool{&from_handle<QueryPool>(pool), first, count});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdWriteTimestamp(VkCommandBuffer buffer, VkPipelineStageFlagBits stage, VkQueryPool pool,
+                                             std::uint32_t query) {
+  const bool after_work = stage != VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT;
+  record(buffer, icd::CmdWriteTimestamp{&from_handle<QueryPool>(pool), query, after_work});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdCopyQueryPoolResults(VkCommandBuffer buffer, VkQueryPool pool, std::uint32_t first,
+                                                   std::uint32_t count, VkBuffer target, VkDeviceSize offset,
+                                                   VkDeviceSize stride, VkQueryResultFlags flags) {
+  record(buffer, icd::CmdCopyQueryPoolResults{&from_handle<QueryPool>(pool), first, count, &from_handle<Buffer>(target),
+                                              offset, stride, flags});
+}
+
+}  // namespace entry
+}  // namespace vitrine::icd

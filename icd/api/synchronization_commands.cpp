@@ -1,0 +1,34 @@
+// Recording events and barriers (Vulkan 1.3.239, Synchronization and Cache Control: Events, Pipeline Barriers).
+// Commands replay one after the other and memory is coherent, so that a barrier only ends what a render pass has put
+// off.
+#include "icd/command_buffer.h"
+#include "icd/entry_points.h"
+#include "icd/sync.h"
+
+namespace vitrine::icd::entry {
+
+VKAPI_ATTR void VKAPI_CALL CmdPipelineBarrier(VkCommandBuffer buffer, VkPipelineStageFlags, VkPipelineStageFlags,
+                                              VkDependencyFlags, std::uint32_t, const VkMemoryBarrier*, std::uint32_t,
+                                              const VkBufferMemoryBarrier*, std::uint32_t,
+                                              const VkImageMemoryBarrier*) {
+  record(buffer, icd::CmdPipelineBarrier{});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetEvent(VkCommandBuffer buffer, VkEvent event, VkPipelineStageFlags) {
+  record(buffer, icd::CmdSetEvent{&from_handle<Event>(event), true});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdResetEvent(VkCommandBuffer buffer, VkEvent event, VkPipelineStageFlags) {
+  record(buffer, icd::CmdSetEvent{&from_handle<Event>(event), false});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdWaitEvents(VkCommandBuffer buffer, std::uint32_t count, const VkEvent* events,
+                                         VkPipelineStageFlags, VkPipelineStageFlags, std::uint32_t,
+                                         const VkMemoryBarrier*, std::uint32_t, const VkBufferMemoryBarrier*,
+                                         std::uint32_t, const VkImageMemoryBarrier*) {
+  CommandBuffer& b = from_handle<CommandBuffer>(buffer);
+  record(b, icd::CmdWaitEvents{b.arena.copy_array(events, count)});
+  b.waits_for_host = true;
+}
+
+}  // namespace vitrine::icd::entry

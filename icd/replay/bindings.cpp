@@ -1,0 +1,145 @@
+// Replay of what sets state: bindings, push constants, dynamic state; and how it reaches a draw or dispatch.
+#include <algorithm>
+
+#include "icd/memory.h"
+#include "icd/replay/replay.h"
+
+namespace vitrine::icd {
+namespace {
+
+BindPoint& bind_point(ReplayState& state, VkPipelineBindPoint which) {
+  return which == VK_PIPELINE_BIND_POINT_COMPUTE ? state.compute : state.graphics;
+}
+
+/// Applies the dynamic offsets of one set; returns how many it took.
+std::uint32_t bind_dynamic_buffers(BindPoint& point, const DescriptorSet& set, std::uint32_t first_slot,
+                                   std::span<const std::uint32_t> offsets) {
+  const std::uint32_t count = set.shape->dynamic_count;
+  for (std::uint32_t i = 0; i < count && first_slot + i < point.dynamic.size(); ++i) {
+    point.dynamic[first_slot + i] = apply_offset(set.dynamic[i], i < offsets.size() ? offsets[i] : 0);
+  }
+  return count;
+}
+
+template <class T, std::size_t N>
+void set_range(std::array<T, N>& out, std::uint32_t first, std::span<const T> values) {
+  if (first >= N) return;
+  std::copy_n(values.begin(), std::min<std::size_t>(values.size(), N - first), out.begin() + first);
+}
+
+}  // namespace
+
+void fill_resources(ReplayState& state, const BindPoint& point, spirv::ResourceTable& table) {
+  const PipelineLayoutShape& layout = *point.pipeline->layout;
+  for (std::size_t i = 0; i < layout.sets.size() && i < spirv::kMaxSets; ++i) {
+    const DescriptorSet* set = point.sets[i];
+    table.set[i] = set ? set->slots : nullptr;
+    table.set_size[i] = set ? set->shape->slot_count : 0;
+  }
+  const std::size_t dynamic_count = std::min<std::size_t>(layout.dynamic_count, point.dynamic.size());
+  spirv::Descriptor* dynamic = nullptr;
+  if (dynamic_count) {
+    dynamic = state.arena.make<spirv::Descriptor>(dynamic_count);
+    std::copy_n(point.dynamic.begin(), dynamic_count, dynamic);
+  }
+  table.set[spirv::kDynamicSet] = dynamic;
+  table.set_size[spirv::kDynamicSet] = static_cast<std::uint32_t>(dynamic_count);
+}
+
+void execute(ReplayState& state, const CmdBindPipeline& command) {
+  if (command.pipeline->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE) {
+    state.compute.pipeline = command.pipeline;
+  } else if (state.graphics.pipeline != command.pipeline) {
+    state.graphics.pipeline = command.pipeline;
+    state.dirty |= kDirtyState | kDirtyDescriptors | kDirtyVertexBuffers;
+  }
+}
+
+void execute(ReplayState& state, const CmdBindDescriptorSets& command) {
+  BindPoint& point = bind_point(state, command.bind_point);
+  std::span<const std::uint32_t> offsets = command.offsets;
+  for (std::size_t i = 0; i < command.sets.size(); ++i) {
+    const DescriptorSet* set = command.sets[i];
+    point.sets[command.first_set + i] = set;
+    if (!set) continue;
+    const std::uint32_t taken = bind_dynamic_buffers(point, *set, command.first_dynamic[i], offsets);
+    offsets = offsets.subspan(std::min<std::size_t>(taken, offsets.size()));
+  }
+  if (&point == &state.graphics) state.dirty |= kDirtyDescriptors;
+}
+
+void execute(ReplayState& state, const CmdPushConstants& command) {
+  std::copy(command.bytes.begin(), command.bytes.end(), state.push_constants.begin() + command.offset);
+  state.dirty |= kDirtyPushConstants;
+}
+
+void execute(ReplayState& state, const CmdBindVertexBuffers& command) {
+  for (std::size_t i = 0; i < command.buffers.size(); ++i) {
+    BoundBuffer& out = state.vertex_buffers[command.first + i];
+    out = {};
+    const Buffer* buffer = command.buffers[i];
+    if (!buffer || !buffer->data) continue;
+    out.size = buffer->resolve_range(command.offsets[i], VK_WHOLE_SIZE);
+    if (out.size) out.data = buffer->data + command.offsets[i];
+  }
+  state.dirty |= kDirtyVertexBuffers;
+}
+
+void execute(ReplayState& state, const CmdBindIndexBuffer& command) {
+  const Buffer* buffer = command.buffer;
+  const std::uint64_t size = buffer && buffer->data ? buffer->resolve_range(command.offset, VK_WHOLE_SIZE) : 0;
+  state.indices = {size ? buffer->data + command.offset : nullptr, size};
+  state.draw.index_type = command.type;
+}
+
+void execute(ReplayState& state, const CmdSetViewport& command) {
+  set_range(state.dynamic.viewport, command.first, command.viewports);
+  state.dirty |= kDirtyState;
+}
+
+void execute(ReplayState& state, const CmdSetScissor& command) {
+  set_range(state.dynamic.scissor, command.first, command.scissors);
+  state.dirty |= kDirtyState;
+}
+
+void execute(ReplayState& state, const CmdSetLineWidth& command) {
+  state.dynamic.line_width = command.width;
+  state.dirty |= kDirtyState;
+}
+
+void execute(ReplayState& state, const CmdSetDepthBias& command) {
+  state.dynamic.depth_bias = command;
+  state.dirty |= kDirtyState;
+}
+
+void execute(ReplayState& state, const CmdSetBlendConstants& command) {
+  state.dynamic.blend_constants = command.constants;
+  state.dirty |= kDirtyState;
+}
+
+void execute(ReplayState& state, const CmdSetDepthBounds& command) {
+  state.dynamic.depth_bounds = command;
+  state.dirty |= kDirtyState;
+}
+
+void execute(ReplayState& state, const CmdSetStencil& command) {
+  const auto value = static_cast<std::uint8_t>(command.value);
+  const auto set = [&](DynamicValues::Stencil& face) {
+    switch (command.which) {
+      case StencilValue::kCompareMask:
+        face.compare_mask = value;
+        break;
+      case StencilValue::kWriteMask:
+        face.write_mask = value;
+        break;
+      case StencilValue::kReference:
+        face.reference = value;
+        break;
+    }
+  };
+  if (command.faces & VK_STENCIL_FACE_FRONT_BIT) set(state.dynamic.front);
+  if (command.faces & VK_STENCIL_FACE_BACK_BIT) set(state.dynamic.back);
+  state.dirty |= kDirtyState;
+}
+
+}  // namespace vitrine::icd

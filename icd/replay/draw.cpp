@@ -1,0 +1,180 @@
+// Replay of draws and dispatches: resolves what is bound into a raster::DrawCall or a BoundShader.
+#include <algorithm>
+#include <cstring>
+
+#include "icd/memory.h"
+#include "icd/replay/replay.h"
+
+namespace vitrine::icd {
+namespace {
+
+// Beyond this, values of recorded draws are given up by flushing the pass.
+constexpr std::size_t kArenaBudget = std::size_t{32} << 20;
+constexpr std::uint32_t kComputeInvocationsCounter = 10;  // bit of COMPUTE_SHADER_INVOCATIONS
+
+void apply_dynamic_stencil(const DynamicValues::Stencil& values, std::uint32_t dynamic, raster::StencilFace& face) {
+  if (dynamic & kDynamicStencilCompareMask) face.compare_mask = values.compare_mask;
+  if (dynamic & kDynamicStencilWriteMask) face.write_mask = values.write_mask;
+  if (dynamic & kDynamicStencilReference) face.reference = values.reference;
+}
+
+/// The pipeline's own state where nothing is dynamic, else a copy of it in the arena.
+const raster::State* resolve_state(ReplayState& state) {
+  const Pipeline& pipeline = *state.graphics.pipeline;
+  const std::uint32_t dynamic = pipeline.dynamic;
+  if (dynamic == 0) return &pipeline.state;
+  raster::State* out = state.arena.make<raster::State>();
+  *out = pipeline.state;
+  const DynamicValues& values = state.dynamic;
+  if (dynamic & kDynamicViewport) std::copy_n(values.viewport.begin(), out->viewport_count, out->viewport.begin());
+  if (dynamic & kDynamicScissor) std::copy_n(values.scissor.begin(), out->viewport_count, out->scissor.begin());
+  if (dynamic & kDynamicLineWidth) out->line_width = values.line_width;
+  if (dynamic & kDynamicDepthBias) {
+    out->depth_bias_constant = values.depth_bias.constant;
+    out->depth_bias_clamp = values.depth_bias.clamp;
+    out->depth_bias_slope = values.depth_bias.slope;
+  }
+  if (dynamic & kDynamicBlendConstants) out->blend_constants = values.blend_constants;
+  if (dynamic & kDynamicDepthBounds) {
+    out->min_depth_bounds = values.depth_bounds.min;
+    out->max_depth_bounds = values.depth_bounds.max;
+  }
+  apply_dynamic_stencil(values.front, dynamic, out->front);
+  apply_dynamic_stencil(values.back, dynamic, out->back);
+  return out;
+}
+
+void resolve_vertex_buffers(ReplayState& state) {
+  const Pipeline& pipeline = *state.graphics.pipeline;
+  for (std::uint32_t i = 0; i < raster::kMaxVertexBindings; ++i) {
+    const VertexStream& stream = pipeline.streams[i];
+    if (!stream.used) continue;
+    const BoundBuffer& buffer = state.vertex_buffers[i];
+    state.draw.vertex_binding[i] = {buffer.data, buffer.size, stream.stride, stream.per_instance, stream.divisor};
+  }
+}
+
+const std::byte* copy_push_constants(ReplayState& state) {
+  auto* copy = state.arena.make<std::byte>(spirv::kMaxPushConstantBytes);
+  std::memcpy(copy, state.push_constants.data(), spirv::kMaxPushConstantBytes);
+  return copy;
+}
+
+/// Brings `state.draw` up to date. False if there is nothing to draw with or to.
+bool prepare_draw(ReplayState& state) {
+  const Pipeline* pipeline = state.graphics.pipeline;
+  if (!pipeline || !state.pass) return false;
+  if (state.arena.size() > kArenaBudget) flush_pass(state);
+  raster::DrawCall& draw = state.draw;
+  if (state.dirty & kDirtyState) {
+    draw.state = resolve_state(state);
+    draw.vertex = pipeline->vertex->shader.get();
+    draw.fragment = pipeline->fragment ? pipeline->fragment->shader.get() : nullptr;
+  }
+  if (state.dirty & kDirtyDescriptors) fill_resources(state, state.graphics, draw.vertex_resources);
+  if (state.dirty & kDirtyPushConstants) draw.vertex_resources.push_constants = copy_push_constants(state);
+  if (state.dirty & (kDirtyDescriptors | kDirtyPushConstants)) draw.fragment_resources = draw.vertex_resources;
+  if (state.dirty & kDirtyVertexBuffers) resolve_vertex_buffers(state);
+  state.dirty = 0;
+  draw.queries = state.counters;
+  return true;
+}
+
+void draw_direct(ReplayState& state, const CmdDraw& command, std::uint32_t draw_index) {
+  raster::DrawCall& draw = state.draw;
+  draw.index_data = nullptr;
+  draw.index_bytes = 0;
+  draw.first = command.first_vertex;
+  draw.count = command.vertex_count;
+  draw.vertex_offset = 0;
+  draw.first_instance = command.first_instance;
+  draw.instance_count = command.instance_count;
+  draw.draw_index = draw_index;
+  state.pass->draw(draw);
+}
+
+void draw_indexed(ReplayState& state, const CmdDrawIndexed& command, std::uint32_t draw_index) {
+  // An indexed draw without indices: every index is out of bounds, so it reads 0.
+  static constexpr std::byte kNoIndices{};
+  raster::DrawCall& draw = state.draw;
+  draw.index_data = state.indices.data ? state.indices.data : &kNoIndices;
+  draw.index_bytes = state.indices.size;
+  draw.first = command.first_index;
+  draw.count = command.index_count;
+  draw.vertex_offset = command.vertex_offset;
+  draw.first_instance = command.first_instance;
+  draw.instance_count = command.instance_count;
+  draw.draw_index = draw_index;
+  state.pass->draw(draw);
+}
+
+/// Reads a T at `offset` of a buffer. False if it is not all inside.
+template <class T>
+bool read_arguments(const Buffer& buffer, VkDeviceSize offset, T& out) {
+  if (!buffer.data || buffer.resolve_range(offset, sizeof(T)) != sizeof(T)) return false;
+  std::memcpy(&out, buffer.data + offset, sizeof(T));
+  return true;
+}
+
+void dispatch(ReplayState& state, const std::uint32_t base[3], const std::uint32_t groups[3]) {
+  const Pipeline* pipeline = state.compute.pipeline;
+  if (!pipeline || groups[0] == 0 || groups[1] == 0 || groups[2] == 0) return;
+  spirv::ResourceTable resources;
+  fill_resources(state, state.compute, resources);
+  resources.push_constants = state.push_constants.data();
+  const spirv::Shader& shader = *pipeline->compute->shader;
+  const spirv::BoundShader bound(shader, resources, state.fault);
+  spirv::dispatch(bound, base, groups);
+  if (state.counters.statistics) {
+    const std::uint32_t* local = shader.interface().local_size;
+    state.counters.statistics[kComputeInvocationsCounter].fetch_add(std::uint64_t{local[0]} * local[1] * local[2] *
+                                                                    groups[0] * groups[1] * groups[2]);
+  }
+  if (!state.pass) {
+    state.arena.reset();
+    state.dirty = kDirtyAll;
+  }
+}
+
+}  // namespace
+
+void execute(ReplayState& state, const CmdDraw& command) {
+  if (prepare_draw(state)) draw_direct(state, command, 0);
+}
+
+void execute(ReplayState& state, const CmdDrawIndexed& command) {
+  if (prepare_draw(state)) draw_indexed(state, command, 0);
+}
+
+void execute(ReplayState& state, const CmdDrawIndirect& command) {
+  std::uint32_t count = command.draw_count;
+  if (command.count_buffer) {
+    std::uint32_t stored = 0;
+    if (!read_arguments(*command.count_buffer, command.count_offset, stored)) return;
+    count = std::min(count, stored);
+  }
+  for (std::uint32_t i = 0; i < count && prepare_draw(state); ++i) {
+    const VkDeviceSize offset = command.offset + VkDeviceSize{i} * command.stride;
+    if (command.indexed) {
+      VkDrawIndexedIndirectCommand a;
+      if (!read_arguments(*command.buffer, offset, a)) return;
+      draw_indexed(state, {a.indexCount, a.instanceCount, a.firstIndex, a.vertexOffset, a.firstInstance}, i);
+    } else {
+      VkDrawIndirectCommand a;
+      if (!read_arguments(*command.buffer, offset, a)) return;
+      draw_direct(state, {a.vertexCount, a.instanceCount, a.firstVertex, a.firstInstance}, i);
+    }
+  }
+}
+
+void execute(ReplayState& state, const CmdDispatch& command) { dispatch(state, command.base, command.groups); }
+
+void execute(ReplayState& state, const CmdDispatchIndirect& command) {
+  constexpr std::uint32_t kBase[3] = {0, 0, 0};
+  VkDispatchIndirectCommand a;
+  if (!read_arguments(*command.buffer, command.offset, a)) return;
+  const std::uint32_t groups[3] = {a.x, a.y, a.z};
+  dispatch(state, kBase, groups);
+}
+
+}  // namespace vitrine::icd

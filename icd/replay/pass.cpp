@@ -1,0 +1,186 @@
+// Replay of render pass instances (Vulkan 1.3.239, Render Pass): one raster::Pass per subpass, load ops at the first
+// use of an attachment, resolves and visibility at the end of a subpass. Store ops need nothing: attachments are in
+// memory.
+#include <algorithm>
+#include <bit>
+
+#include "icd/replay/replay.h"
+#include "texel/transfer.h"
+
+namespace vitrine::icd {
+namespace {
+
+const Subpass& current_subpass(const ReplayState& state) {
+  return state.instance->render_pass->subpasses[state.subpass];
+}
+
+/// Null for VK_ATTACHMENT_UNUSED and beyond what the framebuffer has.
+const ImageView* attachment_view(const ReplayState& state, std::uint32_t attachment) {
+  const auto& views = state.instance->attachments;
+  return attachment < views.size() ? views[attachment] : nullptr;
+}
+
+/// One plane of a depth/stencil attachment, whatever aspects its view names: "the aspectMask is ignored and both depth
+/// and stencil image subresources are used" (VkFramebufferCreateInfo). Without that aspect: an unused attachment.
+texel::ImageView depth_stencil_plane(const ImageView& view, VkImageAspectFlagBits aspect) {
+  if (!(texel::format_desc(view.image->desc().format).aspects & aspect)) return {};
+  return view_of_aspect(*view.image, aspect, view.type, view.format, view.range);
+}
+
+raster::PassDesc describe_pass(const ReplayState& state) {
+  const Subpass& subpass = current_subpass(state);
+  raster::PassDesc desc;
+  desc.color_count = std::min(static_cast<std::uint32_t>(subpass.colors.size()), raster::kMaxColorAttachments);
+  desc.render_area = state.instance->area;
+  desc.layers = state.instance->framebuffer->layers;
+  desc.view_mask = subpass.view_mask;
+  for (std::uint32_t i = 0; i < desc.color_count; ++i) {
+    const ImageView* view = attachment_view(state, subpass.colors[i]);
+    if (!view) continue;
+    desc.color[i] = view->view;
+    desc.samples = view->image->desc().samples;
+  }
+  if (const ImageView* view = attachment_view(state, subpass.depth_stencil)) {
+    desc.depth = depth_stencil_plane(*view, VK_IMAGE_ASPECT_DEPTH_BIT);
+    desc.stencil = depth_stencil_plane(*view, VK_IMAGE_ASPECT_STENCIL_BIT);
+    desc.samples = view->image->desc().samples;
+  }
+  return desc;
+}
+
+/// Calls f(first layer, layer count) for what a subpass draws to: each of its views, or all layers.
+template <class F>
+void for_each_layer_range(std::uint32_t views, std::uint32_t layers, F f) {
+  if (views == 0) f(0, layers);
+  for (; views; views &= views - 1) f(static_cast<std::uint32_t>(std::countr_zero(views)), 1);
+}
+
+VkImageAspectFlags cleared_aspects(const Attachment& attachment) {
+  const VkImageAspectFlags all = texel::format_desc(attachment.format).aspects;
+  VkImageAspectFlags cleared = 0;
+  if (attachment.load == VK_ATTACHMENT_LOAD_OP_CLEAR) cleared |= all & ~VK_IMAGE_ASPECT_STENCIL_BIT;
+  if (attachment.stencil_load == VK_ATTACHMENT_LOAD_OP_CLEAR) cleared |= all & VK_IMAGE_ASPECT_STENCIL_BIT;
+  return cleared;
+}
+
+/// Clears an attachment that its first subpass does not draw to (an input attachment, say): straight in memory.
+void clear_in_memory(const ImageView& view, VkImageAspectFlags aspects, const VkClearValue& value, const VkRect2D& area,
+                     std::uint32_t layer, std::uint32_t layer_count) {
+  if (aspects & VK_IMAGE_ASPECT_COLOR_BIT) {
+    texel::fill_view(view.view, 0, area, layer, layer_count, texel::encode_clear_color(*view.view.format, value.color));
+  }
+  if (aspects & VK_IMAGE_ASPECT_DEPTH_BIT) {
+    const texel::ImageView plane = depth_stencil_plane(view, VK_IMAGE_ASPECT_DEPTH_BIT);
+    texel::fill_view(plane, 0, area, layer, layer_count,
+                     texel::encode_clear_depth(*plane.format, value.depthStencil.depth));
+  }
+  if (aspects & VK_IMAGE_ASPECT_STENCIL_BIT) {
+    texel::fill_view(depth_stencil_plane(view, VK_IMAGE_ASPECT_STENCIL_BIT), 0, area, layer, layer_count,
+                     texel::encode_clear_stencil(value.depthStencil.stencil));
+  }
+}
+
+void load_attachment(ReplayState& state, std::uint32_t attachment) {
+  const Subpass& subpass = current_subpass(state);
+  const ImageView* view = attachment_view(state, attachment);
+  const VkImageAspectFlags aspects = cleared_aspects(state.instance->render_pass->attachments[attachment]);
+  const std::uint32_t views = subpass.view_mask & ~state.views_loaded[attachment];
+  state.views_loaded[attachment] |= subpass.view_mask;
+  if (!view || !aspects || attachment >= state.instance->clear_values.size()) return;
+  const VkClearValue& value = state.instance->clear_values[attachment];
+  const VkRect2D& area = state.instance->area;
+  const auto color = std::find(subpass.colors.begin(), subpass.colors.end(), attachment);
+  for_each_layer_range(views, state.instance->framebuffer->layers, [&](std::uint32_t layer, std::uint32_t count) {
+    if (color != subpass.colors.end()) {
+      const auto index = static_cast<std::uint32_t>(color - subpass.colors.begin());
+      if (index < raster::kMaxColorAttachments) state.pass->clear_color(index, value.color, area, layer, count);
+    } else if (attachment == subpass.depth_stencil) {
+      state.pass->clear_depth_stencil(aspects, value.depthStencil, area, layer, count);
+    } else {
+      clear_in_memory(*view, aspects, value, area, layer, count);
+    }
+  });
+}
+
+void begin_subpass(ReplayState& state) {
+  state.pass.emplace(describe_pass(state));
+  for (const std::uint32_t attachment : current_subpass(state).first_uses) load_attachment(state, attachment);
+}
+
+void end_subpass(ReplayState& state) {
+  flush_pass(state);
+  state.pass.reset();
+  const Subpass& subpass = current_subpass(state);
+  for (std::size_t i = 0; i < subpass.resolves.size(); ++i) {
+    const ImageView* source = attachment_view(state, subpass.colors[i]);
+    const ImageView* target = attachment_view(state, subpass.resolves[i]);
+    if (!source || !target) continue;
+    for_each_layer_range(subpass.view_mask, state.instance->framebuffer->layers,
+                         [&](std::uint32_t layer, std::uint32_t count) {
+                           texel::resolve_view(source->view, target->view, state.instance->area, layer, count);
+                         });
+  }
+}
+
+VkRect2D clip(const VkRect2D& area, std::uint32_t width, std::uint32_t height) {
+  const std::int64_t x0 = std::max(area.offset.x, 0), y0 = std::max(area.offset.y, 0);
+  const std::int64_t x1 = std::min<std::int64_t>(std::int64_t{area.offset.x} + area.extent.width, width);
+  const std::int64_t y1 = std::min<std::int64_t>(std::int64_t{area.offset.y} + area.extent.height, height);
+  return {{static_cast<std::int32_t>(x0), static_cast<std::int32_t>(y0)},
+          {static_cast<std::uint32_t>(std::max<std::int64_t>(x1 - x0, 0)),
+           static_cast<std::uint32_t>(std::max<std::int64_t>(y1 - y0, 0))}};
+}
+
+void clear_rect(ReplayState& state, const VkClearAttachment& clear, const VkClearRect& rect) {
+  // "If the render pass instance has multiview enabled, the clear applies to every view of the subpass."
+  const std::uint32_t views = current_subpass(state).view_mask;
+  for_each_layer_range(views, rect.layerCount, [&](std::uint32_t layer, std::uint32_t count) {
+    const std::uint32_t first = views ? layer : rect.baseArrayLayer;
+    if (clear.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) {
+      if (clear.colorAttachment >= raster::kMaxColorAttachments) return;
+      state.pass->clear_color(clear.colorAttachment, clear.clearValue.color, rect.rect, first, count);
+    } else {
+      state.pass->clear_depth_stencil(clear.aspectMask, clear.clearValue.depthStencil, rect.rect, first, count);
+    }
+  });
+}
+
+}  // namespace
+
+void flush_pass(ReplayState& state) {
+  if (state.pass) state.pass->flush();
+  state.arena.reset();
+  state.dirty = kDirtyAll;
+  publish_queries(state);
+}
+
+void execute(ReplayState& state, const CmdBeginRenderPass& command) {
+  state.clipped_instance = command;
+  state.clipped_instance.area = clip(command.area, command.framebuffer->width, command.framebuffer->height);
+  state.instance = &state.clipped_instance;
+  state.subpass = 0;
+  state.views_loaded.assign(command.render_pass->attachments.size(), 0);
+  begin_subpass(state);
+}
+
+void execute(ReplayState& state, const CmdNextSubpass&) {
+  if (!state.instance || state.subpass + 1 >= state.instance->render_pass->subpasses.size()) return;
+  end_subpass(state);
+  ++state.subpass;
+  begin_subpass(state);
+}
+
+void execute(ReplayState& state, const CmdEndRenderPass&) {
+  if (!state.instance) return;
+  end_subpass(state);
+  state.instance = nullptr;
+}
+
+void execute(ReplayState& state, const CmdClearAttachments& command) {
+  if (!state.pass) return;
+  for (const VkClearAttachment& clear : command.attachments) {
+    for (const VkClearRect& rect : command.rects) clear_rect(state, clear, rect);
+  }
+}
+
+}  // namespace vitrine::icd

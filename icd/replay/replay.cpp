@@ -1,0 +1,82 @@
+// The loop over recorded commands.
+#include "icd/replay/replay.h"
+
+#include "icd/command_buffer.h"
+#include "icd/sync.h"
+
+namespace vitrine::icd {
+namespace {
+
+using Executor = void (*)(ReplayState&, const void*);
+
+template <class T>
+void execute_erased(ReplayState& state, const void* command) {
+  execute(state, *static_cast<const T*>(command));
+}
+
+template <class... Ts>
+constexpr std::array<Executor, sizeof...(Ts)> make_executors(CommandList<Ts...>) {
+  return {execute_erased<Ts>...};
+}
+
+constexpr auto kExecutors = make_executors(Commands{});
+
+/// A command buffer starts with nothing bound, and nothing that an earlier one bound may be touched again.
+void forget_bindings(ReplayState& state) {
+  state.graphics.pipeline = state.compute.pipeline = nullptr;
+  state.graphics.sets.fill(nullptr);
+  state.compute.sets.fill(nullptr);
+  state.vertex_buffers.fill({});
+  state.indices = {};
+  state.draw = {};
+  state.draw.fault = &state.fault;
+  state.counters = {};
+  state.dirty = kDirtyAll;
+}
+
+}  // namespace
+
+void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
+  for (const CommandBlock* block = buffer.arena.first(); block; block = block->next) {
+    for (std::uint32_t at = 0; at < block->front;) {
+      const std::byte* bytes = block->bytes() + at;
+      CommandHeader header;
+      std::memcpy(&header, bytes, sizeof header);
+      kExecutors[header.type](state, bytes + sizeof header);
+      if (state.fault.raised.load(std::memory_order_relaxed)) return;
+      at += header.size;
+    }
+  }
+}
+
+VkResult replay(Device& device, const CommandBuffer& buffer) noexcept {
+  ReplayState& state = *device.replay;
+  const char* reason = nullptr;
+  try {
+    forget_bindings(state);
+    replay_commands(state, buffer);
+    flush_pass(state);
+  } catch (const std::bad_alloc&) {
+    reason = "out of host memory while commands ran";
+  } catch (...) {
+    reason = "internal failure while commands ran";
+  }
+  state.pass.reset();
+  state.instance = nullptr;
+  if (state.fault.raised.load()) reason = state.fault.message.c_str();
+  if (!reason) return VK_SUCCESS;
+  lose_device(device, reason);
+  return VK_ERROR_DEVICE_LOST;
+}
+
+void prepare_replay(Device& device) {
+  const std::lock_guard lock(device.sync_mutex);
+  if (!device.replay)
+    device.replay = std::allocate_shared<ReplayState>(HostAllocator<ReplayState>(device.memory), device);
+}
+
+void execute(ReplayState& state, const CmdExecuteCommands& command) {
+  for (const CommandBuffer* buffer : command.buffers) replay_commands(state, *buffer);
+}
+
+}  // namespace vitrine::icd

@@ -1,0 +1,147 @@
+// Replay: runs recorded commands, one after the other, on the thread of the queue. ReplayState is what a command
+// buffer's commands share while they run; execute() has one overload per command.
+#pragma once
+
+#include <optional>
+
+#include "icd/commands.h"
+#include "icd/descriptors.h"
+#include "icd/pipeline.h"
+#include "icd/query_pool.h"
+#include "icd/render_pass.h"
+#include "icd/replay/arena.h"
+#include "raster/pass.h"
+
+namespace vitrine::icd {
+
+/// What is bound at one bind point.
+struct BindPoint {
+  const Pipeline* pipeline = nullptr;
+  std::array<const DescriptorSet*, spirv::kMaxSets> sets{};
+  std::array<spirv::Descriptor, 512> dynamic{};  ///< the limits of dynamic buffers (manifest/limits), offsets applied
+};
+
+/// Values of dynamic state, as last set by commands.
+struct DynamicValues {
+  std::array<VkViewport, raster::kMaxViewports> viewport{};
+  std::array<VkRect2D, raster::kMaxViewports> scissor{};
+  float line_width = 1;
+  CmdSetDepthBias depth_bias{};
+  std::array<float, 4> blend_constants{};
+  CmdSetDepthBounds depth_bounds{0, 1};
+  struct Stencil {
+    std::uint8_t compare_mask = 0, write_mask = 0, reference = 0;
+  };
+  Stencil front, back;
+};
+
+/// What is readable of a bound buffer, from the bound offset on.
+struct BoundBuffer {
+  const std::byte* data = nullptr;
+  std::uint64_t size = 0;
+};
+
+/// Parts of `draw` that no longer say what is bound.
+enum DirtyBit : std::uint32_t {
+  kDirtyState = 1u << 0,
+  kDirtyDescriptors = 1u << 1,
+  kDirtyPushConstants = 1u << 2,
+  kDirtyVertexBuffers = 1u << 3,
+  kDirtyAll = ~0u,
+};
+
+/// A query that has ended, but whose counters are final only after the pass is flushed.
+struct PendingQuery {
+  QueryPool* pool;
+  std::uint32_t query;
+};
+
+struct ReplayState {
+  explicit ReplayState(Device& d) : device(d), arena(d.memory), pending_queries(d.memory), views_loaded(d.memory) {}
+
+  Device& device;
+  ReplayArena arena;
+  spirv::Fault fault;
+
+  BindPoint graphics, compute;
+  alignas(16) std::array<std::byte, spirv::kMaxPushConstantBytes> push_constants{};
+  std::array<BoundBuffer, raster::kMaxVertexBindings> vertex_buffers{};
+  BoundBuffer indices;
+  DynamicValues dynamic;
+  std::uint32_t dirty = kDirtyAll;
+  raster::DrawCall draw;  ///< up to date but for `dirty` and the numbers of the draw itself
+
+  // The render pass instance
+  const CmdBeginRenderPass* instance = nullptr;  ///< null: outside
+  CmdBeginRenderPass clipped_instance{};         ///< the command, its area inside the framebuffer
+  std::uint32_t subpass = 0;
+  std::optional<raster::Pass> pass;
+
+  raster::QueryCounters counters;  ///< of active queries
+  Vector<PendingQuery> pending_queries;
+  Vector<std::uint32_t> views_loaded;  ///< per attachment: views whose load op has happened
+};
+
+/// Replays a primary command buffer on the calling thread; one at a time per device. VK_ERROR_DEVICE_LOST if a shader
+/// faulted or memory ran out: the device has been marked lost, and a messenger told why.
+VkResult replay(Device& device, const CommandBuffer& buffer) noexcept;
+
+/// Makes the device's replay state unless it has one. Throws std::bad_alloc.
+void prepare_replay(Device& device);
+
+/// Runs the commands of one buffer in the current state; secondary buffers come here too.
+void replay_commands(ReplayState& state, const CommandBuffer& buffer);
+
+/// Ends what the current pass has put off: attachments are in memory, counters of ended queries final, and nothing
+/// points into the arena.
+void flush_pass(ReplayState& state);
+
+/// Makes ended queries readable.
+void publish_queries(ReplayState& state);
+
+/// Fills the parts of a resource table that the bound pipeline uses. Dynamic buffers and push constants are copied into
+/// the arena.
+void fill_resources(ReplayState& state, const BindPoint& bind_point, spirv::ResourceTable& table);
+
+void execute(ReplayState& state, const CmdBindPipeline& command);
+void execute(ReplayState& state, const CmdBindDescriptorSets& command);
+void execute(ReplayState& state, const CmdPushConstants& command);
+void execute(ReplayState& state, const CmdBindVertexBuffers& command);
+void execute(ReplayState& state, const CmdBindIndexBuffer& command);
+void execute(ReplayState& state, const CmdSetViewport& command);
+void execute(ReplayState& state, const CmdSetScissor& command);
+void execute(ReplayState& state, const CmdSetLineWidth& command);
+void execute(ReplayState& state, const CmdSetDepthBias& command);
+void execute(ReplayState& state, const CmdSetBlendConstants& command);
+void execute(ReplayState& state, const CmdSetDepthBounds& command);
+void execute(ReplayState& state, const CmdSetStencil& command);
+void execute(ReplayState& state, const CmdDraw& command);
+void execute(ReplayState& state, const CmdDrawIndexed& command);
+void execute(ReplayState& state, const CmdDrawIndirect& command);
+void execute(ReplayState& state, const CmdDispatch& command);
+void execute(ReplayState& state, const CmdDispatchIndirect& command);
+void execute(ReplayState& state, const CmdBeginRenderPass& command);
+void execute(ReplayState& state, const CmdNextSubpass& command);
+void execute(ReplayState& state, const CmdEndRenderPass& command);
+void execute(ReplayState& state, const CmdClearAttachments& command);
+void execute(ReplayState& state, const CmdExecuteCommands& command);
+void execute(ReplayState& state, const CmdCopyBuffer& command);
+void execute(ReplayState& state, const CmdCopyImage& command);
+void execute(ReplayState& state, const CmdBlitImage& command);
+void execute(ReplayState& state, const CmdResolveImage& command);
+void execute(ReplayState& state, const CmdCopyBufferToImage& command);
+void execute(ReplayState& state, const CmdCopyImageToBuffer& command);
+void execute(ReplayState& state, const CmdUpdateBuffer& command);
+void execute(ReplayState& state, const CmdFillBuffer& command);
+void execute(ReplayState& state, const CmdClearColorImage& command);
+void execute(ReplayState& state, const CmdClearDepthStencilImage& command);
+void execute(ReplayState& state, const CmdPipelineBarrier& command);
+void execute(ReplayState& state, const CmdSetEvent& command);
+void execute(ReplayState& state, const CmdWaitEvents& command);
+void execute(ReplayState& state, const CmdBeginQuery& command);
+void execute(ReplayState& state, const CmdEndQuery& command);
+void execute(ReplayState& state, const CmdResetQueryPool& command);
+void execute(ReplayState& state, const CmdWriteTimestamp& command);
+void execute(ReplayState& state, const CmdCopyQueryPoolResults& command);
+
+}  // namespace vitrine::icd

@@ -1,0 +1,90 @@
+// Replay of queries, events and barriers.
+#include <bit>
+#include <chrono>
+
+#include "icd/memory.h"
+#include "icd/replay/replay.h"
+#include "icd/sync.h"
+
+namespace vitrine::icd {
+namespace {
+
+/// "If a query is used in a subpass with N views, N consecutive query indices are used": the first counts everything,
+/// the others stay 0.
+std::uint32_t query_indices(const ReplayState& state) {
+  if (!state.instance) return 1;
+  const std::uint32_t views = state.instance->render_pass->subpasses[state.subpass].view_mask;
+  return views ? static_cast<std::uint32_t>(std::popcount(views)) : 1;
+}
+
+/// Queries become readable when their counters are final: now outside a pass, else when it is flushed.
+void end_queries(ReplayState& state, QueryPool& pool, std::uint32_t query) {
+  const std::uint32_t end = std::min(query + query_indices(state), pool.count);
+  for (std::uint32_t q = query; q < end; ++q) state.pending_queries.push_back({&pool, q});
+  if (!state.pass) publish_queries(state);
+}
+
+}  // namespace
+
+void publish_queries(ReplayState& state) {
+  if (state.pending_queries.empty()) return;
+  {
+    const std::lock_guard lock(state.device.sync_mutex);
+    for (const PendingQuery& q : state.pending_queries) {
+      q.pool->available[q.query].store(1, std::memory_order_release);
+    }
+  }
+  state.pending_queries.clear();
+  state.device.sync_changed.notify_all();
+}
+
+void execute(ReplayState& state, const CmdBeginQuery& command) {
+  if (command.query >= command.pool->count) return;
+  std::atomic<std::uint64_t>* counters = command.pool->counters_of(command.query);
+  if (command.pool->type == VK_QUERY_TYPE_OCCLUSION) state.counters.occlusion = counters;
+  if (command.pool->type == VK_QUERY_TYPE_PIPELINE_STATISTICS) state.counters.statistics = counters;
+}
+
+void execute(ReplayState& state, const CmdEndQuery& command) {
+  if (command.query >= command.pool->count) return;
+  if (command.pool->type == VK_QUERY_TYPE_OCCLUSION) state.counters.occlusion = nullptr;
+  if (command.pool->type == VK_QUERY_TYPE_PIPELINE_STATISTICS) state.counters.statistics = nullptr;
+  end_queries(state, *command.pool, command.query);
+}
+
+void execute(ReplayState&, const CmdResetQueryPool& command) {
+  reset_queries(*command.pool, command.first, command.count);
+}
+
+void execute(ReplayState& state, const CmdWriteTimestamp& command) {
+  if (command.query >= command.pool->count) return;
+  if (command.after_work) flush_pass(state);
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  const auto nanoseconds = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+  command.pool->counters_of(command.query)->store(static_cast<std::uint64_t>(nanoseconds));
+  end_queries(state, *command.pool, command.query);
+}
+
+void execute(ReplayState&, const CmdCopyQueryPoolResults& command) {
+  const Buffer& target = *command.target;
+  if (!target.data || command.offset >= target.size) return;
+  // Nothing to wait for: earlier commands are done.
+  write_query_results(*command.pool, command.first, command.count, target.data + command.offset,
+                      target.size - command.offset, command.stride, command.flags);
+}
+
+void execute(ReplayState& state, const CmdPipelineBarrier&) {
+  if (state.pass) flush_pass(state);
+}
+
+void execute(ReplayState& state, const CmdSetEvent& command) {
+  if (state.pass) flush_pass(state);
+  set_event(state.device, *command.event, command.set);
+}
+
+void execute(ReplayState& state, const CmdWaitEvents& command) {
+  if (state.pass) flush_pass(state);
+  wait_events(state.device, command.events.data(), static_cast<std::uint32_t>(command.events.size()));
+}
+
+}  // namespace vitrine::icd

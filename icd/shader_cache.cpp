@@ -1,0 +1,139 @@
+// Compiling the stages of pipelines, once for equal stages (Vulkan 1.3.239, Pipelines: Pipeline Cache).
+#include "icd/shader_cache.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+#include "icd/util.h"
+
+namespace vitrine::icd {
+namespace {
+
+/// Two multiplicative hashes with different constants over the same bytes.
+class KeyBuilder {
+ public:
+  void add(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const std::byte*>(data);
+    for (; size >= 8; size -= 8, bytes += 8) mix(load(bytes, 8));
+    if (size) mix(load(bytes, size));
+  }
+  void add(std::uint64_t value) { mix(value); }
+  ShaderKey key() const { return key_; }
+
+ private:
+  static std::uint64_t load(const std::byte* bytes, std::size_t size) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes, size);
+    return word;
+  }
+  static std::uint64_t step(std::uint64_t state, std::uint64_t word, std::uint64_t factor) {
+    state = (state ^ word) * factor;
+    return state ^ (state >> 29);
+  }
+  void mix(std::uint64_t word) {
+    key_[0] = step(key_[0], word, 0x9e3779b97f4a7c15u);
+    key_[1] = step(key_[1], word, 0xc2b2ae3d27d4eb4fu);
+  }
+
+  ShaderKey key_{0x243f6a8885a308d3u, 0x13198a2e03707344u};
+};
+
+/// Everything of the layout that compile() sees. Immutable samplers count by address: they belong to the layout.
+void add_layout(const PipelineLayoutShape& layout, KeyBuilder& key) {
+  for (std::size_t set = 0; set < layout.sets.size(); ++set) {
+    key.add(set);
+    key.add(layout.first_dynamic[set]);
+    if (!layout.sets[set]) continue;
+    for (const SetBinding& b : layout.sets[set]->bindings) {
+      key.add(std::uint64_t{b.binding} << 32 | static_cast<std::uint32_t>(b.type));
+      key.add(std::uint64_t{b.count} << 32 | b.first_slot);
+      key.add(reinterpret_cast<std::uintptr_t>(b.immutable_samplers));
+    }
+  }
+}
+
+ShaderKey make_key(const StageRequest& request) {
+  const VkPipelineShaderStageCreateInfo& stage = *request.stage;
+  const ShaderModule& module = from_handle<ShaderModule>(stage.module);
+  KeyBuilder key;
+  key.add(module.words.data(), module.words.size() * sizeof(std::uint32_t));
+  key.add(stage.stage);
+  key.add(stage.pName, std::strlen(stage.pName));
+  key.add(request.live_color_outputs);
+  if (const VkSpecializationInfo* s = stage.pSpecializationInfo) {
+    for (std::uint32_t i = 0; i < s->mapEntryCount; ++i) {
+      const VkSpecializationMapEntry& entry = s->pMapEntries[i];
+      key.add(entry.constantID);
+      key.add(static_cast<const std::byte*>(s->pData) + entry.offset, entry.size);
+    }
+  }
+  add_layout(*request.layout, key);
+  return key.key();
+}
+
+spirv::CompileOptions make_options(const StageRequest& request) {
+  const VkPipelineShaderStageCreateInfo& stage = *request.stage;
+  spirv::CompileOptions options;
+  options.stage = stage.stage;
+  options.entry_point = stage.pName;
+  options.live_color_outputs = request.live_color_outputs;
+  options.sets = set_layout_infos(*request.layout);
+  if (const VkSpecializationInfo* s = stage.pSpecializationInfo) {
+    for (std::uint32_t i = 0; i < s->mapEntryCount; ++i) {
+      const VkSpecializationMapEntry& entry = s->pMapEntries[i];
+      const auto* bytes = static_cast<const std::byte*>(s->pData) + entry.offset;
+      options.specialization.push_back({entry.constantID, {bytes, bytes + entry.size}});
+    }
+  }
+  return options;
+}
+
+std::shared_ptr<const CompiledShader> find_alive(ShaderTable& table, const ShaderKey& key) {
+  const std::lock_guard lock(table.mutex);
+  const auto found = table.shaders.find(key);
+  return found == table.shaders.end() ? nullptr : found->second.lock();
+}
+
+/// Adds a shader, or gives the one that another thread added meanwhile.
+std::shared_ptr<const CompiledShader> add_shader(ShaderTable& table, const ShaderKey& key,
+                                                 std::shared_ptr<const CompiledShader> shader) {
+  const std::lock_guard lock(table.mutex);
+  if (table.shaders.size() >= table.sweep_at) {
+    std::erase_if(table.shaders, [](const auto& entry) { return entry.second.expired(); });
+    table.sweep_at = std::max<std::size_t>(64, table.shaders.size() * 2);
+  }
+  std::weak_ptr<const CompiledShader>& entry = table.shaders[key];
+  if (std::shared_ptr<const CompiledShader> other = entry.lock()) return other;
+  entry = shader;
+  return shader;
+}
+
+void keep(PipelineCache& cache, const std::shared_ptr<const CompiledShader>& shader) {
+  const std::lock_guard lock(cache.mutex);
+  if (std::find(cache.kept.begin(), cache.kept.end(), shader) == cache.kept.end()) cache.kept.push_back(shader);
+}
+
+}  // namespace
+
+std::shared_ptr<const CompiledShader> compile_stage(Device& device, PipelineCache* cache, const StageRequest& request,
+                                                    std::string& problem) {
+  const ShaderKey key = make_key(request);
+  std::shared_ptr<const CompiledShader> shader = find_alive(device.shaders, key);
+  if (!shader) {
+    const ShaderModule& module = from_handle<ShaderModule>(request.stage->module);
+    base::Result<std::unique_ptr<spirv::Shader>> result = spirv::compile(module.words, make_options(request));
+    if (!result) {
+      problem = result.message();
+      return nullptr;
+    }
+    const auto compiled = std::allocate_shared<CompiledShader>(HostAllocator<CompiledShader>(device.memory));
+    compiled->shader = result.take();
+    compiled->layout = request.layout;
+    shader = add_shader(device.shaders, key, compiled);
+  }
+  if (cache) keep(*cache, shader);
+  return shader;
+}
+
+}  // namespace vitrine::icd

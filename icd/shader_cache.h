@@ -1,0 +1,31 @@
+// Compiled shaders by what they were compiled from. The device knows all that are alive (a second pipeline from the
+// same words costs a look-up); a VkPipelineCache keeps those it saw alive.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "icd/descriptors.h"
+#include "icd/shader_module.h"
+
+namespace vitrine::icd {
+
+/// A shader and what it refers to: immutable samplers belong to the layout.
+struct CompiledShader {
+  std::unique_ptr<spirv::Shader> shader;
+  std::shared_ptr<const PipelineLayoutShape> layout;
+};
+
+/// What one stage of a pipeline is made of.
+struct StageRequest {
+  const VkPipelineShaderStageCreateInfo* stage = nullptr;
+  std::shared_ptr<const PipelineLayoutShape> layout;
+  std::uint32_t live_color_outputs = 0xff;
+};
+
+/// The compiled stage, from the device's table or new. Null if the shader is invalid or not covered: `problem` then
+/// says why. `cache` may be null.
+std::shared_ptr<const CompiledShader> compile_stage(Device& device, PipelineCache* cache, const StageRequest& request,
+                                                    std::string& problem);
+
+}  // namespace vitrine::icd
