@@ -1,5 +1,6 @@
-// SPIR-V words of one entry point -> ir::Function. The words have passed validation; what is not covered is an error that
-// names the instruction. Does not apply the reference's rewrites (rewrite/) and does not choose registers (lower/).
+// SPIR-V words of one entry point -> ir::Function. The words have passed validation; what is not covered is an error
+// that names the instruction. Does not apply the reference's rewrites (rewrite/) and does not choose registers
+// (lower/).
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,65 @@
+// The pipeline from SPIR-V words to an executable shader.
+#include "spirv/compile.h"
+
+#include <spirv-tools/libspirv.h>
+#include <spirv/unified1/spirv.hpp11>
+
+#include "spirv/front/translate.h"
+#include "spirv/lower/lower.h"
+#include "spirv/rewrite/rewrite.h"
+
+namespace vitrine::spirv {
+namespace {
+
+/// SPIRV-Tools' validator, told to accept every block layout that a device feature could allow: layouts are the
+/// application's promise to the validation layer, not something that can harm us.
+std::string validate(std::span<const std::uint32_t> words) {
+  const spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_3);
+  const spv_validator_options options = spvValidatorOptionsCreate();
+  spvValidatorOptionsSetRelaxBlockLayout(options, true);
+  spvValidatorOptionsSetUniformBufferStandardLayout(options, true);
+  spvValidatorOptionsSetScalarBlockLayout(options, true);
+  spvValidatorOptionsSetWorkgroupScalarBlockLayout(options, true);
+  spvValidatorOptionsSetAllowLocalSizeId(options, true);
+  spvValidatorOptionsSetFriendlyNames(options, false);
+  spv_const_binary_t binary{words.data(), words.size()};
+  spv_diagnostic diagnostic = nullptr;
+  std::string message;
+  if (spvValidateWithOptions(context, options, &binary, &diagnostic) != SPV_SUCCESS) {
+    message = "invalid SPIR-V";
+    if (diagnostic != nullptr && diagnostic->error != nullptr) message += std::string(": ") + diagnostic->error;
+  }
+  spvDiagnosticDestroy(diagnostic);
+  spvValidatorOptionsDestroy(options);
+  spvContextDestroy(context);
+  return message;
+}
+
+}  // namespace
+
+std::string check_module(std::span<const std::uint32_t> words) {
+  if (words.size() < 5) return "shader module is too short";
+  if (words[0] != spv::MagicNumber) return "shader module has the wrong magic number";
+  const std::uint32_t version = words[1];
+  if ((version >> 16) != 1 || (version >> 8 & 0xff) > 6 || (version & 0xff) != 0)
+    return "SPIR-V version is not supported";
+  if (words[3] == 0 || words[3] > 0x3fffff) return "SPIR-V id bound is out of range";
+  for (std::size_t at = 5; at < words.size();) {
+    const std::uint32_t length = words[at] >> 16;
+    if (length == 0 || length > words.size() - at) return "SPIR-V instruction runs past the end of the module";
+    at += length;
+  }
+  return {};
+}
+
+base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> words, const CompileOptions& options) {
+  if (std::string error = check_module(words); !error.empty()) return base::Error{error};
+  if (options.validate)
+    if (std::string error = validate(words); !error.empty()) return base::Error{error};
+  base::Result<ir::Function> function = translate(words, options);
+  if (!function) return function.error();
+  rewrite(function.value());
+  return lower(function.take());
+}
+
+}  // namespace vitrine::spirv

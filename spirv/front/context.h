@@ -1,0 +1,243 @@
+// State of one translation: what every id of the module stands for, the list that instructions go to, and the small
+// emitters that all translator functions share. Internal to front/.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "spirv/front/module.h"
+
+namespace vitrine::spirv::front {
+
+/// A SPIR-V value taken apart: its scalars and vectors (a matrix: its columns) in order.
+struct Value {
+  std::uint32_t type = 0;
+  std::vector<ir::ValueId> leaves;
+};
+
+/// One step of an access chain.
+struct Step {
+  bool dynamic = false;
+  std::uint32_t index = 0;           ///< when constant
+  ir::ValueId value = ir::kNoValue;  ///< when dynamic
+};
+
+/// Descriptors of one binding (ResourceTable).
+struct Binding {
+  std::uint32_t set = 0, slot = 0, count = 0;
+  const texel::Sampler* const* immutable_samplers = nullptr;
+};
+
+/// What OpLoad of an image, sampler or sampled image gives.
+struct ImageHandle {
+  std::uint32_t image_type = 0;  ///< OpTypeImage, 0: only a sampler
+  Binding image, sampler;
+  ir::ValueId image_element = ir::kNoValue, sampler_element = ir::kNoValue;  ///< kNoValue: element 0
+  bool combined = false;
+};
+
+struct Pointer {
+  enum class Kind : std::uint8_t {
+    kLocal,
+    kUniform,
+    kStorage,
+    kPush,
+    kShared,
+    kDescriptor,
+    kTexel
+  } kind = Kind::kLocal;
+  std::uint32_t type = 0;      ///< pointee
+  std::uint32_t variable = 0;  ///< OpVariable it leads back to
+  // kLocal
+  std::uint32_t local = 0;
+  std::vector<Step> path;
+  std::optional<Step> component;  ///< points to one component of the vector at `path`
+  // memory
+  Binding binding;
+  bool descriptor_array = false;  ///< the next index selects an array element of the binding
+  ir::ValueId element = ir::kNoValue;
+  ir::ValueId offset = ir::kNoValue;  ///< dynamic bytes
+  std::uint32_t constant_offset = 0;  ///< plus these
+  std::uint32_t matrix_stride = 0;
+  bool row_major = false;
+  std::uint32_t component_stride = 4;  ///< bytes between components of a vector
+  // kDescriptor, kTexel
+  ImageHandle image;
+  ir::ValueId coord = ir::kNoValue, sample = ir::kNoValue;
+};
+
+/// A variable of storage class Function, Private, Input or Output, or a phi: becomes SSA or an ir::Array.
+struct Local {
+  std::uint32_t type = 0;
+  spv::StorageClass storage = spv::StorageClass::Function;
+  std::uint32_t variable = 0;  ///< OpVariable, 0: made by the front end
+  ir::ValueInfo info{};        ///< when type is 0: a scalar or vector of this kind
+};
+
+/// Path of one LoadVar / StoreVar to a scalar or vector; dynamic steps are the instruction's sources in order.
+struct Access {
+  std::uint32_t local = 0;
+  std::vector<Step> path;
+};
+
+/// A construct of the control flow that is being built and can be left.
+struct Scope {
+  enum class Kind : std::uint8_t { kSelection, kCase, kLoop, kFunction } kind = Kind::kSelection;
+  std::uint32_t merge = 0, continue_target = 0;
+  std::uint32_t exit = 0;  ///< number in Exit instructions (not kLoop)
+  bool exit_used = false;
+  const std::unordered_map<std::uint32_t, std::uint32_t>* falls = nullptr;  ///< kCase: case label -> fall-through flag
+};
+
+/// A function instance that is being inlined.
+struct Frame {
+  const Function* function = nullptr;
+  std::uint32_t result_local = 0;
+  std::size_t scope = 0;  ///< index of its kFunction scope
+};
+
+struct Translator {
+  Translator(const Module& m, const CompileOptions& o) : module(m), options(o) {}
+
+  const Module& module;
+  const CompileOptions& options;
+  ir::Function function;
+  ir::NodeList* list = nullptr;  ///< where instructions go
+  ir::NodeList constants;        ///< goes in front of everything
+  ir::NodeList prologue;         ///< initial values of variables, inputs
+  std::map<std::vector<std::uint32_t>, ir::ValueId> constant_ids;
+  std::unordered_map<ir::ValueId, std::array<std::uint32_t, 4>> constant_words;
+  std::unordered_set<ir::ValueId> undefined_ids;
+
+  std::unordered_map<std::uint32_t, Value> values;
+  std::unordered_map<std::uint32_t, Pointer> pointers;
+  std::unordered_map<std::uint32_t, ImageHandle> images;
+  std::unordered_map<std::uint32_t, std::uint32_t> phi_locals;  ///< OpPhi -> local of the running function instance
+  std::vector<Local> locals;
+  std::vector<Access> accesses;
+  std::unordered_map<std::uint32_t, std::uint32_t> shared_offsets;  ///< Workgroup variable -> bytes
+
+  std::vector<Scope> scopes;
+  std::vector<Frame> frames;
+  std::unordered_map<std::uint32_t, bool> open_blocks;  ///< blocks built in the running function instance
+  std::uint32_t exits = 0;
+  std::uint32_t depth = 0;  ///< of the recursion over the control flow
+  std::size_t nodes = 0;    ///< emitted so far
+
+  const Inst* inst = nullptr;  ///< being translated
+  bool exact = false;          ///< the instruction is decorated NoContraction
+};
+
+/// Bounds the size of what a module may expand to, so that a small module cannot ask for endless memory.
+inline constexpr std::size_t kMaxNodes = 1u << 20;
+/// Bounds the recursion over nested control flow.
+inline constexpr std::uint32_t kMaxDepth = 200;
+
+// ---- emit.cpp
+/// Appends an instruction with a result of `components`; returns the result.
+ir::ValueId emit(Translator& t, ir::Op op, std::uint32_t components, bool boolean, std::vector<ir::Src> src);
+/// Appends an instruction without result and returns it.
+ir::Instr& emit_effect(Translator& t, ir::Op op, std::vector<ir::Src> src = {});
+/// The instruction that was appended last.
+ir::Instr& last_instr(Translator& t);
+/// Appends an empty If / Loop.
+ir::Node& emit_node(Translator& t, ir::Node::Kind kind);
+
+ir::ValueId constant(Translator& t, std::span<const std::uint32_t> words, bool boolean = false);
+ir::ValueId constant_u32(Translator& t, std::uint32_t word);
+ir::ValueId constant_float(Translator& t, float value);
+ir::ValueId constant_bool(Translator& t, bool value);
+ir::ValueId undefined(Translator& t, std::uint32_t components, bool boolean);
+/// The words of a constant value, null otherwise.
+const std::array<std::uint32_t, 4>* constant_of(const Translator& t, ir::ValueId value);
+
+inline ir::Src whole(ir::ValueId value) { return {value, {0, 1, 2, 3}}; }
+inline ir::Src splat(ir::ValueId value, std::uint8_t component = 0) {
+  return {value, {component, component, component, component}};
+}
+inline std::uint32_t components(const Translator& t, ir::ValueId value) { return t.function.values[value].components; }
+inline bool is_boolean(const Translator& t, ir::ValueId value) { return t.function.values[value].boolean; }
+
+/// Component of a vector as a scalar value.
+ir::ValueId extract(Translator& t, ir::ValueId vector, std::uint32_t component);
+/// Vector of scalars (each Src: swizzle[0]); constants fold.
+ir::ValueId vec(Translator& t, std::vector<ir::Src> scalars, bool boolean);
+/// Component chosen at run time: selects over all components, out of range gives the last.
+ir::ValueId extract_dynamic(Translator& t, ir::ValueId vector, ir::ValueId index);
+/// Copy of `vector` with one component replaced; an index out of range replaces none.
+ir::ValueId insert(Translator& t, ir::ValueId vector, ir::ValueId scalar, std::uint32_t component);
+ir::ValueId insert_dynamic(Translator& t, ir::ValueId vector, ir::ValueId scalar, ir::ValueId index);
+
+// ---- values.cpp
+/// Components and boolean-ness of a leaf type; fails on numbers that are not 32 bits wide.
+ir::ValueInfo leaf_info(const Translator& t, std::uint32_t type);
+/// Calls f(leaf type id) for every leaf of a type in order.
+void leaf_types(const Translator& t, std::uint32_t type, std::vector<std::uint32_t>& leaves);
+/// Value of an id: constants and results.
+const Value& value_of(Translator& t, std::uint32_t id);
+/// Value of an id that is one scalar or vector.
+ir::ValueId scalar_or_vector(Translator& t, std::uint32_t id);
+void set_value(Translator& t, const Inst& inst, std::vector<ir::ValueId> leaves);
+void set_value(Translator& t, const Inst& inst, ir::ValueId leaf);
+/// Value of `type` whose scalars are `words`.
+Value constant_value(Translator& t, std::uint32_t type, std::span<const std::uint32_t> words, bool is_undefined);
+/// Literal access chain: index of the first leaf, and the type it leads to.
+struct Part {
+  std::uint32_t first = 0;
+  std::uint32_t type = 0;
+  std::optional<std::uint32_t> component;  ///< of the leaf
+};
+Part find_part(const Translator& t, const Inst& inst, std::uint32_t type, std::uint32_t first_operand);
+
+// ---- memory.cpp
+std::uint32_t new_local(Translator& t, std::uint32_t type, spv::StorageClass storage, std::uint32_t variable);
+/// A variable of the front end that holds one scalar or vector.
+std::uint32_t new_local(Translator& t, ir::ValueInfo info);
+/// A boolean flag of the control-flow lowering.
+std::uint32_t new_flag(Translator& t);
+Pointer local_pointer(const Translator& t, std::uint32_t local);
+const Pointer& pointer_of(Translator& t, std::uint32_t id);
+Value load(Translator& t, const Pointer& pointer);
+void store(Translator& t, const Pointer& pointer, const Value& value);
+/// Whole of a variable of new_local(info).
+ir::ValueId load_raw(Translator& t, std::uint32_t local);
+void store_raw(Translator& t, std::uint32_t local, ir::ValueId value);
+void store_flag(Translator& t, std::uint32_t flag, bool value);
+ir::ValueId load_flag(Translator& t, std::uint32_t flag);
+/// a + b * scale in bytes; either may be kNoValue (zero).
+ir::ValueId add_scaled(Translator& t, ir::ValueId base, ir::ValueId index, std::uint32_t scale);
+/// Byte offset of a pointer into a buffer as a value (without its constant part).
+ir::ValueId dynamic_offset(Translator& t, const Pointer& pointer);
+ir::ValueId descriptor_element(Translator& t, const Pointer& pointer);
+/// Fills data[] of a buffer instruction.
+void set_buffer(ir::Instr& instr, const Pointer& pointer);
+
+// ---- control.cpp
+/// Translates the entry function into function.body.
+void translate_entry(Translator& t);
+/// opcode_table.cpp: translates one instruction that is not control flow.
+void translate_instruction(Translator& t, const Inst& inst);
+
+// ---- interface.cpp
+/// Execution modes into function.interface.
+void read_modes(Translator& t);
+/// Initial values of Input variables (into t.prologue) and StoreOutput of Output variables (at the end of the body);
+/// joins prologue and body.
+void connect_interface(Translator& t);
+
+// ---- passes of the front end, in this order
+/// Exit(id) inside `list` becomes structure: what follows moves into the branch that does not exit, or behind a flag.
+void lower_exits(Translator& t, ir::NodeList& list, std::uint32_t exit);
+/// scopes.cpp: values used outside the list that defines them go through variables.
+void repair_scopes(Translator& t);
+/// variables.cpp, ssa.cpp: LoadVar / StoreVar become SSA values, If / Loop arguments and ir::Array accesses.
+void resolve_arrays(Translator& t);
+void build_ssa(Translator& t);
+/// invariant.cpp: everything that feeds a StoreOutput marked exact becomes exact (section 3.3).
+void propagate_invariant(ir::Function& function);
+
+}  // namespace vitrine::spirv::front

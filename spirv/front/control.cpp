@@ -1,0 +1,441 @@
+// Structured control flow (SPIR-V 2.11): blocks become the tree of ir.h. Selections become If, loops Loop, switches a
+// sequence of Ifs; calls are inlined. Phis are variables written on the edges. Jumps that the tree has no form for
+// (leaving a switch or a function early) are Exit instructions, which exits.cpp turns into structure.
+#include "spirv/front/functions.h"
+
+namespace vitrine::spirv::front {
+namespace {
+
+using spv::Op;
+
+void build(Translator& t, std::uint32_t label, std::uint32_t end, bool enter_first);
+
+/// Counts the depth of the recursion over nested constructs.
+struct Deeper {
+  explicit Deeper(Translator& t) : translator(t) {
+    if (++t.depth > kMaxDepth) throw Failure("control flow is too deeply nested");
+  }
+  ~Deeper() { translator.depth--; }
+  Translator& translator;
+};
+
+/// Redirects emission to `list` for a while.
+struct Into {
+  Into(Translator& t, ir::NodeList& list) : translator(t), saved(std::exchange(t.list, &list)) {}
+  ~Into() { translator.list = saved; }
+  Translator& translator;
+  ir::NodeList* saved;
+};
+
+Scope& push_scope(Translator& t, Scope::Kind kind, std::uint32_t merge) {
+  t.scopes.push_back({kind, merge, 0, t.exits++, false, nullptr});
+  return t.scopes.back();
+}
+
+void exit_scope(Translator& t, Scope& scope) {
+  scope.exit_used = true;
+  emit_effect(t, ir::Op::kExit).data[0] = scope.exit;
+}
+
+/// Ends a construct: pops its scope and lowers the exits out of it, if there were any.
+void close_scope(Translator& t, ir::NodeList& list) {
+  const Scope scope = t.scopes.back();
+  t.scopes.pop_back();
+  if (scope.exit_used) lower_exits(t, list, scope.exit);
+}
+
+void append(ir::NodeList& list, ir::NodeList&& more) {
+  for (auto& node : more) list.push_back(std::move(node));
+}
+
+/// Local that an OpPhi reads; made when first asked for in this function instance.
+std::uint32_t phi_local(Translator& t, const Inst& phi) {
+  const auto [at, added] = t.phi_locals.try_emplace(phi.result, 0);
+  if (added) at->second = new_local(t, phi.result_type, spv::StorageClass::Function, 0);
+  return at->second;
+}
+
+/// Writes the phis of `to` for the edge from the block `from`.
+void store_phis(Translator& t, std::uint32_t from, std::uint32_t to) {
+  const Block& block = t.module.block(to);
+  for (std::uint32_t i = block.first; i <= block.last; i++) {
+    const Inst& phi = t.module.code[i];
+    if (phi.op != Op::OpPhi) {
+      if (phi.op == Op::OpLine || phi.op == Op::OpNoLine) continue;
+      break;
+    }
+    for (std::uint32_t p = 0; p + 1 < phi.count(); p += 2)
+      if (phi.operand(p + 1) == from) store(t, local_pointer(t, phi_local(t, phi)), value_of(t, phi.operand(p)));
+  }
+}
+
+/// If `label` leaves an enclosing construct, emits the jump and returns true.
+bool jump_out(Translator& t, std::uint32_t label) {
+  for (std::size_t i = t.scopes.size(); i-- > 0;) {
+    Scope& scope = t.scopes[i];
+    if (scope.kind == Scope::Kind::kFunction) return false;
+    if (scope.kind == Scope::Kind::kLoop) {
+      if (label != scope.merge && label != scope.continue_target) return false;
+      emit_effect(t, label == scope.merge ? ir::Op::kBreak : ir::Op::kContinue);
+      return true;
+    }
+    if (label == scope.merge) {
+      exit_scope(t, scope);
+      return true;
+    }
+    if (scope.falls == nullptr) continue;
+    if (const auto fall = scope.falls->find(label); fall != scope.falls->end()) {
+      store_flag(t, fall->second, true);
+      exit_scope(t, scope);
+      return true;
+    }
+  }
+  return false;
+}
+
+bool is_exit(const Translator& t, std::uint32_t label) {
+  for (std::size_t i = t.scopes.size(); i-- > 0;) {
+    const Scope& scope = t.scopes[i];
+    if (scope.kind == Scope::Kind::kFunction) return false;
+    if (label == scope.merge) return true;
+    if (scope.kind == Scope::Kind::kLoop) return label == scope.continue_target;
+    if (scope.falls != nullptr && scope.falls->count(label) != 0) return true;
+  }
+  return false;
+}
+
+/// One branch of a conditional: phis of the edge, then the blocks up to `end`.
+void build_branch(Translator& t, ir::NodeList& list, std::uint32_t from, std::uint32_t label, std::uint32_t end) {
+  const Into into(t, list);
+  store_phis(t, from, label);
+  build(t, label, end, false);
+}
+
+void build_if(Translator& t, const Block& block, const Inst& branch) {
+  const ir::ValueId condition = scalar_or_vector(t, branch.operand(0));
+  push_scope(t, Scope::Kind::kSelection, block.merge);
+  ir::NodeList list;
+  if (const auto* words = constant_of(t, condition)) {
+    build_branch(t, list, block.label, branch.operand((*words)[0] != 0 ? 1 : 2), block.merge);
+  } else {
+    const Into into(t, list);
+    ir::Node& node = emit_node(t, ir::Node::Kind::kIf);
+    node.condition = whole(condition);
+    build_branch(t, node.then_list, block.label, branch.operand(1), block.merge);
+    build_branch(t, node.else_list, block.label, branch.operand(2), block.merge);
+  }
+  close_scope(t, list);
+  append(*t.list, std::move(list));
+}
+
+struct Case {
+  std::uint32_t label = 0;
+  bool is_default = false;
+  std::vector<std::uint32_t> literals;
+  ir::NodeList body;
+};
+
+std::vector<Case> read_cases(const Inst& inst) {
+  std::vector<Case> cases;
+  auto find = [&](std::uint32_t label) -> Case& {
+    for (Case& c : cases)
+      if (c.label == label) return c;
+    cases.push_back({});
+    cases.back().label = label;
+    return cases.back();
+  };
+  find(inst.operand(1)).is_default = true;
+  for (std::uint32_t i = 2; i + 1 < inst.count(); i += 2) find(inst.operand(i + 1)).literals.push_back(inst.operand(i));
+  return cases;
+}
+
+ir::ValueId any_of(Translator& t, ir::ValueId a, ir::ValueId b) {
+  return a == ir::kNoValue ? b : emit(t, ir::Op::kOrB, 1, true, {whole(a), whole(b)});
+}
+
+/// Conditions of all cases, default last: none of the literals that lead elsewhere.
+std::vector<ir::ValueId> case_conditions(Translator& t, ir::ValueId selector, const std::vector<Case>& cases) {
+  std::vector<ir::ValueId> conditions(cases.size(), ir::kNoValue);
+  ir::ValueId others = ir::kNoValue;
+  std::size_t default_index = 0;
+  for (std::size_t i = 0; i < cases.size(); i++) {
+    if (cases[i].is_default) {
+      default_index = i;
+      continue;
+    }
+    for (std::uint32_t literal : cases[i].literals)
+      conditions[i] =
+          any_of(t, conditions[i], emit(t, ir::Op::kIEq, 1, true, {whole(selector), whole(constant_u32(t, literal))}));
+    others = any_of(t, others, conditions[i]);
+  }
+  conditions[default_index] =
+      others == ir::kNoValue ? constant_bool(t, true) : emit(t, ir::Op::kNotB, 1, true, {whole(others)});
+  return conditions;
+}
+
+/// Flags by which a case is entered from the case before it.
+using Falls = std::unordered_map<std::uint32_t, std::uint32_t>;
+
+void build_case(Translator& t, Case& c, const Falls& falls, std::uint32_t merge) {
+  Scope& scope = push_scope(t, Scope::Kind::kCase, merge);
+  Falls others = falls;
+  others.erase(c.label);
+  scope.falls = &others;
+  {
+    const Into into(t, c.body);
+    build(t, c.label, merge, false);
+  }
+  close_scope(t, c.body);
+}
+
+/// Order in which no case comes before one that falls into it.
+std::vector<std::size_t> case_order(const std::vector<Case>& cases, const std::vector<std::vector<std::size_t>>& into) {
+  std::vector<std::size_t> order;
+  std::vector<std::uint8_t> state(cases.size(), 0);
+  // Depth first over at most a chain; iterative so that a long chain cannot exhaust the stack.
+  for (std::size_t root = 0; root < cases.size(); root++) {
+    std::vector<std::size_t> stack{root};
+    while (!stack.empty()) {
+      const std::size_t at = stack.back();
+      if (state[at] == 2) {
+        stack.pop_back();
+      } else if (state[at] == 1) {
+        state[at] = 2;
+        order.push_back(at);
+        stack.pop_back();
+      } else {
+        state[at] = 1;
+        for (std::size_t before : into[at]) {
+          if (state[before] == 1) throw Failure("switch cases fall through in a circle");
+          if (state[before] == 0) stack.push_back(before);
+        }
+      }
+    }
+  }
+  return order;
+}
+
+bool stores_flag(const Translator& t, const ir::NodeList& list, std::uint32_t flag) {
+  for (const auto& node : list) {
+    if (node->kind == ir::Node::Kind::kInstr) {
+      if (node->instr.op == ir::Op::kStoreVar && t.accesses[node->instr.data[0]].local == flag) return true;
+    } else if (stores_flag(t, node->then_list, flag) || stores_flag(t, node->else_list, flag) ||
+               stores_flag(t, node->body, flag) || stores_flag(t, node->continuing, flag)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void build_switch(Translator& t, const Block& block, const Inst& inst) {
+  if (t.module.type(t.module.def(inst.operand(0)).result_type).width != 32) fail(inst, "selector is not 32 bits wide");
+  const ir::ValueId selector = scalar_or_vector(t, inst.operand(0));
+  std::vector<Case> cases = read_cases(inst);
+  const std::vector<ir::ValueId> conditions = case_conditions(t, selector, cases);
+  Falls falls;
+  for (const Case& c : cases) {
+    // A fall-through writes the phis of its target later than this, so writing them for every target is safe.
+    store_phis(t, block.label, c.label);
+    if (c.label != block.merge && !is_exit(t, c.label)) falls[c.label] = new_flag(t);
+  }
+  for (const auto& [label, flag] : falls) store_flag(t, flag, false);
+  for (Case& c : cases) build_case(t, c, falls, block.merge);
+
+  std::vector<std::vector<std::size_t>> into(cases.size());
+  for (std::size_t to = 0; to < cases.size(); to++)
+    for (std::size_t from = 0; from < cases.size() && falls.count(cases[to].label) != 0; from++)
+      if (stores_flag(t, cases[from].body, falls[cases[to].label])) into[to].push_back(from);
+  for (std::size_t i : case_order(cases, into)) {
+    ir::ValueId condition = conditions[i];
+    if (!into[i].empty()) condition = any_of(t, load_flag(t, falls[cases[i].label]), condition);
+    ir::Node& node = emit_node(t, ir::Node::Kind::kIf);
+    node.condition = whole(condition);
+    node.then_list = std::move(cases[i].body);
+  }
+}
+
+void build_loop(Translator& t, const Block& header) {
+  ir::Node& node = emit_node(t, ir::Node::Kind::kLoop);
+  t.scopes.push_back({Scope::Kind::kLoop, header.merge, header.continue_target, 0, false, nullptr});
+  {
+    const Into into(t, node.body);
+    build(t, header.label, header.continue_target, true);
+  }
+  if (header.continue_target != header.label) {
+    // In the continue construct a jump to the continue target is no longer possible; the header ends it.
+    t.scopes.back().continue_target = 0;
+    const Into into(t, node.continuing);
+    build(t, header.continue_target, header.label, true);
+  }
+  t.scopes.pop_back();
+}
+
+/// Conditional branch without merge: at least one side leaves a construct or ends the list. Returns the label to go on
+/// with, 0: none.
+std::uint32_t build_conditional_jump(Translator& t, const Block& block, const Inst& branch, std::uint32_t end) {
+  const std::uint32_t yes = branch.operand(1), no = branch.operand(2);
+  if (yes == no) {
+    store_phis(t, block.label, yes);
+    return yes;
+  }
+  const bool yes_leaves = yes == end || is_exit(t, yes), no_leaves = no == end || is_exit(t, no);
+  if (!yes_leaves && !no_leaves) fail(branch, "branches without a merge block");
+  ir::Node& node = emit_node(t, ir::Node::Kind::kIf);
+  node.condition = whole(scalar_or_vector(t, branch.operand(0)));
+  if (yes_leaves && no_leaves) {
+    build_branch(t, node.then_list, block.label, yes, end);
+    build_branch(t, node.else_list, block.label, no, end);
+    return 0;
+  }
+  const std::uint32_t leaving = yes_leaves ? yes : no, staying = yes_leaves ? no : yes;
+  ir::NodeList& jump = yes_leaves ? node.then_list : node.else_list;
+  ir::NodeList& rest = yes_leaves ? node.else_list : node.then_list;
+  build_branch(t, jump, block.label, leaving, end);
+  if (leaving != end) {
+    store_phis(t, block.label, staying);
+    return staying;
+  }
+  build_branch(t, rest, block.label, staying, end);
+  return 0;
+}
+
+void leave_function(Translator& t, const Inst& inst) {
+  const Frame& frame = t.frames.back();
+  if (inst.op == Op::OpReturnValue) store(t, local_pointer(t, frame.result_local), value_of(t, inst.operand(0)));
+  exit_scope(t, t.scopes[frame.scope]);
+}
+
+void end_invocation(Translator& t) {
+  t.function.interface.uses_discard = true;
+  for (const Scope& scope : t.scopes)
+    if (scope.kind == Scope::Kind::kLoop) {
+      emit_effect(t, ir::Op::kKill);
+      return;
+    }
+  // Outside loops the lane goes on as a helper, as the reference lets it, so that later derivatives have its values.
+  emit_effect(t, ir::Op::kDemote);
+}
+
+/// Ends a block; returns the label to go on with in the same list, 0: the list is complete.
+std::uint32_t build_terminator(Translator& t, const Block& block, std::uint32_t end) {
+  const Inst& inst = t.module.code[block.last];
+  t.inst = &inst;
+  switch (inst.op) {
+    case Op::OpBranch:
+      store_phis(t, block.label, inst.operand(0));
+      return inst.operand(0);
+    case Op::OpBranchConditional:
+      if (block.merge_op != Op::OpSelectionMerge) return build_conditional_jump(t, block, inst, end);
+      build_if(t, block, inst);
+      return block.merge;
+    case Op::OpSwitch:
+      if (block.merge_op != Op::OpSelectionMerge) fail(inst, "switch without a merge block");
+      build_switch(t, block, inst);
+      return block.merge;
+    case Op::OpReturn:
+    case Op::OpReturnValue:
+      leave_function(t, inst);
+      return 0;
+    case Op::OpKill:
+    case Op::OpTerminateInvocation:
+      end_invocation(t);
+      return 0;
+    default:
+      return 0;
+  }
+}
+
+void load_phi(Translator& t, const Inst& inst) {
+  t.values[inst.result] = load(t, local_pointer(t, phi_local(t, inst)));
+}
+
+void call(Translator& t, const Inst& inst);
+
+void build_block(Translator& t, const Block& block) {
+  for (std::uint32_t i = block.first; i < block.last; i++) {
+    const Inst& inst = t.module.code[i];
+    t.inst = &inst;
+    if (inst.op == Op::OpPhi)
+      load_phi(t, inst);
+    else if (inst.op == Op::OpFunctionCall)
+      call(t, inst);
+    else
+      translate_instruction(t, inst);
+  }
+}
+
+/// Blocks from `label` until `end` or a jump. `enter_first`: `label` is a loop header or continue target being entered.
+void build(Translator& t, std::uint32_t label, std::uint32_t end, bool enter_first) {
+  const Deeper deeper(t);
+  bool header_entered = enter_first;
+  while (label != 0) {
+    if (!header_entered && (label == end || jump_out(t, label))) return;
+    const Block& block = t.module.block(label);
+    const bool as_loop = block.merge_op == Op::OpLoopMerge && !(header_entered && t.scopes.back().merge == block.merge);
+    header_entered = false;
+    if (as_loop) {
+      build_loop(t, block);
+      label = block.merge;
+      continue;
+    }
+    if (!t.open_blocks.emplace(label, true).second) fail(t.module.code[block.last], "control flow is not structured");
+    build_block(t, block);
+    label = build_terminator(t, block, end);
+  }
+}
+
+void bind_arguments(Translator& t, const Inst& inst, const Function& callee) {
+  for (std::uint32_t i = 0; i < callee.params.size(); i++) {
+    const std::uint32_t argument = inst.operand(i + 1), param = callee.params[i];
+    if (const auto image = t.images.find(argument); image != t.images.end())
+      t.images[param] = image->second;
+    else if (t.module.type(t.module.def(param).result_type).kind == Type::Kind::kPointer)
+      t.pointers[param] = pointer_of(t, argument);
+    else
+      t.values[param] = value_of(t, argument);
+  }
+}
+
+/// Inlines a function into the current list; afterwards `result_local` holds what it returned.
+void build_function(Translator& t, const Function& callee, std::uint32_t result_local) {
+  for (const Frame& frame : t.frames)
+    if (frame.function == &callee) throw Failure("function %" + std::to_string(callee.id) + " is recursive");
+  if (callee.entry == 0) throw Failure("function %" + std::to_string(callee.id) + " has no body");
+  const auto blocks = std::exchange(t.open_blocks, {});
+  const auto phis = std::exchange(t.phi_locals, {});
+  ir::NodeList list;
+  push_scope(t, Scope::Kind::kFunction, 0);
+  t.frames.push_back({&callee, result_local, t.scopes.size() - 1});
+  {
+    const Into into(t, list);
+    build(t, callee.entry, 0, false);
+  }
+  t.frames.pop_back();
+  close_scope(t, list);
+  append(*t.list, std::move(list));
+  t.open_blocks = blocks;
+  t.phi_locals = phis;
+}
+
+void call(Translator& t, const Inst& inst) {
+  const Deeper deeper(t);
+  const auto callee = t.module.functions.find(inst.operand(0));
+  if (callee == t.module.functions.end()) fail(inst, "calls something that is no function");
+  bind_arguments(t, inst, callee->second);
+  const bool has_result = t.module.type(inst.result_type).kind != Type::Kind::kVoid;
+  const std::uint32_t local = has_result ? new_local(t, inst.result_type, spv::StorageClass::Function, 0) : 0;
+  build_function(t, callee->second, local);
+  t.inst = &inst;
+  if (has_result) t.values[inst.result] = load(t, local_pointer(t, local));
+}
+
+}  // namespace
+
+void translate_entry(Translator& t) {
+  const auto entry = t.module.functions.find(t.module.entry_function);
+  if (entry == t.module.functions.end()) throw Failure("the entry point has no function");
+  t.list = &t.function.body;
+  build_function(t, entry->second, 0);
+}
+
+}  // namespace vitrine::spirv::front

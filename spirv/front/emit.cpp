@@ -1,0 +1,146 @@
+// Emitters shared by all translator functions: instructions, constants, vector assembly.
+#include "base/numeric.h"
+#include "spirv/front/context.h"
+
+namespace vitrine::spirv::front {
+namespace {
+
+ir::Instr& append(Translator& t, ir::Op op, std::vector<ir::Src> src) {
+  ir::Node& node = emit_node(t, ir::Node::Kind::kInstr);
+  node.instr.op = op;
+  node.instr.src = std::move(src);
+  node.instr.exact = t.exact;
+  if (t.inst != nullptr) node.instr.origin = t.inst->origin;
+  return node.instr;
+}
+
+/// Const instructions go to the front of the function, once each.
+ir::ValueId make_constant(Translator& t, std::span<const std::uint32_t> words, bool boolean, bool is_undefined) {
+  std::vector<std::uint32_t> key(words.begin(), words.end());
+  key.push_back(boolean ? 1 : 0);
+  key.push_back(is_undefined ? 1 : 0);
+  const auto [at, added] = t.constant_ids.try_emplace(key, ir::kNoValue);
+  if (!added) return at->second;
+  auto node = std::make_unique<ir::Node>();
+  node->instr.op = is_undefined ? ir::Op::kUndef : ir::Op::kConst;
+  node->instr.components = static_cast<std::uint8_t>(words.size());
+  node->instr.boolean = boolean;
+  std::array<std::uint32_t, 4> imm{};
+  std::copy(words.begin(), words.end(), imm.begin());
+  if (!is_undefined) node->instr.imm = imm;
+  node->instr.result = at->second = t.function.new_value(node->instr.components, boolean);
+  if (is_undefined)
+    t.undefined_ids.insert(at->second);
+  else
+    t.constant_words[at->second] = imm;
+  t.constants.push_back(std::move(node));
+  return at->second;
+}
+
+}  // namespace
+
+ir::Node& emit_node(Translator& t, ir::Node::Kind kind) {
+  if (++t.nodes > kMaxNodes) throw Failure("the shader expands to too many instructions");
+  t.list->push_back(std::make_unique<ir::Node>());
+  t.list->back()->kind = kind;
+  return *t.list->back();
+}
+
+ir::ValueId emit(Translator& t, ir::Op op, std::uint32_t components, bool boolean, std::vector<ir::Src> src) {
+  ir::Instr& instr = append(t, op, std::move(src));
+  instr.components = static_cast<std::uint8_t>(components);
+  instr.boolean = boolean;
+  return instr.result = t.function.new_value(instr.components, boolean);
+}
+
+ir::Instr& emit_effect(Translator& t, ir::Op op, std::vector<ir::Src> src) {
+  ir::Instr& instr = append(t, op, std::move(src));
+  instr.components = 0;
+  return instr;
+}
+
+ir::Instr& last_instr(Translator& t) { return t.list->back()->instr; }
+
+ir::ValueId constant(Translator& t, std::span<const std::uint32_t> words, bool boolean) {
+  return make_constant(t, words, boolean, false);
+}
+
+ir::ValueId constant_u32(Translator& t, std::uint32_t word) { return constant(t, {&word, 1}); }
+
+ir::ValueId constant_float(Translator& t, float value) { return constant_u32(t, base::bits_of(value)); }
+
+ir::ValueId constant_bool(Translator& t, bool value) {
+  const std::uint32_t word = value;
+  return constant(t, {&word, 1}, true);
+}
+
+ir::ValueId undefined(Translator& t, std::uint32_t components, bool boolean) {
+  const std::uint32_t zero[4] = {};
+  return make_constant(t, {zero, components}, boolean, true);
+}
+
+const std::array<std::uint32_t, 4>* constant_of(const Translator& t, ir::ValueId value) {
+  const auto found = t.constant_words.find(value);
+  return found == t.constant_words.end() ? nullptr : &found->second;
+}
+
+ir::ValueId extract(Translator& t, ir::ValueId vector, std::uint32_t component) {
+  if (components(t, vector) == 1) return vector;
+  const bool boolean = is_boolean(t, vector);
+  if (const auto* words = constant_of(t, vector)) return constant(t, {&(*words)[component], 1}, boolean);
+  return emit(t, boolean ? ir::Op::kMovB : ir::Op::kMov, 1, boolean,
+              {splat(vector, static_cast<std::uint8_t>(component))});
+}
+
+ir::ValueId vec(Translator& t, std::vector<ir::Src> scalars, bool boolean) {
+  if (scalars.size() == 1 && components(t, scalars[0].value) == 1) return scalars[0].value;
+  std::uint32_t words[4] = {};
+  bool all_constant = true;
+  bool same = components(t, scalars[0].value) == scalars.size();
+  for (std::size_t i = 0; i < scalars.size(); i++) {
+    const auto* from = constant_of(t, scalars[i].value);
+    all_constant &= from != nullptr;
+    if (from != nullptr) words[i] = (*from)[scalars[i].swizzle[0]];
+    same &= scalars[i].value == scalars[0].value && scalars[i].swizzle[0] == i;
+  }
+  if (same) return scalars[0].value;
+  if (all_constant) return constant(t, {words, scalars.size()}, boolean);
+  const auto count = static_cast<std::uint32_t>(scalars.size());
+  return emit(t, ir::Op::kVec, count, boolean, std::move(scalars));
+}
+
+ir::ValueId extract_dynamic(Translator& t, ir::ValueId vector, ir::ValueId index) {
+  const std::uint32_t count = components(t, vector);
+  if (const auto* words = constant_of(t, index)) return extract(t, vector, std::min((*words)[0], count - 1));
+  const bool boolean = is_boolean(t, vector);
+  ir::ValueId result = extract(t, vector, count - 1);
+  for (std::uint32_t i = count - 1; i-- > 0;) {
+    const ir::ValueId here = emit(t, ir::Op::kIEq, 1, true, {whole(index), whole(constant_u32(t, i))});
+    result = emit(t, boolean ? ir::Op::kSelectB : ir::Op::kSelect, 1, boolean,
+                  {whole(here), splat(vector, static_cast<std::uint8_t>(i)), whole(result)});
+  }
+  return result;
+}
+
+ir::ValueId insert(Translator& t, ir::ValueId vector, ir::ValueId scalar, std::uint32_t component) {
+  const std::uint32_t count = components(t, vector);
+  if (count == 1) return scalar;
+  std::vector<ir::Src> parts;
+  for (std::uint32_t i = 0; i < count; i++)
+    parts.push_back(i == component ? splat(scalar) : splat(vector, static_cast<std::uint8_t>(i)));
+  return vec(t, std::move(parts), is_boolean(t, vector));
+}
+
+ir::ValueId insert_dynamic(Translator& t, ir::ValueId vector, ir::ValueId scalar, ir::ValueId index) {
+  if (const auto* words = constant_of(t, index)) return insert(t, vector, scalar, (*words)[0]);
+  const bool boolean = is_boolean(t, vector);
+  std::vector<ir::Src> parts;
+  for (std::uint32_t i = 0; i < components(t, vector); i++) {
+    const ir::ValueId here = emit(t, ir::Op::kIEq, 1, true, {whole(index), whole(constant_u32(t, i))});
+    parts.push_back(whole(emit(t, boolean ? ir::Op::kSelectB : ir::Op::kSelect, 1, boolean,
+                               {whole(here), whole(scalar), splat(vector, static_cast<std::uint8_t>(i))})));
+  }
+  return vec(t, std::move(parts), boolean);
+}
+
+}  // namespace vitrine::spirv::front

@@ -1,0 +1,39 @@
+// The translator functions named by opcodes.def, and helpers they share. Internal to front/.
+#pragma once
+
+#include "spirv/front/context.h"
+
+namespace vitrine::spirv::front {
+
+#define VITRINE_OPCODE(name, function, op, effect) void function(Translator& t, const Inst& inst, ir::Op op_column);
+#include "spirv/opcodes.def"
+#undef VITRINE_OPCODE
+
+/// Follows one step of an access chain.
+void step_into(Translator& t, const Inst& inst, Pointer& pointer, const Step& step);
+/// Type of the vector whose component a local pointer points to.
+std::uint32_t vector_type_of(const Translator& t, const Pointer& pointer);
+/// Sum of products, order of section 5.1.
+ir::ValueId dot(Translator& t, ir::ValueId a, ir::ValueId b);
+
+/// Descriptors and dimensions of an image: everything but what is done with it.
+ir::ImageInfo image_info(const Translator& t, const ImageHandle& handle);
+
+/// Collects the sources of an image instruction in the order of ir::ImageOperand.
+class ImageSources {
+ public:
+  explicit ImageSources(ir::ImageInfo& info) : info_(info) {}
+  /// kNoValue: absent.
+  void add(ir::ImageOperand operand, ir::ValueId value);
+  void add(ir::ImageOperand operand, ir::Src src);
+  std::vector<ir::Src> take();
+
+ private:
+  ir::ImageInfo& info_;
+  std::array<ir::Src, static_cast<std::size_t>(ir::ImageOperand::kCount)> src_{};
+};
+
+/// Chooses the array elements of image and sampler: constants move into `info`, others become sources.
+void add_elements(Translator& t, const ImageHandle& handle, ir::ImageInfo& info, ImageSources& sources);
+
+}  // namespace vitrine::spirv::front

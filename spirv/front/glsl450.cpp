@@ -1,0 +1,257 @@
+// GLSL.std.450 without polynomials, in the reference's order of operations (lavapipe-shader-math.md 5.1 to 5.3, 6.3).
+#include "spirv/front/glsl450.h"
+
+#include <cmath>
+
+#include <spirv/unified1/GLSL.std.450.h>
+
+#include "base/numeric.h"
+#include "spirv/front/functions.h"
+
+namespace vitrine::spirv::front {
+namespace glsl {
+namespace {
+
+/// The literal of a value whose components are all the same literal.
+std::optional<float> uniform_literal(const Expr& value) {
+  const auto* words = constant_of(*value.t, value.id);
+  if (words == nullptr) return {};
+  for (std::uint32_t i = 1; i < value.size(); i++)
+    if ((*words)[i] != (*words)[0]) return {};
+  return base::float_of((*words)[0]);
+}
+
+/// Every pair of literal components has exponents at most 11 apart, so that y - x loses nothing that matters (5.3).
+bool similar_literals(const Expr& x, const Expr& y) {
+  const auto *a = constant_of(*x.t, x.id), *b = constant_of(*y.t, y.id);
+  if (a == nullptr || b == nullptr) return false;
+  for (std::uint32_t i = 0; i < std::max(x.size(), y.size()); i++) {
+    int ea = 0, eb = 0;
+    std::frexp(base::float_of((*a)[x.size() == 1 ? 0 : i]), &ea);
+    std::frexp(base::float_of((*b)[y.size() == 1 ? 0 : i]), &eb);
+    if (std::abs(ea - eb) > 11) return false;
+  }
+  return true;
+}
+
+Expr saturate(Expr x) { return min(max(x, imm(*x.t, 0.0f)), imm(*x.t, 1.0f)); }
+
+/// a - b * c as the front end of the reference writes it: (-b * c) + a.
+Expr minus_product(Expr a, Expr b, Expr c) { return -b * c + a; }
+
+Expr dot_of(Expr a, Expr b) { return {a.t, dot(*a.t, a.id, b.id)}; }
+
+Expr length_of(Expr v) { return sqrt(dot_of(v, v)); }
+
+/// Writes the second result of modf / frexp: through the pointer operand, or as the struct's second member.
+void two_results(Translator& t, const Inst& inst, bool has_pointer, Expr first, Expr second) {
+  if (!has_pointer) return set_value(t, inst, std::vector{first.id, second.id});
+  const Pointer pointer = pointer_of(t, inst.operand(3));
+  store(t, pointer, {pointer.type, {second.id}});
+  result(t, inst, first);
+}
+
+Expr clamp(Translator& t, const Inst& inst, ir::Op lower, ir::Op upper) {
+  return apply(lower, {apply(upper, {arg(t, inst, 0), arg(t, inst, 1)}), arg(t, inst, 2)});
+}
+
+}  // namespace
+
+Expr arg(Translator& t, const Inst& inst, std::uint32_t i) { return {&t, scalar_or_vector(t, inst.operand(i + 2))}; }
+
+void result(Translator& t, const Inst& inst, Expr value) { set_value(t, inst, value.id); }
+
+Expr natural_exp(Expr x) { return apply(ir::Op::kFExp2, {x * 1.4426950408889634f}); }
+
+Expr natural_log(Expr x) { return apply(ir::Op::kFLog2, {x}) * static_cast<float>(1.0 / 1.4426950408889634); }
+
+void unary(Translator& t, const Inst& inst, ir::Op op) { result(t, inst, apply(op, {arg(t, inst, 0)})); }
+
+void binary(Translator& t, const Inst& inst, ir::Op op) {
+  result(t, inst, apply(op, {arg(t, inst, 0), arg(t, inst, 1)}));
+}
+
+void binary_exact(Translator& t, const Inst& inst, ir::Op op) {
+  const ExactScope exact(t);
+  binary(t, inst, op);
+}
+
+void radians(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, arg(t, inst, 0) * static_cast<float>(3.14159265358979323846 / 180.0));
+}
+
+void degrees(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, arg(t, inst, 0) * static_cast<float>(180.0 / 3.14159265358979323846));
+}
+
+void tan(Translator& t, const Inst& inst, ir::Op) {
+  const Expr x = arg(t, inst, 0);
+  const Expr sine = apply(ir::Op::kFSin, {x});
+  result(t, inst, sine / apply(ir::Op::kFCos, {x}));
+}
+
+void exp(Translator& t, const Inst& inst, ir::Op) { result(t, inst, natural_exp(arg(t, inst, 0))); }
+
+void log(Translator& t, const Inst& inst, ir::Op) { result(t, inst, natural_log(arg(t, inst, 0))); }
+
+void clamp_float(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, clamp(t, inst, ir::Op::kFMin, ir::Op::kFMax));
+}
+
+void clamp_exact(Translator& t, const Inst& inst, ir::Op) {
+  const ExactScope exact(t);
+  clamp_float(t, inst, ir::Op::kMov);
+}
+
+void clamp_uint(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, clamp(t, inst, ir::Op::kUMin, ir::Op::kUMax));
+}
+
+void clamp_int(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, clamp(t, inst, ir::Op::kIMin, ir::Op::kIMax));
+}
+
+/// lavapipe-shader-math.md 5.3.
+void mix(Translator& t, const Inst& inst, ir::Op) {
+  const Expr x = arg(t, inst, 0), y = arg(t, inst, 1), a = arg(t, inst, 2);
+  const std::optional<float> x_literal = uniform_literal(x);
+  if (similar_literals(x, y)) return result(t, inst, x + a * (y - x));
+  if (x_literal == 1.0f) return result(t, inst, (imm(t, 1.0f) + -a) + y * a);
+  if (x_literal == -1.0f) return result(t, inst, (a + -1.0f) + y * a);
+  const Expr rest = imm(t, 1.0f) + -a;
+  const Expr left = x * rest;
+  result(t, inst, left + y * a);
+}
+
+void step(Translator& t, const Inst& inst, ir::Op) {
+  const Expr edge = arg(t, inst, 0), x = arg(t, inst, 1);
+  Expr below{&t, ir::kNoValue};
+  {
+    const ExactScope exact(t);
+    below = x < edge;
+  }
+  result(t, inst, imm(t, 1.0f) - apply(ir::Op::kB2F, {below}));
+}
+
+void smooth_step(Translator& t, const Inst& inst, ir::Op) {
+  const Expr edge0 = arg(t, inst, 0), edge1 = arg(t, inst, 1), x = arg(t, inst, 2);
+  const Expr offset = x - edge0;
+  const Expr at = saturate(offset / (edge1 - edge0));
+  result(t, inst, at * (at * minus_product(imm(t, 3.0f), imm(t, 2.0f), at)));
+}
+
+void multiply_add(Translator& t, const Inst& inst, ir::Op) {
+  const Expr product = arg(t, inst, 0) * arg(t, inst, 1);
+  result(t, inst, product + arg(t, inst, 2));
+}
+
+void modf(Translator& t, const Inst& inst, ir::Op) {
+  const Expr x = arg(t, inst, 0);
+  const Expr direction = sign(x), size = abs(x);
+  const Expr infinite = apply(ir::Op::kIEq, {size, imm_u32(t, 0x7f800000)});
+  const Expr signed_zero = x & 0x80000000u;
+  const Expr fraction = select(infinite, signed_zero, direction * apply(ir::Op::kFFract, {size}));
+  const Expr whole_part = direction * apply(ir::Op::kFFloor, {size});
+  two_results(t, inst, inst.has(3), fraction, whole_part);
+}
+
+void frexp(Translator& t, const Inst& inst, ir::Op) {
+  const Expr x = arg(t, inst, 0);
+  const Expr size = abs(x);
+  // 0 < |x| < Inf, by bits: denormals keep their fraction (5.1).
+  const Expr not_zero = apply(ir::Op::kFNeu, {size, imm(t, 0.0f)});
+  const Expr finite = size < imm(t, INFINITY);
+  const Expr regular = apply(ir::Op::kAndB, {not_zero, finite});
+  const Expr significand = select(regular, (x & 0x807fffffu) | 0x3f000000u, x);
+  const Expr bias = select(not_zero, imm_u32(t, static_cast<std::uint32_t>(-126)), imm_u32(t, 0));
+  const Expr exponent = apply(ir::Op::kIAdd, {size >> 23, bias});
+  two_results(t, inst, inst.has(3), significand, exponent);
+}
+
+void ldexp(Translator& t, const Inst& inst, ir::Op) {
+  const Expr x = arg(t, inst, 0);
+  const Expr low = imm_u32(t, static_cast<std::uint32_t>(-254)), high = imm_u32(t, 254);
+  const Expr e = apply(ir::Op::kIMin, {apply(ir::Op::kIMax, {arg(t, inst, 1), low}), high});
+  const Expr half = apply(ir::Op::kIShr, {e, imm_u32(t, 1)});
+  const Expr rest = apply(ir::Op::kISub, {e, half});
+  auto power = [&](Expr exponent) { return apply(ir::Op::kIAdd, {exponent, imm_u32(t, 127)}) << 23; };
+  const Expr scaled = x * power(half);
+  result(t, inst, scaled * power(rest));
+}
+
+void length(Translator& t, const Inst& inst, ir::Op) { result(t, inst, length_of(arg(t, inst, 0))); }
+
+void distance(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, length_of(arg(t, inst, 0) - arg(t, inst, 1)));
+}
+
+void normalize(Translator& t, const Inst& inst, ir::Op) {
+  const Expr v = arg(t, inst, 0);
+  result(t, inst, v / length_of(v));
+}
+
+void cross(Translator& t, const Inst& inst, ir::Op) {
+  const ir::ValueId a = scalar_or_vector(t, inst.operand(2)), b = scalar_or_vector(t, inst.operand(3));
+  if (components(t, a) != 3 || components(t, b) != 3) fail(inst, "operands are not vectors of three");
+  const std::array<std::uint8_t, 4> yzx{1, 2, 0, 0}, zxy{2, 0, 1, 0};
+  const Expr right{&t, emit(t, ir::Op::kFMul, 3, false, {{a, zxy}, {b, yzx}})};
+  const Expr left{&t, emit(t, ir::Op::kFMul, 3, false, {{a, yzx}, {b, zxy}})};
+  result(t, inst, left + -right);
+}
+
+void face_forward(Translator& t, const Inst& inst, ir::Op) {
+  const Expr n = arg(t, inst, 0);
+  const Expr facing = dot_of(arg(t, inst, 2), arg(t, inst, 1)) < imm(t, 0.0f);
+  result(t, inst, select(facing, n, -n));
+}
+
+void reflect(Translator& t, const Inst& inst, ir::Op) {
+  const Expr i = arg(t, inst, 0), n = arg(t, inst, 1);
+  const Expr twice = dot_of(i, n) * 2.0f;
+  result(t, inst, minus_product(i, n, twice));
+}
+
+void refract(Translator& t, const Inst& inst, ir::Op) {
+  const Expr i = arg(t, inst, 0), n = arg(t, inst, 1), eta = arg(t, inst, 2);
+  const Expr one = imm(t, 1.0f), d = dot_of(n, i);
+  const Expr inner = minus_product(one, d, d);
+  const Expr k = minus_product(one, eta, eta * inner);
+  const Expr scale = eta * d + sqrt(k);
+  const Expr bent = minus_product(eta * i, scale, n);
+  result(t, inst, select(k < imm(t, 0.0f), imm(t, 0.0f), bent));
+}
+
+}  // namespace glsl
+
+namespace {
+
+using GlslFunction = void (*)(Translator&, const Inst&, ir::Op);
+
+void translate_glsl(Translator& t, const Inst& inst) {
+  switch (inst.operand(1)) {
+#define VITRINE_GLSL(name, function, op) \
+  case GLSLstd450##name:                 \
+    return glsl::function(t, inst, ir::Op::k##op);
+#include "spirv/front/glsl450.def"
+#undef VITRINE_GLSL
+    default:
+      fail(inst, "GLSL.std.450 instruction " + std::to_string(inst.operand(1)) + " is not supported");
+  }
+}
+
+}  // namespace
+
+void extended_instruction(Translator& t, const Inst& inst, ir::Op) {
+  const auto set = t.module.ext_imports.find(inst.operand(0));
+  switch (set == t.module.ext_imports.end() ? kExtUnknown : set->second) {
+    case kExtGlsl450:
+      return translate_glsl(t, inst);
+    case kExtNonSemantic:
+    case kExtDebugInfo:
+      return;
+    default:
+      fail(inst, "extended instruction set is not supported");
+  }
+}
+
+}  // namespace vitrine::spirv::front

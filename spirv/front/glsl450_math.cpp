@@ -1,0 +1,238 @@
+// GLSL.std.450: inverse trigonometric and hyperbolic functions as the reference's polynomials
+// (lavapipe-shader-math.md 5.4), determinant and inverse (5.1), packing (8).
+#include "spirv/front/functions.h"
+#include "spirv/front/glsl450.h"
+
+namespace vitrine::spirv::front::glsl {
+namespace {
+
+constexpr float kHalfPi = 1.57079632679489661923f;
+constexpr float kQuarterPi = 0.78539816339744830962f;
+
+/// Main formula of asin, good to first order at 0 and +-1 for any p0, p1.
+Expr asin_main(Expr x, float p0, float p1) {
+  Translator& t = *x.t;
+  const Expr size = abs(x);
+  Expr tail = size * p1 + p0;
+  tail = size * tail + (kQuarterPi - 1.0f);
+  tail = size * tail + kHalfPi;
+  const Expr direction = sign(x);
+  const Expr root = sqrt(imm(t, 1.0f) - size);
+  return direction * (-root * tail + kHalfPi);
+}
+
+Expr asin_small(Expr x) {
+  const Expr x2 = x * x;
+  Expr p = x2 * -8.6563630030e-03f + -4.2743422091e-02f;
+  p = x2 * p + 1.6666586697e-01f;
+  p = x2 * p;
+  const Expr q = x2 * -7.0662963390e-01f + 1.0f;
+  return x * (p / q) + x;
+}
+
+Expr atan_of(Expr y) {
+  Translator& t = *y.t;
+  const Expr size = abs(y), one = imm(t, 1.0f);
+  const Expr least = min(size, one);
+  const Expr x = least / max(size, one);
+  const Expr x2 = x * x, x3 = x2 * x, x5 = x3 * x2, x7 = x5 * x2, x9 = x7 * x2, x11 = x9 * x2;
+  const Expr terms[] = {x * 0.9999793128310355f,   x3 * -0.3326756418091246f, x5 * 0.1938924977115610f,
+                        x7 * -0.1173503194786851f, x9 * 0.0536813784310406f,  x11 * -0.0121323213173444f};
+  Expr sum = terms[0];
+  for (int i = 1; i < 6; i++) sum = sum + terms[i];
+  const Expr steep = apply(ir::Op::kB2F, {one < size});
+  const Expr complement = sum * -2.0f + kHalfPi;
+  sum = steep * complement + sum;
+  const Expr signed_sum = sum * sign(y);
+  if (!t.exact && !t.function.signed_zero_inf_nan_preserve) return signed_sum;
+  // Precise code keeps NaN, which min and max above filter out.
+  const ExactScope exact(t);
+  const Expr is_number = apply(ir::Op::kFEq, {y, y});
+  return select(is_number, signed_sum, y * 1.0f);
+}
+
+Expr determinant_of(Translator& t, const std::vector<Expr>& columns);
+
+/// Determinant of the matrix without one row and one column.
+Expr minor_of(Translator& t, const std::vector<Expr>& columns, std::uint32_t row, std::uint32_t column) {
+  const auto size = static_cast<std::uint32_t>(columns.size());
+  if (size == 2) return columns[1 - column][1 - row];
+  std::vector<Expr> rest;
+  for (std::uint32_t c = 0; c < size; c++) {
+    if (c == column) continue;
+    std::vector<ir::Src> parts;
+    for (std::uint8_t r = 0; r < size; r++)
+      if (r != row) parts.push_back(splat(columns[c].id, r));
+    rest.push_back({&t, vec(t, std::move(parts), false)});
+  }
+  return determinant_of(t, rest);
+}
+
+Expr determinant_of(Translator& t, const std::vector<Expr>& columns) {
+  std::vector<ir::Src> minors;
+  for (std::uint32_t i = 0; i < columns.size(); i++) minors.push_back(whole(minor_of(t, columns, i, 0).id));
+  const Expr products = columns[0] * Expr{&t, vec(t, std::move(minors), false)};
+  Expr sum{&t, ir::kNoValue};
+  for (std::uint32_t i = 0; i < columns.size(); i += 2) {
+    const Expr term = i + 1 < columns.size() ? products[i] - products[i + 1] : products[i];
+    sum = i == 0 ? term : sum + term;
+  }
+  return sum;
+}
+
+std::vector<Expr> matrix_argument(Translator& t, const Inst& inst) {
+  std::vector<Expr> columns;
+  for (ir::ValueId column : value_of(t, inst.operand(2)).leaves) columns.push_back({&t, column});
+  for (const Expr& column : columns)
+    if (columns.size() < 2 || column.size() != columns.size()) fail(inst, "operand is not a square matrix");
+  return columns;
+}
+
+/// Fields of `count` components packed into a word: 2 x 16 or 4 x 8 bits.
+Expr pack_fields(Translator& t, Expr fields) {
+  const std::uint32_t count = fields.size(), bits = 32 / count;
+  const Expr masked = fields & (bits == 16 ? 0xffffu : 0xffu);
+  Expr word = masked[0];
+  for (std::uint32_t i = 1; i < count; i++) word = word | (masked[i] << (i * bits));
+  static_cast<void>(t);
+  return word;
+}
+
+Expr unpack_fields(Translator& t, Expr word, std::uint32_t count, bool is_signed) {
+  const std::uint32_t bits = 32 / count;
+  std::vector<ir::Src> parts;
+  for (std::uint32_t i = 0; i < count; i++)
+    parts.push_back(
+        whole(apply(is_signed ? ir::Op::kBfeI : ir::Op::kBfeU, {word, imm_u32(t, i * bits), imm_u32(t, bits)}).id));
+  return {&t, vec(t, std::move(parts), false)};
+}
+
+std::uint32_t result_count(const Translator& t, const Inst& inst) { return leaf_info(t, inst.result_type).components; }
+
+}  // namespace
+
+void asin(Translator& t, const Inst& inst, ir::Op) {
+  const Expr x = arg(t, inst, 0);
+  const Expr main = asin_main(x, 0.086566724f, -0.03102955f);
+  const Expr small = asin_small(x);
+  result(t, inst, select(abs(x) < imm(t, 0.5f), small, main));
+}
+
+void acos(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, imm(t, kHalfPi) - asin_main(arg(t, inst, 0), 0.08132463f, -0.02363318f));
+}
+
+void atan(Translator& t, const Inst& inst, ir::Op) { result(t, inst, atan_of(arg(t, inst, 0))); }
+
+void atan2(Translator& t, const Inst& inst, ir::Op) {
+  const Expr y = arg(t, inst, 0), x = arg(t, inst, 1);
+  const Expr zero = imm(t, 0.0f), one = imm(t, 1.0f);
+  const Expr flip = zero >= x;
+  const Expr size = abs(x);
+  const Expr s = select(flip, size, y), d = select(flip, y, size);
+  const Expr scale = select(abs(d) >= imm(t, 1e18f), imm(t, 0.25f), one);
+  const Expr reciprocal = apply(ir::Op::kFRcp, {d * scale});
+  const Expr quotient = (s * scale) * reciprocal;
+  const Expr diagonal = apply(ir::Op::kFEq, {size, abs(y)});
+  const Expr tangent = select(diagonal, one, abs(quotient));
+  const Expr quarter = apply(ir::Op::kB2F, {flip}) * kHalfPi;
+  const Expr arc = quarter + atan_of(tangent);
+  result(t, inst, select(min(y, reciprocal) < zero, -arc, arc));
+}
+
+void sinh_cosh(Translator& t, const Inst& inst, ir::Op op) {
+  const Expr x = arg(t, inst, 0);
+  const Expr grow = natural_exp(x), shrink = natural_exp(-x);
+  result(t, inst, apply(op, {grow, shrink}) * 0.5f);
+}
+
+void tanh(Translator& t, const Inst& inst, ir::Op) {
+  const Expr s = arg(t, inst, 0);
+  const Expr x = min(max(s, imm(t, -10.0f)), imm(t, 10.0f));
+  Expr is_regular{&t, ir::kNoValue}, flushed = is_regular;
+  {
+    const ExactScope exact(t);
+    is_regular = imm(t, 0.0f) < abs(s);
+    flushed = s * 1.0f;
+  }
+  const Expr difference = natural_exp(x) - natural_exp(-x);
+  const Expr sum = natural_exp(x) + natural_exp(-x);
+  result(t, inst, select(is_regular, difference / sum, flushed));
+}
+
+void asinh(Translator& t, const Inst& inst, ir::Op) {
+  const Expr x = arg(t, inst, 0);
+  const Expr direction = sign(x);
+  const Expr root = sqrt(x * x + 1.0f);
+  result(t, inst, direction * natural_log(abs(x) + root));
+}
+
+void acosh(Translator& t, const Inst& inst, ir::Op) {
+  const Expr x = arg(t, inst, 0);
+  result(t, inst, natural_log(x + sqrt(x * x + -1.0f)));
+}
+
+void atanh(Translator& t, const Inst& inst, ir::Op) {
+  const Expr x = arg(t, inst, 0), one = imm(t, 1.0f);
+  const Expr above = x + one;
+  result(t, inst, natural_log(above / (one - x)) * 0.5f);
+}
+
+void determinant(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, determinant_of(t, matrix_argument(t, inst)));
+}
+
+void inverse(Translator& t, const Inst& inst, ir::Op) {
+  const std::vector<Expr> columns = matrix_argument(t, inst);
+  const auto size = static_cast<std::uint32_t>(columns.size());
+  std::vector<Expr> adjugate;
+  for (std::uint32_t c = 0; c < size; c++) {
+    std::vector<ir::Src> parts;
+    for (std::uint32_t r = 0; r < size; r++) {
+      const Expr minor = minor_of(t, columns, c, r);
+      parts.push_back(whole((r + c) % 2 != 0 ? (-minor).id : minor.id));
+    }
+    adjugate.push_back({&t, vec(t, std::move(parts), false)});
+  }
+  const Expr scale = apply(ir::Op::kFRcp, {determinant_of(t, columns)});
+  std::vector<ir::ValueId> result_columns;
+  for (const Expr& column : adjugate) result_columns.push_back((column * scale).id);
+  set_value(t, inst, std::move(result_columns));
+}
+
+void pack_unorm(Translator& t, const Inst& inst, ir::Op) {
+  const Expr v = arg(t, inst, 0);
+  const Expr clamped = min(max(v, imm(t, 0.0f)), imm(t, 1.0f));
+  const Expr rounded = apply(ir::Op::kFRoundEven, {clamped * (v.size() == 2 ? 65535.0f : 255.0f)});
+  result(t, inst, pack_fields(t, apply(ir::Op::kF2U, {rounded})));
+}
+
+void pack_snorm(Translator& t, const Inst& inst, ir::Op) {
+  const Expr v = arg(t, inst, 0);
+  const Expr clamped = min(imm(t, 1.0f), max(imm(t, -1.0f), v));
+  const Expr rounded = apply(ir::Op::kFRoundEven, {clamped * (v.size() == 2 ? 32767.0f : 127.0f)});
+  result(t, inst, pack_fields(t, apply(ir::Op::kF2I, {rounded})));
+}
+
+void pack_half(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, pack_fields(t, apply(ir::Op::kF2Half, {arg(t, inst, 0)})));
+}
+
+void unpack_unorm(Translator& t, const Inst& inst, ir::Op) {
+  const std::uint32_t count = result_count(t, inst);
+  const Expr fields = apply(ir::Op::kU2F, {unpack_fields(t, arg(t, inst, 0), count, false)});
+  result(t, inst, fields / imm(t, count == 2 ? 65535.0f : 255.0f));
+}
+
+void unpack_snorm(Translator& t, const Inst& inst, ir::Op) {
+  const std::uint32_t count = result_count(t, inst);
+  const Expr fields = apply(ir::Op::kI2F, {unpack_fields(t, arg(t, inst, 0), count, true)});
+  const Expr scaled = fields / imm(t, count == 2 ? 32767.0f : 127.0f);
+  result(t, inst, min(imm(t, 1.0f), max(imm(t, -1.0f), scaled)));
+}
+
+void unpack_half(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, apply(ir::Op::kHalf2F, {unpack_fields(t, arg(t, inst, 0), 2, false)}));
+}
+
+}  // namespace vitrine::spirv::front::glsl

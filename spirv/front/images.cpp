@@ -1,0 +1,304 @@
+// Image instructions (SPIR-V 3.42.10; Vulkan, Image Operations): gathers descriptors and operands into one Image
+// instruction. Projection is applied here, as multiplication by the reciprocal like the reference does.
+#include "spirv/front/functions.h"
+
+namespace vitrine::spirv::front {
+namespace {
+
+using ir::ImageAccess;
+using ir::ImageOperand;
+using spv::Op;
+
+const ImageHandle& handle_of(Translator& t, const Inst& inst, std::uint32_t id) {
+  const auto found = t.images.find(id);
+  if (found == t.images.end()) fail(inst, "operand is not an image that is supported");
+  return found->second;
+}
+
+std::uint8_t dimension(const Type& image) {
+  switch (image.dim) {
+    case spv::Dim::Dim1D:
+      return 1;
+    case spv::Dim::Dim2D:
+      return 2;
+    case spv::Dim::Dim3D:
+      return 3;
+    case spv::Dim::Cube:
+      return 4;
+    case spv::Dim::Buffer:
+      return 5;
+    case spv::Dim::SubpassData:
+      return 6;
+    default:
+      throw Failure("image dimension is not supported");
+  }
+}
+
+/// Components of a coordinate without the array layer.
+std::uint32_t spatial_components(const ir::ImageInfo& info) {
+  constexpr std::uint8_t kComponents[] = {0, 1, 2, 3, 3, 1, 2};
+  return kComponents[info.dim];
+}
+
+ir::ValueId first_components(Translator& t, ir::ValueId vector, std::uint32_t count) {
+  if (components(t, vector) == count) return vector;
+  if (components(t, vector) < count) throw Failure("image coordinate has too few components");
+  std::vector<ir::Src> parts;
+  for (std::uint8_t i = 0; i < count; i++) parts.push_back(splat(vector, i));
+  return vec(t, std::move(parts), false);
+}
+
+/// Gather offsets: a constant array of four ivec2.
+void set_gather_offsets(Translator& t, const Inst& inst, std::uint32_t id, ir::ImageInfo& info) {
+  const Constant* offsets = t.module.constant(id);
+  if (offsets == nullptr || offsets->words.size() != 8) fail(inst, "gather offsets are not constant");
+  info.has_gather_offsets = true;
+  for (std::size_t i = 0; i < 8; i++) info.gather_offsets[i / 2][i % 2] = static_cast<std::int32_t>(offsets->words[i]);
+}
+
+struct Request {
+  ir::ImageInfo& info;
+  ImageSources& sources;
+};
+
+/// The optional Image Operands from operand `at` on, in the order of their bits (SPIR-V 3.14).
+void add_image_operands(Translator& t, const Inst& inst, std::uint32_t at, Request request) {
+  if (!inst.has(at)) return;
+  const std::uint32_t mask = inst.operand(at++);
+  auto next = [&] { return scalar_or_vector(t, inst.operand(at++)); };
+  auto has = [&](spv::ImageOperandsMask bit) { return (mask & static_cast<std::uint32_t>(bit)) != 0; };
+  using Mask = spv::ImageOperandsMask;
+  if (has(Mask::Bias)) request.sources.add(ImageOperand::kBias, next());
+  if (has(Mask::Lod)) request.sources.add(ImageOperand::kLod, next());
+  if (has(Mask::Grad)) {
+    request.sources.add(ImageOperand::kGradX, next());
+    request.sources.add(ImageOperand::kGradY, next());
+  }
+  if (has(Mask::ConstOffset)) request.sources.add(ImageOperand::kOffset, next());
+  if (has(Mask::Offset)) request.sources.add(ImageOperand::kOffset, next());
+  if (has(Mask::ConstOffsets)) set_gather_offsets(t, inst, inst.operand(at++), request.info);
+  if (has(Mask::Sample)) request.sources.add(ImageOperand::kSample, next());
+  if (has(Mask::MinLod)) request.sources.add(ImageOperand::kMinLod, next());
+  const auto supported = Mask::Bias | Mask::Lod | Mask::Grad | Mask::ConstOffset | Mask::Offset | Mask::ConstOffsets |
+                         Mask::Sample | Mask::MinLod | Mask::MakeTexelAvailable | Mask::MakeTexelVisible |
+                         Mask::NonPrivateTexel | Mask::VolatileTexel | Mask::SignExtend | Mask::ZeroExtend |
+                         Mask::Nontemporal;
+  if ((mask & ~static_cast<std::uint32_t>(supported)) != 0) fail(inst, "image operand is not supported");
+}
+
+/// Emits the Image instruction with `count` result components (0: none).
+ir::ValueId finish(Translator& t, std::shared_ptr<ir::ImageInfo> info, ImageSources& sources, std::uint32_t count) {
+  std::vector<ir::Src> src = sources.take();
+  ir::ValueId result = ir::kNoValue;
+  if (count == 0)
+    emit_effect(t, ir::Op::kImage, std::move(src));
+  else
+    result = emit(t, ir::Op::kImage, count, false, std::move(src));
+  last_instr(t).image = std::move(info);
+  return result;
+}
+
+struct SampleShape {
+  bool dref = false, projective = false, explicit_lod = false, gather = false;
+};
+
+SampleShape shape_of(Op op) {
+  switch (op) {
+    case Op::OpImageSampleExplicitLod:
+      return {false, false, true, false};
+    case Op::OpImageSampleDrefImplicitLod:
+      return {true, false, false, false};
+    case Op::OpImageSampleDrefExplicitLod:
+      return {true, false, true, false};
+    case Op::OpImageSampleProjImplicitLod:
+      return {false, true, false, false};
+    case Op::OpImageSampleProjExplicitLod:
+      return {false, true, true, false};
+    case Op::OpImageSampleProjDrefImplicitLod:
+      return {true, true, false, false};
+    case Op::OpImageSampleProjDrefExplicitLod:
+      return {true, true, true, false};
+    case Op::OpImageGather:
+      return {false, false, true, true};
+    case Op::OpImageDrefGather:
+      return {true, false, true, true};
+    default:
+      return {};
+  }
+}
+
+/// Coordinates and reference divided by the component behind the coordinates.
+void project(Translator& t, ir::ValueId full, ir::ValueId& coord, ir::ValueId& dref) {
+  const auto last = static_cast<std::uint8_t>(components(t, coord));
+  if (components(t, full) <= last) throw Failure("projective coordinate has too few components");
+  const ir::ValueId inverse = emit(t, ir::Op::kFRcp, 1, false, {splat(full, last)});
+  coord = emit(t, ir::Op::kFMul, last, false, {whole(coord), splat(inverse)});
+  if (dref != ir::kNoValue) dref = emit(t, ir::Op::kFMul, 1, false, {whole(dref), whole(inverse)});
+}
+
+}  // namespace
+
+void ImageSources::add(ImageOperand operand, ir::ValueId value) {
+  if (value != ir::kNoValue) add(operand, whole(value));
+}
+
+void ImageSources::add(ImageOperand operand, ir::Src src) {
+  info_.operands |= 1u << static_cast<unsigned>(operand);
+  src_[static_cast<std::size_t>(operand)] = src;
+}
+
+std::vector<ir::Src> ImageSources::take() {
+  std::vector<ir::Src> present;
+  for (std::size_t i = 0; i < src_.size(); i++)
+    if ((info_.operands >> i & 1) != 0) present.push_back(src_[i]);
+  return present;
+}
+
+ir::ImageInfo image_info(const Translator& t, const ImageHandle& handle) {
+  ir::ImageInfo info;
+  if (handle.image_type != 0) {
+    const Type& type = t.module.type(handle.image_type);
+    info.dim = dimension(type);
+    info.arrayed = type.arrayed;
+    info.multisampled = type.multisampled;
+  }
+  info.set = handle.image.set;
+  info.slot = handle.image.slot;
+  info.count = handle.image.count;
+  info.sampler_set = handle.sampler.set;
+  info.sampler_slot = handle.sampler.slot;
+  info.sampler_count = handle.sampler.count;
+  info.combined = handle.combined;
+  return info;
+}
+
+void add_elements(Translator& t, const ImageHandle& handle, ir::ImageInfo& info, ImageSources& sources) {
+  auto choose = [&](ir::ValueId element, std::uint32_t& slot, std::uint32_t& count, ImageOperand operand) {
+    if (element == ir::kNoValue) return 0u;
+    const auto* words = constant_of(t, element);
+    if (words == nullptr) {
+      sources.add(operand, element);
+      return 0u;
+    }
+    slot += (*words)[0];
+    count -= (*words)[0];
+    return (*words)[0];
+  };
+  choose(handle.image_element, info.slot, info.count, ImageOperand::kImageIndex);
+  const std::uint32_t sampler =
+      choose(handle.sampler_element, info.sampler_slot, info.sampler_count, ImageOperand::kSamplerIndex);
+  const bool dynamic_sampler =
+      handle.sampler_element != ir::kNoValue && constant_of(t, handle.sampler_element) == nullptr;
+  if (handle.sampler.immutable_samplers != nullptr) {
+    // A dynamic index may only pick among equal samplers; others are read from the descriptor, where they are too.
+    if (!dynamic_sampler || handle.sampler.count == 1)
+      info.immutable_sampler = handle.sampler.immutable_samplers[sampler];
+  }
+}
+
+void sampled_image(Translator& t, const Inst& inst, ir::Op) {
+  ImageHandle handle = handle_of(t, inst, inst.operand(0));
+  const ImageHandle& sampler = handle_of(t, inst, inst.operand(1));
+  handle.sampler = sampler.sampler;
+  handle.sampler_element = sampler.sampler_element;
+  handle.combined = false;
+  t.images[inst.result] = handle;
+}
+
+void image_of_sampled(Translator& t, const Inst& inst, ir::Op) {
+  t.images[inst.result] = handle_of(t, inst, inst.operand(0));
+}
+
+void image_sample(Translator& t, const Inst& inst, ir::Op) {
+  const ImageHandle handle = handle_of(t, inst, inst.operand(0));
+  const SampleShape shape = shape_of(inst.op);
+  auto info = std::make_shared<ir::ImageInfo>(image_info(t, handle));
+  ImageSources sources(*info);
+  add_elements(t, handle, *info, sources);
+  const ir::ValueId full = scalar_or_vector(t, inst.operand(1));
+  ir::ValueId coord = first_components(t, full, spatial_components(*info) + (info->arrayed ? 1 : 0));
+  std::uint32_t next = 2;
+  ir::ValueId dref = shape.dref ? scalar_or_vector(t, inst.operand(next++)) : ir::kNoValue;
+  if (shape.gather && !shape.dref) info->gather_component = t.module.constant_u32(inst.operand(next++), inst);
+  if (shape.projective) project(t, full, coord, dref);
+  info->access = shape.gather ? ImageAccess::kGather : ImageAccess::kSample;
+  info->projective = shape.projective;
+  if (!shape.explicit_lod) {
+    info->explicit_lod_zero = t.options.stage != VK_SHADER_STAGE_FRAGMENT_BIT;
+    if (!info->explicit_lod_zero) t.function.interface.needs_helpers = true;
+  }
+  sources.add(ImageOperand::kCoord, coord);
+  sources.add(ImageOperand::kDref, dref);
+  add_image_operands(t, inst, next, {*info, sources});
+  const std::uint32_t count = leaf_info(t, inst.result_type).components;
+  set_value(t, inst, finish(t, std::move(info), sources, count));
+}
+
+void image_access(Translator& t, const Inst& inst, ir::Op) {
+  const ImageHandle handle = handle_of(t, inst, inst.operand(0));
+  auto info = std::make_shared<ir::ImageInfo>(image_info(t, handle));
+  ImageSources sources(*info);
+  add_elements(t, handle, *info, sources);
+  const bool write = inst.op == Op::OpImageWrite;
+  const bool subpass = info->dim == 6;
+  info->access = write                         ? ImageAccess::kWrite
+                 : subpass                     ? ImageAccess::kSubpass
+                 : inst.op == Op::OpImageFetch ? ImageAccess::kFetch
+                                               : ImageAccess::kRead;
+  const ir::ValueId coord = scalar_or_vector(t, inst.operand(1));
+  const std::uint32_t wanted = spatial_components(*info) + (info->arrayed && info->dim != 4 ? 1 : 0);
+  sources.add(ImageOperand::kCoord, first_components(t, coord, wanted));
+  if (write) sources.add(ImageOperand::kValue, scalar_or_vector(t, inst.operand(2)));
+  add_image_operands(t, inst, write ? 3 : 2, {*info, sources});
+  if (write) {
+    t.function.interface.writes_memory = true;
+    finish(t, std::move(info), sources, 0);
+    return;
+  }
+  const std::uint32_t count = leaf_info(t, inst.result_type).components;
+  set_value(t, inst, finish(t, std::move(info), sources, count));
+}
+
+void image_query(Translator& t, const Inst& inst, ir::Op) {
+  const ImageHandle handle = handle_of(t, inst, inst.operand(0));
+  auto info = std::make_shared<ir::ImageInfo>(image_info(t, handle));
+  ImageSources sources(*info);
+  add_elements(t, handle, *info, sources);
+  info->access = inst.op == Op::OpImageQueryLevels    ? ImageAccess::kQueryLevels
+                 : inst.op == Op::OpImageQuerySamples ? ImageAccess::kQuerySamples
+                                                      : ImageAccess::kQuerySize;
+  if (inst.op == Op::OpImageQuerySizeLod) sources.add(ImageOperand::kLod, scalar_or_vector(t, inst.operand(1)));
+  const std::uint32_t count = leaf_info(t, inst.result_type).components;
+  set_value(t, inst, finish(t, std::move(info), sources, count));
+}
+
+void image_query_lod(Translator& t, const Inst& inst, ir::Op) {
+  const ImageHandle handle = handle_of(t, inst, inst.operand(0));
+  auto info = std::make_shared<ir::ImageInfo>(image_info(t, handle));
+  ImageSources sources(*info);
+  add_elements(t, handle, *info, sources);
+  info->access = ImageAccess::kQueryLod;
+  t.function.interface.needs_helpers = true;
+  const ir::ValueId coord = scalar_or_vector(t, inst.operand(1));
+  sources.add(ImageOperand::kCoord, first_components(t, coord, spatial_components(*info)));
+  set_value(t, inst, finish(t, std::move(info), sources, 2));
+}
+
+void image_texel_pointer(Translator& t, const Inst& inst, ir::Op) {
+  const Pointer& image = pointer_of(t, inst.operand(0));
+  if (image.kind != Pointer::Kind::kDescriptor || image.descriptor_array)
+    fail(inst, "operand is not a pointer to an image");
+  Pointer pointer;
+  pointer.kind = Pointer::Kind::kTexel;
+  pointer.type = t.module.type(inst.result_type).element;
+  const Type& type = t.module.type(image.type);
+  if (type.kind != Type::Kind::kImage) fail(inst, "operand is not a pointer to an image");
+  pointer.image.image_type = type.id;
+  pointer.image.image = image.binding;
+  pointer.image.image_element = image.element;
+  pointer.coord = scalar_or_vector(t, inst.operand(1));
+  if (type.multisampled) pointer.sample = scalar_or_vector(t, inst.operand(2));
+  t.pointers[inst.result] = std::move(pointer);
+}
+
+}  // namespace vitrine::spirv::front

@@ -1,0 +1,282 @@
+// The shader's interface: execution modes, numbered locations and built-ins as InterfaceSlots (Vulkan, Shader
+// Interfaces; Built-In Variables). Inputs are stored to their variables before the body, outputs loaded after it.
+#include "spirv/front/functions.h"
+
+namespace vitrine::spirv::front {
+namespace {
+
+using spv::Decoration;
+using Kind = Type::Kind;
+
+struct BuiltInRow {
+  spv::BuiltIn spirv;
+  BuiltIn slot;  ///< kNone: `op`
+  ir::Op op;     ///< instruction that gives the value
+  std::uint8_t components;
+};
+
+constexpr BuiltInRow kBuiltIns[] = {
+    {spv::BuiltIn::VertexIndex, BuiltIn::kVertexIndex, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::InstanceIndex, BuiltIn::kInstanceIndex, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::BaseVertex, BuiltIn::kBaseVertex, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::BaseInstance, BuiltIn::kBaseInstance, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::DrawIndex, BuiltIn::kDrawIndex, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::ViewIndex, BuiltIn::kViewIndex, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::Position, BuiltIn::kPosition, ir::Op::kLoadInput, 4},
+    {spv::BuiltIn::PointSize, BuiltIn::kPointSize, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::ClipDistance, BuiltIn::kClipDistance, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::CullDistance, BuiltIn::kCullDistance, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::Layer, BuiltIn::kLayer, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::ViewportIndex, BuiltIn::kViewportIndex, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::FragCoord, BuiltIn::kFragCoord, ir::Op::kLoadInput, 4},
+    {spv::BuiltIn::FrontFacing, BuiltIn::kFrontFacing, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::PointCoord, BuiltIn::kPointCoord, ir::Op::kLoadInput, 2},
+    {spv::BuiltIn::SampleId, BuiltIn::kSampleId, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::SamplePosition, BuiltIn::kSamplePosition, ir::Op::kLoadInput, 2},
+    {spv::BuiltIn::SampleMask, BuiltIn::kSampleMask, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::PrimitiveId, BuiltIn::kPrimitiveId, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::FragDepth, BuiltIn::kFragDepth, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::FragStencilRefEXT, BuiltIn::kFragStencilRef, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::HelperInvocation, BuiltIn::kNone, ir::Op::kHelperInvocation, 1},
+    {spv::BuiltIn::WorkgroupId, BuiltIn::kNone, ir::Op::kWorkgroupId, 3},
+    {spv::BuiltIn::NumWorkgroups, BuiltIn::kNone, ir::Op::kNumWorkgroups, 3},
+    {spv::BuiltIn::LocalInvocationId, BuiltIn::kNone, ir::Op::kLocalInvocationId, 3},
+    {spv::BuiltIn::GlobalInvocationId, BuiltIn::kNone, ir::Op::kGlobalInvocationId, 3},
+    {spv::BuiltIn::LocalInvocationIndex, BuiltIn::kNone, ir::Op::kLocalInvocationIndex, 1},
+    {spv::BuiltIn::SubgroupSize, BuiltIn::kNone, ir::Op::kSubgroupSize, 1},
+    {spv::BuiltIn::SubgroupLocalInvocationId, BuiltIn::kNone, ir::Op::kSubgroupInvocation, 1},
+    {spv::BuiltIn::SubgroupId, BuiltIn::kNone, ir::Op::kSubgroupId, 1},
+    {spv::BuiltIn::NumSubgroups, BuiltIn::kNone, ir::Op::kNumSubgroups, 1},
+};
+
+const BuiltInRow& built_in_row(const Inst& variable, std::uint32_t built_in) {
+  for (const BuiltInRow& row : kBuiltIns)
+    if (static_cast<std::uint32_t>(row.spirv) == built_in) return row;
+  fail(variable, "built-in " + std::to_string(built_in) + " is not supported");
+}
+
+/// A decoration of the variable or of the struct member it is in.
+struct Decorated {
+  const Module& module;
+  std::uint32_t variable = 0;
+  std::uint32_t block = 0, member = 0;  ///< member number + 1
+
+  const DecorationRow* find(Decoration kind) const {
+    if (member != 0)
+      if (const DecorationRow* row = module.decoration(block, kind, member)) return row;
+    return module.decoration(variable, kind);
+  }
+  bool has(Decoration kind) const { return find(kind) != nullptr; }
+};
+
+/// One leaf of an interface variable.
+struct Leaf {
+  std::vector<Step> path;
+  std::uint32_t type = 0;
+  InterfaceSlot slot;  ///< of component 0
+  bool invariant = false;
+  const BuiltInRow* built_in = nullptr;
+};
+
+struct Walk {
+  Translator& t;
+  const Inst& variable;
+  bool input = false;
+  std::vector<Leaf> leaves;
+  std::vector<Step> path;
+  std::uint32_t location = 0;
+  std::uint32_t element = 0;  ///< scalars of the built-in so far (ClipDistance[i])
+
+  void leaf(std::uint32_t type_id, const Decorated& decorated) {
+    Leaf leaf;
+    leaf.path = path;
+    leaf.type = type_id;
+    const ir::ValueInfo info = leaf_info(t, type_id);
+    InterfaceSlot& slot = leaf.slot;
+    const Type& type = t.module.type(type_id);
+    const Type& number = type.kind == Kind::kVector ? t.module.type(type.element) : type;
+    slot.type = number.kind == Kind::kFloat                     ? BaseType::kFloat
+                : number.kind == Kind::kInt && number.is_signed ? BaseType::kInt
+                                                                : BaseType::kUint;
+    if (const DecorationRow* row = decorated.find(Decoration::BuiltIn)) {
+      leaf.built_in = &built_in_row(variable, row->value);
+      slot.built_in = leaf.built_in->slot;
+      slot.component = static_cast<std::uint8_t>(element);
+      element += info.components;
+      if (element > 64) fail(variable, "built-in array is too large");
+    } else {
+      if (location > 127) fail(variable, "location is too large");
+      slot.location = static_cast<std::uint16_t>(location++);
+      const DecorationRow* component = decorated.find(Decoration::Component);
+      slot.component = component ? static_cast<std::uint8_t>(component->value) : std::uint8_t{0};
+      if (slot.component + info.components > 4) fail(variable, "components do not fit the location");
+      if (const DecorationRow* index = decorated.find(Decoration::Index))
+        slot.index = static_cast<std::uint8_t>(index->value);
+    }
+    interpolation(slot, decorated);
+    leaf.invariant = decorated.has(Decoration::Invariant);
+    leaves.push_back(std::move(leaf));
+  }
+
+  void interpolation(InterfaceSlot& slot, const Decorated& decorated) const {
+    if (decorated.has(Decoration::Flat) || slot.type != BaseType::kFloat)
+      slot.interpolation = Interpolation::kFlat;
+    else if (decorated.has(Decoration::NoPerspective))
+      slot.interpolation = Interpolation::kLinear;
+    if (decorated.has(Decoration::Sample))
+      slot.sample_location = SampleLocation::kSample;
+    else if (decorated.has(Decoration::Centroid))
+      slot.sample_location = SampleLocation::kCentroid;
+  }
+
+  void type(std::uint32_t type_id, Decorated decorated) {
+    const Type& type_here = t.module.type(type_id);
+    const bool is_struct = type_here.kind == Kind::kStruct;
+    if (!is_struct && type_here.kind != Kind::kArray && type_here.kind != Kind::kMatrix)
+      return leaf(type_id, decorated);
+    if (type_here.scalars > 4096) fail(variable, "interface variable is too large");
+    const std::uint32_t count = is_struct ? static_cast<std::uint32_t>(type_here.members.size()) : type_here.count;
+    for (std::uint32_t i = 0; i < count; i++) {
+      path.push_back({false, i, ir::kNoValue});
+      if (is_struct) {
+        // Members of a block carry decorations of their own; nested structs count on.
+        if (decorated.member == 0) {
+          decorated.block = type_id;
+          decorated.member = i + 1;
+          if (const DecorationRow* row = t.module.decoration(type_id, Decoration::Location, i + 1))
+            location = row->value;
+          element = 0;
+        }
+        type(type_here.members[i], decorated);
+        if (decorated.block == type_id && decorated.member == i + 1) decorated.member = 0;
+      } else {
+        type(type_here.element, decorated);
+      }
+      path.pop_back();
+    }
+  }
+};
+
+std::vector<Leaf> interface_leaves(Translator& t, const Local& local) {
+  const Inst& variable = t.module.def(local.variable);
+  Walk walk{t, variable, local.storage == spv::StorageClass::Input, {}, {}, 0, 0};
+  if (t.module.decoration(local.variable, Decoration::Patch) != nullptr) fail(variable, "Patch is not supported");
+  if (const DecorationRow* row = t.module.decoration(local.variable, Decoration::Location)) walk.location = row->value;
+  walk.type(local.type, {t.module, local.variable, 0, 0});
+  return std::move(walk.leaves);
+}
+
+ir::ValueId input_value(Translator& t, const Leaf& leaf) {
+  const ir::ValueInfo info = leaf_info(t, leaf.type);
+  if (leaf.built_in != nullptr && leaf.built_in->slot == BuiltIn::kNone)
+    return emit(t, leaf.built_in->op, leaf.built_in->components, info.boolean, {});
+  std::vector<ir::Src> parts;
+  for (std::uint8_t c = 0; c < info.components; c++) {
+    InterfaceSlot slot = leaf.slot;
+    slot.component = static_cast<std::uint8_t>(slot.component + c);
+    parts.push_back(whole(emit(t, ir::Op::kLoadInput, 1, false, {})));
+    last_instr(t).data[0] = static_cast<std::uint32_t>(t.function.interface.inputs.size());
+    t.function.interface.inputs.push_back(slot);
+  }
+  const ir::ValueId value = vec(t, std::move(parts), false);
+  if (!info.boolean) return value;
+  return emit(t, ir::Op::kINe, info.components, true, {whole(value), splat(constant_u32(t, 0))});
+}
+
+void store_outputs(Translator& t, const Leaf& leaf, ir::ValueId value) {
+  for (std::uint8_t c = 0; c < components(t, value); c++) {
+    InterfaceSlot slot = leaf.slot;
+    slot.component = static_cast<std::uint8_t>(slot.component + c);
+    ir::Instr& instr = emit_effect(t, ir::Op::kStoreOutput, {splat(value, c)});
+    instr.data[0] = static_cast<std::uint32_t>(t.function.interface.outputs.size());
+    instr.exact = leaf.invariant;
+    t.function.interface.outputs.push_back(slot);
+  }
+}
+
+/// Fragment outputs that reach no attachment are dead.
+bool is_live(const Translator& t, const Leaf& leaf) {
+  if (t.options.stage != VK_SHADER_STAGE_FRAGMENT_BIT || leaf.slot.built_in != BuiltIn::kNone) return true;
+  return leaf.slot.location < 32 && (t.options.live_color_outputs >> leaf.slot.location & 1) != 0;
+}
+
+void set_local_size(Translator& t, const std::uint32_t size[3]) {
+  for (int i = 0; i < 3; i++) {
+    if (size[i] == 0 || size[i] > 1024) throw Failure("local size is out of range");
+    t.function.interface.local_size[i] = size[i];
+  }
+}
+
+}  // namespace
+
+void read_modes(Translator& t) {
+  ShaderInterface& interface = t.function.interface;
+  interface.stage = t.options.stage;
+  for (const Inst& mode : t.module.modes) {
+    auto word = [&](std::uint32_t i) { return mode.operand(i + 2); };
+    auto id = [&](std::uint32_t i) { return t.module.constant_u32(mode.operand(i + 2), mode); };
+    switch (static_cast<spv::ExecutionMode>(mode.operand(1))) {
+      case spv::ExecutionMode::LocalSize: {
+        const std::uint32_t size[3] = {word(0), word(1), word(2)};
+        set_local_size(t, size);
+        break;
+      }
+      case spv::ExecutionMode::LocalSizeId: {
+        const std::uint32_t size[3] = {id(0), id(1), id(2)};
+        set_local_size(t, size);
+        break;
+      }
+      case spv::ExecutionMode::EarlyFragmentTests:
+        interface.early_fragment_tests = true;
+        break;
+      case spv::ExecutionMode::SignedZeroInfNanPreserve:
+        t.function.signed_zero_inf_nan_preserve |= word(0) == 32;
+        break;
+      case spv::ExecutionMode::DenormFlushToZero:
+        t.function.denorm_flush_to_zero |= word(0) == 32;
+        break;
+      case spv::ExecutionMode::OriginUpperLeft:
+      case spv::ExecutionMode::DepthReplacing:
+      case spv::ExecutionMode::DepthGreater:
+      case spv::ExecutionMode::DepthLess:
+      case spv::ExecutionMode::DepthUnchanged:
+      case spv::ExecutionMode::DenormPreserve:
+      case spv::ExecutionMode::RoundingModeRTE:
+        break;
+      default:
+        fail(mode, "execution mode " + std::to_string(mode.operand(1)) + " is not supported");
+    }
+  }
+  // A constant decorated WorkgroupSize overrides the execution mode (Vulkan, Built-In Variables).
+  for (const DecorationRow& row : t.module.decorations)
+    if (row.kind == Decoration::BuiltIn && row.value == static_cast<std::uint32_t>(spv::BuiltIn::WorkgroupSize))
+      if (const Constant* size = t.module.constant(row.id); size != nullptr && size->words.size() == 3)
+        set_local_size(t, size->words.data());
+}
+
+void connect_interface(Translator& t) {
+  t.inst = nullptr;
+  t.exact = false;
+  for (std::uint32_t i = 0; i < t.locals.size(); i++) {
+    const Local local = t.locals[i];
+    const bool input = local.storage == spv::StorageClass::Input;
+    if (!input && local.storage != spv::StorageClass::Output) continue;
+    t.inst = &t.module.def(local.variable);
+    for (const Leaf& leaf : interface_leaves(t, local)) {
+      if (!input && !is_live(t, leaf)) continue;
+      Pointer pointer = local_pointer(t, i);
+      pointer.path = leaf.path;
+      pointer.type = leaf.type;
+      t.list = input ? &t.prologue : &t.function.body;
+      if (input)
+        store(t, pointer, {leaf.type, {input_value(t, leaf)}});
+      else
+        store_outputs(t, leaf, load(t, pointer).leaves.at(0));
+    }
+  }
+  t.inst = nullptr;
+  for (auto& node : t.function.body) t.prologue.push_back(std::move(node));
+  t.function.body = std::move(t.prologue);
+}
+
+}  // namespace vitrine::spirv::front

@@ -1,0 +1,280 @@
+// Loads and stores through pointers: local variables become LoadVar / StoreVar of leaves, buffers and workgroup memory
+// become loads and stores of consecutive words (SPIR-V 3.42.8; lavapipe-shader-math.md 10).
+#include "spirv/front/context.h"
+#include "spirv/front/functions.h"
+
+namespace vitrine::spirv::front {
+namespace {
+
+std::uint32_t new_access(Translator& t, const Pointer& pointer, const std::vector<Step>& path) {
+  t.accesses.push_back({pointer.local, path});
+  return static_cast<std::uint32_t>(t.accesses.size() - 1);
+}
+
+std::vector<ir::Src> dynamic_sources(const std::vector<Step>& path) {
+  std::vector<ir::Src> sources;
+  for (const Step& step : path)
+    if (step.dynamic) sources.push_back(whole(step.value));
+  return sources;
+}
+
+ir::ValueId load_leaf_local(Translator& t, const Pointer& pointer, std::uint32_t leaf_type,
+                            const std::vector<Step>& path) {
+  const ir::ValueInfo info = leaf_info(t, leaf_type);
+  const ir::ValueId value = emit(t, ir::Op::kLoadVar, info.components, info.boolean, dynamic_sources(path));
+  last_instr(t).data[0] = new_access(t, pointer, path);
+  return value;
+}
+
+void store_leaf_local(Translator& t, const Pointer& pointer, ir::ValueId value, const std::vector<Step>& path) {
+  std::vector<ir::Src> sources = dynamic_sources(path);
+  sources.insert(sources.begin(), whole(value));
+  emit_effect(t, ir::Op::kStoreVar, std::move(sources)).data[0] = new_access(t, pointer, path);
+}
+
+/// Visits the leaves below `path` in order: f(leaf type, path).
+template <class F>
+void each_local_leaf(Translator& t, std::uint32_t type_id, std::vector<Step>& path, const F& f) {
+  const Type& type = t.module.type(type_id);
+  const bool is_struct = type.kind == Type::Kind::kStruct;
+  if (!is_struct && type.kind != Type::Kind::kArray && type.kind != Type::Kind::kMatrix) return f(type_id, path);
+  if (type.scalars > kMaxScalars) throw Failure("variable of type %" + std::to_string(type_id) + " is too large");
+  const std::uint32_t count = is_struct ? static_cast<std::uint32_t>(type.members.size()) : type.count;
+  for (std::uint32_t i = 0; i < count; i++) {
+    path.push_back({false, i, ir::kNoValue});
+    each_local_leaf(t, is_struct ? type.members[i] : type.element, path, f);
+    path.pop_back();
+  }
+}
+
+Value load_local(Translator& t, const Pointer& pointer) {
+  Value value{pointer.type, {}};
+  std::vector<Step> path = pointer.path;
+  if (pointer.component) {
+    // The pointee is one component; the leaf is the vector that holds it.
+    const std::uint32_t vector = vector_type_of(t, pointer);
+    const ir::ValueId leaf = load_leaf_local(t, pointer, vector, path);
+    value.leaves.push_back(pointer.component->dynamic ? extract_dynamic(t, leaf, pointer.component->value)
+                                                      : extract(t, leaf, pointer.component->index));
+    return value;
+  }
+  each_local_leaf(t, pointer.type, path, [&](std::uint32_t leaf, const std::vector<Step>& at) {
+    value.leaves.push_back(load_leaf_local(t, pointer, leaf, at));
+  });
+  return value;
+}
+
+void store_local(Translator& t, const Pointer& pointer, const Value& value) {
+  std::vector<Step> path = pointer.path;
+  if (pointer.component) {
+    const ir::ValueId old = load_leaf_local(t, pointer, vector_type_of(t, pointer), path);
+    const Step& component = *pointer.component;
+    const ir::ValueId updated = component.dynamic ? insert_dynamic(t, old, value.leaves.at(0), component.value)
+                                                  : insert(t, old, value.leaves.at(0), component.index);
+    return store_leaf_local(t, pointer, updated, path);
+  }
+  std::size_t next = 0;
+  each_local_leaf(t, pointer.type, path, [&](std::uint32_t, const std::vector<Step>& at) {
+    store_leaf_local(t, pointer, value.leaves.at(next++), at);
+  });
+}
+
+ir::ValueId load_words(Translator& t, const Pointer& pointer, std::uint32_t count, std::uint32_t byte) {
+  Pointer at = pointer;
+  at.constant_offset += byte;
+  const ir::Src offset = whole(dynamic_offset(t, at));
+  if (at.kind == Pointer::Kind::kPush) {
+    const ir::ValueId value = emit(t, ir::Op::kLoadPush, count, false, {offset});
+    last_instr(t).data[0] = at.constant_offset;
+    return value;
+  }
+  if (at.kind == Pointer::Kind::kShared) {
+    const ir::ValueId value = emit(t, ir::Op::kLoadShared, count, false, {offset});
+    last_instr(t).data[3] = at.constant_offset;
+    return value;
+  }
+  const ir::Op op = at.kind == Pointer::Kind::kUniform ? ir::Op::kLoadUniform : ir::Op::kLoadStorage;
+  const ir::Src element = whole(descriptor_element(t, at));
+  const ir::ValueId value = emit(t, op, count, false, {element, offset});
+  set_buffer(last_instr(t), at);
+  return value;
+}
+
+void store_words(Translator& t, const Pointer& pointer, ir::Src value, std::uint32_t count, std::uint32_t byte) {
+  Pointer at = pointer;
+  at.constant_offset += byte;
+  const ir::Src offset = whole(dynamic_offset(t, at));
+  const std::uint32_t mask = (1u << count) - 1;
+  if (at.kind == Pointer::Kind::kShared) {
+    ir::Instr& instr = emit_effect(t, ir::Op::kStoreShared, {offset, value});
+    instr.data[3] = at.constant_offset;
+    instr.imm[0] = mask;
+    return;
+  }
+  const ir::Src element = whole(descriptor_element(t, at));
+  ir::Instr& instr = emit_effect(t, ir::Op::kStoreStorage, {element, offset, value});
+  set_buffer(instr, at);
+  instr.imm[0] = mask;
+  t.function.interface.writes_memory = true;
+}
+
+/// Memory below `pointer`, leaf by leaf: f(pointer to the leaf).
+template <class F>
+void each_memory_leaf(Translator& t, const Pointer& pointer, const F& f) {
+  const Type& type = t.module.type(pointer.type);
+  const bool is_struct = type.kind == Type::Kind::kStruct;
+  if (!is_struct && type.kind != Type::Kind::kArray && type.kind != Type::Kind::kMatrix) return f(pointer);
+  if (type.scalars > kMaxScalars) throw Failure("value of type %" + std::to_string(type.id) + " is too large");
+  const std::uint32_t count = is_struct ? static_cast<std::uint32_t>(type.members.size()) : type.count;
+  for (std::uint32_t i = 0; i < count; i++) {
+    Pointer part = pointer;
+    step_into(t, *t.inst, part, {false, i, ir::kNoValue});
+    each_memory_leaf(t, part, f);
+  }
+}
+
+ir::ValueId load_leaf_memory(Translator& t, const Pointer& pointer) {
+  const ir::ValueInfo info = leaf_info(t, pointer.type);
+  ir::ValueId value;
+  if (pointer.component_stride == 4 || info.components == 1) {
+    value = load_words(t, pointer, info.components, 0);
+  } else {
+    std::vector<ir::Src> parts;
+    for (std::uint32_t i = 0; i < info.components; i++)
+      parts.push_back(whole(load_words(t, pointer, 1, i * pointer.component_stride)));
+    value = vec(t, std::move(parts), false);
+  }
+  if (!info.boolean) return value;
+  return emit(t, ir::Op::kINe, info.components, true, {whole(value), splat(constant_u32(t, 0))});
+}
+
+void store_leaf_memory(Translator& t, const Pointer& pointer, ir::ValueId value) {
+  const ir::ValueInfo info = leaf_info(t, pointer.type);
+  if (info.boolean) value = emit(t, ir::Op::kB2I, info.components, false, {whole(value)});
+  if (pointer.component_stride == 4 || info.components == 1)
+    return store_words(t, pointer, whole(value), info.components, 0);
+  for (std::uint8_t i = 0; i < info.components; i++)
+    store_words(t, pointer, splat(value, i), 1, i * pointer.component_stride);
+}
+
+bool is_memory(const Pointer& pointer) {
+  return pointer.kind == Pointer::Kind::kUniform || pointer.kind == Pointer::Kind::kStorage ||
+         pointer.kind == Pointer::Kind::kPush || pointer.kind == Pointer::Kind::kShared;
+}
+
+ImageHandle load_handle(Translator& t, const Pointer& pointer) {
+  ImageHandle handle;
+  const Type& type = t.module.type(pointer.type);
+  if (type.kind != Type::Kind::kSampler) {
+    handle.image_type = type.kind == Type::Kind::kSampledImage ? type.element : type.id;
+    handle.image = pointer.binding;
+    handle.image_element = pointer.element;
+  }
+  if (type.kind != Type::Kind::kImage) {
+    handle.sampler = pointer.binding;
+    handle.sampler_element = pointer.element;
+  }
+  handle.combined = type.kind == Type::Kind::kSampledImage;
+  return handle;
+}
+
+}  // namespace
+
+std::uint32_t vector_type_of(const Translator& t, const Pointer& pointer) {
+  std::uint32_t type = t.locals[pointer.local].type;
+  for (const Step& step : pointer.path) {
+    const Type& whole = t.module.type(type);
+    type = whole.kind == Type::Kind::kStruct ? whole.members[step.index] : whole.element;
+  }
+  return type;
+}
+
+ir::ValueId dynamic_offset(Translator& t, const Pointer& pointer) {
+  return pointer.offset == ir::kNoValue ? constant_u32(t, 0) : pointer.offset;
+}
+
+ir::ValueId descriptor_element(Translator& t, const Pointer& pointer) {
+  return pointer.element == ir::kNoValue ? constant_u32(t, 0) : pointer.element;
+}
+
+void set_buffer(ir::Instr& instr, const Pointer& pointer) {
+  instr.data[0] = pointer.binding.set;
+  instr.data[1] = pointer.binding.slot;
+  instr.data[2] = pointer.binding.count;
+  instr.data[3] = pointer.constant_offset;
+}
+
+Value load(Translator& t, const Pointer& pointer) {
+  if (pointer.kind == Pointer::Kind::kLocal) return load_local(t, pointer);
+  if (!is_memory(pointer) || pointer.descriptor_array) throw Failure("load through this pointer is not supported");
+  Value value{pointer.type, {}};
+  each_memory_leaf(t, pointer, [&](const Pointer& leaf) { value.leaves.push_back(load_leaf_memory(t, leaf)); });
+  return value;
+}
+
+void store(Translator& t, const Pointer& pointer, const Value& value) {
+  if (pointer.kind == Pointer::Kind::kLocal) return store_local(t, pointer, value);
+  if (pointer.descriptor_array || (pointer.kind != Pointer::Kind::kStorage && pointer.kind != Pointer::Kind::kShared))
+    throw Failure("store through this pointer is not supported");
+  std::size_t next = 0;
+  each_memory_leaf(t, pointer, [&](const Pointer& leaf) { store_leaf_memory(t, leaf, value.leaves.at(next++)); });
+}
+
+void store_raw(Translator& t, std::uint32_t local, ir::ValueId value) {
+  store_leaf_local(t, local_pointer(t, local), value, {});
+}
+
+ir::ValueId load_raw(Translator& t, std::uint32_t local) {
+  const ir::ValueInfo info = t.locals[local].info;
+  const ir::ValueId value = emit(t, ir::Op::kLoadVar, info.components, info.boolean, {});
+  last_instr(t).data[0] = new_access(t, local_pointer(t, local), {});
+  return value;
+}
+
+void store_flag(Translator& t, std::uint32_t flag, bool value) { store_raw(t, flag, constant_bool(t, value)); }
+
+ir::ValueId load_flag(Translator& t, std::uint32_t flag) { return load_raw(t, flag); }
+
+void load_instruction(Translator& t, const Inst& inst, ir::Op) {
+  const Pointer& pointer = pointer_of(t, inst.operand(0));
+  if (pointer.kind == Pointer::Kind::kDescriptor) {
+    if (pointer.descriptor_array) fail(inst, "load of a whole descriptor array is not supported");
+    t.images[inst.result] = load_handle(t, pointer);
+    return;
+  }
+  set_value(t, inst, load(t, pointer).leaves);
+}
+
+void store_instruction(Translator& t, const Inst& inst, ir::Op) {
+  const Pointer pointer = pointer_of(t, inst.operand(0));
+  store(t, pointer, value_of(t, inst.operand(1)));
+}
+
+void copy_memory(Translator& t, const Inst& inst, ir::Op) {
+  const Pointer target = pointer_of(t, inst.operand(0));
+  const Pointer source = pointer_of(t, inst.operand(1));
+  store(t, target, load(t, source));
+}
+
+void function_variable(Translator& t, const Inst& inst, ir::Op) {
+  const std::uint32_t type = t.module.type(inst.result_type).element;
+  const Pointer pointer = local_pointer(t, new_local(t, type, spv::StorageClass::Function, inst.result));
+  t.pointers[inst.result] = pointer;
+  if (inst.has(1)) store(t, pointer, value_of(t, inst.operand(1)));
+}
+
+void array_length(Translator& t, const Inst& inst, ir::Op) {
+  const Pointer pointer = pointer_of(t, inst.operand(0));
+  if (pointer.kind != Pointer::Kind::kStorage) fail(inst, "is supported for storage buffers only");
+  Pointer array = pointer;
+  step_into(t, inst, array, {false, inst.operand(1), ir::kNoValue});
+  const std::uint32_t stride = t.module.type(array.type).array_stride;
+  if (stride == 0) fail(inst, "array without ArrayStride");
+  const ir::ValueId value = emit(t, ir::Op::kArrayLength, 1, false, {whole(descriptor_element(t, pointer))});
+  ir::Instr& instr = last_instr(t);
+  set_buffer(instr, pointer);
+  instr.imm = {array.constant_offset, stride, 0, 0};
+  set_value(t, inst, value);
+}
+
+}  // namespace vitrine::spirv::front

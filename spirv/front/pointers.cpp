@@ -1,0 +1,234 @@
+// Pointers: what a variable stands for, and access chains into it (SPIR-V 3.42.8; Vulkan, Shader Resource Interface).
+#include "spirv/front/context.h"
+
+namespace vitrine::spirv::front {
+namespace {
+
+using spv::Decoration;
+using spv::StorageClass;
+
+std::uint32_t decoration_value(const Module& module, std::uint32_t id, Decoration kind, std::uint32_t otherwise) {
+  const DecorationRow* row = module.decoration(id, kind);
+  return row == nullptr ? otherwise : row->value;
+}
+
+Binding find_binding(const Translator& t, const Inst& variable) {
+  const std::uint32_t set = decoration_value(t.module, variable.result, Decoration::DescriptorSet, 0);
+  const std::uint32_t number = decoration_value(t.module, variable.result, Decoration::Binding, 0);
+  if (set < t.options.sets.size())
+    for (const BindingInfo& row : t.options.sets[set].bindings)
+      if (row.binding == number) return {row.set, row.first_slot, row.count, row.immutable_samplers};
+  fail(variable, "descriptor set " + std::to_string(set) + ", binding " + std::to_string(number) +
+                     " is not in the pipeline layout");
+}
+
+/// Block variables: uniform buffers, storage buffers, push constants.
+Pointer buffer_pointer(const Translator& t, const Inst& variable, StorageClass storage, std::uint32_t type_id) {
+  Pointer pointer;
+  pointer.type = type_id;
+  if (storage == StorageClass::PushConstant) {
+    pointer.kind = Pointer::Kind::kPush;
+    return pointer;
+  }
+  const Type& type = t.module.type(type_id);
+  pointer.descriptor_array = type.kind == Type::Kind::kArray || type.kind == Type::Kind::kRuntimeArray;
+  const std::uint32_t block = pointer.descriptor_array ? type.element : type_id;
+  const bool is_storage =
+      storage == StorageClass::StorageBuffer || t.module.decoration(block, Decoration::BufferBlock) != nullptr;
+  pointer.kind = is_storage ? Pointer::Kind::kStorage : Pointer::Kind::kUniform;
+  pointer.binding = find_binding(t, variable);
+  return pointer;
+}
+
+Pointer descriptor_pointer(const Translator& t, const Inst& variable, std::uint32_t type_id) {
+  Pointer pointer;
+  pointer.kind = Pointer::Kind::kDescriptor;
+  pointer.type = type_id;
+  const Type& type = t.module.type(type_id);
+  pointer.descriptor_array = type.kind == Type::Kind::kArray || type.kind == Type::Kind::kRuntimeArray;
+  pointer.binding = find_binding(t, variable);
+  return pointer;
+}
+
+Pointer shared_pointer(Translator& t, const Inst& variable, std::uint32_t type_id) {
+  if (variable.has(1)) fail(variable, "initializer of a Workgroup variable is not supported");
+  Pointer pointer;
+  pointer.kind = Pointer::Kind::kShared;
+  pointer.type = type_id;
+  pointer.constant_offset = t.function.interface.shared_bytes;
+  const std::uint64_t end = pointer.constant_offset + 4ull * t.module.type(type_id).scalars;
+  if (end > (1u << 20)) fail(variable, "too much Workgroup memory");
+  t.function.interface.shared_bytes = static_cast<std::uint32_t>(end);
+  return pointer;
+}
+
+Pointer declare(Translator& t, const Inst& variable) {
+  const Type& pointer_type = t.module.type(variable.result_type);
+  const std::uint32_t type = pointer_type.element;
+  switch (pointer_type.storage) {
+    case StorageClass::Uniform:
+    case StorageClass::StorageBuffer:
+    case StorageClass::PushConstant:
+      return buffer_pointer(t, variable, pointer_type.storage, type);
+    case StorageClass::UniformConstant:
+      return descriptor_pointer(t, variable, type);
+    case StorageClass::Workgroup:
+      return shared_pointer(t, variable, type);
+    case StorageClass::Private:
+    case StorageClass::Input:
+    case StorageClass::Output: {
+      const Pointer pointer = local_pointer(t, new_local(t, type, pointer_type.storage, variable.result));
+      if (variable.has(1)) {
+        ir::NodeList* const list = std::exchange(t.list, &t.prologue);
+        store(t, pointer, value_of(t, variable.operand(1)));
+        t.list = list;
+      }
+      return pointer;
+    }
+    default:
+      fail(variable, "storage class is not supported");
+  }
+}
+
+Step make_step(Translator& t, std::uint32_t index_id) {
+  const ir::ValueId value = scalar_or_vector(t, index_id);
+  if (const auto* words = constant_of(t, value)) return {false, (*words)[0], ir::kNoValue};
+  return {true, 0, value};
+}
+
+void step_local(const Inst& inst, const Type& type, Pointer& pointer, Step step) {
+  if (!step.dynamic && step.index >= type.count && type.kind != Type::Kind::kStruct) {
+    if (type.count == 0) fail(inst, "index into an array without elements");
+    step.index = type.count - 1;  // lavapipe-shader-math.md 10: clamped to the last element
+  }
+  if (type.kind == Type::Kind::kVector)
+    pointer.component = step;
+  else
+    pointer.path.push_back(step);
+}
+
+void add_offset(Translator& t, Pointer& pointer, const Step& step, std::uint32_t scale) {
+  if (step.dynamic)
+    pointer.offset = add_scaled(t, pointer.offset, step.value, scale);
+  else
+    pointer.constant_offset += step.index * scale;
+}
+
+void step_struct(Translator& t, const Inst& inst, const Type& type, Pointer& pointer, const Step& step) {
+  if (pointer.kind == Pointer::Kind::kShared) {
+    for (std::uint32_t i = 0; i < step.index; i++)
+      pointer.constant_offset += 4 * t.module.type(type.members[i]).scalars;
+    return;
+  }
+  const std::uint32_t member = step.index + 1;
+  const DecorationRow* offset = t.module.decoration(type.id, Decoration::Offset, member);
+  if (offset == nullptr) fail(inst, "member of a block without Offset");
+  pointer.constant_offset += offset->value;
+  if (const DecorationRow* stride = t.module.decoration(type.id, Decoration::MatrixStride, member))
+    pointer.matrix_stride = stride->value;
+  pointer.row_major = t.module.decoration(type.id, Decoration::RowMajor, member) != nullptr;
+}
+
+void step_memory(Translator& t, const Inst& inst, const Type& type, Pointer& pointer, const Step& step) {
+  const bool shared = pointer.kind == Pointer::Kind::kShared;
+  const std::uint32_t natural = shared ? 4 * t.module.type(type.element ? type.element : type.id).scalars : 0;
+  switch (type.kind) {
+    case Type::Kind::kStruct:
+      step_struct(t, inst, type, pointer, step);
+      break;
+    case Type::Kind::kArray:
+    case Type::Kind::kRuntimeArray:
+      add_offset(t, pointer, step, shared ? natural : type.array_stride);
+      break;
+    case Type::Kind::kMatrix:
+      if (shared) {
+        add_offset(t, pointer, step, natural);
+      } else if (pointer.row_major) {
+        add_offset(t, pointer, step, 4);
+        pointer.component_stride = pointer.matrix_stride;
+      } else {
+        add_offset(t, pointer, step, pointer.matrix_stride);
+      }
+      break;
+    case Type::Kind::kVector:
+      add_offset(t, pointer, step, pointer.component_stride);
+      break;
+    default:
+      fail(inst, "index into a scalar");
+  }
+}
+
+}  // namespace
+
+std::uint32_t new_local(Translator& t, std::uint32_t type, StorageClass storage, std::uint32_t variable) {
+  t.locals.push_back({type, storage, variable, {}});
+  return static_cast<std::uint32_t>(t.locals.size() - 1);
+}
+
+std::uint32_t new_local(Translator& t, ir::ValueInfo info) {
+  t.locals.push_back({0, StorageClass::Function, 0, info});
+  return static_cast<std::uint32_t>(t.locals.size() - 1);
+}
+
+std::uint32_t new_flag(Translator& t) { return new_local(t, ir::ValueInfo{1, true}); }
+
+Pointer local_pointer(const Translator& t, std::uint32_t local) {
+  Pointer pointer;
+  pointer.kind = Pointer::Kind::kLocal;
+  pointer.type = t.locals[local].type;
+  pointer.variable = t.locals[local].variable;
+  pointer.local = local;
+  return pointer;
+}
+
+const Pointer& pointer_of(Translator& t, std::uint32_t id) {
+  const auto found = t.pointers.find(id);
+  if (found != t.pointers.end()) return found->second;
+  const Inst& variable = t.module.def(id);
+  if (variable.op != spv::Op::OpVariable) fail(variable, "is not a pointer that is supported");
+  Pointer pointer = declare(t, variable);
+  pointer.variable = id;
+  return t.pointers[id] = std::move(pointer);
+}
+
+void step_into(Translator& t, const Inst& inst, Pointer& pointer, const Step& step) {
+  const Type& type = t.module.type(pointer.type);
+  if (pointer.descriptor_array) {
+    if (!step.dynamic && step.index >= pointer.binding.count) fail(inst, "array element is outside the binding");
+    pointer.element = step.dynamic ? step.value : constant_u32(t, step.index);
+    pointer.descriptor_array = false;
+    pointer.type = type.element;
+    return;
+  }
+  if (type.kind == Type::Kind::kStruct && (step.dynamic || step.index >= type.members.size()))
+    fail(inst, "member out of range");
+  if (pointer.component) fail(inst, "index into a scalar");
+  if (pointer.kind == Pointer::Kind::kLocal) {
+    if (type.kind == Type::Kind::kRuntimeArray || type.element + type.members.size() == 0)
+      fail(inst, "index into a scalar");
+    step_local(inst, type, pointer, step);
+  } else if (pointer.kind == Pointer::Kind::kDescriptor || pointer.kind == Pointer::Kind::kTexel) {
+    fail(inst, "index into an image or sampler");
+  } else {
+    step_memory(t, inst, type, pointer, step);
+  }
+  pointer.type = type.kind == Type::Kind::kStruct ? type.members[step.index] : type.element;
+}
+
+void access_chain(Translator& t, const Inst& inst, ir::Op) {
+  Pointer pointer = pointer_of(t, inst.operand(0));
+  for (std::uint32_t i = 1; inst.has(i); i++) step_into(t, inst, pointer, make_step(t, inst.operand(i)));
+  t.pointers[inst.result] = std::move(pointer);
+}
+
+ir::ValueId add_scaled(Translator& t, ir::ValueId base, ir::ValueId index, std::uint32_t scale) {
+  ir::ValueId scaled = index;
+  if (scale != 1)
+    scaled = (scale & (scale - 1)) == 0 && scale != 0
+                 ? emit(t, ir::Op::kShl, 1, false,
+                        {whole(index), whole(constant_u32(t, static_cast<std::uint32_t>(std::countr_zero(scale))))})
+                 : emit(t, ir::Op::kIMul, 1, false, {whole(index), whole(constant_u32(t, scale))});
+  return base == ir::kNoValue ? scaled : emit(t, ir::Op::kIAdd, 1, false, {whole(base), whole(scaled)});
+}
+
+}  // namespace vitrine::spirv::front

@@ -1,0 +1,112 @@
+// Barriers, atomics, helper invocations and subgroup basics (SPIR-V 3.42.18 to .21, .24).
+#include "spirv/front/functions.h"
+
+namespace vitrine::spirv::front {
+namespace {
+
+using spv::Op;
+
+struct AtomicRow {
+  Op opcode;
+  ir::AtomicOp op;
+};
+
+constexpr AtomicRow kAtomics[] = {
+    {Op::OpAtomicLoad, ir::AtomicOp::kLoad},         {Op::OpAtomicStore, ir::AtomicOp::kStore},
+    {Op::OpAtomicExchange, ir::AtomicOp::kExchange}, {Op::OpAtomicCompareExchange, ir::AtomicOp::kCompareExchange},
+    {Op::OpAtomicIIncrement, ir::AtomicOp::kAdd},    {Op::OpAtomicIDecrement, ir::AtomicOp::kSub},
+    {Op::OpAtomicIAdd, ir::AtomicOp::kAdd},          {Op::OpAtomicISub, ir::AtomicOp::kSub},
+    {Op::OpAtomicSMin, ir::AtomicOp::kIMin},         {Op::OpAtomicUMin, ir::AtomicOp::kUMin},
+    {Op::OpAtomicSMax, ir::AtomicOp::kIMax},         {Op::OpAtomicUMax, ir::AtomicOp::kUMax},
+    {Op::OpAtomicAnd, ir::AtomicOp::kAnd},           {Op::OpAtomicOr, ir::AtomicOp::kOr},
+    {Op::OpAtomicXor, ir::AtomicOp::kXor},           {Op::OpAtomicFAddEXT, ir::AtomicOp::kFAdd},
+};
+
+ir::AtomicOp atomic_op(const Inst& inst) {
+  for (const AtomicRow& row : kAtomics)
+    if (row.opcode == inst.op) return row.op;
+  fail(inst, "is not supported");
+}
+
+/// Operand and comparator of an atomic. Operands: pointer, scope, semantics, then what the operation takes.
+struct AtomicOperands {
+  ir::ValueId value = ir::kNoValue, comparator = ir::kNoValue;
+};
+
+AtomicOperands atomic_operands(Translator& t, const Inst& inst) {
+  switch (inst.op) {
+    case Op::OpAtomicLoad:
+      return {};
+    case Op::OpAtomicIIncrement:
+    case Op::OpAtomicIDecrement:
+      return {constant_u32(t, 1), ir::kNoValue};
+    case Op::OpAtomicCompareExchange:
+      return {scalar_or_vector(t, inst.operand(4)), scalar_or_vector(t, inst.operand(5))};
+    default:
+      return {scalar_or_vector(t, inst.operand(3)), ir::kNoValue};
+  }
+}
+
+void image_atomic(Translator& t, ir::AtomicOp op, const Pointer& pointer, const AtomicOperands& operands) {
+  ir::Instr& instr = last_instr(t);
+  auto info = std::make_shared<ir::ImageInfo>(image_info(t, pointer.image));
+  info->access = ir::ImageAccess::kAtomic;
+  info->atomic = op;
+  ImageSources sources(*info);
+  add_elements(t, pointer.image, *info, sources);
+  sources.add(ir::ImageOperand::kCoord, pointer.coord);
+  sources.add(ir::ImageOperand::kSample, pointer.sample);
+  sources.add(ir::ImageOperand::kValue, operands.value);
+  sources.add(ir::ImageOperand::kCompare, operands.comparator);
+  instr.op = ir::Op::kImage;
+  instr.src = sources.take();
+  instr.image = std::move(info);
+}
+
+}  // namespace
+
+void atomic(Translator& t, const Inst& inst, ir::Op) {
+  const Pointer pointer = pointer_of(t, inst.operand(0));
+  const ir::AtomicOp op = atomic_op(inst);
+  const AtomicOperands operands = atomic_operands(t, inst);
+  const std::uint32_t type = t.module.type(pointer.type).kind == Type::Kind::kPointer ? 0 : pointer.type;
+  if (type == 0 || leaf_info(t, type).components != 1) fail(inst, "operand is not a pointer to a number");
+  std::vector<ir::Src> src;
+  const bool is_image = pointer.kind == Pointer::Kind::kTexel;
+  if (pointer.kind == Pointer::Kind::kStorage) src.push_back(whole(descriptor_element(t, pointer)));
+  if (!is_image) src.push_back(whole(dynamic_offset(t, pointer)));
+  if (operands.value != ir::kNoValue) src.push_back(whole(operands.value));
+  if (operands.comparator != ir::kNoValue) src.push_back(whole(operands.comparator));
+  const bool shared = pointer.kind == Pointer::Kind::kShared;
+  if (!shared && !is_image && pointer.kind != Pointer::Kind::kStorage) fail(inst, "storage class is not supported");
+  const ir::ValueId result = emit(t, shared ? ir::Op::kAtomicShared : ir::Op::kAtomicStorage, 1, false, std::move(src));
+  ir::Instr& instr = last_instr(t);
+  if (is_image) {
+    image_atomic(t, op, pointer, operands);
+  } else {
+    set_buffer(instr, pointer);
+    instr.imm[0] = static_cast<std::uint32_t>(op);
+  }
+  if (!shared && op != ir::AtomicOp::kLoad) t.function.interface.writes_memory = true;
+  if (inst.result != 0) set_value(t, inst, result);
+}
+
+void barrier(Translator& t, const Inst& inst, ir::Op) {
+  // Only the execution scope matters: memory is coherent. A subgroup is one wave, which runs in lockstep.
+  const std::uint32_t scope = t.module.constant_u32(inst.operand(0), inst);
+  if (t.options.stage == VK_SHADER_STAGE_COMPUTE_BIT && scope == static_cast<std::uint32_t>(spv::Scope::Workgroup))
+    emit_effect(t, ir::Op::kBarrier);
+}
+
+void demote(Translator& t, const Inst&, ir::Op) {
+  t.function.interface.uses_discard = true;
+  emit_effect(t, ir::Op::kDemote);
+}
+
+void is_helper(Translator& t, const Inst& inst, ir::Op) {
+  set_value(t, inst, emit(t, ir::Op::kHelperInvocation, 1, true, {}));
+}
+
+void elect(Translator& t, const Inst& inst, ir::Op) { set_value(t, inst, emit(t, ir::Op::kElect, 1, true, {})); }
+
+}  // namespace vitrine::spirv::front

@@ -1,0 +1,104 @@
+// SPIR-V values as lists of leaves (scalars and vectors).
+#include "spirv/front/context.h"
+
+namespace vitrine::spirv::front {
+
+ir::ValueInfo leaf_info(const Translator& t, std::uint32_t type_id) {
+  const Type& type = t.module.type(type_id);
+  const bool is_vector = type.kind == Type::Kind::kVector;
+  const Type& number = is_vector ? t.module.type(type.element) : type;
+  switch (number.kind) {
+    case Type::Kind::kBool:
+      break;
+    case Type::Kind::kInt:
+    case Type::Kind::kFloat:
+      if (number.width != 32) throw Failure(std::to_string(number.width) + "-bit numbers are not supported");
+      break;
+    default:
+      throw Failure("%" + std::to_string(type_id) + " is not a scalar or vector type");
+  }
+  return {static_cast<std::uint8_t>(is_vector ? type.count : 1), number.kind == Type::Kind::kBool};
+}
+
+void leaf_types(const Translator& t, std::uint32_t type_id, std::vector<std::uint32_t>& leaves) {
+  const Type& type = t.module.type(type_id);
+  if (type.scalars > kMaxScalars) throw Failure("value of type %" + std::to_string(type_id) + " is too large");
+  switch (type.kind) {
+    case Type::Kind::kStruct:
+      for (std::uint32_t member : type.members) leaf_types(t, member, leaves);
+      break;
+    case Type::Kind::kMatrix:
+    case Type::Kind::kArray:
+      for (std::uint32_t i = 0; i < type.count; i++) leaf_types(t, type.element, leaves);
+      break;
+    default:
+      leaf_info(t, type_id);
+      leaves.push_back(type_id);
+  }
+}
+
+Value constant_value(Translator& t, std::uint32_t type, std::span<const std::uint32_t> words, bool is_undefined) {
+  std::vector<std::uint32_t> types;
+  leaf_types(t, type, types);
+  Value value{type, {}};
+  std::size_t at = 0;
+  for (std::uint32_t leaf : types) {
+    const ir::ValueInfo info = leaf_info(t, leaf);
+    if (at + info.components > words.size()) throw Failure("constant does not fit its type");
+    value.leaves.push_back(is_undefined ? undefined(t, info.components, info.boolean)
+                                        : constant(t, words.subspan(at, info.components), info.boolean));
+    at += info.components;
+  }
+  return value;
+}
+
+const Value& value_of(Translator& t, std::uint32_t id) {
+  const auto found = t.values.find(id);
+  if (found != t.values.end()) return found->second;
+  const Constant* value = t.module.constant(id);
+  if (value == nullptr) throw Failure("%" + std::to_string(id) + " has no value here");
+  return t.values[id] = constant_value(t, value->type, value->words, value->undefined);
+}
+
+ir::ValueId scalar_or_vector(Translator& t, std::uint32_t id) {
+  const Value& value = value_of(t, id);
+  if (value.leaves.size() != 1) throw Failure("%" + std::to_string(id) + " is not a scalar or vector");
+  return value.leaves[0];
+}
+
+void set_value(Translator& t, const Inst& inst, std::vector<ir::ValueId> leaves) {
+  if (t.module.type(inst.result_type).leaves != leaves.size()) fail(inst, "value does not fit its type");
+  t.values[inst.result] = {inst.result_type, std::move(leaves)};
+}
+
+void set_value(Translator& t, const Inst& inst, ir::ValueId leaf) { set_value(t, inst, std::vector{leaf}); }
+
+Part find_part(const Translator& t, const Inst& inst, std::uint32_t type, std::uint32_t first_operand) {
+  Part part{0, type, {}};
+  for (std::uint32_t i = first_operand; inst.has(i); i++) {
+    const std::uint32_t index = inst.operand(i);
+    const Type& whole = t.module.type(part.type);
+    switch (whole.kind) {
+      case Type::Kind::kStruct:
+        if (index >= whole.members.size()) fail(inst, "member out of range");
+        for (std::uint32_t m = 0; m < index; m++) part.first += t.module.type(whole.members[m]).leaves;
+        part.type = whole.members[index];
+        break;
+      case Type::Kind::kArray:
+      case Type::Kind::kMatrix:
+      case Type::Kind::kVector:
+        if (index >= whole.count) fail(inst, "index out of range");
+        part.type = whole.element;
+        if (whole.kind == Type::Kind::kVector)
+          part.component = index;
+        else
+          part.first += index * t.module.type(part.type).leaves;
+        break;
+      default:
+        fail(inst, "index into a scalar");
+    }
+  }
+  return part;
+}
+
+}  // namespace vitrine::spirv::front
