@@ -149,7 +149,27 @@ void Emitter::local_array(const ScalarOp& op) {
   program->memory_ops.push_back(row);
 }
 
-void Emitter::image(const ScalarOp&) { fail("image instructions wait for the sampler"); }
+void Emitter::image(const ScalarOp& op) {
+  ImageOp row;
+  row.info = *op.instr->image;
+  for (auto& operand : row.operand) operand.fill(kNoOperand);
+  std::uint32_t next = 0;
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(ir::ImageOperand::kCount); ++i) {
+    if (!(row.info.operands >> i & 1)) continue;
+    const auto operand = static_cast<ir::ImageOperand>(i);
+    if (operand == ir::ImageOperand::kImageIndex) {
+      row.image_index = index_operand(source(op, next++), row.info.slot, row.info.count);
+    } else if (operand == ir::ImageOperand::kSamplerIndex) {
+      row.sampler_index = index_operand(source(op, next++), row.info.sampler_slot, row.info.sampler_count);
+    } else {
+      const std::uint32_t count = image_operand_components(row.info, operand);
+      for (std::uint32_t c = 0; c < count; ++c) row.operand[i][c] = in_register(source(op, next++)).offset;
+    }
+  }
+  for (std::uint32_t c = 0; c < op.dst.count && c < 4; ++c) row.result[c] = place(result(op, c)).offset;
+  append(exec::image, "image", op.instr).extra[0] = static_cast<std::uint32_t>(program->image_ops.size());
+  program->image_ops.push_back(row);
+}
 
 void Emitter::read_first(const ScalarOp& op) {
   const ScalarId from = source(op, 0), to = result(op, 0);

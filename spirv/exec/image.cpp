@@ -1,0 +1,228 @@
+// Image instructions: operands gathered into texel's requests, once per distinct descriptor among the active lanes.
+#include "spirv/exec/atomic_ops.h"
+#include "spirv/exec/buffers.h"
+#include "spirv/exec/handlers.h"
+#include "texel/sampler.h"
+
+namespace vitrine::spirv::exec {
+namespace {
+
+using base::WaveRegister;
+using ir::ImageAccess;
+using ir::ImageOperand;
+
+/// Operands and results of one image instruction in this wave.
+struct Call {
+  Wave& wave;
+  const ImageOp& op;
+  WaveRegister result[4];
+
+  const WaveRegister* operand(ImageOperand which, std::uint32_t component = 0) const {
+    const std::uint32_t offset = op.operand[static_cast<std::size_t>(which)][component];
+    return offset == kNoOperand ? nullptr : &reg(wave, offset);
+  }
+  template <std::size_t N>
+  std::array<const WaveRegister*, N> operands(ImageOperand which) const {
+    std::array<const WaveRegister*, N> all{};
+    for (std::uint32_t c = 0; c < N; ++c) all[c] = operand(which, c);
+    return all;
+  }
+};
+
+void zero_result(Call& call, base::LaneMask lanes) {
+  for (WaveRegister& component : call.result)
+    base::for_each_lane(lanes, [&](std::size_t lane) { component.lane[lane] = 0; });
+}
+
+void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
+  const ir::ImageInfo& info = call.op.info;
+  if (image.image == nullptr || sampler == nullptr) return zero_result(call, lanes);
+  texel::SampleRequest request;
+  request.op = info.access == ImageAccess::kGather     ? texel::SampleOp::kGather
+               : info.access == ImageAccess::kQueryLod ? texel::SampleOp::kQueryLod
+                                                       : texel::SampleOp::kSample;
+  request.active = lanes;
+  request.coord = call.operands<4>(ImageOperand::kCoord);
+  request.dref = call.operand(ImageOperand::kDref);
+  request.min_lod = call.operand(ImageOperand::kMinLod);
+  request.offset = call.operands<3>(ImageOperand::kOffset);
+  request.gather_component = info.gather_component;
+  if (info.has_gather_offsets) request.gather_offsets = &info.gather_offsets;
+  if (call.operand(ImageOperand::kGradX) != nullptr) {
+    request.lod_mode = texel::LodMode::kGrad;
+    request.ddx = call.operands<3>(ImageOperand::kGradX);
+    request.ddy = call.operands<3>(ImageOperand::kGradY);
+  } else if (call.operand(ImageOperand::kLod) != nullptr) {
+    request.lod_mode = texel::LodMode::kExplicit;
+    request.lod = call.operand(ImageOperand::kLod);
+  } else if (info.explicit_lod_zero) {
+    request.lod_mode = texel::LodMode::kZero;
+  } else if (call.operand(ImageOperand::kBias) != nullptr) {
+    request.lod_mode = texel::LodMode::kBias;
+    request.lod = call.operand(ImageOperand::kBias);
+  }
+  texel::sample(*image.image, *sampler, request, call.result);
+}
+
+texel::FetchRequest fetch_request(const Call& call, base::LaneMask lanes) {
+  texel::FetchRequest request;
+  request.active = lanes;
+  request.coord = call.operands<3>(ImageOperand::kCoord);
+  request.lod = call.operand(ImageOperand::kLod);
+  request.sample = call.operand(ImageOperand::kSample);
+  request.offset = call.operands<3>(ImageOperand::kOffset);
+  return request;
+}
+
+bool is_buffer(const Call& call) { return call.op.info.dim == 5; }
+
+void read(Call& call, const Descriptor& image, base::LaneMask lanes) {
+  if (image.image == nullptr) return zero_result(call, lanes);
+  if (is_buffer(call)) {
+    texel::fetch_buffer(*image.texels, lanes, *call.operand(ImageOperand::kCoord), call.result);
+  } else {
+    texel::fetch(*image.image, fetch_request(call, lanes), call.result);
+  }
+}
+
+void write(Call& call, const Descriptor& image, base::LaneMask lanes) {
+  lanes &= call.wave.live;
+  if (image.image == nullptr || lanes == 0) return;
+  WaveRegister value[4];
+  for (std::uint32_t c = 0; c < 4; ++c) value[c] = *call.operand(ImageOperand::kValue, c);
+  if (is_buffer(call)) {
+    texel::store_buffer(*image.texels, lanes, *call.operand(ImageOperand::kCoord), value);
+  } else {
+    texel::store(*image.image, fetch_request(call, lanes), value);
+  }
+}
+
+std::uint32_t* texel_word(const Call& call, const Descriptor& image, std::size_t lane) {
+  const auto at = [&](ImageOperand which, std::uint32_t c) {
+    const WaveRegister* operand = call.operand(which, c);
+    return operand ? static_cast<std::int32_t>(operand->lane[lane]) : 0;
+  };
+  const std::int32_t x = at(ImageOperand::kCoord, 0);
+  if (is_buffer(call)) {
+    const texel::BufferTexelView& texels = *image.texels;
+    if (x < 0 || static_cast<std::uint64_t>(x) >= texels.count) return nullptr;
+    return reinterpret_cast<std::uint32_t*>(texels.data) + x;
+  }
+  // A 1D array's layer is its second coordinate; texel addresses layers by the third.
+  const bool layered_1d = call.op.info.dim == 1 && call.op.info.arrayed;
+  const std::int32_t y = layered_1d ? 0 : at(ImageOperand::kCoord, 1);
+  const std::int32_t z = layered_1d ? at(ImageOperand::kCoord, 1) : at(ImageOperand::kCoord, 2);
+  return texel::texel_address(*image.image, x, y, z, static_cast<std::uint32_t>(at(ImageOperand::kSample, 0)));
+}
+
+void atomic(Call& call, const Descriptor& image, base::LaneMask lanes) {
+  zero_result(call, lanes);
+  if (image.image == nullptr) return;
+  const WaveRegister* operand = call.operand(ImageOperand::kValue);
+  const WaveRegister* compare = call.operand(ImageOperand::kCompare);
+  base::for_each_lane(lanes & call.wave.live, [&](std::size_t lane) {
+    std::uint32_t* word = texel_word(call, image, lane);
+    if (word == nullptr) return;
+    call.result[0].lane[lane] = apply_atomic<true>(call.op.info.atomic, word, operand ? operand->lane[lane] : 0,
+                                                   compare ? compare->lane[lane] : 0);
+  });
+}
+
+void query(Call& call, const Descriptor& image, base::LaneMask lanes) {
+  if (image.image == nullptr) return zero_result(call, lanes);
+  const WaveRegister* lod = call.operand(ImageOperand::kLod);
+  base::for_each_lane(lanes, [&](std::size_t lane) {
+    std::array<std::uint32_t, 3> value{};
+    if (call.op.info.access == ImageAccess::kQueryLevels) {
+      value[0] = image.image->level_count;
+    } else if (call.op.info.access == ImageAccess::kQuerySamples) {
+      value[0] = image.image->samples;
+    } else if (is_buffer(call)) {
+      value[0] = static_cast<std::uint32_t>(image.texels->count);
+    } else {
+      value = texel::query_size(*image.image, lod ? static_cast<std::int32_t>(lod->lane[lane]) : 0);
+    }
+    for (std::uint32_t c = 0; c < 3; ++c) call.result[c].lane[lane] = value[c];
+  });
+}
+
+void run(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
+  switch (call.op.info.access) {
+    case ImageAccess::kSample:
+    case ImageAccess::kGather:
+    case ImageAccess::kQueryLod:
+      return sample(call, image, sampler, lanes);
+    case ImageAccess::kFetch:
+    case ImageAccess::kRead:
+    case ImageAccess::kSubpass:
+      return read(call, image, lanes);
+    case ImageAccess::kWrite:
+      return write(call, image, lanes);
+    case ImageAccess::kAtomic:
+      return atomic(call, image, lanes);
+    case ImageAccess::kQuerySize:
+    case ImageAccess::kQueryLevels:
+    case ImageAccess::kQuerySamples:
+      return query(call, image, lanes);
+  }
+}
+
+std::uint32_t element_of(Wave& wave, const IndexOperand& index, int lane) {
+  switch (index.file) {
+    case IndexOperand::File::kConstant:
+      return 0;
+    case IndexOperand::File::kUniform:
+      return uniform_word(wave, index.value);
+    case IndexOperand::File::kVarying:
+      return reg(wave, index.value).lane[lane];
+  }
+  return 0;
+}
+
+const Descriptor& descriptor(const Wave& wave, std::uint32_t set, std::uint32_t slot, std::uint32_t element,
+                             std::uint32_t count) {
+  static const Descriptor null{};
+  if (element != 0 && element >= count) return null;
+  const Descriptor* found = find_descriptor(wave, set, slot + element);
+  return found ? *found : null;
+}
+
+/// Lanes of `remaining` whose indices equal those of its lowest lane.
+base::LaneMask same_elements(Wave& wave, const ImageOp& op, base::LaneMask remaining) {
+  for (const IndexOperand& index : {op.image_index, op.sampler_index}) {
+    if (index.file != IndexOperand::File::kVarying) continue;
+    const std::uint32_t first = element_of(wave, index, std::countr_zero(remaining));
+    base::for_each_lane(remaining, [&](std::size_t lane) {
+      if (element_of(wave, index, static_cast<int>(lane)) != first) remaining &= ~(base::LaneMask{1} << lane);
+    });
+  }
+  return remaining;
+}
+
+}  // namespace
+
+const Instruction* image(Wave& wave, const Instruction* i) {
+  const ImageOp& op = wave.program->image_ops[i->extra[0]];
+  const ir::ImageInfo& info = op.info;
+  Call call{wave, op, {}};
+  for (base::LaneMask remaining = wave.active; remaining != 0;) {
+    const int first = std::countr_zero(remaining);
+    const base::LaneMask lanes = same_elements(wave, op, remaining);
+    remaining &= ~lanes;
+    const Descriptor& image =
+        descriptor(wave, info.set, info.slot, element_of(wave, op.image_index, first), info.count);
+    const texel::Sampler* sampler = info.immutable_sampler;
+    if (sampler == nullptr) {
+      sampler = info.combined ? image.sampler
+                              : descriptor(wave, info.sampler_set, info.sampler_slot,
+                                           element_of(wave, op.sampler_index, first), info.sampler_count)
+                                    .sampler;
+    }
+    run(call, image, sampler, lanes);
+  }
+  for (std::uint32_t c = 0; c < 4; ++c)
+    if (op.result[c] != kNoOperand) reg(wave, op.result[c]) = call.result[c];
+  return i + 1;
+}
+
+}  // namespace vitrine::spirv::exec
