@@ -102,12 +102,16 @@ struct QueryCounters {
   std::atomic<std::uint64_t>* statistics = nullptr;
 };
 
+struct NativeShader;  // raster/stage.h
+
 struct DrawCall {
   const State* state = nullptr;  ///< lives until the flush
   const spirv::Shader* vertex = nullptr;
   const spirv::Shader* fragment = nullptr;  ///< null: no fragment shader
   spirv::ResourceTable vertex_resources;    ///< descriptors, dynamic offsets applied, push constants of the stage
   spirv::ResourceTable fragment_resources;
+  const NativeShader* native_vertex = nullptr;    ///< instead of `vertex`: a stage written in C++
+  const NativeShader* native_fragment = nullptr;  ///< instead of `fragment`
   spirv::Fault* fault = nullptr;
   std::array<VertexBinding, kMaxVertexBindings> vertex_binding{};
   // indices: null for non-indexed draws

@@ -1,0 +1,159 @@
+// Edge set-up per tile and evaluation over blocks of 64 lanes.
+#include "raster/coverage.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/coverage.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "base/lane_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::raster::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using I = hn::CappedTag<std::int32_t, 16>;
+using V = hn::Vec<I>;
+
+/// Places of the 16 lanes of one row of quads.
+alignas(64) constexpr std::int32_t kRowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
+alignas(64) constexpr std::int32_t kRowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
+
+/// Lanes where origin + x*step_x + y*step_y >= 0 for all edges; (x, y) is the lane's place.
+base::LaneMask inside_lanes(std::uint32_t count, const std::int32_t* step_x, const std::int32_t* step_y,
+                            const std::int32_t* origin) {
+  const I d;
+  const std::size_t n = hn::Lanes(d);
+  base::LaneMask mask = 0;
+  for (std::size_t i = 0; i < 16; i += n) {
+    const V x = hn::Load(d, kRowX + i), y = hn::Load(d, kRowY + i);
+    V row[4], down[4];
+    for (std::uint32_t e = 0; e < count; ++e) {
+      row[e] = hn::Add(hn::Set(d, origin[e]), hn::Add(hn::Mul(x, hn::Set(d, step_x[e])), hn::Mul(y, hn::Set(d, step_y[e]))));
+      down[e] = hn::Set(d, 2 * step_y[e]);
+    }
+    for (std::size_t r = 0; r < 4; ++r) {
+      V sign = row[0];
+      for (std::uint32_t e = 1; e < count; ++e) sign = hn::Or(sign, row[e]);
+      for (std::uint32_t e = 0; e < count; ++e) row[e] = hn::Add(row[e], down[e]);
+      const auto outside = hn::Lt(sign, hn::Zero(d));
+      const base::LaneMask bits = base::HWY_NAMESPACE::lanes_mask_bits(d, outside) & base::first_lanes(n);
+      mask |= bits << (r * 16 + i);
+    }
+  }
+  return ~mask;
+}
+
+}  // namespace vitrine::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vitrine::raster {
+namespace {
+
+HWY_EXPORT(inside_lanes);
+
+struct Edge {
+  std::int64_t a, b, c;  ///< E = c - a*qx + b*qy, the fill rule's unit included
+};
+
+Edge edge_between(std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int64_t y1) {
+  const std::int64_t a = y0 - y1, b = x0 - x1;
+  const bool owns = a < 0 || (a == 0 && b > 0);
+  return {a, b, a * x0 - b * y0 + (owns ? 1 : 0)};
+}
+
+std::uint32_t edges_of(const Primitive& p, Edge edges[4]) {
+  if (p.kind == PrimitiveKind::kPoint) {  // X0 <= qx < X1, Y0 <= qy < Y1
+    edges[0] = {-1, 0, std::int64_t{1} - p.x[0]};
+    edges[1] = {1, 0, p.x[1]};
+    edges[2] = {0, 1, std::int64_t{1} - p.y[0]};
+    edges[3] = {0, -1, p.y[1]};
+    return 4;
+  }
+  const std::uint32_t corners = p.kind == PrimitiveKind::kTriangle ? 3 : 4;
+  for (std::uint32_t e = 0; e < corners; ++e) {
+    const std::uint32_t n = e + 1 == corners ? 0 : e + 1;
+    edges[e] = edge_between(p.x[e], p.y[e], p.x[n], p.y[n]);
+  }
+  return corners;
+}
+
+constexpr std::array<base::LaneMask, 9> lanes_below(bool vertical) {
+  std::array<base::LaneMask, 9> table{};
+  for (int limit = 0; limit <= 8; ++limit)
+    for (std::uint32_t lane = 0; lane < 64; ++lane)
+      if ((vertical ? lane_y(lane) : lane_x(lane)) < limit) table[static_cast<std::size_t>(limit)] |= 1ull << lane;
+  return table;
+}
+constexpr auto kLanesLeftOf = lanes_below(false);
+constexpr auto kLanesAbove = lanes_below(true);
+
+}  // namespace
+
+bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, std::uint32_t samples, TileEdges& out) {
+  Edge edges[4];
+  const std::uint32_t count = edges_of(primitive, edges);
+  out.count = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Edge& e = edges[i];
+    const std::int64_t low = std::min<std::int64_t>(0, -63 * e.a) + std::min<std::int64_t>(0, 63 * e.b);
+    const std::int64_t high = std::max<std::int64_t>(0, -63 * e.a) + std::max<std::int64_t>(0, 63 * e.b);
+    std::int64_t f[kMaxSamples];
+    bool touches = false, covers = true;
+    for (std::uint32_t s = 0; s < samples; ++s) {
+      const std::int64_t sx = samples > 1 ? kSampleX[s] : 0, sy = samples > 1 ? kSampleY[s] : 0;
+      f[s] = ((e.c - 1 - e.a * sx + e.b * sy) >> 8) - e.a * tile_x + e.b * tile_y;
+      touches |= f[s] + high >= 0;
+      covers &= f[s] + low >= 0;
+    }
+    if (!touches) return false;
+    if (covers) continue;
+    const std::uint32_t k = out.count++;
+    out.step_x[k] = static_cast<std::int32_t>(-e.a);
+    out.step_y[k] = static_cast<std::int32_t>(e.b);
+    for (std::uint32_t s = 0; s < samples; ++s) out.f[s][k] = static_cast<std::int32_t>(f[s]);
+  }
+  return true;
+}
+
+base::LaneMask cover_block(const TileEdges& edges, std::uint32_t sample, int x, int y) {
+  if (edges.count == 0) return base::kAllLanes;
+  std::int32_t origin[4];
+  for (std::uint32_t e = 0; e < edges.count; ++e)
+    origin[e] = edges.f[sample][e] + x * edges.step_x[e] + y * edges.step_y[e];
+  return HWY_DYNAMIC_DISPATCH(inside_lanes)(edges.count, edges.step_x, edges.step_y, origin);
+}
+
+void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMask& any, base::LaneMask& all) {
+  any = all = base::kAllLanes;
+  if (edges.count == 0) return;
+  std::int32_t step_x[4], step_y[4], most[4], least[4];
+  for (std::uint32_t e = 0; e < edges.count; ++e) {
+    const std::int32_t x = 7 * edges.step_x[e], y = 7 * edges.step_y[e];
+    step_x[e] = kBlockSize * edges.step_x[e];
+    step_y[e] = kBlockSize * edges.step_y[e];
+    std::int32_t high = edges.f[0][e], low = high;
+    for (std::uint32_t s = 1; s < samples; ++s) {
+      high = std::max(high, edges.f[s][e]);
+      low = std::min(low, edges.f[s][e]);
+    }
+    most[e] = high + std::max(x, 0) + std::max(y, 0);
+    least[e] = low + std::min(x, 0) + std::min(y, 0);
+  }
+  any = HWY_DYNAMIC_DISPATCH(inside_lanes)(edges.count, step_x, step_y, most);
+  all = HWY_DYNAMIC_DISPATCH(inside_lanes)(edges.count, step_x, step_y, least);
+}
+
+base::LaneMask rect_lanes(int x0, int y0, int x1, int y1) {
+  const auto at = [](int v) { return static_cast<std::size_t>(std::clamp(v, 0, 8)); };
+  return kLanesLeftOf[at(x1 + 1)] & ~kLanesLeftOf[at(x0)] & kLanesAbove[at(y1 + 1)] & ~kLanesAbove[at(y0)];
+}
+
+}  // namespace vitrine::raster
+#endif

@@ -1,0 +1,48 @@
+// Coverage of a primitive inside one tile: exact edge functions (lavapipe-rasterization.md 3.2) in 32 bits.
+//
+// An edge has E = C - a*qx + b*qy with the sample q in 24.8 and is inside where E > 0. Samples are at whole pixels plus
+// a constant, so E > 0 is the same as F >= 0 with F = floor((C - 1 - a*sx + b*sy) / 256) - a*px + b*py in whole pixels:
+// eight bits less, exact. Edges that have the whole tile inside are dropped, so that F of the others fits 32 bits.
+#pragma once
+
+#include <cstdint>
+
+#include "base/lanes.h"
+#include "raster/primitive.h"
+
+namespace vitrine::raster {
+
+inline constexpr int kBlockSize = 8;
+inline constexpr std::uint32_t kMaxSamples = 4;
+
+/// 8.1, 24.8 fixed point within the pixel.
+inline constexpr std::int32_t kSampleX[kMaxSamples] = {96, 224, 32, 160};
+inline constexpr std::int32_t kSampleY[kMaxSamples] = {32, 96, 160, 224};
+
+/// Edges of a primitive relative to the top-left pixel of a tile.
+struct TileEdges {
+  std::uint32_t count = 0;
+  std::int32_t step_x[4];             ///< F one pixel to the right, minus F
+  std::int32_t step_y[4];             ///< one pixel down
+  std::int32_t f[kMaxSamples][4];     ///< [sample][edge], at the tile's first pixel
+};
+
+/// False if the tile is outside. `samples` is 1 or 4.
+bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, std::uint32_t samples, TileEdges& edges);
+
+/// Lanes are the pixels of an 8x8 block in quads: quad q at (2*(q%4), 2*(q/4)), see base::kQuadSize. (x, y): first pixel
+/// of the block relative to the tile.
+base::LaneMask cover_block(const TileEdges& edges, std::uint32_t sample, int x, int y);
+
+/// Which of the tile's 64 blocks may be touched (`any`) and are covered completely in all samples (`all`). Bit i is the
+/// block at quad-ordered place i.
+void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMask& any, base::LaneMask& all);
+
+/// Place of lane i in a block: x, y in [0, 8).
+constexpr int lane_x(std::uint32_t lane) { return static_cast<int>((lane >> 2 & 3) * 2 + (lane & 1)); }
+constexpr int lane_y(std::uint32_t lane) { return static_cast<int>((lane >> 4) * 2 + (lane >> 1 & 1)); }
+
+/// Lanes of a block inside columns [x0, x1] and rows [y0, y1], each clamped to the block.
+base::LaneMask rect_lanes(int x0, int y0, int x1, int y1);
+
+}  // namespace vitrine::raster

@@ -1,0 +1,340 @@
+// Depth over quads in vectors of four lanes; stencil, and quads at the edge of the image, lane by lane.
+#include "raster/depth_stencil.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "base/numeric.h"
+#include "base/simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/depth_stencil.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "base/lane_math-inl.h"
+
+#ifndef VITRINE_RASTER_DEPTH_STENCIL_ONCE
+#define VITRINE_RASTER_DEPTH_STENCIL_ONCE
+namespace vitrine::raster {
+
+/// A depth test of whole quads, without stencil.
+struct DepthPass {
+  std::byte* base;
+  std::uint64_t pitch;
+  int width, height;
+  VkCompareOp compare;
+  bool write;
+};
+
+}  // namespace vitrine::raster
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::raster::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using base::HWY_NAMESPACE::lanes_cast;
+using base::HWY_NAMESPACE::lanes_mask_bits;
+using base::HWY_NAMESPACE::lanes_mask_from_bits;
+using base::HWY_NAMESPACE::lanes_max_second;
+using base::HWY_NAMESPACE::lanes_min_second;
+using base::HWY_NAMESPACE::lanes_round_to_int;
+
+using F4 = hn::FixedTag<float, 4>;
+using I4 = hn::FixedTag<std::int32_t, 4>;
+using VF = hn::Vec<F4>;
+using VI = hn::Vec<I4>;
+using M4 = hn::Mask<I4>;
+
+/// Depth as stored: how it is encoded, loaded, stored, compared. Stored values of a quad as four lanes.
+struct D16 {
+  static constexpr int kBytes = 2;
+  static HWY_INLINE VI encode(VF z) {
+    const VF t = hn::Add(hn::Mul(z, hn::Set(F4(), static_cast<float>(65535.0 / 65536.0))), hn::Set(F4(), 128.0f));
+    return hn::And(lanes_cast<std::int32_t>(t), hn::Set(I4(), 0xffff));
+  }
+  static HWY_INLINE VI load(const std::byte* row0, const std::byte* row1) {
+    std::uint16_t texel[4];
+    std::memcpy(texel, row0, 4);
+    std::memcpy(texel + 2, row1, 4);
+    return hn::PromoteTo(I4(), hn::LoadU(hn::FixedTag<std::uint16_t, 4>(), texel));
+  }
+  static HWY_INLINE void store(VI v, std::byte* row0, std::byte* row1) {
+    alignas(16) std::int32_t lane[4];
+    hn::Store(v, I4(), lane);
+    const std::uint16_t texel[4] = {static_cast<std::uint16_t>(lane[0]), static_cast<std::uint16_t>(lane[1]),
+                                    static_cast<std::uint16_t>(lane[2]), static_cast<std::uint16_t>(lane[3])};
+    std::memcpy(row0, texel, 4);
+    std::memcpy(row1, texel + 2, 4);
+  }
+};
+
+HWY_INLINE VI load_words(const std::byte* row0, const std::byte* row1) {
+  alignas(16) std::int32_t texel[4];
+  std::memcpy(texel, row0, 8);
+  std::memcpy(texel + 2, row1, 8);
+  return hn::Load(I4(), texel);
+}
+HWY_INLINE void store_words(VI v, std::byte* row0, std::byte* row1) {
+  alignas(16) std::int32_t texel[4];
+  hn::Store(v, I4(), texel);
+  std::memcpy(row0, texel, 8);
+  std::memcpy(row1, texel + 2, 8);
+}
+
+struct D24 {
+  static constexpr int kBytes = 4;
+  static HWY_INLINE VI encode(VF z) { return lanes_round_to_int(hn::Mul(z, hn::Set(F4(), 16777215.0f))); }
+  static HWY_INLINE VI load(const std::byte* row0, const std::byte* row1) {
+    return hn::And(load_words(row0, row1), hn::Set(I4(), 0xffffff));
+  }
+  static HWY_INLINE void store(VI v, std::byte* row0, std::byte* row1) { store_words(v, row0, row1); }
+};
+
+struct D32 {
+  static constexpr int kBytes = 4;
+  static HWY_INLINE VI encode(VF z) { return lanes_cast<std::int32_t>(z); }
+  static HWY_INLINE VI load(const std::byte* row0, const std::byte* row1) { return load_words(row0, row1); }
+  static HWY_INLINE void store(VI v, std::byte* row0, std::byte* row1) { store_words(v, row0, row1); }
+};
+
+/// Unsigned 24-bit values compare as signed ones; floats compare true when unordered, but for NEVER.
+template <class Format>
+HWY_INLINE M4 compare(VkCompareOp op, VI value, VI stored) {
+  const I4 d;
+  if constexpr (std::is_same_v<Format, D32>) {
+    const VF a = lanes_cast<float>(value), b = lanes_cast<float>(stored);
+    const auto mask = [&](auto m) { return hn::RebindMask(d, m); };
+    switch (op) {
+      case VK_COMPARE_OP_NEVER: return hn::MaskFromVec(hn::Zero(d));
+      case VK_COMPARE_OP_LESS: return mask(hn::Not(hn::Ge(a, b)));
+      case VK_COMPARE_OP_EQUAL: return mask(hn::Not(hn::Or(hn::Lt(a, b), hn::Gt(a, b))));
+      case VK_COMPARE_OP_LESS_OR_EQUAL: return mask(hn::Not(hn::Gt(a, b)));
+      case VK_COMPARE_OP_GREATER: return mask(hn::Not(hn::Le(a, b)));
+      case VK_COMPARE_OP_NOT_EQUAL: return mask(hn::Ne(a, b));
+      case VK_COMPARE_OP_GREATER_OR_EQUAL: return mask(hn::Not(hn::Lt(a, b)));
+      default: return hn::Not(hn::MaskFromVec(hn::Zero(d)));
+    }
+  } else {
+    switch (op) {
+      case VK_COMPARE_OP_NEVER: return hn::MaskFromVec(hn::Zero(d));
+      case VK_COMPARE_OP_LESS: return hn::Lt(value, stored);
+      case VK_COMPARE_OP_EQUAL: return hn::Eq(value, stored);
+      case VK_COMPARE_OP_LESS_OR_EQUAL: return hn::Le(value, stored);
+      case VK_COMPARE_OP_GREATER: return hn::Gt(value, stored);
+      case VK_COMPARE_OP_NOT_EQUAL: return hn::Ne(value, stored);
+      case VK_COMPARE_OP_GREATER_OR_EQUAL: return hn::Ge(value, stored);
+      default: return hn::Not(hn::MaskFromVec(hn::Zero(d)));
+    }
+  }
+}
+
+/// A quad that sticks out of the image is worked on in a copy of its pixels.
+struct EdgeQuad {
+  std::byte copy[2][8];
+  std::byte *row0, *row1;
+  std::size_t bytes0, bytes1;
+};
+HWY_INLINE EdgeQuad open_edge_quad(const DepthPass& pass, int x, int y, std::byte* row, int texel_bytes) {
+  EdgeQuad quad{};
+  quad.row0 = row;
+  quad.row1 = row + pass.pitch;
+  quad.bytes0 = static_cast<std::size_t>(texel_bytes) * (x + 1 < pass.width ? 2u : 1u);
+  quad.bytes1 = y + 1 < pass.height ? quad.bytes0 : 0;
+  std::memcpy(quad.copy[0], quad.row0, quad.bytes0);
+  if (quad.bytes1) std::memcpy(quad.copy[1], quad.row1, quad.bytes1);
+  return quad;
+}
+HWY_INLINE void close_edge_quad(const EdgeQuad& quad) {
+  std::memcpy(quad.row0, quad.copy[0], quad.bytes0);
+  if (quad.bytes1) std::memcpy(quad.row1, quad.copy[1], quad.bytes1);
+}
+
+template <class Format>
+HWY_INLINE std::uint32_t test_quad(const DepthPass& pass, const float* z, std::uint32_t nibble, std::byte* row0,
+                                   std::byte* row1) {
+  const I4 d;
+  const VI value = Format::encode(hn::LoadU(F4(), z));
+  const VI stored = Format::load(row0, row1);
+  const M4 covered = lanes_mask_from_bits(d, nibble);
+  const M4 passed = hn::And(covered, compare<Format>(pass.compare, value, stored));
+  const auto bits = static_cast<std::uint32_t>(lanes_mask_bits(d, passed)) & 15u;
+  if (pass.write && bits != 0) Format::store(hn::IfThenElse(passed, value, stored), row0, row1);
+  return bits;
+}
+
+template <class Format>
+base::LaneMask test_quads(const DepthPass& pass, const QuadPositions& quads, const float* z, base::LaneMask mask) {
+  base::LaneMask passed = 0;
+  for (base::LaneMask left = mask; left != 0;) {
+    const auto q = static_cast<std::uint32_t>(std::countr_zero(left)) / 4;
+    const auto nibble = static_cast<std::uint32_t>(mask >> (4 * q)) & 15u;
+    left &= ~(base::LaneMask{15} << (4 * q));
+    const int x = quads.x[q], y = quads.y[q];
+    std::byte* row = pass.base + static_cast<std::uint64_t>(y) * pass.pitch + std::uint64_t{quads.x[q]} * Format::kBytes;
+    std::uint32_t bits;
+    if (x + 1 < pass.width && y + 1 < pass.height) {
+      bits = test_quad<Format>(pass, z + 4 * q, nibble, row, row + pass.pitch);
+    } else {
+      EdgeQuad edge = open_edge_quad(pass, x, y, row, Format::kBytes);
+      bits = test_quad<Format>(pass, z + 4 * q, nibble, edge.copy[0], edge.copy[1]);
+      close_edge_quad(edge);
+    }
+    passed |= base::LaneMask{bits} << (4 * q);
+  }
+  return passed;
+}
+
+base::LaneMask test_depth(DepthFormat format, const DepthPass& pass, const QuadPositions& quads, const float* z,
+                          base::LaneMask mask) {
+  switch (format) {
+    case DepthFormat::kD16: return test_quads<D16>(pass, quads, z, mask);
+    case DepthFormat::kD24: return test_quads<D24>(pass, quads, z, mask);
+    case DepthFormat::kD32: return test_quads<D32>(pass, quads, z, mask);
+    default: return mask;
+  }
+}
+
+void clamp_to_range(const DepthRange* range, std::uint32_t quads, float* z) {
+  const F4 d;
+  for (std::uint32_t q = 0; q < quads; ++q) {
+    VF v = hn::Load(d, z + 4 * q);
+    v = lanes_max_second(lanes_min_second(v, hn::Set(d, 1.0f)), hn::Zero(d));
+    if (range) v = lanes_max_second(lanes_min_second(v, hn::Set(d, range[q].high)), hn::Set(d, range[q].low));
+    hn::Store(v, d, z + 4 * q);
+  }
+}
+
+}  // namespace vitrine::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vitrine::raster {
+namespace {
+
+HWY_EXPORT(test_depth);
+HWY_EXPORT(clamp_to_range);
+
+template <class T>
+bool compare_values(VkCompareOp op, T value, T stored) {
+  switch (op) {
+    case VK_COMPARE_OP_NEVER: return false;
+    case VK_COMPARE_OP_LESS: return value < stored;
+    case VK_COMPARE_OP_EQUAL: return value == stored;
+    case VK_COMPARE_OP_LESS_OR_EQUAL: return value <= stored;
+    case VK_COMPARE_OP_GREATER: return value > stored;
+    case VK_COMPARE_OP_NOT_EQUAL: return value != stored;
+    case VK_COMPARE_OP_GREATER_OR_EQUAL: return value >= stored;
+    default: return true;
+  }
+}
+
+std::uint8_t apply(VkStencilOp op, std::uint8_t stored, std::uint8_t reference) {
+  switch (op) {
+    case VK_STENCIL_OP_ZERO: return 0;
+    case VK_STENCIL_OP_REPLACE: return reference;
+    case VK_STENCIL_OP_INCREMENT_AND_CLAMP: return stored == 255 ? stored : static_cast<std::uint8_t>(stored + 1);
+    case VK_STENCIL_OP_DECREMENT_AND_CLAMP: return stored == 0 ? stored : static_cast<std::uint8_t>(stored - 1);
+    case VK_STENCIL_OP_INVERT: return static_cast<std::uint8_t>(~stored);
+    case VK_STENCIL_OP_INCREMENT_AND_WRAP: return static_cast<std::uint8_t>(stored + 1);
+    case VK_STENCIL_OP_DECREMENT_AND_WRAP: return static_cast<std::uint8_t>(stored - 1);
+    default: return stored;
+  }
+}
+
+/// 5.5. Lanes of one quad; the depth test between stencil test and stencil write is done by the caller's function.
+class StencilQuad {
+ public:
+  StencilQuad(const StencilFace& face, std::byte* const texel[4], const std::uint32_t* reference)
+      : face_(face), texel_(texel), reference_(reference) {}
+
+  bool test(std::uint32_t lane) const {
+    return compare_values<std::uint32_t>(face_.compare, reference(lane) & face_.compare_mask,
+                                         stored(lane) & face_.compare_mask);
+  }
+  void write(std::uint32_t lane, VkStencilOp op) const {
+    const std::uint8_t old = stored(lane), wanted = apply(op, old, reference(lane));
+    const std::uint8_t value = static_cast<std::uint8_t>((wanted & face_.write_mask) | (old & ~face_.write_mask));
+    std::memcpy(texel_[lane], &value, 1);
+  }
+
+ private:
+  std::uint8_t reference(std::uint32_t lane) const {
+    return reference_ ? static_cast<std::uint8_t>(reference_[lane]) : face_.reference;
+  }
+  std::uint8_t stored(std::uint32_t lane) const { return static_cast<std::uint8_t>(*texel_[lane]); }
+
+  const StencilFace& face_;
+  std::byte* const* texel_;
+  const std::uint32_t* reference_;
+};
+
+base::LaneMask depth_only(const PipelinePlan& plan, const DepthStencilTarget& target, const QuadPositions& quads,
+                          const float* z, base::LaneMask mask, bool write) {
+  const DepthPass pass{target.depth,  target.depth_pitch,         target.width,
+                       target.height, plan.state->depth_compare, write && plan.depth_write};
+  return HWY_DYNAMIC_DISPATCH(test_depth)(target.format, pass, quads, z, mask);
+}
+
+/// One quad with stencil: stencil test, depth test of what passed, stencil write of all.
+std::uint32_t stencil_quad(const PipelinePlan& plan, const DepthStencilTarget& target, const QuadPositions& quads,
+                           std::uint32_t q, bool front, const float* z, const std::uint32_t* reference,
+                           std::uint32_t nibble, bool write) {
+  const StencilFace& face = front ? plan.state->front : plan.state->back;
+  std::byte* texel[4];
+  for (std::uint32_t lane = 0; lane < 4; ++lane)
+    texel[lane] = target.stencil + (quads.y[q] + (lane >> 1)) * target.stencil_pitch + quads.x[q] + (lane & 1);
+  const StencilQuad stencil(face, texel, reference ? reference + 4 * q : nullptr);
+  std::uint32_t passed = 0;
+  for (std::uint32_t lane = 0; lane < 4; ++lane)
+    if ((nibble >> lane & 1) != 0 && stencil.test(lane)) passed |= 1u << lane;
+  std::uint32_t depth_passed = passed;
+  if (plan.depth_test && passed)
+    depth_passed = static_cast<std::uint32_t>(
+        depth_only(plan, target, quads, z, base::LaneMask{passed} << (4 * q), write) >> (4 * q));
+  for (std::uint32_t lane = 0; lane < 4; ++lane) {
+    if ((nibble >> lane & 1) == 0) continue;
+    const bool stencil_ok = (passed >> lane & 1) != 0, depth_ok = (depth_passed >> lane & 1) != 0;
+    if (write) stencil.write(lane, !stencil_ok ? face.fail : depth_ok ? face.pass : face.depth_fail);
+  }
+  return depth_passed;
+}
+
+}  // namespace
+
+DepthFormat depth_format(const texel::ImageView& view) {
+  if (!view.format) return DepthFormat::kNone;
+  switch (view.format->format) {
+    case VK_FORMAT_D16_UNORM:
+    case VK_FORMAT_D16_UNORM_S8_UINT: return DepthFormat::kD16;
+    case VK_FORMAT_X8_D24_UNORM_PACK32:
+    case VK_FORMAT_D24_UNORM_S8_UINT: return DepthFormat::kD24;
+    case VK_FORMAT_D32_SFLOAT:
+    case VK_FORMAT_D32_SFLOAT_S8_UINT: return DepthFormat::kD32;
+    default: return DepthFormat::kNone;
+  }
+}
+
+void clamp_depth(const DepthRange* clamp, std::uint32_t quads, float* z) {
+  HWY_DYNAMIC_DISPATCH(clamp_to_range)(clamp, quads, z);
+}
+
+base::LaneMask test_depth_stencil(const PipelinePlan& plan, const DepthStencilTarget& target,
+                                  const QuadPositions& quads, std::uint32_t front, const float* z,
+                                  const std::uint32_t* reference, base::LaneMask mask, bool write) {
+  if (!plan.stencil_test) return depth_only(plan, target, quads, z, mask, write);
+  base::LaneMask result = 0;
+  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
+    const auto nibble = static_cast<std::uint32_t>(mask >> (4 * q)) & 15u;
+    if (nibble == 0) continue;
+    const std::uint32_t bits =
+        stencil_quad(plan, target, quads, q, (front >> q & 1) != 0, z, reference, nibble, write);
+    result |= base::LaneMask{bits} << (4 * q);
+  }
+  return result;
+}
+
+}  // namespace vitrine::raster
+#endif

@@ -1,0 +1,316 @@
+// One packed wave: interpolation, fragment shader, coverage changes, late tests, colour (Vulkan 1.3.239, Fragment
+// Operations). lavapipe-rasterization.md 4.2, 5.3, 8.
+#include <algorithm>
+#include <bit>
+
+#include "base/numeric.h"
+#include "raster/tile.h"
+
+namespace vitrine::raster {
+namespace {
+
+using base::LaneMask;
+using base::WaveRegister;
+
+float sample_x(std::uint32_t s) { return static_cast<float>(kSampleX[s]) / 256; }
+float sample_y(std::uint32_t s) { return static_cast<float>(kSampleY[s]) / 256; }
+
+/// What happens once per run of the shader: for all samples together, or for one (sample shading).
+struct ShadeRun {
+  TileWorker& worker;
+  const PipelinePlan& plan;
+  WavePlanes planes;
+  LaneMask used;             ///< lanes of packed quads
+  LaneMask pixels;           ///< lanes with a covered sample of this run
+  std::uint32_t first_sample, end_sample;
+  LaneMask kept[kMaxSamples];  ///< result: coverage after the shader
+
+  bool single() const { return plan.sample_shading; }
+};
+
+void splat(WaveRegister& out, std::uint32_t value) { std::fill_n(out.lane, base::kWaveWidth, value); }
+
+float* as_floats(WaveRegister& reg) { return reinterpret_cast<float*>(reg.lane); }
+
+/// Pixel positions of all lanes, as floats, plus (dx, dy).
+void set_points(const PackedWave& wave, float dx, float dy, WavePoints& out) {
+  for (std::uint32_t q = 0; q < wave.quads; ++q) {
+    const auto x = static_cast<float>(wave.position.x[q]), y = static_cast<float>(wave.position.y[q]);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      out.x[4 * q + i] = (x + static_cast<float>(i & 1)) + dx;
+      out.y[4 * q + i] = (y + static_cast<float>(i >> 1)) + dy;
+    }
+  }
+}
+
+/// 8.4: the centre where all samples are covered or none is, else the first covered sample.
+void set_centroids(const ShadeRun& run, WavePoints& out) {
+  const PackedWave& wave = run.worker.wave;
+  out = run.worker.center;
+  base::for_each_lane(run.used, [&](std::size_t lane) {
+    std::uint32_t covered = 0;
+    for (std::uint32_t s = 0; s < run.plan.samples; ++s)
+      covered |= static_cast<std::uint32_t>(wave.coverage[s] >> lane & 1) << s;
+    if (covered == 0 || covered == (1u << run.plan.samples) - 1) return;
+    const auto s = static_cast<std::uint32_t>(std::countr_zero(covered));
+    out.x[lane] = (out.x[lane] - 0.5f) + sample_x(s);
+    out.y[lane] = (out.y[lane] - 0.5f) + sample_y(s);
+  });
+}
+
+/// Points of a location other than the centre, in worker.place.
+const WavePoints& points_of(ShadeRun& run, spirv::SampleLocation location, spirv::SampleLocation& prepared) {
+  TileWorker& worker = run.worker;
+  if (location == spirv::SampleLocation::kCenter || run.plan.raster_samples == 1) return worker.center;
+  if (location == spirv::SampleLocation::kSample && !run.single()) return worker.center;
+  if (prepared != location) {
+    if (location == spirv::SampleLocation::kCentroid) set_centroids(run, worker.place);
+    else set_points(worker.wave, sample_x(run.first_sample), sample_y(run.first_sample), worker.place);
+    prepared = location;
+  }
+  return worker.place;
+}
+
+void interpolate_varyings(ShadeRun& run) {
+  const PipelinePlan& plan = run.plan;
+  TileWorker& worker = run.worker;
+  auto prepared = spirv::SampleLocation::kCenter;
+  const std::uint32_t smooth = plan.perspective_count + plan.linear_count;
+  for (const auto wanted : {spirv::SampleLocation::kCenter, spirv::SampleLocation::kCentroid,
+                            spirv::SampleLocation::kSample}) {
+    for (std::uint32_t k = 0; k < smooth; ++k) {
+      const Varying& varying = plan.varying[k];
+      if (varying.location != wanted) continue;
+      const float* scale = k < plan.perspective_count ? worker.reciprocal_w : nullptr;
+      evaluate_plane(run.planes, kFirstVaryingPlane + k, points_of(run, wanted, prepared), scale,
+                     as_floats(worker.runner.input(varying.fragment_reg)));
+    }
+  }
+  const PackedWave& wave = worker.wave;
+  for (std::uint32_t k = smooth; k < plan.varying_count(); ++k) {
+    WaveRegister& out = worker.runner.input(plan.varying[k].fragment_reg);
+    for (std::uint32_t q = 0; q < wave.quads; ++q) {
+      const Primitive& p = *wave.primitive[wave.slot[q]];
+      std::fill_n(out.lane + 4 * q, 4, base::bits_of(p.v[p.provoking][4 + k]));
+    }
+  }
+}
+
+void add_depth_offset(const PackedWave& wave, float* z) {
+  for (std::uint32_t q = 0; q < wave.quads; ++q) {
+    const float offset = wave.primitive[wave.slot[q]]->depth_offset;
+    for (std::uint32_t i = 0; i < 4; ++i) z[4 * q + i] += offset;
+  }
+}
+
+void set_frag_coord(ShadeRun& run) {
+  TileWorker& worker = run.worker;
+  const auto& reg = run.plan.frag.frag_coord;
+  const bool sampled = run.single();
+  const float dx = sampled ? sample_x(run.first_sample) : 0.5f, dy = sampled ? sample_y(run.first_sample) : 0.5f;
+  WavePoints points;
+  if (reg[0] != kNoReg || reg[1] != kNoReg) {
+    set_points(worker.wave, dx, dy, points);
+    if (reg[0] != kNoReg) std::copy_n(points.x, base::kWaveWidth, as_floats(worker.runner.input(reg[0])));
+    if (reg[1] != kNoReg) std::copy_n(points.y, base::kWaveWidth, as_floats(worker.runner.input(reg[1])));
+  }
+  if (reg[2] != kNoReg) {
+    float* z = as_floats(worker.runner.input(reg[2]));
+    if (sampled) set_points(worker.wave, dx, dy, points);
+    evaluate_plane(run.planes, kDepthPlane, sampled ? points : worker.center, nullptr, z);
+    add_depth_offset(worker.wave, z);
+  }
+  if (reg[3] != kNoReg)
+    evaluate_plane(run.planes, kReciprocalWPlane, worker.center, nullptr, as_floats(worker.runner.input(reg[3])));
+}
+
+/// One word per quad, from its primitive.
+template <class F>
+void per_quad(ShadeRun& run, std::uint32_t reg, F&& value) {
+  if (reg == kNoReg) return;
+  WaveRegister& out = run.worker.runner.input(reg);
+  const PackedWave& wave = run.worker.wave;
+  for (std::uint32_t q = 0; q < wave.quads; ++q)
+    std::fill_n(out.lane + 4 * q, 4, value(*wave.primitive[wave.slot[q]]));
+}
+
+void set_sample_inputs(ShadeRun& run) {
+  const FragmentRegisters& frag = run.plan.frag;
+  StageRunner& runner = run.worker.runner;
+  const bool located = run.plan.raster_samples > 1 && run.single();
+  if (frag.sample_id != kNoReg) splat(runner.input(frag.sample_id), located ? run.first_sample : 0);
+  if (frag.sample_position[0] != kNoReg)
+    splat(runner.input(frag.sample_position[0]), base::bits_of(located ? sample_x(run.first_sample) : 0.5f));
+  if (frag.sample_position[1] != kNoReg)
+    splat(runner.input(frag.sample_position[1]), base::bits_of(located ? sample_y(run.first_sample) : 0.5f));
+  if (frag.sample_mask_in == kNoReg) return;
+  WaveRegister& out = runner.input(frag.sample_mask_in);
+  for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
+    std::uint32_t mask = 0;
+    for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
+      mask |= static_cast<std::uint32_t>(run.worker.wave.coverage[s] >> lane & 1) << s;
+    out.lane[lane] = run.plan.samples == 1 ? 1 : mask;
+  }
+}
+
+void set_built_ins(ShadeRun& run) {
+  const FragmentRegisters& frag = run.plan.frag;
+  StageRunner& runner = run.worker.runner;
+  set_frag_coord(run);
+  const std::uint32_t point_plane = kFirstVaryingPlane + run.plan.perspective_count + run.plan.linear_count;
+  for (std::uint32_t c = 0; c < 2; ++c)
+    if (frag.point_coord[c] != kNoReg)
+      evaluate_plane(run.planes, point_plane + c, run.worker.center, run.worker.reciprocal_w,
+                     as_floats(runner.input(frag.point_coord[c])));
+  per_quad(run, frag.front_facing, [](const Primitive& p) { return p.front ? ~0u : 0u; });
+  per_quad(run, frag.primitive_id, [](const Primitive& p) { return p.id; });
+  if (frag.view_index != kNoReg) splat(runner.input(frag.view_index), run.worker.target.layer);
+  if (frag.helper != kNoReg) {
+    WaveRegister& out = runner.input(frag.helper);
+    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
+      out.lane[lane] = (run.pixels >> lane & 1) != 0 ? 0u : ~0u;
+  }
+  set_sample_inputs(run);
+}
+
+/// 8.6, and gl_SampleMask.
+void change_coverage(ShadeRun& run) {
+  const PipelinePlan& plan = run.plan;
+  StageRunner& runner = run.worker.runner;
+  if (plan.frag.sample_mask != kNoReg) {
+    const std::uint32_t* mask = runner.output(plan.frag.sample_mask).lane;
+    for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
+      for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
+        if ((mask[lane] >> s & 1) == 0) run.kept[s] &= ~(LaneMask{1} << lane);
+  }
+  if (!plan.state->alpha_to_coverage || plan.frag.color[0][3] == kNoReg) return;
+  const std::uint32_t* alpha = runner.output(plan.frag.color[0][3]).lane;
+  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
+    const float limit = plan.samples == 1 ? 0.5f : static_cast<float>(s) * 0.25f;
+    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
+      if (!(base::float_of(alpha[lane]) > limit)) run.kept[s] &= ~(LaneMask{1} << lane);
+  }
+}
+
+std::uint32_t facing_bits(const PackedWave& wave) {
+  std::uint32_t bits = 0;
+  for (std::uint32_t q = 0; q < wave.quads; ++q) bits |= (wave.primitive[wave.slot[q]]->front ? 1u : 0u) << q;
+  return bits;
+}
+
+/// z of one sample of all lanes into worker.depth, clamped (5.3).
+void late_depth(ShadeRun& run, std::uint32_t sample) {
+  TileWorker& worker = run.worker;
+  const PipelinePlan& plan = run.plan;
+  if (plan.frag.depth != kNoReg) {
+    const WaveRegister& written = worker.runner.output(plan.frag.depth);
+    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) worker.depth[lane] = base::float_of(written.lane[lane]);
+  } else {
+    const bool located = plan.raster_samples > 1;
+    WavePoints points;
+    if (located) set_points(worker.wave, sample_x(sample), sample_y(sample), points);
+    evaluate_plane(run.planes, kDepthPlane, located ? points : worker.center, nullptr, worker.depth);
+    add_depth_offset(worker.wave, worker.depth);
+  }
+  DepthRange range[base::kQuadsPerWave];
+  if (plan.state->depth_clamp)
+    for (std::uint32_t q = 0; q < worker.wave.quads; ++q) {
+      const ViewportTransform& viewport = plan.viewport[worker.wave.primitive[worker.wave.slot[q]]->viewport];
+      range[q] = {viewport.z_min, viewport.z_max};
+    }
+  clamp_depth(plan.state->depth_clamp ? range : nullptr, worker.wave.quads, worker.depth);
+}
+
+void test_late(ShadeRun& run) {
+  TileWorker& worker = run.worker;
+  const PipelinePlan& plan = run.plan;
+  const std::uint32_t front = facing_bits(worker.wave);
+  const std::uint32_t* reference =
+      plan.frag.stencil != kNoReg ? worker.runner.output(plan.frag.stencil).lane : nullptr;
+  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
+    if (!run.kept[s]) continue;
+    if (plan.depth_test) late_depth(run, s);
+    run.kept[s] = test_depth_stencil(plan, worker.target.depth_stencil[s], worker.wave.position, front, worker.depth,
+                                     reference, run.kept[s], true);
+  }
+}
+
+/// Four output registers next to each other; components that are not written are 0.
+void collect_color(const ShadeRun& run, const std::array<std::uint32_t, 4>& regs, WaveRegister out[4]) {
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    if (regs[c] == kNoReg) splat(out[c], 0);
+    else out[c] = run.worker.runner.output(regs[c]);
+  }
+  if (run.plan.state->alpha_to_one) splat(out[3], base::bits_of(1.0f));
+}
+
+void write_colors(ShadeRun& run) {
+  TileWorker& worker = run.worker;
+  const PipelinePlan& plan = run.plan;
+  LaneMask any = 0;
+  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) any |= run.kept[s];
+  if (!any) return;
+  const bool dual = plan.frag.color_second != std::array<std::uint32_t, 4>{kNoReg, kNoReg, kNoReg, kNoReg};
+  for (std::uint32_t i = 0; i < plan.color_count; ++i) {
+    const texel::ImageView& view = worker.pass->color[i];
+    if (!plan.writer[i].function || worker.target.layer >= view.layer_count) continue;
+    collect_color(run, plan.frag.color[i], worker.color);
+    if (i == 0 && dual) collect_color(run, plan.frag.color_second, worker.second);
+    for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
+      write_color(plan.writer[i], {&view, worker.target.layer, s, &worker.wave.position, run.kept[s], worker.color,
+                                   i == 0 && dual ? worker.second : nullptr});
+  }
+}
+
+void shade(ShadeRun& run) {
+  TileWorker& worker = run.worker;
+  const PipelinePlan& plan = run.plan;
+  run.pixels = 0;
+  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
+    run.kept[s] = worker.wave.coverage[s];
+    run.pixels |= run.kept[s];
+  }
+  if (!run.pixels) return;
+  interpolate_varyings(run);
+  set_built_ins(run);
+  const LaneMask active = plan.fragment->needs_helpers ? run.used : run.pixels;
+  const LaneMask alive = worker.runner.run(active, active & ~run.pixels);
+  worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(run.pixels));
+  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) run.kept[s] &= alive;
+  if (plan.may_kill) change_coverage(run);
+  if (plan.depth_order == TestOrder::kLate) test_late(run);
+  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
+    worker.samples_passed += static_cast<std::uint64_t>(std::popcount(run.kept[s]));
+  write_colors(run);
+}
+
+}  // namespace
+
+void shade_wave(TileWorker& worker) {
+  PackedWave& wave = worker.wave;
+  const PipelinePlan& plan = *worker.draw->plan;
+  ShadeRun run{worker, plan, {}, base::first_lanes(4 * wave.quads), 0, 0, plan.samples, {}};
+  for (std::uint32_t slot = 0; slot < wave.slots; ++slot) compute_planes(plan, *wave.primitive[slot], worker.planes[slot]);
+  run.planes.sets = worker.planes;
+  run.planes.slots = wave.slots;
+  run.planes.quads = wave.quads;
+  std::copy_n(wave.slot, wave.quads, run.planes.slot);
+  const float center = plan.raster_samples > 1 ? 0.5f : 0.0f;
+  set_points(wave, center, center, worker.center);
+  if (plan.perspective_count || plan.frag.point_coord[0] != kNoReg || plan.frag.point_coord[1] != kNoReg) {
+    evaluate_plane(run.planes, kReciprocalWPlane, worker.center, nullptr, worker.reciprocal_w);
+    reciprocal(worker.reciprocal_w, worker.reciprocal_w);
+  }
+  if (!plan.sample_shading) {
+    shade(run);
+  } else {
+    for (std::uint32_t s = 0; s < plan.samples; ++s) {
+      run.first_sample = s;
+      run.end_sample = s + 1;
+      shade(run);
+    }
+  }
+  wave.quads = wave.slots = 0;
+}
+
+}  // namespace vitrine::raster

@@ -1,0 +1,196 @@
+// The front end's vertex half: index de-duplication, vertex waves, transform, records.
+#include "raster/front.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+
+#include "base/float_mode.h"
+#include "raster/assembly.h"
+
+namespace vitrine::raster {
+namespace {
+
+constexpr std::uint32_t kHashSize = 4096;
+constexpr std::uint64_t kEmptyKey = ~std::uint64_t{0};
+
+void resize_scratch(FrontScratch& s, std::uint32_t positions) {
+  if (s.slot.size() >= positions) return;
+  const std::size_t vertices = (positions + base::kWaveWidth - 1) / base::kWaveWidth * base::kWaveWidth;
+  s.slot.resize(positions);
+  s.vertex.resize(vertices);
+  s.instance.resize(vertices);
+  s.clip.resize(vertices * 4);
+  s.clip_distance.resize(vertices * kMaxClipDistances);
+  s.cull_distance.resize(vertices * kMaxClipDistances);
+  s.point_size.resize(vertices);
+  s.layer.resize(vertices);
+  s.viewport_index.resize(vertices);
+  s.code.resize(vertices);
+  s.snapped.resize(vertices * 2);
+}
+
+/// The slot of (index, instance), a new one if it was not seen in this chunk. The table is at most half full: chunks
+/// that are larger skip it.
+std::uint32_t find_slot(FrontScratch& s, std::uint32_t index, std::uint32_t instance, std::uint32_t& count) {
+  const std::uint64_t key = std::uint64_t{instance} << 32 | index;
+  std::uint32_t at = (index * 0x9e3779b1u + instance * 0x85ebca6bu) >> 20;
+  for (;; at = (at + 1) & (kHashSize - 1)) {
+    if (s.hash_key[at] == key) return s.hash_slot[at];
+    if (s.hash_key[at] == kEmptyKey) break;
+  }
+  s.hash_key[at] = key;
+  s.hash_slot[at] = static_cast<std::uint16_t>(count);
+  s.vertex[count] = index;
+  s.instance[count] = instance;
+  return count++;
+}
+
+void add_position(const DrawCall& call, const Run& run, std::uint32_t position, bool dedupe, FrontScratch& s,
+                  std::uint32_t entry, std::uint32_t& count) {
+  std::uint32_t index;
+  if (call.index_data)
+    index = read_index(call, std::uint64_t{call.first} + run.start + position) +
+            static_cast<std::uint32_t>(call.vertex_offset);
+  else
+    index = call.first + run.start + position;
+  if (dedupe) {
+    s.slot[entry] = static_cast<std::uint16_t>(find_slot(s, index, run.instance, count));
+    return;
+  }
+  s.vertex[count] = index;
+  s.instance[count] = run.instance;
+  s.slot[entry] = static_cast<std::uint16_t>(count++);
+}
+
+/// Slots of all positions; returns the number of vertices to shade.
+std::uint32_t gather_vertices(const Chunk& chunk, FrontScratch& s) {
+  const DrawCall& call = chunk.draw->call;
+  const std::uint32_t positions = positions_of(chunk);
+  resize_scratch(s, positions);
+  const bool dedupe = call.index_data && positions <= kHashSize / 2;
+  if (dedupe) {
+    s.hash_key.assign(kHashSize, kEmptyKey);
+    s.hash_slot.resize(kHashSize);
+  }
+  const TopologyShape shape = topology_shape(chunk.draw->plan->state->topology);
+  std::uint32_t entry = 0, count = 0;
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
+    const RunSpan span = run_span(shape, chunk.runs[r]);
+    if (span.center) add_position(call, chunk.runs[r], 0, dedupe, s, entry++, count);
+    for (std::uint32_t p = span.low; p < span.high; ++p) add_position(call, chunk.runs[r], p, dedupe, s, entry++, count);
+  }
+  return count;
+}
+
+const float* as_floats(const base::WaveRegister& reg) { return reinterpret_cast<const float*>(reg.lane); }
+
+/// One output register into element `component` of an array of `stride` words per vertex; 0 where not written.
+template <class T>
+void scatter(StageRunner& runner, std::uint32_t reg, std::uint32_t lanes, T* out, std::uint32_t stride,
+             T missing = T{}) {
+  static_assert(sizeof(T) == 4);
+  if (reg == kNoReg) {
+    for (std::uint32_t i = 0; i < lanes; ++i) out[std::size_t{i} * stride] = missing;
+    return;
+  }
+  const std::uint32_t* lane = runner.output(reg).lane;
+  for (std::uint32_t i = 0; i < lanes; ++i) std::memcpy(&out[std::size_t{i} * stride], &lane[i], 4);
+}
+
+void scatter_distances(const PipelinePlan& plan, std::uint32_t base, std::uint32_t lanes, FrontScratch& s) {
+  const VertexOutputs& out = plan.out;
+  for (std::uint32_t d = 0; d < out.cull_count; ++d)
+    scatter(s.runner, out.cull_distance[d], lanes, s.cull_distance.data() + base * kMaxClipDistances + d,
+            kMaxClipDistances);
+  for (std::uint32_t d = 0; d < out.clip_count; ++d) {
+    float* distance = s.clip_distance.data() + base * kMaxClipDistances + d;
+    scatter(s.runner, out.clip_distance[d], lanes, distance, kMaxClipDistances);
+    for (std::uint32_t i = 0; i < lanes; ++i) {
+      const float value = distance[i * kMaxClipDistances];
+      if (!(value >= 0 && value <= 3.402823466e38f)) s.code[base + i] |= 1u << (kFirstUserPlane + d);
+    }
+  }
+}
+
+/// Outputs of the wave just shaded to records and scratch arrays of vertices [base, base + lanes).
+void store_wave(const PipelinePlan& plan, std::uint32_t base, std::uint32_t lanes, FrontScratch& s) {
+  static const base::WaveRegister zero{};
+  const VertexOutputs& out = plan.out;
+  const float* clip[4];
+  for (int c = 0; c < 4; ++c) clip[c] = as_floats(out.position[c] == kNoReg ? zero : s.runner.output(out.position[c]));
+  const State& state = *plan.state;
+  transform_wave(clip, {plan.viewport[0], plan.pixel_offset, state.depth_clip, state.negative_one_to_one},
+                 s.transformed);
+  const TransformedWave& t = s.transformed;
+  const std::uint32_t stride = plan.vertex_stride;
+  for (std::uint32_t i = 0; i < lanes; ++i) {
+    Vertex* record = s.records + std::size_t{base + i} * stride;
+    record[0] = t.x[i];
+    record[1] = t.y[i];
+    record[2] = t.z[i];
+    record[3] = t.w[i];
+    for (int c = 0; c < 4; ++c) s.clip[(base + i) * 4 + static_cast<std::uint32_t>(c)] = clip[c][i];
+    s.code[base + i] = t.code[i];
+    s.snapped[(base + i) * 2] = t.snapped_x[i];
+    s.snapped[(base + i) * 2 + 1] = t.snapped_y[i];
+  }
+  for (std::uint32_t k = 0; k < plan.varying_count(); ++k)
+    scatter(s.runner, plan.varying[k].vertex_reg, lanes, s.records + std::size_t{base} * stride + 4 + k, stride);
+  if (out.clip_count + out.cull_count) scatter_distances(plan, base, lanes, s);
+  if (plan.draws_points || state.polygon_mode == VK_POLYGON_MODE_POINT)
+    scatter(s.runner, out.point_size, lanes, s.point_size.data() + base, 1, 1.0f);
+  if (out.layer != kNoReg) scatter(s.runner, out.layer, lanes, s.layer.data() + base, 1);
+  if (out.viewport_index != kNoReg) scatter(s.runner, out.viewport_index, lanes, s.viewport_index.data() + base, 1);
+}
+
+void count_statistics(const DrawCall& call, std::uint32_t vertices, const Chunk& chunk) {
+  std::atomic<std::uint64_t>* statistics = call.queries.statistics;
+  if (!statistics) return;
+  std::uint64_t primitives = 0;
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) primitives += chunk.runs[r].end - chunk.runs[r].begin;
+  statistics[1].fetch_add(primitives, std::memory_order_relaxed);  // input assembly primitives
+  statistics[2].fetch_add(vertices, std::memory_order_relaxed);    // vertex shader invocations
+  statistics[5].fetch_add(primitives, std::memory_order_relaxed);  // clipping invocations
+}
+
+}  // namespace
+
+std::uint32_t positions_of(const Chunk& chunk) {
+  const TopologyShape shape = topology_shape(chunk.draw->plan->state->topology);
+  std::uint32_t count = 0;
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) count += run_span(shape, chunk.runs[r]).count();
+  return count;
+}
+
+void shade_chunk_vertices(const Chunk& chunk, Arena& arena, FrontScratch& s) {
+  const DrawRecord& draw = *chunk.draw;
+  const PipelinePlan& plan = *draw.plan;
+  const std::uint32_t count = gather_vertices(chunk, s);
+  s.records = arena.take<Vertex>(std::size_t{count} * plan.vertex_stride);
+  if (!(s.bound == draw.vertex)) s.runner.bind(draw.vertex);
+  s.bound = draw.vertex;
+  VertexLanes lanes;
+  for (std::uint32_t base = 0; base < count; base += base::kWaveWidth) {
+    lanes.count = std::min<std::uint32_t>(count - base, base::kWaveWidth);
+    std::copy_n(s.vertex.data() + base, lanes.count, lanes.vertex);
+    std::copy_n(s.instance.data() + base, lanes.count, lanes.instance);
+    fetch_vertices(draw, lanes, chunk.view, s.runner);
+    s.runner.run(base::first_lanes(lanes.count), 0);
+    store_wave(plan, base, lanes.count, s);
+  }
+  count_statistics(draw.call, count, chunk);
+}
+
+ChunkOutput process_chunk(const Chunk& chunk, const PassDesc& pass, const TileGrid& grid, Arena& arena,
+                          FrontScratch& scratch) {
+  const base::ScopedFloatMode mode(base::Denormals::kFlush);
+  scratch.primitives.clear();
+  shade_chunk_vertices(chunk, arena, scratch);
+  const State& state = *chunk.draw->plan->state;
+  if (state.rasterizer_discard) return {};
+  assemble_chunk(chunk, pass, arena, scratch);
+  return bin_chunk(*chunk.draw->plan, grid, arena, scratch);
+}
+
+}  // namespace vitrine::raster

@@ -1,0 +1,222 @@
+// The front end's primitive half: cull distances, clipping, culling, polygon modes, hand-over to setup
+// (lavapipe-rasterization.md 1.4 to 1.7, 2.2, 7.1, 10.2).
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "raster/assembly.h"
+#include "raster/front.h"
+
+namespace vitrine::raster {
+namespace {
+
+struct Assembler {
+  const Chunk& chunk;
+  const PassDesc& pass;
+  Arena& arena;
+  FrontScratch& scratch;
+  const PipelinePlan& plan;
+  SetupContext setup;
+  ViewportTransform viewport;
+};
+
+ClipVertex clip_vertex(const Assembler& a, std::uint32_t slot) {
+  ClipVertex v;
+  std::memcpy(v.clip, &a.scratch.clip[slot * 4], sizeof(v.clip));
+  std::memcpy(v.distance, &a.scratch.clip_distance[slot * kMaxClipDistances], sizeof(v.distance));
+  v.record = a.scratch.records + std::size_t{slot} * a.plan.vertex_stride;
+  v.code = a.scratch.code[slot];
+  return v;
+}
+
+/// 1.7: dropped if all corners are outside of one cull distance.
+bool culled_by_distance(const Assembler& a, const std::uint32_t* slot, std::uint32_t corners) {
+  for (std::uint32_t d = 0; d < a.plan.out.cull_count; ++d) {
+    bool all = true;
+    for (std::uint32_t c = 0; c < corners; ++c) {
+      const float value = a.scratch.cull_distance[slot[c] * kMaxClipDistances + d];
+      all &= !(value >= 0) || !std::isfinite(value);
+    }
+    if (all) return true;
+  }
+  return false;
+}
+
+/// 3.4: layer and viewport from the provoking vertex.
+void choose_layer_and_viewport(Assembler& a, std::uint32_t provoking_slot) {
+  a.setup.layer = static_cast<std::uint16_t>(a.chunk.view);
+  if (a.plan.out.layer != kNoReg) {
+    const std::uint32_t layer = a.scratch.layer[provoking_slot] + a.chunk.view;
+    a.setup.layer = static_cast<std::uint16_t>(std::min(layer, std::max<std::uint32_t>(a.pass.layers, 1) - 1));
+  }
+  if (!a.plan.per_vertex_viewport) return;
+  const std::uint32_t index = a.scratch.viewport_index[provoking_slot];
+  a.setup.viewport = index < kMaxViewports ? static_cast<std::uint8_t>(index) : std::uint8_t{0};
+  a.viewport = a.plan.viewport[a.setup.viewport];
+}
+
+/// A record transformed by the primitive's own viewport (1.2 form B), when the viewport is chosen per primitive.
+const Vertex* window_record(const Assembler& a, const ClipVertex& v) {
+  if (!a.plan.per_vertex_viewport || v.code != 0) return v.record;
+  Vertex* copy = a.arena.take<Vertex>(a.plan.vertex_stride);
+  std::memcpy(copy, v.record, a.plan.vertex_stride * sizeof(Vertex));
+  transform_vertex(v.clip, a.viewport, copy);
+  return copy;
+}
+
+SetupVertex setup_vertex(const Assembler& a, const Vertex* record) {
+  return {record, snap_coordinate(record[0], a.plan.pixel_offset), snap_coordinate(record[1], a.plan.pixel_offset)};
+}
+
+Vertex* biased_copy(const Assembler& a, const Vertex* record, float offset) {
+  Vertex* copy = a.arena.take<Vertex>(a.plan.vertex_stride);
+  std::memcpy(copy, record, a.plan.vertex_stride * sizeof(Vertex));
+  const float z = copy[2] + offset;
+  copy[2] = z < 0 ? 0 : z > 1 ? 1 : z;
+  return copy;
+}
+
+/// 10.2: the outline or the corners of one triangle after clipping. edge[i]: of the edge that starts at corner i.
+void emit_unfilled(Assembler& a, const Vertex* const in[3], const bool edge[3], float determinant) {
+  const State& state = *a.plan.state;
+  const Vertex* v[3] = {in[0], in[1], in[2]};
+  if (a.plan.depth_bias) {
+    const float offset = vertex_depth_bias(a.plan, a.pass, v[0], v[1], v[2]);
+    for (const Vertex*& corner : v) corner = biased_copy(a, corner, offset);
+  }
+  if (a.plan.flat_count) {
+    const std::uint32_t first = 4 + a.plan.perspective_count + a.plan.linear_count;
+    const Vertex* source = v[state.provoking_vertex_last ? 2 : 0];
+    for (const Vertex*& corner : v) {
+      if (corner == source) continue;
+      Vertex* copy = a.arena.take<Vertex>(a.plan.vertex_stride);
+      std::memcpy(copy, corner, a.plan.vertex_stride * sizeof(Vertex));
+      std::memcpy(copy + first, source + first, a.plan.flat_count * sizeof(Vertex));
+      corner = copy;
+    }
+  }
+  const bool ccw = state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE;
+  const bool front = ccw ? determinant < 0 : determinant > 0;
+  if (state.polygon_mode == VK_POLYGON_MODE_POINT) {
+    for (int i = 0; i < 3; ++i)
+      if (edge[i]) setup_point(a.setup, v[i], front);
+    return;
+  }
+  if (edge[2]) setup_line(a.setup, v[2], v[0], front);
+  if (edge[0]) setup_line(a.setup, v[0], v[1], front);
+  if (edge[1]) setup_line(a.setup, v[1], v[2], front);
+}
+
+/// One triangle that went through the clipper or needs the slow path anyway.
+void emit_slow(Assembler& a, const Vertex* const v[3], const bool edge[3]) {
+  const float determinant = window_determinant(v[0], v[1], v[2]);
+  if (culled_by_determinant(*a.plan.state, determinant)) return;
+  if (a.plan.bias_in_vertices) {
+    emit_unfilled(a, v, edge, determinant);
+    return;
+  }
+  setup_triangle(a.setup, setup_vertex(a, v[0]), setup_vertex(a, v[1]), setup_vertex(a, v[2]));
+}
+
+void emit_clipped(Assembler& a, std::uint32_t provoking, ClipPolygon& polygon) {
+  const ClipContext context{&a.plan, &a.viewport, &a.arena, a.plan.state->polygon_mode == VK_POLYGON_MODE_POINT};
+  if (!clip_triangle(context, provoking, polygon)) return;
+  const Vertex* record[kMaxPolygon];
+  for (std::uint32_t i = 0; i < polygon.count; ++i) record[i] = window_record(a, polygon.corner[i]);
+  const bool last_mode = a.plan.state->provoking_vertex_last;
+  for (std::uint32_t i = 2; i < polygon.count; ++i) {
+    // Fan (p0, p[i-1], p[i]); edges inside the polygon are not part of the outline.
+    const bool from_p0 = i == 2 && polygon.corner[0].edge;
+    const bool between = polygon.corner[i - 1].edge;
+    const bool to_p0 = i == polygon.count - 1 && polygon.corner[i].edge;
+    if (last_mode) {
+      const Vertex* v[3] = {record[i - 1], record[i], record[0]};
+      const bool edge[3] = {between, to_p0, from_p0};
+      emit_slow(a, v, edge);
+    } else {
+      const Vertex* v[3] = {record[0], record[i - 1], record[i]};
+      const bool edge[3] = {from_p0, between, to_p0};
+      emit_slow(a, v, edge);
+    }
+  }
+}
+
+void assemble_triangle(Assembler& a, const std::uint32_t slot[3]) {
+  const FrontScratch& s = a.scratch;
+  const ClipCode c0 = s.code[slot[0]], c1 = s.code[slot[1]], c2 = s.code[slot[2]];
+  if ((c0 & c1 & c2) != 0) return;
+  if (a.plan.out.cull_count && culled_by_distance(a, slot, 3)) return;
+  const std::uint32_t provoking = a.plan.state->provoking_vertex_last ? 2 : 0;
+  choose_layer_and_viewport(a, slot[provoking]);
+  if (a.plan.state->polygon_mode == VK_POLYGON_MODE_POINT && a.plan.out.point_size != kNoReg)
+    a.setup.point_size = s.point_size[slot[0]];
+  const bool simple = (c0 | c1 | c2) == 0 && !a.plan.per_vertex_viewport && !a.plan.bias_in_vertices &&
+                      a.plan.out.cull_count == 0;
+  if (simple) {
+    const auto corner = [&](std::uint32_t i) {
+      return SetupVertex{s.records + std::size_t{i} * a.plan.vertex_stride, s.snapped[i * 2], s.snapped[i * 2 + 1]};
+    };
+    setup_triangle(a.setup, corner(slot[0]), corner(slot[1]), corner(slot[2]));
+    return;
+  }
+  ClipPolygon polygon;
+  polygon.count = 3;
+  for (int i = 0; i < 3; ++i) polygon.corner[i] = clip_vertex(a, slot[i]);
+  emit_clipped(a, provoking, polygon);
+}
+
+void assemble_line(Assembler& a, const std::uint32_t slot[2]) {
+  const ClipCode c0 = a.scratch.code[slot[0]], c1 = a.scratch.code[slot[1]];
+  if ((c0 & c1) != 0) return;
+  if (a.plan.out.cull_count && culled_by_distance(a, slot, 2)) return;
+  const std::uint32_t provoking = a.plan.state->provoking_vertex_last ? 1 : 0;
+  choose_layer_and_viewport(a, slot[provoking]);
+  ClipVertex line[2] = {clip_vertex(a, slot[0]), clip_vertex(a, slot[1])};
+  const ClipContext context{&a.plan, &a.viewport, &a.arena, false};
+  if ((c0 | c1) != 0 && !clip_line(context, provoking, line)) return;
+  setup_line(a.setup, window_record(a, line[0]), window_record(a, line[1]), true);
+}
+
+/// 7.1: a point is dropped by depth and user planes; by x and y only where its position means nothing.
+void assemble_point(Assembler& a, std::uint32_t slot) {
+  const ClipCode code = a.scratch.code[slot];
+  if ((code & ~kClipXY) != 0) return;
+  const ClipVertex v = clip_vertex(a, slot);
+  if (code != 0) {
+    if (a.plan.per_vertex_viewport || !(v.clip[3] > 0)) return;
+    if (!std::isfinite(v.clip[0]) || !std::isfinite(v.clip[1])) return;
+  }
+  if (a.plan.out.cull_count && culled_by_distance(a, &slot, 1)) return;
+  choose_layer_and_viewport(a, slot);
+  a.setup.point_size = a.scratch.point_size[slot];
+  setup_point(a.setup, window_record(a, v), true);
+}
+
+}  // namespace
+
+void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, FrontScratch& scratch) {
+  const PipelinePlan& plan = *chunk.draw->plan;
+  const State& state = *plan.state;
+  Assembler a{chunk, pass, arena, scratch, plan, {&plan, &pass, &scratch.primitives}, plan.viewport[0]};
+  const TopologyShape shape = topology_shape(state.topology);
+  if (state.cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return;
+  std::uint32_t first_entry = 0;
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
+    const Run& run = chunk.runs[r];
+    const RunSpan span = run_span(shape, run);
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const Corners corners = corners_of(state.topology, state.provoking_vertex_last, i);
+      std::uint32_t slot[3];
+      for (std::uint32_t c = 0; c < shape.corners; ++c) slot[c] = scratch.slot[first_entry + span.entry(corners.at[c])];
+      a.setup.id = run.first_id + i;
+      if (shape.corners == 3) assemble_triangle(a, slot);
+      else if (shape.corners == 2) assemble_line(a, slot);
+      else assemble_point(a, slot[0]);
+    }
+    first_entry += span.count();
+  }
+  if (chunk.draw->call.queries.statistics)  // clipping primitives
+    chunk.draw->call.queries.statistics[6].fetch_add(scratch.primitives.size(), std::memory_order_relaxed);
+}
+
+}  // namespace vitrine::raster

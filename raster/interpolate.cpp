@@ -1,0 +1,229 @@
+// Plane equations and their evaluation, a vector of planes or of lanes at a time.
+#include "raster/interpolate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/interpolate.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "base/lane_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::raster::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using base::HWY_NAMESPACE::lanes_fma;
+using F = hn::ScalableTag<float>;
+using Quad = hn::FixedTag<float, 4>;
+using VF = hn::Vec<F>;
+
+/// Values of planes [i, i + lanes) at one vertex: perspective ones times its 1/w (a product with 1 changes nothing).
+HWY_INLINE VF vertex_values(const Vertex* v, std::size_t i, std::size_t perspective_end) {
+  const F f;
+  const VF raw = hn::LoadU(f, v + 2 + i);  // z is word 2: planes follow the record's order
+  const VF place = hn::Iota(f, static_cast<float>(i));
+  const auto perspective =
+      hn::And(hn::Ge(place, hn::Set(f, 2.0f)), hn::Lt(place, hn::Set(f, static_cast<float>(perspective_end))));
+  return hn::Mul(raw, hn::IfThenElse(perspective, hn::Set(f, v[3]), hn::Set(f, 1.0f)));
+}
+
+/// 4.1, over all planes at once.
+void triangle_planes(const Primitive& p, float po, std::size_t count, std::size_t perspective_end, PlaneSet& out) {
+  const F f;
+  const Vertex *v0 = p.v[0], *v1 = p.v[1], *v2 = p.v[2];
+  const float dx01 = v0[0] - v1[0], dy01 = v0[1] - v1[1], dx20 = v2[0] - v0[0], dy20 = v2[1] - v0[1];
+  const float ooa = 1.0f / (dx01 * dy20 - dy01 * dx20);
+  const VF x20 = hn::Set(f, dx20 * ooa), y20 = hn::Set(f, dy20 * ooa);
+  const VF x01 = hn::Set(f, dx01 * ooa), y01 = hn::Set(f, dy01 * ooa);
+  const VF xc = hn::Set(f, v0[0] - po), yc = hn::Set(f, v0[1] - po);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
+    const VF a0 = vertex_values(v0, i, perspective_end);
+    const VF d01 = hn::Sub(a0, vertex_values(v1, i, perspective_end));
+    const VF d20 = hn::Sub(vertex_values(v2, i, perspective_end), a0);
+    const VF dadx = hn::Sub(hn::Mul(d01, y20), hn::Mul(d20, y01));
+    const VF dady = hn::Sub(hn::Mul(d20, x01), hn::Mul(d01, x20));
+    hn::Store(dadx, f, out.dadx + i);
+    hn::Store(dady, f, out.dady + i);
+    hn::Store(hn::Sub(a0, hn::Add(hn::Mul(dadx, xc), hn::Mul(dady, yc))), f, out.a0 + i);
+  }
+}
+
+/// 6.3: `idx`, `idy` are the line's direction, or its deltas of Bresenham mode.
+void line_planes(const Primitive& p, float idx, float idy, float ooa, std::size_t count, std::size_t perspective_end,
+                 PlaneSet& out) {
+  const F f;
+  const Vertex *v1 = p.v[0], *v2 = p.v[1];
+  const VF xc = hn::Set(f, v1[0] - 0.5f), yc = hn::Set(f, v1[1] - 0.5f);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
+    const VF a1 = vertex_values(v1, i, perspective_end);
+    const VF d = hn::Sub(a1, vertex_values(v2, i, perspective_end));
+    const VF dadx = hn::Mul(hn::Mul(d, hn::Set(f, idx)), hn::Set(f, ooa));
+    const VF dady = hn::Mul(hn::Mul(d, hn::Set(f, idy)), hn::Set(f, ooa));
+    hn::Store(dadx, f, out.dadx + i);
+    hn::Store(dady, f, out.dady + i);
+    hn::Store(hn::Sub(a1, hn::Add(hn::Mul(dadx, xc), hn::Mul(dady, yc))), f, out.a0 + i);
+  }
+}
+
+void point_planes(const Primitive& p, std::size_t count, std::size_t perspective_end, PlaneSet& out) {
+  const F f;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
+    hn::Store(vertex_values(p.v[0], i, perspective_end), f, out.a0 + i);
+    hn::Store(hn::Zero(f), f, out.dadx + i);
+    hn::Store(hn::Zero(f), f, out.dady + i);
+  }
+}
+
+void evaluate(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale, float* out) {
+  if (wave.slots == 1) {
+    const F f;
+    const PlaneSet& set = wave.sets[0];
+    const VF a0 = hn::Set(f, set.a0[plane]), dadx = hn::Set(f, set.dadx[plane]), dady = hn::Set(f, set.dady[plane]);
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(f)) {
+      VF v = lanes_fma(dady, hn::Load(f, points.y + i), lanes_fma(dadx, hn::Load(f, points.x + i), a0));
+      if (scale) v = hn::Mul(v, hn::Load(f, scale + i));
+      hn::Store(v, f, out + i);
+    }
+    return;
+  }
+  const Quad d;
+  for (std::size_t q = 0; q < wave.quads; ++q) {
+    const PlaneSet& set = wave.sets[wave.slot[q]];
+    const auto inner = lanes_fma(hn::Set(d, set.dadx[plane]), hn::Load(d, points.x + 4 * q), hn::Set(d, set.a0[plane]));
+    auto v = lanes_fma(hn::Set(d, set.dady[plane]), hn::Load(d, points.y + 4 * q), inner);
+    if (scale) v = hn::Mul(v, hn::Load(d, scale + 4 * q));
+    hn::Store(v, d, out + 4 * q);
+  }
+}
+
+void reciprocals(const float* in, float* out) {
+  const F f;
+  for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(f))
+    hn::Store(hn::Div(hn::Set(f, 1.0f), hn::Load(f, in + i)), f, out + i);
+}
+
+alignas(64) constexpr float kRowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
+alignas(64) constexpr float kRowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
+
+void block_depth(const DepthPlane& plane, float x, float y, float* out) {
+  const hn::CappedTag<float, 16> f;
+  const auto a0 = hn::Set(f, plane.a0), dadx = hn::Set(f, plane.dadx), dady = hn::Set(f, plane.dady);
+  const auto offset = hn::Set(f, plane.offset);
+  for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
+    // Both sums are exact: whole numbers, or a sample's eighths on top of them.
+    const auto fx = hn::Add(hn::Set(f, x), hn::Load(f, kRowX + i));
+    const auto inner = lanes_fma(dadx, fx, a0);
+    for (std::size_t r = 0; r < 4; ++r) {
+      const auto fy = hn::Add(hn::Set(f, y + static_cast<float>(2 * r)), hn::Load(f, kRowY + i));
+      hn::Store(hn::Add(lanes_fma(dady, fy, inner), offset), f, out + r * 16 + i);
+    }
+  }
+}
+
+}  // namespace vitrine::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vitrine::raster {
+namespace {
+
+HWY_EXPORT(triangle_planes);
+HWY_EXPORT(line_planes);
+HWY_EXPORT(point_planes);
+HWY_EXPORT(evaluate);
+HWY_EXPORT(reciprocals);
+HWY_EXPORT(block_depth);
+
+struct LineDeltas {
+  float idx, idy, ooa;
+};
+LineDeltas line_deltas(const State& state, const Primitive& p) {
+  const Vertex *v1 = p.v[0], *v2 = p.v[1];
+  const float dx = v1[0] - v2[0], dy = v1[1] - v2[1];
+  LineDeltas deltas{dx, dy, 1.0f / (dx * dx + dy * dy)};
+  if (state.line_mode != VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT) return deltas;
+  if (std::fabs(dx) >= std::fabs(dy)) {
+    const float m = dy / dx;
+    deltas.idx = dx * (1 + m * m);
+    deltas.idy = 0;
+  } else {
+    const float m = dx / dy;
+    deltas.idx = 0;
+    deltas.idy = dy * (1 + m * m);
+  }
+  return deltas;
+}
+
+/// 7.2: gl_PointCoord, as a perspective input.
+void point_coord_planes(const Primitive& p, std::uint32_t plane, PlaneSet& out) {
+  const float w = p.v[0][3];
+  const float d = 256 / static_cast<float>(p.x[1] - p.x[0]);
+  const float ax = p.v[0][0] - 0.5f, ay = p.v[0][1] - 0.5f;
+  const float x0 = static_cast<float>(0.5 - static_cast<double>(d * ax + 0 * ay));
+  const float y0 = static_cast<float>(0.5 - static_cast<double>(0 * ax + d * ay));
+  out.a0[plane] = x0 * w;
+  out.dadx[plane] = d * w;
+  out.dady[plane] = 0 * w;
+  out.a0[plane + 1] = y0 * w;
+  out.dadx[plane + 1] = 0 * w;
+  out.dady[plane + 1] = d * w;
+}
+
+}  // namespace
+
+void compute_planes(const PipelinePlan& plan, const Primitive& p, PlaneSet& out) {
+  const std::size_t perspective_end = kFirstVaryingPlane + plan.perspective_count;
+  const std::size_t count = perspective_end + plan.linear_count;
+  if (p.kind == PrimitiveKind::kTriangle) {
+    HWY_DYNAMIC_DISPATCH(triangle_planes)(p, plan.pixel_offset, count, perspective_end, out);
+  } else if (p.kind == PrimitiveKind::kLine) {
+    const LineDeltas d = line_deltas(*plan.state, p);
+    HWY_DYNAMIC_DISPATCH(line_planes)(p, d.idx, d.idy, d.ooa, count, perspective_end, out);
+  } else {
+    HWY_DYNAMIC_DISPATCH(point_planes)(p, count, perspective_end, out);
+  }
+  if (plan.frag.point_coord[0] == kNoReg && plan.frag.point_coord[1] == kNoReg) return;
+  const auto plane = static_cast<std::uint32_t>(count);
+  if (p.kind == PrimitiveKind::kPoint) {
+    point_coord_planes(p, plane, out);
+  } else {
+    for (std::uint32_t i = plane; i < plane + 2; ++i) out.a0[i] = out.dadx[i] = out.dady[i] = 0;
+  }
+}
+
+DepthPlane compute_depth_plane(const PipelinePlan& plan, const Primitive& p) {
+  const Vertex *v0 = p.v[0], *v1 = p.v[1], *v2 = p.v[2];
+  if (p.kind == PrimitiveKind::kPoint) return {v0[2], 0, 0, p.depth_offset};
+  if (p.kind == PrimitiveKind::kLine) {
+    const LineDeltas deltas = line_deltas(*plan.state, p);
+    const float d = v0[2] - v1[2];
+    const float dadx = (d * deltas.idx) * deltas.ooa, dady = (d * deltas.idy) * deltas.ooa;
+    return {v0[2] - (dadx * (v0[0] - 0.5f) + dady * (v0[1] - 0.5f)), dadx, dady, p.depth_offset};
+  }
+  const float dx01 = v0[0] - v1[0], dy01 = v0[1] - v1[1], dx20 = v2[0] - v0[0], dy20 = v2[1] - v0[1];
+  const float ooa = 1.0f / (dx01 * dy20 - dy01 * dx20);
+  const float d01 = v0[2] - v1[2], d20 = v2[2] - v0[2];
+  const float dadx = d01 * (dy20 * ooa) - d20 * (dy01 * ooa);
+  const float dady = d20 * (dx01 * ooa) - d01 * (dx20 * ooa);
+  const float xc = v0[0] - plan.pixel_offset, yc = v0[1] - plan.pixel_offset;
+  return {v0[2] - (dadx * xc + dady * yc), dadx, dady, p.depth_offset};
+}
+
+void evaluate_plane(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale,
+                    float* out) {
+  HWY_DYNAMIC_DISPATCH(evaluate)(wave, plane, points, scale, out);
+}
+
+void reciprocal(const float* in, float* out) { HWY_DYNAMIC_DISPATCH(reciprocals)(in, out); }
+
+void evaluate_block_depth(const DepthPlane& plane, float x, float y, float* out) {
+  HWY_DYNAMIC_DISPATCH(block_depth)(plane, x, y, out);
+}
+
+}  // namespace vitrine::raster
+#endif

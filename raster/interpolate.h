@@ -1,0 +1,56 @@
+// Interpolation: plane equations per primitive and their evaluation over a wave (lavapipe-rasterization.md 4, 6.3,
+// 7.2). Origin is the framebuffer's pixel (0, 0).
+#pragma once
+
+#include <cstdint>
+
+#include "base/lanes.h"
+#include "raster/coverage.h"
+#include "raster/primitive.h"
+
+namespace vitrine::raster {
+
+/// Planes in this order: z, 1/w, perspective varyings (times 1/w), linear varyings, gl_PointCoord x and y (times 1/w).
+inline constexpr std::uint32_t kDepthPlane = 0, kReciprocalWPlane = 1, kFirstVaryingPlane = 2;
+inline constexpr std::uint32_t kMaxPlanes = (kFirstVaryingPlane + kMaxVaryings + 2 + 15) & ~15u;
+
+struct PlaneSet {
+  alignas(64) float a0[kMaxPlanes];
+  alignas(64) float dadx[kMaxPlanes];
+  alignas(64) float dady[kMaxPlanes];
+};
+
+/// All planes of a primitive.
+void compute_planes(const PipelinePlan& plan, const Primitive& primitive, PlaneSet& out);
+
+/// Only z, and the depth bias beside it: for tests before shading. Same bits as compute_planes.
+struct DepthPlane {
+  float a0, dadx, dady, offset;
+};
+DepthPlane compute_depth_plane(const PipelinePlan& plan, const Primitive& primitive);
+
+/// Lanes of a wave in the framebuffer, and the primitive each quad belongs to.
+struct WavePlanes {
+  const PlaneSet* sets;             ///< by slot
+  std::uint32_t slots = 1;          ///< distinct primitives
+  std::uint32_t quads = 0;          ///< in use, from the first
+  std::uint8_t slot[base::kQuadsPerWave];
+};
+
+/// Evaluation points of all lanes, as floats.
+struct WavePoints {
+  alignas(64) float x[base::kWaveWidth];
+  alignas(64) float y[base::kWaveWidth];
+};
+
+/// fma(dady, y, fma(dadx, x, a0)), times `scale` per lane if given (1/w of perspective planes).
+void evaluate_plane(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale,
+                    float* out);
+
+/// out = 1 / in, per lane.
+void reciprocal(const float* in, float* out);
+
+/// z of the 64 lanes of a block whose first point is (x, y), in quad order: plane, plus bias.
+void evaluate_block_depth(const DepthPlane& plane, float x, float y, float* out);
+
+}  // namespace vitrine::raster

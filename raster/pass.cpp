@@ -1,0 +1,314 @@
+// The pass: keeps draws and clears in order, runs the front end over chunks and the back end over tiles.
+#include "raster/pass.h"
+
+#include <algorithm>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "base/float_mode.h"
+#include "base/simd.h"
+#include "base/workers.h"
+#include "raster/arena.h"
+#include "raster/assembly.h"
+#include "raster/front.h"
+#include "raster/tile.h"
+#include "texel/transfer.h"
+
+namespace vitrine::raster {
+namespace {
+
+/// Positions that are gathered before the front end runs, and bytes of its results before the back end runs.
+constexpr std::uint64_t kPendingPositions = std::uint64_t{256} << 10;
+constexpr std::size_t kBinBytes = std::size_t{48} << 20;
+/// Below this many positions waking another thread costs more than it brings.
+constexpr std::uint64_t kInlinePositions = 512;
+
+struct Worker {
+  Arena arena;
+  FrontScratch front;
+  TileWorker tile;
+};
+
+/// A chunk or a clear, in API order.
+struct Command {
+  const ClearCommand* clear = nullptr;
+  Chunk chunk;
+  ChunkOutput output;
+};
+
+/// Memory of a pass, kept for the next one.
+struct Scratch {
+  std::vector<std::unique_ptr<Worker>> workers;
+  Arena arena;  ///< draws, runs, clears, plans
+  std::vector<Command> commands;
+  std::vector<std::vector<TileItem>> items;  ///< by tile
+  std::vector<std::uint32_t> touched;        ///< tiles with items
+  std::vector<Run> runs;
+  std::deque<spirv::BoundShader> bound;
+};
+
+class ScratchPool {
+ public:
+  std::unique_ptr<Scratch> lease() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Scratch>();
+    std::unique_ptr<Scratch> scratch = std::move(free_.back());
+    free_.pop_back();
+    return scratch;
+  }
+  void give_back(std::unique_ptr<Scratch> scratch) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(scratch));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Scratch>> free_;
+};
+
+ScratchPool& scratch_pool() {
+  static ScratchPool pool;
+  return pool;
+}
+
+/// Cuts the render area to what all attachments have, so that no draw leaves memory.
+void cut_render_area(PassDesc& desc) {
+  std::int64_t right = std::int64_t{desc.render_area.offset.x} + desc.render_area.extent.width;
+  std::int64_t bottom = std::int64_t{desc.render_area.offset.y} + desc.render_area.extent.height;
+  const auto cut = [&](const texel::ImageView& view) {
+    if (!view.format) return;
+    right = std::min<std::int64_t>(right, view.level[0].extent.width);
+    bottom = std::min<std::int64_t>(bottom, view.level[0].extent.height);
+  };
+  for (std::uint32_t i = 0; i < desc.color_count; ++i) cut(desc.color[i]);
+  cut(desc.depth);
+  cut(desc.stencil);
+  const std::int64_t x = std::max(desc.render_area.offset.x, 0), y = std::max(desc.render_area.offset.y, 0);
+  desc.render_area = {{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
+                      {static_cast<std::uint32_t>(std::clamp<std::int64_t>(right - x, 0, 1 << 15)),
+                       static_cast<std::uint32_t>(std::clamp<std::int64_t>(bottom - y, 0, 1 << 15))}};
+}
+
+bool same_resources(const spirv::ResourceTable& a, const spirv::ResourceTable& b) {
+  return std::equal(std::begin(a.set), std::end(a.set), std::begin(b.set)) &&
+         std::equal(std::begin(a.set_size), std::end(a.set_size), std::begin(b.set_size)) &&
+         a.push_constants == b.push_constants;
+}
+
+}  // namespace
+
+struct Pass::Impl {
+  PassDesc desc;
+  TileGrid grid;
+  std::unique_ptr<Scratch> scratch = scratch_pool().lease();
+  const DrawRecord* last = nullptr;
+  std::uint64_t pending_positions = 0;
+  spirv::Fault unreported;
+
+  explicit Impl(const PassDesc& pass_desc) : desc(pass_desc) {
+    base::select_simd_target();
+    cut_render_area(desc);
+    const auto tiles = [](std::int32_t offset, std::uint32_t extent) {
+      return (static_cast<std::uint32_t>(offset) + extent + kTileSize - 1) / kTileSize;
+    };
+    std::uint32_t views = 0;
+    for (std::uint32_t mask = desc.view_mask; mask != 0; mask >>= 1) ++views;
+    grid = {tiles(desc.render_area.offset.x, desc.render_area.extent.width),
+            tiles(desc.render_area.offset.y, desc.render_area.extent.height),
+            std::max({desc.layers, views, std::uint32_t{1}})};
+    if (scratch->items.size() < grid.count()) scratch->items.resize(grid.count());
+    scratch->workers.resize(std::max(scratch->workers.size(), base::worker_count()));
+    for (std::unique_ptr<Worker>& worker : scratch->workers)
+      if (!worker) worker = std::make_unique<Worker>();
+  }
+
+  ~Impl() { scratch_pool().give_back(std::move(scratch)); }
+
+  Stage bind_stage(const spirv::Shader* shader, const NativeShader* native, const spirv::ResourceTable& resources,
+                   spirv::Fault& fault, const Stage& previous) {
+    if (native) return {nullptr, native};
+    if (!shader) return {};
+    if (previous.bound && &previous.bound->shader() == shader && same_resources(previous.bound->resources(), resources))
+      return previous;
+    return {&scratch->bound.emplace_back(*shader, resources, fault), nullptr};
+  }
+
+  /// The record of a draw, or null if it draws nothing.
+  const DrawRecord* record_draw(const DrawCall& call) {
+    DrawRecord* record = new (scratch->arena.take<DrawRecord>(1)) DrawRecord{};
+    record->call = call;
+    const bool same = last && last->call.state == call.state && last->call.vertex == call.vertex &&
+                      last->call.fragment == call.fragment && last->call.native_vertex == call.native_vertex &&
+                      last->call.native_fragment == call.native_fragment;
+    if (same) {
+      record->plan = last->plan;
+    } else {
+      PipelinePlan* plan = new (scratch->arena.take<PipelinePlan>(1)) PipelinePlan{};
+      if (!make_plan(call, desc, *plan)) return nullptr;
+      record->plan = plan;
+    }
+    spirv::Fault& fault = call.fault ? *call.fault : unreported;
+    record->vertex = bind_stage(call.vertex, call.native_vertex, call.vertex_resources, fault,
+                                last ? last->vertex : Stage{});
+    record->fragment = bind_stage(call.fragment, call.native_fragment, call.fragment_resources, fault,
+                                  last ? last->fragment : Stage{});
+    last = record;
+    return record;
+  }
+
+  /// Turns the gathered runs into chunks of about kChunkPositions.
+  void cut_chunks(const DrawRecord* record, std::uint32_t view) {
+    const std::vector<Run>& runs = scratch->runs;
+    const TopologyShape shape = topology_shape(record->plan->state->topology);
+    Run* stored = scratch->arena.take<Run>(runs.size());
+    std::copy(runs.begin(), runs.end(), stored);
+    std::size_t first = 0;
+    std::uint32_t positions = 0;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      positions += run_span(shape, runs[i]).count();
+      pending_positions += run_span(shape, runs[i]).count();
+      if (positions < kChunkPositions && i + 1 < runs.size()) continue;
+      scratch->commands.push_back(
+          {nullptr, {record, stored + first, static_cast<std::uint32_t>(i + 1 - first), view}, {}});
+      first = i + 1;
+      positions = 0;
+    }
+    scratch->runs.clear();
+    if (pending_positions >= kPendingPositions) run_front();
+  }
+
+  void draw_view(const DrawRecord* record, std::uint32_t view) {
+    for (std::uint32_t instance = 0; instance < record->call.instance_count; ++instance) {
+      append_runs(record->call, instance, kChunkPositions, scratch->runs);
+      if (scratch->runs.size() >= 4096) cut_chunks(record, view);
+    }
+    if (!scratch->runs.empty()) cut_chunks(record, view);
+  }
+
+  void front_item(std::size_t index, std::size_t worker_index) {
+    Command& command = scratch->commands[index];
+    if (command.clear) return;
+    Worker& worker = *scratch->workers[worker_index];
+    command.output = process_chunk(command.chunk, desc, grid, worker.arena, worker.front);
+  }
+
+  void add_item(std::uint32_t tile, const TileItem& item) {
+    std::vector<TileItem>& items = scratch->items[tile];
+    if (items.empty()) scratch->touched.push_back(tile);
+    items.push_back(item);
+  }
+
+  void add_clear(const ClearCommand& clear) {
+    const PixelRect& r = clear.rect;
+    const std::uint32_t end = std::min(grid.layers, clear.base_layer + clear.layer_count);
+    for (std::uint32_t layer = clear.base_layer; layer < end; ++layer)
+      for (int y = r.y0 / kTileSize; y <= r.y1 / kTileSize; ++y)
+        for (int x = r.x0 / kTileSize; x <= r.x1 / kTileSize; ++x)
+          add_item(grid.index(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), layer),
+                   {&clear, nullptr, nullptr, nullptr, 0});
+  }
+
+  /// Runs the front end of everything recorded and hands its results to the tiles, in order.
+  void run_front() {
+    std::vector<Command>& commands = scratch->commands;
+    if (commands.empty()) return;
+    if (pending_positions < kInlinePositions) {
+      for (std::size_t i = 0; i < commands.size(); ++i) front_item(i, 0);
+    } else {
+      base::parallel_for(commands.size(), [this](std::size_t i, std::size_t worker) { front_item(i, worker); });
+    }
+    for (std::unique_ptr<Worker>& worker : scratch->workers) worker->front.bound = {};
+    for (const Command& command : commands) {
+      if (command.clear) add_clear(*command.clear);
+      for (std::uint32_t i = 0; i < command.output.range_count; ++i) {
+        const TileRange& range = command.output.ranges[i];
+        add_item(range.tile, {nullptr, command.chunk.draw, command.output.primitives, range.index, range.count});
+      }
+    }
+    commands.clear();
+    pending_positions = 0;
+    std::size_t bytes = 0;
+    for (const std::unique_ptr<Worker>& worker : scratch->workers) bytes += worker->arena.used();
+    if (bytes >= kBinBytes) run_back();
+  }
+
+  /// Draws what the tiles have.
+  void run_back() {
+    std::vector<std::uint32_t>& touched = scratch->touched;
+    base::parallel_for(touched.size(), [&](std::size_t i, std::size_t worker) {
+      std::vector<TileItem>& items = scratch->items[touched[i]];
+      process_tile(scratch->workers[worker]->tile, desc, grid, touched[i], items);
+      items.clear();
+    });
+    touched.clear();
+    for (std::unique_ptr<Worker>& worker : scratch->workers) {
+      worker->tile.bound = {};
+      worker->arena.reset();
+    }
+  }
+
+  void clear(const texel::ImageView& view, const texel::StoredTexel& value, const VkRect2D& rect,
+             std::uint32_t base_layer, std::uint32_t layer_count) {
+    if (!view.format || grid.count() == 0) return;
+    ClearCommand* command = new (scratch->arena.take<ClearCommand>(1)) ClearCommand{};
+    const auto end = [](std::int32_t offset, std::uint32_t extent, std::uint32_t limit) {
+      return static_cast<int>(std::min<std::int64_t>(std::int64_t{offset} + extent, limit)) - 1;
+    };
+    const PixelRect tiles{0, 0, static_cast<int>(grid.columns) * kTileSize - 1,
+                          static_cast<int>(grid.rows) * kTileSize - 1};
+    const texel::Extent& extent = view.level[0].extent;
+    command->view = &view;
+    command->value = value;
+    command->rect = intersect(tiles, {rect.offset.x, rect.offset.y, end(rect.offset.x, rect.extent.width, extent.width),
+                                      end(rect.offset.y, rect.extent.height, extent.height)});
+    command->base_layer = base_layer;
+    command->layer_count = std::min(layer_count, view.layer_count - std::min(base_layer, view.layer_count));
+    if (!command->rect.empty() && command->layer_count) scratch->commands.push_back({command, {}, {}});
+  }
+};
+
+Pass::Pass(const PassDesc& desc) : impl_(std::make_unique<Impl>(desc)) {}
+
+Pass::~Pass() { flush(); }
+
+void Pass::clear_color(std::uint32_t attachment, const VkClearColorValue& value, const VkRect2D& rect,
+                       std::uint32_t base_layer, std::uint32_t layer_count) {
+  if (attachment >= impl_->desc.color_count || !impl_->desc.color[attachment].format) return;
+  const texel::ImageView& view = impl_->desc.color[attachment];
+  impl_->clear(view, texel::encode_clear_color(*view.format, value), rect, base_layer, layer_count);
+}
+
+void Pass::clear_depth_stencil(VkImageAspectFlags aspects, const VkClearDepthStencilValue& value, const VkRect2D& rect,
+                               std::uint32_t base_layer, std::uint32_t layer_count) {
+  const texel::ImageView &depth = impl_->desc.depth, &stencil = impl_->desc.stencil;
+  if ((aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0 && depth.format)
+    impl_->clear(depth, texel::encode_clear_depth(*depth.format, value.depth), rect, base_layer, layer_count);
+  if ((aspects & VK_IMAGE_ASPECT_STENCIL_BIT) != 0 && stencil.format)
+    impl_->clear(stencil, texel::encode_clear_stencil(value.stencil), rect, base_layer, layer_count);
+}
+
+void Pass::draw(const DrawCall& draw) {
+  if (draw.count == 0 || draw.instance_count == 0 || impl_->grid.count() == 0 || !draw.state) return;
+  const DrawRecord* record = impl_->record_draw(draw);
+  if (!record) return;
+  if (draw.queries.statistics)
+    draw.queries.statistics[0].fetch_add(std::uint64_t{draw.count} * draw.instance_count, std::memory_order_relaxed);
+  if (impl_->desc.view_mask == 0) {
+    impl_->draw_view(record, 0);
+    return;
+  }
+  for (std::uint32_t view = 0; view < 32; ++view)
+    if ((impl_->desc.view_mask >> view & 1) != 0) impl_->draw_view(record, view);
+}
+
+void Pass::flush() {
+  impl_->run_front();
+  impl_->run_back();
+  impl_->last = nullptr;
+  impl_->scratch->bound.clear();
+  impl_->scratch->arena.reset();
+}
+
+}  // namespace vitrine::raster

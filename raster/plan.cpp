@@ -1,0 +1,305 @@
+// Derives a draw's plan from its state and shader interfaces.
+#include "raster/plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vitrine::raster {
+namespace {
+
+using spirv::BuiltIn;
+using spirv::InterfaceSlot;
+using spirv::Interpolation;
+using spirv::ShaderInterface;
+
+const ShaderInterface* interface_of(const spirv::Shader* shader, const NativeShader* native) {
+  if (native) return &native->interface;
+  return shader ? &shader->interface() : nullptr;
+}
+
+VertexInput::Source source_of(BuiltIn built_in) {
+  switch (built_in) {
+    case BuiltIn::kVertexIndex: return VertexInput::Source::kVertexIndex;
+    case BuiltIn::kInstanceIndex: return VertexInput::Source::kInstanceIndex;
+    case BuiltIn::kBaseVertex: return VertexInput::Source::kBaseVertex;
+    case BuiltIn::kBaseInstance: return VertexInput::Source::kBaseInstance;
+    case BuiltIn::kDrawIndex: return VertexInput::Source::kDrawIndex;
+    case BuiltIn::kViewIndex: return VertexInput::Source::kViewIndex;
+    default: return VertexInput::Source::kZero;
+  }
+}
+
+void plan_vertex_inputs(PipelinePlan& plan) {
+  const State& state = *plan.state;
+  for (const InterfaceSlot& slot : plan.vertex->inputs) {
+    if (plan.vertex_input_count == plan.vertex_input.size()) break;
+    VertexInput& input = plan.vertex_input[plan.vertex_input_count++];
+    input = {};
+    input.reg = slot.reg;
+    input.component = slot.component;
+    if (slot.built_in != BuiltIn::kNone) {
+      input.source = source_of(slot.built_in);
+      continue;
+    }
+    for (std::uint32_t i = 0; i < state.attribute_count; ++i) {
+      if (state.attribute[i].location != slot.location) continue;
+      input.source = VertexInput::Source::kAttribute;
+      input.attribute = static_cast<std::uint8_t>(i);
+    }
+  }
+  // Components of one attribute next to each other: it is fetched once.
+  std::stable_sort(plan.vertex_input.begin(), plan.vertex_input.begin() + plan.vertex_input_count,
+                   [](const VertexInput& a, const VertexInput& b) {
+                     if (a.source != b.source) return a.source < b.source;
+                     return a.attribute < b.attribute;
+                   });
+}
+
+void plan_vertex_outputs(PipelinePlan& plan) {
+  VertexOutputs& out = plan.out;
+  out = {};
+  out.position.fill(kNoReg);
+  out.clip_distance.fill(kNoReg);
+  out.cull_distance.fill(kNoReg);
+  for (const InterfaceSlot& slot : plan.vertex->outputs) {
+    switch (slot.built_in) {
+      case BuiltIn::kPosition: out.position[slot.component & 3] = slot.reg; break;
+      case BuiltIn::kPointSize: out.point_size = slot.reg; break;
+      case BuiltIn::kClipDistance:
+        out.clip_distance[slot.component & 7] = slot.reg;
+        out.clip_count = std::max<std::uint32_t>(out.clip_count, (slot.component & 7u) + 1);
+        break;
+      case BuiltIn::kCullDistance:
+        out.cull_distance[slot.component & 7] = slot.reg;
+        out.cull_count = std::max<std::uint32_t>(out.cull_count, (slot.component & 7u) + 1);
+        break;
+      case BuiltIn::kLayer: out.layer = slot.reg; break;
+      case BuiltIn::kViewportIndex: out.viewport_index = slot.reg; break;
+      default: break;
+    }
+  }
+}
+
+bool is_varying(const InterfaceSlot& slot) {
+  switch (slot.built_in) {
+    case BuiltIn::kNone:
+    case BuiltIn::kClipDistance:
+    case BuiltIn::kCullDistance:
+    case BuiltIn::kLayer:
+    case BuiltIn::kViewportIndex: return true;
+    default: return false;
+  }
+}
+
+std::uint32_t matching_output(const ShaderInterface& vertex, const InterfaceSlot& input) {
+  for (const InterfaceSlot& slot : vertex.outputs) {
+    const bool same = slot.built_in == input.built_in && slot.component == input.component;
+    if (same && (slot.built_in != BuiltIn::kNone || slot.location == input.location)) return slot.reg;
+  }
+  return kNoReg;
+}
+
+void add_varyings(PipelinePlan& plan, Interpolation interpolation, std::uint32_t& count) {
+  for (const InterfaceSlot& slot : plan.fragment->inputs) {
+    if (!is_varying(slot) || plan.varying_count() == kMaxVaryings) continue;
+    const bool raw = slot.built_in == BuiltIn::kLayer || slot.built_in == BuiltIn::kViewportIndex;
+    const Interpolation wanted = raw || slot.type != spirv::BaseType::kFloat ? Interpolation::kFlat : slot.interpolation;
+    if (wanted != interpolation) continue;
+    Varying& varying = plan.varying[plan.varying_count()];
+    varying = {matching_output(*plan.vertex, slot), slot.reg, interpolation, slot.sample_location};
+    ++count;
+  }
+}
+
+void plan_fragment_inputs(PipelinePlan& plan) {
+  FragmentRegisters& frag = plan.frag;
+  for (const InterfaceSlot& slot : plan.fragment->inputs) {
+    switch (slot.built_in) {
+      case BuiltIn::kFragCoord: frag.frag_coord[slot.component & 3] = slot.reg; break;
+      case BuiltIn::kPointCoord: frag.point_coord[slot.component & 1] = slot.reg; break;
+      case BuiltIn::kSamplePosition: frag.sample_position[slot.component & 1] = slot.reg; break;
+      case BuiltIn::kFrontFacing: frag.front_facing = slot.reg; break;
+      case BuiltIn::kSampleId: frag.sample_id = slot.reg; break;
+      case BuiltIn::kSampleMask: frag.sample_mask_in = slot.reg; break;
+      case BuiltIn::kPrimitiveId: frag.primitive_id = slot.reg; break;
+      case BuiltIn::kHelperInvocation: frag.helper = slot.reg; break;
+      case BuiltIn::kViewIndex: frag.view_index = slot.reg; break;
+      default: break;
+    }
+  }
+  for (const InterfaceSlot& slot : plan.fragment->outputs) {
+    switch (slot.built_in) {
+      case BuiltIn::kNone:
+        if (slot.index == 1) frag.color_second[slot.component & 3] = slot.reg;
+        else if (slot.location < kMaxColorAttachments) frag.color[slot.location][slot.component & 3] = slot.reg;
+        break;
+      case BuiltIn::kFragDepth: frag.depth = slot.reg; break;
+      case BuiltIn::kFragStencilRef: frag.stencil = slot.reg; break;
+      case BuiltIn::kSampleMask: frag.sample_mask = slot.reg; break;
+      default: break;
+    }
+  }
+}
+
+void plan_varyings(PipelinePlan& plan) {
+  plan.perspective_count = plan.linear_count = plan.flat_count = 0;
+  FragmentRegisters& frag = plan.frag;
+  frag = {};
+  frag.frag_coord.fill(kNoReg);
+  frag.point_coord.fill(kNoReg);
+  frag.sample_position.fill(kNoReg);
+  for (auto& color : frag.color) color.fill(kNoReg);
+  frag.color_second.fill(kNoReg);
+  if (plan.fragment) {
+    plan_fragment_inputs(plan);
+    add_varyings(plan, Interpolation::kPerspective, plan.perspective_count);
+    add_varyings(plan, Interpolation::kLinear, plan.linear_count);
+    add_varyings(plan, Interpolation::kFlat, plan.flat_count);
+  }
+  plan.vertex_stride = (4 + plan.varying_count() + 3) & ~3u;
+}
+
+/// lavapipe-rasterization.md 1.1.
+ViewportTransform viewport_transform(const VkViewport& viewport, bool negative_one_to_one) {
+  ViewportTransform t;
+  t.sx = 0.5f * viewport.width;
+  t.tx = t.sx + viewport.x;
+  t.sy = 0.5f * viewport.height;
+  t.ty = t.sy + viewport.y;
+  const double min = viewport.minDepth, max = viewport.maxDepth;
+  if (negative_one_to_one) {
+    t.sz = static_cast<float>(0.5 * (max - min));
+    t.tz = static_cast<float>(0.5 * (min + max));
+  } else {
+    t.sz = static_cast<float>(max - min);
+    t.tz = viewport.minDepth;
+  }
+  const float a = t.tz, b = t.tz + t.sz;
+  t.z_min = std::min(a, b);
+  t.z_max = std::max(a, b);
+  return t;
+}
+
+PixelRect rect_of(const VkRect2D& rect) {
+  const auto end = [](std::int32_t offset, std::uint32_t extent) {
+    return static_cast<int>(std::min<std::int64_t>(std::int64_t{offset} + extent, 1 << 20)) - 1;
+  };
+  return {rect.offset.x, rect.offset.y, end(rect.offset.x, rect.extent.width), end(rect.offset.y, rect.extent.height)};
+}
+
+void plan_viewports(PipelinePlan& plan, const PassDesc& pass) {
+  PixelRect framebuffer = rect_of(pass.render_area);
+  framebuffer.x0 = framebuffer.y0 = 0;  // 3.3: the render area's offset does not clip
+  const std::uint32_t count = std::clamp<std::uint32_t>(plan.state->viewport_count, 1, kMaxViewports);
+  for (std::uint32_t i = 0; i < kMaxViewports; ++i) {
+    const std::uint32_t source = i < count ? i : 0;
+    plan.viewport[i] = viewport_transform(plan.state->viewport[source], plan.state->negative_one_to_one);
+    plan.region[i] = intersect(framebuffer, rect_of(plan.state->scissor[source]));
+  }
+  plan.per_vertex_viewport = plan.out.viewport_index != kNoReg;
+}
+
+bool stencil_writes(const StencilFace& face) { return face.write_mask != 0; }
+
+bool monotone(VkCompareOp op) { return op == VK_COMPARE_OP_LESS || op == VK_COMPARE_OP_LESS_OR_EQUAL ||
+                                       op == VK_COMPARE_OP_GREATER || op == VK_COMPARE_OP_GREATER_OR_EQUAL; }
+
+/// lavapipe-rasterization.md 5.2, 5.4. What ends late there and could be tested early without being seen is rejected
+/// early and decided late here.
+void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
+  const State& state = *plan.state;
+  plan.depth_test = state.depth_test && pass.depth.format != nullptr;
+  plan.depth_write = plan.depth_test && state.depth_write;
+  plan.stencil_test = state.stencil_test && pass.stencil.format != nullptr;
+  const ShaderInterface* fragment = plan.fragment;
+  plan.may_kill = state.alpha_to_coverage || (fragment && (fragment->uses_discard || plan.frag.sample_mask != kNoReg));
+  plan.depth_order = TestOrder::kNone;
+  plan.early_reject = false;
+  if (!plan.depth_test && !plan.stencil_test) return;
+  plan.depth_order = TestOrder::kEarly;
+  if (!fragment || fragment->early_fragment_tests) return;
+  const bool replaces = plan.frag.depth != kNoReg || plan.frag.stencil != kNoReg;
+  if (!replaces && !fragment->writes_memory && !plan.may_kill) return;
+  plan.depth_order = TestOrder::kLate;
+  const bool stencil_changes = plan.stencil_test && (stencil_writes(state.front) || stencil_writes(state.back));
+  plan.early_reject = !replaces && !fragment->writes_memory && !stencil_changes && !plan.stencil_test &&
+                      (monotone(state.depth_compare) || !plan.depth_write);
+}
+
+bool is_line(VkPrimitiveTopology topology) {
+  return topology == VK_PRIMITIVE_TOPOLOGY_LINE_LIST || topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP ||
+         topology == VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY ||
+         topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY;
+}
+
+void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {
+  const State& state = *plan.state;
+  plan.draws_points = state.topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+  plan.draws_lines = is_line(state.topology);
+  plan.samples = std::max<std::uint32_t>(pass.samples, 1);
+  plan.raster_samples = plan.samples;
+  const bool single = state.line_mode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ||
+                      state.line_mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
+  if (plan.draws_lines && single) plan.raster_samples = 1;
+  plan.pixel_offset = plan.raster_samples > 1 ? 0.0f : 0.5f;
+  plan.sample_mask = state.sample_mask & ((1u << plan.samples) - 1);
+  const bool wants = state.sample_shading && std::ceil(static_cast<float>(plan.samples) * state.min_sample_shading) > 1;
+  plan.sample_shading = plan.raster_samples > 1 && plan.fragment && (wants || plan.fragment->per_sample);
+  plan.depth_bias = state.depth_bias && (state.depth_bias_slope != 0 || state.depth_bias_constant != 0);
+  plan.bias_in_vertices = state.polygon_mode != VK_POLYGON_MODE_FILL && !plan.draws_lines && !plan.draws_points;
+}
+
+/// A fragment shader whose results nobody sees is not run.
+void plan_colors(PipelinePlan& plan, const PassDesc& pass) {
+  plan.color_count = std::min(pass.color_count, kMaxColorAttachments);
+  const ShaderInterface* fragment = plan.fragment;
+  plan.shades = fragment && (fragment->writes_memory || plan.may_kill || plan.frag.depth != kNoReg ||
+                             plan.frag.stencil != kNoReg);
+  for (std::uint32_t i = 0; i < plan.color_count; ++i) {
+    plan.writer[i] = {};
+    const auto& color = plan.frag.color[i];
+    const bool written = std::any_of(color.begin(), color.end(), [](std::uint32_t reg) { return reg != kNoReg; });
+    const texel::FormatDesc* format = pass.color[i].format;
+    if (!fragment || !written || !format) continue;
+    plan.writer[i] = make_color_writer(format->format, plan.state->blend[i], *plan.state);
+    plan.shades |= plan.writer[i].function != nullptr;
+  }
+}
+
+}  // namespace
+
+bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
+  plan.state = draw.state;
+  plan.vertex = interface_of(draw.vertex, draw.native_vertex);
+  plan.fragment = interface_of(draw.fragment, draw.native_fragment);
+  if (!plan.vertex || pass.samples > 4) return false;
+  plan.vertex_input_count = 0;
+  plan_vertex_inputs(plan);
+  plan_vertex_outputs(plan);
+  plan_varyings(plan);
+  plan_viewports(plan, pass);
+  plan_rasterization(plan, pass);
+  plan_tests(plan, pass);
+  plan_colors(plan, pass);
+  // 8.2: with one sample only a mask of all zeros has an effect.
+  if (plan.samples == 1 && draw.state->sample_mask != 0) plan.sample_mask = 1;
+  return plan.sample_mask != 0;
+}
+
+TopologyShape topology_shape(VkPrimitiveTopology topology) {
+  switch (topology) {
+    case VK_PRIMITIVE_TOPOLOGY_POINT_LIST: return {1, 1, 1, false};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST: return {2, 2, 2, false};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP: return {2, 1, 2, false};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST: return {3, 3, 3, false};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP: return {3, 1, 3, false};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN: return {3, 1, 3, true};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY: return {4, 4, 2, false};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY: return {4, 1, 2, false};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY: return {6, 6, 3, false};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY: return {6, 2, 3, false};
+    default: return {1, 1, 0, false};
+  }
+}
+
+}  // namespace vitrine::raster

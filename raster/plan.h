@@ -1,0 +1,124 @@
+// What is derived once from the state and the shader interfaces of a draw and then shared by all of its chunks and
+// tiles: register numbers, the order of varyings, viewport constants, draw regions, the order of tests.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "raster/color.h"
+#include "raster/draw.h"
+#include "raster/pass.h"
+#include "raster/stage.h"
+
+namespace vitrine::raster {
+
+inline constexpr std::uint32_t kNoReg = ~std::uint32_t{0};
+inline constexpr std::uint32_t kMaxVaryings = 128;
+inline constexpr std::uint32_t kMaxClipDistances = 8;
+inline constexpr int kTileSize = 64;
+
+/// Pixels, all bounds inclusive; empty if x1 < x0 or y1 < y0.
+struct PixelRect {
+  int x0 = 0, y0 = 0, x1 = -1, y1 = -1;
+  bool empty() const { return x1 < x0 || y1 < y0; }
+};
+inline PixelRect intersect(const PixelRect& a, const PixelRect& b) {
+  return {a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0, a.x1 < b.x1 ? a.x1 : b.x1, a.y1 < b.y1 ? a.y1 : b.y1};
+}
+
+/// Window coordinates = clip / w * scale + translate (lavapipe-rasterization.md 1.1).
+struct ViewportTransform {
+  float sx = 0, sy = 0, sz = 0, tx = 0, ty = 0, tz = 0;
+  float z_min = 0, z_max = 1;  ///< depth clamp range (5.3)
+};
+
+/// One interpolated component: from a vertex output to a fragment input. Registers or kNoReg.
+struct Varying {
+  std::uint32_t vertex_reg = kNoReg;    ///< kNoReg: not written, reads 0
+  std::uint32_t fragment_reg = kNoReg;  ///< kNoReg: gl_PrimitiveID and the like do not come here
+  spirv::Interpolation interpolation = spirv::Interpolation::kPerspective;
+  spirv::SampleLocation location = spirv::SampleLocation::kCenter;
+};
+
+/// When depth and stencil are tested relative to shading (5.4).
+enum class TestOrder : std::uint8_t { kNone, kEarly, kLate };
+
+struct VertexInput {
+  enum class Source : std::uint8_t { kAttribute, kVertexIndex, kInstanceIndex, kBaseVertex, kBaseInstance, kDrawIndex, kViewIndex, kZero };
+  Source source = Source::kZero;
+  std::uint8_t component = 0;
+  std::uint8_t attribute = 0;  ///< index in State::attribute
+  std::uint32_t reg = 0;
+};
+
+/// Register numbers of the vertex stage's outputs; kNoReg where not written.
+struct VertexOutputs {
+  std::array<std::uint32_t, 4> position;
+  std::array<std::uint32_t, kMaxClipDistances> clip_distance, cull_distance;
+  std::uint32_t clip_count = 0, cull_count = 0;
+  std::uint32_t point_size = kNoReg, layer = kNoReg, viewport_index = kNoReg;
+};
+
+/// Register numbers of the fragment stage; kNoReg where not read or written.
+struct FragmentRegisters {
+  std::array<std::uint32_t, 4> frag_coord;
+  std::array<std::uint32_t, 2> point_coord, sample_position;
+  std::uint32_t front_facing = kNoReg, sample_id = kNoReg, sample_mask_in = kNoReg, primitive_id = kNoReg;
+  std::uint32_t helper = kNoReg, layer = kNoReg, view_index = kNoReg;
+  std::array<std::array<std::uint32_t, 4>, kMaxColorAttachments> color;
+  std::array<std::uint32_t, 4> color_second;  ///< attachment 0, index 1
+  std::uint32_t depth = kNoReg, stencil = kNoReg, sample_mask = kNoReg;
+};
+
+struct PipelinePlan {
+  const State* state = nullptr;
+  const spirv::ShaderInterface* vertex = nullptr;
+  const spirv::ShaderInterface* fragment = nullptr;  ///< null: none
+
+  std::uint32_t vertex_input_count = 0;
+  std::array<VertexInput, 160> vertex_input;
+  VertexOutputs out;
+
+  /// Varyings in the order perspective, linear, flat.
+  std::uint32_t perspective_count = 0, linear_count = 0, flat_count = 0;
+  std::array<Varying, kMaxVaryings> varying;
+  std::uint32_t varying_count() const { return perspective_count + linear_count + flat_count; }
+  std::uint32_t vertex_stride = 4;  ///< 32-bit words of a Vertex record, a multiple of 4
+
+  FragmentRegisters frag;
+
+  std::array<ViewportTransform, kMaxViewports> viewport;
+  std::array<PixelRect, kMaxViewports> region;  ///< framebuffer and scissor (3.3, without the hidden viewport rectangle)
+  float pixel_offset = 0.5f;                    ///< `po` of 3.1
+  bool per_vertex_viewport = false;             ///< transform form B, viewport chosen by the primitive
+  bool draws_points = false, draws_lines = false;
+  bool bias_in_vertices = false;  ///< polygon mode LINE / POINT: bias per vertex (5.1, second form)
+  bool depth_bias = false;
+
+  std::uint32_t samples = 1;         ///< of the attachments
+  std::uint32_t raster_samples = 1;  ///< locations at which coverage is computed: 1 for Bresenham lines
+  bool sample_shading = false;
+  std::uint32_t sample_mask = 0xf;  ///< 0: nothing is drawn
+
+  TestOrder depth_order = TestOrder::kNone;
+  bool depth_test = false, depth_write = false, stencil_test = false;
+  bool early_reject = false;  ///< late order: failing now means failing later, so such quads need not be shaded
+  std::uint32_t color_count = 0;
+  std::array<ColorWriter, kMaxColorAttachments> writer;
+  bool shades = true;         ///< the fragment shader's run can be observed
+  bool may_kill = false;      ///< discard, sample mask output, alpha to coverage
+};
+
+/// Fills `plan`. False if nothing can be drawn (a sample mask of 0, no samples).
+bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan);
+
+/// Vertices of `topology` handed to one primitive, and the distance between primitives.
+struct TopologyShape {
+  std::uint32_t first = 1;  ///< positions the first primitive needs
+  std::uint32_t step = 1;   ///< positions each further primitive adds
+  std::uint32_t corners = 1;
+  bool fan = false;
+};
+TopologyShape topology_shape(VkPrimitiveTopology topology);
+
+}  // namespace vitrine::raster

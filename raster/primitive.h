@@ -1,0 +1,71 @@
+// What the front end leaves for the back end: vertices in window coordinates, primitives with snapped positions, and
+// per chunk the list of primitives of every tile.
+#pragma once
+
+#include <cstdint>
+
+#include "base/lanes.h"
+#include "raster/plan.h"
+
+namespace vitrine::raster {
+
+/// A vertex after the viewport transform: words [x, y, z, 1/w] as floats, then the varyings in plan order. Lies in the
+/// chunk's arena; `PipelinePlan::vertex_stride` words long.
+using Vertex = float;
+
+enum class PrimitiveKind : std::uint8_t { kTriangle, kLine, kPoint };
+
+/// Positions are 24.8 fixed point relative to the sample grid of 3.1 (pixel centres at multiples of 256 when
+/// single-sampled, pixel corners when multisampled).
+struct Primitive {
+  std::int32_t x[4], y[4];  ///< triangle: 3 corners with positive area; line: 4 corners; point: x0, y0, x1, y1 in [0], [1]
+  const Vertex* v[3];       ///< triangle: interpolation order (2.1); line: both ends; point: one
+  float depth_offset;       ///< depth bias (5.1)
+  std::uint32_t id;         ///< gl_PrimitiveID
+  std::uint16_t x0, y0, x1, y1;  ///< pixels that can be covered, inclusive, cut to the draw region
+  std::uint16_t layer;
+  std::uint8_t viewport;
+  PrimitiveKind kind;
+  bool front;
+  std::uint8_t provoking;  ///< index in v whose flat values hold
+};
+
+/// Primitives of one tile in one chunk: index[0..count) into primitives, in API order.
+struct TileRange {
+  std::uint32_t tile;
+  std::uint32_t count;
+  const std::uint32_t* index;
+};
+
+struct ChunkOutput {
+  const Primitive* primitives = nullptr;
+  const TileRange* ranges = nullptr;
+  std::uint32_t range_count = 0;
+};
+
+/// Tiles of a pass: 64x64 pixels, layer after layer, rows from the top.
+struct TileGrid {
+  std::uint32_t columns = 0, rows = 0, layers = 1;
+  std::uint32_t count() const { return columns * rows * layers; }
+  std::uint32_t index(std::uint32_t column, std::uint32_t row, std::uint32_t layer) const {
+    return (layer * rows + row) * columns + column;
+  }
+};
+
+/// A stretch of a strip, list or fan of one instance, at most a chunk long: primitives [begin, end) counted from the
+/// vertex or index position `start` where the strip begins.
+struct Run {
+  std::uint32_t start;
+  std::uint32_t begin, end;
+  std::uint32_t instance;  ///< without first_instance
+  std::uint32_t first_id;  ///< gl_PrimitiveID of primitive 0 of the strip
+};
+
+/// A draw of the pass with everything derived from it; lives until the flush.
+struct DrawRecord {
+  DrawCall call;
+  const PipelinePlan* plan = nullptr;
+  Stage vertex, fragment;
+};
+
+}  // namespace vitrine::raster

@@ -1,0 +1,47 @@
+// Primitive setup (Vulkan 1.3.239, Rasterization): window-space vertices to Primitive records: facing and culling,
+// depth bias, snapped corners, pixel bounds. lavapipe-rasterization.md 2, 3.1, 3.3, 5.1, 6, 7.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "raster/primitive.h"
+
+namespace vitrine::raster {
+
+/// A vertex on its way into setup: its record, and its snapped position for triangles.
+struct SetupVertex {
+  const Vertex* record;
+  std::int32_t x, y;
+};
+
+/// What setup needs besides vertices: constant over a chunk but for the four last members.
+struct SetupContext {
+  const PipelinePlan* plan;
+  const PassDesc* pass;
+  std::vector<Primitive>* out;
+  std::uint32_t id = 0;
+  std::uint16_t layer = 0;
+  std::uint8_t viewport = 0;
+  float point_size = 1;
+};
+
+/// Snapped coordinate of triangles: nearest even (3.1).
+std::int32_t snap_coordinate(float window, float pixel_offset);
+
+/// Twice the signed area of window positions as the float cull computes it (2.2); negative is counter-clockwise.
+float window_determinant(const Vertex* v0, const Vertex* v1, const Vertex* v2);
+
+/// 2.2: culling by the float determinant.
+bool culled_by_determinant(const State& state, float determinant);
+
+/// Filled triangle in API order (provoking vertex first or last as the state says).
+void setup_triangle(const SetupContext& context, const SetupVertex& v0, const SetupVertex& v1, const SetupVertex& v2);
+void setup_line(const SetupContext& context, const Vertex* v1, const Vertex* v2, bool front);
+void setup_point(const SetupContext& context, const Vertex* v, bool front);
+
+/// 5.1, second form: depth of the three corners biased in place (polygon modes LINE and POINT).
+float vertex_depth_bias(const PipelinePlan& plan, const PassDesc& pass, const Vertex* v0, const Vertex* v1,
+                        const Vertex* v2);
+
+}  // namespace vitrine::raster

@@ -1,0 +1,237 @@
+// Rasterization of a tile: coverage block by block, tests before shading, packing.
+#include "raster/tile.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstring>
+
+#include "base/float_mode.h"
+
+namespace vitrine::raster {
+namespace {
+
+/// Coverage of one block by sample, in quad order.
+struct BlockCoverage {
+  base::LaneMask lanes[kMaxSamples];
+};
+
+base::LaneMask any_sample(const BlockCoverage& block, std::uint32_t samples) {
+  base::LaneMask any = block.lanes[0];
+  for (std::uint32_t s = 1; s < samples; ++s) any |= block.lanes[s];
+  return any;
+}
+
+/// Tests a block before shading. Writes unless the test is only a preview of a late one.
+void test_early(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane, int x, int y,
+                BlockCoverage& block) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  QuadPositions quads;
+  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
+    quads.x[q] = static_cast<std::uint16_t>(x + lane_x(4 * q));
+    quads.y[q] = static_cast<std::uint16_t>(y + lane_y(4 * q));
+  }
+  DepthRange range[base::kQuadsPerWave];
+  const bool clamps = plan.state->depth_clamp;
+  if (clamps) {
+    const ViewportTransform& viewport = plan.viewport[primitive.viewport];
+    std::fill_n(range, base::kQuadsPerWave, DepthRange{viewport.z_min, viewport.z_max});
+  }
+  const bool located = plan.raster_samples > 1;
+  for (std::uint32_t s = 0; s < plan.samples; ++s) {
+    if (!block.lanes[s]) continue;
+    if (plan.depth_test) {
+      const float dx = located ? static_cast<float>(kSampleX[s]) / 256 : 0.0f;
+      const float dy = located ? static_cast<float>(kSampleY[s]) / 256 : 0.0f;
+      evaluate_block_depth(plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, worker.depth);
+      clamp_depth(clamps ? range : nullptr, base::kQuadsPerWave, worker.depth);
+    }
+    block.lanes[s] = test_depth_stencil(plan, worker.target.depth_stencil[s], quads, primitive.front ? 0xffffu : 0,
+                                        worker.depth, nullptr, block.lanes[s], plan.depth_order == TestOrder::kEarly);
+  }
+}
+
+void append_quad(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block,
+                 std::uint32_t lane) {
+  PackedWave& wave = worker.wave;
+  const std::uint32_t q = wave.quads++;
+  if (wave.slots == 0 || wave.primitive[wave.slots - 1] != &primitive) wave.primitive[wave.slots++] = &primitive;
+  wave.slot[q] = static_cast<std::uint8_t>(wave.slots - 1);
+  wave.position.x[q] = static_cast<std::uint16_t>(x + lane_x(lane));
+  wave.position.y[q] = static_cast<std::uint16_t>(y + lane_y(lane));
+  for (std::uint32_t s = 0; s < worker.draw->plan->samples; ++s) {
+    const base::LaneMask nibble = block.lanes[s] >> lane & 15;
+    wave.coverage[s] = (q == 0 ? 0 : wave.coverage[s]) | nibble << (4 * q);
+  }
+  if (wave.quads == base::kQuadsPerWave) shade_wave(worker);
+}
+
+/// A block with its coverage: tests that come first, then to the wave.
+void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane, int x, int y,
+                BlockCoverage& block) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  for (std::uint32_t s = 0; s < plan.samples; ++s)
+    if ((plan.sample_mask >> s & 1) == 0) block.lanes[s] = 0;
+  base::LaneMask any = any_sample(block, plan.samples);
+  if (!any) return;
+  if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
+    BlockCoverage tested = block;
+    test_early(worker, primitive, plane, x, y, tested);
+    any = any_sample(tested, plan.samples);
+    if (!any) return;
+    block = tested;
+  }
+  if (!plan.shades) {
+    for (std::uint32_t s = 0; s < plan.samples; ++s)
+      worker.samples_passed += static_cast<std::uint64_t>(std::popcount(block.lanes[s]));
+    return;
+  }
+  while (any) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(any)) & ~3u;
+    any &= ~(base::LaneMask{15} << lane);
+    append_quad(worker, primitive, x, y, block, lane);
+  }
+}
+
+/// The part of a tile a primitive may cover, pixels relative to the tile.
+PixelRect rect_in_tile(const TileTarget& target, const Primitive& p) {
+  return intersect({p.x0 - target.x, p.y0 - target.y, p.x1 - target.x, p.y1 - target.y},
+                   {0, 0, kTileSize - 1, kTileSize - 1});
+}
+
+struct BlockWalk {
+  TileWorker& worker;
+  const Primitive& primitive;
+  const TileEdges& edges;
+  const PixelRect& rect;
+  DepthPlane plane;
+
+  void visit(int x, int y, bool covered) const {
+    const PipelinePlan& plan = *worker.draw->plan;
+    BlockCoverage block;
+    const base::LaneMask window = rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
+    for (std::uint32_t s = 0; s < plan.raster_samples; ++s)
+      block.lanes[s] = covered ? window : cover_block(edges, s, x, y) & window;
+    for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s) block.lanes[s] = block.lanes[0];
+    emit_block(worker, primitive, plane, worker.target.x + x, worker.target.y + y, block);
+  }
+};
+
+void begin_draw(TileWorker& worker, const DrawRecord* draw) {
+  worker.draw = draw;
+  worker.wave.quads = worker.wave.slots = 0;
+  if (draw->plan->shades && !(worker.bound == draw->fragment)) {
+    worker.runner.bind(draw->fragment);
+    worker.bound = draw->fragment;
+  }
+}
+
+void end_draw(TileWorker& worker) {
+  if (!worker.draw) return;
+  if (worker.wave.quads) shade_wave(worker);
+  const QueryCounters& queries = worker.draw->call.queries;
+  if (queries.occlusion && worker.samples_passed)
+    queries.occlusion->fetch_add(worker.samples_passed, std::memory_order_relaxed);
+  if (queries.statistics && worker.fragment_invocations)
+    queries.statistics[7].fetch_add(worker.fragment_invocations, std::memory_order_relaxed);
+  worker.samples_passed = worker.fragment_invocations = 0;
+  worker.draw = nullptr;
+}
+
+void fill_row(std::byte* row, std::size_t texels, std::size_t bytes, const std::byte* value) {
+  if (std::all_of(value, value + bytes, [&](std::byte b) { return b == value[0]; })) {
+    std::memset(row, static_cast<int>(value[0]), texels * bytes);
+    return;
+  }
+  for (std::size_t i = 0; i < texels; ++i) std::memcpy(row + i * bytes, value, bytes);
+}
+
+void clear_tile(const TileWorker& worker, const ClearCommand& clear) {
+  const TileTarget& target = worker.target;
+  if (target.layer < clear.base_layer || target.layer - clear.base_layer >= clear.layer_count) return;
+  const PixelRect rect =
+      intersect(clear.rect, {target.x, target.y, target.x + kTileSize - 1, target.y + kTileSize - 1});
+  if (rect.empty()) return;
+  const texel::ImageView& view = *clear.view;
+  const std::size_t bytes = view.format->block_bytes, width = static_cast<std::size_t>(rect.x1 - rect.x0 + 1);
+  for (std::uint32_t s = 0; s < std::max<std::uint32_t>(view.samples, 1); ++s) {
+    std::byte* first = view.block(0, target.layer, s, static_cast<std::uint32_t>(rect.x0),
+                                  static_cast<std::uint32_t>(rect.y0), 0);
+    fill_row(first, width, bytes, clear.value.bytes.data());
+    const std::uint64_t pitch = view.level[0].row_pitch;
+    for (int y = 1; y <= rect.y1 - rect.y0; ++y)
+      std::memcpy(first + static_cast<std::uint64_t>(y) * pitch, first, width * bytes);
+  }
+}
+
+void set_target(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, std::uint32_t tile) {
+  worker.pass = &pass;
+  TileTarget& target = worker.target;
+  const std::uint32_t in_layer = tile % (grid.columns * grid.rows);
+  target.layer = tile / (grid.columns * grid.rows);
+  target.x = static_cast<int>(in_layer % grid.columns) * kTileSize;
+  target.y = static_cast<int>(in_layer / grid.columns) * kTileSize;
+  for (std::uint32_t s = 0; s < std::clamp<std::uint32_t>(pass.samples, 1, kMaxSamples); ++s) {
+    DepthStencilTarget& out = target.depth_stencil[s];
+    out = {};
+    out.format = depth_format(pass.depth);
+    if (pass.depth.format && target.layer < pass.depth.layer_count) {
+      out.depth = pass.depth.block(0, target.layer, s, 0, 0, 0);
+      out.depth_pitch = pass.depth.level[0].row_pitch;
+      out.width = static_cast<int>(pass.depth.level[0].extent.width);
+      out.height = static_cast<int>(pass.depth.level[0].extent.height);
+    }
+    if (pass.stencil.format && target.layer < pass.stencil.layer_count) {
+      out.stencil = pass.stencil.block(0, target.layer, s, 0, 0, 0);
+      out.stencil_pitch = pass.stencil.level[0].row_pitch;
+    }
+  }
+}
+
+}  // namespace
+
+void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  TileEdges edges;
+  if (!make_tile_edges(primitive, worker.target.x, worker.target.y, plan.raster_samples, edges)) return;
+  const PixelRect rect = rect_in_tile(worker.target, primitive);
+  if (rect.empty()) return;
+  BlockWalk walk{worker, primitive, edges, rect, {}};
+  if (plan.depth_order == TestOrder::kEarly || plan.early_reject) walk.plane = compute_depth_plane(plan, primitive);
+  const int bx0 = rect.x0 / kBlockSize, bx1 = rect.x1 / kBlockSize;
+  const int by0 = rect.y0 / kBlockSize, by1 = rect.y1 / kBlockSize;
+  if ((bx1 - bx0 + 1) * (by1 - by0 + 1) <= 4) {
+    for (int by = by0; by <= by1; ++by)
+      for (int bx = bx0; bx <= bx1; ++bx) walk.visit(bx * kBlockSize, by * kBlockSize, edges.count == 0);
+    return;
+  }
+  base::LaneMask any, all;
+  classify_blocks(edges, plan.raster_samples, any, all);
+  any &= rect_lanes(bx0, by0, bx1, by1);
+  for (; any != 0; any &= any - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(any));
+    walk.visit(lane_x(place) * kBlockSize, lane_y(place) * kBlockSize, (all >> place & 1) != 0);
+  }
+}
+
+void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, std::uint32_t tile,
+                  const std::vector<TileItem>& items) {
+  const base::ScopedFloatMode mode(base::Denormals::kFlush);
+  set_target(worker, pass, grid, tile);
+  worker.draw = nullptr;
+  for (const TileItem& item : items) {
+    if (item.clear) {
+      end_draw(worker);
+      clear_tile(worker, *item.clear);
+      continue;
+    }
+    if (item.draw != worker.draw) {
+      end_draw(worker);
+      begin_draw(worker, item.draw);
+    }
+    for (std::uint32_t i = 0; i < item.count; ++i) rasterize_primitive(worker, item.primitives[item.index[i]]);
+  }
+  end_draw(worker);
+}
+
+}  // namespace vitrine::raster
