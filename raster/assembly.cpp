@@ -47,12 +47,18 @@ std::uint32_t read_index(const DrawCall& draw, std::uint64_t position) {
 Corners corners_of(VkPrimitiveTopology topology, bool last, std::uint32_t i) {
   const bool odd = (i & 1) != 0;
   switch (topology) {
-    case VK_PRIMITIVE_TOPOLOGY_POINT_LIST: return {{i, 0, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST: return {{2 * i, 2 * i + 1, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP: return {{i, i + 1, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY: return {{4 * i + 1, 4 * i + 2, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY: return {{i + 1, i + 2, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST: return {{3 * i, 3 * i + 1, 3 * i + 2}};
+    case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
+      return {{i, 0, 0}};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
+      return {{2 * i, 2 * i + 1, 0}};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
+      return {{i, i + 1, 0}};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+      return {{4 * i + 1, 4 * i + 2, 0}};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
+      return {{i + 1, i + 2, 0}};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
+      return {{3 * i, 3 * i + 1, 3 * i + 2}};
     case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP:
       if (!odd) return {{i, i + 1, i + 2}};
       if (last) return {{i + 1, i, i + 2}};
@@ -60,12 +66,14 @@ Corners corners_of(VkPrimitiveTopology topology, bool last, std::uint32_t i) {
     case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN:
       if (last) return {{0, i + 1, i + 2}};
       return {{i + 1, i + 2, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY: return {{6 * i, 6 * i + 2, 6 * i + 4}};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
+      return {{6 * i, 6 * i + 2, 6 * i + 4}};
     case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY:
       if (!odd) return {{2 * i, 2 * i + 2, 2 * i + 4}};
       if (last) return {{2 * i + 2, 2 * i, 2 * i + 4}};
       return {{2 * i, 2 * i + 4, 2 * i + 2}};
-    default: return {{0, 0, 0}};
+    default:
+      return {{0, 0, 0}};
   }
 }
 

@@ -17,12 +17,18 @@ struct Plane {
 Plane plane_of(const ClipContext& context, std::uint32_t index) {
   const float k = context.half_xy ? 0.5f : 1.0f;
   switch (index) {
-    case 0: return {-k, 0, 0, 1};
-    case 1: return {k, 0, 0, 1};
-    case 2: return {0, -k, 0, 1};
-    case 3: return {0, k, 0, 1};
-    case 4: return {0, 0, 1, context.plan->state->negative_one_to_one ? 1.0f : 0.0f};
-    default: return {0, 0, -1, 1};
+    case 0:
+      return {-k, 0, 0, 1};
+    case 1:
+      return {k, 0, 0, 1};
+    case 2:
+      return {0, -k, 0, 1};
+    case 3:
+      return {0, k, 0, 1};
+    case 4:
+      return {0, 0, 1, context.plan->state->negative_one_to_one ? 1.0f : 0.0f};
+    default:
+      return {0, 0, -1, 1};
   }
 }
 

@@ -32,16 +32,18 @@ base::LaneMask inside_lanes(std::uint32_t count, const std::int32_t* step_x, con
   base::LaneMask mask = 0;
   for (std::size_t i = 0; i < 16; i += n) {
     const V x = hn::Load(d, kRowX + i), y = hn::Load(d, kRowY + i);
-    V row[4], down[4];
+    const V zero = hn::Zero(d);
+    V row[4] = {zero, zero, zero, zero}, down[4] = {zero, zero, zero, zero};
     for (std::uint32_t e = 0; e < count; ++e) {
-      row[e] = hn::Add(hn::Set(d, origin[e]), hn::Add(hn::Mul(x, hn::Set(d, step_x[e])), hn::Mul(y, hn::Set(d, step_y[e]))));
+      row[e] =
+          hn::Add(hn::Set(d, origin[e]), hn::Add(hn::Mul(x, hn::Set(d, step_x[e])), hn::Mul(y, hn::Set(d, step_y[e]))));
       down[e] = hn::Set(d, 2 * step_y[e]);
     }
     for (std::size_t r = 0; r < 4; ++r) {
       V sign = row[0];
       for (std::uint32_t e = 1; e < count; ++e) sign = hn::Or(sign, row[e]);
       for (std::uint32_t e = 0; e < count; ++e) row[e] = hn::Add(row[e], down[e]);
-      const auto outside = hn::Lt(sign, hn::Zero(d));
+      const auto outside = hn::Lt(sign, zero);
       const base::LaneMask bits = base::HWY_NAMESPACE::lanes_mask_bits(d, outside) & base::first_lanes(n);
       mask |= bits << (r * 16 + i);
     }

@@ -22,16 +22,16 @@ inline constexpr std::int32_t kSampleY[kMaxSamples] = {32, 96, 160, 224};
 /// Edges of a primitive relative to the top-left pixel of a tile.
 struct TileEdges {
   std::uint32_t count = 0;
-  std::int32_t step_x[4];             ///< F one pixel to the right, minus F
-  std::int32_t step_y[4];             ///< one pixel down
-  std::int32_t f[kMaxSamples][4];     ///< [sample][edge], at the tile's first pixel
+  std::int32_t step_x[4];          ///< F one pixel to the right, minus F
+  std::int32_t step_y[4];          ///< one pixel down
+  std::int32_t f[kMaxSamples][4];  ///< [sample][edge], at the tile's first pixel
 };
 
 /// False if the tile is outside. `samples` is 1 or 4.
 bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, std::uint32_t samples, TileEdges& edges);
 
-/// Lanes are the pixels of an 8x8 block in quads: quad q at (2*(q%4), 2*(q/4)), see base::kQuadSize. (x, y): first pixel
-/// of the block relative to the tile.
+/// Lanes are the pixels of an 8x8 block in quads: quad q at (2*(q%4), 2*(q/4)), see base::kQuadSize. (x, y): first
+/// pixel of the block relative to the tile.
 base::LaneMask cover_block(const TileEdges& edges, std::uint32_t sample, int x, int y);
 
 /// Which of the tile's 64 blocks may be touched (`any`) and are covered completely in all samples (`all`). Bit i is the

@@ -108,25 +108,41 @@ HWY_INLINE M4 compare(VkCompareOp op, VI value, VI stored) {
     const VF a = lanes_cast<float>(value), b = lanes_cast<float>(stored);
     const auto mask = [&](auto m) { return hn::RebindMask(d, m); };
     switch (op) {
-      case VK_COMPARE_OP_NEVER: return hn::MaskFromVec(hn::Zero(d));
-      case VK_COMPARE_OP_LESS: return mask(hn::Not(hn::Ge(a, b)));
-      case VK_COMPARE_OP_EQUAL: return mask(hn::Not(hn::Or(hn::Lt(a, b), hn::Gt(a, b))));
-      case VK_COMPARE_OP_LESS_OR_EQUAL: return mask(hn::Not(hn::Gt(a, b)));
-      case VK_COMPARE_OP_GREATER: return mask(hn::Not(hn::Le(a, b)));
-      case VK_COMPARE_OP_NOT_EQUAL: return mask(hn::Ne(a, b));
-      case VK_COMPARE_OP_GREATER_OR_EQUAL: return mask(hn::Not(hn::Lt(a, b)));
-      default: return hn::Not(hn::MaskFromVec(hn::Zero(d)));
+      case VK_COMPARE_OP_NEVER:
+        return hn::MaskFromVec(hn::Zero(d));
+      case VK_COMPARE_OP_LESS:
+        return mask(hn::Not(hn::Ge(a, b)));
+      case VK_COMPARE_OP_EQUAL:
+        return mask(hn::Not(hn::Or(hn::Lt(a, b), hn::Gt(a, b))));
+      case VK_COMPARE_OP_LESS_OR_EQUAL:
+        return mask(hn::Not(hn::Gt(a, b)));
+      case VK_COMPARE_OP_GREATER:
+        return mask(hn::Not(hn::Le(a, b)));
+      case VK_COMPARE_OP_NOT_EQUAL:
+        return mask(hn::Ne(a, b));
+      case VK_COMPARE_OP_GREATER_OR_EQUAL:
+        return mask(hn::Not(hn::Lt(a, b)));
+      default:
+        return hn::Not(hn::MaskFromVec(hn::Zero(d)));
     }
   } else {
     switch (op) {
-      case VK_COMPARE_OP_NEVER: return hn::MaskFromVec(hn::Zero(d));
-      case VK_COMPARE_OP_LESS: return hn::Lt(value, stored);
-      case VK_COMPARE_OP_EQUAL: return hn::Eq(value, stored);
-      case VK_COMPARE_OP_LESS_OR_EQUAL: return hn::Le(value, stored);
-      case VK_COMPARE_OP_GREATER: return hn::Gt(value, stored);
-      case VK_COMPARE_OP_NOT_EQUAL: return hn::Ne(value, stored);
-      case VK_COMPARE_OP_GREATER_OR_EQUAL: return hn::Ge(value, stored);
-      default: return hn::Not(hn::MaskFromVec(hn::Zero(d)));
+      case VK_COMPARE_OP_NEVER:
+        return hn::MaskFromVec(hn::Zero(d));
+      case VK_COMPARE_OP_LESS:
+        return hn::Lt(value, stored);
+      case VK_COMPARE_OP_EQUAL:
+        return hn::Eq(value, stored);
+      case VK_COMPARE_OP_LESS_OR_EQUAL:
+        return hn::Not(hn::Gt(value, stored));
+      case VK_COMPARE_OP_GREATER:
+        return hn::Gt(value, stored);
+      case VK_COMPARE_OP_NOT_EQUAL:
+        return hn::Ne(value, stored);
+      case VK_COMPARE_OP_GREATER_OR_EQUAL:
+        return hn::Not(hn::Lt(value, stored));
+      default:
+        return hn::Not(hn::MaskFromVec(hn::Zero(d)));
     }
   }
 }
@@ -173,7 +189,8 @@ base::LaneMask test_quads(const DepthPass& pass, const QuadPositions& quads, con
     const auto nibble = static_cast<std::uint32_t>(mask >> (4 * q)) & 15u;
     left &= ~(base::LaneMask{15} << (4 * q));
     const int x = quads.x[q], y = quads.y[q];
-    std::byte* row = pass.base + static_cast<std::uint64_t>(y) * pass.pitch + std::uint64_t{quads.x[q]} * Format::kBytes;
+    std::byte* row =
+        pass.base + static_cast<std::uint64_t>(y) * pass.pitch + std::uint64_t{quads.x[q]} * Format::kBytes;
     std::uint32_t bits;
     if (x + 1 < pass.width && y + 1 < pass.height) {
       bits = test_quad<Format>(pass, z + 4 * q, nibble, row, row + pass.pitch);
@@ -190,10 +207,14 @@ base::LaneMask test_quads(const DepthPass& pass, const QuadPositions& quads, con
 base::LaneMask test_depth(DepthFormat format, const DepthPass& pass, const QuadPositions& quads, const float* z,
                           base::LaneMask mask) {
   switch (format) {
-    case DepthFormat::kD16: return test_quads<D16>(pass, quads, z, mask);
-    case DepthFormat::kD24: return test_quads<D24>(pass, quads, z, mask);
-    case DepthFormat::kD32: return test_quads<D32>(pass, quads, z, mask);
-    default: return mask;
+    case DepthFormat::kD16:
+      return test_quads<D16>(pass, quads, z, mask);
+    case DepthFormat::kD24:
+      return test_quads<D24>(pass, quads, z, mask);
+    case DepthFormat::kD32:
+      return test_quads<D32>(pass, quads, z, mask);
+    default:
+      return mask;
   }
 }
 
@@ -220,27 +241,43 @@ HWY_EXPORT(clamp_to_range);
 template <class T>
 bool compare_values(VkCompareOp op, T value, T stored) {
   switch (op) {
-    case VK_COMPARE_OP_NEVER: return false;
-    case VK_COMPARE_OP_LESS: return value < stored;
-    case VK_COMPARE_OP_EQUAL: return value == stored;
-    case VK_COMPARE_OP_LESS_OR_EQUAL: return value <= stored;
-    case VK_COMPARE_OP_GREATER: return value > stored;
-    case VK_COMPARE_OP_NOT_EQUAL: return value != stored;
-    case VK_COMPARE_OP_GREATER_OR_EQUAL: return value >= stored;
-    default: return true;
+    case VK_COMPARE_OP_NEVER:
+      return false;
+    case VK_COMPARE_OP_LESS:
+      return value < stored;
+    case VK_COMPARE_OP_EQUAL:
+      return value == stored;
+    case VK_COMPARE_OP_LESS_OR_EQUAL:
+      return value <= stored;
+    case VK_COMPARE_OP_GREATER:
+      return value > stored;
+    case VK_COMPARE_OP_NOT_EQUAL:
+      return value != stored;
+    case VK_COMPARE_OP_GREATER_OR_EQUAL:
+      return value >= stored;
+    default:
+      return true;
   }
 }
 
 std::uint8_t apply(VkStencilOp op, std::uint8_t stored, std::uint8_t reference) {
   switch (op) {
-    case VK_STENCIL_OP_ZERO: return 0;
-    case VK_STENCIL_OP_REPLACE: return reference;
-    case VK_STENCIL_OP_INCREMENT_AND_CLAMP: return stored == 255 ? stored : static_cast<std::uint8_t>(stored + 1);
-    case VK_STENCIL_OP_DECREMENT_AND_CLAMP: return stored == 0 ? stored : static_cast<std::uint8_t>(stored - 1);
-    case VK_STENCIL_OP_INVERT: return static_cast<std::uint8_t>(~stored);
-    case VK_STENCIL_OP_INCREMENT_AND_WRAP: return static_cast<std::uint8_t>(stored + 1);
-    case VK_STENCIL_OP_DECREMENT_AND_WRAP: return static_cast<std::uint8_t>(stored - 1);
-    default: return stored;
+    case VK_STENCIL_OP_ZERO:
+      return 0;
+    case VK_STENCIL_OP_REPLACE:
+      return reference;
+    case VK_STENCIL_OP_INCREMENT_AND_CLAMP:
+      return stored == 255 ? stored : static_cast<std::uint8_t>(stored + 1);
+    case VK_STENCIL_OP_DECREMENT_AND_CLAMP:
+      return stored == 0 ? stored : static_cast<std::uint8_t>(stored - 1);
+    case VK_STENCIL_OP_INVERT:
+      return static_cast<std::uint8_t>(~stored);
+    case VK_STENCIL_OP_INCREMENT_AND_WRAP:
+      return static_cast<std::uint8_t>(stored + 1);
+    case VK_STENCIL_OP_DECREMENT_AND_WRAP:
+      return static_cast<std::uint8_t>(stored - 1);
+    default:
+      return stored;
   }
 }
 
@@ -273,7 +310,7 @@ class StencilQuad {
 
 base::LaneMask depth_only(const PipelinePlan& plan, const DepthStencilTarget& target, const QuadPositions& quads,
                           const float* z, base::LaneMask mask, bool write) {
-  const DepthPass pass{target.depth,  target.depth_pitch,         target.width,
+  const DepthPass pass{target.depth,  target.depth_pitch,        target.width,
                        target.height, plan.state->depth_compare, write && plan.depth_write};
   return HWY_DYNAMIC_DISPATCH(test_depth)(target.format, pass, quads, z, mask);
 }
@@ -308,12 +345,16 @@ DepthFormat depth_format(const texel::ImageView& view) {
   if (!view.format) return DepthFormat::kNone;
   switch (view.format->format) {
     case VK_FORMAT_D16_UNORM:
-    case VK_FORMAT_D16_UNORM_S8_UINT: return DepthFormat::kD16;
+    case VK_FORMAT_D16_UNORM_S8_UINT:
+      return DepthFormat::kD16;
     case VK_FORMAT_X8_D24_UNORM_PACK32:
-    case VK_FORMAT_D24_UNORM_S8_UINT: return DepthFormat::kD24;
+    case VK_FORMAT_D24_UNORM_S8_UINT:
+      return DepthFormat::kD24;
     case VK_FORMAT_D32_SFLOAT:
-    case VK_FORMAT_D32_SFLOAT_S8_UINT: return DepthFormat::kD32;
-    default: return DepthFormat::kNone;
+    case VK_FORMAT_D32_SFLOAT_S8_UINT:
+      return DepthFormat::kD32;
+    default:
+      return DepthFormat::kNone;
   }
 }
 
@@ -329,8 +370,7 @@ base::LaneMask test_depth_stencil(const PipelinePlan& plan, const DepthStencilTa
   for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
     const auto nibble = static_cast<std::uint32_t>(mask >> (4 * q)) & 15u;
     if (nibble == 0) continue;
-    const std::uint32_t bits =
-        stencil_quad(plan, target, quads, q, (front >> q & 1) != 0, z, reference, nibble, write);
+    const std::uint32_t bits = stencil_quad(plan, target, quads, q, (front >> q & 1) != 0, z, reference, nibble, write);
     result |= base::LaneMask{bits} << (4 * q);
   }
   return result;

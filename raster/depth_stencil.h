@@ -1,5 +1,5 @@
-// Depth and stencil tests and writes (Vulkan 1.3.239, Stencil Test, Depth Test; lavapipe-rasterization.md 5.3, 5.5), quad
-// by quad in order, so that quads of one wave may lie on the same pixels.
+// Depth and stencil tests and writes (Vulkan 1.3.239, Stencil Test, Depth Test; lavapipe-rasterization.md 5.3, 5.5),
+// quad by quad in order, so that quads of one wave may lie on the same pixels.
 #pragma once
 
 #include <cstdint>

@@ -20,8 +20,8 @@ struct ShadeRun {
   TileWorker& worker;
   const PipelinePlan& plan;
   WavePlanes planes;
-  LaneMask used;             ///< lanes of packed quads
-  LaneMask pixels;           ///< lanes with a covered sample of this run
+  LaneMask used;    ///< lanes of packed quads
+  LaneMask pixels;  ///< lanes with a covered sample of this run
   std::uint32_t first_sample, end_sample;
   LaneMask kept[kMaxSamples];  ///< result: coverage after the shader
 
@@ -64,8 +64,10 @@ const WavePoints& points_of(ShadeRun& run, spirv::SampleLocation location, spirv
   if (location == spirv::SampleLocation::kCenter || run.plan.raster_samples == 1) return worker.center;
   if (location == spirv::SampleLocation::kSample && !run.single()) return worker.center;
   if (prepared != location) {
-    if (location == spirv::SampleLocation::kCentroid) set_centroids(run, worker.place);
-    else set_points(worker.wave, sample_x(run.first_sample), sample_y(run.first_sample), worker.place);
+    if (location == spirv::SampleLocation::kCentroid)
+      set_centroids(run, worker.place);
+    else
+      set_points(worker.wave, sample_x(run.first_sample), sample_y(run.first_sample), worker.place);
     prepared = location;
   }
   return worker.place;
@@ -76,8 +78,8 @@ void interpolate_varyings(ShadeRun& run) {
   TileWorker& worker = run.worker;
   auto prepared = spirv::SampleLocation::kCenter;
   const std::uint32_t smooth = plan.perspective_count + plan.linear_count;
-  for (const auto wanted : {spirv::SampleLocation::kCenter, spirv::SampleLocation::kCentroid,
-                            spirv::SampleLocation::kSample}) {
+  for (const auto wanted :
+       {spirv::SampleLocation::kCenter, spirv::SampleLocation::kCentroid, spirv::SampleLocation::kSample}) {
     for (std::uint32_t k = 0; k < smooth; ++k) {
       const Varying& varying = plan.varying[k];
       if (varying.location != wanted) continue;
@@ -130,8 +132,7 @@ void per_quad(ShadeRun& run, std::uint32_t reg, F&& value) {
   if (reg == kNoReg) return;
   WaveRegister& out = run.worker.runner.input(reg);
   const PackedWave& wave = run.worker.wave;
-  for (std::uint32_t q = 0; q < wave.quads; ++q)
-    std::fill_n(out.lane + 4 * q, 4, value(*wave.primitive[wave.slot[q]]));
+  for (std::uint32_t q = 0; q < wave.quads; ++q) std::fill_n(out.lane + 4 * q, 4, value(*wave.primitive[wave.slot[q]]));
 }
 
 void set_sample_inputs(ShadeRun& run) {
@@ -225,8 +226,7 @@ void test_late(ShadeRun& run) {
   TileWorker& worker = run.worker;
   const PipelinePlan& plan = run.plan;
   const std::uint32_t front = facing_bits(worker.wave);
-  const std::uint32_t* reference =
-      plan.frag.stencil != kNoReg ? worker.runner.output(plan.frag.stencil).lane : nullptr;
+  const std::uint32_t* reference = plan.frag.stencil != kNoReg ? worker.runner.output(plan.frag.stencil).lane : nullptr;
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
     if (!run.kept[s]) continue;
     if (plan.depth_test) late_depth(run, s);
@@ -238,8 +238,10 @@ void test_late(ShadeRun& run) {
 /// Four output registers next to each other; components that are not written are 0.
 void collect_color(const ShadeRun& run, const std::array<std::uint32_t, 4>& regs, WaveRegister out[4]) {
   for (std::uint32_t c = 0; c < 4; ++c) {
-    if (regs[c] == kNoReg) splat(out[c], 0);
-    else out[c] = run.worker.runner.output(regs[c]);
+    if (regs[c] == kNoReg)
+      splat(out[c], 0);
+    else
+      out[c] = run.worker.runner.output(regs[c]);
   }
   if (run.plan.state->alpha_to_one) splat(out[3], base::bits_of(1.0f));
 }
@@ -290,7 +292,8 @@ void shade_wave(TileWorker& worker) {
   PackedWave& wave = worker.wave;
   const PipelinePlan& plan = *worker.draw->plan;
   ShadeRun run{worker, plan, {}, base::first_lanes(4 * wave.quads), 0, 0, plan.samples, {}};
-  for (std::uint32_t slot = 0; slot < wave.slots; ++slot) compute_planes(plan, *wave.primitive[slot], worker.planes[slot]);
+  for (std::uint32_t slot = 0; slot < wave.slots; ++slot)
+    compute_planes(plan, *wave.primitive[slot], worker.planes[slot]);
   run.planes.sets = worker.planes;
   run.planes.slots = wave.slots;
   run.planes.quads = wave.quads;

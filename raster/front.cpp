@@ -78,7 +78,8 @@ std::uint32_t gather_vertices(const Chunk& chunk, FrontScratch& s) {
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
     const RunSpan span = run_span(shape, chunk.runs[r]);
     if (span.center) add_position(call, chunk.runs[r], 0, dedupe, s, entry++, count);
-    for (std::uint32_t p = span.low; p < span.high; ++p) add_position(call, chunk.runs[r], p, dedupe, s, entry++, count);
+    for (std::uint32_t p = span.low; p < span.high; ++p)
+      add_position(call, chunk.runs[r], p, dedupe, s, entry++, count);
   }
   return count;
 }

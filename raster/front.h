@@ -33,7 +33,7 @@ struct FrontScratch {
   std::vector<std::uint16_t> slot;
   // per vertex (slot) of the chunk
   std::vector<std::uint32_t> vertex, instance;
-  std::vector<float> clip;  ///< 4 each
+  std::vector<float> clip;                          ///< 4 each
   std::vector<float> clip_distance, cull_distance;  ///< kMaxClipDistances each
   std::vector<float> point_size;
   std::vector<std::uint32_t> layer, viewport_index;

@@ -150,8 +150,8 @@ void assemble_triangle(Assembler& a, const std::uint32_t slot[3]) {
   choose_layer_and_viewport(a, slot[provoking]);
   if (a.plan.state->polygon_mode == VK_POLYGON_MODE_POINT && a.plan.out.point_size != kNoReg)
     a.setup.point_size = s.point_size[slot[0]];
-  const bool simple = (c0 | c1 | c2) == 0 && !a.plan.per_vertex_viewport && !a.plan.bias_in_vertices &&
-                      a.plan.out.cull_count == 0;
+  const bool simple =
+      (c0 | c1 | c2) == 0 && !a.plan.per_vertex_viewport && !a.plan.bias_in_vertices && a.plan.out.cull_count == 0;
   if (simple) {
     const auto corner = [&](std::uint32_t i) {
       return SetupVertex{s.records + std::size_t{i} * a.plan.vertex_stride, s.snapped[i * 2], s.snapped[i * 2 + 1]};
@@ -209,9 +209,12 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
       std::uint32_t slot[3];
       for (std::uint32_t c = 0; c < shape.corners; ++c) slot[c] = scratch.slot[first_entry + span.entry(corners.at[c])];
       a.setup.id = run.first_id + i;
-      if (shape.corners == 3) assemble_triangle(a, slot);
-      else if (shape.corners == 2) assemble_line(a, slot);
-      else assemble_point(a, slot[0]);
+      if (shape.corners == 3)
+        assemble_triangle(a, slot);
+      else if (shape.corners == 2)
+        assemble_line(a, slot);
+      else
+        assemble_point(a, slot[0]);
     }
     first_entry += span.count();
   }

@@ -31,9 +31,9 @@ DepthPlane compute_depth_plane(const PipelinePlan& plan, const Primitive& primit
 
 /// Lanes of a wave in the framebuffer, and the primitive each quad belongs to.
 struct WavePlanes {
-  const PlaneSet* sets;             ///< by slot
-  std::uint32_t slots = 1;          ///< distinct primitives
-  std::uint32_t quads = 0;          ///< in use, from the first
+  const PlaneSet* sets;     ///< by slot
+  std::uint32_t slots = 1;  ///< distinct primitives
+  std::uint32_t quads = 0;  ///< in use, from the first
   std::uint8_t slot[base::kQuadsPerWave];
 };
 

@@ -150,8 +150,8 @@ struct Pass::Impl {
       record->plan = plan;
     }
     spirv::Fault& fault = call.fault ? *call.fault : unreported;
-    record->vertex = bind_stage(call.vertex, call.native_vertex, call.vertex_resources, fault,
-                                last ? last->vertex : Stage{});
+    record->vertex =
+        bind_stage(call.vertex, call.native_vertex, call.vertex_resources, fault, last ? last->vertex : Stage{});
     record->fragment = bind_stage(call.fragment, call.native_fragment, call.fragment_resources, fault,
                                   last ? last->fragment : Stage{});
     last = record;

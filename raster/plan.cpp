@@ -19,13 +19,20 @@ const ShaderInterface* interface_of(const spirv::Shader* shader, const NativeSha
 
 VertexInput::Source source_of(BuiltIn built_in) {
   switch (built_in) {
-    case BuiltIn::kVertexIndex: return VertexInput::Source::kVertexIndex;
-    case BuiltIn::kInstanceIndex: return VertexInput::Source::kInstanceIndex;
-    case BuiltIn::kBaseVertex: return VertexInput::Source::kBaseVertex;
-    case BuiltIn::kBaseInstance: return VertexInput::Source::kBaseInstance;
-    case BuiltIn::kDrawIndex: return VertexInput::Source::kDrawIndex;
-    case BuiltIn::kViewIndex: return VertexInput::Source::kViewIndex;
-    default: return VertexInput::Source::kZero;
+    case BuiltIn::kVertexIndex:
+      return VertexInput::Source::kVertexIndex;
+    case BuiltIn::kInstanceIndex:
+      return VertexInput::Source::kInstanceIndex;
+    case BuiltIn::kBaseVertex:
+      return VertexInput::Source::kBaseVertex;
+    case BuiltIn::kBaseInstance:
+      return VertexInput::Source::kBaseInstance;
+    case BuiltIn::kDrawIndex:
+      return VertexInput::Source::kDrawIndex;
+    case BuiltIn::kViewIndex:
+      return VertexInput::Source::kViewIndex;
+    default:
+      return VertexInput::Source::kZero;
   }
 }
 
@@ -63,8 +70,12 @@ void plan_vertex_outputs(PipelinePlan& plan) {
   out.cull_distance.fill(kNoReg);
   for (const InterfaceSlot& slot : plan.vertex->outputs) {
     switch (slot.built_in) {
-      case BuiltIn::kPosition: out.position[slot.component & 3] = slot.reg; break;
-      case BuiltIn::kPointSize: out.point_size = slot.reg; break;
+      case BuiltIn::kPosition:
+        out.position[slot.component & 3] = slot.reg;
+        break;
+      case BuiltIn::kPointSize:
+        out.point_size = slot.reg;
+        break;
       case BuiltIn::kClipDistance:
         out.clip_distance[slot.component & 7] = slot.reg;
         out.clip_count = std::max<std::uint32_t>(out.clip_count, (slot.component & 7u) + 1);
@@ -73,9 +84,14 @@ void plan_vertex_outputs(PipelinePlan& plan) {
         out.cull_distance[slot.component & 7] = slot.reg;
         out.cull_count = std::max<std::uint32_t>(out.cull_count, (slot.component & 7u) + 1);
         break;
-      case BuiltIn::kLayer: out.layer = slot.reg; break;
-      case BuiltIn::kViewportIndex: out.viewport_index = slot.reg; break;
-      default: break;
+      case BuiltIn::kLayer:
+        out.layer = slot.reg;
+        break;
+      case BuiltIn::kViewportIndex:
+        out.viewport_index = slot.reg;
+        break;
+      default:
+        break;
     }
   }
 }
@@ -86,8 +102,10 @@ bool is_varying(const InterfaceSlot& slot) {
     case BuiltIn::kClipDistance:
     case BuiltIn::kCullDistance:
     case BuiltIn::kLayer:
-    case BuiltIn::kViewportIndex: return true;
-    default: return false;
+    case BuiltIn::kViewportIndex:
+      return true;
+    default:
+      return false;
   }
 }
 
@@ -103,7 +121,8 @@ void add_varyings(PipelinePlan& plan, Interpolation interpolation, std::uint32_t
   for (const InterfaceSlot& slot : plan.fragment->inputs) {
     if (!is_varying(slot) || plan.varying_count() == kMaxVaryings) continue;
     const bool raw = slot.built_in == BuiltIn::kLayer || slot.built_in == BuiltIn::kViewportIndex;
-    const Interpolation wanted = raw || slot.type != spirv::BaseType::kFloat ? Interpolation::kFlat : slot.interpolation;
+    const Interpolation wanted =
+        raw || slot.type != spirv::BaseType::kFloat ? Interpolation::kFlat : slot.interpolation;
     if (wanted != interpolation) continue;
     Varying& varying = plan.varying[plan.varying_count()];
     varying = {matching_output(*plan.vertex, slot), slot.reg, interpolation, slot.sample_location};
@@ -115,28 +134,56 @@ void plan_fragment_inputs(PipelinePlan& plan) {
   FragmentRegisters& frag = plan.frag;
   for (const InterfaceSlot& slot : plan.fragment->inputs) {
     switch (slot.built_in) {
-      case BuiltIn::kFragCoord: frag.frag_coord[slot.component & 3] = slot.reg; break;
-      case BuiltIn::kPointCoord: frag.point_coord[slot.component & 1] = slot.reg; break;
-      case BuiltIn::kSamplePosition: frag.sample_position[slot.component & 1] = slot.reg; break;
-      case BuiltIn::kFrontFacing: frag.front_facing = slot.reg; break;
-      case BuiltIn::kSampleId: frag.sample_id = slot.reg; break;
-      case BuiltIn::kSampleMask: frag.sample_mask_in = slot.reg; break;
-      case BuiltIn::kPrimitiveId: frag.primitive_id = slot.reg; break;
-      case BuiltIn::kHelperInvocation: frag.helper = slot.reg; break;
-      case BuiltIn::kViewIndex: frag.view_index = slot.reg; break;
-      default: break;
+      case BuiltIn::kFragCoord:
+        frag.frag_coord[slot.component & 3] = slot.reg;
+        break;
+      case BuiltIn::kPointCoord:
+        frag.point_coord[slot.component & 1] = slot.reg;
+        break;
+      case BuiltIn::kSamplePosition:
+        frag.sample_position[slot.component & 1] = slot.reg;
+        break;
+      case BuiltIn::kFrontFacing:
+        frag.front_facing = slot.reg;
+        break;
+      case BuiltIn::kSampleId:
+        frag.sample_id = slot.reg;
+        break;
+      case BuiltIn::kSampleMask:
+        frag.sample_mask_in = slot.reg;
+        break;
+      case BuiltIn::kPrimitiveId:
+        frag.primitive_id = slot.reg;
+        break;
+      case BuiltIn::kHelperInvocation:
+        frag.helper = slot.reg;
+        break;
+      case BuiltIn::kViewIndex:
+        frag.view_index = slot.reg;
+        break;
+      default:
+        break;
     }
   }
   for (const InterfaceSlot& slot : plan.fragment->outputs) {
     switch (slot.built_in) {
       case BuiltIn::kNone:
-        if (slot.index == 1) frag.color_second[slot.component & 3] = slot.reg;
-        else if (slot.location < kMaxColorAttachments) frag.color[slot.location][slot.component & 3] = slot.reg;
+        if (slot.index == 1)
+          frag.color_second[slot.component & 3] = slot.reg;
+        else if (slot.location < kMaxColorAttachments)
+          frag.color[slot.location][slot.component & 3] = slot.reg;
         break;
-      case BuiltIn::kFragDepth: frag.depth = slot.reg; break;
-      case BuiltIn::kFragStencilRef: frag.stencil = slot.reg; break;
-      case BuiltIn::kSampleMask: frag.sample_mask = slot.reg; break;
-      default: break;
+      case BuiltIn::kFragDepth:
+        frag.depth = slot.reg;
+        break;
+      case BuiltIn::kFragStencilRef:
+        frag.stencil = slot.reg;
+        break;
+      case BuiltIn::kSampleMask:
+        frag.sample_mask = slot.reg;
+        break;
+      default:
+        break;
     }
   }
 }
@@ -201,8 +248,10 @@ void plan_viewports(PipelinePlan& plan, const PassDesc& pass) {
 
 bool stencil_writes(const StencilFace& face) { return face.write_mask != 0; }
 
-bool monotone(VkCompareOp op) { return op == VK_COMPARE_OP_LESS || op == VK_COMPARE_OP_LESS_OR_EQUAL ||
-                                       op == VK_COMPARE_OP_GREATER || op == VK_COMPARE_OP_GREATER_OR_EQUAL; }
+bool monotone(VkCompareOp op) {
+  return op == VK_COMPARE_OP_LESS || op == VK_COMPARE_OP_LESS_OR_EQUAL || op == VK_COMPARE_OP_GREATER ||
+         op == VK_COMPARE_OP_GREATER_OR_EQUAL;
+}
 
 /// lavapipe-rasterization.md 5.2, 5.4. What ends late there and could be tested early without being seen is rejected
 /// early and decided late here.
@@ -253,8 +302,8 @@ void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {
 void plan_colors(PipelinePlan& plan, const PassDesc& pass) {
   plan.color_count = std::min(pass.color_count, kMaxColorAttachments);
   const ShaderInterface* fragment = plan.fragment;
-  plan.shades = fragment && (fragment->writes_memory || plan.may_kill || plan.frag.depth != kNoReg ||
-                             plan.frag.stencil != kNoReg);
+  plan.shades = fragment &&
+                (fragment->writes_memory || plan.may_kill || plan.frag.depth != kNoReg || plan.frag.stencil != kNoReg);
   for (std::uint32_t i = 0; i < plan.color_count; ++i) {
     plan.writer[i] = {};
     const auto& color = plan.frag.color[i];
@@ -288,17 +337,28 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
 
 TopologyShape topology_shape(VkPrimitiveTopology topology) {
   switch (topology) {
-    case VK_PRIMITIVE_TOPOLOGY_POINT_LIST: return {1, 1, 1, false};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST: return {2, 2, 2, false};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP: return {2, 1, 2, false};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST: return {3, 3, 3, false};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP: return {3, 1, 3, false};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN: return {3, 1, 3, true};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY: return {4, 4, 2, false};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY: return {4, 1, 2, false};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY: return {6, 6, 3, false};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY: return {6, 2, 3, false};
-    default: return {1, 1, 0, false};
+    case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
+      return {1, 1, 1, false};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
+      return {2, 2, 2, false};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
+      return {2, 1, 2, false};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
+      return {3, 3, 3, false};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP:
+      return {3, 1, 3, false};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN:
+      return {3, 1, 3, true};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+      return {4, 4, 2, false};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
+      return {4, 1, 2, false};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
+      return {6, 6, 3, false};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY:
+      return {6, 2, 3, false};
+    default:
+      return {1, 1, 0, false};
   }
 }
 

@@ -44,7 +44,16 @@ struct Varying {
 enum class TestOrder : std::uint8_t { kNone, kEarly, kLate };
 
 struct VertexInput {
-  enum class Source : std::uint8_t { kAttribute, kVertexIndex, kInstanceIndex, kBaseVertex, kBaseInstance, kDrawIndex, kViewIndex, kZero };
+  enum class Source : std::uint8_t {
+    kAttribute,
+    kVertexIndex,
+    kInstanceIndex,
+    kBaseVertex,
+    kBaseInstance,
+    kDrawIndex,
+    kViewIndex,
+    kZero
+  };
   Source source = Source::kZero;
   std::uint8_t component = 0;
   std::uint8_t attribute = 0;  ///< index in State::attribute
@@ -88,9 +97,10 @@ struct PipelinePlan {
   FragmentRegisters frag;
 
   std::array<ViewportTransform, kMaxViewports> viewport;
-  std::array<PixelRect, kMaxViewports> region;  ///< framebuffer and scissor (3.3, without the hidden viewport rectangle)
-  float pixel_offset = 0.5f;                    ///< `po` of 3.1
-  bool per_vertex_viewport = false;             ///< transform form B, viewport chosen by the primitive
+  std::array<PixelRect, kMaxViewports>
+      region;                        ///< framebuffer and scissor (3.3, without the hidden viewport rectangle)
+  float pixel_offset = 0.5f;         ///< `po` of 3.1
+  bool per_vertex_viewport = false;  ///< transform form B, viewport chosen by the primitive
   bool draws_points = false, draws_lines = false;
   bool bias_in_vertices = false;  ///< polygon mode LINE / POINT: bias per vertex (5.1, second form)
   bool depth_bias = false;
@@ -105,8 +115,8 @@ struct PipelinePlan {
   bool early_reject = false;  ///< late order: failing now means failing later, so such quads need not be shaded
   std::uint32_t color_count = 0;
   std::array<ColorWriter, kMaxColorAttachments> writer;
-  bool shades = true;         ///< the fragment shader's run can be observed
-  bool may_kill = false;      ///< discard, sample mask output, alpha to coverage
+  bool shades = true;     ///< the fragment shader's run can be observed
+  bool may_kill = false;  ///< discard, sample mask output, alpha to coverage
 };
 
 /// Fills `plan`. False if nothing can be drawn (a sample mask of 0, no samples).

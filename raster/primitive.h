@@ -18,10 +18,11 @@ enum class PrimitiveKind : std::uint8_t { kTriangle, kLine, kPoint };
 /// Positions are 24.8 fixed point relative to the sample grid of 3.1 (pixel centres at multiples of 256 when
 /// single-sampled, pixel corners when multisampled).
 struct Primitive {
-  std::int32_t x[4], y[4];  ///< triangle: 3 corners with positive area; line: 4 corners; point: x0, y0, x1, y1 in [0], [1]
-  const Vertex* v[3];       ///< triangle: interpolation order (2.1); line: both ends; point: one
-  float depth_offset;       ///< depth bias (5.1)
-  std::uint32_t id;         ///< gl_PrimitiveID
+  std::int32_t x[4],
+      y[4];            ///< triangle: 3 corners with positive area; line: 4 corners; point: x0, y0, x1, y1 in [0], [1]
+  const Vertex* v[3];  ///< triangle: interpolation order (2.1); line: both ends; point: one
+  float depth_offset;  ///< depth bias (5.1)
+  std::uint32_t id;    ///< gl_PrimitiveID
   std::uint16_t x0, y0, x1, y1;  ///< pixels that can be covered, inclusive, cut to the draw region
   std::uint16_t layer;
   std::uint8_t viewport;

@@ -86,8 +86,8 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   const auto minus = [](std::int32_t a, std::int32_t b) {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
   };
-  const std::int64_t area = std::int64_t{minus(v0.x, v1.x)} * minus(v2.y, v0.y) -
-                            std::int64_t{minus(v2.x, v0.x)} * minus(v0.y, v1.y);
+  const std::int64_t area =
+      std::int64_t{minus(v0.x, v1.x)} * minus(v2.y, v0.y) - std::int64_t{minus(v2.x, v0.x)} * minus(v0.y, v1.y);
   if (area == 0) return;
   const bool front = (area > 0) == (state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE);
   if (cull_facing(state, front)) return;
@@ -105,8 +105,10 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   Primitive& p = context.out->emplace_back();
   const SetupVertex* order[3] = {&v0, &v1, &v2};
   if (area < 0) {  // 2.1: the provoking vertex keeps its place
-    if (state.provoking_vertex_last) std::swap(order[0], order[1]);
-    else std::swap(order[1], order[2]);
+    if (state.provoking_vertex_last)
+      std::swap(order[0], order[1]);
+    else
+      std::swap(order[1], order[2]);
   }
   for (int i = 0; i < 3; ++i) {
     p.v[i] = order[i]->record;

@@ -18,9 +18,7 @@ struct DiamondEnd {
   float x, y;
   bool near_center() const { return static_cast<double>(std::fabs(x) + std::fabs(y)) < 0.5; }
 };
-DiamondEnd diamond_end(const Vertex* v) {
-  return {v[0] - std::floor(v[0]) - 0.5f, v[1] - std::floor(v[1]) - 0.5f};
-}
+DiamondEnd diamond_end(const Vertex* v) { return {v[0] - std::floor(v[0]) - 0.5f, v[1] - std::floor(v[1]) - 0.5f}; }
 
 struct Offset {
   float x = 0, y = 0;
@@ -39,14 +37,22 @@ Ends bresenham_x_major(const Vertex* v1, const Vertex* v2, float dx, float dy) {
   if (d2.y == -0.5f && dy < 0) d2.y = 0.5f;
   const auto crosses = [](float y) { return y > 0 && y < 1; };
   bool draw_start, draw_end;
-  if (d1.near_center()) draw_start = true;
-  else if (sign(d1.x) == sign(-dx)) draw_start = false;
-  else if (sign(-d1.y) != sign(dy)) draw_start = true;
-  else draw_start = crosses(fraction(v1[1]) + d1.x * m);
-  if (d2.near_center()) draw_end = false;
-  else if (sign(d2.x) != sign(-dx)) draw_end = false;
-  else if (sign(-d2.y) == sign(dy)) draw_end = true;
-  else draw_end = crosses(fraction(v2[1]) + d2.x * m);
+  if (d1.near_center())
+    draw_start = true;
+  else if (sign(d1.x) == sign(-dx))
+    draw_start = false;
+  else if (sign(-d1.y) != sign(dy))
+    draw_start = true;
+  else
+    draw_start = crosses(fraction(v1[1]) + d1.x * m);
+  if (d2.near_center())
+    draw_end = false;
+  else if (sign(d2.x) != sign(-dx))
+    draw_end = false;
+  else if (sign(-d2.y) == sign(dy))
+    draw_end = true;
+  else
+    draw_end = crosses(fraction(v2[1]) + d2.x * m);
   const bool will_start = sign(-d1.x) != sign(dx);
   const bool will_end = sign(d2.x) == sign(-dx) || d2.x == 0;
   Ends ends{v1, v2, {}, {}};

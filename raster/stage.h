@@ -29,9 +29,7 @@ struct Stage {
 class StageRunner {
  public:
   void bind(const Stage& stage);
-  base::WaveRegister& input(std::uint32_t reg) {
-    return stage_.native ? native_inputs_[reg] : runner_.input(reg);
-  }
+  base::WaveRegister& input(std::uint32_t reg) { return stage_.native ? native_inputs_[reg] : runner_.input(reg); }
   const base::WaveRegister& output(std::uint32_t reg) const {
     return stage_.native ? native_outputs_[reg] : runner_.output(reg);
   }

@@ -155,8 +155,8 @@ void clear_tile(const TileWorker& worker, const ClearCommand& clear) {
   const texel::ImageView& view = *clear.view;
   const std::size_t bytes = view.format->block_bytes, width = static_cast<std::size_t>(rect.x1 - rect.x0 + 1);
   for (std::uint32_t s = 0; s < std::max<std::uint32_t>(view.samples, 1); ++s) {
-    std::byte* first = view.block(0, target.layer, s, static_cast<std::uint32_t>(rect.x0),
-                                  static_cast<std::uint32_t>(rect.y0), 0);
+    std::byte* first =
+        view.block(0, target.layer, s, static_cast<std::uint32_t>(rect.x0), static_cast<std::uint32_t>(rect.y0), 0);
     fill_row(first, width, bytes, clear.value.bytes.data());
     const std::uint64_t pitch = view.level[0].row_pitch;
     for (int y = 1; y <= rect.y1 - rect.y0; ++y)

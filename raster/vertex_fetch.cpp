@@ -69,13 +69,19 @@ std::uint32_t convert(const Channel& channel, std::uint32_t raw) {
       const float scale = 1.0f / static_cast<float>((std::uint64_t{1} << (bits - 1)) - 1);
       return bits_of(std::max(-1.0f, static_cast<float>(sign_extend(raw, bits)) * scale));
     }
-    case Numeric::kUscaled: return bits_of(static_cast<float>(raw));
-    case Numeric::kSscaled: return bits_of(static_cast<float>(sign_extend(raw, bits)));
-    case Numeric::kSint: return static_cast<std::uint32_t>(sign_extend(raw, bits));
-    case Numeric::kSfloat: return bits == 16 ? bits_of(base::half_to_float(static_cast<std::uint16_t>(raw))) : raw;
+    case Numeric::kUscaled:
+      return bits_of(static_cast<float>(raw));
+    case Numeric::kSscaled:
+      return bits_of(static_cast<float>(sign_extend(raw, bits)));
+    case Numeric::kSint:
+      return static_cast<std::uint32_t>(sign_extend(raw, bits));
+    case Numeric::kSfloat:
+      return bits == 16 ? bits_of(base::half_to_float(static_cast<std::uint16_t>(raw))) : raw;
     // Small unsigned floats are the upper bits of a half: 11 bits lack 4 low ones, 10 bits 5.
-    case Numeric::kUfloat: return bits_of(base::half_to_float(static_cast<std::uint16_t>(raw << (15 - bits))));
-    default: return raw;
+    case Numeric::kUfloat:
+      return bits_of(base::half_to_float(static_cast<std::uint16_t>(raw << (15 - bits))));
+    default:
+      return raw;
   }
 }
 
@@ -96,7 +102,8 @@ void fetch_component(const FormatDesc& format, const Addresses& addresses, std::
     return;
   }
   for (std::uint32_t i = 0; i < count; ++i)
-    out.lane[i] = addresses.at[i] ? convert(channel, static_cast<std::uint32_t>(read_bits(addresses.at[i], channel))) : 0;
+    out.lane[i] =
+        addresses.at[i] ? convert(channel, static_cast<std::uint32_t>(read_bits(addresses.at[i], channel))) : 0;
 }
 
 void fill_built_in(const DrawRecord& draw, const VertexInput& input, const VertexLanes& lanes, std::uint32_t view,
@@ -105,17 +112,27 @@ void fill_built_in(const DrawRecord& draw, const VertexInput& input, const Verte
   const DrawCall& call = draw.call;
   const auto splat = [&](std::uint32_t value) { std::fill_n(out.lane, lanes.count, value); };
   switch (input.source) {
-    case Source::kVertexIndex: std::copy_n(lanes.vertex, lanes.count, out.lane); break;
+    case Source::kVertexIndex:
+      std::copy_n(lanes.vertex, lanes.count, out.lane);
+      break;
     case Source::kInstanceIndex:
       for (std::uint32_t i = 0; i < lanes.count; ++i) out.lane[i] = call.first_instance + lanes.instance[i];
       break;
     case Source::kBaseVertex:
       splat(call.index_data ? static_cast<std::uint32_t>(call.vertex_offset) : call.first);
       break;
-    case Source::kBaseInstance: splat(call.first_instance); break;
-    case Source::kDrawIndex: splat(call.draw_index); break;
-    case Source::kViewIndex: splat(view); break;
-    default: splat(0); break;
+    case Source::kBaseInstance:
+      splat(call.first_instance);
+      break;
+    case Source::kDrawIndex:
+      splat(call.draw_index);
+      break;
+    case Source::kViewIndex:
+      splat(view);
+      break;
+    default:
+      splat(0);
+      break;
   }
 }
 

@@ -17,10 +17,10 @@ struct TransformedWave {
   alignas(64) float x[base::kWaveWidth];
   alignas(64) float y[base::kWaveWidth];
   alignas(64) float z[base::kWaveWidth];
-  alignas(64) float w[base::kWaveWidth];                     ///< 1 / clip w
-  alignas(64) std::int32_t snapped_x[base::kWaveWidth];      ///< 24.8
-  alignas(64) std::int32_t snapped_y[base::kWaveWidth];      ///< 24.8
-  alignas(64) ClipCode code[base::kWaveWidth];               ///< planes 0..5
+  alignas(64) float w[base::kWaveWidth];                 ///< 1 / clip w
+  alignas(64) std::int32_t snapped_x[base::kWaveWidth];  ///< 24.8
+  alignas(64) std::int32_t snapped_y[base::kWaveWidth];  ///< 24.8
+  alignas(64) ClipCode code[base::kWaveWidth];           ///< planes 0..5
 };
 
 struct TransformParameters {
