@@ -24,6 +24,7 @@ struct Marker {
   std::vector<Definition> definitions;
   std::vector<bool> live;
   std::vector<bool> array_read;
+  std::vector<bool> undefined;  ///< values of Undef
   std::vector<ValueId> work;
 
   void index(NodeList& list) {
@@ -33,6 +34,7 @@ struct Marker {
     each_node(list, [&](Node& node) {
       if (node.kind == Kind::kInstr) {
         if (node.instr.result != kNoValue) definitions[node.instr.result] = {Definition::Role::kInstr, 0, &node};
+        if (node.instr.op == Op::kUndef) undefined[node.instr.result] = true;
         if (node.instr.op == Op::kLoadArray) array_read[node.instr.data[0]] = true;
       }
       put(node.results, node.kind == Kind::kIf ? Definition::Role::kIfResult : Definition::Role::kLoopResult, &node);
@@ -41,14 +43,10 @@ struct Marker {
     });
   }
 
-  bool is_undefined(const Src& src) const {
-    const Definition& def = definitions[src.value];
-    return def.role == Definition::Role::kInstr && def.node->instr.op == Op::kUndef;
-  }
 
   /// Must this instruction stay whatever uses its result?
   bool needed(const Instr& instr) const {
-    if (instr.op == Op::kStoreOutput && is_undefined(instr.src[0])) return false;  // section 10: dropped
+    if (instr.op == Op::kStoreOutput && undefined[instr.src[0].value]) return false;  // section 10: dropped
     if (instr.op == Op::kStoreArray && !array_read[instr.data[0]]) return false;
     return has_effect(instr);
   }
@@ -235,6 +233,7 @@ void remove_dead(Function& function) {
                 std::vector<Definition>(count),
                 std::vector<bool>(count, false),
                 std::vector<bool>(function.arrays.size(), false),
+                std::vector<bool>(count, false),
                 {}};
   marker.index(function.body);
   marker.mark(function.body);
