@@ -5,6 +5,7 @@
 #include <spirv/unified1/spirv.hpp11>
 
 #include "spirv/front/translate.h"
+#include "spirv/ir_passes.h"
 #include "spirv/lower/lower.h"
 #include "spirv/rewrite/rewrite.h"
 
@@ -59,6 +60,7 @@ base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> wor
   base::Result<ir::Function> function = translate(words, options);
   if (!function) return function.error();
   rewrite(function.value());
+  ir::make_joins_whole(function.value());
   return lower(function.take());
 }
 

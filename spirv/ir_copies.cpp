@@ -32,7 +32,8 @@ struct Copies {
     }
   }
 
-  void rewrite(Src& src, std::uint32_t width, bool any_swizzle) {
+  /// `any_swizzle`: the consumer reads components one by one. `joins`: the consumer hands over whole values.
+  void rewrite(Src& src, std::uint32_t width, bool any_swizzle, bool joins) {
     src.value = resolve(src.value);
     Src next = src;
     const Component first = origin_of({src.value, src.swizzle[0]});
@@ -45,7 +46,7 @@ struct Copies {
       identity &= from.second == i;
     }
     if (width == 1) next.swizzle = {first.second, first.second, first.second, first.second};
-    if (width == 1 || any_swizzle || identity) src = next;
+    if (joins ? identity : width == 1 || any_swizzle || identity) src = next;
   }
 
   void define(ValueId value) {
@@ -55,8 +56,12 @@ struct Copies {
 
   void run_list(NodeList& list) {
     for (auto& node : list) {
-      const bool alu = node->kind == Node::Kind::kInstr && node->instr.op < Op::kAluCount;
-      each_operand(function, *node, [&](Src& src, std::uint32_t width) { rewrite(src, width, alu); });
+      const Op op = node->instr.op;
+      const bool alu = node->kind == Node::Kind::kInstr && op < Op::kAluCount;
+      const bool joins =
+          node->kind == Node::Kind::kLoop ||
+          (node->kind == Node::Kind::kInstr && (op == Op::kYield || op == Op::kBreak || op == Op::kContinue));
+      each_operand(function, *node, [&](Src& src, std::uint32_t width) { rewrite(src, width, alu, joins); });
       switch (node->kind) {
         case Node::Kind::kInstr:
           note(node->instr);

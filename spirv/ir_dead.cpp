@@ -43,7 +43,6 @@ struct Marker {
     });
   }
 
-
   /// Must this instruction stay whatever uses its result?
   bool needed(const Instr& instr) const {
     if (instr.op == Op::kStoreOutput && undefined[instr.src[0].value]) return false;  // section 10: dropped

@@ -20,6 +20,10 @@ void scalarize(Function& function);
 /// Replaces uses of Mov / MovB / Vec by their sources, removes loop parameters and results that always carry one value.
 void propagate_copies(Function& function);
 
+/// Gathers what Yield, Break, Continue and Loop inits hand over into whole values of the width of their targets, which
+/// is what lower() takes; passes in between may leave swizzles there.
+void make_joins_whole(Function& function);
+
 /// Removes instructions, loop parameters, results and inputs that nothing uses.
 void remove_dead(Function& function);
 
