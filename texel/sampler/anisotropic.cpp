@@ -48,7 +48,7 @@ constexpr std::array<float, kWeights> kWeightTable = [] {
 }();
 
 float weight_of(float q) {
-  const std::int32_t i = base::round_to_int(q);
+  const std::int32_t i = base::truncate_to_int(q);
   return i <= 1023 ? kWeightTable[static_cast<std::size_t>(std::max(i, 0))] : 0.0f;
 }
 

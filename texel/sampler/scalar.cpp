@@ -72,6 +72,14 @@ void reduce_texel(const LaneSample& lane, float weight, Texel& a, const Texel& b
   }
 }
 
+/// Between mip levels values are averaged in every reduction mode (bytes are reduced).
+void blend_levels(const LaneSample& lane, float weight, Texel& a, const Texel& b) {
+  const std::size_t channels = lane.compare ? 1 : 4;
+  for (std::size_t c = 0; c < channels; ++c) {
+    a[c] = bits_of(base::fma_exact(weight, float_of(b[c]) - float_of(a[c]), float_of(a[c])));
+  }
+}
+
 /// Along x comparisons are weighted by selection, so that equal results give it exactly.
 void reduce_x(const LaneSample& lane, float weight, Texel& a, const Texel& b) {
   if (!lane.compare) return reduce_texel(lane, weight, a, b);
@@ -121,7 +129,8 @@ Texel sample_cube_linear(const LaneSample& lane, std::uint32_t level) {
     const CubeTexel& at = taps.texel[i];
     texel[i] = texel_or_border(lane, level, lane.layer + at.face, at.x, at.y, 0);
   }
-  if (taps.corner < 4) {
+  const bool average = lane.plan->sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+  if (taps.corner < 4 && average) {
     float weight[4];
     corner_weights(taps, weight);
     const std::size_t channels = lane.compare ? 1 : 4;
@@ -197,16 +206,21 @@ Texel gather(const LaneSample& lane, const SampleRequest& request) {
   }
   const std::int32_t x[2] = {taps[0].first, taps[0].second};
   const std::int32_t y[2] = {taps[1].first, taps[1].second};
-  constexpr std::size_t kOrder[4] = {2, 3, 1, 0};  // (i0,j1) (i1,j1) (i1,j0) (i0,j0); index = j*2 + i
-  Texel result;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::size_t k = kOrder[i];
+  float value[4];
+  for (std::size_t k = 0; k < 4; ++k) {
     const CubeTexel& at = cube.texel[k];
     Texel texel = lane.plan->cube ? texel_or_border(lane, 0, lane.layer + at.face, at.x, at.y, 0)
                                   : texel_or_border(lane, 0, lane.layer, x[k & 1], y[k >> 1], 0);
     if (!lane.compare) apply_swizzle(view, texel);
-    result[i] = texel[lane.compare ? 0 : request.gather_component & 3];
+    value[k] = float_of(texel[lane.compare ? 0 : request.gather_component & 3]);
   }
+  if (cube.corner < 4 && !view.format->is_integer()) {
+    value[cube.corner] = 0.0f;  // the texel that does not exist is the average of the others
+    value[cube.corner] = (1.0f / 3.0f) * ((value[0] + value[1]) + (value[2] + value[3]));
+  }
+  constexpr std::size_t kOrder[4] = {2, 3, 1, 0};  // (i0,j1) (i1,j1) (i1,j0) (i0,j0); index = j*2 + i
+  Texel result;
+  for (std::size_t i = 0; i < 4; ++i) result[i] = bits_of(value[kOrder[i]]);
   return result;
 }
 
@@ -225,8 +239,7 @@ Texel sample_lane(const LaneSample& lane, const SampleRequest& request, const La
       texel = sample_all_bytes(lane, lod, linear, two_levels);
     } else {
       texel = sample_level(lane, lod.level0, linear);
-      // Integers have one level here; the reference returns 0 for the others.
-      if (two_levels) reduce_texel(lane, lod.fraction, texel, sample_level(lane, lod.level1, linear));
+      if (two_levels) blend_levels(lane, lod.fraction, texel, sample_level(lane, lod.level1, linear));
     }
   }
   if (lane.compare) texel = {texel[0], 0, 0, bits_of(1.0f)};
