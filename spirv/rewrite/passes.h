@@ -30,6 +30,9 @@ bool flatten_branches(Graph& graph);
 /// Results and parameters that always carry one value are replaced by it.
 bool remove_trivial_results(Graph& graph);
 
+/// Loops with few, constantly many iterations become straight-line code.
+bool unroll_loops(Graph& graph);
+
 enum class RuleSet : std::uint8_t { kMain, kLate };
 /// One run of the rule table (section 4.1).
 bool apply_rules(Graph& graph, RuleSet rules);

@@ -23,6 +23,7 @@ bool optimize_once(Graph& graph) {
   changed |= rewriting::remove_trivial_results(graph);
   changed |= rewriting::merge_equal(graph, rewriting::CseScope::kAll);
   changed |= rewriting::scalarize(graph);
+  changed |= rewriting::unroll_loops(graph);
   return changed;
 }
 
