@@ -57,11 +57,11 @@ ir::ValueId dot(Translator& t, ir::ValueId a, ir::ValueId b) {
   const std::uint32_t n = components(t, a);
   const ir::ValueId products = emit(t, ir::Op::kFMul, n, false, {whole(a), whole(b)});
   if (n == 1) return products;
-  // Sums of three and four are opaque to the rewrites, so they are exact (5.1).
-  const bool saved = std::exchange(t.exact, t.exact || n > 2);
+  // Sums of three and four are opaque to the rewrites (5.1).
+  const bool saved = std::exchange(t.opaque, n > 2);
   ir::ValueId sum = emit(t, ir::Op::kFAdd, 1, false, {splat(products, 0), splat(products, 1)});
   for (std::uint8_t i = 2; i < n; i++) sum = emit(t, ir::Op::kFAdd, 1, false, {whole(sum), splat(products, i)});
-  t.exact = saved;
+  t.opaque = saved;
   return sum;
 }
 

@@ -130,6 +130,7 @@ struct Translator {
 
   const Inst* inst = nullptr;  ///< being translated
   bool exact = false;          ///< the instruction is decorated NoContraction
+  bool opaque = false;         ///< what is emitted now is Instr::opaque
 };
 
 /// Bounds the size of what a module may expand to, so that a small module cannot ask for endless memory.

@@ -10,6 +10,7 @@ ir::Instr& append(Translator& t, ir::Op op, std::vector<ir::Src> src) {
   node.instr.op = op;
   node.instr.src = std::move(src);
   node.instr.exact = t.exact;
+  node.instr.opaque = t.opaque;
   if (t.inst != nullptr) node.instr.origin = t.inst->origin;
   return node.instr;
 }
