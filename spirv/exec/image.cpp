@@ -108,11 +108,8 @@ std::uint32_t* texel_word(const Call& call, const Descriptor& image, std::size_t
     if (x < 0 || static_cast<std::uint64_t>(x) >= texels.count) return nullptr;
     return reinterpret_cast<std::uint32_t*>(texels.data) + x;
   }
-  // A 1D array's layer is its second coordinate; texel addresses layers by the third.
-  const bool layered_1d = call.op.info.dim == 1 && call.op.info.arrayed;
-  const std::int32_t y = layered_1d ? 0 : at(ImageOperand::kCoord, 1);
-  const std::int32_t z = layered_1d ? at(ImageOperand::kCoord, 1) : at(ImageOperand::kCoord, 2);
-  return texel::texel_address(*image.image, x, y, z, static_cast<std::uint32_t>(at(ImageOperand::kSample, 0)));
+  return texel::texel_address(*image.image, x, at(ImageOperand::kCoord, 1), at(ImageOperand::kCoord, 2),
+                              static_cast<std::uint32_t>(at(ImageOperand::kSample, 0)));
 }
 
 void atomic(Call& call, const Descriptor& image, base::LaneMask lanes) {

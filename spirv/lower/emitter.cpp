@@ -115,10 +115,13 @@ void Emitter::alu(const ScalarOp& op) {
   UniformSources uniform = 0;
   for (std::uint32_t i = 0; i < op.src.count; ++i) {
     const ScalarId id = source(op, i);
+    if (op.takes_accumulator(i)) continue;
     sources[i] = f_.scalars[id].boolean ? in_register(id) : place(id);
     if (sources[i].file == 'u') uniform = static_cast<UniformSources>(uniform | 1u << i);
   }
-  append(alu_handler(op.op, uniform), ir::op_name(op.op), op.instr, place(result), sources[0], sources[1], sources[2]);
+  const Handler handler =
+      op.in_chain ? exec::chain_handler(op.op, op.accumulator, uniform, op.link) : alu_handler(op.op, uniform);
+  append(handler, ir::op_name(op.op), op.instr, place(result), sources[0], sources[1], sources[2]);
 }
 
 Place Emitter::temporary(char file) {

@@ -22,7 +22,9 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function) {
   if (!error.empty()) return base::Error{error};
   lowering::remove_dead(scalars);
   lowering::find_wave_uniform(scalars);
+  lowering::fuse_multiply_add(scalars);
   lowering::select_operations(scalars);
+  lowering::schedule_chains(scalars);
   const lowering::Allocation allocation = lowering::allocate(scalars);
   if (allocation.register_count > kMaxRegisters) return base::Error{"the shader keeps too many values alive"};
   ShaderInterface interface = function.interface;

@@ -116,10 +116,12 @@ class Allocator {
     // Handlers of loads and images write one result while they still read operands for the next.
     if (op.kind == Kind::kIntrinsic) write = read;
     use(op.cond, read);
-    for (const ScalarId id : f_.of(op.src)) use(id, read);
+    for (std::uint32_t k = 0; k < op.src.count; ++k)
+      if (!op.takes_accumulator(k)) use(f_.operands[op.src.begin + k], read);
     if (op.kind == Kind::kLoop) loops_.push_back(i);
     if (op.kind == Kind::kBreak && f_.body[op.partner].masked) write = static_cast<Position>(2 * op.partner + 1);
-    for (const ScalarId id : f_.of(op.dst)) define(id, write);
+    if (op.link != exec::Link::kKeep)
+      for (const ScalarId id : f_.of(op.dst)) define(id, write);
     if (op.kind == Kind::kEndLoop) loops_.pop_back();
     add_slots(i, read);
   }

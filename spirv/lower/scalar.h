@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "spirv/exec/chain.h"
 #include "spirv/ir.h"
 
 namespace vitrine::spirv::lowering {
@@ -64,7 +65,16 @@ struct ScalarOp {
   /// kIf -> kElse -> kEndIf -> kIf; kLoop -> kContinuing -> kEndLoop -> kLoop; kBreak, kContinue -> kLoop.
   std::uint32_t partner = kNoIndex;
   Range dst, src;
+  /// Arithmetic in a chain (spirv/exec/chain.h): which source is the accumulator, what happens to the result.
+  bool in_chain = false;
+  int accumulator = exec::kNoAccumulator;
+  exec::Link link = exec::Link::kLast;
   const ir::Instr* instr = nullptr;  ///< parameters of intrinsics, origin
+
+  /// Whether source `k` comes in SIMD registers from the operation before.
+  bool takes_accumulator(std::uint32_t k) const {
+    return accumulator == exec::kAllSources || accumulator == static_cast<int>(k);
+  }
 };
 
 struct ScalarFunction {
@@ -105,7 +115,13 @@ void remove_dead(ScalarFunction& function);
 /// Sets Level::kWave where it holds, and ScalarOp::masked.
 void find_wave_uniform(ScalarFunction& function);
 
-/// Replaces operand combinations that have no handler by moves, and combines operations into superinstructions.
+/// Replaces `a * b` used once by an addition or subtraction by one operation (still two roundings).
+void fuse_multiply_add(ScalarFunction& function);
+
+/// Replaces operand combinations that have no handler by moves; decides how outputs leave. Drops dead operations.
 void select_operations(ScalarFunction& function);
+
+/// Orders straight-line arithmetic into chains.
+void schedule_chains(ScalarFunction& function);
 
 }  // namespace vitrine::spirv::lowering

@@ -1,0 +1,12 @@
+// The parts of the chain table, one per translation unit.
+#pragma once
+
+#include "spirv/exec/chain.h"
+
+namespace vitrine::spirv::alu {
+
+Handler float_chain(ir::Op op, int accumulator, UniformSources uniform, exec::Link link);
+Handler integer_chain(ir::Op op, int accumulator, UniformSources uniform, exec::Link link);
+Handler compare_chain(ir::Op op, int accumulator, UniformSources uniform, exec::Link link);
+
+}  // namespace vitrine::spirv::alu
