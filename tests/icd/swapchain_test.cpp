@@ -1,0 +1,201 @@
+// Surfaces and swapchains on VK_EXT_headless_surface (windows are tested by the applications of the vkcube tests).
+#include <set>
+#include <vector>
+
+#include "tests/icd/fixture.h"
+
+namespace vitrine::icd::test {
+namespace {
+
+class SurfaceTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(create_instance(&instance, nullptr,
+                              {VK_KHR_SURFACE_EXTENSION_NAME, VK_EXT_HEADLESS_SURFACE_EXTENSION_NAME,
+                               VK_KHR_GET_SURFACE_CAPABILITIES_2_EXTENSION_NAME}),
+              VK_SUCCESS);
+    std::uint32_t count = 1;
+    ASSERT_EQ(VK_GET(instance, EnumeratePhysicalDevices)(instance, &count, &physical_device), VK_SUCCESS);
+    const auto info = make_struct<VkHeadlessSurfaceCreateInfoEXT>();
+    ASSERT_EQ(VK_GET(instance, CreateHeadlessSurfaceEXT)(instance, &info, nullptr, &surface), VK_SUCCESS);
+  }
+  void TearDown() override {
+    if (surface) VK_GET(instance, DestroySurfaceKHR)(instance, surface, nullptr);
+    if (instance) VK_GET(instance, DestroyInstance)(instance, nullptr);
+  }
+
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+  VkSurfaceKHR surface = VK_NULL_HANDLE;
+};
+
+TEST_F(SurfaceTest, SaysWhatItCanDo) {
+  VkBool32 supported = VK_FALSE;
+  EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceSupportKHR)(physical_device, 0, surface, &supported), VK_SUCCESS);
+  EXPECT_TRUE(supported);
+
+  auto info = make_struct<VkPhysicalDeviceSurfaceInfo2KHR>();
+  info.surface = surface;
+  auto capabilities = make_struct<VkSurfaceCapabilities2KHR>();
+  ASSERT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceCapabilities2KHR)(physical_device, &info, &capabilities),
+            VK_SUCCESS);
+  EXPECT_EQ(capabilities.surfaceCapabilities.currentExtent.width, 0xFFFFFFFFu);
+  EXPECT_TRUE(capabilities.surfaceCapabilities.supportedUsageFlags & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+
+  std::uint32_t count = 0;
+  ASSERT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceFormatsKHR)(physical_device, surface, &count, nullptr),
+            VK_SUCCESS);
+  std::vector<VkSurfaceFormatKHR> formats(count);
+  ASSERT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceFormatsKHR)(physical_device, surface, &count, formats.data()),
+            VK_SUCCESS);
+  std::set<VkFormat> found;
+  for (const VkSurfaceFormatKHR& format : formats) found.insert(format.format);
+  EXPECT_EQ(found, (std::set<VkFormat>{VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM,
+                                       VK_FORMAT_R8G8B8A8_SRGB}));
+
+  count = 1;
+  VkPresentModeKHR mode;
+  EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceSurfacePresentModesKHR)(physical_device, surface, &count, &mode),
+            VK_INCOMPLETE);
+}
+
+class SwapchainTest : public SurfaceTest {
+ protected:
+  void SetUp() override {
+    SurfaceTest::SetUp();
+    const float priority = 1;
+    auto queue_info = make_struct<VkDeviceQueueCreateInfo>();
+    queue_info.queueCount = 1;
+    queue_info.pQueuePriorities = &priority;
+    const char* extension = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    auto info = make_struct<VkDeviceCreateInfo>();
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queue_info;
+    info.enabledExtensionCount = 1;
+    info.ppEnabledExtensionNames = &extension;
+    ASSERT_EQ(VK_GET(instance, CreateDevice)(physical_device, &info, nullptr, &device), VK_SUCCESS);
+    VK_GET(instance, GetDeviceQueue)(device, 0, 0, &queue);
+  }
+  void TearDown() override {
+    if (device) VK_GET(instance, DestroyDevice)(device, nullptr);
+    SurfaceTest::TearDown();
+  }
+
+  VkSwapchainKHR create(VkSwapchainKHR old = VK_NULL_HANDLE, std::uint32_t images = 3) {
+    auto info = make_struct<VkSwapchainCreateInfoKHR>();
+    info.surface = surface;
+    info.minImageCount = images;
+    info.imageFormat = VK_FORMAT_B8G8R8A8_UNORM;
+    info.imageExtent = {32, 16};
+    info.imageArrayLayers = 1;
+    info.imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    info.preTransform = VK_SURFACE_TRANSFORM_IDENTITY_BIT_KHR;
+    info.compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
+    info.presentMode = VK_PRESENT_MODE_FIFO_KHR;
+    info.oldSwapchain = old;
+    VkSwapchainKHR swapchain = VK_NULL_HANDLE;
+    EXPECT_EQ(VK_GET(instance, CreateSwapchainKHR)(device, &info, nullptr, &swapchain), VK_SUCCESS);
+    return swapchain;
+  }
+  void destroy(VkSwapchainKHR swapchain) { VK_GET(instance, DestroySwapchainKHR)(device, swapchain, nullptr); }
+  VkResult acquire(VkSwapchainKHR swapchain, std::uint32_t& index, VkSemaphore semaphore, VkFence fence,
+                   std::uint64_t timeout = 0) {
+    return VK_GET(instance, AcquireNextImageKHR)(device, swapchain, timeout, semaphore, fence, &index);
+  }
+  VkResult present(VkSwapchainKHR swapchain, std::uint32_t index, VkSemaphore semaphore) {
+    auto info = make_struct<VkPresentInfoKHR>();
+    info.waitSemaphoreCount = semaphore ? 1 : 0;
+    info.pWaitSemaphores = &semaphore;
+    info.swapchainCount = 1;
+    info.pSwapchains = &swapchain;
+    info.pImageIndices = &index;
+    return VK_GET(instance, QueuePresentKHR)(queue, &info);
+  }
+  VkSemaphore semaphore() {
+    const auto info = make_struct<VkSemaphoreCreateInfo>();
+    VkSemaphore result = VK_NULL_HANDLE;
+    EXPECT_EQ(VK_GET(instance, CreateSemaphore)(device, &info, nullptr, &result), VK_SUCCESS);
+    return result;
+  }
+
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+};
+
+TEST_F(SwapchainTest, ImagesTakeTurns) {
+  const VkSwapchainKHR swapchain = create();
+  const VkSemaphore acquired = semaphore();
+  std::vector<std::uint32_t> order;
+  for (int frame = 0; frame < 6; ++frame) {
+    std::uint32_t index = 99;
+    ASSERT_EQ(acquire(swapchain, index, acquired, VK_NULL_HANDLE, UINT64_MAX), VK_SUCCESS);
+    order.push_back(index);
+    ASSERT_EQ(present(swapchain, index, acquired), VK_SUCCESS);
+    ASSERT_EQ(VK_GET(instance, QueueWaitIdle)(queue), VK_SUCCESS);
+  }
+  EXPECT_EQ(order, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2}));
+  VK_GET(instance, DestroySemaphore)(device, acquired, nullptr);
+  destroy(swapchain);
+}
+
+TEST_F(SwapchainTest, AcquiringMoreThanThereAreTimesOut) {
+  const VkSwapchainKHR swapchain = create(VK_NULL_HANDLE, 2);
+  const auto fence_info = make_struct<VkFenceCreateInfo>();
+  VkFence fence = VK_NULL_HANDLE;
+  ASSERT_EQ(VK_GET(instance, CreateFence)(device, &fence_info, nullptr, &fence), VK_SUCCESS);
+  std::uint32_t index = 0;
+  ASSERT_EQ(acquire(swapchain, index, VK_NULL_HANDLE, fence), VK_SUCCESS);
+  EXPECT_EQ(VK_GET(instance, GetFenceStatus)(device, fence), VK_SUCCESS);
+  EXPECT_EQ(VK_GET(instance, ResetFences)(device, 1, &fence), VK_SUCCESS);
+  ASSERT_EQ(acquire(swapchain, index, VK_NULL_HANDLE, fence), VK_SUCCESS);
+  EXPECT_EQ(VK_GET(instance, ResetFences)(device, 1, &fence), VK_SUCCESS);
+  EXPECT_EQ(acquire(swapchain, index, VK_NULL_HANDLE, fence), VK_NOT_READY);
+  EXPECT_EQ(acquire(swapchain, index, VK_NULL_HANDLE, fence, 1000000), VK_TIMEOUT);
+  EXPECT_EQ(VK_GET(instance, GetFenceStatus)(device, fence), VK_NOT_READY);
+  VK_GET(instance, DestroyFence)(device, fence, nullptr);
+  destroy(swapchain);
+}
+
+TEST_F(SwapchainTest, ARetiredSwapchainGivesNoMoreImages) {
+  const VkSwapchainKHR first = create();
+  const VkSemaphore acquired = semaphore();
+  std::uint32_t held = 0, index = 0;
+  ASSERT_EQ(acquire(first, held, acquired, VK_NULL_HANDLE), VK_SUCCESS);
+  const VkSwapchainKHR second = create(first);
+  EXPECT_EQ(acquire(first, index, VK_NULL_HANDLE, VK_NULL_HANDLE), VK_ERROR_OUT_OF_DATE_KHR);
+  EXPECT_EQ(present(first, held, acquired), VK_SUCCESS) << "an image acquired before may be presented yet";
+  EXPECT_EQ(acquire(second, index, acquired, VK_NULL_HANDLE), VK_SUCCESS);
+  EXPECT_EQ(present(second, index, acquired), VK_SUCCESS);
+  EXPECT_EQ(VK_GET(instance, DeviceWaitIdle)(device), VK_SUCCESS);
+  VK_GET(instance, DestroySemaphore)(device, acquired, nullptr);
+  destroy(first);
+  destroy(second);
+}
+
+TEST_F(SwapchainTest, CreationSurvivesEveryFailedAllocation) {
+  auto info = make_struct<VkSwapchainCreateInfoKHR>();
+  info.surface = surface;
+  info.minImageCount = 3;
+  info.imageFormat = VK_FORMAT_R8G8B8A8_SRGB;
+  info.imageExtent = {8, 8};
+  info.imageArrayLayers = 1;
+  info.imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  info.presentMode = VK_PRESENT_MODE_MAILBOX_KHR;
+  CountingAllocator allocator;
+  for (std::size_t n = 0;; ++n) {
+    allocator.fail_after(n);
+    VkSwapchainKHR swapchain = VK_NULL_HANDLE;
+    const VkResult result = VK_GET(instance, CreateSwapchainKHR)(device, &info, allocator.callbacks(), &swapchain);
+    if (result == VK_SUCCESS) {
+      VK_GET(instance, DestroySwapchainKHR)(device, swapchain, allocator.callbacks());
+      EXPECT_GT(n, 3u);
+      break;
+    }
+    ASSERT_EQ(result, VK_ERROR_OUT_OF_HOST_MEMORY);
+    ASSERT_EQ(allocator.live(), 0u) << "leak when allocation " << n << " fails";
+  }
+  EXPECT_EQ(allocator.live(), 0u);
+}
+
+}  // namespace
+}  // namespace vitrine::icd::test
