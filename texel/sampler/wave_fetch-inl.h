@@ -1,0 +1,73 @@
+// Gathers texels of a vector of lanes and converts them to floats: the twin of decode_row for formats whose texels are
+// fields of at most 32 bits in up to four words.
+
+#include "texel/codec/srgb.h"
+#include "texel/sampler/wave_address-inl.h"
+
+#if defined(VITRINE_TEXEL_WAVE_FETCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRINE_TEXEL_WAVE_FETCH_INL_H_
+#undef VITRINE_TEXEL_WAVE_FETCH_INL_H_
+#else
+#define VITRINE_TEXEL_WAVE_FETCH_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::texel::HWY_NAMESPACE {
+
+/// 32-bit words at byte offsets from `base`. Layouts have room for the bytes that narrower texels do not own.
+HWY_INLINE VU gather_words(const std::byte* base, VI offset) {
+  return hn::BitCast(DU(), hn::GatherOffset(DI(), reinterpret_cast<const std::int32_t*>(base), offset));
+}
+
+/// How a channel's bits become a value.
+template <Numeric kNumeric>
+HWY_INLINE VF convert_field(VU word, const Channel& channel) {
+  const std::uint32_t shift = channel.offset & 31u;
+  const std::uint32_t bits = channel.bits;
+  const auto mask = static_cast<std::uint32_t>((1ull << bits) - 1);
+  const VU field = hn::And(hn::ShiftRightSame(word, static_cast<int>(shift)), hn::Set(DU(), mask));
+  if constexpr (kNumeric == Numeric::kUnorm) {
+    const float scale = static_cast<float>(1.0 / static_cast<double>(mask));
+    return hn::Mul(lanes_int_to_float(hn::BitCast(DI(), field)), splat(scale));
+  } else if constexpr (kNumeric == Numeric::kSnorm) {
+    const int unused = static_cast<int>(32 - bits);
+    const VI value = hn::ShiftRightSame(hn::ShiftLeftSame(hn::BitCast(DI(), field), unused), unused);
+    const float scale = static_cast<float>(1.0 / static_cast<double>(mask >> 1));
+    return lanes_max_second(hn::Mul(lanes_int_to_float(value), splat(scale)), splat(-1.0f));
+  } else if constexpr (kNumeric == Numeric::kSrgb) {
+    if (channel.name == 'A') return hn::Mul(lanes_int_to_float(hn::BitCast(DI(), field)), splat(1.0f / 255.0f));
+    return hn::GatherIndex(DF(), kSrgbToLinear.data(), hn::BitCast(DI(), field));
+  } else if constexpr (kNumeric == Numeric::kUfloat) {
+    return lanes_half_to_float(hn::ShiftLeftSame(field, static_cast<int>(15 - bits)));
+  } else {
+    return bits == 16 ? lanes_half_to_float(field) : as_float(word);
+  }
+}
+
+struct TexelLanes {
+  VF r, g, b, a;
+};
+
+template <Numeric kNumeric>
+HWY_INLINE VF fetch_channel(const FormatDesc& format, std::int8_t index, const std::byte* base, VI offset, VU first,
+                            float missing) {
+  if (index < 0) return splat(missing);
+  const Channel& channel = format.channel[static_cast<std::size_t>(index)];
+  const std::int32_t word = channel.offset / 32;
+  const VU bits = word == 0 ? first : gather_words(base, hn::Add(offset, splat(word * 4)));
+  return convert_field<kNumeric>(bits, channel);
+}
+
+template <Numeric kNumeric>
+HWY_INLINE TexelLanes fetch_lanes(const FormatDesc& format, const std::byte* base, VI offset) {
+  const VU first = gather_words(base, offset);
+  return {fetch_channel<kNumeric>(format, format.rgba[0], base, offset, first, 0.0f),
+          fetch_channel<kNumeric>(format, format.rgba[1], base, offset, first, 0.0f),
+          fetch_channel<kNumeric>(format, format.rgba[2], base, offset, first, 0.0f),
+          fetch_channel<kNumeric>(format, format.rgba[3], base, offset, first, 1.0f)};
+}
+
+}  // namespace vitrine::texel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
