@@ -128,9 +128,9 @@ void step(Translator& t, const Inst& inst, ir::Op) {
   Expr below{&t, ir::kNoValue};
   {
     const ExactScope exact(t);
-    below = x < edge;
+    below = apply(ir::Op::kB2F, {x < edge});
   }
-  result(t, inst, imm(t, 1.0f) - apply(ir::Op::kB2F, {below}));
+  result(t, inst, imm(t, 1.0f) - below);
 }
 
 void smooth_step(Translator& t, const Inst& inst, ir::Op) {

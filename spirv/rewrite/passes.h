@@ -37,6 +37,9 @@ enum class RuleSet : std::uint8_t { kMain, kLate };
 /// One run of the rule table (section 4.1).
 bool apply_rules(Graph& graph, RuleSet rules);
 
+/// What the reference's code generator simplifies on its own, for scalar code.
+void build_identities(Graph& graph);
+
 /// Spelling that the executor likes and that keeps every bit: subtractions, plain minima, reciprocals.
 void choose_spelling(Graph& graph);
 

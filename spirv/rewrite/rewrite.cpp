@@ -41,6 +41,8 @@ void finish(Graph& graph) {
     rewriting::merge_equal(graph, rewriting::CseScope::kAll);
   }
   rewriting::propagate_copies(graph);
+  rewriting::build_identities(graph);
+  rewriting::propagate_copies(graph);
   rewriting::remove_dead(graph);
 }
 
