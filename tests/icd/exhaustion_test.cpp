@@ -308,7 +308,10 @@ TEST(Exhaustion, EveryFailingAllocationIsAnErrorAndLeaksNothing) {
     destroy(p);
     ASSERT_EQ(allocator.live(), 0u) << "after failing allocation " << n;
     if (result == VK_SUCCESS) break;
-    ASSERT_EQ(result, VK_ERROR_OUT_OF_HOST_MEMORY) << "allocation " << n;
+    // Memory that runs out while a submitted batch is replayed loses the device: the submission cannot be undone.
+    const bool submitted = p.fence != VK_NULL_HANDLE;
+    ASSERT_TRUE(result == VK_ERROR_OUT_OF_HOST_MEMORY || (submitted && result == VK_ERROR_DEVICE_LOST))
+        << "allocation " << n << " gave " << result;
   }
   EXPECT_GE(n, 20u) << "fewer allocations than objects";
   EXPECT_LT(n, 2000u);
