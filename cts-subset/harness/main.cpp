@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -54,6 +55,8 @@ void register_cases() {
     for (uint32_t i = 0; i < count; ++i)
       all.push_back({generator.group, generator.name + "/" + std::to_string(i), generator.body, {}, {}, i});
   }
+  // GoogleTest runs group by group: numbers must rise in that order, for a child goes on after the number that crashed.
+  std::stable_sort(all.begin(), all.end(), [](const Case& a, const Case& b) { return a.group < b.group; });
   for (uint32_t i = 0; i < all.size(); ++i) {
     if (i < options().first || (i - options().first) % options().stride != 0) continue;
     const Case& c = all[i];
