@@ -41,7 +41,10 @@ CTS_CASE("robustness", "storage_buffer.write") {
   dispatch(run, run.resources({part}), R"(
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) buffer R { uint r[]; };
-void main() { r[gl_GlobalInvocationID.x] = 7u; atomicAdd(r[gl_GlobalInvocationID.x + 25u], 3u); })");
+void main() {
+  r[gl_GlobalInvocationID.x * 2u] = 7u;
+  atomicAdd(r[gl_GlobalInvocationID.x * 2u + 1u], 3u);
+})");
   run.out("out", out);
 }
 

@@ -87,7 +87,7 @@ std::string ExpressionWriter::floats(Type type, int depth) {
     case 0:
       return "(- " + a + ")";
     case 1:
-      return "(" + a + " / " + b + ")";
+      return "(" + a + " / " + divisor(type, depth - 1) + ")";
     case 2:
     case 3:
       return "(" + a + " - " + b + ")";
@@ -97,6 +97,14 @@ std::string ExpressionWriter::floats(Type type, int depth) {
     default:
       return "(" + a + " * " + b + ")";
   }
+}
+
+/// Never the constant zero: the reference's quotient is then an undefined value.
+std::string ExpressionWriter::divisor(Type type, int depth) {
+  if (random_.chance(0.5f)) return "(abs(" + expression(type, depth - 1) + ") + 0.5)";
+  const std::string input = random_.pick({"a", "b", "p"});
+  return type.size == 1 ? input + "." + "xyzw"[random_.below(4)]
+                        : input + "." + std::string("wyxzw").substr(random_.below(2), type.size);
 }
 
 std::string ExpressionWriter::float_function(Type type, int depth) {
@@ -115,7 +123,7 @@ std::string ExpressionWriter::float_function(Type type, int depth) {
     case 4:
       return call("mix", {a, expression(type, depth - 1), expression(with(Base::kBool, type), depth - 1)});
     case 5:
-      return call("smoothstep", {a, expression(type, depth - 1), expression(type, depth - 1)});
+      return call("smoothstep", {a, "(" + a + " + " + divisor(type, depth - 1) + ")", expression(type, depth - 1)});
     case 6:
       return call("fma", {a, expression(type, depth - 1), expression(type, depth - 1)});
     case 7:

@@ -52,6 +52,7 @@ class ExpressionWriter {
   std::string float_function(Type type, int depth);
   std::string transcendental(Type type, int depth);
   std::string vector_function(Type type, int depth);
+  std::string divisor(Type type, int depth);
   std::string matrix_product(uint32_t size, int depth);
   std::string integers(Type type, int depth);
   std::string integer_function(Type type, int depth);
