@@ -82,7 +82,7 @@ void interpolate_varyings(ShadeRun& run) {
        {spirv::SampleLocation::kCenter, spirv::SampleLocation::kCentroid, spirv::SampleLocation::kSample}) {
     for (std::uint32_t k = 0; k < smooth; ++k) {
       const Varying& varying = plan.varying[k];
-      if (varying.location != wanted) continue;
+      if (varying.location != wanted || varying.fragment_reg == kNoReg) continue;
       const float* scale = k < plan.perspective_count ? worker.reciprocal_w : nullptr;
       evaluate_plane(run.planes, kFirstVaryingPlane + k, points_of(run, wanted, prepared), scale,
                      as_floats(worker.runner.input(varying.fragment_reg)));

@@ -23,7 +23,6 @@ void resize_scratch(FrontScratch& s, std::uint32_t positions) {
   s.clip.resize(vertices * 4);
   s.clip_distance.resize(vertices * kMaxClipDistances);
   s.cull_distance.resize(vertices * kMaxClipDistances);
-  s.point_size.resize(vertices);
   s.layer.resize(vertices);
   s.viewport_index.resize(vertices);
   s.code.resize(vertices);
@@ -139,8 +138,6 @@ void store_wave(const PipelinePlan& plan, std::uint32_t base, std::uint32_t lane
   for (std::uint32_t k = 0; k < plan.varying_count(); ++k)
     scatter(s.runner, plan.varying[k].vertex_reg, lanes, s.records + std::size_t{base} * stride + 4 + k, stride);
   if (out.clip_count + out.cull_count) scatter_distances(plan, base, lanes, s);
-  if (plan.draws_points || state.polygon_mode == VK_POLYGON_MODE_POINT)
-    scatter(s.runner, out.point_size, lanes, s.point_size.data() + base, 1, 1.0f);
   if (out.layer != kNoReg) scatter(s.runner, out.layer, lanes, s.layer.data() + base, 1);
   if (out.viewport_index != kNoReg) scatter(s.runner, out.viewport_index, lanes, s.viewport_index.data() + base, 1);
 }

@@ -35,7 +35,6 @@ struct FrontScratch {
   std::vector<std::uint32_t> vertex, instance;
   std::vector<float> clip;                          ///< 4 each
   std::vector<float> clip_distance, cull_distance;  ///< kMaxClipDistances each
-  std::vector<float> point_size;
   std::vector<std::uint32_t> layer, viewport_index;
   std::vector<ClipCode> code;
   std::vector<std::int32_t> snapped;  ///< 2 each

@@ -148,8 +148,6 @@ void assemble_triangle(Assembler& a, const std::uint32_t slot[3]) {
   if (a.plan.out.cull_count && culled_by_distance(a, slot, 3)) return;
   const std::uint32_t provoking = a.plan.state->provoking_vertex_last ? 2 : 0;
   choose_layer_and_viewport(a, slot[provoking]);
-  if (a.plan.state->polygon_mode == VK_POLYGON_MODE_POINT && a.plan.out.point_size != kNoReg)
-    a.setup.point_size = s.point_size[slot[0]];
   const bool simple =
       (c0 | c1 | c2) == 0 && !a.plan.per_vertex_viewport && !a.plan.bias_in_vertices && a.plan.out.cull_count == 0;
   if (simple) {
@@ -188,7 +186,6 @@ void assemble_point(Assembler& a, std::uint32_t slot) {
   }
   if (a.plan.out.cull_count && culled_by_distance(a, &slot, 1)) return;
   choose_layer_and_viewport(a, slot);
-  a.setup.point_size = a.scratch.point_size[slot];
   setup_point(a.setup, window_record(a, v), true);
 }
 

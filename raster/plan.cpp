@@ -188,6 +188,18 @@ void plan_fragment_inputs(PipelinePlan& plan) {
   }
 }
 
+/// gl_PointSize travels with the vertices through the clipper, like an output no fragment shader reads (1.5).
+void add_point_size(PipelinePlan& plan) {
+  const State& state = *plan.state;
+  const bool points = state.topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST ||
+                      state.polygon_mode == VK_POLYGON_MODE_POINT;
+  plan.point_size_word = kNoReg;
+  if (!points || plan.out.point_size == kNoReg || plan.perspective_count == kMaxVaryings) return;
+  plan.varying[plan.perspective_count] = {plan.out.point_size, kNoReg, Interpolation::kPerspective,
+                                          spirv::SampleLocation::kCenter};
+  plan.point_size_word = 4 + plan.perspective_count++;
+}
+
 void plan_varyings(PipelinePlan& plan) {
   plan.perspective_count = plan.linear_count = plan.flat_count = 0;
   FragmentRegisters& frag = plan.frag;
@@ -200,6 +212,9 @@ void plan_varyings(PipelinePlan& plan) {
   if (plan.fragment) {
     plan_fragment_inputs(plan);
     add_varyings(plan, Interpolation::kPerspective, plan.perspective_count);
+  }
+  add_point_size(plan);
+  if (plan.fragment) {
     add_varyings(plan, Interpolation::kLinear, plan.linear_count);
     add_varyings(plan, Interpolation::kFlat, plan.flat_count);
   }

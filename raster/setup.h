@@ -15,7 +15,7 @@ struct SetupVertex {
   std::int32_t x, y;
 };
 
-/// What setup needs besides vertices: constant over a chunk but for the four last members.
+/// What setup needs besides vertices: constant over a chunk but for the last three.
 struct SetupContext {
   const PipelinePlan* plan;
   const PassDesc* pass;
@@ -23,7 +23,6 @@ struct SetupContext {
   std::uint32_t id = 0;
   std::uint16_t layer = 0;
   std::uint8_t viewport = 0;
-  float point_size = 1;
 };
 
 /// Snapped coordinate of triangles: nearest even (3.1).
