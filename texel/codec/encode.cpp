@@ -89,9 +89,11 @@ std::uint32_t unsigned_float(Encoding encoding, float x, std::uint32_t bits) {
 
 /// Depth: clears round in binary64, fragments in binary32.
 std::uint32_t depth(Encoding encoding, std::uint32_t value, const Channel& channel) {
-  if (channel.numeric == Numeric::kSfloat) return value;
-  const std::uint32_t largest = low_mask(channel.bits);
   const float z = float_of(value);
+  if (channel.numeric == Numeric::kSfloat) {
+    return encoding == Encoding::kClear ? value : bits_of(base::max_second(base::min_second(z, 1.0f), 0.0f));
+  }
+  const std::uint32_t largest = low_mask(channel.bits);
   if (encoding == Encoding::kClear) {
     if (!(z > 0.0f)) return 0;
     return z >= 1.0f ? largest : static_cast<std::uint32_t>(std::nearbyint(static_cast<double>(z) * largest));
