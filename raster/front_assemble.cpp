@@ -175,15 +175,12 @@ void assemble_line(Assembler& a, const std::uint32_t slot[2]) {
   setup_line(a.setup, window_record(a, line[0]), window_record(a, line[1]), true);
 }
 
-/// 7.1: a point is dropped by depth and user planes; by x and y only where its position means nothing.
+/// Vulkan 1.3.239, Primitive Clipping: "If the primitive under consideration is a point, then clipping passes it
+/// unchanged if it lies within the clip volume; otherwise, it is discarded." (The reference keeps those outside in x
+/// and y: deviation point-clipping.)
 void assemble_point(Assembler& a, std::uint32_t slot) {
-  const ClipCode code = a.scratch.code[slot];
-  if ((code & ~kClipXY) != 0) return;
+  if (a.scratch.code[slot] != 0) return;
   const ClipVertex v = clip_vertex(a, slot);
-  if (code != 0) {
-    if (a.plan.per_vertex_viewport || !(v.clip[3] > 0)) return;
-    if (!std::isfinite(v.clip[0]) || !std::isfinite(v.clip[1])) return;
-  }
   if (a.plan.out.cull_count && culled_by_distance(a, &slot, 1)) return;
   choose_layer_and_viewport(a, slot);
   setup_point(a.setup, window_record(a, v), true);

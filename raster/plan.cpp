@@ -191,8 +191,7 @@ void plan_fragment_inputs(PipelinePlan& plan) {
 /// gl_PointSize travels with the vertices through the clipper, like an output no fragment shader reads (1.5).
 void add_point_size(PipelinePlan& plan) {
   const State& state = *plan.state;
-  const bool points = state.topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST ||
-                      state.polygon_mode == VK_POLYGON_MODE_POINT;
+  const bool points = state.topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST || state.polygon_mode == VK_POLYGON_MODE_POINT;
   plan.point_size_word = kNoReg;
   if (!points || plan.out.point_size == kNoReg || plan.perspective_count == kMaxVaryings) return;
   plan.varying[plan.perspective_count] = {plan.out.point_size, kNoReg, Interpolation::kPerspective,

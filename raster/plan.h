@@ -93,7 +93,7 @@ struct PipelinePlan {
   std::array<Varying, kMaxVaryings> varying;
   std::uint32_t varying_count() const { return perspective_count + linear_count + flat_count; }
   std::uint32_t point_size_word = kNoReg;  ///< of a Vertex record; kNoReg: gl_PointSize is not written, 1
-  std::uint32_t vertex_stride = 4;  ///< 32-bit words of a Vertex record, a multiple of 4
+  std::uint32_t vertex_stride = 4;         ///< 32-bit words of a Vertex record, a multiple of 4
 
   FragmentRegisters frag;
 

@@ -117,6 +117,26 @@ const AddCase kPoint("clipping", "deviation.point_clipping", "point-clipping", c
   draw(run, "inside_only", {}, spec, colored({{-5.0f, 0.25f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 1.0f}}));
 });
 
+/// The outline of a back-facing triangle, which only the back stencil state lets through.
+const AddCase kFacing(
+    "rasterization", "deviation.polygon_mode_facing", "polygon-mode-facing", case_against_control, [](Run& run) {
+      run.require(run.gpu.features.fillModeNonSolid, "fillModeNonSolid");
+      TargetSpec target;
+      target.depth = VK_FORMAT_D32_SFLOAT_S8_UINT;
+      GraphicsSpec spec;
+      spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
+      spec.raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+      spec.depth.stencilTestEnable = VK_TRUE;
+      spec.depth.front.compareOp = VK_COMPARE_OP_NEVER;
+      spec.depth.back.compareOp = VK_COMPARE_OP_ALWAYS;
+      const std::vector<float> values = colored({{-0.7f, -0.7f, 0, 1}, {0.7f, -0.5f, 0, 1}, {0, 0.7f, 0, 1}});
+      draw(run, "not_read", target, spec, values);
+      spec.fragment =
+          "layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n"
+          "void main() { result = gl_FrontFacing ? vec4(0.0) : passed; }\n";
+      draw(run, "read", target, spec, values);
+    });
+
 /// The same triangles, crossing the view volume, into BGRA8 with and without a depth attachment.
 const AddCase kBgra("clipping", "deviation.bgra8_route", "bgra8-route", case_against_control, [](Run& run) {
   std::vector<float> values;

@@ -157,6 +157,8 @@ void random_state(Run& run, GraphicsSpec& spec, const TargetSpec& target, Shape 
     spec.depth.stencilTestEnable = random.chance(0.4f);
     spec.depth.front = random_stencil(random);
     spec.depth.back = random_stencil(random);
+    // deviations.md, polygon-mode-facing
+    if (shape == Shape::kPolygonMode) spec.depth.back = spec.depth.front;
   }
   for (const VkFormat format : target.colors) {
     VkPipelineColorBlendAttachmentState blend = random_blend(random);
