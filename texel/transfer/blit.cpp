@@ -41,7 +41,14 @@ struct Blit {
   Extent to_extent;
   bool scaled = false;
   bool linear = false;
+  bool rectangle = false;  ///< one plane for both triangles
 };
+
+/// The reference draws rectangles as one primitive where the only attachment is a two-dimensional B8G8R8A8_UNORM image
+/// (lavapipe-rasterization.md 9.1, 9.2).
+bool drawn_as_rectangle(const ImageDesc& to) {
+  return to.format == VK_FORMAT_B8G8R8A8_UNORM && to.type == VK_IMAGE_TYPE_2D && to.layers == 1;
+}
 
 /// value(px, py) = a0 + dadx * px + dady * py.
 struct Plane {
@@ -90,6 +97,11 @@ Quad make_quad(const Blit& blit) {
   const float v[2] = {static_cast<float>(blit.y.from0) / height, static_cast<float>(blit.y.from1) / height};
   const Corner c[4] = {
       {x[0], y[0], u[0], v[0]}, {x[1], y[0], u[1], v[0]}, {x[1], y[1], u[1], v[1]}, {x[0], y[1], u[0], v[1]}};
+  if (blit.rectangle) {
+    const Corner whole[3] = {c[2], c[0], c[1]};
+    const Plane u_plane = make_plane(whole, &Corner::u), v_plane = make_plane(whole, &Corner::v);
+    return {{u_plane, u_plane}, {v_plane, v_plane}};
+  }
   const Corner upper[3] = {c[1], c[0], c[2]};
   const Corner lower[3] = {c[2], c[0], c[3]};
   return {{make_plane(upper, &Corner::u), make_plane(lower, &Corner::u)},
@@ -237,6 +249,7 @@ void blit_image(const ImageMemory& source, const ImageMemory& destination, const
   blit.x = make_span(from[0].x, from[1].x, to[0].x, to[1].x);
   blit.y = make_span(from[0].y, from[1].y, to[0].y, to[1].y);
   blit.z = make_span(from[0].z, from[1].z, to[0].z, to[1].z);
+  blit.rectangle = drawn_as_rectangle(destination.layout->desc);
   blit.scaled = blit.x.scaled() || blit.y.scaled() || blit.z.scaled();
   const VkOffset3D offset{blit.x.to0, blit.y.to0, blit.z.to0};
   if (blit.x.to_size() <= 0 || blit.y.to_size() <= 0 || blit.z.to_size() <= 0) return;
