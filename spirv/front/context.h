@@ -106,9 +106,10 @@ struct Translator {
   const Module& module;
   const CompileOptions& options;
   ir::Function function;
-  ir::NodeList* list = nullptr;  ///< where instructions go
-  ir::NodeList constants;        ///< goes in front of everything
-  ir::NodeList prologue;         ///< initial values of variables, inputs
+  ir::NodeList* list = nullptr;                  ///< where instructions go
+  ir::NodeList constants;                        ///< goes in front of everything
+  ir::NodeList prologue;                         ///< initial values of variables, inputs
+  ir::ValueId fragment_position = ir::kNoValue;  ///< integer framebuffer coordinates, once something asked for them
   std::map<std::vector<std::uint32_t>, ir::ValueId> constant_ids;
   std::unordered_map<ir::ValueId, std::array<std::uint32_t, 4>> constant_words;
   std::unordered_set<ir::ValueId> undefined_ids;

@@ -247,7 +247,10 @@ void image_access(Translator& t, const Inst& inst, ir::Op) {
                                                : ImageAccess::kRead;
   const ir::ValueId coord = scalar_or_vector(t, inst.operand(1));
   const std::uint32_t wanted = spatial_components(*info) + (info->arrayed && info->dim != 4 ? 1 : 0);
-  sources.add(ImageOperand::kCoord, first_components(t, coord, wanted));
+  ir::ValueId texel = first_components(t, coord, wanted);
+  // "The coordinate is relative to the fragment's own framebuffer position" (Vulkan, Image Operations: Texel Input).
+  if (subpass) texel = emit(t, ir::Op::kIAdd, 2, false, {whole(texel), whole(fragment_position(t))});
+  sources.add(ImageOperand::kCoord, texel);
   if (write) sources.add(ImageOperand::kValue, scalar_or_vector(t, inst.operand(2)));
   add_image_operands(t, inst, write ? 3 : 2, {*info, sources});
   if (write) {

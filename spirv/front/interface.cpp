@@ -2,6 +2,8 @@
 // Interfaces; Built-In Variables). Inputs are stored to their variables before the body, outputs loaded after it.
 #include "spirv/front/functions.h"
 
+#include <utility>
+
 namespace vitrine::spirv::front {
 namespace {
 
@@ -252,6 +254,25 @@ void read_modes(Translator& t) {
     if (row.kind == Decoration::BuiltIn && row.value == static_cast<std::uint32_t>(spv::BuiltIn::WorkgroupSize))
       if (const Constant* size = t.module.constant(row.id); size != nullptr && size->words.size() == 3)
         set_local_size(t, size->words.data());
+}
+
+ir::ValueId fragment_position(Translator& t) {
+  if (t.fragment_position != ir::kNoValue) return t.fragment_position;
+  ir::NodeList* const list = std::exchange(t.list, &t.prologue);
+  const bool exact = std::exchange(t.exact, false);
+  std::vector<ir::Src> parts;
+  for (std::uint8_t c = 0; c < 2; c++) {
+    InterfaceSlot slot;
+    slot.built_in = BuiltIn::kFragCoord;
+    slot.component = c;
+    parts.push_back(whole(emit(t, ir::Op::kLoadInput, 1, false, {})));
+    last_instr(t).data[0] = static_cast<std::uint32_t>(t.function.interface.inputs.size());
+    t.function.interface.inputs.push_back(slot);
+  }
+  t.fragment_position = emit(t, ir::Op::kF2I, 2, false, {whole(vec(t, std::move(parts), false))});
+  t.list = list;
+  t.exact = exact;
+  return t.fragment_position;
 }
 
 void connect_interface(Translator& t) {
