@@ -83,11 +83,12 @@ struct IndexOperand {
 
 /// Side table row of a buffer, push constant, shared memory or local array access (Instruction::extra[0] is its index).
 struct MemoryOp {
-  std::uint32_t set = 0, slot = 0, count = 1;  ///< buffers: descriptor of array element 0
-  IndexOperand index;                          ///< buffers: array element
-  std::uint32_t added = 0;                     ///< constant byte offset
-  std::uint32_t components = 1;                ///< loads: consecutive words
-  std::uint32_t write_mask = 0;                ///< stores: bit i = component i
+  std::uint32_t set = 0, slot = 0, count = 1;    ///< buffers: descriptor of array element 0
+  IndexOperand index;                            ///< buffers: array element
+  std::uint32_t added = 0;                       ///< constant byte offset
+  std::uint32_t components = 1;                  ///< loads: number of words
+  std::array<std::uint32_t, 4> at{0, 4, 8, 12};  ///< loads: byte offset of each word behind `added`
+  std::uint32_t write_mask = 0;                  ///< stores: bit i = component i
   std::array<std::uint32_t, 4> data{kNoOperand, kNoOperand, kNoOperand, kNoOperand};  ///< result / value operands
   std::uint32_t compare = kNoOperand;
   ir::AtomicOp atomic = ir::AtomicOp::kAdd;

@@ -13,9 +13,11 @@ using ir::ImageOperand;
 
 /// Operands and results of one image instruction in this wave.
 struct Call {
+  Call(Wave& w, const ImageOp& o) : wave(w), op(o) {}
+
   Wave& wave;
   const ImageOp& op;
-  WaveRegister result[4];
+  WaveRegister result[4];  ///< inactive lanes stay unset
 
   const WaveRegister* operand(ImageOperand which, std::uint32_t component = 0) const {
     const std::uint32_t offset = op.operand[static_cast<std::size_t>(which)][component];
@@ -201,7 +203,7 @@ base::LaneMask same_elements(Wave& wave, const ImageOp& op, base::LaneMask remai
 const Instruction* image(Wave& wave, const Instruction* i) {
   const ImageOp& op = wave.program->image_ops[i->extra[0]];
   const ir::ImageInfo& info = op.info;
-  Call call{wave, op, {}};
+  Call call(wave, op);
   for (base::LaneMask remaining = wave.active; remaining != 0;) {
     const int first = std::countr_zero(remaining);
     const base::LaneMask lanes = same_elements(wave, op, remaining);

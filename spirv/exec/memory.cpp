@@ -3,6 +3,8 @@
 // dropped (lavapipe-shader-math.md section 10).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spirv/exec/memory.cpp"
+#include <algorithm>
+
 #include "base/simd.h"
 
 #include <hwy/foreach_target.h>
@@ -19,6 +21,12 @@ namespace lanes = vitrine::base::HWY_NAMESPACE;
 
 using Words = hn::ScalableTag<std::uint32_t>;
 using Register = base::WaveRegister;
+
+/// Lanes are the first ones of the wave, so that an even spacing can be looked for: how many; 0 if not.
+std::size_t prefix_length(base::LaneMask active) {
+  const auto count = static_cast<std::size_t>(std::countr_one(active));
+  return active == base::first_lanes(count) ? count : 0;
+}
 
 /// Offset of lane i is start + i*stride for the first `count` lanes.
 struct Linear {
@@ -53,17 +61,6 @@ void fill(std::uint32_t* to, std::uint32_t value) {
   for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d)) hn::Store(hn::Set(d, value), d, to + lane);
 }
 
-void load_adjacent(const std::byte* from, std::uint32_t* to, std::size_t count) {
-  if (count < base::kWaveWidth) {
-    std::memcpy(to, from, count * 4);
-    return;
-  }
-  const Words d;
-  const auto* words = reinterpret_cast<const std::uint32_t*>(from);
-  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d))
-    hn::Store(hn::LoadU(d, words + lane), d, to + lane);
-}
-
 /// Structures of 2, 3 or 4 words, one per lane: transposed in registers.
 void load_structures(const std::byte* from, std::uint32_t words, std::uint32_t* const to[4]) {
   const Words d;
@@ -82,56 +79,78 @@ void load_structures(const std::byte* from, std::uint32_t words, std::uint32_t* 
   }
 }
 
-void gather(const Bytes& bytes, const Register& offset, std::uint32_t added, std::uint32_t* to, base::LaneMask active) {
+/// Loads a vector of structures if the row asks for whole ones at an even spacing. False: not done.
+bool try_structures(const Bytes& bytes, const MemoryOp& row, const Register& offset, base::LaneMask active,
+                    std::uint32_t* const to[4]) {
+  if (row.components < 2 || active != base::kAllLanes || row.at[1] != 4 || (row.components > 2 && row.at[2] != 8) ||
+      (row.components > 3 && row.at[3] != 12))
+    return false;
+  const std::uint32_t stride = offset.lane[1] - offset.lane[0], words = stride / 4;
+  if (stride % 4 != 0 || words > 4 || words < row.components) return false;
+  const Linear linear = find_linear(offset, base::kWaveWidth);
+  if (!linear.valid || !inside(bytes, linear, base::kWaveWidth, row.added, words)) return false;
+  load_structures(bytes.data + linear.start + row.added, words, to);
+  return true;
+}
+
+/// Loads words at any offsets for the lanes of one vector; `in_range` for the words' first bytes.
+HWY_INLINE hn::Vec<Words> gather(const Bytes& bytes, hn::Vec<Words> wanted, hn::Mask<Words> active) {
   const Words d;
   const hn::RebindToSigned<Words> di;
-  if (bytes.size < 4 || bytes.size > INT32_MAX) {
-    base::for_each_lane(active, [&](std::size_t lane) { to[lane] = load_word(bytes, offset.lane[lane] + added); });
-    return;
-  }
   const auto last = hn::Set(d, static_cast<std::uint32_t>(bytes.size - 4));
-  const auto* base_word = reinterpret_cast<const std::uint32_t*>(bytes.data);
+  const auto in_range = hn::And(active, hn::Eq(hn::Min(wanted, last), wanted));
+  const auto safe = hn::BitCast(di, hn::IfThenElseZero(in_range, wanted));
+  return hn::IfThenElseZero(in_range, hn::GatherOffset(d, reinterpret_cast<const std::uint32_t*>(bytes.data), safe));
+}
+
+/// One vector of lanes at a time: lanes that share an address or read adjacent words need no gather. (A row of a
+/// workgroup's tile is such a vector even where the wave as a whole is not evenly spaced.)
+void load_vectors(const Bytes& bytes, const MemoryOp& row, const Register& offset, base::LaneMask active,
+                  std::uint32_t* const to[4]) {
+  const Words d;
+  constexpr std::uint64_t kMaxSpan = 4 * base::kWaveWidth + 16;
+  const std::uint32_t highest = *std::max_element(row.at.begin(), row.at.begin() + row.components);
+  const auto adjacent = hn::Mul(hn::Iota(d, 0), hn::Set(d, 4u));
+  const base::LaneMask vector_lanes = base::first_lanes(hn::Lanes(d));
   for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d)) {
-    const auto wanted = hn::Add(hn::Load(d, offset.lane + lane), hn::Set(d, added));
-    const auto in_range =
-        hn::And(lanes::lanes_mask_from_bits(d, active >> lane), hn::Eq(hn::Min(wanted, last), wanted));
-    const auto safe = hn::BitCast(di, hn::IfThenElseZero(in_range, wanted));
-    hn::Store(hn::IfThenElseZero(in_range, hn::GatherOffset(d, base_word, safe)), d, to + lane);
+    const base::LaneMask wanted_lanes = active >> lane & vector_lanes;
+    if (wanted_lanes == 0) continue;
+    const auto wanted = hn::Load(d, offset.lane + lane);
+    const auto spread = hn::Sub(wanted, hn::Set(d, offset.lane[lane]));
+    const std::uint64_t first = std::uint64_t{offset.lane[lane]} + row.added;
+    const bool inner = first + highest + kMaxSpan <= std::min<std::uint64_t>(bytes.size, UINT32_MAX);
+    if (inner && wanted_lanes == vector_lanes && hn::AllTrue(d, hn::Eq(spread, adjacent))) {
+      for (std::uint32_t c = 0; c < row.components; ++c)
+        if (to[c] != nullptr)
+          hn::Store(hn::LoadU(d, reinterpret_cast<const std::uint32_t*>(bytes.data + first + row.at[c])), d,
+                    to[c] + lane);
+    } else if (inner && wanted_lanes == vector_lanes && hn::AllTrue(d, hn::Eq(spread, hn::Zero(d)))) {
+      for (std::uint32_t c = 0; c < row.components; ++c)
+        if (to[c] != nullptr)
+          hn::Store(hn::Set(d, *reinterpret_cast<const std::uint32_t*>(bytes.data + first + row.at[c])), d,
+                    to[c] + lane);
+    } else {
+      const auto mask = lanes::lanes_mask_from_bits(d, wanted_lanes);
+      for (std::uint32_t c = 0; c < row.components; ++c)
+        if (to[c] != nullptr)
+          hn::Store(gather(bytes, hn::Add(wanted, hn::Set(d, row.added + row.at[c])), mask), d, to[c] + lane);
+    }
   }
 }
 
-/// Lanes are the first ones of the wave, so that an even spacing can be looked for: how many; 0 if not.
-std::size_t prefix_length(base::LaneMask active) {
-  const auto count = static_cast<std::size_t>(std::countr_one(active));
-  return active == base::first_lanes(count) ? count : 0;
+void load_lanes(const Bytes& bytes, const MemoryOp& row, const Register& offset, base::LaneMask active,
+                std::uint32_t* const to[4]) {
+  base::for_each_lane(active, [&](std::size_t lane) {
+    for (std::uint32_t c = 0; c < row.components; ++c)
+      if (to[c] != nullptr) to[c][lane] = load_word(bytes, offset.lane[lane] + row.added + row.at[c]);
+  });
 }
 
 void load_words(const Bytes& bytes, const MemoryOp& row, const Register& offset, base::LaneMask active,
                 std::uint32_t* const to[4]) {
-  const std::size_t count = prefix_length(active);
-  const Linear linear = count != 0 ? find_linear(offset, count) : Linear{};
-  if (linear.valid && inside(bytes, linear, count, row.added, row.components)) {
-    const std::byte* from = bytes.data + linear.start + row.added;
-    const std::uint32_t words = linear.stride / 4;
-    if (linear.stride == 0 || linear.stride == 4) {
-      for (std::uint32_t c = 0; c < row.components; ++c) {
-        if (to[c] == nullptr) continue;
-        if (linear.stride == 4) {
-          load_adjacent(from + 4 * c, to[c], count);
-        } else {
-          std::uint32_t word;
-          std::memcpy(&word, from + 4 * c, sizeof(word));
-          fill(to[c], word);
-        }
-      }
-      return;
-    }
-    const bool whole = inside(bytes, linear, count, row.added, words) && count == base::kWaveWidth;
-    if (linear.stride % 4 == 0 && words <= 4 && row.components <= words && whole)
-      return load_structures(from, words, to);
-  }
-  for (std::uint32_t c = 0; c < row.components; ++c)
-    if (to[c] != nullptr) gather(bytes, offset, row.added + 4 * c, to[c], active);
+  if (try_structures(bytes, row, offset, active, to)) return;
+  if (bytes.size < 4 || bytes.size > INT32_MAX) return load_lanes(bytes, row, offset, active, to);
+  load_vectors(bytes, row, offset, active, to);
 }
 
 void results(Wave& wave, const MemoryOp& row, std::uint32_t* to[4]) {
@@ -157,12 +176,8 @@ const Instruction* load_buffer_target(Wave& wave, const Instruction* i) {
                     [&](const Bytes& bytes, base::LaneMask active) { load_words(bytes, row, offset, active, to); });
     return i + 1;
   }
-  for_each_buffer(wave, row, wave.active, [&](const Bytes& bytes, base::LaneMask active) {
-    base::for_each_lane(active, [&](std::size_t lane) {
-      for (std::uint32_t c = 0; c < row.components; ++c)
-        if (to[c] != nullptr) to[c][lane] = load_word(bytes, offset.lane[lane] + row.added + 4 * c);
-    });
-  });
+  for_each_buffer(wave, row, wave.active,
+                  [&](const Bytes& bytes, base::LaneMask active) { load_lanes(bytes, row, offset, active, to); });
   return i + 1;
 }
 

@@ -8,7 +8,7 @@ namespace {
 void load(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes) {
   const std::uint32_t offset = uniform_word(wave, i->src[0]) + row.added;
   for (std::uint32_t c = 0; c < row.components; ++c)
-    if (row.data[c] != kNoOperand) uniform_word(wave, row.data[c]) = load_word(bytes, offset + 4 * c);
+    if (row.data[c] != kNoOperand) uniform_word(wave, row.data[c]) = load_word(bytes, offset + row.at[c]);
 }
 
 /// Elements of the run-time array at the end of a buffer: those that lie completely in the bound range.
