@@ -1,0 +1,242 @@
+// The sampler: known values by hand, and the vector paths against their scalar twin, bit by bit, on every SIMD target.
+#include "texel/sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "base/float_mode.h"
+#include "base/numeric.h"
+#include "base/simd.h"
+#include "texel/sampler/plan.h"
+#include "texel/sampler/wave_2d.h"
+
+#include <hwy/targets.h>
+
+namespace vitrine::texel {
+namespace {
+
+using base::bits_of;
+using base::float_of;
+
+struct TestView {
+  ImageLayout layout;
+  std::vector<std::byte> memory;
+  ImageView view;
+
+  TestView(VkFormat format, Extent extent, std::uint32_t levels, std::uint32_t layers, VkImageViewType type) {
+    ImageDesc desc;
+    desc.format = format;
+    desc.extent = extent;
+    desc.levels = levels;
+    desc.layers = layers;
+    EXPECT_TRUE(make_image_layout(desc, layout));
+    memory.resize(layout.size);
+    ImageViewDesc vd;
+    vd.type = type;
+    vd.format = format;
+    vd.level_count = levels;
+    vd.layer_count = layers;
+    vd.aspect = format_desc(format).has_depth() ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+    view = make_image_view(layout, memory.data(), vd);
+  }
+};
+
+base::WaveRegister constant(float value) {
+  base::WaveRegister wave;
+  for (std::uint32_t& lane : wave.lane) lane = bits_of(value);
+  return wave;
+}
+
+std::array<float, 4> sample_one(const ImageView& view, const Sampler& sampler, float s, float t) {
+  const base::WaveRegister coord[2] = {constant(s), constant(t)};
+  base::WaveRegister result[4];
+  SampleRequest request;
+  request.lod_mode = LodMode::kZero;
+  request.coord = {&coord[0], &coord[1], nullptr, nullptr};
+  sample(view, sampler, request, result);
+  return {float_of(result[0].lane[5]), float_of(result[1].lane[5]), float_of(result[2].lane[5]),
+          float_of(result[3].lane[5])};
+}
+
+TEST(Sampler, LinearWeighsFourTexels) {
+  TestView image(VK_FORMAT_R32_SFLOAT, {2, 2, 1}, 1, 1, VK_IMAGE_VIEW_TYPE_2D);
+  const float texels[4] = {0, 1, 2, 3};
+  for (std::uint32_t i = 0; i < 4; ++i) std::memcpy(image.view.block(0, 0, 0, i % 2, i / 2, 0), &texels[i], 4);
+  Sampler sampler;
+  sampler.mag_filter = sampler.min_filter = VK_FILTER_LINEAR;
+  sampler.address.fill(VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  EXPECT_EQ(sample_one(image.view, sampler, 0.5f, 0.5f), (std::array<float, 4>{1.5f, 0, 0, 1}));
+  EXPECT_EQ(sample_one(image.view, sampler, 9.0f, -9.0f)[0], 1.0f);
+  sampler.address.fill(VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER);
+  sampler.border = {bits_of(7.0f), 0, 0, 0};
+  EXPECT_EQ(sample_one(image.view, sampler, 9.0f, 0.25f), (std::array<float, 4>{7.0f, 0, 0, 1}));
+  sampler.address.fill(VK_SAMPLER_ADDRESS_MODE_REPEAT);
+  EXPECT_EQ(sample_one(image.view, sampler, 1.0f, 0.25f)[0], 0.5f);
+}
+
+TEST(Sampler, BytesInterpolateIn8Bits) {
+  TestView image(VK_FORMAT_R8_UNORM, {2, 1, 1}, 1, 1, VK_IMAGE_VIEW_TYPE_2D);
+  *image.view.block(0, 0, 0, 1, 0, 0) = std::byte{255};
+  Sampler sampler;
+  sampler.mag_filter = sampler.min_filter = VK_FILTER_LINEAR;
+  sampler.address.fill(VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  // Weight 128 of 256: (128 * 255 + 128) >> 8 = 128.
+  EXPECT_EQ(sample_one(image.view, sampler, 0.5f, 0.5f)[0], 128.0f * (1.0f / 255.0f));
+}
+
+TEST(Sampler, IntegersAreNotFiltered) {
+  TestView image(VK_FORMAT_R32_UINT, {1, 1, 1}, 1, 1, VK_IMAGE_VIEW_TYPE_2D);
+  const std::uint32_t value = 5;
+  std::memcpy(image.view.block(0, 0, 0, 0, 0, 0), &value, 4);
+  Sampler sampler;
+  EXPECT_EQ(bits_of(sample_one(image.view, sampler, 0.5f, 0.5f)[0]), 5u);
+  sampler.mag_filter = sampler.min_filter = VK_FILTER_LINEAR;
+  EXPECT_EQ(bits_of(sample_one(image.view, sampler, 0.5f, 0.5f)[0]), 0u);
+}
+
+/// Random state of one comparison.
+struct Random {
+  std::mt19937 generator;
+  explicit Random(unsigned seed) : generator(seed) {}
+  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(generator() % n); }
+  float between(float a, float b) { return a + (b - a) * static_cast<float>(generator()) / 4294967296.0f; }
+};
+
+constexpr VkFormat kFormats[] = {
+    VK_FORMAT_R8_UNORM,
+    VK_FORMAT_R8G8_UNORM,
+    VK_FORMAT_R8G8B8A8_UNORM,
+    VK_FORMAT_B8G8R8A8_UNORM,
+    VK_FORMAT_R8G8B8A8_SNORM,
+    VK_FORMAT_R8G8B8A8_SRGB,
+    VK_FORMAT_B8G8R8A8_SRGB,
+    VK_FORMAT_R16_UNORM,
+    VK_FORMAT_R16G16B16A16_UNORM,
+    VK_FORMAT_R16G16_SNORM,
+    VK_FORMAT_R16_SFLOAT,
+    VK_FORMAT_R16G16B16A16_SFLOAT,
+    VK_FORMAT_R32_SFLOAT,
+    VK_FORMAT_R32G32_SFLOAT,
+    VK_FORMAT_R32G32B32A32_SFLOAT,
+    VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+    VK_FORMAT_A2R10G10B10_SNORM_PACK32,
+    VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+    VK_FORMAT_R5G6B5_UNORM_PACK16,
+    VK_FORMAT_D16_UNORM,
+    VK_FORMAT_X8_D24_UNORM_PACK32,
+    VK_FORMAT_D32_SFLOAT,
+};
+
+Sampler random_sampler(Random& random, bool depth) {
+  constexpr VkSamplerAddressMode kModes[] = {
+      VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
+      VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE};
+  Sampler sampler;
+  const std::uint32_t modes = random.below(2) ? 5 : 2;
+  for (VkSamplerAddressMode& mode : sampler.address) mode = kModes[random.below(modes)];
+  sampler.mag_filter = sampler.min_filter = static_cast<VkFilter>(random.below(2));
+  sampler.mip_mode = static_cast<VkSamplerMipmapMode>(random.below(2));
+  sampler.mip_lod_bias = random.below(2) ? random.between(-2, 2) : 0.0f;
+  sampler.min_lod = random.below(3) ? 0.0f : random.between(0, 2);
+  sampler.max_lod = random.below(3) ? 1000.0f : sampler.min_lod + random.between(0, 3);
+  sampler.compare = depth && random.below(2);
+  sampler.compare_op = static_cast<VkCompareOp>(random.below(8));
+  sampler.border = {bits_of(random.between(-1, 2)), bits_of(0.5f), bits_of(0.0f), bits_of(1.0f)};
+  return sampler;
+}
+
+struct Inputs {
+  base::WaveRegister coord[3], lod, dref, ddx[2], ddy[2], offset[2];
+};
+
+Inputs random_inputs(Random& random) {
+  Inputs in;
+  const float step = std::exp2(random.between(-9, 1));
+  for (std::uint32_t i = 0; i < base::kWaveWidth; ++i) {
+    const float x = static_cast<float>((i / 4 * 2) + (i & 1)), y = static_cast<float>(i >> 1 & 1);
+    in.coord[0].lane[i] = bits_of(random.below(60) ? x * step - 1.0f : float_of(0x7fc00000u));
+    in.coord[1].lane[i] = bits_of(y * step + random.between(-0.01f, 0.01f) + 0.3f);
+    in.coord[2].lane[i] = bits_of(random.between(-1, 4));
+    in.lod.lane[i] = bits_of(random.between(-2, 6));
+    in.dref.lane[i] = bits_of(random.between(-0.2f, 1.2f));
+    for (std::size_t c = 0; c < 2; ++c) {
+      in.ddx[c].lane[i] = bits_of(random.between(-0.2f, 0.2f));
+      in.ddy[c].lane[i] = bits_of(random.between(-0.2f, 0.2f));
+      in.offset[c].lane[i] = random.below(16) - 8;
+    }
+  }
+  return in;
+}
+
+void fill_texels(TestView& image, Random& random) {
+  for (std::byte& b : image.memory) b = static_cast<std::byte>(random.generator());
+  const Channel& channel = image.view.format->channel[0];
+  if (channel.numeric != Numeric::kSfloat && channel.numeric != Numeric::kUfloat) return;
+  // Keep exponents small: infinities make NaN, whose bits no one promises.
+  for (std::size_t i = 0; i + 4 <= image.memory.size(); i += 4) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, &image.memory[i], 4);
+    word = channel.bits == 32 ? (word & 0x87ffffffu) | 0x38000000u
+                              : word & 0xbfffbfffu & ~(1u << 10 | 1u << 21 | 1u << 31);
+    std::memcpy(&image.memory[i], &word, 4);
+  }
+}
+
+/// One random configuration: scalar twin against vector path.
+void compare_paths(unsigned seed) {
+  Random random(seed);
+  const VkFormat format = kFormats[random.below(std::size(kFormats))];
+  const std::uint32_t sizes[] = {1, 5, 13, 16, 37, 64};
+  const Extent extent{sizes[random.below(6)], sizes[random.below(6)], 1};
+  const std::uint32_t levels =
+      random.below(2) ? static_cast<std::uint32_t>(std::bit_width(std::max(extent.width, extent.height))) : 1;
+  const bool array = random.below(3) == 0;
+  TestView image(format, extent, levels, array ? 3 : 1, array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D);
+  if (random.below(3) == 0) image.view.swizzle = {2, 5, 0, 4};
+  fill_texels(image, random);
+  const Sampler sampler = random_sampler(random, image.view.format->has_depth());
+  const Inputs in = random_inputs(random);
+  SampleRequest request;
+  request.lod_mode = static_cast<LodMode>(random.below(5));
+  request.coord = {&in.coord[0], &in.coord[1], array ? &in.coord[2] : nullptr, nullptr};
+  request.lod = &in.lod;
+  request.ddx = {&in.ddx[0], &in.ddx[1], nullptr};
+  request.ddy = {&in.ddy[0], &in.ddy[1], nullptr};
+  if (random.below(2)) request.offset = {&in.offset[0], &in.offset[1], nullptr};
+  if (sampler.compare) request.dref = &in.dref;
+  const base::ScopedFloatMode mode(random.below(2) ? base::Denormals::kFlush : base::Denormals::kHonour);
+  const Plan plan = make_plan(image.view, sampler, request.op, request.lod_mode);
+  base::WaveRegister expected[4], result[4];
+  sample_scalar(plan, request, expected);
+  if (!sample_wave_2d(plan, request, result)) return;
+  for (std::size_t c = 0; c < 4; ++c) {
+    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
+      const std::uint32_t a = expected[c].lane[lane], b = result[c].lane[lane];
+      const bool both_nan = float_of(a) != float_of(a) && float_of(b) != float_of(b);
+      ASSERT_TRUE(a == b || both_nan) << "seed " << seed << " " << image.view.format->name << " component " << c
+                                      << " lane " << lane << std::hex << " scalar " << a << " vector " << b;
+    }
+  }
+}
+
+TEST(Sampler, VectorPathsEqualTheScalarOne) {
+  hwy::DisableTargets(0);
+  const auto supported = hwy::SupportedTargets();
+  for (const auto target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+    if ((supported & target) == 0) continue;
+    SCOPED_TRACE(hwy::TargetName(target));
+    base::select_simd_target();  // once per process: the choice below then stays
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(target);
+    for (unsigned seed = 0; seed < 600 && !testing::Test::HasFatalFailure(); ++seed) compare_paths(seed);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace
+}  // namespace vitrine::texel
