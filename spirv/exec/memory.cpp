@@ -51,7 +51,7 @@ Linear find_linear(const Register& offset, std::size_t count) {
 
 /// All words of an evenly spaced access lie inside.
 bool inside(const Bytes& bytes, const Linear& linear, std::size_t count, std::uint32_t added, std::uint32_t words) {
-  const std::uint64_t first = std::uint64_t{linear.start} + added;
+  const std::uint64_t first = linear.start + added;  // wraps, as every lane's address does
   const std::uint64_t last = first + std::uint64_t{linear.stride} * (count - 1) + 4 * words;
   return last <= bytes.size && last <= UINT32_MAX;
 }
@@ -89,7 +89,7 @@ bool try_structures(const Bytes& bytes, const MemoryOp& row, const Register& off
   if (stride % 4 != 0 || words > 4 || words < row.components) return false;
   const Linear linear = find_linear(offset, base::kWaveWidth);
   if (!linear.valid || !inside(bytes, linear, base::kWaveWidth, row.added, words)) return false;
-  load_structures(bytes.data + linear.start + row.added, words, to);
+  load_structures(bytes.data + (linear.start + row.added), words, to);
   return true;
 }
 
@@ -117,7 +117,7 @@ void load_vectors(const Bytes& bytes, const MemoryOp& row, const Register& offse
     if (wanted_lanes == 0) continue;
     const auto wanted = hn::Load(d, offset.lane + lane);
     const auto spread = hn::Sub(wanted, hn::Set(d, offset.lane[lane]));
-    const std::uint64_t first = std::uint64_t{offset.lane[lane]} + row.added;
+    const std::uint64_t first = offset.lane[lane] + row.added;  // wraps, as every lane's address does
     const bool inner = first + highest + kMaxSpan <= std::min<std::uint64_t>(bytes.size, UINT32_MAX);
     if (inner && wanted_lanes == vector_lanes && hn::AllTrue(d, hn::Eq(spread, adjacent))) {
       for (std::uint32_t c = 0; c < row.components; ++c)
@@ -222,7 +222,7 @@ void store_words(const Bytes& bytes, const MemoryOp& row, const Register& offset
   if (dense && count != 0) {
     const Linear linear = find_linear(offset, count);
     if (linear.valid && linear.stride == 4 * words && inside(bytes, linear, count, row.added, words)) {
-      std::byte* to = bytes.data + linear.start + row.added;
+      std::byte* to = bytes.data + (linear.start + row.added);
       if (words == 1) return store_adjacent(to, from[0], count);
       if (count == base::kWaveWidth) return store_structures(to, words, from);
     }

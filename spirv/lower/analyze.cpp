@@ -40,6 +40,7 @@ class Liveness {
 
   void run() {
     for (ScalarOp& op : f_.body) {
+      if (op.dead) continue;
       if (op.cond != kNoScalar) need(op.cond);
       if (!is_control(op) && has_effect(op)) need_sources(op);
     }
@@ -56,7 +57,7 @@ class Liveness {
  private:
   void record(std::vector<ScalarOp>& list) {
     for (ScalarOp& op : list)
-      if (!is_control(op))
+      if (!is_control(op) && !op.dead)
         for (const ScalarId id : f_.of(op.dst)) definition_[id] = &op;
   }
   void need(ScalarId id) {
@@ -75,7 +76,7 @@ class Liveness {
       } else if (!has_effect(op)) {
         bool used = false;
         for (const ScalarId id : f_.of(op.dst)) used |= needed_[id] != 0;
-        op.dead = !used;
+        op.dead |= !used;
       }
     }
   }

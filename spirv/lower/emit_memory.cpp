@@ -63,7 +63,7 @@ MemoryOp Emitter::buffer_row(const ScalarOp& op, bool indexed) {
     row.count = op.instr->data[2];
     row.index = index_operand(source(op, 0), row.slot, row.count);
   }
-  row.added = op.instr->data[3];
+  row.added = op.instr->data[3] + op.offset;
   return row;
 }
 
@@ -88,7 +88,8 @@ void Emitter::load(const ScalarOp& op) {
     program->memory_ops.push_back(row);
     return;
   }
-  if (op.op == Op::kLoadPush) row.added = op.instr->data[0];
+  if (op.op == Op::kLoadPush) row.added = op.instr->data[0] + op.offset;
+  row.at = op.at;
   row.components = op.dst.count;
   for (std::uint32_t c = 0; c < op.dst.count && c < 4; ++c) row.data[c] = place(result(op, c)).offset;
   if (op.op == Op::kLoadPush) {

@@ -3,6 +3,7 @@
 // position in it is also a position in time for live ranges.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -69,7 +70,9 @@ struct ScalarOp {
   bool in_chain = false;
   int accumulator = exec::kNoAccumulator;
   exec::Link link = exec::Link::kLast;
-  const ir::Instr* instr = nullptr;  ///< parameters of intrinsics, origin
+  std::uint32_t offset = 0;                      ///< memory: constant byte offset besides the instruction's own
+  std::array<std::uint32_t, 4> at{0, 4, 8, 12};  ///< loads: byte offset of each result behind the first
+  const ir::Instr* instr = nullptr;              ///< parameters of intrinsics, origin
 
   /// Whether source `k` comes in SIMD registers from the operation before.
   bool takes_accumulator(std::uint32_t k) const {
@@ -114,6 +117,9 @@ void remove_dead(ScalarFunction& function);
 
 /// Sets Level::kWave where it holds, and ScalarOp::masked.
 void find_wave_uniform(ScalarFunction& function);
+
+/// Moves constants into addresses and merges loads that share one.
+void combine_loads(ScalarFunction& function);
 
 /// Replaces `a * b` used once by an addition or subtraction by one operation (still two roundings).
 void fuse_multiply_add(ScalarFunction& function);
