@@ -149,7 +149,7 @@ void set_sample_inputs(ShadeRun& run) {
   for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
     std::uint32_t mask = 0;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
-      mask |= static_cast<std::uint32_t>(run.worker.wave.coverage[s] >> lane & 1) << s;
+      mask |= static_cast<std::uint32_t>(run.worker.wave.rasterized[s] >> lane & 1) << s;
     out.lane[lane] = run.plan.samples == 1 ? 1 : mask;
   }
 }

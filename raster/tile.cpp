@@ -51,8 +51,8 @@ void test_early(TileWorker& worker, const Primitive& primitive, const DepthPlane
   }
 }
 
-void append_quad(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block,
-                 std::uint32_t lane) {
+void append_quad(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
+                 const BlockCoverage& block, std::uint32_t lane) {
   PackedWave& wave = worker.wave;
   const std::uint32_t q = wave.quads++;
   if (wave.slots == 0 || wave.primitive[wave.slots - 1] != &primitive) wave.primitive[wave.slots++] = &primitive;
@@ -62,6 +62,7 @@ void append_quad(TileWorker& worker, const Primitive& primitive, int x, int y, c
   for (std::uint32_t s = 0; s < worker.draw->plan->samples; ++s) {
     const base::LaneMask nibble = block.lanes[s] >> lane & 15;
     wave.coverage[s] = (q == 0 ? 0 : wave.coverage[s]) | nibble << (4 * q);
+    wave.rasterized[s] = (q == 0 ? 0 : wave.rasterized[s]) | (rasterized.lanes[s] >> lane & 15) << (4 * q);
   }
   if (wave.quads == base::kQuadsPerWave) shade_wave(worker);
 }
@@ -74,12 +75,11 @@ void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane
     if ((plan.sample_mask >> s & 1) == 0) block.lanes[s] = 0;
   base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
+  const BlockCoverage rasterized = block;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
-    BlockCoverage tested = block;
-    test_early(worker, primitive, plane, x, y, tested);
-    any = any_sample(tested, plan.samples);
+    test_early(worker, primitive, plane, x, y, block);
+    any = any_sample(block, plan.samples);
     if (!any) return;
-    block = tested;
   }
   if (!plan.shades) {
     for (std::uint32_t s = 0; s < plan.samples; ++s)
@@ -89,7 +89,7 @@ void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane
   while (any) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(any)) & ~3u;
     any &= ~(base::LaneMask{15} << lane);
-    append_quad(worker, primitive, x, y, block, lane);
+    append_quad(worker, primitive, x, y, rasterized, block, lane);
   }
 }
 

@@ -38,6 +38,7 @@ struct PackedWave {
   std::uint8_t slot[base::kQuadsPerWave];
   const Primitive* primitive[base::kQuadsPerWave];  ///< by slot
   base::LaneMask coverage[kMaxSamples];             ///< by sample of the attachments
+  base::LaneMask rasterized[kMaxSamples];           ///< before early tests: gl_SampleMask as an input (8.5)
 };
 
 /// The tile being worked on.
