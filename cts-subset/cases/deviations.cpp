@@ -137,6 +137,44 @@ const AddCase kFacing(
       draw(run, "read", target, spec, values);
     });
 
+const AddCase kAlphaPerSample(
+    "pipeline", "deviation.alpha_to_coverage_per_sample", "alpha-to-coverage-per-sample", case_against_control,
+    [](Run& run) {
+      run.require(run.gpu.features.sampleRateShading, "sampleRateShading");
+      TargetSpec target;
+      target.samples = VK_SAMPLE_COUNT_4_BIT;
+      const std::vector<float> values = colored({{-0.7f, -0.7f, 0, 1}, {0.7f, -0.5f, 0, 1}, {0, 0.7f, 0, 1}});
+      GraphicsSpec spec;
+      spec.fragment =
+          "layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n"
+          "void main() { result = vec4(passed.xyz, gl_SampleID == 0 ? 0.125 : 1.0); }\n";
+      spec.multisample.alphaToCoverageEnable = VK_TRUE;
+      draw(run, "alpha_to_coverage", target, spec, values);
+      spec.multisample.alphaToCoverageEnable = VK_FALSE;
+      draw(run, "all_samples", target, spec, values);
+    });
+
+const AddCase kAlphaToOne(
+    "pipeline", "deviation.alpha_to_one_beside_mask", "alpha-to-one-beside-mask", case_against_control, [](Run& run) {
+      run.require(run.gpu.features.alphaToOne, "alphaToOne");
+      TargetSpec target;
+      target.samples = VK_SAMPLE_COUNT_4_BIT;
+      const std::vector<float> values = colored({{-0.7f, -0.7f, 0, 1}, {0.7f, -0.5f, 0, 1}, {0, 0.7f, 0, 1}});
+      const auto text = [](const char* alpha) {
+        return std::string(
+                   "layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n"
+                   "void main() { gl_SampleMask[0] = 7; result = vec4(passed.xyz, ") +
+               alpha + "); }\n";
+      };
+      GraphicsSpec spec;
+      spec.fragment = text("0.25");
+      spec.multisample.alphaToOneEnable = VK_TRUE;
+      draw(run, "alpha_to_one", target, spec, values);
+      spec.fragment = text("1.0");
+      spec.multisample.alphaToOneEnable = VK_FALSE;
+      draw(run, "one", target, spec, values);
+    });
+
 /// The same triangles, crossing the view volume, into BGRA8 with and without a depth attachment.
 const AddCase kBgra("clipping", "deviation.bgra8_route", "bgra8-route", case_against_control, [](Run& run) {
   std::vector<float> values;

@@ -243,6 +243,11 @@ CTS_RANDOM("pipeline", "random_multisample", 80) {
   spec.multisample.alphaToOneEnable = run.gpu.features.alphaToOne && random.chance(0.2f);
   spec.multisample.sampleShadingEnable = random.chance(0.3f);
   spec.multisample.minSampleShading = random.pick({0.0f, 0.2f, 0.5f, 1.0f});
+  // deviations.md, alpha-to-coverage-per-sample and alpha-to-one-beside-mask
+  const bool per_sample = spec.multisample.sampleShadingEnable || std::string(qualifier) == "sample" ||
+                          spec.fragment.find("gl_SampleID") != std::string::npos;
+  if (per_sample) spec.multisample.alphaToCoverageEnable = VK_FALSE;
+  if (spec.fragment.find("gl_SampleMask[") != std::string::npos) spec.multisample.alphaToOneEnable = VK_FALSE;
   run.note("fragment", spec.fragment);
   const VkPipeline pipeline = make_pipeline(run, spec, target);
   std::vector<float> values;
