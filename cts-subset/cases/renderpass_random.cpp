@@ -190,6 +190,15 @@ std::string fragment_text(Random& random, const Subpass& subpass, bool multisamp
   return text + "}\n";
 }
 
+std::string describe_subpass(const Plan& plan, const Subpass& subpass) {
+  std::string text = std::to_string(plan.samples) + " samples; colors";
+  for (const uint32_t c : subpass.colors)
+    text += " " + std::to_string(c) + (plan.colors[c].load ? " cleared" : " loaded");
+  text += "; inputs";
+  for (const uint32_t c : subpass.inputs) text += " " + std::to_string(c);
+  return text + (subpass.depth ? "; depth" : "") + (subpass.resolve ? "; resolve\n" : "\n");
+}
+
 void random_render_pass(Run& run) {
   Random& random = run.random;
   Plan plan = random_plan(run);
@@ -223,7 +232,7 @@ void random_render_pass(Run& run) {
     GraphicsSpec spec;
     spec.vertex = kVertex;
     spec.fragment = fragment_text(random, subpass, plan.samples != VK_SAMPLE_COUNT_1_BIT);
-    run.note("subpass" + std::to_string(i), spec.fragment);
+    run.note("subpass" + std::to_string(i), describe_subpass(plan, subpass) + spec.fragment);
     spec.layout = resources.back().layout;
     spec.floats({4, 4});
     spec.depth.depthTestEnable = spec.depth.depthWriteEnable = subpass.depth;

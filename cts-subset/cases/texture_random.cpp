@@ -2,7 +2,9 @@
 //
 // Left out here, because the reference's value then depends on neighbouring invocations (deviations.md): different min
 // and mag filters on its float path, and linear filtering at the corners of a cube.
+#include <cstdio>
 #include "harness/case.h"
+
 #include "harness/graphics.h"
 
 namespace vitrine::cts {
@@ -159,7 +161,7 @@ std::string lookup(Random& random, Kind kind, const Shape& shape) {
     }
     case Kind::kQuery:
       return "vec4(textureQueryLod(t, " + coordinate("c", shape.dimensions) +
-             "), float(textureQueryLevels(t)), float(textureSize(t, int(extra.w * 4.0))" +
+             "), float(textureQueryLevels(t)), float(textureSize(t, int(abs(base.w) * 4.0))" +
              (shape.coordinates > 1 ? ".y" : "") + "))";
     default: {
       const std::string with_reference = shape.coordinates == 1
@@ -217,6 +219,15 @@ std::vector<float> random_coordinates(Random& random, const Shape& shape) {
   return values;
 }
 
+std::string describe(const VkSamplerCreateInfo& s) {
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "mag %d min %d mip %d address %d %d %d border %d bias %g lod %g..%g aniso %g compare %d\n", s.magFilter,
+                s.minFilter, s.mipmapMode, s.addressModeU, s.addressModeV, s.addressModeW, s.borderColor, s.mipLodBias,
+                s.minLod, s.maxLod, s.anisotropyEnable ? s.maxAnisotropy : 0, s.compareEnable ? s.compareOp : -1);
+  return text;
+}
+
 void random_texture(Run& run, const Family& family) {
   Random& random = run.random;
   const Shape shape = random.pick(family.shapes);
@@ -226,7 +237,8 @@ void random_texture(Run& run, const Family& family) {
   if (shape.view == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY) run.require(run.gpu.features.imageCubeArray, "imageCubeArray");
   const Image image = run.image(image_spec);
   run.fill_random(image);
-  const VkSampler sampler = run.sampler(random_sampler(run, family, shape, image_spec));
+  const VkSamplerCreateInfo sampler_info = random_sampler(run, family, shape, image_spec);
+  const VkSampler sampler = run.sampler(sampler_info);
   const Buffer table = run.buffer_of(random_coordinates(random, shape));
   const Resources res = run.resources({sampled(0, image, sampler), storage_buffer(1, table)}, 48);
   TargetSpec target_spec;
@@ -242,7 +254,7 @@ void random_texture(Run& run, const Family& family) {
   run.note("fragment", std::string(info.name) + " " + std::to_string(image_spec.extent.width) + "x" +
                            std::to_string(image_spec.extent.height) + "x" + std::to_string(image_spec.extent.depth) +
                            " levels " + std::to_string(image_spec.levels) + " layers " +
-                           std::to_string(image_spec.layers) + "\n" + spec.fragment);
+                           std::to_string(image_spec.layers) + "\n" + describe(sampler_info) + spec.fragment);
   const VkPipeline pipeline = make_pipeline(run, spec, target);
   float push[12];
   const float step = random.pick({0.002f, 0.01f, 0.05f, 0.2f});

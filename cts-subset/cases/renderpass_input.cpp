@@ -1,0 +1,112 @@
+// Input attachments, one thing each: loaded from before the render pass or written by the subpass before.
+#include "harness/case.h"
+#include "harness/graphics.h"
+
+namespace vitrine::cts {
+namespace {
+
+/// Subpass 0 (only if `written`) draws into A; the last subpass reads A at its own pixel and writes it to B.
+void input(Run& run, VkFormat format, bool written) {
+  const FormatInfo& info = format_info(format);
+  const std::string prefix = info.numeric == Numeric::kUint ? "u" : info.numeric == Numeric::kSint ? "i" : "";
+  ImageSpec spec;
+  spec.format = format;
+  spec.extent = {70, 66, 1};
+  spec.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
+  const Image a = run.image(spec);
+  run.fill_random(a);
+  spec.format = prefix == "u"   ? VK_FORMAT_R32G32B32A32_UINT
+                : prefix == "i" ? VK_FORMAT_R32G32B32A32_SINT
+                                : VK_FORMAT_R32G32B32A32_SFLOAT;
+  const Image b = run.image(spec);
+
+  std::vector<VkAttachmentDescription> attachments;
+  for (const Image* image : {&a, &b})
+    attachments.push_back({0, image->spec.format, VK_SAMPLE_COUNT_1_BIT,
+                           image == &a ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                           VK_ATTACHMENT_STORE_OP_STORE, VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                           VK_ATTACHMENT_STORE_OP_DONT_CARE, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL});
+  const VkAttachmentReference references[] = {{0, VK_IMAGE_LAYOUT_GENERAL}, {1, VK_IMAGE_LAYOUT_GENERAL}};
+  VkSubpassDescription write{}, read{};
+  write.colorAttachmentCount = read.colorAttachmentCount = read.inputAttachmentCount = 1;
+  write.pColorAttachments = read.pInputAttachments = &references[0];
+  read.pColorAttachments = &references[1];
+  std::vector<VkSubpassDescription> subpasses;
+  if (written) subpasses.push_back(write);
+  subpasses.push_back(read);
+  const VkSubpassDependency dependency{0,
+                                       1,
+                                       VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                       VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                                       VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+                                       VK_ACCESS_INPUT_ATTACHMENT_READ_BIT,
+                                       VK_DEPENDENCY_BY_REGION_BIT};
+  VkRenderPassCreateInfo info_pass{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+  info_pass.attachmentCount = 2;
+  info_pass.pAttachments = attachments.data();
+  info_pass.subpassCount = static_cast<uint32_t>(subpasses.size());
+  info_pass.pSubpasses = subpasses.data();
+  info_pass.dependencyCount = written ? 1 : 0;
+  info_pass.pDependencies = &dependency;
+  VkRenderPass pass;
+  CTS_VK(vkCreateRenderPass(run.device, &info_pass, nullptr, &pass));
+  run.own(pass, vkDestroyRenderPass);
+  const VkImageView views[] = {a.view, b.view};
+  VkFramebufferCreateInfo info_framebuffer{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+  info_framebuffer.renderPass = pass;
+  info_framebuffer.attachmentCount = 2;
+  info_framebuffer.pAttachments = views;
+  info_framebuffer.width = 70;
+  info_framebuffer.height = 66;
+  info_framebuffer.layers = 1;
+  VkFramebuffer framebuffer;
+  CTS_VK(vkCreateFramebuffer(run.device, &info_framebuffer, nullptr, &framebuffer));
+  run.own(framebuffer, vkDestroyFramebuffer);
+
+  const Resources res = run.resources({input_attachment(0, a)});
+  std::vector<VkPipeline> pipelines;
+  for (uint32_t i = 0; i < subpasses.size(); ++i) {
+    const bool reads = i + 1 == subpasses.size();
+    GraphicsSpec graphics;
+    graphics.layout = res.layout;
+    graphics.vertex = kFullScreenVertex;
+    graphics.fragment = reads ? "layout(input_attachment_index = 0, binding = 0) uniform " + prefix +
+                                    "subpassInput a;\nlayout(location = 0) out " + prefix +
+                                    "vec4 result;\nvoid main() { result = subpassLoad(a); }\n"
+                              : "layout(location = 0) in vec2 uv;\nlayout(location = 0) out " + prefix +
+                                    "vec4 result;\nvoid main() { result = " + prefix + "vec4(vec4(uv, uv.yx * 0.5) * " +
+                                    (prefix.empty() ? "0.8" : "120.0") + "); }\n";
+    pipelines.push_back(make_pipeline(run, graphics, pass, i, 1, {70, 66}, VK_SAMPLE_COUNT_1_BIT));
+  }
+  run.once([&](VkCommandBuffer cmd) {
+    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    begin.renderPass = pass;
+    begin.framebuffer = framebuffer;
+    begin.renderArea = {{0, 0}, {70, 66}};
+    vkCmdBeginRenderPass(cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    for (uint32_t i = 0; i < pipelines.size(); ++i) {
+      if (i) vkCmdNextSubpass(cmd, VK_SUBPASS_CONTENTS_INLINE);
+      bind_pipeline(cmd, pipelines[i]);
+      res.bind(cmd);
+      vkCmdDraw(cmd, 3, 1, 0, 0);
+    }
+    vkCmdEndRenderPass(cmd);
+  });
+  run.out("a", a);
+  run.out("b", b);
+  for (Output& output : run.outputs) output.nan_bits_free = true;
+}
+
+const bool kRegistered = [] {
+  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+                                VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R8G8B8A8_UINT,
+                                VK_FORMAT_R32G32_SINT, VK_FORMAT_R5G6B5_UNORM_PACK16})
+    for (const bool written : {false, true})
+      AddCase("renderpass",
+              std::string("input_attachment.") + (written ? "written." : "loaded.") + format_info(format).name,
+              [=](Run& run) { input(run, format, written); });
+  return true;
+}();
+
+}  // namespace
+}  // namespace vitrine::cts
