@@ -57,8 +57,8 @@ ir::ValueId dot(Translator& t, ir::ValueId a, ir::ValueId b) {
   const std::uint32_t n = components(t, a);
   const ir::ValueId products = emit(t, ir::Op::kFMul, n, false, {whole(a), whole(b)});
   if (n == 1) return products;
-  // Sums of three and four are opaque to the rewrites (5.1).
-  const bool saved = std::exchange(t.opaque, n > 2);
+  // Sums of three and four are opaque to the rewrites (5.1), those of two only in the first round, which rewrite() ends.
+  const bool saved = std::exchange(t.opaque, true);
   ir::ValueId sum = emit(t, ir::Op::kFAdd, 1, false, {splat(products, 0), splat(products, 1)});
   for (std::uint8_t i = 2; i < n; i++) sum = emit(t, ir::Op::kFAdd, 1, false, {whole(sum), splat(products, i)});
   t.opaque = saved;

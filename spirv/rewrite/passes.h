@@ -13,6 +13,10 @@ bool propagate_copies(Graph& graph);
 /// Removes what has no effect and whose results nobody uses, and results and parameters that nobody uses.
 bool remove_dead(Graph& graph);
 
+/// Gives every arithmetic use of a composed vector a vector of its own: in the reference's first round each load of a
+/// vector variable is one, so that rules that ask for equal operands do not see them as equal.
+void separate_vector_uses(Graph& graph);
+
 enum class CseScope : std::uint8_t { kLoads, kAll };
 /// Merges equal instructions, the later into the one that dominates it. kLoads: only reads of inputs, push constants
 /// and uniform buffers.
@@ -36,6 +40,10 @@ bool unroll_loops(Graph& graph);
 enum class RuleSet : std::uint8_t { kMain, kLate };
 /// One run of the rule table (section 4.1).
 bool apply_rules(Graph& graph, RuleSet rules);
+
+/// Marks the sums of dot products of two components, before the first round; the reference sees through them after it.
+void mark_pair_sums(Graph& graph);
+void open_pair_sums(Graph& graph);
 
 /// What the reference's code generator simplifies on its own, for scalar code.
 void build_identities(Graph& graph);

@@ -13,11 +13,12 @@ using rewriting::Graph;
 constexpr int kMaxRounds = 64;
 
 /// One round of the reference's first loop (3.2 step 3).
-bool optimize_once(Graph& graph) {
+bool optimize_once(Graph& graph, bool first) {
   bool changed = rewriting::merge_equal(graph, rewriting::CseScope::kLoads);
   changed |= rewriting::propagate_copies(graph);
   changed |= rewriting::remove_dead(graph);
   changed |= rewriting::flatten_branches(graph);
+  if (first) rewriting::separate_vector_uses(graph);
   changed |= rewriting::apply_rules(graph, rewriting::RuleSet::kMain);
   changed |= rewriting::fold_constants(graph);
   changed |= rewriting::remove_trivial_results(graph);
@@ -50,8 +51,11 @@ void finish(Graph& graph) {
 
 void rewrite(ir::Function& function) {
   Graph graph(function);
-  for (int round = 0; round < kMaxRounds; ++round)
-    if (!optimize_once(graph)) break;
+  rewriting::mark_pair_sums(graph);
+  optimize_once(graph, true);
+  rewriting::open_pair_sums(graph);
+  for (int round = 1; round < kMaxRounds; ++round)
+    if (!optimize_once(graph, false)) break;
   finish(graph);
   rewriting::choose_spelling(graph);
   rewriting::remove_dead(graph);

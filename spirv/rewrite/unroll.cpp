@@ -55,6 +55,8 @@ struct Shape {
   InstId exit = kNone;      ///< the If that leaves the loop
   unsigned break_side = 0;  ///< its branch that ends in Break
   unsigned iterations = 0;  ///< times the exit is not taken
+  InstId second = kNone;    ///< another If that may leave the loop, after `exit`
+  unsigned second_side = 0;
 };
 
 class Counter {
@@ -159,34 +161,48 @@ bool counts_by_adding(const Graph& graph, InstId loop, Src condition) {
   return graph.constant(graph.source(*step, 0).value) || graph.constant(graph.source(*step, 1).value);
 }
 
+/// The branch of `candidate` that breaks while the other goes on; 2: none.
+unsigned break_side_of(const Graph& graph, const Inst& candidate) {
+  if (candidate.kind != Kind::kIf) return 2;
+  for (const unsigned side : {0u, 1u}) {
+    const InstId last = graph.blocks[candidate.child[side]].tail;
+    const InstId other = graph.blocks[candidate.child[1 - side]].tail;
+    if (last == kNone || other == kNone) continue;
+    if (is_jump(graph.insts[last], Op::kBreak) && is_jump(graph.insts[other], Op::kYield)) return side;
+  }
+  return 2;
+}
+
+/// The first exit must be the one that counts; a second one is allowed.
 bool find_shape(const Graph& graph, InstId loop, Shape& shape) {
   const Inst& inst = graph.insts[loop];
   const InstId body_end = graph.blocks[inst.child[0]].tail, next = graph.blocks[inst.child[1]].tail;
   if (body_end == kNone || next == kNone || !is_jump(graph.insts[next], Op::kYield)) return false;
   const Inst& end = graph.insts[body_end];
   if (!is_jump(end, Op::kYield) && !is_jump(end, Op::kContinue)) return false;
-  const unsigned allowed = is_jump(end, Op::kContinue) ? 2 : 1;
-  if (count_exits(graph, inst.child[0]) != allowed || count_exits(graph, inst.child[1]) != 0) return false;
+  unsigned exits = count_exits(graph, inst.child[0]) - (is_jump(end, Op::kContinue) ? 1 : 0);
+  if (exits == 0 || exits > 2 || count_exits(graph, inst.child[1]) != 0) return false;
   for (InstId id = graph.blocks[inst.child[0]].head; id != kNone; id = graph.insts[id].next) {
-    const Inst& candidate = graph.insts[id];
-    if (candidate.kind != Kind::kIf) continue;
-    for (const unsigned side : {0u, 1u}) {
-      const InstId last = graph.blocks[candidate.child[side]].tail;
-      const InstId other = graph.blocks[candidate.child[1 - side]].tail;
-      if (last == kNone || other == kNone || !is_jump(graph.insts[last], Op::kBreak)) continue;
-      if (!is_jump(graph.insts[other], Op::kYield)) return false;
+    const unsigned side = break_side_of(graph, graph.insts[id]);
+    if (side == 2) continue;
+    --exits;
+    if (shape.exit == kNone) {
       shape.exit = id;
       shape.break_side = side;
-      return counts_by_adding(graph, loop, graph.source(candidate, 0)) && Counter(graph, loop).count(shape);
+    } else {
+      shape.second = id;
+      shape.second_side = side;
     }
   }
-  return false;
+  if (exits != 0 || shape.exit == kNone) return false;
+  const Src condition = graph.source(graph.insts[shape.exit], 0);
+  return counts_by_adding(graph, loop, condition) && Counter(graph, loop).count(shape);
 }
 
-/// Copies instructions in front of the loop, operands translated.
+/// Copies instructions to the end of a block, operands translated.
 class Copier {
  public:
-  Copier(Graph& graph, InstId position) : graph_(graph), position_(position) {}
+  explicit Copier(Graph& graph) : graph_(graph) {}
 
   Src translated(const Src& src) const {
     const auto entry = map_.find(src.value);
@@ -198,16 +214,23 @@ class Copier {
 
   void bind(ValueId value, const Src& src) { map_[value] = src; }
 
-  /// Copies [first, last) in front of the position.
-  void copy(InstId first, InstId last) {
-    for (InstId id = first; id != last; id = graph_.insts[id].next) graph_.insert_before(position_, copy_inst(id));
+  /// Copies [first, last).
+  void copy(InstId first, InstId last, BlockId to) {
+    for (InstId id = first; id != last; id = graph_.insts[id].next) {
+      const InstId made = copy_inst(id);
+      graph_.append(to, made);
+    }
   }
 
   /// Copies a branch without its final jump; returns the translated operands of the jump.
-  std::vector<Src> copy_branch(BlockId block) {
+  std::vector<Src> copy_branch(BlockId block, BlockId to) {
     const InstId last = graph_.blocks[block].tail;
-    copy(graph_.blocks[block].head, last);
+    copy(graph_.blocks[block].head, last, to);
     return operands_of(last);
+  }
+
+  void bind_all(const std::vector<ValueId>& values, const std::vector<Src>& sources) {
+    for (std::size_t i = 0; i < values.size() && i < sources.size(); ++i) bind(values[i], sources[i]);
   }
 
   std::vector<Src> operands_of(InstId id) const {
@@ -277,7 +300,6 @@ class Copier {
   }
 
   Graph& graph_;
-  InstId position_;
   std::unordered_map<ValueId, Src> map_;
 };
 
@@ -294,56 +316,122 @@ ValueId as_value(Graph& graph, InstId position, const Src& src, ValueId like) {
   return graph.insts[move].result;
 }
 
-void unroll(Graph& graph, InstId loop, const Shape& shape) {
-  const BlockId body = graph.insts[loop].child[0], continuing = graph.insts[loop].child[1];
-  const BlockId leave = graph.insts[shape.exit].child[shape.break_side];
-  const BlockId stay = graph.insts[shape.exit].child[1 - shape.break_side];
-  const std::vector<ValueId> params = graph.nodes[graph.insts[loop].node]->params;
-  const std::vector<ValueId> continue_params = graph.nodes[graph.insts[loop].node]->continue_params;
-  const std::vector<ValueId> exit_results = graph.nodes[graph.insts[shape.exit].node]->results;
-  const std::vector<ValueId> results = graph.nodes[graph.insts[loop].node]->results;
-  Copier copier(graph, loop);
-  const auto bind_all = [&](const std::vector<ValueId>& values, const std::vector<Src>& sources) {
-    for (std::size_t i = 0; i < values.size() && i < sources.size(); ++i) copier.bind(values[i], sources[i]);
-  };
-  bind_all(params, copier.operands_of(loop));
-  for (unsigned iteration = 0; iteration < shape.iterations; ++iteration) {
-    copier.copy(graph.blocks[body].head, shape.exit);
-    bind_all(exit_results, copier.copy_branch(stay));
-    const InstId end = graph.blocks[body].tail;
-    copier.copy(graph.insts[shape.exit].next, end);
-    bind_all(continue_params, copier.operands_of(end));
-    bind_all(params, copier.copy_branch(continuing));
+/// Builds the iterations of one loop.
+class Unroller {
+ public:
+  Unroller(Graph& graph, InstId loop, const Shape& shape) : graph_(graph), loop_(loop), shape_(shape), copier_(graph) {}
+
+  void run() {
+    copier_.bind_all(node(loop_).params, copier_.operands_of(loop_));
+    const BlockId made = new_block(kNone);
+    const std::vector<Src> values = iterate(0, made);
+    graph_.splice_before(loop_, made);
+    const std::vector<ValueId> results = node(loop_).results;
+    for (std::size_t i = 0; i < results.size(); ++i)
+      graph_.replace_uses(results[i], as_value(graph_, loop_, values[i], results[i]));
+    graph_.remove(loop_);
   }
-  copier.copy(graph.blocks[body].head, shape.exit);
-  const std::vector<Src> values = copier.copy_branch(leave);
-  for (std::size_t i = 0; i < results.size(); ++i)
-    graph.replace_uses(results[i], as_value(graph, loop, values[i], results[i]));
-  graph.remove(loop);
+
+ private:
+  const ir::Node& node(InstId id) const { return *graph_.nodes[graph_.insts[id].node]; }
+  BlockId child(InstId id, unsigned side) const { return graph_.insts[id].child[side]; }
+
+  BlockId new_block(InstId owner) {
+    graph_.blocks.push_back({kNone, kNone, owner});
+    return static_cast<BlockId>(graph_.blocks.size() - 1);
+  }
+
+  /// Appends iteration `number` and all that follow; returns the values the loop ends with.
+  std::vector<Src> iterate(unsigned number, BlockId to) {
+    const BlockId body = child(loop_, 0);
+    copier_.copy(graph_.blocks[body].head, shape_.exit, to);
+    if (number == shape_.iterations) return copier_.copy_branch(child(shape_.exit, shape_.break_side), to);
+    stay(shape_.exit, shape_.break_side, to);
+    if (shape_.second == kNone) {
+      finish(graph_.insts[shape_.exit].next, to);
+      return iterate(number + 1, to);
+    }
+    copier_.copy(graph_.insts[shape_.exit].next, shape_.second, to);
+    return branch(number, to);
+  }
+
+  /// The other way past a conditional exit.
+  void stay(InstId exit, unsigned break_side, BlockId to) {
+    const std::vector<ValueId> results = node(exit).results;
+    copier_.bind_all(results, copier_.copy_branch(child(exit, 1 - break_side), to));
+  }
+
+  /// From `first` to the end of the body, then the continue construct.
+  void finish(InstId first, BlockId to) {
+    const InstId end = graph_.blocks[child(loop_, 0)].tail;
+    copier_.copy(first, end, to);
+    copier_.bind_all(node(loop_).continue_params, copier_.operands_of(end));
+    const std::vector<Src> next = copier_.copy_branch(child(loop_, 1), to);
+    copier_.bind_all(node(loop_).params, next);
+  }
+
+  /// An If on the second exit, with the rest of the loop in the branch that stays.
+  std::vector<Src> branch(unsigned number, BlockId to) {
+    const auto made = graph_.create(Kind::kIf, Op::kMov, 0, false, 1);
+    graph_.set_source(made, 0, copier_.operands_of(shape_.second)[0]);
+    auto description = std::make_unique<ir::Node>();
+    description->kind = ir::Node::Kind::kIf;
+    std::vector<Src> results;
+    for (const ValueId like : node(loop_).results) {
+      const Value shape = graph_.values[like];
+      const auto value = static_cast<ValueId>(graph_.values.size());
+      graph_.values.push_back({made, kNone, kNone, 0, shape.components, shape.boolean});
+      description->results.push_back(value);
+      results.push_back({value, {0, 1, 2, 3}});
+    }
+    graph_.insts[made].origin = graph_.insts[shape_.second].origin;
+    graph_.insts[made].node = static_cast<std::uint32_t>(graph_.nodes.size());
+    graph_.nodes.push_back(std::move(description));
+    graph_.append(to, made);
+    const BlockId leave = new_block(made), go_on = new_block(made);
+    graph_.insts[made].child[shape_.second_side] = leave;
+    graph_.insts[made].child[1 - shape_.second_side] = go_on;
+    yield(leave, copier_.copy_branch(child(shape_.second, shape_.second_side), leave));
+    stay(shape_.second, shape_.second_side, go_on);
+    finish(graph_.insts[shape_.second].next, go_on);
+    yield(go_on, iterate(number + 1, go_on));
+    return results;
+  }
+
+  void yield(BlockId block, const std::vector<Src>& values) {
+    const auto made = graph_.create(Kind::kIntrinsic, Op::kYield, 0, false, 0);
+    graph_.insts[made].node = static_cast<std::uint32_t>(graph_.nodes.size());
+    graph_.nodes.push_back(std::make_unique<ir::Node>());
+    graph_.set_operands(made, values);
+    graph_.append(block, made);
+  }
+
+  Graph& graph_;
+  InstId loop_;
+  Shape shape_;
+  Copier copier_;
+};
+
+bool try_unroll(Graph& graph, InstId loop) {
+  Shape shape;
+  if (!find_shape(graph, loop, shape)) return false;
+  Cost cost;
+  for (const BlockId side : graph.insts[loop].child) add_cost(graph, side, cost);
+  if (cost.has_loop && shape.iterations != 1) return false;
+  if (shape.iterations > kMaxIterations || cost.instructions * shape.iterations > kMaxCost) return false;
+  Unroller(graph, loop, shape).run();
+  return true;
 }
 
-/// Innermost loops first; a loop around one that was unrolled waits for the next round, as in the reference.
+/// Innermost first; after one loop of a list the others wait for the next round, as does a loop around an unrolled one.
 bool unroll_in(Graph& graph, BlockId block) {
   bool changed = false;
-  for (InstId id = graph.blocks[block].head; id != kNone;) {
-    const InstId next = graph.insts[id].next;
-    const BlockId child[2] = {graph.insts[id].child[0], graph.insts[id].child[1]};
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
     bool inside = false;
-    for (const BlockId side : child)
+    for (const BlockId side : {graph.insts[id].child[0], graph.insts[id].child[1]})
       if (side != kNone) inside |= unroll_in(graph, side);
     changed |= inside;
-    Shape shape;
-    if (!inside && graph.insts[id].kind == Kind::kLoop && find_shape(graph, id, shape)) {
-      Cost cost;
-      add_cost(graph, child[0], cost);
-      add_cost(graph, child[1], cost);
-      const bool nested_ok = !cost.has_loop || shape.iterations == 1;
-      if (nested_ok && shape.iterations <= kMaxIterations && cost.instructions * shape.iterations <= kMaxCost) {
-        unroll(graph, id, shape);
-        changed = true;
-      }
-    }
-    id = next;
+    if (graph.insts[id].kind == Kind::kLoop && !inside && try_unroll(graph, id)) return true;
   }
   return changed;
 }
