@@ -1,5 +1,7 @@
 // Control flow as lane masks, and moves of masks. A lane is active or waits in exactly one mask of an enclosing
 // construct; a lane in none has ended.
+#include <functional>
+
 #include "spirv/exec/handlers.h"
 #include "spirv/exec/operands.h"
 
@@ -35,6 +37,13 @@ const Instruction* demote(Wave& wave, const Instruction* instruction, base::Lane
   return nullptr;
 }
 
+template <class Compare, class T>
+const Instruction* jump_if_test(Wave& wave, const Instruction* i) {
+  const bool holds =
+      Compare()(static_cast<T>(uniform_word(wave, i->src[0])), static_cast<T>(uniform_word(wave, i->src[1])));
+  return holds ? target(i) : i + 1;
+}
+
 base::LaneMask all_if(std::uint32_t word) { return word != 0 ? base::kAllLanes : 0; }
 
 void assign_active(Wave& wave, base::LaneMask& to, base::LaneMask from) {
@@ -56,6 +65,25 @@ const Instruction* jump_unless(Wave& wave, const Instruction* i) {
 
 const Instruction* jump_if(Wave& wave, const Instruction* i) {
   return uniform_word(wave, i->src[0]) != 0 ? target(i) : i + 1;
+}
+
+Handler jump_compare(ir::Op test, bool holds) {
+  switch (test) {
+    case ir::Op::kIEq:
+    case ir::Op::kINe:
+      return (test == ir::Op::kIEq) == holds ? jump_if_test<std::equal_to<>, std::uint32_t>
+                                             : jump_if_test<std::not_equal_to<>, std::uint32_t>;
+    case ir::Op::kILt:
+    case ir::Op::kIGe:
+      return (test == ir::Op::kILt) == holds ? jump_if_test<std::less<>, std::int32_t>
+                                             : jump_if_test<std::greater_equal<>, std::int32_t>;
+    case ir::Op::kULt:
+    case ir::Op::kUGe:
+      return (test == ir::Op::kULt) == holds ? jump_if_test<std::less<>, std::uint32_t>
+                                             : jump_if_test<std::greater_equal<>, std::uint32_t>;
+    default:
+      return nullptr;
+  }
 }
 
 const Instruction* skip_if_empty(Wave& wave, const Instruction* i) { return next_or_target(wave, i); }

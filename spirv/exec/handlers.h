@@ -14,6 +14,8 @@ const Instruction* jump(Wave&, const Instruction*);
 /// To the target if the uniform word src[0] is 0 / is not 0.
 const Instruction* jump_unless(Wave&, const Instruction*);
 const Instruction* jump_if(Wave&, const Instruction*);
+/// To the target if the integer comparison `test` of the words src[0] and src[1] gives `holds`.
+Handler jump_compare(ir::Op test, bool holds);
 /// To the target if no lane is active.
 const Instruction* skip_if_empty(Wave&, const Instruction*);
 /// Mask dst = active & ~src[0]; active &= src[0]; to the target if none is left.

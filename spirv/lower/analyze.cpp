@@ -41,7 +41,8 @@ class Liveness {
   void run() {
     for (ScalarOp& op : f_.body) {
       if (op.dead) continue;
-      if (op.cond != kNoScalar) need(op.cond);
+      if (op.reads_condition()) need(op.cond);
+      for (const ScalarId id : f_.of(op.test_sources)) need(id);
       if (!is_control(op) && has_effect(op)) need_sources(op);
     }
     while (!work_.empty()) {

@@ -99,7 +99,7 @@ class BodyEmitter {
     if (op.masked) {
       out_.append_jump(exec::if_mask, "if", open.middle, mask_slot(i, 0), out_.in_register(op.cond));
     } else {
-      out_.append_jump(exec::jump_unless, "if.uniform", open.middle, {}, out_.place(op.cond));
+      out_.append_jump_unless(op, "if.uniform", open.middle);
     }
     open_.push_back(open);
   }
@@ -201,7 +201,7 @@ class BodyEmitter {
     const bool uniform = op.cond != kNoScalar && !varying(op.cond);
     if (!loop.op->masked) {
       const Label to = is_break ? loop.exit : loop.middle;
-      if (uniform) out_.append_jump(exec::jump_unless, "unless", after, {}, out_.place(op.cond));
+      if (uniform) out_.append_jump_unless(op, "unless", after);
       move_all(op, false);
       out_.append_jump(exec::jump, is_break ? "break.uniform" : "continue.uniform", to);
       out_.bind(after);
@@ -210,7 +210,7 @@ class BodyEmitter {
     mark_jumps();
     const Place waiting = mask_slot(loop.index, is_break ? 0 : 1);
     if (uniform || op.cond == kNoScalar) {
-      if (uniform) out_.append_jump(exec::jump_unless, "unless", after, {}, out_.place(op.cond));
+      if (uniform) out_.append_jump_unless(op, "unless", after);
       move_all(op, true);
       out_.append_jump(exec::leave_all, is_break ? "break" : "continue", next_join(), waiting);
     } else if (op.dst.count == 0) {
@@ -241,7 +241,7 @@ class BodyEmitter {
       return;
     }
     const Label after = out_.new_label();
-    if (op.cond != kNoScalar) out_.append_jump(exec::jump_unless, "unless", after, {}, out_.place(op.cond));
+    if (op.cond != kNoScalar) out_.append_jump_unless(op, "unless", after);
     out_.append_jump(exec::return_all, "return", next_join());
     out_.bind(after);
   }
@@ -255,7 +255,7 @@ class BodyEmitter {
     if (op.cond != kNoScalar && varying(op.cond)) {
       out_.append(exec::demote_if, "discard_if", op.instr, {}, out_.in_register(op.cond));
     } else {
-      if (op.cond != kNoScalar) out_.append_jump(exec::jump_unless, "unless", after, {}, out_.place(op.cond));
+      if (op.cond != kNoScalar) out_.append_jump_unless(op, "unless", after);
       out_.append(exec::demote_all, "discard", op.instr);
       // Uniformly dead: with every lane of the wave a helper, the handler has ended the wave.
     }

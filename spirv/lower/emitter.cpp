@@ -26,29 +26,61 @@ void Emitter::assign_word(ScalarId id) {
   words_[id] = program->uniform_words++;
 }
 
+/// Calls f(id) for every operand of `op` that is read as a word or register.
+template <class F>
+void for_each_operand(const ScalarFunction& function, const ScalarOp& op, F&& f) {
+  if (op.reads_condition()) f(op.cond);
+  for (const ScalarId id : function.of(op.test_sources)) f(id);
+  for (const ScalarId id : function.of(op.src)) f(id);
+}
+
 void Emitter::assign_words() {
   words_.assign(f_.scalars.size(), kNoIndex);
-  const auto visit = [&](const std::vector<ScalarOp>& list, auto&& wanted) {
+  const auto visit = [&](const std::vector<ScalarOp>& list, Level wanted) {
+    const auto assign = [&](ScalarId id) {
+      if (level(id) == wanted) assign_word(id);
+    };
     for (const ScalarOp& op : list) {
       if (op.dead) continue;
-      if (op.cond != kNoScalar && wanted(op.cond)) assign_word(op.cond);
-      for (const ScalarId id : f_.of(op.src))
-        if (wanted(id)) assign_word(id);
-      for (const ScalarId id : f_.of(op.dst))
-        if (wanted(id)) assign_word(id);
+      for_each_operand(f_, op, assign);
+      for (const ScalarId id : f_.of(op.dst)) assign(id);
     }
   };
-  const auto constant = [&](ScalarId id) { return level(id) == Level::kConstant; };
-  visit(f_.preamble, constant);
-  visit(f_.body, constant);
+  visit(f_.preamble, Level::kConstant);
+  visit(f_.body, Level::kConstant);
   for (const ScalarId id : f_.preset)
-    if (constant(id)) assign_word(id);
+    if (level(id) == Level::kConstant) assign_word(id);
   program->constants.resize(program->uniform_words);
   for (ScalarId id = 0; id < f_.scalars.size(); ++id)
     if (words_[id] != kNoIndex) program->constants[words_[id]] = f_.scalars[id].bits;
-  visit(f_.preamble, [&](ScalarId id) { return level(id) == Level::kUniform; });
+  visit(f_.preamble, Level::kUniform);
   program->draw_words = program->uniform_words;
-  visit(f_.body, [&](ScalarId id) { return level(id) == Level::kWave; });
+  share_counter_words();
+  visit(f_.body, Level::kWave);
+}
+
+/// The next value of a loop parameter is computed in the parameter's own word where nothing reads the old value later.
+void Emitter::share_counter_words() {
+  std::vector<std::uint32_t> uses(f_.scalars.size(), 0), last_use(f_.scalars.size(), 0);
+  std::vector<std::uint32_t> definition(f_.scalars.size(), kNoIndex);
+  for (std::uint32_t i = 0; i < f_.body.size(); ++i) {
+    for_each_operand(f_, f_.body[i], [&](ScalarId id) {
+      ++uses[id];
+      last_use[id] = i;
+    });
+    if (f_.body[i].kind == Kind::kAlu) definition[f_.operands[f_.body[i].dst.begin]] = i;
+  }
+  for (const ScalarOp& op : f_.body) {
+    if (op.kind != Kind::kEndLoop) continue;
+    for (std::uint32_t k = 0; k < op.src.count; ++k) {
+      const ScalarId next = source(op, k), parameter = result(op, k);
+      if (level(next) != Level::kWave || level(parameter) != Level::kWave || uses[next] != 1) continue;
+      if (definition[next] == kNoIndex || definition[next] < op.partner || last_use[parameter] > definition[next])
+        continue;
+      assign_word(parameter);
+      words_[next] = words_[parameter];
+    }
+  }
 }
 
 Place Emitter::place(ScalarId id) {
@@ -98,10 +130,19 @@ Label Emitter::new_label() {
 
 void Emitter::bind(Label label) { label_[label] = static_cast<std::uint32_t>(program->code.size()); }
 
-void Emitter::append_jump(Handler handler, const char* name, Label to, Place dst, Place a) {
+void Emitter::append_jump(Handler handler, const char* name, Label to, Place dst, Place a, Place b) {
   fixups_.push_back({static_cast<std::uint32_t>(program->code.size()), to});
-  append(handler, name, nullptr, dst, a);
+  append(handler, name, nullptr, dst, a, b);
   program->notes.back().jumps = true;
+}
+
+void Emitter::append_jump_unless(const ScalarOp& op, const char* name, Label to) {
+  if (op.test == ir::Op::kCount) {
+    append_jump(op.negated ? exec::jump_if : exec::jump_unless, name, to, {}, place(op.cond));
+    return;
+  }
+  const auto sources = f_.of(op.test_sources);
+  append_jump(exec::jump_compare(op.test, op.negated), name, to, {}, place(sources[0]), place(sources[1]));
 }
 
 void Emitter::alu(const ScalarOp& op) {

@@ -41,7 +41,10 @@ class Emitter {
                       Place b = {}, Place c = {});
   Label new_label();
   void bind(Label label);
-  void append_jump(Handler handler, const char* name, Label to, Place dst = {}, Place a = {});
+  void append_jump(Handler handler, const char* name, Label to, Place dst = {}, Place a = {}, Place b = {});
+
+  /// Jumps to `to` if the shared condition of `op` does not hold.
+  void append_jump_unless(const ScalarOp& op, const char* name, Label to);
 
   void alu(const ScalarOp& op);
   /// Memory, images, environment; false if `op` is none of these.
@@ -66,6 +69,7 @@ class Emitter {
  private:
   void assign_words();
   void assign_word(ScalarId id);
+  void share_counter_words();
   void one_move(Place to, Place from, bool masked, const ir::Instr* instr);
   Place temporary(char file);
   Place word(ScalarId id) const { return {'u', words_[id] * 4}; }

@@ -22,6 +22,8 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function) {
   if (!error.empty()) return base::Error{error};
   lowering::remove_dead(scalars);
   lowering::find_wave_uniform(scalars);
+  lowering::hoist_invariants(scalars);
+  lowering::fuse_tests(scalars);
   lowering::combine_loads(scalars);
   lowering::remove_dead(scalars);
   lowering::fuse_multiply_add(scalars);

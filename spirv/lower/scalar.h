@@ -63,6 +63,11 @@ struct ScalarOp {
   bool falls = true;    ///< kElse, kEndIf, kContinuing, kEndLoop: control reaches this marker from the list before it
   bool dead = false;
   ScalarId cond = kNoScalar;
+  /// A condition that all lanes share may be an integer comparison of its own (kCount: it is the word `cond`); negated:
+  /// holds when it does not.
+  ir::Op test = ir::Op::kCount;
+  bool negated = false;
+  Range test_sources;
   /// kIf -> kElse -> kEndIf -> kIf; kLoop -> kContinuing -> kEndLoop -> kLoop; kBreak, kContinue -> kLoop.
   std::uint32_t partner = kNoIndex;
   Range dst, src;
@@ -74,6 +79,8 @@ struct ScalarOp {
   std::array<std::uint32_t, 4> at{0, 4, 8, 12};  ///< loads: byte offset of each result behind the first
   const ir::Instr* instr = nullptr;              ///< parameters of intrinsics, origin
 
+  /// Whether `cond` itself is read.
+  bool reads_condition() const { return cond != kNoScalar && test == ir::Op::kCount; }
   /// Whether source `k` comes in SIMD registers from the operation before.
   bool takes_accumulator(std::uint32_t k) const {
     return accumulator == exec::kAllSources || accumulator == static_cast<int>(k);
@@ -117,6 +124,12 @@ void remove_dead(ScalarFunction& function);
 
 /// Sets Level::kWave where it holds, and ScalarOp::masked.
 void find_wave_uniform(ScalarFunction& function);
+
+/// Moves operations that give the same value in every iteration in front of the loop.
+void hoist_invariants(ScalarFunction& function);
+
+/// Lets jumps on conditions that all lanes share evaluate negations and comparisons themselves.
+void fuse_tests(ScalarFunction& function);
 
 /// Moves constants into addresses and merges loads that share one.
 void combine_loads(ScalarFunction& function);

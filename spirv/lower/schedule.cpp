@@ -18,7 +18,8 @@ std::vector<std::uint32_t> count_uses(const ScalarFunction& f) {
   std::vector<std::uint32_t> uses(f.scalars.size(), 0);
   for (const ScalarOp& op : f.body) {
     if (op.dead) continue;
-    if (op.cond != kNoScalar) ++uses[op.cond];
+    if (op.reads_condition()) ++uses[op.cond];
+    for (const ScalarId id : f.of(op.test_sources)) ++uses[id];
     for (const ScalarId id : f.of(op.src)) ++uses[id];
   }
   for (const ScalarId id : f.outputs)
