@@ -40,6 +40,11 @@ void decode_row(const FormatDesc& format, const std::byte* blocks, std::size_t c
 void decode_lanes(const FormatDesc& format, const std::byte* const address[base::kWaveWidth], base::LaneMask mask,
                   base::WaveRegister out[4]);
 
+/// Encodes one texel; what encode_texel calls. Chosen once per row, wave or draw. Null for formats that can_encode
+/// denies.
+using TexelEncoder = void (*)(const FormatDesc& format, const Texel& texel, std::byte* block);
+TexelEncoder texel_encoder(const FormatDesc& format, Encoding encoding);
+
 /// Encodes one texel into format.block_bytes bytes. Padding bits become 0. Nothing is written for formats that
 /// can_encode denies.
 void encode_texel(const FormatDesc& format, Encoding encoding, const Texel& texel, std::byte* block);

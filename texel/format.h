@@ -38,13 +38,17 @@ struct FormatDesc {
   Kind kind = Kind::kFloat;                         ///< of the colour (or depth) aspect
   VkImageAspectFlags aspects = 0;                   ///< COLOR, or DEPTH and/or STENCIL (or PLANE_0.. for multi-planar)
   std::uint8_t plane_count = 1;
+  bool plain = false;                       ///< one plane, one aspect, uncompressed, channels that the codecs know
+  std::array<std::uint8_t, 4> component{};  ///< per channel: which of R, G, B, A it is (inverse of `rgba`)
 
-  bool is_depth_stencil() const { return (aspects & (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT)) != 0; }
-  bool has_depth() const { return (aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0; }
-  bool has_stencil() const { return (aspects & VK_IMAGE_ASPECT_STENCIL_BIT) != 0; }
-  bool is_compressed() const { return compression != Compression::kNone; }
-  bool is_srgb() const { return channel_count != 0 && channel[0].numeric == Numeric::kSrgb; }
-  bool is_integer() const { return kind != Kind::kFloat; }
+  constexpr bool is_depth_stencil() const {
+    return (aspects & (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT)) != 0;
+  }
+  constexpr bool has_depth() const { return (aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0; }
+  constexpr bool has_stencil() const { return (aspects & VK_IMAGE_ASPECT_STENCIL_BIT) != 0; }
+  constexpr bool is_compressed() const { return compression != Compression::kNone; }
+  constexpr bool is_srgb() const { return channel_count != 0 && channel[0].numeric == Numeric::kSrgb; }
+  constexpr bool is_integer() const { return kind != Kind::kFloat; }
 };
 
 /// The description; for unknown values the one of VK_FORMAT_UNDEFINED (block_bytes 0). Never fails.

@@ -25,8 +25,9 @@ std::uint32_t unorm_by_magic(float x, std::uint32_t bits) {
   return bits_of(x * scale + magic) & low_mask(bits);
 }
 
+/// The reference's cvtr(min(1, x) * 255) with saturation: scaling by 255/256 instead changes no rounding.
 std::uint32_t unorm8_attachment(float x) {
-  return static_cast<std::uint32_t>(std::clamp(base::round_to_int(base::min_second(1.0f, x) * 255.0f), 0, 255));
+  return unorm_by_magic(base::min_second(base::max_second(x, 0.0f), 1.0f), 8);
 }
 
 std::uint32_t unorm16_attachment(float x) {
@@ -135,41 +136,78 @@ std::uint32_t encode_channel(const FormatDesc& format, Encoding encoding, const 
   }
 }
 
-/// Which component of a texel a channel stores.
-std::size_t component_of(const FormatDesc& format, std::size_t channel) {
-  for (std::size_t c = 0; c < 4; ++c) {
-    if (format.rgba[c] == static_cast<std::int8_t>(channel)) return c;
-  }
-  return 0;
-}
-
-void encode(const FormatDesc& format, Encoding encoding, const Texel& texel, std::byte* block) {
-  if (format.format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) {
-    const float rgb[3] = {float_of(texel[0]), float_of(texel[1]), float_of(texel[2])};
-    const std::uint32_t word = encode_shared_exponent(rgb);
-    std::memcpy(block, &word, sizeof(word));
-    return;
-  }
+template <Encoding kEncoding>
+void encode_any(const FormatDesc& format, const Texel& texel, std::byte* block) {
   std::uint64_t words[2] = {};
   for (std::size_t i = 0; i < format.channel_count; ++i) {
     const Channel& channel = format.channel[i];
     const std::uint64_t value =
-        encode_channel(format, encoding, channel, texel[component_of(format, i)]) & low_mask(channel.bits);
+        encode_channel(format, kEncoding, channel, texel[format.component[i]]) & low_mask(channel.bits);
     words[channel.offset / 64] |= value << (channel.offset % 64);
   }
   std::memcpy(block, words, format.block_bytes);
 }
 
+void encode_e5b9g9r9(const FormatDesc&, const Texel& texel, std::byte* block) {
+  const float rgb[3] = {float_of(texel[0]), float_of(texel[1]), float_of(texel[2])};
+  const std::uint32_t word = encode_shared_exponent(rgb);
+  std::memcpy(block, &word, sizeof(word));
+}
+
+/// Four 8-bit UNORM channels in any order.
+template <bool kStore>
+void encode_four_bytes(const FormatDesc& format, const Texel& texel, std::byte* block) {
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const float x = float_of(texel[format.component[i]]);
+    const float clamped =
+        kStore ? base::max_second(base::min_second(x, 1.0f), 0.0f) : base::min_second(base::max_second(x, 0.0f), 1.0f);
+    word |= unorm_by_magic(clamped, 8) << (8 * i);
+  }
+  std::memcpy(block, &word, sizeof(word));
+}
+
+/// 32-bit channels are stored as they are.
+void encode_words(const FormatDesc& format, const Texel& texel, std::byte* block) {
+  std::memcpy(block, texel.data(), format.block_bytes);
+}
+
+template <Encoding kEncoding>
+TexelEncoder choose_encoder(const FormatDesc& format) {
+  const Channel& first = format.channel[0];
+  const bool attached_or_stored = kEncoding != Encoding::kClear;
+  if (format.format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) return encode_e5b9g9r9;
+  if (first.bits == 32 && first.name == 'R') return encode_words;
+  if (attached_or_stored && format.block_bytes == 4 && format.channel_count == 4 && first.bits == 8 &&
+      first.numeric == Numeric::kUnorm) {
+    return encode_four_bytes<kEncoding == Encoding::kStore>;
+  }
+  return encode_any<kEncoding>;
+}
+
 }  // namespace
 
+TexelEncoder texel_encoder(const FormatDesc& format, Encoding encoding) {
+  if (!can_encode(format)) return nullptr;
+  switch (encoding) {
+    case Encoding::kStore:
+      return choose_encoder<Encoding::kStore>(format);
+    case Encoding::kClear:
+      return choose_encoder<Encoding::kClear>(format);
+    default:
+      return choose_encoder<Encoding::kAttachment>(format);
+  }
+}
+
 void encode_texel(const FormatDesc& format, Encoding encoding, const Texel& texel, std::byte* block) {
-  if (can_encode(format)) encode(format, encoding, texel, block);
+  encode_row(format, encoding, &texel, 1, block);
 }
 
 void encode_row(const FormatDesc& format, Encoding encoding, const Texel* texels, std::size_t count,
                 std::byte* blocks) {
-  if (!can_encode(format)) return;
-  for (std::size_t i = 0; i < count; ++i) encode(format, encoding, texels[i], blocks + i * format.block_bytes);
+  const TexelEncoder encode = texel_encoder(format, encoding);
+  if (encode == nullptr) return;
+  for (std::size_t i = 0; i < count; ++i) encode(format, texels[i], blocks + i * format.block_bytes);
 }
 
 }  // namespace vitrine::texel

@@ -12,10 +12,30 @@ namespace {
 constexpr std::size_t kFormatCount = std::size(kFormatRows);
 constexpr FormatDesc kUndefined{};
 
+constexpr bool is_plain(const FormatDesc& format) {
+  if (format.is_compressed() || format.channel_count == 0 || format.block_bytes > 16) return false;
+  if (format.has_depth() && format.has_stencil()) return false;
+  const bool unsigned_float = format.channel[0].numeric == Numeric::kUfloat;
+  const bool known_float =
+      format.format == VK_FORMAT_B10G11R11_UFLOAT_PACK32 || format.format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32;
+  return (!unsigned_float || known_float) &&
+         std::all_of(format.channel.begin(), format.channel.begin() + format.channel_count,
+                     [](const Channel& c) { return c.bits <= 32; });
+}
+
+/// Fills the fields that follow from others.
+constexpr void complete(FormatDesc& format) {
+  format.plain = is_plain(format);
+  for (std::uint8_t c = 0; c < 4; ++c) {
+    if (format.rgba[c] >= 0) format.component[static_cast<std::size_t>(format.rgba[c])] = c;
+  }
+}
+
 /// Rows by ascending enum value, so that a lookup is an index for core 1.0 formats and a binary search for others.
 constexpr auto kSortedRows = [] {
   std::array<FormatDesc, kFormatCount> rows{};
   std::copy(std::begin(kFormatRows), std::end(kFormatRows), rows.begin());
+  for (FormatDesc& row : rows) complete(row);
   std::sort(rows.begin(), rows.end(), [](const FormatDesc& a, const FormatDesc& b) { return a.format < b.format; });
   return rows;
 }();

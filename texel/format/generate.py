@@ -93,7 +93,7 @@ class Format:
         return (f"    {{{self.name}, \"{self.name.removeprefix('VK_FORMAT_')}\", {self.block_bytes}, "
                 f"{self.block[0]}, {self.block[1]}, {self.block[2]}, Compression::{self.compression}, {self.packed}, "
                 f"{len(self.channels)}, {array}, {{{{{', '.join(map(str, self.rgba()))}}}}}, Kind::{self.kind()}, "
-                f"{self.aspects()}, {self.planes}}},\n")
+                f"{self.aspects()}, {self.planes}, false, {{}}}},\n")
 
 
 def main(vk_xml, output):

@@ -118,20 +118,20 @@ void fetch_buffer(const BufferTexelView& view, base::LaneMask active, const base
 void store(const ImageView& view, const FetchRequest& request, const base::WaveRegister value[4]) {
   const Shape shape = shape_of(view.type);
   if (!can_store(*view.format)) return;
+  const TexelEncoder encode = texel_encoder(*view.format, Encoding::kStore);
   base::for_each_lane(request.active, [&](std::size_t lane) {
     const Place place = place_of(shape, request, lane);
-    if (!in_range(view, place)) return;
-    encode_texel(*view.format, Encoding::kStore, gather_texel(value, lane), address_of(view, place));
+    if (in_range(view, place)) encode(*view.format, gather_texel(value, lane), address_of(view, place));
   });
 }
 
 void store_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
                   const base::WaveRegister value[4]) {
   if (!can_store(*view.format)) return;
+  const TexelEncoder encode = texel_encoder(*view.format, Encoding::kStore);
   base::for_each_lane(active, [&](std::size_t lane) {
     const std::uint64_t i = index.lane[lane];
-    if (i >= view.count) return;
-    encode_texel(*view.format, Encoding::kStore, gather_texel(value, lane), view.data + i * view.format->block_bytes);
+    if (i < view.count) encode(*view.format, gather_texel(value, lane), view.data + i * view.format->block_bytes);
   });
 }
 

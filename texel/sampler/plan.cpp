@@ -120,6 +120,7 @@ Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMo
   Plan plan;
   plan.view = &view;
   plan.sampler = &sampler;
+  plan.decode = texel_decoder(*view.format);
   set_dimensions(plan);
   plan.gather = op == SampleOp::kGather;
   plan.anisotropic = sampler.max_anisotropy > 1.0f && !plan.gather && plan.dims == 2;

@@ -13,7 +13,8 @@ enum class MipFilter : std::uint8_t { kNone, kNearest, kLinear };
 struct Plan {
   const ImageView* view = nullptr;
   const Sampler* sampler = nullptr;
-  std::uint32_t dims = 2;  ///< addressed dimensions: cubes have 2
+  TexelDecoder decode = nullptr;  ///< null for compressed formats
+  std::uint32_t dims = 2;         ///< addressed dimensions: cubes have 2
   bool cube = false;
   bool arrayed = false;
   bool aos = false;   ///< 8-bit fixed-point path, bytes in and out
@@ -47,7 +48,7 @@ struct Lod {
 };
 
 /// One texel as values, or as the reference's bytes (AoS path). Coordinates are inside the level.
-void fetch_texel(const ImageView& view, std::uint32_t level, std::uint32_t layer, std::uint32_t x, std::uint32_t y,
+void fetch_texel(const Plan& plan, std::uint32_t level, std::uint32_t layer, std::uint32_t x, std::uint32_t y,
                  std::uint32_t z, Texel& out);
 using ByteTexel = std::array<std::uint8_t, 4>;
 void fetch_bytes(const ImageView& view, std::uint32_t level, std::uint32_t layer, std::uint32_t x, std::uint32_t y,

@@ -295,7 +295,7 @@ Texel texel_or_border(const LaneSample& lane, std::uint32_t level, std::uint32_t
   const Extent& extent = view.level[level].extent;
   Texel texel = lane.plan->border;
   if (inside(x, extent.width) && inside(y, extent.height) && inside(z, extent.depth) && layer < view.layer_count) {
-    fetch_texel(view, level, layer, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+    fetch_texel(*lane.plan, level, layer, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
                 static_cast<std::uint32_t>(z), texel);
   }
   if (lane.compare) {

@@ -16,15 +16,16 @@ std::uint8_t widen(std::uint32_t value, std::uint32_t bits) {
 
 }  // namespace
 
-void fetch_texel(const ImageView& view, std::uint32_t level, std::uint32_t layer, std::uint32_t x, std::uint32_t y,
+void fetch_texel(const Plan& plan, std::uint32_t level, std::uint32_t layer, std::uint32_t x, std::uint32_t y,
                  std::uint32_t z, Texel& out) {
+  const ImageView& view = *plan.view;
   const FormatDesc& format = *view.format;
-  if (format.is_compressed()) {
+  if (plan.decode == nullptr) {
     const std::byte* block = view.block(level, layer, 0, x / format.block_width, y / format.block_height, z);
     decode_block_texel(format, block, x % format.block_width, y % format.block_height, out);
     return;
   }
-  decode_row(format, view.block(level, layer, 0, x, y, z), 1, &out);
+  plan.decode(format, view.block(level, layer, 0, x, y, z), out);
 }
 
 void fetch_bytes(const ImageView& view, std::uint32_t level, std::uint32_t layer, std::uint32_t x, std::uint32_t y,
