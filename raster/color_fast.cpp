@@ -82,8 +82,17 @@ HWY_INLINE std::uint32_t write_word(const ColorWriter& writer) {
   return word;
 }
 
+/// Leaves vector code: the compiler forgets VZEROUPPER in functions that end with a call to a local function without
+/// vectors, and scalar SSE code after it then pays for the transition each time.
+HWY_INLINE void leave_vectors() {
+#if HWY_TARGET <= HWY_AVX2
+  _mm256_zeroupper();
+#endif
+}
+
 /// Stores the lanes of `mask`: two rows of two pixels per quad.
 void scatter(const ColorWave& wave, base::LaneMask mask, const Words& words) {
+  leave_vectors();
   const texel::LevelLayout& level = wave.view->level[0];
   std::byte* const origin = wave.view->block(0, wave.layer, wave.sample, 0, 0, 0);
   for (std::size_t q = 0; q < base::kQuadsPerWave; ++q) {

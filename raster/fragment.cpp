@@ -34,13 +34,7 @@ float* as_floats(WaveRegister& reg) { return reinterpret_cast<float*>(reg.lane);
 
 /// Pixel positions of all lanes, as floats, plus (dx, dy).
 void set_points(const PackedWave& wave, float dx, float dy, WavePoints& out) {
-  for (std::uint32_t q = 0; q < wave.quads; ++q) {
-    const auto x = static_cast<float>(wave.position.x[q]), y = static_cast<float>(wave.position.y[q]);
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      out.x[4 * q + i] = (x + static_cast<float>(i & 1)) + dx;
-      out.y[4 * q + i] = (y + static_cast<float>(i >> 1)) + dy;
-    }
-  }
+  place_points(wave.position, wave.quads, dx, dy, out);
 }
 
 /// 8.4: the centre where all samples are covered or none is, else the first covered sample.
@@ -235,15 +229,26 @@ void test_late(ShadeRun& run) {
   }
 }
 
-/// Four output registers next to each other; components that are not written are 0.
-void collect_color(const ShadeRun& run, const std::array<std::uint32_t, 4>& regs, WaveRegister out[4]) {
+/// The four registers of a colour: the shader's own where they lie next to each other, else copies in `scratch`.
+/// Components that are not written are 0.
+const WaveRegister* collect_color(const ShadeRun& run, const std::array<std::uint32_t, 4>& regs,
+                                  WaveRegister scratch[4]) {
+  const StageRunner& runner = run.worker.runner;
+  const bool written = std::find(regs.begin(), regs.end(), kNoReg) == regs.end();
+  if (written && !run.plan.state->alpha_to_one) {
+    const WaveRegister* first = &runner.output(regs[0]);
+    if (&runner.output(regs[1]) == first + 1 && &runner.output(regs[2]) == first + 2 &&
+        &runner.output(regs[3]) == first + 3)
+      return first;
+  }
   for (std::uint32_t c = 0; c < 4; ++c) {
     if (regs[c] == kNoReg)
-      splat(out[c], 0);
+      splat(scratch[c], 0);
     else
-      out[c] = run.worker.runner.output(regs[c]);
+      scratch[c] = runner.output(regs[c]);
   }
-  if (run.plan.state->alpha_to_one) splat(out[3], base::bits_of(1.0f));
+  if (run.plan.state->alpha_to_one) splat(scratch[3], base::bits_of(1.0f));
+  return scratch;
 }
 
 void write_colors(ShadeRun& run) {
@@ -252,15 +257,14 @@ void write_colors(ShadeRun& run) {
   LaneMask any = 0;
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) any |= run.kept[s];
   if (!any) return;
-  const bool dual = plan.frag.color_second != std::array<std::uint32_t, 4>{kNoReg, kNoReg, kNoReg, kNoReg};
   for (std::uint32_t i = 0; i < plan.color_count; ++i) {
     const texel::ImageView& view = worker.pass->color[i];
     if (!plan.writer[i].function || worker.target.layer >= view.layer_count) continue;
-    collect_color(run, plan.frag.color[i], worker.color);
-    if (i == 0 && dual) collect_color(run, plan.frag.color_second, worker.second);
+    const WaveRegister* color = collect_color(run, plan.frag.color[i], worker.color);
+    const bool dual = i == 0 && plan.dual_source;
+    const WaveRegister* second = dual ? collect_color(run, plan.frag.color_second, worker.second) : nullptr;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
-      write_color(plan.writer[i], {&view, worker.target.layer, s, &worker.wave.position, run.kept[s], worker.color,
-                                   i == 0 && dual ? worker.second : nullptr});
+      write_color(plan.writer[i], {&view, worker.target.layer, s, &worker.wave.position, run.kept[s], color, second});
   }
 }
 
@@ -292,8 +296,9 @@ void shade_wave(TileWorker& worker) {
   PackedWave& wave = worker.wave;
   const PipelinePlan& plan = *worker.draw->plan;
   ShadeRun run{worker, plan, {}, base::first_lanes(4 * wave.quads), 0, 0, plan.samples, {}};
-  for (std::uint32_t slot = 0; slot < wave.slots; ++slot)
+  for (std::uint32_t slot = worker.planes_of == wave.primitive[0] ? 1 : 0; slot < wave.slots; ++slot)
     compute_planes(plan, *wave.primitive[slot], worker.planes[slot]);
+  worker.planes_of = wave.primitive[0];
   run.planes.sets = worker.planes;
   run.planes.slots = wave.slots;
   run.planes.quads = wave.quads;

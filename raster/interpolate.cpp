@@ -22,6 +22,10 @@ using F = hn::ScalableTag<float>;
 using Quad = hn::FixedTag<float, 4>;
 using VF = hn::Vec<F>;
 
+/// Places of the lanes of one row of quads.
+alignas(64) constexpr float kRowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
+alignas(64) constexpr float kRowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
+
 /// Values of planes [i, i + lanes) at one vertex: perspective ones times its 1/w (a product with 1 changes nothing).
 HWY_INLINE VF vertex_values(const Vertex* v, std::size_t i, std::size_t perspective_end) {
   const F f;
@@ -101,14 +105,21 @@ void evaluate(const WavePlanes& wave, std::uint32_t plane, const WavePoints& poi
   }
 }
 
+void points_of_quads(const QuadPositions& quads, std::uint32_t count, float dx, float dy, WavePoints& out) {
+  const Quad d;
+  const auto right = hn::Load(d, kRowX), down = hn::Load(d, kRowY);
+  const auto move_x = hn::Set(d, dx), move_y = hn::Set(d, dy);
+  for (std::uint32_t q = 0; q < count; ++q) {
+    hn::Store(hn::Add(hn::Add(hn::Set(d, static_cast<float>(quads.x[q])), right), move_x), d, out.x + 4 * q);
+    hn::Store(hn::Add(hn::Add(hn::Set(d, static_cast<float>(quads.y[q])), down), move_y), d, out.y + 4 * q);
+  }
+}
+
 void reciprocals(const float* in, float* out) {
   const F f;
   for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(f))
     hn::Store(hn::Div(hn::Set(f, 1.0f), hn::Load(f, in + i)), f, out + i);
 }
-
-alignas(64) constexpr float kRowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
-alignas(64) constexpr float kRowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
 
 void block_depth(const DepthPlane& plane, float x, float y, float* out) {
   const hn::CappedTag<float, 16> f;
@@ -137,6 +148,7 @@ HWY_EXPORT(line_planes);
 HWY_EXPORT(point_planes);
 HWY_EXPORT(evaluate);
 HWY_EXPORT(reciprocals);
+HWY_EXPORT(points_of_quads);
 HWY_EXPORT(block_depth);
 
 struct LineDeltas {
@@ -217,6 +229,10 @@ DepthPlane compute_depth_plane(const PipelinePlan& plan, const Primitive& p) {
 void evaluate_plane(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale,
                     float* out) {
   HWY_DYNAMIC_DISPATCH(evaluate)(wave, plane, points, scale, out);
+}
+
+void place_points(const QuadPositions& quads, std::uint32_t count, float dx, float dy, WavePoints& out) {
+  HWY_DYNAMIC_DISPATCH(points_of_quads)(quads, count, dx, dy, out);
 }
 
 void reciprocal(const float* in, float* out) { HWY_DYNAMIC_DISPATCH(reciprocals)(in, out); }

@@ -318,6 +318,8 @@ void plan_colors(PipelinePlan& plan, const PassDesc& pass) {
   const ShaderInterface* fragment = plan.fragment;
   plan.shades = fragment &&
                 (fragment->writes_memory || plan.may_kill || plan.frag.depth != kNoReg || plan.frag.stencil != kNoReg);
+  const auto& second = plan.frag.color_second;
+  plan.dual_source = std::any_of(second.begin(), second.end(), [](std::uint32_t reg) { return reg != kNoReg; });
   for (std::uint32_t i = 0; i < plan.color_count; ++i) {
     plan.writer[i] = {};
     const auto& color = plan.frag.color[i];

@@ -116,6 +116,7 @@ struct PipelinePlan {
   bool early_reject = false;  ///< late order: failing now means failing later, so such quads need not be shaded
   std::uint32_t color_count = 0;
   std::array<ColorWriter, kMaxColorAttachments> writer;
+  bool dual_source = false;
   bool shades = true;     ///< the fragment shader's run can be observed
   bool may_kill = false;  ///< discard, sample mask output, alpha to coverage
 };

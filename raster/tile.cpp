@@ -22,15 +22,30 @@ base::LaneMask any_sample(const BlockCoverage& block, std::uint32_t samples) {
   return any;
 }
 
+/// Positions of the quads of a block.
+constexpr QuadPositions block_offsets() {
+  QuadPositions offsets{};
+  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
+    offsets.x[q] = static_cast<std::uint16_t>(lane_x(4 * q));
+    offsets.y[q] = static_cast<std::uint16_t>(lane_y(4 * q));
+  }
+  return offsets;
+}
+constexpr QuadPositions kBlockOffsets = block_offsets();
+
+void place_block(int x, int y, QuadPositions& out) {
+  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
+    out.x[q] = static_cast<std::uint16_t>(x + kBlockOffsets.x[q]);
+    out.y[q] = static_cast<std::uint16_t>(y + kBlockOffsets.y[q]);
+  }
+}
+
 /// Tests a block before shading. Writes unless the test is only a preview of a late one.
 void test_early(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane, int x, int y,
                 BlockCoverage& block) {
   const PipelinePlan& plan = *worker.draw->plan;
   QuadPositions quads;
-  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
-    quads.x[q] = static_cast<std::uint16_t>(x + lane_x(4 * q));
-    quads.y[q] = static_cast<std::uint16_t>(y + lane_y(4 * q));
-  }
+  place_block(x, y, quads);
   DepthRange range[base::kQuadsPerWave];
   const bool clamps = plan.state->depth_clamp;
   if (clamps) {
@@ -51,28 +66,49 @@ void test_early(TileWorker& worker, const Primitive& primitive, const DepthPlane
   }
 }
 
-void append_quad(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
-                 const BlockCoverage& block, std::uint32_t lane) {
+/// A block none of whose quads is empty makes a wave of its own.
+void append_full_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
+                       const BlockCoverage& block) {
   PackedWave& wave = worker.wave;
-  const std::uint32_t q = wave.quads++;
-  if (wave.slots == 0 || wave.primitive[wave.slots - 1] != &primitive) wave.primitive[wave.slots++] = &primitive;
-  wave.slot[q] = static_cast<std::uint8_t>(wave.slots - 1);
-  wave.position.x[q] = static_cast<std::uint16_t>(x + lane_x(lane));
-  wave.position.y[q] = static_cast<std::uint16_t>(y + lane_y(lane));
-  for (std::uint32_t s = 0; s < worker.draw->plan->samples; ++s) {
-    const base::LaneMask nibble = block.lanes[s] >> lane & 15;
-    wave.coverage[s] = (q == 0 ? 0 : wave.coverage[s]) | nibble << (4 * q);
-    wave.rasterized[s] = (q == 0 ? 0 : wave.rasterized[s]) | (rasterized.lanes[s] >> lane & 15) << (4 * q);
+  wave.quads = base::kQuadsPerWave;
+  wave.slots = 1;
+  wave.primitive[0] = &primitive;
+  std::memset(wave.slot, 0, sizeof(wave.slot));
+  place_block(x, y, wave.position);
+  std::memcpy(wave.coverage, block.lanes, sizeof(wave.coverage));
+  std::memcpy(wave.rasterized, rasterized.lanes, sizeof(wave.rasterized));
+  shade_wave(worker);
+}
+
+/// Appends the quads whose lowest lanes are set in `quads`.
+void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
+                  const BlockCoverage& block, base::LaneMask quads) {
+  PackedWave& wave = worker.wave;
+  const std::uint32_t samples = worker.draw->plan->samples;
+  for (; quads != 0; quads &= quads - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(quads));
+    const std::uint32_t q = wave.quads++;
+    if (q == 0)
+      for (std::uint32_t s = 0; s < kMaxSamples; ++s) wave.coverage[s] = wave.rasterized[s] = 0;
+    if (wave.slots == 0 || wave.primitive[wave.slots - 1] != &primitive) wave.primitive[wave.slots++] = &primitive;
+    wave.slot[q] = static_cast<std::uint8_t>(wave.slots - 1);
+    wave.position.x[q] = static_cast<std::uint16_t>(x + lane_x(lane));
+    wave.position.y[q] = static_cast<std::uint16_t>(y + lane_y(lane));
+    for (std::uint32_t s = 0; s < samples; ++s) {
+      wave.coverage[s] |= (block.lanes[s] >> lane & 15) << (4 * q);
+      wave.rasterized[s] |= (rasterized.lanes[s] >> lane & 15) << (4 * q);
+    }
+    if (wave.quads == base::kQuadsPerWave) shade_wave(worker);
   }
-  if (wave.quads == base::kQuadsPerWave) shade_wave(worker);
 }
 
 /// A block with its coverage: tests that come first, then to the wave.
 void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane, int x, int y,
                 BlockCoverage& block) {
   const PipelinePlan& plan = *worker.draw->plan;
-  for (std::uint32_t s = 0; s < plan.samples; ++s)
-    if ((plan.sample_mask >> s & 1) == 0) block.lanes[s] = 0;
+  if (plan.sample_mask != (1u << plan.samples) - 1)
+    for (std::uint32_t s = 0; s < plan.samples; ++s)
+      if ((plan.sample_mask >> s & 1) == 0) block.lanes[s] = 0;
   base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
   const BlockCoverage rasterized = block;
@@ -86,11 +122,13 @@ void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane
       worker.samples_passed += static_cast<std::uint64_t>(std::popcount(block.lanes[s]));
     return;
   }
-  while (any) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(any)) & ~3u;
-    any &= ~(base::LaneMask{15} << lane);
-    append_quad(worker, primitive, x, y, rasterized, block, lane);
-  }
+  constexpr base::LaneMask kLowestLanes = 0x1111111111111111;
+  any |= any >> 1;
+  const base::LaneMask quads = (any | any >> 2) & kLowestLanes;
+  if (quads == kLowestLanes && worker.wave.quads == 0)
+    append_full_block(worker, primitive, x, y, rasterized, block);
+  else
+    append_quads(worker, primitive, x, y, rasterized, block, quads);
 }
 
 /// The part of a tile a primitive may cover, pixels relative to the tile.
@@ -109,7 +147,9 @@ struct BlockWalk {
   void visit(int x, int y, bool covered) const {
     const PipelinePlan& plan = *worker.draw->plan;
     BlockCoverage block;
-    const base::LaneMask window = rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
+    const bool inside = x >= rect.x0 && y >= rect.y0 && x + 7 <= rect.x1 && y + 7 <= rect.y1;
+    const base::LaneMask window =
+        inside ? base::kAllLanes : rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
     for (std::uint32_t s = 0; s < plan.raster_samples; ++s)
       block.lanes[s] = covered ? window : cover_block(edges, s, x, y) & window;
     for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s) block.lanes[s] = block.lanes[0];
@@ -219,6 +259,7 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
   const base::ScopedFloatMode mode(base::Denormals::kFlush);
   set_target(worker, pass, grid, tile);
   worker.draw = nullptr;
+  worker.planes_of = nullptr;
   for (const TileItem& item : items) {
     if (item.clear) {
       end_draw(worker);

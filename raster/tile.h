@@ -57,6 +57,7 @@ struct TileWorker {
   StageRunner runner;
   Stage bound;
   PlaneSet planes[base::kQuadsPerWave];
+  const Primitive* planes_of = nullptr;  ///< whose planes planes[0] are still those of the last wave
   WavePoints center, place;
   alignas(64) float reciprocal_w[base::kWaveWidth];
   alignas(64) float depth[base::kWaveWidth];
