@@ -18,8 +18,7 @@ bool can_decode(const FormatDesc& format) { return format.plain; }
 bool can_encode(const FormatDesc& format) { return format.plain && !is_scaled(format); }
 
 bool can_sample(const FormatDesc& format) {
-  const bool bc1_to_bc5 = format.format >= VK_FORMAT_BC1_RGB_UNORM_BLOCK && format.format <= VK_FORMAT_BC5_SNORM_BLOCK;
-  return bc1_to_bc5 || (format.plain && !is_scaled(format));
+  return format.compression == Compression::kBc || (format.plain && !is_scaled(format));
 }
 
 bool can_filter(const FormatDesc& format) { return can_sample(format) && !format.is_integer(); }

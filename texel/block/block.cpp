@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/numeric.h"
+#include "texel/block/bptc.h"
 #include "texel/block/s3tc_rgtc.h"
 #include "texel/codec/srgb.h"
 
@@ -46,6 +47,10 @@ void decode_block_bytes(const FormatDesc& format, const std::byte* block, std::u
     case VK_FORMAT_BC5_UNORM_BLOCK:
       out = {decode_channel_unsigned(block, index), decode_channel_unsigned(block + 8, index), 0, 255};
       return;
+    case VK_FORMAT_BC7_UNORM_BLOCK:
+    case VK_FORMAT_BC7_SRGB_BLOCK:
+      out = decode_bc7(block, index);
+      return;
     default:
       out = {};
   }
@@ -60,10 +65,16 @@ void decode_block_texel(const FormatDesc& format, const std::byte* block, std::u
     out = {bits_of(snorm8(decode_channel_signed(block, index))), bits_of(second), 0, bits_of(1.0f)};
     return;
   }
+  if (format.format == VK_FORMAT_BC6H_UFLOAT_BLOCK || format.format == VK_FORMAT_BC6H_SFLOAT_BLOCK) {
+    const std::array<float, 3> rgb = decode_bc6h(block, index, format.format == VK_FORMAT_BC6H_SFLOAT_BLOCK);
+    out = {bits_of(rgb[0]), bits_of(rgb[1]), bits_of(rgb[2]), bits_of(1.0f)};
+    return;
+  }
   Bytes bytes;
   decode_block_bytes(format, block, x, y, bytes);
+  const auto& srgb = format.format == VK_FORMAT_BC7_SRGB_BLOCK ? kSrgbToLinearExact : kSrgbToLinear;
   for (std::size_t c = 0; c < 4; ++c) {
-    out[c] = bits_of(format.is_srgb() && c < 3 ? kSrgbToLinear[bytes[c]] : unorm8(bytes[c]));
+    out[c] = bits_of(format.is_srgb() && c < 3 ? srgb[bytes[c]] : unorm8(bytes[c]));
   }
 }
 

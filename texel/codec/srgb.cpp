@@ -20,6 +20,23 @@ constexpr float decode_srgb(int code) {
   return base::fma_exact(base::fma_exact(square, c3, c1), f, base::fma_exact(square, c2, c0));
 }
 
+/// v rounded to eight significant decimal digits.
+constexpr float to_eight_digits(double v) {
+  double scale = 1e7;
+  while (v * scale < 1e7) scale *= 10;
+  return static_cast<float>(static_cast<double>(static_cast<std::int64_t>(v * scale + 0.5)) / scale);
+}
+
+constexpr float decode_srgb_exact(int code) {
+  const double v = code / 255.0;
+  if (code == 0) return 0.0f;
+  if (v <= 0.04045) return to_eight_digits(v / 12.92);
+  const double y = (v + 0.055) / 1.055;
+  double root = 1.0;  // fifth root of y^2 by Newton's iteration: y^2.4 = y^2 * y^0.4
+  for (int i = 0; i < 60; ++i) root -= (root - y * y / (root * root * root * root)) / 5;
+  return to_eight_digits(y * y * root);
+}
+
 /// round(8192 / sqrt(x)) or round(4096 / sqrt(x)), x the middle of interval i of [0.5, 1) and [1, 2): both have 13
 /// significant bits. The middle is `odd` / 2^12 or / 2^11, odd = 2049 + 2 * (i mod 1024), so that everything is exact
 /// in integers: k rounds correctly when (2k-1)^2 * x < (2 * scale)^2 <= (2k+1)^2 * x.
@@ -70,6 +87,12 @@ constexpr std::array<std::uint32_t, 255> kClearThresholds = {
 constinit const std::array<float, 256> kSrgbToLinear = [] {
   std::array<float, 256> table{};
   for (int i = 0; i < 256; ++i) table[static_cast<std::size_t>(i)] = decode_srgb(i);
+  return table;
+}();
+
+constinit const std::array<float, 256> kSrgbToLinearExact = [] {
+  std::array<float, 256> table{};
+  for (int i = 0; i < 256; ++i) table[static_cast<std::size_t>(i)] = decode_srgb_exact(i);
   return table;
 }();
 

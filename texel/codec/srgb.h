@@ -10,6 +10,9 @@ namespace vitrine::texel {
 /// Linear value of each 8-bit sRGB code.
 extern const std::array<float, 256> kSrgbToLinear;
 
+/// The exact curve, to eight decimal digits: what the reference uses for BC7 only.
+extern const std::array<float, 256> kSrgbToLinearExact;
+
 /// Code of a clear value: thresholds of the reference's table-driven conversion. NaN gives 0.
 std::uint8_t encode_srgb_clear(float linear);
 

@@ -1,0 +1,73 @@
+// Block decoders: blocks worked out by hand, and digests of random blocks whose texels equal the reference's.
+#include "texel/block/block.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "base/numeric.h"
+
+namespace vitrine::texel {
+namespace {
+
+std::array<std::uint8_t, 4> bytes_of(VkFormat format, std::uint64_t low, std::uint64_t high, std::uint32_t x,
+                                     std::uint32_t y) {
+  const std::uint64_t block[2] = {low, high};
+  std::array<std::uint8_t, 4> out{};
+  decode_block_bytes(format_desc(format), reinterpret_cast<const std::byte*>(block), x, y, out);
+  return out;
+}
+
+using Bytes = std::array<std::uint8_t, 4>;
+
+TEST(Block, Bc1EndPointsThirdsAndTransparency) {
+  // c0 = red, c1 = blue, codes of the first row: 0, 1, 2, 3.
+  const std::uint64_t block = 0xF800ull | 0x001Full << 16 | 0xE4ull << 32;
+  EXPECT_EQ(bytes_of(VK_FORMAT_BC1_RGBA_UNORM_BLOCK, block, 0, 0, 0), (Bytes{255, 0, 0, 255}));
+  EXPECT_EQ(bytes_of(VK_FORMAT_BC1_RGBA_UNORM_BLOCK, block, 0, 1, 0), (Bytes{0, 0, 255, 255}));
+  const Bytes third = bytes_of(VK_FORMAT_BC1_RGBA_UNORM_BLOCK, block, 0, 2, 0);
+  EXPECT_NEAR(third[0], 170, 1);
+  const std::uint64_t swapped = 0x001Full | 0xF800ull << 16 | 0xE4ull << 32;
+  EXPECT_EQ(bytes_of(VK_FORMAT_BC1_RGBA_UNORM_BLOCK, swapped, 0, 3, 0), (Bytes{0, 0, 0, 0}));
+  EXPECT_EQ(bytes_of(VK_FORMAT_BC1_RGB_UNORM_BLOCK, swapped, 0, 3, 0), (Bytes{0, 0, 0, 255}));
+  EXPECT_EQ(bytes_of(VK_FORMAT_BC1_RGB_UNORM_BLOCK, swapped, 0, 2, 0), (Bytes{128, 0, 128, 255}));
+}
+
+TEST(Block, Bc7ReservedBlockIsTransparentBlack) {
+  EXPECT_EQ(bytes_of(VK_FORMAT_BC7_UNORM_BLOCK, 0, ~0ull, 1, 2), (Bytes{0, 0, 0, 0}));
+}
+
+/// FNV-1a over all texels of 512 random blocks.
+std::uint32_t digest(VkFormat format) {
+  std::mt19937 generator(99);
+  std::uint32_t hash = 2166136261u;
+  for (int b = 0; b < 512; ++b) {
+    std::uint32_t block[4];
+    for (std::uint32_t& word : block) word = static_cast<std::uint32_t>(generator());
+    block[0] = (block[0] & ~0xFFu) | static_cast<std::uint32_t>(1 << (b % 8)) | ((b % 32 > 8 ? block[0] : 0u) & 0xF8u);
+    for (std::uint32_t texel = 0; texel < 16; ++texel) {
+      Texel out{};
+      decode_block_texel(format_desc(format), reinterpret_cast<const std::byte*>(block), texel % 4, texel / 4, out);
+      for (const std::uint32_t word : out) hash = (hash ^ word) * 16777619u;
+    }
+  }
+  return hash;
+}
+
+TEST(Block, DigestsOfRandomBlocks) {
+  const struct {
+    VkFormat format;
+    std::uint32_t expected;
+  } rows[] = {
+      {VK_FORMAT_BC1_RGBA_UNORM_BLOCK, 0xf3f72008u}, {VK_FORMAT_BC2_SRGB_BLOCK, 0xd1b82905u},
+      {VK_FORMAT_BC3_UNORM_BLOCK, 0x9d874a24u},      {VK_FORMAT_BC4_SNORM_BLOCK, 0xa3a4b424u},
+      {VK_FORMAT_BC5_UNORM_BLOCK, 0xb1c4591du},      {VK_FORMAT_BC6H_UFLOAT_BLOCK, 0x22709dc5u},
+      {VK_FORMAT_BC6H_SFLOAT_BLOCK, 0x19605dc5u},    {VK_FORMAT_BC7_UNORM_BLOCK, 0x246b05b5u},
+      {VK_FORMAT_BC7_SRGB_BLOCK, 0x5fdaa8dbu},
+  };
+  for (const auto& row : rows) EXPECT_EQ(digest(row.format), row.expected) << format_desc(row.format).name;
+}
+
+}  // namespace
+}  // namespace vitrine::texel
