@@ -55,8 +55,21 @@ const Instruction* local_invocation_id(Wave& wave, const Instruction* i) {
   const std::uint32_t* size = wave.program->local_size;
   const std::uint32_t stride = i->extra[0] == 0 ? 1 : i->extra[0] == 1 ? size[0] : size[0] * size[1];
   const std::uint32_t extent = size[i->extra[0]];
+  const std::uint32_t first = wave.first_invocation;
   if (extent == 1) return fill(wave, i, [](std::uint32_t) { return 0u; });
-  return fill(wave, i, [&](std::uint32_t lane) { return (wave.first_invocation + lane) / stride % extent; });
+  if (std::has_single_bit(stride) && std::has_single_bit(extent)) {
+    const int shift = std::countr_zero(stride);
+    return fill(wave, i, [=](std::uint32_t lane) { return (first + lane) >> shift & (extent - 1); });
+  }
+  std::uint32_t value = first / stride % extent, left = stride - first % stride;
+  return fill(wave, i, [=](std::uint32_t) mutable {
+    const std::uint32_t result = value;
+    if (--left == 0) {
+      left = stride;
+      value = value + 1 == extent ? 0 : value + 1;
+    }
+    return result;
+  });
 }
 
 const Instruction* local_invocation_index(Wave& wave, const Instruction* i) {

@@ -138,5 +138,37 @@ TEST(Dispatch, GlobalIds) {
   for (std::uint32_t i = 0; i < out.size(); ++i) ASSERT_EQ(out[i], i * i);
 }
 
+/// LocalInvocationId of every invocation, for sizes that are powers of two and others.
+TEST(Dispatch, LocalIds) {
+  const std::uint32_t sizes[][3] = {{64, 1, 1}, {16, 16, 1}, {5, 3, 7}, {1, 1, 1}, {3, 1, 1}, {2, 4, 8}, {6, 2, 1}};
+  for (const auto& size : sizes) {
+    const std::uint32_t invocations = size[0] * size[1] * size[2], groups = 7;
+    std::vector<std::uint32_t> out(invocations * groups, 0);
+    Buffers buffers{&out};
+    Builder b;
+    b.function.interface.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    std::copy_n(size, 3, b.function.interface.local_size);
+    const ValueId local = b.append(Op::kLocalInvocationId, 3, false, {}).result;
+    const ValueId index = b.append(Op::kLocalInvocationIndex, 1, false, {}).result;
+    const ValueId group = b.append(Op::kWorkgroupId, 3, false, {}).result;
+    ValueId code = b.append(Op::kMov, 1, false, {src(local, 0)}).result;
+    for (std::uint8_t c = 1; c < 3; ++c) {
+      const ValueId part = b.append(Op::kShl, 1, false, {src(local, c), src(b.constant(8u * c))}).result;
+      code = b.alu(Op::kOr, {code, part});
+    }
+    const ValueId first = b.append(Op::kIMul, 1, false, {src(group), src(b.constant(invocations))}).result;
+    code = b.alu(Op::kOr, {code, b.append(Op::kShl, 1, false, {src(group), src(b.constant(24))}).result});
+    b.store(0, 0, b.alu(Op::kIMul, {b.alu(Op::kIAdd, {first, index}), b.constant(4)}), src(code));
+    ShaderRun run(b, buffers.table);
+    run.dispatch_groups(groups);
+    for (std::uint32_t i = 0; i < out.size(); ++i) {
+      const std::uint32_t l = i % invocations;
+      ASSERT_EQ(out[i], (l % size[0]) | (l / size[0] % size[1]) << 8 | (l / size[0] / size[1]) << 16 |
+                            (i / invocations) << 24)
+          << size[0] << " " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vitrine::spirv::test
