@@ -22,10 +22,7 @@ ir::ValueId columns_times_vector(Translator& t, const Columns& a, ir::ValueId v)
   const std::uint32_t rows = components(t, a.at(0));
   auto j = static_cast<std::uint8_t>(a.size() - 1);
   ir::ValueId sum = emit(t, ir::Op::kFMul, rows, false, {whole(a[j]), splat(v, j)});
-  while (j-- > 0) {
-    const ir::ValueId product = emit(t, ir::Op::kFMul, rows, false, {whole(a[j]), splat(v, j)});
-    sum = emit(t, ir::Op::kFAdd, rows, false, {whole(product), whole(sum)});
-  }
+  while (j-- > 0) sum = emit(t, ir::Op::kFMulAdd, rows, false, {whole(a[j]), splat(v, j), whole(sum)});
   return sum;
 }
 
@@ -57,7 +54,8 @@ ir::ValueId dot(Translator& t, ir::ValueId a, ir::ValueId b) {
   const std::uint32_t n = components(t, a);
   const ir::ValueId products = emit(t, ir::Op::kFMul, n, false, {whole(a), whole(b)});
   if (n == 1) return products;
-  // Sums of three and four are opaque to the rewrites (5.1), those of two only in the first round, which rewrite() ends.
+  // Sums of three and four are opaque to the rewrites (5.1), those of two only in the first round, which rewrite()
+  // ends.
   const bool saved = std::exchange(t.opaque, true);
   ir::ValueId sum = emit(t, ir::Op::kFAdd, 1, false, {splat(products, 0), splat(products, 1)});
   for (std::uint8_t i = 2; i < n; i++) sum = emit(t, ir::Op::kFAdd, 1, false, {whole(sum), splat(products, i)});

@@ -41,6 +41,11 @@ inline Expr operator*(Expr a, float b) { return a * imm(*a.t, b); }
 inline Expr abs(Expr a) { return apply(ir::Op::kFAbs, {a}); }
 inline Expr sign(Expr a) { return apply(ir::Op::kFSign, {a}); }
 inline Expr sqrt(Expr a) { return apply(ir::Op::kFSqrt, {a}); }
+/// a * b + c with two roundings, as the reference's front end writes it: the rewrites split it in their first round.
+inline Expr multiply_add(Expr a, Expr b, Expr c) { return apply(ir::Op::kFMulAdd, {a, b, c}); }
+inline Expr multiply_add(Expr a, Expr b, float c) { return multiply_add(a, b, imm(*a.t, c)); }
+inline Expr multiply_add(Expr a, float b, Expr c) { return multiply_add(a, imm(*a.t, b), c); }
+inline Expr multiply_add(Expr a, float b, float c) { return multiply_add(a, imm(*a.t, b), imm(*a.t, c)); }
 inline Expr min(Expr a, Expr b) { return apply(ir::Op::kFMin, {a, b}); }
 inline Expr max(Expr a, Expr b) { return apply(ir::Op::kFMax, {a, b}); }
 inline Expr select(Expr condition, Expr a, Expr b) { return apply(ir::Op::kSelect, {condition, a, b}); }

@@ -37,7 +37,7 @@ bool similar_literals(const Expr& x, const Expr& y) {
 Expr saturate(Expr x) { return min(max(x, imm(*x.t, 0.0f)), imm(*x.t, 1.0f)); }
 
 /// a - b * c as the front end of the reference writes it: (-b * c) + a.
-Expr minus_product(Expr a, Expr b, Expr c) { return -b * c + a; }
+Expr minus_product(Expr a, Expr b, Expr c) { return multiply_add(-b, c, a); }
 
 Expr dot_of(Expr a, Expr b) { return {a.t, dot(*a.t, a.id, b.id)}; }
 
@@ -140,9 +140,8 @@ void smooth_step(Translator& t, const Inst& inst, ir::Op) {
   result(t, inst, at * (at * minus_product(imm(t, 3.0f), imm(t, 2.0f), at)));
 }
 
-void multiply_add(Translator& t, const Inst& inst, ir::Op) {
-  const Expr product = arg(t, inst, 0) * arg(t, inst, 1);
-  result(t, inst, product + arg(t, inst, 2));
+void fma(Translator& t, const Inst& inst, ir::Op) {
+  result(t, inst, multiply_add(arg(t, inst, 0), arg(t, inst, 1), arg(t, inst, 2)));
 }
 
 void modf(Translator& t, const Inst& inst, ir::Op) {
@@ -195,8 +194,8 @@ void cross(Translator& t, const Inst& inst, ir::Op) {
   if (components(t, a) != 3 || components(t, b) != 3) fail(inst, "operands are not vectors of three");
   const std::array<std::uint8_t, 4> yzx{1, 2, 0, 0}, zxy{2, 0, 1, 0};
   const Expr right{&t, emit(t, ir::Op::kFMul, 3, false, {{a, zxy}, {b, yzx}})};
-  const Expr left{&t, emit(t, ir::Op::kFMul, 3, false, {{a, yzx}, {b, zxy}})};
-  result(t, inst, left + -right);
+  const Expr negated = -right;
+  result(t, inst, {&t, emit(t, ir::Op::kFMulAdd, 3, false, {{a, yzx}, {b, zxy}, whole(negated.id)})});
 }
 
 void face_forward(Translator& t, const Inst& inst, ir::Op) {
@@ -216,7 +215,7 @@ void refract(Translator& t, const Inst& inst, ir::Op) {
   const Expr one = imm(t, 1.0f), d = dot_of(n, i);
   const Expr inner = minus_product(one, d, d);
   const Expr k = minus_product(one, eta, eta * inner);
-  const Expr scale = eta * d + sqrt(k);
+  const Expr scale = multiply_add(eta, d, sqrt(k));
   const Expr bent = minus_product(eta * i, scale, n);
   result(t, inst, select(k < imm(t, 0.0f), imm(t, 0.0f), bent));
 }

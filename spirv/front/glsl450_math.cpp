@@ -13,21 +13,21 @@ constexpr float kQuarterPi = 0.78539816339744830962f;
 Expr asin_main(Expr x, float p0, float p1) {
   Translator& t = *x.t;
   const Expr size = abs(x);
-  Expr tail = size * p1 + p0;
-  tail = size * tail + (kQuarterPi - 1.0f);
-  tail = size * tail + kHalfPi;
+  Expr tail = multiply_add(size, p1, p0);
+  tail = multiply_add(size, tail, kQuarterPi - 1.0f);
+  tail = multiply_add(size, tail, kHalfPi);
   const Expr direction = sign(x);
   const Expr root = sqrt(imm(t, 1.0f) - size);
-  return direction * (-root * tail + kHalfPi);
+  return direction * multiply_add(-root, tail, kHalfPi);
 }
 
 Expr asin_small(Expr x) {
   const Expr x2 = x * x;
-  Expr p = x2 * -8.6563630030e-03f + -4.2743422091e-02f;
-  p = x2 * p + 1.6666586697e-01f;
+  Expr p = multiply_add(x2, -8.6563630030e-03f, -4.2743422091e-02f);
+  p = multiply_add(x2, p, 1.6666586697e-01f);
   p = x2 * p;
-  const Expr q = x2 * -7.0662963390e-01f + 1.0f;
-  return x * (p / q) + x;
+  const Expr q = multiply_add(x2, -7.0662963390e-01f, 1.0f);
+  return multiply_add(x, p / q, x);
 }
 
 Expr atan_of(Expr y) {
@@ -41,8 +41,7 @@ Expr atan_of(Expr y) {
   Expr sum = terms[0];
   for (int i = 1; i < 6; i++) sum = sum + terms[i];
   const Expr steep = apply(ir::Op::kB2F, {one < size});
-  const Expr complement = sum * -2.0f + kHalfPi;
-  sum = steep * complement + sum;
+  sum = multiply_add(steep, multiply_add(sum, -2.0f, kHalfPi), sum);
   const Expr signed_sum = sum * sign(y);
   if (!t.exact && !t.function.signed_zero_inf_nan_preserve) return signed_sum;
   // Precise code keeps NaN, which min and max above filter out.
@@ -135,8 +134,7 @@ void atan2(Translator& t, const Inst& inst, ir::Op) {
   const Expr quotient = (s * scale) * reciprocal;
   const Expr diagonal = apply(ir::Op::kFEq, {size, abs(y)});
   const Expr tangent = select(diagonal, one, abs(quotient));
-  const Expr quarter = apply(ir::Op::kB2F, {flip}) * kHalfPi;
-  const Expr arc = quarter + atan_of(tangent);
+  const Expr arc = multiply_add(apply(ir::Op::kB2F, {flip}), kHalfPi, atan_of(tangent));
   result(t, inst, select(min(y, reciprocal) < zero, -arc, arc));
 }
 
@@ -163,13 +161,13 @@ void tanh(Translator& t, const Inst& inst, ir::Op) {
 void asinh(Translator& t, const Inst& inst, ir::Op) {
   const Expr x = arg(t, inst, 0);
   const Expr direction = sign(x);
-  const Expr root = sqrt(x * x + 1.0f);
+  const Expr root = sqrt(multiply_add(x, x, 1.0f));
   result(t, inst, direction * natural_log(abs(x) + root));
 }
 
 void acosh(Translator& t, const Inst& inst, ir::Op) {
   const Expr x = arg(t, inst, 0);
-  result(t, inst, natural_log(x + sqrt(x * x + -1.0f)));
+  result(t, inst, natural_log(x + sqrt(multiply_add(x, x, -1.0f))));
 }
 
 void atanh(Translator& t, const Inst& inst, ir::Op) {

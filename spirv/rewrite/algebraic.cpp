@@ -68,7 +68,8 @@ class Rewriter {
     };
     bool straight = true;
     for (unsigned i = 0; i < shape.children && straight; ++i) straight = child(i, i);
-    return straight || (shape.commutative && child(0, 1) && child(1, 0));
+    if (straight || !shape.commutative) return straight;
+    return child(0, 1) && child(1, 0) && (shape.children < 3 || child(2, 2));
   }
 
   /// True when the state changed.

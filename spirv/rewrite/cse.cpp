@@ -1,6 +1,7 @@
 // Common subexpressions: an instruction equal to one that dominates it is replaced by that one. A scope's entries are
 // forgotten when its block ends.
 #include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/pattern.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -30,36 +31,8 @@ bool is_invocation_constant(const Inst& inst) {
   }
 }
 
-/// Two first operands may be swapped (the reference compares them that way too).
-bool is_commutative(Op op) {
-  switch (op) {
-    case Op::kFAdd:
-    case Op::kFMul:
-    case Op::kFMin:
-    case Op::kFMax:
-    case Op::kFEq:
-    case Op::kFNeu:
-    case Op::kIAdd:
-    case Op::kIMul:
-    case Op::kIMulHigh:
-    case Op::kUMulHigh:
-    case Op::kIMin:
-    case Op::kIMax:
-    case Op::kUMin:
-    case Op::kUMax:
-    case Op::kIEq:
-    case Op::kINe:
-    case Op::kAnd:
-    case Op::kOr:
-    case Op::kXor:
-    case Op::kAndB:
-    case Op::kOrB:
-    case Op::kXorB:
-      return true;
-    default:
-      return false;
-  }
-}
+/// The two operands may be swapped (the reference compares them that way too).
+bool may_swap(const Inst& inst) { return inst.kind == Kind::kAlu && inst.count == 2 && is_commutative(inst.op); }
 
 class Merger {
  public:
@@ -89,7 +62,7 @@ class Merger {
 
   std::uint32_t hash(const Inst& inst) const {
     std::uint32_t h = static_cast<std::uint32_t>(inst.op) * 0xC2B2AE35u + inst.components;
-    const bool swap = inst.kind == Kind::kAlu && is_commutative(inst.op);
+    const bool swap = may_swap(inst);
     for (std::uint32_t i = 0; i < inst.count; ++i) {
       const std::uint32_t operand = hash_operand(inst, i);
       h = swap ? h + operand : (h ^ operand) * 0x27D4EB2Fu + (h >> 15);
@@ -129,7 +102,7 @@ class Merger {
       return false;
     bool same = true;
     for (std::uint32_t i = 0; i < a.count && same; ++i) same = same_operand(a, i, b, i);
-    if (same || a.kind != Kind::kAlu || !is_commutative(a.op)) return same;
+    if (same || !may_swap(a)) return same;
     return same_operand(a, 0, b, 1) && same_operand(a, 1, b, 0);
   }
 

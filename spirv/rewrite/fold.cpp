@@ -344,6 +344,11 @@ bool evaluate(Op op, const std::uint32_t operand[3], std::uint32_t& result) {
     result = truth ? 1 : 0;
     return true;
   }
+  if (op == Op::kFMulAdd) {
+    const float product = float_of(operand[0]) * float_of(operand[1]);
+    result = bits_of(product + float_of(operand[2]));
+    return true;
+  }
   return move_or_convert(op, operand, result) || integer(op, operand, result);
 }
 

@@ -206,6 +206,7 @@ bool is_commutative(Op op) {
   switch (op) {
     case Op::kFAdd:
     case Op::kFMul:
+    case Op::kFMulAdd:  // in its first two operands
     case Op::kFMin:
     case Op::kFMax:
     case Op::kFEq:
