@@ -95,7 +95,9 @@ void create_device(Gpu& gpu) {
   queue.queueFamilyIndex = gpu.family;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+  VkPhysicalDeviceMultiviewFeatures multiview{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_FEATURES};
+  multiview.multiview = gpu.multiview;
+  VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &multiview};
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   info.pEnabledFeatures = &gpu.features;
@@ -108,7 +110,11 @@ Gpu open(VkInstance instance, VkPhysicalDevice physical) {
   gpu.instance = instance;
   gpu.physical = physical;
   vkGetPhysicalDeviceProperties(physical, &gpu.properties);
-  vkGetPhysicalDeviceFeatures(physical, &gpu.features);
+  VkPhysicalDeviceMultiviewFeatures multiview{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_FEATURES};
+  VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &multiview};
+  vkGetPhysicalDeviceFeatures2(physical, &features);
+  gpu.features = features.features;
+  gpu.multiview = multiview.multiview;
   vkGetPhysicalDeviceMemoryProperties(physical, &gpu.memory);
   gpu.name = gpu.properties.deviceName;
   create_device(gpu);

@@ -32,6 +32,7 @@ struct Gpu {
   uint32_t family = 0;
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceFeatures features{};  ///< all that the device offers; all are enabled
+  bool multiview = false;               ///< offered and enabled
   VkPhysicalDeviceMemoryProperties memory{};
 
   VkFormatFeatureFlags features_of(VkFormat format, VkImageTiling tiling = VK_IMAGE_TILING_OPTIMAL) const;

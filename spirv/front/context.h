@@ -106,11 +106,11 @@ struct Translator {
   const Module& module;
   const CompileOptions& options;
   ir::Function function;
-  ir::NodeList* list = nullptr;                  ///< where instructions go
-  ir::NodeList constants;                        ///< goes in front of everything
-  ir::NodeList prologue;                         ///< initial values of variables, inputs
-  ir::ValueId fragment_position = ir::kNoValue;  ///< integer framebuffer coordinates, once something asked for them
+  ir::NodeList* list = nullptr;  ///< where instructions go
+  ir::NodeList constants;        ///< goes in front of everything
+  ir::NodeList prologue;         ///< initial values of variables, inputs
   std::map<std::vector<std::uint32_t>, ir::ValueId> constant_ids;
+  std::map<std::pair<BuiltIn, std::uint8_t>, ir::ValueId> built_in_inputs;  ///< components loaded by the prologue
   std::unordered_map<ir::ValueId, std::array<std::uint32_t, 4>> constant_words;
   std::unordered_set<ir::ValueId> undefined_ids;
 

@@ -16,7 +16,7 @@ std::uint32_t vector_type_of(const Translator& t, const Pointer& pointer);
 /// Sum of products, order of section 5.1.
 ir::ValueId dot(Translator& t, ir::ValueId a, ir::ValueId b);
 
-/// Integer framebuffer coordinates (x, y) of a fragment, loaded before the body.
+/// Integer framebuffer coordinates (x, y) and the view index of a fragment, loaded before the body.
 ir::ValueId fragment_position(Translator& t);
 
 /// Descriptors and dimensions of an image: everything but what is done with it.

@@ -234,6 +234,17 @@ void image_sample(Translator& t, const Inst& inst, ir::Op) {
   set_value(t, inst, finish(t, std::move(info), sources, count));
 }
 
+/// "The coordinates are relative to the fragment's own (x, y, layer)" (Vulkan, Image Operations: Texel Input). The
+/// layer is that of the view; a view of an image without layers ignores it.
+ir::ValueId own_texel(Translator& t, ir::ValueId offset) {
+  const ir::ValueId own = fragment_position(t);
+  std::vector<ir::Src> parts;
+  for (std::uint8_t c = 0; c < 2; c++)
+    parts.push_back(whole(emit(t, ir::Op::kIAdd, 1, false, {splat(own, c), splat(offset, c)})));
+  parts.push_back(splat(own, 2));
+  return vec(t, std::move(parts), false);
+}
+
 void image_access(Translator& t, const Inst& inst, ir::Op) {
   const ImageHandle handle = handle_of(t, inst, inst.operand(0));
   auto info = std::make_shared<ir::ImageInfo>(image_info(t, handle));
@@ -247,10 +258,9 @@ void image_access(Translator& t, const Inst& inst, ir::Op) {
                                                : ImageAccess::kRead;
   const ir::ValueId coord = scalar_or_vector(t, inst.operand(1));
   const std::uint32_t wanted = spatial_components(*info) + (info->arrayed && info->dim != 4 ? 1 : 0);
-  ir::ValueId texel = first_components(t, coord, wanted);
-  // "The coordinate is relative to the fragment's own framebuffer position" (Vulkan, Image Operations: Texel Input).
-  if (subpass) texel = emit(t, ir::Op::kIAdd, 2, false, {whole(texel), whole(fragment_position(t))});
-  sources.add(ImageOperand::kCoord, texel);
+  const ir::ValueId texel = first_components(t, coord, wanted);
+  info->arrayed |= subpass;  // the view is the layer
+  sources.add(ImageOperand::kCoord, subpass ? own_texel(t, texel) : texel);
   if (write) sources.add(ImageOperand::kValue, scalar_or_vector(t, inst.operand(2)));
   add_image_operands(t, inst, write ? 3 : 2, {*info, sources});
   if (write) {

@@ -168,6 +168,18 @@ std::vector<Leaf> interface_leaves(Translator& t, const Local& local) {
   return std::move(walk.leaves);
 }
 
+/// Loads one component of an input. A component of a built-in is loaded once: fixed function fills one register.
+ir::ValueId load_input(Translator& t, const InterfaceSlot& slot) {
+  const std::pair key(slot.built_in, slot.component);
+  const auto known = t.built_in_inputs.find(key);
+  if (slot.built_in != BuiltIn::kNone && known != t.built_in_inputs.end()) return known->second;
+  const ir::ValueId value = emit(t, ir::Op::kLoadInput, 1, false, {});
+  last_instr(t).data[0] = static_cast<std::uint32_t>(t.function.interface.inputs.size());
+  t.function.interface.inputs.push_back(slot);
+  if (slot.built_in != BuiltIn::kNone) t.built_in_inputs.emplace(key, value);
+  return value;
+}
+
 ir::ValueId input_value(Translator& t, const Leaf& leaf) {
   const ir::ValueInfo info = leaf_info(t, leaf.type);
   if (leaf.built_in != nullptr && leaf.built_in->slot == BuiltIn::kNone)
@@ -176,9 +188,7 @@ ir::ValueId input_value(Translator& t, const Leaf& leaf) {
   for (std::uint8_t c = 0; c < info.components; c++) {
     InterfaceSlot slot = leaf.slot;
     slot.component = static_cast<std::uint8_t>(slot.component + c);
-    parts.push_back(whole(emit(t, ir::Op::kLoadInput, 1, false, {})));
-    last_instr(t).data[0] = static_cast<std::uint32_t>(t.function.interface.inputs.size());
-    t.function.interface.inputs.push_back(slot);
+    parts.push_back(whole(load_input(t, slot)));
   }
   const ir::ValueId value = vec(t, std::move(parts), false);
   if (!info.boolean) return value;
@@ -257,22 +267,21 @@ void read_modes(Translator& t) {
 }
 
 ir::ValueId fragment_position(Translator& t) {
-  if (t.fragment_position != ir::kNoValue) return t.fragment_position;
   ir::NodeList* const list = std::exchange(t.list, &t.prologue);
   const bool exact = std::exchange(t.exact, false);
   std::vector<ir::Src> parts;
-  for (std::uint8_t c = 0; c < 2; c++) {
-    InterfaceSlot slot;
-    slot.built_in = BuiltIn::kFragCoord;
-    slot.component = c;
-    parts.push_back(whole(emit(t, ir::Op::kLoadInput, 1, false, {})));
-    last_instr(t).data[0] = static_cast<std::uint32_t>(t.function.interface.inputs.size());
-    t.function.interface.inputs.push_back(slot);
-  }
-  t.fragment_position = emit(t, ir::Op::kF2I, 2, false, {whole(vec(t, std::move(parts), false))});
+  InterfaceSlot slot;
+  slot.built_in = BuiltIn::kFragCoord;
+  for (slot.component = 0; slot.component < 2; slot.component++)
+    parts.push_back(whole(emit(t, ir::Op::kF2I, 1, false, {whole(load_input(t, slot))})));
+  slot.built_in = BuiltIn::kViewIndex;
+  slot.component = 0;
+  slot.type = BaseType::kInt;
+  parts.push_back(whole(load_input(t, slot)));
+  const ir::ValueId position = vec(t, std::move(parts), false);
   t.list = list;
   t.exact = exact;
-  return t.fragment_position;
+  return position;
 }
 
 void connect_interface(Translator& t) {

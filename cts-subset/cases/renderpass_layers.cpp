@@ -1,0 +1,253 @@
+// Render passes over several layers: multiview with load operations, clears, input attachments and resolves per view;
+// clears of layered framebuffers.
+#include "harness/case.h"
+#include "harness/graphics.h"
+
+namespace vitrine::cts {
+namespace {
+
+constexpr uint32_t kLayers = 4;
+
+const char kViewVertex[] = R"(
+#extension GL_EXT_multiview : require
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 passed;
+void main() {
+  passed = color + vec4(0.0, 0.2 * float(gl_ViewIndex), 0.0, 0.0);
+  gl_Position = position + vec4(0.15 * float(gl_ViewIndex), 0.0, 0.0, 0.0);
+})";
+
+const char kFirstFragment[] = R"(
+layout(location = 0) in vec4 passed;
+layout(location = 0) out vec4 result;
+void main() { result = passed; })";
+
+const char kSecondFragment[] = R"(
+#extension GL_EXT_multiview : require
+layout(location = 0) in vec4 passed;
+layout(location = 0) out vec4 result;
+layout(input_attachment_index = 0, binding = 0) uniform subpassInput first;
+void main() { result = subpassLoad(first) + passed * (0.1 * float(gl_ViewIndex)); })";
+
+VkAttachmentDescription describe(const Image& image, VkAttachmentLoadOp load) {
+  VkAttachmentDescription result{};
+  result.format = image.spec.format;
+  result.samples = image.spec.samples;
+  result.loadOp = result.stencilLoadOp = load;
+  result.storeOp = result.stencilStoreOp = VK_ATTACHMENT_STORE_OP_STORE;
+  result.initialLayout = result.finalLayout = VK_IMAGE_LAYOUT_GENERAL;
+  return result;
+}
+
+/// Two subpasses: the first draws to `first` and depth, the second reads it and draws to `second`.
+VkRenderPass make_pass(Run& run, const std::vector<VkAttachmentDescription>& attachments, const uint32_t masks[2]) {
+  const VkAttachmentReference references[] = {
+      {0, VK_IMAGE_LAYOUT_GENERAL}, {1, VK_IMAGE_LAYOUT_GENERAL}, {2, VK_IMAGE_LAYOUT_GENERAL}};
+  const uint32_t preserve[] = {2, 1};
+  VkSubpassDescription subpasses[2]{};
+  for (VkSubpassDescription& s : subpasses) {
+    s.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    s.colorAttachmentCount = 1;
+    s.preserveAttachmentCount = 1;
+  }
+  subpasses[0].pColorAttachments = &references[0];
+  subpasses[0].pDepthStencilAttachment = &references[2];
+  subpasses[0].pPreserveAttachments = &preserve[1];
+  subpasses[1].pColorAttachments = &references[1];
+  subpasses[1].inputAttachmentCount = 1;
+  subpasses[1].pInputAttachments = &references[0];
+  subpasses[1].pPreserveAttachments = &preserve[0];
+  constexpr VkAccessFlags kAll = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+  constexpr VkPipelineStageFlags kStages = VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
+  const VkDependencyFlags flags = VK_DEPENDENCY_BY_REGION_BIT | (masks[0] ? VK_DEPENDENCY_VIEW_LOCAL_BIT : 0);
+  const VkSubpassDependency dependency{0, 1, kStages, kStages, kAll, kAll, flags};
+  VkRenderPassMultiviewCreateInfo views{VK_STRUCTURE_TYPE_RENDER_PASS_MULTIVIEW_CREATE_INFO};
+  views.subpassCount = 2;
+  views.pViewMasks = masks;
+  VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO, &views};
+  info.attachmentCount = static_cast<uint32_t>(attachments.size());
+  info.pAttachments = attachments.data();
+  info.subpassCount = 2;
+  info.pSubpasses = subpasses;
+  info.dependencyCount = 1;
+  info.pDependencies = &dependency;
+  VkRenderPass pass;
+  CTS_VK(vkCreateRenderPass(run.device, &info, nullptr, &pass));
+  return run.own(pass, vkDestroyRenderPass);
+}
+
+VkFramebuffer make_framebuffer(Run& run, VkRenderPass pass, const std::vector<VkImageView>& views, VkExtent2D extent,
+                               uint32_t layers) {
+  VkFramebufferCreateInfo info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+  info.renderPass = pass;
+  info.attachmentCount = static_cast<uint32_t>(views.size());
+  info.pAttachments = views.data();
+  info.width = extent.width;
+  info.height = extent.height;
+  info.layers = layers;
+  VkFramebuffer framebuffer;
+  CTS_VK(vkCreateFramebuffer(run.device, &info, nullptr, &framebuffer));
+  return run.own(framebuffer, vkDestroyFramebuffer);
+}
+
+std::vector<float> random_vertices(Random& random, int count) {
+  std::vector<float> values;
+  for (int i = 0; i < count; ++i) {
+    for (const float v : {random.real(-1.2f, 1.2f), random.real(-1.2f, 1.2f), random.unit(), 1.0f}) values.push_back(v);
+    for (int c = 0; c < 4; ++c) values.push_back(random.unit());
+  }
+  return values;
+}
+
+struct ViewScene {
+  VkExtent2D extent;
+  uint32_t layers;
+  VkAttachmentLoadOp load, second_load;
+  bool clears_inside;
+  Buffer vertices;
+};
+
+struct ViewImages {
+  Image first, second, depth;
+};
+
+ViewImages make_images(Run& run, VkExtent2D extent, uint32_t layers) {
+  ImageSpec spec;
+  spec.extent = {extent.width, extent.height, 1};
+  spec.layers = layers;
+  spec.view = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+  spec.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
+  ViewImages images;
+  images.first = run.image(spec);
+  images.second = run.image(spec);
+  spec.format = VK_FORMAT_D32_SFLOAT;
+  spec.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  images.depth = run.image(spec);
+  for (const Image* image : {&images.first, &images.second, &images.depth}) run.fill_random(*image);
+  return images;
+}
+
+/// One render pass instance that draws the scene for the views of `mask`.
+void draw_views(Run& run, const ViewScene& scene, const ViewImages& images, uint32_t mask) {
+  const uint32_t masks[2] = {mask, mask};
+  const VkRenderPass pass = make_pass(run,
+                                      {describe(images.first, scene.load), describe(images.second, scene.second_load),
+                                       describe(images.depth, VK_ATTACHMENT_LOAD_OP_CLEAR)},
+                                      masks);
+  const VkFramebuffer framebuffer =
+      make_framebuffer(run, pass, {images.first.view, images.second.view, images.depth.view}, scene.extent, 1);
+  const Resources resources = run.resources({input_attachment(0, images.first)});
+  VkPipeline pipelines[2];
+  for (uint32_t i = 0; i < 2; ++i) {
+    GraphicsSpec graphics;
+    graphics.vertex = kViewVertex;
+    graphics.fragment = i ? kSecondFragment : kFirstFragment;
+    graphics.layout = resources.layout;
+    graphics.floats({4, 4});
+    graphics.depth.depthTestEnable = graphics.depth.depthWriteEnable = i == 0;
+    pipelines[i] = make_pipeline(run, graphics, pass, i, 1, scene.extent, VK_SAMPLE_COUNT_1_BIT);
+  }
+  run.once([&](VkCommandBuffer cmd) {
+    VkClearValue clears[3]{};
+    clears[0].color = {{0.1f, 0.2f, 0.3f, 0.4f}};
+    clears[1].color = {{0.5f, 0.6f, 0.7f, 0.8f}};
+    clears[2].depthStencil = {0.8f, 0};
+    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    begin.renderPass = pass;
+    begin.framebuffer = framebuffer;
+    begin.renderArea = {{0, 0}, scene.extent};
+    begin.clearValueCount = 3;
+    begin.pClearValues = clears;
+    vkCmdBeginRenderPass(cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    bind_pipeline(cmd, pipelines[0]);
+    resources.bind(cmd);
+    bind_vertices(cmd, scene.vertices);
+    vkCmdDraw(cmd, 9, 1, 0, 0);
+    if (scene.clears_inside) {
+      const VkClearAttachment clear{VK_IMAGE_ASPECT_COLOR_BIT, 0, {{{0.9f, 0.0f, 0.9f, 0.0f}}}};
+      const VkClearRect rect{{{2, 3}, {scene.extent.width / 2, scene.extent.height / 3}}, 0, 1};
+      vkCmdClearAttachments(cmd, 1, &clear, 1, &rect);
+    }
+    vkCmdNextSubpass(cmd, VK_SUBPASS_CONTENTS_INLINE);
+    bind_pipeline(cmd, pipelines[1]);  // with multiview nothing stays bound over subpasses
+    resources.bind(cmd);
+    bind_vertices(cmd, scene.vertices);
+    vkCmdDraw(cmd, 9, 1, 9, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+}
+
+/// One view at a time: with several the reference is wrong (deviations.md, multiview-layers).
+CTS_RANDOM("renderpass", "random_multiview", 40) {
+  Random& random = run.random;
+  run.require(run.gpu.multiview, "multiview");
+  const auto op = [&] { return static_cast<VkAttachmentLoadOp>(random.below(2)); };  // LOAD or CLEAR
+  ViewScene scene{{16 + random.below(60), 16 + random.below(60)}, kLayers, op(), op(), random.chance(0.5f), {}};
+  scene.vertices = run.buffer_of(random_vertices(random, 18));
+  const ViewImages images = make_images(run, scene.extent, kLayers);
+  draw_views(run, scene, images, 1u << random.below(kLayers));
+  run.out("first", images.first);
+  run.out("second", images.second);
+  run.out("depth", images.depth);
+}
+
+/// All views at once, and the control: one pass per view.
+const AddCase kViews(
+    "renderpass", "deviation.multiview_layers", "multiview-layers",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) -> std::string {
+      if (const Comparison c = compare(device[1], reference[1]); !c.first.empty()) return "the control: " + c.first;
+      if (compare(reference[0], reference[1]).first.empty()) return "the reference's fault does not show";
+      if (const Comparison c = compare(device[0], reference[1]); !c.first.empty()) return "the device: " + c.first;
+      return "";
+    },
+    [](Run& run) {
+      run.require(run.gpu.multiview, "multiview");
+      constexpr VkAttachmentLoadOp kClear = VK_ATTACHMENT_LOAD_OP_CLEAR;
+      ViewScene scene{{60, 50}, 3, kClear, kClear, true, run.buffer_of(random_vertices(run.random, 18))};
+      const ViewImages together = make_images(run, scene.extent, scene.layers);
+      const ViewImages alone = make_images(run, scene.extent, scene.layers);
+      draw_views(run, scene, together, 7);
+      for (const uint32_t mask : {1u, 2u, 4u}) draw_views(run, scene, alone, mask);
+      run.out("together", together.second);
+      run.out("alone", alone.second);
+    });
+
+/// Layered framebuffers without multiview: load operations reach every layer, draws the first one.
+CTS_RANDOM("renderpass", "random_layered_clears", 30) {
+  Random& random = run.random;
+  const VkExtent2D extent{16 + random.below(60), 16 + random.below(60)};
+  const auto [first, second, depth] = make_images(run, extent, kLayers);
+  const auto op = [&] { return static_cast<VkAttachmentLoadOp>(random.below(2)); };  // LOAD or CLEAR
+  const uint32_t masks[2] = {0, 0};
+  const VkRenderPass pass =
+      make_pass(run, {describe(first, op()), describe(second, op()), describe(depth, op())}, masks);
+  const uint32_t layers = 1 + random.below(kLayers);
+  const VkFramebuffer framebuffer = make_framebuffer(run, pass, {first.view, second.view, depth.view}, extent, layers);
+  const VkRect2D area{{static_cast<int32_t>(random.below(8)), static_cast<int32_t>(random.below(8))},
+                      {4 + random.below(extent.width - 12), 4 + random.below(extent.height - 12)}};
+  const VkClearRect rect{area, random.below(layers), 1};
+  const VkClearAttachment inside{VK_IMAGE_ASPECT_COLOR_BIT, 0, {{{0.9f, 0.0f, 0.9f, 0.0f}}}};
+  run.once([&](VkCommandBuffer cmd) {
+    VkClearValue clears[3]{};
+    clears[0].color = {{0.1f, 0.2f, 0.3f, 0.4f}};
+    clears[1].color = {{0.5f, 0.6f, 0.7f, 0.8f}};
+    clears[2].depthStencil = {0.8f, 0};
+    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    begin.renderPass = pass;
+    begin.framebuffer = framebuffer;
+    begin.renderArea = area;
+    begin.clearValueCount = 3;
+    begin.pClearValues = clears;
+    vkCmdBeginRenderPass(cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    vkCmdClearAttachments(cmd, 1, &inside, 1, &rect);
+    vkCmdNextSubpass(cmd, VK_SUBPASS_CONTENTS_INLINE);
+    vkCmdEndRenderPass(cmd);
+  });
+  run.out("first", first);
+  run.out("second", second);
+  run.out("depth", depth);
+}
+
+}  // namespace
+}  // namespace vitrine::cts
