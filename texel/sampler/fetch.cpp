@@ -7,6 +7,7 @@
 #include "texel/codec.h"
 #include "texel/sampler.h"
 #include "texel/sampler/plan.h"
+#include "texel/sampler/wave_fetch.h"
 
 namespace vitrine::texel {
 namespace {
@@ -84,6 +85,7 @@ Texel gather_texel(const base::WaveRegister value[4], std::size_t lane) {
 }  // namespace
 
 void fetch(const ImageView& view, const FetchRequest& request, base::WaveRegister result[4]) {
+  if (fetch_wave(view, request, result)) return;
   const FormatDesc& format = *view.format;
   const Shape shape = shape_of(view.type);
   const TexelDecoder decode = texel_decoder(format);
@@ -105,6 +107,7 @@ void fetch(const ImageView& view, const FetchRequest& request, base::WaveRegiste
 
 void fetch_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
                   base::WaveRegister result[4]) {
+  if (fetch_buffer_wave(view, active, index, result)) return;
   const FormatDesc& format = *view.format;
   const TexelDecoder decode = texel_decoder(format);
   base::for_each_lane(active, [&](std::size_t lane) {

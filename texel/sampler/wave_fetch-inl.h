@@ -39,6 +39,12 @@ HWY_INLINE VF convert_field(VU word, const Channel& channel) {
     return hn::GatherIndex(DF(), kSrgbToLinear.data(), hn::BitCast(DI(), field));
   } else if constexpr (kNumeric == Numeric::kUfloat) {
     return lanes_half_to_float(hn::ShiftLeftSame(field, static_cast<int>(15 - bits)));
+  } else if constexpr (kNumeric == Numeric::kUint) {
+    return as_float(field);
+  } else if constexpr (kNumeric == Numeric::kSint) {
+    const int unused = static_cast<int>(32 - bits);
+    const VI value = hn::ShiftRightSame(hn::ShiftLeftSame(hn::BitCast(DI(), field), unused), unused);
+    return as_float(hn::BitCast(DU(), value));
   } else {
     return bits == 16 ? lanes_half_to_float(field) : as_float(word);
   }
@@ -50,8 +56,8 @@ struct TexelLanes {
 
 template <Numeric kNumeric>
 HWY_INLINE VF fetch_channel(const FormatDesc& format, std::int8_t index, const std::byte* base, VI offset, VU first,
-                            float missing) {
-  if (index < 0) return splat(missing);
+                            VF missing) {
+  if (index < 0) return missing;
   const Channel& channel = format.channel[static_cast<std::size_t>(index)];
   const std::int32_t word = channel.offset / 32;
   const VU bits = word == 0 ? first : gather_words(base, hn::Add(offset, splat(word * 4)));
@@ -61,10 +67,13 @@ HWY_INLINE VF fetch_channel(const FormatDesc& format, std::int8_t index, const s
 template <Numeric kNumeric>
 HWY_INLINE TexelLanes fetch_lanes(const FormatDesc& format, const std::byte* base, VI offset) {
   const VU first = gather_words(base, offset);
-  return {fetch_channel<kNumeric>(format, format.rgba[0], base, offset, first, 0.0f),
-          fetch_channel<kNumeric>(format, format.rgba[1], base, offset, first, 0.0f),
-          fetch_channel<kNumeric>(format, format.rgba[2], base, offset, first, 0.0f),
-          fetch_channel<kNumeric>(format, format.rgba[3], base, offset, first, 1.0f)};
+  constexpr bool kInteger = kNumeric == Numeric::kUint || kNumeric == Numeric::kSint;
+  const VF zero = splat(0.0f);
+  const VF one = kInteger ? as_float(hn::Set(DU(), 1u)) : splat(1.0f);
+  return {fetch_channel<kNumeric>(format, format.rgba[0], base, offset, first, zero),
+          fetch_channel<kNumeric>(format, format.rgba[1], base, offset, first, zero),
+          fetch_channel<kNumeric>(format, format.rgba[2], base, offset, first, zero),
+          fetch_channel<kNumeric>(format, format.rgba[3], base, offset, first, one)};
 }
 
 }  // namespace vitrine::texel::HWY_NAMESPACE
