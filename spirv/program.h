@@ -137,6 +137,7 @@ struct Program {
   bool flush_denormals = false;  ///< floating-point mode of the preamble
   std::uint32_t local_size[3] = {1, 1, 1};
   std::uint32_t shared_bytes = 0;
+  std::uint32_t groups_per_wave = 1;  ///< compute: small workgroups, adjacent in x, that share a wave
 };
 
 /// Runs from `start` until the wave ends, stops at a barrier or faults (Wave::status).

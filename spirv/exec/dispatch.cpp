@@ -24,8 +24,9 @@ struct Launch {
   const Program& program;
   const std::uint32_t* base;
   const std::uint32_t* groups;
-  std::uint64_t invocations = 0;
-  std::uint32_t waves = 0;
+  std::uint64_t invocations = 0;  ///< of a workgroup
+  std::uint32_t waves = 0;        ///< of a workgroup
+  std::uint32_t columns = 0;      ///< of the grid in x: workgroups, or waves full of them
 };
 
 /// Memory of one thread's workgroup; kept between dispatches.
@@ -55,8 +56,10 @@ void bind(GroupMemory& memory, const Launch& launch) {
 void start(Wave& wave, const Launch& launch, std::uint32_t index, const std::uint32_t group[3]) {
   std::copy_n(group, 3, wave.workgroup_id);
   wave.first_invocation = static_cast<std::uint32_t>(index * kWidth);
-  wave.launched = base::first_lanes(static_cast<std::size_t>(
-      std::min<std::uint64_t>(kWidth, launch.invocations - std::uint64_t{wave.first_invocation})));
+  std::uint64_t lanes = launch.invocations - wave.first_invocation;
+  if (const std::uint32_t most = launch.program.groups_per_wave; most > 1)
+    lanes *= std::min(most, launch.base[0] + launch.groups[0] - group[0]);
+  wave.launched = base::first_lanes(static_cast<std::size_t>(std::min(kWidth, lanes)));
   wave.active = wave.live = wave.launched;
   wave.budget = exec::shader_budget();
   wave.resume = launch.program.code.data();
@@ -95,8 +98,8 @@ void run_range(const Launch& launch, std::uint64_t first, std::uint64_t last) {
   GroupMemory& memory = thread_memory();
   bind(memory, launch);
   for (std::uint64_t g = first; g < last && !launch.shader.fault().raised.load(std::memory_order_relaxed); ++g) {
-    const std::uint64_t x = launch.groups[0], y = launch.groups[1];
-    const std::uint32_t group[3] = {launch.base[0] + static_cast<std::uint32_t>(g % x),
+    const std::uint64_t x = launch.columns, y = launch.groups[1];
+    const std::uint32_t group[3] = {launch.base[0] + static_cast<std::uint32_t>(g % x) * launch.program.groups_per_wave,
                                     launch.base[1] + static_cast<std::uint32_t>(g / x % y),
                                     launch.base[2] + static_cast<std::uint32_t>(g / x / y)};
     for (Wave& wave : memory.waves) wave.status = Wave::Status::kRunning;
@@ -107,9 +110,11 @@ void run_range(const Launch& launch, std::uint64_t first, std::uint64_t last) {
 }  // namespace
 
 void dispatch(const BoundShader& shader, const std::uint32_t base[3], const std::uint32_t groups[3]) {
-  const std::uint64_t total = std::uint64_t{groups[0]} * groups[1] * groups[2];
-  if (total == 0) return;
   Launch launch{shader, shader.shader().program(), base, groups};
+  const std::uint32_t per_wave = launch.program.groups_per_wave;
+  launch.columns = groups[0] / per_wave + (groups[0] % per_wave != 0 ? 1 : 0);
+  const std::uint64_t total = std::uint64_t{launch.columns} * groups[1] * groups[2];
+  if (total == 0) return;
   const std::uint32_t* size = launch.program.local_size;
   launch.invocations = std::uint64_t{size[0]} * size[1] * size[2];
   launch.waves = static_cast<std::uint32_t>((launch.invocations + kWidth - 1) / kWidth);

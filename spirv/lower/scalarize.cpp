@@ -1,6 +1,7 @@
 // ir::Function -> ScalarFunction: one scalar per component, constants folded, common expressions merged, draw-uniform
 // work in the preamble, small side-effect free branches as selects.
 #include <algorithm>
+#include <bit>
 #include <unordered_map>
 
 #include "base/float_mode.h"
@@ -131,11 +132,48 @@ bool writes_memory(const ir::NodeList& list) {
   return false;
 }
 
+/// Whether an instruction lets an invocation notice which others share its wave or workgroup.
+bool is_cooperative(Op op) {
+  switch (op) {
+    case Op::kBarrier:
+    case Op::kLoadShared:
+    case Op::kStoreShared:
+    case Op::kAtomicShared:
+    case Op::kElect:
+    case Op::kReadFirst:
+    case Op::kSubgroupId:
+    case Op::kSubgroupInvocation:
+    case Op::kNumSubgroups:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool is_cooperative(const ir::NodeList& list) {
+  for (const auto& node : list)
+    if (is_cooperative(node->instr.op) || is_cooperative(node->then_list) || is_cooperative(node->else_list) ||
+        is_cooperative(node->body) || is_cooperative(node->continuing))
+      return true;
+  return false;
+}
+
+/// Small workgroups whose invocations work alone share a wave: how many.
+std::uint32_t groups_per_wave(const ir::Function& function) {
+  const auto& size = function.interface.local_size;
+  const std::uint64_t invocations = std::uint64_t{size[0]} * size[1] * size[2];
+  if (function.interface.stage != VK_SHADER_STAGE_COMPUTE_BIT || invocations == 0 ||
+      2 * invocations > base::kWaveWidth || is_cooperative(function.body))
+    return 1;
+  return static_cast<std::uint32_t>(base::kWaveWidth / invocations);
+}
+
 class Scalarizer {
  public:
   Scalarizer(const ir::Function& function, std::string& error) : ir_(function), error_(error) {
     out_.ir = &function;
     out_.writes_memory = writes_memory(function.body);
+    out_.groups_per_wave = groups_per_wave(function);
     first_.assign(function.values.size(), kNoIndex);
   }
 
@@ -390,6 +428,45 @@ class Scalarizer {
 
   /// Built-ins without operands: the same wherever they are read, so one read at the start of the scope serves all.
   std::vector<ScalarId> environment(Op op, std::uint32_t count, const ir::Instr* instr) {
+    return out_.groups_per_wave > 1 ? packed_environment(op, count, instr) : read_environment(op, count, instr);
+  }
+
+  /// The same for waves that hold several workgroups, adjacent in x: WorkgroupId is that of the first.
+  std::vector<ScalarId> packed_environment(Op op, std::uint32_t count, const ir::Instr* instr) {
+    const auto& size = ir_.interface.local_size;
+    const std::uint32_t invocations = size[0] * size[1] * size[2];
+    const ScalarId lane = read_environment(Op::kSubgroupInvocation, 1, instr)[0];
+    const ScalarId index = remainder(lane, invocations);
+    std::vector<ScalarId> result;
+    if (op == Op::kLocalInvocationIndex) {
+      result = {index};
+    } else if (op == Op::kLocalInvocationId) {
+      result = {remainder(index, size[0]), remainder(divide(index, size[0]), size[1]),
+                divide(index, size[0] * size[1])};
+    } else {
+      result = read_environment(op, count, instr);
+      if (op == Op::kWorkgroupId) {
+        const std::array<ScalarId, 2> sum{result[0], divide(lane, invocations)};
+        result[0] = alu(Op::kIAdd, sum, instr);
+      }
+    }
+    return result;
+  }
+
+  ScalarId divide(ScalarId value, std::uint32_t by) {
+    const bool shift = std::has_single_bit(by);
+    const std::array<ScalarId, 2> sources{
+        value, constant(shift ? static_cast<std::uint32_t>(std::countr_zero(by)) : by, false)};
+    return by == 1 ? value : alu(shift ? Op::kUShr : Op::kUDiv, sources, nullptr);
+  }
+
+  ScalarId remainder(ScalarId value, std::uint32_t by) {
+    const bool mask = std::has_single_bit(by);
+    const std::array<ScalarId, 2> sources{value, constant(mask ? by - 1 : by, false)};
+    return by == 1 ? constant(0, false) : alu(mask ? Op::kAnd : Op::kUMod, sources, nullptr);
+  }
+
+  std::vector<ScalarId> read_environment(Op op, std::uint32_t count, const ir::Instr* instr) {
     ScalarOp out;
     out.kind = Kind::kIntrinsic;
     out.op = op;
