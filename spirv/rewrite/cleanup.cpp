@@ -246,7 +246,7 @@ bool propagate_copies(Graph& graph) {
 
 bool remove_dead(Graph& graph) { return remove_dead_in(graph, graph.root); }
 
-void mark_pair_sums(Graph& graph) {
+void hide_dot_products(Graph& graph) {
   const auto is_sum_of = [&](const Inst& inst, ValueId products) {
     return inst.opaque && inst.count == 2 && graph.source(inst, 1).value == products;
   };
@@ -254,6 +254,9 @@ void mark_pair_sums(Graph& graph) {
     Inst& inst = graph.insts[id];
     if (!inst.opaque || inst.count != 2) return;
     const ValueId products = graph.source(inst, 1).value;
+    const InstId multiplication = graph.values[products].def;
+    if (multiplication != kNone && graph.insts[multiplication].op == Op::kFMul)
+      graph.insts[multiplication].opaque = graph.insts[multiplication].pair = true;
     inst.pair = graph.source(inst, 0).value == products;
     const Slot use = graph.values[inst.result].first_use;
     if (use != kNone && is_sum_of(graph.insts[graph.sources[use].user], products)) inst.pair = false;
@@ -261,7 +264,7 @@ void mark_pair_sums(Graph& graph) {
   for_each_inst(graph, graph.root, visit);
 }
 
-void open_pair_sums(Graph& graph) {
+void show_dot_products(Graph& graph) {
   for (Inst& inst : graph.insts)
     if (inst.pair) inst.opaque = inst.pair = false;
 }

@@ -41,7 +41,7 @@ struct Inst {
   bool boolean = false;
   bool exact = false;
   bool opaque = false;
-  bool pair = false;  ///< opaque only in the first round: the sum of a dot product of two
+  bool pair = false;  ///< opaque only in the first round: parts of dot products
   bool removed = false;
   ValueId result = ir::kNoValue;
   Slot first = 0;  ///< operands are sources[first, first + count)

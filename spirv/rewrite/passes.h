@@ -41,9 +41,10 @@ enum class RuleSet : std::uint8_t { kMain, kLate };
 /// One run of the rule table (section 4.1).
 bool apply_rules(Graph& graph, RuleSet rules);
 
-/// Marks the sums of dot products of two components, before the first round; the reference sees through them after it.
-void mark_pair_sums(Graph& graph);
-void open_pair_sums(Graph& graph);
+/// In the first round the reference has dot products as single operations; after it, products and sums of two are open
+/// to the rules, sums of three and four stay closed.
+void hide_dot_products(Graph& graph);
+void show_dot_products(Graph& graph);
 
 /// What the reference's code generator simplifies on its own, for scalar code.
 void build_identities(Graph& graph);

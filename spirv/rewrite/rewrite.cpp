@@ -51,9 +51,9 @@ void finish(Graph& graph) {
 
 void rewrite(ir::Function& function) {
   Graph graph(function);
-  rewriting::mark_pair_sums(graph);
+  rewriting::hide_dot_products(graph);
   optimize_once(graph, true);
-  rewriting::open_pair_sums(graph);
+  rewriting::show_dot_products(graph);
   for (int round = 1; round < kMaxRounds; ++round)
     if (!optimize_once(graph, false)) break;
   finish(graph);
