@@ -1,0 +1,200 @@
+// Scalars of instructions that are not arithmetic: interface, memory, images, what an invocation knows of itself.
+#include <bit>
+
+#include "spirv/lower/scalarizer.h"
+
+namespace vitrine::spirv::lowering {
+
+void Scalarizer::build_instr(const ir::Instr& instr) {
+  if (instr.op < Op::kAluCount) return build_alu(instr);
+  switch (instr.op) {
+    case Op::kConst: {
+      std::vector<ScalarId> ids;
+      for (std::uint32_t c = 0; c < instr.components; ++c) ids.push_back(constant(instr.imm[c], instr.boolean));
+      return define(instr.result, ids);
+    }
+    case Op::kUndef:
+      return define(instr.result, std::vector<ScalarId>(instr.components, constant(0, instr.boolean)));
+    case Op::kVec: {
+      std::vector<ScalarId> ids;
+      for (const ir::Src& src : instr.src) ids.push_back(component(src, 0));
+      return define(instr.result, ids);
+    }
+    case Op::kLoadInput:
+      return build_input(instr);
+    case Op::kLoadPush:
+    case Op::kLoadUniform:
+    case Op::kLoadStorage:
+    case Op::kArrayLength:
+      return build_load(instr);
+    case Op::kImage:
+      return build_image(instr);
+    case Op::kStoreStorage:
+    case Op::kStoreShared:
+      return build_store(instr);
+    case Op::kSubgroupSize:
+      return define(instr.result, std::vector<ScalarId>{constant(base::kWaveWidth, false)});
+    case Op::kNumSubgroups:
+      return define(instr.result, std::vector<ScalarId>{constant(subgroups(), false)});
+    case Op::kGlobalInvocationId:
+      return build_global_id(instr);
+    case Op::kReadFirst:
+      if (level(component(instr.src[0], 0)) <= Level::kUniform)
+        return define(instr.result, std::vector<ScalarId>{component(instr.src[0], 0)});
+      [[fallthrough]];
+    case Op::kStoreOutput:
+    case Op::kAtomicStorage:
+    case Op::kLoadShared:
+    case Op::kAtomicShared:
+    case Op::kLoadArray:
+    case Op::kStoreArray:
+    case Op::kBarrier:
+    case Op::kDemote:
+    case Op::kHelperInvocation:
+    case Op::kElect: {
+      std::vector<ScalarId> sources;
+      for (const ir::Src& src : instr.src) append(sources, src, 1);
+      return define(instr.result, emit(instr, sources, instr.components, instr.boolean));
+    }
+    case Op::kWorkgroupId:
+    case Op::kNumWorkgroups:
+    case Op::kLocalInvocationId:
+    case Op::kLocalInvocationIndex:
+    case Op::kSubgroupInvocation:
+    case Op::kSubgroupId:
+      return define(instr.result, environment(instr.op, instr.components, &instr));
+    default:
+      return fail("instruction that the lowering does not cover");
+  }
+}
+
+std::uint32_t Scalarizer::subgroups() const {
+  const auto& size = ir_.interface.local_size;
+  return (size[0] * size[1] * size[2] + static_cast<std::uint32_t>(base::kWaveWidth) - 1) /
+         static_cast<std::uint32_t>(base::kWaveWidth);
+}
+
+std::vector<ScalarId> Scalarizer::environment(Op op, std::uint32_t count, const ir::Instr* instr) {
+  return out_.groups_per_wave > 1 ? packed_environment(op, count, instr) : read_environment(op, count, instr);
+}
+
+std::vector<ScalarId> Scalarizer::packed_environment(Op op, std::uint32_t count, const ir::Instr* instr) {
+  const auto& size = ir_.interface.local_size;
+  const std::uint32_t invocations = size[0] * size[1] * size[2];
+  const ScalarId lane = read_environment(Op::kSubgroupInvocation, 1, instr)[0];
+  const ScalarId index = remainder(lane, invocations);
+  std::vector<ScalarId> result;
+  if (op == Op::kLocalInvocationIndex) {
+    result = {index};
+  } else if (op == Op::kLocalInvocationId) {
+    result = {remainder(index, size[0]), remainder(divide(index, size[0]), size[1]), divide(index, size[0] * size[1])};
+  } else {
+    result = read_environment(op, count, instr);
+    if (op == Op::kWorkgroupId) {
+      const std::array<ScalarId, 2> sum{result[0], divide(lane, invocations)};
+      result[0] = alu(Op::kIAdd, sum, instr);
+    }
+  }
+  return result;
+}
+
+ScalarId Scalarizer::divide(ScalarId value, std::uint32_t by) {
+  const bool shift = std::has_single_bit(by);
+  const std::array<ScalarId, 2> sources{value,
+                                        constant(shift ? static_cast<std::uint32_t>(std::countr_zero(by)) : by, false)};
+  return by == 1 ? value : alu(shift ? Op::kUShr : Op::kUDiv, sources, nullptr);
+}
+
+ScalarId Scalarizer::remainder(ScalarId value, std::uint32_t by) {
+  const bool mask = std::has_single_bit(by);
+  const std::array<ScalarId, 2> sources{value, constant(mask ? by - 1 : by, false)};
+  return by == 1 ? constant(0, false) : alu(mask ? Op::kAnd : Op::kUMod, sources, nullptr);
+}
+
+std::vector<ScalarId> Scalarizer::read_environment(Op op, std::uint32_t count, const ir::Instr* instr) {
+  ScalarOp out;
+  out.kind = Kind::kIntrinsic;
+  out.op = op;
+  out.instr = instr;
+  Key key = key_of(op, {}, nullptr);
+  key.words[9] = count;
+  return emit_pure(out, key, {}, count, false, false);
+}
+
+void Scalarizer::build_global_id(const ir::Instr& instr) {
+  const std::vector<ScalarId> group = environment(Op::kWorkgroupId, 3, &instr);
+  const std::vector<ScalarId> local = environment(Op::kLocalInvocationId, 3, &instr);
+  std::vector<ScalarId> result;
+  for (std::uint32_t c = 0; c < instr.components; ++c) {
+    const std::array<ScalarId, 2> product{group[c], constant(ir_.interface.local_size[c], false)};
+    const std::array<ScalarId, 2> sum{alu(Op::kIMul, product, &instr), local[c]};
+    result.push_back(alu(Op::kIAdd, sum, &instr));
+  }
+  define(instr.result, result);
+}
+
+void Scalarizer::build_input(const ir::Instr& instr) {
+  if (instr.data[0] >= ir_.interface.inputs.size()) return fail("input index out of range");
+  Key key = key_of(Op::kLoadInput, {}, nullptr);
+  key.words[5] = instr.data[0];
+  const auto [it, added] = global_.try_emplace(key, 0);
+  if (added) {
+    it->second = out_.add(false, Level::kVarying);
+    out_.scalars[it->second].input = instr.data[0];
+  }
+  define(instr.result, std::vector<ScalarId>{it->second});
+}
+
+void Scalarizer::build_load(const ir::Instr& instr) {
+  std::vector<ScalarId> sources;
+  bool uniform = true;
+  for (const ir::Src& src : instr.src) {
+    sources.push_back(component(src, 0));
+    uniform = uniform && level(sources.back()) <= Level::kUniform;
+  }
+  if (instr.op == Op::kLoadStorage && out_.writes_memory)
+    return define(instr.result, emit(instr, sources, instr.components, false));
+  ScalarOp op;
+  op.kind = Kind::kIntrinsic;
+  op.op = instr.op;
+  op.instr = &instr;
+  define(instr.result, emit_pure(op, key_of(instr.op, sources, &instr), sources, instr.components, false, uniform));
+}
+
+void Scalarizer::build_store(const ir::Instr& instr) {
+  std::vector<ScalarId> sources;
+  const std::size_t addresses = instr.src.size() - 1;
+  for (std::size_t i = 0; i < addresses; ++i) sources.push_back(component(instr.src[i], 0));
+  for (std::uint32_t c = 0; c < 4; ++c)
+    if (instr.imm[0] >> c & 1) sources.push_back(component(instr.src[addresses], c));
+  emit(instr, sources, 0, false);
+}
+
+void Scalarizer::build_image(const ir::Instr& instr) {
+  std::vector<ScalarId> sources;
+  std::size_t next = 0;
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(ir::ImageOperand::kCount); ++i) {
+    if (!(instr.image->operands >> i & 1)) continue;
+    if (next >= instr.src.size()) return fail("image instruction with too few sources");
+    append(sources, instr.src[next++], image_operand_components(*instr.image, static_cast<ir::ImageOperand>(i)));
+  }
+  define(instr.result, emit(instr, sources, instr.components, false));
+}
+
+std::uint32_t image_operand_components(const ir::ImageInfo& info, ir::ImageOperand operand) {
+  const std::uint32_t dimensions = info.dim == 4 ? 3 : info.dim == 5 ? 1 : info.dim == 6 ? 2 : info.dim;
+  switch (operand) {
+    case ir::ImageOperand::kCoord:
+      return dimensions + (info.arrayed ? 1 : 0);
+    case ir::ImageOperand::kGradX:
+    case ir::ImageOperand::kGradY:
+    case ir::ImageOperand::kOffset:
+      return dimensions;
+    case ir::ImageOperand::kValue:
+      return info.access == ir::ImageAccess::kAtomic ? 1 : 4;
+    default:
+      return 1;
+  }
+}
+
+}  // namespace vitrine::spirv::lowering
