@@ -98,7 +98,7 @@ void input(Run& run, VkFormat format, bool written) {
 }
 
 const bool kRegistered = [] {
-  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_A2B10G10R10_UNORM_PACK32,
                                 VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R8G8B8A8_UINT,
                                 VK_FORMAT_R32G32_SINT, VK_FORMAT_R5G6B5_UNORM_PACK16})
     for (const bool written : {false, true})
