@@ -7,7 +7,7 @@
 
 namespace vitrine::cts {
 
-enum class Verdict { kIdentical, kDeviation, kUnsupported, kDiffering, kCrashed };
+enum class Verdict { kIdentical, kDeviation, kUnsupported, kKnown, kDiffering, kCrashed };
 
 struct Judgement {
   Verdict verdict = Verdict::kIdentical;
@@ -21,6 +21,8 @@ std::string full_name(const Case& c);
 /// The case's seed, from the suite's seed and its name.
 uint64_t case_seed(const Case& c);
 Judgement execute(const Case& c);
+/// Reads the list of known differences that the options name. Throws when it cannot be read.
+void load_known_differences();
 /// Asks the reference for its CPU-dependent behaviour and prints it (DESIGN.md section 8).
 void probe_reference();
 

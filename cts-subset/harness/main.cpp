@@ -79,6 +79,7 @@ int run(int argc, char** argv) {
     return run_isolated(static_cast<int>(words.size()), words.data());
   }
   if (parsed.self_test) register_self_test();
+  load_known_differences();
   register_cases();
   if (GTEST_FLAG_GET(list_tests)) return RUN_ALL_TESTS();
   const bool child = g_progress >= 0;

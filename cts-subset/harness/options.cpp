@@ -14,6 +14,7 @@ constexpr char kUsage[] =
     "cts_subset [GoogleTest flags] [options]\n"
     "  --icd=FILE        manifest of the device under test (or CTS_ICD)\n"
     "  --reference=FILE  manifest of the reference (or CTS_REFERENCE_ICD)\n"
+    "  --known=FILE      known differences (a name and its reason per line): told, but no failure of the run\n"
     "  --results=DIR     where images of failing cases go\n"
     "  --seed=N          seed of every random case (default 1)\n"
     "  --count=N         cases per random generator\n"
@@ -44,7 +45,9 @@ Options parse_options(int argc, char** argv) {
     const std::string value(equals == std::string_view::npos ? "" : argument.substr(equals + 1));
     const auto number = [&] { return std::strtoull(value.c_str(), nullptr, 0); };
     const auto small = [&] { return static_cast<uint32_t>(number()); };
-    if (name == "--icd")
+    if (name == "--known")
+      result.known = value;
+    else if (name == "--icd")
       result.icd = value;
     else if (name == "--reference")
       result.reference_icd = value;

@@ -9,6 +9,7 @@ namespace vitrine::cts {
 struct Options {
   std::string icd;            ///< manifest of the device under test
   std::string reference_icd;  ///< manifest of the reference
+  std::string known;          ///< list of known differences: these fail no run
   std::string results = "cts-results";
   uint64_t seed = 1;
   uint32_t count = 0;        ///< cases per random generator; 0 = each generator's default

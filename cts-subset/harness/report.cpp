@@ -9,6 +9,7 @@ namespace {
 void print_row(const char* name, const GroupCounts& c) {
   std::printf("%-16s %6u cases  %6u identical  %4u listed deviation  %4u unsupported  %4u differing  %4u crashed", name,
               c.cases, c.identical, c.deviation, c.unsupported, c.differing, c.crashed);
+  if (c.known) std::printf("  (%u known differences)", c.known);
   if (c.nan_bits) std::printf("  (%u with other NaN bits)", c.nan_bits);
   if (c.blank) std::printf("  (%u blank)", c.blank);
   std::printf("\n");
@@ -22,6 +23,7 @@ void count(Counts& counts, const std::string& group, const Judgement& judgement)
   row.identical += judgement.verdict == Verdict::kIdentical;
   row.deviation += judgement.verdict == Verdict::kDeviation;
   row.unsupported += judgement.verdict == Verdict::kUnsupported;
+  row.known += judgement.verdict == Verdict::kKnown;
   row.differing += judgement.verdict == Verdict::kDiffering;
   row.crashed += judgement.verdict == Verdict::kCrashed;
   row.nan_bits += judgement.nan_bits;
@@ -36,6 +38,7 @@ bool print_counts(const Counts& counts) {
     total.identical += row.identical;
     total.deviation += row.deviation;
     total.unsupported += row.unsupported;
+    total.known += row.known;
     total.differing += row.differing;
     total.crashed += row.crashed;
     total.nan_bits += row.nan_bits;

@@ -9,8 +9,8 @@
 namespace vitrine::cts {
 
 struct GroupCounts {
-  uint32_t cases = 0, identical = 0, deviation = 0, unsupported = 0, differing = 0, crashed = 0, nan_bits = 0,
-           blank = 0;
+  uint32_t cases = 0, identical = 0, deviation = 0, unsupported = 0, known = 0, differing = 0, crashed = 0,
+           nan_bits = 0, blank = 0;
 };
 
 /// Group name -> counts.
