@@ -172,7 +172,7 @@ TEST_F(Formats, ClaimsDoNotExceedWhatTexelDoes) {
       {VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT, texel::can_store},
       {VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT, texel::can_atomic},
       {VK_FORMAT_FEATURE_TRANSFER_SRC_BIT, texel::can_copy},
-      {VK_FORMAT_FEATURE_BLIT_SRC_BIT, texel::can_decode},
+      {VK_FORMAT_FEATURE_BLIT_SRC_BIT, texel::can_sample},
       {VK_FORMAT_FEATURE_BLIT_DST_BIT, texel::can_encode},
       {VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT, texel::can_encode},
       {VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT,
