@@ -166,6 +166,19 @@ void run(Call& call, const Descriptor& image, const texel::Sampler* sampler, bas
   }
 }
 
+/// texel may write lanes that it was not asked for: those of another descriptor keep their results.
+void put_results(Call& call, base::LaneMask lanes) {
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    if (call.op.result[c] == kNoOperand) continue;
+    WaveRegister& to = reg(call.wave, call.op.result[c]);
+    if (lanes == call.wave.active) {
+      to = call.result[c];
+    } else {
+      base::for_each_lane(lanes, [&](std::size_t lane) { to.lane[lane] = call.result[c].lane[lane]; });
+    }
+  }
+}
+
 std::uint32_t element_of(Wave& wave, const IndexOperand& index, int lane) {
   switch (index.file) {
     case IndexOperand::File::kConstant:
@@ -218,9 +231,8 @@ const Instruction* image(Wave& wave, const Instruction* i) {
                                     .sampler;
     }
     run(call, image, sampler, lanes);
+    put_results(call, lanes);
   }
-  for (std::uint32_t c = 0; c < 4; ++c)
-    if (op.result[c] != kNoOperand) reg(wave, op.result[c]) = call.result[c];
   return i + 1;
 }
 
