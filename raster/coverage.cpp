@@ -11,7 +11,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "base/lane_math-inl.h"
+#include "raster/lane_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::raster::HWY_NAMESPACE {
@@ -44,7 +44,7 @@ base::LaneMask inside_lanes(std::uint32_t count, const std::int32_t* step_x, con
       for (std::uint32_t e = 1; e < count; ++e) sign = hn::Or(sign, row[e]);
       for (std::uint32_t e = 0; e < count; ++e) row[e] = hn::Add(row[e], down[e]);
       const auto outside = hn::Lt(sign, zero);
-      const base::LaneMask bits = base::HWY_NAMESPACE::lanes_mask_bits(d, outside) & base::first_lanes(n);
+      const base::LaneMask bits = bits_of_mask(outside) & base::first_lanes(n);
       mask |= bits << (r * 16 + i);
     }
   }

@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "raster/lane_bits-inl.h"
 
 #ifndef VITRINE_RASTER_DEPTH_STENCIL_ONCE
 #define VITRINE_RASTER_DEPTH_STENCIL_ONCE
@@ -36,7 +37,6 @@ namespace vitrine::raster::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using base::HWY_NAMESPACE::lanes_cast;
-using base::HWY_NAMESPACE::lanes_mask_bits;
 using base::HWY_NAMESPACE::lanes_mask_from_bits;
 using base::HWY_NAMESPACE::lanes_max_second;
 using base::HWY_NAMESPACE::lanes_min_second;
@@ -56,32 +56,31 @@ struct D16 {
     return hn::And(lanes_cast<std::int32_t>(t), hn::Set(I4(), 0xffff));
   }
   static HWY_INLINE VI load(const std::byte* row0, const std::byte* row1) {
-    std::uint16_t texel[4];
-    std::memcpy(texel, row0, 4);
-    std::memcpy(texel + 2, row1, 4);
-    return hn::PromoteTo(I4(), hn::LoadU(hn::FixedTag<std::uint16_t, 4>(), texel));
+    std::uint32_t low, high;
+    std::memcpy(&low, row0, 4);
+    std::memcpy(&high, row1, 4);
+    const auto texels = hn::Set(hn::FixedTag<std::uint64_t, 1>(), std::uint64_t{high} << 32 | low);
+    return hn::PromoteTo(I4(), hn::BitCast(hn::FixedTag<std::uint16_t, 4>(), texels));
   }
   static HWY_INLINE void store(VI v, std::byte* row0, std::byte* row1) {
-    alignas(16) std::int32_t lane[4];
-    hn::Store(v, I4(), lane);
-    const std::uint16_t texel[4] = {static_cast<std::uint16_t>(lane[0]), static_cast<std::uint16_t>(lane[1]),
-                                    static_cast<std::uint16_t>(lane[2]), static_cast<std::uint16_t>(lane[3])};
-    std::memcpy(row0, texel, 4);
-    std::memcpy(row1, texel + 2, 4);
+    const auto texels = hn::DemoteTo(hn::FixedTag<std::uint16_t, 4>(), v);
+    const std::uint64_t word = hn::GetLane(hn::BitCast(hn::FixedTag<std::uint64_t, 1>(), texels));
+    const auto low = static_cast<std::uint32_t>(word), high = static_cast<std::uint32_t>(word >> 32);
+    std::memcpy(row0, &low, 4);
+    std::memcpy(row1, &high, 4);
   }
 };
 
+/// Halves are loaded and stored as halves: a whole vector assembled in memory would wait for its stores.
+using I2 = hn::FixedTag<std::int32_t, 2>;
 HWY_INLINE VI load_words(const std::byte* row0, const std::byte* row1) {
-  alignas(16) std::int32_t texel[4];
-  std::memcpy(texel, row0, 8);
-  std::memcpy(texel + 2, row1, 8);
-  return hn::Load(I4(), texel);
+  const auto top = hn::LoadU(I2(), reinterpret_cast<const std::int32_t*>(row0));
+  const auto bottom = hn::LoadU(I2(), reinterpret_cast<const std::int32_t*>(row1));
+  return hn::Combine(I4(), bottom, top);
 }
 HWY_INLINE void store_words(VI v, std::byte* row0, std::byte* row1) {
-  alignas(16) std::int32_t texel[4];
-  hn::Store(v, I4(), texel);
-  std::memcpy(row0, texel, 8);
-  std::memcpy(row1, texel + 2, 8);
+  hn::StoreU(hn::LowerHalf(I2(), v), I2(), reinterpret_cast<std::int32_t*>(row0));
+  hn::StoreU(hn::UpperHalf(I2(), v), I2(), reinterpret_cast<std::int32_t*>(row1));
 }
 
 struct D24 {
@@ -176,7 +175,7 @@ HWY_INLINE std::uint32_t test_quad(const DepthPass& pass, const float* z, std::u
   const VI stored = Format::load(row0, row1);
   const M4 covered = lanes_mask_from_bits(d, nibble);
   const M4 passed = hn::And(covered, compare<Format>(pass.compare, value, stored));
-  const auto bits = static_cast<std::uint32_t>(lanes_mask_bits(d, passed)) & 15u;
+  const auto bits = static_cast<std::uint32_t>(bits_of_mask(passed)) & 15u;
   if (pass.write && bits != 0) Format::store(hn::IfThenElse(passed, value, stored), row0, row1);
   return bits;
 }

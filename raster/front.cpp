@@ -45,42 +45,86 @@ std::uint32_t find_slot(FrontScratch& s, std::uint32_t index, std::uint32_t inst
   return count++;
 }
 
-void add_position(const DrawCall& call, const Run& run, std::uint32_t position, bool dedupe, FrontScratch& s,
-                  std::uint32_t entry, std::uint32_t& count) {
-  std::uint32_t index;
-  if (call.index_data)
-    index = read_index(call, std::uint64_t{call.first} + run.start + position) +
-            static_cast<std::uint32_t>(call.vertex_offset);
-  else
-    index = call.first + run.start + position;
-  if (dedupe) {
-    s.slot[entry] = static_cast<std::uint16_t>(find_slot(s, index, run.instance, count));
-    return;
+/// The index buffer of a draw; positions beyond its end read 0.
+template <class T>
+struct Indices {
+  const std::byte* data;
+  std::uint64_t count;
+  std::uint32_t offset;
+
+  std::uint32_t operator[](std::uint64_t position) const {
+    T value = 0;
+    if (position < count) std::memcpy(&value, data + position * sizeof(T), sizeof(T));
+    return value + offset;
   }
-  s.vertex[count] = index;
-  s.instance[count] = run.instance;
-  s.slot[entry] = static_cast<std::uint16_t>(count++);
-}
+};
+
+struct Gather {
+  const Chunk& chunk;
+  FrontScratch& scratch;
+  std::uint32_t entry = 0, count = 0;
+
+  /// One slot per position.
+  void add_linear() {
+    const DrawCall& call = chunk.draw->call;
+    for_each_position([&](const Run& run, std::uint32_t position) { add_new(call.first + run.start + position, run); });
+  }
+
+  /// One slot per distinct (index, instance), unless the chunk is too large for the table.
+  template <class T>
+  void add_indexed(bool dedupe) {
+    const DrawCall& call = chunk.draw->call;
+    const Indices<T> indices{call.index_data, call.index_bytes / sizeof(T),
+                             static_cast<std::uint32_t>(call.vertex_offset)};
+    for_each_position([&](const Run& run, std::uint32_t position) {
+      const std::uint32_t index = indices[std::uint64_t{call.first} + run.start + position];
+      if (dedupe)
+        scratch.slot[entry++] = static_cast<std::uint16_t>(find_slot(scratch, index, run.instance, count));
+      else
+        add_new(index, run);
+    });
+  }
+
+ private:
+  template <class F>
+  void for_each_position(F&& add) {
+    const TopologyShape shape = topology_shape(chunk.draw->plan->state->topology);
+    for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
+      const RunSpan span = run_span(shape, chunk.runs[r]);
+      if (span.center) add(chunk.runs[r], 0);
+      for (std::uint32_t p = span.low; p < span.high; ++p) add(chunk.runs[r], p);
+    }
+  }
+
+  void add_new(std::uint32_t index, const Run& run) {
+    scratch.vertex[count] = index;
+    scratch.instance[count] = run.instance;
+    scratch.slot[entry++] = static_cast<std::uint16_t>(count++);
+  }
+};
 
 /// Slots of all positions; returns the number of vertices to shade.
 std::uint32_t gather_vertices(const Chunk& chunk, FrontScratch& s) {
   const DrawCall& call = chunk.draw->call;
   const std::uint32_t positions = positions_of(chunk);
   resize_scratch(s, positions);
-  const bool dedupe = call.index_data && positions <= kHashSize / 2;
+  Gather gather{chunk, s};
+  if (!call.index_data) {
+    gather.add_linear();
+    return gather.count;
+  }
+  const bool dedupe = positions <= kHashSize / 2;
   if (dedupe) {
     s.hash_key.assign(kHashSize, kEmptyKey);
     s.hash_slot.resize(kHashSize);
   }
-  const TopologyShape shape = topology_shape(chunk.draw->plan->state->topology);
-  std::uint32_t entry = 0, count = 0;
-  for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
-    const RunSpan span = run_span(shape, chunk.runs[r]);
-    if (span.center) add_position(call, chunk.runs[r], 0, dedupe, s, entry++, count);
-    for (std::uint32_t p = span.low; p < span.high; ++p)
-      add_position(call, chunk.runs[r], p, dedupe, s, entry++, count);
-  }
-  return count;
+  if (call.index_type == VK_INDEX_TYPE_UINT32)
+    gather.add_indexed<std::uint32_t>(dedupe);
+  else if (call.index_type == VK_INDEX_TYPE_UINT16)
+    gather.add_indexed<std::uint16_t>(dedupe);
+  else
+    gather.add_indexed<std::uint8_t>(dedupe);
+  return gather.count;
 }
 
 const float* as_floats(const base::WaveRegister& reg) { return reinterpret_cast<const float*>(reg.lane); }

@@ -198,6 +198,16 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
     const Run& run = chunk.runs[r];
     const RunSpan span = run_span(shape, run);
+    if (state.topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST) {
+      const std::uint16_t* corner = scratch.slot.data() + first_entry;
+      for (std::uint32_t i = run.begin; i < run.end; ++i, corner += 3) {
+        const std::uint32_t slot[3] = {corner[0], corner[1], corner[2]};
+        a.setup.id = run.first_id + i;
+        assemble_triangle(a, slot);
+      }
+      first_entry += span.count();
+      continue;
+    }
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const Corners corners = corners_of(state.topology, state.provoking_vertex_last, i);
       std::uint32_t slot[3];

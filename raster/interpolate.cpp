@@ -131,7 +131,9 @@ void block_depth(const DepthPlane& plane, float x, float y, float* out) {
     const auto inner = lanes_fma(dadx, fx, a0);
     for (std::size_t r = 0; r < 4; ++r) {
       const auto fy = hn::Add(hn::Set(f, y + static_cast<float>(2 * r)), hn::Load(f, kRowY + i));
-      hn::Store(hn::Add(lanes_fma(dady, fy, inner), offset), f, out + r * 16 + i);
+      const auto z = hn::Add(lanes_fma(dady, fy, inner), offset);
+      const auto low = base::HWY_NAMESPACE::lanes_min_second(z, hn::Set(f, 1.0f));
+      hn::Store(base::HWY_NAMESPACE::lanes_max_second(low, hn::Zero(f)), f, out + r * 16 + i);
     }
   }
 }

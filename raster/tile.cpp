@@ -59,7 +59,7 @@ void test_early(TileWorker& worker, const Primitive& primitive, const DepthPlane
       const float dx = located ? static_cast<float>(kSampleX[s]) / 256 : 0.0f;
       const float dy = located ? static_cast<float>(kSampleY[s]) / 256 : 0.0f;
       evaluate_block_depth(plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, worker.depth);
-      clamp_depth(clamps ? range : nullptr, base::kQuadsPerWave, worker.depth);
+      if (clamps) clamp_depth(range, base::kQuadsPerWave, worker.depth);
     }
     block.lanes[s] = test_depth_stencil(plan, worker.target.depth_stencil[s], quads, primitive.front ? 0xffffu : 0,
                                         worker.depth, nullptr, block.lanes[s], plan.depth_order == TestOrder::kEarly);

@@ -1,0 +1,88 @@
+// Decomposition of topologies, primitive restart and the cutting into runs (lavapipe-rasterization.md 10.1).
+#include "raster/assembly.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <map>
+
+namespace vitrine::raster {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Corners as stream positions of every primitive of a draw, through runs of at most `limit` positions.
+std::vector<Triangle> decompose(const DrawCall& draw, std::uint32_t limit) {
+  std::vector<Run> runs;
+  append_runs(draw, 0, limit, runs);
+  const TopologyShape shape = topology_shape(draw.state->topology);
+  std::vector<Triangle> result;
+  for (const Run& run : runs) {
+    const RunSpan span = run_span(shape, run);
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const Corners corners = corners_of(draw.state->topology, draw.state->provoking_vertex_last, i);
+      Triangle at{};
+      for (std::uint32_t c = 0; c < shape.corners; ++c) {
+        EXPECT_LT(span.entry(corners.at[c]), span.count());
+        at[c] = run.start + corners.at[c];
+      }
+      EXPECT_EQ(run.first_id + i, result.size());
+      result.push_back(at);
+    }
+  }
+  return result;
+}
+
+TEST(Assembly, StripsAlternateAndKeepTheProvokingCorner) {
+  State state;
+  state.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
+  DrawCall draw;
+  draw.state = &state;
+  draw.count = 6;
+  EXPECT_EQ((std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 5, 4}}), decompose(draw, 1000));
+  state.provoking_vertex_last = true;
+  EXPECT_EQ((std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {4, 3, 5}}), decompose(draw, 1000));
+}
+
+TEST(Assembly, FansKeepTheirCentre) {
+  State state;
+  state.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN;
+  DrawCall draw;
+  draw.state = &state;
+  draw.count = 5;
+  EXPECT_EQ((std::vector<Triangle>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}), decompose(draw, 1000));
+  state.provoking_vertex_last = true;
+  EXPECT_EQ((std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}), decompose(draw, 1000));
+}
+
+TEST(Assembly, CuttingIntoRunsChangesNothing) {
+  State state;
+  DrawCall draw;
+  draw.state = &state;
+  draw.count = 103;
+  for (int topology = 0; topology <= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY; ++topology) {
+    state.topology = static_cast<VkPrimitiveTopology>(topology);
+    for (const bool last : {false, true}) {
+      state.provoking_vertex_last = last;
+      EXPECT_EQ(decompose(draw, 100000), decompose(draw, 8)) << topology;
+    }
+  }
+}
+
+TEST(Assembly, RestartSplitsStripsAndDropsIncompleteOnes) {
+  State state;
+  state.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
+  state.primitive_restart = true;
+  const std::array<std::uint16_t, 9> indices = {7, 8, 9, 0xffff, 1, 2, 0xffff, 3, 4};
+  DrawCall draw;
+  draw.state = &state;
+  draw.index_data = reinterpret_cast<const std::byte*>(indices.data());
+  draw.index_bytes = sizeof(indices);
+  draw.count = 12;  // three positions beyond the buffer read index 0
+  EXPECT_EQ((std::vector<Triangle>{{0, 1, 2}, {7, 8, 9}, {8, 10, 9}, {9, 10, 11}}), decompose(draw, 1000));
+  EXPECT_EQ(0u, read_index(draw, 9));
+}
+
+}  // namespace
+}  // namespace vitrine::raster
