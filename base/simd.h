@@ -9,7 +9,11 @@
 // These must be set before Highway is first seen. SSE4 is the baseline, although the compiler's flags say less (Highway
 // would add a scalar target otherwise): each target's code carries its own target attribute.
 #ifndef HWY_DISABLED_TARGETS
+#ifdef VITRINE_ONE_SIMD_TARGET  // sanitizer builds: the instrumented code takes long enough to compile once
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL)
+#else
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#endif
 #endif
 #ifndef HWY_BASELINE_TARGETS
 #define HWY_BASELINE_TARGETS HWY_SSE4
