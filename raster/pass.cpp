@@ -210,6 +210,26 @@ struct Pass::Impl {
                    {&clear, nullptr, nullptr, nullptr, 0});
   }
 
+  /// Clears that no draw comes before or after need no tiles: whole rows go to memory faster. False if there are
+  /// others.
+  bool run_clears_alone() {
+    std::vector<Command>& commands = scratch->commands;
+    if (!scratch->touched.empty()) return false;
+    if (!std::all_of(commands.begin(), commands.end(), [](const Command& c) { return c.clear != nullptr; }))
+      return false;
+    for (const Command& command : commands) {
+      const ClearCommand& clear = *command.clear;
+      if (clear.base_layer >= grid.layers) continue;
+      const PixelRect& r = clear.rect;
+      const VkRect2D area{{r.x0, r.y0},
+                          {static_cast<std::uint32_t>(r.x1 - r.x0 + 1), static_cast<std::uint32_t>(r.y1 - r.y0 + 1)}};
+      texel::fill_view(*clear.view, 0, area, clear.base_layer,
+                       std::min(clear.layer_count, grid.layers - clear.base_layer), clear.value);
+    }
+    commands.clear();
+    return true;
+  }
+
   /// Runs the front end of everything recorded and hands its results to the tiles, in order.
   void run_front() {
     std::vector<Command>& commands = scratch->commands;
@@ -304,7 +324,7 @@ void Pass::draw(const DrawCall& draw) {
 }
 
 void Pass::flush() {
-  impl_->run_front();
+  if (!impl_->run_clears_alone()) impl_->run_front();
   impl_->run_back();
   impl_->last = nullptr;
   impl_->scratch->bound.clear();
