@@ -129,6 +129,9 @@ constexpr VkFormat kFormats[] = {
     VK_FORMAT_D16_UNORM,
     VK_FORMAT_X8_D24_UNORM_PACK32,
     VK_FORMAT_D32_SFLOAT,
+    VK_FORMAT_E5B9G9R9_UFLOAT_PACK32,
+    VK_FORMAT_BC1_RGBA_UNORM_BLOCK,
+    VK_FORMAT_BC3_SRGB_BLOCK,
 };
 
 Sampler random_sampler(Random& random, bool depth) {
@@ -139,6 +142,7 @@ Sampler random_sampler(Random& random, bool depth) {
   const std::uint32_t modes = random.below(2) ? 5 : 2;
   for (VkSamplerAddressMode& mode : sampler.address) mode = kModes[random.below(modes)];
   sampler.mag_filter = sampler.min_filter = static_cast<VkFilter>(random.below(2));
+  if (random.below(3) == 0) sampler.min_filter = static_cast<VkFilter>(random.below(2));
   sampler.mip_mode = static_cast<VkSamplerMipmapMode>(random.below(2));
   sampler.mip_lod_bias = random.below(2) ? random.between(-2, 2) : 0.0f;
   sampler.min_lod = random.below(3) ? 0.0f : random.between(0, 2);

@@ -2,7 +2,7 @@
 // two mip levels and depth comparison. Bits equal sample_scalar's (lavapipe-texture-blend.md A3, A4, A6).
 #include "texel/sampler/wave_2d.h"
 
-#include <algorithm>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "texel/sampler/wave_2d.cpp"
@@ -40,7 +40,9 @@ LevelTable make_table(const ImageView& view) {
 
 /// One vector of lanes on its way through the sampler.
 struct Point {
+  base::LaneMask active = 0;  ///< of this vector, lane 0 in bit 0
   VF s, t;
+  VI layer;
   VI layer_offset;  ///< bytes
   VI offset_x, offset_y;
   VF reference;
@@ -49,6 +51,7 @@ struct Point {
 /// The level (or the level of each lane) that is being read.
 struct LevelLanes {
   AxisLanes x, y;
+  VI index;
   VI pitch;
   VI origin;  ///< bytes
 };
@@ -73,23 +76,77 @@ HWY_INLINE LevelLanes make_level(const Plan& plan, const LevelTable& table, cons
   out.y.size = lookup(table.height, level, one);
   out.x.size_float = lanes_int_to_float(out.x.size);
   out.y.size_float = lanes_int_to_float(out.y.size);
+  out.index = level;
   out.pitch = lookup(table.pitch, level, one);
   out.origin = hn::Add(lookup(table.offset, level, one), point.layer_offset);
   return out;
 }
 
+// ---- texels that no gather decodes, lane by lane
+
+constexpr std::size_t kMaxLanes = 16;
+static_assert(hn::MaxLanes(DU()) <= kMaxLanes);
+
+/// Calls fetch(lane, level, layer, x, y) for every active lane; coordinates are inside the level.
+template <class Fetch>
+HWY_INLINE void for_each_texel(const Point& point, const LevelLanes& level, VI x, VI y, Fetch fetch) {
+  alignas(64) std::uint32_t at[4][kMaxLanes];
+  hn::Store(hn::BitCast(DU(), level.index), DU(), at[0]);
+  hn::Store(hn::BitCast(DU(), point.layer), DU(), at[1]);
+  hn::Store(hn::BitCast(DU(), x), DU(), at[2]);
+  hn::Store(hn::BitCast(DU(), y), DU(), at[3]);
+  base::for_each_lane(point.active,
+                      [&](std::size_t lane) { fetch(lane, at[0][lane], at[1][lane], at[2][lane], at[3][lane]); });
+}
+
+TexelLanes fetch_each(const Plan& plan, const Point& point, const LevelLanes& level, VI x, VI y) {
+  alignas(64) std::uint32_t value[4][kMaxLanes] = {};
+  for_each_texel(point, level, x, y,
+                 [&](std::size_t lane, std::uint32_t l, std::uint32_t layer, std::uint32_t px, std::uint32_t py) {
+                   Texel texel;
+                   fetch_texel(plan, l, layer, px, py, 0, texel);
+                   for (std::size_t c = 0; c < 4; ++c) value[c][lane] = texel[c];
+                 });
+  return {as_float(hn::Load(DU(), value[0])), as_float(hn::Load(DU(), value[1])), as_float(hn::Load(DU(), value[2])),
+          as_float(hn::Load(DU(), value[3]))};
+}
+
+VU fetch_each_packed(const Plan& plan, const Point& point, const LevelLanes& level, VI x, VI y) {
+  alignas(64) std::uint32_t value[kMaxLanes] = {};
+  for_each_texel(point, level, x, y,
+                 [&](std::size_t lane, std::uint32_t l, std::uint32_t layer, std::uint32_t px, std::uint32_t py) {
+                   ByteTexel bytes;
+                   fetch_bytes(*plan.view, l, layer, px, py, 0, bytes);
+                   std::memcpy(&value[lane], bytes.data(), sizeof(value[lane]));
+                 });
+  return hn::Load(DU(), value);
+}
+
 // ---- bytes
 
-/// What turns a gathered word into R, G, B, A-capable bytes.
+/// How texels become words of four bytes, and where R, G, B, A are in them.
 struct ByteFormat {
-  std::uint32_t keep;  ///< bits that belong to the texel
-  std::uint32_t fill;  ///< alpha of formats without one
-  std::int32_t shift;  ///< log2 of the texel's bytes
+  bool gathered = true;      ///< else R, G, B, A are fetched lane by lane
+  std::uint32_t keep = ~0u;  ///< bits that belong to the texel
+  int shift = 2;             ///< log2 of the texel's bytes
+  std::array<std::int8_t, 4> rgba{0, 1, 2, 3};
 };
 
-HWY_INLINE VU fetch_packed(const ByteFormat& format, const std::byte* base, VI row, VI x) {
+ByteFormat byte_format(const FormatDesc& desc) {
+  ByteFormat format;
+  format.gathered = !desc.is_compressed() && desc.channel[0].bits == 8 && desc.block_bytes != 3;
+  if (!format.gathered) return format;
+  if (desc.block_bytes < 4) format.keep = (1u << (8 * desc.block_bytes)) - 1;
+  format.shift = desc.block_bytes == 4 ? 2 : desc.block_bytes - 1;
+  format.rgba = desc.rgba;
+  return format;
+}
+
+HWY_INLINE VU fetch_packed(const Plan& plan, const ByteFormat& format, const Point& point, const LevelLanes& level,
+                           VI row, VI x, VI y) {
+  if (!format.gathered) return fetch_each_packed(plan, point, level, x, y);
   const VI offset = hn::Add(row, hn::ShiftLeftSame(x, format.shift));
-  return hn::Or(hn::And(gather_words(base, offset), hn::Set(DU(), format.keep)), hn::Set(DU(), format.fill));
+  return hn::And(gather_words(plan.view->base, offset), hn::Set(DU(), format.keep));
 }
 
 /// Two of four bytes in 16-bit lanes each.
@@ -120,25 +177,25 @@ HWY_INLINE Halves lerp_bytes(VI weight, const Halves& a, const Halves& b) {
   return {lerp_16(w, a.even, b.even), lerp_16(w, a.odd, b.odd)};
 }
 
-template <bool kLinear>
-HWY_INLINE Halves filter_bytes(const Plan& plan, const ByteFormat& format, const Point& point,
-                               const LevelLanes& level) {
-  const std::byte* base = plan.view->base;
-  if constexpr (!kLinear) {
+HWY_INLINE Halves filter_bytes(const Plan& plan, const ByteFormat& format, const Point& point, const LevelLanes& level,
+                               bool linear) {
+  if (!linear) {
     const VI x = lanes_nearest_bytes(level.x, point.s);
     const VI y = lanes_nearest_bytes(level.y, point.t);
-    return unpack_bytes(fetch_packed(format, base, hn::Add(level.origin, hn::Mul(y, level.pitch)), x));
-  } else {
-    const ByteTapLanes x = lanes_linear_bytes(level.x, point.s);
-    const ByteTapLanes y = lanes_linear_bytes(level.y, point.t);
-    const VI upper = hn::Add(level.origin, hn::Mul(y.first, level.pitch));
-    const VI lower = hn::Add(level.origin, hn::Mul(y.second, level.pitch));
-    const Halves top = lerp_bytes(x.weight, unpack_bytes(fetch_packed(format, base, upper, x.first)),
-                                  unpack_bytes(fetch_packed(format, base, upper, x.second)));
-    const Halves bottom = lerp_bytes(x.weight, unpack_bytes(fetch_packed(format, base, lower, x.first)),
-                                     unpack_bytes(fetch_packed(format, base, lower, x.second)));
-    return lerp_bytes(y.weight, top, bottom);
+    const VI row = hn::Add(level.origin, hn::Mul(y, level.pitch));
+    return unpack_bytes(fetch_packed(plan, format, point, level, row, x, y));
   }
+  const ByteTapLanes x = lanes_linear_bytes(level.x, point.s);
+  const ByteTapLanes y = lanes_linear_bytes(level.y, point.t);
+  const VI upper = hn::Add(level.origin, hn::Mul(y.first, level.pitch));
+  const VI lower = hn::Add(level.origin, hn::Mul(y.second, level.pitch));
+  const Halves top =
+      lerp_bytes(x.weight, unpack_bytes(fetch_packed(plan, format, point, level, upper, x.first, y.first)),
+                 unpack_bytes(fetch_packed(plan, format, point, level, upper, x.second, y.first)));
+  const Halves bottom =
+      lerp_bytes(x.weight, unpack_bytes(fetch_packed(plan, format, point, level, lower, x.first, y.second)),
+                 unpack_bytes(fetch_packed(plan, format, point, level, lower, x.second, y.second)));
+  return lerp_bytes(y.weight, top, bottom);
 }
 
 // ---- floats
@@ -150,26 +207,38 @@ HWY_INLINE TexelLanes lerp_texels(VF weight, const TexelLanes& a, const TexelLan
           lerp_float(weight, a.a, b.a)};
 }
 
+HWY_INLINE TexelLanes select_texels(hn::Mask<DF> first, const TexelLanes& a, const TexelLanes& b) {
+  return {hn::IfThenElse(first, a.r, b.r), hn::IfThenElse(first, a.g, b.g), hn::IfThenElse(first, a.b, b.b),
+          hn::IfThenElse(first, a.a, b.a)};
+}
+
 HWY_INLINE hn::Mask<DI> outside_of(VI i, VI size) { return hn::Or(hn::Lt(i, splat(0)), hn::Not(hn::Lt(i, size))); }
 
 HWY_INLINE VF border_component(const Plan& plan, std::size_t component) {
   return as_float(hn::Set(DU(), plan.border[component]));
 }
 
-/// The texel at (x, y), the border colour outside.
+/// A texel inside the level; Numeric::kNone stands for formats that no gather decodes.
 template <Numeric kNumeric>
-HWY_INLINE TexelLanes texel_at(const Plan& plan, const LevelLanes& level, VI x, VI y, bool border) {
-  const FormatDesc& format = *plan.view->format;
-  const VI size = splat(static_cast<std::int32_t>(format.block_bytes));
-  if (!border) {
-    const VI offset = hn::Add(hn::Add(level.origin, hn::Mul(y, level.pitch)), hn::Mul(x, size));
+HWY_INLINE TexelLanes texel_inside(const Plan& plan, const Point& point, const LevelLanes& level, VI x, VI y) {
+  if constexpr (kNumeric == Numeric::kNone) {
+    return fetch_each(plan, point, level, x, y);
+  } else {
+    const FormatDesc& format = *plan.view->format;
+    const VI column = hn::Mul(x, splat(static_cast<std::int32_t>(format.block_bytes)));
+    const VI offset = hn::Add(hn::Add(level.origin, hn::Mul(y, level.pitch)), column);
     return fetch_lanes<kNumeric>(format, plan.view->base, offset);
   }
+}
+
+/// The texel at (x, y), the border colour outside.
+template <Numeric kNumeric>
+HWY_INLINE TexelLanes texel_at(const Plan& plan, const Point& point, const LevelLanes& level, VI x, VI y, bool border) {
+  if (!border) return texel_inside<kNumeric>(plan, point, level, x, y);
   const auto outside = hn::RebindMask(DF(), hn::Or(outside_of(x, level.x.size), outside_of(y, level.y.size)));
   const VI inside_x = lanes_clamp(x, hn::Sub(level.x.size, splat(1)));
   const VI inside_y = lanes_clamp(y, hn::Sub(level.y.size, splat(1)));
-  const VI offset = hn::Add(hn::Add(level.origin, hn::Mul(inside_y, level.pitch)), hn::Mul(inside_x, size));
-  const TexelLanes texel = fetch_lanes<kNumeric>(format, plan.view->base, offset);
+  const TexelLanes texel = texel_inside<kNumeric>(plan, point, level, inside_x, inside_y);
   return {hn::IfThenElse(outside, border_component(plan, 0), texel.r),
           hn::IfThenElse(outside, border_component(plan, 1), texel.g),
           hn::IfThenElse(outside, border_component(plan, 2), texel.b),
@@ -199,8 +268,10 @@ HWY_INLINE hn::Mask<DF> compare_lanes(VkCompareOp op, VF reference, VF texel) {
 }
 
 template <Numeric kNumeric>
-HWY_INLINE hn::Mask<DF> compare_at(const Plan& plan, const LevelLanes& level, VF reference, VI x, VI y, bool border) {
-  return compare_lanes(plan.sampler->compare_op, reference, texel_at<kNumeric>(plan, level, x, y, border).r);
+HWY_INLINE hn::Mask<DF> compare_at(const Plan& plan, const Point& point, const LevelLanes& level, VI x, VI y,
+                                   bool border) {
+  return compare_lanes(plan.sampler->compare_op, point.reference,
+                       texel_at<kNumeric>(plan, point, level, x, y, border).r);
 }
 
 HWY_INLINE VF select_weight(VF weight, hn::Mask<DF> first, hn::Mask<DF> second) {
@@ -212,15 +283,14 @@ HWY_INLINE VF filter_compare(const Plan& plan, const Point& point, const LevelLa
   if (!linear) {
     const VI x = lanes_nearest(level.x, point.s);
     const VI y = lanes_nearest(level.y, point.t);
-    return hn::IfThenElseZero(compare_at<kNumeric>(plan, level, point.reference, x, y, border), splat(1.0f));
+    return hn::IfThenElseZero(compare_at<kNumeric>(plan, point, level, x, y, border), splat(1.0f));
   }
   const TapLanes x = lanes_linear(level.x, point.s);
   const TapLanes y = lanes_linear(level.y, point.t);
-  const VF top = select_weight(x.weight, compare_at<kNumeric>(plan, level, point.reference, x.first, y.first, border),
-                               compare_at<kNumeric>(plan, level, point.reference, x.second, y.first, border));
-  const VF bottom =
-      select_weight(x.weight, compare_at<kNumeric>(plan, level, point.reference, x.first, y.second, border),
-                    compare_at<kNumeric>(plan, level, point.reference, x.second, y.second, border));
+  const VF top = select_weight(x.weight, compare_at<kNumeric>(plan, point, level, x.first, y.first, border),
+                               compare_at<kNumeric>(plan, point, level, x.second, y.first, border));
+  const VF bottom = select_weight(x.weight, compare_at<kNumeric>(plan, point, level, x.first, y.second, border),
+                                  compare_at<kNumeric>(plan, point, level, x.second, y.second, border));
   return lerp_float(y.weight, top, bottom);
 }
 
@@ -228,14 +298,15 @@ template <Numeric kNumeric>
 HWY_INLINE TexelLanes filter_floats(const Plan& plan, const Point& point, const LevelLanes& level, bool linear,
                                     bool border) {
   if (!linear) {
-    return texel_at<kNumeric>(plan, level, lanes_nearest(level.x, point.s), lanes_nearest(level.y, point.t), border);
+    return texel_at<kNumeric>(plan, point, level, lanes_nearest(level.x, point.s), lanes_nearest(level.y, point.t),
+                              border);
   }
   const TapLanes x = lanes_linear(level.x, point.s);
   const TapLanes y = lanes_linear(level.y, point.t);
-  const TexelLanes top = lerp_texels(x.weight, texel_at<kNumeric>(plan, level, x.first, y.first, border),
-                                     texel_at<kNumeric>(plan, level, x.second, y.first, border));
-  const TexelLanes bottom = lerp_texels(x.weight, texel_at<kNumeric>(plan, level, x.first, y.second, border),
-                                        texel_at<kNumeric>(plan, level, x.second, y.second, border));
+  const TexelLanes top = lerp_texels(x.weight, texel_at<kNumeric>(plan, point, level, x.first, y.first, border),
+                                     texel_at<kNumeric>(plan, point, level, x.second, y.first, border));
+  const TexelLanes bottom = lerp_texels(x.weight, texel_at<kNumeric>(plan, point, level, x.first, y.second, border),
+                                        texel_at<kNumeric>(plan, point, level, x.second, y.second, border));
   return lerp_texels(y.weight, top, bottom);
 }
 
@@ -247,13 +318,14 @@ HWY_INLINE VI load_ints(const base::WaveRegister* values, std::size_t first) {
 
 HWY_INLINE Point load_point(const Plan& plan, const SampleRequest& request, std::size_t first) {
   Point point;
+  point.active = (request.active >> first) & base::first_lanes(hn::Lanes(DF()));
   point.s = load_lanes(request.coord[0], first);
   point.t = load_lanes(request.coord[1], first);
-  point.layer_offset = splat(0);
+  point.layer = point.layer_offset = splat(0);
   if (plan.arrayed) {
     const VI last = splat(static_cast<std::int32_t>(plan.view->layer_count) - 1);
-    const VI layer = lanes_clamp(lanes_round_to_int(load_lanes(request.coord[2], first)), last);
-    point.layer_offset = hn::Mul(layer, splat(static_cast<std::int32_t>(plan.view->layer_stride)));
+    point.layer = lanes_clamp(lanes_round_to_int(load_lanes(request.coord[2], first)), last);
+    point.layer_offset = hn::Mul(point.layer, splat(static_cast<std::int32_t>(plan.view->layer_stride)));
   }
   point.offset_x = request.offset[0] != nullptr ? load_ints(request.offset[0], first) : splat(0);
   point.offset_y = request.offset[1] != nullptr ? load_ints(request.offset[1], first) : splat(0);
@@ -268,7 +340,7 @@ HWY_INLINE Point load_point(const Plan& plan, const SampleRequest& request, std:
 }
 
 HWY_INLINE LodLanes load_lod(const Plan& plan, const SampleRequest& request, const Point& point, std::size_t first) {
-  if (!plan.lod_needed) return {splat(0), splat(0), splat(0.0f)};
+  if (!plan.lod_needed) return {splat(0), splat(0), splat(0.0f), hn::RebindMask(DF(), hn::Ne(splat(0), splat(0)))};
   return lanes_lod(plan, request, point.s, point.t, first);
 }
 
@@ -289,30 +361,59 @@ HWY_INLINE VF byte_channel(VU packed, std::int8_t index, float missing) {
   return hn::Mul(lanes_int_to_float(hn::BitCast(DI(), byte)), splat(1.0f / 255.0f));
 }
 
-template <bool kLinear>
+HWY_INLINE Halves select_halves(hn::Mask<DF> first, const Halves& a, const Halves& b) {
+  const VU mask = as_unsigned(hn::VecFromMask(DF(), first));
+  const auto m16 = hn::BitCast(D16(), mask);
+  return {hn::Or(hn::And(m16, a.even), hn::AndNot(m16, b.even)), hn::Or(hn::And(m16, a.odd), hn::AndNot(m16, b.odd))};
+}
+
+/// One filter over one or two levels.
+HWY_INLINE Halves filter_byte_levels(const Plan& plan, const ByteFormat& format, const LevelTable& table,
+                                     const Point& point, const LodLanes& lod, bool has_offset, bool linear) {
+  const Halves halves =
+      filter_bytes(plan, format, point, make_level(plan, table, point, lod.level0, has_offset), linear);
+  if (plan.mip != MipFilter::kLinear) return halves;
+  const VI weight = hn::And(lanes_truncate_to_int(hn::Mul(lod.fraction, splat(256.0f))), splat(255));
+  if (hn::AllTrue(DI(), hn::Eq(weight, splat(0)))) return halves;
+  const LevelLanes next = make_level(plan, table, point, lod.level1, has_offset);
+  return lerp_bytes(weight, halves, filter_bytes(plan, format, point, next, linear));
+}
+
 void sample_bytes_wave(const Plan& plan, const SampleRequest& request, base::WaveRegister result[4]) {
-  const FormatDesc& desc = *plan.view->format;
-  const ByteFormat format{desc.block_bytes == 4 ? ~0u : (1u << (8 * desc.block_bytes)) - 1, 0,
-                          desc.block_bytes == 4 ? 2 : desc.block_bytes - 1};
+  const ByteFormat format = byte_format(*plan.view->format);
   const LevelTable table = make_table(*plan.view);
   const bool has_offset = request.offset[0] != nullptr;
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     if (!any_active(request.active, first)) continue;
     const Point point = load_point(plan, request, first);
     const LodLanes lod = load_lod(plan, request, point, first);
-    Halves halves = filter_bytes<kLinear>(plan, format, point, make_level(plan, table, point, lod.level0, has_offset));
-    if (plan.mip == MipFilter::kLinear) {
-      const VI weight = hn::And(lanes_truncate_to_int(hn::Mul(lod.fraction, splat(256.0f))), splat(255));
-      if (!hn::AllTrue(DI(), hn::Eq(weight, splat(0)))) {
-        const LevelLanes next = make_level(plan, table, point, lod.level1, has_offset);
-        halves = lerp_bytes(weight, halves, filter_bytes<kLinear>(plan, format, point, next));
-      }
+    Halves halves = filter_byte_levels(plan, format, table, point, lod, has_offset, plan.mag_linear);
+    if (plan.min_linear != plan.mag_linear) {
+      const Halves minified = filter_byte_levels(plan, format, table, point, lod, has_offset, plan.min_linear);
+      halves = select_halves(lod.minify, minified, halves);
     }
     const VU packed = pack_bytes(halves);
-    const VF channels[4] = {byte_channel(packed, desc.rgba[0], 0.0f), byte_channel(packed, desc.rgba[1], 0.0f),
-                            byte_channel(packed, desc.rgba[2], 0.0f), byte_channel(packed, desc.rgba[3], 1.0f)};
+    const VF channels[4] = {byte_channel(packed, format.rgba[0], 0.0f), byte_channel(packed, format.rgba[1], 0.0f),
+                            byte_channel(packed, format.rgba[2], 0.0f), byte_channel(packed, format.rgba[3], 1.0f)};
     store_mapped(*plan.view, channels, first, result);
   }
+}
+
+/// A comparison or texels, one filter over one or two levels.
+template <Numeric kNumeric>
+HWY_INLINE TexelLanes filter_float_levels(const Plan& plan, const SampleRequest& request, const Point& point,
+                                          const LevelLanes levels[2], VF fraction, bool linear, bool two_levels,
+                                          bool border) {
+  if (request.dref != nullptr) {
+    VF value = filter_compare<kNumeric>(plan, point, levels[0], linear, border);
+    if (two_levels) {
+      value = lerp_float(fraction, value, filter_compare<kNumeric>(plan, point, levels[1], linear, border));
+    }
+    return {value, splat(0.0f), splat(0.0f), splat(1.0f)};
+  }
+  const TexelLanes texel = filter_floats<kNumeric>(plan, point, levels[0], linear, border);
+  if (!two_levels) return texel;
+  return lerp_texels(fraction, texel, filter_floats<kNumeric>(plan, point, levels[1], linear, border));
 }
 
 template <Numeric kNumeric>
@@ -325,20 +426,15 @@ void sample_floats_wave(const Plan& plan, const SampleRequest& request, base::Wa
     if (!any_active(request.active, first)) continue;
     const Point point = load_point(plan, request, first);
     const LodLanes lod = load_lod(plan, request, point, first);
-    const LevelLanes level = make_level(plan, table, point, lod.level0, has_offset);
-    const LevelLanes next = make_level(plan, table, point, lod.level1, has_offset);
-    if (request.dref != nullptr) {
-      VF value = filter_compare<kNumeric>(plan, point, level, plan.mag_linear, border);
-      if (two_levels) {
-        value = lerp_float(lod.fraction, value, filter_compare<kNumeric>(plan, point, next, plan.mag_linear, border));
-      }
-      const VF channels[4] = {value, splat(0.0f), splat(0.0f), splat(1.0f)};
-      store_mapped(*plan.view, channels, first, result);
-      continue;
-    }
-    TexelLanes texel = filter_floats<kNumeric>(plan, point, level, plan.mag_linear, border);
-    if (two_levels) {
-      texel = lerp_texels(lod.fraction, texel, filter_floats<kNumeric>(plan, point, next, plan.mag_linear, border));
+    const LevelLanes levels[2] = {make_level(plan, table, point, lod.level0, has_offset),
+                                  make_level(plan, table, point, lod.level1, has_offset)};
+    TexelLanes texel =
+        filter_float_levels<kNumeric>(plan, request, point, levels, lod.fraction, plan.min_linear, two_levels, border);
+    if (plan.min_linear != plan.mag_linear) {
+      // Magnified lanes take one level.
+      const TexelLanes magnified =
+          filter_float_levels<kNumeric>(plan, request, point, levels, lod.fraction, plan.mag_linear, false, border);
+      texel = select_texels(lod.minify, texel, magnified);
     }
     const VF channels[4] = {texel.r, texel.g, texel.b, texel.a};
     store_mapped(*plan.view, channels, first, result);
@@ -346,10 +442,12 @@ void sample_floats_wave(const Plan& plan, const SampleRequest& request, base::Wa
 }
 
 void sample_wave(const Plan& plan, const SampleRequest& request, base::WaveRegister result[4]) {
-  if (plan.aos)
-    return plan.mag_linear ? sample_bytes_wave<true>(plan, request, result)
-                           : sample_bytes_wave<false>(plan, request, result);
-  switch (plan.view->format->channel[0].numeric) {
+  if (plan.aos) return sample_bytes_wave(plan, request, result);
+  const FormatDesc& format = *plan.view->format;
+  if (format.is_compressed() || format.format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) {
+    return sample_floats_wave<Numeric::kNone>(plan, request, result);
+  }
+  switch (format.channel[0].numeric) {
     case Numeric::kUnorm:
       return sample_floats_wave<Numeric::kUnorm>(plan, request, result);
     case Numeric::kSnorm:
@@ -381,25 +479,12 @@ bool small_enough(const ImageView& view) {
   return span < (std::uint64_t{1} << 31) - 64;
 }
 
-bool bytes_supported(const FormatDesc& format) {
-  return !format.is_compressed() && format.block_bytes != 3 &&
-         std::all_of(format.channel.begin(), format.channel.begin() + format.channel_count,
-                     [](const Channel& c) { return c.bits == 8; });
-}
-
-bool floats_supported(const FormatDesc& format) {
-  return !format.is_compressed() && !format.is_integer() && format.format != VK_FORMAT_E5B9G9R9_UFLOAT_PACK32;
-}
-
 }  // namespace
 
 bool sample_wave_2d(const Plan& plan, const SampleRequest& request, base::WaveRegister result[4]) {
-  const FormatDesc& format = *plan.view->format;
-  const bool plain_filter = plan.min_linear == plan.mag_linear && !plan.anisotropic && !plan.gather &&
-                            plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
-  const bool supported = plan.aos ? bytes_supported(format) : floats_supported(format);
-  if (plan.zero || plan.dims != 2 || plan.cube || !plain_filter || !supported || request.op != SampleOp::kSample ||
-      !small_enough(*plan.view)) {
+  const bool averaged = plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+  if (plan.zero || plan.dims != 2 || plan.cube || plan.anisotropic || !averaged || plan.view->format->is_integer() ||
+      request.op != SampleOp::kSample || !small_enough(*plan.view)) {
     return false;
   }
   base::select_simd_target();

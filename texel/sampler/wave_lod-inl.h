@@ -16,6 +16,7 @@ struct LodLanes {
   VI level0;
   VI level1;
   VF fraction;
+  hn::Mask<DF> minify;
 };
 
 HWY_INLINE VF load_lanes(const base::WaveRegister* values, std::size_t first) {
@@ -59,9 +60,10 @@ HWY_INLINE VF lanes_fast_log2(VF v) {
   return hn::Add(exponent, as_float(mantissa));
 }
 
-HWY_INLINE LodLanes lanes_levels(const Plan& plan, VF lod, VI nearest) {
+HWY_INLINE LodLanes lanes_levels(const Plan& plan, VF lod, VI nearest, hn::Mask<DF> minify) {
   const VI last = splat(static_cast<std::int32_t>(plan.view->level_count) - 1);
   LodLanes out;
+  out.minify = minify;
   if (plan.mip != MipFilter::kLinear) {
     out.level0 = out.level1 = plan.mip == MipFilter::kNone ? splat(0) : lanes_clamp(nearest, last);
     out.fraction = splat(0.0f);
@@ -76,7 +78,7 @@ HWY_INLINE LodLanes lanes_levels(const Plan& plan, VF lod, VI nearest) {
   return out;
 }
 
-/// Levels of lanes first..first+N-1. Only for plan.lod_needed with one filter for both directions.
+/// Levels of lanes first..first+N-1. Only for plan.lod_needed.
 HWY_INLINE LodLanes lanes_lod(const Plan& plan, const SampleRequest& request, VF s, VF t, std::size_t first) {
   const Sampler& sampler = *plan.sampler;
   VF lod = splat(sampler.min_lod);
@@ -88,7 +90,8 @@ HWY_INLINE LodLanes lanes_lod(const Plan& plan, const SampleRequest& request, VF
     } else {
       const VF rho = lanes_rho(plan, request, s, t, first);
       if (plan.shortcut_lod && request.min_lod == nullptr) {
-        return lanes_levels(plan, rho, hn::ShiftRight<1>(hn::Sub(exponent_field(rho), splat(126))));
+        const VI level = hn::ShiftRight<1>(hn::Sub(exponent_field(rho), splat(126)));
+        return lanes_levels(plan, rho, level, hn::Gt(rho, splat(1.0f)));
       }
       lod = hn::Mul(splat(0.5f), lanes_fast_log2(rho));
       if (request.lod_mode == LodMode::kBias) lod = hn::Add(lod, load_lanes(request.lod, first));
@@ -98,7 +101,7 @@ HWY_INLINE LodLanes lanes_lod(const Plan& plan, const SampleRequest& request, VF
   if (plan.apply_max_lod) lod = lanes_min_second(lod, splat(sampler.max_lod));
   if (plan.apply_min_lod) lod = lanes_max_second(lod, splat(sampler.min_lod));
   if (request.min_lod != nullptr) lod = lanes_max_second(lod, load_lanes(request.min_lod, first));
-  return lanes_levels(plan, lod, lanes_round_to_int(lod));
+  return lanes_levels(plan, lod, lanes_round_to_int(lod), hn::Gt(lod, splat(0.0f)));
 }
 
 }  // namespace vitrine::texel::HWY_NAMESPACE
