@@ -100,7 +100,7 @@ Scalarizer::Scalarizer(const ir::Function& function, std::string& error) : ir_(f
 }
 
 ScalarFunction Scalarizer::run() {
-  if (const ListEnd end = build_list(ir_.body); end.falls) emit_jump(Kind::kReturn, kNoScalar, nullptr);
+  if (const ListEnd end = build_list(ir_.body, {}); end.falls) emit_jump(Kind::kReturn, kNoScalar, nullptr);
   return std::move(out_);
 }
 
@@ -137,10 +137,12 @@ void Scalarizer::append(std::vector<ScalarId>& ids, const ir::Src& src, std::uin
   for (std::uint32_t i = 0; i < count; ++i) ids.push_back(component(src, i));
 }
 
-std::vector<ScalarId> Scalarizer::whole(const std::vector<ir::Src>& sources) {
+std::vector<ScalarId> Scalarizer::arguments(const std::vector<ir::Src>& sources,
+                                            const std::vector<ir::ValueId>& targets) {
   std::vector<ScalarId> ids;
-  for (const ir::Src& src : sources)
-    append(ids, src, src.value < ir_.values.size() ? ir_.values[src.value].components : 0);
+  if (sources.size() != targets.size()) fail("join with the wrong number of values");
+  for (std::size_t i = 0; i < sources.size() && i < targets.size(); ++i)
+    append(ids, sources[i], ir_.values[targets[i]].components);
   return ids;
 }
 

@@ -66,7 +66,8 @@ void Scalarizer::emit_jump(Kind kind, ScalarId cond, const ir::Instr* instr) {
   if (kind == Kind::kBreak || kind == Kind::kContinue) {
     if (loops_.empty()) return fail("break or continue outside a loop");
     LoopContext& loop = loops_.back();
-    const std::vector<ScalarId> values = whole(instr->src);
+    const std::vector<ScalarId> values =
+        arguments(instr->src, kind == Kind::kBreak ? loop.node->results : loop.node->continue_params);
     const std::vector<ScalarId>& joins = kind == Kind::kBreak ? loop.results : loop.continue_params;
     if (values.size() != joins.size()) return fail("jump with the wrong number of values");
     loop.has_continue |= kind == Kind::kContinue;
@@ -96,12 +97,12 @@ Kind Scalarizer::jump_kind(Op op) {
   }
 }
 
-ListEnd Scalarizer::build_list(const ir::NodeList& list) {
+ListEnd Scalarizer::build_list(const ir::NodeList& list, const std::vector<ir::ValueId>& targets) {
   for (const auto& node : list) {
     if (!error_.empty()) return {};
     switch (node->kind) {
       case ir::Node::Kind::kInstr:
-        if (node->instr.op == Op::kYield) return {true, whole(node->instr.src)};
+        if (node->instr.op == Op::kYield) return {true, arguments(node->instr.src, targets)};
         if (is_jump(node->instr.op)) {
           emit_jump(jump_kind(node->instr.op), kNoScalar, &node->instr);
           return {false, {}};
@@ -119,9 +120,9 @@ ListEnd Scalarizer::build_list(const ir::NodeList& list) {
   return {};
 }
 
-ListEnd Scalarizer::build_scope(const ir::NodeList& list) {
+ListEnd Scalarizer::build_scope(const ir::NodeList& list, const std::vector<ir::ValueId>& targets) {
   const std::size_t mark = undo_.size();
-  ListEnd end = build_list(list);
+  ListEnd end = build_list(list, targets);
   forget(mark);
   return end;
 }
@@ -148,7 +149,7 @@ ScalarId Scalarizer::negate(ScalarId cond) {
 bool Scalarizer::build_if(const ir::Node& node) {
   const ScalarId cond = component(node.condition, 0);
   if (level(cond) == Level::kConstant) {
-    const ListEnd end = build_list(out_.scalars[cond].bits ? node.then_list : node.else_list);
+    const ListEnd end = build_list(out_.scalars[cond].bits ? node.then_list : node.else_list, node.results);
     if (end.falls) define_all(node.results, end.values);
     return end.falls;
   }
@@ -157,13 +158,13 @@ bool Scalarizer::build_if(const ir::Node& node) {
   if ((then_jump && only_yield(node.else_list)) || (else_jump && only_yield(node.then_list))) {
     const ir::Instr* jump = then_jump ? then_jump : else_jump;
     emit_jump(jump_kind(jump->op), then_jump ? cond : negate(cond), jump);
-    define_all(node.results, build_list(then_jump ? node.else_list : node.then_list).values);
+    define_all(node.results, build_list(then_jump ? node.else_list : node.then_list, node.results).values);
     return true;
   }
   if (level(cond) > Level::kUniform &&
       flatten_weight(node.then_list) + flatten_weight(node.else_list) <= kFlattenWeight) {
-    const ListEnd then_end = build_list(node.then_list);
-    const ListEnd else_end = build_list(node.else_list);
+    const ListEnd then_end = build_list(node.then_list, node.results);
+    const ListEnd else_end = build_list(node.else_list, node.results);
     define_all(node.results, select_all(cond, then_end.values, else_end.values));
     return true;
   }
@@ -185,9 +186,9 @@ ScalarId Scalarizer::select(ScalarId cond, ScalarId a, ScalarId b) {
 bool Scalarizer::build_branches(const ir::Node& node, ScalarId cond) {
   const std::uint32_t if_index = add_marker(Kind::kIf);
   out_.body[if_index].cond = cond;
-  const ListEnd then_end = build_scope(node.then_list);
+  const ListEnd then_end = build_scope(node.then_list, node.results);
   const std::uint32_t else_index = add_marker(Kind::kElse);
-  const ListEnd else_end = build_scope(node.else_list);
+  const ListEnd else_end = build_scope(node.else_list, node.results);
   const std::uint32_t end_index = add_marker(Kind::kEndIf);
   out_.body[if_index].partner = else_index;
   out_.body[else_index].partner = end_index;
@@ -230,11 +231,12 @@ std::uint32_t Scalarizer::add_marker(Kind kind) {
 }
 
 void Scalarizer::build_loop(const ir::Node& node) {
-  const std::vector<ScalarId> init = whole(node.init);
+  const std::vector<ScalarId> init = arguments(node.init, node.params);
   const std::vector<ScalarId> params = new_joins(node.params);
   const std::uint32_t loop_index = add_marker(Kind::kLoop);
   set_join(out_.body[loop_index], init, params);
   LoopContext context;
+  context.node = &node;
   context.op = loop_index;
   for (const ir::ValueId value : node.results)
     for (std::uint32_t i = 0; i < ir_.values[value].components; ++i) {
@@ -244,7 +246,7 @@ void Scalarizer::build_loop(const ir::Node& node) {
   context.continue_params = new_joins(node.continue_params);
   loops_.push_back(std::move(context));
   const std::size_t mark = undo_.size();
-  const ListEnd body_end = build_list(node.body);
+  const ListEnd body_end = build_list(node.body, node.continue_params);
   const bool has_continue = loops_.back().has_continue;
   if (has_continue) forget(mark);  // lanes that continued early have not computed the rest of the body
   const std::uint32_t continuing_index = add_marker(Kind::kContinuing);
@@ -255,7 +257,7 @@ void Scalarizer::build_loop(const ir::Node& node) {
     set_join(out_.body[continuing_index], body_end.values, loops_.back().continue_params);
   }
   ListEnd next{false, {}};
-  if (body_end.falls || has_continue) next = build_list(node.continuing);
+  if (body_end.falls || has_continue) next = build_list(node.continuing, node.params);
   const std::uint32_t end_index = add_marker(Kind::kEndLoop);
   out_.body[end_index].falls = next.falls;
   if (next.falls) set_join(out_.body[end_index], next.values, params);

@@ -29,6 +29,7 @@ struct ListEnd {
 };
 
 struct LoopContext {
+  const ir::Node* node = nullptr;
   std::uint32_t op = kNoIndex;
   std::vector<ScalarId> results, continue_params;
   bool has_continue = false;
@@ -46,8 +47,8 @@ class Scalarizer {
   void define(ir::ValueId value, std::span<const ScalarId> ids);
   ScalarId component(const ir::Src& src, std::uint32_t i);
   void append(std::vector<ScalarId>& ids, const ir::Src& src, std::uint32_t count);
-  /// All components of sources that are whole values (control flow arguments).
-  std::vector<ScalarId> whole(const std::vector<ir::Src>& sources);
+  /// Scalars that control flow hands to `targets` (which say how many components each source stands for).
+  std::vector<ScalarId> arguments(const std::vector<ir::Src>& sources, const std::vector<ir::ValueId>& targets);
   std::vector<ScalarId> new_joins(const std::vector<ir::ValueId>& values);
   void define_all(const std::vector<ir::ValueId>& values, const std::vector<ScalarId>& ids);
   Level level(ScalarId id) const { return out_.scalars[id].level; }
@@ -89,9 +90,10 @@ class Scalarizer {
   void set_join(ScalarOp& op, const std::vector<ScalarId>& values, const std::vector<ScalarId>& joins);
   static bool is_jump(Op op) { return op == Op::kBreak || op == Op::kContinue || op == Op::kReturn || op == Op::kKill; }
   static Kind jump_kind(Op op);
-  ListEnd build_list(const ir::NodeList& list);
+  /// `targets`: what the values of the list's Yield are for.
+  ListEnd build_list(const ir::NodeList& list, const std::vector<ir::ValueId>& targets);
   /// Builds a list whose expressions are known only inside it.
-  ListEnd build_scope(const ir::NodeList& list);
+  ListEnd build_scope(const ir::NodeList& list, const std::vector<ir::ValueId>& targets);
   void forget(std::size_t mark);
   static const ir::Instr* only_jump(const ir::NodeList& list);
   static bool only_yield(const ir::NodeList& list);

@@ -22,6 +22,8 @@ class Evaluator {
   std::vector<std::uint32_t> inputs;
   std::vector<std::uint32_t> outputs;
   std::vector<std::vector<std::uint32_t>*> buffers;  ///< by slot of set 0
+  std::vector<std::uint32_t> push;                   ///< words
+  std::uint32_t invocation = 0;                      ///< gl_GlobalInvocationID.x
   bool killed = false;
 
   void run() { list(f_.body); }
@@ -123,6 +125,18 @@ class Evaluator {
     switch (instr.op) {
       case ir::Op::kConst:
         return instr.imm;
+      case ir::Op::kUndef:
+        break;
+      case ir::Op::kVec:
+        for (std::size_t c = 0; c < instr.src.size(); ++c) result[c] = get(instr.src[c]);
+        break;
+      case ir::Op::kLoadPush:
+        for (std::uint32_t c = 0; c < instr.components; ++c)
+          result[c] = push.at((get(instr.src[0]) + instr.data[0]) / 4 + c);
+        break;
+      case ir::Op::kGlobalInvocationId:
+        result[0] = invocation;
+        break;
       case ir::Op::kLoadInput:
         result[0] = inputs.at(instr.data[0]);
         break;

@@ -35,6 +35,12 @@ class Generator {
   ValueId word() {
     return words_[pick(4) ? words_.size() - 1 - pick(std::min<std::uint32_t>(6, words_.size())) : pick(words_.size())];
   }
+  /// What control flow passes on: a word or a component of a vector.
+  Src argument() {
+    if (!vectors_.empty() && pick(4) == 0)
+      return src(vectors_[pick(static_cast<std::uint32_t>(vectors_.size()))], static_cast<std::uint8_t>(pick(3)));
+    return src(word());
+  }
   ValueId boolean() {
     if (pick(3) == 0) return bools_[pick(bools_.size())];
     const Op ops[] = {Op::kULt, Op::kIGe, Op::kIEq, Op::kINe};
@@ -68,6 +74,7 @@ class Generator {
       case 1: {
         const ValueId v = b_.load(Op::kLoadStorage, 0, 0, index, 3, 4);
         words_.push_back(b_.append(Op::kIAdd, 1, false, {src(v, 0), src(v, 2)}).result);
+        vectors_.push_back(v);
         break;
       }
       case 2: {
@@ -85,10 +92,11 @@ class Generator {
   /// A list in its own scope.
   template <class F>
   void scope(F&& f) {
-    const auto words = words_.size(), bools = bools_.size();
+    const auto words = words_.size(), bools = bools_.size(), vectors = vectors_.size();
     f();
     words_.resize(words);
     bools_.resize(bools);
+    vectors_.resize(vectors);
   }
 
   void statements(std::uint32_t count, int depth) {
@@ -117,20 +125,20 @@ class Generator {
     const std::uint32_t kind = pick(8);
     if (kind == 0 && pick(3) == 0) return b_.jump(Op::kReturn);
     if (kind == 1 && loop_results_ != ~0u) {
-      Src a = src(word()), c = src(word());
+      Src a = argument(), c = argument();
       std::vector<Src> values{a, c};
       values.resize(loop_results_);
       b_.append(Op::kBreak, 0, false, values);
       return;
     }
     if (kind == 2 && loop_continues_ != ~0u) {
-      std::vector<Src> values{src(word()), src(word())};
+      std::vector<Src> values{argument(), argument()};
       values.resize(loop_continues_);
       b_.append(Op::kContinue, 0, false, values);
       return;
     }
     std::vector<Src> values;
-    for (std::uint32_t i = 0; i < results; ++i) values.push_back(src(word()));
+    for (std::uint32_t i = 0; i < results; ++i) values.push_back(argument());
     b_.append(Op::kYield, 0, false, values);
   }
 
@@ -164,13 +172,13 @@ class Generator {
             loop_results_ = results;
             loop_continues_ = continues;
             words_.insert(words_.end(), p.begin(), p.end());
-            std::vector<Src> leave{src(word()), src(word())};
+            std::vector<Src> leave{argument(), argument()};
             leave.resize(results);
             b_.branch(
                 b_.alu(Op::kUGe, {p[0], limit}), 0, [&] { b_.append(Op::kBreak, 0, false, leave); },
                 [&] { b_.yield(); });
             statements(size, depth + 1);
-            std::vector<Src> next{src(word()), src(word())};
+            std::vector<Src> next{argument(), argument()};
             next.resize(continues);
             b_.append(Op::kYield, 0, false, next);
           });
@@ -183,7 +191,7 @@ class Generator {
             words_.insert(words_.end(), c.begin(), c.end());
             for (std::uint32_t i = pick(4); i > 0; --i) arithmetic();
             const ValueId counter = b_.alu(Op::kIAdd, {p[0], b_.constant(1)});
-            std::vector<Src> next{src(counter), src(word()), src(pick(3) ? word() : p[1])};
+            std::vector<Src> next{src(counter), argument(), src(pick(3) ? word() : p[1])};
             b_.append(Op::kYield, 0, false, next);
           });
         });
@@ -194,7 +202,7 @@ class Generator {
 
   std::mt19937 random_;
   Builder b_;
-  std::vector<ValueId> words_, bools_;
+  std::vector<ValueId> words_, bools_, vectors_;
   std::uint32_t loop_results_ = ~0u, loop_continues_ = ~0u;
 };
 
