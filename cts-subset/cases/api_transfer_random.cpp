@@ -1,5 +1,6 @@
 // Random transfers: copies between buffers and images, blits, clears, fills and updates, several in a row.
 #include "harness/case.h"
+#include "harness/execute.h"
 #include "harness/graphics.h"
 
 namespace vitrine::cts {
@@ -167,6 +168,8 @@ void random_blit(Run& run, bool scaled) {
   const Image to = run.image(spec);
   run.fill_random(from);
   run.fill_random(to);
+  if (format_info(spec.format).numeric == Numeric::kSrgb)
+    run.require(reference_cpu().srgb_as_recorded, "the recorded sRGB encoding");
   const bool linear =
       reference_has(from_format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) && random.chance(0.6f);
   run.note("blit", std::string(info.name) + " to " + format_info(spec.format).name + (linear ? " linear" : " nearest"));

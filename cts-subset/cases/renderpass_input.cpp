@@ -1,5 +1,6 @@
 // Input attachments, one thing each: loaded from before the render pass or written by the subpass before.
 #include "harness/case.h"
+#include "harness/execute.h"
 #include "harness/graphics.h"
 
 namespace vitrine::cts {
@@ -8,6 +9,8 @@ namespace {
 /// Subpass 0 (only if `written`) draws into A; the last subpass reads A at its own pixel and writes it to B.
 void input(Run& run, VkFormat format, bool written) {
   const FormatInfo& info = format_info(format);
+  if (info.numeric == Numeric::kSrgb)
+    run.require(!written || reference_cpu().srgb_as_recorded, "the recorded sRGB encoding");
   const std::string prefix = info.numeric == Numeric::kUint ? "u" : info.numeric == Numeric::kSint ? "i" : "";
   ImageSpec spec;
   spec.format = format;

@@ -23,7 +23,15 @@ uint64_t case_seed(const Case& c);
 Judgement execute(const Case& c);
 /// Reads the list of known differences that the options name. Throws when it cannot be read.
 void load_known_differences();
-/// Asks the reference for its CPU-dependent behaviour and prints it (DESIGN.md section 8).
-void probe_reference();
+/// What the reference does where its bits depend on the CPU (DESIGN.md section 8).
+struct ReferenceCpu {
+  std::vector<uint32_t> float_to_uint;  ///< of -1, -0.5, 3e9, 5e9 and NaN
+  uint64_t srgb_hash = 0;               ///< of the bytes that 65536 ramp values become in an sRGB attachment
+  bool float_to_uint_as_recorded = false, srgb_as_recorded = false;
+};
+
+/// Asks the reference, once per process.
+const ReferenceCpu& reference_cpu();
+void print_reference_cpu();
 
 }  // namespace vitrine::cts

@@ -1,6 +1,7 @@
 // Render targets and graphics pipelines of the cases.
 #include "harness/graphics.h"
 
+#include "harness/execute.h"
 #include "harness/shader.h"
 
 namespace vitrine::cts {
@@ -90,7 +91,10 @@ VkClearValue clear_value(VkFormat format, float r, float g, float b, float a) {
   return value;
 }
 
-Target make_target(Run& run, const TargetSpec& spec) {
+Target make_target(Run& run, const TargetSpec& spec, bool probe) {
+  for (const VkFormat format : spec.colors)
+    if (!probe && format_info(format).numeric == Numeric::kSrgb)
+      run.require(reference_cpu().srgb_as_recorded, "the recorded sRGB encoding");
   Target target;
   target.spec = spec;
   ImageSpec image;

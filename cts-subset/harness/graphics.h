@@ -32,7 +32,8 @@ struct Target {
 
 /// A clear value of the right kind for a format.
 VkClearValue clear_value(VkFormat format, float r, float g, float b, float a);
-Target make_target(Run& run, const TargetSpec& spec);
+/// `probe`: allows sRGB colours even where the reference's encoding is not the recorded one.
+Target make_target(Run& run, const TargetSpec& spec, bool probe = false);
 /// Adds every attachment (and resolve attachment) to the outputs.
 void out_target(Run& run, const Target& target);
 

@@ -85,7 +85,7 @@ int run(int argc, char** argv) {
   const bool child = g_progress >= 0;
   std::printf("device: %s\nreference: %s\n", gpus().device.name.c_str(), gpus().reference.name.c_str());
   if (parsed.validation && !validation_is_on()) std::printf("the validation layer is not installed\n");
-  if (!child) probe_reference();
+  if (!child) print_reference_cpu();
   const int status = RUN_ALL_TESTS();
   if (!child) print_counts(g_counts);
   destroy_gpus();

@@ -1,6 +1,8 @@
 // Wraps a shader body into a whole shader of a stage and collects its results.
 #include "cases/glsl/evaluate.h"
 
+#include "harness/execute.h"
+
 namespace vitrine::cts {
 namespace {
 
@@ -108,6 +110,9 @@ void evaluate(Run& run, Stage stage, const ShaderBody& body) {
   for (float& value : push.p) value = random.operand(false);
   for (int32_t& value : push.pi) value = integer();
   const std::string text = shader_text(stage, body);
+  const bool to_uint =
+      body.statements.find("uint(") != std::string::npos || body.statements.find("uvec") != std::string::npos;
+  if (to_uint) run.require(reference_cpu().float_to_uint_as_recorded, "the recorded float to uint conversion");
   run.note("shader", text);
   if (stage == Stage::kCompute)
     run_compute(run, text, res, &push);
