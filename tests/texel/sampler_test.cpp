@@ -132,6 +132,8 @@ constexpr VkFormat kFormats[] = {
     VK_FORMAT_E5B9G9R9_UFLOAT_PACK32,
     VK_FORMAT_BC1_RGBA_UNORM_BLOCK,
     VK_FORMAT_BC3_SRGB_BLOCK,
+    VK_FORMAT_B4G4R4A4_UNORM_PACK16,
+    VK_FORMAT_R5G5B5A1_UNORM_PACK16,
 };
 
 Sampler random_sampler(Random& random, bool depth) {

@@ -127,6 +127,7 @@ VU fetch_each_packed(const Plan& plan, const Point& point, const LevelLanes& lev
 /// How texels become words of four bytes, and where R, G, B, A are in them.
 struct ByteFormat {
   bool gathered = true;      ///< else R, G, B, A are fetched lane by lane
+  bool fields = false;       ///< channels of other than 8 bits, widened to R, G, B, A
   std::uint32_t keep = ~0u;  ///< bits that belong to the texel
   int shift = 2;             ///< log2 of the texel's bytes
   std::array<std::int8_t, 4> rgba{0, 1, 2, 3};
@@ -134,19 +135,34 @@ struct ByteFormat {
 
 ByteFormat byte_format(const FormatDesc& desc) {
   ByteFormat format;
-  format.gathered = !desc.is_compressed() && desc.channel[0].bits == 8 && desc.block_bytes != 3;
+  format.gathered = !desc.is_compressed() && desc.block_bytes != 3;
   if (!format.gathered) return format;
+  format.fields = desc.channel[0].bits != 8 || desc.channel[1].bits % 8 != 0;
   if (desc.block_bytes < 4) format.keep = (1u << (8 * desc.block_bytes)) - 1;
   format.shift = desc.block_bytes == 4 ? 2 : desc.block_bytes - 1;
-  format.rgba = desc.rgba;
+  if (!format.fields) format.rgba = desc.rgba;
   return format;
+}
+
+/// Widens every channel to 8 bits by repeating its bits, in R, G, B, A order; missing alpha is 255.
+HWY_INLINE VU widen_fields(const FormatDesc& desc, VU word) {
+  VU packed = hn::Set(DU(), desc.rgba[3] < 0 ? 0xFF000000u : 0u);
+  for (std::size_t i = 0; i < desc.channel_count; ++i) {
+    const int bits = desc.channel[i].bits;
+    const VU field = hn::And(hn::ShiftRightSame(word, desc.channel[i].offset), hn::Set(DU(), (1u << bits) - 1));
+    const VU wide = bits == 1 ? hn::Sub(hn::ShiftLeft<8>(field), field)
+                              : hn::Or(hn::ShiftLeftSame(field, 8 - bits), hn::ShiftRightSame(field, 2 * bits - 8));
+    packed = hn::Or(packed, hn::ShiftLeftSame(wide, 8 * desc.component[i]));
+  }
+  return packed;
 }
 
 HWY_INLINE VU fetch_packed(const Plan& plan, const ByteFormat& format, const Point& point, const LevelLanes& level,
                            VI row, VI x, VI y) {
   if (!format.gathered) return fetch_each_packed(plan, point, level, x, y);
   const VI offset = hn::Add(row, hn::ShiftLeftSame(x, format.shift));
-  return hn::And(gather_words(plan.view->base, offset), hn::Set(DU(), format.keep));
+  const VU word = hn::And(gather_words(plan.view->base, offset), hn::Set(DU(), format.keep));
+  return format.fields ? widen_fields(*plan.view->format, word) : word;
 }
 
 /// Two of four bytes in 16-bit lanes each.
