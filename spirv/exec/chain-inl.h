@@ -75,6 +75,9 @@ struct LinkSources {
   }
 };
 
+/// The compiler adds no VZEROUPPER to functions that take vectors; SSE code of the caller would pay for the transition.
+HWY_INLINE void leave_vectors() { _mm256_zeroupper(); }
+
 template <Op op, int accumulator, unsigned uniform, Link link, class Indices>
 struct ChainLink;
 
@@ -89,6 +92,7 @@ struct ChainLink<op, accumulator, uniform, link, std::index_sequence<k...>> {
     }
     const Instruction* next = i + 1;
     if constexpr (link == Link::kLast) {
+      leave_vectors();
       return next;
     } else {
       return reinterpret_cast<Function>(next->handler)(wave, next, result...);
@@ -101,6 +105,7 @@ struct ChainLink<op, accumulator, uniform, link, std::index_sequence<k...>> {
       using D = hn::ScalableTag<LaneType<shape(op).operand[0]>>;
       wave.masks[i->dst / 8] =
           ((lanes_mask_bits(D(), sources.compute(k * kVectorLanes, in)) << (k * kVectorLanes)) | ...);
+      leave_vectors();
       return i + 1;
     } else {
       return pass(wave, i, hn::BitCast(ChainTag(), sources.compute(k * kVectorLanes, in))...);
