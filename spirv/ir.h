@@ -68,7 +68,8 @@ struct Instr {
   std::uint8_t components = 1;  ///< of the result; 0: no result
   bool boolean = false;         ///< result is a lane mask per component
   bool exact = false;           ///< precise / NoContraction / feeds an invariant output: inexact rewrites do not apply
-  bool opaque = false;  ///< rewrites neither change it nor look through it: the sums of dot products (5.1)
+  bool opaque = false;  ///< rewrites neither change it nor look through it: parts of what the reference has as one
+                        ///< operation (5.1)
   ValueId result = kNoValue;
   std::vector<Src> src;
   std::array<std::uint32_t, 4> imm{};             ///< constants: component bits (booleans: 0 / 1)

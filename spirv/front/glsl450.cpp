@@ -128,7 +128,9 @@ void step(Translator& t, const Inst& inst, ir::Op) {
   Expr below{&t, ir::kNoValue};
   {
     const ExactScope exact(t);
+    const bool saved = std::exchange(t.opaque, true);  // one operation in the reference's first round
     below = apply(ir::Op::kB2F, {x < edge});
+    t.opaque = saved;
   }
   result(t, inst, imm(t, 1.0f) - below);
 }

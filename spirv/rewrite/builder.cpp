@@ -17,7 +17,7 @@ class Builder {
   void visit(InstId id) {
     id_ = id;
     const Inst& inst = graph_.insts[id];
-    if (inst.kind != Kind::kAlu || inst.components != 1) return;
+    if (inst.kind != Kind::kAlu || inst.components != 1 || inst.opaque) return;  // sums add vectors, not literals
     switch (inst.op) {
       case Op::kFAdd:
         if (!undefined_operand() && !take_if(1, 0, 0)) take_if(0, 1, 0);

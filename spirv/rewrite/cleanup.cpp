@@ -252,7 +252,8 @@ void hide_dot_products(Graph& graph) {
   };
   auto visit = [&](InstId id) {
     Inst& inst = graph.insts[id];
-    if (!inst.opaque || inst.count != 2) return;
+    if (inst.opaque && inst.op != Op::kFAdd) inst.pair = true;
+    if (!inst.opaque || inst.op != Op::kFAdd) return;
     const ValueId products = graph.source(inst, 1).value;
     const InstId multiplication = graph.values[products].def;
     if (multiplication != kNone && graph.insts[multiplication].op == Op::kFMul)

@@ -1,5 +1,6 @@
 // Constant folding as the reference's compiler does it on the host: C semantics, denormals honoured
-// (lavapipe-shader-math.md sections 1, 7.1). Transcendentals are rounded from binary64.
+// (lavapipe-shader-math.md sections 1, 7.1). Transcendentals are those of
+// the C library, as they are there: this is not shader arithmetic, which never calls it.
 #include <bit>
 #include <cmath>
 
@@ -12,8 +13,6 @@ namespace {
 
 using base::bits_of;
 using base::float_of;
-
-float narrow(double value) { return static_cast<float>(value); }
 
 /// False: not an op of one float operand.
 bool unary_float(Op op, float a, float& r) {
@@ -34,16 +33,16 @@ bool unary_float(Op op, float a, float& r) {
       r = 1.0f / std::sqrt(a);
       return true;
     case Op::kFExp2:
-      r = narrow(std::exp2(static_cast<double>(a)));
+      r = std::exp2(a);
       return true;
     case Op::kFLog2:
-      r = narrow(std::log2(static_cast<double>(a)));
+      r = std::log2(a);
       return true;
     case Op::kFSin:
-      r = narrow(std::sin(static_cast<double>(a)));
+      r = std::sin(a);
       return true;
     case Op::kFCos:
-      r = narrow(std::cos(static_cast<double>(a)));
+      r = std::cos(a);
       return true;
     case Op::kFFloor:
       r = std::floor(a);
@@ -87,7 +86,7 @@ bool binary_float(Op op, float a, float b, float& r) {
       r = a / b;
       return true;
     case Op::kFPow:
-      r = narrow(std::pow(static_cast<double>(a), static_cast<double>(b)));
+      r = std::pow(a, b);
       return true;
     case Op::kFMin:
       r = std::fmin(a, b);
