@@ -1,0 +1,103 @@
+// Damaged modules: an error or a shader, never a crash or a hang.
+#include <chrono>
+
+#include "spirv/front/translate.h"
+#include "spirv/ir_passes.h"
+#include "tests/spirv/front/glsl.h"
+
+namespace vitrine::spirv::test {
+namespace {
+
+constexpr auto kFragment = VK_SHADER_STAGE_FRAGMENT_BIT;
+
+const char* const kSource = R"(
+  layout(set = 0, binding = 0) uniform U { mat4 m; vec4 v[4]; int n; } u;
+  layout(set = 0, binding = 1) uniform sampler2D t[2]; layout(location = 0) in vec4 p; layout(location = 0) out vec4 c;
+  float f(inout float x, int k) { for (int i = 0; i < k; i++) { if (x > 3.0) return x; x *= p.y; } return x; }
+  void main() { float a[3] = float[3](p.x, p.y, p.z); float x = a[u.n];
+    switch (u.n) { case 1: x += 1.0; case 2: x = f(x, 5); break; default: x = modf(p.w, a[1]); }
+    if (x < 0.0) discard;
+    c = u.m * u.v[u.n] + texture(t[1], p.xy) * x; })";
+
+bool time_left(std::chrono::steady_clock::time_point start, int seconds) {
+  return std::chrono::steady_clock::now() - start < std::chrono::seconds(seconds);
+}
+
+TEST(DamagedModule, EveryTruncation) {
+  const Words words = compile_glsl(kFragment, kSource);
+  for (std::size_t length = 0; length < words.size(); length++) {
+    const std::span<const std::uint32_t> part(words.data(), length);
+    static_cast<void>(translate(part, options_for(kFragment)));
+    if (length % 16 == 0) {
+      EXPECT_FALSE(compile(part, options_for(kFragment)));
+    }
+  }
+}
+
+/// Behind the validator's back: the front end itself must survive whatever the words say.
+TEST(DamagedModule, BitFlipsWithoutValidation) {
+  const Words words = compile_glsl(kFragment, kSource);
+  const auto start = std::chrono::steady_clock::now();
+  std::size_t accepted = 0;
+  // A stride coprime to 32 visits every bit position of the words early, whatever the time allows.
+  const std::size_t bits = words.size() * 32;
+  for (std::size_t i = 0; i < bits && time_left(start, 2); i++) {
+    const std::size_t bit = i * 101 % bits;
+    Words damaged = words;
+    damaged[bit / 32] ^= 1u << (bit % 32);
+    base::Result<ir::Function> result = translate(damaged, options_for(kFragment));
+    if (!result) continue;
+    accepted++;
+    static_cast<void>(ir::verify(result.value()));
+  }
+  EXPECT_GT(accepted, 0u);
+}
+
+TEST(DamagedModule, BitFlipsThroughCompile) {
+  const Words words = compile_glsl(kFragment, kSource);
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t bits = words.size() * 32;
+  for (std::size_t i = 0; i < bits && time_left(start, 2); i++) {
+    const std::size_t bit = i * 211 % bits;
+    Words damaged = words;
+    damaged[bit / 32] ^= 1u << (bit % 32);
+    static_cast<void>(compile(damaged, options_for(kFragment)));
+  }
+}
+
+TEST(DamagedModule, HeaderIsChecked) {
+  Words words = compile_glsl(kFragment, kSource);
+  EXPECT_EQ(check_module(words), "");
+  EXPECT_NE(check_module({}), "");
+  Words wrong = words;
+  wrong[0] = 0x03022307;
+  EXPECT_NE(check_module(wrong).find("magic"), std::string::npos);
+  wrong = words;
+  wrong[1] = 0x00020000;
+  EXPECT_NE(check_module(wrong).find("version"), std::string::npos);
+  wrong = words;
+  wrong[5] = wrong[5] & 0xffff;
+  EXPECT_NE(check_module(wrong).find("end of the module"), std::string::npos);
+}
+
+TEST(DamagedModule, InvalidModuleSaysWhatTheValidatorSays) {
+  const Words words = assemble(R"(OpCapability Shader
+    OpMemoryModel Logical GLSL450
+    OpEntryPoint Fragment %main "main"
+    OpExecutionMode %main OriginUpperLeft
+    %void = OpTypeVoid
+    %fn = OpTypeFunction %void
+    %float = OpTypeFloat 32
+    %one = OpConstant %float 1
+    %main = OpFunction %void None %fn
+    %entry = OpLabel
+    %sum = OpIAdd %float %one %one
+    OpReturn
+    OpFunctionEnd)");
+  const auto result = compile(words, options_for(kFragment));
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.message().find("IAdd"), std::string::npos) << result.message();
+}
+
+}  // namespace
+}  // namespace vitrine::spirv::test
