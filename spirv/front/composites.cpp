@@ -83,7 +83,7 @@ void matrix_times(Translator& t, const Inst& inst, ir::Op) {
 }
 
 void times_scalar(Translator& t, const Inst& inst, ir::Op op) {
-  const ir::ValueId scalar = scalar_or_vector(t, inst.operand(1));
+  const ir::ValueId scalar = number(t, inst.operand(1));
   Columns result;
   for (ir::ValueId column : value_of(t, inst.operand(0)).leaves)
     result.push_back(emit(t, op, components(t, column), false, {whole(column), splat(scalar)}));
@@ -150,6 +150,7 @@ void composite_extract(Translator& t, const Inst& inst, ir::Op) {
   const Value& from = value_of(t, inst.operand(0));
   const Part part = find_part(t, inst, from.type, 1);
   if (part.component) return set_value(t, inst, extract(t, from.leaves.at(part.first), *part.component));
+  if (part.first + t.module.type(part.type).leaves > from.leaves.size()) fail(inst, "index out of range");
   const auto first = from.leaves.begin() + part.first;
   set_value(t, inst, Columns(first, first + t.module.type(part.type).leaves));
 }
@@ -162,7 +163,9 @@ void composite_insert(Translator& t, const Inst& inst, ir::Op) {
     ir::ValueId& leaf = whole_value.leaves.at(part.first);
     leaf = insert(t, leaf, object.leaves.at(0), *part.component);
   } else {
-    if (object.leaves.size() != t.module.type(part.type).leaves) fail(inst, "object does not fit");
+    if (part.first + object.leaves.size() > whole_value.leaves.size() ||
+        object.leaves.size() != t.module.type(part.type).leaves)
+      fail(inst, "object does not fit");
     std::copy(object.leaves.begin(), object.leaves.end(), whole_value.leaves.begin() + part.first);
   }
   set_value(t, inst, std::move(whole_value.leaves));

@@ -174,6 +174,9 @@ ir::ValueId extract_dynamic(Translator& t, ir::ValueId vector, ir::ValueId index
 ir::ValueId insert(Translator& t, ir::ValueId vector, ir::ValueId scalar, std::uint32_t component);
 ir::ValueId insert_dynamic(Translator& t, ir::ValueId vector, ir::ValueId scalar, ir::ValueId index);
 
+/// Fails unless the value is what a leaf of this type holds.
+void check_leaf(const Translator& t, std::uint32_t type, ir::ValueId value);
+
 // ---- values.cpp
 /// Components and boolean-ness of a leaf type; fails on numbers that are not 32 bits wide.
 ir::ValueInfo leaf_info(const Translator& t, std::uint32_t type);
@@ -183,6 +186,10 @@ void leaf_types(const Translator& t, std::uint32_t type, std::vector<std::uint32
 const Value& value_of(Translator& t, std::uint32_t id);
 /// Value of an id that is one scalar or vector.
 ir::ValueId scalar_or_vector(Translator& t, std::uint32_t id);
+/// Value of an id that is `count` numbers; fails on anything else.
+ir::ValueId number(Translator& t, std::uint32_t id, std::uint32_t count = 1);
+/// Value of an id that is one boolean.
+ir::ValueId condition(Translator& t, std::uint32_t id);
 void set_value(Translator& t, const Inst& inst, std::vector<ir::ValueId> leaves);
 void set_value(Translator& t, const Inst& inst, ir::ValueId leaf);
 /// Value of `type` whose scalars are `words`.

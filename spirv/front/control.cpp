@@ -112,15 +112,15 @@ void build_branch(Translator& t, ir::NodeList& list, std::uint32_t from, std::ui
 }
 
 void build_if(Translator& t, const Block& block, const Inst& branch) {
-  const ir::ValueId condition = scalar_or_vector(t, branch.operand(0));
+  const ir::ValueId chooser = condition(t, branch.operand(0));
   push_scope(t, Scope::Kind::kSelection, block.merge);
   ir::NodeList list;
-  if (const auto* words = constant_of(t, condition)) {
+  if (const auto* words = constant_of(t, chooser)) {
     build_branch(t, list, block.label, branch.operand((*words)[0] != 0 ? 1 : 2), block.merge);
   } else {
     const Into into(t, list);
     ir::Node& node = emit_node(t, ir::Node::Kind::kIf);
-    node.condition = whole(condition);
+    node.condition = whole(chooser);
     build_branch(t, node.then_list, block.label, branch.operand(1), block.merge);
     build_branch(t, node.else_list, block.label, branch.operand(2), block.merge);
   }
@@ -229,7 +229,7 @@ bool stores_flag(const Translator& t, const ir::NodeList& list, std::uint32_t fl
 
 void build_switch(Translator& t, const Block& block, const Inst& inst) {
   if (t.module.type(t.module.def(inst.operand(0)).result_type).width != 32) fail(inst, "selector is not 32 bits wide");
-  const ir::ValueId selector = scalar_or_vector(t, inst.operand(0));
+  const ir::ValueId selector = number(t, inst.operand(0));
   std::vector<Case> cases = read_cases(inst);
   const std::vector<ir::ValueId> conditions = case_conditions(t, selector, cases);
   Falls falls;
@@ -281,7 +281,7 @@ std::uint32_t build_conditional_jump(Translator& t, const Block& block, const In
   const bool yes_leaves = yes == end || is_exit(t, yes), no_leaves = no == end || is_exit(t, no);
   if (!yes_leaves && !no_leaves) fail(branch, "branches without a merge block");
   ir::Node& node = emit_node(t, ir::Node::Kind::kIf);
-  node.condition = whole(scalar_or_vector(t, branch.operand(0)));
+  node.condition = whole(condition(t, branch.operand(0)));
   if (yes_leaves && no_leaves) {
     build_branch(t, node.then_list, block.label, yes, end);
     build_branch(t, node.else_list, block.label, no, end);

@@ -15,6 +15,17 @@ ir::Instr& append(Translator& t, ir::Op op, std::vector<ir::Src> src) {
   return node.instr;
 }
 
+/// Keeps ill-typed operands of a module that nobody validated out of the IR.
+void check_sources(const Translator& t, ir::Op op, std::uint32_t count, const std::vector<ir::Src>& sources) {
+  const ir::AluInfo& info = ir::alu_info(op);
+  bool fits = sources.size() == info.sources;
+  for (std::size_t i = 0; i < sources.size() && fits; i++) {
+    fits = is_boolean(t, sources[i].value) == (info.operands[i] == 'B');
+    for (std::uint32_t c = 0; c < count; c++) fits &= sources[i].swizzle[c] < components(t, sources[i].value);
+  }
+  if (!fits) throw Failure("operand does not fit its type");
+}
+
 /// Const instructions go to the front of the function, once each.
 ir::ValueId make_constant(Translator& t, std::span<const std::uint32_t> words, bool boolean, bool is_undefined) {
   std::vector<std::uint32_t> key(words.begin(), words.end());
@@ -48,6 +59,7 @@ ir::Node& emit_node(Translator& t, ir::Node::Kind kind) {
 }
 
 ir::ValueId emit(Translator& t, ir::Op op, std::uint32_t components, bool boolean, std::vector<ir::Src> src) {
+  if (op < ir::Op::kAluCount) check_sources(t, op, components, src);
   ir::Instr& instr = append(t, op, std::move(src));
   instr.components = static_cast<std::uint8_t>(components);
   instr.boolean = boolean;
@@ -75,6 +87,12 @@ ir::ValueId constant_bool(Translator& t, bool value) {
   return constant(t, {&word, 1}, true);
 }
 
+void check_leaf(const Translator& t, std::uint32_t type, ir::ValueId value) {
+  const ir::ValueInfo info = leaf_info(t, type);
+  if (info.components != components(t, value) || info.boolean != is_boolean(t, value))
+    throw Failure("value does not fit its type");
+}
+
 ir::ValueId undefined(Translator& t, std::uint32_t components, bool boolean) {
   const std::uint32_t zero[4] = {};
   return make_constant(t, {zero, components}, boolean, true);
@@ -86,6 +104,7 @@ const std::array<std::uint32_t, 4>* constant_of(const Translator& t, ir::ValueId
 }
 
 ir::ValueId extract(Translator& t, ir::ValueId vector, std::uint32_t component) {
+  if (component >= components(t, vector)) throw Failure("component out of range");
   if (components(t, vector) == 1) return vector;
   const bool boolean = is_boolean(t, vector);
   if (const auto* words = constant_of(t, vector)) return constant(t, {&(*words)[component], 1}, boolean);
@@ -94,6 +113,9 @@ ir::ValueId extract(Translator& t, ir::ValueId vector, std::uint32_t component) 
 }
 
 ir::ValueId vec(Translator& t, std::vector<ir::Src> scalars, bool boolean) {
+  for (const ir::Src& part : scalars)
+    if (scalars.size() > 4 || part.swizzle[0] >= components(t, part.value) || is_boolean(t, part.value) != boolean)
+      throw Failure("operand does not fit its type");
   if (scalars.size() == 1 && components(t, scalars[0].value) == 1) return scalars[0].value;
   std::uint32_t words[4] = {};
   bool all_constant = true;

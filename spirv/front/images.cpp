@@ -41,10 +41,19 @@ std::uint32_t spatial_components(const ir::ImageInfo& info) {
 }
 
 ir::ValueId first_components(Translator& t, ir::ValueId vector, std::uint32_t count) {
+  if (is_boolean(t, vector)) throw Failure("image coordinate is not a number");
   if (components(t, vector) == count) return vector;
   if (components(t, vector) < count) throw Failure("image coordinate has too few components");
   std::vector<ir::Src> parts;
   for (std::uint8_t i = 0; i < count; i++) parts.push_back(splat(vector, i));
+  return vec(t, std::move(parts), false);
+}
+
+/// The texel of a store as four components, missing ones 0.
+ir::ValueId padded_texel(Translator& t, ir::ValueId texel) {
+  std::vector<ir::Src> parts;
+  for (std::uint8_t i = 0; i < 4; i++)
+    parts.push_back(i < components(t, texel) ? splat(texel, i) : whole(constant_u32(t, 0)));
   return vec(t, std::move(parts), false);
 }
 
@@ -65,17 +74,18 @@ struct Request {
 void add_image_operands(Translator& t, const Inst& inst, std::uint32_t at, Request request) {
   if (!inst.has(at)) return;
   const std::uint32_t mask = inst.operand(at++);
-  auto next = [&] { return scalar_or_vector(t, inst.operand(at++)); };
+  const std::uint32_t dimensions = spatial_components(request.info);
+  auto next = [&](std::uint32_t count = 1) { return number(t, inst.operand(at++), count); };
   auto has = [&](spv::ImageOperandsMask bit) { return (mask & static_cast<std::uint32_t>(bit)) != 0; };
   using Mask = spv::ImageOperandsMask;
   if (has(Mask::Bias)) request.sources.add(ImageOperand::kBias, next());
   if (has(Mask::Lod)) request.sources.add(ImageOperand::kLod, next());
   if (has(Mask::Grad)) {
-    request.sources.add(ImageOperand::kGradX, next());
-    request.sources.add(ImageOperand::kGradY, next());
+    request.sources.add(ImageOperand::kGradX, next(dimensions));
+    request.sources.add(ImageOperand::kGradY, next(dimensions));
   }
-  if (has(Mask::ConstOffset)) request.sources.add(ImageOperand::kOffset, next());
-  if (has(Mask::Offset)) request.sources.add(ImageOperand::kOffset, next());
+  if (has(Mask::ConstOffset)) request.sources.add(ImageOperand::kOffset, next(dimensions));
+  if (has(Mask::Offset)) request.sources.add(ImageOperand::kOffset, next(dimensions));
   if (has(Mask::ConstOffsets)) set_gather_offsets(t, inst, inst.operand(at++), request.info);
   if (has(Mask::Sample)) request.sources.add(ImageOperand::kSample, next());
   if (has(Mask::MinLod)) request.sources.add(ImageOperand::kMinLod, next());
@@ -218,7 +228,7 @@ void image_sample(Translator& t, const Inst& inst, ir::Op) {
   const ir::ValueId full = scalar_or_vector(t, inst.operand(1));
   ir::ValueId coord = first_components(t, full, spatial_components(*info) + (info->arrayed ? 1 : 0));
   std::uint32_t next = 2;
-  ir::ValueId dref = shape.dref ? scalar_or_vector(t, inst.operand(next++)) : ir::kNoValue;
+  ir::ValueId dref = shape.dref ? number(t, inst.operand(next++)) : ir::kNoValue;
   if (shape.gather && !shape.dref) info->gather_component = t.module.constant_u32(inst.operand(next++), inst);
   if (shape.projective) project(t, full, coord, dref);
   info->access = shape.gather ? ImageAccess::kGather : ImageAccess::kSample;
@@ -261,7 +271,7 @@ void image_access(Translator& t, const Inst& inst, ir::Op) {
   const ir::ValueId texel = first_components(t, coord, wanted);
   info->arrayed |= subpass;  // the view is the layer
   sources.add(ImageOperand::kCoord, subpass ? own_texel(t, texel) : texel);
-  if (write) sources.add(ImageOperand::kValue, scalar_or_vector(t, inst.operand(2)));
+  if (write) sources.add(ImageOperand::kValue, padded_texel(t, scalar_or_vector(t, inst.operand(2))));
   add_image_operands(t, inst, write ? 3 : 2, {*info, sources});
   if (write) {
     t.function.interface.writes_memory = true;
@@ -280,7 +290,7 @@ void image_query(Translator& t, const Inst& inst, ir::Op) {
   info->access = inst.op == Op::OpImageQueryLevels    ? ImageAccess::kQueryLevels
                  : inst.op == Op::OpImageQuerySamples ? ImageAccess::kQuerySamples
                                                       : ImageAccess::kQuerySize;
-  if (inst.op == Op::OpImageQuerySizeLod) sources.add(ImageOperand::kLod, scalar_or_vector(t, inst.operand(1)));
+  if (inst.op == Op::OpImageQuerySizeLod) sources.add(ImageOperand::kLod, number(t, inst.operand(1)));
   const std::uint32_t count = leaf_info(t, inst.result_type).components;
   set_value(t, inst, finish(t, std::move(info), sources, count));
 }
@@ -309,8 +319,10 @@ void image_texel_pointer(Translator& t, const Inst& inst, ir::Op) {
   pointer.image.image_type = type.id;
   pointer.image.image = image.binding;
   pointer.image.image_element = image.element;
-  pointer.coord = scalar_or_vector(t, inst.operand(1));
-  if (type.multisampled) pointer.sample = scalar_or_vector(t, inst.operand(2));
+  const ir::ImageInfo info = image_info(t, pointer.image);
+  pointer.coord = first_components(t, scalar_or_vector(t, inst.operand(1)),
+                                   spatial_components(info) + (info.arrayed && info.dim != 4 ? 1 : 0));
+  if (type.multisampled) pointer.sample = number(t, inst.operand(2));
   t.pointers[inst.result] = std::move(pointer);
 }
 

@@ -69,12 +69,14 @@ void store_local(Translator& t, const Pointer& pointer, const Value& value) {
   if (pointer.component) {
     const ir::ValueId old = load_leaf_local(t, pointer, vector_type_of(t, pointer), path);
     const Step& component = *pointer.component;
+    check_leaf(t, pointer.type, value.leaves.at(0));
     const ir::ValueId updated = component.dynamic ? insert_dynamic(t, old, value.leaves.at(0), component.value)
                                                   : insert(t, old, value.leaves.at(0), component.index);
     return store_leaf_local(t, pointer, updated, path);
   }
   std::size_t next = 0;
-  each_local_leaf(t, pointer.type, path, [&](std::uint32_t, const std::vector<Step>& at) {
+  each_local_leaf(t, pointer.type, path, [&](std::uint32_t leaf, const std::vector<Step>& at) {
+    check_leaf(t, leaf, value.leaves.at(next));
     store_leaf_local(t, pointer, value.leaves.at(next++), at);
   });
 }
@@ -149,6 +151,7 @@ ir::ValueId load_leaf_memory(Translator& t, const Pointer& pointer) {
 }
 
 void store_leaf_memory(Translator& t, const Pointer& pointer, ir::ValueId value) {
+  check_leaf(t, pointer.type, value);
   const ir::ValueInfo info = leaf_info(t, pointer.type);
   if (info.boolean) value = emit(t, ir::Op::kB2I, info.components, false, {whole(value)});
   if (pointer.component_stride == 4 || info.components == 1)

@@ -91,7 +91,7 @@ Pointer declare(Translator& t, const Inst& variable) {
 }
 
 Step make_step(Translator& t, std::uint32_t index_id) {
-  const ir::ValueId value = scalar_or_vector(t, index_id);
+  const ir::ValueId value = number(t, index_id);
   if (const auto* words = constant_of(t, value)) return {false, (*words)[0], ir::kNoValue};
   return {true, 0, value};
 }

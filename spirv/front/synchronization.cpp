@@ -41,9 +41,9 @@ AtomicOperands atomic_operands(Translator& t, const Inst& inst) {
     case Op::OpAtomicIDecrement:
       return {constant_u32(t, 1), ir::kNoValue};
     case Op::OpAtomicCompareExchange:
-      return {scalar_or_vector(t, inst.operand(4)), scalar_or_vector(t, inst.operand(5))};
+      return {number(t, inst.operand(4)), number(t, inst.operand(5))};
     default:
-      return {scalar_or_vector(t, inst.operand(3)), ir::kNoValue};
+      return {number(t, inst.operand(3)), ir::kNoValue};
   }
 }
 

@@ -66,8 +66,23 @@ ir::ValueId scalar_or_vector(Translator& t, std::uint32_t id) {
   return value.leaves[0];
 }
 
+ir::ValueId number(Translator& t, std::uint32_t id, std::uint32_t count) {
+  const ir::ValueId value = scalar_or_vector(t, id);
+  if (components(t, value) != count || is_boolean(t, value)) throw Failure("operand does not fit its type");
+  return value;
+}
+
+ir::ValueId condition(Translator& t, std::uint32_t id) {
+  const ir::ValueId value = scalar_or_vector(t, id);
+  if (components(t, value) != 1 || !is_boolean(t, value)) throw Failure("condition is not a boolean");
+  return value;
+}
+
 void set_value(Translator& t, const Inst& inst, std::vector<ir::ValueId> leaves) {
-  if (t.module.type(inst.result_type).leaves != leaves.size()) fail(inst, "value does not fit its type");
+  std::vector<std::uint32_t> types;
+  leaf_types(t, inst.result_type, types);
+  if (types.size() != leaves.size()) fail(inst, "value does not fit its type");
+  for (std::size_t i = 0; i < types.size(); i++) check_leaf(t, types[i], leaves[i]);
   t.values[inst.result] = {inst.result_type, std::move(leaves)};
 }
 
