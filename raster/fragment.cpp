@@ -18,6 +18,7 @@ float sample_y(std::uint32_t s) { return static_cast<float>(kSampleY[s]) / 256; 
 /// What happens once per run of the shader: for all samples together, or for one (sample shading).
 struct ShadeRun {
   TileWorker& worker;
+  const PackedWave& wave;
   const PipelinePlan& plan;
   WavePlanes planes;
   LaneMask used;    ///< lanes of packed quads
@@ -34,12 +35,12 @@ float* as_floats(WaveRegister& reg) { return reinterpret_cast<float*>(reg.lane);
 
 /// Pixel positions of all lanes, as floats, plus (dx, dy).
 void set_points(const PackedWave& wave, float dx, float dy, WavePoints& out) {
-  place_points(wave.position, wave.quads, dx, dy, out);
+  place_points(wave.position, dx, dy, out);
 }
 
 /// 8.4: the centre where all samples are covered or none is, else the first covered sample.
 void set_centroids(const ShadeRun& run, WavePoints& out) {
-  const PackedWave& wave = run.worker.wave;
+  const PackedWave& wave = run.wave;
   out = run.worker.center;
   base::for_each_lane(run.used, [&](std::size_t lane) {
     std::uint32_t covered = 0;
@@ -61,7 +62,7 @@ const WavePoints& points_of(ShadeRun& run, spirv::SampleLocation location, spirv
     if (location == spirv::SampleLocation::kCentroid)
       set_centroids(run, worker.place);
     else
-      set_points(worker.wave, sample_x(run.first_sample), sample_y(run.first_sample), worker.place);
+      set_points(run.wave, sample_x(run.first_sample), sample_y(run.first_sample), worker.place);
     prepared = location;
   }
   return worker.place;
@@ -82,9 +83,14 @@ void interpolate_varyings(ShadeRun& run) {
                      as_floats(worker.runner.input(varying.fragment_reg)));
     }
   }
-  const PackedWave& wave = worker.wave;
+  const PackedWave& wave = run.wave;
   for (std::uint32_t k = smooth; k < plan.varying_count(); ++k) {
     WaveRegister& out = worker.runner.input(plan.varying[k].fragment_reg);
+    if (wave.slots == 1) {
+      const Primitive& p = *wave.primitive[0];
+      splat(out, base::bits_of(p.v[p.provoking][4 + k]));
+      continue;
+    }
     for (std::uint32_t q = 0; q < wave.quads; ++q) {
       const Primitive& p = *wave.primitive[wave.slot[q]];
       std::fill_n(out.lane + 4 * q, 4, base::bits_of(p.v[p.provoking][4 + k]));
@@ -106,15 +112,15 @@ void set_frag_coord(ShadeRun& run) {
   const float dx = sampled ? sample_x(run.first_sample) : 0.5f, dy = sampled ? sample_y(run.first_sample) : 0.5f;
   WavePoints points;
   if (reg[0] != kNoReg || reg[1] != kNoReg) {
-    set_points(worker.wave, dx, dy, points);
+    set_points(run.wave, dx, dy, points);
     if (reg[0] != kNoReg) std::copy_n(points.x, base::kWaveWidth, as_floats(worker.runner.input(reg[0])));
     if (reg[1] != kNoReg) std::copy_n(points.y, base::kWaveWidth, as_floats(worker.runner.input(reg[1])));
   }
   if (reg[2] != kNoReg) {
     float* z = as_floats(worker.runner.input(reg[2]));
-    if (sampled) set_points(worker.wave, dx, dy, points);
+    if (sampled) set_points(run.wave, dx, dy, points);
     evaluate_plane(run.planes, kDepthPlane, sampled ? points : worker.center, nullptr, z);
-    add_depth_offset(worker.wave, z);
+    add_depth_offset(run.wave, z);
   }
   if (reg[3] != kNoReg)
     evaluate_plane(run.planes, kReciprocalWPlane, worker.center, nullptr, as_floats(worker.runner.input(reg[3])));
@@ -125,7 +131,11 @@ template <class F>
 void per_quad(ShadeRun& run, std::uint32_t reg, F&& value) {
   if (reg == kNoReg) return;
   WaveRegister& out = run.worker.runner.input(reg);
-  const PackedWave& wave = run.worker.wave;
+  const PackedWave& wave = run.wave;
+  if (wave.slots == 1) {
+    splat(out, value(*wave.primitive[0]));
+    return;
+  }
   for (std::uint32_t q = 0; q < wave.quads; ++q) std::fill_n(out.lane + 4 * q, 4, value(*wave.primitive[wave.slot[q]]));
 }
 
@@ -143,7 +153,7 @@ void set_sample_inputs(ShadeRun& run) {
   for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
     std::uint32_t mask = 0;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
-      mask |= static_cast<std::uint32_t>(run.worker.wave.rasterized[s] >> lane & 1) << s;
+      mask |= static_cast<std::uint32_t>(run.wave.rasterized[s] >> lane & 1) << s;
     out.lane[lane] = run.plan.samples == 1 ? 1 : mask;
   }
 }
@@ -203,28 +213,28 @@ void late_depth(ShadeRun& run, std::uint32_t sample) {
   } else {
     const bool located = plan.raster_samples > 1;
     WavePoints points;
-    if (located) set_points(worker.wave, sample_x(sample), sample_y(sample), points);
+    if (located) set_points(run.wave, sample_x(sample), sample_y(sample), points);
     evaluate_plane(run.planes, kDepthPlane, located ? points : worker.center, nullptr, worker.depth);
-    add_depth_offset(worker.wave, worker.depth);
+    add_depth_offset(run.wave, worker.depth);
   }
   DepthRange range[base::kQuadsPerWave];
   if (plan.state->depth_clamp)
-    for (std::uint32_t q = 0; q < worker.wave.quads; ++q) {
-      const ViewportTransform& viewport = plan.viewport[worker.wave.primitive[worker.wave.slot[q]]->viewport];
+    for (std::uint32_t q = 0; q < run.wave.quads; ++q) {
+      const ViewportTransform& viewport = plan.viewport[run.wave.primitive[run.wave.slot[q]]->viewport];
       range[q] = {viewport.z_min, viewport.z_max};
     }
-  clamp_depth(plan.state->depth_clamp ? range : nullptr, worker.wave.quads, worker.depth);
+  clamp_depth(plan.state->depth_clamp ? range : nullptr, run.wave.quads, worker.depth);
 }
 
 void test_late(ShadeRun& run) {
   TileWorker& worker = run.worker;
   const PipelinePlan& plan = run.plan;
-  const std::uint32_t front = facing_bits(worker.wave);
+  const std::uint32_t front = facing_bits(run.wave);
   const std::uint32_t* reference = plan.frag.stencil != kNoReg ? worker.runner.output(plan.frag.stencil).lane : nullptr;
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
     if (!run.kept[s]) continue;
     if (plan.depth_test) late_depth(run, s);
-    run.kept[s] = test_depth_stencil(plan, worker.target.depth_stencil[s], worker.wave.position, front, worker.depth,
+    run.kept[s] = test_depth_stencil(plan, worker.target.depth_stencil[s], run.wave.position, front, worker.depth,
                                      reference, run.kept[s], true);
   }
 }
@@ -264,7 +274,7 @@ void write_colors(ShadeRun& run) {
     const bool dual = i == 0 && plan.dual_source;
     const WaveRegister* second = dual ? collect_color(run, plan.frag.color_second, worker.second) : nullptr;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
-      write_color(plan.writer[i], {&view, worker.target.layer, s, &worker.wave.position, run.kept[s], color, second});
+      write_color(plan.writer[i], {&view, worker.target.layer, s, &run.wave.position, run.kept[s], color, second});
   }
 }
 
@@ -273,7 +283,7 @@ void shade(ShadeRun& run) {
   const PipelinePlan& plan = run.plan;
   run.pixels = 0;
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
-    run.kept[s] = worker.wave.coverage[s];
+    run.kept[s] = run.wave.coverage[s];
     run.pixels |= run.kept[s];
   }
   if (!run.pixels) return;
@@ -292,10 +302,9 @@ void shade(ShadeRun& run) {
 
 }  // namespace
 
-void shade_wave(TileWorker& worker) {
-  PackedWave& wave = worker.wave;
+void shade_wave(TileWorker& worker, PackedWave& wave) {
   const PipelinePlan& plan = *worker.draw->plan;
-  ShadeRun run{worker, plan, {}, base::first_lanes(4 * wave.quads), 0, 0, plan.samples, {}};
+  ShadeRun run{worker, wave, plan, {}, base::first_lanes(4 * wave.quads), 0, 0, plan.samples, {}};
   for (std::uint32_t slot = worker.planes_of == wave.primitive[0] ? 1 : 0; slot < wave.slots; ++slot)
     compute_planes(plan, *wave.primitive[slot], worker.planes[slot]);
   worker.planes_of = wave.primitive[0];
@@ -304,7 +313,10 @@ void shade_wave(TileWorker& worker) {
   run.planes.quads = wave.quads;
   std::copy_n(wave.slot, wave.quads, run.planes.slot);
   const float center = plan.raster_samples > 1 ? 0.5f : 0.0f;
-  set_points(wave, center, center, worker.center);
+  const bool interpolates = plan.perspective_count + plan.linear_count != 0 || plan.depth_order == TestOrder::kLate ||
+                            plan.frag.frag_coord[2] != kNoReg || plan.frag.frag_coord[3] != kNoReg ||
+                            plan.frag.point_coord[0] != kNoReg || plan.frag.point_coord[1] != kNoReg;
+  if (interpolates) set_points(wave, center, center, worker.center);
   if (plan.perspective_count || plan.frag.point_coord[0] != kNoReg || plan.frag.point_coord[1] != kNoReg) {
     evaluate_plane(run.planes, kReciprocalWPlane, worker.center, nullptr, worker.reciprocal_w);
     reciprocal(worker.reciprocal_w, worker.reciprocal_w);

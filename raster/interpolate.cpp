@@ -105,14 +105,33 @@ void evaluate(const WavePlanes& wave, std::uint32_t plane, const WavePoints& poi
   }
 }
 
-void points_of_quads(const QuadPositions& quads, std::uint32_t count, float dx, float dy, WavePoints& out) {
-  const Quad d;
-  const auto right = hn::Load(d, kRowX), down = hn::Load(d, kRowY);
-  const auto move_x = hn::Set(d, dx), move_y = hn::Set(d, dy);
-  for (std::uint32_t q = 0; q < count; ++q) {
-    hn::Store(hn::Add(hn::Add(hn::Set(d, static_cast<float>(quads.x[q])), right), move_x), d, out.x + 4 * q);
-    hn::Store(hn::Add(hn::Add(hn::Set(d, static_cast<float>(quads.y[q])), down), move_y), d, out.y + 4 * q);
+/// Each group of four lanes gets one quad's value: lanes i of vector j take quad j * (lanes / 4) + i / 4.
+template <class Offset>
+HWY_INLINE void spread_quads(const std::uint16_t* quads, const float* steps, Offset offset, float* out) {
+  const F f;
+  const hn::Rebind<std::int32_t, F> i32;
+  const hn::Rebind<std::uint16_t, F> u16;
+  const std::size_t n = hn::Lanes(f);
+  const VF step = hn::Load(f, steps);
+  const auto group = hn::ShiftRight<2>(hn::Iota(i32, 0));
+  for (std::size_t g = 0; g < base::kQuadsPerWave; g += n) {
+    const VF values = hn::ConvertTo(f, hn::PromoteTo(i32, hn::LoadU(u16, quads + g)));
+    for (std::size_t j = 0; j < 4; ++j) {
+      const auto place = hn::Add(group, hn::Set(i32, static_cast<std::int32_t>(j * n / 4)));
+      const VF v = hn::TableLookupLanes(values, hn::IndicesFromVec(f, place));
+      hn::Store(hn::Add(hn::Add(v, step), offset), f, out + 4 * g + j * n);
+    }
   }
+}
+
+/// Places of the lanes of a quad, for any vector length.
+alignas(64) constexpr float kQuadX[16] = {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
+alignas(64) constexpr float kQuadY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
+
+void points_of_quads(const QuadPositions& quads, float dx, float dy, WavePoints& out) {
+  const F f;
+  spread_quads(quads.x, kQuadX, hn::Set(f, dx), out.x);
+  spread_quads(quads.y, kQuadY, hn::Set(f, dy), out.y);
 }
 
 void reciprocals(const float* in, float* out) {
@@ -233,8 +252,8 @@ void evaluate_plane(const WavePlanes& wave, std::uint32_t plane, const WavePoint
   HWY_DYNAMIC_DISPATCH(evaluate)(wave, plane, points, scale, out);
 }
 
-void place_points(const QuadPositions& quads, std::uint32_t count, float dx, float dy, WavePoints& out) {
-  HWY_DYNAMIC_DISPATCH(points_of_quads)(quads, count, dx, dy, out);
+void place_points(const QuadPositions& quads, float dx, float dy, WavePoints& out) {
+  HWY_DYNAMIC_DISPATCH(points_of_quads)(quads, dx, dy, out);
 }
 
 void reciprocal(const float* in, float* out) { HWY_DYNAMIC_DISPATCH(reciprocals)(in, out); }

@@ -44,8 +44,8 @@ struct WavePoints {
   alignas(64) float y[base::kWaveWidth];
 };
 
-/// Points of the pixels of quads [0, count), moved by (dx, dy).
-void place_points(const QuadPositions& quads, std::uint32_t count, float dx, float dy, WavePoints& out);
+/// Points of the pixels of all quads, moved by (dx, dy).
+void place_points(const QuadPositions& quads, float dx, float dy, WavePoints& out);
 
 /// fma(dady, y, fma(dadx, x, a0)), times `scale` per lane if given (1/w of perspective planes).
 void evaluate_plane(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale,

@@ -318,16 +318,23 @@ void plan_colors(PipelinePlan& plan, const PassDesc& pass) {
   const ShaderInterface* fragment = plan.fragment;
   plan.shades = fragment &&
                 (fragment->writes_memory || plan.may_kill || plan.frag.depth != kNoReg || plan.frag.stencil != kNoReg);
+  plan.replaces_colors = fragment && !plan.may_kill && !fragment->writes_memory && plan.color_count != 0 &&
+                         plan.depth_order == TestOrder::kNone && plan.sample_mask == (1u << plan.samples) - 1;
   const auto& second = plan.frag.color_second;
   plan.dual_source = std::any_of(second.begin(), second.end(), [](std::uint32_t reg) { return reg != kNoReg; });
   for (std::uint32_t i = 0; i < plan.color_count; ++i) {
     plan.writer[i] = {};
+    if (!pass.color[i].format) continue;
     const auto& color = plan.frag.color[i];
     const bool written = std::any_of(color.begin(), color.end(), [](std::uint32_t reg) { return reg != kNoReg; });
     const texel::FormatDesc* format = pass.color[i].format;
-    if (!fragment || !written || !format) continue;
+    if (!fragment || !written) {
+      plan.replaces_colors = false;
+      continue;
+    }
     plan.writer[i] = make_color_writer(format->format, plan.state->blend[i], *plan.state);
     plan.shades |= plan.writer[i].function != nullptr;
+    plan.replaces_colors &= plan.writer[i].function != nullptr && !plan.writer[i].reads_destination();
   }
 }
 
@@ -344,10 +351,10 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   plan_varyings(plan);
   plan_viewports(plan, pass);
   plan_rasterization(plan, pass);
-  plan_tests(plan, pass);
-  plan_colors(plan, pass);
   // 8.2: with one sample only a mask of all zeros has an effect.
   if (plan.samples == 1 && draw.state->sample_mask != 0) plan.sample_mask = 1;
+  plan_tests(plan, pass);
+  plan_colors(plan, pass);
   return plan.sample_mask != 0;
 }
 

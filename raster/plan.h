@@ -117,8 +117,9 @@ struct PipelinePlan {
   std::uint32_t color_count = 0;
   std::array<ColorWriter, kMaxColorAttachments> writer;
   bool dual_source = false;
-  bool shades = true;     ///< the fragment shader's run can be observed
-  bool may_kill = false;  ///< discard, sample mask output, alpha to coverage
+  bool replaces_colors = false;  ///< every covered pixel of every attachment is overwritten, whatever it held
+  bool shades = true;            ///< the fragment shader's run can be observed
+  bool may_kill = false;         ///< discard, sample mask output, alpha to coverage
 };
 
 /// Fills `plan`. False if nothing can be drawn (a sample mask of 0, no samples).

@@ -69,7 +69,10 @@ void test_early(TileWorker& worker, const Primitive& primitive, const DepthPlane
 /// A block none of whose quads is empty makes a wave of its own.
 void append_full_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
                        const BlockCoverage& block) {
-  PackedWave& wave = worker.wave;
+  // Quads of other primitives come first: they may lie on the same pixels.
+  if (worker.wave.quads != 0 && (worker.wave.slots != 1 || worker.wave.primitive[0] != &primitive))
+    shade_wave(worker, worker.wave);
+  PackedWave& wave = worker.block;
   wave.quads = base::kQuadsPerWave;
   wave.slots = 1;
   wave.primitive[0] = &primitive;
@@ -77,7 +80,7 @@ void append_full_block(TileWorker& worker, const Primitive& primitive, int x, in
   place_block(x, y, wave.position);
   std::memcpy(wave.coverage, block.lanes, sizeof(wave.coverage));
   std::memcpy(wave.rasterized, rasterized.lanes, sizeof(wave.rasterized));
-  shade_wave(worker);
+  shade_wave(worker, wave);
 }
 
 /// Appends the quads whose lowest lanes are set in `quads`.
@@ -98,7 +101,7 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
       wave.coverage[s] |= (block.lanes[s] >> lane & 15) << (4 * q);
       wave.rasterized[s] |= (rasterized.lanes[s] >> lane & 15) << (4 * q);
     }
-    if (wave.quads == base::kQuadsPerWave) shade_wave(worker);
+    if (wave.quads == base::kQuadsPerWave) shade_wave(worker, wave);
   }
 }
 
@@ -125,7 +128,7 @@ void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane
   constexpr base::LaneMask kLowestLanes = 0x1111111111111111;
   any |= any >> 1;
   const base::LaneMask quads = (any | any >> 2) & kLowestLanes;
-  if (quads == kLowestLanes && worker.wave.quads == 0)
+  if (quads == kLowestLanes)
     append_full_block(worker, primitive, x, y, rasterized, block);
   else
     append_quads(worker, primitive, x, y, rasterized, block, quads);
@@ -168,7 +171,7 @@ void begin_draw(TileWorker& worker, const DrawRecord* draw) {
 
 void end_draw(TileWorker& worker) {
   if (!worker.draw) return;
-  if (worker.wave.quads) shade_wave(worker);
+  if (worker.wave.quads) shade_wave(worker, worker.wave);
   const QueryCounters& queries = worker.draw->call.queries;
   if (queries.occlusion && worker.samples_passed)
     queries.occlusion->fetch_add(worker.samples_passed, std::memory_order_relaxed);
@@ -202,6 +205,48 @@ void clear_tile(const TileWorker& worker, const ClearCommand& clear) {
     for (int y = 1; y <= rect.y1 - rect.y0; ++y)
       std::memcpy(first + static_cast<std::uint64_t>(y) * pitch, first, width * bytes);
   }
+}
+
+/// Whether a primitive replaces every colour of the tile, so that nothing drawn before it can be seen.
+bool hides_tile(const TileWorker& worker, const PipelinePlan& plan, const Primitive& p) {
+  if (!plan.replaces_colors || p.kind != PrimitiveKind::kTriangle) return false;
+  const TileTarget& target = worker.target;
+  const VkRect2D& area = worker.pass->render_area;
+  const int right = std::min(target.x + kTileSize, area.offset.x + static_cast<int>(area.extent.width)) - 1;
+  const int bottom = std::min(target.y + kTileSize, area.offset.y + static_cast<int>(area.extent.height)) - 1;
+  if (p.x0 > target.x || p.y0 > target.y || p.x1 < right || p.y1 < bottom) return false;
+  TileEdges edges;
+  return make_tile_edges(p, target.x, target.y, plan.raster_samples, edges) && edges.count == 0;
+}
+
+/// Where a tile's work starts.
+struct TileStart {
+  std::size_t item = 0;
+  std::uint32_t primitive = 0;
+};
+
+/// The last primitive that hides everything before it, if nothing before it can be noticed otherwise.
+TileStart first_visible(const TileWorker& worker, const std::vector<TileItem>& items) {
+  if (worker.pass->depth.format || worker.pass->stencil.format) return {};
+  for (std::size_t i = items.size(); i-- > 0;) {
+    const TileItem& item = items[i];
+    if (item.clear) continue;
+    const PipelinePlan& plan = *item.draw->plan;
+    const QueryCounters& queries = item.draw->call.queries;
+    if (queries.occlusion || queries.statistics || (plan.fragment && plan.fragment->writes_memory)) return {};
+    for (std::uint32_t k = plan.replaces_colors ? item.count : 0; k-- > 0;)
+      if (hides_tile(worker, plan, item.primitives[item.index[k]])) {
+        const bool noticed =
+            std::any_of(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(i), [](auto& earlier) {
+              if (earlier.clear) return false;
+              const QueryCounters& counters = earlier.draw->call.queries;
+              const spirv::ShaderInterface* fragment = earlier.draw->plan->fragment;
+              return counters.occlusion || counters.statistics || (fragment && fragment->writes_memory);
+            });
+        return noticed ? TileStart{} : TileStart{i, k};
+      }
+  }
+  return {};
 }
 
 void set_target(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, std::uint32_t tile) {
@@ -260,7 +305,9 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
   set_target(worker, pass, grid, tile);
   worker.draw = nullptr;
   worker.planes_of = nullptr;
-  for (const TileItem& item : items) {
+  const TileStart start = first_visible(worker, items);
+  for (std::size_t i = start.item; i < items.size(); ++i) {
+    const TileItem& item = items[i];
     if (item.clear) {
       end_draw(worker);
       clear_tile(worker, *item.clear);
@@ -270,7 +317,8 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
       end_draw(worker);
       begin_draw(worker, item.draw);
     }
-    for (std::uint32_t i = 0; i < item.count; ++i) rasterize_primitive(worker, item.primitives[item.index[i]]);
+    for (std::uint32_t k = i == start.item ? start.primitive : 0; k < item.count; ++k)
+      rasterize_primitive(worker, item.primitives[item.index[k]]);
   }
   end_draw(worker);
 }

@@ -53,7 +53,8 @@ struct TileWorker {
   const PassDesc* pass = nullptr;
   TileTarget target;
   const DrawRecord* draw = nullptr;  ///< of the packed wave
-  PackedWave wave;
+  PackedWave wave;                   ///< being packed
+  PackedWave block;                  ///< one whole block, shaded at once
   StageRunner runner;
   Stage bound;
   PlaneSet planes[base::kQuadsPerWave];
@@ -73,7 +74,7 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
 /// Covers, tests early and packs one primitive (tile.cpp).
 void rasterize_primitive(TileWorker& worker, const Primitive& primitive);
 
-/// Shades, tests and writes the packed quads; empties the wave (fragment.cpp).
-void shade_wave(TileWorker& worker);
+/// Shades, tests and writes the quads of `wave`, one of the worker's; empties it (fragment.cpp).
+void shade_wave(TileWorker& worker, PackedWave& wave);
 
 }  // namespace vitrine::raster

@@ -88,7 +88,7 @@ struct Scene {
     PassDesc desc;
     desc.color[0] = view(VK_FORMAT_R32G32B32A32_SFLOAT, color, 4);
     desc.color_count = 1;
-    desc.depth = view(VK_FORMAT_D32_SFLOAT, depth, 1);
+    if (state.depth_test) desc.depth = view(VK_FORMAT_D32_SFLOAT, depth, 1);
     desc.render_area = {{0, 0}, {kWidth, kHeight}};
     vertex.user = corners.data();
     fragment.interface.uses_discard = late;
@@ -158,8 +158,8 @@ void model(Scene& scene) {
         const float zs[3] = {v[0].z, v[1].z, v[2].z}, ws[3] = {v[0].w, v[1].w, v[2].w};
         const float z = std::fmax(std::fmin(plane_value(v, zs, px, py) + 0.0f, 1.0f), 0.0f);
         const std::size_t at = static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x);
-        if (!(z < scene.depth[at])) continue;
-        scene.depth[at] = z;
+        if (scene.state.depth_test && !(z < scene.depth[at])) continue;
+        if (scene.state.depth_test) scene.depth[at] = z;
         const float oow = 1.0f / plane_value(v, ws, px, py);
         for (std::size_t c = 0; c < 3; ++c) {
           float a[3];
@@ -206,6 +206,29 @@ TEST_P(PassModel, EveryPixelHasTheModelsBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EarlyAndLate, PassModel, testing::Bool());
+
+/// Triangles that cover whole tiles drop what lies under them; the picture is the same.
+TEST(Pass, HiddenPrimitivesLeaveNoTrace) {
+  Scene drawn, expected;
+  drawn.state.depth_test = expected.state.depth_test = false;
+  drawn.state.scissor[0] = expected.state.scissor[0] = {{0, 0}, {kWidth, kHeight}};
+  std::mt19937 random(9);
+  for (int layer = 0; layer < 4; ++layer) {
+    add_triangles(drawn, 40, 0.7f, random());
+    for (int k = 0; k < 3; ++k) {  // reaches over most of the picture
+      const float w = 1.0f + static_cast<float>(k);
+      drawn.corners.push_back({(k == 1 ? 0.999f : -0.999f) * w,
+                               (k == 2 ? 0.999f : -0.999f) * w,
+                               0.5f,
+                               w,
+                               {0.1f * static_cast<float>(k), 0.5f, 0.25f, static_cast<float>(layer)}});
+    }
+  }
+  expected.corners = drawn.corners;
+  drawn.draw(5);
+  model(expected);
+  EXPECT_EQ(expected.color, drawn.color);
+}
 
 TEST(Pass, DrawsNothingForEmptyScissorsAndMasks) {
   Scene scene;
