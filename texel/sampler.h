@@ -56,7 +56,8 @@ struct SampleRequest {
   std::uint32_t gather_component = 0;
 };
 
-/// Samples, gathers or queries for every active lane; writes four components (raw bits). kQueryLod writes two.
+/// Samples, gathers or queries for every active lane; writes four components (raw bits), kQueryLod two. Other lanes of
+/// `result` keep what they hold; so they do for the fetches below.
 void sample(const ImageView& view, const Sampler& sampler, const SampleRequest& request, base::WaveRegister result[4]);
 
 /// texelFetch / OpImageRead / imageLoad: integer coordinates (x, y, z-or-layer...), level and sample index (null: 0).

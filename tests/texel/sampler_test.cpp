@@ -216,7 +216,8 @@ void compare_paths(unsigned seed) {
   if (sampler.compare) request.dref = &in.dref;
   const base::ScopedFloatMode mode(random.below(2) ? base::Denormals::kFlush : base::Denormals::kHonour);
   const Plan plan = make_plan(image.view, sampler, request.op, request.lod_mode);
-  base::WaveRegister expected[4], result[4];
+  request.active = random.below(2) ? base::kAllLanes : random.generator() * base::LaneMask{0x9E3779B97F4A7C15u};
+  base::WaveRegister expected[4] = {}, result[4] = {};
   sample_scalar(plan, request, expected);
   if (!sample_wave_2d(plan, request, result)) return;
   for (std::size_t c = 0; c < 4; ++c) {

@@ -364,11 +364,14 @@ HWY_INLINE bool any_active(base::LaneMask active, std::size_t first) {
   return ((active >> first) & base::first_lanes(hn::Lanes(DF()))) != 0;
 }
 
-/// Stores components through the view's mapping.
-HWY_INLINE void store_mapped(const ImageView& view, const VF source[4], std::size_t first,
+/// Stores components of the active lanes through the view's mapping. Other lanes may hold another descriptor's result.
+HWY_INLINE void store_mapped(const ImageView& view, base::LaneMask active, const VF source[4], std::size_t first,
                              base::WaveRegister result[4]) {
+  const auto mask = lanes_mask_from_bits(DU(), active);
   const VF all[6] = {source[0], source[1], source[2], source[3], splat(0.0f), splat(1.0f)};
-  for (std::size_t c = 0; c < 4; ++c) hn::Store(as_unsigned(all[view.swizzle[c]]), DU(), result[c].lane + first);
+  for (std::size_t c = 0; c < 4; ++c) {
+    hn::BlendedStore(as_unsigned(all[view.swizzle[c]]), mask, DU(), result[c].lane + first);
+  }
 }
 
 HWY_INLINE VF byte_channel(VU packed, std::int8_t index, float missing) {
@@ -411,7 +414,7 @@ void sample_bytes_wave(const Plan& plan, const SampleRequest& request, base::Wav
     const VU packed = pack_bytes(halves);
     const VF channels[4] = {byte_channel(packed, format.rgba[0], 0.0f), byte_channel(packed, format.rgba[1], 0.0f),
                             byte_channel(packed, format.rgba[2], 0.0f), byte_channel(packed, format.rgba[3], 1.0f)};
-    store_mapped(*plan.view, channels, first, result);
+    store_mapped(*plan.view, point.active, channels, first, result);
   }
 }
 
@@ -453,7 +456,7 @@ void sample_floats_wave(const Plan& plan, const SampleRequest& request, base::Wa
       texel = select_texels(lod.minify, texel, magnified);
     }
     const VF channels[4] = {texel.r, texel.g, texel.b, texel.a};
-    store_mapped(*plan.view, channels, first, result);
+    store_mapped(*plan.view, point.active, channels, first, result);
   }
 }
 

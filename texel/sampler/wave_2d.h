@@ -5,8 +5,7 @@
 
 namespace vitrine::texel {
 
-/// Samples a wave with SIMD if this combination has a vector path; false if not, and then nothing is written. Lanes
-/// that are not active may be written too.
+/// Samples a wave with SIMD if this combination has a vector path; false if not, and then nothing is written.
 bool sample_wave_2d(const Plan& plan, const SampleRequest& request, base::WaveRegister result[4]);
 
 }  // namespace vitrine::texel

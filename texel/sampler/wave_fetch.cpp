@@ -21,10 +21,10 @@ HWY_INLINE VI load_ints(const base::WaveRegister* values, std::size_t first) {
 /// 0 <= i < size.
 HWY_INLINE hn::Mask<DI> within(VI i, VI size) { return hn::And(hn::Not(hn::Lt(i, splat(0))), hn::Lt(i, size)); }
 
-/// Texels where `valid`, what lies outside elsewhere, through a component mapping.
+/// Texels where `valid`, what lies outside elsewhere, through a component mapping; stored for active lanes only.
 template <Numeric kNumeric>
 HWY_INLINE void fetch_masked(const FormatDesc& format, const std::byte* base, VI offset, hn::Mask<DI> valid,
-                             const std::array<std::uint8_t, 4>& swizzle, std::size_t first,
+                             const std::array<std::uint8_t, 4>& swizzle, base::LaneMask active, std::size_t first,
                              base::WaveRegister result[4]) {
   constexpr bool kInteger = kNumeric == Numeric::kUint || kNumeric == Numeric::kSint;
   const VF one = kInteger ? as_float(hn::Set(DU(), 1u)) : splat(1.0f);
@@ -37,7 +37,10 @@ HWY_INLINE void fetch_masked(const FormatDesc& format, const std::byte* base, VI
                      alpha,
                      splat(0.0f),
                      one};
-  for (std::size_t c = 0; c < 4; ++c) hn::Store(as_unsigned(all[swizzle[c]]), DU(), result[c].lane + first);
+  const auto lanes = lanes_mask_from_bits(DU(), active >> first);
+  for (std::size_t c = 0; c < 4; ++c) {
+    hn::BlendedStore(as_unsigned(all[swizzle[c]]), lanes, DU(), result[c].lane + first);
+  }
 }
 
 HWY_INLINE bool any_active(base::LaneMask active, std::size_t first) {
@@ -69,7 +72,7 @@ void fetch_image(const ImageView& view, const FetchRequest& request, base::WaveR
     const VI row = hn::Add(hn::GatherIndex(DI(), origin, level), hn::Mul(y, hn::GatherIndex(DI(), pitch, level)));
     const VI offset = hn::Add(hn::Add(row, hn::Mul(x, texel_bytes)),
                               hn::Mul(layer, splat(static_cast<std::int32_t>(view.layer_stride))));
-    fetch_masked<kNumeric>(*view.format, view.base, offset, valid, view.swizzle, first, result);
+    fetch_masked<kNumeric>(*view.format, view.base, offset, valid, view.swizzle, request.active, first, result);
   }
 }
 
@@ -82,7 +85,7 @@ void fetch_texels(const BufferTexelView& view, base::LaneMask active, const base
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     if (!any_active(active, first)) continue;
     const VI i = load_ints(&index, first);
-    fetch_masked<kNumeric>(*view.format, view.data, hn::Mul(i, texel_bytes), within(i, count), kIdentity, first,
+    fetch_masked<kNumeric>(*view.format, view.data, hn::Mul(i, texel_bytes), within(i, count), kIdentity, active, first,
                            result);
   }
 }

@@ -6,7 +6,7 @@
 namespace vitrine::texel {
 
 /// fetch() with SIMD for two-dimensional single-sampled views; false if there is no vector path, and then nothing is
-/// written. Lanes that are not active may be written too.
+/// written.
 bool fetch_wave(const ImageView& view, const FetchRequest& request, base::WaveRegister result[4]);
 
 /// fetch_buffer() with SIMD for texels of whole words.
