@@ -48,7 +48,9 @@ class Rewriter {
     while (!queue_.empty()) {
       const InstId id = queue_.front();
       queue_.pop_front();
-      if (!graph_.insts[id].removed && !graph_.insts[id].opaque) changed |= rewrite(id);
+      const Inst& inst = graph_.insts[id];
+      if (inst.removed) continue;
+      changed |= inst.opaque ? show_sum(id) : rewrite(id);
     }
     return changed;
   }
@@ -94,6 +96,15 @@ class Rewriter {
         pending.push_back(graph_.insts[user].result);
       }
     }
+  }
+
+  /// The reference replaces its sum of two by an addition here, so that other rules see it only later.
+  bool show_sum(InstId id) {
+    if (!graph_.insts[id].pair || !graph_.show_sums) return false;
+    graph_.insts[id].opaque = graph_.insts[id].pair = false;
+    update_state(id);
+    wake_users(graph_.insts[id].result);
+    return true;
   }
 
   // ---- conditions

@@ -266,8 +266,9 @@ void hide_dot_products(Graph& graph) {
 }
 
 void show_dot_products(Graph& graph) {
+  graph.show_sums = true;
   for (Inst& inst : graph.insts)
-    if (inst.pair) inst.opaque = inst.pair = false;
+    if (inst.pair && inst.op != Op::kFAdd) inst.opaque = inst.pair = false;
 }
 
 void separate_vector_uses(Graph& graph) {

@@ -79,6 +79,7 @@ class Graph {
   std::vector<Block> blocks;
   std::vector<std::unique_ptr<ir::Node>> nodes;  ///< If, Loop and intrinsic nodes; their lists and src are empty
   BlockId root = 0;
+  bool show_sums = false;  ///< the rules may open sums marked `pair` when they come to them
   ir::Function& function;
 
   const Src& source(const Inst& inst, std::uint32_t index) const { return sources[inst.first + index].src; }
