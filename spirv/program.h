@@ -110,7 +110,8 @@ struct InstructionNote {
   const char* name = "";
   char files[4] = {' ', ' ', ' ', ' '};  ///< of dst, src[0..2]: r varying, u uniform, m mask, ' ' none
   ir::Origin origin;
-  bool jumps = false;  ///< extra[0] is a jump distance
+  /// What extra[0] is: a jump distance, a row of a side table.
+  enum class Extra : std::uint8_t { kNone, kJump, kMemory, kImage } extra = Extra::kNone;
 };
 
 /// A word of the uniform file that bind() copies once into a mask (0 / ~0) or a whole register that no instruction

@@ -1,57 +1,89 @@
 // Local arrays that stayed in memory: element e of lane l lies at array_base + e*256 + l*4. Indices are clamped to the
 // last element (lavapipe-shader-math.md section 10).
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "spirv/exec/arrays.cpp"
 #include <algorithm>
 
+#include "base/simd.h"
+
+#include <hwy/foreach_target.h>
+
+#include "base/lane_math-inl.h"
 #include "spirv/exec/buffers.h"
 #include "spirv/exec/handlers.h"
 
-namespace vitrine::spirv::exec {
-namespace {
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::spirv::exec::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
 
 std::uint32_t* element(Wave& wave, const MemoryOp& row, std::uint32_t index) {
   const std::uint32_t clamped = std::min(index + row.added, row.array_elements - 1);
   return reinterpret_cast<std::uint32_t*>(wave.arrays + row.array_base) + std::size_t{clamped} * base::kWaveWidth;
 }
 
-template <bool kUniform>
-const Instruction* load(Wave& wave, const Instruction* i) {
+const Instruction* load_array_uniform(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  std::memcpy(reg(wave, i->dst).lane, element(wave, row, uniform_word(wave, i->src[0])), sizeof(base::WaveRegister));
+  return i + 1;
+}
+
+const Instruction* load_array_lanes(Wave& wave, const Instruction* i) {
+  const hn::ScalableTag<std::uint32_t> d;
+  const hn::RebindToSigned<decltype(d)> di;
   const MemoryOp& row = memory_op(wave, i);
   std::uint32_t* to = reg(wave, i->dst).lane;
-  if constexpr (kUniform) {
-    std::memcpy(to, element(wave, row, uniform_word(wave, i->src[0])), sizeof(base::WaveRegister));
-  } else {
-    const std::uint32_t* index = reg(wave, i->src[0]).lane;
-    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) to[lane] = element(wave, row, index[lane])[lane];
+  const std::uint32_t* index = reg(wave, i->src[0]).lane;
+  const auto* words = reinterpret_cast<const std::uint32_t*>(wave.arrays + row.array_base);
+  const auto added = hn::Set(d, row.added), last = hn::Set(d, row.array_elements - 1);
+  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d)) {
+    const auto clamped = hn::Min(hn::Add(hn::Load(d, index + lane), added), last);
+    static_assert(base::kWaveWidth == 64);
+    const auto word = hn::Add(hn::ShiftLeft<6>(clamped), hn::Iota(d, static_cast<std::uint32_t>(lane)));
+    hn::Store(hn::GatherIndex(d, words, hn::BitCast(di, word)), d, to + lane);
   }
   return i + 1;
 }
 
-template <bool kUniform>
-const Instruction* store(Wave& wave, const Instruction* i) {
+const Instruction* store_array_uniform(Wave& wave, const Instruction* i) {
   const MemoryOp& row = memory_op(wave, i);
   const std::uint32_t* from = reg(wave, i->src[1]).lane;
-  if constexpr (kUniform) {
-    std::uint32_t* to = element(wave, row, uniform_word(wave, i->src[0]));
-    if (wave.active == base::kAllLanes) {
-      std::memcpy(to, from, sizeof(base::WaveRegister));
-    } else {
-      base::for_each_lane(wave.active, [&](std::size_t lane) { to[lane] = from[lane]; });
-    }
+  std::uint32_t* to = element(wave, row, uniform_word(wave, i->src[0]));
+  if (wave.active == base::kAllLanes) {
+    std::memcpy(to, from, sizeof(base::WaveRegister));
   } else {
-    const std::uint32_t* index = reg(wave, i->src[0]).lane;
-    base::for_each_lane(wave.active, [&](std::size_t lane) { element(wave, row, index[lane])[lane] = from[lane]; });
+    base::for_each_lane(wave.active, [&](std::size_t lane) { to[lane] = from[lane]; });
   }
   return i + 1;
 }
 
-}  // namespace
+const Instruction* store_array_lanes(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  const std::uint32_t* from = reg(wave, i->src[1]).lane;
+  const std::uint32_t* index = reg(wave, i->src[0]).lane;
+  base::for_each_lane(wave.active, [&](std::size_t lane) { element(wave, row, index[lane])[lane] = from[lane]; });
+  return i + 1;
+}
+
+Handler load_array_handler(bool uniform) { return uniform ? load_array_uniform : load_array_lanes; }
+Handler store_array_handler(bool uniform) { return uniform ? store_array_uniform : store_array_lanes; }
+
+}  // namespace vitrine::spirv::exec::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vitrine::spirv::exec {
+
+HWY_EXPORT(load_array_handler);
+HWY_EXPORT(store_array_handler);
 
 const Instruction* clear_arrays(Wave& wave, const Instruction* i) {
   std::memset(wave.arrays, 0, wave.program->array_bytes);
   return i + 1;
 }
 
-Handler load_array(bool uniform) { return uniform ? load<true> : load<false>; }
-Handler store_array(bool uniform) { return uniform ? store<true> : store<false>; }
+Handler load_array(bool uniform) { return HWY_DYNAMIC_DISPATCH(load_array_handler)(uniform); }
+Handler store_array(bool uniform) { return HWY_DYNAMIC_DISPATCH(store_array_handler)(uniform); }
 
 }  // namespace vitrine::spirv::exec
+#endif

@@ -1,5 +1,6 @@
 // Text form of a Program, for logs and tests.
 #include <algorithm>
+#include <string_view>
 
 #include "spirv/program.h"
 
@@ -19,7 +20,44 @@ std::string operand(char file, std::uint32_t offset) {
   }
 }
 
-std::string list(const std::vector<Instruction>& code, const std::vector<InstructionNote>& notes) {
+std::string operands(char file, const std::array<std::uint32_t, 4>& offsets) {
+  std::string text;
+  for (const std::uint32_t offset : offsets)
+    if (offset != kNoOperand) text += operand(file, offset);
+  return text;
+}
+
+/// Words loaded or stored, and where: descriptor and constant offset.
+std::string memory(const MemoryOp& row, const InstructionNote& note) {
+  const bool words = note.files[1] == 'u' && std::string_view(note.name).starts_with("load");
+  std::string text = " (" + operands(words ? 'u' : 'r', row.data) + " )";
+  text += " set " + std::to_string(row.set) + " slot " + std::to_string(row.slot);
+  if (row.added != 0) text += " +" + std::to_string(static_cast<std::int32_t>(row.added));
+  return text;
+}
+
+std::string image(const ImageOp& row) {
+  std::string text = " (" + operands('r', row.result) + " )";
+  for (const auto& offsets : row.operand) text += operands('r', offsets);
+  return text + " set " + std::to_string(row.info.set) + " slot " + std::to_string(row.info.slot);
+}
+
+std::string extra(const Program& program, const Instruction& instruction, const InstructionNote& note, std::size_t i) {
+  switch (note.extra) {
+    case InstructionNote::Extra::kNone:
+      return "";
+    case InstructionNote::Extra::kJump:
+      return " -> " + std::to_string(static_cast<std::int64_t>(i) + static_cast<std::int32_t>(instruction.extra[0]));
+    case InstructionNote::Extra::kMemory:
+      return memory(program.memory_ops[instruction.extra[0]], note);
+    case InstructionNote::Extra::kImage:
+      return image(program.image_ops[instruction.extra[0]]);
+  }
+  return "";
+}
+
+std::string list(const Program& program, const std::vector<Instruction>& code,
+                 const std::vector<InstructionNote>& notes) {
   std::string text;
   for (std::size_t i = 0; i < code.size(); ++i) {
     const InstructionNote& note = notes[i];
@@ -31,8 +69,7 @@ std::string list(const std::vector<Instruction>& code, const std::vector<Instruc
     text += head;
     text += operand(note.files[0], code[i].dst);
     for (int k = 0; k < 3; ++k) text += operand(note.files[k + 1], code[i].src[k]);
-    if (note.jumps)
-      text += " -> " + std::to_string(static_cast<std::int64_t>(i) + static_cast<std::int32_t>(code[i].extra[0]));
+    text += extra(program, code[i], note, i);
     if (note.origin.spirv_id != 0) text += "  ; %" + std::to_string(note.origin.spirv_id);
     if (note.origin.line != 0) text += " line " + std::to_string(note.origin.line);
     text += '\n';
@@ -46,8 +83,8 @@ std::string disassemble(const Program& program) {
   std::string text = "registers " + std::to_string(program.register_count) + ", masks " +
                      std::to_string(program.mask_count) + ", uniform words " + std::to_string(program.uniform_words) +
                      " (" + std::to_string(program.constants.size()) + " constants)\n";
-  text += "preamble:\n" + list(program.preamble, program.preamble_notes);
-  text += "code:\n" + list(program.code, program.notes);
+  text += "preamble:\n" + list(program, program.preamble, program.preamble_notes);
+  text += "code:\n" + list(program, program.code, program.notes);
   return text;
 }
 

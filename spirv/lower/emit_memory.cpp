@@ -67,12 +67,24 @@ MemoryOp Emitter::buffer_row(const ScalarOp& op, bool indexed) {
   return row;
 }
 
+void Emitter::attach(const MemoryOp& row) {
+  (in_preamble ? program->preamble : program->code).back().extra[0] =
+      static_cast<std::uint32_t>(program->memory_ops.size());
+  (in_preamble ? program->preamble_notes : program->notes).back().extra = InstructionNote::Extra::kMemory;
+  program->memory_ops.push_back(row);
+}
+
+void Emitter::attach(const ImageOp& row) {
+  program->code.back().extra[0] = static_cast<std::uint32_t>(program->image_ops.size());
+  program->notes.back().extra = InstructionNote::Extra::kImage;
+  program->image_ops.push_back(row);
+}
+
 void Emitter::memory(const ScalarOp& op, MemoryOp row, std::uint32_t address, Handler wave, Handler uniform,
                      const char* name) {
   const Place at = place(source(op, address));
-  Instruction& instruction = append(at.file == 'u' ? uniform : wave, name, op.instr, {}, at);
-  instruction.extra[0] = static_cast<std::uint32_t>(program->memory_ops.size());
-  program->memory_ops.push_back(row);
+  append(at.file == 'u' ? uniform : wave, name, op.instr, {}, at);
+  attach(row);
 }
 
 void Emitter::load(const ScalarOp& op) {
@@ -82,10 +94,8 @@ void Emitter::load(const ScalarOp& op) {
   if (op.op == Op::kArrayLength) {
     row.length_offset = op.instr->imm[0];
     row.length_stride = op.instr->imm[1];
-    Instruction& instruction = append(varying ? exec::array_length : exec::array_length_uniform, "array_length",
-                                      op.instr, place(result(op, 0)));
-    instruction.extra[0] = static_cast<std::uint32_t>(program->memory_ops.size());
-    program->memory_ops.push_back(row);
+    append(varying ? exec::array_length : exec::array_length_uniform, "array_length", op.instr, place(result(op, 0)));
+    attach(row);
     return;
   }
   if (op.op == Op::kLoadPush) row.added = op.instr->data[0] + op.offset;
@@ -125,11 +135,9 @@ void Emitter::atomic(const ScalarOp& op) {
   if (op.src.count > address + 2) row.compare = in_register(source(op, address + 2)).offset;
   const Place at = place(source(op, address));
   const bool uniform = at.file == 'u';
-  Instruction& instruction =
-      append(buffer ? exec::atomic_buffer(uniform) : exec::atomic_shared(uniform), buffer ? "atomic" : "atomic_shared",
-             op.instr, op.dst.count != 0 ? place(result(op, 0)) : Place{}, at);
-  instruction.extra[0] = static_cast<std::uint32_t>(program->memory_ops.size());
-  program->memory_ops.push_back(row);
+  append(buffer ? exec::atomic_buffer(uniform) : exec::atomic_shared(uniform), buffer ? "atomic" : "atomic_shared",
+         op.instr, op.dst.count != 0 ? place(result(op, 0)) : Place{}, at);
+  attach(row);
 }
 
 void Emitter::local_array(const ScalarOp& op) {
@@ -146,8 +154,7 @@ void Emitter::local_array(const ScalarOp& op) {
   } else {
     append(exec::store_array(uniform), "store_array", op.instr, {}, element, in_register(source(op, 1)));
   }
-  program->code.back().extra[0] = static_cast<std::uint32_t>(program->memory_ops.size());
-  program->memory_ops.push_back(row);
+  attach(row);
 }
 
 void Emitter::image(const ScalarOp& op) {
@@ -168,8 +175,8 @@ void Emitter::image(const ScalarOp& op) {
     }
   }
   for (std::uint32_t c = 0; c < op.dst.count && c < 4; ++c) row.result[c] = place(result(op, c)).offset;
-  append(exec::image, "image", op.instr).extra[0] = static_cast<std::uint32_t>(program->image_ops.size());
-  program->image_ops.push_back(row);
+  append(exec::image, "image", op.instr);
+  attach(row);
 }
 
 void Emitter::read_first(const ScalarOp& op) {

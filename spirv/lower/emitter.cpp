@@ -119,7 +119,7 @@ Instruction& Emitter::append(Handler handler, const char* name, const ir::Instr*
   std::vector<Instruction>& code = in_preamble ? program->preamble : program->code;
   code.push_back({handler, dst.offset, {a.offset, b.offset, c.offset}, {0, 0}});
   (in_preamble ? program->preamble_notes : program->notes)
-      .push_back({name, {dst.file, a.file, b.file, c.file}, instr ? instr->origin : ir::Origin{}, false});
+      .push_back({name, {dst.file, a.file, b.file, c.file}, instr ? instr->origin : ir::Origin{}, {}});
   return code.back();
 }
 
@@ -133,7 +133,7 @@ void Emitter::bind(Label label) { label_[label] = static_cast<std::uint32_t>(pro
 void Emitter::append_jump(Handler handler, const char* name, Label to, Place dst, Place a, Place b) {
   fixups_.push_back({static_cast<std::uint32_t>(program->code.size()), to});
   append(handler, name, nullptr, dst, a, b);
-  program->notes.back().jumps = true;
+  program->notes.back().extra = InstructionNote::Extra::kJump;
 }
 
 void Emitter::append_jump_unless(const ScalarOp& op, const char* name, Label to) {

@@ -74,6 +74,9 @@ class Emitter {
   Place temporary(char file);
   Place word(ScalarId id) const { return {'u', words_[id] * 4}; }
 
+  /// Adds a side table row for the instruction appended last.
+  void attach(const MemoryOp& row);
+  void attach(const ImageOp& row);
   void memory(const ScalarOp& op, MemoryOp row, std::uint32_t address, Handler wave, Handler uniform, const char* name);
   void load(const ScalarOp& op);
   void store(const ScalarOp& op);
