@@ -66,6 +66,7 @@ const base::WaveRegister& WaveRunner::output(std::uint32_t reg) const {
 
 base::LaneMask WaveRunner::run(base::LaneMask active, base::LaneMask helpers) {
   Wave& wave = state_->wave;
+  if (state_->shader->fault().raised.load(std::memory_order_relaxed)) return 0;  // the device is lost: be quick
   wave.active = wave.launched = active;
   wave.live = active & ~helpers;
   wave.budget = exec::shader_budget();

@@ -65,7 +65,7 @@ std::int64_t shader_budget() {
   static const std::int64_t budget = [] {
     const char* value = std::getenv("VITRINE_SHADER_BUDGET");
     const long long wanted = value ? std::strtoll(value, nullptr, 10) : 0;
-    return wanted > 0 ? std::int64_t{wanted} : std::int64_t{1} << 31;
+    return wanted > 0 ? std::int64_t{wanted} : std::int64_t{1} << 28;
   }();
   return budget;
 }

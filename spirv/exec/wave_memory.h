@@ -24,7 +24,7 @@ class WaveMemory {
   std::size_t size_ = 0;
 };
 
-/// Back edges a wave may take: 2^31, or VITRINE_SHADER_BUDGET.
+/// Back edges a wave may take: 2^28, or VITRINE_SHADER_BUDGET.
 std::int64_t shader_budget();
 
 /// Records that `wave` exhausted its budget; the first fault wins.

@@ -193,6 +193,9 @@ void Emitter::environment(const ScalarOp& op) {
   Handler handler = nullptr;
   switch (op.op) {
     case Op::kBarrier:
+      if (f_.ir->interface.local_size[0] * f_.ir->interface.local_size[1] * f_.ir->interface.local_size[2] <=
+          base::kWaveWidth)
+        return;  // a single wave is always at the same place
       program->has_barrier = true;
       append(exec::barrier, "barrier", op.instr);
       return;

@@ -119,8 +119,8 @@ TEST(Atomics, CountersAndOldValues) {
 }
 
 /// Every invocation writes its word of shared memory; after a barrier it reads the word of the opposite one.
-TEST(Barrier, WavesSeeEachOther) {
-  const std::uint32_t size = 200, groups = 20;
+void exchange_in_workgroups(std::uint32_t size) {
+  const std::uint32_t groups = 20;
   std::vector<std::uint32_t> out(size * groups, 0);
   Buffers buffers{&out};
   Builder b;
@@ -138,6 +138,10 @@ TEST(Barrier, WavesSeeEachOther) {
   run.dispatch_groups(groups);
   for (std::uint32_t g = 0; g < groups; ++g)
     for (std::uint32_t i = 0; i < size; ++i) ASSERT_EQ(out[g * size + i], g * size + size - 1 - i);
+}
+
+TEST(Barrier, WavesSeeEachOther) {
+  for (const std::uint32_t size : {1u, 16u, 64u, 65u, 200u}) exchange_in_workgroups(size);
 }
 
 }  // namespace
