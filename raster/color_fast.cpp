@@ -90,6 +90,15 @@ HWY_INLINE void leave_vectors() {
 #endif
 }
 
+/// Two whole quads side by side: two rows of four pixels.
+HWY_INLINE void store_pair(const std::uint32_t* quads, std::byte* top, std::byte* bottom) {
+  const hn::FixedTag<std::uint64_t, 2> d;
+  const auto left = hn::Load(d, reinterpret_cast<const std::uint64_t*>(quads));
+  const auto right = hn::Load(d, reinterpret_cast<const std::uint64_t*>(quads + 4));
+  hn::StoreU(hn::InterleaveLower(d, left, right), d, reinterpret_cast<std::uint64_t*>(top));
+  hn::StoreU(hn::InterleaveUpper(d, left, right), d, reinterpret_cast<std::uint64_t*>(bottom));
+}
+
 /// Stores the lanes of `mask`: two rows of two pixels per quad.
 void scatter(const ColorWave& wave, base::LaneMask mask, const Words& words) {
   leave_vectors();
@@ -101,6 +110,12 @@ void scatter(const ColorWave& wave, base::LaneMask mask, const Words& words) {
     std::byte* const top = origin + wave.quads->y[q] * level.row_pitch + std::size_t{wave.quads->x[q]} * 4;
     std::byte* const bottom = top + level.row_pitch;
     const std::uint32_t* const quad = words.lane + 4 * q;
+    if (q + 1 < base::kQuadsPerWave && (mask >> (4 * q) & 0xff) == 0xff &&
+        wave.quads->x[q + 1] == wave.quads->x[q] + 2 && wave.quads->y[q + 1] == wave.quads->y[q]) {
+      store_pair(quad, top, bottom);
+      ++q;
+      continue;
+    }
     if (covered == 0xf) {
       std::memcpy(top, quad, 8);
       std::memcpy(bottom, quad + 2, 8);

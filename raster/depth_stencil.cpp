@@ -180,6 +180,39 @@ HWY_INLINE std::uint32_t test_quad(const DepthPass& pass, const float* z, std::u
   return bits;
 }
 
+/// Two whole quads side by side, of a format of 32-bit words: rows of four pixels. Returns the eight lanes' bits.
+template <class Format>
+HWY_INLINE std::uint32_t test_pair(const DepthPass& pass, const float* z, std::byte* row0, std::byte* row1) {
+  const I4 d;
+  const hn::FixedTag<std::uint64_t, 2> halves;
+  const auto top = hn::BitCast(halves, hn::LoadU(d, reinterpret_cast<const std::int32_t*>(row0)));
+  const auto bottom = hn::BitCast(halves, hn::LoadU(d, reinterpret_cast<const std::int32_t*>(row1)));
+  VI left = hn::BitCast(d, hn::InterleaveLower(halves, top, bottom));
+  VI right = hn::BitCast(d, hn::InterleaveUpper(halves, top, bottom));
+  const VI left_value = Format::encode(hn::LoadU(F4(), z)), right_value = Format::encode(hn::LoadU(F4(), z + 4));
+  if constexpr (std::is_same_v<Format, D24>) {
+    left = hn::And(left, hn::Set(d, 0xffffff));
+    right = hn::And(right, hn::Set(d, 0xffffff));
+  }
+  const M4 left_passed = compare<Format>(pass.compare, left_value, left);
+  const M4 right_passed = compare<Format>(pass.compare, right_value, right);
+  const auto bits =
+      static_cast<std::uint32_t>((bits_of_mask(left_passed) & 15) | (bits_of_mask(right_passed) & 15) << 4);
+  if (pass.write && bits != 0) {
+    const auto a = hn::BitCast(halves, hn::IfThenElse(left_passed, left_value, left));
+    const auto b = hn::BitCast(halves, hn::IfThenElse(right_passed, right_value, right));
+    hn::StoreU(hn::BitCast(d, hn::InterleaveLower(halves, a, b)), d, reinterpret_cast<std::int32_t*>(row0));
+    hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(halves, a, b)), d, reinterpret_cast<std::int32_t*>(row1));
+  }
+  return bits;
+}
+
+/// Whether quads q and q + 1 are covered and lie side by side inside the image.
+HWY_INLINE bool is_pair(const DepthPass& pass, const QuadPositions& quads, std::uint32_t q, base::LaneMask mask) {
+  return (mask >> (4 * q) & 0xff) == 0xff && q + 1 < base::kQuadsPerWave && quads.x[q + 1] == quads.x[q] + 2 &&
+         quads.y[q + 1] == quads.y[q] && quads.x[q] + 3 < pass.width && quads.y[q] + 1 < pass.height;
+}
+
 template <class Format>
 base::LaneMask test_quads(const DepthPass& pass, const QuadPositions& quads, const float* z, base::LaneMask mask) {
   base::LaneMask passed = 0;
@@ -191,6 +224,13 @@ base::LaneMask test_quads(const DepthPass& pass, const QuadPositions& quads, con
     std::byte* row =
         pass.base + static_cast<std::uint64_t>(y) * pass.pitch + std::uint64_t{quads.x[q]} * Format::kBytes;
     std::uint32_t bits;
+    if constexpr (Format::kBytes == 4) {
+      if (is_pair(pass, quads, q, left | base::LaneMask{nibble} << (4 * q))) {
+        left &= ~(base::LaneMask{15} << (4 * (q + 1)));
+        passed |= base::LaneMask{test_pair<Format>(pass, z + 4 * q, row, row + pass.pitch)} << (4 * q);
+        continue;
+      }
+    }
     if (x + 1 < pass.width && y + 1 < pass.height) {
       bits = test_quad<Format>(pass, z + 4 * q, nibble, row, row + pass.pitch);
     } else {

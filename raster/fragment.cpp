@@ -75,6 +75,7 @@ void interpolate_varyings(ShadeRun& run) {
   const std::uint32_t smooth = plan.perspective_count + plan.linear_count;
   for (const auto wanted :
        {spirv::SampleLocation::kCenter, spirv::SampleLocation::kCentroid, spirv::SampleLocation::kSample}) {
+    if (wanted != spirv::SampleLocation::kCenter && !plan.off_center) break;
     for (std::uint32_t k = 0; k < smooth; ++k) {
       const Varying& varying = plan.varying[k];
       if (varying.location != wanted || varying.fragment_reg == kNoReg) continue;

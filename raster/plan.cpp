@@ -217,6 +217,8 @@ void plan_varyings(PipelinePlan& plan) {
     add_varyings(plan, Interpolation::kLinear, plan.linear_count);
     add_varyings(plan, Interpolation::kFlat, plan.flat_count);
   }
+  plan.off_center = std::any_of(plan.varying.begin(), plan.varying.begin() + plan.varying_count(),
+                                [](const Varying& v) { return v.location != spirv::SampleLocation::kCenter; });
   plan.vertex_stride = (4 + plan.varying_count() + 3) & ~3u;
 }
 

@@ -116,6 +116,7 @@ struct PipelinePlan {
   bool early_reject = false;  ///< late order: failing now means failing later, so such quads need not be shaded
   std::uint32_t color_count = 0;
   std::array<ColorWriter, kMaxColorAttachments> writer;
+  bool off_center = false;  ///< some varying is interpolated at the centroid or at samples
   bool dual_source = false;
   bool replaces_colors = false;  ///< every covered pixel of every attachment is overwritten, whatever it held
   bool shades = true;            ///< the fragment shader's run can be observed
