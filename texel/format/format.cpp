@@ -2,6 +2,7 @@
 #include "texel/format.h"
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 
 namespace vitrine::texel {
@@ -43,11 +44,15 @@ constexpr auto kSortedRows = [] {
 }  // namespace
 
 const FormatDesc& format_desc(VkFormat format) {
-  const auto index = static_cast<std::size_t>(format) - 1;
-  if (index < kFormatCount && kSortedRows[index].format == format) return kSortedRows[index];
-  const auto* found = std::lower_bound(kSortedRows.begin(), kSortedRows.end(), format,
-                                       [](const FormatDesc& desc, VkFormat value) { return desc.format < value; });
-  return found != kSortedRows.end() && found->format == format ? *found : kUndefined;
+  // Applications may pass any bits: look at them as an integer, not as an enumerator.
+  std::uint32_t value = 0;
+  std::memcpy(&value, &format, sizeof(value));
+  const auto value_of = [](const FormatDesc& desc) { return static_cast<std::uint32_t>(desc.format); };
+  const std::size_t index = std::size_t{value} - 1;
+  if (index < kFormatCount && value_of(kSortedRows[index]) == value) return kSortedRows[index];
+  const auto* found = std::lower_bound(kSortedRows.begin(), kSortedRows.end(), value,
+                                       [&](const FormatDesc& desc, std::uint32_t v) { return value_of(desc) < v; });
+  return found != kSortedRows.end() && value_of(*found) == value ? *found : kUndefined;
 }
 
 }  // namespace vitrine::texel

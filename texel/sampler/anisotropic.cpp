@@ -15,8 +15,8 @@ namespace {
 using base::float_of;
 
 constexpr std::size_t kWeights = 1024;
-/// An ellipse wider than this is only met with non-finite derivatives.
-constexpr std::int64_t kMaxSpan = 4096;
+/// A box of more texels is only met with derivatives that mean nothing; it is sampled like an empty one.
+constexpr std::int64_t kMaxTexels = std::int64_t{1} << 18;
 
 constexpr double exponential(double x) {
   double term = 1, sum = 1;
@@ -98,7 +98,10 @@ Texel nearest_at(LaneSample lane, std::uint32_t level, float u, float v) {
   return texel_or_border(lane, level, lane.layer + (lane.plan->cube ? lane.face : 0), at[0], at[1], 0);
 }
 
-bool reasonable(std::int64_t first, std::int64_t last) { return last - first < kMaxSpan; }
+bool reasonable(const Ellipse& e) {
+  const std::int64_t width = std::int64_t{e.u1} - e.u0 + 1, height = std::int64_t{e.v1} - e.v0 + 1;
+  return width < kMaxTexels && height < kMaxTexels && width * height < kMaxTexels;
+}
 
 }  // namespace
 
@@ -111,7 +114,7 @@ Texel sample_anisotropic(const LaneSample& lane, const LanePoint& point, std::ui
   const float dq_start = (u_start * 2.0f + 1.0f) * e.a;
   const float q_start = (u_start * u_start) * e.a;
   const float ddq = e.a * 2.0f;
-  const bool finite = reasonable(e.u0, e.u1) && reasonable(e.v0, e.v1);
+  const bool finite = reasonable(e);
   for (std::int64_t v = e.v0; finite && v <= e.v1; ++v) {
     const float offset = static_cast<float>(v) - e.tv;
     float dq = offset * e.b + dq_start;
