@@ -16,7 +16,7 @@ using base::float_of;
 
 constexpr std::size_t kWeights = 1024;
 /// A box of more texels is only met with derivatives that mean nothing; it is sampled like an empty one.
-constexpr std::int64_t kMaxTexels = std::int64_t{1} << 18;
+constexpr std::int64_t kMaxTexels = std::int64_t{1} << 24;
 
 constexpr double exponential(double x) {
   double term = 1, sum = 1;
@@ -100,7 +100,7 @@ Texel nearest_at(LaneSample lane, std::uint32_t level, float u, float v) {
 
 bool reasonable(const Ellipse& e) {
   const std::int64_t width = std::int64_t{e.u1} - e.u0 + 1, height = std::int64_t{e.v1} - e.v0 + 1;
-  return width < kMaxTexels && height < kMaxTexels && width * height < kMaxTexels;
+  return width < kMaxTexels && height < kMaxTexels && width * height <= kMaxTexels;
 }
 
 }  // namespace
