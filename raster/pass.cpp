@@ -181,7 +181,9 @@ struct Pass::Impl {
 
   void draw_view(const DrawRecord* record, std::uint32_t view) {
     for (std::uint32_t instance = 0; instance < record->call.instance_count; ++instance) {
+      const std::size_t before = scratch->runs.size();
       append_runs(record->call, instance, kChunkPositions, scratch->runs);
+      if (scratch->runs.size() == before) break;  // too few vertices: no instance has a primitive
       if (scratch->runs.size() >= 4096) cut_chunks(record, view);
     }
     if (!scratch->runs.empty()) cut_chunks(record, view);
