@@ -200,7 +200,9 @@ void change_coverage(ShadeRun& run) {
 
 std::uint32_t facing_bits(const PackedWave& wave) {
   std::uint32_t bits = 0;
-  for (std::uint32_t q = 0; q < wave.quads; ++q) bits |= (wave.primitive[wave.slot[q]]->front ? 1u : 0u) << q;
+  std::uint32_t quad = 1;
+  for (std::uint32_t q = 0; q < wave.quads; ++q, quad <<= 1)
+    if (wave.primitive[wave.slot[q]]->front) bits |= quad;
   return bits;
 }
 
