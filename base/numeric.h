@@ -38,8 +38,8 @@ inline std::int32_t round_half_away(float value) {
 inline float min_second(float a, float b) { return a < b ? a : b; }
 inline float max_second(float a, float b) { return a > b ? a : b; }
 
-/// fma(a, b, c) with one rounding, also at compile time and where the CPU has no such instruction: the product is exact in
-/// binary64, and its sum with c is rounded to odd there, so that the rounding to binary32 is the only visible one.
+/// fma(a, b, c) with one rounding, also at compile time and where the CPU has no such instruction: the product is exact
+/// in binary64, and its sum with c is rounded to odd there, so that the rounding to binary32 is the only visible one.
 constexpr float fma_exact(float a, float b, float c) {
   const double product = static_cast<double>(a) * static_cast<double>(b);
   const double addend = static_cast<double>(c);

@@ -48,7 +48,8 @@ void average_bytes(const std::byte* source, std::uint64_t sample_stride, std::ui
     std::fill_n(sum, length, 0.0f);
     for (std::uint32_t s = 0; s < samples; ++s) {
       const std::byte* bytes = source + s * sample_stride + first;
-      for (std::size_t i = 0; i < length; ++i) sum[i] += static_cast<float>(std::to_integer<std::int32_t>(bytes[i])) * (1.0f / 255.0f);
+      for (std::size_t i = 0; i < length; ++i)
+        sum[i] += static_cast<float>(std::to_integer<std::int32_t>(bytes[i])) * (1.0f / 255.0f);
     }
     for (std::size_t i = 0; i < length; ++i) {
       const float x = base::min_second(sum[i] * scale, 1.0f);

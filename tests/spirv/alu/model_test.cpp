@@ -23,14 +23,10 @@ bool flushing() {
 }
 
 /// A denormal as FTZ / DAZ sees it.
-float flushed(float v) {
-  return flushing() && (bits_of(v) & 0x7f800000) == 0 ? float_of(bits_of(v) & 0x80000000) : v;
-}
+float flushed(float v) { return flushing() && (bits_of(v) & 0x7f800000) == 0 ? float_of(bits_of(v) & 0x80000000) : v; }
 
 /// std::fma may be integer code that knows nothing of FTZ / DAZ.
-float fma_model(float a, float b, float c) {
-  return flushed(std::fma(flushed(a), flushed(b), flushed(c)));
-}
+float fma_model(float a, float b, float c) { return flushed(std::fma(flushed(a), flushed(b), flushed(c))); }
 
 float exp2_model(float x) {  // 6.1
   x = 128.0f < x ? 128.0f : x;

@@ -163,8 +163,8 @@ TEST(Dispatch, LocalIds) {
     run.dispatch_groups(groups);
     for (std::uint32_t i = 0; i < out.size(); ++i) {
       const std::uint32_t l = i % invocations;
-      ASSERT_EQ(out[i], (l % size[0]) | (l / size[0] % size[1]) << 8 | (l / size[0] / size[1]) << 16 |
-                            (i / invocations) << 24)
+      ASSERT_EQ(out[i],
+                (l % size[0]) | (l / size[0] % size[1]) << 8 | (l / size[0] / size[1]) << 16 | (i / invocations) << 24)
           << size[0] << " " << i;
     }
   }
