@@ -5,6 +5,7 @@
 
 #include "base/float_mode.h"
 #include "raster/blend.h"
+#include "texel/codec/unorm_attachment.h"
 
 namespace vitrine::raster {
 namespace {
@@ -62,26 +63,6 @@ bool all_channels(const FormatDesc& format, VkColorComponentFlags mask) {
   return true;
 }
 
-/// Part D: what an n-bit normalised target keeps of the working type.
-std::uint32_t pack_byte(std::uint32_t value, std::uint32_t bits) {
-  if (bits == 4) {
-    const float scaled = static_cast<float>(value) * (1.0f / 255.0f) * (15.0f / 16.0f) + 524288.0f;
-    return base::bits_of(scaled) & 15;
-  }
-  return value >> (8 - bits);
-}
-std::uint32_t pack_word(std::uint32_t value, std::uint32_t bits) {
-  return bits == 2 ? (((value >> 2) * 3 + 8192) >> 14) & 3 : value >> (16 - bits);
-}
-
-std::uint32_t to_byte(float x) {
-  return static_cast<std::uint32_t>(std::clamp(base::round_to_int(base::min_second(1.0f, x) * 255.0f), 0, 255));
-}
-std::uint32_t to_word(float x) {
-  const float clamped = base::min_second(base::max_second(x, 0.0f), 1.0f);
-  return base::bits_of(clamped * (65535.0f / 65536.0f) + 128.0f) & 0xffff;
-}
-
 /// Widens by bit replication.
 std::uint32_t replicate(std::uint32_t value, std::uint32_t bits, std::uint32_t wide) {
   std::uint32_t result = 0;
@@ -109,14 +90,14 @@ template <int Bits>
 StoredTexel blend_normalized(const ColorWriter& writer, const BlendShape& shape, const Texel& color,
                              const Texel& second, const std::byte* pixel) {
   using Ops = NormalizedBlend<Bits>;
-  const auto convert = [](float x) { return Bits == 8 ? to_byte(x) : to_word(x); };
+  const auto convert = [](float x) { return Bits == 8 ? texel::unorm8_attachment(x) : texel::unorm16_attachment(x); };
   const FormatDesc& format = *writer.format;
   BlendInput<std::uint32_t> in{};
   in.has_alpha = format.rgba[3] >= 0;
   for (std::size_t c = 0; c < 4; ++c) {
     in.src[c] = convert(base::float_of(color[c]));
     in.second[c] = convert(base::float_of(second[c]));
-    in.constants[c] = Bits == 8 ? constant_to_byte(writer.constants[c]) : to_word(writer.constants[c]);
+    in.constants[c] = Bits == 8 ? constant_to_byte(writer.constants[c]) : convert(writer.constants[c]);
     if (format.rgba[c] >= 0) {
       const Channel& channel = format.channel[static_cast<std::size_t>(format.rgba[c])];
       in.dst[c] = replicate(field(pixel, channel), channel.bits, Bits);
@@ -127,7 +108,9 @@ StoredTexel blend_normalized(const ColorWriter& writer, const BlendShape& shape,
   for (std::size_t c = 0; c < 4; ++c) {
     if (format.rgba[c] < 0) continue;
     const Channel& channel = format.channel[static_cast<std::size_t>(format.rgba[c])];
-    set_field(stored, channel, Bits == 8 ? pack_byte(result[c], channel.bits) : pack_word(result[c], channel.bits));
+    set_field(
+        stored, channel,
+        Bits == 8 ? texel::narrow_unorm8(result[c], channel.bits) : texel::narrow_unorm16(result[c], channel.bits));
   }
   return stored;
 }

@@ -9,6 +9,7 @@
 #include "texel/codec.h"
 #include "texel/codec/small_float.h"
 #include "texel/codec/srgb.h"
+#include "texel/codec/unorm_attachment.h"
 
 namespace vitrine::texel {
 namespace {
@@ -26,28 +27,11 @@ std::uint32_t unorm_by_magic(float x, std::uint32_t bits) {
 }
 
 /// The reference's cvtr(min(1, x) * 255) with saturation: scaling by 255/256 instead changes no rounding.
-std::uint32_t unorm8_attachment(float x) {
-  return unorm_by_magic(base::min_second(base::max_second(x, 0.0f), 1.0f), 8);
-}
-
-std::uint32_t unorm16_attachment(float x) {
-  return unorm_by_magic(base::min_second(base::max_second(x, 0.0f), 1.0f), 16);
-}
-
 /// Channels that are no bytes or 16-bit words come from one (part D); 10-bit and 2-bit ones of one word from 16 bits.
 std::uint32_t unorm_attachment(float x, std::uint32_t bits, bool wide) {
   if (bits == 8) return unorm8_attachment(x);
   if (bits >= 16) return unorm16_attachment(x);
-  if (wide) {
-    const std::uint32_t value = unorm16_attachment(x);
-    return bits == 2 ? (((value >> 2) * 3 + 8192) >> 14) & 3 : value >> (16 - bits);
-  }
-  const std::uint32_t value = unorm8_attachment(x);
-  if (bits == 1) return (((value >> 1) + 64) >> 7) & 1;
-  if (bits == 4) {
-    return bits_of(static_cast<float>(value) * (1.0f / 255.0f) * (15.0f / 16.0f) + 524288.0f) & 15;
-  }
-  return value >> (8 - bits);
+  return wide ? narrow_unorm16(unorm16_attachment(x), bits) : narrow_unorm8(unorm8_attachment(x), bits);
 }
 
 std::uint32_t unorm_clear(float x, std::uint32_t bits) {
