@@ -181,7 +181,7 @@ void draw_views(Run& run, const ViewScene& scene, const ViewImages& images, uint
 /// One view at a time: with several the reference is wrong (deviations.md, multiview-layers).
 CTS_RANDOM("renderpass", "random_multiview", 40) {
   Random& random = run.random;
-  run.require(run.gpu.multiview, "multiview");
+  run.require(run.gpu.extension_features.multiview.multiview, "multiview");
   const auto op = [&] { return static_cast<VkAttachmentLoadOp>(random.below(2)); };  // LOAD or CLEAR
   ViewScene scene{{16 + random.below(60), 16 + random.below(60)}, kLayers, op(), op(), random.chance(0.5f), {}};
   scene.vertices = run.buffer_of(random_vertices(random, 18));
@@ -202,7 +202,7 @@ const AddCase kViews(
       return "";
     },
     [](Run& run) {
-      run.require(run.gpu.multiview, "multiview");
+      run.require(run.gpu.extension_features.multiview.multiview, "multiview");
       constexpr VkAttachmentLoadOp kClear = VK_ATTACHMENT_LOAD_OP_CLEAR;
       ViewScene scene{{60, 50}, 3, kClear, kClear, true, run.buffer_of(random_vertices(run.random, 18))};
       const ViewImages together = make_images(run, scene.extent, scene.layers);

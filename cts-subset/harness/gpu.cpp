@@ -79,6 +79,44 @@ VkInstance create_instance(bool validation, uint32_t api_version) {
   return instance;
 }
 
+/// Whether the suite knows the extension, and so enables it.
+bool is_wanted(const char* name) {
+  static constexpr const char* kNames[] = {
+#define CTS_NAME(member, type, stype, extension) extension,
+      CTS_EXTENSION_FEATURES(CTS_NAME)
+#undef CTS_NAME
+#define CTS_NAME(extension) extension,
+          CTS_EXTENSIONS(CTS_NAME)
+#undef CTS_NAME
+  };
+  return std::any_of(std::begin(kNames), std::end(kNames),
+                     [&](const char* known) { return !std::strcmp(known, name); });
+}
+
+void list_extensions(Gpu& gpu) {
+  uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(gpu.physical, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> offered(count);
+  vkEnumerateDeviceExtensionProperties(gpu.physical, nullptr, &count, offered.data());
+  for (const VkExtensionProperties& extension : offered)
+    if (is_wanted(extension.extensionName)) gpu.extensions.push_back(extension.extensionName);
+}
+
+/// Links the feature structures of the device's extensions.
+void* feature_chain(Gpu& gpu) {
+  void* first = nullptr;
+  [[maybe_unused]] const auto link = [&](auto& structure, const char* extension) {
+    structure.pNext = nullptr;
+    if (!gpu.has(extension)) return;
+    structure.pNext = first;
+    first = &structure;
+  };
+#define CTS_LINK(member, type, stype, extension) link(gpu.extension_features.member, extension);
+  CTS_EXTENSION_FEATURES(CTS_LINK)
+#undef CTS_LINK
+  return first;
+}
+
 void create_device(Gpu& gpu) {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(gpu.physical, &count, nullptr);
@@ -95,9 +133,11 @@ void create_device(Gpu& gpu) {
   queue.queueFamilyIndex = gpu.family;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  VkPhysicalDeviceMultiviewFeatures multiview{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_FEATURES};
-  multiview.multiview = gpu.multiview;
-  VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &multiview};
+  std::vector<const char*> names;
+  for (const std::string& extension : gpu.extensions) names.push_back(extension.c_str());
+  VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, feature_chain(gpu)};
+  info.enabledExtensionCount = static_cast<uint32_t>(names.size());
+  info.ppEnabledExtensionNames = names.data();
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   info.pEnabledFeatures = &gpu.features;
@@ -110,11 +150,10 @@ Gpu open(VkInstance instance, VkPhysicalDevice physical) {
   gpu.instance = instance;
   gpu.physical = physical;
   vkGetPhysicalDeviceProperties(physical, &gpu.properties);
-  VkPhysicalDeviceMultiviewFeatures multiview{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_FEATURES};
-  VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &multiview};
+  list_extensions(gpu);
+  VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, feature_chain(gpu)};
   vkGetPhysicalDeviceFeatures2(physical, &features);
   gpu.features = features.features;
-  gpu.multiview = multiview.multiview;
   vkGetPhysicalDeviceMemoryProperties(physical, &gpu.memory);
   gpu.name = gpu.properties.deviceName;
   create_device(gpu);
@@ -171,6 +210,12 @@ uint32_t Gpu::memory_type(uint32_t allowed, VkMemoryPropertyFlags wanted) const 
     if ((allowed >> i & 1) && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
   throw std::runtime_error(name + ": no memory type fits");
 }
+
+bool Gpu::has(const char* extension) const {
+  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+}
+
+PFN_vkVoidFunction Gpu::command(const char* name) const { return vkGetDeviceProcAddr(device, name); }
 
 Gpus& gpus() {
   static Gpus both = create_gpus();

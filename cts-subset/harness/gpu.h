@@ -23,6 +23,32 @@ struct Unsupported : std::runtime_error {
 void check(VkResult result, const char* call);
 #define CTS_VK(call) ::vitrine::cts::check((call), #call)
 
+/// Feature structures of extensions that cases use: member, structure, its sType, the extension that brings it. A
+/// device gets every feature that it offers, of every extension here that it offers.
+#define CTS_EXTENSION_FEATURES(X)                                                                                      \
+  X(multiview, VkPhysicalDeviceMultiviewFeatures, MULTIVIEW_FEATURES, "VK_KHR_multiview")                              \
+  X(imageless_framebuffer, VkPhysicalDeviceImagelessFramebufferFeatures, IMAGELESS_FRAMEBUFFER_FEATURES,               \
+    "VK_KHR_imageless_framebuffer")                                                                                    \
+  X(dynamic_rendering, VkPhysicalDeviceDynamicRenderingFeatures, DYNAMIC_RENDERING_FEATURES,                           \
+    "VK_KHR_dynamic_rendering")                                                                                        \
+  X(synchronization2, VkPhysicalDeviceSynchronization2Features, SYNCHRONIZATION_2_FEATURES, "VK_KHR_synchronization2") \
+  X(timeline_semaphore, VkPhysicalDeviceTimelineSemaphoreFeatures, TIMELINE_SEMAPHORE_FEATURES,                        \
+    "VK_KHR_timeline_semaphore")                                                                                       \
+  X(host_query_reset, VkPhysicalDeviceHostQueryResetFeatures, HOST_QUERY_RESET_FEATURES, "VK_EXT_host_query_reset")
+
+/// Extensions without features that cases use: enabled where offered.
+#define CTS_EXTENSIONS(X)         \
+  X("VK_KHR_copy_commands2")      \
+  X("VK_KHR_create_renderpass2")  \
+  X("VK_KHR_draw_indirect_count") \
+  X("VK_KHR_depth_stencil_resolve")
+
+struct ExtensionFeatures {
+#define CTS_MEMBER(member, type, stype, extension) type member{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_##stype};
+  CTS_EXTENSION_FEATURES(CTS_MEMBER)
+#undef CTS_MEMBER
+};
+
 struct Gpu {
   std::string name;
   VkInstance instance = VK_NULL_HANDLE;
@@ -31,14 +57,20 @@ struct Gpu {
   VkQueue queue = VK_NULL_HANDLE;
   uint32_t family = 0;
   VkPhysicalDeviceProperties properties{};
-  VkPhysicalDeviceFeatures features{};  ///< all that the device offers; all are enabled
-  bool multiview = false;               ///< offered and enabled
+  VkPhysicalDeviceFeatures features{};   ///< all that the device offers; all are enabled
+  ExtensionFeatures extension_features;  ///< offered and enabled; all false where the extension is missing
+  std::vector<std::string> extensions;   ///< of CTS_EXTENSIONS and CTS_EXTENSION_FEATURES: offered and enabled
   VkPhysicalDeviceMemoryProperties memory{};
 
   VkFormatFeatureFlags features_of(VkFormat format, VkImageTiling tiling = VK_IMAGE_TILING_OPTIMAL) const;
   /// Index of a memory type out of `allowed` with all of `wanted`.
   uint32_t memory_type(uint32_t allowed, VkMemoryPropertyFlags wanted) const;
+  bool has(const char* extension) const;
+  PFN_vkVoidFunction command(const char* name) const;
 };
+
+/// A command of an extension: CTS_COMMAND(run.gpu, CmdCopyBuffer2KHR)(cmd, &info). Null if the device does not have it.
+#define CTS_COMMAND(gpu, name) (reinterpret_cast<PFN_vk##name>((gpu).command("vk" #name)))
 
 struct Gpus {
   VkInstance instance = VK_NULL_HANDLE;
