@@ -8,7 +8,9 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
+#include <exception>
 #include <mutex>
+#include <new>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -36,14 +38,34 @@ std::size_t wanted_workers() {
 struct Loop {
   std::size_t count;
   FunctionRef<void(std::size_t, std::size_t)> body;
-  std::atomic<std::size_t> next{0};
+  std::atomic<std::size_t> next{};
+  std::mutex failure_mutex{};
+  std::exception_ptr failure{};  // the first one
 
-  void run(std::size_t worker) {
-    for (std::size_t i = next.fetch_add(1, std::memory_order_relaxed); i < count;
-         i = next.fetch_add(1, std::memory_order_relaxed)) {
-      body(i, worker);
+  void run(std::size_t worker) noexcept {
+    try {
+      for (std::size_t i = next.fetch_add(1, std::memory_order_relaxed); i < count;
+           i = next.fetch_add(1, std::memory_order_relaxed)) {
+        body(i, worker);
+      }
+    } catch (...) {
+      next.store(count, std::memory_order_relaxed);
+      const std::lock_guard lock(failure_mutex);
+      if (!failure) failure = std::current_exception();
     }
   }
+};
+
+/// Marks the calling thread as one that works on a loop.
+class InsideLoop {
+ public:
+  InsideLoop() { inside_loop = true; }
+  ~InsideLoop() { inside_loop = before_; }
+  InsideLoop(const InsideLoop&) = delete;
+  InsideLoop& operator=(const InsideLoop&) = delete;
+
+ private:
+  const bool before_ = inside_loop;
 };
 
 class Pool {
@@ -76,13 +98,15 @@ class Pool {
     } else {
       for (std::size_t i = 0; i < wanted_; ++i) wake_.notify_one();
     }
-    inside_loop = true;
     current_worker = 0;
-    loop.run(0);
-    inside_loop = false;
+    {
+      const InsideLoop inside;
+      loop.run(0);
+    }
     std::unique_lock lock(mutex_);
     loop_ = nullptr;  // late risers find nothing to do
     done_.wait(lock, [this] { return running_ == 0; });
+    if (loop.failure) std::rethrow_exception(loop.failure);
   }
 
  private:
@@ -91,7 +115,9 @@ class Pool {
       try {
         threads_.emplace_back([this, worker = threads_.size() + 1] { work(worker); });
       } catch (const std::system_error&) {
-        exhausted_ = true;  // the caller does the work alone
+        exhausted_ = true;  // those that there are do the work
+      } catch (const std::bad_alloc&) {
+        break;  // the next loop tries again
       }
     }
   }
@@ -141,11 +167,9 @@ std::size_t worker_count() { return pool().size(); }
 void parallel_for(std::size_t count, FunctionRef<void(std::size_t, std::size_t)> body) {
   if (count == 0) return;
   if (count == 1 || inside_loop || pool().size() == 1) {
-    const bool nested = inside_loop;
-    if (!nested) current_worker = 0;
-    inside_loop = true;
+    if (!inside_loop) current_worker = 0;
+    const InsideLoop inside;
     for (std::size_t i = 0; i < count; ++i) body(i, current_worker);
-    inside_loop = nested;
     return;
   }
   Loop loop{count, body};

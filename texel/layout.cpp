@@ -16,7 +16,8 @@ std::uint64_t align_up(std::uint64_t value, std::uint64_t alignment) {
   return (value + alignment - 1) / alignment * alignment;
 }
 
-std::uint32_t divide_up(std::uint32_t value, std::uint32_t divisor) { return (value + divisor - 1) / divisor; }
+/// For value >= 1, up to the largest.
+std::uint32_t divide_up(std::uint32_t value, std::uint32_t divisor) { return (value - 1) / divisor + 1; }
 
 /// Adds a * b to sum; false when the result reaches the limit.
 bool accumulate(std::uint64_t& sum, std::uint64_t a, std::uint64_t b) {

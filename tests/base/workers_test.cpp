@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <new>
 #include <thread>
 #include <vector>
 
@@ -28,6 +29,24 @@ TEST(Workers, NoTwoConcurrentItemsShareAWorker) {
     --busy[worker];
   });
   EXPECT_EQ(clashes, 0);
+}
+
+TEST(Workers, AnExceptionEndsTheLoopAndReachesTheCaller) {
+  for (int round = 0; round < 50; ++round) {
+    std::atomic<int> running{0};
+    EXPECT_THROW(parallel_for(100,
+                              [&](std::size_t i, std::size_t) {
+                                ++running;
+                                std::this_thread::yield();
+                                --running;
+                                if (i == 7) throw std::bad_alloc();
+                              }),
+                 std::bad_alloc);
+    EXPECT_EQ(running, 0) << "a thread is still in the loop";
+    std::atomic<int> runs{0};
+    parallel_for(10, [&](std::size_t, std::size_t) { ++runs; });
+    EXPECT_EQ(runs, 10);
+  }
 }
 
 TEST(Workers, NestedLoopsRunInline) {

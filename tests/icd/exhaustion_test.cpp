@@ -1,6 +1,10 @@
 // A whole small program (compute, a render pass, a submission) in which every host allocation fails in turn: each time
 // an error code, never a crash, and nothing leaks.
 #include <array>
+#include <atomic>
+#include <cstddef>
+#include <limits>
+#include <new>
 
 #include "tests/icd/fixture.h"
 #include "tests/icd/shaders.h"
@@ -8,7 +12,20 @@
 namespace vitrine::icd::test {
 namespace {
 
-constexpr std::uint32_t kSize = 16;  // pixels and half the number of uints computed, per side
+constexpr long kUnlimited = std::numeric_limits<long>::max();
+std::atomic<long> allocations_left = kUnlimited;
+
+void* allocate_or_throw(std::size_t size, std::size_t alignment) {
+  if (allocations_left.load(std::memory_order_relaxed) != kUnlimited &&
+      allocations_left.fetch_sub(1, std::memory_order_relaxed) <= 0) {
+    throw std::bad_alloc();
+  }
+  void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+constexpr std::uint32_t kSize = 160;  // pixels per side: several tiles, so that workers take part
 
 #define VK_TRY(call)                                         \
   do {                                                       \
@@ -51,7 +68,7 @@ VkResult make_device(Program& p) {
 
 VkResult make_resources(Program& p) {
   VkMemoryAllocateInfo memory = make_struct<VkMemoryAllocateInfo>();
-  memory.allocationSize = 1 << 16;
+  memory.allocationSize = 4096 + (kSize + 16) * kSize * 4;
   VK_TRY(VK_CALL(AllocateMemory)(p.device, &memory, p.allocator, &p.memory));
   VkBufferCreateInfo buffer = make_struct<VkBufferCreateInfo>();
   buffer.size = 4096;
@@ -317,5 +334,51 @@ TEST(Exhaustion, EveryFailingAllocationIsAnErrorAndLeaksNothing) {
   EXPECT_LT(n, 2000u);
 }
 
+/// Runs the steps that compile shaders and draw while every allocation from the n-th on, on any thread, throws.
+VkResult run_starved(Program& p, long n) {
+  VkResult result = VK_SUCCESS;
+  for (const auto step : {make_device, make_resources, make_descriptors, make_render_pass}) {
+    result = step(p);
+    if (result != VK_SUCCESS) return result;
+  }
+  allocations_left = n;
+  for (const auto step : {make_pipelines, record, submit}) {
+    result = step(p);
+    if (result != VK_SUCCESS) break;
+  }
+  allocations_left = kUnlimited;
+  return result;
+}
+
+TEST(Exhaustion, MemoryThatEndsInsideTheDriverIsAnErrorToo) {
+  std::size_t failures = 0;
+  // Every allocation up to the 200th, then ever fewer: a shader's compilation makes tens of thousands.
+  for (long n = 0; n < 2'000'000; n += 1 + n / 200) {
+    Program p;
+    const VkResult result = run_starved(p, n);
+    if (result == VK_SUCCESS) {
+      check_results(p);
+      destroy(p);
+      break;
+    }
+    ++failures;
+    const bool submitted = p.fence != VK_NULL_HANDLE;
+    EXPECT_TRUE(result == VK_ERROR_OUT_OF_HOST_MEMORY || (submitted && result == VK_ERROR_DEVICE_LOST))
+        << "allocation " << n << " gave " << result;
+    destroy(p);
+  }
+  EXPECT_GE(failures, 200u);
+}
+
 }  // namespace
 }  // namespace vitrine::icd::test
+
+// The test program's own operator new, so that allocations inside the driver and its libraries can fail.
+void* operator new(std::size_t size) { return vitrine::icd::test::allocate_or_throw(size, alignof(std::max_align_t)); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return vitrine::icd::test::allocate_or_throw(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
