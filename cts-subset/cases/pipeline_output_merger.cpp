@@ -92,6 +92,29 @@ const bool kConversions = [] {
   return true;
 }();
 
+// Every float above the linear part of the curve: 23 cases are all of them, each takes every 23rd.
+CTS_RANDOM("pipeline", "srgb_encode", 2) {
+  TargetSpec target_spec;
+  target_spec.colors = {VK_FORMAT_R8G8B8A8_SRGB};
+  target_spec.width = target_spec.height = 1024;
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  spec.vertex = kFullScreenVertex;
+  spec.fragment =
+      "layout(location = 0) out vec4 result;\n"
+      "void main() { uint i = (uint(gl_FragCoord.x) + 1024u * uint(gl_FragCoord.y)) * 3u;\n"
+      "uvec3 bits = 0x3b4d2e00u + uvec3(i, i + 1u, i + 2u) * 23u + " +
+      std::to_string(run.index % 23) + "u;\nresult = vec4(uintBitsToFloat(bits), 1.0); }\n";
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    vkCmdDraw(cmd, 3, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  run.out("color", target.colors[0]);
+}
+
 CTS_RANDOM("pipeline", "random_blend", 160) {
   Random& random = run.random;
   const VkFormat format =

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "harness/execute.h"
+
 namespace vitrine::cts {
 namespace {
 
@@ -93,6 +95,8 @@ void prepare_environment(const Options& options) {
   // Its rasterizer threads keep denormals on for good after a store to a half-float target skips a masked-out block, so
   // later shaders depend on earlier work. Without threads of its own it sets the mode anew for every render pass.
   setenv("LP_NUM_THREADS", "0", 1);
+  // It encodes sRGB with RSQRTPS, whose bits are the CPU vendor's; this device has one vendor's in a table.
+  if (!rsqrt_as_recorded()) setenv("VITRINE_RSQRT", "cpu", 0);
 }
 
 }  // namespace vitrine::cts

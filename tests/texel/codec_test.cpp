@@ -119,10 +119,24 @@ TEST(Codec, RoundTripsOfUpTo16Bits) {
 }
 
 TEST(Rsqrt, KnownValues) {
-  EXPECT_EQ(bits_of(approximate_rsqrt(1.0f)), 0x3f7ff000u);
-  EXPECT_EQ(bits_of(approximate_rsqrt(0.5f)), 0x3fb4f800u);
-  EXPECT_EQ(bits_of(approximate_rsqrt(4.0f)), 0x3efff000u);
+  EXPECT_EQ(bits_of(approximate_rsqrt(1.0f)), 0x3f7ff800u);
+  EXPECT_EQ(bits_of(approximate_rsqrt(0.5f)), 0x3fb50000u);
+  EXPECT_EQ(bits_of(approximate_rsqrt(4.0f)), 0x3efff800u);
   EXPECT_EQ(bits_of(approximate_rsqrt(0.0f)), 0x7f800000u);
+}
+
+// The hash is that of RSQRTPS itself on an AMD processor with AVX-512, in order of the operands.
+TEST(Rsqrt, EqualsTheInstructionOfTheRecordedCpu) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  std::uint32_t outside = 0;
+  for (std::uint32_t bits = 0x3f000000u; bits < 0x40000000u; bits += 2048) {
+    const std::uint32_t result = bits_of(approximate_rsqrt(base::float_of(bits)));
+    hash = (hash ^ result) * 0x100000001b3u;
+    outside += result != bits_of(approximate_rsqrt(base::float_of(bits | 2047)));
+    outside += result - 0x00800000u != bits_of(approximate_rsqrt(base::float_of(bits + 0x01000000u)));
+  }
+  EXPECT_EQ(hash, 0x5f8d15e90b98a325u);
+  EXPECT_EQ(outside, 0u);
 }
 
 }  // namespace

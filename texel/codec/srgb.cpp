@@ -1,10 +1,15 @@
-// sRGB curves of the reference, by tables and by a 12-bit reciprocal square root that is the same on every CPU.
+// sRGB curves of the reference, by tables and by the 12-bit reciprocal square root of one kind of CPU.
 #include "texel/codec/srgb.h"
 
 #include <algorithm>
-#include <bit>
+#include <cstdlib>
+#include <string_view>
 
 #include "base/numeric.h"
+
+#ifdef __SSE__
+#include <immintrin.h>
+#endif
 
 namespace vitrine::texel {
 namespace {
@@ -37,26 +42,49 @@ constexpr float decode_srgb_exact(int code) {
   return to_eight_digits(y * y * root);
 }
 
-/// round(8192 / sqrt(x)) or round(4096 / sqrt(x)), x the middle of interval i of [0.5, 1) and [1, 2): both have 13
-/// significant bits. The middle is `odd` / 2^12 or / 2^11, odd = 2049 + 2 * (i mod 1024), so that everything is exact
-/// in integers: k rounds correctly when (2k-1)^2 * x < (2 * scale)^2 <= (2k+1)^2 * x.
-constexpr std::uint32_t rsqrt_significand(std::uint32_t index) {
-  const std::uint64_t odd = 2049 + 2 * (index & 1023);
-  const bool upper = index >= 1024;  // [1, 2): results in (0.70, 1], else (1, 1.41]
-  const std::uint64_t scale = upper ? 8192 : 4096;
-  const std::uint64_t target = 4 * scale * scale << (upper ? 11 : 12);
-  std::uint64_t low = 4096, high = 8192;
-  while (low < high) {
-    const std::uint64_t middle = (low + high) / 2;
-    const std::uint64_t edge = 2 * middle + 1;
-    if (edge * edge * odd < target) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return static_cast<std::uint32_t>(low);
-}
+// RSQRTPS of AMD's AVX-512 processors (family 25, model 17; all 2^24 operands of two binades measured): a bipartite
+// table. A block is 2^-8 of a binade, the first half for operands in [0.5, 1), the second for [1, 2): the result at its
+// start, less 4096, in units of 2^-12 (first half) or 2^-13 (second).
+constexpr std::array<std::uint16_t, 512> kRsqrtBlocks = {
+    1696, 1685, 1674, 1662, 1651, 1641, 1630, 1619, 1608, 1597, 1587, 1576, 1565, 1555, 1544, 1534, 1523, 1513, 1503,
+    1492, 1482, 1472, 1462, 1452, 1442, 1433, 1423, 1413, 1403, 1394, 1384, 1375, 1365, 1355, 1346, 1337, 1327, 1318,
+    1309, 1300, 1291, 1282, 1273, 1264, 1255, 1246, 1237, 1228, 1219, 1211, 1202, 1193, 1185, 1176, 1168, 1159, 1151,
+    1143, 1134, 1126, 1118, 1109, 1101, 1093, 1085, 1077, 1069, 1061, 1053, 1045, 1037, 1029, 1021, 1013, 1006, 998,
+    990,  983,  975,  968,  960,  953,  945,  938,  930,  923,  916,  908,  901,  894,  887,  879,  872,  865,  858,
+    851,  844,  837,  830,  823,  816,  809,  802,  795,  789,  782,  775,  768,  762,  755,  748,  742,  735,  729,
+    722,  716,  709,  703,  696,  690,  684,  677,  671,  665,  658,  652,  646,  640,  633,  627,  621,  615,  609,
+    603,  597,  591,  585,  579,  573,  567,  561,  555,  549,  544,  538,  532,  526,  521,  515,  509,  503,  498,
+    492,  487,  481,  475,  470,  464,  459,  453,  448,  443,  437,  432,  426,  421,  416,  410,  405,  400,  394,
+    389,  384,  379,  374,  368,  363,  358,  353,  348,  343,  338,  333,  328,  323,  318,  313,  308,  303,  298,
+    293,  288,  282,  278,  273,  268,  263,  258,  253,  249,  244,  239,  234,  230,  225,  220,  216,  211,  206,
+    202,  197,  193,  188,  183,  179,  174,  170,  165,  161,  156,  152,  147,  143,  139,  134,  130,  125,  121,
+    117,  112,  108,  104,  99,   95,   91,   87,   82,   78,   74,   70,   65,   61,   57,   53,   49,   45,   41,
+    36,   32,   28,   24,   20,   16,   12,   8,    4,    4095, 4079, 4063, 4048, 4032, 4016, 4001, 3986, 3970, 3955,
+    3940, 3925, 3910, 3895, 3880, 3866, 3851, 3836, 3822, 3807, 3793, 3779, 3765, 3751, 3737, 3723, 3709, 3695, 3681,
+    3668, 3654, 3641, 3627, 3614, 3600, 3587, 3574, 3561, 3548, 3535, 3522, 3509, 3497, 3484, 3471, 3459, 3446, 3434,
+    3421, 3409, 3396, 3384, 3372, 3360, 3348, 3336, 3324, 3312, 3301, 3289, 3277, 3266, 3254, 3243, 3230, 3219, 3208,
+    3196, 3185, 3174, 3163, 3152, 3141, 3130, 3119, 3108, 3097, 3086, 3076, 3065, 3054, 3044, 3033, 3023, 3012, 3002,
+    2991, 2981, 2971, 2961, 2950, 2940, 2930, 2920, 2910, 2900, 2890, 2880, 2870, 2860, 2850, 2841, 2831, 2821, 2812,
+    2802, 2793, 2783, 2774, 2764, 2755, 2746, 2736, 2727, 2718, 2708, 2699, 2690, 2681, 2672, 2663, 2654, 2645, 2636,
+    2627, 2619, 2610, 2601, 2593, 2584, 2575, 2567, 2558, 2550, 2541, 2533, 2524, 2516, 2507, 2499, 2491, 2482, 2474,
+    2466, 2457, 2449, 2441, 2433, 2425, 2417, 2409, 2401, 2393, 2385, 2377, 2369, 2361, 2354, 2346, 2338, 2330, 2322,
+    2315, 2307, 2299, 2292, 2284, 2277, 2269, 2262, 2254, 2247, 2239, 2232, 2225, 2217, 2210, 2203, 2196, 2189, 2181,
+    2174, 2167, 2160, 2153, 2146, 2139, 2132, 2125, 2118, 2111, 2104, 2096, 2089, 2082, 2076, 2069, 2062, 2055, 2048,
+    2042, 2035, 2028, 2022, 2015, 2008, 2002, 1995, 1989, 1982, 1976, 1969, 1963, 1956, 1950, 1943, 1937, 1931, 1924,
+    1918, 1912, 1905, 1899, 1893, 1886, 1880, 1874, 1868, 1862, 1856, 1850, 1843, 1837, 1831, 1825, 1819, 1813, 1807,
+    1801, 1795, 1789, 1783, 1777, 1771, 1765, 1760, 1754, 1748, 1742, 1736, 1731, 1725, 1719, 1713, 1708, 1702,
+};
+
+// What the 16 parts of a block subtract from that, four bits each from the lowest, for every 16 blocks.
+constexpr std::array<std::uint64_t, 32> kRsqrtSlopes = {
+    0xa998776554332110, 0x9987765543322100, 0x8877665443322100, 0x8776655443322100, 0x7766554433221100,
+    0x7666554433221110, 0x6655544332221100, 0x6655444332221100, 0x5554433322211000, 0x5544433322211100,
+    0x5544433322211100, 0x5544443332221110, 0x4443332222111000, 0x4443332222111000, 0x4433332222111100,
+    0x4433332222111100, 0xedcba98776543210, 0xdcbaa98765433210, 0xcbba987665432210, 0xbaa9877654432210,
+    0xa998776554322100, 0xa988766554332110, 0x9887665443322100, 0x8876655443221100, 0x8776655443322110,
+    0x7766554433221100, 0x7665544333221100, 0x7666554433222110, 0x6655443332211100, 0x6555444332221100,
+    0x6555443332211100, 0x5544433322111000,
+};
 
 // Smallest binary32 pattern of each code from 1 on, without its 12 low bits, which are zero.
 constexpr std::array<std::uint32_t, 255> kClearThresholds = {
@@ -96,12 +124,6 @@ constinit const std::array<float, 256> kSrgbToLinearExact = [] {
   return table;
 }();
 
-constinit const std::array<std::uint16_t, 2048> kRsqrtTable = [] {
-  std::array<std::uint16_t, 2048> table{};
-  for (std::uint32_t i = 0; i < 2048; ++i) table[i] = static_cast<std::uint16_t>(rsqrt_significand(i) - 4096);
-  return table;
-}();
-
 std::uint8_t encode_srgb_clear(float linear) {
   if (!(linear > 0.0f)) return 0;
   const std::uint32_t key = std::min(base::bits_of(linear), base::bits_of(1.0f)) >> 12;
@@ -116,11 +138,37 @@ float approximate_rsqrt(float value) {
   // value = m * 4^k with m in [0.5, 2): the result is table(m) * 2^-k.
   const std::uint32_t exponent = bits >> 23;
   const std::uint32_t upper = exponent & 1;  // biased 127, 129... : m in [1, 2)
-  const std::uint32_t significand = kRsqrtTable[upper << 10 | ((bits >> 13) & 1023)];
+  const std::uint32_t block = upper << 8 | ((bits >> 15) & 255);
+  const auto slope = static_cast<std::uint32_t>(kRsqrtSlopes[block >> 4] >> ((bits >> 11) & 15) * 4) & 15;
+  const std::uint32_t significand = kRsqrtBlocks[block] - slope;
   const std::int32_t k = (static_cast<std::int32_t>(exponent) - 126 - static_cast<std::int32_t>(upper)) / 2;
   const std::uint32_t start = (upper != 0 ? 126u : 127u) << 23;  // 0.5 or 1.0
   return base::float_of(start + (significand << 11) - (static_cast<std::uint32_t>(k) << 23));
 }
+
+namespace {
+
+float rsqrt_of_cpu(float value) {
+#ifdef __SSE__
+  return _mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(value)));
+#else
+  return approximate_rsqrt(value);
+#endif
+}
+
+using Rsqrt = float (*)(float);
+
+Rsqrt wanted_rsqrt() {
+  const char* value = std::getenv("VITRINE_RSQRT");
+  return value != nullptr && std::string_view(value) == "cpu" ? rsqrt_of_cpu : nullptr;
+}
+
+float rsqrt(float value) {
+  static const Rsqrt other = wanted_rsqrt();
+  return other != nullptr ? other(value) : approximate_rsqrt(value);
+}
+
+}  // namespace
 
 std::uint8_t encode_srgb_attachment(float linear) {
   const float x = base::min_second(base::max_second(linear, 0.0f), 1.0f);
@@ -128,9 +176,9 @@ std::uint8_t encode_srgb_attachment(float linear) {
   constexpr float a = static_cast<float>(0.675f * 1.0622 * 255.0f);
   constexpr float b = static_cast<float>(0.325f * 1.0622 * 255.0f);
   constexpr float c = -0.0620f * 255.0f;
-  const float t = approximate_rsqrt(x);
+  const float t = rsqrt(x);
   const float x05 = x * t;
-  const float x0375 = approximate_rsqrt(approximate_rsqrt(x05 * x));
+  const float x0375 = rsqrt(rsqrt(x05 * x));
   const float code = a * x0375 + base::fma_exact(b, x05, c);
   return static_cast<std::uint8_t>(std::clamp(base::round_to_int(code), 0, 255));
 }

@@ -16,19 +16,12 @@ extern const std::array<float, 256> kSrgbToLinearExact;
 /// Code of a clear value: thresholds of the reference's table-driven conversion. NaN gives 0.
 std::uint8_t encode_srgb_clear(float linear);
 
-/// Code of a colour written to an attachment (blended, blitted, resolved).
+/// Code of a colour written to an attachment (blended, blitted, resolved), by approximate_rsqrt. Where this CPU has an
+/// RSQRTPS, VITRINE_RSQRT=cpu takes that instead, so that a reference on a CPU of another vendor can be compared with.
 std::uint8_t encode_srgb_attachment(float linear);
 
-/// The 12-bit reciprocal square root: index = lowest exponent bit (0: operands in [0.5, 1) times a power of 4, 1: in
-/// [1, 2)) above the 10 leading mantissa bits of the operand; value = the 12 leading mantissa bits of the result, whose
-/// exponent is that of 1.0 (index bit 0) or 0.5 (index bit 1), with 4096 for the first value of the next binade.
-///
-/// The reference encodes with the CPU's RSQRTPS, whose results are the vendor's own. This table is Intel's: over all
-/// operands it equals 1/sqrt(x) at the middle of the interval of 2^-10 that x lies in, rounded to nearest at 12
-/// mantissa bits. No exact data of AMD's is public; another CPU's bits would replace only this table.
-extern const std::array<std::uint16_t, 2048> kRsqrtTable;
-
-/// RSQRTPS by table: positive normal operands; 0 and denormals give +infinity, infinity gives 0.
+/// RSQRTPS by table: positive normal operands; 0 and denormals give +infinity, infinity gives 0. The reference encodes
+/// with this instruction, whose bits are the vendor's own; these are an AVX-512 AMD processor's, on every CPU.
 float approximate_rsqrt(float value);
 
 }  // namespace vitrine::texel
