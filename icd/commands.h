@@ -112,6 +112,20 @@ struct CmdBeginRenderPass {
   std::span<const VkClearValue> clear_values;
   std::span<const ImageView* const> attachments;  ///< the framebuffer's
 };
+struct RenderingAttachment {
+  const ImageView* view;     ///< null: unused
+  const ImageView* resolve;  ///< null: none
+  VkAttachmentLoadOp load;
+  VkClearValue clear;
+};
+struct CmdBeginRendering {
+  VkRenderingFlags flags;
+  VkRect2D area;
+  std::uint32_t layers, view_mask;
+  std::span<const RenderingAttachment> colors;
+  RenderingAttachment depth, stencil;
+};
+struct CmdEndRendering {};
 struct CmdNextSubpass {};
 struct CmdEndRenderPass {};
 struct CmdClearAttachments {
@@ -221,11 +235,11 @@ using Commands =
     CommandList<CmdBindPipeline, CmdBindDescriptorSets, CmdPushConstants, CmdBindVertexBuffers, CmdBindIndexBuffer,
                 CmdSetViewport, CmdSetScissor, CmdSetLineWidth, CmdSetDepthBias, CmdSetBlendConstants,
                 CmdSetDepthBounds, CmdSetStencil, CmdDraw, CmdDrawIndexed, CmdDrawIndirect, CmdDispatch,
-                CmdDispatchIndirect, CmdBeginRenderPass, CmdNextSubpass, CmdEndRenderPass, CmdClearAttachments,
-                CmdExecuteCommands, CmdCopyBuffer, CmdCopyImage, CmdBlitImage, CmdResolveImage, CmdCopyBufferToImage,
-                CmdCopyImageToBuffer, CmdUpdateBuffer, CmdFillBuffer, CmdClearColorImage, CmdClearDepthStencilImage,
-                CmdPipelineBarrier, CmdSetEvent, CmdWaitEvents, CmdBeginQuery, CmdEndQuery, CmdResetQueryPool,
-                CmdWriteTimestamp, CmdCopyQueryPoolResults>;
+                CmdDispatchIndirect, CmdBeginRenderPass, CmdNextSubpass, CmdEndRenderPass, CmdBeginRendering,
+                CmdEndRendering, CmdClearAttachments, CmdExecuteCommands, CmdCopyBuffer, CmdCopyImage, CmdBlitImage,
+                CmdResolveImage, CmdCopyBufferToImage, CmdCopyImageToBuffer, CmdUpdateBuffer, CmdFillBuffer,
+                CmdClearColorImage, CmdClearDepthStencilImage, CmdPipelineBarrier, CmdSetEvent, CmdWaitEvents,
+                CmdBeginQuery, CmdEndQuery, CmdResetQueryPool, CmdWriteTimestamp, CmdCopyQueryPoolResults>;
 
 namespace detail {
 

@@ -19,10 +19,10 @@ struct Batch {
   explicit Batch(const HostMemory& m) : memory(m), waits(m), command_buffers(m), calls(m), signals(m) {}
 
   HostMemory memory;
-  Vector<VkSemaphore> waits;
+  Vector<SemaphoreOp> waits;
   Vector<VkCommandBuffer> command_buffers;
   Vector<QueueCall> calls;
-  Vector<VkSemaphore> signals;
+  Vector<SemaphoreOp> signals;
   VkFence fence = VK_NULL_HANDLE;
   Batch* next = nullptr;
 };
@@ -95,7 +95,9 @@ class BatchList {
 /// that nobody waits for ever.
 void execute(Device& device, const Batch& batch) noexcept {
   bool lost = false;
-  for (const VkSemaphore semaphore : batch.waits) lost |= !wait_semaphore(device, from_handle<Semaphore>(semaphore));
+  for (const SemaphoreOp& op : batch.waits) {
+    lost |= !wait_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
+  }
   for (const VkCommandBuffer buffer : batch.command_buffers) {
     if (lost) break;
     if (replay(device, from_handle<CommandBuffer>(buffer)) != VK_SUCCESS) {
@@ -105,7 +107,9 @@ void execute(Device& device, const Batch& batch) noexcept {
   }
   for (const QueueCall& call : batch.calls) call.run(call.object, call.argument);
   if (lost) return;
-  for (const VkSemaphore semaphore : batch.signals) signal_semaphore(device, from_handle<Semaphore>(semaphore));
+  for (const SemaphoreOp& op : batch.signals) {
+    signal_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
+  }
   if (batch.fence) signal_fence(device, from_handle<Fence>(batch.fence));
 }
 
@@ -120,7 +124,7 @@ bool fits_inline(Device& device, const BatchInfo& info) {
   if (cost > kInlineCost) return false;
   const std::lock_guard lock(device.sync_mutex);
   return std::all_of(info.waits.begin(), info.waits.end(),
-                     [](VkSemaphore handle) { return from_handle<Semaphore>(handle).signaled; });
+                     [](const SemaphoreOp& op) { return is_reached(from_handle<Semaphore>(op.semaphore), op.value); });
 }
 
 void work(Queue& queue, QueueWorker& worker) {

@@ -16,12 +16,18 @@ struct QueueCall {
   std::uint32_t argument = 0;
 };
 
+/// A semaphore to wait for or to signal; `value` counts for timeline semaphores.
+struct SemaphoreOp {
+  VkSemaphore semaphore = VK_NULL_HANDLE;
+  std::uint64_t value = 0;
+};
+
 /// One batch: waits, then executes, then signals. The spans are copied by submit().
 struct BatchInfo {
-  std::span<const VkSemaphore> waits;
+  std::span<const SemaphoreOp> waits;
   std::span<const VkCommandBuffer> command_buffers;
   std::span<const QueueCall> calls;
-  std::span<const VkSemaphore> signals;
+  std::span<const SemaphoreOp> signals;
   VkFence fence = VK_NULL_HANDLE;
 };
 

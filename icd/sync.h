@@ -13,7 +13,9 @@ struct Fence : Object<VkFence, VK_OBJECT_TYPE_FENCE> {
 
 struct Semaphore : Object<VkSemaphore, VK_OBJECT_TYPE_SEMAPHORE> {
   using Object::Object;
-  bool signaled = false;  ///< binary
+  bool timeline = false;
+  bool signaled = false;    ///< binary
+  std::uint64_t value = 0;  ///< timeline
 };
 
 struct Event : Object<VkEvent, VK_OBJECT_TYPE_EVENT> {
@@ -23,11 +25,14 @@ struct Event : Object<VkEvent, VK_OBJECT_TYPE_EVENT> {
 
 /// For the queue thread and for presentation: change the state and wake all waiters.
 void signal_fence(Device& device, Fence& fence);
-void signal_semaphore(Device& device, Semaphore& semaphore);
+void signal_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value);
 void set_event(Device& device, Event& event, bool set);
 
-/// Blocks until the semaphore is signalled, then unsignals it. False if the device was lost while waiting.
-bool wait_semaphore(Device& device, Semaphore& semaphore);
+/// Whether a wait for `value` would end at once. The caller holds Device::sync_mutex.
+bool is_reached(const Semaphore& semaphore, std::uint64_t value);
+/// Blocks until a timeline semaphore has reached `value`, or a binary one is signalled, and unsignals it then. False if
+/// the device was lost while waiting.
+bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value);
 /// Blocks until all events are set. False if the device was lost while waiting.
 bool wait_events(Device& device, const VkEvent* events, std::uint32_t count);
 

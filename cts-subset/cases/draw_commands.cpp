@@ -135,6 +135,32 @@ CTS_CASE("draw", "indirect.indexed") {
   });
 }
 
+/// The count comes from a buffer: below, at and above the limit of the command.
+CTS_CASE("draw", "indirect_count.plain") {
+  run.require(run.gpu.has("VK_KHR_draw_indirect_count"), "VK_KHR_draw_indirect_count");
+  Scene scene(run);
+  const Buffer commands = run.buffer_of<uint32_t>({6, 1, 0, 0, 99, 6, 2, 10, 0, 99, 3, 1, 30, 0, 99});
+  const Buffer counts = run.buffer_of<uint32_t>({2, 0, 9});
+  scene.record(run, [&](VkCommandBuffer cmd) {
+    const auto draw = CTS_COMMAND(run.gpu, CmdDrawIndirectCountKHR);
+    draw(cmd, commands.handle, 0, counts.handle, 0, 3, 20);
+    draw(cmd, commands.handle, 20, counts.handle, 4, 2, 20);
+    draw(cmd, commands.handle, 40, counts.handle, 8, 1, 20);
+  });
+}
+
+CTS_CASE("draw", "indirect_count.indexed") {
+  run.require(run.gpu.has("VK_KHR_draw_indirect_count"), "VK_KHR_draw_indirect_count");
+  Scene scene(run);
+  const Buffer indices = random_indices<uint16_t>(run, 64, 32);
+  const Buffer commands = run.buffer_of<uint32_t>({21, 3, 2, 5, 0, 12, 1, 30, 9, 0});
+  const Buffer counts = run.buffer_of<uint32_t>({77, 2});
+  scene.record(run, [&](VkCommandBuffer cmd) {
+    vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT16);
+    CTS_COMMAND(run.gpu, CmdDrawIndexedIndirectCountKHR)(cmd, commands.handle, 0, counts.handle, 0, 2, 20);
+  });
+}
+
 CTS_CASE("draw", "many_draws") {
   Scene scene(run);
   scene.record(run, [&](VkCommandBuffer cmd) {

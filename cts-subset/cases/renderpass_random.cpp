@@ -89,8 +89,58 @@ VkAttachmentDescription describe(const Image& image, VkAttachmentLoadOp load, Vk
   return result;
 }
 
+/// Render passes by VK_KHR_create_renderpass2 and framebuffers without images, or as in Vulkan 1.0.
+enum class Form { kFirst, kSecond };
+
+void create_second_form(Run& run, const VkRenderPassCreateInfo& info, VkRenderPass* pass) {
+  std::vector<VkAttachmentDescription2> attachments;
+  for (uint32_t i = 0; i < info.attachmentCount; ++i) {
+    const VkAttachmentDescription& a = info.pAttachments[i];
+    attachments.push_back({VK_STRUCTURE_TYPE_ATTACHMENT_DESCRIPTION_2, nullptr, a.flags, a.format, a.samples, a.loadOp,
+                           a.storeOp, a.stencilLoadOp, a.stencilStoreOp, a.initialLayout, a.finalLayout});
+  }
+  std::vector<std::vector<VkAttachmentReference2>> references;
+  const auto upgrade = [&](const VkAttachmentReference* list, uint32_t count) -> const VkAttachmentReference2* {
+    if (!list) return nullptr;
+    references.emplace_back();
+    for (uint32_t i = 0; i < count; ++i)
+      references.back().push_back({VK_STRUCTURE_TYPE_ATTACHMENT_REFERENCE_2, nullptr, list[i].attachment,
+                                   list[i].layout, VK_IMAGE_ASPECT_COLOR_BIT});
+    return references.back().data();
+  };
+  std::vector<VkSubpassDescription2> subpasses;
+  for (uint32_t i = 0; i < info.subpassCount; ++i) {
+    const VkSubpassDescription& a = info.pSubpasses[i];
+    VkSubpassDescription2 b{VK_STRUCTURE_TYPE_SUBPASS_DESCRIPTION_2};
+    b.pipelineBindPoint = a.pipelineBindPoint;
+    b.inputAttachmentCount = a.inputAttachmentCount;
+    b.pInputAttachments = upgrade(a.pInputAttachments, a.inputAttachmentCount);
+    b.colorAttachmentCount = a.colorAttachmentCount;
+    b.pColorAttachments = upgrade(a.pColorAttachments, a.colorAttachmentCount);
+    b.pResolveAttachments = upgrade(a.pResolveAttachments, a.colorAttachmentCount);
+    b.pDepthStencilAttachment = upgrade(a.pDepthStencilAttachment, 1);
+    b.preserveAttachmentCount = a.preserveAttachmentCount;
+    b.pPreserveAttachments = a.pPreserveAttachments;
+    subpasses.push_back(b);
+  }
+  std::vector<VkSubpassDependency2> dependencies;
+  for (uint32_t i = 0; i < info.dependencyCount; ++i) {
+    const VkSubpassDependency& d = info.pDependencies[i];
+    dependencies.push_back({VK_STRUCTURE_TYPE_SUBPASS_DEPENDENCY_2, nullptr, d.srcSubpass, d.dstSubpass, d.srcStageMask,
+                            d.dstStageMask, d.srcAccessMask, d.dstAccessMask, d.dependencyFlags, 0});
+  }
+  VkRenderPassCreateInfo2 second{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO_2};
+  second.attachmentCount = info.attachmentCount;
+  second.pAttachments = attachments.data();
+  second.subpassCount = info.subpassCount;
+  second.pSubpasses = subpasses.data();
+  second.dependencyCount = info.dependencyCount;
+  second.pDependencies = dependencies.data();
+  CTS_VK(CTS_COMMAND(run.gpu, CreateRenderPass2KHR)(run.device, &second, nullptr, pass));
+}
+
 /// Attachment numbers: colours, then resolves (multisampled only), then depth.
-VkRenderPass make_pass(Run& run, const Plan& plan) {
+VkRenderPass make_pass(Run& run, const Plan& plan, Form form) {
   const bool multisampled = plan.samples != VK_SAMPLE_COUNT_1_BIT;
   const auto colors = static_cast<uint32_t>(plan.colors.size());
   std::vector<VkAttachmentDescription> attachments;
@@ -151,17 +201,46 @@ VkRenderPass make_pass(Run& run, const Plan& plan) {
   info.dependencyCount = static_cast<uint32_t>(dependencies.size());
   info.pDependencies = dependencies.data();
   VkRenderPass pass;
-  CTS_VK(vkCreateRenderPass(run.device, &info, nullptr, &pass));
+  if (form == Form::kSecond) {
+    create_second_form(run, info, &pass);
+  } else {
+    CTS_VK(vkCreateRenderPass(run.device, &info, nullptr, &pass));
+  }
   return run.own(pass, vkDestroyRenderPass);
 }
 
-VkFramebuffer make_framebuffer(Run& run, const Plan& plan, VkRenderPass pass) {
-  std::vector<VkImageView> views;
-  for (const Attachment& color : plan.colors) views.push_back(color.image.view);
+std::vector<Image> attachments_of(const Plan& plan) {
+  std::vector<Image> images;
+  for (const Attachment& color : plan.colors) images.push_back(color.image);
   if (plan.samples != VK_SAMPLE_COUNT_1_BIT)
-    for (const Image& image : plan.resolves) views.push_back(image.view);
-  if (plan.has_depth) views.push_back(plan.depth.image.view);
+    for (const Image& image : plan.resolves) images.push_back(image);
+  if (plan.has_depth) images.push_back(plan.depth.image);
+  return images;
+}
+
+VkFramebuffer make_framebuffer(Run& run, const Plan& plan, VkRenderPass pass, Form form) {
+  const std::vector<Image> images = attachments_of(plan);
+  std::vector<VkImageView> views;
+  std::vector<VkFramebufferAttachmentImageInfo> descriptions;
+  for (const Image& image : images) {
+    views.push_back(image.view);
+    VkFramebufferAttachmentImageInfo description{VK_STRUCTURE_TYPE_FRAMEBUFFER_ATTACHMENT_IMAGE_INFO};
+    description.usage = image.spec.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    description.width = plan.width;
+    description.height = plan.height;
+    description.layerCount = 1;
+    description.viewFormatCount = 1;
+    description.pViewFormats = &image.spec.format;
+    descriptions.push_back(description);
+  }
+  VkFramebufferAttachmentsCreateInfo imageless{VK_STRUCTURE_TYPE_FRAMEBUFFER_ATTACHMENTS_CREATE_INFO};
+  imageless.attachmentImageInfoCount = static_cast<uint32_t>(descriptions.size());
+  imageless.pAttachmentImageInfos = descriptions.data();
   VkFramebufferCreateInfo info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+  if (form == Form::kSecond) {
+    info.pNext = &imageless;
+    info.flags = VK_FRAMEBUFFER_CREATE_IMAGELESS_BIT;
+  }
   info.renderPass = pass;
   info.attachmentCount = static_cast<uint32_t>(views.size());
   info.pAttachments = views.data();
@@ -199,11 +278,36 @@ std::string describe_subpass(const Plan& plan, const Subpass& subpass) {
   return text + (subpass.depth ? "; depth" : "") + (subpass.resolve ? "; resolve\n" : "\n");
 }
 
-void random_render_pass(Run& run) {
+void begin(Run& run, VkCommandBuffer cmd, const Plan& plan, VkRenderPassBeginInfo info, Form form) {
+  if (form == Form::kFirst) return vkCmdBeginRenderPass(cmd, &info, VK_SUBPASS_CONTENTS_INLINE);
+  std::vector<VkImageView> views;
+  for (const Image& image : attachments_of(plan)) views.push_back(image.view);
+  VkRenderPassAttachmentBeginInfo attachments{VK_STRUCTURE_TYPE_RENDER_PASS_ATTACHMENT_BEGIN_INFO};
+  attachments.attachmentCount = static_cast<uint32_t>(views.size());
+  attachments.pAttachments = views.data();
+  info.pNext = &attachments;
+  const VkSubpassBeginInfo contents{VK_STRUCTURE_TYPE_SUBPASS_BEGIN_INFO, nullptr, VK_SUBPASS_CONTENTS_INLINE};
+  CTS_COMMAND(run.gpu, CmdBeginRenderPass2KHR)(cmd, &info, &contents);
+}
+
+void next_subpass(Run& run, VkCommandBuffer cmd, Form form) {
+  if (form == Form::kFirst) return vkCmdNextSubpass(cmd, VK_SUBPASS_CONTENTS_INLINE);
+  const VkSubpassBeginInfo contents{VK_STRUCTURE_TYPE_SUBPASS_BEGIN_INFO, nullptr, VK_SUBPASS_CONTENTS_INLINE};
+  const VkSubpassEndInfo end{VK_STRUCTURE_TYPE_SUBPASS_END_INFO};
+  CTS_COMMAND(run.gpu, CmdNextSubpass2KHR)(cmd, &contents, &end);
+}
+
+void end(Run& run, VkCommandBuffer cmd, Form form) {
+  if (form == Form::kFirst) return vkCmdEndRenderPass(cmd);
+  const VkSubpassEndInfo info{VK_STRUCTURE_TYPE_SUBPASS_END_INFO};
+  CTS_COMMAND(run.gpu, CmdEndRenderPass2KHR)(cmd, &info);
+}
+
+void random_render_pass(Run& run, Form form) {
   Random& random = run.random;
   Plan plan = random_plan(run);
-  const VkRenderPass pass = make_pass(run, plan);
-  const VkFramebuffer framebuffer = make_framebuffer(run, plan, pass);
+  const VkRenderPass pass = make_pass(run, plan, form);
+  const VkFramebuffer framebuffer = make_framebuffer(run, plan, pass, form);
   if (plan.samples == VK_SAMPLE_COUNT_1_BIT) {
     for (const Attachment& color : plan.colors) run.fill_random(color.image);
     if (plan.has_depth) run.fill_random(plan.depth.image);
@@ -250,21 +354,21 @@ void random_render_pass(Run& run) {
   if (plan.samples != VK_SAMPLE_COUNT_1_BIT) clears.resize(plan.colors.size() * 2);
   if (plan.has_depth) clears.push_back(plan.depth.clear);
   run.once([&](VkCommandBuffer cmd) {
-    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
-    begin.renderPass = pass;
-    begin.framebuffer = framebuffer;
-    begin.renderArea = {{0, 0}, {plan.width, plan.height}};
-    begin.clearValueCount = static_cast<uint32_t>(clears.size());
-    begin.pClearValues = clears.data();
-    vkCmdBeginRenderPass(cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    VkRenderPassBeginInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    info.renderPass = pass;
+    info.framebuffer = framebuffer;
+    info.renderArea = {{0, 0}, {plan.width, plan.height}};
+    info.clearValueCount = static_cast<uint32_t>(clears.size());
+    info.pClearValues = clears.data();
+    begin(run, cmd, plan, info, form);
     for (uint32_t i = 0; i < pipelines.size(); ++i) {
-      if (i) vkCmdNextSubpass(cmd, VK_SUBPASS_CONTENTS_INLINE);
+      if (i) next_subpass(run, cmd, form);
       bind_pipeline(cmd, pipelines[i]);
       resources[i].bind(cmd);
       bind_vertices(cmd, vertices);
       vkCmdDraw(cmd, 12, 1, i * 12, 0);
     }
-    vkCmdEndRenderPass(cmd);
+    end(run, cmd, form);
   });
   for (uint32_t i = 0; i < plan.colors.size(); ++i) {
     run.out("color" + std::to_string(i), plan.colors[i].image);
@@ -274,7 +378,13 @@ void random_render_pass(Run& run) {
   run.may_be_blank();
 }
 
-const AddGenerator kRandom("renderpass", "random", 200, random_render_pass);
+CTS_RANDOM("renderpass", "random", 200) { random_render_pass(run, Form::kFirst); }
+
+CTS_RANDOM("renderpass", "random_renderpass2_imageless", 40) {
+  run.require(run.gpu.has("VK_KHR_create_renderpass2"), "VK_KHR_create_renderpass2");
+  run.require(run.gpu.extension_features.imageless_framebuffer.imagelessFramebuffer, "imagelessFramebuffer");
+  random_render_pass(run, Form::kSecond);
+}
 
 /// Load and clear inside a part of the attachment only.
 CTS_RANDOM("renderpass", "random_render_area", 40) {

@@ -34,6 +34,12 @@ void check(VkResult result, const char* call);
   X(synchronization2, VkPhysicalDeviceSynchronization2Features, SYNCHRONIZATION_2_FEATURES, "VK_KHR_synchronization2") \
   X(timeline_semaphore, VkPhysicalDeviceTimelineSemaphoreFeatures, TIMELINE_SEMAPHORE_FEATURES,                        \
     "VK_KHR_timeline_semaphore")                                                                                       \
+  X(separate_depth_stencil_layouts, VkPhysicalDeviceSeparateDepthStencilLayoutsFeatures,                               \
+    SEPARATE_DEPTH_STENCIL_LAYOUTS_FEATURES, "VK_KHR_separate_depth_stencil_layouts")                                  \
+  X(uniform_buffer_standard_layout, VkPhysicalDeviceUniformBufferStandardLayoutFeatures,                               \
+    UNIFORM_BUFFER_STANDARD_LAYOUT_FEATURES, "VK_KHR_uniform_buffer_standard_layout")                                  \
+  X(scalar_block_layout, VkPhysicalDeviceScalarBlockLayoutFeatures, SCALAR_BLOCK_LAYOUT_FEATURES,                      \
+    "VK_EXT_scalar_block_layout")                                                                                      \
   X(host_query_reset, VkPhysicalDeviceHostQueryResetFeatures, HOST_QUERY_RESET_FEATURES, "VK_EXT_host_query_reset")
 
 /// Extensions without features that cases use: enabled where offered.

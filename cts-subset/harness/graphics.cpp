@@ -232,7 +232,7 @@ VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, 
   dynamic.dynamicStateCount = static_cast<uint32_t>(spec.dynamic.size());
   dynamic.pDynamicStates = spec.dynamic.data();
 
-  VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
+  VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, spec.next};
   info.stageCount = static_cast<uint32_t>(stages.size());
   info.pStages = stages.data();
   info.pVertexInputState = &input;

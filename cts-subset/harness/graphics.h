@@ -56,6 +56,7 @@ struct GraphicsSpec {
   const VkSpecializationInfo* vertex_special = nullptr;
   const VkSpecializationInfo* fragment_special = nullptr;
   VkPipelineCache cache = VK_NULL_HANDLE;
+  const void* next = nullptr;  ///< of VkGraphicsPipelineCreateInfo
 
   GraphicsSpec();
   /// Adds a binding of tightly interleaved float attributes at locations 0..: one number of components each.

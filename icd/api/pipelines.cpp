@@ -69,10 +69,27 @@ bool compile_graphics(Device& device, PipelineCache* cache, const VkGraphicsPipe
   return pipeline.vertex != nullptr;
 }
 
+/// The attachments that a pipeline of dynamic rendering names, as if they were a subpass's: colour i is attachment i.
+Subpass make_subpass(const VkGraphicsPipelineCreateInfo& info, const HostMemory& memory) {
+  Subpass subpass(memory);
+  const auto* rendering = find_in_chain<VkPipelineRenderingCreateInfo>(info.pNext);
+  if (!rendering) return subpass;
+  subpass.view_mask = rendering->viewMask;
+  for (std::uint32_t i = 0; i < rendering->colorAttachmentCount; ++i) {
+    const bool used = rendering->pColorAttachmentFormats[i] != VK_FORMAT_UNDEFINED;
+    subpass.colors.push_back(used ? i : VK_ATTACHMENT_UNUSED);
+  }
+  if (rendering->depthAttachmentFormat || rendering->stencilAttachmentFormat) {
+    subpass.depth_stencil = rendering->colorAttachmentCount;
+  }
+  return subpass;
+}
+
 VkResult create_graphics_pipeline(Device& device, PipelineCache* cache, const VkGraphicsPipelineCreateInfo& info,
                                   const VkAllocationCallbacks* allocator, VkPipeline* out) {
-  const RenderPass& pass = from_handle<RenderPass>(info.renderPass);
-  const Subpass& subpass = pass.subpasses[info.subpass];
+  const RenderPass* pass = from_nullable<RenderPass>(info.renderPass);
+  const Subpass dynamic = make_subpass(info, device.memory);
+  const Subpass& subpass = pass ? pass->subpasses[info.subpass] : dynamic;
   Owned<Pipeline> pipeline(create_object<Pipeline>(device.memory, allocator));
   pipeline->layout = from_handle<PipelineLayout>(info.layout).shape;
   fill_static_state(*pipeline, info, subpass);

@@ -148,6 +148,12 @@ VKAPI_ATTR void VKAPI_CALL CmdWriteTimestamp(VkCommandBuffer buffer, VkPipelineS
   record(buffer, icd::CmdWriteTimestamp{&from_handle<QueryPool>(pool), query, after_work});
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdWriteTimestamp2(VkCommandBuffer buffer, VkPipelineStageFlags2 stage, VkQueryPool pool,
+                                              std::uint32_t query) {
+  const bool after_work = stage != VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT && stage != VK_PIPELINE_STAGE_2_NONE;
+  record(buffer, icd::CmdWriteTimestamp{&from_handle<QueryPool>(pool), query, after_work});
+}
+
 VKAPI_ATTR void VKAPI_CALL CmdCopyQueryPoolResults(VkCommandBuffer buffer, VkQueryPool pool, std::uint32_t first,
                                                    std::uint32_t count, VkBuffer target, VkDeviceSize offset,
                                                    VkDeviceSize stride, VkQueryResultFlags flags) {

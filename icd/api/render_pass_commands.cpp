@@ -10,6 +10,21 @@ namespace {
 // Rough nanoseconds to clear and write back one pixel of a pass.
 constexpr std::uint64_t kPixelsPerNanosecond = 4;
 
+void add_cost(CommandBuffer& buffer, const VkRect2D& area, std::uint32_t layers) {
+  buffer.pass_pixels = std::uint64_t{area.extent.width} * area.extent.height * layers;
+  buffer.cost += 1000 + buffer.pass_pixels / kPixelsPerNanosecond;
+}
+
+RenderingAttachment make_attachment(const VkRenderingAttachmentInfo* info) {
+  RenderingAttachment out{};
+  if (!info) return out;
+  out.view = from_nullable<ImageView>(info->imageView);
+  if (info->resolveMode != VK_RESOLVE_MODE_NONE) out.resolve = from_nullable<ImageView>(info->resolveImageView);
+  out.load = info->loadOp;
+  out.clear = info->clearValue;
+  return out;
+}
+
 }  // namespace
 
 namespace entry {
@@ -40,9 +55,21 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRenderPass2(VkCommandBuffer buffer, const VkR
     command.attachments = framebuffer.attachments;
   }
   record(b, command);
-  b.pass_pixels = std::uint64_t{begin->renderArea.extent.width} * begin->renderArea.extent.height * framebuffer.layers;
-  b.cost += 1000 + b.pass_pixels / kPixelsPerNanosecond;
+  add_cost(b, begin->renderArea, framebuffer.layers);
 }
+
+VKAPI_ATTR void VKAPI_CALL CmdBeginRendering(VkCommandBuffer buffer, const VkRenderingInfo* info) {
+  CommandBuffer& b = from_handle<CommandBuffer>(buffer);
+  const auto colors = b.arena.add_array<RenderingAttachment>(info->colorAttachmentCount);
+  for (std::uint32_t i = 0; i < info->colorAttachmentCount; ++i) {
+    colors[i] = make_attachment(&info->pColorAttachments[i]);
+  }
+  record(b, icd::CmdBeginRendering{info->flags, info->renderArea, info->layerCount, info->viewMask, colors,
+                                   make_attachment(info->pDepthAttachment), make_attachment(info->pStencilAttachment)});
+  add_cost(b, info->renderArea, info->layerCount);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdEndRendering(VkCommandBuffer buffer) { record(buffer, icd::CmdEndRendering{}); }
 
 VKAPI_ATTR void VKAPI_CALL CmdNextSubpass(VkCommandBuffer buffer, VkSubpassContents) {
   record(buffer, icd::CmdNextSubpass{});

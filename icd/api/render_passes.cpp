@@ -19,6 +19,12 @@ Subpass make_subpass(const VkSubpassDescription2& info, const HostMemory& memory
   copy_references(info.pColorAttachments, info.colorAttachmentCount, subpass.colors);
   copy_references(info.pResolveAttachments, info.colorAttachmentCount, subpass.resolves);
   if (info.pDepthStencilAttachment) subpass.depth_stencil = info.pDepthStencilAttachment->attachment;
+  if (const auto* resolve = find_in_chain<VkSubpassDescriptionDepthStencilResolve>(info.pNext);
+      resolve && resolve->pDepthStencilResolveAttachment) {
+    subpass.depth_stencil_resolve = resolve->pDepthStencilResolveAttachment->attachment;
+    if (resolve->depthResolveMode) subpass.resolved_aspects |= VK_IMAGE_ASPECT_DEPTH_BIT;
+    if (resolve->stencilResolveMode) subpass.resolved_aspects |= VK_IMAGE_ASPECT_STENCIL_BIT;
+  }
   subpass.view_mask = info.viewMask;
   return subpass;
 }
@@ -38,6 +44,7 @@ void find_first_uses(RenderPass& pass, const HostMemory& memory) {
       std::for_each(list->begin(), list->end(), use);
     }
     use(subpass.depth_stencil);
+    use(subpass.depth_stencil_resolve);
   }
 }
 

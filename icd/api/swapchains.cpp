@@ -154,7 +154,7 @@ VKAPI_ATTR VkResult VKAPI_CALL AcquireNextImage2KHR(VkDevice device_handle, cons
   const VkResult result = acquire(from_handle<Swapchain>(info->swapchain), info->timeout, *index);
   if (result != VK_SUCCESS && result != VK_SUBOPTIMAL_KHR) return result;
   // The image is free when it is handed out: showing it has ended.
-  if (info->semaphore) signal_semaphore(device, from_handle<Semaphore>(info->semaphore));
+  if (info->semaphore) signal_semaphore(device, from_handle<Semaphore>(info->semaphore), 0);
   if (info->fence) signal_fence(device, from_handle<Fence>(info->fence));
   return result;
 }
@@ -177,9 +177,12 @@ VKAPI_ATTR VkResult VKAPI_CALL QueuePresentKHR(VkQueue queue_handle, const VkPre
   for (std::uint32_t i = 0; i < info->swapchainCount; ++i) {
     calls.push_back({show_on_queue, &from_handle<Swapchain>(info->pSwapchains[i]), info->pImageIndices[i]});
   }
+  Vector<SemaphoreOp> waits{HostAllocator<SemaphoreOp>(queue.device.memory, VK_SYSTEM_ALLOCATION_SCOPE_COMMAND)};
+  waits.reserve(info->waitSemaphoreCount);
+  for (std::uint32_t i = 0; i < info->waitSemaphoreCount; ++i) waits.push_back({info->pWaitSemaphores[i], 0});
   for (const QueueCall& call : calls) give_to_queue(*static_cast<Swapchain*>(call.object), call.argument);
   BatchInfo batch;
-  batch.waits = {info->pWaitSemaphores, info->waitSemaphoreCount};
+  batch.waits = waits;
   batch.calls = calls;
   VkResult result = VK_SUCCESS;
   try {

@@ -43,18 +43,30 @@ void signal_fence(Device& device, Fence& fence) {
   change_state(device, [&] { fence.signaled = true; });
 }
 
-void signal_semaphore(Device& device, Semaphore& semaphore) {
-  change_state(device, [&] { semaphore.signaled = true; });
+void signal_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value) {
+  change_state(device, [&] {
+    if (semaphore.timeline) {
+      semaphore.value = std::max(semaphore.value, value);
+    } else {
+      semaphore.signaled = true;
+    }
+  });
 }
 
 void set_event(Device& device, Event& event, bool set) {
   change_state(device, [&] { event.set = set; });
 }
 
-bool wait_semaphore(Device& device, Semaphore& semaphore) {
+bool is_reached(const Semaphore& semaphore, std::uint64_t value) {
+  return semaphore.timeline ? semaphore.value >= value : semaphore.signaled;
+}
+
+bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value) {
   std::unique_lock lock(device.sync_mutex);
-  device.sync_changed.wait(lock, [&] { return device.lost || semaphore.signaled; });
-  return std::exchange(semaphore.signaled, false);
+  device.sync_changed.wait(lock, [&] { return device.lost || is_reached(semaphore, value); });
+  const bool reached = is_reached(semaphore, value);
+  semaphore.signaled = false;
+  return reached;
 }
 
 bool wait_events(Device& device, const VkEvent* events, std::uint32_t count) {
@@ -106,10 +118,38 @@ VKAPI_ATTR VkResult VKAPI_CALL WaitForFences(VkDevice device, std::uint32_t coun
   });
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateSemaphore(VkDevice device, const VkSemaphoreCreateInfo*,
+VKAPI_ATTR VkResult VKAPI_CALL CreateSemaphore(VkDevice device, const VkSemaphoreCreateInfo* info,
                                                const VkAllocationCallbacks* allocator, VkSemaphore* semaphore) {
-  *semaphore = to_handle(create_object<Semaphore>(from_handle<Device>(device).memory, allocator));
+  Semaphore* object = create_object<Semaphore>(from_handle<Device>(device).memory, allocator);
+  if (const auto* type = find_in_chain<VkSemaphoreTypeCreateInfo>(info->pNext)) {
+    object->timeline = type->semaphoreType == VK_SEMAPHORE_TYPE_TIMELINE;
+    object->value = type->initialValue;
+  }
+  *semaphore = to_handle(object);
   return VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetSemaphoreCounterValue(VkDevice device, VkSemaphore semaphore, std::uint64_t* value) {
+  Device& d = from_handle<Device>(device);
+  const std::lock_guard lock(d.sync_mutex);
+  *value = from_handle<Semaphore>(semaphore).value;
+  return d.lost ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL SignalSemaphore(VkDevice device, const VkSemaphoreSignalInfo* info) {
+  signal_semaphore(from_handle<Device>(device), from_handle<Semaphore>(info->semaphore), info->value);
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL WaitSemaphores(VkDevice device, const VkSemaphoreWaitInfo* info, std::uint64_t timeout) {
+  const auto done = [&] {
+    std::uint32_t reached = 0;
+    for (std::uint32_t i = 0; i < info->semaphoreCount; ++i) {
+      reached += is_reached(from_handle<Semaphore>(info->pSemaphores[i]), info->pValues[i]);
+    }
+    return (info->flags & VK_SEMAPHORE_WAIT_ANY_BIT) ? reached > 0 : reached == info->semaphoreCount;
+  };
+  return wait_until(from_handle<Device>(device), timeout, done);
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroySemaphore(VkDevice, VkSemaphore semaphore, const VkAllocationCallbacks*) {

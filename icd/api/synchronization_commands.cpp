@@ -14,6 +14,25 @@ VKAPI_ATTR void VKAPI_CALL CmdPipelineBarrier(VkCommandBuffer buffer, VkPipeline
   record(buffer, icd::CmdPipelineBarrier{});
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdPipelineBarrier2(VkCommandBuffer buffer, const VkDependencyInfo*) {
+  record(buffer, icd::CmdPipelineBarrier{});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetEvent2(VkCommandBuffer buffer, VkEvent event, const VkDependencyInfo*) {
+  record(buffer, icd::CmdSetEvent{&from_handle<Event>(event), true});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdResetEvent2(VkCommandBuffer buffer, VkEvent event, VkPipelineStageFlags2) {
+  record(buffer, icd::CmdSetEvent{&from_handle<Event>(event), false});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdWaitEvents2(VkCommandBuffer buffer, std::uint32_t count, const VkEvent* events,
+                                          const VkDependencyInfo*) {
+  CommandBuffer& b = from_handle<CommandBuffer>(buffer);
+  record(b, icd::CmdWaitEvents{b.arena.copy_array(events, count)});
+  b.waits_for_host = true;
+}
+
 VKAPI_ATTR void VKAPI_CALL CmdSetEvent(VkCommandBuffer buffer, VkEvent event, VkPipelineStageFlags) {
   record(buffer, icd::CmdSetEvent{&from_handle<Event>(event), true});
 }

@@ -2,9 +2,8 @@
 // use of an attachment, resolves and visibility at the end of a subpass. Store ops need nothing: attachments are in
 // memory.
 #include <algorithm>
-#include <bit>
 
-#include "icd/replay/replay.h"
+#include "icd/replay/scope.h"
 #include "texel/transfer.h"
 
 namespace vitrine::icd {
@@ -20,20 +19,13 @@ const ImageView* attachment_view(const ReplayState& state, std::uint32_t attachm
   return attachment < views.size() ? views[attachment] : nullptr;
 }
 
-/// One plane of a depth/stencil attachment, whatever aspects its view names: "the aspectMask is ignored and both depth
-/// and stencil image subresources are used" (VkFramebufferCreateInfo). Without that aspect: an unused attachment.
-texel::ImageView depth_stencil_plane(const ImageView& view, VkImageAspectFlagBits aspect) {
-  if (!(texel::format_desc(view.image->desc().format).aspects & aspect)) return {};
-  return view_of_aspect(*view.image, aspect, view.type, view.format, view.range);
-}
-
 raster::PassDesc describe_pass(const ReplayState& state) {
   const Subpass& subpass = current_subpass(state);
   raster::PassDesc desc;
   desc.color_count = std::min(static_cast<std::uint32_t>(subpass.colors.size()), raster::kMaxColorAttachments);
-  desc.render_area = state.instance->area;
-  desc.layers = state.instance->framebuffer->layers;
-  desc.view_mask = subpass.view_mask;
+  desc.render_area = state.scope.area;
+  desc.layers = state.scope.layers;
+  desc.view_mask = state.scope.view_mask;
   for (std::uint32_t i = 0; i < desc.color_count; ++i) {
     const ImageView* view = attachment_view(state, subpass.colors[i]);
     if (!view) continue;
@@ -46,13 +38,6 @@ raster::PassDesc describe_pass(const ReplayState& state) {
     desc.samples = view->image->desc().samples;
   }
   return desc;
-}
-
-/// Calls f(first layer, layer count) for what a subpass draws to: each of its views, or all layers.
-template <class F>
-void for_each_layer_range(std::uint32_t views, std::uint32_t layers, F f) {
-  if (views == 0) f(0, layers);
-  for (; views; views &= views - 1) f(static_cast<std::uint32_t>(std::countr_zero(views)), 1);
 }
 
 VkImageAspectFlags cleared_aspects(const Attachment& attachment) {
@@ -88,9 +73,9 @@ void load_attachment(ReplayState& state, std::uint32_t attachment) {
   state.views_loaded[attachment] |= subpass.view_mask;
   if (!view || !aspects || attachment >= state.instance->clear_values.size()) return;
   const VkClearValue& value = state.instance->clear_values[attachment];
-  const VkRect2D& area = state.instance->area;
+  const VkRect2D& area = state.scope.area;
   const auto color = std::find(subpass.colors.begin(), subpass.colors.end(), attachment);
-  for_each_layer_range(views, state.instance->framebuffer->layers, [&](std::uint32_t layer, std::uint32_t count) {
+  for_each_layer_range(views, state.scope.layers, [&](std::uint32_t layer, std::uint32_t count) {
     if (color != subpass.colors.end()) {
       const auto index = static_cast<std::uint32_t>(color - subpass.colors.begin());
       if (index < raster::kMaxColorAttachments) state.pass->clear_color(index, value.color, area, layer, count);
@@ -102,38 +87,35 @@ void load_attachment(ReplayState& state, std::uint32_t attachment) {
   });
 }
 
+/// The scope of the current subpass.
+DrawScope describe_scope(const ReplayState& state) {
+  const CmdBeginRenderPass& instance = *state.instance;
+  const Subpass& subpass = current_subpass(state);
+  DrawScope scope;
+  scope.area = clip_area(instance.area, instance.framebuffer->width, instance.framebuffer->height);
+  scope.layers = instance.framebuffer->layers;
+  scope.view_mask = subpass.view_mask;
+  for (std::size_t i = 0; i < subpass.resolves.size(); ++i) {
+    scope.add_resolve({attachment_view(state, subpass.colors[i]), attachment_view(state, subpass.resolves[i]),
+                       VK_IMAGE_ASPECT_COLOR_BIT});
+  }
+  for (const VkImageAspectFlagBits aspect : {VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_ASPECT_STENCIL_BIT}) {
+    if (!(subpass.resolved_aspects & aspect)) continue;
+    scope.add_resolve(
+        {attachment_view(state, subpass.depth_stencil), attachment_view(state, subpass.depth_stencil_resolve), aspect});
+  }
+  return scope;
+}
+
 void begin_subpass(ReplayState& state) {
+  state.scope = describe_scope(state);
   state.pass.emplace(describe_pass(state));
   for (const std::uint32_t attachment : current_subpass(state).first_uses) load_attachment(state, attachment);
 }
 
-void end_subpass(ReplayState& state) {
-  flush_pass(state);
-  state.pass.reset();
-  const Subpass& subpass = current_subpass(state);
-  for (std::size_t i = 0; i < subpass.resolves.size(); ++i) {
-    const ImageView* source = attachment_view(state, subpass.colors[i]);
-    const ImageView* target = attachment_view(state, subpass.resolves[i]);
-    if (!source || !target) continue;
-    for_each_layer_range(subpass.view_mask, state.instance->framebuffer->layers,
-                         [&](std::uint32_t layer, std::uint32_t count) {
-                           texel::resolve_view(source->view, target->view, state.instance->area, layer, count);
-                         });
-  }
-}
-
-VkRect2D clip(const VkRect2D& area, std::uint32_t width, std::uint32_t height) {
-  const std::int64_t x0 = std::max(area.offset.x, 0), y0 = std::max(area.offset.y, 0);
-  const std::int64_t x1 = std::min<std::int64_t>(std::int64_t{area.offset.x} + area.extent.width, width);
-  const std::int64_t y1 = std::min<std::int64_t>(std::int64_t{area.offset.y} + area.extent.height, height);
-  return {{static_cast<std::int32_t>(x0), static_cast<std::int32_t>(y0)},
-          {static_cast<std::uint32_t>(std::max<std::int64_t>(x1 - x0, 0)),
-           static_cast<std::uint32_t>(std::max<std::int64_t>(y1 - y0, 0))}};
-}
-
 void clear_rect(ReplayState& state, const VkClearAttachment& clear, const VkClearRect& rect) {
   // "If the render pass instance has multiview enabled, the clear applies to every view of the subpass."
-  const std::uint32_t views = current_subpass(state).view_mask;
+  const std::uint32_t views = state.scope.view_mask;
   for_each_layer_range(views, rect.layerCount, [&](std::uint32_t layer, std::uint32_t count) {
     const std::uint32_t first = views ? layer : rect.baseArrayLayer;
     if (clear.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) {
@@ -155,9 +137,7 @@ void flush_pass(ReplayState& state) {
 }
 
 void execute(ReplayState& state, const CmdBeginRenderPass& command) {
-  state.clipped_instance = command;
-  state.clipped_instance.area = clip(command.area, command.framebuffer->width, command.framebuffer->height);
-  state.instance = &state.clipped_instance;
+  state.instance = &command;
   state.subpass = 0;
   state.views_loaded.assign(command.render_pass->attachments.size(), 0);
   begin_subpass(state);
@@ -165,14 +145,14 @@ void execute(ReplayState& state, const CmdBeginRenderPass& command) {
 
 void execute(ReplayState& state, const CmdNextSubpass&) {
   if (!state.instance || state.subpass + 1 >= state.instance->render_pass->subpasses.size()) return;
-  end_subpass(state);
+  end_scope(state);
   ++state.subpass;
   begin_subpass(state);
 }
 
 void execute(ReplayState& state, const CmdEndRenderPass&) {
   if (!state.instance) return;
-  end_subpass(state);
+  end_scope(state);
   state.instance = nullptr;
 }
 

@@ -41,6 +41,26 @@ struct BoundBuffer {
   std::uint64_t size = 0;
 };
 
+/// A resolve that is due when a scope ends.
+struct PendingResolve {
+  const ImageView* source = nullptr;
+  const ImageView* target = nullptr;
+  VkImageAspectFlagBits aspect = VK_IMAGE_ASPECT_COLOR_BIT;
+};
+
+/// What draws go to: one subpass of a render pass instance, or a dynamic rendering instance.
+struct DrawScope {
+  VkRect2D area{};  ///< inside the attachments
+  std::uint32_t layers = 1;
+  std::uint32_t view_mask = 0;
+  std::array<PendingResolve, raster::kMaxColorAttachments + 2> resolve{};
+  std::uint32_t resolve_count = 0;
+
+  void add_resolve(const PendingResolve& r) {
+    if (r.source && r.target && resolve_count < resolve.size()) resolve[resolve_count++] = r;
+  }
+};
+
 /// Parts of `draw` that no longer say what is bound.
 enum DirtyBit : std::uint32_t {
   kDirtyState = 1u << 0,
@@ -72,10 +92,10 @@ struct ReplayState {
   raster::DrawCall draw;  ///< up to date but for `dirty` and the numbers of the draw itself
 
   // The render pass instance
-  const CmdBeginRenderPass* instance = nullptr;  ///< null: outside
-  CmdBeginRenderPass clipped_instance{};         ///< the command, its area inside the framebuffer
+  const CmdBeginRenderPass* instance = nullptr;  ///< null: outside, or dynamic rendering
   std::uint32_t subpass = 0;
-  std::optional<raster::Pass> pass;
+  DrawScope scope;                   ///< while there is a pass
+  std::optional<raster::Pass> pass;  ///< none: outside
 
   raster::QueryCounters counters;  ///< of active queries
   Vector<PendingQuery> pending_queries;
@@ -123,6 +143,8 @@ void execute(ReplayState& state, const CmdDispatchIndirect& command);
 void execute(ReplayState& state, const CmdBeginRenderPass& command);
 void execute(ReplayState& state, const CmdNextSubpass& command);
 void execute(ReplayState& state, const CmdEndRenderPass& command);
+void execute(ReplayState& state, const CmdBeginRendering& command);
+void execute(ReplayState& state, const CmdEndRendering& command);
 void execute(ReplayState& state, const CmdClearAttachments& command);
 void execute(ReplayState& state, const CmdExecuteCommands& command);
 void execute(ReplayState& state, const CmdCopyBuffer& command);

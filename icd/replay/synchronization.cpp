@@ -12,8 +12,8 @@ namespace {
 /// "If a query is used in a subpass with N views, N consecutive query indices are used": the first counts everything,
 /// the others stay 0.
 std::uint32_t query_indices(const ReplayState& state) {
-  if (!state.instance) return 1;
-  const std::uint32_t views = state.instance->render_pass->subpasses[state.subpass].view_mask;
+  if (!state.pass) return 1;
+  const std::uint32_t views = state.scope.view_mask;
   return views ? static_cast<std::uint32_t>(std::popcount(views)) : 1;
 }
 

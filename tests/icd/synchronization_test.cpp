@@ -54,6 +54,115 @@ TEST_F(Synchronization, LosingTheDeviceEndsEveryWait) {
   VK_GET(instance, DestroyFence)(device, fence, nullptr);
 }
 
+class TimelineSemaphore : public DeviceTest {
+ protected:
+  void SetUp() override {
+    DeviceTest::SetUp();
+    VK_GET(instance, GetDeviceQueue)(device, 0, 0, &queue);
+  }
+  void TearDown() override {
+    for (const VkSemaphore semaphore : semaphores) VK_GET(instance, DestroySemaphore)(device, semaphore, nullptr);
+    DeviceTest::TearDown();
+  }
+  VkSemaphore make(std::uint64_t value) {
+    auto type = make_struct<VkSemaphoreTypeCreateInfo>();
+    type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+    type.initialValue = value;
+    const auto info = make_struct<VkSemaphoreCreateInfo>(&type);
+    VkSemaphore out;
+    EXPECT_EQ(VK_GET(instance, CreateSemaphore)(device, &info, nullptr, &out), VK_SUCCESS);
+    semaphores.push_back(out);
+    return out;
+  }
+  std::uint64_t value_of(VkSemaphore semaphore) {
+    std::uint64_t value = 0;
+    EXPECT_EQ(VK_GET(instance, GetSemaphoreCounterValueKHR)(device, semaphore, &value), VK_SUCCESS);
+    return value;
+  }
+  VkResult signal(VkSemaphore semaphore, std::uint64_t value) {
+    auto info = make_struct<VkSemaphoreSignalInfo>();
+    info.semaphore = semaphore;
+    info.value = value;
+    return VK_GET(instance, SignalSemaphoreKHR)(device, &info);
+  }
+  VkResult wait(std::initializer_list<VkSemaphore> list, std::initializer_list<std::uint64_t> values,
+                std::uint64_t timeout, VkSemaphoreWaitFlags flags = 0) {
+    auto info = make_struct<VkSemaphoreWaitInfo>();
+    info.flags = flags;
+    info.semaphoreCount = static_cast<std::uint32_t>(list.size());
+    info.pSemaphores = list.begin();
+    info.pValues = values.begin();
+    return VK_GET(instance, WaitSemaphoresKHR)(device, &info, timeout);
+  }
+  /// A batch without commands that waits and then signals.
+  VkResult submit(VkSemaphore waits, std::uint64_t wait_value, VkSemaphore signals, std::uint64_t signal_value) {
+    auto values = make_struct<VkTimelineSemaphoreSubmitInfo>();
+    values.waitSemaphoreValueCount = values.signalSemaphoreValueCount = 1;
+    values.pWaitSemaphoreValues = &wait_value;
+    values.pSignalSemaphoreValues = &signal_value;
+    const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+    auto info = make_struct<VkSubmitInfo>(&values);
+    info.waitSemaphoreCount = info.signalSemaphoreCount = 1;
+    info.pWaitSemaphores = &waits;
+    info.pSignalSemaphores = &signals;
+    info.pWaitDstStageMask = &stage;
+    return VK_GET(instance, QueueSubmit)(queue, 1, &info, VK_NULL_HANDLE);
+  }
+
+  static constexpr std::uint64_t kForever = ~std::uint64_t{0};
+  VkQueue queue = VK_NULL_HANDLE;
+  std::vector<VkSemaphore> semaphores;
+};
+
+TEST_F(TimelineSemaphore, CountsOnTheHost) {
+  const VkSemaphore a = make(7), b = make(0);
+  EXPECT_EQ(value_of(a), 7u);
+  EXPECT_EQ(wait({a, b}, {7, 1}, 0), VK_TIMEOUT);
+  EXPECT_EQ(wait({a, b}, {7, 1}, 0, VK_SEMAPHORE_WAIT_ANY_BIT), VK_SUCCESS);
+  EXPECT_EQ(signal(b, kForever - 1), VK_SUCCESS);
+  EXPECT_EQ(wait({a, b}, {7, 1}, 0), VK_SUCCESS);
+  EXPECT_EQ(value_of(b), kForever - 1);
+}
+
+TEST_F(TimelineSemaphore, ABatchMayWaitForWhatIsSignalledLater) {
+  const VkSemaphore a = make(0), b = make(0);
+  ASSERT_EQ(submit(a, 3, b, 1), VK_SUCCESS) << "must not block";
+  ASSERT_EQ(submit(a, 5, b, 2), VK_SUCCESS);
+  EXPECT_EQ(wait({b}, {1}, 1000), VK_TIMEOUT);
+  std::thread signaller([&] {
+    signal(a, 4);
+    wait({b}, {1}, kForever);
+    signal(a, 5);
+  });
+  EXPECT_EQ(wait({b}, {2}, kForever), VK_SUCCESS);
+  signaller.join();
+  EXPECT_EQ(VK_GET(instance, QueueWaitIdle)(queue), VK_SUCCESS);
+  EXPECT_EQ(value_of(b), 2u);
+}
+
+TEST_F(TimelineSemaphore, TwoThreadsPassABatonThroughTheQueue) {
+  const VkSemaphore a = make(0), b = make(0);
+  constexpr std::uint64_t kRounds = 200;
+  std::thread other([&] {
+    for (std::uint64_t i = 1; i <= kRounds; ++i) {
+      EXPECT_EQ(wait({b}, {i}, kForever), VK_SUCCESS);
+      if (i < kRounds) signal(a, i + 1);
+    }
+  });
+  for (std::uint64_t i = 1; i <= kRounds; ++i) ASSERT_EQ(submit(a, i, b, i), VK_SUCCESS);
+  EXPECT_EQ(signal(a, 1), VK_SUCCESS);
+  other.join();
+  EXPECT_EQ(VK_GET(instance, QueueWaitIdle)(queue), VK_SUCCESS);
+}
+
+TEST_F(TimelineSemaphore, LosingTheDeviceEndsWaits) {
+  const VkSemaphore a = make(0), b = make(0);
+  ASSERT_EQ(submit(a, 1, b, 1), VK_SUCCESS);
+  std::thread loser([&] { lose_device(from_handle<icd::Device>(device), "a test"); });
+  EXPECT_EQ(wait({b}, {1}, kForever), VK_ERROR_DEVICE_LOST);
+  loser.join();
+}
+
 VKAPI_ATTR VkBool32 VKAPI_CALL remember(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   *static_cast<std::string*>(user) += data->pMessage;
