@@ -25,6 +25,9 @@ void* allocate_or_throw(std::size_t size, std::size_t alignment) {
   return memory;
 }
 
+/// Not inlined: the compiler would see new-expressions end in free() and warn.
+[[gnu::noinline]] void give_back(void* memory) { std::free(memory); }
+
 constexpr std::uint32_t kSize = 160;  // pixels per side: several tiles, so that workers take part
 
 #define VK_TRY(call)                                         \
@@ -378,7 +381,7 @@ void* operator new(std::size_t size) { return vitrine::icd::test::allocate_or_th
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return vitrine::icd::test::allocate_or_throw(size, static_cast<std::size_t>(alignment));
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept { vitrine::icd::test::give_back(memory); }
+void operator delete(void* memory, std::size_t) noexcept { vitrine::icd::test::give_back(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { vitrine::icd::test::give_back(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { vitrine::icd::test::give_back(memory); }
