@@ -5,6 +5,7 @@
 
 #include "base/float_mode.h"
 #include "raster/blend.h"
+#include "raster/block.h"
 #include "texel/codec/unorm_attachment.h"
 
 namespace vitrine::raster {
@@ -282,6 +283,7 @@ ColorWriter make_color_writer(VkFormat format, const BlendAttachment& blend, con
   ColorWriter writer = make_general_color_writer(format, blend, state);
   if (writer.function) {
     if (const ColorFunction fast = fast_color_function(writer)) writer.function = fast;
+    writer.block = block_color_functions(writer);
   }
   return writer;
 }

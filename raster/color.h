@@ -28,6 +28,7 @@ struct BlendEquation {
 };
 
 struct ColorWriter;
+struct BlockColorFunctions;  // raster/block.h
 
 /// One attachment of one wave: everything a writer's function needs.
 struct ColorWave {
@@ -44,7 +45,8 @@ using ColorFunction = void (*)(const ColorWriter& writer, const ColorWave& wave)
 
 /// How fragments reach one colour attachment, decided once per draw. Trivially copyable.
 struct ColorWriter {
-  ColorFunction function = nullptr;  ///< null: nothing is written
+  ColorFunction function = nullptr;            ///< null: nothing is written
+  const BlockColorFunctions* block = nullptr;  ///< for whole blocks; null: `function` does them too
   const texel::FormatDesc* format = nullptr;
   BlendType blend = BlendType::kNone;
   BlendEquation rgb, alpha;

@@ -72,10 +72,6 @@ HWY_INLINE void extract(const Words& words, int shift, Bytes& bytes) {
   }
 }
 
-int shift_of(const ColorWriter& writer, std::size_t component) {
-  return writer.format->channel[static_cast<std::size_t>(writer.format->rgba[component])].offset;
-}
-
 HWY_INLINE std::uint32_t write_word(const ColorWriter& writer) {
   std::uint32_t word;
   std::memcpy(&word, writer.write_bits.bytes.data(), sizeof(word));
@@ -299,8 +295,6 @@ ByteColorFunctions byte_color_functions() {
   return HWY_DYNAMIC_DISPATCH(byte_functions)();
 }
 
-namespace {
-
 bool is_four_bytes(const texel::FormatDesc& format) {
   if (format.channel_count != 4 || format.block_bytes != 4) return false;
   for (std::size_t c = 0; c < 4; ++c) {
@@ -309,6 +303,15 @@ bool is_four_bytes(const texel::FormatDesc& format) {
   }
   return true;
 }
+
+bool reads_second_source(const ColorWriter& writer) {
+  for (const VkBlendFactor factor : {writer.rgb.src, writer.rgb.dst, writer.alpha.src, writer.alpha.dst}) {
+    if (factor >= VK_BLEND_FACTOR_SRC1_COLOR) return true;
+  }
+  return false;
+}
+
+namespace {
 
 /// 32-bit floats and integers are stored as they are.
 void store_words(const ColorWriter& writer, const ColorWave& wave) {
@@ -331,20 +334,13 @@ bool is_words(const texel::FormatDesc& format) {
   return format.channel_count != 0;
 }
 
-bool dual_source(const ColorWriter& writer) {
-  for (const VkBlendFactor factor : {writer.rgb.src, writer.rgb.dst, writer.alpha.src, writer.alpha.dst}) {
-    if (factor >= VK_BLEND_FACTOR_SRC1_COLOR) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 ColorFunction fast_color_function(const ColorWriter& writer) {
   if (writer.logic) return nullptr;
   if (is_four_bytes(*writer.format)) {
     if (writer.blend == BlendType::kNone) return byte_color_functions().store;
-    return dual_source(writer) ? nullptr : byte_color_functions().blend;
+    return reads_second_source(writer) ? nullptr : byte_color_functions().blend;
   }
   if (writer.blend == BlendType::kNone && !writer.masked && is_words(*writer.format)) return store_words;
   return nullptr;

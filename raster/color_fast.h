@@ -11,6 +11,16 @@ struct ByteColorFunctions {
 };
 ByteColorFunctions byte_color_functions();
 
+/// Four UNORM bytes, in any order.
+bool is_four_bytes(const texel::FormatDesc& format);
+/// Whether a blend factor is a dual-source one.
+bool reads_second_source(const ColorWriter& writer);
+
+/// Position of a component's byte in the texel of such a format, bits.
+inline int shift_of(const ColorWriter& writer, std::size_t component) {
+  return writer.format->channel[static_cast<std::size_t>(writer.format->rgba[component])].offset;
+}
+
 /// Splits a wave's quads so that no pass meets a pixel twice: calls pass(quad mask: bit q = quad q) in lane order.
 /// Quads are compared modulo 64 pixels, which at worst makes a pass more than needed.
 template <class F>

@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "raster/depth_formats-inl.h"
 #include "raster/lane_bits-inl.h"
 
 #ifndef VITRINE_RASTER_DEPTH_STENCIL_ONCE
@@ -36,115 +37,14 @@ HWY_BEFORE_NAMESPACE();
 namespace vitrine::raster::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using base::HWY_NAMESPACE::lanes_cast;
 using base::HWY_NAMESPACE::lanes_mask_from_bits;
 using base::HWY_NAMESPACE::lanes_max_second;
 using base::HWY_NAMESPACE::lanes_min_second;
-using base::HWY_NAMESPACE::lanes_round_to_int;
 
 using F4 = hn::FixedTag<float, 4>;
-using I4 = hn::FixedTag<std::int32_t, 4>;
 using VF = hn::Vec<F4>;
 using VI = hn::Vec<I4>;
 using M4 = hn::Mask<I4>;
-
-/// Depth as stored: how it is encoded, loaded, stored, compared. Stored values of a quad as four lanes.
-struct D16 {
-  static constexpr int kBytes = 2;
-  static HWY_INLINE VI encode(VF z) {
-    const VF t = hn::Add(hn::Mul(z, hn::Set(F4(), static_cast<float>(65535.0 / 65536.0))), hn::Set(F4(), 128.0f));
-    return hn::And(lanes_cast<std::int32_t>(t), hn::Set(I4(), 0xffff));
-  }
-  static HWY_INLINE VI load(const std::byte* row0, const std::byte* row1) {
-    std::uint32_t low, high;
-    std::memcpy(&low, row0, 4);
-    std::memcpy(&high, row1, 4);
-    const auto texels = hn::Set(hn::FixedTag<std::uint64_t, 1>(), std::uint64_t{high} << 32 | low);
-    return hn::PromoteTo(I4(), hn::BitCast(hn::FixedTag<std::uint16_t, 4>(), texels));
-  }
-  static HWY_INLINE void store(VI v, std::byte* row0, std::byte* row1) {
-    const auto texels = hn::DemoteTo(hn::FixedTag<std::uint16_t, 4>(), v);
-    const std::uint64_t word = hn::GetLane(hn::BitCast(hn::FixedTag<std::uint64_t, 1>(), texels));
-    const auto low = static_cast<std::uint32_t>(word), high = static_cast<std::uint32_t>(word >> 32);
-    std::memcpy(row0, &low, 4);
-    std::memcpy(row1, &high, 4);
-  }
-};
-
-/// Halves are loaded and stored as halves: a whole vector assembled in memory would wait for its stores.
-using I2 = hn::FixedTag<std::int32_t, 2>;
-HWY_INLINE VI load_words(const std::byte* row0, const std::byte* row1) {
-  const auto top = hn::LoadU(I2(), reinterpret_cast<const std::int32_t*>(row0));
-  const auto bottom = hn::LoadU(I2(), reinterpret_cast<const std::int32_t*>(row1));
-  return hn::Combine(I4(), bottom, top);
-}
-HWY_INLINE void store_words(VI v, std::byte* row0, std::byte* row1) {
-  hn::StoreU(hn::LowerHalf(I2(), v), I2(), reinterpret_cast<std::int32_t*>(row0));
-  hn::StoreU(hn::UpperHalf(I2(), v), I2(), reinterpret_cast<std::int32_t*>(row1));
-}
-
-struct D24 {
-  static constexpr int kBytes = 4;
-  static HWY_INLINE VI encode(VF z) { return lanes_round_to_int(hn::Mul(z, hn::Set(F4(), 16777215.0f))); }
-  static HWY_INLINE VI load(const std::byte* row0, const std::byte* row1) {
-    return hn::And(load_words(row0, row1), hn::Set(I4(), 0xffffff));
-  }
-  static HWY_INLINE void store(VI v, std::byte* row0, std::byte* row1) { store_words(v, row0, row1); }
-};
-
-struct D32 {
-  static constexpr int kBytes = 4;
-  static HWY_INLINE VI encode(VF z) { return lanes_cast<std::int32_t>(z); }
-  static HWY_INLINE VI load(const std::byte* row0, const std::byte* row1) { return load_words(row0, row1); }
-  static HWY_INLINE void store(VI v, std::byte* row0, std::byte* row1) { store_words(v, row0, row1); }
-};
-
-/// Unsigned 24-bit values compare as signed ones; floats compare true when unordered, but for NEVER.
-template <class Format>
-HWY_INLINE M4 compare(VkCompareOp op, VI value, VI stored) {
-  const I4 d;
-  if constexpr (std::is_same_v<Format, D32>) {
-    const VF a = lanes_cast<float>(value), b = lanes_cast<float>(stored);
-    const auto mask = [&](auto m) { return hn::RebindMask(d, m); };
-    switch (op) {
-      case VK_COMPARE_OP_NEVER:
-        return hn::MaskFromVec(hn::Zero(d));
-      case VK_COMPARE_OP_LESS:
-        return mask(hn::Not(hn::Ge(a, b)));
-      case VK_COMPARE_OP_EQUAL:
-        return mask(hn::Not(hn::Or(hn::Lt(a, b), hn::Gt(a, b))));
-      case VK_COMPARE_OP_LESS_OR_EQUAL:
-        return mask(hn::Not(hn::Gt(a, b)));
-      case VK_COMPARE_OP_GREATER:
-        return mask(hn::Not(hn::Le(a, b)));
-      case VK_COMPARE_OP_NOT_EQUAL:
-        return mask(hn::Ne(a, b));
-      case VK_COMPARE_OP_GREATER_OR_EQUAL:
-        return mask(hn::Not(hn::Lt(a, b)));
-      default:
-        return hn::Not(hn::MaskFromVec(hn::Zero(d)));
-    }
-  } else {
-    switch (op) {
-      case VK_COMPARE_OP_NEVER:
-        return hn::MaskFromVec(hn::Zero(d));
-      case VK_COMPARE_OP_LESS:
-        return hn::Lt(value, stored);
-      case VK_COMPARE_OP_EQUAL:
-        return hn::Eq(value, stored);
-      case VK_COMPARE_OP_LESS_OR_EQUAL:
-        return hn::Not(hn::Gt(value, stored));
-      case VK_COMPARE_OP_GREATER:
-        return hn::Gt(value, stored);
-      case VK_COMPARE_OP_NOT_EQUAL:
-        return hn::Ne(value, stored);
-      case VK_COMPARE_OP_GREATER_OR_EQUAL:
-        return hn::Not(hn::Lt(value, stored));
-      default:
-        return hn::Not(hn::MaskFromVec(hn::Zero(d)));
-    }
-  }
-}
 
 /// A quad that sticks out of the image is worked on in a copy of its pixels.
 struct EdgeQuad {
@@ -191,8 +91,8 @@ HWY_INLINE std::uint32_t test_pair(const DepthPass& pass, const float* z, std::b
   VI right = hn::BitCast(d, hn::InterleaveUpper(halves, top, bottom));
   const VI left_value = Format::encode(hn::LoadU(F4(), z)), right_value = Format::encode(hn::LoadU(F4(), z + 4));
   if constexpr (std::is_same_v<Format, D24>) {
-    left = hn::And(left, hn::Set(d, 0xffffff));
-    right = hn::And(right, hn::Set(d, 0xffffff));
+    left = D24::value_of(left);
+    right = D24::value_of(right);
   }
   const M4 left_passed = compare<Format>(pass.compare, left_value, left);
   const M4 right_passed = compare<Format>(pass.compare, right_value, right);

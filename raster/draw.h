@@ -124,6 +124,7 @@ struct DrawCall {
   std::uint32_t first_instance = 0, instance_count = 1;
   std::uint32_t draw_index = 0;
   QueryCounters queries;
+  bool general_path = false;  ///< tests: without the fast paths, which must not be noticed otherwise
 };
 
 }  // namespace vitrine::raster

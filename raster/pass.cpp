@@ -141,7 +141,8 @@ struct Pass::Impl {
     record->call = call;
     const bool same = last && last->call.state == call.state && last->call.vertex == call.vertex &&
                       last->call.fragment == call.fragment && last->call.native_vertex == call.native_vertex &&
-                      last->call.native_fragment == call.native_fragment;
+                      last->call.native_fragment == call.native_fragment &&
+                      last->call.general_path == call.general_path;
     if (same) {
       record->plan = last->plan;
     } else {

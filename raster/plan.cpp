@@ -315,7 +315,7 @@ void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {
 }
 
 /// A fragment shader whose results nobody sees is not run.
-void plan_colors(PipelinePlan& plan, const PassDesc& pass) {
+void plan_colors(PipelinePlan& plan, const PassDesc& pass, bool general) {
   plan.color_count = std::min(pass.color_count, kMaxColorAttachments);
   const ShaderInterface* fragment = plan.fragment;
   plan.shades = fragment &&
@@ -334,10 +334,26 @@ void plan_colors(PipelinePlan& plan, const PassDesc& pass) {
       plan.replaces_colors = false;
       continue;
     }
-    plan.writer[i] = make_color_writer(format->format, plan.state->blend[i], *plan.state);
+    plan.writer[i] =
+        (general ? make_general_color_writer : make_color_writer)(format->format, plan.state->blend[i], *plan.state);
     plan.shades |= plan.writer[i].function != nullptr;
     plan.replaces_colors &= plan.writer[i].function != nullptr && !plan.writer[i].reads_destination();
   }
+}
+
+/// What the block path leaves to packed waves: whatever is rare and needs more than varyings and FragCoord.
+void plan_blocks(PipelinePlan& plan, bool general) {
+  plan.tests_rows = !general && !plan.stencil_test;
+  const FragmentRegisters& frag = plan.frag;
+  const bool rare_inputs = frag.point_coord[0] != kNoReg || frag.point_coord[1] != kNoReg || frag.sample_id != kNoReg ||
+                           frag.sample_position[0] != kNoReg || frag.sample_position[1] != kNoReg ||
+                           frag.sample_mask_in != kNoReg || frag.helper != kNoReg || frag.layer != kNoReg ||
+                           frag.view_index != kNoReg || (plan.off_center && plan.raster_samples > 1);
+  const bool rare_outputs = frag.depth != kNoReg || frag.stencil != kNoReg || frag.sample_mask != kNoReg ||
+                            plan.dual_source || plan.state->alpha_to_coverage || plan.state->alpha_to_one;
+  const bool late_stencil = plan.stencil_test && plan.depth_order == TestOrder::kLate;
+  plan.shades_blocks =
+      !general && plan.shades && !plan.sample_shading && !rare_inputs && !rare_outputs && !late_stencil;
 }
 
 }  // namespace
@@ -356,7 +372,8 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   // 8.2: with one sample only a mask of all zeros has an effect.
   if (plan.samples == 1 && draw.state->sample_mask != 0) plan.sample_mask = 1;
   plan_tests(plan, pass);
-  plan_colors(plan, pass);
+  plan_colors(plan, pass, draw.general_path);
+  plan_blocks(plan, draw.general_path);
   return plan.sample_mask != 0;
 }
 

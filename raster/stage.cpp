@@ -19,6 +19,9 @@ void StageRunner::bind(const Stage& stage) {
   if (stage.native) {
     grow(native_inputs_, stage.native->interface.inputs);
     grow(native_outputs_, stage.native->interface.outputs);
+    if (const std::uint32_t* values = stage.native->constants)
+      for (const spirv::InterfaceSlot& slot : stage.native->interface.outputs)
+        std::fill_n(native_outputs_[slot.reg].lane, base::kWaveWidth, values[slot.reg]);
   } else if (stage.bound) {
     runner_.bind(*stage.bound);
   }

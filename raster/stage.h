@@ -16,6 +16,8 @@ struct NativeShader {
   base::LaneMask (*run)(const void* user, const base::WaveRegister* inputs, base::WaveRegister* outputs,
                         base::LaneMask active, base::LaneMask helpers) = nullptr;
   const void* user = nullptr;
+  /// Values of all outputs by register, if they are the same in every lane and the shader does nothing else; or null.
+  const std::uint32_t* constants = nullptr;
 };
 
 /// What a draw runs in one stage; both null: no shader.
@@ -32,6 +34,10 @@ class StageRunner {
   base::WaveRegister& input(std::uint32_t reg) { return stage_.native ? native_inputs_[reg] : runner_.input(reg); }
   const base::WaveRegister& output(std::uint32_t reg) const {
     return stage_.native ? native_outputs_[reg] : runner_.output(reg);
+  }
+  /// Whether the stage computes nothing and output `reg` is the same in all lanes: valid without a run().
+  bool is_constant(std::uint32_t reg) const {
+    return stage_.native ? stage_.native->constants != nullptr : runner_.is_constant(reg);
   }
   base::LaneMask run(base::LaneMask active, base::LaneMask helpers) {
     if (stage_.native)

@@ -5,22 +5,12 @@
 #include <atomic>
 #include <bit>
 #include <cstring>
+#include <limits>
 
 #include "base/float_mode.h"
 
 namespace vitrine::raster {
 namespace {
-
-/// Coverage of one block by sample, in quad order.
-struct BlockCoverage {
-  base::LaneMask lanes[kMaxSamples];
-};
-
-base::LaneMask any_sample(const BlockCoverage& block, std::uint32_t samples) {
-  base::LaneMask any = block.lanes[0];
-  for (std::uint32_t s = 1; s < samples; ++s) any |= block.lanes[s];
-  return any;
-}
 
 /// Positions of the quads of a block.
 constexpr QuadPositions block_offsets() {
@@ -33,17 +23,24 @@ constexpr QuadPositions block_offsets() {
 }
 constexpr QuadPositions kBlockOffsets = block_offsets();
 
-void place_block(int x, int y, QuadPositions& out) {
-  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
-    out.x[q] = static_cast<std::uint16_t>(x + kBlockOffsets.x[q]);
-    out.y[q] = static_cast<std::uint16_t>(y + kBlockOffsets.y[q]);
-  }
+/// Whether rows of the block may be read and written without looking at their pixels.
+bool inside_attachments(const TileWorker& worker, int x, int y) {
+  return x + kBlockSize <= worker.target.right && y + kBlockSize <= worker.target.bottom;
 }
+
+std::uint64_t block_bit(int x, int y) { return std::uint64_t{1} << ((y >> 3 & 7) * 8 + (x >> 3 & 7)); }
 
 /// Tests a block before shading. Writes unless the test is only a preview of a late one.
 void test_early(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane, int x, int y,
                 BlockCoverage& block) {
   const PipelinePlan& plan = *worker.draw->plan;
+  if (plan.tests_rows && inside_attachments(worker, x, y)) {
+    for (std::uint32_t s = 0; s < plan.samples; ++s)
+      if (block.lanes[s])
+        block.lanes[s] =
+            test_block_sample(worker, primitive, plane, s, x, y, block.lanes[s], plan.depth_order == TestOrder::kEarly);
+    return;
+  }
   QuadPositions quads;
   place_block(x, y, quads);
   DepthRange range[base::kQuadsPerWave];
@@ -69,9 +66,6 @@ void test_early(TileWorker& worker, const Primitive& primitive, const DepthPlane
 /// A block none of whose quads is empty makes a wave of its own.
 void append_full_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
                        const BlockCoverage& block) {
-  // Quads of other primitives come first: they may lie on the same pixels.
-  if (worker.wave.quads != 0 && (worker.wave.slots != 1 || worker.wave.primitive[0] != &primitive))
-    shade_wave(worker, worker.wave);
   PackedWave& wave = worker.block;
   wave.quads = base::kQuadsPerWave;
   wave.slots = 1;
@@ -91,8 +85,11 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
   for (; quads != 0; quads &= quads - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(quads));
     const std::uint32_t q = wave.quads++;
-    if (q == 0)
+    if (q == 0) {
+      wave.blocks = 0;
       for (std::uint32_t s = 0; s < kMaxSamples; ++s) wave.coverage[s] = wave.rasterized[s] = 0;
+    }
+    wave.blocks |= block_bit(x, y);
     if (wave.slots == 0 || wave.primitive[wave.slots - 1] != &primitive) wave.primitive[wave.slots++] = &primitive;
     wave.slot[q] = static_cast<std::uint8_t>(wave.slots - 1);
     wave.position.x[q] = static_cast<std::uint16_t>(x + lane_x(lane));
@@ -104,6 +101,9 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
     if (wave.quads == base::kQuadsPerWave) shade_wave(worker, wave);
   }
 }
+
+/// Quads of a block from which on it is shaded on its own: fewer would waste more lanes than packing costs.
+constexpr std::uint32_t kNearlyFull = 12;
 
 /// A block with its coverage: tests that come first, then to the wave.
 void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane, int x, int y,
@@ -128,10 +128,19 @@ void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane
   constexpr base::LaneMask kLowestLanes = 0x1111111111111111;
   any |= any >> 1;
   const base::LaneMask quads = (any | any >> 2) & kLowestLanes;
-  if (quads == kLowestLanes)
-    append_full_block(worker, primitive, x, y, rasterized, block);
-  else
+  const bool whole = quads == kLowestLanes;
+  const bool alone = plan.shades_blocks && inside_attachments(worker, x, y) &&
+                     static_cast<std::uint32_t>(std::popcount(quads)) >= kNearlyFull;
+  if (!whole && !alone) {
     append_quads(worker, primitive, x, y, rasterized, block, quads);
+    return;
+  }
+  // Quads on the same pixels come first.
+  if (worker.wave.quads != 0 && (worker.wave.blocks & block_bit(x, y)) != 0) shade_wave(worker, worker.wave);
+  if (alone)
+    shade_block(worker, primitive, x, y, block);
+  else
+    append_full_block(worker, primitive, x, y, rasterized, block);
 }
 
 /// The part of a tile a primitive may cover, pixels relative to the tile.
@@ -167,6 +176,7 @@ void begin_draw(TileWorker& worker, const DrawRecord* draw) {
     worker.runner.bind(draw->fragment);
     worker.bound = draw->fragment;
   }
+  begin_blocks(worker);
 }
 
 void end_draw(TileWorker& worker) {
@@ -256,6 +266,14 @@ void set_target(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, 
   target.layer = tile / (grid.columns * grid.rows);
   target.x = static_cast<int>(in_layer % grid.columns) * kTileSize;
   target.y = static_cast<int>(in_layer / grid.columns) * kTileSize;
+  target.right = target.bottom = std::numeric_limits<int>::max();
+  const auto cut = [&](const texel::ImageView& view) {
+    if (!view.format) return;
+    target.right = std::min(target.right, static_cast<int>(view.level[0].extent.width));
+    target.bottom = std::min(target.bottom, static_cast<int>(view.level[0].extent.height));
+  };
+  for (std::uint32_t i = 0; i < pass.color_count; ++i) cut(pass.color[i]);
+  cut(pass.depth);
   for (std::uint32_t s = 0; s < std::clamp<std::uint32_t>(pass.samples, 1, kMaxSamples); ++s) {
     DepthStencilTarget& out = target.depth_stencil[s];
     out = {};
@@ -274,6 +292,13 @@ void set_target(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, 
 }
 
 }  // namespace
+
+void place_block(int x, int y, QuadPositions& out) {
+  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
+    out.x[q] = static_cast<std::uint16_t>(x + kBlockOffsets.x[q]);
+    out.y[q] = static_cast<std::uint16_t>(y + kBlockOffsets.y[q]);
+  }
+}
 
 void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   const PipelinePlan& plan = *worker.draw->plan;

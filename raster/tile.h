@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "raster/block.h"
 #include "raster/coverage.h"
 #include "raster/depth_stencil.h"
 #include "raster/interpolate.h"
@@ -30,10 +31,22 @@ struct TileItem {
   std::uint32_t count;
 };
 
+/// Coverage of one block by sample, in quad order.
+struct BlockCoverage {
+  base::LaneMask lanes[kMaxSamples];
+};
+
+inline base::LaneMask any_sample(const BlockCoverage& block, std::uint32_t samples) {
+  base::LaneMask any = block.lanes[0];
+  for (std::uint32_t s = 1; s < samples; ++s) any |= block.lanes[s];
+  return any;
+}
+
 /// Quads waiting to be shaded, of one draw.
 struct PackedWave {
   std::uint32_t quads = 0;
   std::uint32_t slots = 0;
+  std::uint64_t blocks = 0;  ///< blocks of the tile that have a quad here: bit 8 * row + column
   QuadPositions position;
   std::uint8_t slot[base::kQuadsPerWave];
   const Primitive* primitive[base::kQuadsPerWave];  ///< by slot
@@ -45,7 +58,16 @@ struct PackedWave {
 struct TileTarget {
   int x = 0, y = 0;  ///< first pixel
   std::uint32_t layer = 0;
+  int right = 0, bottom = 0;  ///< blocks that end at or before these columns and rows lie inside all attachments
   DepthStencilTarget depth_stencil[kMaxSamples];
+};
+
+/// What whole blocks of a draw share (block_shade.cpp).
+struct BlockDraw {
+  bool solid = false;                 ///< every fragment has the colours `color`: the shader need not run
+  std::vector<BlockVarying> varying;  ///< perspective ones, then linear ones
+  std::size_t perspective = 0;
+  PackedBlock color[kMaxColorAttachments];
 };
 
 /// Working memory of one thread, kept between tiles.
@@ -55,6 +77,7 @@ struct TileWorker {
   const DrawRecord* draw = nullptr;  ///< of the packed wave
   PackedWave wave;                   ///< being packed
   PackedWave block;                  ///< one whole block, shaded at once
+  BlockDraw block_draw;
   StageRunner runner;
   Stage bound;
   PlaneSet planes[base::kQuadsPerWave];
@@ -73,6 +96,19 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
 
 /// Covers, tests early and packs one primitive (tile.cpp).
 void rasterize_primitive(TileWorker& worker, const Primitive& primitive);
+
+/// Prepares worker.block_draw for the draw just bound, if its plan shades blocks.
+void begin_blocks(TileWorker& worker);
+
+/// Shades, tests late and writes a block inside all attachments whose first pixel is (x, y), in the framebuffer.
+void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block);
+
+/// Positions of the quads of the block at (x, y).
+void place_block(int x, int y, QuadPositions& out);
+
+/// z of one sample of a block, as the block's depth test takes it.
+base::LaneMask test_block_sample(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane,
+                                 std::uint32_t sample, int x, int y, base::LaneMask lanes, bool write);
 
 /// Shades, tests and writes the quads of `wave`, one of the worker's; empties it (fragment.cpp).
 void shade_wave(TileWorker& worker, PackedWave& wave);

@@ -141,6 +141,9 @@ class WaveRunner {
   base::WaveRegister& input(std::uint32_t reg);
   const base::WaveRegister& output(std::uint32_t reg) const;
 
+  /// Whether the bound shader computes nothing and output `reg` is the same in all lanes: valid without a run().
+  bool is_constant(std::uint32_t reg) const;
+
   /// Runs the entry point for the lanes of `active`. `helpers` (a subset of `active`) execute for derivatives only:
   /// their stores and atomics have no effect. Returns the lanes of active & ~helpers that were not discarded.
   base::LaneMask run(base::LaneMask active, base::LaneMask helpers);

@@ -1,6 +1,7 @@
 // Shader, its binding to resources, and the memory of one wave.
 #include "spirv/shader.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <new>
 #include <utility>
@@ -62,6 +63,12 @@ base::WaveRegister& WaveRunner::input(std::uint32_t reg) {
 
 const base::WaveRegister& WaveRunner::output(std::uint32_t reg) const {
   return *reinterpret_cast<const base::WaveRegister*>(state_->wave.registers + std::size_t{reg} * kRegisterStride);
+}
+
+bool WaveRunner::is_constant(std::uint32_t reg) const {
+  const Program& program = state_->shader->shader().program();
+  return program.code.size() <= 1 && std::any_of(program.register_presets.begin(), program.register_presets.end(),
+                                                 [&](const Preset& p) { return p.to == reg * kRegisterStride; });
 }
 
 base::LaneMask WaveRunner::run(base::LaneMask active, base::LaneMask helpers) {

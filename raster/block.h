@@ -1,0 +1,79 @@
+// Whole 8x8 blocks of one primitive: the fast path beside packed waves. Attachments are read and written a row of eight
+// pixels at a time, and colours that are the same all over a draw are encoded once. Same bits as the general path
+// (tests compare them).
+//
+// Two orders of the 64 lanes of a block: quad order, in which waves are shaded (coverage.h), and row order, in which
+// pixels lie in memory: lane 8*y + x.
+#pragma once
+
+#include <cstdint>
+
+#include "base/lanes.h"
+#include "raster/color.h"
+#include "raster/depth_stencil.h"
+#include "raster/interpolate.h"
+
+namespace vitrine::raster {
+
+/// Quad order to row order: of each 16 bits, the two-bit units 0 1 2 3 4 5 6 7 (top and bottom of four quads) become
+/// 0 2 4 6 1 3 5 7.
+constexpr base::LaneMask rows_of_quads(base::LaneMask quads) {
+  const base::LaneMask inner = (quads ^ quads >> 2) & 0x0c0c0c0c0c0c0c0c;
+  quads ^= inner | inner << 2;
+  const base::LaneMask outer = (quads ^ quads >> 4) & 0x00f000f000f000f0;
+  return quads ^ (outer | outer << 4);
+}
+
+/// And back.
+constexpr base::LaneMask quads_of_rows(base::LaneMask rows) {
+  const base::LaneMask outer = (rows ^ rows >> 4) & 0x00f000f000f000f0;
+  rows ^= outer | outer << 4;
+  const base::LaneMask inner = (rows ^ rows >> 2) & 0x0c0c0c0c0c0c0c0c;
+  return rows ^ (inner | inner << 2);
+}
+
+/// The eight rows of a block of an attachment; all of them lie inside the image.
+struct BlockPixels {
+  std::byte* first;
+  std::uint64_t pitch;  ///< bytes
+};
+
+/// Colours of a block as an attachment stores them, in row order.
+struct alignas(64) PackedBlock {
+  std::uint32_t texel[base::kWaveWidth];
+};
+
+/// How blocks reach a colour attachment.
+struct BlockColorFunctions {
+  /// Four registers in quad order, converted.
+  void (*pack)(const ColorWriter& writer, const base::WaveRegister* color, PackedBlock& out);
+  /// Stores or blends the pixels of `rows` (row order).
+  void (*write)(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels, base::LaneMask rows);
+};
+
+/// The block functions for this writer, or null (color_block.cpp).
+const BlockColorFunctions* block_color_functions(const ColorWriter& writer);
+
+/// Depth test of the pixels of `rows` (row order) of a block whose first sample is at (x, y): the bits that
+/// evaluate_block_depth, clamp_depth and test_depth_stencil give. Returns what passed, in row order.
+struct BlockDepthTest {
+  DepthFormat format;
+  VkCompareOp compare;
+  bool write;
+  const DepthRange* clamp;  ///< null: no depth clamp
+};
+base::LaneMask test_block_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                                const BlockPixels& pixels, base::LaneMask rows);
+
+/// A plane to be evaluated over a block.
+struct BlockVarying {
+  std::uint32_t plane;
+  float* out;  ///< 64 lanes, quad order
+};
+
+/// fma(dady, y, fma(dadx, x, a0)) of `count` planes, the first pixel at (x, y), quad order; times `scale` per lane if
+/// given.
+void evaluate_block(const PlaneSet& planes, const BlockVarying* varying, std::size_t count, float x, float y,
+                    const float* scale);
+
+}  // namespace vitrine::raster

@@ -1,0 +1,196 @@
+// Shading of whole blocks without packing: varyings from plane equations into the shader's registers, the shader, late
+// depth test, rows of colours. Draws whose fragments all have the same colours skip the first two.
+#include <algorithm>
+#include <bit>
+
+#include "base/numeric.h"
+#include "raster/tile.h"
+
+namespace vitrine::raster {
+namespace {
+
+using base::LaneMask;
+using base::WaveRegister;
+
+float* as_floats(WaveRegister& reg) { return reinterpret_cast<float*>(reg.lane); }
+
+/// x and y of pixels as planes, so that FragCoord is evaluated like a varying.
+struct PositionPlanes {
+  PlaneSet planes{};
+  constexpr PositionPlanes() { planes.dadx[0] = planes.dady[1] = 1; }
+};
+constexpr PositionPlanes kPositionPlanes;
+
+bool is_one(const PlaneSet& planes, std::uint32_t plane) {
+  return planes.dadx[plane] == 0 && planes.dady[plane] == 0 && planes.a0[plane] == 1;
+}
+
+void set_varyings(TileWorker& worker, float x, float y) {
+  const PlaneSet& planes = worker.planes[0];
+  const BlockDraw& draw = worker.block_draw;
+  const float* scale = nullptr;
+  if (draw.perspective != 0 && !is_one(planes, kReciprocalWPlane)) {
+    const BlockVarying w{kReciprocalWPlane, worker.reciprocal_w};
+    evaluate_block(planes, &w, 1, x, y, nullptr);
+    reciprocal(worker.reciprocal_w, worker.reciprocal_w);
+    scale = worker.reciprocal_w;
+  }
+  const BlockVarying* linear = draw.varying.data() + draw.perspective;
+  if (scale) {
+    evaluate_block(planes, draw.varying.data(), draw.perspective, x, y, scale);
+    if (draw.varying.size() > draw.perspective)
+      evaluate_block(planes, linear, draw.varying.size() - draw.perspective, x, y, nullptr);
+  } else if (!draw.varying.empty()) {
+    evaluate_block(planes, draw.varying.data(), draw.varying.size(), x, y, nullptr);
+  }
+}
+
+void set_frag_coord(TileWorker& worker, const Primitive& primitive, int x, int y, float center) {
+  const auto& reg = worker.draw->plan->frag.frag_coord;
+  const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
+  for (std::uint32_t c = 0; c < 2; ++c)
+    if (reg[c] != kNoReg) {
+      const BlockVarying position{c, as_floats(worker.runner.input(reg[c]))};
+      evaluate_block(kPositionPlanes.planes, &position, 1, fx + 0.5f, fy + 0.5f, nullptr);
+    }
+  if (reg[2] != kNoReg) {
+    float* z = as_floats(worker.runner.input(reg[2]));
+    const BlockVarying depth{kDepthPlane, z};
+    evaluate_block(worker.planes[0], &depth, 1, fx + center, fy + center, nullptr);
+    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) z[lane] += primitive.depth_offset;
+  }
+  if (reg[3] != kNoReg) {
+    const BlockVarying w{kReciprocalWPlane, as_floats(worker.runner.input(reg[3]))};
+    evaluate_block(worker.planes[0], &w, 1, fx + center, fy + center, nullptr);
+  }
+}
+
+void splat(TileWorker& worker, std::uint32_t reg, std::uint32_t value) {
+  if (reg != kNoReg) std::fill_n(worker.runner.input(reg).lane, base::kWaveWidth, value);
+}
+
+void set_inputs(TileWorker& worker, const Primitive& primitive, int x, int y) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  if (worker.planes_of != &primitive) compute_planes(plan, primitive, worker.planes[0]);
+  worker.planes_of = &primitive;
+  const float center = plan.raster_samples > 1 ? 0.5f : 0.0f;
+  set_varyings(worker, static_cast<float>(x) + center, static_cast<float>(y) + center);
+  for (std::uint32_t k = plan.perspective_count + plan.linear_count; k < plan.varying_count(); ++k)
+    splat(worker, plan.varying[k].fragment_reg, base::bits_of(primitive.v[primitive.provoking][4 + k]));
+  set_frag_coord(worker, primitive, x, y, center);
+  splat(worker, plan.frag.front_facing, primitive.front ? ~0u : 0u);
+  splat(worker, plan.frag.primitive_id, primitive.id);
+}
+
+/// All lanes of quads with a lane in `lanes`.
+LaneMask whole_quads(LaneMask lanes) {
+  lanes |= lanes >> 1 & 0x5555555555555555;
+  lanes = (lanes | lanes >> 2) & 0x1111111111111111;
+  return lanes * 15;
+}
+
+/// The four registers of a colour, copied where they are not adjacent. Components that are not written are 0.
+const WaveRegister* collect_color(TileWorker& worker, const std::array<std::uint32_t, 4>& regs) {
+  const StageRunner& runner = worker.runner;
+  const bool adjacent = regs[0] != kNoReg && regs[1] == regs[0] + 1 && regs[2] == regs[0] + 2 && regs[3] == regs[0] + 3;
+  if (adjacent) return &runner.output(regs[0]);
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    if (regs[c] == kNoReg)
+      worker.color[c] = {};
+    else
+      worker.color[c] = runner.output(regs[c]);
+  }
+  return worker.color;
+}
+
+void write_block(TileWorker& worker, int x, int y, const LaneMask* kept) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  BlockDraw& draw = worker.block_draw;
+  for (std::uint32_t i = 0; i < plan.color_count; ++i) {
+    const texel::ImageView& view = worker.pass->color[i];
+    const ColorWriter& writer = plan.writer[i];
+    if (!writer.function || worker.target.layer >= view.layer_count) continue;
+    if (!writer.block) {
+      QuadPositions quads;
+      place_block(x, y, quads);
+      const WaveRegister* color = collect_color(worker, plan.frag.color[i]);
+      for (std::uint32_t s = 0; s < plan.samples; ++s)
+        write_color(writer, {&view, worker.target.layer, s, &quads, kept[s], color, nullptr});
+      continue;
+    }
+    if (!draw.solid) writer.block->pack(writer, collect_color(worker, plan.frag.color[i]), draw.color[i]);
+    for (std::uint32_t s = 0; s < plan.samples; ++s) {
+      if (!kept[s]) continue;
+      const BlockPixels pixels{
+          view.block(0, worker.target.layer, s, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0),
+          view.level[0].row_pitch};
+      writer.block->write(writer, draw.color[i], pixels, rows_of_quads(kept[s]));
+    }
+  }
+}
+
+}  // namespace
+
+void begin_blocks(TileWorker& worker) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  if (!plan.shades_blocks) return;
+  BlockDraw& draw = worker.block_draw;
+  draw.varying.clear();
+  draw.perspective = 0;
+  for (std::uint32_t k = 0; k < plan.perspective_count + plan.linear_count; ++k) {
+    if (plan.varying[k].fragment_reg == kNoReg) continue;
+    draw.varying.push_back({kFirstVaryingPlane + k, as_floats(worker.runner.input(plan.varying[k].fragment_reg))});
+    if (k < plan.perspective_count) ++draw.perspective;
+  }
+  draw.solid = !plan.may_kill && !plan.fragment->writes_memory;
+  for (std::uint32_t i = 0; i < plan.color_count; ++i)
+    for (const std::uint32_t reg : plan.frag.color[i])
+      if (plan.writer[i].function && reg != kNoReg) draw.solid = draw.solid && worker.runner.is_constant(reg);
+  if (!draw.solid) return;
+  for (std::uint32_t i = 0; i < plan.color_count; ++i)
+    if (const BlockColorFunctions* functions = plan.writer[i].block)
+      functions->pack(plan.writer[i], collect_color(worker, plan.frag.color[i]), draw.color[i]);
+}
+
+LaneMask test_block_sample(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane,
+                           std::uint32_t sample, int x, int y, LaneMask lanes, bool write) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const DepthStencilTarget& target = worker.target.depth_stencil[sample];
+  const bool located = plan.raster_samples > 1;
+  const float dx = located ? static_cast<float>(kSampleX[sample]) / 256 : 0.0f;
+  const float dy = located ? static_cast<float>(kSampleY[sample]) / 256 : 0.0f;
+  const ViewportTransform& viewport = plan.viewport[primitive.viewport];
+  const DepthRange range{viewport.z_min, viewport.z_max};
+  const BlockDepthTest test{target.format, plan.state->depth_compare, write && plan.depth_write,
+                            plan.state->depth_clamp ? &range : nullptr};
+  const std::uint64_t texel_bytes = target.format == DepthFormat::kD16 ? 2 : 4;
+  const BlockPixels pixels{
+      target.depth + static_cast<std::uint64_t>(y) * target.depth_pitch + static_cast<std::uint64_t>(x) * texel_bytes,
+      target.depth_pitch};
+  return quads_of_rows(test_block_depth(test, plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, pixels,
+                                        rows_of_quads(lanes)));
+}
+
+void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const LaneMask pixels = any_sample(block, plan.samples);
+  LaneMask alive = pixels;
+  if (!worker.block_draw.solid) {
+    set_inputs(worker, primitive, x, y);
+    const LaneMask active = plan.fragment->needs_helpers ? whole_quads(pixels) : pixels;
+    alive = worker.runner.run(active, active & ~pixels);
+  }
+  worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(pixels));
+  LaneMask kept[kMaxSamples];
+  for (std::uint32_t s = 0; s < plan.samples; ++s) {
+    kept[s] = block.lanes[s] & alive;
+    if (plan.depth_order == TestOrder::kLate && kept[s]) {
+      DepthPlane plane = compute_depth_plane(plan, primitive);
+      kept[s] = test_block_sample(worker, primitive, plane, s, x, y, kept[s], true);
+    }
+    worker.samples_passed += static_cast<std::uint64_t>(std::popcount(kept[s]));
+  }
+  write_block(worker, x, y, kept);
+}
+
+}  // namespace vitrine::raster
