@@ -1,15 +1,20 @@
-// The rows of ops.def and intrinsics.def as data.
+// The rows of ops.def, intrinsics.def and wide_ops.def as data.
 #include "spirv/ir.h"
 
 namespace vitrine::spirv::ir {
 namespace {
 
-constexpr char kF = 'F', kI = 'I', kU = 'U', kB = 'B';
+constexpr char kF = 'F', kI = 'I', kU = 'U', kB = 'B', kD = 'D', kL = 'L', kQ = 'Q';
 #define VITRINE_STRING(x) #x
 constexpr AluInfo kAluInfos[] = {
 #define VITRINE_ALU(name, sources, result, operands, effect) {#name, sources, k##result, VITRINE_STRING(operands)},
 #include "spirv/ops.def"
 #undef VITRINE_ALU
+};
+constexpr WideInfo kWideInfos[] = {
+#define VITRINE_WIDE(name, result, operands, effect) {#name, k##result, VITRINE_STRING(operands)},
+#include "spirv/wide_ops.def"
+#undef VITRINE_WIDE
 };
 #undef VITRINE_STRING
 
@@ -23,9 +28,14 @@ constexpr const char* kIntrinsicNames[] = {
 
 const AluInfo& alu_info(Op op) { return kAluInfos[static_cast<std::size_t>(op)]; }
 
+const WideInfo& wide_info(Op op) {
+  return kWideInfos[static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::kIntrinsicEnd) - 1];
+}
+
 const char* op_name(Op op) {
   if (op < Op::kAluCount) return alu_info(op).name;
-  if (op == Op::kAluCount || op >= Op::kCount) return "?";
+  if (is_wide(op)) return wide_info(op).name;
+  if (op == Op::kAluCount || op >= Op::kIntrinsicEnd) return "?";
   return kIntrinsicNames[static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::kAluCount) - 1];
 }
 

@@ -32,6 +32,10 @@ enum class Op : std::uint16_t {
 #define VITRINE_INTRINSIC(name, sources, result, effect) k##name,
 #include "spirv/intrinsics.def"
 #undef VITRINE_INTRINSIC
+  kIntrinsicEnd,
+#define VITRINE_WIDE(name, result, operands, effect) k##name,
+#include "spirv/wide_ops.def"
+#undef VITRINE_WIDE
   kCount,
 };
 
@@ -43,6 +47,16 @@ struct AluInfo {
 };
 /// Row of ops.def; `op` < kAluCount.
 const AluInfo& alu_info(Op op);
+/// Row of wide_ops.def.
+struct WideInfo {
+  const char* name;
+  char result;  ///< D L Q F I U B
+  const char* operands;
+};
+inline bool is_wide(Op op) { return op > Op::kIntrinsicEnd && op < Op::kCount; }
+const WideInfo& wide_info(Op op);
+/// Words of a number of this letter.
+constexpr std::uint32_t wide_words(char letter) { return letter == 'D' || letter == 'L' || letter == 'Q' ? 2 : 1; }
 /// Name of any op.
 const char* op_name(Op op);
 

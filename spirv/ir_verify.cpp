@@ -80,7 +80,17 @@ struct Verifier {
         return complain("front-end instruction left over");
       default:
         for (const Src& src : instr.src) use(src, 1);
+        if (is_wide(instr.op)) wide(instr);
     }
+  }
+
+  void wide(const Instr& instr) {
+    const WideInfo& info = wide_info(instr.op);
+    std::uint32_t words = 0;
+    for (const char* letter = info.operands; *letter != 0; letter++) words += wide_words(*letter);
+    if (instr.src.size() != words) complain(std::string(info.name) + ": number of sources");
+    if (instr.components != wide_words(info.result) || instr.boolean != (info.result == 'B'))
+      complain(std::string(info.name) + ": type of the result", instr.result);
   }
 
   void list(const NodeList& nodes, const std::vector<ValueId>* yields) {

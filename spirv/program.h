@@ -50,6 +50,13 @@ Handler alu_handler(ir::Op op, UniformSources uniform);
 /// result is written as word 0 / 1): preamble and wave-uniform scalars. Bits equal those of the wave handler.
 Handler alu_scalar_handler(ir::Op op);
 
+/// Set in an operand of a wide instruction (wide_ops.def) that lies in the uniform file.
+inline constexpr std::uint32_t kUniformPlace = 1;
+
+/// The handler of an op of wide_ops.def. Sources word by word in src[0..2] and extra[0], result in dst and, if it has
+/// two words, extra[1]; `scalar`: the result is in the uniform file (booleans: 0 / 1), as are all sources.
+Handler wide_handler(ir::Op op, bool scalar);
+
 /// What a running wave is: plain data. Registers lie in memory of the WaveRunner or of the compute dispatcher.
 struct Wave {
   std::byte* registers = nullptr;  ///< varying file, 64-byte aligned

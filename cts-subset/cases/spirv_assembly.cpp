@@ -7,9 +7,8 @@ namespace vitrine::cts {
 namespace {
 
 /// Runs 64 invocations of a body between buffers `in` (uint[]) and `out` (uint[]); %x is the input, %r must be set.
-void run_body(Run& run, const std::string& body, const std::string& types = "") {
-  const std::string text = R"(
-OpCapability Shader
+void run_body(Run& run, const std::string& body, const std::string& types = "", const std::string& capabilities = "") {
+  const std::string text = "OpCapability Shader\n" + capabilities + R"(
 %glsl = OpExtInstImport "GLSL.std.450"
 OpMemoryModel Logical GLSL450
 OpEntryPoint GLCompute %main "main" %id
@@ -176,6 +175,28 @@ CTS_CASE("spirv_assembly", "signed_and_unsigned_mixed") {
 %m = OpBitReverse %uint %k
 %r = OpBitCount %uint %m
 )");
+}
+
+CTS_CASE("spirv_assembly", "switch_on_64_bits") {
+  run.require(run.gpu.features.shaderInt64, "shaderInt64");
+  run_body(run, R"(
+%wide = OpUConvert %ulong %x
+%c = OpConvertUToF %float %wide
+%s = OpShiftLeftLogical %ulong %wide %u31
+OpSelectionMerge %done None
+OpSwitch %s %default 0 %zero 4294967296 %two 6442450944 %three
+%zero = OpLabel
+OpBranch %done
+%two = OpLabel
+OpBranch %done
+%three = OpLabel
+OpBranch %done
+%default = OpLabel
+OpBranch %done
+%done = OpLabel
+%r = OpPhi %uint %u1 %zero %u2 %two %u5 %three %n %default
+)",
+           "%ulong = OpTypeInt 64 0\n%u31 = OpConstant %uint 31\n", "OpCapability Int64\n");
 }
 
 CTS_CASE("spirv_assembly", "extended_arithmetic") {

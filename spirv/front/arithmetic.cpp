@@ -1,39 +1,24 @@
 // Arithmetic, bit, conversion, comparison and derivative instructions (SPIR-V 3.42.11, .13 to .16).
+#include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
 
 namespace vitrine::spirv::front {
 namespace {
 
-bool boolean_result(ir::Op op) { return ir::alu_info(op).result == 'B'; }
-
-/// Scalars next to vectors are repeated for every component.
-ir::Src fitted(const Translator& t, ir::ValueId value) {
-  return components(t, value) == 1 ? splat(value) : whole(value);
-}
-
-std::uint32_t result_components(const Translator& t, const Inst& inst) {
-  return leaf_info(t, inst.result_type).components;
-}
-
-ir::ValueId compare(Translator& t, const Inst& inst, ir::Op op, bool swapped, bool exact) {
+Expr compare(Translator& t, const Inst& inst, ir::Op op, bool swapped, bool exact) {
   const bool saved = std::exchange(t.exact, t.exact || exact);
-  const ir::ValueId a = scalar_or_vector(t, inst.operand(swapped ? 1 : 0));
-  const ir::ValueId b = scalar_or_vector(t, inst.operand(swapped ? 0 : 1));
-  const ir::ValueId result = emit(t, op, result_components(t, inst), true, {whole(a), whole(b)});
+  const Expr a = number_of(t, inst.operand(swapped ? 1 : 0)), b = number_of(t, inst.operand(swapped ? 0 : 1));
+  const Expr result = apply(op, {a, b});
   t.exact = saved;
   return result;
 }
 
-ir::ValueId negate(Translator& t, ir::ValueId value) {
-  return emit(t, ir::Op::kNotB, components(t, value), true, {whole(value)});
-}
+Expr negate(Expr value) { return apply(ir::Op::kNotB, {value}); }
 
 /// op(a, a) with b: both ordered (AndB of FEq) or some unordered (OrB of FNeu).
-ir::ValueId self_compare(Translator& t, ir::ValueId a, ir::ValueId b, ir::Op op, ir::Op join) {
-  const std::uint32_t n = components(t, a);
-  const ir::ValueId left = emit(t, op, n, true, {whole(a), whole(a)});
-  const ir::ValueId right = emit(t, op, n, true, {whole(b), whole(b)});
-  return emit(t, join, n, true, {whole(left), whole(right)});
+Expr self_compare(Expr a, Expr b, ir::Op op, ir::Op join) {
+  const Expr left = apply(op, {a, a});
+  return apply(join, {left, apply(op, {b, b})});
 }
 
 }  // namespace
@@ -42,90 +27,114 @@ void ignore(Translator&, const Inst&, ir::Op) {}
 
 void alu(Translator& t, const Inst& inst, ir::Op op) {
   const std::uint32_t sources = ir::alu_info(op).sources;
-  const std::size_t leaves = value_of(t, inst.operand(0)).leaves.size();
-  std::vector<ir::ValueId> results;
-  for (std::size_t leaf = 0; leaf < leaves; leaf++) {
-    std::vector<ir::Src> src;
-    std::uint32_t count = 0;
-    for (std::uint32_t i = 0; i < sources; i++) {
-      const Value& operand = value_of(t, inst.operand(i));
-      if (operand.leaves.size() != leaves) fail(inst, "operands differ in size");
-      src.push_back(whole(operand.leaves[leaf]));
-      count = std::max(count, components(t, operand.leaves[leaf]));
-    }
-    results.push_back(emit(t, op, count, boolean_result(op), std::move(src)));
+  std::vector<std::vector<Expr>> operands;
+  for (std::uint32_t i = 0; i < sources; i++) {
+    operands.push_back(leaf_numbers(t, value_of(t, inst.operand(i))));
+    if (operands[i].size() != operands[0].size()) fail(inst, "operands differ in size");
   }
-  set_value(t, inst, std::move(results));
+  std::vector<Expr> results;
+  for (std::size_t leaf = 0; leaf < operands[0].size(); leaf++) {
+    std::vector<Expr> parts;
+    for (const auto& operand : operands) parts.push_back(operand[leaf]);
+    results.push_back(front::apply(op, parts));
+  }
+  set_numbers(t, inst, results);
 }
 
 /// Operands after the first are scalars that apply to every component.
 void alu_scalar_tail(Translator& t, const Inst& inst, ir::Op op) {
-  std::vector<ir::Src> src{whole(scalar_or_vector(t, inst.operand(0)))};
-  for (std::uint32_t i = 1; i < ir::alu_info(op).sources; i++)
-    src.push_back(splat(scalar_or_vector(t, inst.operand(i))));
-  set_value(t, inst, emit(t, op, result_components(t, inst), false, std::move(src)));
+  std::vector<Expr> operands;
+  for (std::uint32_t i = 0; i < ir::alu_info(op).sources; i++) operands.push_back(number_of(t, inst.operand(i)));
+  set_number(t, inst, front::apply(op, operands));
+}
+
+/// Bits that a 32-bit operation counts or finds, as the result's type.
+void bit_count(Translator& t, const Inst& inst, ir::Op op) {
+  const Expr count = apply(op, {number_of(t, inst.operand(0))});
+  set_number(t, inst, convert_unsigned(count, static_cast<std::uint8_t>(number_type(t, inst.result_type).width)));
+}
+
+void convert_number(Translator& t, const Inst& inst, ir::Op) {
+  const Expr value = number_of(t, inst.operand(0));
+  const auto width = static_cast<std::uint8_t>(number_type(t, inst.result_type).width);
+  const auto converted = [&] {
+    switch (inst.op) {
+      case spv::Op::OpConvertFToU:
+        return float_to_int(value, width, false);
+      case spv::Op::OpConvertFToS:
+        return float_to_int(value, width, true);
+      case spv::Op::OpConvertSToF:
+        return int_to_float(value, width, true);
+      case spv::Op::OpConvertUToF:
+        return int_to_float(value, width, false);
+      case spv::Op::OpUConvert:
+        return convert_unsigned(value, width);
+      case spv::Op::OpSConvert:
+        return convert_signed(value, width);
+      default:
+        return convert_float(value, width);
+    }
+  };
+  set_number(t, inst, converted());
 }
 
 void compare_exact(Translator& t, const Inst& inst, ir::Op op) {
-  set_value(t, inst, compare(t, inst, op, false, true));
+  set_number(t, inst, compare(t, inst, op, false, true));
 }
 
 void compare_swapped(Translator& t, const Inst& inst, ir::Op op) {
-  set_value(t, inst, compare(t, inst, op, true, false));
+  set_number(t, inst, compare(t, inst, op, true, false));
 }
 
 void compare_swapped_exact(Translator& t, const Inst& inst, ir::Op op) {
-  set_value(t, inst, compare(t, inst, op, true, true));
+  set_number(t, inst, compare(t, inst, op, true, true));
 }
 
 void compare_negated(Translator& t, const Inst& inst, ir::Op op) {
-  set_value(t, inst, negate(t, compare(t, inst, op, false, op != ir::Op::kXorB)));
+  set_number(t, inst, negate(compare(t, inst, op, false, op != ir::Op::kXorB)));
 }
 
 void compare_swapped_negated(Translator& t, const Inst& inst, ir::Op op) {
-  set_value(t, inst, negate(t, compare(t, inst, op, true, true)));
+  set_number(t, inst, negate(compare(t, inst, op, true, true)));
 }
 
 void ordered_not_equal(Translator& t, const Inst& inst, ir::Op) {
-  const bool saved = std::exchange(t.exact, true);
-  const ir::ValueId a = scalar_or_vector(t, inst.operand(0)), b = scalar_or_vector(t, inst.operand(1));
-  const ir::ValueId differ = emit(t, ir::Op::kFNeu, components(t, a), true, {whole(a), whole(b)});
-  const ir::ValueId ordered = self_compare(t, a, b, ir::Op::kFEq, ir::Op::kAndB);
-  set_value(t, inst, emit(t, ir::Op::kAndB, components(t, a), true, {whole(differ), whole(ordered)}));
-  t.exact = saved;
+  const ExactScope exact(t);
+  const Expr a = number_of(t, inst.operand(0)), b = number_of(t, inst.operand(1));
+  const Expr differ = apply(ir::Op::kFNeu, {a, b});
+  set_number(t, inst, apply(ir::Op::kAndB, {differ, self_compare(a, b, ir::Op::kFEq, ir::Op::kAndB)}));
 }
 
 void unordered_equal(Translator& t, const Inst& inst, ir::Op) {
-  const bool saved = std::exchange(t.exact, true);
-  const ir::ValueId a = scalar_or_vector(t, inst.operand(0)), b = scalar_or_vector(t, inst.operand(1));
-  const ir::ValueId equal = emit(t, ir::Op::kFEq, components(t, a), true, {whole(a), whole(b)});
-  const ir::ValueId unordered = self_compare(t, a, b, ir::Op::kFNeu, ir::Op::kOrB);
-  set_value(t, inst, emit(t, ir::Op::kOrB, components(t, a), true, {whole(equal), whole(unordered)}));
-  t.exact = saved;
+  const ExactScope exact(t);
+  const Expr a = number_of(t, inst.operand(0)), b = number_of(t, inst.operand(1));
+  const Expr equal = apply(ir::Op::kFEq, {a, b});
+  set_number(t, inst, apply(ir::Op::kOrB, {equal, self_compare(a, b, ir::Op::kFNeu, ir::Op::kOrB)}));
 }
 
 void is_nan(Translator& t, const Inst& inst, ir::Op op) {
-  const bool saved = std::exchange(t.exact, true);
-  const ir::ValueId a = scalar_or_vector(t, inst.operand(0));
-  set_value(t, inst, emit(t, op, components(t, a), true, {whole(a), whole(a)}));
-  t.exact = saved;
+  const ExactScope exact(t);
+  const Expr a = number_of(t, inst.operand(0));
+  set_number(t, inst, apply(op, {a, a}));
 }
 
 void is_inf(Translator& t, const Inst& inst, ir::Op op) {
-  const ir::ValueId a = scalar_or_vector(t, inst.operand(0));
-  const ir::ValueId magnitude = emit(t, ir::Op::kFAbs, components(t, a), false, {whole(a)});
-  set_value(t, inst, emit(t, op, components(t, a), true, {whole(magnitude), splat(constant_u32(t, 0x7f800000))}));
+  const Expr magnitude = abs(number_of(t, inst.operand(0)));
+  const std::uint64_t infinity = magnitude.width == 64   ? 0x7ff0000000000000u
+                                 : magnitude.width == 16 ? 0x7c00u
+                                                         : 0x7f800000u;
+  set_number(t, inst, apply(op, {magnitude, constant_bits(t, infinity, magnitude.width)}));
 }
 
 void select(Translator& t, const Inst& inst, ir::Op) {
-  const ir::ValueId condition = scalar_or_vector(t, inst.operand(0));
+  const Expr condition = number_of(t, inst.operand(0));
   const Value &a = value_of(t, inst.operand(1)), &b = value_of(t, inst.operand(2));
   if (a.leaves.size() != b.leaves.size()) fail(inst, "operands differ in size");
   std::vector<ir::ValueId> results;
   for (std::size_t i = 0; i < a.leaves.size(); i++) {
     const bool boolean = is_boolean(t, a.leaves[i]);
     results.push_back(emit(t, boolean ? ir::Op::kSelectB : ir::Op::kSelect, components(t, a.leaves[i]), boolean,
-                           {fitted(t, condition), whole(a.leaves[i]), whole(b.leaves[i])}));
+                           {condition.src(), whole(a.leaves[i]), whole(b.leaves[i])}));
   }
   set_value(t, inst, std::move(results));
 }
@@ -139,41 +148,33 @@ void reduce_boolean(Translator& t, const Inst& inst, ir::Op op) {
 }
 
 void float_modulo(Translator& t, const Inst& inst, ir::Op round) {
-  const ir::ValueId a = scalar_or_vector(t, inst.operand(0)), b = scalar_or_vector(t, inst.operand(1));
-  const std::uint32_t n = components(t, a);
-  const ir::ValueId quotient = emit(t, ir::Op::kFDiv, n, false, {whole(a), whole(b)});
-  const ir::ValueId rounded = emit(t, round, n, false, {whole(quotient)});
-  const ir::ValueId product = emit(t, ir::Op::kFMul, n, false, {whole(b), whole(rounded)});
-  set_value(t, inst, emit(t, ir::Op::kFSub, n, false, {whole(a), whole(product)}));
+  const Expr a = number_of(t, inst.operand(0)), b = number_of(t, inst.operand(1));
+  const Expr rounded = apply(round, {a / b});
+  set_number(t, inst, a - b * rounded);
 }
 
 void extended_add(Translator& t, const Inst& inst, ir::Op carry) {
-  const ir::ValueId a = scalar_or_vector(t, inst.operand(0)), b = scalar_or_vector(t, inst.operand(1));
-  const ir::Op low = carry == ir::Op::kUAddCarry ? ir::Op::kIAdd : ir::Op::kISub;
-  const std::uint32_t n = components(t, a);
-  const ir::ValueId sum = emit(t, low, n, false, {whole(a), whole(b)});
-  set_value(t, inst, std::vector{sum, emit(t, carry, n, false, {whole(a), whole(b)})});
+  const Expr a = number_of(t, inst.operand(0)), b = number_of(t, inst.operand(1));
+  const Expr sum = apply(carry == ir::Op::kUAddCarry ? ir::Op::kIAdd : ir::Op::kISub, {a, b});
+  set_numbers(t, inst, std::array{sum, apply(carry, {a, b})});
 }
 
 void extended_multiply(Translator& t, const Inst& inst, ir::Op high) {
-  const ir::ValueId a = scalar_or_vector(t, inst.operand(0)), b = scalar_or_vector(t, inst.operand(1));
-  const std::uint32_t n = components(t, a);
-  const ir::ValueId low = emit(t, ir::Op::kIMul, n, false, {whole(a), whole(b)});
-  set_value(t, inst, std::vector{low, emit(t, high, n, false, {whole(a), whole(b)})});
+  const Expr a = number_of(t, inst.operand(0)), b = number_of(t, inst.operand(1));
+  const Expr low = apply(ir::Op::kIMul, {a, b});
+  set_numbers(t, inst, std::array{low, apply(high, {a, b})});
 }
 
+/// 7.4. Vulkan has bit fields of 32-bit numbers only.
 void bit_field_insert(Translator& t, const Inst& inst, ir::Op) {
-  const ir::ValueId base = scalar_or_vector(t, inst.operand(0)), value = scalar_or_vector(t, inst.operand(1));
-  const ir::ValueId offset = scalar_or_vector(t, inst.operand(2)), bits = scalar_or_vector(t, inst.operand(3));
-  const std::uint32_t n = components(t, base);
-  const ir::ValueId mask = emit(t, ir::Op::kBfiMask, 1, false, {whole(bits), whole(offset)});
-  const ir::ValueId inverse = emit(t, ir::Op::kNot, 1, false, {whole(mask)});
-  const ir::ValueId kept = emit(t, ir::Op::kAnd, n, false, {whole(base), splat(inverse)});
-  const ir::ValueId shifted = emit(t, ir::Op::kShl, n, false, {whole(value), splat(offset)});
-  const ir::ValueId added = emit(t, ir::Op::kAnd, n, false, {whole(shifted), splat(mask)});
-  const ir::ValueId joined = emit(t, ir::Op::kOr, n, false, {whole(kept), whole(added)});
-  const ir::ValueId all = emit(t, ir::Op::kULt, 1, true, {whole(constant_u32(t, 31)), whole(bits)});
-  set_value(t, inst, emit(t, ir::Op::kSelect, n, false, {splat(all), whole(value), whole(joined)}));
+  const Expr base = number_of(t, inst.operand(0)), value = number_of(t, inst.operand(1));
+  const Expr offset = number_of(t, inst.operand(2)), bits = number_of(t, inst.operand(3));
+  const Expr mask = apply(ir::Op::kBfiMask, {bits, offset});
+  const Expr kept = base & apply(ir::Op::kNot, {mask});
+  const Expr added = apply(ir::Op::kShl, {value, offset}) & mask;
+  const Expr joined = kept | added;
+  const Expr all = apply(ir::Op::kULt, {imm_u32(t, 31), bits});
+  set_number(t, inst, select(all, value, joined));
 }
 
 void derivative(Translator& t, const Inst& inst, ir::Op op) {
@@ -183,13 +184,10 @@ void derivative(Translator& t, const Inst& inst, ir::Op op) {
 
 void derivative_width(Translator& t, const Inst& inst, ir::Op) {
   t.function.interface.needs_helpers = true;
-  const ir::ValueId a = scalar_or_vector(t, inst.operand(0));
-  const std::uint32_t n = components(t, a);
-  const ir::ValueId dx = emit(t, ir::Op::kFDdx, n, false, {whole(a)});
-  const ir::ValueId abs_dx = emit(t, ir::Op::kFAbs, n, false, {whole(dx)});
-  const ir::ValueId dy = emit(t, ir::Op::kFDdy, n, false, {whole(a)});
-  const ir::ValueId abs_dy = emit(t, ir::Op::kFAbs, n, false, {whole(dy)});
-  set_value(t, inst, emit(t, ir::Op::kFAdd, n, false, {whole(abs_dx), whole(abs_dy)}));
+  const Expr a = number_of(t, inst.operand(0));
+  const Expr dx = abs(apply(ir::Op::kFDdx, {a}));
+  const Expr dy = abs(apply(ir::Op::kFDdy, {a}));
+  set_number(t, inst, dx + dy);
 }
 
 }  // namespace vitrine::spirv::front

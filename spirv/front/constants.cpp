@@ -1,6 +1,7 @@
-// Constants and specialization constants (SPIR-V 2.12), folded to 32-bit words. OpSpecConstantOp follows the constant
+// Constants and specialization constants (SPIR-V 2.12), folded to words. OpSpecConstantOp follows the constant
 // folding of the reference: division and remainder by zero give 0, shifts are masked (lavapipe-shader-math.md 7).
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -22,10 +23,39 @@ const SpecializationConstant* override_of(const Module& module, const Inst& inst
   return nullptr;
 }
 
-std::uint32_t override_word(const SpecializationConstant& row) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, row.bytes.data(), std::min<std::size_t>(4, row.bytes.size()));
-  return word;
+/// Width of the numbers that a type consists of: it is a scalar or vector.
+std::uint32_t width_of(const Module& module, std::uint32_t type_id) {
+  const Type& type = module.type(type_id);
+  return type.kind == Type::Kind::kVector ? module.type(type.element).width : type.width;
+}
+
+std::uint64_t cut(std::uint64_t bits, std::uint32_t width) {
+  return width >= 64 ? bits : bits & ((std::uint64_t{1} << width) - 1);
+}
+
+/// Words of one number.
+void push(Words& words, std::uint64_t bits, std::uint32_t width) {
+  words.push_back(static_cast<std::uint32_t>(cut(bits, width)));
+  if (width == 64) words.push_back(static_cast<std::uint32_t>(bits >> 32));
+}
+
+std::vector<std::uint64_t> numbers(const Words& words, std::uint32_t width) {
+  std::vector<std::uint64_t> values;
+  const std::size_t step = width == 64 ? 2 : 1;
+  for (std::size_t i = 0; i + step <= words.size(); i += step)
+    values.push_back(words[i] | (step == 2 ? std::uint64_t{words[i + 1]} << 32 : 0));
+  return values;
+}
+
+std::uint64_t override_bits(const SpecializationConstant& row) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, row.bytes.data(), std::min<std::size_t>(8, row.bytes.size()));
+  return bits;
+}
+
+/// The literal of an OpConstant or OpSpecConstant.
+std::uint64_t literal_bits(const Inst& inst, std::uint32_t width) {
+  return inst.operand(0) | (width == 64 ? std::uint64_t{inst.operand(1)} << 32 : 0);
 }
 
 const Constant& operand_constant(const Module& module, const Inst& inst, std::uint32_t i) {
@@ -44,37 +74,60 @@ Words composite(const Module& module, const Inst& inst) {
   return words;
 }
 
-std::int32_t as_int(std::uint32_t word) { return static_cast<std::int32_t>(word); }
+std::int64_t signed_of(std::uint64_t bits, std::uint32_t width) {
+  const std::uint32_t shift = 64 - width;
+  return static_cast<std::int64_t>(bits << shift) >> shift;
+}
 
-std::uint32_t signed_quotient(std::uint32_t a, std::uint32_t b) {
+std::uint64_t signed_quotient(std::int64_t a, std::int64_t b) {
   if (b == 0) return 0;
-  return b == UINT32_MAX ? 0u - a : static_cast<std::uint32_t>(as_int(a) / as_int(b));
+  return b == -1 ? 0 - static_cast<std::uint64_t>(a) : static_cast<std::uint64_t>(a / b);
 }
 
-std::uint32_t signed_remainder(std::uint32_t a, std::uint32_t b) {
-  return b == 0 || b == UINT32_MAX ? 0 : static_cast<std::uint32_t>(as_int(a) % as_int(b));
+std::int64_t signed_remainder(std::int64_t a, std::int64_t b) { return b == 0 || b == -1 ? 0 : a % b; }
+
+std::int64_t floored_remainder(std::int64_t a, std::int64_t b) {
+  const std::int64_t rest = signed_remainder(a, b);
+  return rest != 0 && (a < 0) != (b < 0) ? rest + b : rest;
 }
 
-std::uint32_t floored_remainder(std::uint32_t a, std::uint32_t b) {
-  const std::uint32_t rest = signed_remainder(a, b);
-  return rest != 0 && (as_int(a) < 0) != (as_int(b) < 0) ? rest + b : rest;
+double float_of_width(std::uint64_t bits, std::uint32_t width) {
+  if (width == 64) return std::bit_cast<double>(bits);
+  const auto word = static_cast<std::uint32_t>(bits);
+  return static_cast<double>(width == 16 ? base::half_to_float(static_cast<std::uint16_t>(word))
+                                         : base::float_of(word));
 }
 
-/// One component of a component-wise integer or boolean operation.
-std::uint32_t fold(const Inst& inst, Op op, std::uint32_t a, std::uint32_t b) {
+std::uint64_t bits_of_float(double value, std::uint32_t width) {
+  if (width == 64) return std::bit_cast<std::uint64_t>(value);
+  const float single = static_cast<float>(value);
+  return width == 16 ? base::float_to_half_nearest(single) : base::bits_of(single);
+}
+
+std::uint64_t quantize(std::uint64_t bits) {
+  const float value = base::float_of(static_cast<std::uint32_t>(bits));
+  const float half = base::half_to_float(base::float_to_half_nearest(value));
+  return std::fabs(half) < 0x1p-14f ? bits & 0x80000000u : base::bits_of(half);
+}
+
+/// One component of a component-wise integer or boolean operation. `width`: of the operands.
+std::uint64_t fold(const Inst& inst, Op op, std::uint64_t a, std::uint64_t b, std::uint32_t width,
+                   std::uint32_t result_width) {
+  const std::int64_t signed_a = signed_of(a, width), signed_b = signed_of(b, width);
+  const std::uint32_t count = static_cast<std::uint32_t>(b) & (width - 1);
   switch (op) {
     case Op::OpUConvert:
-    case Op::OpSConvert:
-    case Op::OpFConvert:
     case Op::OpBitcast:
     case Op::OpCopyObject:
       return a;
-    case Op::OpQuantizeToF16: {
-      const float half = base::half_to_float(base::float_to_half_nearest(base::float_of(a)));
-      return std::fabs(half) < 0x1p-14f ? a & 0x80000000u : base::bits_of(half);
-    }
+    case Op::OpSConvert:
+      return static_cast<std::uint64_t>(signed_a);
+    case Op::OpFConvert:
+      return width == result_width ? a : bits_of_float(float_of_width(a, width), result_width);
+    case Op::OpQuantizeToF16:
+      return quantize(a);
     case Op::OpSNegate:
-      return 0u - a;
+      return 0 - a;
     case Op::OpNot:
       return ~a;
     case Op::OpIAdd:
@@ -88,25 +141,23 @@ std::uint32_t fold(const Inst& inst, Op op, std::uint32_t a, std::uint32_t b) {
     case Op::OpUMod:
       return b == 0 ? 0 : a % b;
     case Op::OpSDiv:
-      return signed_quotient(a, b);
+      return signed_quotient(signed_a, signed_b);
     case Op::OpSRem:
-      return signed_remainder(a, b);
+      return static_cast<std::uint64_t>(signed_remainder(signed_a, signed_b));
     case Op::OpSMod:
-      return floored_remainder(a, b);
+      return static_cast<std::uint64_t>(floored_remainder(signed_a, signed_b));
     case Op::OpShiftRightLogical:
-      return a >> (b & 31);
+      return a >> count;
     case Op::OpShiftRightArithmetic:
-      return static_cast<std::uint32_t>(as_int(a) >> (b & 31));
+      return static_cast<std::uint64_t>(signed_a >> count);
     case Op::OpShiftLeftLogical:
-      return a << (b & 31);
+      return a << count;
     case Op::OpBitwiseOr:
+    case Op::OpLogicalOr:
       return a | b;
     case Op::OpBitwiseXor:
       return a ^ b;
     case Op::OpBitwiseAnd:
-      return a & b;
-    case Op::OpLogicalOr:
-      return a | b;
     case Op::OpLogicalAnd:
       return a & b;
     case Op::OpLogicalNot:
@@ -120,19 +171,19 @@ std::uint32_t fold(const Inst& inst, Op op, std::uint32_t a, std::uint32_t b) {
     case Op::OpUGreaterThan:
       return a > b;
     case Op::OpSGreaterThan:
-      return as_int(a) > as_int(b);
+      return signed_a > signed_b;
     case Op::OpUGreaterThanEqual:
       return a >= b;
     case Op::OpSGreaterThanEqual:
-      return as_int(a) >= as_int(b);
+      return signed_a >= signed_b;
     case Op::OpULessThan:
       return a < b;
     case Op::OpSLessThan:
-      return as_int(a) < as_int(b);
+      return signed_a < signed_b;
     case Op::OpULessThanEqual:
       return a <= b;
     case Op::OpSLessThanEqual:
-      return as_int(a) <= as_int(b);
+      return signed_a <= signed_b;
     default:
       fail(inst, "operation " + std::to_string(static_cast<unsigned>(op)) + " is not supported in a constant");
   }
@@ -176,23 +227,34 @@ Words spec_constant_op(const Module& module, const Inst& inst) {
     std::copy(a.words.begin(), a.words.end(), words.begin() + at);
     return words;
   }
+  const std::uint32_t width = width_of(module, a.type), result_width = width_of(module, inst.result_type);
+  if (width == 0 || result_width == 0) fail(inst, "operand is not a number");
+  const std::vector<std::uint64_t> first = numbers(a.words, width);
+  Words words;
   if (op == Op::OpVectorShuffle) {
-    Words both = a.words, words;
-    const Words& b = operand_constant(module, inst, 2).words;
-    both.insert(both.end(), b.begin(), b.end());
+    std::vector<std::uint64_t> both = first;
+    const std::vector<std::uint64_t> second = numbers(operand_constant(module, inst, 2).words, width);
+    both.insert(both.end(), second.begin(), second.end());
     for (std::uint32_t i = 3; inst.has(i); i++)
-      words.push_back(inst.operand(i) < both.size() ? both[inst.operand(i)] : 0);
+      push(words, inst.operand(i) < both.size() ? both[inst.operand(i)] : 0, width);
     return words;
   }
+  if (op == Op::OpSelect) {
+    const std::vector<std::uint64_t> yes = numbers(operand_constant(module, inst, 2).words, result_width);
+    const std::vector<std::uint64_t> no = numbers(operand_constant(module, inst, 3).words, result_width);
+    if (yes.size() != no.size()) fail(inst, "operands differ in size");
+    for (std::size_t i = 0; i < yes.size(); i++)
+      push(words, first[first.size() == 1 ? 0 : std::min(i, first.size() - 1)] != 0 ? yes[i] : no[i], result_width);
+    return words;
+  }
+  // Only the count of a shift may be of another width.
   const bool binary = inst.has(2);
-  Words words = op == Op::OpSelect ? operand_constant(module, inst, 2).words : a.words;
-  const Words& b = operand_constant(module, inst, op == Op::OpSelect ? 3 : binary ? 2 : 1).words;
-  if (b.size() != words.size()) fail(inst, "operands differ in size");
-  for (std::size_t i = 0; i < words.size(); i++)
-    if (op == Op::OpSelect)
-      words[i] = a.words[a.words.size() == 1 ? 0 : std::min(i, a.words.size() - 1)] ? words[i] : b[i];
-    else
-      words[i] = fold(inst, op, words[i], b[i]);
+  const Constant& b = operand_constant(module, inst, binary ? 2 : 1);
+  const std::vector<std::uint64_t> second = numbers(b.words, width_of(module, b.type));
+  if (second.size() != first.size()) fail(inst, "operands differ in size");
+  if (op == Op::OpBitcast && width != result_width) fail(inst, "size of the components changes");
+  for (std::size_t i = 0; i < first.size(); i++)
+    push(words, fold(inst, op, first[i], second[i], width, result_width), result_width);
   return words;
 }
 
@@ -213,15 +275,16 @@ void fold_constant(Module& module, const Inst& inst, const CompileOptions& optio
     case Op::OpSpecConstantTrue:
     case Op::OpSpecConstantFalse: {
       const SpecializationConstant* given = override_of(module, inst, options);
-      value.words = {given ? override_word(*given) != 0 : inst.op == Op::OpSpecConstantTrue};
+      const bool yes = given ? cut(override_bits(*given), 32) != 0 : inst.op == Op::OpSpecConstantTrue;
+      value.words = {yes};
       break;
     }
     case Op::OpConstant:
-      value.words = {inst.operand(0)};
+      push(value.words, literal_bits(inst, type.width), type.width);
       break;
     case Op::OpSpecConstant: {
       const SpecializationConstant* given = override_of(module, inst, options);
-      value.words = {given ? override_word(*given) : inst.operand(0)};
+      push(value.words, given ? override_bits(*given) : literal_bits(inst, type.width), type.width);
       break;
     }
     case Op::OpConstantComposite:

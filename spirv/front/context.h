@@ -13,7 +13,8 @@
 
 namespace vitrine::spirv::front {
 
-/// A SPIR-V value taken apart: its scalars and vectors (a matrix: its columns) in order.
+/// A SPIR-V value taken apart: its scalars and vectors (a matrix: its columns) in order; those of 64-bit numbers are
+/// two leaves, low and high words.
 struct Value {
   std::uint32_t type = 0;
   std::vector<ir::ValueId> leaves;
@@ -64,7 +65,7 @@ struct Pointer {
   std::uint32_t constant_offset = 0;  ///< plus these
   std::uint32_t matrix_stride = 0;
   bool row_major = false;
-  std::uint32_t component_stride = 4;  ///< bytes between components of a vector
+  std::uint32_t component_stride = 0;  ///< bytes between components of a vector; 0: adjacent
   // kDescriptor, kTexel
   ImageHandle image;
   ir::ValueId coord = ir::kNoValue, sample = ir::kNoValue;
@@ -178,9 +179,11 @@ ir::ValueId insert_dynamic(Translator& t, ir::ValueId vector, ir::ValueId scalar
 void check_leaf(const Translator& t, std::uint32_t type, ir::ValueId value);
 
 // ---- values.cpp
-/// Components and boolean-ness of a leaf type; fails on numbers that are not 32 bits wide.
+/// Components and boolean-ness of each leaf of a scalar or vector type (numbers of 64 bits have two leaves).
 ir::ValueInfo leaf_info(const Translator& t, std::uint32_t type);
-/// Calls f(leaf type id) for every leaf of a type in order.
+/// The type of a scalar, or of a vector's components.
+const Type& number_type(const Translator& t, std::uint32_t type);
+/// Appends the scalar or vector type of every leaf of a type in order.
 void leaf_types(const Translator& t, std::uint32_t type, std::vector<std::uint32_t>& leaves);
 /// Value of an id: constants and results.
 const Value& value_of(Translator& t, std::uint32_t id);
@@ -188,6 +191,8 @@ const Value& value_of(Translator& t, std::uint32_t id);
 ir::ValueId scalar_or_vector(Translator& t, std::uint32_t id);
 /// Value of an id that is `count` numbers; fails on anything else.
 ir::ValueId number(Translator& t, std::uint32_t id, std::uint32_t count = 1);
+/// Value of an id that is an integer scalar of any width, as a 32-bit word: an index or a selector.
+ir::ValueId index_word(Translator& t, std::uint32_t id);
 /// Value of an id that is one boolean.
 ir::ValueId condition(Translator& t, std::uint32_t id);
 void set_value(Translator& t, const Inst& inst, std::vector<ir::ValueId> leaves);

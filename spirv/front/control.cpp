@@ -1,6 +1,7 @@
 // Structured control flow (SPIR-V 2.11): blocks become the tree of ir.h. Selections become If, loops Loop, switches a
 // sequence of Ifs; calls are inlined. Phis are variables written on the edges. Jumps that the tree has no form for
 // (leaving a switch or a function early) are Exit instructions, which exits.cpp turns into structure.
+#include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
 
 namespace vitrine::spirv::front {
@@ -131,11 +132,12 @@ void build_if(Translator& t, const Block& block, const Inst& branch) {
 struct Case {
   std::uint32_t label = 0;
   bool is_default = false;
-  std::vector<std::uint32_t> literals;
+  std::vector<std::uint64_t> literals;
   ir::NodeList body;
 };
 
-std::vector<Case> read_cases(const Inst& inst) {
+/// Literals have as many words as the selector.
+std::vector<Case> read_cases(const Inst& inst, std::uint8_t width) {
   std::vector<Case> cases;
   auto find = [&](std::uint32_t label) -> Case& {
     for (Case& c : cases)
@@ -145,7 +147,12 @@ std::vector<Case> read_cases(const Inst& inst) {
     return cases.back();
   };
   find(inst.operand(1)).is_default = true;
-  for (std::uint32_t i = 2; i + 1 < inst.count(); i += 2) find(inst.operand(i + 1)).literals.push_back(inst.operand(i));
+  const std::uint32_t words = width == 64 ? 2 : 1;
+  for (std::uint32_t i = 2; i + words < inst.count(); i += words + 1) {
+    std::uint64_t literal = inst.operand(i);
+    if (words == 2) literal |= std::uint64_t{inst.operand(i + 1)} << 32;
+    find(inst.operand(i + words)).literals.push_back(width < 32 ? literal & ((1u << width) - 1) : literal);
+  }
   return cases;
 }
 
@@ -154,7 +161,7 @@ ir::ValueId any_of(Translator& t, ir::ValueId a, ir::ValueId b) {
 }
 
 /// Conditions of all cases, default last: none of the literals that lead elsewhere.
-std::vector<ir::ValueId> case_conditions(Translator& t, ir::ValueId selector, const std::vector<Case>& cases) {
+std::vector<ir::ValueId> case_conditions(Translator& t, const Expr& selector, const std::vector<Case>& cases) {
   std::vector<ir::ValueId> conditions(cases.size(), ir::kNoValue);
   ir::ValueId others = ir::kNoValue;
   std::size_t default_index = 0;
@@ -163,9 +170,9 @@ std::vector<ir::ValueId> case_conditions(Translator& t, ir::ValueId selector, co
       default_index = i;
       continue;
     }
-    for (std::uint32_t literal : cases[i].literals)
+    for (std::uint64_t literal : cases[i].literals)
       conditions[i] =
-          any_of(t, conditions[i], emit(t, ir::Op::kIEq, 1, true, {whole(selector), whole(constant_u32(t, literal))}));
+          any_of(t, conditions[i], apply(ir::Op::kIEq, {selector, constant_bits(t, literal, selector.width)}).id);
     others = any_of(t, others, conditions[i]);
   }
   conditions[default_index] =
@@ -228,9 +235,9 @@ bool stores_flag(const Translator& t, const ir::NodeList& list, std::uint32_t fl
 }
 
 void build_switch(Translator& t, const Block& block, const Inst& inst) {
-  if (t.module.type(t.module.def(inst.operand(0)).result_type).width != 32) fail(inst, "selector is not 32 bits wide");
-  const ir::ValueId selector = number(t, inst.operand(0));
-  std::vector<Case> cases = read_cases(inst);
+  const Expr selector = number_of(t, inst.operand(0));
+  if (selector.size() != 1 || is_boolean(t, selector.id)) fail(inst, "selector is not an integer");
+  std::vector<Case> cases = read_cases(inst, selector.width);
   const std::vector<ir::ValueId> conditions = case_conditions(t, selector, cases);
   Falls falls;
   for (const Case& c : cases) {

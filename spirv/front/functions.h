@@ -11,11 +11,10 @@ namespace vitrine::spirv::front {
 
 /// Follows one step of an access chain.
 void step_into(Translator& t, const Inst& inst, Pointer& pointer, const Step& step);
+/// Bytes from one component of the vector or scalar in memory to the next.
+std::uint32_t component_bytes(const Translator& t, const Pointer& pointer);
 /// Type of the vector whose component a local pointer points to.
 std::uint32_t vector_type_of(const Translator& t, const Pointer& pointer);
-/// Sum of products, order of section 5.1.
-ir::ValueId dot(Translator& t, ir::ValueId a, ir::ValueId b);
-
 /// Integer framebuffer coordinates (x, y) and the view index of a fragment, loaded before the body.
 ir::ValueId fragment_position(Translator& t);
 

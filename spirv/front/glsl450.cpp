@@ -15,7 +15,7 @@ namespace {
 /// The literal of a value whose components are all the same literal.
 std::optional<float> uniform_literal(const Expr& value) {
   const auto* words = constant_of(*value.t, value.id);
-  if (words == nullptr) return {};
+  if (words == nullptr || value.width != 32) return {};
   for (std::uint32_t i = 1; i < value.size(); i++)
     if ((*words)[i] != (*words)[0]) return {};
   return base::float_of((*words)[0]);
@@ -24,7 +24,7 @@ std::optional<float> uniform_literal(const Expr& value) {
 /// Every pair of literal components has exponents at most 11 apart, so that y - x loses nothing that matters (5.3).
 bool similar_literals(const Expr& x, const Expr& y) {
   const auto *a = constant_of(*x.t, x.id), *b = constant_of(*y.t, y.id);
-  if (a == nullptr || b == nullptr) return false;
+  if (a == nullptr || b == nullptr || x.width != 32) return false;
   for (std::uint32_t i = 0; i < std::max(x.size(), y.size()); i++) {
     int ea = 0, eb = 0;
     std::frexp(base::float_of((*a)[x.size() == 1 ? 0 : i]), &ea);
@@ -39,15 +39,15 @@ Expr saturate(Expr x) { return min(max(x, imm(*x.t, 0.0f)), imm(*x.t, 1.0f)); }
 /// a - b * c as the front end of the reference writes it: (-b * c) + a.
 Expr minus_product(Expr a, Expr b, Expr c) { return multiply_add(-b, c, a); }
 
-Expr dot_of(Expr a, Expr b) { return {a.t, dot(*a.t, a.id, b.id)}; }
-
-Expr length_of(Expr v) { return sqrt(dot_of(v, v)); }
+Expr length_of(Expr v) { return sqrt(dot(v, v)); }
 
 /// Writes the second result of modf / frexp: through the pointer operand, or as the struct's second member.
 void two_results(Translator& t, const Inst& inst, bool has_pointer, Expr first, Expr second) {
-  if (!has_pointer) return set_value(t, inst, std::vector{first.id, second.id});
+  if (!has_pointer) return set_numbers(t, inst, std::array{first, second});
   const Pointer pointer = pointer_of(t, inst.operand(3));
-  store(t, pointer, {pointer.type, {second.id}});
+  Value value{pointer.type, {second.id}};
+  if (second.high != ir::kNoValue) value.leaves.push_back(second.high);
+  store(t, pointer, value);
   result(t, inst, first);
 }
 
@@ -57,15 +57,36 @@ Expr clamp(Translator& t, const Inst& inst, ir::Op lower, ir::Op upper) {
 
 }  // namespace
 
-Expr arg(Translator& t, const Inst& inst, std::uint32_t i) { return {&t, scalar_or_vector(t, inst.operand(i + 2))}; }
+Expr arg(Translator& t, const Inst& inst, std::uint32_t i) { return number_of(t, inst.operand(i + 2)); }
 
-void result(Translator& t, const Inst& inst, Expr value) { set_value(t, inst, value.id); }
+void result(Translator& t, const Inst& inst, Expr value) { set_number(t, inst, value); }
 
 Expr natural_exp(Expr x) { return apply(ir::Op::kFExp2, {x * 1.4426950408889634f}); }
 
 Expr natural_log(Expr x) { return apply(ir::Op::kFLog2, {x}) * static_cast<float>(1.0 / 1.4426950408889634); }
 
 void unary(Translator& t, const Inst& inst, ir::Op op) { result(t, inst, apply(op, {arg(t, inst, 0)})); }
+
+void find_bit(Translator& t, const Inst& inst, ir::Op op) {
+  const Expr found = apply(op, {arg(t, inst, 0)});
+  result(t, inst, convert_signed(found, static_cast<std::uint8_t>(number_type(t, inst.result_type).width)));
+}
+
+/// Both words of the result are the argument's components.
+void pack_double(Translator& t, const Inst& inst, ir::Op) {
+  const Expr words = arg(t, inst, 0);
+  if (words.size() != 2) fail(inst, "operand is not a vector of two");
+  Expr number = words[0];
+  number.high = words[1].id;
+  number.width = 64;
+  result(t, inst, number);
+}
+
+void unpack_double(Translator& t, const Inst& inst, ir::Op) {
+  const Expr number = arg(t, inst, 0);
+  if (number.width != 64) fail(inst, "operand is not a double");
+  result(t, inst, vector_of(std::array{Expr{&t, number.id}, Expr{&t, number.high}}));
+}
 
 void binary(Translator& t, const Inst& inst, ir::Op op) {
   result(t, inst, apply(op, {arg(t, inst, 0), arg(t, inst, 1)}));
@@ -129,7 +150,7 @@ void step(Translator& t, const Inst& inst, ir::Op) {
   {
     const ExactScope exact(t);
     const bool saved = std::exchange(t.opaque, true);  // one operation in the reference's first round
-    below = apply(ir::Op::kB2F, {x < edge});
+    below = bool_to_float(x < edge, x.width);
     t.opaque = saved;
   }
   result(t, inst, imm(t, 1.0f) - below);
@@ -146,11 +167,37 @@ void fma(Translator& t, const Inst& inst, ir::Op) {
   result(t, inst, multiply_add(arg(t, inst, 0), arg(t, inst, 1), arg(t, inst, 2)));
 }
 
+constexpr std::uint32_t kZeros[4] = {};
+
+/// Where the parts of a floating-point number are.
+struct FloatShape {
+  std::uint32_t mantissa;  ///< bits of it in the word with the exponent
+  std::uint32_t infinity;  ///< that word of infinity
+  std::int32_t bias;
+};
+
+FloatShape shape_of(const Expr& x) {
+  if (x.width == 64) return {20, 0x7ff00000, 1023};
+  return x.width == 16 ? FloatShape{10, 0x7c00, 15} : FloatShape{23, 0x7f800000, 127};
+}
+
+/// The word with sign and exponent, and a number with that word replaced.
+Expr top_word(const Expr& x) { return {x.t, x.width == 64 ? x.high : x.id}; }
+Expr with_top(Expr x, const Expr& word) {
+  (x.width == 64 ? x.high : x.id) = word.id;
+  return x;
+}
+
+Expr int_constant(Translator& t, std::int32_t value) { return imm_u32(t, static_cast<std::uint32_t>(value)); }
+
 void modf(Translator& t, const Inst& inst, ir::Op) {
   const Expr x = arg(t, inst, 0);
+  const FloatShape shape = shape_of(x);
   const Expr direction = sign(x), size = abs(x);
-  const Expr infinite = apply(ir::Op::kIEq, {size, imm_u32(t, 0x7f800000)});
-  const Expr signed_zero = x & 0x80000000u;
+  const std::uint64_t infinity = std::uint64_t{shape.infinity} << (x.width == 64 ? 32 : 0);
+  const std::uint64_t sign_bit = std::uint64_t{1} << (x.width - 1);
+  const Expr infinite = apply(ir::Op::kIEq, {size, constant_bits(t, infinity, x.width)});
+  const Expr signed_zero = x & constant_bits(t, sign_bit, x.width);
   const Expr fraction = select(infinite, signed_zero, direction * apply(ir::Op::kFFract, {size}));
   const Expr whole_part = direction * apply(ir::Op::kFFloor, {size});
   two_results(t, inst, inst.has(3), fraction, whole_part);
@@ -158,24 +205,37 @@ void modf(Translator& t, const Inst& inst, ir::Op) {
 
 void frexp(Translator& t, const Inst& inst, ir::Op) {
   const Expr x = arg(t, inst, 0);
+  const FloatShape shape = shape_of(x);
   const Expr size = abs(x);
   // 0 < |x| < Inf, by bits: denormals keep their fraction (5.1).
   const Expr not_zero = apply(ir::Op::kFNeu, {size, imm(t, 0.0f)});
   const Expr finite = size < imm(t, INFINITY);
   const Expr regular = apply(ir::Op::kAndB, {not_zero, finite});
-  const Expr significand = select(regular, (x & 0x807fffffu) | 0x3f000000u, x);
-  const Expr bias = select(not_zero, imm_u32(t, static_cast<std::uint32_t>(-126)), imm_u32(t, 0));
-  const Expr exponent = apply(ir::Op::kIAdd, {size >> 23, bias});
+  const std::uint32_t kept = (x.width == 16 ? 0x8000u : 0x80000000u) | ((1u << shape.mantissa) - 1);
+  const Expr top = top_word(x);
+  const Expr half = (top & kept) | (static_cast<std::uint32_t>(shape.bias - 1) << shape.mantissa);
+  const Expr significand = with_top(x, select(regular, half, top));
+  const Expr bias = select(not_zero, int_constant(t, 1 - shape.bias), imm_u32(t, 0));
+  const Expr exponent = apply(ir::Op::kIAdd, {top_word(size) >> shape.mantissa, bias});
   two_results(t, inst, inst.has(3), significand, exponent);
 }
 
 void ldexp(Translator& t, const Inst& inst, ir::Op) {
   const Expr x = arg(t, inst, 0);
-  const Expr low = imm_u32(t, static_cast<std::uint32_t>(-254)), high = imm_u32(t, 254);
-  const Expr e = apply(ir::Op::kIMin, {apply(ir::Op::kIMax, {arg(t, inst, 1), low}), high});
+  const FloatShape shape = shape_of(x);
+  const std::int32_t limit = 2 * shape.bias;
+  const Expr low = int_constant(t, -limit), high = int_constant(t, limit);
+  const Expr given = convert_signed(arg(t, inst, 1), 32);
+  const Expr e = apply(ir::Op::kIMin, {apply(ir::Op::kIMax, {given, low}), high});
   const Expr half = apply(ir::Op::kIShr, {e, imm_u32(t, 1)});
   const Expr rest = apply(ir::Op::kISub, {e, half});
-  auto power = [&](Expr exponent) { return apply(ir::Op::kIAdd, {exponent, imm_u32(t, 127)}) << 23; };
+  auto power = [&](Expr exponent) {
+    const Expr top = apply(ir::Op::kIAdd, {exponent, int_constant(t, shape.bias)}) << shape.mantissa;
+    if (x.width == 32) return top;
+    Expr number = constant_bits(t, 0, x.width);
+    if (x.width == 64 && top.size() > 1) number.id = constant(t, std::span(kZeros).first(top.size()));
+    return with_top(number, top);
+  };
   const Expr scaled = x * power(half);
   result(t, inst, scaled * power(rest));
 }
@@ -192,29 +252,28 @@ void normalize(Translator& t, const Inst& inst, ir::Op) {
 }
 
 void cross(Translator& t, const Inst& inst, ir::Op) {
-  const ir::ValueId a = scalar_or_vector(t, inst.operand(2)), b = scalar_or_vector(t, inst.operand(3));
-  if (components(t, a) != 3 || components(t, b) != 3) fail(inst, "operands are not vectors of three");
+  const Expr a = arg(t, inst, 0), b = arg(t, inst, 1);
+  if (a.size() != 3 || b.size() != 3) fail(inst, "operands are not vectors of three");
   const std::array<std::uint8_t, 4> yzx{1, 2, 0, 0}, zxy{2, 0, 1, 0};
-  const Expr right{&t, emit(t, ir::Op::kFMul, 3, false, {{a, zxy}, {b, yzx}})};
-  const Expr negated = -right;
-  result(t, inst, {&t, emit(t, ir::Op::kFMulAdd, 3, false, {{a, yzx}, {b, zxy}, whole(negated.id)})});
+  const Expr negated = -(a.swizzled(zxy) * b.swizzled(yzx));
+  result(t, inst, multiply_add(a.swizzled(yzx), b.swizzled(zxy), negated));
 }
 
 void face_forward(Translator& t, const Inst& inst, ir::Op) {
   const Expr n = arg(t, inst, 0);
-  const Expr facing = dot_of(arg(t, inst, 2), arg(t, inst, 1)) < imm(t, 0.0f);
+  const Expr facing = dot(arg(t, inst, 2), arg(t, inst, 1)) < imm(t, 0.0f);
   result(t, inst, select(facing, n, -n));
 }
 
 void reflect(Translator& t, const Inst& inst, ir::Op) {
   const Expr i = arg(t, inst, 0), n = arg(t, inst, 1);
-  const Expr twice = dot_of(i, n) * 2.0f;
+  const Expr twice = dot(i, n) * 2.0f;
   result(t, inst, minus_product(i, n, twice));
 }
 
 void refract(Translator& t, const Inst& inst, ir::Op) {
   const Expr i = arg(t, inst, 0), n = arg(t, inst, 1), eta = arg(t, inst, 2);
-  const Expr one = imm(t, 1.0f), d = dot_of(n, i);
+  const Expr one = imm(t, 1.0f), d = dot(n, i);
   const Expr inner = minus_product(one, d, d);
   const Expr k = minus_product(one, eta, eta * inner);
   const Expr scale = multiply_add(eta, d, sqrt(k));

@@ -40,7 +40,7 @@ Expr atan_of(Expr y) {
                         x7 * -0.1173503194786851f, x9 * 0.0536813784310406f,  x11 * -0.0121323213173444f};
   Expr sum = terms[0];
   for (int i = 1; i < 6; i++) sum = sum + terms[i];
-  const Expr steep = apply(ir::Op::kB2F, {one < size});
+  const Expr steep = bool_to_float(one < size, y.width);
   sum = multiply_add(steep, multiply_add(sum, -2.0f, kHalfPi), sum);
   const Expr signed_sum = sum * sign(y);
   if (!t.exact && !t.function.signed_zero_inf_nan_preserve) return signed_sum;
@@ -59,18 +59,18 @@ Expr minor_of(Translator& t, const std::vector<Expr>& columns, std::uint32_t row
   std::vector<Expr> rest;
   for (std::uint32_t c = 0; c < size; c++) {
     if (c == column) continue;
-    std::vector<ir::Src> parts;
+    std::vector<Expr> parts;
     for (std::uint8_t r = 0; r < size; r++)
-      if (r != row) parts.push_back(splat(columns[c].id, r));
-    rest.push_back({&t, vec(t, std::move(parts), false)});
+      if (r != row) parts.push_back(columns[c].at(r));
+    rest.push_back(vector_of(parts));
   }
   return determinant_of(t, rest);
 }
 
 Expr determinant_of(Translator& t, const std::vector<Expr>& columns) {
-  std::vector<ir::Src> minors;
-  for (std::uint32_t i = 0; i < columns.size(); i++) minors.push_back(whole(minor_of(t, columns, i, 0).id));
-  const Expr products = columns[0] * Expr{&t, vec(t, std::move(minors), false)};
+  std::vector<Expr> minors;
+  for (std::uint32_t i = 0; i < columns.size(); i++) minors.push_back(minor_of(t, columns, i, 0));
+  const Expr products = columns[0] * vector_of(minors);
   Expr sum{&t, ir::kNoValue};
   for (std::uint32_t i = 0; i < columns.size(); i += 2) {
     const Expr term = i + 1 < columns.size() ? products[i] - products[i + 1] : products[i];
@@ -80,8 +80,7 @@ Expr determinant_of(Translator& t, const std::vector<Expr>& columns) {
 }
 
 std::vector<Expr> matrix_argument(Translator& t, const Inst& inst) {
-  std::vector<Expr> columns;
-  for (ir::ValueId column : value_of(t, inst.operand(2)).leaves) columns.push_back({&t, column});
+  const std::vector<Expr> columns = leaf_numbers(t, value_of(t, inst.operand(2)));
   for (const Expr& column : columns)
     if (columns.size() < 2 || column.size() != columns.size()) fail(inst, "operand is not a square matrix");
   return columns;
@@ -134,7 +133,7 @@ void atan2(Translator& t, const Inst& inst, ir::Op) {
   const Expr quotient = (s * scale) * reciprocal;
   const Expr diagonal = apply(ir::Op::kFEq, {size, abs(y)});
   const Expr tangent = select(diagonal, one, abs(quotient));
-  const Expr arc = multiply_add(apply(ir::Op::kB2F, {flip}), kHalfPi, atan_of(tangent));
+  const Expr arc = multiply_add(bool_to_float(flip, x.width), kHalfPi, atan_of(tangent));
   result(t, inst, select(min(y, reciprocal) < zero, -arc, arc));
 }
 
@@ -185,17 +184,17 @@ void inverse(Translator& t, const Inst& inst, ir::Op) {
   const auto size = static_cast<std::uint32_t>(columns.size());
   std::vector<Expr> adjugate;
   for (std::uint32_t c = 0; c < size; c++) {
-    std::vector<ir::Src> parts;
+    std::vector<Expr> parts;
     for (std::uint32_t r = 0; r < size; r++) {
       const Expr minor = minor_of(t, columns, c, r);
-      parts.push_back(whole((r + c) % 2 != 0 ? (-minor).id : minor.id));
+      parts.push_back((r + c) % 2 != 0 ? -minor : minor);
     }
-    adjugate.push_back({&t, vec(t, std::move(parts), false)});
+    adjugate.push_back(vector_of(parts));
   }
   const Expr scale = apply(ir::Op::kFRcp, {determinant_of(t, columns)});
-  std::vector<ir::ValueId> result_columns;
-  for (const Expr& column : adjugate) result_columns.push_back((column * scale).id);
-  set_value(t, inst, std::move(result_columns));
+  std::vector<Expr> result_columns;
+  for (const Expr& column : adjugate) result_columns.push_back(column * scale);
+  set_numbers(t, inst, result_columns);
 }
 
 void pack_unorm(Translator& t, const Inst& inst, ir::Op) {

@@ -97,9 +97,9 @@ struct Walk {
     InterfaceSlot& slot = leaf.slot;
     const Type& type = t.module.type(type_id);
     const Type& number = type.kind == Kind::kVector ? t.module.type(type.element) : type;
-    slot.type = number.kind == Kind::kFloat                     ? BaseType::kFloat
-                : number.kind == Kind::kInt && number.is_signed ? BaseType::kInt
-                                                                : BaseType::kUint;
+    slot.type = number.kind == Kind::kFloat && number.width == 32 ? BaseType::kFloat
+                : number.kind == Kind::kInt && number.is_signed   ? BaseType::kInt
+                                                                  : BaseType::kUint;
     if (const DecorationRow* row = decorated.find(Decoration::BuiltIn)) {
       leaf.built_in = &built_in_row(variable, row->value);
       slot.built_in = leaf.built_in->slot;
@@ -108,10 +108,12 @@ struct Walk {
       if (element > 64) fail(variable, "built-in array is too large");
     } else {
       if (location > 127) fail(variable, "location is too large");
-      slot.location = static_cast<std::uint16_t>(location++);
+      const std::uint32_t words = info.components * type.leaves;
+      slot.location = static_cast<std::uint16_t>(location);
+      location += words > 4 ? 2 : 1;
       const DecorationRow* component = decorated.find(Decoration::Component);
       slot.component = component ? static_cast<std::uint8_t>(component->value) : std::uint8_t{0};
-      if (slot.component + info.components > 4) fail(variable, "components do not fit the location");
+      if (slot.component + words > (words > 4 ? 8u : 4u)) fail(variable, "components do not fit the location");
       if (const DecorationRow* index = decorated.find(Decoration::Index))
         slot.index = static_cast<std::uint8_t>(index->value);
     }
@@ -180,29 +182,42 @@ ir::ValueId load_input(Translator& t, const InterfaceSlot& slot) {
   return value;
 }
 
-ir::ValueId input_value(Translator& t, const Leaf& leaf) {
-  const ir::ValueInfo info = leaf_info(t, leaf.type);
-  if (leaf.built_in != nullptr && leaf.built_in->slot == BuiltIn::kNone)
-    return emit(t, leaf.built_in->op, leaf.built_in->components, info.boolean, {});
-  std::vector<ir::Src> parts;
-  for (std::uint8_t c = 0; c < info.components; c++) {
-    InterfaceSlot slot = leaf.slot;
-    slot.component = static_cast<std::uint8_t>(slot.component + c);
-    parts.push_back(whole(load_input(t, slot)));
+/// The slot of a word of a leaf: numbers of 64 bits have two words, and go on in the next location.
+InterfaceSlot word_slot(const Leaf& leaf, std::uint32_t word) {
+  InterfaceSlot slot = leaf.slot;
+  if (slot.built_in != BuiltIn::kNone) {
+    slot.component = static_cast<std::uint8_t>(slot.component + word);
+    return slot;
   }
-  const ir::ValueId value = vec(t, std::move(parts), false);
-  if (!info.boolean) return value;
-  return emit(t, ir::Op::kINe, info.components, true, {whole(value), splat(constant_u32(t, 0))});
+  const std::uint32_t component = slot.component + word;
+  slot.location = static_cast<std::uint16_t>(slot.location + component / 4);
+  slot.component = static_cast<std::uint8_t>(component % 4);
+  return slot;
 }
 
-void store_outputs(Translator& t, const Leaf& leaf, ir::ValueId value) {
-  for (std::uint8_t c = 0; c < components(t, value); c++) {
-    InterfaceSlot slot = leaf.slot;
-    slot.component = static_cast<std::uint8_t>(slot.component + c);
-    ir::Instr& instr = emit_effect(t, ir::Op::kStoreOutput, {splat(value, c)});
+std::vector<ir::ValueId> input_values(Translator& t, const Leaf& leaf) {
+  const ir::ValueInfo info = leaf_info(t, leaf.type);
+  if (leaf.built_in != nullptr && leaf.built_in->slot == BuiltIn::kNone)
+    return {emit(t, leaf.built_in->op, leaf.built_in->components, info.boolean, {})};
+  const std::uint32_t words = t.module.type(leaf.type).leaves;
+  std::vector<std::vector<ir::Src>> parts(words);
+  for (std::uint32_t i = 0; i < info.components * words; i++)
+    parts[i % words].push_back(whole(load_input(t, word_slot(leaf, i))));
+  std::vector<ir::ValueId> values;
+  for (auto& part : parts) values.push_back(vec(t, std::move(part), false));
+  if (info.boolean)
+    values[0] = emit(t, ir::Op::kINe, info.components, true, {whole(values[0]), splat(constant_u32(t, 0))});
+  return values;
+}
+
+void store_outputs(Translator& t, const Leaf& leaf, std::span<const ir::ValueId> values) {
+  const auto words = static_cast<std::uint32_t>(values.size());
+  for (std::uint32_t i = 0; i < components(t, values[0]) * words; i++) {
+    ir::Instr& instr =
+        emit_effect(t, ir::Op::kStoreOutput, {splat(values[i % words], static_cast<std::uint8_t>(i / words))});
     instr.data[0] = static_cast<std::uint32_t>(t.function.interface.outputs.size());
     instr.exact = leaf.invariant;
-    t.function.interface.outputs.push_back(slot);
+    t.function.interface.outputs.push_back(word_slot(leaf, i));
   }
 }
 
@@ -299,9 +314,9 @@ void connect_interface(Translator& t) {
       pointer.type = leaf.type;
       t.list = input ? &t.prologue : &t.function.body;
       if (input)
-        store(t, pointer, {leaf.type, {input_value(t, leaf)}});
+        store(t, pointer, {leaf.type, input_values(t, leaf)});
       else
-        store_outputs(t, leaf, load(t, pointer).leaves.at(0));
+        store_outputs(t, leaf, load(t, pointer).leaves);
     }
   }
   t.inst = nullptr;

@@ -1,5 +1,7 @@
 // Loads and stores through pointers: local variables become LoadVar / StoreVar of leaves, buffers and workgroup memory
 // become loads and stores of consecutive words (SPIR-V 3.42.8; lavapipe-shader-math.md 10).
+#include <algorithm>
+
 #include "spirv/front/context.h"
 #include "spirv/front/functions.h"
 
@@ -32,17 +34,23 @@ void store_leaf_local(Translator& t, const Pointer& pointer, ir::ValueId value, 
   emit_effect(t, ir::Op::kStoreVar, std::move(sources)).data[0] = new_access(t, pointer, path);
 }
 
-/// Visits the leaves below `path` in order: f(leaf type, path).
+/// Visits the leaves below `path` in order: f(leaf type, path). The last step to a 64-bit number's words is 0 or 1.
 template <class F>
 void each_local_leaf(Translator& t, std::uint32_t type_id, std::vector<Step>& path, const F& f) {
   const Type& type = t.module.type(type_id);
   const bool is_struct = type.kind == Type::Kind::kStruct;
-  if (!is_struct && type.kind != Type::Kind::kArray && type.kind != Type::Kind::kMatrix) return f(type_id, path);
+  const bool is_leaf = !is_struct && type.kind != Type::Kind::kArray && type.kind != Type::Kind::kMatrix;
+  if (is_leaf && type.leaves < 2) return f(type_id, path);
   if (type.scalars > kMaxScalars) throw Failure("variable of type %" + std::to_string(type_id) + " is too large");
-  const std::uint32_t count = is_struct ? static_cast<std::uint32_t>(type.members.size()) : type.count;
+  const std::uint32_t count = is_leaf     ? type.leaves
+                              : is_struct ? static_cast<std::uint32_t>(type.members.size())
+                                          : type.count;
   for (std::uint32_t i = 0; i < count; i++) {
     path.push_back({false, i, ir::kNoValue});
-    each_local_leaf(t, is_struct ? type.members[i] : type.element, path, f);
+    if (is_leaf)
+      f(type_id, path);
+    else
+      each_local_leaf(t, is_struct ? type.members[i] : type.element, path, f);
     path.pop_back();
   }
 }
@@ -51,11 +59,13 @@ Value load_local(Translator& t, const Pointer& pointer) {
   Value value{pointer.type, {}};
   std::vector<Step> path = pointer.path;
   if (pointer.component) {
-    // The pointee is one component; the leaf is the vector that holds it.
-    const std::uint32_t vector = vector_type_of(t, pointer);
-    const ir::ValueId leaf = load_leaf_local(t, pointer, vector, path);
-    value.leaves.push_back(pointer.component->dynamic ? extract_dynamic(t, leaf, pointer.component->value)
-                                                      : extract(t, leaf, pointer.component->index));
+    // The pointee is one component; the leaves are those of the vector that holds it.
+    const Step& component = *pointer.component;
+    each_local_leaf(t, vector_type_of(t, pointer), path, [&](std::uint32_t vector, const std::vector<Step>& at) {
+      const ir::ValueId leaf = load_leaf_local(t, pointer, vector, at);
+      value.leaves.push_back(component.dynamic ? extract_dynamic(t, leaf, component.value)
+                                               : extract(t, leaf, component.index));
+    });
     return value;
   }
   each_local_leaf(t, pointer.type, path, [&](std::uint32_t leaf, const std::vector<Step>& at) {
@@ -66,15 +76,19 @@ Value load_local(Translator& t, const Pointer& pointer) {
 
 void store_local(Translator& t, const Pointer& pointer, const Value& value) {
   std::vector<Step> path = pointer.path;
-  if (pointer.component) {
-    const ir::ValueId old = load_leaf_local(t, pointer, vector_type_of(t, pointer), path);
-    const Step& component = *pointer.component;
-    check_leaf(t, pointer.type, value.leaves.at(0));
-    const ir::ValueId updated = component.dynamic ? insert_dynamic(t, old, value.leaves.at(0), component.value)
-                                                  : insert(t, old, value.leaves.at(0), component.index);
-    return store_leaf_local(t, pointer, updated, path);
-  }
   std::size_t next = 0;
+  if (pointer.component) {
+    const Step& component = *pointer.component;
+    each_local_leaf(t, vector_type_of(t, pointer), path, [&](std::uint32_t vector, const std::vector<Step>& at) {
+      const ir::ValueId old = load_leaf_local(t, pointer, vector, at), scalar = value.leaves.at(next++);
+      check_leaf(t, pointer.type, scalar);
+      store_leaf_local(
+          t, pointer,
+          component.dynamic ? insert_dynamic(t, old, scalar, component.value) : insert(t, old, scalar, component.index),
+          at);
+    });
+    return;
+  }
   each_local_leaf(t, pointer.type, path, [&](std::uint32_t leaf, const std::vector<Step>& at) {
     check_leaf(t, leaf, value.leaves.at(next));
     store_leaf_local(t, pointer, value.leaves.at(next++), at);
@@ -135,29 +149,72 @@ void each_memory_leaf(Translator& t, const Pointer& pointer, const F& f) {
   }
 }
 
-ir::ValueId load_leaf_memory(Translator& t, const Pointer& pointer) {
-  const ir::ValueInfo info = leaf_info(t, pointer.type);
-  ir::ValueId value;
-  if (pointer.component_stride == 4 || info.components == 1) {
-    value = load_words(t, pointer, info.components, 0);
-  } else {
-    std::vector<ir::Src> parts;
-    for (std::uint32_t i = 0; i < info.components; i++)
-      parts.push_back(whole(load_words(t, pointer, 1, i * pointer.component_stride)));
-    value = vec(t, std::move(parts), false);
+/// Words of the vector or scalar at `pointer` in memory order.
+std::vector<ir::Src> load_adjacent(Translator& t, const Pointer& pointer, std::uint32_t count, std::uint32_t byte) {
+  std::vector<ir::Src> words;
+  for (std::uint32_t first = 0; first < count; first += 4) {
+    const std::uint32_t part = std::min(count - first, 4u);
+    const ir::ValueId value = load_words(t, pointer, part, byte + 4 * first);
+    for (std::uint8_t i = 0; i < part; i++) words.push_back(splat(value, i));
   }
-  if (!info.boolean) return value;
-  return emit(t, ir::Op::kINe, info.components, true, {whole(value), splat(constant_u32(t, 0))});
+  return words;
 }
 
-void store_leaf_memory(Translator& t, const Pointer& pointer, ir::ValueId value) {
-  check_leaf(t, pointer.type, value);
+void store_adjacent(Translator& t, const Pointer& pointer, std::span<const ir::Src> words, std::uint32_t byte) {
+  for (std::uint32_t first = 0; first < words.size(); first += 4) {
+    const auto part = words.subspan(first, std::min<std::size_t>(words.size() - first, 4));
+    const ir::ValueId value = vec(t, {part.begin(), part.end()}, false);
+    store_words(t, pointer, whole(value), static_cast<std::uint32_t>(part.size()), byte + 4 * first);
+  }
+}
+
+/// How a vector or scalar lies in memory.
+struct Layout {
+  std::uint32_t components, words;  ///< words: of a component
+  std::uint32_t stride;             ///< bytes between components
+  bool dense() const { return stride == 4 * words || components == 1; }
+};
+
+Layout layout_of(const Translator& t, const Pointer& pointer) {
+  return {leaf_info(t, pointer.type).components, t.module.type(pointer.type).leaves, component_bytes(t, pointer)};
+}
+
+void load_leaf_memory(Translator& t, const Pointer& pointer, std::vector<ir::ValueId>& leaves) {
   const ir::ValueInfo info = leaf_info(t, pointer.type);
-  if (info.boolean) value = emit(t, ir::Op::kB2I, info.components, false, {whole(value)});
-  if (pointer.component_stride == 4 || info.components == 1)
-    return store_words(t, pointer, whole(value), info.components, 0);
-  for (std::uint8_t i = 0; i < info.components; i++)
-    store_words(t, pointer, splat(value, i), 1, i * pointer.component_stride);
+  const Layout layout = layout_of(t, pointer);
+  if (layout.dense() && layout.words == 1) {
+    leaves.push_back(load_words(t, pointer, layout.components, 0));
+  } else {
+    std::vector<ir::Src> words;
+    if (layout.dense()) words = load_adjacent(t, pointer, layout.components * layout.words, 0);
+    for (std::uint32_t i = 0; i < layout.components && !layout.dense(); i++)
+      for (const ir::Src& word : load_adjacent(t, pointer, layout.words, i * layout.stride)) words.push_back(word);
+    for (std::uint32_t part = 0; part < layout.words; part++) {
+      std::vector<ir::Src> parts;
+      for (std::uint32_t i = 0; i < layout.components; i++) parts.push_back(words[i * layout.words + part]);
+      const bool one = parts.size() == 1;
+      leaves.push_back(one ? extract(t, parts[0].value, parts[0].swizzle[0]) : vec(t, std::move(parts), false));
+    }
+  }
+  if (!info.boolean) return;
+  leaves.back() = emit(t, ir::Op::kINe, info.components, true, {whole(leaves.back()), splat(constant_u32(t, 0))});
+}
+
+/// `leaves`: those of the value at `pointer`.
+void store_leaf_memory(Translator& t, const Pointer& pointer, std::span<const ir::ValueId> leaves) {
+  for (const ir::ValueId leaf : leaves) check_leaf(t, pointer.type, leaf);
+  const ir::ValueInfo info = leaf_info(t, pointer.type);
+  const Layout layout = layout_of(t, pointer);
+  ir::ValueId first = leaves[0];
+  if (info.boolean) first = emit(t, ir::Op::kB2I, info.components, false, {whole(first)});
+  if (layout.dense() && layout.words == 1) return store_words(t, pointer, whole(first), layout.components, 0);
+  std::vector<ir::Src> words;
+  for (std::uint8_t i = 0; i < layout.components; i++)
+    for (std::uint32_t part = 0; part < layout.words; part++)
+      words.push_back(splat(part == 0 ? first : leaves[part], i));
+  if (layout.dense()) return store_adjacent(t, pointer, words, 0);
+  for (std::uint32_t i = 0; i < layout.components; i++)
+    store_adjacent(t, pointer, std::span(words).subspan(i * layout.words, layout.words), i * layout.stride);
 }
 
 bool is_memory(const Pointer& pointer) {
@@ -211,7 +268,7 @@ Value load(Translator& t, const Pointer& pointer) {
   if (pointer.kind == Pointer::Kind::kLocal) return load_local(t, pointer);
   if (!is_memory(pointer) || pointer.descriptor_array) throw Failure("load through this pointer is not supported");
   Value value{pointer.type, {}};
-  each_memory_leaf(t, pointer, [&](const Pointer& leaf) { value.leaves.push_back(load_leaf_memory(t, leaf)); });
+  each_memory_leaf(t, pointer, [&](const Pointer& leaf) { load_leaf_memory(t, leaf, value.leaves); });
   return value;
 }
 
@@ -220,7 +277,12 @@ void store(Translator& t, const Pointer& pointer, const Value& value) {
   if (pointer.descriptor_array || (pointer.kind != Pointer::Kind::kStorage && pointer.kind != Pointer::Kind::kShared))
     throw Failure("store through this pointer is not supported");
   std::size_t next = 0;
-  each_memory_leaf(t, pointer, [&](const Pointer& leaf) { store_leaf_memory(t, leaf, value.leaves.at(next++)); });
+  each_memory_leaf(t, pointer, [&](const Pointer& leaf) {
+    const std::uint32_t count = t.module.type(leaf.type).leaves;
+    if (next + count > value.leaves.size()) throw Failure("value does not fit its type");
+    store_leaf_memory(t, leaf, std::span(value.leaves).subspan(next, count));
+    next += count;
+  });
 }
 
 void store_raw(Translator& t, std::uint32_t local, ir::ValueId value) {

@@ -84,12 +84,13 @@ void read_type(Module& module, const Inst& inst) {
       type.kind = inst.op == Op::OpTypeInt ? Kind::kInt : Kind::kFloat;
       type.width = inst.operand(1);
       type.is_signed = inst.op == Op::OpTypeInt && inst.operand(2) != 0;
-      type.leaves = type.scalars = 1;
+      if (type.width != 8 && type.width != 16 && type.width != 32 && type.width != 64) fail(inst, "unsupported width");
+      type.leaves = type.scalars = type.width == 64 ? 2 : 1;
       break;
     case Op::OpTypeVector:
       repeat(element(Kind::kVector), inst.operand(2));
       if (type.count < 2 || type.count > 4) fail(inst, "unsupported vector size");
-      type.leaves = 1;
+      type.leaves = module.type(type.element).leaves;
       break;
     case Op::OpTypeMatrix:
       repeat(element(Kind::kMatrix), inst.operand(2));

@@ -69,7 +69,7 @@ struct Type {
   spv::Dim dim = spv::Dim::Dim2D;
   bool depth = false, arrayed = false, multisampled = false;
   std::uint32_t array_stride = 0;      ///< bytes, 0: undecorated
-  std::uint32_t leaves = 0;            ///< scalars and vectors that a value of this type consists of
+  std::uint32_t leaves = 0;            ///< IR values that a value of this type consists of
   std::uint32_t depth_of_nesting = 0;  ///< of aggregates
   std::uint32_t scalars = 0;           ///< 32-bit components that a value of this type consists of
 };
@@ -100,7 +100,8 @@ struct Function {
   std::uint32_t entry = 0;  ///< label
 };
 
-/// A folded constant: 32-bit components in order, booleans 0 / 1.
+/// A folded constant: components in order, booleans 0 / 1, 64-bit numbers as two words (low first), narrow ones
+/// zero-extended.
 struct Constant {
   std::uint32_t type = 0;
   std::vector<std::uint32_t> words;

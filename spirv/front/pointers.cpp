@@ -1,5 +1,6 @@
 // Pointers: what a variable stands for, and access chains into it (SPIR-V 3.42.8; Vulkan, Shader Resource Interface).
 #include "spirv/front/context.h"
+#include "spirv/front/functions.h"
 
 namespace vitrine::spirv::front {
 namespace {
@@ -91,7 +92,7 @@ Pointer declare(Translator& t, const Inst& variable) {
 }
 
 Step make_step(Translator& t, std::uint32_t index_id) {
-  const ir::ValueId value = number(t, index_id);
+  const ir::ValueId value = index_word(t, index_id);
   if (const auto* words = constant_of(t, value)) return {false, (*words)[0], ir::kNoValue};
   return {true, 0, value};
 }
@@ -144,14 +145,14 @@ void step_memory(Translator& t, const Inst& inst, const Type& type, Pointer& poi
       if (shared) {
         add_offset(t, pointer, step, natural);
       } else if (pointer.row_major) {
-        add_offset(t, pointer, step, 4);
+        add_offset(t, pointer, step, number_type(t, type.element).width / 8);
         pointer.component_stride = pointer.matrix_stride;
       } else {
         add_offset(t, pointer, step, pointer.matrix_stride);
       }
       break;
     case Type::Kind::kVector:
-      add_offset(t, pointer, step, pointer.component_stride);
+      add_offset(t, pointer, step, component_bytes(t, pointer));
       break;
     default:
       fail(inst, "index into a scalar");
@@ -159,6 +160,12 @@ void step_memory(Translator& t, const Inst& inst, const Type& type, Pointer& poi
 }
 
 }  // namespace
+
+std::uint32_t component_bytes(const Translator& t, const Pointer& pointer) {
+  if (pointer.component_stride != 0) return pointer.component_stride;
+  const Type& number = number_type(t, pointer.type);
+  return pointer.kind == Pointer::Kind::kShared ? 4 * number.scalars : number.width / 8;
+}
 
 std::uint32_t new_local(Translator& t, std::uint32_t type, StorageClass storage, std::uint32_t variable) {
   t.locals.push_back({type, storage, variable, {}});

@@ -1,18 +1,21 @@
 // SPIR-V values as lists of leaves (scalars and vectors).
-#include "spirv/front/context.h"
+#include "spirv/front/expression.h"
 
 namespace vitrine::spirv::front {
+
+const Type& number_type(const Translator& t, std::uint32_t type_id) {
+  const Type& type = t.module.type(type_id);
+  return type.kind == Type::Kind::kVector ? t.module.type(type.element) : type;
+}
 
 ir::ValueInfo leaf_info(const Translator& t, std::uint32_t type_id) {
   const Type& type = t.module.type(type_id);
   const bool is_vector = type.kind == Type::Kind::kVector;
-  const Type& number = is_vector ? t.module.type(type.element) : type;
+  const Type& number = number_type(t, type_id);
   switch (number.kind) {
     case Type::Kind::kBool:
-      break;
     case Type::Kind::kInt:
     case Type::Kind::kFloat:
-      if (number.width != 32) throw Failure(std::to_string(number.width) + "-bit numbers are not supported");
       break;
     default:
       throw Failure("%" + std::to_string(type_id) + " is not a scalar or vector type");
@@ -33,7 +36,7 @@ void leaf_types(const Translator& t, std::uint32_t type_id, std::vector<std::uin
       break;
     default:
       leaf_info(t, type_id);
-      leaves.push_back(type_id);
+      leaves.insert(leaves.end(), type.leaves, type_id);
   }
 }
 
@@ -42,12 +45,18 @@ Value constant_value(Translator& t, std::uint32_t type, std::span<const std::uin
   leaf_types(t, type, types);
   Value value{type, {}};
   std::size_t at = 0;
-  for (std::uint32_t leaf : types) {
-    const ir::ValueInfo info = leaf_info(t, leaf);
-    if (at + info.components > words.size()) throw Failure("constant does not fit its type");
-    value.leaves.push_back(is_undefined ? undefined(t, info.components, info.boolean)
-                                        : constant(t, words.subspan(at, info.components), info.boolean));
-    at += info.components;
+  for (std::size_t i = 0; i < types.size();) {
+    const ir::ValueInfo info = leaf_info(t, types[i]);
+    const std::uint32_t parts = t.module.type(types[i]).leaves;
+    if (at + parts * info.components > words.size()) throw Failure("constant does not fit its type");
+    for (std::uint32_t part = 0; part < parts; part++) {
+      std::uint32_t leaf[4] = {};
+      for (std::uint32_t c = 0; c < info.components; c++) leaf[c] = words[at + c * parts + part];
+      value.leaves.push_back(is_undefined ? undefined(t, info.components, info.boolean)
+                                          : constant(t, {leaf, info.components}, info.boolean));
+    }
+    at += parts * info.components;
+    i += parts;
   }
   return value;
 }
@@ -66,10 +75,50 @@ ir::ValueId scalar_or_vector(Translator& t, std::uint32_t id) {
   return value.leaves[0];
 }
 
+Expr number_of(Translator& t, std::uint32_t id) {
+  const Value& value = value_of(t, id);
+  const std::size_t leaves = t.module.type(value.type).leaves;
+  if (value.leaves.size() != leaves || leaves > 2) throw Failure("%" + std::to_string(id) + " is not a number");
+  leaf_info(t, value.type);
+  return leaf_numbers(t, value)[0];
+}
+
+std::vector<Expr> leaf_numbers(Translator& t, const Value& value) {
+  std::vector<std::uint32_t> types;
+  leaf_types(t, value.type, types);
+  if (types.size() != value.leaves.size()) throw Failure("value does not fit its type");
+  std::vector<Expr> numbers;
+  for (std::size_t i = 0; i < types.size(); i++) {
+    Expr number{&t, value.leaves[i]};
+    number.width = static_cast<std::uint8_t>(number_type(t, types[i]).width);
+    if (number.width == 64) number.high = value.leaves[++i];
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+void set_numbers(Translator& t, const Inst& inst, std::span<const Expr> numbers) {
+  std::vector<ir::ValueId> leaves;
+  for (const Expr& number : numbers) {
+    leaves.push_back(number.id);
+    if (number.high != ir::kNoValue) leaves.push_back(number.high);
+  }
+  set_value(t, inst, std::move(leaves));
+}
+
+void set_number(Translator& t, const Inst& inst, const Expr& number) { set_numbers(t, inst, {&number, 1}); }
+
 ir::ValueId number(Translator& t, std::uint32_t id, std::uint32_t count) {
   const ir::ValueId value = scalar_or_vector(t, id);
   if (components(t, value) != count || is_boolean(t, value)) throw Failure("operand does not fit its type");
   return value;
+}
+
+ir::ValueId index_word(Translator& t, std::uint32_t id) {
+  const Expr value = number_of(t, id);
+  if (value.size() != 1 || is_boolean(t, value.id)) throw Failure("index is not an integer");
+  const bool is_signed = number_type(t, value_of(t, id).type).is_signed;
+  return (is_signed ? convert_signed(value, 32) : convert_unsigned(value, 32)).id;
 }
 
 ir::ValueId condition(Translator& t, std::uint32_t id) {

@@ -26,8 +26,15 @@ struct Target {
   ir::ValueId dynamic = ir::kNoValue;
 };
 
+/// A scalar or vector whose last step chooses between the low and the high words.
+bool is_pair(const Type& type) {
+  return type.leaves == 2 &&
+         (type.kind == Type::Kind::kVector || type.kind == Type::Kind::kInt || type.kind == Type::Kind::kFloat);
+}
+
 std::uint32_t step_type(const Translator& t, std::uint32_t type_id, const Step& step) {
   const Type& type = t.module.type(type_id);
+  if (is_pair(type)) return type_id;
   return type.kind == Type::Kind::kStruct ? type.members[step.index] : type.element;
 }
 
@@ -49,6 +56,10 @@ void add_step(Translator& t, Target& target, std::uint32_t type_id, const Step& 
   const Type& type = t.module.type(type_id);
   if (type.kind == Type::Kind::kStruct) {
     for (std::uint32_t i = 0; i < step.index; i++) target.constant += t.module.type(type.members[i]).scalars;
+    return;
+  }
+  if (is_pair(type)) {
+    target.constant += step.index * type.scalars / 2;
     return;
   }
   const std::uint32_t size = t.module.type(type.element).scalars;

@@ -196,7 +196,14 @@ class Uniformity {
     }
   }
 
+  bool any_source_varies(const ScalarOp& op) const {
+    for (const ScalarId id : f_.of(op.src))
+      if (varying(id)) return true;
+    return false;
+  }
+
   bool intrinsic_varies(const ScalarOp& op) const {
+    if (ir::is_wide(op.op)) return any_source_varies(op);
     switch (op.op) {
       case Op::kWorkgroupId:
       case Op::kNumWorkgroups:
@@ -208,9 +215,7 @@ class Uniformity {
       case Op::kLoadStorage:
       case Op::kLoadShared:
       case Op::kArrayLength:
-        for (const ScalarId id : f_.of(op.src))
-          if (varying(id)) return true;
-        return false;
+        return any_source_varies(op);
       default:
         return true;
     }

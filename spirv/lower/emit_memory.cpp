@@ -12,6 +12,10 @@ constexpr std::uint32_t kNullSlot = ~std::uint32_t{0};
 }  // namespace
 
 bool Emitter::intrinsic(const ScalarOp& op) {
+  if (ir::is_wide(op.op)) {
+    wide(op);
+    return true;
+  }
   switch (op.op) {
     case Op::kLoadPush:
     case Op::kLoadUniform:
@@ -187,6 +191,20 @@ void Emitter::read_first(const ScalarOp& op) {
     append(f_.scalars[from].boolean ? exec::read_first_mask : exec::read_first, "read_first", op.instr, place(to),
            place(from));
   }
+}
+
+void Emitter::wide(const ScalarOp& op) {
+  const auto encoded = [](Place at) { return at.file == 'u' ? at.offset | kUniformPlace : at.offset; };
+  std::array<Place, 4> sources;
+  for (std::uint32_t i = 0; i < op.src.count; ++i) sources[i] = place(source(op, i));
+  const Place low = place(result(op, 0));
+  const bool scalar = level(result(op, 0)) != Level::kVarying;
+  Instruction& instruction =
+      append(wide_handler(op.op, scalar), ir::op_name(op.op), op.instr, low, sources[0], sources[1], sources[2]);
+  instruction.dst = encoded(low);
+  for (std::uint32_t i = 0; i < 3; ++i) instruction.src[i] = encoded(sources[i]);
+  instruction.extra[0] = encoded(sources[3]);
+  instruction.extra[1] = op.dst.count > 1 ? encoded(place(result(op, 1))) : kNoOperand;
 }
 
 void Emitter::environment(const ScalarOp& op) {

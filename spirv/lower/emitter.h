@@ -85,6 +85,7 @@ class Emitter {
   void image(const ScalarOp& op);
   void environment(const ScalarOp& op);
   void read_first(const ScalarOp& op);
+  void wide(const ScalarOp& op);
   MemoryOp buffer_row(const ScalarOp& op, bool indexed);
   IndexOperand index_operand(ScalarId id, std::uint32_t& slot, std::uint32_t count);
 

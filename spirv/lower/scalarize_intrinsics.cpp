@@ -7,6 +7,7 @@ namespace vitrine::spirv::lowering {
 
 void Scalarizer::build_instr(const ir::Instr& instr) {
   if (instr.op < Op::kAluCount) return build_alu(instr);
+  if (ir::is_wide(instr.op)) return build_wide(instr);
   switch (instr.op) {
     case Op::kConst: {
       std::vector<ScalarId> ids;
@@ -66,6 +67,22 @@ void Scalarizer::build_instr(const ir::Instr& instr) {
     default:
       return fail("instruction that the lowering does not cover");
   }
+}
+
+void Scalarizer::build_wide(const ir::Instr& instr) {
+  std::vector<ScalarId> sources;
+  bool uniform = true;
+  for (const ir::Src& src : instr.src) {
+    sources.push_back(component(src, 0));
+    uniform = uniform && level(sources.back()) <= Level::kUniform;
+  }
+  if (sources.size() > 4) return fail("wide instruction with too many sources");
+  ScalarOp op;
+  op.kind = Kind::kIntrinsic;
+  op.op = instr.op;
+  op.instr = &instr;
+  const Key key = key_of(instr.op, sources, nullptr);
+  define(instr.result, emit_pure(op, key, sources, instr.components, instr.boolean, uniform));
 }
 
 std::uint32_t Scalarizer::subgroups() const {

@@ -264,11 +264,6 @@ TEST(Translate, OriginNamesTheInstruction) {
 
 TEST(Translate, RefusalsNameTheInstruction) {
   EXPECT_NE(refusal(kFragment,
-                    "layout(location = 0) out vec4 c; void main() { double d = double(gl_FragCoord.x); "
-                    "c = vec4(float(d)); }")
-                .find("64-bit"),
-            std::string::npos);
-  EXPECT_NE(refusal(kFragment,
                     "layout(location = 0) in vec2 v; layout(location = 0) out vec2 c; "
                     "void main() { c = interpolateAtCentroid(v); }")
                 .find("ExtInst"),

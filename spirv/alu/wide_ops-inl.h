@@ -1,0 +1,123 @@
+// The arithmetic of wide_ops.def as functions of one lane: WideOp<op>::of. Their parameter types are the letters of the
+// row. Include after <hwy/highway.h>, in a file that follows the foreach_target pattern: the loop around them becomes
+// vector code of the target.
+
+#include <cmath>
+#include <cstdint>
+
+#include "spirv/ir.h"
+
+#if defined(VITRINE_SPIRV_ALU_WIDE_OPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRINE_SPIRV_ALU_WIDE_OPS_INL_H_
+#undef VITRINE_SPIRV_ALU_WIDE_OPS_INL_H_
+#else
+#define VITRINE_SPIRV_ALU_WIDE_OPS_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::spirv::alu::HWY_NAMESPACE {
+
+using Int64 = std::int64_t;
+using Uint64 = std::uint64_t;
+
+template <ir::Op op>
+struct WideOp;
+
+/// Truncation of a float or double as CVTT* does it: NaN and values out of range give the least integer.
+template <class Int, class Float>
+HWY_INLINE Int truncate_signed(Float a) {
+  constexpr Float limit = sizeof(Int) == 8 ? Float(0x1p63) : Float(0x1p31);
+  constexpr Int least = sizeof(Int) == 8 ? static_cast<Int>(INT64_MIN) : static_cast<Int>(INT32_MIN);
+  // Doubles just below -2^31 truncate into range.
+  const bool fits =
+      sizeof(Int) == 4 && sizeof(Float) == 8 ? a > Float(-0x1.00000002p31) && a < limit : a >= -limit && a < limit;
+  return fits ? static_cast<Int>(a) : least;
+}
+
+/// The same for unsigned integers: NaN and values out of range give all ones.
+template <class Uint, class Float>
+HWY_INLINE Uint truncate_unsigned(Float a) {
+  constexpr Float limit = sizeof(Uint) == 8 ? Float(0x1p64) : Float(0x1p32);
+  return a > Float(-1) && a < limit ? static_cast<Uint>(a < 0 ? Float(0) : a) : ~Uint{0};
+}
+
+HWY_INLINE Int64 signed_quotient(Int64 a, Int64 b) {
+  if (b == 0) return 0;
+  return b == -1 ? static_cast<Int64>(0 - static_cast<Uint64>(a)) : a / b;
+}
+
+HWY_INLINE Int64 signed_remainder(Int64 a, Int64 b) {
+  if (b == 0) return -1;
+  return b == -1 ? 0 : a % b;
+}
+
+HWY_INLINE Int64 floored_modulo(Int64 a, Int64 b) {
+  const Int64 rest = signed_remainder(a, b);
+  return b != 0 && rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
+}
+
+HWY_INLINE Uint64 high_product(Uint64 a, Uint64 b) {
+  const Uint64 a0 = a & 0xffffffffu, a1 = a >> 32, b0 = b & 0xffffffffu, b1 = b >> 32;
+  const Uint64 middle = a1 * b0 + (a0 * b0 >> 32);
+  return a1 * b1 + (middle >> 32) + ((a0 * b1 + (middle & 0xffffffffu)) >> 32);
+}
+
+HWY_INLINE Int64 high_product_signed(Int64 a, Int64 b) {
+  const Uint64 product = high_product(static_cast<Uint64>(a), static_cast<Uint64>(b));
+  return static_cast<Int64>(product - (a < 0 ? static_cast<Uint64>(b) : 0) - (b < 0 ? static_cast<Uint64>(a) : 0));
+}
+
+// clang-format off
+template <> struct WideOp<ir::Op::kDAdd> { static HWY_INLINE double of(double a, double b) { return a + b; } };
+template <> struct WideOp<ir::Op::kDMul> { static HWY_INLINE double of(double a, double b) { return a * b; } };
+template <> struct WideOp<ir::Op::kDDiv> { static HWY_INLINE double of(double a, double b) { return a / b; } };
+template <> struct WideOp<ir::Op::kDSqrt> { static HWY_INLINE double of(double a) { return __builtin_sqrt(a); } };
+template <> struct WideOp<ir::Op::kDFloor> { static HWY_INLINE double of(double a) { return __builtin_floor(a); } };
+template <> struct WideOp<ir::Op::kDCeil> { static HWY_INLINE double of(double a) { return __builtin_ceil(a); } };
+template <> struct WideOp<ir::Op::kDTrunc> { static HWY_INLINE double of(double a) { return __builtin_trunc(a); } };
+template <> struct WideOp<ir::Op::kDRoundEven> { static HWY_INLINE double of(double a) { return __builtin_nearbyint(a); } };
+template <> struct WideOp<ir::Op::kDMin> { static HWY_INLINE double of(double a, double b) { return b != b ? a : a < b ? a : b; } };
+template <> struct WideOp<ir::Op::kDMax> { static HWY_INLINE double of(double a, double b) { return b != b ? a : a > b ? a : b; } };
+template <> struct WideOp<ir::Op::kDLt> { static HWY_INLINE bool of(double a, double b) { return a < b; } };
+template <> struct WideOp<ir::Op::kDGe> { static HWY_INLINE bool of(double a, double b) { return a >= b; } };
+template <> struct WideOp<ir::Op::kDEq> { static HWY_INLINE bool of(double a, double b) { return a == b; } };
+template <> struct WideOp<ir::Op::kDNeu> { static HWY_INLINE bool of(double a, double b) { return a != b; } };
+
+template <> struct WideOp<ir::Op::kQAdd> { static HWY_INLINE Uint64 of(Uint64 a, Uint64 b) { return a + b; } };
+template <> struct WideOp<ir::Op::kQSub> { static HWY_INLINE Uint64 of(Uint64 a, Uint64 b) { return a - b; } };
+template <> struct WideOp<ir::Op::kQMul> { static HWY_INLINE Uint64 of(Uint64 a, Uint64 b) { return a * b; } };
+template <> struct WideOp<ir::Op::kLMulHigh> { static HWY_INLINE Int64 of(Int64 a, Int64 b) { return high_product_signed(a, b); } };
+template <> struct WideOp<ir::Op::kQMulHigh> { static HWY_INLINE Uint64 of(Uint64 a, Uint64 b) { return high_product(a, b); } };
+template <> struct WideOp<ir::Op::kLDiv> { static HWY_INLINE Int64 of(Int64 a, Int64 b) { return signed_quotient(a, b); } };
+template <> struct WideOp<ir::Op::kQDiv> { static HWY_INLINE Uint64 of(Uint64 a, Uint64 b) { return b == 0 ? ~Uint64{0} : a / b; } };
+template <> struct WideOp<ir::Op::kLRem> { static HWY_INLINE Int64 of(Int64 a, Int64 b) { return signed_remainder(a, b); } };
+template <> struct WideOp<ir::Op::kLMod> { static HWY_INLINE Int64 of(Int64 a, Int64 b) { return floored_modulo(a, b); } };
+template <> struct WideOp<ir::Op::kQMod> { static HWY_INLINE Uint64 of(Uint64 a, Uint64 b) { return b == 0 ? ~Uint64{0} : a % b; } };
+template <> struct WideOp<ir::Op::kQShl> { static HWY_INLINE Uint64 of(Uint64 a, std::uint32_t b) { return a << (b & 63); } };
+template <> struct WideOp<ir::Op::kLShr> { static HWY_INLINE Int64 of(Int64 a, std::uint32_t b) { return a >> (b & 63); } };
+template <> struct WideOp<ir::Op::kQShr> { static HWY_INLINE Uint64 of(Uint64 a, std::uint32_t b) { return a >> (b & 63); } };
+template <> struct WideOp<ir::Op::kLLt> { static HWY_INLINE bool of(Int64 a, Int64 b) { return a < b; } };
+template <> struct WideOp<ir::Op::kLGe> { static HWY_INLINE bool of(Int64 a, Int64 b) { return a >= b; } };
+template <> struct WideOp<ir::Op::kQLt> { static HWY_INLINE bool of(Uint64 a, Uint64 b) { return a < b; } };
+template <> struct WideOp<ir::Op::kQGe> { static HWY_INLINE bool of(Uint64 a, Uint64 b) { return a >= b; } };
+
+template <> struct WideOp<ir::Op::kDFromF> { static HWY_INLINE double of(float a) { return static_cast<double>(a); } };
+template <> struct WideOp<ir::Op::kFFromD> { static HWY_INLINE float of(double a) { return static_cast<float>(a); } };
+template <> struct WideOp<ir::Op::kDFromI> { static HWY_INLINE double of(std::int32_t a) { return a; } };
+template <> struct WideOp<ir::Op::kDFromU> { static HWY_INLINE double of(std::uint32_t a) { return a; } };
+template <> struct WideOp<ir::Op::kDFromL> { static HWY_INLINE double of(Int64 a) { return static_cast<double>(a); } };
+template <> struct WideOp<ir::Op::kDFromQ> { static HWY_INLINE double of(Uint64 a) { return static_cast<double>(a); } };
+template <> struct WideOp<ir::Op::kFFromL> { static HWY_INLINE float of(Int64 a) { return static_cast<float>(a); } };
+template <> struct WideOp<ir::Op::kFFromQ> { static HWY_INLINE float of(Uint64 a) { return static_cast<float>(a); } };
+template <> struct WideOp<ir::Op::kIFromD> { static HWY_INLINE std::int32_t of(double a) { return truncate_signed<std::int32_t>(a); } };
+template <> struct WideOp<ir::Op::kUFromD> { static HWY_INLINE std::uint32_t of(double a) { return truncate_unsigned<std::uint32_t>(a); } };
+template <> struct WideOp<ir::Op::kLFromD> { static HWY_INLINE Int64 of(double a) { return truncate_signed<Int64>(a); } };
+template <> struct WideOp<ir::Op::kQFromD> { static HWY_INLINE Uint64 of(double a) { return truncate_unsigned<Uint64>(a); } };
+template <> struct WideOp<ir::Op::kLFromF> { static HWY_INLINE Int64 of(float a) { return truncate_signed<Int64>(a); } };
+template <> struct WideOp<ir::Op::kQFromF> { static HWY_INLINE Uint64 of(float a) { return truncate_unsigned<Uint64>(a); } };
+// clang-format on
+
+}  // namespace vitrine::spirv::alu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
