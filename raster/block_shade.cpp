@@ -21,15 +21,10 @@ struct PositionPlanes {
 };
 constexpr PositionPlanes kPositionPlanes;
 
-bool is_one(const PlaneSet& planes, std::uint32_t plane) {
-  return planes.dadx[plane] == 0 && planes.dady[plane] == 0 && planes.a0[plane] == 1;
-}
-
-void set_varyings(TileWorker& worker, float x, float y) {
-  const PlaneSet& planes = worker.planes[0];
+void set_varyings(TileWorker& worker, const PlaneSet& planes, float x, float y) {
   const BlockDraw& draw = worker.block_draw;
   const float* scale = nullptr;
-  if (draw.perspective != 0 && !is_one(planes, kReciprocalWPlane)) {
+  if (draw.perspective != 0 && !planes.unit_w) {
     const BlockVarying w{kReciprocalWPlane, worker.reciprocal_w};
     evaluate_block(planes, &w, 1, x, y, nullptr);
     reciprocal(worker.reciprocal_w, worker.reciprocal_w);
@@ -45,7 +40,8 @@ void set_varyings(TileWorker& worker, float x, float y) {
   }
 }
 
-void set_frag_coord(TileWorker& worker, const Primitive& primitive, int x, int y, float center) {
+void set_frag_coord(TileWorker& worker, const PlaneSet& planes, const Primitive& primitive, int x, int y,
+                    float center) {
   const auto& reg = worker.draw->plan->frag.frag_coord;
   const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
   for (std::uint32_t c = 0; c < 2; ++c)
@@ -56,12 +52,12 @@ void set_frag_coord(TileWorker& worker, const Primitive& primitive, int x, int y
   if (reg[2] != kNoReg) {
     float* z = as_floats(worker.runner.input(reg[2]));
     const BlockVarying depth{kDepthPlane, z};
-    evaluate_block(worker.planes[0], &depth, 1, fx + center, fy + center, nullptr);
+    evaluate_block(planes, &depth, 1, fx + center, fy + center, nullptr);
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) z[lane] += primitive.depth_offset;
   }
   if (reg[3] != kNoReg) {
     const BlockVarying w{kReciprocalWPlane, as_floats(worker.runner.input(reg[3]))};
-    evaluate_block(worker.planes[0], &w, 1, fx + center, fy + center, nullptr);
+    evaluate_block(planes, &w, 1, fx + center, fy + center, nullptr);
   }
 }
 
@@ -71,13 +67,12 @@ void splat(TileWorker& worker, std::uint32_t reg, std::uint32_t value) {
 
 void set_inputs(TileWorker& worker, const Primitive& primitive, int x, int y) {
   const PipelinePlan& plan = *worker.draw->plan;
-  if (worker.planes_of != &primitive) compute_planes(plan, primitive, worker.planes[0]);
-  worker.planes_of = &primitive;
+  const PlaneSet& planes = current_planes(worker, primitive);
   const float center = plan.raster_samples > 1 ? 0.5f : 0.0f;
-  set_varyings(worker, static_cast<float>(x) + center, static_cast<float>(y) + center);
+  set_varyings(worker, planes, static_cast<float>(x) + center, static_cast<float>(y) + center);
   for (std::uint32_t k = plan.perspective_count + plan.linear_count; k < plan.varying_count(); ++k)
     splat(worker, plan.varying[k].fragment_reg, base::bits_of(primitive.v[primitive.provoking][4 + k]));
-  set_frag_coord(worker, primitive, x, y, center);
+  set_frag_coord(worker, planes, primitive, x, y, center);
   splat(worker, plan.frag.front_facing, primitive.front ? ~0u : 0u);
   splat(worker, plan.frag.primitive_id, primitive.id);
 }
@@ -180,15 +175,15 @@ void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, c
     const LaneMask active = plan.fragment->needs_helpers ? whole_quads(pixels) : pixels;
     alive = worker.runner.run(active, active & ~pixels);
   }
-  worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(pixels));
+  if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(pixels));
   LaneMask kept[kMaxSamples];
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
     kept[s] = block.lanes[s] & alive;
     if (plan.depth_order == TestOrder::kLate && kept[s]) {
-      DepthPlane plane = compute_depth_plane(plan, primitive);
+      const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
       kept[s] = test_block_sample(worker, primitive, plane, s, x, y, kept[s], true);
     }
-    worker.samples_passed += static_cast<std::uint64_t>(std::popcount(kept[s]));
+    if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(kept[s]));
   }
   write_block(worker, x, y, kept);
 }

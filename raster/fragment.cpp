@@ -20,11 +20,11 @@ struct ShadeRun {
   TileWorker& worker;
   const PackedWave& wave;
   const PipelinePlan& plan;
-  WavePlanes planes;
   LaneMask used;    ///< lanes of packed quads
   LaneMask pixels;  ///< lanes with a covered sample of this run
   std::uint32_t first_sample, end_sample;
-  LaneMask kept[kMaxSamples];  ///< result: coverage after the shader
+  LaneMask kept[kMaxSamples];    ///< result: coverage after the shader
+  const float* scale = nullptr;  ///< of perspective planes; null: 1
 
   bool single() const { return plan.sample_shading; }
 };
@@ -79,8 +79,8 @@ void interpolate_varyings(ShadeRun& run) {
     for (std::uint32_t k = 0; k < smooth; ++k) {
       const Varying& varying = plan.varying[k];
       if (varying.location != wanted || varying.fragment_reg == kNoReg) continue;
-      const float* scale = k < plan.perspective_count ? worker.reciprocal_w : nullptr;
-      evaluate_plane(run.planes, kFirstVaryingPlane + k, points_of(run, wanted, prepared), scale,
+      const float* scale = k < plan.perspective_count ? run.scale : nullptr;
+      evaluate_plane(run.wave.planes, kFirstVaryingPlane + k, points_of(run, wanted, prepared), scale,
                      as_floats(worker.runner.input(varying.fragment_reg)));
     }
   }
@@ -92,9 +92,11 @@ void interpolate_varyings(ShadeRun& run) {
       splat(out, base::bits_of(p.v[p.provoking][4 + k]));
       continue;
     }
-    for (std::uint32_t q = 0; q < wave.quads; ++q) {
-      const Primitive& p = *wave.primitive[wave.slot[q]];
-      std::fill_n(out.lane + 4 * q, 4, base::bits_of(p.v[p.provoking][4 + k]));
+    std::uint32_t* lane = out.lane;
+    for (std::uint32_t slot = 0; slot < wave.slots; ++slot) {
+      const Primitive& p = *wave.primitive[slot];
+      std::uint32_t* const end = out.lane + 4 * wave.planes.end[slot];
+      for (const std::uint32_t value = base::bits_of(p.v[p.provoking][4 + k]); lane != end; ++lane) *lane = value;
     }
   }
 }
@@ -120,11 +122,11 @@ void set_frag_coord(ShadeRun& run) {
   if (reg[2] != kNoReg) {
     float* z = as_floats(worker.runner.input(reg[2]));
     if (sampled) set_points(run.wave, dx, dy, points);
-    evaluate_plane(run.planes, kDepthPlane, sampled ? points : worker.center, nullptr, z);
+    evaluate_plane(run.wave.planes, kDepthPlane, sampled ? points : worker.center, nullptr, z);
     add_depth_offset(run.wave, z);
   }
   if (reg[3] != kNoReg)
-    evaluate_plane(run.planes, kReciprocalWPlane, worker.center, nullptr, as_floats(worker.runner.input(reg[3])));
+    evaluate_plane(run.wave.planes, kReciprocalWPlane, worker.center, nullptr, as_floats(worker.runner.input(reg[3])));
 }
 
 /// One word per quad, from its primitive.
@@ -166,7 +168,7 @@ void set_built_ins(ShadeRun& run) {
   const std::uint32_t point_plane = kFirstVaryingPlane + run.plan.perspective_count + run.plan.linear_count;
   for (std::uint32_t c = 0; c < 2; ++c)
     if (frag.point_coord[c] != kNoReg)
-      evaluate_plane(run.planes, point_plane + c, run.worker.center, run.worker.reciprocal_w,
+      evaluate_plane(run.wave.planes, point_plane + c, run.worker.center, run.scale,
                      as_floats(runner.input(frag.point_coord[c])));
   per_quad(run, frag.front_facing, [](const Primitive& p) { return p.front ? ~0u : 0u; });
   per_quad(run, frag.primitive_id, [](const Primitive& p) { return p.id; });
@@ -217,7 +219,7 @@ void late_depth(ShadeRun& run, std::uint32_t sample) {
     const bool located = plan.raster_samples > 1;
     WavePoints points;
     if (located) set_points(run.wave, sample_x(sample), sample_y(sample), points);
-    evaluate_plane(run.planes, kDepthPlane, located ? points : worker.center, nullptr, worker.depth);
+    evaluate_plane(run.wave.planes, kDepthPlane, located ? points : worker.center, nullptr, worker.depth);
     add_depth_offset(run.wave, worker.depth);
   }
   DepthRange range[base::kQuadsPerWave];
@@ -294,11 +296,11 @@ void shade(ShadeRun& run) {
   set_built_ins(run);
   const LaneMask active = plan.fragment->needs_helpers ? run.used : run.pixels;
   const LaneMask alive = worker.runner.run(active, active & ~run.pixels);
-  worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(run.pixels));
+  if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(run.pixels));
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) run.kept[s] &= alive;
   if (plan.may_kill) change_coverage(run);
   if (plan.depth_order == TestOrder::kLate) test_late(run);
-  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
+  for (std::uint32_t s = run.first_sample; worker.counts && s < run.end_sample; ++s)
     worker.samples_passed += static_cast<std::uint64_t>(std::popcount(run.kept[s]));
   write_colors(run);
 }
@@ -307,22 +309,20 @@ void shade(ShadeRun& run) {
 
 void shade_wave(TileWorker& worker, PackedWave& wave) {
   const PipelinePlan& plan = *worker.draw->plan;
-  ShadeRun run{worker, wave, plan, {}, base::first_lanes(4 * wave.quads), 0, 0, plan.samples, {}};
-  for (std::uint32_t slot = worker.planes_of == wave.primitive[0] ? 1 : 0; slot < wave.slots; ++slot)
-    compute_planes(plan, *wave.primitive[slot], worker.planes[slot]);
-  worker.planes_of = wave.primitive[0];
-  run.planes.sets = worker.planes;
-  run.planes.slots = wave.slots;
-  run.planes.quads = wave.quads;
-  std::copy_n(wave.slot, wave.quads, run.planes.slot);
+  ShadeRun run{worker, wave, plan, base::first_lanes(4 * wave.quads), 0, 0, plan.samples, {}};
+  wave.planes.slots = wave.slots;
   const float center = plan.raster_samples > 1 ? 0.5f : 0.0f;
   const bool interpolates = plan.perspective_count + plan.linear_count != 0 || plan.depth_order == TestOrder::kLate ||
                             plan.frag.frag_coord[2] != kNoReg || plan.frag.frag_coord[3] != kNoReg ||
                             plan.frag.point_coord[0] != kNoReg || plan.frag.point_coord[1] != kNoReg;
   if (interpolates) set_points(wave, center, center, worker.center);
   if (plan.perspective_count || plan.frag.point_coord[0] != kNoReg || plan.frag.point_coord[1] != kNoReg) {
-    evaluate_plane(run.planes, kReciprocalWPlane, worker.center, nullptr, worker.reciprocal_w);
-    reciprocal(worker.reciprocal_w, worker.reciprocal_w);
+    const bool unit = std::all_of(wave.planes.set, wave.planes.set + wave.slots, [](auto* set) { return set->unit_w; });
+    if (!unit) {
+      evaluate_plane(wave.planes, kReciprocalWPlane, worker.center, nullptr, worker.reciprocal_w);
+      reciprocal(worker.reciprocal_w, worker.reciprocal_w);
+      run.scale = worker.reciprocal_w;
+    }
   }
   if (!plan.sample_shading) {
     shade(run);

@@ -86,7 +86,7 @@ void point_planes(const Primitive& p, std::size_t count, std::size_t perspective
 void evaluate(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale, float* out) {
   if (wave.slots == 1) {
     const F f;
-    const PlaneSet& set = wave.sets[0];
+    const PlaneSet& set = *wave.set[0];
     const VF a0 = hn::Set(f, set.a0[plane]), dadx = hn::Set(f, set.dadx[plane]), dady = hn::Set(f, set.dady[plane]);
     for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(f)) {
       VF v = lanes_fma(dady, hn::Load(f, points.y + i), lanes_fma(dadx, hn::Load(f, points.x + i), a0));
@@ -95,13 +95,24 @@ void evaluate(const WavePlanes& wave, std::uint32_t plane, const WavePoints& poi
     }
     return;
   }
-  const Quad d;
-  for (std::size_t q = 0; q < wave.quads; ++q) {
-    const PlaneSet& set = wave.sets[wave.slot[q]];
-    const auto inner = lanes_fma(hn::Set(d, set.dadx[plane]), hn::Load(d, points.x + 4 * q), hn::Set(d, set.a0[plane]));
-    auto v = lanes_fma(hn::Set(d, set.dady[plane]), hn::Load(d, points.y + 4 * q), inner);
-    if (scale) v = hn::Mul(v, hn::Load(d, scale + 4 * q));
-    hn::Store(v, d, out + 4 * q);
+  // Vectors may reach into the quads of the next primitives, which come after and write theirs again.
+  std::size_t lane = 0;
+  for (std::uint32_t slot = 0; slot < wave.slots; ++slot) {
+    const PlaneSet& set = *wave.set[slot];
+    const std::size_t end = std::size_t{4} * wave.end[slot];
+    const auto step = [&](auto d) {
+      const auto inner =
+          lanes_fma(hn::Set(d, set.dadx[plane]), hn::LoadU(d, points.x + lane), hn::Set(d, set.a0[plane]));
+      auto v = lanes_fma(hn::Set(d, set.dady[plane]), hn::LoadU(d, points.y + lane), inner);
+      if (scale) v = hn::Mul(v, hn::LoadU(d, scale + lane));
+      hn::StoreU(v, d, out + lane);
+      lane += hn::Lanes(d);
+    };
+    const hn::CappedTag<float, 16> wide;
+    const std::size_t last = base::kWaveWidth - hn::Lanes(wide);
+    while (lane < end && lane <= last) step(wide);
+    while (lane < end) step(Quad());
+    lane = end;
   }
 }
 
@@ -207,9 +218,7 @@ void point_coord_planes(const Primitive& p, std::uint32_t plane, PlaneSet& out) 
   out.dady[plane + 1] = d * w;
 }
 
-}  // namespace
-
-void compute_planes(const PipelinePlan& plan, const Primitive& p, PlaneSet& out) {
+void compute_all_planes(const PipelinePlan& plan, const Primitive& p, PlaneSet& out) {
   const std::size_t perspective_end = kFirstVaryingPlane + plan.perspective_count;
   const std::size_t count = perspective_end + plan.linear_count;
   if (p.kind == PrimitiveKind::kTriangle) {
@@ -229,22 +238,12 @@ void compute_planes(const PipelinePlan& plan, const Primitive& p, PlaneSet& out)
   }
 }
 
-DepthPlane compute_depth_plane(const PipelinePlan& plan, const Primitive& p) {
-  const Vertex *v0 = p.v[0], *v1 = p.v[1], *v2 = p.v[2];
-  if (p.kind == PrimitiveKind::kPoint) return {v0[2], 0, 0, p.depth_offset};
-  if (p.kind == PrimitiveKind::kLine) {
-    const LineDeltas deltas = line_deltas(*plan.state, p);
-    const float d = v0[2] - v1[2];
-    const float dadx = (d * deltas.idx) * deltas.ooa, dady = (d * deltas.idy) * deltas.ooa;
-    return {v0[2] - (dadx * (v0[0] - 0.5f) + dady * (v0[1] - 0.5f)), dadx, dady, p.depth_offset};
-  }
-  const float dx01 = v0[0] - v1[0], dy01 = v0[1] - v1[1], dx20 = v2[0] - v0[0], dy20 = v2[1] - v0[1];
-  const float ooa = 1.0f / (dx01 * dy20 - dy01 * dx20);
-  const float d01 = v0[2] - v1[2], d20 = v2[2] - v0[2];
-  const float dadx = d01 * (dy20 * ooa) - d20 * (dy01 * ooa);
-  const float dady = d20 * (dx01 * ooa) - d01 * (dx20 * ooa);
-  const float xc = v0[0] - plan.pixel_offset, yc = v0[1] - plan.pixel_offset;
-  return {v0[2] - (dadx * xc + dady * yc), dadx, dady, p.depth_offset};
+}  // namespace
+
+void compute_planes(const PipelinePlan& plan, const Primitive& primitive, PlaneSet& out) {
+  compute_all_planes(plan, primitive, out);
+  constexpr std::uint32_t w = kReciprocalWPlane;
+  out.unit_w = out.dadx[w] == 0 && out.dady[w] == 0 && out.a0[w] == 1;
 }
 
 void evaluate_plane(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale,

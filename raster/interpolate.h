@@ -19,23 +19,25 @@ struct PlaneSet {
   alignas(64) float a0[kMaxPlanes];
   alignas(64) float dadx[kMaxPlanes];
   alignas(64) float dady[kMaxPlanes];
+  bool unit_w;  ///< 1/w is 1 everywhere, so that perspective planes need no division
 };
 
 /// All planes of a primitive.
 void compute_planes(const PipelinePlan& plan, const Primitive& primitive, PlaneSet& out);
 
-/// Only z, and the depth bias beside it: for tests before shading. Same bits as compute_planes.
+/// z and the depth bias beside it.
 struct DepthPlane {
   float a0, dadx, dady, offset;
 };
-DepthPlane compute_depth_plane(const PipelinePlan& plan, const Primitive& primitive);
+inline DepthPlane depth_plane(const PlaneSet& planes, const Primitive& primitive) {
+  return {planes.a0[kDepthPlane], planes.dadx[kDepthPlane], planes.dady[kDepthPlane], primitive.depth_offset};
+}
 
-/// Lanes of a wave in the framebuffer, and the primitive each quad belongs to.
+/// The primitives of a wave's quads, each a stretch of them.
 struct WavePlanes {
-  const PlaneSet* sets;     ///< by slot
-  std::uint32_t slots = 1;  ///< distinct primitives
-  std::uint32_t quads = 0;  ///< in use, from the first
-  std::uint8_t slot[base::kQuadsPerWave];
+  std::uint32_t slots = 0;                   ///< primitives
+  const PlaneSet* set[base::kQuadsPerWave];  ///< by slot
+  std::uint8_t end[base::kQuadsPerWave];     ///< by slot: one past its last quad
 };
 
 /// Evaluation points of all lanes, as floats.

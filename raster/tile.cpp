@@ -31,9 +31,9 @@ bool inside_attachments(const TileWorker& worker, int x, int y) {
 std::uint64_t block_bit(int x, int y) { return std::uint64_t{1} << ((y >> 3 & 7) * 8 + (x >> 3 & 7)); }
 
 /// Tests a block before shading. Writes unless the test is only a preview of a late one.
-void test_early(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane, int x, int y,
-                BlockCoverage& block) {
+void test_early(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block) {
   const PipelinePlan& plan = *worker.draw->plan;
+  const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
   if (plan.tests_rows && inside_attachments(worker, x, y)) {
     for (std::uint32_t s = 0; s < plan.samples; ++s)
       if (block.lanes[s])
@@ -70,6 +70,8 @@ void append_full_block(TileWorker& worker, const Primitive& primitive, int x, in
   wave.quads = base::kQuadsPerWave;
   wave.slots = 1;
   wave.primitive[0] = &primitive;
+  wave.planes.set[0] = &current_planes(worker, primitive);
+  wave.planes.end[0] = base::kQuadsPerWave;
   std::memset(wave.slot, 0, sizeof(wave.slot));
   place_block(x, y, wave.position);
   std::memcpy(wave.coverage, block.lanes, sizeof(wave.coverage));
@@ -81,6 +83,7 @@ void append_full_block(TileWorker& worker, const Primitive& primitive, int x, in
 void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
                   const BlockCoverage& block, base::LaneMask quads) {
   PackedWave& wave = worker.wave;
+  const PlaneSet& planes = current_planes(worker, primitive);
   const std::uint32_t samples = worker.draw->plan->samples;
   for (; quads != 0; quads &= quads - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(quads));
@@ -90,8 +93,12 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
       for (std::uint32_t s = 0; s < kMaxSamples; ++s) wave.coverage[s] = wave.rasterized[s] = 0;
     }
     wave.blocks |= block_bit(x, y);
-    if (wave.slots == 0 || wave.primitive[wave.slots - 1] != &primitive) wave.primitive[wave.slots++] = &primitive;
+    if (wave.slots == 0 || wave.primitive[wave.slots - 1] != &primitive) {
+      wave.planes.set[wave.slots] = &planes;
+      wave.primitive[wave.slots++] = &primitive;
+    }
     wave.slot[q] = static_cast<std::uint8_t>(wave.slots - 1);
+    wave.planes.end[wave.slots - 1] = static_cast<std::uint8_t>(wave.quads);
     wave.position.x[q] = static_cast<std::uint16_t>(x + lane_x(lane));
     wave.position.y[q] = static_cast<std::uint16_t>(y + lane_y(lane));
     for (std::uint32_t s = 0; s < samples; ++s) {
@@ -106,8 +113,7 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
 constexpr std::uint32_t kNearlyFull = 12;
 
 /// A block with its coverage: tests that come first, then to the wave.
-void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane, int x, int y,
-                BlockCoverage& block) {
+void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block) {
   const PipelinePlan& plan = *worker.draw->plan;
   if (plan.sample_mask != (1u << plan.samples) - 1)
     for (std::uint32_t s = 0; s < plan.samples; ++s)
@@ -116,12 +122,12 @@ void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane
   if (!any) return;
   const BlockCoverage rasterized = block;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
-    test_early(worker, primitive, plane, x, y, block);
+    test_early(worker, primitive, x, y, block);
     any = any_sample(block, plan.samples);
     if (!any) return;
   }
   if (!plan.shades) {
-    for (std::uint32_t s = 0; s < plan.samples; ++s)
+    for (std::uint32_t s = 0; worker.counts && s < plan.samples; ++s)
       worker.samples_passed += static_cast<std::uint64_t>(std::popcount(block.lanes[s]));
     return;
   }
@@ -129,8 +135,9 @@ void emit_block(TileWorker& worker, const Primitive& primitive, const DepthPlane
   any |= any >> 1;
   const base::LaneMask quads = (any | any >> 2) & kLowestLanes;
   const bool whole = quads == kLowestLanes;
-  const bool alone = plan.shades_blocks && inside_attachments(worker, x, y) &&
-                     static_cast<std::uint32_t>(std::popcount(quads)) >= kNearlyFull;
+  // The product's upper four bits are the sum of the 16 nibbles: the number of quads, modulo 16.
+  const bool nearly = whole || (quads * kLowestLanes) >> 60 >= kNearlyFull;
+  const bool alone = nearly && plan.shades_blocks && inside_attachments(worker, x, y);
   if (!whole && !alone) {
     append_quads(worker, primitive, x, y, rasterized, block, quads);
     return;
@@ -154,7 +161,6 @@ struct BlockWalk {
   const Primitive& primitive;
   const TileEdges& edges;
   const PixelRect& rect;
-  DepthPlane plane;
 
   void visit(int x, int y, bool covered) const {
     const PipelinePlan& plan = *worker.draw->plan;
@@ -165,12 +171,13 @@ struct BlockWalk {
     for (std::uint32_t s = 0; s < plan.raster_samples; ++s)
       block.lanes[s] = covered ? window : cover_block(edges, s, x, y) & window;
     for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s) block.lanes[s] = block.lanes[0];
-    emit_block(worker, primitive, plane, worker.target.x + x, worker.target.y + y, block);
+    emit_block(worker, primitive, worker.target.x + x, worker.target.y + y, block);
   }
 };
 
 void begin_draw(TileWorker& worker, const DrawRecord* draw) {
   worker.draw = draw;
+  worker.counts = draw->call.queries.occlusion || draw->call.queries.statistics;
   worker.wave.quads = worker.wave.slots = 0;
   if (draw->plan->shades && !(worker.bound == draw->fragment)) {
     worker.runner.bind(draw->fragment);
@@ -293,6 +300,17 @@ void set_target(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, 
 
 }  // namespace
 
+const PlaneSet& current_planes(TileWorker& worker, const Primitive& primitive) {
+  if (worker.planes_of == &primitive) return worker.planes[worker.current];
+  // The wave keeps its planes; they are the last ones that were current.
+  const PackedWave& wave = worker.wave;
+  if (wave.slots != 0 && wave.planes.set[wave.slots - 1] == &worker.planes[worker.current])
+    worker.current = worker.current == base::kQuadsPerWave ? 0 : worker.current + 1;
+  compute_planes(*worker.draw->plan, primitive, worker.planes[worker.current]);
+  worker.planes_of = &primitive;
+  return worker.planes[worker.current];
+}
+
 void place_block(int x, int y, QuadPositions& out) {
   for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
     out.x[q] = static_cast<std::uint16_t>(x + kBlockOffsets.x[q]);
@@ -306,8 +324,7 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   if (!make_tile_edges(primitive, worker.target.x, worker.target.y, plan.raster_samples, edges)) return;
   const PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
-  BlockWalk walk{worker, primitive, edges, rect, {}};
-  if (plan.depth_order == TestOrder::kEarly || plan.early_reject) walk.plane = compute_depth_plane(plan, primitive);
+  const BlockWalk walk{worker, primitive, edges, rect};
   const int bx0 = rect.x0 / kBlockSize, bx1 = rect.x1 / kBlockSize;
   const int by0 = rect.y0 / kBlockSize, by1 = rect.y1 / kBlockSize;
   if ((bx1 - bx0 + 1) * (by1 - by0 + 1) <= 4) {

@@ -50,6 +50,7 @@ struct PackedWave {
   QuadPositions position;
   std::uint8_t slot[base::kQuadsPerWave];
   const Primitive* primitive[base::kQuadsPerWave];  ///< by slot
+  WavePlanes planes;                                ///< likewise
   base::LaneMask coverage[kMaxSamples];             ///< by sample of the attachments
   base::LaneMask rasterized[kMaxSamples];           ///< before early tests: gl_SampleMask as an input (8.5)
 };
@@ -80,12 +81,14 @@ struct TileWorker {
   BlockDraw block_draw;
   StageRunner runner;
   Stage bound;
-  PlaneSet planes[base::kQuadsPerWave];
-  const Primitive* planes_of = nullptr;  ///< whose planes planes[0] are still those of the last wave
+  PlaneSet planes[base::kQuadsPerWave + 1];  ///< of the primitives in `wave`, and of the one being rasterized
+  std::uint32_t current = 0;                 ///< planes[current]: of `planes_of`
+  const Primitive* planes_of = nullptr;
   WavePoints center, place;
   alignas(64) float reciprocal_w[base::kWaveWidth];
   alignas(64) float depth[base::kWaveWidth];
   base::WaveRegister color[4], second[4];
+  bool counts = false;                     ///< the draw has queries
   std::uint64_t samples_passed = 0;        ///< not yet added to the draw's query
   std::uint64_t fragment_invocations = 0;  ///< likewise
 };
@@ -102,6 +105,9 @@ void begin_blocks(TileWorker& worker);
 
 /// Shades, tests late and writes a block inside all attachments whose first pixel is (x, y), in the framebuffer.
 void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block);
+
+/// Planes of the primitive being rasterized.
+const PlaneSet& current_planes(TileWorker& worker, const Primitive& primitive);
 
 /// Positions of the quads of the block at (x, y).
 void place_block(int x, int y, QuadPositions& out);
