@@ -40,14 +40,37 @@ void check(VkResult result, const char* call);
     UNIFORM_BUFFER_STANDARD_LAYOUT_FEATURES, "VK_KHR_uniform_buffer_standard_layout")                                  \
   X(scalar_block_layout, VkPhysicalDeviceScalarBlockLayoutFeatures, SCALAR_BLOCK_LAYOUT_FEATURES,                      \
     "VK_EXT_scalar_block_layout")                                                                                      \
+  X(draw_parameters, VkPhysicalDeviceShaderDrawParametersFeatures, SHADER_DRAW_PARAMETERS_FEATURES,                    \
+    "VK_KHR_shader_draw_parameters")                                                                                   \
+  X(variable_pointers, VkPhysicalDeviceVariablePointersFeatures, VARIABLE_POINTERS_FEATURES,                           \
+    "VK_KHR_variable_pointers")                                                                                        \
+  X(atomic_float, VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, SHADER_ATOMIC_FLOAT_FEATURES_EXT,                      \
+    "VK_EXT_shader_atomic_float")                                                                                      \
+  X(atomic_float2, VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, SHADER_ATOMIC_FLOAT_2_FEATURES_EXT,                  \
+    "VK_EXT_shader_atomic_float2")                                                                                     \
+  X(shader_clock, VkPhysicalDeviceShaderClockFeaturesKHR, SHADER_CLOCK_FEATURES_KHR, "VK_KHR_shader_clock")            \
+  X(demote, VkPhysicalDeviceShaderDemoteToHelperInvocationFeatures, SHADER_DEMOTE_TO_HELPER_INVOCATION_FEATURES,       \
+    "VK_EXT_shader_demote_to_helper_invocation")                                                                       \
+  X(terminate, VkPhysicalDeviceShaderTerminateInvocationFeatures, SHADER_TERMINATE_INVOCATION_FEATURES,                \
+    "VK_KHR_shader_terminate_invocation")                                                                              \
+  X(memory_model, VkPhysicalDeviceVulkanMemoryModelFeatures, VULKAN_MEMORY_MODEL_FEATURES,                             \
+    "VK_KHR_vulkan_memory_model")                                                                                      \
+  X(subgroup_size, VkPhysicalDeviceSubgroupSizeControlFeatures, SUBGROUP_SIZE_CONTROL_FEATURES,                        \
+    "VK_EXT_subgroup_size_control")                                                                                    \
+  X(buffer_address, VkPhysicalDeviceBufferDeviceAddressFeatures, BUFFER_DEVICE_ADDRESS_FEATURES,                       \
+    "VK_KHR_buffer_device_address")                                                                                    \
+  X(image_robustness, VkPhysicalDeviceImageRobustnessFeatures, IMAGE_ROBUSTNESS_FEATURES, "VK_EXT_image_robustness")   \
   X(host_query_reset, VkPhysicalDeviceHostQueryResetFeatures, HOST_QUERY_RESET_FEATURES, "VK_EXT_host_query_reset")
 
 /// Extensions without features that cases use: enabled where offered.
-#define CTS_EXTENSIONS(X)         \
-  X("VK_KHR_copy_commands2")      \
-  X("VK_KHR_create_renderpass2")  \
-  X("VK_KHR_draw_indirect_count") \
-  X("VK_KHR_depth_stencil_resolve")
+#define CTS_EXTENSIONS(X)                                                                                   \
+  X("VK_KHR_copy_commands2")                                                                                \
+  X("VK_KHR_create_renderpass2")                                                                            \
+  X("VK_KHR_draw_indirect_count")                                                                           \
+  X("VK_KHR_depth_stencil_resolve")                                                                         \
+  X("VK_KHR_spirv_1_4")                                                                                     \
+  X("VK_KHR_shader_float_controls") X("VK_KHR_shader_non_semantic_info") X("VK_EXT_shader_subgroup_ballot") \
+      X("VK_EXT_shader_subgroup_vote")
 
 struct ExtensionFeatures {
 #define CTS_MEMBER(member, type, stype, extension) type member{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_##stype};

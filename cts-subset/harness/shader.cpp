@@ -29,6 +29,21 @@ EShLanguage language(VkShaderStageFlagBits stage) {
   }
 }
 
+struct Target {
+  glslang::EShTargetClientVersion client;
+  glslang::EShTargetLanguageVersion spirv;
+  spv_target_env validation;
+};
+
+Target target_of(const std::string& source) {
+  const auto asks = [&](const char* line) { return source.find(line) != std::string::npos; };
+  if (asks("target: spirv1.4"))
+    return {glslang::EShTargetVulkan_1_1, glslang::EShTargetSpv_1_4, SPV_ENV_VULKAN_1_1_SPIRV_1_4};
+  if (asks("target: vulkan1.1")) return {glslang::EShTargetVulkan_1_1, glslang::EShTargetSpv_1_3, SPV_ENV_VULKAN_1_1};
+  if (asks("target: vulkan1.3")) return {glslang::EShTargetVulkan_1_3, glslang::EShTargetSpv_1_6, SPV_ENV_VULKAN_1_3};
+  return {glslang::EShTargetVulkan_1_0, glslang::EShTargetSpv_1_0, SPV_ENV_VULKAN_1_0};
+}
+
 std::vector<uint32_t> compile(VkShaderStageFlagBits stage, const std::string& source) {
   static const bool initialized = glslang::InitializeProcess();
   (void)initialized;
@@ -38,8 +53,9 @@ std::vector<uint32_t> compile(VkShaderStageFlagBits stage, const std::string& so
   glslang::TShader shader(lang);
   shader.setStrings(strings, 1);
   shader.setEnvInput(glslang::EShSourceGlsl, lang, glslang::EShClientVulkan, 100);
-  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_0);
-  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
+  const Target target = target_of(source);
+  shader.setEnvClient(glslang::EShClientVulkan, target.client);
+  shader.setEnvTarget(glslang::EShTargetSpv, target.spirv);
   constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
   if (!shader.parse(GetDefaultResources(), 450, false, kMessages))
     throw std::runtime_error(std::string("GLSL: ") + shader.getInfoLog());
@@ -66,7 +82,7 @@ const std::vector<uint32_t>& compile_glsl(VkShaderStageFlagBits stage, const std
 const std::vector<uint32_t>& assemble_spirv(const std::string& source) {
   static std::map<std::string, std::vector<uint32_t>> cache;
   if (const auto found = cache.find(source); found != cache.end()) return found->second;
-  spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_0);
+  spvtools::SpirvTools tools(target_of(source).validation);
   std::string message;
   tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t& position, const char* text) {
     message += "line " + std::to_string(position.line + 1) + ": " + text + "\n";
