@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "base/lanes.h"
 #include "icd/util.h"
 
 namespace vitrine::icd {
@@ -53,6 +54,12 @@ void add_layout(const PipelineLayoutShape& layout, KeyBuilder& key) {
   }
 }
 
+/// "If this structure is not chained, the subgroup size is the implementation's" (Pipelines: Required Subgroup Size).
+std::uint32_t subgroup_size(const VkPipelineShaderStageCreateInfo& stage) {
+  const auto* required = find_in_chain<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>(stage.pNext);
+  return required ? required->requiredSubgroupSize : static_cast<std::uint32_t>(base::kWaveWidth);
+}
+
 ShaderKey make_key(const StageRequest& request) {
   const VkPipelineShaderStageCreateInfo& stage = *request.stage;
   const ShaderModule& module = from_handle<ShaderModule>(stage.module);
@@ -61,6 +68,7 @@ ShaderKey make_key(const StageRequest& request) {
   key.add(stage.stage);
   key.add(stage.pName, std::strlen(stage.pName));
   key.add(request.live_color_outputs);
+  key.add(subgroup_size(stage));
   if (const VkSpecializationInfo* s = stage.pSpecializationInfo) {
     for (std::uint32_t i = 0; i < s->mapEntryCount; ++i) {
       const VkSpecializationMapEntry& entry = s->pMapEntries[i];
@@ -78,6 +86,7 @@ spirv::CompileOptions make_options(const StageRequest& request) {
   options.stage = stage.stage;
   options.entry_point = stage.pName;
   options.live_color_outputs = request.live_color_outputs;
+  options.subgroup_size = subgroup_size(stage);
   options.sets = set_layout_infos(*request.layout);
   if (const VkSpecializationInfo* s = stage.pSpecializationInfo) {
     for (std::uint32_t i = 0; i < s->mapEntryCount; ++i) {

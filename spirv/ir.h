@@ -141,6 +141,24 @@ enum class AtomicOp : std::uint8_t {
   kLoad,
   kStore,
 };
+/// How Reduce combines: the value of a lane with that of the lanes below it, in the order of lanes.
+enum class GroupOp : std::uint8_t {
+  kIAdd,
+  kFAdd,
+  kIMul,
+  kFMul,
+  kIMin,
+  kUMin,
+  kFMin,
+  kIMax,
+  kUMax,
+  kFMax,
+  kAnd,
+  kOr,
+  kXor,
+};
+enum class GroupMode : std::uint8_t { kReduce, kInclusive, kExclusive };
+
 struct ImageInfo {
   ImageAccess access = ImageAccess::kSample;
   std::uint32_t operands = 0;                  ///< bit i: ImageOperand i is present

@@ -2,6 +2,8 @@
 #include "spirv/exec/handlers.h"
 #include "spirv/exec/operands.h"
 
+#include <chrono>
+
 namespace vitrine::spirv::exec {
 namespace {
 
@@ -12,6 +14,8 @@ const Instruction* fill(Wave& wave, const Instruction* i, F&& value) {
   return i + 1;
 }
 
+int first_lane(base::LaneMask lanes) { return lanes != 0 ? std::countr_zero(lanes) : 0; }
+
 }  // namespace
 
 const Instruction* helper_invocation(Wave& wave, const Instruction* i) {
@@ -20,18 +24,25 @@ const Instruction* helper_invocation(Wave& wave, const Instruction* i) {
 }
 
 const Instruction* elect(Wave& wave, const Instruction* i) {
-  mask(wave, i->dst) = wave.active & (~wave.active + 1);
+  const base::LaneMask lanes = participants(wave);
+  mask(wave, i->dst) = lanes & (~lanes + 1);
   return i + 1;
 }
 
 const Instruction* read_first(Wave& wave, const Instruction* i) {
-  const int lane = wave.active != 0 ? std::countr_zero(wave.active) : 0;
-  uniform_word(wave, i->dst) = reg(wave, i->src[0]).lane[lane];
+  uniform_word(wave, i->dst) = reg(wave, i->src[0]).lane[first_lane(participants(wave))];
+  return i + 1;
+}
+
+const Instruction* read_clock(Wave& wave, const Instruction* i) {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  const auto time = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
+  uniform_word(wave, i->dst) = static_cast<std::uint32_t>(time >> (i->extra[0] * 32));
   return i + 1;
 }
 
 const Instruction* read_first_mask(Wave& wave, const Instruction* i) {
-  const int lane = wave.active != 0 ? std::countr_zero(wave.active) : 0;
+  const int lane = first_lane(participants(wave));
   uniform_word(wave, i->dst) = static_cast<std::uint32_t>(mask(wave, i->src[0]) >> lane & 1);
   return i + 1;
 }

@@ -70,6 +70,8 @@ const Instruction* elect(Wave&, const Instruction*);
 /// Uniform word dst = register (mask) src[0] of the lowest active lane.
 const Instruction* read_first(Wave&, const Instruction*);
 const Instruction* read_first_mask(Wave&, const Instruction*);
+/// Uniform word dst = component extra[0] of the time in nanoseconds.
+const Instruction* read_clock(Wave&, const Instruction*);
 /// Uniform word dst = component extra[0].
 const Instruction* workgroup_id(Wave&, const Instruction*);
 const Instruction* num_workgroups(Wave&, const Instruction*);
@@ -78,6 +80,16 @@ const Instruction* subgroup_id(Wave&, const Instruction*);
 const Instruction* local_invocation_id(Wave&, const Instruction*);
 const Instruction* local_invocation_index(Wave&, const Instruction*);
 const Instruction* subgroup_invocation(Wave&, const Instruction*);
+
+// ---- subgroups: extra[0] = invocations of a subgroup or cluster (spirv/exec/subgroups.cpp)
+
+/// Word extra[1] of the participating lanes of the subgroup that are in mask src[0]: register dst, uniform word dst.
+const Instruction* ballot(Wave&, const Instruction*);
+const Instruction* ballot_uniform(Wave&, const Instruction*);
+/// Register dst = register src[0] of the lane of the subgroup that register src[1] names.
+const Instruction* shuffle(Wave&, const Instruction*);
+/// Register dst (`uniform`: word dst) = register src[0] over the participating lanes.
+Handler reduce(ir::GroupOp op, ir::GroupMode mode, bool uniform);
 
 // ---- memory: extra[0] = row of Program::memory_ops, src[0] = byte offset (spirv/exec/memory*.cpp)
 

@@ -15,6 +15,9 @@ void step_into(Translator& t, const Inst& inst, Pointer& pointer, const Step& st
 std::uint32_t component_bytes(const Translator& t, const Pointer& pointer);
 /// Type of the vector whose component a local pointer points to.
 std::uint32_t vector_type_of(const Translator& t, const Pointer& pointer);
+/// Value of a built-in of subgroups (their sizes, numbers and masks).
+ir::ValueId subgroup_built_in(Translator& t, spv::BuiltIn built_in);
+
 /// Integer framebuffer coordinates (x, y) and the view index of a fragment, loaded before the body.
 ir::ValueId fragment_position(Translator& t);
 

@@ -10,6 +10,9 @@ namespace {
 using spv::Decoration;
 using Kind = Type::Kind;
 
+/// The value is composed by subgroup_built_in().
+constexpr ir::Op kOfSubgroup = ir::Op::kCount;
+
 struct BuiltInRow {
   spv::BuiltIn spirv;
   BuiltIn slot;  ///< kNone: `op`
@@ -45,10 +48,15 @@ constexpr BuiltInRow kBuiltIns[] = {
     {spv::BuiltIn::LocalInvocationId, BuiltIn::kNone, ir::Op::kLocalInvocationId, 3},
     {spv::BuiltIn::GlobalInvocationId, BuiltIn::kNone, ir::Op::kGlobalInvocationId, 3},
     {spv::BuiltIn::LocalInvocationIndex, BuiltIn::kNone, ir::Op::kLocalInvocationIndex, 1},
-    {spv::BuiltIn::SubgroupSize, BuiltIn::kNone, ir::Op::kSubgroupSize, 1},
-    {spv::BuiltIn::SubgroupLocalInvocationId, BuiltIn::kNone, ir::Op::kSubgroupInvocation, 1},
-    {spv::BuiltIn::SubgroupId, BuiltIn::kNone, ir::Op::kSubgroupId, 1},
-    {spv::BuiltIn::NumSubgroups, BuiltIn::kNone, ir::Op::kNumSubgroups, 1},
+    {spv::BuiltIn::SubgroupSize, BuiltIn::kNone, kOfSubgroup, 1},
+    {spv::BuiltIn::SubgroupLocalInvocationId, BuiltIn::kNone, kOfSubgroup, 1},
+    {spv::BuiltIn::SubgroupId, BuiltIn::kNone, kOfSubgroup, 1},
+    {spv::BuiltIn::NumSubgroups, BuiltIn::kNone, kOfSubgroup, 1},
+    {spv::BuiltIn::SubgroupEqMask, BuiltIn::kNone, kOfSubgroup, 4},
+    {spv::BuiltIn::SubgroupGeMask, BuiltIn::kNone, kOfSubgroup, 4},
+    {spv::BuiltIn::SubgroupGtMask, BuiltIn::kNone, kOfSubgroup, 4},
+    {spv::BuiltIn::SubgroupLeMask, BuiltIn::kNone, kOfSubgroup, 4},
+    {spv::BuiltIn::SubgroupLtMask, BuiltIn::kNone, kOfSubgroup, 4},
 };
 
 const BuiltInRow& built_in_row(const Inst& variable, std::uint32_t built_in) {
@@ -197,6 +205,7 @@ InterfaceSlot word_slot(const Leaf& leaf, std::uint32_t word) {
 
 std::vector<ir::ValueId> input_values(Translator& t, const Leaf& leaf) {
   const ir::ValueInfo info = leaf_info(t, leaf.type);
+  if (leaf.built_in != nullptr && leaf.built_in->op == kOfSubgroup) return {subgroup_built_in(t, leaf.built_in->spirv)};
   if (leaf.built_in != nullptr && leaf.built_in->slot == BuiltIn::kNone)
     return {emit(t, leaf.built_in->op, leaf.built_in->components, info.boolean, {})};
   const std::uint32_t words = t.module.type(leaf.type).leaves;

@@ -20,6 +20,7 @@ constexpr AtomicRow kAtomics[] = {
     {Op::OpAtomicSMax, ir::AtomicOp::kIMax},         {Op::OpAtomicUMax, ir::AtomicOp::kUMax},
     {Op::OpAtomicAnd, ir::AtomicOp::kAnd},           {Op::OpAtomicOr, ir::AtomicOp::kOr},
     {Op::OpAtomicXor, ir::AtomicOp::kXor},           {Op::OpAtomicFAddEXT, ir::AtomicOp::kFAdd},
+    {Op::OpAtomicFMinEXT, ir::AtomicOp::kFMin},      {Op::OpAtomicFMaxEXT, ir::AtomicOp::kFMax},
 };
 
 ir::AtomicOp atomic_op(const Inst& inst) {
@@ -107,6 +108,8 @@ void is_helper(Translator& t, const Inst& inst, ir::Op) {
   set_value(t, inst, emit(t, ir::Op::kHelperInvocation, 1, true, {}));
 }
 
-void elect(Translator& t, const Inst& inst, ir::Op) { set_value(t, inst, emit(t, ir::Op::kElect, 1, true, {})); }
+void read_clock(Translator& t, const Inst& inst, ir::Op) {
+  set_value(t, inst, emit(t, ir::Op::kReadClock, 2, false, {}));
+}
 
 }  // namespace vitrine::spirv::front

@@ -209,7 +209,13 @@ class Uniformity {
       case Op::kNumWorkgroups:
       case Op::kSubgroupId:
       case Op::kReadFirst:
+      case Op::kReadClock:
         return false;
+      case Op::kBallot:
+        return op.instr->data[0] != base::kWaveWidth;
+      case Op::kReduce:
+        return op.instr->data[0] != base::kWaveWidth ||
+               op.instr->data[2] != static_cast<std::uint32_t>(ir::GroupMode::kReduce);
       case Op::kLoadPush:
       case Op::kLoadUniform:
       case Op::kLoadStorage:

@@ -42,6 +42,11 @@ bool Emitter::intrinsic(const ScalarOp& op) {
     case Op::kReadFirst:
       read_first(op);
       return true;
+    case Op::kBallot:
+    case Op::kShuffle:
+    case Op::kReduce:
+      group(op);
+      return true;
     default:
       environment(op);
       return true;
@@ -207,6 +212,25 @@ void Emitter::wide(const ScalarOp& op) {
   instruction.extra[1] = op.dst.count > 1 ? encoded(place(result(op, 1))) : kNoOperand;
 }
 
+void Emitter::group(const ScalarOp& op) {
+  const Place from = in_register(source(op, 0));
+  for (std::uint32_t c = 0; c < op.dst.count; ++c) {
+    const Place to = place(result(op, c));
+    if (to.file == ' ') continue;
+    const bool uniform = to.file == 'u';
+    if (op.op == Op::kBallot) {
+      append(uniform ? exec::ballot_uniform : exec::ballot, "ballot", op.instr, to, from).extra[1] = c;
+    } else if (op.op == Op::kShuffle) {
+      append(exec::shuffle, "shuffle", op.instr, to, from, in_register(source(op, 1)));
+    } else {
+      const auto combine = static_cast<ir::GroupOp>(op.instr->data[1]);
+      append(exec::reduce(combine, static_cast<ir::GroupMode>(op.instr->data[2]), uniform), "reduce", op.instr, to,
+             from);
+    }
+    program->code.back().extra[0] = op.instr->data[0];
+  }
+}
+
 void Emitter::environment(const ScalarOp& op) {
   Handler handler = nullptr;
   switch (op.op) {
@@ -222,6 +246,9 @@ void Emitter::environment(const ScalarOp& op) {
       break;
     case Op::kElect:
       handler = exec::elect;
+      break;
+    case Op::kReadClock:
+      handler = exec::read_clock;
       break;
     case Op::kWorkgroupId:
       handler = exec::workgroup_id;

@@ -86,6 +86,7 @@ class Emitter {
   void environment(const ScalarOp& op);
   void read_first(const ScalarOp& op);
   void wide(const ScalarOp& op);
+  void group(const ScalarOp& op);
   MemoryOp buffer_row(const ScalarOp& op, bool indexed);
   IndexOperand index_operand(ScalarId id, std::uint32_t& slot, std::uint32_t count);
 

@@ -65,7 +65,9 @@ bool is_cooperative(Op op) {
     case Op::kReadFirst:
     case Op::kSubgroupId:
     case Op::kSubgroupInvocation:
-    case Op::kNumSubgroups:
+    case Op::kBallot:
+    case Op::kShuffle:
+    case Op::kReduce:
       return true;
     default:
       return false;

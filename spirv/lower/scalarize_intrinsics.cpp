@@ -33,10 +33,6 @@ void Scalarizer::build_instr(const ir::Instr& instr) {
     case Op::kStoreStorage:
     case Op::kStoreShared:
       return build_store(instr);
-    case Op::kSubgroupSize:
-      return define(instr.result, std::vector<ScalarId>{constant(base::kWaveWidth, false)});
-    case Op::kNumSubgroups:
-      return define(instr.result, std::vector<ScalarId>{constant(subgroups(), false)});
     case Op::kGlobalInvocationId:
       return build_global_id(instr);
     case Op::kReadFirst:
@@ -52,7 +48,11 @@ void Scalarizer::build_instr(const ir::Instr& instr) {
     case Op::kBarrier:
     case Op::kDemote:
     case Op::kHelperInvocation:
-    case Op::kElect: {
+    case Op::kElect:
+    case Op::kReadClock:
+    case Op::kBallot:
+    case Op::kShuffle:
+    case Op::kReduce: {
       std::vector<ScalarId> sources;
       for (const ir::Src& src : instr.src) append(sources, src, 1);
       return define(instr.result, emit(instr, sources, instr.components, instr.boolean));
@@ -83,12 +83,6 @@ void Scalarizer::build_wide(const ir::Instr& instr) {
   op.instr = &instr;
   const Key key = key_of(instr.op, sources, nullptr);
   define(instr.result, emit_pure(op, key, sources, instr.components, instr.boolean, uniform));
-}
-
-std::uint32_t Scalarizer::subgroups() const {
-  const auto& size = ir_.interface.local_size;
-  return (size[0] * size[1] * size[2] + static_cast<std::uint32_t>(base::kWaveWidth) - 1) /
-         static_cast<std::uint32_t>(base::kWaveWidth);
 }
 
 std::vector<ScalarId> Scalarizer::environment(Op op, std::uint32_t count, const ir::Instr* instr) {

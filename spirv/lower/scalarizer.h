@@ -72,7 +72,6 @@ class Scalarizer {
   void build_instr(const ir::Instr& instr);
   /// Wide operations (wide_ops.def): scalars in, up to two words out.
   void build_wide(const ir::Instr& instr);
-  std::uint32_t subgroups() const;
   /// Built-ins without operands: the same wherever they are read, so one read at the start of the scope serves all.
   std::vector<ScalarId> environment(Op op, std::uint32_t count, const ir::Instr* instr);
   /// The same for waves that hold several workgroups, adjacent in x: WorkgroupId is that of the first.

@@ -145,6 +145,10 @@ class Selector {
       case Op::kStoreArray:
         first = 1;
         break;
+      case Op::kBallot:
+      case Op::kShuffle:
+      case Op::kReduce:
+        break;
       case Op::kImage:
         first = (op.instr->image->operands & 1) + (op.instr->image->operands >> 1 & 1);
         break;

@@ -42,8 +42,6 @@ bool may_hoist(const Inst& inst) {
     case Op::kGlobalInvocationId:
     case Op::kSubgroupId:
     case Op::kSubgroupInvocation:
-    case Op::kNumSubgroups:
-    case Op::kSubgroupSize:
       return true;
     default:
       return false;

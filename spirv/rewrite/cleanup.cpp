@@ -35,6 +35,9 @@ unsigned components_read(const Graph& graph, const Inst& user, std::uint32_t ind
     case Op::kAtomicStorage:
     case Op::kAtomicShared:
     case Op::kReadFirst:
+    case Op::kBallot:
+    case Op::kShuffle:
+    case Op::kReduce:
       return 1;
     case Op::kStoreStorage:
       return index < 2 ? 1 : 0;

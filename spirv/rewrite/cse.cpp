@@ -21,10 +21,8 @@ bool is_invocation_constant(const Inst& inst) {
     case Op::kLocalInvocationId:
     case Op::kGlobalInvocationId:
     case Op::kLocalInvocationIndex:
-    case Op::kSubgroupSize:
     case Op::kSubgroupInvocation:
     case Op::kSubgroupId:
-    case Op::kNumSubgroups:
       return true;
     default:
       return false;

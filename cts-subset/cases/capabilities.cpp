@@ -1,0 +1,271 @@
+// Shader capabilities of small extensions: image access without a format, float atomics, the memory model, demotion
+// and termination, draw parameters, the clock.
+#include "harness/case.h"
+#include "harness/graphics.h"
+
+namespace vitrine::cts {
+namespace {
+
+void dispatch(Run& run, const std::string& code, const std::vector<Binding>& bindings) {
+  const Resources res = run.resources(bindings);
+  const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, 1, 1, 1);
+  });
+}
+
+Image storage(Run& run, VkFormat format) {
+  ImageSpec spec;
+  spec.format = format;
+  spec.extent = {8, 8, 1};
+  spec.usage = VK_IMAGE_USAGE_STORAGE_BIT;
+  return run.image(spec);
+}
+
+/// Reads one image and writes another, neither with a format in the shader; the reference, which does not claim that,
+/// is told `layout`.
+void image_without_format(Run& run, VkFormat format, const std::string& prefix, const std::string& layout) {
+  const VkPhysicalDeviceFeatures& features = run.gpu.features;
+  run.require((run.gpu.features_of(format) & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) != 0, "storage images");
+  const Image from = storage(run, format), to = storage(run, format);
+  run.fill_random(from);
+  const std::string read = features.shaderStorageImageReadWithoutFormat ? "" : ", " + layout;
+  const std::string write = features.shaderStorageImageWriteWithoutFormat ? "" : ", " + layout;
+  dispatch(run,
+           "#extension GL_EXT_shader_image_load_formatted : require\n"
+           "layout(local_size_x = 8, local_size_y = 8) in;\n"
+           "layout(binding = 0" +
+               read + ") uniform " + prefix + "image2D a;\nlayout(binding = 1" + write + ") uniform writeonly " +
+               prefix +
+               "image2D b;\n"
+               "void main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy); imageStore(b, at, imageLoad(a, at.yx)); "
+               "}\n",
+           {storage_image(0, from), storage_image(1, to)});
+  run.out("written", to);
+}
+
+const bool kWithoutFormat = [] {
+  struct Row {
+    VkFormat format;
+    const char *prefix, *layout;
+  };
+  const Row kRows[] = {
+      {VK_FORMAT_R8G8B8A8_UNORM, "", "rgba8"},
+      {VK_FORMAT_R8G8B8A8_SNORM, "", "rgba8_snorm"},
+      {VK_FORMAT_R32_SFLOAT, "", "r32f"},
+      {VK_FORMAT_R16G16B16A16_SFLOAT, "", "rgba16f"},
+      {VK_FORMAT_R32G32B32A32_UINT, "u", "rgba32ui"},
+      {VK_FORMAT_R8_SINT, "i", "r8i"},
+      {VK_FORMAT_A2B10G10R10_UNORM_PACK32, "", "rgb10_a2"},
+      {VK_FORMAT_R16G16_UINT, "u", "rg16ui"},
+  };
+  for (const Row& row : kRows)
+    AddCase("capabilities", std::string("image_without_format.") + row.layout,
+            [=](Run& run) { image_without_format(run, row.format, row.prefix, row.layout); });
+  return true;
+}();
+
+constexpr char kAtomicFloat[] =
+    "// target: vulkan1.1\n#extension GL_EXT_shader_atomic_float : require\n"
+    "#extension GL_EXT_shader_atomic_float2 : require\n"
+    "#extension GL_KHR_memory_scope_semantics : require\n";
+
+/// Sums of small integers: exact in any order.
+void atomic_float(Run& run, const std::string& operation) {
+  run.require(run.gpu.extension_features.atomic_float.shaderBufferFloat32AtomicAdd &&
+                  run.gpu.extension_features.atomic_float.shaderSharedFloat32AtomicAdd,
+              "shaderBufferFloat32AtomicAdd");
+  run.require(run.gpu.extension_features.atomic_float2.shaderBufferFloat32AtomicMinMax, "float atomic min and max");
+  const Buffer out = run.buffer_of<float>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+  dispatch(run,
+           std::string(kAtomicFloat) +
+               "layout(local_size_x = 64) in;\nlayout(std430, binding = 0) buffer R { float r[]; };\n"
+               "shared float s[4];\n"
+               "void main() {\n"
+               "  uint i = gl_LocalInvocationIndex, k = i & 3u;\n"
+               "  if (i < 4u) s[i] = 5.0;\n"
+               "  barrier();\n"
+               "  float v = float(int(i * 7u % 61u) - 20);\n"
+               "  " +
+               operation + "(r[k], v);\n  " + operation + "(s[k], v);\n  " + operation +
+               "(r[4], v);\n"
+               "  barrier();\n"
+               "  if (i < 4u) r[8u + i] = s[i];\n"
+               "}\n",
+           {storage_buffer(0, out)});
+  run.out("result", out, VK_FORMAT_R32_SFLOAT);
+}
+CTS_CASE("capabilities", "atomic_float.add") { atomic_float(run, "atomicAdd"); }
+CTS_CASE("capabilities", "atomic_float.min") { atomic_float(run, "atomicMin"); }
+CTS_CASE("capabilities", "atomic_float.max") { atomic_float(run, "atomicMax"); }
+
+CTS_CASE("capabilities", "atomic_float.exchange") {
+  run.require(run.gpu.extension_features.atomic_float.shaderBufferFloat32Atomics, "shaderBufferFloat32Atomics");
+  const Buffer out = run.buffer_of<float>(std::vector<float>(65, 2.5f));
+  dispatch(run,
+           std::string(kAtomicFloat) +
+               "layout(local_size_x = 64) in;\nlayout(std430, binding = 0) buffer R { float r[]; };\n"
+               "void main() {\n"
+               "  uint i = gl_LocalInvocationIndex;\n"
+               "  float old = atomicExchange(r[i], float(i));\n"
+               "  atomicStore(r[i], old + atomicLoad(r[i], gl_ScopeDevice, 0, 0), gl_ScopeDevice, 0, 0);\n"
+               "}\n",
+           {storage_buffer(0, out)});
+  run.out("result", out, VK_FORMAT_R32_SFLOAT);
+}
+
+void atomic_float_image(Run& run, const std::string& operation) {
+  run.require(run.gpu.extension_features.atomic_float.shaderImageFloat32AtomicAdd &&
+                  run.gpu.extension_features.atomic_float2.shaderImageFloat32AtomicMinMax,
+              "float atomics on images");
+  const Image image = storage(run, VK_FORMAT_R32_SFLOAT);
+  std::vector<float> texels(64);
+  for (float& texel : texels) texel = static_cast<float>(run.random.between(-20, 20));
+  run.upload(image, 0, {reinterpret_cast<const unsigned char*>(texels.data()), texels.size() * 4});
+  dispatch(run,
+           std::string(kAtomicFloat) +
+               "layout(local_size_x = 64) in;\nlayout(binding = 0, r32f) uniform image2D a;\n"
+               "void main() {\n"
+               "  uint i = gl_LocalInvocationIndex;\n"
+               "  " +
+               operation +
+               "(a, ivec2(i & 3u, i >> 4), float(int(i * 7u % 61u) - 20));\n"
+               "}\n",
+           {storage_image(0, image)});
+  run.out("image", image);
+}
+CTS_CASE("capabilities", "atomic_float.image_add") { atomic_float_image(run, "imageAtomicAdd"); }
+CTS_CASE("capabilities", "atomic_float.image_min") { atomic_float_image(run, "imageAtomicMin"); }
+CTS_CASE("capabilities", "atomic_float.image_max") { atomic_float_image(run, "imageAtomicMax"); }
+
+CTS_CASE("capabilities", "memory_model") {
+  run.require(run.gpu.extension_features.memory_model.vulkanMemoryModel &&
+                  run.gpu.extension_features.memory_model.vulkanMemoryModelDeviceScope,
+              "vulkanMemoryModel");
+  const Buffer out = run.buffer(64 * 4);
+  dispatch(run, R"(// target: vulkan1.1
+#pragma use_vulkan_memory_model
+#extension GL_KHR_memory_scope_semantics : require
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) workgroupcoherent buffer R { uint r[]; };
+shared uint s[64];
+void main() {
+  uint i = gl_LocalInvocationIndex;
+  s[i] = i * 3u;
+  controlBarrier(gl_ScopeWorkgroup, gl_ScopeWorkgroup, gl_StorageSemanticsShared,
+                 gl_SemanticsAcquireRelease | gl_SemanticsMakeAvailable | gl_SemanticsMakeVisible);
+  atomicAdd(r[i & 7u], s[63u - i], gl_ScopeDevice, gl_StorageSemanticsBuffer, gl_SemanticsAcquireRelease);
+  memoryBarrier(gl_ScopeWorkgroup, gl_StorageSemanticsBuffer, gl_SemanticsAcquireRelease);
+  controlBarrier(gl_ScopeWorkgroup, gl_ScopeWorkgroup, gl_StorageSemanticsBuffer, gl_SemanticsAcquireRelease);
+  if (i >= 8u) r[i] = atomicLoad(r[i & 7u], gl_ScopeDevice, gl_StorageSemanticsBuffer, gl_SemanticsAcquire) + i;
+})",
+           {storage_buffer(0, out)});
+  run.out("result", out);
+}
+
+CTS_CASE("capabilities", "clock") {
+  run.require(run.gpu.extension_features.shader_clock.shaderSubgroupClock &&
+                  run.gpu.extension_features.shader_clock.shaderDeviceClock,
+              "shaderSubgroupClock, shaderDeviceClock");
+  const Buffer out = run.buffer(64 * 4);
+  dispatch(run, R"(// target: vulkan1.1
+#extension GL_ARB_shader_clock : require
+#extension GL_EXT_shader_realtime_clock : require
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) buffer R { uint r[]; };
+bool before(uvec2 a, uvec2 b) { return a.y < b.y || (a.y == b.y && a.x <= b.x); }
+void main() {
+  uvec2 a = clock2x32ARB(), c = clockRealtime2x32EXT();
+  uint x = gl_LocalInvocationIndex;
+  for (uint i = 0u; i < 50u + (x & 3u); i++) x = x * 1664525u + 1013904223u;
+  uvec2 b = clock2x32ARB(), d = clockRealtime2x32EXT();
+  r[gl_LocalInvocationIndex] = x + (before(a, b) ? 1u : 0u) + (before(c, d) ? 2u : 0u);
+})",
+           {storage_buffer(0, out)});
+  run.out("result", out);
+}
+
+/// A full-screen draw of one fragment shader.
+void draw(Run& run, const std::string& fragment) {
+  const Target target = make_target(run, {.colors = {VK_FORMAT_R32G32B32A32_SFLOAT}});
+  GraphicsSpec spec;
+  spec.vertex = kFullScreenVertex;
+  spec.fragment = fragment;
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    vkCmdDraw(cmd, 3, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+}
+
+CTS_CASE("capabilities", "demote") {
+  run.require(run.gpu.extension_features.demote.shaderDemoteToHelperInvocation, "shaderDemoteToHelperInvocation");
+  draw(run, R"(// target: vulkan1.1
+#extension GL_EXT_demote_to_helper_invocation : require
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 o;
+void main() {
+  vec2 p = uv * 17.0;
+  if (fract(p.x) < 0.4) demote;
+  float v = sin(p.x * 3.0) * p.y;
+  bool helper = helperInvocationEXT();
+  if (!helper && fract(p.y) < 0.3) demote;
+  o = vec4(v, dFdx(v), dFdy(v), helper ? 1.0 : 0.5);
+})");
+}
+
+CTS_CASE("capabilities", "terminate") {
+  run.require(run.gpu.extension_features.terminate.shaderTerminateInvocation, "shaderTerminateInvocation");
+  draw(run, R"(// target: vulkan1.1
+#extension GL_EXT_terminate_invocation : require
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 o;
+float pick(float a) {
+  if (fract(a) < 0.25) terminateInvocation;
+  return a * 0.5;
+}
+void main() {
+  float s = 0.0;
+  for (int i = 0; i < 6; i++) {
+    s += pick(uv.x * 3.0 + uv.y * float(i));
+    if (s > 6.0) terminateInvocation;
+  }
+  o = vec4(s, uv, 1.0);
+})");
+}
+
+CTS_CASE("capabilities", "draw_parameters") {
+  run.require(run.gpu.extension_features.draw_parameters.shaderDrawParameters, "shaderDrawParameters");
+  const Target target = make_target(run, {.colors = {VK_FORMAT_R32G32B32A32_SFLOAT}});
+  GraphicsSpec spec;
+  spec.vertex = R"(// target: vulkan1.1
+#extension GL_ARB_shader_draw_parameters : require
+layout(location = 0) flat out vec4 v;
+void main() {
+  int corner = gl_VertexIndex - gl_BaseVertexARB;
+  vec2 at = vec2(float((gl_BaseVertexARB + gl_InstanceIndex * 5 + gl_DrawIDARB * 3) % 16), float(gl_InstanceIndex));
+  gl_Position = vec4((at + vec2(corner & 1, corner >> 1)) / 8.0 - 1.0, 0.0, 1.0);
+  v = vec4(gl_BaseVertexARB, gl_BaseInstanceARB, gl_DrawIDARB, gl_InstanceIndex);
+})";
+  spec.fragment =
+      "layout(location = 0) flat in vec4 v;\nlayout(location = 0) out vec4 o;\nvoid main() { o = v + 1.0; }\n";
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  const Buffer draws = run.buffer_of<VkDrawIndirectCommand>({{3, 2, 4, 1}, {3, 1, 7, 6}, {3, 3, 0, 9}});
+  run.require(run.gpu.features.multiDrawIndirect && run.gpu.features.drawIndirectFirstInstance, "multiDrawIndirect");
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    vkCmdDraw(cmd, 3, 2, 3, 4);
+    vkCmdDrawIndirect(cmd, draws.handle, 0, 3, sizeof(VkDrawIndirectCommand));
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+}
+
+}  // namespace
+}  // namespace vitrine::cts
