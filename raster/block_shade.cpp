@@ -70,8 +70,10 @@ void set_inputs(TileWorker& worker, const Primitive& primitive, int x, int y) {
   const PlaneSet& planes = current_planes(worker, primitive);
   const float center = plan.raster_samples > 1 ? 0.5f : 0.0f;
   set_varyings(worker, planes, static_cast<float>(x) + center, static_cast<float>(y) + center);
-  for (std::uint32_t k = plan.perspective_count + plan.linear_count; k < plan.varying_count(); ++k)
-    splat(worker, plan.varying[k].fragment_reg, base::bits_of(primitive.v[primitive.provoking][4 + k]));
+  const std::uint32_t smooth = plan.perspective_count + plan.linear_count;
+  for (std::uint32_t i = 0; i < plan.read_count; ++i)
+    if (const VaryingRead& read = plan.read[i]; read.varying >= smooth)
+      splat(worker, read.reg, base::bits_of(primitive.v[primitive.provoking][4 + read.varying]));
   set_frag_coord(worker, planes, primitive, x, y, center);
   splat(worker, plan.frag.front_facing, primitive.front ? ~0u : 0u);
   splat(worker, plan.frag.primitive_id, primitive.id);
@@ -132,11 +134,14 @@ void begin_blocks(TileWorker& worker) {
   BlockDraw& draw = worker.block_draw;
   draw.varying.clear();
   draw.perspective = 0;
-  for (std::uint32_t k = 0; k < plan.perspective_count + plan.linear_count; ++k) {
-    if (plan.varying[k].fragment_reg == kNoReg) continue;
-    draw.varying.push_back({kFirstVaryingPlane + k, as_floats(worker.runner.input(plan.varying[k].fragment_reg))});
-    if (k < plan.perspective_count) ++draw.perspective;
-  }
+  const auto add_varyings = [&](std::uint32_t first, std::uint32_t end) {
+    for (std::uint32_t i = 0; i < plan.read_count; ++i)
+      if (const VaryingRead& read = plan.read[i]; read.varying >= first && read.varying < end)
+        draw.varying.push_back({kFirstVaryingPlane + read.varying, as_floats(worker.runner.input(read.reg))});
+  };
+  add_varyings(0, plan.perspective_count);
+  draw.perspective = draw.varying.size();
+  add_varyings(plan.perspective_count, plan.perspective_count + plan.linear_count);
   draw.solid = !plan.may_kill && !plan.fragment->writes_memory;
   for (std::uint32_t i = 0; i < plan.color_count; ++i)
     for (const std::uint32_t reg : plan.frag.color[i])

@@ -13,7 +13,6 @@
 namespace vitrine::raster {
 
 inline constexpr int kBlockSize = 8;
-inline constexpr std::uint32_t kMaxSamples = 4;
 
 /// 8.1, 24.8 fixed point within the pixel.
 inline constexpr std::int32_t kSampleX[kMaxSamples] = {96, 224, 32, 160};

@@ -16,6 +16,7 @@ namespace vitrine::raster {
 
 inline constexpr std::uint32_t kMaxColorAttachments = 8;
 inline constexpr std::uint32_t kMaxViewports = 16;
+inline constexpr std::uint32_t kMaxSamples = 4;
 inline constexpr std::uint32_t kMaxVertexBindings = 32;
 inline constexpr std::uint32_t kMaxVertexAttributes = 32;
 

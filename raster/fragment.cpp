@@ -68,35 +68,52 @@ const WavePoints& points_of(ShadeRun& run, spirv::SampleLocation location, spirv
   return worker.place;
 }
 
-void interpolate_varyings(ShadeRun& run) {
+/// A plane's coefficients for interpolateAt*.
+void copy_plane_part(const WavePlanes& planes, std::uint32_t plane, spirv::InputPart part, WaveRegister& out) {
+  std::uint32_t* lane = out.lane;
+  for (std::uint32_t slot = 0; slot < planes.slots; ++slot) {
+    const PlaneSet& set = *planes.set[slot];
+    const float* coefficients = part == spirv::InputPart::kPlaneOrigin ? set.a0
+                                : part == spirv::InputPart::kPlaneX    ? set.dadx
+                                                                       : set.dady;
+    std::uint32_t* const end = out.lane + 4 * planes.end[slot];
+    for (const std::uint32_t value = base::bits_of(coefficients[plane]); lane != end; ++lane) *lane = value;
+  }
+}
+
+/// One word per primitive, over its quads.
+template <class F>
+void per_quad(ShadeRun& run, std::uint32_t reg, F&& value) {
+  if (reg == kNoReg) return;
+  WaveRegister& out = run.worker.runner.input(reg);
+  const PackedWave& wave = run.wave;
+  if (wave.slots == 1) {
+    splat(out, value(*wave.primitive[0]));
+    return;
+  }
+  std::uint32_t* lane = out.lane;
+  for (std::uint32_t slot = 0; slot < wave.slots; ++slot) {
+    std::uint32_t* const end = out.lane + 4 * wave.planes.end[slot];
+    for (const std::uint32_t word = value(*wave.primitive[slot]); lane != end; ++lane) *lane = word;
+  }
+}
+
+void read_varyings(ShadeRun& run) {
   const PipelinePlan& plan = run.plan;
   TileWorker& worker = run.worker;
   auto prepared = spirv::SampleLocation::kCenter;
   const std::uint32_t smooth = plan.perspective_count + plan.linear_count;
-  for (const auto wanted :
-       {spirv::SampleLocation::kCenter, spirv::SampleLocation::kCentroid, spirv::SampleLocation::kSample}) {
-    if (wanted != spirv::SampleLocation::kCenter && !plan.off_center) break;
-    for (std::uint32_t k = 0; k < smooth; ++k) {
-      const Varying& varying = plan.varying[k];
-      if (varying.location != wanted || varying.fragment_reg == kNoReg) continue;
-      const float* scale = k < plan.perspective_count ? run.scale : nullptr;
-      evaluate_plane(run.wave.planes, kFirstVaryingPlane + k, points_of(run, wanted, prepared), scale,
-                     as_floats(worker.runner.input(varying.fragment_reg)));
-    }
-  }
-  const PackedWave& wave = run.wave;
-  for (std::uint32_t k = smooth; k < plan.varying_count(); ++k) {
-    WaveRegister& out = worker.runner.input(plan.varying[k].fragment_reg);
-    if (wave.slots == 1) {
-      const Primitive& p = *wave.primitive[0];
-      splat(out, base::bits_of(p.v[p.provoking][4 + k]));
-      continue;
-    }
-    std::uint32_t* lane = out.lane;
-    for (std::uint32_t slot = 0; slot < wave.slots; ++slot) {
-      const Primitive& p = *wave.primitive[slot];
-      std::uint32_t* const end = out.lane + 4 * wave.planes.end[slot];
-      for (const std::uint32_t value = base::bits_of(p.v[p.provoking][4 + k]); lane != end; ++lane) *lane = value;
+  for (std::uint32_t i = 0; i < plan.read_count; ++i) {
+    const VaryingRead& read = plan.read[i];
+    const std::uint32_t plane = kFirstVaryingPlane + read.varying;
+    if (read.varying >= smooth) {
+      per_quad(run, read.reg, [&](const Primitive& p) { return base::bits_of(p.v[p.provoking][4 + read.varying]); });
+    } else if (read.part != spirv::InputPart::kValue) {
+      copy_plane_part(run.wave.planes, plane, read.part, worker.runner.input(read.reg));
+    } else {
+      const float* scale = read.varying < plan.perspective_count ? run.scale : nullptr;
+      evaluate_plane(run.wave.planes, plane, points_of(run, read.location, prepared), scale,
+                     as_floats(worker.runner.input(read.reg)));
     }
   }
 }
@@ -129,17 +146,28 @@ void set_frag_coord(ShadeRun& run) {
     evaluate_plane(run.wave.planes, kReciprocalWPlane, worker.center, nullptr, as_floats(worker.runner.input(reg[3])));
 }
 
-/// One word per quad, from its primitive.
-template <class F>
-void per_quad(ShadeRun& run, std::uint32_t reg, F&& value) {
-  if (reg == kNoReg) return;
-  WaveRegister& out = run.worker.runner.input(reg);
-  const PackedWave& wave = run.wave;
-  if (wave.slots == 1) {
-    splat(out, value(*wave.primitive[0]));
-    return;
+/// Where interpolateAt* evaluates planes.
+void set_interpolation_places(ShadeRun& run) {
+  const FragmentRegisters& frag = run.plan.frag;
+  TileWorker& worker = run.worker;
+  const auto copy = [&](const float* from, std::uint32_t reg) {
+    if (reg != kNoReg) std::copy_n(from, base::kWaveWidth, as_floats(worker.runner.input(reg)));
+  };
+  copy(worker.center.x, frag.interpolation_center[0]);
+  copy(worker.center.y, frag.interpolation_center[1]);
+  if (run.scale)
+    copy(run.scale, frag.interpolation_scale);
+  else if (frag.interpolation_scale != kNoReg)
+    splat(worker.runner.input(frag.interpolation_scale), base::bits_of(1.0f));
+  const bool located = run.plan.raster_samples > 1;
+  for (std::uint32_t s = 0; s < kMaxSamples; ++s) {
+    const std::uint32_t x = frag.interpolation_sample[2 * s], y = frag.interpolation_sample[2 * s + 1];
+    if (x == kNoReg && y == kNoReg) continue;
+    WavePoints points;
+    set_points(run.wave, located ? sample_x(s) : 0, located ? sample_y(s) : 0, points);
+    copy(points.x, x);
+    copy(points.y, y);
   }
-  for (std::uint32_t q = 0; q < wave.quads; ++q) std::fill_n(out.lane + 4 * q, 4, value(*wave.primitive[wave.slot[q]]));
 }
 
 void set_sample_inputs(ShadeRun& run) {
@@ -152,11 +180,12 @@ void set_sample_inputs(ShadeRun& run) {
   if (frag.sample_position[1] != kNoReg)
     splat(runner.input(frag.sample_position[1]), base::bits_of(located ? sample_y(run.first_sample) : 0.5f));
   if (frag.sample_mask_in == kNoReg) return;
+  const LaneMask* samples = run.plan.fragment->post_depth_coverage ? run.wave.coverage : run.wave.rasterized;
   WaveRegister& out = runner.input(frag.sample_mask_in);
   for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
     std::uint32_t mask = 0;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
-      mask |= static_cast<std::uint32_t>(run.wave.rasterized[s] >> lane & 1) << s;
+      mask |= static_cast<std::uint32_t>(samples[s] >> lane & 1) << s;
     out.lane[lane] = run.plan.samples == 1 ? 1 : mask;
   }
 }
@@ -179,6 +208,7 @@ void set_built_ins(ShadeRun& run) {
       out.lane[lane] = (run.pixels >> lane & 1) != 0 ? 0u : ~0u;
   }
   set_sample_inputs(run);
+  set_interpolation_places(run);
 }
 
 /// 8.6, and gl_SampleMask.
@@ -292,7 +322,7 @@ void shade(ShadeRun& run) {
     run.pixels |= run.kept[s];
   }
   if (!run.pixels) return;
-  interpolate_varyings(run);
+  read_varyings(run);
   set_built_ins(run);
   const LaneMask active = plan.fragment->needs_helpers ? run.used : run.pixels;
   const LaneMask alive = worker.runner.run(active, active & ~run.pixels);

@@ -117,16 +117,35 @@ std::uint32_t matching_output(const ShaderInterface& vertex, const InterfaceSlot
   return kNoReg;
 }
 
+Interpolation interpolation_of(const InterfaceSlot& slot) {
+  const bool raw = slot.built_in == BuiltIn::kLayer || slot.built_in == BuiltIn::kViewportIndex;
+  return raw || slot.type != spirv::BaseType::kFloat ? Interpolation::kFlat : slot.interpolation;
+}
+
+bool same_varying(const InterfaceSlot& a, const InterfaceSlot& b) {
+  return a.built_in == b.built_in && a.component == b.component && a.location == b.location &&
+         interpolation_of(a) == interpolation_of(b);
+}
+
+/// Slots that name the same component share a varying.
 void add_varyings(PipelinePlan& plan, Interpolation interpolation, std::uint32_t& count) {
-  for (const InterfaceSlot& slot : plan.fragment->inputs) {
-    if (!is_varying(slot) || plan.varying_count() == kMaxVaryings) continue;
-    const bool raw = slot.built_in == BuiltIn::kLayer || slot.built_in == BuiltIn::kViewportIndex;
-    const Interpolation wanted =
-        raw || slot.type != spirv::BaseType::kFloat ? Interpolation::kFlat : slot.interpolation;
-    if (wanted != interpolation) continue;
-    Varying& varying = plan.varying[plan.varying_count()];
-    varying = {matching_output(*plan.vertex, slot), slot.reg, interpolation, slot.sample_location};
-    ++count;
+  const std::vector<InterfaceSlot>& inputs = plan.fragment->inputs;
+  const std::uint32_t first_read = plan.read_count;
+  std::array<std::uint16_t, kMaxVaryingReads> source;  // index in inputs, per read
+  for (std::size_t i = 0; i < inputs.size() && plan.read_count < kMaxVaryingReads; ++i) {
+    const InterfaceSlot& slot = inputs[i];
+    if (!is_varying(slot) || interpolation_of(slot) != interpolation) continue;
+    std::uint32_t known = first_read;
+    while (known < plan.read_count && !same_varying(inputs[source[known]], slot)) ++known;
+    const bool added = known == plan.read_count;
+    if (added && plan.varying_count() == kMaxVaryings) continue;
+    const std::uint32_t varying = added ? plan.varying_count() : plan.read[known].varying;
+    if (added) {
+      plan.varying[varying] = {matching_output(*plan.vertex, slot), interpolation};
+      ++count;
+    }
+    source[plan.read_count] = static_cast<std::uint16_t>(i);
+    plan.read[plan.read_count++] = {slot.reg, static_cast<std::uint16_t>(varying), slot.sample_location, slot.part};
   }
 }
 
@@ -142,6 +161,15 @@ void plan_fragment_inputs(PipelinePlan& plan) {
         break;
       case BuiltIn::kSamplePosition:
         frag.sample_position[slot.component & 1] = slot.reg;
+        break;
+      case BuiltIn::kInterpolationCenter:
+        frag.interpolation_center[slot.component & 1] = slot.reg;
+        break;
+      case BuiltIn::kInterpolationSample:
+        if (slot.component < frag.interpolation_sample.size()) frag.interpolation_sample[slot.component] = slot.reg;
+        break;
+      case BuiltIn::kInterpolationScale:
+        frag.interpolation_scale = slot.reg;
         break;
       case BuiltIn::kFrontFacing:
         frag.front_facing = slot.reg;
@@ -194,18 +222,19 @@ void add_point_size(PipelinePlan& plan) {
   const bool points = state.topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST || state.polygon_mode == VK_POLYGON_MODE_POINT;
   plan.point_size_word = kNoReg;
   if (!points || plan.out.point_size == kNoReg || plan.perspective_count == kMaxVaryings) return;
-  plan.varying[plan.perspective_count] = {plan.out.point_size, kNoReg, Interpolation::kPerspective,
-                                          spirv::SampleLocation::kCenter};
+  plan.varying[plan.perspective_count] = {plan.out.point_size, Interpolation::kPerspective};
   plan.point_size_word = 4 + plan.perspective_count++;
 }
 
 void plan_varyings(PipelinePlan& plan) {
-  plan.perspective_count = plan.linear_count = plan.flat_count = 0;
+  plan.perspective_count = plan.linear_count = plan.flat_count = plan.read_count = 0;
   FragmentRegisters& frag = plan.frag;
   frag = {};
   frag.frag_coord.fill(kNoReg);
   frag.point_coord.fill(kNoReg);
   frag.sample_position.fill(kNoReg);
+  frag.interpolation_center.fill(kNoReg);
+  frag.interpolation_sample.fill(kNoReg);
   for (auto& color : frag.color) color.fill(kNoReg);
   frag.color_second.fill(kNoReg);
   if (plan.fragment) {
@@ -217,8 +246,11 @@ void plan_varyings(PipelinePlan& plan) {
     add_varyings(plan, Interpolation::kLinear, plan.linear_count);
     add_varyings(plan, Interpolation::kFlat, plan.flat_count);
   }
-  plan.off_center = std::any_of(plan.varying.begin(), plan.varying.begin() + plan.varying_count(),
-                                [](const Varying& v) { return v.location != spirv::SampleLocation::kCenter; });
+  std::stable_sort(plan.read.begin(), plan.read.begin() + plan.read_count,
+                   [](const VaryingRead& a, const VaryingRead& b) {
+                     if (a.part != b.part) return a.part < b.part;
+                     return a.location < b.location;
+                   });
   plan.vertex_stride = (4 + plan.varying_count() + 3) & ~3u;
 }
 
@@ -237,7 +269,7 @@ ViewportTransform viewport_transform(const VkViewport& viewport, bool negative_o
     t.sz = static_cast<float>(max - min);
     t.tz = viewport.minDepth;
   }
-  const float a = t.tz, b = t.tz + t.sz;
+  const float a = negative_one_to_one ? t.tz - t.sz : t.tz, b = t.tz + t.sz;
   t.z_min = std::min(a, b);
   t.z_max = std::max(a, b);
   return t;
@@ -269,26 +301,34 @@ bool monotone(VkCompareOp op) {
          op == VK_COMPARE_OP_GREATER_OR_EQUAL;
 }
 
+bool reads_at_centroid(const PipelinePlan& plan) {
+  return std::any_of(plan.read.begin(), plan.read.begin() + plan.read_count,
+                     [](const VaryingRead& read) { return read.location == spirv::SampleLocation::kCentroid; });
+}
+
 /// lavapipe-rasterization.md 5.2, 5.4. What ends late there and could be tested early without being seen is rejected
 /// early and decided late here.
 void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
   const State& state = *plan.state;
   plan.depth_test = state.depth_test && pass.depth.format != nullptr;
   plan.depth_write = plan.depth_test && state.depth_write;
+  plan.depth_bounds = state.depth_bounds_test && pass.depth.format != nullptr;
   plan.stencil_test = state.stencil_test && pass.stencil.format != nullptr;
   const ShaderInterface* fragment = plan.fragment;
   plan.may_kill = state.alpha_to_coverage || (fragment && (fragment->uses_discard || plan.frag.sample_mask != kNoReg));
   plan.depth_order = TestOrder::kNone;
-  plan.early_reject = false;
-  if (!plan.depth_test && !plan.stencil_test) return;
+  plan.early_reject = plan.in_order = false;
+  if (!plan.depth_test && !plan.depth_bounds && !plan.stencil_test) return;
   plan.depth_order = TestOrder::kEarly;
   if (!fragment || fragment->early_fragment_tests) return;
   const bool replaces = plan.frag.depth != kNoReg || plan.frag.stencil != kNoReg;
   if (!replaces && !fragment->writes_memory && !plan.may_kill) return;
   plan.depth_order = TestOrder::kLate;
   const bool stencil_changes = plan.stencil_test && (stencil_writes(state.front) || stencil_writes(state.back));
-  plan.early_reject = !replaces && !fragment->writes_memory && !stencil_changes && !plan.stencil_test &&
-                      (monotone(state.depth_compare) || !plan.depth_write);
+  if (replaces || fragment->writes_memory || stencil_changes) return;
+  plan.in_order = plan.raster_samples > 1 && reads_at_centroid(plan);
+  plan.early_reject = plan.in_order || (!plan.stencil_test && !plan.depth_bounds &&
+                                        (monotone(state.depth_compare) || !plan.depth_write));
 }
 
 bool is_line(VkPrimitiveTopology topology) {
@@ -341,17 +381,25 @@ void plan_colors(PipelinePlan& plan, const PassDesc& pass, bool general) {
   }
 }
 
+/// Whether a varying is wanted elsewhere than at the centre, or its plane.
+bool reads_elsewhere(const PipelinePlan& plan) {
+  return std::any_of(plan.read.begin(), plan.read.begin() + plan.read_count, [&](const VaryingRead& read) {
+    return read.part != spirv::InputPart::kValue ||
+           (read.location != spirv::SampleLocation::kCenter && plan.raster_samples > 1);
+  });
+}
+
 /// What the block path leaves to packed waves: whatever is rare and needs more than varyings and FragCoord.
 void plan_blocks(PipelinePlan& plan, bool general) {
-  plan.tests_rows = !general && !plan.stencil_test;
+  plan.tests_rows = !general && !plan.stencil_test && !plan.depth_bounds;
   const FragmentRegisters& frag = plan.frag;
   const bool rare_inputs = frag.point_coord[0] != kNoReg || frag.point_coord[1] != kNoReg || frag.sample_id != kNoReg ||
                            frag.sample_position[0] != kNoReg || frag.sample_position[1] != kNoReg ||
                            frag.sample_mask_in != kNoReg || frag.helper != kNoReg || frag.layer != kNoReg ||
-                           frag.view_index != kNoReg || (plan.off_center && plan.raster_samples > 1);
+                           frag.view_index != kNoReg || reads_elsewhere(plan);
   const bool rare_outputs = frag.depth != kNoReg || frag.stencil != kNoReg || frag.sample_mask != kNoReg ||
                             plan.dual_source || plan.state->alpha_to_coverage || plan.state->alpha_to_one;
-  const bool late_stencil = plan.stencil_test && plan.depth_order == TestOrder::kLate;
+  const bool late_stencil = (plan.stencil_test || plan.depth_bounds) && plan.depth_order == TestOrder::kLate;
   plan.shades_blocks =
       !general && plan.shades && !plan.sample_shading && !rare_inputs && !rare_outputs && !late_stencil;
 }

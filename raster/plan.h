@@ -32,13 +32,21 @@ struct ViewportTransform {
   float z_min = 0, z_max = 1;  ///< depth clamp range (5.3)
 };
 
-/// One interpolated component: from a vertex output to a fragment input. Registers or kNoReg.
+/// One interpolated component that leaves the vertex stage.
 struct Varying {
-  std::uint32_t vertex_reg = kNoReg;    ///< kNoReg: not written, reads 0
-  std::uint32_t fragment_reg = kNoReg;  ///< kNoReg: gl_PrimitiveID and the like do not come here
+  std::uint32_t vertex_reg = kNoReg;  ///< kNoReg: not written, reads 0
   spirv::Interpolation interpolation = spirv::Interpolation::kPerspective;
-  spirv::SampleLocation location = spirv::SampleLocation::kCenter;
 };
+
+/// A register of the fragment shader that takes something of a varying: its value somewhere, or a part of its plane.
+struct VaryingRead {
+  std::uint32_t reg;
+  std::uint16_t varying;
+  spirv::SampleLocation location;
+  spirv::InputPart part;
+};
+/// Values at two places (the centre's, the centroid's or a sample's) and three parts of the plane.
+inline constexpr std::uint32_t kMaxVaryingReads = 5 * kMaxVaryings;
 
 /// When depth and stencil are tested relative to shading (5.4).
 enum class TestOrder : std::uint8_t { kNone, kEarly, kLate };
@@ -71,7 +79,9 @@ struct VertexOutputs {
 /// Register numbers of the fragment stage; kNoReg where not read or written.
 struct FragmentRegisters {
   std::array<std::uint32_t, 4> frag_coord;
-  std::array<std::uint32_t, 2> point_coord, sample_position;
+  std::array<std::uint32_t, 2> point_coord, sample_position, interpolation_center;
+  std::array<std::uint32_t, 2 * kMaxSamples> interpolation_sample;
+  std::uint32_t interpolation_scale = kNoReg;
   std::uint32_t front_facing = kNoReg, sample_id = kNoReg, sample_mask_in = kNoReg, primitive_id = kNoReg;
   std::uint32_t helper = kNoReg, layer = kNoReg, view_index = kNoReg;
   std::array<std::array<std::uint32_t, 4>, kMaxColorAttachments> color;
@@ -92,6 +102,9 @@ struct PipelinePlan {
   std::uint32_t perspective_count = 0, linear_count = 0, flat_count = 0;
   std::array<Varying, kMaxVaryings> varying;
   std::uint32_t varying_count() const { return perspective_count + linear_count + flat_count; }
+  /// In the order values at the centre, at the centroid, at samples; parts of planes last.
+  std::uint32_t read_count = 0;
+  std::array<VaryingRead, kMaxVaryingReads> read;
   std::uint32_t point_size_word = kNoReg;  ///< of a Vertex record; kNoReg: gl_PointSize is not written, 1
   std::uint32_t vertex_stride = 4;         ///< 32-bit words of a Vertex record, a multiple of 4
 
@@ -112,11 +125,12 @@ struct PipelinePlan {
   std::uint32_t sample_mask = 0xf;  ///< 0: nothing is drawn
 
   TestOrder depth_order = TestOrder::kNone;
-  bool depth_test = false, depth_write = false, stencil_test = false;
+  bool depth_test = false, depth_write = false, depth_bounds = false, stencil_test = false;
   bool early_reject = false;  ///< late order: failing now means failing later, so such quads need not be shaded
+  bool in_order = false;      ///< early_reject whose outcome the shader sees, as the centroid: no primitive is tested
+                              ///< before the writes of those in front of it
   std::uint32_t color_count = 0;
   std::array<ColorWriter, kMaxColorAttachments> writer;
-  bool off_center = false;  ///< some varying is interpolated at the centroid or at samples
   bool dual_source = false;
   bool replaces_colors = false;  ///< every covered pixel of every attachment is overwritten, whatever it held
   bool shades = true;            ///< the fragment shader's run can be observed

@@ -23,6 +23,9 @@ struct Program;  // spirv/program.h
 enum class BaseType : std::uint8_t { kFloat, kInt, kUint };
 enum class Interpolation : std::uint8_t { kPerspective, kLinear, kFlat };
 enum class SampleLocation : std::uint8_t { kCenter, kCentroid, kSample };
+/// What a slot of an interpolated component holds: its value at the slot's SampleLocation, or a coefficient of its plane
+/// (raster's planes: value at the framebuffer's origin, change per pixel to the right, change per pixel down).
+enum class InputPart : std::uint8_t { kValue, kPlaneOrigin, kPlaneX, kPlaneY };
 
 /// Values fixed function supplies or takes, besides the numbered locations. Booleans are 0 / 0xffffffff.
 enum class BuiltIn : std::uint8_t {
@@ -50,6 +53,10 @@ enum class BuiltIn : std::uint8_t {
   kSampleMask,
   kPrimitiveId,
   kHelperInvocation,
+  // fragment in, for interpolateAt*: where planes are evaluated, in pixels
+  kInterpolationCenter,  ///< x, y at the pixel's centre
+  kInterpolationSample,  ///< component 2 s: x at sample s, 2 s + 1: y
+  kInterpolationScale,   ///< factor of perspective planes: 1 / (1/w) at the centre
   // fragment out (kSampleMask too)
   kFragDepth,
   kFragStencilRef,
@@ -65,6 +72,7 @@ struct InterfaceSlot {
   BaseType type = BaseType::kFloat;
   Interpolation interpolation = Interpolation::kPerspective;
   SampleLocation sample_location = SampleLocation::kCenter;
+  InputPart part = InputPart::kValue;
   std::uint32_t reg = 0;  ///< register of the wave: WaveRunner::input(reg) / output(reg)
 };
 
@@ -78,7 +86,8 @@ struct ShaderInterface {
   bool uses_discard = false;          ///< may end fragments (kill, terminate, demote)
   bool writes_memory = false;         ///< stores or atomics to buffers or images
   bool early_fragment_tests = false;  ///< execution mode
-  bool per_sample = false;            ///< reads SampleId/SamplePosition or a `sample` input
+  bool post_depth_coverage = false;   ///< execution mode: SampleMask as an input counts what passed the early tests
+  bool per_sample = false;            ///< declares SampleId, SamplePosition or a `sample` input, read or not
   bool needs_helpers = false;         ///< derivatives or implicit LOD: quads must be complete
   bool writes_depth() const { return writes(BuiltIn::kFragDepth); }
   bool writes(BuiltIn built_in) const {

@@ -137,6 +137,26 @@ const AddCase kFacing(
       draw(run, "read", target, spec, values);
     });
 
+const AddCase kInterpolation(
+    "pipeline", "deviation.interpolation_overwrites_input", "interpolation-overwrites-input", case_against_control,
+    [](Run& run) {
+      run.require(run.gpu.features.sampleRateShading, "sampleRateShading");
+      TargetSpec target;
+      target.colors = {VK_FORMAT_R32G32B32A32_SFLOAT};
+      const std::vector<float> values = colored({{-0.7f, -0.7f, 0, 1}, {0.7f, -0.5f, 0, 1}, {0, 0.7f, 0, 1}});
+      const auto fragment = [](const char* first, const char* second) {
+        return std::string("layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n") +
+               "void main() {\n" + first + second + "  result = vec4(plain.xy, other.xy);\n}\n";
+      };
+      const char* plain = "  vec4 plain = passed;\n";
+      const char* other = "  vec4 other = interpolateAtOffset(passed, vec2(0.25, -0.375));\n";
+      GraphicsSpec spec;
+      spec.fragment = fragment(other, plain);
+      draw(run, "read_after", target, spec, values);
+      spec.fragment = fragment(plain, other);
+      draw(run, "read_before", target, spec, values);
+    });
+
 const AddCase kAlphaPerSample(
     "pipeline", "deviation.alpha_to_coverage_per_sample", "alpha-to-coverage-per-sample", case_against_control,
     [](Run& run) {

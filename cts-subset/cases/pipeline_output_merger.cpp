@@ -249,10 +249,11 @@ CTS_RANDOM("pipeline", "random_multisample", 80) {
       {"passed", "passed", "vec4(gl_FragCoord.xy * 0.01, gl_FragCoord.zw)", "passed + 0.1 * float(gl_SampleMaskIn[0])",
        "interpolateAtOffset(passed, vec2(0.2, -0.3))", "interpolateAtSample(passed, 2)"});
   const bool flat = std::string(qualifier) == "flat";
+  // Read before it is interpolated elsewhere (deviations.md, interpolation-overwrites-input).
+  const std::string mask_line = random.chance(0.2f) ? "  gl_SampleMask[0] = int(passed.x * 16.0);\n" : "";
   spec.fragment = std::string("layout(location = 0) ") + qualifier +
-                  " in vec4 passed;\nlayout(location = 0) out vec4 result;\nvoid main() {\n  result = " +
-                  (flat && value.starts_with("interpolate") ? "passed" : value) + ";\n" +
-                  (random.chance(0.2f) ? "  gl_SampleMask[0] = int(passed.x * 16.0);\n" : "") +
+                  " in vec4 passed;\nlayout(location = 0) out vec4 result;\nvoid main() {\n" + mask_line +
+                  "  result = " + (flat && value.starts_with("interpolate") ? "passed" : value) + ";\n" +
                   (run.gpu.features.sampleRateShading && random.chance(0.2f)
                        ? "  result.x = float(gl_SampleID) * 0.25 + gl_SamplePosition.x;\n"
                        : "") +

@@ -193,6 +193,14 @@ struct LaneOp<Op::kFDdy> {
   }
 };
 
+template <>
+struct LaneOp<Op::kFFused> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return lanes_fma(a, b, c);
+  }
+};
+
 // ---- superinstructions: every product and every sum rounds
 
 template <>

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -111,7 +112,8 @@ struct Translator {
   ir::NodeList constants;        ///< goes in front of everything
   ir::NodeList prologue;         ///< initial values of variables, inputs
   std::map<std::vector<std::uint32_t>, ir::ValueId> constant_ids;
-  std::map<std::pair<BuiltIn, std::uint8_t>, ir::ValueId> built_in_inputs;  ///< components loaded by the prologue
+  using InputKey = std::tuple<BuiltIn, std::uint16_t, std::uint8_t, Interpolation, InputPart, SampleLocation>;
+  std::map<InputKey, ir::ValueId> loaded_inputs;  ///< slots loaded by the prologue
   std::unordered_map<ir::ValueId, std::array<std::uint32_t, 4>> constant_words;
   std::unordered_set<ir::ValueId> undefined_ids;
 

@@ -1,8 +1,10 @@
 // The shader's interface: execution modes, numbered locations and built-ins as InterfaceSlots (Vulkan, Shader
 // Interfaces; Built-In Variables). Inputs are stored to their variables before the body, outputs loaded after it.
-#include "spirv/front/functions.h"
+#include "spirv/front/interface.h"
 
 #include <utility>
+
+#include "spirv/front/functions.h"
 
 namespace vitrine::spirv::front {
 namespace {
@@ -12,13 +14,6 @@ using Kind = Type::Kind;
 
 /// The value is composed by subgroup_built_in().
 constexpr ir::Op kOfSubgroup = ir::Op::kCount;
-
-struct BuiltInRow {
-  spv::BuiltIn spirv;
-  BuiltIn slot;  ///< kNone: `op`
-  ir::Op op;     ///< instruction that gives the value
-  std::uint8_t components;
-};
 
 constexpr BuiltInRow kBuiltIns[] = {
     {spv::BuiltIn::VertexIndex, BuiltIn::kVertexIndex, ir::Op::kLoadInput, 1},
@@ -77,15 +72,6 @@ struct Decorated {
     return module.decoration(variable, kind);
   }
   bool has(Decoration kind) const { return find(kind) != nullptr; }
-};
-
-/// One leaf of an interface variable.
-struct Leaf {
-  std::vector<Step> path;
-  std::uint32_t type = 0;
-  InterfaceSlot slot;  ///< of component 0
-  bool invariant = false;
-  const BuiltInRow* built_in = nullptr;
 };
 
 struct Walk {
@@ -169,27 +155,6 @@ struct Walk {
   }
 };
 
-std::vector<Leaf> interface_leaves(Translator& t, const Local& local) {
-  const Inst& variable = t.module.def(local.variable);
-  Walk walk{t, variable, local.storage == spv::StorageClass::Input, {}, {}, 0, 0};
-  if (t.module.decoration(local.variable, Decoration::Patch) != nullptr) fail(variable, "Patch is not supported");
-  if (const DecorationRow* row = t.module.decoration(local.variable, Decoration::Location)) walk.location = row->value;
-  walk.type(local.type, {t.module, local.variable, 0, 0});
-  return std::move(walk.leaves);
-}
-
-/// Loads one component of an input. A component of a built-in is loaded once: fixed function fills one register.
-ir::ValueId load_input(Translator& t, const InterfaceSlot& slot) {
-  const std::pair key(slot.built_in, slot.component);
-  const auto known = t.built_in_inputs.find(key);
-  if (slot.built_in != BuiltIn::kNone && known != t.built_in_inputs.end()) return known->second;
-  const ir::ValueId value = emit(t, ir::Op::kLoadInput, 1, false, {});
-  last_instr(t).data[0] = static_cast<std::uint32_t>(t.function.interface.inputs.size());
-  t.function.interface.inputs.push_back(slot);
-  if (slot.built_in != BuiltIn::kNone) t.built_in_inputs.emplace(key, value);
-  return value;
-}
-
 /// The slot of a word of a leaf: numbers of 64 bits have two words, and go on in the next location.
 InterfaceSlot word_slot(const Leaf& leaf, std::uint32_t word) {
   InterfaceSlot slot = leaf.slot;
@@ -236,6 +201,24 @@ bool is_live(const Translator& t, const Leaf& leaf) {
   return leaf.slot.location < 32 && (t.options.live_color_outputs >> leaf.slot.location & 1) != 0;
 }
 
+/// Vulkan 1.3.239, Sample Shading: "If a fragment shader entry point's interface includes an input variable decorated
+/// with SamplePosition, Sample Shading is considered enabled with a minSampleShading value of 1.0." The same holds for
+/// SampleId and for Sample, which may decorate members too. Whether the shader reads the variable does not matter.
+bool shades_per_sample(const Module& module) {
+  for (const std::uint32_t id : module.interface) {
+    const Type& pointer = module.type(module.def(id).result_type);
+    if (pointer.storage != spv::StorageClass::Input) continue;
+    for (const DecorationRow& row : module.decorations) {
+      if (row.id != id && (row.id != pointer.element || row.member == 0)) continue;
+      if (row.kind == Decoration::Sample) return true;
+      if (row.kind != Decoration::BuiltIn) continue;
+      const auto built_in = static_cast<spv::BuiltIn>(row.value);
+      if (built_in == spv::BuiltIn::SampleId || built_in == spv::BuiltIn::SamplePosition) return true;
+    }
+  }
+  return false;
+}
+
 void set_local_size(Translator& t, const std::uint32_t size[3]) {
   for (int i = 0; i < 3; i++) {
     if (size[i] == 0 || size[i] > 1024) throw Failure("local size is out of range");
@@ -245,9 +228,31 @@ void set_local_size(Translator& t, const std::uint32_t size[3]) {
 
 }  // namespace
 
+std::vector<Leaf> interface_leaves(Translator& t, const Local& local) {
+  const Inst& variable = t.module.def(local.variable);
+  Walk walk{t, variable, local.storage == spv::StorageClass::Input, {}, {}, 0, 0};
+  if (t.module.decoration(local.variable, Decoration::Patch) != nullptr) fail(variable, "Patch is not supported");
+  if (const DecorationRow* row = t.module.decoration(local.variable, Decoration::Location)) walk.location = row->value;
+  walk.type(local.type, {t.module, local.variable, 0, 0});
+  return std::move(walk.leaves);
+}
+
+ir::ValueId load_input(Translator& t, const InterfaceSlot& slot) {
+  // Fixed function fills one register per component of a built-in, however it is declared.
+  const Interpolation mode = slot.built_in == BuiltIn::kNone ? slot.interpolation : Interpolation::kPerspective;
+  const Translator::InputKey key{slot.built_in, slot.location, slot.component, mode, slot.part, slot.sample_location};
+  if (const auto known = t.loaded_inputs.find(key); known != t.loaded_inputs.end()) return known->second;
+  const ir::ValueId value = emit(t, ir::Op::kLoadInput, 1, false, {});
+  last_instr(t).data[0] = static_cast<std::uint32_t>(t.function.interface.inputs.size());
+  t.function.interface.inputs.push_back(slot);
+  t.loaded_inputs.emplace(key, value);
+  return value;
+}
+
 void read_modes(Translator& t) {
   ShaderInterface& interface = t.function.interface;
   interface.stage = t.options.stage;
+  interface.per_sample = t.options.stage == VK_SHADER_STAGE_FRAGMENT_BIT && shades_per_sample(t.module);
   for (const Inst& mode : t.module.modes) {
     auto word = [&](std::uint32_t i) { return mode.operand(i + 2); };
     auto id = [&](std::uint32_t i) { return t.module.constant_u32(mode.operand(i + 2), mode); };
@@ -265,6 +270,9 @@ void read_modes(Translator& t) {
       case spv::ExecutionMode::EarlyFragmentTests:
         interface.early_fragment_tests = true;
         break;
+      case spv::ExecutionMode::PostDepthCoverage:
+        interface.post_depth_coverage = true;
+        break;
       case spv::ExecutionMode::SignedZeroInfNanPreserve:
         t.function.signed_zero_inf_nan_preserve |= word(0) == 32;
         break;
@@ -273,6 +281,7 @@ void read_modes(Translator& t) {
         break;
       case spv::ExecutionMode::OriginUpperLeft:
       case spv::ExecutionMode::DepthReplacing:
+      case spv::ExecutionMode::StencilRefReplacingEXT:
       case spv::ExecutionMode::DepthGreater:
       case spv::ExecutionMode::DepthLess:
       case spv::ExecutionMode::DepthUnchanged:

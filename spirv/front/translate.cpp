@@ -9,13 +9,6 @@ namespace {
 
 using namespace front;
 
-/// Facts about the interface that depend on what survived.
-void summarize(ShaderInterface& interface) {
-  for (const InterfaceSlot& slot : interface.inputs)
-    interface.per_sample |= slot.built_in == BuiltIn::kSampleId || slot.built_in == BuiltIn::kSamplePosition ||
-                            slot.sample_location == SampleLocation::kSample;
-}
-
 ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& options) {
   const Module module = parse_module(words, options);
   Translator t(module, options);
@@ -40,7 +33,6 @@ ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& opt
   ir::propagate_copies(t.function);
   ir::remove_dead(t.function);
   propagate_invariant(t.function);
-  summarize(t.function.interface);
   return std::move(t.function);
 }
 

@@ -153,6 +153,8 @@ float float_result(Op op, float a, float b, float c) {
       return flushed(base::min_second(a, b));
     case Op::kFMaxPlain:
       return flushed(base::max_second(a, b));
+    case Op::kFFused:
+      return std::fma(a, b, c);
     case Op::kFMulAdd:
       return a * b + c;
     case Op::kFMulSub:

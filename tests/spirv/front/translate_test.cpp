@@ -142,6 +142,49 @@ TEST(Translate, InterfaceListsWhatIsUsed) {
   EXPECT_EQ(f.interface.outputs[0].component, 1);
 }
 
+TEST(Translate, InterpolateAtCentroidIsAnotherSlot) {
+  ir::Function f = translated(kFragment, R"(
+    layout(location = 0) in vec2 v; layout(location = 1) flat in float c; layout(location = 0) out vec4 color;
+    void main() { color = vec4(v.x, interpolateAtCentroid(v), interpolateAtCentroid(c)); })");
+  const auto& inputs = f.interface.inputs;
+  ASSERT_EQ(inputs.size(), 4u);
+  const auto centroids = std::count_if(inputs.begin(), inputs.end(), [](const InterfaceSlot& slot) {
+    return slot.sample_location == SampleLocation::kCentroid && slot.location == 0;
+  });
+  EXPECT_EQ(centroids, 2);
+  EXPECT_FALSE(f.interface.per_sample);
+}
+
+TEST(Translate, InterpolateAtOffsetReadsPlanes) {
+  ir::Function f = translated(kFragment, R"(
+    layout(location = 0) in vec2 v[2]; layout(location = 2) noperspective in float n;
+    layout(location = 0) out vec2 color;
+    void main() { color = vec2(interpolateAtOffset(v[1].y, vec2(0.25, n)), interpolateAtSample(n, 1)); })");
+  const auto planes = [&](unsigned location, unsigned component) {
+    const auto& inputs = f.interface.inputs;
+    return std::count_if(inputs.begin(), inputs.end(), [&](const InterfaceSlot& slot) {
+      return slot.built_in == BuiltIn::kNone && slot.part != InputPart::kValue && slot.location == location &&
+             slot.component == component;
+    });
+  };
+  EXPECT_EQ(planes(0, 0), 0);
+  EXPECT_EQ(planes(1, 0), 0);
+  EXPECT_EQ(planes(1, 1), 3);
+  EXPECT_EQ(planes(2, 0), 3);
+  EXPECT_EQ(count(f, ir::Op::kFFused), 2u + 2u + 1u + 2u);  // offset, plane and scale; plane
+}
+
+TEST(Translate, DeclaredSampleInputsMakeShadingPerSample) {
+  const auto per_sample = [](const char* declaration) {
+    return translated(kFragment,
+                      std::string(declaration) + " layout(location = 0) out float y; void main() { y = 1.0; }")
+        .interface.per_sample;
+  };
+  EXPECT_TRUE(per_sample("layout(location = 0) sample in vec2 v;"));
+  EXPECT_TRUE(per_sample("layout(location = 0) in Block { float a; sample float b; } block;"));
+  EXPECT_FALSE(per_sample("layout(location = 0) centroid in vec2 v;"));
+}
+
 TEST(Translate, MatricesAndArraysTakeConsecutiveLocations) {
   ir::Function f = translated(kVertex, R"(
     layout(location = 2) in mat2 m; layout(location = 0) out vec2 v[2];
@@ -263,11 +306,6 @@ TEST(Translate, OriginNamesTheInstruction) {
 }
 
 TEST(Translate, RefusalsNameTheInstruction) {
-  EXPECT_NE(refusal(kFragment,
-                    "layout(location = 0) in vec2 v; layout(location = 0) out vec2 c; "
-                    "void main() { c = interpolateAtCentroid(v); }")
-                .find("ExtInst"),
-            std::string::npos);
   EXPECT_NE(refusal(kFragment,
                     "layout(set = 3, binding = 9) uniform U { vec4 v; } u; "
                     "layout(location = 0) out vec4 c; void main() { c = u.v; }")
