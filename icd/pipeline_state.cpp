@@ -40,6 +40,12 @@ void fill_vertex_input(Pipeline& pipeline, const VkPipelineVertexInputStateCreat
     if (b.binding >= raster::kMaxVertexBindings) continue;
     pipeline.streams[b.binding] = {b.stride, 1, b.inputRate == VK_VERTEX_INPUT_RATE_INSTANCE, true};
   }
+  if (const auto* divisors = find_in_chain<VkPipelineVertexInputDivisorStateCreateInfoEXT>(info.pNext)) {
+    for (std::uint32_t i = 0; i < divisors->vertexBindingDivisorCount; ++i) {
+      const VkVertexInputBindingDivisorDescriptionEXT& d = divisors->pVertexBindingDivisors[i];
+      if (d.binding < raster::kMaxVertexBindings) pipeline.streams[d.binding].divisor = d.divisor;
+    }
+  }
   raster::State& state = pipeline.state;
   state.attribute_count = std::min(info.vertexAttributeDescriptionCount, raster::kMaxVertexAttributes);
   for (std::uint32_t i = 0; i < state.attribute_count; ++i) {
@@ -54,12 +60,15 @@ void fill_viewports(raster::State& state, const VkPipelineViewportStateCreateInf
   const std::uint32_t scissors = std::min(info.scissorCount, raster::kMaxViewports);
   if (!(dynamic & kDynamicViewport)) std::copy_n(info.pViewports, state.viewport_count, state.viewport.begin());
   if (!(dynamic & kDynamicScissor)) std::copy_n(info.pScissors, scissors, state.scissor.begin());
+  if (const auto* control = find_in_chain<VkPipelineViewportDepthClipControlCreateInfoEXT>(info.pNext))
+    state.negative_one_to_one = control->negativeOneToOne;
 }
 
 void fill_rasterization(raster::State& state, const VkPipelineRasterizationStateCreateInfo& info) {
   state.rasterizer_discard = info.rasterizerDiscardEnable;
   state.depth_clamp = info.depthClampEnable;
-  state.depth_clip = !info.depthClampEnable;  // VK_EXT_depth_clip_enable would decouple them
+  const auto* clip = find_in_chain<VkPipelineRasterizationDepthClipStateCreateInfoEXT>(info.pNext);
+  state.depth_clip = clip ? clip->depthClipEnable : !info.depthClampEnable;
   state.polygon_mode = info.polygonMode;
   state.cull_mode = info.cullMode;
   state.front_face = info.frontFace;
@@ -68,6 +77,14 @@ void fill_rasterization(raster::State& state, const VkPipelineRasterizationState
   state.depth_bias_clamp = info.depthBiasClamp;
   state.depth_bias_slope = info.depthBiasSlopeFactor;
   state.line_width = info.lineWidth;
+  if (const auto* vertex = find_in_chain<VkPipelineRasterizationProvokingVertexStateCreateInfoEXT>(info.pNext))
+    state.provoking_vertex_last = vertex->provokingVertexMode == VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
+  if (const auto* line = find_in_chain<VkPipelineRasterizationLineStateCreateInfoEXT>(info.pNext)) {
+    state.line_mode = line->lineRasterizationMode;
+    state.line_stipple = line->stippledLineEnable;
+    state.line_stipple_factor = line->lineStippleFactor;
+    state.line_stipple_pattern = line->lineStipplePattern;
+  }
 }
 
 void fill_multisample(raster::State& state, const VkPipelineMultisampleStateCreateInfo& info) {

@@ -74,16 +74,6 @@ ClipVertex interpolate(const ClipContext& context, const ClipVertex& base, const
   return made;
 }
 
-/// A copy of the vertex with the flat values of another.
-const Vertex* with_flat_values(const ClipContext& context, const Vertex* record, const Vertex* flat) {
-  const PipelinePlan& plan = *context.plan;
-  Vertex* copy = context.arena->take<Vertex>(plan.vertex_stride);
-  std::memcpy(copy, record, plan.vertex_stride * sizeof(Vertex));
-  const std::uint32_t first = 4 + plan.perspective_count + plan.linear_count;
-  std::memcpy(copy + first, flat + first, plan.flat_count * sizeof(Vertex));
-  return copy;
-}
-
 /// The vertex on the plane between previous (distance dp) and current (d): measured from the nearer one.
 ClipVertex crossing(const ClipContext& context, const ClipVertex& previous, const ClipVertex& current, float dp,
                     float d) {
@@ -120,6 +110,15 @@ bool clip_by_plane(const ClipContext& context, std::uint32_t plane, const ClipPo
 
 }  // namespace
 
+const Vertex* with_flat_values(const PipelinePlan& plan, Arena& arena, const Vertex* record, const Vertex* flat) {
+  if (!plan.flat_count || record == flat) return record;
+  Vertex* copy = arena.take<Vertex>(plan.vertex_stride);
+  std::memcpy(copy, record, plan.vertex_stride * sizeof(Vertex));
+  const std::uint32_t first = 4 + plan.perspective_count + plan.linear_count;
+  std::memcpy(copy + first, flat + first, plan.flat_count * sizeof(Vertex));
+  return copy;
+}
+
 bool clip_triangle(const ClipContext& context, std::uint32_t provoking, ClipPolygon& polygon) {
   const ClipCode planes = polygon.corner[0].code | polygon.corner[1].code | polygon.corner[2].code;
   const Vertex* provoking_record = polygon.corner[provoking].record;
@@ -130,8 +129,8 @@ bool clip_triangle(const ClipContext& context, std::uint32_t provoking, ClipPoly
     std::swap(in, out);
   }
   if (in != &polygon) polygon = *in;
-  if (context.plan->flat_count && polygon.corner[0].record != provoking_record)
-    polygon.corner[0].record = with_flat_values(context, polygon.corner[0].record, provoking_record);
+  const Vertex*& first = polygon.corner[0].record;
+  first = with_flat_values(*context.plan, *context.arena, first, provoking_record);
   return true;
 }
 
@@ -150,9 +149,8 @@ bool clip_line(const ClipContext& context, std::uint32_t provoking, ClipVertex l
   if (v0.code) line[0] = interpolate(context, v0, v1, t0);
   if (v1.code) line[1] = interpolate(context, v1, v0, t1);
   const ClipVertex& source = provoking == 0 ? v0 : v1;
-  if (context.plan->flat_count)
-    for (int i = 0; i < 2; ++i)
-      if (line[i].record != source.record) line[i].record = with_flat_values(context, line[i].record, source.record);
+  for (int i = 0; i < 2; ++i)
+    line[i].record = with_flat_values(*context.plan, *context.arena, line[i].record, source.record);
   return true;
 }
 

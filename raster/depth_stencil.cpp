@@ -247,6 +247,30 @@ class StencilQuad {
   const std::uint32_t* reference_;
 };
 
+/// Stored depth as a number, at the pixel of one lane.
+double stored_depth(const DepthStencilTarget& target, const QuadPositions& quads, std::uint32_t lane) {
+  const std::uint32_t q = lane / 4, bytes = target.format == DepthFormat::kD16 ? 2 : 4;
+  const std::uint64_t x = quads.x[q] + (lane & 1), y = quads.y[q] + (lane >> 1 & 1);
+  std::uint32_t word = 0;
+  std::memcpy(&word, target.depth + y * target.depth_pitch + x * bytes, bytes);
+  if (target.format == DepthFormat::kD32) return static_cast<double>(base::float_of(word));
+  const std::uint32_t largest = target.format == DepthFormat::kD16 ? 0xffff : 0xffffff;
+  return static_cast<double>(word & largest) / largest;
+}
+
+/// Vulkan 1.3.239, Depth Bounds Test: "If the depth value za is outside of the range [minDepthBounds, maxDepthBounds],
+/// the depth bounds test sets the sample coverage to 0".
+base::LaneMask inside_depth_bounds(const State& state, const DepthStencilTarget& target, const QuadPositions& quads,
+                                   base::LaneMask mask) {
+  base::LaneMask inside = 0;
+  base::for_each_lane(mask, [&](std::size_t lane) {
+    const double depth = stored_depth(target, quads, static_cast<std::uint32_t>(lane));
+    if (depth >= static_cast<double>(state.min_depth_bounds) && depth <= static_cast<double>(state.max_depth_bounds))
+      inside |= base::LaneMask{1} << lane;
+  });
+  return inside;
+}
+
 base::LaneMask depth_only(const PipelinePlan& plan, const DepthStencilTarget& target, const QuadPositions& quads,
                           const float* z, base::LaneMask mask, bool write) {
   const DepthPass pass{target.depth,  target.depth_pitch,        target.width,
@@ -304,13 +328,20 @@ void clamp_depth(const DepthRange* clamp, std::uint32_t quads, float* z) {
 base::LaneMask test_depth_stencil(const PipelinePlan& plan, const DepthStencilTarget& target,
                                   const QuadPositions& quads, std::uint32_t front, const float* z,
                                   const std::uint32_t* reference, base::LaneMask mask, bool write) {
-  if (!plan.stencil_test) return depth_only(plan, target, quads, z, mask, write);
+  if (!plan.depth_bounds && !plan.stencil_test) return depth_only(plan, target, quads, z, mask, write);
   base::LaneMask result = 0;
   for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
-    const auto nibble = static_cast<std::uint32_t>(mask >> (4 * q)) & 15u;
-    if (nibble == 0) continue;
-    const std::uint32_t bits = stencil_quad(plan, target, quads, q, (front >> q & 1) != 0, z, reference, nibble, write);
-    result |= base::LaneMask{bits} << (4 * q);
+    base::LaneMask quad = mask & base::LaneMask{15} << (4 * q);
+    if (plan.depth_bounds) quad = inside_depth_bounds(*plan.state, target, quads, quad);
+    if (quad == 0) continue;
+    if (plan.stencil_test) {
+      const auto nibble = static_cast<std::uint32_t>(quad >> (4 * q)) & 15u;
+      const bool faces = (front >> q & 1) != 0;
+      quad = base::LaneMask{stencil_quad(plan, target, quads, q, faces, z, reference, nibble, write)} << (4 * q);
+    } else if (plan.depth_test) {
+      quad = depth_only(plan, target, quads, z, quad, write);
+    }
+    result |= quad;
   }
   return result;
 }

@@ -29,9 +29,9 @@ struct DepthRange {
 };
 void clamp_depth(const DepthRange* clamp, std::uint32_t quads, float* z);
 
-/// Tests lanes of `mask`; returns those that pass. `z` is clamped. Writes depth where `write` and the state say, and
-/// stencil always as the state says. `front`: bit q is the facing of quad q. `reference`: per-lane stencil reference or
-/// null.
+/// Tests lanes of `mask`: depth bounds, stencil, depth; returns those that pass. `z` is clamped. Writes depth where
+/// `write` and the state say, and stencil always as the state says. `front`: bit q is the facing of quad q.
+/// `reference`: per-lane stencil reference or null.
 base::LaneMask test_depth_stencil(const PipelinePlan& plan, const DepthStencilTarget& target,
                                   const QuadPositions& quads, std::uint32_t front, const float* z,
                                   const std::uint32_t* reference, base::LaneMask mask, bool write);

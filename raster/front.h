@@ -17,6 +17,9 @@ namespace vitrine::raster {
 /// Vertex or index positions of a chunk, about; runs are cut to this many.
 inline constexpr std::uint32_t kChunkPositions = 1024;
 
+/// The stipple pattern runs on along a strip: its lines stay in one chunk, up to this many positions.
+inline constexpr std::uint32_t kStippledChunkPositions = 32768;
+
 struct Chunk {
   const DrawRecord* draw = nullptr;
   const Run* runs = nullptr;

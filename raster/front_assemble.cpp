@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/numeric.h"
 #include "raster/assembly.h"
 #include "raster/front.h"
 
@@ -18,6 +19,7 @@ struct Assembler {
   const PipelinePlan& plan;
   SetupContext setup;
   ViewportTransform viewport;
+  std::uint32_t stipple_counter = 0;  ///< pixels of the pattern used up by earlier lines of the strip
 };
 
 ClipVertex clip_vertex(const Assembler& a, std::uint32_t slot) {
@@ -72,8 +74,54 @@ Vertex* biased_copy(const Assembler& a, const Vertex* record, float offset) {
   Vertex* copy = a.arena.take<Vertex>(a.plan.vertex_stride);
   std::memcpy(copy, record, a.plan.vertex_stride * sizeof(Vertex));
   const float z = copy[2] + offset;
-  copy[2] = z < 0 ? 0 : z > 1 ? 1 : z;
+  copy[2] = z > 0 ? (z > 1 ? 1 : z) : 0;  // NaN: 0
   return copy;
+}
+
+/// A vertex on the way from one to the other, in window space and without perspective; flat values as in the first.
+const Vertex* between(const Assembler& a, const Vertex* from, const Vertex* to, float t) {
+  Vertex* made = a.arena.take<Vertex>(a.plan.vertex_stride);
+  const std::uint32_t smooth = 4 + a.plan.perspective_count + a.plan.linear_count;
+  for (std::uint32_t i = 0; i < smooth; ++i) made[i] = from[i] + t * (to[i] - from[i]);
+  std::memcpy(made + smooth, from + smooth, (a.plan.vertex_stride - smooth) * sizeof(Vertex));
+  return made;
+}
+
+/// Length in units of the pattern (6.4): Euclidean, of Bresenham lines along the major axis.
+float stipple_length(const State& state, const Vertex* v0, const Vertex* v1) {
+  const float dx = v1[0] - v0[0], dy = v1[1] - v0[1];
+  if (state.line_mode != VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT) return std::sqrt(dx * dx + dy * dy);
+  return base::max_second(std::fabs(dx), std::fabs(dy));
+}
+
+/// A line in window space: as a whole, or the stretches where the stipple pattern has ones.
+void emit_line(Assembler& a, const Vertex* v0, const Vertex* v1, bool front) {
+  const State& state = *a.plan.state;
+  if (!state.line_stipple) return setup_line(a.setup, v0, v1, front);
+  const Vertex* provoking = state.provoking_vertex_last ? v1 : v0;
+  v0 = with_flat_values(a.plan, a.arena, v0, provoking);
+  v1 = with_flat_values(a.plan, a.arena, v1, provoking);
+  const float length = stipple_length(state, v0, v1);
+  if (!std::isfinite(length)) return;
+  const auto pixels = static_cast<std::uint32_t>(std::ceil(length));
+  const auto segment = [&](float t0, float t1) {
+    setup_line(a.setup, t0 > 0 ? between(a, v0, v1, t0) : v0, t1 < 1 ? between(a, v0, v1, t1) : v1, front);
+  };
+  const std::uint32_t factor = std::max<std::uint32_t>(state.line_stipple_factor, 1);
+  bool drawing = false;
+  float start = 0;
+  for (std::uint32_t i = 0; i < pixels; ++i) {
+    const std::uint32_t bit = (a.stipple_counter + i) / factor & 15;
+    const bool on = (state.line_stipple_pattern >> bit & 1) != 0;
+    if (on == drawing) continue;
+    if (drawing)
+      segment(start / length, static_cast<float>(i) / length);
+    else
+      start = static_cast<float>(i);
+    drawing = on;
+  }
+  if (drawing && start < length) segment(start / length, 1.0f);
+  a.stipple_counter += pixels;
 }
 
 /// 10.2: the outline or the corners of one triangle after clipping. edge[i]: of the edge that starts at corner i.
@@ -84,17 +132,8 @@ void emit_unfilled(Assembler& a, const Vertex* const in[3], const bool edge[3], 
     const float offset = vertex_depth_bias(a.plan, a.pass, v[0], v[1], v[2]);
     for (const Vertex*& corner : v) corner = biased_copy(a, corner, offset);
   }
-  if (a.plan.flat_count) {
-    const std::uint32_t first = 4 + a.plan.perspective_count + a.plan.linear_count;
-    const Vertex* source = v[state.provoking_vertex_last ? 2 : 0];
-    for (const Vertex*& corner : v) {
-      if (corner == source) continue;
-      Vertex* copy = a.arena.take<Vertex>(a.plan.vertex_stride);
-      std::memcpy(copy, corner, a.plan.vertex_stride * sizeof(Vertex));
-      std::memcpy(copy + first, source + first, a.plan.flat_count * sizeof(Vertex));
-      corner = copy;
-    }
-  }
+  const Vertex* provoking = v[state.provoking_vertex_last ? 2 : 0];
+  for (const Vertex*& corner : v) corner = with_flat_values(a.plan, a.arena, corner, provoking);
   const bool ccw = state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE;
   const bool front = ccw ? determinant < 0 : determinant > 0;
   if (state.polygon_mode == VK_POLYGON_MODE_POINT) {
@@ -102,9 +141,9 @@ void emit_unfilled(Assembler& a, const Vertex* const in[3], const bool edge[3], 
       if (edge[i]) setup_point(a.setup, v[i], front);
     return;
   }
-  if (edge[2]) setup_line(a.setup, v[2], v[0], front);
-  if (edge[0]) setup_line(a.setup, v[0], v[1], front);
-  if (edge[1]) setup_line(a.setup, v[1], v[2], front);
+  if (edge[2]) emit_line(a, v[2], v[0], front);
+  if (edge[0]) emit_line(a, v[0], v[1], front);
+  if (edge[1]) emit_line(a, v[1], v[2], front);
 }
 
 /// One triangle that went through the clipper or needs the slow path anyway.
@@ -124,6 +163,7 @@ void emit_clipped(Assembler& a, std::uint32_t provoking, ClipPolygon& polygon) {
   const Vertex* record[kMaxPolygon];
   for (std::uint32_t i = 0; i < polygon.count; ++i) record[i] = window_record(a, polygon.corner[i]);
   const bool last_mode = a.plan.state->provoking_vertex_last;
+  a.stipple_counter = 0;
   for (std::uint32_t i = 2; i < polygon.count; ++i) {
     // Fan (p0, p[i-1], p[i]); edges inside the polygon are not part of the outline.
     const bool from_p0 = i == 2 && polygon.corner[0].edge;
@@ -172,7 +212,7 @@ void assemble_line(Assembler& a, const std::uint32_t slot[2]) {
   ClipVertex line[2] = {clip_vertex(a, slot[0]), clip_vertex(a, slot[1])};
   const ClipContext context{&a.plan, &a.viewport, &a.arena, false};
   if ((c0 | c1) != 0 && !clip_line(context, provoking, line)) return;
-  setup_line(a.setup, window_record(a, line[0]), window_record(a, line[1]), true);
+  emit_line(a, window_record(a, line[0]), window_record(a, line[1]), true);
 }
 
 /// Vulkan 1.3.239, Primitive Clipping: "If the primitive under consideration is a point, then clipping passes it
@@ -213,6 +253,7 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
       std::uint32_t slot[3];
       for (std::uint32_t c = 0; c < shape.corners; ++c) slot[c] = scratch.slot[first_entry + span.entry(corners.at[c])];
       a.setup.id = run.first_id + i;
+      if (i == 0 || shape.step > 1) a.stipple_counter = 0;  // strips go on with the pattern
       if (shape.corners == 3)
         assemble_triangle(a, slot);
       else if (shape.corners == 2)

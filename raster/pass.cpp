@@ -181,9 +181,11 @@ struct Pass::Impl {
   }
 
   void draw_view(const DrawRecord* record, std::uint32_t view) {
+    const bool stippled_strip = record->plan->state->line_stipple && record->plan->draws_lines;
+    const std::uint32_t limit = stippled_strip ? kStippledChunkPositions : kChunkPositions;
     for (std::uint32_t instance = 0; instance < record->call.instance_count; ++instance) {
       const std::size_t before = scratch->runs.size();
-      append_runs(record->call, instance, kChunkPositions, scratch->runs);
+      append_runs(record->call, instance, limit, scratch->runs);
       if (scratch->runs.size() == before) break;  // too few vertices: no instance has a primitive
       if (scratch->runs.size() >= 4096) cut_chunks(record, view);
     }

@@ -75,7 +75,7 @@ float vertex_depth_bias(const PipelinePlan& plan, const PassDesc& pass, const Ve
   const float fx = v1[0] - v2[0], fy = v1[1] - v2[1], fz = v1[2] - v2[2];
   const float inverse = 1.0f / (ex * fy - ey * fx);
   const float a = std::fabs((ey * fz - ez * fy) * inverse), b = std::fabs((ez * fx - ex * fz) * inverse);
-  const float slope = std::max(a, b) * plan.state->depth_bias_slope;
+  const float slope = base::max_second(a, b) * plan.state->depth_bias_slope;  // zero area: NaN, if b is
   return bias_offset(*plan.state, pass, slope, largest_depth(v0, v1, v2));
 }
 

@@ -60,17 +60,32 @@ void check(VkResult result, const char* call);
   X(buffer_address, VkPhysicalDeviceBufferDeviceAddressFeatures, BUFFER_DEVICE_ADDRESS_FEATURES,                       \
     "VK_KHR_buffer_device_address")                                                                                    \
   X(image_robustness, VkPhysicalDeviceImageRobustnessFeatures, IMAGE_ROBUSTNESS_FEATURES, "VK_EXT_image_robustness")   \
-  X(host_query_reset, VkPhysicalDeviceHostQueryResetFeatures, HOST_QUERY_RESET_FEATURES, "VK_EXT_host_query_reset")
+  X(host_query_reset, VkPhysicalDeviceHostQueryResetFeatures, HOST_QUERY_RESET_FEATURES, "VK_EXT_host_query_reset")    \
+  X(provoking_vertex, VkPhysicalDeviceProvokingVertexFeaturesEXT, PROVOKING_VERTEX_FEATURES_EXT,                       \
+    "VK_EXT_provoking_vertex")                                                                                         \
+  X(depth_clip_enable, VkPhysicalDeviceDepthClipEnableFeaturesEXT, DEPTH_CLIP_ENABLE_FEATURES_EXT,                     \
+    "VK_EXT_depth_clip_enable")                                                                                        \
+  X(depth_clip_control, VkPhysicalDeviceDepthClipControlFeaturesEXT, DEPTH_CLIP_CONTROL_FEATURES_EXT,                  \
+    "VK_EXT_depth_clip_control")                                                                                       \
+  X(line_rasterization, VkPhysicalDeviceLineRasterizationFeaturesEXT, LINE_RASTERIZATION_FEATURES_EXT,                 \
+    "VK_EXT_line_rasterization")                                                                                       \
+  X(vertex_attribute_divisor, VkPhysicalDeviceVertexAttributeDivisorFeaturesEXT,                                       \
+    VERTEX_ATTRIBUTE_DIVISOR_FEATURES_EXT, "VK_EXT_vertex_attribute_divisor")                                          \
+  X(list_restart, VkPhysicalDevicePrimitiveTopologyListRestartFeaturesEXT,                                             \
+    PRIMITIVE_TOPOLOGY_LIST_RESTART_FEATURES_EXT, "VK_EXT_primitive_topology_list_restart")
 
 /// Extensions without features that cases use: enabled where offered.
-#define CTS_EXTENSIONS(X)                                                                                   \
-  X("VK_KHR_copy_commands2")                                                                                \
-  X("VK_KHR_create_renderpass2")                                                                            \
-  X("VK_KHR_draw_indirect_count")                                                                           \
-  X("VK_KHR_depth_stencil_resolve")                                                                         \
-  X("VK_KHR_spirv_1_4")                                                                                     \
-  X("VK_KHR_shader_float_controls") X("VK_KHR_shader_non_semantic_info") X("VK_EXT_shader_subgroup_ballot") \
-      X("VK_EXT_shader_subgroup_vote")
+#define CTS_EXTENSIONS(X)                 \
+  X("VK_EXT_post_depth_coverage")         \
+  X("VK_EXT_shader_stencil_export")       \
+  X("VK_EXT_shader_viewport_index_layer") \
+  X("VK_KHR_copy_commands2")              \
+  X("VK_KHR_create_renderpass2")          \
+  X("VK_KHR_draw_indirect_count")         \
+  X("VK_KHR_depth_stencil_resolve")       \
+  X("VK_KHR_spirv_1_4")                   \
+  X("VK_KHR_shader_float_controls")       \
+  X("VK_KHR_shader_non_semantic_info") X("VK_EXT_shader_subgroup_ballot") X("VK_EXT_shader_subgroup_vote")
 
 struct ExtensionFeatures {
 #define CTS_MEMBER(member, type, stype, extension) type member{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_##stype};

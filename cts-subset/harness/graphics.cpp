@@ -100,6 +100,8 @@ Target make_target(Run& run, const TargetSpec& spec, bool probe) {
   ImageSpec image;
   image.extent = {spec.width, spec.height, 1};
   image.samples = spec.samples;
+  image.layers = spec.layers;
+  if (spec.layers > 1) image.view = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
   const VkFormatFeatureFlags sampled = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
   std::vector<VkImageView> views;
   for (const VkFormat format : spec.colors) {
@@ -136,7 +138,7 @@ Target make_target(Run& run, const TargetSpec& spec, bool probe) {
   info.pAttachments = views.data();
   info.width = spec.width;
   info.height = spec.height;
-  info.layers = 1;
+  info.layers = spec.layers;
   CTS_VK(vkCreateFramebuffer(run.device, &info, nullptr, &target.framebuffer));
   run.own(target.framebuffer, vkDestroyFramebuffer);
   return target;
@@ -204,7 +206,8 @@ VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, 
           spec.fragment_module ? spec.fragment_module : run.shader(VK_SHADER_STAGE_FRAGMENT_BIT, spec.fragment),
           spec.fragment_special);
 
-  VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+                                             spec.input_next};
   input.vertexBindingDescriptionCount = static_cast<uint32_t>(spec.bindings.size());
   input.pVertexBindingDescriptions = spec.bindings.data();
   input.vertexAttributeDescriptionCount = static_cast<uint32_t>(spec.attributes.size());
@@ -212,7 +215,7 @@ VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, 
 
   const VkViewport whole{0.0f, 0.0f, static_cast<float>(extent.width), static_cast<float>(extent.height), 0.0f, 1.0f};
   const VkRect2D everything{{0, 0}, extent};
-  VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
+  VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, spec.viewport_next};
   viewport.viewportCount = spec.viewports.empty() ? 1 : static_cast<uint32_t>(spec.viewports.size());
   viewport.pViewports = spec.viewports.empty() ? &whole : spec.viewports.data();
   viewport.scissorCount = spec.scissors.empty() ? 1 : static_cast<uint32_t>(spec.scissors.size());

@@ -10,7 +10,7 @@ namespace vitrine::cts {
 struct TargetSpec {
   std::vector<VkFormat> colors{VK_FORMAT_R8G8B8A8_UNORM};
   VkFormat depth = VK_FORMAT_UNDEFINED;
-  uint32_t width = 64, height = 64;
+  uint32_t width = 64, height = 64, layers = 1;
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   VkAttachmentLoadOp load = VK_ATTACHMENT_LOAD_OP_CLEAR;
   bool resolve = false;  ///< adds a resolve attachment for every colour attachment
@@ -45,7 +45,9 @@ struct GraphicsSpec {
   std::vector<VkVertexInputBindingDescription> bindings;
   std::vector<VkVertexInputAttributeDescription> attributes;
   VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
-  std::vector<VkViewport> viewports;  ///< the whole target if empty
+  const void* input_next = nullptr;     ///< pNext of the vertex input state
+  const void* viewport_next = nullptr;  ///< pNext of the viewport state
+  std::vector<VkViewport> viewports;    ///< the whole target if empty
   std::vector<VkRect2D> scissors;
   VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
   VkPipelineMultisampleStateCreateInfo multisample{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};

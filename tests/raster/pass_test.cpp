@@ -158,6 +158,10 @@ void model(Scene& scene) {
         const float zs[3] = {v[0].z, v[1].z, v[2].z}, ws[3] = {v[0].w, v[1].w, v[2].w};
         const float z = std::fmax(std::fmin(plane_value(v, zs, px, py) + 0.0f, 1.0f), 0.0f);
         const std::size_t at = static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x);
+        const State& state = scene.state;
+        if (state.depth_bounds_test &&
+            (scene.depth[at] < state.min_depth_bounds || scene.depth[at] > state.max_depth_bounds))
+          continue;
         if (scene.state.depth_test && !(z < scene.depth[at])) continue;
         if (scene.state.depth_test) scene.depth[at] = z;
         const float oow = 1.0f / plane_value(v, ws, px, py);
@@ -203,6 +207,34 @@ TEST_P(PassModel, EveryPixelHasTheModelsBits) {
     EXPECT_EQ(expected.depth, drawn.depth) << size;
     EXPECT_EQ(expected.color, drawn.color) << size;
   }
+}
+
+/// Stored depth starts at 0.75 and shrinks: triangles below the bounds are no longer drawn over.
+TEST_P(PassModel, DepthBounds) {
+  for (const float size : {0.2f, 1.6f}) {
+    Scene drawn;
+    drawn.late = GetParam();
+    drawn.state.depth_bounds_test = true;
+    drawn.state.min_depth_bounds = 0.4f;
+    drawn.state.max_depth_bounds = 0.75f;
+    add_triangles(drawn, 150, size, 6);
+    Scene expected = drawn;
+    drawn.draw(3);
+    model(expected);
+    EXPECT_EQ(expected.depth, drawn.depth) << size;
+    EXPECT_EQ(expected.color, drawn.color) << size;
+  }
+}
+
+TEST(Pass, DepthBoundsAboveWhatIsStoredDrawNothing) {
+  Scene scene;
+  add_triangles(scene, 50, 1.0f, 3);
+  scene.state.depth_bounds_test = true;
+  scene.state.min_depth_bounds = 0.8f;
+  const Scene untouched = scene;
+  scene.draw();
+  EXPECT_EQ(scene.color, untouched.color);
+  EXPECT_EQ(scene.depth, untouched.depth);
 }
 
 INSTANTIATE_TEST_SUITE_P(EarlyAndLate, PassModel, testing::Bool());

@@ -1,0 +1,371 @@
+// Fixed-function state of extensions: provoking vertex, depth clipping, line rasterization, instance divisors, restart
+// of lists, stencil export, coverage after the depth test, viewport and layer from the vertex shader.
+#include <string>
+
+#include "harness/case.h"
+#include "harness/graphics.h"
+
+namespace vitrine::cts {
+namespace {
+
+const char kVertex[] = R"(
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 smooth_color;
+layout(location = 1) noperspective out vec4 linear_color;
+layout(location = 2) flat out vec4 flat_color;
+void main() {
+  smooth_color = color;
+  linear_color = color.wzyx;
+  flat_color = color.zwxy;
+  gl_Position = position;
+  gl_PointSize = 1.0 + color.x * 6.0;
+})";
+
+const char kFragment[] = R"(
+layout(location = 0) in vec4 smooth_color;
+layout(location = 1) noperspective in vec4 linear_color;
+layout(location = 2) flat in vec4 flat_color;
+layout(location = 0) out vec4 result0;
+layout(location = 1) out vec4 result1;
+void main() {
+  result0 = smooth_color + 2.0 * linear_color;
+  result1 = flat_color + vec4(0.0, 0.0, gl_FragCoord.zw);
+})";
+
+/// position and colour; `reach` > 1: beyond the view volume.
+std::vector<float> random_vertices(Random& random, uint32_t count, float reach, float low_z, float high_z) {
+  std::vector<float> values;
+  for (uint32_t i = 0; i < count; ++i) {
+    const float w = random.chance(0.3f) ? 1.0f : random.real(0.3f, 3.0f);
+    for (const float v :
+         {random.real(-reach, reach) * w, random.real(-reach, reach) * w, random.real(low_z, high_z) * w, w})
+      values.push_back(v);
+    for (int c = 0; c < 4; ++c) values.push_back(random.unit());
+  }
+  return values;
+}
+
+struct Scene {
+  TargetSpec target;
+  GraphicsSpec spec;
+  std::vector<float> vertices;
+  uint32_t count = 0;
+
+  explicit Scene(Random& random, VkFormat depth = VK_FORMAT_UNDEFINED) {
+    target.width = 30 + random.below(70);
+    target.height = 30 + random.below(70);
+    target.colors = {VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT};
+    target.depth = depth;
+    spec.vertex = kVertex;
+    spec.fragment = kFragment;
+    spec.floats({4, 4});
+    spec.depth.depthTestEnable = spec.depth.depthWriteEnable = depth != VK_FORMAT_UNDEFINED;
+  }
+};
+
+void draw(Run& run, const Scene& scene) {
+  const Target target = make_target(run, scene.target);
+  const VkPipeline pipeline = make_pipeline(run, scene.spec, target);
+  const Buffer vertices = run.buffer_of(scene.vertices);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, scene.count, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+  run.may_be_blank();
+}
+
+VkPrimitiveTopology any_topology(Random& random) {
+  return static_cast<VkPrimitiveTopology>(random.below(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN + 1));
+}
+
+CTS_RANDOM("rasterization", "random_provoking_vertex", 30) {
+  Random& random = run.random;
+  run.require(run.gpu.extension_features.provoking_vertex.provokingVertexLast, "provokingVertexLast");
+  Scene scene(random, random.pick({VK_FORMAT_UNDEFINED, VK_FORMAT_D16_UNORM}));
+  VkPipelineRasterizationProvokingVertexStateCreateInfoEXT mode{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT};
+  mode.provokingVertexMode =
+      random.chance(0.8f) ? VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT : VK_PROVOKING_VERTEX_MODE_FIRST_VERTEX_EXT;
+  scene.spec.raster.pNext = &mode;
+  scene.spec.assembly.topology = any_topology(random);
+  scene.spec.raster.cullMode = random.chance(0.3f) ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
+  const bool points = scene.spec.assembly.topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+  const bool lines = scene.spec.assembly.topology == VK_PRIMITIVE_TOPOLOGY_LINE_LIST ||
+                     scene.spec.assembly.topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
+  if (!points && !lines && random.chance(0.2f)) scene.spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
+  scene.count = 3 + random.below(60);
+  scene.vertices = random_vertices(random, scene.count, points || random.chance(0.5f) ? 0.9f : 1.5f, 0, 1);
+  draw(run, scene);
+}
+
+CTS_RANDOM("clipping", "random_depth_clip", 50) {
+  Random& random = run.random;
+  const bool has_clip = run.gpu.extension_features.depth_clip_enable.depthClipEnable;
+  const bool has_control = run.gpu.extension_features.depth_clip_control.depthClipControl;
+  run.require(has_clip && has_control, "depthClipEnable, depthClipControl");
+  Scene scene(random, random.pick({VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM, VK_FORMAT_X8_D24_UNORM_PACK32}));
+  VkPipelineRasterizationDepthClipStateCreateInfoEXT clip{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_DEPTH_CLIP_STATE_CREATE_INFO_EXT};
+  clip.depthClipEnable = random.chance(0.5f);
+  if (random.chance(0.7f)) scene.spec.raster.pNext = &clip;
+  scene.spec.raster.depthClampEnable = random.chance(0.5f);
+  VkPipelineViewportDepthClipControlCreateInfoEXT control{
+      VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_DEPTH_CLIP_CONTROL_CREATE_INFO_EXT};
+  control.negativeOneToOne = random.chance(0.7f);
+  if (random.chance(0.7f)) scene.spec.viewport_next = &control;
+  VkViewport viewport{0, 0, static_cast<float>(scene.target.width), static_cast<float>(scene.target.height), 0, 1};
+  if (random.chance(0.4f)) viewport.minDepth = random.unit();
+  if (random.chance(0.4f)) viewport.maxDepth = random.unit();
+  scene.spec.viewports = {viewport};
+  scene.spec.assembly.topology = any_topology(random);
+  const bool points = scene.spec.assembly.topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+  scene.spec.depth.depthCompareOp = random.pick({VK_COMPARE_OP_LESS, VK_COMPARE_OP_ALWAYS, VK_COMPARE_OP_GREATER});
+  scene.count = 3 + random.below(60);
+  scene.vertices = random_vertices(random, scene.count, points ? 0.9f : 1.5f, -1.5f, 1.5f);
+  draw(run, scene);
+}
+
+void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled) {
+  Random& random = run.random;
+  const auto& features = run.gpu.extension_features.line_rasterization;
+  run.require(features.bresenhamLines && features.rectangularLines, "bresenhamLines, rectangularLines");
+  Scene scene(random, random.pick({VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT}));
+  scene.target.samples = samples;
+  VkPipelineRasterizationLineStateCreateInfoEXT line{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+  line.lineRasterizationMode =
+      random.pick({VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT,
+                   VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT});
+  line.lineStippleFactor = 1 + random.below(4);
+  line.lineStipplePattern = static_cast<uint16_t>(random.below(65536));
+  line.stippledLineEnable = stippled;
+  if (stippled) {
+    run.require(features.stippledBresenhamLines && features.stippledRectangularLines, "stippled lines");
+    if (line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT)
+      line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
+  }
+  scene.spec.raster.pNext = &line;
+  scene.spec.raster.lineWidth = random.chance(0.5f) ? 1.0f : random.real(1.0f, 7.0f);
+  if (random.chance(0.2f)) {
+    scene.spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
+    scene.spec.assembly.topology =
+        random.pick({VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP});
+  } else {
+    scene.spec.assembly.topology = random.pick({VK_PRIMITIVE_TOPOLOGY_LINE_LIST, VK_PRIMITIVE_TOPOLOGY_LINE_STRIP});
+  }
+  scene.count = 2 + random.below(30);
+  scene.vertices = random_vertices(random, scene.count, random.chance(0.6f) ? 0.85f : 1.3f, 0, 1);
+  // Ends on the centres and edges of pixels decide the diamond rule.
+  if (random.chance(0.4f))
+    for (uint32_t i = 0; i < scene.count; ++i) {
+      float* v = &scene.vertices[i * 8];
+      v[0] = static_cast<float>(random.between(0, static_cast<int32_t>(2 * scene.target.width))) /
+                 static_cast<float>(scene.target.width) -
+             1.0f;
+      v[1] = static_cast<float>(random.between(0, static_cast<int32_t>(2 * scene.target.height))) /
+                 static_cast<float>(scene.target.height) -
+             1.0f;
+      v[3] = 1.0f;
+    }
+  draw(run, scene);
+}
+
+const bool kLines = [] {
+  AddGenerator("rasterization", "random_line_modes.samples_1", 50,
+               [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_1_BIT, false); });
+  AddGenerator("rasterization", "random_line_modes.samples_4", 30,
+               [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_4_BIT, false); });
+  AddGenerator("rasterization", "random_line_stipple", 40,
+               [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_1_BIT, true); });
+  return true;
+}();
+
+CTS_RANDOM("draw", "random_instance_divisor", 15) {
+  Random& random = run.random;
+  const auto& features = run.gpu.extension_features.vertex_attribute_divisor;
+  run.require(features.vertexAttributeInstanceRateDivisor && features.vertexAttributeInstanceRateZeroDivisor,
+              "vertexAttributeInstanceRateDivisor");
+  Scene scene(random);
+  scene.spec.vertex = R"(
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 2) in vec4 moved;
+layout(location = 0) out vec4 smooth_color;
+layout(location = 1) noperspective out vec4 linear_color;
+layout(location = 2) flat out vec4 flat_color;
+void main() {
+  smooth_color = color;
+  linear_color = moved;
+  flat_color = color + moved;
+  gl_Position = position + vec4(moved.xy - 0.5, 0.0, 0.0);
+})";
+  scene.spec.floats({4}, VK_VERTEX_INPUT_RATE_INSTANCE);
+  const VkVertexInputBindingDivisorDescriptionEXT divisor{1, random.pick({0u, 1u, 2u, 3u, 7u})};
+  VkPipelineVertexInputDivisorStateCreateInfoEXT divisors{
+      VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_DIVISOR_STATE_CREATE_INFO_EXT};
+  divisors.vertexBindingDivisorCount = 1;
+  divisors.pVertexBindingDivisors = &divisor;
+  scene.spec.input_next = &divisors;
+  const Target target = make_target(run, scene.target);
+  const VkPipeline pipeline = make_pipeline(run, scene.spec, target);
+  const Buffer vertices = run.buffer_of(random_vertices(random, 6, 0.3f, 0, 1));
+  std::vector<float> instances;
+  for (int i = 0; i < 4 * 12; ++i) instances.push_back(random.unit());
+  const Buffer moves = run.buffer_of(instances);
+  // The first instance must be 0 beside divisors other than 1 in Vulkan 1.3.
+  const uint32_t first = divisor.divisor == 1 ? random.below(4) : 0;
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    bind_vertices(cmd, moves, 1);
+    vkCmdDraw(cmd, 6, 8, 0, first);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+}
+
+CTS_RANDOM("draw", "random_list_restart", 20) {
+  Random& random = run.random;
+  run.require(run.gpu.extension_features.list_restart.primitiveTopologyListRestart, "primitiveTopologyListRestart");
+  Scene scene(random);
+  scene.spec.assembly.topology = any_topology(random);
+  scene.spec.assembly.primitiveRestartEnable = VK_TRUE;
+  const Target target = make_target(run, scene.target);
+  const VkPipeline pipeline = make_pipeline(run, scene.spec, target);
+  const Buffer vertices = run.buffer_of(random_vertices(random, 20, 0.9f, 0, 1));
+  std::vector<uint16_t> order;
+  for (uint32_t i = 0; i < 40; ++i)
+    order.push_back(static_cast<uint16_t>(random.chance(0.15f) ? 0xffff : random.below(20)));
+  const Buffer indices = run.buffer_of(order);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT16);
+    vkCmdDrawIndexed(cmd, static_cast<uint32_t>(order.size()), 1, 0, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+  run.may_be_blank();
+}
+
+const char kInputs[] = R"(
+layout(location = 0) in vec4 smooth_color;
+layout(location = 1) noperspective in vec4 linear_color;
+layout(location = 2) flat in vec4 flat_color;
+layout(location = 0) out vec4 result0;
+layout(location = 1) out vec4 result1;
+)";
+
+CTS_RANDOM("pipeline", "random_stencil_export", 20) {
+  Random& random = run.random;
+  run.require(run.gpu.has("VK_EXT_shader_stencil_export"), "VK_EXT_shader_stencil_export");
+  Scene scene(random, random.pick({VK_FORMAT_D32_SFLOAT_S8_UINT, VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_S8_UINT}));
+  if (scene.target.depth != VK_FORMAT_S8_UINT && random.chance(0.5f)) scene.target.samples = VK_SAMPLE_COUNT_4_BIT;
+  const auto op = [&] {
+    return random.chance(0.5f) ? VK_STENCIL_OP_REPLACE : static_cast<VkStencilOp>(random.below(8));
+  };
+  VkStencilOpState face{op(), op(), op(), static_cast<VkCompareOp>(random.below(8)), 0xff, 0xff, 3};
+  scene.spec.depth.front = scene.spec.depth.back = face;
+  scene.spec.depth.stencilTestEnable = VK_TRUE;
+  if (scene.target.depth == VK_FORMAT_S8_UINT)
+    scene.spec.depth.depthTestEnable = scene.spec.depth.depthWriteEnable = VK_FALSE;
+  scene.spec.fragment = std::string("#extension GL_ARB_shader_stencil_export : require\n") + kInputs +
+                        "void main() {\n  result0 = smooth_color;\n  result1 = linear_color;\n" +
+                        (random.chance(0.3f) ? "  if (flat_color.x > 0.6) discard;\n" : "") +
+                        "  gl_FragStencilRefARB = int(smooth_color.x * 300.0);\n}\n";
+  scene.count = 24;
+  scene.vertices = random_vertices(random, scene.count, 1, 0, 1);
+  draw(run, scene);
+}
+
+CTS_RANDOM("pipeline", "random_post_depth_coverage", 20) {
+  Random& random = run.random;
+  run.require(run.gpu.has("VK_EXT_post_depth_coverage"), "VK_EXT_post_depth_coverage");
+  Scene scene(random, VK_FORMAT_D32_SFLOAT);
+  scene.target.samples = random.pick({VK_SAMPLE_COUNT_1_BIT, VK_SAMPLE_COUNT_4_BIT, VK_SAMPLE_COUNT_4_BIT});
+  scene.spec.fragment =
+      std::string("#extension GL_ARB_post_depth_coverage : require\n") +
+      (random.chance(0.7f) ? "layout(post_depth_coverage) in;\n" : "layout(early_fragment_tests) in;\n") + kInputs +
+      "void main() {\n  result0 = vec4(float(gl_SampleMaskIn[0]), smooth_color.xyz);\n"
+      "  result1 = linear_color;\n}\n";
+  scene.count = 24;
+  scene.vertices = random_vertices(random, scene.count, 1, 0, 1);
+  draw(run, scene);
+}
+
+const char kSelectingVertex[] = R"(
+#extension GL_ARB_shader_viewport_layer_array : require
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 smooth_color;
+layout(location = 1) noperspective out vec4 linear_color;
+layout(location = 2) flat out vec4 flat_color;
+void main() {
+  smooth_color = color;
+  linear_color = color.wzyx;
+  flat_color = color.zwxy;
+  gl_Position = position;
+  gl_PointSize = 4.0;
+  SELECT
+})";
+
+/// One viewport (or layer) per instance.
+void draw_selecting(Run& run, Scene& scene, const std::string& select, uint32_t instances) {
+  run.require(run.gpu.has("VK_EXT_shader_viewport_index_layer"), "VK_EXT_shader_viewport_index_layer");
+  scene.spec.vertex = kSelectingVertex;
+  scene.spec.vertex.replace(scene.spec.vertex.find("SELECT"), 6, select);
+  const Target target = make_target(run, scene.target);
+  const VkPipeline pipeline = make_pipeline(run, scene.spec, target);
+  const Buffer vertices = run.buffer_of(scene.vertices);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, scene.count, instances, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+  run.may_be_blank();
+}
+
+CTS_RANDOM("draw", "random_shader_viewport_index", 20) {
+  Random& random = run.random;
+  run.require(run.gpu.features.multiViewport, "multiViewport");
+  Scene scene(random, random.pick({VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM}));
+  const uint32_t count = 1 + random.below(16);
+  const auto size = [&](uint32_t limit) { return static_cast<float>(1 + random.below(limit)); };
+  for (uint32_t i = 0; i < count; ++i) {
+    const float width = size(scene.target.width), height = size(scene.target.height);
+    const auto x = static_cast<float>(random.below(scene.target.width - static_cast<uint32_t>(width) + 1));
+    const auto y = static_cast<float>(random.below(scene.target.height - static_cast<uint32_t>(height) + 1));
+    scene.spec.viewports.push_back({x, y, width, height, random.unit() * 0.5f, 0.5f + random.unit() * 0.5f});
+    scene.spec.scissors.push_back({{static_cast<int32_t>(random.below(10)), static_cast<int32_t>(random.below(10))},
+                                   {10 + random.below(80), 10 + random.below(80)}});
+  }
+  scene.spec.raster.depthClampEnable = random.chance(0.3f);
+  scene.count = 3 * (1 + random.below(6));
+  scene.vertices = random_vertices(random, scene.count, random.chance(0.5f) ? 0.95f : 1.4f, 0, 1);
+  draw_selecting(run, scene, "gl_ViewportIndex = gl_InstanceIndex;", count);
+}
+
+CTS_RANDOM("draw", "random_shader_layer", 20) {
+  Random& random = run.random;
+  Scene scene(random, random.pick({VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT}));
+  scene.target.layers = 2 + random.below(5);
+  scene.spec.assembly.topology = any_topology(random);
+  scene.count = 3 * (1 + random.below(6));
+  scene.vertices = random_vertices(random, scene.count, 0.95f, 0, 1);
+  draw_selecting(run, scene,
+                 random.chance(0.5f) ? "gl_Layer = gl_InstanceIndex;" : "gl_Layer = (gl_VertexIndex / 3) & 1;",
+                 scene.target.layers);
+}
+
+}  // namespace
+}  // namespace vitrine::cts
