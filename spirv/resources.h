@@ -33,6 +33,9 @@ struct ResourceTable {
   const Descriptor* set[kMaxSets + 1] = {};   ///< null where nothing is bound: reads 0, drops writes
   std::uint32_t set_size[kMaxSets + 1] = {};  ///< descriptors in each
   const std::byte* push_constants = nullptr;  ///< kMaxPushConstantBytes bytes
+  /// Of the draw or dispatch, given by BoundShader: what is derived from descriptors may be kept for as long as it
+  /// stays. 0: for one use.
+  std::uint64_t serial = 0;
 };
 
 }  // namespace vitrine::spirv

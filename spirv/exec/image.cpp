@@ -2,7 +2,7 @@
 #include "spirv/exec/atomic_ops.h"
 #include "spirv/exec/buffers.h"
 #include "spirv/exec/handlers.h"
-#include "texel/sampler.h"
+#include "texel/sampler/prepared.h"
 
 namespace vitrine::spirv::exec {
 namespace {
@@ -36,9 +36,34 @@ void zero_result(Call& call, base::LaneMask lanes) {
     base::for_each_lane(lanes, [&](std::size_t lane) { component.lane[lane] = 0; });
 }
 
-void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
+/// A sampler made ready for one image instruction, kept while the same draw runs on this thread.
+struct KeptSampler {
+  std::uint64_t serial = 0;
+  const ImageOp* op = nullptr;
+  const texel::ImageView* view = nullptr;
+  const texel::Sampler* sampler = nullptr;
+  texel::PreparedSampler prepared;
+};
+
+const texel::PreparedSampler& prepared_sampler(const Call& call, const texel::ImageView& view,
+                                               const texel::Sampler& sampler, const texel::SampleRequest& request) {
+  constexpr std::size_t kKept = 8;
+  static thread_local KeptSampler kept[kKept];
+  const std::uint64_t serial = call.wave.resources->serial;
+  KeptSampler& entry = kept[static_cast<std::size_t>(&call.op - call.wave.program->image_ops.data()) % kKept];
+  if (serial == 0 || entry.serial != serial || entry.op != &call.op || entry.view != &view ||
+      entry.sampler != &sampler) {
+    texel::prepare(view, sampler, request.op, request.lod_mode, entry.prepared);
+    entry.serial = serial;
+    entry.op = &call.op;
+    entry.view = &view;
+    entry.sampler = &sampler;
+  }
+  return entry.prepared;
+}
+
+texel::SampleRequest sample_request(const Call& call, base::LaneMask lanes) {
   const ir::ImageInfo& info = call.op.info;
-  if (image.image == nullptr || sampler == nullptr) return zero_result(call, lanes);
   texel::SampleRequest request;
   request.op = info.access == ImageAccess::kGather     ? texel::SampleOp::kGather
                : info.access == ImageAccess::kQueryLod ? texel::SampleOp::kQueryLod
@@ -63,7 +88,23 @@ void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, 
     request.lod_mode = texel::LodMode::kBias;
     request.lod = call.operand(ImageOperand::kBias);
   }
-  texel::sample(*image.image, *sampler, request, call.result);
+  return request;
+}
+
+/// Straight to the registers of the results.
+void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
+  texel::SampleResult result{};
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (call.op.result[c] != kNoOperand) result[c] = &reg(call.wave, call.op.result[c]);
+  }
+  if (image.image == nullptr || sampler == nullptr) {
+    for (WaveRegister* component : result) {
+      if (component != nullptr) base::for_each_lane(lanes, [&](std::size_t lane) { component->lane[lane] = 0; });
+    }
+    return;
+  }
+  const texel::SampleRequest request = sample_request(call, lanes);
+  texel::sample(prepared_sampler(call, *image.image, *sampler, request), request, result);
 }
 
 texel::FetchRequest fetch_request(const Call& call, base::LaneMask lanes) {
@@ -143,6 +184,10 @@ void query(Call& call, const Descriptor& image, base::LaneMask lanes) {
     }
     for (std::uint32_t c = 0; c < 3; ++c) call.result[c].lane[lane] = value[c];
   });
+}
+
+bool samples(ImageAccess access) {
+  return access == ImageAccess::kSample || access == ImageAccess::kGather || access == ImageAccess::kQueryLod;
 }
 
 void run(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
@@ -231,7 +276,7 @@ const Instruction* image(Wave& wave, const Instruction* i) {
                                     .sampler;
     }
     run(call, image, sampler, lanes);
-    put_results(call, lanes);
+    if (!samples(info.access)) put_results(call, lanes);
   }
   return i + 1;
 }

@@ -2,6 +2,7 @@
 #include "spirv/shader.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <new>
 #include <utility>
@@ -19,6 +20,8 @@ Shader::~Shader() = default;
 
 BoundShader::BoundShader(const Shader& shader, const ResourceTable& resources, Fault& fault)
     : shader_(&shader), resources_(resources), fault_(&fault) {
+  static std::atomic<std::uint64_t> last_serial{0};
+  resources_.serial = last_serial.fetch_add(1, std::memory_order_relaxed) + 1;
   const Program& program = shader.program();
   uniforms_ = static_cast<std::uint32_t*>(
       ::operator new ((program.draw_words + 1) * sizeof(std::uint32_t), std::align_val_t{64}));

@@ -4,21 +4,27 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <ctime>
 
 namespace vitrine::bench {
 
 std::vector<Workload> workloads() {
   std::vector<Workload> all;
-  for (auto& group : {fill_workloads(), triangle_workloads(), shader_workloads(), compute_workloads(),
-                      transfer_workloads(), overhead_workloads()}) {
+  for (auto& group : {fill_workloads(), triangle_workloads(), shader_workloads(), texture_workloads(),
+                      compute_workloads(), transfer_workloads(), overhead_workloads()}) {
     all.insert(all.end(), group.begin(), group.end());
   }
   return all;
 }
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  static const bool cpu_time = std::getenv("VITRINE_BENCH_CPU") != nullptr;
+  timespec time{};
+  clock_gettime(cpu_time ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC, &time);
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
+}
 
 double time_calls(const std::function<void()>& work, double seconds) {
   work();
@@ -75,6 +81,23 @@ VkCommandBuffer begin_repeatable(Run& run) {
 VkCommandBuffer finish(VkCommandBuffer cmd) {
   CTS_VK(vkEndCommandBuffer(cmd));
   return cmd;
+}
+
+double measure_fragments(Run& run, const std::string& fragment, const cts::Resources* resources) {
+  constexpr std::uint32_t kWidth = 1280, kHeight = 720;
+  const cts::Target target = make_screen(run, kWidth, kHeight);
+  cts::GraphicsSpec spec;
+  spec.vertex = cts::kFullScreenVertex;
+  spec.fragment = fragment;
+  if (resources) spec.layout = resources->layout;
+  const VkPipeline pipeline = cts::make_pipeline(run, spec, target);
+  VkCommandBuffer cmd = begin_repeatable(run);
+  target.begin(cmd);
+  cts::bind_pipeline(cmd, pipeline);
+  if (resources) resources->bind(cmd);
+  vkCmdDraw(cmd, 3, 1, 0, 0);
+  vkCmdEndRenderPass(cmd);
+  return kWidth * kHeight / time_submissions(run, finish(cmd)) / 1e6;
 }
 
 double resident_megabytes() {

@@ -26,11 +26,12 @@ std::vector<Workload> workloads();
 std::vector<Workload> fill_workloads();
 std::vector<Workload> triangle_workloads();
 std::vector<Workload> shader_workloads();
+std::vector<Workload> texture_workloads();
 std::vector<Workload> compute_workloads();
 std::vector<Workload> transfer_workloads();
 std::vector<Workload> overhead_workloads();
 
-/// Seconds since some fixed moment.
+/// Seconds since some fixed moment; of all threads of this process, if VITRINE_BENCH_CPU is set (busy machines).
 double now();
 
 /// Submits `cmd` again and again, waiting each time, for about `seconds` after two warm-up runs; seconds per
@@ -42,6 +43,8 @@ double time_calls(const std::function<void()>& work, double seconds = 0.4);
 /// An RGBA8 target of this size, with D32 depth unless told otherwise.
 cts::Target make_screen(Run& run, std::uint32_t width, std::uint32_t height, bool depth = true,
                         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT);
+/// Megapixels per second of one full-screen draw of a fragment shader, with what it reads.
+double measure_fragments(Run& run, const std::string& fragment, const cts::Resources* resources = nullptr);
 /// Ends a command buffer and returns it.
 VkCommandBuffer finish(VkCommandBuffer cmd);
 /// A command buffer that may be submitted again and again.

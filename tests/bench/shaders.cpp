@@ -1,27 +1,10 @@
-// Shader-bound full-screen fragments: arithmetic, transcendental functions, integers, divergence, texture filters.
+// Shader-bound full-screen fragments: arithmetic, transcendental functions, integers, divergence.
 #include <string>
 
 #include "bench.h"
 
 namespace vitrine::bench {
 namespace {
-
-double measure(Run& run, const std::string& body, const cts::Resources* resources = nullptr) {
-  constexpr std::uint32_t kWidth = 1280, kHeight = 720;
-  const cts::Target target = make_screen(run, kWidth, kHeight);
-  cts::GraphicsSpec spec;
-  spec.vertex = cts::kFullScreenVertex;
-  spec.fragment = body;
-  if (resources) spec.layout = resources->layout;
-  const VkPipeline pipeline = cts::make_pipeline(run, spec, target);
-  VkCommandBuffer cmd = begin_repeatable(run);
-  target.begin(cmd);
-  cts::bind_pipeline(cmd, pipeline);
-  if (resources) resources->bind(cmd);
-  vkCmdDraw(cmd, 3, 1, 0, 0);
-  vkCmdEndRenderPass(cmd);
-  return kWidth * kHeight / time_submissions(run, finish(cmd)) / 1e6;
-}
 
 const std::string kHead = "layout(location=0) in vec2 uv; layout(location=0) out vec4 o;\n";
 
@@ -61,50 +44,14 @@ const std::string kSdf =
     "map(p + e.yxy) - map(p - e.yxy), map(p + e.yyx) - map(p - e.yyx))); o = vec4(n * 0.5 + 0.5, 1.0) * exp(-0.1 * t); "
     "}";
 
-double measure_texture(Run& run, VkFilter filter, VkSamplerMipmapMode mip, bool mips, const char* body,
-                       VkFormat format = VK_FORMAT_R8G8B8A8_UNORM) {
-  cts::ImageSpec image_spec;
-  image_spec.format = format;
-  image_spec.extent = {512, 512, 1};
-  image_spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-  image_spec.levels = mips ? 10 : 1;
-  const cts::Image image = run.image(image_spec);
-  run.fill_random(image);
-  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-  info.magFilter = info.minFilter = filter;
-  info.mipmapMode = mip;
-  info.maxLod = mips ? 1000.0f : 0.0f;
-  const cts::Resources resources = run.resources({cts::sampled(0, image, run.sampler(info))});
-  return measure(run, kHead + "layout(binding=0) uniform sampler2D t;" + body, &resources);
-}
-
 }  // namespace
 
 std::vector<Workload> shader_workloads() {
   const auto row = [](const char* name, std::string text) {
-    return Workload{name, "Mpix/s", false, [text](Run& run) { return measure(run, text); }};
+    return Workload{name, "Mpix/s", false, [text](Run& run) { return measure_fragments(run, text); }};
   };
-  const auto texture = [](const char* name, VkFilter filter, VkSamplerMipmapMode mip, bool mips, const char* body,
-                          VkFormat format = VK_FORMAT_R8G8B8A8_UNORM) {
-    return Workload{name, "Mpix/s", false,
-                    [=](Run& run) { return measure_texture(run, filter, mip, mips, body, format); }};
-  };
-  static constexpr char kOnce[] = "void main() { o = texture(t, uv * vec2(3.1, 2.3)); }";
-  static constexpr char kBlur[] =
-      "void main() { vec4 s = vec4(0); for (int i = -4; i < 4; ++i) s += texture(t, uv + vec2(float(i) * 0.004, 0.0));"
-      "o = s * 0.125; }";
-  return {row("fs_fma200", fma200()),
-          row("fs_mandel", kMandel),
-          row("fs_noise", kNoise),
-          row("fs_transc", kTransc),
-          row("fs_inthash", kIntHash),
-          row("scene_sdf", kSdf),
-          texture("tex_nearest", VK_FILTER_NEAREST, VK_SAMPLER_MIPMAP_MODE_NEAREST, false, kOnce),
-          texture("tex_bilinear", VK_FILTER_LINEAR, VK_SAMPLER_MIPMAP_MODE_NEAREST, false, kOnce),
-          texture("tex_trilinear", VK_FILTER_LINEAR, VK_SAMPLER_MIPMAP_MODE_LINEAR, true, kOnce),
-          texture("tex_blur8", VK_FILTER_LINEAR, VK_SAMPLER_MIPMAP_MODE_NEAREST, false, kBlur),
-          texture("tex_rgba16f", VK_FILTER_LINEAR, VK_SAMPLER_MIPMAP_MODE_NEAREST, false, kOnce,
-                  VK_FORMAT_R16G16B16A16_SFLOAT)};
+  return {row("fs_fma200", fma200()), row("fs_mandel", kMandel),   row("fs_noise", kNoise),
+          row("fs_transc", kTransc),  row("fs_inthash", kIntHash), row("scene_sdf", kSdf)};
 }
 
 }  // namespace vitrine::bench

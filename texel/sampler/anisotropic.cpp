@@ -14,7 +14,6 @@ namespace {
 
 using base::float_of;
 
-constexpr std::size_t kWeights = 1024;
 /// A box of more texels is only met with derivatives that mean nothing; it is sampled like an empty one.
 constexpr std::int64_t kMaxTexels = std::int64_t{1} << 24;
 
@@ -27,29 +26,9 @@ constexpr double exponential(double x) {
   return sum;
 }
 
-/// exp(-2 i / 1023) to six decimals; the reference's table differs in the last digit of a few entries.
-constexpr std::array<float, kWeights> kWeightTable = [] {
-  std::array<float, kWeights> table{};
-  for (std::size_t i = 0; i < kWeights; ++i) {
-    const double value = exponential(-2.0 * static_cast<double>(i) / 1023.0);
-    const auto millionths = static_cast<std::int64_t>(value * 1e6 + 0.5);
-    table[i] = static_cast<float>(static_cast<double>(millionths) / 1e6);
-  }
-  table[44] = 0.917575f;
-  table[388] = 0.468343f;
-  table[493] = 0.381429f;
-  table[538] = 0.349306f;
-  table[580] = 0.321770f;
-  table[864] = 0.184676f;
-  table[909] = 0.169124f;
-  table[911] = 0.168463f;
-  table[939] = 0.159489f;
-  return table;
-}();
-
 float weight_of(float q) {
   const std::int32_t i = base::truncate_to_int(q);
-  return i <= 1023 ? kWeightTable[static_cast<std::size_t>(std::max(i, 0))] : 0.0f;
+  return i <= 1023 ? kEllipseWeights[static_cast<std::size_t>(std::max(i, 0))] : 0.0f;
 }
 
 /// The ellipse in texels of the level: centre, bounds, and the quadratic form A, B, C scaled for the table.
@@ -104,6 +83,25 @@ bool reasonable(const Ellipse& e) {
 }
 
 }  // namespace
+
+constinit const std::array<float, 1024> kEllipseWeights = [] {
+  std::array<float, 1024> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double value = exponential(-2.0 * static_cast<double>(i) / 1023.0);
+    const auto millionths = static_cast<std::int64_t>(value * 1e6 + 0.5);
+    table[i] = static_cast<float>(static_cast<double>(millionths) / 1e6);
+  }
+  table[44] = 0.917575f;
+  table[388] = 0.468343f;
+  table[493] = 0.381429f;
+  table[538] = 0.349306f;
+  table[580] = 0.321770f;
+  table[864] = 0.184676f;
+  table[909] = 0.169124f;
+  table[911] = 0.168463f;
+  table[939] = 0.159489f;
+  return table;
+}();
 
 Texel sample_anisotropic(const LaneSample& lane, const LanePoint& point, std::uint32_t level) {
   const ImageView& view = *lane.plan->view;

@@ -9,8 +9,6 @@
 namespace vitrine::texel {
 namespace {
 
-/// How a coordinate on the neighbour follows from the one along the shared edge.
-enum class Along : std::uint8_t { kSame, kFlipped, kZero, kLast };
 struct Crossing {
   std::uint8_t face;
   Along x;
@@ -69,6 +67,15 @@ CubeTexel resolve(std::uint32_t face, std::int32_t x, std::int32_t y, std::int32
 }
 
 }  // namespace
+
+constinit const std::array<std::int32_t, 24> kCubeCrossings = [] {
+  std::array<std::int32_t, 24> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const Crossing& crossing = kCrossing[i / 4][i % 4];
+    table[i] = crossing.face | static_cast<std::int32_t>(crossing.x) << 4 | static_cast<std::int32_t>(crossing.y) << 8;
+  }
+  return table;
+}();
 
 CubeTaps cube_taps(std::uint32_t face, float u, float v, std::int32_t size) {
   CubeTaps taps;

@@ -1,9 +1,17 @@
 // Texels around a point near the edges of a cube face (lavapipe-texture-blend.md A5).
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace vitrine::texel {
+
+/// How a coordinate on the neighbour follows from the one along the shared edge.
+enum class Along : std::uint8_t { kSame, kFlipped, kZero, kLast };
+
+/// Where a texel goes that leaves face f over edge e (x < 0, x > last, y < 0, y > last), at 4 f + e: the neighbour in
+/// bits 0..3, the rules (Along) of its x in bits 4..7 and of its y from bit 8.
+extern const std::array<std::int32_t, 24> kCubeCrossings;
 
 struct CubeTexel {
   std::uint32_t face = 0;

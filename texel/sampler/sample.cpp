@@ -1,13 +1,59 @@
-// Entry of the sampler: one decision per wave, then the fastest path that has the same bits as the scalar one.
+// Entry of the sampler: one decision per draw, then the fastest path that has the same bits as the scalar one.
 #include "texel/sampler.h"
-#include "texel/sampler/plan.h"
-#include "texel/sampler/wave_2d.h"
+
+#include "texel/sampler/prepared.h"
 
 namespace vitrine::texel {
+namespace {
+
+void fill_table(const ImageView& view, LevelTable& table) {
+  for (std::uint32_t i = 0; i < view.level_count; ++i) {
+    const LevelLayout& level = view.level[i];
+    table.width[i] = static_cast<std::int32_t>(level.extent.width);
+    table.height[i] = static_cast<std::int32_t>(level.extent.height);
+    table.depth[i] = static_cast<std::int32_t>(level.extent.depth);
+    table.row_pitch[i] = static_cast<std::int32_t>(level.row_pitch);
+    table.slice_pitch[i] = static_cast<std::int32_t>(level.slice_pitch);
+    table.offset[i] = static_cast<std::int32_t>(level.offset);
+  }
+}
+
+/// Byte offsets of all texels must fit a signed 32-bit lane.
+bool small_enough(const ImageView& view) {
+  const LevelLayout& last = view.level[view.level_count - 1];
+  const std::uint64_t span = (view.layer_count - 1) * view.layer_stride + last.offset + last.sample_stride;
+  return span < (std::uint64_t{1} << 31) - 64 && view.level[0].sample_stride < (std::uint64_t{1} << 31) - 64;
+}
+
+PreparedSampler::Kernel choose_kernel(const Plan& plan, SampleOp op) {
+  if (plan.zero || op == SampleOp::kQueryLod || !small_enough(*plan.view)) return sample_by_lane;
+  if (plan.anisotropic) return plan.cube ? sample_by_lane : anisotropic_kernel();
+  return plan.aos ? byte_kernel() : float_kernel();
+}
+
+}  // namespace
+
+void prepare(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode, PreparedSampler& out) {
+  out.plan = make_plan(view, sampler, op, lod_mode);
+  out.one_level = !out.plan.lod_needed || view.level_count == 1;
+  out.kernel = choose_kernel(out.plan, op);
+  if (out.kernel != sample_by_lane) fill_table(view, out.level);
+}
+
+void sample_by_lane(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result) {
+  base::WaveRegister all[4];
+  sample_scalar(prepared.plan, request, all);
+  const std::size_t components = request.op == SampleOp::kQueryLod ? 2 : 4;
+  for (std::size_t c = 0; c < components; ++c) {
+    if (result[c] == nullptr) continue;
+    base::for_each_lane(request.active, [&](std::size_t lane) { result[c]->lane[lane] = all[c].lane[lane]; });
+  }
+}
 
 void sample(const ImageView& view, const Sampler& sampler, const SampleRequest& request, base::WaveRegister result[4]) {
-  const Plan plan = make_plan(view, sampler, request.op, request.lod_mode);
-  if (!sample_wave_2d(plan, request, result)) sample_scalar(plan, request, result);
+  PreparedSampler prepared;
+  prepare(view, sampler, request.op, request.lod_mode, prepared);
+  sample(prepared, request, {&result[0], &result[1], &result[2], &result[3]});
 }
 
 }  // namespace vitrine::texel

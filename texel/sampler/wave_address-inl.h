@@ -60,12 +60,12 @@ HWY_INLINE VF lanes_shifted(const AxisLanes& axis, VF s) {
 HWY_INLINE VI lanes_offset(const AxisLanes& axis, VI i) { return axis.has_offset ? hn::Add(i, axis.offset) : i; }
 HWY_INLINE VI lanes_floor_to_int(VF c) { return lanes_truncate_to_int(hn::Floor(c)); }
 
-HWY_INLINE VF lanes_mirror(VF s) {
+HWY_INLINE VF lanes_signed_mirror(VF s) {
   VF c = hn::Mul(s, splat(0.5f));
   c = hn::Sub(c, hn::Round(c));
-  c = hn::Add(c, c);
-  return lanes_max_second(hn::Abs(c), splat(0.0f));
+  return hn::Add(c, c);
 }
+HWY_INLINE VF lanes_mirror(VF s) { return lanes_max_second(hn::Abs(lanes_signed_mirror(s)), splat(0.0f)); }
 
 HWY_INLINE VI lanes_clamp(VI i, VI last) { return hn::Min(hn::Max(i, splat(0)), last); }
 
@@ -179,6 +179,35 @@ HWY_INLINE TapLanes lanes_linear(const AxisLanes& axis, VF s) {
       return taps;
     }
   }
+}
+
+/// The two texels of a gather; no weight.
+HWY_INLINE TapLanes lanes_gather(const AxisLanes& axis, VF s) {
+  const VI last = hn::Sub(axis.size, splat(1));
+  const VF half = splat(0.5f);
+  const auto fold = [last](VI i) { return hn::Min(hn::IfThenElse(hn::Lt(i, splat(0)), hn::Not(i), i), last); };
+  TapLanes taps;
+  switch (axis.address) {
+    case Address::kClamp: {
+      VF c = lanes_min_second(lanes_plus_offset(axis, lanes_scaled(axis, s)), axis.size_float);
+      c = lanes_max_second(c, splat(0.0f));
+      taps.first = lanes_truncate_to_int(hn::Sub(c, half));
+      taps.second = hn::Min(lanes_truncate_to_int(hn::Add(c, half)), last);
+      break;
+    }
+    case Address::kMirror:
+      taps = lanes_split(hn::Sub(hn::Mul(lanes_signed_mirror(lanes_shifted(axis, s)), axis.size_float), half));
+      taps = {fold(taps.first), fold(taps.second), half};
+      break;
+    case Address::kMirrorClamp:
+      taps = lanes_split(hn::Sub(lanes_plus_offset(axis, lanes_scaled(axis, s)), half));
+      taps = {fold(taps.first), fold(taps.second), half};
+      break;
+    default:
+      taps = lanes_linear(axis, s);
+  }
+  taps.weight = splat(0.0f);
+  return taps;
 }
 
 }  // namespace vitrine::texel::HWY_NAMESPACE

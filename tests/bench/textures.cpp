@@ -1,0 +1,80 @@
+// Texture-bound full-screen fragments: filters, formats, dimensions.
+#include <string>
+
+#include "bench.h"
+
+namespace vitrine::bench {
+namespace {
+
+constexpr char kOnce[] = "uniform sampler2D t; void main() { o = texture(t, uv * vec2(3.1, 2.3)); }";
+constexpr char kBlur[] =
+    "uniform sampler2D t; void main() { vec4 s = vec4(0); for (int i = -4; i < 4; ++i)"
+    " s += texture(t, uv + vec2(float(i) * 0.004, 0.0)); o = s * 0.125; }";
+constexpr char kStretched[] = "uniform sampler2D t; void main() { o = texture(t, uv * vec2(6.0, 1.1)); }";
+constexpr char kShadow[] =
+    "uniform sampler2DShadow t; void main() { o = vec4(texture(t, vec3(uv * vec2(3.1, 2.3), 0.5))); }";
+constexpr char kCube[] = "uniform samplerCube t; void main() { o = texture(t, vec3(uv * 2.0 - 1.0, 0.7)); }";
+constexpr char kVolume[] =
+    "uniform sampler3D t; void main() { o = texture(t, vec3(uv * vec2(3.1, 2.3), uv.x + uv.y)); }";
+
+struct TextureSpec {
+  const char* body = kOnce;
+  VkFilter filter = VK_FILTER_LINEAR;
+  VkSamplerMipmapMode mip = VK_SAMPLER_MIPMAP_MODE_NEAREST;
+  std::uint32_t levels = 1;
+  VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
+  VkImageViewType view = VK_IMAGE_VIEW_TYPE_2D;
+  float anisotropy = 1;
+  bool compare = false;
+};
+
+double measure(Run& run, const TextureSpec& spec) {
+  cts::ImageSpec image_spec;
+  image_spec.format = spec.format;
+  image_spec.extent = {512, 512, 1};
+  if (spec.view == VK_IMAGE_VIEW_TYPE_3D) image_spec.extent = {64, 64, 64};
+  if (spec.view == VK_IMAGE_VIEW_TYPE_CUBE) {
+    image_spec.layers = 6;
+    image_spec.flags = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT;
+  }
+  image_spec.view = spec.view;
+  image_spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  image_spec.levels = spec.levels;
+  const cts::Image image = run.image(image_spec);
+  run.fill_random(image);
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = spec.filter;
+  info.mipmapMode = spec.mip;
+  info.maxLod = spec.levels > 1 ? 1000.0f : 0.0f;
+  info.anisotropyEnable = spec.anisotropy > 1;
+  info.maxAnisotropy = spec.anisotropy;
+  info.compareEnable = spec.compare;
+  info.compareOp = VK_COMPARE_OP_LESS;
+  const cts::Resources resources = run.resources({cts::sampled(0, image, run.sampler(info))});
+  const std::string head = "layout(location=0) in vec2 uv; layout(location=0) out vec4 o; layout(binding=0) ";
+  return measure_fragments(run, head + spec.body, &resources);
+}
+
+}  // namespace
+
+std::vector<Workload> texture_workloads() {
+  std::vector<Workload> rows;
+  const auto add = [&](const char* name, TextureSpec spec) {
+    rows.push_back({name, "Mpix/s", false, [spec](Run& run) { return measure(run, spec); }});
+  };
+  add("tex_nearest", {.filter = VK_FILTER_NEAREST});
+  add("tex_bilinear", {});
+  add("tex_trilinear", {.mip = VK_SAMPLER_MIPMAP_MODE_LINEAR, .levels = 10});
+  add("tex_blur8", {.body = kBlur});
+  add("tex_rgba16f", {.format = VK_FORMAT_R16G16B16A16_SFLOAT});
+  add("tex_srgb", {.format = VK_FORMAT_R8G8B8A8_SRGB});
+  add("tex_aniso8", {.body = kStretched, .levels = 10, .anisotropy = 8});
+  add("tex_shadow", {.body = kShadow, .format = VK_FORMAT_D32_SFLOAT, .compare = true});
+  add("tex_bc1", {.format = VK_FORMAT_BC1_RGBA_UNORM_BLOCK});
+  add("tex_bc7", {.format = VK_FORMAT_BC7_UNORM_BLOCK});
+  add("tex_cube", {.body = kCube, .view = VK_IMAGE_VIEW_TYPE_CUBE});
+  add("tex_3d", {.body = kVolume, .view = VK_IMAGE_VIEW_TYPE_3D});
+  return rows;
+}
+
+}  // namespace vitrine::bench

@@ -1,0 +1,44 @@
+// A view, a sampler and an operation made ready for many waves: the plan, tables for lookups by lane, and the function
+// that samples whole waves. Built once per draw and image instruction.
+#pragma once
+
+#include "texel/sampler/plan.h"
+
+namespace vitrine::texel {
+
+/// Where the levels of a view lie, for lookups by lane. Extents in texels, the rest in bytes.
+struct LevelTable {
+  alignas(64) std::int32_t width[kMaxLevels];
+  alignas(64) std::int32_t height[kMaxLevels];
+  alignas(64) std::int32_t depth[kMaxLevels];
+  alignas(64) std::int32_t row_pitch[kMaxLevels];
+  alignas(64) std::int32_t slice_pitch[kMaxLevels];
+  alignas(64) std::int32_t offset[kMaxLevels];
+};
+
+/// Results of a wave by component, raw bits; null: not wanted. They may be the registers of the request.
+using SampleResult = std::array<base::WaveRegister*, 4>;
+
+struct PreparedSampler {
+  using Kernel = void (*)(const PreparedSampler&, const SampleRequest&, const SampleResult&);
+
+  Plan plan;  ///< points to the view and the sampler, which must live as long
+  LevelTable level;
+  Kernel kernel = nullptr;
+  bool one_level = false;  ///< every lane reads level 0 of the view
+};
+
+void prepare(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode, PreparedSampler& out);
+
+/// Samples, gathers or queries for every active lane. Other lanes of the results keep what they hold.
+inline void sample(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result) {
+  prepared.kernel(prepared, request, result);
+}
+
+/// The kernels. Vector ones give the bits of the scalar one.
+void sample_by_lane(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result);
+PreparedSampler::Kernel byte_kernel();         ///< Plan::aos
+PreparedSampler::Kernel float_kernel();        ///< samples and gathers of everything else, but not anisotropic
+PreparedSampler::Kernel anisotropic_kernel();  ///< two-dimensional, without comparison
+
+}  // namespace vitrine::texel

@@ -1,0 +1,232 @@
+// Anisotropic filtering for whole waves, two-dimensional images (lavapipe-texture-blend.md A8): the twin of
+// sample_anisotropic. The lanes of a vector walk through their ellipses together, each inside its own bounds.
+#include <cstring>
+
+#include "texel/sampler/anisotropic.h"
+#include "texel/sampler/prepared.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "texel/sampler/wave_anisotropic.cpp"
+#include "base/simd.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "texel/sampler/wave_texels-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::texel::HWY_NAMESPACE {
+namespace {
+
+constexpr std::size_t kMaxLanes = 16;
+static_assert(hn::MaxLanes(DU()) <= kMaxLanes);
+
+/// The ellipse of each lane; names as in anisotropic.cpp.
+struct EllipseLanes {
+  VF tu, tv;
+  VF a, b, c;
+  VI u0, u1, v0, v1;
+};
+
+HWY_INLINE EllipseLanes make_ellipse(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
+                                     std::size_t first) {
+  const ImageView& view = *p.plan.view;
+  const VF s = hn::LoadU(DF(), state.coord[0] + first), t = hn::LoadU(DF(), state.coord[1] + first);
+  VF dsdx, dsdy, dtdx, dtdy;
+  coarse_slope(load_lanes(request.coord[0], first), dsdx, dsdy);
+  coarse_slope(load_lanes(request.coord[1], first), dtdx, dtdy);
+  VF scaling = splat(1.0f / static_cast<float>(1u << view.base_level));
+  if (!p.one_level) {
+    // 2^-level, exactly.
+    const VI level = hn::Add(hn::Load(DI(), state.level[0].lane + first), splat(static_cast<int>(view.base_level)));
+    scaling = hn::BitCast(DF(), hn::ShiftLeft<23>(hn::Sub(splat(127), level)));
+  }
+  const VF width = splat(static_cast<float>(view.level0_extent.width));
+  const VF height = splat(static_cast<float>(view.level0_extent.height));
+  const VF ux = hn::Mul(hn::Mul(dsdx, width), scaling), uy = hn::Mul(hn::Mul(dsdy, width), scaling);
+  const VF vx = hn::Mul(hn::Mul(dtdx, height), scaling), vy = hn::Mul(hn::Mul(dtdy, height), scaling);
+  const VF one = splat(1.0f), four = splat(4.0f), two = splat(2.0f);
+  EllipseLanes e;
+  e.a = hn::Add(hn::Add(square_of(vx), square_of(vy)), one);
+  e.b = hn::Mul(hn::Add(hn::Mul(ux, vx), hn::Mul(uy, vy)), splat(-2.0f));
+  e.c = hn::Add(hn::Add(square_of(ux), square_of(uy)), one);
+  const VF f = hn::Sub(hn::Mul(e.a, e.c), hn::Div(square_of(e.b), four));
+  const VF d = hn::Add(hn::Sub(splat(0.0f), square_of(e.b)), hn::Mul(hn::Mul(e.a, e.c), four));
+  const VF box_u = hn::Mul(hn::Div(two, d), hn::Sqrt(hn::Mul(hn::Mul(d, e.c), f)));
+  const VF box_v = hn::Mul(hn::Div(two, d), hn::Sqrt(hn::Mul(hn::Mul(e.a, d), f)));
+  const VF g = hn::Div(splat(1023.0f), f);
+  e.a = hn::Mul(e.a, g);
+  e.b = hn::Mul(e.b, g);
+  e.c = hn::Mul(e.c, g);
+  e.tu = hn::Add(hn::Mul(s, hn::Mul(width, scaling)), splat(-0.5f));
+  e.tv = hn::Add(hn::Mul(t, hn::Mul(height, scaling)), splat(-0.5f));
+  e.u0 = lanes_floor_to_int(hn::Sub(e.tu, box_u));
+  e.u1 = lanes_truncate_to_int(hn::Ceil(hn::Add(e.tu, box_u)));
+  e.v0 = lanes_floor_to_int(hn::Sub(e.tv, box_v));
+  e.v1 = lanes_truncate_to_int(hn::Ceil(hn::Add(e.tv, box_v)));
+  return e;
+}
+
+/// Sums of a vector of lanes.
+struct Sums {
+  VF color[4];
+  VF total;
+};
+
+/// Whether every lane's box is one that the loops below can walk; else the wave goes lane by lane.
+HWY_INLINE bool small_boxes(const EllipseLanes& e, base::LaneMask active) {
+  alignas(64) std::int32_t bound[4][kMaxLanes];
+  hn::Store(e.u0, DI(), bound[0]);
+  hn::Store(e.u1, DI(), bound[1]);
+  hn::Store(e.v0, DI(), bound[2]);
+  hn::Store(e.v1, DI(), bound[3]);
+  bool small = true;
+  base::for_each_lane(active & base::first_lanes(hn::Lanes(DI())), [&](std::size_t lane) {
+    const std::int64_t width = std::int64_t{bound[1][lane]} - bound[0][lane] + 1;
+    const std::int64_t height = std::int64_t{bound[3][lane]} - bound[2][lane] + 1;
+    small = small && width > 0 && height > 0 && width < (1 << 12) && height < (1 << 12);
+  });
+  return small;
+}
+
+template <Numeric kNumeric>
+HWY_INLINE TexelLanes nearest_texels(const PreparedSampler& p, const LevelLanes& level, VF u, VF v) {
+  const Plan& plan = p.plan;
+  AxisLanes x = level.axis[0], y = level.axis[1];
+  x.normalized = y.normalized = true;
+  VI at_x = lanes_nearest(x, hn::Div(u, x.size_float));
+  VI at_y = lanes_nearest(y, hn::Div(v, y.size_float));
+  const auto outside_of = [](VI i, VI size) { return hn::Or(hn::Lt(i, splat(0)), hn::Not(hn::Lt(i, size))); };
+  const bool border = x.address == Address::kBorder || y.address == Address::kBorder;
+  const auto outside = hn::RebindMask(DF(), hn::Or(outside_of(at_x, x.size), outside_of(at_y, y.size)));
+  if (border) {
+    at_x = lanes_clamp(at_x, hn::Sub(x.size, splat(1)));
+    at_y = lanes_clamp(at_y, hn::Sub(y.size, splat(1)));
+  }
+  const FormatDesc& format = *plan.view->format;
+  const VI offset = hn::Add(hn::Add(level.origin, hn::Mul(at_y, level.row_pitch)),
+                            hn::Mul(at_x, splat(static_cast<std::int32_t>(format.block_bytes))));
+  TexelLanes texel = fetch_lanes<kNumeric>(format, plan.view->base, offset);
+  if (!border) return texel;
+  const auto put = [&](VF value, std::size_t c) {
+    return hn::IfThenElse(outside, as_float(hn::Set(DU(), plan.border[c])), value);
+  };
+  return {put(texel.r, 0), put(texel.g, 1), put(texel.b, 2), put(texel.a, 3)};
+}
+
+template <Numeric kNumeric>
+HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const EllipseLanes& e, base::LaneMask active,
+                       Sums& sums) {
+  const auto live = lanes_mask_from_bits(DI(), active);
+  const VF u_start = hn::Sub(lanes_int_to_float(e.u0), e.tu);
+  const VF dq_start = hn::Mul(hn::Add(hn::Mul(u_start, splat(2.0f)), splat(1.0f)), e.a);
+  const VF q_start = hn::Mul(square_of(u_start), e.a);
+  const VF ddq = hn::Mul(e.a, splat(2.0f));
+  VI iv = e.v0;
+  for (auto rows = live; !hn::AllFalse(DI(), rows);
+       iv = hn::Add(iv, splat(1)), rows = hn::And(live, hn::Not(hn::Gt(iv, e.v1)))) {
+    const VF v = lanes_int_to_float(iv);
+    const VF offset = hn::Sub(v, e.tv);
+    VF dq = hn::Add(hn::Mul(offset, e.b), dq_start);
+    VF q = hn::Add(hn::Mul(hn::Add(hn::Mul(e.c, offset), hn::Mul(e.b, u_start)), offset), q_start);
+    VI iu = e.u0;
+    for (auto texels = rows; !hn::AllFalse(DI(), texels);
+         iu = hn::Add(iu, splat(1)), texels = hn::And(rows, hn::Not(hn::Gt(iu, e.u1)))) {
+      const VI index = lanes_truncate_to_int(q);
+      const auto weighed = hn::And(texels, hn::Not(hn::Gt(index, splat(1023))));
+      const VI entry = hn::Min(hn::Max(index, splat(0)), splat(1023));
+      const VF weight =
+          hn::IfThenElseZero(hn::RebindMask(DF(), weighed), hn::GatherIndex(DF(), kEllipseWeights.data(), entry));
+      const TexelLanes texel = nearest_texels<kNumeric>(p, level, lanes_int_to_float(iu), v);
+      const VF value[4] = {texel.r, texel.g, texel.b, texel.a};
+      const auto in = hn::RebindMask(DF(), texels);
+      for (std::size_t c = 0; c < 4; ++c) {
+        sums.color[c] = hn::IfThenElse(in, hn::Add(sums.color[c], hn::Mul(value[c], weight)), sums.color[c]);
+      }
+      sums.total = hn::Add(sums.total, weight);
+      q = hn::Add(q, dq);
+      dq = hn::Add(dq, ddq);
+    }
+  }
+}
+
+void walk_any(const PreparedSampler& p, const LevelLanes& level, const EllipseLanes& e, base::LaneMask active,
+              Sums& sums) {
+  switch (p.plan.view->format->channel[0].numeric) {
+    case Numeric::kUnorm:
+      return walk<Numeric::kUnorm>(p, level, e, active, sums);
+    case Numeric::kSrgb:
+      return walk<Numeric::kSrgb>(p, level, e, active, sums);
+    case Numeric::kSnorm:
+      return walk<Numeric::kSnorm>(p, level, e, active, sums);
+    default:
+      return walk<Numeric::kSfloat>(p, level, e, active, sums);
+  }
+}
+
+/// Formats that fetch_lanes decodes in one of the instances above.
+bool has_instance(const FormatDesc& format) {
+  const Numeric numeric = format.channel[0].numeric;
+  return !format.is_compressed() && (numeric == Numeric::kUnorm || numeric == Numeric::kSrgb ||
+                                     numeric == Numeric::kSnorm || numeric == Numeric::kSfloat);
+}
+
+void sample_anisotropic_wave(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
+  const ImageView& view = *p.plan.view;
+  if (request.dref != nullptr || !has_instance(*view.format) || p.plan.sampler->unnormalized) {
+    return sample_by_lane(p, request, result);
+  }
+  WaveState state;
+  find_state(p, request, state);
+  WaveTexels texels;
+  base::LaneMask leftover = 0;  // empty ellipses, and huge ones
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
+    const base::LaneMask lanes = base::first_lanes(hn::Lanes(DF()));
+    const base::LaneMask active = request.active >> first & lanes;
+    if (active == 0) continue;
+    const EllipseLanes e = make_ellipse(p, request, state, first);
+    if (!small_boxes(e, active)) {
+      leftover |= active << first;
+      continue;
+    }
+    Sums sums{{splat(0.0f), splat(0.0f), splat(0.0f), splat(0.0f)}, splat(0.0f)};
+    walk_any(p, load_level(p, request, state, 0, first, false), e, active, sums);
+    leftover |= (lanes_mask_bits(DF(), hn::Eq(sums.total, splat(0.0f))) & active) << first;
+    for (std::size_t c = 0; c < 4; ++c) hn::Store(hn::Div(sums.color[c], sums.total), DF(), texels.c[c].lane + first);
+  }
+  if (leftover != 0) {
+    base::WaveRegister rest[4];
+    SampleRequest fewer = request;
+    fewer.active = leftover;
+    sample_scalar(p.plan, fewer, rest);
+    store_texels(view, texels, request.active & ~leftover, result);
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (result[c] == nullptr) continue;
+      base::for_each_lane(leftover, [&](std::size_t lane) { result[c]->lane[lane] = rest[c].lane[lane]; });
+    }
+    return;
+  }
+  store_texels(view, texels, request.active, result);
+}
+
+}  // namespace
+}  // namespace vitrine::texel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace vitrine::texel {
+namespace {
+
+HWY_EXPORT(sample_anisotropic_wave);
+
+}  // namespace
+
+PreparedSampler::Kernel anisotropic_kernel() {
+  base::select_simd_target();
+  return &HWY_DYNAMIC_DISPATCH(sample_anisotropic_wave);
+}
+
+}  // namespace vitrine::texel
+
+#endif

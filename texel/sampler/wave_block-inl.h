@@ -1,0 +1,37 @@
+// Texels of compressed formats for a wave of lanes: places inside blocks by SIMD, blocks decoded once each.
+
+#include "texel/block/cache.h"
+#include "texel/sampler/wave_state-inl.h"
+
+#if defined(VITRINE_TEXEL_WAVE_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRINE_TEXEL_WAVE_BLOCK_INL_H_
+#undef VITRINE_TEXEL_WAVE_BLOCK_INL_H_
+#else
+#define VITRINE_TEXEL_WAVE_BLOCK_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::texel::HWY_NAMESPACE {
+
+/// i / block and, in `inner`, i % block; 0 <= i < 2^15, block <= 12: the product by 2^19 / block, rounded up, is exact.
+HWY_INLINE VI split_block(VI i, std::uint32_t block, VI& inner) {
+  const auto inverse = static_cast<std::int32_t>(((1u << 19) + block - 1) / block);
+  const VI quotient = hn::ShiftRight<19>(hn::Mul(i, splat(inverse)));
+  inner = hn::Sub(i, hn::Mul(quotient, splat(static_cast<std::int32_t>(block))));
+  return quotient;
+}
+
+/// Decoded bytes of the active lanes' texels, every kStep words.
+template <std::size_t kStep>
+HWY_INLINE void load_block_bytes(const ImageView& view, const IntLanes& offset, const IntLanes& inner,
+                                 base::LaneMask active, std::uint32_t* to) {
+  BlockCache& cache = block_cache();
+  base::for_each_lane(active, [&](std::size_t lane) {
+    to[kStep * lane] = cache.bytes(*view.format, view.base + offset.lane[lane])[inner.lane[lane]];
+  });
+}
+
+}  // namespace vitrine::texel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

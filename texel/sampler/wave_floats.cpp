@@ -1,0 +1,395 @@
+// The float sampler for whole waves (lavapipe-texture-blend.md A3 to A7, A9): every format, dimension and address mode,
+// comparison, gathers, reductions, one or two levels. Bits equal sample_scalar's.
+#include <cstring>
+
+#include "texel/sampler/cube.h"
+#include "texel/sampler/prepared.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "texel/sampler/wave_floats.cpp"
+#include "base/simd.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "texel/sampler/wave_cube-inl.h"
+#include "texel/sampler/wave_texels-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::texel::HWY_NAMESPACE {
+namespace {
+
+constexpr std::size_t kMaxTaps = 8;
+
+/// Texels of one level; tap k is the second of x if bit 0 is set, of y by bit 1, of z by bit 2.
+struct FloatTaps {
+  TexelPlaces place[kMaxTaps];
+  base::LaneMask outside[kMaxTaps];  ///< of the level: the border colour
+  FloatLanes weight[3];
+  IntLanes corner;  ///< cubes: the tap that does not exist, 4 if all do
+  base::LaneMask corners = 0;
+  std::uint32_t count = 1;
+};
+
+/// Everything that one call passes from step to step.
+struct Call {
+  const PreparedSampler& p;
+  const SampleRequest& request;
+  Components wanted;
+  bool compare;
+  FloatLanes reference{};  ///< only with `compare`
+  WaveState state;
+
+  const Plan& plan() const { return p.plan; }
+  const ImageView& view() const { return *p.plan.view; }
+  VkSamplerReductionMode reduction() const { return p.plan.sampler->reduction; }
+};
+
+// ---- places
+
+struct AxisTaps {
+  VI at[2];
+};
+
+HWY_INLINE AxisTaps find_axis(const AxisLanes& axis, VF s, bool linear, bool gather, std::size_t first,
+                              FloatLanes& weight) {
+  if (!linear) {
+    const VI i = lanes_nearest(axis, s);
+    return {{i, i}};
+  }
+  const TapLanes taps = gather ? lanes_gather(axis, s) : lanes_linear(axis, s);
+  hn::Store(taps.weight, DF(), weight.lane + first);
+  return {{taps.first, taps.second}};
+}
+
+HWY_INLINE hn::Mask<DI> outside_of(VI i, VI size) { return hn::Or(hn::Lt(i, splat(0)), hn::Not(hn::Lt(i, size))); }
+
+/// Moves i inside the level and tells which lanes were not.
+HWY_INLINE VI enter(VI i, VI size, base::LaneMask& outside, std::size_t first) {
+  outside |= lanes_mask_bits(DI(), outside_of(i, size)) << first;
+  return lanes_clamp(i, hn::Sub(size, splat(1)));
+}
+
+HWY_NOINLINE void find_taps(Call& call, int which, bool linear, FloatTaps& taps) {
+  const Plan& plan = call.plan();
+  const FormatDesc& format = *call.view().format;
+  const bool border =
+      plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder || plan.address[2] == Address::kBorder;
+  taps.count = linear ? 1u << plan.dims : 1u;
+  for (base::LaneMask& mask : taps.outside) mask = 0;
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
+    const LevelLanes level = load_level(call.p, call.request, call.state, which, first, plan.cube);
+    AxisTaps axis[3] = {{{splat(0), splat(0)}}, {{splat(0), splat(0)}}, {{splat(0), splat(0)}}};
+    for (std::uint32_t i = 0; i < plan.dims; ++i) {
+      axis[i] = find_axis(level.axis[i], hn::LoadU(DF(), call.state.coord[i] + first), linear, plan.gather, first,
+                          taps.weight[i]);
+    }
+    for (std::uint32_t k = 0; k < taps.count; ++k) {
+      VI at[3] = {axis[0].at[k & 1], axis[1].at[k >> 1 & 1], axis[2].at[k >> 2]};
+      if (border) {
+        for (std::uint32_t i = 0; i < plan.dims; ++i) at[i] = enter(at[i], level.axis[i].size, taps.outside[k], first);
+      }
+      place_texels(format, level, plan.dims, at[0], at[1], at[2], first, taps.place[k]);
+    }
+  }
+}
+
+HWY_NOINLINE void find_cube_taps(Call& call, int which, FloatTaps& taps) {
+  const FormatDesc& format = *call.view().format;
+  const VI stride = splat(static_cast<std::int32_t>(call.view().layer_stride));
+  taps.count = 4;
+  taps.corners = 0;
+  for (base::LaneMask& mask : taps.outside) mask = 0;
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
+    LevelLanes level = load_level(call.p, call.request, call.state, which, first, false);
+    const VI origin = level.origin;
+    const CubeLanes cube = find_cube_texels(hn::Load(DI(), call.state.face.lane + first),
+                                            hn::Load(DF(), call.state.projected[0].lane + first),
+                                            hn::Load(DF(), call.state.projected[1].lane + first), level.axis[0].size);
+    hn::Store(cube.weight_x, DF(), taps.weight[0].lane + first);
+    hn::Store(cube.weight_y, DF(), taps.weight[1].lane + first);
+    hn::Store(cube.corner, DI(), taps.corner.lane + first);
+    taps.corners |= lanes_mask_bits(DI(), hn::Lt(cube.corner, splat(4))) << first;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      level.origin = hn::Add(origin, hn::Mul(cube.face[k], stride));
+      place_texels(format, level, 2, cube.x[k], cube.y[k], splat(0), first, taps.place[k]);
+    }
+  }
+}
+
+// ---- texels
+
+HWY_INLINE hn::Mask<DF> compare_lanes(VkCompareOp op, VF reference, VF texel) {
+  switch (op) {
+    case VK_COMPARE_OP_LESS:
+      return hn::Lt(reference, texel);
+    case VK_COMPARE_OP_EQUAL:
+      return hn::Eq(reference, texel);
+    case VK_COMPARE_OP_LESS_OR_EQUAL:
+      return hn::Le(reference, texel);
+    case VK_COMPARE_OP_GREATER:
+      return hn::Gt(reference, texel);
+    case VK_COMPARE_OP_NOT_EQUAL:
+      return hn::Not(hn::Eq(reference, texel));
+    case VK_COMPARE_OP_GREATER_OR_EQUAL:
+      return hn::Ge(reference, texel);
+    case VK_COMPARE_OP_ALWAYS:
+      return hn::RebindMask(DF(), hn::Eq(hn::Zero(DU()), hn::Zero(DU())));
+    default:
+      return hn::RebindMask(DF(), hn::Ne(hn::Zero(DU()), hn::Zero(DU())));
+  }
+}
+
+HWY_NOINLINE void put_border(const Plan& plan, base::LaneMask outside, Components wanted, WaveTexels& texels) {
+  for (std::size_t c = 0; c < 4; ++c) {
+    if ((wanted >> c & 1) == 0) continue;
+    base::for_each_lane(
+        outside, [&](std::size_t lane) { std::memcpy(&texels.c[c].lane[lane], &plan.border[c], sizeof(float)); });
+  }
+}
+
+/// Tap k as values; with a comparison its result as 0 or 1 in component 0.
+HWY_NOINLINE void fetch_tap(Call& call, const FloatTaps& taps, std::uint32_t k, WaveTexels& out) {
+  fetch_texels(call.view(), taps.place[k], call.request.active, call.wanted, out);
+  if (taps.outside[k] != 0) put_border(call.plan(), taps.outside[k], call.wanted, out);
+  if (!call.compare) return;
+  for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
+    const auto holds = compare_lanes(call.plan().sampler->compare_op, hn::Load(DF(), call.reference.lane + i),
+                                     hn::Load(DF(), out.c[0].lane + i));
+    hn::Store(hn::IfThenElseZero(holds, splat(1.0f)), DF(), out.c[0].lane + i);
+  }
+}
+
+// ---- filters
+
+HWY_INLINE VF lerp(VF weight, VF a, VF b) { return lanes_fma(weight, hn::Sub(b, a), a); }
+
+/// a becomes f(weight, a, b) in every wanted component.
+template <class F>
+HWY_INLINE void combine(Components wanted, const FloatLanes& weight, WaveTexels& a, const WaveTexels& b, F&& f) {
+  for (std::size_t c = 0; c < 4; ++c) {
+    if ((wanted >> c & 1) == 0) continue;
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
+      const VF value =
+          f(hn::Load(DF(), weight.lane + i), hn::Load(DF(), a.c[c].lane + i), hn::Load(DF(), b.c[c].lane + i));
+      hn::Store(value, DF(), a.c[c].lane + i);
+    }
+  }
+}
+
+HWY_NOINLINE void average(Components wanted, const FloatLanes& weight, WaveTexels& a, const WaveTexels& b) {
+  combine(wanted, weight, a, b, [](VF w, VF first, VF second) { return lerp(w, first, second); });
+}
+
+HWY_NOINLINE void reduce(const Call& call, const FloatLanes& weight, WaveTexels& a, const WaveTexels& b) {
+  const VF zero = splat(0.0f);
+  switch (call.reduction()) {
+    case VK_SAMPLER_REDUCTION_MODE_MIN:
+      return combine(call.wanted, weight, a, b, [&](VF w, VF first, VF second) {
+        return hn::IfThenElse(hn::Eq(w, zero), first, lanes_min_second(first, second));
+      });
+    case VK_SAMPLER_REDUCTION_MODE_MAX:
+      return combine(call.wanted, weight, a, b, [&](VF w, VF first, VF second) {
+        return hn::IfThenElse(hn::Eq(w, zero), first, lanes_max_second(first, second));
+      });
+    default:
+      return average(call.wanted, weight, a, b);
+  }
+}
+
+/// Along x comparisons are weighted by selection.
+HWY_NOINLINE void reduce_x(const Call& call, const FloatLanes& weight, WaveTexels& a, const WaveTexels& b) {
+  if (!call.compare) return reduce(call, weight, a, b);
+  combine(1, weight, a, b, [](VF w, VF first, VF second) {
+    const VF zero = splat(0.0f);
+    return hn::Add(hn::IfThenElseZero(hn::Not(hn::Eq(second, zero)), w),
+                   hn::IfThenElseZero(hn::Not(hn::Eq(first, zero)), hn::Sub(splat(1.0f), w)));
+  });
+}
+
+/// Taps 4z..4z+3 (or the two of one dimension).
+HWY_NOINLINE void filter_slice(Call& call, const FloatTaps& taps, std::uint32_t k, WaveTexels& out) {
+  WaveTexels second;
+  fetch_tap(call, taps, k, out);
+  fetch_tap(call, taps, k + 1, second);
+  reduce_x(call, taps.weight[0], out, second);
+  if (taps.count == 2) return;
+  WaveTexels lower;
+  fetch_tap(call, taps, k + 2, lower);
+  fetch_tap(call, taps, k + 3, second);
+  reduce_x(call, taps.weight[0], lower, second);
+  reduce(call, taps.weight[1], out, lower);
+}
+
+/// At a corner of a cube three texels share the weight of the one that does not exist.
+void weigh_corners(const Call& call, const FloatTaps& taps, base::LaneMask corners, const WaveTexels texels[4],
+                   WaveTexels& out) {
+  base::for_each_lane(corners, [&](std::size_t lane) {
+    CubeTaps cube;
+    cube.weight_x = taps.weight[0].lane[lane];
+    cube.weight_y = taps.weight[1].lane[lane];
+    cube.corner = static_cast<std::uint32_t>(taps.corner.lane[lane]);
+    float weight[4];
+    corner_weights(cube, weight);
+    for (std::size_t c = 0; c < 4; ++c) {
+      if ((call.wanted >> c & 1) == 0) continue;
+      float sum = weight[0] * texels[0].c[c].lane[lane];
+      for (std::size_t i = 1; i < 4; ++i) sum = weight[i] * texels[i].c[c].lane[lane] + sum;
+      out.c[c].lane[lane] = sum;
+    }
+  });
+}
+
+HWY_NOINLINE void filter_cube(Call& call, const FloatTaps& taps, WaveTexels& out) {
+  WaveTexels texels[4];
+  for (std::uint32_t k = 0; k < 4; ++k) fetch_tap(call, taps, k, texels[k]);
+  const bool averaged = call.reduction() == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+  const base::LaneMask corners = averaged ? taps.corners & call.request.active : 0;
+  WaveTexels at_corners;
+  if (corners != 0) weigh_corners(call, taps, corners, texels, at_corners);
+  out = texels[0];
+  reduce_x(call, taps.weight[0], out, texels[1]);
+  reduce_x(call, taps.weight[0], texels[2], texels[3]);
+  reduce(call, taps.weight[1], out, texels[2]);
+  base::for_each_lane(corners, [&](std::size_t lane) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (call.wanted >> c & 1) out.c[c].lane[lane] = at_corners.c[c].lane[lane];
+    }
+  });
+}
+
+HWY_NOINLINE void filter_level(Call& call, int which, bool linear, WaveTexels& out) {
+  FloatTaps taps;
+  if (call.plan().cube && linear) {
+    find_cube_taps(call, which, taps);
+    return filter_cube(call, taps, out);
+  }
+  find_taps(call, which, linear, taps);
+  if (!linear) return fetch_tap(call, taps, 0, out);
+  filter_slice(call, taps, 0, out);
+  if (taps.count < 8) return;
+  WaveTexels farther;
+  filter_slice(call, taps, 4, farther);
+  reduce(call, taps.weight[2], out, farther);
+}
+
+/// Copies lanes of `from`.
+HWY_NOINLINE void replace(Components wanted, base::LaneMask lanes, const WaveTexels& from, WaveTexels& to) {
+  for (std::size_t c = 0; c < 4; ++c) {
+    if ((wanted >> c & 1) == 0) continue;
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
+      hn::BlendedStore(hn::Load(DF(), from.c[c].lane + i), lanes_mask_from_bits(DF(), lanes >> i), DF(),
+                       to.c[c].lane + i);
+    }
+  }
+}
+
+HWY_NOINLINE void filter_levels(Call& call, WaveTexels& out) {
+  const Plan& plan = call.plan();
+  const base::LaneMask active = call.request.active;
+  const bool two_filters = plan.min_linear != plan.mag_linear;
+  // With two filters, magnified lanes take one level.
+  const base::LaneMask minified = two_filters ? call.state.minify & active : active;
+  if (minified != 0) {
+    filter_level(call, 0, plan.min_linear, out);
+    if (plan.mip == MipFilter::kLinear && plan.lod_needed) {
+      WaveTexels next;
+      filter_level(call, 1, plan.min_linear, next);
+      average(call.wanted, call.state.fraction, out, next);
+    }
+  }
+  if (minified == active) return;
+  WaveTexels magnified;
+  filter_level(call, 0, plan.mag_linear, magnified);
+  replace(call.wanted, active & ~minified, magnified, out);
+}
+
+// ---- gathers
+
+/// The four texels around a point, in the order (i0,j1) (i1,j1) (i1,j0) (i0,j0).
+void gather(Call& call, const SampleResult& result) {
+  const ImageView& view = call.view();
+  const std::uint8_t source = call.compare ? 0 : view.swizzle[call.request.gather_component & 3];
+  constexpr std::uint32_t kOrder[4] = {2, 3, 1, 0};
+  FloatTaps taps;
+  call.plan().cube ? find_cube_taps(call, 0, taps) : find_taps(call, 0, true, taps);
+  call.wanted = source < 4 ? 1u << source : 0u;
+  FloatLanes value[4];
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    if (source < 4) {
+      WaveTexels texels;
+      fetch_tap(call, taps, k, texels);
+      value[k] = texels.c[source];
+    } else {
+      const std::uint32_t one = view.format->is_integer() ? 1u : 0x3f800000u;
+      const VF constant = as_float(hn::Set(DU(), source == 5 ? one : 0u));
+      for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) hn::Store(constant, DF(), value[k].lane + i);
+    }
+  }
+  if (!view.format->is_integer()) {
+    base::for_each_lane(taps.corners & call.request.active, [&](std::size_t lane) {
+      const auto corner = static_cast<std::size_t>(taps.corner.lane[lane]);
+      value[corner].lane[lane] = 0.0f;  // the texel that does not exist is the average of the others
+      value[corner].lane[lane] =
+          (1.0f / 3.0f) * ((value[0].lane[lane] + value[1].lane[lane]) + (value[2].lane[lane] + value[3].lane[lane]));
+    });
+  }
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (result[c] == nullptr) continue;
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
+      store_lanes(as_unsigned(hn::Load(DF(), value[kOrder[c]].lane + i)), call.request.active, i, *result[c]);
+    }
+  }
+}
+
+void load_reference(Call& call) {
+  const bool fixed_point = call.view().format->channel[0].numeric != Numeric::kSfloat;
+  for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
+    VF reference = load_lanes(call.request.dref, i);
+    if (fixed_point) reference = lanes_max_second(lanes_min_second(reference, splat(1.0f)), splat(0.0f));
+    hn::Store(reference, DF(), call.reference.lane + i);
+  }
+}
+
+void sample_floats(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
+  if (request.gather_offsets != nullptr) return sample_by_lane(p, request, result);
+  Call call{p, request, wanted_components(*p.plan.view, result), request.dref != nullptr, {}, {}};
+  find_state(p, request, call.state);
+  if (call.compare) {
+    call.wanted = 1;
+    load_reference(call);
+  }
+  if (p.plan.gather) return gather(call, result);
+  WaveTexels texels;
+  filter_levels(call, texels);
+  if (call.compare) {
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
+      hn::Store(splat(0.0f), DF(), texels.c[1].lane + i);
+      hn::Store(splat(0.0f), DF(), texels.c[2].lane + i);
+      hn::Store(splat(1.0f), DF(), texels.c[3].lane + i);
+    }
+  }
+  store_texels(*p.plan.view, texels, request.active, result);
+}
+
+}  // namespace
+}  // namespace vitrine::texel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace vitrine::texel {
+namespace {
+
+HWY_EXPORT(sample_floats);
+
+}  // namespace
+
+PreparedSampler::Kernel float_kernel() {
+  base::select_simd_target();
+  return &HWY_DYNAMIC_DISPATCH(sample_floats);
+}
+
+}  // namespace vitrine::texel
+
+#endif

@@ -1,0 +1,324 @@
+// What the vector samplers know about a wave before they look at texels: coordinates, layers and levels of every lane.
+// Twins of locate() and level_of_detail() (lavapipe-texture-blend.md A4, A5).
+
+#include "texel/sampler/prepared.h"
+#include "texel/sampler/wave_address-inl.h"
+
+#if defined(VITRINE_TEXEL_WAVE_STATE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRINE_TEXEL_WAVE_STATE_INL_H_
+#undef VITRINE_TEXEL_WAVE_STATE_INL_H_
+#else
+#define VITRINE_TEXEL_WAVE_STATE_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::texel::HWY_NAMESPACE {
+
+/// One value per lane.
+struct IntLanes {
+  alignas(64) std::int32_t lane[base::kWaveWidth];
+};
+struct FloatLanes {
+  alignas(64) float lane[base::kWaveWidth];
+};
+
+struct WaveState {
+  const float* coord[3];  ///< lanes of s, t, r; on the face for cubes
+  FloatLanes projected[2];
+  IntLanes face;
+  IntLanes layer_offset;  ///< bytes; of the first face for cubes. Only of arrayed views
+  IntLanes level[2];      ///< only if the view has several
+  FloatLanes fraction;    ///< weight of level[1]
+  base::LaneMask minify;
+};
+
+HWY_INLINE VF load_lanes(const base::WaveRegister* values, std::size_t first) {
+  return as_float(hn::Load(DU(), values->lane + first));
+}
+HWY_INLINE VI load_ints(const base::WaveRegister* values, std::size_t first) {
+  return hn::BitCast(DI(), hn::Load(DU(), values->lane + first));
+}
+
+HWY_INLINE VF square_of(VF v) { return hn::Mul(v, v); }
+HWY_INLINE VF flip_sign(VF v, VU sign) { return as_float(hn::Xor(as_unsigned(v), sign)); }
+HWY_INLINE VF negated(VF v) { return flip_sign(v, hn::Set(DU(), 0x80000000u)); }
+
+/// Derivatives of up to three coordinates.
+struct Slopes {
+  VF x[3];
+  VF y[3];
+};
+
+/// Of the quad's first pixel; quads are the 128-bit blocks of a vector.
+HWY_INLINE void coarse_slope(VF v, VF& x, VF& y) {
+  x = hn::Sub(hn::Broadcast<1>(v), hn::Broadcast<0>(v));
+  y = hn::Sub(hn::Broadcast<2>(v), hn::Broadcast<0>(v));
+}
+
+/// Of each pixel's own row and column.
+HWY_INLINE void fine_slope(VF v, VF& x, VF& y) {
+  x = hn::Sub(hn::DupOdd(v), hn::DupEven(v));
+  const hn::Repartition<double, DF> d64;
+  const auto pairs = hn::BitCast(d64, v);
+  y = hn::Sub(hn::BitCast(DF(), hn::DupOdd(pairs)), hn::BitCast(DF(), hn::DupEven(pairs)));
+}
+
+HWY_INLINE Slopes load_slopes(const SampleRequest& request, std::uint32_t components, std::size_t first, bool given,
+                              bool fine) {
+  Slopes d;
+  for (std::uint32_t i = 0; i < components; ++i) {
+    if (given) {
+      d.x[i] = load_lanes(request.ddx[i], first);
+      d.y[i] = load_lanes(request.ddy[i], first);
+    } else if (fine) {
+      fine_slope(load_lanes(request.coord[i], first), d.x[i], d.y[i]);
+    } else {
+      coarse_slope(load_lanes(request.coord[i], first), d.x[i], d.y[i]);
+    }
+  }
+  return d;
+}
+
+// ---- cubes
+
+struct FacePoint {
+  VF sc, tc;
+};
+
+HWY_INLINE FacePoint on_face(const VF v[3], hn::Mask<DF> x_major, hn::Mask<DF> z_major, VU sign) {
+  const VU top = hn::Set(DU(), 0x80000000u);
+  const VF minus_t = negated(v[1]);
+  FacePoint p{v[0], flip_sign(v[2], sign)};
+  p.sc = hn::IfThenElse(x_major, flip_sign(v[2], hn::Xor(sign, top)), p.sc);
+  p.tc = hn::IfThenElse(x_major, minus_t, p.tc);
+  p.sc = hn::IfThenElse(z_major, flip_sign(v[0], sign), p.sc);
+  p.tc = hn::IfThenElse(z_major, minus_t, p.tc);
+  return p;
+}
+
+HWY_INLINE VF major_of(const VF v[3], hn::Mask<DF> x_major, hn::Mask<DF> z_major) {
+  return hn::IfThenElse(z_major, v[2], hn::IfThenElse(x_major, v[0], v[1]));
+}
+
+/// Projects directions; with `d`, their derivatives too, with the rounding that goes with them.
+HWY_INLINE void project_cube(const VF v[3], Slopes* d, std::size_t first, WaveState& state) {
+  const VF s = hn::Abs(v[0]), t = hn::Abs(v[1]), r = hn::Abs(v[2]);
+  const auto z_major = hn::Not(hn::Lt(r, lanes_max_second(s, t)));
+  const auto x_major = hn::And(hn::Not(z_major), hn::Not(hn::Le(s, t)));
+  const VF major = major_of(v, x_major, z_major);
+  const VU sign = hn::And(as_unsigned(major), hn::Set(DU(), 0x80000000u));
+  const FacePoint p = on_face(v, x_major, z_major, sign);
+  VF scale;
+  if (d != nullptr) {
+    const VF inverse = hn::Div(splat(1.0f), major);
+    const VF half = hn::Mul(splat(0.5f), inverse);
+    for (VF* slope : {d->x, d->y}) {
+      const FacePoint q = on_face(slope, x_major, z_major, sign);
+      const VF ratio = hn::Mul(major_of(slope, x_major, z_major), inverse);
+      slope[0] = hn::Mul(hn::Sub(q.sc, hn::Mul(ratio, p.sc)), half);
+      slope[1] = hn::Mul(hn::Sub(q.tc, hn::Mul(ratio, p.tc)), half);
+    }
+    scale = hn::Abs(half);
+  } else {
+    const VF magnitude = hn::Abs(major);
+    scale = hn::IfThenElseZero(hn::Gt(magnitude, splat(0.0f)), hn::Div(splat(0.5f), magnitude));
+  }
+  const VI axis = hn::IfThenElse(hn::RebindMask(DI(), z_major), splat(4),
+                                 hn::IfThenZeroElse(hn::RebindMask(DI(), x_major), splat(2)));
+  hn::Store(hn::Add(axis, hn::BitCast(DI(), hn::ShiftRight<31>(sign))), DI(), state.face.lane + first);
+  hn::Store(hn::Add(hn::Mul(p.sc, scale), splat(0.5f)), DF(), state.projected[0].lane + first);
+  hn::Store(hn::Add(hn::Mul(p.tc, scale), splat(0.5f)), DF(), state.projected[1].lane + first);
+}
+
+// ---- level of detail
+
+HWY_INLINE VF scaled_length(const VF d[3], const float size[3], std::uint32_t dims) {
+  VF sum = square_of(hn::Mul(d[0], splat(size[0])));
+  for (std::uint32_t i = 1; i < dims; ++i) sum = hn::Add(sum, square_of(hn::Mul(d[i], splat(size[i]))));
+  return sum;
+}
+
+/// rho squared; rho itself for one dimension.
+HWY_INLINE VF wave_rho(const Plan& plan, const Slopes& d, bool given) {
+  const Extent& extent = plan.view->level[0].extent;
+  const float size[3] = {static_cast<float>(extent.width), static_cast<float>(extent.height),
+                         static_cast<float>(extent.depth)};
+  if (plan.anisotropic) {
+    const VF x2 = scaled_length(d.x, size, 2), y2 = scaled_length(d.y, size, 2);
+    const VF longest = lanes_max_second(x2, y2), shortest = lanes_min_second(x2, y2);
+    const VF limit = splat(plan.sampler->max_anisotropy * plan.sampler->max_anisotropy);
+    return hn::IfThenElse(hn::Gt(shortest, hn::Mul(shortest, limit)), hn::Div(longest, limit), shortest);
+  }
+  VF rho;
+  if (plan.dims == 1) {
+    rho = hn::Mul(lanes_max_second(hn::Abs(d.x[0]), hn::Abs(d.y[0])), splat(size[0]));
+  } else {
+    rho = lanes_max_second(scaled_length(d.x, size, plan.dims), scaled_length(d.y, size, plan.dims));
+  }
+  if (!given) return rho;
+  const VU exponent = hn::And(as_unsigned(rho), hn::Set(DU(), 0x7f800000u));
+  return hn::IfThenZeroElse(hn::RebindMask(DF(), hn::Eq(exponent, hn::Set(DU(), 0x7f800000u))), rho);
+}
+
+HWY_INLINE VI exponent_field(VF v) {
+  return hn::BitCast(DI(), hn::And(hn::ShiftRight<23>(as_unsigned(v)), hn::Set(DU(), 255u)));
+}
+
+HWY_INLINE VF fast_log2(VF v) {
+  const VF exponent = lanes_int_to_float(hn::Sub(exponent_field(v), splat(128)));
+  const VU mantissa = hn::Or(hn::And(as_unsigned(v), hn::Set(DU(), 0x7fffffu)), hn::Set(DU(), 0x3f800000u));
+  return hn::Add(exponent, as_float(mantissa));
+}
+
+HWY_INLINE void choose_levels(const Plan& plan, VF lod, VI nearest, std::size_t first, WaveState& state) {
+  const VI last = splat(static_cast<std::int32_t>(plan.view->level_count) - 1);
+  VI level0, level1;
+  VF fraction = splat(0.0f);
+  if (plan.mip == MipFilter::kNone && !plan.anisotropic) {
+    level0 = level1 = splat(0);
+  } else if (plan.mip != MipFilter::kLinear || plan.anisotropic) {
+    level0 = level1 = lanes_clamp(nearest, last);
+  } else {
+    const VF floor = hn::Floor(lod);
+    const VI level = lanes_truncate_to_int(floor);
+    level0 = lanes_clamp(level, last);
+    const auto outside = hn::Or(hn::Lt(level, splat(0)), hn::Not(hn::Lt(level, last)));
+    level1 = hn::IfThenElse(outside, level0, hn::Add(level0, splat(1)));
+    fraction = hn::IfThenZeroElse(hn::RebindMask(DF(), outside), hn::Sub(lod, floor));
+  }
+  hn::Store(level0, DI(), state.level[0].lane + first);
+  hn::Store(level1, DI(), state.level[1].lane + first);
+  hn::Store(fraction, DF(), state.fraction.lane + first);
+}
+
+HWY_INLINE void set_minify(hn::Mask<DF> minify, std::size_t first, WaveState& state) {
+  state.minify |= lanes_mask_bits(DF(), minify) << first;
+}
+
+/// Only for plan.lod_needed.
+HWY_INLINE void find_levels(const Plan& plan, const SampleRequest& request, const Slopes& d, std::size_t first,
+                            WaveState& state) {
+  const Sampler& sampler = *plan.sampler;
+  VF lod = splat(sampler.min_lod);
+  if (!plan.lod_fixed) {
+    if (request.lod_mode == LodMode::kExplicit) {
+      lod = load_lanes(request.lod, first);
+    } else if (request.lod_mode == LodMode::kZero) {
+      lod = splat(0.0f);
+    } else {
+      const VF rho = wave_rho(plan, d, plan.cube || request.lod_mode == LodMode::kGrad);
+      if (plan.shortcut_lod && request.min_lod == nullptr) {
+        const VF base = plan.squared_rho ? rho : hn::Mul(rho, splat(1.41421356237309504880f));
+        const VI exponent = exponent_field(base);
+        set_minify(hn::Gt(rho, splat(1.0f)), first, state);
+        return choose_levels(
+            plan, rho,
+            plan.squared_rho ? hn::ShiftRight<1>(hn::Sub(exponent, splat(126))) : hn::Sub(exponent, splat(127)), first,
+            state);
+      }
+      lod = hn::Mul(splat(0.5f), fast_log2(plan.squared_rho || plan.anisotropic ? rho : square_of(rho)));
+      if (request.lod_mode == LodMode::kBias) lod = hn::Add(lod, load_lanes(request.lod, first));
+    }
+    if (sampler.mip_lod_bias != 0.0f) lod = hn::Add(lod, splat(sampler.mip_lod_bias));
+  }
+  if (plan.apply_max_lod) lod = lanes_min_second(lod, splat(sampler.max_lod));
+  if (plan.apply_min_lod) lod = lanes_max_second(lod, splat(sampler.min_lod));
+  if (request.min_lod != nullptr) lod = lanes_max_second(lod, load_lanes(request.min_lod, first));
+  set_minify(hn::Gt(lod, splat(0.0f)), first, state);
+  choose_levels(plan, lod, plan.anisotropic ? lanes_truncate_to_int(lod) : lanes_round_to_int(lod), first, state);
+}
+
+HWY_INLINE void find_layer(const Plan& plan, const base::WaveRegister* coord, std::size_t first, WaveState& state) {
+  VI layer = splat(0);
+  if (coord != nullptr) {
+    layer = lanes_round_to_int(load_lanes(coord, first));
+    auto last = static_cast<std::int32_t>(plan.view->layer_count) - 1;
+    if (plan.cube) {
+      layer = hn::Mul(layer, splat(6));
+      last = std::max(last - 5, 0);
+    }
+    layer = lanes_clamp(layer, splat(last));
+  }
+  const VI stride = splat(static_cast<std::int32_t>(plan.view->layer_stride));
+  hn::Store(hn::Mul(layer, stride), DI(), state.layer_offset.lane + first);
+}
+
+inline void find_state(const PreparedSampler& prepared, const SampleRequest& request, WaveState& state) {
+  const Plan& plan = prepared.plan;
+  state.minify = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    state.coord[i] = request.coord[i] != nullptr ? reinterpret_cast<const float*>(request.coord[i]->lane) : nullptr;
+  }
+  if (plan.cube) state.coord[0] = state.projected[0].lane, state.coord[1] = state.projected[1].lane;
+  if (!plan.cube && !plan.arrayed && !plan.lod_needed) return;
+  const bool implicit = request.lod_mode == LodMode::kImplicit || request.lod_mode == LodMode::kBias;
+  const bool given = request.lod_mode == LodMode::kGrad && !plan.anisotropic;
+  const bool sloped = plan.lod_needed && !plan.lod_fixed && (implicit || request.lod_mode == LodMode::kGrad);
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
+    Slopes d;
+    if (sloped) d = load_slopes(request, plan.cube ? 3 : plan.dims, first, given, plan.cube);
+    if (plan.cube) {
+      const VF v[3] = {load_lanes(request.coord[0], first), load_lanes(request.coord[1], first),
+                       load_lanes(request.coord[2], first)};
+      project_cube(v, sloped ? &d : nullptr, first, state);
+    }
+    if (plan.arrayed) find_layer(plan, request.coord[plan.cube ? 3 : plan.dims], first, state);
+    if (plan.lod_needed) find_levels(plan, request, d, first, state);
+  }
+}
+
+// ---- one axis of one level
+
+/// The level that lanes read: `which` of the two, by lane or the same for all.
+struct LevelLanes {
+  AxisLanes axis[3];
+  VI row_pitch, slice_pitch;
+  VI origin;  ///< bytes, with the layer
+};
+
+HWY_INLINE VI lookup(const std::int32_t* table, VI level, bool one) {
+  return one ? splat(table[0]) : hn::GatherIndex(DI(), table, level);
+}
+
+/// `dims` axes; `origin` includes the face if `with_face`.
+HWY_INLINE LevelLanes load_level(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
+                                 int which, std::size_t first, bool with_face) {
+  const Plan& plan = p.plan;
+  const VI level = p.one_level ? splat(0) : hn::Load(DI(), state.level[which].lane + first);
+  const std::int32_t* const sizes[3] = {p.level.width, p.level.height, p.level.depth};
+  const bool has_offset = request.offset[0] || request.offset[1] || request.offset[2];
+  LevelLanes out;
+  for (std::uint32_t i = 0; i < plan.dims; ++i) {
+    AxisLanes& axis = out.axis[i];
+    axis.address = plan.address[i];
+    axis.pot = plan.pot[i];
+    axis.normalized = !plan.sampler->unnormalized;
+    axis.has_offset = has_offset;
+    axis.offset = request.offset[i] != nullptr ? load_ints(request.offset[i], first) : splat(0);
+    axis.size = lookup(sizes[i], level, p.one_level);
+    axis.size_float = lanes_int_to_float(axis.size);
+  }
+  out.row_pitch = lookup(p.level.row_pitch, level, p.one_level);
+  out.slice_pitch = plan.dims == 3 ? lookup(p.level.slice_pitch, level, p.one_level) : splat(0);
+  out.origin = lookup(p.level.offset, level, p.one_level);
+  if (plan.arrayed) out.origin = hn::Add(out.origin, hn::Load(DI(), state.layer_offset.lane + first));
+  if (with_face) {
+    const VI stride = splat(static_cast<std::int32_t>(plan.view->layer_stride));
+    out.origin = hn::Add(out.origin, hn::Mul(hn::Load(DI(), state.face.lane + first), stride));
+  }
+  return out;
+}
+
+/// Stores lanes first.. of a result component, active ones only.
+HWY_INLINE void store_lanes(VU value, base::LaneMask active, std::size_t first, base::WaveRegister& to) {
+  if (active == base::kAllLanes) {
+    hn::Store(value, DU(), to.lane + first);
+  } else {
+    hn::BlendedStore(value, lanes_mask_from_bits(DU(), active >> first), DU(), to.lane + first);
+  }
+}
+
+}  // namespace vitrine::texel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

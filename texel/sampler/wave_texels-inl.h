@@ -1,0 +1,174 @@
+// One texel per lane as values: words loaded one by one, converted by SIMD. The twin of fetch_texel.
+
+#include "texel/sampler/wave_block-inl.h"
+#include "texel/sampler/wave_fetch-inl.h"
+#include "texel/sampler/wave_state-inl.h"
+
+#if defined(VITRINE_TEXEL_WAVE_TEXELS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRINE_TEXEL_WAVE_TEXELS_INL_H_
+#undef VITRINE_TEXEL_WAVE_TEXELS_INL_H_
+#else
+#define VITRINE_TEXEL_WAVE_TEXELS_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::texel::HWY_NAMESPACE {
+
+/// Components R, G, B, A of a wave; only those that were asked for are valid.
+struct WaveTexels {
+  FloatLanes c[4];
+};
+
+/// Bit c: component c is wanted.
+using Components = std::uint32_t;
+
+/// Where the texels of one tap are.
+struct TexelPlaces {
+  IntLanes offset;  ///< bytes from the view's base: of the texel, or of its block
+  IntLanes inner;   ///< compressed: index inside the block
+};
+
+/// Stores where texels (x, y, z) of lanes first.. lie; x, y, z inside the level.
+HWY_INLINE void place_texels(const FormatDesc& format, const LevelLanes& level, std::uint32_t dims, VI x, VI y, VI z,
+                             std::size_t first, TexelPlaces& out) {
+  VI origin = level.origin;
+  if (format.is_compressed()) {
+    VI inner_x, inner_y = splat(0);
+    x = split_block(x, format.block_width, inner_x);
+    if (dims > 1) y = split_block(y, format.block_height, inner_y);
+    const VI inner = hn::Add(hn::Mul(inner_y, splat(static_cast<std::int32_t>(format.block_width))), inner_x);
+    hn::Store(inner, DI(), out.inner.lane + first);
+  }
+  if (dims > 1) origin = hn::Add(origin, hn::Mul(y, level.row_pitch));
+  if (dims > 2) origin = hn::Add(origin, hn::Mul(z, level.slice_pitch));
+  hn::Store(hn::Add(origin, hn::Mul(x, splat(static_cast<std::int32_t>(format.block_bytes)))), DI(),
+            out.offset.lane + first);
+}
+
+struct alignas(64) WordLanes {
+  std::uint32_t lane[base::kWaveWidth];
+};
+
+template <std::size_t kWords>
+HWY_INLINE void load_words(const std::byte* base, const IntLanes& offset, WordLanes words[4]) {
+  for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
+    std::uint32_t word[kWords];
+    std::memcpy(word, base + offset.lane[lane], sizeof(word));
+    for (std::size_t i = 0; i < kWords; ++i) words[i].lane[lane] = word[i];
+  }
+}
+
+template <Numeric kNumeric>
+inline HWY_NOINLINE void convert_words(const FormatDesc& format, const WordLanes words[4], Components wanted,
+                                       WaveTexels& out) {
+  constexpr bool kInteger = kNumeric == Numeric::kUint || kNumeric == Numeric::kSint;
+  for (std::size_t c = 0; c < 4; ++c) {
+    if ((wanted >> c & 1) == 0) continue;
+    float* to = out.c[c].lane;
+    const std::int8_t index = format.rgba[c];
+    if (index < 0) {
+      const VU one = kInteger ? hn::Set(DU(), 1u) : hn::Set(DU(), 0x3f800000u);
+      const VF missing = as_float(c == 3 ? one : hn::Zero(DU()));
+      for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) hn::Store(missing, DF(), to + i);
+      continue;
+    }
+    const Channel channel = format.channel[static_cast<std::size_t>(index)];
+    const std::uint32_t* from = words[channel.offset / 32].lane;
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
+      hn::Store(convert_field<kNumeric>(hn::Load(DU(), from + i), channel), DF(), to + i);
+    }
+  }
+}
+
+/// E5B9G9R9: mantissa * 2^(E - 24).
+inline HWY_NOINLINE void convert_shared_exponent(const WordLanes& words, WaveTexels& out) {
+  for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
+    const VU word = hn::Load(DU(), words.lane + i);
+    const VU exponent = hn::Add(hn::ShiftRight<27>(word), hn::Set(DU(), 103u));
+    const VF scale = as_float(hn::ShiftLeft<23>(exponent));
+    const auto mantissa = [&](int shift) {
+      const VU field = hn::And(hn::ShiftRightSame(word, shift), hn::Set(DU(), 511u));
+      return hn::Mul(lanes_int_to_float(hn::BitCast(DI(), field)), scale);
+    };
+    hn::Store(mantissa(0), DF(), out.c[0].lane + i);
+    hn::Store(mantissa(9), DF(), out.c[1].lane + i);
+    hn::Store(mantissa(18), DF(), out.c[2].lane + i);
+    hn::Store(splat(1.0f), DF(), out.c[3].lane + i);
+  }
+}
+
+inline HWY_NOINLINE void fetch_blocks(const ImageView& view, const TexelPlaces& places, base::LaneMask active,
+                                      WaveTexels& out) {
+  BlockCache& cache = block_cache();
+  base::for_each_lane(active, [&](std::size_t lane) {
+    const Texel& texel = cache.texels(*view.format, view.base + places.offset.lane[lane])[places.inner.lane[lane]];
+    for (std::size_t c = 0; c < 4; ++c) std::memcpy(&out.c[c].lane[lane], &texel[c], sizeof(float));
+  });
+}
+
+/// The texels at `places`. Compressed ones of active lanes only.
+inline HWY_NOINLINE void fetch_texels(const ImageView& view, const TexelPlaces& places, base::LaneMask active,
+                                      Components wanted, WaveTexels& out) {
+  const FormatDesc& format = *view.format;
+  if (format.is_compressed()) return fetch_blocks(view, places, active, out);
+  WordLanes words[4];
+  switch ((format.block_bytes + 3) / 4) {
+    case 1:
+      load_words<1>(view.base, places.offset, words);
+      break;
+    case 2:
+      load_words<2>(view.base, places.offset, words);
+      break;
+    case 3:
+      load_words<3>(view.base, places.offset, words);
+      break;
+    default:
+      load_words<4>(view.base, places.offset, words);
+  }
+  if (format.format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) return convert_shared_exponent(words[0], out);
+  switch (format.channel[0].numeric) {
+    case Numeric::kUnorm:
+      return convert_words<Numeric::kUnorm>(format, words, wanted, out);
+    case Numeric::kSnorm:
+      return convert_words<Numeric::kSnorm>(format, words, wanted, out);
+    case Numeric::kSrgb:
+      return convert_words<Numeric::kSrgb>(format, words, wanted, out);
+    case Numeric::kUfloat:
+      return convert_words<Numeric::kUfloat>(format, words, wanted, out);
+    case Numeric::kUint:
+      return convert_words<Numeric::kUint>(format, words, wanted, out);
+    case Numeric::kSint:
+      return convert_words<Numeric::kSint>(format, words, wanted, out);
+    default:
+      return convert_words<Numeric::kSfloat>(format, words, wanted, out);
+  }
+}
+
+/// Components of the format that the results need, through the view's mapping.
+inline Components wanted_components(const ImageView& view, const SampleResult& result) {
+  Components wanted = 0;
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (result[c] != nullptr && view.swizzle[c] < 4) wanted |= 1u << view.swizzle[c];
+  }
+  return wanted;
+}
+
+/// Results through the view's mapping.
+inline HWY_NOINLINE void store_texels(const ImageView& view, const WaveTexels& texels, base::LaneMask active,
+                                      const SampleResult& result) {
+  const VU one = hn::Set(DU(), view.format->is_integer() ? 1u : 0x3f800000u);
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (result[c] == nullptr) continue;
+    const std::uint8_t source = view.swizzle[c];
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DU())) {
+      VU value = source == 5 ? one : hn::Zero(DU());
+      if (source < 4) value = as_unsigned(hn::Load(DF(), texels.c[source].lane + i));
+      store_lanes(value, active, i, *result[c]);
+    }
+  }
+}
+
+}  // namespace vitrine::texel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
