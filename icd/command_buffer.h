@@ -3,7 +3,7 @@
 
 #include "icd/command_arena.h"
 #include "icd/commands.h"
-#include "icd/device.h"
+#include "icd/descriptors.h"
 
 namespace vitrine::icd {
 
@@ -21,7 +21,9 @@ struct CommandPool : Object<VkCommandPool, VK_OBJECT_TYPE_COMMAND_POOL> {
 enum class RecordState : std::uint8_t { kInitial, kRecording, kExecutable, kInvalid };
 
 struct CommandBuffer : DispatchableObject<VkCommandBuffer, VK_OBJECT_TYPE_COMMAND_BUFFER> {
-  CommandBuffer(const HostMemory& m, CommandPool& owner) : DispatchableObject(m), pool(owner), arena(owner.blocks) {}
+  CommandBuffer(const HostMemory& m, CommandPool& owner)
+      : DispatchableObject(m), pool(owner), arena(owner.blocks), pushed_sets(m) {}
+  ~CommandBuffer() { reset(); }
 
   CommandPool& pool;
   CommandBuffer* previous = nullptr;
@@ -34,6 +36,10 @@ struct CommandBuffer : DispatchableObject<VkCommandBuffer, VK_OBJECT_TYPE_COMMAN
   std::uint64_t cost = 0;
   std::uint64_t pass_pixels = 0;  ///< of the render pass being recorded; cost of its draws
   bool waits_for_host = false;    ///< holds vkCmdWaitEvents: whoever replays it may have to wait
+  /// Sets of push descriptors, in the arena: one for each time that descriptors were pushed.
+  Vector<DescriptorSet*> pushed_sets;
+  /// The last of them by bind point (compute last) and set number; null: nothing pushed.
+  std::array<std::array<DescriptorSet*, spirv::kMaxSets>, 2> current_push{};
 
   /// Back to the initial state; blocks return to the pool.
   void reset() noexcept;

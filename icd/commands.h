@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "icd/dynamic_state.h"
 #include "icd/vulkan_api.h"
 
 namespace vitrine::icd {
@@ -42,6 +43,8 @@ struct CmdBindVertexBuffers {
   std::uint32_t first;
   std::span<const Buffer* const> buffers;  ///< null: reads as out of bounds
   std::span<const VkDeviceSize> offsets;
+  std::span<const VkDeviceSize> sizes;    ///< empty: to the end
+  std::span<const VkDeviceSize> strides;  ///< empty: as they are
 };
 struct CmdBindIndexBuffer {
   const Buffer* buffer;
@@ -51,6 +54,7 @@ struct CmdBindIndexBuffer {
 struct CmdSetViewport {
   std::uint32_t first;
   std::span<const VkViewport> viewports;
+  bool sets_count;
 };
 struct CmdSetScissor {
   std::uint32_t first;
@@ -74,6 +78,33 @@ struct CmdSetStencil {
   VkStencilFaceFlags faces;
   std::uint32_t value;
 };
+struct CmdSetStencilOp {
+  VkStencilFaceFlags faces;
+  VkStencilOp fail, pass, depth_fail;
+  VkCompareOp compare;
+};
+/// A state that is one word.
+struct CmdSetValue {
+  DynamicState which;
+  std::uint32_t value;
+};
+struct CmdSetLineStipple {
+  std::uint32_t factor;
+  std::uint16_t pattern;
+};
+struct CmdSetColorWriteEnable {
+  ColorWrites writes;
+};
+/// One of kBlendEnable, kBlendEquation, kWriteMask for attachments from `first` on: the members that it names.
+struct CmdSetBlend {
+  DynamicState which;
+  std::uint32_t first;
+  std::span<const raster::BlendAttachment> attachments;
+};
+struct CmdSetVertexInput {
+  std::span<const VkVertexInputBindingDescription2EXT> bindings;
+  std::span<const VkVertexInputAttributeDescription2EXT> attributes;
+};
 
 // ---- work
 
@@ -85,6 +116,21 @@ struct CmdDrawIndexed {
   std::int32_t vertex_offset;
   std::uint32_t first_instance;
 };
+struct CmdDrawMulti {
+  std::span<const VkMultiDrawInfoEXT> draws;
+  std::uint32_t instance_count, first_instance;
+};
+struct CmdDrawMultiIndexed {
+  std::span<const VkMultiDrawIndexedInfoEXT> draws;
+  std::uint32_t instance_count, first_instance;
+};
+/// Draws, dispatches and clears of attachments have no effect while the word is zero (or, inverted, is not).
+struct CmdBeginConditionalRendering {
+  const Buffer* buffer;
+  VkDeviceSize offset;
+  bool inverted;
+};
+struct CmdEndConditionalRendering {};
 struct CmdDrawIndirect {
   const Buffer* buffer;
   VkDeviceSize offset;
@@ -231,15 +277,16 @@ struct CommandList {
   static constexpr std::size_t kCount = sizeof...(Ts);
 };
 
-using Commands =
-    CommandList<CmdBindPipeline, CmdBindDescriptorSets, CmdPushConstants, CmdBindVertexBuffers, CmdBindIndexBuffer,
-                CmdSetViewport, CmdSetScissor, CmdSetLineWidth, CmdSetDepthBias, CmdSetBlendConstants,
-                CmdSetDepthBounds, CmdSetStencil, CmdDraw, CmdDrawIndexed, CmdDrawIndirect, CmdDispatch,
-                CmdDispatchIndirect, CmdBeginRenderPass, CmdNextSubpass, CmdEndRenderPass, CmdBeginRendering,
-                CmdEndRendering, CmdClearAttachments, CmdExecuteCommands, CmdCopyBuffer, CmdCopyImage, CmdBlitImage,
-                CmdResolveImage, CmdCopyBufferToImage, CmdCopyImageToBuffer, CmdUpdateBuffer, CmdFillBuffer,
-                CmdClearColorImage, CmdClearDepthStencilImage, CmdPipelineBarrier, CmdSetEvent, CmdWaitEvents,
-                CmdBeginQuery, CmdEndQuery, CmdResetQueryPool, CmdWriteTimestamp, CmdCopyQueryPoolResults>;
+using Commands = CommandList<
+    CmdBindPipeline, CmdBindDescriptorSets, CmdPushConstants, CmdBindVertexBuffers, CmdBindIndexBuffer, CmdSetViewport,
+    CmdSetScissor, CmdSetLineWidth, CmdSetDepthBias, CmdSetBlendConstants, CmdSetDepthBounds, CmdSetStencil,
+    CmdSetStencilOp, CmdSetValue, CmdSetLineStipple, CmdSetColorWriteEnable, CmdSetBlend, CmdSetVertexInput, CmdDraw,
+    CmdDrawIndexed, CmdDrawMulti, CmdDrawMultiIndexed, CmdBeginConditionalRendering, CmdEndConditionalRendering,
+    CmdDrawIndirect, CmdDispatch, CmdDispatchIndirect, CmdBeginRenderPass, CmdNextSubpass, CmdEndRenderPass,
+    CmdBeginRendering, CmdEndRendering, CmdClearAttachments, CmdExecuteCommands, CmdCopyBuffer, CmdCopyImage,
+    CmdBlitImage, CmdResolveImage, CmdCopyBufferToImage, CmdCopyImageToBuffer, CmdUpdateBuffer, CmdFillBuffer,
+    CmdClearColorImage, CmdClearDepthStencilImage, CmdPipelineBarrier, CmdSetEvent, CmdWaitEvents, CmdBeginQuery,
+    CmdEndQuery, CmdResetQueryPool, CmdWriteTimestamp, CmdCopyQueryPoolResults>;
 
 namespace detail {
 

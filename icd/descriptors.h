@@ -18,7 +18,10 @@ struct SetBinding {
   std::uint32_t binding = 0;
   VkDescriptorType type = VK_DESCRIPTOR_TYPE_SAMPLER;
   VkShaderStageFlags stages = 0;
-  std::uint32_t count = 0;                                    ///< array elements; 0 is a hole
+  /// Array elements, or bytes of an inline uniform block (one slot); 0 is a hole. Of a binding with a variable count:
+  /// at most.
+  std::uint32_t count = 0;
+  VkDescriptorBindingFlags flags = 0;
   std::uint32_t first_slot = 0;                               ///< among the set's slots, or among its dynamic buffers
   const texel::Sampler* const* immutable_samplers = nullptr;  ///< `count` of them, or null
 };
@@ -26,6 +29,8 @@ struct SetBinding {
 inline bool is_dynamic(VkDescriptorType type) {
   return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
 }
+
+inline bool is_inline_block(VkDescriptorType type) { return type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK; }
 
 struct SetShape {
   explicit SetShape(const HostMemory& m) : bindings(m), samplers(m), sampler_pointers(m) {}
@@ -35,7 +40,17 @@ struct SetShape {
   Vector<const texel::Sampler*> sampler_pointers;
   std::uint32_t slot_count = 0;
   std::uint32_t dynamic_count = 0;
+  std::uint32_t inline_bytes = 0;  ///< of all inline uniform blocks, each aligned to kInlineBlockAlignment
+  VkDescriptorSetLayoutCreateFlags flags = 0;
+
+  /// The binding whose count each set chooses, or null.
+  const SetBinding* variable_binding() const {
+    const bool variable =
+        !bindings.empty() && (bindings.back().flags & VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT);
+    return variable ? &bindings.back() : nullptr;
+  }
 };
+inline constexpr std::uint32_t kInlineBlockAlignment = 16;
 
 struct DescriptorSetLayout : Object<VkDescriptorSetLayout, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT> {
   using Object::Object;
@@ -75,12 +90,29 @@ struct DescriptorSet : Object<VkDescriptorSet, VK_OBJECT_TYPE_DESCRIPTOR_SET> {
   using Object::Object;
 
   std::shared_ptr<const SetShape> shape;
-  DescriptorPool* pool = nullptr;
+  DescriptorPool* pool = nullptr;     ///< null: pushed, lies in a command buffer
+  std::uint32_t variable_count = 0;   ///< elements (or bytes) of the shape's variable binding
+  std::uint32_t slot_count = 0;       ///< without the elements that a variable binding does not have here
   DescriptorSet* previous = nullptr;  ///< the pool's list of live sets
   DescriptorSet* next = nullptr;
   spirv::Descriptor* slots = nullptr;
   DynamicBuffer* dynamic = nullptr;
+  std::byte* inline_data = nullptr;
+
+  /// Elements (or bytes) that this set has of a binding of its shape.
+  std::uint32_t count_of(const SetBinding& binding) const {
+    return &binding == shape->variable_binding() ? variable_count : binding.count;
+  }
 };
+
+/// Bytes of a set of this shape, and a set in that many bytes of memory: every descriptor null but for immutable
+/// samplers. `variable_count` as in DescriptorSet.
+std::size_t set_bytes(const SetShape& shape, std::uint32_t variable_count);
+DescriptorSet* construct_set(void* storage, const HostMemory& memory, const std::shared_ptr<const SetShape>& shape,
+                             std::uint32_t variable_count);
+
+/// vkUpdateDescriptorSets' writes, to `set` instead of dstSet.
+void write_descriptors(const VkWriteDescriptorSet& write, DescriptorSet& set);
 
 /// Counts what is allocated against what the application asked for at creation; memory itself is the heap's, so a pool
 /// never fragments.
@@ -95,6 +127,7 @@ struct DescriptorPool : Object<VkDescriptorPool, VK_OBJECT_TYPE_DESCRIPTOR_POOL>
   };
   Vector<Capacity> capacity;  ///< one per descriptor type of the pool
   std::uint32_t free_sets = 0;
+  std::uint32_t free_inline_blocks = 0;  ///< bindings of inline uniform blocks; their bytes are in `capacity`
   DescriptorSet* sets = nullptr;
 };
 

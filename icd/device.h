@@ -1,6 +1,7 @@
 // VkDevice and VkQueue: what every other object is made from.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 
 #include "icd/instance.h"
@@ -31,6 +32,7 @@ struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {
   FeatureSet features;      ///< enabled
   Queue queue;
   ShaderTable shaders;
+  std::atomic<std::uint64_t> next_private_data_slot = 1;
   std::shared_ptr<ReplayState> replay;  ///< made with the first command pool; used by whoever runs a batch of the queue
 
   /// Guards the states of fences, semaphores and events, and `lost` (icd/sync.h).

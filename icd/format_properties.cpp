@@ -6,6 +6,7 @@
 
 #include "icd/registry/registry.h"
 #include "icd/util.h"
+#include "texel/format.h"
 
 namespace vitrine::icd {
 namespace {
@@ -29,7 +30,8 @@ constexpr UsageRule kUsageRules[] = {
 constexpr VkImageUsageFlags kKnownUsages =
     VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
-    VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
+    VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT |
+    VK_IMAGE_USAGE_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT;
 
 constexpr VkImageCreateFlags kUnsupportedFlags =
     VK_IMAGE_CREATE_SPARSE_BINDING_BIT | VK_IMAGE_CREATE_SPARSE_RESIDENCY_BIT | VK_IMAGE_CREATE_SPARSE_ALIASED_BIT |
@@ -75,6 +77,25 @@ VkFormatProperties format_properties(VkFormat format) {
     if (claim.format == format) return claim.properties;
   }
   return {};
+}
+
+VkFormatFeatureFlags2 wide_features(VkFormat format, VkFormatFeatureFlags features) {
+  VkFormatFeatureFlags2 wide = features;
+  const std::span<const Feature> claimed = claimed_features();
+  const auto claims = [&](Feature f) { return std::find(claimed.begin(), claimed.end(), f) != claimed.end(); };
+  if (features & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) {
+    if (claims(Feature::shaderStorageImageReadWithoutFormat))
+      wide |= VK_FORMAT_FEATURE_2_STORAGE_READ_WITHOUT_FORMAT_BIT;
+    if (claims(Feature::shaderStorageImageWriteWithoutFormat)) {
+      wide |= VK_FORMAT_FEATURE_2_STORAGE_WRITE_WITHOUT_FORMAT_BIT;
+    }
+  }
+  // Comparing samplers work on what has a depth aspect.
+  const bool depth = texel::format_desc(format).aspects & VK_IMAGE_ASPECT_DEPTH_BIT;
+  if (depth && (features & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT)) {
+    wide |= VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT;
+  }
+  return wide;
 }
 
 VkResult image_format_properties(const VkPhysicalDeviceImageFormatInfo2& info, VkImageFormatProperties* out) {

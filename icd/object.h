@@ -13,32 +13,45 @@
 
 namespace vitrine::icd {
 
-/// Base of objects with non-dispatchable handles. The constructor takes the host memory that the object and everything
-/// in it comes from.
+struct ObjectNotes;
+
+/// What every object has, whatever its handle: the host memory that it and everything in it comes from, and what
+/// applications have attached to it (icd/object_notes.h).
+struct ObjectBase {
+  explicit ObjectBase(const HostMemory& m) : memory(m) {}
+  ObjectBase(const ObjectBase&) = delete;
+  ObjectBase& operator=(const ObjectBase&) = delete;
+  ~ObjectBase() {
+    if (notes) destroy_notes(*this);
+  }
+
+  HostMemory memory;
+  ObjectNotes* notes = nullptr;  ///< null: none
+
+ private:
+  static void destroy_notes(ObjectBase& object) noexcept;
+};
+
+/// Base of objects with non-dispatchable handles.
 template <class H, VkObjectType Type>
-struct Object {
+struct Object : ObjectBase {
   using Handle = H;
   static constexpr VkObjectType kType = Type;
 
-  explicit Object(const HostMemory& m) : memory(m) {}
-  Object(const Object&) = delete;
-  Object& operator=(const Object&) = delete;
+  explicit Object(const HostMemory& m) : ObjectBase(m) {}
+};
 
-  HostMemory memory;
+struct LoaderWord {
+  VK_LOADER_DATA loader;
 };
 
 /// Base of VkInstance, VkPhysicalDevice, VkDevice, VkQueue and VkCommandBuffer: the loader's word comes first.
 template <class H, VkObjectType Type>
-struct DispatchableObject {
+struct DispatchableObject : LoaderWord, ObjectBase {
   using Handle = H;
   static constexpr VkObjectType kType = Type;
 
-  explicit DispatchableObject(const HostMemory& m) : memory(m) { loader.loaderMagic = ICD_LOADER_MAGIC; }
-  DispatchableObject(const DispatchableObject&) = delete;
-  DispatchableObject& operator=(const DispatchableObject&) = delete;
-
-  VK_LOADER_DATA loader;
-  HostMemory memory;
+  explicit DispatchableObject(const HostMemory& m) : ObjectBase(m) { loader.loaderMagic = ICD_LOADER_MAGIC; }
 };
 
 template <class T>

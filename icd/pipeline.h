@@ -2,34 +2,33 @@
 #pragma once
 
 #include "icd/descriptors.h"
+#include "icd/dynamic_state.h"
 #include "icd/shader_cache.h"
 #include "raster/draw.h"
 
 namespace vitrine::icd {
 
-/// State that a pipeline leaves to commands, one bit each.
-enum DynamicStateBit : std::uint32_t {
-  kDynamicViewport = 1u << 0,
-  kDynamicScissor = 1u << 1,
-  kDynamicLineWidth = 1u << 2,
-  kDynamicDepthBias = 1u << 3,
-  kDynamicBlendConstants = 1u << 4,
-  kDynamicDepthBounds = 1u << 5,
-  kDynamicStencilCompareMask = 1u << 6,
-  kDynamicStencilWriteMask = 1u << 7,
-  kDynamicStencilReference = 1u << 8,
+/// A stage of a library, which is compiled when the library is linked: copies of what the application gave.
+struct LibraryStage {
+  explicit LibraryStage(const HostMemory& m) : words(m), entry_point(m), map(m), data(m) {}
+
+  VkShaderStageFlagBits stage = VK_SHADER_STAGE_VERTEX_BIT;
+  Vector<std::uint32_t> words;
+  String entry_point;
+  std::uint32_t subgroup_size = 0;  ///< required; 0: none is
+  Vector<VkSpecializationMapEntry> map;
+  Vector<std::byte> data;
 };
 
-struct VertexStream {
-  std::uint32_t stride = 0;
-  std::uint32_t divisor = 1;
-  bool per_instance = false;
-  bool used = false;
-};
+inline constexpr VkGraphicsPipelineLibraryFlagsEXT kAllPipelineParts =
+    VK_GRAPHICS_PIPELINE_LIBRARY_VERTEX_INPUT_INTERFACE_BIT_EXT |
+    VK_GRAPHICS_PIPELINE_LIBRARY_PRE_RASTERIZATION_SHADERS_BIT_EXT |
+    VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT |
+    VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT;
 
 /// Immutable after creation.
 struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
-  using Object::Object;
+  explicit Pipeline(const HostMemory& m) : Object(m), library_stages(m) {}
 
   VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS;
   std::shared_ptr<const PipelineLayoutShape> layout;
@@ -37,15 +36,32 @@ struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   std::shared_ptr<const CompiledShader> vertex;
   std::shared_ptr<const CompiledShader> fragment;  ///< may be null
   raster::State state;
-  std::uint32_t dynamic = 0;  ///< DynamicStateBit
-  std::array<VertexStream, raster::kMaxVertexBindings> streams{};
+  DynamicStates dynamic;
+  ColorWrites color_writes = kAllColorWrites;
+  bool clip_follows_clamp = true;  ///< depth clipping is off where depth clamping is on
+  VertexStreams streams{};
+  std::uint32_t live_colors = 0;  ///< bit i: there is a colour attachment i
+  /// Of a library: the parts that it has, and its stages, not yet compiled.
+  VkGraphicsPipelineLibraryFlagsEXT parts = 0;
+  Vector<LibraryStage> library_stages;
+  /// Without rasterization for good: there is no fragment stage.
+  bool never_rasterizes() const {
+    return state.rasterizer_discard && !dynamic.test(DynamicState::kRasterizerDiscardEnable);
+  }
   // compute
   std::shared_ptr<const CompiledShader> compute;
 };
 
 struct Subpass;
 
-/// Fills `state`, `dynamic` and `streams` from the create info; `subpass` tells which attachments there are.
-void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& info, const Subpass& subpass);
+/// Fills the state of `parts` from the create info; `subpass` tells which attachments there are.
+void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& info, const Subpass& subpass,
+                       VkGraphicsPipelineLibraryFlagsEXT parts);
+
+/// The parts that a create info itself has: all, unless it makes or links libraries.
+VkGraphicsPipelineLibraryFlagsEXT own_parts(const VkGraphicsPipelineCreateInfo& info);
+/// Takes over the parts and stages of a library.
+void link_library(Pipeline& pipeline, const Pipeline& library);
+LibraryStage copy_stage(const VkPipelineShaderStageCreateInfo& stage, const HostMemory& memory);
 
 }  // namespace vitrine::icd

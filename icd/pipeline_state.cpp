@@ -9,31 +9,6 @@
 namespace vitrine::icd {
 namespace {
 
-std::uint32_t dynamic_bit(VkDynamicState state) {
-  switch (state) {
-    case VK_DYNAMIC_STATE_VIEWPORT:
-      return kDynamicViewport;
-    case VK_DYNAMIC_STATE_SCISSOR:
-      return kDynamicScissor;
-    case VK_DYNAMIC_STATE_LINE_WIDTH:
-      return kDynamicLineWidth;
-    case VK_DYNAMIC_STATE_DEPTH_BIAS:
-      return kDynamicDepthBias;
-    case VK_DYNAMIC_STATE_BLEND_CONSTANTS:
-      return kDynamicBlendConstants;
-    case VK_DYNAMIC_STATE_DEPTH_BOUNDS:
-      return kDynamicDepthBounds;
-    case VK_DYNAMIC_STATE_STENCIL_COMPARE_MASK:
-      return kDynamicStencilCompareMask;
-    case VK_DYNAMIC_STATE_STENCIL_WRITE_MASK:
-      return kDynamicStencilWriteMask;
-    case VK_DYNAMIC_STATE_STENCIL_REFERENCE:
-      return kDynamicStencilReference;
-    default:
-      return 0;
-  }
-}
-
 void fill_vertex_input(Pipeline& pipeline, const VkPipelineVertexInputStateCreateInfo& info) {
   for (std::uint32_t i = 0; i < info.vertexBindingDescriptionCount; ++i) {
     const VkVertexInputBindingDescription& b = info.pVertexBindingDescriptions[i];
@@ -55,20 +30,43 @@ void fill_vertex_input(Pipeline& pipeline, const VkPipelineVertexInputStateCreat
 }
 
 /// What is dynamic is ignored here, and may be a dangling pointer.
-void fill_viewports(raster::State& state, const VkPipelineViewportStateCreateInfo& info, std::uint32_t dynamic) {
+void fill_viewports(raster::State& state, const VkPipelineViewportStateCreateInfo& info, const DynamicStates& dynamic) {
   state.viewport_count = std::min(info.viewportCount, raster::kMaxViewports);
   const std::uint32_t scissors = std::min(info.scissorCount, raster::kMaxViewports);
-  if (!(dynamic & kDynamicViewport)) std::copy_n(info.pViewports, state.viewport_count, state.viewport.begin());
-  if (!(dynamic & kDynamicScissor)) std::copy_n(info.pScissors, scissors, state.scissor.begin());
-  if (const auto* control = find_in_chain<VkPipelineViewportDepthClipControlCreateInfoEXT>(info.pNext))
+  if (!dynamic.test(DynamicState::kViewport) && !dynamic.test(DynamicState::kViewportCount)) {
+    std::copy_n(info.pViewports, state.viewport_count, state.viewport.begin());
+  }
+  if (!dynamic.test(DynamicState::kScissor) && !dynamic.test(DynamicState::kScissorCount)) {
+    std::copy_n(info.pScissors, scissors, state.scissor.begin());
+  }
+  if (const auto* control = find_in_chain<VkPipelineViewportDepthClipControlCreateInfoEXT>(info.pNext)) {
     state.negative_one_to_one = control->negativeOneToOne;
+  }
 }
 
-void fill_rasterization(raster::State& state, const VkPipelineRasterizationStateCreateInfo& info) {
+void fill_lines(raster::State& state, const VkPipelineRasterizationLineStateCreateInfoEXT& info) {
+  state.line_mode = info.lineRasterizationMode;
+  state.line_stipple = info.stippledLineEnable;
+  state.line_stipple_factor = info.lineStippleFactor;
+  state.line_stipple_pattern = info.lineStipplePattern;
+}
+
+void fill_rasterization(Pipeline& pipeline, const VkPipelineRasterizationStateCreateInfo& info) {
+  raster::State& state = pipeline.state;
   state.rasterizer_discard = info.rasterizerDiscardEnable;
   state.depth_clamp = info.depthClampEnable;
-  const auto* clip = find_in_chain<VkPipelineRasterizationDepthClipStateCreateInfoEXT>(info.pNext);
-  state.depth_clip = clip ? clip->depthClipEnable : !info.depthClampEnable;
+  state.depth_clip = !info.depthClampEnable;
+  if (const auto* clip = find_in_chain<VkPipelineRasterizationDepthClipStateCreateInfoEXT>(info.pNext)) {
+    state.depth_clip = clip->depthClipEnable;
+    pipeline.clip_follows_clamp = false;
+  }
+  if (pipeline.dynamic.test(DynamicState::kDepthClipEnable)) pipeline.clip_follows_clamp = false;
+  if (const auto* mode = find_in_chain<VkPipelineRasterizationProvokingVertexStateCreateInfoEXT>(info.pNext)) {
+    state.provoking_vertex_last = mode->provokingVertexMode == VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
+  }
+  if (const auto* lines = find_in_chain<VkPipelineRasterizationLineStateCreateInfoEXT>(info.pNext)) {
+    fill_lines(state, *lines);
+  }
   state.polygon_mode = info.polygonMode;
   state.cull_mode = info.cullMode;
   state.front_face = info.frontFace;
@@ -77,14 +75,6 @@ void fill_rasterization(raster::State& state, const VkPipelineRasterizationState
   state.depth_bias_clamp = info.depthBiasClamp;
   state.depth_bias_slope = info.depthBiasSlopeFactor;
   state.line_width = info.lineWidth;
-  if (const auto* vertex = find_in_chain<VkPipelineRasterizationProvokingVertexStateCreateInfoEXT>(info.pNext))
-    state.provoking_vertex_last = vertex->provokingVertexMode == VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
-  if (const auto* line = find_in_chain<VkPipelineRasterizationLineStateCreateInfoEXT>(info.pNext)) {
-    state.line_mode = line->lineRasterizationMode;
-    state.line_stipple = line->stippledLineEnable;
-    state.line_stipple_factor = line->lineStippleFactor;
-    state.line_stipple_pattern = line->lineStipplePattern;
-  }
 }
 
 void fill_multisample(raster::State& state, const VkPipelineMultisampleStateCreateInfo& info) {
@@ -107,8 +97,12 @@ raster::StencilFace stencil_face(const VkStencilOpState& s) {
 }
 
 void fill_depth_stencil(raster::State& state, const VkPipelineDepthStencilStateCreateInfo& info) {
+  constexpr VkPipelineDepthStencilStateCreateFlags kOrdered =
+      VK_PIPELINE_DEPTH_STENCIL_STATE_CREATE_RASTERIZATION_ORDER_ATTACHMENT_DEPTH_ACCESS_BIT_EXT |
+      VK_PIPELINE_DEPTH_STENCIL_STATE_CREATE_RASTERIZATION_ORDER_ATTACHMENT_STENCIL_ACCESS_BIT_EXT;
+  if (info.flags & kOrdered) state.ordered_attachment_access = true;
   state.depth_test = info.depthTestEnable;
-  state.depth_write = info.depthTestEnable && info.depthWriteEnable;
+  state.depth_write = info.depthWriteEnable;
   state.depth_compare = info.depthCompareOp;
   state.depth_bounds_test = info.depthBoundsTestEnable;
   state.min_depth_bounds = info.minDepthBounds;
@@ -118,41 +112,81 @@ void fill_depth_stencil(raster::State& state, const VkPipelineDepthStencilStateC
   state.back = stencil_face(info.back);
 }
 
-void fill_blend(raster::State& state, const VkPipelineColorBlendStateCreateInfo& info) {
+void fill_blend(Pipeline& pipeline, const VkPipelineColorBlendStateCreateInfo& info) {
+  raster::State& state = pipeline.state;
+  if (info.flags & VK_PIPELINE_COLOR_BLEND_STATE_CREATE_RASTERIZATION_ORDER_ATTACHMENT_ACCESS_BIT_EXT) {
+    state.ordered_attachment_access = true;
+  }
   state.logic_op_enable = info.logicOpEnable;
   state.logic_op = info.logicOp;
   std::copy_n(info.blendConstants, 4, state.blend_constants.begin());
-  for (std::uint32_t i = 0; i < std::min(info.attachmentCount, raster::kMaxColorAttachments); ++i) {
+  if (const auto* writes = find_in_chain<VkPipelineColorWriteCreateInfoEXT>(info.pNext)) {
+    for (std::uint32_t i = 0; i < std::min(writes->attachmentCount, raster::kMaxColorAttachments); ++i) {
+      if (!writes->pColorWriteEnables[i]) pipeline.color_writes &= ~(1u << i);
+    }
+  }
+  // Null where all of it is dynamic.
+  for (std::uint32_t i = 0; info.pAttachments && i < std::min(info.attachmentCount, raster::kMaxColorAttachments);
+       ++i) {
     const VkPipelineColorBlendAttachmentState& a = info.pAttachments[i];
     state.blend[i] = {a.blendEnable != VK_FALSE, a.srcColorBlendFactor, a.dstColorBlendFactor, a.srcAlphaBlendFactor,
                       a.dstAlphaBlendFactor,     a.colorBlendOp,        a.alphaBlendOp,        a.colorWriteMask};
   }
 }
 
-bool has_color(const Subpass& subpass) {
-  return std::any_of(subpass.colors.begin(), subpass.colors.end(),
-                     [](std::uint32_t a) { return a != VK_ATTACHMENT_UNUSED; });
+/// States that the info leaves to commands, of these parts: of others it has no say.
+DynamicStates dynamic_states(const VkPipelineDynamicStateCreateInfo* info, VkGraphicsPipelineLibraryFlagsEXT parts) {
+  DynamicStates states;
+  for (std::uint32_t i = 0; info && i < info->dynamicStateCount; ++i) {
+    const DynamicState state = dynamic_state_of(info->pDynamicStates[i]);
+    if (state != DynamicState::kCount && (part_of(state) & parts)) states.set(state);
+  }
+  return states;
+}
+
+/// Whether pDepthStencilState counts: only the output part knows the attachments of dynamic rendering.
+bool has_depth_stencil(const VkGraphicsPipelineCreateInfo& info, const Subpass& subpass,
+                       VkGraphicsPipelineLibraryFlagsEXT parts) {
+  if (!info.pDepthStencilState) return false;
+  const bool knows = info.renderPass || (parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT);
+  return !knows || subpass.depth_stencil != VK_ATTACHMENT_UNUSED;
+}
+
+std::uint32_t live_colors(const Subpass& subpass) {
+  std::uint32_t live = 0;
+  for (std::size_t i = 0; i < std::min<std::size_t>(subpass.colors.size(), raster::kMaxColorAttachments); ++i) {
+    if (subpass.colors[i] != VK_ATTACHMENT_UNUSED) live |= 1u << i;
+  }
+  return live;
 }
 
 }  // namespace
 
-void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& info, const Subpass& subpass) {
+void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& info, const Subpass& subpass,
+                       VkGraphicsPipelineLibraryFlagsEXT parts) {
   raster::State& state = pipeline.state;
-  if (info.pDynamicState) {
-    for (std::uint32_t i = 0; i < info.pDynamicState->dynamicStateCount; ++i) {
-      pipeline.dynamic |= dynamic_bit(info.pDynamicState->pDynamicStates[i]);
+  pipeline.parts |= parts;
+  pipeline.dynamic |= dynamic_states(info.pDynamicState, parts);
+  // Structures may be missing whose members are all dynamic.
+  if (parts & VK_GRAPHICS_PIPELINE_LIBRARY_VERTEX_INPUT_INTERFACE_BIT_EXT) {
+    if (!pipeline.dynamic.test(DynamicState::kVertexInput)) fill_vertex_input(pipeline, *info.pVertexInputState);
+    if (const VkPipelineInputAssemblyStateCreateInfo* assembly = info.pInputAssemblyState) {
+      state.topology = assembly->topology;
+      state.primitive_restart = assembly->primitiveRestartEnable;
     }
   }
-  fill_vertex_input(pipeline, *info.pVertexInputState);
-  state.topology = info.pInputAssemblyState->topology;
-  state.primitive_restart = info.pInputAssemblyState->primitiveRestartEnable;
-  fill_rasterization(state, *info.pRasterizationState);
+  const bool before = parts & VK_GRAPHICS_PIPELINE_LIBRARY_PRE_RASTERIZATION_SHADERS_BIT_EXT;
+  if (before && info.pRasterizationState) fill_rasterization(pipeline, *info.pRasterizationState);
   // Without rasterization, or without the attachments, the rest may be dangling pointers.
-  if (state.rasterizer_discard) return;
-  fill_viewports(state, *info.pViewportState, pipeline.dynamic);
-  fill_multisample(state, *info.pMultisampleState);
-  if (subpass.depth_stencil != VK_ATTACHMENT_UNUSED) fill_depth_stencil(state, *info.pDepthStencilState);
-  if (has_color(subpass)) fill_blend(state, *info.pColorBlendState);
+  if (pipeline.never_rasterizes()) return;
+  if (before && info.pViewportState) fill_viewports(state, *info.pViewportState, pipeline.dynamic);
+  const bool shader = parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT;
+  const bool output = parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT;
+  if ((shader || output) && info.pMultisampleState) fill_multisample(state, *info.pMultisampleState);
+  if (shader && has_depth_stencil(info, subpass, parts)) fill_depth_stencil(state, *info.pDepthStencilState);
+  if (!output) return;
+  pipeline.live_colors = live_colors(subpass);
+  if (pipeline.live_colors && info.pColorBlendState) fill_blend(pipeline, *info.pColorBlendState);
 }
 
 }  // namespace vitrine::icd

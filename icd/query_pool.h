@@ -23,6 +23,9 @@ struct QueryPool : Object<VkQueryPool, VK_OBJECT_TYPE_QUERY_POOL> {
   std::atomic<std::uint64_t>* counters_of(std::uint32_t query) const { return counters + std::size_t{query} * stride; }
 };
 
+/// What timestamps are: CLOCK_MONOTONIC.
+std::uint64_t monotonic_nanoseconds();
+
 /// Sets the counters of a range to zero and the queries unavailable.
 void reset_queries(QueryPool& pool, std::uint32_t first, std::uint32_t count);
 

@@ -62,9 +62,9 @@ std::uint32_t subgroup_size(const VkPipelineShaderStageCreateInfo& stage) {
 
 ShaderKey make_key(const StageRequest& request) {
   const VkPipelineShaderStageCreateInfo& stage = *request.stage;
-  const ShaderModule& module = from_handle<ShaderModule>(stage.module);
+  const std::span<const std::uint32_t> words = words_of(stage);
   KeyBuilder key;
-  key.add(module.words.data(), module.words.size() * sizeof(std::uint32_t));
+  key.add(words.data(), words.size_bytes());
   key.add(stage.stage);
   key.add(stage.pName, std::strlen(stage.pName));
   key.add(request.live_color_outputs);
@@ -118,31 +118,42 @@ std::shared_ptr<const CompiledShader> add_shader(ShaderTable& table, const Shade
   return shader;
 }
 
-void keep(PipelineCache& cache, const std::shared_ptr<const CompiledShader>& shader) {
+/// Whether the cache had it already.
+bool keep(PipelineCache& cache, const std::shared_ptr<const CompiledShader>& shader) {
   const std::lock_guard lock(cache.mutex);
-  if (std::find(cache.kept.begin(), cache.kept.end(), shader) == cache.kept.end()) cache.kept.push_back(shader);
+  if (std::find(cache.kept.begin(), cache.kept.end(), shader) != cache.kept.end()) return true;
+  cache.kept.push_back(shader);
+  return false;
 }
 
 }  // namespace
 
-std::shared_ptr<const CompiledShader> compile_stage(Device& device, PipelineCache* cache, const StageRequest& request,
-                                                    std::string& problem) {
+std::span<const std::uint32_t> words_of(const VkPipelineShaderStageCreateInfo& stage) {
+  if (stage.module) return from_handle<ShaderModule>(stage.module).words;
+  const auto* info = find_in_chain<VkShaderModuleCreateInfo>(stage.pNext);
+  if (!info) return {};
+  return {info->pCode, info->codeSize / sizeof(std::uint32_t)};
+}
+
+StageResult compile_stage(Device& device, PipelineCache* cache, const StageRequest& request) {
+  StageResult out;
   const ShaderKey key = make_key(request);
-  std::shared_ptr<const CompiledShader> shader = find_alive(device.shaders, key);
-  if (!shader) {
-    const ShaderModule& module = from_handle<ShaderModule>(request.stage->module);
-    base::Result<std::unique_ptr<spirv::Shader>> result = spirv::compile(module.words, make_options(request));
+  out.shader = find_alive(device.shaders, key);
+  if (!out.shader) {
+    if (!request.may_compile) return out;
+    base::Result<std::unique_ptr<spirv::Shader>> result =
+        spirv::compile(words_of(*request.stage), make_options(request));
     if (!result) {
-      problem = result.message();
-      return nullptr;
+      out.problem = result.message();
+      return out;
     }
     const auto compiled = std::allocate_shared<CompiledShader>(HostAllocator<CompiledShader>(device.memory));
     compiled->shader = result.take();
     compiled->layout = request.layout;
-    shader = add_shader(device.shaders, key, compiled);
+    out.shader = add_shader(device.shaders, key, compiled);
   }
-  if (cache) keep(*cache, shader);
-  return shader;
+  if (cache) out.was_in_cache = keep(*cache, out.shader);
+  return out;
 }
 
 }  // namespace vitrine::icd

@@ -21,11 +21,17 @@ struct StageRequest {
   const VkPipelineShaderStageCreateInfo* stage = nullptr;
   std::shared_ptr<const PipelineLayoutShape> layout;
   std::uint32_t live_color_outputs = 0xff;
+  bool may_compile = true;  ///< false: only what has been compiled before
 };
 
-/// The compiled stage, from the device's table or new. Null if the shader is invalid or not covered: `problem` then
-/// says why. `cache` may be null.
-std::shared_ptr<const CompiledShader> compile_stage(Device& device, PipelineCache* cache, const StageRequest& request,
-                                                    std::string& problem);
+/// What becomes of a request.
+struct StageResult {
+  std::shared_ptr<const CompiledShader> shader;  ///< null: not compiled
+  std::string problem;                           ///< why not: invalid or not covered; empty: it may not be compiled
+  bool was_in_cache = false;                     ///< in the application's
+};
+
+/// The compiled stage, from the device's table or new. `cache` may be null.
+StageResult compile_stage(Device& device, PipelineCache* cache, const StageRequest& request);
 
 }  // namespace vitrine::icd

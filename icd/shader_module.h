@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <mutex>
+#include <span>
 
 #include "icd/object.h"
 
@@ -13,6 +14,9 @@ struct ShaderModule : Object<VkShaderModule, VK_OBJECT_TYPE_SHADER_MODULE> {
   explicit ShaderModule(const HostMemory& m) : Object(m), words(m) {}
   Vector<std::uint32_t> words;
 };
+
+/// The words of a stage: its module's, or those in the VkShaderModuleCreateInfo that stands for one.
+std::span<const std::uint32_t> words_of(const VkPipelineShaderStageCreateInfo& stage);
 
 struct CompiledShader;
 

@@ -83,6 +83,8 @@ struct State {
   float min_sample_shading = 0;
   std::uint32_t sample_mask = ~0u;
   bool alpha_to_coverage = false, alpha_to_one = false;
+  /// Fragments see in input attachments what earlier primitives of the draw wrote.
+  bool ordered_attachment_access = false;
   // depth and stencil
   bool depth_test = false, depth_write = false, depth_bounds_test = false, stencil_test = false;
   VkCompareOp depth_compare = VK_COMPARE_OP_ALWAYS;

@@ -324,7 +324,8 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   if (!make_tile_edges(primitive, worker.target.x, worker.target.y, plan.raster_samples, edges)) return;
   const PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
-  if (plan.in_order && worker.wave.quads != 0) shade_wave(worker, worker.wave);
+  const bool in_order = plan.in_order || plan.state->ordered_attachment_access;
+  if (in_order && worker.wave.quads != 0) shade_wave(worker, worker.wave);
   const BlockWalk walk{worker, primitive, edges, rect};
   const int bx0 = rect.x0 / kBlockSize, bx1 = rect.x1 / kBlockSize;
   const int by0 = rect.y0 / kBlockSize, by1 = rect.y1 / kBlockSize;

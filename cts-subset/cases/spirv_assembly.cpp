@@ -7,12 +7,13 @@ namespace vitrine::cts {
 namespace {
 
 /// Runs 64 invocations of a body between buffers `in` (uint[]) and `out` (uint[]); %x is the input, %r must be set.
-void run_body(Run& run, const std::string& body, const std::string& types = "", const std::string& capabilities = "") {
+void run_body(Run& run, const std::string& body, const std::string& types = "", const std::string& capabilities = "",
+              const std::string& mode = "OpExecutionMode %main LocalSize 64 1 1") {
   const std::string text = "OpCapability Shader\n" + capabilities + R"(
 %glsl = OpExtInstImport "GLSL.std.450"
 OpMemoryModel Logical GLSL450
 OpEntryPoint GLCompute %main "main" %id
-OpExecutionMode %main LocalSize 64 1 1
+)" + mode + R"(
 OpDecorate %id BuiltIn GlobalInvocationId
 OpDecorate %array ArrayStride 4
 OpMemberDecorate %block 0 Offset 0
@@ -85,6 +86,24 @@ CTS_CASE("spirv_assembly", "vector_shuffle_and_insert") {
 %h = OpIAdd %uint %d %e
 %r = OpBitwiseXor %uint %h %g
 )");
+}
+
+/// Instructions of unknown non-semantic sets mean nothing, wherever they are.
+CTS_CASE("spirv_assembly", "non_semantic_info") {
+  run.require(run.gpu.has("VK_KHR_shader_non_semantic_info"), "VK_KHR_shader_non_semantic_info");
+  run_body(run, R"(
+%note = OpExtInst %void %notes 12 %x %u1
+%r = OpIMul %uint %x %u5
+%other = OpExtInst %void %notes 7 %r
+)",
+           "%global = OpExtInst %void %notes 3 %u1\n",
+           "OpExtension \"SPV_KHR_non_semantic_info\"\n%notes = OpExtInstImport \"NonSemantic.Nobody.Knows\"\n");
+}
+
+CTS_CASE("spirv_assembly", "local_size_id") {
+  run.require(run.gpu.extension_features.maintenance4.maintenance4, "maintenance4");
+  run_body(run, "%r = OpIAdd %uint %x %n\n", "%size = OpSpecConstant %uint 64\n", "; target: vulkan1.1\n",
+           "OpExecutionModeId %main LocalSizeId %size %u1 %u1\nOpDecorate %size SpecId 9");
 }
 
 CTS_CASE("spirv_assembly", "phi_swap") {

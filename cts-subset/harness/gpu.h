@@ -26,66 +26,98 @@ void check(VkResult result, const char* call);
 /// Feature structures of extensions that cases use: member, structure, its sType, the extension that brings it. A
 /// device gets every feature that it offers, of every extension here that it offers.
 #define CTS_EXTENSION_FEATURES(X)                                                                                      \
-  X(multiview, VkPhysicalDeviceMultiviewFeatures, MULTIVIEW_FEATURES, "VK_KHR_multiview")                              \
-  X(imageless_framebuffer, VkPhysicalDeviceImagelessFramebufferFeatures, IMAGELESS_FRAMEBUFFER_FEATURES,               \
-    "VK_KHR_imageless_framebuffer")                                                                                    \
-  X(dynamic_rendering, VkPhysicalDeviceDynamicRenderingFeatures, DYNAMIC_RENDERING_FEATURES,                           \
-    "VK_KHR_dynamic_rendering")                                                                                        \
-  X(synchronization2, VkPhysicalDeviceSynchronization2Features, SYNCHRONIZATION_2_FEATURES, "VK_KHR_synchronization2") \
-  X(timeline_semaphore, VkPhysicalDeviceTimelineSemaphoreFeatures, TIMELINE_SEMAPHORE_FEATURES,                        \
-    "VK_KHR_timeline_semaphore")                                                                                       \
-  X(separate_depth_stencil_layouts, VkPhysicalDeviceSeparateDepthStencilLayoutsFeatures,                               \
-    SEPARATE_DEPTH_STENCIL_LAYOUTS_FEATURES, "VK_KHR_separate_depth_stencil_layouts")                                  \
-  X(uniform_buffer_standard_layout, VkPhysicalDeviceUniformBufferStandardLayoutFeatures,                               \
-    UNIFORM_BUFFER_STANDARD_LAYOUT_FEATURES, "VK_KHR_uniform_buffer_standard_layout")                                  \
-  X(scalar_block_layout, VkPhysicalDeviceScalarBlockLayoutFeatures, SCALAR_BLOCK_LAYOUT_FEATURES,                      \
-    "VK_EXT_scalar_block_layout")                                                                                      \
-  X(draw_parameters, VkPhysicalDeviceShaderDrawParametersFeatures, SHADER_DRAW_PARAMETERS_FEATURES,                    \
-    "VK_KHR_shader_draw_parameters")                                                                                   \
-  X(variable_pointers, VkPhysicalDeviceVariablePointersFeatures, VARIABLE_POINTERS_FEATURES,                           \
-    "VK_KHR_variable_pointers")                                                                                        \
   X(atomic_float, VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, SHADER_ATOMIC_FLOAT_FEATURES_EXT,                      \
     "VK_EXT_shader_atomic_float")                                                                                      \
   X(atomic_float2, VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, SHADER_ATOMIC_FLOAT_2_FEATURES_EXT,                  \
     "VK_EXT_shader_atomic_float2")                                                                                     \
-  X(shader_clock, VkPhysicalDeviceShaderClockFeaturesKHR, SHADER_CLOCK_FEATURES_KHR, "VK_KHR_shader_clock")            \
-  X(demote, VkPhysicalDeviceShaderDemoteToHelperInvocationFeatures, SHADER_DEMOTE_TO_HELPER_INVOCATION_FEATURES,       \
-    "VK_EXT_shader_demote_to_helper_invocation")                                                                       \
-  X(terminate, VkPhysicalDeviceShaderTerminateInvocationFeatures, SHADER_TERMINATE_INVOCATION_FEATURES,                \
-    "VK_KHR_shader_terminate_invocation")                                                                              \
-  X(memory_model, VkPhysicalDeviceVulkanMemoryModelFeatures, VULKAN_MEMORY_MODEL_FEATURES,                             \
-    "VK_KHR_vulkan_memory_model")                                                                                      \
-  X(subgroup_size, VkPhysicalDeviceSubgroupSizeControlFeatures, SUBGROUP_SIZE_CONTROL_FEATURES,                        \
-    "VK_EXT_subgroup_size_control")                                                                                    \
   X(buffer_address, VkPhysicalDeviceBufferDeviceAddressFeatures, BUFFER_DEVICE_ADDRESS_FEATURES,                       \
     "VK_KHR_buffer_device_address")                                                                                    \
-  X(image_robustness, VkPhysicalDeviceImageRobustnessFeatures, IMAGE_ROBUSTNESS_FEATURES, "VK_EXT_image_robustness")   \
-  X(host_query_reset, VkPhysicalDeviceHostQueryResetFeatures, HOST_QUERY_RESET_FEATURES, "VK_EXT_host_query_reset")    \
-  X(provoking_vertex, VkPhysicalDeviceProvokingVertexFeaturesEXT, PROVOKING_VERTEX_FEATURES_EXT,                       \
-    "VK_EXT_provoking_vertex")                                                                                         \
-  X(depth_clip_enable, VkPhysicalDeviceDepthClipEnableFeaturesEXT, DEPTH_CLIP_ENABLE_FEATURES_EXT,                     \
-    "VK_EXT_depth_clip_enable")                                                                                        \
+  X(color_write_enable, VkPhysicalDeviceColorWriteEnableFeaturesEXT, COLOR_WRITE_ENABLE_FEATURES_EXT,                  \
+    "VK_EXT_color_write_enable")                                                                                       \
+  X(conditional_rendering, VkPhysicalDeviceConditionalRenderingFeaturesEXT, CONDITIONAL_RENDERING_FEATURES_EXT,        \
+    "VK_EXT_conditional_rendering")                                                                                    \
+  X(demote, VkPhysicalDeviceShaderDemoteToHelperInvocationFeatures, SHADER_DEMOTE_TO_HELPER_INVOCATION_FEATURES,       \
+    "VK_EXT_shader_demote_to_helper_invocation")                                                                       \
   X(depth_clip_control, VkPhysicalDeviceDepthClipControlFeaturesEXT, DEPTH_CLIP_CONTROL_FEATURES_EXT,                  \
     "VK_EXT_depth_clip_control")                                                                                       \
+  X(depth_clip_enable, VkPhysicalDeviceDepthClipEnableFeaturesEXT, DEPTH_CLIP_ENABLE_FEATURES_EXT,                     \
+    "VK_EXT_depth_clip_enable")                                                                                        \
+  X(descriptor_indexing, VkPhysicalDeviceDescriptorIndexingFeatures, DESCRIPTOR_INDEXING_FEATURES,                     \
+    "VK_EXT_descriptor_indexing")                                                                                      \
+  X(attachment_feedback_loop, VkPhysicalDeviceAttachmentFeedbackLoopLayoutFeaturesEXT,                                 \
+    ATTACHMENT_FEEDBACK_LOOP_LAYOUT_FEATURES_EXT, "VK_EXT_attachment_feedback_loop_layout")                            \
+  X(rasterization_order, VkPhysicalDeviceRasterizationOrderAttachmentAccessFeaturesEXT,                                \
+    RASTERIZATION_ORDER_ATTACHMENT_ACCESS_FEATURES_EXT, "VK_EXT_rasterization_order_attachment_access")                \
+  X(draw_parameters, VkPhysicalDeviceShaderDrawParametersFeatures, SHADER_DRAW_PARAMETERS_FEATURES,                    \
+    "VK_KHR_shader_draw_parameters")                                                                                   \
+  X(dynamic_rendering, VkPhysicalDeviceDynamicRenderingFeatures, DYNAMIC_RENDERING_FEATURES,                           \
+    "VK_KHR_dynamic_rendering")                                                                                        \
+  X(extended_dynamic_state, VkPhysicalDeviceExtendedDynamicStateFeaturesEXT, EXTENDED_DYNAMIC_STATE_FEATURES_EXT,      \
+    "VK_EXT_extended_dynamic_state")                                                                                   \
+  X(extended_dynamic_state2, VkPhysicalDeviceExtendedDynamicState2FeaturesEXT, EXTENDED_DYNAMIC_STATE_2_FEATURES_EXT,  \
+    "VK_EXT_extended_dynamic_state2")                                                                                  \
+  X(extended_dynamic_state3, VkPhysicalDeviceExtendedDynamicState3FeaturesEXT, EXTENDED_DYNAMIC_STATE_3_FEATURES_EXT,  \
+    "VK_EXT_extended_dynamic_state3")                                                                                  \
+  X(graphics_pipeline_library, VkPhysicalDeviceGraphicsPipelineLibraryFeaturesEXT,                                     \
+    GRAPHICS_PIPELINE_LIBRARY_FEATURES_EXT, "VK_EXT_graphics_pipeline_library")                                        \
+  X(host_query_reset, VkPhysicalDeviceHostQueryResetFeatures, HOST_QUERY_RESET_FEATURES, "VK_EXT_host_query_reset")    \
+  X(image_robustness, VkPhysicalDeviceImageRobustnessFeatures, IMAGE_ROBUSTNESS_FEATURES, "VK_EXT_image_robustness")   \
+  X(imageless_framebuffer, VkPhysicalDeviceImagelessFramebufferFeatures, IMAGELESS_FRAMEBUFFER_FEATURES,               \
+    "VK_KHR_imageless_framebuffer")                                                                                    \
+  X(index_type_uint8, VkPhysicalDeviceIndexTypeUint8FeaturesEXT, INDEX_TYPE_UINT8_FEATURES_EXT,                        \
+    "VK_EXT_index_type_uint8")                                                                                         \
+  X(inline_uniform_block, VkPhysicalDeviceInlineUniformBlockFeatures, INLINE_UNIFORM_BLOCK_FEATURES,                   \
+    "VK_EXT_inline_uniform_block")                                                                                     \
   X(line_rasterization, VkPhysicalDeviceLineRasterizationFeaturesEXT, LINE_RASTERIZATION_FEATURES_EXT,                 \
     "VK_EXT_line_rasterization")                                                                                       \
+  X(list_restart, VkPhysicalDevicePrimitiveTopologyListRestartFeaturesEXT,                                             \
+    PRIMITIVE_TOPOLOGY_LIST_RESTART_FEATURES_EXT, "VK_EXT_primitive_topology_list_restart")                            \
+  X(maintenance4, VkPhysicalDeviceMaintenance4Features, MAINTENANCE_4_FEATURES, "VK_KHR_maintenance4")                 \
+  X(memory_model, VkPhysicalDeviceVulkanMemoryModelFeatures, VULKAN_MEMORY_MODEL_FEATURES,                             \
+    "VK_KHR_vulkan_memory_model")                                                                                      \
+  X(multi_draw, VkPhysicalDeviceMultiDrawFeaturesEXT, MULTI_DRAW_FEATURES_EXT, "VK_EXT_multi_draw")                    \
+  X(multiview, VkPhysicalDeviceMultiviewFeatures, MULTIVIEW_FEATURES, "VK_KHR_multiview")                              \
+  X(provoking_vertex, VkPhysicalDeviceProvokingVertexFeaturesEXT, PROVOKING_VERTEX_FEATURES_EXT,                       \
+    "VK_EXT_provoking_vertex")                                                                                         \
+  X(scalar_block_layout, VkPhysicalDeviceScalarBlockLayoutFeatures, SCALAR_BLOCK_LAYOUT_FEATURES,                      \
+    "VK_EXT_scalar_block_layout")                                                                                      \
+  X(separate_depth_stencil_layouts, VkPhysicalDeviceSeparateDepthStencilLayoutsFeatures,                               \
+    SEPARATE_DEPTH_STENCIL_LAYOUTS_FEATURES, "VK_KHR_separate_depth_stencil_layouts")                                  \
+  X(shader_clock, VkPhysicalDeviceShaderClockFeaturesKHR, SHADER_CLOCK_FEATURES_KHR, "VK_KHR_shader_clock")            \
+  X(subgroup_size, VkPhysicalDeviceSubgroupSizeControlFeatures, SUBGROUP_SIZE_CONTROL_FEATURES,                        \
+    "VK_EXT_subgroup_size_control")                                                                                    \
+  X(synchronization2, VkPhysicalDeviceSynchronization2Features, SYNCHRONIZATION_2_FEATURES, "VK_KHR_synchronization2") \
+  X(terminate, VkPhysicalDeviceShaderTerminateInvocationFeatures, SHADER_TERMINATE_INVOCATION_FEATURES,                \
+    "VK_KHR_shader_terminate_invocation")                                                                              \
+  X(texel_buffer_alignment, VkPhysicalDeviceTexelBufferAlignmentFeaturesEXT, TEXEL_BUFFER_ALIGNMENT_FEATURES_EXT,      \
+    "VK_EXT_texel_buffer_alignment")                                                                                   \
+  X(timeline_semaphore, VkPhysicalDeviceTimelineSemaphoreFeatures, TIMELINE_SEMAPHORE_FEATURES,                        \
+    "VK_KHR_timeline_semaphore")                                                                                       \
+  X(uniform_buffer_standard_layout, VkPhysicalDeviceUniformBufferStandardLayoutFeatures,                               \
+    UNIFORM_BUFFER_STANDARD_LAYOUT_FEATURES, "VK_KHR_uniform_buffer_standard_layout")                                  \
+  X(variable_pointers, VkPhysicalDeviceVariablePointersFeatures, VARIABLE_POINTERS_FEATURES,                           \
+    "VK_KHR_variable_pointers")                                                                                        \
   X(vertex_attribute_divisor, VkPhysicalDeviceVertexAttributeDivisorFeaturesEXT,                                       \
     VERTEX_ATTRIBUTE_DIVISOR_FEATURES_EXT, "VK_EXT_vertex_attribute_divisor")                                          \
-  X(list_restart, VkPhysicalDevicePrimitiveTopologyListRestartFeaturesEXT,                                             \
-    PRIMITIVE_TOPOLOGY_LIST_RESTART_FEATURES_EXT, "VK_EXT_primitive_topology_list_restart")
+  X(vertex_input_dynamic_state, VkPhysicalDeviceVertexInputDynamicStateFeaturesEXT,                                    \
+    VERTEX_INPUT_DYNAMIC_STATE_FEATURES_EXT, "VK_EXT_vertex_input_dynamic_state")
 
 /// Extensions without features that cases use: enabled where offered.
 #define CTS_EXTENSIONS(X)                 \
   X("VK_EXT_post_depth_coverage")         \
   X("VK_EXT_shader_stencil_export")       \
+  X("VK_EXT_shader_subgroup_ballot")      \
+  X("VK_EXT_shader_subgroup_vote")        \
   X("VK_EXT_shader_viewport_index_layer") \
   X("VK_KHR_copy_commands2")              \
   X("VK_KHR_create_renderpass2")          \
-  X("VK_KHR_draw_indirect_count")         \
   X("VK_KHR_depth_stencil_resolve")       \
-  X("VK_KHR_spirv_1_4")                   \
+  X("VK_KHR_draw_indirect_count")         \
+  X("VK_KHR_pipeline_library")            \
+  X("VK_KHR_push_descriptor")             \
   X("VK_KHR_shader_float_controls")       \
-  X("VK_KHR_shader_non_semantic_info") X("VK_EXT_shader_subgroup_ballot") X("VK_EXT_shader_subgroup_vote")
+  X("VK_KHR_shader_non_semantic_info")    \
+  X("VK_KHR_spirv_1_4")
 
 struct ExtensionFeatures {
 #define CTS_MEMBER(member, type, stype, extension) type member{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_##stype};

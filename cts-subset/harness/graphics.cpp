@@ -1,6 +1,8 @@
 // Render targets and graphics pipelines of the cases.
 #include "harness/graphics.h"
 
+#include <algorithm>
+
 #include "harness/execute.h"
 #include "harness/shader.h"
 
@@ -221,6 +223,12 @@ VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, 
   viewport.scissorCount = spec.scissors.empty() ? 1 : static_cast<uint32_t>(spec.scissors.size());
   viewport.pScissors = spec.scissors.empty() ? &everything : spec.scissors.data();
 
+  const auto is_dynamic = [&](VkDynamicState state) {
+    return std::find(spec.dynamic.begin(), spec.dynamic.end(), state) != spec.dynamic.end();
+  };
+  if (is_dynamic(VK_DYNAMIC_STATE_VIEWPORT_WITH_COUNT)) viewport.viewportCount = 0;
+  if (is_dynamic(VK_DYNAMIC_STATE_SCISSOR_WITH_COUNT)) viewport.scissorCount = 0;
+
   VkPipelineMultisampleStateCreateInfo multisample = spec.multisample;
   multisample.rasterizationSamples = samples;
   VkPipelineColorBlendAttachmentState opaque{};
@@ -236,6 +244,7 @@ VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, 
   dynamic.pDynamicStates = spec.dynamic.data();
 
   VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, spec.next};
+  info.flags = spec.flags;
   info.stageCount = static_cast<uint32_t>(stages.size());
   info.pStages = stages.data();
   info.pVertexInputState = &input;

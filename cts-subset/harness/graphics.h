@@ -59,6 +59,7 @@ struct GraphicsSpec {
   const VkSpecializationInfo* fragment_special = nullptr;
   VkPipelineCache cache = VK_NULL_HANDLE;
   const void* next = nullptr;  ///< of VkGraphicsPipelineCreateInfo
+  VkPipelineCreateFlags flags = 0;
 
   GraphicsSpec();
   /// Adds a binding of tightly interleaved float attributes at locations 0..: one number of components each.

@@ -88,7 +88,10 @@ const std::vector<uint32_t>& assemble_spirv(const std::string& source) {
     message += "line " + std::to_string(position.line + 1) + ": " + text + "\n";
   });
   std::vector<uint32_t> words;
-  if (!tools.Assemble(source, &words) || !tools.Validate(words)) throw std::runtime_error("SPIR-V: " + message);
+  spvtools::ValidatorOptions options;
+  options.SetAllowLocalSizeId(true);  // of maintenance4
+  if (!tools.Assemble(source, &words) || !tools.Validate(words.data(), words.size(), options))
+    throw std::runtime_error("SPIR-V: " + message);
   return cache[source] = words;
 }
 

@@ -36,10 +36,18 @@ VKAPI_ATTR void VKAPI_CALL CmdPushConstants(VkCommandBuffer buffer, VkPipelineLa
 
 VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
                                                 const VkBuffer* buffers, const VkDeviceSize* offsets) {
-  if (first + count > raster::kMaxVertexBindings) return;
+  CmdBindVertexBuffers2(buffer, first, count, buffers, offsets, nullptr, nullptr);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers2(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
+                                                 const VkBuffer* buffers, const VkDeviceSize* offsets,
+                                                 const VkDeviceSize* sizes, const VkDeviceSize* strides) {
+  if (first > raster::kMaxVertexBindings || count > raster::kMaxVertexBindings - first) return;
   const auto recorded = from_handle<CommandBuffer>(buffer).arena.add_array<const Buffer*>(count);
   for (std::uint32_t i = 0; i < count; ++i) recorded[i] = from_nullable<Buffer>(buffers[i]);
-  record(buffer, icd::CmdBindVertexBuffers{first, recorded, copy_array(buffer, offsets, count)});
+  record(buffer, icd::CmdBindVertexBuffers{first, recorded, copy_array(buffer, offsets, count),
+                                           copy_array(buffer, sizes, sizes ? count : 0),
+                                           copy_array(buffer, strides, strides ? count : 0)});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdBindIndexBuffer(VkCommandBuffer buffer, VkBuffer index_buffer, VkDeviceSize offset,

@@ -29,6 +29,20 @@ VKAPI_ATTR void VKAPI_CALL DestroyBuffer(VkDevice, VkBuffer buffer, const VkAllo
   destroy_handle<Buffer>(buffer);
 }
 
+/// Device addresses are host addresses.
+VKAPI_ATTR VkDeviceAddress VKAPI_CALL GetBufferDeviceAddress(VkDevice, const VkBufferDeviceAddressInfo* info) {
+  return reinterpret_cast<VkDeviceAddress>(from_handle<Buffer>(info->buffer).data);
+}
+
+// Nothing is captured: bufferDeviceAddressCaptureReplay is not claimed.
+VKAPI_ATTR std::uint64_t VKAPI_CALL GetBufferOpaqueCaptureAddress(VkDevice, const VkBufferDeviceAddressInfo*) {
+  return 0;
+}
+VKAPI_ATTR std::uint64_t VKAPI_CALL GetDeviceMemoryOpaqueCaptureAddress(VkDevice,
+                                                                        const VkDeviceMemoryOpaqueCaptureAddressInfo*) {
+  return 0;
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL CreateBufferView(VkDevice device, const VkBufferViewCreateInfo* info,
                                                 const VkAllocationCallbacks* allocator, VkBufferView* view) {
   const Buffer& buffer = from_handle<Buffer>(info->buffer);

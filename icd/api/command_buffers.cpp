@@ -31,6 +31,9 @@ void stick_record_error(VkCommandBuffer command_buffer, VkResult error) {
 }
 
 void CommandBuffer::reset() noexcept {
+  for (DescriptorSet* set : pushed_sets) set->~DescriptorSet();
+  pushed_sets.clear();
+  current_push = {};
   arena.release();
   state = RecordState::kInitial;
   error = VK_SUCCESS;

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "icd/diagnostics.h"
 #include "icd/entry_points.h"
+#include "icd/object_notes.h"
 #include "icd/util.h"
 
 namespace vitrine::icd {
@@ -28,16 +29,26 @@ void send(Instance& instance, VkDebugUtilsMessageSeverityFlagBitsEXT severity, V
   for (std::size_t i = 0; i < count; ++i) listeners[i].pfnUserCallback(severity, types, &data, listeners[i].pUserData);
 }
 
+/// The name that the application gave, or nothing.
+std::string name_of(Instance& instance, ObjectRef object) {
+  if (!object.handle) return {};
+  const std::lock_guard lock(instance.notes_mutex);
+  const ObjectNotes* notes = object_of(object.type, object.handle).notes;
+  return notes ? std::string(notes->name.begin(), notes->name.end()) : std::string();
+}
+
 }  // namespace
 
 void report(Instance& instance, VkDebugUtilsMessageSeverityFlagBitsEXT severity, ObjectRef object, const char* id,
             std::string_view message) noexcept {
   try {
-    base::log(severity == VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT ? "error" : id, message);
-    const std::string text(message);
+    const std::string text(message), own_name = name_of(instance, object);
+    base::log(severity == VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT ? "error" : id,
+              own_name.empty() ? text : own_name + ": " + text);
     VkDebugUtilsObjectNameInfoEXT name = make_struct<VkDebugUtilsObjectNameInfoEXT>();
     name.objectType = object.type;
     name.objectHandle = object.handle;
+    name.pObjectName = own_name.empty() ? nullptr : own_name.c_str();
     auto data = make_struct<VkDebugUtilsMessengerCallbackDataEXT>();
     data.pMessageIdName = id;
     data.pMessage = text.c_str();
@@ -81,10 +92,13 @@ VKAPI_ATTR void VKAPI_CALL SubmitDebugUtilsMessageEXT(VkInstance instance,
   send(from_handle<Instance>(instance), severity, types, *data);
 }
 
-// Names, tags and labels are accepted; tools above the driver keep them.
-VKAPI_ATTR VkResult VKAPI_CALL SetDebugUtilsObjectNameEXT(VkDevice, const VkDebugUtilsObjectNameInfoEXT*) {
+VKAPI_ATTR VkResult VKAPI_CALL SetDebugUtilsObjectNameEXT(VkDevice device, const VkDebugUtilsObjectNameInfoEXT* info) {
+  const std::lock_guard lock(from_handle<Device>(device).physical_device.instance.notes_mutex);
+  notes_of(object_of(info->objectType, info->objectHandle)).name = info->pObjectName ? info->pObjectName : "";
   return VK_SUCCESS;
 }
+
+// Tags and labels are accepted; tools above the driver keep them.
 VKAPI_ATTR VkResult VKAPI_CALL SetDebugUtilsObjectTagEXT(VkDevice, const VkDebugUtilsObjectTagInfoEXT*) {
   return VK_SUCCESS;
 }

@@ -41,8 +41,24 @@ void copy_immutable_samplers(const VkDescriptorSetLayoutCreateInfo& info, SetSha
   }
 }
 
+/// Gives each binding its slots; inline uniform blocks have one and their bytes beside.
+void assign_slots(SetShape& shape) {
+  for (SetBinding& b : shape.bindings) {
+    std::uint32_t& counter = is_dynamic(b.type) ? shape.dynamic_count : shape.slot_count;
+    b.first_slot = counter;
+    if (!is_inline_block(b.type)) {
+      counter += b.count;
+    } else if (b.count) {
+      ++counter;
+      shape.inline_bytes += (b.count + kInlineBlockAlignment - 1) & ~(kInlineBlockAlignment - 1);
+    }
+  }
+}
+
 std::shared_ptr<const SetShape> make_set_shape(const HostMemory& memory, const VkDescriptorSetLayoutCreateInfo& info) {
   std::shared_ptr<SetShape> shape = make_shape<SetShape>(memory);
+  shape->flags = info.flags;
+  const auto* flags = find_in_chain<VkDescriptorSetLayoutBindingFlagsCreateInfo>(info.pNext);
   for (std::uint32_t i = 0; i < info.bindingCount; ++i) {
     const VkDescriptorSetLayoutBinding& source = info.pBindings[i];
     SetBinding b;
@@ -50,15 +66,12 @@ std::shared_ptr<const SetShape> make_set_shape(const HostMemory& memory, const V
     b.type = source.descriptorType;
     b.stages = source.stageFlags;
     b.count = source.descriptorCount;
+    if (flags && i < flags->bindingCount) b.flags = flags->pBindingFlags[i];
     shape->bindings.push_back(b);
   }
   std::sort(shape->bindings.begin(), shape->bindings.end(),
             [](const SetBinding& a, const SetBinding& b) { return a.binding < b.binding; });
-  for (SetBinding& b : shape->bindings) {
-    std::uint32_t& counter = is_dynamic(b.type) ? shape->dynamic_count : shape->slot_count;
-    b.first_slot = counter;
-    counter += b.count;
-  }
+  assign_slots(*shape);
   copy_immutable_samplers(info, *shape);
   return shape;
 }
@@ -73,10 +86,10 @@ std::vector<spirv::SetLayoutInfo> set_layout_infos(const PipelineLayoutShape& la
       if (b.count == 0) continue;
       spirv::BindingInfo info;
       info.binding = b.binding;
-      info.type = b.type;
+      info.type = is_inline_block(b.type) ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : b.type;
       info.set = is_dynamic(b.type) ? spirv::kDynamicSet : set;
       info.first_slot = is_dynamic(b.type) ? layout.first_dynamic[set] + b.first_slot : b.first_slot;
-      info.count = b.count;
+      info.count = is_inline_block(b.type) ? 1 : b.count;
       info.immutable_samplers = b.immutable_samplers;
       infos[set].bindings.push_back(info);
     }

@@ -15,75 +15,109 @@ DescriptorPool::Capacity* find_capacity(DescriptorPool& pool, VkDescriptorType t
   return nullptr;
 }
 
-void give_back(DescriptorPool& pool, const SetShape& shape, std::size_t binding_count) {
-  for (std::size_t i = 0; i < binding_count; ++i) {
-    if (shape.bindings[i].count) find_capacity(pool, shape.bindings[i].type)->free += shape.bindings[i].count;
+void give_back(DescriptorPool& pool, const DescriptorSet& set) {
+  for (const SetBinding& b : set.shape->bindings) {
+    const std::uint32_t count = set.count_of(b);
+    if (count == 0) continue;
+    if (DescriptorPool::Capacity* c = find_capacity(pool, b.type)) c->free += count;
+    if (is_inline_block(b.type)) ++pool.free_inline_blocks;
   }
+  ++pool.free_sets;
 }
 
-/// Takes a set's descriptors out of the pool's counts. False, with nothing taken, if there are not enough.
-bool take_capacity(DescriptorPool& pool, const SetShape& shape) {
+/// Whether the pool has the descriptors of a set left. Bindings of one type add up.
+bool has_capacity(DescriptorPool& pool, const SetShape& shape, std::uint32_t variable_count) {
   if (pool.free_sets == 0) return false;
-  for (std::size_t i = 0; i < shape.bindings.size(); ++i) {
-    const SetBinding& b = shape.bindings[i];
-    if (b.count == 0) continue;
-    DescriptorPool::Capacity* c = find_capacity(pool, b.type);
-    if (!c || c->free < b.count) {
-      give_back(pool, shape, i);
-      return false;
+  std::uint32_t blocks = 0;
+  for (const SetBinding& b : shape.bindings) {
+    std::uint64_t wanted = 0;
+    for (const SetBinding& other : shape.bindings) {
+      const bool variable = &other == shape.variable_binding();
+      if (other.type == b.type) wanted += variable ? variable_count : other.count;
     }
-    c->free -= b.count;
+    const DescriptorPool::Capacity* c = find_capacity(pool, b.type);
+    if (wanted > (c ? c->free : 0)) return false;
+    blocks += is_inline_block(b.type) && b.count;
+  }
+  return blocks <= pool.free_inline_blocks;
+}
+
+void take(DescriptorPool& pool, const DescriptorSet& set) {
+  for (const SetBinding& b : set.shape->bindings) {
+    const std::uint32_t count = set.count_of(b);
+    if (count == 0) continue;
+    find_capacity(pool, b.type)->free -= count;
+    if (is_inline_block(b.type)) --pool.free_inline_blocks;
   }
   --pool.free_sets;
-  return true;
+}
+
+/// What a set of this shape has in place of the shape's own counts.
+struct SetSizes {
+  std::uint32_t slots, dynamic, inline_bytes;
+};
+
+SetSizes sizes_of(const SetShape& shape, std::uint32_t variable_count) {
+  SetSizes sizes{shape.slot_count, shape.dynamic_count, shape.inline_bytes};
+  const SetBinding* variable = shape.variable_binding();
+  // The last binding has the last slots. Blocks keep their bytes: the slot says how many count.
+  if (variable && !is_inline_block(variable->type) && variable_count < variable->count) {
+    sizes.slots -= variable->count - variable_count;
+  }
+  return sizes;
+}
+
+/// Points the slots of inline uniform blocks at their bytes.
+void place_inline_blocks(DescriptorSet& set) {
+  std::uint32_t offset = 0;
+  for (const SetBinding& b : set.shape->bindings) {
+    if (!is_inline_block(b.type) || b.count == 0) continue;
+    spirv::Descriptor& slot = set.slots[b.first_slot];
+    slot.data = set.inline_data + offset;
+    slot.size = set.count_of(b);
+    offset += (b.count + kInlineBlockAlignment - 1) & ~(kInlineBlockAlignment - 1);
+  }
 }
 
 void write_immutable_samplers(DescriptorSet& set) {
   for (const SetBinding& b : set.shape->bindings) {
-    for (std::uint32_t i = 0; b.immutable_samplers && i < b.count; ++i) {
+    for (std::uint32_t i = 0; b.immutable_samplers && i < set.count_of(b); ++i) {
       set.slots[b.first_slot + i].sampler = b.immutable_samplers[i];
     }
   }
 }
 
-DescriptorSet* make_set(DescriptorPool& pool, const std::shared_ptr<const SetShape>& shape) {
-  static_assert(sizeof(DescriptorSet) % alignof(spirv::Descriptor) == 0);
-  const std::size_t slot_bytes = sizeof(spirv::Descriptor) * shape->slot_count;
-  const std::size_t dynamic_bytes = sizeof(DynamicBuffer) * shape->dynamic_count;
-  auto* storage = static_cast<std::byte*>(pool.memory.allocate(
-      sizeof(DescriptorSet) + slot_bytes + dynamic_bytes, alignof(DescriptorSet), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT));
-  auto* set = ::new (storage) DescriptorSet(pool.memory);
-  set->shape = shape;
+DescriptorSet* make_set(DescriptorPool& pool, const std::shared_ptr<const SetShape>& shape,
+                        std::uint32_t variable_count) {
+  void* storage = pool.memory.allocate(set_bytes(*shape, variable_count), alignof(DescriptorSet),
+                                       VK_SYSTEM_ALLOCATION_SCOPE_OBJECT);
+  DescriptorSet* set = construct_set(storage, pool.memory, shape, variable_count);
   set->pool = &pool;
-  set->slots = reinterpret_cast<spirv::Descriptor*>(storage + sizeof(DescriptorSet));
-  set->dynamic = reinterpret_cast<DynamicBuffer*>(storage + sizeof(DescriptorSet) + slot_bytes);
-  std::uninitialized_fill_n(set->slots, shape->slot_count, spirv::Descriptor{});
-  std::uninitialized_fill_n(set->dynamic, shape->dynamic_count, DynamicBuffer{});
-  write_immutable_samplers(*set);
   set->next = pool.sets;
   if (pool.sets) pool.sets->previous = set;
   pool.sets = set;
+  take(pool, *set);
   return set;
 }
 
 void free_set(DescriptorSet* set) {
   DescriptorPool& pool = *set->pool;
-  give_back(pool, *set->shape, set->shape->bindings.size());
-  ++pool.free_sets;
+  give_back(pool, *set);
   (set->previous ? set->previous->next : pool.sets) = set->next;
   if (set->next) set->next->previous = set->previous;
   destroy_object(set);
 }
 
 VkResult allocate_sets(DescriptorPool& pool, const VkDescriptorSetAllocateInfo& info, VkDescriptorSet* sets) {
+  const auto* counts = find_in_chain<VkDescriptorSetVariableDescriptorCountAllocateInfo>(info.pNext);
   for (std::uint32_t i = 0; i < info.descriptorSetCount; ++i) {
     const std::shared_ptr<const SetShape>& shape = from_handle<DescriptorSetLayout>(info.pSetLayouts[i]).shape;
-    if (!take_capacity(pool, *shape)) return VK_ERROR_OUT_OF_POOL_MEMORY;
+    std::uint32_t variable_count = counts && i < counts->descriptorSetCount ? counts->pDescriptorCounts[i] : 0;
+    if (const SetBinding* b = shape->variable_binding()) variable_count = std::min(variable_count, b->count);
+    if (!has_capacity(pool, *shape, variable_count)) return VK_ERROR_OUT_OF_POOL_MEMORY;
     try {
-      sets[i] = to_handle(make_set(pool, shape));
+      sets[i] = to_handle(make_set(pool, shape, variable_count));
     } catch (const std::bad_alloc&) {
-      give_back(pool, *shape, shape->bindings.size());
-      ++pool.free_sets;
       return VK_ERROR_OUT_OF_HOST_MEMORY;
     }
   }
@@ -91,6 +125,33 @@ VkResult allocate_sets(DescriptorPool& pool, const VkDescriptorSetAllocateInfo& 
 }
 
 }  // namespace
+
+std::size_t set_bytes(const SetShape& shape, std::uint32_t variable_count) {
+  const SetSizes sizes = sizes_of(shape, variable_count);
+  return sizeof(DescriptorSet) + sizes.inline_bytes + sizeof(spirv::Descriptor) * sizes.slots +
+         sizeof(DynamicBuffer) * sizes.dynamic;
+}
+
+DescriptorSet* construct_set(void* storage, const HostMemory& memory, const std::shared_ptr<const SetShape>& shape,
+                             std::uint32_t variable_count) {
+  static_assert(sizeof(DescriptorSet) % alignof(spirv::Descriptor) == 0 &&
+                kInlineBlockAlignment % alignof(spirv::Descriptor) == 0);
+  const SetSizes sizes = sizes_of(*shape, variable_count);
+  auto* bytes = static_cast<std::byte*>(storage);
+  auto* set = ::new (storage) DescriptorSet(memory);
+  set->shape = shape;
+  set->variable_count = variable_count;
+  set->slot_count = sizes.slots;
+  set->inline_data = bytes + sizeof(DescriptorSet);
+  set->slots = reinterpret_cast<spirv::Descriptor*>(set->inline_data + sizes.inline_bytes);
+  set->dynamic = reinterpret_cast<DynamicBuffer*>(set->slots + sizes.slots);
+  std::fill_n(set->inline_data, sizes.inline_bytes, std::byte{});
+  std::uninitialized_fill_n(set->slots, sizes.slots, spirv::Descriptor{});
+  std::uninitialized_fill_n(set->dynamic, sizes.dynamic, DynamicBuffer{});
+  place_inline_blocks(*set);
+  write_immutable_samplers(*set);
+  return set;
+}
 
 DescriptorPool::~DescriptorPool() {
   while (sets) free_set(sets);
@@ -109,6 +170,9 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorPool(VkDevice device, const VkDes
     c->free = c->total;
   }
   object->free_sets = info->maxSets;
+  if (const auto* blocks = find_in_chain<VkDescriptorPoolInlineUniformBlockCreateInfo>(info->pNext)) {
+    object->free_inline_blocks = blocks->maxInlineUniformBlockBindings;
+  }
   *pool = to_handle(object.release());
   return VK_SUCCESS;
 }

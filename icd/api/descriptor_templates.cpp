@@ -4,12 +4,14 @@
 
 #include <cstring>
 
-#include "icd/device.h"
+#include "icd/descriptors.h"
 #include "icd/entry_points.h"
 #include "icd/util.h"
 
 namespace vitrine::icd {
 namespace {
+
+constexpr std::uint64_t kMaxInlineBlockSize = 4096;  // manifest/limits, maxInlineUniformBlockSize
 
 /// Array elements lie `stride` bytes apart in the application's data.
 template <class Info>
@@ -43,6 +45,12 @@ VkWriteDescriptorSet make_write(const VkDescriptorUpdateTemplateEntry& entry, co
     case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
       write.pBufferInfo = gather(entry, data, scratch.buffers);
       break;
+    case VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK:
+      scratch.inline_block = make_struct<VkWriteDescriptorSetInlineUniformBlock>();
+      scratch.inline_block.dataSize = entry.descriptorCount;
+      scratch.inline_block.pData = static_cast<const std::byte*>(data) + entry.offset;
+      write.pNext = &scratch.inline_block;
+      break;
     default:
       write.pImageInfo = gather(entry, data, scratch.images);
       break;
@@ -60,6 +68,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorUpdateTemplate(VkDevice device,
       create_object<DescriptorUpdateTemplate>(from_handle<Device>(device).memory, allocator));
   object->entries.assign(info->pDescriptorUpdateEntries,
                          info->pDescriptorUpdateEntries + info->descriptorUpdateEntryCount);
+  object->bind_point = info->pipelineBindPoint;
   *update_template = to_handle(object.release());
   return VK_SUCCESS;
 }
@@ -83,9 +92,26 @@ VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSetWithTemplate(VkDevice device, VkDe
 VKAPI_ATTR void VKAPI_CALL GetDescriptorSetLayoutSupport(VkDevice, const VkDescriptorSetLayoutCreateInfo* info,
                                                          VkDescriptorSetLayoutSupport* support) {
   // Descriptors are host memory: only the count of one set is bounded (maxPerSetDescriptors).
+  constexpr std::uint64_t kMaxDescriptors = 1u << 20;
   std::uint64_t descriptors = 0;
-  for (std::uint32_t i = 0; i < info->bindingCount; ++i) descriptors += info->pBindings[i].descriptorCount;
-  support->supported = descriptors <= (1u << 20) ? VK_TRUE : VK_FALSE;
+  const VkDescriptorSetLayoutBinding* last = nullptr;
+  for (std::uint32_t i = 0; i < info->bindingCount; ++i) {
+    descriptors += info->pBindings[i].descriptorCount;
+    if (!last || info->pBindings[i].binding > last->binding) last = &info->pBindings[i];
+  }
+  support->supported = descriptors <= kMaxDescriptors ? VK_TRUE : VK_FALSE;
+  auto* variable = find_in_out_chain<VkDescriptorSetVariableDescriptorCountLayoutSupport>(support->pNext);
+  if (!variable) return;
+  const auto* flags = find_in_chain<VkDescriptorSetLayoutBindingFlagsCreateInfo>(info->pNext);
+  const bool has_variable =
+      last && flags && flags->bindingCount > last - info->pBindings &&
+      (flags->pBindingFlags[last - info->pBindings] & VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT);
+  variable->maxVariableDescriptorCount = 0;
+  if (!has_variable) return;
+  const std::uint64_t others = descriptors - last->descriptorCount;
+  const std::uint64_t room = others < kMaxDescriptors ? kMaxDescriptors - others : 0;
+  variable->maxVariableDescriptorCount =
+      static_cast<std::uint32_t>(is_inline_block(last->descriptorType) ? kMaxInlineBlockSize : room);
 }
 
 }  // namespace entry

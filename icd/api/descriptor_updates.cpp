@@ -14,10 +14,11 @@ namespace {
 /// ("consecutive binding updates").
 class ElementCursor {
  public:
-  ElementCursor(const SetShape& shape, std::uint32_t binding, std::uint32_t element)
-      : at_(std::lower_bound(shape.bindings.begin(), shape.bindings.end(), binding,
+  ElementCursor(const DescriptorSet& set, std::uint32_t binding, std::uint32_t element)
+      : set_(set),
+        at_(std::lower_bound(set.shape->bindings.begin(), set.shape->bindings.end(), binding,
                              [](const SetBinding& b, std::uint32_t number) { return b.binding < number; })),
-        end_(shape.bindings.end()),
+        end_(set.shape->bindings.end()),
         element_(element) {
     settle();
   }
@@ -25,6 +26,8 @@ class ElementCursor {
   bool valid() const { return at_ != end_; }
   const SetBinding& binding() const { return *at_; }
   std::uint32_t slot() const { return at_->first_slot + element_; }
+  /// Of an inline uniform block, whose elements are bytes.
+  std::byte* byte() const { return set_.slots[at_->first_slot].data + element_; }
   void advance() {
     ++element_;
     settle();
@@ -32,12 +35,13 @@ class ElementCursor {
 
  private:
   void settle() {
-    while (at_ != end_ && element_ >= at_->count) {
-      element_ -= at_->count;
+    while (at_ != end_ && element_ >= set_.count_of(*at_)) {
+      element_ -= set_.count_of(*at_);
       ++at_;
     }
   }
 
+  const DescriptorSet& set_;
   Vector<SetBinding>::const_iterator at_, end_;
   std::uint32_t element_;
 };
@@ -92,27 +96,32 @@ void write_element(const VkWriteDescriptorSet& write, std::uint32_t i, const Ele
   }
 }
 
-void write_descriptors(const VkWriteDescriptorSet& write) {
-  DescriptorSet& set = from_handle<DescriptorSet>(write.dstSet);
-  ElementCursor at(*set.shape, write.dstBinding, write.dstArrayElement);
-  for (std::uint32_t i = 0; i < write.descriptorCount && at.valid(); ++i, at.advance()) {
-    // The types agree in every valid call; where they do not, a slot must not change its meaning.
-    if (at.binding().type != write.descriptorType) return;
-    write_element(write, i, at, set);
+void write_inline_block(const VkWriteDescriptorSet& write, DescriptorSet& set) {
+  const auto* block = find_in_chain<VkWriteDescriptorSetInlineUniformBlock>(write.pNext);
+  if (!block) return;
+  const auto* source = static_cast<const std::byte*>(block->pData);
+  ElementCursor at(set, write.dstBinding, write.dstArrayElement);
+  for (std::uint32_t i = 0; i < block->dataSize && at.valid(); ++i, at.advance()) {
+    if (!is_inline_block(at.binding().type)) return;
+    *at.byte() = source[i];
   }
 }
 
 void copy_descriptors(const VkCopyDescriptorSet& copy) {
   DescriptorSet& source_set = from_handle<DescriptorSet>(copy.srcSet);
   DescriptorSet& target_set = from_handle<DescriptorSet>(copy.dstSet);
-  ElementCursor source(*source_set.shape, copy.srcBinding, copy.srcArrayElement);
-  ElementCursor target(*target_set.shape, copy.dstBinding, copy.dstArrayElement);
+  ElementCursor source(source_set, copy.srcBinding, copy.srcArrayElement);
+  ElementCursor target(target_set, copy.dstBinding, copy.dstArrayElement);
   for (std::uint32_t i = 0; i < copy.descriptorCount && source.valid() && target.valid();
        ++i, source.advance(), target.advance()) {
     const VkDescriptorType type = target.binding().type;
     if (source.binding().type != type) return;
     if (is_dynamic(type)) {
       target_set.dynamic[target.slot()] = source_set.dynamic[source.slot()];
+      continue;
+    }
+    if (is_inline_block(type)) {
+      *target.byte() = *source.byte();
       continue;
     }
     spirv::Descriptor& slot = target_set.slots[target.slot()];
@@ -123,6 +132,16 @@ void copy_descriptors(const VkCopyDescriptorSet& copy) {
 }
 
 }  // namespace
+
+void write_descriptors(const VkWriteDescriptorSet& write, DescriptorSet& set) {
+  if (is_inline_block(write.descriptorType)) return write_inline_block(write, set);
+  ElementCursor at(set, write.dstBinding, write.dstArrayElement);
+  for (std::uint32_t i = 0; i < write.descriptorCount && at.valid(); ++i, at.advance()) {
+    // The types agree in every valid call; where they do not, a slot must not change its meaning.
+    if (at.binding().type != write.descriptorType) return;
+    write_element(write, i, at, set);
+  }
+}
 
 spirv::Descriptor apply_offset(const DynamicBuffer& buffer, std::uint32_t offset) {
   spirv::Descriptor out;
@@ -136,7 +155,9 @@ namespace entry {
 
 VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSets(VkDevice, std::uint32_t write_count, const VkWriteDescriptorSet* writes,
                                                 std::uint32_t copy_count, const VkCopyDescriptorSet* copies) {
-  for (std::uint32_t i = 0; i < write_count; ++i) write_descriptors(writes[i]);
+  for (std::uint32_t i = 0; i < write_count; ++i) {
+    write_descriptors(writes[i], from_handle<DescriptorSet>(writes[i].dstSet));
+  }
   for (std::uint32_t i = 0; i < copy_count; ++i) copy_descriptors(copies[i]);
 }
 

@@ -15,6 +15,15 @@ void add_cost(CommandBuffer& buffer, std::uint32_t vertices, std::uint32_t insta
   buffer.cost += kDrawCost + std::uint64_t{vertices} * instances * kVertexCost + buffer.pass_pixels;
 }
 
+/// The application's array, whose elements lie `stride` bytes apart.
+template <class T>
+std::span<T> copy_strided(CommandBuffer& buffer, const T* source, std::uint32_t count, std::uint32_t stride) {
+  const std::span<T> out = buffer.arena.add_array<T>(count);
+  const auto* bytes = reinterpret_cast<const std::byte*>(source);
+  for (std::uint32_t i = 0; i < count; ++i) std::memcpy(&out[i], bytes + std::size_t{i} * stride, sizeof(T));
+  return out;
+}
+
 void record_indirect(VkCommandBuffer buffer, const icd::CmdDrawIndirect& command) {
   CommandBuffer& b = from_handle<CommandBuffer>(buffer);
   record(b, command);
@@ -38,6 +47,38 @@ VKAPI_ATTR void VKAPI_CALL CmdDrawIndexed(VkCommandBuffer buffer, std::uint32_t 
   CommandBuffer& b = from_handle<CommandBuffer>(buffer);
   record(b, icd::CmdDrawIndexed{indices, instances, first_index, vertex_offset, first_instance});
   add_cost(b, indices, instances);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdDrawMultiEXT(VkCommandBuffer buffer, std::uint32_t count, const VkMultiDrawInfoEXT* draws,
+                                           std::uint32_t instances, std::uint32_t first_instance,
+                                           std::uint32_t stride) {
+  CommandBuffer& b = from_handle<CommandBuffer>(buffer);
+  const auto copy = copy_strided(b, draws, count, stride);
+  record(b, icd::CmdDrawMulti{copy, instances, first_instance});
+  for (const VkMultiDrawInfoEXT& d : copy) add_cost(b, d.vertexCount, instances);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdDrawMultiIndexedEXT(VkCommandBuffer buffer, std::uint32_t count,
+                                                  const VkMultiDrawIndexedInfoEXT* draws, std::uint32_t instances,
+                                                  std::uint32_t first_instance, std::uint32_t stride,
+                                                  const std::int32_t* vertex_offset) {
+  CommandBuffer& b = from_handle<CommandBuffer>(buffer);
+  const auto copy = copy_strided(b, draws, count, stride);
+  for (VkMultiDrawIndexedInfoEXT& d : copy) {
+    if (vertex_offset) d.vertexOffset = *vertex_offset;
+    add_cost(b, d.indexCount, instances);
+  }
+  record(b, icd::CmdDrawMultiIndexed{copy, instances, first_instance});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBeginConditionalRenderingEXT(VkCommandBuffer buffer,
+                                                           const VkConditionalRenderingBeginInfoEXT* info) {
+  record(buffer, icd::CmdBeginConditionalRendering{&from_handle<Buffer>(info->buffer), info->offset,
+                                                   (info->flags & VK_CONDITIONAL_RENDERING_INVERTED_BIT_EXT) != 0});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdEndConditionalRenderingEXT(VkCommandBuffer buffer) {
+  record(buffer, icd::CmdEndConditionalRendering{});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdDrawIndirect(VkCommandBuffer buffer, VkBuffer arguments, VkDeviceSize offset,

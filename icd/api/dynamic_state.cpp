@@ -1,12 +1,32 @@
 // Recording dynamic state (Vulkan 1.3.239, Pipelines: Dynamic State, and the commands of the fixed-function chapters).
+#include <algorithm>
+
 #include "icd/command_buffer.h"
 #include "icd/entry_points.h"
 
-namespace vitrine::icd::entry {
+namespace vitrine::icd {
+namespace {
+
+/// Calls fill(index in the application's array, attachment) for every attachment of the command.
+template <class Fill>
+void record_blend(VkCommandBuffer buffer, DynamicState which, std::uint32_t first, std::uint32_t count, Fill fill) {
+  const auto attachments = from_handle<CommandBuffer>(buffer).arena.add_array<raster::BlendAttachment>(count);
+  for (std::uint32_t i = 0; i < count; ++i) fill(i, attachments[i]);
+  record(buffer, CmdSetBlend{which, first, attachments});
+}
+
+template <class T>
+void record_value(VkCommandBuffer buffer, DynamicState which, T value) {
+  record(buffer, CmdSetValue{which, static_cast<std::uint32_t>(value)});
+}
+
+}  // namespace
+
+namespace entry {
 
 VKAPI_ATTR void VKAPI_CALL CmdSetViewport(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
                                           const VkViewport* viewports) {
-  record(buffer, icd::CmdSetViewport{first, copy_array(buffer, viewports, count)});
+  record(buffer, icd::CmdSetViewport{first, copy_array(buffer, viewports, count), false});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdSetScissor(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
@@ -45,4 +65,194 @@ VKAPI_ATTR void VKAPI_CALL CmdSetStencilReference(VkCommandBuffer buffer, VkSten
   record(buffer, icd::CmdSetStencil{StencilValue::kReference, faces, reference});
 }
 
-}  // namespace vitrine::icd::entry
+VKAPI_ATTR void VKAPI_CALL CmdSetViewportWithCount(VkCommandBuffer buffer, std::uint32_t count,
+                                                   const VkViewport* viewports) {
+  record(buffer, icd::CmdSetViewport{0, copy_array(buffer, viewports, count), true});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetScissorWithCount(VkCommandBuffer buffer, std::uint32_t count,
+                                                  const VkRect2D* scissors) {
+  CmdSetScissor(buffer, 0, count, scissors);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetStencilOp(VkCommandBuffer buffer, VkStencilFaceFlags faces, VkStencilOp fail,
+                                           VkStencilOp pass, VkStencilOp depth_fail, VkCompareOp compare) {
+  record(buffer, icd::CmdSetStencilOp{faces, fail, pass, depth_fail, compare});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetLineStippleEXT(VkCommandBuffer buffer, std::uint32_t factor, std::uint16_t pattern) {
+  record(buffer, icd::CmdSetLineStipple{factor, pattern});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetColorWriteEnableEXT(VkCommandBuffer buffer, std::uint32_t count,
+                                                     const VkBool32* enables) {
+  ColorWrites writes = kAllColorWrites;
+  for (std::uint32_t i = 0; i < std::min(count, raster::kMaxColorAttachments); ++i) {
+    if (!enables[i]) writes &= ~(1u << i);
+  }
+  record(buffer, icd::CmdSetColorWriteEnable{writes});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetVertexInputEXT(VkCommandBuffer buffer, std::uint32_t binding_count,
+                                                const VkVertexInputBindingDescription2EXT* bindings,
+                                                std::uint32_t attribute_count,
+                                                const VkVertexInputAttributeDescription2EXT* attributes) {
+  record(buffer, icd::CmdSetVertexInput{copy_array(buffer, bindings, binding_count),
+                                        copy_array(buffer, attributes, attribute_count)});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetColorBlendEnableEXT(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
+                                                     const VkBool32* enables) {
+  record_blend(buffer, DynamicState::kBlendEnable, first, count,
+               [&](std::uint32_t i, raster::BlendAttachment& out) { out.enable = enables[i] != VK_FALSE; });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetColorBlendEquationEXT(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
+                                                       const VkColorBlendEquationEXT* equations) {
+  record_blend(buffer, DynamicState::kBlendEquation, first, count, [&](std::uint32_t i, raster::BlendAttachment& out) {
+    const VkColorBlendEquationEXT& e = equations[i];
+    out.src_color = e.srcColorBlendFactor;
+    out.dst_color = e.dstColorBlendFactor;
+    out.color_op = e.colorBlendOp;
+    out.src_alpha = e.srcAlphaBlendFactor;
+    out.dst_alpha = e.dstAlphaBlendFactor;
+    out.alpha_op = e.alphaBlendOp;
+  });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetColorWriteMaskEXT(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
+                                                   const VkColorComponentFlags* masks) {
+  record_blend(buffer, DynamicState::kWriteMask, first, count,
+               [&](std::uint32_t i, raster::BlendAttachment& out) { out.write_mask = masks[i]; });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetSampleMaskEXT(VkCommandBuffer buffer, VkSampleCountFlagBits,
+                                               const VkSampleMask* masks) {
+  record_value(buffer, DynamicState::kSampleMask, masks[0]);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetProvokingVertexModeEXT(VkCommandBuffer buffer, VkProvokingVertexModeEXT mode) {
+  record_value(buffer, DynamicState::kProvokingVertexMode, mode == VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT);
+}
+
+// Commands whose argument is the word that CmdSetValue takes.
+
+VKAPI_ATTR void VKAPI_CALL CmdSetCullMode(VkCommandBuffer buffer, VkCullModeFlags value) {
+  record_value(buffer, DynamicState::kCullMode, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetFrontFace(VkCommandBuffer buffer, VkFrontFace value) {
+  record_value(buffer, DynamicState::kFrontFace, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetPrimitiveTopology(VkCommandBuffer buffer, VkPrimitiveTopology value) {
+  record_value(buffer, DynamicState::kTopology, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthTestEnable(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kDepthTestEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthWriteEnable(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kDepthWriteEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthCompareOp(VkCommandBuffer buffer, VkCompareOp value) {
+  record_value(buffer, DynamicState::kDepthCompareOp, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthBoundsTestEnable(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kDepthBoundsTestEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetStencilTestEnable(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kStencilTestEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetRasterizerDiscardEnable(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kRasterizerDiscardEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthBiasEnable(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kDepthBiasEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetPrimitiveRestartEnable(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kPrimitiveRestartEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetLogicOpEXT(VkCommandBuffer buffer, VkLogicOp value) {
+  record_value(buffer, DynamicState::kLogicOp, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetPatchControlPointsEXT(VkCommandBuffer buffer, std::uint32_t value) {
+  record_value(buffer, DynamicState::kPatchControlPoints, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetTessellationDomainOriginEXT(VkCommandBuffer buffer, VkTessellationDomainOrigin value) {
+  record_value(buffer, DynamicState::kTessellationDomainOrigin, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthClampEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kDepthClampEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetPolygonModeEXT(VkCommandBuffer buffer, VkPolygonMode value) {
+  record_value(buffer, DynamicState::kPolygonMode, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetRasterizationSamplesEXT(VkCommandBuffer buffer, VkSampleCountFlagBits value) {
+  record_value(buffer, DynamicState::kRasterizationSamples, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetAlphaToCoverageEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kAlphaToCoverageEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetAlphaToOneEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kAlphaToOneEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetLogicOpEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kLogicOpEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthClipEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kDepthClipEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetLineRasterizationModeEXT(VkCommandBuffer buffer, VkLineRasterizationModeEXT value) {
+  record_value(buffer, DynamicState::kLineRasterizationMode, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetLineStippleEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kLineStippleEnable, value);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthClipNegativeOneToOneEXT(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kDepthClipNegativeOneToOne, value);
+}
+
+// Commands of VK_EXT_extended_dynamic_state3 whose features are not claimed: they have addresses, but no valid call.
+
+VKAPI_ATTR void VKAPI_CALL CmdSetRasterizationStreamEXT(VkCommandBuffer, std::uint32_t) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetConservativeRasterizationModeEXT(VkCommandBuffer, VkConservativeRasterizationModeEXT) {
+}
+VKAPI_ATTR void VKAPI_CALL CmdSetExtraPrimitiveOverestimationSizeEXT(VkCommandBuffer, float) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetSampleLocationsEnableEXT(VkCommandBuffer, VkBool32) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetColorBlendAdvancedEXT(VkCommandBuffer, std::uint32_t, std::uint32_t,
+                                                       const VkColorBlendAdvancedEXT*) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetViewportWScalingEnableNV(VkCommandBuffer, VkBool32) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetViewportSwizzleNV(VkCommandBuffer, std::uint32_t, std::uint32_t,
+                                                   const VkViewportSwizzleNV*) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetCoverageToColorEnableNV(VkCommandBuffer, VkBool32) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetCoverageToColorLocationNV(VkCommandBuffer, std::uint32_t) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetCoverageModulationModeNV(VkCommandBuffer, VkCoverageModulationModeNV) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetCoverageModulationTableEnableNV(VkCommandBuffer, VkBool32) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetCoverageModulationTableNV(VkCommandBuffer, std::uint32_t, const float*) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetShadingRateImageEnableNV(VkCommandBuffer, VkBool32) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetRepresentativeFragmentTestEnableNV(VkCommandBuffer, VkBool32) {}
+VKAPI_ATTR void VKAPI_CALL CmdSetCoverageReductionModeNV(VkCommandBuffer, VkCoverageReductionModeNV) {}
+
+}  // namespace entry
+}  // namespace vitrine::icd

@@ -1,12 +1,34 @@
-// External memory, fences and semaphores: no handle type is supported (Vulkan 1.3.239, Capabilities).
-#include "icd/entry_points.h"
+// External memory, fences and semaphores (Vulkan 1.3.239, Capabilities; Memory Allocation: File Descriptor External
+// Memory, Host External Memory). Memory can be a file or the application's pages; fences and semaphores cannot leave
+// the device.
+#include <unistd.h>
 
-namespace vitrine::icd::entry {
+#include "icd/device.h"
+#include "icd/entry_points.h"
+#include "icd/external.h"
+#include "icd/memory.h"
+
+namespace vitrine::icd {
+
+VkExternalMemoryProperties external_memory_properties(VkExternalMemoryHandleTypeFlagBits type) {
+  VkExternalMemoryProperties out{};
+  if (type == VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT) {
+    out.externalMemoryFeatures = VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT | VK_EXTERNAL_MEMORY_FEATURE_IMPORTABLE_BIT;
+    out.exportFromImportedHandleTypes = out.compatibleHandleTypes = type;
+  } else if (type == VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT ||
+             type == VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_MAPPED_FOREIGN_MEMORY_BIT_EXT) {
+    out.externalMemoryFeatures = VK_EXTERNAL_MEMORY_FEATURE_IMPORTABLE_BIT;
+    out.compatibleHandleTypes = type;
+  }
+  return out;
+}
+
+namespace entry {
 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceExternalBufferProperties(VkPhysicalDevice,
-                                                                     const VkPhysicalDeviceExternalBufferInfo*,
+                                                                     const VkPhysicalDeviceExternalBufferInfo* info,
                                                                      VkExternalBufferProperties* out) {
-  out->externalMemoryProperties = {};
+  out->externalMemoryProperties = external_memory_properties(info->handleType);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceExternalFenceProperties(VkPhysicalDevice,
@@ -25,4 +47,25 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceExternalSemaphoreProperties(VkPhysic
   out->externalSemaphoreFeatures = 0;
 }
 
-}  // namespace vitrine::icd::entry
+VKAPI_ATTR VkResult VKAPI_CALL GetMemoryFdKHR(VkDevice, const VkMemoryGetFdInfoKHR* info, int* descriptor) {
+  const DeviceMemory& memory = from_handle<DeviceMemory>(info->memory);
+  *descriptor = memory.file >= 0 ? dup(memory.file) : -1;
+  return *descriptor >= 0 ? VK_SUCCESS : VK_ERROR_TOO_MANY_OBJECTS;
+}
+
+/// Opaque descriptors have no properties to ask for, and others are not supported.
+VKAPI_ATTR VkResult VKAPI_CALL GetMemoryFdPropertiesKHR(VkDevice, VkExternalMemoryHandleTypeFlagBits, int,
+                                                        VkMemoryFdPropertiesKHR*) {
+  return VK_ERROR_INVALID_EXTERNAL_HANDLE;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetMemoryHostPointerPropertiesEXT(VkDevice, VkExternalMemoryHandleTypeFlagBits type,
+                                                                 const void*, VkMemoryHostPointerPropertiesEXT* out) {
+  const bool known = external_memory_properties(type).externalMemoryFeatures != 0;
+  if (!known || type == VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT) return VK_ERROR_INVALID_EXTERNAL_HANDLE;
+  out->memoryTypeBits = 1;
+  return VK_SUCCESS;
+}
+
+}  // namespace entry
+}  // namespace vitrine::icd

@@ -1,5 +1,6 @@
 // Format and image capabilities of physical devices (Vulkan 1.3.239, Capabilities; Sparse Resources).
 #include "icd/entry_points.h"
+#include "icd/external.h"
 #include "icd/format_properties.h"
 #include "icd/util.h"
 
@@ -13,6 +14,11 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties(VkPhysicalDevice, V
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice, VkFormat format,
                                                               VkFormatProperties2* out) {
   out->formatProperties = format_properties(format);
+  if (auto* wide = find_in_out_chain<VkFormatProperties3>(out->pNext)) {
+    wide->linearTilingFeatures = wide_features(format, out->formatProperties.linearTilingFeatures);
+    wide->optimalTilingFeatures = wide_features(format, out->formatProperties.optimalTilingFeatures);
+    wide->bufferFeatures = out->formatProperties.bufferFeatures;
+  }
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysicalDevice, VkFormat format,
@@ -31,16 +37,20 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysical
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(VkPhysicalDevice,
                                                                        const VkPhysicalDeviceImageFormatInfo2* info,
                                                                        VkImageFormatProperties2* out) {
+  const auto* asked = find_in_chain<VkPhysicalDeviceExternalImageFormatInfo>(info->pNext);
+  VkExternalMemoryProperties shared{};
+  if (asked && asked->handleType) {
+    shared = external_memory_properties(asked->handleType);
+    if (!shared.externalMemoryFeatures) {
+      out->imageFormatProperties = {};
+      return VK_ERROR_FORMAT_NOT_SUPPORTED;
+    }
+  }
   if (auto* external = find_in_out_chain<VkExternalImageFormatProperties>(out->pNext)) {
-    external->externalMemoryProperties = {};
+    external->externalMemoryProperties = shared;
   }
   if (auto* ycbcr = find_in_out_chain<VkSamplerYcbcrConversionImageFormatProperties>(out->pNext)) {
     ycbcr->combinedImageSamplerDescriptorCount = 1;
-  }
-  const auto* external = find_in_chain<VkPhysicalDeviceExternalImageFormatInfo>(info->pNext);
-  if (external && external->handleType != 0) {
-    out->imageFormatProperties = {};
-    return VK_ERROR_FORMAT_NOT_SUPPORTED;
   }
   VkPhysicalDeviceImageFormatInfo2 all = *info;
   if (const auto* stencil = find_in_chain<VkImageStencilUsageCreateInfo>(info->pNext)) {

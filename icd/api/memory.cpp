@@ -2,8 +2,6 @@
 // Association).
 #include "icd/memory.h"
 
-#include <sys/mman.h>
-
 #include "icd/diagnostics.h"
 #include "icd/entry_points.h"
 #include "icd/image.h"
@@ -12,21 +10,17 @@
 namespace vitrine::icd {
 namespace {
 
-constexpr VkDeviceSize kTailBytes = 64;
 constexpr VkDeviceSize kResourceAlignment = 64;
 
+void write_requirements(VkDeviceSize size, VkDeviceSize alignment, VkMemoryRequirements2& out) {
+  out.memoryRequirements = {(size + alignment - 1) & ~(alignment - 1), alignment, 1};
+  if (auto* dedicated = find_in_out_chain<VkMemoryDedicatedRequirements>(out.pNext)) {
+    dedicated->prefersDedicatedAllocation = VK_FALSE;
+    dedicated->requiresDedicatedAllocation = VK_FALSE;
+  }
+}
+
 }  // namespace
-
-DeviceMemory::DeviceMemory(const HostMemory& m, VkDeviceSize bytes) : Object(m), size(bytes) {
-  // NORESERVE: a large allocation that is never touched costs address space only.
-  void* mapping =
-      mmap(nullptr, size + kTailBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (mapping != MAP_FAILED) data = static_cast<std::byte*>(mapping);
-}
-
-DeviceMemory::~DeviceMemory() {
-  if (data) munmap(data, size + kTailBytes);
-}
 
 namespace entry {
 
@@ -38,7 +32,23 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateMemory(VkDevice device, const VkMemoryAll
     report_error(d, ref(d), "memory", "allocation is larger than the heap");
     return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   }
-  Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info->allocationSize));
+  const auto* file = find_in_chain<VkImportMemoryFdInfoKHR>(info->pNext);
+  const auto* pages = find_in_chain<VkImportMemoryHostPointerInfoEXT>(info->pNext);
+  const auto* exported = find_in_chain<VkExportMemoryAllocateInfo>(info->pNext);
+  if ((file && file->handleType) || (pages && pages->handleType) || (exported && exported->handleTypes)) {
+    Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info->allocationSize));
+    if (file && file->handleType) {
+      if (!object->map_file(file->fd)) return VK_ERROR_INVALID_EXTERNAL_HANDLE;
+    } else if (pages && pages->handleType) {
+      if (!object->use_host_pages(pages->pHostPointer)) return VK_ERROR_INVALID_EXTERNAL_HANDLE;
+    } else if (!object->map_new_file()) {
+      return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    }
+    *memory = to_handle(object.release());
+    return VK_SUCCESS;
+  }
+  Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info->allocationSize,
+                                                         d.physical_device.instance.allocated_bytes));
   if (!object->data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   *memory = to_handle(object.release());
   return VK_SUCCESS;
@@ -80,13 +90,12 @@ VKAPI_ATTR void VKAPI_CALL GetBufferMemoryRequirements(VkDevice device, VkBuffer
 
 VKAPI_ATTR void VKAPI_CALL GetBufferMemoryRequirements2(VkDevice, const VkBufferMemoryRequirementsInfo2* info,
                                                         VkMemoryRequirements2* out) {
-  const Buffer& buffer = from_handle<Buffer>(info->buffer);
-  const VkDeviceSize size = (buffer.size + kResourceAlignment - 1) & ~(kResourceAlignment - 1);
-  out->memoryRequirements = {size, kResourceAlignment, 1};
-  if (auto* dedicated = find_in_out_chain<VkMemoryDedicatedRequirements>(out->pNext)) {
-    dedicated->prefersDedicatedAllocation = VK_FALSE;
-    dedicated->requiresDedicatedAllocation = VK_FALSE;
-  }
+  write_requirements(from_handle<Buffer>(info->buffer).size, kResourceAlignment, *out);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetDeviceBufferMemoryRequirements(VkDevice, const VkDeviceBufferMemoryRequirements* info,
+                                                             VkMemoryRequirements2* out) {
+  write_requirements(info->pCreateInfo->size, kResourceAlignment, *out);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements(VkDevice device, VkImage image, VkMemoryRequirements* out) {
@@ -100,11 +109,21 @@ VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements(VkDevice device, VkImage i
 VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements2(VkDevice, const VkImageMemoryRequirementsInfo2* info,
                                                        VkMemoryRequirements2* out) {
   const texel::ImageLayout& layout = from_handle<Image>(info->image).layout;
-  out->memoryRequirements = {layout.size, layout.alignment, 1};
-  if (auto* dedicated = find_in_out_chain<VkMemoryDedicatedRequirements>(out->pNext)) {
-    dedicated->prefersDedicatedAllocation = VK_FALSE;
-    dedicated->requiresDedicatedAllocation = VK_FALSE;
-  }
+  write_requirements(layout.size, layout.alignment, *out);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetDeviceImageMemoryRequirements(VkDevice device,
+                                                            const VkDeviceImageMemoryRequirements* info,
+                                                            VkMemoryRequirements2* out) {
+  Image image(from_handle<Device>(device).memory);
+  init_image(image, *info->pCreateInfo);
+  write_requirements(image.layout.size, image.layout.alignment, *out);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetDeviceImageSparseMemoryRequirements(VkDevice, const VkDeviceImageMemoryRequirements*,
+                                                                  std::uint32_t* count,
+                                                                  VkSparseImageMemoryRequirements2*) {
+  *count = 0;
 }
 
 VKAPI_ATTR void VKAPI_CALL GetImageSparseMemoryRequirements(VkDevice, VkImage, std::uint32_t* count,

@@ -82,6 +82,17 @@ void write_identity(const PhysicalDevice& device, T& ids) {
   write_uuid(ids.driverUUID, "vitrDRVR", device.properties.driverVersion);
 }
 
+/// What this process has allocated, and what it could have: that, and what the machine has free.
+void write_budget(const PhysicalDevice& device, VkPhysicalDeviceMemoryBudgetPropertiesEXT& out) {
+  std::fill(std::begin(out.heapBudget), std::end(out.heapBudget), 0);
+  std::fill(std::begin(out.heapUsage), std::end(out.heapUsage), 0);
+  const long pages = sysconf(_SC_AVPHYS_PAGES), page_size = sysconf(_SC_PAGESIZE);
+  const VkDeviceSize heap = device.memory_properties.memoryHeaps[0].size;
+  const VkDeviceSize free = pages > 0 && page_size > 0 ? VkDeviceSize(pages) * VkDeviceSize(page_size) : heap;
+  out.heapUsage[0] = device.instance.allocated_bytes.load();
+  out.heapBudget[0] = std::min(heap, out.heapUsage[0] + free);
+}
+
 constexpr VkQueueFamilyProperties kUniversalFamily = {
     VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT, 1, 64, {1, 1, 1}};
 
@@ -134,6 +145,13 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties2(VkPhysicalDev
   array.result();
 }
 
+/// The driver is no tool.
+VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceToolProperties(VkPhysicalDevice, std::uint32_t* count,
+                                                               VkPhysicalDeviceToolProperties*) {
+  *count = 0;
+  return VK_SUCCESS;
+}
+
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties(VkPhysicalDevice device,
                                                              VkPhysicalDeviceMemoryProperties* out) {
   *out = from_handle<PhysicalDevice>(device).memory_properties;
@@ -141,7 +159,11 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties(VkPhysicalDevice de
 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties2(VkPhysicalDevice device,
                                                               VkPhysicalDeviceMemoryProperties2* out) {
-  out->memoryProperties = from_handle<PhysicalDevice>(device).memory_properties;
+  const PhysicalDevice& physical_device = from_handle<PhysicalDevice>(device);
+  out->memoryProperties = physical_device.memory_properties;
+  if (auto* budget = find_in_out_chain<VkPhysicalDeviceMemoryBudgetPropertiesEXT>(out->pNext)) {
+    write_budget(physical_device, *budget);
+  }
 }
 
 }  // namespace entry

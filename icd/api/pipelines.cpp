@@ -1,6 +1,9 @@
 // Graphics and compute pipelines (Vulkan 1.3.239, Pipelines).
 #include "icd/pipeline.h"
 
+#include <algorithm>
+#include <chrono>
+
 #include "base/check.h"
 #include "icd/diagnostics.h"
 #include "icd/entry_points.h"
@@ -28,45 +31,118 @@ const char* stage_name(VkShaderStageFlagBits stage) {
   }
 }
 
-std::shared_ptr<const CompiledShader> compile_or_report(Device& device, PipelineCache* cache,
-                                                        const StageRequest& request) {
-  std::string problem;
-  std::shared_ptr<const CompiledShader> shader = compile_stage(device, cache, request, problem);
-  if (!shader) {
-    const ShaderModule& module = from_handle<ShaderModule>(request.stage->module);
-    report_error(device, ref(module), "pipeline", std::string(stage_name(request.stage->stage)) + " stage: " + problem);
-  }
-  return shader;
-}
-
-std::uint32_t live_outputs(const Subpass& subpass) {
-  std::uint32_t live = 0;
-  for (std::size_t i = 0; i < subpass.colors.size(); ++i) {
-    if (subpass.colors[i] != VK_ATTACHMENT_UNUSED) live |= 1u << i;
-  }
-  return live;
-}
-
-/// Compiles the stages that take part. False after a report.
-bool compile_graphics(Device& device, PipelineCache* cache, const VkGraphicsPipelineCreateInfo& info,
-                      const Subpass& subpass, Pipeline& pipeline) {
-  for (std::uint32_t i = 0; i < info.stageCount; ++i) {
-    const VkPipelineShaderStageCreateInfo& stage = info.pStages[i];
-    StageRequest request{&stage, pipeline.layout, 0};
-    if (stage.stage == VK_SHADER_STAGE_VERTEX_BIT) {
-      pipeline.vertex = compile_or_report(device, cache, request);
-      if (!pipeline.vertex) return false;
-    } else if (stage.stage == VK_SHADER_STAGE_FRAGMENT_BIT) {
-      if (pipeline.state.rasterizer_discard) continue;
-      request.live_color_outputs = live_outputs(subpass);
-      pipeline.fragment = compile_or_report(device, cache, request);
-      if (!pipeline.fragment) return false;
-    } else {
-      VITRINE_UNSUPPORTED("tessellation and geometry stages");
-      return false;
+/// Compiles the stages of one pipeline, and tells the application how that went (VkPipelineCreationFeedback).
+class StageCompiler {
+ public:
+  StageCompiler(Device& device, PipelineCache* cache, VkPipelineCreateFlags flags, const void* chain)
+      : device_(device),
+        cache_(cache),
+        may_compile_(!(flags & VK_PIPELINE_CREATE_FAIL_ON_PIPELINE_COMPILE_REQUIRED_BIT)),
+        feedback_(find_in_chain<VkPipelineCreationFeedbackCreateInfo>(chain)) {
+    if (feedback_) *feedback_->pPipelineCreationFeedback = {};
+    for (std::uint32_t i = 0; feedback_ && i < feedback_->pipelineStageCreationFeedbackCount; ++i) {
+      feedback_->pPipelineStageCreationFeedbacks[i] = {};
     }
   }
+
+  /// `index` is the stage's in pStages. Null, after a report, if it cannot be compiled; failure() has the code.
+  std::shared_ptr<const CompiledShader> compile(const VkPipelineShaderStageCreateInfo& stage, std::uint32_t index,
+                                                const std::shared_ptr<const PipelineLayoutShape>& layout,
+                                                std::uint32_t live_color_outputs) {
+    const Clock::time_point start = Clock::now();
+    StageRequest request{&stage, layout, live_color_outputs, may_compile_};
+    StageResult result = compile_stage(device_, cache_, request);
+    if (feedback_ && index < feedback_->pipelineStageCreationFeedbackCount) {
+      fill(feedback_->pPipelineStageCreationFeedbacks[index], start, result.was_in_cache);
+    }
+    all_in_cache_ &= result.was_in_cache;
+    if (!result.shader && result.problem.empty()) {
+      failure_ = VK_PIPELINE_COMPILE_REQUIRED;
+    } else if (!result.shader) {
+      const ObjectRef object = stage.module ? ref(from_handle<ShaderModule>(stage.module)) : ref(device_);
+      report_error(device_, object, "pipeline", std::string(stage_name(stage.stage)) + " stage: " + result.problem);
+    }
+    return result.shader;
+  }
+
+  VkResult failure() const { return failure_; }
+  void finish() {
+    if (feedback_) fill(*feedback_->pPipelineCreationFeedback, start_, all_in_cache_);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void fill(VkPipelineCreationFeedback& out, Clock::time_point start, bool was_in_cache) const {
+    out.flags = VK_PIPELINE_CREATION_FEEDBACK_VALID_BIT;
+    if (was_in_cache) out.flags |= VK_PIPELINE_CREATION_FEEDBACK_APPLICATION_PIPELINE_CACHE_HIT_BIT;
+    const auto duration = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start);
+    out.duration = static_cast<std::uint64_t>(duration.count());
+  }
+
+  Device& device_;
+  PipelineCache* cache_;
+  bool may_compile_;
+  const VkPipelineCreationFeedbackCreateInfo* feedback_;
+  Clock::time_point start_ = Clock::now();
+  bool all_in_cache_ = true;
+  VkResult failure_ = kCompileError;
+};
+
+/// Compiles one stage if it takes part. False after a report.
+bool compile_graphics_stage(StageCompiler& compiler, const VkPipelineShaderStageCreateInfo& stage, std::uint32_t index,
+                            Pipeline& pipeline) {
+  if (stage.stage == VK_SHADER_STAGE_VERTEX_BIT) {
+    pipeline.vertex = compiler.compile(stage, index, pipeline.layout, 0);
+    return pipeline.vertex != nullptr;
+  }
+  if (stage.stage == VK_SHADER_STAGE_FRAGMENT_BIT) {
+    if (pipeline.never_rasterizes()) return true;
+    pipeline.fragment = compiler.compile(stage, index, pipeline.layout, pipeline.live_colors);
+    return pipeline.fragment != nullptr;
+  }
+  VITRINE_UNSUPPORTED("tessellation and geometry stages");
+  return false;
+}
+
+/// A stage that a library kept, as the application gave it.
+bool compile_library_stage(StageCompiler& compiler, const LibraryStage& kept, Pipeline& pipeline) {
+  VkShaderModuleCreateInfo module = make_struct<VkShaderModuleCreateInfo>();
+  module.codeSize = kept.words.size() * sizeof(std::uint32_t);
+  module.pCode = kept.words.data();
+  auto subgroup_size = make_struct<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>();
+  subgroup_size.requiredSubgroupSize = kept.subgroup_size;
+  if (kept.subgroup_size) module.pNext = &subgroup_size;
+  const VkSpecializationInfo specialization{static_cast<std::uint32_t>(kept.map.size()), kept.map.data(),
+                                            kept.data.size(), kept.data.data()};
+  VkPipelineShaderStageCreateInfo stage = make_struct<VkPipelineShaderStageCreateInfo>(&module);
+  stage.stage = kept.stage;
+  stage.pName = kept.entry_point.c_str();
+  stage.pSpecializationInfo = &specialization;
+  return compile_graphics_stage(compiler, stage, UINT32_MAX, pipeline);
+}
+
+/// Compiles the stages of the info and of linked libraries. False after a report.
+bool compile_graphics(StageCompiler& compiler, const VkGraphicsPipelineCreateInfo& info, VkShaderStageFlags own_stages,
+                      Pipeline& pipeline) {
+  for (std::uint32_t i = 0; i < info.stageCount; ++i) {
+    if (!(info.pStages[i].stage & own_stages)) continue;
+    if (!compile_graphics_stage(compiler, info.pStages[i], i, pipeline)) return false;
+  }
+  for (const LibraryStage& kept : pipeline.library_stages) {
+    if (!compile_library_stage(compiler, kept, pipeline)) return false;
+  }
   return pipeline.vertex != nullptr;
+}
+
+/// The stages that parts of a pipeline have.
+VkShaderStageFlags stages_of(VkGraphicsPipelineLibraryFlagsEXT parts) {
+  VkShaderStageFlags stages = 0;
+  if (parts & VK_GRAPHICS_PIPELINE_LIBRARY_PRE_RASTERIZATION_SHADERS_BIT_EXT) {
+    stages |= VK_SHADER_STAGE_ALL_GRAPHICS & ~VK_SHADER_STAGE_FRAGMENT_BIT;
+  }
+  if (parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT) stages |= VK_SHADER_STAGE_FRAGMENT_BIT;
+  return stages;
 }
 
 /// The attachments that a pipeline of dynamic rendering names, as if they were a subpass's: colour i is attachment i.
@@ -90,21 +166,40 @@ VkResult create_graphics_pipeline(Device& device, PipelineCache* cache, const Vk
   const RenderPass* pass = from_nullable<RenderPass>(info.renderPass);
   const Subpass dynamic = make_subpass(info, device.memory);
   const Subpass& subpass = pass ? pass->subpasses[info.subpass] : dynamic;
+  StageCompiler compiler(device, cache, info.flags, info.pNext);
   Owned<Pipeline> pipeline(create_object<Pipeline>(device.memory, allocator));
-  pipeline->layout = from_handle<PipelineLayout>(info.layout).shape;
-  fill_static_state(*pipeline, info, subpass);
-  if (!compile_graphics(device, cache, info, subpass, *pipeline)) return kCompileError;
+  if (const auto* layout = from_nullable<PipelineLayout>(info.layout)) pipeline->layout = layout->shape;
+  if (const auto* libraries = find_in_chain<VkPipelineLibraryCreateInfoKHR>(info.pNext)) {
+    for (std::uint32_t i = 0; i < libraries->libraryCount; ++i) {
+      link_library(*pipeline, from_handle<Pipeline>(libraries->pLibraries[i]));
+    }
+  }
+  const VkGraphicsPipelineLibraryFlagsEXT parts = own_parts(info);
+  fill_static_state(*pipeline, info, subpass, parts);
+  if (info.flags & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) {
+    for (std::uint32_t i = 0; i < info.stageCount; ++i) {
+      if (!(info.pStages[i].stage & stages_of(parts))) continue;
+      pipeline->library_stages.push_back(copy_stage(info.pStages[i], pipeline->memory));
+    }
+  } else {
+    if (!compile_graphics(compiler, info, stages_of(parts), *pipeline)) return compiler.failure();
+    pipeline->library_stages.clear();
+    if (pipeline->dynamic.none()) apply_color_writes(pipeline->state, pipeline->color_writes);
+  }
+  compiler.finish();
   *out = to_handle(pipeline.release());
   return VK_SUCCESS;
 }
 
 VkResult create_compute_pipeline(Device& device, PipelineCache* cache, const VkComputePipelineCreateInfo& info,
                                  const VkAllocationCallbacks* allocator, VkPipeline* out) {
+  StageCompiler compiler(device, cache, info.flags, info.pNext);
   Owned<Pipeline> pipeline(create_object<Pipeline>(device.memory, allocator));
   pipeline->bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
   pipeline->layout = from_handle<PipelineLayout>(info.layout).shape;
-  pipeline->compute = compile_or_report(device, cache, {&info.stage, pipeline->layout, 0});
-  if (!pipeline->compute) return kCompileError;
+  pipeline->compute = compiler.compile(info.stage, 0, pipeline->layout, 0);
+  if (!pipeline->compute) return compiler.failure();
+  compiler.finish();
   *out = to_handle(pipeline.release());
   return VK_SUCCESS;
 }
@@ -114,8 +209,8 @@ template <class Info, class Create>
 VkResult create_all(VkDevice device, VkPipelineCache cache, std::uint32_t count, const Info* infos,
                     const VkAllocationCallbacks* allocator, VkPipeline* pipelines, Create create) {
   VkResult result = VK_SUCCESS;
+  std::fill_n(pipelines, count, VkPipeline{});
   for (std::uint32_t i = 0; i < count; ++i) {
-    pipelines[i] = VK_NULL_HANDLE;
     VkResult one;
     try {
       one =
@@ -123,7 +218,9 @@ VkResult create_all(VkDevice device, VkPipelineCache cache, std::uint32_t count,
     } catch (const std::bad_alloc&) {
       one = VK_ERROR_OUT_OF_HOST_MEMORY;
     }
-    if (one != VK_SUCCESS) result = one;
+    // An error says more than that a pipeline would have to be compiled.
+    if (one < 0 || (one != VK_SUCCESS && result == VK_SUCCESS)) result = one;
+    if (one != VK_SUCCESS && (infos[i].flags & VK_PIPELINE_CREATE_EARLY_RETURN_ON_FAILURE_BIT)) break;
   }
   return result;
 }

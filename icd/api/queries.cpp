@@ -1,4 +1,6 @@
 // Query pools, their results and the recording of queries (Vulkan 1.3.239, Queries).
+#include <time.h>
+
 #include <algorithm>
 #include <cstring>
 #include <memory>
@@ -93,6 +95,13 @@ VkResult write_query_results(const QueryPool& pool, std::uint32_t first, std::ui
   return result;
 }
 
+std::uint64_t monotonic_nanoseconds() {
+  // POSIX: the clock behind steady_clock too, and what the time domain names.
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
+}
+
 namespace entry {
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateQueryPool(VkDevice device, const VkQueryPoolCreateInfo* info,
@@ -126,6 +135,23 @@ VKAPI_ATTR VkResult VKAPI_CALL GetQueryPoolResults(VkDevice device, VkQueryPool 
 
 VKAPI_ATTR void VKAPI_CALL ResetQueryPool(VkDevice, VkQueryPool pool, std::uint32_t first, std::uint32_t count) {
   reset_queries(from_handle<QueryPool>(pool), first, count);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceCalibrateableTimeDomainsEXT(VkPhysicalDevice, std::uint32_t* count,
+                                                                            VkTimeDomainEXT* domains) {
+  OutArray<VkTimeDomainEXT> array(count, domains);
+  for (const VkTimeDomainEXT domain : {VK_TIME_DOMAIN_DEVICE_EXT, VK_TIME_DOMAIN_CLOCK_MONOTONIC_EXT})
+    array.push(domain);
+  return array.result();
+}
+
+/// The device's clock is the monotonic one: they are never apart.
+VKAPI_ATTR VkResult VKAPI_CALL GetCalibratedTimestampsEXT(VkDevice, std::uint32_t count,
+                                                          const VkCalibratedTimestampInfoEXT*,
+                                                          std::uint64_t* timestamps, std::uint64_t* deviation) {
+  std::fill_n(timestamps, count, monotonic_nanoseconds());
+  *deviation = 0;
+  return VK_SUCCESS;
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdBeginQuery(VkCommandBuffer buffer, VkQueryPool pool, std::uint32_t query,

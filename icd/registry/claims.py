@@ -1,5 +1,6 @@
 """Reads the claims of manifest/: lines of fields separated by ';' (the last one may contain more), '#' starts a comment, blank lines are ignored."""
 import re
+from fnmatch import fnmatchcase as fnmatch
 from dataclasses import dataclass
 
 # Words of manifest/formats and the VK_FORMAT_FEATURE_*_BIT that they stand for.
@@ -54,6 +55,12 @@ class Claims:
             buffer = [BUFFER_WORDS[w] for w in self._words(fields[2], BUFFER_WORDS, where)]
             self.formats[fields[0]] = (image + ["TRANSFER_SRC", "TRANSFER_DST"] if image else [], buffer)
         self.api_version = self.limits["apiVersion"].value
+
+    def limit(self, name):
+        """The row of a name: its own, or the first with a '*' that fits. Null: none."""
+        if name in self.limits:
+            return self.limits[name]
+        return next((row for pattern, row in self.limits.items() if "*" in pattern and fnmatch(name, pattern)), None)
 
     @staticmethod
     def _once(name, known, where):

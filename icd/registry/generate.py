@@ -13,6 +13,9 @@ import sys
 import claims as claims_module
 import vkxml
 
+# Members that got another name when their structure became core.
+CORE_NAMES = {"subgroupSupportedStages": "supportedStages", "subgroupSupportedOperations": "supportedOperations",
+              "subgroupQuadOperationsInAllStages": "quadOperationsInAllStages"}
 BANNER = "// Generated from vk.xml and manifest/ by icd/registry/generate.py.\n"
 
 
@@ -191,7 +194,7 @@ namespace vitrine::icd::entry {{
 
     def _value(self, struct, member):
         nested = self.registry.structs.get(member.type)
-        limit = self.claims.limits.get(member.name)
+        limit = self.claims.limit(CORE_NAMES.get(member.name, member.name))
         if limit is None and nested and nested.name != "VkConformanceVersion":
             return "{" + self._initializer(nested) + "}"
         if limit is None:
@@ -226,7 +229,7 @@ namespace vitrine::icd::entry {{
         """One row per number of VkPhysicalDeviceLimits: value, required minimum, direction."""
         lines = []
         for member in self.registry.structs["VkPhysicalDeviceLimits"].members:
-            limit = self.claims.limits.get(member.name)
+            limit = self.claims.limit(member.name)
             if limit is None or limit.minimum == "-":
                 continue
             values = re.split(r",", limit.value.strip("{}"))

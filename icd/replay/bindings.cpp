@@ -1,4 +1,4 @@
-// Replay of what sets state: bindings, push constants, dynamic state; and how it reaches a draw or dispatch.
+// Replay of what sets state: bindings, push constants, buffers; and how it reaches a draw or dispatch.
 #include <algorithm>
 
 #include "icd/memory.h"
@@ -21,12 +21,6 @@ std::uint32_t bind_dynamic_buffers(BindPoint& point, const DescriptorSet& set, s
   return count;
 }
 
-template <class T, std::size_t N>
-void set_range(std::array<T, N>& out, std::uint32_t first, std::span<const T> values) {
-  if (first >= N) return;
-  std::copy_n(values.begin(), std::min<std::size_t>(values.size(), N - first), out.begin() + first);
-}
-
 }  // namespace
 
 void fill_resources(ReplayState& state, const BindPoint& point, spirv::ResourceTable& table) {
@@ -34,7 +28,7 @@ void fill_resources(ReplayState& state, const BindPoint& point, spirv::ResourceT
   for (std::size_t i = 0; i < layout.sets.size() && i < spirv::kMaxSets; ++i) {
     const DescriptorSet* set = point.sets[i];
     table.set[i] = set ? set->slots : nullptr;
-    table.set_size[i] = set ? set->shape->slot_count : 0;
+    table.set_size[i] = set ? set->slot_count : 0;
   }
   const std::size_t dynamic_count = std::min<std::size_t>(layout.dynamic_count, point.dynamic.size());
   spirv::Descriptor* dynamic = nullptr;
@@ -79,8 +73,11 @@ void execute(ReplayState& state, const CmdBindVertexBuffers& command) {
     out = {};
     const Buffer* buffer = command.buffers[i];
     if (!buffer || !buffer->data) continue;
-    out.size = buffer->resolve_range(command.offsets[i], VK_WHOLE_SIZE);
+    out.size = buffer->resolve_range(command.offsets[i], command.sizes.empty() ? VK_WHOLE_SIZE : command.sizes[i]);
     if (out.size) out.data = buffer->data + command.offsets[i];
+  }
+  for (std::size_t i = 0; i < command.strides.size(); ++i) {
+    state.dynamic.streams[command.first + i].stride = static_cast<std::uint32_t>(command.strides[i]);
   }
   state.dirty |= kDirtyVertexBuffers;
 }
@@ -90,56 +87,6 @@ void execute(ReplayState& state, const CmdBindIndexBuffer& command) {
   const std::uint64_t size = buffer && buffer->data ? buffer->resolve_range(command.offset, VK_WHOLE_SIZE) : 0;
   state.indices = {size ? buffer->data + command.offset : nullptr, size};
   state.draw.index_type = command.type;
-}
-
-void execute(ReplayState& state, const CmdSetViewport& command) {
-  set_range(state.dynamic.viewport, command.first, command.viewports);
-  state.dirty |= kDirtyState;
-}
-
-void execute(ReplayState& state, const CmdSetScissor& command) {
-  set_range(state.dynamic.scissor, command.first, command.scissors);
-  state.dirty |= kDirtyState;
-}
-
-void execute(ReplayState& state, const CmdSetLineWidth& command) {
-  state.dynamic.line_width = command.width;
-  state.dirty |= kDirtyState;
-}
-
-void execute(ReplayState& state, const CmdSetDepthBias& command) {
-  state.dynamic.depth_bias = command;
-  state.dirty |= kDirtyState;
-}
-
-void execute(ReplayState& state, const CmdSetBlendConstants& command) {
-  state.dynamic.blend_constants = command.constants;
-  state.dirty |= kDirtyState;
-}
-
-void execute(ReplayState& state, const CmdSetDepthBounds& command) {
-  state.dynamic.depth_bounds = command;
-  state.dirty |= kDirtyState;
-}
-
-void execute(ReplayState& state, const CmdSetStencil& command) {
-  const auto value = static_cast<std::uint8_t>(command.value);
-  const auto set = [&](DynamicValues::Stencil& face) {
-    switch (command.which) {
-      case StencilValue::kCompareMask:
-        face.compare_mask = value;
-        break;
-      case StencilValue::kWriteMask:
-        face.write_mask = value;
-        break;
-      case StencilValue::kReference:
-        face.reference = value;
-        break;
-    }
-  };
-  if (command.faces & VK_STENCIL_FACE_FRONT_BIT) set(state.dynamic.front);
-  if (command.faces & VK_STENCIL_FACE_BACK_BIT) set(state.dynamic.back);
-  state.dirty |= kDirtyState;
 }
 
 }  // namespace vitrine::icd

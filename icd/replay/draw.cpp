@@ -12,45 +12,17 @@ namespace {
 constexpr std::size_t kArenaBudget = std::size_t{32} << 20;
 constexpr std::uint32_t kComputeInvocationsCounter = 10;  // bit of COMPUTE_SHADER_INVOCATIONS
 
-void apply_dynamic_stencil(const DynamicValues::Stencil& values, std::uint32_t dynamic, raster::StencilFace& face) {
-  if (dynamic & kDynamicStencilCompareMask) face.compare_mask = values.compare_mask;
-  if (dynamic & kDynamicStencilWriteMask) face.write_mask = values.write_mask;
-  if (dynamic & kDynamicStencilReference) face.reference = values.reference;
-}
-
-/// The pipeline's own state where nothing is dynamic, else a copy of it in the arena.
-const raster::State* resolve_state(ReplayState& state) {
-  const Pipeline& pipeline = *state.graphics.pipeline;
-  const std::uint32_t dynamic = pipeline.dynamic;
-  if (dynamic == 0) return &pipeline.state;
-  raster::State* out = state.arena.make<raster::State>();
-  *out = pipeline.state;
-  const DynamicValues& values = state.dynamic;
-  if (dynamic & kDynamicViewport) std::copy_n(values.viewport.begin(), out->viewport_count, out->viewport.begin());
-  if (dynamic & kDynamicScissor) std::copy_n(values.scissor.begin(), out->viewport_count, out->scissor.begin());
-  if (dynamic & kDynamicLineWidth) out->line_width = values.line_width;
-  if (dynamic & kDynamicDepthBias) {
-    out->depth_bias_constant = values.depth_bias.constant;
-    out->depth_bias_clamp = values.depth_bias.clamp;
-    out->depth_bias_slope = values.depth_bias.slope;
-  }
-  if (dynamic & kDynamicBlendConstants) out->blend_constants = values.blend_constants;
-  if (dynamic & kDynamicDepthBounds) {
-    out->min_depth_bounds = values.depth_bounds.min;
-    out->max_depth_bounds = values.depth_bounds.max;
-  }
-  apply_dynamic_stencil(values.front, dynamic, out->front);
-  apply_dynamic_stencil(values.back, dynamic, out->back);
-  return out;
-}
-
 void resolve_vertex_buffers(ReplayState& state) {
   const Pipeline& pipeline = *state.graphics.pipeline;
+  const bool dynamic_input = pipeline.dynamic.test(DynamicState::kVertexInput);
+  const bool dynamic_stride = dynamic_input || pipeline.dynamic.test(DynamicState::kVertexStride);
+  const VertexStreams& streams = dynamic_input ? state.dynamic.streams : pipeline.streams;
   for (std::uint32_t i = 0; i < raster::kMaxVertexBindings; ++i) {
-    const VertexStream& stream = pipeline.streams[i];
+    const VertexStream& stream = streams[i];
     if (!stream.used) continue;
     const BoundBuffer& buffer = state.vertex_buffers[i];
-    state.draw.vertex_binding[i] = {buffer.data, buffer.size, stream.stride, stream.per_instance, stream.divisor};
+    const std::uint32_t stride = dynamic_stride ? state.dynamic.streams[i].stride : stream.stride;
+    state.draw.vertex_binding[i] = {buffer.data, buffer.size, stride, stream.per_instance, stream.divisor};
   }
 }
 
@@ -63,7 +35,7 @@ const std::byte* copy_push_constants(ReplayState& state) {
 /// Brings `state.draw` up to date. False if there is nothing to draw with or to.
 bool prepare_draw(ReplayState& state) {
   const Pipeline* pipeline = state.graphics.pipeline;
-  if (!pipeline || !state.pass) return false;
+  if (!pipeline || !state.pass || state.suppressed) return false;
   if (state.arena.size() > kArenaBudget) flush_pass(state);
   raster::DrawCall& draw = state.draw;
   if (state.dirty & kDirtyState) {
@@ -118,7 +90,7 @@ bool read_arguments(const Buffer& buffer, VkDeviceSize offset, T& out) {
 
 void dispatch(ReplayState& state, const std::uint32_t base[3], const std::uint32_t groups[3]) {
   const Pipeline* pipeline = state.compute.pipeline;
-  if (!pipeline || groups[0] == 0 || groups[1] == 0 || groups[2] == 0) return;
+  if (!pipeline || state.suppressed || groups[0] == 0 || groups[1] == 0 || groups[2] == 0) return;
   spirv::ResourceTable resources;
   fill_resources(state, state.compute, resources);
   resources.push_constants = state.push_constants.data();
@@ -145,6 +117,29 @@ void execute(ReplayState& state, const CmdDraw& command) {
 void execute(ReplayState& state, const CmdDrawIndexed& command) {
   if (prepare_draw(state)) draw_indexed(state, command, 0);
 }
+
+void execute(ReplayState& state, const CmdDrawMulti& command) {
+  for (std::uint32_t i = 0; i < command.draws.size() && prepare_draw(state); ++i) {
+    const VkMultiDrawInfoEXT& d = command.draws[i];
+    draw_direct(state, {d.vertexCount, command.instance_count, d.firstVertex, command.first_instance}, i);
+  }
+}
+
+void execute(ReplayState& state, const CmdDrawMultiIndexed& command) {
+  for (std::uint32_t i = 0; i < command.draws.size() && prepare_draw(state); ++i) {
+    const VkMultiDrawIndexedInfoEXT& d = command.draws[i];
+    draw_indexed(state, {d.indexCount, command.instance_count, d.firstIndex, d.vertexOffset, command.first_instance},
+                 i);
+  }
+}
+
+void execute(ReplayState& state, const CmdBeginConditionalRendering& command) {
+  std::uint32_t value = 0;
+  read_arguments(*command.buffer, command.offset, value);
+  state.suppressed = (value == 0) != command.inverted;
+}
+
+void execute(ReplayState& state, const CmdEndConditionalRendering&) { state.suppressed = false; }
 
 void execute(ReplayState& state, const CmdDrawIndirect& command) {
   std::uint32_t count = command.draw_count;

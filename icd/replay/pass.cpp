@@ -157,7 +157,7 @@ void execute(ReplayState& state, const CmdEndRenderPass&) {
 }
 
 void execute(ReplayState& state, const CmdClearAttachments& command) {
-  if (!state.pass) return;
+  if (!state.pass || state.suppressed) return;
   for (const VkClearAttachment& clear : command.attachments) {
     for (const VkClearRect& rect : command.rects) clear_rect(state, clear, rect);
   }

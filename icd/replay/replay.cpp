@@ -31,6 +31,7 @@ void forget_bindings(ReplayState& state) {
   state.draw = {};
   state.draw.fault = &state.fault;
   state.counters = {};
+  state.suppressed = false;
   state.dirty = kDirtyAll;
 }
 

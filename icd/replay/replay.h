@@ -21,20 +21,6 @@ struct BindPoint {
   std::array<spirv::Descriptor, 512> dynamic{};  ///< the limits of dynamic buffers (manifest/limits), offsets applied
 };
 
-/// Values of dynamic state, as last set by commands.
-struct DynamicValues {
-  std::array<VkViewport, raster::kMaxViewports> viewport{};
-  std::array<VkRect2D, raster::kMaxViewports> scissor{};
-  float line_width = 1;
-  CmdSetDepthBias depth_bias{};
-  std::array<float, 4> blend_constants{};
-  CmdSetDepthBounds depth_bounds{0, 1};
-  struct Stencil {
-    std::uint8_t compare_mask = 0, write_mask = 0, reference = 0;
-  };
-  Stencil front, back;
-};
-
 /// What is readable of a bound buffer, from the bound offset on.
 struct BoundBuffer {
   const std::byte* data = nullptr;
@@ -74,6 +60,7 @@ enum DirtyBit : std::uint32_t {
 struct PendingQuery {
   QueryPool* pool;
   std::uint32_t query;
+  bool timestamp;  ///< gets its value then: the work before it is done when the pass is flushed
 };
 
 struct ReplayState {
@@ -88,6 +75,7 @@ struct ReplayState {
   std::array<BoundBuffer, raster::kMaxVertexBindings> vertex_buffers{};
   BoundBuffer indices;
   DynamicValues dynamic;
+  bool suppressed = false;  ///< conditional rendering discards draws, dispatches and clears
   std::uint32_t dirty = kDirtyAll;
   raster::DrawCall draw;  ///< up to date but for `dirty` and the numbers of the draw itself
 
@@ -119,6 +107,10 @@ void flush_pass(ReplayState& state);
 /// Makes ended queries readable.
 void publish_queries(ReplayState& state);
 
+/// The bound pipeline's own state where nothing is dynamic, else a copy of it in the arena with the values that
+/// commands have set.
+const raster::State* resolve_state(ReplayState& state);
+
 /// Fills the parts of a resource table that the bound pipeline uses. Dynamic buffers and push constants are copied into
 /// the arena.
 void fill_resources(ReplayState& state, const BindPoint& bind_point, spirv::ResourceTable& table);
@@ -135,9 +127,19 @@ void execute(ReplayState& state, const CmdSetDepthBias& command);
 void execute(ReplayState& state, const CmdSetBlendConstants& command);
 void execute(ReplayState& state, const CmdSetDepthBounds& command);
 void execute(ReplayState& state, const CmdSetStencil& command);
+void execute(ReplayState& state, const CmdSetStencilOp& command);
+void execute(ReplayState& state, const CmdSetValue& command);
+void execute(ReplayState& state, const CmdSetLineStipple& command);
+void execute(ReplayState& state, const CmdSetColorWriteEnable& command);
+void execute(ReplayState& state, const CmdSetBlend& command);
+void execute(ReplayState& state, const CmdSetVertexInput& command);
 void execute(ReplayState& state, const CmdDraw& command);
 void execute(ReplayState& state, const CmdDrawIndexed& command);
+void execute(ReplayState& state, const CmdDrawMulti& command);
+void execute(ReplayState& state, const CmdDrawMultiIndexed& command);
 void execute(ReplayState& state, const CmdDrawIndirect& command);
+void execute(ReplayState& state, const CmdBeginConditionalRendering& command);
+void execute(ReplayState& state, const CmdEndConditionalRendering& command);
 void execute(ReplayState& state, const CmdDispatch& command);
 void execute(ReplayState& state, const CmdDispatchIndirect& command);
 void execute(ReplayState& state, const CmdBeginRenderPass& command);

@@ -1,6 +1,5 @@
 // Replay of queries, events and barriers.
 #include <bit>
-#include <chrono>
 
 #include "icd/memory.h"
 #include "icd/replay/replay.h"
@@ -18,9 +17,9 @@ std::uint32_t query_indices(const ReplayState& state) {
 }
 
 /// Queries become readable when their counters are final: now outside a pass, else when it is flushed.
-void end_queries(ReplayState& state, QueryPool& pool, std::uint32_t query) {
+void end_queries(ReplayState& state, QueryPool& pool, std::uint32_t query, bool timestamp = false) {
   const std::uint32_t end = std::min(query + query_indices(state), pool.count);
-  for (std::uint32_t q = query; q < end; ++q) state.pending_queries.push_back({&pool, q});
+  for (std::uint32_t q = query; q < end; ++q) state.pending_queries.push_back({&pool, q, timestamp && q == query});
   if (!state.pass) publish_queries(state);
 }
 
@@ -28,9 +27,11 @@ void end_queries(ReplayState& state, QueryPool& pool, std::uint32_t query) {
 
 void publish_queries(ReplayState& state) {
   if (state.pending_queries.empty()) return;
+  const std::uint64_t now = monotonic_nanoseconds();
   {
     const std::lock_guard lock(state.device.sync_mutex);
     for (const PendingQuery& q : state.pending_queries) {
+      if (q.timestamp) q.pool->counters_of(q.query)->store(now);
       q.pool->available[q.query].store(1, std::memory_order_release);
     }
   }
@@ -58,11 +59,9 @@ void execute(ReplayState&, const CmdResetQueryPool& command) {
 
 void execute(ReplayState& state, const CmdWriteTimestamp& command) {
   if (command.query >= command.pool->count) return;
-  if (command.after_work) flush_pass(state);
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  const auto nanoseconds = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
-  command.pool->counters_of(command.query)->store(static_cast<std::uint64_t>(nanoseconds));
-  end_queries(state, *command.pool, command.query);
+  const bool later = command.after_work && state.pass;
+  if (!later) command.pool->counters_of(command.query)->store(monotonic_nanoseconds());
+  end_queries(state, *command.pool, command.query, later);
 }
 
 void execute(ReplayState&, const CmdCopyQueryPoolResults& command) {

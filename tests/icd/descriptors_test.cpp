@@ -117,6 +117,54 @@ TEST_F(DescriptorSets, WritesGoOnInTheNextBinding) {
   EXPECT_EQ(s.slots[3].size, 10u) << "cut at the end of the buffer";
 }
 
+TEST_F(DescriptorSets, TheLastBindingMayHaveACountOfEachSet) {
+  constexpr VkDescriptorType kType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  const VkDescriptorSetLayoutBinding bindings[2] = {{0, kType, 2, VK_SHADER_STAGE_ALL, {}},
+                                                    {4, kType, 100, VK_SHADER_STAGE_ALL, {}}};
+  const VkDescriptorBindingFlags binding_flags[2] = {0, VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT |
+                                                            VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT |
+                                                            VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT};
+  auto flags = make_struct<VkDescriptorSetLayoutBindingFlagsCreateInfo>();
+  flags.bindingCount = 2;
+  flags.pBindingFlags = binding_flags;
+  auto info = make_struct<VkDescriptorSetLayoutCreateInfo>(&flags);
+  info.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_UPDATE_AFTER_BIND_POOL_BIT;
+  info.bindingCount = 2;
+  info.pBindings = bindings;
+  auto variable_support = make_struct<VkDescriptorSetVariableDescriptorCountLayoutSupport>();
+  auto support = make_struct<VkDescriptorSetLayoutSupport>(&variable_support);
+  VK_GET(instance, GetDescriptorSetLayoutSupport)(device, &info, &support);
+  EXPECT_TRUE(support.supported);
+  EXPECT_GE(variable_support.maxVariableDescriptorCount, 1000000u);
+  VkDescriptorSetLayout layout;
+  ASSERT_EQ(VK_GET(instance, CreateDescriptorSetLayout)(device, &info, nullptr, &layout), VK_SUCCESS);
+  layouts.push_back(layout);
+
+  const VkDescriptorPool pool = make_pool(2, {{kType, 12}});
+  const std::uint32_t wanted[2] = {5, 3};
+  auto counts = make_struct<VkDescriptorSetVariableDescriptorCountAllocateInfo>();
+  counts.descriptorSetCount = 2;
+  counts.pDescriptorCounts = wanted;
+  const VkDescriptorSetLayout twice[2] = {layout, layout};
+  auto allocate_info = make_struct<VkDescriptorSetAllocateInfo>(&counts);
+  allocate_info.descriptorPool = pool;
+  allocate_info.descriptorSetCount = 2;
+  allocate_info.pSetLayouts = twice;
+  VkDescriptorSet sets[2];
+  ASSERT_EQ(VK_GET(instance, AllocateDescriptorSets)(device, &allocate_info, sets), VK_SUCCESS);
+  EXPECT_EQ(from_handle<DescriptorSet>(sets[0]).slot_count, 7u);
+  EXPECT_EQ(from_handle<DescriptorSet>(sets[1]).slot_count, 5u);
+  const VkBuffer buffer = to_handle(&fake_buffer(100));
+  update(buffer_write(sets[1], 4, 2, kType, {{buffer, 0, 16}, {buffer, 0, 16}}));  // the second is beyond the end
+  EXPECT_EQ(from_handle<DescriptorSet>(sets[1]).slots[4].size, 16u);
+  EXPECT_EQ(VK_GET(instance, FreeDescriptorSets)(device, pool, 2, sets), VK_SUCCESS);
+  const std::uint32_t all = 10;
+  counts.descriptorSetCount = allocate_info.descriptorSetCount = 1;
+  counts.pDescriptorCounts = &all;
+  EXPECT_EQ(VK_GET(instance, AllocateDescriptorSets)(device, &allocate_info, sets), VK_SUCCESS)
+      << "the sets gave back what they had";
+}
+
 TEST_F(DescriptorSets, CopiesMoveElementsBetweenSets) {
   constexpr VkDescriptorType kType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   const VkDescriptorSetLayout layout = make_layout({{0, kType, 2, VK_SHADER_STAGE_ALL, {}}});

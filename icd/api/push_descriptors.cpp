@@ -1,0 +1,71 @@
+// Recording push descriptors (VK_KHR_push_descriptor): each push makes a set of its own in the command buffer, a copy
+// of the one before with the writes applied, and binds it. So replay knows nothing of them, and draws already recorded
+// keep what they saw.
+#include <algorithm>
+
+#include "icd/command_buffer.h"
+#include "icd/descriptor_template.h"
+#include "icd/entry_points.h"
+
+namespace vitrine::icd {
+namespace {
+
+/// A new set for `number`; it begins as a copy of what was pushed before to a set of the same shape.
+DescriptorSet& add_set(CommandBuffer& buffer, VkPipelineBindPoint bind_point, const PipelineLayoutShape& layout,
+                       std::uint32_t number) {
+  const std::shared_ptr<const SetShape>& shape = layout.sets[number];
+  buffer.pushed_sets.reserve(buffer.pushed_sets.size() + 1);
+  void* storage = buffer.arena.add_data(set_bytes(*shape, 0));
+  DescriptorSet* set = construct_set(storage, buffer.memory, shape, 0);
+  buffer.pushed_sets.push_back(set);
+  DescriptorSet*& current = buffer.current_push[bind_point == VK_PIPELINE_BIND_POINT_COMPUTE][number];
+  if (current && current->shape == shape) std::copy_n(current->slots, set->slot_count, set->slots);
+  current = set;
+  return *set;
+}
+
+void record_bind(CommandBuffer& buffer, VkPipelineBindPoint bind_point, const PipelineLayoutShape& layout,
+                 std::uint32_t number, DescriptorSet& set) {
+  const auto sets = buffer.arena.add_array<DescriptorSet*>(1);
+  sets[0] = &set;
+  record(buffer, CmdBindDescriptorSets{
+                     bind_point, number, sets, buffer.arena.copy_array(&layout.first_dynamic[number], 1), {}});
+}
+
+bool has_set(const PipelineLayoutShape& layout, std::uint32_t number) {
+  return number < layout.sets.size() && number < spirv::kMaxSets && layout.sets[number];
+}
+
+}  // namespace
+
+namespace entry {
+
+VKAPI_ATTR void VKAPI_CALL CmdPushDescriptorSetKHR(VkCommandBuffer handle, VkPipelineBindPoint bind_point,
+                                                   VkPipelineLayout layout_handle, std::uint32_t number,
+                                                   std::uint32_t count, const VkWriteDescriptorSet* writes) {
+  CommandBuffer& buffer = from_handle<CommandBuffer>(handle);
+  const PipelineLayoutShape& layout = *from_handle<PipelineLayout>(layout_handle).shape;
+  if (!has_set(layout, number)) return;
+  DescriptorSet& set = add_set(buffer, bind_point, layout, number);
+  for (std::uint32_t i = 0; i < count; ++i) write_descriptors(writes[i], set);
+  record_bind(buffer, bind_point, layout, number, set);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdPushDescriptorSetWithTemplateKHR(VkCommandBuffer handle,
+                                                               VkDescriptorUpdateTemplate template_handle,
+                                                               VkPipelineLayout layout_handle, std::uint32_t number,
+                                                               const void* data) {
+  CommandBuffer& buffer = from_handle<CommandBuffer>(handle);
+  const auto& update_template = from_handle<DescriptorUpdateTemplate>(template_handle);
+  const PipelineLayoutShape& layout = *from_handle<PipelineLayout>(layout_handle).shape;
+  if (!has_set(layout, number)) return;
+  DescriptorSet& set = add_set(buffer, update_template.bind_point, layout, number);
+  TemplateScratch scratch(buffer.memory);
+  for (const VkDescriptorUpdateTemplateEntry& e : update_template.entries) {
+    write_descriptors(make_write(e, data, scratch), set);
+  }
+  record_bind(buffer, update_template.bind_point, layout, number, set);
+}
+
+}  // namespace entry
+}  // namespace vitrine::icd

@@ -1,0 +1,95 @@
+// Memory that is a file or the application's own pages.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstring>
+
+#include "tests/icd/fixture.h"
+
+namespace vitrine::icd::test {
+namespace {
+
+class ExternalMemory : public DeviceTest {
+ protected:
+  VkResult allocate(VkDeviceSize size, void* next, VkDeviceMemory* memory) {
+    auto info = make_struct<VkMemoryAllocateInfo>(next);
+    info.allocationSize = size;
+    return VK_GET(instance, AllocateMemory)(device, &info, nullptr, memory);
+  }
+  std::byte* map(VkDeviceMemory memory) {
+    void* data = nullptr;
+    EXPECT_EQ(VK_GET(instance, MapMemory)(device, memory, 0, VK_WHOLE_SIZE, 0, &data), VK_SUCCESS);
+    return static_cast<std::byte*>(data);
+  }
+  void free(VkDeviceMemory memory) { VK_GET(instance, FreeMemory)(device, memory, nullptr); }
+};
+
+TEST_F(ExternalMemory, FilesAreSharedAndOutliveTheirFirstOwner) {
+  auto exported = make_struct<VkExportMemoryAllocateInfo>();
+  exported.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+  VkDeviceMemory first, second;
+  constexpr VkDeviceSize kSize = 100000;
+  ASSERT_EQ(allocate(kSize, &exported, &first), VK_SUCCESS);
+  auto get = make_struct<VkMemoryGetFdInfoKHR>();
+  get.memory = first;
+  get.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+  int descriptor = -1;
+  ASSERT_EQ(VK_GET(instance, GetMemoryFdKHR)(device, &get, &descriptor), VK_SUCCESS);
+  auto import = make_struct<VkImportMemoryFdInfoKHR>();
+  import.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+  import.fd = descriptor;
+  EXPECT_EQ(allocate(kSize * 100, &import, &second), VK_ERROR_INVALID_EXTERNAL_HANDLE) << "the file is smaller";
+  ASSERT_EQ(allocate(kSize, &import, &second), VK_SUCCESS);
+  std::byte* one = map(first);
+  std::byte* two = map(second);
+  EXPECT_EQ(one[77], std::byte{0});
+  std::memset(one, 0x5a, kSize);
+  EXPECT_EQ(two[0], std::byte{0x5a});
+  EXPECT_EQ(two[kSize - 1], std::byte{0x5a});
+  EXPECT_EQ(two[kSize + 63], std::byte{0}) << "the tail can be read";
+  free(first);
+  EXPECT_EQ(two[kSize / 2], std::byte{0x5a});
+  free(second);
+}
+
+TEST_F(ExternalMemory, PagesOfTheApplicationAreUsedInPlace) {
+  constexpr std::size_t kPage = 4096;
+  auto* pages =
+      static_cast<std::byte*>(mmap(nullptr, 4 * kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+  ASSERT_NE(static_cast<void*>(pages), MAP_FAILED);
+  munmap(pages + 3 * kPage, kPage);  // nothing follows
+  pages[5] = std::byte{9};
+  auto properties = make_struct<VkMemoryHostPointerPropertiesEXT>();
+  constexpr auto kType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
+  ASSERT_EQ(VK_GET(instance, GetMemoryHostPointerPropertiesEXT)(device, kType, pages, &properties), VK_SUCCESS);
+  EXPECT_EQ(properties.memoryTypeBits, 1u);
+  auto import = make_struct<VkImportMemoryHostPointerInfoEXT>();
+  import.handleType = kType;
+  import.pHostPointer = pages;
+  VkDeviceMemory memory;
+  ASSERT_EQ(allocate(3 * kPage, &import, &memory), VK_SUCCESS);
+  std::byte* data = map(memory);
+  EXPECT_EQ(data, pages);
+  EXPECT_EQ(data[3 * kPage + 63], std::byte{0}) << "the tail can be read";
+  free(memory);
+  EXPECT_EQ(pages[5], std::byte{9});
+  munmap(pages, 3 * kPage);
+}
+
+TEST_F(ExternalMemory, CapabilitiesNameTheHandles) {
+  const auto features = [&](VkExternalMemoryHandleTypeFlagBits type) {
+    auto info = make_struct<VkPhysicalDeviceExternalBufferInfo>();
+    info.handleType = type;
+    info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    auto out = make_struct<VkExternalBufferProperties>();
+    VK_GET(instance, GetPhysicalDeviceExternalBufferProperties)(physical_device, &info, &out);
+    return out.externalMemoryProperties.externalMemoryFeatures;
+  };
+  EXPECT_EQ(features(VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT),
+            VkFlags{VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT | VK_EXTERNAL_MEMORY_FEATURE_IMPORTABLE_BIT});
+  EXPECT_EQ(features(VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT),
+            VkFlags{VK_EXTERNAL_MEMORY_FEATURE_IMPORTABLE_BIT});
+}
+
+}  // namespace
+}  // namespace vitrine::icd::test
