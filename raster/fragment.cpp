@@ -2,6 +2,7 @@
 // Operations). lavapipe-rasterization.md 4.2, 5.3, 8.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "base/numeric.h"
 #include "raster/tile.h"
@@ -211,6 +212,20 @@ void set_built_ins(ShadeRun& run) {
   set_interpolation_places(run);
 }
 
+/// 6.5: how much of each pixel a smooth line covers, across it times along it.
+void cover_smooth_lines(ShadeRun& run) {
+  TileWorker& worker = run.worker;
+  const std::uint32_t first = kFirstVaryingPlane + run.plan.perspective_count - 4;
+  alignas(64) float across[base::kWaveWidth], half_width[base::kWaveWidth];
+  alignas(64) float along[base::kWaveWidth], half_length[base::kWaveWidth];
+  float* const values[] = {across, half_width, along, half_length};
+  for (std::uint32_t i = 0; i < 4; ++i) evaluate_plane(run.wave.planes, first + i, worker.center, run.scale, values[i]);
+  const auto saturate = [](float v) { return v > 0 ? (v < 1 ? v : 1) : 0; };
+  for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
+    worker.line_coverage[lane] =
+        saturate(half_width[lane] - std::fabs(across[lane])) * saturate(half_length[lane] - std::fabs(along[lane]));
+}
+
 /// 8.6, and gl_SampleMask.
 void change_coverage(ShadeRun& run) {
   const PipelinePlan& plan = run.plan;
@@ -226,7 +241,8 @@ void change_coverage(ShadeRun& run) {
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
     const float limit = plan.samples == 1 ? 0.5f : static_cast<float>(s) * 0.25f;
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
-      if (!(base::float_of(alpha[lane]) > limit)) run.kept[s] &= ~(LaneMask{1} << lane);
+      if (!(base::float_of(alpha[lane]) * (plan.smooth_lines ? run.worker.line_coverage[lane] : 1.0f) > limit))
+        run.kept[s] &= ~(LaneMask{1} << lane);
   }
 }
 
@@ -275,12 +291,12 @@ void test_late(ShadeRun& run) {
 }
 
 /// The four registers of a colour: the shader's own where they lie next to each other, else copies in `scratch`.
-/// Components that are not written are 0.
-const WaveRegister* collect_color(const ShadeRun& run, const std::array<std::uint32_t, 4>& regs,
+/// Components that are not written are 0. `scaled`: smooth lines scale the alpha.
+const WaveRegister* collect_color(const ShadeRun& run, const std::array<std::uint32_t, 4>& regs, bool scaled,
                                   WaveRegister scratch[4]) {
   const StageRunner& runner = run.worker.runner;
   const bool written = std::find(regs.begin(), regs.end(), kNoReg) == regs.end();
-  if (written && !run.plan.state->alpha_to_one) {
+  if (written && !run.plan.state->alpha_to_one && !run.plan.smooth_lines) {
     const WaveRegister* first = &runner.output(regs[0]);
     if (&runner.output(regs[1]) == first + 1 && &runner.output(regs[2]) == first + 2 &&
         &runner.output(regs[3]) == first + 3)
@@ -292,6 +308,9 @@ const WaveRegister* collect_color(const ShadeRun& run, const std::array<std::uin
     else
       scratch[c] = runner.output(regs[c]);
   }
+  if (run.plan.smooth_lines && scaled)
+    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
+      scratch[3].lane[lane] = base::bits_of(base::float_of(scratch[3].lane[lane]) * run.worker.line_coverage[lane]);
   if (run.plan.state->alpha_to_one) splat(scratch[3], base::bits_of(1.0f));
   return scratch;
 }
@@ -305,9 +324,11 @@ void write_colors(ShadeRun& run) {
   for (std::uint32_t i = 0; i < plan.color_count; ++i) {
     const texel::ImageView& view = worker.pass->color[i];
     if (!plan.writer[i].function || worker.target.layer >= view.layer_count) continue;
-    const WaveRegister* color = collect_color(run, plan.frag.color[i], worker.color);
+    const texel::Numeric numeric = view.format->channel[0].numeric;
+    const bool scaled = numeric != texel::Numeric::kUint && numeric != texel::Numeric::kSint;
+    const WaveRegister* color = collect_color(run, plan.frag.color[i], scaled, worker.color);
     const bool dual = i == 0 && plan.dual_source;
-    const WaveRegister* second = dual ? collect_color(run, plan.frag.color_second, worker.second) : nullptr;
+    const WaveRegister* second = dual ? collect_color(run, plan.frag.color_second, scaled, worker.second) : nullptr;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
       write_color(plan.writer[i], {&view, worker.target.layer, s, &run.wave.position, run.kept[s], color, second});
   }
@@ -328,6 +349,7 @@ void shade(ShadeRun& run) {
   const LaneMask alive = worker.runner.run(active, active & ~run.pixels);
   if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(run.pixels));
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) run.kept[s] &= alive;
+  if (plan.smooth_lines) cover_smooth_lines(run);
   if (plan.may_kill) change_coverage(run);
   if (plan.depth_order == TestOrder::kLate) test_late(run);
   for (std::uint32_t s = run.first_sample; worker.counts && s < run.end_sample; ++s)

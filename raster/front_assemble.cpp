@@ -94,18 +94,26 @@ float stipple_length(const State& state, const Vertex* v0, const Vertex* v1) {
   return base::max_second(std::fabs(dx), std::fabs(dy));
 }
 
+void emit_segment(const Assembler& a, const Vertex* v0, const Vertex* v1, bool front) {
+  if (a.plan.smooth_lines)
+    setup_smooth_line(a.setup, a.arena, v0, v1, front);
+  else
+    setup_line(a.setup, v0, v1, front);
+}
+
 /// A line in window space: as a whole, or the stretches where the stipple pattern has ones.
 void emit_line(Assembler& a, const Vertex* v0, const Vertex* v1, bool front) {
   const State& state = *a.plan.state;
-  if (!state.line_stipple) return setup_line(a.setup, v0, v1, front);
+  if (!state.line_stipple && !a.plan.smooth_lines) return setup_line(a.setup, v0, v1, front);
   const Vertex* provoking = state.provoking_vertex_last ? v1 : v0;
   v0 = with_flat_values(a.plan, a.arena, v0, provoking);
   v1 = with_flat_values(a.plan, a.arena, v1, provoking);
+  if (!state.line_stipple) return emit_segment(a, v0, v1, front);
   const float length = stipple_length(state, v0, v1);
   if (!std::isfinite(length)) return;
   const auto pixels = static_cast<std::uint32_t>(std::ceil(length));
   const auto segment = [&](float t0, float t1) {
-    setup_line(a.setup, t0 > 0 ? between(a, v0, v1, t0) : v0, t1 < 1 ? between(a, v0, v1, t1) : v1, front);
+    emit_segment(a, t0 > 0 ? between(a, v0, v1, t0) : v0, t1 < 1 ? between(a, v0, v1, t1) : v1, front);
   };
   const std::uint32_t factor = std::max<std::uint32_t>(state.line_stipple_factor, 1);
   bool drawing = false;
@@ -163,7 +171,6 @@ void emit_clipped(Assembler& a, std::uint32_t provoking, ClipPolygon& polygon) {
   const Vertex* record[kMaxPolygon];
   for (std::uint32_t i = 0; i < polygon.count; ++i) record[i] = window_record(a, polygon.corner[i]);
   const bool last_mode = a.plan.state->provoking_vertex_last;
-  a.stipple_counter = 0;
   for (std::uint32_t i = 2; i < polygon.count; ++i) {
     // Fan (p0, p[i-1], p[i]); edges inside the polygon are not part of the outline.
     const bool from_p0 = i == 2 && polygon.corner[0].edge;
@@ -195,6 +202,14 @@ void assemble_triangle(Assembler& a, const std::uint32_t slot[3]) {
       return SetupVertex{s.records + std::size_t{i} * a.plan.vertex_stride, s.snapped[i * 2], s.snapped[i * 2 + 1]};
     };
     setup_triangle(a.setup, corner(slot[0]), corner(slot[1]), corner(slot[2]));
+    return;
+  }
+  a.stipple_counter = 0;
+  if ((c0 | c1 | c2) == 0) {
+    const Vertex* v[3];
+    for (int i = 0; i < 3; ++i) v[i] = window_record(a, clip_vertex(a, slot[i]));
+    const bool outline[3] = {true, true, true};
+    emit_slow(a, v, outline);
     return;
   }
   ClipPolygon polygon;

@@ -242,6 +242,9 @@ void plan_varyings(PipelinePlan& plan) {
     add_varyings(plan, Interpolation::kPerspective, plan.perspective_count);
   }
   add_point_size(plan);
+  plan.smooth_lines &= plan.varying_count() + 4 <= kMaxVaryings;
+  for (std::uint32_t i = 0; i < (plan.smooth_lines ? 4u : 0u); ++i)
+    plan.varying[plan.perspective_count++] = {kNoReg, Interpolation::kPerspective};
   if (plan.fragment) {
     add_varyings(plan, Interpolation::kLinear, plan.linear_count);
     add_varyings(plan, Interpolation::kFlat, plan.flat_count);
@@ -346,6 +349,9 @@ void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {
   const bool single = state.line_mode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ||
                       state.line_mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
   if (plan.draws_lines && single) plan.raster_samples = 1;
+  plan.smooth_lines = state.line_mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT &&
+                      plan.raster_samples == 1 &&
+                      (plan.draws_lines || (state.polygon_mode == VK_POLYGON_MODE_LINE && !plan.draws_points));
   plan.pixel_offset = plan.raster_samples > 1 ? 0.0f : 0.5f;
   plan.sample_mask = state.sample_mask & ((1u << plan.samples) - 1);
   const bool wants = state.sample_shading && std::ceil(static_cast<float>(plan.samples) * state.min_sample_shading) > 1;
@@ -398,7 +404,8 @@ void plan_blocks(PipelinePlan& plan, bool general) {
                            frag.sample_mask_in != kNoReg || frag.helper != kNoReg || frag.layer != kNoReg ||
                            frag.view_index != kNoReg || reads_elsewhere(plan);
   const bool rare_outputs = frag.depth != kNoReg || frag.stencil != kNoReg || frag.sample_mask != kNoReg ||
-                            plan.dual_source || plan.state->alpha_to_coverage || plan.state->alpha_to_one;
+                            plan.smooth_lines || plan.dual_source || plan.state->alpha_to_coverage ||
+                            plan.state->alpha_to_one;
   const bool late_stencil = (plan.stencil_test || plan.depth_bounds) && plan.depth_order == TestOrder::kLate;
   plan.shades_blocks =
       !general && plan.shades && !plan.sample_shading && !rare_inputs && !rare_outputs && !late_stencil;
@@ -414,9 +421,9 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   plan.vertex_input_count = 0;
   plan_vertex_inputs(plan);
   plan_vertex_outputs(plan);
+  plan_rasterization(plan, pass);
   plan_varyings(plan);
   plan_viewports(plan, pass);
-  plan_rasterization(plan, pass);
   // 8.2: with one sample only a mask of all zeros has an effect.
   if (plan.samples == 1 && draw.state->sample_mask != 0) plan.sample_mask = 1;
   plan_tests(plan, pass);

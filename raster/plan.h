@@ -116,6 +116,8 @@ struct PipelinePlan {
   float pixel_offset = 0.5f;         ///< `po` of 3.1
   bool per_vertex_viewport = false;  ///< transform form B, viewport chosen by the primitive
   bool draws_points = false, draws_lines = false;
+  bool smooth_lines =
+      false;  ///< lines become quads whose coverage scales alpha (6.5): the last four perspective varyings
   bool bias_in_vertices = false;  ///< polygon mode LINE / POINT: bias per vertex (5.1, second form)
   bool depth_bias = false;
 

@@ -89,8 +89,10 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   const std::int64_t area =
       std::int64_t{minus(v0.x, v1.x)} * minus(v2.y, v0.y) - std::int64_t{minus(v2.x, v0.x)} * minus(v0.y, v1.y);
   if (area == 0) return;
-  const bool front = (area > 0) == (state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE);
-  if (cull_facing(state, front)) return;
+  const bool faces = (area > 0) == (state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE);
+  const bool front = context.of_line ? context.line_front : faces;
+  if (!context.of_line && cull_facing(state, front)) return;
+  const bool provoking_last = context.of_line || state.provoking_vertex_last;
   const std::int32_t left = std::min({v0.x, v1.x, v2.x}), right = std::max({v0.x, v1.x, v2.x});
   const std::int32_t top = std::min({v0.y, v1.y, v2.y}), bottom = std::max({v0.y, v1.y, v2.y});
   // Positions that no viewport can give come from NaN and infinities; edge arithmetic need not cope with them.
@@ -105,7 +107,7 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   Primitive& p = context.out->emplace_back();
   const SetupVertex* order[3] = {&v0, &v1, &v2};
   if (area < 0) {  // 2.1: the provoking vertex keeps its place
-    if (state.provoking_vertex_last)
+    if (provoking_last)
       std::swap(order[0], order[1]);
     else
       std::swap(order[1], order[2]);
@@ -115,7 +117,7 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
     p.x[i] = order[i]->x;
     p.y[i] = order[i]->y;
   }
-  p.depth_offset = plan.depth_bias ? triangle_bias(context, p.v) : 0.0f;
+  p.depth_offset = plan.depth_bias && !context.of_line ? triangle_bias(context, p.v) : 0.0f;
   p.id = context.id;
   p.x0 = static_cast<std::uint16_t>(visible.x0);
   p.y0 = static_cast<std::uint16_t>(visible.y0);
@@ -125,7 +127,7 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   p.viewport = context.viewport;
   p.kind = PrimitiveKind::kTriangle;
   p.front = front;
-  p.provoking = state.provoking_vertex_last ? 2 : 0;
+  p.provoking = provoking_last ? 2 : 0;
 }
 
 }  // namespace vitrine::raster

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "raster/arena.h"
 #include "raster/primitive.h"
 
 namespace vitrine::raster {
@@ -15,7 +16,7 @@ struct SetupVertex {
   std::int32_t x, y;
 };
 
-/// What setup needs besides vertices: constant over a chunk but for the last three.
+/// What setup needs besides vertices: constant over a chunk but for the members with defaults.
 struct SetupContext {
   const PipelinePlan* plan;
   const PassDesc* pass;
@@ -23,6 +24,8 @@ struct SetupContext {
   std::uint32_t id = 0;
   std::uint16_t layer = 0;
   std::uint8_t viewport = 0;
+  bool of_line = false;  ///< the triangle is half of a smooth line: never culled or biased, faces as `line_front` says
+  bool line_front = true;
 };
 
 /// Snapped coordinate of triangles: nearest even (3.1).
@@ -37,6 +40,8 @@ bool culled_by_determinant(const State& state, float determinant);
 /// Filled triangle in API order (provoking vertex first or last as the state says).
 void setup_triangle(const SetupContext& context, const SetupVertex& v0, const SetupVertex& v1, const SetupVertex& v2);
 void setup_line(const SetupContext& context, const Vertex* v1, const Vertex* v2, bool front);
+/// 6.5: two triangles around the line, with records in `arena`. Flat values of both ends are the same.
+void setup_smooth_line(SetupContext context, Arena& arena, const Vertex* v0, const Vertex* v1, bool front);
 void setup_point(const SetupContext& context, const Vertex* v, bool front);
 
 /// 5.1, second form: depth of the three corners biased in place (polygon modes LINE and POINT).

@@ -1,6 +1,7 @@
 // Setup of lines and points, which rasterize as polygons (lavapipe-rasterization.md 6 and 7).
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/numeric.h"
 #include "raster/setup.h"
@@ -183,6 +184,34 @@ void setup_line(const SetupContext& context, const Vertex* v1, const Vertex* v2,
   p.v[1] = p.v[2] = v2;
   p.provoking = plan.state->provoking_vertex_last ? 1 : 0;
   context.out->push_back(p);
+}
+
+void setup_smooth_line(SetupContext context, Arena& arena, const Vertex* v0, const Vertex* v1, bool front) {
+  const PipelinePlan& plan = *context.plan;
+  const float dx = v1[0] - v0[0], dy = v1[1] - v0[1];
+  const float angle = std::atan2(dy, dx), c = std::cos(angle), s = std::sin(angle);
+  const float line_width = plan.state->line_width;
+  const float half_width = line_width <= 1.0f ? 1.0f : 0.5f * line_width + 0.5f;
+  const float half = 0.5f * std::sqrt(dx * dx + dy * dy);
+  const float half_length = half < 0.5f ? 2.0f * half : half + 0.5f;
+  SetupVertex corner[4];
+  for (int i = 0; i < 4; ++i) {
+    Vertex* v = arena.take<Vertex>(plan.vertex_stride);
+    std::memcpy(v, i < 2 ? v0 : v1, plan.vertex_stride * sizeof(Vertex));
+    const float along = i < 2 ? -0.5f : 0.5f, side = (i & 1) != 0 ? -half_width : half_width;
+    v[0] += along * c - side * s;
+    v[1] += along * s + side * c;
+    Vertex* coverage = v + 4 + plan.perspective_count - 4;
+    coverage[0] = -side;
+    coverage[1] = half_width;
+    coverage[2] = i < 2 ? -half_length : half_length;
+    coverage[3] = half_length;
+    corner[i] = {v, snap_coordinate(v[0], plan.pixel_offset), snap_coordinate(v[1], plan.pixel_offset)};
+  }
+  context.of_line = true;
+  context.line_front = front;
+  setup_triangle(context, corner[2], corner[1], corner[0]);
+  setup_triangle(context, corner[3], corner[1], corner[2]);
 }
 
 void setup_point(const SetupContext& context, const Vertex* v, bool front) {

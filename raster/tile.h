@@ -88,9 +88,10 @@ struct TileWorker {
   alignas(64) float reciprocal_w[base::kWaveWidth];
   alignas(64) float depth[base::kWaveWidth];
   base::WaveRegister color[4], second[4];
-  bool counts = false;                     ///< the draw has queries
-  std::uint64_t samples_passed = 0;        ///< not yet added to the draw's query
-  std::uint64_t fragment_invocations = 0;  ///< likewise
+  alignas(64) float line_coverage[base::kWaveWidth];  ///< smooth lines: what alpha is multiplied with
+  bool counts = false;                                ///< the draw has queries
+  std::uint64_t samples_passed = 0;                   ///< not yet added to the draw's query
+  std::uint64_t fragment_invocations = 0;             ///< likewise
 };
 
 /// Does `items` of one tile in order. Flushes denormals while it works.

@@ -157,6 +157,77 @@ const AddCase kInterpolation(
       draw(run, "read_before", target, spec, values);
     });
 
+/// The rectangle of the line reaches from y = 63.4 to 64.4.
+const AddCase kLineTiles(
+    "rasterization", "deviation.multisample_line_tiles", "multisample-line-tiles",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) {
+      const size_t pitch = size_t{device[0].width} * 16;
+      std::string message;
+      for (uint32_t s = 0; s < 4; ++s)
+        for (uint32_t y = 0; y < device[0].height; ++y) {
+          const size_t at = (size_t{s} * device[0].height + y) * pitch;
+          const bool same = std::memcmp(&device[0].bytes[at], &reference[0].bytes[at], pitch) == 0;
+          const bool lost = y == 63 && s >= 2;
+          if (same == lost) message = "sample " + std::to_string(s) + " of row " + std::to_string(y);
+        }
+      return message;
+    },
+    [](Run& run) {
+      TargetSpec target;
+      target.height = 128;
+      target.samples = VK_SAMPLE_COUNT_4_BIT;
+      target.colors = {VK_FORMAT_R32G32B32A32_SFLOAT};
+      GraphicsSpec spec;
+      spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+      const float y = 63.9f / 64.0f - 1.0f;
+      draw(run, "line", target, spec, colored({{-0.5f, y, 0.5f, 1}, {0.5f, y, 0.5f, 1}}));
+    });
+
+/// The depth that a line leaves in every sample.
+const AddCase kLineDepth(
+    "rasterization", "deviation.line_depth_first_sample", "line-depth-first-sample",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) {
+      const auto sample = [](const Output& output, uint32_t s) {
+        const size_t bytes = output.bytes.size() / output.layers;
+        const auto begin = output.bytes.begin() + static_cast<std::ptrdiff_t>(bytes * s);
+        return std::vector<unsigned char>(begin, begin + static_cast<std::ptrdiff_t>(bytes));
+      };
+      if (sample(device[0], 0) != sample(reference[0], 0)) return std::string("sample 0 differs");
+      for (uint32_t s = 1; s < 4; ++s) {
+        if (sample(device[0], s) != sample(device[0], 0)) return std::string("the device's samples differ");
+        if (sample(reference[0], s) == sample(reference[0], 0))
+          return std::string("the reference's fault does not show");
+      }
+      return std::string();
+    },
+    [](Run& run) {
+      run.require(run.gpu.extension_features.line_rasterization.bresenhamLines, "bresenhamLines");
+      TargetSpec target_spec;
+      target_spec.samples = VK_SAMPLE_COUNT_4_BIT;
+      target_spec.depth = VK_FORMAT_D32_SFLOAT;
+      const Target target = make_target(run, target_spec);
+      VkPipelineRasterizationLineStateCreateInfoEXT line{
+          VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+      line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
+      GraphicsSpec spec;
+      spec.vertex = kColorVertex;
+      spec.fragment = kColorFragment;
+      spec.floats({4, 4});
+      spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+      spec.depth.depthTestEnable = spec.depth.depthWriteEnable = VK_TRUE;
+      spec.raster.pNext = &line;
+      const VkPipeline pipeline = make_pipeline(run, spec, target);
+      const Buffer vertices = run.buffer_of(colored({{-0.9f, 0.1f, 0.5f, 1}, {0.9f, 0.3f, 0.5f, 1}}));
+      run.once([&](VkCommandBuffer cmd) {
+        target.begin(cmd);
+        bind_pipeline(cmd, pipeline);
+        bind_vertices(cmd, vertices);
+        vkCmdDraw(cmd, 2, 1, 0, 0);
+        vkCmdEndRenderPass(cmd);
+      });
+      run.out("depth", *target.depth);
+    });
+
 const AddCase kAlphaPerSample(
     "pipeline", "deviation.alpha_to_coverage_per_sample", "alpha-to-coverage-per-sample", case_against_control,
     [](Run& run) {

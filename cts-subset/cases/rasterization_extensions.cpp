@@ -130,17 +130,28 @@ CTS_RANDOM("clipping", "random_depth_clip", 50) {
   draw(run, scene);
 }
 
-void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled) {
+void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool smooth) {
   Random& random = run.random;
   const auto& features = run.gpu.extension_features.line_rasterization;
   run.require(features.bresenhamLines && features.rectangularLines, "bresenhamLines, rectangularLines");
   Scene scene(random, random.pick({VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT}));
   scene.target.samples = samples;
+  if (samples != VK_SAMPLE_COUNT_1_BIT) {  // deviations.md, multisample-line-tiles
+    scene.target.width = std::min(scene.target.width, 64u);
+    scene.target.height = std::min(scene.target.height, 64u);
+  }
   VkPipelineRasterizationLineStateCreateInfoEXT line{
       VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
   line.lineRasterizationMode =
       random.pick({VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT,
                    VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT});
+  if (smooth) line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
+  // deviations.md, line-depth-first-sample
+  if (samples != VK_SAMPLE_COUNT_1_BIT &&
+      (smooth || line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT)) {
+    scene.target.depth = VK_FORMAT_UNDEFINED;
+    scene.spec.depth.depthTestEnable = scene.spec.depth.depthWriteEnable = VK_FALSE;
+  }
   line.lineStippleFactor = 1 + random.below(4);
   line.lineStipplePattern = static_cast<uint16_t>(random.below(65536));
   line.stippledLineEnable = stippled;
@@ -148,6 +159,14 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled) {
     run.require(features.stippledBresenhamLines && features.stippledRectangularLines, "stippled lines");
     if (line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT)
       line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
+  }
+  if (smooth) {
+    VkPipelineColorBlendAttachmentState blend{};
+    blend.blendEnable = random.chance(0.7f);
+    blend.srcColorBlendFactor = blend.srcAlphaBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
+    blend.dstColorBlendFactor = blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+    blend.colorWriteMask = 0xf;
+    scene.spec.blends = {blend, blend};
   }
   scene.spec.raster.pNext = &line;
   scene.spec.raster.lineWidth = random.chance(0.5f) ? 1.0f : random.real(1.0f, 7.0f);
@@ -177,11 +196,16 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled) {
 
 const bool kLines = [] {
   AddGenerator("rasterization", "random_line_modes.samples_1", 50,
-               [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_1_BIT, false); });
+               [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_1_BIT, false, false); });
   AddGenerator("rasterization", "random_line_modes.samples_4", 30,
-               [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_4_BIT, false); });
+               [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_4_BIT, false, false); });
   AddGenerator("rasterization", "random_line_stipple", 40,
-               [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_1_BIT, true); });
+               [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_1_BIT, true, false); });
+  AddGenerator("rasterization", "random_smooth_lines", 30, [](Run& run) {
+    run.require(run.gpu.extension_features.line_rasterization.smoothLines, "smoothLines");
+    const auto samples = run.random.pick({VK_SAMPLE_COUNT_1_BIT, VK_SAMPLE_COUNT_4_BIT});
+    random_lines(run, samples, run.random.chance(0.3f), true);
+  });
   return true;
 }();
 
