@@ -17,6 +17,8 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/lanes.h"
@@ -59,6 +61,10 @@ const WideInfo& wide_info(Op op);
 constexpr std::uint32_t wide_words(char letter) { return letter == 'D' || letter == 'L' || letter == 'Q' ? 2 : 1; }
 /// Name of any op.
 const char* op_name(Op op);
+
+/// Set of a buffer instruction whose array element is a handle, made by pointers that may lead to several bindings:
+/// (set + 1) << 24 | slot; 0 leads nowhere.
+inline constexpr std::uint32_t kAnySet = ~std::uint32_t{0};
 
 using ValueId = std::uint32_t;
 inline constexpr ValueId kNoValue = ~ValueId{0};
@@ -208,7 +214,8 @@ struct Function {
   NodeList body;
   std::vector<ValueInfo> values;  ///< indexed by ValueId
   std::vector<Array> arrays;
-  bool signed_zero_inf_nan_preserve = false;  ///< execution mode: inexact rewrites are off (section 4.1)
+  std::vector<std::pair<std::uint32_t, std::string>> files;  ///< names that Origin::file stands for
+  bool signed_zero_inf_nan_preserve = false;                 ///< execution mode: inexact rewrites are off (section 4.1)
   bool denorm_flush_to_zero = false;
 
   ValueId new_value(std::uint8_t components, bool boolean) {

@@ -210,6 +210,8 @@ bool has_effect(const Instr& instr) {
     case Op::kStoreOutput:
     case Op::kStoreStorage:
     case Op::kAtomicStorage:
+    case Op::kStoreGlobal:
+    case Op::kAtomicGlobal:
     case Op::kStoreShared:
     case Op::kAtomicShared:
     case Op::kStoreArray:

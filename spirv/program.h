@@ -132,9 +132,10 @@ struct Program {
   std::vector<Instruction> preamble;  ///< draw-uniform work on the uniform file alone
   std::vector<Instruction> code;
   std::vector<InstructionNote> preamble_notes, notes;
-  std::vector<std::uint32_t> constants;  ///< first words of the uniform file
-  std::uint32_t draw_words = 0;          ///< words of constants and preamble results
-  std::uint32_t uniform_words = 0;       ///< all, wave-uniform scratch included
+  std::vector<std::pair<std::uint32_t, std::string>> files;  ///< names that ir::Origin::file stands for
+  std::vector<std::uint32_t> constants;                      ///< first words of the uniform file
+  std::uint32_t draw_words = 0;                              ///< words of constants and preamble results
+  std::uint32_t uniform_words = 0;                           ///< all, wave-uniform scratch included
   std::uint32_t register_count = 0;
   std::uint32_t mask_count = 0;
   std::uint32_t array_bytes = 0;

@@ -165,6 +165,39 @@ void main() {
   run.out("result", out);
 }
 
+/// SPIR-V 1.4: OpCopyLogical between layouts, OpSelect on composites, all variables in the interface, loop controls.
+CTS_CASE("capabilities", "spirv_1_4") {
+  run.require(run.gpu.has("VK_KHR_spirv_1_4"), "VK_KHR_spirv_1_4");
+  std::vector<float> values(64 * 8);
+  for (float& value : values) value = run.random.real(-4, 4);
+  const Buffer in = run.buffer_of(values), out = run.buffer(64 * 64);
+  dispatch(run, R"(// target: spirv1.4
+#extension GL_EXT_control_flow_attributes : require
+layout(local_size_x = 64) in;
+struct Thing { vec3 v; float w; vec2 list[2]; };
+layout(std430, binding = 0) buffer A { Thing a[]; };
+layout(std140, binding = 1) buffer R { Thing r[]; };
+shared uint counter;
+void main() {
+  uint i = gl_LocalInvocationIndex;
+  if (i == 0u) counter = 0u;
+  barrier();
+  Thing t = a[i], u = a[63u - i];
+  Thing chosen = t.w > 0.0 ? t : u;
+  [[dont_unroll, dependency_length(4)]] for (int k = 0; k < 5; k++) {
+    chosen.list[k & 1] += chosen.v.xy * float(k);
+    if (chosen.list[0].x > 20.0) break;
+  }
+  [[unroll, max_iterations(3)]] for (int k = 0; k < 3; k++) chosen.v[k] += float(k);
+  atomicAdd(counter, 1u);
+  barrier();
+  chosen.w += float(counter);
+  r[i] = chosen;
+})",
+           {storage_buffer(0, in), storage_buffer(1, out)});
+  run.out("out", out, VK_FORMAT_R32_SFLOAT);
+}
+
 CTS_CASE("capabilities", "clock") {
   run.require(run.gpu.extension_features.shader_clock.shaderSubgroupClock &&
                   run.gpu.extension_features.shader_clock.shaderDeviceClock,

@@ -79,6 +79,9 @@ void check(VkResult result, const char* call);
   X(multiview, VkPhysicalDeviceMultiviewFeatures, MULTIVIEW_FEATURES, "VK_KHR_multiview")                              \
   X(provoking_vertex, VkPhysicalDeviceProvokingVertexFeaturesEXT, PROVOKING_VERTEX_FEATURES_EXT,                       \
     "VK_EXT_provoking_vertex")                                                                                         \
+  X(robustness2, VkPhysicalDeviceRobustness2FeaturesEXT, ROBUSTNESS_2_FEATURES_EXT, "VK_EXT_robustness2")              \
+  X(zero_workgroup, VkPhysicalDeviceZeroInitializeWorkgroupMemoryFeatures, ZERO_INITIALIZE_WORKGROUP_MEMORY_FEATURES,  \
+    "VK_KHR_zero_initialize_workgroup_memory")                                                                         \
   X(scalar_block_layout, VkPhysicalDeviceScalarBlockLayoutFeatures, SCALAR_BLOCK_LAYOUT_FEATURES,                      \
     "VK_EXT_scalar_block_layout")                                                                                      \
   X(separate_depth_stencil_layouts, VkPhysicalDeviceSeparateDepthStencilLayoutsFeatures,                               \

@@ -6,6 +6,7 @@
 #include "icd/entry_points.h"
 #include "icd/image.h"
 #include "icd/util.h"
+#include "spirv/addresses.h"
 
 namespace vitrine::icd {
 namespace {
@@ -44,17 +45,20 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateMemory(VkDevice device, const VkMemoryAll
     } else if (!object->map_new_file()) {
       return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     }
+    spirv::add_addresses(object->data, object->size);
     *memory = to_handle(object.release());
     return VK_SUCCESS;
   }
   Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info->allocationSize,
                                                          d.physical_device.instance.allocated_bytes));
   if (!object->data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  spirv::add_addresses(object->data, object->size);
   *memory = to_handle(object.release());
   return VK_SUCCESS;
 }
 
 VKAPI_ATTR void VKAPI_CALL FreeMemory(VkDevice, VkDeviceMemory memory, const VkAllocationCallbacks*) {
+  if (const auto* object = from_nullable<DeviceMemory>(memory)) spirv::remove_addresses(object->data);
   destroy_handle<DeviceMemory>(memory);
 }
 

@@ -16,24 +16,36 @@ std::uint32_t* aligned_word(const Bytes& bytes, std::uint32_t offset) {
   return contains_word(bytes, offset) ? reinterpret_cast<std::uint32_t*>(bytes.data + offset) : nullptr;
 }
 
+/// One lane after the other, each at its own offset.
 template <bool kAtomic>
-void run(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes, base::LaneMask active,
-         bool uniform) {
+void run_lanes(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes, base::LaneMask active,
+               const std::uint32_t* offset) {
   static const base::WaveRegister zero{};
-  const std::uint32_t shared_offset = uniform ? uniform_word(wave, i->src[0]) : 0;
-  const std::uint32_t* offset = uniform ? nullptr : reg(wave, i->src[0]).lane;
   const std::uint32_t* operand = row.data[0] != kNoOperand ? reg(wave, row.data[0]).lane : zero.lane;
   const std::uint32_t* compare = row.compare != kNoOperand ? reg(wave, row.compare).lane : zero.lane;
   std::uint32_t* result = i->dst != kNoOperand ? reg(wave, i->dst).lane : nullptr;
-  if (uniform && active != 0) {
-    std::uint32_t* word = aligned_word(bytes, shared_offset + row.added);
-    if (word != nullptr && combine_lanes<kAtomic>(row.atomic, word, operand, active, result)) return;
-  }
   base::for_each_lane(active, [&](std::size_t lane) {
-    std::uint32_t* word = aligned_word(bytes, (offset ? offset[lane] : shared_offset) + row.added);
+    std::uint32_t* word = aligned_word(bytes, offset[lane] + row.added);
     const std::uint32_t old = word ? apply_atomic<kAtomic>(row.atomic, word, operand[lane], compare[lane]) : 0;
     if (result) result[lane] = old;
   });
+}
+
+/// `uniform`: the offset is a word that all lanes share.
+template <bool kAtomic>
+void run(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes, base::LaneMask active,
+         bool uniform) {
+  if (!uniform) return run_lanes<kAtomic>(wave, i, row, bytes, active, reg(wave, i->src[0]).lane);
+  if (active == 0) return;
+  const std::uint32_t offset = uniform_word(wave, i->src[0]);
+  std::uint32_t* word = aligned_word(bytes, offset + row.added);
+  const std::uint32_t* operand = row.data[0] != kNoOperand ? reg(wave, row.data[0]).lane : nullptr;
+  std::uint32_t* result = i->dst != kNoOperand ? reg(wave, i->dst).lane : nullptr;
+  if (word != nullptr && operand != nullptr && combine_lanes<kAtomic>(row.atomic, word, operand, active, result))
+    return;
+  base::WaveRegister offsets;
+  std::fill_n(offsets.lane, base::kWaveWidth, offset);
+  run_lanes<kAtomic>(wave, i, row, bytes, active, offsets.lane);
 }
 
 /// Lanes that do not take part (helpers) read 0.
@@ -60,6 +72,16 @@ const Instruction* on_shared(Wave& wave, const Instruction* i) {
 }
 
 }  // namespace
+
+const Instruction* atomic_global(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  clear_result(wave, i);
+  for_each_stretch(wave, i, row, wave.active & wave.live,
+                   [&](const Bytes& bytes, base::LaneMask lanes, const base::WaveRegister& offset) {
+                     run_lanes<true>(wave, i, row, bytes, lanes, offset.lane);
+                   });
+  return i + 1;
+}
 
 Handler atomic_buffer(bool uniform) { return uniform ? on_buffer<true> : on_buffer<false>; }
 Handler atomic_shared(bool uniform) { return uniform ? on_shared<true> : on_shared<false>; }

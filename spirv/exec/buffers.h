@@ -2,6 +2,9 @@
 // 6).
 #pragma once
 
+#include <algorithm>
+
+#include "spirv/addresses.h"
 #include "spirv/exec/operands.h"
 
 namespace vitrine::spirv::exec {
@@ -17,6 +20,10 @@ inline const MemoryOp& memory_op(const Wave& wave, const Instruction* instructio
 
 /// The descriptor at a slot, or null.
 inline const Descriptor* find_descriptor(const Wave& wave, std::uint32_t set, std::uint32_t slot) {
+  if (set == ir::kAnySet) {
+    set = (slot >> 24) - 1;
+    slot &= 0xffffff;
+  }
   if (set > kMaxSets || slot >= wave.resources->set_size[set]) return nullptr;
   return wave.resources->set[set] == nullptr ? nullptr : wave.resources->set[set] + slot;
 }
@@ -52,6 +59,40 @@ inline void for_each_buffer(Wave& wave, const MemoryOp& row, base::LaneMask acti
     });
     f(buffer_bytes(wave, row, element), same);
     active &= ~same;
+  }
+}
+
+/// Calls f(bytes, lanes, offsets) for the memory behind the pointers of `active`: lanes whose addresses lie in the same
+/// stretch of live memory together, others alone and with no bytes. `offsets` (plus row.added) counts from bytes.data.
+template <class F>
+inline void for_each_stretch(Wave& wave, const Instruction* i, const MemoryOp& row, base::LaneMask active, F&& f) {
+  constexpr std::uint64_t kReach = std::uint64_t{1} << 30;  // offsets inside a stretch are 31-bit
+  const base::WaveRegister &low = reg(wave, i->src[0]), &high = reg(wave, i->src[1]), &offset = reg(wave, i->src[2]);
+  std::uint64_t address[base::kWaveWidth];
+  base::for_each_lane(active, [&](std::size_t lane) {
+    const auto distance = static_cast<std::int32_t>(offset.lane[lane] + row.added);
+    address[lane] = (std::uint64_t{high.lane[lane]} << 32 | low.lane[lane]) +
+                    static_cast<std::uint64_t>(static_cast<std::int64_t>(distance));
+  });
+  base::WaveRegister relative{};
+  while (active != 0) {
+    const int first = std::countr_zero(active);
+    const AddressRange range = find_addresses(address[first]);
+    if (range.begin == range.end) {
+      f(Bytes{}, base::LaneMask{1} << first, relative);
+      active &= active - 1;
+      continue;
+    }
+    const std::uint64_t begin = address[first] - std::min(address[first] - range.begin, kReach);
+    const std::uint64_t end = address[first] + std::min(range.end - address[first], kReach);
+    base::LaneMask together = 0;
+    base::for_each_lane(active, [&](std::size_t lane) {
+      if (address[lane] - begin >= end - begin) return;
+      together |= base::LaneMask{1} << lane;
+      relative.lane[lane] = static_cast<std::uint32_t>(address[lane] - begin) - row.added;
+    });
+    f(Bytes{reinterpret_cast<std::byte*>(begin), end - begin}, together, relative);
+    active &= ~together;
   }
 }
 

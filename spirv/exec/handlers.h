@@ -90,6 +90,8 @@ const Instruction* ballot_uniform(Wave&, const Instruction*);
 const Instruction* shuffle(Wave&, const Instruction*);
 /// Register dst (`uniform`: word dst) = register src[0] over the participating lanes.
 Handler reduce(ir::GroupOp op, ir::GroupMode mode, bool uniform);
+/// The same on pairs of words: registers dst (low) and extra[1] (high), either may be kNoOperand; src[0], src[1].
+Handler reduce_wide(ir::GroupOp op, ir::GroupMode mode);
 
 // ---- memory: extra[0] = row of Program::memory_ops, src[0] = byte offset (spirv/exec/memory*.cpp)
 
@@ -109,6 +111,10 @@ Handler store_shared(bool uniform);
 /// Register dst: the old values; kNoOperand: not wanted.
 Handler atomic_buffer(bool uniform);
 Handler atomic_shared(bool uniform);
+/// The same behind a pointer: registers src[0], src[1] = low and high words of addresses, src[2] = signed byte offsets.
+Handler load_global();
+Handler store_global();
+const Instruction* atomic_global(Wave&, const Instruction*);
 /// Local arrays: src[0] = element (register or uniform word), register dst / src[1].
 const Instruction* clear_arrays(Wave&, const Instruction*);
 Handler load_array(bool uniform);

@@ -257,6 +257,29 @@ const Instruction* store_shared_target(Wave& wave, const Instruction* i) {
   return i + 1;
 }
 
+const Instruction* load_global_target(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  std::uint32_t* to[4];
+  results(wave, row, to);
+  for_each_stretch(wave, i, row, wave.active, [&](const Bytes& bytes, base::LaneMask lanes, const Register& offset) {
+    lanes == wave.active ? load_words(bytes, row, offset, lanes, to) : load_lanes(bytes, row, offset, lanes, to);
+  });
+  return i + 1;
+}
+
+const Instruction* store_global_target(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  std::uint32_t* from[4];
+  results(wave, row, from);
+  for_each_stretch(wave, i, row, wave.active & wave.live,
+                   [&](const Bytes& bytes, base::LaneMask lanes, const Register& offset) {
+                     store_words(bytes, row, offset, lanes, from);
+                   });
+  return i + 1;
+}
+
+Handler load_global_handler() { return load_global_target; }
+Handler store_global_handler() { return store_global_target; }
 Handler load_buffer_handler(bool uniform) { return uniform ? load_buffer_target<true> : load_buffer_target<false>; }
 Handler load_push_handler() { return load_push_target; }
 Handler load_shared_handler() { return load_shared_target; }
@@ -274,11 +297,15 @@ HWY_EXPORT(load_push_handler);
 HWY_EXPORT(load_shared_handler);
 HWY_EXPORT(store_buffer_handler);
 HWY_EXPORT(store_shared_handler);
+HWY_EXPORT(load_global_handler);
+HWY_EXPORT(store_global_handler);
 
 Handler load_buffer(bool uniform) { return HWY_DYNAMIC_DISPATCH(load_buffer_handler)(uniform); }
 Handler load_push() { return HWY_DYNAMIC_DISPATCH(load_push_handler)(); }
 Handler load_shared() { return HWY_DYNAMIC_DISPATCH(load_shared_handler)(); }
 Handler store_buffer(bool uniform) { return HWY_DYNAMIC_DISPATCH(store_buffer_handler)(uniform); }
+Handler load_global() { return HWY_DYNAMIC_DISPATCH(load_global_handler)(); }
+Handler store_global() { return HWY_DYNAMIC_DISPATCH(store_global_handler)(); }
 Handler store_shared(bool uniform) { return HWY_DYNAMIC_DISPATCH(store_shared_handler)(uniform); }
 
 }  // namespace vitrine::spirv::exec

@@ -13,7 +13,8 @@ inline base::LaneMask& mask(Wave& wave, std::uint32_t offset) {
 }
 inline std::uint32_t& uniform_word(Wave& wave, std::uint32_t offset) { return wave.uniforms[offset / 4]; }
 /// Lanes that take part in a group operation: the active ones that are no helpers; helpers alone among themselves, so
-/// that loops over elected invocations end for them too (Vulkan, Helper Invocations: "may become inactive at any time").
+/// that loops over elected invocations end for them too (Vulkan, Helper Invocations: "may become inactive at any
+/// time").
 inline base::LaneMask participants(const Wave& wave) {
   const base::LaneMask lanes = wave.active & wave.live;
   return lanes != 0 ? lanes : wave.active;

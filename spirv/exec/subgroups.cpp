@@ -1,7 +1,7 @@
 // Group operations over the lanes of a subgroup (Vulkan, Group Operations). A wave holds one subgroup or several; each
 // starts at a multiple of its size. Reductions go from the lowest lane to the highest, so that sums of floats have one
 // result.
-#include <limits>
+#include <bit>
 
 #include "base/numeric.h"
 #include "spirv/exec/handlers.h"
@@ -118,6 +118,96 @@ const Instruction* reduce_lanes(Wave& wave, const Instruction* i) {
   return i + 1;
 }
 
+constexpr std::uint64_t wide_identity(GroupOp op) {
+  switch (op) {
+    case GroupOp::kIMul:
+      return 1;
+    case GroupOp::kFMul:
+      return 0x3ff0000000000000u;
+    case GroupOp::kIMin:
+      return 0x7fffffffffffffffu;
+    case GroupOp::kUMin:
+    case GroupOp::kAnd:
+      return ~std::uint64_t{0};
+    case GroupOp::kFMin:
+      return 0x7ff0000000000000u;
+    case GroupOp::kIMax:
+      return 0x8000000000000000u;
+    case GroupOp::kFMax:
+      return 0xfff0000000000000u;
+    default:
+      return 0;
+  }
+}
+
+std::uint64_t combine_wide(GroupOp op, std::uint64_t value, std::uint64_t sum) {
+  const auto signed_value = static_cast<std::int64_t>(value), signed_sum = static_cast<std::int64_t>(sum);
+  const auto a = std::bit_cast<double>(value), b = std::bit_cast<double>(sum);
+  switch (op) {
+    case GroupOp::kIAdd:
+      return value + sum;
+    case GroupOp::kFAdd:
+      return std::bit_cast<std::uint64_t>(a + b);
+    case GroupOp::kIMul:
+      return value * sum;
+    case GroupOp::kFMul:
+      return std::bit_cast<std::uint64_t>(a * b);
+    case GroupOp::kIMin:
+      return signed_value < signed_sum ? value : sum;
+    case GroupOp::kUMin:
+      return value < sum ? value : sum;
+    case GroupOp::kFMin:
+      return a < b ? value : sum;
+    case GroupOp::kIMax:
+      return signed_value > signed_sum ? value : sum;
+    case GroupOp::kUMax:
+      return value > sum ? value : sum;
+    case GroupOp::kFMax:
+      return a > b ? value : sum;
+    case GroupOp::kAnd:
+      return value & sum;
+    case GroupOp::kOr:
+      return value | sum;
+    case GroupOp::kXor:
+      return value ^ sum;
+  }
+  return sum;
+}
+
+template <GroupOp kOp, GroupMode kMode>
+const Instruction* reduce_pairs(Wave& wave, const Instruction* i) {
+  const std::uint32_t *low = reg(wave, i->src[0]).lane, *high = reg(wave, i->src[1]).lane;
+  const auto put = [&](std::size_t lane, std::uint64_t value) {
+    if (i->dst != kNoOperand) reg(wave, i->dst).lane[lane] = static_cast<std::uint32_t>(value);
+    if (i->extra[1] != kNoOperand) reg(wave, i->extra[1]).lane[lane] = static_cast<std::uint32_t>(value >> 32);
+  };
+  const std::uint32_t size = i->extra[0];
+  for (std::uint32_t first = 0; first < base::kWaveWidth; first += size) {
+    const LaneMask lanes = participants(wave, first, size);
+    std::uint64_t sum = wide_identity(kOp);
+    base::for_each_lane(lanes, [&](std::size_t lane) {
+      const std::uint64_t next = combine_wide(kOp, std::uint64_t{high[lane]} << 32 | low[lane], sum);
+      if (kMode != GroupMode::kReduce) put(lane, kMode == GroupMode::kInclusive ? next : sum);
+      sum = next;
+    });
+    for (std::size_t lane = first; lane < first + size && kMode == GroupMode::kReduce; ++lane) put(lane, sum);
+  }
+  return i + 1;
+}
+
+template <GroupOp kOp>
+Handler wide_handler(GroupMode mode) {
+  switch (mode) {
+    case GroupMode::kReduce:
+      return reduce_pairs<kOp, GroupMode::kReduce>;
+    case GroupMode::kInclusive:
+      return reduce_pairs<kOp, GroupMode::kInclusive>;
+    case GroupMode::kExclusive:
+      return reduce_pairs<kOp, GroupMode::kExclusive>;
+  }
+  return nullptr;
+}
+
 template <GroupOp kOp>
 Handler reduce_handler(GroupMode mode, bool uniform) {
   if (uniform) return reduce_uniform<kOp>;
@@ -128,6 +218,40 @@ Handler reduce_handler(GroupMode mode, bool uniform) {
       return reduce_lanes<kOp, GroupMode::kInclusive>;
     case GroupMode::kExclusive:
       return reduce_lanes<kOp, GroupMode::kExclusive>;
+  }
+  return nullptr;
+}
+
+/// Calls f.operator()<kOp>() for the operation `op`.
+template <class F>
+Handler with_operation(GroupOp op, const F& f) {
+  switch (op) {
+    case GroupOp::kIAdd:
+      return f.template operator()<GroupOp::kIAdd>();
+    case GroupOp::kFAdd:
+      return f.template operator()<GroupOp::kFAdd>();
+    case GroupOp::kIMul:
+      return f.template operator()<GroupOp::kIMul>();
+    case GroupOp::kFMul:
+      return f.template operator()<GroupOp::kFMul>();
+    case GroupOp::kIMin:
+      return f.template operator()<GroupOp::kIMin>();
+    case GroupOp::kUMin:
+      return f.template operator()<GroupOp::kUMin>();
+    case GroupOp::kFMin:
+      return f.template operator()<GroupOp::kFMin>();
+    case GroupOp::kIMax:
+      return f.template operator()<GroupOp::kIMax>();
+    case GroupOp::kUMax:
+      return f.template operator()<GroupOp::kUMax>();
+    case GroupOp::kFMax:
+      return f.template operator()<GroupOp::kFMax>();
+    case GroupOp::kAnd:
+      return f.template operator()<GroupOp::kAnd>();
+    case GroupOp::kOr:
+      return f.template operator()<GroupOp::kOr>();
+    case GroupOp::kXor:
+      return f.template operator()<GroupOp::kXor>();
   }
   return nullptr;
 }
@@ -159,35 +283,11 @@ const Instruction* shuffle(Wave& wave, const Instruction* i) {
 }
 
 Handler reduce(GroupOp op, GroupMode mode, bool uniform) {
-  switch (op) {
-    case GroupOp::kIAdd:
-      return reduce_handler<GroupOp::kIAdd>(mode, uniform);
-    case GroupOp::kFAdd:
-      return reduce_handler<GroupOp::kFAdd>(mode, uniform);
-    case GroupOp::kIMul:
-      return reduce_handler<GroupOp::kIMul>(mode, uniform);
-    case GroupOp::kFMul:
-      return reduce_handler<GroupOp::kFMul>(mode, uniform);
-    case GroupOp::kIMin:
-      return reduce_handler<GroupOp::kIMin>(mode, uniform);
-    case GroupOp::kUMin:
-      return reduce_handler<GroupOp::kUMin>(mode, uniform);
-    case GroupOp::kFMin:
-      return reduce_handler<GroupOp::kFMin>(mode, uniform);
-    case GroupOp::kIMax:
-      return reduce_handler<GroupOp::kIMax>(mode, uniform);
-    case GroupOp::kUMax:
-      return reduce_handler<GroupOp::kUMax>(mode, uniform);
-    case GroupOp::kFMax:
-      return reduce_handler<GroupOp::kFMax>(mode, uniform);
-    case GroupOp::kAnd:
-      return reduce_handler<GroupOp::kAnd>(mode, uniform);
-    case GroupOp::kOr:
-      return reduce_handler<GroupOp::kOr>(mode, uniform);
-    case GroupOp::kXor:
-      return reduce_handler<GroupOp::kXor>(mode, uniform);
-  }
-  return nullptr;
+  return with_operation(op, [&]<GroupOp kOp>() { return reduce_handler<kOp>(mode, uniform); });
+}
+
+Handler reduce_wide(GroupOp op, GroupMode mode) {
+  return with_operation(op, [&]<GroupOp kOp>() { return wide_handler<kOp>(mode); });
 }
 
 }  // namespace vitrine::spirv::exec

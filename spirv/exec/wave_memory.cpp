@@ -82,6 +82,8 @@ void raise_fault(Fault& fault, const Wave& wave) {
       --index;
     const ir::Origin& origin = wave.program->notes[index].origin;
     if (origin.line != 0) where = " near source line " + std::to_string(origin.line);
+    for (const auto& [id, name] : wave.program->files)
+      if (origin.line != 0 && id == origin.file) where += " of " + name;
     if (origin.spirv_id != 0) where += " (SPIR-V id " + std::to_string(origin.spirv_id) + ")";
   }
   fault.message = "the shader did not end within its instruction budget" + where;

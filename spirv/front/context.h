@@ -49,6 +49,7 @@ struct Pointer {
     kStorage,
     kPush,
     kShared,
+    kGlobal,  ///< PhysicalStorageBuffer
     kDescriptor,
     kTexel
   } kind = Kind::kLocal;
@@ -66,7 +67,8 @@ struct Pointer {
   std::uint32_t constant_offset = 0;  ///< plus these
   std::uint32_t matrix_stride = 0;
   bool row_major = false;
-  std::uint32_t component_stride = 0;  ///< bytes between components of a vector; 0: adjacent
+  std::uint32_t component_stride = 0;                   ///< bytes between components of a vector; 0: adjacent
+  ir::ValueId low = ir::kNoValue, high = ir::kNoValue;  ///< kGlobal: the address
   // kDescriptor, kTexel
   ImageHandle image;
   ir::ValueId coord = ir::kNoValue, sample = ir::kNoValue;
@@ -119,6 +121,10 @@ struct Translator {
 
   std::unordered_map<std::uint32_t, Value> values;
   std::unordered_map<std::uint32_t, Pointer> pointers;
+  /// Pointers among `values` (chosen, loaded, joined) as Pointer, and those of `pointers` as values; made when asked
+  /// for.
+  std::unordered_map<std::uint32_t, Pointer> value_pointers;
+  std::unordered_map<std::uint32_t, Value> pointer_values;
   std::unordered_map<std::uint32_t, ImageHandle> images;
   std::unordered_map<std::uint32_t, std::uint32_t> phi_locals;  ///< OpPhi -> local of the running function instance
   std::vector<Local> locals;
@@ -217,6 +223,11 @@ std::uint32_t new_local(Translator& t, ir::ValueInfo info);
 std::uint32_t new_flag(Translator& t);
 Pointer local_pointer(const Translator& t, std::uint32_t local);
 const Pointer& pointer_of(Translator& t, std::uint32_t id);
+/// pointer_values.cpp: a pointer as two words (its leaves), and back. `type`: OpTypePointer.
+Value pointer_value(Translator& t, std::uint32_t type, const Pointer& pointer);
+Pointer pointer_from(Translator& t, const Value& value);
+/// Whether an id is a pointer that has no value of its own yet: a variable or a part of one.
+bool is_static_pointer(const Translator& t, std::uint32_t id);
 Value load(Translator& t, const Pointer& pointer);
 void store(Translator& t, const Pointer& pointer, const Value& value);
 /// Whole of a variable of new_local(info).

@@ -279,6 +279,7 @@ void read_modes(Translator& t) {
       case spv::ExecutionMode::DenormFlushToZero:
         t.function.denorm_flush_to_zero |= word(0) == 32;
         break;
+      case spv::ExecutionMode::SubgroupUniformControlFlowKHR:  // invocations always meet again where constructs end
       case spv::ExecutionMode::OriginUpperLeft:
       case spv::ExecutionMode::DepthReplacing:
       case spv::ExecutionMode::StencilRefReplacingEXT:

@@ -109,6 +109,11 @@ ir::ValueId load_words(Translator& t, const Pointer& pointer, std::uint32_t coun
     last_instr(t).data[3] = at.constant_offset;
     return value;
   }
+  if (at.kind == Pointer::Kind::kGlobal) {
+    const ir::ValueId value = emit(t, ir::Op::kLoadGlobal, count, false, {whole(at.low), whole(at.high), offset});
+    last_instr(t).data[3] = at.constant_offset;
+    return value;
+  }
   const ir::Op op = at.kind == Pointer::Kind::kUniform ? ir::Op::kLoadUniform : ir::Op::kLoadStorage;
   const ir::Src element = whole(descriptor_element(t, at));
   const ir::ValueId value = emit(t, op, count, false, {element, offset});
@@ -127,11 +132,17 @@ void store_words(Translator& t, const Pointer& pointer, ir::Src value, std::uint
     instr.imm[0] = mask;
     return;
   }
+  t.function.interface.writes_memory = true;
+  if (at.kind == Pointer::Kind::kGlobal) {
+    ir::Instr& instr = emit_effect(t, ir::Op::kStoreGlobal, {whole(at.low), whole(at.high), offset, value});
+    instr.data[3] = at.constant_offset;
+    instr.imm[0] = mask;
+    return;
+  }
   const ir::Src element = whole(descriptor_element(t, at));
   ir::Instr& instr = emit_effect(t, ir::Op::kStoreStorage, {element, offset, value});
   set_buffer(instr, at);
   instr.imm[0] = mask;
-  t.function.interface.writes_memory = true;
 }
 
 /// Memory below `pointer`, leaf by leaf: f(pointer to the leaf).
@@ -219,7 +230,8 @@ void store_leaf_memory(Translator& t, const Pointer& pointer, std::span<const ir
 
 bool is_memory(const Pointer& pointer) {
   return pointer.kind == Pointer::Kind::kUniform || pointer.kind == Pointer::Kind::kStorage ||
-         pointer.kind == Pointer::Kind::kPush || pointer.kind == Pointer::Kind::kShared;
+         pointer.kind == Pointer::Kind::kPush || pointer.kind == Pointer::Kind::kShared ||
+         pointer.kind == Pointer::Kind::kGlobal;
 }
 
 ImageHandle load_handle(Translator& t, const Pointer& pointer) {
@@ -274,7 +286,8 @@ Value load(Translator& t, const Pointer& pointer) {
 
 void store(Translator& t, const Pointer& pointer, const Value& value) {
   if (pointer.kind == Pointer::Kind::kLocal) return store_local(t, pointer, value);
-  if (pointer.descriptor_array || (pointer.kind != Pointer::Kind::kStorage && pointer.kind != Pointer::Kind::kShared))
+  if (pointer.descriptor_array || (pointer.kind != Pointer::Kind::kStorage && pointer.kind != Pointer::Kind::kShared &&
+                                   pointer.kind != Pointer::Kind::kGlobal))
     throw Failure("store through this pointer is not supported");
   std::size_t next = 0;
   each_memory_leaf(t, pointer, [&](const Pointer& leaf) {

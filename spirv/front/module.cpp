@@ -54,6 +54,30 @@ std::uint32_t saturating(std::uint64_t value) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(value, UINT32_MAX));
 }
 
+/// Pointers that are values: an address, or a buffer and an offset.
+void set_pointer_size(Type& type) {
+  switch (type.storage) {
+    case spv::StorageClass::PhysicalStorageBuffer:
+    case spv::StorageClass::StorageBuffer:
+    case spv::StorageClass::Workgroup:
+      type.width = 64;
+      type.leaves = type.scalars = 2;
+      break;
+    default:
+      break;
+  }
+}
+
+/// A pointer type that structures use before it is declared.
+void read_forward_pointer(Module& module, const Inst& inst) {
+  Type type;
+  type.kind = Type::Kind::kPointer;
+  type.id = inst.operand(0);
+  type.storage = static_cast<spv::StorageClass>(inst.operand(1));
+  set_pointer_size(type);
+  module.types[type.id] = type;
+}
+
 void read_type(Module& module, const Inst& inst) {
   Type type;
   using Kind = Type::Kind;
@@ -119,6 +143,7 @@ void read_type(Module& module, const Inst& inst) {
       type.kind = Kind::kPointer;
       type.storage = static_cast<spv::StorageClass>(inst.operand(1));
       type.element = inst.operand(2);
+      set_pointer_size(type);
       break;
     case Op::OpTypeImage:
       element(Kind::kImage);
@@ -229,6 +254,9 @@ void read_preamble(Module& module, const CompileOptions& options) {
         for (std::uint32_t i = 2 + string_words(inst, 2); inst.has(i); i++) module.interface.push_back(inst.operand(i));
         break;
       }
+      case Op::OpString:
+        module.files.emplace_back(inst.result, string_at(inst, 0));
+        break;
       case Op::OpExtInstImport:
         module.ext_imports[inst.result] = ext_set(string_at(inst, 0));
         break;
@@ -346,6 +374,7 @@ Module parse_module(std::span<const std::uint32_t> words, const CompileOptions& 
     const Inst& inst = module.code[i];
     if (inst.op == Op::OpFunction) in_function = true;
     if (Op::OpTypeVoid <= inst.op && inst.op <= Op::OpTypeFunction) read_type(module, inst);
+    if (inst.op == Op::OpTypeForwardPointer) read_forward_pointer(module, inst);
     if (Op::OpConstantTrue <= inst.op && inst.op <= Op::OpSpecConstantOp) fold_constant(module, inst, options);
     if (inst.op == Op::OpUndef && !in_function) fold_constant(module, inst, options);
     if (inst.op == Op::OpVariable && !in_function) module.globals.push_back(i);

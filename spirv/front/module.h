@@ -119,8 +119,9 @@ struct Module {
   std::vector<std::uint32_t> globals;                            ///< indices in code of module-scope OpVariable
   std::unordered_map<std::uint32_t, std::uint32_t> ext_imports;  ///< id -> ExtSet
   std::uint32_t entry_function = 0;
-  std::vector<std::uint32_t> interface;  ///< ids named by OpEntryPoint
-  std::vector<Inst> modes;               ///< execution modes of the entry point
+  std::vector<std::pair<std::uint32_t, std::string>> files;  ///< OpString ids that OpLine names
+  std::vector<std::uint32_t> interface;                      ///< ids named by OpEntryPoint
+  std::vector<Inst> modes;                                   ///< execution modes of the entry point
 
   const Type& type(std::uint32_t id) const;
   const Inst& def(std::uint32_t id) const;

@@ -1,4 +1,6 @@
 // Pointers: what a variable stands for, and access chains into it (SPIR-V 3.42.8; Vulkan, Shader Resource Interface).
+#include <algorithm>
+
 #include "spirv/front/context.h"
 #include "spirv/front/functions.h"
 
@@ -52,7 +54,11 @@ Pointer descriptor_pointer(const Translator& t, const Inst& variable, std::uint3
 }
 
 Pointer shared_pointer(Translator& t, const Inst& variable, std::uint32_t type_id) {
-  if (variable.has(1)) fail(variable, "initializer of a Workgroup variable is not supported");
+  if (variable.has(1)) {  // "must be OpConstantNull" (Vulkan, Workgroup storage class); the memory starts as zeros
+    const Constant* start = t.module.constant(variable.operand(1));
+    if (start == nullptr || std::any_of(start->words.begin(), start->words.end(), [](auto word) { return word != 0; }))
+      fail(variable, "initializer of a Workgroup variable is not zero");
+  }
   Pointer pointer;
   pointer.kind = Pointer::Kind::kShared;
   pointer.type = type_id;
@@ -191,6 +197,8 @@ Pointer local_pointer(const Translator& t, std::uint32_t local) {
 const Pointer& pointer_of(Translator& t, std::uint32_t id) {
   const auto found = t.pointers.find(id);
   if (found != t.pointers.end()) return found->second;
+  if (t.values.count(id) != 0 || t.module.constant(id) != nullptr)
+    return t.value_pointers[id] = pointer_from(t, value_of(t, id));
   const Inst& variable = t.module.def(id);
   if (variable.op != spv::Op::OpVariable) fail(variable, "is not a pointer that is supported");
   Pointer pointer = declare(t, variable);
@@ -225,6 +233,20 @@ void step_into(Translator& t, const Inst& inst, Pointer& pointer, const Step& st
 void access_chain(Translator& t, const Inst& inst, ir::Op) {
   Pointer pointer = pointer_of(t, inst.operand(0));
   for (std::uint32_t i = 1; inst.has(i); i++) step_into(t, inst, pointer, make_step(t, inst.operand(i)));
+  t.pointers[inst.result] = std::move(pointer);
+}
+
+void pointer_access_chain(Translator& t, const Inst& inst, ir::Op) {
+  Pointer pointer = pointer_of(t, inst.operand(0));
+  if (pointer.kind != Pointer::Kind::kStorage && pointer.kind != Pointer::Kind::kShared &&
+      pointer.kind != Pointer::Kind::kGlobal)
+    fail(inst, "storage class is not supported");
+  const Type& type = t.module.type(t.module.def(inst.operand(0)).result_type);
+  const std::uint32_t natural = pointer.kind == Pointer::Kind::kShared ? 4 * t.module.type(pointer.type).scalars : 0;
+  const std::uint32_t stride = natural != 0 ? natural : type.array_stride;
+  if (stride == 0) fail(inst, "pointer type without ArrayStride");
+  add_offset(t, pointer, make_step(t, inst.operand(1)), stride);
+  for (std::uint32_t i = 2; inst.has(i); i++) step_into(t, inst, pointer, make_step(t, inst.operand(i)));
   t.pointers[inst.result] = std::move(pointer);
 }
 

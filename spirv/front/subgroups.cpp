@@ -165,6 +165,47 @@ ir::GroupOp reduction(const Inst& inst) {
   fail(inst, "is not supported");
 }
 
+Expr emit_reduce(Expr word, ir::GroupOp op, std::uint32_t cluster, ir::GroupMode mode) {
+  Translator& t = *word.t;
+  const bool wide = word.high != ir::kNoValue;
+  std::vector<ir::Src> sources{whole(word.id)};
+  if (wide) sources.push_back(whole(word.high));
+  Expr result{&t, emit(t, ir::Op::kReduce, wide ? 2 : 1, false, std::move(sources))};
+  ir::Instr& instr = last_instr(t);
+  instr.data[0] = cluster;
+  instr.data[1] = static_cast<std::uint32_t>(op);
+  instr.data[2] = static_cast<std::uint32_t>(mode);
+  if (!wide) return result;
+  const ir::ValueId both_words = result.id;
+  result = {&t, extract(t, both_words, 0)};
+  result.high = extract(t, both_words, 1);
+  result.width = 64;
+  return result;
+}
+
+/// One scalar of any type: narrow integers and booleans in 32 bits, narrow floats where that changes no rounding.
+Expr reduce_part(const Inst& inst, Expr part, std::uint32_t cluster, ir::GroupMode mode) {
+  const ir::GroupOp op = reduction(inst);
+  Translator& t = *part.t;
+  if (is_boolean(t, part.id))
+    return apply(ir::Op::kINe, {emit_reduce(apply(ir::Op::kB2I, {part}), op, cluster, mode), imm_u32(t, 0)});
+  const std::uint8_t width = part.width;
+  if (width >= 32) return emit_reduce(part, op, cluster, mode);
+  switch (op) {
+    case ir::GroupOp::kFAdd:
+    case ir::GroupOp::kFMul:
+      fail(inst, "numbers of this width are not supported");
+    case ir::GroupOp::kFMin:
+    case ir::GroupOp::kFMax:
+      return convert_float(emit_reduce(convert_float(part, 32), op, cluster, mode), width);
+    case ir::GroupOp::kIMin:
+    case ir::GroupOp::kIMax:
+      return convert_unsigned(emit_reduce(convert_signed(part, 32), op, cluster, mode), width);
+    default:
+      return convert_unsigned(emit_reduce(convert_unsigned(part, 32), op, cluster, mode), width);
+  }
+}
+
 }  // namespace
 
 ir::ValueId subgroup_built_in(Translator& t, spv::BuiltIn built_in) {
@@ -301,20 +342,17 @@ void group_reduce(Translator& t, const Inst& inst, ir::Op) {
            mode != spv::GroupOperation::ExclusiveScan)
     fail(inst, "group operation is not supported");
   if (!std::has_single_bit(cluster)) fail(inst, "cluster size is not a power of two");
-  const ir::GroupOp op = reduction(inst);
-  if (number_type(t, inst.result_type).width != 32) fail(inst, "numbers of this width are not supported");
-  const Value value = value_of(t, inst.operand(2));
-  set_value(t, inst, map_words(t, value, [&](Expr word) {
-              const Expr result{&t, emit(t, ir::Op::kReduce, 1, false, {whole(word.id)})};
-              ir::Instr& instr = last_instr(t);
-              instr.data[0] = cluster;
-              instr.data[1] = static_cast<std::uint32_t>(op);
-              instr.data[2] =
-                  static_cast<std::uint32_t>(mode == spv::GroupOperation::InclusiveScan   ? ir::GroupMode::kInclusive
-                                             : mode == spv::GroupOperation::ExclusiveScan ? ir::GroupMode::kExclusive
-                                                                                          : ir::GroupMode::kReduce);
-              return result;
-            }));
+  const ir::GroupMode result_mode = mode == spv::GroupOperation::InclusiveScan   ? ir::GroupMode::kInclusive
+                                    : mode == spv::GroupOperation::ExclusiveScan ? ir::GroupMode::kExclusive
+                                                                                 : ir::GroupMode::kReduce;
+  std::vector<Expr> results;
+  for (const Expr& number : leaf_numbers(t, value_of(t, inst.operand(2)))) {
+    std::vector<Expr> parts;
+    for (std::uint32_t c = 0; c < number.size(); c++)
+      parts.push_back(reduce_part(inst, number[c], cluster, result_mode));
+    results.push_back(vector_of(parts));
+  }
+  set_numbers(t, inst, results);
 }
 
 void quad_broadcast(Translator& t, const Inst& inst, ir::Op) {

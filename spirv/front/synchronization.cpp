@@ -74,13 +74,17 @@ void atomic(Translator& t, const Inst& inst, ir::Op) {
   if (type == 0 || leaf_info(t, type).components != 1) fail(inst, "operand is not a pointer to a number");
   std::vector<ir::Src> src;
   const bool is_image = pointer.kind == Pointer::Kind::kTexel;
+  const bool global = pointer.kind == Pointer::Kind::kGlobal;
   if (pointer.kind == Pointer::Kind::kStorage) src.push_back(whole(descriptor_element(t, pointer)));
+  if (global) src.insert(src.end(), {whole(pointer.low), whole(pointer.high)});
   if (!is_image) src.push_back(whole(dynamic_offset(t, pointer)));
   if (operands.value != ir::kNoValue) src.push_back(whole(operands.value));
   if (operands.comparator != ir::kNoValue) src.push_back(whole(operands.comparator));
   const bool shared = pointer.kind == Pointer::Kind::kShared;
-  if (!shared && !is_image && pointer.kind != Pointer::Kind::kStorage) fail(inst, "storage class is not supported");
-  const ir::ValueId result = emit(t, shared ? ir::Op::kAtomicShared : ir::Op::kAtomicStorage, 1, false, std::move(src));
+  if (!shared && !is_image && !global && pointer.kind != Pointer::Kind::kStorage)
+    fail(inst, "storage class is not supported");
+  const ir::Op kind = shared ? ir::Op::kAtomicShared : global ? ir::Op::kAtomicGlobal : ir::Op::kAtomicStorage;
+  const ir::ValueId result = emit(t, kind, 1, false, std::move(src));
   ir::Instr& instr = last_instr(t);
   if (is_image) {
     image_atomic(t, op, pointer, operands);
@@ -109,7 +113,10 @@ void is_helper(Translator& t, const Inst& inst, ir::Op) {
 }
 
 void read_clock(Translator& t, const Inst& inst, ir::Op) {
-  set_value(t, inst, emit(t, ir::Op::kReadClock, 2, false, {}));
+  const ir::ValueId time = emit(t, ir::Op::kReadClock, 2, false, {});
+  if (t.module.type(inst.result_type).leaves == 2)
+    return set_value(t, inst, std::vector{extract(t, time, 0), extract(t, time, 1)});
+  set_value(t, inst, time);
 }
 
 }  // namespace vitrine::spirv::front

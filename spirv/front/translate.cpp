@@ -33,6 +33,7 @@ ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& opt
   ir::propagate_copies(t.function);
   ir::remove_dead(t.function);
   propagate_invariant(t.function);
+  t.function.files = module.files;
   return std::move(t.function);
 }
 

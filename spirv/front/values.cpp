@@ -17,6 +17,9 @@ ir::ValueInfo leaf_info(const Translator& t, std::uint32_t type_id) {
     case Type::Kind::kInt:
     case Type::Kind::kFloat:
       break;
+    case Type::Kind::kPointer:
+      if (number.leaves != 0) break;
+      [[fallthrough]];
     default:
       throw Failure("%" + std::to_string(type_id) + " is not a scalar or vector type");
   }
@@ -65,6 +68,8 @@ const Value& value_of(Translator& t, std::uint32_t id) {
   const auto found = t.values.find(id);
   if (found != t.values.end()) return found->second;
   const Constant* value = t.module.constant(id);
+  if (value == nullptr && is_static_pointer(t, id))
+    return t.pointer_values[id] = pointer_value(t, t.module.def(id).result_type, pointer_of(t, id));
   if (value == nullptr) throw Failure("%" + std::to_string(id) + " has no value here");
   return t.values[id] = constant_value(t, value->type, value->words, value->undefined);
 }

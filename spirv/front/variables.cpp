@@ -28,8 +28,8 @@ struct Target {
 
 /// A scalar or vector whose last step chooses between the low and the high words.
 bool is_pair(const Type& type) {
-  return type.leaves == 2 &&
-         (type.kind == Type::Kind::kVector || type.kind == Type::Kind::kInt || type.kind == Type::Kind::kFloat);
+  return type.leaves == 2 && (type.kind == Type::Kind::kVector || type.kind == Type::Kind::kInt ||
+                              type.kind == Type::Kind::kFloat || type.kind == Type::Kind::kPointer);
 }
 
 std::uint32_t step_type(const Translator& t, std::uint32_t type_id, const Step& step) {

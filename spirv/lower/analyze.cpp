@@ -13,6 +13,8 @@ bool has_effect(const ScalarOp& op) {
     case Op::kStoreOutput:
     case Op::kStoreStorage:
     case Op::kAtomicStorage:
+    case Op::kStoreGlobal:
+    case Op::kAtomicGlobal:
     case Op::kStoreShared:
     case Op::kAtomicShared:
     case Op::kStoreArray:
@@ -214,7 +216,7 @@ class Uniformity {
       case Op::kBallot:
         return op.instr->data[0] != base::kWaveWidth;
       case Op::kReduce:
-        return op.instr->data[0] != base::kWaveWidth ||
+        return op.src.count > 1 || op.instr->data[0] != base::kWaveWidth ||
                op.instr->data[2] != static_cast<std::uint32_t>(ir::GroupMode::kReduce);
       case Op::kLoadPush:
       case Op::kLoadUniform:

@@ -24,6 +24,11 @@ bool Emitter::intrinsic(const ScalarOp& op) {
     case Op::kArrayLength:
       load(op);
       return true;
+    case Op::kLoadGlobal:
+    case Op::kStoreGlobal:
+    case Op::kAtomicGlobal:
+      global(op);
+      return true;
     case Op::kStoreStorage:
     case Op::kStoreShared:
       store(op);
@@ -149,6 +154,33 @@ void Emitter::atomic(const ScalarOp& op) {
   attach(row);
 }
 
+/// Sources: the address (two words), the offset, then values.
+void Emitter::global(const ScalarOp& op) {
+  MemoryOp row = buffer_row(op, false);
+  Handler handler = exec::atomic_global;
+  Place to;
+  std::uint32_t next = 3;
+  if (op.op == Op::kLoadGlobal) {
+    handler = exec::load_global();
+    row.at = op.at;
+    row.components = op.dst.count;
+    for (std::uint32_t c = 0; c < op.dst.count && c < 4; ++c) row.data[c] = place(result(op, c)).offset;
+  } else if (op.op == Op::kStoreGlobal) {
+    handler = exec::store_global();
+    row.write_mask = op.instr->imm[0] & 15;
+    for (std::uint32_t c = 0; c < 4; ++c)
+      if (row.write_mask >> c & 1) row.data[c] = in_register(source(op, next++)).offset;
+  } else {
+    row.atomic = static_cast<ir::AtomicOp>(op.instr->imm[0]);
+    if (op.src.count > next) row.data[0] = in_register(source(op, next)).offset;
+    if (op.src.count > next + 1) row.compare = in_register(source(op, next + 1)).offset;
+    if (op.dst.count != 0) to = place(result(op, 0));
+  }
+  append(handler, ir::op_name(op.op), op.instr, to, in_register(source(op, 0)), in_register(source(op, 1)),
+         in_register(source(op, 2)));
+  attach(row);
+}
+
 void Emitter::local_array(const ScalarOp& op) {
   const std::uint32_t array = op.instr->data[0];
   if (array >= array_base_.size()) return fail("local array that does not exist");
@@ -214,6 +246,14 @@ void Emitter::wide(const ScalarOp& op) {
 
 void Emitter::group(const ScalarOp& op) {
   const Place from = in_register(source(op, 0));
+  if (op.op == Op::kReduce && op.src.count > 1) {
+    const auto combine = static_cast<ir::GroupOp>(op.instr->data[1]);
+    Instruction& instruction = append(exec::reduce_wide(combine, static_cast<ir::GroupMode>(op.instr->data[2])),
+                                      "reduce.wide", op.instr, place(result(op, 0)), from, in_register(source(op, 1)));
+    instruction.extra[0] = op.instr->data[0];
+    instruction.extra[1] = place(result(op, 1)).offset;
+    return;
+  }
   for (std::uint32_t c = 0; c < op.dst.count; ++c) {
     const Place to = place(result(op, c));
     if (to.file == ' ') continue;

@@ -81,6 +81,7 @@ class Emitter {
   void load(const ScalarOp& op);
   void store(const ScalarOp& op);
   void atomic(const ScalarOp& op);
+  void global(const ScalarOp& op);
   void local_array(const ScalarOp& op);
   void image(const ScalarOp& op);
   void environment(const ScalarOp& op);

@@ -37,6 +37,7 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function) {
   program->flush_denormals = interface.stage != VK_SHADER_STAGE_COMPUTE_BIT;
   for (int i = 0; i < 3; ++i) program->local_size[i] = interface.local_size[i];
   program->groups_per_wave = scalars.groups_per_wave;
+  program->files = std::move(function.files);
   program->shared_bytes = interface.shared_bytes;
   if (base::log_enabled("shader")) base::log("shader", disassemble(*program));
   return std::make_unique<Shader>(std::move(interface), std::unique_ptr<const Program>(std::move(program)));

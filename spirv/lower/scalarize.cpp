@@ -40,6 +40,8 @@ bool writes_memory(const ir::NodeList& list) {
         switch (node->instr.op) {
           case Op::kStoreStorage:
           case Op::kAtomicStorage:
+          case Op::kStoreGlobal:
+          case Op::kAtomicGlobal:
             return true;
           case Op::kImage:
             if (node->instr.image->access == ir::ImageAccess::kWrite ||

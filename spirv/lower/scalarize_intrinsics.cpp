@@ -32,6 +32,7 @@ void Scalarizer::build_instr(const ir::Instr& instr) {
       return build_image(instr);
     case Op::kStoreStorage:
     case Op::kStoreShared:
+    case Op::kStoreGlobal:
       return build_store(instr);
     case Op::kGlobalInvocationId:
       return build_global_id(instr);
@@ -41,6 +42,8 @@ void Scalarizer::build_instr(const ir::Instr& instr) {
       [[fallthrough]];
     case Op::kStoreOutput:
     case Op::kAtomicStorage:
+    case Op::kLoadGlobal:
+    case Op::kAtomicGlobal:
     case Op::kLoadShared:
     case Op::kAtomicShared:
     case Op::kLoadArray:

@@ -145,6 +145,9 @@ class Selector {
       case Op::kStoreArray:
         first = 1;
         break;
+      case Op::kLoadGlobal:
+      case Op::kStoreGlobal:
+      case Op::kAtomicGlobal:
       case Op::kBallot:
       case Op::kShuffle:
       case Op::kReduce:

@@ -34,6 +34,8 @@ unsigned components_read(const Graph& graph, const Inst& user, std::uint32_t ind
     case Op::kStoreArray:
     case Op::kAtomicStorage:
     case Op::kAtomicShared:
+    case Op::kLoadGlobal:
+    case Op::kAtomicGlobal:
     case Op::kReadFirst:
     case Op::kBallot:
     case Op::kShuffle:
@@ -43,6 +45,8 @@ unsigned components_read(const Graph& graph, const Inst& user, std::uint32_t ind
       return index < 2 ? 1 : 0;
     case Op::kStoreShared:
       return index < 1 ? 1 : 0;
+    case Op::kStoreGlobal:
+      return index < 3 ? 1 : 0;
     default:
       return graph.values[graph.source(user, index).value].components == 1 ? 1 : 0;
   }
@@ -129,6 +133,8 @@ bool is_effect(const Graph& graph, const Inst& inst) {
     case Op::kStoreOutput:
     case Op::kStoreStorage:
     case Op::kAtomicStorage:
+    case Op::kStoreGlobal:
+    case Op::kAtomicGlobal:
     case Op::kStoreShared:
     case Op::kAtomicShared:
     case Op::kStoreArray:

@@ -168,6 +168,32 @@ TEST(Subgroups, FloatSumsGoFromTheLowestLaneToTheHighest) {
   expect_group_divergent("floatBitsToUint(subgroupExclusiveAdd(1.0 / (float(x) + 0.75)))", model(2));
 }
 
+TEST(Subgroups, DoublesAndWideIntegers) {
+  const auto sum = [](int mode) -> Model {
+    return [mode](const Group& group, std::uint32_t lane) {
+      double total = 0;
+      for (std::uint32_t k = 0; k < group.x.size() && !(mode == 2 && k == lane); k++) {
+        if (group.is_active(k)) total = 1.0 / (static_cast<double>(group.x[k]) + 0.75) + total;
+        if (mode == 1 && k == lane) break;
+      }
+      const auto bits = std::bit_cast<std::uint64_t>(total);
+      return std::optional<std::uint32_t>(static_cast<std::uint32_t>(bits ^ bits >> 32));
+    };
+  };
+  const auto folded = [](const std::string& value) {
+    return "unpackDouble2x32(" + value + ").x ^ unpackDouble2x32(" + value + ").y";
+  };
+  expect_group_divergent(folded("subgroupAdd(1.0lf / (double(x) + 0.75lf))"), sum(0));
+  expect_group_divergent(folded("subgroupInclusiveAdd(1.0lf / (double(x) + 0.75lf))"), sum(1));
+  expect_group_divergent(folded("subgroupExclusiveAdd(1.0lf / (double(x) + 0.75lf))"), sum(2));
+  expect_group_divergent("uint(subgroupMax(double(x) + 0.5lf))", [](const Group& group, std::uint32_t) {
+    std::uint32_t best = 0;
+    for (std::uint32_t k = 0; k < group.x.size(); k++)
+      if (group.is_active(k)) best = std::max(best, group.x[k]);
+    return best;
+  });
+}
+
 TEST(Subgroups, VotesAndElection) {
   const auto is_odd = [](std::uint32_t x) { return (x & 1) != 0; };
   expect_group_divergent("subgroupElect() ? 1u : 0u",

@@ -1,0 +1,346 @@
+// Pointers as values: variable pointers into storage buffers and workgroup memory (SPIR-V assembly), and device
+// addresses (GLSL's buffer references).
+#include "harness/case.h"
+#include "harness/run.h"
+#include "harness/shader.h"
+
+namespace vitrine::cts {
+namespace {
+
+constexpr uint32_t kInvocations = 64;
+
+// ---- variable pointers
+
+/// 64 invocations of a body that makes %r from %x (a random word) and %n (their number). Buffers: %a and %b of 256
+/// random words, %out.
+void run_body(Run& run, const std::string& body, const std::string& functions = "") {
+  run.require(run.gpu.extension_features.variable_pointers.variablePointers, "variablePointers");
+  const std::string text = R"(; target: vulkan1.1
+OpCapability Shader
+OpCapability VariablePointers
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %id
+OpExecutionMode %main LocalSize 64 1 1
+OpDecorate %id BuiltIn GlobalInvocationId
+OpDecorate %array ArrayStride 4
+OpDecorate %uint_ptr ArrayStride 4
+OpDecorate %block Block
+OpMemberDecorate %block 0 Offset 0
+OpDecorate %a DescriptorSet 0
+OpDecorate %a Binding 0
+OpDecorate %b DescriptorSet 0
+OpDecorate %b Binding 1
+OpDecorate %out DescriptorSet 0
+OpDecorate %out Binding 2
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%bool = OpTypeBool
+%uint = OpTypeInt 32 0
+%v3uint = OpTypeVector %uint 3
+%v3ptr = OpTypePointer Input %v3uint
+%id = OpVariable %v3ptr Input
+%array = OpTypeRuntimeArray %uint
+%block = OpTypeStruct %array
+%block_ptr = OpTypePointer StorageBuffer %block
+%uint_ptr = OpTypePointer StorageBuffer %uint
+%a = OpVariable %block_ptr StorageBuffer
+%b = OpVariable %block_ptr StorageBuffer
+%out = OpVariable %block_ptr StorageBuffer
+%u0 = OpConstant %uint 0
+%u1 = OpConstant %uint 1
+%u2 = OpConstant %uint 2
+%u3 = OpConstant %uint 3
+%u7 = OpConstant %uint 7
+%u64 = OpConstant %uint 64
+%u264 = OpConstant %uint 264
+%shared_array = OpTypeArray %uint %u64
+%shared_type = OpTypePointer Workgroup %shared_array
+%shared_ptr = OpTypePointer Workgroup %uint
+%shared = OpVariable %shared_type Workgroup
+%local_ptr = OpTypePointer Function %uint_ptr
+%null = OpConstantNull %uint_ptr
+%pick_type = OpTypeFunction %uint_ptr %bool %uint_ptr
+)" + functions + R"(
+%main = OpFunction %void None %fn
+%entry = OpLabel
+%kept = OpVariable %local_ptr Function
+%gid = OpLoad %v3uint %id
+%n = OpCompositeExtract %uint %gid 0
+%from = OpAccessChain %uint_ptr %a %u0 %n
+%x = OpLoad %uint %from
+%bit = OpBitwiseAnd %uint %x %u1
+%odd = OpIEqual %bool %bit %u1
+%pa = OpAccessChain %uint_ptr %a %u0 %n
+%pb = OpAccessChain %uint_ptr %b %u0 %n
+)" + body + R"(
+%to = OpAccessChain %uint_ptr %out %u0 %n
+OpStore %to %r
+OpReturn
+OpFunctionEnd
+)";
+  run.note("assembly", text);
+  std::vector<uint32_t> words(256);
+  for (uint32_t& word : words) word = run.random.bits();
+  const Buffer a = run.buffer_of(words);
+  for (uint32_t& word : words) word = run.random.bits();
+  const Buffer b = run.buffer_of(words), out = run.buffer(kInvocations * 4);
+  const Resources res = run.resources({storage_buffer(0, a), storage_buffer(1, b), storage_buffer(2, out)});
+  const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, 1, 1, 1);
+  });
+  run.out("out", out);
+  run.out("b", b);
+}
+
+CTS_CASE("pointers", "variable.select_buffers") {
+  run_body(run, R"(
+%p = OpSelect %uint_ptr %odd %pa %pb
+%v = OpLoad %uint %p
+%r = OpIAdd %uint %v %n
+)");
+}
+
+CTS_CASE("pointers", "variable.select_same_buffer") {
+  run_body(run, R"(
+%far = OpAccessChain %uint_ptr %b %u0 %u7
+%p = OpSelect %uint_ptr %odd %far %pb
+%v = OpLoad %uint %p
+%r = OpIAdd %uint %v %n
+)");
+}
+
+CTS_CASE("pointers", "variable.store_and_atomic") {
+  run_body(run, R"(
+%own = OpIAdd %uint %n %u64
+%pc = OpAccessChain %uint_ptr %b %u0 %own
+%p = OpSelect %uint_ptr %odd %pb %pc
+OpStore %p %x
+%slot = OpBitwiseAnd %uint %n %u3
+%q0 = OpAccessChain %uint_ptr %b %u0 %slot
+%q1 = OpPtrAccessChain %uint_ptr %q0 %u264
+%q2 = OpPtrAccessChain %uint_ptr %q0 %u64
+%q3 = OpPtrAccessChain %uint_ptr %q2 %u64
+%q = OpSelect %uint_ptr %odd %q3 %q1
+%r = OpIAdd %uint %x %u1
+)");
+}
+
+CTS_CASE("pointers", "variable.phi_walks_an_array") {
+  run_body(run, R"(
+%start = OpSelect %uint_ptr %odd %pa %pb
+%trips = OpBitwiseAnd %uint %x %u7
+OpBranch %head
+%head = OpLabel
+%p = OpPhi %uint_ptr %start %entry %next %again
+%sum = OpPhi %uint %u0 %entry %sum1 %again
+%k = OpPhi %uint %u0 %entry %k1 %again
+OpLoopMerge %done %again None
+OpBranch %test
+%test = OpLabel
+%more = OpULessThan %bool %k %trips
+OpBranchConditional %more %again %done
+%again = OpLabel
+%v = OpLoad %uint %p
+%scaled = OpIMul %uint %sum %u3
+%sum1 = OpIAdd %uint %scaled %v
+%next = OpPtrAccessChain %uint_ptr %p %u2
+%k1 = OpIAdd %uint %k %u1
+OpBranch %head
+%done = OpLabel
+%r = OpIAdd %uint %sum %n
+)");
+}
+
+CTS_CASE("pointers", "variable.kept_and_returned") {
+  run_body(run, R"(
+OpStore %kept %pb
+OpSelectionMerge %joined None
+OpBranchConditional %odd %then %joined
+%then = OpLabel
+OpStore %kept %pa
+OpBranch %joined
+%joined = OpLabel
+%k = OpLoad %uint_ptr %kept
+%p = OpFunctionCall %uint_ptr %pick %odd %k
+%v = OpLoad %uint %p
+%r = OpIAdd %uint %v %n
+)",
+           R"(
+%pick = OpFunction %uint_ptr None %pick_type
+%flag = OpFunctionParameter %bool
+%given = OpFunctionParameter %uint_ptr
+%pick_entry = OpLabel
+OpSelectionMerge %rest None
+OpBranchConditional %flag %early %rest
+%early = OpLabel
+%further = OpPtrAccessChain %uint_ptr %given %u3
+OpReturnValue %further
+%rest = OpLabel
+OpReturnValue %given
+OpFunctionEnd
+)");
+}
+
+CTS_CASE("pointers", "variable.compare") {
+  run_body(run, R"(
+%other = OpAccessChain %uint_ptr %a %u0 %n
+%p = OpSelect %uint_ptr %odd %other %pb
+%same = OpIEqual %bool %n %n
+%loaded = OpLoad %uint %p
+%chosen = OpSelect %uint_ptr %odd %p %pa
+%w = OpLoad %uint %chosen
+%r = OpIAdd %uint %loaded %w
+)");
+}
+
+CTS_CASE("pointers", "variable.workgroup") {
+  run_body(run, R"(
+%own = OpAccessChain %shared_ptr %shared %n
+OpStore %own %x
+OpControlBarrier %u2 %u2 %u264
+%across = OpBitwiseXor %uint %n %u7
+%p0 = OpAccessChain %shared_ptr %shared %across
+%p = OpSelect %shared_ptr %odd %own %p0
+%v = OpLoad %uint %p
+%r = OpIAdd %uint %v %n
+)");
+}
+
+// ---- device addresses
+
+constexpr char kReferences[] = R"(// target: vulkan1.1
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference2 : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+layout(local_size_x = 64) in;
+)";
+
+Buffer addressed(Run& run, VkDeviceSize size) {
+  run.require(run.gpu.extension_features.buffer_address.bufferDeviceAddress, "bufferDeviceAddress");
+  return run.buffer(size, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT);
+}
+
+uint64_t address_of(Run& run, const Buffer& buffer) {
+  VkBufferDeviceAddressInfo info{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
+  info.buffer = buffer.handle;
+  return CTS_COMMAND(run.gpu, GetBufferDeviceAddressKHR)(run.device, &info);
+}
+
+/// Runs a shader whose push constants are `addresses`.
+void run_addresses(Run& run, const std::string& code, const std::vector<uint64_t>& addresses,
+                   const std::vector<Binding>& bindings) {
+  const Resources res = run.resources(bindings, static_cast<uint32_t>(addresses.size() * 8));
+  const VkPipeline pipeline =
+      run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, std::string(kReferences) + code));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, static_cast<uint32_t>(addresses.size() * 8),
+                       addresses.data());
+    vkCmdDispatch(cmd, 1, 1, 1);
+  });
+}
+
+CTS_CASE("pointers", "address.linked_list") {
+  struct Node {
+    uint32_t value, pad;
+    uint64_t next;
+  };
+  constexpr uint32_t kNodes = 100;
+  const Buffer nodes = addressed(run, kNodes * sizeof(Node)), out = run.buffer(kInvocations * 4);
+  const uint64_t base = address_of(run, nodes);
+  for (uint32_t i = 0; i < kNodes; i++) {
+    const uint32_t next = (i * 37 + 11) % kNodes;
+    nodes.as<Node>()[i] = {run.random.bits(), 0, i % 9 == 0 ? 0 : base + next * sizeof(Node)};
+  }
+  run_addresses(run, R"(
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer Node;
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer Node { uint value; Node next; };
+layout(push_constant) uniform P { Node first; } p;
+layout(std430, binding = 0) buffer R { uint r[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x, s = 0u;
+  Node at = p.first + int(i);
+  for (int k = 0; k < 20; k++) {
+    s = s * 31u + at.value;
+    if (uvec2(at.next) == uvec2(0u)) break;
+    at = at.next;
+  }
+  r[i] = s;
+})",
+                {base}, {storage_buffer(0, out)});
+  run.out("out", out);
+}
+
+CTS_CASE("pointers", "address.stores_and_atomics") {
+  const Buffer a = addressed(run, 4096), b = addressed(run, 4096);
+  run_addresses(run, R"(
+struct Item { vec3 v; uint n; mat2 m; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer Items { Item items[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer Counts { uint total; uint counts[8]; };
+layout(push_constant) uniform P { Items items; Counts counts; } p;
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  Item item;
+  item.v = vec3(i, i * 2u, 0.5);
+  item.n = atomicAdd(p.counts.counts[i & 7u], 1u) < 100u ? i : 0u;
+  item.m = mat2(1.0, i, 3.0, 4.0);
+  p.items.items[i] = item;
+  atomicMax(p.counts.total, i * 5u);
+  memoryBarrierBuffer();
+  p.items.items[i].m[1].x = p.items.items[i].m[0].y * 2.0;
+})",
+                {address_of(run, a), address_of(run, b)}, {storage_buffer(0, run.buffer(4))});
+  run.out("items", a);
+  run.out("counts", b);
+}
+
+CTS_CASE("pointers", "address.chosen_per_invocation") {
+  const Buffer a = addressed(run, 1024), b = addressed(run, 1024), out = run.buffer(kInvocations * 16);
+  for (uint32_t i = 0; i < 256; i++) a.as<uint32_t>()[i] = run.random.bits(), b.as<uint32_t>()[i] = run.random.bits();
+  run_addresses(run, R"(
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Words { uvec4 w[]; };
+layout(push_constant) uniform P { Words a, b; } p;
+layout(std430, binding = 0) buffer R { uvec4 r[]; };
+Words pick(uint i, Words a, Words b) { return (i & 5u) == 1u ? a : b; }
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  Words chosen = pick(i, p.a, p.b), other = p.a;
+  if (i > 40u) other = chosen;
+  r[i] = chosen.w[i] + other.w[63u - i].wzyx + Words(uvec2(p.b)).w[i / 3u];
+})",
+                {address_of(run, a), address_of(run, b)}, {storage_buffer(0, out)});
+  run.out("out", out);
+}
+
+CTS_CASE("pointers", "zeroed_workgroup") {
+  run.require(run.gpu.extension_features.zero_workgroup.shaderZeroInitializeWorkgroupMemory,
+              "shaderZeroInitializeWorkgroupMemory");
+  const Buffer out = run.buffer(kInvocations * 4);
+  const Resources res = run.resources({storage_buffer(0, out)});
+  const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, R"(// target: vulkan1.1
+#extension GL_EXT_null_initializer : require
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) buffer R { uint r[]; };
+shared uint s[64] = {};
+void main() {
+  uint i = gl_LocalInvocationIndex;
+  uint before = s[63u - i];
+  barrier();
+  s[i] = i + 5u;
+  barrier();
+  r[i] = before * 1000u + s[63u - i];
+})"));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, 2, 1, 1);
+  });
+  run.out("out", out);
+}
+
+}  // namespace
+}  // namespace vitrine::cts
