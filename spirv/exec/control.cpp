@@ -4,10 +4,12 @@
 
 #include "spirv/exec/handlers.h"
 #include "spirv/exec/operands.h"
+#include "spirv/exec/profile.h"
 
 namespace vitrine::spirv {
 
 void execute(Wave& wave, const Instruction* start) {
+  if (exec::profile_enabled()) return exec::execute_profiled(wave, start);
   wave.status = Wave::Status::kRunning;
   for (const Instruction* next = start; next != nullptr;) next = next->handler(wave, next);
 }

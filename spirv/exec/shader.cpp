@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "base/float_mode.h"
+#include "base/log.h"
+#include "spirv/exec/profile.h"
 #include "spirv/exec/wave_memory.h"
 #include "spirv/program.h"
 
@@ -16,7 +18,11 @@ namespace vitrine::spirv {
 Shader::Shader(ShaderInterface interface, std::unique_ptr<const Program> program)
     : interface_(std::move(interface)), program_(std::move(program)) {}
 
-Shader::~Shader() = default;
+Shader::~Shader() {
+  if (!exec::profile_enabled()) return;
+  const std::string profile = exec::take_profile(*program_);
+  if (!profile.empty()) base::log("shader-profile", "stage " + std::to_string(interface_.stage) + "\n" + profile);
+}
 
 BoundShader::BoundShader(const Shader& shader, const ResourceTable& resources, Fault& fault)
     : shader_(&shader), resources_(resources), fault_(&fault) {

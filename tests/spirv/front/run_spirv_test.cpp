@@ -1,4 +1,8 @@
 // SPIR-V assembly through the whole pipeline, run as compute: what no GLSL compiler writes.
+#include "spirv/addresses.h"
+#include "spirv/exec/profile.h"
+#include "spirv/exec/wave_memory.h"
+#include "spirv/program.h"
 #include "tests/spirv/front/glsl.h"
 
 namespace vitrine::spirv::test {
@@ -7,9 +11,9 @@ namespace {
 constexpr std::uint32_t kCount = 64;
 
 /// Words of a module whose `body` makes %r (uint) from %x (uint, the invocation's number).
-Words module_of(const std::string& body, const std::string& declarations, const std::string& imports) {
-  return assemble(imports + R"(
-OpMemoryModel Logical GLSL450
+Words module_of(const std::string& body, const std::string& declarations, const std::string& imports,
+                const std::string& addressing, const std::string& decorations) {
+  return assemble(imports + "\nOpMemoryModel " + addressing + R"( GLSL450
 OpEntryPoint GLCompute %main "main" %id
 OpExecutionMode %main LocalSize 64 1 1
 OpDecorate %id BuiltIn GlobalInvocationId
@@ -18,6 +22,7 @@ OpDecorate %block Block
 OpMemberDecorate %block 0 Offset 0
 OpDecorate %buffer DescriptorSet 0
 OpDecorate %buffer Binding 0
+)" + decorations + R"(
 %void = OpTypeVoid
 %fn = OpTypeFunction %void
 %bool = OpTypeBool
@@ -48,9 +53,11 @@ OpFunctionEnd
 }
 
 std::vector<std::uint32_t> run_spirv(const std::string& body, const std::string& declarations = "",
-                                     const std::string& imports = "OpCapability Shader\n") {
+                                     const std::string& imports = "OpCapability Shader\n",
+                                     const std::string& addressing = "Logical", const std::string& decorations = "") {
   std::vector<std::uint32_t> values(kCount);
-  auto shader = compile(module_of(body, declarations, imports), options_for(VK_SHADER_STAGE_COMPUTE_BIT));
+  auto shader = compile(module_of(body, declarations, imports, addressing, decorations),
+                        options_for(VK_SHADER_STAGE_COMPUTE_BIT));
   EXPECT_TRUE(shader) << shader.message();
   if (!shader) return values;
   Descriptor descriptor;
@@ -79,6 +86,98 @@ OpExtension "SPV_KHR_non_semantic_info"
 %strange = OpExtInstImport "NonSemantic.Nobody.Knows"
 )");
   for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], x + 7);
+}
+
+/// Where the shader of the following tests finds its pointer: a PhysicalStorageBuffer pointer made of two words.
+constexpr char kAddresses[] = R"(
+OpCapability Shader
+OpCapability PhysicalStorageBufferAddresses
+OpExtension "SPV_KHR_physical_storage_buffer"
+)";
+
+constexpr char kAddressBody[] = R"(
+%p0 = OpBitcast %physical %address
+%p = OpPtrAccessChain %physical %p0 %x
+OpStore %p %u7 Aligned 4
+%r = OpLoad %uint %p Aligned 4
+)";
+
+std::vector<std::uint32_t> run_address(std::uint64_t address) {
+  const std::string declarations = "%v2uint = OpTypeVector %uint 2\n%low = OpConstant %uint " +
+                                   std::to_string(static_cast<std::uint32_t>(address)) + "\n%high = OpConstant %uint " +
+                                   std::to_string(address >> 32) +
+                                   "\n%address = OpConstantComposite %v2uint %low %high\n"
+                                   "%physical = OpTypePointer PhysicalStorageBuffer %uint\n";
+  return run_spirv(kAddressBody, declarations, kAddresses, "PhysicalStorageBuffer64",
+                   "OpDecorate %physical ArrayStride 4\n");
+}
+
+TEST(RunSpirv, PointersReachLiveMemoryOnly) {
+  std::vector<std::uint32_t> memory(kCount / 2);
+  const auto* bytes = reinterpret_cast<const std::byte*>(memory.data());
+  const auto address = reinterpret_cast<std::uintptr_t>(bytes);
+  add_addresses(bytes, memory.size() * 4);
+  std::vector<std::uint32_t> got = run_address(address);
+  for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], x < kCount / 2 ? 7u : 0u) << x;
+  for (std::uint32_t word : memory) EXPECT_EQ(word, 7u);
+  remove_addresses(bytes);
+  for (const std::uint64_t wild :
+       {std::uint64_t{0}, std::uint64_t{8}, std::uint64_t{address}, ~std::uint64_t{0} - 40}) {
+    got = run_address(wild);
+    for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], 0u) << x;
+  }
+}
+
+TEST(RunSpirv, FaultsNameTheSourceFile) {
+  CompileOptions options = options_for(VK_SHADER_STAGE_COMPUTE_BIT);
+  auto shader = compile(assemble(R"(
+OpCapability Shader
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main"
+OpExecutionMode %main LocalSize 1 1 1
+%file = OpString "endless.comp"
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%main = OpFunction %void None %fn
+%entry = OpLabel
+OpLine %file 12 1
+OpBranch %head
+%head = OpLabel
+OpLine %file 13 1
+OpLoopMerge %done %again None
+OpBranch %again
+%again = OpLabel
+OpLine %file 14 1
+OpBranch %head
+%done = OpLabel
+OpReturn
+OpFunctionEnd
+)"),
+                        options);
+  ASSERT_TRUE(shader) << shader.message();
+  EXPECT_EQ(shader.value()->program().files.size(), 1u);
+  EXPECT_EQ(shader.value()->program().files[0].second, "endless.comp");
+}
+
+TEST(RunSpirv, ProfilesCountInstructionsByName) {
+  auto shader = compile(module_of("%r = OpIMul %uint %x %x\n", "", "OpCapability Shader\n", "Logical", ""),
+                        options_for(VK_SHADER_STAGE_COMPUTE_BIT));
+  ASSERT_TRUE(shader) << shader.message();
+  const Program& program = shader.value()->program();
+  EXPECT_EQ(exec::take_profile(program), "");
+  Fault fault;
+  const BoundShader bound(*shader.value(), {}, fault);
+  exec::WaveMemory memory;
+  for (int run = 0; run < 3; run++) {
+    Wave wave;
+    memory.bind(bound, wave);
+    wave.active = wave.live = wave.launched = base::kAllLanes;
+    exec::execute_profiled(wave, program.code.data());
+  }
+  const std::string table = exec::take_profile(program);
+  EXPECT_NE(table.find("store_storage"), std::string::npos) << table;
+  EXPECT_NE(table.find("         3 "), std::string::npos) << table;
+  EXPECT_EQ(exec::take_profile(program), "");
 }
 
 }  // namespace
