@@ -324,6 +324,10 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
   if (!plan.depth_test && !plan.depth_bounds && !plan.stencil_test) return;
   plan.depth_order = TestOrder::kEarly;
   if (!fragment || fragment->early_fragment_tests) return;
+  if (state.ordered_attachment_access) {
+    plan.depth_order = TestOrder::kLate;  // the fragment sees the depth before its own
+    return;
+  }
   const bool replaces = plan.frag.depth != kNoReg || plan.frag.stencil != kNoReg;
   if (!replaces && !fragment->writes_memory && !plan.may_kill) return;
   plan.depth_order = TestOrder::kLate;

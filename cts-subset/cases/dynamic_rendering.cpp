@@ -144,13 +144,13 @@ struct Scene {
   VkPipeline pipeline;
   Buffer vertices;
 
-  Scene(Run& run, const Rendering& rendering) {
+  Scene(Run& run, const Rendering& rendering, bool tests = true) {
     GraphicsSpec spec;
     spec.vertex = kColorVertex;
     spec.fragment = rendering.formats.size() > 1 ? kThreeColors : kColorFragment;
     spec.floats({4, 4});
-    spec.depth.depthTestEnable = spec.depth.depthWriteEnable = rendering.has_depth();
-    spec.depth.stencilTestEnable = rendering.has_stencil();
+    spec.depth.depthTestEnable = spec.depth.depthWriteEnable = tests && rendering.has_depth();
+    spec.depth.stencilTestEnable = tests && rendering.has_stencil();
     spec.depth.front = spec.depth.back = {VK_STENCIL_OP_INCREMENT_AND_WRAP,
                                           VK_STENCIL_OP_REPLACE,
                                           VK_STENCIL_OP_INVERT,
@@ -269,6 +269,27 @@ CTS_CASE("dynamic_rendering", "missing_view") {
   rendering.formats[1] = VK_FORMAT_UNDEFINED;
   rendering.color_infos[1].imageView = VK_NULL_HANDLE;
   const Scene scene(run, rendering);
+  run.once([&](VkCommandBuffer cmd) {
+    rendering.begin(run, cmd);
+    scene.draw(cmd);
+    rendering.end(run, cmd);
+  });
+  rendering.out(run);
+}
+
+/// An attachment that the instance neither loads nor stores nor uses stays as it was. The reference, which does not
+/// know the operations, loads and stores it.
+CTS_CASE("dynamic_rendering", "load_store_op_none") {
+  run.require(gpus().device.has("VK_EXT_load_store_op_none"), "VK_EXT_load_store_op_none");
+  RenderingSpec spec;
+  spec.depth = VK_FORMAT_D24_UNORM_S8_UINT;
+  Rendering rendering = make_rendering(run, spec);
+  const bool none = run.gpu.has("VK_EXT_load_store_op_none");
+  for (VkRenderingAttachmentInfo* info : {&rendering.depth_info, &rendering.stencil_info}) {
+    info->loadOp = none ? VK_ATTACHMENT_LOAD_OP_NONE_EXT : VK_ATTACHMENT_LOAD_OP_LOAD;
+    info->storeOp = none ? VK_ATTACHMENT_STORE_OP_NONE : VK_ATTACHMENT_STORE_OP_STORE;
+  }
+  const Scene scene(run, rendering, false);
   run.once([&](VkCommandBuffer cmd) {
     rendering.begin(run, cmd);
     scene.draw(cmd);

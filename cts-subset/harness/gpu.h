@@ -107,6 +107,7 @@ void check(VkResult result, const char* call);
 
 /// Extensions without features that cases use: enabled where offered.
 #define CTS_EXTENSIONS(X)                 \
+  X("VK_EXT_load_store_op_none")          \
   X("VK_EXT_post_depth_coverage")         \
   X("VK_EXT_shader_stencil_export")       \
   X("VK_EXT_shader_subgroup_ballot")      \
