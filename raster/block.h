@@ -65,6 +65,16 @@ struct BlockDepthTest {
 base::LaneMask test_block_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
                                 const BlockPixels& pixels, base::LaneMask rows);
 
+/// The same for a 4x4 window; `rows`: bit 4*y + x.
+std::uint32_t test_window_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                                const BlockPixels& pixels, std::uint32_t rows);
+
+/// Quad order of a window to row order, or back.
+constexpr std::uint32_t transpose_window(std::uint32_t lanes) {
+  const std::uint32_t inner = (lanes ^ lanes >> 2) & 0x0c0c;
+  return lanes ^ (inner | inner << 2);
+}
+
 /// A plane to be evaluated over a block.
 struct BlockVarying {
   std::uint32_t plane;

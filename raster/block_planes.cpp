@@ -64,14 +64,13 @@ void evaluate_all(const PlaneSet& planes, const BlockVarying* varying, std::size
     evaluate_planes<false>(planes, varying, count, x, y, nullptr);
 }
 
-using F8 = hn::CappedTag<float, 8>;
-
-template <class Format>
-base::LaneMask test_rows(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
-                         const BlockPixels& pixels, base::LaneMask rows) {
-  const F8 f;
-  const hn::RebindToSigned<F8> d;
-  constexpr std::size_t n = hn::MaxLanes(F8());
+/// Square of `kSide` pixels.
+template <class Format, std::size_t kSide>
+HWY_INLINE base::LaneMask test_rows(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                                    const BlockPixels& pixels, base::LaneMask rows) {
+  const hn::CappedTag<float, kSide> f;
+  const hn::RebindToSigned<decltype(f)> d;
+  constexpr std::size_t n = hn::MaxLanes(f);
   constexpr std::uint32_t all = (1u << n) - 1;
   const auto zero = hn::Zero(f), one = hn::Set(f, 1.0f), offset = hn::Set(f, plane.offset);
   const auto dady = hn::Set(f, plane.dady);
@@ -80,11 +79,11 @@ base::LaneMask test_rows(const BlockDepthTest& test, const DepthPlane& plane, fl
   const VkCompareOp op = test.compare;
   const bool clamps = test.clamp != nullptr, write = test.write;
   base::LaneMask passed = 0;
-  for (std::size_t c = 0; c < 8; c += n) {
+  for (std::size_t c = 0; c < kSide; c += n) {
     const auto fx = hn::Add(hn::Set(f, x), hn::Iota(f, static_cast<float>(c)));
     const auto inner = lanes_fma(hn::Set(f, plane.dadx), fx, hn::Set(f, plane.a0));
-    for (std::size_t r = 0; r < 8; ++r) {
-      const auto covered = static_cast<std::uint32_t>(rows >> (8 * r + c)) & all;
+    for (std::size_t r = 0; r < kSide; ++r) {
+      const auto covered = static_cast<std::uint32_t>(rows >> (kSide * r + c)) & all;
       if (covered == 0) continue;
       auto z = hn::Add(lanes_fma(dady, hn::Set(f, y + static_cast<float>(r)), inner), offset);
       z = lanes_max_second(lanes_min_second(z, one), zero);
@@ -93,7 +92,7 @@ base::LaneMask test_rows(const BlockDepthTest& test, const DepthPlane& plane, fl
       const auto value = Format::encode(z);
       const auto stored = Format::load_row(d, texels);
       const auto bits = static_cast<std::uint32_t>(bits_of_mask(compare<Format>(op, value, stored))) & covered;
-      passed |= base::LaneMask{bits} << (8 * r + c);
+      passed |= base::LaneMask{bits} << (kSide * r + c);
       if (!write || bits == 0) continue;
       Format::store_row(bits == all ? value : hn::IfThenElse(lanes_mask_from_bits(d, bits), value, stored), texels);
     }
@@ -101,20 +100,30 @@ base::LaneMask test_rows(const BlockDepthTest& test, const DepthPlane& plane, fl
   return passed;
 }
 
+template <std::size_t kSide>
+HWY_INLINE base::LaneMask test_square(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                                      const BlockPixels& pixels, base::LaneMask rows) {
+  switch (test.format) {
+    case DepthFormat::kD16:
+      return test_rows<D16, kSide>(test, plane, x, y, pixels, rows);
+    case DepthFormat::kD24:
+      return test_rows<D24, kSide>(test, plane, x, y, pixels, rows);
+    case DepthFormat::kD32:
+      return test_rows<D32, kSide>(test, plane, x, y, pixels, rows);
+    default:
+      return rows;
+  }
+}
+
 }  // namespace
 
 base::LaneMask test_block(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
                           const BlockPixels& pixels, base::LaneMask rows) {
-  switch (test.format) {
-    case DepthFormat::kD16:
-      return test_rows<D16>(test, plane, x, y, pixels, rows);
-    case DepthFormat::kD24:
-      return test_rows<D24>(test, plane, x, y, pixels, rows);
-    case DepthFormat::kD32:
-      return test_rows<D32>(test, plane, x, y, pixels, rows);
-    default:
-      return rows;
-  }
+  return test_square<8>(test, plane, x, y, pixels, rows);
+}
+base::LaneMask test_window(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                           const BlockPixels& pixels, base::LaneMask rows) {
+  return test_square<4>(test, plane, x, y, pixels, rows);
 }
 
 }  // namespace vitrine::raster::HWY_NAMESPACE
@@ -125,6 +134,7 @@ namespace vitrine::raster {
 
 HWY_EXPORT(evaluate_all);
 HWY_EXPORT(test_block);
+HWY_EXPORT(test_window);
 
 void evaluate_block(const PlaneSet& planes, const BlockVarying* varying, std::size_t count, float x, float y,
                     const float* scale) {
@@ -134,6 +144,11 @@ void evaluate_block(const PlaneSet& planes, const BlockVarying* varying, std::si
 base::LaneMask test_block_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
                                 const BlockPixels& pixels, base::LaneMask rows) {
   return HWY_DYNAMIC_DISPATCH(test_block)(test, plane, x, y, pixels, rows);
+}
+
+std::uint32_t test_window_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                                const BlockPixels& pixels, std::uint32_t rows) {
+  return static_cast<std::uint32_t>(HWY_DYNAMIC_DISPATCH(test_window)(test, plane, x, y, pixels, rows));
 }
 
 }  // namespace vitrine::raster

@@ -152,6 +152,35 @@ void begin_blocks(TileWorker& worker) {
       functions->pack(plan.writer[i], collect_color(worker, plan.frag.color[i]), draw.color[i]);
 }
 
+namespace {
+
+BlockPixels depth_pixels(const DepthStencilTarget& target, int x, int y) {
+  const std::uint64_t texel_bytes = target.format == DepthFormat::kD16 ? 2 : 4;
+  return {
+      target.depth + static_cast<std::uint64_t>(y) * target.depth_pitch + static_cast<std::uint64_t>(x) * texel_bytes,
+      target.depth_pitch};
+}
+
+BlockDepthTest depth_test(const PipelinePlan& plan, const DepthStencilTarget& target, bool write,
+                          const DepthRange& range) {
+  return {target.format, plan.state->depth_compare, write && plan.depth_write,
+          plan.state->depth_clamp ? &range : nullptr};
+}
+
+}  // namespace
+
+std::uint32_t test_window_lanes(TileWorker& worker, const Primitive& primitive, int x, int y, std::uint32_t lanes,
+                                bool write) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const DepthStencilTarget& target = worker.target.depth_stencil[0];
+  const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
+  const ViewportTransform& viewport = plan.viewport[primitive.viewport];
+  const DepthRange range{viewport.z_min, viewport.z_max};
+  return transpose_window(test_window_depth(depth_test(plan, target, write, range), plane, static_cast<float>(x),
+                                            static_cast<float>(y), depth_pixels(target, x, y),
+                                            transpose_window(lanes)));
+}
+
 LaneMask test_block_sample(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane,
                            std::uint32_t sample, int x, int y, LaneMask lanes, bool write) {
   const PipelinePlan& plan = *worker.draw->plan;
@@ -161,14 +190,8 @@ LaneMask test_block_sample(TileWorker& worker, const Primitive& primitive, const
   const float dy = located ? static_cast<float>(kSampleY[sample]) / 256 : 0.0f;
   const ViewportTransform& viewport = plan.viewport[primitive.viewport];
   const DepthRange range{viewport.z_min, viewport.z_max};
-  const BlockDepthTest test{target.format, plan.state->depth_compare, write && plan.depth_write,
-                            plan.state->depth_clamp ? &range : nullptr};
-  const std::uint64_t texel_bytes = target.format == DepthFormat::kD16 ? 2 : 4;
-  const BlockPixels pixels{
-      target.depth + static_cast<std::uint64_t>(y) * target.depth_pitch + static_cast<std::uint64_t>(x) * texel_bytes,
-      target.depth_pitch};
-  return quads_of_rows(test_block_depth(test, plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, pixels,
-                                        rows_of_quads(lanes)));
+  return quads_of_rows(test_block_depth(depth_test(plan, target, write, range), plane, static_cast<float>(x) + dx,
+                                        static_cast<float>(y) + dy, depth_pixels(target, x, y), rows_of_quads(lanes)));
 }
 
 void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {

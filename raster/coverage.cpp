@@ -24,6 +24,10 @@ using V = hn::Vec<I>;
 alignas(64) constexpr std::int32_t kRowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
 alignas(64) constexpr std::int32_t kRowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
 
+/// Places of the 16 lanes of a window.
+alignas(64) constexpr std::int32_t kWindowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 0, 1, 0, 1, 2, 3, 2, 3};
+alignas(64) constexpr std::int32_t kWindowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3, 2, 2, 3, 3};
+
 /// Lanes where origin + x*step_x + y*step_y >= 0 for all edges; (x, y) is the lane's place.
 base::LaneMask inside_lanes(std::uint32_t count, const std::int32_t* step_x, const std::int32_t* step_y,
                             const std::int32_t* origin) {
@@ -51,6 +55,27 @@ base::LaneMask inside_lanes(std::uint32_t count, const std::int32_t* step_x, con
   return ~mask;
 }
 
+/// Edge functions of 3.2 over the 16 pixels of a window, corners relative to it.
+std::uint32_t window_lanes(const std::int32_t* x, const std::int32_t* y) {
+  const I d;
+  const std::size_t n = hn::Lanes(d);
+  std::uint32_t outside = 0;
+  for (std::size_t i = 0; i < 16; i += n) {
+    // Quads 0 and 1 of a row of quads, then the two below.
+    const V px = hn::ShiftLeft<8>(hn::Load(d, kWindowX + i)), py = hn::ShiftLeft<8>(hn::Load(d, kWindowY + i));
+    V sign = hn::Zero(d);
+    for (std::size_t e = 0; e < 3; ++e) {
+      const std::size_t next = e == 2 ? 0 : e + 1;
+      const std::int32_t a = y[e] - y[next], b = x[e] - x[next];
+      const std::int32_t owns = a < 0 || (a == 0 && b > 0) ? 0 : 1;  // E > 0 or E >= 0, as E - 1 >= 0 or E >= 0
+      const std::int32_t c = a * x[e] - b * y[e] - owns;
+      sign = hn::Or(sign, hn::Add(hn::Sub(hn::Set(d, c), hn::Mul(hn::Set(d, a), px)), hn::Mul(hn::Set(d, b), py)));
+    }
+    outside |= static_cast<std::uint32_t>(bits_of_mask(hn::Lt(sign, hn::Zero(d))) & base::first_lanes(n)) << i;
+  }
+  return ~outside & 0xffff;
+}
+
 }  // namespace vitrine::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -59,6 +84,7 @@ namespace vitrine::raster {
 namespace {
 
 HWY_EXPORT(inside_lanes);
+HWY_EXPORT(window_lanes);
 
 struct Edge {
   std::int64_t a, b, c;  ///< E = c - a*qx + b*qy, the fill rule's unit included
@@ -150,6 +176,21 @@ void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMa
   }
   any = HWY_DYNAMIC_DISPATCH(inside_lanes)(edges.count, step_x, step_y, most);
   all = HWY_DYNAMIC_DISPATCH(inside_lanes)(edges.count, step_x, step_y, least);
+}
+
+std::uint32_t cover_window(const std::int32_t corner_x[3], const std::int32_t corner_y[3], int x, int y,
+                           const PixelRect& rect) {
+  // Lanes left of a column and above a row.
+  constexpr std::uint32_t kLeft[5] = {0, 0x0505, 0x0f0f, 0x5f5f, 0xffff},
+                          kAbove[5] = {0, 0x0033, 0x00ff, 0x33ff, 0xffff};
+  std::int32_t cx[3], cy[3];
+  for (int i = 0; i < 3; ++i) {
+    cx[i] = corner_x[i] - x * 256;
+    cy[i] = corner_y[i] - y * 256;
+  }
+  const std::uint32_t inside =
+      kLeft[rect.x1 - x + 1] & ~kLeft[rect.x0 - x] & kAbove[rect.y1 - y + 1] & ~kAbove[rect.y0 - y];
+  return HWY_DYNAMIC_DISPATCH(window_lanes)(cx, cy) & inside;
 }
 
 base::LaneMask rect_lanes(int x0, int y0, int x1, int y1) {

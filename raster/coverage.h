@@ -37,6 +37,11 @@ base::LaneMask cover_block(const TileEdges& edges, std::uint32_t sample, int x, 
 /// block at quad-ordered place i.
 void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMask& any, base::LaneMask& all);
 
+/// Covered pixels, in quad order, of the 4x4 window at (x, y) for a single-sampled triangle whose corners lie within 32
+/// pixels of there; cut to the pixels up to (x1, y1) from (x0, y0).
+std::uint32_t cover_window(const std::int32_t corner_x[3], const std::int32_t corner_y[3], int x, int y,
+                           const PixelRect& rect);
+
 /// Place of lane i in a block: x, y in [0, 8).
 constexpr int lane_x(std::uint32_t lane) { return static_cast<int>((lane >> 2 & 3) * 2 + (lane & 1)); }
 constexpr int lane_y(std::uint32_t lane) { return static_cast<int>((lane >> 4) * 2 + (lane >> 1 & 1)); }

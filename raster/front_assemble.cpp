@@ -246,7 +246,9 @@ void assemble_point(Assembler& a, std::uint32_t slot) {
 void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, FrontScratch& scratch) {
   const PipelinePlan& plan = *chunk.draw->plan;
   const State& state = *plan.state;
-  Assembler a{chunk, pass, arena, scratch, plan, {&plan, &pass, &scratch.primitives}, plan.viewport[0]};
+  Assembler a{chunk,           pass, arena,
+              scratch,         plan, {&plan, &pass, &scratch.primitives, !chunk.draw->call.queries.statistics},
+              plan.viewport[0]};
   const TopologyShape shape = topology_shape(state.topology);
   if (state.cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return;
   std::uint32_t first_entry = 0;

@@ -21,16 +21,18 @@ using base::HWY_NAMESPACE::lanes_fma;
 using F = hn::ScalableTag<float>;
 using Quad = hn::FixedTag<float, 4>;
 using VF = hn::Vec<F>;
+using P = hn::CappedTag<float, 8>;  ///< planes of a primitive: most have no more
+using VP = hn::Vec<P>;
 
 /// Places of the lanes of one row of quads.
 alignas(64) constexpr float kRowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
 alignas(64) constexpr float kRowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
 
 /// Values of planes [i, i + lanes) at one vertex: perspective ones times its 1/w (a product with 1 changes nothing).
-HWY_INLINE VF vertex_values(const Vertex* v, std::size_t i, std::size_t perspective_end) {
-  const F f;
-  const VF raw = hn::LoadU(f, v + 2 + i);  // z is word 2: planes follow the record's order
-  const VF place = hn::Iota(f, static_cast<float>(i));
+HWY_INLINE VP vertex_values(const Vertex* v, std::size_t i, std::size_t perspective_end) {
+  const P f;
+  const VP raw = hn::LoadU(f, v + 2 + i);  // z is word 2: planes follow the record's order
+  const VP place = hn::Iota(f, static_cast<float>(i));
   const auto perspective =
       hn::And(hn::Ge(place, hn::Set(f, 2.0f)), hn::Lt(place, hn::Set(f, static_cast<float>(perspective_end))));
   return hn::Mul(raw, hn::IfThenElse(perspective, hn::Set(f, v[3]), hn::Set(f, 1.0f)));
@@ -38,19 +40,19 @@ HWY_INLINE VF vertex_values(const Vertex* v, std::size_t i, std::size_t perspect
 
 /// 4.1, over all planes at once.
 void triangle_planes(const Primitive& p, float po, std::size_t count, std::size_t perspective_end, PlaneSet& out) {
-  const F f;
+  const P f;
   const Vertex *v0 = p.v[0], *v1 = p.v[1], *v2 = p.v[2];
   const float dx01 = v0[0] - v1[0], dy01 = v0[1] - v1[1], dx20 = v2[0] - v0[0], dy20 = v2[1] - v0[1];
   const float ooa = 1.0f / (dx01 * dy20 - dy01 * dx20);
-  const VF x20 = hn::Set(f, dx20 * ooa), y20 = hn::Set(f, dy20 * ooa);
-  const VF x01 = hn::Set(f, dx01 * ooa), y01 = hn::Set(f, dy01 * ooa);
-  const VF xc = hn::Set(f, v0[0] - po), yc = hn::Set(f, v0[1] - po);
+  const VP x20 = hn::Set(f, dx20 * ooa), y20 = hn::Set(f, dy20 * ooa);
+  const VP x01 = hn::Set(f, dx01 * ooa), y01 = hn::Set(f, dy01 * ooa);
+  const VP xc = hn::Set(f, v0[0] - po), yc = hn::Set(f, v0[1] - po);
   for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
-    const VF a0 = vertex_values(v0, i, perspective_end);
-    const VF d01 = hn::Sub(a0, vertex_values(v1, i, perspective_end));
-    const VF d20 = hn::Sub(vertex_values(v2, i, perspective_end), a0);
-    const VF dadx = hn::Sub(hn::Mul(d01, y20), hn::Mul(d20, y01));
-    const VF dady = hn::Sub(hn::Mul(d20, x01), hn::Mul(d01, x20));
+    const VP a0 = vertex_values(v0, i, perspective_end);
+    const VP d01 = hn::Sub(a0, vertex_values(v1, i, perspective_end));
+    const VP d20 = hn::Sub(vertex_values(v2, i, perspective_end), a0);
+    const VP dadx = hn::Sub(hn::Mul(d01, y20), hn::Mul(d20, y01));
+    const VP dady = hn::Sub(hn::Mul(d20, x01), hn::Mul(d01, x20));
     hn::Store(dadx, f, out.dadx + i);
     hn::Store(dady, f, out.dady + i);
     hn::Store(hn::Sub(a0, hn::Add(hn::Mul(dadx, xc), hn::Mul(dady, yc))), f, out.a0 + i);
@@ -60,14 +62,14 @@ void triangle_planes(const Primitive& p, float po, std::size_t count, std::size_
 /// 6.3: `idx`, `idy` are the line's direction, or its deltas of Bresenham mode.
 void line_planes(const Primitive& p, float idx, float idy, float ooa, std::size_t count, std::size_t perspective_end,
                  PlaneSet& out) {
-  const F f;
+  const P f;
   const Vertex *v1 = p.v[0], *v2 = p.v[1];
-  const VF xc = hn::Set(f, v1[0] - 0.5f), yc = hn::Set(f, v1[1] - 0.5f);
+  const VP xc = hn::Set(f, v1[0] - 0.5f), yc = hn::Set(f, v1[1] - 0.5f);
   for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
-    const VF a1 = vertex_values(v1, i, perspective_end);
-    const VF d = hn::Sub(a1, vertex_values(v2, i, perspective_end));
-    const VF dadx = hn::Mul(hn::Mul(d, hn::Set(f, idx)), hn::Set(f, ooa));
-    const VF dady = hn::Mul(hn::Mul(d, hn::Set(f, idy)), hn::Set(f, ooa));
+    const VP a1 = vertex_values(v1, i, perspective_end);
+    const VP d = hn::Sub(a1, vertex_values(v2, i, perspective_end));
+    const VP dadx = hn::Mul(hn::Mul(d, hn::Set(f, idx)), hn::Set(f, ooa));
+    const VP dady = hn::Mul(hn::Mul(d, hn::Set(f, idy)), hn::Set(f, ooa));
     hn::Store(dadx, f, out.dadx + i);
     hn::Store(dady, f, out.dady + i);
     hn::Store(hn::Sub(a1, hn::Add(hn::Mul(dadx, xc), hn::Mul(dady, yc))), f, out.a0 + i);
@@ -75,7 +77,7 @@ void line_planes(const Primitive& p, float idx, float idy, float ooa, std::size_
 }
 
 void point_planes(const Primitive& p, std::size_t count, std::size_t perspective_end, PlaneSet& out) {
-  const F f;
+  const P f;
   for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
     hn::Store(vertex_values(p.v[0], i, perspective_end), f, out.a0 + i);
     hn::Store(hn::Zero(f), f, out.dadx + i);

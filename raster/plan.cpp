@@ -401,6 +401,7 @@ bool reads_elsewhere(const PipelinePlan& plan) {
 
 /// What the block path leaves to packed waves: whatever is rare and needs more than varyings and FragCoord.
 void plan_blocks(PipelinePlan& plan, bool general) {
+  plan.windows = !general && plan.samples == 1 && plan.raster_samples == 1;
   plan.tests_rows = !general && !plan.stencil_test && !plan.depth_bounds;
   const FragmentRegisters& frag = plan.frag;
   const bool rare_inputs = frag.point_coord[0] != kNoReg || frag.point_coord[1] != kNoReg || frag.sample_id != kNoReg ||

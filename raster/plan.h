@@ -137,6 +137,7 @@ struct PipelinePlan {
   bool replaces_colors = false;  ///< every covered pixel of every attachment is overwritten, whatever it held
   bool shades = true;            ///< the fragment shader's run can be observed
   bool may_kill = false;         ///< discard, sample mask output, alpha to coverage
+  bool windows = false;          ///< small triangles are covered in the front end (Primitive::window)
   bool tests_rows = false;       ///< depth of whole blocks is tested row by row (raster/block.h)
   bool shades_blocks = false;    ///< nearly full blocks are shaded on their own, without packing (raster/block.h)
 };

@@ -24,6 +24,9 @@ struct Primitive {
   float depth_offset;  ///< depth bias (5.1)
   std::uint32_t id;    ///< gl_PrimitiveID
   std::uint16_t x0, y0, x1, y1;  ///< pixels that can be covered, inclusive, cut to the draw region
+  /// Nonzero: covered pixels, in quad order, of the 4x4 window at the even pixel at or before (x0, y0), of a primitive
+  /// that covers nothing outside of it.
+  std::uint16_t window;
   std::uint16_t layer;
   std::uint8_t viewport;
   PrimitiveKind kind;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/numeric.h"
+#include "raster/coverage.h"
 #include "texel/format.h"
 
 namespace vitrine::raster {
@@ -49,6 +50,9 @@ float triangle_bias(const SetupContext& context, const Vertex* const v[3]) {
 bool cull_facing(const State& state, bool front) {
   return (state.cull_mode & (front ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT)) != 0;
 }
+
+/// Extent up to which edge functions near the triangle fit 32 bits with ease: 16 pixels.
+constexpr std::int32_t kWindowReach = 16 * 256;
 
 }  // namespace
 
@@ -103,6 +107,15 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   const PixelRect bounds{(left + first) >> 8, (top + first) >> 8, (right - 1) >> 8, (bottom - 1) >> 8};
   const PixelRect visible = intersect(bounds, plan.region[context.viewport]);
   if (visible.empty()) return;
+  std::uint32_t window = 0;
+  const int wx = visible.x0 & ~1, wy = visible.y0 & ~1;
+  if (plan.windows && visible.x1 - wx < 4 && visible.y1 - wy < 4 && right - left <= kWindowReach &&
+      bottom - top <= kWindowReach) {
+    const SetupVertex *second = area < 0 ? &v2 : &v1, *third = area < 0 ? &v1 : &v2;  // either rotation will do
+    const std::int32_t x[3] = {v0.x, second->x, third->x}, y[3] = {v0.y, second->y, third->y};
+    window = cover_window(x, y, wx, wy, visible);
+    if (window == 0 && context.drops_empty) return;
+  }
 
   Primitive& p = context.out->emplace_back();
   const SetupVertex* order[3] = {&v0, &v1, &v2};
@@ -123,6 +136,7 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   p.y0 = static_cast<std::uint16_t>(visible.y0);
   p.x1 = static_cast<std::uint16_t>(visible.x1);
   p.y1 = static_cast<std::uint16_t>(visible.y1);
+  p.window = static_cast<std::uint16_t>(window);
   p.layer = context.layer;
   p.viewport = context.viewport;
   p.kind = PrimitiveKind::kTriangle;

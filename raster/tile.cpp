@@ -92,7 +92,7 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
       wave.blocks = 0;
       for (std::uint32_t s = 0; s < kMaxSamples; ++s) wave.coverage[s] = wave.rasterized[s] = 0;
     }
-    wave.blocks |= block_bit(x, y);
+    wave.blocks |= block_bit(x + lane_x(lane), y + lane_y(lane));
     if (wave.slots == 0 || wave.primitive[wave.slots - 1] != &primitive) {
       wave.planes.set[wave.slots] = &planes;
       wave.primitive[wave.slots++] = &primitive;
@@ -148,6 +148,36 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, Bl
     shade_block(worker, primitive, x, y, block);
   else
     append_full_block(worker, primitive, x, y, rasterized, block);
+}
+
+/// A primitive whose coverage the front end found.
+void emit_window(TileWorker& worker, const Primitive& primitive) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const TileTarget& target = worker.target;
+  const int x = primitive.x0 & ~1, y = primitive.y0 & ~1;
+  std::uint32_t lanes = primitive.window;
+  if (x < target.x) lanes &= 0xf0f0;
+  if (y < target.y) lanes &= 0xff00;
+  if (x + 2 >= target.x + kTileSize) lanes &= 0x0f0f;
+  if (y + 2 >= target.y + kTileSize) lanes &= 0x00ff;
+  if (lanes == 0) return;
+  // As lanes of a block at (x, y): the lower two quads are its fifth and sixth.
+  const auto spread = [](std::uint32_t window) { return base::LaneMask{(window & 0xff) | (window & 0xff00) << 8}; };
+  BlockCoverage rasterized{{spread(lanes)}}, block = rasterized;
+  if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
+    if (plan.tests_rows && x + 4 <= target.right && y + 4 <= target.bottom)
+      block.lanes[0] = spread(test_window_lanes(worker, primitive, x, y, lanes, plan.depth_order == TestOrder::kEarly));
+    else
+      test_early(worker, primitive, x, y, block);
+    if (block.lanes[0] == 0) return;
+  }
+  if (!plan.shades) {
+    if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(block.lanes[0]));
+    return;
+  }
+  base::LaneMask any = block.lanes[0] | block.lanes[0] >> 1;
+  any = (any | any >> 2) & 0x0000000000110011;
+  append_quads(worker, primitive, x, y, rasterized, block, any);
 }
 
 /// The part of a tile a primitive may cover, pixels relative to the tile.
@@ -319,6 +349,10 @@ void place_block(int x, int y, QuadPositions& out) {
 }
 
 void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
+  if (primitive.window != 0) {
+    emit_window(worker, primitive);
+    return;
+  }
   const PipelinePlan& plan = *worker.draw->plan;
   TileEdges edges;
   if (!make_tile_edges(primitive, worker.target.x, worker.target.y, plan.raster_samples, edges)) return;

@@ -110,7 +110,8 @@ struct Scene {
     drops = random() % 3 == 0;
     set_state(random);
     set_shaders(random);
-    for (std::uint32_t i = 0; i < 12; ++i) add_triangle(random, i);
+    for (std::uint32_t i = 0; i < 12; ++i) add_triangle(random, i % 4 == 0 ? 4.0f : 0.9f);
+    for (std::uint32_t i = 0; i < 150; ++i) add_triangle(random, 0.05f);  // a few pixels
   }
 
   void draw(bool general, Attachment& color, Attachment* depth, std::uint64_t& passed) {
@@ -200,10 +201,10 @@ struct Scene {
     return active & ~helpers;
   }
 
-  void add_triangle(std::mt19937& random, std::uint32_t index) {
+  void add_triangle(std::mt19937& random, float size) {
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     const bool flat = random() % 3 == 0;  // w = 1 everywhere
-    const float size = index % 4 == 0 ? 4.0f : 0.9f, cx = unit(random) * 2 - 1, cy = unit(random) * 2 - 1;
+    const float cx = unit(random) * 2 - 1, cy = unit(random) * 2 - 1;
     for (int k = 0; k < 3; ++k) {
       Corner c;
       const float w = flat ? 1.0f : 0.5f + unit(random) * 2;
