@@ -169,16 +169,17 @@ BlockDepthTest depth_test(const PipelinePlan& plan, const DepthStencilTarget& ta
 
 }  // namespace
 
-std::uint32_t test_window_lanes(TileWorker& worker, const Primitive& primitive, int x, int y, std::uint32_t lanes,
-                                bool write) {
+LaneMask test_small_window(TileWorker& worker, const Primitive& primitive, int x, int y, LaneMask lanes, bool write) {
   const PipelinePlan& plan = *worker.draw->plan;
   const DepthStencilTarget& target = worker.target.depth_stencil[0];
   const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
   const ViewportTransform& viewport = plan.viewport[primitive.viewport];
   const DepthRange range{viewport.z_min, viewport.z_max};
-  return transpose_window(test_window_depth(depth_test(plan, target, write, range), plane, static_cast<float>(x),
-                                            static_cast<float>(y), depth_pixels(target, x, y),
-                                            transpose_window(lanes)));
+  const auto quads = static_cast<std::uint32_t>((lanes & 0xff) | (lanes >> 8 & 0xff00));
+  const LaneMask passed =
+      transpose_window(test_window_depth(depth_test(plan, target, write, range), plane, static_cast<float>(x),
+                                         static_cast<float>(y), depth_pixels(target, x, y), transpose_window(quads)));
+  return (passed & 0xff) | (passed & 0xff00) << 8;
 }
 
 LaneMask test_block_sample(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane,

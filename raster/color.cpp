@@ -6,6 +6,7 @@
 #include "base/float_mode.h"
 #include "raster/blend.h"
 #include "raster/block.h"
+#include "raster/color_fast.h"
 #include "texel/codec/unorm_attachment.h"
 
 namespace vitrine::raster {
@@ -282,6 +283,7 @@ ColorWriter make_general_color_writer(VkFormat format, const BlendAttachment& bl
 ColorWriter make_color_writer(VkFormat format, const BlendAttachment& blend, const State& state) {
   ColorWriter writer = make_general_color_writer(format, blend, state);
   if (writer.function) {
+    if (is_four_bytes(*writer.format)) set_byte_places(writer);
     if (const ColorFunction fast = fast_color_function(writer)) writer.function = fast;
     writer.block = block_color_functions(writer);
   }

@@ -55,6 +55,8 @@ struct ColorWriter {
   VkLogicOp logic_op = VK_LOGIC_OP_COPY;
   bool masked = false;            ///< some channel is not written
   texel::StoredTexel write_bits;  ///< bits of a texel that may change
+  /// Formats of four bytes: byte shuffles of a quad, from the order BytePacker leaves, and to its alphas.
+  alignas(16) std::uint8_t pack_places[16] = {}, alpha_places[16] = {};
   bool reads_destination() const { return blend != BlendType::kNone || logic || masked; }
 };
 

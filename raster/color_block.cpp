@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "raster/color_pack-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::raster::HWY_NAMESPACE {
@@ -25,41 +26,19 @@ using base::kWaveWidth;
 
 constexpr std::size_t kRow = 8;  // pixels
 
-/// Part D, as signed integers: MIN(1, x) * 255, to nearest even. Below 0: not yet clamped.
-template <class D>
-HWY_INLINE auto to_bytes(D d, const base::WaveRegister& color, std::size_t i) {
-  const auto x = hn::Load(d, reinterpret_cast<const float*>(color.lane + i));
-  return lanes_round_to_int(hn::Mul(lanes_min_second(hn::Set(d, 1.0f), x), hn::Set(d, 255.0f)));
-}
-
 /// Where the pixels of a vector of whole quads go: the upper ones first.
 alignas(64) constexpr std::int32_t kRowsOf16[16] = {0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15};
 alignas(64) constexpr std::int32_t kRowsOf8[8] = {0, 1, 4, 5, 2, 3, 6, 7};
 alignas(64) constexpr std::int32_t kRowsOf4[4] = {0, 1, 2, 3};
 
 void pack_bytes(const ColorWriter& writer, const base::WaveRegister* color, PackedBlock& out) {
-  const hn::CappedTag<float, 16> d;
-  const hn::Rebind<std::int32_t, decltype(d)> di;
-  const hn::Repartition<std::int16_t, decltype(d)> d16;
-  const hn::Repartition<std::uint8_t, decltype(d)> d8;
-  const hn::Half<decltype(di)> half;
+  const BytePacker::Texels d;
+  const hn::Half<BytePacker::Texels> half;
   const std::size_t n = hn::Lanes(d);
-  const auto order = hn::SetTableIndices(di, n == 16 ? kRowsOf16 : n == 8 ? kRowsOf8 : kRowsOf4);
-  // After the packs the four pixels of a quad are r b r b r b r b g a g a g a g a.
-  constexpr std::uint8_t kPlace[4] = {0, 8, 1, 9};
-  alignas(16) std::uint8_t shuffle[16];
-  for (std::size_t c = 0; c < 4; ++c) {
-    const auto byte = static_cast<std::size_t>(writer.format->rgba[c] >= 0 ? shift_of(writer, c) / 8 : 0);
-    for (std::size_t p = 0; p < 4; ++p) shuffle[4 * p + byte] = static_cast<std::uint8_t>(kPlace[c] + 2 * p);
-  }
-  const auto places = hn::LoadDup128(d8, shuffle);
+  const auto order = hn::SetTableIndices(d, n == 16 ? kRowsOf16 : n == 8 ? kRowsOf8 : kRowsOf4);
+  const BytePacker packer(writer);
   for (std::size_t i = 0; i < kWaveWidth; i += n) {
-    // Conversion from 32 to 16 bits saturates; 16 to 8 only needs the lower bound.
-    const auto zero = hn::Zero(d16);
-    const auto rg = hn::Max(hn::ReorderDemote2To(d16, to_bytes(d, color[0], i), to_bytes(d, color[1], i)), zero);
-    const auto ba = hn::Max(hn::ReorderDemote2To(d16, to_bytes(d, color[2], i), to_bytes(d, color[3], i)), zero);
-    const auto bytes = hn::TableLookupBytes(hn::BitCast(d8, hn::Or(rg, hn::ShiftLeft<8>(ba))), places);
-    const auto rows = hn::TableLookupLanes(hn::BitCast(di, bytes), order);
+    const auto rows = hn::TableLookupLanes(packer.pack(color, i), order);
     auto* top = reinterpret_cast<std::int32_t*>(out.texel) + i / 16 * 16 + i % 16 / 2;
     hn::StoreU(hn::LowerHalf(half, rows), half, top);
     hn::StoreU(hn::UpperHalf(half, rows), half, top + kRow);
@@ -216,13 +195,10 @@ HWY_INLINE VB term(VkBlendFactor rgb, VkBlendFactor alpha, VB value, const Blend
 void blend_rows(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels, base::LaneMask rows) {
   std::uint32_t constants = 0;
   for (std::size_t c = 0; c < 4; ++c) constants |= constant_to_byte(writer.constants[c]) << shift_of(writer, c);
-  const int alpha_shift = shift_of(writer, 3);
-  alignas(16) std::uint8_t places[16];
-  for (std::size_t i = 0; i < 16; ++i)
-    places[i] = static_cast<std::uint8_t>((i & ~std::size_t{3}) + static_cast<std::size_t>(alpha_shift) / 8);
   const Pixels d;
   const BlendShared shared{hn::BitCast(Bytes(), hn::Set(d, constants)),
-                           hn::BitCast(Bytes(), hn::Set(d, 0xffu << alpha_shift)), hn::LoadDup128(Bytes(), places)};
+                           hn::BitCast(Bytes(), hn::Set(d, 0xffu << shift_of(writer, 3))),
+                           hn::LoadDup128(Bytes(), writer.alpha_places)};
   const VB change = write_bits(writer);
   const BlendEquation rgb = writer.rgb, alpha = writer.alpha;
   const bool masked = writer.masked;
@@ -251,6 +227,17 @@ HWY_AFTER_NAMESPACE();
 namespace vitrine::raster {
 
 HWY_EXPORT(byte_block_functions);
+
+void set_byte_places(ColorWriter& writer) {
+  constexpr std::size_t kPlace[4] = {0, 8, 1, 9};  // of the first pixel's components in what BytePacker shuffles
+  const std::size_t alpha = static_cast<std::size_t>(shift_of(writer, 3)) / 8;
+  for (std::size_t p = 0; p < 4; ++p)
+    for (std::size_t c = 0; c < 4; ++c) {
+      writer.pack_places[4 * p + static_cast<std::size_t>(shift_of(writer, c)) / 8] =
+          static_cast<std::uint8_t>(kPlace[c] + 2 * p);
+      writer.alpha_places[4 * p + c] = static_cast<std::uint8_t>(4 * p + alpha);
+    }
+}
 
 const BlockColorFunctions* block_color_functions(const ColorWriter& writer) {
   if (writer.logic || !is_four_bytes(*writer.format)) return nullptr;

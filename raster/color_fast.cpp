@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "raster/color_pack-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::raster::HWY_NAMESPACE {
@@ -95,9 +96,24 @@ HWY_INLINE void store_pair(const std::uint32_t* quads, std::byte* top, std::byte
   hn::StoreU(hn::InterleaveUpper(d, left, right), d, reinterpret_cast<std::uint64_t*>(bottom));
 }
 
+/// Pixels of a quad of which some are covered.
+HWY_INLINE void store_some(const std::uint32_t* quad, std::uint32_t covered, std::byte* top, std::byte* bottom) {
+#if HWY_TARGET <= HWY_AVX2
+  const hn::FixedTag<std::uint32_t, 4> d;
+  const auto texels = hn::Load(d, quad);
+  hn::BlendedStore(texels, lanes_mask_from_bits(d, covered & 3), d, reinterpret_cast<std::uint32_t*>(top));
+  // The lower pixels are lanes 2 and 3: the store begins two pixels before them.
+  hn::BlendedStore(texels, lanes_mask_from_bits(d, covered & 12), d, reinterpret_cast<std::uint32_t*>(bottom) - 2);
+#else
+  if (covered & 1) std::memcpy(top, quad, 4);
+  if (covered & 2) std::memcpy(top + 4, quad + 1, 4);
+  if (covered & 4) std::memcpy(bottom, quad + 2, 4);
+  if (covered & 8) std::memcpy(bottom + 4, quad + 3, 4);
+#endif
+}
+
 /// Stores the lanes of `mask`: two rows of two pixels per quad.
 void scatter(const ColorWave& wave, base::LaneMask mask, const Words& words) {
-  leave_vectors();
   const texel::LevelLayout& level = wave.view->level[0];
   std::byte* const origin = wave.view->block(0, wave.layer, wave.sample, 0, 0, 0);
   for (std::size_t q = 0; q < base::kQuadsPerWave; ++q) {
@@ -117,10 +133,7 @@ void scatter(const ColorWave& wave, base::LaneMask mask, const Words& words) {
       std::memcpy(bottom, quad + 2, 8);
       continue;
     }
-    if (covered & 1) std::memcpy(top, quad, 4);
-    if (covered & 2) std::memcpy(top + 4, quad + 1, 4);
-    if (covered & 4) std::memcpy(bottom, quad + 2, 4);
-    if (covered & 8) std::memcpy(bottom + 4, quad + 3, 4);
+    store_some(quad, covered, top, bottom);
   }
 }
 
@@ -155,11 +168,10 @@ base::LaneMask lanes_of(std::uint32_t quads) {
 
 void store_bytes(const ColorWriter& writer, const ColorWave& wave) {
   Words words;
-  for (std::size_t c = 0; c < 4; ++c) {
-    Bytes bytes;
-    bytes_of(wave.color[c], bytes);
-    merge(bytes, shift_of(writer, c), words, c == 0);
-  }
+  const BytePacker packer(writer);
+  const BytePacker::Texels d;
+  for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d))
+    hn::Store(packer.pack(wave.color, i), d, reinterpret_cast<std::int32_t*>(words.lane + i));
   const std::uint32_t keep = ~write_word(writer);
   if (keep == 0) {
     scatter(wave, wave.mask, words);

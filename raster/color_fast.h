@@ -16,6 +16,9 @@ bool is_four_bytes(const texel::FormatDesc& format);
 /// Whether a blend factor is a dual-source one.
 bool reads_second_source(const ColorWriter& writer);
 
+/// Fills in pack_places and alpha_places for such a format.
+void set_byte_places(ColorWriter& writer);
+
 /// Position of a component's byte in the texel of such a format, bits.
 inline int shift_of(const ColorWriter& writer, std::size_t component) {
   return writer.format->channel[static_cast<std::size_t>(writer.format->rgba[component])].offset;

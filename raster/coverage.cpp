@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "base/simd.h"
 
@@ -55,25 +56,50 @@ base::LaneMask inside_lanes(std::uint32_t count, const std::int32_t* step_x, con
   return ~mask;
 }
 
-/// Edge functions of 3.2 over the 16 pixels of a window, corners relative to it.
-std::uint32_t window_lanes(const std::int32_t* x, const std::int32_t* y) {
+/// The same for the blocks of a tile. What an edge adds from pixel to pixel is common to all blocks.
+void inside_blocks(const TileEdges& edges, std::uint32_t sample, base::LaneMask places, base::LaneMask* out) {
   const I d;
   const std::size_t n = hn::Lanes(d);
-  std::uint32_t outside = 0;
+  const V zero = hn::Zero(d);
   for (std::size_t i = 0; i < 16; i += n) {
-    // Quads 0 and 1 of a row of quads, then the two below.
-    const V px = hn::ShiftLeft<8>(hn::Load(d, kWindowX + i)), py = hn::ShiftLeft<8>(hn::Load(d, kWindowY + i));
-    V sign = hn::Zero(d);
-    for (std::size_t e = 0; e < 3; ++e) {
-      const std::size_t next = e == 2 ? 0 : e + 1;
-      const std::int32_t a = y[e] - y[next], b = x[e] - x[next];
-      const std::int32_t owns = a < 0 || (a == 0 && b > 0) ? 0 : 1;  // E > 0 or E >= 0, as E - 1 >= 0 or E >= 0
-      const std::int32_t c = a * x[e] - b * y[e] - owns;
-      sign = hn::Or(sign, hn::Add(hn::Sub(hn::Set(d, c), hn::Mul(hn::Set(d, a), px)), hn::Mul(hn::Set(d, b), py)));
+    const V x = hn::Load(d, kRowX + i), y = hn::Load(d, kRowY + i);
+    V within[4] = {zero, zero, zero, zero}, down[4] = {zero, zero, zero, zero};
+    for (std::uint32_t e = 0; e < edges.count; ++e) {
+      within[e] = hn::Add(hn::Mul(x, hn::Set(d, edges.step_x[e])), hn::Mul(y, hn::Set(d, edges.step_y[e])));
+      down[e] = hn::Set(d, 2 * edges.step_y[e]);
     }
-    outside |= static_cast<std::uint32_t>(bits_of_mask(hn::Lt(sign, hn::Zero(d))) & base::first_lanes(n)) << i;
+    for (base::LaneMask left = places; left != 0; left &= left - 1) {
+      const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+      const int bx = lane_x(place) * kBlockSize, by = lane_y(place) * kBlockSize;
+      V row[4] = {zero, zero, zero, zero};
+      for (std::uint32_t e = 0; e < edges.count; ++e)
+        row[e] = hn::Add(within[e], hn::Set(d, edges.f[sample][e] + bx * edges.step_x[e] + by * edges.step_y[e]));
+      base::LaneMask outside = 0;
+      for (std::size_t r = 0; r < 4; ++r) {
+        // The fourth edge is seldom there: then its value and step are 0.
+        const V sign = hn::Or(hn::Or(row[0], row[1]), hn::Or(row[2], row[3]));
+        outside |= (bits_of_mask(hn::Lt(sign, zero)) & base::first_lanes(n)) << (r * 16 + i);
+        for (std::size_t e = 0; e < 4; ++e) row[e] = hn::Add(row[e], down[e]);
+      }
+      out[place] = (i == 0 ? base::kAllLanes : out[place]) & ~outside;
+    }
   }
-  return ~outside & 0xffff;
+}
+
+/// The same for three edges and the 4x4 pixels of quads 0, 1, 4 and 5: 16 lanes.
+base::LaneMask window_lanes(const std::int32_t* step_x, const std::int32_t* step_y, const std::int32_t* origin) {
+  const I d;
+  const std::size_t n = hn::Lanes(d);
+  base::LaneMask outside = 0;
+  for (std::size_t i = 0; i < 16; i += n) {
+    const V x = hn::Load(d, kWindowX + i), y = hn::Load(d, kWindowY + i);
+    V sign = hn::Zero(d);
+    for (std::size_t e = 0; e < 3; ++e)
+      sign = hn::Or(sign, hn::Add(hn::Set(d, origin[e]),
+                                  hn::Add(hn::Mul(x, hn::Set(d, step_x[e])), hn::Mul(y, hn::Set(d, step_y[e])))));
+    outside |= (bits_of_mask(hn::Lt(sign, hn::Zero(d))) & base::first_lanes(n)) << i;
+  }
+  return ~outside;
 }
 
 }  // namespace vitrine::raster::HWY_NAMESPACE
@@ -84,6 +110,7 @@ namespace vitrine::raster {
 namespace {
 
 HWY_EXPORT(inside_lanes);
+HWY_EXPORT(inside_blocks);
 HWY_EXPORT(window_lanes);
 
 struct Edge {
@@ -150,12 +177,8 @@ bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, std::ui
   return true;
 }
 
-base::LaneMask cover_block(const TileEdges& edges, std::uint32_t sample, int x, int y) {
-  if (edges.count == 0) return base::kAllLanes;
-  std::int32_t origin[4];
-  for (std::uint32_t e = 0; e < edges.count; ++e)
-    origin[e] = edges.f[sample][e] + x * edges.step_x[e] + y * edges.step_y[e];
-  return HWY_DYNAMIC_DISPATCH(inside_lanes)(edges.count, edges.step_x, edges.step_y, origin);
+void cover_blocks(const TileEdges& edges, std::uint32_t sample, base::LaneMask places, base::LaneMask out[64]) {
+  HWY_DYNAMIC_DISPATCH(inside_blocks)(edges, sample, places, out);
 }
 
 void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMask& any, base::LaneMask& all) {
@@ -178,24 +201,24 @@ void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMa
   all = HWY_DYNAMIC_DISPATCH(inside_lanes)(edges.count, step_x, step_y, least);
 }
 
-std::uint32_t cover_window(const std::int32_t corner_x[3], const std::int32_t corner_y[3], int x, int y,
-                           const PixelRect& rect) {
-  // Lanes left of a column and above a row.
-  constexpr std::uint32_t kLeft[5] = {0, 0x0505, 0x0f0f, 0x5f5f, 0xffff},
-                          kAbove[5] = {0, 0x0033, 0x00ff, 0x33ff, 0xffff};
-  std::int32_t cx[3], cy[3];
-  for (int i = 0; i < 3; ++i) {
-    cx[i] = corner_x[i] - x * 256;
-    cy[i] = corner_y[i] - y * 256;
-  }
-  const std::uint32_t inside =
-      kLeft[rect.x1 - x + 1] & ~kLeft[rect.x0 - x] & kAbove[rect.y1 - y + 1] & ~kAbove[rect.y0 - y];
-  return HWY_DYNAMIC_DISPATCH(window_lanes)(cx, cy) & inside;
-}
-
 base::LaneMask rect_lanes(int x0, int y0, int x1, int y1) {
   const auto at = [](int v) { return static_cast<std::size_t>(std::clamp(v, 0, 8)); };
   return kLanesLeftOf[at(x1 + 1)] & ~kLanesLeftOf[at(x0)] & kLanesAbove[at(y1 + 1)] & ~kLanesAbove[at(y0)];
+}
+
+base::LaneMask cover_window(const std::int32_t corner_x[3], const std::int32_t corner_y[3], int x, int y, bool small) {
+  std::int32_t step_x[3], step_y[3], origin[3];
+  for (int e = 0; e < 3; ++e) {
+    const int n = e == 2 ? 0 : e + 1;
+    const std::int32_t a = corner_y[e] - corner_y[n], b = corner_x[e] - corner_x[n];
+    const bool owns = a < 0 || (a == 0 && b > 0);
+    step_x[e] = -256 * a;
+    step_y[e] = 256 * b;
+    origin[e] = a * (corner_x[e] - x * 256) - b * (corner_y[e] - y * 256) - (owns ? 0 : 1);
+  }
+  if (!small) return HWY_DYNAMIC_DISPATCH(inside_lanes)(3, step_x, step_y, origin);
+  const base::LaneMask lanes = HWY_DYNAMIC_DISPATCH(window_lanes)(step_x, step_y, origin);
+  return (lanes & 0xff) | (lanes & 0xff00) << 8;
 }
 
 }  // namespace vitrine::raster

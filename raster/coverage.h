@@ -29,18 +29,17 @@ struct TileEdges {
 /// False if the tile is outside. `samples` is 1 or 4.
 bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, std::uint32_t samples, TileEdges& edges);
 
-/// Lanes are the pixels of an 8x8 block in quads: quad q at (2*(q%4), 2*(q/4)), see base::kQuadSize. (x, y): first
-/// pixel of the block relative to the tile.
-base::LaneMask cover_block(const TileEdges& edges, std::uint32_t sample, int x, int y);
+/// Covered pixels of the blocks of `places`: out[i] for the block at quad-ordered place i of the tile. Lanes are the
+/// pixels of an 8x8 block in quads: quad q at (2*(q%4), 2*(q/4)), see base::kQuadSize.
+void cover_blocks(const TileEdges& edges, std::uint32_t sample, base::LaneMask places, base::LaneMask out[64]);
 
 /// Which of the tile's 64 blocks may be touched (`any`) and are covered completely in all samples (`all`). Bit i is the
 /// block at quad-ordered place i.
 void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMask& any, base::LaneMask& all);
 
-/// Covered pixels, in quad order, of the 4x4 window at (x, y) for a single-sampled triangle whose corners lie within 32
-/// pixels of there; cut to the pixels up to (x1, y1) from (x0, y0).
-std::uint32_t cover_window(const std::int32_t corner_x[3], const std::int32_t corner_y[3], int x, int y,
-                           const PixelRect& rect);
+/// Covered pixels, in quad order, of the 8x8 window at (x, y) for a single-sampled triangle of positive area whose
+/// corners lie within 32 pixels of there. `small`: only its first 4x4 pixels can be covered.
+base::LaneMask cover_window(const std::int32_t corner_x[3], const std::int32_t corner_y[3], int x, int y, bool small);
 
 /// Place of lane i in a block: x, y in [0, 8).
 constexpr int lane_x(std::uint32_t lane) { return static_cast<int>((lane >> 2 & 3) * 2 + (lane & 1)); }

@@ -21,12 +21,12 @@ struct Primitive {
   std::int32_t x[4],
       y[4];            ///< triangle: 3 corners with positive area; line: 4 corners; point: x0, y0, x1, y1 in [0], [1]
   const Vertex* v[3];  ///< triangle: interpolation order (2.1); line: both ends; point: one
-  float depth_offset;  ///< depth bias (5.1)
-  std::uint32_t id;    ///< gl_PrimitiveID
-  std::uint16_t x0, y0, x1, y1;  ///< pixels that can be covered, inclusive, cut to the draw region
-  /// Nonzero: covered pixels, in quad order, of the 4x4 window at the even pixel at or before (x0, y0), of a primitive
+  /// Nonzero: covered pixels, in quad order, of the 8x8 window at the even pixel at or before (x0, y0), of a primitive
   /// that covers nothing outside of it.
-  std::uint16_t window;
+  base::LaneMask window;
+  float depth_offset;            ///< depth bias (5.1)
+  std::uint32_t id;              ///< gl_PrimitiveID
+  std::uint16_t x0, y0, x1, y1;  ///< pixels that can be covered, inclusive, cut to the draw region
   std::uint16_t layer;
   std::uint8_t viewport;
   PrimitiveKind kind;

@@ -107,13 +107,16 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   const PixelRect bounds{(left + first) >> 8, (top + first) >> 8, (right - 1) >> 8, (bottom - 1) >> 8};
   const PixelRect visible = intersect(bounds, plan.region[context.viewport]);
   if (visible.empty()) return;
-  std::uint32_t window = 0;
+  base::LaneMask window = 0;
   const int wx = visible.x0 & ~1, wy = visible.y0 & ~1;
-  if (plan.windows && visible.x1 - wx < 4 && visible.y1 - wy < 4 && right - left <= kWindowReach &&
+  if (plan.windows && visible.x1 - wx < 8 && visible.y1 - wy < 8 && right - left <= kWindowReach &&
       bottom - top <= kWindowReach) {
     const SetupVertex *second = area < 0 ? &v2 : &v1, *third = area < 0 ? &v1 : &v2;  // either rotation will do
     const std::int32_t x[3] = {v0.x, second->x, third->x}, y[3] = {v0.y, second->y, third->y};
-    window = cover_window(x, y, wx, wy, visible);
+    window = cover_window(x, y, wx, wy, bounds.x1 - wx < 4 && bounds.y1 - wy < 4);
+    const bool cut =
+        visible.x0 != bounds.x0 || visible.y0 != bounds.y0 || visible.x1 != bounds.x1 || visible.y1 != bounds.y1;
+    if (cut) window &= rect_lanes(visible.x0 - wx, visible.y0 - wy, visible.x1 - wx, visible.y1 - wy);
     if (window == 0 && context.drops_empty) return;
   }
 
@@ -136,7 +139,7 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   p.y0 = static_cast<std::uint16_t>(visible.y0);
   p.x1 = static_cast<std::uint16_t>(visible.x1);
   p.y1 = static_cast<std::uint16_t>(visible.y1);
-  p.window = static_cast<std::uint16_t>(window);
+  p.window = window;
   p.layer = context.layer;
   p.viewport = context.viewport;
   p.kind = PrimitiveKind::kTriangle;

@@ -63,6 +63,9 @@ void test_early(TileWorker& worker, const Primitive& primitive, int x, int y, Bl
   }
 }
 
+/// Whether the coverage before early tests is wanted: copies of it right after it was made stall.
+bool reads_rasterized(const TileWorker& worker) { return worker.draw->plan->frag.sample_mask_in != kNoReg; }
+
 /// A block none of whose quads is empty makes a wave of its own.
 void append_full_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
                        const BlockCoverage& block) {
@@ -75,8 +78,30 @@ void append_full_block(TileWorker& worker, const Primitive& primitive, int x, in
   std::memset(wave.slot, 0, sizeof(wave.slot));
   place_block(x, y, wave.position);
   std::memcpy(wave.coverage, block.lanes, sizeof(wave.coverage));
-  std::memcpy(wave.rasterized, rasterized.lanes, sizeof(wave.rasterized));
+  if (reads_rasterized(worker)) std::memcpy(wave.rasterized, rasterized.lanes, sizeof(wave.rasterized));
   shade_wave(worker, wave);
+}
+
+/// The quads of `quads` (lowest lanes) that fit the wave, at most `room`, into its places from `first` on. Returns how
+/// many.
+std::uint32_t fill_places(PackedWave& wave, int x, int y, base::LaneMask& quads, std::uint32_t first,
+                          std::uint32_t room, base::LaneMask lanes, base::LaneMask& coverage) {
+  std::uint32_t q = first;
+  for (; quads != 0 && q != first + room; quads &= quads - 1, ++q) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(quads));
+    wave.position.x[q] = static_cast<std::uint16_t>(x + lane_x(lane));
+    wave.position.y[q] = static_cast<std::uint16_t>(y + lane_y(lane));
+    coverage |= (lanes >> lane & 15) << (4 * q);
+  }
+  return q - first;
+}
+
+/// Lanes of `quads` moved together, to the places from `first` on.
+base::LaneMask compress_quads(base::LaneMask lanes, base::LaneMask quads, std::uint32_t first, std::uint32_t count) {
+  base::LaneMask result = 0;
+  for (std::uint32_t q = first; q != first + count; ++q, quads &= quads - 1)
+    result |= (lanes >> std::countr_zero(quads) & 15) << (4 * q);
+  return result;
 }
 
 /// Appends the quads whose lowest lanes are set in `quads`.
@@ -85,26 +110,29 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
   PackedWave& wave = worker.wave;
   const PlaneSet& planes = current_planes(worker, primitive);
   const std::uint32_t samples = worker.draw->plan->samples;
-  for (; quads != 0; quads &= quads - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(quads));
-    const std::uint32_t q = wave.quads++;
-    if (q == 0) {
+  // Windows do not keep to the grid of blocks.
+  const std::uint64_t blocks = block_bit(x, y) | block_bit(x + 7, y) | block_bit(x, y + 7) | block_bit(x + 7, y + 7);
+  while (quads != 0) {
+    if (wave.quads == 0) {
       wave.blocks = 0;
-      for (std::uint32_t s = 0; s < kMaxSamples; ++s) wave.coverage[s] = wave.rasterized[s] = 0;
+      for (std::uint32_t s = 0; s < samples; ++s) wave.coverage[s] = wave.rasterized[s] = 0;
     }
-    wave.blocks |= block_bit(x + lane_x(lane), y + lane_y(lane));
     if (wave.slots == 0 || wave.primitive[wave.slots - 1] != &primitive) {
       wave.planes.set[wave.slots] = &planes;
       wave.primitive[wave.slots++] = &primitive;
     }
-    wave.slot[q] = static_cast<std::uint8_t>(wave.slots - 1);
+    const std::uint32_t first = wave.quads;
+    const base::LaneMask before = quads;
+    const std::uint32_t count =
+        fill_places(wave, x, y, quads, first, base::kQuadsPerWave - first, block.lanes[0], wave.coverage[0]);
+    for (std::uint32_t s = 1; s < samples; ++s)
+      wave.coverage[s] |= compress_quads(block.lanes[s], before, first, count);
+    for (std::uint32_t s = 0; reads_rasterized(worker) && s < samples; ++s)
+      wave.rasterized[s] |= compress_quads(rasterized.lanes[s], before, first, count);
+    wave.blocks |= blocks;
+    wave.quads = first + count;
+    std::fill(wave.slot + first, wave.slot + wave.quads, static_cast<std::uint8_t>(wave.slots - 1));
     wave.planes.end[wave.slots - 1] = static_cast<std::uint8_t>(wave.quads);
-    wave.position.x[q] = static_cast<std::uint16_t>(x + lane_x(lane));
-    wave.position.y[q] = static_cast<std::uint16_t>(y + lane_y(lane));
-    for (std::uint32_t s = 0; s < samples; ++s) {
-      wave.coverage[s] |= (block.lanes[s] >> lane & 15) << (4 * q);
-      wave.rasterized[s] |= (rasterized.lanes[s] >> lane & 15) << (4 * q);
-    }
     if (wave.quads == base::kQuadsPerWave) shade_wave(worker, wave);
   }
 }
@@ -120,7 +148,8 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, Bl
       if ((plan.sample_mask >> s & 1) == 0) block.lanes[s] = 0;
   base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
-  const BlockCoverage rasterized = block;
+  BlockCoverage rasterized{};
+  if (reads_rasterized(worker)) rasterized = block;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
     test_early(worker, primitive, x, y, block);
     any = any_sample(block, plan.samples);
@@ -150,23 +179,27 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, Bl
     append_full_block(worker, primitive, x, y, rasterized, block);
 }
 
+/// The lanes of a window's first 4x4 pixels.
+constexpr base::LaneMask kSmallWindow = 0x00ff00ff;
+
 /// A primitive whose coverage the front end found.
 void emit_window(TileWorker& worker, const Primitive& primitive) {
   const PipelinePlan& plan = *worker.draw->plan;
   const TileTarget& target = worker.target;
   const int x = primitive.x0 & ~1, y = primitive.y0 & ~1;
-  std::uint32_t lanes = primitive.window;
-  if (x < target.x) lanes &= 0xf0f0;
-  if (y < target.y) lanes &= 0xff00;
-  if (x + 2 >= target.x + kTileSize) lanes &= 0x0f0f;
-  if (y + 2 >= target.y + kTileSize) lanes &= 0x00ff;
-  if (lanes == 0) return;
-  // As lanes of a block at (x, y): the lower two quads are its fifth and sixth.
-  const auto spread = [](std::uint32_t window) { return base::LaneMask{(window & 0xff) | (window & 0xff00) << 8}; };
-  BlockCoverage rasterized{{spread(lanes)}}, block = rasterized;
+  BlockCoverage block{{primitive.window}};
+  if (x < target.x || y < target.y || x + 8 > target.x + kTileSize || y + 8 > target.y + kTileSize) {
+    block.lanes[0] &=
+        rect_lanes(target.x - x, target.y - y, target.x + kTileSize - 1 - x, target.y + kTileSize - 1 - y);
+    if (block.lanes[0] == 0) return;
+  }
+  BlockCoverage rasterized{};
+  if (reads_rasterized(worker)) rasterized = block;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
-    if (plan.tests_rows && x + 4 <= target.right && y + 4 <= target.bottom)
-      block.lanes[0] = spread(test_window_lanes(worker, primitive, x, y, lanes, plan.depth_order == TestOrder::kEarly));
+    const bool small = (block.lanes[0] & ~kSmallWindow) == 0;
+    if (small && plan.tests_rows && x + 4 <= target.right && y + 4 <= target.bottom)
+      block.lanes[0] =
+          test_small_window(worker, primitive, x, y, block.lanes[0], plan.depth_order == TestOrder::kEarly);
     else
       test_early(worker, primitive, x, y, block);
     if (block.lanes[0] == 0) return;
@@ -176,7 +209,7 @@ void emit_window(TileWorker& worker, const Primitive& primitive) {
     return;
   }
   base::LaneMask any = block.lanes[0] | block.lanes[0] >> 1;
-  any = (any | any >> 2) & 0x0000000000110011;
+  any = (any | any >> 2) & 0x1111111111111111;
   append_quads(worker, primitive, x, y, rasterized, block, any);
 }
 
@@ -185,25 +218,6 @@ PixelRect rect_in_tile(const TileTarget& target, const Primitive& p) {
   return intersect({p.x0 - target.x, p.y0 - target.y, p.x1 - target.x, p.y1 - target.y},
                    {0, 0, kTileSize - 1, kTileSize - 1});
 }
-
-struct BlockWalk {
-  TileWorker& worker;
-  const Primitive& primitive;
-  const TileEdges& edges;
-  const PixelRect& rect;
-
-  void visit(int x, int y, bool covered) const {
-    const PipelinePlan& plan = *worker.draw->plan;
-    BlockCoverage block;
-    const bool inside = x >= rect.x0 && y >= rect.y0 && x + 7 <= rect.x1 && y + 7 <= rect.y1;
-    const base::LaneMask window =
-        inside ? base::kAllLanes : rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
-    for (std::uint32_t s = 0; s < plan.raster_samples; ++s)
-      block.lanes[s] = covered ? window : cover_block(edges, s, x, y) & window;
-    for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s) block.lanes[s] = block.lanes[0];
-    emit_block(worker, primitive, worker.target.x + x, worker.target.y + y, block);
-  }
-};
 
 void begin_draw(TileWorker& worker, const DrawRecord* draw) {
   worker.draw = draw;
@@ -349,31 +363,36 @@ void place_block(int x, int y, QuadPositions& out) {
 }
 
 void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const bool in_order = plan.in_order || plan.state->ordered_attachment_access;
+  if (in_order && worker.wave.quads != 0) shade_wave(worker, worker.wave);
   if (primitive.window != 0) {
     emit_window(worker, primitive);
     return;
   }
-  const PipelinePlan& plan = *worker.draw->plan;
   TileEdges edges;
   if (!make_tile_edges(primitive, worker.target.x, worker.target.y, plan.raster_samples, edges)) return;
   const PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
-  const bool in_order = plan.in_order || plan.state->ordered_attachment_access;
-  if (in_order && worker.wave.quads != 0) shade_wave(worker, worker.wave);
-  const BlockWalk walk{worker, primitive, edges, rect};
   const int bx0 = rect.x0 / kBlockSize, bx1 = rect.x1 / kBlockSize;
   const int by0 = rect.y0 / kBlockSize, by1 = rect.y1 / kBlockSize;
-  if ((bx1 - bx0 + 1) * (by1 - by0 + 1) <= 4) {
-    for (int by = by0; by <= by1; ++by)
-      for (int bx = bx0; bx <= bx1; ++bx) walk.visit(bx * kBlockSize, by * kBlockSize, edges.count == 0);
-    return;
-  }
-  base::LaneMask any, all;
-  classify_blocks(edges, plan.raster_samples, any, all);
+  base::LaneMask any = base::kAllLanes, all = edges.count == 0 ? base::kAllLanes : 0;
+  if (edges.count != 0 && (bx1 - bx0 + 1) * (by1 - by0 + 1) > 4) classify_blocks(edges, plan.raster_samples, any, all);
   any &= rect_lanes(bx0, by0, bx1, by1);
+  base::LaneMask lanes[kMaxSamples][64];  // by place; only those of partly covered blocks are set
+  for (std::uint32_t s = 0; s < plan.raster_samples; ++s) cover_blocks(edges, s, any & ~all, lanes[s]);
   for (; any != 0; any &= any - 1) {
     const auto place = static_cast<std::uint32_t>(std::countr_zero(any));
-    walk.visit(lane_x(place) * kBlockSize, lane_y(place) * kBlockSize, (all >> place & 1) != 0);
+    const int x = lane_x(place) * kBlockSize, y = lane_y(place) * kBlockSize;
+    const bool inside = x >= rect.x0 && y >= rect.y0 && x + 7 <= rect.x1 && y + 7 <= rect.y1;
+    const base::LaneMask window =
+        inside ? base::kAllLanes : rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
+    const bool covered = (all >> place & 1) != 0;
+    BlockCoverage block;
+    for (std::uint32_t s = 0; s < plan.raster_samples; ++s)
+      block.lanes[s] = covered ? window : lanes[s][place] & window;
+    for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s) block.lanes[s] = block.lanes[0];
+    emit_block(worker, primitive, worker.target.x + x, worker.target.y + y, block);
   }
 }
 

@@ -113,10 +113,10 @@ const PlaneSet& current_planes(TileWorker& worker, const Primitive& primitive);
 /// Positions of the quads of the block at (x, y).
 void place_block(int x, int y, QuadPositions& out);
 
-/// Depth test of lanes of the 4x4 window at (x, y), or of one sample of the block at (x, y), which lie inside all
-/// attachments. Returns what passed.
-std::uint32_t test_window_lanes(TileWorker& worker, const Primitive& primitive, int x, int y, std::uint32_t lanes,
-                                bool write);
+/// Depth test of lanes of the block at (x, y), which lies inside all attachments: of its first 4x4 pixels, or of all in
+/// one sample. Returns what passed.
+base::LaneMask test_small_window(TileWorker& worker, const Primitive& primitive, int x, int y, base::LaneMask lanes,
+                                 bool write);
 base::LaneMask test_block_sample(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane,
                                  std::uint32_t sample, int x, int y, base::LaneMask lanes, bool write);
 

@@ -12,6 +12,15 @@
 namespace vitrine::raster {
 namespace {
 
+/// Coverage of the block whose first pixel is (x, y), relative to the tile.
+base::LaneMask cover_block(const TileEdges& edges, std::uint32_t sample, int x, int y) {
+  base::LaneMask lanes[64];
+  std::uint32_t place = 0;
+  while (lane_x(place) * kBlockSize != x || lane_y(place) * kBlockSize != y) ++place;
+  cover_blocks(edges, sample, base::LaneMask{1} << place, lanes);
+  return lanes[place];
+}
+
 bool inside(const Primitive& p, std::int64_t qx, std::int64_t qy) {
   for (int e = 0; e < 3; ++e) {
     const int n = (e + 1) % 3;
