@@ -376,7 +376,11 @@ CTS_RANDOM("draw", "random_shader_viewport_index", 20) {
   scene.spec.raster.depthClampEnable = random.chance(0.3f);
   scene.count = 3 * (1 + random.below(6));
   scene.vertices = random_vertices(random, scene.count, random.chance(0.5f) ? 0.95f : 1.4f, 0, 1);
-  draw_selecting(run, scene, "gl_ViewportIndex = gl_InstanceIndex;", count);
+  const bool per_primitive = random.chance(0.4f);
+  draw_selecting(run, scene,
+                 per_primitive ? "gl_ViewportIndex = (gl_VertexIndex / 3) % " + std::to_string(count) + ";"
+                               : "gl_ViewportIndex = gl_InstanceIndex;",
+                 count);
 }
 
 CTS_RANDOM("draw", "random_shader_layer", 20) {
