@@ -159,6 +159,8 @@ ir::Instr& last_instr(Translator& t);
 ir::Node& emit_node(Translator& t, ir::Node::Kind kind);
 
 ir::ValueId constant(Translator& t, std::span<const std::uint32_t> words, bool boolean = false);
+/// A Const of its own.
+ir::ValueId literal(Translator& t, std::span<const std::uint32_t> words, bool boolean);
 ir::ValueId constant_u32(Translator& t, std::uint32_t word);
 ir::ValueId constant_float(Translator& t, float value);
 ir::ValueId constant_bool(Translator& t, bool value);

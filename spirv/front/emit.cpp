@@ -26,13 +26,8 @@ void check_sources(const Translator& t, ir::Op op, std::uint32_t count, const st
   if (!fits) throw Failure("operand does not fit its type");
 }
 
-/// Const instructions go to the front of the function, once each.
-ir::ValueId make_constant(Translator& t, std::span<const std::uint32_t> words, bool boolean, bool is_undefined) {
-  std::vector<std::uint32_t> key(words.begin(), words.end());
-  key.push_back(boolean ? 1 : 0);
-  key.push_back(is_undefined ? 1 : 0);
-  const auto [at, added] = t.constant_ids.try_emplace(key, ir::kNoValue);
-  if (!added) return at->second;
+/// Const instructions go to the front of the function.
+ir::ValueId add_constant(Translator& t, std::span<const std::uint32_t> words, bool boolean, bool is_undefined) {
   auto node = std::make_unique<ir::Node>();
   node->instr.op = is_undefined ? ir::Op::kUndef : ir::Op::kConst;
   node->instr.components = static_cast<std::uint8_t>(words.size());
@@ -40,12 +35,22 @@ ir::ValueId make_constant(Translator& t, std::span<const std::uint32_t> words, b
   std::array<std::uint32_t, 4> imm{};
   std::copy(words.begin(), words.end(), imm.begin());
   if (!is_undefined) node->instr.imm = imm;
-  node->instr.result = at->second = t.function.new_value(node->instr.components, boolean);
+  const ir::ValueId result = node->instr.result = t.function.new_value(node->instr.components, boolean);
   if (is_undefined)
-    t.undefined_ids.insert(at->second);
+    t.undefined_ids.insert(result);
   else
-    t.constant_words[at->second] = imm;
+    t.constant_words[result] = imm;
   t.constants.push_back(std::move(node));
+  return result;
+}
+
+/// One instruction for all that ask for the same.
+ir::ValueId make_constant(Translator& t, std::span<const std::uint32_t> words, bool boolean, bool is_undefined) {
+  std::vector<std::uint32_t> key(words.begin(), words.end());
+  key.push_back(boolean ? 1 : 0);
+  key.push_back(is_undefined ? 1 : 0);
+  const auto [at, added] = t.constant_ids.try_emplace(key, ir::kNoValue);
+  if (added) at->second = add_constant(t, words, boolean, is_undefined);
   return at->second;
 }
 
@@ -78,6 +83,10 @@ ir::ValueId constant(Translator& t, std::span<const std::uint32_t> words, bool b
   return make_constant(t, words, boolean, false);
 }
 
+ir::ValueId literal(Translator& t, std::span<const std::uint32_t> words, bool boolean) {
+  return add_constant(t, words, boolean, false);
+}
+
 ir::ValueId constant_u32(Translator& t, std::uint32_t word) { return constant(t, {&word, 1}); }
 
 ir::ValueId constant_float(Translator& t, float value) { return constant_u32(t, base::bits_of(value)); }
@@ -107,7 +116,6 @@ ir::ValueId extract(Translator& t, ir::ValueId vector, std::uint32_t component) 
   if (component >= components(t, vector)) throw Failure("component out of range");
   if (components(t, vector) == 1) return vector;
   const bool boolean = is_boolean(t, vector);
-  if (const auto* words = constant_of(t, vector)) return constant(t, {&(*words)[component], 1}, boolean);
   return emit(t, boolean ? ir::Op::kMovB : ir::Op::kMov, 1, boolean,
               {splat(vector, static_cast<std::uint8_t>(component))});
 }
@@ -117,17 +125,10 @@ ir::ValueId vec(Translator& t, std::vector<ir::Src> scalars, bool boolean) {
     if (scalars.size() > 4 || part.swizzle[0] >= components(t, part.value) || is_boolean(t, part.value) != boolean)
       throw Failure("operand does not fit its type");
   if (scalars.size() == 1 && components(t, scalars[0].value) == 1) return scalars[0].value;
-  std::uint32_t words[4] = {};
-  bool all_constant = true;
   bool same = components(t, scalars[0].value) == scalars.size();
-  for (std::size_t i = 0; i < scalars.size(); i++) {
-    const auto* from = constant_of(t, scalars[i].value);
-    all_constant &= from != nullptr;
-    if (from != nullptr) words[i] = (*from)[scalars[i].swizzle[0]];
+  for (std::size_t i = 0; i < scalars.size(); i++)
     same &= scalars[i].value == scalars[0].value && scalars[i].swizzle[0] == i;
-  }
   if (same) return scalars[0].value;
-  if (all_constant) return constant(t, {words, scalars.size()}, boolean);
   const auto count = static_cast<std::uint32_t>(scalars.size());
   return emit(t, ir::Op::kVec, count, boolean, std::move(scalars));
 }

@@ -43,6 +43,14 @@ void leaf_types(const Translator& t, std::uint32_t type_id, std::vector<std::uin
   }
 }
 
+namespace {
+
+/// Constants up to this size are a value of their own wherever they are named, as in the reference: a vector composed
+/// of literals is then no constant for its first round.
+constexpr std::uint32_t kMaxLiteral = 16;
+
+}  // namespace
+
 Value constant_value(Translator& t, std::uint32_t type, std::span<const std::uint32_t> words, bool is_undefined) {
   std::vector<std::uint32_t> types;
   leaf_types(t, type, types);
@@ -55,8 +63,10 @@ Value constant_value(Translator& t, std::uint32_t type, std::span<const std::uin
     for (std::uint32_t part = 0; part < parts; part++) {
       std::uint32_t leaf[4] = {};
       for (std::uint32_t c = 0; c < info.components; c++) leaf[c] = words[at + c * parts + part];
-      value.leaves.push_back(is_undefined ? undefined(t, info.components, info.boolean)
-                                          : constant(t, {leaf, info.components}, info.boolean));
+      const std::span<const std::uint32_t> own(leaf, info.components);
+      value.leaves.push_back(is_undefined                  ? undefined(t, info.components, info.boolean)
+                             : words.size() <= kMaxLiteral ? literal(t, own, info.boolean)
+                                                           : constant(t, own, info.boolean));
     }
     at += parts * info.components;
     i += parts;
@@ -66,8 +76,8 @@ Value constant_value(Translator& t, std::uint32_t type, std::span<const std::uin
 
 const Value& value_of(Translator& t, std::uint32_t id) {
   const auto found = t.values.find(id);
-  if (found != t.values.end()) return found->second;
   const Constant* value = t.module.constant(id);
+  if (found != t.values.end() && (value == nullptr || value->words.size() > kMaxLiteral)) return found->second;
   if (value == nullptr && is_static_pointer(t, id))
     return t.pointer_values[id] = pointer_value(t, t.module.def(id).result_type, pointer_of(t, id));
   if (value == nullptr) throw Failure("%" + std::to_string(id) + " has no value here");

@@ -79,7 +79,7 @@ class Rewriter {
     const Inst& inst = graph_.insts[id];
     State state{};
     if (!inst.opaque)
-      for (const std::uint16_t shape : rules_.shapes_by_op[static_cast<std::size_t>(inst.op)])
+      for (const std::uint16_t shape : rules_.shapes_by_op[static_cast<std::size_t>(shape_op(inst.op))])
         if (fits(inst, rules_.shapes[shape])) state[shape / 64] |= std::uint64_t{1} << (shape % 64);
     if (states_[inst.result] == state) return false;
     states_[inst.result] = state;
@@ -100,8 +100,9 @@ class Rewriter {
 
   /// The reference replaces its sum of two by an addition here, so that other rules see it only later.
   bool show_sum(InstId id) {
-    if (!graph_.insts[id].pair || !graph_.show_sums) return false;
-    graph_.insts[id].opaque = graph_.insts[id].pair = false;
+    const Opens opens = graph_.insts[id].opens;
+    if (opens != Opens::kVisited && (opens != Opens::kVisitedAfterRound || graph_.first_rules)) return false;
+    graph_.insts[id].opaque = false;
     update_state(id);
     wake_users(graph_.insts[id].result);
     return true;

@@ -1,5 +1,6 @@
-// Control flow that need not be: branches on constants, small branches (selects instead), results that carry one value.
+// Control flow that need not be: small branches (selects instead), results and parameters that carry one value.
 #include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -8,13 +9,6 @@ using Kind = Inst::Kind;
 
 /// Instructions that both branches together may hold to become selects; moves, negations and absolute values are free.
 constexpr unsigned kFlattenLimit = 8;
-
-bool is_jump(const Inst& inst, Op op) { return inst.kind == Kind::kIntrinsic && inst.op == op; }
-
-bool ends_in_yield(const Graph& graph, BlockId block) {
-  const InstId last = graph.blocks[block].tail;
-  return last != kNone && is_jump(graph.insts[last], Op::kYield);
-}
 
 bool is_free(const Inst& inst) {
   switch (inst.op) {
@@ -26,7 +20,7 @@ bool is_free(const Inst& inst) {
     case Op::kIAbs:
       return true;
     default:
-      return inst.opaque && inst.op == Op::kFAdd;  // the reference has one dot product where we have a chain
+      return false;
   }
 }
 
@@ -57,7 +51,7 @@ bool can_flatten(const Graph& graph, BlockId block, unsigned& cost) {
       case Kind::kVec:
         break;
       case Kind::kAlu:
-        cost += is_free(inst) ? 0 : 1;
+        cost += is_free(inst) ? 0 : cost_of(graph, inst);
         break;
       case Kind::kIntrinsic:
         if (inst.op != Op::kYield && !may_hoist(inst)) return false;
@@ -66,30 +60,16 @@ bool can_flatten(const Graph& graph, BlockId block, unsigned& cost) {
         return false;
     }
   }
-  return ends_in_yield(graph, block);
+  return ends_in(graph, block, Op::kYield);
 }
 
 /// What a branch yields; the branch's instructions move in front of the If.
 std::vector<Src> take_branch(Graph& graph, InstId id, BlockId block) {
   const InstId last = graph.blocks[block].tail;
-  std::vector<Src> yielded;
-  for (std::uint32_t i = 0; i < graph.insts[last].count; ++i) yielded.push_back(graph.source(graph.insts[last], i));
+  std::vector<Src> yielded = operands_of(graph, last);
   graph.remove(last);
   graph.splice_before(id, block);
   return yielded;
-}
-
-/// A value equal to `src`, with as many components as `result`.
-ValueId value_of(Graph& graph, InstId position, const Src& src, ValueId result) {
-  const std::uint8_t components = graph.values[result].components;
-  bool whole = graph.values[src.value].components == components;
-  for (unsigned c = 0; c < components; ++c) whole &= src.swizzle[c] == c;
-  if (whole) return src.value;
-  const bool boolean = graph.values[result].boolean;
-  const InstId move = graph.create(Kind::kAlu, boolean ? Op::kMovB : Op::kMov, components, boolean, 1);
-  graph.set_source(move, 0, src);
-  graph.insert_before(position, move);
-  return graph.insts[move].result;
 }
 
 void flatten(Graph& graph, InstId id) {
@@ -112,14 +92,6 @@ void flatten(Graph& graph, InstId id) {
   graph.remove(id);
 }
 
-void take_constant_branch(Graph& graph, InstId id, BlockId block) {
-  const std::vector<Src> yielded = take_branch(graph, id, block);
-  const std::vector<ValueId> results = graph.nodes[graph.insts[id].node]->results;
-  for (std::size_t i = 0; i < results.size(); ++i)
-    graph.replace_uses(results[i], value_of(graph, id, yielded[i], results[i]));
-  graph.remove(id);
-}
-
 /// Innermost first, so that a flattened branch may let the one around it flatten.
 bool flatten_in(Graph& graph, BlockId block) {
   bool changed = false;
@@ -129,14 +101,8 @@ bool flatten_in(Graph& graph, BlockId block) {
     for (const BlockId side : child)
       if (side != kNone) changed |= flatten_in(graph, side);
     if (graph.insts[id].kind == Kind::kIf) {
-      const Src condition = graph.source(graph.insts[id], 0);
-      const Inst* constant = graph.constant(condition.value);
-      const BlockId taken = constant && constant->imm[condition.swizzle[0]] ? child[0] : child[1];
       unsigned cost = 0;
-      if (constant && ends_in_yield(graph, taken)) {
-        take_constant_branch(graph, id, taken);
-        changed = true;
-      } else if (can_flatten(graph, child[0], cost) && can_flatten(graph, child[1], cost) && cost <= kFlattenLimit) {
+      if (can_flatten(graph, child[0], cost) && can_flatten(graph, child[1], cost) && cost <= kFlattenLimit) {
         flatten(graph, id);
         changed = true;
       }
@@ -157,14 +123,83 @@ bool same_value(const Graph& graph, const Src& a, const Src& b, ValueId like) {
 bool remove_equal_results(Graph& graph, InstId id) {
   bool changed = false;
   const BlockId then_block = graph.insts[id].child[0], else_block = graph.insts[id].child[1];
-  if (!ends_in_yield(graph, then_block) || !ends_in_yield(graph, else_block)) return false;
+  if (!ends_in(graph, then_block, Op::kYield) || !ends_in(graph, else_block, Op::kYield)) return false;
   const std::vector<ValueId> results = graph.nodes[graph.insts[id].node]->results;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const auto index = static_cast<std::uint32_t>(i);
     const Src a = graph.source(graph.insts[graph.blocks[then_block].tail], index);
     const Src b = graph.source(graph.insts[graph.blocks[else_block].tail], index);
     if (graph.values[results[i]].uses == 0 || !same_value(graph, a, b, results[i])) continue;
-    graph.replace_uses(results[i], value_of(graph, id, a, results[i]));
+    graph.replace_uses(results[i], whole_value(graph, id, a, results[i]));
+    changed = true;
+  }
+  return changed;
+}
+
+/// The value that all of `sources` are, apart from `self`; false if they differ or need a swizzle.
+bool common_source(const Graph& graph, const std::vector<Src>& sources, ValueId self, Src& common) {
+  common = {};
+  for (const Src& src : sources) {
+    if (src.value == self) continue;
+    if (common.value != ir::kNoValue && !same_value(graph, common, src, self)) return false;
+    common = src;
+  }
+  for (unsigned c = 0; c < graph.values[self].components; ++c)
+    if (common.swizzle[c] != c) return false;
+  return common.value != ir::kNoValue && graph.values[common.value].components == graph.values[self].components;
+}
+
+/// Parameters of a loop that are handed on as they are.
+bool remove_constant_params(Graph& graph, InstId id) {
+  bool changed = false;
+  const std::vector<ValueId> params = graph.nodes[graph.insts[id].node]->params;
+  const std::vector<ValueId> forwarded = graph.nodes[graph.insts[id].node]->continue_params;
+  const InstId next = graph.blocks[graph.insts[id].child[1]].tail, end = graph.blocks[graph.insts[id].child[0]].tail;
+  if (next == kNone || end == kNone || !is_jump(graph.insts[next], Op::kYield)) return false;
+  const bool one_way = is_jump(graph.insts[end], Op::kYield) && !contains_continue(graph, graph.insts[id].child[0]);
+  for (std::size_t i = 0; i < params.size(); ++i) {
+    const auto index = static_cast<std::uint32_t>(i);
+    if (graph.values[params[i]].uses == 0) continue;
+    Src back = graph.source(graph.insts[next], index);
+    if (one_way) back = substituted(back, forwarded, operands_of(graph, end));
+    Src common;
+    if (!common_source(graph, {graph.source(graph.insts[id], index), back}, params[i], common)) continue;
+    graph.replace_uses(params[i], common.value);
+    changed = true;
+  }
+  return changed;
+}
+
+bool is_inside(const Graph& graph, ValueId value, InstId loop) {
+  const InstId def = graph.values[value].def;
+  if (def == kNone) return false;
+  for (InstId at = def; at != kNone; at = graph.blocks[graph.insts[at].block].owner)
+    if (at == loop) return true;
+  return false;
+}
+
+void collect_breaks(const Graph& graph, BlockId block, std::vector<InstId>& breaks) {
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
+    const Inst& inst = graph.insts[id];
+    if (is_jump(inst, Op::kBreak)) breaks.push_back(id);
+    if (inst.kind == Kind::kIf)
+      for (const BlockId child : inst.child) collect_breaks(graph, child, breaks);
+  }
+}
+
+/// Results of a loop that are the same value from outside of it at every Break.
+bool remove_constant_results(Graph& graph, InstId id) {
+  std::vector<InstId> breaks;
+  for (const BlockId child : graph.insts[id].child) collect_breaks(graph, child, breaks);
+  bool changed = false;
+  const std::vector<ValueId> results = graph.nodes[graph.insts[id].node]->results;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (graph.values[results[i]].uses == 0) continue;
+    std::vector<Src> sources;
+    for (const InstId at : breaks) sources.push_back(graph.source(graph.insts[at], static_cast<std::uint32_t>(i)));
+    Src common;
+    if (!common_source(graph, sources, results[i], common) || is_inside(graph, common.value, id)) continue;
+    graph.replace_uses(results[i], common.value);
     changed = true;
   }
   return changed;
@@ -178,6 +213,10 @@ bool remove_trivial_results(Graph& graph) {
   bool changed = false;
   auto visit = [&](InstId id) {
     if (graph.insts[id].kind == Kind::kIf) changed |= remove_equal_results(graph, id);
+    if (graph.insts[id].kind == Kind::kLoop) {
+      changed |= remove_constant_params(graph, id);
+      changed |= remove_constant_results(graph, id);
+    }
   };
   for_each_inst(graph, graph.root, visit);
   return changed;

@@ -1,6 +1,9 @@
 // The shortcuts that the reference's code generator takes when an operand is literally 0 or 1, in program order, for
 // every operation, `precise` or not: 0 + x is x (also for x = -0), 0 * x and 0 / x are 0, pow(x, 0) skips NaN. What it
-// leaves undefined (a division by literal 0) becomes an undefined value here too.
+// leaves undefined (a division by literal 0) becomes an undefined value here too. Operations on literals become
+// literals at once where the generator's own building blocks fold (not those that are calls of intrinsics), so that the
+// next operation takes its shortcut too.
+#include "base/float_mode.h"
 #include "spirv/rewrite/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -17,34 +20,130 @@ class Builder {
   void visit(InstId id) {
     id_ = id;
     const Inst& inst = graph_.insts[id];
-    if (inst.kind != Kind::kAlu || inst.components != 1 || inst.opaque) return;  // sums add vectors, not literals
-    switch (inst.op) {
-      case Op::kFAdd:
-        if (!undefined_operand() && !take_if(1, 0, 0)) take_if(0, 1, 0);
-        break;
-      case Op::kFMul:
-        if (!take_if(0, 0, 0) && !take_if(1, 0, kOne) && !take_if(1, 1, 0) && !take_if(0, 1, kOne)) undefined_operand();
-        break;
-      case Op::kFDiv:
-        divide();
-        break;
-      case Op::kFMin:
-      case Op::kFMax:
-        if (!undefined_operand() && same_operands()) replace(graph_.source(inst, 0));
-        break;
-      case Op::kFNeg:
-      case Op::kFAbs:
-        undefined_operand();
-        break;
-      case Op::kFPow:
-        if (is(1, 0)) power_of_zero();
-        break;
-      default:
-        break;
-    }
+    if (inst.kind != Kind::kAlu || inst.components != 1) return;
+    if (inst.opaque && !sums_literals(inst)) return;
+    if (shorten(inst.op)) return;
+    fold();
   }
 
  private:
+  bool is_sum(const Inst* inst) const {
+    return inst && inst->kind == Kind::kAlu && inst->op == Op::kFAdd && inst->opaque;
+  }
+
+  /// The sum of a dot product takes its products out of a vector, which is literal only as a whole.
+  bool sums_literals(const Inst& inst) const {
+    if (!is_sum(&inst)) return false;
+    for (const std::uint32_t i : {0u, 1u})
+      if (!graph_.constant(graph_.source(inst, i).value)) return false;
+    const Slot use = graph_.values[inst.result].first_use;
+    if (use == kNone || graph_.values[inst.result].uses != 1) return true;
+    const Inst* next = &graph_.insts[graph_.sources[use].user];
+    while (is_sum(next) && graph_.constant(graph_.source(*next, 1).value)) {
+      const Slot more = graph_.values[next->result].first_use;
+      next =
+          more == kNone || graph_.values[next->result].uses != 1 ? nullptr : &graph_.insts[graph_.sources[more].user];
+    }
+    return !is_sum(next);
+  }
+
+  /// True when the operation is gone.
+  bool shorten(Op op) {
+    const Inst& inst = graph_.insts[id_];
+    switch (op) {
+      case Op::kFAdd:
+        return take_if(1, 0, 0) || take_if(0, 1, 0) || undefined_operand();
+      case Op::kFMul:
+        return take_if(0, 0, 0) || take_if(1, 0, kOne) || take_if(1, 1, 0) || take_if(0, 1, kOne) ||
+               undefined_operand();
+      case Op::kFDiv:
+        return divide();
+      case Op::kFRcp:
+        if (!is(0, 0)) return undefined_operand();
+        become_undefined();
+        return true;
+      case Op::kFMin:
+      case Op::kFMax:
+        if (undefined_operand()) return true;
+        if (!same_operands()) return false;
+        replace(graph_.source(inst, 0));
+        return true;
+      case Op::kFNeg:
+      case Op::kFAbs:
+        return undefined_operand();
+      case Op::kFPow:
+        if (!is(1, 0)) return false;
+        power_of_zero();
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  static bool folds(Op op) {
+    switch (op) {
+      case Op::kFAdd:
+      case Op::kFMul:
+      case Op::kFDiv:
+      case Op::kFRcp:
+      case Op::kFNeg:
+      case Op::kFSign:
+      case Op::kFLt:
+      case Op::kFGe:
+      case Op::kFEq:
+      case Op::kFNeu:
+      case Op::kMov:
+      case Op::kMovB:
+      case Op::kSelect:
+      case Op::kSelectB:
+      case Op::kB2F:
+      case Op::kB2I:
+      case Op::kI2F:
+      case Op::kU2F:
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  void become(std::uint32_t bits) {
+    const InstId made = graph_.create_const(1, graph_.insts[id_].boolean, &bits);
+    graph_.insert_before(id_, made);
+    replace(value_of(made));
+  }
+
+  static bool is_nan(std::uint32_t bits) { return (bits & 0x7fffffffu) > 0x7f800000u; }
+
+  /// What the generator's optimiser knows of NaN: arithmetic with it is NaN, its conversion to an integer undefined.
+  bool fold_nan() {
+    const Inst& inst = graph_.insts[id_];
+    const bool arithmetic = inst.op == Op::kFAdd || inst.op == Op::kFMul || inst.op == Op::kFDiv;
+    if (!arithmetic && inst.op != Op::kF2I && inst.op != Op::kF2U) return false;
+    for (std::uint32_t i = 0; i < inst.count; ++i) {
+      const Src& src = graph_.source(inst, i);
+      const Inst* constant = graph_.constant(src.value);
+      if (!constant || !is_nan(constant->imm[src.swizzle[0]])) continue;
+      become(arithmetic ? constant->imm[src.swizzle[0]] | 0x00400000u : 0);
+      return true;
+    }
+    return false;
+  }
+
+  void fold() {
+    const Inst& inst = graph_.insts[id_];
+    if (fold_nan() || !folds(inst.op)) return;
+    std::uint32_t operand[3] = {}, bits = 0;
+    for (std::uint32_t i = 0; i < inst.count; ++i) {
+      const Src& src = graph_.source(inst, i);
+      const Inst* constant = graph_.constant(src.value);
+      if (!constant) return;
+      operand[i] = constant->imm[src.swizzle[0]];
+    }
+    if (inst.op == Op::kFSign && is_nan(operand[0])) return;
+    if (!evaluate(inst.op, operand, bits)) return;
+    become(inst.op == Op::kFSign && bits == 0x80000000u ? 0 : bits);
+  }
+
   bool is(std::uint32_t index, std::uint32_t bits) const {
     const Src& src = graph_.source(graph_.insts[id_], index);
     const Inst* constant = graph_.constant(src.value);
@@ -68,9 +167,18 @@ class Builder {
 
   Src value_of(InstId inst) const { return {graph_.insts[inst].result, {0, 0, 0, 0}}; }
 
+  ValueId scalar(const Src& src) {
+    if (graph_.values[src.value].components == 1) return src.value;
+    const Inst* constant = graph_.constant(src.value);
+    if (!constant) return graph_.insts[add(Op::kMov, false, {src})].result;
+    const std::uint32_t bits = constant->imm[src.swizzle[0]];
+    const InstId made = graph_.create_const(1, false, &bits);
+    graph_.insert_before(id_, made);
+    return graph_.insts[made].result;
+  }
+
   void replace(const Src& src) {
-    const ValueId value =
-        graph_.values[src.value].components == 1 ? src.value : graph_.insts[add(Op::kMov, false, {src})].result;
+    const ValueId value = scalar(src);
     graph_.replace_uses(graph_.insts[id_].result, value);
     graph_.remove(id_);
   }
@@ -103,14 +211,12 @@ class Builder {
     return false;
   }
 
-  void divide() {
-    if (take_if(0, 0, 0)) return;
-    if (is(0, kOne)) return;
-    if (is(1, 0)) {
-      become_undefined();
-    } else if (!take_if(0, 1, kOne)) {
-      undefined_operand();
-    }
+  bool divide() {
+    if (take_if(0, 0, 0)) return true;
+    if (is(0, kOne) && !is(1, 0)) return undefined_operand();
+    if (!is(1, 0)) return take_if(0, 1, kOne) || undefined_operand();
+    become_undefined();
+    return true;
   }
 
   /// exp2(0) where the base is neither zero nor NaN, else 0 (6.4).
@@ -133,6 +239,7 @@ class Builder {
 
 void build_identities(Graph& graph) {
   Builder builder(graph);
+  const base::ScopedFloatMode mode(base::Denormals::kHonour);
   auto visit = [&](InstId id) { builder.visit(id); };
   for_each_inst(graph, graph.root, visit);
 }

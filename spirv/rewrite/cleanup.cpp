@@ -213,7 +213,7 @@ void split(Graph& graph, InstId id) {
     const InstId part = graph.create(Kind::kAlu, inst.op, 1, inst.boolean, inst.count);
     graph.insts[part].exact = inst.exact;
     graph.insts[part].opaque = inst.opaque;
-    graph.insts[part].pair = inst.pair;
+    graph.insts[part].opens = inst.opens;
     graph.insts[part].origin = inst.origin;
     for (std::uint32_t i = 0; i < inst.count; ++i) {
       const Src src = graph.source(inst, i);
@@ -254,55 +254,6 @@ bool propagate_copies(Graph& graph) {
 }
 
 bool remove_dead(Graph& graph) { return remove_dead_in(graph, graph.root); }
-
-void hide_dot_products(Graph& graph) {
-  const auto is_sum_of = [&](const Inst& inst, ValueId products) {
-    return inst.opaque && inst.count == 2 && graph.source(inst, 1).value == products;
-  };
-  auto visit = [&](InstId id) {
-    Inst& inst = graph.insts[id];
-    if (inst.opaque && inst.op != Op::kFAdd) inst.pair = true;
-    if (!inst.opaque || inst.op != Op::kFAdd) return;
-    const ValueId products = graph.source(inst, 1).value;
-    const InstId multiplication = graph.values[products].def;
-    if (multiplication != kNone && graph.insts[multiplication].op == Op::kFMul)
-      graph.insts[multiplication].opaque = graph.insts[multiplication].pair = true;
-    inst.pair = graph.source(inst, 0).value == products;
-    const Slot use = graph.values[inst.result].first_use;
-    if (use != kNone && is_sum_of(graph.insts[graph.sources[use].user], products)) inst.pair = false;
-  };
-  for_each_inst(graph, graph.root, visit);
-}
-
-void show_dot_products(Graph& graph) {
-  graph.show_sums = true;
-  for (Inst& inst : graph.insts)
-    if (inst.pair && inst.op != Op::kFAdd) inst.opaque = inst.pair = false;
-}
-
-void separate_vector_uses(Graph& graph) {
-  const std::size_t count = graph.insts.size();
-  for (InstId id = 0; id < count; ++id) {
-    const Inst vec = graph.insts[id];
-    if (vec.kind != Kind::kVec || vec.removed || vec.count < 2 || graph.values[vec.result].uses < 2) continue;
-    bool mixed = false;
-    for (std::uint32_t i = 1; i < vec.count; ++i) mixed |= graph.source(vec, i).value != graph.source(vec, 0).value;
-    if (!mixed) continue;
-    for (Slot slot = graph.sources[graph.values[vec.result].first_use].next; slot != kNone;) {
-      const Slot next = graph.sources[slot].next;
-      const InstId user = graph.sources[slot].user;
-      if (graph.insts[user].kind == Kind::kAlu) {
-        const InstId copy = graph.create(Kind::kVec, Op::kVec, vec.components, vec.boolean, vec.count);
-        for (std::uint32_t i = 0; i < vec.count; ++i) graph.set_source(copy, i, graph.source(vec, i));
-        graph.insert_after(id, copy);
-        Src src = graph.sources[slot].src;
-        src.value = graph.insts[copy].result;
-        graph.set_source(user, slot - graph.insts[user].first, src);
-      }
-      slot = next;
-    }
-  }
-}
 
 bool scalarize(Graph& graph) {
   bool changed = false;

@@ -34,7 +34,7 @@ bool may_swap(const Inst& inst) { return inst.kind == Kind::kAlu && inst.count =
 
 class Merger {
  public:
-  Merger(Graph& graph, CseScope scope) : graph_(graph), scope_(scope), table_(256, kNone) {}
+  explicit Merger(Graph& graph) : graph_(graph), table_(256, kNone) {}
 
   bool run() {
     visit(graph_.root);
@@ -43,9 +43,7 @@ class Merger {
 
  private:
   bool candidate(const Inst& inst) const {
-    if (is_uniform_load(inst)) return true;
-    if (scope_ == CseScope::kLoads) return false;
-    return inst.kind == Kind::kAlu || inst.kind == Kind::kConst || inst.kind == Kind::kVec ||
+    return is_uniform_load(inst) || inst.kind == Kind::kAlu || inst.kind == Kind::kConst || inst.kind == Kind::kVec ||
            is_invocation_constant(inst);
   }
 
@@ -155,7 +153,6 @@ class Merger {
   }
 
   Graph& graph_;
-  CseScope scope_;
   std::vector<InstId> table_;           ///< open addressing, a power of two
   std::vector<std::uint32_t> entered_;  ///< slots in use, in order of entry
   bool changed_ = false;
@@ -163,6 +160,6 @@ class Merger {
 
 }  // namespace
 
-bool merge_equal(Graph& graph, CseScope scope) { return Merger(graph, scope).run(); }
+bool merge_equal(Graph& graph) { return Merger(graph).run(); }
 
 }  // namespace vitrine::spirv::rewriting

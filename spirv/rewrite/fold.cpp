@@ -60,7 +60,7 @@ bool unary_float(Op op, float a, float& r) {
       r = a - std::floor(a);
       return true;
     case Op::kFSign:
-      r = a > 0.0f ? 1.0f : a < 0.0f ? -1.0f : 0.0f;
+      r = a > 0.0f ? 1.0f : a < 0.0f ? -1.0f : a == 0.0f ? a : 0.0f;  // of -0 it is -0, unlike at run time
       return true;
     case Op::kFDdx:
     case Op::kFDdy:
@@ -353,9 +353,31 @@ bool evaluate(Op op, const std::uint32_t operand[3], std::uint32_t& result) {
 
 namespace {
 
+void become_constant(Graph& graph, InstId id, const std::uint32_t* bits) {
+  const Inst inst = graph.insts[id];
+  const InstId folded = graph.create_const(inst.components, inst.boolean, bits);
+  graph.insert_before(id, folded);
+  graph.replace_uses(inst.result, graph.insts[folded].result);
+  graph.remove(id);
+}
+
+bool fold_vector(Graph& graph, InstId id) {
+  const Inst& inst = graph.insts[id];
+  std::uint32_t bits[4] = {};
+  for (std::uint32_t c = 0; c < inst.count; ++c) {
+    const Src& part = graph.source(inst, c);
+    const Inst* constant = graph.constant(part.value);
+    if (!constant) return false;
+    bits[c] = constant->imm[part.swizzle[0]];
+  }
+  become_constant(graph, id, bits);
+  return true;
+}
+
 /// Replaces `id` by a constant if all its operands are constant.
 bool fold(Graph& graph, InstId id) {
   const Inst inst = graph.insts[id];
+  if (inst.kind == Inst::Kind::kVec) return fold_vector(graph, id);
   if (inst.kind != Inst::Kind::kAlu || inst.count == 0) return false;
   const Inst* constants[3] = {};
   for (std::uint32_t i = 0; i < inst.count; ++i) {
@@ -368,10 +390,7 @@ bool fold(Graph& graph, InstId id) {
     for (std::uint32_t i = 0; i < inst.count; ++i) operand[i] = constants[i]->imm[graph.source(inst, i).swizzle[c]];
     if (!evaluate(inst.op, operand, bits[c])) return false;
   }
-  const InstId folded = graph.create_const(inst.components, inst.boolean, bits);
-  graph.insert_before(id, folded);
-  graph.replace_uses(inst.result, graph.insts[folded].result);
-  graph.remove(id);
+  become_constant(graph, id, bits);
   return true;
 }
 

@@ -233,11 +233,19 @@ void Graph::remove(InstId inst) {
       while (blocks[child].head != kNone) remove(blocks[child].head);
 }
 
+void Graph::move_before(InstId position, InstId inst) {
+  unlink(inst);
+  insert_before(position, inst);
+}
+
+void Graph::move_after(InstId position, InstId inst) {
+  unlink(inst);
+  insert_after(position, inst);
+}
+
 void Graph::splice_before(InstId position, BlockId block) {
   while (blocks[block].head != kNone) {
-    const InstId moved = blocks[block].head;
-    unlink(moved);
-    insert_before(position, moved);
+    move_before(position, blocks[block].head);
   }
 }
 

@@ -26,6 +26,15 @@ struct Operand {
   Slot next = kNone, previous = kNone;  ///< use list
 };
 
+/// When an opaque instruction becomes an ordinary one to the rules.
+enum class Opens : std::uint8_t {
+  kNever,
+  kVisited,            ///< when the rules first come to it
+  kAfterRules,         ///< after the rules of the first round
+  kAfterRound,         ///< after the first round
+  kVisitedAfterRound,  ///< when the rules come to it after the first round
+};
+
 struct Inst {
   enum class Kind : std::uint8_t {
     kAlu,        ///< one of ops.def
@@ -41,7 +50,7 @@ struct Inst {
   bool boolean = false;
   bool exact = false;
   bool opaque = false;
-  bool pair = false;  ///< opaque only in the first round: parts of dot products
+  Opens opens = Opens::kNever;  ///< parts of dot products
   bool removed = false;
   ValueId result = ir::kNoValue;
   Slot first = 0;  ///< operands are sources[first, first + count)
@@ -79,7 +88,7 @@ class Graph {
   std::vector<Block> blocks;
   std::vector<std::unique_ptr<ir::Node>> nodes;  ///< If, Loop and intrinsic nodes; their lists and src are empty
   BlockId root = 0;
-  bool show_sums = false;  ///< the rules may open sums marked `pair` when they come to them
+  bool first_rules = true;  ///< before and in the first run of the rules: dot products are single operations
   ir::Function& function;
 
   const Src& source(const Inst& inst, std::uint32_t index) const { return sources[inst.first + index].src; }
@@ -107,6 +116,8 @@ class Graph {
   void replace_uses(ValueId from, ValueId to);
   /// Takes the instruction out of its block and its operands out of the use lists.
   void remove(InstId inst);
+  void move_before(InstId position, InstId inst);
+  void move_after(InstId position, InstId inst);
   /// Moves all instructions of `block` in front of `position`.
   void splice_before(InstId position, BlockId block);
 

@@ -13,14 +13,11 @@ bool propagate_copies(Graph& graph);
 /// Removes what has no effect and whose results nobody uses, and results and parameters that nobody uses.
 bool remove_dead(Graph& graph);
 
-/// Gives every arithmetic use of a composed vector a vector of its own: in the reference's first round each load of a
-/// vector variable is one, so that rules that ask for equal operands do not see them as equal.
-void separate_vector_uses(Graph& graph);
+/// Loads of words of push constants and buffers that an earlier load brought become its components.
+bool forward_loads(Graph& graph);
 
-enum class CseScope : std::uint8_t { kLoads, kAll };
-/// Merges equal instructions, the later into the one that dominates it. kLoads: only reads of inputs, push constants
-/// and uniform buffers.
-bool merge_equal(Graph& graph, CseScope scope);
+/// Merges equal instructions, the later into the one that dominates it.
+bool merge_equal(Graph& graph);
 
 /// Splits ALU instructions into components, rejoined by Vec.
 bool scalarize(Graph& graph);
@@ -28,11 +25,20 @@ bool scalarize(Graph& graph);
 /// Evaluates ALU instructions whose operands are all constant, with C semantics and denormals (section 1).
 bool fold_constants(Graph& graph);
 
-/// An If on a constant becomes its branch; small branches become unconditional code and selects (3.2: limit 8).
+/// Small branches become unconditional code and selects (3.2: limit 8).
 bool flatten_branches(Graph& graph);
 
 /// Results and parameters that always carry one value are replaced by it.
 bool remove_trivial_results(Graph& graph);
+
+/// Continues at the end of a loop become the way there.
+bool remove_trivial_continues(Graph& graph);
+
+/// Where one branch leaves, the other needs no condition; what follows a continue moves into the other branch.
+bool improve_branches(Graph& graph);
+
+/// An If on a constant becomes its branch; loops without effect go.
+bool take_constant_branches(Graph& graph);
 
 /// Loops with few, constantly many iterations become straight-line code.
 bool unroll_loops(Graph& graph);
@@ -41,10 +47,17 @@ enum class RuleSet : std::uint8_t { kMain, kLate };
 /// One run of the rule table (section 4.1).
 bool apply_rules(Graph& graph, RuleSet rules);
 
-/// In the first round the reference has dot products as single operations; after it, products and sums of two are open
-/// to the rules, sums of three and four stay closed.
+/// In the first run of the rules the reference has dot products as single operations; after it, products are open, and
+/// sums of two in their next run; sums of three and four stay closed. Shortened dot products open after the round.
 void hide_dot_products(Graph& graph);
-void show_dot_products(Graph& graph);
+void show_products(Graph& graph);
+void show_short_products(Graph& graph);
+
+/// Before the rules of the first round: dot products with vectors that end in zeros.
+void shorten_dot_products(Graph& graph);
+
+/// What the reference counts for an arithmetic instruction where its limits count instructions.
+unsigned cost_of(const Graph& graph, const Inst& inst);
 
 /// What the reference's code generator simplifies on its own, for scalar code.
 void build_identities(Graph& graph);

@@ -58,8 +58,8 @@ class Parser {
     pattern.exact = take('!');
     pattern.constant = take('#');
     const std::string_view word = take_word();
-    if (word.empty()) ok_ = false;
-    if (ok_) classify(pattern, word);
+    if (word.empty() && !pattern.constant) ok_ = false;
+    if (ok_ && !word.empty()) classify(pattern, word);
     if (take(':')) pattern.condition = condition(take_word());
     if (pattern.kind == Pattern::Kind::kOp) operands(pattern);
     rules_.patterns[index] = pattern;
@@ -160,7 +160,7 @@ std::uint16_t shape_of(Rules& rules, std::uint16_t index) {
       return kConstShape;
   }
   Shape shape;
-  shape.op = pattern.op;
+  shape.op = shape_op(pattern.op);
   shape.children = pattern.children;
   shape.commutative = is_commutative(pattern.op);
   for (unsigned i = 0; i < pattern.children; ++i) shape.child[i] = shape_of(rules, pattern.child[i]);
@@ -193,6 +193,15 @@ void add_rule(Rules& rules, const std::string& search, const std::string& replac
   const Op op = rules.patterns[rule.search].op;
   rules.by_op[static_cast<std::size_t>(op)].push_back(static_cast<std::uint16_t>(rules.rules.size()));
   rules.rules.push_back(rule);
+}
+
+void add_shape(Rules& rules, const char* text) {
+  const std::size_t before = rules.patterns.size();
+  Parser parser(rules, text);
+  const std::uint16_t index = parser.expression();
+  if (!parser.ok()) VITRINE_UNREACHABLE(text);
+  if (parser.ok()) shape_of(rules, index);
+  rules.patterns.resize(before);
 }
 
 std::string with_op(std::string text, std::string_view op) {
@@ -234,18 +243,37 @@ bool is_commutative(Op op) {
   }
 }
 
-Rules parse_rules(const RuleText* first, std::size_t count) {
+ir::Op shape_op(ir::Op op) {
+  switch (op) {
+    case Op::kAndB:
+      return Op::kAnd;
+    case Op::kOrB:
+      return Op::kOr;
+    case Op::kXorB:
+      return Op::kXor;
+    case Op::kNotB:
+      return Op::kNot;
+    case Op::kSelectB:
+      return Op::kSelect;
+    default:
+      return op;
+  }
+}
+
+Rules parse_rules(std::span<const RuleText> texts, std::span<const char* const> shapes) {
   Rules rules;
-  for (const RuleText* text = first; text != first + count; ++text) {
-    std::string_view ops = text->ops;
-    if (ops.empty()) add_rule(rules, text->search, text->replacement, text->flag);
+  for (const RuleText& text : texts) {
+    std::string_view ops = text.ops;
+    if (ops.empty()) add_rule(rules, text.search, text.replacement, text.flag);
     while (!ops.empty()) {
       const std::size_t end = std::min(ops.find(' '), ops.size());
       const std::string_view op = ops.substr(0, end);
-      add_rule(rules, with_op(text->search, op), with_op(text->replacement, op), text->flag);
+      add_rule(rules, with_op(text.search, op), with_op(text.replacement, op), text.flag);
       ops.remove_prefix(std::min(end + 1, ops.size()));
     }
   }
+  for (const char* shape : shapes) add_shape(rules, shape);
+  if (rules.shapes.size() > kMaxShapes) VITRINE_UNREACHABLE("too many shapes of rules");
   return rules;
 }
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -94,13 +95,20 @@ struct RuleText {
   char flag = 0;
 };
 
-/// Parses a table. An ill-formed rule is a defect: it is logged and left out.
-Rules parse_rules(const RuleText* first, std::size_t count);
+/// Parses a table, and shapes that no rule of it has. An ill-formed rule is a defect: it is logged and left out.
+Rules parse_rules(std::span<const RuleText> texts, std::span<const char* const> shapes);
+
+/// Shapes of rules that never apply (shapes.cpp).
+std::span<const char* const> main_shapes();
+std::span<const char* const> late_shapes();
 
 /// The tables, parsed at first use.
 const Rules& main_rules();
 const Rules& late_rules();
 
 bool is_commutative(ir::Op op);
+
+/// The op that shapes know: those of booleans are those of bits, as the reference has one op for both.
+ir::Op shape_op(ir::Op op);
 
 }  // namespace vitrine::spirv::rewriting

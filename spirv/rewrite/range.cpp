@@ -41,71 +41,106 @@ std::uint8_t negated(std::uint8_t signs) {
                                    (signs & kPositive ? kNegative : 0));
 }
 
-/// Both operands read the same components of the same value.
-bool equal_operands(const Graph& graph, const Inst& inst) {
-  const Src& a = graph.source(inst, 0);
-  const Src& b = graph.source(inst, 1);
-  if (a.value != b.value) return false;
+/// Both operands read the same components of the same value, perhaps one of them `negated`.
+bool equal_operands(const Graph& graph, const Inst& inst, bool negated) {
+  Src operand[2] = {graph.source(inst, 0), graph.source(inst, 1)};
+  bool negative = false;
+  for (Src& src : operand) {
+    const Inst* def = graph.def(src.value);
+    if (!negated || !def || def->kind != Inst::Kind::kAlu || def->op != Op::kFNeg || def->opaque) continue;
+    const Src inner = graph.source(*def, 0);
+    for (unsigned c = 0; c < inst.components; ++c) src.swizzle[c] = inner.swizzle[src.swizzle[c]];
+    src.value = inner.value;
+    negative = !negative;
+  }
+  if (operand[0].value != operand[1].value || negative != negated) return false;
   for (unsigned c = 0; c < inst.components; ++c)
-    if (a.swizzle[c] != b.swizzle[c]) return false;
+    if (operand[0].swizzle[c] != operand[1].swizzle[c]) return false;
   return true;
+}
+
+std::uint8_t sign_of(std::uint32_t bits, char type) {
+  if (type == 'F') {
+    const float v = base::float_of(bits);
+    return v == 0.0f ? kZero : v > 0.0f ? kPositive : v < 0.0f ? kNegative : kAny;
+  }
+  if (bits == 0) return kZero;
+  return type == 'I' && static_cast<std::int32_t>(bits) < 0 ? kNegative : kPositive;
 }
 
 }  // namespace
 
-Range RangeAnalysis::of_constant(const Inst& user, std::uint32_t index, const Inst& constant) const {
-  Range range{0, true, true, true};
+Range RangeAnalysis::of_constant(const Inst& user, std::uint32_t index, const Inst& constant, char type) const {
+  const bool real = type == 'F';
+  Range range{0, real, real, real};
   for (unsigned c = 0; c < user.components; ++c) {
-    const float v = base::float_of(constant.imm[graph_.source(user, index).swizzle[c]]);
+    const std::uint32_t bits = constant.imm[graph_.source(user, index).swizzle[c]];
+    range.signs = static_cast<std::uint8_t>(range.signs | sign_of(bits, type));
+    if (!real) continue;
+    const float v = base::float_of(bits);
     range.integral &= std::floor(v) == v;
     range.number &= v == v;
     range.finite &= std::isfinite(v);
-    range.signs = static_cast<std::uint8_t>(range.signs | (v == 0.0f  ? kZero
-                                                           : v > 0.0f ? kPositive
-                                                           : v < 0.0f ? kNegative
-                                                                      : kAny));
   }
   return range;
 }
 
 Range RangeAnalysis::of_source(const Inst& inst, std::uint32_t index) {
+  return of_typed_source(inst, index, ir::alu_info(inst.op).operands[index]);
+}
+
+Range RangeAnalysis::of_typed_source(const Inst& inst, std::uint32_t index, char type) {
   const ValueId value = graph_.source(inst, index).value;
   const Inst* def = graph_.def(value);
   if (!def) return {};
-  if (def->kind == Inst::Kind::kConst) return of_constant(inst, index, *def);
-  if (def->kind != Inst::Kind::kAlu || def->opaque) return {};
+  if (def->kind == Inst::Kind::kConst) return of_constant(inst, index, *def, type);
+  if (def->kind != Inst::Kind::kAlu) return {};
+  if (def->opaque) return type == 'F' && def->op == Op::kFAdd && graph_.first_rules ? of_dot(*def) : Range{};
   const bool untyped = def->op == Op::kMov || def->op == Op::kSelect;
-  if (!untyped && ir::alu_info(def->op).result != 'F') return {};
+  if (!untyped && (ir::alu_info(def->op).result == 'F') != (type == 'F')) return {};
   if (cache_.size() < graph_.values.size()) cache_.resize(graph_.values.size());
-  if (cache_[value].epoch != epoch_) {
-    const Range range = of_result(*def);
-    cache_[value] = {epoch_, range};
+  const unsigned slot = type == 'F' ? 0 : type == 'I' ? 1 : 2;
+  if (cache_[value].epoch[slot] != epoch_) {
+    Range range = of_result(*def, type);
+    range.integral |= range.signs == kZero;
+    cache_[value].epoch[slot] = epoch_;
+    cache_[value].range[slot] = range;
   }
-  return cache_[value].range;
+  return cache_[value].range[slot];
 }
 
-Range RangeAnalysis::of_integer_source(const Inst& inst) const {
-  Range range{kAny, true, true, true};
-  const Inst* constant = graph_.constant(graph_.source(inst, 0).value);
-  if (constant) {
-    range.signs = 0;
-    for (unsigned c = 0; c < inst.components; ++c) {
-      const auto bits = constant->imm[graph_.source(inst, 0).swizzle[c]];
-      const bool negative = inst.op == Op::kI2F && static_cast<std::int32_t>(bits) < 0;
-      range.signs = static_cast<std::uint8_t>(range.signs | (bits == 0 ? kZero : negative ? kNegative : kPositive));
-    }
-  } else if (inst.op == Op::kU2F) {
-    range.signs = kZero | kPositive;
-  }
+/// The reference has one operation for a dot product, of which it knows the sign when both vectors are the same.
+Range RangeAnalysis::of_dot(const Inst& sum) {
+  const Inst* product = graph_.def(graph_.source(sum, 1).value);
+  if (!product || product->kind != Inst::Kind::kAlu || product->op != Op::kFMul) return {};
+  for (const bool negated : {false, true})
+    if (equal_operands(graph_, *product, negated))
+      return {static_cast<std::uint8_t>(kZero | (negated ? kNegative : kPositive)), false,
+              of_source(*product, 0).number, false};
+  return {};
+}
+
+Range RangeAnalysis::of_converted(const Inst& inst) {
+  const Range from = of_source(inst, 0);
+  Range range{from.signs, true, true, true};
+  if (range.signs == kAny && inst.op == Op::kU2F) range.signs = kZero | kPositive;
   return range;
+}
+
+Range RangeAnalysis::of_sum(const Inst& inst) {
+  const Range a = of_source(inst, 0), b = of_source(inst, 1);
+  return {combine(a.signs, b.signs, sum_sign), a.integral && b.integral, a.number && b.number && (a.finite || b.finite),
+          false};
 }
 
 Range RangeAnalysis::of_product(const Inst& inst) {
   const Range a = of_source(inst, 0), b = of_source(inst, 1);
   Range range;
   range.integral = a.integral && b.integral;
-  if (a.signs != kZero && equal_operands(graph_, inst)) {
+  if (a.signs != kZero && equal_operands(graph_, inst, false)) {
     range.signs = kZero | kPositive;
+  } else if (a.signs != kZero && equal_operands(graph_, inst, true)) {
+    range.signs = kZero | kNegative;
   } else {
     range.signs = combine(a.signs, b.signs, product_sign);
   }
@@ -122,6 +157,9 @@ Range RangeAnalysis::of_extremum(const Inst& inst) {
   range.finite = a.finite && b.finite;
   range.number = a.number || b.number;
   range.signs = combine(a.signs, b.signs, inst.op == Op::kFMax ? larger_sign : smaller_sign);
+  // The reference does not combine these two.
+  const std::uint8_t not_zero = kNegative | kPositive;
+  if ((a.signs == kZero && b.signs == not_zero) || (a.signs == not_zero && b.signs == kZero)) range.signs = kAny;
   if (!a.number) range.signs = static_cast<std::uint8_t>(range.signs | b.signs);
   if (!b.number) range.signs = static_cast<std::uint8_t>(range.signs | a.signs);
   return range;
@@ -142,15 +180,44 @@ Range RangeAnalysis::of_rounding(const Inst& inst) {
   return range;
 }
 
-Range RangeAnalysis::of_result(const Inst& inst) {
+Range RangeAnalysis::of_power(const Inst& inst) {
+  const Range a = of_source(inst, 0), b = of_source(inst, 1);
+  const auto not_negative = [](const Range& r) { return (r.signs & kNegative) == 0; };
+  Range range{kAny, a.integral && b.integral && not_negative(b), false, false};
+  if (b.signs == kZero) {
+    range.signs = kPositive;
+  } else if (a.signs == kZero && b.signs == kPositive) {
+    range.signs = kZero;
+  } else if (a.signs == kZero && (b.signs == kNegative || b.signs == (kNegative | kZero))) {
+    range.signs = kPositive;
+  } else if (not_negative(a)) {
+    range.signs = kZero | kPositive;
+  }
+  return range;
+}
+
+Range RangeAnalysis::of_result(const Inst& inst, char type) {
   switch (inst.op) {
+    case Op::kMov:
+      return of_typed_source(inst, 0, type);
+    case Op::kSelect: {
+      const Range a = of_typed_source(inst, 1, type), b = of_typed_source(inst, 2, type);
+      return {static_cast<std::uint8_t>(a.signs | b.signs), a.integral && b.integral, a.number && b.number,
+              a.finite && b.finite};
+    }
     case Op::kB2F:
       return {kZero | kPositive, true, true, true};
+    case Op::kB2I:
+      return {kZero | kPositive, false, true, true};
     case Op::kI2F:
     case Op::kU2F:
-      return of_integer_source(inst);
+      return of_converted(inst);
+    case Op::kFAdd:
+      return of_sum(inst);
     case Op::kFMul:
       return of_product(inst);
+    case Op::kFPow:
+      return of_power(inst);
     case Op::kFMin:
     case Op::kFMax:
       return of_extremum(inst);
@@ -162,22 +229,13 @@ Range RangeAnalysis::of_result(const Inst& inst) {
     case Op::kFRsq:
       return {kZero | kPositive, false, false, false};
     default:
-      break;
+      return of_float_result(inst);
   }
-  if (inst.op == Op::kFAdd) {
-    const Range a = of_source(inst, 0), b = of_source(inst, 1);
-    return {combine(a.signs, b.signs, sum_sign), a.integral && b.integral,
-            a.number && b.number && (a.finite || b.finite), false};
-  }
-  if (inst.op == Op::kSelect) {
-    const Range a = of_source(inst, 1), b = of_source(inst, 2);
-    return {static_cast<std::uint8_t>(a.signs | b.signs), a.integral && b.integral, a.number && b.number,
-            a.finite && b.finite};
-  }
+}
+
+Range RangeAnalysis::of_float_result(const Inst& inst) {
   Range range;
   switch (inst.op) {
-    case Op::kMov:
-      return of_source(inst, 0);
     case Op::kFNeg:
       range = of_source(inst, 0);
       range.signs = negated(range.signs);

@@ -29,15 +29,21 @@ class RangeAnalysis {
 
  private:
   struct Entry {
-    std::uint32_t epoch = 0;
-    Range range;
+    std::uint32_t epoch[3] = {};  ///< by type
+    Range range[3];
   };
-  Range of_constant(const Inst& user, std::uint32_t index, const Inst& constant) const;
-  Range of_result(const Inst& inst);
+  /// `type`: how the operand is read, F I U.
+  Range of_typed_source(const Inst& inst, std::uint32_t index, char type);
+  Range of_constant(const Inst& user, std::uint32_t index, const Inst& constant, char type) const;
+  Range of_result(const Inst& inst, char type);
+  Range of_float_result(const Inst& inst);
+  Range of_dot(const Inst& sum);
+  Range of_sum(const Inst& inst);
   Range of_product(const Inst& inst);
+  Range of_power(const Inst& inst);
   Range of_extremum(const Inst& inst);
   Range of_rounding(const Inst& inst);
-  Range of_integer_source(const Inst& inst) const;
+  Range of_converted(const Inst& inst);
 
   const Graph& graph_;
   std::vector<Entry> cache_;

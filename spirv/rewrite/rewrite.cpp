@@ -14,15 +14,25 @@ constexpr int kMaxRounds = 64;
 
 /// One round of the reference's first loop (3.2 step 3).
 bool optimize_once(Graph& graph, bool first) {
-  bool changed = rewriting::merge_equal(graph, rewriting::CseScope::kLoads);
+  bool changed = rewriting::forward_loads(graph);
   changed |= rewriting::propagate_copies(graph);
   changed |= rewriting::remove_dead(graph);
   changed |= rewriting::flatten_branches(graph);
-  if (first) rewriting::separate_vector_uses(graph);
+  if (first) rewriting::shorten_dot_products(graph);
   changed |= rewriting::apply_rules(graph, rewriting::RuleSet::kMain);
+  if (first) rewriting::show_products(graph);
   changed |= rewriting::fold_constants(graph);
   changed |= rewriting::remove_trivial_results(graph);
-  changed |= rewriting::merge_equal(graph, rewriting::CseScope::kAll);
+  if (rewriting::remove_trivial_continues(graph)) {
+    changed = true;
+    rewriting::propagate_copies(graph);
+    rewriting::remove_dead(graph);
+    rewriting::remove_trivial_results(graph);
+  }
+  changed |= rewriting::improve_branches(graph);
+  changed |= rewriting::take_constant_branches(graph);
+  changed |= rewriting::remove_trivial_results(graph);
+  changed |= rewriting::merge_equal(graph);
   changed |= rewriting::scalarize(graph);
   changed |= rewriting::unroll_loops(graph);
   return changed;
@@ -39,7 +49,7 @@ void finish(Graph& graph) {
     if (!rewriting::apply_rules(graph, rewriting::RuleSet::kLate)) break;
     rewriting::propagate_copies(graph);
     rewriting::remove_dead(graph);
-    rewriting::merge_equal(graph, rewriting::CseScope::kAll);
+    rewriting::merge_equal(graph);
   }
   rewriting::propagate_copies(graph);
   rewriting::build_identities(graph);
@@ -53,7 +63,7 @@ void rewrite(ir::Function& function) {
   Graph graph(function);
   rewriting::hide_dot_products(graph);
   optimize_once(graph, true);
-  rewriting::show_dot_products(graph);
+  rewriting::show_short_products(graph);
   for (int round = 1; round < kMaxRounds; ++round)
     if (!optimize_once(graph, false)) break;
   finish(graph);

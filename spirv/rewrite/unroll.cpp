@@ -1,6 +1,7 @@
 // Loops with a constant number of iterations become straight-line code, as in the reference
 // (lavapipe-shader-math.md 3.2 and 9): unrolled code sees the counter as constants, which changes what the algebraic
-// rules do. Covered: one exit, at the top level of the body, on a counter that starts and steps by constants.
+// rules do. Exits are Ifs at the top level of the body with a Break on one side. Covered: exits that are all counted by
+// constants; a counted and another one; a body that ends in Break.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,6 +9,7 @@
 
 #include "base/float_mode.h"
 #include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -17,10 +19,6 @@ using Bits = std::array<std::uint32_t, 4>;
 
 constexpr unsigned kMaxIterations = 32;
 constexpr unsigned kMaxCost = 26 * kMaxIterations;  ///< instructions times iterations
-
-bool is_jump(const Inst& inst, Op op) { return inst.kind == Kind::kIntrinsic && inst.op == op; }
-
-bool leaves_loop(const Inst& inst) { return is_jump(inst, Op::kBreak) || is_jump(inst, Op::kContinue); }
 
 /// Breaks and continues of the loop that owns `block`, other than a Continue at its very end.
 unsigned count_exits(const Graph& graph, BlockId block) {
@@ -33,30 +31,20 @@ unsigned count_exits(const Graph& graph, BlockId block) {
   return exits;
 }
 
-struct Cost {
-  unsigned instructions = 0;
-  bool has_loop = false;
+/// An If that leaves the loop.
+struct Exit {
+  InstId branch = kNone;
+  unsigned break_side = 0;
+  bool counted = false;
+  unsigned trips = 0;  ///< counted: times it is not taken before it is
 };
 
-void add_cost(const Graph& graph, BlockId block, Cost& cost) {
-  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
-    const Inst& inst = graph.insts[id];
-    const bool jump = leaves_loop(inst) || is_jump(inst, Op::kYield);
-    if (inst.kind == Kind::kAlu || inst.kind == Kind::kVec || (inst.kind == Kind::kIntrinsic && !jump))
-      ++cost.instructions;
-    cost.has_loop |= inst.kind == Kind::kLoop;
-    for (const BlockId child : inst.child)
-      if (child != kNone) add_cost(graph, child, cost);
-  }
-}
-
-/// A loop in the covered shape.
 struct Shape {
-  InstId exit = kNone;      ///< the If that leaves the loop
-  unsigned break_side = 0;  ///< its branch that ends in Break
-  unsigned iterations = 0;  ///< times the exit is not taken
-  InstId second = kNone;    ///< another If that may leave the loop, after `exit`
-  unsigned second_side = 0;
+  std::vector<Exit> exits;
+  std::size_t limiting = SIZE_MAX;  ///< the counted exit that is taken first
+  bool exact = true;                ///< all exits are counted
+  bool once = false;                ///< the body ends in Break
+  unsigned trips() const { return limiting == SIZE_MAX ? 0 : exits[limiting].trips; }
 };
 
 class Counter {
@@ -70,12 +58,12 @@ class Counter {
   }
 
   /// Runs the loop on what is constant. False: the exit is not decided by constants within the limit.
-  bool count(Shape& shape) {
+  bool count(Exit& exit) {
     const base::ScopedFloatMode mode(base::Denormals::kHonour);
-    for (shape.iterations = 0; shape.iterations <= kMaxIterations; ++shape.iterations) {
+    for (exit.trips = 0; exit.trips <= kMaxIterations; ++exit.trips) {
       Bits condition;
-      if (!value(graph_.source(graph_.insts[shape.exit], 0), condition)) return false;
-      if ((condition[0] != 0) == (shape.break_side == 0)) return true;
+      if (!value(graph_.source(graph_.insts[exit.branch], 0), condition)) return false;
+      if ((condition[0] != 0) == (exit.break_side == 0)) return true;
       if (!step()) return false;
     }
     return false;
@@ -141,63 +129,176 @@ class Counter {
   std::unordered_map<ValueId, Bits> known_;
 };
 
-/// The reference finds a count only for counters that step by adding a constant and are compared with a constant.
-bool counts_by_adding(const Graph& graph, InstId loop, Src condition) {
+/// What a loop parameter becomes for the next iteration.
+Src next_value(const Graph& graph, InstId loop, std::size_t param) {
+  const BlockId body = graph.insts[loop].child[0], continuing = graph.insts[loop].child[1];
+  const Src& next = graph.source(graph.insts[graph.blocks[continuing].tail], static_cast<std::uint32_t>(param));
+  return substituted(next, graph.nodes[graph.insts[loop].node]->continue_params,
+                     operands_of(graph, graph.blocks[body].tail));
+}
+
+/// Counters: parameters that start at a constant and step by adding one at the top level of the body, and those sums.
+bool is_counter(const Graph& graph, InstId loop, ValueId value) {
+  const ir::Node& node = *graph.nodes[graph.insts[loop].node];
+  for (std::size_t i = 0; i < node.params.size(); ++i) {
+    const ValueId param = node.params[i];
+    if (!graph.constant(graph.source(graph.insts[loop], static_cast<std::uint32_t>(i)).value)) continue;
+    const Src next = next_value(graph, loop, i);
+    if (value != param && value != next.value) continue;
+    const Inst* step = graph.def(next.value);
+    if (!step || step->kind != Kind::kAlu || (step->op != Op::kIAdd && step->op != Op::kFAdd)) continue;
+    if (graph.blocks[step->block].owner != loop) continue;
+    for (const std::uint32_t side : {0u, 1u})
+      if (graph.source(*step, side).value == param && graph.constant(graph.source(*step, 1 - side).value)) return true;
+  }
+  return false;
+}
+
+/// A comparison of a counter with a constant, perhaps negated.
+bool is_counted(const Graph& graph, InstId loop, const Src& condition) {
   const Inst* compare = graph.def(condition.value);
-  while (compare && compare->kind == Kind::kAlu && compare->op == Op::kNotB)
+  if (compare && compare->kind == Kind::kAlu && compare->op == Op::kNotB)
     compare = graph.def(graph.source(*compare, 0).value);
-  if (!compare || compare->kind != Kind::kAlu || compare->count != 2) return false;
+  if (!compare || compare->kind != Kind::kAlu || compare->count != 2 || compare->boolean == false) return false;
   const bool left = graph.constant(graph.source(*compare, 0).value) != nullptr;
   const bool right = graph.constant(graph.source(*compare, 1).value) != nullptr;
-  if (left == right) return false;
-  const ValueId counter = graph.source(*compare, left ? 1 : 0).value;
-  const Inst& inst = graph.insts[loop];
-  const ir::Node& node = *graph.nodes[inst.node];
-  const auto at = std::find(node.params.begin(), node.params.end(), counter);
-  if (at == node.params.end()) return false;
-  const Inst& next = graph.insts[graph.blocks[inst.child[1]].tail];
-  const Inst* step = graph.def(graph.source(next, static_cast<std::uint32_t>(at - node.params.begin())).value);
-  if (!step || step->kind != Kind::kAlu || (step->op != Op::kIAdd && step->op != Op::kFAdd)) return false;
-  return graph.constant(graph.source(*step, 0).value) || graph.constant(graph.source(*step, 1).value);
+  return left != right && is_counter(graph, loop, graph.source(*compare, left ? 1 : 0).value);
 }
 
-/// The branch of `candidate` that breaks while the other goes on; 2: none.
-unsigned break_side_of(const Graph& graph, const Inst& candidate) {
-  if (candidate.kind != Kind::kIf) return 2;
-  for (const unsigned side : {0u, 1u}) {
-    const InstId last = graph.blocks[candidate.child[side]].tail;
-    const InstId other = graph.blocks[candidate.child[1 - side]].tail;
-    if (last == kNone || other == kNone) continue;
-    if (is_jump(graph.insts[last], Op::kBreak) && is_jump(graph.insts[other], Op::kYield)) return side;
+/// False: the loop has an exit of another kind.
+bool find_exits(const Graph& graph, InstId loop, Shape& shape) {
+  for (InstId id = graph.blocks[graph.insts[loop].child[0]].head; id != kNone; id = graph.insts[id].next) {
+    const Inst& inst = graph.insts[id];
+    if (inst.kind != Kind::kIf) continue;
+    const unsigned exits[2] = {count_exits(graph, inst.child[0]), count_exits(graph, inst.child[1])};
+    if (exits[0] + exits[1] == 0) continue;
+    const unsigned side = ends_in(graph, inst.child[0], Op::kBreak) ? 0 : 1;
+    if (exits[side] != 1 || exits[1 - side] != 0 || !ends_in(graph, inst.child[side], Op::kBreak) ||
+        !ends_in(graph, inst.child[1 - side], Op::kYield))
+      return false;
+    const Inst* condition = graph.def(graph.source(inst, 0).value);
+    if (!condition || condition->kind == Kind::kIf || condition->kind == Kind::kLoop) return false;
+    shape.exits.push_back({id, side});
   }
-  return 2;
+  return true;
 }
 
-/// The first exit must be the one that counts; a second one is allowed.
 bool find_shape(const Graph& graph, InstId loop, Shape& shape) {
   const Inst& inst = graph.insts[loop];
-  const InstId body_end = graph.blocks[inst.child[0]].tail, next = graph.blocks[inst.child[1]].tail;
-  if (body_end == kNone || next == kNone || !is_jump(graph.insts[next], Op::kYield)) return false;
-  const Inst& end = graph.insts[body_end];
-  if (!is_jump(end, Op::kYield) && !is_jump(end, Op::kContinue)) return false;
-  unsigned exits = count_exits(graph, inst.child[0]) - (is_jump(end, Op::kContinue) ? 1 : 0);
-  if (exits == 0 || exits > 2 || count_exits(graph, inst.child[1]) != 0) return false;
-  for (InstId id = graph.blocks[inst.child[0]].head; id != kNone; id = graph.insts[id].next) {
-    const unsigned side = break_side_of(graph, graph.insts[id]);
-    if (side == 2) continue;
-    --exits;
-    if (shape.exit == kNone) {
-      shape.exit = id;
-      shape.break_side = side;
-    } else {
-      shape.second = id;
-      shape.second_side = side;
+  const BlockId body = inst.child[0], continuing = inst.child[1];
+  shape.once = ends_in(graph, body, Op::kBreak);
+  if (!shape.once && (!ends_in(graph, body, Op::kYield) || !ends_in(graph, continuing, Op::kYield))) return false;
+  if ((!shape.once && count_exits(graph, continuing) != 0) || !find_exits(graph, loop, shape)) return false;
+  if (shape.once) {
+    shape.exact = false;
+    return shape.exits.size() <= 3;
+  }
+  for (std::size_t i = 0; i < shape.exits.size(); ++i) {
+    Exit& exit = shape.exits[i];
+    exit.counted =
+        is_counted(graph, loop, graph.source(graph.insts[exit.branch], 0)) && Counter(graph, loop).count(exit);
+    shape.exact &= exit.counted;
+    if (exit.counted && (shape.limiting == SIZE_MAX || exit.trips < shape.trips())) shape.limiting = i;
+  }
+  return shape.limiting != SIZE_MAX && (shape.exact || shape.exits.size() == 2);
+}
+
+// ---- what unrolling costs, counted as the reference does
+
+struct Cost {
+  unsigned instructions = 0;
+  bool has_loop = false;
+  bool wanted = false;  ///< an array is walked from end to end
+};
+
+class Pricer {
+ public:
+  Pricer(const Graph& graph, InstId loop, unsigned trips) : graph_(graph), loop_(loop), trips_(trips) {}
+
+  Cost price() {
+    for (const BlockId side : graph_.insts[loop_].child) add(side);
+    return cost_;
+  }
+
+ private:
+  /// The reference computes addresses of buffers later.
+  bool is_address(const Inst& inst, unsigned depth) const {
+    if (inst.kind != Kind::kAlu || inst.count != 2 || graph_.values[inst.result].uses == 0) return false;
+    const bool scale = (inst.op == Op::kShl || inst.op == Op::kIMul) && graph_.constant(graph_.source(inst, 1).value);
+    if (!scale && inst.op != Op::kIAdd) return false;
+    for (Slot use = graph_.values[inst.result].first_use; use != kNone; use = graph_.sources[use].next) {
+      const Inst& user = graph_.insts[graph_.sources[use].user];
+      const std::uint32_t operand = use - user.first;
+      if (user.kind == Kind::kAlu && depth < 3 && is_address(user, depth + 1)) continue;
+      if (user.kind != Kind::kIntrinsic) return false;
+      switch (user.op) {
+        case Op::kLoadStorage:
+        case Op::kLoadUniform:
+        case Op::kStoreStorage:
+        case Op::kAtomicStorage:
+          if (operand == 1) continue;
+          return false;
+        case Op::kLoadPush:
+        case Op::kLoadShared:
+        case Op::kStoreShared:
+        case Op::kAtomicShared:
+          if (operand == 0) continue;
+          return false;
+        default:
+          return false;
+      }
+    }
+    return true;
+  }
+
+  bool compares_counter(const Inst& select) const {
+    const Inst* compare = graph_.def(graph_.source(select, 0).value);
+    if (!compare || compare->kind != Kind::kAlu || compare->count != 2 || !compare->boolean) return false;
+    for (const std::uint32_t side : {0u, 1u})
+      if (graph_.constant(graph_.source(*compare, side).value) &&
+          is_counter(graph_, loop_, graph_.source(*compare, 1 - side).value))
+        return true;
+    return false;
+  }
+
+  unsigned price_of(const Inst& inst) const {
+    if (inst.kind == Kind::kVec) return 1;
+    if (inst.kind == Kind::kIntrinsic) return leaves_loop(inst) || is_jump(inst, Op::kYield) ? 0 : 1;
+    if (inst.kind != Kind::kAlu || is_address(inst, 0)) return 0;
+    if ((inst.op == Op::kSelect || inst.op == Op::kSelectB) && compares_counter(inst))
+      return graph_.values[graph_.source(inst, 0).value].uses == 1 ? ~0u : 0;  // the comparison goes as well
+    return cost_of(graph_, inst);
+  }
+
+  bool walks_array(const Inst& inst) const {
+    if (inst.kind != Kind::kIntrinsic || (inst.op != Op::kLoadArray && inst.op != Op::kStoreArray)) return false;
+    std::uint32_t elements = graph_.function.arrays[graph_.nodes[inst.node]->instr.data[0]].elements;
+    ValueId index = graph_.source(inst, 0).value;
+    if (const Inst* scaled = graph_.def(index); scaled && scaled->kind == Kind::kAlu && scaled->op == Op::kIMul) {
+      const Inst* by = graph_.constant(graph_.source(*scaled, 1).value);
+      if (!by || by->imm[0] == 0) return false;
+      elements /= by->imm[0];
+      index = graph_.source(*scaled, 0).value;
+    }
+    return elements == trips_ && is_counter(graph_, loop_, index);
+  }
+
+  void add(BlockId block) {
+    for (InstId id = graph_.blocks[block].head; id != kNone; id = graph_.insts[id].next) {
+      const Inst& inst = graph_.insts[id];
+      cost_.instructions += price_of(inst);
+      cost_.has_loop |= inst.kind == Kind::kLoop;
+      cost_.wanted |= walks_array(inst);
+      for (const BlockId child : inst.child)
+        if (child != kNone) add(child);
     }
   }
-  if (exits != 0 || shape.exit == kNone) return false;
-  const Src condition = graph.source(graph.insts[shape.exit], 0);
-  return counts_by_adding(graph, loop, condition) && Counter(graph, loop).count(shape);
-}
+
+  const Graph& graph_;
+  InstId loop_;
+  unsigned trips_;
+  Cost cost_;
+};
 
 /// Copies instructions to the end of a block, operands translated.
 class Copier {
@@ -303,19 +404,6 @@ class Copier {
   std::unordered_map<ValueId, Src> map_;
 };
 
-/// A value equal to `src` with the components of `like`.
-ValueId as_value(Graph& graph, InstId position, const Src& src, ValueId like) {
-  const Value shape = graph.values[like];
-  bool whole = graph.values[src.value].components == shape.components;
-  for (unsigned c = 0; c < shape.components; ++c) whole &= src.swizzle[c] == c;
-  if (whole) return src.value;
-  const InstId move =
-      graph.create(Kind::kAlu, shape.boolean ? Op::kMovB : Op::kMov, shape.components, shape.boolean, 1);
-  graph.set_source(move, 0, src);
-  graph.insert_before(position, move);
-  return graph.insts[move].result;
-}
-
 /// Builds the iterations of one loop.
 class Unroller {
  public:
@@ -326,9 +414,7 @@ class Unroller {
     const BlockId made = new_block(kNone);
     const std::vector<Src> values = iterate(0, made);
     graph_.splice_before(loop_, made);
-    const std::vector<ValueId> results = node(loop_).results;
-    for (std::size_t i = 0; i < results.size(); ++i)
-      graph_.replace_uses(results[i], as_value(graph_, loop_, values[i], results[i]));
+    replace_results(graph_, loop_, values);
     graph_.remove(loop_);
   }
 
@@ -343,22 +429,36 @@ class Unroller {
 
   /// Appends iteration `number` and all that follow; returns the values the loop ends with.
   std::vector<Src> iterate(unsigned number, BlockId to) {
-    const BlockId body = child(loop_, 0);
-    copier_.copy(graph_.blocks[body].head, shape_.exit, to);
-    if (number == shape_.iterations) return copier_.copy_branch(child(shape_.exit, shape_.break_side), to);
-    stay(shape_.exit, shape_.break_side, to);
-    if (shape_.second == kNone) {
-      finish(graph_.insts[shape_.exit].next, to);
+    return go_on(number, 0, graph_.blocks[child(loop_, 0)].head, to);
+  }
+
+  /// The same from `first`, before exit `next`.
+  std::vector<Src> go_on(unsigned number, std::size_t next, InstId first, BlockId to) {
+    if (next == shape_.exits.size()) {
+      if (shape_.once) return leave(first, to);
+      finish(first, to);
       return iterate(number + 1, to);
     }
-    copier_.copy(graph_.insts[shape_.exit].next, shape_.second, to);
-    return branch(number, to);
+    const Exit& exit = shape_.exits[next];
+    copier_.copy(first, exit.branch, to);
+    if (next == shape_.limiting && number == exit.trips)
+      return copier_.copy_branch(child(exit.branch, exit.break_side), to);
+    if (!exit.counted) return branch(number, next, to);
+    stay(exit.branch, exit.break_side, to);
+    return go_on(number, next + 1, graph_.insts[exit.branch].next, to);
   }
 
   /// The other way past a conditional exit.
   void stay(InstId exit, unsigned break_side, BlockId to) {
     const std::vector<ValueId> results = node(exit).results;
     copier_.bind_all(results, copier_.copy_branch(child(exit, 1 - break_side), to));
+  }
+
+  /// From `first` to the Break that ends the body.
+  std::vector<Src> leave(InstId first, BlockId to) {
+    const InstId end = graph_.blocks[child(loop_, 0)].tail;
+    copier_.copy(first, end, to);
+    return copier_.operands_of(end);
   }
 
   /// From `first` to the end of the body, then the continue construct.
@@ -370,31 +470,24 @@ class Unroller {
     copier_.bind_all(node(loop_).params, next);
   }
 
-  /// An If on the second exit, with the rest of the loop in the branch that stays.
-  std::vector<Src> branch(unsigned number, BlockId to) {
+  /// An If on an exit that is not counted, with the rest of the loop in the branch that stays.
+  std::vector<Src> branch(unsigned number, std::size_t next, BlockId to) {
+    const Exit& exit = shape_.exits[next];
     const auto made = graph_.create(Kind::kIf, Op::kMov, 0, false, 1);
-    graph_.set_source(made, 0, copier_.operands_of(shape_.second)[0]);
+    graph_.set_source(made, 0, copier_.operands_of(exit.branch)[0]);
     auto description = std::make_unique<ir::Node>();
     description->kind = ir::Node::Kind::kIf;
-    std::vector<Src> results;
-    for (const ValueId like : node(loop_).results) {
-      const Value shape = graph_.values[like];
-      const auto value = static_cast<ValueId>(graph_.values.size());
-      graph_.values.push_back({made, kNone, kNone, 0, shape.components, shape.boolean});
-      description->results.push_back(value);
-      results.push_back({value, {0, 1, 2, 3}});
-    }
-    graph_.insts[made].origin = graph_.insts[shape_.second].origin;
+    graph_.insts[made].origin = graph_.insts[exit.branch].origin;
     graph_.insts[made].node = static_cast<std::uint32_t>(graph_.nodes.size());
     graph_.nodes.push_back(std::move(description));
+    const std::vector<Src> results = add_results(graph_, made, node(loop_).results);
     graph_.append(to, made);
-    const BlockId leave = new_block(made), go_on = new_block(made);
-    graph_.insts[made].child[shape_.second_side] = leave;
-    graph_.insts[made].child[1 - shape_.second_side] = go_on;
-    yield(leave, copier_.copy_branch(child(shape_.second, shape_.second_side), leave));
-    stay(shape_.second, shape_.second_side, go_on);
-    finish(graph_.insts[shape_.second].next, go_on);
-    yield(go_on, iterate(number + 1, go_on));
+    const BlockId leaving = new_block(made), staying = new_block(made);
+    graph_.insts[made].child[exit.break_side] = leaving;
+    graph_.insts[made].child[1 - exit.break_side] = staying;
+    yield(leaving, copier_.copy_branch(child(exit.branch, exit.break_side), leaving));
+    stay(exit.branch, exit.break_side, staying);
+    yield(staying, go_on(number, next + 1, graph_.insts[exit.branch].next, staying));
     return results;
   }
 
@@ -415,10 +508,11 @@ class Unroller {
 bool try_unroll(Graph& graph, InstId loop) {
   Shape shape;
   if (!find_shape(graph, loop, shape)) return false;
-  Cost cost;
-  for (const BlockId side : graph.insts[loop].child) add_cost(graph, side, cost);
-  if (cost.has_loop && shape.iterations != 1) return false;
-  if (shape.iterations > kMaxIterations || cost.instructions * shape.iterations > kMaxCost) return false;
+  if (!shape.once) {
+    const Cost cost = Pricer(graph, loop, shape.trips()).price();
+    if (shape.trips() > kMaxIterations || (cost.has_loop && shape.trips() != 1)) return false;
+    if (!cost.wanted && cost.instructions * shape.trips() > kMaxCost) return false;
+  }
   Unroller(graph, loop, shape).run();
   return true;
 }

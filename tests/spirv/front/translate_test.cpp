@@ -3,6 +3,7 @@
 
 #include "spirv/ir_passes.h"
 #include "spirv/ir_walk.h"
+#include "spirv/rewrite/rewrite.h"
 #include "tests/spirv/front/glsl.h"
 
 namespace vitrine::spirv::test {
@@ -239,6 +240,7 @@ TEST(Translate, SpecializationChoosesTheBranch) {
     layout(location = 0) in float x; layout(location = 0) out float y;
     void main() { if (k == 2) y = sqrt(x); else y = x; })";
   ir::Function f = translated(kFragment, source);
+  rewrite(f);
   EXPECT_EQ(count(f, ir::Node::Kind::kIf), 0u);
   EXPECT_EQ(count(f, ir::Op::kFSqrt), 0u);
   CompileOptions options = options_for(kFragment);
@@ -247,6 +249,7 @@ TEST(Translate, SpecializationChoosesTheBranch) {
   std::memcpy(constant.bytes.data(), &two, 4);
   options.specialization.push_back(constant);
   f = translated(kFragment, source, &options);
+  rewrite(f);
   EXPECT_EQ(count(f, ir::Op::kFSqrt), 1u);
 }
 

@@ -1,0 +1,233 @@
+// The shape of control flow: branches on constants, code behind branches that leave, continues at the end of a loop.
+// The steps and their order are the reference's (lavapipe-shader-math.md 3.2): which code is unconditional decides what
+// later steps see.
+#include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/tree.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+// ---- what never runs
+
+/// Removes `block`'s instructions from `first` to the end.
+void remove_from(Graph& graph, BlockId block, InstId first) {
+  if (first == kNone) return;
+  for (bool last = false; !last;) {
+    const InstId tail = graph.blocks[block].tail;
+    last = tail == first;
+    graph.remove(tail);
+  }
+}
+
+void take_branch(Graph& graph, InstId id, BlockId taken) {
+  if (ends_in(graph, taken, Op::kYield)) {
+    const std::vector<Src> yielded = operands_of(graph, graph.blocks[taken].tail);
+    graph.remove(graph.blocks[taken].tail);
+    graph.splice_before(id, taken);
+    replace_results(graph, id, yielded);
+  } else {
+    graph.splice_before(id, taken);
+    remove_from(graph, graph.insts[id].block, graph.insts[id].next);
+  }
+  graph.remove(id);
+}
+
+/// A loop that has no effect but the values it carries.
+bool only_computes(const Graph& graph, BlockId block) {
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
+    const Inst& inst = graph.insts[id];
+    if (inst.kind == Kind::kIf || inst.kind == Kind::kLoop) {
+      if (!only_computes(graph, inst.child[0]) || !only_computes(graph, inst.child[1])) return false;
+    } else if (!is_jump(inst, Op::kYield) && !leaves_loop(inst) && !is_pure(graph, inst)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool is_dead_loop(const Graph& graph, InstId id) {
+  for (const ValueId result : graph.nodes[graph.insts[id].node]->results)
+    if (graph.values[result].uses != 0) return false;
+  return only_computes(graph, graph.insts[id].child[0]) && only_computes(graph, graph.insts[id].child[1]);
+}
+
+bool prune(Graph& graph, BlockId block) {
+  bool changed = false;
+  for (InstId id = graph.blocks[block].head; id != kNone;) {
+    const Inst inst = graph.insts[id];
+    const InstId before = inst.previous;
+    if (inst.kind == Kind::kIf) {
+      const Src condition = graph.source(inst, 0);
+      if (const Inst* constant = graph.constant(condition.value)) {
+        take_branch(graph, id, inst.child[constant->imm[condition.swizzle[0]] ? 0 : 1]);
+        changed = true;
+        id = before == kNone ? graph.blocks[block].head : graph.insts[before].next;
+        continue;
+      }
+    }
+    for (const BlockId child : inst.child)
+      if (child != kNone) changed |= prune(graph, child);
+    const InstId next = graph.insts[id].next;
+    if (inst.kind == Kind::kLoop && is_dead_loop(graph, id)) {
+      graph.remove(id);
+      changed = true;
+    }
+    id = next;
+  }
+  return changed;
+}
+
+// ---- code behind a branch that leaves
+
+/// One side leaves: the other side's code need not be conditional.
+bool hoist_staying_side(Graph& graph, InstId id) {
+  for (const unsigned side : {0u, 1u}) {
+    const BlockId leaving = graph.insts[id].child[side], staying = graph.insts[id].child[1 - side];
+    if (ends_in(graph, leaving, Op::kYield) || !ends_in(graph, staying, Op::kYield)) continue;
+    const InstId last = graph.blocks[staying].tail;
+    if (graph.blocks[staying].head == last && graph.insts[last].count == 0) return false;
+    const std::vector<Src> yielded = operands_of(graph, last);
+    graph.set_operands(last, {});
+    InstId position = id;
+    while (graph.blocks[staying].head != last) {
+      const InstId moved = graph.blocks[staying].head;
+      graph.move_after(position, moved);
+      position = moved;
+    }
+    replace_results(graph, id, yielded, position);
+    graph.nodes[graph.insts[id].node]->results.clear();
+    return true;
+  }
+  return false;
+}
+
+/// What follows the last branch that continues moves into the branch's other side.
+bool enclose_after_continue(Graph& graph, InstId loop) {
+  const BlockId body = graph.insts[loop].child[0];
+  const InstId end = graph.blocks[body].tail;
+  if (end == kNone || !is_jump(graph.insts[end], Op::kYield)) return false;
+  InstId branch = graph.insts[end].previous;
+  unsigned leaving = 2;
+  for (; branch != kNone; branch = graph.insts[branch].previous) {
+    const Inst& inst = graph.insts[branch];
+    if (inst.kind != Kind::kIf) continue;
+    const bool stays[2] = {ends_in(graph, inst.child[0], Op::kYield), ends_in(graph, inst.child[1], Op::kYield)};
+    if (!stays[0] && !stays[1]) return false;
+    leaving = ends_in(graph, inst.child[0], Op::kContinue) ? 0 : ends_in(graph, inst.child[1], Op::kContinue) ? 1 : 2;
+    if (leaving != 2) break;
+  }
+  if (branch == kNone || graph.insts[branch].next == end) return false;
+  if (!graph.nodes[graph.insts[branch].node]->results.empty()) return false;  // hoisting comes first
+  const BlockId other = graph.insts[branch].child[1 - leaving];
+  const InstId other_end = graph.blocks[other].tail;
+  while (graph.insts[branch].next != end) graph.move_before(other_end, graph.insts[branch].next);
+  const std::vector<Src> passed = operands_of(graph, end);
+  graph.set_operands(other_end, passed);
+  graph.set_operands(end, add_results(graph, branch, graph.nodes[graph.insts[loop].node]->continue_params));
+  return true;
+}
+
+// ---- continues where the loop would go on anyway
+
+/// `block` ends with what the loop continues with: a Continue there, or in a branch right before, becomes a Yield.
+bool drop_continues(Graph& graph, BlockId block, const std::vector<ValueId>& params) {
+  const InstId end = graph.blocks[block].tail;
+  bool changed = false;
+  if (is_jump(graph.insts[end], Op::kContinue)) {
+    graph.insts[end].op = Op::kYield;
+    changed = true;
+  }
+  if (!is_jump(graph.insts[end], Op::kYield)) return changed;
+  const InstId branch = graph.insts[end].previous;
+  if (branch == kNone || graph.insts[branch].kind != Kind::kIf) return changed;
+  const BlockId side[2] = {graph.insts[branch].child[0], graph.insts[branch].child[1]};
+  if (!contains_continue(graph, side[0]) && !contains_continue(graph, side[1])) return changed;
+  const std::vector<ValueId> results = graph.nodes[graph.insts[branch].node]->results;
+  const std::vector<Src> passed = operands_of(graph, end);
+  for (const BlockId child : side) {
+    const InstId last = graph.blocks[child].tail;
+    if (!is_jump(graph.insts[last], Op::kYield)) continue;
+    const std::vector<Src> yielded = operands_of(graph, last);
+    std::vector<Src> values;
+    for (const Src& src : passed) values.push_back(substituted(src, results, yielded));
+    graph.set_operands(last, values);
+  }
+  graph.nodes[graph.insts[branch].node]->results.clear();
+  graph.set_operands(end, add_results(graph, branch, params));
+  for (const BlockId child : side)
+    if (!ends_in(graph, child, Op::kBreak)) drop_continues(graph, child, params);
+  return true;
+}
+
+bool drop_trivial_continues(Graph& graph, BlockId block) {
+  bool changed = false;
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
+    for (const unsigned side : {0u, 1u}) {
+      const BlockId child = graph.insts[id].child[side];
+      if (child != kNone) changed |= drop_trivial_continues(graph, child);
+    }
+    if (graph.insts[id].kind != Kind::kLoop) continue;
+    const std::vector<ValueId> params = graph.nodes[graph.insts[id].node]->continue_params;
+    const BlockId body = graph.insts[id].child[0];
+    if (graph.blocks[body].tail != kNone) changed |= drop_continues(graph, body, params);
+  }
+  return changed;
+}
+
+// ---- the continue construct
+
+/// With one way to it, the continue construct is the end of the body.
+bool merge_continuing(Graph& graph, InstId loop) {
+  const BlockId body = graph.insts[loop].child[0], continuing = graph.insts[loop].child[1];
+  const InstId end = graph.blocks[body].tail, last = graph.blocks[continuing].tail;
+  if (end == kNone || last == kNone || !is_jump(graph.insts[end], Op::kYield) ||
+      !is_jump(graph.insts[last], Op::kYield) || graph.blocks[continuing].head == last ||
+      contains_continue(graph, body))
+    return false;
+  const ir::Node& node = *graph.nodes[graph.insts[loop].node];
+  const std::vector<Src> passed = operands_of(graph, end);
+  const InstId first = graph.blocks[continuing].head;
+  while (graph.blocks[continuing].head != last) graph.move_before(end, graph.blocks[continuing].head);
+  for (std::size_t i = 0; i < node.continue_params.size(); ++i)
+    graph.replace_uses(node.continue_params[i], whole_value(graph, first, passed[i], node.continue_params[i]));
+  const std::vector<Src> next = operands_of(graph, last);
+  std::vector<Src> forwarded;
+  std::vector<ValueId> params;
+  for (const ValueId param : node.params) {
+    const Value like = graph.values[param];
+    params.push_back(static_cast<ValueId>(graph.values.size()));
+    graph.values.push_back({loop, kNone, kNone, 0, like.components, like.boolean});
+    forwarded.push_back({params.back(), {0, 1, 2, 3}});
+  }
+  graph.nodes[graph.insts[loop].node]->continue_params = params;
+  graph.set_operands(end, next);
+  graph.set_operands(last, forwarded);
+  return true;
+}
+
+bool improve(Graph& graph, BlockId block) {
+  bool changed = false;
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
+    for (const unsigned side : {0u, 1u}) {
+      const BlockId child = graph.insts[id].child[side];
+      if (child != kNone) changed |= improve(graph, child);
+    }
+    if (graph.insts[id].kind == Kind::kIf) changed |= hoist_staying_side(graph, id);
+    if (graph.insts[id].kind != Kind::kLoop) continue;
+    changed |= enclose_after_continue(graph, id);
+    changed |= merge_continuing(graph, id);
+  }
+  return changed;
+}
+
+}  // namespace
+
+bool take_constant_branches(Graph& graph) { return prune(graph, graph.root); }
+
+bool remove_trivial_continues(Graph& graph) { return drop_trivial_continues(graph, graph.root); }
+
+bool improve_branches(Graph& graph) { return improve(graph, graph.root); }
+
+}  // namespace vitrine::spirv::rewriting

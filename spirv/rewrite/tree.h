@@ -1,0 +1,34 @@
+// Small questions and changes about the tree of instructions that several steps share.
+#pragma once
+
+#include <vector>
+
+#include "spirv/rewrite/graph.h"
+
+namespace vitrine::spirv::rewriting {
+
+inline bool is_jump(const Inst& inst, Op op) { return inst.kind == Inst::Kind::kIntrinsic && inst.op == op; }
+inline bool leaves_loop(const Inst& inst) { return is_jump(inst, Op::kBreak) || is_jump(inst, Op::kContinue); }
+inline bool ends_in(const Graph& graph, BlockId block, Op op) {
+  const InstId last = graph.blocks[block].tail;
+  return last != kNone && is_jump(graph.insts[last], op);
+}
+
+/// A Continue of the loop around `block`.
+bool contains_continue(const Graph& graph, BlockId block);
+
+std::vector<Src> operands_of(const Graph& graph, InstId id);
+
+/// `src`, or the value that stands for it if it is one of `values`.
+Src substituted(const Src& src, const std::vector<ValueId>& values, const std::vector<Src>& by);
+
+/// A value equal to `src` with the components of `like`; a Mov that it may need goes before `position`.
+ValueId whole_value(Graph& graph, InstId position, const Src& src, ValueId like);
+
+/// Uses of the results of an If or Loop become uses of `values`; Movs go in front of it, or behind `after`.
+void replace_results(Graph& graph, InstId id, const std::vector<Src>& values, InstId after = kNone);
+
+/// New results of an If, of the types of `like`; what its branches yield for them is the caller's business.
+std::vector<Src> add_results(Graph& graph, InstId id, const std::vector<ValueId>& like);
+
+}  // namespace vitrine::spirv::rewriting
