@@ -75,6 +75,9 @@ struct Src {
   std::array<std::uint8_t, 4> swizzle{0, 1, 2, 3};
 };
 
+/// Bytes of a component in memory (loads and stores of intrinsics.def): imm[1], 0: a word.
+inline std::uint32_t element_bytes(const std::array<std::uint32_t, 4>& imm) { return imm[1] == 0 ? 4 : imm[1]; }
+
 /// Where an instruction came from.
 struct Origin {
   std::uint32_t spirv_id = 0;  ///< result id, 0: none

@@ -95,6 +95,7 @@ struct MemoryOp {
   std::uint32_t added = 0;                       ///< constant byte offset
   std::uint32_t components = 1;                  ///< loads: number of words
   std::array<std::uint32_t, 4> at{0, 4, 8, 12};  ///< loads: byte offset of each word behind `added`
+  std::uint32_t element_bytes = 4;               ///< of a component in memory: 1, 2 or 4
   std::uint32_t write_mask = 0;                  ///< stores: bit i = component i
   std::array<std::uint32_t, 4> data{kNoOperand, kNoOperand, kNoOperand, kNoOperand};  ///< result / value operands
   std::uint32_t compare = kNoOperand;

@@ -112,6 +112,66 @@ const bool kAtomics = [] {
   return true;
 }();
 
+const bool kAtomics64 = [] {
+  for (const char* type : {"uint64_t", "int64_t"})
+    for (const char* op : {"Add", "Min", "Max", "And", "Or", "Xor", "Exchange"})
+      AddCase("compute", std::string("atomics_64.") + type + "." + op, [=](Run& run) {
+        const auto& features = run.gpu.extension_features.atomic_int64;
+        run.require(
+            run.gpu.features.shaderInt64 && features.shaderBufferInt64Atomics && features.shaderSharedInt64Atomics,
+            "64-bit atomics");
+        const bool exchange = std::string(op) == "Exchange";
+        dispatch(run,
+                 std::string("#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n"
+                             "#extension GL_EXT_shader_atomic_int64 : require\n"
+                             "layout(local_size_x = 64) in;\n#define T ") +
+                     type +
+                     "\nlayout(std430, binding = 0) buffer R { T r[]; };\n"
+                     "shared T s[64];\n"
+                     "void main() {\n"
+                     "  uint id = gl_LocalInvocationIndex;\n"
+                     "  s[id] = T(5) << 33;\n"
+                     "  barrier();\n"
+                     "  T v = (T(id * 7u % 61u) << 32) - T(id * 0x10001u);\n"
+                     "  uint k = id" +
+                     (exchange ? "" : " & 3u") +
+                     ";\n"
+                     "  T old = atomic" +
+                     op +
+                     "(r[k], v);\n"
+                     "  atomic" +
+                     op +
+                     "(s[k], v);\n"
+                     "  if (id == 13u) atomicCompSwap(r[70], T(0), T(-9));\n"
+                     "  if (id == 17u) atomicCompSwap(r[71], T(1), T(77));\n"
+                     "  barrier();\n"
+                     "  r[128u + id] = s[id]" +
+                     (exchange ? " + old" : "") +
+                     ";\n"
+                     "}\n",
+                 {run.buffer_of(random_words(run, 2 * 192))}, 1);
+      });
+  return true;
+}();
+
+CTS_CASE("compute", "zero_initialized") {
+  run.require(run.gpu.extension_features.zero_workgroup.shaderZeroInitializeWorkgroupMemory,
+              "shaderZeroInitializeWorkgroupMemory");
+  dispatch(run, R"(#version 450
+#extension GL_EXT_null_initializer : require
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) buffer R { uint r[]; };
+struct S { vec3 v; uint u[5]; };
+shared S s[32] = {};
+void main() {
+  uint id = gl_LocalInvocationIndex;
+  if ((id & 3u) == 1u) s[id >> 1].u[id % 5u] = id + 1u;
+  barrier();
+  r[gl_GlobalInvocationID.x] = s[id >> 1].u[id % 5u] + floatBitsToUint(s[(id * 5u) & 31u].v.y);
+})",
+           {run.buffer(64 * 8 * 4)}, 8);
+}
+
 CTS_CASE("compute", "atomic.counter") {
   // Which invocation gets which number is open; that each number is given once is not.
   dispatch(run, R"(

@@ -235,6 +235,50 @@ CTS_CASE("spirv_assembly", "extended_arithmetic") {
            "%two = OpTypeStruct %uint %uint\n");
 }
 
+/// Integer dot products of packed bytes and of vectors, with and without saturation.
+const bool kDotProducts = [] {
+  for (const char* kind : {"SDot", "UDot", "SUDot"})
+    AddCase("spirv_assembly", std::string("dot_product.") + kind, [kind](Run& run) {
+      run.require(run.gpu.extension_features.integer_dot_product.shaderIntegerDotProduct &&
+                      run.gpu.extension_features.float16_int8.shaderInt8,
+                  "shaderIntegerDotProduct");
+      const std::string name = std::string("Op") + kind + "KHR", saturated = std::string("Op") + kind + "AccSatKHR";
+      const std::string type = std::string(kind) == "UDot" ? "u" : "";
+      std::string body = R"(
+%y = OpIMul %uint %x %big
+%z = OpNot %uint %y
+%a = DOT %Wint %x %y PackedVectorFormat4x8Bit
+%b = SAT %Wint %y %z %Wlimit PackedVectorFormat4x8Bit
+%v = OpCompositeConstruct %v3uint %x %y %z
+%w = OpCompositeConstruct %v3uint %z %x %x
+%c = DOT %Wint %v %w
+%p = OpBitcast %v4byte %x
+%q = OpBitcast %v4byte %z
+%d = SAT %Wint %p %q %Wlimit
+%e = DOT %Wshort %p %q
+%f = OpBitcast %ushort %e
+%g = OpUConvert %uint %f
+%h = OpIAdd %uint %a %b
+%i = OpIMul %uint %c %u5
+%k = OpIAdd %uint %h %i
+%l = OpBitwiseXor %uint %k %d
+%r = OpIAdd %uint %l %g
+)";
+      const std::pair<const char*, std::string> kWords[] = {{"DOT", name}, {"SAT", saturated}, {"%W", "%" + type}};
+      for (const auto& [from, to] : kWords)
+        for (size_t at = body.find(from); at != std::string::npos; at = body.find(from, at + to.size()))
+          body.replace(at, std::string(from).size(), to);
+      run_body(run, body,
+               "%byte = OpTypeInt 8 0\n%v4byte = OpTypeVector %byte 4\n%ushort = OpTypeInt 16 0\n"
+               "%short = OpTypeInt 16 1\n%big = OpConstant %uint 2654435761\n%limit = OpConstant %int 2147483600\n"
+               "%ulimit = OpConstant %uint 4294967200\n",
+               "OpCapability Int8\nOpCapability Int16\nOpCapability DotProductKHR\nOpCapability DotProductInputAllKHR\n"
+               "OpCapability DotProductInput4x8BitKHR\nOpCapability DotProductInput4x8BitPackedKHR\n"
+               "OpExtension \"SPV_KHR_integer_dot_product\"\n");
+    });
+  return true;
+}();
+
 CTS_CASE("spirv_assembly", "function_variables_and_access_chains") {
   run_body(run, R"(
 %k = OpUMod %uint %x %u5

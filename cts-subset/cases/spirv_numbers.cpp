@@ -135,6 +135,19 @@ constexpr Row kFloatRows[] = {
     {"Ldexp", "OpExtInst %T %glsl Ldexp %x %k", 'T'},
 };
 
+constexpr Row kHalfRows[] = {
+    {"Radians", "OpExtInst %T %glsl Radians %x", 'T'}, {"Degrees", "OpExtInst %T %glsl Degrees %x", 'T'},
+    {"Sin", "OpExtInst %T %glsl Sin %x", 'T'},         {"Cos", "OpExtInst %T %glsl Cos %x", 'T'},
+    {"Tan", "OpExtInst %T %glsl Tan %x", 'T'},         {"Asin", "OpExtInst %T %glsl Asin %x", 'T'},
+    {"Acos", "OpExtInst %T %glsl Acos %x", 'T'},       {"Atan", "OpExtInst %T %glsl Atan %x", 'T'},
+    {"Sinh", "OpExtInst %T %glsl Sinh %x", 'T'},       {"Cosh", "OpExtInst %T %glsl Cosh %x", 'T'},
+    {"Tanh", "OpExtInst %T %glsl Tanh %x", 'T'},       {"Asinh", "OpExtInst %T %glsl Asinh %x", 'T'},
+    {"Acosh", "OpExtInst %T %glsl Acosh %x", 'T'},     {"Atanh", "OpExtInst %T %glsl Atanh %x", 'T'},
+    {"Atan2", "OpExtInst %T %glsl Atan2 %x %y", 'T'},  {"Pow", "OpExtInst %T %glsl Pow %x %y", 'T'},
+    {"Exp", "OpExtInst %T %glsl Exp %x", 'T'},         {"Log", "OpExtInst %T %glsl Log %x", 'T'},
+    {"Exp2", "OpExtInst %T %glsl Exp2 %x", 'T'},       {"Log2", "OpExtInst %T %glsl Log2 %x", 'T'},
+};
+
 bool same(const Number& a, const Number& b) { return a.width == b.width && a.kind == b.kind; }
 const Number& number(uint32_t width, char kind) {
   for (const Number& candidate : kNumbers)
@@ -451,6 +464,14 @@ void arithmetic(Run& run, const Number& type) {
   run_module(run, module, type);
 }
 
+/// Functions that SPIR-V has for 16 and 32 bits only; sets of their own, as the modules would be too large.
+void functions(Run& run, const Number& type) {
+  require_types(run, type);
+  Module module(type, nullptr);
+  add_rows(module, kHalfRows, type);
+  run_module(run, module, type);
+}
+
 /// Every conversion between two types that SPIR-V has.
 void conversion(Run& run, const Number& from, const Number& to) {
   require_types(run, from);
@@ -474,7 +495,7 @@ void conversion(Run& run, const Number& from, const Number& to) {
 }
 
 /// Types whose cases the device's claims allow.
-constexpr uint32_t kWidths[] = {32, 64};
+constexpr uint32_t kWidths[] = {8, 16, 32, 64};
 
 const bool kRegistered = [] {
   const auto tested = [](const Number& type) {
@@ -483,6 +504,8 @@ const bool kRegistered = [] {
   for (const Number& type : kNumbers) {
     if (!tested(type)) continue;
     AddCase("spirv_numbers", std::string("arithmetic.") + type.name, [&type](Run& run) { arithmetic(run, type); });
+    if (type.kind == 'f' && type.width < 64)
+      AddCase("spirv_numbers", std::string("functions.") + type.name, [&type](Run& run) { functions(run, type); });
     for (const Number& to : kNumbers)
       if (tested(to) && !same(type, to) && (type.kind == 'f' || to.kind == 'f' || type.width != to.width))
         AddCase("spirv_numbers", std::string("convert.") + type.name + "_to_" + to.name,

@@ -26,6 +26,14 @@ void check(VkResult result, const char* call);
 /// Feature structures of extensions that cases use: member, structure, its sType, the extension that brings it. A
 /// device gets every feature that it offers, of every extension here that it offers.
 #define CTS_EXTENSION_FEATURES(X)                                                                                      \
+  X(storage_8bit, VkPhysicalDevice8BitStorageFeatures, 8BIT_STORAGE_FEATURES, "VK_KHR_8bit_storage")                   \
+  X(storage_16bit, VkPhysicalDevice16BitStorageFeatures, 16BIT_STORAGE_FEATURES, "VK_KHR_16bit_storage")               \
+  X(float16_int8, VkPhysicalDeviceShaderFloat16Int8Features, SHADER_FLOAT16_INT8_FEATURES,                             \
+    "VK_KHR_shader_float16_int8")                                                                                      \
+  X(atomic_int64, VkPhysicalDeviceShaderAtomicInt64Features, SHADER_ATOMIC_INT64_FEATURES,                             \
+    "VK_KHR_shader_atomic_int64")                                                                                      \
+  X(integer_dot_product, VkPhysicalDeviceShaderIntegerDotProductFeatures, SHADER_INTEGER_DOT_PRODUCT_FEATURES,         \
+    "VK_KHR_shader_integer_dot_product")                                                                               \
   X(atomic_float, VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, SHADER_ATOMIC_FLOAT_FEATURES_EXT,                      \
     "VK_EXT_shader_atomic_float")                                                                                      \
   X(atomic_float2, VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, SHADER_ATOMIC_FLOAT_2_FEATURES_EXT,                  \

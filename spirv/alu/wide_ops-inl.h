@@ -2,6 +2,7 @@
 // row. Include after <hwy/highway.h>, in a file that follows the foreach_target pattern: the loop around them becomes
 // vector code of the target.
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -67,7 +68,62 @@ HWY_INLINE Int64 high_product_signed(Int64 a, Int64 b) {
   return static_cast<Int64>(product - (a < 0 ? static_cast<Uint64>(b) : 0) - (b < 0 ? static_cast<Uint64>(a) : 0));
 }
 
+/// sin(a + quadrants * pi / 2) for |a| < 2^16, in double: the error is far below the rounding to binary32.
+HWY_INLINE float sine(float a, int quadrants) {
+  if (!(__builtin_fabsf(a) < __builtin_inff())) return __builtin_nanf("");
+  if (a == 0 && quadrants == 0) return a;
+  const double x = static_cast<double>(a), n = __builtin_nearbyint(x * 0x1.45f306dc9c883p-1);
+  const double r = (x - n * 0x1.921fb54400000p+0) - n * 0x1.0b4611a626331p-34, z = r * r;
+  const int quadrant = (static_cast<int>(n) + quadrants) & 3;
+  double value;
+  if ((quadrant & 1) == 0) {
+    value = -1.0 / 1307674368000.0;
+    for (const double c : {1.0 / 6227020800.0, -1.0 / 39916800.0, 1.0 / 362880.0, -1.0 / 5040.0, 1.0 / 120.0, -1.0 / 6.0})
+      value = value * z + c;
+    value = r + r * z * value;
+  } else {
+    value = 1.0 / 20922789888000.0;
+    for (const double c : {-1.0 / 87178291200.0, 1.0 / 479001600.0, -1.0 / 3628800.0, 1.0 / 40320.0, -1.0 / 720.0,
+                           1.0 / 24.0, -0.5, 1.0})
+      value = value * z + c;
+  }
+  return static_cast<float>((quadrant & 2) != 0 ? -value : value);
+}
+
+HWY_INLINE float power_of_two(float a) {
+  if (a != a) return a;
+  if (a > 200.0f) return __builtin_inff();
+  if (a < -200.0f) return 0.0f;
+  const double x = static_cast<double>(a), n = __builtin_nearbyint(x);
+  const double r = (x - n) * 0x1.62e42fefa39efp-1;
+  double value = 1.0;
+  for (int k = 14; k >= 1; --k) value = value * r / k + 1.0;
+  return static_cast<float>(value * std::bit_cast<double>(static_cast<Uint64>(static_cast<int>(n) + 1023) << 52));
+}
+
+/// For zeros, infinities and normal numbers, which all binary16 are in binary32.
+HWY_INLINE float binary_logarithm(float a) {
+  if (a != a || a < 0) return __builtin_nanf("");
+  if (a == 0) return -__builtin_inff();
+  if (a == __builtin_inff()) return a;
+  const auto bits = std::bit_cast<Uint64>(static_cast<double>(a));
+  double exponent = static_cast<double>(static_cast<int>(bits >> 52) - 1023);
+  double m = std::bit_cast<double>((bits & 0xfffffffffffffu) | 0x3ff0000000000000u);
+  if (m > 0x1.6a09e667f3bcdp+0) {
+    m *= 0.5;
+    exponent += 1.0;
+  }
+  const double s = (m - 1.0) / (m + 1.0), z = s * s;
+  double sum = 0;
+  for (int k = 23; k >= 1; k -= 2) sum = sum * z + 1.0 / k;
+  return static_cast<float>(exponent + 2.0 * s * sum * 0x1.71547652b82fep+0);
+}
+
 // clang-format off
+template <> struct WideOp<ir::Op::kHSin> { static HWY_INLINE float of(float a) { return sine(a, 0); } };
+template <> struct WideOp<ir::Op::kHCos> { static HWY_INLINE float of(float a) { return sine(a, 1); } };
+template <> struct WideOp<ir::Op::kHExp2> { static HWY_INLINE float of(float a) { return power_of_two(a); } };
+template <> struct WideOp<ir::Op::kHLog2> { static HWY_INLINE float of(float a) { return binary_logarithm(a); } };
 template <> struct WideOp<ir::Op::kDAdd> { static HWY_INLINE double of(double a, double b) { return a + b; } };
 template <> struct WideOp<ir::Op::kDMul> { static HWY_INLINE double of(double a, double b) { return a * b; } };
 template <> struct WideOp<ir::Op::kDDiv> { static HWY_INLINE double of(double a, double b) { return a / b; } };

@@ -1,9 +1,10 @@
-// One atomic operation on a 32-bit word, and many of them on the same word at once.
+// One atomic operation on a word of 32 or 64 bits, and many of them on the same 32-bit word at once.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <type_traits>
 
 #include "base/lanes.h"
 #include "base/numeric.h"
@@ -11,18 +12,27 @@
 
 namespace vitrine::spirv::exec {
 
-/// The new value of a word, for operations that always write.
-inline std::uint32_t combine(ir::AtomicOp op, std::uint32_t old, std::uint32_t operand) {
-  const auto a = static_cast<std::int32_t>(old), b = static_cast<std::int32_t>(operand);
+inline std::uint32_t combine_float(ir::AtomicOp op, std::uint32_t old, std::uint32_t operand) {
+  const float a = base::float_of(old), b = base::float_of(operand);
+  return base::bits_of(op == ir::AtomicOp::kFAdd   ? a + b
+                       : op == ir::AtomicOp::kFMin ? base::min_second(a, b)
+                                                   : base::max_second(a, b));
+}
+
+/// The new value of a word of 32 or 64 bits, for operations that always write.
+template <class Word>
+inline Word combine(ir::AtomicOp op, Word old, Word operand) {
+  using Signed = std::make_signed_t<Word>;
+  const auto a = static_cast<Signed>(old), b = static_cast<Signed>(operand);
   switch (op) {
     case ir::AtomicOp::kAdd:
       return old + operand;
     case ir::AtomicOp::kSub:
       return old - operand;
     case ir::AtomicOp::kIMin:
-      return static_cast<std::uint32_t>(std::min(a, b));
+      return static_cast<Word>(std::min(a, b));
     case ir::AtomicOp::kIMax:
-      return static_cast<std::uint32_t>(std::max(a, b));
+      return static_cast<Word>(std::max(a, b));
     case ir::AtomicOp::kUMin:
       return std::min(old, operand);
     case ir::AtomicOp::kUMax:
@@ -34,11 +44,10 @@ inline std::uint32_t combine(ir::AtomicOp op, std::uint32_t old, std::uint32_t o
     case ir::AtomicOp::kXor:
       return old ^ operand;
     case ir::AtomicOp::kFAdd:
-      return base::bits_of(base::float_of(old) + base::float_of(operand));
     case ir::AtomicOp::kFMin:
-      return base::bits_of(base::min_second(base::float_of(old), base::float_of(operand)));
     case ir::AtomicOp::kFMax:
-      return base::bits_of(base::max_second(base::float_of(old), base::float_of(operand)));
+      if constexpr (sizeof(Word) == 4) return combine_float(op, old, operand);
+      break;
     case ir::AtomicOp::kExchange:
     case ir::AtomicOp::kStore:
       return operand;
@@ -50,14 +59,14 @@ inline std::uint32_t combine(ir::AtomicOp op, std::uint32_t old, std::uint32_t o
 }
 
 /// Returns the old value. kAtomic false: the word belongs to this thread.
-template <bool kAtomic>
-inline std::uint32_t apply_atomic(ir::AtomicOp op, std::uint32_t* word, std::uint32_t operand, std::uint32_t compare) {
+template <bool kAtomic, class Word>
+inline Word apply_atomic(ir::AtomicOp op, Word* word, Word operand, Word compare) {
   if constexpr (!kAtomic) {
-    const std::uint32_t old = *word;
+    const Word old = *word;
     *word = op == ir::AtomicOp::kCompareExchange ? (old == compare ? operand : old) : combine(op, old, operand);
     return old;
   } else {
-    std::atomic_ref<std::uint32_t> shared(*word);
+    std::atomic_ref<Word> shared(*word);
     switch (op) {
       case ir::AtomicOp::kAdd:
         return shared.fetch_add(operand, std::memory_order_relaxed);
@@ -77,12 +86,12 @@ inline std::uint32_t apply_atomic(ir::AtomicOp op, std::uint32_t* word, std::uin
         shared.store(operand, std::memory_order_relaxed);
         return 0;
       case ir::AtomicOp::kCompareExchange: {
-        std::uint32_t expected = compare;
+        Word expected = compare;
         shared.compare_exchange_strong(expected, operand, std::memory_order_relaxed);
         return expected;
       }
       default: {
-        std::uint32_t old = shared.load(std::memory_order_relaxed);
+        Word old = shared.load(std::memory_order_relaxed);
         while (!shared.compare_exchange_weak(old, combine(op, old, operand), std::memory_order_relaxed)) {
         }
         return old;
@@ -120,12 +129,12 @@ inline bool combine_lanes(ir::AtomicOp op, std::uint32_t* word, const std::uint3
       sum += operand[lane];
       result[lane] = before;
     });
-    const std::uint32_t old = apply_atomic<kAtomic>(op, word, sum, 0);
+    const std::uint32_t old = apply_atomic<kAtomic, std::uint32_t>(op, word, sum, 0);
     base::for_each_lane(active, [&](std::size_t lane) { result[lane] += old; });
     return true;
   }
   base::for_each_lane(active & (active - 1), [&](std::size_t lane) { total = combine(op, total, operand[lane]); });
-  apply_atomic<kAtomic>(op, word, total, 0);
+  apply_atomic<kAtomic, std::uint32_t>(op, word, total, 0);
   return true;
 }
 

@@ -108,9 +108,17 @@ Handler load_push();
 Handler load_shared();
 Handler store_buffer(bool uniform);
 Handler store_shared(bool uniform);
+/// The same for components of one or two bytes (spirv/exec/memory_narrow.cpp).
+enum class Space : std::uint8_t { kBuffer, kPush, kShared };
+Handler load_narrow(Space space, bool uniform);
+Handler load_narrow_uniform(Space space);
+Handler store_narrow(Space space, bool uniform);
 /// Register dst: the old values; kNoOperand: not wanted.
 Handler atomic_buffer(bool uniform);
 Handler atomic_shared(bool uniform);
+/// Atomics of 64 bits (spirv/exec/atomics_wide.cpp): operand in data[0], [1], comparator in data[2], [3]; the old
+/// values go to registers dst and extra[1].
+Handler atomic_wide(Space space, bool uniform);
 /// The same behind a pointer: registers src[0], src[1] = low and high words of addresses, src[2] = signed byte offsets.
 Handler load_global();
 Handler store_global();

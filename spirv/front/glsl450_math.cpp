@@ -9,6 +9,9 @@ namespace {
 constexpr float kHalfPi = 1.57079632679489661923f;
 constexpr float kQuarterPi = 0.78539816339744830962f;
 
+/// binary16 would lose too much in the polynomials of asin: the reference computes them in binary32.
+Expr single_of(const Expr& x) { return x.width == 16 ? convert_float(x, 32) : x; }
+
 /// Main formula of asin, good to first order at 0 and +-1 for any p0, p1.
 Expr asin_main(Expr x, float p0, float p1) {
   Translator& t = *x.t;
@@ -110,14 +113,17 @@ std::uint32_t result_count(const Translator& t, const Inst& inst) { return leaf_
 }  // namespace
 
 void asin(Translator& t, const Inst& inst, ir::Op) {
-  const Expr x = arg(t, inst, 0);
+  const Expr given = arg(t, inst, 0);
+  const Expr x = single_of(given);
   const Expr main = asin_main(x, 0.086566724f, -0.03102955f);
   const Expr small = asin_small(x);
-  result(t, inst, select(abs(x) < imm(t, 0.5f), small, main));
+  result(t, inst, convert_float(select(abs(x) < imm(t, 0.5f), small, main), given.width));
 }
 
 void acos(Translator& t, const Inst& inst, ir::Op) {
-  result(t, inst, imm(t, kHalfPi) - asin_main(arg(t, inst, 0), 0.08132463f, -0.02363318f));
+  const Expr x = arg(t, inst, 0);
+  const Expr arc = asin_main(single_of(x), 0.08132463f, -0.02363318f);
+  result(t, inst, imm(t, kHalfPi) - convert_float(arc, x.width));
 }
 
 void atan(Translator& t, const Inst& inst, ir::Op) { result(t, inst, atan_of(arg(t, inst, 0))); }
@@ -128,7 +134,9 @@ void atan2(Translator& t, const Inst& inst, ir::Op) {
   const Expr flip = zero >= x;
   const Expr size = abs(x);
   const Expr s = select(flip, size, y), d = select(flip, y, size);
-  const Expr scale = select(abs(d) >= imm(t, 1e18f), imm(t, 0.25f), one);
+  // Both choices are literals, which take their width from what they meet.
+  Expr scale = select(abs(d) >= imm(t, x.width == 16 ? 16384.0f : 1e18f), imm(t, 0.25f), one);
+  scale = convert_float(scale, x.width);
   const Expr reciprocal = apply(ir::Op::kFRcp, {d * scale});
   const Expr quotient = (s * scale) * reciprocal;
   const Expr diagonal = apply(ir::Op::kFEq, {size, abs(y)});
@@ -145,7 +153,8 @@ void sinh_cosh(Translator& t, const Inst& inst, ir::Op op) {
 
 void tanh(Translator& t, const Inst& inst, ir::Op) {
   const Expr s = arg(t, inst, 0);
-  const Expr x = min(max(s, imm(t, -10.0f)), imm(t, 10.0f));
+  const float limit = s.width == 16 ? 4.2f : 10.0f;
+  const Expr x = min(max(s, imm(t, -limit)), imm(t, limit));
   Expr is_regular{&t, ir::kNoValue}, flushed = is_regular;
   {
     const ExactScope exact(t);

@@ -95,21 +95,27 @@ void store_local(Translator& t, const Pointer& pointer, const Value& value) {
   });
 }
 
-ir::ValueId load_words(Translator& t, const Pointer& pointer, std::uint32_t count, std::uint32_t byte) {
+/// `count` words, or numbers of `size` bytes, from `byte` on.
+ir::ValueId load_words(Translator& t, const Pointer& pointer, std::uint32_t count, std::uint32_t byte,
+                       std::uint32_t size = 4) {
   Pointer at = pointer;
   at.constant_offset += byte;
+  const std::uint32_t narrow = size == 4 ? 0 : size;
   const ir::Src offset = whole(dynamic_offset(t, at));
   if (at.kind == Pointer::Kind::kPush) {
     const ir::ValueId value = emit(t, ir::Op::kLoadPush, count, false, {offset});
     last_instr(t).data[0] = at.constant_offset;
+    last_instr(t).imm[1] = narrow;
     return value;
   }
   if (at.kind == Pointer::Kind::kShared) {
     const ir::ValueId value = emit(t, ir::Op::kLoadShared, count, false, {offset});
     last_instr(t).data[3] = at.constant_offset;
+    last_instr(t).imm[1] = narrow;
     return value;
   }
   if (at.kind == Pointer::Kind::kGlobal) {
+    if (size != 4) throw Failure("8- and 16-bit numbers behind device addresses are not supported");
     const ir::ValueId value = emit(t, ir::Op::kLoadGlobal, count, false, {whole(at.low), whole(at.high), offset});
     last_instr(t).data[3] = at.constant_offset;
     return value;
@@ -118,10 +124,12 @@ ir::ValueId load_words(Translator& t, const Pointer& pointer, std::uint32_t coun
   const ir::Src element = whole(descriptor_element(t, at));
   const ir::ValueId value = emit(t, op, count, false, {element, offset});
   set_buffer(last_instr(t), at);
+  last_instr(t).imm[1] = narrow;
   return value;
 }
 
-void store_words(Translator& t, const Pointer& pointer, ir::Src value, std::uint32_t count, std::uint32_t byte) {
+void store_words(Translator& t, const Pointer& pointer, ir::Src value, std::uint32_t count, std::uint32_t byte,
+                 std::uint32_t size = 4) {
   Pointer at = pointer;
   at.constant_offset += byte;
   const ir::Src offset = whole(dynamic_offset(t, at));
@@ -130,10 +138,12 @@ void store_words(Translator& t, const Pointer& pointer, ir::Src value, std::uint
     ir::Instr& instr = emit_effect(t, ir::Op::kStoreShared, {offset, value});
     instr.data[3] = at.constant_offset;
     instr.imm[0] = mask;
+    instr.imm[1] = size == 4 ? 0 : size;
     return;
   }
   t.function.interface.writes_memory = true;
   if (at.kind == Pointer::Kind::kGlobal) {
+    if (size != 4) throw Failure("8- and 16-bit numbers behind device addresses are not supported");
     ir::Instr& instr = emit_effect(t, ir::Op::kStoreGlobal, {whole(at.low), whole(at.high), offset, value});
     instr.data[3] = at.constant_offset;
     instr.imm[0] = mask;
@@ -143,6 +153,7 @@ void store_words(Translator& t, const Pointer& pointer, ir::Src value, std::uint
   ir::Instr& instr = emit_effect(t, ir::Op::kStoreStorage, {element, offset, value});
   set_buffer(instr, at);
   instr.imm[0] = mask;
+  instr.imm[1] = size == 4 ? 0 : size;
 }
 
 /// Memory below `pointer`, leaf by leaf: f(pointer to the leaf).
@@ -161,45 +172,52 @@ void each_memory_leaf(Translator& t, const Pointer& pointer, const F& f) {
 }
 
 /// Words of the vector or scalar at `pointer` in memory order.
-std::vector<ir::Src> load_adjacent(Translator& t, const Pointer& pointer, std::uint32_t count, std::uint32_t byte) {
+std::vector<ir::Src> load_adjacent(Translator& t, const Pointer& pointer, std::uint32_t count, std::uint32_t byte,
+                                   std::uint32_t size) {
   std::vector<ir::Src> words;
   for (std::uint32_t first = 0; first < count; first += 4) {
     const std::uint32_t part = std::min(count - first, 4u);
-    const ir::ValueId value = load_words(t, pointer, part, byte + 4 * first);
+    const ir::ValueId value = load_words(t, pointer, part, byte + size * first, size);
     for (std::uint8_t i = 0; i < part; i++) words.push_back(splat(value, i));
   }
   return words;
 }
 
-void store_adjacent(Translator& t, const Pointer& pointer, std::span<const ir::Src> words, std::uint32_t byte) {
+void store_adjacent(Translator& t, const Pointer& pointer, std::span<const ir::Src> words, std::uint32_t byte,
+                    std::uint32_t size) {
   for (std::uint32_t first = 0; first < words.size(); first += 4) {
     const auto part = words.subspan(first, std::min<std::size_t>(words.size() - first, 4));
     const ir::ValueId value = vec(t, {part.begin(), part.end()}, false);
-    store_words(t, pointer, whole(value), static_cast<std::uint32_t>(part.size()), byte + 4 * first);
+    store_words(t, pointer, whole(value), static_cast<std::uint32_t>(part.size()), byte + size * first, size);
   }
 }
 
 /// How a vector or scalar lies in memory.
 struct Layout {
   std::uint32_t components, words;  ///< words: of a component
+  std::uint32_t size;               ///< bytes of a component, or of one of its words
   std::uint32_t stride;             ///< bytes between components
-  bool dense() const { return stride == 4 * words || components == 1; }
+  bool dense() const { return stride == size * words || components == 1; }
 };
 
 Layout layout_of(const Translator& t, const Pointer& pointer) {
-  return {leaf_info(t, pointer.type).components, t.module.type(pointer.type).leaves, component_bytes(t, pointer)};
+  const std::uint32_t width = number_type(t, pointer.type).width;
+  const bool in_word = width >= 32 || pointer.kind == Pointer::Kind::kShared;
+  return {leaf_info(t, pointer.type).components, t.module.type(pointer.type).leaves, in_word ? 4 : width / 8,
+          component_bytes(t, pointer)};
 }
 
 void load_leaf_memory(Translator& t, const Pointer& pointer, std::vector<ir::ValueId>& leaves) {
   const ir::ValueInfo info = leaf_info(t, pointer.type);
   const Layout layout = layout_of(t, pointer);
   if (layout.dense() && layout.words == 1) {
-    leaves.push_back(load_words(t, pointer, layout.components, 0));
+    leaves.push_back(load_words(t, pointer, layout.components, 0, layout.size));
   } else {
     std::vector<ir::Src> words;
-    if (layout.dense()) words = load_adjacent(t, pointer, layout.components * layout.words, 0);
+    if (layout.dense()) words = load_adjacent(t, pointer, layout.components * layout.words, 0, layout.size);
     for (std::uint32_t i = 0; i < layout.components && !layout.dense(); i++)
-      for (const ir::Src& word : load_adjacent(t, pointer, layout.words, i * layout.stride)) words.push_back(word);
+      for (const ir::Src& word : load_adjacent(t, pointer, layout.words, i * layout.stride, layout.size))
+        words.push_back(word);
     for (std::uint32_t part = 0; part < layout.words; part++) {
       std::vector<ir::Src> parts;
       for (std::uint32_t i = 0; i < layout.components; i++) parts.push_back(words[i * layout.words + part]);
@@ -218,14 +236,16 @@ void store_leaf_memory(Translator& t, const Pointer& pointer, std::span<const ir
   const Layout layout = layout_of(t, pointer);
   ir::ValueId first = leaves[0];
   if (info.boolean) first = emit(t, ir::Op::kB2I, info.components, false, {whole(first)});
-  if (layout.dense() && layout.words == 1) return store_words(t, pointer, whole(first), layout.components, 0);
+  if (layout.dense() && layout.words == 1)
+    return store_words(t, pointer, whole(first), layout.components, 0, layout.size);
   std::vector<ir::Src> words;
   for (std::uint8_t i = 0; i < layout.components; i++)
     for (std::uint32_t part = 0; part < layout.words; part++)
       words.push_back(splat(part == 0 ? first : leaves[part], i));
-  if (layout.dense()) return store_adjacent(t, pointer, words, 0);
+  if (layout.dense()) return store_adjacent(t, pointer, words, 0, layout.size);
   for (std::uint32_t i = 0; i < layout.components; i++)
-    store_adjacent(t, pointer, std::span(words).subspan(i * layout.words, layout.words), i * layout.stride);
+    store_adjacent(t, pointer, std::span(words).subspan(i * layout.words, layout.words), i * layout.stride,
+                   layout.size);
 }
 
 bool is_memory(const Pointer& pointer) {

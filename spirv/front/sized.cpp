@@ -312,6 +312,12 @@ Expr min_max_half(Op op, const Expr& a, const Expr& b) {
   return select(words(Op::kOrB, {wins, only_b}), a, b);
 }
 
+/// The reference calls the C library for these.
+Expr library_half(Op op, const Expr& a) {
+  const Expr single = from_half(a);
+  return to_half(apply_wide(op, {&single, 1}));
+}
+
 Expr apply_half(Op op, std::span<const Expr> in) {
   Translator& t = *in[0].t;
   const Expr& a = in[0];
@@ -338,6 +344,14 @@ Expr apply_half(Op op, std::span<const Expr> in) {
       return a - apply(Op::kFFloor, {a});
     case Op::kFRsq:
       return apply(Op::kFRcp, {sqrt(a)});
+    case Op::kFSin:
+      return library_half(Op::kHSin, a);
+    case Op::kFCos:
+      return library_half(Op::kHCos, a);
+    case Op::kFExp2:
+      return library_half(Op::kHExp2, a);
+    case Op::kFLog2:
+      return library_half(Op::kHLog2, a);
     case Op::kFMulAdd:
       return a * in[1] + in[2];
     case Op::kFPow: {

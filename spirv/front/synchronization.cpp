@@ -1,4 +1,5 @@
 // Barriers, atomics, helper invocations and subgroup basics (SPIR-V 3.42.18 to .21, .24).
+#include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
 
 namespace vitrine::spirv::front {
@@ -31,20 +32,25 @@ ir::AtomicOp atomic_op(const Inst& inst) {
 
 /// Operand and comparator of an atomic. Operands: pointer, scope, semantics, then what the operation takes.
 struct AtomicOperands {
-  ir::ValueId value = ir::kNoValue, comparator = ir::kNoValue;
+  Expr value, comparator;  ///< no id: absent
 };
 
-AtomicOperands atomic_operands(Translator& t, const Inst& inst) {
+void add_words(std::vector<ir::Src>& src, const Expr& operand) {
+  if (operand.id != ir::kNoValue) src.push_back(whole(operand.id));
+  if (operand.high != ir::kNoValue) src.push_back(whole(operand.high));
+}
+
+AtomicOperands atomic_operands(Translator& t, const Inst& inst, std::uint8_t width) {
   switch (inst.op) {
     case Op::OpAtomicLoad:
       return {};
     case Op::OpAtomicIIncrement:
     case Op::OpAtomicIDecrement:
-      return {constant_u32(t, 1), ir::kNoValue};
+      return {constant_bits(t, 1, width), {}};
     case Op::OpAtomicCompareExchange:
-      return {number(t, inst.operand(4)), number(t, inst.operand(5))};
+      return {number_of(t, inst.operand(4)), number_of(t, inst.operand(5))};
     default:
-      return {number(t, inst.operand(3)), ir::kNoValue};
+      return {number_of(t, inst.operand(3)), {}};
   }
 }
 
@@ -57,8 +63,8 @@ void image_atomic(Translator& t, ir::AtomicOp op, const Pointer& pointer, const 
   add_elements(t, pointer.image, *info, sources);
   sources.add(ir::ImageOperand::kCoord, pointer.coord);
   sources.add(ir::ImageOperand::kSample, pointer.sample);
-  sources.add(ir::ImageOperand::kValue, operands.value);
-  sources.add(ir::ImageOperand::kCompare, operands.comparator);
+  sources.add(ir::ImageOperand::kValue, operands.value.id);
+  sources.add(ir::ImageOperand::kCompare, operands.comparator.id);
   instr.op = ir::Op::kImage;
   instr.src = sources.take();
   instr.image = std::move(info);
@@ -69,31 +75,40 @@ void image_atomic(Translator& t, ir::AtomicOp op, const Pointer& pointer, const 
 void atomic(Translator& t, const Inst& inst, ir::Op) {
   const Pointer pointer = pointer_of(t, inst.operand(0));
   const ir::AtomicOp op = atomic_op(inst);
-  const AtomicOperands operands = atomic_operands(t, inst);
   const std::uint32_t type = t.module.type(pointer.type).kind == Type::Kind::kPointer ? 0 : pointer.type;
   if (type == 0 || leaf_info(t, type).components != 1) fail(inst, "operand is not a pointer to a number");
+  const auto width = static_cast<std::uint8_t>(number_type(t, type).width);
+  const AtomicOperands operands = atomic_operands(t, inst, width);
+  for (const Expr& operand : {operands.value, operands.comparator})
+    if (width < 32 || (operand.id != ir::kNoValue && (operand.size() != 1 || operand.width != width)))
+      fail(inst, "operand does not fit its type");
   std::vector<ir::Src> src;
   const bool is_image = pointer.kind == Pointer::Kind::kTexel;
   const bool global = pointer.kind == Pointer::Kind::kGlobal;
   if (pointer.kind == Pointer::Kind::kStorage) src.push_back(whole(descriptor_element(t, pointer)));
   if (global) src.insert(src.end(), {whole(pointer.low), whole(pointer.high)});
   if (!is_image) src.push_back(whole(dynamic_offset(t, pointer)));
-  if (operands.value != ir::kNoValue) src.push_back(whole(operands.value));
-  if (operands.comparator != ir::kNoValue) src.push_back(whole(operands.comparator));
+  add_words(src, operands.value);
+  add_words(src, operands.comparator);
   const bool shared = pointer.kind == Pointer::Kind::kShared;
   if (!shared && !is_image && !global && pointer.kind != Pointer::Kind::kStorage)
     fail(inst, "storage class is not supported");
+  if ((is_image || global) && width != 32)
+    fail(inst, "64-bit atomics are supported in buffers and workgroup memory only");
+  const bool wide = width == 64;
   const ir::Op kind = shared ? ir::Op::kAtomicShared : global ? ir::Op::kAtomicGlobal : ir::Op::kAtomicStorage;
-  const ir::ValueId result = emit(t, kind, 1, false, std::move(src));
+  const ir::ValueId result = emit(t, kind, wide ? 2 : 1, false, std::move(src));
   ir::Instr& instr = last_instr(t);
   if (is_image) {
     image_atomic(t, op, pointer, operands);
   } else {
     set_buffer(instr, pointer);
     instr.imm[0] = static_cast<std::uint32_t>(op);
+    instr.imm[1] = wide ? 8 : 0;
   }
   if (!shared && op != ir::AtomicOp::kLoad) t.function.interface.writes_memory = true;
-  if (inst.result != 0) set_value(t, inst, result);
+  if (inst.result == 0) return;
+  set_value(t, inst, wide ? std::vector{extract(t, result, 0), extract(t, result, 1)} : std::vector{result});
 }
 
 void barrier(Translator& t, const Inst& inst, ir::Op) {

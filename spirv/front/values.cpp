@@ -125,6 +125,8 @@ void set_number(Translator& t, const Inst& inst, const Expr& number) { set_numbe
 
 ir::ValueId number(Translator& t, std::uint32_t id, std::uint32_t count) {
   const ir::ValueId value = scalar_or_vector(t, id);
+  const std::uint32_t width = number_type(t, value_of(t, id).type).width;
+  if (width != 32) throw Failure(std::to_string(width) + "-bit operand is not supported here");
   if (components(t, value) != count || is_boolean(t, value)) throw Failure("operand does not fit its type");
   return value;
 }

@@ -89,7 +89,7 @@ class LoadCombiner {
   }
 
   bool same_place(const ScalarOp& a, const ScalarOp& b) const {
-    if (a.op != b.op) return false;
+    if (a.op != b.op || a.instr->imm[1] != b.instr->imm[1]) return false;
     const bool buffer = a.op == Op::kLoadUniform || a.op == Op::kLoadStorage;
     if (buffer && !std::equal(a.instr->data, a.instr->data + 3, b.instr->data)) return false;
     const auto x = f_.of(a.src), y = f_.of(b.src);

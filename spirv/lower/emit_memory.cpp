@@ -115,8 +115,16 @@ void Emitter::load(const ScalarOp& op) {
   if (op.op == Op::kLoadPush) row.added = op.instr->data[0] + op.offset;
   row.at = op.at;
   row.components = op.dst.count;
+  row.element_bytes = ir::element_bytes(op.instr->imm);
   for (std::uint32_t c = 0; c < op.dst.count && c < 4; ++c) row.data[c] = place(result(op, c)).offset;
-  if (op.op == Op::kLoadPush) {
+  if (row.element_bytes != 4) {
+    const auto space = op.op == Op::kLoadPush     ? exec::Space::kPush
+                       : op.op == Op::kLoadShared ? exec::Space::kShared
+                                                  : exec::Space::kBuffer;
+    const bool uniform = place(source(op, buffer ? 1 : 0)).file == 'u';
+    const Handler handler = varying ? exec::load_narrow(space, uniform) : exec::load_narrow_uniform(space);
+    memory(op, row, buffer ? 1 : 0, handler, handler, "load_narrow");
+  } else if (op.op == Op::kLoadPush) {
     memory(op, row, 0, exec::load_push(), exec::load_push_uniform, "load_push");
   } else if (op.op == Op::kLoadShared) {
     memory(op, row, 0, exec::load_shared(), exec::load_shared_uniform, "load_shared");
@@ -133,7 +141,11 @@ void Emitter::store(const ScalarOp& op) {
   std::uint32_t next = buffer ? 2 : 1;
   for (std::uint32_t c = 0; c < 4; ++c)
     if (row.write_mask >> c & 1) row.data[c] = in_register(source(op, next++)).offset;
-  if (buffer) {
+  row.element_bytes = ir::element_bytes(op.instr->imm);
+  if (row.element_bytes != 4) {
+    const auto space = buffer ? exec::Space::kBuffer : exec::Space::kShared;
+    memory(op, row, buffer ? 1 : 0, exec::store_narrow(space, false), exec::store_narrow(space, true), "store_narrow");
+  } else if (buffer) {
     memory(op, row, 1, exec::store_buffer(false), exec::store_buffer(true), "store_storage");
   } else {
     memory(op, row, 0, exec::store_shared(false), exec::store_shared(true), "store_shared");
@@ -145,12 +157,24 @@ void Emitter::atomic(const ScalarOp& op) {
   MemoryOp row = buffer_row(op, buffer);
   row.atomic = static_cast<ir::AtomicOp>(op.instr->imm[0]);
   const std::uint32_t address = buffer ? 1 : 0;
+  if (op.instr->imm[1] == 8) return atomic_wide(op, row, address);
   if (op.src.count > address + 1) row.data[0] = in_register(source(op, address + 1)).offset;
   if (op.src.count > address + 2) row.compare = in_register(source(op, address + 2)).offset;
   const Place at = place(source(op, address));
   const bool uniform = at.file == 'u';
   append(buffer ? exec::atomic_buffer(uniform) : exec::atomic_shared(uniform), buffer ? "atomic" : "atomic_shared",
          op.instr, op.dst.count != 0 ? place(result(op, 0)) : Place{}, at);
+  attach(row);
+}
+
+void Emitter::atomic_wide(const ScalarOp& op, MemoryOp row, std::uint32_t address) {
+  for (std::uint32_t k = address + 1; k < op.src.count && k < address + 5; ++k)
+    row.data[k - address - 1] = in_register(source(op, k)).offset;
+  const Place at = place(source(op, address));
+  const auto space = address == 1 ? exec::Space::kBuffer : exec::Space::kShared;
+  Instruction& instruction = append(exec::atomic_wide(space, at.file == 'u'), "atomic_wide", op.instr,
+                                    op.dst.count != 0 ? place(result(op, 0)) : Place{}, at);
+  instruction.extra[1] = op.dst.count > 1 ? place(result(op, 1)).offset : kNoOperand;
   attach(row);
 }
 

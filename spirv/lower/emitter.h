@@ -82,6 +82,7 @@ class Emitter {
   void store(const ScalarOp& op);
   void atomic(const ScalarOp& op);
   void global(const ScalarOp& op);
+  void atomic_wide(const ScalarOp& op, MemoryOp row, std::uint32_t address);
   void local_array(const ScalarOp& op);
   void image(const ScalarOp& op);
   void environment(const ScalarOp& op);

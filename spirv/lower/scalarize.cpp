@@ -186,7 +186,7 @@ Key Scalarizer::key_of(Op op, std::span<const ScalarId> sources, const ir::Instr
     for (int i = 0; i < 4; ++i) key.words[5 + i] = instr->data[i];
   if (instr)
     key.words[9] =
-        (instr->op == Op::kArrayLength ? instr->imm[0] * 65599u + instr->imm[1] : 0) + instr->components * 0x1000000u;
+        (instr->op == Op::kArrayLength ? instr->imm[0] * 65599u : 0) + instr->imm[1] + instr->components * 0x1000000u;
   return key;
 }
 
@@ -254,6 +254,7 @@ std::vector<ScalarId> Scalarizer::emit(const ir::Instr& instr, std::span<const S
   op.kind = Kind::kIntrinsic;
   op.op = instr.op;
   op.instr = &instr;
+  set_load_offsets(op);
   std::vector<ScalarId> ids;
   for (std::uint32_t i = 0; i < count; ++i) ids.push_back(out_.add(boolean, Level::kVarying));
   op.src = out_.add_operands(sources);

@@ -172,7 +172,14 @@ void Scalarizer::build_load(const ir::Instr& instr) {
   op.kind = Kind::kIntrinsic;
   op.op = instr.op;
   op.instr = &instr;
+  set_load_offsets(op);
   define(instr.result, emit_pure(op, key_of(instr.op, sources, &instr), sources, instr.components, false, uniform));
+}
+
+void Scalarizer::set_load_offsets(ScalarOp& op) {
+  if (op.op != Op::kLoadPush && op.op != Op::kLoadUniform && op.op != Op::kLoadStorage && op.op != Op::kLoadShared)
+    return;
+  for (std::uint32_t c = 0; c < 4; ++c) op.at[c] = c * ir::element_bytes(op.instr->imm);
 }
 
 void Scalarizer::build_store(const ir::Instr& instr) {

@@ -82,6 +82,8 @@ class Scalarizer {
   void build_global_id(const ir::Instr& instr);
   void build_input(const ir::Instr& instr);
   void build_load(const ir::Instr& instr);
+  /// Where the components of a load lie in memory.
+  static void set_load_offsets(ScalarOp& op);
   void build_store(const ir::Instr& instr);
   void build_image(const ir::Instr& instr);
 

@@ -1,0 +1,183 @@
+// Random expressions over numbers of every width: integers of 8 to 64 bits, precise binary16 and binary64 (the
+// reference's rewrites of code that is not precise are imitated for 32 bits only), and conversions between all of them.
+#include "harness/case.h"
+#include "harness/run.h"
+
+namespace vitrine::cts {
+namespace {
+
+constexpr uint32_t kInvocations = 512;
+
+struct Sized {
+  const char* name;
+  uint32_t width;
+  char kind;  ///< f, i, u
+};
+constexpr Sized kTypes[] = {{"int8_t", 8, 'i'},     {"uint8_t", 8, 'u'}, {"int16_t", 16, 'i'}, {"uint16_t", 16, 'u'},
+                            {"int", 32, 'i'},       {"uint", 32, 'u'},   {"int64_t", 64, 'i'}, {"uint64_t", 64, 'u'},
+                            {"float16_t", 16, 'f'}, {"double", 64, 'f'}};
+
+class Writer {
+ public:
+  explicit Writer(Random& random) : random_(random) {}
+
+  const Sized& any_type() { return kTypes[random_.below(std::size(kTypes))]; }
+
+  std::string expression(const Sized& type, int depth) {
+    if (depth <= 0 || random_.chance(0.1f)) return leaf(type);
+    if (random_.chance(0.08f))
+      return "(" + condition(depth - 1) + " ? " + expression(type, depth - 1) + " : " + expression(type, depth - 1) +
+             ")";
+    if (random_.chance(0.15f)) return converted(type, depth);
+    return type.kind == 'f' ? real(type, depth) : integer(type, depth);
+  }
+
+ private:
+  std::string leaf(const Sized& type) {
+    const std::string name = type.name;
+    if (random_.chance(0.2f))
+      return name + "(" +
+             (type.kind == 'f' ? random_.pick<const char*>({"0.5", "1.0", "-2.0", "0.1", "3.0"})
+                               : random_.pick<const char*>({"0", "1", "3", "7", "100", "5", "85"})) +
+             ")";
+    return random_.pick<const char*>({"x_", "y_", "z_"}) + name;
+  }
+
+  std::string condition(int depth) {
+    const Sized& type = any_type();
+    return "(" + expression(type, depth) + random_.pick<const char*>({" < ", " <= ", " == ", " != ", " >= "}) +
+           expression(type, depth) + ")";
+  }
+
+  /// Never out of range of an integer: that is undefined.
+  std::string converted(const Sized& type, int depth) {
+    const Sized& from = any_type();
+    const std::string inner = expression(from, depth - 1);
+    if (from.kind != 'f' || type.kind == 'f') return std::string(type.name) + "(" + inner + ")";
+    const std::string name = from.name;
+    return std::string(type.name) + "(clamp(" + inner + ", " + name + (type.kind == 'u' ? "(0.0), " : "(-100.0), ") +
+           name + "(100.0)))";
+  }
+
+  std::string integer(const Sized& type, int depth) {
+    const std::string name = type.name, a = expression(type, depth - 1), b = expression(type, depth - 1);
+    const std::string count = "(" + b + " & " + name + "(" + std::to_string(type.width - 1) + "))";
+    switch (random_.below(14)) {
+      case 0:
+        return name + "(~" + a + ")";
+      case 1:
+        return name + "(" + a + " << " + count + ")";
+      case 2:
+        return name + "(" + a + " >> " + count + ")";
+      case 3:
+        return "(" + a + " & " + b + ")";
+      case 4:
+        return "(" + a + " | " + b + ")";
+      case 5:
+        return "(" + a + " ^ " + b + ")";
+      case 6:
+        return "(" + a + " / (" + b + " | " + name + "(1)))";
+      case 7:
+        if (type.kind == 'u') return "(" + a + " % (" + b + " | " + name + "(1)))";
+        return "abs(" + a + ")";
+      case 8:
+        return "min(" + a + ", " + b + ")";
+      case 9:
+        return "max(" + a + ", " + b + ")";
+      case 10:
+        return "(" + a + " - " + b + ")";
+      case 11:
+        return "(" + a + " * " + b + ")";
+      default:
+        return "(" + a + " + " + b + ")";
+    }
+  }
+
+  std::string real(const Sized& type, int depth) {
+    const std::string a = expression(type, depth - 1), b = expression(type, depth - 1);
+    switch (random_.below(12)) {
+      case 0:
+        return "(-" + a + ")";
+      case 1:
+        return "(" + a + " / " + b + ")";
+      case 2:
+        return "(" + a + " - " + b + ")";
+      case 3:
+        return "min(" + a + ", " + b + ")";
+      case 4:
+        return std::string(random_.pick<const char*>({"floor", "ceil", "trunc", "fract", "abs", "roundEven"})) + "(" +
+               a + ")";
+      case 5:
+        return "sqrt(abs(" + a + "))";
+      case 6:
+        return "fma(" + a + ", " + b + ", " + expression(type, depth - 1) + ")";
+      case 7:
+      case 8:
+        return "(" + a + " * " + b + ")";
+      default:
+        return "(" + a + " + " + b + ")";
+    }
+  }
+
+  Random& random_;
+};
+
+/// A value of the type from the words `low` and `high`.
+std::string loaded(const Sized& type, const std::string& low, const std::string& high) {
+  if (type.kind == 'f' && type.width == 64) return "packDouble2x32(uvec2(" + low + ", " + high + " & 0xbfffffffu))";
+  if (type.kind == 'f') return "uint16BitsToFloat16(uint16_t(" + low + " & 0xbfffu))";
+  if (type.width == 64) return std::string(type.name) + "(packUint2x32(uvec2(" + low + ", " + high + ")))";
+  return std::string(type.name) + "(" + low + ")";
+}
+
+std::string stored(const Sized& type, const std::string& value) {
+  if (type.kind == 'f' && type.width == 64)
+    return "isnan(" + value + ") ? uvec2(77u) : unpackDouble2x32(" + value + ")";
+  if (type.kind == 'f')
+    return "isnan(" + value + ") ? uvec2(77u) : uvec2(uint(float16BitsToUint16(" + value + ")), 0u)";
+  if (type.width == 64) return "unpackUint2x32(uint64_t(" + value + "))";
+  return "uvec2(uint(" + value + "), 0u)";
+}
+
+CTS_RANDOM("glsl", "random_sized.compute", 40) {
+  const auto& sizes = run.gpu.extension_features.float16_int8;
+  run.require(run.gpu.features.shaderInt64 && run.gpu.features.shaderFloat64 && run.gpu.features.shaderInt16 &&
+                  sizes.shaderInt8 && sizes.shaderFloat16,
+              "numbers of every width");
+  constexpr uint32_t kResults = 8;
+  std::string text =
+      "#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types : require\nlayout(local_size_x = 64) in;\n"
+      "layout(std430, binding = 0) readonly buffer In { uint v[]; };\n"
+      "layout(std430, binding = 1) writeonly buffer Out { uvec2 r[]; };\nvoid main() {\n"
+      "  uint id = gl_GlobalInvocationID.x;\n";
+  uint32_t word = 0;
+  const auto next = [&] { return "v[id * 60u + " + std::to_string(word++) + "u]"; };
+  for (const char* name : {"x_", "y_", "z_"})
+    for (const Sized& type : kTypes) {
+      const std::string low = next(), high = next();
+      text += std::string("  ") + type.name + " " + name + type.name + " = " + loaded(type, low, high) + ";\n";
+    }
+  Writer writer(run.random);
+  for (uint32_t k = 0; k < kResults; ++k) {
+    const Sized& type = writer.any_type();
+    const std::string value = "t" + std::to_string(k);
+    text += std::string("  precise ") + type.name + " " + value + " = " + writer.expression(type, 4) + ";\n  r[id + " +
+            std::to_string(k * kInvocations) + "u] = " + stored(type, value) + ";\n";
+  }
+  text += "}\n";
+  run.note("shader", text);
+  std::vector<uint32_t> words(kInvocations * 60);
+  for (uint32_t& w : words) w = run.random.chance(0.3f) ? run.random.below(200) : run.random.bits();
+  const Buffer in = run.buffer_of(words), out = run.buffer(kResults * kInvocations * 8);
+  const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
+  const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, text));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, kInvocations / 64, 1, 1);
+  });
+  run.out("results", out, VK_FORMAT_R32G32_UINT).may_be_blank = true;
+}
+
+}  // namespace
+}  // namespace vitrine::cts
