@@ -140,6 +140,31 @@ struct CmdDrawIndirect {
   std::uint32_t stride;
   bool indexed;
 };
+struct CounterBuffer {
+  Buffer* buffer;  ///< may be null
+  VkDeviceSize offset;
+};
+/// vkCmdDrawIndirectByteCountEXT: (counter - subtracted) / stride vertices.
+struct CmdDrawByteCount {
+  CounterBuffer counter;
+  std::uint32_t instance_count, first_instance, subtracted, stride;
+};
+struct FeedbackBinding {
+  Buffer* buffer;  ///< may be null
+  VkDeviceSize offset, size;
+};
+struct CmdBindTransformFeedbackBuffers {
+  std::uint32_t first;
+  std::span<const FeedbackBinding> bindings;
+};
+struct CmdBeginTransformFeedback {
+  std::uint32_t first;
+  std::span<const CounterBuffer> counters;
+};
+struct CmdEndTransformFeedback {
+  std::uint32_t first;
+  std::span<const CounterBuffer> counters;
+};
 struct CmdDispatch {
   std::uint32_t base[3];
   std::uint32_t groups[3];
@@ -250,10 +275,12 @@ struct CmdBeginQuery {
   QueryPool* pool;
   std::uint32_t query;
   VkQueryControlFlags flags;
+  std::uint32_t index = 0;  ///< vertex stream
 };
 struct CmdEndQuery {
   QueryPool* pool;
   std::uint32_t query;
+  std::uint32_t index = 0;  ///< vertex stream
 };
 struct CmdResetQueryPool {
   QueryPool* pool;
@@ -282,7 +309,8 @@ using Commands = CommandList<
     CmdSetScissor, CmdSetLineWidth, CmdSetDepthBias, CmdSetBlendConstants, CmdSetDepthBounds, CmdSetStencil,
     CmdSetStencilOp, CmdSetValue, CmdSetLineStipple, CmdSetColorWriteEnable, CmdSetBlend, CmdSetVertexInput, CmdDraw,
     CmdDrawIndexed, CmdDrawMulti, CmdDrawMultiIndexed, CmdBeginConditionalRendering, CmdEndConditionalRendering,
-    CmdDrawIndirect, CmdDispatch, CmdDispatchIndirect, CmdBeginRenderPass, CmdNextSubpass, CmdEndRenderPass,
+    CmdDrawIndirect, CmdDrawByteCount, CmdBindTransformFeedbackBuffers, CmdBeginTransformFeedback,
+    CmdEndTransformFeedback, CmdDispatch, CmdDispatchIndirect, CmdBeginRenderPass, CmdNextSubpass, CmdEndRenderPass,
     CmdBeginRendering, CmdEndRendering, CmdClearAttachments, CmdExecuteCommands, CmdCopyBuffer, CmdCopyImage,
     CmdBlitImage, CmdResolveImage, CmdCopyBufferToImage, CmdCopyImageToBuffer, CmdUpdateBuffer, CmdFillBuffer,
     CmdClearColorImage, CmdClearDepthStencilImage, CmdPipelineBarrier, CmdSetEvent, CmdWaitEvents, CmdBeginQuery,

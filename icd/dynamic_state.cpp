@@ -76,6 +76,10 @@ void visit_word(DynamicState which, F f) {
       return f(&S::front_face);
     case DynamicState::kTopology:
       return f(&S::topology);
+    case DynamicState::kPatchControlPoints:
+      return f(&S::patch_control_points);
+    case DynamicState::kTessellationDomainOrigin:
+      return f(&S::domain_origin_lower_left);
     case DynamicState::kDepthTestEnable:
       return f(&S::depth_test);
     case DynamicState::kDepthWriteEnable:

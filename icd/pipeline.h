@@ -34,7 +34,8 @@ struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   std::shared_ptr<const PipelineLayoutShape> layout;
   // graphics
   std::shared_ptr<const CompiledShader> vertex;
-  std::shared_ptr<const CompiledShader> fragment;  ///< may be null
+  std::shared_ptr<const CompiledShader> control, evaluation, geometry;  ///< may be null
+  std::shared_ptr<const CompiledShader> fragment;                       ///< may be null
   raster::State state;
   DynamicStates dynamic;
   ColorWrites color_writes = kAllColorWrites;

@@ -29,6 +29,18 @@ void fill_vertex_input(Pipeline& pipeline, const VkPipelineVertexInputStateCreat
   }
 }
 
+bool tessellates(const VkGraphicsPipelineCreateInfo& info) {
+  return std::any_of(info.pStages, info.pStages + info.stageCount, [](const VkPipelineShaderStageCreateInfo& stage) {
+    return stage.stage == VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT;
+  });
+}
+
+void fill_tessellation(raster::State& state, const VkPipelineTessellationStateCreateInfo& info) {
+  state.patch_control_points = info.patchControlPoints;
+  if (const auto* origin = find_in_chain<VkPipelineTessellationDomainOriginStateCreateInfo>(info.pNext))
+    state.domain_origin_lower_left = origin->domainOrigin == VK_TESSELLATION_DOMAIN_ORIGIN_LOWER_LEFT;
+}
+
 /// What is dynamic is ignored here, and may be a dangling pointer.
 void fill_viewports(raster::State& state, const VkPipelineViewportStateCreateInfo& info, const DynamicStates& dynamic) {
   state.viewport_count = std::min(info.viewportCount, raster::kMaxViewports);
@@ -177,6 +189,8 @@ void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& i
   }
   const bool before = parts & VK_GRAPHICS_PIPELINE_LIBRARY_PRE_RASTERIZATION_SHADERS_BIT_EXT;
   if (before && info.pRasterizationState) fill_rasterization(pipeline, *info.pRasterizationState);
+  // Without such a stage the pointer may dangle.
+  if (before && tessellates(info) && info.pTessellationState) fill_tessellation(state, *info.pTessellationState);
   // Without rasterization, or without the attachments, the rest may be dangling pointers.
   if (pipeline.never_rasterizes()) return;
   if (before && info.pViewportState) fill_viewports(state, *info.pViewportState, pipeline.dynamic);

@@ -16,7 +16,7 @@ struct QueryPool : Object<VkQueryPool, VK_OBJECT_TYPE_QUERY_POOL> {
   VkQueryType type;
   VkQueryPipelineStatisticFlags statistics;  ///< enabled ones: the values a result consists of
   std::uint32_t count;
-  std::uint32_t stride;  ///< counters per query: all 11 statistics in bit order, or one
+  std::uint32_t stride;  ///< counters per query: all 11 statistics in bit order; written and needed primitives; or one
   std::atomic<std::uint64_t>* counters;
   std::atomic<std::uint8_t>* available;
 

@@ -28,6 +28,7 @@ std::uint32_t append_strip(const TopologyShape& shape, const Run& strip, std::ui
     Run run = strip;
     run.begin = begin;
     run.end = std::min(total, begin + piece);
+    run.ends = run.end == total;
     runs.push_back(run);
   }
   return total;
@@ -77,14 +78,41 @@ Corners corners_of(VkPrimitiveTopology topology, bool last, std::uint32_t i) {
   }
 }
 
+InputVertices input_vertices(VkPrimitiveTopology topology, bool last, std::uint32_t i, bool last_of_strip) {
+  switch (topology) {
+    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+      return {4, {4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3, 0, 0}};
+    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
+      return {4, {i, i + 1, i + 2, i + 3, 0, 0}};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
+      return {6, {6 * i, 6 * i + 1, 6 * i + 2, 6 * i + 3, 6 * i + 4, 6 * i + 5}};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY: {
+      const std::uint32_t a = 2 * i, b = a + 2, c = a + 4;
+      const std::uint32_t ab = i == 0 ? 1 : a - 2, bc = last_of_strip ? a + 5 : a + 6, ca = a + 3;
+      if ((i & 1) == 0) return {6, {a, ab, b, bc, c, ca}};
+      if (last) return {6, {b, ab, a, ca, c, bc}};
+      return {6, {a, ca, c, bc, b, ab}};
+    }
+    default: {
+      const Corners corners = corners_of(topology, last, i);
+      const bool point = topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+      const bool line = topology == VK_PRIMITIVE_TOPOLOGY_LINE_LIST || topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
+      return {point ? 1u : line ? 2u : 3u, {corners.at[0], corners.at[1], corners.at[2], 0, 0, 0}};
+    }
+  }
+}
+
 RunSpan run_span(const TopologyShape& shape, const Run& run) {
+  if (shape.neighbours)
+    return {run.begin == 0 ? 0 : run.begin * shape.step - 2,
+            (run.end - 1) * shape.step + shape.first + (run.ends ? 0 : 1), false};
   if (shape.fan) return {run.begin + 1, run.end + 2, true};
   return {run.begin * shape.step, (run.end - 1) * shape.step + shape.first, false};
 }
 
 void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t limit, std::vector<Run>& runs) {
-  const TopologyShape shape = topology_shape(draw.state->topology);
-  Run strip{0, 0, 0, instance, 0};
+  const TopologyShape shape = topology_shape(draw);
+  Run strip{0, 0, 0, instance, 0, true};
   if (!draw.index_data || !draw.state->primitive_restart) {
     append_strip(shape, strip, draw.count, limit, runs);
     return;

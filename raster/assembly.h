@@ -18,6 +18,14 @@ struct Corners {
 };
 Corners corners_of(VkPrimitiveTopology topology, bool last, std::uint32_t i);
 
+/// All positions of primitive `i`, adjacent ones too, in the order a geometry shader sees them. `last_of_strip`: no
+/// primitive follows in the strip.
+struct InputVertices {
+  std::uint32_t count;
+  std::uint32_t at[6];
+};
+InputVertices input_vertices(VkPrimitiveTopology topology, bool last, std::uint32_t i, bool last_of_strip);
+
 /// Positions a run needs: [0] for fans, then [low, high).
 struct RunSpan {
   std::uint32_t low, high;

@@ -55,6 +55,9 @@ struct State {
   VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
   bool primitive_restart = false;
   bool provoking_vertex_last = false;
+  // tessellation
+  std::uint32_t patch_control_points = 0;
+  bool domain_origin_lower_left = false;
   // vertex input
   std::uint32_t attribute_count = 0;
   std::array<VertexAttribute, kMaxVertexAttributes> attribute{};
@@ -97,12 +100,29 @@ struct State {
   std::array<BlendAttachment, kMaxColorAttachments> blend{};
 };
 
+inline constexpr std::uint32_t kMaxStreams = 4;
+
+/// A buffer bound for transform feedback.
+struct XfbBuffer {
+  std::byte* data = nullptr;  ///< null: takes nothing
+  std::uint64_t size = 0;     ///< bytes
+  std::uint64_t offset = 0;   ///< bytes: where the next vertex goes
+};
+
+/// Transform feedback while it is active. Draws move the offsets on, in order, until Pass::flush() is done.
+struct TransformFeedback {
+  std::array<XfbBuffer, spirv::kMaxXfbBuffers> buffer{};
+};
+
 /// Counters of active queries; null members do not count. Fixed function adds to them while it works; they are final
 /// after Pass::flush().
 struct QueryCounters {
   std::atomic<std::uint64_t>* occlusion = nullptr;  ///< samples that passed all tests
   /// VkQueryPipelineStatisticFlagBits order: bit n counts into statistics[n] (11 counters); null: off.
   std::atomic<std::uint64_t>* statistics = nullptr;
+  /// Per vertex stream: primitives written by transform feedback, and primitives that would have been; two counters.
+  std::array<std::atomic<std::uint64_t>*, kMaxStreams> feedback{};
+  std::array<std::atomic<std::uint64_t>*, kMaxStreams> generated{};  ///< per vertex stream: primitives
 };
 
 struct NativeShader;  // raster/stage.h
@@ -110,8 +130,11 @@ struct NativeShader;  // raster/stage.h
 struct DrawCall {
   const State* state = nullptr;  ///< lives until the flush
   const spirv::Shader* vertex = nullptr;
+  const spirv::Shader *control = nullptr, *evaluation = nullptr;  ///< both or none
+  const spirv::Shader* geometry = nullptr;
   const spirv::Shader* fragment = nullptr;  ///< null: no fragment shader
-  spirv::ResourceTable vertex_resources;    ///< descriptors, dynamic offsets applied, push constants of the stage
+  spirv::ResourceTable vertex_resources;  ///< of all stages before rasterization: descriptors, dynamic offsets applied,
+                                          ///< push constants
   spirv::ResourceTable fragment_resources;
   const NativeShader* native_vertex = nullptr;    ///< instead of `vertex`: a stage written in C++
   const NativeShader* native_fragment = nullptr;  ///< instead of `fragment`
@@ -127,7 +150,8 @@ struct DrawCall {
   std::uint32_t first_instance = 0, instance_count = 1;
   std::uint32_t draw_index = 0;
   QueryCounters queries;
-  bool general_path = false;  ///< tests: without the fast paths, which must not be noticed otherwise
+  bool general_path = false;              ///< tests: without the fast paths, which must not be noticed otherwise
+  TransformFeedback* feedback = nullptr;  ///< null: not active; lives until the flush
 };
 
 }  // namespace vitrine::raster

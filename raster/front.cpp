@@ -14,21 +14,6 @@ namespace {
 constexpr std::uint32_t kHashSize = 4096;
 constexpr std::uint64_t kEmptyKey = ~std::uint64_t{0};
 
-void resize_scratch(FrontScratch& s, std::uint32_t positions) {
-  if (s.slot.size() >= positions) return;
-  const std::size_t vertices = (positions + base::kWaveWidth - 1) / base::kWaveWidth * base::kWaveWidth;
-  s.slot.resize(positions);
-  s.vertex.resize(vertices);
-  s.instance.resize(vertices);
-  s.clip.resize(vertices * 4);
-  s.clip_distance.resize(vertices * kMaxClipDistances);
-  s.cull_distance.resize(vertices * kMaxClipDistances);
-  s.layer.resize(vertices);
-  s.viewport_index.resize(vertices);
-  s.code.resize(vertices);
-  s.snapped.resize(vertices * 2);
-}
-
 /// The slot of (index, instance), a new one if it was not seen in this chunk. The table is at most half full: chunks
 /// that are larger skip it.
 std::uint32_t find_slot(FrontScratch& s, std::uint32_t index, std::uint32_t instance, std::uint32_t& count) {
@@ -88,7 +73,7 @@ struct Gather {
  private:
   template <class F>
   void for_each_position(F&& add) {
-    const TopologyShape shape = topology_shape(chunk.draw->plan->state->topology);
+    const TopologyShape& shape = chunk.draw->plan->shape;
     for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
       const RunSpan span = run_span(shape, chunk.runs[r]);
       if (span.center) add(chunk.runs[r], 0);
@@ -103,11 +88,75 @@ struct Gather {
   }
 };
 
-/// Slots of all positions; returns the number of vertices to shade.
+const float* as_floats(const base::WaveRegister& reg) { return reinterpret_cast<const float*>(reg.lane); }
+
+/// One output register into element `component` of an array of `stride` words per vertex; 0 where not written.
+template <class T>
+void scatter(const WaveOutputs& outputs, std::uint32_t reg, std::uint32_t lanes, T* out, std::uint32_t stride,
+             T missing = T{}) {
+  static_assert(sizeof(T) == 4);
+  if (reg == kNoReg) {
+    for (std::uint32_t i = 0; i < lanes; ++i) out[std::size_t{i} * stride] = missing;
+    return;
+  }
+  const std::uint32_t* lane = outputs.at(reg).lane;
+  for (std::uint32_t i = 0; i < lanes; ++i) std::memcpy(&out[std::size_t{i} * stride], &lane[i], 4);
+}
+
+void scatter_distances(const PipelinePlan& plan, const WaveOutputs& outputs, std::uint32_t base, std::uint32_t lanes,
+                       FrontScratch& s) {
+  const VertexOutputs& out = plan.out;
+  for (std::uint32_t d = 0; d < out.cull_count; ++d)
+    scatter(outputs, out.cull_distance[d], lanes, s.cull_distance.data() + base * kMaxClipDistances + d,
+            kMaxClipDistances);
+  for (std::uint32_t d = 0; d < out.clip_count; ++d) {
+    float* distance = s.clip_distance.data() + base * kMaxClipDistances + d;
+    scatter(outputs, out.clip_distance[d], lanes, distance, kMaxClipDistances);
+    for (std::uint32_t i = 0; i < lanes; ++i) {
+      const float value = distance[i * kMaxClipDistances];
+      if (!(value >= 0 && value <= 3.402823466e38f)) s.code[base + i] |= 1u << (kFirstUserPlane + d);
+    }
+  }
+}
+
+void count_statistics(const DrawCall& call, std::uint32_t vertices, const Chunk& chunk) {
+  std::atomic<std::uint64_t>* statistics = call.queries.statistics;
+  if (!statistics) return;
+  std::uint64_t primitives = 0;
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) primitives += chunk.runs[r].end - chunk.runs[r].begin;
+  statistics[1].fetch_add(primitives, std::memory_order_relaxed);  // input assembly primitives
+  statistics[2].fetch_add(vertices, std::memory_order_relaxed);    // vertex shader invocations
+  statistics[5].fetch_add(primitives, std::memory_order_relaxed);  // clipping invocations
+}
+
+}  // namespace
+
+std::uint32_t positions_of(const Chunk& chunk) {
+  const TopologyShape& shape = chunk.draw->plan->shape;
+  std::uint32_t count = 0;
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) count += run_span(shape, chunk.runs[r]).count();
+  return count;
+}
+
+void reserve_vertices(FrontScratch& s, std::uint32_t count) {
+  const std::size_t vertices = (count + base::kWaveWidth - 1) / base::kWaveWidth * base::kWaveWidth;
+  if (s.vertex.size() >= vertices) return;
+  s.vertex.resize(vertices);
+  s.instance.resize(vertices);
+  s.clip.resize(vertices * 4);
+  s.clip_distance.resize(vertices * kMaxClipDistances);
+  s.cull_distance.resize(vertices * kMaxClipDistances);
+  s.layer.resize(vertices);
+  s.viewport_index.resize(vertices);
+  s.code.resize(vertices);
+  s.snapped.resize(vertices * 2);
+}
+
 std::uint32_t gather_vertices(const Chunk& chunk, FrontScratch& s) {
   const DrawCall& call = chunk.draw->call;
   const std::uint32_t positions = positions_of(chunk);
-  resize_scratch(s, positions);
+  if (s.slot.size() < positions) s.slot.resize(positions);
+  reserve_vertices(s, positions);
   Gather gather{chunk, s};
   if (!call.index_data) {
     gather.add_linear();
@@ -127,45 +176,16 @@ std::uint32_t gather_vertices(const Chunk& chunk, FrontScratch& s) {
   return gather.count;
 }
 
-const float* as_floats(const base::WaveRegister& reg) { return reinterpret_cast<const float*>(reg.lane); }
-
-/// One output register into element `component` of an array of `stride` words per vertex; 0 where not written.
-template <class T>
-void scatter(StageRunner& runner, std::uint32_t reg, std::uint32_t lanes, T* out, std::uint32_t stride,
-             T missing = T{}) {
-  static_assert(sizeof(T) == 4);
-  if (reg == kNoReg) {
-    for (std::uint32_t i = 0; i < lanes; ++i) out[std::size_t{i} * stride] = missing;
-    return;
-  }
-  const std::uint32_t* lane = runner.output(reg).lane;
-  for (std::uint32_t i = 0; i < lanes; ++i) std::memcpy(&out[std::size_t{i} * stride], &lane[i], 4);
-}
-
-void scatter_distances(const PipelinePlan& plan, std::uint32_t base, std::uint32_t lanes, FrontScratch& s) {
-  const VertexOutputs& out = plan.out;
-  for (std::uint32_t d = 0; d < out.cull_count; ++d)
-    scatter(s.runner, out.cull_distance[d], lanes, s.cull_distance.data() + base * kMaxClipDistances + d,
-            kMaxClipDistances);
-  for (std::uint32_t d = 0; d < out.clip_count; ++d) {
-    float* distance = s.clip_distance.data() + base * kMaxClipDistances + d;
-    scatter(s.runner, out.clip_distance[d], lanes, distance, kMaxClipDistances);
-    for (std::uint32_t i = 0; i < lanes; ++i) {
-      const float value = distance[i * kMaxClipDistances];
-      if (!(value >= 0 && value <= 3.402823466e38f)) s.code[base + i] |= 1u << (kFirstUserPlane + d);
-    }
-  }
-}
-
-/// Outputs of the wave just shaded to records and scratch arrays of vertices [base, base + lanes).
-void store_wave(const PipelinePlan& plan, std::uint32_t base, std::uint32_t lanes, FrontScratch& s) {
+void store_wave(const PipelinePlan& plan, const WaveOutputs& outputs, std::uint32_t base, std::uint32_t lanes,
+                FrontScratch& s) {
   static const base::WaveRegister zero{};
   const VertexOutputs& out = plan.out;
   const float* clip[4];
-  for (int c = 0; c < 4; ++c) clip[c] = as_floats(out.position[c] == kNoReg ? zero : s.runner.output(out.position[c]));
+  for (int c = 0; c < 4; ++c) clip[c] = as_floats(out.position[c] == kNoReg ? zero : outputs.at(out.position[c]));
   const State& state = *plan.state;
-  transform_wave(clip, {plan.viewport[0], plan.pixel_offset, state.depth_clip, state.negative_one_to_one},
-                 s.transformed);
+  transform_wave(
+      clip, {plan.viewport[0], plan.pixel_offset, state.depth_clip, state.negative_one_to_one, plan.fused_transform},
+      s.transformed);
   const TransformedWave& t = s.transformed;
   const std::uint32_t stride = plan.vertex_stride;
   for (std::uint32_t i = 0; i < lanes; ++i) {
@@ -180,29 +200,21 @@ void store_wave(const PipelinePlan& plan, std::uint32_t base, std::uint32_t lane
     s.snapped[(base + i) * 2 + 1] = t.snapped_y[i];
   }
   for (std::uint32_t k = 0; k < plan.varying_count(); ++k)
-    scatter(s.runner, plan.varying[k].vertex_reg, lanes, s.records + std::size_t{base} * stride + 4 + k, stride);
-  if (out.clip_count + out.cull_count) scatter_distances(plan, base, lanes, s);
-  if (out.layer != kNoReg) scatter(s.runner, out.layer, lanes, s.layer.data() + base, 1);
-  if (out.viewport_index != kNoReg) scatter(s.runner, out.viewport_index, lanes, s.viewport_index.data() + base, 1);
+    scatter(outputs, plan.varying[k].vertex_reg, lanes, s.records + std::size_t{base} * stride + 4 + k, stride);
+  if (out.clip_count + out.cull_count) scatter_distances(plan, outputs, base, lanes, s);
+  if (out.layer != kNoReg) scatter(outputs, out.layer, lanes, s.layer.data() + base, 1);
+  if (out.viewport_index != kNoReg) scatter(outputs, out.viewport_index, lanes, s.viewport_index.data() + base, 1);
 }
 
-void count_statistics(const DrawCall& call, std::uint32_t vertices, const Chunk& chunk) {
-  std::atomic<std::uint64_t>* statistics = call.queries.statistics;
-  if (!statistics) return;
-  std::uint64_t primitives = 0;
-  for (std::uint32_t r = 0; r < chunk.run_count; ++r) primitives += chunk.runs[r].end - chunk.runs[r].begin;
-  statistics[1].fetch_add(primitives, std::memory_order_relaxed);  // input assembly primitives
-  statistics[2].fetch_add(vertices, std::memory_order_relaxed);    // vertex shader invocations
-  statistics[5].fetch_add(primitives, std::memory_order_relaxed);  // clipping invocations
-}
-
-}  // namespace
-
-std::uint32_t positions_of(const Chunk& chunk) {
-  const TopologyShape shape = topology_shape(chunk.draw->plan->state->topology);
-  std::uint32_t count = 0;
-  for (std::uint32_t r = 0; r < chunk.run_count; ++r) count += run_span(shape, chunk.runs[r]).count();
-  return count;
+void shade_vertex_wave(const DrawRecord& draw, std::uint32_t base, std::uint32_t count, std::uint32_t view,
+                       VertexLanes& lanes, FrontScratch& s) {
+  if (!(s.bound == draw.vertex)) s.runner.bind(draw.vertex);
+  s.bound = draw.vertex;
+  lanes.count = count;
+  std::copy_n(s.vertex.data() + base, count, lanes.vertex);
+  std::copy_n(s.instance.data() + base, count, lanes.instance);
+  fetch_vertices(draw, lanes, view, s.runner);
+  s.runner.run(base::first_lanes(count), 0);
 }
 
 void shade_chunk_vertices(const Chunk& chunk, Arena& arena, FrontScratch& s) {
@@ -210,16 +222,11 @@ void shade_chunk_vertices(const Chunk& chunk, Arena& arena, FrontScratch& s) {
   const PipelinePlan& plan = *draw.plan;
   const std::uint32_t count = gather_vertices(chunk, s);
   s.records = arena.take<Vertex>(std::size_t{count} * plan.vertex_stride);
-  if (!(s.bound == draw.vertex)) s.runner.bind(draw.vertex);
-  s.bound = draw.vertex;
   VertexLanes lanes;
   for (std::uint32_t base = 0; base < count; base += base::kWaveWidth) {
-    lanes.count = std::min<std::uint32_t>(count - base, base::kWaveWidth);
-    std::copy_n(s.vertex.data() + base, lanes.count, lanes.vertex);
-    std::copy_n(s.instance.data() + base, lanes.count, lanes.instance);
-    fetch_vertices(draw, lanes, chunk.view, s.runner);
-    s.runner.run(base::first_lanes(lanes.count), 0);
-    store_wave(plan, base, lanes.count, s);
+    shade_vertex_wave(draw, base, std::min<std::uint32_t>(count - base, base::kWaveWidth), chunk.view, lanes, s);
+    store_wave(plan, {&s.runner, nullptr}, base, lanes.count, s);
+    if (s.capture.active) capture_wave(plan, {&s.runner, nullptr}, base, lanes.count, s.capture);
   }
   count_statistics(draw.call, count, chunk);
 }
@@ -228,11 +235,19 @@ ChunkOutput process_chunk(const Chunk& chunk, const PassDesc& pass, const TileGr
                           FrontScratch& scratch) {
   const base::ScopedFloatMode mode(base::Denormals::kFlush);
   scratch.primitives.clear();
-  shade_chunk_vertices(chunk, arena, scratch);
-  const State& state = *chunk.draw->plan->state;
-  if (state.rasterizer_discard) return {};
-  assemble_chunk(chunk, pass, arena, scratch);
-  return bin_chunk(*chunk.draw->plan, grid, arena, scratch);
+  const PipelinePlan& plan = *chunk.draw->plan;
+  scratch.capture.active = is_captured(chunk.draw->call);
+  if (plan.stages.any()) {
+    process_stages(chunk, pass, arena, scratch);
+  } else {
+    shade_chunk_vertices(chunk, arena, scratch);
+    if (scratch.capture.active) capture_runs(chunk, scratch);
+    if (!plan.state->rasterizer_discard) assemble_chunk(chunk, pass, arena, scratch);
+  }
+  ChunkOutput output;
+  if (!plan.state->rasterizer_discard) output = bin_chunk(plan, grid, arena, scratch);
+  if (scratch.capture.active) output.capture = finish_capture(plan, arena, scratch.capture);
+  return output;
 }
 
 }  // namespace vitrine::raster

@@ -3,19 +3,19 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raster/arena.h"
 #include "raster/clip.h"
+#include "raster/feedback.h"
 #include "raster/primitive.h"
 #include "raster/setup.h"
+#include "raster/stages.h"
 #include "raster/vertex_fetch.h"
 #include "raster/viewport.h"
 
 namespace vitrine::raster {
-
-/// Vertex or index positions of a chunk, about; runs are cut to this many.
-inline constexpr std::uint32_t kChunkPositions = 1024;
 
 /// The stipple pattern runs on along a strip: its lines stay in one chunk, up to this many positions.
 inline constexpr std::uint32_t kStippledChunkPositions = 32768;
@@ -24,7 +24,8 @@ struct Chunk {
   const DrawRecord* draw = nullptr;
   const Run* runs = nullptr;
   std::uint32_t run_count = 0;
-  std::uint32_t view = 0;  ///< multiview: index of the view, also the layer
+  std::uint32_t view = 0;                    ///< multiview: index of the view, also the layer
+  std::uint32_t* primitive_count = nullptr;  ///< PipelinePlan::counts_primitives: of the instance so far
 };
 
 /// Working memory of one thread, kept between chunks.
@@ -50,16 +51,49 @@ struct FrontScratch {
   std::vector<std::uint64_t> tile_pairs;  ///< tile << 32 | primitive
   std::vector<std::uint32_t> tile_count;
   std::vector<std::uint32_t> tiles;  ///< touched by the chunk
+  StageScratch stages;
+  CaptureScratch capture;
+
+  /// The stages that were bound are gone.
+  void forget_stages() {
+    bound = {};
+    stages.bound_control = stages.bound_evaluation = stages.bound_geometry = {};
+  }
+};
+
+/// Outputs of a wave of vertices by register: of a stage, or words of vertices that were gathered.
+struct WaveOutputs {
+  const StageRunner* runner;
+  const base::WaveRegister* words;
+  const base::WaveRegister& at(std::uint32_t reg) const { return runner ? runner->output(reg) : words[reg]; }
 };
 
 /// Positions (before de-duplication) that the chunk's runs need.
 std::uint32_t positions_of(const Chunk& chunk);
+
+/// Slots of all positions of a chunk, one per distinct (index, instance); returns the number of vertices to shade.
+std::uint32_t gather_vertices(const Chunk& chunk, FrontScratch& scratch);
+
+/// Room for `count` vertices in the scratch arrays that have one element per vertex.
+void reserve_vertices(FrontScratch& scratch, std::uint32_t count);
+
+/// Runs the vertex shader for gathered vertices [base, base + count), at most a wave; `lanes` is working memory.
+void shade_vertex_wave(const DrawRecord& draw, std::uint32_t base, std::uint32_t count, std::uint32_t view,
+                       VertexLanes& lanes, FrontScratch& scratch);
+
+/// Outputs of the last stage before rasterization to records and scratch arrays of vertices [base, base + lanes).
+void store_wave(const PipelinePlan& plan, const WaveOutputs& outputs, std::uint32_t base, std::uint32_t lanes,
+                FrontScratch& scratch);
 
 /// Shades the vertices of a chunk into scratch (records in `arena`), one slot per distinct (index, instance).
 void shade_chunk_vertices(const Chunk& chunk, Arena& arena, FrontScratch& scratch);
 
 /// Assembles, culls, clips and sets up the primitives of a chunk whose vertices are shaded.
 void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, FrontScratch& scratch);
+
+/// The same for primitives of the last stage's vertices.
+void assemble_listed(const Chunk& chunk, const PassDesc& pass, Arena& arena, FrontScratch& scratch,
+                     std::span<const ListedPrimitive> primitives);
 
 /// Sorts scratch.primitives into tiles; the lists lie in `arena`.
 ChunkOutput bin_chunk(const PipelinePlan& plan, const TileGrid& grid, Arena& arena, FrontScratch& scratch);

@@ -249,7 +249,7 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
   Assembler a{chunk,           pass, arena,
               scratch,         plan, {&plan, &pass, &scratch.primitives, !chunk.draw->call.queries.statistics},
               plan.viewport[0]};
-  const TopologyShape shape = topology_shape(state.topology);
+  const TopologyShape& shape = plan.shape;
   if (state.cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return;
   std::uint32_t first_entry = 0;
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
@@ -282,6 +282,31 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
   }
   if (chunk.draw->call.queries.statistics)  // clipping primitives
     chunk.draw->call.queries.statistics[6].fetch_add(scratch.primitives.size(), std::memory_order_relaxed);
+}
+
+void assemble_listed(const Chunk& chunk, const PassDesc& pass, Arena& arena, FrontScratch& scratch,
+                     std::span<const ListedPrimitive> primitives) {
+  const PipelinePlan& plan = *chunk.draw->plan;
+  Assembler a{chunk,           pass, arena,
+              scratch,         plan, {&plan, &pass, &scratch.primitives, !chunk.draw->call.queries.statistics},
+              plan.viewport[0]};
+  const std::size_t before = scratch.primitives.size();
+  const bool invisible = plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && plan.corners == 3;
+  for (const ListedPrimitive& primitive : primitives) {
+    if (invisible) break;
+    a.setup.id = primitive.id;
+    if (!primitive.continues) a.stipple_counter = 0;
+    if (plan.corners == 3)
+      assemble_triangle(a, primitive.slot);
+    else if (plan.corners == 2)
+      assemble_line(a, primitive.slot);
+    else
+      assemble_point(a, primitive.slot[0]);
+  }
+  if (std::atomic<std::uint64_t>* statistics = chunk.draw->call.queries.statistics) {
+    statistics[5].fetch_add(primitives.size(), std::memory_order_relaxed);  // clipping invocations, primitives
+    statistics[6].fetch_add(scratch.primitives.size() - before, std::memory_order_relaxed);
+  }
 }
 
 }  // namespace vitrine::raster

@@ -36,6 +36,7 @@ struct Command {
   const ClearCommand* clear = nullptr;
   Chunk chunk;
   ChunkOutput output;
+  bool done = false;  ///< the front end has run
 };
 
 /// Memory of a pass, kept for the next one.
@@ -140,7 +141,9 @@ struct Pass::Impl {
     DrawRecord* record = new (scratch->arena.take<DrawRecord>(1)) DrawRecord{};
     record->call = call;
     const bool same = last && last->call.state == call.state && last->call.vertex == call.vertex &&
-                      last->call.fragment == call.fragment && last->call.native_vertex == call.native_vertex &&
+                      last->call.control == call.control && last->call.evaluation == call.evaluation &&
+                      last->call.geometry == call.geometry && last->call.fragment == call.fragment &&
+                      last->call.native_vertex == call.native_vertex &&
                       last->call.native_fragment == call.native_fragment &&
                       last->call.general_path == call.general_path;
     if (same) {
@@ -153,6 +156,12 @@ struct Pass::Impl {
     spirv::Fault& fault = call.fault ? *call.fault : unreported;
     record->vertex =
         bind_stage(call.vertex, call.native_vertex, call.vertex_resources, fault, last ? last->vertex : Stage{});
+    const auto bind_between = [&](const spirv::Shader* shader, Stage DrawRecord::*stage) {
+      record->*stage = bind_stage(shader, nullptr, call.vertex_resources, fault, last ? last->*stage : Stage{});
+    };
+    bind_between(call.control, &DrawRecord::control);
+    bind_between(call.evaluation, &DrawRecord::evaluation);
+    bind_between(call.geometry, &DrawRecord::geometry);
     record->fragment = bind_stage(call.fragment, call.native_fragment, call.fragment_resources, fault,
                                   last ? last->fragment : Stage{});
     last = record;
@@ -160,19 +169,21 @@ struct Pass::Impl {
   }
 
   /// Turns the gathered runs into chunks of about kChunkPositions.
-  void cut_chunks(const DrawRecord* record, std::uint32_t view) {
+  void cut_chunks(const DrawRecord* record, std::uint32_t view, std::uint32_t* primitive_count = nullptr) {
     const std::vector<Run>& runs = scratch->runs;
-    const TopologyShape shape = topology_shape(record->plan->state->topology);
+    const PipelinePlan& plan = *record->plan;
+    const TopologyShape& shape = plan.shape;
     Run* stored = scratch->arena.take<Run>(runs.size());
     std::copy(runs.begin(), runs.end(), stored);
     std::size_t first = 0;
     std::uint32_t positions = 0;
     for (std::size_t i = 0; i < runs.size(); ++i) {
       positions += run_span(shape, runs[i]).count();
-      pending_positions += run_span(shape, runs[i]).count();
-      if (positions < kChunkPositions && i + 1 < runs.size()) continue;
+      pending_positions += std::uint64_t{run_span(shape, runs[i]).count()} * plan.position_weight;
+      if (positions < plan.chunk_positions && i + 1 < runs.size()) continue;
       scratch->commands.push_back(
-          {nullptr, {record, stored + first, static_cast<std::uint32_t>(i + 1 - first), view}, {}});
+          {nullptr, {record, stored + first, static_cast<std::uint32_t>(i + 1 - first), view, primitive_count}, {}});
+      if (primitive_count) front_item(scratch->commands.size() - 1, 0);
       first = i + 1;
       positions = 0;
     }
@@ -182,19 +193,24 @@ struct Pass::Impl {
 
   void draw_view(const DrawRecord* record, std::uint32_t view) {
     const bool stippled_strip = record->plan->state->line_stipple && record->plan->draws_lines;
-    const std::uint32_t limit = stippled_strip ? kStippledChunkPositions : kChunkPositions;
+    const std::uint32_t limit = stippled_strip ? kStippledChunkPositions : record->plan->chunk_positions;
     for (std::uint32_t instance = 0; instance < record->call.instance_count; ++instance) {
       const std::size_t before = scratch->runs.size();
       append_runs(record->call, instance, limit, scratch->runs);
       if (scratch->runs.size() == before) break;  // too few vertices: no instance has a primitive
-      if (scratch->runs.size() >= 4096) cut_chunks(record, view);
+      // Such draws are not parallel: every instance counts from 0.
+      if (record->plan->counts_primitives)
+        cut_chunks(record, view, new (scratch->arena.take<std::uint32_t>(1)) std::uint32_t{0});
+      else if (scratch->runs.size() >= 4096)
+        cut_chunks(record, view);
     }
     if (!scratch->runs.empty()) cut_chunks(record, view);
   }
 
   void front_item(std::size_t index, std::size_t worker_index) {
     Command& command = scratch->commands[index];
-    if (command.clear) return;
+    if (command.clear || command.done) return;
+    command.done = true;
     Worker& worker = *scratch->workers[worker_index];
     command.output = process_chunk(command.chunk, desc, grid, worker.arena, worker.front);
   }
@@ -244,9 +260,10 @@ struct Pass::Impl {
     } else {
       base::parallel_for(commands.size(), [this](std::size_t i, std::size_t worker) { front_item(i, worker); });
     }
-    for (std::unique_ptr<Worker>& worker : scratch->workers) worker->front.bound = {};
+    for (std::unique_ptr<Worker>& worker : scratch->workers) worker->front.forget_stages();
     for (const Command& command : commands) {
       if (command.clear) add_clear(*command.clear);
+      if (command.output.capture) write_capture(*command.chunk.draw, *command.output.capture);
       for (std::uint32_t i = 0; i < command.output.range_count; ++i) {
         const TileRange& range = command.output.ranges[i];
         add_item(range.tile, {nullptr, command.chunk.draw, command.output.primitives, range.index, range.count});

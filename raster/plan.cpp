@@ -4,8 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raster/feedback.h"
+#include "spirv/stage_memory.h"
+
 namespace vitrine::raster {
 namespace {
+
+/// Vertices that a patch is expected to become, and primitives of a chunk at least.
+constexpr std::uint32_t kTessellationGrowth = 256, kMinPrimitives = 64;
 
 using spirv::BuiltIn;
 using spirv::InterfaceSlot;
@@ -68,7 +74,8 @@ void plan_vertex_outputs(PipelinePlan& plan) {
   out.position.fill(kNoReg);
   out.clip_distance.fill(kNoReg);
   out.cull_distance.fill(kNoReg);
-  for (const InterfaceSlot& slot : plan.vertex->outputs) {
+  for (const InterfaceSlot& slot : *plan.outputs) {
+    if (slot.stream != 0) continue;
     switch (slot.built_in) {
       case BuiltIn::kPosition:
         out.position[slot.component & 3] = slot.reg;
@@ -90,6 +97,9 @@ void plan_vertex_outputs(PipelinePlan& plan) {
       case BuiltIn::kViewportIndex:
         out.viewport_index = slot.reg;
         break;
+      case BuiltIn::kPrimitiveId:
+        out.primitive_id = slot.reg;
+        break;
       default:
         break;
     }
@@ -109,9 +119,9 @@ bool is_varying(const InterfaceSlot& slot) {
   }
 }
 
-std::uint32_t matching_output(const ShaderInterface& vertex, const InterfaceSlot& input) {
-  for (const InterfaceSlot& slot : vertex.outputs) {
-    const bool same = slot.built_in == input.built_in && slot.component == input.component;
+std::uint32_t matching_output(const std::vector<InterfaceSlot>& outputs, const InterfaceSlot& input) {
+  for (const InterfaceSlot& slot : outputs) {
+    const bool same = slot.stream == 0 && slot.built_in == input.built_in && slot.component == input.component;
     if (same && (slot.built_in != BuiltIn::kNone || slot.location == input.location)) return slot.reg;
   }
   return kNoReg;
@@ -141,7 +151,7 @@ void add_varyings(PipelinePlan& plan, Interpolation interpolation, std::uint32_t
     if (added && plan.varying_count() == kMaxVaryings) continue;
     const std::uint32_t varying = added ? plan.varying_count() : plan.read[known].varying;
     if (added) {
-      plan.varying[varying] = {matching_output(*plan.vertex, slot), interpolation};
+      plan.varying[varying] = {matching_output(*plan.outputs, slot), interpolation};
       ++count;
     }
     source[plan.read_count] = static_cast<std::uint16_t>(i);
@@ -219,7 +229,7 @@ void plan_fragment_inputs(PipelinePlan& plan) {
 /// gl_PointSize travels with the vertices through the clipper, like an output no fragment shader reads (1.5).
 void add_point_size(PipelinePlan& plan) {
   const State& state = *plan.state;
-  const bool points = state.topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST || state.polygon_mode == VK_POLYGON_MODE_POINT;
+  const bool points = plan.corners == 1 || state.polygon_mode == VK_POLYGON_MODE_POINT;
   plan.point_size_word = kNoReg;
   if (!points || plan.out.point_size == kNoReg || plan.perspective_count == kMaxVaryings) return;
   plan.varying[plan.perspective_count] = {plan.out.point_size, Interpolation::kPerspective};
@@ -295,6 +305,76 @@ void plan_viewports(PipelinePlan& plan, const PassDesc& pass) {
     plan.region[i] = intersect(framebuffer, rect_of(plan.state->scissor[source]));
   }
   plan.per_vertex_viewport = plan.out.viewport_index != kNoReg;
+  plan.fused_transform = !plan.stages.any();
+}
+
+/// Locations of a vertex, in words behind its header.
+std::uint32_t vertex_words(const std::vector<InterfaceSlot>& outputs, const ShaderInterface& reader) {
+  std::uint32_t locations = reader.modes.input_locations;
+  for (const InterfaceSlot& slot : outputs)
+    if (slot.built_in == BuiltIn::kNone) locations = std::max<std::uint32_t>(locations, slot.location + 1u);
+  return spirv::kVertexHeaderWords + 4 * locations;
+}
+
+/// "The tessellation modes may be specified in either stage" (Vulkan 1.3.239, Tessellation).
+spirv::StageModes merge_modes(const spirv::StageModes& control, const spirv::StageModes& evaluation) {
+  spirv::StageModes modes = evaluation;
+  if (!modes.has_domain) modes.domain = control.domain;
+  if (!modes.has_spacing) modes.spacing = control.spacing;
+  if (!modes.has_order) modes.clockwise = control.clockwise;
+  modes.point_mode |= control.point_mode;
+  modes.control_points = std::max(control.control_points, evaluation.control_points);
+  modes.vertex_words = control.vertex_words;
+  modes.patch_words = control.patch_words;
+  return modes;
+}
+
+bool reads(const ShaderInterface& shader, BuiltIn built_in) {
+  return std::any_of(shader.inputs.begin(), shader.inputs.end(),
+                     [=](const InterfaceSlot& slot) { return slot.built_in == built_in; });
+}
+
+std::uint32_t corners_of_output(VkPrimitiveTopology output) {
+  return output == VK_PRIMITIVE_TOPOLOGY_POINT_LIST ? 1 : output == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP ? 2 : 3;
+}
+
+/// Stages between vertex shader and rasterization. False if nothing can be drawn.
+bool plan_stages(const DrawCall& draw, PipelinePlan& plan) {
+  StagePlan& stages = plan.stages;
+  stages.control = draw.control ? &draw.control->interface() : nullptr;
+  stages.evaluation = draw.control && draw.evaluation ? &draw.evaluation->interface() : nullptr;
+  stages.geometry = draw.geometry ? &draw.geometry->interface() : nullptr;
+  plan.shape = topology_shape(draw);
+  plan.corners = plan.shape.corners;
+  plan.outputs = &plan.vertex->outputs;
+  plan.chunk_positions = kChunkPositions;
+  plan.position_weight = 1;
+  plan.counts_primitives = false;
+  if (!stages.any()) return true;
+  if (plan.corners == 0) return false;
+  std::uint32_t growth = 1;
+  if (stages.evaluation) {
+    stages.vertex_words = vertex_words(plan.vertex->outputs, *stages.control);
+    stages.tessellation = merge_modes(stages.control->modes, stages.evaluation->modes);
+    if (stages.tessellation.control_points == 0) return false;
+    plan.outputs = &stages.evaluation->outputs;
+    const bool lines = stages.tessellation.domain == spirv::TessDomain::kIsolines;
+    plan.corners = stages.tessellation.point_mode ? 1 : lines ? 2 : 3;
+    growth = kTessellationGrowth;
+  }
+  if (stages.geometry) {
+    const spirv::StageModes& modes = stages.geometry->modes;
+    (stages.evaluation ? stages.evaluation_words : stages.vertex_words) = vertex_words(*plan.outputs, *stages.geometry);
+    plan.outputs = &stages.geometry->emitted;
+    plan.corners = corners_of_output(modes.output);
+    // "The index is incremented after every individual point, line, or triangle primitive is processed" (Vulkan
+    // 1.3.239, PrimitiveId): those of the tessellator, not patches.
+    plan.counts_primitives = stages.evaluation && reads(*stages.geometry, BuiltIn::kPrimitiveId);
+    growth *= std::max<std::uint32_t>(modes.max_vertices * modes.invocations, 1);
+  }
+  plan.position_weight = std::max(growth / plan.shape.step, 1u);
+  plan.chunk_positions = std::max(kChunkPositions / plan.position_weight, kMinPrimitives * plan.shape.step);
+  return true;
 }
 
 bool stencil_writes(const StencilFace& face) { return face.write_mask != 0; }
@@ -338,16 +418,10 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
                                         (monotone(state.depth_compare) || !plan.depth_write));
 }
 
-bool is_line(VkPrimitiveTopology topology) {
-  return topology == VK_PRIMITIVE_TOPOLOGY_LINE_LIST || topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP ||
-         topology == VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY ||
-         topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY;
-}
-
 void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {
   const State& state = *plan.state;
-  plan.draws_points = state.topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
-  plan.draws_lines = is_line(state.topology);
+  plan.draws_points = plan.corners == 1;
+  plan.draws_lines = plan.corners == 2;
   plan.samples = std::max<std::uint32_t>(pass.samples, 1);
   plan.raster_samples = plan.samples;
   const bool single = state.line_mode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ||
@@ -423,6 +497,8 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   plan.vertex = interface_of(draw.vertex, draw.native_vertex);
   plan.fragment = interface_of(draw.fragment, draw.native_fragment);
   if (!plan.vertex || pass.samples > 4) return false;
+  if (!plan_stages(draw, plan)) return false;
+  plan_captures(plan);
   plan.vertex_input_count = 0;
   plan_vertex_inputs(plan);
   plan_vertex_outputs(plan);
@@ -434,33 +510,37 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   plan_tests(plan, pass);
   plan_colors(plan, pass, draw.general_path);
   plan_blocks(plan, draw.general_path);
-  return plan.sample_mask != 0;
+  return plan.sample_mask != 0 || plan.capture_begin.back() != 0;
 }
 
-TopologyShape topology_shape(VkPrimitiveTopology topology) {
-  switch (topology) {
+TopologyShape topology_shape(const DrawCall& draw) {
+  switch (draw.state->topology) {
     case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
-      return {1, 1, 1, false};
+      return {1, 1, 1, false, false};
     case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
-      return {2, 2, 2, false};
+      return {2, 2, 2, false, false};
     case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
-      return {2, 1, 2, false};
+      return {2, 1, 2, false, false};
     case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
-      return {3, 3, 3, false};
+      return {3, 3, 3, false, false};
     case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP:
-      return {3, 1, 3, false};
+      return {3, 1, 3, false, false};
     case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN:
-      return {3, 1, 3, true};
+      return {3, 1, 3, true, false};
     case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
-      return {4, 4, 2, false};
+      return {4, 4, 2, false, false};
     case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
-      return {4, 1, 2, false};
+      return {4, 1, 2, false, false};
     case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
-      return {6, 6, 3, false};
+      return {6, 6, 3, false, false};
     case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY:
-      return {6, 2, 3, false};
+      return {6, 2, 3, false, draw.geometry != nullptr};
+    case VK_PRIMITIVE_TOPOLOGY_PATCH_LIST: {
+      const std::uint32_t points = draw.evaluation ? std::min(draw.state->patch_control_points, kMaxPatchVertices) : 0;
+      return {std::max(points, 1u), std::max(points, 1u), points, false, false};
+    }
     default:
-      return {1, 1, 0, false};
+      return {1, 1, 0, false, false};
   }
 }
 

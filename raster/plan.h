@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "raster/color.h"
 #include "raster/draw.h"
@@ -16,6 +17,9 @@ inline constexpr std::uint32_t kNoReg = ~std::uint32_t{0};
 inline constexpr std::uint32_t kMaxVaryings = 128;
 inline constexpr std::uint32_t kMaxClipDistances = 8;
 inline constexpr int kTileSize = 64;
+inline constexpr std::uint32_t kMaxPatchVertices = 32;
+/// Vertex or index positions of a chunk, about; runs are cut to this many.
+inline constexpr std::uint32_t kChunkPositions = 1024;
 
 /// Pixels, all bounds inclusive; empty if x1 < x0 or y1 < y0.
 struct PixelRect {
@@ -68,12 +72,12 @@ struct VertexInput {
   std::uint32_t reg = 0;
 };
 
-/// Register numbers of the vertex stage's outputs; kNoReg where not written.
+/// Register numbers of the outputs of the last stage before rasterization; kNoReg where not written.
 struct VertexOutputs {
   std::array<std::uint32_t, 4> position;
   std::array<std::uint32_t, kMaxClipDistances> clip_distance, cull_distance;
   std::uint32_t clip_count = 0, cull_count = 0;
-  std::uint32_t point_size = kNoReg, layer = kNoReg, viewport_index = kNoReg;
+  std::uint32_t point_size = kNoReg, layer = kNoReg, viewport_index = kNoReg, primitive_id = kNoReg;
 };
 
 /// Register numbers of the fragment stage; kNoReg where not read or written.
@@ -89,10 +93,46 @@ struct FragmentRegisters {
   std::uint32_t depth = kNoReg, stencil = kNoReg, sample_mask = kNoReg;
 };
 
+/// How positions of a draw form primitives.
+struct TopologyShape {
+  std::uint32_t first = 1;    ///< positions the first primitive needs
+  std::uint32_t step = 1;     ///< positions each further primitive adds
+  std::uint32_t corners = 1;  ///< of what is drawn; patches: control points; 0: nothing can be drawn
+  bool fan = false;
+  bool neighbours = false;  ///< primitives also need a position in front of and behind their own
+};
+
+/// Tessellation and geometry stages of a draw, and where vertices lie between them (spirv/stage_memory.h).
+struct StagePlan {
+  const spirv::ShaderInterface *control = nullptr, *evaluation = nullptr, *geometry = nullptr;
+  spirv::StageModes tessellation;      ///< modes of control and evaluation shader together
+  std::uint32_t vertex_words = 0;      ///< of what the vertex shader gives
+  std::uint32_t evaluation_words = 0;  ///< of what the evaluation shader gives to a geometry shader
+  bool any() const { return evaluation != nullptr || geometry != nullptr; }
+};
+
+/// A 32-bit output of the last stage before rasterization that transform feedback captures.
+struct Capture {
+  std::uint32_t reg = 0;
+  std::uint32_t offset = 0;  ///< bytes in the stride
+  std::uint8_t buffer = 0;
+};
+
 struct PipelinePlan {
   const State* state = nullptr;
   const spirv::ShaderInterface* vertex = nullptr;
+  StagePlan stages;
+  const std::vector<spirv::InterfaceSlot>* outputs = nullptr;  ///< of the last stage before rasterization
+  TopologyShape shape;
+  std::uint32_t corners = 3;                         ///< of the primitives that are rasterized
+  std::uint32_t chunk_positions = 0;                 ///< of a chunk, about
+  std::uint32_t position_weight = 1;                 ///< what a position may become, in vertices
+  bool counts_primitives = false;                    ///< chunks depend on how many primitives those before them gave
   const spirv::ShaderInterface* fragment = nullptr;  ///< null: none
+
+  std::array<Capture, kMaxVaryings> capture;  ///< stream after stream
+  std::array<std::uint32_t, kMaxStreams + 1> capture_begin{};
+  std::array<std::uint32_t, spirv::kMaxXfbBuffers> xfb_stride{};  ///< bytes
 
   std::uint32_t vertex_input_count = 0;
   std::array<VertexInput, 160> vertex_input;
@@ -115,6 +155,7 @@ struct PipelinePlan {
       region;                        ///< framebuffer and scissor (3.3, without the hidden viewport rectangle)
   float pixel_offset = 0.5f;         ///< `po` of 3.1
   bool per_vertex_viewport = false;  ///< transform form B, viewport chosen by the primitive
+  bool fused_transform = true;       ///< form A; after tessellation and geometry stages form B
   bool draws_points = false, draws_lines = false;
   bool smooth_lines =
       false;  ///< lines become quads whose coverage scales alpha (6.5): the last four perspective varyings
@@ -145,13 +186,7 @@ struct PipelinePlan {
 /// Fills `plan`. False if nothing can be drawn (a sample mask of 0, no samples).
 bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan);
 
-/// Vertices of `topology` handed to one primitive, and the distance between primitives.
-struct TopologyShape {
-  std::uint32_t first = 1;  ///< positions the first primitive needs
-  std::uint32_t step = 1;   ///< positions each further primitive adds
-  std::uint32_t corners = 1;
-  bool fan = false;
-};
-TopologyShape topology_shape(VkPrimitiveTopology topology);
+/// The shape of what a draw assembles. Patches without tessellation stages have no corners.
+TopologyShape topology_shape(const DrawCall& draw);
 
 }  // namespace vitrine::raster

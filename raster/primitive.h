@@ -45,6 +45,7 @@ struct ChunkOutput {
   const Primitive* primitives = nullptr;
   const TileRange* ranges = nullptr;
   std::uint32_t range_count = 0;
+  const struct CaptureOutput* capture = nullptr;  ///< transform feedback
 };
 
 /// Tiles of a pass: 64x64 pixels, layer after layer, rows from the top.
@@ -63,13 +64,14 @@ struct Run {
   std::uint32_t begin, end;
   std::uint32_t instance;  ///< without first_instance
   std::uint32_t first_id;  ///< gl_PrimitiveID of primitive 0 of the strip
+  bool ends = true;        ///< the strip's last primitive is in here
 };
 
 /// A draw of the pass with everything derived from it; lives until the flush.
 struct DrawRecord {
   DrawCall call;
   const PipelinePlan* plan = nullptr;
-  Stage vertex, fragment;
+  Stage vertex, control, evaluation, geometry, fragment;
 };
 
 }  // namespace vitrine::raster

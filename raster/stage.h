@@ -2,6 +2,7 @@
 // same whole-wave interface.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "base/lanes.h"
@@ -32,6 +33,8 @@ class StageRunner {
  public:
   void bind(const Stage& stage);
   base::WaveRegister& input(std::uint32_t reg) { return stage_.native ? native_inputs_[reg] : runner_.input(reg); }
+  /// See spirv::WaveRunner; stages written in C++ have none.
+  void set_stage_memory(std::uint32_t* words, std::size_t count) { runner_.set_stage_memory(words, count); }
   const base::WaveRegister& output(std::uint32_t reg) const {
     return stage_.native ? native_outputs_[reg] : runner_.output(reg);
   }

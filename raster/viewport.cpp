@@ -56,9 +56,11 @@ void transform_lanes(const float* const clip[4], const TransformParameters& p, T
     const VF z = hn::Load(f, clip[2] + i), w = hn::Load(f, clip[3] + i);
     hn::Store(clip_code(x, y, z, w, p), U(), out.code + i);
     const VF oow = hn::Div(hn::Set(f, 1.0f), w);
-    const VF wx = lanes_fma(hn::Mul(x, oow), hn::Set(f, t.sx), hn::Set(f, t.tx));
-    const VF wy = lanes_fma(hn::Mul(y, oow), hn::Set(f, t.sy), hn::Set(f, t.ty));
-    const VF wz = lanes_fma(hn::Mul(z, oow), hn::Set(f, t.sz), hn::Set(f, t.tz));
+    const auto window = [&](VF clip, float scale, float translate) HWY_ATTR {
+      const VF ndc = hn::Mul(clip, oow), s = hn::Set(f, scale), move = hn::Set(f, translate);
+      return p.fused ? lanes_fma(ndc, s, move) : hn::Add(hn::Mul(ndc, s), move);
+    };
+    const VF wx = window(x, t.sx, t.tx), wy = window(y, t.sy, t.ty), wz = window(z, t.sz, t.tz);
     hn::Store(wx, f, out.x + i);
     hn::Store(wy, f, out.y + i);
     hn::Store(wz, f, out.z + i);

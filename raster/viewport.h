@@ -28,6 +28,7 @@ struct TransformParameters {
   float pixel_offset;
   bool depth_clip;
   bool negative_one_to_one;
+  bool fused;  ///< form A of 1.2, else form B
 };
 
 /// `clip`: registers of x, y, z, w.

@@ -68,8 +68,9 @@ struct Wave {
   base::LaneMask launched = 0;      ///< lanes of the run
   const ResourceTable* resources = nullptr;
   const struct Program* program = nullptr;
-  std::byte* shared = nullptr;  ///< workgroup memory (compute)
-  std::byte* arrays = nullptr;  ///< local arrays: element e of array a at a.offset + e*256
+  std::byte* shared = nullptr;    ///< workgroup memory (compute), stage memory (tessellation, geometry)
+  std::uint32_t shared_size = 0;  ///< bytes
+  std::byte* arrays = nullptr;    ///< local arrays: element e of array a at a.offset + e*256
   std::uint32_t workgroup_id[3] = {}, num_workgroups[3] = {};
   std::uint32_t first_invocation = 0;  ///< compute: LocalInvocationIndex of lane 0
   std::int64_t budget = 0;             ///< back edges left; below 0: fault

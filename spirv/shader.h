@@ -1,5 +1,5 @@
 // The narrow interface between fixed function and shaders: whole waves in, whole waves out. raster/ includes only this
-// header of spirv/ (and resources.h); it never sees SPIR-V ids.
+// header of spirv/ (and stage_memory.h, resources.h); it never sees SPIR-V ids.
 //
 // Use: compile() once per pipeline stage -> Shader. Per draw: bind() runs the uniform preamble -> BoundShader, shared
 // by all threads. Per thread: a WaveRunner holds the memory of one wave; fill its inputs, run(), read its outputs.
@@ -37,6 +37,18 @@ enum class BuiltIn : std::uint8_t {
   kBaseInstance,
   kDrawIndex,
   kViewIndex,
+  // tessellation and geometry in (kPrimitiveId, kViewIndex too)
+  kInvocationId,
+  kPatchVertices,
+  kTessCoord,
+  kVertexTable,  ///< byte offset in stage memory of the invocation's row of vertex offsets
+  kPatchOffset,  ///< byte offset in stage memory of the patch: read by evaluation, written by control shaders
+  kEmitOffset,   ///< byte offset in stage memory of the vertices that the invocation emits
+  // tessellation control out, evaluation in: words of the patch
+  kTessLevelOuter,
+  kTessLevelInner,
+  // geometry out: how many vertices were emitted
+  kEmittedVertices,
   // vertex out
   kPosition,
   kPointSize,
@@ -62,6 +74,9 @@ enum class BuiltIn : std::uint8_t {
   kFragStencilRef,
 };
 
+inline constexpr std::uint8_t kNoXfbBuffer = 255;
+inline constexpr std::uint32_t kMaxXfbBuffers = 4;
+
 /// One scalar 32-bit component of the interface. `component` counts 0..3 in a location, or the element of a built-in
 /// (FragCoord.z = 2, ClipDistance[5] = 5).
 struct InterfaceSlot {
@@ -70,16 +85,44 @@ struct InterfaceSlot {
   std::uint16_t location = 0;
   std::uint8_t index = 0;  ///< dual source blending: Index decoration
   BaseType type = BaseType::kFloat;
+  std::uint8_t stream = 0;                 ///< geometry out
+  std::uint8_t xfb_buffer = kNoXfbBuffer;  ///< last stage before rasterization: captured there
+  std::uint32_t xfb_offset = 0;            ///< bytes in the buffer's stride
   Interpolation interpolation = Interpolation::kPerspective;
   SampleLocation sample_location = SampleLocation::kCenter;
   InputPart part = InputPart::kValue;
   std::uint32_t reg = 0;  ///< register of the wave: WaveRunner::input(reg) / output(reg)
 };
 
+enum class TessDomain : std::uint8_t { kTriangles, kQuads, kIsolines };
+enum class TessSpacing : std::uint8_t { kEqual, kFractionalOdd, kFractionalEven };
+
+/// Execution modes of tessellation and geometry stages, and what they keep in stage memory (spirv/stage_memory.h).
+struct StageModes {
+  // geometry
+  std::uint32_t input_vertices = 0;  ///< of a primitive: 1, 2, 3, 4 (lines with adjacency) or 6 (triangles with)
+  VkPrimitiveTopology output = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;  ///< or LINE_STRIP, TRIANGLE_STRIP
+  std::uint32_t max_vertices = 0, invocations = 1;
+  // tessellation; those of both stages together hold
+  std::uint32_t control_points = 0;  ///< vertices of an output patch
+  bool has_domain = false, has_spacing = false, has_order = false;
+  TessDomain domain = TessDomain::kTriangles;
+  TessSpacing spacing = TessSpacing::kEqual;
+  bool clockwise = false, point_mode = false;
+  // stage memory
+  std::uint32_t input_locations = 0;  ///< of an input vertex, locations that may be read
+  std::uint32_t vertex_words = 0;     ///< of an output vertex: control shaders, geometry shaders
+  std::uint32_t patch_words = 0;      ///< control shaders: in front of the vertices
+};
+
 struct ShaderInterface {
   VkShaderStageFlagBits stage = VK_SHADER_STAGE_VERTEX_BIT;
   std::vector<InterfaceSlot> inputs;   ///< only those the shader reads
   std::vector<InterfaceSlot> outputs;  ///< only those it may write
+  std::vector<InterfaceSlot> emitted;  ///< geometry: what each vertex holds; `reg` is a word of the vertex
+  StageModes modes;
+  bool captures = false;                          ///< execution mode Xfb
+  std::uint32_t xfb_stride[kMaxXfbBuffers] = {};  ///< bytes
   std::uint32_t local_size[3] = {1, 1, 1};
   std::uint32_t shared_bytes = 0;
 
@@ -144,6 +187,9 @@ class WaveRunner {
   WaveRunner& operator=(const WaveRunner&) = delete;
 
   void bind(const BoundShader& shader);
+
+  /// Memory that tessellation and geometry stages share with fixed function: words, until the next bind().
+  void set_stage_memory(std::uint32_t* words, std::size_t count);
 
   /// Registers of InterfaceSlot::reg. Inputs must be written for every lane in `active` before each run() (run() may
   /// reuse input registers for other values); outputs are valid after run() until the next.

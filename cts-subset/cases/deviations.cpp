@@ -90,6 +90,26 @@ const AddCase kScissor(
       draw(run, "whole", target, {}, values);
     });
 
+/// A short vertical line of one colour, and the two triangles that its rectangle consists of.
+const AddCase kShortLine("rasterization", "deviation.multisample_short_lines", "multisample-short-lines",
+                         case_against_control, [](Run& run) {
+                           TargetSpec target;
+                           target.samples = VK_SAMPLE_COUNT_4_BIT;
+                           const auto at = [](float x, float y) {
+                             return std::array<float, 4>{x / 32.0f - 1.0f, y / 32.0f - 1.0f, 0.5f, 1.0f};
+                           };
+                           const auto plain = [](std::vector<float> values) {
+                             for (size_t i = 4; i < values.size(); i += 8) values[i] = 0.25f;
+                             return values;
+                           };
+                           GraphicsSpec spec;
+                           spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+                           draw(run, "line", target, spec, plain(colored({at(16.5f, 20.25f), at(16.5f, 20.75f)})));
+                           draw(run, "triangles", target, {},
+                                plain(colored({at(16, 20.25f), at(17, 20.25f), at(16, 20.75f), at(17, 20.25f),
+                                               at(16, 20.75f), at(17, 20.75f)})));
+                         });
+
 const char kBigPoint[] = R"(
 layout(location = 0) in vec4 position;
 layout(location = 1) in vec4 color;

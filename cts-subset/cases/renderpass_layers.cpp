@@ -30,6 +30,43 @@ layout(location = 0) out vec4 result;
 layout(input_attachment_index = 0, binding = 0) uniform subpassInput first;
 void main() { result = subpassLoad(first) + passed * (0.1 * float(gl_ViewIndex)); })";
 
+const char kViewGeometry[] = R"(
+#extension GL_EXT_multiview : require
+layout(triangles) in;
+layout(triangle_strip, max_vertices = 3) out;
+layout(location = 0) in vec4 passed[];
+layout(location = 0) out vec4 color;
+void main() {
+  for (int i = 0; i < 3; ++i) {
+    gl_Position = gl_in[i].gl_Position * vec4(vec2(1.0 - 0.2 * float(gl_ViewIndex)), 1.0, 1.0);
+    color = passed[(i + gl_ViewIndex) % 3];
+    EmitVertex();
+  }
+})";
+
+const char kViewControl[] = R"(
+#extension GL_EXT_multiview : require
+layout(vertices = 3) out;
+layout(location = 0) in vec4 passed[];
+layout(location = 0) out vec4 color[];
+void main() {
+  gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position;
+  color[gl_InvocationID] = passed[gl_InvocationID];
+  gl_TessLevelOuter = float[4](1.0 + float(gl_ViewIndex), 2.0, 3.0, 0.0);
+  gl_TessLevelInner = float[2](2.0 + float(gl_ViewIndex), 0.0);
+})";
+
+const char kViewEvaluation[] = R"(
+#extension GL_EXT_multiview : require
+layout(triangles, equal_spacing, cw) in;
+layout(location = 0) in vec4 color[];
+layout(location = 0) out vec4 passed;
+void main() {
+  gl_Position = vec4(0.0);
+  for (int i = 0; i < 3; ++i) gl_Position += gl_in[i].gl_Position * gl_TessCoord[i];
+  passed = color[gl_ViewIndex % 3] * gl_TessCoord.x + color[0] * 0.5;
+})";
+
 VkAttachmentDescription describe(const Image& image, VkAttachmentLoadOp load) {
   VkAttachmentDescription result{};
   result.format = image.spec.format;
@@ -91,10 +128,12 @@ VkFramebuffer make_framebuffer(Run& run, VkRenderPass pass, const std::vector<Vk
   return run.own(framebuffer, vkDestroyFramebuffer);
 }
 
-std::vector<float> random_vertices(Random& random, int count) {
+/// `reach` above 1: some are clipped.
+std::vector<float> random_vertices(Random& random, int count, float reach = 1.2f) {
   std::vector<float> values;
   for (int i = 0; i < count; ++i) {
-    for (const float v : {random.real(-1.2f, 1.2f), random.real(-1.2f, 1.2f), random.unit(), 1.0f}) values.push_back(v);
+    for (const float v : {random.real(-reach, reach), random.real(-reach, reach), random.unit(), 1.0f})
+      values.push_back(v);
     for (int c = 0; c < 4; ++c) values.push_back(random.unit());
   }
   return values;
@@ -106,6 +145,7 @@ struct ViewScene {
   VkAttachmentLoadOp load, second_load;
   bool clears_inside;
   Buffer vertices;
+  bool geometry = false, tessellates = false;
 };
 
 struct ViewImages {
@@ -145,6 +185,13 @@ void draw_views(Run& run, const ViewScene& scene, const ViewImages& images, uint
     graphics.fragment = i ? kSecondFragment : kFirstFragment;
     graphics.layout = resources.layout;
     graphics.floats({4, 4});
+    if (scene.geometry) graphics.geometry = kViewGeometry;
+    if (scene.tessellates) {
+      graphics.control = kViewControl;
+      graphics.evaluation = kViewEvaluation;
+      graphics.assembly.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
+      graphics.tessellation.patchControlPoints = 3;
+    }
     graphics.depth.depthTestEnable = graphics.depth.depthWriteEnable = i == 0;
     pipelines[i] = make_pipeline(run, graphics, pass, i, 1, scene.extent, VK_SAMPLE_COUNT_1_BIT);
   }
@@ -183,7 +230,8 @@ CTS_RANDOM("renderpass", "random_multiview", 40) {
   Random& random = run.random;
   run.require(run.gpu.extension_features.multiview.multiview, "multiview");
   const auto op = [&] { return static_cast<VkAttachmentLoadOp>(random.below(2)); };  // LOAD or CLEAR
-  ViewScene scene{{16 + random.below(60), 16 + random.below(60)}, kLayers, op(), op(), random.chance(0.5f), {}};
+  ViewScene scene{
+      {16 + random.below(60), 16 + random.below(60)}, kLayers, op(), op(), random.chance(0.5f), {}, false, false};
   scene.vertices = run.buffer_of(random_vertices(random, 18));
   const ViewImages images = make_images(run, scene.extent, kLayers);
   draw_views(run, scene, images, 1u << random.below(kLayers));
@@ -192,26 +240,61 @@ CTS_RANDOM("renderpass", "random_multiview", 40) {
   run.out("depth", images.depth);
 }
 
-/// All views at once, and the control: one pass per view.
-const AddCase kViews(
-    "renderpass", "deviation.multiview_layers", "multiview-layers",
-    [](const std::vector<Output>& device, const std::vector<Output>& reference) -> std::string {
-      if (const Comparison c = compare(device[1], reference[1]); !c.first.empty()) return "the control: " + c.first;
-      if (compare(reference[0], reference[1]).first.empty()) return "the reference's fault does not show";
-      if (const Comparison c = compare(device[0], reference[1]); !c.first.empty()) return "the device: " + c.first;
-      return "";
-    },
-    [](Run& run) {
-      run.require(run.gpu.extension_features.multiview.multiview, "multiview");
-      constexpr VkAttachmentLoadOp kClear = VK_ATTACHMENT_LOAD_OP_CLEAR;
-      ViewScene scene{{60, 50}, 3, kClear, kClear, true, run.buffer_of(random_vertices(run.random, 18))};
-      const ViewImages together = make_images(run, scene.extent, scene.layers);
-      const ViewImages alone = make_images(run, scene.extent, scene.layers);
-      draw_views(run, scene, together, 7);
-      for (const uint32_t mask : {1u, 2u, 4u}) draw_views(run, scene, alone, mask);
-      run.out("together", together.second);
-      run.out("alone", alone.second);
-    });
+/// The reference takes the layer of a clipped primitive from memory that it has not written, when a stage behind the
+/// vertex shader chose it; gl_ViewIndex moves vertices by up to 0.45.
+constexpr float kInside = 0.5f;
+
+/// With shaders behind the vertex shader that read gl_ViewIndex too.
+CTS_RANDOM("renderpass", "random_multiview_stages", 20) {
+  Random& random = run.random;
+  const bool geometry = random.chance(0.5f), tessellates = !geometry || random.chance(0.5f);
+  run.require(run.gpu.extension_features.multiview.multiview, "multiview");
+  run.require(!geometry || run.gpu.extension_features.multiview.multiviewGeometryShader, "multiviewGeometryShader");
+  run.require(!tessellates || run.gpu.extension_features.multiview.multiviewTessellationShader,
+              "multiviewTessellationShader");
+  constexpr VkAttachmentLoadOp kClear = VK_ATTACHMENT_LOAD_OP_CLEAR;
+  ViewScene scene{
+      {16 + random.below(60), 16 + random.below(60)}, kLayers, kClear, kClear, false, {}, geometry, tessellates};
+  scene.vertices = run.buffer_of(random_vertices(random, 18, kInside));
+  const ViewImages images = make_images(run, scene.extent, kLayers);
+  draw_views(run, scene, images, 1u << random.below(kLayers));
+  run.out("first", images.first);
+  run.out("second", images.second);
+  run.out("depth", images.depth);
+}
+
+/// Output 0 is all views at once, output 1 the control: one pass per view.
+std::string judge_views(const std::vector<Output>& device, const std::vector<Output>& reference) {
+  if (const Comparison c = compare(device[1], reference[1]); !c.first.empty()) return "the control: " + c.first;
+  if (compare(reference[0], reference[1]).first.empty()) return "the reference's fault does not show";
+  if (const Comparison c = compare(device[0], reference[1]); !c.first.empty()) return "the device: " + c.first;
+  return "";
+}
+
+void draw_together_and_alone(Run& run, bool geometry, bool tessellates) {
+  run.require(run.gpu.extension_features.multiview.multiview, "multiview");
+  constexpr VkAttachmentLoadOp kClear = VK_ATTACHMENT_LOAD_OP_CLEAR;
+  ViewScene scene{{60, 50}, 3,          kClear,
+                  kClear,   true,       run.buffer_of(random_vertices(run.random, 18, geometry ? kInside : 1.2f)),
+                  geometry, tessellates};
+  const ViewImages together = make_images(run, scene.extent, scene.layers);
+  const ViewImages alone = make_images(run, scene.extent, scene.layers);
+  draw_views(run, scene, together, 7);
+  for (const uint32_t mask : {1u, 2u, 4u}) draw_views(run, scene, alone, mask);
+  run.out("together", together.second);
+  run.out("alone", alone.second);
+}
+
+const AddCase kViews("renderpass", "deviation.multiview_layers", "multiview-layers", judge_views,
+                     [](Run& run) { draw_together_and_alone(run, false, false); });
+
+/// With stages behind the vertex shader the reference does it right.
+const AddCase kViewsBehindStages("renderpass", "multiview_behind_stages", [](Run& run) {
+  run.require(run.gpu.extension_features.multiview.multiviewGeometryShader &&
+                  run.gpu.extension_features.multiview.multiviewTessellationShader,
+              "multiview with all stages");
+  draw_together_and_alone(run, true, true);
+});
 
 /// Layered framebuffers without multiview: load operations reach every layer, draws the first one.
 CTS_RANDOM("renderpass", "random_layered_clears", 30) {

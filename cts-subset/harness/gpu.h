@@ -34,6 +34,10 @@ void check(VkResult result, const char* call);
     "VK_KHR_shader_atomic_int64")                                                                                      \
   X(integer_dot_product, VkPhysicalDeviceShaderIntegerDotProductFeatures, SHADER_INTEGER_DOT_PRODUCT_FEATURES,         \
     "VK_KHR_shader_integer_dot_product")                                                                               \
+  X(transform_feedback, VkPhysicalDeviceTransformFeedbackFeaturesEXT, TRANSFORM_FEEDBACK_FEATURES_EXT,                 \
+    "VK_EXT_transform_feedback")                                                                                       \
+  X(primitives_generated_query, VkPhysicalDevicePrimitivesGeneratedQueryFeaturesEXT,                                   \
+    PRIMITIVES_GENERATED_QUERY_FEATURES_EXT, "VK_EXT_primitives_generated_query")                                      \
   X(atomic_float, VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, SHADER_ATOMIC_FLOAT_FEATURES_EXT,                      \
     "VK_EXT_shader_atomic_float")                                                                                      \
   X(atomic_float2, VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, SHADER_ATOMIC_FLOAT_2_FEATURES_EXT,                  \

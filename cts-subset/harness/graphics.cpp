@@ -203,6 +203,12 @@ VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, 
   stage(VK_SHADER_STAGE_VERTEX_BIT,
         spec.vertex_module ? spec.vertex_module : run.shader(VK_SHADER_STAGE_VERTEX_BIT, spec.vertex),
         spec.vertex_special);
+  const auto between = [&](VkShaderStageFlagBits bit, const std::string& text) {
+    if (!text.empty()) stage(bit, run.shader(bit, text), nullptr);
+  };
+  between(VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, spec.control);
+  between(VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, spec.evaluation);
+  between(VK_SHADER_STAGE_GEOMETRY_BIT, spec.geometry);
   if (spec.fragment_module || !spec.fragment.empty())
     stage(VK_SHADER_STAGE_FRAGMENT_BIT,
           spec.fragment_module ? spec.fragment_module : run.shader(VK_SHADER_STAGE_FRAGMENT_BIT, spec.fragment),
@@ -249,6 +255,7 @@ VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, 
   info.pStages = stages.data();
   info.pVertexInputState = &input;
   info.pInputAssemblyState = &spec.assembly;
+  info.pTessellationState = spec.control.empty() ? nullptr : &spec.tessellation;
   info.pViewportState = &viewport;
   info.pRasterizationState = &spec.raster;
   info.pMultisampleState = &multisample;

@@ -22,6 +22,12 @@ const char* stage_name(VkShaderStageFlagBits stage) {
   switch (stage) {
     case VK_SHADER_STAGE_VERTEX_BIT:
       return "vertex";
+    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
+      return "tessellation control";
+    case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
+      return "tessellation evaluation";
+    case VK_SHADER_STAGE_GEOMETRY_BIT:
+      return "geometry";
     case VK_SHADER_STAGE_FRAGMENT_BIT:
       return "fragment";
     case VK_SHADER_STAGE_COMPUTE_BIT:
@@ -89,20 +95,36 @@ class StageCompiler {
   VkResult failure_ = kCompileError;
 };
 
+/// Where a pipeline keeps a stage; null: no stage of graphics pipelines.
+std::shared_ptr<const CompiledShader>* shader_of(Pipeline& pipeline, VkShaderStageFlagBits stage) {
+  switch (stage) {
+    case VK_SHADER_STAGE_VERTEX_BIT:
+      return &pipeline.vertex;
+    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
+      return &pipeline.control;
+    case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
+      return &pipeline.evaluation;
+    case VK_SHADER_STAGE_GEOMETRY_BIT:
+      return &pipeline.geometry;
+    case VK_SHADER_STAGE_FRAGMENT_BIT:
+      return &pipeline.fragment;
+    default:
+      return nullptr;
+  }
+}
+
 /// Compiles one stage if it takes part. False after a report.
 bool compile_graphics_stage(StageCompiler& compiler, const VkPipelineShaderStageCreateInfo& stage, std::uint32_t index,
                             Pipeline& pipeline) {
-  if (stage.stage == VK_SHADER_STAGE_VERTEX_BIT) {
-    pipeline.vertex = compiler.compile(stage, index, pipeline.layout, 0);
-    return pipeline.vertex != nullptr;
+  std::shared_ptr<const CompiledShader>* shader = shader_of(pipeline, stage.stage);
+  if (!shader) {
+    VITRINE_UNSUPPORTED("mesh and task stages");
+    return false;
   }
-  if (stage.stage == VK_SHADER_STAGE_FRAGMENT_BIT) {
-    if (pipeline.never_rasterizes()) return true;
-    pipeline.fragment = compiler.compile(stage, index, pipeline.layout, pipeline.live_colors);
-    return pipeline.fragment != nullptr;
-  }
-  VITRINE_UNSUPPORTED("tessellation and geometry stages");
-  return false;
+  const bool fragment = stage.stage == VK_SHADER_STAGE_FRAGMENT_BIT;
+  if (fragment && pipeline.never_rasterizes()) return true;
+  *shader = compiler.compile(stage, index, pipeline.layout, fragment ? pipeline.live_colors : 0);
+  return *shader != nullptr;
 }
 
 /// A stage that a library kept, as the application gave it.

@@ -53,6 +53,11 @@ void write_values(const QueryPool& pool, std::uint32_t query, bool write, Result
   }
 }
 
+std::uint32_t counters_per_query(VkQueryType type) {
+  if (type == VK_QUERY_TYPE_PIPELINE_STATISTICS) return kStatisticsCounters;
+  return type == VK_QUERY_TYPE_TRANSFORM_FEEDBACK_STREAM_EXT ? 2 : 1;  // written, needed
+}
+
 }  // namespace
 
 QueryPool::QueryPool(const HostMemory& m, const VkQueryPoolCreateInfo& info)
@@ -60,7 +65,7 @@ QueryPool::QueryPool(const HostMemory& m, const VkQueryPoolCreateInfo& info)
       type(info.queryType),
       statistics(info.pipelineStatistics),
       count(info.queryCount),
-      stride(info.queryType == VK_QUERY_TYPE_PIPELINE_STATISTICS ? kStatisticsCounters : 1) {
+      stride(counters_per_query(info.queryType)) {
   const std::size_t counter_bytes = sizeof(*counters) * count * stride;
   auto* storage =
       static_cast<std::byte*>(m.allocate(counter_bytes + sizeof(*available) * count,

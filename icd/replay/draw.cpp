@@ -41,7 +41,13 @@ bool prepare_draw(ReplayState& state) {
   if (state.dirty & kDirtyState) {
     draw.state = resolve_state(state);
     draw.vertex = pipeline->vertex->shader.get();
-    draw.fragment = pipeline->fragment ? pipeline->fragment->shader.get() : nullptr;
+    const auto shader_of = [](const std::shared_ptr<const CompiledShader>& stage) {
+      return stage ? stage->shader.get() : nullptr;
+    };
+    draw.control = shader_of(pipeline->control);
+    draw.evaluation = shader_of(pipeline->evaluation);
+    draw.geometry = shader_of(pipeline->geometry);
+    draw.fragment = shader_of(pipeline->fragment);
   }
   if (state.dirty & kDirtyDescriptors) fill_resources(state, state.graphics, draw.vertex_resources);
   if (state.dirty & kDirtyPushConstants) draw.vertex_resources.push_constants = copy_push_constants(state);
@@ -160,6 +166,13 @@ void execute(ReplayState& state, const CmdDrawIndirect& command) {
       draw_direct(state, {a.vertexCount, a.instanceCount, a.firstVertex, a.firstInstance}, i);
     }
   }
+}
+
+void execute(ReplayState& state, const CmdDrawByteCount& command) {
+  std::uint32_t bytes = 0;
+  if (!read_counter(command.counter, bytes) || command.stride == 0 || !prepare_draw(state)) return;
+  const std::uint32_t vertices = bytes > command.subtracted ? (bytes - command.subtracted) / command.stride : 0;
+  draw_direct(state, {vertices, command.instance_count, 0, command.first_instance}, 0);
 }
 
 void execute(ReplayState& state, const CmdDispatch& command) { dispatch(state, command.base, command.groups); }

@@ -32,6 +32,7 @@ void forget_bindings(ReplayState& state) {
   state.draw.fault = &state.fault;
   state.counters = {};
   state.suppressed = false;
+  state.feedback = {};
   state.dirty = kDirtyAll;
 }
 

@@ -77,6 +77,7 @@ struct ReplayState {
   DynamicValues dynamic;
   bool suppressed = false;  ///< conditional rendering discards draws, dispatches and clears
   std::uint32_t dirty = kDirtyAll;
+  raster::TransformFeedback feedback;
   raster::DrawCall draw;  ///< up to date but for `dirty` and the numbers of the draw itself
 
   // The render pass instance
@@ -115,6 +116,9 @@ const raster::State* resolve_state(ReplayState& state);
 /// the arena.
 void fill_resources(ReplayState& state, const BindPoint& bind_point, spirv::ResourceTable& table);
 
+/// Reads a counter of transform feedback. False if it is not there.
+bool read_counter(const CounterBuffer& counter, std::uint32_t& value);
+
 void execute(ReplayState& state, const CmdBindPipeline& command);
 void execute(ReplayState& state, const CmdBindDescriptorSets& command);
 void execute(ReplayState& state, const CmdPushConstants& command);
@@ -140,6 +144,10 @@ void execute(ReplayState& state, const CmdDrawMultiIndexed& command);
 void execute(ReplayState& state, const CmdDrawIndirect& command);
 void execute(ReplayState& state, const CmdBeginConditionalRendering& command);
 void execute(ReplayState& state, const CmdEndConditionalRendering& command);
+void execute(ReplayState& state, const CmdDrawByteCount& command);
+void execute(ReplayState& state, const CmdBindTransformFeedbackBuffers& command);
+void execute(ReplayState& state, const CmdBeginTransformFeedback& command);
+void execute(ReplayState& state, const CmdEndTransformFeedback& command);
 void execute(ReplayState& state, const CmdDispatch& command);
 void execute(ReplayState& state, const CmdDispatchIndirect& command);
 void execute(ReplayState& state, const CmdBeginRenderPass& command);

@@ -23,6 +23,16 @@ void end_queries(ReplayState& state, QueryPool& pool, std::uint32_t query, bool 
   if (!state.pass) publish_queries(state);
 }
 
+/// What an active query counts into; null ends it.
+void set_counters(raster::QueryCounters& active, VkQueryType type, std::uint32_t index,
+                  std::atomic<std::uint64_t>* counters) {
+  if (type == VK_QUERY_TYPE_OCCLUSION) active.occlusion = counters;
+  if (type == VK_QUERY_TYPE_PIPELINE_STATISTICS) active.statistics = counters;
+  if (index >= raster::kMaxStreams) return;
+  if (type == VK_QUERY_TYPE_TRANSFORM_FEEDBACK_STREAM_EXT) active.feedback[index] = counters;
+  if (type == VK_QUERY_TYPE_PRIMITIVES_GENERATED_EXT) active.generated[index] = counters;
+}
+
 }  // namespace
 
 void publish_queries(ReplayState& state) {
@@ -41,15 +51,12 @@ void publish_queries(ReplayState& state) {
 
 void execute(ReplayState& state, const CmdBeginQuery& command) {
   if (command.query >= command.pool->count) return;
-  std::atomic<std::uint64_t>* counters = command.pool->counters_of(command.query);
-  if (command.pool->type == VK_QUERY_TYPE_OCCLUSION) state.counters.occlusion = counters;
-  if (command.pool->type == VK_QUERY_TYPE_PIPELINE_STATISTICS) state.counters.statistics = counters;
+  set_counters(state.counters, command.pool->type, command.index, command.pool->counters_of(command.query));
 }
 
 void execute(ReplayState& state, const CmdEndQuery& command) {
   if (command.query >= command.pool->count) return;
-  if (command.pool->type == VK_QUERY_TYPE_OCCLUSION) state.counters.occlusion = nullptr;
-  if (command.pool->type == VK_QUERY_TYPE_PIPELINE_STATISTICS) state.counters.statistics = nullptr;
+  set_counters(state.counters, command.pool->type, command.index, nullptr);
   end_queries(state, *command.pool, command.query);
 }
 

@@ -100,6 +100,6 @@ inline Bytes push_bytes(const Wave& wave) {
   return {const_cast<std::byte*>(wave.resources->push_constants),
           wave.resources->push_constants ? kMaxPushConstantBytes : 0};
 }
-inline Bytes shared_bytes(const Wave& wave) { return {wave.shared, wave.shared ? wave.program->shared_bytes : 0}; }
+inline Bytes shared_bytes(const Wave& wave) { return {wave.shared, wave.shared_size}; }
 
 }  // namespace vitrine::spirv::exec

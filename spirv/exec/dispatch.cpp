@@ -49,6 +49,7 @@ void bind(GroupMemory& memory, const Launch& launch) {
   for (std::size_t w = 0; w < resident; ++w) {
     memory.memory[w].bind(launch.shader, memory.waves[w]);
     memory.waves[w].shared = reinterpret_cast<std::byte*>(memory.shared.data());
+    memory.waves[w].shared_size = launch.program.shared_bytes;
     std::copy_n(launch.groups, 3, memory.waves[w].num_workgroups);
   }
 }

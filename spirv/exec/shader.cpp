@@ -66,6 +66,11 @@ void WaveRunner::bind(const BoundShader& shader) {
   state_->memory.bind(shader, state_->wave);
 }
 
+void WaveRunner::set_stage_memory(std::uint32_t* words, std::size_t count) {
+  state_->wave.shared = reinterpret_cast<std::byte*>(words);
+  state_->wave.shared_size = static_cast<std::uint32_t>(std::min<std::size_t>(count * 4, INT32_MAX));
+}
+
 base::WaveRegister& WaveRunner::input(std::uint32_t reg) {
   return *reinterpret_cast<base::WaveRegister*>(state_->wave.registers + std::size_t{reg} * kRegisterStride);
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <unordered_map>
 #include <unordered_set>
@@ -69,6 +70,11 @@ struct Pointer {
   bool row_major = false;
   std::uint32_t component_stride = 0;                   ///< bytes between components of a vector; 0: adjacent
   ir::ValueId low = ir::kNoValue, high = ir::kNoValue;  ///< kGlobal: the address
+  // kShared: stage memory
+  bool stage = false;         ///< laid out by locations (spirv/stage_memory.h)
+  bool vertex_array = false;  ///< the next index selects a vertex
+  bool patch = false;         ///< belongs to the patch
+  bool built_in = false;      ///< scalars without gaps
   // kDescriptor, kTexel
   ImageHandle image;
   ir::ValueId coord = ir::kNoValue, sample = ir::kNoValue;
@@ -118,6 +124,11 @@ struct Translator {
   std::map<InputKey, ir::ValueId> loaded_inputs;  ///< slots loaded by the prologue
   std::unordered_map<ir::ValueId, std::array<std::uint32_t, 4>> constant_words;
   std::unordered_set<ir::ValueId> undefined_ids;
+  std::map<std::uint32_t, ir::ValueId> vertex_offsets;       ///< input vertex -> its byte offset in stage memory
+  std::set<std::pair<std::uint32_t, std::uint32_t>> stored;  ///< (local, first step or kWholeVariable)
+  std::uint32_t emitted_locals = 0;                          ///< geometry: locals below may be outputs
+  std::uint32_t emitted_local = 0;                           ///< geometry: vertices emitted so far
+  std::array<std::uint32_t, 4> starts_local{};               ///< geometry: per stream, the next vertex starts a strip
 
   std::unordered_map<std::uint32_t, Value> values;
   std::unordered_map<std::uint32_t, Pointer> pointers;
@@ -142,6 +153,9 @@ struct Translator {
   bool exact = false;          ///< the instruction is decorated NoContraction
   bool opaque = false;         ///< what is emitted now is Instr::opaque
 };
+
+/// A path of an interface variable (first step) that is stored to somewhere; kWholeVariable: at a dynamic index.
+inline constexpr std::uint32_t kWholeVariable = ~std::uint32_t{0};
 
 /// Bounds the size of what a module may expand to, so that a small module cannot ask for endless memory.
 inline constexpr std::size_t kMaxNodes = 1u << 20;
@@ -257,6 +271,17 @@ void read_modes(Translator& t);
 /// Initial values of Input variables (into t.prologue) and StoreOutput of Output variables (at the end of the body);
 /// joins prologue and body.
 void connect_interface(Translator& t);
+
+// ---- stage_memory.cpp
+/// Whether an Input or Output variable of this stage lies in stage memory; then what it stands for.
+bool in_stage_memory(const Translator& t, const Inst& variable);
+Pointer stage_pointer(Translator& t, const Inst& variable);
+/// Follows one step into stage memory.
+void step_stage(Translator& t, const Inst& inst, const Type& type, Pointer& pointer, const Step& step);
+/// Sizes of what the stage writes to stage memory; geometry: variables that count what is emitted.
+void prepare_stage(Translator& t);
+/// Geometry: what emitted vertices hold, and the number of vertices as an output.
+void finish_emission(Translator& t);
 
 // ---- passes of the front end, in this order
 /// Exit(id) inside `list` becomes structure: what follows moves into the branch that does not exit, or behind a flag.

@@ -17,6 +17,8 @@ std::uint32_t component_bytes(const Translator& t, const Pointer& pointer);
 std::uint32_t vector_type_of(const Translator& t, const Pointer& pointer);
 /// Value of a built-in of subgroups (their sizes, numbers and masks).
 ir::ValueId subgroup_built_in(Translator& t, spv::BuiltIn built_in);
+/// An input of fixed function, loaded before the body.
+ir::ValueId built_in_input(Translator& t, BuiltIn built_in, std::uint8_t component = 0);
 
 /// Integer framebuffer coordinates (x, y) and the view index of a fragment, loaded before the body.
 ir::ValueId fragment_position(Translator& t);

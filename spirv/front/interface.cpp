@@ -1,4 +1,4 @@
-// The shader's interface: execution modes, numbered locations and built-ins as InterfaceSlots (Vulkan, Shader
+// The shader's interface: numbered locations and built-ins as InterfaceSlots (Vulkan, Shader
 // Interfaces; Built-In Variables). Inputs are stored to their variables before the body, outputs loaded after it.
 #include "spirv/front/interface.h"
 
@@ -35,6 +35,11 @@ constexpr BuiltInRow kBuiltIns[] = {
     {spv::BuiltIn::SamplePosition, BuiltIn::kSamplePosition, ir::Op::kLoadInput, 2},
     {spv::BuiltIn::SampleMask, BuiltIn::kSampleMask, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::PrimitiveId, BuiltIn::kPrimitiveId, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::InvocationId, BuiltIn::kInvocationId, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::PatchVertices, BuiltIn::kPatchVertices, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::TessCoord, BuiltIn::kTessCoord, ir::Op::kLoadInput, 3},
+    {spv::BuiltIn::TessLevelOuter, BuiltIn::kTessLevelOuter, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::TessLevelInner, BuiltIn::kTessLevelInner, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::FragDepth, BuiltIn::kFragDepth, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::FragStencilRefEXT, BuiltIn::kFragStencilRef, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::HelperInvocation, BuiltIn::kNone, ir::Op::kHelperInvocation, 1},
@@ -53,12 +58,6 @@ constexpr BuiltInRow kBuiltIns[] = {
     {spv::BuiltIn::SubgroupLeMask, BuiltIn::kNone, kOfSubgroup, 4},
     {spv::BuiltIn::SubgroupLtMask, BuiltIn::kNone, kOfSubgroup, 4},
 };
-
-const BuiltInRow& built_in_row(const Inst& variable, std::uint32_t built_in) {
-  for (const BuiltInRow& row : kBuiltIns)
-    if (static_cast<std::uint32_t>(row.spirv) == built_in) return row;
-  fail(variable, "built-in " + std::to_string(built_in) + " is not supported");
-}
 
 /// A decoration of the variable or of the struct member it is in.
 struct Decorated {
@@ -82,6 +81,8 @@ struct Walk {
   std::vector<Step> path;
   std::uint32_t location = 0;
   std::uint32_t element = 0;  ///< scalars of the built-in so far (ClipDistance[i])
+  bool captured = false;      ///< by transform feedback
+  std::uint32_t xfb_offset = 0;
 
   void leaf(std::uint32_t type_id, const Decorated& decorated) {
     Leaf leaf;
@@ -112,6 +113,7 @@ struct Walk {
         slot.index = static_cast<std::uint8_t>(index->value);
     }
     interpolation(slot, decorated);
+    if (!input) feedback(slot, decorated, info.components * type.leaves);
     leaf.invariant = decorated.has(Decoration::Invariant);
     leaves.push_back(std::move(leaf));
   }
@@ -125,6 +127,24 @@ struct Walk {
       slot.sample_location = SampleLocation::kSample;
     else if (decorated.has(Decoration::Centroid))
       slot.sample_location = SampleLocation::kCentroid;
+  }
+
+  /// Transform feedback: leaves of a captured variable or block member lie one after the other.
+  void feedback(InterfaceSlot& slot, const Decorated& decorated, std::uint32_t words) {
+    const DecorationRow* stream = decorated.find(Decoration::Stream);
+    if (stream != nullptr) slot.stream = static_cast<std::uint8_t>(stream->value & 3);
+    if (!captured) return;
+    const DecorationRow* buffer = decorated.find(Decoration::XfbBuffer);
+    slot.xfb_buffer = static_cast<std::uint8_t>(buffer != nullptr ? buffer->value % kMaxXfbBuffers : 0);
+    slot.xfb_offset = xfb_offset;
+    xfb_offset += 4 * words;
+    if (const DecorationRow* stride = decorated.find(Decoration::XfbStride))
+      t.function.interface.xfb_stride[slot.xfb_buffer] = stride->value;
+  }
+
+  void start_capture(const DecorationRow* offset) {
+    captured = offset != nullptr;
+    if (captured) xfb_offset = offset->value;
   }
 
   void type(std::uint32_t type_id, Decorated decorated) {
@@ -143,6 +163,7 @@ struct Walk {
           decorated.member = i + 1;
           if (const DecorationRow* row = t.module.decoration(type_id, Decoration::Location, i + 1))
             location = row->value;
+          if (!input) start_capture(t.module.decoration(type_id, Decoration::Offset, i + 1));
           element = 0;
         }
         type(type_here.members[i], decorated);
@@ -154,19 +175,6 @@ struct Walk {
     }
   }
 };
-
-/// The slot of a word of a leaf: numbers of 64 bits have two words, and go on in the next location.
-InterfaceSlot word_slot(const Leaf& leaf, std::uint32_t word) {
-  InterfaceSlot slot = leaf.slot;
-  if (slot.built_in != BuiltIn::kNone) {
-    slot.component = static_cast<std::uint8_t>(slot.component + word);
-    return slot;
-  }
-  const std::uint32_t component = slot.component + word;
-  slot.location = static_cast<std::uint16_t>(slot.location + component / 4);
-  slot.component = static_cast<std::uint8_t>(component % 4);
-  return slot;
-}
 
 std::vector<ir::ValueId> input_values(Translator& t, const Leaf& leaf) {
   const ir::ValueInfo info = leaf_info(t, leaf.type);
@@ -201,38 +209,32 @@ bool is_live(const Translator& t, const Leaf& leaf) {
   return leaf.slot.location < 32 && (t.options.live_color_outputs >> leaf.slot.location & 1) != 0;
 }
 
-/// Vulkan 1.3.239, Sample Shading: "If a fragment shader entry point's interface includes an input variable decorated
-/// with SamplePosition, Sample Shading is considered enabled with a minSampleShading value of 1.0." The same holds for
-/// SampleId and for Sample, which may decorate members too. Whether the shader reads the variable does not matter.
-bool shades_per_sample(const Module& module) {
-  for (const std::uint32_t id : module.interface) {
-    const Type& pointer = module.type(module.def(id).result_type);
-    if (pointer.storage != spv::StorageClass::Input) continue;
-    for (const DecorationRow& row : module.decorations) {
-      if (row.id != id && (row.id != pointer.element || row.member == 0)) continue;
-      if (row.kind == Decoration::Sample) return true;
-      if (row.kind != Decoration::BuiltIn) continue;
-      const auto built_in = static_cast<spv::BuiltIn>(row.value);
-      if (built_in == spv::BuiltIn::SampleId || built_in == spv::BuiltIn::SamplePosition) return true;
-    }
-  }
-  return false;
-}
-
-void set_local_size(Translator& t, const std::uint32_t size[3]) {
-  for (int i = 0; i < 3; i++) {
-    if (size[i] == 0 || size[i] > 1024) throw Failure("local size is out of range");
-    t.function.interface.local_size[i] = size[i];
-  }
-}
-
 }  // namespace
+
+const BuiltInRow& built_in_row(const Inst& variable, std::uint32_t built_in) {
+  for (const BuiltInRow& row : kBuiltIns)
+    if (static_cast<std::uint32_t>(row.spirv) == built_in) return row;
+  fail(variable, "built-in " + std::to_string(built_in) + " is not supported");
+}
+
+InterfaceSlot word_slot(const Leaf& leaf, std::uint32_t word) {
+  InterfaceSlot slot = leaf.slot;
+  slot.xfb_offset += 4 * word;
+  if (slot.built_in != BuiltIn::kNone) {
+    slot.component = static_cast<std::uint8_t>(slot.component + word);
+    return slot;
+  }
+  const std::uint32_t component = slot.component + word;
+  slot.location = static_cast<std::uint16_t>(slot.location + component / 4);
+  slot.component = static_cast<std::uint8_t>(component % 4);
+  return slot;
+}
 
 std::vector<Leaf> interface_leaves(Translator& t, const Local& local) {
   const Inst& variable = t.module.def(local.variable);
-  Walk walk{t, variable, local.storage == spv::StorageClass::Input, {}, {}, 0, 0};
-  if (t.module.decoration(local.variable, Decoration::Patch) != nullptr) fail(variable, "Patch is not supported");
+  Walk walk{t, variable, local.storage == spv::StorageClass::Input, {}, {}, 0, 0, false, 0};
   if (const DecorationRow* row = t.module.decoration(local.variable, Decoration::Location)) walk.location = row->value;
+  if (!walk.input) walk.start_capture(t.module.decoration(local.variable, Decoration::Offset));
   walk.type(local.type, {t.module, local.variable, 0, 0});
   return std::move(walk.leaves);
 }
@@ -249,55 +251,15 @@ ir::ValueId load_input(Translator& t, const InterfaceSlot& slot) {
   return value;
 }
 
-void read_modes(Translator& t) {
-  ShaderInterface& interface = t.function.interface;
-  interface.stage = t.options.stage;
-  interface.per_sample = t.options.stage == VK_SHADER_STAGE_FRAGMENT_BIT && shades_per_sample(t.module);
-  for (const Inst& mode : t.module.modes) {
-    auto word = [&](std::uint32_t i) { return mode.operand(i + 2); };
-    auto id = [&](std::uint32_t i) { return t.module.constant_u32(mode.operand(i + 2), mode); };
-    switch (static_cast<spv::ExecutionMode>(mode.operand(1))) {
-      case spv::ExecutionMode::LocalSize: {
-        const std::uint32_t size[3] = {word(0), word(1), word(2)};
-        set_local_size(t, size);
-        break;
-      }
-      case spv::ExecutionMode::LocalSizeId: {
-        const std::uint32_t size[3] = {id(0), id(1), id(2)};
-        set_local_size(t, size);
-        break;
-      }
-      case spv::ExecutionMode::EarlyFragmentTests:
-        interface.early_fragment_tests = true;
-        break;
-      case spv::ExecutionMode::PostDepthCoverage:
-        interface.post_depth_coverage = true;
-        break;
-      case spv::ExecutionMode::SignedZeroInfNanPreserve:
-        t.function.signed_zero_inf_nan_preserve |= word(0) == 32;
-        break;
-      case spv::ExecutionMode::DenormFlushToZero:
-        t.function.denorm_flush_to_zero |= word(0) == 32;
-        break;
-      case spv::ExecutionMode::SubgroupUniformControlFlowKHR:  // invocations always meet again where constructs end
-      case spv::ExecutionMode::OriginUpperLeft:
-      case spv::ExecutionMode::DepthReplacing:
-      case spv::ExecutionMode::StencilRefReplacingEXT:
-      case spv::ExecutionMode::DepthGreater:
-      case spv::ExecutionMode::DepthLess:
-      case spv::ExecutionMode::DepthUnchanged:
-      case spv::ExecutionMode::DenormPreserve:
-      case spv::ExecutionMode::RoundingModeRTE:
-        break;
-      default:
-        fail(mode, "execution mode " + std::to_string(mode.operand(1)) + " is not supported");
-    }
-  }
-  // A constant decorated WorkgroupSize overrides the execution mode (Vulkan, Built-In Variables).
-  for (const DecorationRow& row : t.module.decorations)
-    if (row.kind == Decoration::BuiltIn && row.value == static_cast<std::uint32_t>(spv::BuiltIn::WorkgroupSize))
-      if (const Constant* size = t.module.constant(row.id); size != nullptr && size->words.size() == 3)
-        set_local_size(t, size->words.data());
+ir::ValueId built_in_input(Translator& t, BuiltIn built_in, std::uint8_t component) {
+  ir::NodeList* const list = std::exchange(t.list, &t.prologue);
+  InterfaceSlot slot;
+  slot.built_in = built_in;
+  slot.component = component;
+  slot.type = BaseType::kUint;
+  const ir::ValueId value = load_input(t, slot);
+  t.list = list;
+  return value;
 }
 
 ir::ValueId fragment_position(Translator& t) {
@@ -326,6 +288,7 @@ void connect_interface(Translator& t) {
     const bool input = local.storage == spv::StorageClass::Input;
     if (!input && local.storage != spv::StorageClass::Output) continue;
     t.inst = &t.module.def(local.variable);
+    if (!input && t.options.stage == VK_SHADER_STAGE_GEOMETRY_BIT) continue;  // emitted
     for (const Leaf& leaf : interface_leaves(t, local)) {
       if (!input && !is_live(t, leaf)) continue;
       Pointer pointer = local_pointer(t, i);
@@ -338,6 +301,7 @@ void connect_interface(Translator& t) {
         store_outputs(t, leaf, load(t, pointer).leaves);
     }
   }
+  if (t.options.stage == VK_SHADER_STAGE_GEOMETRY_BIT) finish_emission(t);
   t.inst = nullptr;
   for (auto& node : t.function.body) t.prologue.push_back(std::move(node));
   t.function.body = std::move(t.prologue);

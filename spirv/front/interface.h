@@ -15,6 +15,9 @@ struct BuiltInRow {
   std::uint8_t components;
 };
 
+/// Fails on built-ins that are not supported.
+const BuiltInRow& built_in_row(const Inst& variable, std::uint32_t built_in);
+
 /// One leaf of an interface variable.
 struct Leaf {
   std::vector<Step> path;
@@ -23,6 +26,9 @@ struct Leaf {
   bool invariant = false;
   const BuiltInRow* built_in = nullptr;
 };
+
+/// The slot of a word of a leaf: numbers of 64 bits have two words, and go on in the next location.
+InterfaceSlot word_slot(const Leaf& leaf, std::uint32_t word);
 
 /// The scalars and vectors an Input or Output variable consists of, in order, each with its place in the interface.
 std::vector<Leaf> interface_leaves(Translator& t, const Local& local);

@@ -74,7 +74,8 @@ void propagate_invariant(ir::Function& function) {
   ir::each_node(function.body, [&](Node& node) {
     if (node.kind == Node::Kind::kInstr) {
       if (node.instr.result != ir::kNoValue) marker.definition[node.instr.result] = &node;
-      if (node.instr.op == ir::Op::kStoreOutput && node.instr.exact) marker.mark_all(node.instr.src);
+      const bool output = node.instr.op == ir::Op::kStoreOutput || node.instr.op == ir::Op::kStoreShared;
+      if (output && node.instr.exact) marker.mark_all(node.instr.src);
     }
     for (const auto* values : {&node.results, &node.params, &node.continue_params})
       for (ir::ValueId value : *values) marker.definition[value] = &node;

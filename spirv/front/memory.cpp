@@ -29,6 +29,7 @@ ir::ValueId load_leaf_local(Translator& t, const Pointer& pointer, std::uint32_t
 }
 
 void store_leaf_local(Translator& t, const Pointer& pointer, ir::ValueId value, const std::vector<Step>& path) {
+  t.stored.emplace(pointer.local, path.empty() || path[0].dynamic ? kWholeVariable : path[0].index);
   std::vector<ir::Src> sources = dynamic_sources(path);
   sources.insert(sources.begin(), whole(value));
   emit_effect(t, ir::Op::kStoreVar, std::move(sources)).data[0] = new_access(t, pointer, path);

@@ -234,6 +234,12 @@ spv::ExecutionModel model_of(VkShaderStageFlagBits stage) {
   switch (stage) {
     case VK_SHADER_STAGE_VERTEX_BIT:
       return spv::ExecutionModel::Vertex;
+    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
+      return spv::ExecutionModel::TessellationControl;
+    case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
+      return spv::ExecutionModel::TessellationEvaluation;
+    case VK_SHADER_STAGE_GEOMETRY_BIT:
+      return spv::ExecutionModel::Geometry;
     case VK_SHADER_STAGE_FRAGMENT_BIT:
       return spv::ExecutionModel::Fragment;
     case VK_SHADER_STAGE_COMPUTE_BIT:

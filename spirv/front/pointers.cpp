@@ -72,6 +72,7 @@ Pointer shared_pointer(Translator& t, const Inst& variable, std::uint32_t type_i
 Pointer declare(Translator& t, const Inst& variable) {
   const Type& pointer_type = t.module.type(variable.result_type);
   const std::uint32_t type = pointer_type.element;
+  if (in_stage_memory(t, variable)) return stage_pointer(t, variable);
   switch (pointer_type.storage) {
     case StorageClass::Uniform:
     case StorageClass::StorageBuffer:
@@ -224,6 +225,8 @@ void step_into(Translator& t, const Inst& inst, Pointer& pointer, const Step& st
     step_local(inst, type, pointer, step);
   } else if (pointer.kind == Pointer::Kind::kDescriptor || pointer.kind == Pointer::Kind::kTexel) {
     fail(inst, "index into an image or sampler");
+  } else if (pointer.stage) {
+    step_stage(t, inst, type, pointer, step);
   } else {
     step_memory(t, inst, type, pointer, step);
   }

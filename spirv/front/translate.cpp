@@ -14,6 +14,7 @@ ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& opt
   Translator t(module, options);
   read_modes(t);
   try {
+    prepare_stage(t);
     translate_entry(t);
     connect_interface(t);
     repair_scopes(t);

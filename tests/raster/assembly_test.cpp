@@ -16,7 +16,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 std::vector<Triangle> decompose(const DrawCall& draw, std::uint32_t limit) {
   std::vector<Run> runs;
   append_runs(draw, 0, limit, runs);
-  const TopologyShape shape = topology_shape(draw.state->topology);
+  const TopologyShape shape = topology_shape(draw);
   std::vector<Triangle> result;
   for (const Run& run : runs) {
     const RunSpan span = run_span(shape, run);
@@ -67,6 +67,53 @@ TEST(Assembly, CuttingIntoRunsChangesNothing) {
       state.provoking_vertex_last = last;
       EXPECT_EQ(decompose(draw, 100000), decompose(draw, 8)) << topology;
     }
+  }
+}
+
+/// Positions of every primitive as a geometry shader sees them, through runs of at most `limit` positions.
+std::vector<std::array<std::uint32_t, 6>> input_positions(const DrawCall& draw, std::uint32_t limit) {
+  std::vector<Run> runs;
+  append_runs(draw, 0, limit, runs);
+  TopologyShape shape = topology_shape(draw);
+  shape.neighbours = draw.state->topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY;
+  std::vector<std::array<std::uint32_t, 6>> result;
+  for (const Run& run : runs) {
+    const RunSpan span = run_span(shape, run);
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const InputVertices vertices =
+          input_vertices(draw.state->topology, draw.state->provoking_vertex_last, i, run.ends && i + 1 == run.end);
+      std::array<std::uint32_t, 6>& at = result.emplace_back();
+      for (std::uint32_t v = 0; v < vertices.count; ++v) {
+        EXPECT_LT(span.entry(vertices.at[v]), span.count());
+        at[v] = run.start + vertices.at[v];
+      }
+    }
+  }
+  return result;
+}
+
+TEST(Assembly, AdjacentStripsAlternate) {
+  State state;
+  state.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY;
+  DrawCall draw;
+  draw.state = &state;
+  draw.count = 10;
+  using Six = std::array<std::uint32_t, 6>;
+  EXPECT_EQ((std::vector<Six>{{0, 1, 2, 6, 4, 3}, {2, 5, 6, 8, 4, 0}, {4, 2, 6, 9, 8, 7}}),
+            input_positions(draw, 1000));
+  state.provoking_vertex_last = true;
+  EXPECT_EQ((std::vector<Six>{{0, 1, 2, 6, 4, 3}, {4, 0, 2, 5, 6, 8}, {4, 2, 6, 9, 8, 7}}),
+            input_positions(draw, 1000));
+}
+
+TEST(Assembly, CuttingIntoRunsKeepsAdjacentVertices) {
+  State state;
+  DrawCall draw;
+  draw.state = &state;
+  draw.count = 103;
+  for (int topology = 0; topology <= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY; ++topology) {
+    state.topology = static_cast<VkPrimitiveTopology>(topology);
+    EXPECT_EQ(input_positions(draw, 100000), input_positions(draw, 8)) << topology;
   }
 }
 

@@ -1,0 +1,166 @@
+// Execution modes (SPIR-V 3.6; Vulkan, the chapters of the stages): what the entry point declares about itself, into
+// its interface.
+#include "spirv/front/functions.h"
+
+namespace vitrine::spirv::front {
+namespace {
+
+using spv::Decoration;
+
+/// Vulkan 1.3.239, Sample Shading: "If a fragment shader entry point's interface includes an input variable decorated
+/// with SamplePosition, Sample Shading is considered enabled with a minSampleShading value of 1.0." The same holds for
+/// SampleId and for Sample, which may decorate members too. Whether the shader reads the variable does not matter.
+bool shades_per_sample(const Module& module) {
+  for (const std::uint32_t id : module.interface) {
+    const Type& pointer = module.type(module.def(id).result_type);
+    if (pointer.storage != spv::StorageClass::Input) continue;
+    for (const DecorationRow& row : module.decorations) {
+      if (row.id != id && (row.id != pointer.element || row.member == 0)) continue;
+      if (row.kind == Decoration::Sample) return true;
+      if (row.kind != Decoration::BuiltIn) continue;
+      const auto built_in = static_cast<spv::BuiltIn>(row.value);
+      if (built_in == spv::BuiltIn::SampleId || built_in == spv::BuiltIn::SamplePosition) return true;
+    }
+  }
+  return false;
+}
+
+void set_local_size(Translator& t, const std::uint32_t size[3]) {
+  for (int i = 0; i < 3; i++) {
+    if (size[i] == 0 || size[i] > 1024) throw Failure("local size is out of range");
+    t.function.interface.local_size[i] = size[i];
+  }
+}
+
+/// Modes of tessellation and geometry stages. False: another one.
+bool read_stage_mode(StageModes& modes, spv::ExecutionMode mode, std::uint32_t value, VkShaderStageFlagBits stage) {
+  const auto domain = [&](TessDomain which) {
+    modes.domain = which;
+    modes.has_domain = true;
+    modes.input_vertices = 3;  // Triangles of a geometry shader
+    return true;
+  };
+  const auto spacing = [&](TessSpacing which) {
+    modes.spacing = which;
+    return modes.has_spacing = true;
+  };
+  const auto order = [&](bool clockwise) {
+    modes.clockwise = clockwise;
+    return modes.has_order = true;
+  };
+  const auto input = [&](std::uint32_t vertices) { return (modes.input_vertices = vertices) != 0; };
+  const auto output = [&](VkPrimitiveTopology topology) {
+    modes.output = topology;
+    return true;
+  };
+  switch (mode) {
+    case spv::ExecutionMode::Invocations:
+      modes.invocations = value;
+      return true;
+    case spv::ExecutionMode::SpacingEqual:
+      return spacing(TessSpacing::kEqual);
+    case spv::ExecutionMode::SpacingFractionalEven:
+      return spacing(TessSpacing::kFractionalEven);
+    case spv::ExecutionMode::SpacingFractionalOdd:
+      return spacing(TessSpacing::kFractionalOdd);
+    case spv::ExecutionMode::VertexOrderCw:
+      return order(true);
+    case spv::ExecutionMode::VertexOrderCcw:
+      return order(false);
+    case spv::ExecutionMode::PointMode:
+      return modes.point_mode = true;
+    case spv::ExecutionMode::Triangles:
+      return domain(TessDomain::kTriangles);
+    case spv::ExecutionMode::Quads:
+      return domain(TessDomain::kQuads);
+    case spv::ExecutionMode::Isolines:
+      return domain(TessDomain::kIsolines);
+    case spv::ExecutionMode::InputPoints:
+      return input(1);
+    case spv::ExecutionMode::InputLines:
+      return input(2);
+    case spv::ExecutionMode::InputLinesAdjacency:
+      return input(4);
+    case spv::ExecutionMode::InputTrianglesAdjacency:
+      return input(6);
+    case spv::ExecutionMode::OutputVertices:
+      (stage == VK_SHADER_STAGE_GEOMETRY_BIT ? modes.max_vertices : modes.control_points) = value;
+      return true;
+    case spv::ExecutionMode::OutputPoints:
+      return output(VK_PRIMITIVE_TOPOLOGY_POINT_LIST);
+    case spv::ExecutionMode::OutputLineStrip:
+      return output(VK_PRIMITIVE_TOPOLOGY_LINE_STRIP);
+    case spv::ExecutionMode::OutputTriangleStrip:
+      return output(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP);
+    default:
+      return false;
+  }
+}
+
+/// The limits of the device hold; memory is sized by these numbers.
+void check_stage_modes(const StageModes& modes) {
+  if (modes.max_vertices > 1024 || modes.invocations == 0 || modes.invocations > 32 || modes.control_points > 32)
+    throw Failure("execution mode is beyond the device's limits");
+}
+
+}  // namespace
+
+void read_modes(Translator& t) {
+  ShaderInterface& interface = t.function.interface;
+  interface.stage = t.options.stage;
+  interface.per_sample = t.options.stage == VK_SHADER_STAGE_FRAGMENT_BIT && shades_per_sample(t.module);
+  for (const Inst& mode : t.module.modes) {
+    auto word = [&](std::uint32_t i) { return mode.operand(i + 2); };
+    auto id = [&](std::uint32_t i) { return t.module.constant_u32(mode.operand(i + 2), mode); };
+    switch (static_cast<spv::ExecutionMode>(mode.operand(1))) {
+      case spv::ExecutionMode::LocalSize: {
+        const std::uint32_t size[3] = {word(0), word(1), word(2)};
+        set_local_size(t, size);
+        break;
+      }
+      case spv::ExecutionMode::LocalSizeId: {
+        const std::uint32_t size[3] = {id(0), id(1), id(2)};
+        set_local_size(t, size);
+        break;
+      }
+      case spv::ExecutionMode::Xfb:
+        interface.captures = true;
+        break;
+      case spv::ExecutionMode::EarlyFragmentTests:
+        interface.early_fragment_tests = true;
+        break;
+      case spv::ExecutionMode::PostDepthCoverage:
+        interface.post_depth_coverage = true;
+        break;
+      case spv::ExecutionMode::SignedZeroInfNanPreserve:
+        t.function.signed_zero_inf_nan_preserve |= word(0) == 32;
+        break;
+      case spv::ExecutionMode::DenormFlushToZero:
+        t.function.denorm_flush_to_zero |= word(0) == 32;
+        break;
+      case spv::ExecutionMode::SubgroupUniformControlFlowKHR:  // invocations always meet again where constructs end
+      case spv::ExecutionMode::OriginUpperLeft:
+      case spv::ExecutionMode::DepthReplacing:
+      case spv::ExecutionMode::StencilRefReplacingEXT:
+      case spv::ExecutionMode::DepthGreater:
+      case spv::ExecutionMode::DepthLess:
+      case spv::ExecutionMode::DepthUnchanged:
+      case spv::ExecutionMode::DenormPreserve:
+      case spv::ExecutionMode::RoundingModeRTE:
+        break;
+      default:
+        if (read_stage_mode(interface.modes, static_cast<spv::ExecutionMode>(mode.operand(1)),
+                            mode.has(2) ? word(0) : 0, t.options.stage))
+          break;
+        fail(mode, "execution mode " + std::to_string(mode.operand(1)) + " is not supported");
+    }
+  }
+  check_stage_modes(interface.modes);
+  // A constant decorated WorkgroupSize overrides the execution mode (Vulkan, Built-In Variables).
+  for (const DecorationRow& row : t.module.decorations)
+    if (row.kind == Decoration::BuiltIn && row.value == static_cast<std::uint32_t>(spv::BuiltIn::WorkgroupSize))
+      if (const Constant* size = t.module.constant(row.id); size != nullptr && size->words.size() == 3)
+        set_local_size(t, size->words.data());
+}
+
+}  // namespace vitrine::spirv::front
