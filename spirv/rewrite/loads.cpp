@@ -33,9 +33,11 @@ struct WordHash {
   }
 };
 
-bool is_word_load(const Inst& inst) {
+/// A load of words; those of bytes and halves stay as they are.
+bool is_word_load(const Graph& graph, const Inst& inst) {
   return inst.kind == Kind::kIntrinsic &&
-         (inst.op == Op::kLoadPush || inst.op == Op::kLoadUniform || inst.op == Op::kLoadStorage);
+         (inst.op == Op::kLoadPush || inst.op == Op::kLoadUniform || inst.op == Op::kLoadStorage) &&
+         ir::element_bytes(graph.nodes[inst.node]->instr.imm) == 4;
 }
 
 /// What other invocations or this one may do to storage buffers.
@@ -185,7 +187,7 @@ class Forwarder {
   void visit(BlockId block) {
     for (InstId id = graph_.blocks[block].head; id != kNone;) {
       const InstId next = graph_.insts[id].next;
-      if (is_word_load(graph_.insts[id])) {
+      if (is_word_load(graph_, graph_.insts[id])) {
         forward(id);
       } else if (graph_.insts[id].child[0] != kNone) {
         visit_children(id);
