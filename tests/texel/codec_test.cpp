@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <random>
 #include <vector>
 
 #include "base/numeric.h"
@@ -115,6 +116,38 @@ TEST(Codec, RoundTripsOfUpTo16Bits) {
     }
     // Exceptions: none for formats whose codes are evenly spaced; sRGB's two curves of the reference are not inverse.
     EXPECT_TRUE(wrong == 0 || format.is_srgb()) << format.name << " " << wrong;
+  }
+}
+
+TEST(Rows, EqualTexelsOneByOne) {
+  std::mt19937 random(3);
+  constexpr std::uint32_t kSpecial[] = {0x7f800000, 0xff800000, 0x7fc00000, 0xffc12345, 0x80000000, 0x477ff000,
+                                        0x33800000, 0x337fffff, 0x387fffff, 0x38800000, 0x00000001, 0x3f800001};
+  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_A8B8G8R8_UNORM_PACK32,
+                                VK_FORMAT_R16G16B16A16_SFLOAT}) {
+    const FormatDesc& desc = format_desc(format);
+    constexpr std::size_t kCount = 1021;
+    std::vector<std::byte> stored(kCount * desc.block_bytes), blocks(stored.size()), block(desc.block_bytes);
+    for (std::byte& b : stored) b = static_cast<std::byte>(random());
+    std::vector<Texel> texels(kCount);
+    decode_row(desc, stored.data(), kCount, texels.data());
+    for (std::size_t i = 0; i < kCount; ++i) {
+      Texel texel;
+      texel_decoder(desc)(desc, stored.data() + i * desc.block_bytes, texel);
+      EXPECT_EQ(texel, texels[i]) << desc.name;
+      for (std::uint32_t& c : texels[i]) {
+        c = random() % 8 == 0 ? kSpecial[random() % std::size(kSpecial)]
+            : random() % 2    ? bits_of(static_cast<float>(random() % 512) / 510.0f)
+                              : static_cast<std::uint32_t>(random());
+      }
+    }
+    for (const Encoding encoding : {Encoding::kStore, Encoding::kClear, Encoding::kAttachment}) {
+      encode_row(desc, encoding, texels.data(), kCount, blocks.data());
+      for (std::size_t i = 0; i < kCount; ++i) {
+        texel_encoder(desc, encoding)(desc, texels[i], block.data());
+        EXPECT_EQ(0, std::memcmp(block.data(), blocks.data() + i * desc.block_bytes, desc.block_bytes)) << desc.name;
+      }
+    }
   }
 }
 

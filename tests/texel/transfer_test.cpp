@@ -7,6 +7,9 @@
 #include <random>
 #include <vector>
 
+#include "texel/capabilities.h"
+#include "texel/transfer/blit.h"
+
 namespace vitrine::texel {
 namespace {
 
@@ -154,6 +157,71 @@ TEST(Resolve, AveragesInSampleOrder) {
   resolve_image(image.get(), result.get(), region);
   EXPECT_EQ(result.memory[4], std::byte{25});
   EXPECT_EQ(result.memory[0], std::byte{0});
+}
+
+constexpr VkFormat kBlitFormats[] = {
+    VK_FORMAT_R8G8B8A8_UNORM,
+    VK_FORMAT_B8G8R8A8_UNORM,
+    VK_FORMAT_R8_UNORM,
+    VK_FORMAT_R5G6B5_UNORM_PACK16,
+    VK_FORMAT_R8G8B8A8_SRGB,
+    VK_FORMAT_R8G8B8A8_SNORM,
+    VK_FORMAT_R16G16B16A16_SFLOAT,
+    VK_FORMAT_R32G32B32A32_SFLOAT,
+    VK_FORMAT_R16_UNORM,
+    VK_FORMAT_BC1_RGBA_UNORM_BLOCK,
+    VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+    VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+    VK_FORMAT_R8G8B8A8_UINT,
+    VK_FORMAT_R32_UINT,
+    VK_FORMAT_R16G16_SINT,
+    VK_FORMAT_D32_SFLOAT,
+    VK_FORMAT_D16_UNORM,
+    VK_FORMAT_BC3_SRGB_BLOCK,
+};
+
+/// One random blit: rows against texels one by one.
+void compare_blits(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto below = [&](std::uint32_t n) { return static_cast<std::int32_t>(random() % n); };
+  const VkFormat from_format = kBlitFormats[random() % std::size(kBlitFormats)];
+  VkFormat to_format = random() % 2 ? from_format : kBlitFormats[random() % std::size(kBlitFormats)];
+  const FormatDesc &from = format_desc(from_format), &to = format_desc(to_format);
+  if (!can_encode(to) || from.kind != to.kind || from.has_depth() != to.has_depth()) {
+    to_format = from.has_depth() ? from_format : from.is_integer() ? VK_FORMAT_R32_UINT : VK_FORMAT_R8G8B8A8_UNORM;
+    if (from.kind == Kind::kSint) to_format = VK_FORMAT_R16G16_SINT;
+    if (from.kind == Kind::kUint) to_format = VK_FORMAT_R32_UINT;
+  }
+  TestImage source(from_format, {40, 30, 1}, 1, 2), expected(to_format, {90, 70, 1}, 1, 2);
+  for (std::byte& b : source.memory) b = static_cast<std::byte>(random());
+  const bool floats = from.channel[0].numeric == Numeric::kSfloat || from.channel[0].numeric == Numeric::kUfloat;
+  for (std::size_t i = 1; floats && i < source.memory.size(); i += 2) source.memory[i] &= std::byte{0x3b};
+  TestImage result = expected;
+  VkImageBlit region{};
+  const VkImageAspectFlags aspect = from.has_depth() ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+  region.srcSubresource = region.dstSubresource = {aspect, 0, 0, 2};
+  const std::int32_t x = below(30), y = below(20), width = 1 + below(10), height = 1 + below(10);
+  const bool whole = random() % 2;
+  region.srcOffsets[0] = whole ? VkOffset3D{0, 0, 0} : VkOffset3D{x, y, 0};
+  region.srcOffsets[1] = whole ? VkOffset3D{40, 30, 1} : VkOffset3D{x + width, y + height, 1};
+  const std::int32_t to_x = below(20), to_y = below(20);
+  region.dstOffsets[0] = {to_x, to_y, 0};
+  region.dstOffsets[1] = {to_x + 1 + below(70), to_y + 1 + below(50), 1};
+  if (random() % 6 == 0) {
+    const VkOffset3D *a = region.srcOffsets, *b = region.dstOffsets;
+    region.dstOffsets[1] = {b[0].x + a[1].x - a[0].x, b[0].y + a[1].y - a[0].y, 1};
+  }
+  if (random() % 4 == 0) std::swap(region.srcOffsets[0].x, region.srcOffsets[1].x);
+  if (random() % 4 == 0) std::swap(region.dstOffsets[0].y, region.dstOffsets[1].y);
+  const VkFilter filter = random() % 2 ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  blit_image_by_texels(source.get(), expected.get(), region, filter);
+  blit_image(source.get(), result.get(), region, filter);
+  EXPECT_EQ(expected.memory, result.memory)
+      << "seed " << seed << " " << from.name << " to " << format_desc(to_format).name << " filter " << filter;
+}
+
+TEST(Blit, RowsEqualTexelsOneByOne) {
+  for (unsigned seed = 0; seed < 400 && !testing::Test::HasFailure(); ++seed) compare_blits(seed);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "base/numeric.h"
 #include "texel/capabilities.h"
 #include "texel/codec.h"
+#include "texel/codec/rows.h"
 #include "texel/codec/small_float.h"
 #include "texel/codec/srgb.h"
 
@@ -167,6 +168,7 @@ TexelDecoder texel_decoder(const FormatDesc& format) {
 }
 
 void decode_row(const FormatDesc& format, const std::byte* blocks, std::size_t count, Texel* out) {
+  if (decode_row_simd(format, blocks, count, out)) return;
   const TexelDecoder decode = texel_decoder(format);
   if (decode == nullptr) return;
   for (std::size_t i = 0; i < count; ++i) decode(format, blocks + i * format.block_bytes, out[i]);

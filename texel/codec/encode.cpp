@@ -7,6 +7,7 @@
 #include "base/numeric.h"
 #include "texel/capabilities.h"
 #include "texel/codec.h"
+#include "texel/codec/rows.h"
 #include "texel/codec/small_float.h"
 #include "texel/codec/srgb.h"
 #include "texel/codec/unorm_attachment.h"
@@ -189,6 +190,7 @@ void encode_texel(const FormatDesc& format, Encoding encoding, const Texel& texe
 
 void encode_row(const FormatDesc& format, Encoding encoding, const Texel* texels, std::size_t count,
                 std::byte* blocks) {
+  if (encode_row_simd(format, encoding, texels, count, blocks)) return;
   const TexelEncoder encode = texel_encoder(format, encoding);
   if (encode == nullptr) return;
   for (std::size_t i = 0; i < count; ++i) encode(format, texels[i], blocks + i * format.block_bytes);

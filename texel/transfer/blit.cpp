@@ -1,60 +1,27 @@
 // Scaled, flipped and converting copies (lavapipe-rasterization.md 11.3): the reference draws a textured quad, so
 // texture coordinates come from the planes of its two triangles, samples from the sampler, and bits from colour output.
 #include <algorithm>
-#include <cstdlib>
+#include <vector>
 
 #include "base/float_mode.h"
 #include "base/lanes.h"
 #include "base/numeric.h"
 #include "texel/capabilities.h"
 #include "texel/sampler.h"
-#include "texel/transfer/box.h"
+#include "texel/transfer/blit.h"
 
 namespace vitrine::texel {
 namespace {
 
-/// One axis of a region, destination from low to high; a descending source is a flip.
-struct Span {
-  std::int32_t to0 = 0, to1 = 0;
-  std::int32_t from0 = 0, from1 = 0;
-
-  std::int32_t to_size() const { return to1 - to0; }
-  std::int32_t from_size() const { return std::abs(from1 - from0); }
-  bool flipped() const { return from1 < from0; }
-  bool scaled() const { return to_size() != from_size(); }
-  /// The source texel of an unscaled span.
-  std::int32_t source(std::int32_t to) const { return flipped() ? from0 - 1 - (to - to0) : from0 + (to - to0); }
-};
-
 Span make_span(std::int32_t from0, std::int32_t from1, std::int32_t to0, std::int32_t to1) {
   return to0 < to1 ? Span{to0, to1, from0, from1} : Span{to1, to0, from1, from0};
 }
-
-/// One aspect of a region with everything that its rows need.
-struct Blit {
-  const ImageMemory* source = nullptr;
-  VkImageAspectFlagBits aspect = VK_IMAGE_ASPECT_COLOR_BIT;
-  VkImageSubresourceLayers source_layers{};
-  Box to;  ///< of the destination, cut
-  Span x, y, z;
-  Extent from_extent;  ///< of the source level
-  Extent to_extent;
-  bool scaled = false;
-  bool linear = false;
-  bool rectangle = false;  ///< one plane for both triangles
-};
 
 /// The reference draws rectangles as one primitive where the only attachment is a two-dimensional B8G8R8A8_UNORM image
 /// (lavapipe-rasterization.md 9.1, 9.2).
 bool drawn_as_rectangle(const ImageDesc& to) {
   return to.format == VK_FORMAT_B8G8R8A8_UNORM && to.type == VK_IMAGE_TYPE_2D && to.layers == 1;
 }
-
-/// value(px, py) = a0 + dadx * px + dady * py.
-struct Plane {
-  float a0 = 0, dadx = 0, dady = 0;
-  float at(float px, float py) const { return base::fma_exact(dady, py, base::fma_exact(dadx, px, a0)); }
-};
 
 /// A corner of the quad in window coordinates, with its texture coordinates.
 struct Corner {
@@ -80,11 +47,6 @@ float window_coordinate(std::int32_t texel, std::uint32_t size) {
   const float clip = static_cast<float>(texel) / extent * 2.0f - 1.0f;
   return base::fma_exact(clip, 0.5f * extent, 0.5f * extent);
 }
-
-/// Planes of u and v for the upper right [0] and the lower left [1] triangle.
-struct Quad {
-  Plane u[2], v[2];
-};
 
 Quad make_quad(const Blit& blit) {
   const float x[2] = {window_coordinate(blit.x.to0, blit.to_extent.width),
@@ -139,11 +101,6 @@ Sampler make_sampler(bool linear) {
   sampler.address.fill(VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
   return sampler;
 }
-
-/// Where the first texel of the cut box lies in destination texels.
-struct Start {
-  std::int32_t x = 0, y = 0, z = 0;
-};
 
 void encode_wave(const Blit& blit, const base::WaveRegister value[4], std::size_t count, std::byte* to) {
   std::array<Texel, base::kWaveWidth> texels;
@@ -203,14 +160,49 @@ void fetch_row(const Blit& blit, const ImageView& view, const Start& start, std:
   }
 }
 
-void run(const Blit& blit, const Start& start) {
+/// Whether all texels of an unscaled region exist, so that whole rows can be decoded.
+bool inside_source(const Blit& blit) {
+  const auto within = [](const Span& span, std::uint32_t size) {
+    const std::int32_t low = std::min(span.from0, span.from1), high = std::max(span.from0, span.from1);
+    return low >= 0 && static_cast<std::uint32_t>(high) <= size;
+  };
+  return within(blit.x, blit.from_extent.width) && within(blit.y, blit.from_extent.height);
+}
+
+/// Unscaled rows of plain formats: decoded, turned round, encoded.
+void convert_row(const Blit& blit, const ImageView& view, const Start& start, std::uint32_t row,
+                 std::vector<Texel>& texels, std::byte* to) {
+  const std::int32_t columns = static_cast<std::int32_t>(blit.to.columns);
+  const std::int32_t left = blit.x.source(start.x), right = blit.x.source(start.x + columns - 1);
+  const std::int32_t from_y = blit.y.source(start.y + static_cast<std::int32_t>(row));
+  texels.resize(blit.to.columns);
+  decode_row(
+      *view.format,
+      view.block(0, 0, 0, static_cast<std::uint32_t>(std::min(left, right)), static_cast<std::uint32_t>(from_y), 0),
+      blit.to.columns, texels.data());
+  if (blit.x.flipped()) std::reverse(texels.begin(), texels.end());
+  encode_row(*blit.to.format, Encoding::kAttachment, texels.data(), blit.to.columns, to);
+}
+
+void run(const Blit& blit, const Start& start, bool by_texels) {
   const Quad quad = make_quad(blit);
+  if (blit.scaled && !by_texels) {
+    const auto view_of = [&](std::uint32_t slice) { return source_view(blit, slice); };
+    if (scale_rows(blit, quad, start, make_sampler(blit.linear), view_of)) return;
+  }
   const std::size_t cost = blit.to.row_bytes() * 16;  // filtering costs more than bytes
   for_each_band(blit.to, cost, [&](std::uint32_t first, std::uint32_t count, std::uint32_t slice, std::uint32_t) {
     const base::ScopedFloatMode mode(base::Denormals::kFlush);
     const ImageView view = source_view(blit, slice);
+    const bool rows =
+        !blit.scaled && view.type == VK_IMAGE_VIEW_TYPE_2D && can_decode(*view.format) && inside_source(blit);
+    std::vector<Texel> texels;
     for (std::uint32_t row = first; row < first + count; ++row) {
       std::byte* to = blit.to.row(slice, 0, row);
+      if (rows) {
+        convert_row(blit, view, start, row, texels, to);
+        continue;
+      }
       blit.scaled ? sample_row(blit, view, quad, start, row, slice, to) : fetch_row(blit, view, start, row, slice, to);
     }
   });
@@ -239,9 +231,8 @@ bool convertible(const FormatDesc& from, const FormatDesc& to) {
   return can_sample(from) && can_encode(to) && from.kind == to.kind;
 }
 
-}  // namespace
-
-void blit_image(const ImageMemory& source, const ImageMemory& destination, const VkImageBlit& region, VkFilter filter) {
+void blit_by(const ImageMemory& source, const ImageMemory& destination, const VkImageBlit& region, VkFilter filter,
+             bool by_texels) {
   const VkOffset3D *from = region.srcOffsets, *to = region.dstOffsets;
   Blit blit;
   blit.source = &source;
@@ -276,9 +267,20 @@ void blit_image(const ImageMemory& source, const ImageMemory& destination, const
       copy_plain(source, destination, region, blit);
     } else {
       const bool is_3d = destination.layout->desc.type == VK_IMAGE_TYPE_3D;
-      run(blit, {offset.x, offset.y, is_3d ? offset.z : blit.z.to0});
+      run(blit, {offset.x, offset.y, is_3d ? offset.z : blit.z.to0}, by_texels);
     }
   }
+}
+
+}  // namespace
+
+void blit_image(const ImageMemory& source, const ImageMemory& destination, const VkImageBlit& region, VkFilter filter) {
+  blit_by(source, destination, region, filter, false);
+}
+
+void blit_image_by_texels(const ImageMemory& source, const ImageMemory& destination, const VkImageBlit& region,
+                          VkFilter filter) {
+  blit_by(source, destination, region, filter, true);
 }
 
 }  // namespace vitrine::texel

@@ -1,0 +1,329 @@
+// Scales two-dimensional regions with taps of columns and rows found once (lavapipe-rasterization.md 11.3,
+// lavapipe-texture-blend.md A3). The texture coordinates of the quad's two triangles follow one axis each, so that a
+// row of the destination is a blend of two rows of the source that were filtered along x; rows are kept for the next
+// one.
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <vector>
+
+#include "base/float_mode.h"
+#include "texel/capabilities.h"
+#include "texel/codec/rows.h"
+#include "texel/sampler/address.h"
+#include "texel/transfer/blend_rows.h"
+#include "texel/transfer/blit.h"
+
+namespace vitrine::texel {
+namespace {
+
+/// Taps of every destination texel along one axis, by one triangle's plane. Weights are of the second texel, in 256ths
+/// or as floats.
+struct TapList {
+  std::vector<std::int32_t> first, second, byte_weight;
+  std::vector<float> weight;
+
+  bool same(const TapList& other, std::size_t i) const {
+    return first[i] == other.first[i] && second[i] == other.second[i] && byte_weight[i] == other.byte_weight[i] &&
+           weight[i] == other.weight[i];
+  }
+};
+
+struct Scaler {
+  Scaler(const Blit& b, const Plan& p) : blit(b), plan(p) {}
+
+  const Blit& blit;
+  Plan plan;
+  TapList column[2], row[2];           ///< of the upper right and the lower left triangle
+  std::vector<std::uint32_t> patches;  ///< columns whose taps differ between the triangles
+  std::uint32_t low = 0, count = 0;    ///< columns of the source that are read
+  bool raw = false;                    ///< nearest texels keep their bytes
+};
+
+void add_taps(const Plan& plan, std::uint32_t axis_index, float coordinate, TapList& taps) {
+  const Extent& extent = plan.view->level[0].extent;
+  Axis axis;
+  axis.address = plan.address[axis_index];
+  axis.pot = plan.pot[axis_index];
+  axis.size = static_cast<std::int32_t>(axis_index == 0 ? extent.width : extent.height);
+  ByteTaps bytes;
+  Taps floats;
+  if (plan.mag_linear) {
+    if (plan.aos) bytes = linear_bytes(axis, coordinate);
+    if (!plan.aos) floats = linear_texels(axis, coordinate);
+  } else {
+    bytes.first = bytes.second = floats.first = floats.second =
+        plan.aos ? nearest_bytes(axis, coordinate) : nearest_texel(axis, coordinate);
+  }
+  taps.first.push_back(plan.aos ? bytes.first : floats.first);
+  taps.second.push_back(plan.aos ? bytes.second : floats.second);
+  taps.byte_weight.push_back(bytes.weight);
+  taps.weight.push_back(floats.weight);
+}
+
+/// Whether texels that are only moved keep their bytes through decoding and encoding.
+bool keeps_bytes(const FormatDesc& from, const FormatDesc& to) {
+  const Numeric numeric = from.channel[0].numeric;
+  const std::uint32_t bits = from.channel[0].bits;
+  if (from.format != to.format || from.packed_bits != 0 || !can_decode(from)) return false;
+  return numeric == Numeric::kUint || numeric == Numeric::kSint || (numeric == Numeric::kUnorm && bits == 8) ||
+         (numeric == Numeric::kSfloat && bits == 32 && !from.is_depth_stencil());
+}
+
+/// False if a coordinate depends on the other axis.
+bool find_taps(const Quad& quad, const Start& start, Scaler& scaler) {
+  for (std::size_t t = 0; t < 2; ++t) {
+    if (quad.u[t].dady != 0.0f || quad.v[t].dadx != 0.0f) return false;
+    for (std::uint32_t x = 0; x < scaler.blit.to.columns; ++x) {
+      const auto px = static_cast<float>(start.x + static_cast<std::int32_t>(x));
+      add_taps(scaler.plan, 0, quad.u[t].at(px, static_cast<float>(start.y)), scaler.column[t]);
+    }
+    for (std::uint32_t y = 0; y < scaler.blit.to.rows; ++y) {
+      const auto py = static_cast<float>(start.y + static_cast<std::int32_t>(y));
+      add_taps(scaler.plan, 1, quad.v[t].at(static_cast<float>(start.x), py), scaler.row[t]);
+    }
+  }
+  std::int32_t low = scaler.column[0].first[0], high = low;
+  for (std::uint32_t x = 0; x < scaler.blit.to.columns; ++x) {
+    if (!scaler.column[0].same(scaler.column[1], x)) scaler.patches.push_back(x);
+    for (const TapList& taps : scaler.column) {
+      low = std::min({low, taps.first[x], taps.second[x]});
+      high = std::max({high, taps.first[x], taps.second[x]});
+    }
+  }
+  for (TapList& taps : scaler.column) {
+    for (std::int32_t& x : taps.first) x -= low;
+    for (std::int32_t& x : taps.second) x -= low;
+  }
+  scaler.low = static_cast<std::uint32_t>(low);
+  scaler.count = static_cast<std::uint32_t>(high - low + 1);
+  return true;
+}
+
+/// What one band of rows needs, for texels of type T: bytes in a word, or four components.
+template <class T>
+struct Band {
+  const Scaler& scaler;
+  const ImageView view;
+  std::vector<T> source;  ///< a decoded row
+  std::vector<T> result;
+  struct Kept {
+    std::int32_t y = -1;
+    std::vector<T> row;
+  };
+  std::array<Kept, 2> kept;  ///< rows filtered along x
+  std::size_t oldest = 0;
+
+  Band(const Scaler& s, const ImageView& v) : scaler(s), view(v) {
+    source.resize(scaler.count);
+    result.resize(scaler.blit.to.columns);
+  }
+};
+
+const std::uint32_t* load_row(Band<std::uint32_t>& band, std::int32_t y) {
+  const FormatDesc& format = *band.view.format;
+  const auto row = static_cast<std::uint32_t>(y);
+  if (is_four_bytes(format)) {
+    return reinterpret_cast<const std::uint32_t*>(band.view.block(0, 0, 0, band.scaler.low, row, 0));
+  }
+  for (std::uint32_t x = 0; x < band.scaler.count; ++x) {
+    ByteTexel bytes;
+    fetch_bytes(band.view, 0, 0, band.scaler.low + x, row, 0, bytes);
+    std::memcpy(&band.source[x], bytes.data(), sizeof(band.source[x]));
+  }
+  return band.source.data();
+}
+
+const Texel* load_row(Band<Texel>& band, std::int32_t y) {
+  const FormatDesc& format = *band.view.format;
+  const auto row = static_cast<std::uint32_t>(y);
+  if (can_decode(format)) {
+    decode_row(format, band.view.block(0, 0, 0, band.scaler.low, row, 0), band.scaler.count, band.source.data());
+  } else {
+    Plan plan = band.scaler.plan;
+    plan.view = &band.view;
+    for (std::uint32_t x = 0; x < band.scaler.count; ++x) {
+      fetch_texel(plan, 0, 0, band.scaler.low + x, row, 0, band.source[x]);
+    }
+  }
+  return band.source.data();
+}
+
+/// Weights of a tap list in the type that T is blended with.
+const std::int32_t* weights_of(const TapList& taps, const std::uint32_t*) { return taps.byte_weight.data(); }
+const float* weights_of(const TapList& taps, const Texel*) { return taps.weight.data(); }
+
+template <class T>
+const T* filtered_row(Band<T>& band, std::int32_t y) {
+  for (const auto& kept : band.kept) {
+    if (kept.y == y) return kept.row.data();
+  }
+  auto& kept = band.kept[band.oldest];
+  band.oldest ^= 1;
+  const TapList& taps = band.scaler.column[0];
+  const std::size_t count = taps.first.size();
+  kept.y = y;
+  kept.row.resize(count);
+  const T* source = load_row(band, y);
+  if (band.scaler.plan.mag_linear) {
+    blend_columns(source, taps.first.data(), taps.second.data(), weights_of(taps, source), count, kept.row.data());
+  } else {
+    for (std::size_t i = 0; i < count; ++i) kept.row[i] = source[taps.first[i]];
+  }
+  return kept.row.data();
+}
+
+/// Texels first..end of the result, from the row taps of triangle `t`.
+template <class T>
+void blend_part(Band<T>& band, std::size_t t, std::uint32_t row, std::size_t first, std::size_t end) {
+  if (first >= end) return;
+  const TapList& taps = band.scaler.row[t];
+  const T* upper = filtered_row(band, taps.first[row]);
+  if (!band.scaler.plan.mag_linear) {
+    std::copy(upper + first, upper + end, band.result.data() + first);
+    return;
+  }
+  const T* lower = filtered_row(band, taps.second[row]);
+  blend_rows(upper + first, lower + first, weights_of(taps, upper)[row], end - first, band.result.data() + first);
+}
+
+/// One texel by the lower left triangle.
+template <class T>
+void patch_texel(Band<T>& band, std::uint32_t row, std::uint32_t x) {
+  const TapList &columns = band.scaler.column[1], &rows = band.scaler.row[1];
+  T part[2];
+  const std::int32_t y[2] = {rows.first[row], rows.second[row]};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const T* source = load_row(band, y[i]);
+    if (band.scaler.plan.mag_linear) {
+      blend_columns(source, &columns.first[x], &columns.second[x], weights_of(columns, source) + x, 1, &part[i]);
+    } else {
+      part[i] = source[columns.first[x]];
+    }
+  }
+  if (band.scaler.plan.mag_linear) {
+    blend_rows(&part[0], &part[1], weights_of(rows, part)[row], 1, &band.result[x]);
+  } else {
+    band.result[x] = part[0];
+  }
+}
+
+void put_row(const Scaler& scaler, const Band<std::uint32_t>& band, std::byte* to) {
+  put_bytes(*band.view.format, band.result.data(), band.result.size(), *scaler.blit.to.format, to);
+}
+void put_row(const Scaler& scaler, const Band<Texel>& band, std::byte* to) {
+  encode_row(*scaler.blit.to.format, Encoding::kAttachment, band.result.data(), band.result.size(), to);
+}
+
+/// Whether two rows of the destination are the same.
+bool repeats(const Scaler& scaler, std::uint32_t row) {
+  if (!scaler.patches.empty()) return false;
+  for (const TapList& taps : scaler.row) {
+    if (taps.first[row] != taps.first[row - 1] || taps.second[row] != taps.second[row - 1] ||
+        taps.byte_weight[row] != taps.byte_weight[row - 1] || taps.weight[row] != taps.weight[row - 1]) {
+      return false;
+    }
+  }
+  return scaler.row[0].same(scaler.row[1], row);
+}
+
+template <class T>
+void scale_band(const Scaler& scaler, const ImageView& view, std::uint32_t first, std::uint32_t count,
+                std::uint32_t slice) {
+  Band<T> band(scaler, view);
+  const auto columns = static_cast<std::int32_t>(scaler.blit.to.columns);
+  for (std::uint32_t row = first; row < first + count; ++row) {
+    std::byte* to = scaler.blit.to.row(slice, 0, row);
+    if (row != first && repeats(scaler, row)) {
+      std::memcpy(to, scaler.blit.to.row(slice, 0, row - 1), scaler.blit.to.row_bytes());
+      continue;
+    }
+    const std::int32_t split = std::clamp(first_upper_texel(scaler.blit, static_cast<std::int32_t>(row)), 0, columns);
+    const bool one_part = scaler.row[0].same(scaler.row[1], row);
+    const auto upper = static_cast<std::size_t>(one_part ? 0 : split);
+    blend_part(band, 1, row, 0, upper);
+    blend_part(band, 0, row, upper, static_cast<std::size_t>(columns));
+    for (const std::uint32_t x : scaler.patches) {
+      if (static_cast<std::int32_t>(x) < split) patch_texel(band, row, x);
+    }
+    put_row(scaler, band, to);
+  }
+}
+
+template <std::size_t kBytes>
+void pick_texels(const std::byte* from, const TapList& taps, std::size_t first, std::size_t end, std::byte* to) {
+  for (std::size_t i = first; i < end; ++i) {
+    std::memcpy(to + i * kBytes, from + static_cast<std::size_t>(taps.first[i]) * kBytes, kBytes);
+  }
+}
+
+void pick_texels(std::size_t bytes, const std::byte* from, const TapList& taps, std::size_t first, std::size_t end,
+                 std::byte* to) {
+  switch (bytes) {
+    case 1:
+      return pick_texels<1>(from, taps, first, end, to);
+    case 2:
+      return pick_texels<2>(from, taps, first, end, to);
+    case 4:
+      return pick_texels<4>(from, taps, first, end, to);
+    case 8:
+      return pick_texels<8>(from, taps, first, end, to);
+    case 16:
+      return pick_texels<16>(from, taps, first, end, to);
+    default:
+      for (std::size_t i = first; i < end; ++i) {
+        std::memcpy(to + i * bytes, from + static_cast<std::size_t>(taps.first[i]) * bytes, bytes);
+      }
+  }
+}
+
+/// Nearest texels as they are.
+void move_band(const Scaler& scaler, const ImageView& view, std::uint32_t first, std::uint32_t count,
+               std::uint32_t slice) {
+  const std::size_t bytes = view.format->block_bytes;
+  const auto columns = static_cast<std::int32_t>(scaler.blit.to.columns);
+  for (std::uint32_t row = first; row < first + count; ++row) {
+    std::byte* to = scaler.blit.to.row(slice, 0, row);
+    if (row != first && repeats(scaler, row)) {
+      std::memcpy(to, scaler.blit.to.row(slice, 0, row - 1), scaler.blit.to.row_bytes());
+      continue;
+    }
+    const bool one = scaler.patches.empty() && scaler.row[0].same(scaler.row[1], row);
+    const auto split = static_cast<std::size_t>(
+        one ? 0 : std::clamp(first_upper_texel(scaler.blit, static_cast<std::int32_t>(row)), 0, columns));
+    for (std::size_t t = 0; t < 2; ++t) {
+      const auto y = static_cast<std::uint32_t>(scaler.row[t].first[row]);
+      pick_texels(bytes, view.block(0, 0, 0, scaler.low, y, 0), scaler.column[t], t == 0 ? split : 0,
+                  t == 0 ? static_cast<std::size_t>(columns) : split, to);
+    }
+  }
+}
+
+}  // namespace
+
+std::int32_t first_upper_texel(const Blit& blit, std::int32_t row) {
+  // (2 x + 1) * height >= (2 row + 1) * width
+  const std::int64_t height = blit.y.to_size(), edge = (2 * std::int64_t{row} + 1) * blit.x.to_size();
+  if (edge <= height) return 0;
+  return static_cast<std::int32_t>((edge - height + 2 * height - 1) / (2 * height));
+}
+
+bool scale_rows(const Blit& blit, const Quad& quad, const Start& start, const Sampler& sampler,
+                base::FunctionRef<ImageView(std::uint32_t)> view_of) {
+  const ImageView view = view_of(0);
+  if (view.type != VK_IMAGE_VIEW_TYPE_2D || start.x != blit.x.to0 || start.y != blit.y.to0) return false;
+  Scaler scaler(blit, make_plan(view, sampler, SampleOp::kSample, LodMode::kZero));
+  if (scaler.plan.zero || !find_taps(quad, start, scaler)) return false;
+  scaler.raw = !scaler.plan.mag_linear && keeps_bytes(*view.format, *blit.to.format);
+  for_each_band(blit.to, blit.to.row_bytes() * 4,
+                [&](std::uint32_t first, std::uint32_t count, std::uint32_t slice, std::uint32_t) {
+                  const base::ScopedFloatMode mode(base::Denormals::kFlush);
+                  const ImageView source = view_of(slice);
+                  if (scaler.raw) return move_band(scaler, source, first, count, slice);
+                  scaler.plan.aos ? scale_band<std::uint32_t>(scaler, source, first, count, slice)
+                                  : scale_band<Texel>(scaler, source, first, count, slice);
+                });
+  return true;
+}
+
+}  // namespace vitrine::texel
