@@ -18,7 +18,17 @@ bool can_decode(const FormatDesc& format) { return format.plain; }
 bool can_encode(const FormatDesc& format) { return format.plain && !is_scaled(format); }
 
 bool can_sample(const FormatDesc& format) {
-  return format.compression == Compression::kBc || (format.plain && !is_scaled(format));
+  switch (format.compression) {
+    case Compression::kNone:
+      return format.plain && !is_scaled(format);
+    case Compression::kBc:
+    case Compression::kEtc2:
+    case Compression::kEac:
+    case Compression::kAstcLdr:
+      return true;
+    default:
+      return false;
+  }
 }
 
 bool can_filter(const FormatDesc& format) { return can_sample(format) && !format.is_integer(); }

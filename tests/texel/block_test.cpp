@@ -55,16 +55,51 @@ std::uint32_t digest(VkFormat format) {
   return hash;
 }
 
+TEST(Block, WholeBlocksEqualTheirTexels) {
+  std::mt19937 generator(5);
+  for (const VkFormat format : {VK_FORMAT_BC1_RGB_UNORM_BLOCK, VK_FORMAT_BC1_RGBA_SRGB_BLOCK, VK_FORMAT_BC2_UNORM_BLOCK,
+                                VK_FORMAT_BC3_UNORM_BLOCK, VK_FORMAT_BC4_UNORM_BLOCK, VK_FORMAT_BC5_UNORM_BLOCK,
+                                VK_FORMAT_BC7_UNORM_BLOCK, VK_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK}) {
+    for (int b = 0; b < 500; ++b) {
+      std::uint32_t block[4], all[16];
+      for (std::uint32_t& word : block) word = static_cast<std::uint32_t>(generator());
+      if (b % 2 == 0) block[0] = (block[0] & ~0xFFu) | 1u << (b / 2 % 8);
+      const auto* bytes = reinterpret_cast<const std::byte*>(block);
+      decode_block_bytes(format_desc(format), bytes, all);
+      for (std::uint32_t i = 0; i < 16; ++i) {
+        Bytes one{};
+        decode_block_bytes(format_desc(format), bytes, i % 4, i / 4, one);
+        EXPECT_EQ(0, std::memcmp(one.data(), &all[i], 4)) << format_desc(format).name << " texel " << i;
+      }
+    }
+  }
+}
+
 TEST(Block, DigestsOfRandomBlocks) {
   const struct {
     VkFormat format;
     std::uint32_t expected;
   } rows[] = {
-      {VK_FORMAT_BC1_RGBA_UNORM_BLOCK, 0xf3f72008u}, {VK_FORMAT_BC2_SRGB_BLOCK, 0xd1b82905u},
-      {VK_FORMAT_BC3_UNORM_BLOCK, 0x9d874a24u},      {VK_FORMAT_BC4_SNORM_BLOCK, 0xa3a4b424u},
-      {VK_FORMAT_BC5_UNORM_BLOCK, 0xb1c4591du},      {VK_FORMAT_BC6H_UFLOAT_BLOCK, 0x22709dc5u},
-      {VK_FORMAT_BC6H_SFLOAT_BLOCK, 0x19605dc5u},    {VK_FORMAT_BC7_UNORM_BLOCK, 0x246b05b5u},
+      {VK_FORMAT_BC1_RGBA_UNORM_BLOCK, 0xf3f72008u},
+      {VK_FORMAT_BC2_SRGB_BLOCK, 0xd1b82905u},
+      {VK_FORMAT_BC3_UNORM_BLOCK, 0x9d874a24u},
+      {VK_FORMAT_BC4_SNORM_BLOCK, 0xa3a4b424u},
+      {VK_FORMAT_BC5_UNORM_BLOCK, 0xb1c4591du},
+      {VK_FORMAT_BC6H_UFLOAT_BLOCK, 0x22709dc5u},
+      {VK_FORMAT_BC6H_SFLOAT_BLOCK, 0x19605dc5u},
+      {VK_FORMAT_BC7_UNORM_BLOCK, 0x246b05b5u},
       {VK_FORMAT_BC7_SRGB_BLOCK, 0x5fdaa8dbu},
+      // Compared, over 300,000 blocks each, with Mesa's decoder of ETC2, which the reference does not use.
+      {VK_FORMAT_ETC2_R8G8B8_UNORM_BLOCK, 0x4913ef00u},
+      {VK_FORMAT_ETC2_R8G8B8A1_UNORM_BLOCK, 0x5d8ee860u},
+      {VK_FORMAT_ETC2_R8G8B8A8_SRGB_BLOCK, 0x59571482u},
+      {VK_FORMAT_EAC_R11_UNORM_BLOCK, 0x22063fd9u},
+      {VK_FORMAT_EAC_R11G11_SNORM_BLOCK, 0x69bbdefeu},
+      // Compared, over 20,000 blocks of every size, with Arm's astcenc 4.2.
+      {VK_FORMAT_ASTC_4x4_UNORM_BLOCK, 0xf4d7bdc5u},
+      {VK_FORMAT_ASTC_6x5_SRGB_BLOCK, 0xbe7342c2u},
+      {VK_FORMAT_ASTC_10x8_UNORM_BLOCK, 0x971f5dc5u},
+      {VK_FORMAT_ASTC_12x12_SRGB_BLOCK, 0x5bd6983au},
   };
   for (const auto& row : rows) EXPECT_EQ(digest(row.format), row.expected) << format_desc(row.format).name;
 }

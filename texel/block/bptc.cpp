@@ -1,6 +1,7 @@
 // BC6H and BC7, one texel at a time (Khronos Data Format 1.3.1, chapter 20 "BPTC Compressed Texture Image Formats").
 #include "texel/block/bptc.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string_view>
@@ -287,35 +288,67 @@ void unquantize(const FloatMode& mode, bool is_signed, FloatEndpoints& ends) {
   }
 }
 
-}  // namespace
+struct UnormBlock {
+  explicit UnormBlock(const std::byte* block) : bits(block) {}
 
-std::array<std::uint8_t, 4> decode_bc7(const std::byte* block, std::uint32_t texel) {
+  Bits bits;
+  const UnormMode* mode = nullptr;
+  Partition partition;
+  std::uint32_t rotation = 0;
+  bool swapped = false;
+  Endpoint ends[6]{};
+  std::uint32_t second_start = 0;  ///< bit of the second list of indices
+};
+
+/// Everything of a block but its indices. Not for the reserved mode.
+UnormBlock read_block(const std::byte* block) {
   const auto first = std::to_integer<std::uint8_t>(block[0]);
-  if (first == 0) return {};  // reserved
-  Bits bits(block);
-  const UnormMode& mode = kUnormModes[std::countr_zero(first)];
-  bits.at = static_cast<std::uint32_t>(std::countr_zero(first)) + 1;
-  const Partition partition{mode.subsets, bits.take(mode.partition_bits)};
-  const std::uint32_t rotation = bits.take(mode.rotation_bits);
-  const bool swapped = bits.take(mode.selector_bits) != 0;
-  Endpoint ends[6];
-  read_endpoints(bits, mode, ends);
-  const std::uint32_t list_bits[2] = {mode.index_bits, mode.second_index_bits};
-  const std::uint32_t second_start = bits.at + 16u * mode.index_bits - mode.subsets;
-  std::uint32_t index[2] = {read_index(bits, partition, bits.at, list_bits[0], texel), 0};
-  if (list_bits[1] != 0) index[1] = read_index(bits, partition, second_start, list_bits[1], texel);
-  const std::size_t color_list = swapped ? 1 : 0;
-  const std::size_t alpha_list = list_bits[1] != 0 && !swapped ? 1 : 0;
-  const std::uint32_t subset = partition.subset(texel);
+  UnormBlock out(block);
+  out.mode = &kUnormModes[std::countr_zero(first)];
+  out.bits.at = static_cast<std::uint32_t>(std::countr_zero(first)) + 1;
+  out.partition = {out.mode->subsets, out.bits.take(out.mode->partition_bits)};
+  out.rotation = out.bits.take(out.mode->rotation_bits);
+  out.swapped = out.bits.take(out.mode->selector_bits) != 0;
+  read_endpoints(out.bits, *out.mode, out.ends);
+  out.second_start = out.bits.at + 16u * out.mode->index_bits - out.mode->subsets;
+  return out;
+}
+
+std::array<std::uint8_t, 4> texel_of(const UnormBlock& block, std::uint32_t texel) {
+  const std::uint32_t list_bits[2] = {block.mode->index_bits, block.mode->second_index_bits};
+  std::uint32_t index[2] = {read_index(block.bits, block.partition, block.bits.at, list_bits[0], texel), 0};
+  if (list_bits[1] != 0) {
+    index[1] = read_index(block.bits, block.partition, block.second_start, list_bits[1], texel);
+  }
+  const std::size_t color_list = block.swapped ? 1 : 0;
+  const std::size_t alpha_list = list_bits[1] != 0 && !block.swapped ? 1 : 0;
+  const std::uint32_t subset = block.partition.subset(texel);
   std::array<std::uint8_t, 4> out;
   for (std::size_t c = 0; c < 4; ++c) {
     const std::size_t list = c < 3 ? color_list : alpha_list;
-    out[c] = static_cast<std::uint8_t>(interpolate(static_cast<std::int32_t>(ends[subset * 2][c]),
-                                                   static_cast<std::int32_t>(ends[subset * 2 + 1][c]), index[list],
-                                                   list_bits[list]));
+    out[c] = static_cast<std::uint8_t>(interpolate(static_cast<std::int32_t>(block.ends[subset * 2][c]),
+                                                   static_cast<std::int32_t>(block.ends[subset * 2 + 1][c]),
+                                                   index[list], list_bits[list]));
   }
-  if (rotation != 0) std::swap(out[rotation - 1], out[3]);
+  if (block.rotation != 0) std::swap(out[block.rotation - 1], out[3]);
   return out;
+}
+
+}  // namespace
+
+std::array<std::uint8_t, 4> decode_bc7(const std::byte* block, std::uint32_t texel) {
+  if (block[0] == std::byte{0}) return {};  // reserved
+  return texel_of(read_block(block), texel);
+}
+
+void decode_bc7(const std::byte* block, std::uint32_t out[16]) {
+  std::fill_n(out, 16, 0u);
+  if (block[0] == std::byte{0}) return;
+  const UnormBlock parsed = read_block(block);
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    const std::array<std::uint8_t, 4> rgba = texel_of(parsed, i);
+    std::memcpy(&out[i], rgba.data(), sizeof(out[i]));
+  }
 }
 
 std::array<float, 3> decode_bc6h(const std::byte* block, std::uint32_t texel, bool is_signed) {

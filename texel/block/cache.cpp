@@ -54,11 +54,7 @@ const std::uint32_t* BlockCache::bytes(const FormatDesc& format, const std::byte
   const Key key = key_of(format, block);
   auto& entry = entries_->bytes.of(key);
   if (entry.key != key) {
-    for (std::uint32_t i = 0; i < std::uint32_t{format.block_width} * format.block_height; ++i) {
-      std::array<std::uint8_t, 4> rgba;
-      decode_block_bytes(format, block, i % format.block_width, i / format.block_width, rgba);
-      std::memcpy(&entry.texel[i], rgba.data(), sizeof(entry.texel[i]));
-    }
+    decode_block_bytes(format, block, entry.texel.data());
     entry.key = key;
   }
   return entry.texel.data();
@@ -69,9 +65,7 @@ const Texel* BlockCache::texels(const FormatDesc& format, const std::byte* block
   const Key key = key_of(format, block);
   auto& entry = entries_->texels.of(key);
   if (entry.key != key) {
-    for (std::uint32_t i = 0; i < std::uint32_t{format.block_width} * format.block_height; ++i) {
-      decode_block_texel(format, block, i % format.block_width, i / format.block_width, entry.texel[i]);
-    }
+    decode_block_texels(format, block, entry.texel.data());
     entry.key = key;
   }
   return entry.texel.data();

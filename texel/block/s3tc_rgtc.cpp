@@ -58,6 +58,34 @@ std::array<std::uint8_t, 4> decode_color_block(const std::byte* block, std::uint
   return out;
 }
 
+void decode_color_block(const std::byte* block, ColorBlock kind, std::uint32_t out[16]) {
+  // A block whose first texels have the codes 0, 1, 2, 3 gives the four colours.
+  constexpr std::uint32_t kEachCode = 0xE4;
+  std::byte each[8];
+  std::memcpy(each, block, 4);
+  std::memcpy(each + 4, &kEachCode, sizeof(kEachCode));
+  std::uint32_t color[4];
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::array<std::uint8_t, 4> rgba = decode_color_block(each, i, kind);
+    std::memcpy(&color[i], rgba.data(), sizeof(color[i]));
+  }
+  std::uint32_t codes = 0;
+  std::memcpy(&codes, block + 4, sizeof(codes));
+  for (std::uint32_t i = 0; i < 16; ++i) out[i] = color[(codes >> (2 * i)) & 3];
+}
+
+void decode_channel_unsigned(const std::byte* block, std::uint8_t out[16]) {
+  constexpr std::uint64_t kEachCode = 0xFAC688ull << 16;  // 7, 6, ... 0, three bits each
+  std::uint64_t word = 0;
+  std::memcpy(&word, block, sizeof(word));
+  const std::uint64_t each = (word & 0xFFFF) | kEachCode;
+  std::uint8_t value[8];
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    value[i] = decode_channel_unsigned(reinterpret_cast<const std::byte*>(&each), i);
+  }
+  for (std::uint32_t i = 0; i < 16; ++i) out[i] = value[(word >> (16 + 3 * i)) & 7];
+}
+
 std::uint8_t decode_explicit_alpha(const std::byte* block, std::uint32_t index) {
   std::uint64_t bits = 0;
   std::memcpy(&bits, block, sizeof(bits));

@@ -112,6 +112,7 @@ bool simple_addresses(const Plan& plan) {
 bool fits_bytes(const FormatDesc& format) {
   if (format.is_depth_stencil() || format.channel_count == 0) return false;
   if (format.format == VK_FORMAT_BC6H_UFLOAT_BLOCK || format.format == VK_FORMAT_BC6H_SFLOAT_BLOCK) return false;
+  if (format.compression == Compression::kEac || format.compression == Compression::kAstcLdr) return false;
   return std::all_of(format.channel.begin(), format.channel.begin() + format.channel_count,
                      [](const Channel& c) { return c.numeric == Numeric::kUnorm && c.bits <= 8; });
 }
@@ -122,6 +123,7 @@ Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMo
   plan.sampler = &sampler;
   plan.decode = texel_decoder(*view.format);
   set_dimensions(plan);
+  plan.seamless = plan.cube;
   plan.gather = op == SampleOp::kGather;
   plan.anisotropic = sampler.max_anisotropy > 1.0f && !plan.gather && plan.dims == 2;
   plan.min_linear = plan.gather || sampler.min_filter == VK_FILTER_LINEAR;
@@ -142,7 +144,7 @@ Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMo
   const bool lod_per_lane = lod_mode != LodMode::kImplicit || (plan.cube && plan.mip != MipFilter::kNone);
   plan.aos = op == SampleOp::kSample && !sampler.compare && !plan.anisotropic && fits_bytes(*view.format) &&
              simple_addresses(plan) && (plan.min_linear == plan.mag_linear || !lod_per_lane) &&
-             !(plan.cube && (plan.min_linear || plan.mag_linear));
+             !(plan.seamless && (plan.min_linear || plan.mag_linear));
   plan.border = border_texel(*view.format, sampler);
   return plan;
 }

@@ -16,6 +16,7 @@ struct Plan {
   TexelDecoder decode = nullptr;  ///< null for compressed formats
   std::uint32_t dims = 2;         ///< addressed dimensions: cubes have 2
   bool cube = false;
+  bool seamless = false;  ///< filters cross the edges of a cube
   bool arrayed = false;
   bool aos = false;   ///< 8-bit fixed-point path, bytes in and out
   bool zero = false;  ///< integers with a linear filter, or a format that cannot be sampled: all components 0

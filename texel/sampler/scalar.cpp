@@ -103,11 +103,12 @@ void find_taps(const LaneSample& lane, std::uint32_t level, Taps taps[3]) {
 }
 
 Texel filter_slice(const LaneSample& lane, std::uint32_t level, const Taps taps[3], std::int32_t z) {
-  Texel upper = texel_or_border(lane, level, lane.layer, taps[0].first, taps[1].first, z);
-  reduce_x(lane, taps[0].weight, upper, texel_or_border(lane, level, lane.layer, taps[0].second, taps[1].first, z));
+  const std::uint32_t layer = lane.layer + (lane.plan->cube ? lane.face : 0);
+  Texel upper = texel_or_border(lane, level, layer, taps[0].first, taps[1].first, z);
+  reduce_x(lane, taps[0].weight, upper, texel_or_border(lane, level, layer, taps[0].second, taps[1].first, z));
   if (lane.plan->dims == 1) return upper;
-  Texel lower = texel_or_border(lane, level, lane.layer, taps[0].first, taps[1].second, z);
-  reduce_x(lane, taps[0].weight, lower, texel_or_border(lane, level, lane.layer, taps[0].second, taps[1].second, z));
+  Texel lower = texel_or_border(lane, level, layer, taps[0].first, taps[1].second, z);
+  reduce_x(lane, taps[0].weight, lower, texel_or_border(lane, level, layer, taps[0].second, taps[1].second, z));
   reduce_texel(lane, taps[1].weight, upper, lower);
   return upper;
 }
@@ -198,7 +199,7 @@ Texel gather(const LaneSample& lane, const SampleRequest& request) {
   const ImageView& view = *lane.plan->view;
   CubeTaps cube;
   Taps taps[3];
-  if (lane.plan->cube) {
+  if (lane.plan->seamless) {
     const auto size = static_cast<std::int32_t>(view.level[0].extent.width);
     cube = cube_taps(lane.face, lane.coord[0], lane.coord[1], size);
   } else {
@@ -209,8 +210,9 @@ Texel gather(const LaneSample& lane, const SampleRequest& request) {
   float value[4];
   for (std::size_t k = 0; k < 4; ++k) {
     const CubeTexel& at = cube.texel[k];
-    Texel texel = lane.plan->cube ? texel_or_border(lane, 0, lane.layer + at.face, at.x, at.y, 0)
-                                  : texel_or_border(lane, 0, lane.layer, x[k & 1], y[k >> 1], 0);
+    Texel texel = lane.plan->seamless ? texel_or_border(lane, 0, lane.layer + at.face, at.x, at.y, 0)
+                                      : texel_or_border(lane, 0, lane.layer + (lane.plan->cube ? lane.face : 0),
+                                                        x[k & 1], y[k >> 1], 0);
     if (!lane.compare) apply_swizzle(view, texel);
     value[k] = float_of(texel[lane.compare ? 0 : request.gather_component & 3]);
   }
@@ -305,7 +307,7 @@ Texel texel_or_border(const LaneSample& lane, std::uint32_t level, std::uint32_t
 }
 
 Texel sample_level(const LaneSample& lane, std::uint32_t level, bool linear) {
-  if (lane.plan->cube && linear) return sample_cube_linear(lane, level);
+  if (lane.plan->seamless && linear) return sample_cube_linear(lane, level);
   return linear ? sample_linear(lane, level) : sample_nearest(lane, level);
 }
 
