@@ -89,27 +89,33 @@ HWY_INLINE bool small_boxes(const EllipseLanes& e, base::LaneMask active) {
   return small;
 }
 
-template <Numeric kNumeric>
-HWY_INLINE TexelLanes nearest_texels(const PreparedSampler& p, const LevelLanes& level, VF u, VF v) {
-  const Plan& plan = p.plan;
-  AxisLanes x = level.axis[0], y = level.axis[1];
-  x.normalized = y.normalized = true;
-  VI at_x = lanes_nearest(x, hn::Div(u, x.size_float));
-  VI at_y = lanes_nearest(y, hn::Div(v, y.size_float));
-  const auto outside_of = [](VI i, VI size) { return hn::Or(hn::Lt(i, splat(0)), hn::Not(hn::Lt(i, size))); };
-  const bool border = x.address == Address::kBorder || y.address == Address::kBorder;
-  const auto outside = hn::RebindMask(DF(), hn::Or(outside_of(at_x, x.size), outside_of(at_y, y.size)));
-  if (border) {
-    at_x = lanes_clamp(at_x, hn::Sub(x.size, splat(1)));
-    at_y = lanes_clamp(at_y, hn::Sub(y.size, splat(1)));
+/// One axis of the level, as the walk needs it: u / size, exactly.
+struct WalkAxis {
+  AxisLanes lanes;
+  VF inverse;  ///< of sizes that are powers of two
+  VI last;
+
+  explicit WalkAxis(const AxisLanes& axis) : lanes(axis) {
+    lanes.normalized = true;
+    inverse = hn::Div(splat(1.0f), axis.size_float);
+    last = hn::Sub(axis.size, splat(1));
   }
-  const FormatDesc& format = *plan.view->format;
-  const VI offset = hn::Add(hn::Add(level.origin, hn::Mul(at_y, level.row_pitch)),
-                            hn::Mul(at_x, splat(static_cast<std::int32_t>(format.block_bytes))));
-  TexelLanes texel = fetch_lanes<kNumeric>(format, plan.view->base, offset);
-  if (!border) return texel;
+
+  /// The texel nearest to `texel`, inside the level; `outside`: that of the border colour.
+  HWY_INLINE VI nearest(VF texel, hn::Mask<DI>& outside) const {
+    const VF s = lanes.pot ? hn::Mul(texel, inverse) : hn::Div(texel, lanes.size_float);
+    const VI at = lanes_nearest(lanes, s);
+    outside = hn::Or(hn::Lt(at, splat(0)), hn::Gt(at, last));
+    return lanes.address == Address::kBorder ? lanes_clamp(at, last) : at;
+  }
+};
+
+template <Numeric kNumeric>
+HWY_INLINE TexelLanes texel_at(const Plan& plan, VI offset, hn::Mask<DI> outside) {
+  TexelLanes texel = fetch_lanes<kNumeric>(*plan.view->format, plan.view->base, offset);
+  if (plan.address[0] != Address::kBorder && plan.address[1] != Address::kBorder) return texel;
   const auto put = [&](VF value, std::size_t c) {
-    return hn::IfThenElse(outside, as_float(hn::Set(DU(), plan.border[c])), value);
+    return hn::IfThenElse(hn::RebindMask(DF(), outside), as_float(hn::Set(DU(), plan.border[c])), value);
   };
   return {put(texel.r, 0), put(texel.g, 1), put(texel.b, 2), put(texel.a, 3)};
 }
@@ -117,7 +123,10 @@ HWY_INLINE TexelLanes nearest_texels(const PreparedSampler& p, const LevelLanes&
 template <Numeric kNumeric>
 HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const EllipseLanes& e, base::LaneMask active,
                        Sums& sums) {
+  const Plan& plan = p.plan;
   const auto live = lanes_mask_from_bits(DI(), active);
+  const WalkAxis x_axis(level.axis[0]), y_axis(level.axis[1]);
+  const VI texel_bytes = splat(static_cast<std::int32_t>(plan.view->format->block_bytes));
   const VF u_start = hn::Sub(lanes_int_to_float(e.u0), e.tu);
   const VF dq_start = hn::Mul(hn::Add(hn::Mul(u_start, splat(2.0f)), splat(1.0f)), e.a);
   const VF q_start = hn::Mul(square_of(u_start), e.a);
@@ -129,23 +138,30 @@ HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const 
     const VF offset = hn::Sub(v, e.tv);
     VF dq = hn::Add(hn::Mul(offset, e.b), dq_start);
     VF q = hn::Add(hn::Mul(hn::Add(hn::Mul(e.c, offset), hn::Mul(e.b, u_start)), offset), q_start);
+    hn::Mask<DI> outside_y, outside_x;
+    const VI row = hn::Add(level.origin, hn::Mul(y_axis.nearest(v, outside_y), level.row_pitch));
     VI iu = e.u0;
     for (auto texels = rows; !hn::AllFalse(DI(), texels);
          iu = hn::Add(iu, splat(1)), texels = hn::And(rows, hn::Not(hn::Gt(iu, e.u1)))) {
       const VI index = lanes_truncate_to_int(q);
+      q = hn::Add(q, dq);
+      dq = hn::Add(dq, ddq);
       const auto weighed = hn::And(texels, hn::Not(hn::Gt(index, splat(1023))));
+      // A texel without weight adds 0, unless it is an infinity or NaN.
+      if (kNumeric != Numeric::kSfloat && hn::AllFalse(DI(), weighed)) continue;
       const VI entry = hn::Min(hn::Max(index, splat(0)), splat(1023));
       const VF weight =
           hn::IfThenElseZero(hn::RebindMask(DF(), weighed), hn::GatherIndex(DF(), kEllipseWeights.data(), entry));
-      const TexelLanes texel = nearest_texels<kNumeric>(p, level, lanes_int_to_float(iu), v);
+      const VI at = x_axis.nearest(lanes_int_to_float(iu), outside_x);
+      const TexelLanes texel =
+          texel_at<kNumeric>(plan, hn::Add(row, hn::Mul(at, texel_bytes)), hn::Or(outside_x, outside_y));
       const VF value[4] = {texel.r, texel.g, texel.b, texel.a};
-      const auto in = hn::RebindMask(DF(), texels);
       for (std::size_t c = 0; c < 4; ++c) {
-        sums.color[c] = hn::IfThenElse(in, hn::Add(sums.color[c], hn::Mul(value[c], weight)), sums.color[c]);
+        const VF sum = hn::Add(sums.color[c], hn::Mul(value[c], weight));
+        sums.color[c] =
+            kNumeric == Numeric::kSfloat ? hn::IfThenElse(hn::RebindMask(DF(), texels), sum, sums.color[c]) : sum;
       }
       sums.total = hn::Add(sums.total, weight);
-      q = hn::Add(q, dq);
-      dq = hn::Add(dq, ddq);
     }
   }
 }
@@ -190,7 +206,7 @@ void sample_anisotropic_wave(const PreparedSampler& p, const SampleRequest& requ
       continue;
     }
     Sums sums{{splat(0.0f), splat(0.0f), splat(0.0f), splat(0.0f)}, splat(0.0f)};
-    walk_any(p, load_level(p, request, state, 0, first, false), e, active, sums);
+    walk_any(p, load_level<2>(p, request, state, 0, first, false), e, active, sums);
     leftover |= (lanes_mask_bits(DF(), hn::Eq(sums.total, splat(0.0f))) & active) << first;
     for (std::size_t c = 0; c < 4; ++c) hn::Store(hn::Div(sums.color[c], sums.total), DF(), texels.c[c].lane + first);
   }

@@ -26,8 +26,12 @@ template <std::size_t kStep>
 HWY_INLINE void load_block_bytes(const ImageView& view, const IntLanes& offset, const IntLanes& inner,
                                  base::LaneMask active, std::uint32_t* to) {
   BlockCache& cache = block_cache();
+  std::int32_t last = -1;  // neighbours often share a block
+  const std::uint32_t* texels = nullptr;
   base::for_each_lane(active, [&](std::size_t lane) {
-    to[kStep * lane] = cache.bytes(*view.format, view.base + offset.lane[lane])[inner.lane[lane]];
+    if (offset.lane[lane] != last) texels = cache.bytes(*view.format, view.base + offset.lane[lane]);
+    last = offset.lane[lane];
+    to[kStep * lane] = texels[inner.lane[lane]];
   });
 }
 

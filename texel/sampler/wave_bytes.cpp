@@ -14,6 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "texel/codec/byte_blend-inl.h"
 #include "texel/sampler/wave_block-inl.h"
 #include "texel/sampler/wave_state-inl.h"
 
@@ -77,7 +78,7 @@ HWY_INLINE ByteAxis find_axis(const AxisLanes& axis, VF s, bool linear, std::siz
   }
   const ByteTapLanes taps = lanes_linear_bytes(axis, s);
   const VI w = hn::IfThenZeroElse(hn::Eq(taps.first, taps.second), taps.weight);  // equal texels: the first
-  hn::Store(hn::Or(hn::ShiftLeft<7>(w), hn::ShiftLeft<23>(w)), DI(), weight.lane + first);
+  hn::Store(spread_weight(w), DI(), weight.lane + first);
   return {taps.first, taps.second};
 }
 
@@ -89,18 +90,18 @@ struct RowOffset {
   }
 };
 
+template <std::uint32_t kDims>
 HWY_NOINLINE void find_taps(const PreparedSampler& p, const SampleRequest& request, const WaveState& state, int which,
                             bool linear, ByteTaps& taps) {
   const Plan& plan = p.plan;
   const FormatDesc& format = *plan.view->format;
   const RowOffset offset{format};
-  const std::uint32_t dims = plan.dims;
-  taps.rows = linear ? 1u << (dims - 1) : 1u;
+  taps.rows = linear ? 1u << (kDims - 1) : 1u;
   taps.adjacent = !format.is_compressed();
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
-    const LevelLanes level = load_level(p, request, state, which, first, plan.cube);
+    const LevelLanes level = load_level<kDims>(p, request, state, which, first, plan.cube);
     ByteAxis axis[3];
-    for (std::uint32_t i = 0; i < dims; ++i) {
+    for (std::uint32_t i = 0; i < kDims; ++i) {
       axis[i] = find_axis(level.axis[i], hn::LoadU(DF(), state.coord[i] + first), linear, first, taps.weight[i]);
     }
     VI x_first = axis[0].first, x_second = axis[0].second;
@@ -116,7 +117,7 @@ HWY_NOINLINE void find_taps(const PreparedSampler& p, const SampleRequest& reque
     for (std::uint32_t r = 0; r < taps.rows; ++r) {
       VI row = level.origin;
       VI inner_y = splat(0);
-      if (dims > 1) {
+      if (kDims > 1) {
         VI y = (r & 1) != 0 ? axis[1].second : axis[1].first;
         if (format.is_compressed()) {
           y = split_block(y, format.block_height, inner_y);
@@ -124,7 +125,7 @@ HWY_NOINLINE void find_taps(const PreparedSampler& p, const SampleRequest& reque
         }
         row = hn::Add(row, hn::Mul(y, level.row_pitch));
       }
-      if (dims > 2) row = hn::Add(row, hn::Mul((r & 2) != 0 ? axis[2].second : axis[2].first, level.slice_pitch));
+      if (kDims > 2) row = hn::Add(row, hn::Mul((r & 2) != 0 ? axis[2].second : axis[2].first, level.slice_pitch));
       hn::Store(offset(row, x_first), DI(), taps.first[r].lane + first);
       if (linear) hn::Store(offset(row, x_second), DI(), taps.second[r].lane + first);
       if (format.is_compressed()) {
@@ -189,38 +190,6 @@ HWY_INLINE void split_pairs(const Plan& plan, const ByteTaps& taps, const ByteFo
 
 // ---- filters
 
-using D16 = hn::Repartition<std::int16_t, DU>;
-using V16 = hn::Vec<D16>;
-
-/// Two of four bytes in 16-bit lanes each.
-struct Halves {
-  V16 even, odd;
-};
-
-HWY_INLINE Halves unpack_bytes(VU packed) {
-  const VU mask = hn::Set(DU(), 0x00FF00FFu);
-  return {hn::BitCast(D16(), hn::And(packed, mask)), hn::BitCast(D16(), hn::And(hn::ShiftRight<8>(packed), mask))};
-}
-
-HWY_INLINE VU pack_bytes(const Halves& halves) {
-  return hn::Or(hn::BitCast(DU(), halves.even), hn::ShiftLeft<8>(hn::BitCast(DU(), halves.odd)));
-}
-
-// PMULHRSW: (a * b + 2^14) >> 15.
-HWY_INLINE hn::Vec128<std::int16_t> rounded_product(hn::Vec128<std::int16_t> a, hn::Vec128<std::int16_t> b) {
-  return hn::Vec128<std::int16_t>{_mm_mulhrs_epi16(a.raw, b.raw)};
-}
-#if HWY_TARGET <= HWY_AVX2
-HWY_INLINE hn::Vec256<std::int16_t> rounded_product(hn::Vec256<std::int16_t> a, hn::Vec256<std::int16_t> b) {
-  return hn::Vec256<std::int16_t>{_mm256_mulhrs_epi16(a.raw, b.raw)};
-}
-#endif
-#if HWY_TARGET <= HWY_AVX3
-HWY_INLINE hn::Vec512<std::int16_t> rounded_product(hn::Vec512<std::int16_t> a, hn::Vec512<std::int16_t> b) {
-  return hn::Vec512<std::int16_t>{_mm512_mulhrs_epi16(a.raw, b.raw)};
-}
-#endif
-
 /// a + ((w * (b - a) + 128) >> 8), with `weight` = 128 w; or the smaller or larger where w is not 0.
 HWY_INLINE V16 reduce_16(VkSamplerReductionMode mode, V16 weight, V16 a, V16 b) {
   if (mode == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE) {
@@ -275,7 +244,8 @@ HWY_NOINLINE void filter_level(const PreparedSampler& p, const ByteFormat& forma
                                const WaveState& state, int which, bool linear, PackedLanes& out) {
   ByteTaps taps;
   RowWords rows[kMaxRows];
-  find_taps(p, request, state, which, linear, taps);
+  const auto find = p.plan.dims == 1 ? find_taps<1> : p.plan.dims == 2 ? find_taps<2> : find_taps<3>;
+  find(p, request, state, which, linear, taps);
   for (std::uint32_t r = 0; r < taps.rows; ++r) load_row(p.plan, taps, r, linear, request.active, rows[r]);
   linear ? filter_rows(p.plan, taps, format, rows, out) : keep_texels(p.plan, format, rows[0], out);
 }
@@ -291,7 +261,7 @@ HWY_NOINLINE void filter_levels(const PreparedSampler& p, const ByteFormat& form
     const VF scaled = hn::Mul(hn::Load(DF(), state.fraction.lane + first), splat(256.0f));
     const VI w = hn::And(lanes_truncate_to_int(scaled), splat(255));
     any = any || !hn::AllTrue(DI(), hn::Eq(w, splat(0)));
-    hn::Store(hn::Or(hn::ShiftLeft<7>(w), hn::ShiftLeft<23>(w)), DI(), weight.lane + first);
+    hn::Store(spread_weight(w), DI(), weight.lane + first);
   }
   if (!any) return;
   PackedLanes next;

@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "texel/sampler/wave_cube-inl.h"
+#include "texel/sampler/wave_four-inl.h"
 #include "texel/sampler/wave_texels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -70,28 +71,35 @@ HWY_INLINE VI enter(VI i, VI size, base::LaneMask& outside, std::size_t first) {
   return lanes_clamp(i, hn::Sub(size, splat(1)));
 }
 
-HWY_NOINLINE void find_taps(Call& call, int which, bool linear, FloatTaps& taps) {
+template <std::uint32_t kDims>
+HWY_NOINLINE void find_taps_in(Call& call, int which, bool linear, FloatTaps& taps) {
   const Plan& plan = call.plan();
   const FormatDesc& format = *call.view().format;
   const bool border =
       plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder || plan.address[2] == Address::kBorder;
-  taps.count = linear ? 1u << plan.dims : 1u;
+  taps.count = linear ? 1u << kDims : 1u;
   for (base::LaneMask& mask : taps.outside) mask = 0;
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
-    const LevelLanes level = load_level(call.p, call.request, call.state, which, first, plan.cube);
+    const LevelLanes level = load_level<kDims>(call.p, call.request, call.state, which, first, plan.cube);
     AxisTaps axis[3] = {{{splat(0), splat(0)}}, {{splat(0), splat(0)}}, {{splat(0), splat(0)}}};
-    for (std::uint32_t i = 0; i < plan.dims; ++i) {
+    for (std::uint32_t i = 0; i < kDims; ++i) {
       axis[i] = find_axis(level.axis[i], hn::LoadU(DF(), call.state.coord[i] + first), linear, plan.gather, first,
                           taps.weight[i]);
     }
     for (std::uint32_t k = 0; k < taps.count; ++k) {
       VI at[3] = {axis[0].at[k & 1], axis[1].at[k >> 1 & 1], axis[2].at[k >> 2]};
       if (border) {
-        for (std::uint32_t i = 0; i < plan.dims; ++i) at[i] = enter(at[i], level.axis[i].size, taps.outside[k], first);
+        for (std::uint32_t i = 0; i < kDims; ++i) at[i] = enter(at[i], level.axis[i].size, taps.outside[k], first);
       }
-      place_texels(format, level, plan.dims, at[0], at[1], at[2], first, taps.place[k]);
+      place_texels<kDims>(format, level, at[0], at[1], at[2], first, taps.place[k]);
     }
   }
+}
+
+HWY_NOINLINE void find_taps(Call& call, int which, bool linear, FloatTaps& taps) {
+  const std::uint32_t dims = call.plan().dims;
+  const auto find = dims == 1 ? find_taps_in<1> : dims == 2 ? find_taps_in<2> : find_taps_in<3>;
+  find(call, which, linear, taps);
 }
 
 HWY_NOINLINE void find_cube_taps(Call& call, int which, FloatTaps& taps) {
@@ -101,7 +109,7 @@ HWY_NOINLINE void find_cube_taps(Call& call, int which, FloatTaps& taps) {
   taps.corners = 0;
   for (base::LaneMask& mask : taps.outside) mask = 0;
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
-    LevelLanes level = load_level(call.p, call.request, call.state, which, first, false);
+    LevelLanes level = load_level<2>(call.p, call.request, call.state, which, first, false);
     const VI origin = level.origin;
     const CubeLanes cube = find_cube_texels(hn::Load(DI(), call.state.face.lane + first),
                                             hn::Load(DF(), call.state.projected[0].lane + first),
@@ -112,7 +120,7 @@ HWY_NOINLINE void find_cube_taps(Call& call, int which, FloatTaps& taps) {
     taps.corners |= lanes_mask_bits(DI(), hn::Lt(cube.corner, splat(4))) << first;
     for (std::uint32_t k = 0; k < 4; ++k) {
       level.origin = hn::Add(origin, hn::Mul(cube.face[k], stride));
-      place_texels(format, level, 2, cube.x[k], cube.y[k], splat(0), first, taps.place[k]);
+      place_texels<2>(format, level, cube.x[k], cube.y[k], splat(0), first, taps.place[k]);
     }
   }
 }
@@ -258,14 +266,27 @@ HWY_NOINLINE void filter_cube(Call& call, const FloatTaps& taps, WaveTexels& out
   });
 }
 
+/// Whether the plainest filter will do: averages of four texels inside the level.
+bool filters_four(const Call& call, const FloatTaps& taps) {
+  if (call.compare || taps.count != 4 || call.reduction() != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE) return false;
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    if (taps.outside[k] != 0) return false;
+  }
+  return has_four_floats(*call.view().format);
+}
+
 HWY_NOINLINE void filter_level(Call& call, int which, bool linear, WaveTexels& out) {
   FloatTaps taps;
-  if (call.plan().cube && linear) {
+  if (call.plan().seamless && linear) {
     find_cube_taps(call, which, taps);
     return filter_cube(call, taps, out);
   }
   find_taps(call, which, linear, taps);
   if (!linear) return fetch_tap(call, taps, 0, out);
+  if (filters_four(call, taps)) {
+    const auto filter = call.view().format->block_bytes == 8 ? filter_four<8> : filter_four<16>;
+    return filter(call.view().base, taps.place, taps.weight[0], taps.weight[1], out);
+  }
   filter_slice(call, taps, 0, out);
   if (taps.count < 8) return;
   WaveTexels farther;
@@ -312,7 +333,7 @@ void gather(Call& call, const SampleResult& result) {
   const std::uint8_t source = call.compare ? 0 : view.swizzle[call.request.gather_component & 3];
   constexpr std::uint32_t kOrder[4] = {2, 3, 1, 0};
   FloatTaps taps;
-  call.plan().cube ? find_cube_taps(call, 0, taps) : find_taps(call, 0, true, taps);
+  call.plan().seamless ? find_cube_taps(call, 0, taps) : find_taps(call, 0, true, taps);
   call.wanted = source < 4 ? 1u << source : 0u;
   FloatLanes value[4];
   for (std::uint32_t k = 0; k < 4; ++k) {

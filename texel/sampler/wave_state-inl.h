@@ -276,31 +276,44 @@ struct LevelLanes {
   VI origin;  ///< bytes, with the layer
 };
 
-HWY_INLINE VI lookup(const std::int32_t* table, VI level, bool one) {
-  return one ? splat(table[0]) : hn::GatherIndex(DI(), table, level);
-}
+/// A level for every lane of a vector, often the same.
+struct LevelIndex {
+  explicit LevelIndex(VI value) : lanes(value), first(static_cast<std::size_t>(hn::GetLane(value))) {
+    uniform = hn::AllTrue(DI(), hn::Eq(value, splat(static_cast<std::int32_t>(first))));
+  }
+  explicit LevelIndex() : lanes(splat(0)) {}
 
-/// `dims` axes; `origin` includes the face if `with_face`.
+  VI lookup(const std::int32_t* table) const {
+    return uniform ? splat(table[first]) : hn::GatherIndex(DI(), table, lanes);
+  }
+
+  VI lanes;
+  std::size_t first = 0;
+  bool uniform = true;
+};
+
+/// kDims axes; `origin` includes the face if `with_face`.
+template <std::uint32_t kDims>
 HWY_INLINE LevelLanes load_level(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                  int which, std::size_t first, bool with_face) {
   const Plan& plan = p.plan;
-  const VI level = p.one_level ? splat(0) : hn::Load(DI(), state.level[which].lane + first);
+  const LevelIndex level = p.one_level ? LevelIndex() : LevelIndex(hn::Load(DI(), state.level[which].lane + first));
   const std::int32_t* const sizes[3] = {p.level.width, p.level.height, p.level.depth};
   const bool has_offset = request.offset[0] || request.offset[1] || request.offset[2];
   LevelLanes out;
-  for (std::uint32_t i = 0; i < plan.dims; ++i) {
+  for (std::uint32_t i = 0; i < kDims; ++i) {
     AxisLanes& axis = out.axis[i];
     axis.address = plan.address[i];
     axis.pot = plan.pot[i];
     axis.normalized = !plan.sampler->unnormalized;
     axis.has_offset = has_offset;
     axis.offset = request.offset[i] != nullptr ? load_ints(request.offset[i], first) : splat(0);
-    axis.size = lookup(sizes[i], level, p.one_level);
+    axis.size = level.lookup(sizes[i]);
     axis.size_float = lanes_int_to_float(axis.size);
   }
-  out.row_pitch = lookup(p.level.row_pitch, level, p.one_level);
-  out.slice_pitch = plan.dims == 3 ? lookup(p.level.slice_pitch, level, p.one_level) : splat(0);
-  out.origin = lookup(p.level.offset, level, p.one_level);
+  out.row_pitch = level.lookup(p.level.row_pitch);
+  out.slice_pitch = kDims == 3 ? level.lookup(p.level.slice_pitch) : splat(0);
+  out.origin = level.lookup(p.level.offset);
   if (plan.arrayed) out.origin = hn::Add(out.origin, hn::Load(DI(), state.layer_offset.lane + first));
   if (with_face) {
     const VI stride = splat(static_cast<std::int32_t>(plan.view->layer_stride));

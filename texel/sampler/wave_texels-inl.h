@@ -29,18 +29,19 @@ struct TexelPlaces {
 };
 
 /// Stores where texels (x, y, z) of lanes first.. lie; x, y, z inside the level.
-HWY_INLINE void place_texels(const FormatDesc& format, const LevelLanes& level, std::uint32_t dims, VI x, VI y, VI z,
-                             std::size_t first, TexelPlaces& out) {
+template <std::uint32_t kDims>
+HWY_INLINE void place_texels(const FormatDesc& format, const LevelLanes& level, VI x, VI y, VI z, std::size_t first,
+                             TexelPlaces& out) {
   VI origin = level.origin;
   if (format.is_compressed()) {
     VI inner_x, inner_y = splat(0);
     x = split_block(x, format.block_width, inner_x);
-    if (dims > 1) y = split_block(y, format.block_height, inner_y);
+    if (kDims > 1) y = split_block(y, format.block_height, inner_y);
     const VI inner = hn::Add(hn::Mul(inner_y, splat(static_cast<std::int32_t>(format.block_width))), inner_x);
     hn::Store(inner, DI(), out.inner.lane + first);
   }
-  if (dims > 1) origin = hn::Add(origin, hn::Mul(y, level.row_pitch));
-  if (dims > 2) origin = hn::Add(origin, hn::Mul(z, level.slice_pitch));
+  if (kDims > 1) origin = hn::Add(origin, hn::Mul(y, level.row_pitch));
+  if (kDims > 2) origin = hn::Add(origin, hn::Mul(z, level.slice_pitch));
   hn::Store(hn::Add(origin, hn::Mul(x, splat(static_cast<std::int32_t>(format.block_bytes)))), DI(),
             out.offset.lane + first);
 }
