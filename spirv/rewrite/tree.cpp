@@ -1,3 +1,4 @@
+// Questions about the tree of blocks that several rewriting passes ask.
 #include "spirv/rewrite/tree.h"
 
 namespace vitrine::spirv::rewriting {
