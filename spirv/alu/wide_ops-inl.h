@@ -119,13 +119,14 @@ HWY_INLINE float binary_logarithm(float a) {
   return static_cast<float>(exponent + 2.0 * s * sum * 0x1.71547652b82fep+0);
 }
 
+// Of two NaN operands the first one survives, as in the CPU; the compiler may swap the operands of + and *.
 // clang-format off
 template <> struct WideOp<ir::Op::kHSin> { static HWY_INLINE float of(float a) { return sine(a, 0); } };
 template <> struct WideOp<ir::Op::kHCos> { static HWY_INLINE float of(float a) { return sine(a, 1); } };
 template <> struct WideOp<ir::Op::kHExp2> { static HWY_INLINE float of(float a) { return power_of_two(a); } };
 template <> struct WideOp<ir::Op::kHLog2> { static HWY_INLINE float of(float a) { return binary_logarithm(a); } };
-template <> struct WideOp<ir::Op::kDAdd> { static HWY_INLINE double of(double a, double b) { return a + b; } };
-template <> struct WideOp<ir::Op::kDMul> { static HWY_INLINE double of(double a, double b) { return a * b; } };
+template <> struct WideOp<ir::Op::kDAdd> { static HWY_INLINE double of(double a, double b) { return a != a ? a + a : a + b; } };
+template <> struct WideOp<ir::Op::kDMul> { static HWY_INLINE double of(double a, double b) { return a != a ? a + a : a * b; } };
 template <> struct WideOp<ir::Op::kDDiv> { static HWY_INLINE double of(double a, double b) { return a / b; } };
 template <> struct WideOp<ir::Op::kDSqrt> { static HWY_INLINE double of(double a) { return __builtin_sqrt(a); } };
 template <> struct WideOp<ir::Op::kDFloor> { static HWY_INLINE double of(double a) { return __builtin_floor(a); } };
