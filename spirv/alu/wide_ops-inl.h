@@ -78,7 +78,8 @@ HWY_INLINE float sine(float a, int quadrants) {
   double value;
   if ((quadrant & 1) == 0) {
     value = -1.0 / 1307674368000.0;
-    for (const double c : {1.0 / 6227020800.0, -1.0 / 39916800.0, 1.0 / 362880.0, -1.0 / 5040.0, 1.0 / 120.0, -1.0 / 6.0})
+    for (const double c :
+         {1.0 / 6227020800.0, -1.0 / 39916800.0, 1.0 / 362880.0, -1.0 / 5040.0, 1.0 / 120.0, -1.0 / 6.0})
       value = value * z + c;
     value = r + r * z * value;
   } else {
