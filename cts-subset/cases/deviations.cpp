@@ -177,6 +177,46 @@ const AddCase kInterpolation(
       draw(run, "read_before", target, spec, values);
     });
 
+/// A strip after a line: with its first line outside of the volume, and without that line.
+const AddCase kStippleCounter("rasterization", "deviation.stipple_counter", "stipple-counter", case_against_control,
+                              [](Run& run) {
+                                run.require(run.gpu.extension_features.line_rasterization.stippledRectangularLines,
+                                            "stippledRectangularLines");
+                                VkPipelineRasterizationLineStateCreateInfoEXT line{
+                                    VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+                                line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
+                                line.stippledLineEnable = VK_TRUE;
+                                line.lineStippleFactor = 1;
+                                line.lineStipplePattern = 0x00ff;
+                                GraphicsSpec spec;
+                                spec.vertex = kColorVertex;
+                                spec.fragment = kColorFragment;
+                                spec.floats({4, 4});
+                                spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
+                                spec.raster.pNext = &line;
+                                // The first line is 24 pixels long, so that the pattern stops between its ones and its
+                                // zeros.
+                                const Buffer vertices = run.buffer_of(colored({{-0.375f, -0.5f, 0, 1},
+                                                                               {0.375f, -0.5f, 0, 1},
+                                                                               {-0.5f, 3, 0, 1},
+                                                                               {-0.5f, 2, 0, 1},
+                                                                               {-0.5f, 0.25f, 0, 1},
+                                                                               {0.5f, 0.25f, 0, 1}}));
+                                for (const uint32_t first : {2u, 3u}) {
+                                  const Target target = make_target(run, {});
+                                  const VkPipeline pipeline = make_pipeline(run, spec, target);
+                                  run.once([&](VkCommandBuffer cmd) {
+                                    target.begin(cmd);
+                                    bind_pipeline(cmd, pipeline);
+                                    bind_vertices(cmd, vertices);
+                                    vkCmdDraw(cmd, 2, 1, 0, 0);
+                                    vkCmdDraw(cmd, 6 - first, 1, first, 0);
+                                    vkCmdEndRenderPass(cmd);
+                                  });
+                                  run.out("first_" + std::to_string(first), target.colors[0]);
+                                }
+                              });
+
 /// The rectangle of the line reaches from y = 63.4 to 64.4.
 const AddCase kLineTiles(
     "rasterization", "deviation.multisample_line_tiles", "multisample-line-tiles",

@@ -178,7 +178,10 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool s
     scene.spec.assembly.topology = random.pick({VK_PRIMITIVE_TOPOLOGY_LINE_LIST, VK_PRIMITIVE_TOPOLOGY_LINE_STRIP});
   }
   scene.count = 2 + random.below(30);
-  scene.vertices = random_vertices(random, scene.count, random.chance(0.6f) ? 0.85f : 1.3f, 0, 1);
+  // deviations.md, stipple-counter
+  const bool stippled_strip = stippled && scene.spec.assembly.topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
+  const bool inside = random.chance(0.6f) || stippled_strip;
+  scene.vertices = random_vertices(random, scene.count, inside ? 0.85f : 1.3f, 0, 1);
   // Ends on the centres and edges of pixels decide the diamond rule.
   if (random.chance(0.4f))
     for (uint32_t i = 0; i < scene.count; ++i) {
