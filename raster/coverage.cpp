@@ -86,19 +86,49 @@ void inside_blocks(const TileEdges& edges, std::uint32_t sample, base::LaneMask 
   }
 }
 
-/// The same for three edges and the 4x4 pixels of quads 0, 1, 4 and 5: 16 lanes.
+/// Values of three edges at lanes [i, i + n) of the places (x, y), and their steps two rows down.
+struct WindowEdges {
+  V row[3], down[3];
+
+  HWY_INLINE WindowEdges(const std::int32_t* places_x, const std::int32_t* places_y, const std::int32_t* step_x,
+                         const std::int32_t* step_y, const std::int32_t* origin) {
+    const I d;
+    const V x = hn::Load(d, places_x), y = hn::Load(d, places_y);
+    for (std::size_t e = 0; e < 3; ++e) {
+      const V within = hn::Add(hn::Mul(x, hn::Set(d, step_x[e])), hn::Mul(y, hn::Set(d, step_y[e])));
+      row[e] = hn::Add(within, hn::Set(d, origin[e]));
+      down[e] = hn::Set(d, 2 * step_y[e]);
+    }
+  }
+  HWY_INLINE base::LaneMask outside() const {
+    const V sign = hn::Or(row[0], hn::Or(row[1], row[2]));
+    return bits_of_mask(hn::Lt(sign, hn::Zero(I()))) & base::first_lanes(hn::Lanes(I()));
+  }
+  HWY_INLINE void step() {
+    for (std::size_t e = 0; e < 3; ++e) row[e] = hn::Add(row[e], down[e]);
+  }
+};
+
+/// The 64 pixels of a window.
 base::LaneMask window_lanes(const std::int32_t* step_x, const std::int32_t* step_y, const std::int32_t* origin) {
-  const I d;
-  const std::size_t n = hn::Lanes(d);
+  const std::size_t n = hn::Lanes(I());
   base::LaneMask outside = 0;
   for (std::size_t i = 0; i < 16; i += n) {
-    const V x = hn::Load(d, kWindowX + i), y = hn::Load(d, kWindowY + i);
-    V sign = hn::Zero(d);
-    for (std::size_t e = 0; e < 3; ++e)
-      sign = hn::Or(sign, hn::Add(hn::Set(d, origin[e]),
-                                  hn::Add(hn::Mul(x, hn::Set(d, step_x[e])), hn::Mul(y, hn::Set(d, step_y[e])))));
-    outside |= (bits_of_mask(hn::Lt(sign, hn::Zero(d))) & base::first_lanes(n)) << i;
+    WindowEdges edges(kRowX + i, kRowY + i, step_x, step_y, origin);
+    for (std::size_t r = 0; r < 4; ++r) {
+      outside |= edges.outside() << (r * 16 + i);
+      edges.step();
+    }
   }
+  return ~outside;
+}
+
+/// Its first 4x4 pixels: quads 0, 1, 4 and 5 as 16 lanes.
+base::LaneMask small_window_lanes(const std::int32_t* step_x, const std::int32_t* step_y, const std::int32_t* origin) {
+  const std::size_t n = hn::Lanes(I());
+  base::LaneMask outside = 0;
+  for (std::size_t i = 0; i < 16; i += n)
+    outside |= WindowEdges(kWindowX + i, kWindowY + i, step_x, step_y, origin).outside() << i;
   return ~outside;
 }
 
@@ -112,6 +142,7 @@ namespace {
 HWY_EXPORT(inside_lanes);
 HWY_EXPORT(inside_blocks);
 HWY_EXPORT(window_lanes);
+HWY_EXPORT(small_window_lanes);
 
 struct Edge {
   std::int64_t a, b, c;  ///< E = c - a*qx + b*qy, the fill rule's unit included
@@ -216,8 +247,8 @@ base::LaneMask cover_window(const std::int32_t corner_x[3], const std::int32_t c
     step_y[e] = 256 * b;
     origin[e] = a * (corner_x[e] - x * 256) - b * (corner_y[e] - y * 256) - (owns ? 0 : 1);
   }
-  if (!small) return HWY_DYNAMIC_DISPATCH(inside_lanes)(3, step_x, step_y, origin);
-  const base::LaneMask lanes = HWY_DYNAMIC_DISPATCH(window_lanes)(step_x, step_y, origin);
+  if (!small) return HWY_DYNAMIC_DISPATCH(window_lanes)(step_x, step_y, origin);
+  const base::LaneMask lanes = HWY_DYNAMIC_DISPATCH(small_window_lanes)(step_x, step_y, origin);
   return (lanes & 0xff) | (lanes & 0xff00) << 8;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/float_mode.h"
 #include "raster/assembly.h"
+#include "raster/records.h"
 
 namespace vitrine::raster {
 namespace {
@@ -188,19 +189,26 @@ void store_wave(const PipelinePlan& plan, const WaveOutputs& outputs, std::uint3
       s.transformed);
   const TransformedWave& t = s.transformed;
   const std::uint32_t stride = plan.vertex_stride;
+  const auto words = [](auto* memory) { return reinterpret_cast<std::uint32_t*>(memory); };
+  const auto lanes_of = [](const float* reg) { return reinterpret_cast<const std::uint32_t*>(reg); };
+  std::uint32_t* records = words(s.records + std::size_t{base} * stride);
+  const std::uint32_t* from[4] = {lanes_of(clip[0]), lanes_of(clip[1]), lanes_of(clip[2]), lanes_of(clip[3])};
+  store_records(from, lanes, words(s.clip.data() + std::size_t{base} * 4), 4);
+  const std::uint32_t* window[4] = {lanes_of(t.x), lanes_of(t.y), lanes_of(t.z), lanes_of(t.w)};
+  store_records(window, lanes, records, stride);
+  // Records are a multiple of four words: the last ones may be nobody's.
+  for (std::uint32_t k = 0; k < plan.varying_count(); k += 4) {
+    for (std::uint32_t c = 0; c < 4; ++c) {
+      const std::uint32_t reg = k + c < plan.varying_count() ? plan.varying[k + c].vertex_reg : kNoReg;
+      from[c] = reg == kNoReg ? zero.lane : outputs.at(reg).lane;
+    }
+    store_records(from, lanes, records + 4 + k, stride);
+  }
+  std::copy_n(t.code, lanes, s.code.data() + base);
   for (std::uint32_t i = 0; i < lanes; ++i) {
-    Vertex* record = s.records + std::size_t{base + i} * stride;
-    record[0] = t.x[i];
-    record[1] = t.y[i];
-    record[2] = t.z[i];
-    record[3] = t.w[i];
-    for (int c = 0; c < 4; ++c) s.clip[(base + i) * 4 + static_cast<std::uint32_t>(c)] = clip[c][i];
-    s.code[base + i] = t.code[i];
     s.snapped[(base + i) * 2] = t.snapped_x[i];
     s.snapped[(base + i) * 2 + 1] = t.snapped_y[i];
   }
-  for (std::uint32_t k = 0; k < plan.varying_count(); ++k)
-    scatter(outputs, plan.varying[k].vertex_reg, lanes, s.records + std::size_t{base} * stride + 4 + k, stride);
   if (out.clip_count + out.cull_count) scatter_distances(plan, outputs, base, lanes, s);
   if (out.layer != kNoReg) scatter(outputs, out.layer, lanes, s.layer.data() + base, 1);
   if (out.viewport_index != kNoReg) scatter(outputs, out.viewport_index, lanes, s.viewport_index.data() + base, 1);
