@@ -5,7 +5,6 @@
 #include <atomic>
 #include <bit>
 #include <cstring>
-#include <limits>
 
 #include "base/float_mode.h"
 
@@ -23,10 +22,13 @@ constexpr QuadPositions block_offsets() {
 }
 constexpr QuadPositions kBlockOffsets = block_offsets();
 
-/// Whether rows of the block may be read and written without looking at their pixels.
-bool inside_attachments(const TileWorker& worker, int x, int y) {
-  return x + kBlockSize <= worker.target.right && y + kBlockSize <= worker.target.bottom;
+/// Whether rows of a square may be read and written without looking at their pixels: it lies inside all attachments,
+/// and inside the tile, beside which other threads are at work (windows do not keep to the grid of blocks).
+bool owns_square(const TileWorker& worker, int x, int y, int side) {
+  const TileTarget& target = worker.target;
+  return x >= target.x && y >= target.y && x + side <= target.right && y + side <= target.bottom;
 }
+bool owns_block(const TileWorker& worker, int x, int y) { return owns_square(worker, x, y, kBlockSize); }
 
 std::uint64_t block_bit(int x, int y) { return std::uint64_t{1} << ((y >> 3 & 7) * 8 + (x >> 3 & 7)); }
 
@@ -34,7 +36,7 @@ std::uint64_t block_bit(int x, int y) { return std::uint64_t{1} << ((y >> 3 & 7)
 void test_early(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block) {
   const PipelinePlan& plan = *worker.draw->plan;
   const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
-  if (plan.tests_rows && inside_attachments(worker, x, y)) {
+  if (plan.tests_rows && owns_block(worker, x, y)) {
     for (std::uint32_t s = 0; s < plan.samples; ++s)
       if (block.lanes[s])
         block.lanes[s] =
@@ -166,7 +168,7 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, Bl
   const bool whole = quads == kLowestLanes;
   // The product's upper four bits are the sum of the 16 nibbles: the number of quads, modulo 16.
   const bool nearly = whole || (quads * kLowestLanes) >> 60 >= kNearlyFull;
-  const bool alone = nearly && plan.shades_blocks && inside_attachments(worker, x, y);
+  const bool alone = nearly && plan.shades_blocks && owns_block(worker, x, y);
   if (!whole && !alone) {
     append_quads(worker, primitive, x, y, rasterized, block, quads);
     return;
@@ -197,7 +199,7 @@ void emit_window(TileWorker& worker, const Primitive& primitive) {
   if (reads_rasterized(worker)) rasterized = block;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
     const bool small = (block.lanes[0] & ~kSmallWindow) == 0;
-    if (small && plan.tests_rows && x + 4 <= target.right && y + 4 <= target.bottom)
+    if (small && plan.tests_rows && owns_square(worker, x, y, 4))
       block.lanes[0] =
           test_small_window(worker, primitive, x, y, block.lanes[0], plan.depth_order == TestOrder::kEarly);
     else
@@ -317,7 +319,8 @@ void set_target(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, 
   target.layer = tile / (grid.columns * grid.rows);
   target.x = static_cast<int>(in_layer % grid.columns) * kTileSize;
   target.y = static_cast<int>(in_layer / grid.columns) * kTileSize;
-  target.right = target.bottom = std::numeric_limits<int>::max();
+  target.right = target.x + kTileSize;
+  target.bottom = target.y + kTileSize;
   const auto cut = [&](const texel::ImageView& view) {
     if (!view.format) return;
     target.right = std::min(target.right, static_cast<int>(view.level[0].extent.width));

@@ -59,7 +59,7 @@ struct PackedWave {
 struct TileTarget {
   int x = 0, y = 0;  ///< first pixel
   std::uint32_t layer = 0;
-  int right = 0, bottom = 0;  ///< blocks that end at or before these columns and rows lie inside all attachments
+  int right = 0, bottom = 0;  ///< where the tile or the smallest attachment ends
   DepthStencilTarget depth_stencil[kMaxSamples];
 };
 
