@@ -111,6 +111,33 @@ const bool kOperations = [] {
   return true;
 }();
 
+/// The types beyond 32 bits that the device has.
+void extended_types(Run& run, const char* extensions, const std::string& statements) {
+  run.require(run.gpu.extension_features.subgroup_extended_types.shaderSubgroupExtendedTypes,
+              "shaderSubgroupExtendedTypes");
+  run.require(run.gpu.features.shaderInt64 && run.gpu.features.shaderFloat64, "shaderInt64 and shaderFloat64");
+  run_statements(run, statements, 40, (std::string(kHeader) + extensions).c_str());
+}
+CTS_CASE("subgroups", "extended_types.int64") {
+  extended_types(run,
+                 "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n"
+                 "#extension GL_EXT_shader_subgroup_extended_types_int64 : require\n",
+                 "  uint64_t w = packUint2x32(uvec2(x, x * 77u + y));\n"
+                 "  int64_t v = int64_t(w);\n"
+                 "  w = subgroupAdd(w) ^ subgroupInclusiveMul(w | 1ul) ^ subgroupExclusiveMax(w) ^\n"
+                 "      uint64_t(subgroupMin(v)) ^ subgroupShuffleXor(w, 3u) ^ subgroupBroadcastFirst(w) ^\n"
+                 "      subgroupXor(w) ^ subgroupQuadSwapHorizontal(w);\n"
+                 "  uvec2 both = unpackUint2x32(w);\n"
+                 "  r = both.x ^ both.y ^ (subgroupAllEqual(w) ? 1u : 0u);\n");
+}
+CTS_CASE("subgroups", "extended_types.double") {
+  extended_types(run, "",
+                 "  double d = double(f) * 3.0lf - 1.0lf;\n"
+                 "  dvec2 e = subgroupInclusiveAdd(dvec2(d, d * 0.5lf)) + subgroupMax(d) * subgroupShuffle(d, 5u);\n"
+                 "  uvec2 first = unpackDouble2x32(e.x), second = unpackDouble2x32(e.y);\n"
+                 "  r = first.x ^ first.y * 3u ^ second.x * 5u ^ second.y * 7u;\n");
+}
+
 CTS_CASE("subgroups", "ballot.broadcast") {
   run_statements(run, "  r = subgroupBroadcast(x, 5u) + floatBitsToUint(subgroupBroadcast(f, 2u));\n", 40);
 }

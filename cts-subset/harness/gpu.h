@@ -99,6 +99,8 @@ void check(VkResult result, const char* call);
   X(separate_depth_stencil_layouts, VkPhysicalDeviceSeparateDepthStencilLayoutsFeatures,                               \
     SEPARATE_DEPTH_STENCIL_LAYOUTS_FEATURES, "VK_KHR_separate_depth_stencil_layouts")                                  \
   X(shader_clock, VkPhysicalDeviceShaderClockFeaturesKHR, SHADER_CLOCK_FEATURES_KHR, "VK_KHR_shader_clock")            \
+  X(subgroup_extended_types, VkPhysicalDeviceShaderSubgroupExtendedTypesFeatures,                                      \
+    SHADER_SUBGROUP_EXTENDED_TYPES_FEATURES, "VK_KHR_shader_subgroup_extended_types")                                  \
   X(subgroup_size, VkPhysicalDeviceSubgroupSizeControlFeatures, SUBGROUP_SIZE_CONTROL_FEATURES,                        \
     "VK_EXT_subgroup_size_control")                                                                                    \
   X(synchronization2, VkPhysicalDeviceSynchronization2Features, SYNCHRONIZATION_2_FEATURES, "VK_KHR_synchronization2") \

@@ -59,6 +59,51 @@ TEST(Registry, LimitsMeetTheSpecification) {
   }
 }
 
+/// Vulkan 1.3.239, Features: Feature Requirements.
+TEST(Registry, TheVersionsFeaturesAreClaimed) {
+  struct Requirement {
+    std::uint32_t version;
+    Feature feature;
+    const char* name;
+  };
+#define VITRINE_REQUIRED(version, name) \
+  { version, Feature::name, #name }
+  static constexpr Requirement kRequirements[] = {
+      VITRINE_REQUIRED(VK_API_VERSION_1_0, robustBufferAccess),
+      VITRINE_REQUIRED(VK_API_VERSION_1_1, multiview),
+      VITRINE_REQUIRED(VK_API_VERSION_1_2, uniformBufferStandardLayout),
+      VITRINE_REQUIRED(VK_API_VERSION_1_2, subgroupBroadcastDynamicId),
+      VITRINE_REQUIRED(VK_API_VERSION_1_2, imagelessFramebuffer),
+      VITRINE_REQUIRED(VK_API_VERSION_1_2, hostQueryReset),
+      VITRINE_REQUIRED(VK_API_VERSION_1_2, timelineSemaphore),
+      VITRINE_REQUIRED(VK_API_VERSION_1_2, shaderSubgroupExtendedTypes),
+      VITRINE_REQUIRED(VK_API_VERSION_1_2, separateDepthStencilLayouts),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, vulkanMemoryModel),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, vulkanMemoryModelDeviceScope),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, bufferDeviceAddress),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, robustImageAccess),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, inlineUniformBlock),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, descriptorBindingInlineUniformBlockUpdateAfterBind),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, pipelineCreationCacheControl),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, privateData),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, shaderDemoteToHelperInvocation),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, shaderTerminateInvocation),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, subgroupSizeControl),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, computeFullSubgroups),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, synchronization2),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, shaderZeroInitializeWorkgroupMemory),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, dynamicRendering),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, shaderIntegerDotProduct),
+      VITRINE_REQUIRED(VK_API_VERSION_1_3, maintenance4),
+  };
+#undef VITRINE_REQUIRED
+  const std::span<const Feature> claimed = claimed_features();
+  for (const Requirement& r : kRequirements) {
+    if (claimed_properties().apiVersion < r.version) continue;
+    EXPECT_NE(std::find(claimed.begin(), claimed.end(), r.feature), claimed.end()) << r.name;
+  }
+}
+
 TEST(Registry, FeatureChainIsAnsweredFromOneList) {
   FeatureSet features;
   features.set(Feature::multiview);

@@ -88,6 +88,28 @@ OpExtension "SPV_KHR_non_semantic_info"
   for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], x + 7);
 }
 
+/// SPIR-V 1.5 lets the invocation that is broadcast from be any value that is the same in the subgroup.
+TEST(RunSpirv, BroadcastsFromADynamicInvocation) {
+  const std::vector<std::uint32_t> got = run_spirv(R"(
+%from = OpAccessChain %uint_ptr %buffer %u0 %u7
+%zero = OpLoad %uint %from
+%which = OpIAdd %uint %zero %u9
+%all = OpGroupNonUniformBroadcast %uint %u3 %x %which
+%quad = OpGroupNonUniformQuadBroadcast %uint %u3 %x %u1
+%sum = OpIMul %uint %all %u100
+%r = OpIAdd %uint %sum %quad
+)",
+                                                   "%u3 = OpConstant %uint 3\n%u9 = OpConstant %uint 9\n"
+                                                   "%u100 = OpConstant %uint 100\n",
+                                                   R"(
+OpCapability Shader
+OpCapability GroupNonUniform
+OpCapability GroupNonUniformBallot
+OpCapability GroupNonUniformQuad
+)");
+  for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], 900 + x / 4 * 4 + 1);
+}
+
 /// Where the shader of the following tests finds its pointer: a PhysicalStorageBuffer pointer made of two words.
 constexpr char kAddresses[] = R"(
 OpCapability Shader
