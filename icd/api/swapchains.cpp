@@ -70,18 +70,22 @@ Swapchain::Slot* oldest_free(Swapchain& swapchain) {
   return best;
 }
 
+/// Waits until images come back such that `ready`. False: the time is over.
+template <class Ready>
+bool wait_for_images(Swapchain& swapchain, std::unique_lock<std::mutex>& lock, std::uint64_t timeout, Ready ready) {
+  // Longer than a year is for ever: the clock's arithmetic would overflow.
+  constexpr std::uint64_t kForever = 366ull * 24 * 3600 * 1000000000;
+  if (timeout < kForever) return swapchain.image_released.wait_for(lock, std::chrono::nanoseconds(timeout), ready);
+  swapchain.image_released.wait(lock, ready);
+  return true;
+}
+
 VkResult acquire(Swapchain& swapchain, std::uint64_t timeout, std::uint32_t& index) {
   if (const VkResult result = check_window(swapchain); result != VK_SUCCESS) return result;
   std::unique_lock lock(swapchain.mutex);
   Swapchain::Slot* slot = nullptr;
   const auto ready = [&] { return swapchain.retired || swapchain.status < 0 || (slot = oldest_free(swapchain)); };
-  // Longer than a year is for ever: the clock's arithmetic would overflow.
-  constexpr std::uint64_t kForever = 366ull * 24 * 3600 * 1000000000;
-  if (timeout >= kForever) {
-    swapchain.image_released.wait(lock, ready);
-  } else if (!swapchain.image_released.wait_for(lock, std::chrono::nanoseconds(timeout), ready)) {
-    return timeout == 0 ? VK_NOT_READY : VK_TIMEOUT;
-  }
+  if (!wait_for_images(swapchain, lock, timeout, ready)) return timeout == 0 ? VK_NOT_READY : VK_TIMEOUT;
   if (swapchain.retired) return VK_ERROR_OUT_OF_DATE_KHR;
   if (swapchain.status < 0) return swapchain.status;
   slot->owner = Swapchain::Owner::kApplication;
@@ -89,8 +93,9 @@ VkResult acquire(Swapchain& swapchain, std::uint64_t timeout, std::uint32_t& ind
   return swapchain.status;
 }
 
-void give_to_queue(Swapchain& swapchain, std::uint32_t index) {
+void give_to_queue(Swapchain& swapchain, std::uint32_t index, std::uint64_t present_id) {
   const std::lock_guard lock(swapchain.mutex);
+  swapchain.slots[index].present_id = present_id;
   swapchain.slots[index].owner = Swapchain::Owner::kQueue;
 }
 
@@ -181,7 +186,11 @@ VKAPI_ATTR VkResult VKAPI_CALL QueuePresentKHR(VkQueue queue_handle, const VkPre
   Vector<SemaphoreOp> waits{HostAllocator<SemaphoreOp>(queue.device.memory, VK_SYSTEM_ALLOCATION_SCOPE_COMMAND)};
   waits.reserve(info->waitSemaphoreCount);
   for (std::uint32_t i = 0; i < info->waitSemaphoreCount; ++i) waits.push_back({info->pWaitSemaphores[i], 0});
-  for (const QueueCall& call : calls) give_to_queue(*static_cast<Swapchain*>(call.object), call.argument);
+  const auto* ids = find_in_chain<VkPresentIdKHR>(info->pNext);
+  for (std::uint32_t i = 0; i < info->swapchainCount; ++i) {
+    const std::uint64_t id = ids && ids->pPresentIds && i < ids->swapchainCount ? ids->pPresentIds[i] : 0;
+    give_to_queue(from_handle<Swapchain>(info->pSwapchains[i]), info->pImageIndices[i], id);
+  }
   BatchInfo batch;
   batch.waits = waits;
   batch.calls = calls;
@@ -198,6 +207,15 @@ VKAPI_ATTR VkResult VKAPI_CALL QueuePresentKHR(VkQueue queue_handle, const VkPre
     result = worse(result, one);
   }
   return result;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL WaitForPresentKHR(VkDevice, VkSwapchainKHR handle, std::uint64_t present_id,
+                                                 std::uint64_t timeout) {
+  Swapchain& swapchain = from_handle<Swapchain>(handle);
+  std::unique_lock lock(swapchain.mutex);
+  const auto ready = [&] { return swapchain.status < 0 || swapchain.shown_id >= present_id; };
+  if (!wait_for_images(swapchain, lock, timeout, ready)) return VK_TIMEOUT;
+  return swapchain.shown_id >= present_id ? VK_SUCCESS : swapchain.status;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetDeviceGroupPresentCapabilitiesKHR(VkDevice,

@@ -1,6 +1,8 @@
 // Swapchain images: who has them, and showing them (Vulkan 1.3.239, WSI Swapchain).
 #include "icd/wsi/swapchain.h"
 
+#include <algorithm>
+
 namespace vitrine::icd {
 namespace {
 
@@ -30,6 +32,7 @@ void show_image(Swapchain& swapchain, std::uint32_t index) {
     const std::lock_guard lock(swapchain.mutex);
     swapchain.slots[index].owner = Swapchain::Owner::kSwapchain;
     swapchain.slots[index].released = ++swapchain.release_count;
+    swapchain.shown_id = std::max(swapchain.shown_id, swapchain.slots[index].present_id);
     if (shown < 0 || swapchain.status == VK_SUCCESS || swapchain.status == VK_SUBOPTIMAL_KHR) swapchain.status = shown;
   }
   swapchain.image_released.notify_all();

@@ -21,7 +21,8 @@ struct Swapchain : Object<VkSwapchainKHR, VK_OBJECT_TYPE_SWAPCHAIN_KHR> {
     Image* image = nullptr;
     DeviceMemory* backing = nullptr;
     Owner owner = Owner::kSwapchain;
-    std::uint64_t released = 0;  ///< order in which images came back: the one waiting longest is acquired first
+    std::uint64_t released = 0;    ///< order in which images came back: the one waiting longest is acquired first
+    std::uint64_t present_id = 0;  ///< of the present on the queue; 0: none
   };
 
   Surface* surface = nullptr;
@@ -33,6 +34,7 @@ struct Swapchain : Object<VkSwapchainKHR, VK_OBJECT_TYPE_SWAPCHAIN_KHR> {
   std::condition_variable image_released;
   Vector<Slot> slots;  ///< guarded by mutex, but for the pointers
   std::uint64_t release_count = 0;
+  std::uint64_t shown_id = 0;    ///< greatest present id that has been shown
   bool retired = false;          ///< replaced by a newer swapchain
   VkResult status = VK_SUCCESS;  ///< worst outcome of a present so far: OUT_OF_DATE and SURFACE_LOST stay
 };

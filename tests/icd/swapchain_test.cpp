@@ -102,8 +102,11 @@ class SwapchainTest : public SurfaceTest {
                    std::uint64_t timeout = 0) {
     return VK_GET(instance, AcquireNextImageKHR)(device, swapchain, timeout, semaphore, fence, &index);
   }
-  VkResult present(VkSwapchainKHR swapchain, std::uint32_t index, VkSemaphore semaphore) {
-    auto info = make_struct<VkPresentInfoKHR>();
+  VkResult present(VkSwapchainKHR swapchain, std::uint32_t index, VkSemaphore semaphore, std::uint64_t id = 0) {
+    auto ids = make_struct<VkPresentIdKHR>();
+    ids.swapchainCount = 1;
+    ids.pPresentIds = &id;
+    auto info = make_struct<VkPresentInfoKHR>(&ids);
     info.waitSemaphoreCount = semaphore ? 1 : 0;
     info.pWaitSemaphores = &semaphore;
     info.swapchainCount = 1;
@@ -135,6 +138,21 @@ TEST_F(SwapchainTest, ImagesTakeTurns) {
   }
   EXPECT_EQ(order, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2}));
   VK_GET(instance, DestroySemaphore)(device, acquired, nullptr);
+  destroy(swapchain);
+}
+
+TEST_F(SwapchainTest, PresentsAreWaitedForByTheirNumbers) {
+  const VkSwapchainKHR swapchain = create();
+  const auto wait = VK_GET(instance, WaitForPresentKHR);
+  EXPECT_EQ(wait(device, swapchain, 1, 0), VK_TIMEOUT);
+  std::uint32_t index = 99;
+  for (const std::uint64_t id : {5, 0, 9}) {
+    ASSERT_EQ(acquire(swapchain, index, VK_NULL_HANDLE, VK_NULL_HANDLE, UINT64_MAX), VK_SUCCESS);
+    ASSERT_EQ(present(swapchain, index, VK_NULL_HANDLE, id), VK_SUCCESS);
+    EXPECT_EQ(id ? wait(device, swapchain, id, UINT64_MAX) : VK_SUCCESS, VK_SUCCESS);
+  }
+  EXPECT_EQ(wait(device, swapchain, 7, 0), VK_SUCCESS);
+  EXPECT_EQ(wait(device, swapchain, 10, 1000), VK_TIMEOUT);
   destroy(swapchain);
 }
 
