@@ -154,8 +154,10 @@ enum class AtomicOp : std::uint8_t {
 enum class GroupOp : std::uint8_t {
   kIAdd,
   kFAdd,
+  kHAdd,  ///< of binary32 values, rounded to binary16 at every step
   kIMul,
   kFMul,
+  kHMul,
   kIMin,
   kUMin,
   kFMin,

@@ -112,10 +112,11 @@ const bool kOperations = [] {
 }();
 
 /// The types beyond 32 bits that the device has.
-void extended_types(Run& run, const char* extensions, const std::string& statements) {
+void extended_types(Run& run, const char* extensions, const std::string& statements, bool wide = true) {
   run.require(run.gpu.extension_features.subgroup_extended_types.shaderSubgroupExtendedTypes,
               "shaderSubgroupExtendedTypes");
-  run.require(run.gpu.features.shaderInt64 && run.gpu.features.shaderFloat64, "shaderInt64 and shaderFloat64");
+  run.require(!wide || (run.gpu.features.shaderInt64 && run.gpu.features.shaderFloat64),
+              "shaderInt64 and shaderFloat64");
   run_statements(run, statements, 40, (std::string(kHeader) + extensions).c_str());
 }
 CTS_CASE("subgroups", "extended_types.int64") {
@@ -136,6 +137,22 @@ CTS_CASE("subgroups", "extended_types.double") {
                  "  dvec2 e = subgroupInclusiveAdd(dvec2(d, d * 0.5lf)) + subgroupMax(d) * subgroupShuffle(d, 5u);\n"
                  "  uvec2 first = unpackDouble2x32(e.x), second = unpackDouble2x32(e.y);\n"
                  "  r = first.x ^ first.y * 3u ^ second.x * 5u ^ second.y * 7u;\n");
+}
+
+CTS_CASE("subgroups", "extended_types.small") {
+  run.require(run.gpu.extension_features.float16_int8.shaderFloat16 && run.gpu.features.shaderInt16,
+              "shaderFloat16 and shaderInt16");
+  extended_types(run,
+                 "#extension GL_EXT_shader_explicit_arithmetic_types : require\n"
+                 "#extension GL_EXT_shader_subgroup_extended_types_float16 : require\n"
+                 "#extension GL_EXT_shader_subgroup_extended_types_int16 : require\n",
+                 "  float16_t h = float16_t(f) + float16_t(0.25);\n"
+                 "  uint16_t s = uint16_t(x);\n"
+                 "  f16vec2 sum = f16vec2(subgroupAdd(h), subgroupInclusiveMul(h));\n"
+                 "  sum += f16vec2(subgroupMin(h), subgroupShuffleXor(h, 3u));\n"
+                 "  s = subgroupAdd(s) ^ subgroupExclusiveMax(s) ^ subgroupShuffle(s, 2u);\n"
+                 "  r = packFloat2x16(sum) ^ uint(s) * 77u;\n",
+                 false);
 }
 
 CTS_CASE("subgroups", "ballot.broadcast") {

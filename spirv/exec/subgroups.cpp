@@ -33,6 +33,7 @@ constexpr std::uint32_t identity(GroupOp op) {
     case GroupOp::kIMul:
       return 1;
     case GroupOp::kFMul:
+    case GroupOp::kHMul:
       return 0x3f800000;
     case GroupOp::kIMin:
       return 0x7fffffff;
@@ -59,10 +60,14 @@ std::uint32_t combine(std::uint32_t value, std::uint32_t sum) {
       return value + sum;
     case GroupOp::kFAdd:
       return base::bits_of(a + b);
+    case GroupOp::kHAdd:
+      return base::bits_of(base::half_to_float(base::float_to_half_nearest(a + b)));
     case GroupOp::kIMul:
       return value * sum;
     case GroupOp::kFMul:
       return base::bits_of(a * b);
+    case GroupOp::kHMul:
+      return base::bits_of(base::half_to_float(base::float_to_half_nearest(a * b)));
     case GroupOp::kIMin:
       return signed_value < signed_sum ? value : sum;
     case GroupOp::kUMin:
@@ -147,10 +152,12 @@ std::uint64_t combine_wide(GroupOp op, std::uint64_t value, std::uint64_t sum) {
     case GroupOp::kIAdd:
       return value + sum;
     case GroupOp::kFAdd:
+    case GroupOp::kHAdd:
       return std::bit_cast<std::uint64_t>(a + b);
     case GroupOp::kIMul:
       return value * sum;
     case GroupOp::kFMul:
+    case GroupOp::kHMul:
       return std::bit_cast<std::uint64_t>(a * b);
     case GroupOp::kIMin:
       return signed_value < signed_sum ? value : sum;
@@ -230,10 +237,14 @@ Handler with_operation(GroupOp op, const F& f) {
       return f.template operator()<GroupOp::kIAdd>();
     case GroupOp::kFAdd:
       return f.template operator()<GroupOp::kFAdd>();
+    case GroupOp::kHAdd:
+      return f.template operator()<GroupOp::kHAdd>();
     case GroupOp::kIMul:
       return f.template operator()<GroupOp::kIMul>();
     case GroupOp::kFMul:
       return f.template operator()<GroupOp::kFMul>();
+    case GroupOp::kHMul:
+      return f.template operator()<GroupOp::kHMul>();
     case GroupOp::kIMin:
       return f.template operator()<GroupOp::kIMin>();
     case GroupOp::kUMin:

@@ -183,7 +183,7 @@ Expr emit_reduce(Expr word, ir::GroupOp op, std::uint32_t cluster, ir::GroupMode
   return result;
 }
 
-/// One scalar of any type: narrow integers and booleans in 32 bits, narrow floats where that changes no rounding.
+/// One scalar of any type: narrow integers and booleans in 32 bits, narrow floats in binary32, rounded at every step.
 Expr reduce_part(const Inst& inst, Expr part, std::uint32_t cluster, ir::GroupMode mode) {
   const ir::GroupOp op = reduction(inst);
   Translator& t = *part.t;
@@ -193,8 +193,9 @@ Expr reduce_part(const Inst& inst, Expr part, std::uint32_t cluster, ir::GroupMo
   if (width >= 32) return emit_reduce(part, op, cluster, mode);
   switch (op) {
     case ir::GroupOp::kFAdd:
+      return convert_float(emit_reduce(convert_float(part, 32), ir::GroupOp::kHAdd, cluster, mode), width);
     case ir::GroupOp::kFMul:
-      fail(inst, "numbers of this width are not supported");
+      return convert_float(emit_reduce(convert_float(part, 32), ir::GroupOp::kHMul, cluster, mode), width);
     case ir::GroupOp::kFMin:
     case ir::GroupOp::kFMax:
       return convert_float(emit_reduce(convert_float(part, 32), op, cluster, mode), width);
