@@ -170,14 +170,6 @@ bool remove_constant_params(Graph& graph, InstId id) {
   return changed;
 }
 
-bool is_inside(const Graph& graph, ValueId value, InstId loop) {
-  const InstId def = graph.values[value].def;
-  if (def == kNone) return false;
-  for (InstId at = def; at != kNone; at = graph.blocks[graph.insts[at].block].owner)
-    if (at == loop) return true;
-  return false;
-}
-
 void collect_breaks(const Graph& graph, BlockId block, std::vector<InstId>& breaks) {
   for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
     const Inst& inst = graph.insts[id];

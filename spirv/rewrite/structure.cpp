@@ -207,6 +207,26 @@ bool merge_continuing(Graph& graph, InstId loop) {
   return true;
 }
 
+/// Finds the parameters that Graph::detached is about: steps by a constant from outside, of a constant start.
+void detach_steps(Graph& graph, InstId loop) {
+  const BlockId body = graph.insts[loop].child[0];
+  if (contains_continue(graph, body)) return;
+  const std::vector<ValueId> params = graph.nodes[graph.insts[loop].node]->params;
+  for (InstId id = graph.blocks[body].head; id != kNone; id = graph.insts[id].next) {
+    const Inst& inst = graph.insts[id];
+    if (inst.kind == Kind::kIf || inst.kind == Kind::kLoop) return;
+    if (inst.kind != Kind::kAlu || (inst.op != Op::kIAdd && inst.op != Op::kFAdd)) continue;
+    for (std::size_t i = 0; i < params.size(); ++i) {
+      if (!graph.constant(graph.source(graph.insts[loop], static_cast<std::uint32_t>(i)).value)) continue;
+      for (const std::uint32_t side : {0u, 1u}) {
+        const ValueId other = graph.source(inst, 1 - side).value;
+        if (graph.source(inst, side).value == params[i] && graph.constant(other) && !is_inside(graph, other, loop))
+          graph.detached.push_back(params[i]);
+      }
+    }
+  }
+}
+
 bool improve(Graph& graph, BlockId block) {
   bool changed = false;
   for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
@@ -216,6 +236,7 @@ bool improve(Graph& graph, BlockId block) {
     }
     if (graph.insts[id].kind == Kind::kIf) changed |= hoist_staying_side(graph, id);
     if (graph.insts[id].kind != Kind::kLoop) continue;
+    detach_steps(graph, id);
     changed |= enclose_after_continue(graph, id);
     changed |= merge_continuing(graph, id);
   }

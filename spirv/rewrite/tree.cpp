@@ -14,6 +14,12 @@ bool contains_continue(const Graph& graph, BlockId block) {
   return false;
 }
 
+bool is_inside(const Graph& graph, ValueId value, InstId loop) {
+  for (InstId at = graph.values[value].def; at != kNone; at = graph.blocks[graph.insts[at].block].owner)
+    if (at == loop) return true;
+  return false;
+}
+
 std::vector<Src> operands_of(const Graph& graph, InstId id) {
   std::vector<Src> result;
   for (std::uint32_t i = 0; i < graph.insts[id].count; ++i) result.push_back(graph.source(graph.insts[id], i));

@@ -17,6 +17,9 @@ inline bool ends_in(const Graph& graph, BlockId block, Op op) {
 /// A Continue of the loop around `block`.
 bool contains_continue(const Graph& graph, BlockId block);
 
+/// Defined by the loop or inside of it.
+bool is_inside(const Graph& graph, ValueId value, InstId loop);
+
 std::vector<Src> operands_of(const Graph& graph, InstId id);
 
 /// `src`, or the value that stands for it if it is one of `values`.

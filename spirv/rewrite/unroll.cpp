@@ -145,6 +145,8 @@ bool is_counter(const Graph& graph, InstId loop, ValueId value) {
     if (!graph.constant(graph.source(graph.insts[loop], static_cast<std::uint32_t>(i)).value)) continue;
     const Src next = next_value(graph, loop, i);
     if (value != param && value != next.value) continue;
+    if (value == param && std::find(graph.detached.begin(), graph.detached.end(), param) != graph.detached.end())
+      continue;
     const Inst* step = graph.def(next.value);
     if (!step || step->kind != Kind::kAlu || (step->op != Op::kIAdd && step->op != Op::kFAdd)) continue;
     if (graph.blocks[step->block].owner != loop) continue;
