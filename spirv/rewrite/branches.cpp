@@ -170,45 +170,15 @@ bool remove_constant_params(Graph& graph, InstId id) {
   return changed;
 }
 
-void collect_breaks(const Graph& graph, BlockId block, std::vector<InstId>& breaks) {
-  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
-    const Inst& inst = graph.insts[id];
-    if (is_jump(inst, Op::kBreak)) breaks.push_back(id);
-    if (inst.kind == Kind::kIf)
-      for (const BlockId child : inst.child) collect_breaks(graph, child, breaks);
-  }
-}
-
-/// Results of a loop that are the same value from outside of it at every Break.
-bool remove_constant_results(Graph& graph, InstId id) {
-  std::vector<InstId> breaks;
-  for (const BlockId child : graph.insts[id].child) collect_breaks(graph, child, breaks);
-  bool changed = false;
-  const std::vector<ValueId> results = graph.nodes[graph.insts[id].node]->results;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    if (graph.values[results[i]].uses == 0) continue;
-    std::vector<Src> sources;
-    for (const InstId at : breaks) sources.push_back(graph.source(graph.insts[at], static_cast<std::uint32_t>(i)));
-    Src common;
-    if (!common_source(graph, sources, results[i], common) || is_inside(graph, common.value, id)) continue;
-    graph.replace_uses(results[i], common.value);
-    changed = true;
-  }
-  return changed;
-}
-
 }  // namespace
 
 bool flatten_branches(Graph& graph) { return flatten_in(graph, graph.root); }
 
 bool remove_trivial_results(Graph& graph) {
-  bool changed = false;
+  bool changed = open_loops(graph);
   auto visit = [&](InstId id) {
     if (graph.insts[id].kind == Kind::kIf) changed |= remove_equal_results(graph, id);
-    if (graph.insts[id].kind == Kind::kLoop) {
-      changed |= remove_constant_params(graph, id);
-      changed |= remove_constant_results(graph, id);
-    }
+    if (graph.insts[id].kind == Kind::kLoop) changed |= remove_constant_params(graph, id);
   };
   for_each_inst(graph, graph.root, visit);
   return changed;

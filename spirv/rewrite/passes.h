@@ -31,6 +31,16 @@ bool flatten_branches(Graph& graph);
 /// Results and parameters that always carry one value are replaced by it.
 bool remove_trivial_results(Graph& graph);
 
+/// Uses of results of loops read the value that the loop ends with, where that is one value; unused results go.
+bool open_loops(Graph& graph);
+
+/// The opposite, which the shader core and unrolling need: what leaves a loop (`only` this one, kNone: any) is a
+/// result.
+void close_loops(Graph& graph, InstId only = kNone);
+
+/// True when something behind the loop reads a value of the loop that is no result.
+bool is_used_behind(const Graph& graph, InstId loop);
+
 /// Continues at the end of a loop become the way there.
 bool remove_trivial_continues(Graph& graph);
 

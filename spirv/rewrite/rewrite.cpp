@@ -61,6 +61,7 @@ void finish(Graph& graph) {
 
 void rewrite(ir::Function& function) {
   Graph graph(function);
+  rewriting::open_loops(graph);
   rewriting::hide_dot_products(graph);
   optimize_once(graph, true);
   rewriting::show_short_products(graph);
@@ -69,6 +70,7 @@ void rewrite(ir::Function& function) {
   finish(graph);
   rewriting::choose_spelling(graph);
   rewriting::remove_dead(graph);
+  rewriting::close_loops(graph);
   graph.write_back();
 }
 

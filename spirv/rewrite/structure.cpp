@@ -50,7 +50,8 @@ bool only_computes(const Graph& graph, BlockId block) {
 bool is_dead_loop(const Graph& graph, InstId id) {
   for (const ValueId result : graph.nodes[graph.insts[id].node]->results)
     if (graph.values[result].uses != 0) return false;
-  return only_computes(graph, graph.insts[id].child[0]) && only_computes(graph, graph.insts[id].child[1]);
+  return only_computes(graph, graph.insts[id].child[0]) && only_computes(graph, graph.insts[id].child[1]) &&
+         !is_used_behind(graph, id);
 }
 
 bool prune(Graph& graph, BlockId block) {

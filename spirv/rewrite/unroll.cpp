@@ -515,6 +515,7 @@ bool try_unroll(Graph& graph, InstId loop) {
     if (shape.trips() > kMaxIterations || (cost.has_loop && shape.trips() != 1)) return false;
     if (!cost.wanted && cost.instructions * shape.trips() > kMaxCost) return false;
   }
+  close_loops(graph, loop);
   Unroller(graph, loop, shape).run();
   return true;
 }
