@@ -82,6 +82,13 @@ void check(VkResult result, const char* call);
     "VK_EXT_inline_uniform_block")                                                                                     \
   X(line_rasterization, VkPhysicalDeviceLineRasterizationFeaturesEXT, LINE_RASTERIZATION_FEATURES_EXT,                 \
     "VK_EXT_line_rasterization")                                                                                       \
+  X(formats_4444, VkPhysicalDevice4444FormatsFeaturesEXT, 4444_FORMATS_FEATURES_EXT, "VK_EXT_4444_formats")            \
+  X(custom_border, VkPhysicalDeviceCustomBorderColorFeaturesEXT, CUSTOM_BORDER_COLOR_FEATURES_EXT,                     \
+    "VK_EXT_custom_border_color")                                                                                      \
+  X(border_swizzle, VkPhysicalDeviceBorderColorSwizzleFeaturesEXT, BORDER_COLOR_SWIZZLE_FEATURES_EXT,                  \
+    "VK_EXT_border_color_swizzle")                                                                                     \
+  X(view_of_3d, VkPhysicalDeviceImage2DViewOf3DFeaturesEXT, IMAGE_2D_VIEW_OF_3D_FEATURES_EXT,                          \
+    "VK_EXT_image_2d_view_of_3d")                                                                                      \
   X(list_restart, VkPhysicalDevicePrimitiveTopologyListRestartFeaturesEXT,                                             \
     PRIMITIVE_TOPOLOGY_LIST_RESTART_FEATURES_EXT, "VK_EXT_primitive_topology_list_restart")                            \
   X(maintenance4, VkPhysicalDeviceMaintenance4Features, MAINTENANCE_4_FEATURES, "VK_KHR_maintenance4")                 \
@@ -123,6 +130,7 @@ void check(VkResult result, const char* call);
 #define CTS_EXTENSIONS(X)                 \
   X("VK_EXT_load_store_op_none")          \
   X("VK_EXT_post_depth_coverage")         \
+  X("VK_EXT_sampler_filter_minmax")       \
   X("VK_EXT_shader_stencil_export")       \
   X("VK_EXT_shader_subgroup_ballot")      \
   X("VK_EXT_shader_subgroup_vote")        \

@@ -1,4 +1,6 @@
 // Samplers and Y'CbCr conversions (Vulkan 1.3.239, Samplers). samplerYcbcrConversion is not claimed.
+#include <cstring>
+
 #include "base/check.h"
 #include "icd/device.h"
 #include "icd/entry_points.h"
@@ -25,6 +27,10 @@ std::array<std::uint32_t, 4> border_bits(VkBorderColor color) {
   }
 }
 
+bool is_custom(VkBorderColor color) {
+  return color == VK_BORDER_COLOR_FLOAT_CUSTOM_EXT || color == VK_BORDER_COLOR_INT_CUSTOM_EXT;
+}
+
 }  // namespace
 
 namespace entry {
@@ -44,6 +50,11 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCre
   state.compare = info->compareEnable;
   state.compare_op = info->compareOp;
   state.border = border_bits(info->borderColor);
+  if (is_custom(info->borderColor)) {
+    if (const auto* custom = find_in_chain<VkSamplerCustomBorderColorCreateInfoEXT>(info->pNext)) {
+      std::memcpy(state.border.data(), &custom->customBorderColor, sizeof(state.border));
+    }
+  }
   state.unnormalized = info->unnormalizedCoordinates;
   if (const auto* reduction = find_in_chain<VkSamplerReductionModeCreateInfo>(info->pNext)) {
     state.reduction = reduction->reductionMode;

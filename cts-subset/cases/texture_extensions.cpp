@@ -1,0 +1,98 @@
+// What extensions add to sampling: custom border colours, 2D views of volumes, minima and maxima.
+#include "harness/case.h"
+#include "harness/graphics.h"
+
+namespace vitrine::cts {
+namespace {
+
+/// One lookup per pixel of a 64x64 target; `code` sets vec4 v from vec2 p (0..1 over the target).
+void look_up(Run& run, VkImageView view, VkSampler sampler, const std::string& code, const char* type) {
+  Binding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, {}, {{sampler, view, VK_IMAGE_LAYOUT_GENERAL}}, {}};
+  const Resources res = run.resources({binding});
+  TargetSpec target_spec;
+  target_spec.colors = {VK_FORMAT_R32G32B32A32_SFLOAT};
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  spec.layout = res.layout;
+  spec.vertex = kFullScreenVertex;
+  spec.fragment =
+      std::string("layout(binding = 0) uniform sampler") + type +
+      " t;\nlayout(location = 0) out vec4 v;\nvoid main() {\n  vec2 p = gl_FragCoord.xy * 0.015625;\n  v = " + code +
+      ";\n}\n";
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    res.bind(cmd);
+    vkCmdDraw(cmd, 3, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  run.out("color", target.colors[0]);
+  run.outputs.back().nan_bits_free = true;
+}
+
+Image random_image(Run& run, VkFormat format, VkExtent3D extent, VkImageViewType view = VK_IMAGE_VIEW_TYPE_2D,
+                   uint32_t layers = 1, VkImageCreateFlags flags = 0) {
+  ImageSpec spec;
+  spec.format = format;
+  spec.extent = extent;
+  spec.view = view;
+  spec.layers = layers;
+  spec.flags = flags;
+  spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  const Image image = run.image(spec);
+  run.fill_random(image);
+  return image;
+}
+
+CTS_RANDOM("texture", "custom_border", 12) {
+  run.require(run.gpu.extension_features.custom_border.customBorderColors, "customBorderColors");
+  Random& random = run.random;
+  const VkFormat format =
+      random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SNORM, VK_FORMAT_R16G16B16A16_SFLOAT,
+                   VK_FORMAT_R8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B10G11R11_UFLOAT_PACK32});
+  VkSamplerCustomBorderColorCreateInfoEXT custom{VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT};
+  for (float& c : custom.customBorderColor.float32) c = random.real(-1.5f, 1.5f);
+  if (random.chance(0.5f)) custom.format = format;
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO, &custom};
+  info.magFilter = info.minFilter = random.chance(0.5f) ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+  info.borderColor = VK_BORDER_COLOR_FLOAT_CUSTOM_EXT;
+  const Image image = random_image(run, format, {13, 16, 1});
+  VkComponentMapping mapping{};
+  if (random.chance(0.5f)) {
+    mapping = {VK_COMPONENT_SWIZZLE_B, VK_COMPONENT_SWIZZLE_ONE, VK_COMPONENT_SWIZZLE_R, VK_COMPONENT_SWIZZLE_A};
+  }
+  const VkImageView view = run.image_view(image, VK_IMAGE_VIEW_TYPE_2D, format, image.range(), mapping);
+  look_up(run, view, run.sampler(info), "texture(t, p * 3.0 - 1.0)", "2D");
+}
+
+CTS_RANDOM("texture", "view_of_3d", 8) {
+  run.require(run.gpu.extension_features.view_of_3d.sampler2DViewOf3D, "sampler2DViewOf3D");
+  Random& random = run.random;
+  const VkFormat format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT});
+  const Image image =
+      random_image(run, format, {20, 31, 9}, VK_IMAGE_VIEW_TYPE_3D, 1, VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT);
+  VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, random.below(9), 1};
+  const VkImageView view = run.image_view(image, VK_IMAGE_VIEW_TYPE_2D, format, range);
+  look_up(run, view, run.sampler(random.chance(0.5f) ? VK_FILTER_LINEAR : VK_FILTER_NEAREST),
+          "texture(t, p * 2.0 - 0.5)", "2D");
+}
+
+CTS_RANDOM("texture", "minmax", 16) {
+  run.require(run.gpu.has("VK_EXT_sampler_filter_minmax"), "VK_EXT_sampler_filter_minmax");
+  Random& random = run.random;
+  const VkFormat format = random.pick(
+      {VK_FORMAT_R8_UNORM, VK_FORMAT_R8_SNORM, VK_FORMAT_R16_UNORM, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32_SFLOAT});
+  const Image image = random_image(run, format, {13, 16, 1});
+  VkSamplerReductionModeCreateInfo reduction{VK_STRUCTURE_TYPE_SAMPLER_REDUCTION_MODE_CREATE_INFO};
+  reduction.reductionMode = random.chance(0.5f) ? VK_SAMPLER_REDUCTION_MODE_MIN : VK_SAMPLER_REDUCTION_MODE_MAX;
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO, &reduction};
+  info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+  info.addressModeU = info.addressModeV = info.addressModeW = random.pick(
+      {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT});
+  look_up(run, image.view, run.sampler(info), "texture(t, p * 3.0 - 1.0)", "2D");
+}
+
+}  // namespace
+}  // namespace vitrine::cts
