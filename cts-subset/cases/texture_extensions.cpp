@@ -79,6 +79,39 @@ CTS_RANDOM("texture", "view_of_3d", 8) {
           "texture(t, p * 2.0 - 0.5)", "2D");
 }
 
+/// A slice of a volume as a storage image: read and written, with the other slices left alone.
+CTS_RANDOM("texture", "storage_view_of_3d", 8) {
+  run.require(run.gpu.extension_features.view_of_3d.image2DViewOf3D, "image2DViewOf3D");
+  Random& random = run.random;
+  ImageSpec spec;
+  spec.format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT});
+  spec.extent = {20, 31, 9};
+  spec.levels = 2;
+  spec.view = VK_IMAGE_VIEW_TYPE_3D;
+  spec.flags = VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT;
+  spec.usage = VK_IMAGE_USAGE_STORAGE_BIT;
+  const Image image = run.image(spec);
+  run.fill_random(image);
+  const uint32_t level = random.below(2);
+  const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, level, 1, random.below(9u >> level), 1};
+  const VkImageView view = run.image_view(image, VK_IMAGE_VIEW_TYPE_2D, spec.format, range);
+  const Resources res =
+      run.resources({{0, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, {}, {{VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_GENERAL}}, {}}});
+  const std::string layout = spec.format == VK_FORMAT_R8G8B8A8_UNORM ? "rgba8" : "rgba32f";
+  const VkPipeline pipeline = run.compute(
+      res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT,
+                             "layout(local_size_x = 5, local_size_y = 5) in;\nlayout(binding = 0, " + layout +
+                                 ") uniform image2D slice;\nvoid main() {\n"
+                                 "  ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
+                                 "  imageStore(slice, p, imageLoad(slice, p).bgra);\n}\n"));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, 2, 3, 1);
+  });
+  run.out("volume", image);
+}
+
 CTS_RANDOM("texture", "minmax", 16) {
   run.require(run.gpu.has("VK_EXT_sampler_filter_minmax"), "VK_EXT_sampler_filter_minmax");
   Random& random = run.random;
