@@ -363,11 +363,13 @@ const AddCase kIdentity(
     });
 
 /// Runs 64 invocations of `expression` over (int x, int y) pairs.
-void integers(Run& run, const std::string& name, const std::string& statements, const std::vector<int32_t>& in) {
+void integers(Run& run, const std::string& name, const std::string& statements, const std::vector<int32_t>& in,
+              uint32_t group_size = 1) {
   const Buffer input = run.buffer_of(in), out = run.buffer(in.size() * 2);
   const Resources res = run.resources({storage_buffer(0, input), storage_buffer(1, out)});
-  const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, R"(
-layout(local_size_x = 1) in;
+  const VkPipeline pipeline = run.compute(
+      res.layout,
+      run.shader(VK_SHADER_STAGE_COMPUTE_BIT, "layout(local_size_x = " + std::to_string(group_size) + R"() in;
 layout(std430, binding = 0) buffer A { ivec2 a[]; };
 layout(std430, binding = 1) buffer R { int r[]; };
 void main() {
@@ -377,7 +379,7 @@ void main() {
   run.once([&](VkCommandBuffer cmd) {
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, static_cast<uint32_t>(in.size() / 2), 1, 1);
+    vkCmdDispatch(cmd, static_cast<uint32_t>(in.size() / 2 / group_size), 1, 1);
   });
   run.out(name, out, VK_FORMAT_R32_SINT);
 }
@@ -397,6 +399,17 @@ const AddCase kBudget("glsl", "deviation.loop_budget", "loop-budget", case_again
       "  int n = 0;\n  if (x > 60000) n = 105000; else for (int k = 0; k < x; ++k) n += (k ^ y) & 3;\n  r[id] = n + x;",
       {70000, 1, 10, 2});
 });
+
+/// A value that is computed anew in each iteration from one that the loop carries, read behind the loop.
+const AddCase kLeavesLoop("glsl", "deviation.value_leaves_loop", "value-leaves-loop", case_against_control,
+                          [](Run& run) {
+                            const std::vector<int32_t> x = {4, 1, 3, 2, 1, 7, 2, -5, 9, 0, 1, 1, 5, 3, 6, 8};
+                            integers(run, "loop",
+                                     "  int n = y, m = 0, k = x;\n"
+                                     "  do {\n    m = n * 3;\n    n += 5;\n  } while (--k > 0);\n  r[id] = m;",
+                                     x, 8);
+                            integers(run, "closed", "  r[id] = (y + 5 * (x - 1)) * 3;", x, 8);
+                          });
 
 /// A derivative of a value loaded from a storage buffer, at the edges of a triangle.
 const AddCase kHelper("glsl", "deviation.helper_lane_loads", "helper-lane-loads", case_against_control, [](Run& run) {

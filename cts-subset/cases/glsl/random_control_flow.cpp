@@ -74,9 +74,9 @@ class StatementWriter {
       case 1:
         return indent(level) + "int " + k + " = " + trips + ";\n" + indent(level) + "while (" + k + "-- > 0) " +
                guarded + "\n";
-      default:
-        return indent(level) + "int " + k + " = " + trips + ";\n" + indent(level) + "do " + guarded + " while (--" + k +
-               " > 0);\n";
+      default:  // all invocations leave together: deviation value-leaves-loop
+        return indent(level) + "int " + k + " = (pi." + "xyzw"[next_name_ % 4] + " & 7);\n" + indent(level) + "do " +
+               guarded + " while (--" + k + " > 0);\n";
     }
   }
 
