@@ -44,6 +44,9 @@ bool is_used_behind(const Graph& graph, InstId loop);
 /// Continues at the end of a loop become the way there.
 bool remove_trivial_continues(Graph& graph);
 
+/// Reads of an If's condition where only one of its sides leads become constants.
+bool evaluate_conditions(Graph& graph);
+
 /// Where one branch leaves, the other needs no condition; what follows a continue moves into the other branch.
 bool improve_branches(Graph& graph);
 

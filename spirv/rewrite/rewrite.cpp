@@ -29,6 +29,7 @@ bool optimize_once(Graph& graph, bool first) {
     rewriting::remove_dead(graph);
     rewriting::remove_trivial_results(graph);
   }
+  changed |= rewriting::evaluate_conditions(graph);
   changed |= rewriting::improve_branches(graph);
   changed |= rewriting::take_constant_branches(graph);
   changed |= rewriting::remove_trivial_results(graph);

@@ -1,0 +1,123 @@
+// What a branch knows of its condition: where only one side of an If leads, its condition is a constant
+// (lavapipe-shader-math.md 3.2 step 3, nir_opt_if).
+#include <vector>
+
+#include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/tree.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+enum class Known : std::uint8_t { kNothing, kTrue, kFalse };
+
+Known side_of(unsigned child) { return child == 0 ? Known::kTrue : Known::kFalse; }
+
+/// What `branch` says of its condition where `user` reads it.
+Known condition_at(const Graph& graph, InstId branch, InstId user) {
+  const Inst& inst = graph.insts[branch];
+  unsigned staying = 2;  ///< the only side that goes on behind the If
+  for (const unsigned side : {0u, 1u})
+    if (!ends_in(graph, inst.child[side], Op::kYield) && ends_in(graph, inst.child[1 - side], Op::kYield))
+      staying = 1 - side;
+  for (InstId at = user; at != kNone;) {
+    const BlockId block = graph.insts[at].block;
+    if (block == inst.child[0] || block == inst.child[1]) return side_of(block == inst.child[0] ? 0 : 1);
+    if (block == inst.block && staying != 2 && at != branch)
+      for (InstId before = at; before != kNone; before = graph.insts[before].previous)
+        if (before == branch) return side_of(staying);
+    at = graph.blocks[block].owner;
+  }
+  return Known::kNothing;
+}
+
+ValueId truth(Graph& graph, Known known, InstId position) {
+  const std::uint32_t bits[1] = {known == Known::kTrue ? 1u : 0u};
+  const InstId made = graph.create_const(1, true, bits);
+  graph.insert_before(position, made);
+  return graph.insts[made].result;
+}
+
+std::vector<Slot> uses_of(const Graph& graph, ValueId value) {
+  std::vector<Slot> uses;
+  for (Slot use = graph.values[value].first_use; use != kNone; use = graph.sources[use].next) uses.push_back(use);
+  return uses;
+}
+
+bool hands_on(const Inst& inst, std::uint32_t operand) {
+  if (inst.kind != Kind::kAlu || inst.components != 1) return false;
+  switch (inst.op) {
+    case Op::kAndB:
+    case Op::kOrB:
+    case Op::kNotB:
+    case Op::kB2I:
+      return true;
+    case Op::kSelect:
+    case Op::kSelectB:
+      return operand == 0;
+    default:
+      return false;
+  }
+}
+
+/// Readers of an instruction that reads the condition get a copy of it that reads what is known.
+bool evaluate_reader(Graph& graph, InstId branch, ValueId condition, InstId reader) {
+  bool changed = false;
+  for (const Slot use : uses_of(graph, graph.insts[reader].result)) {
+    const InstId user = graph.sources[use].user;
+    const Known known = condition_at(graph, branch, user);
+    if (known == Known::kNothing) continue;
+    const Inst inst = graph.insts[reader];
+    const InstId copy = graph.create(Kind::kAlu, inst.op, inst.components, inst.boolean, inst.count);
+    graph.insts[copy].exact = inst.exact;
+    graph.insts[copy].origin = inst.origin;
+    for (std::uint32_t i = 0; i < inst.count; ++i) {
+      const Src src = graph.source(inst, i);
+      graph.set_source(copy, i, src.value == condition ? Src{truth(graph, known, user), {0, 0, 0, 0}} : src);
+    }
+    graph.insert_before(user, copy);
+    const std::uint32_t operand = use - graph.insts[user].first;
+    graph.set_source(user, operand, {graph.insts[copy].result, graph.source(graph.insts[user], operand).swizzle});
+    changed = true;
+  }
+  return changed;
+}
+
+bool evaluate_condition(Graph& graph, InstId branch) {
+  const ValueId condition = graph.source(graph.insts[branch], 0).value;
+  if (graph.values[condition].components != 1 || graph.constant(condition)) return false;
+  bool changed = false;
+  for (const Slot use : uses_of(graph, condition)) {
+    const InstId user = graph.sources[use].user;
+    if (user == branch) continue;
+    const std::uint32_t operand = use - graph.insts[user].first;
+    const Known known = condition_at(graph, branch, user);
+    if (known != Known::kNothing) {
+      graph.set_source(user, operand, {truth(graph, known, user), {0, 0, 0, 0}});
+      changed = true;
+    } else if (hands_on(graph.insts[user], operand)) {
+      changed |= evaluate_reader(graph, branch, condition, user);
+    }
+  }
+  return changed;
+}
+
+/// Innermost first.
+bool evaluate_in(Graph& graph, BlockId block) {
+  bool changed = false;
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
+    for (const unsigned side : {0u, 1u}) {
+      const BlockId child = graph.insts[id].child[side];
+      if (child != kNone) changed |= evaluate_in(graph, child);
+    }
+    if (graph.insts[id].kind == Kind::kIf) changed |= evaluate_condition(graph, id);
+  }
+  return changed;
+}
+
+}  // namespace
+
+bool evaluate_conditions(Graph& graph) { return evaluate_in(graph, graph.root); }
+
+}  // namespace vitrine::spirv::rewriting
