@@ -31,9 +31,10 @@ Expr columns_times_vector(const Columns& a, const Expr& v) {
 
 /// a * b where `a_rows`, if known, are the rows of a: then every element is a dot product (5.1), but only of 32-bit
 /// numbers.
-Columns multiply(const Columns& a, const Columns* a_rows, const Columns& b) {
+Columns multiply(const Inst& inst, const Columns& a, const Columns* a_rows, const Columns& b) {
   Columns result;
   for (const Expr& column : b) {
+    if (a.empty() || column.size() != a.size()) fail(inst, "shapes of matrices do not fit");
     if (a_rows == nullptr || column.width != 32) {
       result.push_back(columns_times_vector(a, column));
       continue;
@@ -81,13 +82,13 @@ void matrix_times(Translator& t, const Inst& inst, ir::Op) {
   if (inst.op == spv::Op::OpVectorTimesMatrix) {
     // v * M = transpose(M) * v; where M is itself a transpose, its source's columns are at hand.
     const auto source = transpose_source(t, right);
-    return set_numbers(t, inst, source ? multiply(*source, nullptr, a) : multiply(transposed(b), &b, a));
+    return set_numbers(t, inst, source ? multiply(inst, *source, nullptr, a) : multiply(inst, transposed(b), &b, a));
   }
   const auto a_rows = transpose_source(t, left);
   const auto b_rows = inst.op == spv::Op::OpMatrixTimesMatrix ? transpose_source(t, right) : std::nullopt;
   if (a_rows && b_rows)  // transpose(A) * transpose(B) = transpose(B * A)
-    return set_numbers(t, inst, transposed(multiply(*b_rows, nullptr, *a_rows)));
-  set_numbers(t, inst, multiply(a, pointer_to(a_rows), b));
+    return set_numbers(t, inst, transposed(multiply(inst, *b_rows, nullptr, *a_rows)));
+  set_numbers(t, inst, multiply(inst, a, pointer_to(a_rows), b));
 }
 
 void times_scalar(Translator& t, const Inst& inst, ir::Op op) {
