@@ -381,6 +381,13 @@ void* operator new(std::size_t size) { return vitrine::icd::test::allocate_or_th
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return vitrine::icd::test::allocate_or_throw(size, static_cast<std::size_t>(alignment));
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 void operator delete(void* memory) noexcept { vitrine::icd::test::give_back(memory); }
 void operator delete(void* memory, std::size_t) noexcept { vitrine::icd::test::give_back(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { vitrine::icd::test::give_back(memory); }
