@@ -1,6 +1,8 @@
 // Structured control flow (SPIR-V 2.11): blocks become the tree of ir.h. Selections become If, loops Loop, switches a
 // sequence of Ifs; calls are inlined. Phis are variables written on the edges. Jumps that the tree has no form for
 // (leaving a switch or a function early) are Exit instructions, which exits.cpp turns into structure.
+#include <algorithm>
+
 #include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
 
@@ -194,28 +196,25 @@ void build_case(Translator& t, Case& c, const Falls& falls, std::uint32_t merge)
   close_scope(t, c.body);
 }
 
-/// Order in which no case comes before one that falls into it.
+/// Order in which no case comes before one that falls into it; otherwise backwards, so that the default comes last: the
+/// reference's order, which decides what its rewrites see.
 std::vector<std::size_t> case_order(const std::vector<Case>& cases, const std::vector<std::vector<std::size_t>>& into) {
+  std::vector<std::size_t> target(cases.size(), cases.size());  ///< the case that a case falls into
+  for (std::size_t to = 0; to < cases.size(); to++)
+    for (const std::size_t from : into[to]) target[from] = to;
   std::vector<std::size_t> order;
-  std::vector<std::uint8_t> state(cases.size(), 0);
-  // Depth first over at most a chain; iterative so that a long chain cannot exhaust the stack.
+  std::vector<bool> placed(cases.size(), false);
   for (std::size_t root = 0; root < cases.size(); root++) {
-    std::vector<std::size_t> stack{root};
-    while (!stack.empty()) {
-      const std::size_t at = stack.back();
-      if (state[at] == 2) {
-        stack.pop_back();
-      } else if (state[at] == 1) {
-        state[at] = 2;
-        order.push_back(at);
-        stack.pop_back();
-      } else {
-        state[at] = 1;
-        for (std::size_t before : into[at]) {
-          if (state[before] == 1) throw Failure("switch cases fall through in a circle");
-          if (state[before] == 0) stack.push_back(before);
-        }
-      }
+    std::vector<std::size_t> chain;
+    for (std::size_t at = root; at < cases.size() && !placed[at]; at = target[at]) {
+      if (chain.size() == cases.size()) throw Failure("switch cases fall through in a circle");
+      chain.push_back(at);
+    }
+    for (; !chain.empty(); chain.pop_back()) {
+      const std::size_t at = chain.back();
+      const auto next = target[at] < cases.size() ? std::find(order.begin(), order.end(), target[at]) : order.begin();
+      order.insert(next, at);
+      placed[at] = true;
     }
   }
   return order;
