@@ -206,6 +206,20 @@ const bool kFragments = [] {
         run.require(run.gpu.features.geometryShader, "geometryShader");
       fragment_expression(run, expression);
     });
+  // What the reference's rules see depends on which case comes first and on values that leave a loop.
+  AddCase("glsl", "rewrite.switch_order", [](Run& run) {
+    const char* text =
+        "  vec4 r = a, s = a + b;\n"
+        "  switch (i.w & 3) {\n    case 0:\n      if ((i.x & 3) == 0) r = s - a;\n      break;\n"
+        "    default:\n      int k = 7;\n      do s = a; while (--k > 0);\n  }\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 4}, "r"}}, {}, false});
+  });
+  AddCase("glsl", "rewrite.loop_value", [](Run& run) {
+    const char* text =
+        "  vec4 s = a;\n  int k = pi.x & 7;\n  do s = sqrt(abs(a)); while (--k > 0);\n"
+        "  float r = length(s.xz);\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 1}, "r"}}, {}, false});
+  });
   AddCase("glsl", "discard.then_derivative", [](Run& run) {
     fragment_expression(run, "vec4(dFdx(passed.x), dFdy(passed.y), passed.zw)", "  if (passed.x > 0.3) discard;\n");
   });
