@@ -59,9 +59,13 @@ class ScratchPool {
     free_.pop_back();
     return scratch;
   }
-  void give_back(std::unique_ptr<Scratch> scratch) {
+  void give_back(std::unique_ptr<Scratch> scratch) noexcept {
     const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(scratch));
+    try {
+      free_.push_back(std::move(scratch));
+    } catch (const std::bad_alloc&) {
+      // Freed instead.
+    }
   }
 
  private:
@@ -104,6 +108,7 @@ struct Pass::Impl {
   PassDesc desc;
   TileGrid grid;
   std::unique_ptr<Scratch> scratch = scratch_pool().lease();
+  bool broken = false;  ///< an exception left the scratch memory in between: nothing in it may be used again
   const DrawRecord* last = nullptr;
   std::uint64_t pending_positions = 0;
   spirv::Fault unreported;
@@ -125,7 +130,16 @@ struct Pass::Impl {
       if (!worker) worker = std::make_unique<Worker>();
   }
 
-  ~Impl() { scratch_pool().give_back(std::move(scratch)); }
+  ~Impl() {
+    if (!broken) scratch_pool().give_back(std::move(scratch));
+  }
+
+  /// Work that an exception may leave half done: until done() the pass counts as broken.
+  struct Unfinished {
+    explicit Unfinished(Impl& impl) : impl_(impl) { impl.broken = true; }
+    void done() { impl_.broken = false; }
+    Impl& impl_;
+  };
 
   Stage bind_stage(const spirv::Shader* shader, const NativeShader* native, const spirv::ResourceTable& resources,
                    spirv::Fault& fault, const Stage& previous) {
@@ -313,7 +327,14 @@ struct Pass::Impl {
 
 Pass::Pass(const PassDesc& desc) : impl_(std::make_unique<Impl>(desc)) {}
 
-Pass::~Pass() { flush(); }
+Pass::~Pass() {
+  if (impl_->broken) return;
+  try {
+    flush();
+  } catch (...) {
+    // flush() reports to who calls it; here only what nobody waits for is left.
+  }
+}
 
 void Pass::clear_color(std::uint32_t attachment, const VkClearColorValue& value, const VkRect2D& rect,
                        std::uint32_t base_layer, std::uint32_t layer_count) {
@@ -333,24 +354,25 @@ void Pass::clear_depth_stencil(VkImageAspectFlags aspects, const VkClearDepthSte
 
 void Pass::draw(const DrawCall& draw) {
   if (draw.count == 0 || draw.instance_count == 0 || impl_->grid.count() == 0 || !draw.state) return;
+  Impl::Unfinished unfinished(*impl_);
   const DrawRecord* record = impl_->record_draw(draw);
-  if (!record) return;
+  if (!record) return unfinished.done();
   if (draw.queries.statistics)
     draw.queries.statistics[0].fetch_add(std::uint64_t{draw.count} * draw.instance_count, std::memory_order_relaxed);
-  if (impl_->desc.view_mask == 0) {
-    impl_->draw_view(record, 0);
-    return;
-  }
+  if (impl_->desc.view_mask == 0) impl_->draw_view(record, 0);
   for (std::uint32_t view = 0; view < 32; ++view)
     if ((impl_->desc.view_mask >> view & 1) != 0) impl_->draw_view(record, view);
+  unfinished.done();
 }
 
 void Pass::flush() {
+  Impl::Unfinished unfinished(*impl_);
   if (!impl_->run_clears_alone()) impl_->run_front();
   impl_->run_back();
   impl_->last = nullptr;
   impl_->scratch->bound.clear();
   impl_->scratch->arena.reset();
+  unfinished.done();
 }
 
 }  // namespace vitrine::raster

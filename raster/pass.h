@@ -28,7 +28,7 @@ struct PassDesc {
 class Pass {
  public:
   explicit Pass(const PassDesc& desc);
-  ~Pass();  ///< flushes
+  ~Pass();  ///< flushes, unless an exception has left draw() or flush(): what they had begun is dropped then
   Pass(const Pass&) = delete;
   Pass& operator=(const Pass&) = delete;
 
