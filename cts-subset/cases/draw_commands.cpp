@@ -1,6 +1,5 @@
 // Draw commands: indexed with every index type and offset, restart, instances, indirect, first and base vertex.
-#include "harness/case.h"
-#include "harness/graphics.h"
+#include "cases/instanced_scene.h"
 
 namespace vitrine::cts {
 namespace {
@@ -15,48 +14,12 @@ void main() {
   passed = vec4(float(gl_VertexIndex) / 32.0, float(gl_InstanceIndex) / 8.0, instance.z, 1.0);
 })";
 
-struct Scene {
-  Target target;
-  VkPipeline pipeline;
-  Buffer vertices, instances;
-
-  Scene(Run& run, VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, bool restart = false)
-      : target(make_target(run, {})) {
-    GraphicsSpec spec;
-    spec.vertex = kVertex;
-    spec.fragment = kColorFragment;
-    spec.floats({2});
-    spec.floats({4}, VK_VERTEX_INPUT_RATE_INSTANCE);
-    spec.assembly.topology = topology;
+struct Scene : InstancedScene {
+  explicit Scene(Run& run, VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, bool restart = false)
+      : InstancedScene(run, kVertex, kColorFragment, topology, 64) {
     spec.assembly.primitiveRestartEnable = restart;
-    pipeline = make_pipeline(run, spec, target);
-    std::vector<float> positions, tints;
-    for (int i = 0; i < 64 * 2; ++i) positions.push_back(run.random.real(-1, 1));
-    for (int i = 0; i < 16 * 4; ++i) tints.push_back(run.random.real(-0.6f, 0.6f));
-    vertices = run.buffer_of(positions);
-    instances = run.buffer_of(tints);
-  }
-
-  void record(Run& run, const std::function<void(VkCommandBuffer)>& draws) {
-    run.once([&](VkCommandBuffer cmd) {
-      target.begin(cmd);
-      bind_pipeline(cmd, pipeline);
-      bind_vertices(cmd, vertices, 0);
-      bind_vertices(cmd, instances, 1);
-      draws(cmd);
-      vkCmdEndRenderPass(cmd);
-    });
-    out_target(run, target);
   }
 };
-
-template <typename T>
-Buffer random_indices(Run& run, uint32_t count, uint32_t limit, float restart = 0.0f) {
-  std::vector<T> values;
-  for (uint32_t i = 0; i < count; ++i)
-    values.push_back(run.random.chance(restart) ? static_cast<T>(~T{0}) : static_cast<T>(run.random.below(limit)));
-  return run.buffer_of(values);
-}
 
 CTS_CASE("draw", "first_vertex") {
   Scene scene(run);

@@ -1,6 +1,5 @@
 // Extensions of drawing: several draws in one command, 8-bit indices, conditional rendering, dynamic depth clipping.
-#include "harness/case.h"
-#include "harness/graphics.h"
+#include "cases/instanced_scene.h"
 
 namespace vitrine::cts {
 namespace {
@@ -19,45 +18,10 @@ layout(location = 0) out vec4 result;
 void main() { result = passed; })";
 
 /// Small triangles whose colour tells the vertex that provoked it and the instance.
-struct Scene {
-  Target target;
-  GraphicsSpec spec;
-  Buffer vertices, instances;
-
+struct Scene : InstancedScene {
   explicit Scene(Run& run, VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST)
-      : target(make_target(run, {})) {
-    spec.vertex = kVertex;
-    spec.fragment = kFragment;
-    spec.floats({2});
-    spec.floats({4}, VK_VERTEX_INPUT_RATE_INSTANCE);
-    spec.assembly.topology = topology;
-    std::vector<float> positions, tints;
-    for (int i = 0; i < 256 * 2; ++i) positions.push_back(run.random.real(-1, 1));
-    for (int i = 0; i < 16 * 4; ++i) tints.push_back(run.random.real(-0.6f, 0.6f));
-    vertices = run.buffer_of(positions);
-    instances = run.buffer_of(tints);
-  }
-  void record(Run& run, const std::function<void(VkCommandBuffer)>& draws) {
-    const VkPipeline pipeline = make_pipeline(run, spec, target);
-    run.once([&](VkCommandBuffer cmd) {
-      target.begin(cmd);
-      bind_pipeline(cmd, pipeline);
-      bind_vertices(cmd, vertices, 0);
-      bind_vertices(cmd, instances, 1);
-      draws(cmd);
-      vkCmdEndRenderPass(cmd);
-    });
-    out_target(run, target);
-  }
+      : InstancedScene(run, kVertex, kFragment, topology, 256) {}
 };
-
-template <typename T>
-Buffer random_indices(Run& run, uint32_t count, uint32_t limit, float restart = 0.0f) {
-  std::vector<T> values;
-  for (uint32_t i = 0; i < count; ++i)
-    values.push_back(run.random.chance(restart) ? static_cast<T>(~T{0}) : static_cast<T>(run.random.below(limit)));
-  return run.buffer_of(values);
-}
 
 CTS_CASE("draw", "multi_draw.plain") {
   run.require(run.gpu.extension_features.multi_draw.multiDraw, "multiDraw");
