@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/float_mode.h"
+#include "texel/transfer.h"
 
 namespace vitrine::raster {
 namespace {
@@ -244,14 +245,6 @@ void end_draw(TileWorker& worker) {
   worker.draw = nullptr;
 }
 
-void fill_row(std::byte* row, std::size_t texels, std::size_t bytes, const std::byte* value) {
-  if (std::all_of(value, value + bytes, [&](std::byte b) { return b == value[0]; })) {
-    std::memset(row, static_cast<int>(value[0]), texels * bytes);
-    return;
-  }
-  for (std::size_t i = 0; i < texels; ++i) std::memcpy(row + i * bytes, value, bytes);
-}
-
 void clear_tile(const TileWorker& worker, const ClearCommand& clear) {
   const TileTarget& target = worker.target;
   if (target.layer < clear.base_layer || target.layer - clear.base_layer >= clear.layer_count) return;
@@ -263,10 +256,8 @@ void clear_tile(const TileWorker& worker, const ClearCommand& clear) {
   for (std::uint32_t s = 0; s < std::max<std::uint32_t>(view.samples, 1); ++s) {
     std::byte* first =
         view.block(0, target.layer, s, static_cast<std::uint32_t>(rect.x0), static_cast<std::uint32_t>(rect.y0), 0);
-    fill_row(first, width, bytes, clear.value.bytes.data());
-    const std::uint64_t pitch = view.level[0].row_pitch;
-    for (int y = 1; y <= rect.y1 - rect.y0; ++y)
-      std::memcpy(first + static_cast<std::uint64_t>(y) * pitch, first, width * bytes);
+    texel::fill_rows(first, view.level[0].row_pitch, width * bytes, static_cast<std::size_t>(rect.y1 - rect.y0 + 1),
+                     clear.value, bytes);
   }
 }
 

@@ -42,6 +42,10 @@ StoredTexel encode_clear_color(const FormatDesc& format, const VkClearColorValue
 StoredTexel encode_clear_depth(const FormatDesc& plane_format, float depth);
 StoredTexel encode_clear_stencil(std::uint32_t stencil);
 
+/// Fills `rows` rows of `row_bytes` bytes, `pitch` bytes apart, with texels of `block_bytes` bytes. On this thread.
+void fill_rows(std::byte* first, std::uint64_t pitch, std::size_t row_bytes, std::size_t rows, const StoredTexel& value,
+               std::size_t block_bytes);
+
 /// Fills texels of `area` (cut to the level), all samples and slices, of `layer_count` layers from `base_layer` of the
 /// view's level `level`: load ops, vkCmdClearAttachments.
 void fill_view(const ImageView& view, std::uint32_t level, const VkRect2D& area, std::uint32_t base_layer,

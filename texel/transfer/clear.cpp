@@ -1,6 +1,5 @@
 // Clears: a value becomes stored bytes once, then rows are filled (Vulkan 1.3.239, Clear Commands).
 #include <algorithm>
-#include <cstring>
 
 #include "base/numeric.h"
 #include "texel/transfer/box.h"
@@ -8,45 +7,11 @@
 namespace vitrine::texel {
 namespace {
 
-/// A multiple of every block size that has a clear value (1, 2, 3, 4, 6, 8, 12, 16 bytes), and enough for the C library
-/// to copy it with its widest registers: 1.4 times the speed of copies of 192 bytes while the rows are in cache.
-constexpr std::size_t kPatternBytes = 768;
-
-struct Pattern {
-  alignas(64) std::array<std::byte, kPatternBytes> bytes;
-  bool single_byte;
-};
-
-Pattern make_pattern(const StoredTexel& value, std::size_t block_bytes) {
-  Pattern pattern;
-  std::memcpy(pattern.bytes.data(), value.bytes.data(), block_bytes);
-  for (std::size_t filled = block_bytes; filled < kPatternBytes;) {
-    const std::size_t count = std::min(filled, kPatternBytes - filled);
-    std::memcpy(pattern.bytes.data() + filled, pattern.bytes.data(), count);
-    filled += count;
-  }
-  pattern.single_byte = std::all_of(value.bytes.begin(), value.bytes.begin() + static_cast<std::ptrdiff_t>(block_bytes),
-                                    [&](std::byte byte) { return byte == value.bytes[0]; });
-  return pattern;
-}
-
-void fill_bytes(std::byte* to, std::size_t count, const Pattern& pattern) {
-  if (pattern.single_byte) {
-    std::memset(to, std::to_integer<int>(pattern.bytes[0]), count);
-    return;
-  }
-  for (; count >= kPatternBytes; count -= kPatternBytes, to += kPatternBytes) {
-    std::memcpy(to, pattern.bytes.data(), kPatternBytes);
-  }
-  std::memcpy(to, pattern.bytes.data(), count);
-}
-
 void fill_box(const Box& box, const StoredTexel& value) {
   if (box.empty() || box.format->block_bytes > value.bytes.size()) return;
-  const Pattern pattern = make_pattern(value, box.format->block_bytes);
   const std::size_t bytes = box.row_bytes();
   for_each_band(box, bytes, [&](std::uint32_t first, std::uint32_t count, std::uint32_t slice, std::uint32_t sample) {
-    for (std::uint32_t y = first; y < first + count; ++y) fill_bytes(box.row(slice, sample, y), bytes, pattern);
+    fill_rows(box.row(slice, sample, first), box.row_pitch, bytes, count, value, box.format->block_bytes);
   });
 }
 
