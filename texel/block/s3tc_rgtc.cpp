@@ -32,9 +32,6 @@ std::uint32_t between(std::uint32_t a0, std::uint32_t a1, std::uint32_t scale, s
   return (a0 + (product >> 8)) & 255;
 }
 
-constexpr std::uint32_t kSevenths = 2331;  // 255 * 64 / 7
-constexpr std::uint32_t kFifths = 3264;    // 255 * 64 / 5
-
 }  // namespace
 
 std::array<std::uint8_t, 4> decode_color_block(const std::byte* block, std::uint32_t index, ColorBlock kind) {

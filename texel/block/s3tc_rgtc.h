@@ -9,6 +9,10 @@ namespace vitrine::texel {
 
 enum class ColorBlock : std::uint8_t { kRgb, kRgba, kFourColors };  ///< BC1 RGB, BC1 RGBA, BC2 and BC3
 
+/// Weights between the two end points of a channel, in 6 fractional bits of 255ths.
+inline constexpr std::uint32_t kSevenths = 2331;  ///< 255 * 64 / 7
+inline constexpr std::uint32_t kFifths = 3264;    ///< 255 * 64 / 5
+
 /// R, G, B, A of texel `index` (y * 4 + x) of the 8 colour bytes.
 std::array<std::uint8_t, 4> decode_color_block(const std::byte* block, std::uint32_t index, ColorBlock kind);
 

@@ -1,6 +1,7 @@
 // Texels of compressed formats for a wave of lanes: places inside blocks by SIMD, blocks decoded once each.
 
 #include "texel/block/cache.h"
+#include "texel/sampler/wave_s3tc-inl.h"
 #include "texel/sampler/wave_state-inl.h"
 
 #if defined(VITRINE_TEXEL_WAVE_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -21,17 +22,17 @@ HWY_INLINE VI split_block(VI i, std::uint32_t block, VI& inner) {
   return quotient;
 }
 
-/// Decoded bytes of the active lanes' texels, every kStep words.
-template <std::size_t kStep>
+/// Decoded bytes of the active lanes' texels.
 HWY_INLINE void load_block_bytes(const ImageView& view, const IntLanes& offset, const IntLanes& inner,
                                  base::LaneMask active, std::uint32_t* to) {
+  if (decode_s3tc(*view.format, view.base, offset, inner, to)) return;
   BlockCache& cache = block_cache();
   std::int32_t last = -1;  // neighbours often share a block
   const std::uint32_t* texels = nullptr;
   base::for_each_lane(active, [&](std::size_t lane) {
     if (offset.lane[lane] != last) texels = cache.bytes(*view.format, view.base + offset.lane[lane]);
     last = offset.lane[lane];
-    to[kStep * lane] = texels[inner.lane[lane]];
+    to[lane] = texels[inner.lane[lane]];
   });
 }
 

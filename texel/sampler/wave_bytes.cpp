@@ -98,8 +98,10 @@ HWY_NOINLINE void find_taps(const PreparedSampler& p, const SampleRequest& reque
   const RowOffset offset{format};
   taps.rows = linear ? 1u << (kDims - 1) : 1u;
   taps.adjacent = !format.is_compressed();
+  const bool same_level = level_is_uniform(p, request, plan.cube);
+  LevelLanes level;
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
-    const LevelLanes level = load_level<kDims>(p, request, state, which, first, plan.cube);
+    if (first == 0 || !same_level) level = load_level<kDims>(p, request, state, which, first, plan.cube);
     ByteAxis axis[3];
     for (std::uint32_t i = 0; i < kDims; ++i) {
       axis[i] = find_axis(level.axis[i], hn::LoadU(DF(), state.coord[i] + first), linear, first, taps.weight[i]);
@@ -138,7 +140,8 @@ HWY_NOINLINE void find_taps(const PreparedSampler& p, const SampleRequest& reque
 
 // ---- loads
 
-/// Words of a row: first and second texel of each lane in turn, or only first ones.
+/// Words of a row: first and second texel of each lane in turn, or only first ones; compressed: all first ones, then
+/// the second ones.
 struct alignas(64) RowWords {
   std::uint32_t word[2 * base::kWaveWidth];
 };
@@ -154,9 +157,9 @@ HWY_NOINLINE void load_row(const Plan& plan, const ByteTaps& taps, std::uint32_t
                            RowWords& row) {
   const ImageView& view = *plan.view;
   if (view.format->is_compressed()) {
-    if (!linear) return load_block_bytes<1>(view, taps.first[r], taps.inner_first[r], active, row.word);
-    load_block_bytes<2>(view, taps.first[r], taps.inner_first[r], active, row.word);
-    load_block_bytes<2>(view, taps.second[r], taps.inner_second[r], active, row.word + 1);
+    load_block_bytes(view, taps.first[r], taps.inner_first[r], active, row.word);
+    if (!linear) return;
+    load_block_bytes(view, taps.second[r], taps.inner_second[r], active, row.word + base::kWaveWidth);
   } else if (!linear) {
     load_each<4, 1>(view.base, taps.first[r], row.word);
   } else if (view.format->block_bytes == 4 && taps.adjacent) {
@@ -172,6 +175,11 @@ HWY_NOINLINE void load_row(const Plan& plan, const ByteTaps& taps, std::uint32_t
 /// The two texels of each lane as bytes R, G, B, A (or in the format's order).
 HWY_INLINE void split_pairs(const Plan& plan, const ByteTaps& taps, const ByteFormat& format, const RowWords& row,
                             std::size_t first, VU& a, VU& b) {
+  if (plan.view->format->is_compressed()) {
+    a = hn::Load(DU(), row.word + first);
+    b = hn::Load(DU(), row.word + base::kWaveWidth + first);
+    return;
+  }
   const VU low = hn::Load(DU(), row.word + 2 * first);
   const VU high = hn::Load(DU(), row.word + 2 * first + hn::Lanes(DU()));
   a = hn::ConcatEven(DU(), high, low);

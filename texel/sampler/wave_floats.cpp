@@ -30,6 +30,7 @@ struct FloatTaps {
   IntLanes corner;  ///< cubes: the tap that does not exist, 4 if all do
   base::LaneMask corners = 0;
   std::uint32_t count = 1;
+  bool neighbours = false;  ///< every second texel in x follows the first in memory
 };
 
 /// Everything that one call passes from step to step.
@@ -71,29 +72,69 @@ HWY_INLINE VI enter(VI i, VI size, base::LaneMask& outside, std::size_t first) {
   return lanes_clamp(i, hn::Sub(size, splat(1)));
 }
 
+/// Where the two taps of one axis lie: bytes, and places inside a block.
+struct AxisPlaces {
+  VI offset[2];
+  VI inner[2];
+};
+
+/// The places of axis i; lanes outside the level go to its edge and into `outside`.
+HWY_INLINE AxisPlaces place_axis(const FormatDesc& format, const LevelLanes& level, std::uint32_t i, AxisTaps axis,
+                                 bool linear, bool border, std::size_t first, base::LaneMask outside[2]) {
+  const std::int32_t blocks[3] = {format.block_width, format.block_height, 1};
+  const VI pitch[3] = {splat(static_cast<std::int32_t>(format.block_bytes)), level.row_pitch, level.slice_pitch};
+  AxisPlaces places;
+  for (std::uint32_t t = 0; t < (linear ? 2u : 1u); ++t) {
+    VI at = axis.at[t];
+    if (border) at = enter(at, level.axis[i].size, outside[t], first);
+    if (blocks[i] != 1) {
+      at = split_block(at, static_cast<std::uint32_t>(blocks[i]), places.inner[t]);
+      if (i == 1) places.inner[t] = hn::Mul(places.inner[t], splat(blocks[0]));
+    } else {
+      places.inner[t] = splat(0);
+    }
+    places.offset[t] = hn::Mul(at, pitch[i]);
+  }
+  return places;
+}
+
 template <std::uint32_t kDims>
 HWY_NOINLINE void find_taps_in(Call& call, int which, bool linear, FloatTaps& taps) {
   const Plan& plan = call.plan();
   const FormatDesc& format = *call.view().format;
   const bool border =
       plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder || plan.address[2] == Address::kBorder;
+  const bool same_level = level_is_uniform(call.p, call.request, plan.cube);
+  base::LaneMask outside[3][2]{};
   taps.count = linear ? 1u << kDims : 1u;
-  for (base::LaneMask& mask : taps.outside) mask = 0;
+  taps.neighbours = linear && !format.is_compressed();
+  LevelLanes level;
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
-    const LevelLanes level = load_level<kDims>(call.p, call.request, call.state, which, first, plan.cube);
-    AxisTaps axis[3] = {{{splat(0), splat(0)}}, {{splat(0), splat(0)}}, {{splat(0), splat(0)}}};
+    if (first == 0 || !same_level) level = load_level<kDims>(call.p, call.request, call.state, which, first, plan.cube);
+    AxisPlaces axis[3];
     for (std::uint32_t i = 0; i < kDims; ++i) {
-      axis[i] = find_axis(level.axis[i], hn::LoadU(DF(), call.state.coord[i] + first), linear, plan.gather, first,
-                          taps.weight[i]);
+      const AxisTaps at = find_axis(level.axis[i], hn::LoadU(DF(), call.state.coord[i] + first), linear, plan.gather,
+                                    first, taps.weight[i]);
+      if (i == 0 && linear) {
+        taps.neighbours = taps.neighbours && hn::AllTrue(DI(), hn::Eq(at.at[1], hn::Add(at.at[0], splat(1))));
+      }
+      axis[i] = place_axis(format, level, i, at, linear, border, first, outside[i]);
     }
     for (std::uint32_t k = 0; k < taps.count; ++k) {
-      VI at[3] = {axis[0].at[k & 1], axis[1].at[k >> 1 & 1], axis[2].at[k >> 2]};
-      if (border) {
-        for (std::uint32_t i = 0; i < kDims; ++i) at[i] = enter(at[i], level.axis[i].size, taps.outside[k], first);
-      }
-      place_texels<kDims>(format, level, at[0], at[1], at[2], first, taps.place[k]);
+      VI offset = hn::Add(level.origin, axis[0].offset[k & 1]);
+      if (kDims > 1) offset = hn::Add(offset, axis[1].offset[k >> 1 & 1]);
+      if (kDims > 2) offset = hn::Add(offset, axis[2].offset[k >> 2]);
+      hn::Store(offset, DI(), taps.place[k].offset.lane + first);
+      if (!format.is_compressed()) continue;
+      VI inner = axis[0].inner[k & 1];
+      if (kDims > 1) inner = hn::Add(inner, axis[1].inner[k >> 1 & 1]);
+      hn::Store(inner, DI(), taps.place[k].inner.lane + first);
     }
   }
+  for (std::uint32_t k = 0; k < taps.count; ++k) {
+    taps.outside[k] = outside[0][k & 1] | outside[1][k >> 1 & 1] | outside[2][k >> 2];
+  }
+  taps.neighbours = taps.neighbours && !border;
 }
 
 HWY_NOINLINE void find_taps(Call& call, int which, bool linear, FloatTaps& taps) {
@@ -107,6 +148,7 @@ HWY_NOINLINE void find_cube_taps(Call& call, int which, FloatTaps& taps) {
   const VI stride = splat(static_cast<std::int32_t>(call.view().layer_stride));
   taps.count = 4;
   taps.corners = 0;
+  taps.neighbours = false;
   for (base::LaneMask& mask : taps.outside) mask = 0;
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     LevelLanes level = load_level<2>(call.p, call.request, call.state, which, first, false);
@@ -285,7 +327,7 @@ HWY_NOINLINE void filter_level(Call& call, int which, bool linear, WaveTexels& o
   if (!linear) return fetch_tap(call, taps, 0, out);
   if (filters_four(call, taps)) {
     const auto filter = call.view().format->block_bytes == 8 ? filter_four<8> : filter_four<16>;
-    return filter(call.view().base, taps.place, taps.weight[0], taps.weight[1], out);
+    return filter(call.view().base, taps.place, taps.neighbours, taps.weight[0], taps.weight[1], out);
   }
   filter_slice(call, taps, 0, out);
   if (taps.count < 8) return;

@@ -13,64 +13,125 @@
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
 
-/// Texels of a wave one behind the other, kBytes each.
-template <std::size_t kBytes>
-struct alignas(64) PackedTexels {
-  std::byte bytes[base::kWaveWidth * kBytes];
+/// Two texels of every fourth lane, a 128-bit block each.
+struct TexelPair {
+  VF first, second;
 };
 
-template <std::size_t kBytes>
-HWY_INLINE void load_packed(const std::byte* base, const IntLanes& offset, PackedTexels<kBytes>& to) {
-  for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
-    std::memcpy(to.bytes + kBytes * lane, base + offset.lane[lane], kBytes);
-  }
-}
-
-/// Floats i.. of packed halves or floats.
-HWY_INLINE VF packed_floats(const PackedTexels<16>& texels, std::size_t i) {
-  return hn::Load(DF(), reinterpret_cast<const float*>(texels.bytes) + i);
-}
-HWY_INLINE VF packed_floats(const PackedTexels<8>& texels, std::size_t i) {
-  const hn::Rebind<std::uint16_t, DF> d16;
-  const auto half = hn::Load(d16, reinterpret_cast<const std::uint16_t*>(texels.bytes) + i);
-  return half_field_to_float(hn::PromoteTo(DU(), half));
-}
-
-/// Weights of the texels whose components are floats i..: each four times.
-HWY_INLINE VF spread_weights(const FloatLanes& weight, std::size_t i) {
-  const float* w = weight.lane + i / 4;
+/// Halves as floats. Quieting a signalling NaN is no harm: the filter's next operation does.
 #if HWY_TARGET <= HWY_AVX3
-  alignas(64) static constexpr std::int32_t kQuarter[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
-  return hn::TableLookupLanes(hn::LoadDup128(DF(), w), hn::SetTableIndices(DF(), kQuarter));
-#elif HWY_TARGET == HWY_AVX2
-  const hn::Half<DF> half;
-  return hn::Combine(DF(), hn::Set(half, w[1]), hn::Set(half, w[0]));
-#else
-  return splat(w[0]);
-#endif
+HWY_INLINE VF four_blocks(__m128i a, __m128i b, __m128i c, __m128i d) {
+  const __m512i low = _mm512_inserti32x4(_mm512_castsi128_si512(a), b, 1);
+  return VF{_mm512_castsi512_ps(_mm512_inserti32x4(_mm512_inserti32x4(low, c, 2), d, 3))};
+}
+HWY_INLINE VF two_pairs_as_floats(__m128i a, __m128i b) {
+  return VF{_mm512_cvtph_ps(_mm256_inserti128_si256(_mm256_castsi128_si256(a), b, 1))};
+}
+HWY_INLINE __m128i load_block(const std::byte* texel) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(texel));
+}
+HWY_INLINE __m128i load_two(const std::byte* a, const std::byte* b) {
+  const __m128i low = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(a));
+  std::int64_t high;
+  std::memcpy(&high, b, sizeof(high));
+  return _mm_insert_epi64(low, high, 1);
+}
+
+/// Blocks 0 and 2, or 1 and 3, of two vectors.
+template <int kOdd>
+HWY_INLINE VF every_other_block(VF low, VF high) {
+  return VF{_mm512_shuffle_f32x4(low.raw, high.raw, kOdd != 0 ? 0xDD : 0x88)};
 }
 
 template <std::size_t kBytes>
-HWY_NOINLINE void filter_four(const std::byte* base, const TexelPlaces places[4], const FloatLanes& weight_x,
-                              const FloatLanes& weight_y, WaveTexels& out) {
-  PackedTexels<kBytes> texel[4];
-  alignas(64) float mixed[4 * base::kWaveWidth];
-  for (std::size_t k = 0; k < 4; ++k) load_packed<kBytes>(base, places[k].offset, texel[k]);
-  for (std::size_t i = 0; i < 4 * base::kWaveWidth; i += hn::Lanes(DF())) {
-    const auto lerp = [](VF w, VF a, VF b) { return lanes_fma(w, hn::Sub(b, a), a); };
-    const VF x = spread_weights(weight_x, i), y = spread_weights(weight_y, i);
-    const VF top = lerp(x, packed_floats(texel[0], i), packed_floats(texel[1], i));
-    const VF bottom = lerp(x, packed_floats(texel[2], i), packed_floats(texel[3], i));
-    hn::Store(lerp(y, top, bottom), DF(), mixed + i);
+HWY_INLINE VF load_texels(const std::byte* base, const std::int32_t* offset) {
+  if constexpr (kBytes == 8) {
+    return two_pairs_as_floats(load_two(base + offset[0], base + offset[4]),
+                               load_two(base + offset[8], base + offset[12]));
+  } else {
+    return four_blocks(load_block(base + offset[0]), load_block(base + offset[4]), load_block(base + offset[8]),
+                       load_block(base + offset[12]));
   }
+}
+
+/// The second texel of each pair follows the first in memory.
+template <std::size_t kBytes>
+HWY_INLINE TexelPair load_neighbours(const std::byte* base, const std::int32_t* offset) {
+  const std::byte* const at[4] = {base + offset[0], base + offset[4], base + offset[8], base + offset[12]};
+  VF low, high;
+  if constexpr (kBytes == 8) {
+    low = two_pairs_as_floats(load_block(at[0]), load_block(at[1]));
+    high = two_pairs_as_floats(load_block(at[2]), load_block(at[3]));
+  } else {
+    low = four_blocks(load_block(at[0]), load_block(at[0] + 16), load_block(at[1]), load_block(at[1] + 16));
+    high = four_blocks(load_block(at[2]), load_block(at[2] + 16), load_block(at[3]), load_block(at[3] + 16));
+  }
+  return {every_other_block<0>(low, high), every_other_block<1>(low, high)};
+}
+#else
+template <std::size_t kBytes>
+HWY_INLINE VF load_texels(const std::byte* base, const std::int32_t* offset) {
+  constexpr std::size_t kLanes = hn::MaxLanes(DF()) / 4;
+  alignas(32) std::byte texels[kLanes * kBytes];
+  for (std::size_t i = 0; i < kLanes; ++i) std::memcpy(texels + kBytes * i, base + offset[4 * i], kBytes);
+  if constexpr (kBytes == 16) return hn::Load(DF(), reinterpret_cast<const float*>(texels));
+  const hn::Rebind<std::uint16_t, DF> d16;
+  return half_field_to_float(hn::PromoteTo(DU(), hn::Load(d16, reinterpret_cast<const std::uint16_t*>(texels))));
+}
+
+template <std::size_t kBytes>
+HWY_INLINE TexelPair load_neighbours(const std::byte* base, const std::int32_t* offset) {
+  return {load_texels<kBytes>(base, offset), load_texels<kBytes>(base + kBytes, offset)};
+}
+#endif
+
+/// Texels of a row, the first of each pair at `first`.
+template <std::size_t kBytes, bool kNeighbours>
+HWY_INLINE TexelPair load_row(const std::byte* base, const std::int32_t* first, const std::int32_t* second) {
+  if constexpr (kNeighbours) return load_neighbours<kBytes>(base, first);
+  return {load_texels<kBytes>(base, first), load_texels<kBytes>(base, second)};
+}
+
+/// The average of four texels for lanes i, i + 4, ...: their components in a block each.
+template <std::size_t kBytes, bool kNeighbours>
+HWY_INLINE VF mix_four(const std::byte* base, const TexelPlaces places[4], std::size_t lane, VF x, VF y) {
+  const auto lerp = [](VF w, VF a, VF b) { return lanes_fma(w, hn::Sub(b, a), a); };
+  const TexelPair top = load_row<kBytes, kNeighbours>(base, places[0].offset.lane + lane, places[1].offset.lane + lane);
+  const TexelPair bottom =
+      load_row<kBytes, kNeighbours>(base, places[2].offset.lane + lane, places[3].offset.lane + lane);
+  return lerp(y, lerp(x, top.first, top.second), lerp(x, bottom.first, bottom.second));
+}
+
+template <std::size_t kBytes, bool kNeighbours>
+HWY_INLINE void filter_four_lanes(const std::byte* base, const TexelPlaces places[4], const FloatLanes& weight_x,
+                                  const FloatLanes& weight_y, WaveTexels& out) {
   for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
-    VF r, g, b, a;
-    hn::LoadInterleaved4(DF(), mixed + 4 * i, r, g, b, a);
-    hn::Store(r, DF(), out.c[0].lane + i);
-    hn::Store(g, DF(), out.c[1].lane + i);
-    hn::Store(b, DF(), out.c[2].lane + i);
-    hn::Store(a, DF(), out.c[3].lane + i);
+    const VF x = hn::Load(DF(), weight_x.lane + i), y = hn::Load(DF(), weight_y.lane + i);
+    const auto mix = [&](std::size_t lane, VF wx, VF wy) {
+      return mix_four<kBytes, kNeighbours>(base, places, i + lane, wx, wy);
+    };
+    const VF m0 = mix(0, hn::Broadcast<0>(x), hn::Broadcast<0>(y));
+    const VF m1 = mix(1, hn::Broadcast<1>(x), hn::Broadcast<1>(y));
+    const VF m2 = mix(2, hn::Broadcast<2>(x), hn::Broadcast<2>(y));
+    const VF m3 = mix(3, hn::Broadcast<3>(x), hn::Broadcast<3>(y));
+    const hn::Repartition<double, DF> d64;
+    const auto rg0 = hn::BitCast(d64, hn::InterleaveLower(DF(), m0, m1));
+    const auto ba0 = hn::BitCast(d64, hn::InterleaveUpper(DF(), m0, m1));
+    const auto rg1 = hn::BitCast(d64, hn::InterleaveLower(DF(), m2, m3));
+    const auto ba1 = hn::BitCast(d64, hn::InterleaveUpper(DF(), m2, m3));
+    hn::Store(hn::BitCast(DF(), hn::InterleaveLower(d64, rg0, rg1)), DF(), out.c[0].lane + i);
+    hn::Store(hn::BitCast(DF(), hn::InterleaveUpper(d64, rg0, rg1)), DF(), out.c[1].lane + i);
+    hn::Store(hn::BitCast(DF(), hn::InterleaveLower(d64, ba0, ba1)), DF(), out.c[2].lane + i);
+    hn::Store(hn::BitCast(DF(), hn::InterleaveUpper(d64, ba0, ba1)), DF(), out.c[3].lane + i);
   }
+}
+
+/// `neighbours`: texels 1 and 3 follow 0 and 2 in memory.
+template <std::size_t kBytes>
+HWY_NOINLINE void filter_four(const std::byte* base, const TexelPlaces places[4], bool neighbours,
+                              const FloatLanes& weight_x, const FloatLanes& weight_y, WaveTexels& out) {
+  neighbours ? filter_four_lanes<kBytes, true>(base, places, weight_x, weight_y, out)
+             : filter_four_lanes<kBytes, false>(base, places, weight_x, weight_y, out);
 }
 
 /// Whether texels are R, G, B, A as halves or floats.

@@ -322,6 +322,11 @@ HWY_INLINE LevelLanes load_level(const PreparedSampler& p, const SampleRequest& 
   return out;
 }
 
+/// Whether load_level gives the same for every vector of the wave.
+inline bool level_is_uniform(const PreparedSampler& p, const SampleRequest& request, bool with_face) {
+  return p.one_level && !p.plan.arrayed && !with_face && !request.offset[0] && !request.offset[1] && !request.offset[2];
+}
+
 /// Stores lanes first.. of a result component, active ones only.
 HWY_INLINE void store_lanes(VU value, base::LaneMask active, std::size_t first, base::WaveRegister& to) {
   if (active == base::kAllLanes) {

@@ -110,9 +110,16 @@ inline HWY_NOINLINE void fetch_blocks(const ImageView& view, const TexelPlaces& 
 /// The texels at `places`. Compressed ones of active lanes only.
 inline HWY_NOINLINE void fetch_texels(const ImageView& view, const TexelPlaces& places, base::LaneMask active,
                                       Components wanted, WaveTexels& out) {
-  const FormatDesc& format = *view.format;
-  if (format.is_compressed()) return fetch_blocks(view, places, active, out);
   WordLanes words[4];
+  if (view.format->is_compressed()) {
+    if (!decode_s3tc(*view.format, view.base, places.offset, places.inner, words[0].lane)) {
+      return fetch_blocks(view, places, active, out);
+    }
+    return view.format->is_srgb()
+               ? convert_words<Numeric::kSrgb>(format_desc(VK_FORMAT_R8G8B8A8_SRGB), words, wanted, out)
+               : convert_words<Numeric::kUnorm>(format_desc(VK_FORMAT_R8G8B8A8_UNORM), words, wanted, out);
+  }
+  const FormatDesc& format = *view.format;
   switch ((format.block_bytes + 3) / 4) {
     case 1:
       load_words<1>(view.base, places.offset, words);
