@@ -38,34 +38,41 @@ struct BlockPixels {
   std::uint64_t pitch;  ///< bytes
 };
 
-/// Colours of a block as an attachment stores them, in row order.
+/// Colours of a block as an attachment stores them, in an order that is the functions' own.
 struct alignas(64) PackedBlock {
   std::uint32_t texel[base::kWaveWidth];
 };
 
 /// How blocks reach a colour attachment.
 struct BlockColorFunctions {
-  /// Four registers in quad order, converted.
+  /// Four registers in quad order, converted: for colours that are written more than once.
   void (*pack)(const ColorWriter& writer, const base::WaveRegister* color, PackedBlock& out);
   /// Stores or blends the pixels of `rows` (row order).
-  void (*write)(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels, base::LaneMask rows);
+  void (*write_packed)(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels,
+                       base::LaneMask rows);
+  /// Both at once.
+  void (*write)(const ColorWriter& writer, const base::WaveRegister* color, const BlockPixels& pixels,
+                base::LaneMask rows);
 };
 
 /// The block functions for this writer, or null (color_block.cpp).
 const BlockColorFunctions* block_color_functions(const ColorWriter& writer);
 
-/// Depth test of the pixels of `rows` (row order) of a block whose first sample is at (x, y): the bits that
-/// evaluate_block_depth, clamp_depth and test_depth_stencil give. Returns what passed, in row order.
+/// A depth test of squares of pixels in one sample: the bits that evaluate_block_depth, clamp_depth and
+/// test_depth_stencil give.
 struct BlockDepthTest {
   DepthFormat format;
   VkCompareOp compare;
   bool write;
   const DepthRange* clamp;  ///< null: no depth clamp
 };
-base::LaneMask test_block_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
-                                const BlockPixels& pixels, base::LaneMask rows);
 
-/// The same for a 4x4 window; `rows`: bit 4*y + x.
+/// Tests lanes[i], in quad order, of the 8x8 blocks at quad-ordered places i of `places` and cuts them to what passed.
+/// (x, y) is the first sample of the block at place 0, `pixels` are that block's.
+void test_block_depths(const BlockDepthTest& test, const DepthPlane& plane, float x, float y, const BlockPixels& pixels,
+                       base::LaneMask places, base::LaneMask* lanes);
+
+/// The same for a 4x4 window; `rows`: bit 4*y + x. Returns what passed.
 std::uint32_t test_window_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
                                 const BlockPixels& pixels, std::uint32_t rows);
 

@@ -1,9 +1,11 @@
 // Planes over whole blocks: varyings in quad order, depth tests in row order, where a row of the attachment is a
 // vector.
+#include <bit>
 #include <cstring>
 
 #include "base/simd.h"
 #include "raster/block.h"
+#include "raster/coverage.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/block_planes.cpp"
@@ -64,66 +66,164 @@ void evaluate_all(const PlaneSet& planes, const BlockVarying* varying, std::size
     evaluate_planes<false>(planes, varying, count, x, y, nullptr);
 }
 
-/// Square of `kSide` pixels.
-template <class Format, std::size_t kSide>
-HWY_INLINE base::LaneMask test_rows(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
-                                    const BlockPixels& pixels, base::LaneMask rows) {
-  const hn::CappedTag<float, kSide> f;
-  const hn::RebindToSigned<decltype(f)> d;
-  constexpr std::size_t n = hn::MaxLanes(f);
-  constexpr std::uint32_t all = (1u << n) - 1;
-  const auto zero = hn::Zero(f), one = hn::Set(f, 1.0f), offset = hn::Set(f, plane.offset);
-  const auto dady = hn::Set(f, plane.dady);
-  const DepthRange clamp = test.clamp ? *test.clamp : DepthRange{0, 1};
-  const auto low = hn::Set(f, clamp.low), high = hn::Set(f, clamp.high);
-  const VkCompareOp op = test.compare;
-  const bool clamps = test.clamp != nullptr, write = test.write;
-  base::LaneMask passed = 0;
-  for (std::size_t c = 0; c < kSide; c += n) {
-    const auto fx = hn::Add(hn::Set(f, x), hn::Iota(f, static_cast<float>(c)));
-    const auto inner = lanes_fma(hn::Set(f, plane.dadx), fx, hn::Set(f, plane.a0));
-    for (std::size_t r = 0; r < kSide; ++r) {
-      const auto covered = static_cast<std::uint32_t>(rows >> (kSide * r + c)) & all;
-      if (covered == 0) continue;
-      auto z = hn::Add(lanes_fma(dady, hn::Set(f, y + static_cast<float>(r)), inner), offset);
-      z = lanes_max_second(lanes_min_second(z, one), zero);
-      if (clamps) z = lanes_max_second(lanes_min_second(z, high), low);
-      std::byte* texels = pixels.first + r * pixels.pitch + c * Format::kBytes;
-      const auto value = Format::encode(z);
-      const auto stored = Format::load_row(d, texels);
-      const auto bits = static_cast<std::uint32_t>(bits_of_mask(compare<Format>(op, value, stored))) & covered;
-      passed |= base::LaneMask{bits} << (kSide * r + c);
-      if (!write || bits == 0) continue;
-      Format::store_row(bits == all ? value : hn::IfThenElse(lanes_mask_from_bits(d, bits), value, stored), texels);
-    }
+/// A vector of a square's pixels, in row order: several whole rows, or a part of one.
+template <std::size_t kSide>
+struct SquareVector {
+  using Floats = hn::CappedTag<float, (kSide < 8 ? 16 : 2 * kSide)>;
+  using Words = hn::RebindToSigned<Floats>;
+  static constexpr std::size_t kLanes = hn::MaxLanes(Floats());
+  static constexpr std::size_t kRowLanes = kLanes < kSide ? kLanes : kSide;
+  static constexpr std::size_t kRows = kLanes / kRowLanes;
+};
+
+/// Loads `kRows` rows from `texels` on into one vector.
+template <class Format, std::size_t kRows, class D>
+HWY_INLINE hn::Vec<D> load_rows(D d, const std::byte* texels, std::uint64_t pitch) {
+  if constexpr (kRows == 1) {
+    return Format::load_row(d, texels);
+  } else {
+    const hn::Half<D> half;
+    const auto upper = load_rows<Format, kRows / 2>(half, texels + kRows / 2 * pitch, pitch);
+    return hn::Combine(d, upper, load_rows<Format, kRows / 2>(half, texels, pitch));
   }
-  return passed;
 }
 
-template <std::size_t kSide>
-HWY_INLINE base::LaneMask test_square(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
-                                      const BlockPixels& pixels, base::LaneMask rows) {
+/// Stores those of the rows that have a lane in `bits`.
+template <class Format, std::size_t kRows, class V>
+HWY_INLINE void store_rows(V v, std::uint32_t bits, std::byte* texels, std::uint64_t pitch) {
+  if constexpr (kRows == 1) {
+    if (bits != 0) Format::store_row(v, texels);
+  } else {
+    const hn::DFromV<V> d;
+    const hn::Half<decltype(d)> half;
+    constexpr std::size_t n = hn::MaxLanes(half);
+    store_rows<Format, kRows / 2>(hn::LowerHalf(half, v), bits & ((1u << n) - 1), texels, pitch);
+    store_rows<Format, kRows / 2>(hn::UpperHalf(half, v), bits >> n, texels + kRows / 2 * pitch, pitch);
+  }
+}
+
+/// Depth test of squares of `kSide` pixels, with what they share. What is known when it is compiled leaves a loop
+/// without branches but those on coverage.
+template <class Format, std::size_t kSide, VkCompareOp kOp>
+class SquareTest {
+  using Square = SquareVector<kSide>;
+  using Floats = typename Square::Floats;
+  using VF = hn::Vec<Floats>;
+
+ public:
+  HWY_INLINE SquareTest(const BlockDepthTest& test, const DepthPlane& plane)
+      : a0_(hn::Set(Floats(), plane.a0)),
+        dadx_(hn::Set(Floats(), plane.dadx)),
+        dady_(hn::Set(Floats(), plane.dady)),
+        offset_(hn::Set(Floats(), plane.offset)),
+        low_(hn::Set(Floats(), test.clamp ? test.clamp->low : 0)),
+        high_(hn::Set(Floats(), test.clamp ? test.clamp->high : 1)),
+        clamps_(test.clamp != nullptr),
+        write_(test.write) {
+    const typename Square::Words d;
+    const auto lane = hn::Iota(d, 0);
+    lane_row_ = hn::ConvertTo(Floats(), hn::ShiftRight < kSide == 8 ? 3 : 2 > (lane));
+    lane_column_ = hn::ConvertTo(Floats(), hn::And(lane, hn::Set(d, static_cast<std::int32_t>(kSide - 1))));
+  }
+
+  /// One square whose first sample is at (x, y); rows in, rows that passed out.
+  HWY_INLINE base::LaneMask run(float x, float y, std::byte* first, std::uint64_t pitch, base::LaneMask rows) const {
+    const Floats f;
+    const typename Square::Words d;
+    constexpr std::size_t n = Square::kLanes;
+    constexpr std::uint32_t all = (1u << n) - 1;
+    base::LaneMask passed = 0;
+    // All sums of places are exact: whole numbers, or a sample's eighths on top of them.
+    for (std::size_t c = 0; c < kSide; c += Square::kRowLanes) {
+      const VF fx = hn::Add(hn::Set(f, x + static_cast<float>(c)), lane_column_);
+      const VF inner = lanes_fma(dadx_, fx, a0_);
+      VF fy = hn::Add(hn::Set(f, y), lane_row_);
+      std::byte* texels = first + c * Format::kBytes;
+      for (std::size_t r = 0; r < kSide; r += Square::kRows) {
+        const auto covered = static_cast<std::uint32_t>(rows >> (kSide * r + c)) & all;
+        if (covered != 0) {
+          VF z = hn::Add(lanes_fma(dady_, fy, inner), offset_);
+          z = lanes_max_second(lanes_min_second(z, hn::Set(f, 1.0f)), hn::Zero(f));
+          if (clamps_) z = lanes_max_second(lanes_min_second(z, high_), low_);
+          const auto value = Format::encode(z);
+          const auto stored = load_rows<Format, Square::kRows>(d, texels, pitch);
+          const auto bits = static_cast<std::uint32_t>(bits_of_mask(compare<Format>(kOp, value, stored))) & covered;
+          passed |= base::LaneMask{bits} << (kSide * r + c);
+          if (write_)
+            store_rows<Format, Square::kRows>(hn::IfThenElse(lanes_mask_from_bits(d, bits), value, stored), bits,
+                                              texels, pitch);
+        }
+        fy = hn::Add(fy, hn::Set(f, static_cast<float>(Square::kRows)));
+        texels += Square::kRows * pitch;
+      }
+    }
+    return passed;
+  }
+
+ private:
+  VF a0_, dadx_, dady_, offset_, low_, high_;
+  VF lane_row_, lane_column_;  ///< places in the square
+  bool clamps_, write_;
+};
+
+/// Calls run(SquareTest) with the one for this format and comparison.
+template <class Format, std::size_t kSide, class F>
+HWY_INLINE auto with_comparison(const BlockDepthTest& test, const DepthPlane& plane, F&& run) {
+  switch (test.compare) {
+    case VK_COMPARE_OP_NEVER:
+      return run(SquareTest<Format, kSide, VK_COMPARE_OP_NEVER>(test, plane));
+    case VK_COMPARE_OP_LESS:
+      return run(SquareTest<Format, kSide, VK_COMPARE_OP_LESS>(test, plane));
+    case VK_COMPARE_OP_EQUAL:
+      return run(SquareTest<Format, kSide, VK_COMPARE_OP_EQUAL>(test, plane));
+    case VK_COMPARE_OP_LESS_OR_EQUAL:
+      return run(SquareTest<Format, kSide, VK_COMPARE_OP_LESS_OR_EQUAL>(test, plane));
+    case VK_COMPARE_OP_GREATER:
+      return run(SquareTest<Format, kSide, VK_COMPARE_OP_GREATER>(test, plane));
+    case VK_COMPARE_OP_NOT_EQUAL:
+      return run(SquareTest<Format, kSide, VK_COMPARE_OP_NOT_EQUAL>(test, plane));
+    case VK_COMPARE_OP_GREATER_OR_EQUAL:
+      return run(SquareTest<Format, kSide, VK_COMPARE_OP_GREATER_OR_EQUAL>(test, plane));
+    default:
+      return run(SquareTest<Format, kSide, VK_COMPARE_OP_ALWAYS>(test, plane));
+  }
+}
+
+template <std::size_t kSide, class F>
+HWY_INLINE auto with_square_test(const BlockDepthTest& test, const DepthPlane& plane, F&& run) {
   switch (test.format) {
     case DepthFormat::kD16:
-      return test_rows<D16, kSide>(test, plane, x, y, pixels, rows);
+      return with_comparison<D16, kSide>(test, plane, run);
     case DepthFormat::kD24:
-      return test_rows<D24, kSide>(test, plane, x, y, pixels, rows);
-    case DepthFormat::kD32:
-      return test_rows<D32, kSide>(test, plane, x, y, pixels, rows);
+      return with_comparison<D24, kSide>(test, plane, run);
     default:
-      return rows;
+      return with_comparison<D32, kSide>(test, plane, run);
   }
 }
 
 }  // namespace
 
-base::LaneMask test_block(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
-                          const BlockPixels& pixels, base::LaneMask rows) {
-  return test_square<8>(test, plane, x, y, pixels, rows);
+void test_blocks(const BlockDepthTest& test, const DepthPlane& plane, float x, float y, const BlockPixels& pixels,
+                 base::LaneMask places, base::LaneMask* lanes) {
+  const std::uint64_t texel_bytes = test.format == DepthFormat::kD16 ? 2 : 4;
+  with_square_test<8>(test, plane, [&](const auto& square) HWY_ATTR {
+    for (base::LaneMask left = places; left != 0; left &= left - 1) {
+      const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+      if (lanes[place] == 0) continue;
+      const int bx = lane_x(place) * kBlockSize, by = lane_y(place) * kBlockSize;
+      std::byte* first =
+          pixels.first + static_cast<std::uint64_t>(by) * pixels.pitch + static_cast<std::uint64_t>(bx) * texel_bytes;
+      lanes[place] = quads_of_rows(square.run(x + static_cast<float>(bx), y + static_cast<float>(by), first,
+                                              pixels.pitch, rows_of_quads(lanes[place])));
+    }
+  });
 }
-base::LaneMask test_window(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
-                           const BlockPixels& pixels, base::LaneMask rows) {
-  return test_square<4>(test, plane, x, y, pixels, rows);
+
+std::uint32_t test_window(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                          const BlockPixels& pixels, std::uint32_t rows) {
+  return with_square_test<4>(test, plane, [&](const auto& square) HWY_ATTR {
+    return static_cast<std::uint32_t>(square.run(x, y, pixels.first, pixels.pitch, rows));
+  });
 }
 
 }  // namespace vitrine::raster::HWY_NAMESPACE
@@ -133,7 +233,7 @@ HWY_AFTER_NAMESPACE();
 namespace vitrine::raster {
 
 HWY_EXPORT(evaluate_all);
-HWY_EXPORT(test_block);
+HWY_EXPORT(test_blocks);
 HWY_EXPORT(test_window);
 
 void evaluate_block(const PlaneSet& planes, const BlockVarying* varying, std::size_t count, float x, float y,
@@ -141,14 +241,14 @@ void evaluate_block(const PlaneSet& planes, const BlockVarying* varying, std::si
   HWY_DYNAMIC_DISPATCH(evaluate_all)(planes, varying, count, x, y, scale);
 }
 
-base::LaneMask test_block_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
-                                const BlockPixels& pixels, base::LaneMask rows) {
-  return HWY_DYNAMIC_DISPATCH(test_block)(test, plane, x, y, pixels, rows);
+void test_block_depths(const BlockDepthTest& test, const DepthPlane& plane, float x, float y, const BlockPixels& pixels,
+                       base::LaneMask places, base::LaneMask* lanes) {
+  HWY_DYNAMIC_DISPATCH(test_blocks)(test, plane, x, y, pixels, places, lanes);
 }
 
 std::uint32_t test_window_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
                                 const BlockPixels& pixels, std::uint32_t rows) {
-  return static_cast<std::uint32_t>(HWY_DYNAMIC_DISPATCH(test_window)(test, plane, x, y, pixels, rows));
+  return HWY_DYNAMIC_DISPATCH(test_window)(test, plane, x, y, pixels, rows);
 }
 
 }  // namespace vitrine::raster

@@ -115,14 +115,18 @@ void write_block(TileWorker& worker, int x, int y, const LaneMask* kept) {
         write_color(writer, {&view, worker.target.layer, s, &quads, kept[s], color, nullptr});
       continue;
     }
-    if (!draw.solid) writer.block->pack(writer, collect_color(worker, plan.frag.color[i]), draw.color[i]);
-    for (std::uint32_t s = 0; s < plan.samples; ++s) {
-      if (!kept[s]) continue;
-      const BlockPixels pixels{
-          view.block(0, worker.target.layer, s, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0),
+    const auto pixels = [&](std::uint32_t sample) {
+      return BlockPixels{
+          view.block(0, worker.target.layer, sample, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0),
           view.level[0].row_pitch};
-      writer.block->write(writer, draw.color[i], pixels, rows_of_quads(kept[s]));
+    };
+    if (!draw.solid && plan.samples == 1) {
+      writer.block->write(writer, collect_color(worker, plan.frag.color[i]), pixels(0), rows_of_quads(kept[0]));
+      continue;
     }
+    if (!draw.solid) writer.block->pack(writer, collect_color(worker, plan.frag.color[i]), draw.color[i]);
+    for (std::uint32_t s = 0; s < plan.samples; ++s)
+      if (kept[s]) writer.block->write_packed(writer, draw.color[i], pixels(s), rows_of_quads(kept[s]));
   }
 }
 
@@ -182,17 +186,18 @@ LaneMask test_small_window(TileWorker& worker, const Primitive& primitive, int x
   return (passed & 0xff) | (passed & 0xff00) << 8;
 }
 
-LaneMask test_block_sample(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane,
-                           std::uint32_t sample, int x, int y, LaneMask lanes, bool write) {
+void test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32_t sample, int x, int y, LaneMask places,
+                 LaneMask* lanes, bool write) {
   const PipelinePlan& plan = *worker.draw->plan;
   const DepthStencilTarget& target = worker.target.depth_stencil[sample];
   const bool located = plan.raster_samples > 1;
   const float dx = located ? static_cast<float>(kSampleX[sample]) / 256 : 0.0f;
   const float dy = located ? static_cast<float>(kSampleY[sample]) / 256 : 0.0f;
+  const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
   const ViewportTransform& viewport = plan.viewport[primitive.viewport];
   const DepthRange range{viewport.z_min, viewport.z_max};
-  return quads_of_rows(test_block_depth(depth_test(plan, target, write, range), plane, static_cast<float>(x) + dx,
-                                        static_cast<float>(y) + dy, depth_pixels(target, x, y), rows_of_quads(lanes)));
+  test_block_depths(depth_test(plan, target, write, range), plane, static_cast<float>(x) + dx,
+                    static_cast<float>(y) + dy, depth_pixels(target, x, y), places, lanes);
 }
 
 void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {
@@ -208,13 +213,11 @@ void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, c
   LaneMask kept[kMaxSamples];
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
     kept[s] = block.lanes[s] & alive;
-    if (plan.depth_order == TestOrder::kLate && kept[s]) {
-      const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
-      kept[s] = test_block_sample(worker, primitive, plane, s, x, y, kept[s], true);
-    }
+    if (plan.depth_order == TestOrder::kLate) test_blocks(worker, primitive, s, x, y, 1, &kept[s], true);
     if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(kept[s]));
   }
-  write_block(worker, x, y, kept);
+  if (std::any_of(kept, kept + plan.samples, [](LaneMask lanes) { return lanes != 0; }))
+    write_block(worker, x, y, kept);
 }
 
 }  // namespace vitrine::raster

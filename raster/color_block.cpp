@@ -26,80 +26,127 @@ using base::kWaveWidth;
 
 constexpr std::size_t kRow = 8;  // pixels
 
-/// Where the pixels of a vector of whole quads go: the upper ones first.
+/// Pixels of whole quads that lie side by side: the upper ones in the lower half of the vector, those below in the
+/// upper.
+using Pixels = BytePacker::Texels;
+using Half = hn::Half<Pixels>;
+using Bytes = hn::Repartition<std::uint8_t, Pixels>;
+using Words = hn::Repartition<std::uint16_t, Pixels>;
+using VP = hn::Vec<Pixels>;
+using VB = hn::Vec<Bytes>;
+using VW = hn::Vec<Words>;
+
 alignas(64) constexpr std::int32_t kRowsOf16[16] = {0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15};
 alignas(64) constexpr std::int32_t kRowsOf8[8] = {0, 1, 4, 5, 2, 3, 6, 7};
 alignas(64) constexpr std::int32_t kRowsOf4[4] = {0, 1, 2, 3};
 
-void pack_bytes(const ColorWriter& writer, const base::WaveRegister* color, PackedBlock& out) {
-  const BytePacker::Texels d;
-  const hn::Half<BytePacker::Texels> half;
-  const std::size_t n = hn::Lanes(d);
-  const auto order = hn::SetTableIndices(d, n == 16 ? kRowsOf16 : n == 8 ? kRowsOf8 : kRowsOf4);
-  const BytePacker packer(writer);
-  for (std::size_t i = 0; i < kWaveWidth; i += n) {
-    const auto rows = hn::TableLookupLanes(packer.pack(color, i), order);
-    auto* top = reinterpret_cast<std::int32_t*>(out.texel) + i / 16 * 16 + i % 16 / 2;
-    hn::StoreU(hn::LowerHalf(half, rows), half, top);
-    hn::StoreU(hn::UpperHalf(half, rows), half, top + kRow);
+/// Colours of a wave as vectors of such pixels.
+class PackedColors {
+ public:
+  PackedColors(const ColorWriter& writer, const base::WaveRegister* color)
+      : packer_(writer), color_(color), order_(hn::SetTableIndices(Pixels(), kRows)) {}
+  HWY_INLINE VB at(std::size_t i) const {
+    return hn::BitCast(Bytes(), hn::TableLookupLanes(packer_.pack(color_, i), order_));
   }
+
+ private:
+  static constexpr std::size_t n = hn::MaxLanes(Pixels());
+  static constexpr const std::int32_t* kRows = n == 16 ? kRowsOf16 : n == 8 ? kRowsOf8 : kRowsOf4;
+  BytePacker packer_;
+  const base::WaveRegister* color_;
+  decltype(hn::SetTableIndices(Pixels(), kRowsOf16)) order_;
+};
+
+/// The same, packed before.
+struct StoredColors {
+  const PackedBlock& block;
+  HWY_INLINE VB at(std::size_t i) const {
+    return hn::BitCast(Bytes(), hn::Load(hn::RebindToUnsigned<Pixels>(), block.texel + i));
+  }
+};
+
+void pack_bytes(const ColorWriter& writer, const base::WaveRegister* color, PackedBlock& out) {
+  const PackedColors colors(writer, color);
+  for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(Pixels()))
+    hn::Store(hn::BitCast(hn::RebindToUnsigned<Pixels>(), colors.at(i)), hn::RebindToUnsigned<Pixels>(), out.texel + i);
 }
 
-using Pixels = hn::CappedTag<std::uint32_t, kRow>;
-using Bytes = hn::Repartition<std::uint8_t, Pixels>;
-using Words = hn::Repartition<std::uint16_t, Pixels>;
-using VB = hn::Vec<Bytes>;
-using VW = hn::Vec<Words>;
+/// Where the pixels of a vector lie.
+struct PixelRows {
+  std::byte *top, *bottom;
 
-HWY_INLINE VB load_row(const void* from) { return hn::LoadU(Bytes(), static_cast<const std::uint8_t*>(from)); }
+  HWY_INLINE VB load() const {
+    const Half d;
+    return hn::BitCast(Bytes(), hn::Combine(Pixels(), hn::LoadU(d, reinterpret_cast<const std::int32_t*>(bottom)),
+                                            hn::LoadU(d, reinterpret_cast<const std::int32_t*>(top))));
+  }
+  HWY_INLINE void store(VB v) const {
+    const Half d;
+    const VP texels = hn::BitCast(Pixels(), v);
+    hn::StoreU(hn::LowerHalf(d, texels), d, reinterpret_cast<std::int32_t*>(top));
+    hn::StoreU(hn::UpperHalf(d, texels), d, reinterpret_cast<std::int32_t*>(bottom));
+  }
+  /// Some of them, lane 0 in bit 0; the others are not written.
+  HWY_INLINE void store_some(VB v, std::uint32_t bits_top, std::uint32_t bits_bottom) const {
+    const Half d;
+    const VP texels = hn::BitCast(Pixels(), v);
+    store_some(hn::LowerHalf(d, texels), top, bits_top);
+    store_some(hn::UpperHalf(d, texels), bottom, bits_bottom);
+  }
 
-/// Some pixels of a row, lane 0 in bit 0; the others are not written.
-HWY_INLINE void store_some(VB v, std::byte* to, std::uint32_t bits) {
-  const Pixels d;
+ private:
+  static HWY_INLINE void store_some(hn::Vec<Half> v, std::byte* to, std::uint32_t bits) {
+    const Half d;
+    if (bits == 0) return;
 #if HWY_TARGET <= HWY_AVX2
-  hn::BlendedStore(hn::BitCast(d, v), lanes_mask_from_bits(d, bits), d, reinterpret_cast<std::uint32_t*>(to));
+    hn::BlendedStore(v, lanes_mask_from_bits(d, bits), d, reinterpret_cast<std::int32_t*>(to));
 #else
-  alignas(16) std::uint32_t texel[4];
-  hn::Store(hn::BitCast(d, v), d, texel);
-  for (std::size_t i = 0; i < hn::Lanes(d); ++i)
-    if (bits >> i & 1) std::memcpy(to + 4 * i, texel + i, 4);
+    alignas(16) std::int32_t texel[hn::MaxLanes(d)];
+    hn::Store(v, d, texel);
+    for (std::size_t i = 0; i < hn::MaxLanes(d); ++i)
+      if (bits >> i & 1) std::memcpy(to + 4 * i, texel + i, 4);
 #endif
-}
+  }
+};
 
-/// Calls write(index of the first texel, address) for every vector with a pixel in `rows`, and stores what it returns.
+/// Stores make(index of the first lane, rows) for every vector with a pixel in `rows`.
 template <class F>
 HWY_INLINE void for_each_vector(const BlockPixels& pixels, base::LaneMask rows, F&& make) {
-  constexpr std::size_t n = hn::MaxLanes(Pixels());
-  constexpr std::uint32_t all = (1u << n) - 1;
+  constexpr std::size_t n = hn::MaxLanes(Pixels()), half = n / 2;
+  constexpr std::uint32_t all = (1u << half) - 1;
+  const bool whole = rows == base::kAllLanes;
   std::byte* row = pixels.first;
-  if (rows == base::kAllLanes) {
-    for (std::size_t y = 0; y < kRow; ++y, row += pixels.pitch)
-      for (std::size_t x = 0; x < kRow; x += n)
-        hn::StoreU(make(kRow * y + x, row + 4 * x), Bytes(), reinterpret_cast<std::uint8_t*>(row + 4 * x));
-    return;
-  }
-  for (std::size_t y = 0; y < kRow; ++y, row += pixels.pitch)
-    for (std::size_t x = 0; x < kRow; x += n) {
-      const auto bits = static_cast<std::uint32_t>(rows >> (kRow * y + x)) & all;
-      if (bits != 0) store_some(make(kRow * y + x, row + 4 * x), row + 4 * x, bits);
+  for (std::size_t y = 0; y < kRow; y += 2, row += 2 * pixels.pitch)
+    for (std::size_t x = 0; x < kRow; x += half) {
+      const PixelRows at{row + 4 * x, row + pixels.pitch + 4 * x};
+      const std::size_t i = kRow * y + 2 * x;
+      if (whole) {
+        at.store(make(i, at));
+        continue;
+      }
+      const auto top = static_cast<std::uint32_t>(rows >> (kRow * y + x)) & all;
+      const auto bottom = static_cast<std::uint32_t>(rows >> (kRow * y + kRow + x)) & all;
+      if ((top | bottom) != 0) at.store_some(make(i, at), top, bottom);
     }
 }
 
 /// Bits of a texel that may change, in every pixel.
 HWY_INLINE VB write_bits(const ColorWriter& writer) {
-  std::uint32_t word;
+  std::int32_t word;
   std::memcpy(&word, writer.write_bits.bytes.data(), sizeof(word));
   return hn::BitCast(Bytes(), hn::Set(Pixels(), word));
 }
 
-void store_rows(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels, base::LaneMask rows) {
+template <class Colors>
+HWY_INLINE void store_rows(const ColorWriter& writer, const Colors& colors, const BlockPixels& pixels,
+                           base::LaneMask rows) {
   if (!writer.masked) {
-    for_each_vector(pixels, rows, [&](std::size_t i, const std::byte*) { return load_row(colors.texel + i); });
+    for_each_vector(pixels, rows, [&](std::size_t i, const PixelRows&) HWY_ATTR { return colors.at(i); });
     return;
   }
   const VB change = write_bits(writer);
-  for_each_vector(pixels, rows, [&](std::size_t i, const std::byte* at) {
-    return hn::Or(hn::And(change, load_row(colors.texel + i)), hn::AndNot(change, load_row(at)));
+  for_each_vector(pixels, rows, [&](std::size_t i, const PixelRows& at) HWY_ATTR {
+    return hn::Or(hn::And(change, colors.at(i)), hn::AndNot(change, at.load()));
   });
 }
 
@@ -192,18 +239,20 @@ HWY_INLINE VB term(VkBlendFactor rgb, VkBlendFactor alpha, VB value, const Blend
   return mul8(value, factor);
 }
 
-void blend_rows(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels, base::LaneMask rows) {
+template <class Colors>
+HWY_INLINE void blend_rows(const ColorWriter& writer, const Colors& colors, const BlockPixels& pixels,
+                           base::LaneMask rows) {
   std::uint32_t constants = 0;
   for (std::size_t c = 0; c < 4; ++c) constants |= constant_to_byte(writer.constants[c]) << shift_of(writer, c);
-  const Pixels d;
+  const hn::RebindToUnsigned<Pixels> d;
   const BlendShared shared{hn::BitCast(Bytes(), hn::Set(d, constants)),
                            hn::BitCast(Bytes(), hn::Set(d, 0xffu << shift_of(writer, 3))),
                            hn::LoadDup128(Bytes(), writer.alpha_places)};
   const VB change = write_bits(writer);
   const BlendEquation rgb = writer.rgb, alpha = writer.alpha;
   const bool masked = writer.masked;
-  for_each_vector(pixels, rows, [&](std::size_t i, const std::byte* at) HWY_ATTR {
-    const BlendRow row{load_row(colors.texel + i), load_row(at)};
+  for_each_vector(pixels, rows, [&](std::size_t i, const PixelRows& at) HWY_ATTR {
+    const BlendRow row{colors.at(i), at.load()};
     const VB src = term(rgb.src, alpha.src, row.src, row, shared);
     const VB dst = term(rgb.dst, alpha.dst, row.dst, row, shared);
     VB result = combine(rgb.op, src, dst);
@@ -213,11 +262,47 @@ void blend_rows(const ColorWriter& writer, const PackedBlock& colors, const Bloc
   });
 }
 
+/// Stores without masks of what was packed before: nothing is combined, so nothing is taken apart again.
+void store_packed(const PackedBlock& colors, const BlockPixels& pixels) {
+  const hn::RebindToUnsigned<Half> d;
+  constexpr std::size_t half = hn::MaxLanes(Half());
+  const std::uint32_t* from = colors.texel;
+  std::byte* row = pixels.first;
+  for (std::size_t y = 0; y < kRow; y += 2, row += 2 * pixels.pitch)
+    for (std::size_t x = 0; x < kRow; x += half, from += 2 * half) {
+      hn::StoreU(hn::Load(d, from), d, reinterpret_cast<std::uint32_t*>(row + 4 * x));
+      hn::StoreU(hn::Load(d, from + half), d, reinterpret_cast<std::uint32_t*>(row + pixels.pitch + 4 * x));
+    }
+}
+
+template <bool kBlends>
+struct ByteBlocks {
+  template <class Colors>
+  static HWY_INLINE void write_colors(const ColorWriter& writer, const Colors& colors, const BlockPixels& pixels,
+                                      base::LaneMask rows) {
+    if constexpr (kBlends)
+      blend_rows(writer, colors, pixels, rows);
+    else
+      store_rows(writer, colors, pixels, rows);
+  }
+  static void write_packed(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels,
+                           base::LaneMask rows) {
+    if (!kBlends && rows == base::kAllLanes && !writer.masked)
+      store_packed(colors, pixels);
+    else
+      write_colors(writer, StoredColors{colors}, pixels, rows);
+  }
+  static void write(const ColorWriter& writer, const base::WaveRegister* color, const BlockPixels& pixels,
+                    base::LaneMask rows) {
+    write_colors(writer, PackedColors(writer, color), pixels, rows);
+  }
+  static constexpr BlockColorFunctions kFunctions{pack_bytes, write_packed, write};
+};
+
 }  // namespace
 
 const BlockColorFunctions* byte_block_functions(bool blends) {
-  static constexpr BlockColorFunctions kFunctions[2] = {{pack_bytes, store_rows}, {pack_bytes, blend_rows}};
-  return &kFunctions[blends ? 1 : 0];
+  return blends ? &ByteBlocks<true>::kFunctions : &ByteBlocks<false>::kFunctions;
 }
 
 }  // namespace vitrine::raster::HWY_NAMESPACE
@@ -229,12 +314,12 @@ namespace vitrine::raster {
 HWY_EXPORT(byte_block_functions);
 
 void set_byte_places(ColorWriter& writer) {
-  constexpr std::size_t kPlace[4] = {0, 8, 1, 9};  // of the first pixel's components in what BytePacker shuffles
+  constexpr std::size_t kPlace[4] = {0, 4, 8, 12};  // of the first pixel's components in what BytePacker shuffles
   const std::size_t alpha = static_cast<std::size_t>(shift_of(writer, 3)) / 8;
   for (std::size_t p = 0; p < 4; ++p)
     for (std::size_t c = 0; c < 4; ++c) {
       writer.pack_places[4 * p + static_cast<std::size_t>(shift_of(writer, c)) / 8] =
-          static_cast<std::uint8_t>(kPlace[c] + 2 * p);
+          static_cast<std::uint8_t>(kPlace[c] + p);
       writer.alpha_places[4 * p + c] = static_cast<std::uint8_t>(4 * p + alpha);
     }
 }

@@ -27,13 +27,11 @@ class BytePacker {
 
   /// Texels of lanes [i, i + lanes).
   HWY_INLINE hn::Vec<Texels> pack(const base::WaveRegister* color, std::size_t i) const {
-    // Conversion from 32 to 16 bits saturates; 16 to 8 only needs the lower bound. The four pixels of a quad become
-    // r b r b r b r b g a g a g a g a.
+    // Both narrowings saturate. The four pixels of a quad become r r r r g g g g b b b b a a a a.
     const Words d16;
-    const auto zero = hn::Zero(d16);
-    const auto rg = hn::Max(hn::ReorderDemote2To(d16, to_bytes(color[0], i), to_bytes(color[1], i)), zero);
-    const auto ba = hn::Max(hn::ReorderDemote2To(d16, to_bytes(color[2], i), to_bytes(color[3], i)), zero);
-    const auto bytes = hn::BitCast(Bytes(), hn::Or(rg, hn::ShiftLeft<8>(ba)));
+    const auto rg = hn::ReorderDemote2To(d16, to_bytes(color[0], i), to_bytes(color[1], i));
+    const auto ba = hn::ReorderDemote2To(d16, to_bytes(color[2], i), to_bytes(color[3], i));
+    const auto bytes = narrow(rg, ba);
     return hn::BitCast(Texels(), hn::TableLookupBytes(bytes, places_));
   }
 
@@ -47,6 +45,17 @@ class BytePacker {
     const auto x = hn::Load(d, reinterpret_cast<const float*>(color.lane + i));
     const auto scaled = hn::Mul(base::HWY_NAMESPACE::lanes_min_second(hn::Set(d, 1.0f), x), hn::Set(d, 255.0f));
     return base::HWY_NAMESPACE::lanes_round_to_int(scaled);
+  }
+
+  /// Signed words to unsigned bytes, both operands per 128 bits.
+  static HWY_INLINE hn::Vec<Bytes> narrow(hn::Vec<Words> low, hn::Vec<Words> high) {
+#if HWY_TARGET <= HWY_AVX3
+    return hn::Vec<Bytes>{_mm512_packus_epi16(low.raw, high.raw)};
+#elif HWY_TARGET <= HWY_AVX2
+    return hn::Vec<Bytes>{_mm256_packus_epi16(low.raw, high.raw)};
+#else
+    return hn::Vec<Bytes>{_mm_packus_epi16(low.raw, high.raw)};
+#endif
   }
 
   hn::Vec<Bytes> places_;

@@ -33,17 +33,11 @@ bool owns_block(const TileWorker& worker, int x, int y) { return owns_square(wor
 
 std::uint64_t block_bit(int x, int y) { return std::uint64_t{1} << ((y >> 3 & 7) * 8 + (x >> 3 & 7)); }
 
-/// Tests a block before shading. Writes unless the test is only a preview of a late one.
-void test_early(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block) {
+/// Tests a block before shading, whatever is tested and wherever it lies. Writes unless the test is only a preview of a
+/// late one.
+void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block) {
   const PipelinePlan& plan = *worker.draw->plan;
   const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
-  if (plan.tests_rows && owns_block(worker, x, y)) {
-    for (std::uint32_t s = 0; s < plan.samples; ++s)
-      if (block.lanes[s])
-        block.lanes[s] =
-            test_block_sample(worker, primitive, plane, s, x, y, block.lanes[s], plan.depth_order == TestOrder::kEarly);
-    return;
-  }
   QuadPositions quads;
   place_block(x, y, quads);
   DepthRange range[base::kQuadsPerWave];
@@ -143,21 +137,12 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
 /// Quads of a block from which on it is shaded on its own: fewer would waste more lanes than packing costs.
 constexpr std::uint32_t kNearlyFull = 12;
 
-/// A block with its coverage: tests that come first, then to the wave.
-void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block) {
+/// A block's coverage after early tests, to the wave.
+void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
+                const BlockCoverage& block) {
   const PipelinePlan& plan = *worker.draw->plan;
-  if (plan.sample_mask != (1u << plan.samples) - 1)
-    for (std::uint32_t s = 0; s < plan.samples; ++s)
-      if ((plan.sample_mask >> s & 1) == 0) block.lanes[s] = 0;
   base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
-  BlockCoverage rasterized{};
-  if (reads_rasterized(worker)) rasterized = block;
-  if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
-    test_early(worker, primitive, x, y, block);
-    any = any_sample(block, plan.samples);
-    if (!any) return;
-  }
   if (!plan.shades) {
     for (std::uint32_t s = 0; worker.counts && s < plan.samples; ++s)
       worker.samples_passed += static_cast<std::uint64_t>(std::popcount(block.lanes[s]));
@@ -203,8 +188,10 @@ void emit_window(TileWorker& worker, const Primitive& primitive) {
     if (small && plan.tests_rows && owns_square(worker, x, y, 4))
       block.lanes[0] =
           test_small_window(worker, primitive, x, y, block.lanes[0], plan.depth_order == TestOrder::kEarly);
+    else if (plan.tests_rows && owns_block(worker, x, y))
+      test_blocks(worker, primitive, 0, x, y, 1, block.lanes, plan.depth_order == TestOrder::kEarly);
     else
-      test_early(worker, primitive, x, y, block);
+      test_any_block(worker, primitive, x, y, block);
     if (block.lanes[0] == 0) return;
   }
   if (!plan.shades) {
@@ -214,6 +201,61 @@ void emit_window(TileWorker& worker, const Primitive& primitive) {
   base::LaneMask any = block.lanes[0] | block.lanes[0] >> 1;
   any = (any | any >> 2) & 0x1111111111111111;
   append_quads(worker, primitive, x, y, rasterized, block, any);
+}
+
+BlockCoverage block_of(const TileCoverage& coverage, std::uint32_t place, std::uint32_t samples) {
+  BlockCoverage block;
+  for (std::uint32_t s = 0; s < samples; ++s) block.lanes[s] = coverage.lanes[s][place];
+  return block;
+}
+
+/// Covered lanes of the blocks that a primitive touches; returns their places. `rect`: the primitive's in the tile.
+base::LaneMask cover_tile(const PipelinePlan& plan, const TileEdges& edges, const PixelRect& rect, TileCoverage& out) {
+  const int bx0 = rect.x0 / kBlockSize, bx1 = rect.x1 / kBlockSize;
+  const int by0 = rect.y0 / kBlockSize, by1 = rect.y1 / kBlockSize;
+  base::LaneMask any = base::kAllLanes, all = edges.count == 0 ? base::kAllLanes : 0;
+  if (edges.count != 0 && (bx1 - bx0 + 1) * (by1 - by0 + 1) > 4) classify_blocks(edges, plan.raster_samples, any, all);
+  any &= rect_lanes(bx0, by0, bx1, by1);
+  // Blocks that the rectangle does not cut.
+  const base::LaneMask inside =
+      rect_lanes((rect.x0 + kBlockSize - 1) / kBlockSize, (rect.y0 + kBlockSize - 1) / kBlockSize,
+                 (rect.x1 + 1) / kBlockSize - 1, (rect.y1 + 1) / kBlockSize - 1);
+  for (std::uint32_t s = 0; s < plan.raster_samples; ++s) {
+    base::LaneMask* lanes = out.lanes[s];
+    if ((any & all) != 0) std::fill_n(lanes, base::kWaveWidth, base::kAllLanes);
+    cover_blocks(edges, s, any & ~all, lanes);
+    for (base::LaneMask left = any & ~inside; left != 0; left &= left - 1) {
+      const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+      const int x = lane_x(place) * kBlockSize, y = lane_y(place) * kBlockSize;
+      lanes[place] &= rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
+    }
+  }
+  for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s)
+    std::copy_n(out.lanes[0], base::kWaveWidth, out.lanes[s]);
+  for (std::uint32_t s = 0; s < plan.samples; ++s)
+    if ((plan.sample_mask >> s & 1) == 0) std::fill_n(out.lanes[s], base::kWaveWidth, 0);
+  return any;
+}
+
+/// Early tests of the blocks at `places`.
+void test_tile(TileWorker& worker, const Primitive& primitive, base::LaneMask places, TileCoverage& coverage) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const TileTarget& target = worker.target;
+  if (plan.tests_rows) {
+    const base::LaneMask owned = places & rect_lanes(0, 0, (target.right - target.x) / kBlockSize - 1,
+                                                     (target.bottom - target.y) / kBlockSize - 1);
+    for (std::uint32_t s = 0; s < plan.samples; ++s)
+      test_blocks(worker, primitive, s, target.x, target.y, owned, coverage.lanes[s],
+                  plan.depth_order == TestOrder::kEarly);
+    places &= ~owned;
+  }
+  for (; places != 0; places &= places - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(places));
+    BlockCoverage block = block_of(coverage, place, plan.samples);
+    test_any_block(worker, primitive, target.x + lane_x(place) * kBlockSize, target.y + lane_y(place) * kBlockSize,
+                   block);
+    for (std::uint32_t s = 0; s < plan.samples; ++s) coverage.lanes[s][place] = block.lanes[s];
+  }
 }
 
 /// The part of a tile a primitive may cover, pixels relative to the tile.
@@ -368,25 +410,16 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   if (!make_tile_edges(primitive, worker.target.x, worker.target.y, plan.raster_samples, edges)) return;
   const PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
-  const int bx0 = rect.x0 / kBlockSize, bx1 = rect.x1 / kBlockSize;
-  const int by0 = rect.y0 / kBlockSize, by1 = rect.y1 / kBlockSize;
-  base::LaneMask any = base::kAllLanes, all = edges.count == 0 ? base::kAllLanes : 0;
-  if (edges.count != 0 && (bx1 - bx0 + 1) * (by1 - by0 + 1) > 4) classify_blocks(edges, plan.raster_samples, any, all);
-  any &= rect_lanes(bx0, by0, bx1, by1);
-  base::LaneMask lanes[kMaxSamples][64];  // by place; only those of partly covered blocks are set
-  for (std::uint32_t s = 0; s < plan.raster_samples; ++s) cover_blocks(edges, s, any & ~all, lanes[s]);
-  for (; any != 0; any &= any - 1) {
-    const auto place = static_cast<std::uint32_t>(std::countr_zero(any));
-    const int x = lane_x(place) * kBlockSize, y = lane_y(place) * kBlockSize;
-    const bool inside = x >= rect.x0 && y >= rect.y0 && x + 7 <= rect.x1 && y + 7 <= rect.y1;
-    const base::LaneMask window =
-        inside ? base::kAllLanes : rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
-    const bool covered = (all >> place & 1) != 0;
-    BlockCoverage block;
-    for (std::uint32_t s = 0; s < plan.raster_samples; ++s)
-      block.lanes[s] = covered ? window : lanes[s][place] & window;
-    for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s) block.lanes[s] = block.lanes[0];
-    emit_block(worker, primitive, worker.target.x + x, worker.target.y + y, block);
+  const base::LaneMask places = cover_tile(plan, edges, rect, worker.covered);
+  if (places == 0) return;
+  if (reads_rasterized(worker)) worker.rasterized = worker.covered;
+  if (plan.depth_order == TestOrder::kEarly || plan.early_reject) test_tile(worker, primitive, places, worker.covered);
+  for (base::LaneMask left = places; left != 0; left &= left - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+    const int x = worker.target.x + lane_x(place) * kBlockSize, y = worker.target.y + lane_y(place) * kBlockSize;
+    BlockCoverage rasterized{};
+    if (reads_rasterized(worker)) rasterized = block_of(worker.rasterized, place, plan.samples);
+    emit_block(worker, primitive, x, y, rasterized, block_of(worker.covered, place, plan.samples));
   }
 }
 

@@ -36,6 +36,11 @@ struct BlockCoverage {
   base::LaneMask lanes[kMaxSamples];
 };
 
+/// Coverage of all blocks of a tile by sample and quad-ordered place.
+struct TileCoverage {
+  base::LaneMask lanes[kMaxSamples][base::kWaveWidth];
+};
+
 inline base::LaneMask any_sample(const BlockCoverage& block, std::uint32_t samples) {
   base::LaneMask any = block.lanes[0];
   for (std::uint32_t s = 1; s < samples; ++s) any |= block.lanes[s];
@@ -79,6 +84,7 @@ struct TileWorker {
   PackedWave wave;                   ///< being packed
   PackedWave block;                  ///< one whole block, shaded at once
   BlockDraw block_draw;
+  TileCoverage covered, rasterized;  ///< of the primitive being rasterized: what passed so far, and before any test
   StageRunner runner;
   Stage bound;
   PlaneSet planes[base::kQuadsPerWave + 1];  ///< of the primitives in `wave`, and of the one being rasterized
@@ -113,12 +119,14 @@ const PlaneSet& current_planes(TileWorker& worker, const Primitive& primitive);
 /// Positions of the quads of the block at (x, y).
 void place_block(int x, int y, QuadPositions& out);
 
-/// Depth test of lanes of the block at (x, y), which lies inside all attachments: of its first 4x4 pixels, or of all in
-/// one sample. Returns what passed.
+/// Depth test, in one sample, of the blocks at the quad-ordered places of `places`, all of which lie inside all
+/// attachments; the block at place 0 is at (x, y). Cuts lanes[place] to what passed.
+void test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32_t sample, int x, int y,
+                 base::LaneMask places, base::LaneMask* lanes, bool write);
+
+/// The same for the first 4x4 pixels of a window, single-sampled. Returns what passed.
 base::LaneMask test_small_window(TileWorker& worker, const Primitive& primitive, int x, int y, base::LaneMask lanes,
                                  bool write);
-base::LaneMask test_block_sample(TileWorker& worker, const Primitive& primitive, const DepthPlane& plane,
-                                 std::uint32_t sample, int x, int y, base::LaneMask lanes, bool write);
 
 /// Shades, tests and writes the quads of `wave`, one of the worker's; empties it (fragment.cpp).
 void shade_wave(TileWorker& worker, PackedWave& wave);
