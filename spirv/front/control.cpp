@@ -259,7 +259,23 @@ void build_switch(Translator& t, const Block& block, const Inst& inst) {
   }
 }
 
+/// The continue construct goes in front of the body, guarded by a flag that only the first iteration has not set: the
+/// reference's shape, which decides what its rewrites see.
+void put_in_front(Translator& t, ir::Node& loop, ir::NodeList&& continuing, std::uint32_t continues) {
+  ir::NodeList body = std::move(loop.body);
+  loop.body.clear();
+  const Into into(t, loop.body);
+  const ir::ValueId flag = load_flag(t, continues);
+  ir::Node& first = emit_node(t, ir::Node::Kind::kIf);
+  first.condition = whole(flag);
+  first.then_list = std::move(continuing);
+  store_flag(t, continues, true);
+  append(loop.body, std::move(body));
+}
+
 void build_loop(Translator& t, const Block& header) {
+  const std::uint32_t continues = new_flag(t);
+  store_flag(t, continues, false);
   ir::Node& node = emit_node(t, ir::Node::Kind::kLoop);
   t.scopes.push_back({Scope::Kind::kLoop, header.merge, header.continue_target, 0, false, nullptr});
   {
@@ -269,8 +285,12 @@ void build_loop(Translator& t, const Block& header) {
   if (header.continue_target != header.label) {
     // In the continue construct a jump to the continue target is no longer possible; the header ends it.
     t.scopes.back().continue_target = 0;
-    const Into into(t, node.continuing);
-    build(t, header.continue_target, header.label, true);
+    ir::NodeList continuing;
+    {
+      const Into into(t, continuing);
+      build(t, header.continue_target, header.label, true);
+    }
+    if (!continuing.empty()) put_in_front(t, node, std::move(continuing), continues);
   }
   t.scopes.pop_back();
 }

@@ -1,6 +1,7 @@
 // Copy propagation, dead code, scalarisation: the steps that change no value.
 #include <array>
 
+#include "spirv/rewrite/loops.h"
 #include "spirv/rewrite/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -253,7 +254,10 @@ bool propagate_copies(Graph& graph) {
   return changed;
 }
 
-bool remove_dead(Graph& graph) { return remove_dead_in(graph, graph.root); }
+bool remove_dead(Graph& graph) {
+  const bool changed = drop_dead_joins(graph);
+  return remove_dead_in(graph, graph.root) || changed;
+}
 
 bool scalarize(Graph& graph) {
   bool changed = false;

@@ -103,6 +103,51 @@ bool evaluate_condition(Graph& graph, InstId branch) {
   return changed;
 }
 
+/// Reads of one component, where a branch knows it to equal a constant, read the constant.
+bool take_equal_in(Graph& graph, BlockId side, const Src& unknown, const Src& known) {
+  bool changed = false;
+  for (const Slot use : uses_of(graph, unknown.value)) {
+    const InstId user = graph.sources[use].user;
+    const Inst inst = graph.insts[user];
+    bool inside = false;
+    for (InstId at = user; at != kNone && !inside; at = graph.blocks[graph.insts[at].block].owner)
+      inside = graph.insts[at].block == side;
+    if (!inside || inst.kind == Kind::kIf || inst.kind == Kind::kLoop) continue;
+    const Src src = graph.sources[use].src;
+    const unsigned read = inst.kind == Kind::kAlu ? inst.components : inst.kind == Kind::kVec ? 1 : 0;
+    bool only = read != 0 || graph.values[unknown.value].components == 1;
+    for (unsigned c = 0; c < read; ++c) only &= src.swizzle[c] == unknown.swizzle[0];
+    if (!only) continue;
+    const std::uint8_t s = known.swizzle[0];
+    graph.set_source(user, use - inst.first, {known.value, {s, s, s, s}});
+    changed = true;
+  }
+  return changed;
+}
+
+bool take_equal_by(Graph& graph, InstId branch, ValueId condition, bool accept_unequal, unsigned depth) {
+  const Inst* def = graph.def(condition);
+  if (!def || def->kind != Kind::kAlu || def->components != 1 || depth > 16) return false;
+  const Inst inst = *def;
+  if (inst.op == Op::kAndB) {
+    const ValueId parts[2] = {graph.source(inst, 0).value, graph.source(inst, 1).value};
+    bool changed = take_equal_by(graph, branch, parts[0], false, depth + 1);
+    changed |= take_equal_by(graph, branch, parts[1], false, depth + 1);
+    return changed;
+  }
+  if (inst.op != Op::kIEq && (inst.op != Op::kINe || !accept_unequal)) return false;
+  for (const std::uint32_t i : {0u, 1u}) {
+    const Src known = graph.source(inst, i), unknown = graph.source(inst, 1 - i);
+    if (graph.constant(known.value) && unknown.value != known.value)
+      return take_equal_in(graph, graph.insts[branch].child[inst.op == Op::kIEq ? 0 : 1], unknown, known);
+  }
+  return false;
+}
+
+bool take_equal(Graph& graph, InstId branch) {
+  return take_equal_by(graph, branch, graph.source(graph.insts[branch], 0).value, true, 0);
+}
+
 /// Innermost first.
 bool evaluate_in(Graph& graph, BlockId block) {
   bool changed = false;
@@ -111,7 +156,11 @@ bool evaluate_in(Graph& graph, BlockId block) {
       const BlockId child = graph.insts[id].child[side];
       if (child != kNone) changed |= evaluate_in(graph, child);
     }
-    if (graph.insts[id].kind == Kind::kIf) changed |= evaluate_condition(graph, id);
+    if (graph.insts[id].kind == Kind::kIf) {
+      changed |= evaluate_condition(graph, id);
+      changed |= take_equal(graph, id);
+    }
+    if (graph.insts[id].kind == Kind::kLoop) changed |= split_parameters(graph, id);
   }
   return changed;
 }

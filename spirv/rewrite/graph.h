@@ -89,9 +89,6 @@ class Graph {
   std::vector<std::unique_ptr<ir::Node>> nodes;  ///< If, Loop and intrinsic nodes; their lists and src are empty
   BlockId root = 0;
   bool first_rules = true;  ///< before and in the first run of the rules: dot products are single operations
-  /// Loop parameters whose step, made before the loop's first branch, the reference has moved to the end of the body:
-  /// a comparison of such a parameter no longer counts iterations.
-  std::vector<ValueId> detached;
   ir::Function& function;
 
   const Src& source(const Inst& inst, std::uint32_t index) const { return sources[inst.first + index].src; }

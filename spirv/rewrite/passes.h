@@ -47,8 +47,19 @@ bool remove_trivial_continues(Graph& graph);
 /// Reads of an If's condition where only one of its sides leads become constants.
 bool evaluate_conditions(Graph& graph);
 
-/// Where one branch leaves, the other needs no condition; what follows a continue moves into the other branch.
+/// Where one branch leaves, the other needs no condition; what follows a continue moves into the other branch;
+/// neighbours merge; then loops are peeled.
 bool improve_branches(Graph& graph);
+
+/// Parts of improve_branches(), for one If.
+bool merge_branches(Graph& graph, InstId id);
+bool merge_breaks(Graph& graph, InstId id);
+
+/// Its parts for one loop: arithmetic on parameters moves to where they are made; selections that the first iteration
+/// decides become parameters; so does all that the first branch does.
+bool split_parameters(Graph& graph, InstId loop);
+bool simplify_selections(Graph& graph, InstId loop);
+bool peel_loop(Graph& graph, InstId loop);
 
 /// An If on a constant becomes its branch; loops without effect go.
 bool take_constant_branches(Graph& graph);

@@ -1,6 +1,7 @@
 // The order of the steps, which decides bits: that of the reference (lavapipe-shader-math.md 3.2).
 #include "spirv/rewrite/rewrite.h"
 
+#include "spirv/rewrite/loops.h"
 #include "spirv/rewrite/passes.h"
 
 namespace vitrine::spirv {
@@ -23,7 +24,9 @@ bool optimize_once(Graph& graph, bool first) {
   if (first) rewriting::show_products(graph);
   changed |= rewriting::fold_constants(graph);
   changed |= rewriting::remove_trivial_results(graph);
-  if (rewriting::remove_trivial_continues(graph)) {
+  // In the reference every body ends in a continue at first.
+  const bool first_loops = first && rewriting::has_loops(graph);
+  if (rewriting::remove_trivial_continues(graph) || first_loops) {
     changed = true;
     rewriting::propagate_copies(graph);
     rewriting::remove_dead(graph);
@@ -62,6 +65,7 @@ void finish(Graph& graph) {
 
 void rewrite(ir::Function& function) {
   Graph graph(function);
+  rewriting::straighten_loops(graph);
   rewriting::open_loops(graph);
   rewriting::hide_dot_products(graph);
   optimize_once(graph, true);
@@ -72,6 +76,7 @@ void rewrite(ir::Function& function) {
   rewriting::choose_spelling(graph);
   rewriting::remove_dead(graph);
   rewriting::close_loops(graph);
+  rewriting::close_continues(graph);
   graph.write_back();
 }
 

@@ -177,57 +177,6 @@ bool drop_trivial_continues(Graph& graph, BlockId block) {
   return changed;
 }
 
-// ---- the continue construct
-
-/// With one way to it, the continue construct is the end of the body.
-bool merge_continuing(Graph& graph, InstId loop) {
-  const BlockId body = graph.insts[loop].child[0], continuing = graph.insts[loop].child[1];
-  const InstId end = graph.blocks[body].tail, last = graph.blocks[continuing].tail;
-  if (end == kNone || last == kNone || !is_jump(graph.insts[end], Op::kYield) ||
-      !is_jump(graph.insts[last], Op::kYield) || graph.blocks[continuing].head == last ||
-      contains_continue(graph, body))
-    return false;
-  const ir::Node& node = *graph.nodes[graph.insts[loop].node];
-  const std::vector<Src> passed = operands_of(graph, end);
-  const InstId first = graph.blocks[continuing].head;
-  while (graph.blocks[continuing].head != last) graph.move_before(end, graph.blocks[continuing].head);
-  for (std::size_t i = 0; i < node.continue_params.size(); ++i)
-    graph.replace_uses(node.continue_params[i], whole_value(graph, first, passed[i], node.continue_params[i]));
-  const std::vector<Src> next = operands_of(graph, last);
-  std::vector<Src> forwarded;
-  std::vector<ValueId> params;
-  for (const ValueId param : node.params) {
-    const Value like = graph.values[param];
-    params.push_back(static_cast<ValueId>(graph.values.size()));
-    graph.values.push_back({loop, kNone, kNone, 0, like.components, like.boolean});
-    forwarded.push_back({params.back(), {0, 1, 2, 3}});
-  }
-  graph.nodes[graph.insts[loop].node]->continue_params = params;
-  graph.set_operands(end, next);
-  graph.set_operands(last, forwarded);
-  return true;
-}
-
-/// Finds the parameters that Graph::detached is about: steps by a constant from outside, of a constant start.
-void detach_steps(Graph& graph, InstId loop) {
-  const BlockId body = graph.insts[loop].child[0];
-  if (contains_continue(graph, body)) return;
-  const std::vector<ValueId> params = graph.nodes[graph.insts[loop].node]->params;
-  for (InstId id = graph.blocks[body].head; id != kNone; id = graph.insts[id].next) {
-    const Inst& inst = graph.insts[id];
-    if (inst.kind == Kind::kIf || inst.kind == Kind::kLoop) return;
-    if (inst.kind != Kind::kAlu || (inst.op != Op::kIAdd && inst.op != Op::kFAdd)) continue;
-    for (std::size_t i = 0; i < params.size(); ++i) {
-      if (!graph.constant(graph.source(graph.insts[loop], static_cast<std::uint32_t>(i)).value)) continue;
-      for (const std::uint32_t side : {0u, 1u}) {
-        const ValueId other = graph.source(inst, 1 - side).value;
-        if (graph.source(inst, side).value == params[i] && graph.constant(other) && !is_inside(graph, other, loop))
-          graph.detached.push_back(params[i]);
-      }
-    }
-  }
-}
-
 bool improve(Graph& graph, BlockId block) {
   bool changed = false;
   for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
@@ -235,11 +184,30 @@ bool improve(Graph& graph, BlockId block) {
       const BlockId child = graph.insts[id].child[side];
       if (child != kNone) changed |= improve(graph, child);
     }
-    if (graph.insts[id].kind == Kind::kIf) changed |= hoist_staying_side(graph, id);
+    if (graph.insts[id].kind == Kind::kIf) {
+      changed |= hoist_staying_side(graph, id);
+      changed |= merge_branches(graph, id);
+    }
     if (graph.insts[id].kind != Kind::kLoop) continue;
-    detach_steps(graph, id);
+    changed |= simplify_selections(graph, id);
     changed |= enclose_after_continue(graph, id);
-    changed |= merge_continuing(graph, id);
+  }
+  return changed;
+}
+
+/// Afterwards: what moves code around the loops.
+bool move_code(Graph& graph, BlockId block) {
+  bool changed = false;
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
+    for (const unsigned side : {0u, 1u}) {
+      const BlockId child = graph.insts[id].child[side];
+      if (child != kNone) changed |= move_code(graph, child);
+    }
+    if (graph.insts[id].kind == Kind::kIf && merge_breaks(graph, id)) {
+      changed = true;
+      for (const unsigned side : {0u, 1u}) move_code(graph, graph.insts[id].child[side]);
+    }
+    if (graph.insts[id].kind == Kind::kLoop) changed |= peel_loop(graph, id);
   }
   return changed;
 }
@@ -250,6 +218,9 @@ bool take_constant_branches(Graph& graph) { return prune(graph, graph.root); }
 
 bool remove_trivial_continues(Graph& graph) { return drop_trivial_continues(graph, graph.root); }
 
-bool improve_branches(Graph& graph) { return improve(graph, graph.root); }
+bool improve_branches(Graph& graph) {
+  const bool changed = improve(graph, graph.root);
+  return move_code(graph, graph.root) || changed;
+}
 
 }  // namespace vitrine::spirv::rewriting

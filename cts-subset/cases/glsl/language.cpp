@@ -220,6 +220,13 @@ const bool kFragments = [] {
         "  float r = length(s.xz);\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 1}, "r"}}, {}, false});
   });
+  AddCase("glsl", "rewrite.loop_in_loop", [](Run& run) {
+    const char* text =
+        "  vec4 s3 = a, s4 = b;\n  int s1 = i.x, k2 = pi.x & 7;\n  while (k2-- > 0) {\n"
+        "    switch (~~s1 & 3) {\n      case 0:\n        s4 = s3.zwwx;\n    }\n    int k3 = 5;\n"
+        "    do s3 = (b.ywww + s3.wzzw) - 0.25; while (--k3 > 0);\n  }\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 4}, "s4"}}, {}, false});
+  });
   AddCase("glsl", "discard.then_derivative", [](Run& run) {
     fragment_expression(run, "vec4(dFdx(passed.x), dFdy(passed.y), passed.zw)", "  if (passed.x > 0.3) discard;\n");
   });

@@ -1,0 +1,313 @@
+// See loops.h.
+#include "spirv/rewrite/loops.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/tree.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+constexpr std::array<std::uint8_t, 4> kWhole{0, 1, 2, 3};
+
+void collect_jumps(const Graph& graph, BlockId block, Op op, std::vector<InstId>& found) {
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
+    const Inst& inst = graph.insts[id];
+    if (is_jump(inst, op)) found.push_back(id);
+    if (inst.kind != Kind::kIf) continue;
+    for (const BlockId child : inst.child) collect_jumps(graph, child, op, found);
+  }
+}
+
+/// Continues, and the end of the body if it is a way back.
+std::vector<InstId> ways_back(const Graph& graph, InstId loop) {
+  const BlockId body = graph.insts[loop].child[0];
+  std::vector<InstId> found;
+  collect_jumps(graph, body, Op::kContinue, found);
+  if (ends_in(graph, body, Op::kYield)) found.push_back(graph.blocks[body].tail);
+  return found;
+}
+
+ir::Node& node_of(Graph& graph, InstId id) { return *graph.nodes[graph.insts[id].node]; }
+
+ValueId new_value(Graph& graph, InstId def, ValueId like) {
+  const Value shape = graph.values[like];
+  graph.values.push_back({def, kNone, kNone, 0, shape.components, shape.boolean});
+  return static_cast<ValueId>(graph.values.size() - 1);
+}
+
+void straighten(Graph& graph, InstId loop) {
+  const InstId last = graph.blocks[graph.insts[loop].child[1]].tail;
+  if (last == kNone || graph.blocks[graph.insts[loop].child[1]].head != last || !is_jump(graph.insts[last], Op::kYield))
+    return;
+  const std::vector<Src> next = operands_of(graph, last);
+  const std::vector<ValueId> before = node_of(graph, loop).continue_params;
+  for (const InstId id : ways_back(graph, loop)) {
+    const std::vector<Src> passed = operands_of(graph, id);
+    std::vector<Src> values;
+    for (const Src& src : next) values.push_back(substituted(src, before, passed));
+    graph.set_operands(id, values);
+  }
+  std::vector<ValueId> after;
+  std::vector<Src> forwarded;
+  for (const ValueId param : std::vector<ValueId>(node_of(graph, loop).params)) {
+    after.push_back(new_value(graph, loop, param));
+    forwarded.push_back({after.back(), kWhole});
+  }
+  node_of(graph, loop).continue_params = after;
+  graph.set_operands(last, forwarded);
+}
+
+void append_operand(Graph& graph, InstId id, const Src& src) {
+  std::vector<Src> operands = operands_of(graph, id);
+  operands.push_back(src);
+  graph.set_operands(id, operands);
+}
+
+void erase_operand(Graph& graph, InstId id, std::size_t index) {
+  std::vector<Src> operands = operands_of(graph, id);
+  operands.erase(operands.begin() + static_cast<std::ptrdiff_t>(index));
+  graph.set_operands(id, operands);
+}
+
+template <class T>
+void erase_at(std::vector<T>& items, std::size_t index) {
+  items.erase(items.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+/// Marks what effects need through everything that joins values, then drops the joins that are not marked.
+class JoinSweeper {
+ public:
+  explicit JoinSweeper(Graph& graph) : graph_(graph), live_(graph.values.size(), false) {}
+
+  bool run() {
+    index(graph_.root, kNone);
+    while (!pending_.empty()) {
+      const ValueId value = pending_.back();
+      pending_.pop_back();
+      trace(value);
+    }
+    bool changed = false;
+    for (const auto& [loop, ways] : loops_) changed |= sweep_loop(loop, ways);
+    return changed;
+  }
+
+ private:
+  struct Ways {
+    std::vector<InstId> back, out;
+  };
+
+  void need(ValueId value) {
+    if (live_[value]) return;
+    live_[value] = true;
+    pending_.push_back(value);
+  }
+
+  void need_operand(InstId id, std::size_t index) {
+    if (index < graph_.insts[id].count) need(graph_.source(graph_.insts[id], static_cast<std::uint32_t>(index)).value);
+  }
+
+  void index(BlockId block, InstId loop) {
+    for (InstId id = graph_.blocks[block].head; id != kNone; id = graph_.insts[id].next) {
+      const Inst& inst = graph_.insts[id];
+      if (inst.kind == Kind::kLoop) {
+        loops_.try_emplace(id).first->second.back = ways_back(graph_, id);
+        for (const BlockId child : inst.child) index(child, id);
+      } else if (inst.kind == Kind::kIf) {
+        need(graph_.source(inst, 0).value);
+        for (const BlockId child : inst.child) index(child, loop);
+      } else if (is_jump(inst, Op::kBreak)) {
+        if (loop != kNone) loops_.try_emplace(loop).first->second.out.push_back(id);
+      } else if (inst.kind == Kind::kIntrinsic && !is_jump(inst, Op::kYield) && !leaves_loop(inst) &&
+                 !is_pure(graph_, inst)) {
+        for (std::uint32_t i = 0; i < inst.count; ++i) need_operand(id, i);
+      }
+    }
+  }
+
+  void trace(ValueId value) {
+    const InstId id = graph_.values[value].def;
+    if (id == kNone) return;
+    const Inst& inst = graph_.insts[id];
+    if (inst.kind == Kind::kLoop) {
+      trace_loop(id, value);
+    } else if (inst.kind == Kind::kIf) {
+      const auto& results = graph_.nodes[inst.node]->results;
+      for (std::size_t i = 0; i < results.size(); ++i)
+        if (results[i] == value)
+          for (const BlockId child : inst.child)
+            if (ends_in(graph_, child, Op::kYield)) need_operand(graph_.blocks[child].tail, i);
+    } else {
+      for (std::uint32_t i = 0; i < inst.count; ++i) need_operand(id, i);
+    }
+  }
+
+  void trace_loop(InstId loop, ValueId value) {
+    const ir::Node& node = *graph_.nodes[graph_.insts[loop].node];
+    const Ways& ways = loops_[loop];
+    for (std::size_t i = 0; i < node.params.size(); ++i) {
+      if (node.params[i] == value) {
+        need_operand(loop, i);
+        need_operand(graph_.blocks[graph_.insts[loop].child[1]].tail, i);
+      }
+      if (i < node.continue_params.size() && node.continue_params[i] == value)
+        for (const InstId way : ways.back) need_operand(way, i);
+    }
+    for (std::size_t i = 0; i < node.results.size(); ++i)
+      if (node.results[i] == value)
+        for (const InstId way : ways.out) need_operand(way, i);
+  }
+
+  bool sweep_loop(InstId loop, const Ways& ways) {
+    ir::Node& node = *graph_.nodes[graph_.insts[loop].node];
+    bool changed = false;
+    const InstId last = graph_.blocks[graph_.insts[loop].child[1]].tail;
+    for (std::size_t i = node.params.size(); i-- > 0;) {
+      if (live_[node.params[i]] || node.continue_params.size() != node.params.size()) continue;
+      erase_at(node.params, i);
+      erase_at(node.continue_params, i);
+      erase_operand(graph_, loop, i);
+      erase_operand(graph_, last, i);
+      for (const InstId way : ways.back) erase_operand(graph_, way, i);
+      changed = true;
+    }
+    for (std::size_t i = node.results.size(); i-- > 0;) {
+      if (live_[node.results[i]]) continue;
+      erase_at(node.results, i);
+      for (const InstId way : ways.out) erase_operand(graph_, way, i);
+      changed = true;
+    }
+    return changed;
+  }
+
+  Graph& graph_;
+  std::vector<bool> live_;
+  std::vector<ValueId> pending_;
+  std::map<InstId, Ways> loops_;
+};
+
+// ---- the continue construct
+
+/// Index of the parameter that is `first` before the first iteration and !first in all others, as `condition` reads.
+bool is_continue_flag(const Graph& graph, InstId loop, const Src& condition, bool& first) {
+  const int index = param_index(graph, loop, condition.value);
+  if (index < 0) return false;
+  const auto i = static_cast<std::uint32_t>(index);
+  const auto read = [&](const Src& src, bool& value) {
+    const Inst* constant = graph.constant(src.value);
+    if (constant) value = constant->imm[src.swizzle[0]] != 0;
+    return constant != nullptr;
+  };
+  if (!read(graph.source(graph.insts[loop], i), first)) return false;
+  for (const InstId way : ways_back(graph, loop)) {
+    bool again = first;
+    if (!read(graph.source(graph.insts[way], i), again) || again == first) return false;
+  }
+  return true;
+}
+
+void replace_uses_in(Graph& graph, BlockId block, const std::vector<ValueId>& from, const std::vector<Src>& to) {
+  auto visit = [&](InstId id) {
+    for (std::uint32_t i = 0; i < graph.insts[id].count; ++i) {
+      const Src src = graph.source(graph.insts[id], i);
+      const Src by = substituted(src, from, to);
+      if (by.value != src.value) graph.set_source(id, i, by);
+    }
+  };
+  for_each_inst(graph, block, visit);
+}
+
+void close_continue(Graph& graph, InstId loop) {
+  const InstId branch = graph.blocks[graph.insts[loop].child[0]].head;
+  if (branch == kNone || graph.insts[branch].kind != Kind::kIf) return;
+  bool first = false;
+  if (!is_continue_flag(graph, loop, graph.source(graph.insts[branch], 0), first)) return;
+  const BlockId again = graph.insts[branch].child[first ? 1 : 0], skipped = graph.insts[branch].child[first ? 0 : 1];
+  const InstId skipped_end = graph.blocks[skipped].tail, end = graph.blocks[again].tail;
+  const InstId last = graph.blocks[graph.insts[loop].child[1]].tail;
+  if (graph.blocks[skipped].head != skipped_end || !is_jump(graph.insts[skipped_end], Op::kYield) ||
+      !is_jump(graph.insts[end], Op::kYield))
+    return;
+  const std::vector<ValueId> params = node_of(graph, loop).params;
+  const std::vector<ValueId> results = node_of(graph, branch).results;
+  const std::vector<Src> init = operands_of(graph, loop), at_first = operands_of(graph, skipped_end);
+  std::vector<Src> passed;
+  for (const ValueId param : node_of(graph, loop).continue_params) passed.push_back({param, kWhole});
+  replace_uses_in(graph, again, params, passed);
+  std::vector<Src> next = passed, entry = init;
+  for (const Src& src : operands_of(graph, end)) next.push_back(src);
+  for (const Src& src : at_first) entry.push_back(substituted(src, params, init));
+  graph.remove(end);
+  graph.splice_before(last, again);
+  graph.set_operands(last, next);
+  graph.set_operands(loop, entry);
+  for (const ValueId result : results) {
+    node_of(graph, loop).params.push_back(result);
+    graph.values[result].def = loop;
+  }
+  node_of(graph, branch).results.clear();
+  graph.remove(branch);
+}
+
+}  // namespace
+
+bool has_loops(const Graph& graph) {
+  return std::any_of(graph.insts.begin(), graph.insts.end(),
+                     [](const Inst& inst) { return inst.kind == Kind::kLoop && !inst.removed; });
+}
+
+void straighten_loops(Graph& graph) {
+  auto visit = [&](InstId id) {
+    if (graph.insts[id].kind == Kind::kLoop) straighten(graph, id);
+  };
+  for_each_inst(graph, graph.root, visit);
+}
+
+InstId latch_of(const Graph& graph, InstId loop) {
+  const BlockId body = graph.insts[loop].child[0];
+  if (!ends_in(graph, body, Op::kYield) || contains_continue(graph, body)) return kNone;
+  return graph.blocks[body].tail;
+}
+
+std::vector<InstId> header_of(const Graph& graph, InstId loop) {
+  std::vector<InstId> header;
+  for (InstId id = graph.blocks[graph.insts[loop].child[0]].head; id != kNone; id = graph.insts[id].next) {
+    const Kind kind = graph.insts[id].kind;
+    if (kind == Kind::kIf || kind == Kind::kLoop) break;
+    header.push_back(id);
+  }
+  return header;
+}
+
+int param_index(const Graph& graph, InstId loop, ValueId value) {
+  const auto& params = graph.nodes[graph.insts[loop].node]->params;
+  for (std::size_t i = 0; i < params.size(); ++i)
+    if (params[i] == value) return static_cast<int>(i);
+  return -1;
+}
+
+ValueId add_param(Graph& graph, InstId loop, ValueId like, const Src& init, const Src& next) {
+  const ValueId param = new_value(graph, loop, like), passed = new_value(graph, loop, like);
+  node_of(graph, loop).params.push_back(param);
+  node_of(graph, loop).continue_params.push_back(passed);
+  append_operand(graph, loop, init);
+  append_operand(graph, latch_of(graph, loop), next);
+  append_operand(graph, graph.blocks[graph.insts[loop].child[1]].tail, {passed, kWhole});
+  return param;
+}
+
+bool drop_dead_joins(Graph& graph) { return JoinSweeper(graph).run(); }
+
+void close_continues(Graph& graph) {
+  auto visit = [&](InstId id) {
+    if (graph.insts[id].kind == Kind::kLoop) close_continue(graph, id);
+  };
+  for_each_inst(graph, graph.root, visit);
+}
+
+}  // namespace vitrine::spirv::rewriting

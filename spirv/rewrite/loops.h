@@ -1,0 +1,34 @@
+// Loops in the form that the rewrites keep: every value that changes is a parameter; what goes round is passed at the
+// end of the body and by Continue, parameter by parameter; the continue construct only hands it on.
+#pragma once
+
+#include <vector>
+
+#include "spirv/rewrite/graph.h"
+
+namespace vitrine::spirv::rewriting {
+
+bool has_loops(const Graph& graph);
+
+/// Gives every loop that form.
+void straighten_loops(Graph& graph);
+
+/// The way back of a loop that has one only, the end of its body; kNone: none or several.
+InstId latch_of(const Graph& graph, InstId loop);
+
+/// What the reference calls the header block: the body's instructions before its first If or Loop.
+std::vector<InstId> header_of(const Graph& graph, InstId loop);
+
+/// Index of the parameter, or -1.
+int param_index(const Graph& graph, InstId loop, ValueId value);
+
+/// A new parameter of a loop with one way back.
+ValueId add_param(Graph& graph, InstId loop, ValueId like, const Src& init, const Src& next);
+
+/// Drops parameters of loops and results that only serve themselves.
+bool drop_dead_joins(Graph& graph);
+
+/// What runs from the second iteration on, and has stayed at the top of the body, becomes the continue construct.
+void close_continues(Graph& graph);
+
+}  // namespace vitrine::spirv::rewriting
