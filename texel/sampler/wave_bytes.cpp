@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "texel/codec/byte_blend-inl.h"
+#include "texel/sampler/wave_bilinear-inl.h"
 #include "texel/sampler/wave_block-inl.h"
 #include "texel/sampler/wave_state-inl.h"
 
@@ -304,6 +305,9 @@ void sample_bytes(const PreparedSampler& p, const SampleRequest& request, const 
   const ByteFormat format = byte_format(*plan.view->format);
   WaveState state;
   find_state(p, request, state);
+  if (bilinear_suits(plan) && !request.offset[0] && !request.offset[1] && !request.offset[2]) {
+    return sample_bilinear(p, request, state, result);
+  }
   PackedLanes packed;
   const bool two_filters = plan.min_linear != plan.mag_linear;
   const base::LaneMask minified = two_filters ? state.minify & request.active : 0;

@@ -15,6 +15,7 @@
 #include "texel/sampler/wave_cube-inl.h"
 #include "texel/sampler/wave_four-inl.h"
 #include "texel/sampler/wave_texels-inl.h"
+#include "texel/sampler/wave_words-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
@@ -169,27 +170,6 @@ HWY_NOINLINE void find_cube_taps(Call& call, int which, FloatTaps& taps) {
 
 // ---- texels
 
-HWY_INLINE hn::Mask<DF> compare_lanes(VkCompareOp op, VF reference, VF texel) {
-  switch (op) {
-    case VK_COMPARE_OP_LESS:
-      return hn::Lt(reference, texel);
-    case VK_COMPARE_OP_EQUAL:
-      return hn::Eq(reference, texel);
-    case VK_COMPARE_OP_LESS_OR_EQUAL:
-      return hn::Le(reference, texel);
-    case VK_COMPARE_OP_GREATER:
-      return hn::Gt(reference, texel);
-    case VK_COMPARE_OP_NOT_EQUAL:
-      return hn::Not(hn::Eq(reference, texel));
-    case VK_COMPARE_OP_GREATER_OR_EQUAL:
-      return hn::Ge(reference, texel);
-    case VK_COMPARE_OP_ALWAYS:
-      return hn::RebindMask(DF(), hn::Eq(hn::Zero(DU()), hn::Zero(DU())));
-    default:
-      return hn::RebindMask(DF(), hn::Ne(hn::Zero(DU()), hn::Zero(DU())));
-  }
-}
-
 HWY_NOINLINE void put_border(const Plan& plan, base::LaneMask outside, Components wanted, WaveTexels& texels) {
   for (std::size_t c = 0; c < 4; ++c) {
     if ((wanted >> c & 1) == 0) continue;
@@ -308,27 +288,40 @@ HWY_NOINLINE void filter_cube(Call& call, const FloatTaps& taps, WaveTexels& out
   });
 }
 
-/// Whether the plainest filter will do: averages of four texels inside the level.
-bool filters_four(const Call& call, const FloatTaps& taps) {
-  if (call.compare || taps.count != 4 || call.reduction() != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE) return false;
-  for (std::uint32_t k = 0; k < 4; ++k) {
+/// Averages of texels inside the level by the filters of certain formats; false if there is none for this call.
+HWY_NOINLINE bool filter_directly(Call& call, const FloatTaps& taps, WaveTexels& out) {
+  if (call.reduction() != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE || taps.count < 4) return false;
+  for (std::uint32_t k = 0; k < taps.count; ++k) {
     if (taps.outside[k] != 0) return false;
   }
-  return has_four_floats(*call.view().format);
+  const FormatDesc& format = *call.view().format;
+  if (averages_words(format)) {
+    const WordTaps words{call.view(), taps.place, taps.weight, taps.neighbours};
+    const VkCompareOp op = call.plan().sampler->compare_op;
+    if (call.compare) {
+      taps.count == 4 ? average_comparisons<4>(words, op, call.reference, out)
+                      : average_comparisons<8>(words, op, call.reference, out);
+    } else {
+      taps.count == 4 ? average_words<4>(words, call.wanted, out) : average_words<8>(words, call.wanted, out);
+    }
+    return true;
+  }
+  if (taps.count != 4 || call.compare || !has_four_floats(format)) return false;
+  const auto filter = format.block_bytes == 8 ? filter_four<8> : filter_four<16>;
+  filter(call.view().base, taps.place, taps.neighbours, taps.weight[0], taps.weight[1], out);
+  return true;
 }
 
 HWY_NOINLINE void filter_level(Call& call, int which, bool linear, WaveTexels& out) {
   FloatTaps taps;
   if (call.plan().seamless && linear) {
     find_cube_taps(call, which, taps);
+    if ((taps.corners & call.request.active) == 0 && filter_directly(call, taps, out)) return;
     return filter_cube(call, taps, out);
   }
   find_taps(call, which, linear, taps);
   if (!linear) return fetch_tap(call, taps, 0, out);
-  if (filters_four(call, taps)) {
-    const auto filter = call.view().format->block_bytes == 8 ? filter_four<8> : filter_four<16>;
-    return filter(call.view().base, taps.place, taps.neighbours, taps.weight[0], taps.weight[1], out);
-  }
+  if (filter_directly(call, taps, out)) return;
   filter_slice(call, taps, 0, out);
   if (taps.count < 8) return;
   WaveTexels farther;
