@@ -217,6 +217,44 @@ const AddCase kStippleCounter("rasterization", "deviation.stipple_counter", "sti
                                 }
                               });
 
+/// Two draws of two instances each, all over each other; each instance has its own colour and moves a little.
+const AddCase kMultiDraw("draw", "deviation.multi_draw_order", "multi-draw-order", case_against_control, [](Run& run) {
+  run.require(run.gpu.extension_features.multi_draw.multiDraw, "multiDraw");
+  GraphicsSpec spec;
+  spec.vertex = R"(
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 passed;
+void main() {
+  passed = color * (gl_InstanceIndex == 0 ? vec4(1.0) : vec4(0.5, 1.0, 0.25, 1.0));
+  gl_Position = position + vec4(0.5, 0.25, 0.0, 0.0) * float(gl_InstanceIndex);
+})";
+  spec.fragment = kColorFragment;
+  spec.floats({4, 4});
+  const Buffer vertices = run.buffer_of(colored({{-0.5f, -0.5f, 0, 1},
+                                                 {0.5f, -0.5f, 0, 1},
+                                                 {-0.5f, 0.5f, 0, 1},
+                                                 {0.5f, -0.25f, 0, 1},
+                                                 {0.5f, 0.75f, 0, 1},
+                                                 {-0.5f, 0.75f, 0, 1}}));
+  const VkMultiDrawInfoEXT draws[2] = {{0, 3}, {3, 3}};
+  for (const bool together : {true, false}) {
+    const Target target = make_target(run, {});
+    const VkPipeline pipeline = make_pipeline(run, spec, target);
+    run.once([&](VkCommandBuffer cmd) {
+      target.begin(cmd);
+      bind_pipeline(cmd, pipeline);
+      bind_vertices(cmd, vertices);
+      if (together)
+        CTS_COMMAND(run.gpu, CmdDrawMultiEXT)(cmd, 2, draws, 2, 0, sizeof draws[0]);
+      else
+        for (const VkMultiDrawInfoEXT& one : draws) vkCmdDraw(cmd, one.vertexCount, 2, one.firstVertex, 0);
+      vkCmdEndRenderPass(cmd);
+    });
+    run.out(together ? "together" : "apart", target.colors[0]);
+  }
+});
+
 /// The rectangle of the line reaches from y = 63.4 to 64.4.
 const AddCase kLineTiles(
     "rasterization", "deviation.multisample_line_tiles", "multisample-line-tiles",

@@ -23,9 +23,16 @@ struct Scene : InstancedScene {
       : InstancedScene(run, kVertex, kFragment, topology, 256) {}
 };
 
+/// Colours add up, so that the order does not show (deviations.md, multi-draw-order).
+void add_colors(Scene& scene) {
+  scene.spec.blends = {{VK_TRUE, VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE, VK_BLEND_OP_ADD, VK_BLEND_FACTOR_ONE,
+                        VK_BLEND_FACTOR_ONE, VK_BLEND_OP_ADD, 0xf}};
+}
+
 CTS_CASE("draw", "multi_draw.plain") {
   run.require(run.gpu.extension_features.multi_draw.multiDraw, "multiDraw");
   Scene scene(run);
+  add_colors(scene);
   const VkMultiDrawInfoEXT draws[4] = {{0, 6}, {30, 9}, {12, 0}, {60, 3}};
   scene.record(run, [&](VkCommandBuffer cmd) {
     CTS_COMMAND(run.gpu, CmdDrawMultiEXT)(cmd, 4, draws, 2, 1, sizeof draws[0]);
@@ -35,6 +42,7 @@ CTS_CASE("draw", "multi_draw.plain") {
 void multi_draw_indexed(Run& run, bool one_offset) {
   run.require(run.gpu.extension_features.multi_draw.multiDraw, "multiDraw");
   Scene scene(run);
+  add_colors(scene);
   const Buffer indices = random_indices<uint16_t>(run, 64, 50);
   const VkMultiDrawIndexedInfoEXT draws[3] = {{0, 12, 5}, {20, 9, 0}, {40, 6, 100}};
   const int32_t offset = 7;

@@ -178,9 +178,10 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool s
     scene.spec.assembly.topology = random.pick({VK_PRIMITIVE_TOPOLOGY_LINE_LIST, VK_PRIMITIVE_TOPOLOGY_LINE_STRIP});
   }
   scene.count = 2 + random.below(30);
-  // deviations.md, stipple-counter
-  const bool stippled_strip = stippled && scene.spec.assembly.topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
-  const bool inside = random.chance(0.6f) || stippled_strip;
+  // deviations.md, stipple-counter and multisample-short-lines: whole lines, none clipped away or cut short.
+  const bool whole = samples != VK_SAMPLE_COUNT_1_BIT ||
+                     (stippled && scene.spec.assembly.topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP);
+  const bool inside = random.chance(0.6f) || whole;
   scene.vertices = random_vertices(random, scene.count, inside ? 0.85f : 1.3f, 0, 1);
   // Ends on the centres and edges of pixels decide the diamond rule.
   if (random.chance(0.4f))
@@ -192,8 +193,17 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool s
       v[1] = static_cast<float>(random.between(0, static_cast<int32_t>(2 * scene.target.height))) /
                  static_cast<float>(scene.target.height) -
              1.0f;
+      if (whole)
+        for (const int c : {0, 1}) v[c] = std::min(std::max(v[c], -0.85f), 0.85f);
+      if (whole) v[2] /= v[3];
       v[3] = 1.0f;
     }
+  run.note("state", "mode " + std::to_string(line.lineRasterizationMode) + ", topology " +
+                        std::to_string(scene.spec.assembly.topology) + ", polygon mode " +
+                        std::to_string(scene.spec.raster.polygonMode) + ", width " +
+                        std::to_string(scene.spec.raster.lineWidth) + ", factor " +
+                        std::to_string(line.lineStippleFactor) + ", pattern " +
+                        std::to_string(line.lineStipplePattern) + ", vertices " + std::to_string(scene.count) + "\n");
   draw(run, scene);
 }
 
