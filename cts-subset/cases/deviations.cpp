@@ -217,6 +217,96 @@ const AddCase kStippleCounter("rasterization", "deviation.stipple_counter", "sti
                                 }
                               });
 
+VkPipelineRasterizationLineStateCreateInfoEXT line_state(Run& run, VkLineRasterizationModeEXT mode, bool stippled) {
+  const auto& features = run.gpu.extension_features.line_rasterization;
+  run.require(features.rectangularLines && features.smoothLines && features.stippledRectangularLines,
+              "smooth and stippled lines");
+  VkPipelineRasterizationLineStateCreateInfoEXT line{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+  line.lineRasterizationMode = mode;
+  line.stippledLineEnable = stippled;
+  line.lineStippleFactor = 1;
+  line.lineStipplePattern = 0x00ff;
+  return line;
+}
+
+/// The number is a flat integer, then a flat float.
+const AddCase kStippleIntegers(
+    "rasterization", "deviation.stipple_flat_integers", "stipple-flat-integers", case_against_control, [](Run& run) {
+      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT, true);
+      for (const char* type : {"int", "float"}) {
+        GraphicsSpec spec;
+        spec.vertex = std::string("layout(location = 0) in vec4 position;\nlayout(location = 1) in vec4 color;\n") +
+                      "layout(location = 0) flat out " + type + " number;\nvoid main() {\n  number = " + type +
+                      "(color.x * 8.0);\n  gl_Position = position;\n}\n";
+        spec.fragment = std::string("layout(location = 0) flat in ") + type +
+                        " number;\nlayout(location = 0) out vec4 result;\n" +
+                        "void main() { result = vec4(float(number) * 0.125); }\n";
+        spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+        spec.raster.pNext = &line;
+        draw(run, type, {}, spec, colored({{-0.9f, -0.5f, 0, 1}, {0.9f, 0.5f, 0, 1}}));
+      }
+    });
+
+/// The lines of a strip are 12 pixels long. The strip with adjacency has one more vertex at each end.
+const AddCase kStipplePerLine("rasterization", "deviation.stipple_per_line", "stipple-per-line", case_against_control,
+                              [](Run& run) {
+                                const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT, true);
+                                std::vector<float> values;
+                                for (int i = 0; i < 6; ++i) {
+                                  const float x = -0.75f + 0.375f * static_cast<float>(i - 1);
+                                  for (const float v : {x, 0.25f, 0.5f, 1.0f, 0.5f, 0.25f, 0.75f, 1.0f})
+                                    values.push_back(v);
+                                }
+                                for (const bool adjacent : {true, false}) {
+                                  GraphicsSpec spec;
+                                  spec.assembly.topology = adjacent ? VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY
+                                                                    : VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
+                                  spec.raster.pNext = &line;
+                                  const auto end = values.end();
+                                  draw(run, adjacent ? "adjacent" : "plain", {}, spec,
+                                       adjacent ? values : std::vector<float>(values.begin() + 8, end - 8));
+                                }
+                              });
+
+/// (1, 2, 3, 4) is written; the reference loses the 4.
+const AddCase kSmoothIntegers(
+    "rasterization", "deviation.smooth_line_integers", "smooth-line-integers",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) -> std::string {
+      bool drawn = false;
+      for (size_t at = 0; at < device[0].bytes.size(); at += 16) {
+        const unsigned char *ours = &device[0].bytes[at], *theirs = &reference[0].bytes[at];
+        if (std::memcmp(ours, theirs, 12) != 0) return "red, green or blue differ";
+        if (ours[12] != (ours[0] != 0 ? 4 : 0)) return "the device's alpha is not the shader's";
+        if (theirs[12] != 0) return "the reference's fault does not show";
+        drawn |= ours[0] != 0;
+      }
+      return drawn ? "" : "nothing is drawn";
+    },
+    [](Run& run) {
+      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
+      TargetSpec target_spec;
+      target_spec.colors = {VK_FORMAT_R32G32B32A32_SINT};
+      Target target = make_target(run, target_spec);
+      target.clears[0] = {};
+      GraphicsSpec spec;
+      spec.vertex = kColorVertex;
+      spec.fragment = "layout(location = 0) out ivec4 result;\nvoid main() { result = ivec4(1, 2, 3, 4); }\n";
+      spec.floats({4, 4});
+      spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+      spec.raster.pNext = &line;
+      const VkPipeline pipeline = make_pipeline(run, spec, target);
+      const Buffer vertices = run.buffer_of(colored({{-0.9f, -0.5f, 0, 1}, {0.9f, 0.5f, 0, 1}}));
+      run.once([&](VkCommandBuffer cmd) {
+        target.begin(cmd);
+        bind_pipeline(cmd, pipeline);
+        bind_vertices(cmd, vertices);
+        vkCmdDraw(cmd, 2, 1, 0, 0);
+        vkCmdEndRenderPass(cmd);
+      });
+      run.out("color", target.colors[0]);
+    });
+
 /// Two draws of two instances each, all over each other; each instance has its own colour and moves a little.
 const AddCase kMultiDraw("draw", "deviation.multi_draw_order", "multi-draw-order", case_against_control, [](Run& run) {
   run.require(run.gpu.extension_features.multi_draw.multiDraw, "multiDraw");

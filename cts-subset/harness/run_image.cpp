@@ -182,42 +182,57 @@ void Run::out(const std::string& name, const Image& image) {
   }
 }
 
-void Run::out_samples(const std::string& name, const Image& image) {
-  const FormatInfo& format = format_info(image.spec.format);
-  const bool depth = image.aspects() != VK_IMAGE_ASPECT_COLOR_BIT;
-  const std::string prefix = format.numeric == Numeric::kUint ? "u" : format.numeric == Numeric::kSint ? "i" : "";
+namespace {
+
+void out_samples_of(Run& run, const std::string& name, const Image& image, VkImageAspectFlagBits aspect) {
+  const bool stencil = aspect == VK_IMAGE_ASPECT_STENCIL_BIT;
+  const Numeric numeric = format_info(image.spec.format).numeric;
+  const std::string prefix = numeric == Numeric::kUint || stencil ? "u" : numeric == Numeric::kSint ? "i" : "";
   const auto samples = static_cast<uint32_t>(image.spec.samples);
   const uint32_t width = image.spec.extent.width, height = image.spec.extent.height;
-  const Buffer texels = buffer(VkDeviceSize{16} * width * height * samples);
+  const uint32_t planes = samples * image.spec.layers;
+  const Buffer texels = run.buffer(VkDeviceSize{16} * width * height * planes);
   Image readable = image;
-  if (depth)
-    readable.view = image_view(image, image.spec.view, image.spec.format, {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1});
-  const Resources res = resources({sampled(0, readable, sampler(VK_FILTER_NEAREST)), storage_buffer(1, texels)});
+  const VkImageSubresourceRange range{static_cast<VkImageAspectFlags>(aspect), 0, 1, 0, image.spec.layers};
+  readable.view = run.image_view(image, VK_IMAGE_VIEW_TYPE_2D_ARRAY, image.spec.format, range);
+  const Resources res =
+      run.resources({sampled(0, readable, run.sampler(VK_FILTER_NEAREST)), storage_buffer(1, texels)});
   const std::string code =
       "layout(local_size_x = 8, local_size_y = 8) in;\n"
       "layout(binding = 0) uniform " +
       prefix +
-      "sampler2DMS source;\n"
+      "sampler2DMSArray source;\n"
       "layout(binding = 1) buffer Texels { " +
-      (prefix.empty() ? "" : prefix) +
+      prefix +
       "vec4 texels[]; };\n"
       "void main() {\n"
-      "  ivec2 size = textureSize(source), p = ivec2(gl_GlobalInvocationID.xy);\n"
+      "  ivec2 size = textureSize(source).xy, p = ivec2(gl_GlobalInvocationID.xy);\n"
       "  if (p.x >= size.x || p.y >= size.y) return;\n"
-      "  int s = int(gl_GlobalInvocationID.z);\n"
-      "  texels[(s * size.y + p.y) * size.x + p.x] = texelFetch(source, p, s);\n"
+      "  int plane = int(gl_GlobalInvocationID.z), samples = " +
+      std::to_string(samples) +
+      ";\n"
+      "  texels[(plane * size.y + p.y) * size.x + p.x] =\n"
+      "      texelFetch(source, ivec3(p, plane / samples), plane % samples);\n"
       "}\n";
-  const VkPipeline pipeline = compute(res.layout, shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
-  once([&](VkCommandBuffer cmd) {
+  const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
+  run.once([&](VkCommandBuffer cmd) {
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, (width + 7) / 8, (height + 7) / 8, samples);
+    vkCmdDispatch(cmd, (width + 7) / 8, (height + 7) / 8, planes);
   });
   const VkFormat shown = prefix == "u"   ? VK_FORMAT_R32G32B32A32_UINT
                          : prefix == "i" ? VK_FORMAT_R32G32B32A32_SINT
                                          : VK_FORMAT_R32G32B32A32_SFLOAT;
-  out(Output{name, format_info(shown), width, height, samples,
-             std::vector<unsigned char>(texels.data, texels.data + texels.size)});
+  run.out(Output{stencil ? name + ".stencil" : name, format_info(shown), width, height, planes,
+                 std::vector<unsigned char>(texels.data, texels.data + texels.size)});
+}
+
+}  // namespace
+
+void Run::out_samples(const std::string& name, const Image& image) {
+  for (const VkImageAspectFlagBits aspect :
+       {VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_ASPECT_STENCIL_BIT})
+    if (image.aspects() & aspect) out_samples_of(*this, name, image, aspect);
 }
 
 std::vector<unsigned char> random_texels(Random& random, VkFormat format, size_t bytes) {

@@ -1,0 +1,415 @@
+// Random fixed-function state: topologies and stages, polygon and line modes, depth, stencil, blending, samples, all
+// crossed with each other. Excluded is only what deviations.md lists.
+#include <algorithm>
+#include <cmath>
+
+#include "cases/state/stages.h"
+#include "harness/case.h"
+#include "harness/execute.h"
+
+namespace vitrine::cts {
+namespace {
+
+using namespace std::string_literals;
+
+/// What one draw may do, and structures that its pipeline points to.
+struct Scene {
+  TargetSpec target;
+  bool multisampled = false, has_depth = false, has_stencil = false;
+};
+
+struct DrawState {
+  Stages stages;
+  GraphicsSpec spec;
+  FragmentNeeds fragment;
+  Drawn drawn = Drawn::kTriangles;  ///< after the polygon mode
+  bool polygon = false;             ///< a polygon mode other than FILL has an effect
+  bool clipped = false;             ///< vertices outside of the view volume
+  uint32_t vertices = 0, instances = 1;
+  VkPipelineRasterizationProvokingVertexStateCreateInfoEXT provoking{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT};
+  VkPipelineRasterizationLineStateCreateInfoEXT line{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+  VkPipelineRasterizationDepthClipStateCreateInfoEXT clip{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_DEPTH_CLIP_STATE_CREATE_INFO_EXT};
+  VkPipelineViewportDepthClipControlCreateInfoEXT control{
+      VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_DEPTH_CLIP_CONTROL_CREATE_INFO_EXT};
+  VkSampleMask sample_mask = ~0u;
+};
+
+bool blendable(VkFormat format) {
+  return (gpus().reference.features_of(format) & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT) != 0;
+}
+
+Scene random_scene(Run& run) {
+  Random& random = run.random;
+  Scene scene;
+  TargetSpec& target = scene.target;
+  scene.multisampled = random.chance(0.35f);
+  // deviations.md, multisample-line-tiles
+  const uint32_t most = scene.multisampled ? 48 : 100;
+  target.width = 16 + random.below(most);
+  target.height = 16 + random.below(most);
+  target.colors.clear();
+  for (uint32_t n = random.chance(0.7f) ? 1 : random.below(5); n > 0; --n) {
+    VkFormat format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT});
+    const VkFormat other = random.pick(color_formats()).format;
+    const bool usable = (gpus().reference.features_of(other) & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT) != 0 &&
+                        (gpus().device.features_of(other) & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT) != 0;
+    const bool comparable = format_info(other).numeric != Numeric::kSrgb || reference_cpu().srgb_comparable;
+    if (random.chance(0.5f) && usable && comparable) format = other;
+    target.colors.push_back(format);
+  }
+  if (random.chance(0.7f) || target.colors.empty())
+    target.depth = random.pick({VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT, VK_FORMAT_X8_D24_UNORM_PACK32,
+                                VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT, VK_FORMAT_S8_UINT});
+  if (target.depth && !(gpus().reference.features_of(target.depth) & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT))
+    target.depth = VK_FORMAT_D32_SFLOAT_S8_UINT;
+  // deviations.md, bgra8-route
+  if (target.colors == std::vector{VK_FORMAT_B8G8R8A8_UNORM} && !target.depth) target.depth = VK_FORMAT_D16_UNORM;
+  if (scene.multisampled) {
+    target.samples = VK_SAMPLE_COUNT_4_BIT;
+    target.resolve = random.chance(0.4f) && !target.colors.empty();
+  }
+  if (random.chance(0.15f)) target.layers = 2 + random.below(2);
+  const VkImageAspectFlags aspects = target.depth ? aspects_of(target.depth) : 0;
+  scene.has_depth = (aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0;
+  scene.has_stencil = (aspects & VK_IMAGE_ASPECT_STENCIL_BIT) != 0;
+  return scene;
+}
+
+void random_lines(Run& run, const Scene& scene, DrawState& draw) {
+  Random& random = run.random;
+  draw.line.lineRasterizationMode =
+      random.pick({VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT,
+                   VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT});
+  draw.line.lineStippleFactor = 1 + random.below(5);
+  draw.line.lineStipplePattern = static_cast<uint16_t>(random.bits());
+  // deviations.md: multisample-short-lines, stipple-per-line
+  const bool whole_strips =
+      draw.stages.topology != VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY || !draw.stages.geometry.empty();
+  draw.line.stippledLineEnable = !scene.multisampled && whole_strips && random.chance(0.3f) &&
+                                 draw.line.lineRasterizationMode != VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;
+  // deviations.md, smooth-line-integers
+  const bool integers = std::any_of(scene.target.colors.begin(), scene.target.colors.end(),
+                                    [](VkFormat format) { return is_integer(format_info(format)); });
+  if (integers && draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT)
+    draw.line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
+  draw.line.pNext = draw.spec.raster.pNext;
+  draw.spec.raster.pNext = &draw.line;
+  if (random.chance(0.5f)) draw.spec.raster.lineWidth = random.real(1.0f, 5.0f);
+}
+
+void random_rasterization(Run& run, const Scene& scene, DrawState& draw) {
+  Random& random = run.random;
+  VkPipelineRasterizationStateCreateInfo& raster = draw.spec.raster;
+  raster.cullMode = random.chance(0.6f) ? 0 : 1 + random.below(3);
+  raster.frontFace = static_cast<VkFrontFace>(random.below(2));
+  draw.drawn = draw.stages.drawn;
+  if (draw.drawn == Drawn::kTriangles && random.chance(0.35f)) {
+    draw.polygon = true;
+    const bool lines = random.chance(0.6f);
+    raster.polygonMode = lines ? VK_POLYGON_MODE_LINE : VK_POLYGON_MODE_POINT;
+    draw.drawn = lines ? Drawn::kLines : Drawn::kPoints;
+  }
+  draw.provoking.provokingVertexMode = static_cast<VkProvokingVertexModeEXT>(random.below(2));
+  if (run.gpu.extension_features.provoking_vertex.provokingVertexLast) raster.pNext = &draw.provoking;
+  if (draw.drawn == Drawn::kLines) random_lines(run, scene, draw);
+  const bool stippled = draw.drawn == Drawn::kLines && draw.line.stippledLineEnable;
+  // deviations.md: point-clipping, stipple-counter, multisample-short-lines
+  draw.clipped = random.chance(0.4f) && draw.stages.drawn != Drawn::kPoints && !stippled &&
+                 !(scene.multisampled && draw.drawn == Drawn::kLines);
+  if (random.chance(0.3f)) {
+    raster.depthBiasEnable = VK_TRUE;
+    raster.depthBiasConstantFactor = random.real(-200.0f, 200.0f);
+    raster.depthBiasSlopeFactor = random.chance(0.7f) ? random.real(-3.0f, 3.0f) : 0.0f;
+    if (random.chance(0.4f)) raster.depthBiasClamp = random.real(-0.1f, 0.1f);
+  }
+  raster.depthClampEnable = random.chance(0.25f);
+  draw.clip.depthClipEnable = random.chance(0.5f);
+  if (random.chance(0.2f)) {
+    draw.clip.pNext = raster.pNext;
+    raster.pNext = &draw.clip;
+  }
+  draw.control.negativeOneToOne = VK_TRUE;
+  if (random.chance(0.15f)) draw.spec.viewport_next = &draw.control;
+  raster.rasterizerDiscardEnable = random.chance(0.01f);
+}
+
+/// Only filled triangles keep away from the pixels at the rectangle's edge (deviations.md, viewport-scissor and
+/// multisample-scissor).
+void random_viewports(Random& random, const Scene& scene, DrawState& draw) {
+  const auto width = static_cast<float>(scene.target.width), height = static_cast<float>(scene.target.height);
+  const auto depth = [&](VkViewport& viewport) {
+    if (random.chance(0.4f)) viewport.minDepth = random.unit();
+    if (random.chance(0.4f)) viewport.maxDepth = random.unit();
+  };
+  const bool inner = draw.drawn == Drawn::kTriangles;
+  for (uint32_t i = 0; i < draw.stages.viewports; ++i) {
+    VkViewport viewport{0, 0, width, height, 0, 1};
+    if (inner && random.chance(0.5f)) {
+      const float step = scene.multisampled ? 1.0f : 0.125f;
+      const auto length = [&](float limit) { return std::floor(random.unit() * limit / step) * step; };
+      viewport.x = length(width * 0.4f);
+      viewport.y = length(height * 0.4f);
+      viewport.width = width - viewport.x - length(width * 0.3f);
+      viewport.height = height - viewport.y - length(height * 0.3f);
+    }
+    if (random.chance(0.3f)) {
+      viewport.y += viewport.height;
+      viewport.height = -viewport.height;
+    }
+    depth(viewport);
+    draw.spec.viewports.push_back(viewport);
+    VkRect2D scissor{{0, 0}, {scene.target.width, scene.target.height}};
+    if (!scene.multisampled && random.chance(0.3f))
+      scissor = {{static_cast<int32_t>(random.below(scene.target.width / 2)),
+                  static_cast<int32_t>(random.below(scene.target.height / 2))},
+                 {random.below(scene.target.width), random.below(scene.target.height)}};
+    draw.spec.scissors.push_back(scissor);
+  }
+}
+
+VkStencilOpState random_stencil(Random& random) {
+  const auto op = [&] { return static_cast<VkStencilOp>(random.below(8)); };
+  return {op(),
+          op(),
+          op(),
+          static_cast<VkCompareOp>(random.below(8)),
+          random.pick({0xffu, 0x0fu, 0xa5u}),
+          random.pick({0xffu, 0x3cu, 0u}),
+          random.below(256)};
+}
+
+void random_tests(Random& random, const Scene& scene, DrawState& draw) {
+  VkPipelineDepthStencilStateCreateInfo& depth = draw.spec.depth;
+  // deviations.md, line-depth-first-sample
+  const bool one_sample = scene.multisampled && draw.drawn == Drawn::kLines &&
+                          (draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ||
+                           draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT);
+  depth.depthTestEnable = scene.has_depth && !one_sample && random.chance(0.8f);
+  depth.depthWriteEnable = random.chance(0.8f);
+  depth.depthCompareOp = random.chance(0.5f) ? VK_COMPARE_OP_LESS : static_cast<VkCompareOp>(random.below(8));
+  depth.stencilTestEnable = scene.has_stencil && !one_sample && random.chance(0.6f);
+  depth.front = random_stencil(random);
+  depth.back = random_stencil(random);
+  // deviations.md, polygon-mode-facing
+  if (draw.polygon && depth.stencilTestEnable) {
+    draw.fragment.facing = true;
+    if (scene.target.colors.empty()) depth.back = depth.front;
+  }
+}
+
+void random_fragment_needs(Run& run, const Scene& scene, DrawState& draw) {
+  Random& random = run.random;
+  FragmentNeeds& needs = draw.fragment;
+  needs.multisampled = scene.multisampled;
+  // deviations.md, stipple-flat-integers and stipple-per-line
+  needs.primitive_id = !draw.line.stippledLineEnable;
+  needs.facing |= random.chance(0.2f);
+  needs.discards = random.chance(0.15f);
+  needs.writes_depth = scene.has_depth && random.chance(0.12f);
+  needs.writes_stencil = scene.has_stencil && random.chance(0.1f) && run.gpu.has("VK_EXT_shader_stencil_export");
+  needs.writes_mask = random.chance(0.15f);
+  needs.early = random.chance(0.1f) && !needs.writes_depth && !needs.writes_stencil;
+  const std::vector<VkFormat>& colors = scene.target.colors;
+  needs.dual = colors.size() == 1 && blendable(colors[0]) && random.chance(0.15f);
+}
+
+void random_blending(Random& random, const Scene& scene, DrawState& draw) {
+  const bool dual = draw.fragment.dual;
+  for (const VkFormat format : scene.target.colors) {
+    VkPipelineColorBlendAttachmentState blend{};
+    const auto factor = [&] { return static_cast<VkBlendFactor>(random.below(dual ? 19 : 15)); };
+    blend.blendEnable = blendable(format) && (dual || random.chance(0.5f));
+    blend.srcColorBlendFactor = factor();
+    blend.dstColorBlendFactor = factor();
+    blend.colorBlendOp = static_cast<VkBlendOp>(random.below(5));
+    blend.srcAlphaBlendFactor = factor();
+    blend.dstAlphaBlendFactor = factor();
+    blend.alphaBlendOp = static_cast<VkBlendOp>(random.below(5));
+    blend.colorWriteMask = random.chance(0.7f) ? 0xf : random.below(16);
+    draw.spec.blends.push_back(blend);
+  }
+  for (float& constant : draw.spec.blend.blendConstants) constant = random.unit();
+  draw.spec.blend.logicOpEnable = !dual && random.chance(0.15f);
+  draw.spec.blend.logicOp = static_cast<VkLogicOp>(random.below(16));
+}
+
+void random_multisample(Random& random, const Scene& scene, DrawState& draw) {
+  VkPipelineMultisampleStateCreateInfo& state = draw.spec.multisample;
+  if (random.chance(0.2f)) {
+    draw.sample_mask = random.bits();
+    state.pSampleMask = &draw.sample_mask;
+  }
+  const bool float_first = !scene.target.colors.empty() && !is_integer(format_info(scene.target.colors[0]));
+  state.alphaToCoverageEnable = float_first && random.chance(0.2f);
+  // deviations.md, alpha-to-one-beside-mask
+  state.alphaToOneEnable = random.chance(0.15f) && !draw.fragment.writes_mask;
+  // deviations.md, alpha-to-coverage-per-sample
+  draw.fragment.per_sample = scene.multisampled && !state.alphaToCoverageEnable;
+  state.sampleShadingEnable = draw.fragment.per_sample && random.chance(0.3f);
+  state.minSampleShading = random.pick({0.0f, 0.2f, 0.25f, 0.3f, 1.0f});
+  // VUID-VkGraphicsPipelineCreateInfo-lineRasterizationMode-02766
+  if (draw.drawn == Drawn::kLines &&
+      (draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ||
+       draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT))
+    state.alphaToCoverageEnable = state.alphaToOneEnable = state.sampleShadingEnable = VK_FALSE;
+}
+
+/// Vertices in cells of a grid, no two in one, so that there are no short lines; or anywhere, also outside.
+std::vector<float> random_vertices(Random& random, const DrawState& draw) {
+  std::vector<uint32_t> cells;
+  for (uint32_t i = 0; i < 64; ++i) cells.push_back(i);
+  for (uint32_t i = 63; i > 0; --i) std::swap(cells[i], cells[random.below(i + 1)]);
+  const bool grid = !draw.clipped && random.chance(0.5f);
+  std::vector<float> values;
+  for (uint32_t i = 0; i < draw.vertices; ++i) {
+    const float w = random.chance(0.5f)                   ? 1.0f
+                    : draw.clipped && random.chance(0.1f) ? random.real(-1.0f, 0.5f)
+                                                          : random.real(0.3f, 3.0f);
+    const float reach = draw.clipped ? random.pick({0.9f, 1.5f, 8.0f}) : 0.85f;
+    float x = random.real(-reach, reach), y = random.real(-reach, reach);
+    if (!draw.clipped && (grid || draw.drawn == Drawn::kLines)) {
+      const uint32_t cell = cells[i % 64];
+      x = (static_cast<float>(cell % 8) - 3.5f) * 0.22f + random.real(-0.04f, 0.04f);
+      y = (static_cast<float>(cell / 8) - 3.5f) * 0.22f + random.real(-0.04f, 0.04f);
+    }
+    const float z = draw.clipped ? random.real(-0.5f, 1.5f) : random.unit();
+    for (const float v : {x * w, y * w, z * w, w}) values.push_back(v);
+    for (int c = 0; c < 8; ++c) values.push_back(random.unit());
+  }
+  return values;
+}
+
+void note_state(Run& run, const std::string& name, const Scene& scene, const DrawState& draw) {
+  std::string text;
+  const auto add = [&](const char* what, auto value) {
+    text += what;
+    text += " ";
+    text += std::to_string(value);
+    text += "\n";
+  };
+  const GraphicsSpec& spec = draw.spec;
+  for (const VkFormat format : scene.target.colors) text += format_info(format).name + "\n"s;
+  if (scene.target.depth) text += format_info(scene.target.depth).name + "\n"s;
+  add("samples", scene.target.samples);
+  add("topology", draw.stages.topology);
+  text += "tessellation " + draw.stages.tessellation + "\ngeometry " + draw.stages.geometry + "\n";
+  add("polygon mode", spec.raster.polygonMode);
+  add("line mode", draw.line.lineRasterizationMode);
+  add("stippled", draw.line.stippledLineEnable);
+  add("line width", spec.raster.lineWidth);
+  add("cull", spec.raster.cullMode);
+  add("front face", spec.raster.frontFace);
+  add("provoking", draw.provoking.provokingVertexMode);
+  add("clipped", draw.clipped);
+  add("clip distances", draw.stages.clip_distances);
+  add("cull distances", draw.stages.cull_distances);
+  add("layers", draw.stages.layers);
+  add("viewports", draw.stages.viewports);
+  add("depth bias", spec.raster.depthBiasEnable);
+  add("depth clamp", spec.raster.depthClampEnable);
+  add("negative one to one", spec.viewport_next != nullptr);
+  add("depth test", spec.depth.depthTestEnable);
+  add("depth write", spec.depth.depthWriteEnable);
+  add("depth compare", spec.depth.depthCompareOp);
+  add("stencil test", spec.depth.stencilTestEnable);
+  add("logic op", spec.blend.logicOpEnable ? static_cast<int>(spec.blend.logicOp) : -1);
+  add("alpha to coverage", spec.multisample.alphaToCoverageEnable);
+  add("alpha to one", spec.multisample.alphaToOneEnable);
+  add("sample mask", draw.sample_mask);
+  add("sample shading", spec.multisample.sampleShadingEnable);
+  for (const VkPipelineColorBlendAttachmentState& b : spec.blends)
+    text += "blend " + std::to_string(b.blendEnable) + " color " + std::to_string(b.srcColorBlendFactor) + " " +
+            std::to_string(b.colorBlendOp) + " " + std::to_string(b.dstColorBlendFactor) + " alpha " +
+            std::to_string(b.srcAlphaBlendFactor) + " " + std::to_string(b.alphaBlendOp) + " " +
+            std::to_string(b.dstAlphaBlendFactor) + " mask " + std::to_string(b.colorWriteMask) + "\n";
+  add("vertices", draw.vertices);
+  add("instances", draw.instances);
+  run.note(name, text + spec.vertex + spec.evaluation + spec.geometry + spec.fragment);
+}
+
+void random_draw(Run& run, const Scene& scene, DrawState& draw) {
+  Random& random = run.random;
+  draw.stages = random_stages(run, !scene.multisampled);
+  draw.stages.layers = random.chance(0.7f) ? scene.target.layers : 1;
+  const bool selects = run.gpu.has("VK_EXT_shader_viewport_index_layer");
+  if (!selects && draw.stages.geometry.empty()) draw.stages.layers = 1;
+  random_rasterization(run, scene, draw);
+  if (draw.drawn == Drawn::kTriangles && random.chance(0.15f) && (selects || !draw.stages.geometry.empty()))
+    draw.stages.viewports = 2 + random.below(3);
+  // Distances clip, too (see `clipped`).
+  if (!draw.clipped && draw.drawn == Drawn::kLines) draw.stages.clip_distances = 0;
+  random_viewports(random, scene, draw);
+  random_tests(random, scene, draw);
+  random_fragment_needs(run, scene, draw);
+  random_blending(random, scene, draw);
+  random_multisample(random, scene, draw);
+  write_stages(draw.stages, draw.spec);
+  draw.spec.floats({4, 4, 4});
+  if (!(scene.target.colors.empty() && random.chance(0.5f)))
+    draw.spec.fragment = random_fragment(random, scene.target, draw.stages, draw.fragment);
+  draw.vertices = 4 + random.below(44);
+  draw.instances = random.chance(0.8f) ? 1 : 2 + random.below(2);
+}
+
+bool restartable(VkPrimitiveTopology topology) {
+  return topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP || topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP ||
+         topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN ||
+         topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY ||
+         topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY;
+}
+
+CTS_RANDOM("pipeline", "random_state", 120) {
+  Random& random = run.random;
+  const Scene scene = random_scene(run);
+  Target target = make_target(run, scene.target);
+  for (size_t i = 0; i < scene.target.colors.size(); ++i)
+    target.clears[i] = clear_value(scene.target.colors[i], random.unit(), random.unit(), random.unit(), random.unit());
+  if (target.depth)
+    target.clears.back() = clear_value(scene.target.depth, random.pick({1.0f, 0.5f, 0.7f}), random.unit(), 0, 0);
+  const uint32_t draws = 1 + random.below(3);
+  std::vector<DrawState> states(draws);
+  struct Recorded {
+    VkPipeline pipeline;
+    Buffer vertices, indices;
+    bool indexed;
+  };
+  std::vector<Recorded> recorded;
+  for (uint32_t n = 0; n < draws; ++n) {
+    DrawState& draw = states[n];
+    random_draw(run, scene, draw);
+    Recorded r;
+    r.indexed = random.chance(0.4f);
+    draw.spec.assembly.primitiveRestartEnable = r.indexed && restartable(draw.stages.topology) && random.chance(0.6f);
+    std::vector<uint16_t> order;
+    for (uint32_t i = 0; i < draw.vertices; ++i)
+      order.push_back(static_cast<uint16_t>(
+          draw.spec.assembly.primitiveRestartEnable && random.chance(0.1f) ? 0xffff : random.below(draw.vertices)));
+    r.vertices = run.buffer_of(random_vertices(random, draw));
+    r.indices = run.buffer_of(order);
+    note_state(run, "draw" + std::to_string(n), scene, draw);
+    r.pipeline = make_pipeline(run, draw.spec, target);
+    recorded.push_back(r);
+  }
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    for (uint32_t n = 0; n < draws; ++n) {
+      bind_pipeline(cmd, recorded[n].pipeline);
+      bind_vertices(cmd, recorded[n].vertices);
+      if (recorded[n].indexed) {
+        vkCmdBindIndexBuffer(cmd, recorded[n].indices.handle, 0, VK_INDEX_TYPE_UINT16);
+        vkCmdDrawIndexed(cmd, states[n].vertices, states[n].instances, 0, 0, 0);
+      } else {
+        vkCmdDraw(cmd, states[n].vertices, states[n].instances, 0, 0);
+      }
+    }
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+  run.may_be_blank();
+}
+
+}  // namespace
+}  // namespace vitrine::cts
