@@ -1,11 +1,13 @@
 // Compute dispatch: workgroups over the workers, waves of a workgroup one after the other; a barrier suspends a wave
 // until the others have reached it.
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <deque>
 #include <vector>
 
 #include "base/float_mode.h"
+#include "base/log.h"
 #include "base/workers.h"
 #include "spirv/exec/wave_memory.h"
 
@@ -24,9 +26,10 @@ struct Launch {
   const Program& program;
   const std::uint32_t* base;
   const std::uint32_t* groups;
-  std::uint64_t invocations = 0;  ///< of a workgroup
-  std::uint32_t waves = 0;        ///< of a workgroup
-  std::uint32_t columns = 0;      ///< of the grid in x: workgroups, or waves full of them
+  std::uint64_t invocations = 0;              ///< of a workgroup
+  std::uint32_t waves = 0;                    ///< of a workgroup
+  std::uint32_t columns = 0;                  ///< of the grid in x: workgroups, or waves full of them
+  mutable std::atomic<bool> reported{false};  ///< a divergent barrier
 };
 
 /// Memory of one thread's workgroup; kept between dispatches.
@@ -74,6 +77,21 @@ bool run(Wave& wave, const Launch& launch) {
   return false;
 }
 
+/// Waves that wait at a barrier which others have not reached or will not reach: the application's fault. They go on
+/// as if all had met; reported once per dispatch.
+void report_divergence(const GroupMemory& memory, const Launch& launch) {
+  const Wave* waiting = nullptr;
+  bool apart = false;
+  for (const Wave& wave : memory.waves) {
+    if (wave.status != Wave::Status::kAtBarrier || wave.active != wave.launched) apart = true;
+    if (wave.status != Wave::Status::kAtBarrier) continue;
+    if (waiting != nullptr && waiting->resume != wave.resume) apart = true;
+    waiting = &wave;
+  }
+  if (!apart || waiting == nullptr || launch.reported.exchange(true)) return;
+  base::log("error", "a barrier is not reached by all invocations of the workgroup" + exec::place_of(*waiting));
+}
+
 void run_group(GroupMemory& memory, const Launch& launch, const std::uint32_t group[3]) {
   std::fill(memory.shared.begin(), memory.shared.end(), 0u);
   if (!launch.program.has_barrier) {
@@ -91,6 +109,7 @@ void run_group(GroupMemory& memory, const Launch& launch, const std::uint32_t gr
       if (!run(wave, launch)) return;
       waiting |= wave.status == Wave::Status::kAtBarrier;
     }
+    if (waiting) report_divergence(memory, launch);
   }
 }
 

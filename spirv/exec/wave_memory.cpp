@@ -70,23 +70,26 @@ std::int64_t shader_budget() {
   return budget;
 }
 
+std::string place_of(const Wave& wave) {
+  if (wave.resume == nullptr) return {};
+  // Markers of control flow have no origin of their own: the nearest instruction before them does.
+  auto index = static_cast<std::size_t>(wave.resume - wave.program->code.data());
+  while (index > 0 && wave.program->notes[index].origin.line == 0 && wave.program->notes[index].origin.spirv_id == 0)
+    --index;
+  const ir::Origin& origin = wave.program->notes[index].origin;
+  std::string where;
+  if (origin.line != 0) where = " near source line " + std::to_string(origin.line);
+  for (const auto& [id, name] : wave.program->files)
+    if (origin.line != 0 && id == origin.file) where += " of " + name;
+  if (origin.spirv_id != 0) where += " (SPIR-V id " + std::to_string(origin.spirv_id) + ")";
+  return where;
+}
+
 void raise_fault(Fault& fault, const Wave& wave) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   if (fault.raised.load(std::memory_order_relaxed)) return;
-  std::string where;
-  if (wave.resume != nullptr) {
-    // Markers of control flow have no origin of their own: the nearest instruction before them does.
-    auto index = static_cast<std::size_t>(wave.resume - wave.program->code.data());
-    while (index > 0 && wave.program->notes[index].origin.line == 0 && wave.program->notes[index].origin.spirv_id == 0)
-      --index;
-    const ir::Origin& origin = wave.program->notes[index].origin;
-    if (origin.line != 0) where = " near source line " + std::to_string(origin.line);
-    for (const auto& [id, name] : wave.program->files)
-      if (origin.line != 0 && id == origin.file) where += " of " + name;
-    if (origin.spirv_id != 0) where += " (SPIR-V id " + std::to_string(origin.spirv_id) + ")";
-  }
-  fault.message = "the shader did not end within its instruction budget" + where;
+  fault.message = "the shader did not end within its instruction budget" + place_of(wave);
   base::log("error", fault.message);
   fault.raised.store(true, std::memory_order_release);
 }

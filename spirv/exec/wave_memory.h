@@ -1,6 +1,8 @@
 // The memory behind a wave, the instruction budget and how a fault is reported.
 #pragma once
 
+#include <string>
+
 #include "spirv/program.h"
 #include "spirv/shader.h"
 
@@ -26,6 +28,9 @@ class WaveMemory {
 
 /// Back edges a wave may take: 2^28, or VITRINE_SHADER_BUDGET.
 std::int64_t shader_budget();
+
+/// "near source line 7 of a.comp (SPIR-V id 12)": where a wave stands (Wave::resume); empty if unknown.
+std::string place_of(const Wave& wave);
 
 /// Records that `wave` exhausted its budget; the first fault wins.
 void raise_fault(Fault& fault, const Wave& wave);
