@@ -12,6 +12,9 @@
 namespace vitrine::spirv {
 namespace {
 
+/// Words of a module that cannot nest deeply.
+constexpr std::size_t kSmallModule = 4096;
+
 /// SPIRV-Tools' validator, told to accept every block layout that a device feature could allow: layouts are the
 /// application's promise to the validation layer, not something that can harm us.
 std::string validate(std::span<const std::uint32_t> words) {
@@ -55,9 +58,12 @@ std::string check_module(std::span<const std::uint32_t> words) {
 
 base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> words, const CompileOptions& options) {
   if (std::string error = check_module(words); !error.empty()) return base::Error{error};
+  // The front end survives whatever the words say and bounds its work; the validator's time grows with the cube of the
+  // nesting, so that it is not asked about large modules that are refused anyway. Its words are better otherwise.
+  base::Result<ir::Function> function = translate(words, options);
+  if (!function && words.size() > kSmallModule) return function.error();
   if (options.validate)
     if (std::string error = validate(words); !error.empty()) return base::Error{error};
-  base::Result<ir::Function> function = translate(words, options);
   if (!function) return function.error();
   rewrite(function.value());
   ir::make_joins_whole(function.value());

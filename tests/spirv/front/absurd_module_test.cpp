@@ -1,0 +1,263 @@
+// Valid modules of absurd size or shape: each becomes a shader or an error within reasonable time and memory; the stack
+// does not grow with the module.
+#include <functional>
+
+#include "spirv/front/translate.h"
+#include "tests/spirv/front/glsl.h"
+
+namespace vitrine::spirv::test {
+namespace {
+
+/// A compute module whose functions are `functions`, and whose entry point runs `body` with %x (uint) and ends storing
+/// %r.
+Words module_with(const std::string& declarations, const std::string& functions, const std::string& body) {
+  return assemble(R"(OpCapability Shader
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %id
+OpExecutionMode %main LocalSize 64 1 1
+OpDecorate %id BuiltIn GlobalInvocationId
+OpDecorate %array ArrayStride 4
+OpDecorate %block Block
+OpMemberDecorate %block 0 Offset 0
+OpDecorate %buffer DescriptorSet 0
+OpDecorate %buffer Binding 0
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%bool = OpTypeBool
+%uint = OpTypeInt 32 0
+%v3uint = OpTypeVector %uint 3
+%v3ptr = OpTypePointer Input %v3uint
+%id = OpVariable %v3ptr Input
+%array = OpTypeRuntimeArray %uint
+%block = OpTypeStruct %array
+%block_ptr = OpTypePointer StorageBuffer %block
+%uint_ptr = OpTypePointer StorageBuffer %uint
+%buffer = OpVariable %block_ptr StorageBuffer
+%u0 = OpConstant %uint 0
+%u1 = OpConstant %uint 1
+%u7 = OpConstant %uint 7
+%unary = OpTypeFunction %uint %uint
+)" + declarations +
+                  R"(
+%main = OpFunction %void None %fn
+%entry = OpLabel
+)" + body + R"(
+OpReturn
+OpFunctionEnd
+)" + functions);
+}
+
+/// The entry point's usual beginning and end.
+std::string begin() {
+  return "%gid = OpLoad %v3uint %id\n%x = OpCompositeExtract %uint %gid 0\n"
+         "%place = OpAccessChain %uint_ptr %buffer %u0 %x\n";
+}
+std::string store(const std::string& id) { return "OpStore %place " + id + "\n"; }
+
+/// Whether the module compiles; an error says why.
+bool compiles(const Words& words, bool validate = true) {
+  CompileOptions options = options_for(VK_SHADER_STAGE_COMPUTE_BIT);
+  options.validate = validate;
+  const auto shader = compile(words, options);
+  if (!shader) {
+    EXPECT_NE(shader.message(), "");
+  }
+  return shader.ok();
+}
+
+std::string repeated(std::size_t count, const std::function<std::string(std::size_t)>& text) {
+  std::string all;
+  for (std::size_t i = 0; i < count; i++) all += text(i);
+  return all;
+}
+
+std::string number(std::size_t i) { return std::to_string(i); }
+
+TEST(AbsurdModule, RecursionIsRefused) {
+  const std::string f =
+      "%f = OpFunction %uint None %unary\n%p = OpFunctionParameter %uint\n%fe = OpLabel\n"
+      "%again = OpFunctionCall %uint %g %p\nOpReturnValue %again\nOpFunctionEnd\n"
+      "%g = OpFunction %uint None %unary\n%q = OpFunctionParameter %uint\n%ge = OpLabel\n"
+      "%more = OpFunctionCall %uint %f %q\nOpReturnValue %more\nOpFunctionEnd\n";
+  const Words words = module_with("", f, begin() + "%r = OpFunctionCall %uint %f %x\n" + store("%r"));
+  EXPECT_FALSE(compiles(words));
+  EXPECT_FALSE(compiles(words, false));
+}
+
+TEST(AbsurdModule, StraightLineOfAHundredThousandInstructions) {
+  std::string body = begin() + "%a0 = OpIAdd %uint %x %u7\n";
+  body += repeated(100000, [](std::size_t i) {
+    return "%a" + number(i + 1) +
+           (i % 3 == 0   ? " = OpIMul"
+            : i % 3 == 1 ? " = OpIAdd"
+                         : " = OpBitwiseXor") +
+           " %uint %a" + number(i) + " %x\n";
+  });
+  EXPECT_TRUE(compiles(module_with("", "", body + store("%a100000"))));
+}
+
+/// A function that calls the next, each from one place.
+TEST(AbsurdModule, LongChainOfCalls) {
+  const auto chain = [](std::size_t length) {
+    const std::string functions = repeated(length, [&](std::size_t i) {
+      const std::string n = number(i);
+      const std::string result = i + 1 < length ? "%r" + n + " = OpFunctionCall %uint %f" + number(i + 1) + " %p" + n
+                                                : "%r" + n + " = OpIAdd %uint %p" + n + " %u7";
+      return "%f" + n + " = OpFunction %uint None %unary\n%p" + n + " = OpFunctionParameter %uint\n%e" + n +
+             " = OpLabel\n" + result + "\nOpReturnValue %r" + n + "\nOpFunctionEnd\n";
+    });
+    return module_with("", functions, begin() + "%r = OpFunctionCall %uint %f0 %x\n" + store("%r"));
+  };
+  EXPECT_TRUE(compiles(chain(40)));
+  compiles(chain(5000));
+  compiles(chain(5000), false);
+}
+
+/// Every function calls the next one twice: 2^40 calls.
+TEST(AbsurdModule, CallsThatMultiply) {
+  const std::string functions = repeated(40, [&](std::size_t i) {
+    const std::string n = number(i), to = i < 39 ? "%f" + number(i + 1) : "%leaf";
+    return "%f" + n + " = OpFunction %uint None %unary\n%p" + n + " = OpFunctionParameter %uint\n%e" + n +
+           " = OpLabel\n%a" + n + " = OpFunctionCall %uint " + to + " %p" + n + "\n%b" + n +
+           " = OpFunctionCall %uint " + to + " %a" + n + "\nOpReturnValue %b" + n + "\nOpFunctionEnd\n";
+  });
+  const std::string leaf =
+      "%leaf = OpFunction %uint None %unary\n%pl = OpFunctionParameter %uint\n%el = OpLabel\n"
+      "%rl = OpIMul %uint %pl %u7\nOpReturnValue %rl\nOpFunctionEnd\n";
+  EXPECT_FALSE(
+      compiles(module_with("", functions + leaf, begin() + "%r = OpFunctionCall %uint %f0 %x\n" + store("%r"))));
+}
+
+TEST(AbsurdModule, ThousandsOfFunctions) {
+  const std::string functions = repeated(5000, [&](std::size_t i) {
+    const std::string n = number(i);
+    return "%f" + n + " = OpFunction %uint None %unary\n%p" + n + " = OpFunctionParameter %uint\n%e" + n +
+           " = OpLabel\n%r" + n + " = OpIAdd %uint %p" + n + " %u7\nOpReturnValue %r" + n + "\nOpFunctionEnd\n";
+  });
+  const std::string calls = repeated(5000, [](std::size_t i) {
+    return "%s" + number(i) + " = OpFunctionCall %uint %f" + number(i) + " " +
+           (i == 0 ? std::string("%x") : "%s" + number(i - 1)) + "\n";
+  });
+  EXPECT_TRUE(compiles(module_with("", functions, begin() + calls + store("%s4999"))));
+}
+
+Words nested_ifs(std::size_t depth) {
+  const std::string open = repeated(depth, [](std::size_t i) {
+    const std::string n = number(i);
+    return "%bit" + n + " = OpShiftRightLogical %uint %x %u1\n%c" + n + " = OpIEqual %bool %bit" + n +
+           " %u7\nOpSelectionMerge %m" + n + " None\nOpBranchConditional %c" + n + " %t" + n + " %m" + n + "\n%t" + n +
+           " = OpLabel\n";
+  });
+  const std::string close = repeated(depth, [&](std::size_t i) {
+    const std::string n = number(depth - 1 - i);
+    return store("%x") + "OpBranch %m" + n + "\n%m" + n + " = OpLabel\n";
+  });
+  return module_with("", "", begin() + open + close);
+}
+
+TEST(AbsurdModule, DeepNestingOfSelections) {
+  EXPECT_TRUE(compiles(nested_ifs(60)));
+  compiles(nested_ifs(3000));
+  compiles(nested_ifs(3000), false);
+}
+
+Words nested_loops(std::size_t depth) {
+  const std::string open = repeated(depth, [](std::size_t i) {
+    const std::string n = number(i), from = i == 0 ? "%entry" : "%b" + number(i - 1);
+    return "OpBranch %h" + n + "\n%h" + n + " = OpLabel\n%i" + n + " = OpPhi %uint %u0 " + from + " %n" + n + " %k" +
+           n + "\nOpLoopMerge %m" + n + " %k" + n + " None\nOpBranch %t" + n + "\n%t" + n + " = OpLabel\n%c" + n +
+           " = OpULessThan %bool %i" + n + " %x\nOpBranchConditional %c" + n + " %b" + n + " %m" + n + "\n%b" + n +
+           " = OpLabel\n";
+  });
+  const std::string close = repeated(depth, [&](std::size_t i) {
+    const std::string n = number(depth - 1 - i);
+    return store("%x") + "OpBranch %k" + n + "\n%k" + n + " = OpLabel\n%n" + n + " = OpIAdd %uint %i" + n +
+           " %u1\nOpBranch %h" + n + "\n%m" + n + " = OpLabel\n";
+  });
+  return module_with("", "", begin() + open + close);
+}
+
+TEST(AbsurdModule, DeepNestingOfLoops) {
+  EXPECT_TRUE(compiles(nested_loops(20)));
+  compiles(nested_loops(1000));
+  compiles(nested_loops(1000), false);
+}
+
+/// Constant trip counts that nobody should unroll.
+TEST(AbsurdModule, LoopsWithHugeConstantTripCounts) {
+  for (const char* bound : {"100", "100000", "0xffffffffu", "2000000000"})
+    EXPECT_TRUE(compiles(compile_glsl(
+        VK_SHADER_STAGE_COMPUTE_BIT,
+        std::string("layout(local_size_x = 64) in;\nlayout(set = 0, binding = 0) buffer B { uint v[]; };\nvoid main() "
+                    "{\n  uint s = v[0];\n  for (uint i = 0u; i < uint(") +
+            bound + "); i++) for (uint j = 0u; j < uint(" + bound + "); j++) s = s * 3u + i * j;\n  v[1] = s;\n}")));
+}
+
+TEST(AbsurdModule, SwitchOfManyCases) {
+  constexpr std::size_t kCases = 2000;
+  std::string body = begin() + "OpSelectionMerge %done None\nOpSwitch %x %done";
+  body += repeated(kCases, [](std::size_t i) { return " " + number(i) + " %k" + number(i); }) + "\n";
+  body += repeated(kCases, [](std::size_t i) {
+    const std::string n = number(i);
+    return "%k" + n + " = OpLabel\n%w" + n + " = OpIMul %uint %x %u7\n" + store("%w" + n) + "OpBranch %done\n";
+  });
+  compiles(module_with("", "", body + "%done = OpLabel\n"));
+}
+
+TEST(AbsurdModule, HugeVariables) {
+  for (const char* storage : {"Private", "Workgroup", "Function"})
+    for (const char* length : {"4194304", "1073741824", "4294967295"}) {
+      const std::string declarations = std::string("%n = OpConstant %uint ") + length +
+                                       "\n%big = OpTypeArray %uint %n\n%big_ptr = OpTypePointer " + storage +
+                                       " %big\n%part_ptr = OpTypePointer " + storage + " %uint\n";
+      const std::string variable = std::string("%v = OpVariable %big_ptr ") + storage + "\n";
+      const bool local = std::string(storage) == "Function";
+      const std::string body = (local ? variable : "") + begin() +
+                               "%at = OpAccessChain %part_ptr %v %x\nOpStore %at %x\n%r = OpLoad %uint %at\n" +
+                               store("%r");
+      EXPECT_FALSE(compiles(module_with(declarations + (local ? "" : variable), "", body), false)) << storage << length;
+    }
+}
+
+TEST(AbsurdModule, HugeConstants) {
+  for (const char* length : {"1048576", "4294967295"})
+    EXPECT_FALSE(compiles(module_with(std::string("%n = OpConstant %uint ") + length +
+                                          "\n%big = OpTypeArray %uint %n\n%outer = OpTypeArray %big %n\n"
+                                          "%null = OpConstantNull %outer\n",
+                                      "", begin() + store("%x")),
+                          false));
+}
+
+TEST(AbsurdModule, DeepNestingOfTypes) {
+  const std::string types = "%s0 = OpTypeStruct %uint\n" + repeated(1000, [](std::size_t i) {
+                              return "%s" + number(i + 1) + " = OpTypeStruct %s" + number(i) + "\n";
+                            });
+  EXPECT_FALSE(compiles(module_with(types, "", begin() + store("%x")), false));
+}
+
+/// Arrays of arrays whose elements are few but whose copies are many.
+TEST(AbsurdModule, CopiesOfLargeArrays) {
+  const std::string declarations =
+      "%n = OpConstant %uint 4096\n%big = OpTypeArray %uint %n\n%big_ptr = OpTypePointer Function %big\n"
+      "%part_ptr = OpTypePointer Function %uint\n";
+  std::string body = "%v = OpVariable %big_ptr Function\n%w = OpVariable %big_ptr Function\n" + begin();
+  body += repeated(
+      200, [](std::size_t i) { return "%l" + number(i) + " = OpLoad %big %v\nOpStore %w %l" + number(i) + "\n"; });
+  compiles(module_with(declarations, "",
+                       body + "%at = OpAccessChain %part_ptr %w %x\n%r = OpLoad %uint %at\n" + store("%r")));
+}
+
+TEST(AbsurdModule, ManyVariablesAndPhis) {
+  std::string body = "%flag = OpINotEqual %bool %u0 %u1\n" + begin() +
+                     "%odd = OpIEqual %bool %x %u7\nOpSelectionMerge %m None\nOpBranchConditional %odd %t %m\n"
+                     "%t = OpLabel\nOpBranch %m\n%m = OpLabel\n";
+  body += repeated(20000, [](std::size_t i) { return "%p" + number(i) + " = OpPhi %uint %u7 %entry %x %t\n"; });
+  body += "%q0 = OpIAdd %uint %p0 %x\n";
+  body += repeated(19999, [](std::size_t i) {
+    return "%q" + number(i + 1) + " = OpIAdd %uint %q" + number(i) + " %p" + number(i + 1) + "\n";
+  });
+  EXPECT_TRUE(compiles(module_with("", "", body + store("%q19999"))));
+}
+
+}  // namespace
+}  // namespace vitrine::spirv::test
