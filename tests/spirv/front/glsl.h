@@ -16,9 +16,12 @@ using Words = std::vector<std::uint32_t>;
 inline Words compile_glsl(VkShaderStageFlagBits stage, const std::string& body) {
   static const bool initialized = glslang::InitializeProcess();
   static_cast<void>(initialized);
-  const EShLanguage language = stage == VK_SHADER_STAGE_VERTEX_BIT     ? EShLangVertex
-                               : stage == VK_SHADER_STAGE_FRAGMENT_BIT ? EShLangFragment
-                                                                       : EShLangCompute;
+  const EShLanguage language = stage == VK_SHADER_STAGE_VERTEX_BIT                    ? EShLangVertex
+                               : stage == VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT    ? EShLangTessControl
+                               : stage == VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT ? EShLangTessEvaluation
+                               : stage == VK_SHADER_STAGE_GEOMETRY_BIT                ? EShLangGeometry
+                               : stage == VK_SHADER_STAGE_FRAGMENT_BIT                ? EShLangFragment
+                                                                                      : EShLangCompute;
   const std::string text = "#version 450\n" + body;
   const char* strings[] = {text.c_str()};
   glslang::TShader shader(language);
