@@ -216,6 +216,7 @@ bool has_effect(const Instr& instr) {
     case Op::kAtomicShared:
     case Op::kStoreArray:
     case Op::kBarrier:
+    case Op::kMemoryBarrier:
     case Op::kDemote:
     case Op::kKill:
     case Op::kReturn:

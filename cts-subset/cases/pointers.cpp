@@ -316,6 +316,115 @@ void main() {
   run.out("out", out);
 }
 
+constexpr char kNarrow[] =
+    "#extension GL_EXT_shader_explicit_arithmetic_types : require\n"
+    "#extension GL_EXT_shader_8bit_storage : require\n"
+    "#extension GL_EXT_shader_16bit_storage : require\n";
+
+CTS_CASE("pointers", "address.narrow") {
+  const auto& features = run.gpu.extension_features;
+  run.require(features.storage_8bit.storageBuffer8BitAccess && features.storage_16bit.storageBuffer16BitAccess &&
+                  features.float16_int8.shaderInt8 && features.float16_int8.shaderFloat16,
+              "8- and 16-bit storage");
+  const Buffer a = addressed(run, 4096), b = addressed(run, 4096);
+  for (uint32_t i = 0; i < 1024; i++) a.as<uint32_t>()[i] = run.random.bits() & 0xbbffbbffu;
+  run_addresses(run, std::string(kNarrow) + R"(
+struct S { int8_t a; uint8_t b; int16_t c; float16_t h; u8vec3 v; f16vec3 w; uint8_t z[5]; uint u; };
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer Items { S s[]; };
+layout(buffer_reference, std430, buffer_reference_align = 1) buffer Bytes { uint8_t n[]; };
+layout(buffer_reference, std430, buffer_reference_align = 2) buffer Halves { f16vec3 h[]; };
+layout(push_constant) uniform P { Items from, to; Bytes bytes; Halves halves; } p;
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  S s = p.from.s[i];
+  s.v = s.v.zxy + u8vec3(s.b);
+  s.w = s.w * float16_t(0.5) + p.halves.h[i / 3u];
+  s.z[i % 5u] = p.bytes.n[i * 7u % 256u];
+  s.c -= int16_t(s.a);
+  if ((i & 3u) != 1u) p.to.s[i] = s;
+  else p.to.s[i].v[i % 3u] = uint8_t(i);
+})",
+                {address_of(run, a), address_of(run, b), address_of(run, a), address_of(run, a) + 1024},
+                {storage_buffer(0, run.buffer(4))});
+  run.out("written", b, VK_FORMAT_R8_UINT);
+}
+
+CTS_CASE("pointers", "address.atomics_64") {
+  run.require(run.gpu.features.shaderInt64 && run.gpu.extension_features.atomic_int64.shaderBufferInt64Atomics,
+              "64-bit atomics");
+  const Buffer a = addressed(run, 1024), out = run.buffer(kInvocations * 8);
+  for (uint32_t i = 0; i < 256; i++) a.as<uint32_t>()[i] = run.random.bits();
+  run_addresses(run, R"(
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer Counts { uint64_t u[64]; int64_t i[64]; };
+layout(push_constant) uniform P { Counts c; } p;
+layout(std430, binding = 0) buffer R { uint64_t r[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  uint64_t v = (uint64_t(i * 7u % 61u) << 32) - uint64_t(i * 0x10001u);
+  atomicAdd(p.c.u[i & 3u], v);
+  atomicMax(p.c.u[4u + (i & 3u)], v);
+  atomicXor(p.c.u[8u + (i & 3u)], v);
+  atomicMin(p.c.i[i & 3u], int64_t(v));
+  r[i] = atomicExchange(p.c.i[64u - 1u - i % 32u], int64_t(v)) != 0l && i >= 32u ? 1ul : 0ul;
+  r[i] += atomicCompSwap(p.c.u[12u + i % 32u], uint64_t(i), v) * (i < 32u ? 1ul : 0ul);
+})",
+                {address_of(run, a)}, {storage_buffer(0, out)});
+  run.out("counts", a);
+  run.out("old", out);
+}
+
+/// Blocks in workgroup memory; the reference, which does not have them, is given a storage buffer of the same layout.
+CTS_CASE("pointers", "workgroup_blocks") {
+  const auto& features = run.gpu.extension_features;
+  run.require(features.storage_8bit.storageBuffer8BitAccess && features.storage_16bit.storageBuffer16BitAccess &&
+                  features.float16_int8.shaderInt8 && features.float16_int8.shaderFloat16,
+              "8- and 16-bit storage");
+  const auto& layout = features.workgroup_layout;
+  const bool blocks = layout.workgroupMemoryExplicitLayout && layout.workgroupMemoryExplicitLayout8BitAccess &&
+                      layout.workgroupMemoryExplicitLayout16BitAccess &&
+                      layout.workgroupMemoryExplicitLayoutScalarBlockLayout;
+  std::vector<uint32_t> words(512);
+  for (uint32_t& word : words) word = run.random.bits() & 0xbbffbbffu;
+  const Buffer in = run.buffer_of(words), out = run.buffer(kInvocations * 16), scratch = run.buffer(8192);
+  const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out), storage_buffer(2, scratch)});
+  const std::string first = blocks ? "layout(std430) shared" : "layout(std430, binding = 2) buffer";
+  const VkPipeline pipeline = run.compute(
+      res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT,
+                             "// target: spirv1.4\n" + std::string(kNarrow) +
+                                 (blocks ? "#extension GL_EXT_shared_memory_block : require\n" : "") +
+                                 "layout(local_size_x = 64) in;\n"
+                                 "struct S { uint8_t a; f16vec2 h; mat3x2 m; uint u; uint8_t z[3]; };\n" +
+                                 first + " A { S s[64]; } a;\n" + first + " B { uint w[64 * 12]; } b;\n" + R"(
+layout(std430, binding = 0) buffer In { uint x[]; };
+layout(std430, binding = 1) buffer Out { uvec4 r[]; };
+void main() {
+  uint i = gl_LocalInvocationIndex, k = i ^ 5u;
+  S s;
+  s.a = uint8_t(x[i]);
+  s.h = unpackFloat2x16(x[i + 64u]);
+  s.m = mat3x2(float(i), 1.0, 2.0, float(x[i] & 7u), 4.0, 5.0);
+  s.u = x[i + 128u];
+  s.z = uint8_t[3](uint8_t(i), uint8_t(2), uint8_t(x[i] >> 8));
+  for (uint n = 0u; n < 12u; n++) b.w[i * 12u + n] = 0u;
+  memoryBarrierBuffer();
+  barrier();
+  a.s[i] = s;
+  memoryBarrierBuffer();
+  barrier();
+  S t = a.s[k];
+  float f = t.m[i % 3u][k & 1u] + a.s[i].m[1].y;
+  r[i] = uvec4(uint(t.a) + uint(t.z[i % 3u]) * 256u, packFloat2x16(t.h), floatBitsToUint(f), b.w[k * 12u + i % 12u]);
+})"));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, 1, 1, 1);
+  });
+  run.out("out", out);
+}
+
 CTS_CASE("pointers", "zeroed_workgroup") {
   run.require(run.gpu.extension_features.zero_workgroup.shaderZeroInitializeWorkgroupMemory,
               "shaderZeroInitializeWorkgroupMemory");

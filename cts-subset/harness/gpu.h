@@ -99,6 +99,8 @@ void check(VkResult result, const char* call);
   X(provoking_vertex, VkPhysicalDeviceProvokingVertexFeaturesEXT, PROVOKING_VERTEX_FEATURES_EXT,                       \
     "VK_EXT_provoking_vertex")                                                                                         \
   X(robustness2, VkPhysicalDeviceRobustness2FeaturesEXT, ROBUSTNESS_2_FEATURES_EXT, "VK_EXT_robustness2")              \
+  X(workgroup_layout, VkPhysicalDeviceWorkgroupMemoryExplicitLayoutFeaturesKHR,                                        \
+    WORKGROUP_MEMORY_EXPLICIT_LAYOUT_FEATURES_KHR, "VK_KHR_workgroup_memory_explicit_layout")                          \
   X(zero_workgroup, VkPhysicalDeviceZeroInitializeWorkgroupMemoryFeatures, ZERO_INITIALIZE_WORKGROUP_MEMORY_FEATURES,  \
     "VK_KHR_zero_initialize_workgroup_memory")                                                                         \
   X(scalar_block_layout, VkPhysicalDeviceScalarBlockLayoutFeatures, SCALAR_BLOCK_LAYOUT_FEATURES,                      \

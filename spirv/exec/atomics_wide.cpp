@@ -1,5 +1,5 @@
-// Atomic operations on 64-bit integers of buffers (really atomic) and of shared memory (owned by one thread). Lanes act
-// in increasing order.
+// Atomic operations on 64-bit integers of buffers and behind pointers (really atomic) and of shared memory (owned by
+// one thread). Lanes act in increasing order.
 #include <atomic>
 
 #include "spirv/exec/atomic_ops.h"
@@ -32,15 +32,23 @@ std::uint64_t act(const MemoryOp& row, const Bytes& bytes, std::uint32_t offset,
   }
 }
 
-template <bool kAtomic, bool kUniform>
-void run(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes, base::LaneMask active) {
+/// `offset_of`: byte offset of a lane.
+template <bool kAtomic, class F>
+void run_lanes(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes, base::LaneMask active,
+               const F& offset_of) {
   base::for_each_lane(active, [&](std::size_t lane) {
-    const std::uint32_t offset = kUniform ? uniform_word(wave, i->src[0]) : reg(wave, i->src[0]).lane[lane];
     const std::uint64_t old =
-        act<kAtomic>(row, bytes, offset + row.added, lane_value(wave, row.data[0], row.data[1], lane),
+        act<kAtomic>(row, bytes, offset_of(lane) + row.added, lane_value(wave, row.data[0], row.data[1], lane),
                      lane_value(wave, row.data[2], row.data[3], lane));
     if (i->dst != kNoOperand) reg(wave, i->dst).lane[lane] = static_cast<std::uint32_t>(old);
     if (i->extra[1] != kNoOperand) reg(wave, i->extra[1]).lane[lane] = static_cast<std::uint32_t>(old >> 32);
+  });
+}
+
+template <bool kAtomic, bool kUniform>
+void run(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes, base::LaneMask active) {
+  run_lanes<kAtomic>(wave, i, row, bytes, active, [&](std::size_t lane) {
+    return kUniform ? uniform_word(wave, i->src[0]) : reg(wave, i->src[0]).lane[lane];
   });
 }
 
@@ -67,9 +75,20 @@ const Instruction* on_shared(Wave& wave, const Instruction* i) {
   return i + 1;
 }
 
+const Instruction* behind_pointers(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  clear_results(wave, i);
+  for_each_stretch(wave, i, row, wave.active & wave.live,
+                   [&](const Bytes& bytes, base::LaneMask active, const base::WaveRegister& offset) {
+                     run_lanes<true>(wave, i, row, bytes, active, [&](std::size_t lane) { return offset.lane[lane]; });
+                   });
+  return i + 1;
+}
+
 }  // namespace
 
 Handler atomic_wide(Space space, bool uniform) {
+  if (space == Space::kGlobal) return behind_pointers;
   if (space == Space::kBuffer) return uniform ? on_buffer<true> : on_buffer<false>;
   return uniform ? on_shared<true> : on_shared<false>;
 }

@@ -83,7 +83,8 @@ inline void for_each_stretch(Wave& wave, const Instruction* i, const MemoryOp& r
       active &= active - 1;
       continue;
     }
-    const std::uint64_t begin = address[first] - std::min(address[first] - range.begin, kReach);
+    const std::uint64_t reach = address[first] - std::min(address[first] - range.begin, kReach);
+    const std::uint64_t begin = std::max(range.begin, reach & ~std::uint64_t{7});
     const std::uint64_t end = address[first] + std::min(range.end - address[first], kReach);
     base::LaneMask together = 0;
     base::for_each_lane(active, [&](std::size_t lane) {

@@ -108,8 +108,8 @@ Handler load_push();
 Handler load_shared();
 Handler store_buffer(bool uniform);
 Handler store_shared(bool uniform);
-/// The same for components of one or two bytes (spirv/exec/memory_narrow.cpp).
-enum class Space : std::uint8_t { kBuffer, kPush, kShared };
+/// The same for components of one or two bytes (spirv/exec/memory_narrow.cpp). kGlobal: behind a pointer, see below.
+enum class Space : std::uint8_t { kBuffer, kPush, kShared, kGlobal };
 Handler load_narrow(Space space, bool uniform);
 Handler load_narrow_uniform(Space space);
 Handler store_narrow(Space space, bool uniform);

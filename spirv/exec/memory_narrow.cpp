@@ -16,6 +16,12 @@ std::uint32_t load_element(const Bytes& bytes, const MemoryOp& row, std::uint32_
   return value;
 }
 
+/// The components of one lane, from byte `first` on.
+void load_components(Wave& wave, const MemoryOp& row, const Bytes& bytes, std::size_t lane, std::uint32_t first) {
+  for (std::uint32_t c = 0; c < row.components; ++c)
+    if (row.data[c] != kNoOperand) reg(wave, row.data[c]).lane[lane] = load_element(bytes, row, first + row.at[c]);
+}
+
 /// Calls f(bytes, lanes) for what the row's space is.
 template <Space space, class F>
 void for_each_memory(Wave& wave, const MemoryOp& row, base::LaneMask active, F&& f) {
@@ -44,9 +50,7 @@ const Instruction* load_lanes(Wave& wave, const Instruction* i) {
   const MemoryOp& row = memory_op(wave, i);
   for_each_memory<space>(wave, row, wave.active, [&](const Bytes& bytes, base::LaneMask active) {
     base::for_each_lane(active, [&](std::size_t lane) {
-      const std::uint32_t offset = offset_of<uniform>(wave, i, lane) + row.added;
-      for (std::uint32_t c = 0; c < row.components; ++c)
-        if (row.data[c] != kNoOperand) reg(wave, row.data[c]).lane[lane] = load_element(bytes, row, offset + row.at[c]);
+      load_components(wave, row, bytes, lane, offset_of<uniform>(wave, i, lane) + row.added);
     });
   });
   return i + 1;
@@ -68,20 +72,46 @@ const Instruction* load_words(Wave& wave, const Instruction* i) {
   return i + 1;
 }
 
+/// The components of one lane, from byte `first` on.
+void store_components(Wave& wave, const MemoryOp& row, const Bytes& bytes, std::size_t lane, std::uint32_t first) {
+  const std::uint32_t size = row.element_bytes;
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    const std::uint32_t offset = first + c * size;
+    if ((row.write_mask >> c & 1) != 0 && contains(bytes, offset, size))
+      std::memcpy(bytes.data + offset, &reg(wave, row.data[c]).lane[lane], size);
+  }
+}
+
 template <Space space, bool uniform>
 const Instruction* store_lanes(Wave& wave, const Instruction* i) {
   const MemoryOp& row = memory_op(wave, i);
-  const std::uint32_t size = row.element_bytes;
   for_each_memory<space>(wave, row, wave.active & wave.live, [&](const Bytes& bytes, base::LaneMask active) {
     base::for_each_lane(active, [&](std::size_t lane) {
-      const std::uint32_t first = offset_of<uniform>(wave, i, lane) + row.added;
-      for (std::uint32_t c = 0; c < 4; ++c) {
-        const std::uint32_t offset = first + c * size;
-        if ((row.write_mask >> c & 1) != 0 && contains(bytes, offset, size))
-          std::memcpy(bytes.data + offset, &reg(wave, row.data[c]).lane[lane], size);
-      }
+      store_components(wave, row, bytes, lane, offset_of<uniform>(wave, i, lane) + row.added);
     });
   });
+  return i + 1;
+}
+
+/// Behind pointers.
+const Instruction* load_pointers(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  for_each_stretch(
+      wave, i, row, wave.active, [&](const Bytes& bytes, base::LaneMask active, const base::WaveRegister& offset) {
+        base::for_each_lane(
+            active, [&](std::size_t lane) { load_components(wave, row, bytes, lane, offset.lane[lane] + row.added); });
+      });
+  return i + 1;
+}
+
+const Instruction* store_pointers(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  for_each_stretch(wave, i, row, wave.active & wave.live,
+                   [&](const Bytes& bytes, base::LaneMask active, const base::WaveRegister& start) {
+                     base::for_each_lane(active, [&](std::size_t lane) {
+                       store_components(wave, row, bytes, lane, start.lane[lane] + row.added);
+                     });
+                   });
   return i + 1;
 }
 
@@ -93,6 +123,8 @@ Handler load_narrow(Space space, bool uniform) {
       return uniform ? load_lanes<Space::kBuffer, true> : load_lanes<Space::kBuffer, false>;
     case Space::kPush:
       return uniform ? load_lanes<Space::kPush, true> : load_lanes<Space::kPush, false>;
+    case Space::kGlobal:
+      return load_pointers;
     default:
       return uniform ? load_lanes<Space::kShared, true> : load_lanes<Space::kShared, false>;
   }
@@ -105,6 +137,7 @@ Handler load_narrow_uniform(Space space) {
 }
 
 Handler store_narrow(Space space, bool uniform) {
+  if (space == Space::kGlobal) return store_pointers;
   if (space == Space::kBuffer) return uniform ? store_lanes<Space::kBuffer, true> : store_lanes<Space::kBuffer, false>;
   return uniform ? store_lanes<Space::kShared, true> : store_lanes<Space::kShared, false>;
 }

@@ -70,6 +70,8 @@ struct Pointer {
   bool row_major = false;
   std::uint32_t component_stride = 0;                   ///< bytes between components of a vector; 0: adjacent
   ir::ValueId low = ir::kNoValue, high = ir::kNoValue;  ///< kGlobal: the address
+  // kShared
+  bool explicit_layout = false;  ///< of blocks (SPV_KHR_workgroup_memory_explicit_layout); else a word per scalar
   // kShared: stage memory
   bool stage = false;         ///< laid out by locations (spirv/stage_memory.h)
   bool vertex_array = false;  ///< the next index selects a vertex
@@ -78,6 +80,10 @@ struct Pointer {
   // kDescriptor, kTexel
   ImageHandle image;
   ir::ValueId coord = ir::kNoValue, sample = ir::kNoValue;
+  bool is_volatile = false;  ///< every load is made
+
+  /// Whether every scalar takes words of its own, without gaps.
+  bool word_layout() const { return kind == Kind::kShared && !explicit_layout; }
 };
 
 /// A variable of storage class Function, Private, Input or Output, or a phi: becomes SSA or an ir::Array.
@@ -256,6 +262,8 @@ ir::ValueId add_scaled(Translator& t, ir::ValueId base, ir::ValueId index, std::
 /// Byte offset of a pointer into a buffer as a value (without its constant part).
 ir::ValueId dynamic_offset(Translator& t, const Pointer& pointer);
 ir::ValueId descriptor_element(Translator& t, const Pointer& pointer);
+/// Whether the module lays out Workgroup memory itself: its variables there are blocks, all or none.
+bool has_workgroup_blocks(const Translator& t);
 /// Fills data[] of a buffer instruction.
 void set_buffer(ir::Instr& instr, const Pointer& pointer);
 

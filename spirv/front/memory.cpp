@@ -113,12 +113,13 @@ ir::ValueId load_words(Translator& t, const Pointer& pointer, std::uint32_t coun
     const ir::ValueId value = emit(t, ir::Op::kLoadShared, count, false, {offset});
     last_instr(t).data[3] = at.constant_offset;
     last_instr(t).imm[1] = narrow;
+    last_instr(t).imm[2] = at.is_volatile ? 1 : 0;
     return value;
   }
   if (at.kind == Pointer::Kind::kGlobal) {
-    if (size != 4) throw Failure("8- and 16-bit numbers behind device addresses are not supported");
     const ir::ValueId value = emit(t, ir::Op::kLoadGlobal, count, false, {whole(at.low), whole(at.high), offset});
     last_instr(t).data[3] = at.constant_offset;
+    last_instr(t).imm[1] = narrow;
     return value;
   }
   const ir::Op op = at.kind == Pointer::Kind::kUniform ? ir::Op::kLoadUniform : ir::Op::kLoadStorage;
@@ -126,6 +127,7 @@ ir::ValueId load_words(Translator& t, const Pointer& pointer, std::uint32_t coun
   const ir::ValueId value = emit(t, op, count, false, {element, offset});
   set_buffer(last_instr(t), at);
   last_instr(t).imm[1] = narrow;
+  last_instr(t).imm[2] = at.is_volatile ? 1 : 0;
   return value;
 }
 
@@ -144,10 +146,10 @@ void store_words(Translator& t, const Pointer& pointer, ir::Src value, std::uint
   }
   t.function.interface.writes_memory = true;
   if (at.kind == Pointer::Kind::kGlobal) {
-    if (size != 4) throw Failure("8- and 16-bit numbers behind device addresses are not supported");
     ir::Instr& instr = emit_effect(t, ir::Op::kStoreGlobal, {whole(at.low), whole(at.high), offset, value});
     instr.data[3] = at.constant_offset;
     instr.imm[0] = mask;
+    instr.imm[1] = size == 4 ? 0 : size;
     return;
   }
   const ir::Src element = whole(descriptor_element(t, at));
@@ -203,7 +205,7 @@ struct Layout {
 
 Layout layout_of(const Translator& t, const Pointer& pointer) {
   const std::uint32_t width = number_type(t, pointer.type).width;
-  const bool in_word = width >= 32 || pointer.kind == Pointer::Kind::kShared;
+  const bool in_word = width >= 32 || pointer.word_layout();
   return {leaf_info(t, pointer.type).components, t.module.type(pointer.type).leaves, in_word ? 4 : width / 8,
           component_bytes(t, pointer)};
 }
@@ -341,7 +343,17 @@ void load_instruction(Translator& t, const Inst& inst, ir::Op) {
     t.images[inst.result] = load_handle(t, pointer);
     return;
   }
-  set_value(t, inst, load(t, pointer).leaves);
+  const bool is_volatile =
+      pointer.is_volatile ||
+      (inst.has(1) && (inst.operand(1) & static_cast<std::uint32_t>(spv::MemoryAccessMask::Volatile)) != 0);
+  if (!is_volatile) return set_value(t, inst, load(t, pointer).leaves);
+  // "the value of HelperInvocation changes" with demotion (Vulkan, Built-In Variables): read where it is loaded.
+  const DecorationRow* built_in = t.module.decoration(pointer.variable, spv::Decoration::BuiltIn);
+  if (built_in != nullptr && built_in->value == static_cast<std::uint32_t>(spv::BuiltIn::HelperInvocation))
+    return is_helper(t, inst, ir::Op::kMov);
+  Pointer marked = pointer;
+  marked.is_volatile = true;
+  set_value(t, inst, load(t, marked).leaves);
 }
 
 void store_instruction(Translator& t, const Inst& inst, ir::Op) {

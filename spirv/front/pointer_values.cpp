@@ -73,6 +73,7 @@ Pointer pointer_from(Translator& t, const Value& value) {
       return pointer;
     case spv::StorageClass::Workgroup:
       pointer.kind = Pointer::Kind::kShared;
+      pointer.explicit_layout = has_workgroup_blocks(t);
       pointer.offset = value.leaves[1];
       return pointer;
     default:
@@ -97,7 +98,7 @@ void pointer_difference(Translator& t, const Inst& inst, ir::Op) {
   const Type& type = t.module.type(a.type);
   if (a.leaves.size() != 2 || b.leaves.size() != 2) fail(inst, "operand is not a pointer");
   if (type.storage == spv::StorageClass::PhysicalStorageBuffer) fail(inst, "storage class is not supported");
-  const bool shared = type.storage == spv::StorageClass::Workgroup;
+  const bool shared = type.storage == spv::StorageClass::Workgroup && !has_workgroup_blocks(t);
   const std::uint32_t stride = shared ? 4 * t.module.type(type.element).scalars : type.array_stride;
   if (stride == 0) fail(inst, "pointer type without ArrayStride");
   const Expr bytes = apply(ir::Op::kISub, {Expr{&t, a.leaves[1]}, Expr{&t, b.leaves[1]}});

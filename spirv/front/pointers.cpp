@@ -53,6 +53,36 @@ Pointer descriptor_pointer(const Translator& t, const Inst& variable, std::uint3
   return pointer;
 }
 
+/// Bytes that a value of a type with an explicit layout takes, without padding at its end. `member`: what holds it as
+/// a member of a structure.
+std::uint64_t explicit_bytes(const Translator& t, std::uint32_t type_id,
+                             std::pair<std::uint32_t, std::uint32_t> member) {
+  const Type& type = t.module.type(type_id);
+  switch (type.kind) {
+    case Type::Kind::kStruct: {
+      std::uint64_t bytes = 0;
+      for (std::uint32_t i = 0; i < type.members.size(); i++) {
+        const DecorationRow* offset = t.module.decoration(type_id, Decoration::Offset, i + 1);
+        const std::uint64_t size = explicit_bytes(t, type.members[i], {type_id, i + 1});
+        bytes = std::max(bytes, (offset == nullptr ? 0 : offset->value) + size);
+      }
+      return bytes;
+    }
+    case Type::Kind::kArray:
+      return std::uint64_t{type.array_stride} * type.count;
+    case Type::Kind::kMatrix: {
+      const DecorationRow* stride = t.module.decoration(member.first, Decoration::MatrixStride, member.second);
+      const bool row_major = t.module.decoration(member.first, Decoration::RowMajor, member.second) != nullptr;
+      return (stride == nullptr ? 0 : std::uint64_t{stride->value}) *
+             (row_major ? t.module.type(type.element).count : type.count);
+    }
+    case Type::Kind::kVector:
+      return std::uint64_t{type.count} * t.module.type(type.element).width / 8;
+    default:
+      return type.width / 8;
+  }
+}
+
 Pointer shared_pointer(Translator& t, const Inst& variable, std::uint32_t type_id) {
   if (variable.has(1)) {  // "must be OpConstantNull" (Vulkan, Workgroup storage class); the memory starts as zeros
     const Constant* start = t.module.constant(variable.operand(1));
@@ -62,10 +92,15 @@ Pointer shared_pointer(Translator& t, const Inst& variable, std::uint32_t type_i
   Pointer pointer;
   pointer.kind = Pointer::Kind::kShared;
   pointer.type = type_id;
-  pointer.constant_offset = t.function.interface.shared_bytes;
-  const std::uint64_t end = pointer.constant_offset + 4ull * t.module.type(type_id).scalars;
+  pointer.explicit_layout = has_workgroup_blocks(t);
+  std::uint32_t& bytes = t.function.interface.shared_bytes;
+  // "all such variables must be decorated with Aliased" where there are several blocks: they share their memory.
+  pointer.constant_offset = pointer.explicit_layout ? 0 : bytes;
+  const std::uint64_t size =
+      pointer.explicit_layout ? explicit_bytes(t, type_id, {}) : 4ull * t.module.type(type_id).scalars;
+  const std::uint64_t end = pointer.constant_offset + size;
   if (end > (1u << 20)) fail(variable, "too much Workgroup memory");
-  t.function.interface.shared_bytes = static_cast<std::uint32_t>(end);
+  bytes = std::max(bytes, static_cast<std::uint32_t>(end));
   return pointer;
 }
 
@@ -123,7 +158,7 @@ void add_offset(Translator& t, Pointer& pointer, const Step& step, std::uint32_t
 }
 
 void step_struct(Translator& t, const Inst& inst, const Type& type, Pointer& pointer, const Step& step) {
-  if (pointer.kind == Pointer::Kind::kShared) {
+  if (pointer.word_layout()) {
     for (std::uint32_t i = 0; i < step.index; i++)
       pointer.constant_offset += 4 * t.module.type(type.members[i]).scalars;
     return;
@@ -135,10 +170,11 @@ void step_struct(Translator& t, const Inst& inst, const Type& type, Pointer& poi
   if (const DecorationRow* stride = t.module.decoration(type.id, Decoration::MatrixStride, member))
     pointer.matrix_stride = stride->value;
   pointer.row_major = t.module.decoration(type.id, Decoration::RowMajor, member) != nullptr;
+  pointer.is_volatile |= t.module.decoration(type.id, Decoration::Volatile, member) != nullptr;
 }
 
 void step_memory(Translator& t, const Inst& inst, const Type& type, Pointer& pointer, const Step& step) {
-  const bool shared = pointer.kind == Pointer::Kind::kShared;
+  const bool shared = pointer.word_layout();
   const std::uint32_t natural = shared ? 4 * t.module.type(type.element ? type.element : type.id).scalars : 0;
   switch (type.kind) {
     case Type::Kind::kStruct:
@@ -168,10 +204,18 @@ void step_memory(Translator& t, const Inst& inst, const Type& type, Pointer& poi
 
 }  // namespace
 
+bool has_workgroup_blocks(const Translator& t) {
+  return std::any_of(t.module.globals.begin(), t.module.globals.end(), [&](std::uint32_t index) {
+    const Type& pointer = t.module.type(t.module.code[index].result_type);
+    return pointer.storage == StorageClass::Workgroup &&
+           t.module.decoration(pointer.element, Decoration::Block) != nullptr;
+  });
+}
+
 std::uint32_t component_bytes(const Translator& t, const Pointer& pointer) {
   if (pointer.component_stride != 0) return pointer.component_stride;
   const Type& number = number_type(t, pointer.type);
-  return pointer.kind == Pointer::Kind::kShared ? 4 * number.scalars : number.width / 8;
+  return pointer.word_layout() ? 4 * number.scalars : number.width / 8;
 }
 
 std::uint32_t new_local(Translator& t, std::uint32_t type, StorageClass storage, std::uint32_t variable) {
@@ -204,6 +248,7 @@ const Pointer& pointer_of(Translator& t, std::uint32_t id) {
   if (variable.op != spv::Op::OpVariable) fail(variable, "is not a pointer that is supported");
   Pointer pointer = declare(t, variable);
   pointer.variable = id;
+  pointer.is_volatile = t.module.decoration(id, Decoration::Volatile) != nullptr;
   return t.pointers[id] = std::move(pointer);
 }
 
@@ -245,7 +290,7 @@ void pointer_access_chain(Translator& t, const Inst& inst, ir::Op) {
       pointer.kind != Pointer::Kind::kGlobal)
     fail(inst, "storage class is not supported");
   const Type& type = t.module.type(t.module.def(inst.operand(0)).result_type);
-  const std::uint32_t natural = pointer.kind == Pointer::Kind::kShared ? 4 * t.module.type(pointer.type).scalars : 0;
+  const std::uint32_t natural = pointer.word_layout() ? 4 * t.module.type(pointer.type).scalars : 0;
   const std::uint32_t stride = natural != 0 ? natural : type.array_stride;
   if (stride == 0) fail(inst, "pointer type without ArrayStride");
   add_offset(t, pointer, make_step(t, inst.operand(1)), stride);

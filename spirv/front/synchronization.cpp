@@ -70,6 +70,14 @@ void image_atomic(Translator& t, ir::AtomicOp op, const Pointer& pointer, const 
   instr.image = std::move(info);
 }
 
+/// Memory is coherent, so all that a barrier asks for is that loads behind it are made behind it.
+void order_memory(Translator& t, const Inst& inst, std::uint32_t semantics) {
+  const auto acquires = spv::MemorySemanticsMask::Acquire | spv::MemorySemanticsMask::AcquireRelease |
+                        spv::MemorySemanticsMask::SequentiallyConsistent;
+  if ((t.module.constant_u32(inst.operand(semantics), inst) & static_cast<std::uint32_t>(acquires)) != 0)
+    emit_effect(t, ir::Op::kMemoryBarrier);
+}
+
 }  // namespace
 
 void atomic(Translator& t, const Inst& inst, ir::Op) {
@@ -93,8 +101,7 @@ void atomic(Translator& t, const Inst& inst, ir::Op) {
   const bool shared = pointer.kind == Pointer::Kind::kShared;
   if (!shared && !is_image && !global && pointer.kind != Pointer::Kind::kStorage)
     fail(inst, "storage class is not supported");
-  if ((is_image || global) && width != 32)
-    fail(inst, "64-bit atomics are supported in buffers and workgroup memory only");
+  if (is_image && width != 32) fail(inst, "64-bit atomics on images are not supported");
   const bool wide = width == 64;
   const ir::Op kind = shared ? ir::Op::kAtomicShared : global ? ir::Op::kAtomicGlobal : ir::Op::kAtomicStorage;
   const ir::ValueId result = emit(t, kind, wide ? 2 : 1, false, std::move(src));
@@ -112,11 +119,15 @@ void atomic(Translator& t, const Inst& inst, ir::Op) {
 }
 
 void barrier(Translator& t, const Inst& inst, ir::Op) {
-  // Only the execution scope matters: memory is coherent. A subgroup is one wave, which runs in lockstep.
+  // A subgroup is one wave, which runs in lockstep.
   const std::uint32_t scope = t.module.constant_u32(inst.operand(0), inst);
   if (t.options.stage == VK_SHADER_STAGE_COMPUTE_BIT && scope == static_cast<std::uint32_t>(spv::Scope::Workgroup))
     emit_effect(t, ir::Op::kBarrier);
+  else
+    order_memory(t, inst, 2);
 }
+
+void memory_barrier(Translator& t, const Inst& inst, ir::Op) { order_memory(t, inst, 1); }
 
 void demote(Translator& t, const Inst&, ir::Op) {
   t.function.interface.uses_discard = true;

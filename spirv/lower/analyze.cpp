@@ -19,6 +19,7 @@ bool has_effect(const ScalarOp& op) {
     case Op::kAtomicShared:
     case Op::kStoreArray:
     case Op::kBarrier:
+    case Op::kMemoryBarrier:
     case Op::kDemote:
       return true;
     case Op::kImage:

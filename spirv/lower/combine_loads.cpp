@@ -29,7 +29,8 @@ std::uint32_t address_source(const ScalarOp& op) {
 }
 
 bool is_load(const ScalarOp& op) {
-  return address_source(op) != kNoIndex && op.op != Op::kStoreStorage && op.op != Op::kStoreShared;
+  return address_source(op) != kNoIndex && op.op != Op::kStoreStorage && op.op != Op::kStoreShared &&
+         op.instr->imm[2] == 0;
 }
 
 class LoadCombiner {
@@ -76,7 +77,7 @@ class LoadCombiner {
   /// Loads must not move over an operation that may change what they read.
   void forget(const ScalarOp& op) {
     if (op.kind != Kind::kIntrinsic) return;
-    const bool barrier = op.op == Op::kBarrier;
+    const bool barrier = op.op == Op::kBarrier || op.op == Op::kMemoryBarrier;
     const bool image = op.op == Op::kImage && (op.instr->image->access == ir::ImageAccess::kWrite ||
                                                op.instr->image->access == ir::ImageAccess::kAtomic);
     const bool storage = barrier || image || op.op == Op::kStoreStorage || op.op == Op::kAtomicStorage;

@@ -180,28 +180,33 @@ void Emitter::atomic_wide(const ScalarOp& op, MemoryOp row, std::uint32_t addres
 
 /// Sources: the address (two words), the offset, then values.
 void Emitter::global(const ScalarOp& op) {
+  constexpr std::uint32_t kValues = 3;
   MemoryOp row = buffer_row(op, false);
-  Handler handler = exec::atomic_global;
-  Place to;
-  std::uint32_t next = 3;
+  row.element_bytes = ir::element_bytes(op.instr->imm);
+  const bool narrow = row.element_bytes < 4, wide = row.element_bytes == 8;
+  Handler handler = nullptr;
+  Place to[2];
   if (op.op == Op::kLoadGlobal) {
-    handler = exec::load_global();
+    handler = narrow ? exec::load_narrow(exec::Space::kGlobal, false) : exec::load_global();
     row.at = op.at;
     row.components = op.dst.count;
     for (std::uint32_t c = 0; c < op.dst.count && c < 4; ++c) row.data[c] = place(result(op, c)).offset;
   } else if (op.op == Op::kStoreGlobal) {
-    handler = exec::store_global();
+    handler = narrow ? exec::store_narrow(exec::Space::kGlobal, false) : exec::store_global();
     row.write_mask = op.instr->imm[0] & 15;
+    std::uint32_t next = kValues;
     for (std::uint32_t c = 0; c < 4; ++c)
       if (row.write_mask >> c & 1) row.data[c] = in_register(source(op, next++)).offset;
   } else {
+    handler = wide ? exec::atomic_wide(exec::Space::kGlobal, false) : exec::atomic_global;
     row.atomic = static_cast<ir::AtomicOp>(op.instr->imm[0]);
-    if (op.src.count > next) row.data[0] = in_register(source(op, next)).offset;
-    if (op.src.count > next + 1) row.compare = in_register(source(op, next + 1)).offset;
-    if (op.dst.count != 0) to = place(result(op, 0));
+    std::uint32_t* const values[4] = {&row.data[0], wide ? &row.data[1] : &row.compare, &row.data[2], &row.data[3]};
+    for (std::uint32_t k = kValues; k < op.src.count && k < kValues + 4; ++k)
+      *values[k - kValues] = in_register(source(op, k)).offset;
+    for (std::uint32_t c = 0; c < op.dst.count && c < 2; ++c) to[c] = place(result(op, c));
   }
-  append(handler, ir::op_name(op.op), op.instr, to, in_register(source(op, 0)), in_register(source(op, 1)),
-         in_register(source(op, 2)));
+  const Place low = in_register(source(op, 0)), high = in_register(source(op, 1)), offset = in_register(source(op, 2));
+  append(handler, ir::op_name(op.op), op.instr, to[0], low, high, offset).extra[1] = to[1].offset;
   attach(row);
 }
 
@@ -304,6 +309,8 @@ void Emitter::environment(const ScalarOp& op) {
         return;  // a single wave is always at the same place
       program->has_barrier = true;
       append(exec::barrier, "barrier", op.instr);
+      return;
+    case Op::kMemoryBarrier:
       return;
     case Op::kHelperInvocation:
       handler = exec::helper_invocation;

@@ -49,6 +49,7 @@ void Scalarizer::build_instr(const ir::Instr& instr) {
     case Op::kLoadArray:
     case Op::kStoreArray:
     case Op::kBarrier:
+    case Op::kMemoryBarrier:
     case Op::kDemote:
     case Op::kHelperInvocation:
     case Op::kElect:
@@ -166,7 +167,7 @@ void Scalarizer::build_load(const ir::Instr& instr) {
     sources.push_back(component(src, 0));
     uniform = uniform && level(sources.back()) <= Level::kUniform;
   }
-  if (instr.op == Op::kLoadStorage && out_.writes_memory)
+  if (instr.op == Op::kLoadStorage && (out_.writes_memory || instr.imm[2] != 0))
     return define(instr.result, emit(instr, sources, instr.components, false));
   ScalarOp op;
   op.kind = Kind::kIntrinsic;
@@ -177,7 +178,8 @@ void Scalarizer::build_load(const ir::Instr& instr) {
 }
 
 void Scalarizer::set_load_offsets(ScalarOp& op) {
-  if (op.op != Op::kLoadPush && op.op != Op::kLoadUniform && op.op != Op::kLoadStorage && op.op != Op::kLoadShared)
+  if (op.op != Op::kLoadPush && op.op != Op::kLoadUniform && op.op != Op::kLoadStorage && op.op != Op::kLoadShared &&
+      op.op != Op::kLoadGlobal)
     return;
   for (std::uint32_t c = 0; c < 4; ++c) op.at[c] = c * ir::element_bytes(op.instr->imm);
 }

@@ -140,6 +140,7 @@ bool is_effect(const Graph& graph, const Inst& inst) {
     case Op::kAtomicShared:
     case Op::kStoreArray:
     case Op::kBarrier:
+    case Op::kMemoryBarrier:
       return true;
     case Op::kImage: {
       const auto access = graph.nodes[inst.node]->instr.image->access;

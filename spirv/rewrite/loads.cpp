@@ -33,11 +33,11 @@ struct WordHash {
   }
 };
 
-/// A load of words; those of bytes and halves stay as they are.
+/// A load of words that may be any earlier one; those of bytes and halves stay as they are.
 bool is_word_load(const Graph& graph, const Inst& inst) {
   return inst.kind == Kind::kIntrinsic &&
          (inst.op == Op::kLoadPush || inst.op == Op::kLoadUniform || inst.op == Op::kLoadStorage) &&
-         ir::element_bytes(graph.nodes[inst.node]->instr.imm) == 4;
+         ir::element_bytes(graph.nodes[inst.node]->instr.imm) == 4 && graph.nodes[inst.node]->instr.imm[2] == 0;
 }
 
 /// What other invocations or this one may do to storage buffers.
@@ -49,6 +49,7 @@ bool writes_storage(const Inst& inst) {
     case Op::kStoreGlobal:
     case Op::kAtomicGlobal:
     case Op::kBarrier:
+    case Op::kMemoryBarrier:
       return true;
     default:
       return false;
