@@ -71,8 +71,11 @@ void convert_number(Translator& t, const Inst& inst, ir::Op) {
         return convert_unsigned(value, width);
       case spv::Op::OpSConvert:
         return convert_signed(value, width);
-      default:
-        return convert_float(value, width);
+      default: {
+        const DecorationRow* mode = t.module.decoration(inst.result, spv::Decoration::FPRoundingMode);
+        const bool truncates = mode != nullptr && mode->value == static_cast<std::uint32_t>(spv::FPRoundingMode::RTZ);
+        return truncates ? truncate_float(value, width) : convert_float(value, width);
+      }
     }
   };
   set_number(t, inst, converted());
@@ -165,10 +168,18 @@ void extended_multiply(Translator& t, const Inst& inst, ir::Op high) {
   set_numbers(t, inst, std::array{low, apply(high, {a, b})});
 }
 
-/// 7.4. Vulkan has bit fields of 32-bit numbers only.
+/// 7.4. Vulkan has bit fields of 32-bit numbers only; offset and count may be of any width.
+void bit_field_extract(Translator& t, const Inst& inst, ir::Op op) {
+  const Expr base = number_of(t, inst.operand(0));
+  const Expr offset = convert_unsigned(number_of(t, inst.operand(1)), 32);
+  const Expr bits = convert_unsigned(number_of(t, inst.operand(2)), 32);
+  set_number(t, inst, apply(op, {base, offset, bits}));
+}
+
 void bit_field_insert(Translator& t, const Inst& inst, ir::Op) {
   const Expr base = number_of(t, inst.operand(0)), value = number_of(t, inst.operand(1));
-  const Expr offset = number_of(t, inst.operand(2)), bits = number_of(t, inst.operand(3));
+  const Expr offset = convert_unsigned(number_of(t, inst.operand(2)), 32);
+  const Expr bits = convert_unsigned(number_of(t, inst.operand(3)), 32);
   const Expr mask = apply(ir::Op::kBfiMask, {bits, offset});
   const Expr kept = base & apply(ir::Op::kNot, {mask});
   const Expr added = apply(ir::Op::kShl, {value, offset}) & mask;

@@ -118,7 +118,9 @@ void build_if(Translator& t, const Block& block, const Inst& branch) {
   const ir::ValueId chooser = condition(t, branch.operand(0));
   push_scope(t, Scope::Kind::kSelection, block.merge);
   ir::NodeList list;
-  {
+  if (branch.operand(1) == branch.operand(2)) {
+    build_branch(t, list, block.label, branch.operand(1), block.merge);
+  } else {
     // Also where the condition is a literal: the reference finds that out after its first round of rules.
     const Into into(t, list);
     ir::Node& node = emit_node(t, ir::Node::Kind::kIf);

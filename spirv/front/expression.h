@@ -54,6 +54,8 @@ Expr apply_wide(ir::Op op, std::span<const Expr> operands);
 Expr convert_unsigned(Expr value, std::uint8_t width);
 Expr convert_signed(Expr value, std::uint8_t width);
 Expr convert_float(Expr value, std::uint8_t width);
+/// Rounds towards zero (FPRoundingMode RTZ).
+Expr truncate_float(Expr value, std::uint8_t width);
 Expr float_to_int(Expr value, std::uint8_t width, bool is_signed);
 Expr int_to_float(Expr value, std::uint8_t width, bool is_signed);
 /// Constant of `width` bits.

@@ -357,8 +357,9 @@ const Constant* Module::constant(std::uint32_t id) const {
 
 std::uint32_t Module::constant_u32(std::uint32_t id, const Inst& user) const {
   const Constant* value = constant(id);
-  if (value == nullptr || value->words.size() != 1) fail(user, "operand is not a 32-bit integer constant");
-  return value->words[0];
+  const bool wide = value != nullptr && type(value->type).width == 64 && value->words.size() == 2;
+  if (value == nullptr || value->words.size() != (wide ? 2 : 1)) fail(user, "operand is not an integer constant");
+  return wide && value->words[1] != 0 ? UINT32_MAX : value->words[0];
 }
 
 const DecorationRow* Module::decoration(std::uint32_t id, spv::Decoration kind, std::uint32_t member) const {

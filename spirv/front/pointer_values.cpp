@@ -1,6 +1,8 @@
 // Pointers as values (SPIR-V 2.16.1, variable pointers; SPV_KHR_physical_storage_buffer): what OpPhi, OpSelect, loads
 // and calls pass on. Two words: of an address, the low and the high one; else a handle of the buffer (ir::kAnySet;
-// Workgroup: 0) and a byte offset.
+// Workgroup: 1, so that no pointer equals a null one) and a byte offset.
+#include <algorithm>
+
 #include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
 
@@ -39,6 +41,33 @@ std::vector<ir::ValueId> address_leaves(Translator& t, const Pointer& pointer) {
   return {sum.id, apply(ir::Op::kIAdd, {apply(ir::Op::kIAdd, {high, sign}), carry}).id};
 }
 
+/// The type of an array of buffers.
+bool is_block_array(const Translator& t, const Type& type) {
+  const bool array = type.kind == Type::Kind::kArray || type.kind == Type::Kind::kRuntimeArray;
+  return array && (t.module.decoration(type.element, spv::Decoration::Block) != nullptr ||
+                   t.module.decoration(type.element, spv::Decoration::BufferBlock) != nullptr);
+}
+
+/// Bytes from the start of a value in a buffer to its end: the stride of an array of them whose pointers have none.
+std::uint32_t bytes_of(const Translator& t, std::uint32_t type_id) {
+  const Type& type = t.module.type(type_id);
+  std::uint32_t end = 0;
+  switch (type.kind) {
+    case Type::Kind::kArray:
+      return type.count * type.array_stride;
+    case Type::Kind::kStruct:
+      for (std::uint32_t i = 0; i < type.members.size(); i++) {
+        const DecorationRow* offset = t.module.decoration(type_id, spv::Decoration::Offset, i + 1);
+        end = std::max(end, (offset != nullptr ? offset->value : 0) + bytes_of(t, type.members[i]));
+      }
+      return end;
+    case Type::Kind::kVector:
+      return type.count * bytes_of(t, type.element);
+    default:
+      return type.width / 8;
+  }
+}
+
 }  // namespace
 
 bool is_static_pointer(const Translator& t, std::uint32_t id) {
@@ -50,9 +79,8 @@ Value pointer_value(Translator& t, std::uint32_t type, const Pointer& pointer) {
     case Pointer::Kind::kGlobal:
       return {type, address_leaves(t, pointer)};
     case Pointer::Kind::kShared:
-      return {type, {constant_u32(t, 0), byte_offset(t, pointer).id}};
+      return {type, {constant_u32(t, 1), byte_offset(t, pointer).id}};
     case Pointer::Kind::kStorage:
-      if (pointer.descriptor_array) break;
       return {type, {buffer_handle(t, pointer).id, byte_offset(t, pointer).id}};
     default:
       break;
@@ -79,6 +107,7 @@ Pointer pointer_from(Translator& t, const Value& value) {
     default:
       pointer.kind = Pointer::Kind::kStorage;
       pointer.binding = {ir::kAnySet, 0, UINT32_MAX, nullptr};
+      pointer.descriptor_array = is_block_array(t, t.module.type(type.element));
       pointer.element = value.leaves[0];
       pointer.offset = value.leaves[1];
       return pointer;
@@ -99,7 +128,9 @@ void pointer_difference(Translator& t, const Inst& inst, ir::Op) {
   if (a.leaves.size() != 2 || b.leaves.size() != 2) fail(inst, "operand is not a pointer");
   if (type.storage == spv::StorageClass::PhysicalStorageBuffer) fail(inst, "storage class is not supported");
   const bool shared = type.storage == spv::StorageClass::Workgroup && !has_workgroup_blocks(t);
-  const std::uint32_t stride = shared ? 4 * t.module.type(type.element).scalars : type.array_stride;
+  const std::uint32_t stride = shared                   ? 4 * t.module.type(type.element).scalars
+                               : type.array_stride != 0 ? type.array_stride
+                                                        : bytes_of(t, type.element);
   if (stride == 0) fail(inst, "pointer type without ArrayStride");
   const Expr bytes = apply(ir::Op::kISub, {Expr{&t, a.leaves[1]}, Expr{&t, b.leaves[1]}});
   const Expr elements = apply(ir::Op::kIDiv, {bytes, imm_u32(t, stride)});

@@ -133,7 +133,18 @@ Pointer declare(Translator& t, const Inst& variable) {
   }
 }
 
+/// The constant's value as a signed number; beyond 32 bits it is outside of everything.
+std::uint32_t constant_index(const Translator& t, const Constant& constant) {
+  const std::uint32_t width = t.module.type(constant.type).width, low = constant.words[0];
+  if (width == 64 && constant.words[1] != static_cast<std::uint32_t>(static_cast<std::int32_t>(low) >> 31)) return ~0u;
+  if (width >= 32 || !t.module.type(constant.type).is_signed) return low;
+  return static_cast<std::uint32_t>(static_cast<std::int32_t>(low << (32 - width)) >> (32 - width));
+}
+
 Step make_step(Translator& t, std::uint32_t index_id) {
+  const Constant* constant = t.module.constant(index_id);
+  if (constant != nullptr && !constant->undefined && t.module.type(constant->type).kind == Type::Kind::kInt)
+    return {false, constant_index(t, *constant), ir::kNoValue};
   const ir::ValueId value = index_word(t, index_id);
   if (const auto* words = constant_of(t, value)) return {false, (*words)[0], ir::kNoValue};
   return {true, 0, value};
@@ -256,7 +267,8 @@ void step_into(Translator& t, const Inst& inst, Pointer& pointer, const Step& st
   const Type& type = t.module.type(pointer.type);
   if (pointer.descriptor_array) {
     if (!step.dynamic && step.index >= pointer.binding.count) fail(inst, "array element is outside the binding");
-    pointer.element = step.dynamic ? step.value : constant_u32(t, step.index);
+    const ir::ValueId index = step.dynamic ? step.value : constant_u32(t, step.index);
+    pointer.element = pointer.binding.set == ir::kAnySet ? add_scaled(t, pointer.element, index, 1) : index;
     pointer.descriptor_array = false;
     pointer.type = type.element;
     return;

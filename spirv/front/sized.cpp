@@ -470,6 +470,15 @@ Expr convert_float(Expr value, std::uint8_t width) {
   return apply_wide(Op::kDFromF, {&single, 1});
 }
 
+Expr truncate_float(Expr value, std::uint8_t width) {
+  if (width == 16 && value.width == 64) value = truncate_float(value, 32);
+  const Expr rounded = convert_float(value, width);
+  if (width >= value.width) return rounded;
+  const Expr grown = apply(Op::kFLt, {abs(value), abs(convert_float(rounded, value.width))});
+  const Expr step = with_width(words(Op::kB2I, {grown}), width);  // one less in the last place is nearer to zero
+  return apply(Op::kISub, {rounded, step});
+}
+
 Expr float_to_int(Expr value, std::uint8_t width, bool is_signed) {
   if (value.width == 16) value = from_half(value);
   const bool is_double = value.width == 64;

@@ -150,6 +150,149 @@ TEST(RunSpirv, PointersReachLiveMemoryOnly) {
   }
 }
 
+/// SPIR-V before 1.6 lets both sides of a conditional branch be one block.
+TEST(RunSpirv, BothSidesOfABranchMayBeOneBlock) {
+  const std::vector<std::uint32_t> got = run_spirv(R"(
+%small = OpULessThan %bool %x %u7
+OpSelectionMerge %after None
+OpBranchConditional %small %side %side
+%side = OpLabel
+%more = OpIAdd %uint %x %u7
+OpBranch %after
+%after = OpLabel
+%r = OpPhi %uint %more %side
+)");
+  for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], x + 7);
+}
+
+TEST(RunSpirv, OffsetAndCountOfABitFieldHaveAnyWidth) {
+  const std::vector<std::uint32_t> got = run_spirv(R"(
+%high = OpBitFieldInsert %uint %u0 %x %s8 %l6
+%low = OpBitFieldUExtract %uint %x %l2 %s2
+%r = OpIAdd %uint %high %low
+)",
+                                                   R"(
+%short = OpTypeInt 16 1
+%long = OpTypeInt 64 0
+%s2 = OpConstant %short 2
+%s8 = OpConstant %short 8
+%l2 = OpConstant %long 2
+%l6 = OpConstant %long 6
+)",
+                                                   "OpCapability Shader\nOpCapability Int16\nOpCapability Int64\n");
+  for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], (x << 8) + (x >> 2 & 3)) << x;
+}
+
+TEST(RunSpirv, LengthsAndIndicesHaveAnyWidth) {
+  const std::vector<std::uint32_t> got = run_spirv(R"(
+%a = OpAccessChain %local_uint %local %s1
+OpStore %a %x
+%b = OpInBoundsAccessChain %local_uint %local %l1
+%r = OpLoad %uint %b
+)",
+                                                   R"(
+%short = OpTypeInt 16 1
+%long = OpTypeInt 64 0
+%s1 = OpConstant %short 1
+%l1 = OpConstant %long 1
+%l2 = OpConstant %long 2
+%row = OpTypeArray %uint %l2
+%pair = OpTypeStruct %uint %uint
+%unused = OpTypeStruct %row
+%pair_ptr = OpTypePointer Private %pair
+%local_uint = OpTypePointer Private %uint
+%local = OpVariable %pair_ptr Private
+)",
+                                                   "OpCapability Shader\nOpCapability Int16\nOpCapability Int64\n");
+  for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], x) << x;
+}
+
+TEST(RunSpirv, UndefinedImagesMayStandUnused) {
+  const std::vector<std::uint32_t> got = run_spirv(R"(
+%nothing = OpUndef %image
+%none = OpUndef %sampler
+%r = OpCopyObject %uint %x
+)",
+                                                   R"(
+%float = OpTypeFloat 32
+%image = OpTypeImage %float 2D 0 0 0 1 Unknown
+%sampler = OpTypeSampler
+)");
+  for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], x);
+}
+
+TEST(RunSpirv, TruncatesToBinary16) {
+  const std::vector<std::uint32_t> got = run_spirv(R"(
+%given = OpConvertUToF %float %x
+%scaled = OpFMul %float %given %f
+%wide = OpFConvert %double %scaled
+%short = OpFConvert %half %wide
+%even = OpIMul %uint %x %u2
+%half_at = OpAccessChain %half_ptr %halves %u0 %even
+OpStore %half_at %short
+%word_at = OpAccessChain %uint_ptr %buffer %u0 %x
+%r = OpLoad %uint %word_at
+)",
+                                                   R"(
+%float = OpTypeFloat 32
+%double = OpTypeFloat 64
+%half = OpTypeFloat 16
+%f = OpConstant %float 1.00146484375
+%u2 = OpConstant %uint 2
+%half_array = OpTypeRuntimeArray %half
+%half_block = OpTypeStruct %half_array
+%half_block_ptr = OpTypePointer StorageBuffer %half_block
+%half_ptr = OpTypePointer StorageBuffer %half
+%halves = OpVariable %half_block_ptr StorageBuffer
+)",
+                                                   R"(
+OpCapability Shader
+OpCapability Float64
+OpCapability StorageBuffer16BitAccess
+OpExtension "SPV_KHR_16bit_storage"
+OpExtension "SPV_KHR_storage_buffer_storage_class"
+)",
+                                                   "Logical", R"(
+OpDecorate %short FPRoundingMode RTZ
+OpDecorate %half_array ArrayStride 2
+OpDecorate %half_block Block
+OpMemberDecorate %half_block 0 Offset 0
+OpDecorate %halves DescriptorSet 0
+OpDecorate %halves Binding 0
+OpDecorate %halves Aliased
+OpDecorate %buffer Aliased
+)");
+  // 1 + 1.5 / 1024 lies in the middle of 1 + 1 / 1024 and 1 + 2 / 1024, of which the second is even.
+  EXPECT_EQ(got[0], 0u);
+  EXPECT_EQ(got[1], 0x3c01u);
+  EXPECT_EQ(got[2], 0x4001u);
+  EXPECT_EQ(got[4], 0x4401u);
+}
+
+TEST(RunSpirv, ArraysOfBuffersMayBeSelected) {
+  const std::vector<std::uint32_t> got = run_spirv(R"(
+%small = OpULessThan %bool %x %u7
+%which = OpSelect %array_ptr %small %buffers %buffers
+%from = OpAccessChain %uint_ptr %which %u0 %u0 %x
+OpStore %from %u7
+%back = OpAccessChain %uint_ptr %buffer %u0 %x
+%r = OpLoad %uint %back
+)",
+                                                   R"(
+%one = OpTypeArray %block %u1
+%array_ptr = OpTypePointer StorageBuffer %one
+%buffers = OpVariable %array_ptr StorageBuffer
+)",
+                                                   R"(
+OpCapability Shader
+OpCapability VariablePointers
+)",
+                                                   "Logical",
+                                                   "OpDecorate %buffers DescriptorSet 0\n"
+                                                   "OpDecorate %buffers Binding 0\n");
+  for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], 7u);
+}
+
 TEST(RunSpirv, FaultsNameTheSourceFile) {
   CompileOptions options = options_for(VK_SHADER_STAGE_COMPUTE_BIT);
   auto shader = compile(assemble(R"(
