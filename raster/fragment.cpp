@@ -202,7 +202,8 @@ void set_built_ins(ShadeRun& run) {
                      as_floats(runner.input(frag.point_coord[c])));
   per_quad(run, frag.front_facing, [](const Primitive& p) { return p.front ? ~0u : 0u; });
   per_quad(run, frag.primitive_id, [](const Primitive& p) { return p.id; });
-  if (frag.view_index != kNoReg) splat(runner.input(frag.view_index), run.worker.target.layer);
+  if (frag.view_index != kNoReg)
+    splat(runner.input(frag.view_index), run.worker.pass->view_mask != 0 ? run.worker.target.layer : 0);
   if (frag.helper != kNoReg) {
     WaveRegister& out = runner.input(frag.helper);
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)

@@ -41,6 +41,15 @@ void main() {
            {run.buffer(5 * 3 * 2 * 24 * 64)}, 4, 3, 2);
 }
 
+CTS_CASE("compute", "device_index") {
+  dispatch(run, R"(
+#extension GL_EXT_device_group : require
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) buffer R { uint r[]; };
+void main() { r[gl_GlobalInvocationID.x] = gl_GlobalInvocationID.x + 7u * uint(gl_DeviceIndex); })",
+           {run.buffer(4 * 64)}, 1);
+}
+
 void shared_reduction(Run& run, uint32_t local_size) {
   const Buffer in = run.buffer_of(random_words(run, local_size * 8));
   dispatch(run, "#define N " + std::to_string(local_size) + R"(

@@ -332,5 +332,49 @@ CTS_RANDOM("renderpass", "random_layered_clears", 30) {
   run.out("depth", depth);
 }
 
+/// The view is 0 where the layer comes from a shader.
+CTS_CASE("renderpass", "view_index_without_views") {
+  run.require(run.gpu.features.geometryShader, "geometry shaders");
+  TargetSpec layered;
+  layered.layers = kLayers;
+  const Target target = make_target(run, layered);
+  GraphicsSpec spec;
+  spec.vertex = kColorVertex;
+  spec.geometry = R"(
+layout(triangles) in;
+layout(triangle_strip, max_vertices = 3) out;
+layout(location = 0) in vec4 passed[];
+layout(location = 0) out vec4 color;
+void main() {
+  for (int i = 0; i < 3; ++i) {
+    gl_Layer = gl_PrimitiveIDIn % 4;
+    gl_Position = gl_in[i].gl_Position;
+    color = passed[i];
+    EmitVertex();
+  }
+})";
+  spec.fragment = R"(
+#extension GL_EXT_multiview : require
+layout(location = 0) in vec4 passed;
+layout(location = 0) out vec4 result;
+void main() { result = passed * 0.5 + 0.15 * float(gl_ViewIndex); })";
+  spec.floats({4, 4});
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  std::vector<float> values;
+  for (uint32_t i = 0; i < 24; ++i) {
+    for (const float v : {run.random.real(-1.0f, 1.0f), run.random.real(-1.0f, 1.0f), 0.5f, 1.0f}) values.push_back(v);
+    for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
+  }
+  const Buffer vertices = run.buffer_of(values);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, 24, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+}
+
 }  // namespace
 }  // namespace vitrine::cts

@@ -303,5 +303,41 @@ OpStore %second %all
            "%five_private Private %zeros\n");
 }
 
+/// An output that the shader does not name has the value of its initializer.
+CTS_CASE("spirv_assembly", "initialized_output") {
+  const Target target = make_target(run, {});
+  GraphicsSpec spec;
+  spec.vertex = kFullScreenVertex;
+  spec.fragment_module = run.module(assemble_spirv(R"(
+OpCapability Shader
+OpMemoryModel Logical GLSL450
+OpEntryPoint Fragment %main "main" %color
+OpExecutionMode %main OriginUpperLeft
+OpDecorate %color Location 0
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%float = OpTypeFloat 32
+%v4float = OpTypeVector %float 4
+%v4ptr = OpTypePointer Output %v4float
+%a = OpConstant %float 0.25
+%b = OpConstant %float 0.75
+%value = OpConstantComposite %v4float %a %b %b %a
+%color = OpVariable %v4ptr Output %value
+%main = OpFunction %void None %fn
+%entry = OpLabel
+OpReturn
+OpFunctionEnd
+)"));
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    vkCmdDraw(cmd, 3, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+  run.may_be_blank();
+}
+
 }  // namespace
 }  // namespace vitrine::cts

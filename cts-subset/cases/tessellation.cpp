@@ -245,6 +245,43 @@ void main() {
   draw(run, target, spec, patches, 2);
 }
 
+/// Outputs of the patch as members of a block.
+CTS_CASE("tessellation", "patch_block") {
+  const Target target = make_target(run, large());
+  GraphicsSpec spec = base_spec(run);
+  spec.control = R"(
+layout(vertices = 4) out;
+layout(location = 0) in vec4 passed[];
+layout(location = 0) out vec4 color[];
+layout(location = 1) patch out Shared { vec4 tint; float scale[2]; } whole;
+layout(set = 0, binding = 0) readonly buffer Levels { float level[]; };
+void main() {
+  gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position;
+  color[gl_InvocationID] = passed[gl_InvocationID];
+  if (gl_InvocationID == 1) {
+    whole.tint = passed[2].wzyx;
+    whole.scale[0] = passed[0].x;
+    whole.scale[1] = passed[3].y;
+    for (int i = 0; i < 4; ++i) gl_TessLevelOuter[i] = level[gl_PrimitiveID * 6 + i];
+    for (int i = 0; i < 2; ++i) gl_TessLevelInner[i] = level[gl_PrimitiveID * 6 + 4 + i];
+  }
+})";
+  spec.evaluation = R"(
+layout(quads, equal_spacing, ccw) in;
+layout(location = 0) in vec4 color[];
+layout(location = 1) patch in Shared { vec4 tint; float scale[2]; } whole;
+layout(location = 0) out vec4 passed;
+void main() {
+  vec2 at = gl_TessCoord.xy;
+  vec4 top = mix(gl_in[0].gl_Position, gl_in[1].gl_Position, at.x);
+  vec4 bottom = mix(gl_in[3].gl_Position, gl_in[2].gl_Position, at.x);
+  gl_Position = mix(top, bottom, at.y);
+  passed = mix(color[0] * whole.scale[0], color[2] * whole.scale[1], at.x) * 0.5 + whole.tint * 0.5;
+})";
+  Patches patches = make_patches(run.random, 4, 3, 6.0f, false);
+  draw(run, target, spec, patches, 2);
+}
+
 CTS_CASE("tessellation", "one_control_point") {
   const Target target = make_target(run, large());
   GraphicsSpec spec = base_spec(run);

@@ -227,6 +227,26 @@ CTS_CASE("transform_feedback", "overflow") {
   capture(run, base_spec(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST), false, 48 * 3 * 7 + 20);
 }
 
+/// The blocks of an array are captured by consecutive buffers.
+CTS_CASE("transform_feedback", "array_of_blocks") {
+  GraphicsSpec spec = base_spec(VK_PRIMITIVE_TOPOLOGY_LINE_STRIP);
+  spec.vertex = R"(
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0, xfb_buffer = 0, xfb_offset = 8, xfb_stride = 40) out Block { vec4 wide; vec2 narrow; } blocks[2];
+void main() {
+  blocks[0].wide = color;
+  blocks[0].narrow = position.xy;
+  blocks[1].wide = color.wzyx;
+  blocks[1].narrow = color.xy;
+  gl_Position = position;
+})";
+  spec.raster.rasterizerDiscardEnable = VK_TRUE;
+  spec.fragment.clear();
+  capture(run, spec, false);
+  run.may_be_blank();
+}
+
 CTS_CASE("transform_feedback", "rasterizer_discard") {
   const Feedback f = load_feedback(run);
   const Target target = make_target(run, {});

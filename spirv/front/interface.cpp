@@ -14,6 +14,8 @@ using Kind = Type::Kind;
 
 /// The value is composed by subgroup_built_in().
 constexpr ir::Op kOfSubgroup = ir::Op::kCount;
+/// 0 in every invocation.
+constexpr ir::Op kZero = ir::Op::kConst;
 
 constexpr BuiltInRow kBuiltIns[] = {
     {spv::BuiltIn::VertexIndex, BuiltIn::kVertexIndex, ir::Op::kLoadInput, 1},
@@ -42,6 +44,7 @@ constexpr BuiltInRow kBuiltIns[] = {
     {spv::BuiltIn::TessLevelInner, BuiltIn::kTessLevelInner, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::FragDepth, BuiltIn::kFragDepth, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::FragStencilRefEXT, BuiltIn::kFragStencilRef, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::DeviceIndex, BuiltIn::kNone, kZero, 1},
     {spv::BuiltIn::HelperInvocation, BuiltIn::kNone, ir::Op::kHelperInvocation, 1},
     {spv::BuiltIn::WorkgroupId, BuiltIn::kNone, ir::Op::kWorkgroupId, 3},
     {spv::BuiltIn::NumWorkgroups, BuiltIn::kNone, ir::Op::kNumWorkgroups, 3},
@@ -83,6 +86,7 @@ struct Walk {
   std::uint32_t element = 0;  ///< scalars of the built-in so far (ClipDistance[i])
   bool captured = false;      ///< by transform feedback
   std::uint32_t xfb_offset = 0;
+  std::uint32_t block = 0;  ///< number of the block in an array of them
 
   void leaf(std::uint32_t type_id, const Decorated& decorated) {
     Leaf leaf;
@@ -113,7 +117,7 @@ struct Walk {
         slot.index = static_cast<std::uint8_t>(index->value);
     }
     interpolation(slot, decorated);
-    if (!input) feedback(slot, decorated, info.components * type.leaves);
+    if (!input) feedback(slot, decorated, info.components, type.leaves);
     leaf.invariant = decorated.has(Decoration::Invariant);
     leaves.push_back(std::move(leaf));
   }
@@ -129,15 +133,18 @@ struct Walk {
       slot.sample_location = SampleLocation::kCentroid;
   }
 
-  /// Transform feedback: leaves of a captured variable or block member lie one after the other.
-  void feedback(InterfaceSlot& slot, const Decorated& decorated, std::uint32_t words) {
+  /// Transform feedback: leaves of a captured variable or block member lie one after the other; the blocks of an array
+  /// go to consecutive buffers.
+  /// `words`: of a component. Those of two words are aligned.
+  void feedback(InterfaceSlot& slot, const Decorated& decorated, std::uint32_t components, std::uint32_t words) {
     const DecorationRow* stream = decorated.find(Decoration::Stream);
     if (stream != nullptr) slot.stream = static_cast<std::uint8_t>(stream->value & 3);
     if (!captured) return;
     const DecorationRow* buffer = decorated.find(Decoration::XfbBuffer);
-    slot.xfb_buffer = static_cast<std::uint8_t>(buffer != nullptr ? buffer->value % kMaxXfbBuffers : 0);
+    slot.xfb_buffer = static_cast<std::uint8_t>(((buffer != nullptr ? buffer->value : 0) + block) % kMaxXfbBuffers);
+    if (words == 2) xfb_offset = (xfb_offset + 7) & ~7u;
     slot.xfb_offset = xfb_offset;
-    xfb_offset += 4 * words;
+    xfb_offset += 4 * components * words;
     if (const DecorationRow* stride = decorated.find(Decoration::XfbStride))
       t.function.interface.xfb_stride[slot.xfb_buffer] = stride->value;
   }
@@ -173,12 +180,14 @@ struct Walk {
       }
       path.pop_back();
     }
+    if (is_struct && decorated.member == 0 && t.module.decoration(type_id, Decoration::Block) != nullptr) block++;
   }
 };
 
 std::vector<ir::ValueId> input_values(Translator& t, const Leaf& leaf) {
   const ir::ValueInfo info = leaf_info(t, leaf.type);
   if (leaf.built_in != nullptr && leaf.built_in->op == kOfSubgroup) return {subgroup_built_in(t, leaf.built_in->spirv)};
+  if (leaf.built_in != nullptr && leaf.built_in->op == kZero) return {constant_u32(t, 0)};
   if (leaf.built_in != nullptr && leaf.built_in->slot == BuiltIn::kNone)
     return {emit(t, leaf.built_in->op, leaf.built_in->components, info.boolean, {})};
   const std::uint32_t words = t.module.type(leaf.type).leaves;
@@ -200,6 +209,16 @@ void store_outputs(Translator& t, const Leaf& leaf, std::span<const ir::ValueId>
     instr.data[0] = static_cast<std::uint32_t>(t.function.interface.outputs.size());
     instr.exact = leaf.invariant;
     t.function.interface.outputs.push_back(word_slot(leaf, i));
+  }
+}
+
+/// Outputs that the shader does not name have the value of their initializer all the same.
+void declare_initialized(Translator& t) {
+  for (const std::uint32_t id : t.module.interface) {
+    const Inst& variable = t.module.def(id);
+    if (variable.op == spv::Op::OpVariable && variable.has(1) &&
+        t.module.type(variable.result_type).storage == spv::StorageClass::Output)
+      pointer_of(t, id);
   }
 }
 
@@ -232,7 +251,7 @@ InterfaceSlot word_slot(const Leaf& leaf, std::uint32_t word) {
 
 std::vector<Leaf> interface_leaves(Translator& t, const Local& local) {
   const Inst& variable = t.module.def(local.variable);
-  Walk walk{t, variable, local.storage == spv::StorageClass::Input, {}, {}, 0, 0, false, 0};
+  Walk walk{t, variable, local.storage == spv::StorageClass::Input, {}, {}, 0, 0, false, 0, 0};
   if (const DecorationRow* row = t.module.decoration(local.variable, Decoration::Location)) walk.location = row->value;
   if (!walk.input) walk.start_capture(t.module.decoration(local.variable, Decoration::Offset));
   walk.type(local.type, {t.module, local.variable, 0, 0});
@@ -270,10 +289,13 @@ ir::ValueId fragment_position(Translator& t) {
   slot.built_in = BuiltIn::kFragCoord;
   for (slot.component = 0; slot.component < 2; slot.component++)
     parts.push_back(whole(emit(t, ir::Op::kF2I, 1, false, {whole(load_input(t, slot))})));
+  // The layer is that of the view or, without views, that of the primitive.
   slot.built_in = BuiltIn::kViewIndex;
   slot.component = 0;
   slot.type = BaseType::kInt;
-  parts.push_back(whole(load_input(t, slot)));
+  const ir::ValueId view = load_input(t, slot);
+  slot.built_in = BuiltIn::kLayer;
+  parts.push_back(whole(emit(t, ir::Op::kIAdd, 1, false, {whole(view), whole(load_input(t, slot))})));
   const ir::ValueId position = vec(t, std::move(parts), false);
   t.list = list;
   t.exact = exact;
@@ -281,6 +303,7 @@ ir::ValueId fragment_position(Translator& t) {
 }
 
 void connect_interface(Translator& t) {
+  declare_initialized(t);
   t.inst = nullptr;
   t.exact = false;
   for (std::uint32_t i = 0; i < t.locals.size(); i++) {

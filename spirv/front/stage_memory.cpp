@@ -23,8 +23,17 @@ bool is_tess_level(const Translator& t, const Inst& variable) {
                             row->value == static_cast<std::uint32_t>(spv::BuiltIn::TessLevelInner));
 }
 
+/// Not in memory, although HLSL declares it as a patch's or as an array.
+bool is_tess_coord(const Translator& t, const Inst& variable) {
+  const DecorationRow* row = t.module.decoration(variable.result, Decoration::BuiltIn);
+  return row != nullptr && row->value == static_cast<std::uint32_t>(spv::BuiltIn::TessCoord);
+}
+
+/// The decoration may stand at the members of a block instead.
 bool is_patch(const Translator& t, const Inst& variable) {
-  return t.module.decoration(variable.result, Decoration::Patch) != nullptr || is_tess_level(t, variable);
+  if (t.module.decoration(variable.result, Decoration::Patch) != nullptr || is_tess_level(t, variable)) return true;
+  const Type& type = t.module.type(t.module.type(variable.result_type).element);
+  return type.kind == Kind::kStruct && t.module.decoration(type.id, Decoration::Patch, 1) != nullptr;
 }
 
 /// Locations that a value of this type takes.
@@ -191,6 +200,7 @@ bool in_stage_memory(const Translator& t, const Inst& variable) {
   const Type& pointer = t.module.type(variable.result_type);
   const bool input = pointer.storage == spv::StorageClass::Input;
   const bool arrayed = input && t.module.type(pointer.element).kind == Kind::kArray;
+  if (input && is_tess_coord(t, variable)) return false;
   switch (t.options.stage) {
     case VK_SHADER_STAGE_GEOMETRY_BIT:
       return arrayed;
@@ -203,8 +213,9 @@ bool in_stage_memory(const Translator& t, const Inst& variable) {
   }
 }
 
-Pointer stage_pointer(Translator& t, const Inst& variable) {
-  if (variable.has(1)) fail(variable, "initializer of this variable is not supported");
+namespace {
+
+Pointer place(Translator& t, const Inst& variable) {
   const Type& type = t.module.type(variable.result_type);
   Pointer pointer;
   pointer.kind = Pointer::Kind::kShared;
@@ -228,6 +239,20 @@ Pointer stage_pointer(Translator& t, const Inst& variable) {
   const DecorationRow* component = t.module.decoration(variable.result, Decoration::Component);
   pointer.constant_offset = 4 * (location_word(pointer.patch, location != nullptr ? location->value : 0) +
                                  (component != nullptr ? component->value : 0));
+  return pointer;
+}
+
+}  // namespace
+
+Pointer stage_pointer(Translator& t, const Inst& variable) {
+  const Pointer pointer = place(t, variable);
+  if (variable.has(1)) {
+    const Inst* const inst = std::exchange(t.inst, &variable);
+    ir::NodeList* const list = std::exchange(t.list, &t.prologue);
+    store(t, pointer, value_of(t, variable.operand(1)));
+    t.list = list;
+    t.inst = inst;
+  }
   return pointer;
 }
 
@@ -292,7 +317,8 @@ void end_primitive(Translator& t, const Inst& inst, ir::Op) {
 void finish_emission(Translator& t) {
   each_emitted(t, [&](std::uint32_t local, const Leaf& leaf, std::uint32_t word) {
     const std::uint32_t first = leaf.path.empty() ? kWholeVariable : leaf.path[0].index;
-    if (t.stored.count({local, first}) == 0 && t.stored.count({local, kWholeVariable}) == 0) return;
+    const bool captured = leaf.slot.xfb_buffer < kMaxXfbBuffers;  // whatever it holds
+    if (!captured && t.stored.count({local, first}) == 0 && t.stored.count({local, kWholeVariable}) == 0) return;
     for (std::uint32_t i = 0; i < t.module.type(leaf.type).scalars; i++) {
       InterfaceSlot slot = word_slot(leaf, i);
       slot.reg = word + i;
