@@ -234,9 +234,14 @@ void assemble_line(Assembler& a, const std::uint32_t slot[2]) {
 /// unchanged if it lies within the clip volume; otherwise, it is discarded." (The reference keeps those outside in x
 /// and y: deviation point-clipping.)
 void assemble_point(Assembler& a, std::uint32_t slot) {
-  if (a.scratch.code[slot] != 0) return;
+  const ClipCode code = a.scratch.code[slot];
+  if ((code & ~kClipXY) != 0) return;
   const ClipVertex v = clip_vertex(a, slot);
   if (a.plan.out.cull_count && culled_by_distance(a, &slot, 1)) return;
+  // Clipping primitives: the reference's count, and any is allowed for what is outside.
+  if (std::atomic<std::uint64_t>* statistics = a.chunk.draw->call.queries.statistics)
+    statistics[6].fetch_add(1, std::memory_order_relaxed);
+  if (code != 0) return;
   choose_layer_and_viewport(a, slot);
   setup_point(a.setup, window_record(a, v), true);
 }
@@ -280,7 +285,7 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
     }
     first_entry += span.count();
   }
-  if (chunk.draw->call.queries.statistics)  // clipping primitives
+  if (chunk.draw->call.queries.statistics && !plan.draws_points)  // clipping primitives
     chunk.draw->call.queries.statistics[6].fetch_add(scratch.primitives.size(), std::memory_order_relaxed);
 }
 
@@ -305,7 +310,7 @@ void assemble_listed(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fro
   }
   if (std::atomic<std::uint64_t>* statistics = chunk.draw->call.queries.statistics) {
     statistics[5].fetch_add(primitives.size(), std::memory_order_relaxed);  // clipping invocations, primitives
-    statistics[6].fetch_add(scratch.primitives.size() - before, std::memory_order_relaxed);
+    if (!plan.draws_points) statistics[6].fetch_add(scratch.primitives.size() - before, std::memory_order_relaxed);
   }
 }
 

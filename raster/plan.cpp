@@ -404,8 +404,8 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
   if (!plan.depth_test && !plan.depth_bounds && !plan.stencil_test) return;
   plan.depth_order = TestOrder::kEarly;
   if (!fragment || fragment->early_fragment_tests) return;
-  if (state.ordered_attachment_access) {
-    plan.depth_order = TestOrder::kLate;  // the fragment sees the depth before its own
+  if (state.ordered_attachment_access || fragment->reads_attachment) {
+    plan.depth_order = TestOrder::kLate;  // the fragment may see the depth before its own
     return;
   }
   const bool replaces = plan.frag.depth != kNoReg || plan.frag.stencil != kNoReg;

@@ -128,6 +128,7 @@ struct ShaderInterface {
 
   bool uses_discard = false;          ///< may end fragments (kill, terminate, demote)
   bool writes_memory = false;         ///< stores or atomics to buffers or images
+  bool reads_attachment = false;      ///< loads from input attachments
   bool early_fragment_tests = false;  ///< execution mode
   bool post_depth_coverage = false;   ///< execution mode: SampleMask as an input counts what passed the early tests
   bool per_sample = false;            ///< declares SampleId, SamplePosition or a `sample` input, read or not

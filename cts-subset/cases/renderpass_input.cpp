@@ -111,5 +111,98 @@ const bool kRegistered = [] {
   return true;
 }();
 
+/// An input attachment that is the depth attachment as well: a fragment reads what was there before its own depth.
+void read_own_depth(Run& run) {
+  ImageSpec spec;
+  spec.format = VK_FORMAT_D32_SFLOAT;
+  spec.extent = {70, 66, 1};
+  spec.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
+  const Image depth = run.image(spec);
+  spec.format = VK_FORMAT_R32_SFLOAT;
+  spec.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  const Image color = run.image(spec);
+  std::vector<VkAttachmentDescription> attachments;
+  for (const Image* image : {&depth, &color})
+    attachments.push_back({0, image->spec.format, VK_SAMPLE_COUNT_1_BIT, VK_ATTACHMENT_LOAD_OP_CLEAR,
+                           VK_ATTACHMENT_STORE_OP_STORE, VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                           VK_ATTACHMENT_STORE_OP_DONT_CARE, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL});
+  const VkAttachmentReference references[] = {{0, VK_IMAGE_LAYOUT_GENERAL}, {1, VK_IMAGE_LAYOUT_GENERAL}};
+  VkSubpassDescription subpass{};
+  subpass.colorAttachmentCount = subpass.inputAttachmentCount = 1;
+  subpass.pInputAttachments = subpass.pDepthStencilAttachment = &references[0];
+  subpass.pColorAttachments = &references[1];
+  constexpr VkPipelineStageFlags kTests =
+      VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+  const VkSubpassDependency dependency{0,
+                                       0,
+                                       kTests,
+                                       VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                                       VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                                       VK_ACCESS_INPUT_ATTACHMENT_READ_BIT,
+                                       VK_DEPENDENCY_BY_REGION_BIT};
+  VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+  info.attachmentCount = 2;
+  info.pAttachments = attachments.data();
+  info.subpassCount = info.dependencyCount = 1;
+  info.pSubpasses = &subpass;
+  info.pDependencies = &dependency;
+  VkRenderPass pass;
+  CTS_VK(vkCreateRenderPass(run.device, &info, nullptr, &pass));
+  run.own(pass, vkDestroyRenderPass);
+  const VkImageView views[] = {depth.view, color.view};
+  VkFramebufferCreateInfo framebuffer_info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+  framebuffer_info.renderPass = pass;
+  framebuffer_info.attachmentCount = 2;
+  framebuffer_info.pAttachments = views;
+  framebuffer_info.width = 70;
+  framebuffer_info.height = 66;
+  framebuffer_info.layers = 1;
+  VkFramebuffer framebuffer;
+  CTS_VK(vkCreateFramebuffer(run.device, &framebuffer_info, nullptr, &framebuffer));
+  run.own(framebuffer, vkDestroyFramebuffer);
+
+  const Resources res = run.resources({input_attachment(0, depth)});
+  GraphicsSpec graphics;
+  graphics.layout = res.layout;
+  graphics.vertex = kFullScreenVertex;
+  graphics.fragment = R"(
+layout(input_attachment_index = 0, binding = 0) uniform subpassInput depth;
+layout(location = 0) out float result;
+void main() { result = subpassLoad(depth).x * 8.0 + gl_FragCoord.z + gl_FragCoord.x * 0.01; })";
+  graphics.depth.depthTestEnable = graphics.depth.depthWriteEnable = VK_TRUE;
+  graphics.depth.depthCompareOp = VK_COMPARE_OP_ALWAYS;
+  graphics.dynamic = {VK_DYNAMIC_STATE_VIEWPORT};
+  const VkPipeline pipeline = make_pipeline(run, graphics, pass, 0, 1, {70, 66}, VK_SAMPLE_COUNT_1_BIT);
+  run.once([&](VkCommandBuffer cmd) {
+    VkClearValue clears[2] = {};
+    clears[0].depthStencil.depth = 0.875f;
+    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    begin.renderPass = pass;
+    begin.framebuffer = framebuffer;
+    begin.renderArea = {{0, 0}, {70, 66}};
+    begin.clearValueCount = 2;
+    begin.pClearValues = clears;
+    vkCmdBeginRenderPass(cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    bind_pipeline(cmd, pipeline);
+    res.bind(cmd);
+    for (const float nearest : {0.25f, 0.5f}) {
+      const VkViewport viewport{0, 0, 70, 66, nearest, 1.0f};
+      vkCmdSetViewport(cmd, 0, 1, &viewport);
+      VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+      barrier.srcAccessMask = VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+      barrier.dstAccessMask = VK_ACCESS_INPUT_ATTACHMENT_READ_BIT;
+      vkCmdPipelineBarrier(cmd, kTests, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_DEPENDENCY_BY_REGION_BIT, 1, &barrier,
+                           0, nullptr, 0, nullptr);
+      vkCmdDraw(cmd, 3, 1, 0, 0);
+    }
+    vkCmdEndRenderPass(cmd);
+  });
+  run.out("depth", depth);
+  run.out("color", color);
+  run.may_be_blank();
+}
+
+CTS_CASE("renderpass", "input_attachment.own_depth") { read_own_depth(run); }
+
 }  // namespace
 }  // namespace vitrine::cts

@@ -24,7 +24,7 @@ ir::ValueId built_in_input(Translator& t, BuiltIn built_in, std::uint8_t compone
 ir::ValueId fragment_position(Translator& t);
 
 /// Descriptors and dimensions of an image: everything but what is done with it.
-ir::ImageInfo image_info(const Translator& t, const ImageHandle& handle);
+ir::ImageInfo image_info(Translator& t, const ImageHandle& handle);
 
 /// Collects the sources of an image instruction in the order of ir::ImageOperand.
 class ImageSources {

@@ -164,11 +164,12 @@ std::vector<ir::Src> ImageSources::take() {
   return present;
 }
 
-ir::ImageInfo image_info(const Translator& t, const ImageHandle& handle) {
+ir::ImageInfo image_info(Translator& t, const ImageHandle& handle) {
   ir::ImageInfo info;
   if (handle.image_type != 0) {
     const Type& type = t.module.type(handle.image_type);
     info.dim = dimension(type);
+    if (type.dim == spv::Dim::SubpassData) t.function.interface.reads_attachment = true;
     info.arrayed = type.arrayed;
     info.multisampled = type.multisampled;
   }
