@@ -4,6 +4,12 @@
 #include <spirv-tools/libspirv.h>
 #include <spirv/unified1/spirv.hpp11>
 
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "spirv/front/translate.h"
 #include "spirv/ir_passes.h"
 #include "spirv/lower/lower.h"
@@ -17,8 +23,7 @@ constexpr std::size_t kSmallModule = 4096;
 
 /// SPIRV-Tools' validator, told to accept every block layout that a device feature could allow: layouts are the
 /// application's promise to the validation layer, not something that can harm us.
-std::string validate(std::span<const std::uint32_t> words) {
-  const spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_3);
+std::string validate(spv_context context, std::span<const std::uint32_t> words) {
   const spv_validator_options options = spvValidatorOptionsCreate();
   spvValidatorOptionsSetRelaxBlockLayout(options, true);
   spvValidatorOptionsSetUniformBufferStandardLayout(options, true);
@@ -35,6 +40,68 @@ std::string validate(std::span<const std::uint32_t> words) {
   }
   spvDiagnosticDestroy(diagnostic);
   spvValidatorOptionsDestroy(options);
+  return message;
+}
+
+/// Capabilities that change nothing but what the validator admits: a module that uses one without declaring it means
+/// the same as one that declares it.
+constexpr std::string_view kOptional[] = {"SampleRateShading",
+                                          "InterpolationFunction",
+                                          "ImageGatherExtended",
+                                          "ImageQuery",
+                                          "DerivativeControl",
+                                          "StorageImageExtendedFormats",
+                                          "ImageCubeArray",
+                                          "SampledCubeArray",
+                                          "Image1D",
+                                          "Sampled1D",
+                                          "ImageBuffer",
+                                          "SampledBuffer",
+                                          "ClipDistance",
+                                          "CullDistance",
+                                          "MultiViewport",
+                                          "MinLod",
+                                          "DrawParameters",
+                                          "Int8",
+                                          "Int16",
+                                          "Int64",
+                                          "Float16",
+                                          "Float64"};
+
+/// The optional capability whose declaration is all that the validator misses, by its message. Empty: another fault.
+std::string missing_capability(const std::string& message) {
+  static constexpr std::string_view kWords = "requires one of these capabilities: ";
+  const std::size_t at = message.find(kWords);
+  if (at == std::string::npos) return {};
+  const std::size_t first = at + kWords.size();
+  const std::string name = message.substr(first, message.find_first_of(" \n", first) - first);
+  return std::find(std::begin(kOptional), std::end(kOptional), name) != std::end(kOptional) ? name : std::string();
+}
+
+/// The module with one more OpCapability, which come first in a module. False when there is no such capability.
+bool declare_capability(spv_context context, const std::string& name, std::vector<std::uint32_t>& words) {
+  const std::string text = "OpCapability " + name;
+  spv_binary binary = nullptr;
+  const bool known = spvTextToBinary(context, text.c_str(), text.size(), &binary, nullptr) == SPV_SUCCESS;
+  if (known) words.insert(words.begin() + 5, binary->code + 5, binary->code + binary->wordCount);
+  spvBinaryDestroy(binary);
+  return known;
+}
+
+/// Empty if the module is valid but for capabilities that it uses without declaring them: applications that were tried
+/// on the reference alone get away with that there (zink decorates with Sample and leaves out SampleRateShading).
+std::string validate_leniently(std::span<const std::uint32_t> words) {
+  static constexpr int kMaxMissing = 8;
+  const spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_3);
+  std::string message = validate(context, words);
+  std::vector<std::uint32_t> completed;
+  for (int i = 0; i < kMaxMissing && !message.empty(); ++i) {
+    const std::string name = missing_capability(message);
+    if (name.empty()) break;
+    if (completed.empty()) completed.assign(words.begin(), words.end());
+    if (!declare_capability(context, name, completed)) break;
+    message = validate(context, completed);
+  }
   spvContextDestroy(context);
   return message;
 }
@@ -63,7 +130,7 @@ base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> wor
   base::Result<ir::Function> function = translate(words, options);
   if (!function && words.size() > kSmallModule) return function.error();
   if (options.validate)
-    if (std::string error = validate(words); !error.empty()) return base::Error{error};
+    if (std::string error = validate_leniently(words); !error.empty()) return base::Error{error};
   if (!function) return function.error();
   rewrite(function.value());
   ir::make_joins_whole(function.value());

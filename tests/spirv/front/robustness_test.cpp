@@ -99,5 +99,46 @@ TEST(DamagedModule, InvalidModuleSaysWhatTheValidatorSays) {
   EXPECT_NE(result.message().find("IAdd"), std::string::npos) << result.message();
 }
 
+/// A fragment shader with a Sample input and no SampleRateShading, as zink writes them.
+TEST(DamagedModule, CapabilitiesThatVulkanKnowsNeedNoDeclaration) {
+  const Words words = assemble(R"(OpCapability Shader
+    OpMemoryModel Logical GLSL450
+    OpEntryPoint Fragment %main "main" %in %out
+    OpExecutionMode %main OriginUpperLeft
+    OpDecorate %in Location 0
+    OpDecorate %in Sample
+    OpDecorate %out Location 0
+    %void = OpTypeVoid
+    %fn = OpTypeFunction %void
+    %float = OpTypeFloat 32
+    %in_ptr = OpTypePointer Input %float
+    %out_ptr = OpTypePointer Output %float
+    %in = OpVariable %in_ptr Input
+    %out = OpVariable %out_ptr Output
+    %main = OpFunction %void None %fn
+    %entry = OpLabel
+    %x = OpLoad %float %in
+    OpStore %out %x
+    OpReturn
+    OpFunctionEnd)");
+  const auto result = compile(words, options_for(kFragment));
+  EXPECT_TRUE(result) << result.message();
+}
+
+TEST(DamagedModule, CapabilitiesThatVulkanForbidsStayErrors) {
+  const Words words = assemble(R"(OpCapability Shader
+    OpMemoryModel Logical GLSL450
+    OpEntryPoint Fragment %main "main"
+    OpExecutionMode %main OriginUpperLeft
+    %void = OpTypeVoid
+    %fn = OpTypeFunction %void
+    %event = OpTypeEvent
+    %main = OpFunction %void None %fn
+    %entry = OpLabel
+    OpReturn
+    OpFunctionEnd)");
+  EXPECT_FALSE(compile(words, options_for(kFragment)));
+}
+
 }  // namespace
 }  // namespace vitrine::spirv::test
