@@ -307,6 +307,31 @@ void main() {
              {}, {24, 1, false, false, true});
 }
 
+CTS_CASE("geometry", "double_varyings") {
+  run.require(run.gpu.features.shaderFloat64, "shaderFloat64");
+  run_case(run, head(kTriangles, "triangle_strip", 3) + R"(
+layout(location = 0) flat out dvec3 wide;
+layout(location = 1, component = 2) flat out double one;
+layout(location = 2) flat out dvec2 list[2];
+void main() {
+  for (int i = 0; i < 3; ++i) {
+    gl_Position = gl_in[i].gl_Position;
+    wide = dvec3(passed[i].xyz) * 1.000000001lf;
+    one = double(weight[i]) / 3.0lf;
+    list[i & 1] = dvec2(passed[i].zw) + 1e-9lf;
+    list[1] = dvec2(passed[0].xw) - 1e-9lf;
+    EmitVertex();
+  }
+})",
+           R"(
+layout(location = 0) flat in dvec3 wide;
+layout(location = 1, component = 2) flat in double one;
+layout(location = 2) flat in dvec2 list[2];
+layout(location = 0) out vec4 result;
+void main() { result = vec4(wide.xy + list[0], wide.z + one, list[1].x * 0.5lf + list[1].y * 0.5lf); })",
+           {}, {24, 1, false, false, true});
+}
+
 CTS_CASE("geometry", "layer") {
   TargetSpec layered;
   layered.depth = VK_FORMAT_D32_SFLOAT;

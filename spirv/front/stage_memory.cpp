@@ -316,7 +316,9 @@ void end_primitive(Translator& t, const Inst& inst, ir::Op) {
 
 void finish_emission(Translator& t) {
   each_emitted(t, [&](std::uint32_t local, const Leaf& leaf, std::uint32_t word) {
-    const std::uint32_t first = leaf.path.empty() ? kWholeVariable : leaf.path[0].index;
+    // Stores record their first step; of a 64-bit number that is the word.
+    const bool wide = t.module.type(leaf.type).leaves > 1;
+    const std::uint32_t first = !leaf.path.empty() ? leaf.path[0].index : wide ? 0 : kWholeVariable;
     const bool captured = leaf.slot.xfb_buffer < kMaxXfbBuffers;  // whatever it holds
     if (!captured && t.stored.count({local, first}) == 0 && t.stored.count({local, kWholeVariable}) == 0) return;
     for (std::uint32_t i = 0; i < t.module.type(leaf.type).scalars; i++) {
