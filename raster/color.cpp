@@ -26,6 +26,7 @@ BlendType blend_type(const FormatDesc& format) {
   switch (format.channel[0].numeric) {
     case Numeric::kUnorm:
       return widest <= 8 ? BlendType::kByte : BlendType::kWord;
+    case Numeric::kSnorm:  // not claimed as blendable; applications (zink) blend them on the reference all the same
     case Numeric::kSrgb:
     case Numeric::kSfloat:
     case Numeric::kUfloat:
@@ -124,7 +125,11 @@ StoredTexel blend_float(const ColorWriter& writer, const BlendShape& shape, cons
   texel::texel_decoder(format)(format, pixel, decoded);
   BlendInput<float> in{};
   in.has_alpha = format.rgba[3] >= 0;
-  const auto clamp = [&](float x) { return format.is_srgb() ? base::min_second(base::max_second(x, 0.0f), 1.0f) : x; };
+  const bool is_snorm = format.channel[0].numeric == Numeric::kSnorm;
+  const auto clamp = [&](float x) {
+    if (!format.is_srgb() && !is_snorm) return x;
+    return base::min_second(base::max_second(x, is_snorm ? -1.0f : 0.0f), 1.0f);
+  };
   for (std::size_t c = 0; c < 4; ++c) {
     in.src[c] = clamp(base::float_of(color[c]));
     in.second[c] = clamp(base::float_of(second[c]));
@@ -264,7 +269,7 @@ ColorWriter make_general_color_writer(VkFormat format, const BlendAttachment& bl
   const bool normalized = type == BlendType::kByte || type == BlendType::kWord;
   if (state.logic_op_enable) {
     // E6: a logic op disables blending; float and sRGB targets store the source whatever the op.
-    writer.logic = type != BlendType::kFloat;
+    writer.logic = type != BlendType::kFloat || writer.format->channel[0].numeric == Numeric::kSnorm;
     writer.logic_op = state.logic_op;
   } else if (blend.enable) {
     writer.blend = type;

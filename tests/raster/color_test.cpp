@@ -161,5 +161,28 @@ TEST(Color, StoresRoundAsTheTablesSay) {
   EXPECT_EQ(store_one(VK_FORMAT_R16_SFLOAT, {0.7f, 0, 0, 0}) & 0xffff, 0x3999u);
 }
 
+TEST(Color, SignedNormalizedTargetsBlend) {
+  Target target(VK_FORMAT_R8G8B8A8_SNORM);
+  std::byte* pixel = target.view.block(0, 0, 0, 0, 0, 0);
+  const std::int8_t before[4] = {127, -127, 64, 0};
+  std::memcpy(pixel, before, 4);
+  Inputs in{};
+  const float color[4] = {-1.0f, 0.5f, 0.0f, 0.5f};
+  for (std::size_t c = 0; c < 4; ++c) in.color[c].lane[0] = base::bits_of(color[c]);
+  BlendAttachment blend;
+  blend.enable = true;
+  blend.src_color = blend.src_alpha = VK_BLEND_FACTOR_SRC_ALPHA;
+  blend.dst_color = blend.dst_alpha = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+  const base::ScopedFloatMode mode(base::Denormals::kFlush);
+  write_color(make_color_writer(VK_FORMAT_R8G8B8A8_SNORM, blend, {}),
+              {&target.view, 0, 0, &in.quads, 1, in.color, nullptr});
+  std::int8_t after[4];
+  std::memcpy(after, pixel, 4);
+  EXPECT_NEAR(after[0], 0, 1);
+  EXPECT_NEAR(after[1], -32, 1);
+  EXPECT_NEAR(after[2], 32, 1);
+  EXPECT_NEAR(after[3], 32, 1);
+}
+
 }  // namespace
 }  // namespace vitrine::raster
