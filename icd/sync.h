@@ -14,8 +14,9 @@ struct Fence : Object<VkFence, VK_OBJECT_TYPE_FENCE> {
 struct Semaphore : Object<VkSemaphore, VK_OBJECT_TYPE_SEMAPHORE> {
   using Object::Object;
   bool timeline = false;
-  bool signaled = false;    ///< binary
-  std::uint64_t value = 0;  ///< timeline
+  /// Timeline: the counter. Binary: signals that no wait has taken yet; more than one where an application acquires an
+  /// image with a semaphore whose last wait is still in the queue, which must not cost it a signal.
+  std::uint64_t value = 0;
 };
 
 struct Event : Object<VkEvent, VK_OBJECT_TYPE_EVENT> {
@@ -30,8 +31,8 @@ void set_event(Device& device, Event& event, bool set);
 
 /// Whether a wait for `value` would end at once. The caller holds Device::sync_mutex.
 bool is_reached(const Semaphore& semaphore, std::uint64_t value);
-/// Blocks until a timeline semaphore has reached `value`, or a binary one is signalled, and unsignals it then. False if
-/// the device was lost while waiting.
+/// Blocks until a timeline semaphore has reached `value`, or a binary one is signalled, and takes that signal then.
+/// False if the device was lost while waiting.
 bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value);
 /// Blocks until all events are set. False if the device was lost while waiting.
 bool wait_events(Device& device, const VkEvent* events, std::uint32_t count);

@@ -44,13 +44,8 @@ void signal_fence(Device& device, Fence& fence) {
 }
 
 void signal_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value) {
-  change_state(device, [&] {
-    if (semaphore.timeline) {
-      semaphore.value = std::max(semaphore.value, value);
-    } else {
-      semaphore.signaled = true;
-    }
-  });
+  change_state(device,
+               [&] { semaphore.value = semaphore.timeline ? std::max(semaphore.value, value) : semaphore.value + 1; });
 }
 
 void set_event(Device& device, Event& event, bool set) {
@@ -58,14 +53,14 @@ void set_event(Device& device, Event& event, bool set) {
 }
 
 bool is_reached(const Semaphore& semaphore, std::uint64_t value) {
-  return semaphore.timeline ? semaphore.value >= value : semaphore.signaled;
+  return semaphore.value >= (semaphore.timeline ? value : 1);
 }
 
 bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value) {
   std::unique_lock lock(device.sync_mutex);
   device.sync_changed.wait(lock, [&] { return device.lost || is_reached(semaphore, value); });
   const bool reached = is_reached(semaphore, value);
-  semaphore.signaled = false;
+  if (reached && !semaphore.timeline) --semaphore.value;
   return reached;
 }
 

@@ -141,6 +141,47 @@ TEST_F(SwapchainTest, ImagesTakeTurns) {
   destroy(swapchain);
 }
 
+TEST_F(SwapchainTest, AcquiringWithASemaphoreWhoseWaitIsPendingLosesNoSignal) {
+  const VkSwapchainKHR swapchain = create();
+  const VkSemaphore acquired = semaphore();
+  auto type = make_struct<VkSemaphoreTypeCreateInfo>();
+  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  const auto gate_info = make_struct<VkSemaphoreCreateInfo>(&type);
+  VkSemaphore gate = VK_NULL_HANDLE;
+  ASSERT_EQ(VK_GET(instance, CreateSemaphore)(device, &gate_info, nullptr, &gate), VK_SUCCESS);
+  const auto fence_info = make_struct<VkFenceCreateInfo>();
+  VkFence fence = VK_NULL_HANDLE;
+  ASSERT_EQ(VK_GET(instance, CreateFence)(device, &fence_info, nullptr, &fence), VK_SUCCESS);
+
+  // The first batch holds the queue, so its wait for `acquired` is pending while the second image is acquired.
+  const std::uint64_t gate_values[2] = {1, 0};
+  auto values = make_struct<VkTimelineSemaphoreSubmitInfo>();
+  values.waitSemaphoreValueCount = 2;
+  values.pWaitSemaphoreValues = gate_values;
+  const VkSemaphore both[2] = {gate, acquired};
+  const VkPipelineStageFlags stages[2] = {VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT};
+  auto first = make_struct<VkSubmitInfo>(&values), second = make_struct<VkSubmitInfo>();
+  first.waitSemaphoreCount = 2;
+  first.pWaitSemaphores = both;
+  second.waitSemaphoreCount = 1;
+  second.pWaitSemaphores = &acquired;
+  first.pWaitDstStageMask = second.pWaitDstStageMask = stages;
+  std::uint32_t index = 99;
+  ASSERT_EQ(acquire(swapchain, index, acquired, VK_NULL_HANDLE, UINT64_MAX), VK_SUCCESS);
+  ASSERT_EQ(VK_GET(instance, QueueSubmit)(queue, 1, &first, VK_NULL_HANDLE), VK_SUCCESS);
+  ASSERT_EQ(acquire(swapchain, index, acquired, VK_NULL_HANDLE, UINT64_MAX), VK_SUCCESS);
+  ASSERT_EQ(VK_GET(instance, QueueSubmit)(queue, 1, &second, fence), VK_SUCCESS);
+  auto open = make_struct<VkSemaphoreSignalInfo>();
+  open.semaphore = gate;
+  open.value = 1;
+  ASSERT_EQ(VK_GET(instance, SignalSemaphoreKHR)(device, &open), VK_SUCCESS);
+  EXPECT_EQ(VK_GET(instance, WaitForFences)(device, 1, &fence, VK_TRUE, 5'000'000'000), VK_SUCCESS);
+  VK_GET(instance, DestroyFence)(device, fence, nullptr);
+  VK_GET(instance, DestroySemaphore)(device, gate, nullptr);
+  VK_GET(instance, DestroySemaphore)(device, acquired, nullptr);
+  destroy(swapchain);
+}
+
 TEST_F(SwapchainTest, PresentsAreWaitedForByTheirNumbers) {
   const VkSwapchainKHR swapchain = create();
   const auto wait = VK_GET(instance, WaitForPresentKHR);
