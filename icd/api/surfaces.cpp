@@ -17,8 +17,8 @@ constexpr std::array kSurfaceFormats{
     VkSurfaceFormatKHR{VK_FORMAT_R8G8B8A8_UNORM, VK_COLOR_SPACE_SRGB_NONLINEAR_KHR},
 };
 
-constexpr std::array kPresentModes{VK_PRESENT_MODE_IMMEDIATE_KHR, VK_PRESENT_MODE_MAILBOX_KHR,
-                                   VK_PRESENT_MODE_FIFO_KHR};
+constexpr std::array kPresentModes{VK_PRESENT_MODE_IMMEDIATE_KHR, VK_PRESENT_MODE_MAILBOX_KHR, VK_PRESENT_MODE_FIFO_KHR,
+                                   VK_PRESENT_MODE_FIFO_RELAXED_KHR};
 
 /// "If the swapchain decides, width and height are 0xFFFFFFFF": our windows then take any size an image can have.
 constexpr std::uint32_t kSwapchainDecides = 0xFFFFFFFF;
@@ -50,8 +50,8 @@ VkResult surface_capabilities(Surface& surface, VkSurfaceCapabilitiesKHR& capabi
   capabilities.supportedTransforms = capabilities.currentTransform = VK_SURFACE_TRANSFORM_IDENTITY_BIT_KHR;
   capabilities.supportedCompositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR | VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR;
   capabilities.supportedUsageFlags = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
-                                     VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
+                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
+                                     VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
   return VK_SUCCESS;
 }
 

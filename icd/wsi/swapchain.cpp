@@ -27,7 +27,9 @@ Swapchain::~Swapchain() {
 
 void show_image(Swapchain& swapchain, std::uint32_t index) {
   const wsi::Frame frame = frame_of(swapchain, *swapchain.slots[index].image);
-  const VkResult shown = swapchain.surface->window->present(frame, swapchain.mode == VK_PRESENT_MODE_FIFO_KHR);
+  const bool in_order =
+      swapchain.mode == VK_PRESENT_MODE_FIFO_KHR || swapchain.mode == VK_PRESENT_MODE_FIFO_RELAXED_KHR;
+  const VkResult shown = swapchain.surface->window->present(frame, in_order);
   {
     const std::lock_guard lock(swapchain.mutex);
     swapchain.slots[index].owner = Swapchain::Owner::kSwapchain;

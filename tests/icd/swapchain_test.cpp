@@ -41,6 +41,7 @@ TEST_F(SurfaceTest, SaysWhatItCanDo) {
             VK_SUCCESS);
   EXPECT_EQ(capabilities.surfaceCapabilities.currentExtent.width, 0xFFFFFFFFu);
   EXPECT_TRUE(capabilities.surfaceCapabilities.supportedUsageFlags & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+  EXPECT_TRUE(capabilities.surfaceCapabilities.supportedUsageFlags & VK_IMAGE_USAGE_STORAGE_BIT);
 
   std::uint32_t count = 0;
   ASSERT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceFormatsKHR)(physical_device, surface, &count, nullptr),
@@ -53,6 +54,13 @@ TEST_F(SurfaceTest, SaysWhatItCanDo) {
   EXPECT_EQ(found, (std::set<VkFormat>{VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM,
                                        VK_FORMAT_R8G8B8A8_SRGB}));
 
+  VkPresentModeKHR modes[8];
+  count = 8;
+  ASSERT_EQ(VK_GET(instance, GetPhysicalDeviceSurfacePresentModesKHR)(physical_device, surface, &count, modes),
+            VK_SUCCESS);
+  EXPECT_EQ((std::set<VkPresentModeKHR>(modes, modes + count)),
+            (std::set<VkPresentModeKHR>{VK_PRESENT_MODE_IMMEDIATE_KHR, VK_PRESENT_MODE_MAILBOX_KHR,
+                                        VK_PRESENT_MODE_FIFO_KHR, VK_PRESENT_MODE_FIFO_RELAXED_KHR}));
   count = 1;
   VkPresentModeKHR mode;
   EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceSurfacePresentModesKHR)(physical_device, surface, &count, &mode),
