@@ -83,7 +83,7 @@ VkFormatFeatureFlags2 wide_features(VkFormat format, VkFormatFeatureFlags featur
   VkFormatFeatureFlags2 wide = features;
   const std::span<const Feature> claimed = claimed_features();
   const auto claims = [&](Feature f) { return std::find(claimed.begin(), claimed.end(), f) != claimed.end(); };
-  if (features & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) {
+  if (features & (VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT)) {
     if (claims(Feature::shaderStorageImageReadWithoutFormat))
       wide |= VK_FORMAT_FEATURE_2_STORAGE_READ_WITHOUT_FORMAT_BIT;
     if (claims(Feature::shaderStorageImageWriteWithoutFormat)) {

@@ -100,6 +100,18 @@ CTS_CASE("spirv_assembly", "non_semantic_info") {
            "OpExtension \"SPV_KHR_non_semantic_info\"\n%notes = OpExtInstImport \"NonSemantic.Nobody.Knows\"\n");
 }
 
+CTS_CASE("spirv_assembly", "decorate_string") {
+  run.require(run.gpu.has("VK_GOOGLE_decorate_string") && run.gpu.has("VK_GOOGLE_hlsl_functionality1"),
+              "VK_GOOGLE_hlsl_functionality1");
+  run_body(run, "%r = OpIAdd %uint %x %n\n", "%counter = OpVariable %block_ptr Uniform\n",
+           "OpExtension \"SPV_GOOGLE_decorate_string\"\nOpExtension \"SPV_GOOGLE_hlsl_functionality1\"\n",
+           "OpExecutionMode %main LocalSize 64 1 1\n"
+           "OpDecorate %counter DescriptorSet 0\nOpDecorate %counter Binding 1\n"
+           "OpDecorateString %id UserSemantic \"SV_DispatchThreadID\"\n"
+           "OpMemberDecorateString %block 0 UserSemantic \"ELEMENT\"\n"
+           "OpDecorateId %out HlslCounterBufferGOOGLE %counter");
+}
+
 CTS_CASE("spirv_assembly", "local_size_id") {
   run.require(run.gpu.extension_features.maintenance4.maintenance4, "maintenance4");
   run_body(run, "%r = OpIAdd %uint %x %n\n", "%size = OpSpecConstant %uint 64\n", "; target: vulkan1.1\n",

@@ -137,6 +137,8 @@ void check(VkResult result, const char* call);
   X("VK_EXT_shader_subgroup_ballot")      \
   X("VK_EXT_shader_subgroup_vote")        \
   X("VK_EXT_shader_viewport_index_layer") \
+  X("VK_GOOGLE_decorate_string")          \
+  X("VK_GOOGLE_hlsl_functionality1")      \
   X("VK_KHR_copy_commands2")              \
   X("VK_KHR_create_renderpass2")          \
   X("VK_KHR_depth_stencil_resolve")       \
