@@ -332,7 +332,12 @@ ir::ValueId load_raw(Translator& t, std::uint32_t local) {
   return value;
 }
 
-void store_flag(Translator& t, std::uint32_t flag, bool value) { store_raw(t, flag, constant_bool(t, value)); }
+void store_flag(Translator& t, std::uint32_t flag, bool value) {
+  // A constant of this place: rewrites ask where it is made.
+  const ir::ValueId word = emit(t, ir::Op::kConst, 1, true, {});
+  last_instr(t).imm[0] = value ? 1 : 0;
+  store_raw(t, flag, word);
+}
 
 ir::ValueId load_flag(Translator& t, std::uint32_t flag) { return load_raw(t, flag); }
 

@@ -45,12 +45,18 @@ class Rewriter {
     for_each_inst(graph_, graph_.root, visit);
     queue_.assign(order.rbegin(), order.rend());
     bool changed = false;
-    while (!queue_.empty()) {
+    for (std::size_t visit_number = 0; !queue_.empty(); ++visit_number) {
       const InstId id = queue_.front();
       queue_.pop_front();
       const Inst& inst = graph_.insts[id];
       if (inst.removed) continue;
-      changed |= inst.opaque ? show_sum(id) : rewrite(id);
+      const bool woken = visit_number >= order.size();
+      if (inst.opaque) {
+        show_product(id);
+        changed |= show_sum(id);
+      } else if (woken || !graph_.first_rules || inst.opens != Opens::kAfterRules) {
+        changed |= rewrite(id);
+      }
     }
     return changed;
   }
@@ -96,6 +102,19 @@ class Rewriter {
         pending.push_back(graph_.insts[user].result);
       }
     }
+  }
+
+  /// When the reference's rules first come to a dot product they make it a sum of products. They do not visit the
+  /// product then, only when one of its operands changes.
+  void show_product(InstId id) {
+    const Inst& sum = graph_.insts[id];
+    if (!graph_.first_rules || sum.op != Op::kFAdd) return;
+    const InstId product = graph_.values[graph_.source(sum, 1).value].def;
+    if (product == kNone || !graph_.insts[product].opaque || graph_.insts[product].op != Op::kFMul ||
+        graph_.insts[product].opens != Opens::kAfterRules)
+      return;
+    graph_.insts[product].opaque = false;
+    update_state(product);
   }
 
   /// The reference replaces its sum of two by an addition here, so that other rules see it only later.

@@ -1,4 +1,5 @@
 // Control flow that need not be: small branches (selects instead), results and parameters that carry one value.
+#include "spirv/rewrite/loops.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/tree.h"
 
@@ -149,37 +150,24 @@ bool common_source(const Graph& graph, const std::vector<Src>& sources, ValueId 
   return common.value != ir::kNoValue && graph.values[common.value].components == graph.values[self].components;
 }
 
-/// Parameters of a loop that does not go round.
-bool take_initial_values(Graph& graph, InstId id) {
-  bool changed = false;
-  const std::vector<ValueId> params = graph.nodes[graph.insts[id].node]->params;
-  for (std::size_t i = 0; i < params.size(); ++i) {
-    if (graph.values[params[i]].uses == 0) continue;
-    const Src init = graph.source(graph.insts[id], static_cast<std::uint32_t>(i));
-    graph.replace_uses(params[i], whole_value(graph, id, init, params[i]));
-    changed = true;
-  }
-  return changed;
-}
-
 /// Parameters of a loop that are handed on as they are.
 bool remove_constant_params(Graph& graph, InstId id) {
   bool changed = false;
   const std::vector<ValueId> params = graph.nodes[graph.insts[id].node]->params;
-  const std::vector<ValueId> forwarded = graph.nodes[graph.insts[id].node]->continue_params;
-  const InstId next = graph.blocks[graph.insts[id].child[1]].tail, end = graph.blocks[graph.insts[id].child[0]].tail;
-  if (end != kNone && !is_jump(graph.insts[end], Op::kYield) && !contains_continue(graph, graph.insts[id].child[0]))
-    return take_initial_values(graph, id);
-  if (next == kNone || end == kNone || !is_jump(graph.insts[next], Op::kYield)) return false;
-  const bool one_way = is_jump(graph.insts[end], Op::kYield) && !contains_continue(graph, graph.insts[id].child[0]);
+  const std::vector<InstId> ways = ways_back(graph, id);
   for (std::size_t i = 0; i < params.size(); ++i) {
     const auto index = static_cast<std::uint32_t>(i);
     if (graph.values[params[i]].uses == 0) continue;
-    Src back = graph.source(graph.insts[next], index);
-    if (one_way) back = substituted(back, forwarded, operands_of(graph, end));
+    const Src init = graph.source(graph.insts[id], index);
+    std::vector<Src> sources{init};
+    for (const InstId way : ways) sources.push_back(graph.source(graph.insts[way], index));
     Src common;
-    if (!common_source(graph, {graph.source(graph.insts[id], index), back}, params[i], common)) continue;
-    graph.replace_uses(params[i], common.value);
+    if (ways.empty())
+      graph.replace_uses(params[i], whole_value(graph, id, init, params[i]));
+    else if (common_source(graph, sources, params[i], common))
+      graph.replace_uses(params[i], common.value);
+    else
+      continue;
     changed = true;
   }
   return changed;

@@ -52,7 +52,13 @@ bool is_whole(const Graph& graph, const Src& src, ValueId like) {
 ValueId value_at_breaks(Graph& graph, ValueId result, std::uint32_t index, const std::vector<InstId>& breaks) {
   if (breaks.empty()) return ir::kNoValue;
   const Src first = graph.source(graph.insts[breaks[0]], index);
-  if (breaks.size() == 1) return whole_value(graph, breaks[0], first, result);
+  if (breaks.size() == 1) {
+    const Inst* copy = graph.def(first.value);
+    const bool is_copy = copy && copy->kind == Kind::kAlu && (copy->op == Op::kMov || copy->op == Op::kMovB);
+    if (is_copy && is_whole(graph, first, result) && is_whole(graph, graph.source(*copy, 0), result))
+      return graph.source(*copy, 0).value;
+    return whole_value(graph, breaks[0], first, result);
+  }
   for (const InstId id : breaks)
     if (!is_same(graph, graph.source(graph.insts[id], index), first, result)) return ir::kNoValue;
   return is_whole(graph, first, result) ? first.value : ir::kNoValue;

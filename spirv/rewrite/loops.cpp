@@ -24,15 +24,6 @@ void collect_jumps(const Graph& graph, BlockId block, Op op, std::vector<InstId>
   }
 }
 
-/// Continues, and the end of the body if it is a way back.
-std::vector<InstId> ways_back(const Graph& graph, InstId loop) {
-  const BlockId body = graph.insts[loop].child[0];
-  std::vector<InstId> found;
-  collect_jumps(graph, body, Op::kContinue, found);
-  if (ends_in(graph, body, Op::kYield)) found.push_back(graph.blocks[body].tail);
-  return found;
-}
-
 ir::Node& node_of(Graph& graph, InstId id) { return *graph.nodes[graph.insts[id].node]; }
 
 ValueId new_value(Graph& graph, InstId def, ValueId like) {
@@ -256,6 +247,14 @@ void close_continue(Graph& graph, InstId loop) {
 
 }  // namespace
 
+std::vector<InstId> ways_back(const Graph& graph, InstId loop) {
+  const BlockId body = graph.insts[loop].child[0];
+  std::vector<InstId> found;
+  collect_jumps(graph, body, Op::kContinue, found);
+  if (ends_in(graph, body, Op::kYield)) found.push_back(graph.blocks[body].tail);
+  return found;
+}
+
 bool has_loops(const Graph& graph) {
   return std::any_of(graph.insts.begin(), graph.insts.end(),
                      [](const Inst& inst) { return inst.kind == Kind::kLoop && !inst.removed; });
@@ -296,9 +295,97 @@ ValueId add_param(Graph& graph, InstId loop, ValueId like, const Src& init, cons
   node_of(graph, loop).params.push_back(param);
   node_of(graph, loop).continue_params.push_back(passed);
   append_operand(graph, loop, init);
-  append_operand(graph, latch_of(graph, loop), next);
+  for (const InstId way : ways_back(graph, loop)) append_operand(graph, way, next);
   append_operand(graph, graph.blocks[graph.insts[loop].child[1]].tail, {passed, kWhole});
   return param;
+}
+
+namespace {
+
+/// The If or Loop whose end starts the block that `position` is in; kNone: the list does.
+InstId join_before(const Graph& graph, InstId position) {
+  InstId at = graph.insts[position].previous;
+  while (at != kNone && graph.insts[at].kind != Kind::kIf && graph.insts[at].kind != Kind::kLoop)
+    at = graph.insts[at].previous;
+  return at;
+}
+
+/// `value` is defined behind `join` in the same list, or is a result of it.
+bool is_behind(const Graph& graph, InstId join, ValueId value) {
+  const InstId def = graph.values[value].def;
+  if (def == kNone || def == join) return def == join;
+  if (graph.insts[def].block != graph.insts[join].block) return false;
+  for (InstId at = graph.insts[join].next; at != kNone; at = graph.insts[at].next)
+    if (at == def) return true;
+  return false;
+}
+
+/// A copy of the whole value in front of `position`.
+Src copy_of(Graph& graph, InstId position, ValueId value) {
+  const Value shape = graph.values[value];
+  const InstId move =
+      graph.create(Kind::kAlu, shape.boolean ? Op::kMovB : Op::kMov, shape.components, shape.boolean, 1);
+  graph.set_source(move, 0, {value, kWhole});
+  graph.insert_before(position, move);
+  return {graph.insts[move].result, kWhole};
+}
+
+ValueId join_at_if(Graph& graph, InstId id, ValueId value) {
+  for (const BlockId child : graph.insts[id].child)
+    if (!ends_in(graph, child, Op::kYield)) return value;
+  const ValueId result = add_results(graph, id, {value})[0].value;
+  for (const BlockId child : graph.insts[id].child) {
+    const InstId end = graph.blocks[child].tail;
+    append_operand(graph, end, copy_of(graph, end, value));
+  }
+  return result;
+}
+
+ValueId join_at_loop(Graph& graph, InstId id, ValueId value) {
+  std::vector<InstId> breaks;
+  for (const BlockId child : graph.insts[id].child) collect_jumps(graph, child, Op::kBreak, breaks);
+  if (breaks.size() < 2) return value;
+  const ValueId result = add_results(graph, id, {value})[0].value;
+  for (const InstId jump : breaks) append_operand(graph, jump, copy_of(graph, jump, value));
+  return result;
+}
+
+ValueId join_at_header(Graph& graph, InstId loop, ValueId value) {
+  const ValueId param = add_param(graph, loop, value, copy_of(graph, loop, value), {value, kWhole});
+  for (const InstId way : ways_back(graph, loop))
+    graph.set_source(way, graph.insts[way].count - 1, copy_of(graph, way, value));
+  return param;
+}
+
+}  // namespace
+
+Src through_register(Graph& graph, InstId position, const Src& src, ValueId like) {
+  const Value shape = graph.values[like];
+  const InstId join = join_before(graph, position);
+  const InstId owner = graph.blocks[graph.insts[position].block].owner;
+  ValueId value = src.value;
+  bool whole = graph.values[value].components == shape.components;
+  for (unsigned c = 0; c < shape.components; ++c) whole &= src.swizzle[c] == c;
+  if (whole && join != kNone && !is_behind(graph, join, value)) {
+    value = graph.insts[join].kind == Kind::kIf ? join_at_if(graph, join, value) : join_at_loop(graph, join, value);
+  } else if (whole && join == kNone && owner != kNone && graph.insts[owner].kind == Kind::kLoop &&
+             graph.insts[position].block == graph.insts[owner].child[0] && !is_inside(graph, value, owner)) {
+    value = join_at_header(graph, owner, value);
+  }
+  const InstId move =
+      graph.create(Kind::kAlu, shape.boolean ? Op::kMovB : Op::kMov, shape.components, shape.boolean, 1);
+  graph.set_source(move, 0, {value, value == src.value ? src.swizzle : kWhole});
+  graph.insert_before(position, move);
+  return {graph.insts[move].result, kWhole};
+}
+
+void pass_through_registers(Graph& graph, InstId loop) {
+  const std::vector<ValueId> params = node_of(graph, loop).params;
+  std::vector<InstId> ends = ways_back(graph, loop);
+  ends.push_back(loop);
+  for (const InstId id : ends)
+    for (std::uint32_t i = 0; i < params.size(); ++i)
+      graph.set_source(id, i, through_register(graph, id, graph.source(graph.insts[id], i), params[i]));
 }
 
 bool drop_dead_joins(Graph& graph) { return JoinSweeper(graph).run(); }

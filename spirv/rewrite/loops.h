@@ -13,6 +13,9 @@ bool has_loops(const Graph& graph);
 /// Gives every loop that form.
 void straighten_loops(Graph& graph);
 
+/// Continues, and the end of the body if it is a way back.
+std::vector<InstId> ways_back(const Graph& graph, InstId loop);
+
 /// The way back of a loop that has one only, the end of its body; kNone: none or several.
 InstId latch_of(const Graph& graph, InstId loop);
 
@@ -22,8 +25,16 @@ std::vector<InstId> header_of(const Graph& graph, InstId loop);
 /// Index of the parameter, or -1.
 int param_index(const Graph& graph, InstId loop, ValueId value);
 
-/// A new parameter of a loop with one way back.
+/// A new parameter, the same `next` on every way back.
 ValueId add_param(Graph& graph, InstId loop, ValueId like, const Src& init, const Src& next);
+
+/// A value equal to `src`, of the type of `like`, in front of `position`. The reference takes what a loop starts and
+/// goes on with through a register that it writes as far up as each block has one successor; where ways join in
+/// between, the next round's rules see only that they join.
+Src through_register(Graph& graph, InstId position, const Src& src, ValueId like);
+
+/// All that the loop starts and goes on with.
+void pass_through_registers(Graph& graph, InstId loop);
 
 /// Drops parameters of loops and results that only serve themselves.
 bool drop_dead_joins(Graph& graph);

@@ -33,6 +33,8 @@ class Peeler {
     latch_ = latch_of(graph_, loop_);
     if (latch_ == kNone || !find_branch()) return false;
     close_loops(graph_, loop_);
+    pass_through_registers(graph_, loop_);
+    read_registers();
     peel();
     return true;
   }
@@ -57,6 +59,14 @@ class Peeler {
     entry_side_ = graph_.insts[branch_].child[taken ? 0 : 1];
     later_side_ = graph_.insts[branch_].child[taken ? 1 : 0];
     return !contains_jump(graph_, entry_side_) && ends_in(graph_, entry_side_, Op::kYield);
+  }
+
+  /// What the header, which moves, reads of the registers.
+  void read_registers() {
+    const std::vector<ValueId> params = node(loop_).params;
+    for (const InstId id : {loop_, latch_})
+      for (std::uint32_t i = 0; i < params.size(); ++i)
+        graph_.set_source(id, i, copied(id, graph_.source(graph_.insts[id], i), params[i]));
   }
 
   BlockId new_block() {
@@ -97,25 +107,20 @@ class Peeler {
       replaced.emplace_back(value, stand_in(value, first_.translated(whole), again_.translated(whole), goes_on));
     }
     for (std::size_t i = 0; i < results.size(); ++i)
-      replaced.emplace_back(results[i], stand_in(results[i], at_entry[i], goes_on ? later[i] : Src{}, goes_on));
+      replaced.emplace_back(results[i], stand_in(results[i], copied(loop_, at_entry[i], results[i]),
+                                                 goes_on ? copied(latch_, later[i], results[i]) : Src{}, goes_on));
     // Last, because what is passed to an iteration may be a value of the one before.
     for (const auto& [value, by] : replaced) graph_.replace_uses(value, by);
-    if (goes_on) hide_values();
     if (!goes_on) graph_.remove(latch_);
   }
 
-  /// What the loop starts with and goes on with is copied: unrolling does not know it before the next round.
-  void hide_values() {
-    const std::vector<ValueId> params = node(loop_).params;
-    for (const InstId id : {loop_, latch_})
-      for (std::uint32_t i = 0; i < graph_.insts[id].count; ++i) {
-        const Value like = graph_.values[params[i]];
-        const InstId move =
-            graph_.create(Kind::kAlu, like.boolean ? Op::kMovB : Op::kMov, like.components, like.boolean, 1);
-        graph_.set_source(move, 0, graph_.source(graph_.insts[id], i));
-        graph_.insert_before(id, move);
-        graph_.set_source(id, i, {graph_.insts[move].result, kWhole});
-      }
+  Src copied(InstId position, const Src& src, ValueId like) {
+    const Value shape = graph_.values[like];
+    const InstId move =
+        graph_.create(Kind::kAlu, shape.boolean ? Op::kMovB : Op::kMov, shape.components, shape.boolean, 1);
+    graph_.set_source(move, 0, src);
+    graph_.insert_before(position, move);
+    return {graph_.insts[move].result, kWhole};
   }
 
   /// The value that the rest of the body reads.

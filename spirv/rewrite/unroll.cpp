@@ -412,6 +412,7 @@ bool try_unroll(Graph& graph, InstId loop) {
     if (!cost.wanted && cost.instructions * shape.trips() > kMaxCost) return false;
   }
   close_loops(graph, loop);
+  if (!shape.once) pass_through_registers(graph, loop);
   Unroller(graph, loop, shape).run();
   return true;
 }

@@ -227,6 +227,27 @@ const bool kFragments = [] {
         "    do s3 = (b.ywww + s3.wzzw) - 0.25; while (--k3 > 0);\n  }\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 4}, "s4"}}, {}, false});
   });
+  AddCase("glsl", "rewrite.unchanged_by_continue", [](Run& run) {
+    const char* text =
+        "  float s = -distance(b.zz, p.ww);\n  vec4 r = vec4(0.0);\n"
+        "  for (int k = 0; k < (i.x & 7); ++k) {\n    if (true ^^ (!true)) continue;\n"
+        "    if ((i.y & 3) == 2) s = a.w + a.z;\n  }\n"
+        "  if (!(!false)) {\n  } else {\n    r = radians(a) * (p.zyxw * s);\n  }\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 4}, "r"}}, {}, false});
+  });
+  AddCase("glsl", "rewrite.joined_before_loop", [](Run& run) {
+    const char* text =
+        "  vec4 s = -0.1 - a;\n  int steps = 0, k0 = pi.z & 7;\n"
+        "  do {\n    ++steps;\n    if (u.x != u.z) break;\n  } while (--k0 > 0);\n"
+        "  switch ((u.w <= u.w ? 16 : i.y) & 3) {\n    case 0:\n      int k2 = 1;\n"
+        "      while (k2-- > 0) s = s + a.z;\n  }\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 4}, "s"}, {{Base::kInt, 1}, "steps"}}, {}, false});
+  });
+  AddCase("glsl", "rewrite.dot_of_negation", [](Run& run) {
+    const char* text =
+        "  vec2 r = (b.y != 4.0 ? p.wz : vec2(0.3, -2.5)) * mat2(a.xy, vec2(255.0, 0.0) * -(0.0 * p.x));\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 2}, "r"}}, {}, false});
+  });
   AddCase("glsl", "discard.then_derivative", [](Run& run) {
     fragment_expression(run, "vec4(dFdx(passed.x), dFdy(passed.y), passed.zw)", "  if (passed.x > 0.3) discard;\n");
   });
