@@ -196,7 +196,7 @@ TEST(AbsurdModule, LoopsWithHugeConstantTripCounts) {
 TEST(AbsurdModule, SwitchOfManyCases) {
   constexpr std::size_t kCases = 2000;
   std::string body = begin() + "OpSelectionMerge %done None\nOpSwitch %x %done";
-  body += repeated(kCases, [](std::size_t i) { return " " + number(i) + " %k" + number(i); }) + "\n";
+  body += repeated(kCases, [](std::size_t i) { return std::string(" ") + number(i) + " %k" + number(i); }) + "\n";
   body += repeated(kCases, [](std::size_t i) {
     const std::string n = number(i);
     return "%k" + n + " = OpLabel\n%w" + n + " = OpIMul %uint %x %u7\n" + store("%w" + n) + "OpBranch %done\n";
