@@ -72,9 +72,15 @@ struct BlockDepthTest {
 void test_block_depths(const BlockDepthTest& test, const DepthPlane& plane, float x, float y, const BlockPixels& pixels,
                        base::LaneMask places, base::LaneMask* lanes);
 
-/// The same for a 4x4 window; `rows`: bit 4*y + x. Returns what passed.
-std::uint32_t test_window_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
-                                const BlockPixels& pixels, std::uint32_t rows);
+/// A 4x4 window of one primitive, its first pixel at (x, y); bit 4*y + x of `rows` is a pixel of it.
+struct DepthWindow {
+  DepthPlane plane;
+  int x, y;
+  std::uint32_t rows;
+};
+
+/// The same for windows, one after the other: cuts their rows to what passed. `pixels`: of the attachment, from (0, 0).
+void test_window_depths(const BlockDepthTest& test, const BlockPixels& pixels, DepthWindow* windows, std::size_t count);
 
 /// Quad order of a window to row order, or back.
 constexpr std::uint32_t transpose_window(std::uint32_t lanes) {

@@ -2,6 +2,7 @@
 // vector.
 #include <bit>
 #include <cstring>
+#include <type_traits>
 
 #include "base/simd.h"
 #include "raster/block.h"
@@ -166,63 +167,70 @@ class SquareTest {
   bool clamps_, write_;
 };
 
-/// Calls run(SquareTest) with the one for this format and comparison.
+/// Calls run(type) with the type of SquareTest for this format and comparison.
 template <class Format, std::size_t kSide, class F>
-HWY_INLINE auto with_comparison(const BlockDepthTest& test, const DepthPlane& plane, F&& run) {
-  switch (test.compare) {
+HWY_INLINE void with_comparison(VkCompareOp compare, F&& run) {
+  switch (compare) {
     case VK_COMPARE_OP_NEVER:
-      return run(SquareTest<Format, kSide, VK_COMPARE_OP_NEVER>(test, plane));
+      return run(std::type_identity<SquareTest<Format, kSide, VK_COMPARE_OP_NEVER>>());
     case VK_COMPARE_OP_LESS:
-      return run(SquareTest<Format, kSide, VK_COMPARE_OP_LESS>(test, plane));
+      return run(std::type_identity<SquareTest<Format, kSide, VK_COMPARE_OP_LESS>>());
     case VK_COMPARE_OP_EQUAL:
-      return run(SquareTest<Format, kSide, VK_COMPARE_OP_EQUAL>(test, plane));
+      return run(std::type_identity<SquareTest<Format, kSide, VK_COMPARE_OP_EQUAL>>());
     case VK_COMPARE_OP_LESS_OR_EQUAL:
-      return run(SquareTest<Format, kSide, VK_COMPARE_OP_LESS_OR_EQUAL>(test, plane));
+      return run(std::type_identity<SquareTest<Format, kSide, VK_COMPARE_OP_LESS_OR_EQUAL>>());
     case VK_COMPARE_OP_GREATER:
-      return run(SquareTest<Format, kSide, VK_COMPARE_OP_GREATER>(test, plane));
+      return run(std::type_identity<SquareTest<Format, kSide, VK_COMPARE_OP_GREATER>>());
     case VK_COMPARE_OP_NOT_EQUAL:
-      return run(SquareTest<Format, kSide, VK_COMPARE_OP_NOT_EQUAL>(test, plane));
+      return run(std::type_identity<SquareTest<Format, kSide, VK_COMPARE_OP_NOT_EQUAL>>());
     case VK_COMPARE_OP_GREATER_OR_EQUAL:
-      return run(SquareTest<Format, kSide, VK_COMPARE_OP_GREATER_OR_EQUAL>(test, plane));
+      return run(std::type_identity<SquareTest<Format, kSide, VK_COMPARE_OP_GREATER_OR_EQUAL>>());
     default:
-      return run(SquareTest<Format, kSide, VK_COMPARE_OP_ALWAYS>(test, plane));
+      return run(std::type_identity<SquareTest<Format, kSide, VK_COMPARE_OP_ALWAYS>>());
   }
 }
 
 template <std::size_t kSide, class F>
-HWY_INLINE auto with_square_test(const BlockDepthTest& test, const DepthPlane& plane, F&& run) {
+HWY_INLINE void with_square_test(const BlockDepthTest& test, F&& run) {
   switch (test.format) {
     case DepthFormat::kD16:
-      return with_comparison<D16, kSide>(test, plane, run);
+      return with_comparison<D16, kSide>(test.compare, run);
     case DepthFormat::kD24:
-      return with_comparison<D24, kSide>(test, plane, run);
+      return with_comparison<D24, kSide>(test.compare, run);
     default:
-      return with_comparison<D32, kSide>(test, plane, run);
+      return with_comparison<D32, kSide>(test.compare, run);
   }
+}
+
+std::byte* pixel_of(const BlockDepthTest& test, const BlockPixels& pixels, int x, int y) {
+  const std::uint64_t texel_bytes = test.format == DepthFormat::kD16 ? 2 : 4;
+  return pixels.first + static_cast<std::uint64_t>(y) * pixels.pitch + static_cast<std::uint64_t>(x) * texel_bytes;
 }
 
 }  // namespace
 
 void test_blocks(const BlockDepthTest& test, const DepthPlane& plane, float x, float y, const BlockPixels& pixels,
                  base::LaneMask places, base::LaneMask* lanes) {
-  const std::uint64_t texel_bytes = test.format == DepthFormat::kD16 ? 2 : 4;
-  with_square_test<8>(test, plane, [&](const auto& square) HWY_ATTR {
+  with_square_test<8>(test, [&](auto type) HWY_ATTR {
+    const typename decltype(type)::type square(test, plane);
     for (base::LaneMask left = places; left != 0; left &= left - 1) {
       const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
       if (lanes[place] == 0) continue;
       const int bx = lane_x(place) * kBlockSize, by = lane_y(place) * kBlockSize;
-      std::byte* first =
-          pixels.first + static_cast<std::uint64_t>(by) * pixels.pitch + static_cast<std::uint64_t>(bx) * texel_bytes;
-      lanes[place] = quads_of_rows(square.run(x + static_cast<float>(bx), y + static_cast<float>(by), first,
-                                              pixels.pitch, rows_of_quads(lanes[place])));
+      lanes[place] =
+          quads_of_rows(square.run(x + static_cast<float>(bx), y + static_cast<float>(by),
+                                   pixel_of(test, pixels, bx, by), pixels.pitch, rows_of_quads(lanes[place])));
     }
   });
 }
 
-std::uint32_t test_window(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
-                          const BlockPixels& pixels, std::uint32_t rows) {
-  return with_square_test<4>(test, plane, [&](const auto& square) HWY_ATTR {
-    return static_cast<std::uint32_t>(square.run(x, y, pixels.first, pixels.pitch, rows));
+void test_windows(const BlockDepthTest& test, const BlockPixels& pixels, DepthWindow* windows, std::size_t count) {
+  with_square_test<4>(test, [&](auto type) HWY_ATTR {
+    for (DepthWindow* w = windows; w != windows + count; ++w) {
+      const typename decltype(type)::type square(test, w->plane);
+      w->rows = static_cast<std::uint32_t>(square.run(static_cast<float>(w->x), static_cast<float>(w->y),
+                                                      pixel_of(test, pixels, w->x, w->y), pixels.pitch, w->rows));
+    }
   });
 }
 
@@ -234,7 +242,7 @@ namespace vitrine::raster {
 
 HWY_EXPORT(evaluate_all);
 HWY_EXPORT(test_blocks);
-HWY_EXPORT(test_window);
+HWY_EXPORT(test_windows);
 
 void evaluate_block(const PlaneSet& planes, const BlockVarying* varying, std::size_t count, float x, float y,
                     const float* scale) {
@@ -246,9 +254,9 @@ void test_block_depths(const BlockDepthTest& test, const DepthPlane& plane, floa
   HWY_DYNAMIC_DISPATCH(test_blocks)(test, plane, x, y, pixels, places, lanes);
 }
 
-std::uint32_t test_window_depth(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
-                                const BlockPixels& pixels, std::uint32_t rows) {
-  return HWY_DYNAMIC_DISPATCH(test_window)(test, plane, x, y, pixels, rows);
+void test_window_depths(const BlockDepthTest& test, const BlockPixels& pixels, DepthWindow* windows,
+                        std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(test_windows)(test, pixels, windows, count);
 }
 
 }  // namespace vitrine::raster

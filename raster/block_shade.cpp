@@ -173,17 +173,12 @@ BlockDepthTest depth_test(const PipelinePlan& plan, const DepthStencilTarget& ta
 
 }  // namespace
 
-LaneMask test_small_window(TileWorker& worker, const Primitive& primitive, int x, int y, LaneMask lanes, bool write) {
+void test_windows(TileWorker& worker, std::uint32_t viewport, DepthWindow* windows, std::size_t count) {
   const PipelinePlan& plan = *worker.draw->plan;
   const DepthStencilTarget& target = worker.target.depth_stencil[0];
-  const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
-  const ViewportTransform& viewport = plan.viewport[primitive.viewport];
-  const DepthRange range{viewport.z_min, viewport.z_max};
-  const auto quads = static_cast<std::uint32_t>((lanes & 0xff) | (lanes >> 8 & 0xff00));
-  const LaneMask passed =
-      transpose_window(test_window_depth(depth_test(plan, target, write, range), plane, static_cast<float>(x),
-                                         static_cast<float>(y), depth_pixels(target, x, y), transpose_window(quads)));
-  return (passed & 0xff) | (passed & 0xff00) << 8;
+  const DepthRange range{plan.viewport[viewport].z_min, plan.viewport[viewport].z_max};
+  test_window_depths(depth_test(plan, target, plan.depth_order == TestOrder::kEarly, range), depth_pixels(target, 0, 0),
+                     windows, count);
 }
 
 void test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32_t sample, int x, int y, LaneMask places,

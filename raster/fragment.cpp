@@ -386,6 +386,7 @@ void shade_wave(TileWorker& worker, PackedWave& wave) {
       shade(run);
     }
   }
+  release_planes(worker, wave);
   wave.quads = wave.slots = 0;
 }
 

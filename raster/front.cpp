@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t kHashSize = 4096;
 constexpr std::uint64_t kEmptyKey = ~std::uint64_t{0};
+constexpr std::uint16_t kNoSlot = 0xffff;
 
 /// The slot of (index, instance), a new one if it was not seen in this chunk. The table is at most half full: chunks
 /// that are larger skip it.
@@ -56,18 +57,32 @@ struct Gather {
     for_each_position([&](const Run& run, std::uint32_t position) { add_new(call.first + run.start + position, run); });
   }
 
-  /// One slot per distinct (index, instance), unless the chunk is too large for the table.
+  /// One slot per distinct (index, instance), unless the chunk is too large for the tables.
   template <class T>
-  void add_indexed(bool dedupe) {
+  void add_indexed(std::uint32_t positions) {
     const DrawCall& call = chunk.draw->call;
     const Indices<T> indices{call.index_data, call.index_bytes / sizeof(T),
                              static_cast<std::uint32_t>(call.vertex_offset)};
-    for_each_position([&](const Run& run, std::uint32_t position) {
-      const std::uint32_t index = indices[std::uint64_t{call.first} + run.start + position];
-      if (dedupe)
-        scratch.slot[entry++] = static_cast<std::uint16_t>(find_slot(scratch, index, run.instance, count));
-      else
-        add_new(index, run);
+    const auto each = [&](auto&& add) {
+      for_each_position([&](const Run& run, std::uint32_t position) {
+        add(indices[std::uint64_t{call.first} + run.start + position], run);
+      });
+    };
+    if (positions > kHashSize / 2) return each([&](std::uint32_t index, const Run& run) { add_new(index, run); });
+    std::uint32_t lowest = ~0u, highest = 0;
+    each([&](std::uint32_t index, const Run&) {
+      lowest = std::min(lowest, index);
+      highest = std::max(highest, index);
+    });
+    const bool one_instance = chunk.runs[0].instance == chunk.runs[chunk.run_count - 1].instance;
+    scratch.hash_slot.resize(kHashSize);
+    if (one_instance && highest - lowest < kHashSize) {
+      std::fill_n(scratch.hash_slot.begin(), highest - lowest + 1, kNoSlot);
+      return each([&](std::uint32_t index, const Run& run) { add_in_range(index - lowest, index, run); });
+    }
+    scratch.hash_key.assign(kHashSize, kEmptyKey);
+    each([&](std::uint32_t index, const Run& run) {
+      scratch.slot[entry++] = static_cast<std::uint16_t>(find_slot(scratch, index, run.instance, count));
     });
   }
 
@@ -79,6 +94,17 @@ struct Gather {
       const RunSpan span = run_span(shape, chunk.runs[r]);
       if (span.center) add(chunk.runs[r], 0);
       for (std::uint32_t p = span.low; p < span.high; ++p) add(chunk.runs[r], p);
+    }
+  }
+
+  /// hash_slot is a table of the slots of all indices of the chunk, by distance from the lowest.
+  void add_in_range(std::uint32_t distance, std::uint32_t index, const Run& run) {
+    const std::uint16_t known = scratch.hash_slot[distance];
+    if (known == kNoSlot) {
+      scratch.hash_slot[distance] = static_cast<std::uint16_t>(count);
+      add_new(index, run);
+    } else {
+      scratch.slot[entry++] = known;
     }
   }
 
@@ -163,17 +189,12 @@ std::uint32_t gather_vertices(const Chunk& chunk, FrontScratch& s) {
     gather.add_linear();
     return gather.count;
   }
-  const bool dedupe = positions <= kHashSize / 2;
-  if (dedupe) {
-    s.hash_key.assign(kHashSize, kEmptyKey);
-    s.hash_slot.resize(kHashSize);
-  }
   if (call.index_type == VK_INDEX_TYPE_UINT32)
-    gather.add_indexed<std::uint32_t>(dedupe);
+    gather.add_indexed<std::uint32_t>(positions);
   else if (call.index_type == VK_INDEX_TYPE_UINT16)
-    gather.add_indexed<std::uint16_t>(dedupe);
+    gather.add_indexed<std::uint16_t>(positions);
   else
-    gather.add_indexed<std::uint8_t>(dedupe);
+    gather.add_indexed<std::uint8_t>(positions);
   return gather.count;
 }
 

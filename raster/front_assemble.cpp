@@ -19,7 +19,22 @@ struct Assembler {
   const PipelinePlan& plan;
   SetupContext setup;
   ViewportTransform viewport;
+  bool batches;                       ///< triangles inside the view volume need nothing but setup
   std::uint32_t stipple_counter = 0;  ///< pixels of the pattern used up by earlier lines of the strip
+  TriangleBatch batch;
+
+  Assembler(const Chunk& of_chunk, const PassDesc& of_pass, Arena& to_arena, FrontScratch& with_scratch)
+      : chunk(of_chunk),
+        pass(of_pass),
+        arena(to_arena),
+        scratch(with_scratch),
+        plan(*of_chunk.draw->plan),
+        setup{&plan, &of_pass, &with_scratch.primitives, !of_chunk.draw->call.queries.statistics},
+        viewport(plan.viewport[0]),
+        batches(plan.windows && plan.out.layer == kNoReg && !plan.per_vertex_viewport && !plan.bias_in_vertices &&
+                plan.out.cull_count == 0) {
+    setup.layer = static_cast<std::uint16_t>(chunk.view);
+  }
 };
 
 ClipVertex clip_vertex(const Assembler& a, std::uint32_t slot) {
@@ -188,10 +203,30 @@ void emit_clipped(Assembler& a, std::uint32_t provoking, ClipPolygon& polygon) {
   }
 }
 
+/// Sets up the triangles that wait: before any other primitive, which comes behind them.
+void flush_batch(Assembler& a) {
+  if (a.batch.count != 0) setup_triangles(a.setup, a.batch);
+}
+
+void add_to_batch(Assembler& a, const std::uint32_t slot[3]) {
+  const FrontScratch& s = a.scratch;
+  TriangleBatch& batch = a.batch;
+  const std::uint32_t at = batch.count++;
+  for (int c = 0; c < 3; ++c) {
+    batch.x[c][at] = s.snapped[slot[c] * 2];
+    batch.y[c][at] = s.snapped[slot[c] * 2 + 1];
+    batch.record[c][at] = s.records + std::size_t{slot[c]} * a.plan.vertex_stride;
+  }
+  batch.id[at] = a.setup.id;
+  if (batch.count == TriangleBatch::kSize) setup_triangles(a.setup, batch);
+}
+
 void assemble_triangle(Assembler& a, const std::uint32_t slot[3]) {
   const FrontScratch& s = a.scratch;
   const ClipCode c0 = s.code[slot[0]], c1 = s.code[slot[1]], c2 = s.code[slot[2]];
   if ((c0 & c1 & c2) != 0) return;
+  if (a.batches && (c0 | c1 | c2) == 0) return add_to_batch(a, slot);
+  flush_batch(a);
   if (a.plan.out.cull_count && culled_by_distance(a, slot, 3)) return;
   const std::uint32_t provoking = a.plan.state->provoking_vertex_last ? 2 : 0;
   choose_layer_and_viewport(a, slot[provoking]);
@@ -251,9 +286,7 @@ void assemble_point(Assembler& a, std::uint32_t slot) {
 void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, FrontScratch& scratch) {
   const PipelinePlan& plan = *chunk.draw->plan;
   const State& state = *plan.state;
-  Assembler a{chunk,           pass, arena,
-              scratch,         plan, {&plan, &pass, &scratch.primitives, !chunk.draw->call.queries.statistics},
-              plan.viewport[0]};
+  Assembler a(chunk, pass, arena, scratch);
   const TopologyShape& shape = plan.shape;
   if (state.cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return;
   std::uint32_t first_entry = 0;
@@ -285,6 +318,7 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
     }
     first_entry += span.count();
   }
+  flush_batch(a);
   if (chunk.draw->call.queries.statistics && !plan.draws_points)  // clipping primitives
     chunk.draw->call.queries.statistics[6].fetch_add(scratch.primitives.size(), std::memory_order_relaxed);
 }
@@ -292,9 +326,7 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
 void assemble_listed(const Chunk& chunk, const PassDesc& pass, Arena& arena, FrontScratch& scratch,
                      std::span<const ListedPrimitive> primitives) {
   const PipelinePlan& plan = *chunk.draw->plan;
-  Assembler a{chunk,           pass, arena,
-              scratch,         plan, {&plan, &pass, &scratch.primitives, !chunk.draw->call.queries.statistics},
-              plan.viewport[0]};
+  Assembler a(chunk, pass, arena, scratch);
   const std::size_t before = scratch.primitives.size();
   const bool invisible = plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && plan.corners == 3;
   for (const ListedPrimitive& primitive : primitives) {
@@ -308,6 +340,7 @@ void assemble_listed(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fro
     else
       assemble_point(a, primitive.slot[0]);
   }
+  flush_batch(a);
   if (std::atomic<std::uint64_t>* statistics = chunk.draw->call.queries.statistics) {
     statistics[5].fetch_add(primitives.size(), std::memory_order_relaxed);  // clipping invocations, primitives
     if (!plan.draws_points) statistics[6].fetch_add(scratch.primitives.size() - before, std::memory_order_relaxed);

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "raster/lane_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::raster::HWY_NAMESPACE {
@@ -38,6 +39,15 @@ HWY_INLINE VP vertex_values(const Vertex* v, std::size_t i, std::size_t perspect
   return hn::Mul(raw, hn::IfThenElse(perspective, hn::Set(f, v[3]), hn::Set(f, 1.0f)));
 }
 
+/// PlaneSet::unit_w from the first vector of planes.
+HWY_INLINE bool has_unit_w(VP a0, VP dadx, VP dady) {
+  static_assert(kReciprocalWPlane < hn::MaxLanes(P()));
+  const P f;
+  const auto unit =
+      hn::And(hn::And(hn::Eq(dadx, hn::Zero(f)), hn::Eq(dady, hn::Zero(f))), hn::Eq(a0, hn::Set(f, 1.0f)));
+  return (bits_of_mask(unit) >> kReciprocalWPlane & 1) != 0;
+}
+
 /// 4.1, over all planes at once.
 void triangle_planes(const Primitive& p, float po, std::size_t count, std::size_t perspective_end, PlaneSet& out) {
   const P f;
@@ -53,9 +63,11 @@ void triangle_planes(const Primitive& p, float po, std::size_t count, std::size_
     const VP d20 = hn::Sub(vertex_values(v2, i, perspective_end), a0);
     const VP dadx = hn::Sub(hn::Mul(d01, y20), hn::Mul(d20, y01));
     const VP dady = hn::Sub(hn::Mul(d20, x01), hn::Mul(d01, x20));
+    const VP origin = hn::Sub(a0, hn::Add(hn::Mul(dadx, xc), hn::Mul(dady, yc)));
     hn::Store(dadx, f, out.dadx + i);
     hn::Store(dady, f, out.dady + i);
-    hn::Store(hn::Sub(a0, hn::Add(hn::Mul(dadx, xc), hn::Mul(dady, yc))), f, out.a0 + i);
+    hn::Store(origin, f, out.a0 + i);
+    if (i == 0) out.unit_w = has_unit_w(origin, dadx, dady);
   }
 }
 
@@ -72,16 +84,20 @@ void line_planes(const Primitive& p, float idx, float idy, float ooa, std::size_
     const VP dady = hn::Mul(hn::Mul(d, hn::Set(f, idy)), hn::Set(f, ooa));
     hn::Store(dadx, f, out.dadx + i);
     hn::Store(dady, f, out.dady + i);
-    hn::Store(hn::Sub(a1, hn::Add(hn::Mul(dadx, xc), hn::Mul(dady, yc))), f, out.a0 + i);
+    const VP origin = hn::Sub(a1, hn::Add(hn::Mul(dadx, xc), hn::Mul(dady, yc)));
+    hn::Store(origin, f, out.a0 + i);
+    if (i == 0) out.unit_w = has_unit_w(origin, dadx, dady);
   }
 }
 
 void point_planes(const Primitive& p, std::size_t count, std::size_t perspective_end, PlaneSet& out) {
   const P f;
   for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
-    hn::Store(vertex_values(p.v[0], i, perspective_end), f, out.a0 + i);
+    const VP origin = vertex_values(p.v[0], i, perspective_end);
+    hn::Store(origin, f, out.a0 + i);
     hn::Store(hn::Zero(f), f, out.dadx + i);
     hn::Store(hn::Zero(f), f, out.dady + i);
+    if (i == 0) out.unit_w = has_unit_w(origin, hn::Zero(f), hn::Zero(f));
   }
 }
 
@@ -220,7 +236,9 @@ void point_coord_planes(const Primitive& p, std::uint32_t plane, PlaneSet& out) 
   out.dady[plane + 1] = d * w;
 }
 
-void compute_all_planes(const PipelinePlan& plan, const Primitive& p, PlaneSet& out) {
+}  // namespace
+
+void compute_planes(const PipelinePlan& plan, const Primitive& p, PlaneSet& out) {
   const std::size_t perspective_end = kFirstVaryingPlane + plan.perspective_count;
   const std::size_t count = perspective_end + plan.linear_count;
   if (p.kind == PrimitiveKind::kTriangle) {
@@ -238,14 +256,6 @@ void compute_all_planes(const PipelinePlan& plan, const Primitive& p, PlaneSet& 
   } else {
     for (std::uint32_t i = plane; i < plane + 2; ++i) out.a0[i] = out.dadx[i] = out.dady[i] = 0;
   }
-}
-
-}  // namespace
-
-void compute_planes(const PipelinePlan& plan, const Primitive& primitive, PlaneSet& out) {
-  compute_all_planes(plan, primitive, out);
-  constexpr std::uint32_t w = kReciprocalWPlane;
-  out.unit_w = out.dadx[w] == 0 && out.dady[w] == 0 && out.a0[w] == 1;
 }
 
 void evaluate_plane(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale,

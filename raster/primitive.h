@@ -18,6 +18,10 @@ enum class PrimitiveKind : std::uint8_t { kTriangle, kLine, kPoint };
 /// Positions are 24.8 fixed point relative to the sample grid of 3.1 (pixel centres at multiples of 256 when
 /// single-sampled, pixel corners when multisampled).
 struct Primitive {
+  Primitive() = default;
+  struct Unset {};
+  explicit Primitive(Unset) {}  ///< for those who fill in everything: zeros first would take longer than that
+
   std::int32_t x[4],
       y[4];            ///< triangle: 3 corners with positive area; line: 4 corners; point: x0, y0, x1, y1 in [0], [1]
   const Vertex* v[3];  ///< triangle: interpolation order (2.1); line: both ends; point: one

@@ -83,6 +83,22 @@ float vertex_depth_bias(const PipelinePlan& plan, const PassDesc& pass, const Ve
   return bias_offset(*plan.state, pass, slope, largest_depth(v0, v1, v2));
 }
 
+void complete_triangle(const SetupContext& context, const TriangleFacts& facts, Primitive& p) {
+  const PipelinePlan& plan = *context.plan;
+  p.depth_offset = plan.depth_bias && !context.of_line ? triangle_bias(context, p.v) : 0.0f;
+  p.id = context.id;
+  p.x0 = static_cast<std::uint16_t>(facts.visible.x0);
+  p.y0 = static_cast<std::uint16_t>(facts.visible.y0);
+  p.x1 = static_cast<std::uint16_t>(facts.visible.x1);
+  p.y1 = static_cast<std::uint16_t>(facts.visible.y1);
+  p.window = facts.window;
+  p.layer = context.layer;
+  p.viewport = context.viewport;
+  p.kind = PrimitiveKind::kTriangle;
+  p.front = facts.front;
+  p.provoking = context.of_line || plan.state->provoking_vertex_last ? 2 : 0;
+}
+
 void setup_triangle(const SetupContext& context, const SetupVertex& v0, const SetupVertex& v1, const SetupVertex& v2) {
   const PipelinePlan& plan = *context.plan;
   const State& state = *plan.state;
@@ -96,7 +112,6 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   const bool faces = (area > 0) == (state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE);
   const bool front = context.of_line ? context.line_front : faces;
   if (!context.of_line && cull_facing(state, front)) return;
-  const bool provoking_last = context.of_line || state.provoking_vertex_last;
   const std::int32_t left = std::min({v0.x, v1.x, v2.x}), right = std::max({v0.x, v1.x, v2.x});
   const std::int32_t top = std::min({v0.y, v1.y, v2.y}), bottom = std::max({v0.y, v1.y, v2.y});
   // Positions that no viewport can give come from NaN and infinities; edge arithmetic need not cope with them.
@@ -120,10 +135,10 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
     if (window == 0 && context.drops_empty) return;
   }
 
-  Primitive& p = context.out->emplace_back();
+  Primitive& p = context.out->emplace_back(Primitive::Unset());
   const SetupVertex* order[3] = {&v0, &v1, &v2};
   if (area < 0) {  // 2.1: the provoking vertex keeps its place
-    if (provoking_last)
+    if (context.of_line || state.provoking_vertex_last)
       std::swap(order[0], order[1]);
     else
       std::swap(order[1], order[2]);
@@ -133,18 +148,7 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
     p.x[i] = order[i]->x;
     p.y[i] = order[i]->y;
   }
-  p.depth_offset = plan.depth_bias && !context.of_line ? triangle_bias(context, p.v) : 0.0f;
-  p.id = context.id;
-  p.x0 = static_cast<std::uint16_t>(visible.x0);
-  p.y0 = static_cast<std::uint16_t>(visible.y0);
-  p.x1 = static_cast<std::uint16_t>(visible.x1);
-  p.y1 = static_cast<std::uint16_t>(visible.y1);
-  p.window = window;
-  p.layer = context.layer;
-  p.viewport = context.viewport;
-  p.kind = PrimitiveKind::kTriangle;
-  p.front = front;
-  p.provoking = provoking_last ? 2 : 0;
+  complete_triangle(context, {front, visible, window}, p);
 }
 
 }  // namespace vitrine::raster

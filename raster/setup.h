@@ -40,6 +40,29 @@ bool culled_by_determinant(const State& state, float determinant);
 
 /// Filled triangle in API order (provoking vertex first or last as the state says).
 void setup_triangle(const SetupContext& context, const SetupVertex& v0, const SetupVertex& v1, const SetupVertex& v2);
+
+/// Filled triangles of one chunk waiting to be set up together.
+struct TriangleBatch {
+  static constexpr std::uint32_t kSize = 16;
+  std::uint32_t count = 0;
+  alignas(64) std::int32_t x[3][kSize], y[3][kSize];  ///< snapped, by corner
+  const Vertex* record[3][kSize];
+  std::uint32_t id[kSize];
+};
+
+/// setup_triangle() of all of them in their order, those of a few pixels a vector at a time; empties the batch. Only
+/// for plans with windows. context.id is not looked at.
+void setup_triangles(SetupContext context, TriangleBatch& batch);
+
+/// What is known of a triangle before it becomes a primitive.
+struct TriangleFacts {
+  bool front;
+  PixelRect visible;
+  base::LaneMask window;  ///< Primitive::window
+};
+/// Fills in everything but the corners.
+void complete_triangle(const SetupContext& context, const TriangleFacts& facts, Primitive& p);
+
 void setup_line(const SetupContext& context, const Vertex* v1, const Vertex* v2, bool front);
 /// 6.5: two triangles around the line, with records in `arena`. Flat values of both ends are the same.
 void setup_smooth_line(SetupContext context, Arena& arena, const Vertex* v0, const Vertex* v1, bool front);

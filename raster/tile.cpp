@@ -23,6 +23,15 @@ constexpr QuadPositions block_offsets() {
 }
 constexpr QuadPositions kBlockOffsets = block_offsets();
 
+/// Makes planes of the pool the current ones. Those before stay taken as long as the wave uses them.
+void set_current_planes(TileWorker& worker, const Primitive* primitive, PlaneSet* planes) {
+  const PackedWave& wave = worker.wave;
+  const bool used = wave.slots != 0 && wave.planes.set[wave.slots - 1] == worker.planes;
+  if (worker.planes && !used) worker.pool.give_back(worker.planes);
+  worker.planes = planes;
+  worker.planes_of = primitive;
+}
+
 /// Whether rows of a square may be read and written without looking at their pixels: it lies inside all attachments,
 /// and inside the tile, beside which other threads are at work (windows do not keep to the grid of blocks).
 bool owns_square(const TileWorker& worker, int x, int y, int side) {
@@ -167,9 +176,6 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
     append_full_block(worker, primitive, x, y, rasterized, block);
 }
 
-/// The lanes of a window's first 4x4 pixels.
-constexpr base::LaneMask kSmallWindow = 0x00ff00ff;
-
 /// A primitive whose coverage the front end found.
 void emit_window(TileWorker& worker, const Primitive& primitive) {
   const PipelinePlan& plan = *worker.draw->plan;
@@ -184,11 +190,7 @@ void emit_window(TileWorker& worker, const Primitive& primitive) {
   BlockCoverage rasterized{};
   if (reads_rasterized(worker)) rasterized = block;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
-    const bool small = (block.lanes[0] & ~kSmallWindow) == 0;
-    if (small && plan.tests_rows && owns_square(worker, x, y, 4))
-      block.lanes[0] =
-          test_small_window(worker, primitive, x, y, block.lanes[0], plan.depth_order == TestOrder::kEarly);
-    else if (plan.tests_rows && owns_block(worker, x, y))
+    if (plan.tests_rows && owns_block(worker, x, y))
       test_blocks(worker, primitive, 0, x, y, 1, block.lanes, plan.depth_order == TestOrder::kEarly);
     else
       test_any_block(worker, primitive, x, y, block);
@@ -201,6 +203,70 @@ void emit_window(TileWorker& worker, const Primitive& primitive) {
   base::LaneMask any = block.lanes[0] | block.lanes[0] >> 1;
   any = (any | any >> 2) & 0x1111111111111111;
   append_quads(worker, primitive, x, y, rasterized, block, any);
+}
+
+/// The lanes of a window's first 4x4 pixels.
+constexpr base::LaneMask kSmallWindow = 0x00ff00ff;
+
+/// Whether a primitive may go into a group: a window that nothing cuts.
+bool is_small_window(const TileWorker& worker, const Primitive& primitive) {
+  return primitive.window != 0 && (primitive.window & ~kSmallWindow) == 0 &&
+         owns_square(worker, primitive.x0 & ~1, primitive.y0 & ~1, 4);
+}
+
+/// Small windows of one draw and one viewport. Each step is done for all of them before the next, so that none waits
+/// for the results of the one before.
+void emit_small_windows(TileWorker& worker, const Primitive* const* primitives, std::uint32_t count) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  DepthWindow windows[kWindowGroup];
+  PlaneSet* planes[kWindowGroup];
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Primitive& primitive = *primitives[i];
+    planes[i] = worker.pool.take();
+    compute_planes(plan, primitive, *planes[i]);
+    const auto quads = static_cast<std::uint32_t>((primitive.window & 0xff) | (primitive.window >> 8 & 0xff00));
+    windows[i] = {depth_plane(*planes[i], primitive), primitive.x0 & ~1, primitive.y0 & ~1, transpose_window(quads)};
+  }
+  if (plan.depth_order == TestOrder::kEarly || plan.early_reject)
+    test_windows(worker, primitives[0]->viewport, windows, count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Primitive& primitive = *primitives[i];
+    const DepthWindow& window = windows[i];
+    if (window.rows == 0 || !plan.shades) {
+      worker.pool.give_back(planes[i]);
+      if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(window.rows));
+      continue;
+    }
+    set_current_planes(worker, &primitive, planes[i]);
+    const base::LaneMask quads = transpose_window(window.rows);
+    const BlockCoverage block{{(quads & 0xff) | (quads & 0xff00) << 8}}, rasterized{{primitive.window}};
+    base::LaneMask any = block.lanes[0] | block.lanes[0] >> 1;
+    any = (any | any >> 2) & 0x1111111111111111;
+    append_quads(worker, primitive, window.x, window.y, rasterized, block, any);
+  }
+}
+
+/// The primitives of one item, groups of small windows together.
+void rasterize_primitives(TileWorker& worker, const TileItem& item, std::uint32_t first) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const bool tests = plan.depth_order == TestOrder::kEarly || plan.early_reject;
+  const bool groups =
+      plan.windows && !plan.in_order && !plan.state->ordered_attachment_access && (!tests || plan.tests_rows);
+  const Primitive* group[kWindowGroup];
+  std::uint32_t count = 0;
+  for (std::uint32_t k = first; k < item.count; ++k) {
+    const Primitive& primitive = item.primitives[item.index[k]];
+    const bool small = groups && is_small_window(worker, primitive);
+    if (count != 0 && (!small || count == kWindowGroup || group[0]->viewport != primitive.viewport)) {
+      emit_small_windows(worker, group, count);
+      count = 0;
+    }
+    if (small)
+      group[count++] = &primitive;
+    else
+      rasterize_primitive(worker, primitive);
+  }
+  if (count != 0) emit_small_windows(worker, group, count);
 }
 
 BlockCoverage block_of(const TileCoverage& coverage, std::uint32_t place, std::uint32_t samples) {
@@ -380,15 +446,18 @@ void set_target(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, 
 
 }  // namespace
 
+void release_planes(TileWorker& worker, const PackedWave& wave) {
+  for (std::uint32_t slot = 0; slot < wave.slots; ++slot)
+    if (wave.planes.set[slot] != worker.planes) worker.pool.give_back(wave.planes.set[slot]);
+}
+
 const PlaneSet& current_planes(TileWorker& worker, const Primitive& primitive) {
-  if (worker.planes_of == &primitive) return worker.planes[worker.current];
-  // The wave keeps its planes; they are the last ones that were current.
-  const PackedWave& wave = worker.wave;
-  if (wave.slots != 0 && wave.planes.set[wave.slots - 1] == &worker.planes[worker.current])
-    worker.current = worker.current == base::kQuadsPerWave ? 0 : worker.current + 1;
-  compute_planes(*worker.draw->plan, primitive, worker.planes[worker.current]);
-  worker.planes_of = &primitive;
-  return worker.planes[worker.current];
+  if (worker.planes_of == &primitive) return *worker.planes;
+  set_current_planes(worker, nullptr, nullptr);
+  PlaneSet* planes = worker.pool.take();
+  compute_planes(*worker.draw->plan, primitive, *planes);
+  set_current_planes(worker, &primitive, planes);
+  return *planes;
 }
 
 void place_block(int x, int y, QuadPositions& out) {
@@ -428,7 +497,9 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
   const base::ScopedFloatMode mode(base::Denormals::kFlush);
   set_target(worker, pass, grid, tile);
   worker.draw = nullptr;
+  worker.planes = nullptr;
   worker.planes_of = nullptr;
+  worker.pool.reset();
   const TileStart start = first_visible(worker, items);
   for (std::size_t i = start.item; i < items.size(); ++i) {
     const TileItem& item = items[i];
@@ -441,8 +512,7 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
       end_draw(worker);
       begin_draw(worker, item.draw);
     }
-    for (std::uint32_t k = i == start.item ? start.primitive : 0; k < item.count; ++k)
-      rasterize_primitive(worker, item.primitives[item.index[k]]);
+    rasterize_primitives(worker, item, i == start.item ? start.primitive : 0);
   }
   end_draw(worker);
 }

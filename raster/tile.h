@@ -60,6 +60,26 @@ struct PackedWave {
   base::LaneMask rasterized[kMaxSamples];           ///< before early tests: gl_SampleMask as an input (8.5)
 };
 
+/// Windows that are tested together: their planes are there before the first depth is read.
+inline constexpr std::uint32_t kWindowGroup = 8;
+
+/// Planes of the primitives in a wave, in a group of windows, and of the one being rasterized.
+class PlanePool {
+ public:
+  void reset() {
+    for (std::uint32_t i = 0; i < kCount; ++i) free_[i] = static_cast<std::uint8_t>(i);
+    free_count_ = kCount;
+  }
+  PlaneSet* take() { return &set_[free_[--free_count_]]; }
+  void give_back(const PlaneSet* set) { free_[free_count_++] = static_cast<std::uint8_t>(set - set_); }
+
+ private:
+  static constexpr std::uint32_t kCount = base::kQuadsPerWave + kWindowGroup + 1;
+  PlaneSet set_[kCount];
+  std::uint8_t free_[kCount];
+  std::uint32_t free_count_ = 0;
+};
+
 /// The tile being worked on.
 struct TileTarget {
   int x = 0, y = 0;  ///< first pixel
@@ -87,8 +107,8 @@ struct TileWorker {
   TileCoverage covered, rasterized;  ///< of the primitive being rasterized: what passed so far, and before any test
   StageRunner runner;
   Stage bound;
-  PlaneSet planes[base::kQuadsPerWave + 1];  ///< of the primitives in `wave`, and of the one being rasterized
-  std::uint32_t current = 0;                 ///< planes[current]: of `planes_of`
+  PlanePool pool;
+  PlaneSet* planes = nullptr;  ///< of the pool: of `planes_of`; null: of none
   const Primitive* planes_of = nullptr;
   WavePoints center, place;
   alignas(64) float reciprocal_w[base::kWaveWidth];
@@ -113,6 +133,9 @@ void begin_blocks(TileWorker& worker);
 /// Shades, tests late and writes a block inside all attachments whose first pixel is (x, y), in the framebuffer.
 void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block);
 
+/// Planes of a wave's primitives may be used again, but for the current ones.
+void release_planes(TileWorker& worker, const PackedWave& wave);
+
 /// Planes of the primitive being rasterized.
 const PlaneSet& current_planes(TileWorker& worker, const Primitive& primitive);
 
@@ -124,9 +147,8 @@ void place_block(int x, int y, QuadPositions& out);
 void test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32_t sample, int x, int y,
                  base::LaneMask places, base::LaneMask* lanes, bool write);
 
-/// The same for the first 4x4 pixels of a window, single-sampled. Returns what passed.
-base::LaneMask test_small_window(TileWorker& worker, const Primitive& primitive, int x, int y, base::LaneMask lanes,
-                                 bool write);
+/// Early depth test of windows inside all attachments whose primitives have one viewport; single-sampled.
+void test_windows(TileWorker& worker, std::uint32_t viewport, DepthWindow* windows, std::size_t count);
 
 /// Shades, tests and writes the quads of `wave`, one of the worker's; empties it (fragment.cpp).
 void shade_wave(TileWorker& worker, PackedWave& wave);
