@@ -15,6 +15,7 @@
 
 #include "base/lane_math-inl.h"
 #include "raster/color_pack-inl.h"
+#include "raster/color_srgb-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::raster::HWY_NAMESPACE {
@@ -166,10 +167,11 @@ base::LaneMask lanes_of(std::uint32_t quads) {
   return lanes;
 }
 
-void store_bytes(const ColorWriter& writer, const ColorWave& wave) {
+template <class Packer>
+HWY_INLINE void store_packed(const ColorWriter& writer, const ColorWave& wave) {
   Words words;
-  const BytePacker packer(writer);
-  const BytePacker::Texels d;
+  const Packer packer(writer);
+  const typename Packer::Texels d;
   for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d))
     hn::Store(packer.pack(wave.color, i), d, reinterpret_cast<std::int32_t*>(words.lane + i));
   const std::uint32_t keep = ~write_word(writer);
@@ -185,6 +187,9 @@ void store_bytes(const ColorWriter& writer, const ColorWave& wave) {
     scatter(wave, mask, old);
   });
 }
+
+void store_bytes(const ColorWriter& writer, const ColorWave& wave) { store_packed<BytePacker>(writer, wave); }
+void store_srgb(const ColorWriter& writer, const ColorWave& wave) { store_packed<SrgbPacker>(writer, wave); }
 
 using U16 = hn::CappedTag<std::uint16_t, kWaveWidth>;
 using V16 = hn::Vec<U16>;
@@ -292,7 +297,7 @@ void blend_bytes(const ColorWriter& writer, const ColorWave& wave) {
 
 }  // namespace
 
-ByteColorFunctions byte_functions() { return {store_bytes, blend_bytes}; }
+ByteColorFunctions byte_functions() { return {store_bytes, blend_bytes, store_srgb}; }
 
 }  // namespace vitrine::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -307,14 +312,21 @@ ByteColorFunctions byte_color_functions() {
   return HWY_DYNAMIC_DISPATCH(byte_functions)();
 }
 
-bool is_four_bytes(const texel::FormatDesc& format) {
+namespace {
+
+bool four_bytes(const texel::FormatDesc& format, texel::Numeric numeric) {
   if (format.channel_count != 4 || format.block_bytes != 4) return false;
   for (std::size_t c = 0; c < 4; ++c) {
     const texel::Channel& channel = format.channel[c];
-    if (channel.bits != 8 || channel.numeric != texel::Numeric::kUnorm || format.rgba[c] < 0) return false;
+    if (channel.bits != 8 || channel.numeric != numeric || format.rgba[c] < 0) return false;
   }
   return true;
 }
+
+}  // namespace
+
+bool is_four_bytes(const texel::FormatDesc& format) { return four_bytes(format, texel::Numeric::kUnorm); }
+bool is_four_srgb_bytes(const texel::FormatDesc& format) { return four_bytes(format, texel::Numeric::kSrgb); }
 
 bool reads_second_source(const ColorWriter& writer) {
   for (const VkBlendFactor factor : {writer.rgb.src, writer.rgb.dst, writer.alpha.src, writer.alpha.dst}) {
@@ -354,6 +366,8 @@ ColorFunction fast_color_function(const ColorWriter& writer) {
     if (writer.blend == BlendType::kNone) return byte_color_functions().store;
     return reads_second_source(writer) ? nullptr : byte_color_functions().blend;
   }
+  if (writer.blend == BlendType::kNone && is_four_srgb_bytes(*writer.format) && !texel::encodes_by_cpu())
+    return byte_color_functions().store_srgb;
   if (writer.blend == BlendType::kNone && !writer.masked && is_words(*writer.format)) return store_words;
   return nullptr;
 }

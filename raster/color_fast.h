@@ -8,11 +8,14 @@ namespace vitrine::raster {
 /// Colour functions of the SIMD target in use for targets of four 8-bit UNORM channels.
 struct ByteColorFunctions {
   ColorFunction store, blend;
+  ColorFunction store_srgb;  ///< three of them sRGB
 };
 ByteColorFunctions byte_color_functions();
 
 /// Four UNORM bytes, in any order.
 bool is_four_bytes(const texel::FormatDesc& format);
+/// The same with sRGB colours.
+bool is_four_srgb_bytes(const texel::FormatDesc& format);
 /// Whether a blend factor is a dual-source one.
 bool reads_second_source(const ColorWriter& writer);
 

@@ -88,8 +88,9 @@ TEST(Color, FastFunctionsEqualTheGeneralOne) {
   const base::ScopedFloatMode mode(base::Denormals::kFlush);
   std::mt19937 random(7);
   std::size_t changed = 0;
-  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_A8B8G8R8_UNORM_PACK32,
-                                VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_UINT}) {
+  for (const VkFormat format :
+       {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_A8B8G8R8_UNORM_PACK32, VK_FORMAT_B8G8R8A8_SRGB,
+        VK_FORMAT_A8B8G8R8_SRGB_PACK32, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_UINT}) {
     for (int n = 0; n < 400; ++n) {
       State state;
       for (float& constant : state.blend_constants) constant = random_value(random);

@@ -131,6 +131,15 @@ std::uint8_t encode_srgb_clear(float linear) {
   return static_cast<std::uint8_t>(above - kClearThresholds.begin());
 }
 
+constinit const std::array<std::uint16_t, 8193> kRsqrtSteps = [] {
+  std::array<std::uint16_t, 8193> steps{};
+  for (std::uint32_t i = 0; i < 8192; ++i) {
+    const auto slope = static_cast<std::uint32_t>(kRsqrtSlopes[i >> 8] >> (i & 15) * 4) & 15;
+    steps[i] = static_cast<std::uint16_t>(kRsqrtBlocks[i >> 4] - slope);
+  }
+  return steps;
+}();
+
 float approximate_rsqrt(float value) {
   const std::uint32_t bits = base::bits_of(value);
   if (bits < 0x00800000u) return base::float_of(0x7f800000u);
@@ -138,9 +147,7 @@ float approximate_rsqrt(float value) {
   // value = m * 4^k with m in [0.5, 2): the result is table(m) * 2^-k.
   const std::uint32_t exponent = bits >> 23;
   const std::uint32_t upper = exponent & 1;  // biased 127, 129... : m in [1, 2)
-  const std::uint32_t block = upper << 8 | ((bits >> 15) & 255);
-  const auto slope = static_cast<std::uint32_t>(kRsqrtSlopes[block >> 4] >> ((bits >> 11) & 15) * 4) & 15;
-  const std::uint32_t significand = kRsqrtBlocks[block] - slope;
+  const std::uint32_t significand = kRsqrtSteps[(bits >> 11) & 0x1fff];
   const std::int32_t k = (static_cast<std::int32_t>(exponent) - 126 - static_cast<std::int32_t>(upper)) / 2;
   const std::uint32_t start = (upper != 0 ? 126u : 127u) << 23;  // 0.5 or 1.0
   return base::float_of(start + (significand << 11) - (static_cast<std::uint32_t>(k) << 23));
@@ -163,19 +170,24 @@ Rsqrt wanted_rsqrt() {
   return value != nullptr && std::string_view(value) == "cpu" ? rsqrt_of_cpu : nullptr;
 }
 
-float rsqrt(float value) {
+Rsqrt other_rsqrt() {
   static const Rsqrt other = wanted_rsqrt();
+  return other;
+}
+
+float rsqrt(float value) {
+  const Rsqrt other = other_rsqrt();
   return other != nullptr ? other(value) : approximate_rsqrt(value);
 }
 
 }  // namespace
 
+bool encodes_by_cpu() { return other_rsqrt() != nullptr; }
+
 std::uint8_t encode_srgb_attachment(float linear) {
   const float x = base::min_second(base::max_second(linear, 0.0f), 1.0f);
-  if (!(x > 0.0031308f)) return static_cast<std::uint8_t>(base::round_to_int(x * (12.92f * 255.0f)));
-  constexpr float a = static_cast<float>(0.675f * 1.0622 * 255.0f);
-  constexpr float b = static_cast<float>(0.325f * 1.0622 * 255.0f);
-  constexpr float c = -0.0620f * 255.0f;
+  if (!(x > kSrgbLinearEnd)) return static_cast<std::uint8_t>(base::round_to_int(x * kSrgbLinearScale));
+  constexpr float a = kSrgbCurve[0], b = kSrgbCurve[1], c = kSrgbCurve[2];
   const float t = rsqrt(x);
   const float x05 = x * t;
   const float x0375 = rsqrt(rsqrt(x05 * x));

@@ -20,6 +20,18 @@ std::uint8_t encode_srgb_clear(float linear);
 /// RSQRTPS, VITRINE_RSQRT=cpu takes that instead, so that a reference on a CPU of another vendor can be compared with.
 std::uint8_t encode_srgb_attachment(float linear);
 
+/// Below this the attachment's curve is a line of kSrgbLinearScale; above it c[0] x^0.375 + c[1] x^0.5 + c[2].
+inline constexpr float kSrgbLinearEnd = 0.0031308f, kSrgbLinearScale = 12.92f * 255.0f;
+inline constexpr float kSrgbCurve[3] = {static_cast<float>(0.675f * 1.0622 * 255.0f),
+                                        static_cast<float>(0.325f * 1.0622 * 255.0f), -0.0620f * 255.0f};
+
+/// Whether encode_srgb_attachment takes the CPU's RSQRTPS.
+bool encodes_by_cpu();
+
+/// Significand of approximate_rsqrt less 1, in units of 2^-12, by bits 11 to 23 of the operand. One more entry than
+/// that, so that each can be read with the one behind it.
+extern const std::array<std::uint16_t, 8193> kRsqrtSteps;
+
 /// RSQRTPS by table: positive normal operands; 0 and denormals give +infinity, infinity gives 0. The reference encodes
 /// with this instruction, whose bits are the vendor's own; these are an AVX-512 AMD processor's, on every CPU.
 float approximate_rsqrt(float value);
