@@ -242,7 +242,8 @@ void change_coverage(ShadeRun& run) {
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
     const float limit = plan.samples == 1 ? 0.5f : static_cast<float>(s) * 0.25f;
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
-      if (!(base::float_of(alpha[lane]) * (plan.smooth_lines ? run.worker.line_coverage[lane] : 1.0f) > limit))
+      if (base::float_of(alpha[lane]) * (plan.smooth_lines ? run.worker.line_coverage[lane] : 1.0f) <=
+          limit)  // NaN: kept
         run.kept[s] &= ~(LaneMask{1} << lane);
   }
 }

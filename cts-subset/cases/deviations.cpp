@@ -307,6 +307,103 @@ const AddCase kSmoothIntegers(
       run.out("color", target.colors[0]);
     });
 
+/// Half of the pixels are kept: by gl_SampleMask, then by discarding the others.
+const AddCase kSmoothMask("rasterization", "deviation.smooth_line_sample_mask", "smooth-line-sample-mask",
+                          case_against_control, [](Run& run) {
+                            const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
+                            for (const char* keep : {"gl_SampleMask[0] = int(gl_FragCoord.x);",
+                                                     "if ((int(gl_FragCoord.x) & 1) == 0) discard;"}) {
+                              GraphicsSpec spec;
+                              spec.fragment =
+                                  std::string(
+                                      "layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n") +
+                                  "void main() {\n  result = passed;\n  " + keep + "\n}\n";
+                              spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+                              spec.raster.pNext = &line;
+                              draw(run, keep, {}, spec, colored({{-0.9f, -0.5f, 0, 1}, {0.9f, 0.5f, 0, 1}}));
+                            }
+                          });
+
+/// Sample 1 is masked away; the reference draws it as it draws sample 0.
+const AddCase kLineMasks(
+    "rasterization", "deviation.one_sample_line_masks", "one-sample-line-masks",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) -> std::string {
+      const size_t sample = device[0].bytes.size() / 4;
+      const unsigned char *ours = device[0].bytes.data(), *theirs = reference[0].bytes.data();
+      for (const size_t s : {size_t{0}, size_t{2}, size_t{3}})
+        if (std::memcmp(ours + s * sample, theirs + s * sample, sample) != 0) return "other samples differ";
+      if (std::memcmp(theirs, theirs + sample, sample) != 0) return "the reference's fault does not show";
+      for (size_t at = 0; at < sample; ++at)
+        if (ours[sample + at] != ours[sample + at % 16]) return "the device draws sample 1";
+      return "";
+    },
+    [](Run& run) {
+      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT, false);
+      TargetSpec target;
+      target.samples = VK_SAMPLE_COUNT_4_BIT;
+      GraphicsSpec spec;
+      const VkSampleMask mask = 0xd;
+      spec.multisample.pSampleMask = &mask;
+      spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+      spec.raster.pNext = &line;
+      draw(run, "samples", target, spec, colored({{-0.9f, -0.5f, 0, 1}, {0.9f, 0.5f, 0, 1}}));
+    });
+
+/// The inverse of what is there, by logic operation and from the shader.
+const AddCase kPackedLogic(
+    "pipeline", "deviation.logic_op_width", "logic-op-width", case_against_control, [](Run& run) {
+      run.require(run.gpu.features.logicOp, "logicOp");
+      for (const bool inverts : {true, false}) {
+        TargetSpec target_spec;
+        target_spec.colors = {VK_FORMAT_A2B10G10R10_UINT_PACK32};
+        Target target = make_target(run, target_spec);
+        target.clears[0].color = {};
+        for (uint32_t c = 0; c < 4; ++c) target.clears[0].color.uint32[c] = 3 - c;
+        GraphicsSpec spec;
+        spec.vertex = kFullScreenVertex;
+        spec.fragment =
+            "layout(location = 0) out uvec4 result;\nvoid main() { result = uvec4(1020, 1021, 1022, 3); }\n";
+        spec.blend.logicOpEnable = inverts;
+        spec.blend.logicOp = VK_LOGIC_OP_INVERT;
+        const VkPipeline pipeline = make_pipeline(run, spec, target);
+        run.once([&](VkCommandBuffer cmd) {
+          target.begin(cmd);
+          bind_pipeline(cmd, pipeline);
+          vkCmdDraw(cmd, 3, 1, 0, 0);
+          vkCmdEndRenderPass(cmd);
+        });
+        run.out(inverts ? "inverted" : "written", target.colors[0]);
+        run.outputs.back().may_be_blank = true;
+      }
+    });
+
+/// Outlines of triangles in two colours for their facing, behind a geometry shader and without one.
+const AddCase kGeometryFacing(
+    "geometry", "deviation.polygon_mode_facing", "geometry-polygon-facing", case_against_control, [](Run& run) {
+      run.require(run.gpu.features.geometryShader, "geometry shaders");
+      for (const bool geometry : {true, false}) {
+        GraphicsSpec spec;
+        if (geometry)
+          spec.geometry =
+              "layout(triangles) in;\nlayout(triangle_strip, max_vertices = 3) out;\n"
+              "layout(location = 0) in vec4 passed[];\nlayout(location = 0) out vec4 result;\n"
+              "void main() {\n  for (int i = 0; i < 3; ++i) {\n    gl_Position = gl_in[i].gl_Position;\n"
+              "    result = passed[i];\n    EmitVertex();\n  }\n}\n";
+        spec.vertex = kColorVertex;
+        spec.fragment =
+            "layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n"
+            "void main() { result = gl_FrontFacing ? passed : passed.zyxw; }\n";
+        spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
+        draw(run, geometry ? "behind" : "without", {}, spec,
+             colored({{-0.9f, -0.5f, 0, 1},
+                      {0.9f, 0.5f, 0, 1},
+                      {-0.5f, 0.8f, 0, 1},
+                      {-0.9f, -0.2f, 0, 1},
+                      {0.3f, 0.5f, 0, 1},
+                      {0.5f, -0.8f, 0, 1}}));
+      }
+    });
+
 /// Two draws of two instances each, all over each other; each instance has its own colour and moves a little.
 const AddCase kMultiDraw("draw", "deviation.multi_draw_order", "multi-draw-order", case_against_control, [](Run& run) {
   run.require(run.gpu.extension_features.multi_draw.multiDraw, "multiDraw");

@@ -37,6 +37,19 @@ struct DrawState {
   VkSampleMask sample_mask = ~0u;
 };
 
+bool smooth_lines(const DrawState& draw) {
+  return draw.drawn == Drawn::kLines &&
+         draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
+}
+
+/// Bresenham and smooth lines are drawn with one sample for all (deviations.md, line-depth-first-sample and
+/// one-sample-line-masks).
+bool one_sample_lines(const Scene& scene, const DrawState& draw) {
+  return scene.multisampled && draw.drawn == Drawn::kLines &&
+         (draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ||
+          draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT);
+}
+
 bool blendable(VkFormat format) {
   return (gpus().reference.features_of(format) & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT) != 0;
 }
@@ -108,7 +121,8 @@ void random_rasterization(Run& run, const Scene& scene, DrawState& draw) {
   draw.drawn = draw.stages.drawn;
   if (draw.drawn == Drawn::kTriangles && random.chance(0.35f)) {
     draw.polygon = true;
-    const bool lines = random.chance(0.6f);
+    // deviations.md, multisample-short-lines
+    const bool lines = random.chance(0.6f) && !(scene.multisampled && !draw.stages.tessellation.empty());
     raster.polygonMode = lines ? VK_POLYGON_MODE_LINE : VK_POLYGON_MODE_POINT;
     draw.drawn = lines ? Drawn::kLines : Drawn::kPoints;
   }
@@ -183,20 +197,16 @@ VkStencilOpState random_stencil(Random& random) {
 
 void random_tests(Random& random, const Scene& scene, DrawState& draw) {
   VkPipelineDepthStencilStateCreateInfo& depth = draw.spec.depth;
-  // deviations.md, line-depth-first-sample
-  const bool one_sample = scene.multisampled && draw.drawn == Drawn::kLines &&
-                          (draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ||
-                           draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT);
-  depth.depthTestEnable = scene.has_depth && !one_sample && random.chance(0.8f);
+  depth.depthTestEnable = scene.has_depth && !one_sample_lines(scene, draw) && random.chance(0.8f);
   depth.depthWriteEnable = random.chance(0.8f);
   depth.depthCompareOp = random.chance(0.5f) ? VK_COMPARE_OP_LESS : static_cast<VkCompareOp>(random.below(8));
-  depth.stencilTestEnable = scene.has_stencil && !one_sample && random.chance(0.6f);
+  depth.stencilTestEnable = scene.has_stencil && !one_sample_lines(scene, draw) && random.chance(0.6f);
   depth.front = random_stencil(random);
   depth.back = random_stencil(random);
-  // deviations.md, polygon-mode-facing
+  // deviations.md, polygon-mode-facing and geometry-polygon-facing
   if (draw.polygon && depth.stencilTestEnable) {
-    draw.fragment.facing = true;
-    if (scene.target.colors.empty()) depth.back = depth.front;
+    draw.fragment.facing = draw.stages.geometry.empty();
+    if (scene.target.colors.empty() || !draw.fragment.facing) depth.back = depth.front;
   }
 }
 
@@ -206,11 +216,12 @@ void random_fragment_needs(Run& run, const Scene& scene, DrawState& draw) {
   needs.multisampled = scene.multisampled;
   // deviations.md, stipple-flat-integers and stipple-per-line
   needs.primitive_id = !draw.line.stippledLineEnable;
-  needs.facing |= random.chance(0.2f);
+  needs.facing |= random.chance(0.2f) && !(draw.polygon && !draw.stages.geometry.empty());
   needs.discards = random.chance(0.15f);
   needs.writes_depth = scene.has_depth && random.chance(0.12f);
   needs.writes_stencil = scene.has_stencil && random.chance(0.1f) && run.gpu.has("VK_EXT_shader_stencil_export");
-  needs.writes_mask = random.chance(0.15f);
+  // deviations.md, smooth-line-sample-mask and one-sample-line-masks
+  needs.writes_mask = random.chance(0.15f) && !smooth_lines(draw) && !one_sample_lines(scene, draw);
   needs.early = random.chance(0.1f) && !needs.writes_depth && !needs.writes_stencil;
   const std::vector<VkFormat>& colors = scene.target.colors;
   needs.dual = colors.size() == 1 && blendable(colors[0]) && random.chance(0.15f);
@@ -232,20 +243,26 @@ void random_blending(Random& random, const Scene& scene, DrawState& draw) {
     draw.spec.blends.push_back(blend);
   }
   for (float& constant : draw.spec.blend.blendConstants) constant = random.unit();
-  draw.spec.blend.logicOpEnable = !dual && random.chance(0.15f);
+  // deviations.md, logic-op-width
+  const bool narrow = std::any_of(scene.target.colors.begin(), scene.target.colors.end(), [](VkFormat format) {
+    const FormatInfo& info = format_info(format);
+    return std::any_of(info.bits, info.bits + 4, [](uint8_t bits) { return bits == 2 || bits == 4; });
+  });
+  draw.spec.blend.logicOpEnable = !dual && !narrow && random.chance(0.15f);
   draw.spec.blend.logicOp = static_cast<VkLogicOp>(random.below(16));
 }
 
 void random_multisample(Random& random, const Scene& scene, DrawState& draw) {
   VkPipelineMultisampleStateCreateInfo& state = draw.spec.multisample;
-  if (random.chance(0.2f)) {
+  if (random.chance(0.2f) && !one_sample_lines(scene, draw)) {
     draw.sample_mask = random.bits();
     state.pSampleMask = &draw.sample_mask;
   }
   const bool float_first = !scene.target.colors.empty() && !is_integer(format_info(scene.target.colors[0]));
   state.alphaToCoverageEnable = float_first && random.chance(0.2f);
   // deviations.md, alpha-to-one-beside-mask
-  state.alphaToOneEnable = random.chance(0.15f) && !draw.fragment.writes_mask;
+  state.alphaToOneEnable = random.chance(0.15f) && !draw.fragment.writes_mask && !draw.fragment.writes_depth &&
+                           !draw.fragment.writes_stencil;
   // deviations.md, alpha-to-coverage-per-sample
   draw.fragment.per_sample = scene.multisampled && !state.alphaToCoverageEnable;
   state.sampleShadingEnable = draw.fragment.per_sample && random.chance(0.3f);
@@ -268,12 +285,12 @@ std::vector<float> random_vertices(Random& random, const DrawState& draw) {
     const float w = random.chance(0.5f)                   ? 1.0f
                     : draw.clipped && random.chance(0.1f) ? random.real(-1.0f, 0.5f)
                                                           : random.real(0.3f, 3.0f);
-    const float reach = draw.clipped ? random.pick({0.9f, 1.5f, 8.0f}) : 0.85f;
+    const float reach = draw.clipped ? random.pick({0.9f, 1.5f, 8.0f}) : 0.75f;
     float x = random.real(-reach, reach), y = random.real(-reach, reach);
     if (!draw.clipped && (grid || draw.drawn == Drawn::kLines)) {
       const uint32_t cell = cells[i % 64];
-      x = (static_cast<float>(cell % 8) - 3.5f) * 0.22f + random.real(-0.04f, 0.04f);
-      y = (static_cast<float>(cell / 8) - 3.5f) * 0.22f + random.real(-0.04f, 0.04f);
+      x = (static_cast<float>(cell % 8) - 3.5f) * 0.2f + random.real(-0.03f, 0.03f);
+      y = (static_cast<float>(cell / 8) - 3.5f) * 0.2f + random.real(-0.03f, 0.03f);
     }
     const float z = draw.clipped ? random.real(-0.5f, 1.5f) : random.unit();
     for (const float v : {x * w, y * w, z * w, w}) values.push_back(v);
@@ -341,6 +358,8 @@ void random_draw(Run& run, const Scene& scene, DrawState& draw) {
     draw.stages.viewports = 2 + random.below(3);
   // Distances clip, too (see `clipped`).
   if (!draw.clipped && draw.drawn == Drawn::kLines) draw.stages.clip_distances = 0;
+  // deviations.md, stipple-counter
+  if (draw.line.stippledLineEnable) draw.stages.cull_distances = 0;
   random_viewports(random, scene, draw);
   random_tests(random, scene, draw);
   random_fragment_needs(run, scene, draw);
