@@ -295,6 +295,14 @@ PixelRect rect_of(const VkRect2D& rect) {
   return {rect.offset.x, rect.offset.y, end(rect.offset.x, rect.extent.width), end(rect.offset.y, rect.extent.height)};
 }
 
+/// 3.3: the pixels of a viewport.
+PixelRect rect_of(const ViewportTransform& viewport) {
+  const auto first = [](float offset) { return static_cast<int>(offset + 0.499f); };
+  const auto last = [](float offset, float half) { return static_cast<int>(half * 2.0f + offset - 0.501f); };
+  const float half = std::fabs(viewport.sy), x = viewport.tx - viewport.sx, y = viewport.ty - half;
+  return {first(x), first(y), last(x, viewport.sx), last(y, half)};
+}
+
 void plan_viewports(PipelinePlan& plan, const PassDesc& pass) {
   PixelRect framebuffer = rect_of(pass.render_area);
   framebuffer.x0 = framebuffer.y0 = 0;  // 3.3: the render area's offset does not clip
@@ -304,6 +312,7 @@ void plan_viewports(PipelinePlan& plan, const PassDesc& pass) {
     plan.viewport[i] = viewport_transform(plan.state->viewport[source], plan.state->negative_one_to_one);
     plan.region[i] = intersect(framebuffer, rect_of(plan.state->scissor[source]));
   }
+  plan.wide_region = intersect(plan.region[0], rect_of(plan.viewport[0]));
   plan.per_vertex_viewport = plan.out.viewport_index != kNoReg;
   plan.fused_transform = !plan.stages.any();
 }

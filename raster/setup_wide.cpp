@@ -141,8 +141,11 @@ void rectangular_polygon(const State& state, const Vertex* v1, const Vertex* v2,
   std::copy_n(y, 4, p.y);
 }
 
+/// Viewport 0 cuts lines and points, the others do not: the specification leaves that open, and this is the
+/// reference's.
 bool set_bounds(const SetupContext& context, const PixelRect& bounds, Primitive& p) {
-  const PixelRect visible = intersect(bounds, context.plan->region[context.viewport]);
+  const PipelinePlan& plan = *context.plan;
+  const PixelRect visible = intersect(bounds, context.viewport == 0 ? plan.wide_region : plan.region[context.viewport]);
   if (visible.empty()) return false;
   p.x0 = static_cast<std::uint16_t>(visible.x0);
   p.y0 = static_cast<std::uint16_t>(visible.y0);

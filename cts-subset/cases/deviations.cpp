@@ -116,16 +116,25 @@ layout(location = 1) in vec4 color;
 layout(location = 0) out vec4 passed;
 void main() { passed = color; gl_Position = position; gl_PointSize = 11.0; })";
 
+/// A viewport that ends within pixels 46, and the same rectangle drawn in the whole one.
 const AddCase kViewport("rasterization", "deviation.viewport_scissor", "viewport-scissor", case_against_control,
                         [](Run& run) {
-                          run.require(run.gpu.features.largePoints, "largePoints");
-                          GraphicsSpec spec;
-                          spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
-                          spec.vertex = kBigPoint;
-                          GraphicsSpec inner = spec;
-                          inner.viewports = {{16.0f, 16.0f, 32.0f, 32.0f, 0.0f, 1.0f}};
-                          draw(run, "small_viewport", {}, inner, colored({{-0.875f, 0.5f, 0.5f, 1.0f}}));
-                          draw(run, "whole_viewport", {}, spec, colored({{-0.4375f, 0.25f, 0.5f, 1.0f}}));
+                          TargetSpec target;
+                          target.samples = VK_SAMPLE_COUNT_4_BIT;
+                          const auto rectangle = [](float low, float high) {
+                            std::vector<float> values = colored({{low, low, 0.5f, 1},
+                                                                 {high, low, 0.5f, 1},
+                                                                 {low, high, 0.5f, 1},
+                                                                 {high, low, 0.5f, 1},
+                                                                 {low, high, 0.5f, 1},
+                                                                 {high, high, 0.5f, 1}});
+                            for (size_t i = 4; i < values.size(); i += 8) values[i] = 0.25f;
+                            return values;
+                          };
+                          GraphicsSpec inner;
+                          inner.viewports = {{16.0f, 16.0f, 30.375f, 30.375f, 0.0f, 1.0f}};
+                          draw(run, "small_viewport", target, inner, rectangle(-1, 1));
+                          draw(run, "whole_viewport", target, {}, rectangle(-0.5f, 46.375f / 32 - 1));
                         });
 
 const AddCase kPoint("clipping", "deviation.point_clipping", "point-clipping", case_against_control, [](Run& run) {

@@ -167,10 +167,10 @@ void random_state(Run& run, GraphicsSpec& spec, const TargetSpec& target, Shape 
     spec.blends.push_back(blend);
   }
   for (float& constant : spec.blend.blendConstants) constant = random.unit();
-  // The reference cuts lines, points and samples at the viewport's and scissor's pixels (deviations.md,
-  // viewport-scissor and multisample-scissor).
-  if (shape != Shape::kTriangles) return;
+  // The reference cuts samples at the viewport's and scissor's pixels (deviations.md, viewport-scissor and
+  // multisample-scissor).
   const bool multisample = target.samples != VK_SAMPLE_COUNT_1_BIT;
+  if (shape != Shape::kTriangles && multisample) return;
   const auto width = static_cast<float>(target.width), height = static_cast<float>(target.height);
   if (random.chance(0.4f)) {
     const float step = multisample ? 1.0f : 0.125f;
