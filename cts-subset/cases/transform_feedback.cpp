@@ -247,6 +247,30 @@ void main() {
   run.may_be_blank();
 }
 
+/// Doubles, and structures with doubles, begin at multiples of eight bytes.
+CTS_CASE("transform_feedback", "doubles_in_structures") {
+  run.require(run.gpu.features.shaderFloat64, "shaderFloat64");
+  GraphicsSpec spec = base_spec(VK_PRIMITIVE_TOPOLOGY_LINE_STRIP);
+  spec.vertex = R"(
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+struct Inner { vec2 a; float b; dvec2 c; };
+struct Outer { vec3 a; Inner b; };
+layout(location = 0, xfb_buffer = 0, xfb_offset = 8, xfb_stride = 72) out Block { Outer a; int b; } block;
+void main() {
+  block.a.a = color.xyz;
+  block.a.b.a = position.xy;
+  block.a.b.b = color.w;
+  block.a.b.c = dvec2(color.zw) * 3.0lf;
+  block.b = gl_VertexIndex;
+  gl_Position = position;
+})";
+  spec.raster.rasterizerDiscardEnable = VK_TRUE;
+  spec.fragment.clear();
+  capture(run, spec, false);
+  run.may_be_blank();
+}
+
 CTS_CASE("transform_feedback", "rasterizer_discard") {
   const Feedback f = load_feedback(run);
   const Target target = make_target(run, {});

@@ -2,6 +2,7 @@
 // Interfaces; Built-In Variables). Inputs are stored to their variables before the body, outputs loaded after it.
 #include "spirv/front/interface.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "spirv/front/functions.h"
@@ -76,6 +77,14 @@ struct Decorated {
   bool has(Decoration kind) const { return find(kind) != nullptr; }
 };
 
+bool has_wide_numbers(const Translator& t, std::uint32_t type_id) {
+  const Type& type = t.module.type(type_id);
+  if (type.kind == Kind::kStruct)
+    return std::any_of(type.members.begin(), type.members.end(),
+                       [&](auto member) { return has_wide_numbers(t, member); });
+  return type.element != 0 ? has_wide_numbers(t, type.element) : type.width == 64;
+}
+
 struct Walk {
   Translator& t;
   const Inst& variable;
@@ -135,14 +144,13 @@ struct Walk {
 
   /// Transform feedback: leaves of a captured variable or block member lie one after the other; the blocks of an array
   /// go to consecutive buffers.
-  /// `words`: of a component. Those of two words are aligned.
+  /// `words`: of a component.
   void feedback(InterfaceSlot& slot, const Decorated& decorated, std::uint32_t components, std::uint32_t words) {
     const DecorationRow* stream = decorated.find(Decoration::Stream);
     if (stream != nullptr) slot.stream = static_cast<std::uint8_t>(stream->value & 3);
     if (!captured) return;
     const DecorationRow* buffer = decorated.find(Decoration::XfbBuffer);
     slot.xfb_buffer = static_cast<std::uint8_t>(((buffer != nullptr ? buffer->value : 0) + block) % kMaxXfbBuffers);
-    if (words == 2) xfb_offset = (xfb_offset + 7) & ~7u;
     slot.xfb_offset = xfb_offset;
     xfb_offset += 4 * components * words;
     if (const DecorationRow* stride = decorated.find(Decoration::XfbStride))
@@ -154,8 +162,14 @@ struct Walk {
     if (captured) xfb_offset = offset->value;
   }
 
+  /// Whatever has a 64-bit number in it is captured at a multiple of eight bytes.
+  void align_capture(std::uint32_t type_id) {
+    if (captured && has_wide_numbers(t, type_id)) xfb_offset = (xfb_offset + 7) & ~7u;
+  }
+
   void type(std::uint32_t type_id, Decorated decorated) {
     const Type& type_here = t.module.type(type_id);
+    align_capture(type_id);
     const bool is_struct = type_here.kind == Kind::kStruct;
     if (!is_struct && type_here.kind != Kind::kArray && type_here.kind != Kind::kMatrix)
       return leaf(type_id, decorated);
