@@ -13,13 +13,17 @@ constexpr uint32_t kInvocations = 64;
 
 /// 64 invocations of a body that makes %r from %x (a random word) and %n (their number). Buffers: %a and %b of 256
 /// random words, %out.
-void run_body(Run& run, const std::string& body, const std::string& functions = "") {
+void run_body(Run& run, const std::string& body, const std::string& functions = "", bool newer = false) {
   run.require(run.gpu.extension_features.variable_pointers.variablePointers, "variablePointers");
-  const std::string text = R"(; target: vulkan1.1
+  if (newer) run.require(run.gpu.has("VK_KHR_spirv_1_4"), "VK_KHR_spirv_1_4");
+  const std::string target = newer ? "spirv1.4" : "vulkan1.1";
+  const std::string globals = newer ? " %a %b %out %shared" : "";
+  const std::string text = "; target: " + target + R"(
 OpCapability Shader
 OpCapability VariablePointers
 OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %id
+OpEntryPoint GLCompute %main "main" %id)" +
+                           globals + R"(
 OpExecutionMode %main LocalSize 64 1 1
 OpDecorate %id BuiltIn GlobalInvocationId
 OpDecorate %array ArrayStride 4
@@ -194,6 +198,108 @@ CTS_CASE("pointers", "variable.compare") {
 %w = OpLoad %uint %chosen
 %r = OpIAdd %uint %loaded %w
 )");
+}
+
+/// The chosen pointer leads to an array of blocks, which is indexed afterwards.
+CTS_CASE("pointers", "variable.select_arrays_of_blocks") {
+  run.require(run.gpu.extension_features.variable_pointers.variablePointers, "variablePointers");
+  const std::string text = R"(; target: vulkan1.1
+OpCapability Shader
+OpCapability VariablePointers
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %id
+OpExecutionMode %main LocalSize 64 1 1
+OpDecorate %id BuiltIn GlobalInvocationId
+OpDecorate %array ArrayStride 4
+OpDecorate %block Block
+OpMemberDecorate %block 0 Offset 0
+OpDecorate %a DescriptorSet 0
+OpDecorate %a Binding 0
+OpDecorate %b DescriptorSet 0
+OpDecorate %b Binding 1
+OpDecorate %out DescriptorSet 0
+OpDecorate %out Binding 2
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%bool = OpTypeBool
+%uint = OpTypeInt 32 0
+%v3uint = OpTypeVector %uint 3
+%v3ptr = OpTypePointer Input %v3uint
+%id = OpVariable %v3ptr Input
+%u0 = OpConstant %uint 0
+%u1 = OpConstant %uint 1
+%u2 = OpConstant %uint 2
+%array = OpTypeRuntimeArray %uint
+%block = OpTypeStruct %array
+%blocks = OpTypeArray %block %u2
+%block_ptr = OpTypePointer StorageBuffer %block
+%blocks_ptr = OpTypePointer StorageBuffer %blocks
+%uint_ptr = OpTypePointer StorageBuffer %uint
+%a = OpVariable %blocks_ptr StorageBuffer
+%b = OpVariable %blocks_ptr StorageBuffer
+%out = OpVariable %block_ptr StorageBuffer
+%main = OpFunction %void None %fn
+%entry = OpLabel
+%gid = OpLoad %v3uint %id
+%n = OpCompositeExtract %uint %gid 0
+%g = OpUDiv %uint %n %u2
+%bit = OpBitwiseAnd %uint %g %u1
+%odd = OpIEqual %bool %bit %u1
+%chosen = OpSelect %blocks_ptr %odd %a %b
+%first = OpAccessChain %uint_ptr %chosen %u0 %u0 %n
+%second = OpAccessChain %uint_ptr %chosen %u1 %u0 %n
+%v = OpLoad %uint %first
+%w = OpLoad %uint %second
+%w2 = OpShiftLeftLogical %uint %w %u1
+%r = OpIAdd %uint %v %w2
+%to = OpAccessChain %uint_ptr %out %u0 %n
+OpStore %to %r
+OpReturn
+OpFunctionEnd
+)";
+  std::vector<Buffer> buffers;
+  for (int i = 0; i < 4; ++i) {
+    std::vector<uint32_t> words(kInvocations);
+    for (uint32_t& word : words) word = run.random.bits();
+    buffers.push_back(run.buffer_of(words));
+  }
+  const auto two = [&](uint32_t binding, const Buffer& first, const Buffer& second) {
+    Binding both = storage_buffer(binding, first);
+    both.buffers.push_back(storage_buffer(binding, second).buffers[0]);
+    return both;
+  };
+  const Buffer out = run.buffer(kInvocations * 4);
+  const Resources res =
+      run.resources({two(0, buffers[0], buffers[1]), two(1, buffers[2], buffers[3]), storage_buffer(2, out)});
+  const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, 1, 1, 1);
+  });
+  run.out("out", out);
+}
+
+CTS_CASE("pointers", "variable.difference") {
+  run_body(run, R"(
+%bare_a = OpAccessChain %bare_ptr %a %u0 %u7
+%bare_b = OpAccessChain %bare_ptr %a %u0 %n
+%d = OpPtrDiff %uint %bare_a %bare_b
+%e = OpPtrDiff %uint %pa %pa
+%r = OpISub %uint %d %e
+)",
+           "%bare_ptr = OpTypePointer StorageBuffer %uint\n", true);
+}
+
+CTS_CASE("pointers", "variable.compare_workgroup_with_null") {
+  run_body(run, R"(
+%first = OpAccessChain %shared_ptr %shared %u0
+%same = OpIEqual %bool %n %u3
+%p = OpSelect %shared_ptr %same %shared_null %first
+%is_null = OpPtrEqual %bool %p %shared_null
+%r = OpSelect %uint %is_null %x %n
+)",
+           "%shared_null = OpConstantNull %shared_ptr\n", true);
 }
 
 CTS_CASE("pointers", "variable.workgroup") {

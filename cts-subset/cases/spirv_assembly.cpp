@@ -1,4 +1,7 @@
 // Modules that no GLSL compiler writes: undefined values, selects of composites, phis, switches, odd but valid forms.
+#include <cmath>
+#include <limits>
+
 #include "harness/case.h"
 #include "harness/graphics.h"
 #include "harness/shader.h"
@@ -8,12 +11,12 @@ namespace {
 
 /// Runs 64 invocations of a body between buffers `in` (uint[]) and `out` (uint[]); %x is the input, %r must be set.
 void run_body(Run& run, const std::string& body, const std::string& types = "", const std::string& capabilities = "",
-              const std::string& mode = "OpExecutionMode %main LocalSize 64 1 1") {
+              const std::string& mode = "OpExecutionMode %main LocalSize 64 1 1", const std::string& inputs = "") {
   const std::string text = "OpCapability Shader\n" + capabilities + R"(
 %glsl = OpExtInstImport "GLSL.std.450"
 OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %id
-)" + mode + R"(
+OpEntryPoint GLCompute %main "main" %id )" +
+                           inputs + "\n" + mode + R"(
 OpDecorate %id BuiltIn GlobalInvocationId
 OpDecorate %array ArrayStride 4
 OpMemberDecorate %block 0 Offset 0
@@ -290,6 +293,160 @@ const bool kDotProducts = [] {
     });
   return true;
 }();
+
+/// Both labels of a branch are the same, and inside something else leaves the selection.
+CTS_CASE("spirv_assembly", "branch_to_one_label") {
+  run_body(run, R"(
+%odd_bit = OpBitwiseAnd %uint %x %u1
+%odd = OpIEqual %bool %odd_bit %u1
+OpSelectionMerge %done None
+OpBranchConditional %odd %same %same
+%same = OpLabel
+%a = OpIMul %uint %x %u5
+OpSelectionMerge %inner None
+OpBranchConditional %odd %left %inner
+%left = OpLabel
+OpBranch %inner
+%inner = OpLabel
+%b = OpPhi %uint %a %same %u3 %left
+OpBranchConditional %odd %last %done
+%last = OpLabel
+%c = OpIAdd %uint %b %n
+OpBranch %done
+%done = OpLabel
+%r = OpPhi %uint %b %inner %c %last
+)");
+}
+
+/// Offset and count of a bit field are integers of any width.
+CTS_CASE("spirv_assembly", "bit_fields_of_mixed_widths") {
+  run.require(run.gpu.features.shaderInt16 && run.gpu.features.shaderInt64, "16- and 64-bit integers");
+  run_body(run, R"(
+%few = OpBitwiseAnd %uint %n %u7
+%count16 = OpUConvert %ushort %few
+%offset64 = OpUConvert %ulong %few
+%a = OpBitFieldInsert %uint %x %n %offset64 %count16
+%b = OpBitFieldUExtract %uint %a %count16 %offset64
+%ix = OpBitcast %int %x
+%c = OpBitFieldSExtract %int %ix %offset64 %count16
+%uc = OpBitcast %uint %c
+%d = OpBitwiseXor %uint %a %uc
+%r = OpIAdd %uint %d %b
+)",
+           "%u7 = OpConstant %uint 7\n%ushort = OpTypeInt 16 0\n%ulong = OpTypeInt 64 0\n",
+           "OpCapability Int16\nOpCapability Int64\n");
+}
+
+/// Lengths and indices may be constants of other widths; what has no value may be undefined.
+CTS_CASE("spirv_assembly", "odd_constants_and_undefined_objects") {
+  run.require(run.gpu.features.shaderInt16 && run.gpu.features.shaderInt64, "16- and 64-bit integers");
+  run_body(run, R"(
+%no_image = OpUndef %image
+%no_sampler = OpUndef %sampler
+%no_both = OpUndef %both
+%from16 = OpAccessChain %uint_ptr %in %s0 %n
+%y = OpLoad %uint %from16
+%a = OpCompositeConstruct %four %y %x %n %u5
+%b = OpCompositeExtract %uint %a 0
+%c = OpCompositeExtract %uint %a 3
+%r = OpIAdd %uint %b %c
+)",
+           "%short = OpTypeInt 16 1\n%s0 = OpConstant %short 0\n%ulong = OpTypeInt 64 0\n%l4 = OpConstant %ulong 4\n"
+           "%four = OpTypeArray %uint %l4\n%image = OpTypeImage %float 2D 0 0 0 1 Unknown\n%sampler = OpTypeSampler\n"
+           "%both = OpTypeSampledImage %image\n",
+           "OpCapability Int16\nOpCapability Int64\n");
+}
+
+/// Stores of binary16 that round toward zero, of floats around and beyond what binary16 holds.
+CTS_CASE("spirv_assembly", "convert_toward_zero") {
+  const auto& storage = run.gpu.extension_features.storage_16bit;
+  run.require(storage.storageBuffer16BitAccess && run.gpu.features.shaderFloat64, "16-bit stores and doubles");
+  const std::string text = R"(; target: vulkan1.1
+OpCapability Shader
+OpCapability Float64
+OpCapability StorageBuffer16BitAccess
+OpExtension "SPV_KHR_16bit_storage"
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %id
+OpExecutionMode %main LocalSize 64 1 1
+OpDecorate %id BuiltIn GlobalInvocationId
+OpDecorate %floats ArrayStride 4
+OpDecorate %halves ArrayStride 2
+OpDecorate %in_block Block
+OpDecorate %out_block Block
+OpMemberDecorate %in_block 0 Offset 0
+OpMemberDecorate %out_block 0 Offset 0
+OpDecorate %in DescriptorSet 0
+OpDecorate %in Binding 0
+OpDecorate %out DescriptorSet 0
+OpDecorate %out Binding 1
+OpDecorate %h FPRoundingMode RTZ
+OpDecorate %k FPRoundingMode RTZ
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%uint = OpTypeInt 32 0
+%half = OpTypeFloat 16
+%float = OpTypeFloat 32
+%double = OpTypeFloat 64
+%v3uint = OpTypeVector %uint 3
+%v3ptr = OpTypePointer Input %v3uint
+%id = OpVariable %v3ptr Input
+%floats = OpTypeRuntimeArray %float
+%halves = OpTypeRuntimeArray %half
+%in_block = OpTypeStruct %floats
+%out_block = OpTypeStruct %halves
+%in_ptr = OpTypePointer StorageBuffer %in_block
+%out_ptr = OpTypePointer StorageBuffer %out_block
+%float_ptr = OpTypePointer StorageBuffer %float
+%half_ptr = OpTypePointer StorageBuffer %half
+%in = OpVariable %in_ptr StorageBuffer
+%out = OpVariable %out_ptr StorageBuffer
+%u0 = OpConstant %uint 0
+%u1 = OpConstant %uint 1
+%ratio = OpConstant %double 1.0009765
+%main = OpFunction %void None %fn
+%entry = OpLabel
+%gid = OpLoad %v3uint %id
+%n = OpCompositeExtract %uint %gid 0
+%from = OpAccessChain %float_ptr %in %u0 %n
+%x = OpLoad %float %from
+%n2 = OpIAdd %uint %n %n
+%n3 = OpIAdd %uint %n2 %u1
+%to = OpAccessChain %half_ptr %out %u0 %n2
+%too = OpAccessChain %half_ptr %out %u0 %n3
+%h = OpFConvert %half %x
+OpStore %to %h
+%d = OpFConvert %double %x
+%e = OpFMul %double %d %ratio
+%k = OpFConvert %half %e
+OpStore %too %k
+OpReturn
+OpFunctionEnd
+)";
+  constexpr uint32_t kInvocations = 1024;
+  std::vector<float> values(kInvocations);
+  for (float& value : values) value = std::ldexp(run.random.real(-2, 2), static_cast<int>(run.random.below(46)) - 28);
+  values[0] = std::numeric_limits<float>::infinity();
+  values[1] = std::numeric_limits<float>::quiet_NaN();
+  values[2] = -0.0f;
+  const Buffer in = run.buffer_of(values), out = run.buffer(kInvocations * 4);
+  const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
+  const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, kInvocations / 64, 1, 1);
+  });
+  run.out("halves", out);
+}
+
+/// There is one device in every group.
+CTS_CASE("spirv_assembly", "device_index") {
+  run_body(run, "%d = OpLoad %uint %device\n%r = OpIAdd %uint %x %d\n",
+           "%uint_in = OpTypePointer Input %uint\n%device = OpVariable %uint_in Input\n",
+           "; target: vulkan1.1\nOpCapability DeviceGroup\n",
+           "OpExecutionMode %main LocalSize 64 1 1\nOpDecorate %device BuiltIn DeviceIndex", "%device");
+}
 
 CTS_CASE("spirv_assembly", "function_variables_and_access_chains") {
   run_body(run, R"(

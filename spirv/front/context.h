@@ -11,6 +11,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "spirv/front/convergence.h"
 #include "spirv/front/module.h"
 
 namespace vitrine::spirv::front {
@@ -114,6 +115,7 @@ struct Frame {
   const Function* function = nullptr;
   std::uint32_t result_local = 0;
   std::size_t scope = 0;  ///< index of its kFunction scope
+  MeetingPoints meeting_points;
 };
 
 struct Translator {
@@ -150,7 +152,7 @@ struct Translator {
 
   std::vector<Scope> scopes;
   std::vector<Frame> frames;
-  std::unordered_map<std::uint32_t, bool> open_blocks;  ///< blocks built in the running function instance
+  std::unordered_set<std::uint32_t> open_blocks;  ///< blocks being built in the running function instance
   std::uint32_t exits = 0;
   std::uint32_t depth = 0;  ///< of the recursion over the control flow
   std::size_t nodes = 0;    ///< emitted so far

@@ -3,6 +3,7 @@
 // (leaving a switch or a function early) are Exit instructions, which exits.cpp turns into structure.
 #include <algorithm>
 
+#include "spirv/front/convergence.h"
 #include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
 
@@ -343,6 +344,25 @@ void end_invocation(Translator& t) {
   emit_effect(t, ir::Op::kDemote);
 }
 
+/// A selection whose branches meet before its merge block: one up to there, then the rest up to the merge block.
+template <class Build>
+void build_selection(Translator& t, const Block& block, const Inst& inst, const Build& build_branches) {
+  const MeetingPoints& points = t.frames.back().meeting_points;
+  const auto point = points.find(block.label);
+  if (point == points.end()) return build_branches(t, block, inst);
+  Block inner = block;
+  inner.merge = point->second;
+  push_scope(t, Scope::Kind::kSelection, block.merge);
+  ir::NodeList list;
+  {
+    const Into into(t, list);
+    build_branches(t, inner, inst);
+    build(t, point->second, block.merge, false);
+  }
+  close_scope(t, list);
+  append(*t.list, std::move(list));
+}
+
 /// Ends a block; returns the label to go on with in the same list, 0: the list is complete.
 std::uint32_t build_terminator(Translator& t, const Block& block, std::uint32_t end) {
   const Inst& inst = t.module.code[block.last];
@@ -353,11 +373,11 @@ std::uint32_t build_terminator(Translator& t, const Block& block, std::uint32_t 
       return inst.operand(0);
     case Op::OpBranchConditional:
       if (block.merge_op != Op::OpSelectionMerge) return build_conditional_jump(t, block, inst, end);
-      build_if(t, block, inst);
+      build_selection(t, block, inst, build_if);
       return block.merge;
     case Op::OpSwitch:
       if (block.merge_op != Op::OpSelectionMerge) fail(inst, "switch without a merge block");
-      build_switch(t, block, inst);
+      build_selection(t, block, inst, build_switch);
       return block.merge;
     case Op::OpReturn:
     case Op::OpReturnValue:
@@ -391,9 +411,26 @@ void build_block(Translator& t, const Block& block) {
   }
 }
 
+/// The blocks that one call of build() is at. A block may be built again afterwards: where several branches of a
+/// selection join before its merge block, what follows is built for each of them.
+struct OpenBlocks {
+  explicit OpenBlocks(Translator& t) : translator(t) {}
+  ~OpenBlocks() {
+    for (const std::uint32_t label : labels) translator.open_blocks.erase(label);
+  }
+  bool enter(std::uint32_t label) {
+    if (!translator.open_blocks.insert(label).second) return false;
+    labels.push_back(label);
+    return true;
+  }
+  Translator& translator;
+  std::vector<std::uint32_t> labels;
+};
+
 /// Blocks from `label` until `end` or a jump. `enter_first`: `label` is a loop header or continue target being entered.
 void build(Translator& t, std::uint32_t label, std::uint32_t end, bool enter_first) {
   const Deeper deeper(t);
+  OpenBlocks open(t);
   bool header_entered = enter_first;
   while (label != 0) {
     if (!header_entered && (label == end || jump_out(t, label))) return;
@@ -405,7 +442,7 @@ void build(Translator& t, std::uint32_t label, std::uint32_t end, bool enter_fir
       label = block.merge;
       continue;
     }
-    if (!t.open_blocks.emplace(label, true).second) fail(t.module.code[block.last], "control flow is not structured");
+    if (!open.enter(label)) fail(t.module.code[block.last], "control flow is not structured");
     build_block(t, block);
     label = build_terminator(t, block, end);
   }
@@ -432,7 +469,7 @@ void build_function(Translator& t, const Function& callee, std::uint32_t result_
   const auto phis = std::exchange(t.phi_locals, {});
   ir::NodeList list;
   push_scope(t, Scope::Kind::kFunction, 0);
-  t.frames.push_back({&callee, result_local, t.scopes.size() - 1});
+  t.frames.push_back({&callee, result_local, t.scopes.size() - 1, find_meeting_points(t.module, callee.entry)});
   {
     const Into into(t, list);
     build(t, callee.entry, 0, false);

@@ -88,6 +88,34 @@ OpExtension "SPV_KHR_non_semantic_info"
   for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], x + 7);
 }
 
+/// The reference refuses such modules, which 2.11 of the SPIR-V specification allows: branches meet before the merge
+/// block, and the block where they do defines what follows.
+TEST(RunSpirv, BranchesMayMeetBeforeTheMergeBlock) {
+  const std::vector<std::uint32_t> got = run_spirv(R"(
+%odd_bit = OpBitwiseAnd %uint %x %u1
+%odd = OpIEqual %bool %odd_bit %u1
+OpSelectionMerge %joined None
+OpBranchConditional %odd %yes %no
+%yes = OpLabel
+%a = OpIMul %uint %x %u7
+OpBranch %early
+%no = OpLabel
+%b = OpIAdd %uint %x %u1
+OpBranch %early
+%early = OpLabel
+%c = OpPhi %uint %a %yes %b %no
+%d = OpIAdd %uint %c %u1
+OpBranch %joined
+%joined = OpLabel
+%e = OpIMul %uint %d %d
+%r = OpIAdd %uint %e %c
+)");
+  for (std::uint32_t x = 0; x < kCount; x++) {
+    const std::uint32_t c = x % 2 ? x * 7 : x + 1;
+    EXPECT_EQ(got[x], (c + 1) * (c + 1) + c) << x;
+  }
+}
+
 /// SPIR-V 1.5 lets the invocation that is broadcast from be any value that is the same in the subgroup.
 TEST(RunSpirv, BroadcastsFromADynamicInvocation) {
   const std::vector<std::uint32_t> got = run_spirv(R"(
