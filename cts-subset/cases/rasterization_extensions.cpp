@@ -1,5 +1,6 @@
 // Fixed-function state of extensions: provoking vertex, depth clipping, line rasterization, instance divisors, restart
 // of lists, stencil export, coverage after the depth test, viewport and layer from the vertex shader.
+#include <functional>
 #include <string>
 
 #include "harness/case.h"
@@ -64,7 +65,7 @@ struct Scene {
   }
 };
 
-void draw(Run& run, const Scene& scene) {
+void draw(Run& run, const Scene& scene, const std::function<void(VkCommandBuffer)>& set_state = {}) {
   const Target target = make_target(run, scene.target);
   const VkPipeline pipeline = make_pipeline(run, scene.spec, target);
   const Buffer vertices = run.buffer_of(scene.vertices);
@@ -72,6 +73,7 @@ void draw(Run& run, const Scene& scene) {
     target.begin(cmd);
     bind_pipeline(cmd, pipeline);
     bind_vertices(cmd, vertices);
+    if (set_state) set_state(cmd);
     vkCmdDraw(cmd, scene.count, 1, 0, 0);
     vkCmdEndRenderPass(cmd);
   });
@@ -130,7 +132,8 @@ CTS_RANDOM("clipping", "random_depth_clip", 50) {
   draw(run, scene);
 }
 
-void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool smooth) {
+/// `by_command`: mode and stipple are set by commands, and are others in the pipeline.
+void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool smooth, bool by_command = false) {
   Random& random = run.random;
   const auto& features = run.gpu.extension_features.line_rasterization;
   run.require(features.bresenhamLines && features.rectangularLines, "bresenhamLines, rectangularLines");
@@ -204,12 +207,29 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool s
                         std::to_string(scene.spec.raster.lineWidth) + ", factor " +
                         std::to_string(line.lineStippleFactor) + ", pattern " +
                         std::to_string(line.lineStipplePattern) + ", vertices " + std::to_string(scene.count) + "\n");
-  draw(run, scene);
+  if (!by_command) return draw(run, scene);
+  const auto& dynamic = run.gpu.extension_features.extended_dynamic_state3;
+  run.require(dynamic.extendedDynamicState3LineRasterizationMode && dynamic.extendedDynamicState3LineStippleEnable,
+              "dynamic line state");
+  const VkLineRasterizationModeEXT mode = line.lineRasterizationMode;
+  line.lineRasterizationMode =
+      random.pick({VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT, VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT,
+                   VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT});
+  line.stippledLineEnable = !stippled;
+  scene.spec.dynamic = {VK_DYNAMIC_STATE_LINE_RASTERIZATION_MODE_EXT, VK_DYNAMIC_STATE_LINE_STIPPLE_ENABLE_EXT};
+  draw(run, scene, [&](VkCommandBuffer cmd) {
+    CTS_COMMAND(run.gpu, CmdSetLineRasterizationModeEXT)(cmd, mode);
+    CTS_COMMAND(run.gpu, CmdSetLineStippleEnableEXT)(cmd, stippled);
+  });
 }
 
 const bool kLines = [] {
   AddGenerator("rasterization", "random_line_modes.samples_1", 50,
                [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_1_BIT, false, false); });
+  AddGenerator("rasterization", "random_dynamic_lines", 30, [](Run& run) {
+    const bool stippled = run.random.chance(0.5f), smooth = run.random.chance(0.3f);
+    random_lines(run, VK_SAMPLE_COUNT_1_BIT, stippled, smooth, true);
+  });
   AddGenerator("rasterization", "random_line_modes.samples_4", 30,
                [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_4_BIT, false, false); });
   AddGenerator("rasterization", "random_line_stipple", 40,

@@ -17,7 +17,7 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice, 
   if (auto* wide = find_in_out_chain<VkFormatProperties3>(out->pNext)) {
     wide->linearTilingFeatures = wide_features(format, out->formatProperties.linearTilingFeatures);
     wide->optimalTilingFeatures = wide_features(format, out->formatProperties.optimalTilingFeatures);
-    wide->bufferFeatures = out->formatProperties.bufferFeatures;
+    wide->bufferFeatures = wide_features(format, out->formatProperties.bufferFeatures);
   }
 }
 

@@ -224,7 +224,9 @@ TEST_F(Formats, WideFeaturesContainTheNarrowOnes) {
     const VkFormatProperties& narrow = properties.formatProperties;
     EXPECT_EQ(wide.optimalTilingFeatures & 0x7fffffffu, narrow.optimalTilingFeatures);
     EXPECT_EQ(wide.linearTilingFeatures & 0x7fffffffu, narrow.linearTilingFeatures);
-    EXPECT_EQ(wide.bufferFeatures, narrow.bufferFeatures);
+    EXPECT_EQ(wide.bufferFeatures & 0x7fffffffu, narrow.bufferFeatures);
+    const bool stored = narrow.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT;
+    EXPECT_EQ((wide.bufferFeatures & VK_FORMAT_FEATURE_2_STORAGE_WRITE_WITHOUT_FORMAT_BIT) != 0, stored);
     EXPECT_EQ((wide.optimalTilingFeatures & VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT) != 0,
               format == VK_FORMAT_D32_SFLOAT);
   }
