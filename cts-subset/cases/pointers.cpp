@@ -427,6 +427,25 @@ constexpr char kNarrow[] =
     "#extension GL_EXT_shader_8bit_storage : require\n"
     "#extension GL_EXT_shader_16bit_storage : require\n";
 
+/// OpConvertPtrToU and OpConvertUToPtr.
+CTS_CASE("pointers", "address.as_integer") {
+  run.require(run.gpu.features.shaderInt64, "shaderInt64");
+  const Buffer a = addressed(run, 1024), out = run.buffer(kInvocations * 4);
+  for (uint32_t i = 0; i < 256; i++) a.as<uint32_t>()[i] = run.random.bits();
+  run_addresses(run, R"(
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Word { uint w; };
+layout(push_constant) uniform P { Word first; } p;
+layout(std430, binding = 0) buffer R { uint r[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  uint64_t address = uint64_t(p.first);
+  r[i] = Word(address + uint64_t(i * 12u)).w + uint(address & 3ul);
+})",
+                {address_of(run, a)}, {storage_buffer(0, out)});
+  run.out("out", out);
+}
+
 CTS_CASE("pointers", "address.narrow") {
   const auto& features = run.gpu.extension_features;
   run.require(features.storage_8bit.storageBuffer8BitAccess && features.storage_16bit.storageBuffer16BitAccess &&

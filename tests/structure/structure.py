@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the shape of the tree: include directions, rooms in the README, commands behind claims, long files.
+"""Checks the shape of the tree: include directions, rooms in the README, tests behind claims and opcodes, long files.
 
 usage: structure.py SOURCE_FOLDER
 Exit status 1 and one line per fault. The tail of file sizes is printed, never a fault.
@@ -72,17 +72,28 @@ def known_tests(root):
 def claim_faults(root):
     """Every claim in manifest/ names tests that exist: '<room> <Suite>.<pattern>' or 'cts-subset <group>.<pattern>'."""
     suites = known_tests(root)
-    for file in ("features", "extensions"):
-        for number, line in enumerate((root / "manifest" / file).read_text().splitlines(), 1):
+    for file in ("manifest/features", "manifest/extensions", "tests/spirv/opcode_tests"):
+        for number, line in enumerate((root / file).read_text().splitlines(), 1):
             line = re.sub(r"(^|\s)#.*", "", line).strip()
             if not line:
                 continue
             for test in line.split(";")[-1].split(","):
                 words = test.split()
                 if len(words) != 2 or words[0] not in suites:
-                    yield f"manifest/{file}:{number}: '{test.strip()}' is not '<room or cts-subset> <test pattern>'"
+                    yield f"{file}:{number}: '{test.strip()}' is not '<room or cts-subset> <test pattern>'"
                 elif words[1].split(".")[0] not in suites[words[0]]:
-                    yield f"manifest/{file}:{number}: no test {words[1]} in {words[0]}"
+                    yield f"{file}:{number}: no test {words[1]} in {words[0]}"
+
+
+def opcode_faults(root):
+    """Every row of the opcode tables is in assembly among the tests, or tests/spirv/opcode_tests says what tests it."""
+    text = "".join(p.read_text() for folder in ("tests/spirv", "cts-subset") for p in (root / folder).rglob("*.cpp"))
+    listed = set(re.findall(r"^(\w+) *;", (root / "tests/spirv/opcode_tests").read_text(), re.MULTILINE))
+    for table, row, use in (("spirv/opcodes.def", r"^VITRINE_OPCODE\((\w+)", r"Op%s\b"),
+                            ("spirv/front/glsl450.def", r"^VITRINE_GLSL\((\w+)", r"glsl %s\b")):
+        for name in re.findall(row, (root / table).read_text(), re.MULTILINE):
+            if name not in listed and not re.search(use % name, text):
+                yield f"{table}: no test uses {name}, and tests/spirv/opcode_tests does not say what does"
 
 
 def shape_faults(root):
@@ -108,7 +119,7 @@ def report_tail(root):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    faults = [f for check in (include_faults, room_faults, claim_faults, shape_faults) for f in check(root)]
+    faults = [f for check in (include_faults, room_faults, claim_faults, opcode_faults, shape_faults) for f in check(root)]
     report_tail(root)
     for fault in faults:
         print(f"FAULT {fault}")

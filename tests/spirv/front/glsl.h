@@ -47,8 +47,8 @@ inline Words compile_glsl(VkShaderStageFlagBits stage, const std::string& body) 
   return words;
 }
 
-inline Words assemble(const std::string& text) {
-  spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_1);
+inline Words assemble(const std::string& text, spv_target_env environment = SPV_ENV_VULKAN_1_1) {
+  spvtools::SpirvTools tools(environment);
   tools.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t& at, const char* message) {
     ADD_FAILURE() << "line " << at.line + 1 << ": " << message;
   });

@@ -10,11 +10,13 @@ namespace {
 
 constexpr std::uint32_t kCount = 64;
 
-/// Words of a module whose `body` makes %r (uint) from %x (uint, the invocation's number).
+/// Words of a module whose `body` makes %r (uint) from %x (uint, the invocation's number). `interface`: further
+/// variables of the entry point; the module is of SPIR-V 1.4 then.
 Words module_of(const std::string& body, const std::string& declarations, const std::string& imports,
-                const std::string& addressing, const std::string& decorations) {
+                const std::string& addressing, const std::string& decorations, const std::string& interface = "") {
   return assemble(imports + "\nOpMemoryModel " + addressing + R"( GLSL450
-OpEntryPoint GLCompute %main "main" %id
+OpEntryPoint GLCompute %main "main" %id)" +
+                      interface + R"(
 OpExecutionMode %main LocalSize 64 1 1
 OpDecorate %id BuiltIn GlobalInvocationId
 OpDecorate %array ArrayStride 4
@@ -39,7 +41,7 @@ OpDecorate %buffer Binding 0
 %u1 = OpConstant %uint 1
 %u7 = OpConstant %uint 7
 )" + declarations +
-                  R"(
+                      R"(
 %main = OpFunction %void None %fn
 %entry = OpLabel
 %gid = OpLoad %v3uint %id
@@ -49,14 +51,16 @@ OpDecorate %buffer Binding 0
 OpStore %to %r
 OpReturn
 OpFunctionEnd
-)");
+)",
+                  interface.empty() ? SPV_ENV_VULKAN_1_1 : SPV_ENV_VULKAN_1_1_SPIRV_1_4);
 }
 
 std::vector<std::uint32_t> run_spirv(const std::string& body, const std::string& declarations = "",
                                      const std::string& imports = "OpCapability Shader\n",
-                                     const std::string& addressing = "Logical", const std::string& decorations = "") {
+                                     const std::string& addressing = "Logical", const std::string& decorations = "",
+                                     const std::string& interface = "") {
   std::vector<std::uint32_t> values(kCount);
-  auto shader = compile(module_of(body, declarations, imports, addressing, decorations),
+  auto shader = compile(module_of(body, declarations, imports, addressing, decorations, interface),
                         options_for(VK_SHADER_STAGE_COMPUTE_BIT));
   EXPECT_TRUE(shader) << shader.message();
   if (!shader) return values;
@@ -72,6 +76,64 @@ std::vector<std::uint32_t> run_spirv(const std::string& body, const std::string&
   dispatch(bound, base, groups);
   EXPECT_FALSE(fault.raised) << fault.message;
   return values;
+}
+
+constexpr char kPointerCapabilities[] = "OpCapability Shader\nOpCapability VariablePointers\n";
+
+TEST(RunSpirv, PointersCompareAndSubtract) {
+  // "Pointers must be from the same array": here the fourth element and that of the invocation.
+  const std::string chains =
+      "%u3 = OpIAdd %uint %u1 %u1\n%four = OpAccessChain %uint_ptr %buffer %u0 %u7\n"
+      "%own = OpAccessChain %uint_ptr %buffer %u0 %x\n";
+  const auto selected = [&](const std::string& condition) {
+    return run_spirv(chains + condition + "%r = OpSelect %uint %c %u7 %u1\n", "", kPointerCapabilities, "Logical",
+                     "OpDecorate %uint_ptr ArrayStride 4\n", " %buffer");
+  };
+  const auto equal = selected("%c = OpPtrEqual %bool %four %own\n");
+  const auto different = selected("%c = OpPtrNotEqual %bool %four %own\n");
+  const auto distance = run_spirv(chains + "%r = OpPtrDiff %uint %own %four\n", "", kPointerCapabilities, "Logical",
+                                  "OpDecorate %uint_ptr ArrayStride 4\n", " %buffer");
+  for (std::uint32_t i = 0; i < kCount; i++) {
+    EXPECT_EQ(equal[i], i == 7 ? 7u : 1u);
+    EXPECT_EQ(different[i], i == 7 ? 1u : 7u);
+    EXPECT_EQ(distance[i], i - 7);
+  }
+}
+
+TEST(RunSpirv, GroupsRotateAndCombineBooleans) {
+  const std::string capabilities =
+      "OpCapability Shader\nOpCapability GroupNonUniformArithmetic\nOpCapability GroupNonUniformRotateKHR\n"
+      "OpExtension \"SPV_KHR_subgroup_rotate\"\n";
+  const auto got =
+      run_spirv("%r = OpGroupNonUniformRotateKHR %uint %u3 %x %u7\n", "%u3 = OpConstant %uint 3\n", capabilities);
+  for (std::uint32_t i = 0; i < kCount; i++) EXPECT_EQ(got[i], (i + 7) % kCount);
+  const auto combined = [&](const std::string& opcode) {
+    return run_spirv("%low = OpULessThan %bool %x %u7\n%c = " + opcode +
+                         " %bool %u3 InclusiveScan %low\n%r = OpSelect %uint %c %u1 %u0\n",
+                     "%u3 = OpConstant %uint 3\n", "OpCapability Shader\nOpCapability GroupNonUniformArithmetic\n");
+  };
+  const auto all = combined("OpGroupNonUniformLogicalAnd"), some = combined("OpGroupNonUniformLogicalOr"),
+             odd = combined("OpGroupNonUniformLogicalXor");
+  for (std::uint32_t i = 0; i < kCount; i++) {
+    EXPECT_EQ(all[i], i < 7 ? 1u : 0u);
+    EXPECT_EQ(some[i], 1u);
+    EXPECT_EQ(odd[i], (std::min(i, 6u) + 1) & 1);
+  }
+}
+
+/// Not a built-in, and compute shaders have no other inputs: whatever registers hold must not show.
+TEST(RunSpirv, InputsThatNothingSuppliesAreZero) {
+  const std::vector<std::uint32_t> got = run_spirv(R"(
+%lost_at = OpAccessChain %lost_ptr %lost
+%lost_value = OpLoad %uint %lost_at
+%r = OpIAdd %uint %lost_value %x
+)",
+                                                   R"(
+%lost_ptr = OpTypePointer Input %uint
+%lost = OpVariable %lost_ptr Input
+)",
+                                                   "OpCapability Shader\n", "Logical", "", " %buffer %lost");
+  for (std::uint32_t i = 0; i < kCount; i++) ASSERT_EQ(got[i], i);
 }
 
 TEST(RunSpirv, NonSemanticInstructionsAreIgnored) {
