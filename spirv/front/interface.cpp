@@ -273,6 +273,8 @@ std::vector<Leaf> interface_leaves(Translator& t, const Local& local) {
 }
 
 ir::ValueId load_input(Translator& t, const InterfaceSlot& slot) {
+  // Nothing supplies inputs of compute shaders: zero, which is as good as any value.
+  if (t.options.stage == VK_SHADER_STAGE_COMPUTE_BIT) return constant_u32(t, 0);
   // Fixed function fills one register per component of a built-in, however it is declared.
   const Interpolation mode = slot.built_in == BuiltIn::kNone ? slot.interpolation : Interpolation::kPerspective;
   const Translator::InputKey key{slot.built_in, slot.location, slot.component, mode, slot.part, slot.sample_location};
