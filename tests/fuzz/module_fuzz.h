@@ -1,0 +1,25 @@
+// One input of the fuzzers: a stage and the words of a module, from bytes to a program to its execution.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "spirv/compile.h"
+
+namespace vitrine::fuzz {
+
+/// How far an input came.
+enum class Outcome : std::uint8_t { kRefused, kCompiled, kRan };
+
+/// Compiles the words, as they are and behind the validator's back, and runs what became of them twice; a difference
+/// between the runs ends the process, as does every fault that a sanitizer sees.
+Outcome run_module(VkShaderStageFlagBits stage, std::span<const std::uint32_t> words);
+
+/// Bytes: the first chooses the stage, the rest are words.
+Outcome run_bytes(std::span<const std::uint8_t> bytes);
+
+}  // namespace vitrine::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -1,0 +1,172 @@
+// Mutations, each of a kind that a careless compiler might make.
+#include "tests/fuzz/mutate.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#define SPV_ENABLE_UTILITY_CODE
+#include <spirv/unified1/spirv.hpp11>
+
+namespace vitrine::fuzz {
+namespace {
+
+struct Place {
+  std::size_t at = 0;  ///< of the opcode word
+  std::uint32_t length = 0;
+  spv::Op op = spv::Op::OpNop;
+  std::uint32_t type = 0, result = 0;
+  std::uint32_t first = 1;  ///< operand behind type and result
+};
+
+std::size_t below(Random& random, std::size_t count) { return static_cast<std::size_t>(random() % count); }
+
+std::vector<Place> instructions(const Words& words) {
+  std::vector<Place> list;
+  for (std::size_t at = 5; at < words.size();) {
+    Place place{at, words[at] >> 16, static_cast<spv::Op>(words[at] & 0xffff), 0, 0, 1};
+    if (place.length == 0 || place.length > words.size() - at) break;
+    bool has_result = false, has_type = false;
+    spv::HasResultAndType(place.op, &has_result, &has_type);
+    if (has_type && place.length > place.first) place.type = words[at + place.first++];
+    if (has_result && place.length > place.first) place.result = words[at + place.first++];
+    list.push_back(place);
+    at += place.length;
+  }
+  return list;
+}
+
+bool in_function(const std::vector<Place>& list, std::size_t index) {
+  for (std::size_t i = 0; i <= index; i++)
+    if (list[i].op == spv::Op::OpFunction) return true;
+  return false;
+}
+
+/// Opcodes of one shape: any may stand for another.
+constexpr spv::Op kFamilies[][8] = {
+    {spv::Op::OpIAdd, spv::Op::OpISub, spv::Op::OpIMul, spv::Op::OpUDiv, spv::Op::OpUMod, spv::Op::OpBitwiseAnd,
+     spv::Op::OpShiftLeftLogical, spv::Op::OpBitwiseXor},
+    {spv::Op::OpSDiv, spv::Op::OpSRem, spv::Op::OpSMod, spv::Op::OpIMul, spv::Op::OpShiftRightArithmetic,
+     spv::Op::OpBitwiseOr, spv::Op::OpISub, spv::Op::OpIAdd},
+    {spv::Op::OpFAdd, spv::Op::OpFSub, spv::Op::OpFMul, spv::Op::OpFDiv, spv::Op::OpFRem, spv::Op::OpFMod,
+     spv::Op::OpFAdd, spv::Op::OpFMul},
+    {spv::Op::OpIEqual, spv::Op::OpINotEqual, spv::Op::OpULessThan, spv::Op::OpSLessThan, spv::Op::OpUGreaterThan,
+     spv::Op::OpSGreaterThanEqual, spv::Op::OpULessThanEqual, spv::Op::OpSGreaterThan},
+    {spv::Op::OpFOrdEqual, spv::Op::OpFUnordEqual, spv::Op::OpFOrdLessThan, spv::Op::OpFUnordLessThan,
+     spv::Op::OpFOrdGreaterThan, spv::Op::OpFUnordNotEqual, spv::Op::OpFOrdGreaterThanEqual,
+     spv::Op::OpFUnordLessThanEqual},
+    {spv::Op::OpReturn, spv::Op::OpUnreachable, spv::Op::OpKill, spv::Op::OpReturn, spv::Op::OpReturn, spv::Op::OpKill,
+     spv::Op::OpTerminateInvocation, spv::Op::OpUnreachable},
+};
+
+void swap_opcode(Words& words, const std::vector<Place>& list, Random& random) {
+  for (int tries = 0; tries < 50; tries++) {
+    const Place& place = list[below(random, list.size())];
+    for (const auto& family : kFamilies)
+      if (std::find(std::begin(family), std::end(family), place.op) != std::end(family)) {
+        words[place.at] = place.length << 16 | static_cast<std::uint32_t>(family[below(random, std::size(family))]);
+        return;
+      }
+  }
+}
+
+/// An operand of an instruction of a function becomes another id of the same type.
+void swap_operand(Words& words, const std::vector<Place>& list, Random& random) {
+  std::unordered_map<std::uint32_t, std::uint32_t> type_of;
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> of_type;
+  for (const Place& place : list) {
+    if (place.result == 0) continue;
+    type_of[place.result] = place.type;
+    of_type[place.type].push_back(place.result);
+  }
+  for (int tries = 0; tries < 50; tries++) {
+    const std::size_t index = below(random, list.size());
+    const Place& place = list[index];
+    if (place.length <= place.first || !in_function(list, index)) continue;
+    std::uint32_t& operand = words[place.at + place.first + below(random, place.length - place.first)];
+    const auto known = type_of.find(operand);
+    if (known == type_of.end()) continue;
+    const auto& others = of_type[known->second];
+    operand = others[below(random, others.size())];
+    return;
+  }
+}
+
+/// A literal or id becomes any number; constants become corner values.
+void change_word(Words& words, const std::vector<Place>& list, Random& random) {
+  const Place& place = list[below(random, list.size())];
+  if (place.length <= place.first) return;
+  constexpr std::uint32_t kCorners[] = {0,  1,  2,   3,     4,          7,          31,        32,
+                                        63, 64, 255, 65535, 0x7fffffff, 0x80000000, 0xffffffff};
+  std::uint32_t& word = words[place.at + place.first + below(random, place.length - place.first)];
+  switch (below(random, 4)) {
+    case 0:
+      word = kCorners[below(random, std::size(kCorners))];
+      break;
+    case 1:
+      word ^= 1u << below(random, 32);
+      break;
+    case 2:
+      word += static_cast<std::uint32_t>(below(random, 7)) - 3;
+      break;
+    default:
+      word = static_cast<std::uint32_t>(below(random, words[3] + std::size_t{1}));
+      break;
+  }
+}
+
+void remove(Words& words, const std::vector<Place>& list, Random& random) {
+  const Place& place = list[below(random, list.size())];
+  const auto begin = words.begin() + static_cast<std::ptrdiff_t>(place.at);
+  words.erase(begin, begin + place.length);
+}
+
+/// A copy of an instruction, with a result of its own, at another place.
+void copy(Words& words, const std::vector<Place>& list, Random& random) {
+  const Place& from = list[below(random, list.size())];
+  const Place& to = list[below(random, list.size())];
+  Words instruction(words.begin() + static_cast<std::ptrdiff_t>(from.at),
+                    words.begin() + static_cast<std::ptrdiff_t>(from.at + from.length));
+  if (from.result != 0) instruction[from.first - 1] = words[3]++;
+  words.insert(words.begin() + static_cast<std::ptrdiff_t>(to.at), instruction.begin(), instruction.end());
+}
+
+void exchange(Words& words, const std::vector<Place>& list, Random& random) {
+  const std::size_t index = below(random, list.size() - 1);
+  const Place &a = list[index], &b = list[index + 1];
+  const auto begin = words.begin() + static_cast<std::ptrdiff_t>(a.at);
+  std::rotate(begin, begin + a.length, begin + a.length + b.length);
+}
+
+}  // namespace
+
+void mutate(Words& words, Random& random) {
+  for (std::size_t left = 1 + below(random, 4); left > 0; left--) {
+    const std::vector<Place> list = instructions(words);
+    if (list.size() < 2) return;
+    switch (below(random, 12)) {
+      case 0:
+        remove(words, list, random);
+        break;
+      case 1:
+        copy(words, list, random);
+        break;
+      case 2:
+        exchange(words, list, random);
+        break;
+      case 3:
+      case 4:
+        change_word(words, list, random);
+        break;
+      case 5:
+      case 6:
+      case 7:
+        swap_opcode(words, list, random);
+        break;
+      default:
+        swap_operand(words, list, random);
+        break;
+    }
+  }
+}
+
+}  // namespace vitrine::fuzz
