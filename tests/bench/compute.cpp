@@ -1,4 +1,4 @@
-// Compute: streaming, matrix products, all-pairs forces, reduction with shared memory and barriers.
+// Compute: streaming, matrix products, all-pairs forces; reduction, scan, histogram and blur with shared memory.
 #include <string>
 
 #include "bench.h"
@@ -97,15 +97,64 @@ Kernel reduce() {
           kCount / 1e9};
 }
 
+/// Inclusive sums of blocks of 1024 and the sum of each block: the first pass of a scan.
+Kernel prefix_sum() {
+  constexpr std::uint32_t kCount = 1 << 22;
+  return {"layout(local_size_x=256) in;" + storage("xyz") +
+              "shared float s[256]; void main() { uint l = gl_LocalInvocationID.x, i = gl_GlobalInvocationID.x * 4u;"
+              "vec4 v = vec4(x[i], x[i + 1u], x[i + 2u], x[i + 3u]); v.y += v.x; v.z += v.y; v.w += v.z; s[l] = v.w;"
+              "barrier(); for (uint k = 1u; k < 256u; k <<= 1) { float t = l >= k ? s[l - k] : 0.0; barrier(); s[l] += "
+              "t; barrier(); }"
+              "v += s[l] - v.w; y[i] = v.x; y[i + 1u] = v.y; y[i + 2u] = v.z; y[i + 3u] = v.w;"
+              "if (l == 255u) z[gl_WorkGroupID.x] = v.w; }",
+          {kCount * 4, kCount * 4, kCount / 1024 * 4},
+          {kCount / 1024, 1, 1},
+          kCount / 1e9};
+}
+
+/// 256 bins in shared memory, then added to those of the whole.
+Kernel histogram() {
+  constexpr std::uint32_t kCount = 1 << 22;
+  return {
+      "layout(local_size_x=256) in; layout(binding=0) buffer X { uint x[]; }; layout(binding=1) buffer H { uint h[]; "
+      "}; shared uint s[256]; void main() { uint l = gl_LocalInvocationID.x; s[l] = 0u; barrier();"
+      "for (uint k = 0u; k < 16u; ++k) { uint v = x[gl_WorkGroupID.x * 4096u + k * 256u + l];"
+      "atomicAdd(s[v * 0x9e3779b1u >> 24], 1u); } barrier(); atomicAdd(h[l], s[l]); }",
+      {kCount * 4, 256 * 4},
+      {kCount / 4096, 1, 1},
+      kCount / 1e9};
+}
+
+/// Nine taps across a picture of floats, a row of the workgroup in shared memory.
+Kernel blur() {
+  constexpr std::uint32_t kSide = 1024;
+  return {
+      "layout(local_size_x=128) in;" + storage("xy") +
+          "shared float s[136]; void main() { uint l = gl_LocalInvocationID.x, row = gl_WorkGroupID.y * 1024u;"
+          "int at = int(gl_GlobalInvocationID.x); s[l + 4u] = x[row + uint(at)];"
+          "if (l < 4u) s[l] = x[row + uint(max(at - 4, 0))]; if (l >= 124u) s[l + 8u] = x[row + uint(min(at + 4, "
+          "1023))];"
+          "barrier(); y[row + uint(at)] = 0.2270 * s[l + 4u] + 0.1945 * (s[l + 3u] + s[l + 5u]) + 0.1216 * (s[l + 2u] "
+          "+ s[l + 6u]) + 0.0540 * (s[l + 1u] + s[l + 7u]) + 0.0162 * (s[l] + s[l + 8u]); }",
+      {kSide * kSide * 4, kSide * kSide * 4},
+      {kSide / 128, kSide, 1},
+      double{kSide} * kSide / 1e6};
+}
+
 }  // namespace
 
 std::vector<Workload> compute_workloads() {
   const auto row = [](const char* name, const char* unit, Kernel (*kernel)()) {
     return Workload{name, unit, false, [kernel](Run& run) { return measure(run, kernel()); }};
   };
-  return {row("c_saxpy", "GB/s", saxpy), row("c_matmul_tiled", "GFLOP/s", matmul_tiled),
-          row("c_matmul_naive", "GFLOP/s", matmul_naive), row("c_nbody", "Ginter/s", nbody),
-          row("c_reduce", "Gelem/s", reduce)};
+  return {row("c_saxpy", "GB/s", saxpy),
+          row("c_matmul_tiled", "GFLOP/s", matmul_tiled),
+          row("c_matmul_naive", "GFLOP/s", matmul_naive),
+          row("c_nbody", "Ginter/s", nbody),
+          row("c_reduce", "Gelem/s", reduce),
+          row("c_prefix_sum", "Gelem/s", prefix_sum),
+          row("c_histogram", "Gelem/s", histogram),
+          row("c_blur", "Mpix/s", blur)};
 }
 
 }  // namespace vitrine::bench

@@ -44,14 +44,40 @@ const std::string kSdf =
     "map(p + e.yxy) - map(p - e.yxy), map(p + e.yyx) - map(p - e.yyx))); o = vec4(n * 0.5 + 0.5, 1.0) * exp(-0.1 * t); "
     "}";
 
+/// Position, normal and colour of a pixel are made up; 32 lights come from a uniform buffer.
+const std::string kDeferred =
+    kHead +
+    "struct Light { vec4 at, colour; }; layout(binding=0) uniform L { Light l[32]; };"
+    "void main() { vec3 p = vec3(uv * 8.0 - 4.0, sin(uv.x * 20.0) * 0.2), n = normalize(vec3(cos(uv * 30.0), 2.0));"
+    "vec3 v = normalize(vec3(0, 0, 5) - p), sum = vec3(0.02); for (int i = 0; i < 32; ++i) {"
+    "vec3 d = l[i].at.xyz - p; float r2 = dot(d, d); if (r2 > l[i].at.w) continue; vec3 w = d * inversesqrt(r2);"
+    "float diffuse = max(dot(n, w), 0.0), gloss = max(dot(n, normalize(w + v)), 0.0); gloss *= gloss; gloss *= gloss;"
+    "sum += l[i].colour.rgb * ((diffuse + gloss * gloss) / (1.0 + r2)); } o = vec4(sum, 1.0); }";
+
+double measure_deferred(Run& run) {
+  std::vector<float> lights;
+  for (int i = 0; i < 32; ++i) {
+    const float at = static_cast<float>(i);
+    lights.insert(lights.end(), {at * 0.25f - 4, static_cast<float>(i * 7 % 32) * 0.25f - 4, 1, 12});
+    lights.insert(lights.end(), {0.5f + at / 64, 1 - at / 64, static_cast<float>(i % 5) / 4, 0});
+  }
+  const cts::Resources resources = run.resources({cts::uniform_buffer(0, run.buffer_of(lights))});
+  return measure_fragments(run, kDeferred, &resources);
+}
+
 }  // namespace
 
 std::vector<Workload> shader_workloads() {
   const auto row = [](const char* name, std::string text) {
     return Workload{name, "Mpix/s", false, [text](Run& run) { return measure_fragments(run, text); }};
   };
-  return {row("fs_fma200", fma200()), row("fs_mandel", kMandel),   row("fs_noise", kNoise),
-          row("fs_transc", kTransc),  row("fs_inthash", kIntHash), row("scene_sdf", kSdf)};
+  return {row("fs_fma200", fma200()),
+          row("fs_mandel", kMandel),
+          row("fs_noise", kNoise),
+          row("fs_transc", kTransc),
+          row("fs_inthash", kIntHash),
+          row("scene_sdf", kSdf),
+          {"fs_deferred32", "Mpix/s", false, measure_deferred}};
 }
 
 }  // namespace vitrine::bench
