@@ -282,6 +282,39 @@ void main() {
   draw(run, target, spec, patches, 2);
 }
 
+/// A restart ends a list of patches; what is left of a patch is dropped.
+CTS_CASE("tessellation", "patch_restart") {
+  run.require(run.gpu.extension_features.list_restart.primitiveTopologyPatchListRestart,
+              "primitiveTopologyPatchListRestart");
+  const Target target = make_target(run, large());
+  GraphicsSpec spec = base_spec(run);
+  spec.evaluation = evaluation("quads, equal_spacing, ccw");
+  spec.assembly.primitiveRestartEnable = VK_TRUE;
+  Patches patches = make_patches(run.random, 4, 3, 6.0f, false);
+  // The same for all: the reference begins to count patches anew.
+  for (size_t l = 6; l < patches.levels.size(); ++l) patches.levels[l] = patches.levels[l - 6];
+  std::vector<uint16_t> order;
+  for (uint16_t i = 0; i < patches.vertices.size() / 8; ++i) {
+    if (i % 11 == 7 || i % 16 == 8) order.push_back(0xffff);
+    order.push_back(i);
+  }
+  const Buffer levels = run.buffer_of(patches.levels);
+  const Resources resources = run.resources({storage_buffer(0, levels)});
+  spec.layout = resources.layout;
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  const Buffer vertices = run.buffer_of(patches.vertices), indices = run.buffer_of(order);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    resources.bind(cmd);
+    bind_vertices(cmd, vertices);
+    vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT16);
+    vkCmdDrawIndexed(cmd, static_cast<uint32_t>(order.size()), 1, 0, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+}
+
 CTS_CASE("tessellation", "one_control_point") {
   const Target target = make_target(run, large());
   GraphicsSpec spec = base_spec(run);
