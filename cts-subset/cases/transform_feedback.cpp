@@ -152,6 +152,16 @@ const bool kRegistered = [] {
                        topology.value == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN;
     AddCase("transform_feedback", std::string("vertex.") + topology.name,
             [=](Run& run) { capture(run, base_spec(topology.value), false); });
+    AddCase("transform_feedback", std::string("last_provoking_vertex.") + topology.name, [=](Run& run) {
+      run.require(run.gpu.extension_features.provoking_vertex.transformFeedbackPreservesProvokingVertex,
+                  "transformFeedbackPreservesProvokingVertex");
+      VkPipelineRasterizationProvokingVertexStateCreateInfoEXT provoking{
+          VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT};
+      provoking.provokingVertexMode = VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
+      GraphicsSpec spec = base_spec(topology.value);
+      spec.raster.pNext = &provoking;
+      capture(run, spec, false);
+    });
     AddCase("transform_feedback", std::string("vertex.") + topology.name + ".indexed", [=](Run& run) {
       GraphicsSpec spec = base_spec(topology.value);
       spec.assembly.primitiveRestartEnable = strip;
