@@ -1,6 +1,8 @@
 // The worker pool: sleeping threads that share an atomic item counter per parallel loop.
 #include "base/workers.h"
 
+#include "base/lasting.h"
+
 #include <pthread.h>
 #include <sched.h>
 
@@ -156,7 +158,7 @@ class Pool {
 };
 
 Pool& pool() {
-  static Pool instance(wanted_workers());
+  static Pool& instance = lasting([] { return Pool(wanted_workers()); });
   return instance;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/float_mode.h"
+#include "base/lasting.h"
 #include "base/simd.h"
 #include "base/workers.h"
 #include "raster/arena.h"
@@ -74,7 +75,7 @@ class ScratchPool {
 };
 
 ScratchPool& scratch_pool() {
-  static ScratchPool pool;
+  static ScratchPool& pool = base::lasting([] { return ScratchPool(); });
   return pool;
 }
 

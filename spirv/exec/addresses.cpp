@@ -2,6 +2,8 @@
 // the table changes.
 #include "spirv/addresses.h"
 
+#include "base/lasting.h"
+
 #include <algorithm>
 #include <atomic>
 #include <map>
@@ -23,7 +25,7 @@ struct Table {
 };
 
 Table& table() {
-  static Table instance;
+  static Table& instance = base::lasting([] { return Table(); });
   return instance;
 }
 
@@ -34,7 +36,7 @@ struct Snapshot {
 };
 
 const std::vector<AddressRange>& current_ranges() {
-  thread_local Snapshot snapshot;
+  auto& snapshot = base::per_thread<Snapshot>();
   Table& t = table();
   if (snapshot.version != t.version.load(std::memory_order_acquire)) {
     const std::lock_guard lock(t.mutex);

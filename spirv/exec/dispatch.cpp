@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/float_mode.h"
+#include "base/lasting.h"
 #include "base/log.h"
 #include "base/workers.h"
 #include "spirv/exec/wave_memory.h"
@@ -39,10 +40,7 @@ struct GroupMemory {
   std::vector<std::uint32_t> shared;  ///< words, so that atomics are aligned
 };
 
-GroupMemory& thread_memory() {
-  thread_local GroupMemory memory;
-  return memory;
-}
+GroupMemory& thread_memory() { return base::per_thread<GroupMemory>(); }
 
 void bind(GroupMemory& memory, const Launch& launch) {
   const std::size_t resident = launch.program.has_barrier ? launch.waves : 1;

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/lasting.h"
 #include "base/log.h"
 
 namespace vitrine::spirv::exec {
@@ -26,7 +27,7 @@ struct Records {
 };
 
 Records& records() {
-  static Records instance;
+  static Records& instance = base::lasting([] { return Records(); });
   return instance;
 }
 

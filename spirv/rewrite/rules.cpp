@@ -4,6 +4,8 @@
 // never meets (saturation, fused multiply-add, rotates, ...) are left out.
 #include "spirv/rewrite/pattern.h"
 
+#include "base/lasting.h"
+
 namespace vitrine::spirv::rewriting {
 namespace {
 
@@ -588,12 +590,12 @@ constexpr RuleText kLate[] = {
 }  // namespace
 
 const Rules& main_rules() {
-  static const Rules rules = parse_rules(kMain, main_shapes());
+  static const Rules& rules = base::lasting([] { return parse_rules(kMain, main_shapes()); });
   return rules;
 }
 
 const Rules& late_rules() {
-  static const Rules rules = parse_rules(kLate, late_shapes());
+  static const Rules& rules = base::lasting([] { return parse_rules(kLate, late_shapes()); });
   return rules;
 }
 

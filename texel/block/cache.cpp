@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 
+#include "base/lasting.h"
 #include "texel/block/block.h"
 
 namespace vitrine::texel {
@@ -71,9 +72,6 @@ const Texel* BlockCache::texels(const FormatDesc& format, const std::byte* block
   return entry.texel.data();
 }
 
-BlockCache& block_cache() {
-  static thread_local BlockCache cache;
-  return cache;
-}
+BlockCache& block_cache() { return base::per_thread<BlockCache>(); }
 
 }  // namespace vitrine::texel
