@@ -62,6 +62,12 @@ constexpr std::string_view kOptional[] = {"SampleRateShading",
                                           "MultiViewport",
                                           "MinLod",
                                           "DrawParameters",
+                                          "DemoteToHelperInvocation",
+                                          "GroupNonUniform",
+                                          "GroupNonUniformBallot",
+                                          "GroupNonUniformVote",
+                                          "StorageImageReadWithoutFormat",
+                                          "StorageImageWriteWithoutFormat",
                                           "Int8",
                                           "Int16",
                                           "Int64",
@@ -96,6 +102,8 @@ std::string validate_leniently(std::span<const std::uint32_t> words) {
   std::string message = validate(context, words);
   std::vector<std::uint32_t> completed;
   for (int i = 0; i < kMaxMissing && !message.empty(); ++i) {
+    // Vertex inputs may share locations in OpenGL; each reads its attribute all the same.
+    if (message.find("conflicting input location assignment") != std::string::npos) message.clear();
     const std::string name = missing_capability(message);
     if (name.empty()) break;
     if (completed.empty()) completed.assign(words.begin(), words.end());
