@@ -295,9 +295,145 @@ void blend_bytes(const ColorWriter& writer, const ColorWave& wave) {
   });
 }
 
+using F32 = hn::CappedTag<float, kWaveWidth>;
+using VF = hn::Vec<F32>;
+
+struct alignas(64) Floats {
+  float lane[kWaveWidth];
+};
+
+/// What blending in binary32 needs of a wave.
+struct FloatOperands {
+  Floats src[4], dst[4];
+  float constants[4];
+};
+
+HWY_INLINE VF clamp_float(VF x) {
+  const F32 d;
+  return lanes_min_second(lanes_max_second(x, hn::Zero(d)), hn::Set(d, 1.0f));
+}
+
+/// blend_factor() of blend.h in binary32, for formats with alpha; no dual-source ones.
+HWY_INLINE VF factor_float(VkBlendFactor factor, const FloatOperands& in, std::size_t c, std::size_t i) {
+  const F32 d;
+  const VF one = hn::Set(d, 1.0f);
+  const auto src = [&](std::size_t k) HWY_ATTR { return hn::Load(d, in.src[k].lane + i); };
+  const auto dst = [&](std::size_t k) HWY_ATTR { return hn::Load(d, in.dst[k].lane + i); };
+  const auto constant = [&](std::size_t k) HWY_ATTR { return hn::Set(d, in.constants[k]); };
+  switch (factor) {
+    case VK_BLEND_FACTOR_ONE:
+      return one;
+    case VK_BLEND_FACTOR_SRC_COLOR:
+      return src(c);
+    case VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR:
+      return hn::Sub(one, src(c));
+    case VK_BLEND_FACTOR_DST_COLOR:
+      return dst(c);
+    case VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR:
+      return hn::Sub(one, dst(c));
+    case VK_BLEND_FACTOR_SRC_ALPHA:
+      return src(3);
+    case VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA:
+      return hn::Sub(one, src(3));
+    case VK_BLEND_FACTOR_DST_ALPHA:
+      return dst(3);
+    case VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA:
+      return hn::Sub(one, dst(3));
+    case VK_BLEND_FACTOR_CONSTANT_COLOR:
+      return constant(c);
+    case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR:
+      return hn::Sub(one, constant(c));
+    case VK_BLEND_FACTOR_CONSTANT_ALPHA:
+      return constant(3);
+    case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA:
+      return hn::Sub(one, constant(3));
+    case VK_BLEND_FACTOR_SRC_ALPHA_SATURATE:
+      return c == 3 ? one : lanes_min_second(src(3), hn::Sub(one, dst(3)));
+    default:
+      return hn::Zero(d);
+  }
+}
+
+HWY_INLINE VF combine_float(VkBlendOp op, VF a, VF b) {
+  return op == VK_BLEND_OP_ADD ? hn::Add(a, b) : op == VK_BLEND_OP_SUBTRACT ? hn::Sub(a, b) : hn::Sub(b, a);
+}
+
+/// blend_channel() of blend.h in binary32, for formats of several channels.
+HWY_INLINE VF blend_float(const BlendEquation& equation, const BlendShape& shape, const FloatOperands& in,
+                          std::size_t c, std::size_t i) {
+  const F32 d;
+  const VF src = hn::Load(d, in.src[c].lane + i), dst = hn::Load(d, in.dst[c].lane + i), zero = hn::Zero(d);
+  const VkBlendOp op = equation.op;
+  const bool additive = op != VK_BLEND_OP_MIN && op != VK_BLEND_OP_MAX;
+  const VF src_factor = factor_float(equation.src, in, c, i);
+  if (additive && shape.common_factor) {
+    const VF combined = combine_float(op, src, dst);
+    return shape.src_one ? combined : shape.src_zero ? zero : hn::Mul(combined, src_factor);
+  }
+  const VF src_term = shape.src_one ? src : shape.src_zero ? zero : hn::Mul(src, src_factor);
+  const VF dst_term = shape.dst_one ? dst : shape.dst_zero ? zero : hn::Mul(dst, factor_float(equation.dst, in, c, i));
+  switch (op) {
+    case VK_BLEND_OP_MIN:
+      return lanes_min_second(src_term, dst_term);
+    case VK_BLEND_OP_MAX:
+      return lanes_max_second(src_term, dst_term);
+    case VK_BLEND_OP_ADD:
+      return shape.src_zero ? dst_term : shape.dst_zero ? src_term : hn::Add(src_term, dst_term);
+    case VK_BLEND_OP_SUBTRACT:
+      return shape.dst_zero ? src_term : hn::Sub(src_term, dst_term);
+    default:
+      return shape.src_zero ? dst_term : hn::Sub(dst_term, src_term);
+  }
+}
+
+/// A channel of stored texels in binary32.
+HWY_INLINE void decode_channel(const Words& words, int shift, bool srgb, Floats& out) {
+  const F32 d;
+  const hn::Rebind<std::int32_t, F32> di;
+  for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d)) {
+    const auto word = hn::Load(di, reinterpret_cast<const std::int32_t*>(words.lane + i));
+    const auto code = hn::And(hn::ShiftRightSame(word, shift), hn::Set(di, 255));
+    const VF value = srgb ? hn::GatherIndex(d, texel::kSrgbToLinear.data(), code)
+                          : hn::Mul(hn::ConvertTo(d, code), hn::Set(d, 1.0f / 255.0f));
+    hn::Store(value, d, out.lane + i);
+  }
+}
+
+void blend_srgb(const ColorWriter& writer, const ColorWave& wave) {
+  const F32 d;
+  const BlendShape shape = blend_shape(writer);
+  FloatOperands in;
+  for (std::size_t c = 0; c < 4; ++c) {
+    for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d))
+      hn::Store(clamp_float(hn::Load(d, reinterpret_cast<const float*>(wave.color[c].lane + i))), d,
+                in.src[c].lane + i);
+    in.constants[c] = base::min_second(base::max_second(writer.constants[c], 0.0f), 1.0f);
+  }
+  const SrgbPacker packer(writer);
+  const SrgbPacker::Texels texels;
+  const std::uint32_t keep = ~write_word(writer);
+  for_each_pass(wave, [&](std::uint32_t quads) {
+    const base::LaneMask mask = wave.mask & lanes_of(quads);
+    Words old{}, words;
+    gather(wave, mask, old);
+    for (std::size_t c = 0; c < 4; ++c) decode_channel(old, shift_of(writer, c), c < 3, in.dst[c]);
+    base::WaveRegister result[4];
+    for (std::size_t c = 0; c < 4; ++c)
+      for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d))
+        hn::Store(blend_float(c < 3 ? writer.rgb : writer.alpha, shape, in, c, i), d,
+                  reinterpret_cast<float*>(result[c].lane + i));
+    for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(texels))
+      hn::Store(packer.pack(result, i), texels, reinterpret_cast<std::int32_t*>(words.lane + i));
+    if (keep != 0) {
+      for (std::size_t i = 0; i < kWaveWidth; ++i) words.lane[i] = (old.lane[i] & keep) | (words.lane[i] & ~keep);
+    }
+    scatter(wave, mask, words);
+  });
+}
+
 }  // namespace
 
-ByteColorFunctions byte_functions() { return {store_bytes, blend_bytes, store_srgb}; }
+ByteColorFunctions byte_functions() { return {store_bytes, blend_bytes, store_srgb, blend_srgb}; }
 
 }  // namespace vitrine::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -366,8 +502,10 @@ ColorFunction fast_color_function(const ColorWriter& writer) {
     if (writer.blend == BlendType::kNone) return byte_color_functions().store;
     return reads_second_source(writer) ? nullptr : byte_color_functions().blend;
   }
-  if (writer.blend == BlendType::kNone && is_four_srgb_bytes(*writer.format) && !texel::encodes_by_cpu())
-    return byte_color_functions().store_srgb;
+  if (is_four_srgb_bytes(*writer.format) && !texel::encodes_by_cpu()) {
+    if (writer.blend == BlendType::kNone) return byte_color_functions().store_srgb;
+    return reads_second_source(writer) ? nullptr : byte_color_functions().blend_srgb;
+  }
   if (writer.blend == BlendType::kNone && !writer.masked && is_words(*writer.format)) return store_words;
   return nullptr;
 }

@@ -8,7 +8,7 @@ namespace vitrine::raster {
 /// Colour functions of the SIMD target in use for targets of four 8-bit UNORM channels.
 struct ByteColorFunctions {
   ColorFunction store, blend;
-  ColorFunction store_srgb;  ///< three of them sRGB
+  ColorFunction store_srgb, blend_srgb;  ///< three of them sRGB
 };
 ByteColorFunctions byte_color_functions();
 
