@@ -131,7 +131,9 @@ void random_rasterization(Run& run, const Scene& scene, DrawState& draw) {
   if (draw.drawn == Drawn::kLines) random_lines(run, scene, draw);
   const bool stippled = draw.drawn == Drawn::kLines && draw.line.stippledLineEnable;
   // deviations.md: point-clipping, stipple-counter, multisample-short-lines
+  const bool early_stages = !draw.stages.tessellation.empty() || !draw.stages.geometry.empty();
   draw.clipped = random.chance(0.4f) && draw.stages.drawn != Drawn::kPoints && !stippled &&
+                 !(draw.drawn == Drawn::kPoints && early_stages) &&
                  !(scene.multisampled && draw.drawn == Drawn::kLines);
   if (random.chance(0.3f)) {
     raster.depthBiasEnable = VK_TRUE;
@@ -358,8 +360,11 @@ void random_draw(Run& run, const Scene& scene, DrawState& draw) {
     draw.stages.viewports = 2 + random.below(3);
   // Distances clip, too (see `clipped`).
   if (!draw.clipped && draw.drawn == Drawn::kLines) draw.stages.clip_distances = 0;
-  // deviations.md, stipple-counter
-  if (draw.line.stippledLineEnable) draw.stages.cull_distances = 0;
+  // deviations.md, stipple-counter and stipple-flat-integers
+  if (draw.line.stippledLineEnable) {
+    draw.stages.cull_distances = 0;
+    draw.stages.layers = 1;
+  }
   random_viewports(random, scene, draw);
   random_tests(random, scene, draw);
   random_fragment_needs(run, scene, draw);
