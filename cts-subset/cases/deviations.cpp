@@ -137,6 +137,61 @@ const AddCase kViewport("rasterization", "deviation.viewport_scissor", "viewport
                           draw(run, "whole_viewport", target, {}, rectangle(-0.5f, 46.375f / 32 - 1));
                         });
 
+/// Three patches in a row, coloured by their number.
+void draw_patches(Run& run, const std::string& name, bool restarts) {
+  const Target target = make_target(run, {});
+  GraphicsSpec spec;
+  spec.vertex = "layout(location = 0) in vec4 position;\nvoid main() { gl_Position = position; }";
+  spec.control = R"(
+layout(vertices = 3) out;
+void main() {
+  gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position;
+  gl_TessLevelOuter = float[4](1.0, 1.0, 1.0, 1.0);
+  gl_TessLevelInner = float[2](1.0, 1.0);
+})";
+  spec.evaluation = R"(
+layout(triangles, equal_spacing, cw) in;
+layout(location = 0) out vec4 passed;
+void main() {
+  gl_Position = vec4(0.0);
+  for (int i = 0; i < 3; ++i) gl_Position += gl_in[i].gl_Position * gl_TessCoord[i];
+  passed = vec4(0.25 * float(gl_PrimitiveID + 1), 0.5, 0.5, 1.0);
+})";
+  spec.fragment = kColorFragment;
+  spec.floats({4});
+  spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
+  spec.assembly.primitiveRestartEnable = restarts;
+  spec.tessellation.patchControlPoints = 3;
+  std::vector<float> positions;
+  std::vector<uint16_t> order;
+  for (uint16_t patch = 0; patch < 3; ++patch) {
+    const float left = -0.9f + 0.6f * static_cast<float>(patch);
+    for (const float v : {left, -0.8f, 0.5f, 1.0f, left + 0.5f, -0.8f, 0.5f, 1.0f, left, 0.8f, 0.5f, 1.0f})
+      positions.push_back(v);
+    for (uint16_t i = 0; i < 3; ++i) order.push_back(static_cast<uint16_t>(3 * patch + i));
+    if (restarts) order.push_back(0xffff);
+  }
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  const Buffer vertices = run.buffer_of(positions), indices = run.buffer_of(order);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT16);
+    vkCmdDrawIndexed(cmd, static_cast<uint32_t>(order.size()), 1, 0, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  run.out(name, target.colors[0]);
+}
+
+const AddCase kPatchNumbers("tessellation", "deviation.patch_numbers", "patch-numbers", case_against_control,
+                            [](Run& run) {
+                              run.require(run.gpu.extension_features.list_restart.primitiveTopologyPatchListRestart,
+                                          "primitiveTopologyPatchListRestart");
+                              draw_patches(run, "restarted", true);
+                              draw_patches(run, "list", false);
+                            });
+
 const AddCase kPoint("clipping", "deviation.point_clipping", "point-clipping", case_against_control, [](Run& run) {
   run.require(run.gpu.features.largePoints, "largePoints");
   GraphicsSpec spec;

@@ -291,7 +291,7 @@ CTS_CASE("tessellation", "patch_restart") {
   spec.evaluation = evaluation("quads, equal_spacing, ccw");
   spec.assembly.primitiveRestartEnable = VK_TRUE;
   Patches patches = make_patches(run.random, 4, 3, 6.0f, false);
-  // The same for all: the reference begins to count patches anew.
+  // The same for all: deviations.md, patch-numbers.
   for (size_t l = 6; l < patches.levels.size(); ++l) patches.levels[l] = patches.levels[l - 6];
   std::vector<uint16_t> order;
   for (uint16_t i = 0; i < patches.vertices.size() / 8; ++i) {
