@@ -1,0 +1,170 @@
+// Meshes with shared edges cover every sample exactly once, whatever their triangles' size; and input at the limits.
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "harness/case.h"
+#include "harness/graphics.h"
+
+namespace vitrine::cts {
+namespace {
+
+/// A grid whose inner vertices are moved by up to 0.24 cells, so that no triangle turns over, and whose border is the
+/// viewport's; each cell is cut along one of its diagonals.
+struct Mesh {
+  std::vector<float> positions;
+  std::vector<uint32_t> indices;
+};
+
+Mesh random_mesh(Random& random, uint32_t columns, uint32_t rows) {
+  Mesh mesh;
+  for (uint32_t y = 0; y <= rows; ++y)
+    for (uint32_t x = 0; x <= columns; ++x) {
+      const auto place = [&](uint32_t cell, uint32_t cells) {
+        const bool border = cell == 0 || cell == cells;
+        const float at = static_cast<float>(cell) + (border ? 0.0f : random.real(-0.24f, 0.24f));
+        return border ? (cell == 0 ? -1.0f : 1.0f) : at / static_cast<float>(cells) * 2.0f - 1.0f;
+      };
+      mesh.positions.push_back(place(x, columns));
+      mesh.positions.push_back(place(y, rows));
+    }
+  for (uint32_t y = 0; y < rows; ++y)
+    for (uint32_t x = 0; x < columns; ++x) {
+      const uint32_t a = y * (columns + 1) + x, b = a + 1, c = a + columns + 1, d = c + 1;
+      const uint32_t falling[] = {a, b, d, a, d, c}, rising[] = {a, b, c, c, b, d};
+      const uint32_t* corners = random.chance(0.5f) ? falling : rising;
+      mesh.indices.insert(mesh.indices.end(), corners, corners + 6);
+    }
+  return mesh;
+}
+
+/// Every triangle adds 1 to each channel of 8 bits.
+CTS_RANDOM("rasterization", "watertight", 8) {
+  Random& random = run.random;
+  TargetSpec target_spec;
+  target_spec.width = 32 + random.below(300);
+  target_spec.height = 32 + random.below(300);
+  if (random.chance(0.4f)) target_spec.samples = VK_SAMPLE_COUNT_4_BIT;
+  Target target = make_target(run, target_spec);
+  target.clears[0] = {};
+  GraphicsSpec spec;
+  spec.vertex = "layout(location = 0) in vec2 position;\nvoid main() { gl_Position = vec4(position, 0.5, 1.0); }\n";
+  spec.fragment = "layout(location = 0) out vec4 result;\nvoid main() { result = vec4(1.0 / 255.0); }\n";
+  spec.floats({2});
+  spec.blends = {{VK_TRUE, VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE, VK_BLEND_OP_ADD, VK_BLEND_FACTOR_ONE,
+                  VK_BLEND_FACTOR_ONE, VK_BLEND_OP_ADD, 0xf}};
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  const uint32_t columns = random.pick({1u, 7u, 40u, 150u, 300u}), rows = random.pick({1u, 3u, 40u, 200u, 300u});
+  const Mesh mesh = random_mesh(random, columns, rows);
+  const Buffer vertices = run.buffer_of(mesh.positions), indices = run.buffer_of(mesh.indices);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT32);
+    vkCmdDrawIndexed(cmd, static_cast<uint32_t>(mesh.indices.size()), 1, 0, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  run.out("coverage", target.colors[0]);
+  run.may_be_blank();
+  const Output& output = run.outputs.back();
+  uint32_t wrong = 0;
+  if (target_spec.samples == VK_SAMPLE_COUNT_1_BIT) {
+    for (const unsigned char count : output.bytes) wrong += count != 1;
+  } else {
+    for (size_t at = 0; at < output.bytes.size(); at += 4) {
+      float value;
+      std::memcpy(&value, &output.bytes[at], 4);
+      wrong += std::lround(value * 255.0f) != 1;
+    }
+  }
+  if (wrong != 0) throw std::runtime_error(std::to_string(wrong) + " holes or doubles");
+}
+
+/// Positions with coordinates that no honest program has. Points and lines stay inside, as deviations.md says.
+CTS_RANDOM("clipping", "extreme_positions", 40) {
+  Random& random = run.random;
+  const float infinity = std::numeric_limits<float>::infinity();
+  TargetSpec target_spec;
+  target_spec.depth = VK_FORMAT_D32_SFLOAT;
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  spec.vertex = kColorVertex;
+  spec.fragment = kColorFragment;
+  spec.floats({4, 4});
+  spec.depth.depthTestEnable = spec.depth.depthWriteEnable = VK_TRUE;
+  spec.raster.depthClampEnable = random.chance(0.3f);
+  spec.assembly.topology = random.pick({VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP,
+                                        VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN, VK_PRIMITIVE_TOPOLOGY_LINE_LIST});
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  std::vector<float> values;
+  const float chance = random.pick({0.03f, 0.1f, 0.3f});
+  for (int i = 0; i < 60; ++i) {
+    float position[4] = {random.real(-1.2f, 1.2f), random.real(-1.2f, 1.2f), random.real(-0.2f, 1.2f), 1.0f};
+    for (float& v : position)
+      if (random.chance(chance))
+        v = random.pick({0.0f, -0.0f, 0x1p30f, -0x1p30f, 0x1p-30f, 1e38f, -1e38f, 1e-40f, -1.0f, 32768.0f, infinity,
+                         -infinity, std::numeric_limits<float>::quiet_NaN()});
+    for (const float v : position) values.push_back(v);
+    for (int c = 0; c < 4; ++c) values.push_back(random.unit());
+  }
+  const Buffer vertices = run.buffer_of(values);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, 60, 1, 0, 0);
+    vkCmdDraw(cmd, 0, 1, 0, 0);
+    vkCmdDraw(cmd, 60, 0, 0, 0);
+    vkCmdDraw(cmd, 2, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+  run.may_be_blank();
+}
+
+/// Attachments as wide or high as an image may be.
+void draw_long(Run& run, uint32_t width, uint32_t height, uint32_t layers, const char* select) {
+  TargetSpec target_spec;
+  target_spec.width = width;
+  target_spec.height = height;
+  target_spec.layers = layers;
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  spec.vertex = std::string(layers > 1 ? "#extension GL_ARB_shader_viewport_layer_array : require\n" : "") +
+                "layout(location = 0) in vec4 position;\nlayout(location = 1) in vec4 color;\n"
+                "layout(location = 0) out vec4 passed;\nvoid main() {\n  passed = color;\n"
+                "  gl_Position = position;\n" +
+                select + "}\n";
+  spec.fragment = kColorFragment;
+  spec.floats({4, 4});
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  std::vector<float> values;
+  for (int i = 0; i < 24; ++i) {
+    for (const float v : {run.random.real(-1.1f, 1.1f), run.random.real(-1.1f, 1.1f), run.random.unit(), 1.0f})
+      values.push_back(v);
+    for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
+  }
+  const Buffer vertices = run.buffer_of(values);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    if (layers == 1)
+      vkCmdDraw(cmd, 24, 1, 0, 0);
+    else
+      vkCmdDraw(cmd, 3, layers, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+}
+
+CTS_CASE("rasterization", "extreme_size.wide") { draw_long(run, 16384, 5, 1, ""); }
+CTS_CASE("rasterization", "extreme_size.high") { draw_long(run, 5, 16384, 1, ""); }
+CTS_CASE("rasterization", "extreme_size.layers") {
+  run.require(run.gpu.has("VK_EXT_shader_viewport_index_layer"), "VK_EXT_shader_viewport_index_layer");
+  draw_long(run, 8, 8, 2000, "  gl_Layer = gl_InstanceIndex;\n");
+}
+
+}  // namespace
+}  // namespace vitrine::cts
