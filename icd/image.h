@@ -50,8 +50,8 @@ VkImageSubresourceRange resolve_range(const Image& image, const VkImageSubresour
 texel::ImageView view_of_aspect(const Image& image, VkImageAspectFlagBits aspect, VkImageViewType type, VkFormat format,
                                 const VkImageSubresourceRange& range, const VkComponentMapping& components = {});
 
-/// Memory of a swapchain's image, for vkBindImageMemory2 with VkBindImageMemorySwapchainInfoKHR. Defined with the
-/// swapchain (weak until then).
-__attribute__((weak)) std::byte* swapchain_image_memory(VkSwapchainKHR swapchain, std::uint32_t index);
+/// Memory of a swapchain's image, for vkBindImageMemory2 with VkBindImageMemorySwapchainInfoKHR; null if there is no
+/// such image. Defined with the swapchain.
+std::byte* swapchain_image_memory(VkSwapchainKHR swapchain, std::uint32_t index);
 
 }  // namespace vitrine::icd

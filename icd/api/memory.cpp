@@ -175,8 +175,7 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice, std::uint32_t count, c
     Image& image = from_handle<Image>(infos[i].image);
     if (const auto* swapchain = find_in_chain<VkBindImageMemorySwapchainInfoKHR>(infos[i].pNext);
         swapchain && swapchain->swapchain) {
-      image.data =
-          swapchain_image_memory ? swapchain_image_memory(swapchain->swapchain, swapchain->imageIndex) : nullptr;
+      image.data = swapchain_image_memory(swapchain->swapchain, swapchain->imageIndex);
       if (!image.data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
       continue;
     }

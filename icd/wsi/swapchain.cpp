@@ -25,6 +25,11 @@ Swapchain::~Swapchain() {
   }
 }
 
+std::byte* swapchain_image_memory(VkSwapchainKHR swapchain, std::uint32_t index) {
+  const Swapchain& owner = from_handle<Swapchain>(swapchain);
+  return index < owner.slots.size() ? owner.slots[index].image->data : nullptr;
+}
+
 void show_image(Swapchain& swapchain, std::uint32_t index) {
   const wsi::Frame frame = frame_of(swapchain, *swapchain.slots[index].image);
   const bool in_order =

@@ -2,6 +2,7 @@
 #include <set>
 #include <vector>
 
+#include "icd/image.h"
 #include "tests/icd/fixture.h"
 
 namespace vitrine::icd::test {
@@ -146,6 +147,33 @@ TEST_F(SwapchainTest, ImagesTakeTurns) {
   }
   EXPECT_EQ(order, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2}));
   VK_GET(instance, DestroySemaphore)(device, acquired, nullptr);
+  destroy(swapchain);
+}
+
+TEST_F(SwapchainTest, ImagesShareTheMemoryOfTheSwapchains) {
+  const VkSwapchainKHR swapchain = create();
+  std::uint32_t count = 3;
+  VkImage owned[3];
+  ASSERT_EQ(VK_GET(instance, GetSwapchainImagesKHR)(device, swapchain, &count, owned), VK_SUCCESS);
+  auto of_swapchain = make_struct<VkImageSwapchainCreateInfoKHR>();
+  of_swapchain.swapchain = swapchain;
+  auto info = make_struct<VkImageCreateInfo>(&of_swapchain);
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = VK_FORMAT_B8G8R8A8_UNORM;
+  info.extent = {32, 16, 1};
+  info.mipLevels = info.arrayLayers = 1;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  VkImage image = VK_NULL_HANDLE;
+  ASSERT_EQ(VK_GET(instance, CreateImage)(device, &info, nullptr, &image), VK_SUCCESS);
+  auto where = make_struct<VkBindImageMemorySwapchainInfoKHR>();
+  where.swapchain = swapchain;
+  where.imageIndex = 2;
+  auto bind = make_struct<VkBindImageMemoryInfo>(&where);
+  bind.image = image;
+  EXPECT_EQ(VK_GET(instance, BindImageMemory2)(device, 1, &bind), VK_SUCCESS);
+  EXPECT_EQ(from_handle<Image>(image).data, from_handle<Image>(owned[2]).data);
+  VK_GET(instance, DestroyImage)(device, image, nullptr);
   destroy(swapchain);
 }
 
