@@ -9,8 +9,6 @@
 namespace vitrine::icd {
 namespace {
 
-constexpr VkDeviceSize kTailBytes = 64;
-
 std::size_t page_size() { return static_cast<std::size_t>(sysconf(_SC_PAGESIZE)); }
 
 /// NORESERVE: a large allocation that is never touched costs address space only.

@@ -8,9 +8,11 @@
 
 namespace vitrine::icd {
 
-/// A zero-filled mapping; pages appear when they are touched. 64 readable bytes follow the last one, so that vector
-/// loads of a tail need no care. It is private, or of a file that other devices and processes can map, or the
-/// application's.
+/// Readable bytes behind the last one of every allocation, so that vector loads of a tail need no care.
+inline constexpr VkDeviceSize kTailBytes = 64;
+
+/// A zero-filled mapping; pages appear when they are touched. kTailBytes follow the last one. It is private, or of a
+/// file that other devices and processes can map, or the application's.
 struct DeviceMemory : Object<VkDeviceMemory, VK_OBJECT_TYPE_DEVICE_MEMORY> {
   /// data stays null if the system has no memory. `total` counts the bytes while the object lives.
   DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<VkDeviceSize>& total);

@@ -2,6 +2,8 @@
 // Association).
 #include "icd/memory.h"
 
+#include <algorithm>
+
 #include "icd/diagnostics.h"
 #include "icd/entry_points.h"
 #include "icd/image.h"
@@ -12,6 +14,10 @@ namespace vitrine::icd {
 namespace {
 
 constexpr VkDeviceSize kResourceAlignment = 64;
+
+/// What an image takes of its memory. The layout ends with room for reading beyond the last texel, which every
+/// allocation has of its own.
+VkDeviceSize bytes_of(const texel::ImageLayout& layout) { return layout.size - std::min(layout.size, kTailBytes); }
 
 void write_requirements(VkDeviceSize size, VkDeviceSize alignment, VkMemoryRequirements2& out) {
   out.memoryRequirements = {(size + alignment - 1) & ~(alignment - 1), alignment, 1};
@@ -113,7 +119,7 @@ VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements(VkDevice device, VkImage i
 VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements2(VkDevice, const VkImageMemoryRequirementsInfo2* info,
                                                        VkMemoryRequirements2* out) {
   const texel::ImageLayout& layout = from_handle<Image>(info->image).layout;
-  write_requirements(layout.size, layout.alignment, *out);
+  write_requirements(bytes_of(layout), layout.alignment, *out);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetDeviceImageMemoryRequirements(VkDevice device,
@@ -121,7 +127,7 @@ VKAPI_ATTR void VKAPI_CALL GetDeviceImageMemoryRequirements(VkDevice device,
                                                             VkMemoryRequirements2* out) {
   Image image(from_handle<Device>(device).memory);
   init_image(image, *info->pCreateInfo);
-  write_requirements(image.layout.size, image.layout.alignment, *out);
+  write_requirements(bytes_of(image.layout), image.layout.alignment, *out);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetDeviceImageSparseMemoryRequirements(VkDevice, const VkDeviceImageMemoryRequirements*,
@@ -180,7 +186,7 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice, std::uint32_t count, c
       continue;
     }
     const DeviceMemory& memory = from_handle<DeviceMemory>(infos[i].memory);
-    if (infos[i].memoryOffset > memory.size || image.layout.size > memory.size - infos[i].memoryOffset) {
+    if (infos[i].memoryOffset > memory.size || bytes_of(image.layout) > memory.size - infos[i].memoryOffset) {
       return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     }
     image.data = memory.data + infos[i].memoryOffset;

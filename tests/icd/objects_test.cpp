@@ -98,6 +98,21 @@ TEST_F(Memory, RequirementsOfBothQueriesAgree) {
   VK_GET(instance, DestroyImage)(device, image, nullptr);
 }
 
+TEST_F(Memory, ImagesNeedNoMoreThanTheirRows) {
+  const VkImageCreateInfo info = image_info(256, 256);
+  VkImage image;
+  ASSERT_EQ(VK_GET(instance, CreateImage)(device, &info, nullptr, &image), VK_SUCCESS);
+  VkMemoryRequirements requirements;
+  VK_GET(instance, GetImageMemoryRequirements)(device, image, &requirements);
+  // The reference's size: captures of applications on it allocate that much.
+  EXPECT_EQ(requirements.size, 256u * 256 * 4);
+  VkDeviceMemory memory;
+  ASSERT_EQ(allocate(instance, device, requirements.size, &memory), VK_SUCCESS);
+  EXPECT_EQ(VK_GET(instance, BindImageMemory)(device, image, memory, 0), VK_SUCCESS);
+  VK_GET(instance, DestroyImage)(device, image, nullptr);
+  VK_GET(instance, FreeMemory)(device, memory, nullptr);
+}
+
 TEST_F(Memory, LinearImageLayoutIsReadable) {
   VkImageCreateInfo info = image_info(33, 17);
   info.tiling = VK_IMAGE_TILING_LINEAR;
