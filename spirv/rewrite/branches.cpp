@@ -43,24 +43,25 @@ bool may_hoist(const Inst& inst) {
   }
 }
 
-/// Adds the cost of a branch; false if something in it must stay conditional.
-bool can_flatten(const Graph& graph, BlockId block, unsigned& cost) {
-  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
-    const Inst& inst = graph.insts[id];
-    switch (inst.kind) {
-      case Kind::kConst:
-      case Kind::kVec:
-        break;
-      case Kind::kAlu:
-        cost += is_free(inst) ? 0 : cost_of(graph, inst);
-        break;
-      case Kind::kIntrinsic:
-        if (inst.op != Op::kYield && !may_hoist(inst)) return false;
-        break;
-      default:
-        return false;
-    }
+/// Adds what an instruction costs; false if it must stay conditional.
+bool can_hoist(const Graph& graph, const Inst& inst, unsigned& cost) {
+  switch (inst.kind) {
+    case Kind::kConst:
+    case Kind::kVec:
+      return true;
+    case Kind::kAlu:
+      cost += is_free(inst) ? 0 : cost_of(graph, inst);
+      return true;
+    case Kind::kIntrinsic:
+      return inst.op == Op::kYield || may_hoist(inst);
+    default:
+      return false;
   }
+}
+
+bool can_flatten(const Graph& graph, BlockId block, unsigned& cost) {
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next)
+    if (!can_hoist(graph, graph.insts[id], cost)) return false;
   return ends_in(graph, block, Op::kYield);
 }
 
@@ -93,6 +94,67 @@ void flatten(Graph& graph, InstId id) {
   graph.remove(id);
 }
 
+bool same_value(const Graph& graph, const Src& a, const Src& b, ValueId like) {
+  if (a.value != b.value) return false;
+  for (unsigned c = 0; c < graph.values[like].components; ++c)
+    if (a.swizzle[c] != b.swizzle[c]) return false;
+  return true;
+}
+
+bool is_empty(const Graph& graph, BlockId block) {
+  const InstId last = graph.blocks[block].tail;
+  return last != kNone && graph.blocks[block].head == last && is_jump(graph.insts[last], Op::kYield);
+}
+
+/// What `outer` yields for results of `inner` when it does not run must be what `inner` yields when it does not; the
+/// operands of outer's first Yield that are such results.
+bool results_agree(const Graph& graph, InstId outer, InstId inner, std::vector<std::uint32_t>& operands) {
+  const InstId then_end = graph.blocks[graph.insts[outer].child[0]].tail;
+  const InstId outer_else = graph.blocks[graph.insts[outer].child[1]].tail;
+  const InstId inner_else = graph.blocks[graph.insts[inner].child[1]].tail;
+  const std::vector<ValueId>& results = graph.nodes[graph.insts[inner].node]->results;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    for (Slot use = graph.values[results[i]].first_use; use != kNone; use = graph.sources[use].next) {
+      if (graph.sources[use].user != then_end) return false;
+      const std::uint32_t operand = use - graph.insts[then_end].first;
+      const Src& skipped = graph.source(graph.insts[inner_else], static_cast<std::uint32_t>(i));
+      if (!same_value(graph, graph.source(graph.insts[outer_else], operand), skipped, results[i])) return false;
+      operands.push_back(operand);
+    }
+  return true;
+}
+
+/// A branch in a branch, both with one side only, on both conditions.
+bool collapse(Graph& graph, InstId inner) {
+  const InstId outer = graph.blocks[graph.insts[inner].block].owner;
+  if (outer == kNone || graph.insts[outer].kind != Kind::kIf) return false;
+  const BlockId then_block = graph.insts[outer].child[0], else_block = graph.insts[outer].child[1];
+  if (graph.insts[inner].block != then_block || !is_empty(graph, else_block) ||
+      !is_empty(graph, graph.insts[inner].child[1]) || is_empty(graph, graph.insts[inner].child[0]))
+    return false;
+  const InstId then_end = graph.insts[inner].next;
+  if (then_end == kNone || !is_jump(graph.insts[then_end], Op::kYield)) return false;
+  unsigned cost = 0;
+  for (InstId id = graph.blocks[then_block].head; id != inner; id = graph.insts[id].next)
+    if (!can_hoist(graph, graph.insts[id], cost)) return false;
+  std::vector<std::uint32_t> operands;
+  if (cost > kFlattenLimit || !results_agree(graph, outer, inner, operands)) return false;
+  for (const std::uint32_t operand : operands)
+    graph.set_source(graph.blocks[else_block].tail, operand, graph.source(graph.insts[then_end], operand));
+  const InstId both = graph.create(Kind::kAlu, Op::kAndB, 1, true, 2);
+  graph.insts[both].origin = graph.insts[inner].origin;
+  const auto condition = [&](InstId id) {
+    const Src& src = graph.source(graph.insts[id], 0);
+    return Src{src.value, {src.swizzle[0], src.swizzle[0], src.swizzle[0], src.swizzle[0]}};
+  };
+  graph.set_source(both, 0, condition(inner));
+  graph.set_source(both, 1, condition(outer));
+  graph.insert_before(inner, both);
+  graph.set_source(inner, 0, {graph.insts[both].result, {0, 0, 0, 0}});
+  while (graph.blocks[then_block].head != then_end) graph.move_before(outer, graph.blocks[then_block].head);
+  return true;
+}
+
 /// Innermost first, so that a flattened branch may let the one around it flatten.
 bool flatten_in(Graph& graph, BlockId block) {
   bool changed = false;
@@ -101,7 +163,9 @@ bool flatten_in(Graph& graph, BlockId block) {
     const BlockId child[2] = {graph.insts[id].child[0], graph.insts[id].child[1]};
     for (const BlockId side : child)
       if (side != kNone) changed |= flatten_in(graph, side);
-    if (graph.insts[id].kind == Kind::kIf) {
+    if (graph.insts[id].kind == Kind::kIf && collapse(graph, id)) {
+      changed = true;
+    } else if (graph.insts[id].kind == Kind::kIf) {
       unsigned cost = 0;
       if (can_flatten(graph, child[0], cost) && can_flatten(graph, child[1], cost) && cost <= kFlattenLimit) {
         flatten(graph, id);
@@ -111,13 +175,6 @@ bool flatten_in(Graph& graph, BlockId block) {
     id = next;
   }
   return changed;
-}
-
-bool same_value(const Graph& graph, const Src& a, const Src& b, ValueId like) {
-  if (a.value != b.value) return false;
-  for (unsigned c = 0; c < graph.values[like].components; ++c)
-    if (a.swizzle[c] != b.swizzle[c]) return false;
-  return true;
 }
 
 /// Results of an If whose branches yield the same value.

@@ -65,8 +65,13 @@ class Builder {
       case Op::kFMin:
       case Op::kFMax:
         if (undefined_operand()) return true;
-        if (!same_operands()) return false;
+        if (!equal_operands(0, 1)) return false;
         replace(graph_.source(inst, 0));
+        return true;
+      case Op::kSelect:
+      case Op::kSelectB:
+        if (!equal_operands(1, 2)) return false;
+        replace(graph_.source(inst, 1));
         return true;
       case Op::kFNeg:
       case Op::kFAbs:
@@ -150,10 +155,14 @@ class Builder {
     return constant && constant->imm[src.swizzle[0]] == bits;
   }
 
-  bool same_operands() const {
-    const Src& a = graph_.source(graph_.insts[id_], 0);
-    const Src& b = graph_.source(graph_.insts[id_], 1);
-    return a.value == b.value && a.swizzle[0] == b.swizzle[0];
+  /// One value, or literals of the same bits.
+  bool equal_operands(std::uint32_t i, std::uint32_t j) const {
+    const Src& a = graph_.source(graph_.insts[id_], i);
+    const Src& b = graph_.source(graph_.insts[id_], j);
+    if (a.value == b.value && a.swizzle[0] == b.swizzle[0]) return true;
+    const Inst* x = graph_.constant(a.value);
+    const Inst* y = graph_.constant(b.value);
+    return x && y && x->imm[a.swizzle[0]] == y->imm[b.swizzle[0]];
   }
 
   InstId add(Op op, bool boolean, std::initializer_list<Src> operands) {

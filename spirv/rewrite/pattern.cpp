@@ -2,6 +2,8 @@
 #include "spirv/rewrite/pattern.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cstdlib>
 #include <string>
 
@@ -39,6 +41,41 @@ constexpr ConditionName kConditions[] = {
     {"number_gt0", Condition::kNumberGt0},
     {"number_lt0", Condition::kNumberLt0},
 };
+
+/// Names of the ops, hashed when this is compiled: the table is parsed in front of the first pipeline.
+struct OpNames {
+  static constexpr std::size_t kSize = 1024;  ///< a power of two, several times the number of ops
+  std::array<Op, kSize> slots{};
+
+  static constexpr std::size_t hash(std::string_view word) {
+    std::uint32_t h = 2166136261u;
+    for (const char c : word) h = (h ^ static_cast<std::uint8_t>(c)) * 16777619u;
+    return (h ^ h >> 16) % kSize;
+  }
+
+  constexpr OpNames() {
+    slots.fill(Op::kAluCount);
+    for (std::size_t i = 0; i < std::size(kNames); ++i) {
+      std::size_t at = hash(kNames[i]);
+      while (slots[at] != Op::kAluCount) at = (at + 1) % kSize;
+      slots[at] = static_cast<Op>(i);
+    }
+  }
+
+  /// kAluCount: no such op.
+  constexpr Op find(std::string_view word) const {
+    std::size_t at = hash(word);
+    while (slots[at] != Op::kAluCount && kNames[static_cast<std::size_t>(slots[at])] != word) at = (at + 1) % kSize;
+    return slots[at];
+  }
+
+  static constexpr std::string_view kNames[] = {
+#define VITRINE_ALU(name, sources, result, operands, effect) #name,
+#include "spirv/ops.def"
+#undef VITRINE_ALU
+  };
+};
+constexpr OpNames kOpNames;
 
 bool is_word(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == '-';
@@ -93,7 +130,7 @@ class Parser {
       pattern.variable = static_cast<std::uint8_t>(first - 'a');
     } else if (word.find('.') != std::string_view::npos) {
       pattern.kind = Pattern::Kind::kFloat;
-      pattern.number = std::strtod(std::string(word).c_str(), nullptr);
+      std::from_chars(word.data(), word.data() + word.size(), pattern.number);
     } else {
       pattern.kind = Pattern::Kind::kInteger;
       pattern.bits = static_cast<std::uint32_t>(std::strtoll(std::string(word).c_str(), nullptr, 0));
@@ -101,10 +138,9 @@ class Parser {
   }
 
   Op op_named(std::string_view word) {
-    for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(Op::kAluCount); ++i)
-      if (word == ir::alu_info(static_cast<Op>(i)).name) return static_cast<Op>(i);
-    ok_ = false;
-    return Op::kMov;
+    const Op op = kOpNames.find(word);
+    ok_ = ok_ && op != Op::kAluCount;
+    return op == Op::kAluCount ? Op::kMov : op;
   }
 
   Condition condition(std::string_view word) {
@@ -175,7 +211,7 @@ std::uint16_t shape_of(Rules& rules, std::uint16_t index) {
   return rules.patterns[index].shape = number;
 }
 
-void add_rule(Rules& rules, const std::string& search, const std::string& replacement, char flag) {
+void add_rule(Rules& rules, std::string_view search, std::string_view replacement, char flag) {
   const std::size_t before = rules.patterns.size();
   Rule rule;
   Parser left(rules, search);
@@ -183,7 +219,7 @@ void add_rule(Rules& rules, const std::string& search, const std::string& replac
   Parser right(rules, replacement);
   rule.replacement = right.expression();
   if (!left.ok() || !right.ok() || rules.patterns[rule.search].kind != Pattern::Kind::kOp) {
-    VITRINE_UNREACHABLE(search.c_str());
+    VITRINE_UNREACHABLE(std::string(search).c_str());
     rules.patterns.resize(before);
     return;
   }
@@ -262,6 +298,9 @@ ir::Op shape_op(ir::Op op) {
 
 Rules parse_rules(std::span<const RuleText> texts, std::span<const char* const> shapes) {
   Rules rules;
+  rules.patterns.reserve(texts.size() * 16);
+  rules.rules.reserve(texts.size() * 2);
+  rules.shapes.reserve(kMaxShapes);
   for (const RuleText& text : texts) {
     std::string_view ops = text.ops;
     if (ops.empty()) add_rule(rules, text.search, text.replacement, text.flag);

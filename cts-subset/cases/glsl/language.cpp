@@ -243,6 +243,10 @@ const bool kFragments = [] {
         "      while (k2-- > 0) s = s + a.z;\n  }\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 4}, "s"}, {{Base::kInt, 1}, "steps"}}, {}, false});
   });
+  AddCase("glsl", "rewrite.choice_of_zeros", [](Run& run) {
+    const char* text = "  float s = 0.0 / a.z;\n  float r = (pi.w == 0 ? s * a.z : s) * a.z;\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 1}, "r"}}, {}, false});
+  });
   AddCase("glsl", "rewrite.dot_of_negation", [](Run& run) {
     const char* text =
         "  vec2 r = (b.y != 4.0 ? p.wz : vec2(0.3, -2.5)) * mat2(a.xy, vec2(255.0, 0.0) * -(0.0 * p.x));\n";
