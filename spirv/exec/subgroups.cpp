@@ -2,6 +2,8 @@
 // starts at a multiple of its size. Reductions go from the lowest lane to the highest, so that sums of floats have one
 // result.
 #include <bit>
+#include <limits>
+#include <type_traits>
 
 #include "base/numeric.h"
 #include "spirv/exec/handlers.h"
@@ -27,47 +29,59 @@ LaneMask ballot_of(const Wave& wave, LaneMask holds, std::uint32_t first, std::u
 
 std::uint32_t word_of(LaneMask lanes, std::uint32_t word) { return static_cast<std::uint32_t>(lanes >> (32 * word)); }
 
+/// The floating-point number in a word of 32 or 64 bits.
+template <class Word>
+using FloatOf = std::conditional_t<sizeof(Word) == 4, float, double>;
+
 /// The result of no lanes at all.
-constexpr std::uint32_t identity(GroupOp op) {
-  switch (op) {
+template <GroupOp kOp, class Word>
+constexpr Word identity() {
+  using Float = FloatOf<Word>;
+  using Signed = std::make_signed_t<Word>;
+  switch (kOp) {
     case GroupOp::kIMul:
       return 1;
     case GroupOp::kFMul:
     case GroupOp::kHMul:
-      return 0x3f800000;
+      return std::bit_cast<Word>(Float{1});
     case GroupOp::kIMin:
-      return 0x7fffffff;
+      return static_cast<Word>(std::numeric_limits<Signed>::max());
     case GroupOp::kUMin:
     case GroupOp::kAnd:
-      return 0xffffffff;
+      return static_cast<Word>(~Word{0});
     case GroupOp::kFMin:
-      return 0x7f800000;  // +Inf
+      return std::bit_cast<Word>(std::numeric_limits<Float>::infinity());
     case GroupOp::kIMax:
-      return 0x80000000;
+      return static_cast<Word>(std::numeric_limits<Signed>::min());
     case GroupOp::kFMax:
-      return 0xff800000;  // -Inf
+      return std::bit_cast<Word>(-std::numeric_limits<Float>::infinity());
     default:
       return 0;
   }
 }
 
-template <GroupOp kOp>
-std::uint32_t combine(std::uint32_t value, std::uint32_t sum) {
-  const auto signed_value = static_cast<std::int32_t>(value), signed_sum = static_cast<std::int32_t>(sum);
-  const float a = base::float_of(value), b = base::float_of(sum);
+/// A binary32 number rounded to binary16; numbers of 64 bits stay (no operation of kH* has them).
+std::uint32_t rounded(float value) { return base::bits_of(base::half_to_float(base::float_to_half_nearest(value))); }
+std::uint64_t rounded(double value) { return std::bit_cast<std::uint64_t>(value); }
+
+template <GroupOp kOp, class Word>
+Word combine(Word value, Word sum) {
+  using Signed = std::make_signed_t<Word>;
+  const auto signed_value = static_cast<Signed>(value), signed_sum = static_cast<Signed>(sum);
+  const auto a = std::bit_cast<FloatOf<Word>>(value), b = std::bit_cast<FloatOf<Word>>(sum);
   switch (kOp) {
     case GroupOp::kIAdd:
       return value + sum;
     case GroupOp::kFAdd:
-      return base::bits_of(a + b);
+      return std::bit_cast<Word>(a + b);
     case GroupOp::kHAdd:
-      return base::bits_of(base::half_to_float(base::float_to_half_nearest(a + b)));
+      return rounded(a + b);
     case GroupOp::kIMul:
       return value * sum;
     case GroupOp::kFMul:
-      return base::bits_of(a * b);
+      return std::bit_cast<Word>(a * b);
     case GroupOp::kHMul:
-      return base::bits_of(base::half_to_float(base::float_to_half_nearest(a * b)));
+      return rounded(a * b);
     case GroupOp::kIMin:
       return signed_value < signed_sum ? value : sum;
     case GroupOp::kUMin:
@@ -91,7 +105,7 @@ std::uint32_t combine(std::uint32_t value, std::uint32_t sum) {
 
 template <GroupOp kOp>
 std::uint32_t total(const std::uint32_t* from, LaneMask lanes) {
-  std::uint32_t sum = identity(kOp);
+  auto sum = identity<kOp, std::uint32_t>();
   base::for_each_lane(lanes, [&](std::size_t lane) { sum = combine<kOp>(from[lane], sum); });
   return sum;
 }
@@ -112,7 +126,7 @@ const Instruction* reduce_lanes(Wave& wave, const Instruction* i) {
     if constexpr (kMode == GroupMode::kReduce) {
       std::fill_n(to + first, size, total<kOp>(from.lane, lanes));
     } else {
-      std::uint32_t sum = identity(kOp);
+      auto sum = identity<kOp, std::uint32_t>();
       base::for_each_lane(lanes, [&](std::size_t lane) {
         const std::uint32_t next = combine<kOp>(from.lane[lane], sum);
         to[lane] = kMode == GroupMode::kInclusive ? next : sum;
@@ -121,64 +135,6 @@ const Instruction* reduce_lanes(Wave& wave, const Instruction* i) {
     }
   }
   return i + 1;
-}
-
-constexpr std::uint64_t wide_identity(GroupOp op) {
-  switch (op) {
-    case GroupOp::kIMul:
-      return 1;
-    case GroupOp::kFMul:
-      return 0x3ff0000000000000u;
-    case GroupOp::kIMin:
-      return 0x7fffffffffffffffu;
-    case GroupOp::kUMin:
-    case GroupOp::kAnd:
-      return ~std::uint64_t{0};
-    case GroupOp::kFMin:
-      return 0x7ff0000000000000u;
-    case GroupOp::kIMax:
-      return 0x8000000000000000u;
-    case GroupOp::kFMax:
-      return 0xfff0000000000000u;
-    default:
-      return 0;
-  }
-}
-
-std::uint64_t combine_wide(GroupOp op, std::uint64_t value, std::uint64_t sum) {
-  const auto signed_value = static_cast<std::int64_t>(value), signed_sum = static_cast<std::int64_t>(sum);
-  const auto a = std::bit_cast<double>(value), b = std::bit_cast<double>(sum);
-  switch (op) {
-    case GroupOp::kIAdd:
-      return value + sum;
-    case GroupOp::kFAdd:
-    case GroupOp::kHAdd:
-      return std::bit_cast<std::uint64_t>(a + b);
-    case GroupOp::kIMul:
-      return value * sum;
-    case GroupOp::kFMul:
-    case GroupOp::kHMul:
-      return std::bit_cast<std::uint64_t>(a * b);
-    case GroupOp::kIMin:
-      return signed_value < signed_sum ? value : sum;
-    case GroupOp::kUMin:
-      return value < sum ? value : sum;
-    case GroupOp::kFMin:
-      return a < b ? value : sum;
-    case GroupOp::kIMax:
-      return signed_value > signed_sum ? value : sum;
-    case GroupOp::kUMax:
-      return value > sum ? value : sum;
-    case GroupOp::kFMax:
-      return a > b ? value : sum;
-    case GroupOp::kAnd:
-      return value & sum;
-    case GroupOp::kOr:
-      return value | sum;
-    case GroupOp::kXor:
-      return value ^ sum;
-  }
-  return sum;
 }
 
 template <GroupOp kOp, GroupMode kMode>
@@ -191,9 +147,9 @@ const Instruction* reduce_pairs(Wave& wave, const Instruction* i) {
   const std::uint32_t size = i->extra[0];
   for (std::uint32_t first = 0; first < base::kWaveWidth; first += size) {
     const LaneMask lanes = participants(wave, first, size);
-    std::uint64_t sum = wide_identity(kOp);
+    auto sum = identity<kOp, std::uint64_t>();
     base::for_each_lane(lanes, [&](std::size_t lane) {
-      const std::uint64_t next = combine_wide(kOp, std::uint64_t{high[lane]} << 32 | low[lane], sum);
+      const std::uint64_t next = combine<kOp>(std::uint64_t{high[lane]} << 32 | low[lane], sum);
       if (kMode != GroupMode::kReduce) put(lane, kMode == GroupMode::kInclusive ? next : sum);
       sum = next;
     });
