@@ -5,6 +5,7 @@
 
 #include "base/numeric.h"
 #include "raster/tile.h"
+#include "spirv/shader_cost.h"
 
 namespace vitrine::raster {
 namespace {
@@ -146,6 +147,8 @@ void begin_blocks(TileWorker& worker) {
   add_varyings(0, plan.perspective_count);
   draw.perspective = draw.varying.size();
   add_varyings(plan.perspective_count, plan.perspective_count + plan.linear_count);
+  const spirv::BoundShader* shader = worker.draw->fragment.bound;
+  draw.is_short = shader == nullptr || spirv::is_short(shader->shader());
   draw.solid = !plan.may_kill && !plan.fragment->writes_memory;
   for (std::uint32_t i = 0; i < plan.color_count; ++i)
     for (const std::uint32_t reg : plan.frag.color[i])

@@ -144,7 +144,7 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
 }
 
 /// Quads of a block from which on it is shaded on its own: fewer would waste more lanes than packing costs.
-constexpr std::uint32_t kNearlyFull = 12;
+constexpr std::uint32_t kNearlyFull = 12, kNearlyFullIfShort = 6;
 
 /// A block's coverage after early tests, to the wave.
 void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
@@ -162,7 +162,8 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
   const base::LaneMask quads = (any | any >> 2) & kLowestLanes;
   const bool whole = quads == kLowestLanes;
   // The product's upper four bits are the sum of the 16 nibbles: the number of quads, modulo 16.
-  const bool nearly = whole || (quads * kLowestLanes) >> 60 >= kNearlyFull;
+  const bool nearly =
+      whole || (quads * kLowestLanes) >> 60 >= (worker.block_draw.is_short ? kNearlyFullIfShort : kNearlyFull);
   const bool alone = nearly && plan.shades_blocks && owns_block(worker, x, y);
   if (!whole && !alone) {
     append_quads(worker, primitive, x, y, rasterized, block, quads);
@@ -282,7 +283,7 @@ base::LaneMask cover_tile(const PipelinePlan& plan, const TileEdges& edges, cons
   base::LaneMask any = base::kAllLanes, all = edges.count == 0 ? base::kAllLanes : 0;
   if (edges.count != 0 && (bx1 - bx0 + 1) * (by1 - by0 + 1) > 4) classify_blocks(edges, plan.raster_samples, any, all);
   any &= rect_lanes(bx0, by0, bx1, by1);
-  // Blocks that the rectangle does not cut.
+  // Blocks that the draw region does not cut: a primitive covers nothing outside of its own rectangle.
   const base::LaneMask inside =
       rect_lanes((rect.x0 + kBlockSize - 1) / kBlockSize, (rect.y0 + kBlockSize - 1) / kBlockSize,
                  (rect.x1 + 1) / kBlockSize - 1, (rect.y1 + 1) / kBlockSize - 1);

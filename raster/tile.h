@@ -90,6 +90,7 @@ struct TileTarget {
 
 /// What whole blocks of a draw share (block_shade.cpp).
 struct BlockDraw {
+  bool is_short = false;              ///< the shader: see spirv::is_short()
   bool solid = false;                 ///< every fragment has the colours `color`: the shader need not run
   std::vector<BlockVarying> varying;  ///< perspective ones, then linear ones
   std::size_t perspective = 0;

@@ -17,6 +17,7 @@ using texel::Numeric;
 
 struct Addresses {
   const std::byte* at[base::kWaveWidth];  ///< null: out of bounds
+  bool whole;                             ///< none is
 };
 
 void compute_addresses(const DrawRecord& draw, const VertexAttribute& attribute, std::uint32_t bytes,
@@ -24,16 +25,19 @@ void compute_addresses(const DrawRecord& draw, const VertexAttribute& attribute,
   const VertexBinding& binding = draw.call.vertex_binding[attribute.binding];
   if (!binding.data || binding.size < std::uint64_t{attribute.offset} + bytes) {
     std::fill_n(out.at, lanes.count, nullptr);
+    out.whole = false;
     return;
   }
   const std::uint64_t last = binding.size - attribute.offset - bytes;  // highest offset that may be read
   const std::byte* data = binding.data + attribute.offset;
+  out.whole = true;
   for (std::uint32_t i = 0; i < lanes.count; ++i) {
     std::uint32_t element = lanes.vertex[i];
     if (binding.per_instance)
       element = draw.call.first_instance + (binding.divisor ? lanes.instance[i] / binding.divisor : 0);
     const std::uint64_t offset = std::uint64_t{element} * binding.stride;
     out.at[i] = offset <= last ? data + offset : nullptr;
+    out.whole &= offset <= last;
   }
 }
 
@@ -95,6 +99,8 @@ void fetch_component(const FormatDesc& format, const Addresses& addresses, std::
   const Channel& channel = format.channel[static_cast<std::size_t>(index)];
   if (channel.bits == 32 && channel.offset % 8 == 0) {
     const std::uint32_t offset = channel.offset / 8u;
+    for (std::uint32_t i = 0; addresses.whole && i < count; ++i) std::memcpy(&out.lane[i], addresses.at[i] + offset, 4);
+    if (addresses.whole) return;
     for (std::uint32_t i = 0; i < count; ++i) {
       out.lane[i] = 0;
       if (addresses.at[i]) std::memcpy(&out.lane[i], addresses.at[i] + offset, 4);
