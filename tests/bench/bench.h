@@ -25,6 +25,7 @@ std::vector<Workload> workloads();
 
 std::vector<Workload> fill_workloads();
 std::vector<Workload> triangle_workloads();
+std::vector<Workload> scene_workloads();
 std::vector<Workload> shader_workloads();
 std::vector<Workload> texture_workloads();
 std::vector<Workload> compute_workloads();
