@@ -52,6 +52,9 @@ class Pieces {
  public:
   Pieces(Run& run, Values& values, VkSampleCountFlagBits samples, const Buffer& vertices, bool depth)
       : run_(run), values_(values), vertices_(vertices) {
+    // deviations.md, multisample-short-lines
+    if (samples == VK_SAMPLE_COUNT_1_BIT && run.random.chance(0.4f))
+      polygon_mode_ = run.random.pick({VK_POLYGON_MODE_LINE, VK_POLYGON_MODE_POINT});
     add_first(samples);
     add_depth_stencil(depth);
     add_second();
@@ -160,6 +163,8 @@ class Pieces {
            0xff,
            0xff,
            3};
+    // deviations.md, polygon-mode-facing
+    if (polygon_mode_ != VK_POLYGON_MODE_FILL) ops[1] = ops[0];
     const VkStencilOpState front = ops[0], back = ops[1];
     add(
         VK_DYNAMIC_STATE_STENCIL_OP, eds1(),
@@ -179,7 +184,7 @@ class Pieces {
     const Gpu& gpu = run_.gpu;
     const VkBool32 discard = random.chance(0.05f), bias = random.chance(0.3f), logic = random.chance(0.2f);
     const auto op = static_cast<VkLogicOp>(random.below(16));
-    const auto mode = VK_POLYGON_MODE_FILL;
+    const VkPolygonMode mode = polygon_mode_;
     add(
         VK_DYNAMIC_STATE_RASTERIZER_DISCARD_ENABLE, eds2(),
         [=](GraphicsSpec& s) { s.raster.rasterizerDiscardEnable = discard; },
@@ -390,6 +395,7 @@ class Pieces {
   }
 
   Run& run_;
+  VkPolygonMode polygon_mode_ = VK_POLYGON_MODE_FILL;
   Values& values_;
   const Buffer& vertices_;
   std::vector<Piece> list_;
