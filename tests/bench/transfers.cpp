@@ -1,4 +1,6 @@
 // Copies, blits, clears.
+#include <cstring>
+
 #include "bench.h"
 
 namespace vitrine::bench {
@@ -12,8 +14,15 @@ double per_second(Run& run, double work, const std::function<void(VkCommandBuffe
   return work / time_submissions(run, finish(cmd));
 }
 
+constexpr VkDeviceSize kBytes = 64 << 20;
+
+/// What copies are measured against: the C library on one thread.
+double copy_memory(Run&) {
+  std::vector<char> from(kBytes, 1), to(kBytes, 2);
+  return kBytes / 1e9 / time_calls([&] { std::memcpy(to.data(), from.data(), kBytes); });
+}
+
 double copy_buffer(Run& run) {
-  constexpr VkDeviceSize kBytes = 64 << 20;
   const cts::Buffer from = run.buffer(kBytes), to = run.buffer(kBytes);
   const VkBufferCopy copy{0, 0, kBytes};
   return per_second(run, kBytes / 1e9,
@@ -33,6 +42,46 @@ double copy_image(Run& run, bool to_image) {
       vkCmdCopyBufferToImage(cmd, buffer.handle, image.handle, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
     } else {
       vkCmdCopyImageToBuffer(cmd, image.handle, VK_IMAGE_LAYOUT_GENERAL, buffer.handle, 1, &copy);
+    }
+  });
+}
+
+double copy_between_images(Run& run) {
+  cts::ImageSpec spec;
+  spec.extent = {kSide, kSide, 1};
+  const cts::Image from = run.image(spec), to = run.image(spec);
+  VkImageCopy region{};
+  region.srcSubresource = region.dstSubresource = from.layers();
+  region.extent = spec.extent;
+  return per_second(run, kSide * kSide * 4 / 1e9, [&](VkCommandBuffer cmd) {
+    vkCmdCopyImage(cmd, from.handle, VK_IMAGE_LAYOUT_GENERAL, to.handle, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+  });
+}
+
+/// Every level from the one above it.
+double generate_mips(Run& run, VkFormat format) {
+  constexpr std::uint32_t kWidth = 1024, kLevels = 11;
+  cts::ImageSpec spec;
+  spec.format = format;
+  spec.extent = {kWidth, kWidth, 1};
+  spec.levels = kLevels;
+  const cts::Image image = run.image(spec);
+  run.fill_random(image);
+  return per_second(run, kWidth * kWidth / 3 / 1e6, [&](VkCommandBuffer cmd) {
+    for (std::uint32_t level = 1; level < kLevels; ++level) {
+      const auto side = [](std::uint32_t i) { return static_cast<std::int32_t>(kWidth >> i); };
+      VkImageBlit region{};
+      region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level - 1, 0, 1};
+      region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1};
+      region.srcOffsets[1] = {side(level - 1), side(level - 1), 1};
+      region.dstOffsets[1] = {side(level), side(level), 1};
+      vkCmdBlitImage(cmd, image.handle, VK_IMAGE_LAYOUT_GENERAL, image.handle, VK_IMAGE_LAYOUT_GENERAL, 1, &region,
+                     VK_FILTER_LINEAR);
+      VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+      barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+      barrier.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+      vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &barrier, 0,
+                           nullptr, 0, nullptr);
     }
   });
 }
@@ -67,12 +116,18 @@ double clear_image(Run& run) {
 }  // namespace
 
 std::vector<Workload> transfer_workloads() {
-  return {{"x_copy_buffer", "GB/s", false, copy_buffer},
-          {"x_buf_to_img", "GB/s", false, [](Run& run) { return copy_image(run, true); }},
-          {"x_img_to_buf", "GB/s", false, [](Run& run) { return copy_image(run, false); }},
-          {"x_blit_linear", "Mpix/s", false, [](Run& run) { return blit(run, VK_FILTER_LINEAR); }},
-          {"x_blit_nearest", "Mpix/s", false, [](Run& run) { return blit(run, VK_FILTER_NEAREST); }},
-          {"x_clear_image", "GB/s", false, clear_image}};
+  return {
+      {"x_memcpy", "GB/s", false, copy_memory},
+      {"x_copy_buffer", "GB/s", false, copy_buffer},
+      {"x_copy_image", "GB/s", false, copy_between_images},
+      {"x_buf_to_img", "GB/s", false, [](Run& run) { return copy_image(run, true); }},
+      {"x_img_to_buf", "GB/s", false, [](Run& run) { return copy_image(run, false); }},
+      {"x_blit_linear", "Mpix/s", false, [](Run& run) { return blit(run, VK_FILTER_LINEAR); }},
+      {"x_blit_nearest", "Mpix/s", false, [](Run& run) { return blit(run, VK_FILTER_NEAREST); }},
+      {"x_mips_rgba8", "Mpix/s", false, [](Run& run) { return generate_mips(run, VK_FORMAT_R8G8B8A8_UNORM); }},
+      {"x_mips_srgb", "Mpix/s", false, [](Run& run) { return generate_mips(run, VK_FORMAT_R8G8B8A8_SRGB); }},
+      {"x_mips_rgba16f", "Mpix/s", false, [](Run& run) { return generate_mips(run, VK_FORMAT_R16G16B16A16_SFLOAT); }},
+      {"x_clear_image", "GB/s", false, clear_image}};
 }
 
 }  // namespace vitrine::bench

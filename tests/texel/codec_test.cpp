@@ -124,7 +124,7 @@ TEST(Rows, EqualTexelsOneByOne) {
   constexpr std::uint32_t kSpecial[] = {0x7f800000, 0xff800000, 0x7fc00000, 0xffc12345, 0x80000000, 0x477ff000,
                                         0x33800000, 0x337fffff, 0x387fffff, 0x38800000, 0x00000001, 0x3f800001};
   for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_A8B8G8R8_UNORM_PACK32,
-                                VK_FORMAT_R16G16B16A16_SFLOAT}) {
+                                VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB}) {
     const FormatDesc& desc = format_desc(format);
     constexpr std::size_t kCount = 1021;
     std::vector<std::byte> stored(kCount * desc.block_bytes), blocks(stored.size()), block(desc.block_bytes);

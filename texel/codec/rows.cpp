@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "texel/codec/srgb-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
@@ -56,19 +57,104 @@ std::size_t encode_bytes(const std::uint32_t* from, std::size_t floats, bool sto
   });
 }
 
+std::size_t encode_attachment_bytes(const std::uint32_t* from, std::size_t floats, std::byte* to) {
+  return encode_bytes(from, floats, false, to);
+}
+std::size_t encode_stored_bytes(const std::uint32_t* from, std::size_t floats, std::byte* to) {
+  return encode_bytes(from, floats, true, to);
+}
+
+/// Which of four components a float of texels in memory is.
+HWY_INLINE hn::Mask<D> alpha_lanes() {
+  return hn::RebindMask(D(), hn::Eq(hn::And(hn::Iota(DI(), 0), hn::Set(DI(), 3)), hn::Set(DI(), 3)));
+}
+
+/// Three sRGB bytes and a UNORM one.
+std::size_t decode_srgb_bytes(const std::byte* from, std::size_t floats, std::uint32_t* to) {
+  const hn::Rebind<std::uint8_t, D> d8;
+  const auto alpha = alpha_lanes();
+  return whole_vectors(floats, [&](std::size_t i) {
+    const auto bytes = hn::PromoteTo(DI(), hn::LoadU(d8, reinterpret_cast<const std::uint8_t*>(from) + i));
+    const auto unorm = hn::Mul(lanes_int_to_float(bytes), hn::Set(D(), 1.0f / 255.0f));
+    const auto linear = srgb_to_linear(bytes);
+    hn::StoreU(hn::BitCast(DU(), hn::IfThenElse(alpha, unorm, linear)), DU(), to + i);
+  });
+}
+
+// RSQRTPS, which is not what Highway's approximation is with AVX-512.
+HWY_INLINE hn::Vec128<float> rsqrt_of_cpu(hn::Vec128<float> v) { return hn::Vec128<float>{_mm_rsqrt_ps(v.raw)}; }
+#if HWY_TARGET <= HWY_AVX2
+HWY_INLINE hn::Vec256<float> rsqrt_of_cpu(hn::Vec256<float> v) { return hn::Vec256<float>{_mm256_rsqrt_ps(v.raw)}; }
+#endif
+#if HWY_TARGET <= HWY_AVX3
+HWY_INLINE hn::Vec512<float> rsqrt_of_cpu(hn::Vec512<float> v) {
+  const __m256 low = _mm256_rsqrt_ps(_mm512_castps512_ps256(v.raw));
+  const __m256 high = _mm256_rsqrt_ps(_mm512_extractf32x8_ps(v.raw, 1));
+  return hn::Vec512<float>{_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1)};
+}
+#endif
+
+/// encode_srgb_attachment of three components, UNORM of the fourth. Only where cpu_has_rsqrt().
+std::size_t encode_srgb_bytes(const std::uint32_t* from, std::size_t floats, std::byte* to) {
+  const hn::Rebind<std::uint8_t, D> d8;
+  const auto zero = hn::Zero(D()), one = hn::Set(D(), 1.0f);
+  const auto alpha = alpha_lanes();
+  return whole_vectors(floats, [&](std::size_t i) {
+    const auto x = lanes_min_second(lanes_max_second(hn::BitCast(D(), hn::LoadU(DU(), from + i)), zero), one);
+    const auto linear = lanes_round_to_int(hn::Mul(x, hn::Set(D(), kSrgbLinearScale)));
+    const auto x05 = hn::Mul(x, rsqrt_of_cpu(x));
+    const auto x0375 = rsqrt_of_cpu(rsqrt_of_cpu(hn::Mul(x05, x)));
+    const auto curve = hn::Add(hn::Mul(hn::Set(D(), kSrgbCurve[0]), x0375),
+                               lanes_fma(hn::Set(D(), kSrgbCurve[1]), x05, hn::Set(D(), kSrgbCurve[2])));
+    const auto curved = hn::RebindMask(DI(), hn::Gt(x, hn::Set(D(), kSrgbLinearEnd)));
+    auto code = hn::IfThenElse(curved, lanes_round_to_int(curve), linear);
+    const auto unorm = hn::Add(hn::Mul(x, hn::Set(D(), 255.0f / 256.0f)), hn::Set(D(), 32768.0f));
+    code = hn::IfThenElse(hn::RebindMask(DI(), alpha), hn::And(hn::BitCast(DI(), unorm), hn::Set(DI(), 255)), code);
+    hn::StoreU(hn::DemoteTo(d8, code), d8, reinterpret_cast<std::uint8_t*>(to) + i);
+  });
+}
+
+#if HWY_TARGET <= HWY_AVX3
+HWY_INLINE hn::Vec<D> convert_halves(const std::uint16_t* half) {
+  return hn::Vec<D>{_mm512_cvtph_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(half)))};
+}
+#elif HWY_TARGET == HWY_AVX2
+HWY_INLINE hn::Vec<D> convert_halves(const std::uint16_t* half) {
+  return hn::Vec<D>{_mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(half)))};
+}
+#endif
+
 std::size_t decode_halves(const std::byte* from, std::size_t floats, std::uint32_t* to) {
   const hn::Rebind<std::uint16_t, D> d16;
   return whole_vectors(floats, [&](std::size_t i) {
-    const auto half = hn::LoadU(d16, reinterpret_cast<const std::uint16_t*>(from) + i);
-    hn::StoreU(hn::BitCast(DU(), lanes_half_to_float(hn::PromoteTo(DU(), half))), DU(), to + i);
+    const auto* source = reinterpret_cast<const std::uint16_t*>(from) + i;
+    const auto half = hn::PromoteTo(DU(), hn::LoadU(d16, source));
+#if HWY_TARGET <= HWY_AVX2
+    // The instruction quiets signalling NaN.
+    const auto quieted = convert_halves(source);
+    const auto quiet = hn::Set(DU(), 0x00400000u);
+    const auto nan = hn::Or(hn::AndNot(quiet, hn::BitCast(DU(), quieted)), hn::And(hn::ShiftLeft<13>(half), quiet));
+    const auto number = hn::RebindMask(DU(), hn::Eq(quieted, quieted));
+    const auto value = hn::IfThenElse(number, hn::BitCast(DU(), quieted), nan);
+    hn::StoreU(value, DU(), to + i);
+#else
+    hn::StoreU(hn::BitCast(DU(), lanes_half_to_float(half)), DU(), to + i);
+#endif
   });
 }
 
 /// Toward zero, as float_to_half_truncate.
 std::size_t encode_halves(const std::uint32_t* from, std::size_t floats, std::byte* to) {
-  const hn::Rebind<std::uint16_t, D> d16;
+  [[maybe_unused]] const hn::Rebind<std::uint16_t, D> d16;
   return whole_vectors(floats, [&](std::size_t i) {
     const auto bits = hn::LoadU(DU(), from + i);
+#if HWY_TARGET <= HWY_AVX3
+    const __m256i halves = _mm512_cvtps_ph(hn::BitCast(D(), bits).raw, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
+    return _mm256_storeu_si256(reinterpret_cast<__m256i*>(reinterpret_cast<std::uint16_t*>(to) + i), halves);
+#elif HWY_TARGET == HWY_AVX2
+    const __m128i halves = _mm256_cvtps_ph(hn::BitCast(D(), bits).raw, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
+    return _mm_storeu_si128(reinterpret_cast<__m128i*>(reinterpret_cast<std::uint16_t*>(to) + i), halves);
+#else
     const auto sign = hn::And(hn::ShiftRight<16>(bits), hn::Set(DU(), 0x8000u));
     const auto magnitude = hn::And(bits, hn::Set(DU(), 0x7fffffffu));
     const auto order = hn::BitCast(DI(), magnitude);
@@ -86,6 +172,7 @@ std::size_t encode_halves(const std::uint32_t* from, std::size_t floats, std::by
     half = select(hn::Gt(order, hn::Set(DI(), 0x7f800000)), nan, half);
     const auto result = hn::BitCast(DI(), hn::Or(half, sign));
     hn::StoreU(hn::DemoteTo(d16, result), d16, reinterpret_cast<std::uint16_t*>(to) + i);
+#endif
   });
 }
 
@@ -98,8 +185,14 @@ HWY_AFTER_NAMESPACE();
 namespace vitrine::texel {
 namespace {
 
+using DecodeRow = std::size_t (*)(const std::byte*, std::size_t, std::uint32_t*);
+using EncodeRow = std::size_t (*)(const std::uint32_t*, std::size_t, std::byte*);
+
 HWY_EXPORT(decode_bytes);
-HWY_EXPORT(encode_bytes);
+HWY_EXPORT(encode_attachment_bytes);
+HWY_EXPORT(encode_stored_bytes);
+HWY_EXPORT(decode_srgb_bytes);
+HWY_EXPORT(encode_srgb_bytes);
 HWY_EXPORT(decode_halves);
 HWY_EXPORT(encode_halves);
 
@@ -120,27 +213,50 @@ bool has_simple_order(const FormatDesc& format) {
   return format.component == rgba || format.component == bgra;
 }
 
-}  // namespace
-
-bool is_four_bytes(const FormatDesc& format) {
+/// Four bytes in any order, of one numeric format.
+bool has_four_bytes(const FormatDesc& format, Numeric numeric) {
   if (!format.plain || format.block_bytes != 4 || format.channel_count != 4) return false;
   for (std::uint32_t i = 0; i < 4; ++i) {
     const Channel& channel = format.channel[i];
-    if (channel.bits != 8 || channel.offset != 8 * i || channel.numeric != Numeric::kUnorm) return false;
+    if (channel.bits != 8 || channel.offset != 8 * i || channel.numeric != numeric) return false;
     if (format.rgba[i] < 0) return false;
   }
   return true;
 }
 
-bool decode_row_simd(const FormatDesc& format, const std::byte* blocks, std::size_t count, Texel* out) {
-  const bool bytes = is_four_bytes(format) && has_simple_order(format);
-  if (count < 4 || (!bytes && !is_four_halves(format))) return false;
+bool is_srgb_bytes(const FormatDesc& format) {
+  return has_four_bytes(format, Numeric::kSrgb) && has_simple_order(format);
+}
+
+/// Null: no code of this file decodes the format.
+DecodeRow row_decoder(const FormatDesc& format) {
   base::select_simd_target();
-  std::uint32_t* to = out->data();
-  const std::size_t done = (bytes ? HWY_DYNAMIC_DISPATCH(decode_bytes)(blocks, 4 * count, to)
-                                  : HWY_DYNAMIC_DISPATCH(decode_halves)(blocks, 4 * count, to)) /
-                           4;
-  if (bytes) exchange_red_and_blue(format, out, done);
+  if (is_four_halves(format)) return HWY_DYNAMIC_DISPATCH(decode_halves);
+  if (is_srgb_bytes(format)) return HWY_DYNAMIC_DISPATCH(decode_srgb_bytes);
+  if (is_four_bytes(format) && has_simple_order(format)) return HWY_DYNAMIC_DISPATCH(decode_bytes);
+  return nullptr;
+}
+
+EncodeRow row_encoder(const FormatDesc& format, Encoding encoding) {
+  base::select_simd_target();
+  if (is_four_halves(format)) return HWY_DYNAMIC_DISPATCH(encode_halves);
+  if (encoding == Encoding::kAttachment && is_srgb_bytes(format)) {
+    return cpu_has_rsqrt() ? HWY_DYNAMIC_DISPATCH(encode_srgb_bytes) : nullptr;
+  }
+  if (encoding == Encoding::kClear || !is_four_bytes(format) || !has_simple_order(format)) return nullptr;
+  return encoding == Encoding::kStore ? HWY_DYNAMIC_DISPATCH(encode_stored_bytes)
+                                      : HWY_DYNAMIC_DISPATCH(encode_attachment_bytes);
+}
+
+}  // namespace
+
+bool is_four_bytes(const FormatDesc& format) { return has_four_bytes(format, Numeric::kUnorm); }
+
+bool decode_row_simd(const FormatDesc& format, const std::byte* blocks, std::size_t count, Texel* out) {
+  const DecodeRow row = count < 4 ? nullptr : row_decoder(format);
+  if (row == nullptr) return false;
+  const std::size_t done = row(blocks, 4 * count, out->data()) / 4;
+  exchange_red_and_blue(format, out, done);
   const TexelDecoder decode = texel_decoder(format);
   for (std::size_t i = done; i < count; ++i) decode(format, blocks + i * format.block_bytes, out[i]);
   return true;
@@ -148,15 +264,10 @@ bool decode_row_simd(const FormatDesc& format, const std::byte* blocks, std::siz
 
 bool encode_row_simd(const FormatDesc& format, Encoding encoding, const Texel* texels, std::size_t count,
                      std::byte* blocks) {
-  const bool bytes = is_four_bytes(format) && has_simple_order(format) && encoding != Encoding::kClear;
-  if (count < 4 || (!bytes && !is_four_halves(format))) return false;
-  base::select_simd_target();
-  const std::uint32_t* from = texels->data();
-  const bool store = encoding == Encoding::kStore;
-  const std::size_t done = (bytes ? HWY_DYNAMIC_DISPATCH(encode_bytes)(from, 4 * count, store, blocks)
-                                  : HWY_DYNAMIC_DISPATCH(encode_halves)(from, 4 * count, blocks)) /
-                           4;
-  if (bytes && format.component[0] != 0) {
+  const EncodeRow row = count < 4 ? nullptr : row_encoder(format, encoding);
+  if (row == nullptr) return false;
+  const std::size_t done = row(texels->data(), 4 * count, blocks) / 4;
+  if (format.component[0] != 0) {
     for (std::size_t i = 0; i < done; ++i) std::swap(blocks[4 * i], blocks[4 * i + 2]);
   }
   const TexelEncoder encode = texel_encoder(format, encoding);

@@ -180,9 +180,32 @@ float rsqrt(float value) {
   return other != nullptr ? other(value) : approximate_rsqrt(value);
 }
 
+#ifdef __SSE__
+/// Every entry of the table, at both its ends and between them.
+bool cpu_equals_table() {
+  constexpr std::uint32_t kFirst = 0x3f000000, kEnd = 0x40000000, kEntry = 1u << 11;  // [0.5, 2)
+  for (std::uint32_t entry = kFirst; entry < kEnd; entry += kEntry) {
+    for (const std::uint32_t low : {0u, kEntry / 3, 2 * kEntry / 3, kEntry - 1}) {
+      const float value = base::float_of(entry + low);
+      if (base::bits_of(rsqrt_of_cpu(value)) != base::bits_of(approximate_rsqrt(value))) return false;
+    }
+  }
+  return true;
+}
+#endif
+
 }  // namespace
 
 bool encodes_by_cpu() { return other_rsqrt() != nullptr; }
+
+bool cpu_has_rsqrt() {
+#ifdef __SSE__
+  static const bool same = encodes_by_cpu() || cpu_equals_table();
+  return same;
+#else
+  return false;
+#endif
+}
 
 std::uint8_t encode_srgb_attachment(float linear) {
   const float x = base::min_second(base::max_second(linear, 0.0f), 1.0f);

@@ -32,6 +32,10 @@ bool encodes_by_cpu();
 /// that, so that each can be read with the one behind it.
 extern const std::array<std::uint16_t, 8193> kRsqrtSteps;
 
+/// Whether this CPU's RSQRTPS may stand for encode_srgb_attachment's: it gives the same bits, tried out over the table,
+/// or is what was asked for.
+bool cpu_has_rsqrt();
+
 /// RSQRTPS by table: positive normal operands; 0 and denormals give +infinity, infinity gives 0. The reference encodes
 /// with this instruction, whose bits are the vendor's own; these are an AVX-512 AMD processor's, on every CPU.
 float approximate_rsqrt(float value);

@@ -1,7 +1,7 @@
 // Gathers texels of a vector of lanes and converts them to floats: the twin of decode_row for formats whose texels are
 // fields of at most 32 bits in up to four words.
 
-#include "texel/codec/srgb.h"
+#include "texel/codec/srgb-inl.h"
 #include "texel/sampler/wave_address-inl.h"
 
 #if defined(VITRINE_TEXEL_WAVE_FETCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -33,15 +33,6 @@ HWY_INLINE VF half_field_to_float(VU half) {
 HWY_INLINE VF half_field_to_float(VU half) { return lanes_half_to_float(half); }
 #endif
 
-/// The decoding curve of srgb.h by its formula: on vectors faster than its table.
-HWY_INLINE VF srgb_to_linear(VF code) {
-  const VF square = hn::Mul(code, code);
-  const VF upper = lanes_fma(square, splat(0.3012f / (255.0f * 255.0f * 255.0f)), splat(0.0030f / 255.0f));
-  const VF lower = lanes_fma(square, splat(0.6935f / (255.0f * 255.0f)), splat(0.0023f));
-  return hn::IfThenElse(hn::Le(code, splat(15.0f)), hn::Mul(code, splat(1.0f / (12.6f * 255.0f))),
-                        lanes_fma(upper, code, lower));
-}
-
 /// How a channel's bits become a value.
 template <Numeric kNumeric>
 HWY_INLINE VF convert_field(VU word, const Channel& channel) {
@@ -59,11 +50,7 @@ HWY_INLINE VF convert_field(VU word, const Channel& channel) {
     return lanes_max_second(hn::Mul(lanes_int_to_float(value), splat(scale)), splat(-1.0f));
   } else if constexpr (kNumeric == Numeric::kSrgb) {
     if (channel.name == 'A') return hn::Mul(lanes_int_to_float(hn::BitCast(DI(), field)), splat(1.0f / 255.0f));
-#if HWY_TARGET == HWY_SSE4
-    return hn::GatherIndex(DF(), kSrgbToLinear.data(), hn::BitCast(DI(), field));  // no FMA
-#else
-    return srgb_to_linear(lanes_int_to_float(hn::BitCast(DI(), field)));
-#endif
+    return srgb_to_linear(hn::BitCast(DI(), field));
   } else if constexpr (kNumeric == Numeric::kUfloat) {
     return half_field_to_float(hn::ShiftLeftSame(field, static_cast<int>(15 - bits)));
   } else if constexpr (kNumeric == Numeric::kUint) {
