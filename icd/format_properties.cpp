@@ -104,11 +104,9 @@ VkResult image_format_properties(const VkPhysicalDeviceImageFormatInfo2& info, V
   const bool known_tiling = info.tiling == VK_IMAGE_TILING_LINEAR || info.tiling == VK_IMAGE_TILING_OPTIMAL;
   const VkFormatFeatureFlags features =
       info.tiling == VK_IMAGE_TILING_LINEAR ? format.linearTilingFeatures : format.optimalTilingFeatures;
-  const bool depth_stencil = features & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
   // EXTENDED_USAGE lets views of compatible formats have usages that the image's own format lacks.
   const bool usage_ok = (info.flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT) || usage_supported(info.usage, features);
-  if (!known_tiling || features == 0 || !usage_ok || !flags_supported(info) || info.type > VK_IMAGE_TYPE_3D ||
-      (depth_stencil && info.type == VK_IMAGE_TYPE_3D)) {
+  if (!known_tiling || features == 0 || !usage_ok || !flags_supported(info) || info.type > VK_IMAGE_TYPE_3D) {
     return VK_ERROR_FORMAT_NOT_SUPPORTED;
   }
   const VkPhysicalDeviceLimits& limits = claimed_properties().limits;

@@ -1,4 +1,7 @@
-// What extensions add to sampling: custom border colours, 2D views of volumes, minima and maxima.
+// What extensions and optional features add: custom border colours, 2D views of volumes, minima and maxima, cubes with
+// seams, volumes of depth, multisampled storage images.
+#include <cstring>
+
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -125,6 +128,96 @@ CTS_RANDOM("texture", "minmax", 16) {
   info.addressModeU = info.addressModeV = info.addressModeW = random.pick(
       {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT});
   look_up(run, image.view, run.sampler(info), "texture(t, p * 3.0 - 1.0)", "2D");
+}
+
+/// Each face is an image of its own. The reference clamps to the edge whatever the address mode, so that is the mode.
+CTS_RANDOM("texture", "non_seamless_cube", 24) {
+  run.require(run.gpu.extension_features.non_seamless_cube.nonSeamlessCubeMap, "nonSeamlessCubeMap");
+  Random& random = run.random;
+  const VkFormat format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R16G16B16A16_SFLOAT,
+                                       VK_FORMAT_R5G6B5_UNORM_PACK16});
+  const uint32_t side = 4 + random.below(21);
+  const Image image = random_image(run, format, {side, side, 1}, VK_IMAGE_VIEW_TYPE_CUBE, 6);
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.flags = VK_SAMPLER_CREATE_NON_SEAMLESS_CUBE_MAP_BIT_EXT;
+  info.magFilter = info.minFilter = random.chance(0.8f) ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  const std::string direction = "vec3(p * 4.0 - 2.0, sin(p.x * 7.0 + p.y * 11.0))";
+  const bool gathers = random.chance(0.25f);
+  look_up(run, image.view, run.sampler(info),
+          gathers ? "textureGather(t, " + direction + ", 1)" : "texture(t, " + direction + ")", "Cube");
+}
+
+/// Volumes of depth and of stencil: uploaded, sampled, cleared, copied.
+CTS_RANDOM("texture", "depth_volume", 12) {
+  Random& random = run.random;
+  const VkFormat format = random.pick({VK_FORMAT_D16_UNORM, VK_FORMAT_X8_D24_UNORM_PACK32, VK_FORMAT_D32_SFLOAT});
+  const Image image = random_image(run, format, {20, 13, 7}, VK_IMAGE_VIEW_TYPE_3D);
+  look_up(run, image.view, run.sampler(VK_FILTER_NEAREST), "texture(t, vec3(p * 2.0 - 0.5, p.x + p.y))", "3D");
+  ImageSpec spec;
+  spec.format = random.pick({format, VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_S8_UINT});
+  spec.extent = {20, 13, 7};
+  spec.levels = 2;
+  spec.view = VK_IMAGE_VIEW_TYPE_3D;
+  spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  const Image cleared = run.image(spec);
+  run.fill_random(cleared);
+  run.once([&](VkCommandBuffer cmd) {
+    const VkClearDepthStencilValue value{random.unit(), random.below(256)};
+    const VkImageSubresourceRange range{cleared.aspects(), 1, 1, 0, 1};
+    vkCmdClearDepthStencilImage(cmd, cleared.handle, VK_IMAGE_LAYOUT_GENERAL, &value, 1, &range);
+  });
+  run.out("cleared", cleared);
+}
+
+/// Every sample written, changed and read by number.
+CTS_RANDOM("texture", "storage_multisample", 12) {
+  run.require(run.gpu.features.shaderStorageImageMultisample, "shaderStorageImageMultisample");
+  Random& random = run.random;
+  const bool integers = random.chance(0.5f), array = random.chance(0.5f);
+  ImageSpec spec;
+  spec.format = integers ? VK_FORMAT_R32_UINT : random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT});
+  spec.extent = {19, 11, 1};
+  spec.samples = VK_SAMPLE_COUNT_4_BIT;
+  spec.layers = array ? 3 : 1;
+  spec.view = array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+  spec.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  const Image image = run.image(spec);
+  const uint32_t words = 19 * 11 * 3 * 4 * 4;
+  const Buffer result = run.buffer(words * 4);
+  std::memset(result.data, 0, words * 4);
+  const Resources res = run.resources({storage_image(0, image), storage_buffer(1, result)});
+  const std::string kind = std::string(integers ? "u" : "") + "image2DMS" + (array ? "Array" : "");
+  const std::string layout = integers ? "r32ui" : spec.format == VK_FORMAT_R8G8B8A8_UNORM ? "rgba8" : "rgba32f";
+  const std::string place = array ? "ivec3(g)" : "ivec2(g.xy)";
+  const std::string value = integers ? "uvec4(g.x * 7u + g.y * 31u + g.z + uint(s) * 1000u)"
+                                     : "vec4(float(g.x) * 0.05, float(g.y) * 0.1, float(g.z) * 0.3, float(s) * 0.25)";
+  const std::string change =
+      integers ? "imageAtomicAdd(image, " + place + ", s, uint(s) + g.x);"
+               : "imageStore(image, " + place + ", s, imageLoad(image, " + place + ", s).wzyx * 0.5);";
+  const std::string bits =
+      integers ? "imageLoad(image, " + place + ", s)" : "floatBitsToUint(imageLoad(image, " + place + ", s))";
+  const VkPipeline pipeline = run.compute(
+      res.layout,
+      run.shader(VK_SHADER_STAGE_COMPUTE_BIT,
+                 "layout(local_size_x = 4, local_size_y = 4) in;\nlayout(binding = 0, " + layout + ") uniform " + kind +
+                     " image;\nlayout(binding = 1) buffer Result { uvec4 result[]; };\nvoid main() {\n"
+                     "  uvec3 g = gl_GlobalInvocationID;\n"
+                     "  for (int s = 0; s < 4; ++s) imageStore(image, " +
+                     place + ", s, " + value +
+                     ");\n"
+                     "  for (int s = 3; s >= 1; --s) { " +
+                     change +
+                     " }\n"
+                     "  if (g.x >= 19u || g.y >= 11u) return;\n"
+                     "  for (int s = 0; s < 4; ++s) result[((g.z * 11u + g.y) * 19u + g.x) * 4u + uint(s)] = " +
+                     bits + ";\n}\n"));
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, 5, 3, array ? 3 : 1);
+  });
+  run.out("samples", result);
 }
 
 }  // namespace

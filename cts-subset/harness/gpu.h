@@ -89,6 +89,8 @@ void check(VkResult result, const char* call);
     "VK_EXT_border_color_swizzle")                                                                                     \
   X(view_of_3d, VkPhysicalDeviceImage2DViewOf3DFeaturesEXT, IMAGE_2D_VIEW_OF_3D_FEATURES_EXT,                          \
     "VK_EXT_image_2d_view_of_3d")                                                                                      \
+  X(non_seamless_cube, VkPhysicalDeviceNonSeamlessCubeMapFeaturesEXT, NON_SEAMLESS_CUBE_MAP_FEATURES_EXT,              \
+    "VK_EXT_non_seamless_cube_map")                                                                                    \
   X(list_restart, VkPhysicalDevicePrimitiveTopologyListRestartFeaturesEXT,                                             \
     PRIMITIVE_TOPOLOGY_LIST_RESTART_FEATURES_EXT, "VK_EXT_primitive_topology_list_restart")                            \
   X(maintenance4, VkPhysicalDeviceMaintenance4Features, MAINTENANCE_4_FEATURES, "VK_KHR_maintenance4")                 \

@@ -13,8 +13,10 @@ namespace {
 /// The reference ignores maxLod from here on: its images have at most 15 levels.
 constexpr float kNoMaxLod = 14.0f;
 
+bool has_seams(const Sampler& sampler) { return (static_cast<std::uint32_t>(sampler.address[0]) & kSeamBit) != 0; }
+
 Address convert(VkSamplerAddressMode mode) {
-  switch (mode) {
+  switch (static_cast<VkSamplerAddressMode>(static_cast<std::uint32_t>(mode) & ~kSeamBit)) {
     case VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT:
       return Address::kMirror;
     case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE:
@@ -123,7 +125,7 @@ Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMo
   plan.sampler = &sampler;
   plan.decode = texel_decoder(*view.format);
   set_dimensions(plan);
-  plan.seamless = plan.cube;
+  plan.seamless = plan.cube && !has_seams(sampler);
   plan.gather = op == SampleOp::kGather;
   plan.anisotropic = sampler.max_anisotropy > 1.0f && !plan.gather && plan.dims == 2;
   plan.min_linear = plan.gather || sampler.min_filter == VK_FILTER_LINEAR;
@@ -137,7 +139,7 @@ Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMo
   if (plan.gather) plan.mip = MipFilter::kNone;
   const std::uint32_t size[3] = {view.level0_extent.width, view.level0_extent.height, view.level0_extent.depth};
   for (std::size_t i = 0; i < 3; ++i) {
-    plan.address[i] = plan.cube ? Address::kClamp : convert(sampler.address[i]);
+    plan.address[i] = plan.seamless ? Address::kClamp : convert(sampler.address[i]);
     plan.pot[i] = std::has_single_bit(size[i]);
   }
   set_lod_state(plan, op, lod_mode);
