@@ -5,8 +5,9 @@
 namespace vitrine::cts {
 namespace {
 
-/// One lookup per pixel of a 64x64 target; `code` sets vec4 v from vec2 p (0..1 over the target).
-void look_up(Run& run, const Image& image, VkSampler sampler, const std::string& code, const char* type) {
+/// One lookup per pixel of a square target; `code` sets vec4 v from vec2 p (0..1 over 64 pixels).
+void look_up(Run& run, const Image& image, VkSampler sampler, const std::string& code, const char* type,
+             uint32_t side = 64) {
   const FormatInfo& info = format_info(image.spec.format);
   const std::string prefix = info.numeric == Numeric::kUint ? "u" : info.numeric == Numeric::kSint ? "i" : "";
   const Resources res = run.resources({sampled(0, image, sampler)});
@@ -14,6 +15,7 @@ void look_up(Run& run, const Image& image, VkSampler sampler, const std::string&
   target_spec.colors = {prefix == "u"   ? VK_FORMAT_R32G32B32A32_UINT
                         : prefix == "i" ? VK_FORMAT_R32G32B32A32_SINT
                                         : VK_FORMAT_R32G32B32A32_SFLOAT};
+  target_spec.width = target_spec.height = side;
   const Target target = make_target(run, target_spec);
   GraphicsSpec spec;
   spec.layout = res.layout;
@@ -46,10 +48,31 @@ Image random_image(Run& run, VkFormat format, VkExtent3D extent, uint32_t levels
   return image;
 }
 
+/// All 256 or 65536 texels of a format.
+void decode_every_texel(Run& run, const FormatInfo& info) {
+  ImageSpec spec;
+  spec.format = info.format;
+  spec.extent = {256, info.bytes == 1 ? 1u : 256u, 1};
+  spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  const Image image = run.image(spec);
+  std::vector<unsigned char> texels(256 * info.bytes * spec.extent.height);
+  for (size_t i = 0; i < texels.size() / info.bytes; ++i) {
+    for (uint32_t byte = 0; byte < info.bytes; ++byte) {
+      texels[i * info.bytes + byte] = static_cast<unsigned char>(i >> (8 * byte));
+    }
+  }
+  run.upload(image, 0, texels);
+  look_up(run, image, run.sampler(VK_FILTER_NEAREST),
+          "texelFetch(t, ivec2(gl_FragCoord.x, min(int(gl_FragCoord.y), textureSize(t, 0).y - 1)), 0)", "2D", 256);
+}
+
 const bool kFormats = [] {
   for (const FormatInfo& info : all_formats()) {
     if (info.format == VK_FORMAT_S8_UINT || info.format == VK_FORMAT_R32G32B32_SFLOAT) continue;
     const std::string name = info.name;
+    if (info.bytes <= 2) {
+      AddCase("texture", "format.every_texel." + name, [&info](Run& run) { decode_every_texel(run, info); });
+    }
     AddCase("texture", "format.fetch." + name, [&info](Run& run) {
       look_up(run, random_image(run, info.format, {64, 64, 1}), run.sampler(VK_FILTER_NEAREST),
               "texelFetch(t, ivec2(gl_FragCoord.xy), 0)", "2D");

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Writes the page that says of every claimed format what it can do, what tests it and how exact it is.
+
+usage: formats_page.py ROOT [--check]
+
+The rows come from manifest/formats (the claims) and cts-subset/harness/format.cpp (what is compared with the
+reference). --check: fails if manifest/formats.md is not what would be written.
+"""
+import pathlib
+import re
+import sys
+
+HEAD = """# Formats
+
+Written by `manifest/formats_page.py` from `manifest/formats`; a test keeps it current. Every format that has image features can
+also be copied in both directions. *color* includes resolves; *linear* is linear filtering.
+
+What tests them, besides the unit tests of `texel`:
+
+- **reference**: `texture.format.*` of `cts-subset` compares fetches, nearest and linear samples of each with lavapipe (of
+  8- and 16-bit formats every possible texel), the random cases of `texture`, `api` and `pipeline` samples, transfers and
+  attachments.
+- **vertex**: compared with lavapipe as vertex attribute or texel buffer (`pipeline.vertex_input`, `api.texel_buffers`).
+- **decoder**: lavapipe lacks the format; `texel Block.*` holds digests of blocks that were compared with an independent
+  decoder.
+
+What exact means:
+
+- **same bits**: those of lavapipe 22.3.6 in every conversion.
+- **reference curve**: those bits too, and so not the curve of the sRGB definition (deviations of up to one code).
+- **defined**: the values that the format's specification defines.
+
+| format | image | buffer | tests | exactness |
+|---|---|---|---|---|
+"""
+
+
+def claims(root):
+    for line in (root / "manifest/formats").read_text().splitlines():
+        line = line.split("#")[0].strip()
+        if line:
+            name, image, buffer = [*(part.strip() for part in line.split(";")), ""][:3]
+            yield name, image, buffer
+
+
+def row(name, image, buffer, compared):
+    if re.match(r"ETC2|EAC|ASTC", name):
+        tests, exact = "decoder", "defined"
+    elif name in compared:
+        tests = "reference"
+        exact = "reference curve" if "SRGB" in name and "BC7" not in name else "same bits"
+    elif image:
+        tests, exact = "reference, by formats of the same fields", "same bits"
+    else:
+        tests, exact = "vertex", "same bits"
+    return f"| {name} | {image} | {buffer} | {tests} | {exact} |\n"
+
+
+def main(root, check=False):
+    root = pathlib.Path(root)
+    listed = (root / "cts-subset/harness/format.cpp").read_text()
+    compared = set(re.findall(r"^\s*(?:ROW|BLOCK)\((\w+),", listed, re.M))
+    text = HEAD + "".join(row(*claim, compared) for claim in claims(root))
+    page = root / "manifest/formats.md"
+    if check:
+        if not page.exists() or page.read_text() != text:
+            sys.exit("manifest/formats.md is out of date: run manifest/formats_page.py .")
+        return
+    page.write_text(text)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], "--check" in sys.argv[2:])
