@@ -468,6 +468,33 @@ const AddCase kGeometryFacing(
       }
     });
 
+/// The outline of a clipped triangle in layer 1.
+const AddCase kClippedLayer(
+    "clipping", "deviation.clipped_polygon_layer", "clipped-polygon-layer",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) -> std::string {
+      const size_t layer = device[0].bytes.size() / 2;
+      const auto blank = [&](const Output& output) {
+        for (size_t at = 4; at < layer; ++at)
+          if (output.bytes[at] != output.bytes[at % 4]) return false;
+        return true;
+      };
+      if (!blank(device[0])) return "the device draws to layer 0";
+      return blank(reference[0]) ? "the reference's fault does not show" : "";
+    },
+    [](Run& run) {
+      run.require(run.gpu.has("VK_EXT_shader_viewport_index_layer"), "VK_EXT_shader_viewport_index_layer");
+      TargetSpec target;
+      target.layers = 2;
+      GraphicsSpec spec;
+      spec.vertex =
+          "#extension GL_ARB_shader_viewport_layer_array : require\nlayout(location = 0) in vec4 position;\n"
+          "layout(location = 1) in vec4 color;\nlayout(location = 0) out vec4 passed;\n"
+          "void main() {\n  passed = color;\n  gl_Position = position;\n  gl_Layer = 1;\n}\n";
+      spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
+      draw(run, "layers", target, spec,
+           colored({{-0.9f, -0.5f, 0.5f, 1}, {1.9f, 0.1f, 0.5f, 1}, {-0.5f, 1.8f, 0.5f, 1}}));
+    });
+
 /// Two draws of two instances each, all over each other; each instance has its own colour and moves a little.
 const AddCase kMultiDraw("draw", "deviation.multi_draw_order", "multi-draw-order", case_against_control, [](Run& run) {
   run.require(run.gpu.extension_features.multi_draw.multiDraw, "multiDraw");
