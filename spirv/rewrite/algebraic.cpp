@@ -266,7 +266,7 @@ class Rewriter {
 
   bool match_operand(std::uint16_t index, const Inst& inst, std::uint32_t operand, unsigned components,
                      const Swizzle& outer, Match& match) {
-    const Src& src = graph_.source(inst, operand);
+    const Src src = graph_.source(inst, operand);
     Swizzle swizzle{};
     for (unsigned c = 0; c < components; ++c) swizzle[c] = src.swizzle[outer[c]];
     const Pattern& pattern = rules_.patterns[index];
@@ -345,7 +345,7 @@ class Rewriter {
   }
 
   /// A value of its own for a replacement that is a part or a rearrangement of another value.
-  ValueId as_value(const Src& src, unsigned components, bool boolean) {
+  ValueId as_value(Src src, unsigned components, bool boolean) {
     bool whole = graph_.values[src.value].components == components;
     for (unsigned c = 0; c < components; ++c) whole &= src.swizzle[c] == c;
     if (whole) return src.value;

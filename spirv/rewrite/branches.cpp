@@ -94,7 +94,7 @@ void flatten(Graph& graph, InstId id) {
   graph.remove(id);
 }
 
-bool same_value(const Graph& graph, const Src& a, const Src& b, ValueId like) {
+bool same_value(const Graph& graph, Src a, Src b, ValueId like) {
   if (a.value != b.value) return false;
   for (unsigned c = 0; c < graph.values[like].components; ++c)
     if (a.swizzle[c] != b.swizzle[c]) return false;
@@ -117,7 +117,7 @@ bool results_agree(const Graph& graph, InstId outer, InstId inner, std::vector<s
     for (Slot use = graph.values[results[i]].first_use; use != kNone; use = graph.sources[use].next) {
       if (graph.sources[use].user != then_end) return false;
       const std::uint32_t operand = use - graph.insts[then_end].first;
-      const Src& skipped = graph.source(graph.insts[inner_else], static_cast<std::uint32_t>(i));
+      const Src skipped = graph.source(graph.insts[inner_else], static_cast<std::uint32_t>(i));
       if (!same_value(graph, graph.source(graph.insts[outer_else], operand), skipped, results[i])) return false;
       operands.push_back(operand);
     }
@@ -144,7 +144,7 @@ bool collapse(Graph& graph, InstId inner) {
   const InstId both = graph.create(Kind::kAlu, Op::kAndB, 1, true, 2);
   graph.insts[both].origin = graph.insts[inner].origin;
   const auto condition = [&](InstId id) {
-    const Src& src = graph.source(graph.insts[id], 0);
+    const Src src = graph.source(graph.insts[id], 0);
     return Src{src.value, {src.swizzle[0], src.swizzle[0], src.swizzle[0], src.swizzle[0]}};
   };
   graph.set_source(both, 0, condition(inner));

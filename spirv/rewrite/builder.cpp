@@ -125,7 +125,7 @@ class Builder {
     const bool arithmetic = inst.op == Op::kFAdd || inst.op == Op::kFMul || inst.op == Op::kFDiv;
     if (!arithmetic && inst.op != Op::kF2I && inst.op != Op::kF2U) return false;
     for (std::uint32_t i = 0; i < inst.count; ++i) {
-      const Src& src = graph_.source(inst, i);
+      const Src src = graph_.source(inst, i);
       const Inst* constant = graph_.constant(src.value);
       if (!constant || !is_nan(constant->imm[src.swizzle[0]])) continue;
       become(arithmetic ? constant->imm[src.swizzle[0]] | 0x00400000u : 0);
@@ -139,7 +139,7 @@ class Builder {
     if (fold_nan() || !folds(inst.op)) return;
     std::uint32_t operand[3] = {}, bits = 0;
     for (std::uint32_t i = 0; i < inst.count; ++i) {
-      const Src& src = graph_.source(inst, i);
+      const Src src = graph_.source(inst, i);
       const Inst* constant = graph_.constant(src.value);
       if (!constant) return;
       operand[i] = constant->imm[src.swizzle[0]];
@@ -150,15 +150,15 @@ class Builder {
   }
 
   bool is(std::uint32_t index, std::uint32_t bits) const {
-    const Src& src = graph_.source(graph_.insts[id_], index);
+    const Src src = graph_.source(graph_.insts[id_], index);
     const Inst* constant = graph_.constant(src.value);
     return constant && constant->imm[src.swizzle[0]] == bits;
   }
 
   /// One value, or literals of the same bits.
   bool equal_operands(std::uint32_t i, std::uint32_t j) const {
-    const Src& a = graph_.source(graph_.insts[id_], i);
-    const Src& b = graph_.source(graph_.insts[id_], j);
+    const Src a = graph_.source(graph_.insts[id_], i);
+    const Src b = graph_.source(graph_.insts[id_], j);
     if (a.value == b.value && a.swizzle[0] == b.swizzle[0]) return true;
     const Inst* x = graph_.constant(a.value);
     const Inst* y = graph_.constant(b.value);
@@ -176,7 +176,7 @@ class Builder {
 
   Src value_of(InstId inst) const { return {graph_.insts[inst].result, {0, 0, 0, 0}}; }
 
-  ValueId scalar(const Src& src) {
+  ValueId scalar(Src src) {
     if (graph_.values[src.value].components == 1) return src.value;
     const Inst* constant = graph_.constant(src.value);
     if (!constant) return graph_.insts[add(Op::kMov, false, {src})].result;
@@ -186,7 +186,7 @@ class Builder {
     return graph_.insts[made].result;
   }
 
-  void replace(const Src& src) {
+  void replace(Src src) {
     const ValueId value = scalar(src);
     graph_.replace_uses(graph_.insts[id_].result, value);
     graph_.remove(id_);

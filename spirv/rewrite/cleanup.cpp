@@ -58,17 +58,17 @@ bool look_through(const Graph& graph, Src& src, unsigned read) {
   const Inst* copy = graph.def(src.value);
   if (!copy) return false;
   if (is_move(*copy)) {
-    const Src& from = graph.source(*copy, 0);
+    const Src from = graph.source(*copy, 0);
     Src result{from.value, {}};
     for (unsigned i = 0; i < 4; ++i) result.swizzle[i] = from.swizzle[src.swizzle[i < read ? i : 0]];
     src = result;
     return true;
   }
   if (copy->kind != Kind::kVec) return false;
-  const Src& first = graph.source(*copy, src.swizzle[0]);
+  const Src first = graph.source(*copy, src.swizzle[0]);
   Src result{first.value, {first.swizzle[0], first.swizzle[0], first.swizzle[0], first.swizzle[0]}};
   for (unsigned i = 1; i < read; ++i) {
-    const Src& component = graph.source(*copy, src.swizzle[i]);
+    const Src component = graph.source(*copy, src.swizzle[i]);
     if (component.value != first.value) return false;
     result.swizzle[i] = component.swizzle[0];
   }
@@ -85,7 +85,7 @@ bool look_through_whole(const Graph& graph, Src& src) {
   const ValueId from = graph.source(*copy, 0).value;
   if (graph.values[from].components != copy->components) return false;
   for (unsigned i = 0; i < copy->components; ++i) {
-    const Src& component = graph.source(*copy, move ? 0 : i);
+    const Src component = graph.source(*copy, move ? 0 : i);
     if (component.value != from || component.swizzle[move ? i : 0] != i) return false;
   }
   src.value = from;

@@ -104,7 +104,7 @@ bool evaluate_condition(Graph& graph, InstId branch) {
 }
 
 /// Reads of one component, where a branch knows it to equal a constant, read the constant.
-bool take_equal_in(Graph& graph, BlockId side, const Src& unknown, const Src& known) {
+bool take_equal_in(Graph& graph, BlockId side, Src unknown, Src known) {
   bool changed = false;
   for (const Slot use : uses_of(graph, unknown.value)) {
     const InstId user = graph.sources[use].user;

@@ -3,7 +3,7 @@
 
 namespace vitrine::spirv::rewriting {
 
-Src Copier::translated(const Src& src) const {
+Src Copier::translated(Src src) const {
   const auto entry = map_.find(src.value);
   if (entry == map_.end()) return src;
   Src result{entry->second.value, {}};

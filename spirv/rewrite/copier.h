@@ -13,8 +13,8 @@ class Copier {
  public:
   explicit Copier(Graph& graph) : graph_(graph) {}
 
-  Src translated(const Src& src) const;
-  void bind(ValueId value, const Src& src) { map_[value] = src; }
+  Src translated(Src src) const;
+  void bind(ValueId value, Src src) { map_[value] = src; }
   void bind_all(const std::vector<ValueId>& values, const std::vector<Src>& sources);
 
   /// Copies [first, last).

@@ -50,7 +50,7 @@ class Merger {
   unsigned components_of_operand(const Inst& inst) const { return inst.kind == Kind::kAlu ? inst.components : 1; }
 
   std::uint32_t hash_operand(const Inst& inst, std::uint32_t index) const {
-    const Src& src = graph_.source(inst, index);
+    const Src src = graph_.source(inst, index);
     std::uint32_t h = src.value * 0x9E3779B1u;
     for (unsigned c = 0; c < components_of_operand(inst); ++c) h = (h ^ src.swizzle[c]) * 0x85EBCA6Bu;
     return h;
@@ -71,8 +71,8 @@ class Merger {
   }
 
   bool same_operand(const Inst& a, std::uint32_t i, const Inst& b, std::uint32_t j) const {
-    const Src& x = graph_.source(a, i);
-    const Src& y = graph_.source(b, j);
+    const Src x = graph_.source(a, i);
+    const Src y = graph_.source(b, j);
     if (x.value != y.value) return false;
     for (unsigned c = 0; c < components_of_operand(a); ++c)
       if (x.swizzle[c] != y.swizzle[c]) return false;

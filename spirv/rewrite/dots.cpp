@@ -19,13 +19,13 @@ InstId next_sum(const Graph& graph, ValueId value) {
 
 /// Zeros that end the vector, which must be composed, not loaded or constant as a whole.
 unsigned ending_zeros(const Graph& graph, const Inst& product, std::uint32_t index) {
-  const Src& src = graph.source(product, index);
+  const Src src = graph.source(product, index);
   const Inst* vec = graph.def(src.value);
   if (!vec || vec->kind != Kind::kVec || vec->count != product.components) return 0;
   unsigned zeros = 0;
   for (unsigned c = product.components; c-- > 0; ++zeros) {
     if (src.swizzle[c] != c) return 0;
-    const Src& part = graph.source(*vec, c);
+    const Src part = graph.source(*vec, c);
     const Inst* constant = graph.constant(part.value);
     if (!constant || (constant->imm[part.swizzle[0]] & 0x7fffffffu) != 0) break;
   }
@@ -58,7 +58,7 @@ class Shortener {
     return sum;
   }
 
-  InstId add(const Inst& like, InstId position, Op op, const Src& a, const Src& b, Opens opens) {
+  InstId add(const Inst& like, InstId position, Op op, Src a, Src b, Opens opens) {
     const InstId made = graph_.create(Kind::kAlu, op, 1, false, 2);
     graph_.insts[made].exact = like.exact;
     graph_.insts[made].origin = like.origin;
@@ -77,7 +77,7 @@ class Shortener {
     for (unsigned c = left; c-- > 0;) {
       Src factor[2];
       for (const std::uint32_t i : {0u, 1u}) {
-        const Src& src = graph_.source(product, i);
+        const Src src = graph_.source(product, i);
         const std::uint8_t s = src.swizzle[c];
         factor[i] = {src.value, {s, s, s, s}};
       }

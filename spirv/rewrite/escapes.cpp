@@ -37,13 +37,13 @@ void drop_result(Graph& graph, InstId loop, std::size_t index, const std::vector
   results.erase(results.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
-bool is_same(const Graph& graph, const Src& a, const Src& b, ValueId like) {
+bool is_same(const Graph& graph, Src a, Src b, ValueId like) {
   for (unsigned c = 0; c < graph.values[like].components; ++c)
     if (a.swizzle[c] != b.swizzle[c]) return false;
   return a.value == b.value;
 }
 
-bool is_whole(const Graph& graph, const Src& src, ValueId like) {
+bool is_whole(const Graph& graph, Src src, ValueId like) {
   return graph.values[src.value].components == graph.values[like].components &&
          is_same(graph, src, {src.value, {0, 1, 2, 3}}, like);
 }

@@ -365,7 +365,7 @@ bool fold_vector(Graph& graph, InstId id) {
   const Inst& inst = graph.insts[id];
   std::uint32_t bits[4] = {};
   for (std::uint32_t c = 0; c < inst.count; ++c) {
-    const Src& part = graph.source(inst, c);
+    const Src part = graph.source(inst, c);
     const Inst* constant = graph.constant(part.value);
     if (!constant) return false;
     bits[c] = constant->imm[part.swizzle[0]];

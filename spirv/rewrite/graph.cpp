@@ -152,7 +152,7 @@ InstId Graph::create_const(std::uint8_t components, bool boolean, const std::uin
   return id;
 }
 
-void Graph::set_source(InstId inst, std::uint32_t index, const Src& src) {
+void Graph::set_source(InstId inst, std::uint32_t index, Src src) {
   const Slot slot = insts[inst].first + index;
   if (sources[slot].src.value != ir::kNoValue) unlink_use(slot);
   sources[slot].src = src;

@@ -105,7 +105,7 @@ class Graph {
   /// A new instruction with `count` operands, in no block yet. References to insts and sources become invalid.
   InstId create(Inst::Kind kind, Op op, std::uint8_t components, bool boolean, std::uint32_t count);
   InstId create_const(std::uint8_t components, bool boolean, const std::uint32_t* bits);
-  void set_source(InstId inst, std::uint32_t index, const Src& src);
+  void set_source(InstId inst, std::uint32_t index, Src src);
   /// Gives the instruction another list of operands.
   void set_operands(InstId inst, const std::vector<Src>& src);
   void insert_before(InstId position, InstId inst);

@@ -75,12 +75,12 @@ class Forwarder {
     if (!push) {
       word.set = instr.data[0];
       word.slot = instr.data[1];
-      const Src& element = graph_.source(inst, 0);
+      const Src element = graph_.source(inst, 0);
       const Inst* number = graph_.constant(element.value);
       word.element = number ? ir::kNoValue : element.value;
       word.element_number = number ? number->imm[element.swizzle[0]] : element.swizzle[0];
     }
-    const Src& offset = graph_.source(inst, push ? 0 : 1);
+    const Src offset = graph_.source(inst, push ? 0 : 1);
     if (const Inst* constant = graph_.constant(offset.value)) {
       word.offset += constant->imm[offset.swizzle[0]];
     } else {
@@ -90,7 +90,7 @@ class Forwarder {
     return word;
   }
 
-  void enter(const Word& word, const Src& src) {
+  void enter(const Word& word, Src src) {
     const auto entry = known_.find(word);
     overwritten_.push_back({word, entry == known_.end() ? Src{} : entry->second});
     known_[word] = src;

@@ -54,7 +54,7 @@ void straighten(Graph& graph, InstId loop) {
   graph.set_operands(last, forwarded);
 }
 
-void append_operand(Graph& graph, InstId id, const Src& src) {
+void append_operand(Graph& graph, InstId id, Src src) {
   std::vector<Src> operands = operands_of(graph, id);
   operands.push_back(src);
   graph.set_operands(id, operands);
@@ -185,11 +185,11 @@ class JoinSweeper {
 // ---- the continue construct
 
 /// Index of the parameter that is `first` before the first iteration and !first in all others, as `condition` reads.
-bool is_continue_flag(const Graph& graph, InstId loop, const Src& condition, bool& first) {
+bool is_continue_flag(const Graph& graph, InstId loop, Src condition, bool& first) {
   const int index = param_index(graph, loop, condition.value);
   if (index < 0) return false;
   const auto i = static_cast<std::uint32_t>(index);
-  const auto read = [&](const Src& src, bool& value) {
+  const auto read = [&](Src src, bool& value) {
     const Inst* constant = graph.constant(src.value);
     if (constant) value = constant->imm[src.swizzle[0]] != 0;
     return constant != nullptr;
@@ -290,7 +290,7 @@ int param_index(const Graph& graph, InstId loop, ValueId value) {
   return -1;
 }
 
-ValueId add_param(Graph& graph, InstId loop, ValueId like, const Src& init, const Src& next) {
+ValueId add_param(Graph& graph, InstId loop, ValueId like, Src init, Src next) {
   const ValueId param = new_value(graph, loop, like), passed = new_value(graph, loop, like);
   node_of(graph, loop).params.push_back(param);
   node_of(graph, loop).continue_params.push_back(passed);
@@ -359,7 +359,7 @@ ValueId join_at_header(Graph& graph, InstId loop, ValueId value) {
 
 }  // namespace
 
-Src through_register(Graph& graph, InstId position, const Src& src, ValueId like) {
+Src through_register(Graph& graph, InstId position, Src src, ValueId like) {
   const Value shape = graph.values[like];
   const InstId join = join_before(graph, position);
   const InstId owner = graph.blocks[graph.insts[position].block].owner;

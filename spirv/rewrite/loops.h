@@ -26,12 +26,12 @@ std::vector<InstId> header_of(const Graph& graph, InstId loop);
 int param_index(const Graph& graph, InstId loop, ValueId value);
 
 /// A new parameter, the same `next` on every way back.
-ValueId add_param(Graph& graph, InstId loop, ValueId like, const Src& init, const Src& next);
+ValueId add_param(Graph& graph, InstId loop, ValueId like, Src init, Src next);
 
 /// A value equal to `src`, of the type of `like`, in front of `position`. The reference takes what a loop starts and
 /// goes on with through a register that it writes as far up as each block has one successor; where ways join in
 /// between, the next round's rules see only that they join.
-Src through_register(Graph& graph, InstId position, const Src& src, ValueId like);
+Src through_register(Graph& graph, InstId position, Src src, ValueId like);
 
 /// All that the loop starts and goes on with.
 void pass_through_registers(Graph& graph, InstId loop);

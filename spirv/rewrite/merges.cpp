@@ -42,7 +42,7 @@ bool is_comparison(const Inst* inst) {
   return info.sources == 2 && info.result == 'B' && info.operands[0] != 'B';
 }
 
-InstId negation_of(Graph& graph, const Src& condition) {
+InstId negation_of(Graph& graph, Src condition) {
   const InstId made = graph.create(Kind::kAlu, Op::kNotB, 1, true, 1);
   graph.set_source(made, 0, condition);
   return made;
@@ -73,7 +73,7 @@ bool take_condition(Graph& graph, InstId id) {
     bool truth[2] = {};
     bool known = true;
     for (const unsigned s : {0u, 1u}) {
-      const Src& src = graph.source(graph.insts[graph.blocks[side[s]].tail], static_cast<std::uint32_t>(i));
+      const Src src = graph.source(graph.insts[graph.blocks[side[s]].tail], static_cast<std::uint32_t>(i));
       const Inst* constant = graph.constant(src.value);
       known &= constant != nullptr;
       if (constant) truth[s] = constant->imm[src.swizzle[0]] != 0;

@@ -49,8 +49,8 @@ class Peeler {
     const Src condition = graph_.source(graph_.insts[branch_], 0);
     const int index = param_index(graph_, loop_, condition.value);
     if (index < 0) return false;
-    const Src& init = graph_.source(graph_.insts[loop_], static_cast<std::uint32_t>(index));
-    const Src& next = graph_.source(graph_.insts[latch_], static_cast<std::uint32_t>(index));
+    const Src init = graph_.source(graph_.insts[loop_], static_cast<std::uint32_t>(index));
+    const Src next = graph_.source(graph_.insts[latch_], static_cast<std::uint32_t>(index));
     const Inst* entry = graph_.constant(init.value);
     const Inst* later = graph_.constant(next.value);
     if (!entry || !later) return false;
@@ -114,7 +114,7 @@ class Peeler {
     if (!goes_on) graph_.remove(latch_);
   }
 
-  Src copied(InstId position, const Src& src, ValueId like) {
+  Src copied(InstId position, Src src, ValueId like) {
     const Value shape = graph_.values[like];
     const InstId move =
         graph_.create(Kind::kAlu, shape.boolean ? Op::kMovB : Op::kMov, shape.components, shape.boolean, 1);
@@ -124,7 +124,7 @@ class Peeler {
   }
 
   /// The value that the rest of the body reads.
-  ValueId stand_in(ValueId value, const Src& init, const Src& next, bool goes_on) {
+  ValueId stand_in(ValueId value, Src init, Src next, bool goes_on) {
     return goes_on ? add_param(graph_, loop_, value, init, next) : whole_value(graph_, loop_, init, value);
   }
 

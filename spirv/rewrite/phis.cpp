@@ -20,8 +20,8 @@ struct Header {
 
   bool contains(InstId id) const { return std::find(insts.begin(), insts.end(), id) != insts.end(); }
   int param(ValueId value) const { return param_index(graph, loop, value); }
-  const Src& init(int index) const { return graph.source(graph.insts[loop], static_cast<std::uint32_t>(index)); }
-  const Src& next(int index) const { return graph.source(graph.insts[latch], static_cast<std::uint32_t>(index)); }
+  Src init(int index) const { return graph.source(graph.insts[loop], static_cast<std::uint32_t>(index)); }
+  Src next(int index) const { return graph.source(graph.insts[latch], static_cast<std::uint32_t>(index)); }
 };
 
 bool is_selection(const Inst& inst) {
@@ -29,7 +29,7 @@ bool is_selection(const Inst& inst) {
 }
 
 bool reads_whole(const Graph& graph, const Inst& inst, std::uint32_t index) {
-  const Src& src = graph.source(inst, index);
+  const Src src = graph.source(inst, index);
   if (graph.values[src.value].components != inst.components) return false;
   for (unsigned c = 0; c < inst.components; ++c)
     if (src.swizzle[c] != c) return false;
@@ -43,7 +43,7 @@ bool is_trivial_selection(const Header& header, InstId id, bool allow_other) {
   const Inst& inst = graph.insts[id];
   if (!is_selection(inst) || !header.contains(id)) return false;
   for (std::uint32_t i = 0; i < 3; ++i) {
-    const Src& src = graph.source(inst, i);
+    const Src src = graph.source(inst, i);
     if (!reads_whole(graph, inst, i)) return false;
     if (header.param(src.value) >= 0) continue;
     if (i == 0 || !allow_other || !header.contains(graph.values[src.value].def)) return false;
@@ -64,7 +64,7 @@ bool may_split(const Inst& inst) {
   return ir::alu_info(inst.op).result != 'B' || ir::alu_info(inst.op).operands[0] == 'B';
 }
 
-Src composed(const Src& inner, const Src& outer) {
+Src composed(Src inner, Src outer) {
   Src result{inner.value, {}};
   for (unsigned c = 0; c < 4; ++c) result.swizzle[c] = inner.swizzle[outer.swizzle[c]];
   return result;
@@ -141,7 +141,7 @@ bool simplify_selections(Graph& graph, InstId loop) {
     if (!is_trivial_selection(header, id, false)) continue;
     const Inst inst = graph.insts[id];
     const int chooser = header.param(graph.source(inst, 0).value);
-    const auto truth = [&](const Src& src) { return graph.constant(src.value)->imm[src.swizzle[0]] != 0; };
+    const auto truth = [&](Src src) { return graph.constant(src.value)->imm[src.swizzle[0]] != 0; };
     const bool entry = truth(header.init(chooser));
     if (entry == truth(header.next(chooser))) continue;
     const ValueId at_entry = graph.source(inst, entry ? 1 : 2).value, later = graph.source(inst, entry ? 2 : 1).value;

@@ -10,10 +10,10 @@ using Kind = Inst::Kind;
 
 /// The operand negated by `op`, if operand `index` is that.
 bool negated_operand(const Graph& graph, const Inst& inst, std::uint32_t index, Op op, Src& result) {
-  const Src& src = graph.source(inst, index);
+  const Src src = graph.source(inst, index);
   const Inst* def = graph.def(src.value);
   if (!def || def->kind != Kind::kAlu || def->op != op) return false;
-  const Src& inner = graph.source(*def, 0);
+  const Src inner = graph.source(*def, 0);
   result = inner;
   for (unsigned c = 0; c < inst.components; ++c) result.swizzle[c] = inner.swizzle[src.swizzle[c]];
   return true;

@@ -26,7 +26,7 @@ std::vector<Src> operands_of(const Graph& graph, InstId id) {
   return result;
 }
 
-Src substituted(const Src& src, const std::vector<ValueId>& values, const std::vector<Src>& by) {
+Src substituted(Src src, const std::vector<ValueId>& values, const std::vector<Src>& by) {
   for (std::size_t i = 0; i < values.size() && i < by.size(); ++i) {
     if (values[i] != src.value) continue;
     Src result{by[i].value, {}};
@@ -38,13 +38,13 @@ Src substituted(const Src& src, const std::vector<ValueId>& values, const std::v
 
 namespace {
 
-bool is_whole(const Graph& graph, const Src& src, ValueId like) {
+bool is_whole(const Graph& graph, Src src, ValueId like) {
   bool whole = graph.values[src.value].components == graph.values[like].components;
   for (unsigned c = 0; c < graph.values[like].components; ++c) whole &= src.swizzle[c] == c;
   return whole;
 }
 
-InstId make_move(Graph& graph, const Src& src, ValueId like) {
+InstId make_move(Graph& graph, Src src, ValueId like) {
   const Value shape = graph.values[like];
   const InstId move =
       graph.create(Inst::Kind::kAlu, shape.boolean ? Op::kMovB : Op::kMov, shape.components, shape.boolean, 1);
@@ -54,7 +54,7 @@ InstId make_move(Graph& graph, const Src& src, ValueId like) {
 
 }  // namespace
 
-ValueId whole_value(Graph& graph, InstId position, const Src& src, ValueId like) {
+ValueId whole_value(Graph& graph, InstId position, Src src, ValueId like) {
   if (is_whole(graph, src, like)) return src.value;
   const InstId move = make_move(graph, src, like);
   graph.insert_before(position, move);

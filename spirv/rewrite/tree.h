@@ -23,10 +23,10 @@ bool is_inside(const Graph& graph, ValueId value, InstId loop);
 std::vector<Src> operands_of(const Graph& graph, InstId id);
 
 /// `src`, or the value that stands for it if it is one of `values`.
-Src substituted(const Src& src, const std::vector<ValueId>& values, const std::vector<Src>& by);
+Src substituted(Src src, const std::vector<ValueId>& values, const std::vector<Src>& by);
 
 /// A value equal to `src` with the components of `like`; a Mov that it may need goes before `position`.
-ValueId whole_value(Graph& graph, InstId position, const Src& src, ValueId like);
+ValueId whole_value(Graph& graph, InstId position, Src src, ValueId like);
 
 /// Uses of the results of an If or Loop become uses of `values`; Movs go in front of it, or behind `after`.
 void replace_results(Graph& graph, InstId id, const std::vector<Src>& values, InstId after = kNone);

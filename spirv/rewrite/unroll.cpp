@@ -76,7 +76,7 @@ class Counter {
     return {imm[swizzle[0]], imm[swizzle[1]], imm[swizzle[2]], imm[swizzle[3]]};
   }
 
-  bool value(const Src& src, Bits& bits) {
+  bool value(Src src, Bits& bits) {
     Bits whole;
     if (!value_of(src.value, whole, 0)) return false;
     bits = read(whole.data(), src.swizzle);
@@ -134,7 +134,7 @@ class Counter {
 /// What a loop parameter becomes for the next iteration.
 Src next_value(const Graph& graph, InstId loop, std::size_t param) {
   const BlockId body = graph.insts[loop].child[0], continuing = graph.insts[loop].child[1];
-  const Src& next = graph.source(graph.insts[graph.blocks[continuing].tail], static_cast<std::uint32_t>(param));
+  const Src next = graph.source(graph.insts[graph.blocks[continuing].tail], static_cast<std::uint32_t>(param));
   return substituted(next, graph.nodes[graph.insts[loop].node]->continue_params,
                      operands_of(graph, graph.blocks[body].tail));
 }
@@ -157,7 +157,7 @@ bool is_counter(const Graph& graph, InstId loop, ValueId value) {
 }
 
 /// A comparison of a counter with a constant, perhaps negated.
-bool is_counted(const Graph& graph, InstId loop, const Src& condition) {
+bool is_counted(const Graph& graph, InstId loop, Src condition) {
   const Inst* compare = graph.def(condition.value);
   if (compare && compare->kind == Kind::kAlu && compare->op == Op::kNotB)
     compare = graph.def(graph.source(*compare, 0).value);
