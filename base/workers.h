@@ -15,9 +15,9 @@ std::size_t worker_count();
 /// [0, worker_count()) and no two concurrent calls of this loop share it, so it may index scratch memory that belongs
 /// to this loop (memory that outlives a loop is thread_local instead). Returns when all items are done. Runs inline on
 /// the caller, as worker 0, when count <= 1, when there is one worker, or when called from inside a parallel loop. When
-/// the body throws, no further item starts and the first exception is rethrown here once all threads have left the loop.
-/// Each thread takes the caller's floating-point mode as it finds it: set one with ScopedFloatMode
-/// inside the body.
+/// the body throws, no further item starts and the first exception is rethrown here once all threads have left the
+/// loop. Each thread takes the caller's floating-point mode as it finds it: set one with ScopedFloatMode inside the
+/// body.
 void parallel_for(std::size_t count, FunctionRef<void(std::size_t index, std::size_t worker)> body);
 
 }  // namespace vitrine::base

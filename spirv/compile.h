@@ -42,7 +42,7 @@ struct CompileOptions {
   /// Fragment stage: locations that reach an attachment; outputs elsewhere are dead. Bit i = location i.
   std::uint32_t live_color_outputs = 0xff;
   std::uint32_t subgroup_size = 64;  ///< invocations: 8, 16, 32 or 64; a wave holds one subgroup or several
-  bool validate = true;  ///< run SPIRV-Tools' validator (false only where the same words passed before)
+  bool validate = true;              ///< run SPIRV-Tools' validator (false only where the same words passed before)
 };
 
 /// Validates, specialises, optimises structurally, applies the reference's rewrites, analyses and lowers.

@@ -23,8 +23,8 @@ struct Program;  // spirv/program.h
 enum class BaseType : std::uint8_t { kFloat, kInt, kUint };
 enum class Interpolation : std::uint8_t { kPerspective, kLinear, kFlat };
 enum class SampleLocation : std::uint8_t { kCenter, kCentroid, kSample };
-/// What a slot of an interpolated component holds: its value at the slot's SampleLocation, or a coefficient of its plane
-/// (raster's planes: value at the framebuffer's origin, change per pixel to the right, change per pixel down).
+/// What a slot of an interpolated component holds: its value at the slot's SampleLocation, or a coefficient of its
+/// plane (raster's planes: value at the framebuffer's origin, change per pixel to the right, change per pixel down).
 enum class InputPart : std::uint8_t { kValue, kPlaneOrigin, kPlaneX, kPlaneY };
 
 /// Values fixed function supplies or takes, besides the numbered locations. Booleans are 0 / 0xffffffff.

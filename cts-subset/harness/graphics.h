@@ -39,7 +39,7 @@ void out_target(Run& run, const Target& target);
 
 /// A graphics pipeline as Vulkan's own structures, filled with the plainest values.
 struct GraphicsSpec {
-  std::string vertex, fragment;  ///< GLSL; no fragment shader if empty
+  std::string vertex, fragment;               ///< GLSL; no fragment shader if empty
   std::string control, evaluation, geometry;  ///< GLSL; no such stage if empty
   VkPipelineTessellationStateCreateInfo tessellation{VK_STRUCTURE_TYPE_PIPELINE_TESSELLATION_STATE_CREATE_INFO};
   VkShaderModule vertex_module = VK_NULL_HANDLE, fragment_module = VK_NULL_HANDLE;  ///< used instead if set
