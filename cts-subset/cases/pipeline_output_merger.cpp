@@ -292,5 +292,30 @@ CTS_RANDOM("pipeline", "random_multisample", 80) {
   run.may_be_blank();
 }
 
+/// The alpha of the first output decides the coverage where no attachment takes its colour.
+CTS_CASE("pipeline", "alpha_to_coverage_of_depth_alone") {
+  TargetSpec target_spec;
+  target_spec.colors = {};
+  target_spec.depth = VK_FORMAT_D32_SFLOAT;
+  target_spec.samples = VK_SAMPLE_COUNT_4_BIT;
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  spec.vertex = kFullScreenVertex;
+  spec.fragment =
+      "layout(location = 0) out vec4 result;\n"
+      "void main() { result = vec4(1.0, 1.0, 1.0, fract(gl_FragCoord.x * 0.07)); }\n";
+  spec.depth.depthTestEnable = spec.depth.depthWriteEnable = VK_TRUE;
+  spec.depth.depthCompareOp = VK_COMPARE_OP_ALWAYS;
+  spec.multisample.alphaToCoverageEnable = VK_TRUE;
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    vkCmdDraw(cmd, 3, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+}
+
 }  // namespace
 }  // namespace vitrine::cts

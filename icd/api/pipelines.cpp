@@ -113,6 +113,13 @@ std::shared_ptr<const CompiledShader>* shader_of(Pipeline& pipeline, VkShaderSta
   }
 }
 
+/// Color outputs of the fragment shader that matter: those that reach an attachment, and the first, whose alpha may
+/// decide the coverage without one.
+std::uint32_t live_outputs(const Pipeline& pipeline) {
+  const bool decides = pipeline.state.alpha_to_coverage || pipeline.dynamic.test(DynamicState::kAlphaToCoverageEnable);
+  return pipeline.live_colors | (decides ? 1u : 0u);
+}
+
 /// Compiles one stage if it takes part. False after a report.
 bool compile_graphics_stage(StageCompiler& compiler, const VkPipelineShaderStageCreateInfo& stage, std::uint32_t index,
                             Pipeline& pipeline) {
@@ -123,7 +130,7 @@ bool compile_graphics_stage(StageCompiler& compiler, const VkPipelineShaderStage
   }
   const bool fragment = stage.stage == VK_SHADER_STAGE_FRAGMENT_BIT;
   if (fragment && pipeline.never_rasterizes()) return true;
-  *shader = compiler.compile(stage, index, pipeline.layout, fragment ? pipeline.live_colors : 0);
+  *shader = compiler.compile(stage, index, pipeline.layout, fragment ? live_outputs(pipeline) : 0);
   return *shader != nullptr;
 }
 
