@@ -115,7 +115,6 @@ struct Frame {
   const Function* function = nullptr;
   std::uint32_t result_local = 0;
   std::size_t scope = 0;  ///< index of its kFunction scope
-  MeetingPoints meeting_points;
 };
 
 struct Translator {
@@ -152,7 +151,8 @@ struct Translator {
 
   std::vector<Scope> scopes;
   std::vector<Frame> frames;
-  std::unordered_set<std::uint32_t> open_blocks;  ///< blocks being built in the running function instance
+  std::unordered_set<std::uint32_t> built_blocks;                   ///< in the running function instance
+  std::unordered_map<std::uint32_t, MeetingPoints> meeting_points;  ///< entry block of a function -> those in it
   std::uint32_t exits = 0;
   std::uint32_t depth = 0;  ///< of the recursion over the control flow
   std::size_t nodes = 0;    ///< emitted so far

@@ -344,19 +344,18 @@ void end_invocation(Translator& t) {
   emit_effect(t, ir::Op::kDemote);
 }
 
-/// A selection whose branches meet before its merge block: one up to there, then the rest up to the merge block.
-template <class Build>
-void build_selection(Translator& t, const Block& block, const Inst& inst, const Build& build_branches) {
-  const MeetingPoints& points = t.frames.back().meeting_points;
+/// A selection whose branches meet before its merge block is one up to there, then the rest up to the merge block.
+void build_selection(Translator& t, const Block& block, const Inst& branch) {
+  const MeetingPoints& points = t.meeting_points.at(t.frames.back().function->entry);
   const auto point = points.find(block.label);
-  if (point == points.end()) return build_branches(t, block, inst);
+  if (point == points.end()) return build_if(t, block, branch);
   Block inner = block;
   inner.merge = point->second;
   push_scope(t, Scope::Kind::kSelection, block.merge);
   ir::NodeList list;
   {
     const Into into(t, list);
-    build_branches(t, inner, inst);
+    build_if(t, inner, branch);
     build(t, point->second, block.merge, false);
   }
   close_scope(t, list);
@@ -373,11 +372,11 @@ std::uint32_t build_terminator(Translator& t, const Block& block, std::uint32_t 
       return inst.operand(0);
     case Op::OpBranchConditional:
       if (block.merge_op != Op::OpSelectionMerge) return build_conditional_jump(t, block, inst, end);
-      build_selection(t, block, inst, build_if);
+      build_selection(t, block, inst);
       return block.merge;
     case Op::OpSwitch:
       if (block.merge_op != Op::OpSelectionMerge) fail(inst, "switch without a merge block");
-      build_selection(t, block, inst, build_switch);
+      build_switch(t, block, inst);
       return block.merge;
     case Op::OpReturn:
     case Op::OpReturnValue:
@@ -411,26 +410,9 @@ void build_block(Translator& t, const Block& block) {
   }
 }
 
-/// The blocks that one call of build() is at. A block may be built again afterwards: where several branches of a
-/// selection join before its merge block, what follows is built for each of them.
-struct OpenBlocks {
-  explicit OpenBlocks(Translator& t) : translator(t) {}
-  ~OpenBlocks() {
-    for (const std::uint32_t label : labels) translator.open_blocks.erase(label);
-  }
-  bool enter(std::uint32_t label) {
-    if (!translator.open_blocks.insert(label).second) return false;
-    labels.push_back(label);
-    return true;
-  }
-  Translator& translator;
-  std::vector<std::uint32_t> labels;
-};
-
 /// Blocks from `label` until `end` or a jump. `enter_first`: `label` is a loop header or continue target being entered.
 void build(Translator& t, std::uint32_t label, std::uint32_t end, bool enter_first) {
   const Deeper deeper(t);
-  OpenBlocks open(t);
   bool header_entered = enter_first;
   while (label != 0) {
     if (!header_entered && (label == end || jump_out(t, label))) return;
@@ -442,7 +424,7 @@ void build(Translator& t, std::uint32_t label, std::uint32_t end, bool enter_fir
       label = block.merge;
       continue;
     }
-    if (!open.enter(label)) fail(t.module.code[block.last], "control flow is not structured");
+    if (!t.built_blocks.insert(label).second) fail(t.module.code[block.last], "control flow is not structured");
     build_block(t, block);
     label = build_terminator(t, block, end);
   }
@@ -465,11 +447,13 @@ void build_function(Translator& t, const Function& callee, std::uint32_t result_
   for (const Frame& frame : t.frames)
     if (frame.function == &callee) throw Failure("function %" + std::to_string(callee.id) + " is recursive");
   if (callee.entry == 0) throw Failure("function %" + std::to_string(callee.id) + " has no body");
-  const auto blocks = std::exchange(t.open_blocks, {});
+  const auto blocks = std::exchange(t.built_blocks, {});
   const auto phis = std::exchange(t.phi_locals, {});
   ir::NodeList list;
   push_scope(t, Scope::Kind::kFunction, 0);
-  t.frames.push_back({&callee, result_local, t.scopes.size() - 1, find_meeting_points(t.module, callee.entry)});
+  if (t.meeting_points.count(callee.entry) == 0)
+    t.meeting_points[callee.entry] = find_meeting_points(t.module, callee.entry);
+  t.frames.push_back({&callee, result_local, t.scopes.size() - 1});
   {
     const Into into(t, list);
     build(t, callee.entry, 0, false);
@@ -477,7 +461,7 @@ void build_function(Translator& t, const Function& callee, std::uint32_t result_
   t.frames.pop_back();
   close_scope(t, list);
   append(*t.list, std::move(list));
-  t.open_blocks = blocks;
+  t.built_blocks = blocks;
   t.phi_locals = phis;
 }
 
