@@ -384,11 +384,7 @@ void main() {
   r[id] = texelFetch(t, id * 2) + float(textureSize(t));
   imageStore(s, id, imageLoad(s, id) + uint(imageSize(s)));
 })"));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
   run.out("out", out, VK_FORMAT_R32G32B32A32_SFLOAT);
   run.out("values", values);
 }
@@ -444,11 +440,7 @@ void main() {
   vec2 p = vec2(float(id % 64u) + 0.5, float(id / 64u) + 0.5) / 64.0;
   r[id] = textureLod(a, p, float(id & 1u)) + textureLod(b, vec3(p, float(id % 3u)), 0.0) * 2.0 + textureLod(c, vec3(p - 0.5, 0.3), 0.0) * 4.0;
 })"));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 64, 1, 1);
-  });
+  run.dispatch(res, pipeline, 64);
   run.out("out", out, VK_FORMAT_R32G32B32A32_SFLOAT);
 }
 

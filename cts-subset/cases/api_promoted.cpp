@@ -153,11 +153,7 @@ void block_layout(Run& run, bool claimed, const char* feature, const std::string
                                  "} b;\nlayout(binding = 2) buffer R { float r[]; };\n"
                                  "void main() { uint i = gl_LocalInvocationIndex; r[i] = " +
                                  sum + "; }\n"));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
   run.out("result", result, VK_FORMAT_R32_SFLOAT);
 }
 

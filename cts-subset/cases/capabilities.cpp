@@ -9,11 +9,7 @@ namespace {
 void dispatch(Run& run, const std::string& code, const std::vector<Binding>& bindings) {
   const Resources res = run.resources(bindings);
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
 }
 
 Image storage(Run& run, VkFormat format) {

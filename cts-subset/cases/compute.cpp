@@ -12,11 +12,7 @@ void dispatch(Run& run, const std::string& code, const std::vector<Buffer>& buff
   for (uint32_t i = 0; i < buffers.size(); ++i) bindings.push_back(storage_buffer(i, buffers[i]));
   const Resources res = run.resources(bindings);
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, x, y, z);
-  });
+  run.dispatch(res, pipeline, x, y, z);
   run.out("result", buffers.back());
 }
 
@@ -227,11 +223,7 @@ void main() {
   vec4 sum = imageLoad(source, p) + imageLoad(source, p + ivec2(3, -1)) * 0.5;
   imageStore(destination, ivec2(imageSize(destination).x - 1 - p.x, p.y), sum);
 })"));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 5, 4, 1);
-  });
+  run.dispatch(res, pipeline, 5, 4);
   run.out("to", to);
 }
 
@@ -318,11 +310,7 @@ void main() {
   imageAtomicAdd(image, p, gl_WorkGroupID.x + 1u);
   imageAtomicMax(image, p.yx, 77u);
 })"));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
   run.out("image", image);
 }
 
@@ -368,12 +356,7 @@ void main() {
 })"),
                                           &special);
   const float push[8] = {1.0f, 2.0f, 3.0f, 4.0f, Random::from_bits(5), Random::from_bits(6), 0.25f, 0.75f};
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, 32, push);
-    vkCmdDispatch(cmd, 4, 1, 1);
-  });
+  run.dispatch(res, pipeline, 4, std::as_bytes(std::span(push)));
   run.out("result", result, VK_FORMAT_R32G32B32A32_SFLOAT);
 }
 

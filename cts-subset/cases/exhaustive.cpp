@@ -76,12 +76,7 @@ void run_stretch(Run& run, const Row& row) {
   const Resources res = run.resources({storage_buffer(0, out)}, 4);
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
   const uint32_t first = stretch * kStretch;
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, 4, &first);
-    vkCmdDispatch(cmd, kStretch / kLocal, 1, 1);
-  });
+  run.dispatch(res, pipeline, kStretch / kLocal, std::as_bytes(std::span(&first, 1)));
   run.out("from_" + std::to_string(first), out).may_be_blank = true;
 }
 

@@ -86,11 +86,7 @@ void run_expressions(Run& run, const std::string& header) {
   const Buffer in = run.buffer_of(operands(run)), out = run.buffer(256 * 4 * kCount);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 4, 1, 1);
-  });
+  run.dispatch(res, pipeline, 4);
   run.out("results", out);
 }
 

@@ -3,6 +3,7 @@
 #include "harness/case.h"
 #include "harness/run.h"
 #include "harness/shader.h"
+#include "tests/spirv/compute_text.h"
 
 namespace vitrine::cts {
 namespace {
@@ -13,45 +14,15 @@ constexpr uint32_t kInvocations = 64;
 
 /// 64 invocations of a body that makes %r from %x (a random word) and %n (their number). Buffers: %a and %b of 256
 /// random words, %out.
-void run_body(Run& run, const std::string& body, const std::string& functions = "", bool newer = false) {
+void run_body(Run& run, const std::string& body, const std::string& declarations = "", bool newer = false) {
   run.require(run.gpu.extension_features.variable_pointers.variablePointers, "variablePointers");
   if (newer) run.require(run.gpu.has("VK_KHR_spirv_1_4"), "VK_KHR_spirv_1_4");
-  const std::string target = newer ? "spirv1.4" : "vulkan1.1";
-  const std::string globals = newer ? " %a %b %out %shared" : "";
-  const std::string text = "; target: " + target + R"(
-OpCapability Shader
-OpCapability VariablePointers
-OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %id)" +
-                           globals + R"(
-OpExecutionMode %main LocalSize 64 1 1
-OpDecorate %id BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpDecorate %uint_ptr ArrayStride 4
-OpDecorate %block Block
-OpMemberDecorate %block 0 Offset 0
-OpDecorate %a DescriptorSet 0
-OpDecorate %a Binding 0
-OpDecorate %b DescriptorSet 0
-OpDecorate %b Binding 1
-OpDecorate %out DescriptorSet 0
-OpDecorate %out Binding 2
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%bool = OpTypeBool
-%uint = OpTypeInt 32 0
-%v3uint = OpTypeVector %uint 3
-%v3ptr = OpTypePointer Input %v3uint
-%id = OpVariable %v3ptr Input
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
-%block_ptr = OpTypePointer StorageBuffer %block
-%uint_ptr = OpTypePointer StorageBuffer %uint
-%a = OpVariable %block_ptr StorageBuffer
-%b = OpVariable %block_ptr StorageBuffer
-%out = OpVariable %block_ptr StorageBuffer
-%u0 = OpConstant %uint 0
-%u1 = OpConstant %uint 1
+  ComputeText module;
+  module.capabilities = "OpCapability VariablePointers\n";
+  if (newer) module.interface = "%a %b %out %shared";
+  module.buffers = {"a", "b", "out"};
+  module.annotations = "OpDecorate %uint_ptr ArrayStride 4\n";
+  module.declarations = R"(
 %u2 = OpConstant %uint 2
 %u3 = OpConstant %uint 3
 %u7 = OpConstant %uint 7
@@ -64,24 +35,15 @@ OpDecorate %out Binding 2
 %local_ptr = OpTypePointer Function %uint_ptr
 %null = OpConstantNull %uint_ptr
 %pick_type = OpTypeFunction %uint_ptr %bool %uint_ptr
-)" + functions + R"(
-%main = OpFunction %void None %fn
-%entry = OpLabel
-%kept = OpVariable %local_ptr Function
-%gid = OpLoad %v3uint %id
-%n = OpCompositeExtract %uint %gid 0
-%from = OpAccessChain %uint_ptr %a %u0 %n
-%x = OpLoad %uint %from
+)" + declarations;
+  module.locals = "%kept = OpVariable %local_ptr Function\n";
+  module.body = load_word("%x", "a") + R"(
 %bit = OpBitwiseAnd %uint %x %u1
 %odd = OpIEqual %bool %bit %u1
 %pa = OpAccessChain %uint_ptr %a %u0 %n
 %pb = OpAccessChain %uint_ptr %b %u0 %n
-)" + body + R"(
-%to = OpAccessChain %uint_ptr %out %u0 %n
-OpStore %to %r
-OpReturn
-OpFunctionEnd
-)";
+)" + body + store_word("%r", "out");
+  const std::string text = (newer ? "; target: spirv1.4\n" : "; target: vulkan1.1\n") + module.text();
   run.note("assembly", text);
   std::vector<uint32_t> words(256);
   for (uint32_t& word : words) word = run.random.bits();
@@ -90,11 +52,7 @@ OpFunctionEnd
   const Buffer b = run.buffer_of(words), out = run.buffer(kInvocations * 4);
   const Resources res = run.resources({storage_buffer(0, a), storage_buffer(1, b), storage_buffer(2, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
   run.out("out", out);
   run.out("b", b);
 }
@@ -203,45 +161,23 @@ CTS_CASE("pointers", "variable.compare") {
 /// The chosen pointer leads to an array of blocks, which is indexed afterwards.
 CTS_CASE("pointers", "variable.select_arrays_of_blocks") {
   run.require(run.gpu.extension_features.variable_pointers.variablePointers, "variablePointers");
-  const std::string text = R"(; target: vulkan1.1
-OpCapability Shader
-OpCapability VariablePointers
-OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %id
-OpExecutionMode %main LocalSize 64 1 1
-OpDecorate %id BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpDecorate %block Block
-OpMemberDecorate %block 0 Offset 0
+  ComputeText module;
+  module.capabilities = "OpCapability VariablePointers\n";
+  module.buffers = {"out"};
+  module.annotations = R"(
 OpDecorate %a DescriptorSet 0
-OpDecorate %a Binding 0
+OpDecorate %a Binding 1
 OpDecorate %b DescriptorSet 0
-OpDecorate %b Binding 1
-OpDecorate %out DescriptorSet 0
-OpDecorate %out Binding 2
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%bool = OpTypeBool
-%uint = OpTypeInt 32 0
-%v3uint = OpTypeVector %uint 3
-%v3ptr = OpTypePointer Input %v3uint
-%id = OpVariable %v3ptr Input
-%u0 = OpConstant %uint 0
-%u1 = OpConstant %uint 1
+OpDecorate %b Binding 2
+)";
+  module.declarations = R"(
 %u2 = OpConstant %uint 2
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
 %blocks = OpTypeArray %block %u2
-%block_ptr = OpTypePointer StorageBuffer %block
 %blocks_ptr = OpTypePointer StorageBuffer %blocks
-%uint_ptr = OpTypePointer StorageBuffer %uint
 %a = OpVariable %blocks_ptr StorageBuffer
 %b = OpVariable %blocks_ptr StorageBuffer
-%out = OpVariable %block_ptr StorageBuffer
-%main = OpFunction %void None %fn
-%entry = OpLabel
-%gid = OpLoad %v3uint %id
-%n = OpCompositeExtract %uint %gid 0
+)";
+  module.body = R"(
 %g = OpUDiv %uint %n %u2
 %bit = OpBitwiseAnd %uint %g %u1
 %odd = OpIEqual %bool %bit %u1
@@ -252,11 +188,7 @@ OpDecorate %out Binding 2
 %w = OpLoad %uint %second
 %w2 = OpShiftLeftLogical %uint %w %u1
 %r = OpIAdd %uint %v %w2
-%to = OpAccessChain %uint_ptr %out %u0 %n
-OpStore %to %r
-OpReturn
-OpFunctionEnd
-)";
+)" + store_word("%r", "out");
   std::vector<Buffer> buffers;
   for (int i = 0; i < 4; ++i) {
     std::vector<uint32_t> words(kInvocations);
@@ -270,13 +202,10 @@ OpFunctionEnd
   };
   const Buffer out = run.buffer(kInvocations * 4);
   const Resources res =
-      run.resources({two(0, buffers[0], buffers[1]), two(1, buffers[2], buffers[3]), storage_buffer(2, out)});
-  const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+      run.resources({storage_buffer(0, out), two(1, buffers[0], buffers[1]), two(2, buffers[2], buffers[3])});
+  const VkPipeline pipeline =
+      run.compute(res.layout, run.module(assemble_spirv("; target: vulkan1.1\n" + module.text())));
+  run.dispatch(res, pipeline, 1);
   run.out("out", out);
 }
 
@@ -341,13 +270,7 @@ void run_addresses(Run& run, const std::string& code, const std::vector<uint64_t
   const Resources res = run.resources(bindings, static_cast<uint32_t>(addresses.size() * 8));
   const VkPipeline pipeline =
       run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, std::string(kReferences) + code));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, static_cast<uint32_t>(addresses.size() * 8),
-                       addresses.data());
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1, std::as_bytes(std::span(addresses)));
 }
 
 CTS_CASE("pointers", "address.linked_list") {
@@ -542,11 +465,7 @@ void main() {
   float f = t.m[i % 3u][k & 1u] + a.s[i].m[1].y;
   r[i] = uvec4(uint(t.a) + uint(t.z[i % 3u]) * 256u, packFloat2x16(t.h), floatBitsToUint(f), b.w[k * 12u + i % 12u]);
 })"));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
   run.out("out", out);
 }
 
@@ -568,11 +487,7 @@ void main() {
   barrier();
   r[i] = before * 1000u + s[63u - i];
 })"));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 2, 1, 1);
-  });
+  run.dispatch(res, pipeline, 2);
   run.out("out", out);
 }
 

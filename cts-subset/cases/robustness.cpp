@@ -7,11 +7,7 @@ namespace {
 
 void dispatch(Run& run, const Resources& res, const std::string& code, uint32_t groups = 1) {
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, groups, 1, 1);
-  });
+  run.dispatch(res, pipeline, groups);
 }
 
 Buffer random_buffer(Run& run, uint32_t words) {

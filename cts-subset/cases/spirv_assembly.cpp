@@ -5,74 +5,41 @@
 #include "harness/case.h"
 #include "harness/graphics.h"
 #include "harness/shader.h"
+#include "tests/spirv/compute_text.h"
 
 namespace vitrine::cts {
 namespace {
 
 /// Runs 64 invocations of a body between buffers `in` (uint[]) and `out` (uint[]); %x is the input, %r must be set.
 void run_body(Run& run, const std::string& body, const std::string& types = "", const std::string& capabilities = "",
-              const std::string& mode = "OpExecutionMode %main LocalSize 64 1 1", const std::string& inputs = "") {
-  const std::string text = "OpCapability Shader\n" + capabilities + R"(
-%glsl = OpExtInstImport "GLSL.std.450"
-OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %id )" +
-                           inputs + "\n" + mode + R"(
-OpDecorate %id BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpMemberDecorate %block 0 Offset 0
-OpDecorate %block BufferBlock
-OpDecorate %in DescriptorSet 0
-OpDecorate %in Binding 0
-OpDecorate %out DescriptorSet 0
-OpDecorate %out Binding 1
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%bool = OpTypeBool
-%uint = OpTypeInt 32 0
+              const std::string& annotations = "", const std::string& inputs = "",
+              const std::string& local_size = "64 1 1") {
+  ComputeText module;
+  module.uniform = true;
+  module.capabilities = capabilities + "%glsl = OpExtInstImport \"GLSL.std.450\"\n";
+  module.interface = inputs;
+  module.local_size = local_size;
+  module.annotations = annotations;
+  module.declarations = R"(
 %int = OpTypeInt 32 1
 %float = OpTypeFloat 32
 %v2uint = OpTypeVector %uint 2
-%v3uint = OpTypeVector %uint 3
 %v4uint = OpTypeVector %uint 4
 %v4float = OpTypeVector %float 4
-%v3ptr = OpTypePointer Input %v3uint
-%id = OpVariable %v3ptr Input
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
-%block_ptr = OpTypePointer Uniform %block
-%uint_ptr = OpTypePointer Uniform %uint
-%in = OpVariable %block_ptr Uniform
-%out = OpVariable %block_ptr Uniform
-%u0 = OpConstant %uint 0
-%u1 = OpConstant %uint 1
 %u2 = OpConstant %uint 2
 %u3 = OpConstant %uint 3
 %u5 = OpConstant %uint 5
 %i3 = OpConstant %int 3
 %f1 = OpConstant %float 1
-)" + types + R"(
-%main = OpFunction %void None %fn
-%entry = OpLabel
-%gid = OpLoad %v3uint %id
-%n = OpCompositeExtract %uint %gid 0
-%from = OpAccessChain %uint_ptr %in %u0 %n
-%x = OpLoad %uint %from
-)" + body + R"(
-%to = OpAccessChain %uint_ptr %out %u0 %n
-OpStore %to %r
-OpReturn
-OpFunctionEnd
-)";
+)" + types;
+  module.body = load_word("%x", "in") + body + store_word("%r", "out");
+  const std::string text = module.text();
   std::vector<uint32_t> words(64);
   for (uint32_t& word : words) word = run.random.chance(0.5f) ? run.random.bits() : run.random.below(10);
   const Buffer in = run.buffer_of(words), out = run.buffer(256);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
   run.out("out", out);
 }
 
@@ -108,17 +75,16 @@ CTS_CASE("spirv_assembly", "decorate_string") {
               "VK_GOOGLE_hlsl_functionality1");
   run_body(run, "%r = OpIAdd %uint %x %n\n", "%counter = OpVariable %block_ptr Uniform\n",
            "OpExtension \"SPV_GOOGLE_decorate_string\"\nOpExtension \"SPV_GOOGLE_hlsl_functionality1\"\n",
-           "OpExecutionMode %main LocalSize 64 1 1\n"
            "OpDecorate %counter DescriptorSet 0\nOpDecorate %counter Binding 1\n"
            "OpDecorateString %id UserSemantic \"SV_DispatchThreadID\"\n"
            "OpMemberDecorateString %block 0 UserSemantic \"ELEMENT\"\n"
-           "OpDecorateId %out HlslCounterBufferGOOGLE %counter");
+           "OpDecorateId %out HlslCounterBufferGOOGLE %counter\n");
 }
 
 CTS_CASE("spirv_assembly", "local_size_id") {
   run.require(run.gpu.extension_features.maintenance4.maintenance4, "maintenance4");
   run_body(run, "%r = OpIAdd %uint %x %n\n", "%size = OpSpecConstant %uint 64\n", "; target: vulkan1.1\n",
-           "OpExecutionModeId %main LocalSizeId %size %u1 %u1\nOpDecorate %size SpecId 9");
+           "OpExecutionModeId %main LocalSizeId %size %u1 %u1\nOpDecorate %size SpecId 9\n", "", "");
 }
 
 CTS_CASE("spirv_assembly", "phi_swap") {
@@ -432,11 +398,7 @@ OpFunctionEnd
   const Buffer in = run.buffer_of(values), out = run.buffer(kInvocations * 4);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, kInvocations / 64, 1, 1);
-  });
+  run.dispatch(res, pipeline, kInvocations / 64);
   run.out("halves", out);
 }
 
@@ -444,8 +406,7 @@ OpFunctionEnd
 CTS_CASE("spirv_assembly", "device_index") {
   run_body(run, "%d = OpLoad %uint %device\n%r = OpIAdd %uint %x %d\n",
            "%uint_in = OpTypePointer Input %uint\n%device = OpVariable %uint_in Input\n",
-           "; target: vulkan1.1\nOpCapability DeviceGroup\n",
-           "OpExecutionMode %main LocalSize 64 1 1\nOpDecorate %device BuiltIn DeviceIndex", "%device");
+           "; target: vulkan1.1\nOpCapability DeviceGroup\n", "OpDecorate %device BuiltIn DeviceIndex\n", "%device");
 }
 
 CTS_CASE("spirv_assembly", "function_variables_and_access_chains") {

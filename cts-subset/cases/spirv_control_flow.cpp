@@ -4,56 +4,12 @@
 #include "harness/case.h"
 #include "harness/run.h"
 #include "harness/shader.h"
+#include "tests/spirv/compute_text.h"
 
 namespace vitrine::cts {
 namespace {
 
 constexpr uint32_t kInvocations = 64;
-
-constexpr char kHead[] = R"(
-OpCapability Shader
-OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %id
-OpExecutionMode %main LocalSize 64 1 1
-OpDecorate %id BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpMemberDecorate %block 0 Offset 0
-OpDecorate %block BufferBlock
-OpDecorate %in DescriptorSet 0
-OpDecorate %in Binding 0
-OpDecorate %out DescriptorSet 0
-OpDecorate %out Binding 1
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%bool = OpTypeBool
-%uint = OpTypeInt 32 0
-%f_type = OpTypeFunction %uint %uint
-%v3uint = OpTypeVector %uint 3
-%v3ptr = OpTypePointer Input %v3uint
-%id = OpVariable %v3ptr Input
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
-%block_ptr = OpTypePointer Uniform %block
-%uint_ptr = OpTypePointer Uniform %uint
-%uint_local = OpTypePointer Function %uint
-%in = OpVariable %block_ptr Uniform
-%out = OpVariable %block_ptr Uniform
-)";
-
-constexpr char kMain[] = R"(
-%main = OpFunction %void None %fn
-%entry = OpLabel
-%gid = OpLoad %v3uint %id
-%n = OpCompositeExtract %uint %gid 0
-%from = OpAccessChain %uint_ptr %in %u0 %n
-%x_main = OpLoad %uint %from
-%result = OpFunctionCall %uint %f %x_main
-%to = OpAccessChain %uint_ptr %out %u0 %n
-%different = OpIAdd %uint %result %n
-OpStore %to %different
-OpReturn
-OpFunctionEnd
-)";
 
 /// A block that several others branch to, with the value that each of them brings.
 struct Target {
@@ -79,10 +35,16 @@ class Generator {
     text_ += "%r = OpVariable %uint_local Function\nOpStore %r %x\n";
     if (list(4, {})) leave();
     text_ += "OpFunctionEnd\n";
-    std::string constants;
-    for (uint32_t i = 0; i < kConstants; i++)
-      constants += "%u" + std::to_string(i) + " = OpConstant %uint " + std::to_string(i) + "\n";
-    return kHead + constants + text_ + kMain;
+    ComputeText module;
+    module.uniform = true;
+    module.declarations = "%f_type = OpTypeFunction %uint %uint\n%uint_local = OpTypePointer Function %uint\n";
+    for (uint32_t i = 2; i < kConstants; i++)
+      module.declarations += "%u" + std::to_string(i) + " = OpConstant %uint " + std::to_string(i) + "\n";
+    module.body = load_word("%x_main", "in") +
+                  "%result = OpFunctionCall %uint %f %x_main\n%different = OpIAdd %uint %result %n\n" +
+                  store_word("%different", "out");
+    module.functions = text_;
+    return module.text();
   }
 
  private:
@@ -275,11 +237,7 @@ CTS_RANDOM("spirv_assembly", "random_control_flow", 40) {
   const Buffer in = run.buffer_of(words), out = run.buffer(kInvocations * 4);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
   run.out("out", out);
 }
 

@@ -4,6 +4,7 @@
 #include "harness/case.h"
 #include "harness/run.h"
 #include "harness/shader.h"
+#include "tests/spirv/compute_text.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -161,36 +162,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-constexpr const char* kBegin = R"(
-%glsl = OpExtInstImport "GLSL.std.450"
-OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %gid
-OpExecutionMode %main LocalSize 64 1 1
-OpDecorate %gid BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpMemberDecorate %block 0 Offset 0
-OpDecorate %block BufferBlock
-OpDecorate %in DescriptorSet 0
-OpDecorate %in Binding 0
-OpDecorate %out DescriptorSet 0
-OpDecorate %out Binding 1
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%bool = OpTypeBool
-%uint = OpTypeInt 32 0
-%int = OpTypeInt 32 1
-%v2uint = OpTypeVector %uint 2
-%v3uint = OpTypeVector %uint 3
-%v3ptr = OpTypePointer Input %v3uint
-%gid = OpVariable %v3ptr Input
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
-%block_ptr = OpTypePointer Uniform %block
-%word_ptr = OpTypePointer Uniform %uint
-%in = OpVariable %block_ptr Uniform
-%out = OpVariable %block_ptr Uniform
-)";
-
 /// A module that runs rows of instructions on the scalar type `type`; results may also be of type `other`.
 class Module {
  public:
@@ -241,18 +212,20 @@ class Module {
   }
 
   std::string text() {
-    std::string loads =
-        "%main = OpFunction %void None %fn\n%entry = OpLabel\n%id3 = OpLoad %v3uint %gid\n"
-        "%id = OpCompositeExtract %uint %id3 0\n%base = OpIMul %uint %id " +
-        constant(kWords) + "\n";
+    std::string loads = "%base = OpIMul %uint %n " + constant(kWords) + "\n";
     for (uint32_t i = 0; i < kScalars; ++i) loads += load("%s" + std::to_string(i), 2 * i);
-    loads += load_word("%kw", 2 * kScalars) + "%k = OpBitcast %int %kw\n" + body_begin();
+    loads += load_at("%kw", 2 * kScalars) + "%k = OpBitcast %int %kw\n" + body_begin();
     const std::string vector = same(type_, number(32, 'u')) ? "%v3uint" : "%vector";
     std::string types = vector == "%vector" ? "%V = OpTypeVector %T 3\n" : "";
     types += "%pair = OpTypeStruct %T %T\n";
     if (type_.kind == 'f') types += "%M = OpTypeMatrix %V 3\n%frexp = OpTypeStruct %T %int\n";
-    const std::string all =
-        capabilities_ + kBegin + declarations_ + types + constants_ + loads + body_ + "OpReturn\nOpFunctionEnd\n";
+    ComputeText module;
+    module.uniform = true;
+    module.capabilities = capabilities_ + "%glsl = OpExtInstImport \"GLSL.std.450\"\n";
+    module.declarations =
+        "%int = OpTypeInt 32 1\n%v2uint = OpTypeVector %uint 2\n" + declarations_ + types + constants_;
+    module.body = loads + body_;
+    const std::string all = module.text();
     return replaced(replaced(replaced(all, "%V ", vector + " "), "%T ", std::string("%") + type_.name + " "), "%T\n",
                     std::string("%") + type_.name + "\n");
   }
@@ -297,19 +270,19 @@ class Module {
     return id;
   }
 
-  std::string load_word(const std::string& id, uint32_t word) {
+  std::string load_at(const std::string& id, uint32_t word) {
     const std::string at = fresh(), pointer = fresh();
-    return at + " = OpIAdd %uint %base " + constant(word) + "\n" + pointer + " = OpAccessChain %word_ptr %in " +
+    return at + " = OpIAdd %uint %base " + constant(word) + "\n" + pointer + " = OpAccessChain %uint_ptr %in " +
            constant(0) + " " + at + "\n" + id + " = OpLoad %uint " + pointer + "\n";
   }
 
   /// Two words as a number of the type.
   std::string load(const std::string& id, uint32_t word) {
     const std::string low = fresh(), high = fresh(), both = fresh();
-    std::string text = load_word(low, word);
+    std::string text = load_at(low, word);
     if (type_.width == 64)
-      return text + load_word(high, word + 1) + both + " = OpCompositeConstruct %v2uint " + low + " " + high + "\n" +
-             id + " = OpBitcast %T " + both + "\n";
+      return text + load_at(high, word + 1) + both + " = OpCompositeConstruct %v2uint " + low + " " + high + "\n" + id +
+             " = OpBitcast %T " + both + "\n";
     if (type_.width == 32 && type_.kind == 'u') return text + id + " = OpCopyObject %T " + low + "\n";
     if (type_.width == 32) return text + id + " = OpBitcast %T " + low + "\n";
     const std::string bits = std::string("%") + number(type_.width, 'u').name;
@@ -321,9 +294,9 @@ class Module {
   void store(const std::string& name, std::string id, const Number& type) {
     const auto word = [&](const std::string& value, uint32_t part) {
       const std::string at = fresh(), pointer = fresh(), place = fresh();
-      body_ += place + " = OpIMul %uint %id " + constant(2) + "\n" + at + " = OpIAdd %uint " + place + " " +
+      body_ += place + " = OpIMul %uint %n " + constant(2) + "\n" + at + " = OpIAdd %uint " + place + " " +
                constant(static_cast<uint32_t>(slots.size()) * 2 * kInvocations + part) + "\n" + pointer +
-               " = OpAccessChain %word_ptr %out " + constant(0) + " " + at + "\nOpStore " + pointer + " " + value +
+               " = OpAccessChain %uint_ptr %out " + constant(0) + " " + at + "\nOpStore " + pointer + " " + value +
                "\n";
     };
     const auto make = [&](const std::string& operation) {
@@ -349,7 +322,7 @@ class Module {
 
   const Number& type_;
   std::vector<Number> needed_;
-  std::string capabilities_ = "OpCapability Shader\n", declarations_, constants_, body_;
+  std::string capabilities_, declarations_, constants_, body_;
   int ids_ = 0;
 };
 
@@ -424,11 +397,7 @@ void run_module(Run& run, Module& module, const Number& type) {
   std::memset(out.data, 0, out.size);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, kInvocations / 64, 1, 1);
-  });
+  run.dispatch(res, pipeline, kInvocations / 64);
   for (size_t k = 0; k < module.slots.size(); ++k) {
     Output output;
     output.name = module.slots[k].name + "." + std::to_string(k);

@@ -3,6 +3,7 @@
 #include "harness/case.h"
 #include "harness/graphics.h"
 #include "harness/shader.h"
+#include "tests/spirv/compute_text.h"
 
 namespace vitrine::cts {
 namespace {
@@ -10,9 +11,7 @@ namespace {
 /// Workgroups are as large as the reference's subgroups, so that group operations see the same invocations.
 constexpr uint32_t kLocal = 8, kGroups = 8, kCount = kLocal * kGroups;
 
-constexpr char kBegin[] = R"(; target: vulkan1.1
-OpCapability Shader
-OpCapability GroupNonUniform
+constexpr char kCapabilities[] = R"(OpCapability GroupNonUniform
 OpCapability GroupNonUniformVote
 OpCapability GroupNonUniformBallot
 OpCapability GroupNonUniformArithmetic
@@ -21,44 +20,18 @@ OpCapability GroupNonUniformShuffleRelative
 OpCapability GroupNonUniformQuad
 OpCapability VariablePointers
 %glsl = OpExtInstImport "GLSL.std.450"
-OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %id
-OpExecutionMode %main LocalSize 8 1 1
-%file = OpString "row.comp"
-OpDecorate %id BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpDecorate %uint_ptr ArrayStride 4
-OpDecorate %block Block
-OpMemberDecorate %block 0 Offset 0
-OpDecorate %in DescriptorSet 0
-OpDecorate %in Binding 0
-OpDecorate %out DescriptorSet 0
-OpDecorate %out Binding 1
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%bool = OpTypeBool
-%uint = OpTypeInt 32 0
+)";
+constexpr char kDeclarations[] = R"(
 %int = OpTypeInt 32 1
 %float = OpTypeFloat 32
 %v2bool = OpTypeVector %bool 2
 %v2uint = OpTypeVector %uint 2
-%v3uint = OpTypeVector %uint 3
 %v4uint = OpTypeVector %uint 4
 %v2float = OpTypeVector %float 2
 %v4float = OpTypeVector %float 4
 %split = OpTypeStruct %float %int
-%v3ptr = OpTypePointer Input %v3uint
-%id = OpVariable %v3ptr Input
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
-%block_ptr = OpTypePointer StorageBuffer %block
-%uint_ptr = OpTypePointer StorageBuffer %uint
 %float_var = OpTypePointer Function %float
 %int_var = OpTypePointer Function %int
-%in = OpVariable %block_ptr StorageBuffer
-%out = OpVariable %block_ptr StorageBuffer
-%u0 = OpConstant %uint 0
-%u1 = OpConstant %uint 1
 %u2 = OpConstant %uint 2
 %u3 = OpConstant %uint 3
 %u5 = OpConstant %uint 5
@@ -73,14 +46,8 @@ OpDecorate %out Binding 1
 %f0 = OpConstant %float 0
 %f1 = OpConstant %float 1
 %f3 = OpConstant %float 3.25
-%main = OpFunction %void None %fn
-%entry = OpLabel
-%part = OpVariable %float_var Function
-%power = OpVariable %int_var Function
-%gid = OpLoad %v3uint %id
-%n = OpCompositeExtract %uint %gid 0
-%from = OpAccessChain %uint_ptr %in %u0 %n
-%x = OpLoad %uint %from
+)";
+constexpr char kOperands[] = R"(
 %low = OpBitwiseAnd %uint %n %u3
 %lane = OpBitwiseAnd %uint %n %u7
 %small = OpBitwiseAnd %uint %x %u15
@@ -104,8 +71,14 @@ OpDecorate %out Binding 1
 /// %r of type uint is stored.
 void run_row(Run& run, const std::string& body) {
   run.require(run.gpu.extension_features.variable_pointers.variablePointers, "variablePointers");
-  const std::string text =
-      kBegin + body + "\n%to = OpAccessChain %uint_ptr %out %u0 %n\nOpStore %to %r\nOpReturn\nOpFunctionEnd\n";
+  ComputeText module;
+  module.capabilities = kCapabilities;
+  module.local_size = "8 1 1";
+  module.annotations = "%file = OpString \"row.comp\"\nOpDecorate %uint_ptr ArrayStride 4\n";
+  module.declarations = kDeclarations;
+  module.locals = "%part = OpVariable %float_var Function\n%power = OpVariable %int_var Function\n";
+  module.body = load_word("%x", "in") + kOperands + body + "\n" + store_word("%r", "out");
+  const std::string text = "; target: vulkan1.1\n" + module.text();
   run.note("assembly", text);
   std::vector<uint32_t> words(kCount);
   for (uint32_t& word : words) word = run.random.chance(0.7f) ? run.random.bits() & 0x7f7fffff : run.random.below(40);
@@ -114,11 +87,7 @@ void run_row(Run& run, const std::string& body) {
   const Buffer in = run.buffer_of(words), out = run.buffer_of(outputs);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, kGroups, 1, 1);
-  });
+  run.dispatch(res, pipeline, kGroups);
   run.out("out", out);
 }
 
@@ -133,7 +102,7 @@ constexpr Row kRows[] = {
     {"Nop", "OpNop\n%q = OpIAdd %uint %x %u1"},
     {"NoLine", "OpLine %file 3 4\n%p = OpIAdd %uint %x %u1\nOpNoLine\n%q = OpIMul %uint %p %u5"},
     {"Undef", "%any = OpUndef %uint\n%none = OpBitwiseAnd %uint %any %u0\n%q = OpIAdd %uint %none %x"},
-    {"CopyMemory", "OpCopyMemory %own %from\n%q = OpIAdd %uint %x %u1"},
+    {"CopyMemory", "OpCopyMemory %own %x_at\n%q = OpIAdd %uint %x %u1"},
     {"ArrayLength", "%q = OpArrayLength %uint %out 0"},
     {"PtrAccessChain", "%next = OpPtrAccessChain %uint_ptr %own %low\n%q = OpLoad %uint %next"},
     {"QuantizeToF16", "%q = OpQuantizeToF16 %float %nan", 'f'},

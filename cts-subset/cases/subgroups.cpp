@@ -62,11 +62,7 @@ void run_statements(Run& run, const std::string& statements, uint32_t local_size
   const Buffer in = run.buffer_of(words), out = run.buffer(in.size);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
   const VkPipeline pipeline = pipeline_of(run, res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, kGroups, 1, 1);
-  });
+  run.dispatch(res, pipeline, kGroups);
   run.out("result", out);
 }
 

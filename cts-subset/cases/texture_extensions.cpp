@@ -107,11 +107,7 @@ CTS_RANDOM("texture", "storage_view_of_3d", 8) {
                                  ") uniform image2D slice;\nvoid main() {\n"
                                  "  ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
                                  "  imageStore(slice, p, imageLoad(slice, p).bgra);\n}\n"));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 2, 3, 1);
-  });
+  run.dispatch(res, pipeline, 2, 3);
   run.out("volume", image);
 }
 
@@ -212,11 +208,7 @@ CTS_RANDOM("texture", "storage_multisample", 12) {
                      "  if (g.x >= 19u || g.y >= 11u) return;\n"
                      "  for (int s = 0; s < 4; ++s) result[((g.z * 11u + g.y) * 19u + g.x) * 4u + uint(s)] = " +
                      bits + ";\n}\n"));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 5, 3, array ? 3 : 1);
-  });
+  run.dispatch(res, pipeline, 5, 3, array ? 3 : 1);
   run.out("samples", result);
 }
 

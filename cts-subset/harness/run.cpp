@@ -231,6 +231,25 @@ void Run::once(const std::function<void(VkCommandBuffer)>& record) {
   submit(cmd);
 }
 
+void Run::dispatch(const Resources& resources, VkPipeline pipeline, uint32_t x, uint32_t y, uint32_t z) {
+  once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    resources.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    vkCmdDispatch(cmd, x, y, z);
+  });
+}
+
+void Run::dispatch(const Resources& resources, VkPipeline pipeline, uint32_t x, std::span<const std::byte> push) {
+  once([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    resources.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
+    if (!push.empty())
+      vkCmdPushConstants(cmd, resources.layout, VK_SHADER_STAGE_ALL, 0, static_cast<uint32_t>(push.size()),
+                         push.data());
+    vkCmdDispatch(cmd, x, 1, 1);
+  });
+}
+
 void Run::may_be_blank() {
   for (Output& output : outputs) output.may_be_blank = true;
 }

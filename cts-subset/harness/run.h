@@ -115,6 +115,11 @@ class Run {
   /// One command buffer from start to end.
   void once(const std::function<void(VkCommandBuffer)>& record);
 
+  /// Binds a compute pipeline with its resources, dispatches workgroups, and waits.
+  void dispatch(const Resources& resources, VkPipeline pipeline, uint32_t x, uint32_t y = 1, uint32_t z = 1);
+  /// The same with push constants from offset 0.
+  void dispatch(const Resources& resources, VkPipeline pipeline, uint32_t x, std::span<const std::byte> push);
+
   /// Fills a level (all layers, tightly packed) of one aspect of an image.
   void upload(const Image& image, uint32_t level, std::span<const unsigned char> bytes, VkImageAspectFlags aspect = 0);
   std::vector<unsigned char> download(const Image& image, uint32_t level, VkImageAspectFlags aspect = 0);

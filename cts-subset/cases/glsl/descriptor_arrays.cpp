@@ -41,11 +41,7 @@ CTS_CASE("glsl", "descriptor_array.buffers") {
   const Buffer out = run.buffer(256);
   const Resources res = run.resources({u, s, storage_buffer(2, which), storage_buffer(3, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, kCode));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
   run.out("out", out);
   for (uint32_t i = 0; i < kElements; ++i) run.out("stored" + std::to_string(i), stores[i]);
 }

@@ -114,11 +114,7 @@ CTS_CASE("descriptor_indexing", "nonuniform") {
   const Resources res = run.resources({uniforms, buffers, images, stored, texels, written, storage_buffer(6, result)});
   const VkPipeline pipeline =
       run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, nonuniform_code(is_claimed(run))));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
   run.out("result", result);
   for (size_t i = 0; i < out_buffers.size(); ++i) run.out("buffer" + std::to_string(i), out_buffers[i]);
   for (size_t i = 0; i < out_images.size(); ++i) run.out("image" + std::to_string(i), out_images[i]);

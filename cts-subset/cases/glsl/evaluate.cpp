@@ -74,12 +74,7 @@ void run_graphics(Run& run, Stage stage, const std::string& text, const Resource
 
 void run_compute(Run& run, const std::string& text, const Resources& res, const void* push) {
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, text));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, 32, push);
-    vkCmdDispatch(cmd, kInvocations / 64, 1, 1);
-  });
+  run.dispatch(res, pipeline, kInvocations / 64, std::span(static_cast<const std::byte*>(push), 32));
 }
 
 }  // namespace

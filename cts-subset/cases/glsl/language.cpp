@@ -148,11 +148,7 @@ void main() {
   r[id * 8u + 6u] = vec4(b.rows * vec4(b.c, 1.0), b.tail[j]);
   r[id * 8u + 7u] = vec4(b.s[k].m[1], b.rest[id % 20u].y, float(b.rest.length()));
 })"));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, 1, 1, 1);
-  });
+  run.dispatch(res, pipeline, 1);
   run.out("result", result, VK_FORMAT_R32G32B32A32_SFLOAT);
 }
 

@@ -42,12 +42,7 @@ void run_compute(Run& run, const std::string& text, uint32_t push_bytes = 0, uin
   const Resources res =
       run.resources({storage_buffer(0, in), storage_buffer(1, out), uniform_buffer(2, uniform)}, push_bytes);
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, text));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    if (push_bytes != 0) vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, push_bytes, words.data());
-    vkCmdDispatch(cmd, kCount / 64, 1, 1);
-  });
+  run.dispatch(res, pipeline, kCount / 64, std::as_bytes(std::span(words)).first(push_bytes));
   run.out("out", out);
   run.out("in", in, VK_FORMAT_R8_UINT);
 }

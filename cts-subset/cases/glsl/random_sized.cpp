@@ -171,11 +171,7 @@ CTS_RANDOM("glsl", "random_sized.compute", 40) {
   const Buffer in = run.buffer_of(words), out = run.buffer(kResults * kInvocations * 8);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, text));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, kInvocations / 64, 1, 1);
-  });
+  run.dispatch(res, pipeline, kInvocations / 64);
   run.out("results", out, VK_FORMAT_R32G32_UINT).may_be_blank = true;
 }
 

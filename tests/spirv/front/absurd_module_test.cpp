@@ -3,55 +3,25 @@
 #include <functional>
 
 #include "spirv/front/translate.h"
+#include "tests/spirv/compute_text.h"
 #include "tests/spirv/front/glsl.h"
 
 namespace vitrine::spirv::test {
 namespace {
 
-/// A compute module whose functions are `functions`, and whose entry point runs `body` with %x (uint) and ends storing
-/// %r.
-Words module_with(const std::string& declarations, const std::string& functions, const std::string& body) {
-  return assemble(R"(OpCapability Shader
-OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %id
-OpExecutionMode %main LocalSize 64 1 1
-OpDecorate %id BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpDecorate %block Block
-OpMemberDecorate %block 0 Offset 0
-OpDecorate %buffer DescriptorSet 0
-OpDecorate %buffer Binding 0
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%bool = OpTypeBool
-%uint = OpTypeInt 32 0
-%v3uint = OpTypeVector %uint 3
-%v3ptr = OpTypePointer Input %v3uint
-%id = OpVariable %v3ptr Input
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
-%block_ptr = OpTypePointer StorageBuffer %block
-%uint_ptr = OpTypePointer StorageBuffer %uint
-%buffer = OpVariable %block_ptr StorageBuffer
-%u0 = OpConstant %uint 0
-%u1 = OpConstant %uint 1
-%u7 = OpConstant %uint 7
-%unary = OpTypeFunction %uint %uint
-)" + declarations +
-                  R"(
-%main = OpFunction %void None %fn
-%entry = OpLabel
-)" + body + R"(
-OpReturn
-OpFunctionEnd
-)" + functions);
+/// A compute module whose functions are `functions`, and whose entry point runs `body` with %x, the number of the
+/// invocation, and %place, its word in a buffer.
+Words module_with(const std::string& declarations, const std::string& functions, const std::string& body,
+                  const std::string& locals = "") {
+  ComputeText module;
+  module.buffers = {"buffer"};
+  module.declarations = "%u7 = OpConstant %uint 7\n%unary = OpTypeFunction %uint %uint\n" + declarations;
+  module.locals = locals;
+  module.body = "%x = OpCopyObject %uint %n\n%place = OpAccessChain %uint_ptr %buffer %u0 %x\n" + body;
+  module.functions = functions;
+  return assemble(module.text());
 }
 
-/// The entry point's usual beginning and end.
-std::string begin() {
-  return "%gid = OpLoad %v3uint %id\n%x = OpCompositeExtract %uint %gid 0\n"
-         "%place = OpAccessChain %uint_ptr %buffer %u0 %x\n";
-}
 std::string store(const std::string& id) { return "OpStore %place " + id + "\n"; }
 
 /// Whether the module compiles; an error says why.
@@ -79,13 +49,13 @@ TEST(AbsurdModule, RecursionIsRefused) {
       "%again = OpFunctionCall %uint %g %p\nOpReturnValue %again\nOpFunctionEnd\n"
       "%g = OpFunction %uint None %unary\n%q = OpFunctionParameter %uint\n%ge = OpLabel\n"
       "%more = OpFunctionCall %uint %f %q\nOpReturnValue %more\nOpFunctionEnd\n";
-  const Words words = module_with("", f, begin() + "%r = OpFunctionCall %uint %f %x\n" + store("%r"));
+  const Words words = module_with("", f, "%r = OpFunctionCall %uint %f %x\n" + store("%r"));
   EXPECT_FALSE(compiles(words));
   EXPECT_FALSE(compiles(words, false));
 }
 
 TEST(AbsurdModule, StraightLineOfAHundredThousandInstructions) {
-  std::string body = begin() + "%a0 = OpIAdd %uint %x %u7\n";
+  std::string body = "%a0 = OpIAdd %uint %x %u7\n";
   body += repeated(100000, [](std::size_t i) {
     return "%a" + number(i + 1) +
            (i % 3 == 0   ? " = OpIMul"
@@ -106,7 +76,7 @@ TEST(AbsurdModule, LongChainOfCalls) {
       return "%f" + n + " = OpFunction %uint None %unary\n%p" + n + " = OpFunctionParameter %uint\n%e" + n +
              " = OpLabel\n" + result + "\nOpReturnValue %r" + n + "\nOpFunctionEnd\n";
     });
-    return module_with("", functions, begin() + "%r = OpFunctionCall %uint %f0 %x\n" + store("%r"));
+    return module_with("", functions, "%r = OpFunctionCall %uint %f0 %x\n" + store("%r"));
   };
   EXPECT_TRUE(compiles(chain(40)));
   compiles(chain(5000));
@@ -124,8 +94,7 @@ TEST(AbsurdModule, CallsThatMultiply) {
   const std::string leaf =
       "%leaf = OpFunction %uint None %unary\n%pl = OpFunctionParameter %uint\n%el = OpLabel\n"
       "%rl = OpIMul %uint %pl %u7\nOpReturnValue %rl\nOpFunctionEnd\n";
-  EXPECT_FALSE(
-      compiles(module_with("", functions + leaf, begin() + "%r = OpFunctionCall %uint %f0 %x\n" + store("%r"))));
+  EXPECT_FALSE(compiles(module_with("", functions + leaf, "%r = OpFunctionCall %uint %f0 %x\n" + store("%r"))));
 }
 
 TEST(AbsurdModule, ThousandsOfFunctions) {
@@ -138,7 +107,7 @@ TEST(AbsurdModule, ThousandsOfFunctions) {
     return "%s" + number(i) + " = OpFunctionCall %uint %f" + number(i) + " " +
            (i == 0 ? std::string("%x") : "%s" + number(i - 1)) + "\n";
   });
-  EXPECT_TRUE(compiles(module_with("", functions, begin() + calls + store("%s4999"))));
+  EXPECT_TRUE(compiles(module_with("", functions, calls + store("%s4999"))));
 }
 
 Words nested_ifs(std::size_t depth) {
@@ -152,7 +121,7 @@ Words nested_ifs(std::size_t depth) {
     const std::string n = number(depth - 1 - i);
     return store("%x") + "OpBranch %m" + n + "\n%m" + n + " = OpLabel\n";
   });
-  return module_with("", "", begin() + open + close);
+  return module_with("", "", open + close);
 }
 
 TEST(AbsurdModule, DeepNestingOfSelections) {
@@ -174,7 +143,7 @@ Words nested_loops(std::size_t depth) {
     return store("%x") + "OpBranch %k" + n + "\n%k" + n + " = OpLabel\n%n" + n + " = OpIAdd %uint %i" + n +
            " %u1\nOpBranch %h" + n + "\n%m" + n + " = OpLabel\n";
   });
-  return module_with("", "", begin() + open + close);
+  return module_with("", "", open + close);
 }
 
 TEST(AbsurdModule, DeepNestingOfLoops) {
@@ -195,7 +164,7 @@ TEST(AbsurdModule, LoopsWithHugeConstantTripCounts) {
 
 TEST(AbsurdModule, SwitchOfManyCases) {
   constexpr std::size_t kCases = 2000;
-  std::string body = begin() + "OpSelectionMerge %done None\nOpSwitch %x %done";
+  std::string body = "OpSelectionMerge %done None\nOpSwitch %x %done";
   body += repeated(kCases, [](std::size_t i) { return std::string(" ") + number(i) + " %k" + number(i); }) + "\n";
   body += repeated(kCases, [](std::size_t i) {
     const std::string n = number(i);
@@ -207,24 +176,25 @@ TEST(AbsurdModule, SwitchOfManyCases) {
 TEST(AbsurdModule, HugeVariables) {
   for (const char* storage : {"Private", "Workgroup", "Function"})
     for (const char* length : {"4194304", "1073741824", "4294967295"}) {
-      const std::string declarations = std::string("%n = OpConstant %uint ") + length +
-                                       "\n%big = OpTypeArray %uint %n\n%big_ptr = OpTypePointer " + storage +
+      const std::string declarations = std::string("%length = OpConstant %uint ") + length +
+                                       "\n%big = OpTypeArray %uint %length\n%big_ptr = OpTypePointer " + storage +
                                        " %big\n%part_ptr = OpTypePointer " + storage + " %uint\n";
       const std::string variable = std::string("%v = OpVariable %big_ptr ") + storage + "\n";
       const bool local = std::string(storage) == "Function";
-      const std::string body = (local ? variable : "") + begin() +
-                               "%at = OpAccessChain %part_ptr %v %x\nOpStore %at %x\n%r = OpLoad %uint %at\n" +
-                               store("%r");
-      EXPECT_FALSE(compiles(module_with(declarations + (local ? "" : variable), "", body), false)) << storage << length;
+      const std::string body =
+          "%at = OpAccessChain %part_ptr %v %x\nOpStore %at %x\n%r = OpLoad %uint %at\n" + store("%r");
+      EXPECT_FALSE(
+          compiles(module_with(declarations + (local ? "" : variable), "", body, local ? variable : ""), false))
+          << storage << length;
     }
 }
 
 TEST(AbsurdModule, HugeConstants) {
   for (const char* length : {"1048576", "4294967295"})
-    EXPECT_FALSE(compiles(module_with(std::string("%n = OpConstant %uint ") + length +
-                                          "\n%big = OpTypeArray %uint %n\n%outer = OpTypeArray %big %n\n"
+    EXPECT_FALSE(compiles(module_with(std::string("%length = OpConstant %uint ") + length +
+                                          "\n%big = OpTypeArray %uint %length\n%outer = OpTypeArray %big %length\n"
                                           "%null = OpConstantNull %outer\n",
-                                      "", begin() + store("%x")),
+                                      "", store("%x")),
                           false));
 }
 
@@ -232,25 +202,26 @@ TEST(AbsurdModule, DeepNestingOfTypes) {
   const std::string types = "%s0 = OpTypeStruct %uint\n" + repeated(1000, [](std::size_t i) {
                               return "%s" + number(i + 1) + " = OpTypeStruct %s" + number(i) + "\n";
                             });
-  EXPECT_FALSE(compiles(module_with(types, "", begin() + store("%x")), false));
+  EXPECT_FALSE(compiles(module_with(types, "", store("%x")), false));
 }
 
 /// Arrays of arrays whose elements are few but whose copies are many.
 TEST(AbsurdModule, CopiesOfLargeArrays) {
   const std::string declarations =
-      "%n = OpConstant %uint 4096\n%big = OpTypeArray %uint %n\n%big_ptr = OpTypePointer Function %big\n"
+      "%length = OpConstant %uint 4096\n%big = OpTypeArray %uint %length\n%big_ptr = OpTypePointer Function %big\n"
       "%part_ptr = OpTypePointer Function %uint\n";
-  std::string body = "%v = OpVariable %big_ptr Function\n%w = OpVariable %big_ptr Function\n" + begin();
-  body += repeated(
+  const std::string copies = repeated(
       200, [](std::size_t i) { return "%l" + number(i) + " = OpLoad %big %v\nOpStore %w %l" + number(i) + "\n"; });
   compiles(module_with(declarations, "",
-                       body + "%at = OpAccessChain %part_ptr %w %x\n%r = OpLoad %uint %at\n" + store("%r")));
+                       copies + "%at = OpAccessChain %part_ptr %w %x\n%r = OpLoad %uint %at\n" + store("%r"),
+                       "%v = OpVariable %big_ptr Function\n%w = OpVariable %big_ptr Function\n"));
 }
 
 TEST(AbsurdModule, ManyVariablesAndPhis) {
-  std::string body = "%flag = OpINotEqual %bool %u0 %u1\n" + begin() +
-                     "%odd = OpIEqual %bool %x %u7\nOpSelectionMerge %m None\nOpBranchConditional %odd %t %m\n"
-                     "%t = OpLabel\nOpBranch %m\n%m = OpLabel\n";
+  std::string body =
+      "%flag = OpINotEqual %bool %u0 %u1\n"
+      "%odd = OpIEqual %bool %x %u7\nOpSelectionMerge %m None\nOpBranchConditional %odd %t %m\n"
+      "%t = OpLabel\nOpBranch %m\n%m = OpLabel\n";
   body += repeated(20000, [](std::size_t i) { return "%p" + number(i) + " = OpPhi %uint %u7 %entry %x %t\n"; });
   body += "%q0 = OpIAdd %uint %p0 %x\n";
   body += repeated(19999, [](std::size_t i) {

@@ -3,6 +3,7 @@
 #include "spirv/exec/profile.h"
 #include "spirv/exec/wave_memory.h"
 #include "spirv/program.h"
+#include "tests/spirv/compute_text.h"
 #include "tests/spirv/front/glsl.h"
 
 namespace vitrine::spirv::test {
@@ -12,55 +13,24 @@ constexpr std::uint32_t kCount = 64;
 
 /// Words of a module whose `body` makes %r (uint) from %x (uint, the invocation's number). `interface`: further
 /// variables of the entry point; the module is of SPIR-V 1.4 then.
-Words module_of(const std::string& body, const std::string& declarations, const std::string& imports,
-                const std::string& addressing, const std::string& decorations, const std::string& interface = "") {
-  return assemble(imports + "\nOpMemoryModel " + addressing + R"( GLSL450
-OpEntryPoint GLCompute %main "main" %id)" +
-                      interface + R"(
-OpExecutionMode %main LocalSize 64 1 1
-OpDecorate %id BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpDecorate %block Block
-OpMemberDecorate %block 0 Offset 0
-OpDecorate %buffer DescriptorSet 0
-OpDecorate %buffer Binding 0
-)" + decorations + R"(
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%bool = OpTypeBool
-%uint = OpTypeInt 32 0
-%v3uint = OpTypeVector %uint 3
-%v3ptr = OpTypePointer Input %v3uint
-%id = OpVariable %v3ptr Input
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
-%block_ptr = OpTypePointer StorageBuffer %block
-%uint_ptr = OpTypePointer StorageBuffer %uint
-%buffer = OpVariable %block_ptr StorageBuffer
-%u0 = OpConstant %uint 0
-%u1 = OpConstant %uint 1
-%u7 = OpConstant %uint 7
-)" + declarations +
-                      R"(
-%main = OpFunction %void None %fn
-%entry = OpLabel
-%gid = OpLoad %v3uint %id
-%x = OpCompositeExtract %uint %gid 0
-)" + body + R"(
-%to = OpAccessChain %uint_ptr %buffer %u0 %x
-OpStore %to %r
-OpReturn
-OpFunctionEnd
-)",
-                  interface.empty() ? SPV_ENV_VULKAN_1_1 : SPV_ENV_VULKAN_1_1_SPIRV_1_4);
+Words module_of(const std::string& body, const std::string& declarations, const std::string& capabilities,
+                const std::string& addressing, const std::string& annotations, const std::string& interface = "") {
+  ComputeText module;
+  module.capabilities = capabilities;
+  module.addressing = addressing;
+  module.interface = interface;
+  module.annotations = annotations;
+  module.buffers = {"buffer"};
+  module.declarations = "%u7 = OpConstant %uint 7\n" + declarations;
+  module.body = "%x = OpCopyObject %uint %n\n" + body + store_word("%r", "buffer");
+  return assemble(module.text(), interface.empty() ? SPV_ENV_VULKAN_1_1 : SPV_ENV_VULKAN_1_1_SPIRV_1_4);
 }
 
 std::vector<std::uint32_t> run_spirv(const std::string& body, const std::string& declarations = "",
-                                     const std::string& imports = "OpCapability Shader\n",
-                                     const std::string& addressing = "Logical", const std::string& decorations = "",
-                                     const std::string& interface = "") {
+                                     const std::string& capabilities = "", const std::string& addressing = "Logical",
+                                     const std::string& annotations = "", const std::string& interface = "") {
   std::vector<std::uint32_t> values(kCount);
-  auto shader = compile(module_of(body, declarations, imports, addressing, decorations, interface),
+  auto shader = compile(module_of(body, declarations, capabilities, addressing, annotations, interface),
                         options_for(VK_SHADER_STAGE_COMPUTE_BIT));
   EXPECT_TRUE(shader) << shader.message();
   if (!shader) return values;
@@ -78,7 +48,7 @@ std::vector<std::uint32_t> run_spirv(const std::string& body, const std::string&
   return values;
 }
 
-constexpr char kPointerCapabilities[] = "OpCapability Shader\nOpCapability VariablePointers\n";
+constexpr char kPointerCapabilities[] = "OpCapability VariablePointers\n";
 
 TEST(RunSpirv, PointersCompareAndSubtract) {
   // "Pointers must be from the same array": here the fourth element and that of the invocation.
@@ -102,7 +72,7 @@ TEST(RunSpirv, PointersCompareAndSubtract) {
 
 TEST(RunSpirv, GroupsRotateAndCombineBooleans) {
   const std::string capabilities =
-      "OpCapability Shader\nOpCapability GroupNonUniformArithmetic\nOpCapability GroupNonUniformRotateKHR\n"
+      "OpCapability GroupNonUniformArithmetic\nOpCapability GroupNonUniformRotateKHR\n"
       "OpExtension \"SPV_KHR_subgroup_rotate\"\n";
   const auto got =
       run_spirv("%r = OpGroupNonUniformRotateKHR %uint %u3 %x %u7\n", "%u3 = OpConstant %uint 3\n", capabilities);
@@ -110,7 +80,7 @@ TEST(RunSpirv, GroupsRotateAndCombineBooleans) {
   const auto combined = [&](const std::string& opcode) {
     return run_spirv("%low = OpULessThan %bool %x %u7\n%c = " + opcode +
                          " %bool %u3 InclusiveScan %low\n%r = OpSelect %uint %c %u1 %u0\n",
-                     "%u3 = OpConstant %uint 3\n", "OpCapability Shader\nOpCapability GroupNonUniformArithmetic\n");
+                     "%u3 = OpConstant %uint 3\n", "OpCapability GroupNonUniformArithmetic\n");
   };
   const auto all = combined("OpGroupNonUniformLogicalAnd"), some = combined("OpGroupNonUniformLogicalOr"),
              odd = combined("OpGroupNonUniformLogicalXor");
@@ -132,7 +102,7 @@ TEST(RunSpirv, InputsThatNothingSuppliesAreZero) {
 %lost_ptr = OpTypePointer Input %uint
 %lost = OpVariable %lost_ptr Input
 )",
-                                                   "OpCapability Shader\n", "Logical", "", " %buffer %lost");
+                                                   "", "Logical", "", " %buffer %lost");
   for (std::uint32_t i = 0; i < kCount; i++) ASSERT_EQ(got[i], i);
 }
 
@@ -143,7 +113,6 @@ TEST(RunSpirv, NonSemanticInstructionsAreIgnored) {
 %more = OpExtInst %void %strange 77 %r %u1
 )",
                                                    "", R"(
-OpCapability Shader
 OpExtension "SPV_KHR_non_semantic_info"
 %strange = OpExtInstImport "NonSemantic.Nobody.Knows"
 )");
@@ -192,7 +161,6 @@ TEST(RunSpirv, BroadcastsFromADynamicInvocation) {
                                                    "%u3 = OpConstant %uint 3\n%u9 = OpConstant %uint 9\n"
                                                    "%u100 = OpConstant %uint 100\n",
                                                    R"(
-OpCapability Shader
 OpCapability GroupNonUniform
 OpCapability GroupNonUniformBallot
 OpCapability GroupNonUniformQuad
@@ -202,7 +170,6 @@ OpCapability GroupNonUniformQuad
 
 /// Where the shader of the following tests finds its pointer: a PhysicalStorageBuffer pointer made of two words.
 constexpr char kAddresses[] = R"(
-OpCapability Shader
 OpCapability PhysicalStorageBufferAddresses
 OpExtension "SPV_KHR_physical_storage_buffer"
 )";
@@ -269,7 +236,7 @@ TEST(RunSpirv, OffsetAndCountOfABitFieldHaveAnyWidth) {
 %l2 = OpConstant %long 2
 %l6 = OpConstant %long 6
 )",
-                                                   "OpCapability Shader\nOpCapability Int16\nOpCapability Int64\n");
+                                                   "OpCapability Int16\nOpCapability Int64\n");
   for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], (x << 8) + (x >> 2 & 3)) << x;
 }
 
@@ -293,7 +260,7 @@ OpStore %a %x
 %local_uint = OpTypePointer Private %uint
 %local = OpVariable %pair_ptr Private
 )",
-                                                   "OpCapability Shader\nOpCapability Int16\nOpCapability Int64\n");
+                                                   "OpCapability Int16\nOpCapability Int64\n");
   for (std::uint32_t x = 0; x < kCount; x++) EXPECT_EQ(got[x], x) << x;
 }
 
@@ -336,7 +303,6 @@ OpStore %half_at %short
 %halves = OpVariable %half_block_ptr StorageBuffer
 )",
                                                    R"(
-OpCapability Shader
 OpCapability Float64
 OpCapability StorageBuffer16BitAccess
 OpExtension "SPV_KHR_16bit_storage"
@@ -374,7 +340,6 @@ OpStore %from %u7
 %buffers = OpVariable %array_ptr StorageBuffer
 )",
                                                    R"(
-OpCapability Shader
 OpCapability VariablePointers
 )",
                                                    "Logical",
@@ -415,8 +380,8 @@ OpFunctionEnd
 }
 
 TEST(RunSpirv, ProfilesCountInstructionsByName) {
-  auto shader = compile(module_of("%r = OpIMul %uint %x %x\n", "", "OpCapability Shader\n", "Logical", ""),
-                        options_for(VK_SHADER_STAGE_COMPUTE_BIT));
+  auto shader =
+      compile(module_of("%r = OpIMul %uint %x %x\n", "", "", "Logical", ""), options_for(VK_SHADER_STAGE_COMPUTE_BIT));
   ASSERT_TRUE(shader) << shader.message();
   const Program& program = shader.value()->program();
   EXPECT_EQ(exec::take_profile(program), "");

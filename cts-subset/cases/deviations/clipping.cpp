@@ -1,0 +1,61 @@
+// Listed deviations of clipping.
+#include "cases/deviations/deviation.h"
+
+namespace vitrine::cts {
+namespace {
+
+const AddCase kPoint("clipping", "deviation.point_clipping", "point-clipping", case_against_control, [](Run& run) {
+  run.require(run.gpu.features.largePoints, "largePoints");
+  GraphicsSpec spec;
+  spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+  spec.vertex = kBigPoint;
+  draw(run, "outside", {}, spec, colored({{-1.0625f, 0.25f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 1.0f}}));
+  draw(run, "inside_only", {}, spec, colored({{-5.0f, 0.25f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 1.0f}}));
+});
+
+/// The outline of a clipped triangle in layer 1.
+const AddCase kClippedLayer(
+    "clipping", "deviation.clipped_polygon_layer", "clipped-polygon-layer",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) -> std::string {
+      const size_t layer = device[0].bytes.size() / 2;
+      const auto blank = [&](const Output& output) {
+        for (size_t at = 4; at < layer; ++at)
+          if (output.bytes[at] != output.bytes[at % 4]) return false;
+        return true;
+      };
+      if (!blank(device[0])) return "the device draws to layer 0";
+      return blank(reference[0]) ? "the reference's fault does not show" : "";
+    },
+    [](Run& run) {
+      run.require(run.gpu.has("VK_EXT_shader_viewport_index_layer"), "VK_EXT_shader_viewport_index_layer");
+      TargetSpec target;
+      target.layers = 2;
+      GraphicsSpec spec;
+      spec.vertex =
+          "#extension GL_ARB_shader_viewport_layer_array : require\nlayout(location = 0) in vec4 position;\n"
+          "layout(location = 1) in vec4 color;\nlayout(location = 0) out vec4 passed;\n"
+          "void main() {\n  passed = color;\n  gl_Position = position;\n  gl_Layer = 1;\n}\n";
+      spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
+      draw(run, "layers", target, spec,
+           colored({{-0.9f, -0.5f, 0.5f, 1}, {1.9f, 0.1f, 0.5f, 1}, {-0.5f, 1.8f, 0.5f, 1}}));
+    });
+
+/// The same triangles, crossing the view volume, into BGRA8 with and without a depth attachment.
+const AddCase kBgra("clipping", "deviation.bgra8_route", "bgra8-route", case_against_control, [](Run& run) {
+  std::vector<float> values;
+  for (int i = 0; i < 3 * 12; ++i) {
+    const float w = run.random.real(0.7f, 1.4f);
+    for (const float v : {run.random.real(-1.7f, 1.7f) * w, run.random.real(-1.7f, 1.7f) * w, 0.5f * w, w})
+      values.push_back(v);
+    for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
+  }
+  TargetSpec target;
+  target.colors = {VK_FORMAT_B8G8R8A8_UNORM};
+  target.width = target.height = 200;
+  draw(run, "alone", target, {}, values);
+  target.depth = VK_FORMAT_D32_SFLOAT;
+  draw(run, "with_depth", target, {}, values);
+});
+
+}  // namespace
+}  // namespace vitrine::cts
