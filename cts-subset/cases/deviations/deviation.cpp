@@ -1,3 +1,4 @@
+// How the cases of the listed deviations judge and draw.
 #include "cases/deviations/deviation.h"
 
 namespace vitrine::cts {
