@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "raster/color_blend-inl.h"
 #include "raster/color_pack-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -158,42 +159,26 @@ struct BlendShared {
   VB constants, alpha_bytes, alpha_places;
 };
 
-/// The factor of every byte, as if all channels had it.
+/// The operands of every byte, as if all channels had the same factor.
+struct RowFactors {
+  const BlendRow& row;
+  const BlendShared& shared;
+
+  HWY_INLINE VB alpha(VB v) const { return hn::TableLookupBytes(v, shared.alpha_places); }
+  HWY_INLINE VB zero() const { return hn::Zero(Bytes()); }
+  HWY_INLINE VB one() const { return hn::Set(Bytes(), 255); }
+  HWY_INLINE VB complement(VB v) const { return hn::Xor(one(), v); }
+  HWY_INLINE VB src() const { return row.src; }
+  HWY_INLINE VB src_alpha() const { return alpha(row.src); }
+  HWY_INLINE VB dst() const { return row.dst; }
+  HWY_INLINE VB dst_alpha() const { return alpha(row.dst); }
+  HWY_INLINE VB constant() const { return shared.constants; }
+  HWY_INLINE VB constant_alpha() const { return alpha(shared.constants); }
+  HWY_INLINE VB saturate() const { return hn::Or(hn::Min(src_alpha(), complement(dst_alpha())), shared.alpha_bytes); }
+};
+
 HWY_INLINE VB factor_of(VkBlendFactor factor, const BlendRow& row, const BlendShared& shared) {
-  const VB one = hn::Set(Bytes(), 255);
-  const auto alpha = [&](VB v) { return hn::TableLookupBytes(v, shared.alpha_places); };
-  switch (factor) {
-    case VK_BLEND_FACTOR_ONE:
-      return one;
-    case VK_BLEND_FACTOR_SRC_COLOR:
-      return row.src;
-    case VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR:
-      return hn::Xor(one, row.src);
-    case VK_BLEND_FACTOR_DST_COLOR:
-      return row.dst;
-    case VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR:
-      return hn::Xor(one, row.dst);
-    case VK_BLEND_FACTOR_SRC_ALPHA:
-      return alpha(row.src);
-    case VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA:
-      return hn::Xor(one, alpha(row.src));
-    case VK_BLEND_FACTOR_DST_ALPHA:
-      return alpha(row.dst);
-    case VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA:
-      return hn::Xor(one, alpha(row.dst));
-    case VK_BLEND_FACTOR_CONSTANT_COLOR:
-      return shared.constants;
-    case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR:
-      return hn::Xor(one, shared.constants);
-    case VK_BLEND_FACTOR_CONSTANT_ALPHA:
-      return alpha(shared.constants);
-    case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA:
-      return hn::Xor(one, alpha(shared.constants));
-    case VK_BLEND_FACTOR_SRC_ALPHA_SATURATE:
-      return hn::Or(hn::Min(alpha(row.src), hn::Xor(one, alpha(row.dst))), shared.alpha_bytes);
-    default:
-      return hn::Zero(Bytes());
-  }
+  return blend_factor_lanes(factor, RowFactors{row, shared});
 }
 
 /// E2 of each 16-bit lane: a * b / 255, rounded, in the upper byte.

@@ -1,5 +1,5 @@
-// Fast colour output for the most common targets: four UNORM bytes in any order, with and without blending, and 32-bit
-// floats. Same bits as the general function of color.cpp (tests compare them).
+// Fast colour output for the most common targets: four UNORM bytes in any order, with and without blending. Same bits
+// as the general function of color.cpp (tests compare them).
 #include "raster/color_fast.h"
 
 #include <cstring>
@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "raster/color_blend-inl.h"
 #include "raster/color_pack-inl.h"
 #include "raster/color_srgb-inl.h"
 
@@ -160,13 +161,6 @@ void gather(const ColorWave& wave, base::LaneMask mask, Words& words) {
   }
 }
 
-/// Lanes of a set of quads.
-base::LaneMask lanes_of(std::uint32_t quads) {
-  base::LaneMask lanes = 0;
-  for (; quads; quads &= quads - 1) lanes |= base::LaneMask{0xf} << (4 * std::countr_zero(quads));
-  return lanes;
-}
-
 template <class Packer>
 HWY_INLINE void store_packed(const ColorWriter& writer, const ColorWave& wave) {
   Words words;
@@ -207,45 +201,23 @@ struct ByteOperands {
   std::uint16_t constants[4];
 };
 
-HWY_INLINE V16 factor8(VkBlendFactor factor, const ByteOperands& in, std::size_t c, std::size_t i) {
-  const U16 d;
-  const V16 one = hn::Set(d, 255);
-  const auto src = [&](std::size_t k) { return hn::Load(d, in.src[k].lane + i); };
-  const auto dst = [&](std::size_t k) { return hn::Load(d, in.dst[k].lane + i); };
-  const auto constant = [&](std::size_t k) { return hn::Set(d, in.constants[k]); };
-  switch (factor) {
-    case VK_BLEND_FACTOR_ONE:
-      return one;
-    case VK_BLEND_FACTOR_SRC_COLOR:
-      return src(c);
-    case VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR:
-      return hn::Sub(one, src(c));
-    case VK_BLEND_FACTOR_DST_COLOR:
-      return dst(c);
-    case VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR:
-      return hn::Sub(one, dst(c));
-    case VK_BLEND_FACTOR_SRC_ALPHA:
-      return src(3);
-    case VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA:
-      return hn::Sub(one, src(3));
-    case VK_BLEND_FACTOR_DST_ALPHA:
-      return dst(3);
-    case VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA:
-      return hn::Sub(one, dst(3));
-    case VK_BLEND_FACTOR_CONSTANT_COLOR:
-      return constant(c);
-    case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR:
-      return hn::Sub(one, constant(c));
-    case VK_BLEND_FACTOR_CONSTANT_ALPHA:
-      return constant(3);
-    case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA:
-      return hn::Sub(one, constant(3));
-    case VK_BLEND_FACTOR_SRC_ALPHA_SATURATE:
-      return c == 3 ? one : hn::Min(src(3), hn::Sub(one, dst(3)));
-    default:
-      return hn::Zero(d);
-  }
-}
+/// The operands of channel c in lanes i.., as blend_factor asks for them.
+struct ByteFactors {
+  const ByteOperands& in;
+  std::size_t c, i;
+
+  HWY_INLINE V16 load(const Bytes& bytes) const { return hn::Load(U16(), bytes.lane + i); }
+  HWY_INLINE V16 zero() const { return hn::Zero(U16()); }
+  HWY_INLINE V16 one() const { return hn::Set(U16(), 255); }
+  HWY_INLINE V16 complement(V16 v) const { return hn::Sub(one(), v); }
+  HWY_INLINE V16 src() const { return load(in.src[c]); }
+  HWY_INLINE V16 src_alpha() const { return load(in.src[3]); }
+  HWY_INLINE V16 dst() const { return load(in.dst[c]); }
+  HWY_INLINE V16 dst_alpha() const { return load(in.dst[3]); }
+  HWY_INLINE V16 constant() const { return hn::Set(U16(), in.constants[c]); }
+  HWY_INLINE V16 constant_alpha() const { return hn::Set(U16(), in.constants[3]); }
+  HWY_INLINE V16 saturate() const { return c == 3 ? one() : hn::Min(src_alpha(), complement(dst_alpha())); }
+};
 
 HWY_INLINE V16 combine8(VkBlendOp op, V16 src, V16 dst) {
   switch (op) {
@@ -265,8 +237,8 @@ HWY_INLINE V16 combine8(VkBlendOp op, V16 src, V16 dst) {
 void blend_channel8(const BlendEquation& equation, const ByteOperands& in, std::size_t c, Bytes& out) {
   const U16 d;
   for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d)) {
-    const V16 src = mul8(hn::Load(d, in.src[c].lane + i), factor8(equation.src, in, c, i));
-    const V16 dst = mul8(hn::Load(d, in.dst[c].lane + i), factor8(equation.dst, in, c, i));
+    const V16 src = mul8(hn::Load(d, in.src[c].lane + i), blend_factor_lanes(equation.src, ByteFactors{in, c, i}));
+    const V16 dst = mul8(hn::Load(d, in.dst[c].lane + i), blend_factor_lanes(equation.dst, ByteFactors{in, c, i}));
     hn::Store(combine8(equation.op, src, dst), d, out.lane + i);
   }
 }
@@ -295,95 +267,9 @@ void blend_bytes(const ColorWriter& writer, const ColorWave& wave) {
   });
 }
 
-using F32 = hn::CappedTag<float, kWaveWidth>;
-using VF = hn::Vec<F32>;
-
-struct alignas(64) Floats {
-  float lane[kWaveWidth];
-};
-
-/// What blending in binary32 needs of a wave.
-struct FloatOperands {
-  Floats src[4], dst[4];
-  float constants[4];
-};
-
 HWY_INLINE VF clamp_float(VF x) {
   const F32 d;
   return lanes_min_second(lanes_max_second(x, hn::Zero(d)), hn::Set(d, 1.0f));
-}
-
-/// blend_factor() of blend.h in binary32, for formats with alpha; no dual-source ones.
-HWY_INLINE VF factor_float(VkBlendFactor factor, const FloatOperands& in, std::size_t c, std::size_t i) {
-  const F32 d;
-  const VF one = hn::Set(d, 1.0f);
-  const auto src = [&](std::size_t k) HWY_ATTR { return hn::Load(d, in.src[k].lane + i); };
-  const auto dst = [&](std::size_t k) HWY_ATTR { return hn::Load(d, in.dst[k].lane + i); };
-  const auto constant = [&](std::size_t k) HWY_ATTR { return hn::Set(d, in.constants[k]); };
-  switch (factor) {
-    case VK_BLEND_FACTOR_ONE:
-      return one;
-    case VK_BLEND_FACTOR_SRC_COLOR:
-      return src(c);
-    case VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR:
-      return hn::Sub(one, src(c));
-    case VK_BLEND_FACTOR_DST_COLOR:
-      return dst(c);
-    case VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR:
-      return hn::Sub(one, dst(c));
-    case VK_BLEND_FACTOR_SRC_ALPHA:
-      return src(3);
-    case VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA:
-      return hn::Sub(one, src(3));
-    case VK_BLEND_FACTOR_DST_ALPHA:
-      return dst(3);
-    case VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA:
-      return hn::Sub(one, dst(3));
-    case VK_BLEND_FACTOR_CONSTANT_COLOR:
-      return constant(c);
-    case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR:
-      return hn::Sub(one, constant(c));
-    case VK_BLEND_FACTOR_CONSTANT_ALPHA:
-      return constant(3);
-    case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA:
-      return hn::Sub(one, constant(3));
-    case VK_BLEND_FACTOR_SRC_ALPHA_SATURATE:
-      return c == 3 ? one : lanes_min_second(src(3), hn::Sub(one, dst(3)));
-    default:
-      return hn::Zero(d);
-  }
-}
-
-HWY_INLINE VF combine_float(VkBlendOp op, VF a, VF b) {
-  return op == VK_BLEND_OP_ADD ? hn::Add(a, b) : op == VK_BLEND_OP_SUBTRACT ? hn::Sub(a, b) : hn::Sub(b, a);
-}
-
-/// blend_channel() of blend.h in binary32, for formats of several channels.
-HWY_INLINE VF blend_float(const BlendEquation& equation, const BlendShape& shape, const FloatOperands& in,
-                          std::size_t c, std::size_t i) {
-  const F32 d;
-  const VF src = hn::Load(d, in.src[c].lane + i), dst = hn::Load(d, in.dst[c].lane + i), zero = hn::Zero(d);
-  const VkBlendOp op = equation.op;
-  const bool additive = op != VK_BLEND_OP_MIN && op != VK_BLEND_OP_MAX;
-  const VF src_factor = factor_float(equation.src, in, c, i);
-  if (additive && shape.common_factor) {
-    const VF combined = combine_float(op, src, dst);
-    return shape.src_one ? combined : shape.src_zero ? zero : hn::Mul(combined, src_factor);
-  }
-  const VF src_term = shape.src_one ? src : shape.src_zero ? zero : hn::Mul(src, src_factor);
-  const VF dst_term = shape.dst_one ? dst : shape.dst_zero ? zero : hn::Mul(dst, factor_float(equation.dst, in, c, i));
-  switch (op) {
-    case VK_BLEND_OP_MIN:
-      return lanes_min_second(src_term, dst_term);
-    case VK_BLEND_OP_MAX:
-      return lanes_max_second(src_term, dst_term);
-    case VK_BLEND_OP_ADD:
-      return shape.src_zero ? dst_term : shape.dst_zero ? src_term : hn::Add(src_term, dst_term);
-    case VK_BLEND_OP_SUBTRACT:
-      return shape.dst_zero ? src_term : hn::Sub(src_term, dst_term);
-    default:
-      return shape.src_zero ? dst_term : hn::Sub(dst_term, src_term);
-  }
 }
 
 /// A channel of stored texels in binary32.
@@ -403,11 +289,12 @@ void blend_srgb(const ColorWriter& writer, const ColorWave& wave) {
   const F32 d;
   const BlendShape shape = blend_shape(writer);
   FloatOperands in;
+  set_constants(writer, in);
   for (std::size_t c = 0; c < 4; ++c) {
     for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d))
       hn::Store(clamp_float(hn::Load(d, reinterpret_cast<const float*>(wave.color[c].lane + i))), d,
                 in.src[c].lane + i);
-    in.constants[c] = base::min_second(base::max_second(writer.constants[c], 0.0f), 1.0f);
+    in.constants[c] = base::min_second(base::max_second(in.constants[c], 0.0f), 1.0f);
   }
   const SrgbPacker packer(writer);
   const SrgbPacker::Texels texels;
@@ -420,7 +307,7 @@ void blend_srgb(const ColorWriter& writer, const ColorWave& wave) {
     base::WaveRegister result[4];
     for (std::size_t c = 0; c < 4; ++c)
       for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(d))
-        hn::Store(blend_float(c < 3 ? writer.rgb : writer.alpha, shape, in, c, i), d,
+        hn::Store(blend_floats(c < 3 ? writer.rgb : writer.alpha, shape, in, c, i), d,
                   reinterpret_cast<float*>(result[c].lane + i));
     for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(texels))
       hn::Store(packer.pack(result, i), texels, reinterpret_cast<std::int32_t*>(words.lane + i));
@@ -471,31 +358,6 @@ bool reads_second_source(const ColorWriter& writer) {
   return false;
 }
 
-namespace {
-
-/// 32-bit floats and integers are stored as they are.
-void store_words(const ColorWriter& writer, const ColorWave& wave) {
-  const texel::FormatDesc& format = *writer.format;
-  const std::size_t channels = format.channel_count;
-  base::for_each_lane(wave.mask, [&](std::size_t lane) {
-    std::uint32_t texel[4];
-    for (std::size_t c = 0; c < channels; ++c) texel[c] = wave.color[c].lane[lane];
-    std::memcpy(pixel_address(wave, lane), texel, channels * 4);
-  });
-}
-
-bool is_words(const texel::FormatDesc& format) {
-  for (std::size_t c = 0; c < format.channel_count; ++c) {
-    const texel::Channel& channel = format.channel[c];
-    const bool raw = channel.numeric == texel::Numeric::kSfloat || channel.numeric == texel::Numeric::kUint ||
-                     channel.numeric == texel::Numeric::kSint;
-    if (channel.bits != 32 || !raw || format.rgba[c] != static_cast<std::int8_t>(c)) return false;
-  }
-  return format.channel_count != 0;
-}
-
-}  // namespace
-
 ColorFunction fast_color_function(const ColorWriter& writer) {
   if (writer.logic) return nullptr;
   if (is_four_bytes(*writer.format)) {
@@ -506,8 +368,7 @@ ColorFunction fast_color_function(const ColorWriter& writer) {
     if (writer.blend == BlendType::kNone) return byte_color_functions().store_srgb;
     return reads_second_source(writer) ? nullptr : byte_color_functions().blend_srgb;
   }
-  if (writer.blend == BlendType::kNone && !writer.masked && is_words(*writer.format)) return store_words;
-  return nullptr;
+  return float_color_function(writer);
 }
 
 }  // namespace vitrine::raster

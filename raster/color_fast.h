@@ -12,6 +12,10 @@ struct ByteColorFunctions {
 };
 ByteColorFunctions byte_color_functions();
 
+/// The colour function for channels of 16-bit floats or 32-bit words that lie in the order R, G, B, A, or null
+/// (color_floats.cpp).
+ColorFunction float_color_function(const ColorWriter& writer);
+
 /// Four UNORM bytes, in any order.
 bool is_four_bytes(const texel::FormatDesc& format);
 /// The same with sRGB colours.
@@ -25,6 +29,13 @@ void set_byte_places(ColorWriter& writer);
 /// Position of a component's byte in the texel of such a format, bits.
 inline int shift_of(const ColorWriter& writer, std::size_t component) {
   return writer.format->channel[static_cast<std::size_t>(writer.format->rgba[component])].offset;
+}
+
+/// Lanes of a set of quads (bit q = quad q).
+constexpr base::LaneMask lanes_of(std::uint32_t quads) {
+  base::LaneMask lanes = 0;
+  for (; quads; quads &= quads - 1) lanes |= base::LaneMask{0xf} << (4 * std::countr_zero(quads));
+  return lanes;
 }
 
 /// Splits a wave's quads so that no pass meets a pixel twice: calls pass(quad mask: bit q = quad q) in lane order.

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "texel/codec/half-inl.h"
 #include "texel/codec/srgb-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -114,65 +115,19 @@ std::size_t encode_srgb_bytes(const std::uint32_t* from, std::size_t floats, std
   });
 }
 
-#if HWY_TARGET <= HWY_AVX3
-HWY_INLINE hn::Vec<D> convert_halves(const std::uint16_t* half) {
-  return hn::Vec<D>{_mm512_cvtph_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(half)))};
-}
-#elif HWY_TARGET == HWY_AVX2
-HWY_INLINE hn::Vec<D> convert_halves(const std::uint16_t* half) {
-  return hn::Vec<D>{_mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(half)))};
-}
-#endif
-
 std::size_t decode_halves(const std::byte* from, std::size_t floats, std::uint32_t* to) {
   const hn::Rebind<std::uint16_t, D> d16;
   return whole_vectors(floats, [&](std::size_t i) {
-    const auto* source = reinterpret_cast<const std::uint16_t*>(from) + i;
-    const auto half = hn::PromoteTo(DU(), hn::LoadU(d16, source));
-#if HWY_TARGET <= HWY_AVX2
-    // The instruction quiets signalling NaN.
-    const auto quieted = convert_halves(source);
-    const auto quiet = hn::Set(DU(), 0x00400000u);
-    const auto nan = hn::Or(hn::AndNot(quiet, hn::BitCast(DU(), quieted)), hn::And(hn::ShiftLeft<13>(half), quiet));
-    const auto number = hn::RebindMask(DU(), hn::Eq(quieted, quieted));
-    const auto value = hn::IfThenElse(number, hn::BitCast(DU(), quieted), nan);
-    hn::StoreU(value, DU(), to + i);
-#else
-    hn::StoreU(hn::BitCast(DU(), lanes_half_to_float(half)), DU(), to + i);
-#endif
+    const auto halves = hn::LoadU(d16, reinterpret_cast<const std::uint16_t*>(from) + i);
+    hn::StoreU(hn::BitCast(DU(), floats_of_halves(halves)), DU(), to + i);
   });
 }
 
-/// Toward zero, as float_to_half_truncate.
 std::size_t encode_halves(const std::uint32_t* from, std::size_t floats, std::byte* to) {
-  [[maybe_unused]] const hn::Rebind<std::uint16_t, D> d16;
+  const hn::Rebind<std::uint16_t, D> d16;
   return whole_vectors(floats, [&](std::size_t i) {
-    const auto bits = hn::LoadU(DU(), from + i);
-#if HWY_TARGET <= HWY_AVX3
-    const __m256i halves = _mm512_cvtps_ph(hn::BitCast(D(), bits).raw, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
-    return _mm256_storeu_si256(reinterpret_cast<__m256i*>(reinterpret_cast<std::uint16_t*>(to) + i), halves);
-#elif HWY_TARGET == HWY_AVX2
-    const __m128i halves = _mm256_cvtps_ph(hn::BitCast(D(), bits).raw, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
-    return _mm_storeu_si128(reinterpret_cast<__m128i*>(reinterpret_cast<std::uint16_t*>(to) + i), halves);
-#else
-    const auto sign = hn::And(hn::ShiftRight<16>(bits), hn::Set(DU(), 0x8000u));
-    const auto magnitude = hn::And(bits, hn::Set(DU(), 0x7fffffffu));
-    const auto order = hn::BitCast(DI(), magnitude);
-    const auto select = [](auto condition, auto yes, auto no) {
-      return hn::IfThenElse(hn::RebindMask(DU(), condition), yes, no);
-    };
-    const auto shifted = hn::ShiftRight<13>(magnitude);
-    // Below 2^-14: multiples of 2^-24.
-    const auto tiny = lanes_truncate_to_int(hn::Mul(hn::BitCast(D(), magnitude), hn::Set(D(), 16777216.0f)));
-    auto half = hn::Sub(shifted, hn::Set(DU(), 112u << 10));
-    half = select(hn::Lt(order, hn::Set(DI(), 113 << 23)), hn::BitCast(DU(), tiny), half);
-    half = select(hn::Gt(order, hn::Set(DI(), 0x477fffff)), hn::Set(DU(), 0x7bffu), half);
-    half = select(hn::Eq(order, hn::Set(DI(), 0x7f800000)), hn::Set(DU(), 0x7c00u), half);
-    const auto nan = hn::Or(hn::Set(DU(), 0x7e00u), hn::And(shifted, hn::Set(DU(), 0x3ffu)));
-    half = select(hn::Gt(order, hn::Set(DI(), 0x7f800000)), nan, half);
-    const auto result = hn::BitCast(DI(), hn::Or(half, sign));
-    hn::StoreU(hn::DemoteTo(d16, result), d16, reinterpret_cast<std::uint16_t*>(to) + i);
-#endif
+    const auto halves = halves_of_floats(hn::BitCast(D(), hn::LoadU(DU(), from + i)));
+    hn::StoreU(halves, d16, reinterpret_cast<std::uint16_t*>(to) + i);
   });
 }
 

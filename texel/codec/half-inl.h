@@ -1,0 +1,74 @@
+// binary16 in memory to and from binary32, a vector at a time, in every denormal mode. The hardware's conversions where
+// it has them.
+
+#include "base/lane_math-inl.h"
+
+#if defined(VITRINE_TEXEL_HALF_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRINE_TEXEL_HALF_INL_H_
+#undef VITRINE_TEXEL_HALF_INL_H_
+#else
+#define VITRINE_TEXEL_HALF_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::texel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace vitrine::base::HWY_NAMESPACE;
+
+using HalfLanes = hn::Vec<hn::Rebind<std::uint16_t, hn::ScalableTag<float>>>;
+
+/// Exact, as half_to_float.
+HWY_INLINE hn::Vec<hn::ScalableTag<float>> floats_of_halves(HalfLanes halves) {
+  const hn::ScalableTag<std::uint32_t> du;
+  const auto half = hn::PromoteTo(du, halves);
+#if HWY_TARGET <= HWY_AVX2
+  const hn::ScalableTag<float> d;
+#if HWY_TARGET <= HWY_AVX3
+  const hn::Vec<decltype(d)> quieted{_mm512_cvtph_ps(halves.raw)};
+#else
+  const hn::Vec<decltype(d)> quieted{_mm256_cvtph_ps(halves.raw)};
+#endif
+  // The instruction quiets signalling NaN.
+  const auto quiet = hn::Set(du, 0x00400000u);
+  const auto nan = hn::Or(hn::AndNot(quiet, hn::BitCast(du, quieted)), hn::And(hn::ShiftLeft<13>(half), quiet));
+  return hn::IfThenElse(hn::Eq(quieted, quieted), quieted, hn::BitCast(d, nan));
+#else
+  return lanes_half_to_float(half);
+#endif
+}
+
+/// Toward zero, as float_to_half_truncate.
+HWY_INLINE HalfLanes halves_of_floats(hn::Vec<hn::ScalableTag<float>> value) {
+#if HWY_TARGET <= HWY_AVX3
+  return HalfLanes{_mm512_cvtps_ph(value.raw, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC)};
+#elif HWY_TARGET == HWY_AVX2
+  return HalfLanes{_mm256_cvtps_ph(value.raw, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC)};
+#else
+  const hn::ScalableTag<float> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const hn::RebindToSigned<decltype(d)> di;
+  const auto bits = hn::BitCast(du, value);
+  const auto sign = hn::And(hn::ShiftRight<16>(bits), hn::Set(du, 0x8000u));
+  const auto magnitude = hn::And(bits, hn::Set(du, 0x7fffffffu));
+  const auto order = hn::BitCast(di, magnitude);
+  const auto select = [&](auto condition, auto yes, auto no) {
+    return hn::IfThenElse(hn::RebindMask(du, condition), yes, no);
+  };
+  const auto shifted = hn::ShiftRight<13>(magnitude);
+  // Below 2^-14: multiples of 2^-24.
+  const auto tiny = lanes_truncate_to_int(hn::Mul(hn::BitCast(d, magnitude), hn::Set(d, 16777216.0f)));
+  auto half = hn::Sub(shifted, hn::Set(du, 112u << 10));
+  half = select(hn::Lt(order, hn::Set(di, 113 << 23)), hn::BitCast(du, tiny), half);
+  half = select(hn::Gt(order, hn::Set(di, 0x477fffff)), hn::Set(du, 0x7bffu), half);
+  half = select(hn::Eq(order, hn::Set(di, 0x7f800000)), hn::Set(du, 0x7c00u), half);
+  const auto nan = hn::Or(hn::Set(du, 0x7e00u), hn::And(shifted, hn::Set(du, 0x3ffu)));
+  half = select(hn::Gt(order, hn::Set(di, 0x7f800000)), nan, half);
+  return hn::DemoteTo(hn::Rebind<std::uint16_t, decltype(d)>(), hn::BitCast(di, hn::Or(half, sign)));
+#endif
+}
+
+}  // namespace vitrine::texel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
