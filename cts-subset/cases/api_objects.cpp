@@ -179,23 +179,13 @@ CTS_CASE("api", "events") {
   run.out("buffer", buffer);
 }
 
-VkQueryPool query_pool(Run& run, VkQueryType type, uint32_t count, VkQueryPipelineStatisticFlags statistics = 0) {
-  VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-  info.queryType = type;
-  info.queryCount = count;
-  info.pipelineStatistics = statistics;
-  VkQueryPool pool;
-  CTS_VK(vkCreateQueryPool(run.device, &info, nullptr, &pool));
-  return run.own(pool, vkDestroyQueryPool);
-}
-
 void occlusion(Run& run, VkSampleCountFlagBits samples, bool wide) {
   run.require(run.gpu.features.occlusionQueryPrecise, "occlusionQueryPrecise");
   TargetSpec target_spec;
   target_spec.depth = VK_FORMAT_D32_SFLOAT;
   target_spec.samples = samples;
   const Triangle triangle(run, target_spec);
-  const VkQueryPool pool = query_pool(run, VK_QUERY_TYPE_OCCLUSION, 4);
+  const VkQueryPool pool = make_query_pool(run, VK_QUERY_TYPE_OCCLUSION, 4);
   const Buffer results = run.buffer(4 * 16);
   const VkQueryResultFlags flags =
       VK_QUERY_RESULT_WAIT_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT | (wide ? VK_QUERY_RESULT_64_BIT : 0);
@@ -226,9 +216,9 @@ CTS_CASE("api", "query.occlusion_multisample") { occlusion(run, VK_SAMPLE_COUNT_
 CTS_CASE("api", "query.pipeline_statistics") {
   run.require(run.gpu.features.pipelineStatisticsQuery, "pipelineStatisticsQuery");
   const Triangle triangle(run);
-  const VkQueryPool pool = query_pool(run, VK_QUERY_TYPE_PIPELINE_STATISTICS, 1,
-                                      VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
-                                          VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT);
+  const VkQueryPool pool = make_query_pool(run, VK_QUERY_TYPE_PIPELINE_STATISTICS, 1,
+                                           VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
+                                               VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT);
   run.once([&](VkCommandBuffer cmd) {
     vkCmdResetQueryPool(cmd, pool, 0, 1);
     triangle.target.begin(cmd);
@@ -245,7 +235,7 @@ CTS_CASE("api", "query.pipeline_statistics") {
 }
 
 CTS_CASE("api", "query.timestamp_is_monotonic") {
-  const VkQueryPool pool = query_pool(run, VK_QUERY_TYPE_TIMESTAMP, 2);
+  const VkQueryPool pool = make_query_pool(run, VK_QUERY_TYPE_TIMESTAMP, 2);
   const Buffer buffer = run.buffer(1 << 16);
   run.once([&](VkCommandBuffer cmd) {
     vkCmdResetQueryPool(cmd, pool, 0, 2);

@@ -100,12 +100,7 @@ CTS_CASE("api", "host_query_reset") {
   spec.vertex = kFullScreenVertex;
   spec.fragment = "layout(location = 0) in vec2 uv;\nlayout(location = 0) out vec4 c;\nvoid main() { c = uv.xyxy; }\n";
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-  info.queryType = VK_QUERY_TYPE_OCCLUSION;
-  info.queryCount = 4;
-  VkQueryPool pool;
-  CTS_VK(vkCreateQueryPool(run.device, &info, nullptr, &pool));
-  run.own(pool, vkDestroyQueryPool);
+  const VkQueryPool pool = make_query_pool(run, VK_QUERY_TYPE_OCCLUSION, 4);
   const auto reset = CTS_COMMAND(run.gpu, ResetQueryPoolEXT);
   reset(run.device, pool, 0, 4);
   std::vector<uint32_t> results(16, 77);

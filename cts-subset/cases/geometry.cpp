@@ -442,17 +442,12 @@ void main() {
   }
 })";
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-  info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
-  info.queryCount = 1;
-  info.pipelineStatistics = VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
-                            VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT |
-                            VK_QUERY_PIPELINE_STATISTIC_GEOMETRY_SHADER_INVOCATIONS_BIT |
-                            VK_QUERY_PIPELINE_STATISTIC_GEOMETRY_SHADER_PRIMITIVES_BIT |
-                            VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT;
-  VkQueryPool pool;
-  CTS_VK(vkCreateQueryPool(run.device, &info, nullptr, &pool));
-  run.own(pool, vkDestroyQueryPool);
+  constexpr VkQueryPipelineStatisticFlags kStatistics = VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
+                                                        VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT |
+                                                        VK_QUERY_PIPELINE_STATISTIC_GEOMETRY_SHADER_INVOCATIONS_BIT |
+                                                        VK_QUERY_PIPELINE_STATISTIC_GEOMETRY_SHADER_PRIMITIVES_BIT |
+                                                        VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT;
+  const VkQueryPool pool = make_query_pool(run, VK_QUERY_TYPE_PIPELINE_STATISTICS, 1, kStatistics);
   const Buffer vertices = run.buffer_of(random_vertices(run.random, 60, false));
   const Buffer counts = run.buffer(5 * 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   run.once([&](VkCommandBuffer cmd) {

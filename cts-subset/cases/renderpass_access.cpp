@@ -72,17 +72,8 @@ Pass make_pass(Run& run, const Image& color, const Image* depth, bool input, VkI
   info.pSubpasses = &subpass;
   info.pDependencies = &self;
   Pass result;
-  CTS_VK(vkCreateRenderPass(run.device, &info, nullptr, &result.pass));
-  run.own(result.pass, vkDestroyRenderPass);
-  VkFramebufferCreateInfo framebuffer{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-  framebuffer.renderPass = result.pass;
-  framebuffer.attachmentCount = static_cast<uint32_t>(views.size());
-  framebuffer.pAttachments = views.data();
-  framebuffer.width = kExtent.width;
-  framebuffer.height = kExtent.height;
-  framebuffer.layers = 1;
-  CTS_VK(vkCreateFramebuffer(run.device, &framebuffer, nullptr, &result.framebuffer));
-  run.own(result.framebuffer, vkDestroyFramebuffer);
+  result.pass = make_render_pass(run, info);
+  result.framebuffer = make_framebuffer(run, result.pass, views, kExtent);
   return result;
 }
 

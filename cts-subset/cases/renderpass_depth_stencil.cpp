@@ -19,19 +19,6 @@ VkAttachmentReference2 reference(uint32_t attachment, VkImageAspectFlags aspects
   return {VK_STRUCTURE_TYPE_ATTACHMENT_REFERENCE_2, nullptr, attachment, VK_IMAGE_LAYOUT_GENERAL, aspects};
 }
 
-VkFramebuffer make_framebuffer(Run& run, VkRenderPass pass, const std::vector<VkImageView>& views, VkExtent2D extent) {
-  VkFramebufferCreateInfo info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-  info.renderPass = pass;
-  info.attachmentCount = static_cast<uint32_t>(views.size());
-  info.pAttachments = views.data();
-  info.width = extent.width;
-  info.height = extent.height;
-  info.layers = 1;
-  VkFramebuffer framebuffer;
-  CTS_VK(vkCreateFramebuffer(run.device, &info, nullptr, &framebuffer));
-  return run.own(framebuffer, vkDestroyFramebuffer);
-}
-
 /// Draws random triangles with depth and stencil writes.
 VkPipeline triangles(Run& run, VkRenderPass pass, VkExtent2D extent, VkSampleCountFlagBits samples) {
   GraphicsSpec spec;

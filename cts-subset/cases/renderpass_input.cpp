@@ -51,20 +51,8 @@ void input(Run& run, VkFormat format, bool written) {
   info_pass.pSubpasses = subpasses.data();
   info_pass.dependencyCount = written ? 1 : 0;
   info_pass.pDependencies = &dependency;
-  VkRenderPass pass;
-  CTS_VK(vkCreateRenderPass(run.device, &info_pass, nullptr, &pass));
-  run.own(pass, vkDestroyRenderPass);
-  const VkImageView views[] = {a.view, b.view};
-  VkFramebufferCreateInfo info_framebuffer{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-  info_framebuffer.renderPass = pass;
-  info_framebuffer.attachmentCount = 2;
-  info_framebuffer.pAttachments = views;
-  info_framebuffer.width = 70;
-  info_framebuffer.height = 66;
-  info_framebuffer.layers = 1;
-  VkFramebuffer framebuffer;
-  CTS_VK(vkCreateFramebuffer(run.device, &info_framebuffer, nullptr, &framebuffer));
-  run.own(framebuffer, vkDestroyFramebuffer);
+  const VkRenderPass pass = make_render_pass(run, info_pass);
+  const VkFramebuffer framebuffer = make_framebuffer(run, pass, {a.view, b.view}, {70, 66});
 
   const Resources res = run.resources({input_attachment(0, a)});
   std::vector<VkPipeline> pipelines;
@@ -146,20 +134,8 @@ void read_own_depth(Run& run) {
   info.subpassCount = info.dependencyCount = 1;
   info.pSubpasses = &subpass;
   info.pDependencies = &dependency;
-  VkRenderPass pass;
-  CTS_VK(vkCreateRenderPass(run.device, &info, nullptr, &pass));
-  run.own(pass, vkDestroyRenderPass);
-  const VkImageView views[] = {depth.view, color.view};
-  VkFramebufferCreateInfo framebuffer_info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-  framebuffer_info.renderPass = pass;
-  framebuffer_info.attachmentCount = 2;
-  framebuffer_info.pAttachments = views;
-  framebuffer_info.width = 70;
-  framebuffer_info.height = 66;
-  framebuffer_info.layers = 1;
-  VkFramebuffer framebuffer;
-  CTS_VK(vkCreateFramebuffer(run.device, &framebuffer_info, nullptr, &framebuffer));
-  run.own(framebuffer, vkDestroyFramebuffer);
+  const VkRenderPass pass = make_render_pass(run, info);
+  const VkFramebuffer framebuffer = make_framebuffer(run, pass, {depth.view, color.view}, {70, 66});
 
   const Resources res = run.resources({input_attachment(0, depth)});
   GraphicsSpec graphics;

@@ -109,23 +109,7 @@ VkRenderPass make_pass(Run& run, const std::vector<VkAttachmentDescription>& att
   info.pSubpasses = subpasses;
   info.dependencyCount = 1;
   info.pDependencies = &dependency;
-  VkRenderPass pass;
-  CTS_VK(vkCreateRenderPass(run.device, &info, nullptr, &pass));
-  return run.own(pass, vkDestroyRenderPass);
-}
-
-VkFramebuffer make_framebuffer(Run& run, VkRenderPass pass, const std::vector<VkImageView>& views, VkExtent2D extent,
-                               uint32_t layers) {
-  VkFramebufferCreateInfo info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-  info.renderPass = pass;
-  info.attachmentCount = static_cast<uint32_t>(views.size());
-  info.pAttachments = views.data();
-  info.width = extent.width;
-  info.height = extent.height;
-  info.layers = layers;
-  VkFramebuffer framebuffer;
-  CTS_VK(vkCreateFramebuffer(run.device, &info, nullptr, &framebuffer));
-  return run.own(framebuffer, vkDestroyFramebuffer);
+  return make_render_pass(run, info);
 }
 
 /// `reach` above 1: some are clipped.

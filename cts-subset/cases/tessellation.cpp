@@ -97,7 +97,9 @@ GraphicsSpec base_spec(Run& run) {
   return spec;
 }
 
-void draw(Run& run, const Target& target, GraphicsSpec& spec, const Patches& patches, uint32_t instances = 1) {
+/// `record` draws with everything bound.
+void draw_with(Run& run, const Target& target, GraphicsSpec& spec, const Patches& patches,
+               const std::function<void(VkCommandBuffer)>& record) {
   const Buffer levels = run.buffer_of(patches.levels);
   const Resources resources = run.resources({storage_buffer(0, levels)});
   spec.layout = resources.layout;
@@ -108,10 +110,16 @@ void draw(Run& run, const Target& target, GraphicsSpec& spec, const Patches& pat
     bind_pipeline(cmd, pipeline);
     resources.bind(cmd);
     bind_vertices(cmd, vertices);
-    vkCmdDraw(cmd, static_cast<uint32_t>(patches.vertices.size() / 8), instances, 0, 0);
+    record(cmd);
     vkCmdEndRenderPass(cmd);
   });
   out_target(run, target);
+}
+
+void draw(Run& run, const Target& target, GraphicsSpec& spec, const Patches& patches, uint32_t instances = 1) {
+  draw_with(run, target, spec, patches, [&](VkCommandBuffer cmd) {
+    vkCmdDraw(cmd, static_cast<uint32_t>(patches.vertices.size() / 8), instances, 0, 0);
+  });
 }
 
 TargetSpec large() {
@@ -412,26 +420,14 @@ layout(location = 0) in vec4 passed;
 layout(location = 0) out vec4 result;
 void main() { result = gl_FrontFacing ? passed : passed.zyxw * 0.5; })";
   spec.dynamic = {VK_DYNAMIC_STATE_PATCH_CONTROL_POINTS_EXT, VK_DYNAMIC_STATE_TESSELLATION_DOMAIN_ORIGIN_EXT};
-  const Patches patches = make_patches(run.random, 4, 4, 6.0f, false);
-  const Buffer levels = run.buffer_of(patches.levels);
-  const Resources resources = run.resources({storage_buffer(0, levels)});
-  spec.layout = resources.layout;
-  const VkPipeline pipeline = make_pipeline(run, spec, target);
-  const Buffer vertices = run.buffer_of(patches.vertices);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    resources.bind(cmd);
-    bind_vertices(cmd, vertices);
+  draw_with(run, target, spec, make_patches(run.random, 4, 4, 6.0f, false), [&](VkCommandBuffer cmd) {
     for (const uint32_t points : {4u, 8u}) {
       CTS_COMMAND(run.gpu, CmdSetPatchControlPointsEXT)(cmd, points);
       CTS_COMMAND(run.gpu, CmdSetTessellationDomainOriginEXT)
       (cmd, points == 4 ? VK_TESSELLATION_DOMAIN_ORIGIN_LOWER_LEFT : VK_TESSELLATION_DOMAIN_ORIGIN_UPPER_LEFT);
       vkCmdDraw(cmd, 32, 1, points * 4, 0);
     }
-    vkCmdEndRenderPass(cmd);
   });
-  out_target(run, target);
 }
 
 /// A height map and push constants in every stage; the geometry shader samples without an explicit level.
@@ -558,17 +554,12 @@ CTS_CASE("tessellation", "pipeline_statistics") {
   const Resources resources = run.resources({storage_buffer(0, levels)});
   spec.layout = resources.layout;
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-  info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
-  info.queryCount = 1;
-  info.pipelineStatistics = VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
-                            VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT |
-                            VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
-                            VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_CONTROL_SHADER_PATCHES_BIT |
-                            VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_EVALUATION_SHADER_INVOCATIONS_BIT;
-  VkQueryPool pool;
-  CTS_VK(vkCreateQueryPool(run.device, &info, nullptr, &pool));
-  run.own(pool, vkDestroyQueryPool);
+  constexpr VkQueryPipelineStatisticFlags kStatistics =
+      VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
+      VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT | VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
+      VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_CONTROL_SHADER_PATCHES_BIT |
+      VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_EVALUATION_SHADER_INVOCATIONS_BIT;
+  const VkQueryPool pool = make_query_pool(run, VK_QUERY_TYPE_PIPELINE_STATISTICS, 1, kStatistics);
   const Buffer vertices = run.buffer_of(patches.vertices);
   const Buffer counts = run.buffer(5 * 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   run.once([&](VkCommandBuffer cmd) {

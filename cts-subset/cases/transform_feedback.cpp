@@ -73,15 +73,6 @@ GraphicsSpec base_spec(VkPrimitiveTopology topology) {
   return spec;
 }
 
-VkQueryPool query_pool(Run& run, VkQueryType type, uint32_t count) {
-  VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-  info.queryType = type;
-  info.queryCount = count;
-  VkQueryPool pool;
-  CTS_VK(vkCreateQueryPool(run.device, &info, nullptr, &pool));
-  return run.own(pool, vkDestroyQueryPool);
-}
-
 void memory_barrier(VkCommandBuffer cmd) {
   VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
   barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
@@ -102,7 +93,7 @@ void capture(Run& run, const GraphicsSpec& spec, bool indexed, VkDeviceSize firs
                                                                        : static_cast<uint16_t>(run.random.below(32)));
   const Buffer indices = run.buffer_of(order);
   const Buffer first = filled(run, first_size), second = filled(run, 8192), counters = filled(run, 16);
-  const VkQueryPool pool = query_pool(run, VK_QUERY_TYPE_TRANSFORM_FEEDBACK_STREAM_EXT, 1);
+  const VkQueryPool pool = make_query_pool(run, VK_QUERY_TYPE_TRANSFORM_FEEDBACK_STREAM_EXT, 1);
   const Buffer counts = run.buffer(16, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   run.once([&](VkCommandBuffer cmd) {
     vkCmdResetQueryPool(cmd, pool, 0, 1);
@@ -448,7 +439,7 @@ void main() {
     for (size_t c = 0; c < 2; ++c) values[i + c] = std::min(std::max(values[i + c], -1.0f), 1.0f);
   const Buffer vertices = run.buffer_of(values);
   const Buffer buffers[] = {filled(run, 16384), filled(run, 16384), filled(run, 1024)};
-  const VkQueryPool pool = query_pool(run, type, 3);
+  const VkQueryPool pool = make_query_pool(run, type, 3);
   const Buffer counts = run.buffer(3 * 16, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   std::memset(counts.data, 0, counts.size);
   run.once([&](VkCommandBuffer cmd) {
@@ -477,7 +468,7 @@ CTS_CASE("transform_feedback", "streams") { capture_streams(run, VK_QUERY_TYPE_T
 CTS_CASE("transform_feedback", "primitives_generated") {
   run.require(run.gpu.has("VK_EXT_primitives_generated_query"), "primitives generated queries");
   const Target target = make_target(run, {});
-  const VkQueryPool pool = query_pool(run, VK_QUERY_TYPE_PRIMITIVES_GENERATED_EXT, 2);
+  const VkQueryPool pool = make_query_pool(run, VK_QUERY_TYPE_PRIMITIVES_GENERATED_EXT, 2);
   const Buffer counts = run.buffer(16, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   const Buffer vertices = run.buffer_of(random_vertices(run.random, 50));
   GraphicsSpec spec = base_spec(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP);

@@ -45,9 +45,7 @@ VkRenderPass make_pass(Run& run, const TargetSpec& spec) {
   info.pAttachments = attachments.data();
   info.subpassCount = 1;
   info.pSubpasses = &subpass;
-  VkRenderPass result;
-  CTS_VK(vkCreateRenderPass(run.device, &info, nullptr, &result));
-  return run.own(result, vkDestroyRenderPass);
+  return make_render_pass(run, info);
 }
 
 }  // namespace
@@ -134,16 +132,38 @@ Target make_target(Run& run, const TargetSpec& spec, bool probe) {
     target.clears.push_back(clear_value(spec.depth, 1.0f, 0.0f, 0.0f, 0.0f));
   }
   target.pass = make_pass(run, spec);
+  target.framebuffer = make_framebuffer(run, target.pass, views, {spec.width, spec.height}, spec.layers);
+  return target;
+}
+
+VkRenderPass make_render_pass(Run& run, const VkRenderPassCreateInfo& info) {
+  VkRenderPass pass;
+  CTS_VK(vkCreateRenderPass(run.device, &info, nullptr, &pass));
+  return run.own(pass, vkDestroyRenderPass);
+}
+
+VkFramebuffer make_framebuffer(Run& run, VkRenderPass pass, const std::vector<VkImageView>& views, VkExtent2D extent,
+                               uint32_t layers) {
   VkFramebufferCreateInfo info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-  info.renderPass = target.pass;
+  info.renderPass = pass;
   info.attachmentCount = static_cast<uint32_t>(views.size());
   info.pAttachments = views.data();
-  info.width = spec.width;
-  info.height = spec.height;
-  info.layers = spec.layers;
-  CTS_VK(vkCreateFramebuffer(run.device, &info, nullptr, &target.framebuffer));
-  run.own(target.framebuffer, vkDestroyFramebuffer);
-  return target;
+  info.width = extent.width;
+  info.height = extent.height;
+  info.layers = layers;
+  VkFramebuffer framebuffer;
+  CTS_VK(vkCreateFramebuffer(run.device, &info, nullptr, &framebuffer));
+  return run.own(framebuffer, vkDestroyFramebuffer);
+}
+
+VkQueryPool make_query_pool(Run& run, VkQueryType type, uint32_t count, VkQueryPipelineStatisticFlags statistics) {
+  VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+  info.queryType = type;
+  info.queryCount = count;
+  info.pipelineStatistics = statistics;
+  VkQueryPool pool;
+  CTS_VK(vkCreateQueryPool(run.device, &info, nullptr, &pool));
+  return run.own(pool, vkDestroyQueryPool);
 }
 
 void Target::begin(VkCommandBuffer cmd, VkSubpassContents contents) const { begin(cmd, rect(), contents); }

@@ -68,6 +68,11 @@ struct GraphicsSpec {
   void floats(const std::vector<uint32_t>& components, VkVertexInputRate rate = VK_VERTEX_INPUT_RATE_VERTEX);
 };
 
+VkRenderPass make_render_pass(Run& run, const VkRenderPassCreateInfo& info);
+VkFramebuffer make_framebuffer(Run& run, VkRenderPass pass, const std::vector<VkImageView>& views, VkExtent2D extent,
+                               uint32_t layers = 1);
+VkQueryPool make_query_pool(Run& run, VkQueryType type, uint32_t count, VkQueryPipelineStatisticFlags statistics = 0);
+
 VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, const Target& target);
 VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, uint32_t subpass, uint32_t colors,
                          VkExtent2D extent, VkSampleCountFlagBits samples);
