@@ -1,6 +1,8 @@
 // Reads texels by integer coordinates with SIMD (lavapipe-texture-blend.md A10): the twin of fetch and fetch_buffer.
 #include "texel/sampler/wave_fetch.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "texel/sampler/wave_fetch.cpp"
 #include "base/simd.h"
@@ -8,14 +10,14 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "texel/sampler/wave_fetch-inl.h"
+#include "texel/sampler/wave_texels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
 namespace {
 
-HWY_INLINE VI load_ints(const base::WaveRegister* values, std::size_t first) {
-  return values != nullptr ? hn::BitCast(DI(), hn::Load(DU(), values->lane + first)) : splat(0);
+HWY_INLINE VI load_or_zero(const base::WaveRegister* values, std::size_t first) {
+  return values != nullptr ? load_ints(values, first) : splat(0);
 }
 
 /// 0 <= i < size.
@@ -23,12 +25,11 @@ HWY_INLINE hn::Mask<DI> within(VI i, VI size) { return hn::And(hn::Not(hn::Lt(i,
 
 /// Texels where `valid`, what lies outside elsewhere, through a component mapping; stored for active lanes only.
 template <Numeric kNumeric>
-HWY_INLINE void fetch_masked(const FormatDesc& format, const std::byte* base, VI offset, hn::Mask<DI> valid,
-                             const std::array<std::uint8_t, 4>& swizzle, base::LaneMask active, std::size_t first,
-                             base::WaveRegister result[4]) {
+HWY_INLINE void put_masked(const FormatDesc& format, const TexelLanes& texel, hn::Mask<DI> valid,
+                           const std::array<std::uint8_t, 4>& swizzle, base::LaneMask active, std::size_t first,
+                           base::WaveRegister result[4]) {
   constexpr bool kInteger = kNumeric == Numeric::kUint || kNumeric == Numeric::kSint;
   const VF one = kInteger ? as_float(hn::Set(DU(), 1u)) : splat(1.0f);
-  const TexelLanes texel = fetch_lanes<kNumeric>(format, base, hn::IfThenElseZero(valid, offset));
   const auto mask = hn::RebindMask(DF(), valid);
   const VF alpha = format.rgba[3] < 0 ? texel.a : hn::IfThenElseZero(mask, texel.a);
   const VF all[6] = {hn::IfThenElseZero(mask, texel.r),
@@ -47,32 +48,116 @@ HWY_INLINE bool any_active(base::LaneMask active, std::size_t first) {
   return ((active >> first) & base::first_lanes(hn::Lanes(DF()))) != 0;
 }
 
-template <Numeric kNumeric>
-void fetch_image(const ImageView& view, const FetchRequest& request, base::WaveRegister result[4]) {
+/// Where the texels of a wave lie in the memory of a view.
+struct Places {
+  IntLanes offset;  ///< bytes; 0 where there is no texel
+  IntLanes valid;   ///< all ones where there is one
+};
+
+/// One level of a view, or that of each lane.
+struct LevelFields {
+  VI width, height, pitch, origin;
+};
+
+/// The level of all lanes, if it is one for all of them and exists; else level_count.
+HWY_INLINE std::uint32_t common_level(const ImageView& view, const base::WaveRegister* lod) {
+  if (lod == nullptr) return 0;
+  const VI level = hn::Set(DI(), static_cast<std::int32_t>(lod->lane[0]));
+  auto differs = hn::Ne(level, level);
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI()))
+    differs = hn::Or(differs, hn::Ne(load_ints(lod, first), level));
+  return hn::AllFalse(DI(), differs) ? std::min(lod->lane[0], view.level_count) : view.level_count;
+}
+
+/// Calls place(first lane, in which lanes the level exists, its fields) for every vector of lanes.
+template <class Place>
+HWY_INLINE void for_each_level(const ImageView& view, const base::WaveRegister* lod, Place&& place) {
+  const auto integer = [](auto value) { return static_cast<std::int32_t>(value); };
+  if (const std::uint32_t common = common_level(view, lod); common < view.level_count) {
+    const LevelLayout& level = view.level[common];
+    const LevelFields fields{splat(integer(level.extent.width)), splat(integer(level.extent.height)),
+                             splat(integer(level.row_pitch)), splat(integer(level.offset))};
+    for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI()))
+      place(first, hn::Eq(splat(0), splat(0)), fields);
+    return;
+  }
   alignas(64) std::int32_t width[kMaxLevels] = {}, height[kMaxLevels] = {}, pitch[kMaxLevels], origin[kMaxLevels];
   for (std::uint32_t i = 0; i < view.level_count; ++i) {
-    width[i] = static_cast<std::int32_t>(view.level[i].extent.width);
-    height[i] = static_cast<std::int32_t>(view.level[i].extent.height);
-    pitch[i] = static_cast<std::int32_t>(view.level[i].row_pitch);
-    origin[i] = static_cast<std::int32_t>(view.level[i].offset);
+    width[i] = integer(view.level[i].extent.width);
+    height[i] = integer(view.level[i].extent.height);
+    pitch[i] = integer(view.level[i].row_pitch);
+    origin[i] = integer(view.level[i].offset);
   }
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI())) {
+    VI level = load_or_zero(lod, first);
+    const auto exists = within(level, splat(integer(view.level_count)));
+    level = hn::IfThenElseZero(exists, level);
+    place(first, exists,
+          LevelFields{hn::GatherIndex(DI(), width, level), hn::GatherIndex(DI(), height, level),
+                      hn::GatherIndex(DI(), pitch, level), hn::GatherIndex(DI(), origin, level)});
+  }
+}
+
+void place_texels(const ImageView& view, const FetchRequest& request, Places& out) {
   const bool layered = view.type != VK_IMAGE_VIEW_TYPE_2D;
   const VI texel_bytes = splat(static_cast<std::int32_t>(view.format->block_bytes));
+  const VI layer_stride = splat(static_cast<std::int32_t>(view.layer_stride));
+  const VI layer_count = splat(static_cast<std::int32_t>(view.layer_count));
+  for_each_level(view, request.lod, [&](std::size_t first, hn::Mask<DI> exists, const LevelFields& level) HWY_ATTR {
+    const VI x = hn::Add(load_or_zero(request.coord[0], first), load_or_zero(request.offset[0], first));
+    const VI y = hn::Add(load_or_zero(request.coord[1], first), load_or_zero(request.offset[1], first));
+    auto valid = hn::And(exists, hn::And(within(x, level.width), within(y, level.height)));
+    VI offset = hn::Add(hn::Add(level.origin, hn::Mul(y, level.pitch)), hn::Mul(x, texel_bytes));
+    if (layered) {
+      const VI layer = load_or_zero(request.coord[2], first);
+      valid = hn::And(valid, within(layer, layer_count));
+      offset = hn::Add(offset, hn::Mul(layer, layer_stride));
+    }
+    hn::Store(hn::IfThenElseZero(valid, offset), DI(), out.offset.lane + first);
+    hn::Store(hn::VecFromMask(DI(), valid), DI(), out.valid.lane + first);
+  });
+}
+
+/// Texels word by word: gathering is slower than as many loads.
+HWY_INLINE void load_texels(const FormatDesc& format, const std::byte* base, const IntLanes& offset,
+                            WordLanes words[4]) {
+  switch ((format.block_bytes + 3) / 4) {
+    case 1:
+      return load_words<1>(base, offset, words);
+    case 2:
+      return load_words<2>(base, offset, words);
+    case 3:
+      return load_words<3>(base, offset, words);
+    default:
+      return load_words<4>(base, offset, words);
+  }
+}
+
+/// The texels of lanes first.., converted.
+template <Numeric kNumeric>
+HWY_INLINE TexelLanes convert_lanes(const FormatDesc& format, const WordLanes words[4], std::size_t first) {
+  constexpr bool kInteger = kNumeric == Numeric::kUint || kNumeric == Numeric::kSint;
+  const VF one = kInteger ? as_float(hn::Set(DU(), 1u)) : splat(1.0f);
+  const auto channel = [&](std::int8_t index, VF missing) HWY_ATTR {
+    if (index < 0) return missing;
+    const Channel& described = format.channel[static_cast<std::size_t>(index)];
+    return convert_field<kNumeric>(hn::Load(DU(), words[described.offset / 32].lane + first), described);
+  };
+  return {channel(format.rgba[0], splat(0.0f)), channel(format.rgba[1], splat(0.0f)),
+          channel(format.rgba[2], splat(0.0f)), channel(format.rgba[3], one)};
+}
+
+template <Numeric kNumeric>
+void fetch_image(const ImageView& view, const FetchRequest& request, base::WaveRegister result[4]) {
+  Places places;
+  place_texels(view, request, places);
+  WordLanes words[4];
+  load_texels(*view.format, view.base, places.offset, words);
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     if (!any_active(request.active, first)) continue;
-    const VI x = hn::Add(load_ints(request.coord[0], first), load_ints(request.offset[0], first));
-    const VI y = hn::Add(load_ints(request.coord[1], first), load_ints(request.offset[1], first));
-    const VI layer = layered ? load_ints(request.coord[2], first) : splat(0);
-    VI level = load_ints(request.lod, first);
-    auto valid = hn::And(within(level, splat(static_cast<std::int32_t>(view.level_count))),
-                         within(layer, splat(static_cast<std::int32_t>(view.layer_count))));
-    level = hn::IfThenElseZero(valid, level);
-    valid = hn::And(valid, hn::And(within(x, hn::GatherIndex(DI(), width, level)),
-                                   within(y, hn::GatherIndex(DI(), height, level))));
-    const VI row = hn::Add(hn::GatherIndex(DI(), origin, level), hn::Mul(y, hn::GatherIndex(DI(), pitch, level)));
-    const VI offset = hn::Add(hn::Add(row, hn::Mul(x, texel_bytes)),
-                              hn::Mul(layer, splat(static_cast<std::int32_t>(view.layer_stride))));
-    fetch_masked<kNumeric>(*view.format, view.base, offset, valid, view.swizzle, request.active, first, result);
+    const auto valid = hn::MaskFromVec(hn::Load(DI(), places.valid.lane + first));
+    put_masked<kNumeric>(*view.format, convert_lanes<kNumeric>(*view.format, words, first), valid, view.swizzle,
+                         request.active, first, result);
   }
 }
 
@@ -85,8 +170,10 @@ void fetch_texels(const BufferTexelView& view, base::LaneMask active, const base
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     if (!any_active(active, first)) continue;
     const VI i = load_ints(&index, first);
-    fetch_masked<kNumeric>(*view.format, view.data, hn::Mul(i, texel_bytes), within(i, count), kIdentity, active, first,
-                           result);
+    const auto valid = within(i, count);
+    const VI offset = hn::IfThenElseZero(valid, hn::Mul(i, texel_bytes));
+    put_masked<kNumeric>(*view.format, fetch_lanes<kNumeric>(*view.format, view.data, offset), valid, kIdentity, active,
+                         first, result);
   }
 }
 
