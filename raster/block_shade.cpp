@@ -188,9 +188,7 @@ void test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32_t s
                  LaneMask* lanes, bool write) {
   const PipelinePlan& plan = *worker.draw->plan;
   const DepthStencilTarget& target = worker.target.depth_stencil[sample];
-  const bool located = plan.raster_samples > 1;
-  const float dx = located ? static_cast<float>(kSampleX[sample]) / 256 : 0.0f;
-  const float dy = located ? static_cast<float>(kSampleY[sample]) / 256 : 0.0f;
+  const float dx = plan.locations->pixel_x(sample), dy = plan.locations->pixel_y(sample);
   const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
   const ViewportTransform& viewport = plan.viewport[primitive.viewport];
   const DepthRange range{viewport.z_min, viewport.z_max};

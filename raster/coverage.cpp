@@ -182,7 +182,8 @@ constexpr auto kLanesAbove = lanes_below(true);
 
 }  // namespace
 
-bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, std::uint32_t samples, TileEdges& out) {
+bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, const SampleLocations& samples,
+                     TileEdges& out) {
   Edge edges[4];
   const std::uint32_t count = edges_of(primitive, edges);
   out.count = 0;
@@ -192,8 +193,8 @@ bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, std::ui
     const std::int64_t high = std::max<std::int64_t>(0, -63 * e.a) + std::max<std::int64_t>(0, 63 * e.b);
     std::int64_t f[kMaxSamples];
     bool touches = false, covers = true;
-    for (std::uint32_t s = 0; s < samples; ++s) {
-      const std::int64_t sx = samples > 1 ? kSampleX[s] : 0, sy = samples > 1 ? kSampleY[s] : 0;
+    for (std::uint32_t s = 0; s < samples.count; ++s) {
+      const std::int64_t sx = samples.x[s], sy = samples.y[s];
       f[s] = ((e.c - 1 - e.a * sx + e.b * sy) >> 8) - e.a * tile_x + e.b * tile_y;
       touches |= f[s] + high >= 0;
       covers &= f[s] + low >= 0;
@@ -203,7 +204,7 @@ bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, std::ui
     const std::uint32_t k = out.count++;
     out.step_x[k] = static_cast<std::int32_t>(-e.a);
     out.step_y[k] = static_cast<std::int32_t>(e.b);
-    for (std::uint32_t s = 0; s < samples; ++s) out.f[s][k] = static_cast<std::int32_t>(f[s]);
+    for (std::uint32_t s = 0; s < samples.count; ++s) out.f[s][k] = static_cast<std::int32_t>(f[s]);
   }
   return true;
 }

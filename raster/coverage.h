@@ -14,10 +14,6 @@ namespace vitrine::raster {
 
 inline constexpr int kBlockSize = 8;
 
-/// 8.1, 24.8 fixed point within the pixel.
-inline constexpr std::int32_t kSampleX[kMaxSamples] = {96, 224, 32, 160};
-inline constexpr std::int32_t kSampleY[kMaxSamples] = {32, 96, 160, 224};
-
 /// Edges of a primitive relative to the top-left pixel of a tile.
 struct TileEdges {
   std::uint32_t count = 0;
@@ -26,8 +22,9 @@ struct TileEdges {
   std::int32_t f[kMaxSamples][4];  ///< [sample][edge], at the tile's first pixel
 };
 
-/// False if the tile is outside. `samples` is 1 or 4.
-bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, std::uint32_t samples, TileEdges& edges);
+/// False if the tile is outside.
+bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, const SampleLocations& samples,
+                     TileEdges& edges);
 
 /// Covered pixels of the blocks of `places`: out[i] for the block at quad-ordered place i of the tile. Lanes are the
 /// pixels of an 8x8 block in quads: quad q at (2*(q%4), 2*(q/4)), see base::kQuadSize.

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "raster/sample_locations.h"
 #include "spirv/shader.h"
 #include "texel/view.h"
 
@@ -16,7 +17,6 @@ namespace vitrine::raster {
 
 inline constexpr std::uint32_t kMaxColorAttachments = 8;
 inline constexpr std::uint32_t kMaxViewports = 16;
-inline constexpr std::uint32_t kMaxSamples = 4;
 inline constexpr std::uint32_t kMaxVertexBindings = 32;
 inline constexpr std::uint32_t kMaxVertexAttributes = 32;
 

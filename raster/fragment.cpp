@@ -13,9 +13,6 @@ namespace {
 using base::LaneMask;
 using base::WaveRegister;
 
-float sample_x(std::uint32_t s) { return static_cast<float>(kSampleX[s]) / 256; }
-float sample_y(std::uint32_t s) { return static_cast<float>(kSampleY[s]) / 256; }
-
 /// What happens once per run of the shader: for all samples together, or for one (sample shading).
 struct ShadeRun {
   TileWorker& worker;
@@ -28,6 +25,8 @@ struct ShadeRun {
   const float* scale = nullptr;  ///< of perspective planes; null: 1
 
   bool single() const { return plan.sample_shading; }
+  float x() const { return plan.locations->pixel_x(first_sample); }  ///< of the sample being shaded, in its pixel
+  float y() const { return plan.locations->pixel_y(first_sample); }
 };
 
 void splat(WaveRegister& out, std::uint32_t value) { std::fill_n(out.lane, base::kWaveWidth, value); }
@@ -49,8 +48,8 @@ void set_centroids(const ShadeRun& run, WavePoints& out) {
       covered |= static_cast<std::uint32_t>(wave.coverage[s] >> lane & 1) << s;
     if (covered == 0 || covered == (1u << run.plan.samples) - 1) return;
     const auto s = static_cast<std::uint32_t>(std::countr_zero(covered));
-    out.x[lane] = (out.x[lane] - 0.5f) + sample_x(s);
-    out.y[lane] = (out.y[lane] - 0.5f) + sample_y(s);
+    out.x[lane] = (out.x[lane] - 0.5f) + run.plan.locations->pixel_x(s);
+    out.y[lane] = (out.y[lane] - 0.5f) + run.plan.locations->pixel_y(s);
   });
 }
 
@@ -63,7 +62,7 @@ const WavePoints& points_of(ShadeRun& run, spirv::SampleLocation location, spirv
     if (location == spirv::SampleLocation::kCentroid)
       set_centroids(run, worker.place);
     else
-      set_points(run.wave, sample_x(run.first_sample), sample_y(run.first_sample), worker.place);
+      set_points(run.wave, run.x(), run.y(), worker.place);
     prepared = location;
   }
   return worker.place;
@@ -130,7 +129,7 @@ void set_frag_coord(ShadeRun& run) {
   TileWorker& worker = run.worker;
   const auto& reg = run.plan.frag.frag_coord;
   const bool sampled = run.single();
-  const float dx = sampled ? sample_x(run.first_sample) : 0.5f, dy = sampled ? sample_y(run.first_sample) : 0.5f;
+  const float dx = sampled ? run.x() : 0.5f, dy = sampled ? run.y() : 0.5f;
   WavePoints points;
   if (reg[0] != kNoReg || reg[1] != kNoReg) {
     set_points(run.wave, dx, dy, points);
@@ -160,12 +159,11 @@ void set_interpolation_places(ShadeRun& run) {
     copy(run.scale, frag.interpolation_scale);
   else if (frag.interpolation_scale != kNoReg)
     splat(worker.runner.input(frag.interpolation_scale), base::bits_of(1.0f));
-  const bool located = run.plan.raster_samples > 1;
   for (std::uint32_t s = 0; s < kMaxSamples; ++s) {
     const std::uint32_t x = frag.interpolation_sample[2 * s], y = frag.interpolation_sample[2 * s + 1];
     if (x == kNoReg && y == kNoReg) continue;
     WavePoints points;
-    set_points(run.wave, located ? sample_x(s) : 0, located ? sample_y(s) : 0, points);
+    set_points(run.wave, run.plan.locations->pixel_x(s), run.plan.locations->pixel_y(s), points);
     copy(points.x, x);
     copy(points.y, y);
   }
@@ -177,9 +175,9 @@ void set_sample_inputs(ShadeRun& run) {
   const bool located = run.plan.raster_samples > 1 && run.single();
   if (frag.sample_id != kNoReg) splat(runner.input(frag.sample_id), located ? run.first_sample : 0);
   if (frag.sample_position[0] != kNoReg)
-    splat(runner.input(frag.sample_position[0]), base::bits_of(located ? sample_x(run.first_sample) : 0.5f));
+    splat(runner.input(frag.sample_position[0]), base::bits_of(located ? run.x() : 0.5f));
   if (frag.sample_position[1] != kNoReg)
-    splat(runner.input(frag.sample_position[1]), base::bits_of(located ? sample_y(run.first_sample) : 0.5f));
+    splat(runner.input(frag.sample_position[1]), base::bits_of(located ? run.y() : 0.5f));
   if (frag.sample_mask_in == kNoReg) return;
   const LaneMask* samples = run.plan.fragment->post_depth_coverage ? run.wave.coverage : run.wave.rasterized;
   WaveRegister& out = runner.input(frag.sample_mask_in);
@@ -240,7 +238,7 @@ void change_coverage(ShadeRun& run) {
   if (!plan.state->alpha_to_coverage || plan.frag.color[0][3] == kNoReg) return;
   const std::uint32_t* alpha = runner.output(plan.frag.color[0][3]).lane;
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
-    const float limit = plan.samples == 1 ? 0.5f : static_cast<float>(s) * 0.25f;
+    const float limit = plan.samples == 1 ? 0.5f : static_cast<float>(s) / static_cast<float>(plan.samples);
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
       if (base::float_of(alpha[lane]) * (plan.smooth_lines ? run.worker.line_coverage[lane] : 1.0f) <=
           limit)  // NaN: kept
@@ -266,7 +264,7 @@ void late_depth(ShadeRun& run, std::uint32_t sample) {
   } else {
     const bool located = plan.raster_samples > 1;
     WavePoints points;
-    if (located) set_points(run.wave, sample_x(sample), sample_y(sample), points);
+    if (located) set_points(run.wave, plan.locations->pixel_x(sample), plan.locations->pixel_y(sample), points);
     evaluate_plane(run.wave.planes, kDepthPlane, located ? points : worker.center, nullptr, worker.depth);
     add_depth_offset(run.wave, worker.depth);
   }

@@ -432,10 +432,16 @@ void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {
   plan.draws_points = plan.corners == 1;
   plan.draws_lines = plan.corners == 2;
   plan.samples = std::max<std::uint32_t>(pass.samples, 1);
+  // Vulkan 1.3.239, VkGraphicsPipelineCreateInfo: without attachments the pipeline's sample count holds.
+  const auto is_used = [](const texel::ImageView& view) { return view.format != nullptr; };
+  const bool attached = is_used(pass.depth) || is_used(pass.stencil) ||
+                        std::any_of(pass.color.begin(), pass.color.begin() + pass.color_count, is_used);
+  if (!attached) plan.samples = std::clamp<std::uint32_t>(state.samples, 1, kMaxSamples);
   plan.raster_samples = plan.samples;
   const bool single = state.line_mode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ||
                       state.line_mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
   if (plan.draws_lines && single) plan.raster_samples = 1;
+  plan.locations = &standard_locations(plan.raster_samples);
   plan.smooth_lines = state.line_mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT &&
                       plan.raster_samples == 1 &&
                       (plan.draws_lines || (state.polygon_mode == VK_POLYGON_MODE_LINE && !plan.draws_points));
@@ -505,7 +511,7 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   plan.state = draw.state;
   plan.vertex = interface_of(draw.vertex, draw.native_vertex);
   plan.fragment = interface_of(draw.fragment, draw.native_fragment);
-  if (!plan.vertex || pass.samples > 4) return false;
+  if (!plan.vertex || pass.samples > kMaxSamples) return false;
   if (!plan_stages(draw, plan)) return false;
   plan_captures(plan);
   plan.vertex_input_count = 0;

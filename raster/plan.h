@@ -164,8 +164,9 @@ struct PipelinePlan {
 
   std::uint32_t samples = 1;         ///< of the attachments
   std::uint32_t raster_samples = 1;  ///< locations at which coverage is computed: 1 for Bresenham lines
+  const SampleLocations* locations = &kSingleSample;  ///< those
   bool sample_shading = false;
-  std::uint32_t sample_mask = 0xf;  ///< 0: nothing is drawn
+  std::uint32_t sample_mask = ~0u;  ///< 0: nothing is drawn
 
   TestOrder depth_order = TestOrder::kNone;
   bool depth_test = false, depth_write = false, depth_bounds = false, stencil_test = false;

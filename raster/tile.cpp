@@ -55,12 +55,10 @@ void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y
     const ViewportTransform& viewport = plan.viewport[primitive.viewport];
     std::fill_n(range, base::kQuadsPerWave, DepthRange{viewport.z_min, viewport.z_max});
   }
-  const bool located = plan.raster_samples > 1;
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
     if (!block.lanes[s]) continue;
     if (plan.depth_test) {
-      const float dx = located ? static_cast<float>(kSampleX[s]) / 256 : 0.0f;
-      const float dy = located ? static_cast<float>(kSampleY[s]) / 256 : 0.0f;
+      const float dx = plan.locations->pixel_x(s), dy = plan.locations->pixel_y(s);
       evaluate_block_depth(plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, worker.depth);
       if (clamps) clamp_depth(range, base::kQuadsPerWave, worker.depth);
     }
@@ -379,7 +377,7 @@ bool hides_tile(const TileWorker& worker, const PipelinePlan& plan, const Primit
   const int bottom = std::min(target.y + kTileSize, area.offset.y + static_cast<int>(area.extent.height)) - 1;
   if (p.x0 > target.x || p.y0 > target.y || p.x1 < right || p.y1 < bottom) return false;
   TileEdges edges;
-  return make_tile_edges(p, target.x, target.y, plan.raster_samples, edges) && edges.count == 0;
+  return make_tile_edges(p, target.x, target.y, *plan.locations, edges) && edges.count == 0;
 }
 
 /// Where a tile's work starts.
@@ -477,17 +475,17 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
     return;
   }
   TileEdges edges;
-  if (!make_tile_edges(primitive, worker.target.x, worker.target.y, plan.raster_samples, edges)) return;
+  if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
   const PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
   const base::LaneMask places = cover_tile(plan, edges, rect, worker.covered);
   if (places == 0) return;
   if (reads_rasterized(worker)) worker.rasterized = worker.covered;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) test_tile(worker, primitive, places, worker.covered);
+  BlockCoverage rasterized{};
   for (base::LaneMask left = places; left != 0; left &= left - 1) {
     const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
     const int x = worker.target.x + lane_x(place) * kBlockSize, y = worker.target.y + lane_y(place) * kBlockSize;
-    BlockCoverage rasterized{};
     if (reads_rasterized(worker)) rasterized = block_of(worker.rasterized, place, plan.samples);
     emit_block(worker, primitive, x, y, rasterized, block_of(worker.covered, place, plan.samples));
   }

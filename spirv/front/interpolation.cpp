@@ -7,7 +7,7 @@
 namespace vitrine::spirv::front::glsl {
 namespace {
 
-constexpr std::uint8_t kMaxSamples = 4;
+constexpr std::uint8_t kMaxSamples = 8;
 
 /// A value that raster supplies, loaded in front of the body.
 Expr prologue_input(Translator& t, const InterfaceSlot& slot) {

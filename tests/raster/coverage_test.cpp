@@ -51,8 +51,9 @@ Primitive random_triangle(std::mt19937& random) {
 }
 
 void compare_tile(const Primitive& p, int tile_x, int tile_y, std::uint32_t samples) {
+  const SampleLocations& locations = standard_locations(samples);
   TileEdges edges;
-  const bool touched = make_tile_edges(p, tile_x, tile_y, samples, edges);
+  const bool touched = make_tile_edges(p, tile_x, tile_y, locations, edges);
   base::LaneMask any = 0, all = 0;
   if (touched) classify_blocks(edges, samples, any, all);
   for (std::uint32_t place = 0; place < 64; ++place) {
@@ -61,7 +62,7 @@ void compare_tile(const Primitive& p, int tile_x, int tile_y, std::uint32_t samp
       base::LaneMask expected = 0;
       for (std::uint32_t lane = 0; lane < 64; ++lane) {
         const std::int64_t px = tile_x + bx + lane_x(lane), py = tile_y + by + lane_y(lane);
-        const std::int64_t sx = samples > 1 ? kSampleX[s] : 0, sy = samples > 1 ? kSampleY[s] : 0;
+        const std::int64_t sx = locations.x[s], sy = locations.y[s];
         if (inside(p, px * 256 + sx, py * 256 + sy)) expected |= base::LaneMask{1} << lane;
       }
       ASSERT_EQ(expected, touched ? cover_block(edges, s, bx, by) : 0)
@@ -79,7 +80,7 @@ TEST(Coverage, EqualsEdgeFunctionsOfAllSizes) {
     const Primitive p = random_triangle(random);
     compare_tile(p, 0, 0, 1);
     compare_tile(p, 64, 128, 1);
-    compare_tile(p, 0, 0, 4);
+    for (const std::uint32_t samples : {2u, 4u, 8u}) compare_tile(p, 0, 0, samples);
     if (HasFatalFailure()) return;
   }
 }
@@ -95,7 +96,7 @@ TEST(Coverage, SharedEdgeIsCoveredOnce) {
     std::swap(q.x[1], q.x[2]);
     std::swap(q.y[1], q.y[2]);
     TileEdges a, b;
-    if (!make_tile_edges(p, 0, 0, 1, a) || !make_tile_edges(q, 0, 0, 1, b)) continue;
+    if (!make_tile_edges(p, 0, 0, kSingleSample, a) || !make_tile_edges(q, 0, 0, kSingleSample, b)) continue;
     for (int y = 0; y < 64; y += 8)
       for (int x = 0; x < 64; x += 8) ASSERT_EQ(0u, cover_block(a, 0, x, y) & cover_block(b, 0, x, y));
   }
