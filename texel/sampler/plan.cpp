@@ -119,6 +119,14 @@ bool fits_bytes(const FormatDesc& format) {
                      [](const Channel& c) { return c.numeric == Numeric::kUnorm && c.bits <= 8; });
 }
 
+bool averages_words(const FormatDesc& format) {
+  if (!format.plain || format.block_bytes > 4 || format.block_bytes == 3 || format.is_integer()) return false;
+  if (format.format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) return false;
+  const Numeric numeric = format.channel[0].numeric;
+  return numeric == Numeric::kUnorm || numeric == Numeric::kSnorm || numeric == Numeric::kSrgb ||
+         numeric == Numeric::kUfloat || numeric == Numeric::kSfloat;
+}
+
 Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode) {
   Plan plan;
   plan.view = &view;

@@ -62,6 +62,9 @@ void fetch_bytes(const ImageView& view, std::uint32_t level, std::uint32_t layer
 /// Whether all channels are unsigned-normalised, at most 8 bits and not sRGB: formats of the AoS path.
 bool fits_bytes(const FormatDesc& format);
 
+/// Whether texels are one word, or less, of one kind of channels that can be averaged.
+bool averages_words(const FormatDesc& format);
+
 /// Applies the view's component mapping in place; `one` is 1 of the format's kind.
 void apply_swizzle(const ImageView& view, Texel& texel);
 

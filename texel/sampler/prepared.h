@@ -25,7 +25,8 @@ struct PreparedSampler {
   Plan plan;  ///< points to the view and the sampler, which must live as long
   LevelTable level;
   Kernel kernel = nullptr;
-  bool one_level = false;  ///< every lane reads level 0 of the view
+  bool one_level = false;     ///< every lane reads level 0 of the view
+  bool needs_levels = false;  ///< levels of detail decide the result
 };
 
 void prepare(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode, PreparedSampler& out);
@@ -37,8 +38,9 @@ inline void sample(const PreparedSampler& prepared, const SampleRequest& request
 
 /// The kernels. Vector ones give the bits of the scalar one.
 void sample_by_lane(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result);
-PreparedSampler::Kernel byte_kernel();         ///< Plan::aos
-PreparedSampler::Kernel float_kernel();        ///< samples and gathers of everything else, but not anisotropic
+PreparedSampler::Kernel byte_kernel(const Plan& plan);  ///< Plan::aos
+PreparedSampler::Kernel float_kernel(
+    const Plan& plan);                         ///< samples and gathers of everything else, but not anisotropic
 PreparedSampler::Kernel anisotropic_kernel();  ///< two-dimensional, without comparison
 
 }  // namespace vitrine::texel

@@ -25,10 +25,17 @@ bool small_enough(const ImageView& view) {
   return span < (std::uint64_t{1} << 31) - 64 && view.level[0].sample_stride < (std::uint64_t{1} << 31) - 64;
 }
 
+/// With one level and one filter there is nothing to choose; but a linear mip filter of floats is applied to equal
+/// levels too, where infinities make a difference.
+bool levels_matter(const Plan& plan) {
+  if (!plan.lod_needed || plan.view->level_count > 1) return plan.lod_needed;
+  return plan.anisotropic || plan.min_linear != plan.mag_linear || (plan.mip == MipFilter::kLinear && !plan.aos);
+}
+
 PreparedSampler::Kernel choose_kernel(const Plan& plan, SampleOp op) {
   if (plan.zero || op == SampleOp::kQueryLod || !small_enough(*plan.view)) return sample_by_lane;
   if (plan.anisotropic) return plan.cube ? sample_by_lane : anisotropic_kernel();
-  return plan.aos ? byte_kernel() : float_kernel();
+  return plan.aos ? byte_kernel(plan) : float_kernel(plan);
 }
 
 }  // namespace
@@ -36,6 +43,7 @@ PreparedSampler::Kernel choose_kernel(const Plan& plan, SampleOp op) {
 void prepare(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode, PreparedSampler& out) {
   out.plan = make_plan(view, sampler, op, lod_mode);
   out.one_level = !out.plan.lod_needed || view.level_count == 1;
+  out.needs_levels = levels_matter(out.plan);
   out.kernel = choose_kernel(out.plan, op);
   if (out.kernel != sample_by_lane) fill_table(view, out.level);
 }

@@ -2,7 +2,7 @@
 // dimensions, four bytes each, one level or two. The bits of the general 8-bit sampler.
 
 #include "texel/codec/byte_blend-inl.h"
-#include "texel/sampler/wave_pairs-inl.h"
+#include "texel/sampler/wave_square-inl.h"
 #include "texel/sampler/wave_state-inl.h"
 
 #if defined(VITRINE_TEXEL_WAVE_BILINEAR_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -41,10 +41,10 @@ struct BilinearAxis {
 template <std::uint32_t kDims>
 struct BilinearLevel {
   BilinearAxis axis[3];
-  VI row_pitch, slice_pitch, origin;
+  VI slice_pitch;
+  SquareLevel square;
 
-  explicit BilinearLevel(const LevelLanes& level)
-      : row_pitch(level.row_pitch), slice_pitch(level.slice_pitch), origin(level.origin) {
+  explicit BilinearLevel(const LevelLanes& level) : slice_pitch(level.slice_pitch), square(level) {
     for (std::uint32_t i = 0; i < kDims; ++i) axis[i] = BilinearAxis(level.axis[i]);
   }
 };
@@ -53,36 +53,30 @@ HWY_INLINE Halves mix_pair(VI weight, const WordPair& pair) {
   return blend_bytes(weight, unpack_bytes(pair.first), unpack_bytes(pair.second));
 }
 
-/// A slice: the four texels around (x, y), with spread weights.
-HWY_INLINE Halves mix_slice(const std::byte* base, VI row0, VI row1, const ByteTapLanes& x, VI weight_y) {
-  const VI left = hn::ShiftLeft<2>(x.first);
-  WordPair top = load_word_pairs(base, hn::Add(row0, left)), bottom = load_word_pairs(base, hn::Add(row1, left));
-  const auto apart = hn::Ne(x.second, hn::Add(x.first, splat(1)));
-  if (HWY_UNLIKELY(!hn::AllFalse(DI(), apart))) {
-    const VI right = hn::ShiftLeft<2>(x.second);
-    top.second = load_words(base, hn::Add(row0, right));
-    bottom.second = load_words(base, hn::Add(row1, right));
-  }
-  return blend_bytes(weight_y, mix_pair(x.weight, top), mix_pair(x.weight, bottom));
+/// A slice: four texels, with spread weights.
+HWY_INLINE Halves mix_square(const WordSquare& square, VI weight_x, VI weight_y) {
+  return blend_bytes(weight_y, mix_pair(weight_x, square.top), mix_pair(weight_x, square.bottom));
 }
 
 /// Four bytes per lane.
 template <std::uint32_t kDims>
 HWY_INLINE VU bilinear_bytes(const std::byte* base, const BilinearLevel<kDims>& level, const VF coord[kDims]) {
-  ByteTapLanes x = level.axis[0].taps(coord[0]);
-  x.weight = spread_weight(x.weight);
-  const ByteTapLanes y = level.axis[1].taps(coord[1]);
-  const VI weight_y = spread_weight(y.weight);
-  VI row0 = hn::Add(level.origin, hn::Mul(y.first, level.row_pitch));
-  VI row1 = hn::Add(level.origin, hn::Mul(y.second, level.row_pitch));
+  const ByteTapLanes x = level.axis[0].taps(coord[0]), y = level.axis[1].taps(coord[1]);
+  const VI weight_x = spread_weight(x.weight), weight_y = spread_weight(y.weight);
   if constexpr (kDims == 2) {
-    return pack_bytes(mix_slice(base, row0, row1, x, weight_y));
+    const SquarePlaces places{{x.first, x.second}, {y.first, y.second}};
+    return pack_bytes(mix_square(load_square(base, level.square, places), weight_x, weight_y));
   } else {
     const ByteTapLanes z = level.axis[2].taps(coord[2]);
-    const VI near = hn::Mul(z.first, level.slice_pitch), far = hn::Mul(z.second, level.slice_pitch);
-    const Halves first = mix_slice(base, hn::Add(row0, near), hn::Add(row1, near), x, weight_y);
-    const Halves second = mix_slice(base, hn::Add(row0, far), hn::Add(row1, far), x, weight_y);
-    return pack_bytes(blend_bytes(spread_weight(z.weight), first, second));
+    const VI row0 = hn::Add(level.square.origin, hn::Mul(y.first, level.square.row_pitch));
+    const VI row1 = hn::Add(level.square.origin, hn::Mul(y.second, level.square.row_pitch));
+    const auto mix_slice = [&](VI slice) {
+      const VI offset = hn::Mul(slice, level.slice_pitch);
+      const WordSquare square =
+          load_rows_of_words(base, hn::Add(row0, offset), hn::Add(row1, offset), x.first, x.second);
+      return mix_square(square, weight_x, weight_y);
+    };
+    return pack_bytes(blend_bytes(spread_weight(z.weight), mix_slice(z.first), mix_slice(z.second)));
   }
 }
 
@@ -139,17 +133,6 @@ HWY_NOINLINE void sample_bilinear(const PreparedSampler& p, const SampleRequest&
     }
     results.store(packed, request.active, first);
   }
-}
-
-/// Whether sample_bilinear does what the general sampler does; offsets are for the caller to see.
-inline bool bilinear_suits(const Plan& plan) {
-  const FormatDesc& format = *plan.view->format;
-  for (std::uint32_t i = 0; i < plan.dims; ++i) {
-    if (plan.address[i] != Address::kClamp && (plan.address[i] != Address::kRepeat || !plan.pot[i])) return false;
-  }
-  return plan.dims > 1 && !plan.cube && plan.min_linear && plan.mag_linear && !format.is_compressed() &&
-         format.block_bytes == 4 && format.channel[0].bits == 8 && !plan.sampler->unnormalized &&
-         plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
 }
 
 inline void sample_bilinear(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,

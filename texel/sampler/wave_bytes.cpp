@@ -305,9 +305,6 @@ void sample_bytes(const PreparedSampler& p, const SampleRequest& request, const 
   const ByteFormat format = byte_format(*plan.view->format);
   WaveState state;
   find_state(p, request, state);
-  if (bilinear_suits(plan) && !request.offset[0] && !request.offset[1] && !request.offset[2]) {
-    return sample_bilinear(p, request, state, result);
-  }
   PackedLanes packed;
   const bool two_filters = plan.min_linear != plan.mag_linear;
   const base::LaneMask minified = two_filters ? state.minify & request.active : 0;
@@ -332,6 +329,13 @@ void sample_bytes(const PreparedSampler& p, const SampleRequest& request, const 
   }
 }
 
+void sample_bytes_bilinear(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
+  if (request.offset[0] || request.offset[1] || request.offset[2]) return sample_bytes(p, request, result);
+  WaveState state;
+  find_state(p, request, state);
+  sample_bilinear(p, request, state, result);
+}
+
 }  // namespace
 }  // namespace vitrine::texel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -342,12 +346,24 @@ namespace vitrine::texel {
 namespace {
 
 HWY_EXPORT(sample_bytes);
+HWY_EXPORT(sample_bytes_bilinear);
+
+/// Whether sample_bilinear does what the general sampler does, if there are no offsets.
+bool bilinear_suits(const Plan& plan) {
+  const FormatDesc& format = *plan.view->format;
+  for (std::uint32_t i = 0; i < plan.dims; ++i) {
+    if (plan.address[i] != Address::kClamp && (plan.address[i] != Address::kRepeat || !plan.pot[i])) return false;
+  }
+  return plan.dims > 1 && !plan.cube && plan.min_linear && plan.mag_linear && !format.is_compressed() &&
+         format.block_bytes == 4 && format.channel[0].bits == 8 && !plan.sampler->unnormalized &&
+         plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+}
 
 }  // namespace
 
-PreparedSampler::Kernel byte_kernel() {
+PreparedSampler::Kernel byte_kernel(const Plan& plan) {
   base::select_simd_target();
-  return &HWY_DYNAMIC_DISPATCH(sample_bytes);
+  return bilinear_suits(plan) ? &HWY_DYNAMIC_DISPATCH(sample_bytes_bilinear) : &HWY_DYNAMIC_DISPATCH(sample_bytes);
 }
 
 }  // namespace vitrine::texel

@@ -12,10 +12,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "texel/sampler/wave_bilinear_words-inl.h"
 #include "texel/sampler/wave_cube-inl.h"
 #include "texel/sampler/wave_four-inl.h"
 #include "texel/sampler/wave_texels-inl.h"
-#include "texel/sampler/wave_words-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
@@ -428,6 +428,13 @@ void sample_floats(const PreparedSampler& p, const SampleRequest& request, const
   store_texels(*p.plan.view, texels, request.active, result);
 }
 
+void sample_floats_bilinear(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
+  WaveState state;
+  find_state(p, request, state);
+  request.dref != nullptr ? compare_words_bilinear(p, request, state, result)
+                          : sample_words_bilinear(p, request, state, result);
+}
+
 }  // namespace
 }  // namespace vitrine::texel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -438,12 +445,22 @@ namespace vitrine::texel {
 namespace {
 
 HWY_EXPORT(sample_floats);
+HWY_EXPORT(sample_floats_bilinear);
+
+/// Whether sample_floats_bilinear does what the general sampler does.
+bool bilinear_suits(const Plan& plan) {
+  const FormatDesc& format = *plan.view->format;
+  const bool border = plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder;
+  return plan.dims == 2 && !plan.cube && !plan.gather && !border && plan.min_linear && plan.mag_linear &&
+         averages_words(format) && format.block_bytes == 4 &&
+         plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+}
 
 }  // namespace
 
-PreparedSampler::Kernel float_kernel() {
+PreparedSampler::Kernel float_kernel(const Plan& plan) {
   base::select_simd_target();
-  return &HWY_DYNAMIC_DISPATCH(sample_floats);
+  return bilinear_suits(plan) ? &HWY_DYNAMIC_DISPATCH(sample_floats_bilinear) : &HWY_DYNAMIC_DISPATCH(sample_floats);
 }
 
 }  // namespace vitrine::texel

@@ -27,7 +27,7 @@ struct WaveState {
   FloatLanes projected[2];
   IntLanes face;
   IntLanes layer_offset;  ///< bytes; of the first face for cubes. Only of arrayed views
-  IntLanes level[2];      ///< only if the view has several
+  IntLanes level[2];      ///< this and the rest: only if PreparedSampler::needs_levels
   FloatLanes fraction;    ///< weight of level[1]
   base::LaneMask minify;
 };
@@ -250,10 +250,10 @@ inline void find_state(const PreparedSampler& prepared, const SampleRequest& req
     state.coord[i] = request.coord[i] != nullptr ? reinterpret_cast<const float*>(request.coord[i]->lane) : nullptr;
   }
   if (plan.cube) state.coord[0] = state.projected[0].lane, state.coord[1] = state.projected[1].lane;
-  if (!plan.cube && !plan.arrayed && !plan.lod_needed) return;
+  if (!plan.cube && !plan.arrayed && !prepared.needs_levels) return;
   const bool implicit = request.lod_mode == LodMode::kImplicit || request.lod_mode == LodMode::kBias;
   const bool given = request.lod_mode == LodMode::kGrad && !plan.anisotropic;
-  const bool sloped = plan.lod_needed && !plan.lod_fixed && (implicit || request.lod_mode == LodMode::kGrad);
+  const bool sloped = prepared.needs_levels && !plan.lod_fixed && (implicit || request.lod_mode == LodMode::kGrad);
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     Slopes d;
     if (sloped) d = load_slopes(request, plan.cube ? 3 : plan.dims, first, given, plan.cube);
@@ -263,7 +263,7 @@ inline void find_state(const PreparedSampler& prepared, const SampleRequest& req
       project_cube(v, sloped ? &d : nullptr, first, state);
     }
     if (plan.arrayed) find_layer(plan, request.coord[plan.cube ? 3 : plan.dims], first, state);
-    if (plan.lod_needed) find_levels(plan, request, d, first, state);
+    if (prepared.needs_levels) find_levels(plan, request, d, first, state);
   }
 }
 

@@ -139,15 +139,6 @@ inline void average_comparisons(const WordTaps& taps, VkCompareOp op, const Floa
              : average_comparisons<Numeric::kSfloat, kTaps>(taps, op, reference, out);
 }
 
-/// Whether texels are one word of one kind of channels.
-inline bool averages_words(const FormatDesc& format) {
-  if (!format.plain || format.block_bytes > 4 || format.block_bytes == 3 || format.is_integer()) return false;
-  if (format.format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) return false;
-  const Numeric numeric = format.channel[0].numeric;
-  return numeric == Numeric::kUnorm || numeric == Numeric::kSnorm || numeric == Numeric::kSrgb ||
-         numeric == Numeric::kUfloat || numeric == Numeric::kSfloat;
-}
-
 }  // namespace vitrine::texel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
