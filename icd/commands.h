@@ -184,8 +184,9 @@ struct CmdBeginRenderPass {
   std::span<const ImageView* const> attachments;  ///< the framebuffer's
 };
 struct RenderingAttachment {
-  const ImageView* view;     ///< null: unused
-  const ImageView* resolve;  ///< null: none
+  const ImageView* view;               ///< null: unused
+  const ImageView* resolve;            ///< null: none
+  VkResolveModeFlagBits resolve_mode;  ///< of `resolve`
   VkAttachmentLoadOp load;
   VkClearValue clear;
 };

@@ -19,7 +19,7 @@ struct Subpass {
   Vector<std::uint32_t> inputs, colors, resolves;  ///< resolves: empty, or as many as colours
   std::uint32_t depth_stencil = VK_ATTACHMENT_UNUSED;
   std::uint32_t depth_stencil_resolve = VK_ATTACHMENT_UNUSED;
-  VkImageAspectFlags resolved_aspects = 0;  ///< of depth and stencil: those whose resolve mode is not NONE
+  VkResolveModeFlagBits depth_resolve_mode = VK_RESOLVE_MODE_NONE, stencil_resolve_mode = VK_RESOLVE_MODE_NONE;
   std::uint32_t view_mask = 0;
   Vector<std::uint32_t> first_uses;  ///< attachments no earlier subpass uses: their load ops happen here
 };

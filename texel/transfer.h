@@ -33,9 +33,10 @@ void blit_image(const ImageMemory& source, const ImageMemory& destination, const
 void resolve_image(const ImageMemory& source, const ImageMemory& destination, const VkImageResolve& region);
 
 /// Resolve of an attachment inside a render pass: level 0 of both views, texels of `area`, `layer_count` layers from
-/// view layer `base_layer`. Also depth and stencil (sample 0).
-void resolve_view(const ImageView& source, const ImageView& destination, const VkRect2D& area, std::uint32_t base_layer,
-                  std::uint32_t layer_count);
+/// view layer `base_layer`. `mode`: of planes of depth and stencil; averages are rounded to the nearest number of the
+/// format, halves up. Colours are resolved as resolve_image() does.
+void resolve_view(const ImageView& source, const ImageView& destination, VkResolveModeFlagBits mode,
+                  const VkRect2D& area, std::uint32_t base_layer, std::uint32_t layer_count);
 
 /// The bytes a clear value becomes. Colours by the format's kind; depth and stencil formats take one plane each.
 StoredTexel encode_clear_color(const FormatDesc& format, const VkClearColorValue& color);

@@ -19,6 +19,7 @@ RenderingAttachment make_attachment(const VkRenderingAttachmentInfo* info) {
   RenderingAttachment out{};
   if (!info) return out;
   out.view = from_nullable<ImageView>(info->imageView);
+  out.resolve_mode = info->resolveMode;
   if (info->resolveMode != VK_RESOLVE_MODE_NONE) out.resolve = from_nullable<ImageView>(info->resolveImageView);
   out.load = info->loadOp;
   out.clear = info->clearValue;

@@ -22,8 +22,8 @@ Subpass make_subpass(const VkSubpassDescription2& info, const HostMemory& memory
   if (const auto* resolve = find_in_chain<VkSubpassDescriptionDepthStencilResolve>(info.pNext);
       resolve && resolve->pDepthStencilResolveAttachment) {
     subpass.depth_stencil_resolve = resolve->pDepthStencilResolveAttachment->attachment;
-    if (resolve->depthResolveMode) subpass.resolved_aspects |= VK_IMAGE_ASPECT_DEPTH_BIT;
-    if (resolve->stencilResolveMode) subpass.resolved_aspects |= VK_IMAGE_ASPECT_STENCIL_BIT;
+    subpass.depth_resolve_mode = resolve->depthResolveMode;
+    subpass.stencil_resolve_mode = resolve->stencilResolveMode;
   }
   subpass.view_mask = info.viewMask;
   return subpass;

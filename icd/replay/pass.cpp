@@ -97,13 +97,12 @@ DrawScope describe_scope(const ReplayState& state) {
   scope.view_mask = subpass.view_mask;
   for (std::size_t i = 0; i < subpass.resolves.size(); ++i) {
     scope.add_resolve({attachment_view(state, subpass.colors[i]), attachment_view(state, subpass.resolves[i]),
-                       VK_IMAGE_ASPECT_COLOR_BIT});
+                       VK_IMAGE_ASPECT_COLOR_BIT, VK_RESOLVE_MODE_AVERAGE_BIT});
   }
-  for (const VkImageAspectFlagBits aspect : {VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_ASPECT_STENCIL_BIT}) {
-    if (!(subpass.resolved_aspects & aspect)) continue;
-    scope.add_resolve(
-        {attachment_view(state, subpass.depth_stencil), attachment_view(state, subpass.depth_stencil_resolve), aspect});
-  }
+  const ImageView* const source = attachment_view(state, subpass.depth_stencil);
+  const ImageView* const target = attachment_view(state, subpass.depth_stencil_resolve);
+  scope.add_resolve({source, target, VK_IMAGE_ASPECT_DEPTH_BIT, subpass.depth_resolve_mode});
+  scope.add_resolve({source, target, VK_IMAGE_ASPECT_STENCIL_BIT, subpass.stencil_resolve_mode});
   return scope;
 }
 

@@ -28,10 +28,11 @@ DrawScope describe_scope(const CmdBeginRendering& command) {
   scope.view_mask = command.view_mask;
   if (command.flags & VK_RENDERING_SUSPENDING_BIT) return scope;  // the one that ends it resolves
   for (const RenderingAttachment& color : command.colors) {
-    scope.add_resolve({color.view, color.resolve, VK_IMAGE_ASPECT_COLOR_BIT});
+    scope.add_resolve({color.view, color.resolve, VK_IMAGE_ASPECT_COLOR_BIT, color.resolve_mode});
   }
-  scope.add_resolve({command.depth.view, command.depth.resolve, VK_IMAGE_ASPECT_DEPTH_BIT});
-  scope.add_resolve({command.stencil.view, command.stencil.resolve, VK_IMAGE_ASPECT_STENCIL_BIT});
+  const RenderingAttachment &depth = command.depth, &stencil = command.stencil;
+  scope.add_resolve({depth.view, depth.resolve, VK_IMAGE_ASPECT_DEPTH_BIT, depth.resolve_mode});
+  scope.add_resolve({stencil.view, stencil.resolve, VK_IMAGE_ASPECT_STENCIL_BIT, stencil.resolve_mode});
   return scope;
 }
 

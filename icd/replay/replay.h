@@ -32,6 +32,7 @@ struct PendingResolve {
   const ImageView* source = nullptr;
   const ImageView* target = nullptr;
   VkImageAspectFlagBits aspect = VK_IMAGE_ASPECT_COLOR_BIT;
+  VkResolveModeFlagBits mode = VK_RESOLVE_MODE_NONE;
 };
 
 /// What draws go to: one subpass of a render pass instance, or a dynamic rendering instance.
@@ -43,7 +44,8 @@ struct DrawScope {
   std::uint32_t resolve_count = 0;
 
   void add_resolve(const PendingResolve& r) {
-    if (r.source && r.target && resolve_count < resolve.size()) resolve[resolve_count++] = r;
+    if (r.source && r.target && r.mode != VK_RESOLVE_MODE_NONE && resolve_count < resolve.size())
+      resolve[resolve_count++] = r;
   }
 };
 

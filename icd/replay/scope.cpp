@@ -38,7 +38,7 @@ void end_scope(ReplayState& state) {
     const texel::ImageView target = attachment_plane(*r.target, r.aspect);
     if (!source.format || !target.format) continue;
     for_each_layer_range(scope.view_mask, scope.layers, [&](std::uint32_t layer, std::uint32_t count) {
-      texel::resolve_view(source, target, scope.area, layer, count);
+      texel::resolve_view(source, target, r.mode, scope.area, layer, count);
     });
   }
 }

@@ -159,6 +159,30 @@ TEST(Resolve, AveragesInSampleOrder) {
   EXPECT_EQ(result.memory[0], std::byte{0});
 }
 
+TEST(Resolve, ReducesDepthOf24BitsExactly) {
+  TestImage image(VK_FORMAT_X8_D24_UNORM_PACK32, {3, 1, 1}, 1, 1, 4);
+  TestImage result(VK_FORMAT_X8_D24_UNORM_PACK32, {3, 1, 1});
+  const auto view_of = [](TestImage& of) {
+    ImageViewDesc desc;
+    desc.format = VK_FORMAT_X8_D24_UNORM_PACK32;
+    desc.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    return make_image_view(of.layout, of.memory.data(), desc);
+  };
+  const ImageView from = view_of(image), to = view_of(result);
+  constexpr std::uint32_t kSamples[4] = {0xfffffe, 0xffffff, 0xfffffb, 0xffffff};
+  for (std::uint32_t s = 0; s < 4; ++s) std::memcpy(from.block(0, 0, s, 1, 0, 0), &kSamples[s], 4);
+  const auto resolved = [&](VkResolveModeFlagBits mode) {
+    resolve_view(from, to, mode, {{1, 0}, {1, 1}}, 0, 1);
+    std::uint32_t word;
+    std::memcpy(&word, to.block(0, 0, 0, 1, 0, 0), 4);
+    return word;
+  };
+  EXPECT_EQ(resolved(VK_RESOLVE_MODE_SAMPLE_ZERO_BIT), 0xfffffeu);
+  EXPECT_EQ(resolved(VK_RESOLVE_MODE_MIN_BIT), 0xfffffbu);
+  EXPECT_EQ(resolved(VK_RESOLVE_MODE_MAX_BIT), 0xffffffu);
+  EXPECT_EQ(resolved(VK_RESOLVE_MODE_AVERAGE_BIT), 0xfffffeu);  // 7/4 below the largest
+}
+
 constexpr VkFormat kBlitFormats[] = {
     VK_FORMAT_R8G8B8A8_UNORM,
     VK_FORMAT_B8G8R8A8_UNORM,

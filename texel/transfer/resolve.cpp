@@ -1,5 +1,5 @@
-// Resolves multisampled texels (lavapipe-rasterization.md 8.8): floats are averaged in sample order, integers, depth
-// and stencil take sample 0.
+// Resolves multisampled texels (lavapipe-rasterization.md 8.8): colours that are floats are averaged in sample order,
+// integers take sample 0, depth and stencil do what their resolve mode says (Vulkan 1.3.239, VkResolveModeFlagBits).
 #include <algorithm>
 #include <cstring>
 
@@ -58,11 +58,89 @@ void average_bytes(const std::byte* source, std::uint64_t sample_stride, std::ui
   }
 }
 
-void resolve_box(const Box& source, Box destination) {
+// Planes of depth and stencil: how a texel is read, written and averaged.
+
+template <class Word, Word kMask>
+struct UnormPlane {
+  static constexpr std::size_t kBytes = sizeof(Word);
+  using Value = std::uint32_t;
+  static Value load(const std::byte* texel) {
+    Word word;
+    std::memcpy(&word, texel, sizeof(Word));
+    return word & kMask;
+  }
+  static void store(Value value, std::byte* texel) {
+    const auto word = static_cast<Word>(value);
+    std::memcpy(texel, &word, sizeof(Word));
+  }
+  static Value average(Value sum, std::uint32_t samples) { return (sum + samples / 2) / samples; }
+};
+
+struct FloatPlane {
+  static constexpr std::size_t kBytes = 4;
+  using Value = float;
+  static Value load(const std::byte* texel) {
+    Value value;
+    std::memcpy(&value, texel, 4);
+    return value;
+  }
+  static void store(Value value, std::byte* texel) { std::memcpy(texel, &value, 4); }
+  static Value average(Value sum, std::uint32_t samples) { return sum * (1.0f / static_cast<float>(samples)); }
+};
+
+/// One row of a plane of which `source` is sample 0.
+template <class Plane>
+void reduce_row(VkResolveModeFlagBits mode, const std::byte* source, std::uint64_t sample_stride, std::uint32_t samples,
+                std::size_t count, std::byte* destination) {
+  using Value = typename Plane::Value;
+  const auto fold = [&](auto combine, auto finish) {
+    for (std::size_t x = 0; x < count; ++x, source += Plane::kBytes, destination += Plane::kBytes) {
+      Value value = Plane::load(source);
+      for (std::uint32_t s = 1; s < samples; ++s) value = combine(value, Plane::load(source + s * sample_stride));
+      Plane::store(finish(value), destination);
+    }
+  };
+  const auto same = [](Value v) { return v; };
+  if (mode == VK_RESOLVE_MODE_MIN_BIT)
+    fold([](Value a, Value b) { return b < a ? b : a; }, same);
+  else if (mode == VK_RESOLVE_MODE_MAX_BIT)
+    fold([](Value a, Value b) { return a < b ? b : a; }, same);
+  else
+    fold([](Value a, Value b) { return a + b; }, [&](Value sum) { return Plane::average(sum, samples); });
+}
+
+using RowReduction = void (*)(VkResolveModeFlagBits, const std::byte*, std::uint64_t, std::uint32_t, std::size_t,
+                              std::byte*);
+RowReduction row_reduction(const FormatDesc& plane) {
+  if (plane.channel[0].numeric == Numeric::kSfloat) return reduce_row<FloatPlane>;
+  if (plane.channel[0].bits == 24) return reduce_row<UnormPlane<std::uint32_t, 0xffffff>>;
+  return plane.block_bytes == 2 ? reduce_row<UnormPlane<std::uint16_t, 0xffff>>
+                                : reduce_row<UnormPlane<std::uint8_t, 0xff>>;
+}
+
+Box common_box(const Box& source, Box destination) {
   destination.columns = std::min(destination.columns, source.columns);
   destination.rows = std::min(destination.rows, source.rows);
   destination.slices = std::min(destination.slices, source.slices);
   destination.samples = 1;
+  return destination;
+}
+
+void reduce_box(VkResolveModeFlagBits mode, const Box& source, const Box& all) {
+  const Box destination = common_box(source, all);
+  if (destination.empty() || source.format->block_bytes != destination.format->block_bytes) return;
+  const RowReduction reduce = row_reduction(*source.format);
+  const std::size_t cost = destination.row_bytes() * source.samples * 2;
+  for_each_band(destination, cost, [&](std::uint32_t first, std::uint32_t count, std::uint32_t slice, std::uint32_t) {
+    const base::ScopedFloatMode mode_of_floats(base::Denormals::kFlush);
+    for (std::uint32_t y = first; y < first + count; ++y)
+      reduce(mode, source.row(slice, 0, y), source.sample_stride, source.samples, destination.columns,
+             destination.row(slice, 0, y));
+  });
+}
+
+void resolve_box(const Box& source, const Box& all) {
+  const Box destination = common_box(source, all);
   if (destination.empty()) return;
   const FormatDesc& from = *source.format;
   const FormatDesc& to = *destination.format;
@@ -120,11 +198,15 @@ void resolve_image(const ImageMemory& source, const ImageMemory& destination, co
   if (!from.empty() && !to.empty()) resolve_box(from, to);
 }
 
-void resolve_view(const ImageView& source, const ImageView& destination, const VkRect2D& area, std::uint32_t base_layer,
-                  std::uint32_t layer_count) {
+void resolve_view(const ImageView& source, const ImageView& destination, VkResolveModeFlagBits mode,
+                  const VkRect2D& area, std::uint32_t base_layer, std::uint32_t layer_count) {
   const Box from = view_box(source, area, base_layer, layer_count);
   const Box to = view_box(destination, area, base_layer, layer_count);
-  if (!from.empty() && !to.empty()) resolve_box(from, to);
+  if (from.empty() || to.empty()) return;
+  if (from.format->is_depth_stencil() && mode != VK_RESOLVE_MODE_SAMPLE_ZERO_BIT)
+    reduce_box(mode, from, to);
+  else
+    resolve_box(from, to);
 }
 
 }  // namespace vitrine::texel
