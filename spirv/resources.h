@@ -10,17 +10,14 @@
 
 namespace vitrine::spirv {
 
-/// One array element of one binding. All zero is the null descriptor: buffers of size 0, images that read 0.
+/// One array element of one binding. Each kind has fields of its own, so that a shader which expects another kind than
+/// was bound (an invalid use) finds a null descriptor: buffers of size 0, images that read 0.
 struct Descriptor {
-  union {
-    std::byte* data = nullptr;             ///< uniform or storage buffer, offset applied
-    const texel::ImageView* image;         ///< sampled, storage, input attachment, combined
-    const texel::BufferTexelView* texels;  ///< uniform or storage texel buffer
-  };
-  union {
-    std::uint64_t size = 0;         ///< bytes of the bound range (buffers)
-    const texel::Sampler* sampler;  ///< sampler, combined image sampler
-  };
+  std::byte* data = nullptr;                       ///< uniform or storage buffer, offset applied
+  std::uint64_t size = 0;                          ///< bytes of the bound range (buffers)
+  const texel::ImageView* image = nullptr;         ///< sampled, storage, input attachment, combined
+  const texel::BufferTexelView* texels = nullptr;  ///< uniform or storage texel buffer
+  const texel::Sampler* sampler = nullptr;         ///< sampler, combined image sampler
 };
 
 inline constexpr std::uint32_t kMaxSets = 32;

@@ -86,7 +86,7 @@ std::vector<spirv::SetLayoutInfo> set_layout_infos(const PipelineLayoutShape& la
       if (b.count == 0) continue;
       spirv::BindingInfo info;
       info.binding = b.binding;
-      info.type = is_inline_block(b.type) ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : b.type;
+      info.type = b.type;
       info.set = is_dynamic(b.type) ? spirv::kDynamicSet : set;
       info.first_slot = is_dynamic(b.type) ? layout.first_dynamic[set] + b.first_slot : b.first_slot;
       info.count = is_inline_block(b.type) ? 1 : b.count;

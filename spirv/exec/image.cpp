@@ -119,8 +119,13 @@ texel::FetchRequest fetch_request(const Call& call, base::LaneMask lanes) {
 
 bool is_buffer(const Call& call) { return call.op.info.dim == 5; }
 
+/// Whether there is nothing of the kind that the instruction expects.
+bool is_null(const Call& call, const Descriptor& image) {
+  return is_buffer(call) ? image.texels == nullptr : image.image == nullptr;
+}
+
 void read(Call& call, const Descriptor& image, base::LaneMask lanes) {
-  if (image.image == nullptr) return zero_result(call, lanes);
+  if (is_null(call, image)) return zero_result(call, lanes);
   if (is_buffer(call)) {
     texel::fetch_buffer(*image.texels, lanes, *call.operand(ImageOperand::kCoord), call.result);
   } else {
@@ -130,7 +135,7 @@ void read(Call& call, const Descriptor& image, base::LaneMask lanes) {
 
 void write(Call& call, const Descriptor& image, base::LaneMask lanes) {
   lanes &= call.wave.live;
-  if (image.image == nullptr || lanes == 0) return;
+  if (is_null(call, image) || lanes == 0) return;
   WaveRegister value[4];
   for (std::uint32_t c = 0; c < 4; ++c) value[c] = *call.operand(ImageOperand::kValue, c);
   if (is_buffer(call)) {
@@ -157,7 +162,7 @@ std::uint32_t* texel_word(const Call& call, const Descriptor& image, std::size_t
 
 void atomic(Call& call, const Descriptor& image, base::LaneMask lanes) {
   zero_result(call, lanes);
-  if (image.image == nullptr) return;
+  if (is_null(call, image)) return;
   const WaveRegister* operand = call.operand(ImageOperand::kValue);
   const WaveRegister* compare = call.operand(ImageOperand::kCompare);
   base::for_each_lane(lanes & call.wave.live, [&](std::size_t lane) {
@@ -169,7 +174,7 @@ void atomic(Call& call, const Descriptor& image, base::LaneMask lanes) {
 }
 
 void query(Call& call, const Descriptor& image, base::LaneMask lanes) {
-  if (image.image == nullptr) return zero_result(call, lanes);
+  if (is_null(call, image)) return zero_result(call, lanes);
   const WaveRegister* lod = call.operand(ImageOperand::kLod);
   base::for_each_lane(lanes, [&](std::size_t lane) {
     std::array<std::uint32_t, 3> value{};

@@ -11,6 +11,10 @@ namespace vitrine::spirv::front {
 
 /// Follows one step of an access chain.
 void step_into(Translator& t, const Inst& inst, Pointer& pointer, const Step& step);
+/// The descriptors of a resource variable. Fails if the pipeline layout has none of its kind there.
+Binding find_binding(const Translator& t, const Inst& variable);
+/// Whether a variable in storage class Uniform or StorageBuffer is a storage buffer.
+bool is_storage_buffer(const Translator& t, const Inst& variable);
 /// Bytes from one component of the vector or scalar in memory to the next.
 std::uint32_t component_bytes(const Translator& t, const Pointer& pointer);
 /// Type of the vector whose component a local pointer points to.

@@ -10,21 +10,6 @@ namespace {
 using spv::Decoration;
 using spv::StorageClass;
 
-std::uint32_t decoration_value(const Module& module, std::uint32_t id, Decoration kind, std::uint32_t otherwise) {
-  const DecorationRow* row = module.decoration(id, kind);
-  return row == nullptr ? otherwise : row->value;
-}
-
-Binding find_binding(const Translator& t, const Inst& variable) {
-  const std::uint32_t set = decoration_value(t.module, variable.result, Decoration::DescriptorSet, 0);
-  const std::uint32_t number = decoration_value(t.module, variable.result, Decoration::Binding, 0);
-  if (set < t.options.sets.size())
-    for (const BindingInfo& row : t.options.sets[set].bindings)
-      if (row.binding == number) return {row.set, row.first_slot, row.count, row.immutable_samplers};
-  fail(variable, "descriptor set " + std::to_string(set) + ", binding " + std::to_string(number) +
-                     " is not in the pipeline layout");
-}
-
 /// Block variables: uniform buffers, storage buffers, push constants.
 Pointer buffer_pointer(const Translator& t, const Inst& variable, StorageClass storage, std::uint32_t type_id) {
   Pointer pointer;
@@ -35,10 +20,7 @@ Pointer buffer_pointer(const Translator& t, const Inst& variable, StorageClass s
   }
   const Type& type = t.module.type(type_id);
   pointer.descriptor_array = type.kind == Type::Kind::kArray || type.kind == Type::Kind::kRuntimeArray;
-  const std::uint32_t block = pointer.descriptor_array ? type.element : type_id;
-  const bool is_storage =
-      storage == StorageClass::StorageBuffer || t.module.decoration(block, Decoration::BufferBlock) != nullptr;
-  pointer.kind = is_storage ? Pointer::Kind::kStorage : Pointer::Kind::kUniform;
+  pointer.kind = is_storage_buffer(t, variable) ? Pointer::Kind::kStorage : Pointer::Kind::kUniform;
   pointer.binding = find_binding(t, variable);
   return pointer;
 }

@@ -35,25 +35,17 @@ spirv::CompileOptions options_of(VkShaderStageFlagBits stage) {
     spirv::SetLayoutInfo layout;
     for (std::uint32_t binding = 0; binding < kBindings; binding++)
       layout.bindings.push_back(
-          {binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, set, kElements * binding, kElements, nullptr});
+          {binding, VK_DESCRIPTOR_TYPE_MUTABLE_EXT, set, kElements * binding, kElements, nullptr});
     options.sets.push_back(layout);
   }
   return options;
 }
 
-/// Whether a module has images or samplers, whose descriptors are then null.
-bool has_handles(std::span<const std::uint32_t> words) {
-  constexpr std::uint32_t kOpTypeImage = 25, kOpTypeSampler = 26;
-  for (std::size_t at = 5; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16)
-    if ((words[at] & 0xffff) == kOpTypeImage || (words[at] & 0xffff) == kOpTypeSampler) return true;
-  return false;
-}
-
-std::vector<std::uint32_t> run_once(const spirv::Shader& shader, bool handles) {
+std::vector<std::uint32_t> run_once(const spirv::Shader& shader) {
   std::vector<std::uint32_t> buffers(2 * kBindings * kElements * kBufferWords);
   for (std::size_t i = 0; i < buffers.size(); i++) buffers[i] = static_cast<std::uint32_t>(i * 2654435761u) >> (i % 31);
   std::vector<spirv::Descriptor> descriptors(2 * kBindings * kElements);
-  for (std::size_t i = 0; i < descriptors.size() && !handles; i++) {
+  for (std::size_t i = 0; i < descriptors.size(); i++) {
     descriptors[i].data = reinterpret_cast<std::byte*>(buffers.data() + i * kBufferWords);
     descriptors[i].size = kBufferWords * 4;
   }
@@ -102,9 +94,8 @@ Outcome run_module(VkShaderStageFlagBits stage, std::span<const std::uint32_t> w
   const auto shader = spirv::compile(words, options);
   if (!shader) return Outcome::kRefused;
   if (has_clock(*shader.value())) return Outcome::kCompiled;
-  const bool handles = has_handles(words);
-  const std::vector<std::uint32_t> first = run_once(*shader.value(), handles);
-  const std::vector<std::uint32_t> second = run_once(*shader.value(), handles);
+  const std::vector<std::uint32_t> first = run_once(*shader.value());
+  const std::vector<std::uint32_t> second = run_once(*shader.value());
   if (first != second) {
     const auto at = std::mismatch(first.begin(), first.end(), second.begin());
     std::fprintf(stderr, "two runs differ in word %td: %08x, %08x\n", at.first - first.begin(), *at.first, *at.second);

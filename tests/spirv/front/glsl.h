@@ -65,7 +65,7 @@ inline CompileOptions options_for(VkShaderStageFlagBits stage) {
   for (std::uint32_t set = 0; set < 2; set++) {
     SetLayoutInfo layout;
     for (std::uint32_t binding = 0; binding < 8; binding++)
-      layout.bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, set, 4 * binding, 4, nullptr});
+      layout.bindings.push_back({binding, VK_DESCRIPTOR_TYPE_MUTABLE_EXT, set, 4 * binding, 4, nullptr});
     options.sets.push_back(layout);
   }
   return options;
