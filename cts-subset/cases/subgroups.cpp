@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cstring>
 
+#include "cases/subgroup_pipeline.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
 namespace vitrine::cts {
 namespace {
 
-constexpr uint32_t kSize = 8;
+constexpr uint32_t kSize = kSubgroupSize;
 
 constexpr char kHeader[] = R"(// target: vulkan1.1
 #extension GL_KHR_shader_subgroup_basic : enable
@@ -20,30 +21,6 @@ constexpr char kHeader[] = R"(// target: vulkan1.1
 #extension GL_KHR_shader_subgroup_shuffle_relative : enable
 #extension GL_KHR_shader_subgroup_quad : enable
 )";
-
-VkPipeline pipeline_of(Run& run, VkPipelineLayout layout, VkShaderModule module) {
-  run.require(run.gpu.extension_features.subgroup_size.subgroupSizeControl, "subgroupSizeControl");
-  VkPhysicalDeviceSubgroupSizeControlProperties sizes{
-      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_PROPERTIES};
-  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &sizes};
-  vkGetPhysicalDeviceProperties2(run.gpu.physical, &properties);
-  run.require(sizes.minSubgroupSize <= kSize && sizes.maxSubgroupSize >= kSize, "subgroups of 8");
-  VkPipelineShaderStageRequiredSubgroupSizeCreateInfo required{
-      VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO};
-  required.requiredSubgroupSize = kSize;
-  VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-  info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                &required,
-                0,
-                VK_SHADER_STAGE_COMPUTE_BIT,
-                module,
-                "main",
-                nullptr};
-  info.layout = layout;
-  VkPipeline result;
-  CTS_VK(vkCreateComputePipelines(run.device, VK_NULL_HANDLE, 1, &info, nullptr, &result));
-  return run.own(result, vkDestroyPipeline);
-}
 
 /// Runs statements on r (uint, 0 at first), x (a random word), y (a small number) and f (a float in 0..1).
 void run_statements(Run& run, const std::string& statements, uint32_t local_size, const char* extensions = kHeader) {
@@ -61,7 +38,7 @@ void run_statements(Run& run, const std::string& statements, uint32_t local_size
   for (uint32_t& word : words) word = run.random.bits();
   const Buffer in = run.buffer_of(words), out = run.buffer(in.size);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
-  const VkPipeline pipeline = pipeline_of(run, res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
+  const VkPipeline pipeline = subgroup_pipeline(run, res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
   run.dispatch(res, pipeline, kGroups);
   run.out("result", out);
 }
