@@ -48,20 +48,23 @@ std::vector<uint32_t> compile(VkShaderStageFlagBits stage, const std::string& so
   static const bool initialized = glslang::InitializeProcess();
   (void)initialized;
   const EShLanguage lang = language(stage);
-  const std::string text = source.starts_with("#version") ? source : "#version 450\n" + source;
+  const bool hlsl = source.starts_with("// target: hlsl");
+  const std::string text = hlsl || source.starts_with("#version") ? source : "#version 450\n" + source;
   const char* strings[] = {text.c_str()};
   glslang::TShader shader(lang);
   shader.setStrings(strings, 1);
-  shader.setEnvInput(glslang::EShSourceGlsl, lang, glslang::EShClientVulkan, 100);
+  shader.setEnvInput(hlsl ? glslang::EShSourceHlsl : glslang::EShSourceGlsl, lang, glslang::EShClientVulkan, 100);
+  if (hlsl) shader.setEntryPoint("main");
   const Target target = target_of(source);
   shader.setEnvClient(glslang::EShClientVulkan, target.client);
   shader.setEnvTarget(glslang::EShTargetSpv, target.spirv);
-  constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-  if (!shader.parse(GetDefaultResources(), 450, false, kMessages))
-    throw std::runtime_error(std::string("GLSL: ") + shader.getInfoLog());
+  const auto messages =
+      static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | (hlsl ? EShMsgReadHlsl : EShMsgDefault));
+  const std::string name = hlsl ? "HLSL: " : "GLSL: ";
+  if (!shader.parse(GetDefaultResources(), 450, false, messages)) throw std::runtime_error(name + shader.getInfoLog());
   glslang::TProgram program;
   program.addShader(&shader);
-  if (!program.link(kMessages)) throw std::runtime_error(std::string("GLSL: ") + program.getInfoLog());
+  if (!program.link(messages)) throw std::runtime_error(name + program.getInfoLog());
   std::vector<uint32_t> words;
   glslang::SpvOptions spv;
   spv.disableOptimizer = true;
