@@ -1,3 +1,4 @@
+// Fetches samples with a compute shader, and puts words out.
 #include "cases/multisample/samples.h"
 
 #include <cstring>
