@@ -18,6 +18,7 @@ constexpr char kUsage[] =
     "  --reference=FILE  manifest of the reference (or CTS_REFERENCE_ICD)\n"
     "  --known=FILE      known differences (a name and its reason per line): told, but no failure of the run\n"
     "  --results=DIR     where images of failing cases go\n"
+    "  --fingerprints=FILE  compare nothing: append each case's name and a hash of the device's bytes\n"
     "  --seed=N          seed of every random case (default 1)\n"
     "  --count=N         cases per random generator\n"
     "  --validation=0|1  validation layer (default 1)\n"
@@ -55,6 +56,8 @@ Options parse_options(int argc, char** argv) {
       result.reference_icd = value;
     else if (name == "--results")
       result.results = value;
+    else if (name == "--fingerprints")
+      result.fingerprints = value;
     else if (name == "--seed")
       result.seed = number();
     else if (name == "--count")

@@ -11,6 +11,7 @@ struct Options {
   std::string reference_icd;  ///< manifest of the reference
   std::string known;          ///< list of known differences: these fail no run
   std::string results = "cts-results";
+  std::string fingerprints;  ///< file that receives the name and a hash of every case instead of a comparison
   uint64_t seed = 1;
   uint32_t count = 0;        ///< cases per random generator; 0 = each generator's default
   bool validation = true;    ///< VK_LAYER_KHRONOS_validation on both devices

@@ -5,6 +5,7 @@
 #include "base/simd.h"
 
 #include "spirv/alu/lane_op-inl.h"
+#include "spirv/alu/ordered-inl.h"
 
 #if defined(VITRINE_SPIRV_ALU_FLOAT_OPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VITRINE_SPIRV_ALU_FLOAT_OPS_INL_H_
@@ -36,7 +37,7 @@ template <>
 struct LaneOp<Op::kFAdd> {
   template <class V>
   static HWY_INLINE auto of(V a, V b) {
-    return hn::Add(a, b);
+    return ordered_add(a, b);
   }
 };
 
@@ -52,7 +53,7 @@ template <>
 struct LaneOp<Op::kFMul> {
   template <class V>
   static HWY_INLINE auto of(V a, V b) {
-    return hn::Mul(a, b);
+    return ordered_mul(a, b);
   }
 };
 
@@ -197,7 +198,7 @@ template <>
 struct LaneOp<Op::kFFused> {
   template <class V>
   static HWY_INLINE auto of(V a, V b, V c) {
-    return lanes_fma(a, b, c);
+    return ordered_fma(a, b, c);
   }
 };
 
@@ -207,7 +208,7 @@ template <>
 struct LaneOp<Op::kFMulAdd> {
   template <class V>
   static HWY_INLINE auto of(V a, V b, V c) {
-    return hn::Add(hn::Mul(a, b), c);
+    return ordered_add(ordered_mul(a, b), c);
   }
 };
 
@@ -215,7 +216,7 @@ template <>
 struct LaneOp<Op::kFMulSub> {
   template <class V>
   static HWY_INLINE auto of(V a, V b, V c) {
-    return hn::Sub(hn::Mul(a, b), c);
+    return hn::Sub(ordered_mul(a, b), c);
   }
 };
 
@@ -223,7 +224,7 @@ template <>
 struct LaneOp<Op::kFNMulAdd> {
   template <class V>
   static HWY_INLINE auto of(V a, V b, V c) {
-    return hn::Sub(c, hn::Mul(a, b));
+    return hn::Sub(c, ordered_mul(a, b));
   }
 };
 

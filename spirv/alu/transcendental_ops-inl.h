@@ -5,6 +5,7 @@
 #include "base/simd.h"
 
 #include "spirv/alu/lane_op-inl.h"
+#include "spirv/alu/ordered-inl.h"
 
 #if defined(VITRINE_SPIRV_ALU_TRANSCENDENTAL_OPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VITRINE_SPIRV_ALU_TRANSCENDENTAL_OPS_INL_H_
@@ -86,7 +87,7 @@ template <>
 struct LaneOp<Op::kFPow> {
   template <class V>
   static HWY_INLINE auto of(V a, V b) {
-    return hn::IfThenZeroElse(is_zero_or_nan(a), exp2_lanes(hn::Mul(log2_lanes(a), b)));
+    return hn::IfThenZeroElse(is_zero_or_nan(a), exp2_lanes(ordered_mul(log2_lanes(a), b)));
   }
 };
 

@@ -119,7 +119,7 @@ struct ChainLink<op, accumulator, uniform, link, std::index_sequence<k...>> {
 };
 
 template <Op op, int accumulator, unsigned uniform, Link link>
-constexpr Handler link_handler() {
+Handler link_handler() {
   using Indices = std::make_index_sequence<kVectors>;
   if constexpr (accumulator == exec::kNoAccumulator) {
     return ChainLink<op, accumulator, uniform, link, Indices>::start;
@@ -127,13 +127,17 @@ constexpr Handler link_handler() {
     return reinterpret_cast<Handler>(ChainLink<op, accumulator, uniform, link, Indices>::run);
   }
 }
+#else
+template <Op, int accumulator, unsigned uniform, Link>
+Handler link_handler() {
+  return exec::no_chain;
+}
 #endif
 
 /// Handlers of one op by uniform sources and link.
 template <Op op, int accumulator, unsigned... uniform>
 Handler find_link(UniformSources wanted, Link link, std::integer_sequence<unsigned, uniform...>) {
   Handler found = nullptr;
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
   constexpr bool kMask = shape(op).result == kB;
   constexpr bool kStart = accumulator == exec::kNoAccumulator;
   const auto check = [&]<unsigned u>(std::integral_constant<unsigned, u>) HWY_ATTR {
@@ -150,10 +154,6 @@ Handler find_link(UniformSources wanted, Link link, std::integer_sequence<unsign
     }
   };
   (check(std::integral_constant<unsigned, uniform>()), ...);
-#else
-  static_cast<void>(wanted);
-  static_cast<void>(link);
-#endif
   return found;
 }
 

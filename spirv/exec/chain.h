@@ -17,6 +17,10 @@ enum class Link : std::uint8_t {
   kLast,   ///< writes register (or mask) dst; the chain ends
 };
 
+/// Whether `op` may be a link. The answer is that of every target: it decides the order of operations and operands, and
+/// so which of two NaNs survives.
+bool is_chain_link(ir::Op op, int accumulator, UniformSources uniform, Link link);
+
 /// The handler of `op` as a link; null where there is none, and in targets whose registers do not hold a wave. A chain
 /// starts with kNoAccumulator and kKeep or kStore; every later link has an accumulator. Chained instructions must be
 /// adjacent, and no jump may lead into a chain.

@@ -3,6 +3,13 @@
 
 #include "spirv/exec/chain.h"
 
+namespace vitrine::spirv::exec {
+
+/// Stands for the handler of a link in targets that have none; never called.
+const Instruction* no_chain(Wave& wave, const Instruction* instruction);
+
+}  // namespace vitrine::spirv::exec
+
 namespace vitrine::spirv::alu {
 
 Handler float_chain(ir::Op op, int accumulator, UniformSources uniform, exec::Link link);

@@ -75,7 +75,8 @@ class MultiplyAdd {
   std::vector<std::uint32_t> product_;  ///< per scalar: the multiplication in the body that gives it
 };
 
-/// Source positions that may be exchanged without changing a number.
+/// Whether the first two sources may be exchanged without changing a number. Of two NaNs the first operand's survives,
+/// so every target exchanges the same ones.
 bool swappable(Op op) {
   switch (op) {
     case Op::kFAdd:
@@ -143,23 +144,28 @@ class ChainScheduler {
 
   void emit_chain(std::uint32_t first) {
     emit(first);
-    if (!exec::chain_handler(f_.body[begin_ + first].op, exec::kNoAccumulator, uniform_sources(first, 0), Link::kKeep))
+    if (!exec::is_chain_link(f_.body[begin_ + first].op, exec::kNoAccumulator, uniform_sources(first, 0), Link::kKeep))
       return;
     std::uint32_t current = first;
     for (std::uint32_t length = 1; length < kMaxChain; ++length) {
       if (f_.scalars[result(begin_ + current)].boolean) break;
       const std::uint32_t next = pick_user(current);
       if (next == kNoIndex) break;
-      ScalarOp& from = f_.body[begin_ + current];
-      const ScalarOp& to = f_.body[begin_ + next];
-      const std::uint32_t taken = to.accumulator == exec::kAllSources ? 2 : 1;
-      from.link = uses_[result(begin_ + current)] == taken ? Link::kKeep : Link::kStore;
-      from.in_chain = true;
-      f_.body[begin_ + next].in_chain = true;
-      f_.body[begin_ + next].link = Link::kLast;
+      if (target_has_chains_) connect(current, next);
       emit(next);
       current = next;
     }
+  }
+
+  /// `next` takes the result of `current` as its accumulator.
+  void connect(std::uint32_t current, std::uint32_t next) {
+    ScalarOp& from = f_.body[begin_ + current];
+    ScalarOp& to = f_.body[begin_ + next];
+    const std::uint32_t taken = to.accumulator == exec::kAllSources ? 2 : 1;
+    from.link = uses_[result(begin_ + current)] == taken ? Link::kKeep : Link::kStore;
+    from.in_chain = true;
+    to.in_chain = true;
+    to.link = Link::kLast;
   }
 
   /// Bit i: source i is a word; `skip`: sources that are the accumulator.
@@ -193,12 +199,13 @@ class ChainScheduler {
 
   bool try_accumulator(std::uint32_t user, int accumulator, unsigned skip) {
     ScalarOp& op = f_.body[begin_ + user];
-    if (!exec::chain_handler(op.op, accumulator, uniform_sources(user, skip), Link::kLast)) return false;
-    op.accumulator = accumulator;
+    if (!exec::is_chain_link(op.op, accumulator, uniform_sources(user, skip), Link::kLast)) return false;
+    if (target_has_chains_) op.accumulator = accumulator;
     return true;
   }
 
   ScalarFunction& f_;
+  const bool target_has_chains_ = exec::chain_handler(Op::kOr, exec::kNoAccumulator, 0, Link::kKeep) != nullptr;
   std::vector<std::uint32_t> uses_;
   std::vector<std::uint32_t> definition_;  ///< per scalar: operation of the current stretch that gives it
   std::uint32_t begin_ = 0;

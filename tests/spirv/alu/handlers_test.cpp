@@ -151,6 +151,40 @@ TEST_P(EveryOp, EqualsTheModel) {
 INSTANTIATE_TEST_SUITE_P(Alu, EveryOp, ::testing::Range(std::size_t{0}, static_cast<std::size_t>(Op::kAluCount)),
                          [](const auto& info) { return ir::op_name(static_cast<Op>(info.param)); });
 
+/// Results of one op on random operands, NaNs of all kinds among them, for every combination of uniform operands.
+std::vector<std::uint32_t> results_of(Op op) {
+  static constexpr std::uint32_t kNans[] = {0x7fc00001, 0xffc00002, 0x7fc00003, 0xffc00000, 0x7f800004};
+  const ir::AluInfo& info = ir::alu_info(op);
+  std::mt19937 random(2);
+  std::vector<std::uint32_t> results;
+  for (unsigned uniform = 0; uniform < 1u << info.sources; ++uniform) {
+    for (int round = 0; round < 16; ++round) {
+      TestWave test;
+      fill(test, random);
+      for (auto& reg : test.registers)
+        for (auto& lane : reg.lane)
+          if (random() % 2 == 0) lane = kNans[random() % std::size(kNans)];
+      for (auto& word : test.uniforms)
+        if (random() % 2 == 0) word = kNans[random() % std::size(kNans)];
+      Instruction& code = test.code[0];
+      code.handler = alu_handler(op, static_cast<UniformSources>(uniform));
+      for (unsigned i = 0; i < 3; ++i)
+        code.src[i] = (uniform >> i & 1) ? i * 4 : i * static_cast<unsigned>(sizeof(base::WaveRegister));
+      code.dst = 3 * sizeof(base::WaveRegister);
+      code.handler(test.wave, &code);
+      results.insert(results.end(), std::begin(test.registers[3].lane), std::end(test.registers[3].lane));
+    }
+  }
+  return results;
+}
+
+TEST_P(EveryOp, GivesTheSameNansInEveryTarget) {
+  if (ir::alu_info(op()).result != 'F' || is_boolean(op(), 0)) GTEST_SKIP() << "no float of floats";
+  std::vector<std::vector<std::uint32_t>> found;
+  for_each_target([&] { found.push_back(results_of(op())); });
+  for (const auto& results : found) EXPECT_EQ(results, found[0]);
+}
+
 TEST(Derivatives, DifferWithinRowAndColumnOfTheQuad) {
   for_each_target([] {
     TestWave test;
