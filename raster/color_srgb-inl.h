@@ -6,7 +6,7 @@
 
 #include "base/lane_math-inl.h"
 #include "raster/color_fast.h"
-#include "texel/codec/srgb.h"
+#include "texel/codec/srgb_encode-inl.h"
 
 #if defined(VITRINE_RASTER_COLOR_SRGB_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VITRINE_RASTER_COLOR_SRGB_INL_H_
@@ -44,36 +44,19 @@ class SrgbPacker {
     return hn::Load(Floats(), reinterpret_cast<const float*>(color.lane + i));
   }
   static HWY_INLINE V set(float x) { return hn::Set(Floats(), x); }
-  static HWY_INLINE I to_code(V scaled) {
+  static HWY_INLINE I to_byte(I code) {
     const Texels d;
-    return hn::Min(hn::Max(base::HWY_NAMESPACE::lanes_round_to_int(scaled), hn::Zero(d)), hn::Set(d, 255));
+    return hn::Min(hn::Max(code, hn::Zero(d)), hn::Set(d, 255));
   }
   static HWY_INLINE I alpha(V x) {
-    return to_code(hn::Mul(base::HWY_NAMESPACE::lanes_min_second(set(1.0f), x), set(255.0f)));
-  }
-
-  /// texel::approximate_rsqrt of positive normal numbers.
-  static HWY_INLINE V rsqrt(V x) {
-    const Texels d;
-    const I bits = hn::BitCast(d, x);
-    const I step = hn::And(hn::ShiftRight<11>(bits), hn::Set(d, 0x1fff));
-    const auto* table = reinterpret_cast<const std::int32_t*>(texel::kRsqrtSteps.data());
-    const I significand = hn::And(hn::GatherOffset(d, table, hn::Add(step, step)), hn::Set(d, 0xffff));
-    const I exponent = hn::ShiftRight<1>(hn::Add(hn::ShiftRight<23>(bits), hn::Set(d, 1)));
-    const I start = hn::ShiftLeft<23>(hn::Sub(hn::Set(d, 190), exponent));
-    return hn::BitCast(Floats(), hn::Add(start, hn::ShiftLeft<11>(significand)));
+    const V scaled = hn::Mul(base::HWY_NAMESPACE::lanes_min_second(set(1.0f), x), set(255.0f));
+    return to_byte(base::HWY_NAMESPACE::lanes_round_to_int(scaled));
   }
 
   static HWY_INLINE I code(V linear) {
     const V x =
         base::HWY_NAMESPACE::lanes_min_second(base::HWY_NAMESPACE::lanes_max_second(linear, set(0.0f)), set(1.0f));
-    const V limit = set(texel::kSrgbLinearEnd);
-    const V curved = hn::Max(x, limit);
-    const V x05 = hn::Mul(curved, rsqrt(curved));
-    const V x0375 = rsqrt(rsqrt(hn::Mul(x05, curved)));
-    const V curve = hn::Add(hn::Mul(set(texel::kSrgbCurve[0]), x0375),
-                            base::HWY_NAMESPACE::lanes_fma(set(texel::kSrgbCurve[1]), x05, set(texel::kSrgbCurve[2])));
-    return to_code(hn::IfThenElse(hn::Gt(x, limit), curve, hn::Mul(x, set(texel::kSrgbLinearScale))));
+    return to_byte(texel::HWY_NAMESPACE::srgb_codes(texel::HWY_NAMESPACE::RsqrtByTable(), x));
   }
 
   int shift_[4];

@@ -7,8 +7,11 @@
 #include <random>
 #include <vector>
 
+#include "base/simd.h"
 #include "texel/capabilities.h"
 #include "texel/transfer/blit.h"
+
+#include <hwy/targets.h>
 
 namespace vitrine::texel {
 namespace {
@@ -204,6 +207,36 @@ constexpr VkFormat kBlitFormats[] = {
     VK_FORMAT_BC3_SRGB_BLOCK,
 };
 
+/// Levels of mips, and other regions at half the size: rows against texels one by one, on every SIMD target.
+void compare_halved(unsigned seed) {
+  std::mt19937 random(seed);
+  constexpr VkFormat kFormats[] = {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB,
+                                   VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R16G16B16A16_SFLOAT};
+  const FormatDesc& format = format_desc(kFormats[random() % std::size(kFormats)]);
+  const auto size = [&] {
+    return random() % 2 ? std::uint32_t{1} << random() % 8 : 1 + static_cast<std::uint32_t>(random() % 90);
+  };
+  const std::uint32_t width = size(), height = size();
+  TestImage source(format.format, {2 * width, 2 * height, 1}, 1, 1), expected(format.format, {width, height, 1}, 1, 1);
+  for (std::byte& b : source.memory) b = static_cast<std::byte>(random());
+  const bool floats = format.channel[0].numeric == Numeric::kSfloat;
+  for (std::size_t i = 1; floats && i < source.memory.size(); i += 2) source.memory[i] &= std::byte{0x3b};
+  TestImage result = expected;
+  VkImageBlit region{};
+  region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  const auto extent = [](std::uint32_t w, std::uint32_t h) {
+    return VkOffset3D{static_cast<std::int32_t>(w), static_cast<std::int32_t>(h), 1};
+  };
+  const std::uint32_t left = static_cast<std::uint32_t>(random()) % width;
+  region.srcOffsets[0] = {static_cast<std::int32_t>(2 * left), 0, 0};
+  region.srcOffsets[1] = extent(2 * width, 2 * height);
+  region.dstOffsets[0] = {static_cast<std::int32_t>(left), 0, 0};
+  region.dstOffsets[1] = extent(width, height);
+  blit_image_by_texels(source.get(), expected.get(), region, VK_FILTER_LINEAR);
+  blit_image(source.get(), result.get(), region, VK_FILTER_LINEAR);
+  EXPECT_EQ(expected.memory, result.memory) << "seed " << seed << " " << format.name << " " << width << "x" << height;
+}
+
 /// One random blit: rows against texels one by one.
 void compare_blits(unsigned seed) {
   std::mt19937 random(seed);
@@ -246,6 +279,21 @@ void compare_blits(unsigned seed) {
 
 TEST(Blit, RowsEqualTexelsOneByOne) {
   for (unsigned seed = 0; seed < 400 && !testing::Test::HasFailure(); ++seed) compare_blits(seed);
+}
+
+TEST(Blit, HalvedRowsEqualTexelsOneByOne) {
+  hwy::DisableTargets(0);
+  const auto supported = hwy::SupportedTargets();
+  for (const auto target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+    if ((supported & target) == 0) continue;
+    SCOPED_TRACE(hwy::TargetName(target));
+    base::select_simd_target();
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(target);
+    for (unsigned seed = 0; seed < 200 && !testing::Test::HasFailure(); ++seed) compare_halved(seed);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 }  // namespace

@@ -21,7 +21,6 @@ using HalfLanes = hn::Vec<hn::Rebind<std::uint16_t, hn::ScalableTag<float>>>;
 /// Exact, as half_to_float.
 HWY_INLINE hn::Vec<hn::ScalableTag<float>> floats_of_halves(HalfLanes halves) {
   const hn::ScalableTag<std::uint32_t> du;
-  const auto half = hn::PromoteTo(du, halves);
 #if HWY_TARGET <= HWY_AVX2
   const hn::ScalableTag<float> d;
 #if HWY_TARGET <= HWY_AVX3
@@ -29,12 +28,14 @@ HWY_INLINE hn::Vec<hn::ScalableTag<float>> floats_of_halves(HalfLanes halves) {
 #else
   const hn::Vec<decltype(d)> quieted{_mm256_cvtph_ps(halves.raw)};
 #endif
+  if (HWY_LIKELY(hn::AllTrue(d, hn::Eq(quieted, quieted)))) return quieted;
   // The instruction quiets signalling NaN.
+  const auto half = hn::PromoteTo(du, halves);
   const auto quiet = hn::Set(du, 0x00400000u);
   const auto nan = hn::Or(hn::AndNot(quiet, hn::BitCast(du, quieted)), hn::And(hn::ShiftLeft<13>(half), quiet));
   return hn::IfThenElse(hn::Eq(quieted, quieted), quieted, hn::BitCast(d, nan));
 #else
-  return lanes_half_to_float(half);
+  return lanes_half_to_float(hn::PromoteTo(du, halves));
 #endif
 }
 

@@ -12,8 +12,8 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "texel/codec/four_bytes-inl.h"
 #include "texel/codec/half-inl.h"
-#include "texel/codec/srgb-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
@@ -24,7 +24,6 @@ using namespace vitrine::base::HWY_NAMESPACE;
 
 using D = hn::ScalableTag<float>;
 using DU = hn::RebindToUnsigned<D>;
-using DI = hn::RebindToSigned<D>;
 
 /// Calls body(first, n) for whole vectors, n floats from float `first` on; the rest of fewer floats goes through
 /// `padded`.
@@ -37,24 +36,17 @@ HWY_INLINE std::size_t whole_vectors(std::size_t floats, Body&& body) {
 
 /// Four UNORM bytes in memory order.
 std::size_t decode_bytes(const std::byte* from, std::size_t floats, std::uint32_t* to) {
-  const hn::Rebind<std::uint8_t, D> d8;
-  return whole_vectors(floats, [&](std::size_t i) {
-    const auto bytes = hn::LoadU(d8, reinterpret_cast<const std::uint8_t*>(from) + i);
-    const auto value = hn::Mul(lanes_int_to_float(hn::PromoteTo(DI(), bytes)), hn::Set(D(), 1.0f / 255.0f));
-    hn::StoreU(hn::BitCast(DU(), value), DU(), to + i);
-  });
+  return whole_vectors(
+      floats, [&](std::size_t i) { hn::StoreU(hn::BitCast(DU(), unorm_values(load_codes(from + i))), DU(), to + i); });
 }
 
 std::size_t encode_bytes(const std::uint32_t* from, std::size_t floats, bool store, std::byte* to) {
-  const hn::Rebind<std::uint8_t, D> d8;
   const auto zero = hn::Zero(D()), one = hn::Set(D(), 1.0f);
   return whole_vectors(floats, [&](std::size_t i) {
     const auto x = hn::BitCast(D(), hn::LoadU(DU(), from + i));
     const auto clamped =
         store ? lanes_max_second(lanes_min_second(x, one), zero) : lanes_min_second(lanes_max_second(x, zero), one);
-    const auto sum = hn::Add(hn::Mul(clamped, hn::Set(D(), 255.0f / 256.0f)), hn::Set(D(), 32768.0f));
-    const auto byte = hn::And(hn::BitCast(DI(), sum), hn::Set(DI(), 255));
-    hn::StoreU(hn::DemoteTo(d8, byte), d8, reinterpret_cast<std::uint8_t*>(to) + i);
+    store_codes(unorm_codes(clamped), to + i);
   });
 }
 
@@ -65,53 +57,19 @@ std::size_t encode_stored_bytes(const std::uint32_t* from, std::size_t floats, s
   return encode_bytes(from, floats, true, to);
 }
 
-/// Which of four components a float of texels in memory is.
-HWY_INLINE hn::Mask<D> alpha_lanes() {
-  return hn::RebindMask(D(), hn::Eq(hn::And(hn::Iota(DI(), 0), hn::Set(DI(), 3)), hn::Set(DI(), 3)));
-}
-
 /// Three sRGB bytes and a UNORM one.
 std::size_t decode_srgb_bytes(const std::byte* from, std::size_t floats, std::uint32_t* to) {
-  const hn::Rebind<std::uint8_t, D> d8;
   const auto alpha = alpha_lanes();
   return whole_vectors(floats, [&](std::size_t i) {
-    const auto bytes = hn::PromoteTo(DI(), hn::LoadU(d8, reinterpret_cast<const std::uint8_t*>(from) + i));
-    const auto unorm = hn::Mul(lanes_int_to_float(bytes), hn::Set(D(), 1.0f / 255.0f));
-    const auto linear = srgb_to_linear(bytes);
-    hn::StoreU(hn::BitCast(DU(), hn::IfThenElse(alpha, unorm, linear)), DU(), to + i);
+    hn::StoreU(hn::BitCast(DU(), srgb_texel_values(alpha, load_codes(from + i))), DU(), to + i);
   });
 }
 
-// RSQRTPS, which is not what Highway's approximation is with AVX-512.
-HWY_INLINE hn::Vec128<float> rsqrt_of_cpu(hn::Vec128<float> v) { return hn::Vec128<float>{_mm_rsqrt_ps(v.raw)}; }
-#if HWY_TARGET <= HWY_AVX2
-HWY_INLINE hn::Vec256<float> rsqrt_of_cpu(hn::Vec256<float> v) { return hn::Vec256<float>{_mm256_rsqrt_ps(v.raw)}; }
-#endif
-#if HWY_TARGET <= HWY_AVX3
-HWY_INLINE hn::Vec512<float> rsqrt_of_cpu(hn::Vec512<float> v) {
-  const __m256 low = _mm256_rsqrt_ps(_mm512_castps512_ps256(v.raw));
-  const __m256 high = _mm256_rsqrt_ps(_mm512_extractf32x8_ps(v.raw, 1));
-  return hn::Vec512<float>{_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1)};
-}
-#endif
-
 /// encode_srgb_attachment of three components, UNORM of the fourth. Only where cpu_has_rsqrt().
 std::size_t encode_srgb_bytes(const std::uint32_t* from, std::size_t floats, std::byte* to) {
-  const hn::Rebind<std::uint8_t, D> d8;
-  const auto zero = hn::Zero(D()), one = hn::Set(D(), 1.0f);
   const auto alpha = alpha_lanes();
   return whole_vectors(floats, [&](std::size_t i) {
-    const auto x = lanes_min_second(lanes_max_second(hn::BitCast(D(), hn::LoadU(DU(), from + i)), zero), one);
-    const auto linear = lanes_round_to_int(hn::Mul(x, hn::Set(D(), kSrgbLinearScale)));
-    const auto x05 = hn::Mul(x, rsqrt_of_cpu(x));
-    const auto x0375 = rsqrt_of_cpu(rsqrt_of_cpu(hn::Mul(x05, x)));
-    const auto curve = hn::Add(hn::Mul(hn::Set(D(), kSrgbCurve[0]), x0375),
-                               lanes_fma(hn::Set(D(), kSrgbCurve[1]), x05, hn::Set(D(), kSrgbCurve[2])));
-    const auto curved = hn::RebindMask(DI(), hn::Gt(x, hn::Set(D(), kSrgbLinearEnd)));
-    auto code = hn::IfThenElse(curved, lanes_round_to_int(curve), linear);
-    const auto unorm = hn::Add(hn::Mul(x, hn::Set(D(), 255.0f / 256.0f)), hn::Set(D(), 32768.0f));
-    code = hn::IfThenElse(hn::RebindMask(DI(), alpha), hn::And(hn::BitCast(DI(), unorm), hn::Set(DI(), 255)), code);
-    hn::StoreU(hn::DemoteTo(d8, code), d8, reinterpret_cast<std::uint8_t*>(to) + i);
+    store_codes(srgb_texel_codes(alpha, hn::BitCast(D(), hn::LoadU(DU(), from + i))), to + i);
   });
 }
 
@@ -151,11 +109,6 @@ HWY_EXPORT(encode_srgb_bytes);
 HWY_EXPORT(decode_halves);
 HWY_EXPORT(encode_halves);
 
-bool is_four_halves(const FormatDesc& format) {
-  return format.plain && format.block_bytes == 8 && format.channel_count == 4 && format.channel[0].bits == 16 &&
-         format.channel[0].numeric == Numeric::kSfloat && format.component == std::array<std::uint8_t, 4>{0, 1, 2, 3};
-}
-
 /// Components of texels in memory order to R, G, B, A, or back.
 void exchange_red_and_blue(const FormatDesc& format, Texel* texels, std::size_t count) {
   if (format.component[0] == 0) return;
@@ -177,10 +130,6 @@ bool has_four_bytes(const FormatDesc& format, Numeric numeric) {
     if (format.rgba[i] < 0) return false;
   }
   return true;
-}
-
-bool is_srgb_bytes(const FormatDesc& format) {
-  return has_four_bytes(format, Numeric::kSrgb) && has_simple_order(format);
 }
 
 /// Null: no code of this file decodes the format.
@@ -206,6 +155,15 @@ EncodeRow row_encoder(const FormatDesc& format, Encoding encoding) {
 }  // namespace
 
 bool is_four_bytes(const FormatDesc& format) { return has_four_bytes(format, Numeric::kUnorm); }
+
+bool is_srgb_bytes(const FormatDesc& format) {
+  return has_four_bytes(format, Numeric::kSrgb) && has_simple_order(format);
+}
+
+bool is_four_halves(const FormatDesc& format) {
+  return format.plain && format.block_bytes == 8 && format.channel_count == 4 && format.channel[0].bits == 16 &&
+         format.channel[0].numeric == Numeric::kSfloat && format.component == std::array<std::uint8_t, 4>{0, 1, 2, 3};
+}
 
 bool decode_row_simd(const FormatDesc& format, const std::byte* blocks, std::size_t count, Texel* out) {
   const DecodeRow row = count < 4 ? nullptr : row_decoder(format);

@@ -7,8 +7,12 @@ namespace vitrine::texel {
 
 /// Whether texels are four UNORM bytes in any order.
 bool is_four_bytes(const FormatDesc& format);
+/// Whether texels are R, G, B as sRGB bytes, in this order or the other, then A.
+bool is_srgb_bytes(const FormatDesc& format);
+/// Whether texels are R, G, B, A as halves.
+bool is_four_halves(const FormatDesc& format);
 
-/// False, with nothing done, for other formats than those (and those of four halves).
+/// False, with nothing done, for other formats than those.
 bool decode_row_simd(const FormatDesc& format, const std::byte* blocks, std::size_t count, Texel* out);
 bool encode_row_simd(const FormatDesc& format, Encoding encoding, const Texel* texels, std::size_t count,
                      std::byte* blocks);

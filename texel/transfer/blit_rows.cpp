@@ -13,6 +13,7 @@
 #include "texel/sampler/address.h"
 #include "texel/transfer/blend_rows.h"
 #include "texel/transfer/blit.h"
+#include "texel/transfer/halve_rows.h"
 
 namespace vitrine::texel {
 namespace {
@@ -38,6 +39,7 @@ struct Scaler {
   std::vector<std::uint32_t> patches;  ///< columns whose taps differ between the triangles
   std::uint32_t low = 0, count = 0;    ///< columns of the source that are read
   bool raw = false;                    ///< nearest texels keep their bytes
+  RowHalver halve = nullptr;           ///< columns are averages of two, each read once
 };
 
 void add_taps(const Plan& plan, std::uint32_t axis_index, float coordinate, TapList& taps) {
@@ -98,6 +100,39 @@ bool find_taps(const Quad& quad, const Start& start, Scaler& scaler) {
   scaler.low = static_cast<std::uint32_t>(low);
   scaler.count = static_cast<std::uint32_t>(high - low + 1);
   return true;
+}
+
+/// Whether column x is between the source's columns 2 x and 2 x + 1.
+bool halves_columns(const Scaler& scaler) {
+  const TapList& taps = scaler.column[0];
+  if (!scaler.plan.mag_linear || !scaler.patches.empty()) return false;
+  for (std::size_t x = 0; x < taps.first.size(); ++x) {
+    const auto first = static_cast<std::int32_t>(2 * x);
+    if (taps.first[x] != first || taps.second[x] != first + 1) return false;
+  }
+  return true;
+}
+
+/// Where rows of the source are read once, too; else they had better be kept.
+RowHalver choose_halver(const Scaler& scaler) {
+  const FormatDesc& format = *scaler.plan.view->format;
+  const bool suits = format.format == scaler.blit.to.format->format && halves_columns(scaler) &&
+                     scaler.blit.y.from_size() == 2 * scaler.blit.y.to_size();
+  return suits ? row_halver(format, scaler.plan.aos) : nullptr;
+}
+
+void halve_row(const Scaler& scaler, const ImageView& view, std::uint32_t row, std::byte* to) {
+  const TapList &columns = scaler.column[0], &rows = scaler.row[0];
+  HalvedRow halved;
+  halved.upper = view.block(0, 0, 0, scaler.low, static_cast<std::uint32_t>(rows.first[row]), 0);
+  halved.lower = view.block(0, 0, 0, scaler.low, static_cast<std::uint32_t>(rows.second[row]), 0);
+  halved.count = columns.first.size();
+  halved.weight_x = columns.weight.data();
+  halved.byte_weight_x = columns.byte_weight.data();
+  halved.weight_y = rows.weight[row];
+  halved.byte_weight_y = rows.byte_weight[row];
+  halved.out = to;
+  scaler.halve(halved);
 }
 
 /// What one band of rows needs, for texels of type T: bytes in a word, or four components.
@@ -240,6 +275,10 @@ void scale_band(const Scaler& scaler, const ImageView& view, std::uint32_t first
     }
     const std::int32_t split = std::clamp(first_upper_texel(scaler.blit, static_cast<std::int32_t>(row)), 0, columns);
     const bool one_part = scaler.row[0].same(scaler.row[1], row);
+    if (one_part && scaler.halve != nullptr) {
+      halve_row(scaler, view, row, to);
+      continue;
+    }
     const auto upper = static_cast<std::size_t>(one_part ? 0 : split);
     blend_part(band, 1, row, 0, upper);
     blend_part(band, 0, row, upper, static_cast<std::size_t>(columns));
@@ -314,6 +353,7 @@ bool scale_rows(const Blit& blit, const Quad& quad, const Start& start, const Sa
   if (view.type != VK_IMAGE_VIEW_TYPE_2D || start.x != blit.x.to0 || start.y != blit.y.to0) return false;
   Scaler scaler(blit, make_plan(view, sampler, SampleOp::kSample, LodMode::kZero));
   if (scaler.plan.zero || !find_taps(quad, start, scaler)) return false;
+  scaler.halve = choose_halver(scaler);
   scaler.raw = !scaler.plan.mag_linear && keeps_bytes(*view.format, *blit.to.format);
   for_each_band(blit.to, blit.to.row_bytes() * 4,
                 [&](std::uint32_t first, std::uint32_t count, std::uint32_t slice, std::uint32_t) {
