@@ -1,4 +1,8 @@
 // SPIR-V assembly through the whole pipeline, run as compute: what no GLSL compiler writes.
+#include <spirv/unified1/spirv.hpp11>
+
+#include <algorithm>
+
 #include "spirv/addresses.h"
 #include "spirv/exec/profile.h"
 #include "spirv/exec/wave_memory.h"
@@ -121,6 +125,19 @@ OpExtension "SPV_KHR_non_semantic_info"
 
 /// The reference refuses such modules, which 2.11 of the SPIR-V specification allows: branches meet before the merge
 /// block, and the block where they do defines what follows.
+/// Slang writes OpSource Slang (11), which SPIRV-Tools learnt after Debian 12's version.
+TEST(RunSpirv, SourceLanguagesMayBeYoungerThanTheValidator) {
+  Words words = module_of("%r = OpIAdd %uint %x %u7\n", "", "OpCapability Shader\n", "Logical", "");
+  const auto before_annotations = std::find_if(words.begin() + 5, words.end(), [](std::uint32_t word) {
+    return (word & 0xffffu) == static_cast<std::uint32_t>(spv::Op::OpDecorate);
+  });
+  ASSERT_NE(before_annotations, words.end());
+  const std::uint32_t source[] = {3u << 16 | static_cast<std::uint32_t>(spv::Op::OpSource), 11, 1};
+  words.insert(before_annotations, std::begin(source), std::end(source));
+  const auto shader = compile(words, options_for(VK_SHADER_STAGE_COMPUTE_BIT));
+  EXPECT_TRUE(shader) << shader.message();
+}
+
 TEST(RunSpirv, BranchesMayMeetBeforeTheMergeBlock) {
   const std::vector<std::uint32_t> got = run_spirv(R"(
 %odd_bit = OpBitwiseAnd %uint %x %u1
