@@ -33,9 +33,9 @@ constexpr VkImageUsageFlags kKnownUsages =
     VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT |
     VK_IMAGE_USAGE_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT;
 
-constexpr VkImageCreateFlags kUnsupportedFlags =
-    VK_IMAGE_CREATE_SPARSE_BINDING_BIT | VK_IMAGE_CREATE_SPARSE_RESIDENCY_BIT | VK_IMAGE_CREATE_SPARSE_ALIASED_BIT |
-    VK_IMAGE_CREATE_PROTECTED_BIT | VK_IMAGE_CREATE_DISJOINT_BIT;
+constexpr VkImageCreateFlags kUnsupportedFlags = VK_IMAGE_CREATE_SPARSE_BINDING_BIT |
+                                                 VK_IMAGE_CREATE_SPARSE_RESIDENCY_BIT |
+                                                 VK_IMAGE_CREATE_SPARSE_ALIASED_BIT | VK_IMAGE_CREATE_PROTECTED_BIT;
 
 bool usage_supported(VkImageUsageFlags usage, VkFormatFeatureFlags features) {
   if (usage == 0 || (usage & ~kKnownUsages) != 0) return false;
@@ -43,8 +43,9 @@ bool usage_supported(VkImageUsageFlags usage, VkFormatFeatureFlags features) {
                      [&](const UsageRule& rule) { return (usage & rule.usage) == 0 || (features & rule.any_of) != 0; });
 }
 
-bool flags_supported(const VkPhysicalDeviceImageFormatInfo2& info) {
+bool flags_supported(const VkPhysicalDeviceImageFormatInfo2& info, VkFormatFeatureFlags features) {
   if (info.flags & kUnsupportedFlags) return false;
+  if ((info.flags & VK_IMAGE_CREATE_DISJOINT_BIT) && !(features & VK_FORMAT_FEATURE_DISJOINT_BIT)) return false;
   if ((info.flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT) && info.type != VK_IMAGE_TYPE_2D) return false;
   return !(info.flags & VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT) || info.type == VK_IMAGE_TYPE_3D;
 }
@@ -106,14 +107,18 @@ VkResult image_format_properties(const VkPhysicalDeviceImageFormatInfo2& info, V
       info.tiling == VK_IMAGE_TILING_LINEAR ? format.linearTilingFeatures : format.optimalTilingFeatures;
   // EXTENDED_USAGE lets views of compatible formats have usages that the image's own format lacks.
   const bool usage_ok = (info.flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT) || usage_supported(info.usage, features);
-  if (!known_tiling || features == 0 || !usage_ok || !flags_supported(info) || info.type > VK_IMAGE_TYPE_3D) {
+  if (!known_tiling || features == 0 || !usage_ok || !flags_supported(info, features) || info.type > VK_IMAGE_TYPE_3D) {
+    return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  }
+  const bool conversion = texel::format_desc(info.format).requires_conversion();
+  if (conversion && (info.type != VK_IMAGE_TYPE_2D || (info.flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT))) {
     return VK_ERROR_FORMAT_NOT_SUPPORTED;
   }
   const VkPhysicalDeviceLimits& limits = claimed_properties().limits;
   out->maxExtent = max_extent(info.type);
-  out->maxMipLevels = static_cast<std::uint32_t>(std::bit_width(out->maxExtent.width));
+  out->maxMipLevels = conversion ? 1 : static_cast<std::uint32_t>(std::bit_width(out->maxExtent.width));
   out->maxArrayLayers = info.type == VK_IMAGE_TYPE_3D ? 1 : limits.maxImageArrayLayers;
-  out->sampleCounts = sample_counts(info, features);
+  out->sampleCounts = conversion ? VkSampleCountFlags{VK_SAMPLE_COUNT_1_BIT} : sample_counts(info, features);
   out->maxResourceSize = VkDeviceSize{1} << 36;  // maxMemoryAllocationSize: an image fills one allocation at most
   return VK_SUCCESS;
 }

@@ -13,14 +13,17 @@ struct Image : Object<VkImage, VK_OBJECT_TYPE_IMAGE> {
   VkImageCreateFlags flags = 0;
   VkImageUsageFlags usage = 0;
   VkImageTiling tiling = VK_IMAGE_TILING_OPTIMAL;
-  texel::ImageLayout layout;  ///< layout.desc has type, format, extent, levels, layers, samples
-  std::byte* data = nullptr;  ///< null until memory is bound
+  texel::ImageLayout layout;               ///< layout.desc has type, format, extent, levels, layers, samples
+  std::byte* data = nullptr;               ///< null until memory is bound
+  std::array<std::byte*, 3> plane_data{};  ///< of a disjoint image; the first is `data`
 
   const texel::ImageDesc& desc() const { return layout.desc; }
+  /// The memory that a plane's offset counts in.
+  std::byte* memory_of_plane(std::uint32_t plane) const { return layout.desc.disjoint ? plane_data[plane] : data; }
 };
 
 struct ImageView : Object<VkImageView, VK_OBJECT_TYPE_IMAGE_VIEW> {
-  using Object::Object;
+  explicit ImageView(const HostMemory& m) : Object(m), planes(m) {}
 
   Image* image = nullptr;
   VkImageViewType type = VK_IMAGE_VIEW_TYPE_2D;
@@ -31,6 +34,13 @@ struct ImageView : Object<VkImageView, VK_OBJECT_TYPE_IMAGE_VIEW> {
   texel::ImageView view;
   /// The stencil plane of a view that has both aspects; else equal to `view`.
   texel::ImageView stencil;
+  Vector<texel::ImageView> planes;  ///< what `view.planes` points to
+};
+
+struct SamplerYcbcrConversion : Object<VkSamplerYcbcrConversion, VK_OBJECT_TYPE_SAMPLER_YCBCR_CONVERSION> {
+  using Object::Object;
+
+  texel::YcbcrConversion state;
 };
 
 struct Sampler : Object<VkSampler, VK_OBJECT_TYPE_SAMPLER> {

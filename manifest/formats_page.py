@@ -23,6 +23,8 @@ What tests them, besides the unit tests of `texel`:
 - **vertex**: compared with lavapipe as vertex attribute or texel buffer (`pipeline.vertex_input`, `api.texel_buffers`).
 - **decoder**: lavapipe lacks the format; `texel Block.*` holds digests of blocks that were compared with an independent
   decoder.
+- **formulas**: lavapipe lacks the format; `texel Ycbcr.*` compares samples through every kind of conversion with the
+  specification's formulas in double precision, `icd Ycbcr.*` the way through the API.
 
 What exact means:
 
@@ -46,6 +48,8 @@ def claims(root):
 def row(name, image, buffer, compared):
     if re.match(r"ETC2|EAC|ASTC", name):
         tests, exact = "decoder", "defined"
+    elif re.search(r"PLANE|_422_|R1[02]X", name):
+        tests, exact = "formulas", "defined"
     elif name in compared:
         tests = "reference"
         exact = "reference curve" if "SRGB" in name and "BC7" not in name else "same bits"

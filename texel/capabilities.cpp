@@ -18,6 +18,7 @@ bool can_decode(const FormatDesc& format) { return format.plain; }
 bool can_encode(const FormatDesc& format) { return format.plain && !is_scaled(format); }
 
 bool can_sample(const FormatDesc& format) {
+  if (format.requires_conversion()) return true;
   switch (format.compression) {
     case Compression::kNone:
       return format.plain && !is_scaled(format);
@@ -43,6 +44,6 @@ bool can_atomic(const FormatDesc& format) {
          format.format == VK_FORMAT_R32_SFLOAT;
 }
 
-bool can_copy(const FormatDesc& format) { return format.block_bytes != 0 && format.plane_count == 1; }
+bool can_copy(const FormatDesc& format) { return format.block_bytes != 0; }
 
 }  // namespace vitrine::texel

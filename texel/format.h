@@ -23,6 +23,20 @@ struct Channel {
   std::uint8_t offset = 0;  ///< bit offset in the little-endian block
 };
 
+/// A single-plane view of texels of a Y'CbCr format, as the sampler reads them: a plane of a multi-planar format, or
+/// the luma (first) or the chroma of a packed 4:2:2 format, whose views lie on the same bytes.
+struct Plane {
+  VkFormat format = VK_FORMAT_UNDEFINED;  ///< a plain one; of planes in memory the compatible format
+  std::uint8_t width_divisor = 1;         ///< of the image's extent
+  std::uint8_t height_divisor = 1;
+};
+
+/// Where a component of a Y'CbCr format is found.
+struct PlaneComponent {
+  std::int8_t plane = -1;    ///< index in FormatDesc::plane; -1: the format lacks the component
+  std::uint8_t channel = 0;  ///< R, G, B or A of the plane's format
+};
+
 struct FormatDesc {
   VkFormat format = VK_FORMAT_UNDEFINED;
   const char* name = "";
@@ -37,7 +51,10 @@ struct FormatDesc {
   std::array<std::int8_t, 4> rgba{-1, -1, -1, -1};  ///< index in `channel` of R, G, B, A; -1: missing
   Kind kind = Kind::kFloat;                         ///< of the colour (or depth) aspect
   VkImageAspectFlags aspects = 0;                   ///< COLOR, or DEPTH and/or STENCIL (or PLANE_0.. for multi-planar)
-  std::uint8_t plane_count = 1;
+  std::uint8_t plane_count = 1;                     ///< in memory
+  std::uint8_t sampled_planes = 0;  ///< entries of `plane`; 0: the format is sampled without a conversion
+  std::array<Plane, 3> plane{};
+  std::array<PlaneComponent, 4> plane_component{};  ///< of R, G, B, A
   bool plain = false;                       ///< one plane, one aspect, uncompressed, channels that the codecs know
   std::array<std::uint8_t, 4> component{};  ///< per channel: which of R, G, B, A it is (inverse of `rgba`)
 
@@ -48,6 +65,8 @@ struct FormatDesc {
   constexpr bool has_stencil() const { return (aspects & VK_IMAGE_ASPECT_STENCIL_BIT) != 0; }
   constexpr bool is_compressed() const { return compression != Compression::kNone; }
   constexpr bool is_srgb() const { return channel_count != 0 && channel[0].numeric == Numeric::kSrgb; }
+  /// "Formats requiring sampler Y'CbCr conversion": two-dimensional images of one level and one sample.
+  constexpr bool requires_conversion() const { return sampled_planes != 0; }
   constexpr bool is_integer() const { return kind != Kind::kFloat; }
 };
 

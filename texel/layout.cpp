@@ -30,6 +30,10 @@ bool accumulate(std::uint64_t& sum, std::uint64_t a, std::uint64_t b) {
 /// The plain formats of the planes of an image's format, depth before stencil. Returns their number.
 std::uint32_t plane_formats(VkFormat format, std::array<VkFormat, 3>& out) {
   const FormatDesc& desc = format_desc(format);
+  if (desc.plane_count > 1) {
+    std::transform(desc.plane.begin(), desc.plane.end(), out.begin(), [](const Plane& p) { return p.format; });
+    return desc.plane_count;
+  }
   if (!desc.has_depth() || !desc.has_stencil()) {
     out[0] = format;
     return 1;
@@ -42,14 +46,22 @@ std::uint32_t plane_formats(VkFormat format, std::array<VkFormat, 3>& out) {
   return 2;
 }
 
+/// The extent of a plane's level 0.
+Extent plane_extent(const ImageDesc& desc, std::uint32_t plane) {
+  const FormatDesc& format = format_desc(desc.format);
+  if (format.plane_count == 1) return desc.extent;
+  const Plane& part = format.plane[plane];
+  return {divide_up(desc.extent.width, part.width_divisor), divide_up(desc.extent.height, part.height_divisor),
+          desc.extent.depth};
+}
+
 /// Fills the levels of a plane; `layer_size` receives the bytes of one layer.
-bool place_levels(const ImageDesc& desc, PlaneLayout& plane, std::uint64_t& layer_size) {
+bool place_levels(const ImageDesc& desc, const Extent& extent, PlaneLayout& plane, std::uint64_t& layer_size) {
   const FormatDesc& format = format_desc(plane.format);
   layer_size = 0;
   for (std::uint32_t i = 0; i < desc.levels; ++i) {
     LevelLayout& level = plane.level[i];
-    level.extent = {std::max(1u, desc.extent.width >> i), std::max(1u, desc.extent.height >> i),
-                    std::max(1u, desc.extent.depth >> i)};
+    level.extent = {std::max(1u, extent.width >> i), std::max(1u, extent.height >> i), std::max(1u, extent.depth >> i)};
     const std::uint64_t columns = divide_up(level.extent.width, format.block_width);
     const std::uint64_t rows = divide_up(level.extent.height, format.block_height);
     const std::uint64_t slices = divide_up(level.extent.depth, format.block_depth);
@@ -68,15 +80,16 @@ bool make_image_layout(const ImageDesc& desc, ImageLayout& layout) {
   layout = {};
   layout.desc = desc;
   const FormatDesc& format = format_desc(desc.format);
-  if (format.block_bytes == 0 || format.plane_count != 1 || desc.levels > kMaxLevels) return false;
+  if (format.block_bytes == 0 || desc.levels > kMaxLevels) return false;
   std::array<VkFormat, 3> formats{};
   layout.plane_count = plane_formats(desc.format, formats);
   for (std::uint32_t i = 0; i < layout.plane_count; ++i) {
     PlaneLayout& plane = layout.plane[i];
     plane.format = formats[i];
-    plane.offset = layout.size;
-    if (!place_levels(desc, plane, plane.layer_stride)) return false;
-    if (!accumulate(layout.size, plane.layer_stride, desc.layers)) return false;
+    plane.offset = desc.disjoint ? 0 : layout.size;
+    if (!place_levels(desc, plane_extent(desc, i), plane, plane.layer_stride)) return false;
+    if (!accumulate(plane.size, plane.layer_stride, desc.layers)) return false;
+    if (!accumulate(layout.size, plane.size, 1)) return false;
   }
   layout.size += kTailPadding;
   return true;

@@ -11,6 +11,18 @@
 
 namespace vitrine::texel {
 
+/// Sampler Y'CbCr conversion, named after VkSamplerYcbcrConversionCreateInfo.
+struct YcbcrConversion {
+  bool enabled = false;
+  VkSamplerYcbcrModelConversion model = VK_SAMPLER_YCBCR_MODEL_CONVERSION_RGB_IDENTITY;
+  VkSamplerYcbcrRange range = VK_SAMPLER_YCBCR_RANGE_ITU_FULL;
+  std::array<std::uint8_t, 4> swizzle{0, 1, 2, 3};  ///< as ImageView::swizzle
+  bool x_cosited = false;                           ///< chroma samples lie on the even luma samples, else between
+  bool y_cosited = false;
+  VkFilter chroma_filter = VK_FILTER_NEAREST;
+  bool explicit_reconstruction = false;
+};
+
 /// Sampler state, named after VkSamplerCreateInfo. Immutable.
 struct Sampler {
   VkFilter mag_filter = VK_FILTER_NEAREST;
@@ -27,6 +39,7 @@ struct Sampler {
   std::array<std::uint32_t, 4> border{};  ///< raw bits: floats or integers by the border colour's type
   bool unnormalized = false;
   VkSamplerReductionMode reduction = VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+  YcbcrConversion conversion;
 };
 
 enum class SampleOp : std::uint8_t { kSample, kGather, kQueryLod };

@@ -13,10 +13,15 @@
 
 namespace vitrine::texel {
 
-/// An image in memory: its layout and the address of its first byte.
+/// An image in memory: its layout and the address of its first byte, or of each plane's of a disjoint image.
 struct ImageMemory {
   const ImageLayout* layout = nullptr;
   std::byte* memory = nullptr;
+  const std::array<std::byte*, 3>* disjoint = nullptr;
+
+  std::byte* plane(std::uint32_t index) const {
+    return (disjoint ? (*disjoint)[index] : memory) + layout->plane[index].offset;
+  }
 };
 
 /// `buffer` is the whole buffer; region.bufferOffset counts from its first byte. One aspect per region.

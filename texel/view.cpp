@@ -65,4 +65,20 @@ ImageView make_image_view(const ImageLayout& layout, std::byte* memory, const Im
   return view;
 }
 
+ImageView make_sampled_plane(const ImageLayout& layout, std::byte* memory, const ImageViewDesc& desc,
+                             std::uint32_t index) {
+  const FormatDesc& format = format_desc(desc.format);
+  ImageViewDesc own = desc;
+  own.format = format.plane[index].format;
+  if (format.plane_count > 1) own.aspect = static_cast<VkImageAspectFlagBits>(VK_IMAGE_ASPECT_PLANE_0_BIT << index);
+  ImageView view = make_image_view(layout, memory, own);
+  if (format.plane_count == 1) {
+    // Views of a packed format lie on the same bytes and differ in how many texels those are.
+    Extent extent = layout.desc.extent;
+    extent.width = (extent.width + format.plane[index].width_divisor - 1) / format.plane[index].width_divisor;
+    view.level0_extent = view.level[0].extent = extent;
+  }
+  return view;
+}
+
 }  // namespace vitrine::texel

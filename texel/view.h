@@ -33,7 +33,8 @@ struct LevelLayout {
 /// D24S8 = D24 in 32-bit words (X8_D24 layout) + S8; D32S8 = D32 + S8.
 struct PlaneLayout {
   VkFormat format = VK_FORMAT_UNDEFINED;  ///< plain single-aspect format of the plane
-  std::uint64_t offset = 0;               ///< bytes from the start of the image
+  std::uint64_t offset = 0;               ///< bytes from the start of the memory: the image's, or the plane's own
+  std::uint64_t size = 0;                 ///< bytes of all layers
   std::uint64_t layer_stride = 0;         ///< bytes between array layers
   std::array<LevelLayout, kMaxLevels> level{};
 };
@@ -46,6 +47,7 @@ struct ImageDesc {
   std::uint32_t layers = 1;
   std::uint32_t samples = 1;
   bool linear_tiling = false;
+  bool disjoint = false;  ///< each plane has memory of its own
 };
 
 struct ImageLayout {
@@ -56,7 +58,8 @@ struct ImageLayout {
   std::uint64_t alignment = 64;        ///< bytes
 };
 
-/// Computes offsets and pitches. False if the size overflows 2^63 bytes.
+/// Computes offsets and pitches; `size` covers all planes of an image that is not disjoint. False if the size overflows
+/// 2^63 bytes.
 bool make_image_layout(const ImageDesc& desc, ImageLayout& layout);
 
 /// Index in ImageLayout::plane of one aspect bit (COLOR, DEPTH, STENCIL, PLANE_n).
@@ -76,6 +79,8 @@ struct ImageView {
   std::uint32_t base_level = 0;  ///< of the image; level[0] below is already this one
   Extent level0_extent;          ///< of the image's level 0: lavapipe decides power-of-two addressing by it
   std::array<LevelLayout, kMaxLevels> level{};  ///< [0] is the view's first level
+  /// What a Y'CbCr conversion samples: views of FormatDesc::plane of the format; null for other formats.
+  const ImageView* planes = nullptr;
 
   std::byte* block(std::uint32_t lvl, std::uint32_t layer, std::uint32_t sample, std::uint32_t bx, std::uint32_t by,
                    std::uint32_t bz) const {
@@ -94,8 +99,14 @@ struct ImageViewDesc {
   std::uint32_t base_layer = 0, layer_count = 1;
 };
 
-/// `memory` is the address of the image's first byte. Counts must be resolved (no VK_REMAINING_*).
+/// `memory` is the address of the image's first byte, or of the plane's in a disjoint image. Counts must be resolved
+/// (no VK_REMAINING_*).
 ImageView make_image_view(const ImageLayout& layout, std::byte* memory, const ImageViewDesc& desc);
+
+/// The view of FormatDesc::plane[index] of an image whose format requires a conversion: what ImageView::planes points
+/// to. `memory` as above; `desc` names the image's format and the colour aspect.
+ImageView make_sampled_plane(const ImageLayout& layout, std::byte* memory, const ImageViewDesc& desc,
+                             std::uint32_t index);
 
 /// A texel buffer.
 struct BufferTexelView {

@@ -1,6 +1,8 @@
 // Images and image views (Vulkan 1.3.239, Resource Creation: Images, Image Views).
 #include "icd/image.h"
 
+#include <algorithm>
+
 #include "icd/device.h"
 #include "icd/entry_points.h"
 #include "icd/util.h"
@@ -13,6 +15,34 @@ constexpr VkDeviceSize kMaxImageSize = VkDeviceSize{1} << 36;  // as maxResource
 /// The first aspect of a view, as shaders and attachments see it; `second` is stencil where both are there.
 VkImageAspectFlagBits first_aspect(VkImageAspectFlags aspects) {
   return static_cast<VkImageAspectFlagBits>(aspects & ~(aspects - 1));
+}
+
+texel::ImageViewDesc view_desc(VkImageAspectFlagBits aspect, VkImageViewType type, VkFormat format,
+                               const VkImageSubresourceRange& range, const VkComponentMapping& components) {
+  texel::ImageViewDesc desc;
+  desc.type = type;
+  desc.format = format;
+  desc.components = components;
+  desc.aspect = aspect;
+  desc.base_level = range.baseMipLevel;
+  desc.level_count = range.levelCount;
+  desc.base_layer = range.baseArrayLayer;
+  desc.layer_count = range.layerCount;
+  return desc;
+}
+
+/// Gives a view of a format that requires a conversion the planes that the conversion samples.
+void add_sampled_planes(const Image& image, ImageView& view) {
+  const texel::FormatDesc& format = texel::format_desc(view.format);
+  const texel::FormatDesc& stored = texel::format_desc(image.desc().format);
+  if (format.sampled_planes == 0 || format.plane_count != stored.plane_count) return;
+  const texel::ImageViewDesc desc = view_desc(VK_IMAGE_ASPECT_COLOR_BIT, view.type, view.format, view.range, {});
+  view.planes.reserve(format.sampled_planes);
+  for (std::uint32_t i = 0; i < format.sampled_planes; ++i) {
+    std::byte* memory = image.memory_of_plane(std::min(i, format.plane_count - 1u));
+    view.planes.push_back(texel::make_sampled_plane(image.layout, memory, desc, i));
+  }
+  view.view.planes = view.planes.data();
 }
 
 }  // namespace
@@ -29,6 +59,7 @@ VkResult init_image(Image& image, const VkImageCreateInfo& info) {
   desc.layers = info.arrayLayers;
   desc.samples = static_cast<std::uint32_t>(info.samples);
   desc.linear_tiling = info.tiling == VK_IMAGE_TILING_LINEAR;
+  desc.disjoint = (info.flags & VK_IMAGE_CREATE_DISJOINT_BIT) && texel::format_desc(info.format).plane_count > 1;
   const bool representable = info.mipLevels <= texel::kMaxLevels && info.samples <= VK_SAMPLE_COUNT_64_BIT;
   if (!representable || texel::format_desc(info.format).block_bytes == 0 ||
       !texel::make_image_layout(desc, image.layout) || image.layout.size > kMaxImageSize) {
@@ -50,16 +81,8 @@ VkImageSubresourceRange resolve_range(const Image& image, const VkImageSubresour
 
 texel::ImageView view_of_aspect(const Image& image, VkImageAspectFlagBits aspect, VkImageViewType type, VkFormat format,
                                 const VkImageSubresourceRange& range, const VkComponentMapping& components) {
-  texel::ImageViewDesc desc;
-  desc.type = type;
-  desc.format = format;
-  desc.components = components;
-  desc.aspect = aspect;
-  desc.base_level = range.baseMipLevel;
-  desc.level_count = range.levelCount;
-  desc.base_layer = range.baseArrayLayer;
-  desc.layer_count = range.layerCount;
-  return texel::make_image_view(image.layout, image.data, desc);
+  std::byte* memory = image.memory_of_plane(texel::plane_of_aspect(image.layout, aspect));
+  return texel::make_image_view(image.layout, memory, view_desc(aspect, type, format, range, components));
 }
 
 namespace entry {
@@ -94,7 +117,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
                                                const VkAllocationCallbacks* allocator, VkImageView* view) {
   Image& image = from_handle<Image>(info->image);
   if (!image.data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;  // views of unbound images are invalid
-  ImageView* object = create_object<ImageView>(from_handle<Device>(device).memory, allocator);
+  Owned<ImageView> object(create_object<ImageView>(from_handle<Device>(device).memory, allocator));
   object->image = &image;
   object->type = info->viewType;
   object->format = info->format;
@@ -104,12 +127,13 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
   const VkImageAspectFlags aspects = info->subresourceRange.aspectMask;
   object->view =
       view_of_aspect(image, first_aspect(aspects), info->viewType, info->format, object->range, info->components);
+  add_sampled_planes(image, *object);
   object->stencil = object->view;
   constexpr VkImageAspectFlags kBoth = VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
   if ((aspects & kBoth) == kBoth) {
     object->stencil = view_of_aspect(image, VK_IMAGE_ASPECT_STENCIL_BIT, info->viewType, info->format, object->range);
   }
-  *view = to_handle(object);
+  *view = to_handle(object.release());
   return VK_SUCCESS;
 }
 

@@ -19,12 +19,24 @@ constexpr VkDeviceSize kResourceAlignment = 64;
 /// allocation has of its own.
 VkDeviceSize bytes_of(const texel::ImageLayout& layout) { return layout.size - std::min(layout.size, kTailBytes); }
 
+/// What binding a part of an image takes: all of it, or the plane of a disjoint one.
+VkDeviceSize bytes_of(const texel::ImageLayout& layout, VkImageAspectFlagBits aspect) {
+  return layout.desc.disjoint ? layout.plane[texel::plane_of_aspect(layout, aspect)].size : bytes_of(layout);
+}
+
 void write_requirements(VkDeviceSize size, VkDeviceSize alignment, VkMemoryRequirements2& out) {
   out.memoryRequirements = {(size + alignment - 1) & ~(alignment - 1), alignment, 1};
   if (auto* dedicated = find_in_out_chain<VkMemoryDedicatedRequirements>(out.pNext)) {
     dedicated->prefersDedicatedAllocation = VK_FALSE;
     dedicated->requiresDedicatedAllocation = VK_FALSE;
   }
+}
+
+/// A disjoint image counts as bound when its last plane is.
+void bind_image(Image& image, VkImageAspectFlagBits aspect, std::byte* memory) {
+  image.plane_data[texel::plane_of_aspect(image.layout, aspect)] = memory;
+  const auto last = image.plane_data.begin() + (image.desc().disjoint ? image.layout.plane_count : 1);
+  if (std::find(image.plane_data.begin(), last, nullptr) == last) image.data = image.plane_data[0];
 }
 
 }  // namespace
@@ -119,7 +131,9 @@ VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements(VkDevice device, VkImage i
 VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements2(VkDevice, const VkImageMemoryRequirementsInfo2* info,
                                                        VkMemoryRequirements2* out) {
   const texel::ImageLayout& layout = from_handle<Image>(info->image).layout;
-  write_requirements(bytes_of(layout), layout.alignment, *out);
+  const auto* plane = find_in_chain<VkImagePlaneMemoryRequirementsInfo>(info->pNext);
+  const VkImageAspectFlagBits aspect = plane ? plane->planeAspect : VK_IMAGE_ASPECT_COLOR_BIT;
+  write_requirements(bytes_of(layout, aspect), layout.alignment, *out);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetDeviceImageMemoryRequirements(VkDevice device,
@@ -127,7 +141,7 @@ VKAPI_ATTR void VKAPI_CALL GetDeviceImageMemoryRequirements(VkDevice device,
                                                             VkMemoryRequirements2* out) {
   Image image(from_handle<Device>(device).memory);
   init_image(image, *info->pCreateInfo);
-  write_requirements(bytes_of(image.layout), image.layout.alignment, *out);
+  write_requirements(bytes_of(image.layout, info->planeAspect), image.layout.alignment, *out);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetDeviceImageSparseMemoryRequirements(VkDevice, const VkDeviceImageMemoryRequirements*,
@@ -186,10 +200,12 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice, std::uint32_t count, c
       continue;
     }
     const DeviceMemory& memory = from_handle<DeviceMemory>(infos[i].memory);
-    if (infos[i].memoryOffset > memory.size || bytes_of(image.layout) > memory.size - infos[i].memoryOffset) {
+    const auto* part = find_in_chain<VkBindImagePlaneMemoryInfo>(infos[i].pNext);
+    const VkImageAspectFlagBits aspect = part ? part->planeAspect : VK_IMAGE_ASPECT_COLOR_BIT;
+    if (infos[i].memoryOffset > memory.size || bytes_of(image.layout, aspect) > memory.size - infos[i].memoryOffset) {
       return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     }
-    image.data = memory.data + infos[i].memoryOffset;
+    bind_image(image, aspect, memory.data + infos[i].memoryOffset);
   }
   return VK_SUCCESS;
 }

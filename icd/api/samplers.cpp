@@ -1,7 +1,6 @@
-// Samplers and Y'CbCr conversions (Vulkan 1.3.239, Samplers). samplerYcbcrConversion is not claimed.
+// Samplers and Y'CbCr conversions (Vulkan 1.3.239, Samplers).
 #include <cstring>
 
-#include "base/check.h"
 #include "icd/device.h"
 #include "icd/entry_points.h"
 #include "icd/image.h"
@@ -26,6 +25,13 @@ std::array<std::uint32_t, 4> border_bits(VkBorderColor color) {
     default:
       return {0, 0, 0, 0};
   }
+}
+
+std::uint8_t swizzle_of(VkComponentSwizzle swizzle, std::uint8_t identity) {
+  if (swizzle == VK_COMPONENT_SWIZZLE_IDENTITY) return identity;
+  if (swizzle == VK_COMPONENT_SWIZZLE_ZERO) return 4;
+  if (swizzle == VK_COMPONENT_SWIZZLE_ONE) return 5;
+  return static_cast<std::uint8_t>(swizzle - VK_COMPONENT_SWIZZLE_R);
 }
 
 bool is_custom(VkBorderColor color) {
@@ -65,6 +71,9 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCre
   if (const auto* reduction = find_in_chain<VkSamplerReductionModeCreateInfo>(info->pNext)) {
     state.reduction = reduction->reductionMode;
   }
+  if (const auto* conversion = find_in_chain<VkSamplerYcbcrConversionInfo>(info->pNext)) {
+    state.conversion = from_handle<SamplerYcbcrConversion>(conversion->conversion).state;
+  }
   *sampler = to_handle(object);
   return VK_SUCCESS;
 }
@@ -73,14 +82,30 @@ VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice, VkSampler sampler, const VkA
   destroy_handle<Sampler>(sampler);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateSamplerYcbcrConversion(VkDevice, const VkSamplerYcbcrConversionCreateInfo*,
-                                                            const VkAllocationCallbacks*, VkSamplerYcbcrConversion*) {
-  VITRINE_UNSUPPORTED("samplerYcbcrConversion");
-  return VK_ERROR_OUT_OF_DEVICE_MEMORY;  // the command may return nothing that says more
+VKAPI_ATTR VkResult VKAPI_CALL CreateSamplerYcbcrConversion(VkDevice device,
+                                                            const VkSamplerYcbcrConversionCreateInfo* info,
+                                                            const VkAllocationCallbacks* allocator,
+                                                            VkSamplerYcbcrConversion* conversion) {
+  auto* object = create_object<SamplerYcbcrConversion>(from_handle<Device>(device).memory, allocator);
+  texel::YcbcrConversion& state = object->state;
+  state.enabled = true;
+  state.model = info->ycbcrModel;
+  state.range = info->ycbcrRange;
+  const VkComponentMapping& mapping = info->components;
+  state.swizzle = {swizzle_of(mapping.r, 0), swizzle_of(mapping.g, 1), swizzle_of(mapping.b, 2),
+                   swizzle_of(mapping.a, 3)};
+  state.x_cosited = info->xChromaOffset == VK_CHROMA_LOCATION_COSITED_EVEN;
+  state.y_cosited = info->yChromaOffset == VK_CHROMA_LOCATION_COSITED_EVEN;
+  state.chroma_filter = info->chromaFilter;
+  state.explicit_reconstruction = info->forceExplicitReconstruction;
+  *conversion = to_handle(object);
+  return VK_SUCCESS;
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroySamplerYcbcrConversion(VkDevice, VkSamplerYcbcrConversion,
-                                                         const VkAllocationCallbacks*) {}
+VKAPI_ATTR void VKAPI_CALL DestroySamplerYcbcrConversion(VkDevice, VkSamplerYcbcrConversion conversion,
+                                                         const VkAllocationCallbacks*) {
+  destroy_handle<SamplerYcbcrConversion>(conversion);
+}
 
 }  // namespace entry
 }  // namespace vitrine::icd

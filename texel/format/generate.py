@@ -35,8 +35,10 @@ class Format:
         self.numeric_of = {c.get("name"): c.get("numericFormat") for c in self.components}
         if len(named) == 1:
             self.numeric_of = dict.fromkeys(CHANNELS, named[0])
-        self.channels = []  # fixed-point and chroma-subsampled formats have none: they are not plain
-        if named and not element.get("chroma"):
+        self.channels = []  # fixed-point, planar and chroma-subsampled formats have none: they are not plain
+        self.chroma = element.get("chroma")
+        self.plane_elements = element.findall("plane")
+        if named and not self.plane_elements and self.chroma in (None, "444"):
             self.channels = self._compressed() if element.get("compressed") else self._plain()
 
     def _compressed(self):
@@ -87,13 +89,45 @@ class Format:
             index[0] = 0
         return index
 
+    def sampled_planes(self):
+        """(format, width divisor, height divisor) of each single-plane view that a conversion samples."""
+        if self.plane_elements:
+            return [(p.get("compatible"), p.get("widthDivisor"), p.get("heightDivisor")) for p in self.plane_elements]
+        if self.chroma == "444":
+            return [(self.name, 1, 1)]
+        if self.chroma is None:
+            return []
+        # Packed 4:2:2: pairs of luma and chroma, or four elements for two texels.
+        bits = re.match(r"VK_FORMAT_[GB](\d+(X\d+)?)", self.name)[1]
+        suffix = ("_2PACK16", "_4PACK16") if "X" in bits else ("", "")
+        formats = ["".join(c + bits for c in names) + "_UNORM" for names in ("RG", "RGBA")]
+        return [(f"VK_FORMAT_{f}{s}", d, 1) for f, s, d in zip(formats, suffix, (1, 2))]
+
+    def plane_components(self):
+        """(plane, channel of its format) of R, G, B and A; plane -1: the format lacks the component."""
+        names = [c.get("name") for c in self.components]
+        found = {}
+        if self.plane_elements:
+            planes = [int(c.get("planeIndex")) for c in self.components]
+            found = {n: (p, planes[:i].count(p)) for i, (n, p) in enumerate(zip(names, planes))}
+        elif self.chroma == "422":
+            found = {n: (0, i % 2) if n == "G" else (1, i) for i, n in enumerate(names)}
+        elif self.chroma:
+            found = {n: (0, i) for i, n in enumerate("RGBA")}
+        return [found.get(n, (-1, 0)) for n in "RGBA"]
+
     def row(self):
         channels = ", ".join(f"Channel{{'{n}', {numeric(f)}, {b}, {o}}}" for n, f, b, o in self.channels)
         array = f"{{{{{channels}}}}}" if channels else "{}"
         return (f"    {{{self.name}, \"{self.name.removeprefix('VK_FORMAT_')}\", {self.block_bytes}, "
                 f"{self.block[0]}, {self.block[1]}, {self.block[2]}, Compression::{self.compression}, {self.packed}, "
                 f"{len(self.channels)}, {array}, {{{{{', '.join(map(str, self.rgba()))}}}}}, Kind::{self.kind()}, "
-                f"{self.aspects()}, {self.planes}, false, {{}}}},\n")
+                f"{self.aspects()}, {self.planes}, {self.planar()}, false, {{}}}},\n")
+
+    def planar(self):
+        planes = ", ".join(f"Plane{{{f}, {w}, {h}}}" for f, w, h in self.sampled_planes())
+        components = ", ".join(f"PlaneComponent{{{p}, {c}}}" for p, c in self.plane_components())
+        return f"{len(self.sampled_planes())}, {{{{{planes}}}}}, {{{{{components}}}}}" if planes else "0, {}, {}"
 
 
 def main(vk_xml, output):

@@ -86,6 +86,7 @@ Texel gather_texel(const base::WaveRegister value[4], std::size_t lane) {
 
 void fetch(const ImageView& view, const FetchRequest& request, base::WaveRegister result[4]) {
   if (fetch_wave(view, request, result)) return;
+  if (view.planes != nullptr) return fetch(*view.planes, request, result);
   const FormatDesc& format = *view.format;
   const Shape shape = shape_of(view.type);
   const TexelDecoder decode = texel_decoder(format);

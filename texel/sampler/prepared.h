@@ -31,6 +31,9 @@ struct PreparedSampler {
 
 void prepare(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode, PreparedSampler& out);
 
+/// The same without the 8-bit path and without a conversion: planes of Y'CbCr formats.
+void prepare_floats(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode, PreparedSampler& out);
+
 /// Samples, gathers or queries for every active lane. Other lanes of the results keep what they hold.
 inline void sample(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result) {
   prepared.kernel(prepared, request, result);
@@ -38,6 +41,7 @@ inline void sample(const PreparedSampler& prepared, const SampleRequest& request
 
 /// The kernels. Vector ones give the bits of the scalar one.
 void sample_by_lane(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result);
+void sample_converted(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result);
 PreparedSampler::Kernel byte_kernel(const Plan& plan);  ///< Plan::aos
 PreparedSampler::Kernel float_kernel(
     const Plan& plan);                         ///< samples and gathers of everything else, but not anisotropic

@@ -38,14 +38,33 @@ PreparedSampler::Kernel choose_kernel(const Plan& plan, SampleOp op) {
   return plan.aos ? byte_kernel(plan) : float_kernel(plan);
 }
 
-}  // namespace
-
-void prepare(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode, PreparedSampler& out) {
-  out.plan = make_plan(view, sampler, op, lod_mode);
+/// What follows from out.plan.
+void choose(SampleOp op, PreparedSampler& out) {
+  const ImageView& view = *out.plan.view;
   out.one_level = !out.plan.lod_needed || view.level_count == 1;
   out.needs_levels = levels_matter(out.plan);
   out.kernel = choose_kernel(out.plan, op);
   if (out.kernel != sample_by_lane) fill_table(view, out.level);
+}
+
+}  // namespace
+
+void prepare(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode, PreparedSampler& out) {
+  if (sampler.conversion.enabled && op == SampleOp::kSample) {
+    out.plan.view = &view;
+    out.plan.sampler = &sampler;
+    out.kernel = sample_converted;
+    return;
+  }
+  out.plan = make_plan(view.planes ? *view.planes : view, sampler, op, lod_mode);
+  choose(op, out);
+}
+
+void prepare_floats(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode,
+                    PreparedSampler& out) {
+  out.plan = make_plan(view, sampler, op, lod_mode);
+  out.plan.aos = false;
+  choose(op, out);
 }
 
 void sample_by_lane(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result) {

@@ -249,18 +249,6 @@ Texel sample_lane(const LaneSample& lane, const SampleRequest& request, const La
   return texel;
 }
 
-std::uint32_t select_layer(const Plan& plan, const SampleRequest& request, std::size_t lane) {
-  const base::WaveRegister* coord = request.coord[plan.cube ? 3 : plan.dims];
-  if (!plan.arrayed || coord == nullptr) return 0;
-  std::int32_t layer = base::round_to_int(float_of(coord->lane[lane]));
-  auto last = static_cast<std::int32_t>(plan.view->layer_count) - 1;
-  if (plan.cube) {
-    layer = static_cast<std::int32_t>(static_cast<std::uint32_t>(layer) * 6u);
-    last = std::max(last - 5, 0);
-  }
-  return static_cast<std::uint32_t>(std::clamp(layer, 0, last));
-}
-
 void set_offsets(LaneSample& lane, const SampleRequest& request, std::size_t index) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (request.offset[i] == nullptr) continue;
@@ -290,6 +278,18 @@ Texel query_lod(const Plan& plan, const Lod& lod) {
 }
 
 }  // namespace
+
+std::uint32_t select_layer(const Plan& plan, const SampleRequest& request, std::size_t lane) {
+  const base::WaveRegister* coord = request.coord[plan.cube ? 3 : plan.dims];
+  if (!plan.arrayed || coord == nullptr) return 0;
+  std::int32_t layer = base::round_to_int(float_of(coord->lane[lane]));
+  auto last = static_cast<std::int32_t>(plan.view->layer_count) - 1;
+  if (plan.cube) {
+    layer = static_cast<std::int32_t>(static_cast<std::uint32_t>(layer) * 6u);
+    last = std::max(last - 5, 0);
+  }
+  return static_cast<std::uint32_t>(std::clamp(layer, 0, last));
+}
 
 Texel texel_or_border(const LaneSample& lane, std::uint32_t level, std::uint32_t layer, std::int32_t x, std::int32_t y,
                       std::int32_t z) {

@@ -20,6 +20,9 @@ struct LaneSample {
 Texel texel_or_border(const LaneSample& lane, std::uint32_t level, std::uint32_t layer, std::int32_t x, std::int32_t y,
                       std::int32_t z);
 
+/// The array layer of the view that a lane's last coordinate names; the first face for cubes.
+std::uint32_t select_layer(const Plan& plan, const SampleRequest& request, std::size_t lane);
+
 /// One level, filtered as values.
 Texel sample_level(const LaneSample& lane, std::uint32_t level, bool linear);
 

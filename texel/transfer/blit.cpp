@@ -29,12 +29,12 @@ struct Corner {
 };
 
 /// lavapipe-rasterization.md 4.1, single-sampled.
-Plane make_plane(const Corner c[3], float Corner::*value) {
+PlaneEquation make_plane(const Corner c[3], float Corner::*value) {
   const float dx01 = c[0].x - c[1].x, dy01 = c[0].y - c[1].y;
   const float dx20 = c[2].x - c[0].x, dy20 = c[2].y - c[0].y;
   const float scale = 1.0f / (dx01 * dy20 - dy01 * dx20);
   const float d01 = c[0].*value - c[1].*value, d20 = c[2].*value - c[0].*value;
-  Plane plane;
+  PlaneEquation plane;
   plane.dadx = d01 * (dy20 * scale) - d20 * (dy01 * scale);
   plane.dady = d20 * (dx01 * scale) - d01 * (dx20 * scale);
   plane.a0 = c[0].*value - (plane.dadx * (c[0].x - 0.5f) + plane.dady * (c[0].y - 0.5f));
@@ -61,7 +61,7 @@ Quad make_quad(const Blit& blit) {
       {x[0], y[0], u[0], v[0]}, {x[1], y[0], u[1], v[0]}, {x[1], y[1], u[1], v[1]}, {x[0], y[1], u[0], v[1]}};
   if (blit.rectangle) {
     const Corner whole[3] = {c[2], c[0], c[1]};
-    const Plane u_plane = make_plane(whole, &Corner::u), v_plane = make_plane(whole, &Corner::v);
+    const PlaneEquation u_plane = make_plane(whole, &Corner::u), v_plane = make_plane(whole, &Corner::v);
     return {{u_plane, u_plane}, {v_plane, v_plane}};
   }
   const Corner upper[3] = {c[1], c[0], c[2]};
@@ -228,7 +228,7 @@ void copy_plain(const ImageMemory& source, const ImageMemory& destination, const
 }
 
 bool convertible(const FormatDesc& from, const FormatDesc& to) {
-  return can_sample(from) && can_encode(to) && from.kind == to.kind;
+  return can_sample(from) && !from.requires_conversion() && can_encode(to) && from.kind == to.kind;
 }
 
 void blit_by(const ImageMemory& source, const ImageMemory& destination, const VkImageBlit& region, VkFilter filter,

@@ -38,14 +38,14 @@ struct Blit {
 };
 
 /// value(px, py) = a0 + dadx * px + dady * py.
-struct Plane {
+struct PlaneEquation {
   float a0 = 0, dadx = 0, dady = 0;
   float at(float px, float py) const { return base::fma_exact(dady, py, base::fma_exact(dadx, px, a0)); }
 };
 
 /// Planes of u and v for the upper right [0] and the lower left [1] triangle.
 struct Quad {
-  Plane u[2], v[2];
+  PlaneEquation u[2], v[2];
 };
 
 /// Where the first texel of the cut box lies in destination texels.

@@ -30,7 +30,8 @@ Box make_box(const ImageMemory& image, VkImageAspectFlagBits aspect, const VkIma
   const ImageLayout& layout = *image.layout;
   Box box;
   if (layers.mipLevel >= layout.desc.levels) return box;
-  const PlaneLayout& plane = layout.plane[plane_of_aspect(layout, aspect)];
+  const std::uint32_t index = plane_of_aspect(layout, aspect);
+  const PlaneLayout& plane = layout.plane[index];
   const LevelLayout& level = plane.level[layers.mipLevel];
   const bool is_3d = layout.desc.type == VK_IMAGE_TYPE_3D;
   box.format = &format_desc(plane.format);
@@ -47,7 +48,7 @@ Box make_box(const ImageMemory& image, VkImageAspectFlagBits aspect, const VkIma
     z = layers.baseArrayLayer;
     box.slices = std::min(layers.layerCount, layout.desc.layers - z);
   }
-  box.origin = image.memory + plane.offset + level.offset + z * box.slice_pitch + y * box.row_pitch +
+  box.origin = image.plane(index) + level.offset + z * box.slice_pitch + y * box.row_pitch +
                std::size_t{x} * box.format->block_bytes;
   return box;
 }

@@ -78,7 +78,7 @@ void fill_view(const ImageView& view, std::uint32_t level, const VkRect2D& area,
 
 void clear_color_image(const ImageMemory& image, const VkClearColorValue& color, const VkImageSubresourceRange& range) {
   const FormatDesc& format = format_desc(image.layout->desc.format);
-  if (format.is_compressed()) return;
+  if (format.is_compressed() || format.requires_conversion()) return;
   fill_range(image, VK_IMAGE_ASPECT_COLOR_BIT, range, encode_clear_color(format, color));
 }
 

@@ -85,17 +85,19 @@ void copy_image_to_buffer(const ImageMemory& image, std::span<std::byte> buffer,
 }
 
 void copy_image(const ImageMemory& source, const ImageMemory& destination, const VkImageCopy& region) {
-  for (const auto aspect : {VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_ASPECT_STENCIL_BIT}) {
+  for (const auto aspect : {VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_ASPECT_STENCIL_BIT,
+                            VK_IMAGE_ASPECT_PLANE_0_BIT, VK_IMAGE_ASPECT_PLANE_1_BIT, VK_IMAGE_ASPECT_PLANE_2_BIT}) {
     if ((region.srcSubresource.aspectMask & aspect) == 0) continue;
     const Box from = make_box(source, aspect, region.srcSubresource, region.srcOffset, region.extent);
     if (from.empty()) continue;
-    // The extent counts texels of the source; with blocks of another extent the destination has as many blocks.
-    const FormatDesc& format = format_desc(destination.layout->desc.format);
-    const VkExtent3D extent{from.columns * format.block_width, from.rows * format.block_height,
-                            std::max(region.extent.depth, region.srcSubresource.layerCount)};
     const auto dst_aspect = (region.dstSubresource.aspectMask & aspect) != 0
                                 ? aspect
                                 : static_cast<VkImageAspectFlagBits>(region.dstSubresource.aspectMask);
+    const ImageLayout& target = *destination.layout;
+    // The extent counts texels of the source; with blocks of another extent the destination has as many blocks.
+    const FormatDesc& format = format_desc(target.plane[plane_of_aspect(target, dst_aspect)].format);
+    const VkExtent3D extent{from.columns * format.block_width, from.rows * format.block_height,
+                            std::max(region.extent.depth, region.srcSubresource.layerCount)};
     VkImageSubresourceLayers layers = region.dstSubresource;
     layers.layerCount = std::max(layers.layerCount, region.extent.depth);
     const Box to = make_box(destination, dst_aspect, layers, region.dstOffset, extent);
