@@ -56,14 +56,22 @@ base::LaneMask inside_lanes(std::uint32_t count, const std::int32_t* step_x, con
   return ~mask;
 }
 
-/// The same for the blocks of a tile. What an edge adds from pixel to pixel is common to all blocks.
-void inside_blocks(const TileEdges& edges, std::uint32_t sample, base::LaneMask places, base::LaneMask* out) {
+/// The same for the blocks of a tile and up to kEdges edges. What an edge adds from pixel to pixel is common to all
+/// blocks.
+template <std::size_t kEdges>
+HWY_INLINE void inside_blocks_of(const TileEdges& edges, std::uint32_t sample, base::LaneMask places,
+                                 base::LaneMask* out) {
   const I d;
   const std::size_t n = hn::Lanes(d);
   const V zero = hn::Zero(d);
+  // What an edge's highest value in a block exceeds the one at its first pixel by.
+  std::int32_t rise[kEdges] = {};
+  for (std::uint32_t e = 0; e < edges.count; ++e)
+    rise[e] = (kBlockSize - 1) * (std::max(edges.step_x[e], 0) + std::max(edges.step_y[e], 0));
   for (std::size_t i = 0; i < 16; i += n) {
     const V x = hn::Load(d, kRowX + i), y = hn::Load(d, kRowY + i);
-    V within[4] = {zero, zero, zero, zero}, down[4] = {zero, zero, zero, zero};
+    V within[kEdges], down[kEdges];
+    for (std::size_t e = 0; e < kEdges; ++e) within[e] = down[e] = zero;
     for (std::uint32_t e = 0; e < edges.count; ++e) {
       within[e] = hn::Add(hn::Mul(x, hn::Set(d, edges.step_x[e])), hn::Mul(y, hn::Set(d, edges.step_y[e])));
       down[e] = hn::Set(d, 2 * edges.step_y[e]);
@@ -71,19 +79,35 @@ void inside_blocks(const TileEdges& edges, std::uint32_t sample, base::LaneMask 
     for (base::LaneMask left = places; left != 0; left &= left - 1) {
       const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
       const int bx = lane_x(place) * kBlockSize, by = lane_y(place) * kBlockSize;
-      V row[4] = {zero, zero, zero, zero};
-      for (std::uint32_t e = 0; e < edges.count; ++e)
-        row[e] = hn::Add(within[e], hn::Set(d, edges.f[sample][e] + bx * edges.step_x[e] + by * edges.step_y[e]));
+      std::int32_t first[kEdges] = {}, missed = 0;
+      for (std::uint32_t e = 0; e < edges.count; ++e) {
+        first[e] = edges.f[sample][e] + bx * edges.step_x[e] + by * edges.step_y[e];
+        missed |= first[e] + rise[e];
+      }
+      if (missed < 0) {
+        out[place] = 0;
+        continue;
+      }
+      V row[kEdges];
+      for (std::size_t e = 0; e < kEdges; ++e) row[e] = hn::Add(within[e], hn::Set(d, first[e]));
       base::LaneMask outside = 0;
       for (std::size_t r = 0; r < 4; ++r) {
-        // The fourth edge is seldom there: then its value and step are 0.
-        const V sign = hn::Or(hn::Or(row[0], row[1]), hn::Or(row[2], row[3]));
+        // Edges that are not there have value and step 0.
+        V sign = row[0];
+        for (std::size_t e = 1; e < kEdges; ++e) sign = hn::Or(sign, row[e]);
         outside |= (bits_of_mask(hn::Lt(sign, zero)) & base::first_lanes(n)) << (r * 16 + i);
-        for (std::size_t e = 0; e < 4; ++e) row[e] = hn::Add(row[e], down[e]);
+        for (std::size_t e = 0; e < kEdges; ++e) row[e] = hn::Add(row[e], down[e]);
       }
       out[place] = (i == 0 ? base::kAllLanes : out[place]) & ~outside;
     }
   }
+}
+
+void inside_blocks(const TileEdges& edges, std::uint32_t sample, base::LaneMask places, base::LaneMask* out) {
+  if (edges.count <= 3)
+    inside_blocks_of<3>(edges, sample, places, out);
+  else
+    inside_blocks_of<4>(edges, sample, places, out);
 }
 
 /// Values of three edges at lanes [i, i + n) of the places (x, y), and their steps two rows down.
@@ -170,6 +194,28 @@ std::uint32_t edges_of(const Primitive& p, Edge edges[4]) {
   return corners;
 }
 
+/// Whether all of a triangle lies so near to a tile that it touches that its edge functions fit 32 bits there.
+bool is_small_triangle(const Primitive& p) {
+  constexpr std::int32_t kReach = 32 * 256;
+  if (p.kind != PrimitiveKind::kTriangle) return false;
+  const auto [left, right] = std::minmax({p.x[0], p.x[1], p.x[2]});
+  const auto [top, bottom] = std::minmax({p.y[0], p.y[1], p.y[2]});
+  return right - left <= kReach && bottom - top <= kReach;
+}
+
+/// The edges of such a triangle, single-sampled; none is dropped.
+void make_small_edges(const Primitive& p, int tile_x, int tile_y, TileEdges& out) {
+  out.count = 3;
+  for (int e = 0; e < 3; ++e) {
+    const int n = e == 2 ? 0 : e + 1;
+    const std::int32_t a = p.y[e] - p.y[n], b = p.x[e] - p.x[n];
+    const std::int32_t last = a < 0 || (a == 0 && b > 0) ? 0 : 1;
+    out.step_x[e] = -a;
+    out.step_y[e] = b;
+    out.f[0][e] = (a * (p.x[e] - tile_x * 256) - b * (p.y[e] - tile_y * 256) - last) >> 8;
+  }
+}
+
 constexpr std::array<base::LaneMask, 9> lanes_below(bool vertical) {
   std::array<base::LaneMask, 9> table{};
   for (int limit = 0; limit <= 8; ++limit)
@@ -184,6 +230,10 @@ constexpr auto kLanesAbove = lanes_below(true);
 
 bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, const SampleLocations& samples,
                      TileEdges& out) {
+  if (samples.count == 1 && is_small_triangle(primitive)) {
+    make_small_edges(primitive, tile_x, tile_y, out);
+    return true;
+  }
   Edge edges[4];
   const std::uint32_t count = edges_of(primitive, edges);
   out.count = 0;

@@ -142,7 +142,7 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
 }
 
 /// Quads of a block from which on it is shaded on its own: fewer would waste more lanes than packing costs.
-constexpr std::uint32_t kNearlyFull = 12, kNearlyFullIfShort = 6;
+constexpr std::uint32_t kNearlyFull = 12, kNearlyFullIfShort = 2;
 
 /// A block's coverage after early tests, to the wave.
 void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
@@ -274,22 +274,31 @@ BlockCoverage block_of(const TileCoverage& coverage, std::uint32_t place, std::u
   return block;
 }
 
+/// Whether something else than its edges limits the pixels of a primitive.
+bool is_cut(const PipelinePlan& plan, const Primitive& p) {
+  if (plan.raster_samples > 1 || p.kind != PrimitiveKind::kTriangle) return true;
+  const auto [left, right] = std::minmax({p.x[0], p.x[1], p.x[2]});
+  const auto [top, bottom] = std::minmax({p.y[0], p.y[1], p.y[2]});
+  return p.x0 != (left + 255) >> 8 || p.y0 != (top + 255) >> 8 || p.x1 != (right - 1) >> 8 || p.y1 != (bottom - 1) >> 8;
+}
+
 /// Covered lanes of the blocks that a primitive touches; returns their places. `rect`: the primitive's in the tile.
-base::LaneMask cover_tile(const PipelinePlan& plan, const TileEdges& edges, const PixelRect& rect, TileCoverage& out) {
+base::LaneMask cover_tile(const PipelinePlan& plan, const Primitive& primitive, const TileEdges& edges,
+                          const PixelRect& rect, TileCoverage& out) {
   const int bx0 = rect.x0 / kBlockSize, bx1 = rect.x1 / kBlockSize;
   const int by0 = rect.y0 / kBlockSize, by1 = rect.y1 / kBlockSize;
   base::LaneMask any = base::kAllLanes, all = edges.count == 0 ? base::kAllLanes : 0;
-  if (edges.count != 0 && (bx1 - bx0 + 1) * (by1 - by0 + 1) > 4) classify_blocks(edges, plan.raster_samples, any, all);
+  if (edges.count != 0 && (bx1 - bx0 + 1) * (by1 - by0 + 1) > 9) classify_blocks(edges, plan.raster_samples, any, all);
   any &= rect_lanes(bx0, by0, bx1, by1);
-  // Blocks that the draw region does not cut: a primitive covers nothing outside of its own rectangle.
-  const base::LaneMask inside =
-      rect_lanes((rect.x0 + kBlockSize - 1) / kBlockSize, (rect.y0 + kBlockSize - 1) / kBlockSize,
-                 (rect.x1 + 1) / kBlockSize - 1, (rect.y1 + 1) / kBlockSize - 1);
+  base::LaneMask cut = 0;
+  if (is_cut(plan, primitive))
+    cut = any & ~rect_lanes((rect.x0 + kBlockSize - 1) / kBlockSize, (rect.y0 + kBlockSize - 1) / kBlockSize,
+                            (rect.x1 + 1) / kBlockSize - 1, (rect.y1 + 1) / kBlockSize - 1);
   for (std::uint32_t s = 0; s < plan.raster_samples; ++s) {
     base::LaneMask* lanes = out.lanes[s];
     if ((any & all) != 0) std::fill_n(lanes, base::kWaveWidth, base::kAllLanes);
     cover_blocks(edges, s, any & ~all, lanes);
-    for (base::LaneMask left = any & ~inside; left != 0; left &= left - 1) {
+    for (base::LaneMask left = cut; left != 0; left &= left - 1) {
       const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
       const int x = lane_x(place) * kBlockSize, y = lane_y(place) * kBlockSize;
       lanes[place] &= rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
@@ -478,7 +487,7 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
   const PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
-  const base::LaneMask places = cover_tile(plan, edges, rect, worker.covered);
+  const base::LaneMask places = cover_tile(plan, primitive, edges, rect, worker.covered);
   if (places == 0) return;
   if (reads_rasterized(worker)) worker.rasterized = worker.covered;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) test_tile(worker, primitive, places, worker.covered);
