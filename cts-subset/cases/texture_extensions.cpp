@@ -82,6 +82,30 @@ CTS_RANDOM("texture", "view_of_3d", 8) {
           "texture(t, p * 2.0 - 0.5)", "2D");
 }
 
+/// Blocks of a compressed image as texels of another format.
+CTS_RANDOM("texture", "block_texel_view", 24) {
+  Random& random = run.random;
+  const bool wide = random.chance(0.5f);
+  ImageSpec spec;
+  spec.format = wide ? random.pick({VK_FORMAT_BC3_UNORM_BLOCK, VK_FORMAT_BC5_UNORM_BLOCK, VK_FORMAT_BC7_UNORM_BLOCK})
+                     : random.pick({VK_FORMAT_BC1_RGBA_UNORM_BLOCK, VK_FORMAT_BC4_UNORM_BLOCK});
+  spec.extent = {4 * (5 + random.below(12)), 4 * (5 + random.below(12)), 1};
+  spec.levels = 3;
+  spec.layers = 2;
+  spec.view = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+  spec.flags = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT;
+  spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  const Image image = run.image(spec);
+  run.fill_random(image);
+  const VkFormat format =
+      wide ? VK_FORMAT_R32G32B32A32_SFLOAT : random.pick({VK_FORMAT_R16G16B16A16_UNORM, VK_FORMAT_R16G16B16A16_SNORM});
+  const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, random.below(3), 1, random.below(2), 1};
+  const VkImageView view = run.image_view(image, VK_IMAGE_VIEW_TYPE_2D, format, range);
+  const bool fetched = wide || random.chance(0.5f);
+  look_up(run, view, run.sampler(random.chance(0.5f) ? VK_FILTER_LINEAR : VK_FILTER_NEAREST),
+          fetched ? "texelFetch(t, ivec2(gl_FragCoord.xy) % textureSize(t, 0), 0)" : "texture(t, p * 2.0 - 0.5)", "2D");
+}
+
 /// A slice of a volume as a storage image: read and written, with the other slices left alone.
 CTS_RANDOM("texture", "storage_view_of_3d", 8) {
   run.require(run.gpu.extension_features.view_of_3d.image2DViewOf3D, "image2DViewOf3D");
