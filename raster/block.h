@@ -65,6 +65,7 @@ struct BlockDepthTest {
   VkCompareOp compare;
   bool write;
   const DepthRange* clamp;  ///< null: no depth clamp
+  bool restricted = true;   ///< to [0, 1]
 };
 
 /// Tests lanes[i], in quad order, of the 8x8 blocks at quad-ordered places i of `places` and cuts them to what passed.

@@ -120,6 +120,7 @@ class SquareTest {
         low_(hn::Set(Floats(), test.clamp ? test.clamp->low : 0)),
         high_(hn::Set(Floats(), test.clamp ? test.clamp->high : 1)),
         clamps_(test.clamp != nullptr),
+        restricts_(test.restricted),
         write_(test.write) {
     const typename Square::Words d;
     const auto lane = hn::Iota(d, 0);
@@ -144,7 +145,7 @@ class SquareTest {
         const auto covered = static_cast<std::uint32_t>(rows >> (kSide * r + c)) & all;
         if (covered != 0) {
           VF z = hn::Add(lanes_fma(dady_, fy, inner), offset_);
-          z = lanes_max_second(lanes_min_second(z, hn::Set(f, 1.0f)), hn::Zero(f));
+          if (restricts_) z = lanes_max_second(lanes_min_second(z, hn::Set(f, 1.0f)), hn::Zero(f));
           if (clamps_) z = lanes_max_second(lanes_min_second(z, high_), low_);
           const auto value = Format::encode(z);
           const auto stored = load_rows<Format, Square::kRows>(d, texels, pitch);
@@ -164,7 +165,7 @@ class SquareTest {
  private:
   VF a0_, dadx_, dady_, offset_, low_, high_;
   VF lane_row_, lane_column_;  ///< places in the square
-  bool clamps_, write_;
+  bool clamps_, restricts_, write_;
 };
 
 /// Calls run(type) with the type of SquareTest for this format and comparison.

@@ -171,7 +171,7 @@ BlockPixels depth_pixels(const DepthStencilTarget& target, int x, int y) {
 BlockDepthTest depth_test(const PipelinePlan& plan, const DepthStencilTarget& target, bool write,
                           const DepthRange& range) {
   return {target.format, plan.state->depth_compare, write && plan.depth_write,
-          plan.state->depth_clamp ? &range : nullptr};
+          plan.state->depth_clamp ? &range : nullptr, plan.restricts_depth};
 }
 
 }  // namespace

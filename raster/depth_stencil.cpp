@@ -157,11 +157,11 @@ base::LaneMask test_depth(DepthFormat format, const DepthPass& pass, const QuadP
   }
 }
 
-void clamp_to_range(const DepthRange* range, std::uint32_t quads, float* z) {
+void clamp_to_range(const DepthRange* range, bool restricted, std::uint32_t quads, float* z) {
   const F4 d;
   for (std::uint32_t q = 0; q < quads; ++q) {
     VF v = hn::Load(d, z + 4 * q);
-    v = lanes_max_second(lanes_min_second(v, hn::Set(d, 1.0f)), hn::Zero(d));
+    if (restricted) v = lanes_max_second(lanes_min_second(v, hn::Set(d, 1.0f)), hn::Zero(d));
     if (range) v = lanes_max_second(lanes_min_second(v, hn::Set(d, range[q].high)), hn::Set(d, range[q].low));
     hn::Store(v, d, z + 4 * q);
   }
@@ -321,8 +321,8 @@ DepthFormat depth_format(const texel::ImageView& view) {
   }
 }
 
-void clamp_depth(const DepthRange* clamp, std::uint32_t quads, float* z) {
-  HWY_DYNAMIC_DISPATCH(clamp_to_range)(clamp, quads, z);
+void clamp_depth(const DepthRange* clamp, bool restricted, std::uint32_t quads, float* z) {
+  HWY_DYNAMIC_DISPATCH(clamp_to_range)(clamp, restricted, quads, z);
 }
 
 base::LaneMask test_depth_stencil(const PipelinePlan& plan, const DepthStencilTarget& target,

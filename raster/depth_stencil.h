@@ -23,11 +23,11 @@ struct DepthStencilTarget {
   DepthFormat format = DepthFormat::kNone;
 };
 
-/// 5.3 steps 1 and 2: in place, lanes of quads [0, quads). `clamp`: null, or z range per quad.
+/// 5.3 steps 1 (where `restricted`) and 2: in place, lanes of quads [0, quads). `clamp`: null, or z range per quad.
 struct DepthRange {
   float low, high;
 };
-void clamp_depth(const DepthRange* clamp, std::uint32_t quads, float* z);
+void clamp_depth(const DepthRange* clamp, bool restricted, std::uint32_t quads, float* z);
 
 /// Tests lanes of `mask`: depth bounds, stencil, depth; returns those that pass. `z` is clamped. Writes depth where
 /// `write` and the state say, and stencil always as the state says. `front`: bit q is the facing of quad q.

@@ -70,6 +70,7 @@ struct State {
   bool rasterizer_discard = false;
   bool depth_clamp = false;
   bool depth_clip = true;
+  bool unrestricted_depth = false;  ///< VK_EXT_depth_range_unrestricted: depth of floats may lie outside [0, 1]
   VkPolygonMode polygon_mode = VK_POLYGON_MODE_FILL;
   VkCullModeFlags cull_mode = VK_CULL_MODE_NONE;
   VkFrontFace front_face = VK_FRONT_FACE_COUNTER_CLOCKWISE;

@@ -274,7 +274,7 @@ void late_depth(ShadeRun& run, std::uint32_t sample) {
       const ViewportTransform& viewport = plan.viewport[run.wave.primitive[run.wave.slot[q]]->viewport];
       range[q] = {viewport.z_min, viewport.z_max};
     }
-  clamp_depth(plan.state->depth_clamp ? range : nullptr, run.wave.quads, worker.depth);
+  clamp_depth(plan.state->depth_clamp ? range : nullptr, plan.restricts_depth, run.wave.quads, worker.depth);
 }
 
 void test_late(ShadeRun& run) {

@@ -169,7 +169,7 @@ void reciprocals(const float* in, float* out) {
     hn::Store(hn::Div(hn::Set(f, 1.0f), hn::Load(f, in + i)), f, out + i);
 }
 
-void block_depth(const DepthPlane& plane, float x, float y, float* out) {
+void block_depth(const DepthPlane& plane, float x, float y, bool restricted, float* out) {
   const hn::CappedTag<float, 16> f;
   const auto a0 = hn::Set(f, plane.a0), dadx = hn::Set(f, plane.dadx), dady = hn::Set(f, plane.dady);
   const auto offset = hn::Set(f, plane.offset);
@@ -179,9 +179,12 @@ void block_depth(const DepthPlane& plane, float x, float y, float* out) {
     const auto inner = lanes_fma(dadx, fx, a0);
     for (std::size_t r = 0; r < 4; ++r) {
       const auto fy = hn::Add(hn::Set(f, y + static_cast<float>(2 * r)), hn::Load(f, kRowY + i));
-      const auto z = hn::Add(lanes_fma(dady, fy, inner), offset);
-      const auto low = base::HWY_NAMESPACE::lanes_min_second(z, hn::Set(f, 1.0f));
-      hn::Store(base::HWY_NAMESPACE::lanes_max_second(low, hn::Zero(f)), f, out + r * 16 + i);
+      auto z = hn::Add(lanes_fma(dady, fy, inner), offset);
+      if (restricted) {
+        const auto low = base::HWY_NAMESPACE::lanes_min_second(z, hn::Set(f, 1.0f));
+        z = base::HWY_NAMESPACE::lanes_max_second(low, hn::Zero(f));
+      }
+      hn::Store(z, f, out + r * 16 + i);
     }
   }
 }
@@ -269,8 +272,8 @@ void place_points(const QuadPositions& quads, float dx, float dy, WavePoints& ou
 
 void reciprocal(const float* in, float* out) { HWY_DYNAMIC_DISPATCH(reciprocals)(in, out); }
 
-void evaluate_block_depth(const DepthPlane& plane, float x, float y, float* out) {
-  HWY_DYNAMIC_DISPATCH(block_depth)(plane, x, y, out);
+void evaluate_block_depth(const DepthPlane& plane, float x, float y, bool restricted, float* out) {
+  HWY_DYNAMIC_DISPATCH(block_depth)(plane, x, y, restricted, out);
 }
 
 }  // namespace vitrine::raster

@@ -56,7 +56,8 @@ void evaluate_plane(const WavePlanes& wave, std::uint32_t plane, const WavePoint
 /// out = 1 / in, per lane.
 void reciprocal(const float* in, float* out);
 
-/// z of the 64 lanes of a block whose first point is (x, y), in quad order: plane, plus bias, clamped to [0, 1] (5.3).
-void evaluate_block_depth(const DepthPlane& plane, float x, float y, float* out);
+/// z of the 64 lanes of a block whose first point is (x, y), in quad order: plane, plus bias, clamped to [0, 1] where
+/// `restricted` (5.3).
+void evaluate_block_depth(const DepthPlane& plane, float x, float y, bool restricted, float* out);
 
 }  // namespace vitrine::raster

@@ -407,6 +407,15 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
   plan.depth_bounds = state.depth_bounds_test && pass.depth.format != nullptr;
   plan.stencil_test = state.stencil_test && pass.stencil.format != nullptr;
   const ShaderInterface* fragment = plan.fragment;
+  const texel::FormatDesc* depth_format = pass.depth.format;
+  plan.restricts_depth = !state.unrestricted_depth || depth_format == nullptr ||
+                         depth_format->channel[0].numeric != texel::Numeric::kSfloat;
+  // Numbers of fixed point stay in [0, 1] after the depth clamp, too.
+  if (state.unrestricted_depth && plan.restricts_depth)
+    for (ViewportTransform& viewport : plan.viewport) {
+      viewport.z_min = std::clamp(viewport.z_min, 0.0f, 1.0f);
+      viewport.z_max = std::clamp(viewport.z_max, 0.0f, 1.0f);
+    }
   plan.may_kill = state.alpha_to_coverage || (fragment && (fragment->uses_discard || plan.frag.sample_mask != kNoReg));
   plan.depth_order = TestOrder::kNone;
   plan.early_reject = plan.in_order = false;

@@ -59,8 +59,9 @@ void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y
     if (!block.lanes[s]) continue;
     if (plan.depth_test) {
       const float dx = plan.locations->pixel_x(s), dy = plan.locations->pixel_y(s);
-      evaluate_block_depth(plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, worker.depth);
-      if (clamps) clamp_depth(range, base::kQuadsPerWave, worker.depth);
+      evaluate_block_depth(plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, plan.restricts_depth,
+                           worker.depth);
+      if (clamps) clamp_depth(range, plan.restricts_depth, base::kQuadsPerWave, worker.depth);
     }
     block.lanes[s] = test_depth_stencil(plan, worker.target.depth_stencil[s], quads, primitive.front ? 0xffffu : 0,
                                         worker.depth, nullptr, block.lanes[s], plan.depth_order == TestOrder::kEarly);

@@ -205,6 +205,7 @@ VkResult create_graphics_pipeline(Device& device, PipelineCache* cache, const Vk
   }
   const VkGraphicsPipelineLibraryFlagsEXT parts = own_parts(info);
   fill_static_state(*pipeline, info, subpass, parts);
+  pipeline->state.unrestricted_depth = device.extensions.test(Extension::EXT_depth_range_unrestricted);
   if (info.flags & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) {
     for (std::uint32_t i = 0; i < info.stageCount; ++i) {
       if (!(info.pStages[i].stage & stages_of(parts))) continue;
