@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Checks the built driver: exports the loader's functions alone, needs few libraries, asks for no executable page, and has
-no static that is destroyed at exit.
+"""Checks the built driver: exports the loader's functions alone, needs few libraries, asks for no executable page, has
+no static that is destroyed at exit, and leaves nothing behind when it is unloaded.
 
 usage: driver.py LIBVITRINE_ICD_SO MANIFEST_JSON
 """
+import _ctypes
+import ctypes
 import json
 import pathlib
 import subprocess
@@ -17,6 +19,18 @@ SANITIZER_LIBRARIES = ("libasan", "libubsan", "libtsan", "libstdc++", "libgcc_s"
 
 def lines(*command):
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+
+
+def heap_growth(library, times):
+    """KiB of data that `times` loads and unloads leave behind."""
+    def size():
+        status = pathlib.Path("/proc/self/status").read_text()
+        return int(status.split("VmData:")[1].split()[0])
+    for i in range(times + 1):
+        _ctypes.dlclose(ctypes.CDLL(library)._handle)
+        if i == 0:
+            before = size()
+    return size() - before
 
 
 def faults(library, manifest):
@@ -47,6 +61,10 @@ def faults(library, manifest):
             function = line.split("<")[1]
         elif "<__cxa_atexit" in line and "7vitrine" in function:
             yield f"{function[:-2]} has a static local with a destructor"
+    # The loader unloads a driver with its last instance, and applications make thousands of instances.
+    growth = 0 if sanitized else heap_growth(library, 100)
+    if growth > 1024:
+        yield f"leaves {growth} KiB behind when it is loaded 100 times"
     text = json.loads(pathlib.Path(manifest).read_text())
     path = text["ICD"]["library_path"]
     if not path.startswith("./") or not (pathlib.Path(manifest).parent / path).exists():
