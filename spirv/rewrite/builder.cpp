@@ -2,7 +2,7 @@
 // every operation, `precise` or not: 0 + x is x (also for x = -0), 0 * x and 0 / x are 0, pow(x, 0) skips NaN. What it
 // leaves undefined (a division by literal 0) becomes an undefined value here too. Operations on literals become
 // literals at once where the generator's own building blocks fold (not those that are calls of intrinsics), so that the
-// next operation takes its shortcut too.
+// next operation takes its shortcut too. A sum with -0 is what its optimiser takes away: x, denormal or not.
 #include "base/float_mode.h"
 #include "spirv/rewrite/passes.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 using Kind = Inst::Kind;
 
-constexpr std::uint32_t kOne = 0x3f800000;
+constexpr std::uint32_t kOne = 0x3f800000, kMinusZero = 0x80000000;
 
 class Builder {
  public:
@@ -52,7 +52,8 @@ class Builder {
     const Inst& inst = graph_.insts[id_];
     switch (op) {
       case Op::kFAdd:
-        return take_if(1, 0, 0) || take_if(0, 1, 0) || undefined_operand();
+        return take_if(1, 0, 0) || take_if(0, 1, 0) || take_if(0, 1, kMinusZero) || take_if(1, 0, kMinusZero) ||
+               undefined_operand();
       case Op::kFMul:
         return take_if(0, 0, 0) || take_if(1, 0, kOne) || take_if(1, 1, 0) || take_if(0, 1, kOne) ||
                undefined_operand();
@@ -64,6 +65,8 @@ class Builder {
         return true;
       case Op::kFMin:
       case Op::kFMax:
+      case Op::kFMinPlain:
+      case Op::kFMaxPlain:
         if (undefined_operand()) return true;
         if (!equal_operands(0, 1)) return false;
         replace(graph_.source(inst, 0));
@@ -244,7 +247,50 @@ class Builder {
   InstId id_ = kNone;
 };
 
+/// The literal that leaves the other operand of `op` as it is; false: none.
+bool identity_of(Op op, std::uint32_t& bits) {
+  bits = op == Op::kFAdd ? kMinusZero : kOne;
+  return op == Op::kFAdd || op == Op::kFMul || op == Op::kFDiv;
+}
+
+/// Operand `index` of `id`, a selection used once with `identity` on one side: x op (c ? y : identity) becomes
+/// c ? x op y : x, which keeps denormals of x.
+bool select_operation(Graph& graph, InstId id, std::uint32_t index, std::uint32_t identity) {
+  const Src selected = graph.source(graph.insts[id], index), other = graph.source(graph.insts[id], 1 - index);
+  const Inst* select = graph.def(selected.value);
+  if (!select || select->kind != Kind::kAlu || select->op != Op::kSelect || select->components != 1) return false;
+  if (graph.values[selected.value].uses != 1) return false;
+  for (const std::uint32_t side : {1u, 2u}) {
+    const Src literal = graph.source(*select, side), operand = graph.source(*select, 3 - side);
+    const Inst* constant = graph.constant(literal.value);
+    if (!constant || constant->imm[literal.swizzle[0]] != identity) continue;
+    const Src condition = graph.source(*select, 0);
+    const InstId made = graph.create(Kind::kAlu, Op::kSelect, 1, false, 3);
+    graph.insert_after(id, made);
+    graph.insts[made].origin = graph.insts[id].origin;
+    graph.replace_uses(graph.insts[id].result, graph.insts[made].result);
+    const Src computed{graph.insts[id].result, {0, 0, 0, 0}};
+    graph.set_source(id, index, operand);
+    graph.set_source(made, 0, condition);
+    graph.set_source(made, side, other);
+    graph.set_source(made, 3 - side, computed);
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+void select_identities(Graph& graph) {
+  auto visit = [&](InstId id) {
+    const Inst& inst = graph.insts[id];
+    std::uint32_t identity = 0;
+    if (inst.kind != Kind::kAlu || inst.components != 1 || !identity_of(inst.op, identity)) return;
+    const bool commutes = inst.op != Op::kFDiv;
+    if (!select_operation(graph, id, 1, identity) && commutes) select_operation(graph, id, 0, identity);
+  };
+  for_each_inst(graph, graph.root, visit);
+}
 
 void build_identities(Graph& graph) {
   Builder builder(graph);

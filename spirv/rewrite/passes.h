@@ -86,7 +86,14 @@ unsigned cost_of(const Graph& graph, const Inst& inst);
 /// What the reference's code generator simplifies on its own, for scalar code.
 void build_identities(Graph& graph);
 
-/// Spelling that the executor likes and that keeps every bit: subtractions, plain minima, reciprocals.
+/// x * (c ? y : 1) and its like become c ? x * y : x, as in the masked machine code of the reference.
+void select_identities(Graph& graph);
+
+/// Minima and maxima with an operand that is known to be a number become plain ones. The reference decides this on its
+/// intermediate code, before its code generator simplifies on its own.
+void choose_extrema(Graph& graph);
+
+/// Spelling that the executor likes and that keeps every bit: subtractions.
 void choose_spelling(Graph& graph);
 
 /// True when removing the instruction changes nothing if its result is unused.

@@ -56,9 +56,11 @@ void finish(Graph& graph) {
     rewriting::merge_equal(graph);
   }
   rewriting::propagate_copies(graph);
+  rewriting::choose_extrema(graph);
   rewriting::build_identities(graph);
   rewriting::propagate_copies(graph);
   rewriting::remove_dead(graph);
+  rewriting::select_identities(graph);
 }
 
 }  // namespace

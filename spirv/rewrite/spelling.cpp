@@ -1,4 +1,4 @@
-// Equal bits, fewer instructions: subtractions from additions of negations, and the plain minimum and maximum where an
+// Equal bits, fewer instructions: subtractions from additions of negations. And the plain minimum and maximum where an
 // operand is known to be a number (lavapipe-shader-math.md 5.1, which also swaps operands).
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/range.h"
@@ -45,30 +45,25 @@ void plain_extremum(Graph& graph, RangeAnalysis& ranges, InstId id) {
 
 }  // namespace
 
-void choose_spelling(Graph& graph) {
+void choose_extrema(Graph& graph) {
   RangeAnalysis ranges(graph);
   // From the end, so that the analysis still sees the operands' original operations.
   std::vector<InstId> order;
   auto visit = [&](InstId id) {
-    if (graph.insts[id].kind == Kind::kAlu) order.push_back(id);
+    const Inst& inst = graph.insts[id];
+    if (inst.kind == Kind::kAlu && (inst.op == Op::kFMin || inst.op == Op::kFMax)) order.push_back(id);
   };
   for_each_inst(graph, graph.root, visit);
-  for (auto id = order.rbegin(); id != order.rend(); ++id) {
-    switch (graph.insts[*id].op) {
-      case Op::kFMin:
-      case Op::kFMax:
-        plain_extremum(graph, ranges, *id);
-        break;
-      case Op::kFAdd:
-        subtract(graph, *id, Op::kFNeg, Op::kFSub);
-        break;
-      case Op::kIAdd:
-        subtract(graph, *id, Op::kINeg, Op::kISub);
-        break;
-      default:
-        break;
-    }
-  }
+  for (auto id = order.rbegin(); id != order.rend(); ++id) plain_extremum(graph, ranges, *id);
+}
+
+void choose_spelling(Graph& graph) {
+  auto visit = [&](InstId id) {
+    if (graph.insts[id].kind != Kind::kAlu) return;
+    if (graph.insts[id].op == Op::kFAdd) subtract(graph, id, Op::kFNeg, Op::kFSub);
+    if (graph.insts[id].op == Op::kIAdd) subtract(graph, id, Op::kINeg, Op::kISub);
+  };
+  for_each_inst(graph, graph.root, visit);
 }
 
 }  // namespace vitrine::spirv::rewriting

@@ -2,6 +2,7 @@
 // modf and frexp, matrices, structs, arrays of resources, helper invocations.
 #include "cases/glsl/evaluate.h"
 #include "harness/case.h"
+#include "harness/execute.h"
 
 namespace vitrine::cts {
 namespace {
@@ -67,6 +68,16 @@ const bool kFunctions = [] {
   return true;
 }();
 
+// What a selected operation with 1 keeps (denormals) in the reference's code for CPUs whose registers have masks.
+CTS_CASE("glsl", "selected_ones") {
+  run.require(reference_cpu().float_to_uint_as_recorded, "what the reference does on a CPU with AVX-512");
+  ShaderBody body;
+  body.statements = "  vec4 r0 = a * (b.y < 1.0 ? vec4(1.0) : p), r1 = a / (b.x < 1.0 ? b : vec4(1.0));\n";
+  body.results = {{kVec4, "r0"}, {kVec4, "r1"}};
+  body.specials = true;
+  evaluate(run, Stage::kFragment, body);
+}
+
 const bool kBodies = [] {
   add_body("modf_frexp", "  vec4 whole; vec4 r0 = modf(a, whole);\n  ivec4 e; vec4 r2 = frexp(a, e);\n",
            {{kVec4, "r0"}, {kVec4, "whole"}, {kVec4, "r2"}, {kInt4, "e"}});
@@ -112,6 +123,11 @@ const bool kBodies = [] {
       "struct Inner { int n; vec2 w; };\nstruct Thing { vec4 v; Inner inner; float f[3]; };\n"
       "const float kTable[4] = float[4](0.5, 1.5, -2.0, 8.0);\n"
       "Thing grow(Thing t) { t.v *= 1.5; t.inner.w = t.inner.w.yx + 0.25; t.f[t.inner.n % 3] -= 1.0; return t; }\n");
+  // What a sum with -0 keeps (denormals), and which zero the maximum takes while 0 / a is not yet simplified.
+  add_body("literal_zeros",
+           "  precise vec4 r0 = a - vec4(0.0), r1 = vec4(-0.0) + a;\n"
+           "  vec4 r2 = max(0.0 / a, -floor(0.5 * fract(b))), r3 = min(-floor(0.5 * fract(a)), 0.0 / b);\n",
+           {{kVec4, "r0"}, {kVec4, "r1"}, {kVec4, "r2"}, {kVec4, "r3"}});
   add_body("swizzles",
            "  vec4 r0 = a.wzyx; r0.yw += b.xz; r0.xz = r0.zx;\n  mat3 m = mat3(a.xyz, b.xyz, a.zxy); m[1].yz = "
            "m[0].xy; m[2][0] = 4.0;\n"
