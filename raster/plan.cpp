@@ -418,7 +418,8 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
     }
   plan.may_kill = state.alpha_to_coverage || (fragment && (fragment->uses_discard || plan.frag.sample_mask != kNoReg));
   plan.depth_order = TestOrder::kNone;
-  plan.early_reject = plan.in_order = false;
+  plan.early_reject = false;
+  plan.in_order = fragment && fragment->writes_memory;
   if (!plan.depth_test && !plan.depth_bounds && !plan.stencil_test) return;
   plan.depth_order = TestOrder::kEarly;
   if (!fragment || fragment->early_fragment_tests) return;
@@ -431,9 +432,10 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
   plan.depth_order = TestOrder::kLate;
   const bool stencil_changes = plan.stencil_test && (stencil_writes(state.front) || stencil_writes(state.back));
   if (replaces || fragment->writes_memory || stencil_changes) return;
-  plan.in_order = plan.raster_samples > 1 && reads_at_centroid(plan);
-  plan.early_reject = plan.in_order || (!plan.stencil_test && !plan.depth_bounds &&
-                                        (monotone(state.depth_compare) || !plan.depth_write));
+  const bool sees_rejects = plan.raster_samples > 1 && reads_at_centroid(plan);
+  plan.in_order |= sees_rejects;
+  plan.early_reject = sees_rejects || (!plan.stencil_test && !plan.depth_bounds &&
+                                       (monotone(state.depth_compare) || !plan.depth_write));
 }
 
 void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {

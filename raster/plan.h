@@ -172,8 +172,9 @@ struct PipelinePlan {
   bool depth_test = false, depth_write = false, depth_bounds = false, stencil_test = false;
   bool restricts_depth = true;  ///< fragments' depth is clamped to [0, 1] (5.3)
   bool early_reject = false;    ///< late order: failing now means failing later, so such quads need not be shaded
-  bool in_order = false;        ///< early_reject whose outcome the shader sees, as the centroid: no primitive is tested
-                                ///< before the writes of those in front of it
+  bool in_order = false;        ///< fragments that write memory (interlock), early_reject whose outcome the shader
+                                ///< sees, as the centroid: no primitive is tested or shaded before the writes of those
+                                ///< in front of it
   std::uint32_t color_count = 0;
   std::array<ColorWriter, kMaxColorAttachments> writer;
   bool dual_source = false;

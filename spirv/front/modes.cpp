@@ -139,6 +139,10 @@ void read_modes(Translator& t) {
         t.function.denorm_flush_to_zero |= word(0) == 32;
         break;
       case spv::ExecutionMode::SubgroupUniformControlFlowKHR:  // invocations always meet again where constructs end
+      case spv::ExecutionMode::PixelInterlockOrderedEXT:       // fragments that write memory run in order
+      case spv::ExecutionMode::PixelInterlockUnorderedEXT:
+      case spv::ExecutionMode::SampleInterlockOrderedEXT:
+      case spv::ExecutionMode::SampleInterlockUnorderedEXT:
       case spv::ExecutionMode::OriginUpperLeft:
       case spv::ExecutionMode::DepthReplacing:
       case spv::ExecutionMode::StencilRefReplacingEXT:

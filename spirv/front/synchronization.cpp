@@ -127,6 +127,9 @@ void barrier(Translator& t, const Inst& inst, ir::Op) {
     order_memory(t, inst, 2);
 }
 
+/// Fragments of one pixel that write memory run one after the other, in order: the critical section needs no lock.
+void interlock(Translator& t, const Inst&, ir::Op) { emit_effect(t, ir::Op::kMemoryBarrier); }
+
 void memory_barrier(Translator& t, const Inst& inst, ir::Op) { order_memory(t, inst, 1); }
 
 void demote(Translator& t, const Inst&, ir::Op) {
