@@ -91,13 +91,19 @@ texel::SampleRequest sample_request(const Call& call, base::LaneMask lanes) {
   return request;
 }
 
+/// Whether a view has the dimension that the instruction gives coordinates for, as in every valid use.
+bool has_dimension(const Call& call, const texel::ImageView& view) {
+  constexpr std::uint8_t kDimensions[] = {1, 2, 3, 4, 1, 2, 4};  // by VkImageViewType; see ir::ImageInfo::dim
+  return call.op.info.dim == kDimensions[view.type];
+}
+
 /// Straight to the registers of the results.
 void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
   texel::SampleResult result{};
   for (std::size_t c = 0; c < 4; ++c) {
     if (call.op.result[c] != kNoOperand) result[c] = &reg(call.wave, call.op.result[c]);
   }
-  if (image.image == nullptr || sampler == nullptr) {
+  if (image.image == nullptr || sampler == nullptr || !has_dimension(call, *image.image)) {
     for (WaveRegister* component : result) {
       if (component != nullptr) base::for_each_lane(lanes, [&](std::size_t lane) { component->lane[lane] = 0; });
     }
@@ -153,7 +159,7 @@ std::uint32_t* texel_word(const Call& call, const Descriptor& image, std::size_t
   const std::int32_t x = at(ImageOperand::kCoord, 0);
   if (is_buffer(call)) {
     const texel::BufferTexelView& texels = *image.texels;
-    if (x < 0 || static_cast<std::uint64_t>(x) >= texels.count) return nullptr;
+    if (x < 0 || static_cast<std::uint64_t>(x) >= texels.count || texels.format->block_bytes != 4) return nullptr;
     return reinterpret_cast<std::uint32_t*>(texels.data) + x;
   }
   return texel::texel_address(*image.image, x, at(ImageOperand::kCoord, 1), at(ImageOperand::kCoord, 2),
