@@ -166,11 +166,7 @@ void in_compute(Run& run, const Body& body) {
   const Buffer in = make_input(run), out = run.buffer(in.size);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, code));
-  run.once([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    res.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, kSide / 8, kSide / 8, 1);
-  });
+  run.dispatch(res, pipeline, kSide / 8, kSide / 8);
   run.out("result", out);
 }
 
