@@ -127,7 +127,6 @@ struct DescriptorPool : Object<VkDescriptorPool, VK_OBJECT_TYPE_DESCRIPTOR_POOL>
   };
   Vector<Capacity> capacity;  ///< one per descriptor type of the pool
   std::uint32_t free_sets = 0;
-  std::uint32_t free_inline_blocks = 0;  ///< bindings of inline uniform blocks; their bytes are in `capacity`
   DescriptorSet* sets = nullptr;
 };
 

@@ -20,15 +20,14 @@ void give_back(DescriptorPool& pool, const DescriptorSet& set) {
     const std::uint32_t count = set.count_of(b);
     if (count == 0) continue;
     if (DescriptorPool::Capacity* c = find_capacity(pool, b.type)) c->free += count;
-    if (is_inline_block(b.type)) ++pool.free_inline_blocks;
   }
   ++pool.free_sets;
 }
 
-/// Whether the pool has the descriptors of a set left. Bindings of one type add up.
+/// Whether the pool has the descriptors of a set left. Bindings of one type add up. Inline uniform blocks are counted
+/// in bytes alone: a block needs nothing else, and applications pass too few bindings unnoticed on other drivers.
 bool has_capacity(DescriptorPool& pool, const SetShape& shape, std::uint32_t variable_count) {
   if (pool.free_sets == 0) return false;
-  std::uint32_t blocks = 0;
   for (const SetBinding& b : shape.bindings) {
     std::uint64_t wanted = 0;
     for (const SetBinding& other : shape.bindings) {
@@ -37,9 +36,8 @@ bool has_capacity(DescriptorPool& pool, const SetShape& shape, std::uint32_t var
     }
     const DescriptorPool::Capacity* c = find_capacity(pool, b.type);
     if (wanted > (c ? c->free : 0)) return false;
-    blocks += is_inline_block(b.type) && b.count;
   }
-  return blocks <= pool.free_inline_blocks;
+  return true;
 }
 
 void take(DescriptorPool& pool, const DescriptorSet& set) {
@@ -47,7 +45,6 @@ void take(DescriptorPool& pool, const DescriptorSet& set) {
     const std::uint32_t count = set.count_of(b);
     if (count == 0) continue;
     find_capacity(pool, b.type)->free -= count;
-    if (is_inline_block(b.type)) --pool.free_inline_blocks;
   }
   --pool.free_sets;
 }
@@ -170,9 +167,6 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorPool(VkDevice device, const VkDes
     c->free = c->total;
   }
   object->free_sets = info->maxSets;
-  if (const auto* blocks = find_in_chain<VkDescriptorPoolInlineUniformBlockCreateInfo>(info->pNext)) {
-    object->free_inline_blocks = blocks->maxInlineUniformBlockBindings;
-  }
   *pool = to_handle(object.release());
   return VK_SUCCESS;
 }

@@ -99,6 +99,16 @@ TEST_F(DescriptorSets, PoolsCountSetsAndTypes) {
   EXPECT_EQ(allocate(pool, {empty}, &set), VK_ERROR_OUT_OF_POOL_MEMORY) << "maxSets";
 }
 
+/// VkDescriptorPoolInlineUniformBlockCreateInfo may be too small, or missing: the bytes decide.
+TEST_F(DescriptorSets, PoolsCountInlineUniformBlocksInBytes) {
+  const VkDescriptorSetLayout block =
+      make_layout({{0, VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK, 16, VK_SHADER_STAGE_ALL, {}}});
+  const VkDescriptorPool pool = make_pool(3, {{VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK, 32}});
+  VkDescriptorSet sets[3];
+  EXPECT_EQ(allocate(pool, {block, block}, sets), VK_SUCCESS);
+  EXPECT_EQ(allocate(pool, {block}, &sets[2]), VK_ERROR_OUT_OF_POOL_MEMORY);
+}
+
 TEST_F(DescriptorSets, WritesGoOnInTheNextBinding) {
   constexpr VkDescriptorType kType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   const VkDescriptorSetLayout layout = make_layout({{7, kType, 2, VK_SHADER_STAGE_ALL, {}},
