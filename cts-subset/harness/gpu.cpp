@@ -187,6 +187,8 @@ Gpus create_gpus() {
                              options().icd + " and llvmpipe from " + options().reference_icd);
   result.reference = open(result.instance, reference);
   result.device = open(result.instance, device);
+  if (const std::vector<std::string> errors = take_validation_errors(); !errors.empty())
+    throw std::runtime_error("creating the devices is invalid: " + errors.front());
   return result;
 }
 

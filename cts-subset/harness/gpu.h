@@ -145,6 +145,7 @@ void check(VkResult result, const char* call);
   X("VK_KHR_create_renderpass2")          \
   X("VK_KHR_depth_stencil_resolve")       \
   X("VK_KHR_draw_indirect_count")         \
+  X("VK_KHR_image_format_list")           \
   X("VK_KHR_pipeline_library")            \
   X("VK_KHR_push_descriptor")             \
   X("VK_KHR_shader_float_controls")       \
