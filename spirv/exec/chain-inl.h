@@ -12,6 +12,7 @@
 
 #include "spirv/alu/wave_handlers-inl.h"
 #include "spirv/exec/chain.h"
+#include "spirv/exec/chain_families.h"
 
 #if defined(VITRINE_SPIRV_EXEC_CHAIN_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VITRINE_SPIRV_EXEC_CHAIN_INL_H_

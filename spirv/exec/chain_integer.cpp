@@ -8,7 +8,6 @@
 
 #include "spirv/alu/integer_ops-inl.h"
 #include "spirv/exec/chain-inl.h"
-#include "spirv/exec/chain_families.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::spirv::alu::HWY_NAMESPACE {
