@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "harness/options.h"
+#include "harness/report.h"
 #include "harness/run.h"
 
 namespace vitrine::cts {
@@ -130,6 +131,7 @@ bool refused(const SideResult& device) {
 Judgement judge(const Case& c) {
   Judgement judgement;
   const SideResult reference = run_side(gpus().reference, c);
+  tell_parent("D");
   const SideResult device = run_side(gpus().device, c);
   if (!reference.unsupported.empty() || !device.unsupported.empty()) {
     judgement.verdict = Verdict::kUnsupported;

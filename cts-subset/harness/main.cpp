@@ -1,6 +1,5 @@
 // The suite's entry: registers every case with GoogleTest, runs them, prints the totals per group.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -16,15 +15,6 @@ namespace vitrine::cts {
 namespace {
 
 Counts g_counts;
-int g_progress = -1;
-
-void tell_parent(std::string line) {
-  if (g_progress < 0) return;
-  for (char& c : line)
-    if (c == '\n') c = '\x1f';
-  line += '\n';
-  if (write(g_progress, line.data(), line.size()) < 0) std::_Exit(3);
-}
 
 class CaseTest : public testing::Test {
  public:
@@ -71,8 +61,9 @@ int run(int argc, char** argv) {
   Options parsed = parse_options(argc, argv);
   set_options(parsed);
   prepare_environment(parsed);
-  if (!parsed.progress.empty()) g_progress = std::atoi(parsed.progress.c_str());
-  const bool parent = parsed.isolate && g_progress < 0 && !GTEST_FLAG_GET(list_tests);
+  const bool child = !parsed.progress.empty();
+  if (child) set_parent(std::atoi(parsed.progress.c_str()));
+  const bool parent = parsed.isolate && !child && !GTEST_FLAG_GET(list_tests);
   if (parent) {
     std::vector<char*> words;
     for (std::string& word : original) words.push_back(word.data());
@@ -82,7 +73,6 @@ int run(int argc, char** argv) {
   load_known_differences();
   register_cases();
   if (GTEST_FLAG_GET(list_tests)) return RUN_ALL_TESTS();
-  const bool child = g_progress >= 0;
   std::printf("device: %s\nreference: %s\n", gpus().device.name.c_str(), gpus().reference.name.c_str());
   if (parsed.validation && !validation_is_on()) std::printf("the validation layer is not installed\n");
   if (!child) print_reference_cpu();

@@ -1,10 +1,15 @@
-// Per-group totals.
+// Per-group totals, and the lines for the parent.
 #include "harness/report.h"
 
+#include <unistd.h>
+
 #include <cstdio>
+#include <cstdlib>
 
 namespace vitrine::cts {
 namespace {
+
+int g_parent = -1;
 
 void print_row(const char* name, const GroupCounts& c) {
   std::printf("%-16s %6u cases  %6u identical  %4u listed deviation  %4u unsupported  %4u differing  %4u crashed", name,
@@ -16,6 +21,16 @@ void print_row(const char* name, const GroupCounts& c) {
 }
 
 }  // namespace
+
+void set_parent(int pipe) { g_parent = pipe; }
+
+void tell_parent(std::string line) {
+  if (g_parent < 0) return;
+  for (char& c : line)
+    if (c == '\n') c = '\x1f';
+  line += '\n';
+  if (write(g_parent, line.data(), line.size()) < 0) std::_Exit(3);
+}
 
 void count(Counts& counts, const std::string& group, const Judgement& judgement) {
   GroupCounts& row = counts[group];

@@ -11,7 +11,12 @@ namespace {
 
 bool on_device_under_test(const Run& run) { return &run.gpu == &gpus().device; }
 
-void ordinary(Run& run) { run.out("ramp", run.buffer_of<uint32_t>({1, 2, 3, 4})); }
+int g_ordinary_runs = 0;
+
+void ordinary(Run& run) {
+  ++g_ordinary_runs;
+  run.out("ramp", run.buffer_of<uint32_t>({1, 2, 3, 4}));
+}
 
 void one_bit(Run& run) { run.out("ramp", run.buffer_of<uint32_t>({1, 2, on_device_under_test(run) ? 7u : 3u, 4})); }
 
@@ -31,6 +36,12 @@ void crash(Run& run) {
   ordinary(run);
 }
 
+/// The reference crashes unless this is the first case of its process.
+void crash_of_reference(Run& run) {
+  if (!on_device_under_test(run) && g_ordinary_runs > 0) std::raise(SIGSEGV);
+  ordinary(run);
+}
+
 }  // namespace
 
 void register_self_test() {
@@ -39,6 +50,8 @@ void register_self_test() {
   AddCase("self", "identical", ordinary);
   AddCase("self", "one_bit", one_bit);
   AddCase("self", "crash", crash);
+  AddCase("self", "identical_again", ordinary);
+  AddCase("self", "crash_of_reference", crash_of_reference);
   AddCase("self", "blank", blank);
   AddCase("self", "invalid_usage", invalid_usage);
   AddGenerator("self", "identical_random", 3, [](Run& run) {
