@@ -2,6 +2,8 @@
 #include "texel/sampler/wave_fetch.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "texel/sampler/wave_fetch.cpp"
@@ -50,8 +52,9 @@ HWY_INLINE bool any_active(base::LaneMask active, std::size_t first) {
 
 /// Where the texels of a wave lie in the memory of a view.
 struct Places {
-  IntLanes offset;  ///< bytes; 0 where there is no texel
-  IntLanes valid;   ///< all ones where there is one
+  IntLanes offset;            ///< bytes; anything where no texel is wanted
+  IntLanes valid;             ///< all ones where one is wanted: the lane is active and inside the level
+  base::LaneMask wanted = 0;  ///< the same
 };
 
 /// One level of a view, or that of each lane.
@@ -106,16 +109,28 @@ void place_texels(const ImageView& view, const FetchRequest& request, Places& ou
   for_each_level(view, request.lod, [&](std::size_t first, hn::Mask<DI> exists, const LevelFields& level) HWY_ATTR {
     const VI x = hn::Add(load_or_zero(request.coord[0], first), load_or_zero(request.offset[0], first));
     const VI y = hn::Add(load_or_zero(request.coord[1], first), load_or_zero(request.offset[1], first));
-    auto valid = hn::And(exists, hn::And(within(x, level.width), within(y, level.height)));
+    const auto active = hn::RebindMask(DI(), lanes_mask_from_bits(DU(), request.active >> first));
+    auto valid = hn::And(hn::And(active, exists), hn::And(within(x, level.width), within(y, level.height)));
     VI offset = hn::Add(hn::Add(level.origin, hn::Mul(y, level.pitch)), hn::Mul(x, texel_bytes));
     if (layered) {
       const VI layer = load_or_zero(request.coord[2], first);
       valid = hn::And(valid, within(layer, layer_count));
       offset = hn::Add(offset, hn::Mul(layer, layer_stride));
     }
-    hn::Store(hn::IfThenElseZero(valid, offset), DI(), out.offset.lane + first);
+    hn::Store(offset, DI(), out.offset.lane + first);
     hn::Store(hn::VecFromMask(DI(), valid), DI(), out.valid.lane + first);
+    out.wanted |= static_cast<base::LaneMask>(lanes_mask_bits(DI(), valid)) << first;
   });
+}
+
+/// Lanes that want no texel get the place of one that does: wherever else they read, another tile may be writing.
+HWY_INLINE void share_place(Places& places) {
+  const VI shared = splat(places.offset.lane[std::countr_zero(places.wanted)]);
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI())) {
+    const auto valid = hn::MaskFromVec(hn::Load(DI(), places.valid.lane + first));
+    const VI offset = hn::Load(DI(), places.offset.lane + first);
+    hn::Store(hn::IfThenElse(valid, offset, shared), DI(), places.offset.lane + first);
+  }
 }
 
 /// Texels word by word: gathering is slower than as many loads.
@@ -152,7 +167,12 @@ void fetch_image(const ImageView& view, const FetchRequest& request, base::WaveR
   Places places;
   place_texels(view, request, places);
   WordLanes words[4];
-  load_texels(*view.format, view.base, places.offset, words);
+  if (places.wanted != 0) {
+    share_place(places);
+    load_texels(*view.format, view.base, places.offset, words);
+  } else {
+    std::memset(words, 0, sizeof(words));
+  }
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     if (!any_active(request.active, first)) continue;
     const auto valid = hn::MaskFromVec(hn::Load(DI(), places.valid.lane + first));
