@@ -1,6 +1,7 @@
 // The engine that applies the rule table the way the reference's compiler does (lavapipe-shader-math.md 4.1): users
 // before producers, the first matching rule in table order; replaced values wake those of their users for whom the
 // change of structure matters; replaced instructions' operands stay, and count as uses, until dead code is removed.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <deque>
@@ -122,9 +123,16 @@ class Rewriter {
     const Opens opens = graph_.insts[id].opens;
     if (opens != Opens::kVisited && (opens != Opens::kVisitedAfterRound || graph_.first_rules)) return false;
     graph_.insts[id].opaque = false;
+    if (opens == Opens::kVisitedAfterRound) veiled_.push_back(graph_.insts[id].result);
     update_state(id);
     wake_users(graph_.insts[id].result);
     return true;
+  }
+
+  /// A sum opened in this run: in the reference its operands are components of a vector, and the rules do not look
+  /// through it before the next round.
+  bool is_veiled(const Inst& inst) const {
+    return std::find(veiled_.begin(), veiled_.end(), inst.result) != veiled_.end();
   }
 
   // ---- conditions
@@ -216,9 +224,9 @@ class Rewriter {
       case Condition::kNotConst:
         return graph_.constant(value) == nullptr;
       case Condition::kFmul:
-        return is_product(value);
+        return is_product(value) && !is_veiled(inst);
       case Condition::kNotFmul:
-        return !is_product(value);
+        return !is_product(value) || is_veiled(inst);
       case Condition::kPosPow2:
         return is_power_of_two(inst, index, swizzle, components, false);
       case Condition::kNegPow2:
@@ -273,6 +281,7 @@ class Rewriter {
     if (pattern.kind == Pattern::Kind::kVariable)
       return match_variable(pattern, inst, operand, swizzle, components, match);
     if (pattern.kind != Pattern::Kind::kOp) return match_constant(pattern, src.value, swizzle, components);
+    if (is_veiled(inst)) return false;
     const Inst* def = graph_.def(src.value);
     return def && def->kind == Kind::kAlu && !def->opaque && match_op(pattern, *def, components, swizzle, match);
   }
@@ -402,6 +411,7 @@ class Rewriter {
   Graph& graph_;
   const Rules& rules_;
   RangeAnalysis ranges_;
+  std::vector<ValueId> veiled_;  ///< results of the sums that is_veiled() knows
   std::vector<State> states_;
   std::deque<InstId> queue_;
   bool inexact_off_ = false;

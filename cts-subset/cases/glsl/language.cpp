@@ -264,6 +264,10 @@ const bool kFragments = [] {
         "  vec2 r = (b.y != 4.0 ? p.wz : vec2(0.3, -2.5)) * mat2(a.xy, vec2(255.0, 0.0) * -(0.0 * p.x));\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 2}, "r"}}, {}, false});
   });
+  AddCase("glsl", "rewrite.constant_beside_products", [](Run& run) {
+    const char* text = "  vec2 r = b.wy * mat2(vec2(1.7, 1.0), a.xz) + vec2(10.0, 0.0);\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 2}, "r"}}, {}, false});
+  });
   AddCase("glsl", "discard.then_derivative", [](Run& run) {
     fragment_expression(run, "vec4(dFdx(passed.x), dFdy(passed.y), passed.zw)", "  if (passed.x > 0.3) discard;\n");
   });
