@@ -69,9 +69,10 @@ struct BlockDepthTest {
 };
 
 /// Tests lanes[i], in quad order, of the 8x8 blocks at quad-ordered places i of `places` and cuts them to what passed.
-/// (x, y) is the first sample of the block at place 0, `pixels` are that block's.
-void test_block_depths(const BlockDepthTest& test, const DepthPlane& plane, float x, float y, const BlockPixels& pixels,
-                       base::LaneMask places, base::LaneMask* lanes);
+/// (x, y) is the first sample of the block at place 0, `pixels` are that block's. Returns the places where there were
+/// lanes and none passed.
+base::LaneMask test_block_depths(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                                 const BlockPixels& pixels, base::LaneMask places, base::LaneMask* lanes);
 
 /// A 4x4 window of one primitive, its first pixel at (x, y); bit 4*y + x of `rows` is a pixel of it.
 struct DepthWindow {

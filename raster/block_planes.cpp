@@ -210,8 +210,9 @@ std::byte* pixel_of(const BlockDepthTest& test, const BlockPixels& pixels, int x
 
 }  // namespace
 
-void test_blocks(const BlockDepthTest& test, const DepthPlane& plane, float x, float y, const BlockPixels& pixels,
-                 base::LaneMask places, base::LaneMask* lanes) {
+base::LaneMask test_blocks(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                           const BlockPixels& pixels, base::LaneMask places, base::LaneMask* lanes) {
+  base::LaneMask failed = 0;
   with_square_test<8>(test, [&](auto type) HWY_ATTR {
     const typename decltype(type)::type square(test, plane);
     for (base::LaneMask left = places; left != 0; left &= left - 1) {
@@ -221,8 +222,10 @@ void test_blocks(const BlockDepthTest& test, const DepthPlane& plane, float x, f
       lanes[place] =
           quads_of_rows(square.run(x + static_cast<float>(bx), y + static_cast<float>(by),
                                    pixel_of(test, pixels, bx, by), pixels.pitch, rows_of_quads(lanes[place])));
+      if (lanes[place] == 0) failed |= base::LaneMask{1} << place;
     }
   });
+  return failed;
 }
 
 void test_windows(const BlockDepthTest& test, const BlockPixels& pixels, DepthWindow* windows, std::size_t count) {
@@ -250,9 +253,9 @@ void evaluate_block(const PlaneSet& planes, const BlockVarying* varying, std::si
   HWY_DYNAMIC_DISPATCH(evaluate_all)(planes, varying, count, x, y, scale);
 }
 
-void test_block_depths(const BlockDepthTest& test, const DepthPlane& plane, float x, float y, const BlockPixels& pixels,
-                       base::LaneMask places, base::LaneMask* lanes) {
-  HWY_DYNAMIC_DISPATCH(test_blocks)(test, plane, x, y, pixels, places, lanes);
+base::LaneMask test_block_depths(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                                 const BlockPixels& pixels, base::LaneMask places, base::LaneMask* lanes) {
+  return HWY_DYNAMIC_DISPATCH(test_blocks)(test, plane, x, y, pixels, places, lanes);
 }
 
 void test_window_depths(const BlockDepthTest& test, const BlockPixels& pixels, DepthWindow* windows,

@@ -174,6 +174,17 @@ BlockDepthTest depth_test(const PipelinePlan& plan, const DepthStencilTarget& ta
           plan.state->depth_clamp ? &range : nullptr, plan.restricts_depth};
 }
 
+/// `range`: room for the primitive's depth clamp.
+HierarchicalTest hierarchical_test(TileWorker& worker, const Primitive& primitive, DepthRange& range) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const TileTarget& target = worker.target;
+  const ViewportTransform& viewport = plan.viewport[primitive.viewport];
+  range = {viewport.z_min, viewport.z_max};
+  return {depth_test(plan, target.depth_stencil[0], false, range),
+          depth_plane(current_planes(worker, primitive), primitive), static_cast<float>(target.x),
+          static_cast<float>(target.y), plan.locations};
+}
+
 }  // namespace
 
 void test_windows(TileWorker& worker, std::uint32_t viewport, DepthWindow* windows, std::size_t count) {
@@ -184,16 +195,30 @@ void test_windows(TileWorker& worker, std::uint32_t viewport, DepthWindow* windo
                      windows, count);
 }
 
-void test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32_t sample, int x, int y, LaneMask places,
-                 LaneMask* lanes, bool write) {
+LaneMask test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32_t sample, int x, int y,
+                     LaneMask places, LaneMask* lanes, bool write) {
   const PipelinePlan& plan = *worker.draw->plan;
   const DepthStencilTarget& target = worker.target.depth_stencil[sample];
   const float dx = plan.locations->pixel_x(sample), dy = plan.locations->pixel_y(sample);
   const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
   const ViewportTransform& viewport = plan.viewport[primitive.viewport];
   const DepthRange range{viewport.z_min, viewport.z_max};
-  test_block_depths(depth_test(plan, target, write, range), plane, static_cast<float>(x) + dx,
-                    static_cast<float>(y) + dy, depth_pixels(target, x, y), places, lanes);
+  return test_block_depths(depth_test(plan, target, write, range), plane, static_cast<float>(x) + dx,
+                           static_cast<float>(y) + dy, depth_pixels(target, x, y), places, lanes);
+}
+
+LaneMask unhidden_places(TileWorker& worker, const Primitive& primitive, LaneMask places) {
+  DepthRange range;
+  return unhidden_blocks(worker.hierarchy, hierarchical_test(worker, primitive, range), places);
+}
+
+void learn_hidden_places(TileWorker& worker, const Primitive& primitive, LaneMask places) {
+  DepthRange range;
+  const TileTarget& target = worker.target;
+  const std::uint32_t samples = worker.draw->plan->samples;
+  BlockPixels pixels[kMaxSamples];
+  for (std::uint32_t s = 0; s < samples; ++s) pixels[s] = depth_pixels(target.depth_stencil[s], target.x, target.y);
+  learn_depths(worker.hierarchy, hierarchical_test(worker, primitive, range), pixels, samples, places);
 }
 
 void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "raster/feedback.h"
+#include "raster/hierarchical_depth.h"
 #include "spirv/stage_memory.h"
 
 namespace vitrine::raster {
@@ -388,11 +389,6 @@ bool plan_stages(const DrawCall& draw, PipelinePlan& plan) {
 
 bool stencil_writes(const StencilFace& face) { return face.write_mask != 0; }
 
-bool monotone(VkCompareOp op) {
-  return op == VK_COMPARE_OP_LESS || op == VK_COMPARE_OP_LESS_OR_EQUAL || op == VK_COMPARE_OP_GREATER ||
-         op == VK_COMPARE_OP_GREATER_OR_EQUAL;
-}
-
 bool reads_at_centroid(const PipelinePlan& plan) {
   return std::any_of(plan.read.begin(), plan.read.begin() + plan.read_count,
                      [](const VaryingRead& read) { return read.location == spirv::SampleLocation::kCentroid; });
@@ -435,7 +431,7 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
   const bool sees_rejects = plan.raster_samples > 1 && reads_at_centroid(plan);
   plan.in_order |= sees_rejects;
   plan.early_reject = sees_rejects || (!plan.stencil_test && !plan.depth_bounds &&
-                                       (monotone(state.depth_compare) || !plan.depth_write));
+                                       (has_limit(state.depth_compare) || !plan.depth_write));
 }
 
 void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {
@@ -503,6 +499,12 @@ bool reads_elsewhere(const PipelinePlan& plan) {
 void plan_blocks(PipelinePlan& plan, bool general) {
   plan.windows = !general && plan.samples == 1 && plan.raster_samples == 1;
   plan.tests_rows = !general && !plan.stencil_test && !plan.depth_bounds;
+  // Depths beyond [0, 1] wrap in formats of fixed point.
+  const bool clamps_inside = std::all_of(plan.viewport.begin(), plan.viewport.end(),
+                                         [](const ViewportTransform& t) { return t.z_min >= 0 && t.z_max <= 1; });
+  plan.hides_blocks =
+      plan.tests_rows && plan.depth_test && (plan.depth_order == TestOrder::kEarly || plan.early_reject) &&
+      has_limit(plan.state->depth_compare) && plan.restricts_depth && (!plan.state->depth_clamp || clamps_inside);
   const FragmentRegisters& frag = plan.frag;
   const bool rare_inputs = frag.point_coord[0] != kNoReg || frag.point_coord[1] != kNoReg || frag.sample_id != kNoReg ||
                            frag.sample_position[0] != kNoReg || frag.sample_position[1] != kNoReg ||

@@ -183,6 +183,7 @@ struct PipelinePlan {
   bool may_kill = false;         ///< discard, sample mask output, alpha to coverage
   bool windows = false;          ///< small triangles are covered in the front end (Primitive::window)
   bool tests_rows = false;       ///< depth of whole blocks is tested row by row (raster/block.h)
+  bool hides_blocks = false;     ///< limits of stored depths reject whole blocks (raster/hierarchical_depth.h)
   bool shades_blocks = false;    ///< nearly full blocks are shaded on their own, without packing (raster/block.h)
 };
 

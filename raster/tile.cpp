@@ -283,14 +283,19 @@ bool is_cut(const PipelinePlan& plan, const Primitive& p) {
   return p.x0 != (left + 255) >> 8 || p.y0 != (top + 255) >> 8 || p.x1 != (right - 1) >> 8 || p.y1 != (bottom - 1) >> 8;
 }
 
-/// Covered lanes of the blocks that a primitive touches; returns their places. `rect`: the primitive's in the tile.
+/// Blocks with pixels of `rect`, which is in the tile.
+PixelRect blocks_of(const PixelRect& rect) {
+  return {rect.x0 / kBlockSize, rect.y0 / kBlockSize, rect.x1 / kBlockSize, rect.y1 / kBlockSize};
+}
+
+/// Covered lanes of the blocks among `places` that a primitive touches; returns their places. `rect`: the primitive's
+/// in the tile.
 base::LaneMask cover_tile(const PipelinePlan& plan, const Primitive& primitive, const TileEdges& edges,
-                          const PixelRect& rect, TileCoverage& out) {
-  const int bx0 = rect.x0 / kBlockSize, bx1 = rect.x1 / kBlockSize;
-  const int by0 = rect.y0 / kBlockSize, by1 = rect.y1 / kBlockSize;
+                          const PixelRect& rect, base::LaneMask places, TileCoverage& out) {
+  const auto [bx0, by0, bx1, by1] = blocks_of(rect);
   base::LaneMask any = base::kAllLanes, all = edges.count == 0 ? base::kAllLanes : 0;
   if (edges.count != 0 && (bx1 - bx0 + 1) * (by1 - by0 + 1) > 9) classify_blocks(edges, plan.raster_samples, any, all);
-  any &= rect_lanes(bx0, by0, bx1, by1);
+  any &= places;
   base::LaneMask cut = 0;
   if (is_cut(plan, primitive))
     cut = any & ~rect_lanes((rect.x0 + kBlockSize - 1) / kBlockSize, (rect.y0 + kBlockSize - 1) / kBlockSize,
@@ -319,9 +324,15 @@ void test_tile(TileWorker& worker, const Primitive& primitive, base::LaneMask pl
   if (plan.tests_rows) {
     const base::LaneMask owned = places & rect_lanes(0, 0, (target.right - target.x) / kBlockSize - 1,
                                                      (target.bottom - target.y) / kBlockSize - 1);
+    base::LaneMask hidden = 0;
     for (std::uint32_t s = 0; s < plan.samples; ++s)
-      test_blocks(worker, primitive, s, target.x, target.y, owned, coverage.lanes[s],
-                  plan.depth_order == TestOrder::kEarly);
+      hidden |= test_blocks(worker, primitive, s, target.x, target.y, owned, coverage.lanes[s],
+                            plan.depth_order == TestOrder::kEarly);
+    for (base::LaneMask left = plan.samples > 1 ? hidden : 0; left != 0; left &= left - 1) {
+      const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+      if (any_sample(block_of(coverage, place, plan.samples), plan.samples) != 0) hidden &= ~(left & -left);
+    }
+    if (hidden != 0 && plan.hides_blocks) learn_hidden_places(worker, primitive, hidden);
     places &= ~owned;
   }
   for (; places != 0; places &= places - 1) {
@@ -348,6 +359,7 @@ void begin_draw(TileWorker& worker, const DrawRecord* draw) {
     worker.bound = draw->fragment;
   }
   begin_blocks(worker);
+  worker.hierarchy.begin_draw(*draw->plan);
 }
 
 void end_draw(TileWorker& worker) {
@@ -362,13 +374,14 @@ void end_draw(TileWorker& worker) {
   worker.draw = nullptr;
 }
 
-void clear_tile(const TileWorker& worker, const ClearCommand& clear) {
+void clear_tile(TileWorker& worker, const ClearCommand& clear) {
   const TileTarget& target = worker.target;
   if (target.layer < clear.base_layer || target.layer - clear.base_layer >= clear.layer_count) return;
   const PixelRect rect =
       intersect(clear.rect, {target.x, target.y, target.x + kTileSize - 1, target.y + kTileSize - 1});
   if (rect.empty()) return;
   const texel::ImageView& view = *clear.view;
+  if (&view == &worker.pass->depth) worker.hierarchy.reset();
   const std::size_t bytes = view.format->block_bytes, width = static_cast<std::size_t>(rect.x1 - rect.x0 + 1);
   for (std::uint32_t s = 0; s < std::max<std::uint32_t>(view.samples, 1); ++s) {
     std::byte* first =
@@ -488,7 +501,11 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
   const PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
-  const base::LaneMask places = cover_tile(plan, primitive, edges, rect, worker.covered);
+  const auto [bx0, by0, bx1, by1] = blocks_of(rect);
+  base::LaneMask places = rect_lanes(bx0, by0, bx1, by1);
+  if (plan.hides_blocks && (worker.hierarchy.known & places) != 0) places = unhidden_places(worker, primitive, places);
+  if (places == 0) return;
+  places = cover_tile(plan, primitive, edges, rect, places, worker.covered);
   if (places == 0) return;
   if (reads_rasterized(worker)) worker.rasterized = worker.covered;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) test_tile(worker, primitive, places, worker.covered);
@@ -509,6 +526,7 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
   worker.planes = nullptr;
   worker.planes_of = nullptr;
   worker.pool.reset();
+  if (pass.depth.format) worker.hierarchy.reset();
   const TileStart start = first_visible(worker, items);
   for (std::size_t i = start.item; i < items.size(); ++i) {
     const TileItem& item = items[i];

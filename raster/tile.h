@@ -8,6 +8,7 @@
 #include "raster/block.h"
 #include "raster/coverage.h"
 #include "raster/depth_stencil.h"
+#include "raster/hierarchical_depth.h"
 #include "raster/interpolate.h"
 #include "raster/primitive.h"
 #include "texel/codec.h"
@@ -106,6 +107,7 @@ struct TileWorker {
   PackedWave block;                  ///< one whole block, shaded at once
   BlockDraw block_draw;
   TileCoverage covered, rasterized;  ///< of the primitive being rasterized: what passed so far, and before any test
+  HierarchicalDepth hierarchy;
   StageRunner runner;
   Stage bound;
   PlanePool pool;
@@ -144,9 +146,15 @@ const PlaneSet& current_planes(TileWorker& worker, const Primitive& primitive);
 void place_block(int x, int y, QuadPositions& out);
 
 /// Depth test, in one sample, of the blocks at the quad-ordered places of `places`, all of which lie inside all
-/// attachments; the block at place 0 is at (x, y). Cuts lanes[place] to what passed.
-void test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32_t sample, int x, int y,
-                 base::LaneMask places, base::LaneMask* lanes, bool write);
+/// attachments; the block at place 0 is at (x, y). Cuts lanes[place] to what passed and returns where nothing did.
+base::LaneMask test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32_t sample, int x, int y,
+                           base::LaneMask places, base::LaneMask* lanes, bool write);
+
+/// Those of `places`, of the tile, in which a sample of the primitive may pass the early test.
+base::LaneMask unhidden_places(TileWorker& worker, const Primitive& primitive, base::LaneMask places);
+
+/// Nothing of the primitive passed in `places`, which lie inside all attachments: others may be rejected at once.
+void learn_hidden_places(TileWorker& worker, const Primitive& primitive, base::LaneMask places);
 
 /// Early depth test of windows inside all attachments whose primitives have one viewport; single-sampled.
 void test_windows(TileWorker& worker, std::uint32_t viewport, DepthWindow* windows, std::size_t count);

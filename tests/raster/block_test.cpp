@@ -124,18 +124,46 @@ struct Scene {
     std::atomic<std::uint64_t> count{0};
     {
       Pass pass(desc);
-      DrawCall call;
-      call.state = &state;
-      vertex.user = corners.data();
-      fragment.user = &drops;
-      call.native_vertex = &vertex;
-      call.native_fragment = &fragment;
-      call.count = static_cast<std::uint32_t>(corners.size());
-      call.general_path = general;
-      call.queries.occlusion = &count;
-      pass.draw(call);
+      pass.draw(call(general, count));
     }
     passed = count;
+  }
+
+  DrawCall call(bool general, std::atomic<std::uint64_t>& count) {
+    DrawCall call;
+    call.state = &state;
+    vertex.user = corners.data();
+    fragment.constants = fragment.run == keep_all ? constants.data() : nullptr;
+    fragment.user = &drops;
+    call.native_vertex = &vertex;
+    call.native_fragment = &fragment;
+    call.count = static_cast<std::uint32_t>(corners.size());
+    call.general_path = general;
+    call.queries.occlusion = &count;
+    return call;
+  }
+
+  /// A triangle over everything, its depth `z` and `slope` more from side to side.
+  void add_layer(float z, float slope) {
+    for (int k = 0; k < 3; ++k)
+      corners.push_back({{k == 1 ? 3.0f : -1.0f, k == 2 ? 3.0f : -1.0f, z + slope * static_cast<float>(k), 1.0f},
+                         {z, 0.1f * static_cast<float>(k), 0.5f, 1.0f}});
+  }
+
+  void add_triangle(std::mt19937& random, float size) {
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    const bool flat = random() % 3 == 0;  // w = 1 everywhere
+    const float cx = unit(random) * 2 - 1, cy = unit(random) * 2 - 1;
+    for (int k = 0; k < 3; ++k) {
+      Corner c;
+      const float w = flat ? 1.0f : 0.5f + unit(random) * 2;
+      c.position[0] = (cx + (unit(random) - 0.5f) * size) * w;
+      c.position[1] = (cy + (unit(random) - 0.5f) * size) * w;
+      c.position[2] = (unit(random) * 1.2f - 0.1f) * w;
+      c.position[3] = w;
+      for (float& value : c.color) value = unit(random);
+      corners.push_back(c);
+    }
   }
 
  private:
@@ -200,22 +228,6 @@ struct Scene {
                                  base::LaneMask helpers) {
     return active & ~helpers;
   }
-
-  void add_triangle(std::mt19937& random, float size) {
-    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
-    const bool flat = random() % 3 == 0;  // w = 1 everywhere
-    const float cx = unit(random) * 2 - 1, cy = unit(random) * 2 - 1;
-    for (int k = 0; k < 3; ++k) {
-      Corner c;
-      const float w = flat ? 1.0f : 0.5f + unit(random) * 2;
-      c.position[0] = (cx + (unit(random) - 0.5f) * size) * w;
-      c.position[1] = (cy + (unit(random) - 0.5f) * size) * w;
-      c.position[2] = (unit(random) * 1.2f - 0.1f) * w;
-      c.position[3] = w;
-      for (float& value : c.color) value = unit(random);
-      corners.push_back(c);
-    }
-  }
 };
 
 TEST(Block, FastPathsEqualTheGeneralOne) {
@@ -244,6 +256,59 @@ TEST(Block, FastPathsEqualTheGeneralOne) {
     drawn += color[0].memory != before;
   }
   EXPECT_GT(drawn, 170u);
+}
+
+/// Draws with all kinds of depth tests and clears in between, in one pass: what has been learnt of the stored depths
+/// never rejects what the general path draws.
+TEST(Block, HierarchicalRejectionIsNotNoticed) {
+  std::mt19937 random(23);
+  const auto unit = [&] { return static_cast<float>(random() % 1001) / 1000; };
+  for (int n = 0; n < 60; ++n) {
+    std::vector<Scene> scenes;
+    for (std::size_t i = 0; i < 8; ++i) {
+      Scene& scene = scenes.emplace_back(random);
+      State& state = scene.state;
+      state.depth_test = random() % 8 != 0;
+      state.depth_write = random() % 3 != 0;
+      const VkCompareOp likely = n % 2 ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_GREATER_OR_EQUAL;
+      if (random() % 4 != 0) state.depth_compare = likely;
+      state.unrestricted_depth = random() % 16 == 0;
+      scene.corners.clear();
+      for (int k = 0; k < 10; ++k) scene.add_layer(unit(), random() % 2 ? unit() * 0.1f : 0.0f);
+      for (int k = 0; k < 30; ++k) scene.add_triangle(random, 0.3f);
+    }
+    const VkFormat formats[] = {VK_FORMAT_D16_UNORM, VK_FORMAT_X8_D24_UNORM_PACK32, VK_FORMAT_D32_SFLOAT};
+    const VkFormat color_format = VK_FORMAT_R8G8B8A8_UNORM, depth_format = formats[n % 3];
+    const std::uint32_t samples = n % 4 == 0 ? 4 : 1;
+    Attachment color[2] = {{color_format, samples}, {color_format, samples}};
+    Attachment depth[2] = {{depth_format, samples}, {depth_format, samples}};
+    const float clears[] = {unit(), 0.0f, 1.0f, unit()};
+    std::uint64_t passed[2][8];
+    for (std::size_t i = 0; i < 2; ++i) {
+      PassDesc desc;
+      desc.color[0] = color[i].view;
+      desc.color_count = 1;
+      desc.depth = depth[i].view;
+      desc.render_area = {{0, 0}, {kWidth, kHeight}};
+      desc.samples = samples;
+      std::atomic<std::uint64_t> counts[8] = {};
+      {
+        Pass pass(desc);
+        for (std::size_t k = 0; k < scenes.size(); ++k) {
+          if (k % 3 == 0)
+            pass.clear_depth_stencil(VK_IMAGE_ASPECT_DEPTH_BIT, {clears[k / 3 + static_cast<std::size_t>(n % 2)], 0},
+                                     {{k == 0 ? 0 : 20, 0}, {kWidth, 100}}, 0, 1);
+          Scene& scene = scenes[k];
+          scene.state.samples = samples;
+          pass.draw(scene.call(i == 1, counts[k]));
+        }
+      }
+      for (std::size_t k = 0; k < scenes.size(); ++k) passed[i][k] = counts[k];
+    }
+    ASSERT_EQ(color[0].memory, color[1].memory) << "case " << n;
+    ASSERT_EQ(depth[0].memory, depth[1].memory) << "case " << n;
+    for (std::size_t k = 0; k < scenes.size(); ++k) ASSERT_EQ(passed[0][k], passed[1][k]) << "case " << n << ' ' << k;
+  }
 }
 
 }  // namespace
