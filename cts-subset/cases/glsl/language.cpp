@@ -68,12 +68,16 @@ const bool kFunctions = [] {
   return true;
 }();
 
-// What a selected operation with 1 keeps (denormals) in the reference's code for CPUs whose registers have masks.
+// What a selected operation with 1 or 0 keeps (denormals) in the reference's code for CPUs whose registers have masks.
 CTS_CASE("glsl", "selected_ones") {
   run.require(reference_cpu().float_to_uint_as_recorded, "what the reference does on a CPU with AVX-512");
   ShaderBody body;
   body.statements = "  vec4 r0 = a * (b.y < 1.0 ? vec4(1.0) : p), r1 = a / (b.x < 1.0 ? b : vec4(1.0));\n";
-  body.results = {{kVec4, "r0"}, {kVec4, "r1"}};
+  body.statements +=
+      "  vec4 r2 = a * step(b, p), r3 = a / vec4(greaterThan(b, p)), r4 = a - vec4(equal(b, p));\n"
+      "  vec4 r5 = b - (a.x < p.x ? b.wzyx : vec4(0.0)), r6 = b * (1.0 - step(p, a));\n"
+      "  precise vec4 weight = vec4(lessThan(b, p)), r7 = (1.0 - weight) * a;\n";
+  for (int k = 0; k < 8; ++k) body.results.push_back({kVec4, "r" + std::to_string(k)});
   body.specials = true;
   evaluate(run, Stage::kFragment, body);
 }
