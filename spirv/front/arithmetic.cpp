@@ -1,4 +1,6 @@
 // Arithmetic, bit, conversion, comparison and derivative instructions (SPIR-V 3.42.11, .13 to .16).
+#include <utility>
+
 #include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
 
@@ -152,8 +154,10 @@ void reduce_boolean(Translator& t, const Inst& inst, ir::Op op) {
 
 void float_modulo(Translator& t, const Inst& inst, ir::Op round) {
   const Expr a = number_of(t, inst.operand(0)), b = number_of(t, inst.operand(1));
-  const Expr rounded = apply(round, {a / b});
-  set_number(t, inst, a - b * rounded);
+  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
+  const Expr remainder = a - b * apply(round, {a / b});
+  t.opaque = saved;
+  set_number(t, inst, remainder);
 }
 
 void extended_add(Translator& t, const Inst& inst, ir::Op carry) {

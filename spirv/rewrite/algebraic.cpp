@@ -55,7 +55,8 @@ class Rewriter {
       if (inst.opaque) {
         show_product(id);
         changed |= show_sum(id);
-      } else if (woken || !graph_.first_rules || inst.opens != Opens::kAfterRules) {
+      } else if (woken || !graph_.first_rules ||
+                 (inst.opens != Opens::kAfterRules && inst.opens != Opens::kWithResult)) {
         changed |= rewrite(id);
       }
     }
@@ -122,11 +123,21 @@ class Rewriter {
   bool show_sum(InstId id) {
     const Opens opens = graph_.insts[id].opens;
     if (opens != Opens::kVisited && (opens != Opens::kVisitedAfterRound || graph_.first_rules)) return false;
+    show_remainder(id);
     graph_.insts[id].opaque = false;
     if (opens == Opens::kVisitedAfterRound) veiled_.push_back(graph_.insts[id].result);
     update_state(id);
     wake_users(graph_.insts[id].result);
     return true;
+  }
+
+  /// Opens the parts of the remainder that the instruction ends, if it does. The reference's rules do not visit them
+  /// then, only when one of their operands changes.
+  void show_remainder(InstId id) {
+    for (const InstId part : parts_of_remainder(graph_, id)) {
+      graph_.insts[part].opaque = false;
+      update_state(part);
+    }
   }
 
   /// A sum opened in this run: in the reference its operands are components of a vector, and the rules do not look
@@ -222,7 +233,7 @@ class Rewriter {
       case Condition::kNone:
         return true;
       case Condition::kNotConst:
-        return graph_.constant(value) == nullptr;
+        return graph_.constant(value) == nullptr || is_veiled(inst);
       case Condition::kFmul:
         return is_product(value) && !is_veiled(inst);
       case Condition::kNotFmul:
@@ -264,7 +275,7 @@ class Rewriter {
         if (bound.swizzle[c] != swizzle[c]) return false;
       return true;
     }
-    if (pattern.constant && !graph_.constant(value)) return false;
+    if (pattern.constant && (!graph_.constant(value) || is_veiled(inst))) return false;
     if (!holds_for_operand(pattern.condition, inst, index, swizzle, components)) return false;
     match.seen |= 1u << pattern.variable;
     bound = {value, {}};
@@ -280,8 +291,8 @@ class Rewriter {
     const Pattern& pattern = rules_.patterns[index];
     if (pattern.kind == Pattern::Kind::kVariable)
       return match_variable(pattern, inst, operand, swizzle, components, match);
-    if (pattern.kind != Pattern::Kind::kOp) return match_constant(pattern, src.value, swizzle, components);
     if (is_veiled(inst)) return false;
+    if (pattern.kind != Pattern::Kind::kOp) return match_constant(pattern, src.value, swizzle, components);
     const Inst* def = graph_.def(src.value);
     return def && def->kind == Kind::kAlu && !def->opaque && match_op(pattern, *def, components, swizzle, match);
   }

@@ -1,5 +1,6 @@
-// Dot products, which are single operations in the reference's first round: what the front end made of them stays
-// closed to the rules until then, and vectors that end in zeros shorten them (lavapipe-shader-math.md 5.1).
+// Dot products and remainders, which are single operations in the reference's first round: what the front end made of
+// them stays closed to the rules until then, and vectors that end in zeros shorten dot products
+// (lavapipe-shader-math.md 5.1).
 #include "spirv/rewrite/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -97,13 +98,30 @@ class Shortener {
 
 }  // namespace
 
-void hide_dot_products(Graph& graph) {
+std::vector<InstId> parts_of_remainder(const Graph& graph, InstId id) {
+  const Inst& end = graph.insts[id];
+  const Inst* product = end.opaque && is_alu(&end, Op::kFSub) ? graph.def(graph.source(end, 1).value) : nullptr;
+  if (!is_alu(product, Op::kFMul)) return {};
+  const Inst* rounded = graph.def(graph.source(*product, 1).value);
+  if (!is_alu(rounded, Op::kFFloor) && !is_alu(rounded, Op::kFTrunc)) return {};
+  std::vector<InstId> parts;
+  for (const Inst* part : {graph.def(graph.source(*rounded, 0).value), rounded, product})
+    if (is_alu(part, part->op) && part->opaque) parts.push_back(graph.values[part->result].def);
+  return parts;
+}
+
+void hide_composed(Graph& graph) {
   const auto is_sum_of = [&](const Inst& inst, ValueId products) {
     return inst.opaque && inst.count == 2 && graph.source(inst, 1).value == products;
   };
   auto visit = [&](InstId id) {
     Inst& inst = graph.insts[id];
     if (!inst.opaque) return;
+    if (inst.op == Op::kFSub) {
+      inst.opens = Opens::kVisited;
+      for (const InstId part : parts_of_remainder(graph, id)) graph.insts[part].opens = Opens::kWithResult;
+      return;
+    }
     if (inst.op != Op::kFAdd) {
       inst.opens = Opens::kAfterRules;
       return;
@@ -130,7 +148,7 @@ void shorten_dot_products(Graph& graph) {
 void show_products(Graph& graph) {
   graph.first_rules = false;
   for (Inst& inst : graph.insts)
-    if (inst.opens == Opens::kAfterRules) inst.opaque = false;
+    if (inst.opens == Opens::kAfterRules || inst.opens == Opens::kWithResult) inst.opaque = false;
 }
 
 void show_short_products(Graph& graph) {
@@ -139,6 +157,7 @@ void show_short_products(Graph& graph) {
 }
 
 unsigned cost_of(const Graph& graph, const Inst& inst) {
+  if (inst.opaque && inst.opens == Opens::kWithResult) return 0;
   if (!inst.opaque || inst.op != Op::kFAdd) return 1;
   // One dot product, later one sum of products, where we have a chain of additions.
   const Inst* before = graph.def(graph.source(inst, 0).value);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "spirv/rewrite/graph.h"
 
@@ -73,9 +74,13 @@ bool apply_rules(Graph& graph, RuleSet rules);
 
 /// In the first run of the rules the reference has dot products as single operations; after it, products are open, and
 /// sums of two in their next run; sums of three and four stay closed. Shortened dot products open after the round.
-void hide_dot_products(Graph& graph);
+/// Remainders are single operations until the rules come to them.
+void hide_composed(Graph& graph);
 void show_products(Graph& graph);
 void show_short_products(Graph& graph);
+
+/// The instructions that a closed subtraction takes its remainder from, operands first; none: it ends no remainder.
+std::vector<InstId> parts_of_remainder(const Graph& graph, InstId id);
 
 /// Before the rules of the first round: dot products with vectors that end in zeros.
 void shorten_dot_products(Graph& graph);

@@ -69,7 +69,7 @@ void rewrite(ir::Function& function) {
   Graph graph(function);
   rewriting::straighten_loops(graph);
   rewriting::open_loops(graph);
-  rewriting::hide_dot_products(graph);
+  rewriting::hide_composed(graph);
   optimize_once(graph, true);
   rewriting::show_short_products(graph);
   for (int round = 1; round < kMaxRounds; ++round)

@@ -272,6 +272,12 @@ const bool kFragments = [] {
     const char* text = "  vec2 r = b.wy * mat2(vec2(1.7, 1.0), a.xz) + vec2(10.0, 0.0);\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 2}, "r"}}, {}, false});
   });
+  AddCase("glsl", "rewrite.zero_times_vector", [](Run& run) {
+    const char* text =
+        "  vec2 t = -p.zw, m = mod(b.yw, p.xz);\n  vec2 r = (t - t) * mat2(vec2(-p.x, p.z), p.yw);\n"
+        "  vec3 s = vec3(a.x, vec2(-1.0)) * (m - m).xyy;\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 2}, "r"}, {{Base::kFloat, 3}, "s"}}, {}, false});
+  });
   AddCase("glsl", "discard.then_derivative", [](Run& run) {
     fragment_expression(run, "vec4(dFdx(passed.x), dFdy(passed.y), passed.zw)", "  if (passed.x > 0.3) discard;\n");
   });
