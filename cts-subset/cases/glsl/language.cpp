@@ -272,6 +272,12 @@ const bool kFragments = [] {
     const char* text = "  vec2 r = b.wy * mat2(vec2(1.7, 1.0), a.xz) + vec2(10.0, 0.0);\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 2}, "r"}}, {}, false});
   });
+  AddCase("glsl", "rewrite.literal_in_register", [](Run& run) {
+    const char* text =
+        "  float r = a.z, s = 0.0 / r;\n  if (float(i.x) < p.z) {\n"
+        "    switch (pi.w) {\n      case 0:\n        s = s * r;\n    }\n    r = s * r;\n  }\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 1}, "r"}, {{Base::kFloat, 1}, "s"}}, {}, false});
+  });
   AddCase("glsl", "rewrite.zero_times_vector", [](Run& run) {
     const char* text =
         "  vec2 t = -p.zw, m = mod(b.yw, p.xz);\n  vec2 r = (t - t) * mat2(vec2(-p.x, p.z), p.yw);\n"
