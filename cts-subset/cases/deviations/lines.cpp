@@ -196,6 +196,32 @@ const AddCase kLineMasks(
       draw(run, "samples", target, spec, colored({{-0.9f, -0.5f, 0, 1}, {0.9f, 0.5f, 0, 1}}));
     });
 
+/// What gl_SampleMaskIn has of four samples that are all covered; the control has it written out.
+const AddCase kLineMaskIn(
+    "rasterization", "deviation.one_sample_line_mask_in", "one-sample-line-masks",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) {
+      std::string message = device.size() == 4 ? "" : "outputs are missing";
+      for (size_t at = 0; at + 1 < device.size() && message.empty(); at += 2)
+        message = case_against_control({device[at], device[at + 1]}, {reference[at], reference[at + 1]});
+      return message;
+    },
+    [](Run& run) {
+      for (const auto mode :
+           {VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT})
+        for (const char* mask : {"gl_SampleMaskIn[0]", "15"}) {
+          const auto line = line_state(run, mode, false);
+          TargetSpec target;
+          target.samples = VK_SAMPLE_COUNT_4_BIT;
+          GraphicsSpec spec;
+          spec.fragment = std::string("layout(location = 0) out vec4 result;\nvoid main() { result = vec4(float(") +
+                          mask + "), 2.0, 3.0, 1.0) / 15.0; }\n";
+          spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+          spec.raster.pNext = &line;
+          const char* name = mode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ? "bresenham " : "smooth ";
+          draw(run, name + std::string(mask), target, spec, colored({{-0.9f, -0.5f, 0, 1}, {0.9f, 0.5f, 0, 1}}));
+        }
+    });
+
 /// The rectangle of the line reaches from y = 63.4 to 64.4.
 const AddCase kLineTiles(
     "rasterization", "deviation.multisample_line_tiles", "multisample-line-tiles",

@@ -216,6 +216,7 @@ void random_fragment_needs(Run& run, const Scene& scene, DrawState& draw) {
   Random& random = run.random;
   FragmentNeeds& needs = draw.fragment;
   needs.multisampled = scene.multisampled;
+  needs.reads_mask = scene.multisampled && !one_sample_lines(scene, draw);  // deviations.md, one-sample-line-masks
   // deviations.md, stipple-flat-integers and stipple-per-line
   needs.primitive_id = !draw.line.stippledLineEnable;
   needs.facing |= random.chance(0.2f) && !(draw.polygon && !draw.stages.geometry.empty());

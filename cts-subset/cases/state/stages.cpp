@@ -229,7 +229,7 @@ std::string random_fragment(Random& random, const TargetSpec& target, const Stag
   if (stages.drawn == Drawn::kPoints) values.push_back("vec4(gl_PointCoord, smooth_color.zw)");
   if (stages.layers > 1) values.push_back("vec4(float(gl_Layer) * 0.25, linear_color.yzw)");
   if (stages.viewports > 1) values.push_back("vec4(float(gl_ViewportIndex) * 0.25, linear_color.yzw)");
-  if (needs.multisampled) values.push_back("vec4(float(gl_SampleMaskIn[0] & 15) / 15.0, linear_color.yzw)");
+  if (needs.reads_mask) values.push_back("vec4(float(gl_SampleMaskIn[0] & 15) / 15.0, linear_color.yzw)");
   if (needs.per_sample) values.push_back("vec4(float(gl_SampleID) * 0.25, gl_SamplePosition, smooth_color.w)");
   std::string writes;
   for (size_t i = 0; i < target.colors.size(); ++i) {

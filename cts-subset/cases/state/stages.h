@@ -23,7 +23,7 @@ struct Stages {
 
 /// What the fragment shader may read and write.
 struct FragmentNeeds {
-  bool multisampled = false, writes_depth = false, writes_stencil = false, writes_mask = false;
+  bool multisampled = false, writes_depth = false, writes_stencil = false, writes_mask = false, reads_mask = false;
   bool early = false, facing = false, dual = false, discards = false, primitive_id = true;
   bool per_sample = false;  ///< may run once per sample
 };
