@@ -38,6 +38,7 @@ struct Sampler {
   VkCompareOp compare_op = VK_COMPARE_OP_NEVER;
   std::array<std::uint32_t, 4> border{};  ///< raw bits: floats or integers by the border colour's type
   bool unnormalized = false;
+  bool seams = false;  ///< faces of cubes are images of two dimensions by themselves; else filters cross their edges
   VkSamplerReductionMode reduction = VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
   YcbcrConversion conversion;
 };

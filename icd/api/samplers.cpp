@@ -50,11 +50,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCre
   state.min_filter = info->minFilter;
   state.mip_mode = info->mipmapMode;
   state.address = {info->addressModeU, info->addressModeV, info->addressModeW};
-  if (info->flags & VK_SAMPLER_CREATE_NON_SEAMLESS_CUBE_MAP_BIT_EXT) {
-    for (VkSamplerAddressMode& mode : state.address) {
-      mode = static_cast<VkSamplerAddressMode>(static_cast<std::uint32_t>(mode) | texel::kSeamBit);
-    }
-  }
+  state.seams = (info->flags & VK_SAMPLER_CREATE_NON_SEAMLESS_CUBE_MAP_BIT_EXT) != 0;
   state.mip_lod_bias = info->mipLodBias;
   state.min_lod = info->minLod;
   state.max_lod = info->maxLod;

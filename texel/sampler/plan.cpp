@@ -13,10 +13,8 @@ namespace {
 /// The reference ignores maxLod from here on: its images have at most 15 levels.
 constexpr float kNoMaxLod = 14.0f;
 
-bool has_seams(const Sampler& sampler) { return (static_cast<std::uint32_t>(sampler.address[0]) & kSeamBit) != 0; }
-
 Address convert(VkSamplerAddressMode mode) {
-  switch (static_cast<VkSamplerAddressMode>(static_cast<std::uint32_t>(mode) & ~kSeamBit)) {
+  switch (mode) {
     case VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT:
       return Address::kMirror;
     case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE:
@@ -133,7 +131,7 @@ Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMo
   plan.sampler = &sampler;
   plan.decode = texel_decoder(*view.format);
   set_dimensions(plan);
-  plan.seamless = plan.cube && !has_seams(sampler);
+  plan.seamless = plan.cube && !sampler.seams;
   plan.gather = op == SampleOp::kGather;
   plan.anisotropic = sampler.max_anisotropy > 1.0f && !plan.gather && plan.dims == 2;
   plan.min_linear = plan.gather || sampler.min_filter == VK_FILTER_LINEAR;

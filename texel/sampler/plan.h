@@ -10,10 +10,6 @@ namespace vitrine::texel {
 enum class Address : std::uint8_t { kRepeat, kMirror, kClamp, kBorder, kMirrorClamp };
 enum class MipFilter : std::uint8_t { kNone, kNearest, kLinear };
 
-/// Set in the address modes of a sampler whose cubes have seams: then the modes hold on every face, as on images of two
-/// dimensions. Else filters cross the edges of cubes and the modes do not matter there.
-inline constexpr std::uint32_t kSeamBit = 0x10000;
-
 struct Plan {
   const ImageView* view = nullptr;
   const Sampler* sampler = nullptr;
