@@ -36,39 +36,13 @@ void zero_result(Call& call, base::LaneMask lanes) {
     base::for_each_lane(lanes, [&](std::size_t lane) { component.lane[lane] = 0; });
 }
 
-/// A sampler made ready for one image instruction, kept while the same draw runs on this thread.
-struct KeptSampler {
-  std::uint64_t serial = 0;
-  const ImageOp* op = nullptr;
-  const texel::ImageView* view = nullptr;
-  const texel::Sampler* sampler = nullptr;
-  texel::PreparedSampler prepared;
-};
-
-const texel::PreparedSampler& prepared_sampler(const Call& call, const texel::ImageView& view,
-                                               const texel::Sampler& sampler, const texel::SampleRequest& request) {
-  constexpr std::size_t kKept = 8;
-  static thread_local KeptSampler kept[kKept];
-  const std::uint64_t serial = call.wave.resources->serial;
-  KeptSampler& entry = kept[static_cast<std::size_t>(&call.op - call.wave.program->image_ops.data()) % kKept];
-  if (serial == 0 || entry.serial != serial || entry.op != &call.op || entry.view != &view ||
-      entry.sampler != &sampler) {
-    texel::prepare(view, sampler, request.op, request.lod_mode, entry.prepared);
-    entry.serial = serial;
-    entry.op = &call.op;
-    entry.view = &view;
-    entry.sampler = &sampler;
-  }
-  return entry.prepared;
-}
-
-texel::SampleRequest sample_request(const Call& call, base::LaneMask lanes) {
+/// For all lanes.
+texel::SampleRequest sample_request(const Call& call) {
   const ir::ImageInfo& info = call.op.info;
   texel::SampleRequest request;
   request.op = info.access == ImageAccess::kGather     ? texel::SampleOp::kGather
                : info.access == ImageAccess::kQueryLod ? texel::SampleOp::kQueryLod
                                                        : texel::SampleOp::kSample;
-  request.active = lanes;
   request.coord = call.operands<4>(ImageOperand::kCoord);
   request.dref = call.operand(ImageOperand::kDref);
   request.min_lod = call.operand(ImageOperand::kMinLod);
@@ -93,24 +67,63 @@ texel::SampleRequest sample_request(const Call& call, base::LaneMask lanes) {
 
 /// Whether a view has the dimension that the instruction gives coordinates for, as in every valid use.
 bool has_dimension(const Call& call, const texel::ImageView& view) {
-  constexpr std::uint8_t kDimensions[] = {1, 2, 3, 4, 1, 2, 4};  // by VkImageViewType; see ir::ImageInfo::dim
+  static constexpr std::uint8_t kDimensions[] = {1, 2, 3, 4, 1, 2, 4};  // by VkImageViewType; see ir::ImageInfo::dim
   return call.op.info.dim == kDimensions[view.type];
 }
 
-/// Straight to the registers of the results.
-void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
+texel::SampleResult sample_result(const Call& call) {
   texel::SampleResult result{};
   for (std::size_t c = 0; c < 4; ++c) {
     if (call.op.result[c] != kNoOperand) result[c] = &reg(call.wave, call.op.result[c]);
   }
+  return result;
+}
+
+/// A sampler made ready for one image instruction and the registers that it works on, kept while the same draw runs on
+/// this thread.
+struct KeptSampler {
+  std::uint64_t serial = 0;
+  const ImageOp* op = nullptr;
+  const texel::ImageView* view = nullptr;
+  const texel::Sampler* sampler = nullptr;
+  const std::byte* registers = nullptr;
+  texel::PreparedSampler prepared;
+  texel::SampleRequest request;  ///< but not which lanes
+  texel::SampleResult result{};
+};
+
+KeptSampler& kept_sampler(const Call& call, const texel::ImageView& view, const texel::Sampler& sampler) {
+  constexpr std::size_t kKept = 8;
+  static thread_local KeptSampler kept[kKept];
+  const std::uint64_t serial = call.wave.resources->serial;
+  KeptSampler& entry = kept[static_cast<std::size_t>(&call.op - call.wave.program->image_ops.data()) % kKept];
+  const bool same =
+      serial != 0 && entry.serial == serial && entry.op == &call.op && entry.view == &view && entry.sampler == &sampler;
+  if (same && entry.registers == call.wave.registers) return entry;
+  entry.request = sample_request(call);
+  entry.result = sample_result(call);
+  entry.registers = call.wave.registers;
+  if (same) return entry;
+  entry.serial = 0;  // until all of it is ready
+  texel::prepare(view, sampler, entry.request.op, entry.request.lod_mode, entry.prepared);
+  entry.op = &call.op;
+  entry.view = &view;
+  entry.sampler = &sampler;
+  entry.serial = serial;
+  return entry;
+}
+
+/// Straight to the registers of the results.
+void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
   if (image.image == nullptr || sampler == nullptr || !has_dimension(call, *image.image)) {
-    for (WaveRegister* component : result) {
+    for (WaveRegister* component : sample_result(call)) {
       if (component != nullptr) base::for_each_lane(lanes, [&](std::size_t lane) { component->lane[lane] = 0; });
     }
     return;
   }
-  const texel::SampleRequest request = sample_request(call, lanes);
-  texel::sample(prepared_sampler(call, *image.image, *sampler, request), request, result);
+  KeptSampler& kept = kept_sampler(call, *image.image, *sampler);
+  kept.request.active = lanes;
+  texel::sample(kept.prepared, kept.request, kept.result);
 }
 
 texel::FetchRequest fetch_request(const Call& call, base::LaneMask lanes) {
@@ -257,11 +270,11 @@ const Descriptor& descriptor(const Wave& wave, std::uint32_t set, std::uint32_t 
 
 /// Lanes of `remaining` whose indices equal those of its lowest lane.
 base::LaneMask same_elements(Wave& wave, const ImageOp& op, base::LaneMask remaining) {
-  for (const IndexOperand& index : {op.image_index, op.sampler_index}) {
-    if (index.file != IndexOperand::File::kVarying) continue;
-    const std::uint32_t first = element_of(wave, index, std::countr_zero(remaining));
+  for (const IndexOperand* index : {&op.image_index, &op.sampler_index}) {
+    if (index->file != IndexOperand::File::kVarying) continue;
+    const std::uint32_t first = element_of(wave, *index, std::countr_zero(remaining));
     base::for_each_lane(remaining, [&](std::size_t lane) {
-      if (element_of(wave, index, static_cast<int>(lane)) != first) remaining &= ~(base::LaneMask{1} << lane);
+      if (element_of(wave, *index, static_cast<int>(lane)) != first) remaining &= ~(base::LaneMask{1} << lane);
     });
   }
   return remaining;
