@@ -409,24 +409,26 @@ struct TileStart {
   std::uint32_t primitive = 0;
 };
 
-/// The last primitive that hides everything before it, if nothing before it can be noticed otherwise.
+/// Whether the draw of an item does more than give colours.
+bool leaves_traces(const TileItem& item) {
+  if (item.clear) return false;
+  const PipelinePlan& plan = *item.draw->plan;
+  const QueryCounters& queries = item.draw->call.queries;
+  return queries.occlusion || queries.statistics || plan.depth_order != TestOrder::kNone ||
+         (plan.fragment && plan.fragment->writes_memory);
+}
+
+/// The last primitive that hides the colours of everything before it, if nothing before it can be noticed otherwise.
+/// Clears of depth and stencil stay to be done.
 TileStart first_visible(const TileWorker& worker, const std::vector<TileItem>& items) {
-  if (worker.pass->depth.format || worker.pass->stencil.format) return {};
   for (std::size_t i = items.size(); i-- > 0;) {
     const TileItem& item = items[i];
     if (item.clear) continue;
+    if (leaves_traces(item)) return {};
     const PipelinePlan& plan = *item.draw->plan;
-    const QueryCounters& queries = item.draw->call.queries;
-    if (queries.occlusion || queries.statistics || (plan.fragment && plan.fragment->writes_memory)) return {};
     for (std::uint32_t k = plan.replaces_colors ? item.count : 0; k-- > 0;)
       if (hides_tile(worker, plan, item.primitives[item.index[k]])) {
-        const bool noticed =
-            std::any_of(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(i), [](auto& earlier) {
-              if (earlier.clear) return false;
-              const QueryCounters& counters = earlier.draw->call.queries;
-              const spirv::ShaderInterface* fragment = earlier.draw->plan->fragment;
-              return counters.occlusion || counters.statistics || (fragment && fragment->writes_memory);
-            });
+        const bool noticed = std::any_of(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(i), leaves_traces);
         return noticed ? TileStart{} : TileStart{i, k};
       }
   }
@@ -528,8 +530,9 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
   worker.pool.reset();
   if (pass.depth.format) worker.hierarchy.reset();
   const TileStart start = first_visible(worker, items);
-  for (std::size_t i = start.item; i < items.size(); ++i) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
     const TileItem& item = items[i];
+    if (i < start.item && (item.draw || !item.clear->view->format->is_depth_stencil())) continue;
     if (item.clear) {
       end_draw(worker);
       clear_tile(worker, *item.clear);
