@@ -173,11 +173,13 @@ struct Inputs {
 Inputs random_inputs(Random& random) {
   Inputs in;
   const float step = std::exp2(random.between(-9, 1));
+  const bool smooth = random.below(2) != 0;  // neighbours in all coordinates, as on a surface
+  const float depth = random.between(-1, 2);
   for (std::uint32_t i = 0; i < base::kWaveWidth; ++i) {
     const float x = static_cast<float>((i / 4 * 2) + (i & 1)), y = static_cast<float>(i >> 1 & 1);
-    in.coord[0].lane[i] = bits_of(random.below(60) ? x * step - 1.0f : float_of(0x7fc00000u));
+    in.coord[0].lane[i] = bits_of(smooth || random.below(60) ? x * step - 1.0f : float_of(0x7fc00000u));
     in.coord[1].lane[i] = bits_of(y * step + random.between(-0.01f, 0.01f) + 0.3f);
-    in.coord[2].lane[i] = bits_of(random.between(-1, 4));
+    in.coord[2].lane[i] = bits_of(smooth ? depth + (x + y) * step * 0.1f : random.between(-1, 4));
     in.coord[3].lane[i] = bits_of(random.between(-1, 4));
     in.lod.lane[i] = bits_of(random.between(-2, 6));
     in.dref.lane[i] = bits_of(random.between(-0.2f, 1.2f));

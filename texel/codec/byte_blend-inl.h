@@ -25,7 +25,9 @@ struct Halves {
 
 HWY_INLINE Halves unpack_bytes(hn::Vec<hn::ScalableTag<std::uint32_t>> packed) {
   const auto mask = hn::Set(hn::ScalableTag<std::uint32_t>(), 0x00FF00FFu);
-  return {hn::BitCast(D16(), hn::And(packed, mask)), hn::BitCast(D16(), hn::And(hn::ShiftRight<8>(packed), mask))};
+  const hn::RebindToUnsigned<D16> halves;
+  return {hn::BitCast(D16(), hn::And(packed, mask)),
+          hn::BitCast(D16(), hn::ShiftRight<8>(hn::BitCast(halves, packed)))};
 }
 
 HWY_INLINE hn::Vec<hn::ScalableTag<std::uint32_t>> pack_bytes(const Halves& halves) {

@@ -206,7 +206,9 @@ void sample_anisotropic_wave(const PreparedSampler& p, const SampleRequest& requ
       continue;
     }
     Sums sums{{splat(0.0f), splat(0.0f), splat(0.0f), splat(0.0f)}, splat(0.0f)};
-    walk_any(p, load_level<2>(p, request, state, 0, first, false), e, active, sums);
+    LevelLanes level;
+    load_level<2>(p, request, state, 0, first, false, level);
+    walk_any(p, level, e, active, sums);
     leftover |= (lanes_mask_bits(DF(), hn::Eq(sums.total, splat(0.0f))) & active) << first;
     for (std::size_t c = 0; c < 4; ++c) hn::Store(hn::Div(sums.color[c], sums.total), DF(), texels.c[c].lane + first);
   }

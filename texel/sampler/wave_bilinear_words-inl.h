@@ -14,11 +14,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
 
-/// Texels around the points of a vector of lanes, with their weights.
-struct WeighedSquare {
-  WordSquare words;
-  VF x, y;
+/// One axis of a level.
+struct FloatAxis {
+  const AxisLanes* axis = nullptr;
+
+  void set(const AxisLanes& a) { axis = &a; }
+  HWY_INLINE TapLanes taps(VF s) const { return lanes_linear(*axis, s); }
 };
+
+/// Texels around the points of a vector of lanes, with their weights.
+using WeighedSquare = SquareReader<FloatAxis, true>::Weighed;
 
 HWY_INLINE VF mix_values(VF weight, VF a, VF b) { return lanes_fma(weight, hn::Sub(b, a), a); }
 
@@ -56,53 +61,30 @@ HWY_INLINE VF average_comparison(const Channel& channel, VkCompareOp op, VF refe
   return mix_values(s.y, row(s.words.top), row(s.words.bottom));
 }
 
-/// One of the view's levels: `which` of the two that a lane reads.
-struct LevelReader {
-  const PreparedSampler& p;
-  const SampleRequest& request;
-  const WaveState& state;
-  int which;
-  bool same_level;
-  LevelLanes level{};
-  SquareLevel square{};
-
-  LevelReader(const PreparedSampler& prepared, const SampleRequest& r, const WaveState& s, int w)
-      : p(prepared), request(r), state(s), which(w), same_level(level_is_uniform(prepared, r, false)) {
-    if (same_level) load(0);
-  }
-
-  HWY_INLINE void load(std::size_t first) {
-    level = load_level<2>(p, request, state, which, first, false);
-    square = SquareLevel(level);
-  }
-
-  HWY_INLINE WeighedSquare read(std::size_t first) {
-    if (!same_level) load(first);
-    const TapLanes x = lanes_linear(level.axis[0], hn::LoadU(DF(), state.coord[0] + first));
-    const TapLanes y = lanes_linear(level.axis[1], hn::LoadU(DF(), state.coord[1] + first));
-    const SquarePlaces places{{x.first, x.second}, {y.first, y.second}};
-    return {load_square(p.plan.view->base, square, places), x.weight, y.weight};
-  }
-};
-
-/// Calls body(first, square) or body(first, nearer, farther, fraction) for vectors with active lanes.
+/// Calls body(first, over_levels) for vectors with active lanes.
 template <class Body>
 HWY_INLINE void for_each_square(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                 Body&& body) {
   const bool two_levels = p.plan.mip == MipFilter::kLinear && p.plan.lod_needed;
-  LevelReader nearer(p, request, state, 0);
-  LevelReader farther(p, request, state, two_levels ? 1 : 0);
-  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
-    if ((request.active >> first & base::first_lanes(hn::Lanes(DF()))) == 0) continue;
-    const WeighedSquare near = nearer.read(first);
-    if (!two_levels) {
-      body(first, [&](auto&& average) { return average(near); });
-    } else {
-      const WeighedSquare far = farther.read(first);
-      const VF fraction = hn::Load(DF(), state.fraction.lane + first);
-      body(first, [&](auto&& average) { return mix_values(fraction, average(near), average(far)); });
+  const auto for_each_vector = [&](auto&& read) HWY_ATTR {
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const std::size_t first = v * hn::Lanes(DF());
+      if ((request.active >> first & base::first_lanes(hn::Lanes(DF()))) != 0) read(v, first);
     }
+  };
+  SquareReader<FloatAxis, true> nearer(p, request, state, 0);
+  if (!two_levels) {
+    return for_each_vector([&](std::size_t v, std::size_t first) HWY_ATTR {
+      const WeighedSquare near = nearer.read(v);
+      body(first, [&](auto&& average) { return average(near); });
+    });
   }
+  SquareReader<FloatAxis, true> farther(p, request, state, 1);
+  for_each_vector([&](std::size_t v, std::size_t first) HWY_ATTR {
+    const WeighedSquare near = nearer.read(v), far = farther.read(v);
+    const VF fraction = hn::Load(DF(), state.fraction.lane + first);
+    body(first, [&](auto&& average) { return mix_values(fraction, average(near), average(far)); });
+  });
 }
 
 template <Numeric kNumeric>

@@ -102,7 +102,7 @@ HWY_NOINLINE void find_taps(const PreparedSampler& p, const SampleRequest& reque
   const bool same_level = level_is_uniform(p, request, plan.cube);
   LevelLanes level;
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
-    if (first == 0 || !same_level) level = load_level<kDims>(p, request, state, which, first, plan.cube);
+    if (first == 0 || !same_level) load_level<kDims>(p, request, state, which, first, plan.cube, level);
     ByteAxis axis[3];
     for (std::uint32_t i = 0; i < kDims; ++i) {
       axis[i] = find_axis(level.axis[i], hn::LoadU(DF(), state.coord[i] + first), linear, first, taps.weight[i]);
@@ -336,6 +336,13 @@ void sample_bytes_bilinear(const PreparedSampler& p, const SampleRequest& reques
   sample_bilinear(p, request, state, result);
 }
 
+void sample_bytes_nearest(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
+  if (request.offset[0] || request.offset[1]) return sample_bytes(p, request, result);
+  WaveState state;
+  find_state(p, request, state);
+  sample_nearest_flat(p, request, state, result);
+}
+
 }  // namespace
 }  // namespace vitrine::texel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -347,22 +354,33 @@ namespace {
 
 HWY_EXPORT(sample_bytes);
 HWY_EXPORT(sample_bytes_bilinear);
+HWY_EXPORT(sample_bytes_nearest);
+
+/// Texels of four bytes, a channel each.
+bool has_four_bytes(const FormatDesc& format) {
+  return !format.is_compressed() && format.block_bytes == 4 && format.channel[0].bits == 8;
+}
 
 /// Whether sample_bilinear does what the general sampler does, if there are no offsets.
 bool bilinear_suits(const Plan& plan) {
-  const FormatDesc& format = *plan.view->format;
   for (std::uint32_t i = 0; i < plan.dims; ++i) {
     if (plan.address[i] != Address::kClamp && (plan.address[i] != Address::kRepeat || !plan.pot[i])) return false;
   }
-  return plan.dims > 1 && !plan.cube && plan.min_linear && plan.mag_linear && !format.is_compressed() &&
-         format.block_bytes == 4 && format.channel[0].bits == 8 && !plan.sampler->unnormalized &&
-         plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+  return plan.dims > 1 && !plan.cube && plan.min_linear && plan.mag_linear && has_four_bytes(*plan.view->format) &&
+         !plan.sampler->unnormalized && plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+}
+
+/// Whether sample_nearest_flat does, if there are no offsets.
+bool nearest_suits(const Plan& plan) {
+  return plan.dims == 2 && !plan.cube && !plan.min_linear && !plan.mag_linear && plan.mip != MipFilter::kLinear &&
+         has_four_bytes(*plan.view->format);
 }
 
 }  // namespace
 
 PreparedSampler::Kernel byte_kernel(const Plan& plan) {
   base::select_simd_target();
+  if (nearest_suits(plan)) return &HWY_DYNAMIC_DISPATCH(sample_bytes_nearest);
   return bilinear_suits(plan) ? &HWY_DYNAMIC_DISPATCH(sample_bytes_bilinear) : &HWY_DYNAMIC_DISPATCH(sample_bytes);
 }
 

@@ -36,11 +36,14 @@ struct FloatTaps {
 
 /// Everything that one call passes from step to step.
 struct Call {
+  Call(const PreparedSampler& prepared, const SampleRequest& r, const SampleResult& result)
+      : p(prepared), request(r), wanted(wanted_components(*prepared.plan.view, result)), compare(r.dref != nullptr) {}
+
   const PreparedSampler& p;
   const SampleRequest& request;
   Components wanted;
   bool compare;
-  FloatLanes reference{};  ///< only with `compare`
+  FloatLanes reference;  ///< only with `compare`
   WaveState state;
 
   const Plan& plan() const { return p.plan; }
@@ -111,7 +114,7 @@ HWY_NOINLINE void find_taps_in(Call& call, int which, bool linear, FloatTaps& ta
   taps.neighbours = linear && !format.is_compressed();
   LevelLanes level;
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
-    if (first == 0 || !same_level) level = load_level<kDims>(call.p, call.request, call.state, which, first, plan.cube);
+    if (first == 0 || !same_level) load_level<kDims>(call.p, call.request, call.state, which, first, plan.cube, level);
     AxisPlaces axis[3];
     for (std::uint32_t i = 0; i < kDims; ++i) {
       const AxisTaps at = find_axis(level.axis[i], hn::LoadU(DF(), call.state.coord[i] + first), linear, plan.gather,
@@ -138,8 +141,39 @@ HWY_NOINLINE void find_taps_in(Call& call, int which, bool linear, FloatTaps& ta
   taps.neighbours = taps.neighbours && !border;
 }
 
+/// The same for averages in two dimensions of texels that are no blocks, and no border.
+HWY_NOINLINE void find_flat_taps(Call& call, int which, FloatTaps& taps) {
+  const VI bytes = splat(static_cast<std::int32_t>(call.view().format->block_bytes));
+  const bool same_level = level_is_uniform(call.p, call.request, false);
+  auto neighbours = hn::Eq(bytes, bytes);
+  LevelLanes level;
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
+    if (first == 0 || !same_level) load_level<2>(call.p, call.request, call.state, which, first, false, level);
+    const TapLanes x = lanes_linear(level.axis[0], hn::LoadU(DF(), call.state.coord[0] + first));
+    const TapLanes y = lanes_linear(level.axis[1], hn::LoadU(DF(), call.state.coord[1] + first));
+    neighbours = hn::And(neighbours, hn::Eq(x.second, hn::Add(x.first, splat(1))));
+    const VI left = hn::Mul(x.first, bytes), right = hn::Mul(x.second, bytes);
+    const VI top = hn::Add(level.origin, hn::Mul(y.first, level.row_pitch));
+    const VI bottom = hn::Add(level.origin, hn::Mul(y.second, level.row_pitch));
+    hn::Store(x.weight, DF(), taps.weight[0].lane + first);
+    hn::Store(y.weight, DF(), taps.weight[1].lane + first);
+    hn::Store(hn::Add(top, left), DI(), taps.place[0].offset.lane + first);
+    hn::Store(hn::Add(top, right), DI(), taps.place[1].offset.lane + first);
+    hn::Store(hn::Add(bottom, left), DI(), taps.place[2].offset.lane + first);
+    hn::Store(hn::Add(bottom, right), DI(), taps.place[3].offset.lane + first);
+  }
+  for (std::uint32_t k = 0; k < 4; ++k) taps.outside[k] = 0;
+  taps.count = 4;
+  taps.neighbours = hn::AllTrue(DI(), neighbours);
+}
+
 HWY_NOINLINE void find_taps(Call& call, int which, bool linear, FloatTaps& taps) {
-  const std::uint32_t dims = call.plan().dims;
+  const Plan& plan = call.plan();
+  const bool border = plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder;
+  if (plan.dims == 2 && !plan.cube && linear && !plan.gather && !border && !call.view().format->is_compressed()) {
+    return find_flat_taps(call, which, taps);
+  }
+  const std::uint32_t dims = plan.dims;
   const auto find = dims == 1 ? find_taps_in<1> : dims == 2 ? find_taps_in<2> : find_taps_in<3>;
   find(call, which, linear, taps);
 }
@@ -152,7 +186,8 @@ HWY_NOINLINE void find_cube_taps(Call& call, int which, FloatTaps& taps) {
   taps.neighbours = false;
   for (base::LaneMask& mask : taps.outside) mask = 0;
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
-    LevelLanes level = load_level<2>(call.p, call.request, call.state, which, first, false);
+    LevelLanes level;
+    load_level<2>(call.p, call.request, call.state, which, first, false, level);
     const VI origin = level.origin;
     const CubeLanes cube = find_cube_texels(hn::Load(DI(), call.state.face.lane + first),
                                             hn::Load(DF(), call.state.projected[0].lane + first),
@@ -407,15 +442,13 @@ void load_reference(Call& call) {
   }
 }
 
-void sample_floats(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
-  if (request.gather_offsets != nullptr) return sample_by_lane(p, request, result);
-  Call call{p, request, wanted_components(*p.plan.view, result), request.dref != nullptr, {}, {}};
-  find_state(p, request, call.state);
+/// Of a call whose state is known.
+void sample_waves(Call& call, const SampleResult& result) {
   if (call.compare) {
     call.wanted = 1;
     load_reference(call);
   }
-  if (p.plan.gather) return gather(call, result);
+  if (call.plan().gather) return gather(call, result);
   WaveTexels texels;
   filter_levels(call, texels);
   if (call.compare) {
@@ -425,14 +458,53 @@ void sample_floats(const PreparedSampler& p, const SampleRequest& request, const
       hn::Store(splat(1.0f), DF(), texels.c[3].lane + i);
     }
   }
-  store_texels(*p.plan.view, texels, request.active, result);
+  store_texels(call.view(), texels, call.request.active, result);
+}
+
+void sample_floats(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
+  if (request.gather_offsets != nullptr) return sample_by_lane(p, request, result);
+  Call call(p, request, result);
+  find_state(p, request, call.state);
+  sample_waves(call, result);
+}
+
+void sample_words_or_compare(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
+                             const SampleResult& result) {
+  request.dref != nullptr ? compare_words_bilinear(p, request, state, result)
+                          : sample_words_bilinear(p, request, state, result);
 }
 
 void sample_floats_bilinear(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
   WaveState state;
   find_state(p, request, state);
-  request.dref != nullptr ? compare_words_bilinear(p, request, state, result)
-                          : sample_words_bilinear(p, request, state, result);
+  sample_words_or_compare(p, request, state, result);
+}
+
+/// Whether all lanes are on one face of one level, with all their texels inside it.
+bool is_inside_face(const Call& call, int which) {
+  if (!wave_has_one_level(call.p, call.request, call.state, which)) return false;
+  const std::size_t level = call.p.one_level ? 0 : static_cast<std::size_t>(call.state.level[which].lane[0]);
+  const VF size = lanes_int_to_float(splat(call.p.level.width[level]));
+  const VF last = hn::Sub(size, splat(1.0f)), zero = splat(0.0f);
+  auto inside = hn::Le(zero, last);
+  for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const VF at = hn::Sub(hn::Mul(hn::LoadU(DF(), call.state.coord[axis] + i), size), splat(0.5f));
+      inside = hn::And(inside, hn::And(hn::Ge(at, zero), hn::Lt(at, last)));
+    }
+  }
+  return hn::AllTrue(DF(), inside);
+}
+
+/// Cubes across whose edges filters reach: most waves lie inside a face, an image of two dimensions.
+void sample_cube_bilinear(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
+  Call call(p, request, result);
+  find_state(p, request, call.state);
+  const bool two_levels = p.plan.mip == MipFilter::kLinear && p.plan.lod_needed;
+  if (is_inside_face(call, 0) && (!two_levels || is_inside_face(call, 1))) {
+    return sample_words_or_compare(p, request, call.state, result);
+  }
+  sample_waves(call, result);
 }
 
 }  // namespace
@@ -446,13 +518,14 @@ namespace {
 
 HWY_EXPORT(sample_floats);
 HWY_EXPORT(sample_floats_bilinear);
+HWY_EXPORT(sample_cube_bilinear);
 
-/// Whether sample_floats_bilinear does what the general sampler does.
+/// Whether sample_floats_bilinear does what the general sampler does; of cubes, sample_cube_bilinear.
 bool bilinear_suits(const Plan& plan) {
   const FormatDesc& format = *plan.view->format;
   const bool border = plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder;
-  return plan.dims == 2 && !plan.cube && !plan.gather && !border && plan.min_linear && plan.mag_linear &&
-         averages_words(format) && format.block_bytes == 4 &&
+  return plan.dims == 2 && plan.cube == plan.seamless && !plan.gather && !border && plan.min_linear &&
+         plan.mag_linear && averages_words(format) && format.block_bytes == 4 &&
          plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
 }
 
@@ -460,7 +533,8 @@ bool bilinear_suits(const Plan& plan) {
 
 PreparedSampler::Kernel float_kernel(const Plan& plan) {
   base::select_simd_target();
-  return bilinear_suits(plan) ? &HWY_DYNAMIC_DISPATCH(sample_floats_bilinear) : &HWY_DYNAMIC_DISPATCH(sample_floats);
+  if (!bilinear_suits(plan)) return &HWY_DYNAMIC_DISPATCH(sample_floats);
+  return plan.cube ? &HWY_DYNAMIC_DISPATCH(sample_cube_bilinear) : &HWY_DYNAMIC_DISPATCH(sample_floats_bilinear);
 }
 
 }  // namespace vitrine::texel

@@ -1,7 +1,7 @@
 // The four words around each lane's point on one level of two dimensions. Lanes of a vector are neighbours on the
 // screen and mostly in the image too: then a few rows of it hold all their texels, and permutations hand them out.
 
-#include <algorithm>
+#include <utility>
 
 #include "texel/sampler/wave_pairs-inl.h"
 #include "texel/sampler/wave_state-inl.h"
@@ -21,102 +21,164 @@ struct WordSquare {
   WordPair top, bottom;
 };
 
-/// Columns and rows inside the level.
-struct SquarePlaces {
-  VI x[2], y[2];
-};
-
 /// Where a level lies, in bytes; one for all lanes of a vector if `uniform`.
 struct SquareLevel {
   VI row_pitch, origin;
   std::ptrdiff_t first_pitch = 0, first_origin = 0;
+  std::int32_t width = 0, height = 0;  ///< texels
   bool uniform = false;
 
-  SquareLevel() = default;
-  explicit SquareLevel(const LevelLanes& level)
-      : row_pitch(level.row_pitch),
-        origin(level.origin),
-        first_pitch(hn::GetLane(level.row_pitch)),
-        first_origin(hn::GetLane(level.origin)) {
+  HWY_INLINE void set(const LevelLanes& level) {
+    row_pitch = level.row_pitch;
+    origin = level.origin;
+    first_pitch = hn::GetLane(row_pitch);
+    first_origin = hn::GetLane(origin);
+    width = hn::GetLane(level.axis[0].size);
+    height = hn::GetLane(level.axis[1].size);
     const auto same_pitch = hn::Eq(row_pitch, splat(static_cast<std::int32_t>(first_pitch)));
     const auto same_origin = hn::Eq(origin, splat(static_cast<std::int32_t>(first_origin)));
     uniform = hn::AllTrue(DI(), hn::And(same_pitch, same_origin));
   }
 };
 
+inline constexpr std::size_t kVectors = base::kWaveWidth / hn::MaxLanes(DU());
+
 #if HWY_TARGET <= HWY_AVX3
-/// Least halves of all lanes: both halves are in [0, 32767].
-HWY_INLINE std::uint32_t least_halves(__m512i v) {
-  const __m256i eight = _mm256_min_epi16(_mm512_castsi512_si256(v), _mm512_extracti64x4_epi64(v, 1));
-  __m128i four = _mm_min_epi16(_mm256_castsi256_si128(eight), _mm256_extracti128_si256(eight, 1));
-  four = _mm_min_epi16(four, _mm_shuffle_epi32(four, 0x4E));
-  return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_min_epi16(four, _mm_shuffle_epi32(four, 0xB1))));
-}
-HWY_INLINE std::uint32_t largest_halves(__m512i v) {
-  const __m256i eight = _mm256_max_epi16(_mm512_castsi512_si256(v), _mm512_extracti64x4_epi64(v, 1));
-  __m128i four = _mm_max_epi16(_mm256_castsi256_si128(eight), _mm256_extracti128_si256(eight, 1));
-  four = _mm_max_epi16(four, _mm_shuffle_epi32(four, 0x4E));
-  return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_max_epi16(four, _mm_shuffle_epi32(four, 0xB1))));
-}
+/// The texels of a wave on one level, if those of every vector lie in four rows of 8 or 16 columns.
+class NearWave {
+ public:
+  HWY_INLINE void add_first(std::size_t vector, VI x, VI y) { first_[vector] = halves(x, y); }
+  HWY_INLINE void add_second(std::size_t vector, VI x, VI y) { second_[vector] = halves(x, y); }
 
-/// A lane's word in two rows or four of sixteen; places are 16 * row + column.
-HWY_INLINE VU pick_of_two(__m512i place, __m512i row0, __m512i row1) {
-  return VU{_mm512_permutex2var_epi32(row0, place, row1)};
-}
-HWY_INLINE VU pick_of_four(__m512i place, const __m512i row[4]) {
-  const __mmask16 lower = _mm512_test_epi32_mask(place, _mm512_set1_epi32(32));
-  return VU{_mm512_mask_blend_epi32(lower, _mm512_permutex2var_epi32(row[0], place, row[1]),
-                                    _mm512_permutex2var_epi32(row[2], place, row[3]))};
-}
+  /// After all vectors were added: whether load() may be called; without `kPairs` only load_first().
+  template <bool kPairs>
+  HWY_INLINE bool find(const SquareLevel& level) {
+    __m512i low[kVectors], high[kVectors];
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      low[v] = kPairs ? _mm512_min_epi16(first_[v], second_[v]) : first_[v];
+      high[v] = kPairs ? _mm512_max_epi16(first_[v], second_[v]) : first_[v];
+    }
+    const __m512i least = fold(low, [](__m512i a, __m512i b) { return _mm512_min_epi16(a, b); });
+    const __m512i largest = fold(high, [](__m512i a, __m512i b) { return _mm512_max_epi16(a, b); });
+    for (const std::int32_t columns : {8, 16}) {
+      if (level.width < columns || level.height < 4) return false;
+      const __m512i limit = _mm512_set1_epi32((level.height - 4) << 16 | (level.width - columns));
+      const __m512i corner = _mm512_min_epi16(least, limit);
+      const __m512i extent = _mm512_set1_epi32(3 << 16 | (columns - 1));
+      if (_mm512_cmpgt_epi16_mask(_mm512_sub_epi16(largest, corner), extent) != 0) continue;
+      _mm512_store_si512(corner_, corner);
+      wide_ = columns == 16;
+      return true;
+    }
+    return false;
+  }
 
-/// False if the texels do not lie in four rows of sixteen columns. Columns and rows are below 32768.
-HWY_INLINE bool load_near_words(const std::byte* base, const SquareLevel& level, const SquarePlaces& at,
-                                WordSquare& out) {
-  // Columns and rows in one vector: x in the low halves, y in the high ones.
-  const __m512i first = _mm512_or_si512(at.x[0].raw, _mm512_slli_epi32(at.y[0].raw, 16));
-  const __m512i second = _mm512_or_si512(at.x[1].raw, _mm512_slli_epi32(at.y[1].raw, 16));
-  const std::uint32_t low = least_halves(_mm512_min_epi16(first, second));
-  const std::uint32_t high = largest_halves(_mm512_max_epi16(first, second));
-  const std::uint32_t left = low & 0xFFFF, top = low >> 16;
-  const std::uint32_t columns = (high & 0xFFFF) - left + 1, last_row = (high >> 16) - top;
-  if (columns > 16 || last_row > 3) return false;
+  /// `base`: of a slice.
+  HWY_INLINE WordSquare load(const std::byte* base, const SquareLevel& level, std::size_t vector) const {
+    return wide_ ? load_wide(base, level, vector) : load_narrow(base, level, vector);
+  }
+  /// The first texels alone.
+  HWY_INLINE VU load_first(const std::byte* base, const SquareLevel& level, std::size_t vector) const {
+    const Corner corner(*this, base, level, vector);
+    const __m512i x = _mm512_sub_epi16(first_[vector], corner.halves);
+    if (!wide_) {
+      const Narrow rows(corner);
+      return rows.pick(_mm512_or_si512(x, _mm512_srli_epi32(x, 13)));
+    }
+    const __m512i y = _mm512_srli_epi32(x, 12);
+    return Wide(corner).pick(_mm512_or_si512(x, y), below(y));
+  }
 
-  const std::byte* const corner = base + level.first_origin + top * level.first_pitch + 4 * std::ptrdiff_t{left};
-  const auto columns_mask = static_cast<__mmask16>((1u << columns) - 1);
-  const auto load = [&](std::uint32_t row) {
-    return _mm512_maskz_loadu_epi32(columns_mask, corner + std::min(row, last_row) * level.first_pitch);
+ private:
+  /// The texels' first column and row.
+  struct Corner {
+    Corner(const NearWave& wave, const std::byte* base, const SquareLevel& level, std::size_t vector)
+        : pitch(level.first_pitch) {
+      const std::uint32_t corner = wave.corner_[4 * vector];
+      at = base + level.first_origin + (corner >> 16) * pitch + 4 * std::ptrdiff_t{corner & 0xFFFF};
+      halves = _mm512_set1_epi32(static_cast<std::int32_t>(corner));
+    }
+    const std::byte* at;
+    std::ptrdiff_t pitch;
+    __m512i halves;
   };
-  const __m512i corner_halves = _mm512_set1_epi32(static_cast<std::int32_t>(low));
-  const auto place = [](__m512i halves) { return _mm512_or_si512(halves, _mm512_srli_epi32(halves, 12)); };
-  const __m512i halves0 = _mm512_sub_epi16(first, corner_halves), halves1 = _mm512_sub_epi16(second, corner_halves);
-  const __m512i row_halves = _mm512_set1_epi32(static_cast<std::int32_t>(0xFFFF0000u));
-  constexpr int kSelect = 0xCA;  // a ? b : c
-  const __m512i top_left = place(halves0), bottom_right = place(halves1);
-  const __m512i top_right = place(_mm512_ternarylogic_epi32(row_halves, halves0, halves1, kSelect));
-  const __m512i bottom_left = place(_mm512_ternarylogic_epi32(row_halves, halves1, halves0, kSelect));
-  const __m512i row0 = load(0), row1 = load(1);
-  if (last_row < 2) {
-    out.top = {pick_of_two(top_left, row0, row1), pick_of_two(top_right, row0, row1)};
-    out.bottom = {pick_of_two(bottom_left, row0, row1), pick_of_two(bottom_right, row0, row1)};
-    return true;
+  /// Four rows of eight; places are 8 * row + column, higher bits do not matter.
+  struct Narrow {
+    explicit Narrow(const Corner& c)
+        : upper(two(c.at, c.at + c.pitch)), lower(two(c.at + 2 * c.pitch, c.at + 3 * c.pitch)) {}
+    static __m512i two(const std::byte* a, const std::byte* b) {
+      const __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(a));
+      return _mm512_inserti64x4(_mm512_castsi256_si512(low), _mm256_loadu_si256(reinterpret_cast<const __m256i*>(b)),
+                                1);
+    }
+    HWY_INLINE VU pick(__m512i place) const { return VU{_mm512_permutex2var_epi32(upper, place, lower)}; }
+    __m512i upper, lower;
+  };
+  /// Four rows of sixteen; places are 16 * row + column.
+  struct Wide {
+    explicit Wide(const Corner& c)
+        : row{_mm512_loadu_si512(c.at), _mm512_loadu_si512(c.at + c.pitch), _mm512_loadu_si512(c.at + 2 * c.pitch),
+              _mm512_loadu_si512(c.at + 3 * c.pitch)} {}
+    HWY_INLINE VU pick(__m512i place, __mmask16 below) const {
+      return VU{_mm512_mask_blend_epi32(below, _mm512_permutex2var_epi32(row[0], place, row[1]),
+                                        _mm512_permutex2var_epi32(row[2], place, row[3]))};
+    }
+    __m512i row[4];
+  };
+  /// Columns and rows, below 32768, in one vector: x in the low halves, y in the high ones.
+  static HWY_INLINE __m512i halves(VI x, VI y) { return _mm512_or_si512(x.raw, _mm512_slli_epi32(y.raw, 16)); }
+  static HWY_INLINE __mmask16 below(__m512i place) { return _mm512_test_epi32_mask(place, _mm512_set1_epi32(32)); }
+
+  HWY_INLINE WordSquare load_narrow(const std::byte* base, const SquareLevel& level, std::size_t vector) const {
+    const Corner corner(*this, base, level, vector);
+    const Narrow rows(corner);
+    const __m512i x0 = _mm512_sub_epi16(first_[vector], corner.halves);
+    const __m512i x1 = _mm512_sub_epi16(second_[vector], corner.halves);
+    const __m512i y0 = _mm512_srli_epi32(x0, 13), y1 = _mm512_srli_epi32(x1, 13);
+    return {{rows.pick(_mm512_or_si512(x0, y0)), rows.pick(_mm512_or_si512(x1, y0))},
+            {rows.pick(_mm512_or_si512(x0, y1)), rows.pick(_mm512_or_si512(x1, y1))}};
   }
-  const __m512i rows[4] = {row0, row1, load(2), load(3)};
-  const __mmask16 top_below = _mm512_test_epi32_mask(top_left, _mm512_set1_epi32(32));
-  const __mmask16 bottom_below = _mm512_cmpge_epi32_mask(bottom_left, _mm512_set1_epi32(16));
-  if (last_row == 2 && top_below == 0 && bottom_below == 0xFFFF) {
-    // A permutation sees the lowest bit of the row: row 2 is even.
-    out.top = {pick_of_two(top_left, row0, row1), pick_of_two(top_right, row0, row1)};
-    out.bottom = {pick_of_two(bottom_left, rows[2], row1), pick_of_two(bottom_right, rows[2], row1)};
-    return true;
+  HWY_INLINE WordSquare load_wide(const std::byte* base, const SquareLevel& level, std::size_t vector) const {
+    const Corner corner(*this, base, level, vector);
+    const Wide rows(corner);
+    const __m512i x0 = _mm512_sub_epi16(first_[vector], corner.halves);
+    const __m512i x1 = _mm512_sub_epi16(second_[vector], corner.halves);
+    const __m512i y0 = _mm512_srli_epi32(x0, 12), y1 = _mm512_srli_epi32(x1, 12);
+    const __mmask16 top = below(y0), bottom = below(y1);
+    return {{rows.pick(_mm512_or_si512(x0, y0), top), rows.pick(_mm512_or_si512(x1, y0), top)},
+            {rows.pick(_mm512_or_si512(x0, y1), bottom), rows.pick(_mm512_or_si512(x1, y1), bottom)}};
   }
-  out.top = {pick_of_four(top_left, rows), pick_of_four(top_right, rows)};
-  out.bottom = {pick_of_four(bottom_left, rows), pick_of_four(bottom_right, rows)};
-  return true;
-}
+
+  /// In block v of the result all lanes of vector v combined.
+  template <class Combine>
+  static HWY_INLINE __m512i fold(const __m512i v[kVectors], Combine combine) {
+    const auto blocks = [&](__m512i a, __m512i b) {
+      return combine(_mm512_shuffle_i32x4(a, b, 0x88), _mm512_shuffle_i32x4(a, b, 0xDD));
+    };
+    const __m512i four = blocks(blocks(v[0], v[1]), blocks(v[2], v[3]));
+    const __m512i two = combine(four, _mm512_shuffle_epi32(four, _MM_PERM_BADC));
+    return combine(two, _mm512_shuffle_epi32(two, _MM_PERM_CDAB));
+  }
+
+  __m512i first_[kVectors], second_[kVectors];
+  alignas(64) std::uint32_t corner_[16];
+  bool wide_ = false;
+};
 #else
-HWY_INLINE bool load_near_words(const std::byte*, const SquareLevel&, const SquarePlaces&, WordSquare&) {
-  return false;
-}
+class NearWave {
+ public:
+  void add_first(std::size_t, VI, VI) {}
+  void add_second(std::size_t, VI, VI) {}
+  template <bool kPairs>
+  bool find(const SquareLevel&) {
+    return false;
+  }
+  WordSquare load(const std::byte*, const SquareLevel&, std::size_t) const {
+    const VU zero = hn::Zero(DU());
+    return {{zero, zero}, {zero, zero}};
+  }
+  VU load_first(const std::byte*, const SquareLevel&, std::size_t) const { return hn::Zero(DU()); }
+};
 #endif
 
 /// Rows as byte offsets with the level's origin.
@@ -132,12 +194,106 @@ HWY_INLINE WordSquare load_rows_of_words(const std::byte* base, VI row0, VI row1
   return out;
 }
 
-HWY_INLINE WordSquare load_square(const std::byte* base, const SquareLevel& level, const SquarePlaces& at) {
-  WordSquare out;
-  if (level.uniform && load_near_words(base, level, at, out)) return out;
-  return load_rows_of_words(base, hn::Add(level.origin, hn::Mul(at.y[0], level.row_pitch)),
-                            hn::Add(level.origin, hn::Mul(at.y[1], level.row_pitch)), at.x[0], at.x[1]);
+/// Whether all lanes of the wave read one level of one layer or face.
+inline bool wave_has_one_level(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
+                               int which) {
+  if (request.offset[0] || request.offset[1] || request.offset[2]) return false;
+  const auto same = [](const IntLanes& values) {
+    const VI first = splat(values.lane[0]);
+    auto equal = hn::Eq(first, first);
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DI())) {
+      equal = hn::And(equal, hn::Eq(hn::Load(DI(), values.lane + i), first));
+    }
+    return hn::AllTrue(DI(), equal);
+  };
+  return (p.one_level || same(state.level[which])) && (!p.plan.arrayed || same(state.layer_offset)) &&
+         (!p.plan.cube || same(state.face));
 }
+
+/// The words around the points of a wave on one of the two levels that its lanes read; those of a cube inside their
+/// faces. Axis: set() from AxisLanes that stay where they are, taps(coordinate) for two texels and the weight of the
+/// second. Without `kPairs` the first texels alone.
+template <class Axis, bool kPairs>
+class SquareReader {
+ public:
+  using Weight = decltype(std::declval<Axis>().taps(VF()).weight);
+  struct Weighed {
+    WordSquare words;
+    Weight x, y;
+  };
+
+  HWY_INLINE SquareReader(const PreparedSampler& p, const SampleRequest& request, const WaveState& state, int which)
+      : p_(p), request_(request), state_(state), which_(which), whole_(wave_has_one_level(p, request, state, which)) {
+    if (!whole_) return;
+    load_level_of(0);
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const auto x = taps(0, v), y = taps(1, v);
+      near_.add_first(v, x.first, y.first);
+      if constexpr (!kPairs) continue;
+      near_.add_second(v, x.second, y.second);
+      x_[v] = x.weight;
+      y_[v] = y.weight;
+    }
+    is_near_ = near_.template find<kPairs>(square_);
+  }
+
+  HWY_INLINE Weighed read(std::size_t vector) {
+    if (is_near_) return {near_.load(p_.plan.view->base, square_, vector), x_[vector], y_[vector]};
+    return read_alone(vector);
+  }
+
+  HWY_INLINE VU read_first(std::size_t vector) {
+    if (is_near_) return near_.load_first(p_.plan.view->base, square_, vector);
+    return read_first_alone(vector);
+  }
+
+ private:
+  HWY_INLINE void load_level_of(std::size_t vector) {
+    load_level<2>(p_, request_, state_, which_, vector * hn::Lanes(DF()), p_.plan.cube, level_);
+    axis_[0].set(level_.axis[0]);
+    axis_[1].set(level_.axis[1]);
+    square_.set(level_);
+  }
+  HWY_INLINE auto taps(std::size_t i, std::size_t vector) const {
+    return axis_[i].taps(hn::LoadU(DF(), state_.coord[i] + vector * hn::Lanes(DF())));
+  }
+
+  /// A vector by itself.
+  HWY_NOINLINE Weighed read_alone(std::size_t vector) {
+    if (!whole_) load_level_of(vector);
+    const std::byte* const base = p_.plan.view->base;
+    const auto x = taps(0, vector), y = taps(1, vector);
+    if (square_.uniform) {
+      NearWave near;
+      for (std::size_t v = 0; v < kVectors; ++v) {
+        near.add_first(v, x.first, y.first);
+        near.add_second(v, x.second, y.second);
+      }
+      if (near.find<true>(square_)) return {near.load(base, square_, 0), x.weight, y.weight};
+    }
+    const VI row0 = hn::Add(square_.origin, hn::Mul(y.first, square_.row_pitch));
+    const VI row1 = hn::Add(square_.origin, hn::Mul(y.second, square_.row_pitch));
+    return {load_rows_of_words(base, row0, row1, x.first, x.second), x.weight, y.weight};
+  }
+  HWY_NOINLINE VU read_first_alone(std::size_t vector) {
+    if (!whole_) load_level_of(vector);
+    const auto x = taps(0, vector), y = taps(1, vector);
+    const VI row = hn::Add(square_.origin, hn::Mul(y.first, square_.row_pitch));
+    return load_words(p_.plan.view->base, hn::Add(row, hn::ShiftLeft<2>(x.first)));
+  }
+
+  const PreparedSampler& p_;
+  const SampleRequest& request_;
+  const WaveState& state_;
+  int which_;
+  bool whole_;
+  bool is_near_ = false;
+  LevelLanes level_;
+  Axis axis_[2];
+  SquareLevel square_;
+  Weight x_[kVectors], y_[kVectors];
+  NearWave near_;
+};
 
 }  // namespace vitrine::texel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -292,15 +292,15 @@ struct LevelIndex {
   bool uniform = true;
 };
 
-/// kDims axes; `origin` includes the face if `with_face`.
+/// kDims axes; `origin` includes the face if `with_face`. Fills `out` in place: a copy of its small fields just written
+/// would wait for their stores.
 template <std::uint32_t kDims>
-HWY_INLINE LevelLanes load_level(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
-                                 int which, std::size_t first, bool with_face) {
+HWY_INLINE void load_level(const PreparedSampler& p, const SampleRequest& request, const WaveState& state, int which,
+                           std::size_t first, bool with_face, LevelLanes& out) {
   const Plan& plan = p.plan;
   const LevelIndex level = p.one_level ? LevelIndex() : LevelIndex(hn::Load(DI(), state.level[which].lane + first));
   const std::int32_t* const sizes[3] = {p.level.width, p.level.height, p.level.depth};
   const bool has_offset = request.offset[0] || request.offset[1] || request.offset[2];
-  LevelLanes out;
   for (std::uint32_t i = 0; i < kDims; ++i) {
     AxisLanes& axis = out.axis[i];
     axis.address = plan.address[i];
@@ -319,7 +319,6 @@ HWY_INLINE LevelLanes load_level(const PreparedSampler& p, const SampleRequest& 
     const VI stride = splat(static_cast<std::int32_t>(plan.view->layer_stride));
     out.origin = hn::Add(out.origin, hn::Mul(hn::Load(DI(), state.face.lane + first), stride));
   }
-  return out;
 }
 
 /// Whether load_level gives the same for every vector of the wave.
