@@ -281,6 +281,20 @@ void assemble_point(Assembler& a, std::uint32_t slot) {
   setup_point(a.setup, window_record(a, v), true);
 }
 
+/// 10.1: a fan of four vertices that lies inside the view volume and has no flat values is set up from its centre on,
+/// whatever vertex is the provoking one; that tells only in the last bits of what is interpolated.
+bool starts_at_center(const Assembler& a, const Run& run, const std::uint16_t* slot) {
+  const PipelinePlan& plan = a.plan;
+  if (plan.state->topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN || run.end - run.begin != 2 || !run.ends) return false;
+  if (run.begin != 0 || a.chunk.draw->call.index_data || plan.flat_count != 0) return false;
+  if (plan.bias_in_vertices || plan.out.cull_count != 0 || plan.per_vertex_viewport) return false;
+  for (int i = 0; i < 4; ++i) {
+    if (a.scratch.code[slot[i]] != 0) return false;
+    if (plan.out.layer != kNoReg && a.scratch.layer[slot[i]] != a.scratch.layer[slot[0]]) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, FrontScratch& scratch) {
@@ -303,8 +317,9 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
       first_entry += span.count();
       continue;
     }
+    const bool last = state.provoking_vertex_last || starts_at_center(a, run, scratch.slot.data() + first_entry);
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const Corners corners = corners_of(state.topology, state.provoking_vertex_last, i);
+      const Corners corners = corners_of(state.topology, last, i);
       std::uint32_t slot[3];
       for (std::uint32_t c = 0; c < shape.corners; ++c) slot[c] = scratch.slot[first_entry + span.entry(corners.at[c])];
       a.setup.id = run.first_id + i;

@@ -53,6 +53,58 @@ void draw_topology(Run& run, VkPrimitiveTopology topology, bool indexed) {
   out_target(run, target);
 }
 
+/// Fans of few triangles, whose order of corners tells in the last bits of what they interpolate.
+CTS_RANDOM("draw", "random_short_fans", 16) {
+  Random& random = run.random;
+  TargetSpec target_spec;
+  target_spec.colors = {VK_FORMAT_R32G32B32A32_SFLOAT};
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  const bool flat = random.chance(0.2f);
+  const std::string second = flat ? "flat" : "noperspective";
+  spec.vertex =
+      "layout(location = 0) in vec4 position;\nlayout(location = 1) in vec4 color;\n"
+      "layout(location = 0) out vec4 smooth_color;\nlayout(location = 1) " +
+      second +
+      " out vec4 other;\n"
+      "void main() {\n  smooth_color = color;\n  other = color.wzyx;\n  gl_Position = position;\n"
+      "  gl_Position.x += float(gl_InstanceIndex) * 0.125 * gl_Position.w;\n}\n";
+  spec.fragment = "layout(location = 0) in vec4 smooth_color;\nlayout(location = 1) " + second +
+                  " in vec4 other;\nlayout(location = 0) out vec4 result;\n"
+                  "void main() { result = smooth_color + 3.0 * other; }\n";
+  spec.floats({4, 4});
+  spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN;
+  spec.raster.cullMode = random.chance(0.1f) ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
+  VkPipelineRasterizationProvokingVertexStateCreateInfoEXT mode{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT};
+  mode.provokingVertexMode = VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
+  if (run.gpu.extension_features.provoking_vertex.provokingVertexLast && random.chance(0.25f))
+    spec.raster.pNext = &mode;
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  const uint32_t count = random.pick({3u, 4u, 4u, 4u, 5u}), instances = 1 + random.below(3);
+  const bool indexed = random.chance(0.2f);
+  std::vector<float> values = random_vertices(random, count);
+  for (uint32_t i = 0; i < count; ++i) {
+    const float w = random.real(0.5f, 2.0f), reach = random.chance(0.05f) ? 1.5f : 0.7f;
+    for (uint32_t c = 0; c < 3; ++c) values[i * 8 + c] *= c < 2 ? reach * w : w;
+    values[i * 8 + 3] = w;
+  }
+  const Buffer vertices = run.buffer_of(values), indices = run.buffer_of(std::vector<uint16_t>{0, 1, 2, 3, 4});
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT16);
+    if (indexed)
+      vkCmdDrawIndexed(cmd, count, instances, 0, 0, 0);
+    else
+      vkCmdDraw(cmd, count, instances, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+  run.may_be_blank();
+}
+
 const bool kRegistered = [] {
   for (const Topology& topology : kTopologies)
     for (const bool indexed : {false, true})
