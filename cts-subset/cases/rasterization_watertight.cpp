@@ -1,4 +1,5 @@
 // Meshes with shared edges cover every sample exactly once, whatever their triangles' size; and input at the limits.
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -81,10 +82,26 @@ CTS_RANDOM("rasterization", "watertight", 8) {
   if (wrong != 0) throw std::runtime_error(std::to_string(wrong) + " holes or doubles");
 }
 
-/// Positions with coordinates that no honest program has. Points and lines stay inside, as deviations.md says.
-CTS_RANDOM("clipping", "extreme_positions", 40) {
-  Random& random = run.random;
+/// Clip coordinates of one vertex that no honest program has. `finite`: neither w nor the window coordinates become
+/// infinite or NaN, and clipping does not overflow, so that it is defined what is drawn.
+std::array<float, 4> extreme_position(Random& random, float chance, bool finite) {
   const float infinity = std::numeric_limits<float>::infinity();
+  const float big = finite ? 0x1p30f : 1e38f;
+  std::array<float, 4> position = {random.real(-1.2f, 1.2f), random.real(-1.2f, 1.2f), random.real(-0.2f, 1.2f), 1.0f};
+  for (float& v : position)
+    if (random.chance(chance))
+      v = random.pick({0.0f, -0.0f, 0x1p30f, -0x1p30f, 0x1p-30f, big, -big, 1e-40f, -1.0f, 32768.0f, infinity,
+                       -infinity, std::numeric_limits<float>::quiet_NaN()});
+  auto& [x, y, z, w] = position;
+  if (!finite) return position;
+  w = std::min(std::max(w, -1.0f), big);  // keeps NaN
+  const bool at_eye = std::fabs(x) < 0x1p-100f && std::fabs(y) < 0x1p-100f && std::fabs(w) < 0x1p-100f;
+  if (at_eye) x = 1.0f;
+  return position;
+}
+
+void draw_extreme_positions(Run& run, bool finite) {
+  Random& random = run.random;
   TargetSpec target_spec;
   target_spec.depth = VK_FORMAT_D32_SFLOAT;
   const Target target = make_target(run, target_spec);
@@ -97,15 +114,16 @@ CTS_RANDOM("clipping", "extreme_positions", 40) {
   spec.assembly.topology = random.pick({VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP,
                                         VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN, VK_PRIMITIVE_TOPOLOGY_LINE_LIST});
   const VkPipeline pipeline = make_pipeline(run, spec, target);
+  spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
+  spec.depth.depthCompareOp = VK_COMPARE_OP_ALWAYS;
+  const VkPipeline cover = make_pipeline(run, spec, target);
   std::vector<float> values;
   const float chance = random.pick({0.03f, 0.1f, 0.3f});
-  for (int i = 0; i < 60; ++i) {
-    float position[4] = {random.real(-1.2f, 1.2f), random.real(-1.2f, 1.2f), random.real(-0.2f, 1.2f), 1.0f};
-    for (float& v : position)
-      if (random.chance(chance))
-        v = random.pick({0.0f, -0.0f, 0x1p30f, -0x1p30f, 0x1p-30f, 1e38f, -1e38f, 1e-40f, -1.0f, 32768.0f, infinity,
-                         -infinity, std::numeric_limits<float>::quiet_NaN()});
-    for (const float v : position) values.push_back(v);
+  for (int i = 0; i < 64; ++i) {
+    std::array<float, 4> position = extreme_position(random, chance, finite);
+    // The last four are those of `cover`.
+    if (i >= 60) position = {i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, 0.5f, 1.0f};
+    values.insert(values.end(), position.begin(), position.end());
     for (int c = 0; c < 4; ++c) values.push_back(random.unit());
   }
   const Buffer vertices = run.buffer_of(values);
@@ -117,11 +135,20 @@ CTS_RANDOM("clipping", "extreme_positions", 40) {
     vkCmdDraw(cmd, 0, 1, 0, 0);
     vkCmdDraw(cmd, 60, 0, 0, 0);
     vkCmdDraw(cmd, 2, 1, 0, 0);
+    if (!finite) {
+      bind_pipeline(cmd, cover);
+      vkCmdDraw(cmd, 4, 1, 60, 0);
+    }
     vkCmdEndRenderPass(cmd);
   });
   out_target(run, target);
-  run.may_be_blank();
+  if (finite) run.may_be_blank();
 }
+
+CTS_RANDOM("clipping", "extreme_positions", 40) { draw_extreme_positions(run, true); }
+/// What these draw is undefined (deviations.md, wrapped-coordinates and clipped-denormals), and is covered before it is
+/// looked at.
+CTS_RANDOM("clipping", "undefined_positions", 20) { draw_extreme_positions(run, false); }
 
 /// Attachments as wide or high as an image may be.
 void draw_long(Run& run, uint32_t width, uint32_t height, uint32_t layers, const char* select) {

@@ -57,5 +57,35 @@ const AddCase kBgra("clipping", "deviation.bgra8_route", "bgra8-route", case_aga
   draw(run, "with_depth", target, {}, values);
 });
 
+/// A triangle whose corners differ so much in w that a corner made by clipping has no finite place.
+const AddCase kWrapped("clipping", "deviation.wrapped_coordinates", "wrapped-coordinates", case_against_control,
+                       [](Run& run) {
+                         draw(run, "triangle", {}, {},
+                              colored({{-0.325063586f, -1, 0.800330579f, 1},
+                                       {-0.706831634f, -1, 0.754183352f, -0x1p30f},
+                                       {-0.263199508f, -0.944609642f, 0.721903443f, 1e38f}}));
+                         draw(run, "outside", {}, {}, colored({{2, 0, 0.5f, 1}, {3, 0, 0.5f, 1}, {3, 1, 0.5f, 1}}));
+                       });
+
+/// A clipped line along which 1/w and its products are denormal numbers.
+const AddCase kDenormals(
+    "clipping", "deviation.clipped_denormals", "clipped-denormals",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) -> std::string {
+      const auto is_clear = [](const Output& output, size_t at) {
+        return std::memcmp(&output.bytes[at], output.bytes.data() + output.bytes.size() - 4, 4) == 0;
+      };
+      for (size_t at = 0; at < device[0].bytes.size(); at += 4)
+        if (is_clear(device[0], at) != is_clear(reference[0], at)) return "the device draws other pixels";
+      return different(device[0], reference[0], "the reference's fault");
+    },
+    [](Run& run) {
+      GraphicsSpec spec;
+      spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+      std::vector<float> values =
+          colored({{0.752201319f, -0.380163312f, 0x1p30f, 1e37f}, {1.1882813f, -1e37f, 0.25f, 1}});
+      values[8 + 4] = 1.0f;
+      draw(run, "line", {}, spec, values);
+    });
+
 }  // namespace
 }  // namespace vitrine::cts
