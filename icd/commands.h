@@ -194,6 +194,7 @@ struct CmdBeginRendering {
   VkRenderingFlags flags;
   VkRect2D area;
   std::uint32_t layers, view_mask;
+  std::uint32_t forced_samples;  ///< of single-sampled attachments while they are drawn to
   std::span<const RenderingAttachment> colors;
   RenderingAttachment depth, stencil;
 };

@@ -21,6 +21,7 @@ struct Subpass {
   std::uint32_t depth_stencil_resolve = VK_ATTACHMENT_UNUSED;
   VkResolveModeFlagBits depth_resolve_mode = VK_RESOLVE_MODE_NONE, stencil_resolve_mode = VK_RESOLVE_MODE_NONE;
   std::uint32_t view_mask = 0;
+  std::uint32_t forced_samples = 1;  ///< of single-sampled attachments while they are drawn to
   Vector<std::uint32_t> first_uses;  ///< attachments no earlier subpass uses: their load ops happen here
 };
 
@@ -30,6 +31,9 @@ struct RenderPass : Object<VkRenderPass, VK_OBJECT_TYPE_RENDER_PASS> {
   Vector<Attachment> attachments;
   Vector<Subpass> subpasses;
 };
+
+/// The sample count of a VkMultisampledRenderToSingleSampledInfoEXT in the chain, 1 if it is off.
+std::uint32_t forced_samples(const void* chain);
 
 struct Framebuffer : Object<VkFramebuffer, VK_OBJECT_TYPE_FRAMEBUFFER> {
   explicit Framebuffer(const HostMemory& m) : Object(m), attachments(m) {}

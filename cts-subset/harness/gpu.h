@@ -96,6 +96,10 @@ void check(VkResult result, const char* call);
   X(maintenance4, VkPhysicalDeviceMaintenance4Features, MAINTENANCE_4_FEATURES, "VK_KHR_maintenance4")                 \
   X(memory_model, VkPhysicalDeviceVulkanMemoryModelFeatures, VULKAN_MEMORY_MODEL_FEATURES,                             \
     "VK_KHR_vulkan_memory_model")                                                                                      \
+  X(single_sampled, VkPhysicalDeviceMultisampledRenderToSingleSampledFeaturesEXT,                                      \
+    MULTISAMPLED_RENDER_TO_SINGLE_SAMPLED_FEATURES_EXT, "VK_EXT_multisampled_render_to_single_sampled")                \
+  X(advanced_blend, VkPhysicalDeviceBlendOperationAdvancedFeaturesEXT, BLEND_OPERATION_ADVANCED_FEATURES_EXT,          \
+    "VK_EXT_blend_operation_advanced")                                                                                 \
   X(multi_draw, VkPhysicalDeviceMultiDrawFeaturesEXT, MULTI_DRAW_FEATURES_EXT, "VK_EXT_multi_draw")                    \
   X(multiview, VkPhysicalDeviceMultiviewFeatures, MULTIVIEW_FEATURES, "VK_KHR_multiview")                              \
   X(provoking_vertex, VkPhysicalDeviceProvokingVertexFeaturesEXT, PROVOKING_VERTEX_FEATURES_EXT,                       \

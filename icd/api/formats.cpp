@@ -19,6 +19,7 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice, 
     wide->optimalTilingFeatures = wide_features(format, out->formatProperties.optimalTilingFeatures);
     wide->bufferFeatures = wide_features(format, out->formatProperties.bufferFeatures);
   }
+  if (auto* resolve = find_in_out_chain<VkSubpassResolvePerformanceQueryEXT>(out->pNext)) resolve->optimal = VK_FALSE;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysicalDevice, VkFormat format,

@@ -65,8 +65,9 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRendering(VkCommandBuffer buffer, const VkRen
   for (std::uint32_t i = 0; i < info->colorAttachmentCount; ++i) {
     colors[i] = make_attachment(&info->pColorAttachments[i]);
   }
-  record(b, icd::CmdBeginRendering{info->flags, info->renderArea, info->layerCount, info->viewMask, colors,
-                                   make_attachment(info->pDepthAttachment), make_attachment(info->pStencilAttachment)});
+  record(b, icd::CmdBeginRendering{info->flags, info->renderArea, info->layerCount, info->viewMask,
+                                   forced_samples(info->pNext), colors, make_attachment(info->pDepthAttachment),
+                                   make_attachment(info->pStencilAttachment)});
   add_cost(b, info->renderArea, info->layerCount);
 }
 

@@ -19,13 +19,15 @@ Subpass make_subpass(const VkSubpassDescription2& info, const HostMemory& memory
   copy_references(info.pColorAttachments, info.colorAttachmentCount, subpass.colors);
   copy_references(info.pResolveAttachments, info.colorAttachmentCount, subpass.resolves);
   if (info.pDepthStencilAttachment) subpass.depth_stencil = info.pDepthStencilAttachment->attachment;
-  if (const auto* resolve = find_in_chain<VkSubpassDescriptionDepthStencilResolve>(info.pNext);
-      resolve && resolve->pDepthStencilResolveAttachment) {
-    subpass.depth_stencil_resolve = resolve->pDepthStencilResolveAttachment->attachment;
+  if (const auto* resolve = find_in_chain<VkSubpassDescriptionDepthStencilResolve>(info.pNext)) {
+    if (const VkAttachmentReference2* target = resolve->pDepthStencilResolveAttachment) {
+      subpass.depth_stencil_resolve = target->attachment;
+    }
     subpass.depth_resolve_mode = resolve->depthResolveMode;
     subpass.stencil_resolve_mode = resolve->stencilResolveMode;
   }
   subpass.view_mask = info.viewMask;
+  subpass.forced_samples = forced_samples(info.pNext);
   return subpass;
 }
 
@@ -119,6 +121,12 @@ void upgrade_subpasses(const VkRenderPassCreateInfo& info, UpgradedInfo& out) {
 }
 
 }  // namespace
+
+std::uint32_t forced_samples(const void* chain) {
+  const auto* info = find_in_chain<VkMultisampledRenderToSingleSampledInfoEXT>(chain);
+  return info && info->multisampledRenderToSingleSampledEnable ? static_cast<std::uint32_t>(info->rasterizationSamples)
+                                                               : 1;
+}
 
 namespace entry {
 

@@ -19,7 +19,12 @@ const ImageView* attachment_view(const ReplayState& state, std::uint32_t attachm
   return attachment < views.size() ? views[attachment] : nullptr;
 }
 
-raster::PassDesc describe_pass(const ReplayState& state) {
+/// What is drawn to: the attachment, or the samples that stand for it.
+const ImageView* drawn_view(ReplayState& state, std::uint32_t attachment) {
+  return transient_of(state.transients, attachment_view(state, attachment), current_subpass(state).forced_samples);
+}
+
+raster::PassDesc describe_pass(ReplayState& state) {
   const Subpass& subpass = current_subpass(state);
   raster::PassDesc desc;
   desc.color_count = std::min(static_cast<std::uint32_t>(subpass.colors.size()), raster::kMaxColorAttachments);
@@ -27,12 +32,12 @@ raster::PassDesc describe_pass(const ReplayState& state) {
   desc.layers = state.scope.layers;
   desc.view_mask = state.scope.view_mask;
   for (std::uint32_t i = 0; i < desc.color_count; ++i) {
-    const ImageView* view = attachment_view(state, subpass.colors[i]);
+    const ImageView* view = drawn_view(state, subpass.colors[i]);
     if (!view) continue;
     desc.color[i] = view->view;
     desc.samples = view->image->desc().samples;
   }
-  if (const ImageView* view = attachment_view(state, subpass.depth_stencil)) {
+  if (const ImageView* view = drawn_view(state, subpass.depth_stencil)) {
     desc.depth = depth_stencil_plane(*view, VK_IMAGE_ASPECT_DEPTH_BIT);
     desc.stencil = depth_stencil_plane(*view, VK_IMAGE_ASPECT_STENCIL_BIT);
     desc.samples = view->image->desc().samples;
@@ -88,7 +93,7 @@ void load_attachment(ReplayState& state, std::uint32_t attachment) {
 }
 
 /// The scope of the current subpass.
-DrawScope describe_scope(const ReplayState& state) {
+DrawScope describe_scope(ReplayState& state) {
   const CmdBeginRenderPass& instance = *state.instance;
   const Subpass& subpass = current_subpass(state);
   DrawScope scope;
@@ -99,8 +104,13 @@ DrawScope describe_scope(const ReplayState& state) {
     scope.add_resolve({attachment_view(state, subpass.colors[i]), attachment_view(state, subpass.resolves[i]),
                        VK_IMAGE_ASPECT_COLOR_BIT, VK_RESOLVE_MODE_AVERAGE_BIT});
   }
-  const ImageView* const source = attachment_view(state, subpass.depth_stencil);
-  const ImageView* const target = attachment_view(state, subpass.depth_stencil_resolve);
+  for (const std::uint32_t color : subpass.colors) {
+    const ImageView *const drawn = drawn_view(state, color), *const single = attachment_view(state, color);
+    if (drawn != single) scope.add_resolve({drawn, single, VK_IMAGE_ASPECT_COLOR_BIT, VK_RESOLVE_MODE_AVERAGE_BIT});
+  }
+  const ImageView* const source = drawn_view(state, subpass.depth_stencil);
+  const ImageView* const single = attachment_view(state, subpass.depth_stencil);
+  const ImageView* const target = source != single ? single : attachment_view(state, subpass.depth_stencil_resolve);
   scope.add_resolve({source, target, VK_IMAGE_ASPECT_DEPTH_BIT, subpass.depth_resolve_mode});
   scope.add_resolve({source, target, VK_IMAGE_ASPECT_STENCIL_BIT, subpass.stencil_resolve_mode});
   return scope;

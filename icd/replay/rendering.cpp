@@ -26,7 +26,8 @@ DrawScope describe_scope(const CmdBeginRendering& command) {
   scope.area = clip_to_attachments(command);
   scope.layers = command.layers;
   scope.view_mask = command.view_mask;
-  if (command.flags & VK_RENDERING_SUSPENDING_BIT) return scope;  // the one that ends it resolves
+  scope.suspended = command.flags & VK_RENDERING_SUSPENDING_BIT;
+  if (scope.suspended) return scope;  // the one that ends it resolves
   for (const RenderingAttachment& color : command.colors) {
     scope.add_resolve({color.view, color.resolve, VK_IMAGE_ASPECT_COLOR_BIT, color.resolve_mode});
   }
@@ -60,6 +61,36 @@ raster::PassDesc describe_pass(const CmdBeginRendering& command, const DrawScope
   return desc;
 }
 
+/// The command with the samples that stand for its attachments; `colors` takes the changed ones.
+CmdBeginRendering with_transients(ReplayState& state, const CmdBeginRendering& recorded,
+                                  std::array<RenderingAttachment, raster::kMaxColorAttachments>& colors) {
+  CmdBeginRendering command = recorded;
+  if (recorded.forced_samples <= 1) return command;
+  const std::size_t count = std::min<std::size_t>(recorded.colors.size(), colors.size());
+  std::copy_n(recorded.colors.begin(), count, colors.begin());
+  const auto replace = [&](RenderingAttachment& attachment) {
+    attachment.view = transient_of(state.transients, attachment.view, recorded.forced_samples);
+  };
+  std::for_each(colors.begin(), colors.begin() + static_cast<std::ptrdiff_t>(count), replace);
+  replace(command.depth);
+  replace(command.stencil);
+  command.colors = {colors.data(), count};
+  return command;
+}
+
+/// Adds what brings the samples of `command` to the attachments of `recorded`.
+void resolve_transients(const CmdBeginRendering& recorded, const CmdBeginRendering& command, DrawScope& scope) {
+  if (scope.suspended) return;
+  const auto resolve = [&](const RenderingAttachment& drawn, const RenderingAttachment& single,
+                           VkImageAspectFlagBits aspect, VkResolveModeFlagBits mode) {
+    if (drawn.view != single.view) scope.add_resolve({drawn.view, single.view, aspect, mode});
+  };
+  for (std::size_t i = 0; i < command.colors.size(); ++i)
+    resolve(command.colors[i], recorded.colors[i], VK_IMAGE_ASPECT_COLOR_BIT, VK_RESOLVE_MODE_AVERAGE_BIT);
+  resolve(command.depth, recorded.depth, VK_IMAGE_ASPECT_DEPTH_BIT, recorded.depth.resolve_mode);
+  resolve(command.stencil, recorded.stencil, VK_IMAGE_ASPECT_STENCIL_BIT, recorded.stencil.resolve_mode);
+}
+
 bool is_cleared(const RenderingAttachment& attachment) {
   return attachment.view && attachment.load == VK_ATTACHMENT_LOAD_OP_CLEAR;
 }
@@ -80,8 +111,12 @@ void clear_attachments(ReplayState& state, const CmdBeginRendering& command, std
 
 }  // namespace
 
-void execute(ReplayState& state, const CmdBeginRendering& command) {
+void execute(ReplayState& state, const CmdBeginRendering& recorded) {
+  if (!(recorded.flags & VK_RENDERING_RESUMING_BIT)) state.transients.clear();
+  std::array<RenderingAttachment, raster::kMaxColorAttachments> colors{};
+  const CmdBeginRendering command = with_transients(state, recorded, colors);
   state.scope = describe_scope(command);
+  resolve_transients(recorded, command, state.scope);
   state.pass.emplace(describe_pass(command, state.scope));
   if (command.flags & VK_RENDERING_RESUMING_BIT) return;  // the one that was suspended has loaded
   for_each_layer_range(command.view_mask, command.layers, [&](std::uint32_t layer, std::uint32_t count) {

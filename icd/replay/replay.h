@@ -10,6 +10,7 @@
 #include "icd/query_pool.h"
 #include "icd/render_pass.h"
 #include "icd/replay/arena.h"
+#include "icd/replay/transient.h"
 #include "raster/pass.h"
 
 namespace vitrine::icd {
@@ -42,6 +43,7 @@ struct DrawScope {
   std::uint32_t view_mask = 0;
   std::array<PendingResolve, raster::kMaxColorAttachments + 2> resolve{};
   std::uint32_t resolve_count = 0;
+  bool suspended = false;  ///< a later scope goes on with it
 
   void add_resolve(const PendingResolve& r) {
     if (r.source && r.target && r.mode != VK_RESOLVE_MODE_NONE && resolve_count < resolve.size())
@@ -66,7 +68,8 @@ struct PendingQuery {
 };
 
 struct ReplayState {
-  explicit ReplayState(Device& d) : device(d), arena(d.memory), pending_queries(d.memory), views_loaded(d.memory) {}
+  explicit ReplayState(Device& d)
+      : device(d), arena(d.memory), transients(d.memory), pending_queries(d.memory), views_loaded(d.memory) {}
 
   Device& device;
   ReplayArena arena;
@@ -87,6 +90,7 @@ struct ReplayState {
   std::uint32_t subpass = 0;
   DrawScope scope;                   ///< while there is a pass
   std::optional<raster::Pass> pass;  ///< none: outside
+  TransientAttachments transients;   ///< of the scope, or of one that was suspended
 
   raster::QueryCounters counters;  ///< of active queries
   Vector<PendingQuery> pending_queries;

@@ -41,6 +41,7 @@ void end_scope(ReplayState& state) {
       texel::resolve_view(source, target, r.mode, scope.area, layer, count);
     });
   }
+  if (!scope.suspended) state.transients.clear();
 }
 
 }  // namespace vitrine::icd
