@@ -88,6 +88,9 @@ struct CmdSetValue {
   DynamicState which;
   std::uint32_t value;
 };
+struct CmdSetSampleLocations {
+  raster::SampleLocations locations;
+};
 struct CmdSetLineStipple {
   std::uint32_t factor;
   std::uint16_t pattern;
@@ -309,14 +312,14 @@ struct CommandList {
 using Commands = CommandList<
     CmdBindPipeline, CmdBindDescriptorSets, CmdPushConstants, CmdBindVertexBuffers, CmdBindIndexBuffer, CmdSetViewport,
     CmdSetScissor, CmdSetLineWidth, CmdSetDepthBias, CmdSetBlendConstants, CmdSetDepthBounds, CmdSetStencil,
-    CmdSetStencilOp, CmdSetValue, CmdSetLineStipple, CmdSetColorWriteEnable, CmdSetBlend, CmdSetVertexInput, CmdDraw,
-    CmdDrawIndexed, CmdDrawMulti, CmdDrawMultiIndexed, CmdBeginConditionalRendering, CmdEndConditionalRendering,
-    CmdDrawIndirect, CmdDrawByteCount, CmdBindTransformFeedbackBuffers, CmdBeginTransformFeedback,
-    CmdEndTransformFeedback, CmdDispatch, CmdDispatchIndirect, CmdBeginRenderPass, CmdNextSubpass, CmdEndRenderPass,
-    CmdBeginRendering, CmdEndRendering, CmdClearAttachments, CmdExecuteCommands, CmdCopyBuffer, CmdCopyImage,
-    CmdBlitImage, CmdResolveImage, CmdCopyBufferToImage, CmdCopyImageToBuffer, CmdUpdateBuffer, CmdFillBuffer,
-    CmdClearColorImage, CmdClearDepthStencilImage, CmdPipelineBarrier, CmdSetEvent, CmdWaitEvents, CmdBeginQuery,
-    CmdEndQuery, CmdResetQueryPool, CmdWriteTimestamp, CmdCopyQueryPoolResults>;
+    CmdSetStencilOp, CmdSetValue, CmdSetSampleLocations, CmdSetLineStipple, CmdSetColorWriteEnable, CmdSetBlend,
+    CmdSetVertexInput, CmdDraw, CmdDrawIndexed, CmdDrawMulti, CmdDrawMultiIndexed, CmdBeginConditionalRendering,
+    CmdEndConditionalRendering, CmdDrawIndirect, CmdDrawByteCount, CmdBindTransformFeedbackBuffers,
+    CmdBeginTransformFeedback, CmdEndTransformFeedback, CmdDispatch, CmdDispatchIndirect, CmdBeginRenderPass,
+    CmdNextSubpass, CmdEndRenderPass, CmdBeginRendering, CmdEndRendering, CmdClearAttachments, CmdExecuteCommands,
+    CmdCopyBuffer, CmdCopyImage, CmdBlitImage, CmdResolveImage, CmdCopyBufferToImage, CmdCopyImageToBuffer,
+    CmdUpdateBuffer, CmdFillBuffer, CmdClearColorImage, CmdClearDepthStencilImage, CmdPipelineBarrier, CmdSetEvent,
+    CmdWaitEvents, CmdBeginQuery, CmdEndQuery, CmdResetQueryPool, CmdWriteTimestamp, CmdCopyQueryPoolResults>;
 
 namespace detail {
 

@@ -2,6 +2,7 @@
 #include "icd/dynamic_state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace vitrine::icd {
@@ -57,6 +58,8 @@ constexpr Name kNames[] = {
     {VK_DYNAMIC_STATE_LINE_RASTERIZATION_MODE_EXT, DynamicState::kLineRasterizationMode},
     {VK_DYNAMIC_STATE_LINE_STIPPLE_ENABLE_EXT, DynamicState::kLineStippleEnable},
     {VK_DYNAMIC_STATE_DEPTH_CLIP_NEGATIVE_ONE_TO_ONE_EXT, DynamicState::kDepthClipNegativeOneToOne},
+    {VK_DYNAMIC_STATE_SAMPLE_LOCATIONS_EXT, DynamicState::kSampleLocations},
+    {VK_DYNAMIC_STATE_SAMPLE_LOCATIONS_ENABLE_EXT, DynamicState::kSampleLocationsEnable},
 };
 
 /// Calls f(member, member) for the member that a one-word state is. `from` and `to` may be one state.
@@ -120,6 +123,10 @@ void visit_word(DynamicState which, F f) {
       return f(&S::line_stipple);
     case DynamicState::kDepthClipNegativeOneToOne:
       return f(&S::negative_one_to_one);
+    case DynamicState::kSampleLocations:
+      return f(&S::locations);
+    case DynamicState::kSampleLocationsEnable:
+      return f(&S::custom_locations);
     default:
       return;
   }
@@ -184,6 +191,8 @@ VkGraphicsPipelineLibraryFlagBitsEXT part_of(DynamicState state) {
     case DynamicState::kRasterizationSamples:
     case DynamicState::kAlphaToCoverageEnable:
     case DynamicState::kAlphaToOneEnable:
+    case DynamicState::kSampleLocations:
+    case DynamicState::kSampleLocationsEnable:
       return VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT;
     default:
       return VK_GRAPHICS_PIPELINE_LIBRARY_PRE_RASTERIZATION_SHADERS_BIT_EXT;
@@ -245,6 +254,22 @@ void copy_state(const raster::State& from, DynamicState which, raster::State& to
     default:
       visit_word(which, [&](auto member) { to.*member = from.*member; });
   }
+}
+
+raster::SampleLocations sample_locations(const VkSampleLocationsInfoEXT& info) {
+  const auto count = static_cast<std::uint32_t>(info.sampleLocationsPerPixel);
+  if (count == 0 || count > raster::kMaxSamples || info.sampleLocationsCount < count)
+    return raster::standard_locations(count);
+  raster::SampleLocations out{count, {}, {}};
+  const auto place = [](float v) {
+    return v > 0 ? 16 * static_cast<std::int32_t>(std::lround(std::min(16 * v, 15.0f))) : 0;
+  };
+  for (std::uint32_t i = 0; i < raster::kMaxSamples; ++i) {
+    const VkSampleLocationEXT& location = info.pSampleLocations[std::min(i, count - 1)];
+    out.x[i] = place(location.x);
+    out.y[i] = place(location.y);
+  }
+  return out;
 }
 
 void apply_color_writes(raster::State& state, ColorWrites writes) {

@@ -32,6 +32,7 @@ enum class DynamicState : std::uint8_t {
   kWriteMask,
   kColorWriteEnable,
   kLineStipple,
+  kSampleLocations,
   kCullMode,
   kFrontFace,
   kTopology,
@@ -57,6 +58,7 @@ enum class DynamicState : std::uint8_t {
   kLineRasterizationMode,
   kLineStippleEnable,
   kDepthClipNegativeOneToOne,
+  kSampleLocationsEnable,
   kCount
 };
 
@@ -107,6 +109,10 @@ void set_value(raster::State& state, DynamicState which, std::uint32_t value);
 
 /// Copies one state, whatever it consists of, but for those that raster::State does not have.
 void copy_state(const raster::State& from, DynamicState which, raster::State& to);
+
+/// Locations as fixed point; outside of sampleLocationCoordinateRange they are moved into it. Of a sample count that is
+/// not supported: the standard ones.
+raster::SampleLocations sample_locations(const VkSampleLocationsInfoEXT& info);
 
 /// Closes the write masks of attachments that are not written.
 void apply_color_writes(raster::State& state, ColorWrites writes);

@@ -89,13 +89,21 @@ void fill_rasterization(Pipeline& pipeline, const VkPipelineRasterizationStateCr
   state.line_width = info.lineWidth;
 }
 
-void fill_multisample(raster::State& state, const VkPipelineMultisampleStateCreateInfo& info) {
+void fill_multisample(Pipeline& pipeline, const VkPipelineMultisampleStateCreateInfo& info) {
+  raster::State& state = pipeline.state;
   state.samples = static_cast<std::uint32_t>(info.rasterizationSamples);
   state.sample_shading = info.sampleShadingEnable;
   state.min_sample_shading = info.minSampleShading;
   state.sample_mask = info.pSampleMask ? info.pSampleMask[0] : ~0u;
   state.alpha_to_coverage = info.alphaToCoverageEnable;
   state.alpha_to_one = info.alphaToOneEnable;
+  if (const auto* custom = find_in_chain<VkPipelineSampleLocationsStateCreateInfoEXT>(info.pNext)) {
+    state.custom_locations = custom->sampleLocationsEnable;
+    const bool needed = custom->sampleLocationsEnable || pipeline.dynamic.test(DynamicState::kSampleLocationsEnable);
+    if (needed && !pipeline.dynamic.test(DynamicState::kSampleLocations)) {
+      state.locations = sample_locations(custom->sampleLocationsInfo);
+    }
+  }
 }
 
 raster::StencilFace stencil_face(const VkStencilOpState& s) {
@@ -196,7 +204,7 @@ void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& i
   if (before && info.pViewportState) fill_viewports(state, *info.pViewportState, pipeline.dynamic);
   const bool shader = parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT;
   const bool output = parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT;
-  if ((shader || output) && info.pMultisampleState) fill_multisample(state, *info.pMultisampleState);
+  if ((shader || output) && info.pMultisampleState) fill_multisample(pipeline, *info.pMultisampleState);
   if (shader && has_depth_stencil(info, subpass, parts)) fill_depth_stencil(state, *info.pDepthStencilState);
   if (!output) return;
   pipeline.live_colors = live_colors(subpass);

@@ -87,6 +87,9 @@ struct State {
   float min_sample_shading = 0;
   std::uint32_t sample_mask = ~0u;
   bool alpha_to_coverage = false, alpha_to_one = false;
+  bool custom_locations = false;
+  SampleLocations
+      locations{};  ///< counts where custom_locations is set and its sample count is that of the attachments
   /// Fragments see in input attachments what earlier primitives of the draw wrote.
   bool ordered_attachment_access = false;
   // depth and stencil

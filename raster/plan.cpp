@@ -448,7 +448,8 @@ void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {
   const bool single = state.line_mode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ||
                       state.line_mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
   if (plan.draws_lines && single) plan.raster_samples = 1;
-  plan.locations = &standard_locations(plan.raster_samples);
+  const bool custom = state.custom_locations && plan.raster_samples > 1 && state.locations.count == plan.raster_samples;
+  plan.locations = custom ? &state.locations : &standard_locations(plan.raster_samples);
   plan.smooth_lines = state.line_mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT &&
                       plan.raster_samples == 1 &&
                       (plan.draws_lines || (state.polygon_mode == VK_POLYGON_MODE_LINE && !plan.draws_points));

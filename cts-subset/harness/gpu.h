@@ -138,6 +138,7 @@ void check(VkResult result, const char* call);
 #define CTS_EXTENSIONS(X)                 \
   X("VK_EXT_load_store_op_none")          \
   X("VK_EXT_post_depth_coverage")         \
+  X("VK_EXT_sample_locations")            \
   X("VK_EXT_sampler_filter_minmax")       \
   X("VK_EXT_shader_stencil_export")       \
   X("VK_EXT_shader_subgroup_ballot")      \

@@ -125,6 +125,7 @@ Target make_target(Run& run, const TargetSpec& spec, bool probe) {
   }
   if (spec.depth) {
     image.format = spec.depth;
+    image.flags = spec.depth_flags;
     image.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     if (run.gpu.features_of(spec.depth) & sampled) image.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
     target.depth = run.image(image);

@@ -13,7 +13,8 @@ struct TargetSpec {
   uint32_t width = 64, height = 64, layers = 1;
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   VkAttachmentLoadOp load = VK_ATTACHMENT_LOAD_OP_CLEAR;
-  bool resolve = false;  ///< adds a resolve attachment for every colour attachment
+  VkImageCreateFlags depth_flags = 0;  ///< of the depth attachment's image
+  bool resolve = false;                ///< adds a resolve attachment for every colour attachment
 };
 
 /// Attachments with a one-subpass render pass and a framebuffer.

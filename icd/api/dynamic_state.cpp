@@ -80,6 +80,10 @@ VKAPI_ATTR void VKAPI_CALL CmdSetStencilOp(VkCommandBuffer buffer, VkStencilFace
   record(buffer, icd::CmdSetStencilOp{faces, fail, pass, depth_fail, compare});
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdSetSampleLocationsEXT(VkCommandBuffer buffer, const VkSampleLocationsInfoEXT* info) {
+  record(buffer, icd::CmdSetSampleLocations{sample_locations(*info)});
+}
+
 VKAPI_ATTR void VKAPI_CALL CmdSetLineStippleEXT(VkCommandBuffer buffer, std::uint32_t factor, std::uint16_t pattern) {
   record(buffer, icd::CmdSetLineStipple{factor, pattern});
 }
@@ -225,6 +229,10 @@ VKAPI_ATTR void VKAPI_CALL CmdSetLineRasterizationModeEXT(VkCommandBuffer buffer
   record_value(buffer, DynamicState::kLineRasterizationMode, value);
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdSetSampleLocationsEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
+  record_value(buffer, DynamicState::kSampleLocationsEnable, value);
+}
+
 VKAPI_ATTR void VKAPI_CALL CmdSetLineStippleEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
   record_value(buffer, DynamicState::kLineStippleEnable, value);
 }
@@ -239,7 +247,6 @@ VKAPI_ATTR void VKAPI_CALL CmdSetRasterizationStreamEXT(VkCommandBuffer, std::ui
 VKAPI_ATTR void VKAPI_CALL CmdSetConservativeRasterizationModeEXT(VkCommandBuffer, VkConservativeRasterizationModeEXT) {
 }
 VKAPI_ATTR void VKAPI_CALL CmdSetExtraPrimitiveOverestimationSizeEXT(VkCommandBuffer, float) {}
-VKAPI_ATTR void VKAPI_CALL CmdSetSampleLocationsEnableEXT(VkCommandBuffer, VkBool32) {}
 VKAPI_ATTR void VKAPI_CALL CmdSetColorBlendAdvancedEXT(VkCommandBuffer, std::uint32_t, std::uint32_t,
                                                        const VkColorBlendAdvancedEXT*) {}
 VKAPI_ATTR void VKAPI_CALL CmdSetViewportWScalingEnableNV(VkCommandBuffer, VkBool32) {}

@@ -2,6 +2,7 @@
 #include "icd/entry_points.h"
 #include "icd/external.h"
 #include "icd/format_properties.h"
+#include "icd/registry/registry.h"
 #include "icd/util.h"
 
 namespace vitrine::icd::entry {
@@ -20,6 +21,14 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice, 
     wide->bufferFeatures = wide_features(format, out->formatProperties.bufferFeatures);
   }
   if (auto* resolve = find_in_out_chain<VkSubpassResolvePerformanceQueryEXT>(out->pNext)) resolve->optimal = VK_FALSE;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMultisamplePropertiesEXT(VkPhysicalDevice, VkSampleCountFlagBits samples,
+                                                                     VkMultisamplePropertiesEXT* out) {
+  auto claimed = make_struct<VkPhysicalDeviceSampleLocationsPropertiesEXT>();
+  write_property_chain(&claimed);
+  const bool located = samples & claimed.sampleLocationSampleCounts;
+  out->maxSampleLocationGridSize = located ? VkExtent2D{1, 1} : VkExtent2D{0, 0};
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysicalDevice, VkFormat format,

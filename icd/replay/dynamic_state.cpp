@@ -110,6 +110,10 @@ void execute(ReplayState& state, const CmdSetLineStipple& command) {
   out.line_stipple_pattern = command.pattern;
 }
 
+void execute(ReplayState& state, const CmdSetSampleLocations& command) {
+  change(state).state.locations = command.locations;
+}
+
 void execute(ReplayState& state, const CmdSetColorWriteEnable& command) { change(state).color_writes = command.writes; }
 
 void execute(ReplayState& state, const CmdSetBlend& command) {

@@ -140,6 +140,7 @@ void execute(ReplayState& state, const CmdSetStencil& command);
 void execute(ReplayState& state, const CmdSetStencilOp& command);
 void execute(ReplayState& state, const CmdSetValue& command);
 void execute(ReplayState& state, const CmdSetLineStipple& command);
+void execute(ReplayState& state, const CmdSetSampleLocations& command);
 void execute(ReplayState& state, const CmdSetColorWriteEnable& command);
 void execute(ReplayState& state, const CmdSetBlend& command);
 void execute(ReplayState& state, const CmdSetVertexInput& command);

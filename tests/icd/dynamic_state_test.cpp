@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
+#include <vector>
+
+#include "icd/util.h"
 
 namespace vitrine::icd {
 namespace {
@@ -42,7 +46,32 @@ raster::State unlike_default() {
   s.polygon_mode = VK_POLYGON_MODE_LINE;
   s.samples = 4;
   s.line_mode = VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
+  s.custom_locations = true;
+  s.locations = raster::kFourSamples;
   return s;
+}
+
+raster::SampleLocations located(std::uint32_t per_pixel, const std::vector<VkSampleLocationEXT>& locations) {
+  VkSampleLocationsInfoEXT info = make_struct<VkSampleLocationsInfoEXT>();
+  info.sampleLocationsPerPixel = static_cast<VkSampleCountFlagBits>(per_pixel);
+  info.sampleLocationGridSize = {1, 1};
+  info.sampleLocationsCount = static_cast<std::uint32_t>(locations.size());
+  info.pSampleLocations = locations.data();
+  return sample_locations(info);
+}
+
+TEST(DynamicStates, SampleLocationsAreSixteenthsInsideThePixel) {
+  const float nan = std::nanf("");
+  const raster::SampleLocations four = located(4, {{0.5f, 0.9375f}, {0.51f, 1.0f}, {-3.0f, 1e9f}, {nan, 0.0f}});
+  EXPECT_EQ(four.count, 4u);
+  EXPECT_EQ(std::vector<std::int32_t>(four.x, four.x + 8), (std::vector<std::int32_t>{128, 128, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(std::vector<std::int32_t>(four.y, four.y + 8), (std::vector<std::int32_t>{240, 240, 240, 0, 0, 0, 0, 0}));
+}
+
+TEST(DynamicStates, SampleLocationsThatCannotBeAreTheStandardOnes) {
+  EXPECT_EQ(located(4, {{0.5f, 0.5f}}).x[1], raster::kFourSamples.x[1]) << "fewer than the count";
+  EXPECT_EQ(located(16, std::vector<VkSampleLocationEXT>(16)).count, 1u);
+  EXPECT_EQ(located(0, {}).count, 1u);
 }
 
 TEST(DynamicStates, EveryStateIsCopiedAlone) {

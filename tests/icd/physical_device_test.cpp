@@ -64,6 +64,21 @@ TEST_F(PhysicalDevice, NamesItsDriverAndAlignments) {
   EXPECT_EQ(count, 0u);
 }
 
+TEST_F(PhysicalDevice, PlacesSamplesAlikeInEveryPixel) {
+  auto locations = make_struct<VkPhysicalDeviceSampleLocationsPropertiesEXT>();
+  auto chain = make_struct<VkPhysicalDeviceProperties2>(&locations);
+  VK_GET(instance, GetPhysicalDeviceProperties2)(physical_device, &chain);
+  EXPECT_EQ(locations.sampleLocationSampleCounts & ~chain.properties.limits.framebufferColorSampleCounts, 0u);
+  for (std::uint32_t samples = 1; samples <= 64; samples *= 2) {
+    auto properties = make_struct<VkMultisamplePropertiesEXT>();
+    VK_GET(instance, GetPhysicalDeviceMultisamplePropertiesEXT)
+    (physical_device, static_cast<VkSampleCountFlagBits>(samples), &properties);
+    const std::uint32_t side = locations.sampleLocationSampleCounts & samples ? 1 : 0;
+    EXPECT_EQ(properties.maxSampleLocationGridSize.width, side) << samples;
+    EXPECT_EQ(properties.maxSampleLocationGridSize.height, side) << samples;
+  }
+}
+
 TEST_F(PhysicalDevice, OneUniversalQueueFamily) {
   std::uint32_t count = 0;
   VK_GET(instance, GetPhysicalDeviceQueueFamilyProperties)(physical_device, &count, nullptr);
