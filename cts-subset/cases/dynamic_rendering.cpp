@@ -298,6 +298,49 @@ CTS_CASE("dynamic_rendering", "load_store_op_none") {
   rendering.out(run);
 }
 
+/// Without attachments: fragments count what they cover, and a query counts samples.
+CTS_CASE("dynamic_rendering", "no_attachments") {
+  run.require(run.gpu.extension_features.dynamic_rendering.dynamicRendering, "dynamicRendering");
+  constexpr VkExtent2D kSize{45, 33};
+  const Buffer counters = run.buffer(size_t{4} * kSize.width * kSize.height);
+  const Resources res = run.resources({storage_buffer(0, counters)});
+  const VkPipelineRenderingCreateInfo formats{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
+  GraphicsSpec spec;
+  spec.vertex = kColorVertex;
+  spec.fragment =
+      "layout(binding = 0) buffer Counters { uint counters[]; };\n"
+      "void main() { atomicAdd(counters[uint(gl_FragCoord.y) * 45u + uint(gl_FragCoord.x)], 1u); }\n";
+  spec.floats({4, 4});
+  spec.layout = res.layout;
+  spec.next = &formats;
+  const VkPipeline pipeline = make_pipeline(run, spec, VK_NULL_HANDLE, 0, 0, kSize, VK_SAMPLE_COUNT_1_BIT);
+  std::vector<float> values;
+  for (int i = 0; i < 30; ++i) {
+    for (const float v : {run.random.real(-1.1f, 1.1f), run.random.real(-1.1f, 1.1f), 0.5f, 1.0f}) values.push_back(v);
+    values.insert(values.end(), 4, 1.0f);
+  }
+  const Buffer vertices = run.buffer_of(values);
+  const VkQueryPool pool = make_query_pool(run, VK_QUERY_TYPE_OCCLUSION, 1);
+  const Buffer passed = run.buffer(16);
+  run.once([&](VkCommandBuffer cmd) {
+    vkCmdResetQueryPool(cmd, pool, 0, 1);
+    VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
+    info.renderArea = {{0, 0}, kSize};
+    info.layerCount = 1;
+    CTS_COMMAND(run.gpu, CmdBeginRenderingKHR)(cmd, &info);
+    bind_pipeline(cmd, pipeline);
+    res.bind(cmd);
+    bind_vertices(cmd, vertices);
+    vkCmdBeginQuery(cmd, pool, 0, VK_QUERY_CONTROL_PRECISE_BIT);
+    vkCmdDraw(cmd, 30, 1, 0, 0);
+    vkCmdEndQuery(cmd, pool, 0);
+    CTS_COMMAND(run.gpu, CmdEndRenderingKHR)(cmd);
+    vkCmdCopyQueryPoolResults(cmd, pool, 0, 1, passed.handle, 0, 8, VK_QUERY_RESULT_WAIT_BIT);
+  });
+  run.out("counters", counters);
+  run.out("passed", passed);
+}
+
 /// Clears reach every layer, draws the first.
 CTS_CASE("dynamic_rendering", "layers") {
   RenderingSpec spec;

@@ -89,41 +89,53 @@ void record(Run& run, const Pass& pass, const std::function<void(VkCommandBuffer
   });
 }
 
-/// Overlapping triangles of one draw, each of which changes what the one before wrote.
-void rasterization_order(Run& run, bool depth) {
+/// Overlapping triangles of one draw, each of which changes what the one before wrote: the colour and, unless `second`
+/// is 0, depth or stencil, which fragments read, too.
+void rasterization_order(Run& run, VkImageAspectFlags second) {
+  const bool depth = second == VK_IMAGE_ASPECT_DEPTH_BIT, stencil = second == VK_IMAGE_ASPECT_STENCIL_BIT;
   const auto& claimed = run.gpu.extension_features.rasterization_order;
-  run.require(claimed.rasterizationOrderColorAttachmentAccess && claimed.rasterizationOrderDepthAttachmentAccess,
+  run.require(claimed.rasterizationOrderColorAttachmentAccess && claimed.rasterizationOrderDepthAttachmentAccess &&
+                  claimed.rasterizationOrderStencilAttachmentAccess,
               "rasterization order attachment access");
   const Image color = make_image(run, VK_FORMAT_R8G8B8A8_UNORM,
                                  VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT);
-  std::optional<Image> z;
-  if (depth)
-    z = make_image(run, VK_FORMAT_D32_SFLOAT,
-                   VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT);
+  std::optional<Image> own;
+  if (second != 0)
+    own = make_image(run, depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_S8_UINT,
+                     VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT);
   VkSubpassDescriptionFlags flags = VK_SUBPASS_DESCRIPTION_RASTERIZATION_ORDER_ATTACHMENT_COLOR_ACCESS_BIT_EXT;
   if (depth) flags |= VK_SUBPASS_DESCRIPTION_RASTERIZATION_ORDER_ATTACHMENT_DEPTH_ACCESS_BIT_EXT;
-  const Pass pass = make_pass(run, color, depth ? &*z : nullptr, true, VK_IMAGE_LAYOUT_GENERAL, flags);
+  if (stencil) flags |= VK_SUBPASS_DESCRIPTION_RASTERIZATION_ORDER_ATTACHMENT_STENCIL_ACCESS_BIT_EXT;
+  const Pass pass = make_pass(run, color, own ? &*own : nullptr, true, VK_IMAGE_LAYOUT_GENERAL, flags);
   std::vector<Binding> bindings{input_attachment(0, color)};
-  if (depth) bindings.push_back(input_attachment(1, *z));
+  if (own) bindings.push_back(input_attachment(1, *own));
   const Resources res = run.resources(bindings);
   GraphicsSpec spec;
   spec.vertex = kColorVertex;
-  spec.fragment = std::string(R"(
-layout(input_attachment_index = 0, binding = 0) uniform subpassInput before;
-)") + (depth ? "layout(input_attachment_index = 1, binding = 1) uniform subpassInput z;\n" : "") +
-                  R"(
+  spec.fragment = "layout(input_attachment_index = 0, binding = 0) uniform subpassInput before;\n";
+  if (own)
+    spec.fragment += std::string("layout(input_attachment_index = 1, binding = 1) uniform ") +
+                     (stencil ? "usubpassInput" : "subpassInput") + " own;\n";
+  spec.fragment += std::string(R"(
 layout(location = 0) in vec4 passed;
 layout(location = 0) out vec4 result;
-void main() { result = fract(subpassLoad(before).yzwx * 1.7 + passed * 0.3)" +
-                  (depth ? " + subpassLoad(z).x" : "") + "); }\n";
+void main() { result = fract(subpassLoad(before).yzwx * 1.7 + passed * 0.3)") +
+                   (depth     ? " + subpassLoad(own).x"
+                    : stencil ? " + float(subpassLoad(own).x) * 0.37"
+                              : "") +
+                   "); }\n";
   spec.layout = res.layout;
   spec.floats({4, 4});
   spec.blend.flags = VK_PIPELINE_COLOR_BLEND_STATE_CREATE_RASTERIZATION_ORDER_ATTACHMENT_ACCESS_BIT_EXT;
-  if (depth) {
-    spec.depth.depthTestEnable = spec.depth.depthWriteEnable = VK_TRUE;
-    spec.depth.depthCompareOp = VK_COMPARE_OP_ALWAYS;
+  spec.depth.depthTestEnable = spec.depth.depthWriteEnable = depth;
+  spec.depth.depthCompareOp = VK_COMPARE_OP_ALWAYS;
+  spec.depth.stencilTestEnable = stencil;
+  spec.depth.front = spec.depth.back = {
+      VK_STENCIL_OP_KEEP, VK_STENCIL_OP_INCREMENT_AND_WRAP, VK_STENCIL_OP_KEEP, VK_COMPARE_OP_ALWAYS, 0xff, 0xff, 0};
+  if (depth)
     spec.depth.flags = VK_PIPELINE_DEPTH_STENCIL_STATE_CREATE_RASTERIZATION_ORDER_ATTACHMENT_DEPTH_ACCESS_BIT_EXT;
-  }
+  if (stencil)
+    spec.depth.flags = VK_PIPELINE_DEPTH_STENCIL_STATE_CREATE_RASTERIZATION_ORDER_ATTACHMENT_STENCIL_ACCESS_BIT_EXT;
   const VkPipeline pipeline = make_pipeline(run, spec, pass.pass, 0, 1, kExtent, VK_SAMPLE_COUNT_1_BIT);
   const Buffer vertices = random_triangles(run);
   record(run, pass, [&](VkCommandBuffer cmd) {
@@ -133,10 +145,11 @@ void main() { result = fract(subpassLoad(before).yzwx * 1.7 + passed * 0.3)" +
     vkCmdDraw(cmd, 48, 1, 0, 0);
   });
   run.out("color", color);
-  if (depth) run.out("depth", *z);
+  if (own) run.out("depth_stencil", *own);
 }
-CTS_RANDOM("renderpass", "rasterization_order.color", 4) { rasterization_order(run, false); }
-CTS_RANDOM("renderpass", "rasterization_order.depth", 4) { rasterization_order(run, true); }
+CTS_RANDOM("renderpass", "rasterization_order.color", 4) { rasterization_order(run, 0); }
+CTS_RANDOM("renderpass", "rasterization_order.depth", 4) { rasterization_order(run, VK_IMAGE_ASPECT_DEPTH_BIT); }
+CTS_RANDOM("renderpass", "rasterization_order.stencil", 4) { rasterization_order(run, VK_IMAGE_ASPECT_STENCIL_BIT); }
 
 /// Draws that sample the texel they write; a barrier between them.
 CTS_CASE("renderpass", "feedback_loop.sampled") {
@@ -173,6 +186,57 @@ void main() { result = fract(texelFetch(before, ivec2(gl_FragCoord.xy), 0).yzwx 
   });
   run.out("color", color);
 }
+
+/// Draws of one triangle each that read the texels they cover, a barrier between them: as an input attachment, or in a
+/// feedback loop. Fragments beside the triangle read what nobody writes.
+void read_between_draws(Run& run, bool input) {
+  if (!input)
+    run.require(run.gpu.extension_features.attachment_feedback_loop.attachmentFeedbackLoopLayout,
+                "attachmentFeedbackLoopLayout");
+  const Image color =
+      make_image(run, VK_FORMAT_R8G8B8A8_UNORM,
+                 VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                     (input ? VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT
+                            : VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT));
+  const VkImageLayout layout = input ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_ATTACHMENT_FEEDBACK_LOOP_OPTIMAL_EXT;
+  const Pass pass = make_pass(run, color, nullptr, input, layout, 0);
+  Binding image = input ? input_attachment(0, color) : sampled(0, color, run.sampler(VK_FILTER_NEAREST));
+  image.images[0].imageLayout = layout;
+  const Resources res = run.resources({image});
+  const std::string code = input ? "layout(input_attachment_index = 0, binding = 0) uniform subpassInput before;\n"
+                                   "vec4 own() { return subpassLoad(before); }\n"
+                                 : "layout(binding = 0) uniform sampler2D before;\n"
+                                   "vec4 own() { return textureLod(before, gl_FragCoord.xy / vec2(72, 56), 0); }\n";
+  GraphicsSpec spec;
+  spec.vertex = kColorVertex;
+  spec.fragment = code + R"(
+layout(location = 0) in vec4 passed;
+layout(location = 0) out vec4 result;
+void main() { result = fract(own().yzwx * 1.7 + passed * 0.3); })";
+  spec.layout = res.layout;
+  spec.floats({4, 4});
+  if (!input) spec.flags = VK_PIPELINE_CREATE_COLOR_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT;
+  const VkPipeline pipeline = make_pipeline(run, spec, pass.pass, 0, 1, kExtent, VK_SAMPLE_COUNT_1_BIT);
+  const Buffer vertices = random_triangles(run);
+  record(run, pass, [&](VkCommandBuffer cmd) {
+    bind_pipeline(cmd, pipeline);
+    res.bind(cmd);
+    bind_vertices(cmd, vertices);
+    for (uint32_t first = 0; first < 48; first += 3) {
+      vkCmdDraw(cmd, 3, 1, first, 0);
+      VkMemoryBarrier written{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+      written.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+      written.dstAccessMask = input ? VK_ACCESS_INPUT_ATTACHMENT_READ_BIT : VK_ACCESS_SHADER_READ_BIT;
+      vkCmdPipelineBarrier(
+          cmd, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+          VK_DEPENDENCY_BY_REGION_BIT | (input ? 0u : VkDependencyFlags{VK_DEPENDENCY_FEEDBACK_LOOP_BIT_EXT}), 1,
+          &written, 0, nullptr, 0, nullptr);
+    }
+  });
+  run.out("color", color);
+}
+CTS_RANDOM("renderpass", "feedback_loop.random_triangles", 4) { read_between_draws(run, false); }
+CTS_RANDOM("renderpass", "input_attachment.random_triangles_between_barriers", 4) { read_between_draws(run, true); }
 
 }  // namespace
 }  // namespace vitrine::cts
