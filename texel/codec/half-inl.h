@@ -18,24 +18,30 @@ using namespace vitrine::base::HWY_NAMESPACE;
 
 using HalfLanes = hn::Vec<hn::Rebind<std::uint16_t, hn::ScalableTag<float>>>;
 
+/// Exact, but signalling NaN may become quiet: where that is no harm since the next operation does it.
+HWY_INLINE hn::Vec<hn::ScalableTag<float>> floats_of_halves_quieted(HalfLanes halves) {
+#if HWY_TARGET <= HWY_AVX3
+  return hn::Vec<hn::ScalableTag<float>>{_mm512_cvtph_ps(halves.raw)};
+#elif HWY_TARGET <= HWY_AVX2
+  return hn::Vec<hn::ScalableTag<float>>{_mm256_cvtph_ps(halves.raw)};
+#else
+  return lanes_half_to_float(hn::PromoteTo(hn::ScalableTag<std::uint32_t>(), halves));
+#endif
+}
+
 /// Exact, as half_to_float.
 HWY_INLINE hn::Vec<hn::ScalableTag<float>> floats_of_halves(HalfLanes halves) {
-  const hn::ScalableTag<std::uint32_t> du;
 #if HWY_TARGET <= HWY_AVX2
   const hn::ScalableTag<float> d;
-#if HWY_TARGET <= HWY_AVX3
-  const hn::Vec<decltype(d)> quieted{_mm512_cvtph_ps(halves.raw)};
-#else
-  const hn::Vec<decltype(d)> quieted{_mm256_cvtph_ps(halves.raw)};
-#endif
+  const hn::ScalableTag<std::uint32_t> du;
+  const auto quieted = floats_of_halves_quieted(halves);
   if (HWY_LIKELY(hn::AllTrue(d, hn::Eq(quieted, quieted)))) return quieted;
-  // The instruction quiets signalling NaN.
   const auto half = hn::PromoteTo(du, halves);
   const auto quiet = hn::Set(du, 0x00400000u);
   const auto nan = hn::Or(hn::AndNot(quiet, hn::BitCast(du, quieted)), hn::And(hn::ShiftLeft<13>(half), quiet));
   return hn::IfThenElse(hn::Eq(quieted, quieted), quieted, hn::BitCast(d, nan));
 #else
-  return lanes_half_to_float(hn::PromoteTo(du, halves));
+  return floats_of_halves_quieted(halves);
 #endif
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 #include "texel/codec/rows.h"
 #include "texel/codec/srgb.h"
@@ -85,66 +86,127 @@ HWY_INLINE ComponentLanes mix(ComponentLanes weight, ComponentLanes a, Component
   return lanes_fma(weight, hn::Sub(b, a), a);
 }
 
+/// Blocks of 128 bits 0, 2, ... of two vectors one after the other, or 1, 3, ...
+#if HWY_TARGET <= HWY_AVX3
+HWY_INLINE ComponentLanes even_blocks(ComponentLanes low, ComponentLanes high) {
+  return ComponentLanes{_mm512_shuffle_f32x4(low.raw, high.raw, 0x88)};
+}
+HWY_INLINE ComponentLanes odd_blocks(ComponentLanes low, ComponentLanes high) {
+  return ComponentLanes{_mm512_shuffle_f32x4(low.raw, high.raw, 0xDD)};
+}
+#elif HWY_TARGET <= HWY_AVX2
+HWY_INLINE ComponentLanes even_blocks(ComponentLanes low, ComponentLanes high) {
+  return hn::ConcatLowerLower(D(), high, low);
+}
+HWY_INLINE ComponentLanes odd_blocks(ComponentLanes low, ComponentLanes high) {
+  return hn::ConcatUpperUpper(D(), high, low);
+}
+#else
+HWY_INLINE ComponentLanes even_blocks(ComponentLanes low, ComponentLanes) { return low; }
+HWY_INLINE ComponentLanes odd_blocks(ComponentLanes, ComponentLanes high) { return high; }
+#endif
+
 /// Four values of one component.
 struct Square {
   ComponentLanes upper[2], lower[2];
 };
 
+/// Of values in [0, 1], as is the result.
 HWY_INLINE ComponentLanes average(ComponentLanes x, ComponentLanes y, const Square& s) {
-  const ComponentLanes value = mix(y, mix(x, s.upper[0], s.upper[1]), mix(x, s.lower[0], s.lower[1]));
-  return lanes_min_second(lanes_max_second(value, hn::Zero(D())), hn::Set(D(), 1.0f));
+  return mix(y, mix(x, s.upper[0], s.upper[1]), mix(x, s.lower[0], s.lower[1]));
 }
 
-/// One component of a vector of texels at a time.
+/// srgb_codes, in [0, 255] as x is in [0, 1]. RSQRTPS has no instance for 512 bits: halves from the start.
+HWY_INLINE CodeLanes codes_of_values(ComponentLanes x) {
+#if HWY_TARGET <= HWY_AVX3
+  const hn::Half<D> half;
+  return hn::Combine(DI(), srgb_codes(RsqrtOfCpu(), hn::UpperHalf(half, x)),
+                     srgb_codes(RsqrtOfCpu(), hn::LowerHalf(half, x)));
+#else
+  return srgb_codes(RsqrtOfCpu(), x);
+#endif
+}
+
+/// The averages of a b over c d, one component of a vector of texels at a time.
+HWY_INLINE CodeLanes average_srgb_bytes(ComponentLanes weight_x, ComponentLanes weight_y, CodeLanes a, CodeLanes b,
+                                        CodeLanes c, CodeLanes d) {
+  const auto byte = [](CodeLanes word, auto shift)
+                        HWY_ATTR { return hn::And(hn::ShiftRight<shift()>(word), hn::Set(DI(), 255)); };
+  const auto color = [&](auto shift) HWY_ATTR {
+    const auto value = [&](CodeLanes word) HWY_ATTR { return srgb_to_linear(byte(word, shift)); };
+    const Square square{{value(a), value(b)}, {value(c), value(d)}};
+    return hn::ShiftLeft<shift()>(codes_of_values(average(weight_x, weight_y, square)));
+  };
+  const auto opacity = [&](CodeLanes word)
+                           HWY_ATTR { return unorm_values(byte(word, std::integral_constant<int, 24>())); };
+  const Square alpha{{opacity(a), opacity(b)}, {opacity(c), opacity(d)}};
+  const CodeLanes texels = hn::ShiftLeft<24>(unorm_codes(average(weight_x, weight_y, alpha)));
+  return hn::Or(hn::Or(texels, color(std::integral_constant<int, 0>())),
+                hn::Or(color(std::integral_constant<int, 8>()), color(std::integral_constant<int, 16>())));
+}
+
 void halve_srgb_bytes(const HalvedRow& row) {
   const auto weight_y = hn::Set(D(), row.weight_y);
-  alignas(64) float weight[kChunk]{};
-  alignas(64) std::int32_t out[kChunk];
-  for_each_chunk<std::int32_t>(row, [&](std::size_t start, std::size_t n, const auto& upper, const auto& lower) {
-    std::copy_n(row.weight_x + start, n, weight);
-    for (std::size_t i = 0; i < n; i += hn::Lanes(D())) {
-      const auto weight_x = hn::Load(D(), weight + i);
-      const auto a = hn::Load(DI(), upper.first + i), b = hn::Load(DI(), upper.second + i);
-      const auto c = hn::Load(DI(), lower.first + i), d = hn::Load(DI(), lower.second + i);
-      const auto byte = [](CodeLanes word, int shift) {
-        return hn::And(hn::ShiftRightSame(word, shift), hn::Set(DI(), 255));
-      };
-      const auto opacity = [&](CodeLanes word) { return unorm_values(byte(word, 24)); };
-      const Square alpha{{opacity(a), opacity(b)}, {opacity(c), opacity(d)}};
-      CodeLanes texels = hn::ShiftLeft<24>(unorm_codes(average(weight_x, weight_y, alpha)));
-      for (int shift = 0; shift < 24; shift += 8) {
-        const auto value = [&](CodeLanes word) { return srgb_to_linear(byte(word, shift)); };
-        const Square color{{value(a), value(b)}, {value(c), value(d)}};
-        const CodeLanes code = srgb_codes(RsqrtOfCpu(), average(weight_x, weight_y, color));
-        const CodeLanes clamped = hn::Min(hn::Max(code, hn::Zero(DI())), hn::Set(DI(), 255));
-        texels = hn::Or(texels, hn::ShiftLeftSame(clamped, shift));
-      }
-      hn::Store(texels, DI(), out + i);
-    }
-    std::memcpy(row.out + 4 * start, out, 4 * n);
-  });
+  const std::size_t lanes = hn::Lanes(D());
+  const auto average_pairs = [&](const std::byte* upper, const std::byte* lower, const float* weight) HWY_ATTR {
+    const auto load = [&](const std::byte* from, std::size_t i)
+                          HWY_ATTR { return hn::LoadU(DI(), reinterpret_cast<const std::int32_t*>(from) + i * lanes); };
+    const auto top0 = load(upper, 0), top1 = load(upper, 1), bottom0 = load(lower, 0), bottom1 = load(lower, 1);
+    return average_srgb_bytes(hn::LoadU(D(), weight), weight_y, hn::ConcatEven(DI(), top1, top0),
+                              hn::ConcatOdd(DI(), top1, top0), hn::ConcatEven(DI(), bottom1, bottom0),
+                              hn::ConcatOdd(DI(), bottom1, bottom0));
+  };
+  std::size_t i = 0;
+  for (; i + lanes <= row.count; i += lanes) {
+    hn::StoreU(average_pairs(row.upper + 8 * i, row.lower + 8 * i, row.weight_x + i), DI(),
+               reinterpret_cast<std::int32_t*>(row.out + 4 * i));
+  }
+  if (i == row.count) return;
+  const std::size_t left = row.count - i;
+  alignas(64) std::byte upper[8 * hn::MaxLanes(D())]{}, lower[8 * hn::MaxLanes(D())]{};
+  alignas(64) float weight[hn::MaxLanes(D())]{};
+  alignas(64) std::int32_t out[hn::MaxLanes(D())];
+  std::memcpy(upper, row.upper + 8 * i, 8 * left);
+  std::memcpy(lower, row.lower + 8 * i, 8 * left);
+  std::copy_n(row.weight_x + i, left, weight);
+  hn::Store(average_pairs(upper, lower, weight), DI(), out);
+  std::memcpy(row.out + 4 * i, out, 4 * left);
 }
 
-/// The components of some texels at a time.
+/// The components of some texels at a time: blocks of 128 bits are texels.
 void halve_four_halves(const HalvedRow& row) {
   const hn::Rebind<std::uint16_t, D> d16;
   const auto texel_of_lane = hn::IndicesFromVec(D(), hn::ShiftRight<2>(hn::Iota(DI(), 0)));
   const auto weight_y = hn::Set(D(), row.weight_y);
-  float weight[kChunk + hn::MaxLanes(D())]{};
-  alignas(64) std::uint16_t out[4 * kChunk];
-  for_each_chunk<std::uint64_t>(row, [&](std::size_t start, std::size_t n, const auto& upper, const auto& lower) {
-    std::copy_n(row.weight_x + start, n, weight);
-    for (std::size_t i = 0; i < 4 * n; i += hn::Lanes(D())) {
-      const auto x = hn::TableLookupLanes(hn::LoadU(D(), weight + i / 4), texel_of_lane);
-      const auto load = [&](const std::uint64_t* texels) {
-        return floats_of_halves(hn::LoadU(d16, reinterpret_cast<const std::uint16_t*>(texels) + i));
-      };
-      const auto top = mix(x, load(upper.first), load(upper.second));
-      const auto bottom = mix(x, load(lower.first), load(lower.second));
-      hn::StoreU(halves_of_floats(mix(weight_y, top, bottom)), d16, out + i);
-    }
-    std::memcpy(row.out + 8 * start, out, 8 * n);
-  });
+  const std::size_t texels = hn::Lanes(D()) / 4;
+  const auto average_pairs = [&](const std::byte* upper, const std::byte* lower, const float* weight) HWY_ATTR {
+    const auto x = hn::TableLookupLanes(hn::LoadDup128(D(), weight), texel_of_lane);
+    const auto mix_pairs = [&](const std::byte* from) HWY_ATTR {
+      const auto* halves = reinterpret_cast<const std::uint16_t*>(from);
+      const auto low = floats_of_halves_quieted(hn::LoadU(d16, halves));
+      const auto high = floats_of_halves_quieted(hn::LoadU(d16, halves + hn::Lanes(D())));
+      return mix(x, even_blocks(low, high), odd_blocks(low, high));
+    };
+    return halves_of_floats(mix(weight_y, mix_pairs(upper), mix_pairs(lower)));
+  };
+  std::size_t i = 0;
+  // Four weights are read, whatever the size of vectors.
+  for (; i + 4 <= row.count; i += texels) {
+    hn::StoreU(average_pairs(row.upper + 16 * i, row.lower + 16 * i, row.weight_x + i), d16,
+               reinterpret_cast<std::uint16_t*>(row.out + 8 * i));
+  }
+  while (i < row.count) {
+    const std::size_t left = std::min(row.count - i, texels);
+    alignas(64) std::byte upper[4 * hn::MaxLanes(D())]{}, lower[4 * hn::MaxLanes(D())]{};
+    alignas(16) float weight[4]{};
+    alignas(64) std::uint16_t out[hn::MaxLanes(D())];
+    std::memcpy(upper, row.upper + 16 * i, 16 * left);
+    std::memcpy(lower, row.lower + 16 * i, 16 * left);
+    std::copy_n(row.weight_x + i, left, weight);
+    hn::StoreU(average_pairs(upper, lower, weight), d16, out);
+    std::memcpy(row.out + 8 * i, out, 8 * left);
+    i += left;
+  }
 }
 
 }  // namespace
