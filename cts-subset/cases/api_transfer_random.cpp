@@ -1,10 +1,11 @@
 // Random transfers: copies between buffers and images, blits, clears, fills and updates, several in a row.
+#include "cases/random_transfer.h"
+
 #include "harness/case.h"
 #include "harness/execute.h"
 #include "harness/graphics.h"
 
 namespace vitrine::cts {
-namespace {
 
 VkOffset3D to_offset(VkExtent3D e) {
   return {static_cast<int32_t>(e.width), static_cast<int32_t>(e.height), static_cast<int32_t>(e.depth)};
@@ -14,7 +15,7 @@ bool reference_has(VkFormat format, VkFormatFeatureFlags features) {
   return (gpus().reference.features_of(format) & features) == features;
 }
 
-std::vector<VkFormat> formats_with(VkFormatFeatureFlags features, bool blocks = false) {
+std::vector<VkFormat> formats_with(VkFormatFeatureFlags features, bool blocks) {
   std::vector<VkFormat> result;
   for (const FormatInfo& info : all_formats())
     if (reference_has(info.format, features) && (blocks || info.numeric != Numeric::kBlock) &&
@@ -36,12 +37,6 @@ ImageSpec random_spec(Random& random, VkFormat format) {
   return spec;
 }
 
-struct Region {
-  VkOffset3D offset;
-  VkExtent3D extent;
-};
-
-/// A part of a level; in whole blocks, or up to the level's edge.
 Region random_region(Random& random, const Image& image, uint32_t level) {
   const uint32_t block = format_info(image.spec.format).block;
   const VkExtent3D size = image.level_extent(level);
@@ -65,6 +60,8 @@ VkImageSubresourceLayers random_layers(Random& random, const Image& image, uint3
   const uint32_t first = random.below(image.spec.layers);
   return {image.aspects(), level, first, 1 + random.below(image.spec.layers - first)};
 }
+
+namespace {
 
 void random_buffer_image_copy(Run& run, bool to_image) {
   Random& random = run.random;

@@ -90,5 +90,25 @@ const AddCase kAlphaToOne(
       draw(run, "one", target, spec, values);
     });
 
+/// The control is a clear, which the reference rounds.
+const AddCase kSnorm10("pipeline", "deviation.snorm10_attachments", "snorm10-attachments", case_against_control,
+                       [](Run& run) {
+                         TargetSpec target_spec;
+                         target_spec.colors = {VK_FORMAT_A2B10G10R10_SNORM_PACK32};
+                         const std::vector<float> corners = colored({{-3, -1, 0, 1}, {3, -1, 0, 1}, {0, 5, 0, 1}});
+                         GraphicsSpec spec;
+                         spec.fragment =
+                             "layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n"
+                             "void main() { result = vec4(-0.9, 0.3, 0.75, 1.0); }\n";
+                         draw(run, "drawn", target_spec, spec, corners);
+                         Target target = make_target(run, target_spec);
+                         target.clears[0].color = {{-0.9f, 0.3f, 0.75f, 1.0f}};
+                         run.once([&](VkCommandBuffer cmd) {
+                           target.begin(cmd);
+                           vkCmdEndRenderPass(cmd);
+                         });
+                         run.out("cleared", target.colors[0]);
+                       });
+
 }  // namespace
 }  // namespace vitrine::cts
