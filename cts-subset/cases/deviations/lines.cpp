@@ -171,6 +171,43 @@ const AddCase kSmoothMask("rasterization", "deviation.smooth_line_sample_mask", 
                             }
                           });
 
+/// The smooth outline of a back-facing triangle: only its back-facing fragments get their colour.
+const AddCase kSmoothFacing(
+    "rasterization", "deviation.smooth_outline_facing", "smooth-outline-facing", case_against_control, [](Run& run) {
+      run.require(run.gpu.features.fillModeNonSolid, "fillModeNonSolid");
+      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
+      for (const char* value : {"gl_FrontFacing ? vec4(0.0) : passed", "passed"}) {
+        GraphicsSpec spec;
+        spec.fragment = std::string("layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n") +
+                        "void main() { result = " + value + "; }\n";
+        spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
+        spec.raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+        spec.raster.pNext = &line;
+        draw(run, value, {}, spec, colored({{-0.7f, -0.7f, 0, 1}, {0.7f, -0.5f, 0, 1}, {0, 0.7f, 0, 1}}));
+      }
+    });
+
+/// A depth of 1, clamped to the viewport's 0.75, is less than the clear value; so is 0.5.
+const AddCase kSmoothDepth(
+    "rasterization", "deviation.smooth_line_depth", "smooth-line-depth", case_against_control, [](Run& run) {
+      run.require(run.gpu.features.depthClamp, "depthClamp");
+      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
+      for (const char* depth : {"1.0", "0.5"}) {
+        TargetSpec target;
+        target.depth = VK_FORMAT_D32_SFLOAT;
+        GraphicsSpec spec;
+        spec.fragment = std::string("layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n") +
+                        "void main() {\n  result = passed;\n  gl_FragDepth = " + depth + ";\n}\n";
+        spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+        spec.raster.depthClampEnable = VK_TRUE;
+        spec.raster.pNext = &line;
+        spec.depth.depthTestEnable = VK_TRUE;
+        spec.depth.depthCompareOp = VK_COMPARE_OP_LESS;
+        spec.viewports = {{0.0f, 0.0f, 64.0f, 64.0f, 0.0f, 0.75f}};
+        draw(run, depth, target, spec, colored({{-0.9f, -0.5f, 0.5f, 1}, {0.9f, 0.5f, 0.5f, 1}}));
+      }
+    });
+
 /// Sample 1 is masked away; the reference draws it as it draws sample 0.
 const AddCase kLineMasks(
     "rasterization", "deviation.one_sample_line_masks", "one-sample-line-masks",

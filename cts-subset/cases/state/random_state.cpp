@@ -143,6 +143,11 @@ void random_rasterization(Run& run, const Scene& scene, DrawState& draw) {
   }
   raster.depthClampEnable = random.chance(0.25f);
   draw.clip.depthClipEnable = random.chance(0.5f);
+  // deviations.md, smooth-line-depth
+  if (smooth_lines(draw)) {
+    raster.depthClampEnable = VK_FALSE;
+    draw.clip.depthClipEnable = VK_TRUE;
+  }
   if (random.chance(0.2f)) {
     draw.clip.pNext = raster.pNext;
     raster.pNext = &draw.clip;
@@ -208,6 +213,7 @@ void random_tests(Random& random, const Scene& scene, DrawState& draw) {
   // deviations.md, polygon-mode-facing and geometry-polygon-facing
   if (draw.polygon && depth.stencilTestEnable) {
     draw.fragment.facing = draw.stages.geometry.empty();
+    if (smooth_lines(draw)) draw.fragment.facing = false;  // deviations.md, smooth-outline-facing
     if (scene.target.colors.empty() || !draw.fragment.facing) depth.back = depth.front;
   }
 }
@@ -217,9 +223,12 @@ void random_fragment_needs(Run& run, const Scene& scene, DrawState& draw) {
   FragmentNeeds& needs = draw.fragment;
   needs.multisampled = scene.multisampled;
   needs.reads_mask = scene.multisampled && !one_sample_lines(scene, draw);  // deviations.md, one-sample-line-masks
-  // deviations.md, stipple-flat-integers and stipple-per-line
-  needs.primitive_id = !draw.line.stippledLineEnable;
-  needs.facing |= random.chance(0.2f) && !(draw.polygon && !draw.stages.geometry.empty());
+  // deviations.md: stipple-flat-integers, stipple-per-line, evaluation-primitive-id
+  const bool evaluation_reads =
+      !draw.stages.tessellation.empty() && draw.stages.geometry.empty() && draw.stages.layers > 1;
+  needs.primitive_id = !draw.line.stippledLineEnable && !evaluation_reads;
+  // deviations.md, geometry-polygon-facing and smooth-outline-facing
+  needs.facing |= random.chance(0.2f) && !(draw.polygon && (!draw.stages.geometry.empty() || smooth_lines(draw)));
   needs.discards = random.chance(0.15f);
   needs.writes_depth = scene.has_depth && random.chance(0.12f);
   needs.writes_stencil = scene.has_stencil && random.chance(0.1f) && run.gpu.has("VK_EXT_shader_stencil_export");
@@ -358,7 +367,9 @@ void random_draw(Run& run, const Scene& scene, DrawState& draw) {
   if (!selects && draw.stages.geometry.empty()) draw.stages.layers = 1;
   random_rasterization(run, scene, draw);
   if (draw.polygon && draw.clipped) draw.stages.layers = 1;  // deviations.md, clipped-polygon-layer
-  if (draw.drawn == Drawn::kTriangles && random.chance(0.15f) && (selects || !draw.stages.geometry.empty()))
+  // deviations.md, tessellated-viewport
+  const bool listed = draw.stages.geometry.empty() && !draw.stages.tessellation.empty();
+  if (draw.drawn == Drawn::kTriangles && random.chance(0.15f) && (selects || !draw.stages.geometry.empty()) && !listed)
     draw.stages.viewports = 2 + random.below(3);
   // Distances clip, too (see `clipped`).
   if (!draw.clipped && draw.drawn == Drawn::kLines) draw.stages.clip_distances = 0;
