@@ -230,6 +230,8 @@ Extent random_extent(Random& random, const Shape& shape, bool compressed) {
   return extent;
 }
 
+constexpr std::array<std::array<std::int32_t, 2>, 4> kGatherOffsets{{{0, 1}, {-8, 3}, {7, -8}, {2, 0}}};
+
 /// One random configuration: scalar twin against vector path. Returns whether there was a vector path.
 bool compare_paths(unsigned seed) {
   Random random(seed);
@@ -251,12 +253,15 @@ bool compare_paths(unsigned seed) {
     request.op = SampleOp::kGather;
     request.lod_mode = LodMode::kZero;
     request.gather_component = random.below(4);
+    if (shape.layers < 6 && random.below(3) == 0) request.gather_offsets = &kGatherOffsets;
+  } else if (random.below(8) == 0) {
+    request.op = SampleOp::kQueryLod;
   }
   for (std::uint32_t i = 0; i < shape.coordinates + (shape.arrayed ? 1 : 0); ++i) request.coord[i] = &in.coord[i];
   request.lod = &in.lod;
   request.ddx = {&in.ddx[0], &in.ddx[1], &in.ddx[2]};
   request.ddy = {&in.ddy[0], &in.ddy[1], &in.ddy[2]};
-  if (random.below(2) && shape.layers < 6) {
+  if (random.below(2) && shape.layers < 6 && request.gather_offsets == nullptr) {
     for (std::uint32_t i = 0; i < shape.coordinates; ++i) request.offset[i] = &in.offset[i];
   }
   if (sampler.compare) request.dref = &in.dref;

@@ -33,7 +33,8 @@ bool levels_matter(const Plan& plan) {
 }
 
 PreparedSampler::Kernel choose_kernel(const Plan& plan, SampleOp op) {
-  if (plan.zero || op == SampleOp::kQueryLod || !small_enough(*plan.view)) return sample_by_lane;
+  if (op == SampleOp::kQueryLod) return plan.zero || (plan.cube && plan.anisotropic) ? sample_by_lane : query_kernel();
+  if (plan.zero || !small_enough(*plan.view)) return sample_by_lane;
   if (plan.anisotropic) return plan.cube ? sample_by_lane : anisotropic_kernel();
   return plan.aos ? byte_kernel(plan) : float_kernel(plan);
 }
@@ -42,7 +43,7 @@ PreparedSampler::Kernel choose_kernel(const Plan& plan, SampleOp op) {
 void choose(SampleOp op, PreparedSampler& out) {
   const ImageView& view = *out.plan.view;
   out.one_level = !out.plan.lod_needed || view.level_count == 1;
-  out.needs_levels = levels_matter(out.plan);
+  out.needs_levels = op == SampleOp::kQueryLod || levels_matter(out.plan);
   out.kernel = choose_kernel(out.plan, op);
   if (out.kernel != sample_by_lane) fill_table(view, out.level);
 }

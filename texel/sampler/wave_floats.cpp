@@ -1,5 +1,6 @@
 // The float sampler for whole waves (lavapipe-texture-blend.md A3 to A7, A9): every format, dimension and address mode,
 // comparison, gathers, reductions, one or two levels. Bits equal sample_scalar's.
+#include <algorithm>
 #include <cstring>
 
 #include "texel/sampler/cube.h"
@@ -406,7 +407,9 @@ void gather(Call& call, const SampleResult& result) {
   call.plan().seamless ? find_cube_taps(call, 0, taps) : find_taps(call, 0, true, taps);
   call.wanted = source < 4 ? 1u << source : 0u;
   FloatLanes value[4];
-  for (std::uint32_t k = 0; k < 4; ++k) {
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    const std::uint32_t k = kOrder[c];
+    if (result[c] == nullptr && taps.corners == 0) continue;
     if (source < 4) {
       WaveTexels texels;
       fetch_tap(call, taps, k, texels);
@@ -442,6 +445,48 @@ void load_reference(Call& call) {
   }
 }
 
+/// A texel for each of four offsets: the (i0, j0) of its footprint.
+void gather_each_offset(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
+  base::WaveRegister gathered[4];  // results may be registers of the request
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (result[i] == nullptr) continue;
+    base::WaveRegister offset[2];
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      std::fill_n(offset[axis].lane, base::kWaveWidth, static_cast<std::uint32_t>((*request.gather_offsets)[i][axis]));
+    }
+    SampleRequest moved = request;
+    moved.offset = {&offset[0], &offset[1], nullptr};
+    const SampleResult one{nullptr, nullptr, nullptr, &gathered[i]};
+    Call call(p, moved, one);
+    find_state(p, moved, call.state);
+    if (call.compare) load_reference(call);
+    gather(call, one);
+  }
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (result[c] == nullptr) continue;
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DU())) {
+      store_lanes(hn::Load(DU(), gathered[c].lane + i), request.active, i, *result[c]);
+    }
+  }
+}
+
+/// The level that would be read, and the level of detail before its clamps.
+void query_lod(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
+  const Plan& plan = p.plan;
+  const VF last = splat(static_cast<float>(plan.view->level_count - 1));
+  WaveState state;
+  for_each_slope(p, request, state, [&](std::size_t first, const Slopes& d) HWY_ATTR {
+    const LodLanes lod = find_lod(plan, request, slopes_to_rho(plan, request, d), first);
+    VF level = splat(0.0f);
+    if (plan.mip == MipFilter::kNearest) level = hn::Round(lod.clamped);
+    if (plan.mip == MipFilter::kLinear) level = lod.clamped;
+    level = lanes_min_second(lanes_max_second(level, splat(0.0f)), last);
+    // Vectors are whole quads: what is stored is read no more.
+    if (result[0] != nullptr) store_lanes(as_unsigned(level), request.active, first, *result[0]);
+    if (result[1] != nullptr) store_lanes(as_unsigned(lod.value), request.active, first, *result[1]);
+  });
+}
+
 /// Of a call whose state is known.
 void sample_waves(Call& call, const SampleResult& result) {
   if (call.compare) {
@@ -462,7 +507,7 @@ void sample_waves(Call& call, const SampleResult& result) {
 }
 
 void sample_floats(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
-  if (request.gather_offsets != nullptr) return sample_by_lane(p, request, result);
+  if (request.gather_offsets != nullptr) return gather_each_offset(p, request, result);
   Call call(p, request, result);
   find_state(p, request, call.state);
   sample_waves(call, result);
@@ -519,6 +564,7 @@ namespace {
 HWY_EXPORT(sample_floats);
 HWY_EXPORT(sample_floats_bilinear);
 HWY_EXPORT(sample_cube_bilinear);
+HWY_EXPORT(query_lod);
 
 /// Whether sample_floats_bilinear does what the general sampler does; of cubes, sample_cube_bilinear.
 bool bilinear_suits(const Plan& plan) {
@@ -535,6 +581,11 @@ PreparedSampler::Kernel float_kernel(const Plan& plan) {
   base::select_simd_target();
   if (!bilinear_suits(plan)) return &HWY_DYNAMIC_DISPATCH(sample_floats);
   return plan.cube ? &HWY_DYNAMIC_DISPATCH(sample_cube_bilinear) : &HWY_DYNAMIC_DISPATCH(sample_floats_bilinear);
+}
+
+PreparedSampler::Kernel query_kernel() {
+  base::select_simd_target();
+  return &HWY_DYNAMIC_DISPATCH(query_lod);
 }
 
 }  // namespace vitrine::texel

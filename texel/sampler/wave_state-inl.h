@@ -195,9 +195,13 @@ HWY_INLINE void set_minify(hn::Mask<DF> minify, std::size_t first, WaveState& st
   state.minify |= lanes_mask_bits(DF(), minify) << first;
 }
 
-/// Only for plan.lod_needed.
-HWY_INLINE void find_levels(const Plan& plan, const SampleRequest& request, const Slopes& d, std::size_t first,
-                            WaveState& state) {
+/// Levels of detail before and after their clamps.
+struct LodLanes {
+  VF value, clamped;
+};
+
+/// rho: only where slopes decide.
+HWY_INLINE LodLanes find_lod(const Plan& plan, const SampleRequest& request, VF rho, std::size_t first) {
   const Sampler& sampler = *plan.sampler;
   VF lod = splat(sampler.min_lod);
   if (!plan.lod_fixed) {
@@ -206,24 +210,41 @@ HWY_INLINE void find_levels(const Plan& plan, const SampleRequest& request, cons
     } else if (request.lod_mode == LodMode::kZero) {
       lod = splat(0.0f);
     } else {
-      const VF rho = wave_rho(plan, d, plan.cube || request.lod_mode == LodMode::kGrad);
-      if (plan.shortcut_lod && request.min_lod == nullptr) {
-        const VF base = plan.squared_rho ? rho : hn::Mul(rho, splat(1.41421356237309504880f));
-        const VI exponent = exponent_field(base);
-        set_minify(hn::Gt(rho, splat(1.0f)), first, state);
-        return choose_levels(
-            plan, rho,
-            plan.squared_rho ? hn::ShiftRight<1>(hn::Sub(exponent, splat(126))) : hn::Sub(exponent, splat(127)), first,
-            state);
-      }
       lod = hn::Mul(splat(0.5f), fast_log2(plan.squared_rho || plan.anisotropic ? rho : square_of(rho)));
       if (request.lod_mode == LodMode::kBias) lod = hn::Add(lod, load_lanes(request.lod, first));
     }
     if (sampler.mip_lod_bias != 0.0f) lod = hn::Add(lod, splat(sampler.mip_lod_bias));
   }
-  if (plan.apply_max_lod) lod = lanes_min_second(lod, splat(sampler.max_lod));
-  if (plan.apply_min_lod) lod = lanes_max_second(lod, splat(sampler.min_lod));
-  if (request.min_lod != nullptr) lod = lanes_max_second(lod, load_lanes(request.min_lod, first));
+  VF clamped = lod;
+  if (plan.apply_max_lod) clamped = lanes_min_second(clamped, splat(sampler.max_lod));
+  if (plan.apply_min_lod) clamped = lanes_max_second(clamped, splat(sampler.min_lod));
+  if (request.min_lod != nullptr) clamped = lanes_max_second(clamped, load_lanes(request.min_lod, first));
+  return {lod, clamped};
+}
+
+/// Whether levels of detail follow from slopes.
+HWY_INLINE bool has_slopes(const Plan& plan, const SampleRequest& request) {
+  return !plan.lod_fixed && request.lod_mode != LodMode::kExplicit && request.lod_mode != LodMode::kZero;
+}
+
+HWY_INLINE VF slopes_to_rho(const Plan& plan, const SampleRequest& request, const Slopes& d) {
+  if (!has_slopes(plan, request)) return splat(0.0f);
+  return wave_rho(plan, d, plan.cube || request.lod_mode == LodMode::kGrad);
+}
+
+/// Only for plan.lod_needed.
+HWY_INLINE void find_levels(const Plan& plan, const SampleRequest& request, const Slopes& d, std::size_t first,
+                            WaveState& state) {
+  const VF rho = slopes_to_rho(plan, request, d);
+  if (has_slopes(plan, request) && plan.shortcut_lod && request.min_lod == nullptr) {
+    const VF base = plan.squared_rho ? rho : hn::Mul(rho, splat(1.41421356237309504880f));
+    const VI exponent = exponent_field(base);
+    set_minify(hn::Gt(rho, splat(1.0f)), first, state);
+    return choose_levels(
+        plan, rho, plan.squared_rho ? hn::ShiftRight<1>(hn::Sub(exponent, splat(126))) : hn::Sub(exponent, splat(127)),
+        first, state);
+  }
+  const VF lod = find_lod(plan, request, rho, first).clamped;
   set_minify(hn::Gt(lod, splat(0.0f)), first, state);
   choose_levels(plan, lod, plan.anisotropic ? lanes_truncate_to_int(lod) : lanes_round_to_int(lod), first, state);
 }
@@ -243,17 +264,13 @@ HWY_INLINE void find_layer(const Plan& plan, const base::WaveRegister* coord, st
   hn::Store(hn::Mul(layer, stride), DI(), state.layer_offset.lane + first);
 }
 
-inline void find_state(const PreparedSampler& prepared, const SampleRequest& request, WaveState& state) {
+/// Calls body(first, slopes) for every vector; cubes are projected before. Slopes only if prepared.needs_levels.
+template <class Body>
+HWY_INLINE void for_each_slope(const PreparedSampler& prepared, const SampleRequest& request, WaveState& state,
+                               Body&& body) {
   const Plan& plan = prepared.plan;
-  state.minify = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    state.coord[i] = request.coord[i] != nullptr ? reinterpret_cast<const float*>(request.coord[i]->lane) : nullptr;
-  }
-  if (plan.cube) state.coord[0] = state.projected[0].lane, state.coord[1] = state.projected[1].lane;
-  if (!plan.cube && !plan.arrayed && !prepared.needs_levels) return;
-  const bool implicit = request.lod_mode == LodMode::kImplicit || request.lod_mode == LodMode::kBias;
   const bool given = request.lod_mode == LodMode::kGrad && !plan.anisotropic;
-  const bool sloped = prepared.needs_levels && !plan.lod_fixed && (implicit || request.lod_mode == LodMode::kGrad);
+  const bool sloped = prepared.needs_levels && has_slopes(plan, request);
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     Slopes d;
     if (sloped) d = load_slopes(request, plan.cube ? 3 : plan.dims, first, given, plan.cube);
@@ -262,9 +279,22 @@ inline void find_state(const PreparedSampler& prepared, const SampleRequest& req
                        load_lanes(request.coord[2], first)};
       project_cube(v, sloped ? &d : nullptr, first, state);
     }
+    body(first, d);
+  }
+}
+
+inline void find_state(const PreparedSampler& prepared, const SampleRequest& request, WaveState& state) {
+  const Plan& plan = prepared.plan;
+  state.minify = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    state.coord[i] = request.coord[i] != nullptr ? reinterpret_cast<const float*>(request.coord[i]->lane) : nullptr;
+  }
+  if (plan.cube) state.coord[0] = state.projected[0].lane, state.coord[1] = state.projected[1].lane;
+  if (!plan.cube && !plan.arrayed && !prepared.needs_levels) return;
+  for_each_slope(prepared, request, state, [&](std::size_t first, const Slopes& d) HWY_ATTR {
     if (plan.arrayed) find_layer(plan, request.coord[plan.cube ? 3 : plan.dims], first, state);
     if (prepared.needs_levels) find_levels(plan, request, d, first, state);
-  }
+  });
 }
 
 // ---- one axis of one level
