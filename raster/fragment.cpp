@@ -363,6 +363,10 @@ void shade_wave(TileWorker& worker, PackedWave& wave) {
   const PipelinePlan& plan = *worker.draw->plan;
   ShadeRun run{worker, wave, plan, base::first_lanes(4 * wave.quads), 0, 0, plan.samples, {}};
   wave.planes.slots = wave.slots;
+  // Lanes that no quad fills compute where the first one is: from a feedback loop they load nothing that other tiles
+  // write.
+  std::fill(wave.position.x + wave.quads, std::end(wave.position.x), wave.position.x[0]);
+  std::fill(wave.position.y + wave.quads, std::end(wave.position.y), wave.position.y[0]);
   const float center = plan.raster_samples > 1 ? 0.5f : 0.0f;
   const bool interpolates = plan.perspective_count + plan.linear_count != 0 || plan.depth_order == TestOrder::kLate ||
                             plan.frag.frag_coord[2] != kNoReg || plan.frag.frag_coord[3] != kNoReg ||
