@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 
+#include "cases/deviations/deviation.h"
 #include "harness/case.h"
 #include "harness/format.h"
 #include "harness/graphics.h"
@@ -326,7 +327,29 @@ void put_out(Run& run, const Attachments& images) {
   run.may_be_blank();
 }
 
-/// Without suspension: the reference begins with new samples when it resumes, and loses what was drawn before.
+const AddCase kResume("multisample", "deviation.single_sampled_resume", "single-sampled-resume", case_against_control,
+                      [](Run& run) {
+                        run.require(run.gpu.has(kExtension), kExtension);
+                        const Attachments images = random_attachments(run, 1, false);
+                        Drawing drawing = random_drawing(run, images);
+                        drawing.vertices = run.buffer_of(colored({{-0.9f, -0.9f, 0, 1},
+                                                                  {0, -0.9f, 0, 1},
+                                                                  {-0.5f, 0.8f, 0, 1},
+                                                                  {0.9f, 0.9f, 0, 1},
+                                                                  {0, 0.9f, 0, 1},
+                                                                  {0.5f, -0.8f, 0, 1}}));
+                        Scope scope = random_scope(run.random, images);
+                        scope.area = {{0, 0}, kExtent};
+                        for (VkAttachmentLoadOp& load : scope.color_load) load = VK_ATTACHMENT_LOAD_OP_CLEAR;
+                        scope.depth_load = scope.stencil_load = VK_ATTACHMENT_LOAD_OP_CLEAR;
+                        scope.count = 6;
+                        for (const bool suspends : {true, false}) {
+                          in_dynamic_rendering(run, scope, images, drawing, 4, suspends);
+                          run.out(suspends ? "in_two_parts" : "in_one", images.colors[0]);
+                        }
+                      });
+
+/// Without suspension, which the reference has wrong.
 CTS_RANDOM("multisample", "random_single_sampled", 60) {
   run.require(run.gpu.has(kExtension), kExtension);
   Random& random = run.random;
