@@ -187,6 +187,52 @@ const AddCase kSmoothFacing(
       }
     });
 
+/// Two instances of smooth lines, which a geometry shader passes on, and without it.
+const AddCase kSmoothStages(
+    "geometry", "deviation.smooth_lines", "staged-smooth-lines", case_against_control, [](Run& run) {
+      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
+      for (const bool staged : {true, false}) {
+        const Target target = make_target(run, {});
+        GraphicsSpec spec;
+        spec.vertex = R"(
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 passed;
+void main() {
+  passed = color;
+  gl_Position = position + vec4(0.0, 0.25, 0.0, 0.0) * float(gl_InstanceIndex);
+})";
+        if (staged)
+          spec.geometry = R"(
+layout(lines) in;
+layout(line_strip, max_vertices = 2) out;
+layout(location = 0) in vec4 color[];
+layout(location = 0) out vec4 passed;
+void main() {
+  for (int i = 0; i < 2; ++i) {
+    passed = color[i];
+    gl_Position = gl_in[i].gl_Position;
+    EmitVertex();
+  }
+})";
+        spec.fragment = kColorFragment;
+        spec.floats({4, 4});
+        spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+        spec.raster.pNext = &line;
+        const VkPipeline pipeline = make_pipeline(run, spec, target);
+        const Buffer vertices = run.buffer_of(colored(
+            {{-0.75f, -0.5f, 0.5f, 1}, {0.5f, 0.25f, 0.5f, 1}, {-0.5f, -0.75f, 0.5f, 1}, {0.75f, -0.625f, 0.5f, 1}}));
+        run.once([&](VkCommandBuffer cmd) {
+          target.begin(cmd);
+          bind_pipeline(cmd, pipeline);
+          bind_vertices(cmd, vertices);
+          vkCmdDraw(cmd, 4, 2, 0, 0);
+          vkCmdEndRenderPass(cmd);
+        });
+        run.out(staged ? "staged" : "plain", target.colors[0]);
+      }
+    });
+
 /// A depth of 1, clamped to the viewport's 0.75, is less than the clear value; so is 0.5.
 const AddCase kSmoothDepth(
     "rasterization", "deviation.smooth_line_depth", "smooth-line-depth", case_against_control, [](Run& run) {

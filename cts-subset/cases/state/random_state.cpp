@@ -103,10 +103,11 @@ void random_lines(Run& run, const Scene& scene, DrawState& draw) {
       draw.stages.topology != VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY || !draw.stages.geometry.empty();
   draw.line.stippledLineEnable = !scene.multisampled && whole_strips && random.chance(0.3f) &&
                                  draw.line.lineRasterizationMode != VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;
-  // deviations.md, smooth-line-integers
+  // deviations.md, smooth-line-integers and staged-smooth-lines
   const bool integers = std::any_of(scene.target.colors.begin(), scene.target.colors.end(),
                                     [](VkFormat format) { return is_integer(format_info(format)); });
-  if (integers && draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT)
+  const bool staged = !draw.stages.tessellation.empty() || !draw.stages.geometry.empty();
+  if ((integers || staged) && draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT)
     draw.line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
   draw.line.pNext = draw.spec.raster.pNext;
   draw.spec.raster.pNext = &draw.line;
