@@ -40,7 +40,18 @@ bool owns_square(const TileWorker& worker, int x, int y, int side) {
 }
 bool owns_block(const TileWorker& worker, int x, int y) { return owns_square(worker, x, y, kBlockSize); }
 
-std::uint64_t block_bit(int x, int y) { return std::uint64_t{1} << ((y >> 3 & 7) * 8 + (x >> 3 & 7)); }
+/// Whether quads of the block at (x, y) wait in the packed wave. `quads`: their lowest lanes.
+bool waits_in_wave(const TileWorker& worker, int x, int y, base::LaneMask quads) {
+  if (worker.wave.quads == 0) return false;
+  const auto column = static_cast<std::uint32_t>(x - worker.target.x) / 2;
+  const std::uint32_t* row = worker.packed.row + (y - worker.target.y) / 2;
+  // Bits 0, 4, 8 and 12 of 16 become neighbours.
+  quads |= quads >> 3;
+  quads |= quads >> 6;
+  const auto wanted = [&](std::uint32_t r) { return static_cast<std::uint32_t>(quads >> (16 * r)) & 15; };
+  return (((row[0] >> column & wanted(0)) | (row[1] >> column & wanted(1)) | (row[2] >> column & wanted(2)) |
+           (row[3] >> column & wanted(3)))) != 0;
+}
 
 /// Tests a block before shading, whatever is tested and wherever it lies. Writes unless the test is only a preview of a
 /// late one.
@@ -89,13 +100,18 @@ void append_full_block(TileWorker& worker, const Primitive& primitive, int x, in
 
 /// The quads of `quads` (lowest lanes) that fit the wave, at most `room`, into its places from `first` on. Returns how
 /// many.
-std::uint32_t fill_places(PackedWave& wave, int x, int y, base::LaneMask& quads, std::uint32_t first,
+std::uint32_t fill_places(TileWorker& worker, int x, int y, base::LaneMask& quads, std::uint32_t first,
                           std::uint32_t room, base::LaneMask lanes, base::LaneMask& coverage) {
+  PackedWave& wave = worker.wave;
+  const auto column = static_cast<std::uint32_t>(x - worker.target.x),
+             row = static_cast<std::uint32_t>(y - worker.target.y);
   std::uint32_t q = first;
   for (; quads != 0 && q != first + room; quads &= quads - 1, ++q) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(quads));
     wave.position.x[q] = static_cast<std::uint16_t>(x + lane_x(lane));
     wave.position.y[q] = static_cast<std::uint16_t>(y + lane_y(lane));
+    worker.packed.row[(row + static_cast<std::uint32_t>(lane_y(lane))) / 2] |=
+        1u << ((column + static_cast<std::uint32_t>(lane_x(lane))) / 2);
     coverage |= (lanes >> lane & 15) << (4 * q);
   }
   return q - first;
@@ -115,11 +131,9 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
   PackedWave& wave = worker.wave;
   const PlaneSet& planes = current_planes(worker, primitive);
   const std::uint32_t samples = worker.draw->plan->samples;
-  // Windows do not keep to the grid of blocks.
-  const std::uint64_t blocks = block_bit(x, y) | block_bit(x + 7, y) | block_bit(x, y + 7) | block_bit(x + 7, y + 7);
   while (quads != 0) {
     if (wave.quads == 0) {
-      wave.blocks = 0;
+      worker.packed = {};
       for (std::uint32_t s = 0; s < samples; ++s) wave.coverage[s] = wave.rasterized[s] = 0;
     }
     if (wave.slots == 0 || wave.primitive[wave.slots - 1] != &primitive) {
@@ -129,12 +143,11 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
     const std::uint32_t first = wave.quads;
     const base::LaneMask before = quads;
     const std::uint32_t count =
-        fill_places(wave, x, y, quads, first, base::kQuadsPerWave - first, block.lanes[0], wave.coverage[0]);
+        fill_places(worker, x, y, quads, first, base::kQuadsPerWave - first, block.lanes[0], wave.coverage[0]);
     for (std::uint32_t s = 1; s < samples; ++s)
       wave.coverage[s] |= compress_quads(block.lanes[s], before, first, count);
     for (std::uint32_t s = 0; reads_rasterized(worker) && s < samples; ++s)
       wave.rasterized[s] |= compress_quads(rasterized.lanes[s], before, first, count);
-    wave.blocks |= blocks;
     wave.quads = first + count;
     std::fill(wave.slot + first, wave.slot + wave.quads, static_cast<std::uint8_t>(wave.slots - 1));
     wave.planes.end[wave.slots - 1] = static_cast<std::uint8_t>(wave.quads);
@@ -169,7 +182,7 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
     return;
   }
   // Quads on the same pixels come first.
-  if (worker.wave.quads != 0 && (worker.wave.blocks & block_bit(x, y)) != 0) shade_wave(worker, worker.wave);
+  if (waits_in_wave(worker, x, y, quads)) shade_wave(worker, worker.wave);
   if (alone)
     shade_block(worker, primitive, x, y, block);
   else
@@ -278,9 +291,47 @@ BlockCoverage block_of(const TileCoverage& coverage, std::uint32_t place, std::u
 /// Whether something else than its edges limits the pixels of a primitive.
 bool is_cut(const PipelinePlan& plan, const Primitive& p) {
   if (plan.raster_samples > 1 || p.kind != PrimitiveKind::kTriangle) return true;
+  const PixelRect& region = plan.region[p.viewport];
+  if (p.x0 > region.x0 && p.y0 > region.y0 && p.x1 < region.x1 && p.y1 < region.y1) return false;
   const auto [left, right] = std::minmax({p.x[0], p.x[1], p.x[2]});
   const auto [top, bottom] = std::minmax({p.y[0], p.y[1], p.y[2]});
   return p.x0 != (left + 255) >> 8 || p.y0 != (top + 255) >> 8 || p.x1 != (right - 1) >> 8 || p.y1 != (bottom - 1) >> 8;
+}
+
+/// Where the grid of a primitive's blocks starts: pixels from the tile's first one, even.
+struct GridOrigin {
+  int x = 0, y = 0;
+  bool operator==(const GridOrigin&) const = default;
+};
+
+/// Sides of primitives whose blocks do not keep to the tile's grid, in pixels.
+constexpr int kOwnGridReach = 2 * kBlockSize;
+
+/// The start of a grid with as few blocks as possible over pixels [first, last] of a tile, the first of them at the
+/// start or the last of them at the end of a block.
+int grid_start(int first, int last, bool from_start) {
+  const int begin = first & ~1, end = (last + 2) & ~1;
+  const int span = (end - begin + kBlockSize - 1) & ~(kBlockSize - 1);
+  return std::clamp(from_start ? begin : end - span, 0, kTileSize - span);
+}
+
+/// Small primitives have a grid of their own that puts most of their pixels into one block: the block starts or ends
+/// where the bounds do, on the side to which the centre of mass lies.
+GridOrigin grid_origin(const Primitive& p, const PixelRect& rect) {
+  if (rect.x1 - rect.x0 >= kOwnGridReach - 1 || rect.y1 - rect.y0 >= kOwnGridReach - 1) return {};
+  const auto leans_back = [&](const std::int32_t* at, int first, int last) {
+    return p.kind != PrimitiveKind::kTriangle || 2 * (at[0] + at[1] + at[2]) < 3 * 256 * (first + last);
+  };
+  return {grid_start(rect.x0, rect.x1, leans_back(p.x, p.x0, p.x1)),
+          grid_start(rect.y0, rect.y1, leans_back(p.y, p.y0, p.y1))};
+}
+
+/// Moves a primitive's edges and bounds in the tile to another first pixel.
+void move_origin(const SampleLocations& locations, GridOrigin origin, TileEdges& edges, PixelRect& rect) {
+  for (std::uint32_t s = 0; s < locations.count; ++s)
+    for (std::uint32_t e = 0; e < edges.count; ++e)
+      edges.f[s][e] += origin.x * edges.step_x[e] + origin.y * edges.step_y[e];
+  rect = {rect.x0 - origin.x, rect.y0 - origin.y, rect.x1 - origin.x, rect.y1 - origin.y};
 }
 
 /// Blocks with pixels of `rect`, which is in the tile.
@@ -288,8 +339,13 @@ PixelRect blocks_of(const PixelRect& rect) {
   return {rect.x0 / kBlockSize, rect.y0 / kBlockSize, rect.x1 / kBlockSize, rect.y1 / kBlockSize};
 }
 
-/// Covered lanes of the blocks among `places` that a primitive touches; returns their places. `rect`: the primitive's
-/// in the tile.
+base::LaneMask places_of(const PixelRect& rect) {
+  const auto [bx0, by0, bx1, by1] = blocks_of(rect);
+  return rect_lanes(bx0, by0, bx1, by1);
+}
+
+/// Covered lanes of the blocks among `places` that a primitive touches; returns their places. `rect`: the primitive's,
+/// from the first block on.
 base::LaneMask cover_tile(const PipelinePlan& plan, const Primitive& primitive, const TileEdges& edges,
                           const PixelRect& rect, base::LaneMask places, TileCoverage& out) {
   const auto [bx0, by0, bx1, by1] = blocks_of(rect);
@@ -317,29 +373,30 @@ base::LaneMask cover_tile(const PipelinePlan& plan, const Primitive& primitive, 
   return any;
 }
 
-/// Early tests of the blocks at `places`.
-void test_tile(TileWorker& worker, const Primitive& primitive, base::LaneMask places, TileCoverage& coverage) {
+/// Early tests of the blocks at `places` of a grid.
+void test_tile(TileWorker& worker, const Primitive& primitive, GridOrigin origin, base::LaneMask places,
+               TileCoverage& coverage) {
   const PipelinePlan& plan = *worker.draw->plan;
   const TileTarget& target = worker.target;
+  const int x = target.x + origin.x, y = target.y + origin.y;
   if (plan.tests_rows) {
-    const base::LaneMask owned = places & rect_lanes(0, 0, (target.right - target.x) / kBlockSize - 1,
-                                                     (target.bottom - target.y) / kBlockSize - 1);
+    const base::LaneMask owned =
+        places & rect_lanes(0, 0, (target.right - x) / kBlockSize - 1, (target.bottom - y) / kBlockSize - 1);
     base::LaneMask hidden = 0;
     for (std::uint32_t s = 0; s < plan.samples; ++s)
-      hidden |= test_blocks(worker, primitive, s, target.x, target.y, owned, coverage.lanes[s],
-                            plan.depth_order == TestOrder::kEarly);
+      hidden |=
+          test_blocks(worker, primitive, s, x, y, owned, coverage.lanes[s], plan.depth_order == TestOrder::kEarly);
     for (base::LaneMask left = plan.samples > 1 ? hidden : 0; left != 0; left &= left - 1) {
       const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
       if (any_sample(block_of(coverage, place, plan.samples), plan.samples) != 0) hidden &= ~(left & -left);
     }
-    if (hidden != 0 && plan.hides_blocks) learn_hidden_places(worker, primitive, hidden);
+    if (hidden != 0 && plan.hides_blocks && origin == GridOrigin{}) learn_hidden_places(worker, primitive, hidden);
     places &= ~owned;
   }
   for (; places != 0; places &= places - 1) {
     const auto place = static_cast<std::uint32_t>(std::countr_zero(places));
     BlockCoverage block = block_of(coverage, place, plan.samples);
-    test_any_block(worker, primitive, target.x + lane_x(place) * kBlockSize, target.y + lane_y(place) * kBlockSize,
-                   block);
+    test_any_block(worker, primitive, x + lane_x(place) * kBlockSize, y + lane_y(place) * kBlockSize, block);
     for (std::uint32_t s = 0; s < plan.samples; ++s) coverage.lanes[s][place] = block.lanes[s];
   }
 }
@@ -501,20 +558,26 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   }
   TileEdges edges;
   if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
-  const PixelRect rect = rect_in_tile(worker.target, primitive);
+  PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
-  const auto [bx0, by0, bx1, by1] = blocks_of(rect);
-  base::LaneMask places = rect_lanes(bx0, by0, bx1, by1);
+  base::LaneMask places = places_of(rect);
   if (plan.hides_blocks && (worker.hierarchy.known & places) != 0) places = unhidden_places(worker, primitive, places);
   if (places == 0) return;
+  const GridOrigin origin = grid_origin(primitive, rect);
+  if (origin != GridOrigin{}) {
+    move_origin(*plan.locations, origin, edges, rect);
+    places = places_of(rect);
+  }
   places = cover_tile(plan, primitive, edges, rect, places, worker.covered);
   if (places == 0) return;
   if (reads_rasterized(worker)) worker.rasterized = worker.covered;
-  if (plan.depth_order == TestOrder::kEarly || plan.early_reject) test_tile(worker, primitive, places, worker.covered);
+  if (plan.depth_order == TestOrder::kEarly || plan.early_reject)
+    test_tile(worker, primitive, origin, places, worker.covered);
   BlockCoverage rasterized{};
   for (base::LaneMask left = places; left != 0; left &= left - 1) {
     const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
-    const int x = worker.target.x + lane_x(place) * kBlockSize, y = worker.target.y + lane_y(place) * kBlockSize;
+    const int x = worker.target.x + origin.x + lane_x(place) * kBlockSize;
+    const int y = worker.target.y + origin.y + lane_y(place) * kBlockSize;
     if (reads_rasterized(worker)) rasterized = block_of(worker.rasterized, place, plan.samples);
     emit_block(worker, primitive, x, y, rasterized, block_of(worker.covered, place, plan.samples));
   }

@@ -52,13 +52,17 @@ inline base::LaneMask any_sample(const BlockCoverage& block, std::uint32_t sampl
 struct PackedWave {
   std::uint32_t quads = 0;
   std::uint32_t slots = 0;
-  std::uint64_t blocks = 0;  ///< blocks of the tile that have a quad here: bit 8 * row + column
   QuadPositions position;
   std::uint8_t slot[base::kQuadsPerWave];
   const Primitive* primitive[base::kQuadsPerWave];  ///< by slot
   WavePlanes planes;                                ///< likewise
   base::LaneMask coverage[kMaxSamples];             ///< by sample of the attachments
   base::LaneMask rasterized[kMaxSamples];           ///< before early tests: gl_SampleMask as an input (8.5)
+};
+
+/// Quads of a tile: bit x / 2 of row y / 2.
+struct QuadMap {
+  std::uint32_t row[kTileSize / 2];
 };
 
 /// Windows that are tested together: their planes are there before the first depth is read.
@@ -104,6 +108,7 @@ struct TileWorker {
   TileTarget target;
   const DrawRecord* draw = nullptr;  ///< of the packed wave
   PackedWave wave;                   ///< being packed
+  QuadMap packed;                    ///< its quads
   PackedWave block;                  ///< one whole block, shaded at once
   BlockDraw block_draw;
   TileCoverage covered, rasterized;  ///< of the primitive being rasterized: what passed so far, and before any test
