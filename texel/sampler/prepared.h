@@ -46,6 +46,6 @@ PreparedSampler::Kernel byte_kernel(const Plan& plan);  ///< Plan::aos
 PreparedSampler::Kernel float_kernel(
     const Plan& plan);                         ///< samples and gathers of everything else, but not anisotropic
 PreparedSampler::Kernel query_kernel();        ///< levels of detail, but not of anisotropic cubes
-PreparedSampler::Kernel anisotropic_kernel();  ///< two-dimensional, without comparison
+PreparedSampler::Kernel anisotropic_kernel();  ///< two-dimensional
 
 }  // namespace vitrine::texel

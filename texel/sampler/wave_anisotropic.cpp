@@ -1,5 +1,6 @@
 // Anisotropic filtering for whole waves, two-dimensional images (lavapipe-texture-blend.md A8): the twin of
-// sample_anisotropic. The lanes of a vector walk through their ellipses together, each inside its own bounds.
+// sample_anisotropic, for compressed formats and comparisons too. The lanes of a vector walk through their ellipses
+// together, each inside its own bounds.
 #include <cstring>
 
 #include "texel/sampler/anisotropic.h"
@@ -13,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "texel/sampler/wave_texels-inl.h"
+#include "texel/sampler/wave_words-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
@@ -110,23 +112,88 @@ struct WalkAxis {
   }
 };
 
-template <Numeric kNumeric>
-HWY_INLINE TexelLanes texel_at(const Plan& plan, VI offset, hn::Mask<DI> outside) {
-  TexelLanes texel = fetch_lanes<kNumeric>(*plan.view->format, plan.view->base, offset);
-  if (plan.address[0] != Address::kBorder && plan.address[1] != Address::kBorder) return texel;
-  const auto put = [&](VF value, std::size_t c) {
-    return hn::IfThenElse(hn::RebindMask(DF(), outside), as_float(hn::Set(DU(), plan.border[c])), value);
-  };
-  return {put(texel.r, 0), put(texel.g, 1), put(texel.b, 2), put(texel.a, 3)};
+/// Where texels lie: of compressed formats, their blocks and the places inside.
+struct WalkPlaces {
+  VI offset, inner;
+};
+
+template <bool kBlocks>
+HWY_INLINE WalkPlaces place_row(const FormatDesc& format, const LevelLanes& level, VI y) {
+  VI inner = splat(0);
+  if constexpr (kBlocks) {
+    y = split_block(y, format.block_height, inner);
+    inner = hn::Mul(inner, splat(static_cast<std::int32_t>(format.block_width)));
+  }
+  return {hn::Add(level.origin, hn::Mul(y, level.row_pitch)), inner};
 }
 
-template <Numeric kNumeric>
+template <bool kBlocks>
+HWY_INLINE WalkPlaces place_in_row(const FormatDesc& format, const WalkPlaces& row, VI x) {
+  VI inner = splat(0);
+  if constexpr (kBlocks) x = split_block(x, format.block_width, inner);
+  return {hn::Add(row.offset, hn::Mul(x, splat(static_cast<std::int32_t>(format.block_bytes)))),
+          hn::Add(row.inner, inner)};
+}
+
+/// Of the lanes of `wanted`; others are zero or anything finite.
+HWY_NOINLINE TexelLanes fetch_from_blocks(const ImageView& view, const WalkPlaces& at, base::LaneMask wanted) {
+  const FormatDesc& format = *view.format;
+  IntLanes offset, inner;
+  for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DI())) {
+    hn::Store(at.offset, DI(), offset.lane + i);
+    hn::Store(at.inner, DI(), inner.lane + i);
+  }
+  WordLanes words;
+  if (decode_s3tc(format, view.base, offset, inner, words.lane)) {
+    const VU word = hn::Load(DU(), words.lane);
+    const bool srgb = format.is_srgb();
+    const FormatDesc& bytes = format_desc(srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM);
+    const auto channel = [&](std::size_t c) HWY_ATTR {
+      return srgb ? convert_field<Numeric::kSrgb>(word, bytes.channel[c])
+                  : convert_field<Numeric::kUnorm>(word, bytes.channel[c]);
+    };
+    return {channel(0), channel(1), channel(2), channel(3)};
+  }
+  alignas(64) float value[4][kMaxLanes]{};
+  BlockCache& cache = block_cache();
+  base::for_each_lane(wanted, [&](std::size_t lane) {
+    const Texel& texel = cache.texels(format, view.base + offset.lane[lane])[inner.lane[lane]];
+    for (std::size_t c = 0; c < 4; ++c) std::memcpy(&value[c][lane], &texel[c], sizeof(float));
+  });
+  return {hn::Load(DF(), value[0]), hn::Load(DF(), value[1]), hn::Load(DF(), value[2]), hn::Load(DF(), value[3])};
+}
+
+/// The texels of the lanes of `wanted`, or the border colour, or the outcome of their comparison with `reference`.
+template <Numeric kNumeric, bool kBlocks>
+HWY_INLINE TexelLanes texel_at(const Plan& plan, const WalkPlaces& at, hn::Mask<DI> wanted, hn::Mask<DI> outside,
+                               const VF* reference) {
+  TexelLanes texel;
+  if constexpr (kBlocks) {
+    texel = fetch_from_blocks(*plan.view, at, lanes_mask_bits(DI(), wanted));
+  } else {
+    texel = fetch_lanes<kNumeric>(*plan.view->format, plan.view->base, at.offset);
+  }
+  if (plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder) {
+    const auto put = [&](VF value, std::size_t c) HWY_ATTR {
+      return hn::IfThenElse(hn::RebindMask(DF(), outside), as_float(hn::Set(DU(), plan.border[c])), value);
+    };
+    texel = {put(texel.r, 0), put(texel.g, 1), put(texel.b, 2), put(texel.a, 3)};
+  }
+  if (reference != nullptr) {
+    const auto holds = compare_lanes(plan.sampler->compare_op, *reference, texel.r);
+    texel.r = hn::IfThenElseZero(holds, splat(1.0f));
+  }
+  return texel;
+}
+
+template <Numeric kNumeric, bool kBlocks = false>
 HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const EllipseLanes& e, base::LaneMask active,
-                       Sums& sums) {
+                       const VF* reference, Sums& sums) {
   const Plan& plan = p.plan;
+  const FormatDesc& format = *plan.view->format;
+  const bool finite = kNumeric != Numeric::kSfloat || reference != nullptr;
   const auto live = lanes_mask_from_bits(DI(), active);
   const WalkAxis x_axis(level.axis[0]), y_axis(level.axis[1]);
-  const VI texel_bytes = splat(static_cast<std::int32_t>(plan.view->format->block_bytes));
   const VF u_start = hn::Sub(lanes_int_to_float(e.u0), e.tu);
   const VF dq_start = hn::Mul(hn::Add(hn::Mul(u_start, splat(2.0f)), splat(1.0f)), e.a);
   const VF q_start = hn::Mul(square_of(u_start), e.a);
@@ -139,7 +206,7 @@ HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const 
     VF dq = hn::Add(hn::Mul(offset, e.b), dq_start);
     VF q = hn::Add(hn::Mul(hn::Add(hn::Mul(e.c, offset), hn::Mul(e.b, u_start)), offset), q_start);
     hn::Mask<DI> outside_y, outside_x;
-    const VI row = hn::Add(level.origin, hn::Mul(y_axis.nearest(v, outside_y), level.row_pitch));
+    const WalkPlaces row = place_row<kBlocks>(format, level, y_axis.nearest(v, outside_y));
     VI iu = e.u0;
     for (auto texels = rows; !hn::AllFalse(DI(), texels);
          iu = hn::Add(iu, splat(1)), texels = hn::And(rows, hn::Not(hn::Gt(iu, e.u1)))) {
@@ -148,48 +215,67 @@ HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const 
       dq = hn::Add(dq, ddq);
       const auto weighed = hn::And(texels, hn::Not(hn::Gt(index, splat(1023))));
       // A texel without weight adds 0, unless it is an infinity or NaN.
-      if (kNumeric != Numeric::kSfloat && hn::AllFalse(DI(), weighed)) continue;
+      if (finite && hn::AllFalse(DI(), weighed)) continue;
       const VI entry = hn::Min(hn::Max(index, splat(0)), splat(1023));
       const VF weight =
           hn::IfThenElseZero(hn::RebindMask(DF(), weighed), hn::GatherIndex(DF(), kEllipseWeights.data(), entry));
       const VI at = x_axis.nearest(lanes_int_to_float(iu), outside_x);
       const TexelLanes texel =
-          texel_at<kNumeric>(plan, hn::Add(row, hn::Mul(at, texel_bytes)), hn::Or(outside_x, outside_y));
+          texel_at<kNumeric, kBlocks>(plan, place_in_row<kBlocks>(format, row, at), finite ? weighed : texels,
+                                      hn::Or(outside_x, outside_y), reference);
       const VF value[4] = {texel.r, texel.g, texel.b, texel.a};
-      for (std::size_t c = 0; c < 4; ++c) {
+      const auto add = [&](std::size_t c) HWY_ATTR {
         const VF sum = hn::Add(sums.color[c], hn::Mul(value[c], weight));
         sums.color[c] =
             kNumeric == Numeric::kSfloat ? hn::IfThenElse(hn::RebindMask(DF(), texels), sum, sums.color[c]) : sum;
-      }
+      };
+      add(0);
+      if (reference == nullptr) add(1), add(2), add(3);
       sums.total = hn::Add(sums.total, weight);
     }
   }
 }
 
+/// Compressed texels are values already: those that may be infinite go with the floats.
 void walk_any(const PreparedSampler& p, const LevelLanes& level, const EllipseLanes& e, base::LaneMask active,
-              Sums& sums) {
-  switch (p.plan.view->format->channel[0].numeric) {
+              const VF* reference, Sums& sums) {
+  const FormatDesc& format = *p.plan.view->format;
+  if (format.is_compressed()) {
+    const Numeric numeric = format.channel[0].numeric;
+    return numeric == Numeric::kUfloat || numeric == Numeric::kSfloat
+               ? walk<Numeric::kSfloat, true>(p, level, e, active, reference, sums)
+               : walk<Numeric::kUnorm, true>(p, level, e, active, reference, sums);
+  }
+  switch (format.channel[0].numeric) {
     case Numeric::kUnorm:
-      return walk<Numeric::kUnorm>(p, level, e, active, sums);
+      return walk<Numeric::kUnorm>(p, level, e, active, reference, sums);
     case Numeric::kSrgb:
-      return walk<Numeric::kSrgb>(p, level, e, active, sums);
+      return walk<Numeric::kSrgb>(p, level, e, active, reference, sums);
     case Numeric::kSnorm:
-      return walk<Numeric::kSnorm>(p, level, e, active, sums);
+      return walk<Numeric::kSnorm>(p, level, e, active, reference, sums);
     default:
-      return walk<Numeric::kSfloat>(p, level, e, active, sums);
+      return walk<Numeric::kSfloat>(p, level, e, active, reference, sums);
   }
 }
 
-/// Formats that fetch_lanes decodes in one of the instances above.
+/// Formats that one of the instances above decodes.
 bool has_instance(const FormatDesc& format) {
   const Numeric numeric = format.channel[0].numeric;
-  return !format.is_compressed() && (numeric == Numeric::kUnorm || numeric == Numeric::kSrgb ||
-                                     numeric == Numeric::kSnorm || numeric == Numeric::kSfloat);
+  if (format.is_compressed()) return true;
+  return numeric == Numeric::kUnorm || numeric == Numeric::kSrgb || numeric == Numeric::kSnorm ||
+         numeric == Numeric::kSfloat;
+}
+
+/// The depth to compare with, clamped where texels are fixed-point.
+HWY_INLINE VF load_reference(const ImageView& view, const SampleRequest& request, std::size_t first) {
+  const VF reference = load_lanes(request.dref, first);
+  if (view.format->channel[0].numeric == Numeric::kSfloat) return reference;
+  return lanes_max_second(lanes_min_second(reference, splat(1.0f)), splat(0.0f));
 }
 
 void sample_anisotropic_wave(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
   const ImageView& view = *p.plan.view;
-  if (request.dref != nullptr || !has_instance(*view.format) || p.plan.sampler->unnormalized) {
+  if (!has_instance(*view.format) || p.plan.sampler->unnormalized) {
     return sample_by_lane(p, request, result);
   }
   WaveState state;
@@ -208,9 +294,15 @@ void sample_anisotropic_wave(const PreparedSampler& p, const SampleRequest& requ
     Sums sums{{splat(0.0f), splat(0.0f), splat(0.0f), splat(0.0f)}, splat(0.0f)};
     LevelLanes level;
     load_level<2>(p, request, state, 0, first, false, level);
-    walk_any(p, level, e, active, sums);
+    VF reference = splat(0.0f);
+    if (request.dref != nullptr) reference = load_reference(view, request, first);
+    walk_any(p, level, e, active, request.dref != nullptr ? &reference : nullptr, sums);
     leftover |= (lanes_mask_bits(DF(), hn::Eq(sums.total, splat(0.0f))) & active) << first;
-    for (std::size_t c = 0; c < 4; ++c) hn::Store(hn::Div(sums.color[c], sums.total), DF(), texels.c[c].lane + first);
+    for (std::size_t c = 0; c < 4; ++c) {
+      VF value = hn::Div(sums.color[c], sums.total);
+      if (request.dref != nullptr && c != 0) value = splat(c == 3 ? 1.0f : 0.0f);
+      hn::Store(value, DF(), texels.c[c].lane + first);
+    }
   }
   if (leftover != 0) {
     base::WaveRegister rest[4];
