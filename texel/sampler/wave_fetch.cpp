@@ -53,8 +53,9 @@ HWY_INLINE bool any_active(base::LaneMask active, std::size_t first) {
 /// Where the texels of a wave lie in the memory of a view.
 struct Places {
   IntLanes offset;            ///< bytes; anything where no texel is wanted
-  IntLanes valid;             ///< all ones where one is wanted: the lane is active and inside the level
-  base::LaneMask wanted = 0;  ///< the same
+  base::LaneMask wanted = 0;  ///< the lane is active and inside the level
+
+  HWY_INLINE hn::Mask<DI> valid(std::size_t first) const { return lanes_mask_from_bits(DI(), wanted >> first); }
 };
 
 /// One level of a view, or that of each lane.
@@ -118,7 +119,6 @@ void place_texels(const ImageView& view, const FetchRequest& request, Places& ou
       offset = hn::Add(offset, hn::Mul(layer, layer_stride));
     }
     hn::Store(offset, DI(), out.offset.lane + first);
-    hn::Store(hn::VecFromMask(DI(), valid), DI(), out.valid.lane + first);
     out.wanted |= static_cast<base::LaneMask>(lanes_mask_bits(DI(), valid)) << first;
   });
 }
@@ -127,9 +127,8 @@ void place_texels(const ImageView& view, const FetchRequest& request, Places& ou
 HWY_INLINE void share_place(Places& places) {
   const VI shared = splat(places.offset.lane[std::countr_zero(places.wanted)]);
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI())) {
-    const auto valid = hn::MaskFromVec(hn::Load(DI(), places.valid.lane + first));
     const VI offset = hn::Load(DI(), places.offset.lane + first);
-    hn::Store(hn::IfThenElse(valid, offset, shared), DI(), places.offset.lane + first);
+    hn::Store(hn::IfThenElse(places.valid(first), offset, shared), DI(), places.offset.lane + first);
   }
 }
 
@@ -175,9 +174,8 @@ void fetch_image(const ImageView& view, const FetchRequest& request, base::WaveR
   }
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     if (!any_active(request.active, first)) continue;
-    const auto valid = hn::MaskFromVec(hn::Load(DI(), places.valid.lane + first));
-    put_masked<kNumeric>(*view.format, convert_lanes<kNumeric>(*view.format, words, first), valid, view.swizzle,
-                         request.active, first, result);
+    put_masked<kNumeric>(*view.format, convert_lanes<kNumeric>(*view.format, words, first), places.valid(first),
+                         view.swizzle, request.active, first, result);
   }
 }
 
