@@ -226,6 +226,37 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool s
   });
 }
 
+/// Multisampled dashes. They are wide and run at 30 to 60 degrees, so that the last piece of a line is never shorter
+/// than a pixel in both directions (deviations.md, multisample-short-lines).
+CTS_RANDOM("rasterization", "random_line_stipple.samples_4", 15) {
+  Random& random = run.random;
+  run.require(run.gpu.extension_features.line_rasterization.stippledRectangularLines, "stippledRectangularLines");
+  Scene scene(random);
+  scene.target.samples = VK_SAMPLE_COUNT_4_BIT;
+  scene.target.width = scene.target.height = 64;  // deviations.md, multisample-line-tiles
+  VkPipelineRasterizationLineStateCreateInfoEXT line{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+  line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
+  line.stippledLineEnable = VK_TRUE;
+  line.lineStippleFactor = 1 + random.below(4);
+  line.lineStipplePattern = static_cast<uint16_t>(1 + random.below(65535));
+  scene.spec.raster.pNext = &line;
+  scene.spec.raster.lineWidth = random.real(3.0f, 7.0f);
+  scene.spec.assembly.topology = random.pick({VK_PRIMITIVE_TOPOLOGY_LINE_LIST, VK_PRIMITIVE_TOPOLOGY_LINE_STRIP});
+  scene.count = 6 + random.below(10);
+  scene.vertices = random_vertices(random, scene.count, 0.85f, 0, 1);
+  float x = 0, y = 0;
+  for (uint32_t i = 0; i < scene.count; ++i) {
+    const float dx = random.real(0.2f, 0.6f), dy = dx * random.real(0.6f, 1.6f);
+    x += x > 0 ? -dx : dx;
+    y += y > 0 ? -dy : dy;
+    float* v = &scene.vertices[i * 8];
+    v[0] = x * v[3];
+    v[1] = y * v[3];
+  }
+  draw(run, scene);
+}
+
 const bool kLines = [] {
   AddGenerator("rasterization", "random_line_modes.samples_1", 50,
                [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_1_BIT, false, false); });
