@@ -150,6 +150,89 @@ CTS_RANDOM("clipping", "extreme_positions", 40) { draw_extreme_positions(run, tr
 /// looked at.
 CTS_RANDOM("clipping", "undefined_positions", 20) { draw_extreme_positions(run, false); }
 
+/// Triangles thinner than the grid of snapped positions, with corners in a row, and with corners that are the same.
+CTS_RANDOM("rasterization", "random_slivers", 20) {
+  Random& random = run.random;
+  TargetSpec target_spec;
+  target_spec.colors = {VK_FORMAT_R32G32B32A32_SFLOAT};
+  if (random.chance(0.3f)) target_spec.samples = VK_SAMPLE_COUNT_4_BIT;
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  spec.vertex = kColorVertex;
+  spec.fragment = kColorFragment;
+  spec.floats({4, 4});
+  spec.raster.cullMode = random.chance(0.2f) ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  constexpr uint32_t kCount = 150;
+  // Clipped ones change how the reference culls the others (deviations.md, neighbour-culling).
+  const float reach = spec.raster.cullMode != VK_CULL_MODE_NONE || random.chance(0.5f) ? 0.9f : 1.3f;
+  std::vector<float> values;
+  for (uint32_t i = 0; i < kCount; i += 3) {
+    const float x = random.real(-reach, reach), y = random.real(-reach, reach), w = random.real(0.5f, 2.0f);
+    const float dx = random.real(-1, 1) * reach - x, dy = random.real(-1, 1) * reach - y, along = random.real(0, 1);
+    // In pixels of 1/32: on the line, less than a step of 1/256 beside it, and some steps.
+    const float beside = random.pick({0.0f, 0x1p-20f, 0x1p-14f, 0x1p-12f, 0x1p-8f}) * random.real(-1, 1);
+    const bool same = random.chance(0.1f);
+    const float corner[3][2] = {
+        {x, y}, {x + dx, y + dy}, {same ? x : x + along * dx - beside * dy, same ? y : y + along * dy + beside * dx}};
+    for (const auto& at : corner) {
+      for (const float v : {at[0] * w, at[1] * w, 0.5f * w, w}) values.push_back(v);
+      for (int c = 0; c < 4; ++c) values.push_back(random.unit());
+    }
+  }
+  const Buffer vertices = run.buffer_of(values);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, kCount, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+}
+
+/// Viewports without area or with hardly any, and empty scissors; the last draw goes through one that has some.
+CTS_RANDOM("rasterization", "random_thin_viewports", 20) {
+  Random& random = run.random;
+  const Target target = make_target(run, {});
+  GraphicsSpec spec;
+  spec.vertex = kColorVertex;
+  spec.fragment = kColorFragment;
+  spec.floats({4, 4});
+  spec.assembly.topology = random.pick({VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP,
+                                        VK_PRIMITIVE_TOPOLOGY_LINE_LIST, VK_PRIMITIVE_TOPOLOGY_LINE_STRIP});
+  spec.dynamic = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  std::vector<float> values;
+  for (int i = 0; i < 24; ++i) {
+    for (const float v : {random.real(-1.2f, 1.2f), random.real(-1.2f, 1.2f), random.unit(), 1.0f}) values.push_back(v);
+    for (int c = 0; c < 4; ++c) values.push_back(random.unit());
+  }
+  const Buffer vertices = run.buffer_of(values);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    for (uint32_t i = 0; i < 4; ++i) {
+      // Their edges keep away from the centres of pixels (deviations.md, viewport-scissor).
+      const auto place = [&] { return static_cast<float>(random.below(60)) + random.pick({0.2f, 0.7f}); };
+      const float x = place(), y = place();
+      VkViewport viewport{x, y, 20, 20, 0, 1};
+      VkRect2D scissor{{0, 0}, {64, 64}};
+      if (i < 3) {
+        viewport.width = random.pick({1e-6f, 1e-3f, 0.25f, 1.0f, 30.0f});
+        viewport.height = random.pick({0.0f, 0.0f, 1e-6f, -1e-3f, 0.25f, -0.5f, 1.0f});
+        if (random.chance(0.2f)) scissor.extent = {random.below(2) * 64, 0};
+      }
+      vkCmdSetViewport(cmd, 0, 1, &viewport);
+      vkCmdSetScissor(cmd, 0, 1, &scissor);
+      vkCmdDraw(cmd, 24, 1, 0, 0);
+    }
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+}
+
 /// Attachments as wide or high as an image may be.
 void draw_long(Run& run, uint32_t width, uint32_t height, uint32_t layers, const char* select) {
   TargetSpec target_spec;

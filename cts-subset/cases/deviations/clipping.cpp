@@ -67,6 +67,41 @@ const AddCase kWrapped("clipping", "deviation.wrapped_coordinates", "wrapped-coo
                          draw(run, "outside", {}, {}, colored({{2, 0, 0.5f, 1}, {3, 0, 0.5f, 1}, {3, 1, 0.5f, 1}}));
                        });
 
+/// Triangles without area but for the rounding of their corners, and one that is clipped: in one draw, and in two.
+const AddCase kNeighbour(
+    "clipping", "deviation.neighbour_culling", "neighbour-culling", case_against_control, [](Run& run) {
+      std::vector<std::array<float, 4>> corners;
+      for (int i = 0; i < 500; ++i) {
+        const float x = run.random.real(-0.9f, 0), y = run.random.real(-0.9f, 0);
+        const float dx = run.random.real(0.1f, 0.9f), dy = run.random.real(0.1f, 0.9f);
+        const float t = run.random.unit();
+        corners.push_back({x, y, 0.5f, 1});
+        corners.push_back({x + dx, y + dy, 0.5f, 1});
+        corners.push_back({x + t * dx, y + t * dy, 0.5f, 1});
+      }
+      const auto slivers = static_cast<uint32_t>(corners.size());
+      corners.insert(corners.end(), {{0.95f, 0.95f, 0.5f, 1}, {1.2f, 0.95f, 0.5f, 1}, {0.95f, 1.2f, 0.5f, 1}});
+      const Buffer vertices = run.buffer_of(colored(corners));
+      GraphicsSpec spec;
+      spec.vertex = kColorVertex;
+      spec.fragment = kColorFragment;
+      spec.floats({4, 4});
+      spec.raster.cullMode = VK_CULL_MODE_BACK_BIT;
+      for (const bool together : {true, false}) {
+        const Target target = make_target(run, {});
+        const VkPipeline pipeline = make_pipeline(run, spec, target);
+        run.once([&](VkCommandBuffer cmd) {
+          target.begin(cmd);
+          bind_pipeline(cmd, pipeline);
+          bind_vertices(cmd, vertices);
+          vkCmdDraw(cmd, together ? slivers + 3 : slivers, 1, 0, 0);
+          if (!together) vkCmdDraw(cmd, 3, 1, slivers, 0);
+          vkCmdEndRenderPass(cmd);
+        });
+        run.out(together ? "together" : "apart", target.colors[0]);
+      }
+    });
+
 /// A clipped line along which 1/w and its products are denormal numbers.
 const AddCase kDenormals(
     "clipping", "deviation.clipped_denormals", "clipped-denormals",
