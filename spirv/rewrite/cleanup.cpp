@@ -1,5 +1,6 @@
 // Copy propagation, dead code, scalarisation: the steps that change no value.
 #include <array>
+#include <vector>
 
 #include "spirv/rewrite/loops.h"
 #include "spirv/rewrite/passes.h"
@@ -92,34 +93,40 @@ bool look_through_whole(const Graph& graph, Src& src) {
   return true;
 }
 
-/// A Mov that gathers components of several values becomes a Vec.
-bool move_to_vec(Graph& graph, InstId id) {
+/// A Mov that gathers components of several values of `vec` gives its uses to a Vec.
+bool move_to_vec(Graph& graph, InstId id, const Inst& vec) {
   const Inst inst = graph.insts[id];
+  if (!is_move(inst) || inst.components < 2) return false;
   const Src from = graph.source(inst, 0);
-  const Inst* vec = graph.def(from.value);
-  if (!vec || vec->kind != Kind::kVec || inst.components < 2) return false;
   std::array<Src, 4> parts;
-  for (unsigned i = 0; i < inst.components; ++i) parts[i] = graph.source(*vec, from.swizzle[i]);
+  for (unsigned i = 0; i < inst.components; ++i) parts[i] = graph.source(vec, from.swizzle[i]);
   const InstId made = graph.create(Kind::kVec, Op::kVec, inst.components, inst.boolean, inst.components);
   graph.insts[made].origin = inst.origin;
   for (unsigned i = 0; i < inst.components; ++i) graph.set_source(made, i, parts[i]);
-  graph.insert_before(id, made);
+  graph.insert_after(id, made);
   graph.replace_uses(inst.result, graph.insts[made].result);
-  graph.remove(id);
   return true;
 }
 
-bool propagate_into(Graph& graph, InstId id) {
+/// The uses of a copy become uses of what it copies, in their order, which is the order in which the rules wake users.
+bool propagate(Graph& graph, InstId id) {
+  if (!is_move(graph.insts[id]) && graph.insts[id].kind != Kind::kVec) return false;
+  std::vector<Slot> uses;
+  for (Slot slot = graph.values[graph.insts[id].result].first_use; slot != kNone; slot = graph.sources[slot].next)
+    uses.push_back(slot);
   bool changed = false;
-  for (std::uint32_t i = 0; i < graph.insts[id].count; ++i) {
-    Src src = graph.source(graph.insts[id], i);
-    const unsigned read = components_read(graph, graph.insts[id], i);
-    bool moved = false;
-    while (read == 0 ? look_through_whole(graph, src) : look_through(graph, src, read)) moved = true;
-    if (moved) graph.set_source(id, i, src);
-    changed |= moved;
+  for (const Slot slot : uses) {
+    const InstId user = graph.sources[slot].user;
+    const std::uint32_t index = slot - graph.insts[user].first;
+    const unsigned read = components_read(graph, graph.insts[user], index);
+    Src src = graph.source(graph.insts[user], index);
+    if (read == 0 ? look_through_whole(graph, src) : look_through(graph, src, read)) {
+      graph.set_source(user, index, src);
+      changed = true;
+    } else if (graph.insts[id].kind == Kind::kVec) {
+      changed |= move_to_vec(graph, user, Inst(graph.insts[id]));
+    }
   }
-  if (is_move(graph.insts[id])) changed |= move_to_vec(graph, id);
   return changed;
 }
 
@@ -250,7 +257,7 @@ bool is_pure(const Graph& graph, const Inst& inst) {
 
 bool propagate_copies(Graph& graph) {
   bool changed = false;
-  auto visit = [&](InstId id) { changed |= propagate_into(graph, id); };
+  auto visit = [&](InstId id) { changed |= propagate(graph, id); };
   for_each_inst(graph, graph.root, visit);
   return changed;
 }
