@@ -94,6 +94,10 @@ void build_identities(Graph& graph);
 /// x * (c ? y : 1) and its like become c ? x * y : x, as in the masked machine code of the reference.
 void select_identities(Graph& graph);
 
+/// Integers converted from the sine or cosine of what is no finite number, or from its sum or product with a literal,
+/// become those of 1: the reference's optimiser drops the NaN, of which no integer is defined.
+void convert_waves(Graph& graph);
+
 /// Minima and maxima with an operand that is known to be a number become plain ones. The reference decides this on its
 /// intermediate code, before its code generator simplifies on its own.
 void choose_extrema(Graph& graph);

@@ -61,6 +61,7 @@ void finish(Graph& graph) {
   rewriting::propagate_copies(graph);
   rewriting::remove_dead(graph);
   rewriting::select_identities(graph);
+  rewriting::convert_waves(graph);
 }
 
 }  // namespace

@@ -82,6 +82,15 @@ CTS_CASE("glsl", "selected_ones") {
   evaluate(run, Stage::kFragment, body);
 }
 
+// Integers of sines of NaN and infinities.
+CTS_CASE("glsl", "integers_of_sines") {
+  ShaderBody body;
+  body.statements = "  uvec4 r0 = uvec4(abs(i)) + uvec4(sin(a));\n  ivec4 r1 = ivec4(cos(b) * 3.0 + 2.0);\n";
+  body.results = {{kUint4, "r0"}, {kInt4, "r1"}};
+  body.specials = true;
+  evaluate(run, Stage::kFragment, body);
+}
+
 const bool kBodies = [] {
   add_body("modf_frexp", "  vec4 whole; vec4 r0 = modf(a, whole);\n  ivec4 e; vec4 r2 = frexp(a, e);\n",
            {{kVec4, "r0"}, {kVec4, "whole"}, {kVec4, "r2"}, {kInt4, "e"}});
