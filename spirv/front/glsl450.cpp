@@ -236,8 +236,11 @@ void ldexp(Translator& t, const Inst& inst, ir::Op) {
     if (x.width == 64 && top.size() > 1) number.id = constant(t, std::span(kZeros).first(top.size()));
     return with_top(number, top);
   };
-  const Expr scaled = x * power(half);
-  result(t, inst, scaled * power(rest));
+  const Expr first = power(half), second = power(rest);
+  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
+  const Expr scaled = x * first * second;
+  t.opaque = saved;
+  result(t, inst, scaled);
 }
 
 void length(Translator& t, const Inst& inst, ir::Op) { result(t, inst, length_of(arg(t, inst, 0))); }

@@ -123,7 +123,7 @@ class Rewriter {
   bool show_sum(InstId id) {
     const Opens opens = graph_.insts[id].opens;
     if (opens != Opens::kVisited && (opens != Opens::kVisitedAfterRound || graph_.first_rules)) return false;
-    show_remainder(id);
+    show_parts(id);
     graph_.insts[id].opaque = false;
     if (opens == Opens::kVisitedAfterRound) veiled_.push_back(graph_.insts[id].result);
     update_state(id);
@@ -131,10 +131,10 @@ class Rewriter {
     return true;
   }
 
-  /// Opens the parts of the remainder that the instruction ends, if it does. The reference's rules do not visit them
-  /// then, only when one of their operands changes.
-  void show_remainder(InstId id) {
-    for (const InstId part : parts_of_remainder(graph_, id)) {
+  /// Opens the parts of the composed operation that the instruction ends, if it does. The reference's rules do not
+  /// visit them then, only when one of their operands changes.
+  void show_parts(InstId id) {
+    for (const InstId part : parts_of_composed(graph_, id)) {
       graph_.insts[part].opaque = false;
       update_state(part);
     }

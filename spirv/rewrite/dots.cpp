@@ -1,5 +1,5 @@
-// Dot products and remainders, which are single operations in the reference's first round: what the front end made of
-// them stays closed to the rules until then, and vectors that end in zeros shorten dot products
+// Dot products, remainders and ldexp, which are single operations in the reference's first round: what the front end
+// made of them stays closed to the rules until then, and vectors that end in zeros shorten dot products
 // (lavapipe-shader-math.md 5.1).
 #include "spirv/rewrite/passes.h"
 
@@ -98,15 +98,22 @@ class Shortener {
 
 }  // namespace
 
-std::vector<InstId> parts_of_remainder(const Graph& graph, InstId id) {
+std::vector<InstId> parts_of_composed(const Graph& graph, InstId id) {
   const Inst& end = graph.insts[id];
-  const Inst* product = end.opaque && is_alu(&end, Op::kFSub) ? graph.def(graph.source(end, 1).value) : nullptr;
+  if (!end.opaque || end.kind != Kind::kAlu) return {};
+  if (end.op == Op::kFMul) {
+    const Inst* scaled = graph.def(graph.source(end, 0).value);
+    const bool part = is_alu(scaled, Op::kFMul) && scaled->opaque &&
+                      (scaled->opens == Opens::kAfterRules || scaled->opens == Opens::kWithResult);
+    return part ? std::vector<InstId>{graph.values[scaled->result].def} : std::vector<InstId>{};
+  }
+  const Inst* product = end.op == Op::kFSub ? graph.def(graph.source(end, 1).value) : nullptr;
   if (!is_alu(product, Op::kFMul)) return {};
   const Inst* rounded = graph.def(graph.source(*product, 1).value);
   if (!is_alu(rounded, Op::kFFloor) && !is_alu(rounded, Op::kFTrunc)) return {};
   std::vector<InstId> parts;
   for (const Inst* part : {graph.def(graph.source(*rounded, 0).value), rounded, product})
-    if (is_alu(part, part->op) && part->opaque) parts.push_back(graph.values[part->result].def);
+    if (part && is_alu(part, part->op) && part->opaque) parts.push_back(graph.values[part->result].def);
   return parts;
 }
 
@@ -117,9 +124,10 @@ void hide_composed(Graph& graph) {
   auto visit = [&](InstId id) {
     Inst& inst = graph.insts[id];
     if (!inst.opaque) return;
-    if (inst.op == Op::kFSub) {
+    const std::vector<InstId> parts = parts_of_composed(graph, id);
+    if (!parts.empty()) {
       inst.opens = Opens::kVisited;
-      for (const InstId part : parts_of_remainder(graph, id)) graph.insts[part].opens = Opens::kWithResult;
+      for (const InstId part : parts) graph.insts[part].opens = Opens::kWithResult;
       return;
     }
     if (inst.op != Op::kFAdd) {

@@ -30,7 +30,7 @@ struct Operand {
 enum class Opens : std::uint8_t {
   kNever,
   kVisited,            ///< when the rules first come to it
-  kWithResult,         ///< when the rules first come to the subtraction that ends its remainder
+  kWithResult,         ///< when the rules first come to what ends its remainder or ldexp
   kAfterRules,         ///< after the rules of the first round
   kAfterRound,         ///< after the first round
   kVisitedAfterRound,  ///< when the rules come to it after the first round
@@ -51,7 +51,7 @@ struct Inst {
   bool boolean = false;
   bool exact = false;
   bool opaque = false;
-  Opens opens = Opens::kNever;  ///< parts of dot products and remainders
+  Opens opens = Opens::kNever;  ///< parts of dot products, remainders, ldexp
   bool removed = false;
   ValueId result = ir::kNoValue;
   Slot first = 0;  ///< operands are sources[first, first + count)

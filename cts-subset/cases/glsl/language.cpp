@@ -287,6 +287,10 @@ const bool kFragments = [] {
         "    switch (pi.w) {\n      case 0:\n        s = s * r;\n    }\n    r = s * r;\n  }\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 1}, "r"}, {{Base::kFloat, 1}, "s"}}, {}, false});
   });
+  AddCase("glsl", "rewrite.sum_of_ldexp", [](Run& run) {
+    const char* text = "  vec4 r = ldexp(vec4(-1.0), pi & 31) + mix(a, b, p);\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 4}, "r"}}, {}, false});
+  });
   AddCase("glsl", "rewrite.zero_times_vector", [](Run& run) {
     const char* text =
         "  vec2 t = -p.zw, m = mod(b.yw, p.xz);\n  vec2 r = (t - t) * mat2(vec2(-p.x, p.z), p.yw);\n"
