@@ -99,7 +99,7 @@ class Writer {
       case 0:
         return "(-" + a + ")";
       case 1:
-        return "(" + a + " / " + b + ")";
+        return "(" + a + " / (abs(" + b + ") + " + type.name + "(0.5)))";  // by 0: undefined in SPIR-V
       case 2:
         return "(" + a + " - " + b + ")";
       case 3:
