@@ -47,6 +47,8 @@ inline constexpr std::size_t kVectors = base::kWaveWidth / hn::MaxLanes(DU());
 /// The texels of a wave on one level, if those of every vector lie in four rows of 8 or 16 columns.
 class NearWave {
  public:
+  static constexpr bool kExists = true;
+
   HWY_INLINE void add_first(std::size_t vector, VI x, VI y) { first_[vector] = halves(x, y); }
   HWY_INLINE void add_second(std::size_t vector, VI x, VI y) { second_[vector] = halves(x, y); }
 
@@ -167,6 +169,8 @@ class NearWave {
 #else
 class NearWave {
  public:
+  static constexpr bool kExists = false;
+
   void add_first(std::size_t, VI, VI) {}
   void add_second(std::size_t, VI, VI) {}
   template <bool kPairs>
@@ -226,6 +230,7 @@ class SquareReader {
       : p_(p), request_(request), state_(state), which_(which), whole_(wave_has_one_level(p, request, state, which)) {
     if (!whole_) return;
     load_level_of(0);
+    if constexpr (!NearWave::kExists) return;
     for (std::size_t v = 0; v < kVectors; ++v) {
       const auto x = taps(0, v), y = taps(1, v);
       near_.add_first(v, x.first, y.first);
@@ -238,11 +243,13 @@ class SquareReader {
   }
 
   HWY_INLINE Weighed read(std::size_t vector) {
+    if constexpr (!NearWave::kExists) return find_alone(vector);
     if (is_near_) return {near_.load(p_.plan.view->base, square_, vector), x_[vector], y_[vector]};
     return read_alone(vector);
   }
 
   HWY_INLINE VU read_first(std::size_t vector) {
+    if constexpr (!NearWave::kExists) return find_first_alone(vector);
     if (is_near_) return near_.load_first(p_.plan.view->base, square_, vector);
     return read_first_alone(vector);
   }
@@ -259,7 +266,9 @@ class SquareReader {
   }
 
   /// A vector by itself.
-  HWY_NOINLINE Weighed read_alone(std::size_t vector) {
+  HWY_NOINLINE Weighed read_alone(std::size_t vector) { return find_alone(vector); }
+  HWY_NOINLINE VU read_first_alone(std::size_t vector) { return find_first_alone(vector); }
+  HWY_INLINE Weighed find_alone(std::size_t vector) {
     if (!whole_) load_level_of(vector);
     const std::byte* const base = p_.plan.view->base;
     const auto x = taps(0, vector), y = taps(1, vector);
@@ -275,7 +284,7 @@ class SquareReader {
     const VI row1 = hn::Add(square_.origin, hn::Mul(y.second, square_.row_pitch));
     return {load_rows_of_words(base, row0, row1, x.first, x.second), x.weight, y.weight};
   }
-  HWY_NOINLINE VU read_first_alone(std::size_t vector) {
+  HWY_INLINE VU find_first_alone(std::size_t vector) {
     if (!whole_) load_level_of(vector);
     const auto x = taps(0, vector), y = taps(1, vector);
     const VI row = hn::Add(square_.origin, hn::Mul(y.first, square_.row_pitch));
