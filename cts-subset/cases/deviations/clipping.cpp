@@ -70,11 +70,12 @@ const AddCase kWrapped("clipping", "deviation.wrapped_coordinates", "wrapped-coo
 /// Triangles without area but for the rounding of their corners, and one that is clipped: in one draw, and in two.
 const AddCase kNeighbour(
     "clipping", "deviation.neighbour_culling", "neighbour-culling", case_against_control, [](Run& run) {
+      Random random(2);  // some show the fault, few seeds have none
       std::vector<std::array<float, 4>> corners;
       for (int i = 0; i < 500; ++i) {
-        const float x = run.random.real(-0.9f, 0), y = run.random.real(-0.9f, 0);
-        const float dx = run.random.real(0.1f, 0.9f), dy = run.random.real(0.1f, 0.9f);
-        const float t = run.random.unit();
+        const float x = random.real(-0.9f, 0), y = random.real(-0.9f, 0);
+        const float dx = random.real(0.1f, 0.9f), dy = random.real(0.1f, 0.9f);
+        const float t = random.unit();
         corners.push_back({x, y, 0.5f, 1});
         corners.push_back({x + dx, y + dy, 0.5f, 1});
         corners.push_back({x + t * dx, y + t * dy, 0.5f, 1});
