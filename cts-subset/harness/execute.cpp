@@ -24,12 +24,21 @@ struct SideResult {
   std::vector<std::pair<std::string, std::string>> notes;
 };
 
-SideResult run_side(Gpu& gpu, const Case& c) {
+/// How often a random case that draws nothing is run, each time with another seed: in sweeps; the default run stays
+/// short.
+uint32_t attempts() { return options().count ? 8 : 1; }
+
+/// Only the names of generators' cases have a number behind a slash.
+bool is_random(const Case& c) { return c.name.find('/') != std::string::npos; }
+
+uint64_t attempt_seed(const Case& c, uint32_t attempt) { return case_seed(c) + attempt * 0x9e3779b97f4a7c15u; }
+
+SideResult run_side(Gpu& gpu, const Case& c, uint32_t attempt) {
   SideResult result;
   take_validation_errors();
   bool lost = false;
   try {
-    Run run(gpu, case_seed(c), c.index);
+    Run run(gpu, attempt_seed(c, attempt), c.index);
     const auto collect = [&] {
       result.outputs = std::move(run.outputs);
       result.notes = std::move(run.notes);
@@ -89,27 +98,30 @@ bool compare_all(const Case& c, const SideResult& device, const SideResult& refe
   return same;
 }
 
+bool all_blank(const std::vector<Output>& outputs) {
+  return !outputs.empty() && std::all_of(outputs.begin(), outputs.end(), is_blank);
+}
+
 /// A reference that drew nothing proves nothing.
 void check_blank(const std::vector<Output>& outputs, Judgement& judgement) {
-  bool all_blank = !outputs.empty();
   for (const Output& output : outputs) {
-    const bool blank = is_blank(output);
-    all_blank &= blank;
-    if (!blank || output.may_be_blank) continue;
+    if (output.may_be_blank || !is_blank(output)) continue;
     judgement.verdict = Verdict::kDiffering;
     judgement.message += "  " + output.name + ": the reference's output is blank, so the case tests nothing\n";
   }
-  judgement.blank = all_blank;
+  judgement.blank = all_blank(outputs);
   if (outputs.empty()) {
     judgement.verdict = Verdict::kDiffering;
     judgement.message += "  the case put nothing out\n";
   }
 }
 
-void judge_outputs(const Case& c, const SideResult& device, const SideResult& reference, Judgement& judgement) {
+/// `again`: the case drew nothing and is to be run with another seed.
+void judge_outputs(const Case& c, const SideResult& device, const SideResult& reference, bool again,
+                   Judgement& judgement) {
   if (c.deviation.empty()) {
     if (!compare_all(c, device, reference, judgement)) judgement.verdict = Verdict::kDiffering;
-    check_blank(reference.outputs, judgement);
+    if (!again) check_blank(reference.outputs, judgement);
     return;
   }
   const std::string wrong = c.check(device.outputs, reference.outputs);
@@ -128,11 +140,13 @@ bool refused(const SideResult& device) {
   return false;
 }
 
-Judgement judge(const Case& c) {
+Judgement judge(const Case& c, uint32_t attempt, bool& again) {
   Judgement judgement;
-  const SideResult reference = run_side(gpus().reference, c);
+  if (attempt != 0) tell_parent("R");
+  const SideResult reference = run_side(gpus().reference, c, attempt);
   tell_parent("D");
-  const SideResult device = run_side(gpus().device, c);
+  const SideResult device = run_side(gpus().device, c, attempt);
+  again = is_random(c) && attempt + 1 < attempts() && all_blank(reference.outputs);
   if (!reference.unsupported.empty() || !device.unsupported.empty()) {
     judgement.verdict = Verdict::kUnsupported;
     judgement.message = "  " + (device.unsupported.empty() ? reference.unsupported : device.unsupported) + "\n";
@@ -150,7 +164,7 @@ Judgement judge(const Case& c) {
       judgement.message += std::string("  ") + name + ": validation: " + text + "\n";
   }
   if (judgement.message.empty())
-    judge_outputs(c, device, reference, judgement);
+    judge_outputs(c, device, reference, again, judgement);
   else
     judgement.verdict = Verdict::kDiffering;
   if (judgement.verdict == Verdict::kDiffering) write_notes(c, reference);
@@ -159,11 +173,15 @@ Judgement judge(const Case& c) {
 
 /// Appends "name hash" of what the device puts out, every bit of it (those of NaNs too).
 Judgement record_fingerprint(const Case& c) {
-  const SideResult device = run_side(gpus().device, c);
   uint64_t hash = 0;
-  for (const Output& output : device.outputs) {
-    const char* bytes = reinterpret_cast<const char*>(output.bytes.data());
-    hash = hash_name(std::string_view(bytes, output.bytes.size()), hash);
+  SideResult device;
+  for (uint32_t attempt = 0; attempt < attempts(); ++attempt) {
+    device = run_side(gpus().device, c, attempt);
+    for (const Output& output : device.outputs) {
+      const char* bytes = reinterpret_cast<const char*>(output.bytes.data());
+      hash = hash_name(std::string_view(bytes, output.bytes.size()), hash);
+    }
+    if (!is_random(c) || !all_blank(device.outputs)) break;
   }
   char line[32];
   std::snprintf(line, sizeof(line), " %016llx\n", static_cast<unsigned long long>(hash));
@@ -189,7 +207,10 @@ void load_known_differences() {
 
 Judgement execute(const Case& c) {
   if (!options().fingerprints.empty()) return record_fingerprint(c);
-  Judgement judgement = judge(c);
+  Judgement judgement;
+  bool again = true;
+  for (uint32_t attempt = 0; again && judgement.verdict == Verdict::kIdentical; ++attempt)
+    judgement = judge(c, attempt, again);
   const bool known = g_known.contains(full_name(c));
   if (known && judgement.verdict == Verdict::kDiffering) judgement.verdict = Verdict::kKnown;
   return judgement;

@@ -80,8 +80,8 @@ void handle_line(Worker& worker, const std::string& line, Counts& counts) {
     worker.on_reference = true;
     return;
   }
-  if (line[0] == 'D') {
-    worker.on_reference = false;
+  if (line[0] == 'D' || line[0] == 'R') {
+    worker.on_reference = line[0] == 'R';
     return;
   }
   Judgement judgement;

@@ -20,7 +20,7 @@ constexpr char kUsage[] =
     "  --results=DIR     where images of failing cases go\n"
     "  --fingerprints=FILE  compare nothing: append each case's name and a hash of the device's bytes\n"
     "  --seed=N          seed of every random case (default 1)\n"
-    "  --count=N         cases per random generator\n"
+    "  --count=N         cases per random generator; those that draw nothing go on with other seeds\n"
     "  --validation=0|1  validation layer (default 1)\n"
     "  --isolate         run cases in child processes; a crash is counted and the rest goes on\n"
     "  --jobs=N          child processes at a time\n"
