@@ -22,6 +22,7 @@ struct ShadeRun {
   LaneMask pixels;  ///< lanes with a covered sample of this run
   std::uint32_t first_sample, end_sample;
   LaneMask kept[kMaxSamples];    ///< result: coverage after the shader
+  LaneMask alive;                ///< result: lanes that the shader did not discard
   const float* scale = nullptr;  ///< of perspective planes; null: 1
 
   bool single() const { return plan.sample_shading; }
@@ -338,6 +339,7 @@ void shade(ShadeRun& run) {
   TileWorker& worker = run.worker;
   const PipelinePlan& plan = run.plan;
   run.pixels = 0;
+  run.alive = base::kAllLanes;
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
     run.kept[s] = run.wave.coverage[s];
     run.pixels |= run.kept[s];
@@ -346,9 +348,9 @@ void shade(ShadeRun& run) {
   read_varyings(run);
   set_built_ins(run);
   const LaneMask active = plan.fragment->needs_helpers ? run.used : run.pixels;
-  const LaneMask alive = worker.runner.run(active, active & ~run.pixels);
+  run.alive = worker.runner.run(active, active & ~run.pixels);
   if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(run.pixels));
-  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) run.kept[s] &= alive;
+  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) run.kept[s] &= run.alive;
   if (plan.smooth_lines) cover_smooth_lines(run);
   if (plan.may_kill) change_coverage(run);
   if (plan.depth_order == TestOrder::kLate) test_late(run);
@@ -361,7 +363,7 @@ void shade(ShadeRun& run) {
 
 void shade_wave(TileWorker& worker, PackedWave& wave) {
   const PipelinePlan& plan = *worker.draw->plan;
-  ShadeRun run{worker, wave, plan, base::first_lanes(4 * wave.quads), 0, 0, plan.samples, {}};
+  ShadeRun run{worker, wave, plan, base::first_lanes(4 * wave.quads), 0, 0, plan.samples, {}, 0};
   wave.planes.slots = wave.slots;
   // Lanes that no quad fills compute where the first one is: from a feedback loop they load nothing that other tiles
   // write.
@@ -387,6 +389,7 @@ void shade_wave(TileWorker& worker, PackedWave& wave) {
       run.first_sample = s;
       run.end_sample = s + 1;
       shade(run);
+      wave.coverage[s] &= run.alive;  // 8.4: the centroids of later samples do not see what was discarded
     }
   }
   release_planes(worker, wave);

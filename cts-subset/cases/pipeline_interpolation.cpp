@@ -131,6 +131,13 @@ void draw(Run& run, VkSampleCountFlagBits samples, const std::string& fragment, 
 }
 
 const bool kRegistered = [] {
+  // With sample shading, what earlier samples of a pixel discard moves the centroid of later ones.
+  AddCase("pipeline", "multisample_interpolation.centroid_after_discard", [](Run& run) {
+    draw(run, VK_SAMPLE_COUNT_4_BIT,
+         inputs("") + "void main() {\n  result0 = vec4(centroid_scalar, gl_SamplePosition, 1.0);\n" +
+             "  result1 = smooth_vector;\n  if (gl_SampleID == 0 || smooth_vector.x > 0.6) discard;\n}\n",
+         6);
+  });
   for (const VkSampleCountFlagBits samples : {VK_SAMPLE_COUNT_1_BIT, VK_SAMPLE_COUNT_4_BIT}) {
     const std::string suffix = samples == VK_SAMPLE_COUNT_1_BIT ? ".samples_1" : ".samples_4";
     for (const char* function : {"Centroid(", "Sample(", "Offset("}) {

@@ -17,6 +17,7 @@ struct Output {
   bool nan_bits_free = false;  ///< two NaNs are equal: SPIR-V leaves a NaN's sign and payload open
   std::string remark;          ///< shown with a difference: where the values come from
   bool may_be_blank = false;   ///< one value everywhere is what the case is about
+  std::string deviation;       ///< rows of deviations.md: a difference is listed. Empty: the output must be identical
 };
 
 /// How the outputs of two devices compare.

@@ -4,10 +4,8 @@
 namespace vitrine::cts {
 namespace {
 
-/// Three patches in a row, coloured by their number: by the evaluation shader's, or by the fragment shader's, when the
-/// evaluation shader may read it all the same.
-enum class Numbered { kByEvaluation, kByFragment, kByFragmentReadBefore };
-void draw_patches(Run& run, const std::string& name, bool restarts, Numbered numbered = Numbered::kByEvaluation) {
+/// Three patches in a row, coloured by their number.
+void draw_patches(Run& run, const std::string& name, bool restarts) {
   const Target target = make_target(run, {});
   GraphicsSpec spec;
   spec.vertex = "layout(location = 0) in vec4 position;\nvoid main() { gl_Position = position; }";
@@ -18,21 +16,15 @@ void main() {
   gl_TessLevelOuter = float[4](1.0, 1.0, 1.0, 1.0);
   gl_TessLevelInner = float[2](1.0, 1.0);
 })";
-  spec.evaluation = std::string(R"(
+  spec.evaluation = R"(
 layout(triangles, equal_spacing, cw) in;
 layout(location = 0) out vec4 passed;
 void main() {
   gl_Position = vec4(0.0);
   for (int i = 0; i < 3; ++i) gl_Position += gl_in[i].gl_Position * gl_TessCoord[i];
-  passed = vec4(0.25 * float()") +
-                    (numbered == Numbered::kByFragment ? "0" : "gl_PrimitiveID") + R"( + 1), 0.5, 0.5, 1.0);
+  passed = vec4(0.25 * float(gl_PrimitiveID + 1), 0.5, 0.5, 1.0);
 })";
   spec.fragment = kColorFragment;
-  if (numbered != Numbered::kByEvaluation)
-    spec.fragment = R"(
-layout(location = 0) in vec4 passed;
-layout(location = 0) out vec4 result;
-void main() { result = vec4(0.25 * float(gl_PrimitiveID + 1), passed.yzw); })";
   spec.floats({4});
   spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
   spec.assembly.primitiveRestartEnable = restarts;
@@ -58,61 +50,6 @@ void main() { result = vec4(0.25 * float(gl_PrimitiveID + 1), passed.yzw); })";
   });
   run.out(name, target.colors[0]);
 }
-
-const AddCase kNumbersRead("tessellation", "deviation.primitive_id_read_before", "evaluation-primitive-id",
-                           case_against_control, [](Run& run) {
-                             draw_patches(run, "read_before", false, Numbered::kByFragmentReadBefore);
-                             draw_patches(run, "not_read", false, Numbered::kByFragment);
-                           });
-
-/// Two quads, each in its half of the target: by a viewport of its own, and by its positions.
-const AddCase kPatchViewports(
-    "tessellation", "deviation.patch_viewports", "tessellated-viewport", case_against_control, [](Run& run) {
-      run.require(run.gpu.has("VK_EXT_shader_viewport_index_layer"), "VK_EXT_shader_viewport_index_layer");
-      for (const bool viewports : {true, false}) {
-        GraphicsSpec spec;
-        spec.vertex = R"(
-layout(location = 0) in vec4 position;
-layout(location = 1) in vec4 color;
-layout(location = 0) out vec4 passed;
-void main() {
-  passed = color;
-  gl_Position = position;
-})";
-        spec.control = R"(
-layout(vertices = 4) out;
-layout(location = 0) in vec4 passed[];
-layout(location = 0) out vec4 point[];
-void main() {
-  point[gl_InvocationID] = passed[gl_InvocationID];
-  gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position;
-  gl_TessLevelOuter = float[4](1.0, 1.0, 1.0, 1.0);
-  gl_TessLevelInner = float[2](1.0, 1.0);
-})";
-        spec.evaluation = std::string(R"(#extension GL_ARB_shader_viewport_layer_array : require
-layout(quads, equal_spacing, cw) in;
-layout(location = 0) in vec4 point[];
-layout(location = 0) out vec4 passed;
-void main() {
-  const int corner = int(gl_TessCoord.x) + 2 * int(gl_TessCoord.y);
-  passed = point[corner];
-  gl_Position = gl_in[corner].gl_Position;
-)") +
-                          (viewports ? "  gl_ViewportIndex = gl_PrimitiveID;\n"
-                                     : "  gl_Position.x = gl_Position.x * 0.5 - 0.5 + float(gl_PrimitiveID);\n") +
-                          "}\n";
-        spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
-        spec.tessellation.patchControlPoints = 4;
-        spec.viewports = {{0, 0, 64, 64, 0, 1}};
-        if (viewports) spec.viewports = {{0, 0, 32, 64, 0, 1}, {32, 0, 32, 64, 0, 1}};
-        spec.scissors.assign(spec.viewports.size(), {{0, 0}, {64, 64}});
-        std::vector<std::array<float, 4>> corners;
-        for (int patch = 0; patch < 2; ++patch)
-          for (int i = 0; i < 4; ++i)
-            corners.push_back({i % 2 == 0 ? -0.75f : 0.5f, i < 2 ? -0.5f : 0.75f, 0.5f, 1.0f});
-        draw(run, viewports ? "viewports" : "positions", {}, spec, colored(corners));
-      }
-    });
 
 const AddCase kPatchNumbers("tessellation", "deviation.patch_numbers", "patch-numbers", case_against_control,
                             [](Run& run) {

@@ -171,89 +171,6 @@ const AddCase kSmoothMask("rasterization", "deviation.smooth_line_sample_mask", 
                             }
                           });
 
-/// The smooth outline of a back-facing triangle: only its back-facing fragments get their colour.
-const AddCase kSmoothFacing(
-    "rasterization", "deviation.smooth_outline_facing", "smooth-outline-facing", case_against_control, [](Run& run) {
-      run.require(run.gpu.features.fillModeNonSolid, "fillModeNonSolid");
-      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
-      for (const char* value : {"gl_FrontFacing ? vec4(0.0) : passed", "passed"}) {
-        GraphicsSpec spec;
-        spec.fragment = std::string("layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n") +
-                        "void main() { result = " + value + "; }\n";
-        spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
-        spec.raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-        spec.raster.pNext = &line;
-        draw(run, value, {}, spec, colored({{-0.7f, -0.7f, 0, 1}, {0.7f, -0.5f, 0, 1}, {0, 0.7f, 0, 1}}));
-      }
-    });
-
-/// Two instances of smooth lines, which a geometry shader passes on, and without it.
-const AddCase kSmoothStages(
-    "geometry", "deviation.smooth_lines", "staged-smooth-lines", case_against_control, [](Run& run) {
-      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
-      for (const bool staged : {true, false}) {
-        const Target target = make_target(run, {});
-        GraphicsSpec spec;
-        spec.vertex = R"(
-layout(location = 0) in vec4 position;
-layout(location = 1) in vec4 color;
-layout(location = 0) out vec4 passed;
-void main() {
-  passed = color;
-  gl_Position = position + vec4(0.0, 0.25, 0.0, 0.0) * float(gl_InstanceIndex);
-})";
-        if (staged)
-          spec.geometry = R"(
-layout(lines) in;
-layout(line_strip, max_vertices = 2) out;
-layout(location = 0) in vec4 color[];
-layout(location = 0) out vec4 passed;
-void main() {
-  for (int i = 0; i < 2; ++i) {
-    passed = color[i];
-    gl_Position = gl_in[i].gl_Position;
-    EmitVertex();
-  }
-})";
-        spec.fragment = kColorFragment;
-        spec.floats({4, 4});
-        spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
-        spec.raster.pNext = &line;
-        const VkPipeline pipeline = make_pipeline(run, spec, target);
-        const Buffer vertices = run.buffer_of(colored(
-            {{-0.75f, -0.5f, 0.5f, 1}, {0.5f, 0.25f, 0.5f, 1}, {-0.5f, -0.75f, 0.5f, 1}, {0.75f, -0.625f, 0.5f, 1}}));
-        run.once([&](VkCommandBuffer cmd) {
-          target.begin(cmd);
-          bind_pipeline(cmd, pipeline);
-          bind_vertices(cmd, vertices);
-          vkCmdDraw(cmd, 4, 2, 0, 0);
-          vkCmdEndRenderPass(cmd);
-        });
-        run.out(staged ? "staged" : "plain", target.colors[0]);
-      }
-    });
-
-/// A depth of 1, clamped to the viewport's 0.75, is less than the clear value; so is 0.5.
-const AddCase kSmoothDepth(
-    "rasterization", "deviation.smooth_line_depth", "smooth-line-depth", case_against_control, [](Run& run) {
-      run.require(run.gpu.features.depthClamp, "depthClamp");
-      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
-      for (const char* depth : {"1.0", "0.5"}) {
-        TargetSpec target;
-        target.depth = VK_FORMAT_D32_SFLOAT;
-        GraphicsSpec spec;
-        spec.fragment = std::string("layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n") +
-                        "void main() {\n  result = passed;\n  gl_FragDepth = " + depth + ";\n}\n";
-        spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
-        spec.raster.depthClampEnable = VK_TRUE;
-        spec.raster.pNext = &line;
-        spec.depth.depthTestEnable = VK_TRUE;
-        spec.depth.depthCompareOp = VK_COMPARE_OP_LESS;
-        spec.viewports = {{0.0f, 0.0f, 64.0f, 64.0f, 0.0f, 0.75f}};
-        draw(run, depth, target, spec, colored({{-0.9f, -0.5f, 0.5f, 1}, {0.9f, 0.5f, 0.5f, 1}}));
-      }
-    });
-
 /// Sample 1 is masked away; the reference draws it as it draws sample 0.
 const AddCase kLineMasks(
     "rasterization", "deviation.one_sample_line_masks", "one-sample-line-masks",
@@ -303,6 +220,86 @@ const AddCase kLineMaskIn(
           const char* name = mode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ? "bresenham " : "smooth ";
           draw(run, name + std::string(mask), target, spec, colored({{-0.9f, -0.5f, 0, 1}, {0.9f, 0.5f, 0, 1}}));
         }
+    });
+
+/// The smooth outline of a back-facing triangle.
+const AddCase kSmoothFacing(
+    "rasterization", "deviation.smooth_outline_facing", "smooth-outline-facing", case_against_control, [](Run& run) {
+      run.require(run.gpu.features.fillModeNonSolid, "fillModeNonSolid");
+      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
+      for (const char* front : {"gl_FrontFacing", "false"}) {
+        GraphicsSpec spec;
+        spec.fragment = std::string("layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n") +
+                        "void main() { result = " + front + " ? vec4(1.0) : passed; }\n";
+        spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
+        spec.raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+        spec.raster.pNext = &line;
+        draw(run, front, {}, spec, colored({{-0.7f, -0.7f, 0, 1}, {0.7f, -0.5f, 0, 1}, {0, 0.7f, 0, 1}}));
+      }
+    });
+
+/// Depth 1.25 and 0.75 in a viewport that reaches to 0.75.
+const AddCase kSmoothClamp(
+    "rasterization", "deviation.smooth_line_depth_clamp", "smooth-line-depth-clamp", case_against_control,
+    [](Run& run) {
+      run.require(run.gpu.features.depthClamp, "depthClamp");
+      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
+      for (const float z : {2.0f, 1.0f}) {
+        TargetSpec target;
+        target.depth = VK_FORMAT_D32_SFLOAT;
+        GraphicsSpec spec;
+        spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+        spec.raster.pNext = &line;
+        spec.raster.depthClampEnable = VK_TRUE;
+        spec.depth.depthTestEnable = VK_TRUE;
+        spec.depth.depthCompareOp = VK_COMPARE_OP_LESS;
+        spec.viewports = {{0, 0, 64, 64, 0.25f, 0.75f}};
+        draw(run, "z_" + std::to_string(z), target, spec, colored({{-0.9f, -0.5f, z, 1}, {0.9f, 0.5f, z, 1}}));
+      }
+    });
+
+/// Two instances of smooth lines, behind a geometry shader and without one.
+const AddCase kSmoothVertices(
+    "geometry", "deviation.smooth_line_vertices", "smooth-line-vertices", case_against_control, [](Run& run) {
+      run.require(run.gpu.features.geometryShader, "geometryShader");
+      const auto line = line_state(run, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, false);
+      const Buffer vertices = run.buffer_of(colored(
+          {{-0.9f, -0.5f, 0, 1}, {0.9f, 0.3f, 0, 1}, {-0.8f, 0.4f, 0, 1}, {0.7f, -0.6f, 0, 1}, {0, 0.7f, 0, 1}}));
+      for (const bool geometry : {true, false}) {
+        const Target target = make_target(run, {});
+        GraphicsSpec spec;
+        spec.vertex = R"(
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 passed;
+void main() { passed = color; gl_Position = position + vec4(0.0, 0.2, 0.0, 0.0) * float(gl_InstanceIndex); })";
+        if (geometry)
+          spec.geometry = R"(
+layout(lines) in;
+layout(line_strip, max_vertices = 2) out;
+layout(location = 0) in vec4 color[];
+layout(location = 0) out vec4 passed;
+void main() {
+  for (int i = 0; i < 2; ++i) {
+    passed = color[i];
+    gl_Position = gl_in[i].gl_Position;
+    EmitVertex();
+  }
+})";
+        spec.fragment = kColorFragment;
+        spec.floats({4, 4});
+        spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
+        spec.raster.pNext = &line;
+        const VkPipeline pipeline = make_pipeline(run, spec, target);
+        run.once([&](VkCommandBuffer cmd) {
+          target.begin(cmd);
+          bind_pipeline(cmd, pipeline);
+          bind_vertices(cmd, vertices);
+          vkCmdDraw(cmd, 5, 2, 0, 0);
+          vkCmdEndRenderPass(cmd);
+        });
+        run.out(geometry ? "geometry" : "vertex", target.colors[0]);
+      }
     });
 
 /// The rectangle of the line reaches from y = 63.4 to 64.4.

@@ -2,8 +2,9 @@
 // crossed with each other. Excluded is only what deviations.md lists.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
-#include "cases/state/stages.h"
+#include "cases/state/draw_state.h"
 #include "harness/case.h"
 #include "harness/execute.h"
 
@@ -11,44 +12,6 @@ namespace vitrine::cts {
 namespace {
 
 using namespace std::string_literals;
-
-/// What one draw may do, and structures that its pipeline points to.
-struct Scene {
-  TargetSpec target;
-  bool multisampled = false, has_depth = false, has_stencil = false;
-};
-
-struct DrawState {
-  Stages stages;
-  GraphicsSpec spec;
-  FragmentNeeds fragment;
-  Drawn drawn = Drawn::kTriangles;  ///< after the polygon mode
-  bool polygon = false;             ///< a polygon mode other than FILL has an effect
-  bool clipped = false;             ///< vertices outside of the view volume
-  uint32_t vertices = 0, instances = 1;
-  VkPipelineRasterizationProvokingVertexStateCreateInfoEXT provoking{
-      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT};
-  VkPipelineRasterizationLineStateCreateInfoEXT line{
-      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
-  VkPipelineRasterizationDepthClipStateCreateInfoEXT clip{
-      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_DEPTH_CLIP_STATE_CREATE_INFO_EXT};
-  VkPipelineViewportDepthClipControlCreateInfoEXT control{
-      VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_DEPTH_CLIP_CONTROL_CREATE_INFO_EXT};
-  VkSampleMask sample_mask = ~0u;
-};
-
-bool smooth_lines(const DrawState& draw) {
-  return draw.drawn == Drawn::kLines &&
-         draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
-}
-
-/// Bresenham and smooth lines are drawn with one sample for all (deviations.md, line-depth-first-sample and
-/// one-sample-line-masks).
-bool one_sample_lines(const Scene& scene, const DrawState& draw) {
-  return scene.multisampled && draw.drawn == Drawn::kLines &&
-         (draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT ||
-          draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT);
-}
 
 bool blendable(VkFormat format) {
   return (gpus().reference.features_of(format) & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT) != 0;
@@ -103,11 +66,10 @@ void random_lines(Run& run, const Scene& scene, DrawState& draw) {
       draw.stages.topology != VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY || !draw.stages.geometry.empty();
   draw.line.stippledLineEnable = !scene.multisampled && whole_strips && random.chance(0.3f) &&
                                  draw.line.lineRasterizationMode != VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;
-  // deviations.md, smooth-line-integers and staged-smooth-lines
+  // deviations.md, smooth-line-integers
   const bool integers = std::any_of(scene.target.colors.begin(), scene.target.colors.end(),
                                     [](VkFormat format) { return is_integer(format_info(format)); });
-  const bool staged = !draw.stages.tessellation.empty() || !draw.stages.geometry.empty();
-  if ((integers || staged) && draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT)
+  if (integers && draw.line.lineRasterizationMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT)
     draw.line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
   draw.line.pNext = draw.spec.raster.pNext;
   draw.spec.raster.pNext = &draw.line;
@@ -117,7 +79,7 @@ void random_lines(Run& run, const Scene& scene, DrawState& draw) {
 void random_rasterization(Run& run, const Scene& scene, DrawState& draw) {
   Random& random = run.random;
   VkPipelineRasterizationStateCreateInfo& raster = draw.spec.raster;
-  raster.cullMode = random.chance(0.6f) ? 0 : 1 + random.below(3);
+  raster.cullMode = random.chance(0.65f) ? 0 : random.chance(0.08f) ? 3 : 1 + random.below(2);
   raster.frontFace = static_cast<VkFrontFace>(random.below(2));
   draw.drawn = draw.stages.drawn;
   if (draw.drawn == Drawn::kTriangles && random.chance(0.35f)) {
@@ -144,11 +106,6 @@ void random_rasterization(Run& run, const Scene& scene, DrawState& draw) {
   }
   raster.depthClampEnable = random.chance(0.25f);
   draw.clip.depthClipEnable = random.chance(0.5f);
-  // deviations.md, smooth-line-depth
-  if (smooth_lines(draw)) {
-    raster.depthClampEnable = VK_FALSE;
-    draw.clip.depthClipEnable = VK_TRUE;
-  }
   if (random.chance(0.2f)) {
     draw.clip.pNext = raster.pNext;
     raster.pNext = &draw.clip;
@@ -187,7 +144,8 @@ void random_viewports(Random& random, const Scene& scene, DrawState& draw) {
     if (!scene.multisampled && random.chance(0.3f))
       scissor = {{static_cast<int32_t>(random.below(scene.target.width / 2)),
                   static_cast<int32_t>(random.below(scene.target.height / 2))},
-                 {random.below(scene.target.width), random.below(scene.target.height)}};
+                 {1 + scene.target.width / 3 + random.below(scene.target.width / 2),
+                  1 + scene.target.height / 3 + random.below(scene.target.height / 2)}};
     draw.spec.scissors.push_back(scissor);
   }
 }
@@ -205,16 +163,22 @@ VkStencilOpState random_stencil(Random& random) {
 
 void random_tests(Random& random, const Scene& scene, DrawState& draw) {
   VkPipelineDepthStencilStateCreateInfo& depth = draw.spec.depth;
+  // NEVER and EQUAL leave little to see.
+  const auto compare = [&](float less) {
+    if (random.chance(less)) return VK_COMPARE_OP_LESS;
+    if (random.chance(0.15f)) return static_cast<VkCompareOp>(random.below(8));
+    return random.pick({VK_COMPARE_OP_LESS_OR_EQUAL, VK_COMPARE_OP_GREATER, VK_COMPARE_OP_NOT_EQUAL,
+                        VK_COMPARE_OP_GREATER_OR_EQUAL, VK_COMPARE_OP_ALWAYS});
+  };
   depth.depthTestEnable = scene.has_depth && !one_sample_lines(scene, draw) && random.chance(0.8f);
   depth.depthWriteEnable = random.chance(0.8f);
-  depth.depthCompareOp = random.chance(0.5f) ? VK_COMPARE_OP_LESS : static_cast<VkCompareOp>(random.below(8));
+  depth.depthCompareOp = compare(0.5f);
   depth.stencilTestEnable = scene.has_stencil && !one_sample_lines(scene, draw) && random.chance(0.6f);
   depth.front = random_stencil(random);
   depth.back = random_stencil(random);
   // deviations.md, polygon-mode-facing and geometry-polygon-facing
   if (draw.polygon && depth.stencilTestEnable) {
     draw.fragment.facing = draw.stages.geometry.empty();
-    if (smooth_lines(draw)) draw.fragment.facing = false;  // deviations.md, smooth-outline-facing
     if (scene.target.colors.empty() || !draw.fragment.facing) depth.back = depth.front;
   }
 }
@@ -224,12 +188,9 @@ void random_fragment_needs(Run& run, const Scene& scene, DrawState& draw) {
   FragmentNeeds& needs = draw.fragment;
   needs.multisampled = scene.multisampled;
   needs.reads_mask = scene.multisampled && !one_sample_lines(scene, draw);  // deviations.md, one-sample-line-masks
-  // deviations.md: stipple-flat-integers, stipple-per-line, evaluation-primitive-id
-  const bool evaluation_reads =
-      !draw.stages.tessellation.empty() && draw.stages.geometry.empty() && draw.stages.layers > 1;
-  needs.primitive_id = !draw.line.stippledLineEnable && !evaluation_reads;
-  // deviations.md, geometry-polygon-facing and smooth-outline-facing
-  needs.facing |= random.chance(0.2f) && !(draw.polygon && (!draw.stages.geometry.empty() || smooth_lines(draw)));
+  // deviations.md, stipple-flat-integers and stipple-per-line
+  needs.primitive_id = !draw.line.stippledLineEnable;
+  needs.facing |= random.chance(0.2f) && !(draw.polygon && !draw.stages.geometry.empty());
   needs.discards = random.chance(0.15f);
   needs.writes_depth = scene.has_depth && random.chance(0.12f);
   needs.writes_stencil = scene.has_stencil && random.chance(0.1f) && run.gpu.has("VK_EXT_shader_stencil_export");
@@ -252,7 +213,7 @@ void random_blending(Random& random, const Scene& scene, DrawState& draw) {
     blend.srcAlphaBlendFactor = factor();
     blend.dstAlphaBlendFactor = factor();
     blend.alphaBlendOp = static_cast<VkBlendOp>(random.below(5));
-    blend.colorWriteMask = random.chance(0.7f) ? 0xf : random.below(16);
+    blend.colorWriteMask = random.chance(0.7f) ? 0xf : random.chance(0.1f) ? 0 : 1 + random.below(15);
     draw.spec.blends.push_back(blend);
   }
   for (float& constant : draw.spec.blend.blendConstants) constant = random.unit();
@@ -268,7 +229,7 @@ void random_blending(Random& random, const Scene& scene, DrawState& draw) {
 void random_multisample(Random& random, const Scene& scene, DrawState& draw) {
   VkPipelineMultisampleStateCreateInfo& state = draw.spec.multisample;
   if (random.chance(0.2f) && !one_sample_lines(scene, draw)) {
-    draw.sample_mask = random.bits();
+    draw.sample_mask = random.chance(0.1f) ? random.bits() : random.bits() | 1u << random.below(scene.target.samples);
     state.pSampleMask = &draw.sample_mask;
   }
   const bool float_first = !scene.target.colors.empty() && !is_integer(format_info(scene.target.colors[0]));
@@ -368,9 +329,7 @@ void random_draw(Run& run, const Scene& scene, DrawState& draw) {
   if (!selects && draw.stages.geometry.empty()) draw.stages.layers = 1;
   random_rasterization(run, scene, draw);
   if (draw.polygon && draw.clipped) draw.stages.layers = 1;  // deviations.md, clipped-polygon-layer
-  // deviations.md, tessellated-viewport
-  const bool listed = draw.stages.geometry.empty() && !draw.stages.tessellation.empty();
-  if (draw.drawn == Drawn::kTriangles && random.chance(0.15f) && (selects || !draw.stages.geometry.empty()) && !listed)
+  if (draw.drawn == Drawn::kTriangles && random.chance(0.15f) && (selects || !draw.stages.geometry.empty()))
     draw.stages.viewports = 2 + random.below(3);
   // Distances clip, too (see `clipped`).
   if (!draw.clipped && draw.drawn == Drawn::kLines) draw.stages.clip_distances = 0;
@@ -399,26 +358,58 @@ bool restartable(VkPrimitiveTopology topology) {
          topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY;
 }
 
+/// A draw with what it reads.
+struct RecordedDraw {
+  DrawState state;
+  Buffer vertices, indices;
+  bool indexed = false;
+};
+
+/// Draws everything into fresh attachments and puts them out under `prefix`. `clears`: colours, then depth.
+void render(Run& run, const Scene& scene, const std::vector<VkClearValue>& clears,
+            const std::vector<std::unique_ptr<RecordedDraw>>& draws, const std::string& prefix) {
+  Target target = make_target(run, scene.target);
+  std::copy_n(clears.begin(), scene.target.colors.size(), target.clears.begin());
+  if (scene.target.depth) target.clears.back() = clears.back();
+  std::vector<VkPipeline> pipelines;
+  for (size_t n = 0; n < draws.size(); ++n) {
+    note_state(run, prefix + "draw" + std::to_string(n), scene, draws[n]->state);
+    pipelines.push_back(make_pipeline(run, draws[n]->state.spec, target));
+  }
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    for (size_t n = 0; n < draws.size(); ++n) {
+      const RecordedDraw& draw = *draws[n];
+      bind_pipeline(cmd, pipelines[n]);
+      bind_vertices(cmd, draw.vertices);
+      if (draw.indexed) {
+        vkCmdBindIndexBuffer(cmd, draw.indices.handle, 0, VK_INDEX_TYPE_UINT16);
+        vkCmdDrawIndexed(cmd, draw.state.vertices, draw.state.instances, 0, 0, 0);
+      } else {
+        vkCmdDraw(cmd, draw.state.vertices, draw.state.instances, 0, 0);
+      }
+    }
+    vkCmdEndRenderPass(cmd);
+  });
+  const size_t first = run.outputs.size();
+  out_target(run, target);
+  for (size_t i = first; i < run.outputs.size(); ++i) run.outputs[i].name = prefix + run.outputs[i].name;
+}
+
+/// What deviations.md lists is drawn, too; then the same again without it, which must be identical.
 CTS_RANDOM("pipeline", "random_state", 120) {
   Random& random = run.random;
   const Scene scene = random_scene(run);
-  Target target = make_target(run, scene.target);
-  for (size_t i = 0; i < scene.target.colors.size(); ++i)
-    target.clears[i] = clear_value(scene.target.colors[i], random.unit(), random.unit(), random.unit(), random.unit());
-  if (target.depth)
-    target.clears.back() = clear_value(scene.target.depth, random.pick({1.0f, 0.5f, 0.7f}), random.unit(), 0, 0);
-  const uint32_t draws = 1 + random.below(3);
-  std::vector<DrawState> states(draws);
-  struct Recorded {
-    VkPipeline pipeline;
-    Buffer vertices, indices;
-    bool indexed;
-  };
-  std::vector<Recorded> recorded;
-  for (uint32_t n = 0; n < draws; ++n) {
-    DrawState& draw = states[n];
+  std::vector<VkClearValue> clears;
+  for (const VkFormat format : scene.target.colors)
+    clears.push_back(clear_value(format, random.unit(), random.unit(), random.unit(), random.unit()));
+  if (scene.target.depth)
+    clears.push_back(clear_value(scene.target.depth, random.pick({1.0f, 0.5f, 0.7f}), random.unit(), 0, 0));
+  std::vector<std::unique_ptr<RecordedDraw>> draws;
+  for (uint32_t n = 1 + random.below(3); n > 0; --n) {
+    RecordedDraw& r = *draws.emplace_back(std::make_unique<RecordedDraw>());
+    DrawState& draw = r.state;
     random_draw(run, scene, draw);
-    Recorded r;
     r.indexed = random.chance(0.4f);
     draw.spec.assembly.primitiveRestartEnable = r.indexed && restartable(draw.stages.topology) && random.chance(0.6f);
     std::vector<uint16_t> order;
@@ -427,25 +418,15 @@ CTS_RANDOM("pipeline", "random_state", 120) {
           draw.spec.assembly.primitiveRestartEnable && random.chance(0.1f) ? 0xffff : random.below(draw.vertices)));
     r.vertices = run.buffer_of(random_vertices(random, draw));
     r.indices = run.buffer_of(order);
-    note_state(run, "draw" + std::to_string(n), scene, draw);
-    r.pipeline = make_pipeline(run, draw.spec, target);
-    recorded.push_back(r);
   }
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    for (uint32_t n = 0; n < draws; ++n) {
-      bind_pipeline(cmd, recorded[n].pipeline);
-      bind_vertices(cmd, recorded[n].vertices);
-      if (recorded[n].indexed) {
-        vkCmdBindIndexBuffer(cmd, recorded[n].indices.handle, 0, VK_INDEX_TYPE_UINT16);
-        vkCmdDrawIndexed(cmd, states[n].vertices, states[n].instances, 0, 0, 0);
-      } else {
-        vkCmdDraw(cmd, states[n].vertices, states[n].instances, 0, 0);
-      }
-    }
-    vkCmdEndRenderPass(cmd);
-  });
-  out_target(run, target);
+  render(run, scene, clears, draws, "");
+  std::string rows;
+  for (const auto& draw : draws)
+    for (const std::string& row : remove_listed(scene, draw->state)) rows += row + " ";
+  if (!rows.empty()) {
+    for (Output& output : run.outputs) output.deviation = rows;
+    render(run, scene, clears, draws, "without_listed.");
+  }
   run.may_be_blank();
 }
 

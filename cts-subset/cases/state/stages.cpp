@@ -44,7 +44,7 @@ std::string vertex_text(const Stages& stages) {
   smooth_color = color;
   linear_color = extra;
   flat_color = color.zwxy;
-  gl_Position = position + vec4(0.05, -0.03, 0.0, 0.0) * float(gl_InstanceIndex);
+  gl_Position = position + vec4(0.05, -0.03, 0.0, 0.0) * (position.w * float(gl_InstanceIndex));
   gl_PointSize = 1.0 + extra.x * 8.0;
 )";
   // A whole instance at a time: the provoking vertex must not matter.
@@ -143,7 +143,7 @@ layout(location = 2) flat in vec4 in_flat[];
       smooth_color = in_smooth[i];
       linear_color = in_linear[i];
       flat_color = in_flat[i].wxyz;
-      gl_Position = gl_in[i].gl_Position + vec4(0.05, float(copy) * 0.04, 0.0, 0.0) * float(copy);
+      gl_Position = gl_in[i].gl_Position + vec4(0.05, float(copy) * 0.04, 0.0, 0.0) * (gl_in[i].gl_Position.w * float(copy));
       gl_PointSize = 1.0 + in_linear[i].y * 5.0;
 )" + last_stage_writes(stages, "gl_PrimitiveIDIn" + std::string(in.vertices > 2 ? " + copy" : ""));
   if (stages.primitive_id) text += "      gl_PrimitiveID = gl_PrimitiveIDIn * 2 + copy;\n";
