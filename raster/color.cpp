@@ -278,6 +278,7 @@ ColorWriter make_general_color_writer(VkFormat format, const BlendAttachment& bl
                   sanitize(blend.dst_color, blend.color_op, has_alpha, normalized), blend.color_op};
     writer.alpha = {sanitize(blend.src_alpha, blend.alpha_op, has_alpha, normalized),
                     sanitize(blend.dst_alpha, blend.alpha_op, has_alpha, normalized), blend.alpha_op};
+    if (!has_alpha) writer.alpha = writer.rgb;  // so that equal factors of the colour are common factors
   }
   bool writes = false;
   for (const std::byte b : writer.write_bits.bytes) writes |= b != std::byte{0};

@@ -115,6 +115,29 @@ CTS_RANDOM("pipeline", "srgb_encode", 2) {
   run.out("color", target.colors[0]);
 }
 
+/// Formats without alpha take (source op destination) times the factor when the factors of the colour are equal,
+/// whatever those of alpha are.
+const bool kCommonFactors = [] {
+  for (const VkFormat format : {VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_B10G11R11_UFLOAT_PACK32})
+    AddCase("pipeline", std::string("blend_common_factor.") + format_info(format).name, [format](Run& run) {
+      run.require(gpus().reference.features_of(format) & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT, "blending");
+      std::vector<float> values(kPixels * 4);
+      for (float& value : values) value = run.random.unit();
+      PixelWriter writer(run, format, run.buffer_of(values), VK_ATTACHMENT_LOAD_OP_LOAD);
+      run.fill_random(writer.target.colors[0]);
+      VkPipelineColorBlendAttachmentState blend{};
+      blend.blendEnable = VK_TRUE;
+      blend.srcColorBlendFactor = blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR;
+      blend.srcAlphaBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
+      blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_DST_COLOR;
+      blend.colorWriteMask = 0xf;
+      writer.spec.blends = {blend};
+      for (float& constant : writer.spec.blend.blendConstants) constant = run.random.unit();
+      writer.draw(run);
+    });
+  return true;
+}();
+
 CTS_RANDOM("pipeline", "random_blend", 160) {
   Random& random = run.random;
   const VkFormat format =
