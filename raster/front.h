@@ -17,7 +17,8 @@
 
 namespace vitrine::raster {
 
-/// The stipple pattern runs on along a strip: its lines stay in one chunk, up to this many positions.
+/// The stipple pattern runs on along a strip: its lines stay in one chunk, up to this many positions. Chunks of longer
+/// strips hand the counter on (Chunk::stipple_counter).
 inline constexpr std::uint32_t kStippledChunkPositions = 32768;
 
 struct Chunk {
@@ -26,6 +27,7 @@ struct Chunk {
   std::uint32_t run_count = 0;
   std::uint32_t view = 0;                    ///< multiview: index of the view, also the layer
   std::uint32_t* primitive_count = nullptr;  ///< PipelinePlan::counts_primitives: of the instance so far
+  std::uint32_t* stipple_counter = nullptr;  ///< of strips cut into chunks: what the chunks before have used up
 };
 
 /// Working memory of one thread, kept between chunks.

@@ -303,6 +303,7 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
   Assembler a(chunk, pass, arena, scratch);
   const TopologyShape& shape = plan.shape;
   if (state.cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return;
+  if (chunk.stipple_counter) a.stipple_counter = *chunk.stipple_counter;
   std::uint32_t first_entry = 0;
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
     const Run& run = chunk.runs[r];
@@ -334,6 +335,7 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
     first_entry += span.count();
   }
   flush_batch(a);
+  if (chunk.stipple_counter) *chunk.stipple_counter = a.stipple_counter;
   if (chunk.draw->call.queries.statistics && !plan.draws_points)  // clipping primitives
     chunk.draw->call.queries.statistics[6].fetch_add(scratch.primitives.size(), std::memory_order_relaxed);
 }

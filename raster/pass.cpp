@@ -183,8 +183,9 @@ struct Pass::Impl {
     return record;
   }
 
-  /// Turns the gathered runs into chunks of about kChunkPositions.
-  void cut_chunks(const DrawRecord* record, std::uint32_t view, std::uint32_t* primitive_count = nullptr) {
+  /// Turns the gathered runs into chunks of about kChunkPositions. Chunks that count are worked on at once, in order.
+  void cut_chunks(const DrawRecord* record, std::uint32_t view, std::uint32_t* primitive_count = nullptr,
+                  std::uint32_t* stipple_counter = nullptr) {
     const std::vector<Run>& runs = scratch->runs;
     const PipelinePlan& plan = *record->plan;
     const TopologyShape& shape = plan.shape;
@@ -196,9 +197,10 @@ struct Pass::Impl {
       positions += run_span(shape, runs[i]).count();
       pending_positions += std::uint64_t{run_span(shape, runs[i]).count()} * plan.position_weight;
       if (positions < plan.chunk_positions && i + 1 < runs.size()) continue;
+      const auto count = static_cast<std::uint32_t>(i + 1 - first);
       scratch->commands.push_back(
-          {nullptr, {record, stored + first, static_cast<std::uint32_t>(i + 1 - first), view, primitive_count}, {}});
-      if (primitive_count) front_item(scratch->commands.size() - 1, 0);
+          {nullptr, {record, stored + first, count, view, primitive_count, stipple_counter}, {}});
+      if (primitive_count || stipple_counter) front_item(scratch->commands.size() - 1, 0);
       first = i + 1;
       positions = 0;
     }
@@ -214,8 +216,14 @@ struct Pass::Impl {
       append_runs(record->call, instance, limit, scratch->runs);
       if (scratch->runs.size() == before) break;  // too few vertices: no instance has a primitive
       // Such draws are not parallel: every instance counts from 0.
+      const auto counter = [&] { return new (scratch->arena.take<std::uint32_t>(1)) std::uint32_t{0}; };
+      const auto first = scratch->runs.begin() + static_cast<std::ptrdiff_t>(before);
+      const bool counts_stipple =
+          stippled_strip && std::any_of(first, scratch->runs.end(), [](const Run& run) { return run.begin != 0; });
       if (record->plan->counts_primitives)
-        cut_chunks(record, view, new (scratch->arena.take<std::uint32_t>(1)) std::uint32_t{0});
+        cut_chunks(record, view, counter(), counts_stipple ? counter() : nullptr);
+      else if (counts_stipple)
+        cut_chunks(record, view, nullptr, counter());
       else if (scratch->runs.size() >= 4096)
         cut_chunks(record, view);
     }

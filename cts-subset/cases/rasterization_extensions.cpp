@@ -1,5 +1,6 @@
 // Fixed-function state of extensions: provoking vertex, depth clipping, line rasterization, instance divisors, restart
 // of lists, stencil export, coverage after the depth test, viewport and layer from the vertex shader.
+#include <cmath>
 #include <functional>
 #include <string>
 
@@ -204,6 +205,16 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool s
       if (whole) v[2] /= v[3];
       v[3] = 1.0f;
     }
+  // deviations.md, multisample-short-lines: no line is shorter than a pixel.
+  if (samples != VK_SAMPLE_COUNT_1_BIT)
+    for (uint32_t i = 1; i < scene.count; ++i)
+      for (uint32_t j = i < 2 ? 0 : i - 2; j < i; ++j) {
+        float* v = &scene.vertices[i * 8];
+        const float* u = &scene.vertices[j * 8];
+        const float dx = (v[0] / v[3] - u[0] / u[3]) * 0.5f * static_cast<float>(scene.target.width);
+        const float dy = (v[1] / v[3] - u[1] / u[3]) * 0.5f * static_cast<float>(scene.target.height);
+        if (std::fabs(dx) < 1.5f && std::fabs(dy) < 1.5f) v[0] += (v[0] > 0 ? -0.25f : 0.25f) * v[3];
+      }
   run.note("state", "mode " + std::to_string(line.lineRasterizationMode) + ", topology " +
                         std::to_string(scene.spec.assembly.topology) + ", polygon mode " +
                         std::to_string(scene.spec.raster.polygonMode) + ", width " +
@@ -224,6 +235,30 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool s
     CTS_COMMAND(run.gpu, CmdSetLineRasterizationModeEXT)(cmd, mode);
     CTS_COMMAND(run.gpu, CmdSetLineStippleEnableEXT)(cmd, stippled);
   });
+}
+
+/// A strip of more lines than a worker takes at a time: the pattern runs on. All but the last lines lie in a corner.
+CTS_CASE("rasterization", "long_stippled_strip") {
+  run.require(run.gpu.extension_features.line_rasterization.stippledRectangularLines, "stippledRectangularLines");
+  Random& random = run.random;
+  Scene scene(random);
+  scene.target.width = scene.target.height = 64;
+  VkPipelineRasterizationLineStateCreateInfoEXT line{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+  line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
+  line.stippledLineEnable = VK_TRUE;
+  line.lineStippleFactor = 2;
+  line.lineStipplePattern = 0x17a3;
+  scene.spec.raster.pNext = &line;
+  scene.spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
+  constexpr uint32_t kCorner = 70000;
+  scene.count = kCorner + 40;
+  scene.vertices = random_vertices(random, scene.count, 0.9f, 0, 1);
+  for (uint32_t i = 0; i < kCorner; ++i) {
+    const float v[4] = {-0.9f + static_cast<float>(i % 7) * 0.01f, -0.9f + static_cast<float>(i % 2) * 0.09f, 0.5f, 1};
+    std::copy_n(v, 4, &scene.vertices[i * 8]);
+  }
+  draw(run, scene);
 }
 
 /// Multisampled dashes. They are wide and run at 30 to 60 degrees, so that the last piece of a line is never shorter
