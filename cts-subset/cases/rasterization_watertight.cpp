@@ -263,7 +263,7 @@ void draw_long(Run& run, uint32_t width, uint32_t height, uint32_t layers, const
     if (layers == 1)
       vkCmdDraw(cmd, 24, 1, 0, 0);
     else
-      vkCmdDraw(cmd, 3, layers, 0, 0);
+      vkCmdDraw(cmd, 24, layers, 0, 0);
     vkCmdEndRenderPass(cmd);
   });
   out_target(run, target);
