@@ -3,26 +3,16 @@
 
 #include <algorithm>
 
+#include "texel/swizzle.h"
+
 namespace vitrine::texel {
 namespace {
 
-std::uint8_t resolve_swizzle(VkComponentSwizzle swizzle, std::uint8_t identity) {
-  switch (swizzle) {
-    case VK_COMPONENT_SWIZZLE_ZERO:
-      return 4;
-    case VK_COMPONENT_SWIZZLE_ONE:
-      return 5;
-    case VK_COMPONENT_SWIZZLE_R:
-      return 0;
-    case VK_COMPONENT_SWIZZLE_G:
-      return 1;
-    case VK_COMPONENT_SWIZZLE_B:
-      return 2;
-    case VK_COMPONENT_SWIZZLE_A:
-      return 3;
-    default:
-      return identity;
-  }
+std::uint8_t resolve_component(VkComponentSwizzle swizzle, std::uint8_t identity) {
+  if (swizzle == VK_COMPONENT_SWIZZLE_IDENTITY) return identity;
+  if (swizzle == VK_COMPONENT_SWIZZLE_ZERO) return 4;
+  if (swizzle == VK_COMPONENT_SWIZZLE_ONE) return 5;
+  return static_cast<std::uint8_t>(swizzle - VK_COMPONENT_SWIZZLE_R);
 }
 
 /// A view whose blocks are texels of an image of larger blocks (BLOCK_TEXEL_VIEW_COMPATIBLE) counts blocks.
@@ -36,6 +26,11 @@ bool is_3d(VkImageViewType type) { return type == VK_IMAGE_VIEW_TYPE_3D; }
 
 }  // namespace
 
+std::array<std::uint8_t, 4> resolve_swizzle(const VkComponentMapping& mapping) {
+  return {resolve_component(mapping.r, 0), resolve_component(mapping.g, 1), resolve_component(mapping.b, 2),
+          resolve_component(mapping.a, 3)};
+}
+
 ImageView make_image_view(const ImageLayout& layout, std::byte* memory, const ImageViewDesc& desc) {
   const PlaneLayout& plane = layout.plane[plane_of_aspect(layout, desc.aspect)];
   const FormatDesc& stored = format_desc(plane.format);
@@ -48,8 +43,7 @@ ImageView make_image_view(const ImageLayout& layout, std::byte* memory, const Im
   view.samples = layout.desc.samples;
   view.base_level = desc.base_level;
   view.level0_extent = convert_extent(plane.level[0].extent, stored, *view.format);
-  const VkComponentSwizzle mapping[4] = {desc.components.r, desc.components.g, desc.components.b, desc.components.a};
-  for (std::uint8_t i = 0; i < 4; ++i) view.swizzle[i] = resolve_swizzle(mapping[i], i);
+  view.swizzle = resolve_swizzle(desc.components);
   for (std::uint32_t i = 0; i < view.level_count; ++i) {
     view.level[i] = plane.level[desc.base_level + i];
     view.level[i].extent = convert_extent(view.level[i].extent, stored, *view.format);

@@ -6,6 +6,7 @@
 #include "icd/image.h"
 #include "icd/util.h"
 #include "texel/sampler/plan.h"
+#include "texel/swizzle.h"
 
 namespace vitrine::icd {
 namespace {
@@ -25,13 +26,6 @@ std::array<std::uint32_t, 4> border_bits(VkBorderColor color) {
     default:
       return {0, 0, 0, 0};
   }
-}
-
-std::uint8_t swizzle_of(VkComponentSwizzle swizzle, std::uint8_t identity) {
-  if (swizzle == VK_COMPONENT_SWIZZLE_IDENTITY) return identity;
-  if (swizzle == VK_COMPONENT_SWIZZLE_ZERO) return 4;
-  if (swizzle == VK_COMPONENT_SWIZZLE_ONE) return 5;
-  return static_cast<std::uint8_t>(swizzle - VK_COMPONENT_SWIZZLE_R);
 }
 
 bool is_custom(VkBorderColor color) {
@@ -87,9 +81,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSamplerYcbcrConversion(VkDevice device,
   state.enabled = true;
   state.model = info->ycbcrModel;
   state.range = info->ycbcrRange;
-  const VkComponentMapping& mapping = info->components;
-  state.swizzle = {swizzle_of(mapping.r, 0), swizzle_of(mapping.g, 1), swizzle_of(mapping.b, 2),
-                   swizzle_of(mapping.a, 3)};
+  state.swizzle = texel::resolve_swizzle(info->components);
   state.x_cosited = info->xChromaOffset == VK_CHROMA_LOCATION_COSITED_EVEN;
   state.y_cosited = info->yChromaOffset == VK_CHROMA_LOCATION_COSITED_EVEN;
   state.chroma_filter = info->chromaFilter;
