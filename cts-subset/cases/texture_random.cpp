@@ -31,6 +31,9 @@ struct Family {
   std::vector<Shape> shapes;
   uint32_t count;
   bool compressed = false, anisotropic = false;
+  bool bordered = false;      ///< custom border colours and swizzled views
+  bool reduced = false;       ///< minimum or maximum of the taps
+  bool unnormalized = false;  ///< coordinates in texels
 };
 
 bool fits_8_bit(const FormatInfo& info) {
@@ -42,19 +45,21 @@ VkFormat random_format(Random& random, const Family& family) {
     if ((info.numeric == Numeric::kBlock) != family.compressed) return false;
     if ((info.numeric == Numeric::kDepth) != (family.kind == Kind::kShadow)) return false;
     if (family.kind == Kind::kShadow && info.format == VK_FORMAT_S8_UINT) return false;
-    const VkFormatFeatureFlags needed =
-        family.anisotropic ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT : VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
+    const VkFormatFeatureFlags needed = family.anisotropic ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT
+                                        : family.reduced   ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_MINMAX_BIT
+                                                           : VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
     return (gpus().reference.features_of(info.format) & needed) != 0;
   };
   std::vector<VkFormat> formats;
   for (const FormatInfo& info : all_formats())
     if (usable(info)) formats.push_back(info.format);
-  if (!family.compressed && family.kind != Kind::kShadow && random.chance(0.4f))
+  if (!family.compressed && family.kind != Kind::kShadow && !family.reduced && random.chance(0.4f))
     return random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R8G8B8A8_SRGB});
   return random.pick(formats);
 }
 
-ImageSpec random_image(Random& random, const Shape& shape, VkFormat format, Kind kind) {
+ImageSpec random_image(Random& random, const Shape& shape, VkFormat format, const Family& family) {
+  const Kind kind = family.kind;
   ImageSpec spec;
   spec.format = format;
   spec.view = shape.view;
@@ -72,8 +77,8 @@ ImageSpec random_image(Random& random, const Shape& shape, VkFormat format, Kind
   const uint32_t largest = std::max({spec.extent.width, spec.extent.height, spec.extent.depth});
   uint32_t possible = 1;
   while (largest >> possible) ++possible;
-  if (random.chance(0.6f)) spec.levels = 1 + random.below(possible);
-  if (random.chance(0.2f) && kind != Kind::kShadow) {
+  if (!family.unnormalized && random.chance(0.6f)) spec.levels = 1 + random.below(possible);
+  if (random.chance(family.bordered ? 0.6f : 0.2f) && kind != Kind::kShadow) {
     const auto swizzle = [&] { return static_cast<VkComponentSwizzle>(random.below(7)); };
     spec.components = {swizzle(), swizzle(), swizzle(), swizzle()};
   }
@@ -116,6 +121,20 @@ VkSamplerCreateInfo random_sampler(Run& run, const Family& family, const Shape& 
     info.magFilter = info.minFilter = VK_FILTER_LINEAR;
     info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
   }
+  if (family.bordered) {
+    (random.chance(0.5f) ? info.addressModeU : info.addressModeV) = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+    if (random.chance(0.5f)) info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+  }
+  if (family.unnormalized) {
+    const auto clamp = [&] {
+      return random.pick({VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER});
+    };
+    info.unnormalizedCoordinates = VK_TRUE;
+    info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
+    info.minLod = info.maxLod = info.mipLodBias = 0.0f;
+    info.addressModeU = clamp();
+    info.addressModeV = clamp();
+  }
   if (family.kind == Kind::kShadow) {
     info.compareEnable = VK_TRUE;
     info.compareOp = static_cast<VkCompareOp>(random.below(8));
@@ -127,8 +146,10 @@ std::string coordinate(const std::string& source, uint32_t components) {
   return components == 1 ? source + ".x" : source + "." + std::string("xyzw").substr(0, components);
 }
 
-std::string lookup(Random& random, Kind kind, const Shape& shape) {
+std::string lookup(Random& random, const Family& family, const Shape& shape) {
+  const Kind kind = family.kind;
   const std::string c = coordinate("c", shape.coordinates);
+  if (family.unnormalized) return "textureLod(t, " + c + " * 30.0, 0.0)";
   const std::string whole = shape.dimensions == 1 ? "int" : "ivec" + std::to_string(shape.dimensions);
   const auto offset = [&] {
     std::string text = whole + "(" + std::to_string(random.between(-8, 7));
@@ -152,7 +173,9 @@ std::string lookup(Random& random, Kind kind, const Shape& shape) {
       return "textureProj(t, " + coordinate("vec4(c.xyz, 1.5 + c.w)", shape.coordinates + 1) + ")";
     case Kind::kGather: {
       const std::string component = std::to_string(random.below(4));
-      return random.chance(0.5f) ? "textureGather(t, " + c + ", " + component + ")"
+      if (shape.dimensions == 3 || random.chance(0.4f)) return "textureGather(t, " + c + ", " + component + ")";
+      return random.chance(0.3f) ? "textureGatherOffsets(t, " + c + ", ivec2[4](" + offset() + ", " + offset() + ", " +
+                                       offset() + ", " + offset() + "), " + component + ")"
                                  : "textureGatherOffset(t, " + c + ", " + offset() + ", " + component + ")";
     }
     case Kind::kFetch: {
@@ -197,7 +220,7 @@ std::string fragment_text(Random& random, const Family& family, const Shape& sha
   text += derivatives && !table_only && random.chance(0.85f)
               ? "  precise vec4 c = (base + gl_FragCoord.x * dx) + gl_FragCoord.y * dy;\n"
               : "  vec4 c = texelFetch(table, pixel, 0);\n";
-  return text + "  color = " + lookup(random, family.kind, shape) + ";\n}\n";
+  return text + "  color = " + lookup(random, family, shape) + ";\n}\n";
 }
 
 /// Coordinates inside and outside the texture. Cubes: directions away from corners, so that one texel suffices.
@@ -237,11 +260,31 @@ void random_texture(Run& run, const Family& family) {
   const Shape shape = random.pick(family.shapes);
   const VkFormat format = random_format(random, family);
   const FormatInfo& info = format_info(format);
-  const ImageSpec image_spec = random_image(random, shape, format, family.kind);
+  const ImageSpec image_spec = random_image(random, shape, format, family);
   if (shape.view == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY) run.require(run.gpu.features.imageCubeArray, "imageCubeArray");
   const Image image = run.image(image_spec);
   run.fill_random(image);
-  const VkSamplerCreateInfo sampler_info = random_sampler(run, family, shape, image_spec);
+  VkSamplerCreateInfo sampler_info = random_sampler(run, family, shape, image_spec);
+  VkSamplerCustomBorderColorCreateInfoEXT custom{VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT};
+  if (family.bordered && random.chance(0.7f)) {
+    run.require(run.gpu.extension_features.custom_border.customBorderColors, "customBorderColors");
+    for (int c = 0; c < 4; ++c) {
+      if (is_integer(info))
+        custom.customBorderColor.uint32[c] = random.below(100);
+      else
+        custom.customBorderColor.float32[c] = random.real(-1.5f, 1.5f);
+    }
+    custom.format = format;
+    sampler_info.borderColor = is_integer(info) ? VK_BORDER_COLOR_INT_CUSTOM_EXT : VK_BORDER_COLOR_FLOAT_CUSTOM_EXT;
+    sampler_info.pNext = &custom;
+  }
+  VkSamplerReductionModeCreateInfo reduction{VK_STRUCTURE_TYPE_SAMPLER_REDUCTION_MODE_CREATE_INFO};
+  if (family.reduced) {
+    run.require(run.gpu.has("VK_EXT_sampler_filter_minmax"), "VK_EXT_sampler_filter_minmax");
+    reduction.reductionMode = random.chance(0.5f) ? VK_SAMPLER_REDUCTION_MODE_MIN : VK_SAMPLER_REDUCTION_MODE_MAX;
+    sampler_info.pNext = &reduction;
+    sampler_info.magFilter = sampler_info.minFilter = VK_FILTER_LINEAR;
+  }
   const VkSampler sampler = run.sampler(sampler_info);
   // Not a buffer: helper invocations of the reference load zeros from those (deviations.md, helper-lane-loads).
   ImageSpec table_spec;
@@ -303,6 +346,18 @@ const std::vector<Family>& families() {
       {"random_cube_implicit", Kind::kImplicit, {kCube}, 40},
       {"random_compressed", Kind::kImplicit, {k2D, k2DArray}, 60, true},
       {"random_compressed_fetch", Kind::kFetch, {k2D}, 40, true},
+      {"random_border", Kind::kImplicit, {k1D, k2D, k2D, k2DArray, k3D}, 60, false, false, true},
+      {"random_border_lod", Kind::kLod, {k1D, k2D, k2DArray, k3D}, 40, false, false, true},
+      {"random_border_gather", Kind::kGather, {k2D, k2DArray}, 30, false, false, true},
+      {"random_border_compressed", Kind::kImplicit, {k2D}, 30, true, false, true},
+      {"random_minmax", Kind::kImplicit, {k1D, k2D, k2D, k2DArray, k3D}, 40, false, false, false, true},
+      {"random_minmax_lod", Kind::kLod, {k1D, k2D, k2DArray, k3D}, 30, false, false, false, true},
+      {"random_unnormalized", Kind::kLod, {k1D, k2D}, 40, false, false, false, false, true},
+      {"random_unnormalized_compressed", Kind::kLod, {k2D}, 20, true, false, false, false, true},
+      {"random_cube_gather", Kind::kGather, {kCube, kCubeArray}, 30},
+      {"random_compressed_lod", Kind::kLod, {k2D, k2DArray}, 30, true},
+      {"random_compressed_gather", Kind::kGather, {k2D, k2DArray}, 30, true},
+      {"random_compressed_cube", Kind::kLod, {kCube}, 30, true},
       {"random_anisotropic", Kind::kImplicit, {k2D}, 40, false, true},
   };
   return list;
