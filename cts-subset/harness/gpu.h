@@ -132,7 +132,9 @@ void check(VkResult result, const char* call);
   X(vertex_attribute_divisor, VkPhysicalDeviceVertexAttributeDivisorFeaturesEXT,                                       \
     VERTEX_ATTRIBUTE_DIVISOR_FEATURES_EXT, "VK_EXT_vertex_attribute_divisor")                                          \
   X(vertex_input_dynamic_state, VkPhysicalDeviceVertexInputDynamicStateFeaturesEXT,                                    \
-    VERTEX_INPUT_DYNAMIC_STATE_FEATURES_EXT, "VK_EXT_vertex_input_dynamic_state")
+    VERTEX_INPUT_DYNAMIC_STATE_FEATURES_EXT, "VK_EXT_vertex_input_dynamic_state")                                      \
+  X(ycbcr, VkPhysicalDeviceSamplerYcbcrConversionFeatures, SAMPLER_YCBCR_CONVERSION_FEATURES,                          \
+    "VK_KHR_sampler_ycbcr_conversion")
 
 /// Extensions without features that cases use: enabled where offered.
 #define CTS_EXTENSIONS(X)                 \

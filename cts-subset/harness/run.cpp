@@ -108,11 +108,15 @@ Resources Run::resources(const std::vector<Binding>& bindings, uint32_t push_byt
   std::vector<VkDescriptorSetLayoutBinding> layout_bindings;
   std::vector<VkDescriptorPoolSize> sizes;
   std::vector<VkWriteDescriptorSet> writes;
+  std::vector<std::vector<VkSampler>> immutable(bindings.size());
   for (const Binding& b : bindings) {
     const auto count = static_cast<uint32_t>(std::max({b.buffers.size(), b.images.size(), b.views.size()}));
     const VkShaderStageFlags stages =
         b.type == VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_ALL;
-    layout_bindings.push_back({b.binding, b.type, count, stages, nullptr});
+    std::vector<VkSampler>& samplers = immutable[layout_bindings.size()];
+    if (b.immutable_samplers)
+      for (const VkDescriptorImageInfo& image : b.images) samplers.push_back(image.sampler);
+    layout_bindings.push_back({b.binding, b.type, count, stages, samplers.empty() ? nullptr : samplers.data()});
     sizes.push_back({b.type, count});
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     write.dstBinding = b.binding;

@@ -57,6 +57,7 @@ struct Binding {
   std::vector<VkDescriptorBufferInfo> buffers;
   std::vector<VkDescriptorImageInfo> images;
   std::vector<VkBufferView> views;
+  bool immutable_samplers = false;  ///< the samplers of `images` are part of the layout
 };
 Binding storage_buffer(uint32_t binding, const Buffer& buffer);
 Binding uniform_buffer(uint32_t binding, const Buffer& buffer);

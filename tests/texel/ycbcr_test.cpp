@@ -11,12 +11,16 @@
 #include <string>
 #include <vector>
 
+#include "tests/texel/ycbcr_model.h"
 #include "texel/sampler.h"
 #include "texel/transfer.h"
 #include "texel/view.h"
 
 namespace vitrine::texel {
 namespace {
+
+using test::YcbcrModel;
+using test::YcbcrName;
 
 constexpr std::uint32_t kWidth = 14, kHeight = 10, kLayers = 2;
 
@@ -33,24 +37,9 @@ std::vector<const FormatDesc*> conversion_formats() {
   return found;
 }
 
-/// What the name of a format says.
-struct Named {
-  explicit Named(const FormatDesc& format) : name(format.name) {
-    bits = std::stoi(name.substr(1));
-    bytes = bits == 8 ? 1 : 2;
-    has_alpha = name.find("A1") != std::string::npos;
-    planes = name.find("3PLANE") != std::string::npos ? 3 : name.find("2PLANE") != std::string::npos ? 2 : 1;
-    halved_x = name.find("_420_") != std::string::npos || name.find("_422_") != std::string::npos;
-    halved_y = name.find("_420_") != std::string::npos;
-  }
-  std::string name;
-  int bits = 0, bytes = 0, planes = 1;
-  bool has_alpha = false, halved_x = false, halved_y = false;
-};
-
 /// An image full of random bytes, with the memory of its planes apart where it is disjoint.
 struct TestImage {
-  TestImage(const FormatDesc& format, bool disjoint, std::mt19937& random) : named(format) {
+  TestImage(const FormatDesc& format, bool disjoint, std::mt19937& random) : named(format.name) {
     ImageDesc desc;
     desc.format = format.format;
     desc.extent = {kWidth, kHeight, 1};
@@ -91,102 +80,31 @@ struct TestImage {
     return word / (std::ldexp(1.0, named.bits) - 1);
   }
 
-  /// Component 'R', 'G', 'B' or 'A' at a texel of its own grid, clamped to the edge.
-  double component(char c, std::uint32_t layer, int x, int y) {
-    const bool luma = c == 'G' || c == 'A';
-    const int w = kWidth / (!luma && named.halved_x ? 2 : 1), h = kHeight / (!luma && named.halved_y ? 2 : 1);
-    const auto i = static_cast<std::uint32_t>(std::clamp(x, 0, w - 1));
-    const auto j = static_cast<std::uint32_t>(std::clamp(y, 0, h - 1));
-    if (c == 'A' && !named.has_alpha) return 1.0;
-    if (named.has_alpha) return element(0, layer, j, i * 4 + static_cast<std::uint32_t>(std::string("RGBA").find(c)));
-    if (named.planes == 3) return element(c == 'G' ? 0 : c == 'B' ? 1 : 2, layer, j, i);
-    if (named.planes == 2) return c == 'G' ? element(0, layer, j, i) : element(1, layer, j, i * 2 + (c == 'R'));
-    const std::uint32_t luma_at = named.name[0] == 'G' ? 0 : 1;
-    if (c == 'G') return element(0, layer, j, i * 2 + luma_at);
-    return element(0, layer, j, i * 4 + (c == 'R' ? 2 : 0) + 1 - luma_at);
-  }
-
-  Named named;
+  YcbcrName named;
   ImageLayout layout;
   std::vector<std::byte> memory[3];
   std::vector<ImageView> planes;
 };
 
-double mix(double a, double b, double weight) { return a + (b - a) * weight; }
-
-/// Bilinear or nearest at texel coordinates of a grid.
-template <class Read>
-double filter(double u, double v, bool linear, Read read) {
-  if (!linear) return read(static_cast<int>(std::floor(u)), static_cast<int>(std::floor(v)));
-  const int i = static_cast<int>(std::floor(u - 0.5)), j = static_cast<int>(std::floor(v - 0.5));
-  const double a = u - 0.5 - i, b = v - 0.5 - j;
-  return mix(mix(read(i, j), read(i + 1, j), a), mix(read(i, j + 1), read(i + 1, j + 1), a), b);
-}
-
-/// Where the chroma sample of luma texel i lies between two of its own grid.
-struct Position {
-  int first;
-  double weight;
-};
-Position position(int i, bool halved, bool cosited, bool linear) {
-  if (!halved) return {i, 0.0};
-  const double at = linear ? (cosited ? i * 0.5 : i * 0.5 - 0.25) : std::floor(i * 0.5);
-  return {static_cast<int>(std::floor(at)), at - std::floor(at)};
-}
-
-double sampled_component(TestImage& image, const Sampler& sampler, char c, double s, double t, std::uint32_t layer) {
-  const YcbcrConversion& conversion = sampler.conversion;
-  const Named& named = image.named;
-  const double u = s * kWidth, v = t * kHeight;
-  const bool linear = sampler.mag_filter == VK_FILTER_LINEAR, chroma_linear = conversion.chroma_filter != 0;
-  const auto read = [&](int x, int y) { return image.component(c, layer, x, y); };
-  if (c == 'G' || c == 'A' || !named.halved_x) return filter(u, v, linear, read);
-  if (conversion.explicit_reconstruction) {
-    return filter(u, v, linear, [&](int i, int j) {
-      const Position x = position(i, named.halved_x, conversion.x_cosited, chroma_linear);
-      const Position y = position(j, named.halved_y, conversion.y_cosited, chroma_linear);
-      return mix(mix(read(x.first, y.first), read(x.first + 1, y.first), x.weight),
-                 mix(read(x.first, y.first + 1), read(x.first + 1, y.first + 1), x.weight), y.weight);
-    });
-  }
-  const auto scale = [&](double at, bool halved, bool cosited) {
-    return halved ? 0.5 * (at + (cosited && chroma_linear ? 0.5 : 0.0)) : at;
+/// The model's picture of a test image.
+YcbcrModel model_of(TestImage& image, const Sampler& sampler) {
+  const YcbcrConversion& c = sampler.conversion;
+  YcbcrModel model{image.named, kWidth, kHeight};
+  model.element = [&image](int plane, std::uint32_t layer, std::uint32_t y, std::uint32_t index) {
+    return image.element(static_cast<std::uint32_t>(plane), layer, y, index);
   };
-  return filter(scale(u, named.halved_x, conversion.x_cosited), scale(v, named.halved_y, conversion.y_cosited),
-                chroma_linear, read);
+  model.model = c.model;
+  model.range = c.range;
+  model.swizzle = c.swizzle;
+  model.linear = sampler.mag_filter == VK_FILTER_LINEAR;
+  model.chroma_linear = c.chroma_filter == VK_FILTER_LINEAR;
+  model.x_cosited = c.x_cosited;
+  model.y_cosited = c.y_cosited;
+  return model;
 }
 
 void expected(TestImage& image, const Sampler& sampler, double s, double t, std::uint32_t layer, double out[4]) {
-  const YcbcrConversion& conversion = sampler.conversion;
-  for (std::size_t c = 0; c < 4; ++c) {
-    const std::uint8_t source = conversion.swizzle[c];
-    out[c] = source > 3 ? source - 4.0 : sampled_component(image, sampler, "RGBA"[source], s, t, layer);
-  }
-  if (conversion.model == VK_SAMPLER_YCBCR_MODEL_CONVERSION_RGB_IDENTITY) return;
-  const double n = image.named.bits, largest = std::exp2(n) - 1;
-  double y = out[1], cb = out[2], cr = out[0];
-  if (conversion.range == VK_SAMPLER_YCBCR_RANGE_ITU_FULL) {
-    cb -= std::exp2(n - 1) / largest;
-    cr -= std::exp2(n - 1) / largest;
-  } else {
-    y = (y * largest - 16 * std::exp2(n - 8)) / (219 * std::exp2(n - 8));
-    cb = (cb * largest - 128 * std::exp2(n - 8)) / (224 * std::exp2(n - 8));
-    cr = (cr * largest - 128 * std::exp2(n - 8)) / (224 * std::exp2(n - 8));
-  }
-  out[0] = cr, out[1] = y, out[2] = cb;
-  switch (conversion.model) {
-    case VK_SAMPLER_YCBCR_MODEL_CONVERSION_YCBCR_601:
-      out[0] = y + 1.402 * cr, out[1] = y - (0.202008 * cb + 0.419198 * cr) / 0.587, out[2] = y + 1.772 * cb;
-      break;
-    case VK_SAMPLER_YCBCR_MODEL_CONVERSION_YCBCR_709:
-      out[0] = y + 1.5748 * cr, out[1] = y - (0.13397432 * cb + 0.33480248 * cr) / 0.7152, out[2] = y + 1.8556 * cb;
-      break;
-    case VK_SAMPLER_YCBCR_MODEL_CONVERSION_YCBCR_2020:
-      out[0] = y + 1.4746 * cr, out[1] = y - (0.11156702 * cb + 0.38737742 * cr) / 0.6780, out[2] = y + 1.8814 * cb;
-      break;
-    default:
-      break;
-  }
+  model_of(image, sampler).sample(s, t, layer, out);
 }
 
 Sampler random_sampler(std::mt19937& random) {
@@ -200,7 +118,6 @@ Sampler random_sampler(std::mt19937& random) {
   conversion.x_cosited = random() % 2;
   conversion.y_cosited = random() % 2;
   conversion.chroma_filter = random() % 2 ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
-  conversion.explicit_reconstruction = random() % 2;
   if (random() % 4 == 0) {
     for (std::uint8_t& s : conversion.swizzle) s = static_cast<std::uint8_t>(random() % 6);
   }
@@ -239,8 +156,7 @@ void check_wave(TestImage& image, const ImageView& view, const Sampler& sampler,
       ASSERT_NEAR(std::bit_cast<float>(result[c].lane[lane]), want[c], 2e-5)
           << image.named.name << " component " << c << " at " << at(0) * kWidth << ", " << at(1) * kHeight << " model "
           << sampler.conversion.model << " range " << sampler.conversion.range << " filter " << sampler.mag_filter
-          << " chroma " << sampler.conversion.chroma_filter << " explicit "
-          << sampler.conversion.explicit_reconstruction << " cosited " << sampler.conversion.x_cosited
+          << " chroma " << sampler.conversion.chroma_filter << " cosited " << sampler.conversion.x_cosited
           << sampler.conversion.y_cosited << " swizzle " << int{sampler.conversion.swizzle[0]}
           << int{sampler.conversion.swizzle[1]} << int{sampler.conversion.swizzle[2]};
     }
