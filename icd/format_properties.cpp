@@ -64,9 +64,11 @@ VkSampleCountFlags sample_counts(const VkPhysicalDeviceImageFormatInfo2& info, V
   return counts;
 }
 
-VkExtent3D max_extent(VkImageType type) {
+VkExtent3D max_extent(VkImageType type, VkImageCreateFlags flags) {
   const VkPhysicalDeviceLimits& limits = claimed_properties().limits;
   if (type == VK_IMAGE_TYPE_1D) return {limits.maxImageDimension1D, 1, 1};
+  if (flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT)
+    return {limits.maxImageDimensionCube, limits.maxImageDimensionCube, 1};
   if (type == VK_IMAGE_TYPE_2D) return {limits.maxImageDimension2D, limits.maxImageDimension2D, 1};
   return {limits.maxImageDimension3D, limits.maxImageDimension3D, limits.maxImageDimension3D};
 }
@@ -115,7 +117,7 @@ VkResult image_format_properties(const VkPhysicalDeviceImageFormatInfo2& info, V
     return VK_ERROR_FORMAT_NOT_SUPPORTED;
   }
   const VkPhysicalDeviceLimits& limits = claimed_properties().limits;
-  out->maxExtent = max_extent(info.type);
+  out->maxExtent = max_extent(info.type, info.flags);
   out->maxMipLevels = conversion ? 1 : static_cast<std::uint32_t>(std::bit_width(out->maxExtent.width));
   out->maxArrayLayers = info.type == VK_IMAGE_TYPE_3D ? 1 : limits.maxImageArrayLayers;
   out->sampleCounts = conversion ? VkSampleCountFlags{VK_SAMPLE_COUNT_1_BIT} : sample_counts(info, features);

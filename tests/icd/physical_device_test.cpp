@@ -247,6 +247,22 @@ TEST_F(Formats, WideFeaturesContainTheNarrowOnes) {
   }
 }
 
+TEST_F(Formats, CubesMayBeLargerThanOtherImages) {
+  const auto query = VK_GET(instance, GetPhysicalDeviceImageFormatProperties);
+  VkPhysicalDeviceProperties device_properties;
+  VK_GET(instance, GetPhysicalDeviceProperties)(physical_device, &device_properties);
+  VkImageFormatProperties out;
+  for (const VkImageCreateFlags flags :
+       {VkImageCreateFlags{0}, VkImageCreateFlags{VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT}}) {
+    ASSERT_EQ(query(physical_device, VK_FORMAT_R8_UNORM, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
+                    VK_IMAGE_USAGE_SAMPLED_BIT, flags, &out),
+              VK_SUCCESS);
+    const VkPhysicalDeviceLimits& limits = device_properties.limits;
+    EXPECT_EQ(out.maxExtent.width, flags ? limits.maxImageDimensionCube : limits.maxImageDimension2D);
+    EXPECT_EQ(out.maxMipLevels, static_cast<std::uint32_t>(std::bit_width(out.maxExtent.width)));
+  }
+}
+
 TEST_F(Formats, ImagePropertiesFollowFeatures) {
   const auto query = VK_GET(instance, GetPhysicalDeviceImageFormatProperties);
   VkImageFormatProperties out;
