@@ -190,8 +190,10 @@ const float* weights_of(const TapList& taps, const Texel*) { return taps.weight.
 
 template <class T>
 const T* filtered_row(Band<T>& band, std::int32_t y) {
-  for (const auto& kept : band.kept) {
-    if (kept.y == y) return kept.row.data();
+  for (std::size_t i = 0; i < band.kept.size(); ++i) {
+    if (band.kept[i].y != y) continue;
+    band.oldest = i ^ 1;  // the caller may want this row beside the next one that it asks for
+    return band.kept[i].row.data();
   }
   auto& kept = band.kept[band.oldest];
   band.oldest ^= 1;
