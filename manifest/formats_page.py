@@ -23,6 +23,7 @@ What tests them, besides the unit tests of `texel`:
 - **vertex**: compared with lavapipe as vertex attribute or texel buffer (`pipeline.vertex_input`, `api.texel_buffers`).
 - **decoder**: lavapipe lacks the format; `texel Block.*` holds digests of blocks that were compared with an independent
   decoder.
+- **peer**: lavapipe lacks the format or the marked use of it; unit tests of `texel` compare with a format of the same values.
 - **formulas**: lavapipe lacks the format; `texel Ycbcr.*` compares samples through every kind of conversion with the
   specification's formulas in double precision, `icd Ycbcr.*` the way through the API.
 
@@ -31,10 +32,23 @@ What exact means:
 - **same bits**: those of lavapipe 22.3.6 in every conversion.
 - **reference curve**: those bits too, and so not the curve of the sRGB definition (deviations of up to one code).
 - **defined**: the values that the format's specification defines.
+- **but attachments**: the same bits, but colours stored in attachments are the nearest codes, as the specification demands
+  (`cts-subset/deviations.md`, snorm10-attachments).
 
 | format | image | buffer | tests | exactness |
 |---|---|---|---|---|
 """
+
+
+# Formats that lavapipe lacks and another has the values of, with their exactness.
+PEERS = {"R4G4B4A4_UNORM_PACK16": "defined", "R8_SRGB": "reference curve", "R8G8_SRGB": "reference curve",
+         "A2R10G10B10_SINT_PACK32": "defined", "A2B10G10R10_SINT_PACK32": "defined"}
+# Uses of other formats that lavapipe does not claim.
+PEER_USES = {**dict.fromkeys(("D16_UNORM", "X8_D24_UNORM_PACK32", "D32_SFLOAT", "D24_UNORM_S8_UINT",
+                              "D32_SFLOAT_S8_UINT"), "linear"),
+             **dict.fromkeys(("B5G6R5_UNORM_PACK16", "A2R10G10B10_UNORM_PACK32"), "blits"),
+             **dict.fromkeys(("R8G8B8A8_SRGB", "B8G8R8A8_SRGB", "A8B8G8R8_SRGB_PACK32"), "storage"),
+             "B10G11R11_UFLOAT_PACK32": "blit_dst"}
 
 
 def claims(root):
@@ -50,9 +64,17 @@ def row(name, image, buffer, compared):
         tests, exact = "decoder", "defined"
     elif re.search(r"PLANE|_422_|R1[02]X", name):
         tests, exact = "formulas", "defined"
+    elif name in PEERS:
+        tests, exact = "peer", PEERS[name]
+    elif "SCALED" in name and image:
+        tests, exact = "vertex; blits: peer", "same bits; blits: defined"
     elif name in compared:
         tests = "reference"
         exact = "reference curve" if "SRGB" in name and "BC7" not in name else "same bits"
+        if re.match(r"A2\w+_SNORM", name) and "color" in image:
+            exact += ", but attachments"
+        if name in PEER_USES:
+            tests += f"; {PEER_USES[name]}: peer"
     elif image:
         tests, exact = "reference, by formats of the same fields", "same bits"
     else:

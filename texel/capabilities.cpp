@@ -15,13 +15,13 @@ bool is_scaled(const FormatDesc& format) { return any_numeric(format, Numeric::k
 
 bool can_decode(const FormatDesc& format) { return format.plain; }
 
-bool can_encode(const FormatDesc& format) { return format.plain && !is_scaled(format); }
+bool can_encode(const FormatDesc& format) { return format.plain; }
 
 bool can_sample(const FormatDesc& format) {
   if (format.requires_conversion()) return true;
   switch (format.compression) {
     case Compression::kNone:
-      return format.plain && !is_scaled(format);
+      return format.plain;
     case Compression::kBc:
     case Compression::kEtc2:
     case Compression::kEac:
@@ -35,7 +35,7 @@ bool can_sample(const FormatDesc& format) {
 bool can_filter(const FormatDesc& format) { return can_sample(format) && !format.is_integer(); }
 
 bool can_store(const FormatDesc& format) {
-  return can_encode(format) && !format.is_depth_stencil() && !format.is_srgb() &&
+  return can_encode(format) && !format.is_depth_stencil() && !is_scaled(format) &&
          format.format != VK_FORMAT_E5B9G9R9_UFLOAT_PACK32;
 }
 

@@ -249,7 +249,7 @@ namespace vitrine::icd::entry {{
 
         lines = []
         for name, (image, buffer) in self.claims.formats.items():
-            linear = [] if "DEPTH_STENCIL_ATTACHMENT" in image else image
+            linear = [word for word in image if word != "DEPTH_STENCIL_ATTACHMENT"]
             lines.append(f"    {{VK_FORMAT_{name}, {{{bits(linear)}, {bits(image)}, {bits(buffer)}}}}},\n")
         return lines
 

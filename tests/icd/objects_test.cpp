@@ -129,6 +129,27 @@ TEST_F(Memory, LinearImageLayoutIsReadable) {
   VK_GET(instance, DestroyImage)(device, image, nullptr);
 }
 
+/// Depth and stencil of a linear image are found one after the other.
+TEST_F(Memory, AspectsOfALinearImageLieApart) {
+  VkImageCreateInfo info = image_info(33, 17);
+  info.format = VK_FORMAT_D32_SFLOAT_S8_UINT;
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  info.tiling = VK_IMAGE_TILING_LINEAR;
+  VkImage image;
+  ASSERT_EQ(VK_GET(instance, CreateImage)(device, &info, nullptr, &image), VK_SUCCESS);
+  VkSubresourceLayout depth, stencil;
+  const VkImageSubresource depth_of{VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0}, stencil_of{VK_IMAGE_ASPECT_STENCIL_BIT, 0, 0};
+  VK_GET(instance, GetImageSubresourceLayout)(device, image, &depth_of, &depth);
+  VK_GET(instance, GetImageSubresourceLayout)(device, image, &stencil_of, &stencil);
+  VkMemoryRequirements requirements;
+  VK_GET(instance, GetImageMemoryRequirements)(device, image, &requirements);
+  EXPECT_GE(depth.rowPitch, 33u * 4);
+  EXPECT_GE(stencil.rowPitch, 33u);
+  EXPECT_LE(depth.offset + depth.size, stencil.offset);
+  EXPECT_LE(stencil.offset + stencil.size, requirements.size);
+  VK_GET(instance, DestroyImage)(device, image, nullptr);
+}
+
 TEST_F(Device, QueueIsTheOneOfTheFamily) {
   VkQueue queue = VK_NULL_HANDLE;
   VK_GET(instance, GetDeviceQueue)(device, 0, 0, &queue);

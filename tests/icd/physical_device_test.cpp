@@ -196,7 +196,9 @@ struct Backing {
 TEST_F(Formats, ClaimsDoNotExceedWhatTexelDoes) {
   constexpr Backing kImage[] = {
       {VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT, texel::can_sample},
-      {VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT, texel::can_filter},
+      // Of a combined format the depth aspect is filtered.
+      {VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT,
+       [](const texel::FormatDesc& format) { return texel::can_filter(format) || format.has_stencil(); }},
       {VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT, texel::can_store},
       {VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT, texel::can_atomic},
       {VK_FORMAT_FEATURE_TRANSFER_SRC_BIT, texel::can_copy},
@@ -277,8 +279,11 @@ TEST_F(Formats, ImagePropertiesFollowFeatures) {
             VK_ERROR_FORMAT_NOT_SUPPORTED);
   EXPECT_EQ(out.maxMipLevels, 0u);
   EXPECT_EQ(query(physical_device, VK_FORMAT_D32_SFLOAT, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_LINEAR,
-                  VK_IMAGE_USAGE_SAMPLED_BIT, 0, &out),
+                  VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, 0, &out),
             VK_ERROR_FORMAT_NOT_SUPPORTED);
+  EXPECT_EQ(query(physical_device, VK_FORMAT_D32_SFLOAT, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_LINEAR,
+                  VK_IMAGE_USAGE_SAMPLED_BIT, 0, &out),
+            VK_SUCCESS);
   EXPECT_EQ(query(physical_device, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
                   VK_IMAGE_USAGE_SAMPLED_BIT, VK_IMAGE_CREATE_SPARSE_BINDING_BIT, &out),
             VK_ERROR_FORMAT_NOT_SUPPORTED);

@@ -82,6 +82,37 @@ TEST(Encode, ClearTable) {
   }
 }
 
+TEST(Decode, FormatsThatTheReferenceLacks) {
+  expect_floats(VK_FORMAT_R8_SRGB, 0x80, kSrgbToLinear[128], 0, 0, 1);
+  expect_floats(VK_FORMAT_R8G8_SRGB, 0xFF01, kSrgbToLinear[1], kSrgbToLinear[255], 0, 1);
+  expect_floats(VK_FORMAT_R4G4B4A4_UNORM_PACK16, 0xF00F, 1, 0, 0, 1);
+  EXPECT_EQ(decoded(VK_FORMAT_A2R10G10B10_SINT_PACK32, 0x9FF80201),
+            (Texel{0x1FF, static_cast<std::uint32_t>(-512), static_cast<std::uint32_t>(-511),
+                   static_cast<std::uint32_t>(-2)}));
+  EXPECT_EQ(decoded(VK_FORMAT_A2B10G10R10_SINT_PACK32, 0x9FF80201),
+            (Texel{static_cast<std::uint32_t>(-511), static_cast<std::uint32_t>(-512), 0x1FF,
+                   static_cast<std::uint32_t>(-2)}));
+}
+
+TEST(Encode, ScaledFormatsRoundAndClamp) {
+  const float nan = base::float_of(0x7fc00000u);
+  EXPECT_EQ(encoded(VK_FORMAT_R8G8B8A8_USCALED, Encoding::kAttachment, -1, 2.5f, 254.6f, 1e9f), 0xFFFF0200u);
+  EXPECT_EQ(encoded(VK_FORMAT_R8G8B8A8_SSCALED, Encoding::kAttachment, -200, -1.5f, 127.9f, nan), 0x007FFE80u);
+  EXPECT_EQ(encoded(VK_FORMAT_A2B10G10R10_USCALED_PACK32, Encoding::kAttachment, 2000, 3, 0, 9), 0xC0000FFFu);
+  EXPECT_EQ(encoded(VK_FORMAT_R16G16_SSCALED, Encoding::kAttachment, -40000, 32767, 0, 0), 0x7FFF8000u);
+}
+
+/// A component of an sRGB storage image is encoded as one of an attachment is.
+TEST(Encode, StoredSrgbIsWhatAttachmentsGet) {
+  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_A8B8G8R8_SRGB_PACK32}) {
+    for (int i = -40; i < 1100; ++i) {
+      const float x = static_cast<float>(i) * 0.001f;
+      EXPECT_EQ(encoded(format, Encoding::kStore, x, 1 - x, x * x, x),
+                encoded(format, Encoding::kAttachment, x, 1 - x, x * x, x));
+    }
+  }
+}
+
 TEST(Encode, NanAndLimitsByWriter) {
   const float nan = base::float_of(0x7fc00000u);
   EXPECT_EQ(encoded(VK_FORMAT_R8_UNORM, Encoding::kStore, nan, 0, 0, 0), 0xFFu);

@@ -99,6 +99,50 @@ TEST(Sampler, IntegersAreNotFiltered) {
   EXPECT_EQ(bits_of(sample_one(image.view, sampler, 0.5f, 0.5f)[0]), 0u);
 }
 
+/// A format without a peer in the reference, one of the same values with one, and the texel of the other.
+struct SameValues {
+  VkFormat format, peer;
+  std::uint32_t (*convert)(std::uint32_t texel);
+};
+
+constexpr SameValues kSameValues[] = {
+    {VK_FORMAT_R8_SRGB, VK_FORMAT_R8G8B8A8_SRGB, [](std::uint32_t t) { return t | 0xff000000u; }},
+    {VK_FORMAT_R8G8_SRGB, VK_FORMAT_R8G8B8A8_SRGB, [](std::uint32_t t) { return t | 0xff000000u; }},
+    {VK_FORMAT_D16_UNORM, VK_FORMAT_R16_UNORM, [](std::uint32_t t) { return t; }},
+    {VK_FORMAT_X8_D24_UNORM_PACK32, VK_FORMAT_R32_SFLOAT,
+     [](std::uint32_t t) { return bits_of(static_cast<float>(t & 0xffffff) * static_cast<float>(1.0 / 0xffffff)); }},
+    {VK_FORMAT_D32_SFLOAT, VK_FORMAT_R32_SFLOAT, [](std::uint32_t t) { return t; }},
+    {VK_FORMAT_R4G4B4A4_UNORM_PACK16, VK_FORMAT_B4G4R4A4_UNORM_PACK16,
+     [](std::uint32_t t) { return (t & 0x0f0fu) | (t >> 8 & 0xf0u) | (t & 0xf0u) << 8; }},
+};
+
+TEST(Sampler, FormatsOfTheSameValuesFilterAlike) {
+  std::mt19937 random(3);
+  constexpr Extent kExtent{13, 9, 1};
+  for (const SameValues& row : kSameValues) {
+    TestView image(row.format, kExtent, 1, 1, VK_IMAGE_VIEW_TYPE_2D),
+        peer(row.peer, kExtent, 1, 1, VK_IMAGE_VIEW_TYPE_2D);
+    for (std::uint32_t i = 0; i < kExtent.width * kExtent.height; ++i) {
+      std::uint32_t texel = static_cast<std::uint32_t>(random());
+      if (row.format == VK_FORMAT_D32_SFLOAT) texel = bits_of(static_cast<float>(texel >> 8) * 0x1p-24f);
+      const std::uint32_t bytes = image.view.format->block_bytes;
+      if (bytes < 4) texel &= (1u << (8 * bytes)) - 1;
+      const std::uint32_t other = row.convert(texel), x = i % kExtent.width, y = i / kExtent.width;
+      std::memcpy(image.view.block(0, 0, 0, x, y, 0), &texel, bytes);
+      std::memcpy(peer.view.block(0, 0, 0, x, y, 0), &other, peer.view.format->block_bytes);
+    }
+    for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR}) {
+      Sampler sampler;
+      sampler.mag_filter = sampler.min_filter = filter;
+      for (int i = 0; i < 200; ++i) {
+        const float s = static_cast<float>(random()) * 0x1p-31f - 0.5f, t = static_cast<float>(random()) * 0x1p-31f;
+        ASSERT_EQ(sample_one(image.view, sampler, s, t), sample_one(peer.view, sampler, s, t))
+            << image.view.format->name << " filter " << filter << " at " << s << " " << t;
+      }
+    }
+  }
+}
+
 /// Random state of one comparison.
 struct Random {
   std::mt19937 generator;
@@ -143,6 +187,9 @@ constexpr VkFormat kFormats[] = {
     VK_FORMAT_R16G16_SINT,
     VK_FORMAT_B4G4R4A4_UNORM_PACK16,
     VK_FORMAT_R5G5B5A1_UNORM_PACK16,
+    VK_FORMAT_R4G4B4A4_UNORM_PACK16,
+    VK_FORMAT_R8_SRGB,
+    VK_FORMAT_R8G8_SRGB,
 };
 
 Sampler random_sampler(Random& random, bool depth) {

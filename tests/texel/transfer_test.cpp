@@ -205,6 +205,12 @@ constexpr VkFormat kBlitFormats[] = {
     VK_FORMAT_D32_SFLOAT,
     VK_FORMAT_D16_UNORM,
     VK_FORMAT_BC3_SRGB_BLOCK,
+    VK_FORMAT_B5G6R5_UNORM_PACK16,
+    VK_FORMAT_R4G4B4A4_UNORM_PACK16,
+    VK_FORMAT_A2R10G10B10_UNORM_PACK32,
+    VK_FORMAT_R8G8_SRGB,
+    VK_FORMAT_R8G8B8A8_USCALED,
+    VK_FORMAT_R16_SSCALED,
 };
 
 /// Levels of mips, and other regions at half the size: rows against texels one by one, on every SIMD target.
@@ -279,6 +285,78 @@ void compare_blits(unsigned seed) {
 
 TEST(Blit, RowsEqualTexelsOneByOne) {
   for (unsigned seed = 0; seed < 400 && !testing::Test::HasFailure(); ++seed) compare_blits(seed);
+}
+
+/// Fields of a word in another order: `from` of [first bit, bits] each become `to`, least significant first.
+std::uint32_t reorder(std::uint32_t word, std::initializer_list<std::pair<std::uint32_t, std::uint32_t>> fields) {
+  std::uint32_t result = 0, at = 0;
+  for (const auto& [first, bits] : fields) {
+    result |= (word >> first & ((1u << bits) - 1)) << at;
+    at += bits;
+  }
+  return result;
+}
+
+std::vector<std::byte> blitted(TestImage& source, VkFormat to, VkFilter filter) {
+  TestImage result(to, {33, 9, 1}, 1, 1);
+  VkImageBlit region{};
+  region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.srcOffsets[1] = {20, 14, 1};
+  region.dstOffsets[1] = {33, 9, 1};
+  blit_image(source.get(), result.get(), region, filter);
+  return result.memory;
+}
+
+/// Formats that the reference does not blit to, as the ones with the same fields that it does.
+TEST(Blit, FormatsOfTheSameFieldsGetTheSameCodes) {
+  TestImage source(VK_FORMAT_R32G32B32A32_SFLOAT, {20, 14, 1}, 1, 1);
+  std::mt19937 random(5);
+  for (std::size_t i = 0; i < source.memory.size(); i += 4) {
+    const float value = static_cast<float>(random() % 4096) / 3000.0f - 0.2f;
+    std::memcpy(&source.memory[i], &value, sizeof(value));
+  }
+  struct Row {
+    VkFormat format, peer;
+    std::uint32_t (*reordered)(std::uint32_t);
+  };
+  constexpr Row kRows[] = {
+      {VK_FORMAT_B5G6R5_UNORM_PACK16, VK_FORMAT_R5G6B5_UNORM_PACK16,
+       [](std::uint32_t w) {
+         return reorder(w, {{11, 5}, {5, 6}, {0, 5}});
+       }},
+      {VK_FORMAT_R4G4B4A4_UNORM_PACK16, VK_FORMAT_B4G4R4A4_UNORM_PACK16,
+       [](std::uint32_t w) {
+         return reorder(w, {{0, 4}, {12, 4}, {8, 4}, {4, 4}});
+       }},
+      {VK_FORMAT_A2R10G10B10_UNORM_PACK32, VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+       [](std::uint32_t w) {
+         return reorder(w, {{20, 10}, {10, 10}, {0, 10}, {30, 2}});
+       }},
+  };
+  for (const Row& row : kRows) {
+    for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR}) {
+      const std::vector<std::byte> result = blitted(source, row.format, filter),
+                                   peer = blitted(source, row.peer, filter);
+      const std::size_t bytes = format_desc(row.format).block_bytes;
+      ASSERT_EQ(result.size(), peer.size());
+      for (std::size_t i = 0; i < result.size(); i += bytes) {
+        std::uint32_t a = 0, b = 0;
+        std::memcpy(&a, &result[i], bytes);
+        std::memcpy(&b, &peer[i], bytes);
+        ASSERT_EQ(row.reordered(a), b) << format_desc(row.format).name << " filter " << filter;
+      }
+    }
+  }
+}
+
+/// Scaled integers travel as the numbers that they are.
+TEST(Blit, ScaledFormatsKeepTheirNumbers) {
+  TestImage source(VK_FORMAT_R8G8B8A8_USCALED, {20, 14, 1}, 1, 1), bytes(VK_FORMAT_R8G8B8A8_UINT, {20, 14, 1}, 1, 1);
+  source.memory = bytes.memory = random_bytes(source.memory.size());
+  EXPECT_EQ(blitted(source, VK_FORMAT_R8G8B8A8_USCALED, VK_FILTER_NEAREST),
+            blitted(bytes, VK_FORMAT_R8G8B8A8_UINT, VK_FILTER_NEAREST));
+  EXPECT_EQ(blitted(source, VK_FORMAT_R16G16B16A16_SSCALED, VK_FILTER_NEAREST),
+            blitted(bytes, VK_FORMAT_R16G16B16A16_UINT, VK_FILTER_NEAREST));
 }
 
 TEST(Blit, HalvedRowsEqualTexelsOneByOne) {
