@@ -1,6 +1,7 @@
 // A bump allocator whose blocks are kept: after the first frames nothing is allocated any more (DESIGN.md section 6).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <type_traits>
@@ -20,7 +21,7 @@ class Arena {
   /// Gives back what was taken beyond `count` values by the latest take<T>.
   template <class T>
   void trim(T* taken, std::size_t count) {
-    cursor_ = align(reinterpret_cast<std::byte*>(taken + count));
+    cursor_ = std::min(align(reinterpret_cast<std::byte*>(taken + count)), end_);
   }
 
   /// Forgets everything, keeps the blocks.

@@ -1,6 +1,4 @@
 // Binning: which tiles a primitive may touch, as one list per tile of a chunk.
-#include <algorithm>
-
 #include "raster/front.h"
 
 namespace vitrine::raster {
@@ -45,13 +43,11 @@ ChunkOutput bin_chunk(const PipelinePlan&, const TileGrid& grid, Arena& arena, F
   s.tile_pairs.clear();
   s.tiles.clear();
   if (s.tile_count.size() < grid.count()) s.tile_count.assign(grid.count(), 0);
-  const auto count = static_cast<std::uint32_t>(s.primitives.size());
-  for (std::uint32_t i = 0; i < count; ++i)
+  s.primitives.end();
+  for (std::uint32_t i = 0; i < s.primitives.size(); ++i)
     if (s.primitives[i].layer < grid.layers) bin_primitive(grid, s.primitives[i], i, s);
   if (s.tiles.empty()) return {};
 
-  Primitive* primitives = arena.take<Primitive>(count);
-  std::copy_n(s.primitives.data(), count, primitives);
   std::uint32_t* index = arena.take<std::uint32_t>(s.tile_pairs.size());
   TileRange* ranges = arena.take<TileRange>(s.tiles.size());
   std::uint32_t begin = 0;
@@ -64,7 +60,7 @@ ChunkOutput bin_chunk(const PipelinePlan&, const TileGrid& grid, Arena& arena, F
   }
   for (const std::uint64_t pair : s.tile_pairs) index[s.tile_count[pair >> 32]++] = static_cast<std::uint32_t>(pair);
   for (const std::uint32_t tile : s.tiles) s.tile_count[tile] = 0;
-  return {primitives, ranges, static_cast<std::uint32_t>(s.tiles.size())};
+  return {s.primitives.data(), ranges, static_cast<std::uint32_t>(s.tiles.size())};
 }
 
 }  // namespace vitrine::raster

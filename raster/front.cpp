@@ -263,7 +263,7 @@ void shade_chunk_vertices(const Chunk& chunk, Arena& arena, FrontScratch& s) {
 ChunkOutput process_chunk(const Chunk& chunk, const PassDesc& pass, const TileGrid& grid, Arena& arena,
                           FrontScratch& scratch) {
   const base::ScopedFloatMode mode(base::Denormals::kFlush);
-  scratch.primitives.clear();
+  scratch.primitives.begin(arena);
   const PipelinePlan& plan = *chunk.draw->plan;
   scratch.capture.active = is_captured(chunk.draw->call);
   if (plan.stages.any()) {

@@ -49,7 +49,7 @@ struct FrontScratch {
   std::vector<std::uint64_t> hash_key;
   std::vector<std::uint16_t> hash_slot;
   // results
-  std::vector<Primitive> primitives;
+  PrimitiveList primitives;
   std::vector<std::uint64_t> tile_pairs;  ///< tile << 32 | primitive
   std::vector<std::uint32_t> tile_count;
   std::vector<std::uint32_t> tiles;  ///< touched by the chunk

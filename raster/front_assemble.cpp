@@ -304,7 +304,9 @@ void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
   const TopologyShape& shape = plan.shape;
   if (state.cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return;
   if (chunk.stipple_counter) a.stipple_counter = *chunk.stipple_counter;
-  std::uint32_t first_entry = 0;
+  std::uint32_t first_entry = 0, expected = 0;
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) expected += chunk.runs[r].end - chunk.runs[r].begin;
+  scratch.primitives.reserve(expected);
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
     const Run& run = chunk.runs[r];
     const RunSpan span = run_span(shape, run);
@@ -344,7 +346,7 @@ void assemble_listed(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fro
                      std::span<const ListedPrimitive> primitives) {
   const PipelinePlan& plan = *chunk.draw->plan;
   Assembler a(chunk, pass, arena, scratch);
-  const std::size_t before = scratch.primitives.size();
+  const std::uint32_t before = scratch.primitives.size();
   const bool invisible = plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && plan.corners == 3;
   for (const ListedPrimitive& primitive : primitives) {
     if (invisible) break;

@@ -135,7 +135,7 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
     if (window == 0 && context.drops_empty) return;
   }
 
-  Primitive& p = context.out->emplace_back(Primitive::Unset());
+  Primitive& p = context.out->append();
   const SetupVertex* order[3] = {&v0, &v1, &v2};
   if (area < 0) {  // 2.1: the provoking vertex keeps its place
     if (context.of_line || state.provoking_vertex_last)

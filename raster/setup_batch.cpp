@@ -197,7 +197,7 @@ void setup_triangles(SetupContext context, TriangleBatch& batch) {
     const base::LaneMask window = window_of(facts, i, bounds, visible);
     if (window == 0 && context.drops_empty) continue;
     const bool positive = facts.area[i] > 0;
-    Primitive& p = context.out->emplace_back(Primitive::Unset());
+    Primitive& p = context.out->append();
     for (int c = 0; c < 3; ++c) {
       p.x[c] = facts.x[c][i];
       p.y[c] = facts.y[c][i];

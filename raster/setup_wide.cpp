@@ -186,7 +186,7 @@ void setup_line(const SetupContext& context, const Vertex* v1, const Vertex* v2,
   p.v[0] = v1;
   p.v[1] = p.v[2] = v2;
   p.provoking = plan.state->provoking_vertex_last ? 1 : 0;
-  context.out->push_back(p);
+  context.out->append() = p;
 }
 
 void setup_smooth_line(SetupContext context, Arena& arena, const Vertex* v0, const Vertex* v1, bool front) {
@@ -234,7 +234,7 @@ void setup_point(const SetupContext& context, const Vertex* v, bool front) {
   fill_common(context, PrimitiveKind::kPoint, front, p);
   p.v[0] = p.v[1] = p.v[2] = v;
   p.provoking = 0;
-  context.out->push_back(p);
+  context.out->append() = p;
 }
 
 }  // namespace vitrine::raster
