@@ -328,7 +328,8 @@ void random_draw(Run& run, const Scene& scene, DrawState& draw) {
   const bool selects = run.gpu.has("VK_EXT_shader_viewport_index_layer");
   if (!selects && draw.stages.geometry.empty()) draw.stages.layers = 1;
   random_rasterization(run, scene, draw);
-  if (draw.polygon && draw.clipped) draw.stages.layers = 1;  // deviations.md, clipped-polygon-layer
+  // deviations.md, clipped-polygon-layer
+  if (draw.polygon && (draw.clipped || draw.stages.clip_distances != 0)) draw.stages.layers = 1;
   if (draw.drawn == Drawn::kTriangles && random.chance(0.15f) && (selects || !draw.stages.geometry.empty()))
     draw.stages.viewports = 2 + random.below(3);
   // Distances clip, too (see `clipped`).
