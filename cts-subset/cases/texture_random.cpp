@@ -359,6 +359,8 @@ const std::vector<Family>& families() {
       {"random_compressed_gather", Kind::kGather, {k2D, k2DArray}, 30, true},
       {"random_compressed_cube", Kind::kLod, {kCube}, 30, true},
       {"random_anisotropic", Kind::kImplicit, {k2D}, 40, false, true},
+      {"random_anisotropic_array", Kind::kImplicit, {k2DArray}, 20, false, true},
+      {"random_anisotropic_compressed", Kind::kImplicit, {k2D, k2DArray}, 20, true, true},
   };
   return list;
 }

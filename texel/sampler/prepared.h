@@ -45,7 +45,7 @@ void sample_converted(const PreparedSampler& prepared, const SampleRequest& requ
 PreparedSampler::Kernel byte_kernel(const Plan& plan);  ///< Plan::aos
 PreparedSampler::Kernel float_kernel(
     const Plan& plan);                         ///< samples and gathers of everything else, but not anisotropic
-PreparedSampler::Kernel query_kernel();        ///< levels of detail, but not of anisotropic cubes
-PreparedSampler::Kernel anisotropic_kernel();  ///< two-dimensional
+PreparedSampler::Kernel query_kernel();        ///< levels of detail
+PreparedSampler::Kernel anisotropic_kernel();  ///< two-dimensional, and cubes
 
 }  // namespace vitrine::texel

@@ -33,9 +33,9 @@ bool levels_matter(const Plan& plan) {
 }
 
 PreparedSampler::Kernel choose_kernel(const Plan& plan, SampleOp op) {
-  if (op == SampleOp::kQueryLod) return plan.zero || (plan.cube && plan.anisotropic) ? sample_by_lane : query_kernel();
+  if (op == SampleOp::kQueryLod) return plan.zero ? sample_by_lane : query_kernel();
   if (plan.zero || !small_enough(*plan.view)) return sample_by_lane;
-  if (plan.anisotropic) return plan.cube ? sample_by_lane : anisotropic_kernel();
+  if (plan.anisotropic) return anisotropic_kernel();
   return plan.aos ? byte_kernel(plan) : float_kernel(plan);
 }
 

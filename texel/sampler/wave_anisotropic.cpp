@@ -1,6 +1,6 @@
-// Anisotropic filtering for whole waves, two-dimensional images (lavapipe-texture-blend.md A8): the twin of
-// sample_anisotropic, for compressed formats and comparisons too. The lanes of a vector walk through their ellipses
-// together, each inside its own bounds.
+// Anisotropic filtering for whole waves, two-dimensional images and faces of cubes (lavapipe-texture-blend.md A8): the
+// twin of sample_anisotropic, for compressed formats and comparisons too. The lanes of a vector walk through their
+// ellipses together, each inside its own bounds.
 #include <cstring>
 
 #include "texel/sampler/anisotropic.h"
@@ -30,13 +30,12 @@ struct EllipseLanes {
   VI u0, u1, v0, v1;
 };
 
-HWY_INLINE EllipseLanes make_ellipse(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
-                                     std::size_t first) {
+HWY_INLINE EllipseLanes make_ellipse(const PreparedSampler& p, const WaveState& state, std::size_t first) {
   const ImageView& view = *p.plan.view;
   const VF s = hn::LoadU(DF(), state.coord[0] + first), t = hn::LoadU(DF(), state.coord[1] + first);
   VF dsdx, dsdy, dtdx, dtdy;
-  coarse_slope(load_lanes(request.coord[0], first), dsdx, dsdy);
-  coarse_slope(load_lanes(request.coord[1], first), dtdx, dtdy);
+  coarse_slope(s, dsdx, dsdy);
+  coarse_slope(t, dtdx, dtdy);
   VF scaling = splat(1.0f / static_cast<float>(1u << view.base_level));
   if (!p.one_level) {
     // 2^-level, exactly.
@@ -167,11 +166,14 @@ HWY_NOINLINE TexelLanes fetch_from_blocks(const ImageView& view, const WalkPlace
 template <Numeric kNumeric, bool kBlocks>
 HWY_INLINE TexelLanes texel_at(const Plan& plan, const WalkPlaces& at, hn::Mask<DI> wanted, hn::Mask<DI> outside,
                                const VF* reference) {
+  const ImageView& view = *plan.view;
   TexelLanes texel;
   if constexpr (kBlocks) {
-    texel = fetch_from_blocks(*plan.view, at, lanes_mask_bits(DI(), wanted));
+    texel = fetch_from_blocks(view, at, lanes_mask_bits(DI(), wanted));
+  } else if (kNumeric == Numeric::kUfloat && view.format->format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) {
+    texel = split_shared_exponent(gather_words(view.base, at.offset));
   } else {
-    texel = fetch_lanes<kNumeric>(*plan.view->format, plan.view->base, at.offset);
+    texel = fetch_lanes<kNumeric>(*view.format, view.base, at.offset);
   }
   if (plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder) {
     const auto put = [&](VF value, std::size_t c) HWY_ATTR {
@@ -191,7 +193,8 @@ HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const 
                        const VF* reference, Sums& sums) {
   const Plan& plan = p.plan;
   const FormatDesc& format = *plan.view->format;
-  const bool finite = kNumeric != Numeric::kSfloat || reference != nullptr;
+  constexpr bool kFloat = kNumeric == Numeric::kSfloat || kNumeric == Numeric::kUfloat;
+  const bool finite = !kFloat || reference != nullptr;
   const auto live = lanes_mask_from_bits(DI(), active);
   const WalkAxis x_axis(level.axis[0]), y_axis(level.axis[1]);
   const VF u_start = hn::Sub(lanes_int_to_float(e.u0), e.tu);
@@ -226,8 +229,7 @@ HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const 
       const VF value[4] = {texel.r, texel.g, texel.b, texel.a};
       const auto add = [&](std::size_t c) HWY_ATTR {
         const VF sum = hn::Add(sums.color[c], hn::Mul(value[c], weight));
-        sums.color[c] =
-            kNumeric == Numeric::kSfloat ? hn::IfThenElse(hn::RebindMask(DF(), texels), sum, sums.color[c]) : sum;
+        sums.color[c] = kFloat ? hn::IfThenElse(hn::RebindMask(DF(), texels), sum, sums.color[c]) : sum;
       };
       add(0);
       if (reference == nullptr) add(1), add(2), add(3);
@@ -253,6 +255,8 @@ void walk_any(const PreparedSampler& p, const LevelLanes& level, const EllipseLa
       return walk<Numeric::kSrgb>(p, level, e, active, reference, sums);
     case Numeric::kSnorm:
       return walk<Numeric::kSnorm>(p, level, e, active, reference, sums);
+    case Numeric::kUfloat:
+      return walk<Numeric::kUfloat>(p, level, e, active, reference, sums);
     default:
       return walk<Numeric::kSfloat>(p, level, e, active, reference, sums);
   }
@@ -263,7 +267,7 @@ bool has_instance(const FormatDesc& format) {
   const Numeric numeric = format.channel[0].numeric;
   if (format.is_compressed()) return true;
   return numeric == Numeric::kUnorm || numeric == Numeric::kSrgb || numeric == Numeric::kSnorm ||
-         numeric == Numeric::kSfloat;
+         numeric == Numeric::kUfloat || numeric == Numeric::kSfloat;
 }
 
 /// The depth to compare with, clamped where texels are fixed-point.
@@ -286,14 +290,14 @@ void sample_anisotropic_wave(const PreparedSampler& p, const SampleRequest& requ
     const base::LaneMask lanes = base::first_lanes(hn::Lanes(DF()));
     const base::LaneMask active = request.active >> first & lanes;
     if (active == 0) continue;
-    const EllipseLanes e = make_ellipse(p, request, state, first);
+    const EllipseLanes e = make_ellipse(p, state, first);
     if (!small_boxes(e, active)) {
       leftover |= active << first;
       continue;
     }
     Sums sums{{splat(0.0f), splat(0.0f), splat(0.0f), splat(0.0f)}, splat(0.0f)};
     LevelLanes level;
-    load_level<2>(p, request, state, 0, first, false, level);
+    load_level<2>(p, request, state, 0, first, p.plan.cube, level);
     VF reference = splat(0.0f);
     if (request.dref != nullptr) reference = load_reference(view, request, first);
     walk_any(p, level, e, active, request.dref != nullptr ? &reference : nullptr, sums);

@@ -264,7 +264,8 @@ HWY_INLINE void find_layer(const Plan& plan, const base::WaveRegister* coord, st
   hn::Store(hn::Mul(layer, stride), DI(), state.layer_offset.lane + first);
 }
 
-/// Calls body(first, slopes) for every vector; cubes are projected before. Slopes only if prepared.needs_levels.
+/// Calls body(first, slopes) for every vector; cubes are projected before, and anisotropic slopes are those on the
+/// face. Slopes only if prepared.needs_levels.
 template <class Body>
 HWY_INLINE void for_each_slope(const PreparedSampler& prepared, const SampleRequest& request, WaveState& state,
                                Body&& body) {
@@ -278,6 +279,9 @@ HWY_INLINE void for_each_slope(const PreparedSampler& prepared, const SampleRequ
       const VF v[3] = {load_lanes(request.coord[0], first), load_lanes(request.coord[1], first),
                        load_lanes(request.coord[2], first)};
       project_cube(v, sloped ? &d : nullptr, first, state);
+      for (std::size_t i = 0; sloped && plan.anisotropic && i < 2; ++i) {
+        coarse_slope(hn::Load(DF(), state.projected[i].lane + first), d.x[i], d.y[i]);
+      }
     }
     body(first, d);
   }

@@ -82,19 +82,23 @@ inline HWY_NOINLINE void convert_words(const FormatDesc& format, const WordLanes
 }
 
 /// E5B9G9R9: mantissa * 2^(E - 24).
+HWY_INLINE TexelLanes split_shared_exponent(VU word) {
+  const VU exponent = hn::Add(hn::ShiftRight<27>(word), hn::Set(DU(), 103u));
+  const VF scale = as_float(hn::ShiftLeft<23>(exponent));
+  const auto mantissa = [&](int shift) HWY_ATTR {
+    const VU field = hn::And(hn::ShiftRightSame(word, shift), hn::Set(DU(), 511u));
+    return hn::Mul(lanes_int_to_float(hn::BitCast(DI(), field)), scale);
+  };
+  return {mantissa(0), mantissa(9), mantissa(18), splat(1.0f)};
+}
+
 inline HWY_NOINLINE void convert_shared_exponent(const WordLanes& words, WaveTexels& out) {
   for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
-    const VU word = hn::Load(DU(), words.lane + i);
-    const VU exponent = hn::Add(hn::ShiftRight<27>(word), hn::Set(DU(), 103u));
-    const VF scale = as_float(hn::ShiftLeft<23>(exponent));
-    const auto mantissa = [&](int shift) {
-      const VU field = hn::And(hn::ShiftRightSame(word, shift), hn::Set(DU(), 511u));
-      return hn::Mul(lanes_int_to_float(hn::BitCast(DI(), field)), scale);
-    };
-    hn::Store(mantissa(0), DF(), out.c[0].lane + i);
-    hn::Store(mantissa(9), DF(), out.c[1].lane + i);
-    hn::Store(mantissa(18), DF(), out.c[2].lane + i);
-    hn::Store(splat(1.0f), DF(), out.c[3].lane + i);
+    const TexelLanes texel = split_shared_exponent(hn::Load(DU(), words.lane + i));
+    hn::Store(texel.r, DF(), out.c[0].lane + i);
+    hn::Store(texel.g, DF(), out.c[1].lane + i);
+    hn::Store(texel.b, DF(), out.c[2].lane + i);
+    hn::Store(texel.a, DF(), out.c[3].lane + i);
   }
 }
 
