@@ -2,6 +2,7 @@
 //
 // Left out here, because the reference's value then depends on neighbouring invocations (deviations.md): different min
 // and mag filters on its float path, and linear filtering at the corners of a cube.
+#include <array>
 #include <cstdio>
 #include "harness/case.h"
 
@@ -77,10 +78,14 @@ ImageSpec random_image(Random& random, const Shape& shape, VkFormat format, cons
   const uint32_t largest = std::max({spec.extent.width, spec.extent.height, spec.extent.depth});
   uint32_t possible = 1;
   while (largest >> possible) ++possible;
+  if (largest == 1) spec.extent.width = 2;
   if (!family.unnormalized && random.chance(0.6f)) spec.levels = 1 + random.below(possible);
+  // Random coordinates see the last level alone.
+  if (spec.levels > 1 && spec.levels == possible && random.chance(0.7f)) --spec.levels;
   if (random.chance(family.bordered ? 0.6f : 0.2f) && kind != Kind::kShadow) {
     const auto swizzle = [&] { return static_cast<VkComponentSwizzle>(random.below(7)); };
     spec.components = {swizzle(), swizzle(), swizzle(), swizzle()};
+    (random.chance(0.5f) ? spec.components.r : spec.components.b) = VK_COMPONENT_SWIZZLE_R;  // no constant colour
   }
   return spec;
 }
@@ -106,11 +111,16 @@ VkSamplerCreateInfo random_sampler(Run& run, const Family& family, const Shape& 
   info.maxLod = random.chance(0.7f) ? VK_LOD_CLAMP_NONE : random.real(0.0f, 4.0f);
   if (random.chance(0.3f)) info.minLod = std::min(random.real(0.0f, 3.0f), info.maxLod);
   if (random.chance(0.3f)) info.mipLodBias = random.real(-2.0f, 2.0f);
+  if (family.bordered) {
+    (random.chance(0.5f) ? info.addressModeU : info.addressModeV) = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+    if (random.chance(0.5f)) info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+  }
   const auto plain = [](VkSamplerAddressMode m) {
     return m == VK_SAMPLER_ADDRESS_MODE_REPEAT || m == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   };
   const bool fixed_point_path = fits_8_bit(format) && family.kind == Kind::kImplicit && !cube &&
                                 plain(info.addressModeU) && plain(info.addressModeV) && plain(info.addressModeW);
+  // Elsewhere nearest lookups change beside linear ones (deviations.md, mixed-filters).
   if (fixed_point_path && random.chance(0.3f))
     info.minFilter = info.magFilter == VK_FILTER_LINEAR ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
   if (cube && info.magFilter == VK_FILTER_LINEAR) info.maxLod = info.minLod = 0.0f;
@@ -120,10 +130,6 @@ VkSamplerCreateInfo random_sampler(Run& run, const Family& family, const Shape& 
     info.maxAnisotropy = random.pick({2.0f, 4.0f, 16.0f});
     info.magFilter = info.minFilter = VK_FILTER_LINEAR;
     info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
-  }
-  if (family.bordered) {
-    (random.chance(0.5f) ? info.addressModeU : info.addressModeV) = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
-    if (random.chance(0.5f)) info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
   }
   if (family.unnormalized) {
     const auto clamp = [&] {
@@ -137,7 +143,10 @@ VkSamplerCreateInfo random_sampler(Run& run, const Family& family, const Shape& 
   }
   if (family.kind == Kind::kShadow) {
     info.compareEnable = VK_TRUE;
-    info.compareOp = static_cast<VkCompareOp>(random.below(8));
+    // The others hardly ever change from texel to texel.
+    info.compareOp = random.chance(0.9f) ? random.pick({VK_COMPARE_OP_LESS, VK_COMPARE_OP_LESS_OR_EQUAL,
+                                                        VK_COMPARE_OP_GREATER, VK_COMPARE_OP_GREATER_OR_EQUAL})
+                                         : static_cast<VkCompareOp>(random.below(8));
   }
   return info;
 }
@@ -172,7 +181,7 @@ std::string lookup(Random& random, const Family& family, const Shape& shape) {
     case Kind::kProj:
       return "textureProj(t, " + coordinate("vec4(c.xyz, 1.5 + c.w)", shape.coordinates + 1) + ")";
     case Kind::kGather: {
-      const std::string component = std::to_string(random.below(4));
+      const std::string component = random.chance(0.7f) ? "0" : std::to_string(random.below(4));
       if (shape.dimensions == 3 || random.chance(0.4f)) return "textureGather(t, " + c + ", " + component + ")";
       return random.chance(0.3f) ? "textureGatherOffsets(t, " + c + ", ivec2[4](" + offset() + ", " + offset() + ", " +
                                        offset() + ", " + offset() + "), " + component + ")"
@@ -246,6 +255,21 @@ std::vector<float> random_coordinates(Random& random, const Shape& shape) {
   return values;
 }
 
+/// base, dx, dy of coordinates that change linearly: the texture, or an edge of it, is in the middle of the picture.
+std::array<float, 12> random_slopes(Random& random, const Shape& shape, const VkSamplerCreateInfo& sampler) {
+  std::array<float, 12> push;
+  const float step = random.pick({0.002f, 0.01f, 0.05f, 0.2f});
+  for (size_t k = 4; k < 12; ++k) push[k] = random.real(-step, step);
+  const VkSamplerAddressMode modes[3] = {sampler.addressModeU, sampler.addressModeV, sampler.addressModeW};
+  for (uint32_t k = 0; k < 4; ++k) {
+    const bool cube = shape.dimensions == 3 && shape.view != VK_IMAGE_VIEW_TYPE_3D;
+    const bool clamps = !cube && k < shape.dimensions && modes[k] >= VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    const float middle = random.chance(0.4f) ? static_cast<float>(random.below(2)) : random.unit();
+    push[k] = clamps ? middle - (push[4 + k] + push[8 + k]) * (kSize / 2) : random.real(-1.0f, 1.0f);
+  }
+  return push;
+}
+
 std::string describe(const VkSamplerCreateInfo& s) {
   char text[256];
   std::snprintf(text, sizeof text,
@@ -313,15 +337,12 @@ void random_texture(Run& run, const Family& family) {
                            " levels " + std::to_string(image_spec.levels) + " layers " +
                            std::to_string(image_spec.layers) + "\n" + describe(sampler_info) + spec.fragment);
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  float push[12];
-  const float step = random.pick({0.002f, 0.01f, 0.05f, 0.2f});
-  for (int k = 0; k < 4; ++k) push[k] = random.real(-1.0f, 1.0f);
-  for (int k = 4; k < 12; ++k) push[k] = random.real(-step, step);
+  const std::array<float, 12> push = random_slopes(random, shape, sampler_info);
   run.once([&](VkCommandBuffer cmd) {
     target.begin(cmd);
     bind_pipeline(cmd, pipeline);
     res.bind(cmd);
-    vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, sizeof push, push);
+    vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, sizeof push, push.data());
     vkCmdDraw(cmd, 3, 1, 0, 0);
     vkCmdEndRenderPass(cmd);
   });
