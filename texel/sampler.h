@@ -20,7 +20,6 @@ struct YcbcrConversion {
   bool x_cosited = false;                           ///< chroma samples lie on the even luma samples, else between
   bool y_cosited = false;
   VkFilter chroma_filter = VK_FILTER_NEAREST;
-  bool explicit_reconstruction = false;
 };
 
 /// Sampler state, named after VkSamplerCreateInfo. Immutable.

@@ -85,7 +85,6 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSamplerYcbcrConversion(VkDevice device,
   state.x_cosited = info->xChromaOffset == VK_CHROMA_LOCATION_COSITED_EVEN;
   state.y_cosited = info->yChromaOffset == VK_CHROMA_LOCATION_COSITED_EVEN;
   state.chroma_filter = info->chromaFilter;
-  state.explicit_reconstruction = info->forceExplicitReconstruction;
   *conversion = to_handle(object);
   return VK_SUCCESS;
 }

@@ -1,15 +1,11 @@
 // Sampling through a Y'CbCr conversion: planes are sampled like plain images, chroma is reconstructed, then range and
 // model are converted (Vulkan 1.3.239, Image Operations: Chroma Reconstruction, Sampler Y'CbCr Conversion). Chroma is
-// reconstructed implicitly, by the filter of its own plane, unless the conversion forces explicit reconstruction.
-#include <algorithm>
-#include <bit>
+// reconstructed implicitly, by the filter of its own plane.
+#include <array>
 #include <cmath>
 
 #include "base/numeric.h"
-#include "texel/sampler/address.h"
-#include "texel/sampler/lod.h"
 #include "texel/sampler/prepared.h"
-#include "texel/sampler/scalar.h"
 
 namespace vitrine::texel {
 namespace {
@@ -64,110 +60,6 @@ void sample_planes(const Planes& planes, const Sampler& sampler, const SampleReq
     std::array<WaveRegister, 4>& to = texels[p];
     sample(prepared, moved, {&to[0], &to[1], &to[2], &to[3]});
   }
-}
-
-/// Two texels along an axis and the weight of the second.
-struct Pair {
-  std::int32_t first = 0, second = 0;
-  float weight = 0;
-};
-
-/// Chroma samples that make the one at luma texel `i` of an axis with half as many: at even texels themselves or a
-/// quarter off.
-Pair chroma_pair(std::int32_t i, bool halved, bool linear, bool cosited, std::uint32_t size) {
-  if (!halved) return {i, i, 0.0f};
-  const std::int32_t half = i >> 1, last = static_cast<std::int32_t>(size) - 1;
-  const bool odd = (i & 1) != 0;
-  if (!linear) return {half, half, 0.0f};
-  const std::int32_t first = cosited || odd ? half : half - 1;
-  const float weight = cosited ? (odd ? 0.5f : 0.0f) : (odd ? 0.25f : 0.75f);
-  return {std::clamp(first, 0, last), std::clamp(first + 1, 0, last), weight};
-}
-
-void interpolate(float weight, Texel& a, const Texel& b) {
-  for (std::size_t c = 0; c < 4; ++c) {
-    a[c] = bits_of(base::fma_exact(weight, float_of(b[c]) - float_of(a[c]), float_of(a[c])));
-  }
-}
-
-/// Reads single texels of one plane.
-class PlaneReader {
- public:
-  PlaneReader(const ImageView& view, std::uint32_t layer)
-      : view_(view), layer_(layer), decode_(texel_decoder(*view.format)) {}
-
-  Texel at(std::int32_t x, std::int32_t y) const {
-    Texel out;
-    decode_(*view_.format, view_.block(0, layer_, 0, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0),
-            out);
-    return out;
-  }
-
-  Texel blend(const Pair& x, const Pair& y) const {
-    Texel upper = at(x.first, y.first);
-    interpolate(x.weight, upper, at(x.second, y.first));
-    Texel lower = at(x.first, y.second);
-    interpolate(x.weight, lower, at(x.second, y.second));
-    interpolate(y.weight, upper, lower);
-    return upper;
-  }
-
- private:
-  const ImageView& view_;
-  std::uint32_t layer_;
-  TexelDecoder decode_;
-};
-
-/// One lane of one plane, reconstructed at the luma texels that the sampler's filter reads, then filtered.
-Texel reconstruct(const Planes& planes, std::uint32_t p, const YcbcrConversion& conversion, const Pair& x,
-                  const Pair& y, std::uint32_t layer) {
-  const ImageView& view = planes.first[p];
-  const PlaneReader reader(view, layer);
-  if (!planes.subsampled(p)) return reader.blend(x, y);
-  const Extent& extent = view.level[0].extent;
-  const bool linear = conversion.chroma_filter == VK_FILTER_LINEAR;
-  const auto at = [&](std::int32_t i, std::int32_t j) {
-    return reader.blend(chroma_pair(i, planes.halves_x(p), linear, conversion.x_cosited, extent.width),
-                        chroma_pair(j, planes.halves_y(p), linear, conversion.y_cosited, extent.height));
-  };
-  Texel upper = at(x.first, y.first);
-  interpolate(x.weight, upper, at(x.second, y.first));
-  Texel lower = at(x.first, y.second);
-  interpolate(x.weight, lower, at(x.second, y.second));
-  interpolate(y.weight, upper, lower);
-  return upper;
-}
-
-/// Luma texels around a coordinate; samplers with a conversion clamp to the edge.
-Pair luma_pair(float s, std::uint32_t size, bool linear) {
-  Axis axis;
-  axis.address = Address::kClamp;
-  axis.pot = std::has_single_bit(size);
-  axis.normalized = true;
-  axis.size = static_cast<std::int32_t>(size);
-  if (!linear) {
-    const std::int32_t i = nearest_texel(axis, s);
-    return {i, i, 0.0f};
-  }
-  const Taps taps = linear_texels(axis, s);
-  return {taps.first, taps.second, taps.weight};
-}
-
-void reconstruct_planes(const Planes& planes, const Sampler& sampler, const SampleRequest& request,
-                        PlaneTexels& texels) {
-  const Plan plan = make_plan(*planes.first, sampler, request.op, request.lod_mode);
-  const Extent& luma = planes.first->level[0].extent;
-  base::for_each_lane(request.active, [&](std::size_t lane) {
-    const LanePoint point = locate(plan, request, lane);
-    const bool minify = plan.lod_needed && level_of_detail(plan, request, point, lane).minify;
-    const bool linear = minify ? plan.min_linear : plan.mag_linear;
-    const Pair x = luma_pair(point.coord[0], luma.width, linear), y = luma_pair(point.coord[1], luma.height, linear);
-    const std::uint32_t layer = select_layer(plan, request, lane);
-    for (std::uint32_t p = 0; p < planes.count; ++p) {
-      const Texel texel = reconstruct(planes, p, sampler.conversion, x, y, layer);
-      for (std::size_t c = 0; c < 4; ++c) texels[p][c].lane[lane] = texel[c];
-    }
-  });
 }
 
 /// A component of the sampled colour, or a constant.
@@ -253,11 +145,7 @@ void sample_converted(const PreparedSampler& prepared, const SampleRequest& requ
   const Planes planes(*prepared.plan.view);
   const Sampler& sampler = *prepared.plan.sampler;
   PlaneTexels texels;
-  if (sampler.conversion.explicit_reconstruction && planes.count > 1) {
-    reconstruct_planes(planes, sampler, request, texels);
-  } else {
-    sample_planes(planes, sampler, request, texels);
-  }
+  sample_planes(planes, sampler, request, texels);
   convert(planes, sampler.conversion, texels, request.active, result);
 }
 
