@@ -355,12 +355,30 @@ const Inst* only_user_of(const Graph& graph, Src src, Op op) {
   return fits && graph.values[src.value].uses == 1 ? inst : nullptr;
 }
 
+/// A comparison of 32-bit integers: their type is that of the masks which select between two literals, and the
+/// reference's code generator does not move the conversion to float into such a selection, which hides it.
+bool compares_integers(const Graph& graph, Src condition) {
+  const Inst* inst = graph.def(condition.value);
+  if (!inst || inst->kind != Kind::kAlu) return false;
+  switch (inst->op) {
+    case Op::kILt:
+    case Op::kIGe:
+    case Op::kULt:
+    case Op::kUGe:
+    case Op::kIEq:
+    case Op::kINe:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// What selects the literal `identity` on one side, for one user.
 bool find_selection(const Graph& graph, Src src, std::uint32_t identity, Selection& found) {
   if (const Inst* conversion = only_user_of(graph, src, Op::kB2F)) {
     if (identity != kOne && identity != 0) return false;
     found = {graph.source(*conversion, 0), identity == kOne ? 1u : 2u, {}, true};
-    return true;
+    return !compares_integers(graph, found.condition);
   }
   const Inst* select = only_user_of(graph, src, Op::kSelect);
   if (!select) return false;
@@ -369,7 +387,7 @@ bool find_selection(const Graph& graph, Src src, std::uint32_t identity, Selecti
     const Inst* constant = graph.constant(literal.value);
     if (!constant || constant->imm[literal.swizzle[0]] != identity) continue;
     found = {graph.source(*select, 0), side, graph.source(*select, 3 - side), false};
-    return true;
+    return !graph.constant(found.operand.value) || !compares_integers(graph, found.condition);
   }
   return false;
 }

@@ -76,8 +76,11 @@ CTS_CASE("glsl", "selected_ones") {
   body.statements +=
       "  vec4 r2 = a * step(b, p), r3 = a / vec4(greaterThan(b, p)), r4 = a - vec4(equal(b, p));\n"
       "  vec4 r5 = b - (a.x < p.x ? b.wzyx : vec4(0.0)), r6 = b * (1.0 - step(p, a));\n"
-      "  precise vec4 weight = vec4(lessThan(b, p)), r7 = (1.0 - weight) * a;\n";
-  for (int k = 0; k < 8; ++k) body.results.push_back({kVec4, "r" + std::to_string(k)});
+      "  precise vec4 weight = vec4(lessThan(b, p)), r7 = (1.0 - weight) * a;\n"
+      "  vec4 r8 = a * vec4(lessThan(i, pi)), r9 = a / (u.x < 7u ? 1.0 : 3.0), r10 = a - (i.x > 5 ? vec4(0.0) : "
+      "vec4(3.0));\n"
+      "  vec4 r11 = b * (1.0 - vec4(greaterThan(i, ivec4(5, -7, 0, 1))));\n";
+  for (int k = 0; k < 12; ++k) body.results.push_back({kVec4, "r" + std::to_string(k)});
   body.specials = true;
   evaluate(run, Stage::kFragment, body);
 }
