@@ -23,8 +23,8 @@ bool print_counts(const Counts& counts);
 /// The pipe to the parent of this child.
 void set_parent(int pipe);
 /// Writes a line to the parent, if there is one: "B index name" when a case begins, "D" when the reference is done with
-/// it and the device is next, "R" when the reference runs it again with another seed, "E verdict nan blank message" when
-/// it has ended.
+/// it and the device is next, "R" when the reference runs it again with another seed, "E verdict nan blank message"
+/// when it has ended.
 void tell_parent(std::string line);
 
 /// Runs the (filtered) cases in child processes, so that a crash costs one case. Returns the exit status.
