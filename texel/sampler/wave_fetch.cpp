@@ -132,9 +132,21 @@ HWY_INLINE void share_place(Places& places) {
   }
 }
 
+/// Texels of less than a word, and nothing beside them: that may be another tile's, which is being written.
+template <class Texel>
+HWY_INLINE void load_short_texels(const std::byte* base, const IntLanes& offset, WordLanes& words) {
+  for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
+    Texel texel;
+    std::memcpy(&texel, base + offset.lane[lane], sizeof(texel));
+    words.lane[lane] = texel;
+  }
+}
+
 /// Texels word by word: gathering is slower than as many loads.
 HWY_INLINE void load_texels(const FormatDesc& format, const std::byte* base, const IntLanes& offset,
                             WordLanes words[4]) {
+  if (format.block_bytes == 1) return load_short_texels<std::uint8_t>(base, offset, words[0]);
+  if (format.block_bytes == 2) return load_short_texels<std::uint16_t>(base, offset, words[0]);
   switch ((format.block_bytes + 3) / 4) {
     case 1:
       return load_words<1>(base, offset, words);
