@@ -13,31 +13,39 @@ const AddCase kPoint("clipping", "deviation.point_clipping", "point-clipping", c
   draw(run, "inside_only", {}, spec, colored({{-5.0f, 0.25f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 1.0f}}));
 });
 
-/// The outline of a clipped triangle in layer 1.
+/// Outlines of a clipped triangle in layer 0 and in layer 1. Which of the two the reference draws astray depends on
+/// what it drew before.
 const AddCase kClippedLayer(
     "clipping", "deviation.clipped_polygon_layer", "clipped-polygon-layer",
     [](const std::vector<Output>& device, const std::vector<Output>& reference) -> std::string {
-      const size_t layer = device[0].bytes.size() / 2;
-      const auto blank = [&](const Output& output) {
-        for (size_t at = 4; at < layer; ++at)
-          if (output.bytes[at] != output.bytes[at % 4]) return false;
-        return true;
+      /// Whether something was drawn to the layer that gl_Layer does not name.
+      const auto astray = [](const std::vector<Output>& outputs) {
+        bool result = false;
+        for (size_t i = 0; i < 2; ++i) {
+          const std::vector<unsigned char>& bytes = outputs[i].bytes;
+          const size_t layer = bytes.size() / 2, first = (1 - i) * layer;
+          for (size_t at = first; at < first + layer; ++at) result |= bytes[at] != bytes[first + at % 4];
+        }
+        return result;
       };
-      if (!blank(device[0])) return "the device draws to layer 0";
-      return blank(reference[0]) ? "the reference's fault does not show" : "";
+      if (astray(device)) return "the device draws to another layer";
+      return astray(reference) ? "" : "the reference's fault does not show";
     },
     [](Run& run) {
       run.require(run.gpu.has("VK_EXT_shader_viewport_index_layer"), "VK_EXT_shader_viewport_index_layer");
-      TargetSpec target;
-      target.layers = 2;
-      GraphicsSpec spec;
-      spec.vertex =
-          "#extension GL_ARB_shader_viewport_layer_array : require\nlayout(location = 0) in vec4 position;\n"
-          "layout(location = 1) in vec4 color;\nlayout(location = 0) out vec4 passed;\n"
-          "void main() {\n  passed = color;\n  gl_Position = position;\n  gl_Layer = 1;\n}\n";
-      spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
-      draw(run, "layers", target, spec,
-           colored({{-0.9f, -0.5f, 0.5f, 1}, {1.9f, 0.1f, 0.5f, 1}, {-0.5f, 1.8f, 0.5f, 1}}));
+      for (const char* layer : {"0", "1"}) {
+        TargetSpec target;
+        target.layers = 2;
+        GraphicsSpec spec;
+        spec.vertex = std::string("#extension GL_ARB_shader_viewport_layer_array : require\n") +
+                      "layout(location = 0) in vec4 position;\nlayout(location = 1) in vec4 color;\n"
+                      "layout(location = 0) out vec4 passed;\n"
+                      "void main() {\n  passed = color;\n  gl_Position = position;\n  gl_Layer = " +
+                      layer + ";\n}\n";
+        spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
+        draw(run, std::string("layer_") + layer, target, spec,
+             colored({{-0.9f, -0.5f, 0.5f, 1}, {1.9f, 0.1f, 0.5f, 1}, {-0.5f, 1.8f, 0.5f, 1}}));
+      }
     });
 
 /// The same triangles, crossing the view volume, into BGRA8 with and without a depth attachment.
