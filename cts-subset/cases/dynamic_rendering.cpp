@@ -1,5 +1,6 @@
 // Dynamic rendering: attachments without render pass objects, load operations, resolves, suspending and resuming,
 // secondary command buffers, missing attachments, several layers.
+#include "cases/colored_vertices.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -162,12 +163,7 @@ struct Scene {
     spec.next = &info;
     pipeline = make_pipeline(run, spec, VK_NULL_HANDLE, 0, static_cast<uint32_t>(rendering.formats.size()),
                              {rendering.width, rendering.height}, rendering.samples);
-    std::vector<float> values;
-    for (int i = 0; i < 36; ++i) {
-      for (const float v : {run.random.real(-1.2f, 1.2f), run.random.real(-1.2f, 1.2f), run.random.unit(), 1.0f})
-        values.push_back(v);
-      for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
-    }
+    const std::vector<float> values = random_colored_vertices(run.random, 36);
     vertices = run.buffer_of(values);
   }
   void draw(VkCommandBuffer cmd, uint32_t first = 0, uint32_t count = 36) const {

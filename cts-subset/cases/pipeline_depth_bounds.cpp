@@ -1,5 +1,6 @@
 // The depth bounds test, which the reference lacks: there the fragment shader compares the depth that is stored, in a
 // copy of the attachment, and discards. Both happen before the stencil and depth tests, which write nothing then.
+#include "cases/colored_vertices.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -17,15 +18,7 @@ Image make_image(Run& run, VkFormat format, VkImageUsageFlags usage) {
   return run.image(spec);
 }
 
-Buffer random_triangles(Run& run) {
-  std::vector<float> values;
-  for (uint32_t i = 0; i < kVertices; ++i) {
-    for (const float v : {run.random.real(-1.2f, 1.2f), run.random.real(-1.2f, 1.2f), run.random.unit(), 1.0f})
-      values.push_back(v);
-    for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
-  }
-  return run.buffer_of(values);
-}
+Buffer random_triangles(Run& run) { return run.buffer_of(random_colored_vertices(run.random, kVertices)); }
 
 VkRenderPass make_pass(Run& run, const Image& color, const Image& depth) {
   VkAttachmentDescription attachments[2]{};

@@ -1,4 +1,5 @@
 // Pipeline libraries: the four parts of a graphics pipeline made apart and linked.
+#include "cases/colored_vertices.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -169,13 +170,7 @@ void library(Run& run) {
   const VkPipeline output = make_part(run, state, VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT,
                                       VK_NULL_HANDLE, target.pass);
   const VkPipeline pipeline = link(run, {input, before, shader, output}, layout);
-  std::vector<float> values;
-  for (int i = 0; i < 36; ++i) {
-    for (const float v : {run.random.real(-1.2f, 1.2f), run.random.real(-1.2f, 1.2f), run.random.unit(), 1.0f})
-      values.push_back(v);
-    for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
-  }
-  const Buffer vertices = run.buffer_of(values);
+  const Buffer vertices = run.buffer_of(random_colored_vertices(run.random, 36));
   run.once([&](VkCommandBuffer cmd) {
     target.begin(cmd);
     bind_pipeline(cmd, pipeline);

@@ -1,5 +1,6 @@
 // Five to eight colour attachments of different formats, blended and masked independently, some of them switched off
 // (VK_EXT_color_write_enable).
+#include "cases/colored_vertices.h"
 #include "harness/case.h"
 #include "harness/format.h"
 #include "harness/graphics.h"
@@ -68,12 +69,7 @@ CTS_RANDOM("pipeline", "random_many_attachments", 30) {
   writes.pColorWriteEnables = enables.data();
   if (run.gpu.extension_features.color_write_enable.colorWriteEnable) spec.blend.pNext = &writes;
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  std::vector<float> values;
-  for (int i = 0; i < 30; ++i) {
-    for (const float v : {random.real(-1.2f, 1.2f), random.real(-1.2f, 1.2f), random.unit(), 1.0f}) values.push_back(v);
-    for (int c = 0; c < 4; ++c) values.push_back(random.unit());
-  }
-  const Buffer vertices = run.buffer_of(values);
+  const Buffer vertices = run.buffer_of(random_colored_vertices(random, 30));
   run.once([&](VkCommandBuffer cmd) {
     target.begin(cmd);
     bind_pipeline(cmd, pipeline);

@@ -1,5 +1,6 @@
 // The output merger: conversion of shader outputs to every attachment format, blending, logic operations, write masks,
 // depth and stencil tests, sample masks, alpha to coverage.
+#include "cases/colored_vertices.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -202,12 +203,7 @@ void depth_stencil(Run& run, VkFormat format, VkSampleCountFlagBits samples) {
     run.fill_random(*target.depth);
   }
   target.clears[1].depthStencil = {0.5f, 100};
-  std::vector<float> values;
-  for (int i = 0; i < 3 * 16; ++i) {
-    for (const float v : {random.real(-1.2f, 1.2f), random.real(-1.2f, 1.2f), random.unit(), 1.0f}) values.push_back(v);
-    for (int c = 0; c < 4; ++c) values.push_back(random.unit());
-  }
-  const Buffer vertices = run.buffer_of(values);
+  const Buffer vertices = run.buffer_of(random_colored_vertices(random, 3 * 16));
   std::vector<VkPipeline> pipelines;
   for (int n = 0; n < 4; ++n) {
     GraphicsSpec spec;

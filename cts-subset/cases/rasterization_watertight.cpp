@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "cases/colored_vertices.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -203,12 +204,7 @@ CTS_RANDOM("rasterization", "random_thin_viewports", 20) {
                                         VK_PRIMITIVE_TOPOLOGY_LINE_LIST, VK_PRIMITIVE_TOPOLOGY_LINE_STRIP});
   spec.dynamic = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  std::vector<float> values;
-  for (int i = 0; i < 24; ++i) {
-    for (const float v : {random.real(-1.2f, 1.2f), random.real(-1.2f, 1.2f), random.unit(), 1.0f}) values.push_back(v);
-    for (int c = 0; c < 4; ++c) values.push_back(random.unit());
-  }
-  const Buffer vertices = run.buffer_of(values);
+  const Buffer vertices = run.buffer_of(random_colored_vertices(random, 24));
   run.once([&](VkCommandBuffer cmd) {
     target.begin(cmd);
     bind_pipeline(cmd, pipeline);

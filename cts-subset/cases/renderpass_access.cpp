@@ -1,5 +1,6 @@
 // Fragments that read the attachment they write: in rasterization order as an input attachment, and as a sampled image
 // in a feedback loop.
+#include "cases/colored_vertices.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -8,15 +9,7 @@ namespace {
 
 constexpr VkExtent2D kExtent{72, 56};
 
-Buffer random_triangles(Run& run) {
-  std::vector<float> values;
-  for (int i = 0; i < 48; ++i) {
-    for (const float v : {run.random.real(-1.2f, 1.2f), run.random.real(-1.2f, 1.2f), run.random.unit(), 1.0f})
-      values.push_back(v);
-    for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
-  }
-  return run.buffer_of(values);
-}
+Buffer random_triangles(Run& run) { return run.buffer_of(random_colored_vertices(run.random, 48)); }
 
 Image make_image(Run& run, VkFormat format, VkImageUsageFlags usage) {
   ImageSpec spec;

@@ -1,4 +1,5 @@
 // Depth/stencil attachments of render pass 2: resolves, and layouts per aspect.
+#include "cases/colored_vertices.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -30,15 +31,7 @@ VkPipeline triangles(Run& run, VkRenderPass pass, VkExtent2D extent, VkSampleCou
   return make_pipeline(run, spec, pass, 0, 0, extent, samples);
 }
 
-Buffer random_triangles(Run& run) {
-  std::vector<float> values;
-  for (int i = 0; i < 30; ++i) {
-    for (const float v : {run.random.real(-1.2f, 1.2f), run.random.real(-1.2f, 1.2f), run.random.unit(), 1.0f})
-      values.push_back(v);
-    for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
-  }
-  return run.buffer_of(values);
-}
+Buffer random_triangles(Run& run) { return run.buffer_of(random_colored_vertices(run.random, 30)); }
 
 void draw(Run& run, VkRenderPass pass, VkFramebuffer framebuffer, VkExtent2D extent, VkPipeline pipeline) {
   const Buffer vertices = random_triangles(run);

@@ -1,5 +1,6 @@
 // Depth and stencil attachments in read-only layouts: tested against, and read by the fragments of the same subpass, as
 // input attachments or sampled images; and operations that leave attachments alone (VK_EXT_load_store_op_none).
+#include "cases/colored_vertices.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -19,15 +20,7 @@ Image make_image(Run& run, VkFormat format, VkImageUsageFlags usage) {
   return image;
 }
 
-Buffer random_triangles(Run& run) {
-  std::vector<float> values;
-  for (uint32_t i = 0; i < kVertices; ++i) {
-    for (const float v : {run.random.real(-1.2f, 1.2f), run.random.real(-1.2f, 1.2f), run.random.unit(), 1.0f})
-      values.push_back(v);
-    for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
-  }
-  return run.buffer_of(values);
-}
+Buffer random_triangles(Run& run) { return run.buffer_of(random_colored_vertices(run.random, kVertices)); }
 
 /// What a load and store op of each attachment may be.
 struct Ops {
