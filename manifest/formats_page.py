@@ -78,7 +78,8 @@ def row(name, image, buffer, compared):
     elif image:
         tests, exact = "reference, by formats of the same fields", "same bits"
     else:
-        tests, exact = "vertex", "same bits"
+        # lavapipe narrows the others (cts-subset/deviations.md, wide-attributes).
+        tests, exact = "vertex", "defined" if re.match(r"R64\w+_SINT|R64G64B64", name) else "same bits"
     return f"| {name} | {image} | {buffer} | {tests} | {exact} |\n"
 
 

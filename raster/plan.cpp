@@ -7,6 +7,7 @@
 #include "raster/feedback.h"
 #include "raster/hierarchical_depth.h"
 #include "spirv/stage_memory.h"
+#include "texel/format.h"
 
 namespace vitrine::raster {
 namespace {
@@ -56,9 +57,13 @@ void plan_vertex_inputs(PipelinePlan& plan) {
       continue;
     }
     for (std::uint32_t i = 0; i < state.attribute_count; ++i) {
-      if (state.attribute[i].location != slot.location) continue;
+      const std::uint32_t first = state.attribute[i].location;
+      // Three or four 64-bit components take two locations.
+      const bool second = slot.location == first + 1 && texel::format_desc(state.attribute[i].format).block_bytes > 16;
+      if (slot.location != first && !second) continue;
       input.source = VertexInput::Source::kAttribute;
       input.attribute = static_cast<std::uint8_t>(i);
+      input.component = static_cast<std::uint8_t>(slot.component + (second ? 4 : 0));
     }
   }
   // Components of one attribute next to each other: it is fetched once.

@@ -67,7 +67,7 @@ struct VertexInput {
     kZero
   };
   Source source = Source::kZero;
-  std::uint8_t component = 0;
+  std::uint8_t component = 0;  ///< attributes with 64-bit components: number of the 32-bit word
   std::uint8_t attribute = 0;  ///< index in State::attribute
   std::uint32_t reg = 0;
 };

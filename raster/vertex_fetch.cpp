@@ -89,8 +89,28 @@ std::uint32_t convert(const Channel& channel, std::uint32_t raw) {
   }
 }
 
+/// 32 bits of each element; 0 out of bounds.
+void fetch_words(const Addresses& addresses, std::uint32_t count, std::uint32_t offset, WaveRegister& out) {
+  for (std::uint32_t i = 0; addresses.whole && i < count; ++i) std::memcpy(&out.lane[i], addresses.at[i] + offset, 4);
+  if (addresses.whole) return;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    out.lane[i] = 0;
+    if (addresses.at[i]) std::memcpy(&out.lane[i], addresses.at[i] + offset, 4);
+  }
+}
+
+/// `word`: half of a 64-bit component. Components that the format lacks are undefined (Vulkan 1.3.239, Vertex Input
+/// Extraction): zero.
+void fetch_wide_component(const FormatDesc& format, const Addresses& addresses, std::uint32_t count, std::uint32_t word,
+                          WaveRegister& out) {
+  if (word * 4u < format.block_bytes) return fetch_words(addresses, count, word * 4u, out);
+  std::fill_n(out.lane, count, 0u);
+}
+
 void fetch_component(const FormatDesc& format, const Addresses& addresses, std::uint32_t count, std::uint32_t component,
                      WaveRegister& out) {
+  if (format.channel[0].bits == 64) return fetch_wide_component(format, addresses, count, component, out);
+  component &= 3u;
   const int index = format.rgba[component];
   if (index < 0) {
     std::fill_n(out.lane, count, missing_value(format, component));
@@ -98,14 +118,7 @@ void fetch_component(const FormatDesc& format, const Addresses& addresses, std::
   }
   const Channel& channel = format.channel[static_cast<std::size_t>(index)];
   if (channel.bits == 32 && channel.offset % 8 == 0) {
-    const std::uint32_t offset = channel.offset / 8u;
-    for (std::uint32_t i = 0; addresses.whole && i < count; ++i) std::memcpy(&out.lane[i], addresses.at[i] + offset, 4);
-    if (addresses.whole) return;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      out.lane[i] = 0;
-      if (addresses.at[i]) std::memcpy(&out.lane[i], addresses.at[i] + offset, 4);
-    }
-    return;
+    return fetch_words(addresses, count, channel.offset / 8u, out);
   }
   for (std::uint32_t i = 0; i < count; ++i)
     out.lane[i] =
@@ -159,7 +172,7 @@ void fetch_vertices(const DrawRecord& draw, const VertexLanes& lanes, std::uint3
     const FormatDesc& format = texel::format_desc(attribute.format);
     if (addressed != input.attribute) compute_addresses(draw, attribute, format.block_bytes, lanes, addresses);
     addressed = input.attribute;
-    fetch_component(format, addresses, lanes.count, input.component & 3u, out);
+    fetch_component(format, addresses, lanes.count, input.component, out);
   }
 }
 

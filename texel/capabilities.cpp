@@ -15,6 +15,10 @@ bool is_scaled(const FormatDesc& format) { return any_numeric(format, Numeric::k
 
 bool can_decode(const FormatDesc& format) { return format.plain; }
 
+bool can_fetch_vertices(const FormatDesc& format) {
+  return format.plain || (format.channel_count != 0 && format.channel[0].bits == 64 && format.is_integer());
+}
+
 bool can_encode(const FormatDesc& format) { return format.plain; }
 
 bool can_sample(const FormatDesc& format) {

@@ -209,7 +209,7 @@ TEST_F(Formats, ClaimsDoNotExceedWhatTexelDoes) {
        [](const texel::FormatDesc& format) { return format.is_depth_stencil(); }},
   };
   constexpr Backing kBuffer[] = {
-      {VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT, texel::can_decode},
+      {VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT, texel::can_fetch_vertices},
       {VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT, texel::can_decode},
       {VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT, texel::can_store},
   };
