@@ -70,7 +70,8 @@ VkExtent3D max_extent(VkImageType type, VkImageCreateFlags flags) {
   if (flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT)
     return {limits.maxImageDimensionCube, limits.maxImageDimensionCube, 1};
   if (type == VK_IMAGE_TYPE_2D) return {limits.maxImageDimension2D, limits.maxImageDimension2D, 1};
-  return {limits.maxImageDimension3D, limits.maxImageDimension3D, limits.maxImageDimension3D};
+  // Wide and high as flat images; the limit holds for the depth.
+  return {limits.maxImageDimension2D, limits.maxImageDimension2D, limits.maxImageDimension3D};
 }
 
 }  // namespace

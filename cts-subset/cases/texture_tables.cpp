@@ -178,5 +178,14 @@ const bool kShapes = [] {
   return true;
 }();
 
+/// As wide as flat images may be.
+CTS_CASE("texture", "shape.wide_volume") {
+  const Image image = random_image(run, VK_FORMAT_R8G8B8A8_UNORM, {16384, 3, 2}, 15, VK_IMAGE_VIEW_TYPE_3D);
+  look_up(run, image, run.sampler(VK_FILTER_LINEAR),
+          "textureLod(t, vec3(p.x * 0.01 + p.y, p), p.x * 3.0) + texelFetch(t, ivec3(gl_FragCoord * 256.0) % "
+          "textureSize(t, 0), 0)",
+          "3D");
+}
+
 }  // namespace
 }  // namespace vitrine::cts
