@@ -47,7 +47,7 @@ struct Marker {
   bool needed(const Instr& instr) const {
     if (instr.op == Op::kStoreOutput && undefined[instr.src[0].value]) return false;  // section 10: dropped
     if (instr.op == Op::kStoreArray && !array_read[instr.data[0]]) return false;
-    return has_effect(instr);
+    return has_effect(instr.op, instr.image.get());
   }
 
   /// Does the list contain something needed, or a jump out of it?
@@ -205,8 +205,8 @@ void compact_slots(NodeList& body, Op op, std::vector<InterfaceSlot>& slots) {
 
 }  // namespace
 
-bool has_effect(const Instr& instr) {
-  switch (instr.op) {
+bool has_effect(Op op, const ImageInfo* image) {
+  switch (op) {
     case Op::kStoreOutput:
     case Op::kStoreStorage:
     case Op::kAtomicStorage:
@@ -223,7 +223,7 @@ bool has_effect(const Instr& instr) {
     case Op::kStoreVar:
       return true;
     case Op::kImage:
-      return instr.image->access == ImageAccess::kWrite || instr.image->access == ImageAccess::kAtomic;
+      return image->access == ImageAccess::kWrite || image->access == ImageAccess::kAtomic;
     default:
       return false;
   }

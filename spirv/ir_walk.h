@@ -56,6 +56,7 @@ void each_jump(NodeList& list, const F& f) {
 }
 
 /// Stores, atomics, barriers, ends of invocations: what must stay although nothing uses its result.
-bool has_effect(const Instr& instr);
+/// `image` is that of an image instruction.
+bool has_effect(Op op, const ImageInfo* image);
 
 }  // namespace vitrine::spirv::ir

@@ -1,4 +1,5 @@
 // Dead code and wave-uniformity of a ScalarFunction.
+#include "spirv/ir_walk.h"
 #include "spirv/lower/scalar.h"
 
 namespace vitrine::spirv::lowering {
@@ -9,24 +10,7 @@ using ir::Op;
 bool has_effect(const ScalarOp& op) {
   if (op.kind == Kind::kAlu || op.kind == Kind::kMove) return false;
   if (op.kind != Kind::kIntrinsic) return true;
-  switch (op.op) {
-    case Op::kStoreOutput:
-    case Op::kStoreStorage:
-    case Op::kAtomicStorage:
-    case Op::kStoreGlobal:
-    case Op::kAtomicGlobal:
-    case Op::kStoreShared:
-    case Op::kAtomicShared:
-    case Op::kStoreArray:
-    case Op::kBarrier:
-    case Op::kMemoryBarrier:
-    case Op::kDemote:
-      return true;
-    case Op::kImage:
-      return op.instr->image->access == ir::ImageAccess::kWrite || op.instr->image->access == ir::ImageAccess::kAtomic;
-    default:
-      return false;
-  }
+  return ir::has_effect(op.op, op.instr->image.get());
 }
 
 bool is_control(const ScalarOp& op) {

@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "spirv/ir_walk.h"
 #include "spirv/rewrite/loops.h"
 #include "spirv/rewrite/passes.h"
 
@@ -131,31 +132,8 @@ bool propagate(Graph& graph, InstId id) {
 }
 
 bool is_effect(const Graph& graph, const Inst& inst) {
-  switch (inst.op) {
-    case Op::kYield:
-    case Op::kBreak:
-    case Op::kContinue:
-    case Op::kReturn:
-    case Op::kKill:
-    case Op::kDemote:
-    case Op::kStoreOutput:
-    case Op::kStoreStorage:
-    case Op::kAtomicStorage:
-    case Op::kStoreGlobal:
-    case Op::kAtomicGlobal:
-    case Op::kStoreShared:
-    case Op::kAtomicShared:
-    case Op::kStoreArray:
-    case Op::kBarrier:
-    case Op::kMemoryBarrier:
-      return true;
-    case Op::kImage: {
-      const auto access = graph.nodes[inst.node]->instr.image->access;
-      return access == ir::ImageAccess::kWrite || access == ir::ImageAccess::kAtomic;
-    }
-    default:
-      return false;
-  }
+  if (inst.op == Op::kYield || inst.op == Op::kBreak || inst.op == Op::kContinue) return true;
+  return ir::has_effect(inst.op, inst.op == Op::kImage ? graph.nodes[inst.node]->instr.image.get() : nullptr);
 }
 
 bool block_is_pure(const Graph& graph, BlockId block) {

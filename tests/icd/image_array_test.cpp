@@ -78,32 +78,6 @@ class ImageArrays : public DeviceTest {
     VK_GET(instance, UpdateDescriptorSets)(device, 3, writes.data(), 0, nullptr);
   }
 
-  void dispatch(VkPipeline pipeline, VkPipelineLayout layout, VkDescriptorSet set) {
-    const auto pool_info = make_struct<VkCommandPoolCreateInfo>();
-    VkCommandPool pool;
-    ASSERT_EQ(VK_GET(instance, CreateCommandPool)(device, &pool_info, nullptr, &pool), VK_SUCCESS);
-    auto allocate = make_struct<VkCommandBufferAllocateInfo>();
-    allocate.commandPool = pool;
-    allocate.commandBufferCount = 1;
-    VkCommandBuffer commands;
-    ASSERT_EQ(VK_GET(instance, AllocateCommandBuffers)(device, &allocate, &commands), VK_SUCCESS);
-    const auto begin = make_struct<VkCommandBufferBeginInfo>();
-    ASSERT_EQ(VK_GET(instance, BeginCommandBuffer)(commands, &begin), VK_SUCCESS);
-    VK_GET(instance, CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    const auto bind = VK_GET(instance, CmdBindDescriptorSets);
-    bind(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0, nullptr);
-    VK_GET(instance, CmdDispatch)(commands, 1, 1, 1);
-    ASSERT_EQ(VK_GET(instance, EndCommandBuffer)(commands), VK_SUCCESS);
-    auto submit = make_struct<VkSubmitInfo>();
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &commands;
-    VkQueue queue;
-    VK_GET(instance, GetDeviceQueue)(device, 0, 0, &queue);
-    ASSERT_EQ(VK_GET(instance, QueueSubmit)(queue, 1, &submit, VK_NULL_HANDLE), VK_SUCCESS);
-    ASSERT_EQ(VK_GET(instance, QueueWaitIdle)(queue), VK_SUCCESS);
-    VK_GET(instance, DestroyCommandPool)(device, pool, nullptr);
-  }
-
   static constexpr std::array<VkDescriptorType, 3> kTypes{
       VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
 

@@ -246,28 +246,7 @@ TEST_F(Ycbcr, ConvertsThroughImmutableSamplersAndStoresToPlanes) {
   for (const VkSampler sampler : samplers) VK_GET(instance, DestroySampler)(device, sampler, nullptr);
   for (const auto c : conversions) VK_GET(instance, DestroySamplerYcbcrConversion)(device, c, nullptr);
 
-  const auto commands_info = make_struct<VkCommandPoolCreateInfo>();
-  VkCommandPool command_pool;
-  ASSERT_EQ(VK_GET(instance, CreateCommandPool)(device, &commands_info, nullptr, &command_pool), VK_SUCCESS);
-  auto allocate_commands = make_struct<VkCommandBufferAllocateInfo>();
-  allocate_commands.commandPool = command_pool;
-  allocate_commands.commandBufferCount = 1;
-  VkCommandBuffer commands;
-  ASSERT_EQ(VK_GET(instance, AllocateCommandBuffers)(device, &allocate_commands, &commands), VK_SUCCESS);
-  const auto begin = make_struct<VkCommandBufferBeginInfo>();
-  ASSERT_EQ(VK_GET(instance, BeginCommandBuffer)(commands, &begin), VK_SUCCESS);
-  VK_GET(instance, CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-  const auto bind = VK_GET(instance, CmdBindDescriptorSets);
-  bind(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0, nullptr);
-  VK_GET(instance, CmdDispatch)(commands, 1, 1, 1);
-  ASSERT_EQ(VK_GET(instance, EndCommandBuffer)(commands), VK_SUCCESS);
-  auto submit = make_struct<VkSubmitInfo>();
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &commands;
-  VkQueue queue;
-  VK_GET(instance, GetDeviceQueue)(device, 0, 0, &queue);
-  ASSERT_EQ(VK_GET(instance, QueueSubmit)(queue, 1, &submit, VK_NULL_HANDLE), VK_SUCCESS);
-  ASSERT_EQ(VK_GET(instance, QueueWaitIdle)(queue), VK_SUCCESS);
+  dispatch(pipeline, layout, set);
 
   const auto* result = reinterpret_cast<const float*>(bytes + kResults);
   for (std::uint32_t i = 0; i < 64; ++i) {
@@ -291,7 +270,6 @@ TEST_F(Ycbcr, ConvertsThroughImmutableSamplersAndStoresToPlanes) {
     EXPECT_EQ(texel[1], i + 100);
   }
 
-  VK_GET(instance, DestroyCommandPool)(device, command_pool, nullptr);
   VK_GET(instance, DestroyPipeline)(device, pipeline, nullptr);
   VK_GET(instance, DestroyShaderModule)(device, module, nullptr);
   VK_GET(instance, DestroyPipelineLayout)(device, layout, nullptr);

@@ -8,28 +8,10 @@
 
 #include "spirv/lower/lower.h"
 #include "spirv/program.h"
+#include "tests/spirv/buffers.h"
 #include "tests/spirv/ir_builder.h"
 
 namespace vitrine::spirv::test {
-
-/// Words as the buffer at slot `slot` of set 0.
-class Buffers {
- public:
-  Buffers(std::initializer_list<std::vector<std::uint32_t>*> buffers) {
-    for (std::vector<std::uint32_t>* words : buffers) {
-      Descriptor descriptor;
-      descriptor.data = reinterpret_cast<std::byte*>(words->data());
-      descriptor.size = words->size() * 4;
-      descriptors_.push_back(descriptor);
-    }
-    table.set[0] = descriptors_.data();
-    table.set_size[0] = static_cast<std::uint32_t>(descriptors_.size());
-  }
-  ResourceTable table;
-
- private:
-  std::vector<Descriptor> descriptors_;
-};
 
 struct ShaderRun {
   explicit ShaderRun(Builder& builder, const ResourceTable& table = {}) {

@@ -1,6 +1,7 @@
 // Barriers that not all invocations of a workgroup reach: reported, never waited for.
 #include <cstdlib>
 
+#include "tests/spirv/buffers.h"
 #include "tests/spirv/front/glsl.h"
 
 namespace vitrine::spirv::test {
@@ -12,29 +13,15 @@ const int log_is_set = setenv("VITRINE_LOG", "error", 1);
 std::string run_and_listen(const std::string& body) {
   static_cast<void>(log_is_set);
   const auto stage = VK_SHADER_STAGE_COMPUTE_BIT;
-  const auto shader = compile(compile_glsl(stage,
-                                           "layout(local_size_x = 200) in;\n"
-                                           "layout(set = 0, binding = 0) buffer B { uint v[]; };\nshared uint s;\n"
-                                           "void main() {\n  uint i = gl_LocalInvocationIndex;\n" +
-                                               body + "  v[i] = s;\n}\n"),
-                              options_for(stage));
-  EXPECT_TRUE(shader) << shader.message();
-  if (!shader) return {};
+  const Words module = compile_glsl(stage,
+                                    "layout(local_size_x = 200) in;\n"
+                                    "layout(set = 0, binding = 0) buffer B { uint v[]; };\nshared uint s;\n"
+                                    "void main() {\n  uint i = gl_LocalInvocationIndex;\n" +
+                                        body + "  v[i] = s;\n}\n");
   std::vector<std::uint32_t> values(256);
-  Descriptor descriptor;
-  descriptor.data = reinterpret_cast<std::byte*>(values.data());
-  descriptor.size = values.size() * 4;
-  ResourceTable table;
-  table.set[0] = &descriptor;
-  table.set_size[0] = 1;
-  Fault fault;
-  const BoundShader bound(*shader.value(), table, fault);
-  const std::uint32_t base[3] = {0, 0, 0}, groups[3] = {2, 1, 1};
   testing::internal::CaptureStderr();
-  dispatch(bound, base, groups);
-  const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_FALSE(fault.raised);
-  return said;
+  dispatch_over(values, module, options_for(stage), 2);
+  return testing::internal::GetCapturedStderr();
 }
 
 TEST(Barrier, MetByAllSaysNothing) {

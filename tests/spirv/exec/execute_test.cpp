@@ -120,21 +120,15 @@ TEST(Execute, DiscardedLanesAreReturned) {
 
 TEST(Dispatch, GlobalIds) {
   std::vector<std::uint32_t> out(1000, 0);
-  Descriptor descriptor;
-  descriptor.data = reinterpret_cast<std::byte*>(out.data());
-  descriptor.size = out.size() * 4;
-  ResourceTable table;
-  table.set[0] = &descriptor;
-  table.set_size[0] = 1;
+  const Buffers buffers{&out};
   Builder b;
   b.function.interface.stage = VK_SHADER_STAGE_COMPUTE_BIT;
   b.function.interface.local_size[0] = 24;
   const ValueId id = b.append(Op::kGlobalInvocationId, 3, false, {}).result;
   const ValueId offset = b.alu(Op::kIMul, {id, b.constant(4)});
   b.store(0, 0, offset, src(b.alu(Op::kIMul, {id, id})));
-  ShaderRun run(b, table);
-  const std::uint32_t base[3] = {}, groups[3] = {50, 1, 1};
-  dispatch(*run.bound, base, groups);
+  ShaderRun run(b, buffers.table);
+  run.dispatch_groups(50);
   for (std::uint32_t i = 0; i < out.size(); ++i) ASSERT_EQ(out[i], i * i);
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/spirv/buffers.h"
 #include "tests/spirv/front/glsl.h"
 
 namespace vitrine::spirv::test {
@@ -161,23 +162,13 @@ class Writer {
 std::uint32_t count_wrong(const std::string& text, std::uint32_t size, std::uint32_t local_size, std::uint32_t seed) {
   CompileOptions options = options_for(VK_SHADER_STAGE_COMPUTE_BIT);
   options.subgroup_size = size;
-  auto shader = compile(compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, text), options);
-  EXPECT_TRUE(shader) << shader.message() << text;
-  if (!shader) return ~0u;
   std::mt19937 random(seed);
   std::vector<std::uint32_t> values(std::size_t{kGroups} * local_size);
   for (std::uint32_t& value : values) value = static_cast<std::uint32_t>(random());
-  Descriptor descriptor;
-  descriptor.data = reinterpret_cast<std::byte*>(values.data());
-  descriptor.size = values.size() * 4;
-  ResourceTable table;
-  table.set[0] = &descriptor;
-  table.set_size[0] = 1;
-  Fault fault;
-  const BoundShader bound(*shader.value(), table, fault);
-  const std::uint32_t base[3] = {0, 0, 0}, groups[3] = {kGroups, 1, 1};
-  dispatch(bound, base, groups);
-  EXPECT_FALSE(fault.raised) << fault.message;
+  if (!dispatch_over(values, compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, text), options, kGroups)) {
+    ADD_FAILURE() << text;
+    return ~0u;
+  }
   std::uint32_t wrong = 0;
   for (const std::uint32_t value : values) wrong += value != 0;
   return wrong;

@@ -1,6 +1,7 @@
 // Group operations in vertex processing stages: the lanes of a wave are a subgroup there too, whatever they stand for.
 #include <bit>
 
+#include "tests/spirv/buffers.h"
 #include "tests/spirv/front/glsl.h"
 
 namespace vitrine::spirv::test {
@@ -41,14 +42,9 @@ std::vector<std::uint32_t> run_stage(VkShaderStageFlagBits stage, const std::str
   auto shader = compile(compile_glsl(stage, kHead + source), options);
   EXPECT_TRUE(shader) << shader.message();
   if (!shader) return values;
-  Descriptor descriptor;
-  descriptor.data = reinterpret_cast<std::byte*>(values.data());
-  descriptor.size = values.size() * 4;
-  ResourceTable table;
-  table.set[0] = &descriptor;
-  table.set_size[0] = 1;
+  const Buffers buffers{&values};
   Fault fault;
-  const BoundShader bound(*shader.value(), table, fault);
+  const BoundShader bound(*shader.value(), buffers.table, fault);
   WaveRunner runner;
   runner.bind(bound);
   runner.set_stage_memory(memory.data(), memory.size());

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/numeric.h"
+#include "tests/spirv/buffers.h"
 #include "tests/spirv/front/glsl.h"
 
 namespace vitrine::spirv::test {
@@ -45,20 +46,7 @@ std::vector<std::uint32_t> dispatch_words(const std::string& source, std::uint32
                                           std::vector<std::uint32_t> values, std::uint32_t groups) {
   CompileOptions options = options_for(VK_SHADER_STAGE_COMPUTE_BIT);
   options.subgroup_size = size;
-  auto shader = compile(compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, kExtensions + source), options);
-  EXPECT_TRUE(shader) << shader.message();
-  if (!shader) return values;
-  Descriptor descriptor;
-  descriptor.data = reinterpret_cast<std::byte*>(values.data());
-  descriptor.size = values.size() * 4;
-  ResourceTable table;
-  table.set[0] = &descriptor;
-  table.set_size[0] = 1;
-  Fault fault;
-  const BoundShader bound(*shader.value(), table, fault);
-  const std::uint32_t base[3] = {0, 0, 0}, count[3] = {groups, 1, 1};
-  dispatch(bound, base, count);
-  EXPECT_FALSE(fault.raised) << fault.message;
+  dispatch_over(values, compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, kExtensions + source), options, groups);
   return values;
 }
 

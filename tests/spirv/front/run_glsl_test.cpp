@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "base/numeric.h"
+#include "tests/spirv/buffers.h"
 #include "tests/spirv/front/glsl.h"
 
 // Falling through is what the switch tests are about, and the text is GLSL, which knows no attribute for it.
@@ -20,22 +21,10 @@ std::vector<uint> run_glsl(const std::string& function) {
       "layout(local_size_x = 64) in;\n"
       "layout(set = 0, binding = 0) buffer B { uint v[]; } b;\n" +
       function + "\nvoid main() { uint i = gl_GlobalInvocationID.x; b.v[i] = f(b.v[i]); }";
-  auto shader = compile(compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, source), options_for(VK_SHADER_STAGE_COMPUTE_BIT));
   std::vector<uint> values(kCount);
   for (uint i = 0; i < kCount; i++) values[i] = i;
-  EXPECT_TRUE(shader) << shader.message();
-  if (!shader) return values;
-  Descriptor descriptor;
-  descriptor.data = reinterpret_cast<std::byte*>(values.data());
-  descriptor.size = values.size() * 4;
-  ResourceTable table;
-  table.set[0] = &descriptor;
-  table.set_size[0] = 1;
-  Fault fault;
-  const BoundShader bound(*shader.value(), table, fault);
-  const std::uint32_t base[3] = {0, 0, 0}, groups[3] = {kCount / 64, 1, 1};
-  dispatch(bound, base, groups);
-  EXPECT_FALSE(fault.raised) << fault.message;
+  dispatch_over(values, compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, source), options_for(VK_SHADER_STAGE_COMPUTE_BIT),
+                kCount / 64);
   return values;
 }
 
@@ -331,19 +320,8 @@ TEST(RunSpirv, PhisSwapAndValuesLeaveTheLoop) {
     OpStore %ptr %r1
     OpReturn
     OpFunctionEnd)");
-  auto shader = compile(words, options_for(VK_SHADER_STAGE_COMPUTE_BIT));
-  ASSERT_TRUE(shader) << shader.message();
   std::vector<uint> values(kCount, 0);
-  Descriptor descriptor;
-  descriptor.data = reinterpret_cast<std::byte*>(values.data());
-  descriptor.size = values.size() * 4;
-  ResourceTable table;
-  table.set[0] = &descriptor;
-  table.set_size[0] = 1;
-  Fault fault;
-  const BoundShader bound(*shader.value(), table, fault);
-  const std::uint32_t base[3] = {0, 0, 0}, groups[3] = {kCount / 64, 1, 1};
-  dispatch(bound, base, groups);
+  ASSERT_TRUE(dispatch_over(values, words, options_for(VK_SHADER_STAGE_COMPUTE_BIT), kCount / 64));
   for (uint x = 0; x < kCount; x++) {
     const uint p = x % 2 == 0 ? 7 : x, q = x % 2 == 0 ? x : 7;
     ASSERT_EQ(values[x], p * (x * 7) + q) << x;

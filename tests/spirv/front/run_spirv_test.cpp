@@ -7,6 +7,7 @@
 #include "spirv/exec/profile.h"
 #include "spirv/exec/wave_memory.h"
 #include "spirv/program.h"
+#include "tests/spirv/buffers.h"
 #include "tests/spirv/compute_text.h"
 #include "tests/spirv/front/glsl.h"
 
@@ -34,21 +35,8 @@ std::vector<std::uint32_t> run_spirv(const std::string& body, const std::string&
                                      const std::string& capabilities = "", const std::string& addressing = "Logical",
                                      const std::string& annotations = "", const std::string& interface = "") {
   std::vector<std::uint32_t> values(kCount);
-  auto shader = compile(module_of(body, declarations, capabilities, addressing, annotations, interface),
-                        options_for(VK_SHADER_STAGE_COMPUTE_BIT));
-  EXPECT_TRUE(shader) << shader.message();
-  if (!shader) return values;
-  Descriptor descriptor;
-  descriptor.data = reinterpret_cast<std::byte*>(values.data());
-  descriptor.size = values.size() * 4;
-  ResourceTable table;
-  table.set[0] = &descriptor;
-  table.set_size[0] = 1;
-  Fault fault;
-  const BoundShader bound(*shader.value(), table, fault);
-  const std::uint32_t base[3] = {0, 0, 0}, groups[3] = {1, 1, 1};
-  dispatch(bound, base, groups);
-  EXPECT_FALSE(fault.raised) << fault.message;
+  dispatch_over(values, module_of(body, declarations, capabilities, addressing, annotations, interface),
+                options_for(VK_SHADER_STAGE_COMPUTE_BIT), 1);
   return values;
 }
 
