@@ -231,11 +231,13 @@ void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, c
     alive = worker.runner.run(active, active & ~pixels);
   }
   if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(pixels));
+  const bool counts_early = plan.fragment->early_fragment_tests;  // also what the shader discards
   LaneMask kept[kMaxSamples];
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
     kept[s] = block.lanes[s] & alive;
     if (plan.depth_order == TestOrder::kLate) test_blocks(worker, primitive, s, x, y, 1, &kept[s], true);
-    if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(kept[s]));
+    if (worker.counts)
+      worker.samples_passed += static_cast<std::uint64_t>(std::popcount(counts_early ? block.lanes[s] : kept[s]));
   }
   if (std::any_of(kept, kept + plan.samples, [](LaneMask lanes) { return lanes != 0; }))
     write_block(worker, x, y, kept);

@@ -335,6 +335,11 @@ void write_colors(ShadeRun& run) {
   }
 }
 
+void count_samples(ShadeRun& run) {
+  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
+    run.worker.samples_passed += static_cast<std::uint64_t>(std::popcount(run.kept[s]));
+}
+
 void shade(ShadeRun& run) {
   TileWorker& worker = run.worker;
   const PipelinePlan& plan = run.plan;
@@ -345,6 +350,8 @@ void shade(ShadeRun& run) {
     run.pixels |= run.kept[s];
   }
   if (!run.pixels) return;
+  // Vulkan 1.3.239, Early Fragment Tests: sample counting is performed before the shader runs, too.
+  if (worker.counts && plan.fragment->early_fragment_tests) count_samples(run);
   read_varyings(run);
   set_built_ins(run);
   const LaneMask active = plan.fragment->needs_helpers ? run.used : run.pixels;
@@ -354,8 +361,7 @@ void shade(ShadeRun& run) {
   if (plan.smooth_lines) cover_smooth_lines(run);
   if (plan.may_kill) change_coverage(run);
   if (plan.depth_order == TestOrder::kLate) test_late(run);
-  for (std::uint32_t s = run.first_sample; worker.counts && s < run.end_sample; ++s)
-    worker.samples_passed += static_cast<std::uint64_t>(std::popcount(run.kept[s]));
+  if (worker.counts && !plan.fragment->early_fragment_tests) count_samples(run);
   write_colors(run);
 }
 

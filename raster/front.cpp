@@ -146,13 +146,10 @@ void scatter_distances(const PipelinePlan& plan, const WaveOutputs& outputs, std
   }
 }
 
-void count_statistics(const DrawCall& call, std::uint32_t vertices, const Chunk& chunk) {
-  std::atomic<std::uint64_t>* statistics = call.queries.statistics;
+void count_statistics(const Chunk& chunk, std::uint32_t vertices) {
+  std::atomic<std::uint64_t>* statistics = chunk.draw->call.queries.statistics;
   if (!statistics) return;
-  std::uint64_t primitives = 0;
-  for (std::uint32_t r = 0; r < chunk.run_count; ++r) primitives += chunk.runs[r].end - chunk.runs[r].begin;
-  statistics[1].fetch_add(primitives, std::memory_order_relaxed);  // input assembly primitives
-  statistics[2].fetch_add(vertices, std::memory_order_relaxed);    // vertex shader invocations
+  const std::uint64_t primitives = count_assembly(chunk, vertices);
   statistics[5].fetch_add(primitives, std::memory_order_relaxed);  // clipping invocations
 }
 
@@ -163,6 +160,22 @@ std::uint32_t positions_of(const Chunk& chunk) {
   std::uint32_t count = 0;
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) count += run_span(shape, chunk.runs[r]).count();
   return count;
+}
+
+std::uint64_t count_assembly(const Chunk& chunk, std::uint32_t vertices) {
+  const TopologyShape& shape = chunk.draw->plan->shape;
+  std::uint64_t primitives = 0, assembled = 0;
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
+    const Run& run = chunk.runs[r];
+    primitives += run.end - run.begin;
+    assembled += std::uint64_t{run.end - run.begin} * shape.step + (run.begin == 0 ? shape.first - shape.step : 0);
+  }
+  if (std::atomic<std::uint64_t>* statistics = chunk.draw->call.queries.statistics) {
+    statistics[0].fetch_add(assembled, std::memory_order_relaxed);   // input assembly vertices
+    statistics[1].fetch_add(primitives, std::memory_order_relaxed);  // input assembly primitives
+    statistics[2].fetch_add(vertices, std::memory_order_relaxed);    // vertex shader invocations
+  }
+  return primitives;
 }
 
 void reserve_vertices(FrontScratch& s, std::uint32_t count) {
@@ -257,7 +270,7 @@ void shade_chunk_vertices(const Chunk& chunk, Arena& arena, FrontScratch& s) {
     store_wave(plan, {&s.runner, nullptr}, base, lanes.count, s);
     if (s.capture.active) capture_wave(plan, {&s.runner, nullptr}, base, lanes.count, s.capture);
   }
-  count_statistics(draw.call, count, chunk);
+  count_statistics(chunk, count);
 }
 
 ChunkOutput process_chunk(const Chunk& chunk, const PassDesc& pass, const TileGrid& grid, Arena& arena,

@@ -73,6 +73,11 @@ struct WaveOutputs {
 /// Positions (before de-duplication) that the chunk's runs need.
 std::uint32_t positions_of(const Chunk& chunk);
 
+/// Counts the chunk's vertices and primitives, and the `vertices` that are shaded for it, in an active pipeline
+/// statistics query; returns the number of primitives. Vertices that complete no primitive are not counted ("Vertices
+/// corresponding to incomplete primitives may contribute to the count").
+std::uint64_t count_assembly(const Chunk& chunk, std::uint32_t vertices);
+
 /// Slots of all positions of a chunk, one per distinct (index, instance); returns the number of vertices to shade.
 std::uint32_t gather_vertices(const Chunk& chunk, FrontScratch& scratch);
 

@@ -366,8 +366,6 @@ void Pass::draw(const DrawCall& draw) {
   Impl::Unfinished unfinished(*impl_);
   const DrawRecord* record = impl_->record_draw(draw);
   if (!record) return unfinished.done();
-  if (draw.queries.statistics)
-    draw.queries.statistics[0].fetch_add(std::uint64_t{draw.count} * draw.instance_count, std::memory_order_relaxed);
   if (impl_->desc.view_mask == 0) impl_->draw_view(record, 0);
   for (std::uint32_t view = 0; view < 32; ++view)
     if ((impl_->desc.view_mask >> view & 1) != 0) impl_->draw_view(record, view);

@@ -544,7 +544,7 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   plan_tests(plan, pass);
   plan_colors(plan, pass, draw.general_path);
   plan_blocks(plan, draw.general_path);
-  return plan.sample_mask != 0 || plan.capture_begin.back() != 0;
+  return true;
 }
 
 TopologyShape topology_shape(const DrawCall& draw) {

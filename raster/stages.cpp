@@ -97,10 +97,7 @@ void process_stages(const Chunk& chunk, const PassDesc& pass, Arena& arena, Fron
   StageScratch& s = scratch.stages;
   s.used = 0;
   const std::uint32_t count = gather_vertices(chunk, scratch);
-  std::uint64_t primitives = 0;
-  for (std::uint32_t r = 0; r < chunk.run_count; ++r) primitives += chunk.runs[r].end - chunk.runs[r].begin;
-  count_statistic(c, 1, primitives);  // input assembly primitives
-  count_statistic(c, 2, count);       // vertex shader invocations
+  count_assembly(chunk, count);
   const auto base = static_cast<std::uint32_t>(shade_vertices(c, count) * 4);
   const std::uint32_t stride = c.plan.stages.vertex_words * 4;
   if (c.plan.stages.evaluation) {

@@ -1,8 +1,8 @@
 // VK_EXT_depth_range_unrestricted: viewports, clears, bias and shaders that give depth outside [0, 1]. The extension
 // changes what devices do as soon as it is enabled, so each case makes devices of its own.
 #include <algorithm>
-#include <cstring>
 
+#include "cases/own_device.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -10,28 +10,6 @@ namespace vitrine::cts {
 namespace {
 
 constexpr char kExtension[] = "VK_EXT_depth_range_unrestricted";
-
-bool offers_extension(const Gpu& gpu) {
-  uint32_t count = 0;
-  vkEnumerateDeviceExtensionProperties(gpu.physical, nullptr, &count, nullptr);
-  std::vector<VkExtensionProperties> offered(count);
-  vkEnumerateDeviceExtensionProperties(gpu.physical, nullptr, &count, offered.data());
-  for (const VkExtensionProperties& extension : offered)
-    if (!std::strcmp(extension.extensionName, kExtension)) return true;
-  return false;
-}
-
-/// A device like the run's, with the extension.
-struct OwnDevice {
-  Gpu gpu;
-  explicit OwnDevice(const Gpu& like) : gpu(like) {
-    gpu.device = VK_NULL_HANDLE;
-    gpu.extensions.push_back(kExtension);
-    recreate(gpu);
-    take_validation_errors();  // of the extension lists, as for the suite's own devices
-  }
-  ~OwnDevice() { vkDestroyDevice(gpu.device, nullptr); }
-};
 
 const char kVertex[] = R"(
 layout(location = 0) in vec4 position;
@@ -122,8 +100,8 @@ void random_depths(Run& run) {
 }
 
 CTS_RANDOM("clipping", "random_unrestricted_depth", 60) {
-  run.require(offers_extension(run.gpu), kExtension);
-  OwnDevice own(run.gpu);
+  run.require(offers_extension(run.gpu, kExtension), kExtension);
+  OwnDevice own(run.gpu, kExtension);
   {
     Run inner(own.gpu, run.random.bits64(), run.index);
     random_depths(inner);
@@ -131,6 +109,47 @@ CTS_RANDOM("clipping", "random_unrestricted_depth", 60) {
     run.notes = std::move(inner.notes);
   }
 }
+
+/// A smooth line at depth -1.
+const AddCase kSmoothOutside(
+    "clipping", "deviation.unrestricted_smooth_lines", "smooth-line-depth-clamp",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) -> std::string {
+      const auto lowest = [](const Output& output) {
+        std::vector<float> depth(output.bytes.size() / 4);
+        std::memcpy(depth.data(), output.bytes.data(), output.bytes.size());
+        return *std::min_element(depth.begin(), depth.end());
+      };
+      if (lowest(device.back()) != -1.0f) return "the device's depth is not -1";
+      return lowest(reference.back()) == 0.0f ? "" : "the reference's depth is not 0";
+    },
+    [](Run& run) {
+      run.require(offers_extension(run.gpu, kExtension), kExtension);
+      run.require(run.gpu.extension_features.line_rasterization.smoothLines, "smoothLines");
+      OwnDevice own(run.gpu, kExtension);
+      Run inner(own.gpu, 1, 0);
+      TargetSpec target_spec;
+      target_spec.depth = VK_FORMAT_D32_SFLOAT;
+      const Target target = make_target(inner, target_spec);
+      VkPipelineRasterizationLineStateCreateInfoEXT line{
+          VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+      line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
+      GraphicsSpec spec;
+      spec.vertex = "void main() { gl_Position = vec4(gl_VertexIndex == 0 ? -0.7 : 0.8, 0.1, 0.0, 1.0); }\n";
+      spec.fragment = "layout(location = 0) out vec4 result;\nvoid main() { result = vec4(1); }\n";
+      spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+      spec.raster.pNext = &line;
+      spec.depth.depthTestEnable = spec.depth.depthWriteEnable = VK_TRUE;
+      spec.viewports = {{0, 0, 64, 64, -1.0f, -1.0f}};
+      const VkPipeline pipeline = make_pipeline(inner, spec, target);
+      inner.once([&](VkCommandBuffer cmd) {
+        target.begin(cmd);
+        bind_pipeline(cmd, pipeline);
+        vkCmdDraw(cmd, 2, 1, 0, 0);
+        vkCmdEndRenderPass(cmd);
+      });
+      out_target(inner, target);
+      run.outputs = std::move(inner.outputs);
+    });
 
 /// The depth clamp to a range below 0, of a format of fixed point.
 const AddCase kUnormOutside(
@@ -143,8 +162,8 @@ const AddCase kUnormOutside(
       return is_zero(reference.back()) ? std::string("the reference's depth is 0") : std::string();
     },
     [](Run& run) {
-      run.require(offers_extension(run.gpu), kExtension);
-      OwnDevice own(run.gpu);
+      run.require(offers_extension(run.gpu, kExtension), kExtension);
+      OwnDevice own(run.gpu, kExtension);
       Run inner(own.gpu, 1, 0);
       TargetSpec target_spec;
       target_spec.depth = VK_FORMAT_D16_UNORM;
