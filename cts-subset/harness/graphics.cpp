@@ -40,7 +40,10 @@ VkRenderPass make_pass(Run& run, const TargetSpec& spec) {
     depth = add(spec.depth, spec.samples, spec.load);
     subpass.pDepthStencilAttachment = &depth;
   }
-  VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+  VkRenderPassMultiviewCreateInfo views{VK_STRUCTURE_TYPE_RENDER_PASS_MULTIVIEW_CREATE_INFO};
+  views.subpassCount = 1;
+  views.pViewMasks = &spec.view_mask;
+  VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO, spec.view_mask ? &views : nullptr};
   info.attachmentCount = static_cast<uint32_t>(attachments.size());
   info.pAttachments = attachments.data();
   info.subpassCount = 1;
@@ -133,7 +136,8 @@ Target make_target(Run& run, const TargetSpec& spec, bool probe) {
     target.clears.push_back(clear_value(spec.depth, 1.0f, 0.0f, 0.0f, 0.0f));
   }
   target.pass = make_pass(run, spec);
-  target.framebuffer = make_framebuffer(run, target.pass, views, {spec.width, spec.height}, spec.layers);
+  target.framebuffer =
+      make_framebuffer(run, target.pass, views, {spec.width, spec.height}, spec.view_mask ? 1 : spec.layers);
   return target;
 }
 

@@ -15,6 +15,7 @@ struct TargetSpec {
   VkAttachmentLoadOp load = VK_ATTACHMENT_LOAD_OP_CLEAR;
   VkImageCreateFlags depth_flags = 0;  ///< of the depth attachment's image
   bool resolve = false;                ///< adds a resolve attachment for every colour attachment
+  uint32_t view_mask = 0;              ///< the layers that every draw goes to; 0: no multiview
 };
 
 /// Attachments with a one-subpass render pass and a framebuffer.

@@ -64,6 +64,19 @@ std::vector<std::string> remove_listed(const Scene& scene, DrawState& draw) {
     rows.push_back("one-sample-line-masks");
     replace_all(fragment, "gl_SampleMaskIn[0]", "15");
   }
+  if (draw.queried && one_sample_lines(scene, draw)) {
+    rows.push_back("one-sample-line-masks");
+    draw.queried = false;
+  }
+  if (draw.queried && draw.spec.raster.rasterizerDiscardEnable) {
+    rows.push_back("discarded-clipping-invocations");
+    draw.queried = false;
+  }
+  const bool kills = draw.fragment.discards || draw.fragment.writes_mask || draw.spec.multisample.alphaToCoverageEnable;
+  if (draw.queried && draw.fragment.early && kills && !fragment.empty()) {
+    rows.push_back("early-sample-counting");
+    draw.queried = false;
+  }
   if (scene.multisampled && draw.polygon && draw.drawn == Drawn::kLines && geometry) {
     rows.push_back("multisample-short-lines");
     draw.spec.raster.polygonMode = VK_POLYGON_MODE_FILL;
@@ -82,6 +95,10 @@ std::vector<std::string> remove_listed(const Scene& scene, DrawState& draw) {
   if (draw.spec.raster.depthClampEnable && draw.spec.depth.depthTestEnable) {
     rows.push_back("smooth-line-depth-clamp");
     draw.spec.raster.depthClampEnable = VK_FALSE;
+  }
+  if (scene.unrestricted && draw.spec.depth.depthTestEnable) {
+    rows.push_back("smooth-line-depth-clamp");
+    draw.line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
   }
   if (contains(fragment, "gl_PrimitiveID")) {
     rows.push_back("smooth-line-vertices");

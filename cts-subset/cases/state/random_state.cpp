@@ -4,20 +4,50 @@
 #include <cmath>
 #include <memory>
 
-#include "cases/state/draw_state.h"
+#include "cases/own_device.h"
+#include "cases/state/render.h"
 #include "harness/case.h"
 #include "harness/execute.h"
 
 namespace vitrine::cts {
 namespace {
 
-using namespace std::string_literals;
-
 bool blendable(VkFormat format) {
   return (gpus().reference.features_of(format) & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT) != 0;
 }
 
-Scene random_scene(Run& run) {
+/// What was not there from the beginning is drawn from a second generator, so that the cases of a seed stay what they
+/// were.
+Random second_generator(const Run& run) {
+  Random copy = run.random;
+  return Random(hash_name("random_state", copy.bits64()));
+}
+
+/// Whether both devices have it: what a case does must not depend on the device.
+template <class F>
+bool both(F claimed) {
+  return claimed(gpus().device.extension_features) && claimed(gpus().reference.extension_features);
+}
+
+/// How the draws are put into a pass.
+void random_pass(Random& second, Scene& scene) {
+  TargetSpec& target = scene.target;
+  const bool dynamic = second.chance(0.4f), suspends = second.chance(0.4f), secondary = second.chance(0.2f);
+  const bool depth = second.chance(0.5f), views = second.chance(0.1f), nothing = second.chance(0.3f);
+  scene.dynamic_rendering = dynamic && both([](const auto& f) { return f.dynamic_rendering.dynamicRendering; });
+  scene.suspends = scene.dynamic_rendering && suspends;
+  scene.secondary = secondary && !scene.suspends;
+  if (target.colors.empty() && nothing) target.depth = VK_FORMAT_UNDEFINED;
+  scene.resolves_depth = scene.dynamic_rendering && scene.multisampled && target.depth && depth;
+  const bool all_stages = both([](const auto& f) {
+    return f.multiview.multiview && f.multiview.multiviewGeometryShader && f.multiview.multiviewTessellationShader;
+  });
+  if (!views || !all_stages || scene.attachmentless()) return;
+  target.layers = 3;
+  target.view_mask = 1u << second.below(3);
+}
+
+Scene random_scene(Run& run, Random& second) {
   Random& random = run.random;
   Scene scene;
   TargetSpec& target = scene.target;
@@ -48,6 +78,7 @@ Scene random_scene(Run& run) {
     target.resolve = random.chance(0.4f) && !target.colors.empty();
   }
   if (random.chance(0.15f)) target.layers = 2 + random.below(2);
+  random_pass(second, scene);
   const VkImageAspectFlags aspects = target.depth ? aspects_of(target.depth) : 0;
   scene.has_depth = (aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0;
   scene.has_stencil = (aspects & VK_IMAGE_ASPECT_STENCIL_BIT) != 0;
@@ -273,58 +304,41 @@ std::vector<float> random_vertices(Random& random, const DrawState& draw) {
   return values;
 }
 
-void note_state(Run& run, const std::string& name, const Scene& scene, const DrawState& draw) {
-  std::string text;
-  const auto add = [&](const char* what, auto value) {
-    text += what;
-    text += " ";
-    text += std::to_string(value);
-    text += "\n";
-  };
-  const GraphicsSpec& spec = draw.spec;
-  for (const VkFormat format : scene.target.colors) text += format_info(format).name + "\n"s;
-  if (scene.target.depth) text += format_info(scene.target.depth).name + "\n"s;
-  add("samples", scene.target.samples);
-  add("topology", draw.stages.topology);
-  text += "tessellation " + draw.stages.tessellation + "\ngeometry " + draw.stages.geometry + "\n";
-  add("polygon mode", spec.raster.polygonMode);
-  add("line mode", draw.line.lineRasterizationMode);
-  add("stippled", draw.line.stippledLineEnable);
-  add("line width", spec.raster.lineWidth);
-  add("cull", spec.raster.cullMode);
-  add("front face", spec.raster.frontFace);
-  add("provoking", draw.provoking.provokingVertexMode);
-  add("clipped", draw.clipped);
-  add("clip distances", draw.stages.clip_distances);
-  add("cull distances", draw.stages.cull_distances);
-  add("layers", draw.stages.layers);
-  add("viewports", draw.stages.viewports);
-  add("depth bias", spec.raster.depthBiasEnable);
-  add("depth clamp", spec.raster.depthClampEnable);
-  add("negative one to one", spec.viewport_next != nullptr);
-  add("depth test", spec.depth.depthTestEnable);
-  add("depth write", spec.depth.depthWriteEnable);
-  add("depth compare", spec.depth.depthCompareOp);
-  add("stencil test", spec.depth.stencilTestEnable);
-  add("logic op", spec.blend.logicOpEnable ? static_cast<int>(spec.blend.logicOp) : -1);
-  add("alpha to coverage", spec.multisample.alphaToCoverageEnable);
-  add("alpha to one", spec.multisample.alphaToOneEnable);
-  add("sample mask", draw.sample_mask);
-  add("sample shading", spec.multisample.sampleShadingEnable);
-  for (const VkPipelineColorBlendAttachmentState& b : spec.blends)
-    text += "blend " + std::to_string(b.blendEnable) + " color " + std::to_string(b.srcColorBlendFactor) + " " +
-            std::to_string(b.colorBlendOp) + " " + std::to_string(b.dstColorBlendFactor) + " alpha " +
-            std::to_string(b.srcAlphaBlendFactor) + " " + std::to_string(b.alphaBlendOp) + " " +
-            std::to_string(b.dstAlphaBlendFactor) + " mask " + std::to_string(b.colorWriteMask) + "\n";
-  add("vertices", draw.vertices);
-  add("instances", draw.instances);
-  run.note(name, text + spec.vertex + spec.evaluation + spec.geometry + spec.fragment);
+/// What surrounds a draw, and state that the first generator does not know.
+void random_surroundings(Run& run, Random& second, const Scene& scene, DrawState& draw) {
+  const bool conditional = second.chance(0.15f), captured = second.chance(0.15f), queried = second.chance(0.3f);
+  const bool writes = second.chance(0.15f), lower = second.chance(0.4f), left = second.chance(0.5f);
+  draw.indirect = second.chance(0.2f);
+  draw.dynamic_share = left ? second.unit() : 0;
+  draw.conditional = conditional && both([](const auto& f) { return f.conditional_rendering.conditionalRendering; });
+  draw.predicate = second.below(2);
+  draw.predicate_flags = second.below(2) ? VK_CONDITIONAL_RENDERING_INVERTED_BIT_EXT : 0;
+  const bool views = scene.target.view_mask != 0;
+  draw.stages.captured = captured && !views && run.gpu.has("VK_EXT_transform_feedback");
+  draw.queried = queried && !views;
+  draw.stages.views = views;
+  if (writes && both([](const auto& f) { return f.color_write_enable.colorWriteEnable; })) {
+    for (size_t i = 0; i < scene.target.colors.size(); ++i) draw.color_writes.push_back(second.chance(0.6f));
+    draw.color_write_info.attachmentCount = static_cast<uint32_t>(draw.color_writes.size());
+    draw.color_write_info.pColorWriteEnables = draw.color_writes.data();
+    draw.spec.blend.pNext = &draw.color_write_info;
+  }
+  if (lower) {
+    draw.origin.domainOrigin = VK_TESSELLATION_DOMAIN_ORIGIN_LOWER_LEFT;
+    draw.spec.tessellation.pNext = &draw.origin;
+  }
+  draw.fragment.counts = scene.attachmentless();
+  if (!scene.unrestricted) return;
+  for (VkViewport& viewport : draw.spec.viewports) {
+    viewport.minDepth = viewport.minDepth * 5 - 2;
+    viewport.maxDepth = viewport.maxDepth * 4 - 1;
+  }
 }
 
-void random_draw(Run& run, const Scene& scene, DrawState& draw) {
+void random_draw(Run& run, Random& second, const Scene& scene, DrawState& draw) {
   Random& random = run.random;
   draw.stages = random_stages(run, !scene.multisampled);
-  draw.stages.layers = random.chance(0.7f) ? scene.target.layers : 1;
+  draw.stages.layers = random.chance(0.7f) && !scene.target.view_mask ? scene.target.layers : 1;
   const bool selects = run.gpu.has("VK_EXT_shader_viewport_index_layer");
   if (!selects && draw.stages.geometry.empty()) draw.stages.layers = 1;
   random_rasterization(run, scene, draw);
@@ -344,6 +358,7 @@ void random_draw(Run& run, const Scene& scene, DrawState& draw) {
   random_fragment_needs(run, scene, draw);
   random_blending(random, scene, draw);
   random_multisample(random, scene, draw);
+  random_surroundings(run, second, scene, draw);
   write_stages(draw.stages, draw.spec);
   draw.spec.floats({4, 4, 4});
   if (!(scene.target.colors.empty() && random.chance(0.5f)))
@@ -359,48 +374,21 @@ bool restartable(VkPrimitiveTopology topology) {
          topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY;
 }
 
-/// A draw with what it reads.
-struct RecordedDraw {
-  DrawState state;
-  Buffer vertices, indices;
-  bool indexed = false;
-};
-
-/// Draws everything into fresh attachments and puts them out under `prefix`. `clears`: colours, then depth.
-void render(Run& run, const Scene& scene, const std::vector<VkClearValue>& clears,
-            const std::vector<std::unique_ptr<RecordedDraw>>& draws, const std::string& prefix) {
-  Target target = make_target(run, scene.target);
-  std::copy_n(clears.begin(), scene.target.colors.size(), target.clears.begin());
-  if (scene.target.depth) target.clears.back() = clears.back();
-  std::vector<VkPipeline> pipelines;
-  for (size_t n = 0; n < draws.size(); ++n) {
-    note_state(run, prefix + "draw" + std::to_string(n), scene, draws[n]->state);
-    pipelines.push_back(make_pipeline(run, draws[n]->state.spec, target));
-  }
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    for (size_t n = 0; n < draws.size(); ++n) {
-      const RecordedDraw& draw = *draws[n];
-      bind_pipeline(cmd, pipelines[n]);
-      bind_vertices(cmd, draw.vertices);
-      if (draw.indexed) {
-        vkCmdBindIndexBuffer(cmd, draw.indices.handle, 0, VK_INDEX_TYPE_UINT16);
-        vkCmdDrawIndexed(cmd, draw.state.vertices, draw.state.instances, 0, 0, 0);
-      } else {
-        vkCmdDraw(cmd, draw.state.vertices, draw.state.instances, 0, 0);
-      }
-    }
-    vkCmdEndRenderPass(cmd);
-  });
-  const size_t first = run.outputs.size();
-  out_target(run, target);
-  for (size_t i = first; i < run.outputs.size(); ++i) run.outputs[i].name = prefix + run.outputs[i].name;
+/// The parameters of an indirect draw.
+std::vector<uint32_t> draw_words(const RecordedDraw& draw) {
+  const DrawState& state = draw.state;
+  return {state.vertices, state.instances, 0, 0, 0};
 }
 
 /// What deviations.md lists is drawn, too; then the same again without it, which must be identical.
-CTS_RANDOM("pipeline", "random_state", 120) {
+void random_state(Run& run, Random& second, bool unrestricted) {
   Random& random = run.random;
-  const Scene scene = random_scene(run);
+  const Scene scene = [&] {
+    Scene result = random_scene(run, second);
+    // deviations.md, unorm-depth-outside
+    result.unrestricted = unrestricted && result.has_depth && format_info(result.target.depth).bits[0] == 32;
+    return result;
+  }();
   std::vector<VkClearValue> clears;
   for (const VkFormat format : scene.target.colors)
     clears.push_back(clear_value(format, random.unit(), random.unit(), random.unit(), random.unit()));
@@ -410,7 +398,8 @@ CTS_RANDOM("pipeline", "random_state", 120) {
   for (uint32_t n = 1 + random.below(3); n > 0; --n) {
     RecordedDraw& r = *draws.emplace_back(std::make_unique<RecordedDraw>());
     DrawState& draw = r.state;
-    random_draw(run, scene, draw);
+    random_draw(run, second, scene, draw);
+    r.seed = second.bits64();
     r.indexed = random.chance(0.4f);
     draw.spec.assembly.primitiveRestartEnable = r.indexed && restartable(draw.stages.topology) && random.chance(0.6f);
     std::vector<uint16_t> order;
@@ -419,6 +408,7 @@ CTS_RANDOM("pipeline", "random_state", 120) {
           draw.spec.assembly.primitiveRestartEnable && random.chance(0.1f) ? 0xffff : random.below(draw.vertices)));
     r.vertices = run.buffer_of(random_vertices(random, draw));
     r.indices = run.buffer_of(order);
+    r.command = run.buffer_of(draw_words(r));
   }
   render(run, scene, clears, draws, "");
   std::string rows;
@@ -429,6 +419,22 @@ CTS_RANDOM("pipeline", "random_state", 120) {
     render(run, scene, clears, draws, "without_listed.");
   }
   run.may_be_blank();
+}
+
+CTS_RANDOM("pipeline", "random_state", 120) {
+  constexpr char kUnrestricted[] = "VK_EXT_depth_range_unrestricted";
+  Random second = second_generator(run);
+  if (!second.chance(0.1f) || !offers_extension(gpus().device, kUnrestricted) ||
+      !offers_extension(gpus().reference, kUnrestricted)) {
+    random_state(run, second, false);
+    return;
+  }
+  OwnDevice own(run.gpu, kUnrestricted);
+  Run inner(own.gpu, 0, run.index);
+  inner.random = run.random;
+  random_state(inner, second, true);
+  run.outputs = std::move(inner.outputs);
+  run.notes = std::move(inner.notes);
 }
 
 }  // namespace

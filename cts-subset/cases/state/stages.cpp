@@ -11,9 +11,29 @@ layout(location = 0) out vec4 smooth_color;
 layout(location = 1) noperspective out vec4 linear_color;
 layout(location = 2) flat out vec4 flat_color;
 )";
+const char kCapturedVaryings[] = R"(
+layout(location = 0, xfb_buffer = 0, xfb_offset = 16, xfb_stride = 32) out vec4 smooth_color;
+layout(location = 1, xfb_buffer = 1, xfb_offset = 4, xfb_stride = 40) noperspective out vec4 linear_color;
+layout(location = 2, xfb_buffer = 1, xfb_offset = 20) flat out vec4 flat_color;
+)";
+
+std::string varyings(const Stages& stages, bool last) {
+  return last && stages.captured ? kCapturedVaryings : kVaryings;
+}
+
+std::string extensions(const Stages& stages, bool selects) {
+  std::string text;
+  if (selects && (stages.layers > 1 || stages.viewports > 1))
+    text += "#extension GL_ARB_shader_viewport_layer_array : require\n";
+  if (stages.views) text += "#extension GL_EXT_multiview : require\n";
+  return text;
+}
 
 std::string built_in_outputs(const Stages& stages) {
-  std::string text = "out gl_PerVertex { vec4 gl_Position; float gl_PointSize;";
+  std::string text = "out gl_PerVertex {";
+  text += stages.captured ? " layout(xfb_buffer = 0, xfb_offset = 0, xfb_stride = 32) vec4 gl_Position;"
+                          : " vec4 gl_Position;";
+  text += " float gl_PointSize;";
   if (stages.clip_distances) text += " float gl_ClipDistance[" + number(stages.clip_distances) + "];";
   if (stages.cull_distances) text += " float gl_CullDistance[" + number(stages.cull_distances) + "];";
   return text + " };\n";
@@ -33,12 +53,10 @@ std::string last_stage_writes(const Stages& stages, const std::string& selector)
 
 std::string vertex_text(const Stages& stages) {
   const bool last = stages.tessellation.empty() && stages.geometry.empty();
-  std::string text;
-  if (last && (stages.layers > 1 || stages.viewports > 1))
-    text += "#extension GL_ARB_shader_viewport_layer_array : require\n";
+  std::string text = extensions(stages, last);
   text += "layout(location = 0) in vec4 position;\nlayout(location = 1) in vec4 color;\n";
   text += "layout(location = 2) in vec4 extra;\n";
-  text += kVaryings;
+  text += varyings(stages, last);
   if (last) text += built_in_outputs(stages);
   text += R"(void main() {
   smooth_color = color;
@@ -47,6 +65,7 @@ std::string vertex_text(const Stages& stages) {
   gl_Position = position + vec4(0.05, -0.03, 0.0, 0.0) * (position.w * float(gl_InstanceIndex));
   gl_PointSize = 1.0 + extra.x * 8.0;
 )";
+  if (stages.views) text += "  smooth_color.xy *= 0.4 + 0.2 * float(gl_ViewIndex);\n";
   // A whole instance at a time: the provoking vertex must not matter.
   if (last) text += last_stage_writes(stages, "gl_InstanceIndex");
   return text + "}\n";
@@ -74,14 +93,12 @@ void main() {
 
 std::string evaluation_text(const Stages& stages) {
   const bool last = stages.geometry.empty();
-  std::string text = "layout(" + stages.tessellation + R"() in;
+  std::string text = extensions(stages, last) + "layout(" + stages.tessellation + R"() in;
 layout(location = 0) in vec4 point_smooth[];
 layout(location = 1) in vec4 point_linear[];
 layout(location = 2) in vec4 point_flat[];
 )";
-  if (last && (stages.layers > 1 || stages.viewports > 1))
-    text = "#extension GL_ARB_shader_viewport_layer_array : require\n" + text;
-  text += kVaryings;
+  text += varyings(stages, last);
   if (last) text += built_in_outputs(stages);
   text += R"(void main() {
   vec3 at = gl_TessCoord;
@@ -137,8 +154,8 @@ std::string geometry_text(const Stages& stages) {
 layout(location = 0) in vec4 in_smooth[];
 layout(location = 1) noperspective in vec4 in_linear[];
 layout(location = 2) flat in vec4 in_flat[];
-)" + kVaryings + built_in_outputs(stages) +
-                     "void main() {\n  for (int copy = 0; copy < " + number(copies) +
+)" + varyings(stages, true) +
+                     built_in_outputs(stages) + "void main() {\n  for (int copy = 0; copy < " + number(copies) +
                      "; ++copy) {\n    for (int i = 0; i < " + number(in.vertices) + R"(; ++i) {
       smooth_color = in_smooth[i];
       linear_color = in_linear[i];
@@ -212,7 +229,8 @@ void write_stages(const Stages& stages, GraphicsSpec& spec) {
 std::string random_fragment(Random& random, const TargetSpec& target, const Stages& stages,
                             const FragmentNeeds& needs) {
   const char* where = needs.multisampled ? random.pick({"", "", "centroid ", needs.per_sample ? "sample " : ""}) : "";
-  std::string text = needs.writes_stencil ? "#extension GL_ARB_shader_stencil_export : require\n" : "";
+  std::string text = extensions(stages, false);
+  if (needs.writes_stencil) text += "#extension GL_ARB_shader_stencil_export : require\n";
   if (needs.early) text += "layout(early_fragment_tests) in;\n";
   text += std::string("layout(location = 0) ") + where + "in vec4 smooth_color;\nlayout(location = 1) noperspective " +
           where + "in vec4 linear_color;\nlayout(location = 2) flat in vec4 flat_color;\n";
@@ -230,6 +248,7 @@ std::string random_fragment(Random& random, const TargetSpec& target, const Stag
   if (stages.layers > 1) values.push_back("vec4(float(gl_Layer) * 0.25, linear_color.yzw)");
   if (stages.viewports > 1) values.push_back("vec4(float(gl_ViewportIndex) * 0.25, linear_color.yzw)");
   if (needs.reads_mask) values.push_back("vec4(float(gl_SampleMaskIn[0] & 15) / 15.0, linear_color.yzw)");
+  if (stages.views) values.push_back("vec4(float(gl_ViewIndex) * 0.25, smooth_color.yzw)");
   if (needs.per_sample) values.push_back("vec4(float(gl_SampleID) * 0.25, gl_SamplePosition, smooth_color.w)");
   std::string writes;
   for (size_t i = 0; i < target.colors.size(); ++i) {
@@ -248,6 +267,11 @@ std::string random_fragment(Random& random, const TargetSpec& target, const Stag
   if (needs.discards) writes += "  if (smooth_color.x > 0.7) discard;\n";
   if (needs.writes_depth) writes += "  gl_FragDepth = linear_color.y;\n";
   if (needs.writes_stencil) writes += "  gl_FragStencilRefARB = int(linear_color.z * 300.0);\n";
+  if (needs.counts) {
+    text += "layout(binding = 0) buffer Counters { uint counters[]; };\n";
+    writes +=
+        "  atomicAdd(counters[uint(gl_FragCoord.y) * " + number(kCountedRow) + "u + uint(gl_FragCoord.x)], 1u);\n";
+  }
   if (needs.writes_mask) writes += "  gl_SampleMask[0] = int(linear_color.x * 16.0);\n";
   return text + "void main() {\n" + writes + "}\n";
 }

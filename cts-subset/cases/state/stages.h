@@ -19,13 +19,20 @@ struct Stages {
   uint32_t clip_distances = 0, cull_distances = 0;
   uint32_t layers = 1, viewports = 1;  ///< more than one: the last stage chooses
   bool primitive_id = false;           ///< the geometry shader writes it
+  bool captured = false;               ///< the last stage's outputs are: position and smooth colour in buffer 0, the
+                                       ///< others in buffer 1
+  bool views = false;                  ///< stages read gl_ViewIndex
 };
+
+/// Counters of a row of pixels (FragmentNeeds::counts).
+constexpr uint32_t kCountedRow = 128;
 
 /// What the fragment shader may read and write.
 struct FragmentNeeds {
   bool multisampled = false, writes_depth = false, writes_stencil = false, writes_mask = false, reads_mask = false;
   bool early = false, facing = false, dual = false, discards = false, primitive_id = true;
   bool per_sample = false;  ///< may run once per sample
+  bool counts = false;      ///< counts the invocations of every pixel in storage buffer 0 (see kCountedRow)
 };
 
 Stages random_stages(Run& run, bool short_lines_allowed);
