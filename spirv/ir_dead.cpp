@@ -64,6 +64,19 @@ struct Marker {
     return false;
   }
 
+  /// Loads of words behind which equal ones may read the same value: those of the outermost list stay.
+  static bool loads_words(const Instr& instr) {
+    return instr.op == Op::kLoadPush || instr.op == Op::kLoadUniform || instr.op == Op::kLoadStorage;
+  }
+
+  void keep_loads() {
+    for (const auto& node : function.body) {
+      if (node->kind != Kind::kInstr || !loads_words(node->instr)) continue;
+      live[node->instr.result] = true;
+      for (const Src& src : node->instr.src) use(src);
+    }
+  }
+
   void use(const Src& src) {
     if (live[src.value]) return;
     live[src.value] = true;
@@ -229,7 +242,7 @@ bool has_effect(Op op, const ImageInfo* image) {
   }
 }
 
-void remove_dead(Function& function) {
+void remove_dead(Function& function, Loads loads) {
   const std::size_t count = function.values.size();
   Marker marker{function,
                 std::vector<Definition>(count),
@@ -239,6 +252,7 @@ void remove_dead(Function& function) {
                 {}};
   marker.index(function.body);
   marker.mark(function.body);
+  if (loads == Loads::kKeep) marker.keep_loads();
   marker.propagate();
   marker.sweep(function.body);
   compact_slots(function.body, Op::kLoadInput, function.interface.inputs);

@@ -24,7 +24,11 @@ void propagate_copies(Function& function);
 /// is what lower() takes; passes in between may leave swizzles there.
 void make_joins_whole(Function& function);
 
+/// Whether loads of push constants and buffers outside of branches and loops stay though nothing uses them: rewrite()
+/// lets later loads of the same words become those, as the reference does.
+enum class Loads { kRemove, kKeep };
+
 /// Removes instructions, loop parameters, results and inputs that nothing uses.
-void remove_dead(Function& function);
+void remove_dead(Function& function, Loads loads = Loads::kRemove);
 
 }  // namespace vitrine::spirv::ir

@@ -32,7 +32,7 @@ ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& opt
                      std::make_move_iterator(t.function.body.end()));
   t.function.body = std::move(t.constants);
   ir::propagate_copies(t.function);
-  ir::remove_dead(t.function);
+  ir::remove_dead(t.function, ir::Loads::kKeep);
   propagate_invariant(t.function);
   t.function.files = module.files;
   return std::move(t.function);

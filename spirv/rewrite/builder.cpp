@@ -4,6 +4,8 @@
 // literals at once where the generator's own building blocks fold (not those that are calls of intrinsics), so that the
 // next operation takes its shortcut too. A sum with -0 is what its optimiser takes away: x, denormal or not. Values
 // that share a register with the result of a branch are read from there: no operation knows that they are literal.
+#include <algorithm>
+
 #include "base/float_mode.h"
 #include "spirv/rewrite/passes.h"
 
@@ -98,6 +100,7 @@ class Builder {
     id_ = id;
     const Inst& inst = graph_.insts[id];
     if (inst.kind != Kind::kAlu || inst.components != 1) return;
+    if (!poison_.empty() && spread_poison()) return;
     if (inst.opaque && !sums_literals(inst)) return;
     if (shorten(inst.op)) return;
     fold();
@@ -199,6 +202,35 @@ class Builder {
 
   static bool is_nan(std::uint32_t bits) { return (bits & 0x7fffffffu) > 0x7f800000u; }
 
+  bool is_poison(std::uint32_t index) const {
+    const ValueId value = graph_.source(graph_.insts[id_], index).value;
+    return std::find(poison_.begin(), poison_.end(), value) != poison_.end();
+  }
+
+  void become_poison() {
+    const std::uint32_t zero = 0;
+    const InstId made = graph_.create_const(1, graph_.insts[id_].boolean, &zero);
+    graph_.insert_before(id_, made);
+    poison_.push_back(graph_.insts[made].result);
+    replace(value_of(made));
+  }
+
+  /// Whatever is computed from an undefined integer is undefined too; a selection takes its other side. True: the
+  /// operation is gone.
+  bool spread_poison() {
+    const Inst& inst = graph_.insts[id_];
+    const bool selects = inst.op == Op::kSelect || inst.op == Op::kSelectB;
+    for (std::uint32_t i = 0; i < inst.count; ++i) {
+      if (!is_poison(i)) continue;
+      if (selects && i != 0)
+        replace(graph_.source(inst, 3 - i));
+      else
+        become_poison();
+      return true;
+    }
+    return false;
+  }
+
   /// What the generator's optimiser knows of NaN: arithmetic with it is NaN, its conversion to an integer undefined.
   bool fold_nan() {
     const Inst& inst = graph_.insts[id_];
@@ -208,7 +240,10 @@ class Builder {
       const Src src = graph_.source(inst, i);
       const Inst* constant = graph_.constant(src.value);
       if (!constant || !is_nan(constant->imm[src.swizzle[0]])) continue;
-      become(arithmetic ? constant->imm[src.swizzle[0]] | 0x00400000u : 0);
+      if (arithmetic)
+        become(constant->imm[src.swizzle[0]] | 0x00400000u);
+      else
+        become_poison();
       return true;
     }
     return false;
@@ -331,183 +366,11 @@ class Builder {
 
   Graph& graph_;
   SharedRegisters registers_;
+  std::vector<ValueId> poison_;  ///< literals that stand for undefined integers
   InstId id_ = kNone;
 };
 
-/// The literal that leaves the other operand of `op` as it is; false: none.
-bool identity_of(Op op, std::uint32_t& bits) {
-  bits = op == Op::kFAdd ? kMinusZero : kOne;
-  return op == Op::kFAdd || op == Op::kFMul || op == Op::kFDiv;
-}
-
-/// A selection with a literal side, in either of its forms.
-struct Selection {
-  Src condition;
-  std::uint32_t side = 0;  ///< of the literal: 1 (where the condition holds) or 2
-  Src operand;             ///< the other side; none where it converts
-  bool converts = false;   ///< bool to float: 1 and 0
-};
-
-/// The instruction of this op that defines `src` for one user.
-const Inst* only_user_of(const Graph& graph, Src src, Op op) {
-  const Inst* inst = graph.def(src.value);
-  const bool fits = inst && inst->kind == Kind::kAlu && inst->op == op && inst->components == 1;
-  return fits && graph.values[src.value].uses == 1 ? inst : nullptr;
-}
-
-/// A comparison of 32-bit integers: their type is that of the masks which select between two literals, and the
-/// reference's code generator does not move the conversion to float into such a selection, which hides it.
-bool compares_integers(const Graph& graph, Src condition) {
-  const Inst* inst = graph.def(condition.value);
-  if (!inst || inst->kind != Kind::kAlu) return false;
-  switch (inst->op) {
-    case Op::kILt:
-    case Op::kIGe:
-    case Op::kULt:
-    case Op::kUGe:
-    case Op::kIEq:
-    case Op::kINe:
-      return true;
-    default:
-      return false;
-  }
-}
-
-/// What selects the literal `identity` on one side, for one user.
-bool find_selection(const Graph& graph, Src src, std::uint32_t identity, Selection& found) {
-  if (const Inst* conversion = only_user_of(graph, src, Op::kB2F)) {
-    if (identity != kOne && identity != 0) return false;
-    found = {graph.source(*conversion, 0), identity == kOne ? 1u : 2u, {}, true};
-    return !compares_integers(graph, found.condition);
-  }
-  const Inst* select = only_user_of(graph, src, Op::kSelect);
-  if (!select) return false;
-  for (const std::uint32_t side : {1u, 2u}) {
-    const Src literal = graph.source(*select, side);
-    const Inst* constant = graph.constant(literal.value);
-    if (!constant || constant->imm[literal.swizzle[0]] != identity) continue;
-    found = {graph.source(*select, 0), side, graph.source(*select, 3 - side), false};
-    return !graph.constant(found.operand.value) || !compares_integers(graph, found.condition);
-  }
-  return false;
-}
-
-/// A selection of two literals for one user, negated or not.
-bool find_literals(const Graph& graph, Src src, Src& condition, std::uint32_t (&literals)[2]) {
-  const Inst* negation = only_user_of(graph, src, Op::kFNeg);
-  if (negation) src = graph.source(*negation, 0);
-  if (const Inst* conversion = only_user_of(graph, src, Op::kB2F)) {
-    condition = graph.source(*conversion, 0);
-    literals[0] = kOne;
-    literals[1] = 0;
-  } else {
-    const Inst* select = only_user_of(graph, src, Op::kSelect);
-    if (!select) return false;
-    condition = graph.source(*select, 0);
-    for (const std::uint32_t side : {1u, 2u}) {
-      const Src literal = graph.source(*select, side);
-      const Inst* constant = graph.constant(literal.value);
-      if (!constant) return false;
-      literals[side - 1] = constant->imm[literal.swizzle[0]];
-    }
-  }
-  for (std::uint32_t& literal : literals)
-    if (negation) literal ^= kMinusZero;
-  return true;
-}
-
-/// A sum or product of a literal and a selection of two literals becomes a selection of two literals.
-bool fold_into_selection(Graph& graph, InstId id) {
-  const Op op = graph.insts[id].op;
-  if (op != Op::kFAdd && op != Op::kFMul) return false;
-  for (const std::uint32_t index : {0u, 1u}) {
-    const Src src = graph.source(graph.insts[id], 1 - index);
-    const Inst* constant = graph.constant(src.value);
-    Src condition;
-    std::uint32_t literals[2];
-    if (!constant || !find_literals(graph, graph.source(graph.insts[id], index), condition, literals)) continue;
-    const std::uint32_t other = constant->imm[src.swizzle[0]];
-    const InstId made = graph.create(Kind::kAlu, Op::kSelect, 1, false, 3);
-    graph.insts[made].origin = graph.insts[id].origin;
-    graph.set_source(made, 0, condition);
-    for (const std::uint32_t side : {1u, 2u}) {
-      const std::uint32_t operands[3] = {literals[side - 1], other};
-      std::uint32_t bits = 0;
-      evaluate(op, operands, bits);
-      const InstId literal = graph.create_const(1, false, &bits);
-      graph.insert_before(id, literal);
-      graph.set_source(made, side, {graph.insts[literal].result, {0, 0, 0, 0}});
-    }
-    graph.insert_before(id, made);
-    graph.replace_uses(graph.insts[id].result, graph.insts[made].result);
-    graph.remove(id);
-    return true;
-  }
-  return false;
-}
-
-/// The side of the selection that is not the identity.
-Src other_side(Graph& graph, InstId position, const Selection& selection) {
-  if (!selection.converts) return selection.operand;
-  const std::uint32_t bits = selection.side == 1 ? 0 : kOne;
-  const InstId made = graph.create_const(1, false, &bits);
-  graph.insert_before(position, made);
-  return {graph.insts[made].result, {0, 0, 0, 0}};
-}
-
-/// The result of `id` becomes that of `id` on one side of the selection and `kept` on the other.
-void select_result(Graph& graph, InstId id, const Selection& selection, Src kept) {
-  const InstId made = graph.create(Kind::kAlu, Op::kSelect, 1, false, 3);
-  graph.insert_after(id, made);
-  graph.insts[made].origin = graph.insts[id].origin;
-  graph.replace_uses(graph.insts[id].result, graph.insts[made].result);
-  graph.set_source(made, 0, selection.condition);
-  graph.set_source(made, selection.side, kept);
-  graph.set_source(made, 3 - selection.side, {graph.insts[id].result, {0, 0, 0, 0}});
-}
-
-/// Operand `index` of `id`, a selection used once with `identity` on one side: x op (c ? y : identity) becomes
-/// c ? x op y : x, which keeps denormals of x.
-bool select_operation(Graph& graph, InstId id, std::uint32_t index, std::uint32_t identity) {
-  const Src other = graph.source(graph.insts[id], 1 - index);
-  Selection selection;
-  if (graph.constant(other.value)) return false;
-  if (!find_selection(graph, graph.source(graph.insts[id], index), identity, selection)) return false;
-  const Src operand = other_side(graph, id, selection);
-  select_result(graph, id, selection, other);
-  graph.set_source(id, index, operand);
-  return true;
-}
-
-/// The same for the subtraction of a selected zero, x + -(c ? y : 0).
-bool select_subtraction(Graph& graph, InstId id, std::uint32_t index) {
-  const Src negated = graph.source(graph.insts[id], index), other = graph.source(graph.insts[id], 1 - index);
-  const Inst* negation = only_user_of(graph, negated, Op::kFNeg);
-  Selection selection;
-  if (!negation || graph.constant(other.value)) return false;
-  if (!find_selection(graph, graph.source(*negation, 0), 0, selection)) return false;
-  const InstId negate = graph.values[negated.value].def;
-  const Src operand = other_side(graph, negate, selection);
-  select_result(graph, id, selection, other);
-  graph.set_source(negate, 0, operand);
-  return true;
-}
-
 }  // namespace
-
-void select_identities(Graph& graph) {
-  const base::ScopedFloatMode mode(base::Denormals::kHonour);
-  auto visit = [&](InstId id) {
-    const Inst& inst = graph.insts[id];
-    std::uint32_t identity = 0;
-    if (inst.kind != Kind::kAlu || inst.components != 1 || !identity_of(inst.op, identity)) return;
-    if (fold_into_selection(graph, id)) return;
-    const bool commutes = inst.op != Op::kFDiv, adds = inst.op == Op::kFAdd;
-    if (select_operation(graph, id, 1, identity) || (commutes && select_operation(graph, id, 0, identity))) return;
-    if (adds && !select_subtraction(graph, id, 1)) select_subtraction(graph, id, 0);
-  };
-  for_each_inst(graph, graph.root, visit);
-}
 
 void build_identities(Graph& graph) {
   Builder builder(graph);

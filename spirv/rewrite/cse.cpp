@@ -34,7 +34,8 @@ bool may_swap(const Inst& inst) { return inst.kind == Kind::kAlu && inst.count =
 
 class Merger {
  public:
-  explicit Merger(Graph& graph) : graph_(graph), table_(256, kNone) {}
+  /// `by_value`: literals are equal by their bits, whatever constant they are a component of.
+  Merger(Graph& graph, bool by_value) : graph_(graph), by_value_(by_value), table_(256, kNone) {}
 
   bool run() {
     visit(graph_.root);
@@ -49,8 +50,13 @@ class Merger {
 
   unsigned components_of_operand(const Inst& inst) const { return inst.kind == Kind::kAlu ? inst.components : 1; }
 
+  const Inst* literal_of(const Inst& inst, Src src) const {
+    return by_value_ && components_of_operand(inst) == 1 ? graph_.constant(src.value) : nullptr;
+  }
+
   std::uint32_t hash_operand(const Inst& inst, std::uint32_t index) const {
     const Src src = graph_.source(inst, index);
+    if (const Inst* literal = literal_of(inst, src)) return literal->imm[src.swizzle[0]] * 0xC2B2AE3Du;
     std::uint32_t h = src.value * 0x9E3779B1u;
     for (unsigned c = 0; c < components_of_operand(inst); ++c) h = (h ^ src.swizzle[c]) * 0x85EBCA6Bu;
     return h;
@@ -73,6 +79,8 @@ class Merger {
   bool same_operand(const Inst& a, std::uint32_t i, const Inst& b, std::uint32_t j) const {
     const Src x = graph_.source(a, i);
     const Src y = graph_.source(b, j);
+    const Inst *literal = literal_of(a, x), *other = literal_of(b, y);
+    if (literal && other) return literal->imm[x.swizzle[0]] == other->imm[y.swizzle[0]];
     if (x.value != y.value) return false;
     for (unsigned c = 0; c < components_of_operand(a); ++c)
       if (x.swizzle[c] != y.swizzle[c]) return false;
@@ -153,6 +161,7 @@ class Merger {
   }
 
   Graph& graph_;
+  const bool by_value_;
   std::vector<InstId> table_;           ///< open addressing, a power of two
   std::vector<std::uint32_t> entered_;  ///< slots in use, in order of entry
   bool changed_ = false;
@@ -160,6 +169,7 @@ class Merger {
 
 }  // namespace
 
-bool merge_equal(Graph& graph) { return Merger(graph).run(); }
+bool merge_equal(Graph& graph) { return Merger(graph, false).run(); }
+bool merge_equal_code(Graph& graph) { return Merger(graph, true).run(); }
 
 }  // namespace vitrine::spirv::rewriting

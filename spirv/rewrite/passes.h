@@ -20,6 +20,9 @@ bool forward_loads(Graph& graph);
 /// Merges equal instructions, the later into the one that dominates it.
 bool merge_equal(Graph& graph);
 
+/// The same for scalar code as the reference's code generator sees it: literals are equal by their bits.
+bool merge_equal_code(Graph& graph);
+
 /// Splits ALU instructions into components, rejoined by Vec.
 bool scalarize(Graph& graph);
 

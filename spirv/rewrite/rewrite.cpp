@@ -60,6 +60,7 @@ void finish(Graph& graph) {
   rewriting::build_identities(graph);
   rewriting::propagate_copies(graph);
   rewriting::remove_dead(graph);
+  rewriting::merge_equal_code(graph);
   rewriting::select_identities(graph);
   rewriting::convert_waves(graph);
 }

@@ -1,0 +1,66 @@
+// Selections and branches with a literal side, and conversions to integers that are undefined: what the reference's
+// optimiser makes of them shows in denormals and in integers.
+#include "cases/glsl/evaluate.h"
+#include "harness/case.h"
+#include "harness/execute.h"
+
+namespace vitrine::cts {
+namespace {
+
+constexpr Type kVec4{Base::kFloat, 4}, kUint4{Base::kUint, 4};
+
+/// Fragments over special values: `statements` define r0, r1, ... of `type`.
+void evaluate_specials(Run& run, Type type, int results, const std::string& statements) {
+  ShaderBody body;
+  body.statements = statements;
+  for (int k = 0; k < results; ++k) body.results.push_back({type, "r" + std::to_string(k)});
+  body.specials = true;
+  evaluate(run, Stage::kFragment, body);
+}
+
+CTS_CASE("glsl", "selected_values") {
+  run.require(reference_cpu().float_to_uint_as_recorded, "what the reference does on a CPU with AVX-512");
+  evaluate_specials(run, kVec4, 12,
+                    "  vec4 r0 = b * (i.x == 3 ? a : vec4(1.0)), r1 = b * (i.x > 3 ? a * p : vec4(1.0));\n"
+                    "  vec4 r2 = b - (i.x > 3 ? a : vec4(0.0)), r3 = b / (a.x > 3.0 ? a : vec4(1.0));\n"
+                    "  vec4 product = a * a + p, r4 = b * (i.x > 3 ? product : vec4(1.0)), r5 = product;\n"
+                    "  vec4 r6 = b * (i.x > 3 ? sin(a) : vec4(1.0)), r7 = b * (i.x > 3 ? floor(a) : vec4(1.0));\n"
+                    "  vec4 r8 = b * (i.x > 3 && a.y > 1.0 ? a : vec4(1.0));\n"
+                    "  vec4 r9 = b * (i.x > 3 ? vec4(a.x * a.y) : vec4(1.0));\n"
+                    "  vec4 r10 = a - pow(abs(b), p), r11 = a.yxwz - pow(b, b);\n");
+}
+
+CTS_CASE("glsl", "branched_values") {
+  run.require(reference_cpu().float_to_uint_as_recorded, "what the reference does on a CPU with AVX-512");
+  evaluate_specials(run, kVec4, 6,
+                    "  vec4 c = vec4(1.0), d = vec4(1.0), e = vec4(1.0), f = vec4(-0.0);\n"
+                    "  if (a.x > 3.0) c = in_a[id ^ 1u]; else d = in_a[id ^ 2u];\n"
+                    "  if (i.x > 3) e = in_a[id ^ 1u]; else f = in_a[id ^ 2u];\n"
+                    "  vec4 r0 = b * c, r1 = b / d, r2 = b * e, r3 = b + f;\n"
+                    "  vec4 r4 = b * (isnan(b.w) ? p : vec4(1.0, -10.0, 1.0, 0.5)), r5 = vec4(3.0);\n"
+                    "  if (a.y > 0.0) {\n"
+                    "    vec4 g;\n"
+                    "    if (a.z > 3.0) g = in_a[id ^ 1u]; else g = vec4(1.0);\n"
+                    "    r5 = b * g;\n"
+                    "  }\n");
+}
+
+// Literals that convert to no integer, selected or as the source of further integers.
+CTS_CASE("glsl", "undefined_conversions") {
+  evaluate_specials(run, kUint4, 4,
+                    "  uvec4 r0 = uvec4(i.x > 3 ? abs(b) + abs(b) : vec4(-3.0));\n"
+                    "  uvec4 r1 = uvec4(a.x > 3.0 ? abs(b) : vec4(-3.0));\n"
+                    "  uvec4 r2 = uvec4(a.x > 3.0 && b.x < 1.0 ? abs(a + b) : vec4(5e9));\n"
+                    "  vec4 bent = refract(b, vec4(1.7), atanh(abs(3.0)));\n"
+                    "  uvec4 r3 = uvec4(ivec4(pow(bent, vec4(4.0))) ^ pi.w);\n");
+}
+
+// A push constant that was loaded before, though the value is not used, makes a branch that loads it small.
+CTS_CASE("glsl", "repeated_loads") {
+  evaluate_specials(run, kVec4, 1,
+                    "  vec4 r0 = p;\n"
+                    "  r0 = smoothstep((2654435761u > u.z) ? p : b, (2654435761u > u.z) ? p : b, a);\n");
+}
+
+}  // namespace
+}  // namespace vitrine::cts

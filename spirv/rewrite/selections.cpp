@@ -1,0 +1,349 @@
+// Selections with a literal side as operands of arithmetic, in scalar code: the reference's optimiser and its masked
+// instructions move the operation into the side that is not literal, so that x op identity is x, denormal or not.
+#include <algorithm>
+
+#include "base/float_mode.h"
+#include "base/numeric.h"
+#include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/tree.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+constexpr std::uint32_t kOne = 0x3f800000, kMinusZero = 0x80000000;
+
+/// The literal that leaves the other operand of `op` as it is; false: none.
+bool identity_of(Op op, std::uint32_t& bits) {
+  bits = op == Op::kFAdd ? kMinusZero : kOne;
+  return op == Op::kFAdd || op == Op::kFMul || op == Op::kFDiv;
+}
+
+/// A selection with a literal side, in either of its forms.
+struct Selection {
+  Src condition;
+  std::uint32_t side = 0;  ///< of the literal: 1 (where the condition holds) or 2
+  Src operand;             ///< the other side; none where it converts
+  bool converts = false;   ///< bool to float: 1 and 0
+};
+
+/// The instruction of this op that defines `src` for one user.
+const Inst* only_user_of(const Graph& graph, Src src, Op op) {
+  const Inst* inst = graph.def(src.value);
+  const bool fits = inst && inst->kind == Kind::kAlu && inst->op == op && inst->components == 1;
+  return fits && graph.values[src.value].uses == 1 ? inst : nullptr;
+}
+
+/// A comparison of 32-bit integers: their type is that of the masks which select between two literals, and the
+/// reference's code generator does not move the conversion to float into such a selection, which hides it.
+bool compares_integers(const Graph& graph, Src condition) {
+  const Inst* inst = graph.def(condition.value);
+  if (!inst || inst->kind != Kind::kAlu) return false;
+  switch (inst->op) {
+    case Op::kILt:
+    case Op::kIGe:
+    case Op::kULt:
+    case Op::kUGe:
+    case Op::kIEq:
+    case Op::kINe:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// A comparison of floats: what selects between floats by it converts to integers as a whole.
+bool compares_floats(const Graph& graph, Src condition) {
+  const Inst* inst = graph.def(condition.value);
+  return inst && inst->kind == Kind::kAlu && ir::alu_info(inst->op).result == 'B' &&
+         ir::alu_info(inst->op).operands[0] == 'F';
+}
+
+/// Operations that the reference computes as floats; it keeps the results of others, and what it loads from buffers,
+/// as integers.
+bool computes_float(const Inst& inst) {
+  if (inst.kind == Kind::kIntrinsic)
+    return inst.op == Op::kLoadInput || inst.op == Op::kLoadPush || inst.op == Op::kLoadUniform;
+  if (inst.kind != Kind::kAlu || ir::alu_info(inst.op).result != 'F') return false;
+  switch (inst.op) {
+    case Op::kFSin:
+    case Op::kFCos:
+    case Op::kFSign:
+    case Op::kB2F:
+      return false;
+    default:
+      return true;
+  }
+}
+
+/// The value is computed as a float, and nothing but one user reads its bits.
+bool is_float_for_one(const Graph& graph, Src src) {
+  const Inst* inst = graph.def(src.value);
+  if (!inst || !computes_float(*inst)) return false;
+  if (inst->kind == Kind::kIntrinsic) return true;
+  std::uint32_t users = 0;
+  for (Slot slot = graph.values[src.value].first_use; slot != kNone; slot = graph.sources[slot].next) {
+    const Inst& user = graph.insts[graph.sources[slot].user];
+    users += user.kind != Kind::kAlu || ir::alu_info(user.op).operands[slot - user.first] != 'F' ? 1 : 0;
+  }
+  return users <= 1;
+}
+
+bool is_literal(const Graph& graph, Src src, std::uint32_t bits) {
+  const Inst* constant = graph.constant(src.value);
+  return constant && constant->imm[src.swizzle[0]] == bits;
+}
+
+/// True when the conversion to float moves into a selection of a literal and `operand`.
+bool converts_sides(const Graph& graph, Src condition, Src operand) {
+  return !compares_integers(graph, condition) || is_float_for_one(graph, operand);
+}
+
+/// Component `component` of `src`, of the vector that composes it if there is one.
+Src component_of(const Graph& graph, Src src, std::uint8_t component) {
+  const std::uint8_t s = src.swizzle[component];
+  const Inst* vec = graph.def(src.value);
+  return vec && vec->kind == Kind::kVec ? graph.source(*vec, s) : Src{src.value, {s, s, s, s}};
+}
+
+/// Users of one component.
+std::uint32_t users_of(const Graph& graph, Src src) {
+  std::uint32_t users = 0;
+  for (Slot slot = graph.values[src.value].first_use; slot != kNone; slot = graph.sources[slot].next) {
+    const Inst& user = graph.insts[graph.sources[slot].user];
+    const bool scalar = (user.kind == Kind::kAlu && user.components == 1) || user.kind == Kind::kVec;
+    users += !scalar || graph.sources[slot].src.swizzle[0] == src.swizzle[0] ? 1 : 0;
+  }
+  return users;
+}
+
+/// True when a loop contains the instruction; `nested` when an If does.
+bool is_in_loop(const Graph& graph, const Inst& inst, bool& nested) {
+  nested = false;
+  for (InstId at = graph.blocks[inst.block].owner; at != kNone; at = graph.blocks[graph.insts[at].block].owner) {
+    if (graph.insts[at].kind == Kind::kLoop) return true;
+    nested = true;
+  }
+  return false;
+}
+
+/// True when the reference's optimiser sees what the two branches write to a register as one selection. Where the
+/// condition is no comparison of floats, it does only if the else branch computes something.
+bool writes_selection(const Graph& graph, const Inst& branch, Src written, bool nested) {
+  const Src condition = graph.source(branch, 0);
+  const Inst* def = graph.def(condition.value);
+  const Inst* from = graph.def(written.value);
+  const bool loads =
+      from && from->kind == Kind::kIntrinsic && (from->op == Op::kLoadPush || from->op == Op::kLoadUniform);
+  if (nested) return !loads;
+  if (compares_floats(graph, condition)) return true;
+  const Block& else_block = graph.blocks[branch.child[1]];
+  if (loads || else_block.head == else_block.tail || !def || def->op == Op::kNotB) return false;
+  return converts_sides(graph, condition, written);
+}
+
+/// The result of an If outside of loops, for one user: the last that the reference writes to its register is what the
+/// else branch yields, a selection if that is literal.
+bool find_result(const Graph& graph, Src src, std::uint32_t identity, Selection& found) {
+  const Inst* branch = graph.def(src.value);
+  bool nested = false;
+  if (!branch || branch->kind != Kind::kIf || users_of(graph, src) != 1 || is_in_loop(graph, *branch, nested) ||
+      !ends_in(graph, branch->child[0], Op::kYield) || !ends_in(graph, branch->child[1], Op::kYield))
+    return false;
+  const std::vector<ValueId>& results = graph.nodes[branch->node]->results;
+  const auto index = static_cast<std::uint32_t>(std::find(results.begin(), results.end(), src.value) - results.begin());
+  const auto yielded = [&](unsigned side) {
+    const Inst& end = graph.insts[graph.blocks[branch->child[side]].tail];
+    return component_of(graph, graph.source(end, index), src.swizzle[0]);
+  };
+  if (!is_literal(graph, yielded(1), identity)) return false;
+  found = {graph.source(*branch, 0), 2, src, false};
+  return writes_selection(graph, *branch, yielded(0), nested);
+}
+
+/// What selects the literal `identity` on one side, for one user.
+bool find_selection(const Graph& graph, Src src, std::uint32_t identity, Selection& found) {
+  if (const Inst* conversion = only_user_of(graph, src, Op::kB2F)) {
+    if (identity != kOne && identity != 0) return false;
+    found = {graph.source(*conversion, 0), identity == kOne ? 1u : 2u, {}, true};
+    return !compares_integers(graph, found.condition);
+  }
+  const Inst* select = only_user_of(graph, src, Op::kSelect);
+  if (!select) return find_result(graph, src, identity, found);
+  for (const std::uint32_t side : {1u, 2u}) {
+    if (!is_literal(graph, graph.source(*select, side), identity)) continue;
+    found = {graph.source(*select, 0), side, graph.source(*select, 3 - side), false};
+    return converts_sides(graph, found.condition, found.operand);
+  }
+  return false;
+}
+
+/// A selection of two literals for one user, negated or not.
+bool find_literals(const Graph& graph, Src src, Src& condition, std::uint32_t (&literals)[2]) {
+  const Inst* negation = only_user_of(graph, src, Op::kFNeg);
+  if (negation) src = graph.source(*negation, 0);
+  if (const Inst* conversion = only_user_of(graph, src, Op::kB2F)) {
+    condition = graph.source(*conversion, 0);
+    literals[0] = kOne;
+    literals[1] = 0;
+  } else {
+    const Inst* select = only_user_of(graph, src, Op::kSelect);
+    if (!select) return false;
+    condition = graph.source(*select, 0);
+    for (const std::uint32_t side : {1u, 2u}) {
+      const Src literal = graph.source(*select, side);
+      const Inst* constant = graph.constant(literal.value);
+      if (!constant) return false;
+      literals[side - 1] = constant->imm[literal.swizzle[0]];
+    }
+  }
+  for (std::uint32_t& literal : literals)
+    if (negation) literal ^= kMinusZero;
+  return true;
+}
+
+/// A sum or product of a literal and a selection of two literals becomes a selection of two literals.
+bool fold_into_selection(Graph& graph, InstId id) {
+  const Op op = graph.insts[id].op;
+  if (op != Op::kFAdd && op != Op::kFMul) return false;
+  for (const std::uint32_t index : {0u, 1u}) {
+    const Src src = graph.source(graph.insts[id], 1 - index);
+    const Inst* constant = graph.constant(src.value);
+    Src condition;
+    std::uint32_t literals[2];
+    if (!constant || !find_literals(graph, graph.source(graph.insts[id], index), condition, literals)) continue;
+    const std::uint32_t other = constant->imm[src.swizzle[0]];
+    const InstId made = graph.create(Kind::kAlu, Op::kSelect, 1, false, 3);
+    graph.insts[made].origin = graph.insts[id].origin;
+    graph.set_source(made, 0, condition);
+    for (const std::uint32_t side : {1u, 2u}) {
+      const std::uint32_t operands[3] = {literals[side - 1], other};
+      std::uint32_t bits = 0;
+      evaluate(op, operands, bits);
+      const InstId literal = graph.create_const(1, false, &bits);
+      graph.insert_before(id, literal);
+      graph.set_source(made, side, {graph.insts[literal].result, {0, 0, 0, 0}});
+    }
+    graph.insert_before(id, made);
+    graph.replace_uses(graph.insts[id].result, graph.insts[made].result);
+    graph.remove(id);
+    return true;
+  }
+  return false;
+}
+
+/// The side of the selection that is not the identity.
+Src other_side(Graph& graph, InstId position, const Selection& selection) {
+  if (!selection.converts) return selection.operand;
+  const std::uint32_t bits = selection.side == 1 ? 0 : kOne;
+  const InstId made = graph.create_const(1, false, &bits);
+  graph.insert_before(position, made);
+  return {graph.insts[made].result, {0, 0, 0, 0}};
+}
+
+/// The result of `id` becomes that of `id` on one side of the selection and `kept` on the other.
+void select_result(Graph& graph, InstId id, const Selection& selection, Src kept) {
+  const InstId made = graph.create(Kind::kAlu, Op::kSelect, 1, false, 3);
+  graph.insert_after(id, made);
+  graph.insts[made].origin = graph.insts[id].origin;
+  graph.replace_uses(graph.insts[id].result, graph.insts[made].result);
+  graph.set_source(made, 0, selection.condition);
+  graph.set_source(made, selection.side, kept);
+  graph.set_source(made, 3 - selection.side, {graph.insts[id].result, {0, 0, 0, 0}});
+}
+
+/// Operand `index` of `id`, a selection used once with `identity` on one side: x op (c ? y : identity) becomes
+/// c ? x op y : x, which keeps denormals of x.
+bool select_operation(Graph& graph, InstId id, std::uint32_t index, std::uint32_t identity) {
+  const Src other = graph.source(graph.insts[id], 1 - index);
+  Selection selection;
+  if (graph.constant(other.value)) return false;
+  if (!find_selection(graph, graph.source(graph.insts[id], index), identity, selection)) return false;
+  const Src operand = other_side(graph, id, selection);
+  select_result(graph, id, selection, other);
+  graph.set_source(id, index, operand);
+  return true;
+}
+
+/// A power is 0 where its base is 0 or NaN, by a selection (lavapipe-shader-math.md 6.4).
+bool find_power(Graph& graph, Src src, Selection& found) {
+  const Inst* power = only_user_of(graph, src, Op::kFPow);
+  if (!power) return false;
+  const Inst inst = *power;
+  const auto add = [&](Op op, bool boolean, std::initializer_list<Src> operands) {
+    const InstId made = graph.create(Kind::kAlu, op, 1, boolean, static_cast<std::uint32_t>(operands.size()));
+    graph.insts[made].origin = inst.origin;
+    std::uint32_t index = 0;
+    for (const Src& operand : operands) graph.set_source(made, index++, operand);
+    graph.insert_before(graph.values[inst.result].def, made);
+    return Src{graph.insts[made].result, {0, 0, 0, 0}};
+  };
+  const std::uint32_t zero = 0;
+  const InstId literal = graph.create_const(1, false, &zero);
+  graph.insert_before(graph.values[inst.result].def, literal);
+  const Src size = add(Op::kFAbs, false, {graph.source(inst, 0)});
+  const Src condition = add(Op::kFLt, true, {{graph.insts[literal].result, {0, 0, 0, 0}}, size});
+  found = {condition, 2, src, false};
+  return true;
+}
+
+/// The same for the subtraction of a selected zero, x + -(c ? y : 0).
+bool select_subtraction(Graph& graph, InstId id, std::uint32_t index) {
+  const Src negated = graph.source(graph.insts[id], index), other = graph.source(graph.insts[id], 1 - index);
+  const Inst* negation = only_user_of(graph, negated, Op::kFNeg);
+  Selection selection;
+  if (!negation || graph.constant(other.value)) return false;
+  const Src subtracted = graph.source(*negation, 0);
+  if (!find_power(graph, subtracted, selection) && !find_selection(graph, subtracted, 0, selection)) return false;
+  const InstId negate = graph.values[negated.value].def;
+  const Src operand = other_side(graph, negate, selection);
+  select_result(graph, id, selection, other);
+  graph.set_source(negate, 0, operand);
+  return true;
+}
+
+/// No integer of the type that `op` converts to is near the number.
+bool is_undefined(Op op, std::uint32_t bits) {
+  const float number = base::float_of(bits);
+  return op == Op::kF2U ? !(number > -1.0f && number < 4294967296.0f)
+                        : !(number >= -2147483648.0f && number < 2147483648.0f);
+}
+
+/// A selected literal that converts to no integer is never selected: the integer would be undefined.
+void drop_undefined(Graph& graph, InstId id) {
+  for (;;) {
+    const Inst* select = only_user_of(graph, graph.source(graph.insts[id], 0), Op::kSelect);
+    Src kept;
+    for (const std::uint32_t side : {1u, 2u}) {
+      if (!select) break;
+      const Src literal = graph.source(*select, side), other = graph.source(*select, 3 - side);
+      const Inst* constant = graph.constant(literal.value);
+      if (!constant || !is_undefined(graph.insts[id].op, constant->imm[literal.swizzle[0]])) continue;
+      const Src condition = graph.source(*select, 0);
+      if (!compares_floats(graph, condition) && converts_sides(graph, condition, other)) kept = other;
+    }
+    if (kept.value == ir::kNoValue) return;
+    graph.set_source(id, 0, kept);
+  }
+}
+
+}  // namespace
+
+void select_identities(Graph& graph) {
+  const base::ScopedFloatMode mode(base::Denormals::kHonour);
+  auto visit = [&](InstId id) {
+    const Inst& inst = graph.insts[id];
+    std::uint32_t identity = 0;
+    if (inst.kind == Kind::kAlu && inst.components == 1 && (inst.op == Op::kF2I || inst.op == Op::kF2U))
+      drop_undefined(graph, id);
+    if (inst.kind != Kind::kAlu || inst.components != 1 || !identity_of(inst.op, identity)) return;
+    if (fold_into_selection(graph, id)) return;
+    const bool commutes = inst.op != Op::kFDiv, adds = inst.op == Op::kFAdd;
+    if (select_operation(graph, id, 1, identity) || (commutes && select_operation(graph, id, 0, identity))) return;
+    if (adds && !select_subtraction(graph, id, 1)) select_subtraction(graph, id, 0);
+  };
+  for_each_inst(graph, graph.root, visit);
+}
+
+}  // namespace vitrine::spirv::rewriting
