@@ -22,8 +22,10 @@ What tests them, besides the unit tests of `texel`:
   attachments.
 - **vertex**: compared with lavapipe as vertex attribute or texel buffer (`pipeline.vertex_input`, `api.texel_buffers`).
 - **decoder**: lavapipe lacks the format; `texel Block.*` holds digests of blocks that were compared with an independent
-  decoder.
-- **peer**: lavapipe lacks the format or the marked use of it; unit tests of `texel` compare with a format of the same values.
+  decoder, and `texture.format.*` and `texture.random_lacking*` of `cts-subset` compare fetches and filters with those of
+  lavapipe for an image of the decoded texels.
+- **peer**: lavapipe lacks the format or the marked use of it; unit tests of `texel` compare with a format of the same values,
+  and the same cases of `cts-subset` with an image of the same values in a format that lavapipe has.
 - **formulas**: lavapipe lacks the format; `texel Ycbcr.*` compares samples through every kind of conversion with the
   specification's formulas in double precision, `icd Ycbcr.*` the way through the API.
 

@@ -4,8 +4,10 @@
 // and mag filters on its float path, and linear filtering at the corners of a cube.
 #include <array>
 #include <cstdio>
-#include "harness/case.h"
 
+#include "cases/random_transfer.h"
+#include "cases/stand_in.h"
+#include "harness/case.h"
 #include "harness/graphics.h"
 
 namespace vitrine::cts {
@@ -35,13 +37,24 @@ struct Family {
   bool bordered = false;      ///< custom border colours and swizzled views
   bool reduced = false;       ///< minimum or maximum of the taps
   bool unnormalized = false;  ///< coordinates in texels
+  bool lacking = false;       ///< formats that the reference lacks, or cannot filter: it gets a stand-in
 };
+
+constexpr VkFormatFeatureFlags kSampled = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT,
+                               kFiltered = VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
 
 bool fits_8_bit(const FormatInfo& info) {
   return (info.numeric == Numeric::kUnorm && info.bits[0] <= 8) || info.numeric == Numeric::kBlock;
 }
 
 VkFormat random_format(Random& random, const Family& family) {
+  if (family.lacking) {
+    std::vector<VkFormat> formats;
+    for (const FormatInfo& info : all_formats())
+      if (!reference_has(info.format, kFiltered) && has_or_stands_in(info.format, kFiltered))
+        formats.push_back(info.format);
+    return random.pick(formats);
+  }
   const auto usable = [&](const FormatInfo& info) {
     if ((info.numeric == Numeric::kBlock) != family.compressed) return false;
     if ((info.numeric == Numeric::kDepth) != (family.kind == Kind::kShadow)) return false;
@@ -92,10 +105,9 @@ ImageSpec random_image(Random& random, const Shape& shape, VkFormat format, cons
 
 VkSamplerCreateInfo random_sampler(Run& run, const Family& family, const Shape& shape, const ImageSpec& image) {
   Random& random = run.random;
-  const FormatInfo& format = format_info(image.format);
+  const FormatInfo& format = format_info(family.lacking ? reference_format(image.format, kFiltered) : image.format);
   const bool cube = shape.view == VK_IMAGE_VIEW_TYPE_CUBE || shape.view == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
-  const bool filterable =
-      gpus().reference.features_of(image.format) & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  const bool filterable = reference_has(format.format, kFiltered);
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = info.minFilter = filterable && random.chance(0.6f) ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
   info.mipmapMode = filterable && random.chance(0.5f) ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
@@ -286,8 +298,7 @@ void random_texture(Run& run, const Family& family) {
   const FormatInfo& info = format_info(format);
   const ImageSpec image_spec = random_image(random, shape, format, family);
   if (shape.view == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY) run.require(run.gpu.features.imageCubeArray, "imageCubeArray");
-  const Image image = run.image(image_spec);
-  run.fill_random(image);
+  const Image image = random_or_stand_in(run, image_spec, family.lacking ? kFiltered : kSampled);
   VkSamplerCreateInfo sampler_info = random_sampler(run, family, shape, image_spec);
   VkSamplerCustomBorderColorCreateInfoEXT custom{VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT};
   if (family.bordered && random.chance(0.7f)) {
@@ -382,6 +393,14 @@ const std::vector<Family>& families() {
       {"random_anisotropic", Kind::kImplicit, {k2D}, 40, false, true},
       {"random_anisotropic_array", Kind::kImplicit, {k2DArray}, 20, false, true},
       {"random_anisotropic_compressed", Kind::kImplicit, {k2D, k2DArray}, 20, true, true},
+      {.name = "random_lacking", .kind = Kind::kImplicit, .shapes = {k2D, k2DArray}, .count = 60, .lacking = true},
+      {.name = "random_lacking_lod",
+       .kind = Kind::kLod,
+       .shapes = {k2D, k2DArray, kCube},
+       .count = 40,
+       .lacking = true},
+      {.name = "random_lacking_gather", .kind = Kind::kGather, .shapes = {k2D, k2DArray}, .count = 20, .lacking = true},
+      {.name = "random_lacking_fetch", .kind = Kind::kFetch, .shapes = {k2D, k2DArray}, .count = 20, .lacking = true},
   };
   return list;
 }

@@ -10,9 +10,21 @@ namespace vitrine::cts {
 namespace {
 
 #define ROW(name, bytes, b0, b1, b2, b3, numeric) \
-  FormatInfo { VK_FORMAT_##name, #name, bytes, {b0, b1, b2, b3}, Numeric::numeric, 1 }
+  FormatInfo { VK_FORMAT_##name, #name, bytes, {b0, b1, b2, b3}, Numeric::numeric, 1, 1 }
 #define BLOCK(name, bytes) \
-  FormatInfo { VK_FORMAT_##name, #name, bytes, {8, 8, 8, 8}, Numeric::kBlock, 4 }
+  FormatInfo { VK_FORMAT_##name, #name, bytes, {8, 8, 8, 8}, Numeric::kBlock, 4, 4 }
+#define ASTC(width, height)                                                                                     \
+  FormatInfo{VK_FORMAT_ASTC_##width##x##height##_UNORM_BLOCK,                                                   \
+             "ASTC_" #width "x" #height "_UNORM_BLOCK",                                                         \
+             16,                                                                                                \
+             {8, 8, 8, 8},                                                                                      \
+             Numeric::kBlock,                                                                                   \
+             width,                                                                                             \
+             height},                                                                                           \
+      FormatInfo {                                                                                              \
+    VK_FORMAT_ASTC_##width##x##height##_SRGB_BLOCK, "ASTC_" #width "x" #height "_SRGB_BLOCK", 16, {8, 8, 8, 8}, \
+        Numeric::kBlock, width, height                                                                          \
+  }
 
 constexpr FormatInfo kColor[] = {
     ROW(R8_UNORM, 1, 8, 0, 0, 0, kUnorm),
@@ -82,6 +94,9 @@ constexpr FormatInfo kOther[] = {
     ROW(A2R10G10B10_SNORM_PACK32, 4, 10, 10, 10, 2, kSnorm),
     ROW(A2R10G10B10_UINT_PACK32, 4, 10, 10, 10, 2, kUint),
     ROW(A2B10G10R10_SNORM_PACK32, 4, 10, 10, 10, 2, kSnorm),
+    ROW(R4G4B4A4_UNORM_PACK16, 2, 4, 4, 4, 4, kUnorm),
+    ROW(R8_SRGB, 1, 8, 0, 0, 0, kSrgb),
+    ROW(R8G8_SRGB, 2, 8, 8, 0, 0, kSrgb),
     ROW(D16_UNORM, 2, 16, 0, 0, 0, kDepth),
     ROW(X8_D24_UNORM_PACK32, 4, 24, 0, 0, 0, kDepth),
     ROW(D32_SFLOAT, 4, 32, 0, 0, 0, kDepth),
@@ -114,6 +129,20 @@ constexpr FormatInfo kOther[] = {
     BLOCK(EAC_R11_SNORM_BLOCK, 8),
     BLOCK(EAC_R11G11_UNORM_BLOCK, 16),
     BLOCK(EAC_R11G11_SNORM_BLOCK, 16),
+    ASTC(4, 4),
+    ASTC(5, 4),
+    ASTC(5, 5),
+    ASTC(6, 5),
+    ASTC(6, 6),
+    ASTC(8, 5),
+    ASTC(8, 6),
+    ASTC(8, 8),
+    ASTC(10, 5),
+    ASTC(10, 6),
+    ASTC(10, 8),
+    ASTC(10, 10),
+    ASTC(12, 10),
+    ASTC(12, 12),
 };
 
 /// Channel c of a texel as raw bits.

@@ -17,7 +17,8 @@ struct FormatInfo {
   uint32_t bytes;   ///< per texel, or per block
   uint8_t bits[4];  ///< per channel in the order of memory, low bits first; 0 = absent
   Numeric numeric;
-  uint32_t block = 1;  ///< texels along a side of a block
+  uint32_t block = 1;         ///< texels along a row of a block
+  uint32_t block_height = 1;  ///< and along a column
 };
 
 /// The row of a format; throws for formats that the suite does not use.

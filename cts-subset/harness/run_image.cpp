@@ -28,7 +28,8 @@ VkFormatFeatureFlags needed_features(VkImageUsageFlags usage) {
 }
 
 VkExtent3D block_extent(const FormatInfo& info, VkExtent3D texels) {
-  return {(texels.width + info.block - 1) / info.block, (texels.height + info.block - 1) / info.block, texels.depth};
+  return {(texels.width + info.block - 1) / info.block, (texels.height + info.block_height - 1) / info.block_height,
+          texels.depth};
 }
 
 }  // namespace
