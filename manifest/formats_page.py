@@ -68,8 +68,6 @@ def row(name, image, buffer, compared):
         tests, exact = "formulas", "defined"
     elif name in PEERS:
         tests, exact = "peer", PEERS[name]
-    elif "SCALED" in name and image:
-        tests, exact = "vertex; blits: peer", "same bits; blits: defined"
     elif name in compared:
         tests = "reference"
         exact = "reference curve" if "SRGB" in name and "BC7" not in name else "same bits"

@@ -19,13 +19,13 @@ bool can_fetch_vertices(const FormatDesc& format) {
   return format.plain || (format.channel_count != 0 && format.channel[0].bits == 64 && format.is_integer());
 }
 
-bool can_encode(const FormatDesc& format) { return format.plain; }
+bool can_encode(const FormatDesc& format) { return format.plain && !is_scaled(format); }
 
 bool can_sample(const FormatDesc& format) {
   if (format.requires_conversion()) return true;
   switch (format.compression) {
     case Compression::kNone:
-      return format.plain;
+      return format.plain && !is_scaled(format);
     case Compression::kBc:
     case Compression::kEtc2:
     case Compression::kEac:
@@ -39,8 +39,7 @@ bool can_sample(const FormatDesc& format) {
 bool can_filter(const FormatDesc& format) { return can_sample(format) && !format.is_integer(); }
 
 bool can_store(const FormatDesc& format) {
-  return can_encode(format) && !format.is_depth_stencil() && !is_scaled(format) &&
-         format.format != VK_FORMAT_E5B9G9R9_UFLOAT_PACK32;
+  return can_encode(format) && !format.is_depth_stencil() && format.format != VK_FORMAT_E5B9G9R9_UFLOAT_PACK32;
 }
 
 bool can_atomic(const FormatDesc& format) {

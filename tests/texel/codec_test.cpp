@@ -94,14 +94,6 @@ TEST(Decode, FormatsThatTheReferenceLacks) {
                    static_cast<std::uint32_t>(-2)}));
 }
 
-TEST(Encode, ScaledFormatsRoundAndClamp) {
-  const float nan = base::float_of(0x7fc00000u);
-  EXPECT_EQ(encoded(VK_FORMAT_R8G8B8A8_USCALED, Encoding::kAttachment, -1, 2.5f, 254.6f, 1e9f), 0xFFFF0200u);
-  EXPECT_EQ(encoded(VK_FORMAT_R8G8B8A8_SSCALED, Encoding::kAttachment, -200, -1.5f, 127.9f, nan), 0x007FFE80u);
-  EXPECT_EQ(encoded(VK_FORMAT_A2B10G10R10_USCALED_PACK32, Encoding::kAttachment, 2000, 3, 0, 9), 0xC0000FFFu);
-  EXPECT_EQ(encoded(VK_FORMAT_R16G16_SSCALED, Encoding::kAttachment, -40000, 32767, 0, 0), 0x7FFF8000u);
-}
-
 /// A component of an sRGB storage image is encoded as one of an attachment is.
 TEST(Encode, StoredSrgbIsWhatAttachmentsGet) {
   for (const VkFormat format : {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_A8B8G8R8_SRGB_PACK32}) {

@@ -209,8 +209,6 @@ constexpr VkFormat kBlitFormats[] = {
     VK_FORMAT_R4G4B4A4_UNORM_PACK16,
     VK_FORMAT_A2R10G10B10_UNORM_PACK32,
     VK_FORMAT_R8G8_SRGB,
-    VK_FORMAT_R8G8B8A8_USCALED,
-    VK_FORMAT_R16_SSCALED,
 };
 
 /// Levels of mips, and other regions at half the size: rows against texels one by one, on every SIMD target.
@@ -347,16 +345,6 @@ TEST(Blit, FormatsOfTheSameFieldsGetTheSameCodes) {
       }
     }
   }
-}
-
-/// Scaled integers travel as the numbers that they are.
-TEST(Blit, ScaledFormatsKeepTheirNumbers) {
-  TestImage source(VK_FORMAT_R8G8B8A8_USCALED, {20, 14, 1}, 1, 1), bytes(VK_FORMAT_R8G8B8A8_UINT, {20, 14, 1}, 1, 1);
-  source.memory = bytes.memory = random_bytes(source.memory.size());
-  EXPECT_EQ(blitted(source, VK_FORMAT_R8G8B8A8_USCALED, VK_FILTER_NEAREST),
-            blitted(bytes, VK_FORMAT_R8G8B8A8_UINT, VK_FILTER_NEAREST));
-  EXPECT_EQ(blitted(source, VK_FORMAT_R16G16B16A16_SSCALED, VK_FILTER_NEAREST),
-            blitted(bytes, VK_FORMAT_R16G16B16A16_UINT, VK_FILTER_NEAREST));
 }
 
 TEST(Blit, HalvedRowsEqualTexelsOneByOne) {

@@ -58,12 +58,6 @@ std::int32_t snorm(Encoding encoding, float x, std::uint32_t bits) {
   return base::round_to_int(base::min_second(base::max_second(x, -1.0f), 1.0f) * largest);
 }
 
-/// Integers that are read as floats: the nearest in range, NaN 0.
-std::uint32_t scaled(float x, float least, float most) {
-  if (x != x) return 0;
-  return static_cast<std::uint32_t>(base::round_to_int(std::min(std::max(x, least), most)));
-}
-
 /// imageStore scales by a multiplication, so a mode that flushes denormals flushes small results.
 std::uint32_t small_float_store(float x, int mantissa_bits) {
   if (x > 0.0f && x < 1.0f) {
@@ -116,10 +110,6 @@ std::uint32_t encode_channel(const FormatDesc& format, Encoding encoding, const 
       const auto limit = static_cast<std::int32_t>(low_mask(bits - 1));
       return static_cast<std::uint32_t>(std::clamp(static_cast<std::int32_t>(value), -limit - 1, limit));
     }
-    case Numeric::kUscaled:
-      return scaled(x, 0.0f, static_cast<float>(low_mask(bits)));
-    case Numeric::kSscaled:
-      return scaled(x, -static_cast<float>(1u << (bits - 1)), static_cast<float>(low_mask(bits - 1)));
     case Numeric::kSfloat:
       return bits == 16 ? base::float_to_half_truncate(x) : value;
     case Numeric::kUfloat:

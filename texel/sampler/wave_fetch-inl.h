@@ -53,11 +53,6 @@ HWY_INLINE VF convert_field(VU word, const Channel& channel) {
     return srgb_to_linear(hn::BitCast(DI(), field));
   } else if constexpr (kNumeric == Numeric::kUfloat) {
     return half_field_to_float(hn::ShiftLeftSame(field, static_cast<int>(15 - bits)));
-  } else if constexpr (kNumeric == Numeric::kUscaled) {
-    return lanes_int_to_float(hn::BitCast(DI(), field));
-  } else if constexpr (kNumeric == Numeric::kSscaled) {
-    const int unused = static_cast<int>(32 - bits);
-    return lanes_int_to_float(hn::ShiftRightSame(hn::ShiftLeftSame(hn::BitCast(DI(), field), unused), unused));
   } else if constexpr (kNumeric == Numeric::kUint) {
     return as_float(field);
   } else if constexpr (kNumeric == Numeric::kSint) {

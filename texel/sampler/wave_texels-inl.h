@@ -147,10 +147,6 @@ inline HWY_NOINLINE void fetch_texels(const ImageView& view, const TexelPlaces& 
       return convert_words<Numeric::kSrgb>(format, words, wanted, out);
     case Numeric::kUfloat:
       return convert_words<Numeric::kUfloat>(format, words, wanted, out);
-    case Numeric::kUscaled:
-      return convert_words<Numeric::kUscaled>(format, words, wanted, out);
-    case Numeric::kSscaled:
-      return convert_words<Numeric::kSscaled>(format, words, wanted, out);
     case Numeric::kUint:
       return convert_words<Numeric::kUint>(format, words, wanted, out);
     case Numeric::kSint:
