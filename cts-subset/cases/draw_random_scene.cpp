@@ -1,5 +1,8 @@
 // Small random scenes: several pipelines, textures, push constants and dynamic state in one render pass, many draws of
 // meshes with shared edges and tiny triangles, so that order, batching and tiles all show.
+#include <cmath>
+#include <optional>
+
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -76,6 +79,48 @@ Push random_push(Random& random) {
   return push;
 }
 
+/// One draw of a scene, and what is set before it.
+struct SceneDraw {
+  uint32_t mesh, pipeline;
+  Push push;
+  std::optional<VkRect2D> scissor;
+};
+
+/// A corner in framebuffer coordinates.
+struct Corner {
+  double x, y;
+  bool outside;  ///< of the view volume
+};
+Corner transformed(const Mesh& mesh, uint32_t index, const Push& push, const TargetSpec& target) {
+  const float* position = &mesh.vertices[size_t{index} * 9];
+  double clip[4];
+  for (int row = 0; row < 4; ++row) {
+    clip[row] = push.matrix[12 + row];
+    for (int column = 0; column < 3; ++column) clip[row] += double{push.matrix[column * 4 + row]} * position[column];
+  }
+  const double w = clip[3];
+  const bool outside = !(std::abs(clip[0]) <= w && std::abs(clip[1]) <= w && clip[2] >= 0 && clip[2] <= w);
+  return {(clip[0] / w * 0.5 + 0.5) * target.width, (clip[1] / w * 0.5 + 0.5) * target.height, outside};
+}
+
+/// Whether a triangle that the rounding of its corners may turn around is drawn with one that is clipped
+/// (deviations.md, neighbour-culling).
+bool thin_beside_clipped(const Mesh& mesh, const Push& push, const TargetSpec& target) {
+  bool thin = false, clipped = false;
+  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+    Corner c[3];
+    for (size_t k = 0; k < 3; ++k) c[k] = transformed(mesh, mesh.indices[i + k], push, target);
+    if (c[0].outside || c[1].outside || c[2].outside) {
+      clipped = true;
+      continue;
+    }
+    const double ax = c[1].x - c[0].x, ay = c[1].y - c[0].y, bx = c[2].x - c[0].x, by = c[2].y - c[0].y;
+    const double reach = std::abs(ax) + std::abs(ay) + std::abs(bx) + std::abs(by);
+    thin |= std::abs(ax * by - ay * bx) < reach / 128;  // corners are rounded to 1/256
+  }
+  return thin && clipped;
+}
+
 CTS_RANDOM("draw", "random_scene", 120) {
   Random& random = run.random;
   TargetSpec target_spec;
@@ -84,7 +129,6 @@ CTS_RANDOM("draw", "random_scene", 120) {
   target_spec.depth = random.pick({VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM, VK_FORMAT_D24_UNORM_S8_UINT});
   target_spec.colors = {
       random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R16G16B16A16_SFLOAT})};
-  const Target target = make_target(run, target_spec);
   ImageSpec image_spec;
   image_spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
   image_spec.extent = {32, 32, 1};
@@ -97,7 +141,7 @@ CTS_RANDOM("draw", "random_scene", 120) {
   sampler_info.maxLod = VK_LOD_CLAMP_NONE;
   const Resources res = run.resources({sampled(0, image, run.sampler(sampler_info))}, sizeof(Push));
 
-  std::vector<VkPipeline> pipelines;
+  std::vector<GraphicsSpec> pipelines;
   for (uint32_t n = 1 + random.below(3); n > 0; --n) {
     GraphicsSpec spec;
     spec.layout = res.layout;
@@ -116,34 +160,55 @@ CTS_RANDOM("draw", "random_scene", 120) {
       spec.blends = {{VK_TRUE, VK_BLEND_FACTOR_SRC_ALPHA, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA, VK_BLEND_OP_ADD,
                       VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA, VK_BLEND_OP_ADD, 0xf}};
     spec.dynamic = {VK_DYNAMIC_STATE_SCISSOR};
-    pipelines.push_back(make_pipeline(run, spec, target));
+    pipelines.push_back(spec);
   }
-  std::vector<std::pair<Buffer, Buffer>> meshes;
-  std::vector<uint32_t> counts;
+  std::vector<Mesh> meshes;
+  std::vector<std::pair<Buffer, Buffer>> buffers;
   for (uint32_t n = 1 + random.below(3); n > 0; --n) {
-    const Mesh mesh = random_mesh(random);
-    meshes.emplace_back(run.buffer_of(mesh.vertices), run.buffer_of(mesh.indices));
-    counts.push_back(static_cast<uint32_t>(mesh.indices.size()));
+    const Mesh& mesh = meshes.emplace_back(random_mesh(random));
+    buffers.emplace_back(run.buffer_of(mesh.vertices), run.buffer_of(mesh.indices));
   }
-  const VkRect2D everything = target.rect();
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    res.bind(cmd);
-    vkCmdSetScissor(cmd, 0, 1, &everything);
-    for (uint32_t n = 1 + random.below(30); n > 0; --n) {
-      const auto mesh = random.below(static_cast<uint32_t>(meshes.size()));
-      const Push push = random_push(random);
-      bind_pipeline(cmd, random.pick(pipelines));
-      bind_vertices(cmd, meshes[mesh].first);
-      vkCmdBindIndexBuffer(cmd, meshes[mesh].second.handle, 0, VK_INDEX_TYPE_UINT16);
-      vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, sizeof push, &push);
-      const VkRect2D half{{static_cast<int32_t>(random.below(20)), 5}, {target_spec.width / 2, target_spec.height / 2}};
-      if (random.chance(0.2f)) vkCmdSetScissor(cmd, 0, 1, random.chance(0.5f) ? &half : &everything);
-      vkCmdDrawIndexed(cmd, counts[mesh], 1, 0, 0, 0);
-    }
-    vkCmdEndRenderPass(cmd);
-  });
-  out_target(run, target);
+  const VkRect2D everything{{0, 0}, {target_spec.width, target_spec.height}};
+  std::vector<SceneDraw> draws;
+  bool listed = false;
+  for (uint32_t n = 1 + random.below(30); n > 0; --n) {
+    SceneDraw& draw = draws.emplace_back();
+    draw.mesh = random.below(static_cast<uint32_t>(meshes.size()));
+    draw.push = random_push(random);
+    draw.pipeline = random.below(static_cast<uint32_t>(pipelines.size()));
+    const VkRect2D half{{static_cast<int32_t>(random.below(20)), 5}, {target_spec.width / 2, target_spec.height / 2}};
+    if (random.chance(0.2f)) draw.scissor = random.chance(0.5f) ? half : everything;
+    listed |=
+        pipelines[draw.pipeline].raster.cullMode && thin_beside_clipped(meshes[draw.mesh], draw.push, target_spec);
+  }
+  const auto render = [&] {
+    const Target target = make_target(run, target_spec);
+    std::vector<VkPipeline> handles;
+    for (const GraphicsSpec& spec : pipelines) handles.push_back(make_pipeline(run, spec, target));
+    run.once([&](VkCommandBuffer cmd) {
+      target.begin(cmd);
+      res.bind(cmd);
+      vkCmdSetScissor(cmd, 0, 1, &everything);
+      for (const SceneDraw& draw : draws) {
+        bind_pipeline(cmd, handles[draw.pipeline]);
+        bind_vertices(cmd, buffers[draw.mesh].first);
+        vkCmdBindIndexBuffer(cmd, buffers[draw.mesh].second.handle, 0, VK_INDEX_TYPE_UINT16);
+        vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, sizeof draw.push, &draw.push);
+        if (draw.scissor) vkCmdSetScissor(cmd, 0, 1, &*draw.scissor);
+        vkCmdDrawIndexed(cmd, static_cast<uint32_t>(meshes[draw.mesh].indices.size()), 1, 0, 0, 0);
+      }
+      vkCmdEndRenderPass(cmd);
+    });
+    out_target(run, target);
+  };
+  render();
+  if (listed) {
+    for (Output& output : run.outputs) output.deviation = "neighbour-culling";
+    const size_t first = run.outputs.size();
+    for (GraphicsSpec& spec : pipelines) spec.raster.cullMode = VK_CULL_MODE_NONE;
+    render();
+    for (size_t i = first; i < run.outputs.size(); ++i) run.outputs[i].name = "without_culling." + run.outputs[i].name;
+  }
   run.may_be_blank();
 }
 
