@@ -44,7 +44,8 @@ void random_pass(Random& second, Scene& scene) {
   });
   if (!views || !all_stages || scene.attachmentless()) return;
   target.layers = 3;
-  target.view_mask = 1u << second.below(3);
+  // deviations.md, multiview-layers
+  target.view_mask = second.chance(0.8f) ? 1u << second.below(3) : second.pick({3u, 5u, 6u, 7u});
 }
 
 Scene random_scene(Run& run, Random& second) {
@@ -279,6 +280,8 @@ void random_multisample(Random& random, const Scene& scene, DrawState& draw) {
     state.alphaToCoverageEnable = state.alphaToOneEnable = state.sampleShadingEnable = VK_FALSE;
 }
 
+constexpr uint32_t kVertexFloats = 12;
+
 /// Vertices in cells of a grid, no two in one, so that there are no short lines; or anywhere, also outside.
 std::vector<float> random_vertices(Random& random, const DrawState& draw) {
   std::vector<uint32_t> cells;
@@ -327,7 +330,7 @@ void random_surroundings(Run& run, Random& second, const Scene& scene, DrawState
     draw.origin.domainOrigin = VK_TESSELLATION_DOMAIN_ORIGIN_LOWER_LEFT;
     draw.spec.tessellation.pNext = &draw.origin;
   }
-  draw.fragment.counts = scene.attachmentless();
+  draw.fragment.counts = second.chance(0.1f) || scene.attachmentless();
   if (!scene.unrestricted) return;
   for (VkViewport& viewport : draw.spec.viewports) {
     viewport.minDepth = viewport.minDepth * 5 - 2;
@@ -360,7 +363,7 @@ void random_draw(Run& run, Random& second, const Scene& scene, DrawState& draw) 
   random_multisample(random, scene, draw);
   random_surroundings(run, second, scene, draw);
   write_stages(draw.stages, draw.spec);
-  draw.spec.floats({4, 4, 4});
+  draw.spec.floats({4, 4, kVertexFloats - 8});
   if (!(scene.target.colors.empty() && random.chance(0.5f)))
     draw.spec.fragment = random_fragment(random, scene.target, draw.stages, draw.fragment);
   draw.vertices = 4 + random.below(44);
@@ -377,7 +380,43 @@ bool restartable(VkPrimitiveTopology topology) {
 /// The parameters of an indirect draw.
 std::vector<uint32_t> draw_words(const RecordedDraw& draw) {
   const DrawState& state = draw.state;
-  return {state.vertices, state.instances, 0, 0, 0};
+  if (draw.indexed) return {state.vertices, state.instances, 0, draw.first_vertex, draw.first_instance};
+  return {state.vertices, state.instances, draw.first_vertex, draw.first_instance};
+}
+
+/// Indices of a type; ~0 is what restarts primitives.
+Buffer index_buffer(Run& run, VkIndexType type, const std::vector<uint32_t>& order) {
+  if (type == VK_INDEX_TYPE_UINT8_EXT) return run.buffer_of(std::vector<uint8_t>(order.begin(), order.end()));
+  if (type == VK_INDEX_TYPE_UINT16) return run.buffer_of(std::vector<uint16_t>(order.begin(), order.end()));
+  return run.buffer_of(order);
+}
+
+/// How a draw is issued, and a clear before it.
+void random_command(Random& second, const Scene& scene, RecordedDraw& draw) {
+  draw.seed = second.bits64();
+  const VkIndexType type =
+      second.pick({VK_INDEX_TYPE_UINT16, VK_INDEX_TYPE_UINT16, VK_INDEX_TYPE_UINT32, VK_INDEX_TYPE_UINT8_EXT});
+  if (type != VK_INDEX_TYPE_UINT8_EXT || both([](const auto& f) { return f.index_type_uint8.indexTypeUint8; }))
+    draw.index_type = type;
+  draw.first_vertex = second.chance(0.2f) ? 1 + second.below(9) : 0;
+  draw.first_instance = second.chance(0.2f) ? 1 + second.below(2) : 0;
+  if (draw.state.indirect && !gpus().reference.features.drawIndirectFirstInstance) draw.first_instance = 0;
+  const bool clears = second.chance(0.1f), depth = second.chance(0.5f);
+  const auto colors = static_cast<uint32_t>(scene.target.colors.size());
+  if (!clears || scene.attachmentless()) return;
+  draw.cleared = {{static_cast<int32_t>(second.below(scene.target.width / 2)),
+                   static_cast<int32_t>(second.below(scene.target.height / 2))},
+                  {1 + second.below(scene.target.width / 2), 1 + second.below(scene.target.height / 2)}};
+  VkClearAttachment& clear = draw.clear.emplace();
+  if (colors == 0 || (depth && scene.target.depth)) {
+    clear.aspectMask = aspects_of(scene.target.depth);
+    clear.clearValue = clear_value(scene.target.depth, second.unit(), second.unit(), 0, 0);
+    return;
+  }
+  clear.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
+  clear.colorAttachment = second.below(colors);
+  clear.clearValue = clear_value(scene.target.colors[clear.colorAttachment], second.unit(), second.unit(),
+                                 second.unit(), second.unit());
 }
 
 /// What deviations.md lists is drawn, too; then the same again without it, which must be identical.
@@ -399,24 +438,32 @@ void random_state(Run& run, Random& second, bool unrestricted) {
     RecordedDraw& r = *draws.emplace_back(std::make_unique<RecordedDraw>());
     DrawState& draw = r.state;
     random_draw(run, second, scene, draw);
-    r.seed = second.bits64();
+    random_command(second, scene, r);
     r.indexed = random.chance(0.4f);
     draw.spec.assembly.primitiveRestartEnable = r.indexed && restartable(draw.stages.topology) && random.chance(0.6f);
-    std::vector<uint16_t> order;
+    std::vector<uint32_t> order;
     for (uint32_t i = 0; i < draw.vertices; ++i)
-      order.push_back(static_cast<uint16_t>(
-          draw.spec.assembly.primitiveRestartEnable && random.chance(0.1f) ? 0xffff : random.below(draw.vertices)));
-    r.vertices = run.buffer_of(random_vertices(random, draw));
-    r.indices = run.buffer_of(order);
+      order.push_back(draw.spec.assembly.primitiveRestartEnable && random.chance(0.1f) ? ~0u
+                                                                                       : random.below(draw.vertices));
+    std::vector<float> vertices = random_vertices(random, draw);
+    vertices.insert(vertices.begin(), size_t{r.first_vertex} * kVertexFloats, 0.5f);
+    r.vertices = run.buffer_of(vertices);
+    r.indices = index_buffer(run, r.index_type, order);
     r.command = run.buffer_of(draw_words(r));
   }
   render(run, scene, clears, draws, "");
   std::string rows;
   for (const auto& draw : draws)
     for (const std::string& row : remove_listed(scene, draw->state)) rows += row + " ";
+  Scene without = scene;
+  uint32_t& views = without.target.view_mask;
+  if (views & (views - 1)) {
+    rows += "multiview-layers ";
+    views &= ~views + 1;
+  }
   if (!rows.empty()) {
     for (Output& output : run.outputs) output.deviation = rows;
-    render(run, scene, clears, draws, "without_listed.");
+    render(run, without, clears, draws, "without_listed.");
   }
   run.may_be_blank();
 }

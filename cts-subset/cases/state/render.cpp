@@ -162,21 +162,26 @@ struct Queries {
 
 void issue(VkCommandBuffer cmd, const RecordedDraw& draw) {
   const DrawState& state = draw.state;
-  if (draw.indexed) vkCmdBindIndexBuffer(cmd, draw.indices.handle, 0, VK_INDEX_TYPE_UINT16);
+  if (draw.indexed) vkCmdBindIndexBuffer(cmd, draw.indices.handle, 0, draw.index_type);
   if (state.indirect && draw.indexed)
     vkCmdDrawIndexedIndirect(cmd, draw.command.handle, 0, 1, 0);
   else if (state.indirect)
     vkCmdDrawIndirect(cmd, draw.command.handle, 0, 1, 0);
   else if (draw.indexed)
-    vkCmdDrawIndexed(cmd, state.vertices, state.instances, 0, 0, 0);
+    vkCmdDrawIndexed(cmd, state.vertices, state.instances, 0, static_cast<int32_t>(draw.first_vertex),
+                     draw.first_instance);
   else
-    vkCmdDraw(cmd, state.vertices, state.instances, 0, 0);
+    vkCmdDraw(cmd, state.vertices, state.instances, draw.first_vertex, draw.first_instance);
 }
 
 void record_draw(Run& run, VkCommandBuffer cmd, const PreparedDraw& prepared, const Queries& queries, uint32_t n,
                  const Resources* resources) {
   const DrawState& state = prepared.draw.state;
   const Gpu& gpu = run.gpu;
+  if (prepared.draw.clear) {
+    const VkClearRect rect{prepared.draw.cleared, 0, 1};
+    vkCmdClearAttachments(cmd, 1, &*prepared.draw.clear, 1, &rect);
+  }
   bind_pipeline(cmd, prepared.pipeline);
   prepared.state->set(cmd, prepared.draw.vertices);
   if (resources) resources->bind(cmd);
@@ -248,10 +253,11 @@ void render(Run& run, const Scene& scene, const std::vector<VkClearValue>& clear
             const std::vector<std::unique_ptr<RecordedDraw>>& draws, const std::string& prefix) {
   const Pass pass(run, scene, clears);
   const size_t first_output = run.outputs.size();
-  const Buffer counters = run.buffer(scene.attachmentless() ? VkDeviceSize{4} * kCountedRow * kCountedRow : 16);
+  const bool counts = std::any_of(draws.begin(), draws.end(), [](const auto& d) { return d->state.fragment.counts; });
+  const Buffer counters = run.buffer(counts ? VkDeviceSize{4} * kCountedRow * kCountedRow : 16);
   std::memset(counters.data, 0, counters.size);
   const Resources resources = run.resources({storage_buffer(0, counters)});
-  const Resources* counting = scene.attachmentless() ? &resources : nullptr;
+  const Resources* counting = counts ? &resources : nullptr;
   std::vector<PreparedDraw> prepared;
   bool queried = false;
   for (const auto& draw : draws) {

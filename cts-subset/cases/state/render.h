@@ -12,6 +12,10 @@ struct RecordedDraw {
   DrawState state;
   Buffer vertices, indices, command;
   bool indexed = false;
+  VkIndexType index_type = VK_INDEX_TYPE_UINT16;
+  uint32_t first_vertex = 0, first_instance = 0;  ///< the first vertex is the offset of an indexed draw
+  std::optional<VkClearAttachment> clear;         ///< before the draw
+  VkRect2D cleared{};
   uint64_t seed = 0;  ///< of the choice of what is left to commands
 };
 
