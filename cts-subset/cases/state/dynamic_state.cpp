@@ -5,12 +5,6 @@
 namespace vitrine::cts {
 namespace {
 
-/// Whether both devices have it: what a case does must not depend on the device.
-template <class F>
-bool both(F claimed) {
-  return claimed(gpus().device.extension_features) && claimed(gpus().reference.extension_features);
-}
-
 bool eds1() {
   return both([](const auto& f) { return f.extended_dynamic_state.extendedDynamicState; });
 }
@@ -130,38 +124,26 @@ void DynamicState::leave(VkDynamicState state, bool available, const std::functi
 
 void DynamicState::leave_assembly() {
   const Gpu& gpu = run_.gpu;
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_PRIMITIVE_TOPOLOGY, eds1(),
       [this] { spec_.assembly.topology = other_of_class(right_.assembly.topology); },
-      [this, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetPrimitiveTopologyEXT)
-        (c, right_.assembly.topology);
-      });
-  leave(
+      CTS_COMMAND(gpu, CmdSetPrimitiveTopologyEXT), right_.assembly.topology);
+  leave_value(
       VK_DYNAMIC_STATE_PRIMITIVE_RESTART_ENABLE, eds2(&Second::extendedDynamicState2),
-      [this] { spec_.assembly.primitiveRestartEnable = VK_FALSE; },
-      [this, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetPrimitiveRestartEnableEXT)
-        (c, right_.assembly.primitiveRestartEnable);
-      });
+      [this] { spec_.assembly.primitiveRestartEnable = VK_FALSE; }, CTS_COMMAND(gpu, CmdSetPrimitiveRestartEnableEXT),
+      right_.assembly.primitiveRestartEnable);
   if (right_.control.empty()) return;
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_PATCH_CONTROL_POINTS_EXT, eds2(&Second::extendedDynamicState2PatchControlPoints),
-      [this] { spec_.tessellation.patchControlPoints = 7; },
-      [this, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetPatchControlPointsEXT)
-        (c, right_.tessellation.patchControlPoints);
-      });
+      [this] { spec_.tessellation.patchControlPoints = 7; }, CTS_COMMAND(gpu, CmdSetPatchControlPointsEXT),
+      right_.tessellation.patchControlPoints);
   const auto origin = origin_ ? origin_->domainOrigin : VK_TESSELLATION_DOMAIN_ORIGIN_UPPER_LEFT;
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_TESSELLATION_DOMAIN_ORIGIN_EXT, eds3(&Third::extendedDynamicState3TessellationDomainOrigin),
       [this] {
         if (origin_) origin_->domainOrigin = VK_TESSELLATION_DOMAIN_ORIGIN_UPPER_LEFT;
       },
-      [origin, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetTessellationDomainOriginEXT)
-        (c, origin);
-      });
+      CTS_COMMAND(gpu, CmdSetTessellationDomainOriginEXT), origin);
 }
 
 /// Either with their number or without.
@@ -192,73 +174,47 @@ void DynamicState::leave_viewports() {
         });
   const bool control = both([](const auto& f) { return f.depth_clip_control.depthClipControl; });
   const VkBool32 symmetric = control_ && control_->negativeOneToOne;
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_DEPTH_CLIP_NEGATIVE_ONE_TO_ONE_EXT,
       control && eds3(&Third::extendedDynamicState3DepthClipNegativeOneToOne),
       [this] {
         if (control_) control_->negativeOneToOne = VK_FALSE;
       },
-      [symmetric, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetDepthClipNegativeOneToOneEXT)
-        (c, symmetric);
-      });
+      CTS_COMMAND(gpu, CmdSetDepthClipNegativeOneToOneEXT), symmetric);
 }
 
 void DynamicState::leave_rasterization() {
   const Gpu& gpu = run_.gpu;
   const VkPipelineRasterizationStateCreateInfo& right = right_.raster;
   VkPipelineRasterizationStateCreateInfo& wrong = spec_.raster;
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_CULL_MODE, eds1(), [&] { wrong.cullMode = VK_CULL_MODE_FRONT_AND_BACK; },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetCullModeEXT)
-        (c, right.cullMode);
-      });
-  leave(
+      CTS_COMMAND(gpu, CmdSetCullModeEXT), right.cullMode);
+  leave_value(
       VK_DYNAMIC_STATE_FRONT_FACE, eds1(), [&] { wrong.frontFace = static_cast<VkFrontFace>(1 - right.frontFace); },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetFrontFaceEXT)
-        (c, right.frontFace);
-      });
-  leave(
+      CTS_COMMAND(gpu, CmdSetFrontFaceEXT), right.frontFace);
+  leave_value(
       VK_DYNAMIC_STATE_RASTERIZER_DISCARD_ENABLE, eds2(&Second::extendedDynamicState2),
-      [&] { wrong.rasterizerDiscardEnable = VK_FALSE; },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetRasterizerDiscardEnableEXT)
-        (c, right.rasterizerDiscardEnable);
-      });
-  leave(
+      [&] { wrong.rasterizerDiscardEnable = VK_FALSE; }, CTS_COMMAND(gpu, CmdSetRasterizerDiscardEnableEXT),
+      right.rasterizerDiscardEnable);
+  leave_value(
       VK_DYNAMIC_STATE_POLYGON_MODE_EXT, eds3(&Third::extendedDynamicState3PolygonMode),
       [&] { wrong.polygonMode = right.polygonMode ? VK_POLYGON_MODE_FILL : VK_POLYGON_MODE_LINE; },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetPolygonModeEXT)
-        (c, right.polygonMode);
-      });
-  leave(
+      CTS_COMMAND(gpu, CmdSetPolygonModeEXT), right.polygonMode);
+  leave_value(
       VK_DYNAMIC_STATE_DEPTH_CLAMP_ENABLE_EXT, eds3(&Third::extendedDynamicState3DepthClampEnable),
-      [&] { wrong.depthClampEnable = VK_FALSE; },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetDepthClampEnableEXT)
-        (c, right.depthClampEnable);
-      });
+      [&] { wrong.depthClampEnable = VK_FALSE; }, CTS_COMMAND(gpu, CmdSetDepthClampEnableEXT), right.depthClampEnable);
   const bool clips = both([](const auto& f) { return f.depth_clip_enable.depthClipEnable; });
   const VkBool32 clip = clip_ ? clip_->depthClipEnable : !right.depthClampEnable;
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_DEPTH_CLIP_ENABLE_EXT, clips && eds3(&Third::extendedDynamicState3DepthClipEnable),
       [this] {
         if (clip_) clip_->depthClipEnable = !clip_->depthClipEnable;
       },
-      [clip, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetDepthClipEnableEXT)
-        (c, clip);
-      });
-  leave(
+      CTS_COMMAND(gpu, CmdSetDepthClipEnableEXT), clip);
+  leave_value(
       VK_DYNAMIC_STATE_DEPTH_BIAS_ENABLE, eds2(&Second::extendedDynamicState2),
-      [&] { wrong.depthBiasEnable = VK_FALSE; },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetDepthBiasEnableEXT)
-        (c, right.depthBiasEnable);
-      });
+      [&] { wrong.depthBiasEnable = VK_FALSE; }, CTS_COMMAND(gpu, CmdSetDepthBiasEnableEXT), right.depthBiasEnable);
   leave(
       VK_DYNAMIC_STATE_DEPTH_BIAS, true,
       [&] { wrong.depthBiasConstantFactor = wrong.depthBiasSlopeFactor = wrong.depthBiasClamp = 0; },
@@ -270,32 +226,23 @@ void DynamicState::leave_rasterization() {
       [&right](VkCommandBuffer c) { vkCmdSetLineWidth(c, right.lineWidth); });
   if (!provoking_) return;
   const VkProvokingVertexModeEXT provoking = provoking_->provokingVertexMode;
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_PROVOKING_VERTEX_MODE_EXT, eds3(&Third::extendedDynamicState3ProvokingVertexMode),
       [&] { provoking_->provokingVertexMode = static_cast<VkProvokingVertexModeEXT>(1 - provoking); },
-      [provoking, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetProvokingVertexModeEXT)
-        (c, provoking);
-      });
+      CTS_COMMAND(gpu, CmdSetProvokingVertexModeEXT), provoking);
 }
 
 void DynamicState::leave_lines() {
   const Gpu& gpu = run_.gpu;
   const VkPipelineRasterizationLineStateCreateInfoEXT right = *line_;
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_LINE_RASTERIZATION_MODE_EXT, eds3(&Third::extendedDynamicState3LineRasterizationMode),
       [this] { line_->lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT; },
-      [right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetLineRasterizationModeEXT)
-        (c, right.lineRasterizationMode);
-      });
-  leave(
+      CTS_COMMAND(gpu, CmdSetLineRasterizationModeEXT), right.lineRasterizationMode);
+  leave_value(
       VK_DYNAMIC_STATE_LINE_STIPPLE_ENABLE_EXT, eds3(&Third::extendedDynamicState3LineStippleEnable),
-      [this] { line_->stippledLineEnable = VK_FALSE; },
-      [right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetLineStippleEnableEXT)
-        (c, right.stippledLineEnable);
-      });
+      [this] { line_->stippledLineEnable = VK_FALSE; }, CTS_COMMAND(gpu, CmdSetLineStippleEnableEXT),
+      right.stippledLineEnable);
   leave(
       VK_DYNAMIC_STATE_LINE_STIPPLE_EXT, true,
       [this] {
@@ -303,8 +250,7 @@ void DynamicState::leave_lines() {
         line_->lineStipplePattern = 0x5555;
       },
       [right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetLineStippleEXT)
-        (c, right.lineStippleFactor, right.lineStipplePattern);
+        CTS_COMMAND(gpu, CmdSetLineStippleEXT)(c, right.lineStippleFactor, right.lineStipplePattern);
       });
 }
 
@@ -312,37 +258,25 @@ void DynamicState::leave_depth() {
   const Gpu& gpu = run_.gpu;
   const VkPipelineDepthStencilStateCreateInfo& right = right_.depth;
   VkPipelineDepthStencilStateCreateInfo& wrong = spec_.depth;
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_DEPTH_TEST_ENABLE, eds1(), [&] { wrong.depthTestEnable = VK_FALSE; },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetDepthTestEnableEXT)
-        (c, right.depthTestEnable);
-      });
-  leave(
+      CTS_COMMAND(gpu, CmdSetDepthTestEnableEXT), right.depthTestEnable);
+  leave_value(
       VK_DYNAMIC_STATE_DEPTH_WRITE_ENABLE, eds1(), [&] { wrong.depthWriteEnable = !right.depthWriteEnable; },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetDepthWriteEnableEXT)
-        (c, right.depthWriteEnable);
-      });
-  leave(
+      CTS_COMMAND(gpu, CmdSetDepthWriteEnableEXT), right.depthWriteEnable);
+  leave_value(
       VK_DYNAMIC_STATE_DEPTH_COMPARE_OP, eds1(),
       [&] { wrong.depthCompareOp = static_cast<VkCompareOp>(7 - right.depthCompareOp); },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetDepthCompareOpEXT)
-        (c, right.depthCompareOp);
-      });
+      CTS_COMMAND(gpu, CmdSetDepthCompareOpEXT), right.depthCompareOp);
 }
 
 void DynamicState::leave_stencil() {
   const Gpu& gpu = run_.gpu;
   const VkPipelineDepthStencilStateCreateInfo& right = right_.depth;
   VkPipelineDepthStencilStateCreateInfo& wrong = spec_.depth;
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_STENCIL_TEST_ENABLE, eds1(), [&] { wrong.stencilTestEnable = VK_FALSE; },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetStencilTestEnableEXT)
-        (c, right.stencilTestEnable);
-      });
+      CTS_COMMAND(gpu, CmdSetStencilTestEnableEXT), right.stencilTestEnable);
   leave(
       VK_DYNAMIC_STATE_STENCIL_OP, eds1(),
       [&] {
@@ -381,28 +315,19 @@ void DynamicState::leave_multisample(VkSampleCountFlagBits samples) {
         const VkSampleMask all = ~0u;
         CTS_COMMAND(gpu, CmdSetSampleMaskEXT)(c, samples, right.pSampleMask ? right.pSampleMask : &all);
       });
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_RASTERIZATION_SAMPLES_EXT, eds3(&Third::extendedDynamicState3RasterizationSamples), [] {},
-      [&gpu, samples](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetRasterizationSamplesEXT)
-        (c, samples);
-      });
-  leave(
+      CTS_COMMAND(gpu, CmdSetRasterizationSamplesEXT), samples);
+  leave_value(
       VK_DYNAMIC_STATE_ALPHA_TO_COVERAGE_ENABLE_EXT, eds3(&Third::extendedDynamicState3AlphaToCoverageEnable),
-      [&] { wrong.alphaToCoverageEnable = VK_FALSE; },
-      [&right, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetAlphaToCoverageEnableEXT)
-        (c, right.alphaToCoverageEnable);
-      });
+      [&] { wrong.alphaToCoverageEnable = VK_FALSE; }, CTS_COMMAND(gpu, CmdSetAlphaToCoverageEnableEXT),
+      right.alphaToCoverageEnable);
   // Set by a command, alpha to one has another effect in the reference than in a pipeline.
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_ALPHA_TO_ONE_ENABLE_EXT,
       !right.alphaToOneEnable && eds3(&Third::extendedDynamicState3AlphaToOneEnable),
-      [&] { wrong.alphaToOneEnable = gpu.features.alphaToOne && !line_; },
-      [&gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetAlphaToOneEnableEXT)
-        (c, VK_FALSE);
-      });
+      [&] { wrong.alphaToOneEnable = gpu.features.alphaToOne && !line_; }, CTS_COMMAND(gpu, CmdSetAlphaToOneEnableEXT),
+      VK_FALSE);
 }
 
 void DynamicState::leave_blending(uint32_t colors) {
@@ -416,20 +341,14 @@ void DynamicState::leave_blending(uint32_t colors) {
         for (float& constant : spec_.blend.blendConstants) constant = 0.4f;
       },
       [this](VkCommandBuffer c) { vkCmdSetBlendConstants(c, right_.blend.blendConstants); });
-  leave(
+  leave_value(
       VK_DYNAMIC_STATE_LOGIC_OP_EXT, eds2(&Second::extendedDynamicState2LogicOp),
       [this] { spec_.blend.logicOp = static_cast<VkLogicOp>(15 - right_.blend.logicOp); },
-      [this, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetLogicOpEXT)
-        (c, right_.blend.logicOp);
-      });
-  leave(
+      CTS_COMMAND(gpu, CmdSetLogicOpEXT), right_.blend.logicOp);
+  leave_value(
       VK_DYNAMIC_STATE_LOGIC_OP_ENABLE_EXT, eds3(&Third::extendedDynamicState3LogicOpEnable),
-      [this] { spec_.blend.logicOpEnable = !right_.blend.logicOpEnable; },
-      [this, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetLogicOpEnableEXT)
-        (c, right_.blend.logicOpEnable);
-      });
+      [this] { spec_.blend.logicOpEnable = !right_.blend.logicOpEnable; }, CTS_COMMAND(gpu, CmdSetLogicOpEnableEXT),
+      right_.blend.logicOpEnable);
   if (colors == 0 || right.size() != colors) return;
   leave(
       VK_DYNAMIC_STATE_COLOR_BLEND_ENABLE_EXT, eds3(&Third::extendedDynamicState3ColorBlendEnable),
@@ -479,8 +398,7 @@ void DynamicState::leave_blending(uint32_t colors) {
         if (writes_) spec_.blend.pNext = nullptr;
       },
       [writes, &gpu](VkCommandBuffer c) {
-        CTS_COMMAND(gpu, CmdSetColorWriteEnableEXT)
-        (c, static_cast<uint32_t>(writes.size()), writes.data());
+        CTS_COMMAND(gpu, CmdSetColorWriteEnableEXT)(c, static_cast<uint32_t>(writes.size()), writes.data());
       });
 }
 

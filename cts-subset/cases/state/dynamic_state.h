@@ -9,6 +9,12 @@
 
 namespace vitrine::cts {
 
+/// Whether both devices claim a feature: what a case does must not depend on the device.
+template <class Feature>
+bool both(Feature claimed) {
+  return claimed(gpus().device.extension_features) && claimed(gpus().reference.extension_features);
+}
+
 /// A pipeline like another one of which a random part of the state is left to commands. What the pipeline itself says
 /// of that part is wrong, so that a command without effect shows. Only state that both devices can leave to commands
 /// is.
@@ -30,6 +36,11 @@ class DynamicState {
   using Set = std::function<void(VkCommandBuffer)>;
   bool takes(VkDynamicState state, bool available);
   void leave(VkDynamicState state, bool available, const std::function<void()>& spoil, Set set);
+  template <class Command, class Value>
+  void leave_value(VkDynamicState state, bool available, const std::function<void()>& spoil, Command command,
+                   Value value) {
+    leave(state, available, spoil, [command, value](VkCommandBuffer cmd) { command(cmd, value); });
+  }
   const void* copy_chain(const void* next);
   void leave_assembly();
   void leave_viewports();

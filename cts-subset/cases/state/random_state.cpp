@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cases/own_device.h"
+#include "cases/state/dynamic_state.h"
 #include "cases/state/render.h"
 #include "harness/case.h"
 #include "harness/execute.h"
@@ -21,12 +22,6 @@ bool blendable(VkFormat format) {
 Random second_generator(const Run& run) {
   Random copy = run.random;
   return Random(hash_name("random_state", copy.bits64()));
-}
-
-/// Whether both devices have it: what a case does must not depend on the device.
-template <class F>
-bool both(F claimed) {
-  return claimed(gpus().device.extension_features) && claimed(gpus().reference.extension_features);
 }
 
 /// How the draws are put into a pass.
