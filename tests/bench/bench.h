@@ -28,6 +28,7 @@ std::vector<Workload> triangle_workloads();
 std::vector<Workload> scene_workloads();
 std::vector<Workload> shader_workloads();
 std::vector<Workload> texture_workloads();
+std::vector<Workload> lookup_workloads();
 std::vector<Workload> compute_workloads();
 std::vector<Workload> transfer_workloads();
 std::vector<Workload> overhead_workloads();

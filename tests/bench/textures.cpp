@@ -17,6 +17,21 @@ constexpr char kCube[] = "uniform samplerCube t; void main() { o = texture(t, ve
 constexpr char kVolume[] =
     "uniform sampler3D t; void main() { o = texture(t, vec3(uv * vec2(3.1, 2.3), uv.x + uv.y)); }";
 
+constexpr char kGather[] = "uniform sampler2D t; void main() { o = textureGather(t, uv * vec2(3.1, 2.3), 1); }";
+constexpr char kGatherOffsets[] =
+    "uniform sampler2D t; void main() { o = textureGatherOffsets(t, uv * vec2(3.1, 2.3),"
+    " ivec2[4](ivec2(-2, 0), ivec2(1, 3), ivec2(0, -1), ivec2(2, 2))); }";
+constexpr char kShadowGather[] =
+    "uniform sampler2DShadow t; void main() { o = textureGather(t, uv * vec2(3.1, 2.3), 0.5); }";
+constexpr char kFetch[] = "uniform sampler2D t; void main() { o = texelFetch(t, ivec2(uv * 511.0), 0); }";
+constexpr char kIntegers[] =
+    "uniform usampler2D t; void main() { o = vec4(texture(t, uv * vec2(3.1, 2.3))) * (1.0 / 255.0); }";
+constexpr char kLine[] = "uniform sampler1D t; void main() { o = texture(t, uv.x * 3.1); }";
+constexpr char kLines[] =
+    "uniform sampler1DArray t; void main() { o = texture(t, vec2(uv.x * 3.1, floor(uv.y * 7.9))); }";
+constexpr char kLayers[] =
+    "uniform sampler2DArray t; void main() { o = texture(t, vec3(uv * vec2(3.1, 2.3), floor(uv.y * 7.9))); }";
+
 struct TextureSpec {
   const char* body = kOnce;
   VkFilter filter = VK_FILTER_LINEAR;
@@ -37,6 +52,9 @@ double measure(Run& run, const TextureSpec& spec) {
     image_spec.layers = 6;
     image_spec.flags = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT;
   }
+  const bool line = spec.view == VK_IMAGE_VIEW_TYPE_1D || spec.view == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
+  if (line) image_spec.extent.height = 1;
+  if (spec.view == VK_IMAGE_VIEW_TYPE_1D_ARRAY || spec.view == VK_IMAGE_VIEW_TYPE_2D_ARRAY) image_spec.layers = 8;
   image_spec.view = spec.view;
   image_spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
   image_spec.levels = spec.levels;
@@ -74,6 +92,15 @@ std::vector<Workload> texture_workloads() {
   add("tex_bc7", {.format = VK_FORMAT_BC7_UNORM_BLOCK});
   add("tex_cube", {.body = kCube, .view = VK_IMAGE_VIEW_TYPE_CUBE});
   add("tex_3d", {.body = kVolume, .view = VK_IMAGE_VIEW_TYPE_3D});
+  add("tex_gather", {.body = kGather});
+  add("tex_gather_offs", {.body = kGatherOffsets});
+  add("tex_gather_shad", {.body = kShadowGather, .format = VK_FORMAT_D32_SFLOAT, .compare = true});
+  add("tex_fetch", {.body = kFetch});
+  add("tex_uint", {.body = kIntegers, .filter = VK_FILTER_NEAREST, .format = VK_FORMAT_R8G8B8A8_UINT});
+  add("tex_rgba32f", {.format = VK_FORMAT_R32G32B32A32_SFLOAT});
+  add("tex_1d", {.body = kLine, .view = VK_IMAGE_VIEW_TYPE_1D});
+  add("tex_1d_array", {.body = kLines, .view = VK_IMAGE_VIEW_TYPE_1D_ARRAY});
+  add("tex_array", {.body = kLayers, .view = VK_IMAGE_VIEW_TYPE_2D_ARRAY});
   return rows;
 }
 
