@@ -69,6 +69,9 @@ struct SampleRequest {
   std::uint32_t gather_component = 0;
 };
 
+/// Results of a wave by component, raw bits; null: not wanted. They may be the registers of the request.
+using SampleResult = std::array<base::WaveRegister*, 4>;
+
 /// Samples, gathers or queries for every active lane; writes four components (raw bits), kQueryLod two. Other lanes of
 /// `result` keep what they hold; so they do for the fetches below.
 void sample(const ImageView& view, const Sampler& sampler, const SampleRequest& request, base::WaveRegister result[4]);
@@ -82,14 +85,17 @@ struct FetchRequest {
   const base::WaveRegister* sample = nullptr;
   std::array<const base::WaveRegister*, 3> offset{};
 };
-void fetch(const ImageView& view, const FetchRequest& request, base::WaveRegister result[4]);
+void fetch(const ImageView& view, const FetchRequest& request, const SampleResult& result);
 void fetch_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
-                  base::WaveRegister result[4]);
+                  const SampleResult& result);
+
+/// What is stored, by component.
+using StoredValue = std::array<const base::WaveRegister*, 4>;
 
 /// imageStore (part B conversions): out of range is dropped. Lanes are stored in increasing order.
-void store(const ImageView& view, const FetchRequest& request, const base::WaveRegister value[4]);
+void store(const ImageView& view, const FetchRequest& request, const StoredValue& value);
 void store_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
-                  const base::WaveRegister value[4]);
+                  const StoredValue& value);
 
 /// Address of a 32-bit texel for image atomics, null where out of range; lane by lane, by the caller.
 std::uint32_t* texel_address(const ImageView& view, std::int32_t x, std::int32_t y, std::int32_t z,

@@ -113,13 +113,17 @@ KeptSampler& kept_sampler(const Call& call, const texel::ImageView& view, const 
   return entry;
 }
 
+/// Where there is no such image.
+void zero_registers(const Call& call, base::LaneMask lanes) {
+  for (WaveRegister* component : sample_result(call)) {
+    if (component != nullptr) base::for_each_lane(lanes, [&](std::size_t lane) { component->lane[lane] = 0; });
+  }
+}
+
 /// Straight to the registers of the results.
 void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
   if (image.image == nullptr || sampler == nullptr || !has_dimension(call, *image.image)) {
-    for (WaveRegister* component : sample_result(call)) {
-      if (component != nullptr) base::for_each_lane(lanes, [&](std::size_t lane) { component->lane[lane] = 0; });
-    }
-    return;
+    return zero_registers(call, lanes);
   }
   KeptSampler& kept = kept_sampler(call, *image.image, *sampler);
   kept.request.active = lanes;
@@ -143,20 +147,20 @@ bool is_null(const Call& call, const Descriptor& image) {
   return is_buffer(call) ? image.texels == nullptr : image.image == nullptr;
 }
 
+/// Straight to the registers of the results.
 void read(Call& call, const Descriptor& image, base::LaneMask lanes) {
-  if (is_null(call, image)) return zero_result(call, lanes);
+  if (is_null(call, image)) return zero_registers(call, lanes);
   if (is_buffer(call)) {
-    texel::fetch_buffer(*image.texels, lanes, *call.operand(ImageOperand::kCoord), call.result);
+    texel::fetch_buffer(*image.texels, lanes, *call.operand(ImageOperand::kCoord), sample_result(call));
   } else {
-    texel::fetch(*image.image, fetch_request(call, lanes), call.result);
+    texel::fetch(*image.image, fetch_request(call, lanes), sample_result(call));
   }
 }
 
 void write(Call& call, const Descriptor& image, base::LaneMask lanes) {
   lanes &= call.wave.live;
   if (is_null(call, image) || lanes == 0) return;
-  WaveRegister value[4];
-  for (std::uint32_t c = 0; c < 4; ++c) value[c] = *call.operand(ImageOperand::kValue, c);
+  const texel::StoredValue value = call.operands<4>(ImageOperand::kValue);
   if (is_buffer(call)) {
     texel::store_buffer(*image.texels, lanes, *call.operand(ImageOperand::kCoord), value);
   } else {
@@ -210,8 +214,17 @@ void query(Call& call, const Descriptor& image, base::LaneMask lanes) {
   });
 }
 
-bool samples(ImageAccess access) {
-  return access == ImageAccess::kSample || access == ImageAccess::kGather || access == ImageAccess::kQueryLod;
+/// Whether Call::result holds results.
+bool has_result(ImageAccess access) {
+  switch (access) {
+    case ImageAccess::kAtomic:
+    case ImageAccess::kQuerySize:
+    case ImageAccess::kQueryLevels:
+    case ImageAccess::kQuerySamples:
+      return true;
+    default:
+      return false;
+  }
 }
 
 void run(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
@@ -300,7 +313,7 @@ const Instruction* image(Wave& wave, const Instruction* i) {
                                     .sampler;
     }
     run(call, image, sampler, lanes);
-    if (!samples(info.access)) put_results(call, lanes);
+    if (has_result(info.access)) put_results(call, lanes);
   }
   return i + 1;
 }

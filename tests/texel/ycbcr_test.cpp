@@ -265,7 +265,7 @@ TEST(Ycbcr, SamplesWithoutConversionReadLuma) {
     sample(view, Sampler{}, request, result);
     FetchRequest at;
     at.coord = {&zero, &zero, &zero};
-    fetch(view, at, result);
+    fetch(view, at, {&result[0], &result[1], &result[2], &result[3]});
     clear_color_image({&image.layout, image.memory[0].data()}, {}, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1});
   }
 }

@@ -7,31 +7,11 @@
 #include "texel/codec.h"
 #include "texel/sampler.h"
 #include "texel/sampler/plan.h"
-#include "texel/sampler/wave_fetch.h"
+#include "texel/sampler/shape.h"
+#include "texel/sampler/wave_access.h"
 
 namespace vitrine::texel {
 namespace {
-
-/// How many coordinates address a texel, and which of them is the array layer (or face).
-struct Shape {
-  std::uint32_t dims = 2;
-  bool layered = false;
-};
-
-Shape shape_of(VkImageViewType type) {
-  switch (type) {
-    case VK_IMAGE_VIEW_TYPE_1D:
-      return {1, false};
-    case VK_IMAGE_VIEW_TYPE_1D_ARRAY:
-      return {1, true};
-    case VK_IMAGE_VIEW_TYPE_3D:
-      return {3, false};
-    case VK_IMAGE_VIEW_TYPE_2D:
-      return {2, false};
-    default:
-      return {2, true};
-  }
-}
 
 std::uint32_t unsigned_at(const base::WaveRegister* values, std::size_t lane) {
   return values != nullptr ? values->lane[lane] : 0;
@@ -74,17 +54,19 @@ Texel outside_texel(const FormatDesc& format) {
   return {0, 0, 0, format.rgba[3] < 0 ? one : 0u};
 }
 
-void put(const Texel& texel, std::size_t lane, base::WaveRegister result[4]) {
-  for (std::size_t c = 0; c < 4; ++c) result[c].lane[lane] = texel[c];
+void put(const Texel& texel, std::size_t lane, const SampleResult& result) {
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (result[c] != nullptr) result[c]->lane[lane] = texel[c];
+  }
 }
 
-Texel gather_texel(const base::WaveRegister value[4], std::size_t lane) {
-  return {value[0].lane[lane], value[1].lane[lane], value[2].lane[lane], value[3].lane[lane]};
+Texel gather_texel(const StoredValue& value, std::size_t lane) {
+  return {value[0]->lane[lane], value[1]->lane[lane], value[2]->lane[lane], value[3]->lane[lane]};
 }
 
 }  // namespace
 
-void fetch(const ImageView& view, const FetchRequest& request, base::WaveRegister result[4]) {
+void fetch(const ImageView& view, const FetchRequest& request, const SampleResult& result) {
   if (fetch_wave(view, request, result)) return;
   if (view.planes != nullptr) return fetch(*view.planes, request, result);
   const FormatDesc& format = *view.format;
@@ -107,7 +89,7 @@ void fetch(const ImageView& view, const FetchRequest& request, base::WaveRegiste
 }
 
 void fetch_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
-                  base::WaveRegister result[4]) {
+                  const SampleResult& result) {
   if (fetch_buffer_wave(view, active, index, result)) return;
   const FormatDesc& format = *view.format;
   const TexelDecoder decode = texel_decoder(format);
@@ -119,9 +101,9 @@ void fetch_buffer(const BufferTexelView& view, base::LaneMask active, const base
   });
 }
 
-void store(const ImageView& view, const FetchRequest& request, const base::WaveRegister value[4]) {
+void store(const ImageView& view, const FetchRequest& request, const StoredValue& value) {
+  if (!can_store(*view.format) || store_wave(view, request, value)) return;
   const Shape shape = shape_of(view.type);
-  if (!can_store(*view.format)) return;
   const TexelEncoder encode = texel_encoder(*view.format, Encoding::kStore);
   base::for_each_lane(request.active, [&](std::size_t lane) {
     const Place place = place_of(shape, request, lane);
@@ -130,8 +112,8 @@ void store(const ImageView& view, const FetchRequest& request, const base::WaveR
 }
 
 void store_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
-                  const base::WaveRegister value[4]) {
-  if (!can_store(*view.format)) return;
+                  const StoredValue& value) {
+  if (!can_store(*view.format) || store_buffer_wave(view, active, index, value)) return;
   const TexelEncoder encode = texel_encoder(*view.format, Encoding::kStore);
   base::for_each_lane(active, [&](std::size_t lane) {
     const std::uint64_t i = index.lane[lane];

@@ -16,9 +16,6 @@ struct LevelTable {
   alignas(64) std::int32_t offset[kMaxLevels];
 };
 
-/// Results of a wave by component, raw bits; null: not wanted. They may be the registers of the request.
-using SampleResult = std::array<base::WaveRegister*, 4>;
-
 struct PreparedSampler {
   using Kernel = void (*)(const PreparedSampler&, const SampleRequest&, const SampleResult&);
 

@@ -50,12 +50,39 @@ struct alignas(64) WordLanes {
   std::uint32_t lane[base::kWaveWidth];
 };
 
-template <std::size_t kWords>
-HWY_INLINE void load_words(const std::byte* base, const IntLanes& offset, WordLanes words[4]) {
-  for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
-    std::uint32_t word[kWords];
-    std::memcpy(word, base + offset.lane[lane], sizeof(word));
+/// Texels of the lanes of a vector, one by one, which is faster than gathering; and nothing beside them: that may be
+/// another tile's, which is being written, or lie behind a buffer.
+template <std::size_t kBytes>
+HWY_INLINE void load_lanes_of_texels(const std::byte* base, const IntLanes& offset, std::size_t first,
+                                     WordLanes words[4]) {
+  constexpr std::size_t kWords = (kBytes + 3) / 4;
+  for (std::size_t lane = first; lane < first + hn::MaxLanes(DI()); ++lane) {
+    std::uint32_t word[kWords] = {};
+    std::memcpy(word, base + offset.lane[lane], kBytes);
     for (std::size_t i = 0; i < kWords; ++i) words[i].lane[lane] = word[i];
+  }
+}
+
+/// Calls body<bytes of a texel>() of a plain format.
+template <class Body>
+HWY_INLINE void by_texel_bytes(const FormatDesc& format, Body&& body) {
+  switch (format.block_bytes) {
+    case 1:
+      return body.template operator()<1>();
+    case 2:
+      return body.template operator()<2>();
+    case 3:
+      return body.template operator()<3>();
+    case 4:
+      return body.template operator()<4>();
+    case 6:
+      return body.template operator()<6>();
+    case 8:
+      return body.template operator()<8>();
+    case 12:
+      return body.template operator()<12>();
+    default:
+      return body.template operator()<16>();
   }
 }
 
@@ -124,19 +151,10 @@ inline HWY_NOINLINE void fetch_texels(const ImageView& view, const TexelPlaces& 
                : convert_words<Numeric::kUnorm>(format_desc(VK_FORMAT_R8G8B8A8_UNORM), words, wanted, out);
   }
   const FormatDesc& format = *view.format;
-  switch ((format.block_bytes + 3) / 4) {
-    case 1:
-      load_words<1>(view.base, places.offset, words);
-      break;
-    case 2:
-      load_words<2>(view.base, places.offset, words);
-      break;
-    case 3:
-      load_words<3>(view.base, places.offset, words);
-      break;
-    default:
-      load_words<4>(view.base, places.offset, words);
-  }
+  by_texel_bytes(format, [&]<std::size_t kBytes>() {
+    for (std::size_t first = 0; first < base::kWaveWidth; first += hn::MaxLanes(DI()))
+      load_lanes_of_texels<kBytes>(view.base, places.offset, first, words);
+  });
   if (format.format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) return convert_shared_exponent(words[0], out);
   switch (format.channel[0].numeric) {
     case Numeric::kUnorm:

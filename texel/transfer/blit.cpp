@@ -155,7 +155,7 @@ void fetch_row(const Blit& blit, const ImageView& view, const Start& start, std:
       z.lane[i] = static_cast<std::uint32_t>(from_z);
     }
     request.active = base::first_lanes(count);
-    fetch(view, request, value);
+    fetch(view, request, {&value[0], &value[1], &value[2], &value[3]});
     encode_wave(blit, value, count, to + std::size_t{first} * blit.to.format->block_bytes);
   }
 }
