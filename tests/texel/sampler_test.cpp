@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <random>
@@ -293,7 +294,7 @@ bool compare_paths(unsigned seed) {
   if (random.below(3) == 0) image.view.swizzle = {2, 5, 0, 4};
   fill_texels(image, random);
   const Sampler sampler = random_sampler(random, image.view.format->has_depth());
-  const Inputs in = random_inputs(random);
+  Inputs in = random_inputs(random);
   SampleRequest request;
   request.lod_mode = static_cast<LodMode>(random.below(5));
   if (random.below(4) == 0 && shape.coordinates > 1 && shape.type != VK_IMAGE_VIEW_TYPE_3D) {
@@ -309,7 +310,11 @@ bool compare_paths(unsigned seed) {
   request.ddx = {&in.ddx[0], &in.ddx[1], &in.ddx[2]};
   request.ddy = {&in.ddy[0], &in.ddy[1], &in.ddy[2]};
   if (random.below(2) && shape.layers < 6 && request.gather_offsets == nullptr) {
-    for (std::uint32_t i = 0; i < shape.coordinates; ++i) request.offset[i] = &in.offset[i];
+    const bool same_offset = random.below(2) != 0;
+    for (std::uint32_t i = 0; i < shape.coordinates; ++i) {
+      request.offset[i] = &in.offset[i];
+      if (same_offset) std::fill_n(in.offset[i].lane, base::kWaveWidth, in.offset[i].lane[0]);
+    }
   }
   if (sampler.compare) request.dref = &in.dref;
   const base::ScopedFloatMode mode(random.below(2) ? base::Denormals::kFlush : base::Denormals::kHonour);

@@ -20,11 +20,14 @@ namespace vitrine::texel::HWY_NAMESPACE {
 /// One axis of a level: what does not depend on the coordinate.
 struct BilinearAxis {
   bool repeat = false;
-  VI last;
+  bool moved = false;
+  VI last, offset;
   VF scale;  ///< coordinates to 256ths of texels
 
   HWY_INLINE void set(const AxisLanes& axis) {
     repeat = axis.address == Address::kRepeat;
+    moved = axis.has_offset;
+    offset = axis.offset;
     last = hn::Sub(axis.size, splat(1));
     scale = lanes_int_to_float(hn::ShiftLeft<8>(axis.size));
   }
@@ -32,8 +35,9 @@ struct BilinearAxis {
   /// The two texels as lanes_linear_bytes finds them, for sizes that are powers of two if repeated.
   HWY_INLINE ByteTapLanes taps(VF s) const {
     const VI q = hn::Sub(lanes_round_to_int(hn::Mul(s, scale)), splat(128));
-    const VI i = hn::ShiftRight<8>(q), next = hn::Add(i, splat(1));
-    const VI weight = hn::And(q, splat(255));
+    VI i = hn::ShiftRight<8>(q);
+    if (moved) i = hn::Add(i, offset);
+    const VI next = hn::Add(i, splat(1)), weight = hn::And(q, splat(255));
     if (repeat) return {hn::And(i, last), hn::And(next, last), weight};
     // Two equal texels at the edges: any weight will do.
     return {lanes_clamp(i, last), lanes_clamp(next, last), weight};

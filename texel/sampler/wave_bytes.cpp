@@ -330,14 +330,12 @@ void sample_bytes(const PreparedSampler& p, const SampleRequest& request, const 
 }
 
 void sample_bytes_bilinear(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
-  if (request.offset[0] || request.offset[1] || request.offset[2]) return sample_bytes(p, request, result);
   WaveState state;
   find_state(p, request, state);
   sample_bilinear(p, request, state, result);
 }
 
 void sample_bytes_nearest(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
-  if (request.offset[0] || request.offset[1]) return sample_bytes(p, request, result);
   WaveState state;
   find_state(p, request, state);
   sample_nearest_flat(p, request, state, result);
@@ -361,7 +359,7 @@ bool has_four_bytes(const FormatDesc& format) {
   return !format.is_compressed() && format.block_bytes == 4 && format.channel[0].bits == 8;
 }
 
-/// Whether sample_bilinear does what the general sampler does, if there are no offsets.
+/// Whether sample_bilinear does what the general sampler does.
 bool bilinear_suits(const Plan& plan) {
   for (std::uint32_t i = 0; i < plan.dims; ++i) {
     if (plan.address[i] != Address::kClamp && (plan.address[i] != Address::kRepeat || !plan.pot[i])) return false;
@@ -370,7 +368,7 @@ bool bilinear_suits(const Plan& plan) {
          !plan.sampler->unnormalized && plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
 }
 
-/// Whether sample_nearest_flat does, if there are no offsets.
+/// Whether sample_nearest_flat does.
 bool nearest_suits(const Plan& plan) {
   return plan.dims == 2 && !plan.cube && !plan.min_linear && !plan.mag_linear && plan.mip != MipFilter::kLinear &&
          has_four_bytes(*plan.view->format);

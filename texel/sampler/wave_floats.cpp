@@ -16,6 +16,7 @@
 #include "texel/sampler/wave_bilinear_words-inl.h"
 #include "texel/sampler/wave_cube-inl.h"
 #include "texel/sampler/wave_four-inl.h"
+#include "texel/sampler/wave_single_words-inl.h"
 #include "texel/sampler/wave_texels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -142,7 +143,8 @@ HWY_NOINLINE void find_taps_in(Call& call, int which, bool linear, FloatTaps& ta
   taps.neighbours = taps.neighbours && !border;
 }
 
-/// The same for averages in two dimensions of texels that are no blocks, and no border.
+/// The same in two dimensions of texels that are no blocks, and no border. Without `kPairs` the first texel alone.
+template <class Axis, bool kPairs>
 HWY_NOINLINE void find_flat_taps(Call& call, int which, FloatTaps& taps) {
   const VI bytes = splat(static_cast<std::int32_t>(call.view().format->block_bytes));
   const bool same_level = level_is_uniform(call.p, call.request, false);
@@ -150,8 +152,13 @@ HWY_NOINLINE void find_flat_taps(Call& call, int which, FloatTaps& taps) {
   LevelLanes level;
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     if (first == 0 || !same_level) load_level<2>(call.p, call.request, call.state, which, first, false, level);
-    const TapLanes x = lanes_linear(level.axis[0], hn::LoadU(DF(), call.state.coord[0] + first));
-    const TapLanes y = lanes_linear(level.axis[1], hn::LoadU(DF(), call.state.coord[1] + first));
+    const TapLanes x = Axis{&level.axis[0]}.taps(hn::LoadU(DF(), call.state.coord[0] + first));
+    const TapLanes y = Axis{&level.axis[1]}.taps(hn::LoadU(DF(), call.state.coord[1] + first));
+    if constexpr (!kPairs) {
+      const VI row = hn::Add(level.origin, hn::Mul(y.first, level.row_pitch));
+      hn::Store(hn::Add(row, hn::Mul(x.first, bytes)), DI(), taps.place[0].offset.lane + first);
+      continue;
+    }
     neighbours = hn::And(neighbours, hn::Eq(x.second, hn::Add(x.first, splat(1))));
     const VI left = hn::Mul(x.first, bytes), right = hn::Mul(x.second, bytes);
     const VI top = hn::Add(level.origin, hn::Mul(y.first, level.row_pitch));
@@ -164,15 +171,17 @@ HWY_NOINLINE void find_flat_taps(Call& call, int which, FloatTaps& taps) {
     hn::Store(hn::Add(bottom, right), DI(), taps.place[3].offset.lane + first);
   }
   for (std::uint32_t k = 0; k < 4; ++k) taps.outside[k] = 0;
-  taps.count = 4;
-  taps.neighbours = hn::AllTrue(DI(), neighbours);
+  taps.count = kPairs ? 4 : 1;
+  taps.neighbours = kPairs && hn::AllTrue(DI(), neighbours);
 }
 
 HWY_NOINLINE void find_taps(Call& call, int which, bool linear, FloatTaps& taps) {
   const Plan& plan = call.plan();
   const bool border = plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder;
-  if (plan.dims == 2 && !plan.cube && linear && !plan.gather && !border && !call.view().format->is_compressed()) {
-    return find_flat_taps(call, which, taps);
+  if (plan.dims == 2 && !plan.cube && !border && !call.view().format->is_compressed()) {
+    if (!linear) return find_flat_taps<NearestFloatAxis, false>(call, which, taps);
+    return plan.gather ? find_flat_taps<GatherAxis, true>(call, which, taps)
+                       : find_flat_taps<FloatAxis, true>(call, which, taps);
   }
   const std::uint32_t dims = plan.dims;
   const auto find = dims == 1 ? find_taps_in<1> : dims == 2 ? find_taps_in<2> : find_taps_in<3>;
@@ -525,6 +534,16 @@ void sample_floats_bilinear(const PreparedSampler& p, const SampleRequest& reque
   sample_words_or_compare(p, request, state, result);
 }
 
+/// Texels of one word without a filter: gathers, or nearest ones.
+void sample_single_words(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
+  if (p.plan.gather && gathered_channel(*p.plan.view, request) < 0) return sample_floats(p, request, result);
+  WaveState state;
+  find_state(p, request, state);
+  if (!p.plan.gather) return sample_words_nearest(p, request, state, result);
+  request.gather_offsets != nullptr ? gather_moved_words(p, request, state, result)
+                                    : gather_words(p, request, state, result);
+}
+
 /// Whether all lanes are on one face of one level, with all their texels inside it.
 bool is_inside_face(const Call& call, int which) {
   if (!wave_has_one_level(call.p, call.request, call.state, which)) return false;
@@ -564,6 +583,7 @@ namespace {
 HWY_EXPORT(sample_floats);
 HWY_EXPORT(sample_floats_bilinear);
 HWY_EXPORT(sample_cube_bilinear);
+HWY_EXPORT(sample_single_words);
 HWY_EXPORT(query_lod);
 
 /// Whether sample_floats_bilinear does what the general sampler does; of cubes, sample_cube_bilinear.
@@ -575,10 +595,20 @@ bool bilinear_suits(const Plan& plan) {
          plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
 }
 
+/// Whether sample_single_words does what the general sampler does.
+bool single_words_suit(const Plan& plan) {
+  const FormatDesc& format = *plan.view->format;
+  const bool border = plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder;
+  const bool nearest = !plan.min_linear && !plan.mag_linear && plan.mip != MipFilter::kLinear;
+  return (plan.gather || nearest) && plan.dims == 2 && !plan.cube && !border && format.plain &&
+         format.block_bytes == 4 && format.format != VK_FORMAT_E5B9G9R9_UFLOAT_PACK32;
+}
+
 }  // namespace
 
 PreparedSampler::Kernel float_kernel(const Plan& plan) {
   base::select_simd_target();
+  if (single_words_suit(plan)) return &HWY_DYNAMIC_DISPATCH(sample_single_words);
   if (!bilinear_suits(plan)) return &HWY_DYNAMIC_DISPATCH(sample_floats);
   return plan.cube ? &HWY_DYNAMIC_DISPATCH(sample_cube_bilinear) : &HWY_DYNAMIC_DISPATCH(sample_floats_bilinear);
 }

@@ -30,6 +30,12 @@ HWY_INLINE VF two_pairs_as_floats(__m128i a, __m128i b) {
 HWY_INLINE __m128i load_block(const std::byte* texel) {
   return _mm_loadu_si128(reinterpret_cast<const __m128i*>(texel));
 }
+HWY_INLINE VF two_pairs(const std::byte* a, const std::byte* b) {
+  const auto* low = reinterpret_cast<const __m256i*>(a);
+  const auto* high = reinterpret_cast<const __m256i*>(b);
+  return VF{_mm512_castsi512_ps(
+      _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_loadu_si256(low)), _mm256_loadu_si256(high), 1))};
+}
 HWY_INLINE __m128i load_two(const std::byte* a, const std::byte* b) {
   const __m128i low = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(a));
   std::int64_t high;
@@ -63,8 +69,8 @@ HWY_INLINE TexelPair load_neighbours(const std::byte* base, const std::int32_t* 
     low = two_pairs_as_floats(load_block(at[0]), load_block(at[1]));
     high = two_pairs_as_floats(load_block(at[2]), load_block(at[3]));
   } else {
-    low = four_blocks(load_block(at[0]), load_block(at[0] + 16), load_block(at[1]), load_block(at[1] + 16));
-    high = four_blocks(load_block(at[2]), load_block(at[2] + 16), load_block(at[3]), load_block(at[3] + 16));
+    low = two_pairs(at[0], at[1]);
+    high = two_pairs(at[2], at[3]);
   }
   return {every_other_block<0>(low, high), every_other_block<1>(low, high)};
 }

@@ -198,25 +198,28 @@ HWY_INLINE WordSquare load_rows_of_words(const std::byte* base, VI row0, VI row1
   return out;
 }
 
-/// Whether all lanes of the wave read one level of one layer or face.
+/// Whether all lanes of the wave read one level of one layer or face, moved by one offset.
 inline bool wave_has_one_level(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                int which) {
-  if (request.offset[0] || request.offset[1] || request.offset[2]) return false;
-  const auto same = [](const IntLanes& values) {
-    const VI first = splat(values.lane[0]);
+  const auto same = [](const auto& values) {
+    const VU first = hn::Set(DU(), static_cast<std::uint32_t>(values.lane[0]));
     auto equal = hn::Eq(first, first);
-    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DI())) {
-      equal = hn::And(equal, hn::Eq(hn::Load(DI(), values.lane + i), first));
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DU())) {
+      const auto* lanes = reinterpret_cast<const std::uint32_t*>(values.lane + i);
+      equal = hn::And(equal, hn::Eq(hn::Load(DU(), lanes), first));
     }
-    return hn::AllTrue(DI(), equal);
+    return hn::AllTrue(DU(), equal);
   };
+  for (const base::WaveRegister* offset : request.offset) {
+    if (offset != nullptr && !same(*offset)) return false;
+  }
   return (p.one_level || same(state.level[which])) && (!p.plan.arrayed || same(state.layer_offset)) &&
          (!p.plan.cube || same(state.face));
 }
 
 /// The words around the points of a wave on one of the two levels that its lanes read; those of a cube inside their
 /// faces. Axis: set() from AxisLanes that stay where they are, taps(coordinate) for two texels and the weight of the
-/// second. Without `kPairs` the first texels alone.
+/// second. Without `kPairs` the first texels alone. `offset`: in texels, of all lanes, instead of the request's.
 template <class Axis, bool kPairs>
 class SquareReader {
  public:
@@ -226,8 +229,14 @@ class SquareReader {
     Weight x, y;
   };
 
-  HWY_INLINE SquareReader(const PreparedSampler& p, const SampleRequest& request, const WaveState& state, int which)
-      : p_(p), request_(request), state_(state), which_(which), whole_(wave_has_one_level(p, request, state, which)) {
+  HWY_INLINE SquareReader(const PreparedSampler& p, const SampleRequest& request, const WaveState& state, int which,
+                          const std::array<std::int32_t, 2>* offset = nullptr)
+      : p_(p),
+        request_(request),
+        state_(state),
+        which_(which),
+        offset_(offset),
+        whole_(wave_has_one_level(p, request, state, which)) {
     if (!whole_) return;
     load_level_of(0);
     if constexpr (!NearWave::kExists) return;
@@ -257,6 +266,10 @@ class SquareReader {
  private:
   HWY_INLINE void load_level_of(std::size_t vector) {
     load_level<2>(p_, request_, state_, which_, vector * hn::Lanes(DF()), p_.plan.cube, level_);
+    for (std::size_t i = 0; offset_ != nullptr && i < 2; ++i) {
+      level_.axis[i].has_offset = true;
+      level_.axis[i].offset = splat((*offset_)[i]);
+    }
     axis_[0].set(level_.axis[0]);
     axis_[1].set(level_.axis[1]);
     square_.set(level_);
@@ -295,6 +308,7 @@ class SquareReader {
   const SampleRequest& request_;
   const WaveState& state_;
   int which_;
+  const std::array<std::int32_t, 2>* offset_;
   bool whole_;
   bool is_near_ = false;
   LevelLanes level_;
