@@ -199,17 +199,55 @@ const Instruction* load_shared_target(Wave& wave, const Instruction* i) {
 
 void store_adjacent(std::byte* to, const std::uint32_t* from, std::size_t count) { std::memcpy(to, from, count * 4); }
 
-void store_structures(std::byte* to, std::uint32_t words, const std::uint32_t* const from[4]) {
+/// Structures of 1 to 4 words of the lanes of a vector.
+void store_vector(std::byte* to, std::uint32_t words, const std::uint32_t* const from[4], std::size_t lane) {
   const Words d;
   auto* target = reinterpret_cast<std::uint32_t*>(to);
-  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d), target += words * hn::Lanes(d)) {
-    const auto a = hn::Load(d, from[0] + lane), b = hn::Load(d, from[1] + lane);
-    if (words == 2) {
-      hn::StoreInterleaved2(a, b, d, target);
-    } else if (words == 3) {
-      hn::StoreInterleaved3(a, b, hn::Load(d, from[2] + lane), d, target);
+  const auto word = [&](std::size_t i) HWY_ATTR { return hn::Load(d, from[i] + lane); };
+  switch (words) {
+    case 1:
+      return hn::StoreU(word(0), d, target);
+    case 2:
+      return hn::StoreInterleaved2(word(0), word(1), d, target);
+    case 3:
+      return hn::StoreInterleaved3(word(0), word(1), word(2), d, target);
+    default:
+      return hn::StoreInterleaved4(word(0), word(1), word(2), word(3), d, target);
+  }
+}
+
+void store_structures(std::byte* to, std::uint32_t words, const std::uint32_t* const from[4]) {
+  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(Words()))
+    store_vector(to + 4 * words * lane, words, from, lane);
+}
+
+void store_lanes(const Bytes& bytes, const MemoryOp& row, const Register& offset, base::LaneMask active,
+                 const std::uint32_t* const from[4]) {
+  base::for_each_lane(active, [&](std::size_t lane) {
+    for (std::uint32_t c = 0; c < 4; ++c) {
+      const std::uint32_t at = offset.lane[lane] + row.added + 4 * c;
+      if ((row.write_mask >> c & 1) && contains_word(bytes, at)) std::memcpy(bytes.data + at, from[c] + lane, 4);
+    }
+  });
+}
+
+/// One vector of lanes at a time, whose structures follow one another in a row of a workgroup's tile.
+void store_vectors(const Bytes& bytes, const MemoryOp& row, const Register& offset, base::LaneMask active,
+                   std::uint32_t words, const std::uint32_t* const from[4]) {
+  const Words d;
+  const auto adjacent = hn::Mul(hn::Iota(d, 0), hn::Set(d, 4 * words));
+  const base::LaneMask vector_lanes = base::first_lanes(hn::Lanes(d));
+  const std::uint64_t limit = std::min<std::uint64_t>(bytes.size, UINT32_MAX);
+  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d)) {
+    const base::LaneMask wanted = active & vector_lanes << lane;
+    if (wanted == 0) continue;
+    const std::uint32_t first = offset.lane[lane] + row.added;  // wraps, as every lane's address does
+    const auto spread = hn::Sub(hn::Load(d, offset.lane + lane), hn::Set(d, offset.lane[lane]));
+    const bool inner = std::uint64_t{first} + 4 * words * hn::Lanes(d) <= limit;
+    if (inner && wanted == vector_lanes << lane && hn::AllTrue(d, hn::Eq(spread, adjacent))) {
+      store_vector(bytes.data + first, words, from, lane);
     } else {
-      hn::StoreInterleaved4(a, b, hn::Load(d, from[2] + lane), hn::Load(d, from[3] + lane), d, target);
+      store_lanes(bytes, row, offset, wanted, from);
     }
   }
 }
@@ -217,7 +255,7 @@ void store_structures(std::byte* to, std::uint32_t words, const std::uint32_t* c
 void store_words(const Bytes& bytes, const MemoryOp& row, const Register& offset, base::LaneMask active,
                  const std::uint32_t* const from[4]) {
   const auto words = static_cast<std::uint32_t>(std::popcount(row.write_mask));
-  const bool dense = row.write_mask == (1u << words) - 1;
+  const bool dense = words != 0 && row.write_mask == (1u << words) - 1;
   const std::size_t count = prefix_length(active);
   if (dense && count != 0) {
     const Linear linear = find_linear(offset, count);
@@ -227,12 +265,7 @@ void store_words(const Bytes& bytes, const MemoryOp& row, const Register& offset
       if (count == base::kWaveWidth) return store_structures(to, words, from);
     }
   }
-  base::for_each_lane(active, [&](std::size_t lane) {
-    for (std::uint32_t c = 0; c < 4; ++c) {
-      const std::uint32_t at = offset.lane[lane] + row.added + 4 * c;
-      if ((row.write_mask >> c & 1) && contains_word(bytes, at)) std::memcpy(bytes.data + at, from[c] + lane, 4);
-    }
-  });
+  dense ? store_vectors(bytes, row, offset, active, words, from) : store_lanes(bytes, row, offset, active, from);
 }
 
 template <bool kUniform>
