@@ -259,8 +259,62 @@ void emit_small_windows(TileWorker& worker, const Primitive* const* primitives, 
   }
 }
 
+/// Where a tile's work starts.
+struct TileStart {
+  std::size_t item = 0;
+  std::uint32_t primitive = 0;
+};
+
+/// Walks the primitives of a tile some steps ahead of the work on them and asks for their memory: the front end filled
+/// more than the caches near the core hold.
+class Prefetcher {
+ public:
+  Prefetcher(const std::vector<TileItem>& items, TileStart start)
+      : end_(items.data() + items.size()),
+        primitive_{items.data() + start.item, start.primitive},
+        vertices_(primitive_) {
+    for (std::uint32_t i = 0; i < kPrimitivesAhead; ++i) ask_for_primitive();
+    for (std::uint32_t i = 0; i < kVerticesAhead; ++i) ask_for_vertices();
+  }
+  /// To be called once per primitive.
+  void step() {
+    ask_for_primitive();
+    ask_for_vertices();
+  }
+
+ private:
+  /// How many primitives lie between the one at work and the one asked for, or the one whose vertices are.
+  static constexpr std::uint32_t kPrimitivesAhead = 8, kVerticesAhead = 4;
+
+  struct Cursor {
+    const TileItem* item;
+    std::uint32_t k;
+  };
+
+  /// The next primitive, or null at the end.
+  const Primitive* next(Cursor& cursor) const {
+    while (cursor.item != end_ && cursor.k >= cursor.item->count) cursor = {cursor.item + 1, 0};
+    return cursor.item == end_ ? nullptr : cursor.item->primitives + cursor.item->index[cursor.k++];
+  }
+  void ask_for_primitive() {
+    const TileItem* before = primitive_.item;
+    const Primitive* primitive = next(primitive_);
+    if (!primitive) return;
+    __builtin_prefetch(primitive);
+    __builtin_prefetch(reinterpret_cast<const std::byte*>(primitive + 1) - 1);
+    if (primitive_.item != before && primitive_.item + 1 != end_) __builtin_prefetch(primitive_.item[1].index);
+  }
+  void ask_for_vertices() {
+    if (const Primitive* primitive = next(vertices_))
+      for (const Vertex* vertex : primitive->v) __builtin_prefetch(vertex);
+  }
+
+  const TileItem* end_;
+  Cursor primitive_, vertices_;
+};
+
 /// The primitives of one item, groups of small windows together.
-void rasterize_primitives(TileWorker& worker, const TileItem& item, std::uint32_t first) {
+void rasterize_primitives(TileWorker& worker, const TileItem& item, std::uint32_t first, Prefetcher& prefetcher) {
   const PipelinePlan& plan = *worker.draw->plan;
   const bool tests = plan.depth_order == TestOrder::kEarly || plan.early_reject;
   const bool groups =
@@ -268,6 +322,7 @@ void rasterize_primitives(TileWorker& worker, const TileItem& item, std::uint32_
   const Primitive* group[kWindowGroup];
   std::uint32_t count = 0;
   for (std::uint32_t k = first; k < item.count; ++k) {
+    prefetcher.step();
     const Primitive& primitive = item.primitives[item.index[k]];
     const bool small = groups && is_small_window(worker, primitive);
     if (count != 0 && (!small || count == kWindowGroup || group[0]->viewport != primitive.viewport)) {
@@ -460,12 +515,6 @@ bool hides_tile(const TileWorker& worker, const PipelinePlan& plan, const Primit
   return make_tile_edges(p, target.x, target.y, *plan.locations, edges) && edges.count == 0;
 }
 
-/// Where a tile's work starts.
-struct TileStart {
-  std::size_t item = 0;
-  std::uint32_t primitive = 0;
-};
-
 /// Whether the draw of an item does more than give colours.
 bool leaves_traces(const TileItem& item) {
   if (item.clear) return false;
@@ -593,6 +642,7 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
   worker.pool.reset();
   if (pass.depth.format) worker.hierarchy.reset();
   const TileStart start = first_visible(worker, items);
+  Prefetcher prefetcher(items, start);
   for (std::size_t i = 0; i < items.size(); ++i) {
     const TileItem& item = items[i];
     if (i < start.item && (item.draw || !item.clear->view->format->is_depth_stencil())) continue;
@@ -605,7 +655,7 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
       end_draw(worker);
       begin_draw(worker, item.draw);
     }
-    rasterize_primitives(worker, item, i == start.item ? start.primitive : 0);
+    rasterize_primitives(worker, item, i == start.item ? start.primitive : 0, prefetcher);
   }
   end_draw(worker);
 }
