@@ -20,6 +20,7 @@ enum class BatchStep : std::int32_t {
   kDrop,
   kSmallWindow,
   kWindow,  ///< of 8x8 pixels: not yet covered
+  kWide,    ///< no window
   kAlone    ///< as setup_triangle() does it
 };
 
@@ -91,13 +92,14 @@ void find_facts(const TriangleBatch& batch, const BatchConstants& constants, Bat
     const V y0 = hn::Load(d, batch.y[0] + i), y1 = hn::Load(d, batch.y[1] + i), y2 = hn::Load(d, batch.y[2] + i);
     const V left = hn::Min(x0, hn::Min(x1, x2)), right = hn::Max(x0, hn::Max(x1, x2));
     const V top = hn::Min(y0, hn::Min(y1, y2)), bottom = hn::Max(y0, hn::Max(y1, y2));
-    // Small and inside of what setup_triangle() takes: what follows fits 32 bits. Lanes that are not do not matter.
-    constexpr std::int32_t kLimit = 1 << 23, kReach = 8 * 256;
+    // Near each other and inside of what setup_triangle() takes: the area fits 32 bits, of small triangles the edges,
+    // too. Lanes where they do not do not matter.
+    constexpr std::int32_t kLimit = 1 << 23, kReach = 8 * 256, kFarReach = 64 * 256;
     const auto wild = hn::Or(hn::Or(hn::Lt(left, constant(-kLimit)), hn::Lt(top, constant(-kLimit))),
                              hn::Or(hn::Gt(right, constant(kLimit)), hn::Gt(bottom, constant(kLimit))));
-    const auto large =
-        hn::Or(hn::Gt(hn::Sub(right, left), constant(kReach)), hn::Gt(hn::Sub(bottom, top), constant(kReach)));
-    const auto small = hn::Not(hn::Or(wild, large));
+    const V extent = hn::Max(hn::Sub(right, left), hn::Sub(bottom, top));
+    const auto near = hn::Not(hn::Or(wild, hn::Gt(extent, constant(kFarReach))));
+    const auto small = hn::Lt(extent, constant(kReach + 1));
     const V area = hn::Sub(hn::Mul(hn::Sub(x0, x1), hn::Sub(y2, y0)), hn::Mul(hn::Sub(x2, x0), hn::Sub(y0, y1)));
     const V zero = hn::Zero(d);
     auto dropped = hn::Eq(area, zero);
@@ -114,10 +116,14 @@ void find_facts(const TriangleBatch& batch, const BatchConstants& constants, Bat
     const V beyond_x = hn::Sub(px1, window_x), beyond_y = hn::Sub(py1, window_y);
     const auto tiny = hn::And(hn::Lt(beyond_x, constant(4)), hn::Lt(beyond_y, constant(4)));
     const auto fits = hn::And(hn::Lt(beyond_x, constant(8)), hn::Lt(beyond_y, constant(8)));
-    V step = hn::IfThenElse(fits, constant(BatchStep::kWindow), constant(BatchStep::kAlone));
-    step = hn::IfThenElse(tiny, constant(BatchStep::kSmallWindow), step);
+    const V seen_x = hn::Sub(hn::Min(px1, constant(region.x1)), window_x);
+    const V seen_y = hn::Sub(hn::Min(py1, constant(region.y1)), window_y);
+    const auto wide = hn::Gt(hn::Max(seen_x, seen_y), constant(7));
+    V step = hn::IfThenElse(wide, constant(BatchStep::kWide), constant(BatchStep::kAlone));
+    step = hn::IfThenElse(hn::And(fits, small), constant(BatchStep::kWindow), step);
+    step = hn::IfThenElse(hn::And(tiny, small), constant(BatchStep::kSmallWindow), step);
     step = hn::IfThenElse(dropped, constant(BatchStep::kDrop), step);
-    step = hn::IfThenElse(small, step, constant(BatchStep::kAlone));
+    step = hn::IfThenElse(near, step, constant(BatchStep::kAlone));
     hn::Store(step, d, reinterpret_cast<std::int32_t*>(out.step) + i);
     // 2.1: the provoking vertex keeps its place.
     const auto negative = hn::Lt(area, zero);
@@ -194,8 +200,11 @@ void setup_triangles(SetupContext context, TriangleBatch& batch) {
     }
     const PixelRect bounds{facts.x0[i], facts.y0[i], facts.x1[i], facts.y1[i]};
     const PixelRect visible = intersect(bounds, constants.region);
-    const base::LaneMask window = window_of(facts, i, bounds, visible);
-    if (window == 0 && context.drops_empty) continue;
+    base::LaneMask window = 0;
+    if (facts.step[i] != BatchStep::kWide) {
+      window = window_of(facts, i, bounds, visible);
+      if (window == 0 && context.drops_empty) continue;
+    }
     const bool positive = facts.area[i] > 0;
     Primitive& p = context.out->append();
     for (int c = 0; c < 3; ++c) {
