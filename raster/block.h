@@ -15,6 +15,8 @@
 
 namespace vitrine::raster {
 
+struct SpanWave;
+
 /// Quad order to row order: of each 16 bits, the two-bit units 0 1 2 3 4 5 6 7 (top and bottom of four quads) become
 /// 0 2 4 6 1 3 5 7.
 constexpr base::LaneMask rows_of_quads(base::LaneMask quads) {
@@ -53,6 +55,11 @@ struct BlockColorFunctions {
   /// Both at once.
   void (*write)(const ColorWriter& writer, const base::WaveRegister* color, const BlockPixels& pixels,
                 base::LaneMask rows);
+  /// The last two for a wave of spans (raster/spans.h); `pixels`: of the attachment, from (0, 0).
+  void (*write_packed_spans)(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels,
+                             const SpanWave& wave);
+  void (*write_spans)(const ColorWriter& writer, const base::WaveRegister* color, const BlockPixels& pixels,
+                      const SpanWave& wave);
 };
 
 /// The block functions for this writer, or null (color_block.cpp).

@@ -7,6 +7,7 @@
 #include "base/simd.h"
 #include "raster/block.h"
 #include "raster/coverage.h"
+#include "raster/spans.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/block_planes.cpp"
@@ -67,6 +68,57 @@ void evaluate_all(const PlaneSet& planes, const BlockVarying* varying, std::size
     evaluate_planes<false>(planes, varying, count, x, y, nullptr);
 }
 
+/// Places of the quads of lanes 0..15, and of the lanes in their quads.
+alignas(64) constexpr std::uint32_t kQuadShift[16] = {0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12};
+alignas(64) constexpr std::uint32_t kQuadX[16] = {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
+alignas(64) constexpr std::uint32_t kQuadY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
+
+template <bool kScales>
+HWY_INLINE void evaluate_places(const PlaneSet& planes, const BlockVarying* varying, std::size_t count,
+                                const SpanWave& wave, float center, const float* scale) {
+  const hn::CappedTag<float, 16> f;
+  const hn::RebindToUnsigned<decltype(f)> u;
+  const hn::RebindToSigned<decltype(f)> i32;
+  const auto shift = hn::Load(u, kQuadShift), nibble = hn::Set(u, 30);
+  // `first`: the window's; `quads`: four bits each.
+  const auto place = [&](int first, std::uint64_t quads, const std::uint32_t* in_quad) HWY_ATTR {
+    const auto twice = hn::And(hn::Shr(hn::Set(u, static_cast<std::uint32_t>(quads) << 1), shift), nibble);
+    const auto whole = hn::Add(hn::Or(twice, hn::Load(u, in_quad)), hn::Set(u, static_cast<std::uint32_t>(first)));
+    // The sum is exact: a whole number, or a half on top of it.
+    return hn::Add(hn::ConvertTo(f, hn::BitCast(i32, whole)), hn::Set(f, center));
+  };
+  constexpr std::size_t n = hn::MaxLanes(f);
+  for (std::size_t i = 0; i < base::kWaveWidth; i += 4 * n) {
+    // Four vectors at a time, so that the coefficients are fetched once for them.
+    const auto x_of = [&](std::size_t j) HWY_ATTR { return place(wave.x, wave.quad_x >> (i + j * n), kQuadX); };
+    const auto y_of = [&](std::size_t j) HWY_ATTR { return place(wave.y, wave.quad_y >> (i + j * n), kQuadY); };
+    const auto x0 = x_of(0), x1 = x_of(1), x2 = x_of(2), x3 = x_of(3);
+    const auto y0 = y_of(0), y1 = y_of(1), y2 = y_of(2), y3 = y_of(3);
+    for (const BlockVarying* v = varying; v != varying + count; ++v) {
+      const auto a0 = hn::Set(f, planes.a0[v->plane]), dadx = hn::Set(f, planes.dadx[v->plane]);
+      const auto dady = hn::Set(f, planes.dady[v->plane]);
+      float* out = v->out + i;
+      const auto store = [&](auto x, auto y, std::size_t j) HWY_ATTR {
+        auto value = lanes_fma(dady, y, lanes_fma(dadx, x, a0));
+        if constexpr (kScales) value = hn::Mul(value, hn::Load(f, scale + i + j * n));
+        hn::Store(value, f, out + j * n);
+      };
+      store(x0, y0, 0);
+      store(x1, y1, 1);
+      store(x2, y2, 2);
+      store(x3, y3, 3);
+    }
+  }
+}
+
+void evaluate_in_spans(const PlaneSet& planes, const BlockVarying* varying, std::size_t count, const SpanWave& wave,
+                       float center, const float* scale) {
+  if (scale)
+    evaluate_places<true>(planes, varying, count, wave, center, scale);
+  else
+    evaluate_places<false>(planes, varying, count, wave, center, nullptr);
+}
+
 /// A vector of a square's pixels, in row order: several whole rows, or a part of one.
 template <std::size_t kSide>
 struct SquareVector {
@@ -124,7 +176,7 @@ class SquareTest {
         write_(test.write) {
     const typename Square::Words d;
     const auto lane = hn::Iota(d, 0);
-    lane_row_ = hn::ConvertTo(Floats(), hn::ShiftRight < kSide == 8 ? 3 : 2 > (lane));
+    lane_row_ = hn::ConvertTo(Floats(), hn::ShiftRight < kSide == 16 ? 4 : kSide == 8 ? 3 : 2 > (lane));
     lane_column_ = hn::ConvertTo(Floats(), hn::And(lane, hn::Set(d, static_cast<std::int32_t>(kSide - 1))));
   }
 
@@ -144,10 +196,7 @@ class SquareTest {
       for (std::size_t r = 0; r < kSide; r += Square::kRows) {
         const auto covered = static_cast<std::uint32_t>(rows >> (kSide * r + c)) & all;
         if (covered != 0) {
-          VF z = hn::Add(lanes_fma(dady_, fy, inner), offset_);
-          if (restricts_) z = lanes_max_second(lanes_min_second(z, hn::Set(f, 1.0f)), hn::Zero(f));
-          if (clamps_) z = lanes_max_second(lanes_min_second(z, high_), low_);
-          const auto value = Format::encode(z);
+          const auto value = Format::encode(restrict(lanes_fma(dady_, fy, inner)));
           const auto stored = load_rows<Format, Square::kRows>(d, texels, pitch);
           const auto bits = static_cast<std::uint32_t>(bits_of_mask(compare<Format>(kOp, value, stored))) & covered;
           passed |= base::LaneMask{bits} << (kSide * r + c);
@@ -162,7 +211,47 @@ class SquareTest {
     return passed;
   }
 
+  /// The rows of a window as wide as the square, four at a time: branches on single rows would be guessed wrong.
+  HWY_INLINE bool run_window(float x, float y, std::byte* first, std::uint64_t pitch, LargeWindow& window) const {
+    const Floats f;
+    const typename Square::Words d;
+    constexpr std::size_t n = Square::kRowLanes;
+    constexpr std::uint64_t all = base::first_lanes(n) * 0x0001000100010001;
+    std::uint64_t any = 0;
+    for (std::size_t c = 0; c < kSide; c += n) {
+      const VF fx = hn::Add(hn::Set(f, x + static_cast<float>(c)), lane_column_);
+      const VF inner = lanes_fma(dadx_, fx, a0_);
+      for (std::size_t w = 0; w < LargeWindow::kWords; ++w) {
+        const std::uint64_t covered = window.rows[w] >> c & all;
+        if (covered == 0) continue;
+        VF fy = hn::Set(f, y + static_cast<float>(4 * w));
+        std::byte* texels = first + c * Format::kBytes + 4 * w * pitch;
+        std::uint64_t passed = 0;
+        for (std::size_t r = 0; r < 4; ++r, texels += pitch) {
+          const auto value = Format::encode(restrict(lanes_fma(dady_, fy, inner)));
+          fy = hn::Add(fy, hn::Set(f, 1.0f));
+          const auto stored = Format::load_row(d, texels);
+          const std::uint64_t bits = bits_of_mask(compare<Format>(kOp, value, stored)) & covered >> 16 * r & all;
+          const auto row = static_cast<std::uint32_t>(bits & 0xffff);
+          passed |= std::uint64_t{row} << 16 * r;
+          if (write_) Format::store_row(hn::IfThenElse(lanes_mask_from_bits(d, row), value, stored), texels);
+        }
+        window.rows[w] ^= (covered ^ passed) << c;
+        any |= passed;
+      }
+    }
+    return any != 0;
+  }
+
  private:
+  /// The plane's value to a depth: bias, clamps.
+  HWY_INLINE VF restrict(VF z) const {
+    const Floats f;
+    z = hn::Add(z, offset_);
+    if (restricts_) z = lanes_max_second(lanes_min_second(z, hn::Set(f, 1.0f)), hn::Zero(f));
+    return clamps_ ? lanes_max_second(lanes_min_second(z, high_), low_) : z;
+  }
+
   VF a0_, dadx_, dady_, offset_, low_, high_;
   VF lane_row_, lane_column_;  ///< places in the square
   bool clamps_, restricts_, write_;
@@ -238,6 +327,15 @@ void test_windows(const BlockDepthTest& test, const BlockPixels& pixels, DepthWi
   });
 }
 
+bool test_large_window(const BlockDepthTest& test, const DepthPlane& plane, float x, float y, const BlockPixels& pixels,
+                       LargeWindow& window) {
+  bool any = false;
+  with_square_test<kLargeWindow>(test, [&](auto type) HWY_ATTR {
+    any = typename decltype(type)::type(test, plane).run_window(x, y, pixels.first, pixels.pitch, window);
+  });
+  return any;
+}
+
 }  // namespace vitrine::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -245,12 +343,19 @@ HWY_AFTER_NAMESPACE();
 namespace vitrine::raster {
 
 HWY_EXPORT(evaluate_all);
+HWY_EXPORT(evaluate_in_spans);
 HWY_EXPORT(test_blocks);
 HWY_EXPORT(test_windows);
+HWY_EXPORT(test_large_window);
 
 void evaluate_block(const PlaneSet& planes, const BlockVarying* varying, std::size_t count, float x, float y,
                     const float* scale) {
   HWY_DYNAMIC_DISPATCH(evaluate_all)(planes, varying, count, x, y, scale);
+}
+
+void evaluate_spans(const PlaneSet& planes, const BlockVarying* varying, std::size_t count, const SpanWave& wave,
+                    float center, const float* scale) {
+  HWY_DYNAMIC_DISPATCH(evaluate_in_spans)(planes, varying, count, wave, center, scale);
 }
 
 base::LaneMask test_block_depths(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
@@ -261,6 +366,11 @@ base::LaneMask test_block_depths(const BlockDepthTest& test, const DepthPlane& p
 void test_window_depths(const BlockDepthTest& test, const BlockPixels& pixels, DepthWindow* windows,
                         std::size_t count) {
   HWY_DYNAMIC_DISPATCH(test_windows)(test, pixels, windows, count);
+}
+
+bool test_large_window_depths(const BlockDepthTest& test, const DepthPlane& plane, float x, float y,
+                              const BlockPixels& pixels, LargeWindow& window) {
+  return HWY_DYNAMIC_DISPATCH(test_large_window)(test, plane, x, y, pixels, window);
 }
 
 }  // namespace vitrine::raster

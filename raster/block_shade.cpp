@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "base/numeric.h"
+#include "raster/spans.h"
 #include "raster/tile.h"
 #include "spirv/shader_cost.h"
 
@@ -22,43 +23,62 @@ struct PositionPlanes {
 };
 constexpr PositionPlanes kPositionPlanes;
 
-void set_varyings(TileWorker& worker, const PlaneSet& planes, float x, float y) {
+/// Where planes are evaluated: the 64 pixels of a block, from (x, y) on.
+struct BlockPlace {
+  int x, y;
+  void evaluate(const PlaneSet& planes, const BlockVarying* varying, std::size_t count, float center,
+                const float* scale) const {
+    evaluate_block(planes, varying, count, static_cast<float>(x) + center, static_cast<float>(y) + center, scale);
+  }
+};
+
+/// Or those of a wave of spans.
+struct SpanPlace {
+  const SpanWave& wave;
+  void evaluate(const PlaneSet& planes, const BlockVarying* varying, std::size_t count, float center,
+                const float* scale) const {
+    evaluate_spans(planes, varying, count, wave, center, scale);
+  }
+};
+
+template <class Place>
+void set_varyings(TileWorker& worker, const PlaneSet& planes, const Place& place, float center) {
   const BlockDraw& draw = worker.block_draw;
   const float* scale = nullptr;
   if (draw.perspective != 0 && !planes.unit_w) {
     const BlockVarying w{kReciprocalWPlane, worker.reciprocal_w};
-    evaluate_block(planes, &w, 1, x, y, nullptr);
+    place.evaluate(planes, &w, 1, center, nullptr);
     reciprocal(worker.reciprocal_w, worker.reciprocal_w);
     scale = worker.reciprocal_w;
   }
   const BlockVarying* linear = draw.varying.data() + draw.perspective;
   if (scale) {
-    evaluate_block(planes, draw.varying.data(), draw.perspective, x, y, scale);
+    place.evaluate(planes, draw.varying.data(), draw.perspective, center, scale);
     if (draw.varying.size() > draw.perspective)
-      evaluate_block(planes, linear, draw.varying.size() - draw.perspective, x, y, nullptr);
+      place.evaluate(planes, linear, draw.varying.size() - draw.perspective, center, nullptr);
   } else if (!draw.varying.empty()) {
-    evaluate_block(planes, draw.varying.data(), draw.varying.size(), x, y, nullptr);
+    place.evaluate(planes, draw.varying.data(), draw.varying.size(), center, nullptr);
   }
 }
 
-void set_frag_coord(TileWorker& worker, const PlaneSet& planes, const Primitive& primitive, int x, int y,
+template <class Place>
+void set_frag_coord(TileWorker& worker, const PlaneSet& planes, const Primitive& primitive, const Place& place,
                     float center) {
   const auto& reg = worker.draw->plan->frag.frag_coord;
-  const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
   for (std::uint32_t c = 0; c < 2; ++c)
     if (reg[c] != kNoReg) {
       const BlockVarying position{c, as_floats(worker.runner.input(reg[c]))};
-      evaluate_block(kPositionPlanes.planes, &position, 1, fx + 0.5f, fy + 0.5f, nullptr);
+      place.evaluate(kPositionPlanes.planes, &position, 1, 0.5f, nullptr);
     }
   if (reg[2] != kNoReg) {
     float* z = as_floats(worker.runner.input(reg[2]));
     const BlockVarying depth{kDepthPlane, z};
-    evaluate_block(planes, &depth, 1, fx + center, fy + center, nullptr);
+    place.evaluate(planes, &depth, 1, center, nullptr);
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) z[lane] += primitive.depth_offset;
   }
   if (reg[3] != kNoReg) {
     const BlockVarying w{kReciprocalWPlane, as_floats(worker.runner.input(reg[3]))};
-    evaluate_block(planes, &w, 1, fx + center, fy + center, nullptr);
+    place.evaluate(planes, &w, 1, center, nullptr);
   }
 }
 
@@ -66,16 +86,17 @@ void splat(TileWorker& worker, std::uint32_t reg, std::uint32_t value) {
   if (reg != kNoReg) std::fill_n(worker.runner.input(reg).lane, base::kWaveWidth, value);
 }
 
-void set_inputs(TileWorker& worker, const Primitive& primitive, int x, int y) {
+template <class Place>
+void set_inputs(TileWorker& worker, const Primitive& primitive, const Place& place) {
   const PipelinePlan& plan = *worker.draw->plan;
   const PlaneSet& planes = current_planes(worker, primitive);
   const float center = plan.raster_samples > 1 ? 0.5f : 0.0f;
-  set_varyings(worker, planes, static_cast<float>(x) + center, static_cast<float>(y) + center);
+  set_varyings(worker, planes, place, center);
   const std::uint32_t smooth = plan.perspective_count + plan.linear_count;
   for (std::uint32_t i = 0; i < plan.read_count; ++i)
     if (const VaryingRead& read = plan.read[i]; read.varying >= smooth)
       splat(worker, read.reg, base::bits_of(primitive.v[primitive.provoking][4 + read.varying]));
-  set_frag_coord(worker, planes, primitive, x, y, center);
+  set_frag_coord(worker, planes, primitive, place, center);
   splat(worker, plan.frag.front_facing, primitive.front ? ~0u : 0u);
   splat(worker, plan.frag.primitive_id, primitive.id);
 }
@@ -128,6 +149,37 @@ void write_block(TileWorker& worker, int x, int y, const LaneMask* kept) {
     if (!draw.solid) writer.block->pack(writer, collect_color(worker, plan.frag.color[i]), draw.color[i]);
     for (std::uint32_t s = 0; s < plan.samples; ++s)
       if (kept[s]) writer.block->write_packed(writer, draw.color[i], pixels(s), rows_of_quads(kept[s]));
+  }
+}
+
+/// The quads of a wave; those beyond are at the window's first pixel.
+void place_quads(const SpanWave& wave, QuadPositions& out) {
+  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
+    out.x[q] = static_cast<std::uint16_t>(wave.x + static_cast<int>(wave.quad_x >> 4 * q & 15) * 2);
+    out.y[q] = static_cast<std::uint16_t>(wave.y + static_cast<int>(wave.quad_y >> 4 * q & 15) * 2);
+  }
+}
+
+/// Writes the covered pixels of a wave.
+void write_spans(TileWorker& worker, const SpanWave& wave) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const BlockDraw& draw = worker.block_draw;
+  for (std::uint32_t i = 0; i < plan.color_count; ++i) {
+    const texel::ImageView& view = worker.pass->color[i];
+    const ColorWriter& writer = plan.writer[i];
+    if (!writer.function || worker.target.layer >= view.layer_count) continue;
+    if (!writer.block) {
+      QuadPositions quads;
+      place_quads(wave, quads);
+      write_color(writer, {&view, worker.target.layer, 0, &quads, lanes_of_spans(wave.rows),
+                           collect_color(worker, plan.frag.color[i]), nullptr});
+      continue;
+    }
+    const BlockPixels pixels{view.block(0, worker.target.layer, 0, 0, 0, 0), view.level[0].row_pitch};
+    if (draw.solid)
+      writer.block->write_packed_spans(writer, draw.color[i], pixels, wave);
+    else
+      writer.block->write_spans(writer, collect_color(worker, plan.frag.color[i]), pixels, wave);
   }
 }
 
@@ -207,6 +259,16 @@ LaneMask test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32
                            static_cast<float>(y) + dy, depth_pixels(target, x, y), places, lanes);
 }
 
+bool test_large_window(TileWorker& worker, const Primitive& primitive, int x, int y, LargeWindow& window) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const DepthStencilTarget& target = worker.target.depth_stencil[0];
+  const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
+  const ViewportTransform& viewport = plan.viewport[primitive.viewport];
+  const DepthRange range{viewport.z_min, viewport.z_max};
+  return test_large_window_depths(depth_test(plan, target, plan.depth_order == TestOrder::kEarly, range), plane,
+                                  static_cast<float>(x), static_cast<float>(y), depth_pixels(target, x, y), window);
+}
+
 LaneMask unhidden_places(TileWorker& worker, const Primitive& primitive, LaneMask places) {
   DepthRange range;
   return unhidden_blocks(worker.hierarchy, hierarchical_test(worker, primitive, range), places);
@@ -226,7 +288,7 @@ void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, c
   const LaneMask pixels = any_sample(block, plan.samples);
   LaneMask alive = pixels;
   if (!worker.block_draw.solid) {
-    set_inputs(worker, primitive, x, y);
+    set_inputs(worker, primitive, BlockPlace{x, y});
     const LaneMask active = plan.fragment->needs_helpers ? whole_quads(pixels) : pixels;
     alive = worker.runner.run(active, active & ~pixels);
   }
@@ -241,6 +303,20 @@ void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, c
   }
   if (std::any_of(kept, kept + plan.samples, [](LaneMask lanes) { return lanes != 0; }))
     write_block(worker, x, y, kept);
+}
+
+void shade_spans(TileWorker& worker, const Primitive& primitive, SpanWave& wave) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(wave.rows));
+  if (!worker.block_draw.solid) {
+    const LaneMask pixels = lanes_of_spans(wave.rows);
+    set_inputs(worker, primitive, SpanPlace{wave});
+    const LaneMask active = plan.fragment->needs_helpers ? whole_quads(pixels) : pixels;
+    const LaneMask alive = worker.runner.run(active, active & ~pixels);
+    if ((pixels & ~alive) != 0) wave.rows = rows_of_spans(pixels & alive);
+  }
+  if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(wave.rows));
+  if (wave.rows != 0) write_spans(worker, wave);
 }
 
 }  // namespace vitrine::raster

@@ -5,6 +5,7 @@
 #include "raster/blend.h"
 #include "raster/block.h"
 #include "raster/color_fast.h"
+#include "raster/spans.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/color_block.cpp"
@@ -72,6 +73,20 @@ void pack_bytes(const ColorWriter& writer, const base::WaveRegister* color, Pack
     hn::Store(hn::BitCast(hn::RebindToUnsigned<Pixels>(), colors.at(i)), hn::RebindToUnsigned<Pixels>(), out.texel + i);
 }
 
+/// Stores the texels of `bits`, lane 0 in bit 0; there may be more bits than lanes.
+template <class D>
+HWY_INLINE void store_texels(D d, hn::Vec<D> v, std::byte* to, std::uint32_t bits) {
+  if (bits == 0) return;
+#if HWY_TARGET <= HWY_AVX2
+  hn::BlendedStore(v, lanes_mask_from_bits(d, bits), d, reinterpret_cast<std::int32_t*>(to));
+#else
+  alignas(16) std::int32_t texel[hn::MaxLanes(d)];
+  hn::Store(v, d, texel);
+  for (std::size_t i = 0; i < hn::MaxLanes(d); ++i)
+    if (bits >> i & 1) std::memcpy(to + 4 * i, texel + i, 4);
+#endif
+}
+
 /// Where the pixels of a vector lie.
 struct PixelRows {
   std::byte *top, *bottom;
@@ -91,45 +106,125 @@ struct PixelRows {
   HWY_INLINE void store_some(VB v, std::uint32_t bits_top, std::uint32_t bits_bottom) const {
     const Half d;
     const VP texels = hn::BitCast(Pixels(), v);
-    store_some(hn::LowerHalf(d, texels), top, bits_top);
-    store_some(hn::UpperHalf(d, texels), bottom, bits_bottom);
-  }
-
- private:
-  static HWY_INLINE void store_some(hn::Vec<Half> v, std::byte* to, std::uint32_t bits) {
-    const Half d;
-    if (bits == 0) return;
-#if HWY_TARGET <= HWY_AVX2
-    hn::BlendedStore(v, lanes_mask_from_bits(d, bits), d, reinterpret_cast<std::int32_t*>(to));
-#else
-    alignas(16) std::int32_t texel[hn::MaxLanes(d)];
-    hn::Store(v, d, texel);
-    for (std::size_t i = 0; i < hn::MaxLanes(d); ++i)
-      if (bits >> i & 1) std::memcpy(to + 4 * i, texel + i, 4);
-#endif
+    store_texels(d, hn::LowerHalf(d, texels), top, bits_top);
+    store_texels(d, hn::UpperHalf(d, texels), bottom, bits_bottom);
   }
 };
 
-/// Stores make(index of the first lane, rows) for every vector with a pixel in `rows`.
-template <class F>
-HWY_INLINE void for_each_vector(const BlockPixels& pixels, base::LaneMask rows, F&& make) {
-  constexpr std::size_t n = hn::MaxLanes(Pixels()), half = n / 2;
-  constexpr std::uint32_t all = (1u << half) - 1;
-  const bool whole = rows == base::kAllLanes;
-  std::byte* row = pixels.first;
-  for (std::size_t y = 0; y < kRow; y += 2, row += 2 * pixels.pitch)
-    for (std::size_t x = 0; x < kRow; x += half) {
-      const PixelRows at{row + 4 * x, row + pixels.pitch + 4 * x};
-      const std::size_t i = kRow * y + 2 * x;
-      if (whole) {
-        at.store(make(i, at));
-        continue;
+/// The rows of a block of which some pixels are stored.
+struct BlockRows {
+  const BlockPixels& pixels;
+  base::LaneMask rows;
+
+  /// Stores make(index of the first lane, rows) for every vector with a pixel.
+  template <class F>
+  HWY_INLINE void for_each_vector(F&& make) const {
+    constexpr std::size_t n = hn::MaxLanes(Pixels()), half = n / 2;
+    constexpr std::uint32_t all = (1u << half) - 1;
+    const bool whole = rows == base::kAllLanes;
+    std::byte* row = pixels.first;
+    for (std::size_t y = 0; y < kRow; y += 2, row += 2 * pixels.pitch)
+      for (std::size_t x = 0; x < kRow; x += half) {
+        const PixelRows at{row + 4 * x, row + pixels.pitch + 4 * x};
+        const std::size_t i = kRow * y + 2 * x;
+        if (whole) {
+          at.store(make(i, at));
+          continue;
+        }
+        const auto top = static_cast<std::uint32_t>(rows >> (kRow * y + x)) & all;
+        const auto bottom = static_cast<std::uint32_t>(rows >> (kRow * y + kRow + x)) & all;
+        if ((top | bottom) != 0) at.store_some(make(i, at), top, bottom);
       }
-      const auto top = static_cast<std::uint32_t>(rows >> (kRow * y + x)) & all;
-      const auto bottom = static_cast<std::uint32_t>(rows >> (kRow * y + kRow + x)) & all;
-      if ((top | bottom) != 0) at.store_some(make(i, at), top, bottom);
+  }
+};
+
+/// The rows of a wave as memory would hold them if its spans lay side by side.
+class SpanTexels {
+ public:
+  /// Of a span, from pixel i on.
+  HWY_INLINE VP upper(const QuadSpan& span, std::size_t i) const { return at(0, 2 * span.first + i); }
+  HWY_INLINE VP lower(const QuadSpan& span, std::size_t i) const { return at(1, 2 * span.first + i); }
+
+#if HWY_TARGET <= HWY_AVX3
+  HWY_INLINE explicit SpanTexels(const VB (&v)[4]) {
+    const Pixels d;
+    const auto pixels = [&](std::size_t i) HWY_ATTR { return hn::BitCast(d, v[i]); };
+    for (std::size_t k = 0; k < 2; ++k) {
+      row_[0][k] = hn::ConcatLowerLower(d, pixels(2 * k + 1), pixels(2 * k));
+      row_[1][k] = hn::ConcatUpperUpper(d, pixels(2 * k + 1), pixels(2 * k));
     }
-}
+  }
+
+ private:
+  HWY_INLINE VP at(std::size_t row, std::size_t first) const {
+    const VP index = hn::Add(hn::Iota(Pixels(), 0), hn::Set(Pixels(), static_cast<std::int32_t>(first)));
+    return VP{_mm512_permutex2var_epi32(row_[row][0].raw, index.raw, row_[row][1].raw)};
+  }
+
+  VP row_[2][2];
+#else
+  template <std::size_t kVectors>
+  HWY_INLINE explicit SpanTexels(const VB (&v)[kVectors]) {
+    const Half d;
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      const VP pixels = hn::BitCast(Pixels(), v[k]);
+      hn::Store(hn::LowerHalf(d, pixels), d, row_[0] + k * hn::MaxLanes(d));
+      hn::Store(hn::UpperHalf(d, pixels), d, row_[1] + k * hn::MaxLanes(d));
+    }
+  }
+
+ private:
+  HWY_INLINE VP at(std::size_t row, std::size_t first) const { return hn::LoadU(Pixels(), row_[row] + first); }
+
+  alignas(64) std::int32_t row_[2][kWaveWidth / 2 + hn::MaxLanes(Pixels())];
+#endif
+};
+
+/// The same for a wave of spans.
+struct SpanRows {
+  const BlockPixels& pixels;
+  const SpanWave& wave;
+  bool reads;  ///< make() looks at what is there
+
+  template <class F>
+  HWY_INLINE void for_each_vector(F&& make) const {
+    constexpr std::size_t n = hn::MaxLanes(Pixels());
+    alignas(64) std::byte stored[2][2 * kWaveWidth];
+    if (reads) load(stored[0], stored[1]);
+    VB made[kWaveWidth / n];
+    for (std::size_t i = 0; i < kWaveWidth; i += n)
+      made[i / n] = make(i, PixelRows{stored[0] + 2 * i, stored[1] + 2 * i});
+    const SpanTexels texels(made);
+    const Pixels d;
+    for (const QuadSpan* span = wave.span; span != wave.span + wave.count; ++span) {
+      std::byte* row = first_of(*span);
+      const std::uint32_t all = (1u << 2 * span->count) - 1;
+      const std::uint64_t rows = wave.rows >> 2 * span->first;
+      const std::uint32_t upper = static_cast<std::uint32_t>(rows) & all;
+      const std::uint32_t lower = static_cast<std::uint32_t>(rows >> 32) & all;
+      for (std::size_t i = 0; i < std::size_t{2} * span->count; i += n) {
+        store_texels(d, texels.upper(*span, i), row + 4 * i, upper >> i);
+        store_texels(d, texels.lower(*span, i), row + pixels.pitch + 4 * i, lower >> i);
+      }
+    }
+  }
+
+ private:
+  HWY_INLINE std::byte* first_of(const QuadSpan& span) const {
+    const auto x = static_cast<std::size_t>(wave.x + span.x), y = static_cast<std::size_t>(wave.y + span.y);
+    return pixels.first + y * pixels.pitch + 4 * x;
+  }
+  /// Only the pixels of the spans: others may be those of another thread.
+  HWY_INLINE void load(std::byte* upper, std::byte* lower) const {
+    for (const QuadSpan* span = wave.span; span != wave.span + wave.count; ++span) {
+      const std::byte* row = first_of(*span);
+      for (std::size_t q = 0; q < span->count; ++q) {
+        std::memcpy(upper + 8 * (span->first + q), row + 8 * q, 8);
+        std::memcpy(lower + 8 * (span->first + q), row + pixels.pitch + 8 * q, 8);
+      }
+    }
+  }
+};
 
 /// Bits of a texel that may change, in every pixel.
 HWY_INLINE VB write_bits(const ColorWriter& writer) {
@@ -138,17 +233,15 @@ HWY_INLINE VB write_bits(const ColorWriter& writer) {
   return hn::BitCast(Bytes(), hn::Set(Pixels(), word));
 }
 
-template <class Colors>
-HWY_INLINE void store_rows(const ColorWriter& writer, const Colors& colors, const BlockPixels& pixels,
-                           base::LaneMask rows) {
+template <class Colors, class Rows>
+HWY_INLINE void store_rows(const ColorWriter& writer, const Colors& colors, const Rows& rows) {
   if (!writer.masked) {
-    for_each_vector(pixels, rows, [&](std::size_t i, const PixelRows&) HWY_ATTR { return colors.at(i); });
+    rows.for_each_vector([&](std::size_t i, const PixelRows&) HWY_ATTR { return colors.at(i); });
     return;
   }
   const VB change = write_bits(writer);
-  for_each_vector(pixels, rows, [&](std::size_t i, const PixelRows& at) HWY_ATTR {
-    return hn::Or(hn::And(change, colors.at(i)), hn::AndNot(change, at.load()));
-  });
+  rows.for_each_vector([&](std::size_t i, const PixelRows& at)
+                           HWY_ATTR { return hn::Or(hn::And(change, colors.at(i)), hn::AndNot(change, at.load())); });
 }
 
 /// Operands of one vector of pixels, and what all vectors share.
@@ -224,9 +317,8 @@ HWY_INLINE VB term(VkBlendFactor rgb, VkBlendFactor alpha, VB value, const Blend
   return mul8(value, factor);
 }
 
-template <class Colors>
-HWY_INLINE void blend_rows(const ColorWriter& writer, const Colors& colors, const BlockPixels& pixels,
-                           base::LaneMask rows) {
+template <class Colors, class Rows>
+HWY_INLINE void blend_rows(const ColorWriter& writer, const Colors& colors, const Rows& rows) {
   std::uint32_t constants = 0;
   for (std::size_t c = 0; c < 4; ++c) constants |= constant_to_byte(writer.constants[c]) << shift_of(writer, c);
   const hn::RebindToUnsigned<Pixels> d;
@@ -236,7 +328,7 @@ HWY_INLINE void blend_rows(const ColorWriter& writer, const Colors& colors, cons
   const VB change = write_bits(writer);
   const BlendEquation rgb = writer.rgb, alpha = writer.alpha;
   const bool masked = writer.masked;
-  for_each_vector(pixels, rows, [&](std::size_t i, const PixelRows& at) HWY_ATTR {
+  rows.for_each_vector([&](std::size_t i, const PixelRows& at) HWY_ATTR {
     const BlendRow row{colors.at(i), at.load()};
     const VB src = term(rgb.src, alpha.src, row.src, row, shared);
     const VB dst = term(rgb.dst, alpha.dst, row.dst, row, shared);
@@ -262,26 +354,34 @@ void store_packed(const PackedBlock& colors, const BlockPixels& pixels) {
 
 template <bool kBlends>
 struct ByteBlocks {
-  template <class Colors>
-  static HWY_INLINE void write_colors(const ColorWriter& writer, const Colors& colors, const BlockPixels& pixels,
-                                      base::LaneMask rows) {
+  template <class Colors, class Rows>
+  static HWY_INLINE void write_colors(const ColorWriter& writer, const Colors& colors, const Rows& rows) {
     if constexpr (kBlends)
-      blend_rows(writer, colors, pixels, rows);
+      blend_rows(writer, colors, rows);
     else
-      store_rows(writer, colors, pixels, rows);
+      store_rows(writer, colors, rows);
   }
+  static bool reads(const ColorWriter& writer) { return kBlends || writer.masked; }
   static void write_packed(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels,
                            base::LaneMask rows) {
     if (!kBlends && rows == base::kAllLanes && !writer.masked)
       store_packed(colors, pixels);
     else
-      write_colors(writer, StoredColors{colors}, pixels, rows);
+      write_colors(writer, StoredColors{colors}, BlockRows{pixels, rows});
   }
   static void write(const ColorWriter& writer, const base::WaveRegister* color, const BlockPixels& pixels,
                     base::LaneMask rows) {
-    write_colors(writer, PackedColors(writer, color), pixels, rows);
+    write_colors(writer, PackedColors(writer, color), BlockRows{pixels, rows});
   }
-  static constexpr BlockColorFunctions kFunctions{pack_bytes, write_packed, write};
+  static void write_packed_spans(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels,
+                                 const SpanWave& wave) {
+    write_colors(writer, StoredColors{colors}, SpanRows{pixels, wave, reads(writer)});
+  }
+  static void write_spans(const ColorWriter& writer, const base::WaveRegister* color, const BlockPixels& pixels,
+                          const SpanWave& wave) {
+    write_colors(writer, PackedColors(writer, color), SpanRows{pixels, wave, reads(writer)});
+  }
+  static constexpr BlockColorFunctions kFunctions{pack_bytes, write_packed, write, write_packed_spans, write_spans};
 };
 
 }  // namespace

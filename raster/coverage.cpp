@@ -28,6 +28,7 @@ alignas(64) constexpr std::int32_t kRowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1,
 /// Places of the 16 lanes of a window.
 alignas(64) constexpr std::int32_t kWindowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 0, 1, 0, 1, 2, 3, 2, 3};
 alignas(64) constexpr std::int32_t kWindowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3, 2, 2, 3, 3};
+alignas(64) constexpr std::int32_t kColumns[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// Lanes where origin + x*step_x + y*step_y >= 0 for all edges; (x, y) is the lane's place.
 base::LaneMask inside_lanes(std::uint32_t count, const std::int32_t* step_x, const std::int32_t* step_y,
@@ -156,6 +157,42 @@ base::LaneMask small_window_lanes(const std::int32_t* step_x, const std::int32_t
   return ~outside;
 }
 
+bool large_window_rows(const TileEdges& edges, const PixelRect& rect, LargeWindow& out) {
+  const I d;
+  constexpr std::size_t n = hn::MaxLanes(I()), kVectors = kLargeWindow / n;
+  V row[3][kVectors], down[3];
+  for (std::size_t e = 0; e < 3; ++e) {
+    down[e] = hn::Set(d, edges.step_y[e]);
+    for (std::size_t v = 0; v < kVectors; ++v)
+      row[e][v] =
+          hn::Add(hn::Set(d, edges.f[0][e]), hn::Mul(hn::Load(d, kColumns + v * n), hn::Set(d, edges.step_x[e])));
+  }
+  const auto outside_next = [&]() HWY_ATTR {
+    std::uint64_t outside = 0;
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const V sign = hn::Or(row[0][v], hn::Or(row[1][v], row[2][v]));
+      for (std::size_t e = 0; e < 3; ++e) row[e][v] = hn::Add(row[e][v], down[e]);
+      outside |= (bits_of_mask(hn::Lt(sign, hn::Zero(d))) & base::first_lanes(n)) << (v * n);
+    }
+    return outside;
+  };
+  const auto first_bits = [](int count) { return base::first_lanes(static_cast<std::size_t>(count)); };
+  const std::uint64_t columns = (first_bits(rect.x1 + 1) & ~first_bits(rect.x0)) * 0x0001000100010001;
+  const int last = rect.y1 / 4;
+  std::uint64_t any = 0;
+  for (std::uint64_t& word : out.rows) word = 0;
+  for (int w = 0; w <= last; ++w) {
+    const std::uint64_t first = outside_next(), second = outside_next(), third = outside_next(),
+                        fourth = outside_next();
+    std::uint64_t word = columns & ~(first | second << 16 | (third << 32 | fourth << 48));
+    if (4 * w < rect.y0) word &= ~first_bits(16 * (rect.y0 - 4 * w));
+    if (w == last) word &= first_bits(16 * (rect.y1 % 4 + 1));
+    out.rows[w] = word;
+    any |= word;
+  }
+  return any != 0;
+}
+
 }  // namespace vitrine::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -167,6 +204,7 @@ HWY_EXPORT(inside_lanes);
 HWY_EXPORT(inside_blocks);
 HWY_EXPORT(window_lanes);
 HWY_EXPORT(small_window_lanes);
+HWY_EXPORT(large_window_rows);
 
 struct Edge {
   std::int64_t a, b, c;  ///< E = c - a*qx + b*qy, the fill rule's unit included
@@ -286,6 +324,10 @@ void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMa
 base::LaneMask rect_lanes(int x0, int y0, int x1, int y1) {
   const auto at = [](int v) { return static_cast<std::size_t>(std::clamp(v, 0, 8)); };
   return kLanesLeftOf[at(x1 + 1)] & ~kLanesLeftOf[at(x0)] & kLanesAbove[at(y1 + 1)] & ~kLanesAbove[at(y0)];
+}
+
+bool cover_large_window(const TileEdges& edges, const PixelRect& rect, LargeWindow& out) {
+  return HWY_DYNAMIC_DISPATCH(large_window_rows)(edges, rect, out);
 }
 
 base::LaneMask cover_window(const std::int32_t corner_x[3], const std::int32_t corner_y[3], int x, int y, bool small) {

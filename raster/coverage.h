@@ -38,6 +38,17 @@ void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMa
 /// corners lie within 32 pixels of there. `small`: only its first 4x4 pixels can be covered.
 base::LaneMask cover_window(const std::int32_t corner_x[3], const std::int32_t corner_y[3], int x, int y, bool small);
 
+/// Pixels of a window of 16x16: bit 16 * (y % 4) + x of word y / 4.
+inline constexpr int kLargeWindow = 16;
+struct LargeWindow {
+  static constexpr std::size_t kWords = 4;
+  std::uint64_t rows[kWords + 2];  ///< the last two are 0: blocks that reach beyond are empty there
+};
+
+/// Covers the pixels of `rect` of the window at the first pixel of `edges`, of which there are at most three, those
+/// that are not there zero; single-sampled. False if nothing is covered.
+bool cover_large_window(const TileEdges& edges, const PixelRect& rect, LargeWindow& out);
+
 /// Place of lane i in a block: x, y in [0, 8).
 constexpr int lane_x(std::uint32_t lane) { return static_cast<int>((lane >> 2 & 3) * 2 + (lane & 1)); }
 constexpr int lane_y(std::uint32_t lane) { return static_cast<int>((lane >> 4) * 2 + (lane >> 1 & 1)); }

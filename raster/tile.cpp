@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/float_mode.h"
+#include "raster/spans.h"
 #include "texel/transfer.h"
 
 namespace vitrine::raster {
@@ -125,7 +126,8 @@ base::LaneMask compress_quads(base::LaneMask lanes, base::LaneMask quads, std::u
   return result;
 }
 
-/// Appends the quads whose lowest lanes are set in `quads`.
+}  // namespace
+
 void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
                   const BlockCoverage& block, base::LaneMask quads) {
   PackedWave& wave = worker.wave;
@@ -154,6 +156,8 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
     if (wave.quads == base::kQuadsPerWave) shade_wave(worker, wave);
   }
 }
+
+namespace {
 
 /// Quads of a block from which on it is shaded on its own: fewer would waste more lanes than packing costs.
 constexpr std::uint32_t kNearlyFull = 12, kNearlyFullIfShort = 2;
@@ -456,6 +460,17 @@ void test_tile(TileWorker& worker, const Primitive& primitive, GridOrigin origin
   }
 }
 
+}  // namespace
+
+void learn_hidden_rect(TileWorker& worker, const Primitive& primitive, const PixelRect& rect) {
+  const TileTarget& target = worker.target;
+  const base::LaneMask owned =
+      rect_lanes(0, 0, (target.right - target.x) / kBlockSize - 1, (target.bottom - target.y) / kBlockSize - 1);
+  learn_hidden_places(worker, primitive, places_of(rect) & owned);
+}
+
+namespace {
+
 /// The part of a tile a primitive may cover, pixels relative to the tile.
 PixelRect rect_in_tile(const TileTarget& target, const Primitive& p) {
   return intersect({p.x0 - target.x, p.y0 - target.y, p.x1 - target.x, p.y1 - target.y},
@@ -609,9 +624,14 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
   PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
-  base::LaneMask places = places_of(rect);
-  if (plan.hides_blocks && (worker.hierarchy.known & places) != 0) places = unhidden_places(worker, primitive, places);
-  if (places == 0) return;
+  base::LaneMask places = base::kAllLanes;
+  if (plan.hides_blocks && worker.hierarchy.known != 0) {
+    places = places_of(rect);
+    if ((worker.hierarchy.known & places) != 0) places = unhidden_places(worker, primitive, places);
+    if (places == 0) return;
+  }
+  if (emit_large_window(worker, primitive, edges, rect)) return;
+  places &= places_of(rect);
   const GridOrigin origin = grid_origin(primitive, rect);
   if (origin != GridOrigin{}) {
     move_origin(*plan.locations, origin, edges, rect);

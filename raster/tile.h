@@ -141,6 +141,10 @@ void begin_blocks(TileWorker& worker);
 /// Shades, tests late and writes a block inside all attachments whose first pixel is (x, y), in the framebuffer.
 void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block);
 
+/// Appends the quads of a block whose lowest lanes are set in `quads` to the packed wave.
+void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
+                  const BlockCoverage& block, base::LaneMask quads);
+
 /// Planes of a wave's primitives may be used again, but for the current ones.
 void release_planes(TileWorker& worker, const PackedWave& wave);
 
@@ -160,6 +164,12 @@ base::LaneMask unhidden_places(TileWorker& worker, const Primitive& primitive, b
 
 /// Nothing of the primitive passed in `places`, which lie inside all attachments: others may be rejected at once.
 void learn_hidden_places(TileWorker& worker, const Primitive& primitive, base::LaneMask places);
+
+/// Early depth test of the large window at (x, y), inside all attachments; single-sampled. False: nothing passed.
+bool test_large_window(TileWorker& worker, const Primitive& primitive, int x, int y, LargeWindow& window);
+
+/// The same for the blocks with pixels of `rect`, which is in the tile.
+void learn_hidden_rect(TileWorker& worker, const Primitive& primitive, const PixelRect& rect);
 
 /// Early depth test of windows inside all attachments whose primitives have one viewport; single-sampled.
 void test_windows(TileWorker& worker, std::uint32_t viewport, DepthWindow* windows, std::size_t count);

@@ -11,6 +11,7 @@
 
 #include "raster/coverage.h"
 #include "raster/pass.h"
+#include "raster/spans.h"
 #include "raster/stage.h"
 
 namespace vitrine::raster {
@@ -23,6 +24,14 @@ TEST(Block, OrdersOfLanesAreInverse) {
     const base::LaneMask row = base::LaneMask{1} << (8 * lane_y(lane) + lane_x(lane));
     EXPECT_EQ(rows_of_quads(base::LaneMask{1} << lane), row);
     EXPECT_EQ(quads_of_rows(row), base::LaneMask{1} << lane);
+  }
+}
+
+TEST(Block, RowsOfSpansAreTheirLanes) {
+  for (std::uint32_t lane = 0; lane < 64; ++lane) {
+    const std::uint64_t row = std::uint64_t{1} << (lane / 4 * 2 + (lane & 1) + 32 * (lane >> 1 & 1));
+    EXPECT_EQ(lanes_of_spans(row), base::LaneMask{1} << lane);
+    EXPECT_EQ(rows_of_spans(base::LaneMask{1} << lane), row);
   }
 }
 
@@ -111,7 +120,8 @@ struct Scene {
     set_state(random);
     set_shaders(random);
     for (std::uint32_t i = 0; i < 12; ++i) add_triangle(random, i % 4 == 0 ? 4.0f : 0.9f);
-    for (std::uint32_t i = 0; i < 150; ++i) add_triangle(random, 0.05f);  // a few pixels
+    for (std::uint32_t i = 0; i < 80; ++i) add_triangle(random, 0.05f);  // a few pixels
+    for (std::uint32_t i = 0; i < 80; ++i) add_triangle(random, 0.18f);  // up to 16x16
   }
 
   void draw(bool general, Attachment& color, Attachment* depth, std::uint64_t& passed) {
@@ -170,7 +180,9 @@ struct Scene {
   void set_state(std::mt19937& random) {
     state.viewport[0] = {0, 0, kWidth, kHeight, random() % 2 ? 0.0f : 0.9f, random() % 2 ? 1.0f : 0.2f};
     state.scissor[0] = {{0, 0}, {kWidth, kHeight}};
-    if (random() % 2) state.scissor[0] = {{5, 11}, {171, 121}};
+    if (random() % 2)
+      state.scissor[0] = {{static_cast<std::int32_t>(random() % 64), static_cast<std::int32_t>(random() % 64)},
+                          {141, 77}};
     state.samples = samples;
     state.sample_mask = random() % 4 ? ~0u : static_cast<std::uint32_t>(random());
     state.depth_clamp = random() % 2;
