@@ -267,6 +267,52 @@ void draw_long(Run& run, uint32_t width, uint32_t height, uint32_t layers, const
 
 CTS_CASE("rasterization", "extreme_size.wide") { draw_long(run, 16384, 5, 1, ""); }
 CTS_CASE("rasterization", "extreme_size.high") { draw_long(run, 5, 16384, 1, ""); }
+/// Attachments as wide and high as an image may be (1 GiB each), of which a render area in a corner or anywhere is
+/// drawn: no more than that needs memory. One in 500 is drawn as a whole.
+CTS_RANDOM("rasterization", "extreme_size.square", 6) {
+  Random& random = run.random;
+  constexpr uint32_t kSize = 16384, kArea = 192;
+  TargetSpec target_spec;
+  target_spec.width = target_spec.height = kSize;
+  target_spec.depth = VK_FORMAT_D32_SFLOAT;
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  spec.vertex = kColorVertex;
+  spec.fragment = kColorFragment;
+  spec.floats({4, 4});
+  spec.depth.depthTestEnable = spec.depth.depthWriteEnable = VK_TRUE;
+  spec.depth.depthCompareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  const auto place = [&] { return random.pick({0u, kSize - kArea, random.below(kSize - kArea)}); };
+  const VkRect2D area{{static_cast<int32_t>(place()), static_cast<int32_t>(place())}, {kArea, kArea}};
+  std::vector<float> values = random_colored_vertices(random, 6);
+  for (uint32_t i = 0; i < 60; ++i) {
+    const auto inside = [&](int32_t first) {
+      return (static_cast<float>(first) + random.real(-20, kArea + 20)) * (2.0f / kSize) - 1;
+    };
+    for (const float v : {inside(area.offset.x), inside(area.offset.y), random.unit(), 1.0f}) values.push_back(v);
+    for (int c = 0; c < 4; ++c) values.push_back(random.unit());
+  }
+  const Buffer vertices = run.buffer_of(values);
+  const Buffer color = run.buffer(kArea * kArea * 4), depth = run.buffer(kArea * kArea * 4);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd, run.index % 500 == 499 ? target.rect() : area);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, 66, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+    run.barrier(cmd);
+    VkBufferImageCopy region{};
+    region.imageOffset = {area.offset.x, area.offset.y, 0};
+    region.imageExtent = {kArea, kArea, 1};
+    region.imageSubresource = target.colors[0].layers();
+    vkCmdCopyImageToBuffer(cmd, target.colors[0].handle, VK_IMAGE_LAYOUT_GENERAL, color.handle, 1, &region);
+    region.imageSubresource = target.depth->layers();
+    vkCmdCopyImageToBuffer(cmd, target.depth->handle, VK_IMAGE_LAYOUT_GENERAL, depth.handle, 1, &region);
+  });
+  run.out("color", color, VK_FORMAT_R8G8B8A8_UNORM);
+  run.out("depth", depth, VK_FORMAT_D32_SFLOAT);
+}
 CTS_CASE("rasterization", "extreme_size.layers") {
   run.require(run.gpu.has("VK_EXT_shader_viewport_index_layer"), "VK_EXT_shader_viewport_index_layer");
   draw_long(run, 8, 8, 2000, "  gl_Layer = gl_InstanceIndex;\n");
