@@ -23,6 +23,25 @@ Expr self_compare(Expr a, Expr b, ir::Op op, ir::Op join) {
   return apply(join, {left, apply(op, {b, b})});
 }
 
+bool float_from_int(spv::Op op) { return op == spv::Op::OpConvertSToF || op == spv::Op::OpConvertUToF; }
+bool int_from_float(spv::Op op) { return op == spv::Op::OpConvertFToS || op == spv::Op::OpConvertFToU; }
+
+/// A conversion of a conversion back to the type that it came from: signed integers of floats become truncation,
+/// floats of integers nothing (4.2). The rewrites know that for 32 bits.
+std::optional<Expr> convert_back(Translator& t, const Inst& inst, std::uint8_t width) {
+  const std::uint32_t operand = inst.operand(0);
+  const ir::Function& f = t.function;
+  if (t.module.constant(operand) != nullptr || f.signed_zero_inf_nan_preserve || f.denorm_flush_to_zero) return {};
+  const Inst& inner = t.module.def(operand);
+  const bool truncates = inst.op == spv::Op::OpConvertSToF && inner.op == spv::Op::OpConvertFToS;
+  if (!truncates && !(int_from_float(inst.op) && float_from_int(inner.op))) return {};
+  for (const std::uint32_t id : {inst.result, inner.result})
+    if (t.module.decoration(id, spv::Decoration::NoContraction) != nullptr) return {};
+  const Expr source = number_of(t, inner.operand(0));
+  if (source.width != width || (width == 32 && number_of(t, operand).width == 32)) return {};
+  return truncates ? apply(ir::Op::kFTrunc, {source}) : source;
+}
+
 }  // namespace
 
 void ignore(Translator&, const Inst&, ir::Op) {}
@@ -59,6 +78,7 @@ void bit_count(Translator& t, const Inst& inst, ir::Op op) {
 void convert_number(Translator& t, const Inst& inst, ir::Op) {
   const Expr value = number_of(t, inst.operand(0));
   const auto width = static_cast<std::uint8_t>(number_type(t, inst.result_type).width);
+  if (const std::optional<Expr> source = convert_back(t, inst, width)) return set_number(t, inst, *source);
   const auto converted = [&] {
     switch (inst.op) {
       case spv::Op::OpConvertFToU:

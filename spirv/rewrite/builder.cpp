@@ -188,6 +188,8 @@ class Builder {
       case Op::kB2I:
       case Op::kI2F:
       case Op::kU2F:
+      case Op::kF2Half:  // parts of binary16 operations, which fold as a whole
+      case Op::kHalf2F:
         return true;
       default:
         return false;

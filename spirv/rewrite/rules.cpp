@@ -91,6 +91,7 @@ constexpr RuleText kMain[] = {
     {"FAdd(a,FNeg(FFract(a)))", "FFloor(a)"},
     {"FMulAdd(a,b,c)", "FAdd(FMul(a,b),c)"},
     {"$(a,b,0)", "0", "BfeU BfeI"},
+    {"$(0,a,b)", "0", "BfeU BfeI"},
     {"BfiMask(0,a)", "0"},
     // -- shifts
     {"Shl(IAdd(IMul(a,#b),#c),#d)", "IAdd(IMul(a,Shl(b,d)),Shl(c,d))"},

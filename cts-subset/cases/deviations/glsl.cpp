@@ -6,12 +6,12 @@ namespace {
 
 /// Runs 64 invocations of `expression` over (int x, int y) pairs.
 void integers(Run& run, const std::string& name, const std::string& statements, const std::vector<int32_t>& in,
-              uint32_t group_size = 1) {
+              uint32_t group_size = 1, const std::string& extensions = "") {
   const Buffer input = run.buffer_of(in), out = run.buffer(in.size() * 2);
   const Resources res = run.resources({storage_buffer(0, input), storage_buffer(1, out)});
-  const VkPipeline pipeline = run.compute(
-      res.layout,
-      run.shader(VK_SHADER_STAGE_COMPUTE_BIT, "layout(local_size_x = " + std::to_string(group_size) + R"() in;
+  const VkPipeline pipeline =
+      run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT,
+                                         extensions + "layout(local_size_x = " + std::to_string(group_size) + R"() in;
 layout(std430, binding = 0) buffer A { ivec2 a[]; };
 layout(std430, binding = 1) buffer R { int r[]; };
 void main() {
@@ -37,6 +37,15 @@ const AddCase kBudget("glsl", "deviation.loop_budget", "loop-budget", case_again
       "  int n = 0;\n  if (x > 60000) n = 105000; else for (int k = 0; k < x; ++k) n += (k ^ y) & 3;\n  r[id] = n + x;",
       {70000, 1, 10, 2});
 });
+
+const AddCase kWidened("glsl", "deviation.widened_comparisons", "widened-comparisons", case_against_control,
+                       [](Run& run) {
+                         run.require(run.gpu.features.shaderInt64, "shaderInt64");
+                         const std::vector<int32_t> x = {4, 1, -3, 2, 1, 7, 2, -5, 9, 0, 1, -1, 5, 3, 6, 8};
+                         integers(run, "widened", "  r[id] = int(int64_t(x) < 5l) + 2 * int(3l >= int64_t(y));", x, 1,
+                                  "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n");
+                         integers(run, "control", "  r[id] = int(x < 5) + 2 * int(3 >= y);", x);
+                       });
 
 /// A value that is computed anew in each iteration from one that the loop carries, read behind the loop.
 const AddCase kLeavesLoop("glsl", "deviation.value_leaves_loop", "value-leaves-loop", case_against_control,

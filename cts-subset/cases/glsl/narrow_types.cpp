@@ -91,6 +91,27 @@ void main() {
               0, 3);
 }
 
+// Conversions of conversions back, which the reference takes for truncation or nothing, and literal zeros that only its
+// code generator finds.
+CTS_CASE("glsl", "narrow.conversions_back") {
+  run_compute(run, std::string(kHead) + R"(
+layout(std430, binding = 0) buffer In { f16vec2 h[]; } a;
+void main() {
+  uint id = gl_GlobalInvocationID.x;
+  f16vec2 h = clamp(a.h[id], f16vec2(-100.0), f16vec2(100.0));
+  int16_t whole = int16_t(float16BitsToUint16(h.x));
+  float16_t zero = float16_t(uint(0)) / (h.x * h.x);
+  precise float16_t negated = -(h.y * zero);
+  result[6u * id] = uint(float16BitsToUint16(float16_t(int8_t(h.x))));
+  result[6u * id + 1u] = uint(float16BitsToUint16(float16_t(int16_t(h.x))));
+  result[6u * id + 2u] = uint(float16BitsToUint16(float16_t(int64_t(h.y))));
+  result[6u * id + 3u] = uint(int16_t(float16_t(whole)));
+  result[6u * id + 4u] = uint(int16_t(float(whole)));
+  result[6u * id + 5u] = uint(float16BitsToUint16(negated));
+}
+)");
+}
+
 CTS_CASE("glsl", "narrow.push_constants") {
   run_compute(run, std::string(kHead) + R"(
 layout(push_constant) uniform P { u8vec4 v; int8_t x; float16_t h; i16vec2 w; f16vec4 f; uint8_t a[16]; } p;
