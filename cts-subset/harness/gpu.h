@@ -142,6 +142,7 @@ void check(VkResult result, const char* call);
   X("VK_EXT_post_depth_coverage")         \
   X("VK_EXT_sample_locations")            \
   X("VK_EXT_sampler_filter_minmax")       \
+  X("VK_EXT_separate_stencil_usage")      \
   X("VK_EXT_shader_stencil_export")       \
   X("VK_EXT_shader_subgroup_ballot")      \
   X("VK_EXT_shader_subgroup_vote")        \

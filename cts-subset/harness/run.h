@@ -35,6 +35,7 @@ struct ImageSpec {
   VkImageTiling tiling = VK_IMAGE_TILING_OPTIMAL;
   VkImageCreateFlags flags = 0;
   VkComponentMapping components{};
+  const void* next = nullptr;  ///< pNext of the image's creation
 };
 
 /// An image in VK_IMAGE_LAYOUT_GENERAL with a view of everything.

@@ -58,7 +58,7 @@ Image Run::image(const ImageSpec& spec) {
           format.name);
   Image result;
   result.spec = spec;
-  VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+  VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, spec.next};
   info.flags = spec.flags;
   if (spec.view == VK_IMAGE_VIEW_TYPE_CUBE || spec.view == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY)
     info.flags |= VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT;
