@@ -386,6 +386,13 @@ Buffer index_buffer(Run& run, VkIndexType type, const std::vector<uint32_t>& ord
   return run.buffer_of(order);
 }
 
+template <typename T>
+void repeat(std::vector<T>& values, uint32_t times) {
+  const size_t count = values.size();
+  values.reserve(count * times);
+  for (size_t i = 0; i < count * (times - 1); ++i) values.push_back(values[i]);
+}
+
 /// How a draw is issued, and a clear before it.
 void random_command(Random& second, const Scene& scene, RecordedDraw& draw) {
   draw.seed = second.bits64();
@@ -441,6 +448,13 @@ void random_state(Run& run, Random& second, bool unrestricted) {
       order.push_back(draw.spec.assembly.primitiveRestartEnable && random.chance(0.1f) ? ~0u
                                                                                        : random.below(draw.vertices));
     std::vector<float> vertices = random_vertices(random, draw);
+    // Longer than what either device works on at a time.
+    if (second.chance(0.05f) && draw.stages.tessellation.empty()) {
+      const uint32_t copies = 24 + second.below(24);
+      repeat(vertices, copies);
+      repeat(order, copies);
+      draw.vertices *= copies;
+    }
     vertices.insert(vertices.begin(), size_t{r.first_vertex} * kVertexFloats, 0.5f);
     r.vertices = run.buffer_of(vertices);
     r.indices = index_buffer(run, r.index_type, order);
