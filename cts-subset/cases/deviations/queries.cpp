@@ -19,7 +19,7 @@ DeviationCheck counts(uint32_t device, uint32_t reference) {
 
 /// Draws with both pipelines in one query.
 void count(Run& run, VkQueryPool pool, VkQueryControlFlags flags, const Target& target,
-           const std::vector<VkPipeline>& pipelines, uint32_t vertices) {
+           const std::vector<VkPipeline>& pipelines, uint32_t vertices, const Buffer* indices = nullptr) {
   const Buffer result = run.buffer(4, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   run.once([&](VkCommandBuffer cmd) {
     vkCmdResetQueryPool(cmd, pool, 0, 1);
@@ -27,7 +27,12 @@ void count(Run& run, VkQueryPool pool, VkQueryControlFlags flags, const Target& 
     vkCmdBeginQuery(cmd, pool, 0, flags);
     for (const VkPipeline pipeline : pipelines) {
       bind_pipeline(cmd, pipeline);
-      vkCmdDraw(cmd, vertices, 1, 0, 0);
+      if (indices) {
+        vkCmdBindIndexBuffer(cmd, indices->handle, 0, VK_INDEX_TYPE_UINT16);
+        vkCmdDrawIndexed(cmd, vertices, 1, 0, 0, 0);
+      } else {
+        vkCmdDraw(cmd, vertices, 1, 0, 0);
+      }
     }
     vkCmdEndQuery(cmd, pool, 0);
     vkCmdEndRenderPass(cmd);
@@ -56,6 +61,21 @@ const AddCase kDiscarded("clipping", "deviation.discarded_invocations", "discard
                                                  VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT),
                                  0, target, pipelines, 3);
                          });
+
+/// One strip that the reference works on in parts.
+const AddCase kStrip("draw", "deviation.long_strip_vertices", "long-strip-vertices", counts(1530, 1533), [](Run& run) {
+  run.require(run.gpu.features.pipelineStatisticsQuery, "pipelineStatisticsQuery");
+  const Target target = make_target(run, {});
+  const Buffer indices = run.buffer_of(std::vector<uint16_t>(1530, 1));
+  GraphicsSpec spec;
+  spec.vertex = kFullScreenVertex;
+  spec.fragment = kWhite;
+  spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY;
+  count(run,
+        make_query_pool(run, VK_QUERY_TYPE_PIPELINE_STATISTICS, 1,
+                        VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT),
+        0, target, {make_pipeline(run, spec, target)}, 1530, &indices);
+});
 
 /// Half of the fragments are discarded behind early tests.
 const AddCase kEarly("pipeline", "deviation.early_sample_counting", "early-sample-counting", counts(64 * 64, 32 * 64),

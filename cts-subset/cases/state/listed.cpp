@@ -72,6 +72,10 @@ std::vector<std::string> remove_listed(const Scene& scene, DrawState& draw) {
     rows.push_back("discarded-clipping-invocations");
     draw.queried = false;
   }
+  if (draw.queried && draw.vertices > 1000) {
+    rows.push_back("long-strip-vertices");
+    draw.queried = false;
+  }
   const bool kills = draw.fragment.discards || draw.fragment.writes_mask || draw.spec.multisample.alphaToCoverageEnable;
   if (draw.queried && draw.fragment.early && kills && !fragment.empty()) {
     rows.push_back("early-sample-counting");
