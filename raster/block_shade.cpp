@@ -307,7 +307,7 @@ void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, c
 
 void shade_spans(TileWorker& worker, const Primitive& primitive, SpanWave& wave) {
   const PipelinePlan& plan = *worker.draw->plan;
-  if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(wave.rows));
+  const auto covered = static_cast<std::uint64_t>(std::popcount(wave.rows));
   if (!worker.block_draw.solid) {
     const LaneMask pixels = lanes_of_spans(wave.rows);
     set_inputs(worker, primitive, SpanPlace{wave});
@@ -315,7 +315,11 @@ void shade_spans(TileWorker& worker, const Primitive& primitive, SpanWave& wave)
     const LaneMask alive = worker.runner.run(active, active & ~pixels);
     if ((pixels & ~alive) != 0) wave.rows = rows_of_spans(pixels & alive);
   }
-  if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(wave.rows));
+  if (worker.counts) {
+    const bool counts_early = plan.fragment->early_fragment_tests;  // also what the shader discards
+    worker.fragment_invocations += covered;
+    worker.samples_passed += counts_early ? covered : static_cast<std::uint64_t>(std::popcount(wave.rows));
+  }
   if (wave.rows != 0) write_spans(worker, wave);
 }
 

@@ -503,7 +503,7 @@ bool reads_elsewhere(const PipelinePlan& plan) {
 
 /// What the block path leaves to packed waves: whatever is rare and needs more than varyings and FragCoord.
 void plan_blocks(PipelinePlan& plan, bool general) {
-  plan.windows = !general && plan.samples == 1 && plan.raster_samples == 1;
+  plan.windows = !general && plan.samples == 1 && plan.raster_samples == 1 && plan.sample_mask != 0;
   plan.tests_rows = !general && !plan.stencil_test && !plan.depth_bounds;
   // Depths beyond [0, 1] wrap in formats of fixed point.
   const bool clamps_inside = std::all_of(plan.viewport.begin(), plan.viewport.end(),

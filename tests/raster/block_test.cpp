@@ -233,6 +233,7 @@ struct Scene {
       fragment.interface.inputs.push_back(slot(spirv::BuiltIn::kFragCoord, c, 4 + c));
     fragment.interface.inputs.push_back(slot(spirv::BuiltIn::kFrontFacing, 0, 8));
     fragment.interface.uses_discard = drops;
+    fragment.interface.early_fragment_tests = random() % 3 == 0;
     fragment.interface.needs_helpers = random() % 2;
   }
 

@@ -265,6 +265,7 @@ TEST(Pass, HiddenPrimitivesLeaveNoTrace) {
 TEST(Pass, DrawsNothingForEmptyScissorsAndMasks) {
   Scene scene;
   add_triangles(scene, 50, 1.0f, 3);
+  add_triangles(scene, 50, 0.1f, 4);
   scene.state.scissor[0].extent = {0, 0};
   scene.draw();
   scene.state.scissor[0].extent = {100, 100};
