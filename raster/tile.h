@@ -132,14 +132,45 @@ struct TileWorker {
 void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, std::uint32_t tile,
                   const std::vector<TileItem>& items);
 
-/// Covers, tests early and packs one primitive (tile.cpp).
+/// Covers, tests early and packs one primitive (rasterize.cpp).
 void rasterize_primitive(TileWorker& worker, const Primitive& primitive);
+
+/// Tests a block before shading, whatever is tested and wherever it lies. Writes unless the test is only a preview of a
+/// late one.
+void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block);
+
+/// A primitive whose coverage the front end found (windows.cpp).
+void emit_window(TileWorker& worker, const Primitive& primitive);
+
+/// Whether such a primitive may go into a group: a window of 4x4 pixels that nothing cuts.
+bool is_small_window(const TileWorker& worker, const Primitive& primitive);
+
+/// Small windows of one draw and one viewport, at most kWindowGroup. Each step is done for all of them before the next,
+/// so that none waits for the results of the one before.
+void emit_small_windows(TileWorker& worker, const Primitive* const* primitives, std::uint32_t count);
 
 /// Prepares worker.block_draw for the draw just bound, if its plan shades blocks.
 void begin_blocks(TileWorker& worker);
 
 /// Shades, tests late and writes a block inside all attachments whose first pixel is (x, y), in the framebuffer.
 void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block);
+
+/// Whether rows of a square may be read and written without looking at their pixels: it lies inside all attachments,
+/// and inside the tile, beside which other threads are at work (windows do not keep to the grid of blocks).
+inline bool owns_square(const TileWorker& worker, int x, int y, int side) {
+  const TileTarget& target = worker.target;
+  return x >= target.x && y >= target.y && x + side <= target.right && y + side <= target.bottom;
+}
+
+/// Whether the coverage before early tests is wanted: copies of it right after it was made stall.
+inline bool reads_rasterized(const TileWorker& worker) { return worker.draw->plan->frag.sample_mask_in != kNoReg; }
+
+/// A block's coverage after early tests, to a wave (pack.cpp).
+void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
+                const BlockCoverage& block);
+
+/// Makes planes of the pool the current ones. Those before stay taken as long as the wave uses them.
+void set_current_planes(TileWorker& worker, const Primitive* primitive, PlaneSet* planes);
 
 /// Appends the quads of a block whose lowest lanes are set in `quads` to the packed wave.
 void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
