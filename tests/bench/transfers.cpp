@@ -86,11 +86,14 @@ double generate_mips(Run& run, VkFormat format) {
   });
 }
 
-double blit(Run& run, VkFilter filter) {
+double blit(Run& run, VkFilter filter, VkFormat source = VK_FORMAT_R8G8B8A8_UNORM,
+            VkFormat destination = VK_FORMAT_R8G8B8A8_UNORM) {
   cts::ImageSpec spec;
+  spec.format = source;
   spec.extent = {1024, 1024, 1};
   const cts::Image from = run.image(spec);
   run.fill_random(from);
+  spec.format = destination;
   spec.extent = {1400, 1400, 1};
   const cts::Image to = run.image(spec);
   VkImageBlit region{};
@@ -127,6 +130,15 @@ std::vector<Workload> transfer_workloads() {
       {"x_mips_rgba8", "Mpix/s", false, [](Run& run) { return generate_mips(run, VK_FORMAT_R8G8B8A8_UNORM); }},
       {"x_mips_srgb", "Mpix/s", false, [](Run& run) { return generate_mips(run, VK_FORMAT_R8G8B8A8_SRGB); }},
       {"x_mips_rgba16f", "Mpix/s", false, [](Run& run) { return generate_mips(run, VK_FORMAT_R16G16B16A16_SFLOAT); }},
+      {"x_mips_r8", "Mpix/s", false, [](Run& run) { return generate_mips(run, VK_FORMAT_R8_UNORM); }},
+      {"x_mips_rg16f", "Mpix/s", false, [](Run& run) { return generate_mips(run, VK_FORMAT_R16G16_SFLOAT); }},
+      {"x_mips_r11g11b10", "Mpix/s", false,
+       [](Run& run) { return generate_mips(run, VK_FORMAT_B10G11R11_UFLOAT_PACK32); }},
+      {"x_mips_rgba32f", "Mpix/s", false, [](Run& run) { return generate_mips(run, VK_FORMAT_R32G32B32A32_SFLOAT); }},
+      {"x_blit_bc1", "Mpix/s", false,
+       [](Run& run) { return blit(run, VK_FILTER_LINEAR, VK_FORMAT_BC1_RGBA_UNORM_BLOCK); }},
+      {"x_blit_d32", "Mpix/s", false,
+       [](Run& run) { return blit(run, VK_FILTER_NEAREST, VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT); }},
       {"x_clear_image", "GB/s", false, clear_image}};
 }
 

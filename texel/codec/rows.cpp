@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "texel/codec/field_rows.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "texel/codec/rows.cpp"
 #include "base/simd.h"
@@ -132,6 +134,13 @@ bool has_four_bytes(const FormatDesc& format, Numeric numeric) {
   return true;
 }
 
+/// One to three UNORM bytes.
+bool has_bytes(const FormatDesc& format) {
+  if (!format.plain || format.channel_count > 3 || format.block_bytes != format.channel_count) return false;
+  return std::all_of(format.channel.begin(), format.channel.begin() + format.channel_count,
+                     [](const Channel& c) { return c.bits == 8 && c.numeric == Numeric::kUnorm; });
+}
+
 /// Null: no code of this file decodes the format.
 DecodeRow row_decoder(const FormatDesc& format) {
   base::select_simd_target();
@@ -167,9 +176,14 @@ bool is_four_halves(const FormatDesc& format) {
 
 bool decode_row_simd(const FormatDesc& format, const std::byte* blocks, std::size_t count, Texel* out) {
   const DecodeRow row = count < 4 ? nullptr : row_decoder(format);
-  if (row == nullptr) return false;
-  const std::size_t done = row(blocks, 4 * count, out->data()) / 4;
-  exchange_red_and_blue(format, out, done);
+  std::size_t done = 0;
+  if (row != nullptr) {
+    done = row(blocks, 4 * count, out->data()) / 4;
+    exchange_red_and_blue(format, out, done);
+  } else {
+    done = decode_field_row(format, blocks, count, out);
+  }
+  if (done == 0) return false;
   const TexelDecoder decode = texel_decoder(format);
   for (std::size_t i = done; i < count; ++i) decode(format, blocks + i * format.block_bytes, out[i]);
   return true;
@@ -178,11 +192,14 @@ bool decode_row_simd(const FormatDesc& format, const std::byte* blocks, std::siz
 bool encode_row_simd(const FormatDesc& format, Encoding encoding, const Texel* texels, std::size_t count,
                      std::byte* blocks) {
   const EncodeRow row = count < 4 ? nullptr : row_encoder(format, encoding);
-  if (row == nullptr) return false;
-  const std::size_t done = row(texels->data(), 4 * count, blocks) / 4;
-  if (format.component[0] != 0) {
-    for (std::size_t i = 0; i < done; ++i) std::swap(blocks[4 * i], blocks[4 * i + 2]);
+  std::size_t done = 0;
+  if (row != nullptr) {
+    done = row(texels->data(), 4 * count, blocks) / 4;
+    for (std::size_t i = 0; format.component[0] != 0 && i < done; ++i) std::swap(blocks[4 * i], blocks[4 * i + 2]);
+  } else if (encoding == Encoding::kAttachment) {
+    done = encode_field_row(format, texels, count, blocks);
   }
+  if (done == 0) return false;
   const TexelEncoder encode = texel_encoder(format, encoding);
   for (std::size_t i = done; i < count; ++i) encode(format, texels[i], blocks + i * format.block_bytes);
   return true;
@@ -193,6 +210,14 @@ void put_bytes(const FormatDesc& from, const std::uint32_t* texels, std::size_t 
   std::array<std::uint32_t, 4> shift{0, 8, 16, 24};  // of R, G, B, A
   if (is_four_bytes(from)) {
     for (std::size_t c = 0; c < 4; ++c) shift[c] = 8u * static_cast<std::uint32_t>(from.rgba[c]);
+  }
+  if (has_bytes(to)) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t c = 0; c < to.channel_count; ++c) {
+        blocks[i * to.channel_count + c] = static_cast<std::byte>(texels[i] >> shift[to.component[c]] & 255);
+      }
+    }
+    return;
   }
   if (!is_four_bytes(to)) {
     std::array<Texel, 64> row;

@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "texel/codec/byte_blend-inl.h"
+#include "texel/codec/widen-inl.h"
 #include "texel/sampler/wave_bilinear-inl.h"
 #include "texel/sampler/wave_block-inl.h"
 #include "texel/sampler/wave_state-inl.h"
@@ -50,19 +51,6 @@ ByteFormat byte_format(const FormatDesc& desc) {
   if (desc.block_bytes < 4) format.keep = (1u << (8 * desc.block_bytes)) - 1;
   if (!format.fields) format.rgba = desc.rgba;
   return format;
-}
-
-/// Widens every channel to 8 bits by repeating its bits, in R, G, B, A order; missing alpha is 255.
-HWY_INLINE VU widen_fields(const FormatDesc& desc, VU word) {
-  VU packed = hn::Set(DU(), desc.rgba[3] < 0 ? 0xFF000000u : 0u);
-  for (std::size_t i = 0; i < desc.channel_count; ++i) {
-    const int bits = desc.channel[i].bits;
-    const VU field = hn::And(hn::ShiftRightSame(word, desc.channel[i].offset), hn::Set(DU(), (1u << bits) - 1));
-    const VU wide = bits == 1 ? hn::Sub(hn::ShiftLeft<8>(field), field)
-                              : hn::Or(hn::ShiftLeftSame(field, 8 - bits), hn::ShiftRightSame(field, 2 * bits - 8));
-    packed = hn::Or(packed, hn::ShiftLeftSame(wide, 8 * desc.component[i]));
-  }
-  return packed;
 }
 
 // ---- offsets

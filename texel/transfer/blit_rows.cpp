@@ -8,7 +8,11 @@
 #include <vector>
 
 #include "base/float_mode.h"
+#include "base/numeric.h"
+#include "texel/block/block.h"
+#include "texel/block/cache.h"
 #include "texel/capabilities.h"
+#include "texel/codec/field_rows.h"
 #include "texel/codec/rows.h"
 #include "texel/sampler/address.h"
 #include "texel/transfer/blend_rows.h"
@@ -40,6 +44,8 @@ struct Scaler {
   std::uint32_t low = 0, count = 0;    ///< columns of the source that are read
   bool raw = false;                    ///< nearest texels keep their bytes
   RowHalver halve = nullptr;           ///< columns are averages of two, each read once
+  bool halve_decoded = false;          ///< of words of four bytes, or of Texels
+  bool clamp_depth = false;            ///< raw texels are depths to be put into [0, 1]
 };
 
 void add_taps(const Plan& plan, std::uint32_t axis_index, float coordinate, TapList& taps) {
@@ -114,11 +120,65 @@ bool halves_columns(const Scaler& scaler) {
 }
 
 /// Where rows of the source are read once, too; else they had better be kept.
-RowHalver choose_halver(const Scaler& scaler) {
+void choose_halver(Scaler& scaler) {
   const FormatDesc& format = *scaler.plan.view->format;
-  const bool suits = format.format == scaler.blit.to.format->format && halves_columns(scaler) &&
-                     scaler.blit.y.from_size() == 2 * scaler.blit.y.to_size();
-  return suits ? row_halver(format, scaler.plan.aos) : nullptr;
+  const bool suits = halves_columns(scaler) && scaler.blit.y.from_size() == 2 * scaler.blit.y.to_size();
+  if (!suits || !can_decode(format)) return;
+  if (format.format == scaler.blit.to.format->format) scaler.halve = row_halver(format, scaler.plan.aos);
+  if (scaler.halve != nullptr) return;
+  scaler.halve = scaler.plan.aos ? word_halver() : texel_halver();
+  scaler.halve_decoded = true;
+}
+
+/// Texels of a row as bytes R, G, B, A.
+void decode_bytes(const FormatDesc& format, const std::byte* from, std::size_t count, std::uint32_t* to) {
+  if (is_four_bytes(format)) {
+    std::memcpy(to, from, 4 * count);  // in the format's own order
+    return;
+  }
+  ImageView view;
+  view.format = &format;
+  for (std::size_t i = decode_byte_row(format, from, count, to); i < count; ++i) {
+    view.base = const_cast<std::byte*>(from + i * format.block_bytes);
+    ByteTexel bytes;
+    fetch_bytes(view, 0, 0, 0, 0, 0, bytes);
+    std::memcpy(to + i, bytes.data(), sizeof(*to));
+  }
+}
+
+void decode(const FormatDesc& format, const std::byte* from, std::size_t count, Texel* to) {
+  decode_row(format, from, count, to);
+}
+void decode(const FormatDesc& format, const std::byte* from, std::size_t count, std::uint32_t* to) {
+  decode_bytes(format, from, count, to);
+}
+void encode(const FormatDesc&, const Texel* from, std::size_t count, const FormatDesc& format, std::byte* to) {
+  encode_row(format, Encoding::kAttachment, from, count, to);
+}
+void encode(const FormatDesc& order, const std::uint32_t* from, std::size_t count, const FormatDesc& format,
+            std::byte* to) {
+  put_bytes(order, from, count, format, to);
+}
+
+/// Decoded, halved and encoded some texels at a time, so that they stay in the nearest cache.
+template <class T>
+void halve_decoded_row(const Scaler& scaler, const FormatDesc& format, const HalvedRow& row) {
+  constexpr std::size_t kChunk = 128;
+  const FormatDesc& to = *scaler.blit.to.format;
+  alignas(64) T upper[2 * kChunk], lower[2 * kChunk], out[kChunk];
+  for (std::size_t first = 0; first < row.count; first += kChunk) {
+    HalvedRow part = row;
+    part.count = std::min(kChunk, row.count - first);
+    decode(format, row.upper + 2 * first * format.block_bytes, 2 * part.count, upper);
+    decode(format, row.lower + 2 * first * format.block_bytes, 2 * part.count, lower);
+    part.upper = reinterpret_cast<const std::byte*>(upper);
+    part.lower = reinterpret_cast<const std::byte*>(lower);
+    part.weight_x += first;
+    part.byte_weight_x += first;
+    part.out = reinterpret_cast<std::byte*>(out);
+    scaler.halve(part);
+    encode(format, out, part.count, to, row.out + first * to.block_bytes);
+  }
 }
 
 void halve_row(const Scaler& scaler, const ImageView& view, std::uint32_t row, std::byte* to) {
@@ -132,7 +192,9 @@ void halve_row(const Scaler& scaler, const ImageView& view, std::uint32_t row, s
   halved.weight_y = rows.weight[row];
   halved.byte_weight_y = rows.byte_weight[row];
   halved.out = to;
-  scaler.halve(halved);
+  if (!scaler.halve_decoded) return scaler.halve(halved);
+  scaler.plan.aos ? halve_decoded_row<std::uint32_t>(scaler, *view.format, halved)
+                  : halve_decoded_row<Texel>(scaler, *view.format, halved);
 }
 
 /// What one band of rows needs, for texels of type T: bytes in a word, or four components.
@@ -140,7 +202,8 @@ template <class T>
 struct Band {
   const Scaler& scaler;
   const ImageView view;
-  std::vector<T> source;  ///< a decoded row
+  std::vector<T> source;            ///< a decoded row; of compressed formats the rows of a row of blocks
+  std::int32_t row_of_blocks = -1;  ///< which
   std::vector<T> result;
   struct Kept {
     std::int32_t y = -1;
@@ -155,17 +218,34 @@ struct Band {
   }
 };
 
+/// A row of texels from rows of whole blocks.
+const std::uint32_t* load_blocks(Band<std::uint32_t>& band, std::uint32_t row) {
+  const FormatDesc& format = *band.view.format;
+  const std::uint32_t width = format.block_width, height = format.block_height, low = band.scaler.low;
+  const std::uint32_t first = low / width, last = (low + band.scaler.count - 1) / width;
+  const std::size_t pitch = std::size_t{last - first + 1} * width;
+  if (const auto y = static_cast<std::int32_t>(row / height); y != band.row_of_blocks) {
+    band.row_of_blocks = y;
+    band.source.resize(pitch * height);
+    std::uint32_t texels[kMaxBlockTexels];
+    for (std::uint32_t x = first; x <= last; ++x) {
+      decode_block_bytes(format, band.view.block(0, 0, 0, x, row / height, 0), texels);
+      for (std::uint32_t i = 0; i < height; ++i) {
+        std::copy_n(texels + i * width, width, band.source.data() + i * pitch + std::size_t{x - first} * width);
+      }
+    }
+  }
+  return band.source.data() + (row % height) * pitch + (low - first * width);
+}
+
 const std::uint32_t* load_row(Band<std::uint32_t>& band, std::int32_t y) {
   const FormatDesc& format = *band.view.format;
   const auto row = static_cast<std::uint32_t>(y);
   if (is_four_bytes(format)) {
     return reinterpret_cast<const std::uint32_t*>(band.view.block(0, 0, 0, band.scaler.low, row, 0));
   }
-  for (std::uint32_t x = 0; x < band.scaler.count; ++x) {
-    ByteTexel bytes;
-    fetch_bytes(band.view, 0, 0, band.scaler.low + x, row, 0, bytes);
-    std::memcpy(&band.source[x], bytes.data(), sizeof(band.source[x]));
-  }
+  if (format.is_compressed()) return load_blocks(band, row);
+  decode_bytes(format, band.view.block(0, 0, 0, band.scaler.low, row, 0), band.scaler.count, band.source.data());
   return band.source.data();
 }
 
@@ -318,6 +398,12 @@ void pick_texels(std::size_t bytes, const std::byte* from, const TapList& taps, 
   }
 }
 
+/// As depth is written.
+void clamp_depths(std::byte* row, std::size_t count) {
+  auto* depth = reinterpret_cast<float*>(row);
+  for (std::size_t i = 0; i < count; ++i) depth[i] = base::max_second(base::min_second(depth[i], 1.0f), 0.0f);
+}
+
 /// Nearest texels as they are.
 void move_band(const Scaler& scaler, const ImageView& view, std::uint32_t first, std::uint32_t count,
                std::uint32_t slice) {
@@ -337,6 +423,7 @@ void move_band(const Scaler& scaler, const ImageView& view, std::uint32_t first,
       pick_texels(bytes, view.block(0, 0, 0, scaler.low, y, 0), scaler.column[t], t == 0 ? split : 0,
                   t == 0 ? static_cast<std::size_t>(columns) : split, to);
     }
+    if (scaler.clamp_depth) clamp_depths(to, scaler.blit.to.columns);
   }
 }
 
@@ -355,8 +442,9 @@ bool scale_rows(const Blit& blit, const Quad& quad, const Start& start, const Sa
   if (view.type != VK_IMAGE_VIEW_TYPE_2D || start.x != blit.x.to0 || start.y != blit.y.to0) return false;
   Scaler scaler(blit, make_plan(view, sampler, SampleOp::kSample, LodMode::kZero));
   if (scaler.plan.zero || !find_taps(quad, start, scaler)) return false;
-  scaler.halve = choose_halver(scaler);
-  scaler.raw = !scaler.plan.mag_linear && keeps_bytes(*view.format, *blit.to.format);
+  choose_halver(scaler);
+  scaler.clamp_depth = view.format->format == VK_FORMAT_D32_SFLOAT && blit.to.format->format == VK_FORMAT_D32_SFLOAT;
+  scaler.raw = !scaler.plan.mag_linear && (scaler.clamp_depth || keeps_bytes(*view.format, *blit.to.format));
   for_each_band(blit.to, blit.to.row_bytes() * 4,
                 [&](std::uint32_t first, std::uint32_t count, std::uint32_t slice, std::uint32_t) {
                   const base::ScopedFloatMode mode(base::Denormals::kFlush);

@@ -209,6 +209,20 @@ void halve_four_halves(const HalvedRow& row) {
   }
 }
 
+void halve_texels(const HalvedRow& row) {
+  const hn::Full128<float> d4;
+  const auto weight_y = hn::Set(d4, row.weight_y);
+  const auto load = [d4](const std::byte* from, std::size_t texel)
+                        HWY_ATTR { return hn::LoadU(d4, reinterpret_cast<const float*>(from) + 4 * texel); };
+  const auto mix_four = [](auto weight, auto a, auto b) HWY_ATTR { return lanes_fma(weight, hn::Sub(b, a), a); };
+  for (std::size_t i = 0; i < row.count; ++i) {
+    const auto x = hn::Set(d4, row.weight_x[i]);
+    const auto upper = mix_four(x, load(row.upper, 2 * i), load(row.upper, 2 * i + 1));
+    const auto lower = mix_four(x, load(row.lower, 2 * i), load(row.lower, 2 * i + 1));
+    hn::StoreU(mix_four(weight_y, upper, lower), d4, reinterpret_cast<float*>(row.out) + 4 * i);
+  }
+}
+
 }  // namespace
 }  // namespace vitrine::texel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -221,8 +235,19 @@ namespace {
 HWY_EXPORT(halve_words);
 HWY_EXPORT(halve_srgb_bytes);
 HWY_EXPORT(halve_four_halves);
+HWY_EXPORT(halve_texels);
 
 }  // namespace
+
+RowHalver texel_halver() {
+  base::select_simd_target();
+  return HWY_DYNAMIC_DISPATCH(halve_texels);
+}
+
+RowHalver word_halver() {
+  base::select_simd_target();
+  return HWY_DYNAMIC_DISPATCH(halve_words);
+}
 
 RowHalver row_halver(const FormatDesc& format, bool bytes) {
   base::select_simd_target();

@@ -23,6 +23,12 @@ struct HalvedRow {
 
 using RowHalver = void (*)(const HalvedRow&);
 
+/// Of texels as values: a Texel each.
+RowHalver texel_halver();
+
+/// Of texels as words of four bytes.
+RowHalver word_halver();
+
 /// Null for formats that have none. `bytes`: with the reference's 8-bit rounding.
 RowHalver row_halver(const FormatDesc& format, bool bytes);
 
