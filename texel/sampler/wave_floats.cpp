@@ -539,9 +539,7 @@ void sample_single_words(const PreparedSampler& p, const SampleRequest& request,
   if (p.plan.gather && gathered_channel(*p.plan.view, request) < 0) return sample_floats(p, request, result);
   WaveState state;
   find_state(p, request, state);
-  if (!p.plan.gather) return sample_words_nearest(p, request, state, result);
-  request.gather_offsets != nullptr ? gather_moved_words(p, request, state, result)
-                                    : gather_words(p, request, state, result);
+  p.plan.gather ? gather_words(p, request, state, result) : sample_words_nearest(p, request, state, result);
 }
 
 /// Whether all lanes are on one face of one level, with all their texels inside it.

@@ -60,6 +60,35 @@ HWY_INLINE WordPair load_word_pairs(const std::byte* base, VI offset) {
 }
 #endif
 
+/// Four words that follow one another, per lane.
+HWY_INLINE void load_word_quads(const std::byte* base, VI offset, VU words[4]) {
+  constexpr std::size_t kLanes = hn::MaxLanes(DU());
+  const OffsetLanes<kLanes> offsets(offset);
+#if HWY_TARGET <= HWY_AVX3
+  const auto block = [&](std::size_t lane) HWY_ATTR {
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(base + offsets.at[lane]));
+  };
+  const auto every_fourth = [&](std::size_t lane) HWY_ATTR {
+    const __m512i low = _mm512_inserti32x4(_mm512_castsi128_si512(block(lane)), block(lane + 4), 1);
+    return VU{_mm512_inserti32x4(_mm512_inserti32x4(low, block(lane + 8), 2), block(lane + 12), 3)};
+  };
+  const hn::Repartition<std::uint64_t, DU> d64;
+  const VU a = every_fourth(0), b = every_fourth(1), c = every_fourth(2), d = every_fourth(3);
+  const auto ab_low = hn::BitCast(d64, hn::InterleaveLower(DU(), a, b));
+  const auto ab_high = hn::BitCast(d64, hn::InterleaveUpper(DU(), a, b));
+  const auto cd_low = hn::BitCast(d64, hn::InterleaveLower(DU(), c, d));
+  const auto cd_high = hn::BitCast(d64, hn::InterleaveUpper(DU(), c, d));
+  words[0] = hn::BitCast(DU(), hn::InterleaveLower(d64, ab_low, cd_low));
+  words[1] = hn::BitCast(DU(), hn::InterleaveUpper(d64, ab_low, cd_low));
+  words[2] = hn::BitCast(DU(), hn::InterleaveLower(d64, ab_high, cd_high));
+  words[3] = hn::BitCast(DU(), hn::InterleaveUpper(d64, ab_high, cd_high));
+#else
+  alignas(32) std::uint32_t texels[4 * kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) std::memcpy(texels + 4 * i, base + offsets.at[i], 16);
+  hn::LoadInterleaved4(DU(), texels, words[0], words[1], words[2], words[3]);
+#endif
+}
+
 /// One word per lane.
 HWY_INLINE VU load_words(const std::byte* base, VI offset) {
   constexpr std::size_t kLanes = hn::MaxLanes(DU());

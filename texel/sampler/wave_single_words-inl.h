@@ -32,76 +32,100 @@ struct GatherAxis {
   HWY_INLINE TapLanes taps(VF s) const { return lanes_gather(*axis, s); }
 };
 
-inline HWY_NOINLINE VF convert_channel(VU word, const Channel& channel) {
-  switch (channel.numeric) {
-    case Numeric::kUnorm:
-      return convert_field<Numeric::kUnorm>(word, channel);
-    case Numeric::kSnorm:
-      return convert_field<Numeric::kSnorm>(word, channel);
-    case Numeric::kUscaled:
-      return convert_field<Numeric::kUscaled>(word, channel);
-    case Numeric::kSscaled:
-      return convert_field<Numeric::kSscaled>(word, channel);
-    case Numeric::kUint:
-      return convert_field<Numeric::kUint>(word, channel);
-    case Numeric::kSint:
-      return convert_field<Numeric::kSint>(word, channel);
-    case Numeric::kUfloat:
-      return convert_field<Numeric::kUfloat>(word, channel);
-    case Numeric::kSrgb:
-      return convert_field<Numeric::kSrgb>(word, channel);
-    default:
-      return convert_field<Numeric::kSfloat>(word, channel);
-  }
+HWY_INLINE bool vector_is_active(const SampleRequest& request, std::size_t first) {
+  return (request.active >> first & base::first_lanes(hn::Lanes(DF()))) != 0;
 }
 
-/// A channel of words, or how a reference compares with it.
-struct WordValue {
-  const SampleRequest& request;
+/// What texels are compared with, clamped where they are fixed-point. A copy: results may go to the request's
+/// registers.
+struct WordReference {
+  bool compare;
   VkCompareOp op;
-  Channel channel;
+  FloatLanes lanes;  ///< only with `compare`
 
-  WordValue(const PreparedSampler& p, const SampleRequest& r, std::int8_t index)
-      : request(r),
-        op(p.plan.sampler->compare_op),
-        channel(p.plan.view->format->channel[static_cast<std::size_t>(index)]) {}
-
-  /// The depth to compare with, clamped where texels are fixed-point.
-  HWY_INLINE VF reference(std::size_t first) const {
-    if (request.dref == nullptr) return splat(0.0f);
-    return channel.numeric == Numeric::kSfloat ? load_reference<Numeric::kSfloat>(request, first)
-                                               : load_reference<Numeric::kUnorm>(request, first);
-  }
-  HWY_INLINE VU operator()(VU word, VF reference) const {
-    const VF value = convert_channel(word, channel);
-    if (request.dref == nullptr) return as_unsigned(value);
-    return as_unsigned(hn::IfThenElseZero(compare_lanes(op, reference, value), splat(1.0f)));
+  WordReference(const PreparedSampler& p, const SampleRequest& request)
+      : compare(request.dref != nullptr), op(p.plan.sampler->compare_op) {
+    const bool floats = p.plan.view->format->channel[0].numeric == Numeric::kSfloat;
+    for (std::size_t first = 0; compare && first < base::kWaveWidth; first += hn::Lanes(DF())) {
+      const VF reference =
+          floats ? load_reference<Numeric::kSfloat>(request, first) : load_reference<Numeric::kUnorm>(request, first);
+      hn::Store(reference, DF(), lanes.lane + first);
+    }
   }
 };
 
-HWY_INLINE bool vector_is_active(const SampleRequest& request, std::size_t first) {
-  return (request.active >> first & base::first_lanes(hn::Lanes(DF()))) != 0;
+template <Numeric kNumeric>
+HWY_INLINE void put_channel(const WordLanes& words, const Channel& channel, const WordReference& reference,
+                            const SampleRequest& request, base::WaveRegister& to) {
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
+    if (!vector_is_active(request, first)) continue;
+    VF value = convert_field<kNumeric>(hn::Load(DU(), words.lane + first), channel);
+    if (reference.compare) {
+      const auto holds = compare_lanes(reference.op, hn::Load(DF(), reference.lanes.lane + first), value);
+      value = hn::IfThenElseZero(holds, splat(1.0f));
+    }
+    store_lanes(as_unsigned(value), request.active, first, to);
+  }
+}
+
+/// A channel of a wave of words, or how it compares.
+inline HWY_NOINLINE void put_words(const WordLanes& words, const Channel& channel, const WordReference& reference,
+                                   const SampleRequest& request, base::WaveRegister& to) {
+  switch (channel.numeric) {
+    case Numeric::kUnorm:
+      return put_channel<Numeric::kUnorm>(words, channel, reference, request, to);
+    case Numeric::kSnorm:
+      return put_channel<Numeric::kSnorm>(words, channel, reference, request, to);
+    case Numeric::kUscaled:
+      return put_channel<Numeric::kUscaled>(words, channel, reference, request, to);
+    case Numeric::kSscaled:
+      return put_channel<Numeric::kSscaled>(words, channel, reference, request, to);
+    case Numeric::kUint:
+      return put_channel<Numeric::kUint>(words, channel, reference, request, to);
+    case Numeric::kSint:
+      return put_channel<Numeric::kSint>(words, channel, reference, request, to);
+    case Numeric::kUfloat:
+      return put_channel<Numeric::kUfloat>(words, channel, reference, request, to);
+    case Numeric::kSrgb:
+      return put_channel<Numeric::kSrgb>(words, channel, reference, request, to);
+    default:
+      return put_channel<Numeric::kSfloat>(words, channel, reference, request, to);
+  }
+}
+
+inline void put_constant(std::uint32_t value, base::LaneMask active, base::WaveRegister& to) {
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DU()))
+    store_lanes(hn::Set(DU(), value), active, first, to);
+}
+
+/// Calls body(vector, first lane) for vectors with active lanes.
+template <class Body>
+HWY_INLINE void for_each_active(const SampleRequest& request, Body&& body) {
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    const std::size_t first = v * hn::Lanes(DF());
+    if (vector_is_active(request, first)) body(v, first);
+  }
 }
 
 inline HWY_NOINLINE void sample_words_nearest(const PreparedSampler& p, const SampleRequest& request,
                                               const WaveState& state, const SampleResult& result) {
   const ImageView& view = *p.plan.view;
   const FormatDesc& format = *view.format;
-  const bool compare = request.dref != nullptr;
+  const WordReference reference(p, request);
   const std::uint32_t one = format.is_integer() ? 1u : 0x3f800000u;
+  WordLanes words;
   SquareReader<NearestFloatAxis, false> reader(p, request, state, 0);
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    const std::size_t first = v * hn::Lanes(DF());
-    if (!vector_is_active(request, first)) continue;
-    const VU word = reader.read_first(v);
-    const VF reference = WordValue(p, request, 0).reference(first);
-    for (std::size_t c = 0; c < 4; ++c) {
-      if (result[c] == nullptr) continue;
-      const std::uint8_t source = view.swizzle[c];
-      const bool exists = source < 4 && (compare ? source == 0 : format.rgba[source] >= 0);
-      VU value = hn::Set(DU(), source == 3 || source == 5 ? one : 0u);
-      if (exists) value = WordValue(p, request, compare ? std::int8_t{0} : format.rgba[source])(word, reference);
-      store_lanes(value, request.active, first, *result[c]);
+  for_each_active(request, [&](std::size_t v, std::size_t first)
+                               HWY_ATTR { hn::Store(reader.read_first(v), DU(), words.lane + first); });
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (result[c] == nullptr) continue;
+    const std::uint8_t source = view.swizzle[c];
+    std::int8_t index = source < 4 ? format.rgba[source] : std::int8_t{-1};
+    if (reference.compare && source != 0) index = -1;
+    if (index < 0) {
+      put_constant(source == 3 || source == 5 ? one : 0u, request.active, *result[c]);
+    } else {
+      put_words(words, format.channel[static_cast<std::size_t>(index)], reference, request, *result[c]);
     }
   }
 }
@@ -113,44 +137,43 @@ inline std::int8_t gathered_channel(const ImageView& view, const SampleRequest& 
   return source < 4 ? view.format->rgba[source] : std::int8_t{-1};
 }
 
-/// `words`: in the order of the results.
-HWY_INLINE void put_gathered(const WordValue& value, const VU words[4], VF reference, std::size_t first,
-                             const SampleResult& result) {
-  for (std::size_t c = 0; c < 4; ++c) {
-    if (result[c] != nullptr) store_lanes(value(words[c], reference), value.request.active, first, *result[c]);
-  }
+/// The four texels around each point, in the order of the results.
+inline HWY_NOINLINE void read_squares(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
+                                      WordLanes words[4]) {
+  SquareReader<GatherAxis, true> reader(p, request, state, 0);
+  for_each_active(request, [&](std::size_t v, std::size_t first) HWY_ATTR {
+    const WordSquare square = reader.read(v).words;
+    hn::Store(square.bottom.first, DU(), words[0].lane + first);
+    hn::Store(square.bottom.second, DU(), words[1].lane + first);
+    hn::Store(square.top.second, DU(), words[2].lane + first);
+    hn::Store(square.top.first, DU(), words[3].lane + first);
+  });
 }
 
-/// The four texels around each point.
+/// The first texel around each point moved by an offset.
+inline HWY_NOINLINE void read_moved(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
+                                    const std::array<std::int32_t, 2>& offset, WordLanes& words) {
+  SquareReader<GatherAxis, false> reader(p, request, state, 0, &offset);
+  for_each_active(request, [&](std::size_t v, std::size_t first)
+                               HWY_ATTR { hn::Store(reader.read_first(v), DU(), words.lane + first); });
+}
+
+/// The texels around each point, or one for each of four offsets.
 inline HWY_NOINLINE void gather_words(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                       const SampleResult& result) {
-  const WordValue value(p, request, gathered_channel(*p.plan.view, request));
-  SquareReader<GatherAxis, true> reader(p, request, state, 0);
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    const std::size_t first = v * hn::Lanes(DF());
-    if (!vector_is_active(request, first)) continue;
-    const WordSquare square = reader.read(v).words;
-    const VU words[4] = {square.bottom.first, square.bottom.second, square.top.second, square.top.first};
-    put_gathered(value, words, value.reference(first), first, result);
+  const ImageView& view = *p.plan.view;
+  const WordReference reference(p, request);
+  WordLanes words[4];
+  if (request.gather_offsets == nullptr) {
+    read_squares(p, request, state, words);
+  } else {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (result[i] != nullptr) read_moved(p, request, state, (*request.gather_offsets)[i], words[i]);
+    }
   }
-}
-
-/// A texel for each of four offsets.
-inline HWY_NOINLINE void gather_moved_words(const PreparedSampler& p, const SampleRequest& request,
-                                            const WaveState& state, const SampleResult& result) {
-  using Reader = SquareReader<GatherAxis, false>;
-  const WordValue value(p, request, gathered_channel(*p.plan.view, request));
-  const auto& offsets = *request.gather_offsets;
-  Reader readers[4] = {{p, request, state, 0, &offsets[0]},
-                       {p, request, state, 0, &offsets[1]},
-                       {p, request, state, 0, &offsets[2]},
-                       {p, request, state, 0, &offsets[3]}};
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    const std::size_t first = v * hn::Lanes(DF());
-    if (!vector_is_active(request, first)) continue;
-    VU words[4];
-    for (std::size_t i = 0; i < 4; ++i) words[i] = readers[i].read_first(v);
-    put_gathered(value, words, value.reference(first), first, result);
+  const Channel& channel = view.format->channel[static_cast<std::size_t>(gathered_channel(view, request))];
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (result[c] != nullptr) put_words(words[c], channel, reference, request, *result[c]);
   }
 }
 

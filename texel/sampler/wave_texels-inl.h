@@ -2,6 +2,7 @@
 
 #include "texel/sampler/wave_block-inl.h"
 #include "texel/sampler/wave_fetch-inl.h"
+#include "texel/sampler/wave_pairs-inl.h"
 #include "texel/sampler/wave_state-inl.h"
 
 #if defined(VITRINE_TEXEL_WAVE_TEXELS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -56,6 +57,16 @@ template <std::size_t kBytes>
 HWY_INLINE void load_lanes_of_texels(const std::byte* base, const IntLanes& offset, std::size_t first,
                                      WordLanes words[4]) {
   constexpr std::size_t kWords = (kBytes + 3) / 4;
+  if constexpr (kBytes == 8) {
+    const WordPair pair = load_word_pairs(base, hn::Load(DI(), offset.lane + first));
+    hn::Store(pair.first, DU(), words[0].lane + first);
+    return hn::Store(pair.second, DU(), words[1].lane + first);
+  } else if constexpr (kBytes == 16) {
+    VU quad[4];
+    load_word_quads(base, hn::Load(DI(), offset.lane + first), quad);
+    for (std::size_t i = 0; i < 4; ++i) hn::Store(quad[i], DU(), words[i].lane + first);
+    return;
+  }
   for (std::size_t lane = first; lane < first + hn::MaxLanes(DI()); ++lane) {
     std::uint32_t word[kWords] = {};
     std::memcpy(word, base + offset.lane[lane], kBytes);
