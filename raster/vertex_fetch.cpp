@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/numeric.h"
+#include "texel/codec.h"
 #include "texel/format.h"
 
 namespace vitrine::raster {
@@ -107,10 +108,21 @@ void fetch_wide_component(const FormatDesc& format, const Addresses& addresses, 
   std::fill_n(out.lane, count, 0u);
 }
 
+/// Formats whose channels depend on each other.
+void fetch_decoded(const FormatDesc& format, const Addresses& addresses, std::uint32_t count, std::uint32_t component,
+                   WaveRegister& out) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    texel::Texel value{};
+    if (addresses.at[i]) texel::decode_row(format, addresses.at[i], 1, &value);
+    out.lane[i] = value[component];
+  }
+}
+
 void fetch_component(const FormatDesc& format, const Addresses& addresses, std::uint32_t count, std::uint32_t component,
                      WaveRegister& out) {
   if (format.channel[0].bits == 64) return fetch_wide_component(format, addresses, count, component, out);
   component &= 3u;
+  if (format.format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) return fetch_decoded(format, addresses, count, component, out);
   const int index = format.rgba[component];
   if (index < 0) {
     std::fill_n(out.lane, count, missing_value(format, component));
