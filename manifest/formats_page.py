@@ -18,16 +18,20 @@ also be copied in both directions. *color* includes resolves; *linear* is linear
 What tests them, besides the unit tests of `texel`:
 
 - **reference**: `texture.format.*` of `cts-subset` compares fetches, nearest and linear samples of each with lavapipe (of
-  8- and 16-bit formats every possible texel), the random cases of `texture`, `api` and `pipeline` samples, transfers and
-  attachments.
-- **vertex**: compared with lavapipe as vertex attribute or texel buffer (`pipeline.vertex_input`, `api.texel_buffers`).
+  8- and 16-bit formats every possible texel), the random cases of `texture`, `image`, `api` and `pipeline` samples, loads,
+  stores, transfers and attachments; `pipeline.vertex_input` and `texture.random_texel_buffer` attributes and texel buffers.
+- **vertex**: compared with lavapipe as vertex attribute and texel buffer alone, by the same cases.
 - **decoder**: lavapipe lacks the format; `texel Block.*` holds digests of blocks that were compared with an independent
   decoder, and `texture.format.*` and `texture.random_lacking*` of `cts-subset` compare fetches and filters with those of
   lavapipe for an image of the decoded texels.
 - **peer**: lavapipe lacks the format or the marked use of it; unit tests of `texel` compare with a format of the same values,
   and the same cases of `cts-subset` with an image of the same values in a format that lavapipe has.
 - **formulas**: lavapipe lacks the format; `texel Ycbcr.*` compares samples through every kind of conversion with the
-  specification's formulas in double precision, `icd Ycbcr.*` the way through the API.
+  specification's formulas in double precision, `texture.ycbcr.*` of `cts-subset` the way through the API;
+  `api.random_planar_copies` and `texture.random_plane_*` compare copies and views of planes with single images.
+
+`cts-subset/compare_formats.py` finds nothing that lavapipe or SwiftShader claims of a format or image and that is missing here,
+but what it lists with the reason.
 
 What exact means:
 
