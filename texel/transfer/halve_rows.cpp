@@ -173,55 +173,67 @@ void halve_srgb_bytes(const HalvedRow& row) {
   std::memcpy(row.out + 4 * i, out, 4 * left);
 }
 
-/// The components of some texels at a time: blocks of 128 bits are texels.
-void halve_four_halves(const HalvedRow& row) {
-  const hn::Rebind<std::uint16_t, D> d16;
-  const auto texel_of_lane = hn::IndicesFromVec(D(), hn::ShiftRight<2>(hn::Iota(DI(), 0)));
-  const auto weight_y = hn::Set(D(), row.weight_y);
-  const std::size_t texels = hn::Lanes(D()) / 4;
-  const auto average_pairs = [&](const std::byte* upper, const std::byte* lower, const float* weight) HWY_ATTR {
-    const auto x = hn::TableLookupLanes(hn::LoadDup128(D(), weight), texel_of_lane);
-    const auto mix_pairs = [&](const std::byte* from) HWY_ATTR {
-      const auto* halves = reinterpret_cast<const std::uint16_t*>(from);
-      const auto low = floats_of_halves_quieted(hn::LoadU(d16, halves));
-      const auto high = floats_of_halves_quieted(hn::LoadU(d16, halves + hn::Lanes(D())));
-      return mix(x, even_blocks(low, high), odd_blocks(low, high));
-    };
-    return halves_of_floats(mix(weight_y, mix_pairs(upper), mix_pairs(lower)));
-  };
-  std::size_t i = 0;
-  // Four weights are read, whatever the size of vectors.
-  for (; i + 4 <= row.count; i += texels) {
-    hn::StoreU(average_pairs(row.upper + 16 * i, row.lower + 16 * i, row.weight_x + i), d16,
-               reinterpret_cast<std::uint16_t*>(row.out + 8 * i));
+/// A vector of halves or floats.
+template <bool kHalves>
+HWY_INLINE ComponentLanes load_components(const std::byte* from, std::size_t vector) {
+  if constexpr (kHalves) {
+    const hn::Rebind<std::uint16_t, D> d16;
+    return floats_of_halves_quieted(
+        hn::LoadU(d16, reinterpret_cast<const std::uint16_t*>(from) + vector * hn::Lanes(D())));
+  } else {
+    return hn::LoadU(D(), reinterpret_cast<const float*>(from) + vector * hn::Lanes(D()));
   }
-  while (i < row.count) {
-    const std::size_t left = std::min(row.count - i, texels);
-    alignas(64) std::byte upper[4 * hn::MaxLanes(D())]{}, lower[4 * hn::MaxLanes(D())]{};
-    alignas(16) float weight[4]{};
-    alignas(64) std::uint16_t out[hn::MaxLanes(D())];
-    std::memcpy(upper, row.upper + 16 * i, 16 * left);
-    std::memcpy(lower, row.lower + 16 * i, 16 * left);
-    std::copy_n(row.weight_x + i, left, weight);
-    hn::StoreU(average_pairs(upper, lower, weight), d16, out);
-    std::memcpy(row.out + 8 * i, out, 8 * left);
-    i += left;
+}
+template <bool kHalves>
+HWY_INLINE void store_components(ComponentLanes value, std::byte* to) {
+  if constexpr (kHalves) {
+    hn::StoreU(halves_of_floats(value), hn::Rebind<std::uint16_t, D>(), reinterpret_cast<std::uint16_t*>(to));
+  } else {
+    hn::StoreU(value, D(), reinterpret_cast<float*>(to));
   }
 }
 
-void halve_texels(const HalvedRow& row) {
-  const hn::Full128<float> d4;
-  const auto weight_y = hn::Set(d4, row.weight_y);
-  const auto load = [d4](const std::byte* from, std::size_t texel)
-                        HWY_ATTR { return hn::LoadU(d4, reinterpret_cast<const float*>(from) + 4 * texel); };
-  const auto mix_four = [](auto weight, auto a, auto b) HWY_ATTR { return lanes_fma(weight, hn::Sub(b, a), a); };
-  for (std::size_t i = 0; i < row.count; ++i) {
-    const auto x = hn::Set(d4, row.weight_x[i]);
-    const auto upper = mix_four(x, load(row.upper, 2 * i), load(row.upper, 2 * i + 1));
-    const auto lower = mix_four(x, load(row.lower, 2 * i), load(row.lower, 2 * i + 1));
-    hn::StoreU(mix_four(weight_y, upper, lower), d4, reinterpret_cast<float*>(row.out) + 4 * i);
+/// The components of some texels at a time: blocks of 128 bits are texels of four, 64 bits texels of two.
+template <bool kHalves, std::size_t kComponents>
+HWY_INLINE void halve_components(const HalvedRow& row) {
+  constexpr std::size_t kTexel = kComponents * (kHalves ? 2 : 4);
+  const hn::Repartition<double, D> d64;
+  const auto texel_of_lane = hn::IndicesFromVec(D(), hn::ShiftRight < kComponents == 4 ? 2 : 1 > (hn::Iota(DI(), 0)));
+  const auto weight_y = hn::Set(D(), row.weight_y);
+  const std::size_t texels = hn::Lanes(D()) / kComponents;
+  alignas(64) std::byte upper[8 * hn::MaxLanes(D())]{}, lower[8 * hn::MaxLanes(D())]{}, out[4 * hn::MaxLanes(D())];
+  alignas(64) float weight[hn::MaxLanes(D())]{};
+  for (std::size_t i = 0; i < row.count; i += texels) {
+    const std::size_t n = std::min(texels, row.count - i);
+    const auto mix_pairs = [&](ComponentLanes x, const std::byte* from) HWY_ATTR {
+      const auto low = load_components<kHalves>(from, 0), high = load_components<kHalves>(from, 1);
+      if constexpr (kComponents == 4) {
+        return mix(x, even_blocks(low, high), odd_blocks(low, high));
+      } else {
+        const auto a = hn::BitCast(d64, low), b = hn::BitCast(d64, high);
+        return mix(x, hn::BitCast(D(), hn::ConcatEven(d64, b, a)), hn::BitCast(D(), hn::ConcatOdd(d64, b, a)));
+      }
+    };
+    const std::byte *top = row.upper + 2 * kTexel * i, *bottom = row.lower + 2 * kTexel * i;
+    // As many weights are read, whatever the size of vectors.
+    if (i + (kComponents == 4 ? 4 : hn::Lanes(D())) <= row.count) {
+      const auto weights = kComponents == 4 ? hn::LoadDup128(D(), row.weight_x + i) : hn::LoadU(D(), row.weight_x + i);
+      const auto x = hn::TableLookupLanes(weights, texel_of_lane);
+      store_components<kHalves>(mix(weight_y, mix_pairs(x, top), mix_pairs(x, bottom)), row.out + kTexel * i);
+      continue;
+    }
+    std::copy_n(row.weight_x + i, n, weight);
+    const auto x = hn::TableLookupLanes(hn::Load(D(), weight), texel_of_lane);
+    std::memcpy(upper, top, 2 * kTexel * n);
+    std::memcpy(lower, bottom, 2 * kTexel * n);
+    store_components<kHalves>(mix(weight_y, mix_pairs(x, upper), mix_pairs(x, lower)), out);
+    std::memcpy(row.out + kTexel * i, out, kTexel * n);
   }
 }
+
+void halve_four_halves(const HalvedRow& row) { halve_components<true, 4>(row); }
+void halve_two_halves(const HalvedRow& row) { halve_components<true, 2>(row); }
+void halve_texels(const HalvedRow& row) { halve_components<false, 4>(row); }
 
 }  // namespace
 }  // namespace vitrine::texel::HWY_NAMESPACE
@@ -236,6 +248,7 @@ HWY_EXPORT(halve_words);
 HWY_EXPORT(halve_srgb_bytes);
 HWY_EXPORT(halve_four_halves);
 HWY_EXPORT(halve_texels);
+HWY_EXPORT(halve_two_halves);
 
 }  // namespace
 
@@ -253,6 +266,8 @@ RowHalver row_halver(const FormatDesc& format, bool bytes) {
   base::select_simd_target();
   if (bytes) return is_four_bytes(format) ? HWY_DYNAMIC_DISPATCH(halve_words) : nullptr;
   if (is_four_halves(format)) return HWY_DYNAMIC_DISPATCH(halve_four_halves);
+  if (format.format == VK_FORMAT_R16G16_SFLOAT) return HWY_DYNAMIC_DISPATCH(halve_two_halves);
+  if (format.format == VK_FORMAT_R32G32B32A32_SFLOAT) return texel_halver();
   return is_srgb_bytes(format) && cpu_has_rsqrt() ? HWY_DYNAMIC_DISPATCH(halve_srgb_bytes) : nullptr;
 }
 
