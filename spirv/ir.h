@@ -181,6 +181,7 @@ struct ImageInfo {
   bool arrayed = false, multisampled = false;
   bool projective = false;         ///< divide already applied by the front end; kept for information
   bool explicit_lod_zero = false;  ///< implicit LOD outside fragment shaders
+  bool in_quads = false;           ///< invocations are the pixels of quads: fragment shaders
   std::uint32_t gather_component = 0;
   bool has_gather_offsets = false;
   std::array<std::array<std::int32_t, 2>, 4> gather_offsets{};

@@ -32,7 +32,7 @@ struct Sampler {
   float mip_lod_bias = 0;
   float min_lod = 0;
   float max_lod = 0;
-  float max_anisotropy = 1;  ///< 1 when anisotropy is disabled
+  float max_anisotropy = 1;  ///< 1 when anisotropy is disabled; fractions do not count
   bool compare = false;
   VkCompareOp compare_op = VK_COMPARE_OP_NEVER;
   std::array<std::uint32_t, 4> border{};  ///< raw bits: floats or integers by the border colour's type
@@ -57,6 +57,7 @@ struct SampleRequest {
   SampleOp op = SampleOp::kSample;
   LodMode lod_mode = LodMode::kImplicit;
   base::LaneMask active = base::kAllLanes;
+  bool quads = true;  ///< lanes are the pixels of quads; else coordinates have no derivatives but given ones
   std::array<const base::WaveRegister*, 4>
       coord{};                               ///< s, t, r (as the dimension needs), then array layer, in this order
   const base::WaveRegister* dref = nullptr;  ///< depth comparison reference

@@ -6,21 +6,30 @@
 namespace vitrine::cts {
 namespace {
 
+/// Whether the reference divides the texels of an anisotropic lookup by the sizes of a neighbour's level
+/// (deviations.md, anisotropic-neighbours): neighbouring quads then look up the same.
+bool takes_other_levels(const Family& family, const RandomLookup& found) {
+  return family.anisotropic && (found.is_cube() || family.kind != Kind::kImplicit);
+}
+
 std::string fragment_text(Random& random, const Family& family, const RandomLookup& found) {
+  const bool paired = takes_other_levels(family, found);
   std::string text = lookup_declarations(found, family.kind) + "layout(location = 0) out " +
                      result_prefix(found, family.kind) +
                      "vec4 color;\n"
                      "void main() {\n"
-                     "  ivec2 pixel = ivec2(gl_FragCoord.xy);\n"
-                     "  vec4 extra = texelFetch(table, pixel + ivec2(0, 64), 0);\n"
+                     "  ivec2 pixel = ivec2(gl_FragCoord.xy);\n" +
+                     (paired ? "  pixel.x = pixel.x >> 2 << 1 | pixel.x & 1;\n" : "") +
+                     "  vec4 extra = texelFetch(table, " + (paired ? "(pixel & ~1)" : "pixel") +
+                     " + ivec2(0, 64), 0);\n"
                      "  vec4 gx = extra.xyzx * 0.1, gy = extra.yzxz * 0.07;\n";
   const bool derivatives = family.kind == Kind::kImplicit || family.kind == Kind::kBias ||
                            family.kind == Kind::kQuery || family.kind == Kind::kProj || family.kind == Kind::kOffset ||
-                           family.kind == Kind::kShadow;
+                           family.kind == Kind::kShadow || family.anisotropic;
   // Interpolated directions could meet a cube's corner (deviations.md, cube-corners).
-  const bool table_only = found.is_cube() && found.sampler.magFilter == VK_FILTER_LINEAR;
+  const bool table_only = found.is_cube() && !family.anisotropic && found.sampler.magFilter == VK_FILTER_LINEAR;
   text += derivatives && !table_only && random.chance(0.85f)
-              ? "  precise vec4 c = (base + gl_FragCoord.x * dx) + gl_FragCoord.y * dy;\n"
+              ? "  precise vec4 c = (base + (float(pixel.x) + 0.5) * dx) + gl_FragCoord.y * dy;\n"
               : "  vec4 c = texelFetch(table, pixel, 0);\n";
   return text + "  color = " + lookup(random, family, found.shape) + ";\n}\n";
 }
@@ -83,6 +92,16 @@ const std::vector<Family>& families() {
       {"random_anisotropic", Kind::kImplicit, {k2D}, 40, false, true},
       {"random_anisotropic_array", Kind::kImplicit, {k2DArray}, 20, false, true},
       {"random_anisotropic_compressed", Kind::kImplicit, {k2D, k2DArray}, 20, true, true},
+      {"random_anisotropic_cube", Kind::kImplicit, {kCube, kCubeArray}, 40, false, true},
+      {"random_anisotropic_volume", Kind::kImplicit, {k3D}, 20, false, true},
+      {"random_anisotropic_lod", Kind::kLod, {k2D, k2DArray, k3D, kCube, kCubeArray}, 40, false, true},
+      {"random_anisotropic_bias", Kind::kBias, {k2D, k2DArray, k3D, kCube}, 30, false, true},
+      {"random_anisotropic_offset", Kind::kOffset, {k2D, k2DArray, k3D}, 20, false, true},
+      {"random_anisotropic_projection", Kind::kProj, {k2D}, 10, false, true},
+      {"random_anisotropic_query", Kind::kQuery, {k2D, k2DArray, k3D}, 20, false, true},
+      {"random_anisotropic_border", Kind::kImplicit, {k2D, k2DArray}, 20, false, true, true},
+      {"random_anisotropic_minmax", Kind::kImplicit, {k2D}, 10, false, true, false, true},
+      {"random_anisotropic_compressed_cube", Kind::kLod, {kCube}, 20, true, true},
       {.name = "random_lacking", .kind = Kind::kImplicit, .shapes = {k2D, k2DArray}, .count = 60, .lacking = true},
       {.name = "random_lacking_lod",
        .kind = Kind::kLod,

@@ -43,6 +43,7 @@ texel::SampleRequest sample_request(const Call& call) {
   request.op = info.access == ImageAccess::kGather     ? texel::SampleOp::kGather
                : info.access == ImageAccess::kQueryLod ? texel::SampleOp::kQueryLod
                                                        : texel::SampleOp::kSample;
+  request.quads = info.in_quads;
   request.coord = call.operands<4>(ImageOperand::kCoord);
   request.dref = call.operand(ImageOperand::kDref);
   request.min_lod = call.operand(ImageOperand::kMinLod);

@@ -180,6 +180,7 @@ ir::ImageInfo image_info(Translator& t, const ImageHandle& handle) {
   info.sampler_slot = handle.sampler.slot;
   info.sampler_count = handle.sampler.count;
   info.combined = handle.combined;
+  info.in_quads = t.options.stage == VK_SHADER_STAGE_FRAGMENT_BIT;
   return info;
 }
 
@@ -234,13 +235,13 @@ void image_sample(Translator& t, const Inst& inst, ir::Op) {
   if (shape.projective) project(t, full, coord, dref);
   info->access = shape.gather ? ImageAccess::kGather : ImageAccess::kSample;
   info->projective = shape.projective;
-  if (!shape.explicit_lod) {
-    info->explicit_lod_zero = t.options.stage != VK_SHADER_STAGE_FRAGMENT_BIT;
-    if (!info->explicit_lod_zero) t.function.interface.needs_helpers = true;
-  }
+  info->explicit_lod_zero = !shape.explicit_lod && !info->in_quads;
   sources.add(ImageOperand::kCoord, coord);
   sources.add(ImageOperand::kDref, dref);
   add_image_operands(t, inst, next, {*info, sources});
+  // An anisotropic sampler takes the derivatives of coordinates also where the level is explicit.
+  const bool given = (info->operands >> static_cast<std::uint32_t>(ImageOperand::kGradX) & 1) != 0;
+  if (info->in_quads && !given && !shape.gather) t.function.interface.needs_helpers = true;
   const std::uint32_t count = leaf_info(t, inst.result_type).components;
   set_value(t, inst, finish(t, std::move(info), sources, count));
 }

@@ -11,6 +11,8 @@ constexpr char kBlur[] =
     "uniform sampler2D t; void main() { vec4 s = vec4(0); for (int i = -4; i < 4; ++i)"
     " s += texture(t, uv + vec2(float(i) * 0.004, 0.0)); o = s * 0.125; }";
 constexpr char kStretched[] = "uniform sampler2D t; void main() { o = texture(t, uv * vec2(6.0, 1.1)); }";
+constexpr char kStretchedCube[] =
+    "uniform samplerCube t; void main() { o = texture(t, vec3((uv * 2.0 - 1.0) * vec2(1.0, 0.2), 1.1)); }";
 constexpr char kShadow[] =
     "uniform sampler2DShadow t; void main() { o = vec4(texture(t, vec3(uv * vec2(3.1, 2.3), 0.5))); }";
 constexpr char kCube[] = "uniform samplerCube t; void main() { o = texture(t, vec3(uv * 2.0 - 1.0, 0.7)); }";
@@ -87,6 +89,11 @@ std::vector<Workload> texture_workloads() {
   add("tex_rgba16f", {.format = VK_FORMAT_R16G16B16A16_SFLOAT});
   add("tex_srgb", {.format = VK_FORMAT_R8G8B8A8_SRGB});
   add("tex_aniso8", {.body = kStretched, .levels = 10, .anisotropy = 8});
+  add("tex_aniso8_16f", {.body = kStretched, .levels = 10, .format = VK_FORMAT_R16G16B16A16_SFLOAT, .anisotropy = 8});
+  add("tex_aniso8_11f",
+      {.body = kStretched, .levels = 10, .format = VK_FORMAT_B10G11R11_UFLOAT_PACK32, .anisotropy = 8});
+  add("tex_aniso8_bc1", {.body = kStretched, .levels = 10, .format = VK_FORMAT_BC1_RGBA_UNORM_BLOCK, .anisotropy = 8});
+  add("tex_aniso8_cube", {.body = kStretchedCube, .levels = 10, .view = VK_IMAGE_VIEW_TYPE_CUBE, .anisotropy = 8});
   add("tex_shadow", {.body = kShadow, .format = VK_FORMAT_D32_SFLOAT, .compare = true});
   add("tex_bc1", {.format = VK_FORMAT_BC1_RGBA_UNORM_BLOCK});
   add("tex_bc7", {.format = VK_FORMAT_BC7_UNORM_BLOCK});

@@ -306,6 +306,8 @@ bool compare_paths(unsigned seed) {
     request.op = SampleOp::kQueryLod;
   }
   for (std::uint32_t i = 0; i < shape.coordinates + (shape.arrayed ? 1 : 0); ++i) request.coord[i] = &in.coord[i];
+  const bool derived = request.lod_mode == LodMode::kImplicit || request.lod_mode == LodMode::kBias;
+  request.quads = derived || request.op == SampleOp::kQueryLod || random.below(2) != 0;
   request.lod = &in.lod;
   request.ddx = {&in.ddx[0], &in.ddx[1], &in.ddx[2]};
   request.ddy = {&in.ddy[0], &in.ddy[1], &in.ddy[2]};

@@ -66,15 +66,9 @@ Ellipse make_ellipse(const LanePoint& point, const Extent& size, std::uint32_t i
 
 Texel nearest_at(LaneSample lane, std::uint32_t level, float u, float v) {
   const Extent& extent = lane.plan->view->level[level].extent;
-  const std::uint32_t size[2] = {extent.width, extent.height};
-  lane.coord = {u / static_cast<float>(extent.width), v / static_cast<float>(extent.height), 0};
-  std::int32_t at[2];
-  for (std::size_t i = 0; i < 2; ++i) {
-    Axis axis{lane.plan->address[i], lane.plan->pot[i], true, static_cast<std::int32_t>(size[i]),
-              lane.offset[i],        lane.has_offset};
-    at[i] = nearest_texel(axis, lane.coord[i]);
-  }
-  return texel_or_border(lane, level, lane.layer + (lane.plan->cube ? lane.face : 0), at[0], at[1], 0);
+  lane.coord[0] = u / static_cast<float>(extent.width);
+  lane.coord[1] = v / static_cast<float>(extent.height);
+  return sample_level(lane, level, false);
 }
 
 bool reasonable(const Ellipse& e) {
@@ -118,10 +112,11 @@ Texel sample_anisotropic(const LaneSample& lane, const LanePoint& point, std::ui
     float dq = offset * e.b + dq_start;
     float q = (e.c * offset + e.b * u_start) * offset + q_start;
     for (std::int64_t u = e.u0; u <= e.u1; ++u) {
-      const float weight = weight_of(q);
-      const Texel texel = nearest_at(lane, level, static_cast<float>(u), static_cast<float>(v));
-      for (std::size_t c = 0; c < 4; ++c) color[c] = color[c] + float_of(texel[c]) * weight;
-      total = total + weight;
+      if (const float weight = weight_of(q); weight != 0.0f) {
+        const Texel texel = nearest_at(lane, level, static_cast<float>(u), static_cast<float>(v));
+        for (std::size_t c = 0; c < 4; ++c) color[c] = color[c] + float_of(texel[c]) * weight;
+        total = total + weight;
+      }
       q = q + dq;
       dq = dq + ddq;
     }

@@ -11,7 +11,13 @@ namespace vitrine::texel {
 /// exp(-2 i / 1023) to six decimals; the reference's table differs in the last digit of a few entries.
 extern const std::array<float, 1024> kEllipseWeights;
 
-/// The average around a point on one level.
+/// The average around a point on one level: texels (u, v) of the box around the ellipse A U^2 + B U V + C V^2 = F, with
+/// U, V counted from the point in texels, are weighted by the table at 1023 / F of that form, found by differences
+/// along a row; those beyond the ellipse have no part. With the derivatives dx, dy of the coordinates (s, t), times
+/// width or height of the image's level 0 and 2^-level: A = dtx^2 + dty^2 + 1, B = -2 (dsx dtx + dsy dty),
+/// C = dsx^2 + dsy^2 + 1, F = A C - B^2 / 4. Each texel is a nearest lookup at (u, v) over the level's size: of the
+/// point's slice of a volume. Without a weight (an ellipse that is not finite) the lookup is linear. Neither the
+/// sampler's filters nor the degree of its anisotropy, if it is at least 2, change anything but the choice of a level.
 Texel sample_anisotropic(const LaneSample& lane, const LanePoint& point, std::uint32_t level);
 
 }  // namespace vitrine::texel

@@ -78,8 +78,9 @@ void project_cube(LanePoint& point, bool with_derivatives) {
 }
 
 /// Anisotropic footprints are measured on the face: differences of the quad's projected coordinates.
-void set_projected_derivatives(const SampleRequest& request, std::size_t lane, bool with_derivatives,
+void set_projected_differences(const SampleRequest& request, std::size_t lane, bool with_derivatives,
                                LanePoint& point) {
+  if (!request.quads) return;
   const std::size_t first = lane & ~std::size_t{3};
   LanePoint corner[3];
   for (std::size_t i = 0; i < 3; ++i) {
@@ -113,15 +114,8 @@ float compute_rho(const Plan& plan, const LanePoint& point, bool given_derivativ
   float size[3];
   first_level_size(plan, size);
   float rho = 0;
-  if (plan.anisotropic) {
-    // The shorter axis. The test of the ratio that follows in the reference is never true (A8 step 1).
-    const float x2 = scaled_length(point.ddx, size, 2);
-    const float y2 = scaled_length(point.ddy, size, 2);
-    const float longest = max_second(x2, y2);
-    const float shortest = min_second(x2, y2);
-    const float limit = plan.sampler->max_anisotropy * plan.sampler->max_anisotropy;
-    return shortest > shortest * limit ? longest / limit : shortest;
-  }
+  // The shorter axis, whatever the ratio: the reference's test of it is never true (A8 step 1).
+  if (plan.anisotropic) return min_second(scaled_length(point.ddx, size, 2), scaled_length(point.ddy, size, 2));
   if (plan.dims == 1) {
     rho = max_second(std::fabs(point.ddx[0]), std::fabs(point.ddy[0])) * size[0];
   } else {
@@ -180,14 +174,15 @@ LanePoint locate(const Plan& plan, const SampleRequest& request, std::size_t lan
   LanePoint point;
   const std::uint32_t components = plan.cube ? 3 : plan.dims;
   const bool implicit = request.lod_mode == LodMode::kImplicit || request.lod_mode == LodMode::kBias;
+  const bool given = request.lod_mode == LodMode::kGrad;
   const bool cube_derivatives =
-      plan.cube && plan.lod_needed && !plan.lod_fixed && (implicit || request.lod_mode == LodMode::kGrad);
+      plan.cube && ((plan.lod_needed && !plan.lod_fixed && (implicit || given)) || (plan.anisotropic && given));
   for (std::uint32_t i = 0; i < components; ++i) {
     point.coord[i] = value_at(request.coord[i], lane);
-    if (request.lod_mode == LodMode::kGrad && !plan.anisotropic) {
+    if (given) {
       point.ddx[i] = value_at(request.ddx[i], lane);
       point.ddy[i] = value_at(request.ddy[i], lane);
-    } else if (request.coord[i] != nullptr && (implicit || plan.anisotropic)) {
+    } else if (request.coord[i] != nullptr && request.quads && (implicit || plan.anisotropic)) {
       const QuadDerivative d =
           plan.cube ? fine_derivative(*request.coord[i], lane) : coarse_derivative(*request.coord[i], lane);
       point.ddx[i] = d.dx;
@@ -195,7 +190,7 @@ LanePoint locate(const Plan& plan, const SampleRequest& request, std::size_t lan
     }
   }
   if (plan.cube) project_cube(point, cube_derivatives);
-  if (plan.cube && plan.anisotropic) set_projected_derivatives(request, lane, cube_derivatives, point);
+  if (plan.cube && plan.anisotropic && !given) set_projected_differences(request, lane, cube_derivatives, point);
   return point;
 }
 

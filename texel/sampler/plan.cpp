@@ -133,7 +133,8 @@ Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMo
   set_dimensions(plan);
   plan.seamless = plan.cube && !sampler.seams;
   plan.gather = op == SampleOp::kGather;
-  plan.anisotropic = sampler.max_anisotropy > 1.0f && !plan.gather && plan.dims == 2;
+  plan.anisotropic = sampler.max_anisotropy >= 2.0f && !plan.gather && plan.dims > 1 && !sampler.unnormalized &&
+                     !view.format->is_integer();
   plan.min_linear = plan.gather || sampler.min_filter == VK_FILTER_LINEAR;
   plan.mag_linear = plan.gather || sampler.mag_filter == VK_FILTER_LINEAR;
   plan.mip = sampler.mip_mode == VK_SAMPLER_MIPMAP_MODE_LINEAR ? MipFilter::kLinear : MipFilter::kNearest;

@@ -1,6 +1,6 @@
-// Anisotropic filtering for whole waves, two-dimensional images and faces of cubes (lavapipe-texture-blend.md A8): the
-// twin of sample_anisotropic, for compressed formats and comparisons too. The lanes of a vector walk through their
-// ellipses together, each inside its own bounds.
+// Anisotropic filtering for whole waves (lavapipe-texture-blend.md A8): the twin of sample_anisotropic, for compressed
+// formats and comparisons too. The lanes of a vector walk through their ellipses together, each inside its own bounds.
+#include <algorithm>
 #include <cstring>
 
 #include "texel/sampler/anisotropic.h"
@@ -30,12 +30,28 @@ struct EllipseLanes {
   VI u0, u1, v0, v1;
 };
 
-HWY_INLINE EllipseLanes make_ellipse(const PreparedSampler& p, const WaveState& state, std::size_t first) {
+/// Of the coordinates on the image or on the face.
+HWY_INLINE Slopes ellipse_slopes(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
+                                 std::size_t first) {
+  Slopes d;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (request.lod_mode == LodMode::kGrad) {
+      d.x[i] = p.plan.cube ? hn::Load(DF(), state.slope_x[i].lane + first) : load_lanes(request.ddx[i], first);
+      d.y[i] = p.plan.cube ? hn::Load(DF(), state.slope_y[i].lane + first) : load_lanes(request.ddy[i], first);
+    } else if (request.quads) {
+      coarse_slope(hn::LoadU(DF(), state.coord[i] + first), d.x[i], d.y[i]);
+    } else {
+      d.x[i] = d.y[i] = splat(0.0f);
+    }
+  }
+  return d;
+}
+
+HWY_INLINE EllipseLanes make_ellipse(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
+                                     std::size_t first) {
   const ImageView& view = *p.plan.view;
   const VF s = hn::LoadU(DF(), state.coord[0] + first), t = hn::LoadU(DF(), state.coord[1] + first);
-  VF dsdx, dsdy, dtdx, dtdy;
-  coarse_slope(s, dsdx, dsdy);
-  coarse_slope(t, dtdx, dtdy);
+  const Slopes slope = ellipse_slopes(p, request, state, first);
   VF scaling = splat(1.0f / static_cast<float>(1u << view.base_level));
   if (!p.one_level) {
     // 2^-level, exactly.
@@ -44,8 +60,8 @@ HWY_INLINE EllipseLanes make_ellipse(const PreparedSampler& p, const WaveState& 
   }
   const VF width = splat(static_cast<float>(view.level0_extent.width));
   const VF height = splat(static_cast<float>(view.level0_extent.height));
-  const VF ux = hn::Mul(hn::Mul(dsdx, width), scaling), uy = hn::Mul(hn::Mul(dsdy, width), scaling);
-  const VF vx = hn::Mul(hn::Mul(dtdx, height), scaling), vy = hn::Mul(hn::Mul(dtdy, height), scaling);
+  const VF ux = hn::Mul(hn::Mul(slope.x[0], width), scaling), uy = hn::Mul(hn::Mul(slope.y[0], width), scaling);
+  const VF vx = hn::Mul(hn::Mul(slope.x[1], height), scaling), vy = hn::Mul(hn::Mul(slope.y[1], height), scaling);
   const VF one = splat(1.0f), four = splat(4.0f), two = splat(2.0f);
   EllipseLanes e;
   e.a = hn::Add(hn::Add(square_of(vx), square_of(vy)), one);
@@ -137,14 +153,8 @@ HWY_INLINE WalkPlaces place_in_row(const FormatDesc& format, const WalkPlaces& r
 /// Of the lanes of `wanted`; others are zero or anything finite.
 HWY_NOINLINE TexelLanes fetch_from_blocks(const ImageView& view, const WalkPlaces& at, base::LaneMask wanted) {
   const FormatDesc& format = *view.format;
-  IntLanes offset, inner;
-  for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DI())) {
-    hn::Store(at.offset, DI(), offset.lane + i);
-    hn::Store(at.inner, DI(), inner.lane + i);
-  }
-  WordLanes words;
-  if (decode_s3tc(format, view.base, offset, inner, words.lane)) {
-    const VU word = hn::Load(DU(), words.lane);
+  if (const S3tcKind kind = s3tc_kind(format); kind != S3tcKind::kNone) {
+    const VU word = gather_s3tc(kind, view.base, at.offset, at.inner);
     const bool srgb = format.is_srgb();
     const FormatDesc& bytes = format_desc(srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM);
     const auto channel = [&](std::size_t c) HWY_ATTR {
@@ -153,10 +163,13 @@ HWY_NOINLINE TexelLanes fetch_from_blocks(const ImageView& view, const WalkPlace
     };
     return {channel(0), channel(1), channel(2), channel(3)};
   }
+  alignas(64) std::int32_t offset[kMaxLanes], inner[kMaxLanes];
+  hn::Store(at.offset, DI(), offset);
+  hn::Store(at.inner, DI(), inner);
   alignas(64) float value[4][kMaxLanes]{};
   BlockCache& cache = block_cache();
   base::for_each_lane(wanted, [&](std::size_t lane) {
-    const Texel& texel = cache.texels(format, view.base + offset.lane[lane])[inner.lane[lane]];
+    const Texel& texel = cache.texels(format, view.base + offset[lane])[inner[lane]];
     for (std::size_t c = 0; c < 4; ++c) std::memcpy(&value[c][lane], &texel[c], sizeof(float));
   });
   return {hn::Load(DF(), value[0]), hn::Load(DF(), value[1]), hn::Load(DF(), value[2]), hn::Load(DF(), value[3])};
@@ -165,7 +178,7 @@ HWY_NOINLINE TexelLanes fetch_from_blocks(const ImageView& view, const WalkPlace
 /// The texels of the lanes of `wanted`, or the border colour, or the outcome of their comparison with `reference`.
 template <Numeric kNumeric, bool kBlocks>
 HWY_INLINE TexelLanes texel_at(const Plan& plan, const WalkPlaces& at, hn::Mask<DI> wanted, hn::Mask<DI> outside,
-                               const VF* reference) {
+                               bool bordered, const VF* reference) {
   const ImageView& view = *plan.view;
   TexelLanes texel;
   if constexpr (kBlocks) {
@@ -175,7 +188,7 @@ HWY_INLINE TexelLanes texel_at(const Plan& plan, const WalkPlaces& at, hn::Mask<
   } else {
     texel = fetch_lanes<kNumeric>(*view.format, view.base, at.offset);
   }
-  if (plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder) {
+  if (bordered) {
     const auto put = [&](VF value, std::size_t c) HWY_ATTR {
       return hn::IfThenElse(hn::RebindMask(DF(), outside), as_float(hn::Set(DU(), plan.border[c])), value);
     };
@@ -188,14 +201,25 @@ HWY_INLINE TexelLanes texel_at(const Plan& plan, const WalkPlaces& at, hn::Mask<
   return texel;
 }
 
+/// What a vector of lanes walks through.
+struct Footprint {
+  LevelLanes level;  ///< from the slice on
+  EllipseLanes ellipse;
+  hn::Mask<DI> outside;  ///< no slice
+  base::LaneMask active;
+  VF reference;
+};
+
 template <Numeric kNumeric, bool kBlocks = false>
-HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const EllipseLanes& e, base::LaneMask active,
-                       const VF* reference, Sums& sums) {
-  const Plan& plan = p.plan;
+HWY_NOINLINE void walk(const Plan& plan, const Footprint& in, const VF* reference, Sums& sums) {
+  const LevelLanes& level = in.level;
+  const EllipseLanes& e = in.ellipse;
   const FormatDesc& format = *plan.view->format;
+  // Texels without weight may be infinities or NaN.
   constexpr bool kFloat = kNumeric == Numeric::kSfloat || kNumeric == Numeric::kUfloat;
-  const bool finite = !kFloat || reference != nullptr;
-  const auto live = lanes_mask_from_bits(DI(), active);
+  const bool bordered = std::any_of(plan.address.begin(), plan.address.begin() + plan.dims,
+                                    [](Address a) { return a == Address::kBorder; });
+  const auto live = lanes_mask_from_bits(DI(), in.active);
   const WalkAxis x_axis(level.axis[0]), y_axis(level.axis[1]);
   const VF u_start = hn::Sub(lanes_int_to_float(e.u0), e.tu);
   const VF dq_start = hn::Mul(hn::Add(hn::Mul(u_start, splat(2.0f)), splat(1.0f)), e.a);
@@ -210,6 +234,7 @@ HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const 
     VF q = hn::Add(hn::Mul(hn::Add(hn::Mul(e.c, offset), hn::Mul(e.b, u_start)), offset), q_start);
     hn::Mask<DI> outside_y, outside_x;
     const WalkPlaces row = place_row<kBlocks>(format, level, y_axis.nearest(v, outside_y));
+    outside_y = hn::Or(outside_y, in.outside);
     VI iu = e.u0;
     for (auto texels = rows; !hn::AllFalse(DI(), texels);
          iu = hn::Add(iu, splat(1)), texels = hn::And(rows, hn::Not(hn::Gt(iu, e.u1)))) {
@@ -217,19 +242,17 @@ HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const 
       q = hn::Add(q, dq);
       dq = hn::Add(dq, ddq);
       const auto weighed = hn::And(texels, hn::Not(hn::Gt(index, splat(1023))));
-      // A texel without weight adds 0, unless it is an infinity or NaN.
-      if (finite && hn::AllFalse(DI(), weighed)) continue;
+      if (hn::AllFalse(DI(), weighed)) continue;
       const VI entry = hn::Min(hn::Max(index, splat(0)), splat(1023));
       const VF weight =
           hn::IfThenElseZero(hn::RebindMask(DF(), weighed), hn::GatherIndex(DF(), kEllipseWeights.data(), entry));
       const VI at = x_axis.nearest(lanes_int_to_float(iu), outside_x);
-      const TexelLanes texel =
-          texel_at<kNumeric, kBlocks>(plan, place_in_row<kBlocks>(format, row, at), finite ? weighed : texels,
-                                      hn::Or(outside_x, outside_y), reference);
+      const TexelLanes texel = texel_at<kNumeric, kBlocks>(plan, place_in_row<kBlocks>(format, row, at), weighed,
+                                                           hn::Or(outside_x, outside_y), bordered, reference);
       const VF value[4] = {texel.r, texel.g, texel.b, texel.a};
       const auto add = [&](std::size_t c) HWY_ATTR {
         const VF sum = hn::Add(sums.color[c], hn::Mul(value[c], weight));
-        sums.color[c] = kFloat ? hn::IfThenElse(hn::RebindMask(DF(), texels), sum, sums.color[c]) : sum;
+        sums.color[c] = kFloat ? hn::IfThenElse(hn::RebindMask(DF(), weighed), sum, sums.color[c]) : sum;
       };
       add(0);
       if (reference == nullptr) add(1), add(2), add(3);
@@ -239,26 +262,26 @@ HWY_NOINLINE void walk(const PreparedSampler& p, const LevelLanes& level, const 
 }
 
 /// Compressed texels are values already: those that may be infinite go with the floats.
-void walk_any(const PreparedSampler& p, const LevelLanes& level, const EllipseLanes& e, base::LaneMask active,
-              const VF* reference, Sums& sums) {
-  const FormatDesc& format = *p.plan.view->format;
+void walk_any(const Plan& plan, const Footprint& in, bool compare, Sums& sums) {
+  const FormatDesc& format = *plan.view->format;
+  const VF* const reference = compare ? &in.reference : nullptr;
   if (format.is_compressed()) {
     const Numeric numeric = format.channel[0].numeric;
     return numeric == Numeric::kUfloat || numeric == Numeric::kSfloat
-               ? walk<Numeric::kSfloat, true>(p, level, e, active, reference, sums)
-               : walk<Numeric::kUnorm, true>(p, level, e, active, reference, sums);
+               ? walk<Numeric::kSfloat, true>(plan, in, reference, sums)
+               : walk<Numeric::kUnorm, true>(plan, in, reference, sums);
   }
   switch (format.channel[0].numeric) {
     case Numeric::kUnorm:
-      return walk<Numeric::kUnorm>(p, level, e, active, reference, sums);
+      return walk<Numeric::kUnorm>(plan, in, reference, sums);
     case Numeric::kSrgb:
-      return walk<Numeric::kSrgb>(p, level, e, active, reference, sums);
+      return walk<Numeric::kSrgb>(plan, in, reference, sums);
     case Numeric::kSnorm:
-      return walk<Numeric::kSnorm>(p, level, e, active, reference, sums);
+      return walk<Numeric::kSnorm>(plan, in, reference, sums);
     case Numeric::kUfloat:
-      return walk<Numeric::kUfloat>(p, level, e, active, reference, sums);
+      return walk<Numeric::kUfloat>(plan, in, reference, sums);
     default:
-      return walk<Numeric::kSfloat>(p, level, e, active, reference, sums);
+      return walk<Numeric::kSfloat>(plan, in, reference, sums);
   }
 }
 
@@ -277,11 +300,28 @@ HWY_INLINE VF load_reference(const ImageView& view, const SampleRequest& request
   return lanes_max_second(lanes_min_second(reference, splat(1.0f)), splat(0.0f));
 }
 
+HWY_INLINE void load_footprint(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
+                               std::size_t first, Footprint& out) {
+  const bool volume = p.plan.dims == 3;
+  if (volume)
+    load_level<3>(p, request, state, 0, first, false, out.level);
+  else
+    load_level<2>(p, request, state, 0, first, p.plan.cube, out.level);
+  out.outside = hn::FirstN(DI(), 0);
+  if (volume) {
+    const AxisLanes& axis = out.level.axis[2];
+    const VI last = hn::Sub(axis.size, splat(1));
+    const VI z = lanes_nearest(axis, hn::LoadU(DF(), state.coord[2] + first));
+    if (axis.address == Address::kBorder) out.outside = hn::Or(hn::Lt(z, splat(0)), hn::Gt(z, last));
+    out.level.origin = hn::Add(out.level.origin, hn::Mul(lanes_clamp(z, last), out.level.slice_pitch));
+  }
+  out.reference = splat(0.0f);
+  if (request.dref != nullptr) out.reference = load_reference(*p.plan.view, request, first);
+}
+
 void sample_anisotropic_wave(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
   const ImageView& view = *p.plan.view;
-  if (!has_instance(*view.format) || p.plan.sampler->unnormalized) {
-    return sample_by_lane(p, request, result);
-  }
+  if (!has_instance(*view.format)) return sample_by_lane(p, request, result);
   WaveState state;
   find_state(p, request, state);
   WaveTexels texels;
@@ -290,17 +330,16 @@ void sample_anisotropic_wave(const PreparedSampler& p, const SampleRequest& requ
     const base::LaneMask lanes = base::first_lanes(hn::Lanes(DF()));
     const base::LaneMask active = request.active >> first & lanes;
     if (active == 0) continue;
-    const EllipseLanes e = make_ellipse(p, state, first);
-    if (!small_boxes(e, active)) {
+    Footprint in;
+    in.active = active;
+    in.ellipse = make_ellipse(p, request, state, first);
+    if (!small_boxes(in.ellipse, active)) {
       leftover |= active << first;
       continue;
     }
     Sums sums{{splat(0.0f), splat(0.0f), splat(0.0f), splat(0.0f)}, splat(0.0f)};
-    LevelLanes level;
-    load_level<2>(p, request, state, 0, first, p.plan.cube, level);
-    VF reference = splat(0.0f);
-    if (request.dref != nullptr) reference = load_reference(view, request, first);
-    walk_any(p, level, e, active, request.dref != nullptr ? &reference : nullptr, sums);
+    load_footprint(p, request, state, first, in);
+    walk_any(p.plan, in, request.dref != nullptr, sums);
     leftover |= (lanes_mask_bits(DF(), hn::Eq(sums.total, splat(0.0f))) & active) << first;
     for (std::size_t c = 0; c < 4; ++c) {
       VF value = hn::Div(sums.color[c], sums.total);

@@ -1,6 +1,7 @@
 // BC1 to BC5 texels of a wave straight from their blocks (lavapipe-texture-blend.md C1): the twin of s3tc_rgtc.h.
 
 #include "texel/block/s3tc_rgtc.h"
+#include "texel/sampler/wave_fetch-inl.h"
 #include "texel/sampler/wave_state-inl.h"
 
 #if defined(VITRINE_TEXEL_WAVE_S3TC_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -136,34 +137,67 @@ inline S3tcKind s3tc_kind(const FormatDesc& format) {
   }
 }
 
+/// Whether blocks are 16 bytes.
+constexpr bool has_two_parts(S3tcKind kind) { return kind > S3tcKind::kRgba && kind != S3tcKind::kRed; }
+
+/// R, G, B, A bytes of texel `inner` of blocks whose eight bytes, or second eight, are (low, high).
+template <S3tcKind kKind>
+HWY_INLINE VU decode_s3tc_lanes(VU low, VU high, VU low2, VU high2, VU inner) {
+  const VU opaque = hn::Set(DU(), 0xFF000000u);
+  if constexpr (kKind == S3tcKind::kRgb || kKind == S3tcKind::kRgba) {
+    return decode_color_lanes(low, high, inner, kKind == S3tcKind::kRgb ? ColorBlock::kRgb : ColorBlock::kRgba);
+  } else if constexpr (kKind == S3tcKind::kRed) {
+    return hn::Or(decode_channel_lanes(low, high, inner), opaque);
+  } else if constexpr (kKind == S3tcKind::kRedGreen) {
+    const VU red = decode_channel_lanes(low, high, inner), green = decode_channel_lanes(low2, high2, inner);
+    return hn::Or(hn::Or(red, hn::ShiftLeft<8>(green)), opaque);
+  } else {
+    const VU alpha = kKind == S3tcKind::kExplicitAlpha ? decode_explicit_alpha_lanes(low, high, inner)
+                                                       : decode_channel_lanes(low, high, inner);
+    const VU color = decode_color_lanes(low2, high2, inner, ColorBlock::kFourColors);
+    return hn::Or(hn::AndNot(opaque, color), hn::ShiftLeft<24>(alpha));
+  }
+}
+
 template <S3tcKind kKind>
 HWY_NOINLINE void decode_s3tc(const std::byte* base, const IntLanes& offset, const IntLanes& inner, std::uint32_t* to) {
-  constexpr bool kTwoParts = kKind > S3tcKind::kRgba && kKind != S3tcKind::kRed;
+  constexpr bool kTwoParts = has_two_parts(kKind);
   BlockLanes part, second;
   part.load(base, offset);
   if constexpr (kTwoParts) second.load(base + 8, offset);
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DU())) {
     const VU index = hn::BitCast(DU(), hn::Load(DI(), inner.lane + first));
-    const VU opaque = hn::Set(DU(), 0xFF000000u);
-    VU low, high, texel;
+    VU low, high, low2 = hn::Zero(DU()), high2 = hn::Zero(DU());
     part.get(first, low, high);
-    if constexpr (kKind == S3tcKind::kRgb || kKind == S3tcKind::kRgba) {
-      texel = decode_color_lanes(low, high, index, kKind == S3tcKind::kRgb ? ColorBlock::kRgb : ColorBlock::kRgba);
-    } else if constexpr (kKind == S3tcKind::kRed) {
-      texel = hn::Or(decode_channel_lanes(low, high, index), opaque);
-    } else {
-      VU low2, high2;
-      second.get(first, low2, high2);
-      const VU one = kKind == S3tcKind::kExplicitAlpha ? decode_explicit_alpha_lanes(low, high, index)
-                                                       : decode_channel_lanes(low, high, index);
-      if constexpr (kKind == S3tcKind::kRedGreen) {
-        texel = hn::Or(hn::Or(one, hn::ShiftLeft<8>(decode_channel_lanes(low2, high2, index))), opaque);
-      } else {
-        const VU color = decode_color_lanes(low2, high2, index, ColorBlock::kFourColors);
-        texel = hn::Or(hn::AndNot(opaque, color), hn::ShiftLeft<24>(one));
-      }
-    }
-    hn::Store(texel, DU(), to + first);
+    if constexpr (kTwoParts) second.get(first, low2, high2);
+    hn::Store(decode_s3tc_lanes<kKind>(low, high, low2, high2, index), DU(), to + first);
+  }
+}
+
+/// The same for one vector of lanes.
+template <S3tcKind kKind>
+HWY_INLINE VU gather_s3tc(const std::byte* base, VI offset, VI inner) {
+  const auto word = [&](std::ptrdiff_t at) HWY_ATTR { return gather_words(base + at, offset); };
+  const VU index = hn::BitCast(DU(), inner);
+  if constexpr (has_two_parts(kKind)) return decode_s3tc_lanes<kKind>(word(0), word(4), word(8), word(12), index);
+  return decode_s3tc_lanes<kKind>(word(0), word(4), hn::Zero(DU()), hn::Zero(DU()), index);
+}
+
+/// Not for kNone.
+inline VU gather_s3tc(S3tcKind kind, const std::byte* base, VI offset, VI inner) {
+  switch (kind) {
+    case S3tcKind::kRgb:
+      return gather_s3tc<S3tcKind::kRgb>(base, offset, inner);
+    case S3tcKind::kExplicitAlpha:
+      return gather_s3tc<S3tcKind::kExplicitAlpha>(base, offset, inner);
+    case S3tcKind::kAlpha:
+      return gather_s3tc<S3tcKind::kAlpha>(base, offset, inner);
+    case S3tcKind::kRed:
+      return gather_s3tc<S3tcKind::kRed>(base, offset, inner);
+    case S3tcKind::kRedGreen:
+      return gather_s3tc<S3tcKind::kRedGreen>(base, offset, inner);
+    default:
+      return gather_s3tc<S3tcKind::kRgba>(base, offset, inner);
   }
 }
 

@@ -25,6 +25,7 @@ struct FloatLanes {
 struct WaveState {
   const float* coord[3];  ///< lanes of s, t, r; on the face for cubes
   FloatLanes projected[2];
+  FloatLanes slope_x[2], slope_y[2];  ///< given ones on the face; only of anisotropic cubes
   IntLanes face;
   IntLanes layer_offset;  ///< bytes; of the first face for cubes. Only of arrayed views
   IntLanes level[2];      ///< this and the rest: only if PreparedSampler::needs_levels
@@ -143,12 +144,7 @@ HWY_INLINE VF wave_rho(const Plan& plan, const Slopes& d, bool given) {
   const Extent& extent = plan.view->level[0].extent;
   const float size[3] = {static_cast<float>(extent.width), static_cast<float>(extent.height),
                          static_cast<float>(extent.depth)};
-  if (plan.anisotropic) {
-    const VF x2 = scaled_length(d.x, size, 2), y2 = scaled_length(d.y, size, 2);
-    const VF longest = lanes_max_second(x2, y2), shortest = lanes_min_second(x2, y2);
-    const VF limit = splat(plan.sampler->max_anisotropy * plan.sampler->max_anisotropy);
-    return hn::IfThenElse(hn::Gt(shortest, hn::Mul(shortest, limit)), hn::Div(longest, limit), shortest);
-  }
+  if (plan.anisotropic) return lanes_min_second(scaled_length(d.x, size, 2), scaled_length(d.y, size, 2));
   VF rho;
   if (plan.dims == 1) {
     rho = hn::Mul(lanes_max_second(hn::Abs(d.x[0]), hn::Abs(d.y[0])), splat(size[0]));
@@ -264,14 +260,14 @@ HWY_INLINE void find_layer(const Plan& plan, const base::WaveRegister* coord, st
   hn::Store(hn::Mul(layer, stride), DI(), state.layer_offset.lane + first);
 }
 
-/// Calls body(first, slopes) for every vector; cubes are projected before, and anisotropic slopes are those on the
-/// face. Slopes only if prepared.needs_levels.
+/// Calls body(first, slopes) for every vector; cubes are projected before, and anisotropic slopes are differences on
+/// the face. Slopes only if prepared.needs_levels, or given on the face.
 template <class Body>
 HWY_INLINE void for_each_slope(const PreparedSampler& prepared, const SampleRequest& request, WaveState& state,
                                Body&& body) {
   const Plan& plan = prepared.plan;
-  const bool given = request.lod_mode == LodMode::kGrad && !plan.anisotropic;
-  const bool sloped = prepared.needs_levels && has_slopes(plan, request);
+  const bool given = request.lod_mode == LodMode::kGrad;
+  const bool sloped = (prepared.needs_levels && has_slopes(plan, request)) || (plan.cube && plan.anisotropic && given);
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     Slopes d;
     if (sloped) d = load_slopes(request, plan.cube ? 3 : plan.dims, first, given, plan.cube);
@@ -280,7 +276,12 @@ HWY_INLINE void for_each_slope(const PreparedSampler& prepared, const SampleRequ
                        load_lanes(request.coord[2], first)};
       project_cube(v, sloped ? &d : nullptr, first, state);
       for (std::size_t i = 0; sloped && plan.anisotropic && i < 2; ++i) {
-        coarse_slope(hn::Load(DF(), state.projected[i].lane + first), d.x[i], d.y[i]);
+        if (given) {
+          hn::Store(d.x[i], DF(), state.slope_x[i].lane + first);
+          hn::Store(d.y[i], DF(), state.slope_y[i].lane + first);
+        } else {
+          coarse_slope(hn::Load(DF(), state.projected[i].lane + first), d.x[i], d.y[i]);
+        }
       }
     }
     body(first, d);
