@@ -28,10 +28,12 @@ VkResult wait_until(Device& device, std::uint64_t timeout_ns, Done done) {
   return VK_ERROR_DEVICE_LOST;
 }
 
+/// Does nothing once the device is lost: who was told of the loss may have destroyed the object.
 template <class Change>
 void change_state(Device& device, Change change) {
   {
     const std::lock_guard lock(device.sync_mutex);
+    if (device.lost) return;
     change();
   }
   device.sync_changed.notify_all();
@@ -59,9 +61,9 @@ bool is_reached(const Semaphore& semaphore, std::uint64_t value) {
 bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value) {
   std::unique_lock lock(device.sync_mutex);
   device.sync_changed.wait(lock, [&] { return device.lost || is_reached(semaphore, value); });
-  const bool reached = is_reached(semaphore, value);
-  if (reached && !semaphore.timeline) --semaphore.value;
-  return reached;
+  if (device.lost) return false;  // the semaphore may be gone, see change_state
+  if (!semaphore.timeline) --semaphore.value;
+  return true;
 }
 
 bool wait_events(Device& device, const VkEvent* events, std::uint32_t count) {
@@ -70,7 +72,7 @@ bool wait_events(Device& device, const VkEvent* events, std::uint32_t count) {
   };
   std::unique_lock lock(device.sync_mutex);
   device.sync_changed.wait(lock, [&] { return device.lost || all_set(); });
-  return all_set();
+  return !device.lost;
 }
 
 void lose_device(Device& device, const char* reason) {
