@@ -4,6 +4,19 @@
 namespace vitrine::cts {
 namespace {
 
+/// Empty if the outputs differ in samples 2 and 3 of a row, and nowhere else.
+std::string loses_lower_samples(const Output& device, const Output& reference, uint32_t row) {
+  const size_t pitch = size_t{device.width} * 16;
+  for (uint32_t s = 0; s < 4; ++s)
+    for (uint32_t y = 0; y < device.height; ++y) {
+      const size_t at = (size_t{s} * device.height + y) * pitch;
+      const bool same = std::memcmp(&device.bytes[at], &reference.bytes[at], pitch) == 0;
+      const bool lost = y == row && s >= 2;
+      if (same == lost) return "sample " + std::to_string(s) + " of row " + std::to_string(y);
+    }
+  return {};
+}
+
 /// A short vertical line of one colour, and the two triangles that its rectangle consists of.
 const AddCase kShortLine("rasterization", "deviation.multisample_short_lines", "multisample-short-lines",
                          case_against_control, [](Run& run) {
@@ -23,6 +36,30 @@ const AddCase kShortLine("rasterization", "deviation.multisample_short_lines", "
                                 plain(colored({at(16, 20.25f), at(17, 20.25f), at(16, 20.75f), at(17, 20.25f),
                                                at(16, 20.75f), at(17, 20.75f)})));
                          });
+
+/// The diamond rule ends the vertical edge at y = 21, at the edge of the pixel in whose diamond its end lies.
+const AddCase kShortOutline(
+    "rasterization", "deviation.multisample_short_outlines", "multisample-short-lines",
+    [](const std::vector<Output>& device, const std::vector<Output>& reference) {
+      return loses_lower_samples(device[0], reference[0], 20);
+    },
+    [](Run& run) {
+      run.require(run.gpu.extension_features.line_rasterization.bresenhamLines, "bresenhamLines");
+      TargetSpec target;
+      target.samples = VK_SAMPLE_COUNT_4_BIT;
+      target.colors = {VK_FORMAT_R32G32B32A32_SFLOAT};
+      VkPipelineRasterizationLineStateCreateInfoEXT line{
+          VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+      line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
+      GraphicsSpec spec;
+      spec.raster.pNext = &line;
+      spec.raster.polygonMode = VK_POLYGON_MODE_LINE;
+      spec.raster.lineWidth = 5.0f;
+      const auto at = [](float x, float y) {
+        return std::array<float, 4>{x / 32.0f - 1.0f, y / 32.0f - 1.0f, 0.5f, 1.0f};
+      };
+      draw(run, "outline", target, spec, colored({at(16.5f, 20.4f), at(16.5f, 21.6f), at(50.0f, 21.0f)}));
+    });
 
 /// A strip after a line: with its first line outside of the volume, and without that line.
 const AddCase kStippleCounter("rasterization", "deviation.stipple_counter", "stipple-counter", case_against_control,
@@ -306,16 +343,7 @@ void main() {
 const AddCase kLineTiles(
     "rasterization", "deviation.multisample_line_tiles", "multisample-line-tiles",
     [](const std::vector<Output>& device, const std::vector<Output>& reference) {
-      const size_t pitch = size_t{device[0].width} * 16;
-      std::string message;
-      for (uint32_t s = 0; s < 4; ++s)
-        for (uint32_t y = 0; y < device[0].height; ++y) {
-          const size_t at = (size_t{s} * device[0].height + y) * pitch;
-          const bool same = std::memcmp(&device[0].bytes[at], &reference[0].bytes[at], pitch) == 0;
-          const bool lost = y == 63 && s >= 2;
-          if (same == lost) message = "sample " + std::to_string(s) + " of row " + std::to_string(y);
-        }
-      return message;
+      return loses_lower_samples(device[0], reference[0], 63);
     },
     [](Run& run) {
       TargetSpec target;
