@@ -131,7 +131,7 @@ HWY_INLINE auto compare(VkCompareOp op, V value, V stored) {
       case VK_COMPARE_OP_GREATER:
         return mask(hn::Not(hn::Le(a, b)));
       case VK_COMPARE_OP_NOT_EQUAL:
-        return mask(hn::Ne(a, b));
+        return mask(hn::Not(hn::Eq(a, b)));
       case VK_COMPARE_OP_GREATER_OR_EQUAL:
         return mask(hn::Not(hn::Lt(a, b)));
       default:

@@ -1,6 +1,7 @@
 // VK_EXT_depth_range_unrestricted: viewports, clears, bias and shaders that give depth outside [0, 1]. The extension
 // changes what devices do as soon as it is enabled, so each case makes devices of its own.
 #include <algorithm>
+#include <limits>
 
 #include "cases/own_device.h"
 #include "harness/case.h"
@@ -108,6 +109,50 @@ CTS_RANDOM("clipping", "random_unrestricted_depth", 60) {
     run.outputs = std::move(inner.outputs);
     run.notes = std::move(inner.notes);
   }
+}
+
+/// A depth that is not a number, and then one that is compared with it, by every comparison.
+void unordered_depths(Run& run) {
+  for (int op = 0; op < 8; ++op) {
+    TargetSpec target_spec;
+    target_spec.depth = VK_FORMAT_D32_SFLOAT;
+    const Target target = make_target(run, target_spec);
+    GraphicsSpec spec;
+    spec.vertex = kVertex;
+    spec.fragment =
+        "layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n"
+        "void main() { result = vec4(passed.xyw, 1); gl_FragDepth = passed.z; }\n";
+    spec.floats({4, 4});
+    spec.depth.depthTestEnable = spec.depth.depthWriteEnable = VK_TRUE;
+    spec.depth.depthCompareOp = VK_COMPARE_OP_ALWAYS;
+    const VkPipeline first = make_pipeline(run, spec, target);
+    spec.depth.depthCompareOp = static_cast<VkCompareOp>(op);
+    const VkPipeline second = make_pipeline(run, spec, target);
+    std::vector<float> values;
+    for (const float depth : {std::numeric_limits<float>::quiet_NaN(), 0.5f})
+      for (const float x : {-0.7f, 0.0f, 0.7f})
+        values.insert(values.end(), {x, x == 0.0f ? 0.8f : -0.6f, 0.5f, 1, depth == 0.5f ? 1.0f : 0.25f, 0, depth, 0});
+    const Buffer vertices = run.buffer_of(values);
+    run.once([&](VkCommandBuffer cmd) {
+      target.begin(cmd);
+      bind_vertices(cmd, vertices);
+      bind_pipeline(cmd, first);
+      vkCmdDraw(cmd, 3, 1, 0, 0);
+      bind_pipeline(cmd, second);
+      vkCmdDraw(cmd, 3, 1, 3, 0);
+      vkCmdEndRenderPass(cmd);
+    });
+    out_target(run, target);
+    for (Output* output : {&run.outputs.end()[-2], &run.outputs.end()[-1]}) output->name += "." + std::to_string(op);
+  }
+}
+
+CTS_CASE("clipping", "unordered_depths") {
+  run.require(offers_extension(run.gpu, kExtension), kExtension);
+  OwnDevice own(run.gpu, kExtension);
+  Run inner(own.gpu, 1, 0);
+  unordered_depths(inner);
+  run.outputs = std::move(inner.outputs);
 }
 
 /// A smooth line at depth -1.
