@@ -98,5 +98,28 @@ const AddCase kIdentity(
       draw(run, "not_identity", target, spec, values);
     });
 
+/// The bias carries one corner of a filled triangle beyond depth 1; the state of lines is smooth, and not.
+const AddCase kLineStateBias("rasterization", "deviation.line_state_depth_bias", "line-state-depth-bias",
+                             case_against_control, [](Run& run) {
+                               run.require(run.gpu.extension_features.line_rasterization.smoothLines, "smoothLines");
+                               for (const bool smooth : {true, false}) {
+                                 VkPipelineRasterizationLineStateCreateInfoEXT line{
+                                     VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+                                 if (smooth)
+                                   line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
+                                 TargetSpec target;
+                                 target.depth = VK_FORMAT_D16_UNORM;
+                                 GraphicsSpec spec;
+                                 spec.raster.pNext = &line;
+                                 spec.raster.depthBiasEnable = VK_TRUE;
+                                 spec.raster.depthBiasConstantFactor = 0x1p14f;
+                                 spec.fragment =
+                                     "layout(location = 0) out vec4 result;\n"
+                                     "void main() { result = vec4(gl_FragCoord.z); }\n";
+                                 draw(run, smooth ? "smooth" : "default", target, spec,
+                                      colored({{-0.7f, -0.7f, 0.9f, 1}, {0.7f, -0.5f, 0.1f, 1}, {0, 0.7f, 0.2f, 1}}));
+                               }
+                             });
+
 }  // namespace
 }  // namespace vitrine::cts

@@ -95,6 +95,7 @@ std::vector<std::string> remove_listed(const Scene& scene, DrawState& draw) {
     rows.push_back("multisample-short-lines");
     draw.spec.raster.polygonMode = VK_POLYGON_MODE_FILL;
     draw.drawn = Drawn::kTriangles;
+    draw.line.lineRasterizationMode = VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;  // line-state-depth-bias
     return rows;
   }
   if (short_bresenham_outlines(scene, draw)) {
