@@ -12,8 +12,9 @@ namespace vitrine::bench {
 
 std::vector<Workload> workloads() {
   std::vector<Workload> all;
-  for (auto& group : {fill_workloads(), triangle_workloads(), scene_workloads(), shader_workloads(),
-                      texture_workloads(), lookup_workloads(), compute_workloads(), transfer_workloads(), overhead_workloads()}) {
+  for (auto& group :
+       {fill_workloads(), triangle_workloads(), scene_workloads(), shader_workloads(), texture_workloads(),
+        lookup_workloads(), compute_workloads(), transfer_workloads(), overhead_workloads()}) {
     all.insert(all.end(), group.begin(), group.end());
   }
   return all;
