@@ -315,12 +315,7 @@ CTS_CASE("api", "pipeline_cache") {
   run.own(third, vkDestroyPipelineCache);
   spec.cache = third;
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline);
   out_target(run, target);
 }
 

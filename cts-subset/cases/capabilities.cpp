@@ -223,12 +223,7 @@ void draw(Run& run, const std::string& fragment) {
   spec.vertex = kFullScreenVertex;
   spec.fragment = fragment;
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline);
   out_target(run, target);
 }
 

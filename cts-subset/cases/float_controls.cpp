@@ -109,12 +109,7 @@ CTS_CASE("float_controls", "fragment") {
                   "  o = uvec4(bits(a * 0.0), bits(a - a * b), bits(a / a + 0.0), bits(-(a - b) * 1.0));\n"
                   "}\n";
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline);
   out_target(run, target);
 }
 

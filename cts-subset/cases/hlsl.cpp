@@ -175,13 +175,7 @@ void draw(Run& run, GraphicsSpec& spec, uint32_t vertices) {
   const Resources res = run.resources({storage_buffer(0, make_input(run))});
   spec.layout = res.layout;
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    res.bind(cmd);
-    vkCmdDraw(cmd, vertices, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline, &res, vertices);
   out_target(run, target);
 }
 

@@ -13,35 +13,6 @@ namespace {
 
 constexpr VkImageLayout kGeneral = VK_IMAGE_LAYOUT_GENERAL;
 
-/// A target of one image that keeps what the image holds.
-Target target_of(Run& run, const Image& image, uint32_t layers) {
-  Target target;
-  target.spec.colors = {image.spec.format};
-  target.spec.width = image.spec.extent.width;
-  target.spec.height = image.spec.extent.height;
-  target.spec.load = VK_ATTACHMENT_LOAD_OP_LOAD;
-  VkAttachmentDescription attachment{};
-  attachment.format = image.spec.format;
-  attachment.samples = VK_SAMPLE_COUNT_1_BIT;
-  attachment.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  attachment.initialLayout = attachment.finalLayout = kGeneral;
-  const VkAttachmentReference reference{0, kGeneral};
-  VkSubpassDescription subpass{};
-  subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
-  subpass.colorAttachmentCount = 1;
-  subpass.pColorAttachments = &reference;
-  VkRenderPassCreateInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
-  pass.attachmentCount = pass.subpassCount = 1;
-  pass.pAttachments = &attachment;
-  pass.pSubpasses = &subpass;
-  target.pass = make_render_pass(run, pass);
-  target.framebuffer =
-      make_framebuffer(run, target.pass, {image.view}, {target.spec.width, target.spec.height}, layers);
-  target.colors = {image};
-  return target;
-}
-
 /// Triangles in random colours, blended where `blends`.
 void draw_triangles(Run& run, const Target& target, bool blends, const std::string& geometry = "") {
   Random& random = run.random;
@@ -103,7 +74,7 @@ CTS_RANDOM("image", "random_volume_attachment", 24) {
       "layout(location = 0) in vec4 passed[];\nlayout(location = 0) out vec4 result;\nvoid main() {\n"
       "  for (int i = 0; i < 3; ++i) {\n    gl_Position = gl_in[i].gl_Position;\n    gl_Layer = gl_PrimitiveIDIn % " +
       std::to_string(count) + ";\n    result = passed[i];\n    EmitVertex();\n  }\n}\n";
-  draw_triangles(run, target_of(run, slice, count), false, layered ? geometry : "");
+  draw_triangles(run, make_target_of(run, slice, count), false, layered ? geometry : "");
   run.out("volume", volume);
 }
 
@@ -152,7 +123,7 @@ CTS_RANDOM("image", "random_format_list", 40) {
       run.image_view(image, VK_IMAGE_VIEW_TYPE_2D, view_format, {VK_IMAGE_ASPECT_COLOR_BIT, level, 1, layer, 1});
   const std::string prefix = glsl_prefix(format_info(view_format));
   if (use == 2) {
-    draw_triangles(run, target_of(run, seen, 1), false);
+    draw_triangles(run, make_target_of(run, seen, 1), false);
   } else {
     const Buffer result = run.buffer(VkDeviceSize{16} * 4096);
     std::memset(result.data, 0, result.size);
@@ -263,7 +234,7 @@ CTS_RANDOM("image", "random_r4g4b4a4_attachment", 16) {
     return bytes;
   };
   run.upload(image, 0, swapped(random_texels(run.random, spec.format, 40 * 30 * 2)));
-  draw_triangles(run, target_of(run, image, 1), run.random.chance(0.8f));
+  draw_triangles(run, make_target_of(run, image, 1), run.random.chance(0.8f));
   run.out(Output{"color", format_info(VK_FORMAT_R4G4B4A4_UNORM_PACK16), 40, 30, 1, swapped(run.download(image, 0))});
 }
 
@@ -291,7 +262,7 @@ CTS_RANDOM("image", "random_srgb_storage", 12) {
   const VkSampler nearest = run.sampler(VK_FILTER_NEAREST);
   const Buffer loaded = run.buffer(VkDeviceSize{16} * 4096);
   if (draws) {
-    const Target target = target_of(run, image, 1);
+    const Target target = make_target_of(run, image, 1);
     const Resources res = run.resources({sampled(0, table, nearest)});
     GraphicsSpec draw;
     draw.layout = res.layout;
@@ -300,13 +271,7 @@ CTS_RANDOM("image", "random_srgb_storage", 12) {
         "layout(binding = 0) uniform sampler2D t;\nlayout(location = 0) out vec4 v;\n"
         "void main() { v = texelFetch(t, ivec2(gl_FragCoord.xy), 0); }\n";
     const VkPipeline pipeline = make_pipeline(run, draw, target);
-    run.once([&](VkCommandBuffer cmd) {
-      target.begin(cmd);
-      bind_pipeline(cmd, pipeline);
-      res.bind(cmd);
-      vkCmdDraw(cmd, 3, 1, 0, 0);
-      vkCmdEndRenderPass(cmd);
-    });
+    draw_once(run, target, pipeline, &res);
   }
   const std::string head =
       "#extension GL_EXT_shader_image_load_formatted : require\nlayout(local_size_x = 8, local_size_y = 8) in;\n"

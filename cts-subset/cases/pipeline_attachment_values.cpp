@@ -24,12 +24,7 @@ void store_ramp(Run& run, const FormatInfo& info) {
                   "  float x = float(at) * (2.5 / 16384.0) - 1.25;\n  v = " +
                   value + ";\n}\n";
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline);
   run.out("color", target.colors[0]);
 }
 

@@ -34,13 +34,7 @@ struct PixelWriter {
   }
   void draw(Run& run) {
     const VkPipeline pipeline = make_pipeline(run, spec, target);
-    run.once([&](VkCommandBuffer cmd) {
-      target.begin(cmd);
-      bind_pipeline(cmd, pipeline);
-      resources.bind(cmd);
-      vkCmdDraw(cmd, 3, 1, 0, 0);
-      vkCmdEndRenderPass(cmd);
-    });
+    draw_once(run, target, pipeline, &resources);
     run.out("color", target.colors[0]);
     run.outputs.back().nan_bits_free = true;
   }
@@ -107,12 +101,7 @@ CTS_RANDOM("pipeline", "srgb_encode", 2) {
       "uvec3 bits = 0x3b4d2e00u + uvec3(i, i + 1u, i + 2u) * 23u + " +
       std::to_string(run.index % 23) + "u;\nresult = vec4(uintBitsToFloat(bits), 1.0); }\n";
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline);
   run.out("color", target.colors[0]);
 }
 
@@ -327,12 +316,7 @@ CTS_CASE("pipeline", "alpha_to_coverage_of_depth_alone") {
   spec.depth.depthCompareOp = VK_COMPARE_OP_ALWAYS;
   spec.multisample.alphaToCoverageEnable = VK_TRUE;
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline);
   out_target(run, target);
 }
 

@@ -259,13 +259,7 @@ void draw(Run& run, const Target& target, const Resources& resources, const std:
     for (float& c : spec.blend.blendConstants) c = 0.375f;
   }
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    if (resources.set) resources.bind(cmd);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline, &resources);
 }
 
 CTS_RANDOM("texture", "random_plane_sampled", 30) {
@@ -319,28 +313,7 @@ CTS_RANDOM("texture", "random_plane_drawn", 30) {
   const Image image =
       plane_view(run, random.pick(planes),
                  blends ? VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT : VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT);
-  Target target;
-  target.spec.colors = {image.spec.format};
-  target.spec.width = image.spec.extent.width;
-  target.spec.height = image.spec.extent.height;
-  VkAttachmentDescription attachment{};
-  attachment.format = image.spec.format;
-  attachment.samples = VK_SAMPLE_COUNT_1_BIT;
-  attachment.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  attachment.initialLayout = attachment.finalLayout = kGeneral;
-  const VkAttachmentReference reference{0, kGeneral};
-  VkSubpassDescription subpass{};
-  subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
-  subpass.colorAttachmentCount = 1;
-  subpass.pColorAttachments = &reference;
-  VkRenderPassCreateInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
-  pass.attachmentCount = pass.subpassCount = 1;
-  pass.pAttachments = &attachment;
-  pass.pSubpasses = &subpass;
-  target.pass = make_render_pass(run, pass);
-  target.framebuffer = make_framebuffer(run, target.pass, {image.view}, {target.spec.width, target.spec.height}, 1);
-  target.colors = {image};
+  const Target target = make_target_of(run, image);
   const std::string prefix = glsl_prefix(format_info(image.spec.format));
   draw(run, target, {},
        "layout(location = 0) out " + prefix +

@@ -273,12 +273,7 @@ CTS_CASE("subgroups", "quad.fragment") {
       "           subgroupQuadBroadcast(v, 1u));\n"
       "}\n";
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline);
   out_target(run, target);
 }
 

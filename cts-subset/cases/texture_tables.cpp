@@ -24,13 +24,7 @@ void look_up(Run& run, const Image& image, VkSampler sampler, const std::string&
   spec.fragment = "layout(binding = 0) uniform " + prefix + "sampler" + type + " t;\nlayout(location = 0) out " +
                   prefix + "vec4 v;\nvoid main() {\n  vec2 p = gl_FragCoord.xy * 0.015625;\n  v = " + code + ";\n}\n";
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    res.bind(cmd);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline, &res);
   run.out("color", target.colors[0]);
   run.outputs.back().nan_bits_free = true;
 }

@@ -41,13 +41,7 @@ void run_work_items(Run& run, WorkStage stage, const Resources& resources, const
                     limit + "\n}\n";
   }
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    resources.bind(cmd);
-    vkCmdDraw(cmd, stage == WorkStage::kVertex ? count : 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline, &resources, stage == WorkStage::kVertex ? count : 3);
 }
 
 }  // namespace vitrine::cts

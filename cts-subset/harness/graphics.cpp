@@ -183,6 +183,34 @@ void Target::begin(VkCommandBuffer cmd, VkRect2D area, VkSubpassContents content
   vkCmdBeginRenderPass(cmd, &info, contents);
 }
 
+Target make_target_of(Run& run, const Image& image, uint32_t layers) {
+  Target target;
+  target.spec.colors = {image.spec.format};
+  target.spec.width = image.spec.extent.width;
+  target.spec.height = image.spec.extent.height;
+  target.spec.load = VK_ATTACHMENT_LOAD_OP_LOAD;
+  VkAttachmentDescription attachment{};
+  attachment.format = image.spec.format;
+  attachment.samples = VK_SAMPLE_COUNT_1_BIT;
+  attachment.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  attachment.initialLayout = attachment.finalLayout = VK_IMAGE_LAYOUT_GENERAL;
+  const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_GENERAL};
+  VkSubpassDescription subpass{};
+  subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+  subpass.colorAttachmentCount = 1;
+  subpass.pColorAttachments = &reference;
+  VkRenderPassCreateInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+  pass.attachmentCount = pass.subpassCount = 1;
+  pass.pAttachments = &attachment;
+  pass.pSubpasses = &subpass;
+  target.pass = make_render_pass(run, pass);
+  target.framebuffer =
+      make_framebuffer(run, target.pass, {image.view}, {target.spec.width, target.spec.height}, layers);
+  target.colors = {image};
+  return target;
+}
+
 void out_target(Run& run, const Target& target) {
   for (size_t i = 0; i < target.colors.size(); ++i) run.out("color" + std::to_string(i), target.colors[i]);
   for (size_t i = 0; i < target.resolves.size(); ++i) run.out("resolve" + std::to_string(i), target.resolves[i]);
@@ -302,6 +330,16 @@ void bind_pipeline(VkCommandBuffer cmd, VkPipeline pipeline) {
 void bind_vertices(VkCommandBuffer cmd, const Buffer& buffer, uint32_t binding) {
   const VkDeviceSize offset = 0;
   vkCmdBindVertexBuffers(cmd, binding, 1, &buffer.handle, &offset);
+}
+
+void draw_once(Run& run, const Target& target, VkPipeline pipeline, const Resources* resources, uint32_t vertices) {
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    if (resources && resources->set) resources->bind(cmd);
+    vkCmdDraw(cmd, vertices, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
 }
 
 }  // namespace vitrine::cts

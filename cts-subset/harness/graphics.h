@@ -36,6 +36,8 @@ struct Target {
 VkClearValue clear_value(VkFormat format, float r, float g, float b, float a);
 /// `probe`: allows sRGB colours even where the reference's encoding is not the recorded one.
 Target make_target(Run& run, const TargetSpec& spec, bool probe = false);
+/// A target of `layers` layers of one colour image, whose texels it loads and keeps.
+Target make_target_of(Run& run, const Image& image, uint32_t layers = 1);
 /// Adds every attachment (and resolve attachment) to the outputs.
 void out_target(Run& run, const Target& target);
 
@@ -81,6 +83,9 @@ VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, 
 
 void bind_pipeline(VkCommandBuffer cmd, VkPipeline pipeline);
 void bind_vertices(VkCommandBuffer cmd, const Buffer& buffer, uint32_t binding = 0);
+/// A pass of one draw without vertex buffers, run at once: the default is a triangle over everything.
+void draw_once(Run& run, const Target& target, VkPipeline pipeline, const Resources* resources = nullptr,
+               uint32_t vertices = 3);
 
 /// A triangle over everything at depth 0.5; also passes `vec2 uv` (0..1) at location 0.
 extern const char kFullScreenVertex[];

@@ -41,12 +41,7 @@ const AddCase kPackedLogic(
         spec.blend.logicOpEnable = inverts;
         spec.blend.logicOp = VK_LOGIC_OP_INVERT;
         const VkPipeline pipeline = make_pipeline(run, spec, target);
-        run.once([&](VkCommandBuffer cmd) {
-          target.begin(cmd);
-          bind_pipeline(cmd, pipeline);
-          vkCmdDraw(cmd, 3, 1, 0, 0);
-          vkCmdEndRenderPass(cmd);
-        });
+        draw_once(run, target, pipeline);
         run.out(inverts ? "inverted" : "written", target.colors[0]);
         run.outputs.back().may_be_blank = true;
       }

@@ -164,13 +164,7 @@ void put_picture_out(Run& run, const char* name, const Image& image, VkSampler s
   spec.colors = {VK_FORMAT_R32G32B32A32_SFLOAT};
   const Target target = make_target(run, spec);
   const VkPipeline handle = make_pipeline(run, pipeline, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, handle);
-    res.bind(cmd);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, handle, &res);
   run.out(name, target.colors[0]);
 }
 

@@ -197,13 +197,7 @@ CTS_CASE("glsl", "narrow.half_in_fragments") {
       "  uint8_t b = uint8_t(gl_FragCoord.y) << uint8_t(3);\n"
       "  color = uvec4(floatBitsToUint(float(z)), floatBitsToUint(float(d)), uint(int(n)), uint(b));\n}\n";
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    res.bind(cmd);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline, &res);
   out_target(run, target);
 }
 

@@ -37,12 +37,7 @@ void alpha_to_coverage(Run& run, uint32_t samples, bool to_one) {
   spec.multisample.alphaToCoverageEnable = VK_TRUE;
   spec.multisample.alphaToOneEnable = to_one;
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline);
   put(run, "color", kExtent, samples, fetch(run, target.colors[0], VK_IMAGE_ASPECT_COLOR_BIT));
 }
 
@@ -305,13 +300,7 @@ void without_attachments(Run& run, uint32_t samples) {
       "void main() { atomicAdd(runs[gl_SampleID], 1u); }\n";
   spec.layout = res.layout;
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    res.bind(cmd);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
+  draw_once(run, target, pipeline, &res);
   put(run, "runs", {2, 1}, 1, std::vector<uint32_t>(runs.as<uint32_t>(), runs.as<uint32_t>() + 8));
 }
 
