@@ -80,24 +80,8 @@ std::size_t decode_fields(const FormatDesc& format, const std::byte* from, std::
 }
 
 std::size_t decode_any(const FormatDesc& format, const std::byte* from, std::size_t count, Texel* to) {
-  switch (format.channel[0].numeric) {
-    case Numeric::kUnorm:
-      return decode_fields<Numeric::kUnorm>(format, from, count, to);
-    case Numeric::kSnorm:
-      return decode_fields<Numeric::kSnorm>(format, from, count, to);
-    case Numeric::kUint:
-      return decode_fields<Numeric::kUint>(format, from, count, to);
-    case Numeric::kSint:
-      return decode_fields<Numeric::kSint>(format, from, count, to);
-    case Numeric::kUfloat:
-      return decode_fields<Numeric::kUfloat>(format, from, count, to);
-    case Numeric::kSrgb:
-      return decode_fields<Numeric::kSrgb>(format, from, count, to);
-    case Numeric::kSfloat:
-      return decode_fields<Numeric::kSfloat>(format, from, count, to);
-    default:
-      return 0;
-  }
+  return by_numeric(format.channel[0].numeric,
+                    [&]<Numeric kNumeric>() { return decode_fields<kNumeric>(format, from, count, to); });
 }
 
 /// Truncated binary16 without the low bits of its mantissa; negative numbers are 0, NaN keeps one bit.
@@ -217,6 +201,8 @@ bool is_texel(const FormatDesc& format) {
 }  // namespace
 
 std::size_t decode_field_row(const FormatDesc& format, const std::byte* blocks, std::size_t count, Texel* out) {
+  const Numeric numeric = format.channel[0].numeric;
+  if (numeric == Numeric::kUscaled || numeric == Numeric::kSscaled) return 0;
   if (!has_loads(format) || is_shared_exponent(format)) return 0;
   if (is_texel(format)) {
     std::memcpy(out, blocks, count * sizeof(Texel));

@@ -64,6 +64,27 @@ HWY_INLINE VF convert_field(VU word, const Channel& channel) {
   }
 }
 
+/// What body<numeric>() returns. Scaled formats, which convert_field does not know, count as kSfloat.
+template <class Body>
+HWY_INLINE auto by_numeric(Numeric numeric, Body&& body) {
+  switch (numeric) {
+    case Numeric::kUnorm:
+      return body.template operator()<Numeric::kUnorm>();
+    case Numeric::kSnorm:
+      return body.template operator()<Numeric::kSnorm>();
+    case Numeric::kUint:
+      return body.template operator()<Numeric::kUint>();
+    case Numeric::kSint:
+      return body.template operator()<Numeric::kSint>();
+    case Numeric::kUfloat:
+      return body.template operator()<Numeric::kUfloat>();
+    case Numeric::kSrgb:
+      return body.template operator()<Numeric::kSrgb>();
+    default:
+      return body.template operator()<Numeric::kSfloat>();
+  }
+}
+
 struct TexelLanes {
   VF r, g, b, a;
 };

@@ -87,29 +87,8 @@ HWY_NOINLINE void put_texels(const FormatDesc& format, const std::array<std::uin
   }
 }
 
-/// Calls body<numeric>() for the numeric formats that have a vector conversion.
-template <class Body>
-bool by_numeric(const FormatDesc& format, Body body) {
-  switch (format.channel[0].numeric) {
-    case Numeric::kUnorm:
-      return body.template operator()<Numeric::kUnorm>(), true;
-    case Numeric::kSnorm:
-      return body.template operator()<Numeric::kSnorm>(), true;
-    case Numeric::kUint:
-      return body.template operator()<Numeric::kUint>(), true;
-    case Numeric::kSint:
-      return body.template operator()<Numeric::kSint>(), true;
-    case Numeric::kSfloat:
-      return body.template operator()<Numeric::kSfloat>(), true;
-    case Numeric::kSrgb:
-      return body.template operator()<Numeric::kSrgb>(), true;
-    default:
-      return false;
-  }
-}
-
-bool fetch_image(const ImageView& view, const FetchRequest& request, const SampleResult& result) {
-  return by_numeric(*view.format, [&]<Numeric kNumeric>() {
+void fetch_image(const ImageView& view, const FetchRequest& request, const SampleResult& result) {
+  by_numeric(view.format->channel[0].numeric, [&]<Numeric kNumeric>() {
     Places places;
     place_texels(view, request, places);
     WordLanes words[4];
@@ -118,10 +97,10 @@ bool fetch_image(const ImageView& view, const FetchRequest& request, const Sampl
   });
 }
 
-bool fetch_buffer_texels(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
+void fetch_buffer_texels(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
                          const SampleResult& result) {
   constexpr std::array<std::uint8_t, 4> kIdentity{0, 1, 2, 3};
-  return by_numeric(*view.format, [&]<Numeric kNumeric>() {
+  by_numeric(view.format->channel[0].numeric, [&]<Numeric kNumeric>() {
     Places places;
     place_texels(view, active, index, places);
     WordLanes words[4];
@@ -142,19 +121,27 @@ namespace {
 HWY_EXPORT(fetch_image);
 HWY_EXPORT(fetch_buffer_texels);
 
+/// Whether the vectors here convert its texels. Those of unsigned floats include shared exponents.
+bool has_vector_conversion(const FormatDesc& format) {
+  const Numeric numeric = format.channel[0].numeric;
+  return numeric != Numeric::kUfloat && numeric != Numeric::kUscaled && numeric != Numeric::kSscaled;
+}
+
 }  // namespace
 
 bool fetch_wave(const ImageView& view, const FetchRequest& request, const SampleResult& result) {
-  if (!offsets_fit(view)) return false;
+  if (!has_vector_conversion(*view.format) || !offsets_fit(view)) return false;
   base::select_simd_target();
-  return HWY_DYNAMIC_DISPATCH(fetch_image)(view, request, result);
+  HWY_DYNAMIC_DISPATCH(fetch_image)(view, request, result);
+  return true;
 }
 
 bool fetch_buffer_wave(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
                        const SampleResult& result) {
-  if (!offsets_fit(view)) return false;
+  if (!has_vector_conversion(*view.format) || !offsets_fit(view)) return false;
   base::select_simd_target();
-  return HWY_DYNAMIC_DISPATCH(fetch_buffer_texels)(view, active, index, result);
+  HWY_DYNAMIC_DISPATCH(fetch_buffer_texels)(view, active, index, result);
+  return true;
 }
 
 }  // namespace vitrine::texel

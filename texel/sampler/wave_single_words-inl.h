@@ -71,26 +71,8 @@ HWY_INLINE void put_channel(const WordLanes& words, const Channel& channel, cons
 /// A channel of a wave of words, or how it compares.
 inline HWY_NOINLINE void put_words(const WordLanes& words, const Channel& channel, const WordReference& reference,
                                    const SampleRequest& request, base::WaveRegister& to) {
-  switch (channel.numeric) {
-    case Numeric::kUnorm:
-      return put_channel<Numeric::kUnorm>(words, channel, reference, request, to);
-    case Numeric::kSnorm:
-      return put_channel<Numeric::kSnorm>(words, channel, reference, request, to);
-    case Numeric::kUscaled:
-      return put_channel<Numeric::kUscaled>(words, channel, reference, request, to);
-    case Numeric::kSscaled:
-      return put_channel<Numeric::kSscaled>(words, channel, reference, request, to);
-    case Numeric::kUint:
-      return put_channel<Numeric::kUint>(words, channel, reference, request, to);
-    case Numeric::kSint:
-      return put_channel<Numeric::kSint>(words, channel, reference, request, to);
-    case Numeric::kUfloat:
-      return put_channel<Numeric::kUfloat>(words, channel, reference, request, to);
-    case Numeric::kSrgb:
-      return put_channel<Numeric::kSrgb>(words, channel, reference, request, to);
-    default:
-      return put_channel<Numeric::kSfloat>(words, channel, reference, request, to);
-  }
+  by_numeric(channel.numeric,
+             [&]<Numeric kNumeric>() { put_channel<kNumeric>(words, channel, reference, request, to); });
 }
 
 inline void put_constant(std::uint32_t value, base::LaneMask active, base::WaveRegister& to) {

@@ -154,7 +154,6 @@ constexpr std::uint64_t kSpanLimit = (std::uint64_t{1} << 31) - 64;
 bool has_vector_encoder(const FormatDesc& format) {
   switch (format.channel[0].numeric) {
     case Numeric::kUnorm:
-      return format.channel[0].bits <= 16;
     case Numeric::kSnorm:
       return format.channel[0].bits <= 16;
     case Numeric::kUint:

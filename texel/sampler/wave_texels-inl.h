@@ -167,22 +167,8 @@ inline HWY_NOINLINE void fetch_texels(const ImageView& view, const TexelPlaces& 
       load_lanes_of_texels<kBytes>(view.base, places.offset, first, words);
   });
   if (format.format == VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) return convert_shared_exponent(words[0], out);
-  switch (format.channel[0].numeric) {
-    case Numeric::kUnorm:
-      return convert_words<Numeric::kUnorm>(format, words, wanted, out);
-    case Numeric::kSnorm:
-      return convert_words<Numeric::kSnorm>(format, words, wanted, out);
-    case Numeric::kSrgb:
-      return convert_words<Numeric::kSrgb>(format, words, wanted, out);
-    case Numeric::kUfloat:
-      return convert_words<Numeric::kUfloat>(format, words, wanted, out);
-    case Numeric::kUint:
-      return convert_words<Numeric::kUint>(format, words, wanted, out);
-    case Numeric::kSint:
-      return convert_words<Numeric::kSint>(format, words, wanted, out);
-    default:
-      return convert_words<Numeric::kSfloat>(format, words, wanted, out);
-  }
+  by_numeric(format.channel[0].numeric,
+             [&]<Numeric kNumeric>() { convert_words<kNumeric>(format, words, wanted, out); });
 }
 
 /// Components of the format that the results need, through the view's mapping.
