@@ -102,11 +102,7 @@ void set_inputs(TileWorker& worker, const Primitive& primitive, const Place& pla
 }
 
 /// All lanes of quads with a lane in `lanes`.
-LaneMask whole_quads(LaneMask lanes) {
-  lanes |= lanes >> 1 & 0x5555555555555555;
-  lanes = (lanes | lanes >> 2) & 0x1111111111111111;
-  return lanes * 15;
-}
+LaneMask whole_quads(LaneMask lanes) { return quads_of_lanes(lanes) * 15; }
 
 /// The four registers of a colour, copied where they are not adjacent. Components that are not written are 0.
 const WaveRegister* collect_color(TileWorker& worker, const std::array<std::uint32_t, 4>& regs) {
@@ -230,8 +226,7 @@ BlockDepthTest depth_test(const PipelinePlan& plan, const DepthStencilTarget& ta
 HierarchicalTest hierarchical_test(TileWorker& worker, const Primitive& primitive, DepthRange& range) {
   const PipelinePlan& plan = *worker.draw->plan;
   const TileTarget& target = worker.target;
-  const ViewportTransform& viewport = plan.viewport[primitive.viewport];
-  range = {viewport.z_min, viewport.z_max};
+  range = depth_range(plan, primitive.viewport);
   return {depth_test(plan, target.depth_stencil[0], false, range),
           depth_plane(current_planes(worker, primitive), primitive), static_cast<float>(target.x),
           static_cast<float>(target.y), plan.locations};
@@ -242,7 +237,7 @@ HierarchicalTest hierarchical_test(TileWorker& worker, const Primitive& primitiv
 void test_windows(TileWorker& worker, std::uint32_t viewport, DepthWindow* windows, std::size_t count) {
   const PipelinePlan& plan = *worker.draw->plan;
   const DepthStencilTarget& target = worker.target.depth_stencil[0];
-  const DepthRange range{plan.viewport[viewport].z_min, plan.viewport[viewport].z_max};
+  const DepthRange range = depth_range(plan, viewport);
   test_window_depths(depth_test(plan, target, plan.depth_order == TestOrder::kEarly, range), depth_pixels(target, 0, 0),
                      windows, count);
 }
@@ -253,8 +248,7 @@ LaneMask test_blocks(TileWorker& worker, const Primitive& primitive, std::uint32
   const DepthStencilTarget& target = worker.target.depth_stencil[sample];
   const float dx = plan.locations->pixel_x(sample), dy = plan.locations->pixel_y(sample);
   const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
-  const ViewportTransform& viewport = plan.viewport[primitive.viewport];
-  const DepthRange range{viewport.z_min, viewport.z_max};
+  const DepthRange range = depth_range(plan, primitive.viewport);
   return test_block_depths(depth_test(plan, target, write, range), plane, static_cast<float>(x) + dx,
                            static_cast<float>(y) + dy, depth_pixels(target, x, y), places, lanes);
 }
@@ -263,8 +257,7 @@ bool test_large_window(TileWorker& worker, const Primitive& primitive, int x, in
   const PipelinePlan& plan = *worker.draw->plan;
   const DepthStencilTarget& target = worker.target.depth_stencil[0];
   const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
-  const ViewportTransform& viewport = plan.viewport[primitive.viewport];
-  const DepthRange range{viewport.z_min, viewport.z_max};
+  const DepthRange range = depth_range(plan, primitive.viewport);
   return test_large_window_depths(depth_test(plan, target, plan.depth_order == TestOrder::kEarly, range), plane,
                                   static_cast<float>(x), static_cast<float>(y), depth_pixels(target, x, y), window);
 }

@@ -42,12 +42,18 @@ base::LaneMask cover_window(const std::int32_t corner_x[3], const std::int32_t c
 inline constexpr int kLargeWindow = 16;
 struct LargeWindow {
   static constexpr std::size_t kWords = 4;
-  std::uint64_t rows[kWords + 2];  ///< the last two are 0: blocks that reach beyond are empty there
+  std::uint64_t rows[kWords];
 };
 
 /// Covers the pixels of `rect` of the window at the first pixel of `edges`, of which there are at most three, those
 /// that are not there zero; single-sampled. False if nothing is covered.
 bool cover_large_window(const TileEdges& edges, const PixelRect& rect, LargeWindow& out);
+
+/// The lowest lane of each quad that has a lane in `lanes`.
+constexpr base::LaneMask quads_of_lanes(base::LaneMask lanes) {
+  lanes |= lanes >> 1;
+  return (lanes | lanes >> 2) & 0x1111111111111111;
+}
 
 /// Place of lane i in a block: x, y in [0, 8).
 constexpr int lane_x(std::uint32_t lane) { return static_cast<int>((lane >> 2 & 3) * 2 + (lane & 1)); }

@@ -321,6 +321,10 @@ DepthFormat depth_format(const texel::ImageView& view) {
   }
 }
 
+DepthRange depth_range(const PipelinePlan& plan, std::uint32_t viewport) {
+  return {plan.viewport[viewport].z_min, plan.viewport[viewport].z_max};
+}
+
 void clamp_depth(const DepthRange* clamp, bool restricted, std::uint32_t quads, float* z) {
   HWY_DYNAMIC_DISPATCH(clamp_to_range)(clamp, restricted, quads, z);
 }

@@ -23,10 +23,13 @@ struct DepthStencilTarget {
   DepthFormat format = DepthFormat::kNone;
 };
 
-/// 5.3 steps 1 (where `restricted`) and 2: in place, lanes of quads [0, quads). `clamp`: null, or z range per quad.
+/// The depths of a viewport, low <= high.
 struct DepthRange {
   float low, high;
 };
+DepthRange depth_range(const PipelinePlan& plan, std::uint32_t viewport);
+
+/// 5.3 steps 1 (where `restricted`) and 2: in place, lanes of quads [0, quads). `clamp`: null, or z range per quad.
 void clamp_depth(const DepthRange* clamp, bool restricted, std::uint32_t quads, float* z);
 
 /// Tests lanes of `mask`: depth bounds, stencil, depth; returns those that pass. `z` is clamped. Writes depth where

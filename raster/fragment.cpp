@@ -271,10 +271,8 @@ void late_depth(ShadeRun& run, std::uint32_t sample) {
   }
   DepthRange range[base::kQuadsPerWave];
   if (plan.state->depth_clamp)
-    for (std::uint32_t q = 0; q < run.wave.quads; ++q) {
-      const ViewportTransform& viewport = plan.viewport[run.wave.primitive[run.wave.slot[q]]->viewport];
-      range[q] = {viewport.z_min, viewport.z_max};
-    }
+    for (std::uint32_t q = 0; q < run.wave.quads; ++q)
+      range[q] = depth_range(plan, run.wave.primitive[run.wave.slot[q]]->viewport);
   clamp_depth(plan.state->depth_clamp ? range : nullptr, plan.restricts_depth, run.wave.quads, worker.depth);
 }
 

@@ -146,7 +146,7 @@ constexpr std::uint32_t kNearlyFull = 12, kNearlyFullIfShort = 2;
 void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
                 const BlockCoverage& block) {
   const PipelinePlan& plan = *worker.draw->plan;
-  base::LaneMask any = any_sample(block, plan.samples);
+  const base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
   if (!plan.shades) {
     for (std::uint32_t s = 0; worker.counts && s < plan.samples; ++s)
@@ -154,8 +154,7 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
     return;
   }
   constexpr base::LaneMask kLowestLanes = 0x1111111111111111;
-  any |= any >> 1;
-  const base::LaneMask quads = (any | any >> 2) & kLowestLanes;
+  const base::LaneMask quads = quads_of_lanes(any);
   const bool whole = quads == kLowestLanes;
   // The product's upper four bits are the sum of the 16 nibbles: the number of quads, modulo 16.
   const bool nearly =

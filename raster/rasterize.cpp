@@ -142,10 +142,7 @@ void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y
   place_block(x, y, quads);
   DepthRange range[base::kQuadsPerWave];
   const bool clamps = plan.state->depth_clamp;
-  if (clamps) {
-    const ViewportTransform& viewport = plan.viewport[primitive.viewport];
-    std::fill_n(range, base::kQuadsPerWave, DepthRange{viewport.z_min, viewport.z_max});
-  }
+  if (clamps) std::fill_n(range, base::kQuadsPerWave, depth_range(plan, primitive.viewport));
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
     if (!block.lanes[s]) continue;
     if (plan.depth_test) {

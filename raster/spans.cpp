@@ -57,9 +57,8 @@ void pack(TileWorker& worker, const Primitive& primitive, const SpanWave& wave) 
     for (std::uint32_t q = 0; q < span->count; q += kPart) {
       const std::size_t part = std::size_t{4} * std::min(kPart, span->count - q);
       const BlockCoverage block{{lanes >> 4 * (span->first + q) & base::first_lanes(part)}};
-      LaneMask any = block.lanes[0] | block.lanes[0] >> 1;
-      any = (any | any >> 2) & 0x1111;
-      append_quads(worker, primitive, wave.x + span->x + static_cast<int>(2 * q), wave.y + span->y, block, block, any);
+      append_quads(worker, primitive, wave.x + span->x + static_cast<int>(2 * q), wave.y + span->y, block, block,
+                   quads_of_lanes(block.lanes[0]));
     }
   }
 }

@@ -28,9 +28,7 @@ void emit_window(TileWorker& worker, const Primitive& primitive) {
     if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(block.lanes[0]));
     return;
   }
-  base::LaneMask any = block.lanes[0] | block.lanes[0] >> 1;
-  any = (any | any >> 2) & 0x1111111111111111;
-  append_quads(worker, primitive, x, y, rasterized, block, any);
+  append_quads(worker, primitive, x, y, rasterized, block, quads_of_lanes(block.lanes[0]));
 }
 
 namespace {
@@ -69,9 +67,7 @@ void emit_small_windows(TileWorker& worker, const Primitive* const* primitives, 
     set_current_planes(worker, &primitive, planes[i]);
     const base::LaneMask quads = transpose_window(window.rows);
     const BlockCoverage block{{(quads & 0xff) | (quads & 0xff00) << 8}}, rasterized{{primitive.window}};
-    base::LaneMask any = block.lanes[0] | block.lanes[0] >> 1;
-    any = (any | any >> 2) & 0x1111111111111111;
-    append_quads(worker, primitive, window.x, window.y, rasterized, block, any);
+    append_quads(worker, primitive, window.x, window.y, rasterized, block, quads_of_lanes(block.lanes[0]));
   }
 }
 
