@@ -1,5 +1,4 @@
-// Control flow as a compiler of HLSL gives it: nested loops, fall-through, early returns and discard, in the compute,
-// vertex and fragment stages.
+// Control flow as a compiler of HLSL gives it: nested loops, fall-through, early returns and discard, in every stage.
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -179,6 +178,10 @@ void draw(Run& run, GraphicsSpec& spec, uint32_t vertices) {
   out_target(run, target);
 }
 
+constexpr char kResultFragment[] =
+    "layout(location = 0) flat in uint result;\nlayout(location = 0) out uint color;\n"
+    "void main() { color = result; }\n";
+
 void in_vertex(Run& run, const Body& body) {
   GraphicsSpec spec;
   spec.vertex = kBuffers + body.work + R"(
@@ -195,9 +198,7 @@ Vertex main(uint id : SV_VertexID) {
   return v;
 }
 )";
-  spec.fragment =
-      "layout(location = 0) flat in uint result;\nlayout(location = 0) out uint color;\n"
-      "void main() { color = result; }\n";
+  spec.fragment = kResultFragment;
   spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
   run.note("shader", spec.vertex);
   draw(run, spec, kSide * kSide);
@@ -222,11 +223,121 @@ uint main(float4 position : SV_Position) : SV_Target0 {
   draw(run, spec, 3);
 }
 
+/// Passes a vertex its place and number on.
+constexpr char kPassingVertex[] = R"(// target: hlsl
+struct Vertex {
+  float4 position : SV_Position;
+  [[vk::location(0)]] nointerpolation uint id : ID;
+};
+Vertex main(uint id : SV_VertexID) {
+  Vertex v;
+  v.position = float4((float2(id % 64, id / 64) + 0.5) / 32 - 1, 0.5, 1);
+  v.id = id;
+  return v;
+}
+)";
+
+/// Triangles of three neighbouring numbers in, up to three points of each out, or none.
+void in_geometry(Run& run, const Body& body) {
+  GraphicsSpec spec;
+  spec.vertex = kPassingVertex;
+  spec.geometry = kBuffers + body.work + R"(
+struct Vertex {
+  float4 position : SV_Position;
+  [[vk::location(0)]] nointerpolation uint id : ID;
+};
+struct Point {
+  float4 position : SV_Position;
+  [[vk::builtin("PointSize")]] float size : PSIZE;
+  [[vk::location(0)]] nointerpolation uint result : RESULT;
+};
+[maxvertexcount(3)]
+void main(triangle Vertex v[3], inout PointStream<Point> points) {
+  if (a[v[0].id] % 13 == 5) return;
+  for (uint i = 0; i < 3; i++) {
+    uint result = work(a[v[i].id], v[i].id);
+    if ((result & 0x18) == 0x18 && i == 1) continue;
+    Point p;
+    p.position = v[i].position;
+    p.size = 1;
+    p.result = result + 1;
+    points.Append(p);
+    if ((result & 7) == 7) break;
+  }
+}
+)";
+  spec.fragment = kResultFragment;
+  spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  run.note("shader", spec.geometry);
+  draw(run, spec, kSide * kSide);
+}
+
+/// Patches of one control point become quads of points, one pixel each. `hull`: the hull shader works, else the domain.
+void in_patches(Run& run, const Body& body, bool hull) {
+  constexpr char kControlPoint[] = R"(
+struct Vertex {
+  float4 position : SV_Position;
+  [[vk::location(0)]] nointerpolation uint id : ID;
+};
+struct Patch {
+  float edges[4] : SV_TessFactor;
+  float inside[2] : SV_InsideTessFactor;
+  [[vk::location(2)]] uint result : RESULT;
+};
+)";
+  GraphicsSpec spec;
+  spec.vertex = kPassingVertex;
+  spec.control = kBuffers + (hull ? body.work : "uint work(uint x, uint y) { return x; }") + kControlPoint + R"(
+Patch constants(InputPatch<Vertex, 1> v) {
+  Patch p;
+  p.result = work(a[v[0].id * 4 + 1], v[0].id);
+  bool cull = p.result % 11 == 3;
+  for (int i = 0; i < 4; i++) p.edges[i] = cull && i == 2 ? 0 : 1;
+  p.inside[0] = p.inside[1] = 1;
+  return p;
+}
+[domain("quad")] [partitioning("integer")] [outputtopology("point")] [outputcontrolpoints(1)]
+[patchconstantfunc("constants")]
+Vertex main(InputPatch<Vertex, 1> v, uint i : SV_OutputControlPointID) {
+  Vertex r = v[i];
+  r.id = work(a[r.id * 4], r.id);
+  return r;
+}
+)";
+  spec.evaluation = kBuffers + (hull ? "uint work(uint x, uint y) { return x ^ y; }" : body.work) + kControlPoint + R"(
+struct Point {
+  float4 position : SV_Position;
+  [[vk::builtin("PointSize")]] float size : PSIZE;
+  [[vk::location(0)]] nointerpolation uint result : RESULT;
+};
+[domain("quad")]
+Point main(Patch patch, float2 at : SV_DomainLocation, const OutputPatch<Vertex, 1> v) {
+  uint corner = uint(at.x + at.y * 2 + 0.5);
+  Point p;
+  p.position = v[0].position + float4(corner * (1.0 / 32), 0, 0, 0);
+  p.size = 1;
+  p.result = work(patch.result, v[0].id * 4 + corner) + 1;
+  return p;
+}
+)";
+  // Every fourth pixel is a patch, whose points fill up to the next.
+  spec.vertex.replace(spec.vertex.find("float2(id % 64, id / 64)"), 24, "float2(id % 16 * 4, id / 16)");
+  spec.fragment = kResultFragment;
+  spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
+  spec.tessellation.patchControlPoints = 1;
+  run.note("control", spec.control);
+  run.note("evaluation", spec.evaluation);
+  draw(run, spec, kSide * kSide / 4);
+}
+
 const bool kCases = [] {
   for (const Body& body : kBodies) {
     AddCase("glsl", std::string("hlsl.compute.") + body.name, [&](Run& run) { in_compute(run, body); });
     AddCase("glsl", std::string("hlsl.vertex.") + body.name, [&](Run& run) { in_vertex(run, body); });
     AddCase("glsl", std::string("hlsl.fragment.") + body.name, [&](Run& run) { in_fragment(run, body); });
+    AddCase("glsl", std::string("hlsl.geometry.") + body.name, [&](Run& run) { in_geometry(run, body); });
+    AddCase("glsl", std::string("hlsl.hull.") + body.name, [&](Run& run) { in_patches(run, body, true); });
+    AddCase("glsl", std::string("hlsl.domain.") + body.name, [&](Run& run) { in_patches(run, body, false); });
   }
   return true;
 }();
