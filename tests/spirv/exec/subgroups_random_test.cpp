@@ -1,5 +1,5 @@
-// Group operations that the reference does not have (clusters, relative shuffles, quads, rotations by shuffle) in
-// random divergent control flow: each result equals what the same invocations compute from shuffles and ballots alone.
+// Group operations that the reference does not have (clusters, relative shuffles, quads, rotations) in random divergent
+// control flow: each result equals what the same invocations compute from shuffles and ballots alone.
 #include <random>
 #include <string>
 #include <vector>
@@ -21,7 +21,12 @@ constexpr char kFunctions[] = R"(
 #extension GL_KHR_shader_subgroup_shuffle_relative : enable
 #extension GL_KHR_shader_subgroup_clustered : enable
 #extension GL_KHR_shader_subgroup_quad : enable
+#extension GL_EXT_spirv_intrinsics : enable
 layout(set = 0, binding = 0) buffer B { uint v[]; };
+spirv_instruction(extensions = ["SPV_KHR_subgroup_rotate"], capabilities = [6026], id = 4431)
+uint rotate(uint scope, uint x, uint distance);
+spirv_instruction(extensions = ["SPV_KHR_subgroup_rotate"], capabilities = [6026], id = 4431)
+uint rotate_in_cluster(uint scope, uint x, uint distance, uint size);
 bool live(uint lane) { return lane < gl_SubgroupSize && subgroupBallotBitExtract(subgroupBallot(true), lane & 127u); }
 uint combine(uint kind, uint a, uint b) {
   switch (kind) {
@@ -85,7 +90,7 @@ class Writer {
     const std::uint32_t which = below(7);
     const std::string kind = kKinds[which], number = std::to_string(which) + "u";
     const std::string distance = std::to_string(1 + below(7)) + "u", size = std::to_string(1u << below(4)) + "u";
-    switch (below(12)) {
+    switch (below(14)) {
       case 0:
       case 1:
       case 2:
@@ -123,6 +128,10 @@ class Writer {
         return {"only(" + source + ", subgroupQuadBroadcast(" + operand + ", " + index + "))",
                 "only(" + source + ", subgroupShuffle(" + operand + ", " + source + "))"};
       }
+      case 11:
+        return rotation("3u, " + operand + ", " + distance, "rotate", "gl_SubgroupSize", operand, distance);
+      case 12:
+        return rotation("3u, " + operand + ", " + distance + ", " + size, "rotate_in_cluster", size, operand, distance);
       default: {
         const std::string ballot = "subgroupBallot((" + operand + " & 4u) != 0u)";
         return {"subgroupBallotInclusiveBitCount(" + ballot + ") * 64u + subgroupBallotExclusiveBitCount(" + ballot +
@@ -131,6 +140,15 @@ class Writer {
                     ") + subgroupShuffle(" + operand + ", subgroupBallotFindLSB(subgroupBallot(true)))"};
       }
     }
+  }
+
+  static std::pair<std::string, std::string> rotation(const std::string& arguments, const std::string& function,
+                                                      const std::string& size, const std::string& operand,
+                                                      const std::string& distance) {
+    const std::string lane = "gl_SubgroupInvocationID", inside = "(" + size + " - 1u)";
+    const std::string source = "(" + lane + " & ~" + inside + " | (" + lane + " + " + distance + ") & " + inside + ")";
+    return {"only(" + source + ", " + function + "(" + arguments + "))",
+            "only(" + source + ", subgroupShuffle(" + operand + ", " + source + "))"};
   }
 
   std::string statement(int depth) {
