@@ -58,29 +58,14 @@ HWY_ATTR LaneMask run_masks(LaneMask mask) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "tests/simd_targets.h"
 namespace vitrine::base {
 namespace {
 
 HWY_EXPORT(run_fma);
 HWY_EXPORT(run_conversions);
 HWY_EXPORT(run_masks);
-
-/// Runs `body` once per compiled target that this CPU has.
-template <class Body>
-void for_each_target(Body body) {
-  hwy::DisableTargets(0);
-  const auto supported = hwy::SupportedTargets();
-  ASSERT_NE(supported & HWY_SSE4, 0);
-  for (auto target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
-    if ((supported & target) == 0) continue;
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    body();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().DeInit();
-}
 
 /// Bit patterns of all kinds: random, near-equal exponents, specials.
 std::uint32_t interesting_bits(std::mt19937& random) {
@@ -114,7 +99,7 @@ TEST(LaneMath, FmaRoundsOnce) {
     c[i] = i % 3 == 0 ? -a[i] * b[i] : float_of(interesting_bits(random));
   }
   for (const Denormals mode : {Denormals::kHonour, Denormals::kFlush}) {
-    for_each_target([&] {
+    for_each_simd_target([&] {
       const ScopedFloatMode scope(mode);
       HWY_DYNAMIC_DISPATCH(run_fma)(a.data(), b.data(), c.data(), out.data(), kCount);
       const auto input = [&](float value) {  // DAZ, for a libm that may compute in integers
@@ -137,7 +122,7 @@ TEST(LaneMath, ConversionsEqualTheScalarOnes) {
   for (std::uint32_t half = 0; half < 0x10000; ++half)
     if (half % 2 == 0) in[half] = half;
   for (const Denormals mode : {Denormals::kHonour, Denormals::kFlush}) {
-    for_each_target([&] {
+    for_each_simd_target([&] {
       const ScopedFloatMode scope(mode);
       HWY_DYNAMIC_DISPATCH(run_conversions)(in.data(), out.data(), kCount);
       for (std::size_t i = 0; i < kCount; ++i) {
@@ -156,7 +141,7 @@ TEST(LaneMath, ConversionsEqualTheScalarOnes) {
 
 TEST(LaneMath, MasksAreBitsInLaneOrder) {
   std::mt19937_64 random(3);
-  for_each_target([&] {
+  for_each_simd_target([&] {
     for (int i = 0; i < 1000; ++i) {
       const LaneMask mask = random();
       ASSERT_EQ(HWY_DYNAMIC_DISPATCH(run_masks)(mask), mask);

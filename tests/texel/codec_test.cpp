@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "base/numeric.h"
-#include "base/simd.h"
+#include "tests/simd_targets.h"
 #include "texel/capabilities.h"
 #include "texel/codec/srgb.h"
-
-#include <hwy/targets.h>
 
 namespace vitrine::texel {
 namespace {
@@ -185,21 +183,12 @@ void compare_rows(const FormatDesc& desc) {
 }
 
 TEST(Rows, EqualTexelsOneByOne) {
-  hwy::DisableTargets(0);
-  const auto supported = hwy::SupportedTargets();
-  for (const auto target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
-    if ((supported & target) == 0) continue;
-    SCOPED_TRACE(hwy::TargetName(target));
-    base::select_simd_target();  // once per process: the choice below then stays
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
+  base::for_each_simd_target([] {
     for (std::uint32_t i = 1; i <= VK_FORMAT_D24_UNORM_S8_UINT && !testing::Test::HasFailure(); ++i) {
       const FormatDesc& desc = format_desc(static_cast<VkFormat>(i));
       if (can_decode(desc)) compare_rows(desc);
     }
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  });
 }
 
 TEST(Rsqrt, KnownValues) {

@@ -9,14 +9,12 @@
 
 #include "base/float_mode.h"
 #include "base/numeric.h"
-#include "base/simd.h"
+#include "tests/simd_targets.h"
 #include "texel/capabilities.h"
 #include "texel/codec.h"
 #include "texel/sampler.h"
 #include "texel/sampler/plan.h"
 #include "texel/sampler/shape.h"
-
-#include <hwy/targets.h>
 
 namespace vitrine::texel {
 namespace {
@@ -215,18 +213,7 @@ void check_formats() {
 }
 
 TEST(Fetch, WavesEqualTheCodecs) {
-  hwy::DisableTargets(0);
-  const auto supported = hwy::SupportedTargets();
-  for (const auto target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
-    if ((supported & target) == 0) continue;
-    SCOPED_TRACE(hwy::TargetName(target));
-    base::select_simd_target();  // once per process: the choice below then stays
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    check_formats();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  base::for_each_simd_target([] { check_formats(); });
 }
 
 }  // namespace

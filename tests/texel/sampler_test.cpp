@@ -11,10 +11,8 @@
 
 #include "base/float_mode.h"
 #include "base/numeric.h"
-#include "base/simd.h"
+#include "tests/simd_targets.h"
 #include "texel/sampler/prepared.h"
-
-#include <hwy/targets.h>
 
 namespace vitrine::texel {
 namespace {
@@ -343,20 +341,11 @@ bool compare_paths(unsigned seed) {
 }
 
 TEST(Sampler, VectorPathsEqualTheScalarOne) {
-  hwy::DisableTargets(0);
-  const auto supported = hwy::SupportedTargets();
-  for (const auto target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
-    if ((supported & target) == 0) continue;
-    SCOPED_TRACE(hwy::TargetName(target));
-    base::select_simd_target();  // once per process: the choice below then stays
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
+  base::for_each_simd_target([] {
     unsigned compared = 0;
     for (unsigned seed = 0; seed < 2000 && !testing::Test::HasFailure(); ++seed) compared += compare_paths(seed);
     EXPECT_GT(compared, 1500u);
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  });
 }
 
 }  // namespace

@@ -7,11 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "base/simd.h"
+#include "tests/simd_targets.h"
 #include "texel/capabilities.h"
 #include "texel/transfer/blit.h"
-
-#include <hwy/targets.h>
 
 namespace vitrine::texel {
 namespace {
@@ -359,18 +357,9 @@ TEST(Blit, FormatsOfTheSameFieldsGetTheSameCodes) {
 }
 
 TEST(Blit, HalvedRowsEqualTexelsOneByOne) {
-  hwy::DisableTargets(0);
-  const auto supported = hwy::SupportedTargets();
-  for (const auto target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
-    if ((supported & target) == 0) continue;
-    SCOPED_TRACE(hwy::TargetName(target));
-    base::select_simd_target();
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
+  base::for_each_simd_target([] {
     for (unsigned seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) compare_halved(seed);
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  });
 }
 
 }  // namespace

@@ -1,15 +1,14 @@
 // Every row of spirv/ops.def, for every combination of uniform operands, in every SIMD target and both denormal modes,
 // against the scalar model.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cstring>
 #include <random>
 #include <vector>
 
 #include "base/float_mode.h"
-#include "base/simd.h"
 #include "spirv/program.h"
+#include "tests/simd_targets.h"
 #include "tests/spirv/alu/model.h"
 
 namespace vitrine::spirv {
@@ -113,23 +112,6 @@ void check_scalar(Op op, std::mt19937& random) {
       << " want " << want << " got " << test.uniforms[3];
 }
 
-/// Runs `body` once per SIMD target that this CPU has.
-template <class Body>
-void for_each_target(Body body) {
-  base::select_simd_target();
-  hwy::DisableTargets(0);
-  const auto supported = hwy::SupportedTargets();
-  for (auto target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
-    if ((supported & target) == 0) continue;
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    body();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
-
 class EveryOp : public ::testing::TestWithParam<std::size_t> {
  protected:
   Op op() const { return static_cast<Op>(GetParam()); }
@@ -137,7 +119,7 @@ class EveryOp : public ::testing::TestWithParam<std::size_t> {
 
 TEST_P(EveryOp, EqualsTheModel) {
   if (is_derivative(op())) GTEST_SKIP() << "not an operation of one lane";
-  for_each_target([&] {
+  base::for_each_simd_target([&] {
     for (const auto mode : {base::Denormals::kHonour, base::Denormals::kFlush}) {
       const base::ScopedFloatMode scope(mode);
       std::mt19937 random(1);
@@ -181,12 +163,12 @@ std::vector<std::uint32_t> results_of(Op op) {
 TEST_P(EveryOp, GivesTheSameNansInEveryTarget) {
   if (ir::alu_info(op()).result != 'F' || is_boolean(op(), 0)) GTEST_SKIP() << "no float of floats";
   std::vector<std::vector<std::uint32_t>> found;
-  for_each_target([&] { found.push_back(results_of(op())); });
+  base::for_each_simd_target([&] { found.push_back(results_of(op())); });
   for (const auto& results : found) EXPECT_EQ(results, found[0]);
 }
 
 TEST(Derivatives, DifferWithinRowAndColumnOfTheQuad) {
-  for_each_target([] {
+  base::for_each_simd_target([] {
     TestWave test;
     for (std::size_t i = 0; i < kLanes; ++i) {
       const float value = static_cast<float>(i * i * i);

@@ -1,0 +1,29 @@
+// Runs a test's body once for every SIMD target of this CPU that the rooms are built for.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include "base/simd.h"
+
+namespace vitrine::base {
+
+/// Calls body() with each of sse4, avx2 and avx3 as the target of HWY_DYNAMIC_DISPATCH, then restores the usual one.
+template <class Body>
+void for_each_simd_target(Body body) {
+  select_simd_target();  // once per process: the choice below then stays
+  hwy::DisableTargets(0);
+  const auto supported = hwy::SupportedTargets();
+  ASSERT_NE(supported & HWY_SSE4, 0);
+  for (const auto target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+    if ((supported & target) == 0) continue;
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(target);
+    body();
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace vitrine::base
