@@ -1,6 +1,7 @@
 // SSA construction over the tree: every slot of variables.cpp has a current value; If yields what its branches changed,
 // Loop carries what its body changes. Unused parameters and results are removed later by ir::remove_dead.
 #include <algorithm>
+#include <unordered_set>
 
 #include "spirv/front/context.h"
 
@@ -18,9 +19,10 @@ bool ends_in_jump(const ir::NodeList& list) {
 
 struct Builder {
   Translator& t;
-  std::vector<ir::ValueId> current;      ///< per slot
-  std::vector<ir::ValueInfo> info;       ///< per slot
-  std::vector<ir::ValueId> replacement;  ///< of a LoadVar's result
+  std::vector<ir::ValueId> current;       ///< per slot
+  std::vector<ir::ValueInfo> info;        ///< per slot
+  std::vector<ir::ValueId> replacement;   ///< of a LoadVar's result
+  std::unordered_set<ir::ValueId> words;  ///< vectors of loaded words, each of which an earlier load may have brought
   std::unordered_map<const ir::Node*, Slots> stored;
   /// The loop around the current list.
   struct Loop {
@@ -104,9 +106,7 @@ struct Builder {
   bool process_instr(ir::Instr& instr) {
     switch (instr.op) {
       case ir::Op::kLoadVar:
-        replacement.resize(t.function.values.size(), ir::kNoValue);
-        replacement[instr.result] = value(instr.data[1]);
-        return true;
+        return !becomes_copy(instr);
       case ir::Op::kStoreVar:
         current[instr.data[1]] = instr.src[0].value;
         return true;
@@ -116,9 +116,35 @@ struct Builder {
       case ir::Op::kContinue:
         instr.src = values(*loop.in_body);
         return false;
+      case ir::Op::kLoadPush:
+      case ir::Op::kLoadUniform:
+      case ir::Op::kLoadStorage:
+        if (instr.components > 1) words.insert(instr.result);
+        return false;
+      case ir::Op::kMov:
+      case ir::Op::kVec:
+        if (instr.components > 1 && words.count(instr.src[0].value) != 0) words.insert(instr.result);
+        return false;
       default:
         return false;
     }
+  }
+
+  /// Each load of a variable that holds loaded words is a copy of them: rewrite() may compose them of several values,
+  /// and the first rules of the reference tell each such vector from its copies.
+  bool becomes_copy(ir::Instr& instr) {
+    const ir::ValueId loaded = value(instr.data[1]);
+    if (words.count(loaded) == 0) {
+      replacement.resize(t.function.values.size(), ir::kNoValue);
+      replacement[instr.result] = loaded;
+      return false;
+    }
+    words.insert(instr.result);
+    instr.op = is_boolean(t, loaded) ? ir::Op::kMovB : ir::Op::kMov;
+    instr.src = {whole(loaded)};
+    std::fill(std::begin(instr.data), std::end(instr.data), 0u);
+    instr.opaque = true;
+    return true;
   }
 
   /// A value that both sides of an If may see: one of them when the other is undefined, as the reference removes such
@@ -195,7 +221,7 @@ struct Builder {
 }  // namespace
 
 void build_ssa(Translator& t) {
-  Builder builder{t, {}, {}, {}, {}, {}};
+  Builder builder{t, {}, {}, {}, {}, {}, {}};
   t.list = &t.function.body;
   Slots all;
   builder.collect(t.function.body, all);

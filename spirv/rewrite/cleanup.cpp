@@ -13,48 +13,6 @@ using Kind = Inst::Kind;
 
 bool is_move(const Inst& inst) { return inst.kind == Kind::kAlu && (inst.op == Op::kMov || inst.op == Op::kMovB); }
 
-/// Components that a user reads of operand `index`; 0: all of them, in their order.
-unsigned components_read(const Graph& graph, const Inst& user, std::uint32_t index) {
-  switch (user.kind) {
-    case Kind::kAlu:
-      return user.components;
-    case Kind::kVec:
-    case Kind::kIf:
-      return 1;
-    case Kind::kIntrinsic:
-      break;
-    default:
-      return 0;
-  }
-  switch (user.op) {
-    case Op::kStoreOutput:
-    case Op::kLoadPush:
-    case Op::kLoadUniform:
-    case Op::kLoadStorage:
-    case Op::kArrayLength:
-    case Op::kLoadShared:
-    case Op::kLoadArray:
-    case Op::kStoreArray:
-    case Op::kAtomicStorage:
-    case Op::kAtomicShared:
-    case Op::kLoadGlobal:
-    case Op::kAtomicGlobal:
-    case Op::kReadFirst:
-    case Op::kBallot:
-    case Op::kShuffle:
-    case Op::kReduce:
-      return 1;
-    case Op::kStoreStorage:
-      return index < 2 ? 1 : 0;
-    case Op::kStoreShared:
-      return index < 1 ? 1 : 0;
-    case Op::kStoreGlobal:
-      return index < 3 ? 1 : 0;
-    default:
-      return graph.values[graph.source(user, index).value].components == 1 ? 1 : 0;
-  }
-}
-
 /// Looks through one copy. False: the operand's definition is no copy, or the components read come from several values.
 bool look_through(const Graph& graph, Src& src, unsigned read) {
   const Inst* copy = graph.def(src.value);
@@ -216,6 +174,47 @@ void split(Graph& graph, InstId id) {
 }
 
 }  // namespace
+
+unsigned components_read(const Graph& graph, const Inst& user, std::uint32_t index) {
+  switch (user.kind) {
+    case Kind::kAlu:
+      return user.components;
+    case Kind::kVec:
+    case Kind::kIf:
+      return 1;
+    case Kind::kIntrinsic:
+      break;
+    default:
+      return 0;
+  }
+  switch (user.op) {
+    case Op::kStoreOutput:
+    case Op::kLoadPush:
+    case Op::kLoadUniform:
+    case Op::kLoadStorage:
+    case Op::kArrayLength:
+    case Op::kLoadShared:
+    case Op::kLoadArray:
+    case Op::kStoreArray:
+    case Op::kAtomicStorage:
+    case Op::kAtomicShared:
+    case Op::kLoadGlobal:
+    case Op::kAtomicGlobal:
+    case Op::kReadFirst:
+    case Op::kBallot:
+    case Op::kShuffle:
+    case Op::kReduce:
+      return 1;
+    case Op::kStoreStorage:
+      return index < 2 ? 1 : 0;
+    case Op::kStoreShared:
+      return index < 1 ? 1 : 0;
+    case Op::kStoreGlobal:
+      return index < 3 ? 1 : 0;
+    default:
+      return graph.values[graph.source(user, index).value].components == 1 ? 1 : 0;
+  }
+}
 
 bool is_pure(const Graph& graph, const Inst& inst) {
   switch (inst.kind) {

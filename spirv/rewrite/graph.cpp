@@ -59,7 +59,7 @@ void Graph::import_node(std::unique_ptr<ir::Node> node, BlockId block) {
     inst.components = instr.components;
     inst.boolean = instr.boolean;
     inst.exact = instr.exact;
-    inst.opaque = instr.opaque;
+    inst.opaque = instr.opaque && instr.op != Op::kMov && instr.op != Op::kMovB;
     inst.result = instr.result;
     std::copy(instr.imm.begin(), instr.imm.end(), inst.imm);
     if (instr.result != ir::kNoValue) values[instr.result].def = id;

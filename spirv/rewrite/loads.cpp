@@ -125,7 +125,20 @@ class Forwarder {
     return graph_.insts[made].result;
   }
 
-  /// The words of a load from loads before, the rest from itself.
+  /// True when a user of the value reads one of its components that `parts` has from elsewhere.
+  bool reads_elsewhere(ValueId value, const std::array<Src, 4>& parts) const {
+    for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next) {
+      const Operand& operand = graph_.sources[slot];
+      const Inst& user = graph_.insts[operand.user];
+      unsigned read = components_read(graph_, user, slot - user.first);
+      if (read == 0) read = graph_.values[value].components;
+      for (unsigned c = 0; c < read; ++c)
+        if (parts[operand.src.swizzle[c]].value != value) return true;
+    }
+    return false;
+  }
+
+  /// The words of a load from loads before, the rest from itself; all from itself where those are not read.
   void forward(InstId id) {
     const Inst inst = graph_.insts[id];
     const Word first = word_of(inst);
@@ -140,7 +153,7 @@ class Forwarder {
       parts[c] = knows ? entry->second : Src{inst.result, {c, c, c, c}};
     }
     ValueId value = inst.result;
-    if (found != 0) {
+    if (found == inst.components || (found != 0 && reads_elsewhere(value, parts))) {
       changed_ = true;
       value = one_value(parts, inst.components);
       if (value == ir::kNoValue) {

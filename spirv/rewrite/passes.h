@@ -109,6 +109,9 @@ void choose_extrema(Graph& graph);
 /// Spelling that the executor likes and that keeps every bit: subtractions.
 void choose_spelling(Graph& graph);
 
+/// Components that a user reads of operand `index`; 0: all of them, in their order.
+unsigned components_read(const Graph& graph, const Inst& user, std::uint32_t index);
+
 /// True when removing the instruction changes nothing if its result is unused.
 bool is_pure(const Graph& graph, const Inst& inst);
 

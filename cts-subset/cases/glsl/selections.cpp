@@ -62,5 +62,13 @@ CTS_CASE("glsl", "repeated_loads") {
                     "  r0 = smoothstep((2654435761u > u.z) ? p : b, (2654435761u > u.z) ? p : b, a);\n");
 }
 
+// A vector of words, some of which were loaded before, is another vector in each load of a variable that holds it.
+CTS_CASE("glsl", "copies_of_loads") {
+  evaluate_specials(run, kVec4, 3,
+                    "  float first = p.y;\n  vec4 r2 = vec4(first) * b;\n"
+                    "  vec4 q = p;\n  vec4 r0 = mat4(q, p, q, vec4(b.x)) * a.xwwz;\n"
+                    "  q = p.yyxx;\n  vec4 r1 = mat4(p, q, q, vec4(b.x)) * a.xwwz;\n");
+}
+
 }  // namespace
 }  // namespace vitrine::cts
