@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <random>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "base/float_mode.h"
 #include "base/numeric.h"
 #include "tests/simd_targets.h"
+#include "texel/sampler/anisotropic.h"
 #include "texel/sampler/prepared.h"
 
 namespace vitrine::texel {
@@ -238,8 +240,9 @@ Inputs random_inputs(Random& random) {
   return in;
 }
 
-void fill_texels(TestView& image, Random& random) {
+void fill_texels(TestView& image, Random& random, bool finite) {
   for (std::byte& b : image.memory) b = static_cast<std::byte>(random.generator());
+  if (!finite) return;
   const Channel& channel = image.view.format->channel[0];
   if (channel.numeric != Numeric::kSfloat && channel.numeric != Numeric::kUfloat) return;
   // Keep exponents small: infinities make NaN, whose bits no one promises.
@@ -279,7 +282,7 @@ Extent random_extent(Random& random, const Shape& shape, bool compressed) {
 constexpr std::array<std::array<std::int32_t, 2>, 4> kGatherOffsets{{{0, 1}, {-8, 3}, {7, -8}, {2, 0}}};
 
 /// One random configuration: scalar twin against vector path. Returns whether there was a vector path.
-bool compare_paths(unsigned seed) {
+bool compare_paths(unsigned seed, bool anisotropic = false) {
   Random random(seed);
   const VkFormat format = kFormats[random.below(std::size(kFormats))];
   Shape shape = kShapes[random.below(std::size(kShapes))];
@@ -290,8 +293,9 @@ bool compare_paths(unsigned seed) {
       random.below(2) ? static_cast<std::uint32_t>(std::bit_width(std::max(extent.width, extent.height))) : 1;
   TestView image(format, extent, levels, shape.layers, shape.type);
   if (random.below(3) == 0) image.view.swizzle = {2, 5, 0, 4};
-  fill_texels(image, random);
-  const Sampler sampler = random_sampler(random, image.view.format->has_depth());
+  fill_texels(image, random, !anisotropic || random.below(4) != 0);
+  Sampler sampler = random_sampler(random, image.view.format->has_depth());
+  if (anisotropic) sampler.max_anisotropy = 2.0f;
   Inputs in = random_inputs(random);
   SampleRequest request;
   request.lod_mode = static_cast<LodMode>(random.below(5));
@@ -340,12 +344,26 @@ bool compare_paths(unsigned seed) {
   return true;
 }
 
-TEST(Sampler, VectorPathsEqualTheScalarOne) {
-  base::for_each_simd_target([] {
+void compare_paths_of_every_target(unsigned seeds, bool anisotropic) {
+  base::for_each_simd_target([&] {
     unsigned compared = 0;
-    for (unsigned seed = 0; seed < 2000 && !testing::Test::HasFailure(); ++seed) compared += compare_paths(seed);
-    EXPECT_GT(compared, 1500u);
+    for (unsigned seed = 0; seed < seeds && !testing::Test::HasFailure(); ++seed)
+      compared += compare_paths(seed, anisotropic);
+    EXPECT_GT(compared, seeds * 3 / 4);
   });
+}
+
+TEST(Sampler, VectorPathsEqualTheScalarOne) { compare_paths_of_every_target(2000, false); }
+TEST(Sampler, AnisotropicVectorPathsEqualTheScalarOne) { compare_paths_of_every_target(1500, true); }
+
+TEST(Sampler, WeightsOfEllipsesFollowFromTheirFactors) {
+  const EllipseFactors& f = kEllipseFactors;
+  for (std::size_t i = 0; i < kEllipseWeights.size(); ++i) {
+    const float whole = f.whole[i / 32];
+    const float millionths = whole + std::nearbyint(std::fma(whole, f.less[i % 32], f.rest[i / 32]));
+    const float weight = std::fma(millionths, EllipseFactors::kMillionth, millionths * EllipseFactors::kMillionthRest);
+    EXPECT_EQ(weight, kEllipseWeights[i]) << i;
+  }
 }
 
 }  // namespace

@@ -26,6 +26,25 @@ constexpr double exponential(double x) {
   return sum;
 }
 
+constexpr std::array<float, 1024> make_weights() {
+  std::array<float, 1024> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double value = exponential(-2.0 * static_cast<double>(i) / 1023.0);
+    const auto millionths = static_cast<std::int64_t>(value * 1e6 + 0.5);
+    table[i] = static_cast<float>(static_cast<double>(millionths) / 1e6);
+  }
+  table[44] = 0.917575f;
+  table[388] = 0.468343f;
+  table[493] = 0.381429f;
+  table[538] = 0.349306f;
+  table[580] = 0.321770f;
+  table[864] = 0.184676f;
+  table[909] = 0.169124f;
+  table[911] = 0.168463f;
+  table[939] = 0.159489f;
+  return table;
+}
+
 float weight_of(float q) {
   const std::int32_t i = base::truncate_to_int(q);
   return i <= 1023 ? kEllipseWeights[static_cast<std::size_t>(std::max(i, 0))] : 0.0f;
@@ -78,23 +97,29 @@ bool reasonable(const Ellipse& e) {
 
 }  // namespace
 
-constinit const std::array<float, 1024> kEllipseWeights = [] {
-  std::array<float, 1024> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const double value = exponential(-2.0 * static_cast<double>(i) / 1023.0);
-    const auto millionths = static_cast<std::int64_t>(value * 1e6 + 0.5);
-    table[i] = static_cast<float>(static_cast<double>(millionths) / 1e6);
+constinit const std::array<float, 1024> kEllipseWeights = make_weights();
+
+constinit const EllipseFactors kEllipseFactors = [] {
+  EllipseFactors f{};
+  const std::array<float, 1024> weights = make_weights();
+  const auto millionths = [&](std::size_t i) { return static_cast<double>(weights[i]) * 1e6; };
+  for (std::size_t k = 0; k < 32; ++k) {
+    // 4e-8: what the reference's roundings of entries 909 and 911 take.
+    const double moved = k == 13 ? 4e-8 : k == 15 ? -4e-8 : 0;
+    f.less[k] = static_cast<float>(exponential(-2.0 * static_cast<double>(k) / 1023.0) - 1 + moved);
   }
-  table[44] = 0.917575f;
-  table[388] = 0.468343f;
-  table[493] = 0.381429f;
-  table[538] = 0.349306f;
-  table[580] = 0.321770f;
-  table[864] = 0.184676f;
-  table[909] = 0.169124f;
-  table[911] = 0.168463f;
-  table[939] = 0.159489f;
-  return table;
+  for (std::size_t i = 0; i < 32; ++i) {
+    f.whole[i] = static_cast<float>(static_cast<std::int32_t>(millionths(32 * i) + 0.5));
+    double low = -1, high = 1;
+    for (std::size_t k = 0; k < 32; ++k) {
+      const double rounded = static_cast<std::int32_t>(millionths(32 * i + k) + 0.5);
+      const double missing = rounded - static_cast<double>(f.whole[i]) * (1 + static_cast<double>(f.less[k]));
+      low = std::max(low, missing - 0.5);
+      high = std::min(high, missing + 0.5);
+    }
+    f.rest[i] = static_cast<float>((low + high) / 2);
+  }
+  return f;
 }();
 
 Texel sample_anisotropic(const LaneSample& lane, const LanePoint& point, std::uint32_t level) {

@@ -11,6 +11,17 @@ namespace vitrine::texel {
 /// exp(-2 i / 1023) to six decimals; the reference's table differs in the last digit of a few entries.
 extern const std::array<float, 1024> kEllipseWeights;
 
+/// The same in tables that fit into registers: entry 32 i + k is the fused product of kMillionth with
+/// m = whole[i] + round(whole[i] * less[k] + rest[i]), plus m * kMillionthRest.
+struct EllipseFactors {
+  static constexpr float kMillionth = 1e-6f;
+  static constexpr float kMillionthRest = static_cast<float>(1e-6 - static_cast<double>(kMillionth));
+  alignas(64) float whole[32];  ///< millionths, of entry 32 i
+  alignas(64) float rest[32];   ///< parts of a millionth, where the rounded weights leave room
+  alignas(64) float less[32];   ///< exp(-2 k / 1023) - 1
+};
+extern const EllipseFactors kEllipseFactors;
+
 /// The average around a point on one level: texels (u, v) of the box around the ellipse A U^2 + B U V + C V^2 = F, with
 /// U, V counted from the point in texels, are weighted by the table at 1023 / F of that form, found by differences
 /// along a row; those beyond the ellipse have no part. With the derivatives dx, dy of the coordinates (s, t), times

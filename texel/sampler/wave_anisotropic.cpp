@@ -13,7 +13,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "texel/sampler/wave_texels-inl.h"
+#include "texel/sampler/wave_walk-inl.h"
 #include "texel/sampler/wave_words-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,109 +23,10 @@ namespace {
 constexpr std::size_t kMaxLanes = 16;
 static_assert(hn::MaxLanes(DU()) <= kMaxLanes);
 
-/// The ellipse of each lane; names as in anisotropic.cpp.
-struct EllipseLanes {
-  VF tu, tv;
-  VF a, b, c;
-  VI u0, u1, v0, v1;
-};
-
-/// Of the coordinates on the image or on the face.
-HWY_INLINE Slopes ellipse_slopes(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
-                                 std::size_t first) {
-  Slopes d;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (request.lod_mode == LodMode::kGrad) {
-      d.x[i] = p.plan.cube ? hn::Load(DF(), state.slope_x[i].lane + first) : load_lanes(request.ddx[i], first);
-      d.y[i] = p.plan.cube ? hn::Load(DF(), state.slope_y[i].lane + first) : load_lanes(request.ddy[i], first);
-    } else if (request.quads) {
-      coarse_slope(hn::LoadU(DF(), state.coord[i] + first), d.x[i], d.y[i]);
-    } else {
-      d.x[i] = d.y[i] = splat(0.0f);
-    }
-  }
-  return d;
+bool has_border(const Plan& plan) {
+  return std::any_of(plan.address.begin(), plan.address.begin() + plan.dims,
+                     [](Address a) { return a == Address::kBorder; });
 }
-
-HWY_INLINE EllipseLanes make_ellipse(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
-                                     std::size_t first) {
-  const ImageView& view = *p.plan.view;
-  const VF s = hn::LoadU(DF(), state.coord[0] + first), t = hn::LoadU(DF(), state.coord[1] + first);
-  const Slopes slope = ellipse_slopes(p, request, state, first);
-  VF scaling = splat(1.0f / static_cast<float>(1u << view.base_level));
-  if (!p.one_level) {
-    // 2^-level, exactly.
-    const VI level = hn::Add(hn::Load(DI(), state.level[0].lane + first), splat(static_cast<int>(view.base_level)));
-    scaling = hn::BitCast(DF(), hn::ShiftLeft<23>(hn::Sub(splat(127), level)));
-  }
-  const VF width = splat(static_cast<float>(view.level0_extent.width));
-  const VF height = splat(static_cast<float>(view.level0_extent.height));
-  const VF ux = hn::Mul(hn::Mul(slope.x[0], width), scaling), uy = hn::Mul(hn::Mul(slope.y[0], width), scaling);
-  const VF vx = hn::Mul(hn::Mul(slope.x[1], height), scaling), vy = hn::Mul(hn::Mul(slope.y[1], height), scaling);
-  const VF one = splat(1.0f), four = splat(4.0f), two = splat(2.0f);
-  EllipseLanes e;
-  e.a = hn::Add(hn::Add(square_of(vx), square_of(vy)), one);
-  e.b = hn::Mul(hn::Add(hn::Mul(ux, vx), hn::Mul(uy, vy)), splat(-2.0f));
-  e.c = hn::Add(hn::Add(square_of(ux), square_of(uy)), one);
-  const VF f = hn::Sub(hn::Mul(e.a, e.c), hn::Div(square_of(e.b), four));
-  const VF d = hn::Add(hn::Sub(splat(0.0f), square_of(e.b)), hn::Mul(hn::Mul(e.a, e.c), four));
-  const VF box_u = hn::Mul(hn::Div(two, d), hn::Sqrt(hn::Mul(hn::Mul(d, e.c), f)));
-  const VF box_v = hn::Mul(hn::Div(two, d), hn::Sqrt(hn::Mul(hn::Mul(e.a, d), f)));
-  const VF g = hn::Div(splat(1023.0f), f);
-  e.a = hn::Mul(e.a, g);
-  e.b = hn::Mul(e.b, g);
-  e.c = hn::Mul(e.c, g);
-  e.tu = hn::Add(hn::Mul(s, hn::Mul(width, scaling)), splat(-0.5f));
-  e.tv = hn::Add(hn::Mul(t, hn::Mul(height, scaling)), splat(-0.5f));
-  e.u0 = lanes_floor_to_int(hn::Sub(e.tu, box_u));
-  e.u1 = lanes_truncate_to_int(hn::Ceil(hn::Add(e.tu, box_u)));
-  e.v0 = lanes_floor_to_int(hn::Sub(e.tv, box_v));
-  e.v1 = lanes_truncate_to_int(hn::Ceil(hn::Add(e.tv, box_v)));
-  return e;
-}
-
-/// Sums of a vector of lanes.
-struct Sums {
-  VF color[4];
-  VF total;
-};
-
-/// Whether every lane's box is one that the loops below can walk; else the wave goes lane by lane.
-HWY_INLINE bool small_boxes(const EllipseLanes& e, base::LaneMask active) {
-  alignas(64) std::int32_t bound[4][kMaxLanes];
-  hn::Store(e.u0, DI(), bound[0]);
-  hn::Store(e.u1, DI(), bound[1]);
-  hn::Store(e.v0, DI(), bound[2]);
-  hn::Store(e.v1, DI(), bound[3]);
-  bool small = true;
-  base::for_each_lane(active & base::first_lanes(hn::Lanes(DI())), [&](std::size_t lane) {
-    const std::int64_t width = std::int64_t{bound[1][lane]} - bound[0][lane] + 1;
-    const std::int64_t height = std::int64_t{bound[3][lane]} - bound[2][lane] + 1;
-    small = small && width > 0 && height > 0 && width < (1 << 12) && height < (1 << 12);
-  });
-  return small;
-}
-
-/// One axis of the level, as the walk needs it: u / size, exactly.
-struct WalkAxis {
-  AxisLanes lanes;
-  VF inverse;  ///< of sizes that are powers of two
-  VI last;
-
-  explicit WalkAxis(const AxisLanes& axis) : lanes(axis) {
-    lanes.normalized = true;
-    inverse = hn::Div(splat(1.0f), axis.size_float);
-    last = hn::Sub(axis.size, splat(1));
-  }
-
-  /// The texel nearest to `texel`, inside the level; `outside`: that of the border colour.
-  HWY_INLINE VI nearest(VF texel, hn::Mask<DI>& outside) const {
-    const VF s = lanes.pot ? hn::Mul(texel, inverse) : hn::Div(texel, lanes.size_float);
-    const VI at = lanes_nearest(lanes, s);
-    outside = hn::Or(hn::Lt(at, splat(0)), hn::Gt(at, last));
-    return lanes.address == Address::kBorder ? lanes_clamp(at, last) : at;
-  }
-};
 
 /// Where texels lie: of compressed formats, their blocks and the places inside.
 struct WalkPlaces {
@@ -201,15 +102,6 @@ HWY_INLINE TexelLanes texel_at(const Plan& plan, const WalkPlaces& at, hn::Mask<
   return texel;
 }
 
-/// What a vector of lanes walks through.
-struct Footprint {
-  LevelLanes level;  ///< from the slice on
-  EllipseLanes ellipse;
-  hn::Mask<DI> outside;  ///< no slice
-  base::LaneMask active;
-  VF reference;
-};
-
 template <Numeric kNumeric, bool kBlocks = false>
 HWY_NOINLINE void walk(const Plan& plan, const Footprint& in, const VF* reference, Sums& sums) {
   const LevelLanes& level = in.level;
@@ -217,47 +109,56 @@ HWY_NOINLINE void walk(const Plan& plan, const Footprint& in, const VF* referenc
   const FormatDesc& format = *plan.view->format;
   // Texels without weight may be infinities or NaN.
   constexpr bool kFloat = kNumeric == Numeric::kSfloat || kNumeric == Numeric::kUfloat;
-  const bool bordered = std::any_of(plan.address.begin(), plan.address.begin() + plan.dims,
-                                    [](Address a) { return a == Address::kBorder; });
+  const bool bordered = has_border(plan);
   const auto live = lanes_mask_from_bits(DI(), in.active);
-  const WalkAxis x_axis(level.axis[0]), y_axis(level.axis[1]);
-  const VF u_start = hn::Sub(lanes_int_to_float(e.u0), e.tu);
-  const VF dq_start = hn::Mul(hn::Add(hn::Mul(u_start, splat(2.0f)), splat(1.0f)), e.a);
-  const VF q_start = hn::Mul(square_of(u_start), e.a);
-  const VF ddq = hn::Mul(e.a, splat(2.0f));
-  VI iv = e.v0;
-  for (auto rows = live; !hn::AllFalse(DI(), rows);
-       iv = hn::Add(iv, splat(1)), rows = hn::And(live, hn::Not(hn::Gt(iv, e.v1)))) {
-    const VF v = lanes_int_to_float(iv);
-    const VF offset = hn::Sub(v, e.tv);
-    VF dq = hn::Add(hn::Mul(offset, e.b), dq_start);
-    VF q = hn::Add(hn::Mul(hn::Add(hn::Mul(e.c, offset), hn::Mul(e.b, u_start)), offset), q_start);
+  const WalkAxis x_axis(level.axis[0], e.u0, e.u1, live), y_axis(level.axis[1], e.v0, e.v1, live);
+  const EllipseWalk ellipse(e);
+  VI v = e.v0;
+  for (auto lanes = live; !hn::AllFalse(DI(), lanes);
+       v = hn::Add(v, splat(1)), lanes = hn::And(live, hn::Not(hn::Gt(v, e.v1)))) {
     hn::Mask<DI> outside_y, outside_x;
-    const WalkPlaces row = place_row<kBlocks>(format, level, y_axis.nearest(v, outside_y));
+    const WalkPlaces place = place_row<kBlocks>(format, level, y_axis.nearest(v, outside_y));
     outside_y = hn::Or(outside_y, in.outside);
-    VI iu = e.u0;
-    for (auto texels = rows; !hn::AllFalse(DI(), texels);
-         iu = hn::Add(iu, splat(1)), texels = hn::And(rows, hn::Not(hn::Gt(iu, e.u1)))) {
-      const VI index = lanes_truncate_to_int(q);
-      q = hn::Add(q, dq);
-      dq = hn::Add(dq, ddq);
-      const auto weighed = hn::And(texels, hn::Not(hn::Gt(index, splat(1023))));
-      if (hn::AllFalse(DI(), weighed)) continue;
-      const VI entry = hn::Min(hn::Max(index, splat(0)), splat(1023));
-      const VF weight =
-          hn::IfThenElseZero(hn::RebindMask(DF(), weighed), hn::GatherIndex(DF(), kEllipseWeights.data(), entry));
-      const VI at = x_axis.nearest(lanes_int_to_float(iu), outside_x);
-      const TexelLanes texel = texel_at<kNumeric, kBlocks>(plan, place_in_row<kBlocks>(format, row, at), weighed,
+    RowWalk row = ellipse.row(lanes_int_to_float(v), lanes);
+    for (RowWalk::Weight w; row.next_weighed(w);) {
+      const VI at = x_axis.nearest(hn::Sub(row.u, splat(1)), outside_x);
+      const TexelLanes texel = texel_at<kNumeric, kBlocks>(plan, place_in_row<kBlocks>(format, place, at), w.inside,
                                                            hn::Or(outside_x, outside_y), bordered, reference);
       const VF value[4] = {texel.r, texel.g, texel.b, texel.a};
       const auto add = [&](std::size_t c) HWY_ATTR {
-        const VF sum = hn::Add(sums.color[c], hn::Mul(value[c], weight));
-        sums.color[c] = kFloat ? hn::IfThenElse(hn::RebindMask(DF(), weighed), sum, sums.color[c]) : sum;
+        const VF sum = hn::Add(sums.color[c], hn::Mul(value[c], w.value));
+        sums.color[c] = kFloat ? hn::IfThenElse(hn::RebindMask(DF(), w.inside), sum, sums.color[c]) : sum;
       };
       add(0);
       if (reference == nullptr) add(1), add(2), add(3);
-      sums.total = hn::Add(sums.total, weight);
+      sums.total = hn::Add(sums.total, w.value);
     }
+  }
+}
+
+/// Four texels of a row at a time; false if the format is none for that.
+bool walk_fours(const Plan& plan, const Footprint& in, Sums& sums) {
+  const FormatDesc& format = *plan.view->format;
+  if (has_four_floats(format)) {
+    if (format.block_bytes == 16) {
+      return walk_rows<FourSums<16, false>>(plan, in, sums) || walk_rows<FourSums<16, true>>(plan, in, sums);
+    }
+    return walk_rows<FourSums<8, false>>(plan, in, sums) || walk_rows<FourSums<8, true>>(plan, in, sums);
+  }
+  if (s3tc_kind(format) != S3tcKind::kNone && !format.is_srgb()) return walk_rows<S3tcSums>(plan, in, sums);
+  if (!averages_words(format) || format.block_bytes != 4) return false;
+  switch (format.channel[0].numeric) {
+    case Numeric::kUnorm:
+      if (format.channel_count == 4 && fits_bytes(format)) return walk_rows<ByteSums>(plan, in, sums);
+      return walk_rows<WordSums<Numeric::kUnorm>>(plan, in, sums);
+    case Numeric::kSrgb:
+      return walk_rows<WordSums<Numeric::kSrgb>>(plan, in, sums);
+    case Numeric::kSnorm:
+      return walk_rows<WordSums<Numeric::kSnorm>>(plan, in, sums);
+    case Numeric::kUfloat:
+      return walk_rows<WordSums<Numeric::kUfloat>>(plan, in, sums);
+    default:
+      return walk_rows<WordSums<Numeric::kSfloat>>(plan, in, sums);
   }
 }
 
@@ -265,6 +166,8 @@ HWY_NOINLINE void walk(const Plan& plan, const Footprint& in, const VF* referenc
 void walk_any(const Plan& plan, const Footprint& in, bool compare, Sums& sums) {
   const FormatDesc& format = *plan.view->format;
   const VF* const reference = compare ? &in.reference : nullptr;
+  const bool bordered = has_border(plan);
+  if (!bordered && !compare && walk_fours(plan, in, sums)) return;
   if (format.is_compressed()) {
     const Numeric numeric = format.channel[0].numeric;
     return numeric == Numeric::kUfloat || numeric == Numeric::kSfloat

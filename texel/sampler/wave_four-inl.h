@@ -74,6 +74,23 @@ HWY_INLINE TexelPair load_neighbours(const std::byte* base, const std::int32_t* 
   }
   return {every_other_block<0>(low, high), every_other_block<1>(low, high)};
 }
+
+/// As below.
+template <std::size_t kBytes>
+HWY_INLINE void load_four_neighbours(const std::byte* base, const std::int32_t* offset, VF texel[4]) {
+  const auto row = [&](std::size_t lane) HWY_ATTR {
+    const std::byte* const at = base + offset[lane];
+    if constexpr (kBytes == 8) return _mm512_cvtph_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(at)));
+    return _mm512_loadu_ps(at);
+  };
+  const __m512 a = row(0), b = row(4), c = row(8), d = row(12);
+  const __m512 ab_low = _mm512_shuffle_f32x4(a, b, 0x44), ab_high = _mm512_shuffle_f32x4(a, b, 0xEE);
+  const __m512 cd_low = _mm512_shuffle_f32x4(c, d, 0x44), cd_high = _mm512_shuffle_f32x4(c, d, 0xEE);
+  texel[0] = VF{_mm512_shuffle_f32x4(ab_low, cd_low, 0x88)};
+  texel[1] = VF{_mm512_shuffle_f32x4(ab_low, cd_low, 0xDD)};
+  texel[2] = VF{_mm512_shuffle_f32x4(ab_high, cd_high, 0x88)};
+  texel[3] = VF{_mm512_shuffle_f32x4(ab_high, cd_high, 0xDD)};
+}
 #else
 template <std::size_t kBytes>
 HWY_INLINE VF load_texels(const std::byte* base, const std::int32_t* offset) {
@@ -89,7 +106,26 @@ template <std::size_t kBytes>
 HWY_INLINE TexelPair load_neighbours(const std::byte* base, const std::int32_t* offset) {
   return {load_texels<kBytes>(base, offset), load_texels<kBytes>(base + kBytes, offset)};
 }
+
+/// Four texels of every fourth lane that follow one another in memory.
+template <std::size_t kBytes>
+HWY_INLINE void load_four_neighbours(const std::byte* base, const std::int32_t* offset, VF texel[4]) {
+  for (std::size_t i = 0; i < 4; ++i) texel[i] = load_texels<kBytes>(base + i * kBytes, offset);
+}
 #endif
+
+/// From the components of lanes k, k + 4, ... in the blocks of vector k to a component per vector.
+HWY_INLINE void split_blocks(const VF block[4], VF component[4]) {
+  const hn::Repartition<double, DF> d64;
+  const auto rg0 = hn::BitCast(d64, hn::InterleaveLower(DF(), block[0], block[1]));
+  const auto ba0 = hn::BitCast(d64, hn::InterleaveUpper(DF(), block[0], block[1]));
+  const auto rg1 = hn::BitCast(d64, hn::InterleaveLower(DF(), block[2], block[3]));
+  const auto ba1 = hn::BitCast(d64, hn::InterleaveUpper(DF(), block[2], block[3]));
+  component[0] = hn::BitCast(DF(), hn::InterleaveLower(d64, rg0, rg1));
+  component[1] = hn::BitCast(DF(), hn::InterleaveUpper(d64, rg0, rg1));
+  component[2] = hn::BitCast(DF(), hn::InterleaveLower(d64, ba0, ba1));
+  component[3] = hn::BitCast(DF(), hn::InterleaveUpper(d64, ba0, ba1));
+}
 
 /// Texels of a row, the first of each pair at `first`.
 template <std::size_t kBytes, bool kNeighbours>
@@ -116,19 +152,12 @@ HWY_INLINE void filter_four_lanes(const std::byte* base, const TexelPlaces place
     const auto mix = [&](std::size_t lane, VF wx, VF wy) {
       return mix_four<kBytes, kNeighbours>(base, places, i + lane, wx, wy);
     };
-    const VF m0 = mix(0, hn::Broadcast<0>(x), hn::Broadcast<0>(y));
-    const VF m1 = mix(1, hn::Broadcast<1>(x), hn::Broadcast<1>(y));
-    const VF m2 = mix(2, hn::Broadcast<2>(x), hn::Broadcast<2>(y));
-    const VF m3 = mix(3, hn::Broadcast<3>(x), hn::Broadcast<3>(y));
-    const hn::Repartition<double, DF> d64;
-    const auto rg0 = hn::BitCast(d64, hn::InterleaveLower(DF(), m0, m1));
-    const auto ba0 = hn::BitCast(d64, hn::InterleaveUpper(DF(), m0, m1));
-    const auto rg1 = hn::BitCast(d64, hn::InterleaveLower(DF(), m2, m3));
-    const auto ba1 = hn::BitCast(d64, hn::InterleaveUpper(DF(), m2, m3));
-    hn::Store(hn::BitCast(DF(), hn::InterleaveLower(d64, rg0, rg1)), DF(), out.c[0].lane + i);
-    hn::Store(hn::BitCast(DF(), hn::InterleaveUpper(d64, rg0, rg1)), DF(), out.c[1].lane + i);
-    hn::Store(hn::BitCast(DF(), hn::InterleaveLower(d64, ba0, ba1)), DF(), out.c[2].lane + i);
-    hn::Store(hn::BitCast(DF(), hn::InterleaveUpper(d64, ba0, ba1)), DF(), out.c[3].lane + i);
+    const VF mixed[4] = {
+        mix(0, hn::Broadcast<0>(x), hn::Broadcast<0>(y)), mix(1, hn::Broadcast<1>(x), hn::Broadcast<1>(y)),
+        mix(2, hn::Broadcast<2>(x), hn::Broadcast<2>(y)), mix(3, hn::Broadcast<3>(x), hn::Broadcast<3>(y))};
+    VF component[4];
+    split_blocks(mixed, component);
+    for (std::size_t c = 0; c < 4; ++c) hn::Store(component[c], DF(), out.c[c].lane + i);
   }
 }
 

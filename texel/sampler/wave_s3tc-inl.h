@@ -2,6 +2,7 @@
 
 #include "texel/block/s3tc_rgtc.h"
 #include "texel/sampler/wave_fetch-inl.h"
+#include "texel/sampler/wave_pairs-inl.h"
 #include "texel/sampler/wave_state-inl.h"
 
 #if defined(VITRINE_TEXEL_WAVE_S3TC_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -177,14 +178,18 @@ HWY_NOINLINE void decode_s3tc(const std::byte* base, const IntLanes& offset, con
 /// The same for one vector of lanes.
 template <S3tcKind kKind>
 HWY_INLINE VU gather_s3tc(const std::byte* base, VI offset, VI inner) {
-  const auto word = [&](std::ptrdiff_t at) HWY_ATTR { return gather_words(base + at, offset); };
   const VU index = hn::BitCast(DU(), inner);
-  if constexpr (has_two_parts(kKind)) return decode_s3tc_lanes<kKind>(word(0), word(4), word(8), word(12), index);
-  return decode_s3tc_lanes<kKind>(word(0), word(4), hn::Zero(DU()), hn::Zero(DU()), index);
+  if constexpr (has_two_parts(kKind)) {
+    VU word[4];
+    load_word_quads(base, offset, word);
+    return decode_s3tc_lanes<kKind>(word[0], word[1], word[2], word[3], index);
+  }
+  const WordPair word = load_word_pairs(base, offset);
+  return decode_s3tc_lanes<kKind>(word.first, word.second, hn::Zero(DU()), hn::Zero(DU()), index);
 }
 
 /// Not for kNone.
-inline VU gather_s3tc(S3tcKind kind, const std::byte* base, VI offset, VI inner) {
+inline HWY_NOINLINE VU gather_s3tc(S3tcKind kind, const std::byte* base, VI offset, VI inner) {
   switch (kind) {
     case S3tcKind::kRgb:
       return gather_s3tc<S3tcKind::kRgb>(base, offset, inner);
