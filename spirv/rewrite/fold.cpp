@@ -89,10 +89,10 @@ bool binary_float(Op op, float a, float b, float& r) {
       r = std::pow(a, b);
       return true;
     case Op::kFMin:
-      r = std::fmin(a, b);
+      r = a < b || std::isnan(b) ? a : b;
       return true;
     case Op::kFMax:
-      r = std::fmax(a, b);
+      r = a > b || std::isnan(b) ? a : b;
       return true;
     default:
       return false;

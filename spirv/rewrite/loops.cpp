@@ -388,6 +388,15 @@ void pass_through_registers(Graph& graph, InstId loop) {
       graph.set_source(id, i, through_register(graph, id, graph.source(graph.insts[id], i), params[i]));
 }
 
+void leave_through_registers(Graph& graph, InstId loop) {
+  const std::vector<ValueId> results = node_of(graph, loop).results;
+  std::vector<InstId> breaks;
+  for (const BlockId child : graph.insts[loop].child) collect_jumps(graph, child, Op::kBreak, breaks);
+  for (const InstId id : breaks)
+    for (std::uint32_t i = 0; i < results.size(); ++i)
+      graph.set_source(id, i, through_register(graph, id, graph.source(graph.insts[id], i), results[i]));
+}
+
 bool drop_dead_joins(Graph& graph) { return JoinSweeper(graph).run(); }
 
 void close_continues(Graph& graph) {

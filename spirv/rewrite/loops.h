@@ -36,6 +36,9 @@ Src through_register(Graph& graph, InstId position, Src src, ValueId like);
 /// All that the loop starts and goes on with.
 void pass_through_registers(Graph& graph, InstId loop);
 
+/// All that the loop ends with.
+void leave_through_registers(Graph& graph, InstId loop);
+
 /// Drops parameters of loops and results that only serve themselves.
 bool drop_dead_joins(Graph& graph);
 

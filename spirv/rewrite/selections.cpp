@@ -253,12 +253,18 @@ void select_result(Graph& graph, InstId id, const Selection& selection, Src kept
   graph.set_source(made, 3 - selection.side, {graph.insts[id].result, {0, 0, 0, 0}});
 }
 
+/// Added to what is negated, an operand is what the reference subtracts from, and zero is no identity of that.
+bool is_subtracted(const Graph& graph, const Inst& sum, Src src) {
+  const Inst* inst = graph.def(src.value);
+  return sum.op == Op::kFAdd && inst && inst->kind == Kind::kAlu && inst->op == Op::kFNeg;
+}
+
 /// Operand `index` of `id`, a selection used once with `identity` on one side: x op (c ? y : identity) becomes
 /// c ? x op y : x, which keeps denormals of x.
 bool select_operation(Graph& graph, InstId id, std::uint32_t index, std::uint32_t identity) {
   const Src other = graph.source(graph.insts[id], 1 - index);
   Selection selection;
-  if (graph.constant(other.value)) return false;
+  if (graph.constant(other.value) || is_subtracted(graph, graph.insts[id], other)) return false;
   if (!find_selection(graph, graph.source(graph.insts[id], index), identity, selection)) return false;
   const Src operand = other_side(graph, id, selection);
   select_result(graph, id, selection, other);
@@ -293,7 +299,7 @@ bool select_subtraction(Graph& graph, InstId id, std::uint32_t index) {
   const Src negated = graph.source(graph.insts[id], index), other = graph.source(graph.insts[id], 1 - index);
   const Inst* negation = only_user_of(graph, negated, Op::kFNeg);
   Selection selection;
-  if (!negation || graph.constant(other.value)) return false;
+  if (!negation || graph.constant(other.value) || is_subtracted(graph, graph.insts[id], other)) return false;
   const Src subtracted = graph.source(*negation, 0);
   if (!find_power(graph, subtracted, selection) && !find_selection(graph, subtracted, 0, selection)) return false;
   const InstId negate = graph.values[negated.value].def;

@@ -54,28 +54,38 @@ bool is_dead_loop(const Graph& graph, InstId id) {
          !is_used_behind(graph, id);
 }
 
+/// Removes the branch or loop `id` if it need not be: a branch on a constant becomes the side that it takes.
+bool prune_node(Graph& graph, InstId id) {
+  const Inst inst = graph.insts[id];
+  if (inst.kind == Kind::kLoop && is_dead_loop(graph, id)) {
+    graph.remove(id);
+    return true;
+  }
+  if (inst.kind != Kind::kIf) return false;
+  const Src condition = graph.source(inst, 0);
+  const Inst* constant = graph.constant(condition.value);
+  if (constant) take_branch(graph, id, inst.child[constant->imm[condition.swizzle[0]] ? 0 : 1]);
+  return constant != nullptr;
+}
+
+/// After a removal the next branch or loop of the block stays until the next round, as in the reference.
 bool prune(Graph& graph, BlockId block) {
-  bool changed = false;
+  bool changed = false, removed = false;
   for (InstId id = graph.blocks[block].head; id != kNone;) {
     const Inst inst = graph.insts[id];
-    const InstId before = inst.previous;
-    if (inst.kind == Kind::kIf) {
-      const Src condition = graph.source(inst, 0);
-      if (const Inst* constant = graph.constant(condition.value)) {
-        take_branch(graph, id, inst.child[constant->imm[condition.swizzle[0]] ? 0 : 1]);
-        changed = true;
-        id = before == kNone ? graph.blocks[block].head : graph.insts[before].next;
-        continue;
-      }
+    if (inst.kind != Kind::kIf && inst.kind != Kind::kLoop) {
+      id = inst.next;
+      continue;
+    }
+    removed = !removed && prune_node(graph, id);
+    changed |= removed;
+    if (removed) {
+      id = inst.previous == kNone ? graph.blocks[block].head : graph.insts[inst.previous].next;
+      continue;
     }
     for (const BlockId child : inst.child)
       if (child != kNone) changed |= prune(graph, child);
-    const InstId next = graph.insts[id].next;
-    if (inst.kind == Kind::kLoop && is_dead_loop(graph, id)) {
-      graph.remove(id);
-      changed = true;
-    }
-    id = next;
+    id = graph.insts[id].next;
   }
   return changed;
 }

@@ -412,7 +412,10 @@ bool try_unroll(Graph& graph, InstId loop) {
     if (!cost.wanted && cost.instructions * shape.trips() > kMaxCost) return false;
   }
   close_loops(graph, loop);
-  if (!shape.once) pass_through_registers(graph, loop);
+  if (!shape.once) {
+    pass_through_registers(graph, loop);
+    leave_through_registers(graph, loop);
+  }
   Unroller(graph, loop, shape).run();
   return true;
 }

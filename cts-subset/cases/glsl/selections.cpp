@@ -70,5 +70,38 @@ CTS_CASE("glsl", "copies_of_loads") {
                     "  q = p.yyxx;\n  vec4 r1 = mat4(p, q, q, vec4(b.x)) * a.xwwz;\n");
 }
 
+// What is added to a negated value is subtracted from: a selected zero is no identity then.
+CTS_CASE("glsl", "subtracted_selections") {
+  evaluate_specials(run, kVec4, 3,
+                    "  vec4 r0 = (-a.zywx) - (p.w >= b.w ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n"
+                    "  vec4 r1 = (b.x >= b.y ? vec4(-0.0, 0.3, 255.0, -0.0) : b.zzxx) - a;\n"
+                    "  vec4 r2 = a - (b.z >= b.w ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n");
+}
+
+// The minimum and maximum of two zeros that the compiler folds is the second.
+CTS_CASE("glsl", "folded_extrema") {
+  evaluate_specials(
+      run, kVec4, 4,
+      "  vec4 z = vec4(0.0, -0.0, 0.0, -0.0);\n"
+      "  vec4 r0 = max(z.wzyx, z), r1 = min(z.wzyx, z);\n"
+      "  vec4 r2 = clamp(z.wzyx, vec4(0.0), b), r3 = max(-roundEven(vec4(-0.1, 255.0, 0.0, -1.0)), z);\n");
+}
+
+// Loops that the compiler unrolls around an exit that is not counted, and branches that it finds to be constant one by
+// one: which sums the rules see as one expression, round by round, decides the last bits.
+CTS_CASE("glsl", "unrolled_exits") {
+  evaluate_specials(
+      run, kVec4, 3,
+      "  vec4 r0 = a, r1 = vec4(a.y), r2 = a;\n"
+      "  for (int k = 0; k < 7; ++k) { if (pi.x == i.z) break; r0 = (r0.xzww + 1.0) - p; }\n"
+      "  if ((u.y & 3u) == 0u) for (int k = 0; k < 7; ++k) { if (pi.x == i.z) break; r1 = (r1.xzww - (-1.0)) - p; }\n"
+      "  float array[7] = float[7](a.x, a.y, a.z, a.w, b.x, b.y, b.z);\n"
+      "  r2 = (-1.0) * b.wwwx;\n"
+      "  if (false) { int k = 1; while (k-- > 0) r2 = vec4(b.w); }\n"
+      "  array[(i.y & 0x7fffffff) % 7] = r2.y;\n"
+      "  r2 = vec4(0.0);\n"
+      "  for (int k = 0; k < 7; ++k) r2 += array[k];\n");
+}
+
 }  // namespace
 }  // namespace vitrine::cts
