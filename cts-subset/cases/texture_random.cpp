@@ -12,25 +12,37 @@ bool takes_other_levels(const Family& family, const RandomLookup& found) {
   return family.anisotropic && (found.is_cube() || family.kind != Kind::kImplicit);
 }
 
+/// Coordinates of any pixel, so that gradients may be the differences that the reference takes in their place
+/// (deviations.md, anisotropic-gradients).
+std::string coordinates_function(bool linear) {
+  return "vec4 at(ivec2 pixel) {\n  precise vec4 c = " +
+         std::string(linear ? "(base + (float(pixel.x) + 0.5) * dx) + (float(pixel.y) + 0.5) * dy"
+                            : "texelFetch(table, pixel, 0)") +
+         ";\n  return c;\n}\n";
+}
+
 std::string fragment_text(Random& random, const Family& family, const RandomLookup& found) {
   const bool paired = takes_other_levels(family, found);
-  std::string text = lookup_declarations(found, family.kind) + "layout(location = 0) out " +
-                     result_prefix(found, family.kind) +
-                     "vec4 color;\n"
-                     "void main() {\n"
-                     "  ivec2 pixel = ivec2(gl_FragCoord.xy);\n" +
-                     (paired ? "  pixel.x = pixel.x >> 2 << 1 | pixel.x & 1;\n" : "") +
-                     "  vec4 extra = texelFetch(table, " + (paired ? "(pixel & ~1)" : "pixel") +
-                     " + ivec2(0, 64), 0);\n"
-                     "  vec4 gx = extra.xyzx * 0.1, gy = extra.yzxz * 0.07;\n";
   const bool derivatives = family.kind == Kind::kImplicit || family.kind == Kind::kBias ||
                            family.kind == Kind::kQuery || family.kind == Kind::kProj || family.kind == Kind::kOffset ||
                            family.kind == Kind::kShadow || family.anisotropic;
   // Interpolated directions could meet a cube's corner (deviations.md, cube-corners).
   const bool table_only = found.is_cube() && !family.anisotropic && found.sampler.magFilter == VK_FILTER_LINEAR;
-  text += derivatives && !table_only && random.chance(0.85f)
-              ? "  precise vec4 c = (base + (float(pixel.x) + 0.5) * dx) + gl_FragCoord.y * dy;\n"
-              : "  vec4 c = texelFetch(table, pixel, 0);\n";
+  const bool linear = derivatives && !table_only && random.chance(0.85f);
+  const bool own_gradients = family.anisotropic && family.kind == Kind::kGrad;
+  std::string text = lookup_declarations(found, family.kind) + "layout(location = 0) out " +
+                     result_prefix(found, family.kind) + "vec4 color;\n";
+  if (own_gradients) text += coordinates_function(linear);
+  text += std::string("void main() {\n  ivec2 pixel = ivec2(gl_FragCoord.xy);\n") +
+          (paired ? "  pixel.x = pixel.x >> 2 << 1 | pixel.x & 1;\n" : "") + "  vec4 extra = texelFetch(table, " +
+          (paired ? "(pixel & ~1)" : "pixel") + " + ivec2(0, 64), 0);\n";
+  text += own_gradients ? "  ivec2 first = pixel & ~1;\n"
+                          "  precise vec4 gx = at(first + ivec2(1, 0)) - at(first);\n"
+                          "  precise vec4 gy = at(first + ivec2(0, 1)) - at(first);\n"
+                        : "  vec4 gx = extra.xyzx * 0.1, gy = extra.yzxz * 0.07;\n";
+  text += own_gradients ? "  vec4 c = at(pixel);\n"
+          : linear      ? "  precise vec4 c = (base + (float(pixel.x) + 0.5) * dx) + gl_FragCoord.y * dy;\n"
+                        : "  vec4 c = texelFetch(table, pixel, 0);\n";
   return text + "  color = " + lookup(random, family, found.shape) + ";\n}\n";
 }
 
@@ -72,6 +84,7 @@ const std::vector<Family>& families() {
       {"random_gather", Kind::kGather, {k2D, k2DArray}, 60},
       {"random_fetch", Kind::kFetch, {k1D, k1DArray, k2D, k2DArray, k3D}, 80},
       {"random_query", Kind::kQuery, {k1D, k2D, k2DArray, k3D}, 30},
+      {"random_query_cube", Kind::kQuery, {kCubeArray}, 30},
       {"random_shadow", Kind::kShadow, {k1D, k2D, k2D, k2DArray}, 60},
       {"random_cube", Kind::kLod, {kCube, kCubeArray}, 60},
       {"random_cube_implicit", Kind::kImplicit, {kCube}, 40},
@@ -99,6 +112,15 @@ const std::vector<Family>& families() {
       {"random_anisotropic_offset", Kind::kOffset, {k2D, k2DArray, k3D}, 20, false, true},
       {"random_anisotropic_projection", Kind::kProj, {k2D}, 10, false, true},
       {"random_anisotropic_query", Kind::kQuery, {k2D, k2DArray, k3D}, 20, false, true},
+      {"random_anisotropic_gradients", Kind::kGrad, {k2D, k2DArray, k3D}, 20, false, true},
+      {"random_anisotropic_line", Kind::kImplicit, {k1D, k1DArray}, 20, false, true},
+      {.name = "random_anisotropic_integer",
+       .kind = Kind::kImplicit,
+       .shapes = {k2D, k2DArray, k3D, kCube},
+       .count = 20,
+       .anisotropic = true,
+       .integer = true},
+      {"random_anisotropic_query_cube", Kind::kQuery, {kCubeArray}, 20, false, true},
       {"random_anisotropic_border", Kind::kImplicit, {k2D, k2DArray}, 20, false, true, true},
       {"random_anisotropic_minmax", Kind::kImplicit, {k2D}, 10, false, true, false, true},
       {"random_anisotropic_compressed_cube", Kind::kLod, {kCube}, 20, true, true},

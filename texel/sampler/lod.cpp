@@ -176,7 +176,8 @@ LanePoint locate(const Plan& plan, const SampleRequest& request, std::size_t lan
   const bool implicit = request.lod_mode == LodMode::kImplicit || request.lod_mode == LodMode::kBias;
   const bool given = request.lod_mode == LodMode::kGrad;
   const bool cube_derivatives =
-      plan.cube && ((plan.lod_needed && !plan.lod_fixed && (implicit || given)) || (plan.anisotropic && given));
+      plan.cube && !plan.face_query &&
+      ((plan.lod_needed && !plan.lod_fixed && (implicit || given)) || (plan.anisotropic && given));
   for (std::uint32_t i = 0; i < components; ++i) {
     point.coord[i] = value_at(request.coord[i], lane);
     if (given) {
@@ -190,7 +191,8 @@ LanePoint locate(const Plan& plan, const SampleRequest& request, std::size_t lan
     }
   }
   if (plan.cube) project_cube(point, cube_derivatives);
-  if (plan.cube && plan.anisotropic && !given) set_projected_differences(request, lane, cube_derivatives, point);
+  if (plan.cube && (plan.anisotropic || plan.face_query) && !given)
+    set_projected_differences(request, lane, cube_derivatives, point);
   return point;
 }
 
@@ -200,7 +202,7 @@ Lod level_of_detail(const Plan& plan, const SampleRequest& request, const LanePo
   if (!plan.lod_fixed) {
     const bool derived = request.lod_mode != LodMode::kExplicit && request.lod_mode != LodMode::kZero;
     if (derived) {
-      const bool given = plan.cube || request.lod_mode == LodMode::kGrad;
+      const bool given = (plan.cube && !plan.face_query) || request.lod_mode == LodMode::kGrad;
       const float rho = compute_rho(plan, point, given);
       if (plan.shortcut_lod && request.min_lod == nullptr) return shortcut(plan, rho);
       value = 0.5f * fast_log2(plan.squared_rho || plan.anisotropic ? rho : rho * rho);

@@ -91,6 +91,7 @@ void set_lod_state(Plan& plan, SampleOp op, LodMode lod_mode) {
   const Sampler& sampler = *plan.sampler;
   // The reference's static sampler state never has a "none" mip filter, so bounds are looked at in every case.
   plan.lod_fixed = sampler.min_lod == sampler.max_lod && op != SampleOp::kQueryLod;
+  plan.face_query = plan.cube && op == SampleOp::kQueryLod && sampler.min_lod == sampler.max_lod;
   if (sampler.min_lod != sampler.max_lod) {
     plan.apply_min_lod = sampler.min_lod > 0.0f;
     plan.apply_max_lod = sampler.max_lod < kNoMaxLod;

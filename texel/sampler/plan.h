@@ -32,6 +32,7 @@ struct Plan {
   bool apply_max_lod = false;
   bool apply_min_lod = false;
   bool shortcut_lod = false;  ///< level and minification straight from the exponent of rho
+  bool face_query = false;    ///< a query of a cube of one level, whose slopes are differences on the face
   bool squared_rho = true;    ///< 1D works with rho, others with its square
   Texel border{};             ///< clamped to the format; missing channels as the format has them
 };

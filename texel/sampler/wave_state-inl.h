@@ -225,7 +225,7 @@ HWY_INLINE bool has_slopes(const Plan& plan, const SampleRequest& request) {
 
 HWY_INLINE VF slopes_to_rho(const Plan& plan, const SampleRequest& request, const Slopes& d) {
   if (!has_slopes(plan, request)) return splat(0.0f);
-  return wave_rho(plan, d, plan.cube || request.lod_mode == LodMode::kGrad);
+  return wave_rho(plan, d, (plan.cube && !plan.face_query) || request.lod_mode == LodMode::kGrad);
 }
 
 /// Only for plan.lod_needed.
@@ -260,8 +260,8 @@ HWY_INLINE void find_layer(const Plan& plan, const base::WaveRegister* coord, st
   hn::Store(hn::Mul(layer, stride), DI(), state.layer_offset.lane + first);
 }
 
-/// Calls body(first, slopes) for every vector; cubes are projected before, and anisotropic slopes are differences on
-/// the face. Slopes only if prepared.needs_levels, or given on the face.
+/// Calls body(first, slopes) for every vector; cubes are projected before, and slopes of anisotropic ones and
+/// of face_query are differences on the face. Slopes only if prepared.needs_levels, or given on the face.
 template <class Body>
 HWY_INLINE void for_each_slope(const PreparedSampler& prepared, const SampleRequest& request, WaveState& state,
                                Body&& body) {
@@ -274,8 +274,8 @@ HWY_INLINE void for_each_slope(const PreparedSampler& prepared, const SampleRequ
     if (plan.cube) {
       const VF v[3] = {load_lanes(request.coord[0], first), load_lanes(request.coord[1], first),
                        load_lanes(request.coord[2], first)};
-      project_cube(v, sloped ? &d : nullptr, first, state);
-      for (std::size_t i = 0; sloped && plan.anisotropic && i < 2; ++i) {
+      project_cube(v, sloped && !plan.face_query ? &d : nullptr, first, state);
+      for (std::size_t i = 0; sloped && (plan.anisotropic || plan.face_query) && i < 2; ++i) {
         if (given) {
           hn::Store(d.x[i], DF(), state.slope_x[i].lane + first);
           hn::Store(d.y[i], DF(), state.slope_y[i].lane + first);

@@ -217,5 +217,26 @@ const AddCase kAnisotropicComparison(
       }
     });
 
+/// Levels that a cube would be read at, as one of a cube array's in the control.
+const AddCase kCubeQuery("texture", "deviation.cube_query", "cube-query", case_against_control, [](Run& run) {
+  for (const bool array : {false, true}) {
+    ImageSpec spec;
+    spec.format = VK_FORMAT_R16G16_SFLOAT;  // texels of four bytes do not show it
+    spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    spec.extent = {16, 16, 1};
+    spec.layers = 6;
+    spec.levels = 5;
+    spec.view = array ? VK_IMAGE_VIEW_TYPE_CUBE_ARRAY : VK_IMAGE_VIEW_TYPE_CUBE;
+    VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+    info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+    info.maxLod = VK_LOD_CLAMP_NONE;
+    put_picture_out(run, array ? "array" : "cube", run.image(spec), run.sampler(info),
+                    std::string(array ? "samplerCubeArray" : "samplerCube") +
+                        " t;\nvoid main() {\n  precise vec3 c = (vec3(0.5, -0.25, 0.375) + gl_FragCoord.x * "
+                        "vec3(0.03, -0.01, 0.02)) + gl_FragCoord.y * vec3(-0.02, 0.015, -0.05);\n"
+                        "  color = vec4(textureQueryLod(t, c), float(textureQueryLevels(t)), 1.0);\n}\n");
+  }
+});
+
 }  // namespace
 }  // namespace vitrine::cts
