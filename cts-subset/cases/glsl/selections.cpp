@@ -103,5 +103,19 @@ CTS_CASE("glsl", "unrolled_exits") {
       "  for (int k = 0; k < 7; ++k) r2 += array[k];\n");
 }
 
+// Elements of local arrays are what was stored to them last, and the rules see it.
+CTS_CASE("glsl", "forwarded_elements") {
+  evaluate_specials(
+      run, kVec4, 3,
+      "  float array[7] = float[7](a.x, a.y, a.z, a.w, b.x, b.y, b.z);\n  vec4 pairs[2] = vec4[2](a, p);\n"
+      "  array[2] = 1.0;\n  pairs[1].yz = vec2(2.0, 0.5);\n"
+      "  vec4 r0 = vec4(0.0), r2 = vec4(array[i.x & 3]);\n"
+      "  for (int k = 0; k < 7; ++k) r0 += array[k];\n"
+      "  vec4 r1 = (pairs[0] * b) * pairs[1];\n"
+      "  if (i.y > 0) { pairs[0].x = p.z; array[1] = b.y; }\n"
+      "  for (int k = 0; k < (i.z & 3); ++k) { r2 += array[1] * pairs[0]; array[k] = p.x; }\n"
+      "  r2 += array[2] + array[0];\n");
+}
+
 }  // namespace
 }  // namespace vitrine::cts
