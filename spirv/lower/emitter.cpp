@@ -10,9 +10,13 @@ Emitter::Emitter(const ScalarFunction& function, const Allocation& allocation, s
   program->register_count = allocation.register_count;
   program->mask_count = allocation.mask_count;
   mask_preset_.assign(f_.scalars.size(), kNoIndex);
-  for (const ir::Array& array : f_.ir->arrays) {
+  std::vector<bool> used(f_.ir->arrays.size(), false);
+  for (const std::vector<ScalarOp>* list : {&f_.preamble, &f_.body})
+    for (const ScalarOp& op : *list)
+      if (op.op == ir::Op::kLoadArray || op.op == ir::Op::kStoreArray) used[op.instr->data[0]] = true;
+  for (std::size_t i = 0; i < used.size(); i++) {
     array_base_.push_back(program->array_bytes);
-    program->array_bytes += array.elements * kRegisterStride;
+    if (used[i]) program->array_bytes += f_.ir->arrays[i].elements * kRegisterStride;
   }
   assign_words();
   for (const ScalarId id : f_.preset) {

@@ -139,6 +139,16 @@ const bool kBodies = [] {
       "struct Inner { int n; vec2 w; };\nstruct Thing { vec4 v; Inner inner; float f[3]; };\n"
       "const float kTable[4] = float[4](0.5, 1.5, -2.0, 8.0);\n"
       "Thing grow(Thing t) { t.v *= 1.5; t.inner.w = t.inner.w.yx + 0.25; t.f[t.inner.n % 3] -= 1.0; return t; }\n");
+  // Elements of arrays that are known once the loops are unrolled; r2: and some that are not.
+  add_body("arrays_of_unrolled_loops",
+           "  const float weights[] = float[](0.013, 0.11, 0.37, 0.11, 0.013);\n  float made[4];\n"
+           "  vec4 r0 = vec4(0.0), r1 = vec4(0.0);\n"
+           "  for (int k = 0; k < weights.length(); k++) r0 += (a + b * float(k)) * weights[k] * 0.6;\n"
+           "  for (int k = 0; k < 4; k++) {\n    made[k] = a[k] * 0.7;\n    if (i[k] > 3) made[k] *= b[k];\n  }\n"
+           "  for (int k = 0; k < 4; k++) r1[k] = made[3 - k] * 1.3 + weights[k];\n"
+           "  made[u.x & 3u] = b.z * 3.0;\n  made[1] += 0.5;\n"
+           "  float r2 = made[1] * 2.0 + made[u.y & 3u] * made[2];\n",
+           {{kVec4, "r0"}, {kVec4, "r1"}, {kFloat, "r2"}}, false);
   // What a sum with -0 keeps (denormals), and which zero the maximum takes while 0 / a is not yet simplified.
   add_body("literal_zeros",
            "  precise vec4 r0 = a - vec4(0.0), r1 = vec4(-0.0) + a;\n"
