@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "cases/random_transfer.h"
 #include "cases/stand_in.h"
@@ -106,6 +107,8 @@ VkSamplerCreateInfo random_sampler(Run& run, const Family& family, const Shape& 
   // Elsewhere nearest lookups change beside linear ones (deviations.md, mixed-filters).
   if (fixed_point_path && random.chance(0.3f))
     info.minFilter = info.magFilter == VK_FILTER_LINEAR ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
+  // Special directions are at corners, and the reference reads beyond the face where one is no number.
+  if (cube && family.special) info.magFilter = info.minFilter = VK_FILTER_NEAREST;
   if (cube && !family.anisotropic && info.magFilter == VK_FILTER_LINEAR) info.maxLod = info.minLod = 0.0f;
   if (family.anisotropic) {
     run.require(run.gpu.features.samplerAnisotropy, "samplerAnisotropy");
@@ -125,6 +128,10 @@ VkSamplerCreateInfo random_sampler(Run& run, const Family& family, const Shape& 
     info.addressModeU = clamp();
     info.addressModeV = clamp();
   }
+  if (family.special && random.chance(0.3f)) {
+    info.minLod = random.pick({-1000.0f, -0.25f, 0.5f, 14.5f, 1e30f});
+    info.maxLod = std::max(info.minLod, random.pick({-0.25f, 1.5f, 13.75f, 15.25f, 1e30f}));
+  }
   if (family.kind == Kind::kShadow) {
     info.compareEnable = VK_TRUE;
     // The others hardly ever change from texel to texel.
@@ -139,8 +146,28 @@ std::string coordinate(const std::string& source, uint32_t components) {
   return components == 1 ? source + ".x" : source + "." + std::string("xyzw").substr(0, components);
 }
 
+float special_number(Random& random) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const float magnitude =
+      random.pick({std::numeric_limits<float>::quiet_NaN(), kInfinity, 3.4e38f, 1e30f, 4e9f, 2147483648.0f,
+                   2147483520.0f, 16777217.0f, 65536.5f, 1024.0f, 127.0f, 1e-30f, 1e-40f, 0.0f});
+  return random.chance(0.5f) ? magnitude : -magnitude;
+}
+
+/// Puts special numbers into a table of coordinates and extras. `by_quad`: the same coordinates for a quad with one,
+/// for other differences make footprints that the reference walks through for minutes.
+void make_special(Random& random, bool by_quad, std::vector<float>& values) {
+  for (uint32_t y = 0; y < 2 * kSize; ++y) {
+    for (uint32_t x = 0; x < kSize; ++x) {
+      const auto at = [&](uint32_t px, uint32_t py) { return values.begin() + (py * kSize + px) * 4; };
+      if (random.chance(0.2f)) at(x, y)[random.below(4)] = special_number(random);
+      if (by_quad && y < kSize) std::copy_n(at(x & ~1u, y & ~1u), 4, at(x, y));
+    }
+  }
+}
+
 /// Coordinates inside and outside the texture. Cubes: directions away from corners, so that one texel suffices.
-std::vector<float> random_coordinates(Random& random, const Shape& shape) {
+std::vector<float> random_coordinates(Random& random, const Family& family, const Shape& shape) {
   const bool cube = shape.dimensions == 3 && shape.view != VK_IMAGE_VIEW_TYPE_3D;
   std::vector<float> values, extras;
   for (uint32_t i = 0; i < kSize * kSize; ++i) {
@@ -159,6 +186,7 @@ std::vector<float> random_coordinates(Random& random, const Shape& shape) {
     for (int k = 0; k < 4; ++k) extras.push_back(random.unit());
   }
   values.insert(values.end(), extras.begin(), extras.end());
+  if (family.special) make_special(random, family.anisotropic, values);
   return values;
 }
 
@@ -299,7 +327,7 @@ RandomLookup random_lookup(Run& run, const Family& family) {
   table_spec.extent = {kSize, kSize * 2, 1};
   table_spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
   const Image table = run.image(table_spec);
-  const std::vector<float> coordinates = random_coordinates(random, shape);
+  const std::vector<float> coordinates = random_coordinates(random, family, shape);
   run.upload(table, 0, {reinterpret_cast<const unsigned char*>(coordinates.data()), coordinates.size() * 4});
   std::string text = std::string(info.name) + " " + std::to_string(image_spec.extent.width) + "x" +
                      std::to_string(image_spec.extent.height) + "x" + std::to_string(image_spec.extent.depth) +

@@ -33,6 +33,7 @@ struct Family {
   bool bordered = false;      ///< custom border colours and swizzled views
   bool reduced = false;       ///< minimum or maximum of the taps
   bool unnormalized = false;  ///< coordinates in texels
+  bool special = false;       ///< coordinates, levels and gradients that are infinite, huge, tiny or no numbers
   bool integer = false;       ///< whole numbers alone
   bool lacking = false;       ///< formats that the reference lacks, or cannot filter: it gets a stand-in
 };

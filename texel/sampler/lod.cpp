@@ -71,7 +71,7 @@ void project_cube(LanePoint& point, bool with_derivatives) {
     scale = std::fabs(half);
   } else {
     const float magnitude = std::fabs(major);
-    scale = magnitude > 0.0f ? 0.5f / magnitude : 0.0f;
+    scale = !(magnitude <= 0.0f) ? 0.5f / magnitude : 0.0f;  // NaN stays one
   }
   point.coord[0] = sc * scale + 0.5f;
   point.coord[1] = tc * scale + 0.5f;

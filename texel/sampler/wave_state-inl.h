@@ -122,7 +122,7 @@ HWY_INLINE void project_cube(const VF v[3], Slopes* d, std::size_t first, WaveSt
     scale = hn::Abs(half);
   } else {
     const VF magnitude = hn::Abs(major);
-    scale = hn::IfThenElseZero(hn::Gt(magnitude, splat(0.0f)), hn::Div(splat(0.5f), magnitude));
+    scale = hn::IfThenZeroElse(hn::Le(magnitude, splat(0.0f)), hn::Div(splat(0.5f), magnitude));
   }
   const VI axis = hn::IfThenElse(hn::RebindMask(DI(), z_major), splat(4),
                                  hn::IfThenZeroElse(hn::RebindMask(DI(), x_major), splat(2)));
