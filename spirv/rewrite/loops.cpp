@@ -336,7 +336,7 @@ ValueId join_at_if(Graph& graph, InstId id, ValueId value) {
   const ValueId result = add_results(graph, id, {value})[0].value;
   for (const BlockId child : graph.insts[id].child) {
     const InstId end = graph.blocks[child].tail;
-    append_operand(graph, end, copy_of(graph, end, value));
+    append_operand(graph, end, through_register(graph, end, {value, kWhole}, value));
   }
   return result;
 }
@@ -372,9 +372,10 @@ Src through_register(Graph& graph, InstId position, Src src, ValueId like) {
              graph.insts[position].block == graph.insts[owner].child[0] && !is_inside(graph, value, owner)) {
     value = join_at_header(graph, owner, value);
   }
+  if (value != src.value) return {value, kWhole};
   const InstId move =
       graph.create(Kind::kAlu, shape.boolean ? Op::kMovB : Op::kMov, shape.components, shape.boolean, 1);
-  graph.set_source(move, 0, {value, value == src.value ? src.swizzle : kWhole});
+  graph.set_source(move, 0, src);
   graph.insert_before(position, move);
   return {graph.insts[move].result, kWhole};
 }

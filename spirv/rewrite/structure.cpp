@@ -1,6 +1,7 @@
 // The shape of control flow: branches on constants, code behind branches that leave, continues at the end of a loop.
 // The steps and their order are the reference's (lavapipe-shader-math.md 3.2): which code is unconditional decides what
 // later steps see.
+#include "spirv/rewrite/loops.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/tree.h"
 
@@ -182,7 +183,10 @@ bool drop_trivial_continues(Graph& graph, BlockId block) {
     if (graph.insts[id].kind != Kind::kLoop) continue;
     const std::vector<ValueId> params = graph.nodes[graph.insts[id].node]->continue_params;
     const BlockId body = graph.insts[id].child[0];
-    if (graph.blocks[body].tail != kNone) changed |= drop_continues(graph, body, params);
+    if (graph.blocks[body].tail == kNone) continue;
+    if (!drop_continues(graph, body, params)) continue;
+    pass_through_registers(graph, id);
+    changed = true;
   }
   return changed;
 }

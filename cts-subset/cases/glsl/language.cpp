@@ -281,6 +281,18 @@ const bool kFragments = [] {
         "      while (k2-- > 0) s = s + a.z;\n  }\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 4}, "s"}, {{Base::kInt, 1}, "steps"}}, {}, false});
   });
+  // What the second loop starts with passes through registers in every branch that the first one unrolls to.
+  AddCase("glsl", "rewrite.continue_behind_ladder", [](Run& run) {
+    const char* walk =
+        "int walk(int x, int y) {\n  int n = 0;\n  while (x != 0) {\n    if (++n > 20) return -1;\n"
+        "    x = x != 0 ? x + y : x >> 1;\n  }\n  return x ^ n;\n}\n";
+    const char* text =
+        "  vec4 s = p, d = p.wywz - p;\n  int w = walk(i.w, i.w), k = 5;\n"
+        "  while (k-- > 0) {\n    if (-1 < w) continue;\n"
+        "    if ((s.y - s.y) > 0.0) {\n      d = a.xyyz;\n    } else {\n"
+        "      switch (i.w & 3) {\n        case 0:\n          s = d * b;\n      }\n    }\n  }\n";
+    evaluate(run, Stage::kCompute, {walk, text, {{{Base::kFloat, 4}, "s"}}, {}, false});
+  });
   AddCase("glsl", "rewrite.choice_of_zeros", [](Run& run) {
     const char* text = "  float s = 0.0 / a.z;\n  float r = (pi.w == 0 ? s * a.z : s) * a.z;\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 1}, "r"}}, {}, false});
