@@ -1,8 +1,7 @@
 // Loads of what an earlier load brought already: the reference knows a push constant, uniform or storage vector by its
 // components, so that p.y and the second component of p are one value (lavapipe-shader-math.md 3.2 step 3, copy
-// propagation of variables). Elements of arrays, too, are what was stored or loaded last.
+// propagation of variables).
 #include <array>
-#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -62,7 +61,6 @@ class Forwarder {
   explicit Forwarder(Graph& graph) : graph_(graph) {}
 
   bool run() {
-    elements_.resize(graph_.function.arrays.size());
     visit(graph_.root);
     return changed_;
   }
@@ -176,59 +174,6 @@ class Forwarder {
     std::erase_if(known_, [](const auto& entry) { return entry.first.op == Op::kLoadStorage; });
   }
 
-  /// The array that a load or store of an element is of.
-  std::uint32_t array_of(const Inst& inst) const { return graph_.nodes[inst.node]->instr.data[0]; }
-
-  /// The number of a loaded or stored element, if it is constant.
-  std::optional<std::uint32_t> element_of(const Inst& inst) const {
-    const Src index = graph_.source(inst, 0);
-    const Inst* constant = graph_.constant(index.value);
-    if (!constant) return std::nullopt;
-    const std::uint32_t number = constant->imm[index.swizzle[0]] + graph_.nodes[inst.node]->instr.data[1];
-    const std::uint32_t count = graph_.function.arrays[array_of(inst)].elements;
-    return number < count ? std::optional(number) : std::nullopt;
-  }
-
-  /// A load of an element becomes what is known of it.
-  void load_element(InstId id) {
-    const Inst inst = graph_.insts[id];
-    const auto number = element_of(inst);
-    if (!number) return;
-    const auto [entry, added] = elements_[array_of(inst)].try_emplace(*number, Src{inst.result, {0, 0, 0, 0}});
-    if (added) return;
-    changed_ = true;
-    const Src known = entry->second;
-    if (graph_.values[known.value].components == 1) {
-      graph_.replace_uses(inst.result, known.value);
-    } else {
-      const InstId copy = graph_.create(Kind::kAlu, Op::kMov, 1, false, 1);
-      graph_.insts[copy].origin = inst.origin;
-      graph_.set_source(copy, 0, known);
-      graph_.insert_before(id, copy);
-      graph_.replace_uses(inst.result, graph_.insts[copy].result);
-    }
-    graph_.remove(id);
-  }
-
-  void store_element(const Inst& inst) {
-    const Src value = graph_.source(inst, 1);
-    const std::uint8_t s = value.swizzle[0];
-    if (const auto number = element_of(inst))
-      elements_[array_of(inst)].insert_or_assign(*number, Src{value.value, {s, s, s, s}});
-    else
-      elements_[array_of(inst)].clear();
-  }
-
-  /// Nothing is known any more of the arrays that `block` stores to.
-  void forget_stored(BlockId block) {
-    for (InstId id = graph_.blocks[block].head; id != kNone; id = graph_.insts[id].next) {
-      const Inst& inst = graph_.insts[id];
-      if (inst.kind == Kind::kIntrinsic && inst.op == Op::kStoreArray) elements_[array_of(inst)].clear();
-      for (const BlockId child : inst.child)
-        if (child != kNone) forget_stored(child);
-    }
-  }
-
   bool writes(BlockId block) const {
     for (InstId id = graph_.blocks[block].head; id != kNone; id = graph_.insts[id].next) {
       if (writes_storage(graph_.insts[id])) return true;
@@ -242,21 +187,15 @@ class Forwarder {
     const BlockId child[2] = {graph_.insts[id].child[0], graph_.insts[id].child[1]};
     const bool written = writes(child[0]) || writes(child[1]);
     const bool loop = graph_.insts[id].kind == Kind::kLoop;
-    if (loop) {
-      forget_storage();  // it may wait for others to write
-      for (const BlockId block : child) forget_stored(block);
-    }
-    const auto elements = elements_;
+    if (loop) forget_storage();  // it may wait for others to write
     for (const BlockId block : child) {
       const auto saved = written ? known_ : decltype(known_){};
       const std::size_t count = overwritten_.size();
       visit(block);
       restore(count);
       if (written) known_ = saved;
-      elements_ = elements;
     }
     if (written) forget_storage();
-    for (const BlockId block : child) forget_stored(block);
   }
 
   void visit(BlockId block) {
@@ -268,10 +207,6 @@ class Forwarder {
         visit_children(id);
       } else if (writes_storage(graph_.insts[id])) {
         forget_storage();
-      } else if (graph_.insts[id].kind == Kind::kIntrinsic && graph_.insts[id].op == Op::kLoadArray) {
-        load_element(id);
-      } else if (graph_.insts[id].kind == Kind::kIntrinsic && graph_.insts[id].op == Op::kStoreArray) {
-        store_element(graph_.insts[id]);
       }
       id = next;
     }
@@ -279,8 +214,7 @@ class Forwarder {
 
   Graph& graph_;
   std::unordered_map<Word, Src, WordHash> known_;
-  std::vector<std::pair<Word, Src>> overwritten_;                 ///< and what was known before
-  std::vector<std::unordered_map<std::uint32_t, Src>> elements_;  ///< known ones of each array
+  std::vector<std::pair<Word, Src>> overwritten_;  ///< and what was known before
   bool changed_ = false;
 };
 
