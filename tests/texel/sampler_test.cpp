@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -364,6 +367,89 @@ TEST(Sampler, WeightsOfEllipsesFollowFromTheirFactors) {
     const float weight = std::fma(millionths, EllipseFactors::kMillionth, millionths * EllipseFactors::kMillionthRest);
     EXPECT_EQ(weight, kEllipseWeights[i]) << i;
   }
+}
+
+/// Pages of memory with none before and behind them.
+class LonePages {
+ public:
+  explicit LonePages(std::size_t bytes) : page_(static_cast<std::size_t>(sysconf(_SC_PAGESIZE))) {
+    size_ = (bytes + page_ - 1) / page_ * page_;
+    memory_ = static_cast<std::byte*>(mmap(nullptr, size_ + 2 * page_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    open(0, size_);
+  }
+  LonePages(const LonePages&) = delete;
+  LonePages& operator=(const LonePages&) = delete;
+  ~LonePages() { munmap(memory_, size_ + 2 * page_); }
+
+  std::byte* begin() { return memory_ + page_; }
+  std::byte* end() { return begin() + size_; }
+  std::size_t page() const { return page_; }
+  void close(std::size_t first, std::size_t bytes) { mprotect(begin() + first, bytes, PROT_NONE); }
+  void open(std::size_t first, std::size_t bytes) { mprotect(begin() + first, bytes, PROT_READ | PROT_WRITE); }
+
+ private:
+  std::size_t page_, size_ = 0;
+  std::byte* memory_ = nullptr;
+};
+
+constexpr VkFormat kGuardedFormats[] = {
+    VK_FORMAT_R8_UNORM,      VK_FORMAT_R8G8_UNORM, VK_FORMAT_R5G6B5_UNORM_PACK16, VK_FORMAT_R8G8B8A8_UNORM,
+    VK_FORMAT_R8G8B8A8_UINT, VK_FORMAT_R16_UNORM,  VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT};
+
+TEST(Sampler, LanesWithoutAQuadTouchNothing) {
+  base::for_each_simd_target([] {
+    for (const VkFormat format : kGuardedFormats) {
+      TestView image(format, {64, 1024, 1}, 1, 1, VK_IMAGE_VIEW_TYPE_2D);
+      LonePages pages(image.layout.size);
+      image.view.base = pages.begin();
+      const std::size_t rows = std::size_t{1} << 9;  // in their lower half nothing may be read
+      const std::size_t half = rows * image.view.level[0].row_pitch / pages.page() * pages.page();
+      pages.close(half, pages.page() * ((image.layout.size - half) / pages.page()));
+      for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR}) {
+        for (const SampleOp op : {SampleOp::kSample, SampleOp::kGather}) {
+          Sampler sampler;
+          sampler.mag_filter = sampler.min_filter = filter;
+          base::WaveRegister coord[2] = {constant(0.4f), constant(0.1f)}, result[4];
+          std::fill_n(coord[1].lane + 24, 20, bits_of(0.9f));
+          SampleRequest request;
+          request.op = op;
+          request.coord = {&coord[0], &coord[1], nullptr, nullptr};
+          request.active = ~(base::first_lanes(44) & ~base::first_lanes(24));
+          sample(image.view, sampler, request, result);
+        }
+      }
+    }
+  });
+}
+
+TEST(Sampler, NothingIsReadBehindTheLastTexel) {
+  base::for_each_simd_target([] {
+    for (const VkFormat format : kGuardedFormats) {
+      TestView image(format, {64, 64, 1}, 1, 1, VK_IMAGE_VIEW_TYPE_2D);
+      const LevelLayout& level = image.view.level[0];
+      const std::size_t bytes = 63 * level.row_pitch + 64 * image.view.format->block_bytes;
+      LonePages pages(bytes);
+      image.view.base = pages.end() - bytes;
+      for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR}) {
+        for (const VkSamplerAddressMode mode :
+             {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+              VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER}) {
+          Sampler sampler;
+          sampler.mag_filter = sampler.min_filter = filter;
+          sampler.address.fill(mode);
+          base::WaveRegister coord[2], result[4];
+          for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
+            coord[0].lane[lane] = bits_of(0.93f + 0.001f * static_cast<float>(lane));
+            coord[1].lane[lane] = bits_of(0.999f);
+          }
+          SampleRequest request;
+          request.lod_mode = LodMode::kZero;
+          request.coord = {&coord[0], &coord[1], nullptr, nullptr};
+          sample(image.view, sampler, request, result);
+        }
+      }
+    }
+  });
 }
 
 }  // namespace

@@ -31,8 +31,20 @@ void prepare(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode
 /// The same without the 8-bit path and without a conversion: planes of Y'CbCr formats.
 void prepare_floats(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode, PreparedSampler& out);
 
+/// Whether some lanes take no part: no pixel of their quad does, or there are no quads. Those may hold anything.
+inline bool has_idle_lanes(const SampleRequest& request) {
+  if (request.active == base::kAllLanes) return false;
+  constexpr base::LaneMask kFirstOfQuad = 0x1111111111111111;
+  const base::LaneMask pairs = request.active | request.active >> 1;
+  return !request.quads || ((pairs | pairs >> 2) & kFirstOfQuad) != kFirstOfQuad;
+}
+
+/// The same with idle lanes where busy ones are: wherever else they read, another tile may be writing.
+void sample_with_idle_lanes(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result);
+
 /// Samples, gathers or queries for every active lane. Other lanes of the results keep what they hold.
 inline void sample(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result) {
+  if (has_idle_lanes(request)) return sample_with_idle_lanes(prepared, request, result);
   prepared.kernel(prepared, request, result);
 }
 

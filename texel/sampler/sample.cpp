@@ -1,6 +1,9 @@
 // Entry of the sampler: one decision per draw, then the fastest path that has the same bits as the scalar one.
 #include "texel/sampler.h"
 
+#include <algorithm>
+#include <bit>
+
 #include "texel/sampler/prepared.h"
 
 namespace vitrine::texel {
@@ -48,7 +51,41 @@ void choose(SampleOp op, PreparedSampler& out) {
   if (out.kernel != sample_by_lane) fill_table(view, out.level);
 }
 
+/// Lanes in groups that take part together: quads, or single lanes.
+constexpr std::size_t group_size(const SampleRequest& request) { return request.quads ? base::kQuadSize : 1; }
+
+/// A register in which groups without an active lane hold what the first group with one does.
+void share_values(const SampleRequest& request, const base::WaveRegister& from, base::WaveRegister& to) {
+  const std::size_t size = group_size(request);
+  const base::LaneMask group = base::first_lanes(size);
+  const std::size_t source = static_cast<std::size_t>(std::countr_zero(request.active)) / size * size;
+  to = from;
+  for (std::size_t first = 0; first < base::kWaveWidth; first += size) {
+    if ((request.active >> first & group) == 0) std::copy_n(from.lane + source, size, to.lane + first);
+  }
+}
+
 }  // namespace
+
+void sample_with_idle_lanes(const PreparedSampler& prepared, const SampleRequest& request, const SampleResult& result) {
+  if (request.active == 0) return;
+  constexpr std::size_t kOperands = 15;
+  base::WaveRegister values[kOperands];
+  std::size_t used = 0;
+  SampleRequest shared = request;
+  const auto share = [&](const base::WaveRegister*& operand) {
+    if (operand == nullptr) return;
+    share_values(request, *operand, values[used]);
+    operand = &values[used++];
+  };
+  for (const base::WaveRegister*& operand : shared.coord) share(operand);
+  share(shared.lod);
+  share(shared.min_lod);
+  for (auto* operands : {&shared.ddx, &shared.ddy, &shared.offset}) {
+    for (const base::WaveRegister*& operand : *operands) share(operand);
+  }
+  prepared.kernel(prepared, shared, result);
+}
 
 void prepare(const ImageView& view, const Sampler& sampler, SampleOp op, LodMode lod_mode, PreparedSampler& out) {
   if (sampler.conversion.enabled && op == SampleOp::kSample) {

@@ -1,5 +1,5 @@
 // The commonest samplers, vector by vector without a detour through memory: averages of neighbours in two or three
-// dimensions, four bytes each, one level or two; nearest texels in two. The bits of the general 8-bit sampler.
+// dimensions, four bytes each, one level or two. The bits of the general 8-bit sampler.
 
 #include <bit>
 
@@ -108,37 +108,15 @@ inline bool any_active(const SampleRequest& request, std::size_t first) {
   return (request.active >> first & base::first_lanes(hn::Lanes(DF()))) != 0;
 }
 
-/// One axis of a level for nearest texels.
-struct NearestAxis {
-  const AxisLanes* axis = nullptr;
-
-  void set(const AxisLanes& a) { axis = &a; }
-  HWY_INLINE ByteTapLanes taps(VF s) const {
-    const VI i = lanes_nearest_bytes(*axis, s);
-    return {i, i, splat(0)};
-  }
-};
-
-/// Two dimensions, the nearest texel of one level.
-HWY_NOINLINE inline void sample_nearest_flat(const PreparedSampler& p, const SampleRequest& request,
-                                             const WaveState& state, const SampleResult& result) {
-  const ByteResults results(*p.plan.view, result);
-  SquareReader<NearestAxis, false> reader(p, request, state, 0);
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    const std::size_t first = v * hn::Lanes(DF());
-    if (any_active(request, first)) results.store(unpack_bytes(reader.read_first(v)), request.active, first);
-  }
-}
-
 /// Two dimensions.
 HWY_NOINLINE inline void sample_bilinear_flat(const PreparedSampler& p, const SampleRequest& request,
                                               const WaveState& state, const SampleResult& result) {
   const ByteResults results(*p.plan.view, result);
-  const auto mix = [](const SquareReader<BilinearAxis, true>::Weighed& s)
+  const auto mix = [](const SquareReader<BilinearAxis>::Weighed& s)
                        HWY_ATTR { return mix_square(s.words, spread_weight(s.x), spread_weight(s.y)); };
   LevelWeights weights;
   if (p.plan.mip == MipFilter::kLinear && !p.one_level) weights = LevelWeights(state);
-  SquareReader<BilinearAxis, true> nearer(p, request, state, 0);
+  SquareReader<BilinearAxis> nearer(p, request, state, 0);
   if (!weights.any) {
     for (std::size_t v = 0; v < kVectors; ++v) {
       const std::size_t first = v * hn::Lanes(DF());
@@ -146,7 +124,7 @@ HWY_NOINLINE inline void sample_bilinear_flat(const PreparedSampler& p, const Sa
     }
     return;
   }
-  SquareReader<BilinearAxis, true> farther(p, request, state, 1);
+  SquareReader<BilinearAxis> farther(p, request, state, 1);
   for (std::size_t v = 0; v < kVectors; ++v) {
     const std::size_t first = v * hn::Lanes(DF());
     if (!any_active(request, first)) continue;

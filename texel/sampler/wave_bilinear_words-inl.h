@@ -23,7 +23,7 @@ struct FloatAxis {
 };
 
 /// Texels around the points of a vector of lanes, with their weights.
-using WeighedSquare = SquareReader<FloatAxis, true>::Weighed;
+using WeighedSquare = SquareReader<FloatAxis>::Weighed;
 
 HWY_INLINE VF mix_values(VF weight, VF a, VF b) { return lanes_fma(weight, hn::Sub(b, a), a); }
 
@@ -72,14 +72,14 @@ HWY_INLINE void for_each_square(const PreparedSampler& p, const SampleRequest& r
       if ((request.active >> first & base::first_lanes(hn::Lanes(DF()))) != 0) read(v, first);
     }
   };
-  SquareReader<FloatAxis, true> nearer(p, request, state, 0);
+  SquareReader<FloatAxis> nearer(p, request, state, 0);
   if (!two_levels) {
     return for_each_vector([&](std::size_t v, std::size_t first) HWY_ATTR {
       const WeighedSquare near = nearer.read(v);
       body(first, [&](auto&& average) { return average(near); });
     });
   }
-  SquareReader<FloatAxis, true> farther(p, request, state, 1);
+  SquareReader<FloatAxis> farther(p, request, state, 1);
   for_each_vector([&](std::size_t v, std::size_t first) HWY_ATTR {
     const WeighedSquare near = nearer.read(v), far = farther.read(v);
     const VF fraction = hn::Load(DF(), state.fraction.lane + first);

@@ -18,6 +18,7 @@
 #include "texel/codec/widen-inl.h"
 #include "texel/sampler/wave_bilinear-inl.h"
 #include "texel/sampler/wave_block-inl.h"
+#include "texel/sampler/wave_points-inl.h"
 #include "texel/sampler/wave_state-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -34,7 +35,7 @@ struct ByteTaps {
   IntLanes inner_first[kMaxRows], inner_second[kMaxRows];  ///< compressed: place inside the block
   IntLanes weight[3];                                      ///< in [0, 255], twice, as 16-bit lanes times 128
   std::uint32_t rows = 1;
-  bool adjacent = true;  ///< every second texel follows the first or has no weight
+  bool adjacent = true;  ///< every second texel follows the first
 };
 
 /// How texels become words of four bytes, and where R, G, B, A are in them.
@@ -101,8 +102,7 @@ HWY_NOINLINE void find_taps(const PreparedSampler& p, const SampleRequest& reque
       x_first = split_block(axis[0].first, format.block_width, inner_x[0]);
       x_second = split_block(axis[0].second, format.block_width, inner_x[1]);
     } else if (linear) {
-      const auto next =
-          hn::Or(hn::Eq(axis[0].second, hn::Add(axis[0].first, splat(1))), hn::Eq(axis[0].second, axis[0].first));
+      const auto next = hn::Eq(axis[0].second, hn::Add(axis[0].first, splat(1)));
       taps.adjacent = taps.adjacent && hn::AllTrue(DI(), next);
     }
     for (std::uint32_t r = 0; r < taps.rows; ++r) {
@@ -135,10 +135,28 @@ struct alignas(64) RowWords {
   std::uint32_t word[2 * base::kWaveWidth];
 };
 
+/// Exactly kBytes at each offset, and zeros behind them up to a word.
 template <std::size_t kBytes, std::size_t kStep>
 HWY_INLINE void load_each(const std::byte* base, const IntLanes& offset, std::uint32_t* to) {
   for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
-    std::memcpy(to + kStep * lane, base + offset.lane[lane], kBytes);
+    std::uint32_t word[kBytes > 4 ? 2 : 1] = {};
+    std::memcpy(word, base + offset.lane[lane], kBytes);
+    std::memcpy(to + kStep * lane, word, sizeof(word));
+  }
+}
+
+template <std::size_t kStep>
+HWY_INLINE void load_texels(const FormatDesc& format, const std::byte* base, const IntLanes& offset,
+                            std::uint32_t* to) {
+  switch (format.block_bytes) {
+    case 1:
+      return load_each<1, kStep>(base, offset, to);
+    case 2:
+      return load_each<2, kStep>(base, offset, to);
+    case 3:
+      return load_each<3, kStep>(base, offset, to);
+    default:
+      return load_each<4, kStep>(base, offset, to);
   }
 }
 
@@ -150,14 +168,16 @@ HWY_NOINLINE void load_row(const Plan& plan, const ByteTaps& taps, std::uint32_t
     if (!linear) return;
     load_block_bytes(view, taps.second[r], taps.inner_second[r], active, row.word + base::kWaveWidth);
   } else if (!linear) {
-    load_each<4, 1>(view.base, taps.first[r], row.word);
-  } else if (view.format->block_bytes == 4 && taps.adjacent) {
+    load_texels<1>(*view.format, view.base, taps.first[r], row.word);
+  } else if (taps.adjacent && view.format->block_bytes == 4) {
     load_each<8, 2>(view.base, taps.first[r], row.word);
-  } else if (taps.adjacent && view.format->block_bytes < 3) {
+  } else if (taps.adjacent && view.format->block_bytes == 2) {
     load_each<4, 2>(view.base, taps.first[r], row.word);
+  } else if (taps.adjacent && view.format->block_bytes == 1) {
+    load_each<2, 2>(view.base, taps.first[r], row.word);
   } else {
-    load_each<4, 2>(view.base, taps.first[r], row.word);
-    load_each<4, 2>(view.base, taps.second[r], row.word + 1);
+    load_texels<2>(*view.format, view.base, taps.first[r], row.word);
+    load_texels<2>(*view.format, view.base, taps.second[r], row.word + 1);
   }
 }
 
@@ -326,7 +346,12 @@ void sample_bytes_bilinear(const PreparedSampler& p, const SampleRequest& reques
 void sample_bytes_nearest(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
   WaveState state;
   find_state(p, request, state);
-  sample_nearest_flat(p, request, state, result);
+  const ByteResults results(*p.plan.view, result);
+  WordLanes words;
+  PointReader<NearestByteRule>(p, request, state).read(words);
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DU())) {
+    results.store(unpack_bytes(hn::Load(DU(), words.lane + first)), request.active, first);
+  }
 }
 
 }  // namespace
@@ -356,7 +381,7 @@ bool bilinear_suits(const Plan& plan) {
          !plan.sampler->unnormalized && plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
 }
 
-/// Whether sample_nearest_flat does.
+/// Whether sample_bytes_nearest does.
 bool nearest_suits(const Plan& plan) {
   return plan.dims == 2 && !plan.cube && !plan.min_linear && !plan.mag_linear && plan.mip != MipFilter::kLinear &&
          has_four_bytes(*plan.view->format);

@@ -89,13 +89,35 @@ HWY_INLINE void load_word_quads(const std::byte* base, VI offset, VU words[4]) {
 #endif
 }
 
-/// One word per lane.
-HWY_INLINE VU load_words(const std::byte* base, VI offset) {
+/// kBytes per lane, and zeros behind them up to a word.
+template <std::size_t kBytes>
+HWY_INLINE VU load_narrow_words(const std::byte* base, VI offset) {
   constexpr std::size_t kLanes = hn::MaxLanes(DU());
   const OffsetLanes<kLanes> offsets(offset);
   alignas(64) std::uint32_t words[kLanes];
-  for (std::size_t i = 0; i < kLanes; ++i) std::memcpy(words + i, base + offsets.at[i], 4);
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, base + offsets.at[i], kBytes);
+    words[i] = word;
+  }
   return hn::Load(DU(), words);
+}
+
+/// One word per lane.
+HWY_INLINE VU load_words(const std::byte* base, VI offset) { return load_narrow_words<4>(base, offset); }
+
+/// Texels of at most a word.
+HWY_INLINE VU load_narrow_words(const std::byte* base, VI offset, std::uint32_t bytes) {
+  switch (bytes) {
+    case 1:
+      return load_narrow_words<1>(base, offset);
+    case 2:
+      return load_narrow_words<2>(base, offset);
+    case 3:
+      return load_narrow_words<3>(base, offset);
+    default:
+      return load_words(base, offset);
+  }
 }
 
 }  // namespace vitrine::texel::HWY_NAMESPACE

@@ -2,6 +2,7 @@
 // vector by vector from coordinates to results. The bits of the general float sampler.
 
 #include "texel/sampler/wave_bilinear_words-inl.h"
+#include "texel/sampler/wave_points-inl.h"
 
 #if defined(VITRINE_TEXEL_WAVE_SINGLE_WORDS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VITRINE_TEXEL_WAVE_SINGLE_WORDS_INL_H_
@@ -17,7 +18,6 @@ namespace vitrine::texel::HWY_NAMESPACE {
 struct NearestFloatAxis {
   const AxisLanes* axis = nullptr;
 
-  void set(const AxisLanes& a) { axis = &a; }
   HWY_INLINE TapLanes taps(VF s) const {
     const VI i = lanes_nearest(*axis, s);
     return {i, i, splat(0.0f)};
@@ -31,10 +31,6 @@ struct GatherAxis {
   void set(const AxisLanes& a) { axis = &a; }
   HWY_INLINE TapLanes taps(VF s) const { return lanes_gather(*axis, s); }
 };
-
-HWY_INLINE bool vector_is_active(const SampleRequest& request, std::size_t first) {
-  return (request.active >> first & base::first_lanes(hn::Lanes(DF()))) != 0;
-}
 
 /// What texels are compared with, clamped where they are fixed-point. A copy: results may go to the request's
 /// registers.
@@ -55,16 +51,27 @@ struct WordReference {
 };
 
 template <Numeric kNumeric>
-HWY_INLINE void put_channel(const WordLanes& words, const Channel& channel, const WordReference& reference,
+HWY_INLINE void put_channel(const WordLanes& words, const Channel& of, const WordReference& reference,
                             const SampleRequest& request, base::WaveRegister& to) {
-  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
-    if (!vector_is_active(request, first)) continue;
-    VF value = convert_field<kNumeric>(hn::Load(DU(), words.lane + first), channel);
-    if (reference.compare) {
-      const auto holds = compare_lanes(reference.op, hn::Load(DF(), reference.lanes.lane + first), value);
-      value = hn::IfThenElseZero(holds, splat(1.0f));
+  const Channel channel = of;  // which no store below can change
+  VF value[kVectors];
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    value[v] = convert_field<kNumeric>(hn::Load(DU(), words.lane + v * hn::Lanes(DF())), channel);
+  }
+  if (reference.compare) {
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const VF ref = hn::Load(DF(), reference.lanes.lane + v * hn::Lanes(DF()));
+      value[v] = hn::IfThenElseZero(compare_lanes(reference.op, ref, value[v]), splat(1.0f));
     }
-    store_lanes(as_unsigned(value), request.active, first, to);
+  }
+  const base::LaneMask active = request.active;
+  if (active == base::kAllLanes) {
+    for (std::size_t v = 0; v < kVectors; ++v) hn::Store(as_unsigned(value[v]), DU(), to.lane + v * hn::Lanes(DF()));
+    return;
+  }
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    const std::size_t first = v * hn::Lanes(DF());
+    store_lanes(as_unsigned(value[v]), active, first, to);
   }
 }
 
@@ -89,6 +96,7 @@ HWY_INLINE void for_each_active(const SampleRequest& request, Body&& body) {
   }
 }
 
+/// Two dimensions, the nearest texel of one level.
 inline HWY_NOINLINE void sample_words_nearest(const PreparedSampler& p, const SampleRequest& request,
                                               const WaveState& state, const SampleResult& result) {
   const ImageView& view = *p.plan.view;
@@ -96,9 +104,7 @@ inline HWY_NOINLINE void sample_words_nearest(const PreparedSampler& p, const Sa
   const WordReference reference(p, request);
   const std::uint32_t one = format.is_integer() ? 1u : 0x3f800000u;
   WordLanes words;
-  SquareReader<NearestFloatAxis, false> reader(p, request, state, 0);
-  for_each_active(request, [&](std::size_t v, std::size_t first)
-                               HWY_ATTR { hn::Store(reader.read_first(v), DU(), words.lane + first); });
+  PointReader<NearestFloatRule>(p, request, state).read(words);
   for (std::size_t c = 0; c < 4; ++c) {
     if (result[c] == nullptr) continue;
     const std::uint8_t source = view.swizzle[c];
@@ -122,7 +128,7 @@ inline std::int8_t gathered_channel(const ImageView& view, const SampleRequest& 
 /// The four texels around each point, in the order of the results.
 inline HWY_NOINLINE void read_squares(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                       WordLanes words[4]) {
-  SquareReader<GatherAxis, true> reader(p, request, state, 0);
+  SquareReader<GatherAxis> reader(p, request, state, 0);
   for_each_active(request, [&](std::size_t v, std::size_t first) HWY_ATTR {
     const WordSquare square = reader.read(v).words;
     hn::Store(square.bottom.first, DU(), words[0].lane + first);
@@ -130,14 +136,6 @@ inline HWY_NOINLINE void read_squares(const PreparedSampler& p, const SampleRequ
     hn::Store(square.top.second, DU(), words[2].lane + first);
     hn::Store(square.top.first, DU(), words[3].lane + first);
   });
-}
-
-/// The first texel around each point moved by an offset.
-inline HWY_NOINLINE void read_moved(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
-                                    const std::array<std::int32_t, 2>& offset, WordLanes& words) {
-  SquareReader<GatherAxis, false> reader(p, request, state, 0, &offset);
-  for_each_active(request, [&](std::size_t v, std::size_t first)
-                               HWY_ATTR { hn::Store(reader.read_first(v), DU(), words.lane + first); });
 }
 
 /// The texels around each point, or one for each of four offsets.
@@ -149,8 +147,9 @@ inline HWY_NOINLINE void gather_words(const PreparedSampler& p, const SampleRequ
   if (request.gather_offsets == nullptr) {
     read_squares(p, request, state, words);
   } else {
+    PointReader<GatherRule> reader(p, request, state);
     for (std::size_t i = 0; i < 4; ++i) {
-      if (result[i] != nullptr) read_moved(p, request, state, (*request.gather_offsets)[i], words[i]);
+      if (result[i] != nullptr) reader.read_moved((*request.gather_offsets)[i], words[i]);
     }
   }
   const Channel& channel = view.format->channel[static_cast<std::size_t>(gathered_channel(view, request))];

@@ -79,16 +79,20 @@ class NearWave {
   HWY_INLINE WordSquare load(const std::byte* base, const SquareLevel& level, std::size_t vector) const {
     return wide_ ? load_wide(base, level, vector) : load_narrow(base, level, vector);
   }
-  /// The first texels alone.
-  HWY_INLINE VU load_first(const std::byte* base, const SquareLevel& level, std::size_t vector) const {
-    const Corner corner(*this, base, level, vector);
-    const __m512i x = _mm512_sub_epi16(first_[vector], corner.halves);
-    if (!wide_) {
-      const Narrow rows(corner);
-      return rows.pick(_mm512_or_si512(x, _mm512_srli_epi32(x, 13)));
+  /// The first texels alone, of all lanes of the wave.
+  HWY_INLINE void load_firsts(const std::byte* base, const SquareLevel& level, std::uint32_t* to) const {
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const Corner corner(*this, base, level, v);
+      const __m512i x = _mm512_sub_epi16(first_[v], corner.halves);
+      VU words;
+      if (!wide_) {
+        words = Narrow(corner).pick(_mm512_or_si512(x, _mm512_srli_epi32(x, 13)));
+      } else {
+        const __m512i y = _mm512_srli_epi32(x, 12);
+        words = Wide(corner).pick(_mm512_or_si512(x, y), below(y));
+      }
+      hn::Store(words, DU(), to + v * hn::Lanes(DU()));
     }
-    const __m512i y = _mm512_srli_epi32(x, 12);
-    return Wide(corner).pick(_mm512_or_si512(x, y), below(y));
   }
 
  private:
@@ -120,7 +124,9 @@ class NearWave {
   struct Wide {
     explicit Wide(const Corner& c)
         : row{_mm512_loadu_si512(c.at), _mm512_loadu_si512(c.at + c.pitch), _mm512_loadu_si512(c.at + 2 * c.pitch),
-              _mm512_loadu_si512(c.at + 3 * c.pitch)} {}
+              _mm512_loadu_si512(c.at + 3 * c.pitch)} {
+      for (int i = 0; i < 4; ++i) _mm_prefetch(c.at + i * c.pitch + 128, _MM_HINT_T0);
+    }
     HWY_INLINE VU pick(__m512i place, __mmask16 below) const {
       return VU{_mm512_mask_blend_epi32(below, _mm512_permutex2var_epi32(row[0], place, row[1]),
                                         _mm512_permutex2var_epi32(row[2], place, row[3]))};
@@ -181,21 +187,20 @@ class NearWave {
     const VU zero = hn::Zero(DU());
     return {{zero, zero}, {zero, zero}};
   }
-  VU load_first(const std::byte*, const SquareLevel&, std::size_t) const { return hn::Zero(DU()); }
+  void load_firsts(const std::byte*, const SquareLevel&, std::uint32_t*) const {}
 };
 #endif
 
 /// Rows as byte offsets with the level's origin.
 HWY_INLINE WordSquare load_rows_of_words(const std::byte* base, VI row0, VI row1, VI x0, VI x1) {
   const VI left = hn::ShiftLeft<2>(x0);
-  WordSquare out{load_word_pairs(base, hn::Add(row0, left)), load_word_pairs(base, hn::Add(row1, left))};
-  const auto apart = hn::Ne(x1, hn::Add(x0, splat(1)));
-  if (HWY_UNLIKELY(!hn::AllFalse(DI(), apart))) {
-    const VI right = hn::ShiftLeft<2>(x1);
-    out.top.second = load_words(base, hn::Add(row0, right));
-    out.bottom.second = load_words(base, hn::Add(row1, right));
+  const VI top = hn::Add(row0, left), bottom = hn::Add(row1, left);
+  if (hn::AllTrue(DI(), hn::Eq(x1, hn::Add(x0, splat(1))))) {
+    return {load_word_pairs(base, top), load_word_pairs(base, bottom)};
   }
-  return out;
+  const VI right = hn::ShiftLeft<2>(x1);
+  return {{load_words(base, top), load_words(base, hn::Add(row0, right))},
+          {load_words(base, bottom), load_words(base, hn::Add(row1, right))}};
 }
 
 /// Whether all lanes of the wave read one level of one layer or face, moved by one offset.
@@ -217,10 +222,26 @@ inline bool wave_has_one_level(const PreparedSampler& p, const SampleRequest& re
          (!p.plan.cube || same(state.face));
 }
 
+/// Calls reader.with_axes(x axis, y axis) with axes of which the compiler knows the commonest addresses.
+template <bool kMoved, class Reader>
+HWY_INLINE void with_known_addresses(const AxisLanes axis[2], Reader& reader) {
+  const auto known = [&](Address address, std::size_t i) HWY_ATTR {
+    return AxisLanes{address, true, true, kMoved, axis[i].size, axis[i].size_float, axis[i].offset};
+  };
+  const bool alike = axis[0].address == axis[1].address && axis[0].normalized && axis[0].has_offset == kMoved;
+  if (alike && axis[0].address == Address::kRepeat && axis[0].pot && axis[1].pot) {
+    reader.with_axes(known(Address::kRepeat, 0), known(Address::kRepeat, 1));
+  } else if (alike && axis[0].address == Address::kClamp) {
+    reader.with_axes(known(Address::kClamp, 0), known(Address::kClamp, 1));
+  } else {
+    reader.with_axes(axis[0], axis[1]);
+  }
+}
+
 /// The words around the points of a wave on one of the two levels that its lanes read; those of a cube inside their
 /// faces. Axis: set() from AxisLanes that stay where they are, taps(coordinate) for two texels and the weight of the
-/// second. Without `kPairs` the first texels alone. `offset`: in texels, of all lanes, instead of the request's.
-template <class Axis, bool kPairs>
+/// second.
+template <class Axis>
 class SquareReader {
  public:
   using Weight = decltype(std::declval<Axis>().taps(VF()).weight);
@@ -229,26 +250,28 @@ class SquareReader {
     Weight x, y;
   };
 
-  HWY_INLINE SquareReader(const PreparedSampler& p, const SampleRequest& request, const WaveState& state, int which,
-                          const std::array<std::int32_t, 2>* offset = nullptr)
-      : p_(p),
-        request_(request),
-        state_(state),
-        which_(which),
-        offset_(offset),
-        whole_(wave_has_one_level(p, request, state, which)) {
+  HWY_INLINE SquareReader(const PreparedSampler& p, const SampleRequest& request, const WaveState& state, int which)
+      : p_(p), request_(request), state_(state), which_(which), whole_(wave_has_one_level(p, request, state, which)) {
     if (!whole_) return;
     load_level_of(0);
     if constexpr (!NearWave::kExists) return;
+    with_known_addresses<false>(level_.axis, *this);
+    is_near_ = near_.find<true>(square_);
+  }
+
+  /// Finds the texels of all vectors.
+  HWY_INLINE void with_axes(const AxisLanes& x_axis, const AxisLanes& y_axis) {
+    Axis x_taps, y_taps;
+    x_taps.set(x_axis);
+    y_taps.set(y_axis);
     for (std::size_t v = 0; v < kVectors; ++v) {
-      const auto x = taps(0, v), y = taps(1, v);
+      const auto x = x_taps.taps(coord(0, v));
+      const auto y = y_taps.taps(coord(1, v));
       near_.add_first(v, x.first, y.first);
-      if constexpr (!kPairs) continue;
       near_.add_second(v, x.second, y.second);
       x_[v] = x.weight;
       y_[v] = y.weight;
     }
-    is_near_ = near_.template find<kPairs>(square_);
   }
 
   HWY_INLINE Weighed read(std::size_t vector) {
@@ -257,34 +280,22 @@ class SquareReader {
     return read_alone(vector);
   }
 
-  HWY_INLINE VU read_first(std::size_t vector) {
-    if constexpr (!NearWave::kExists) return find_first_alone(vector);
-    if (is_near_) return near_.load_first(p_.plan.view->base, square_, vector);
-    return read_first_alone(vector);
-  }
-
  private:
   HWY_INLINE void load_level_of(std::size_t vector) {
     load_level<2>(p_, request_, state_, which_, vector * hn::Lanes(DF()), p_.plan.cube, level_);
-    for (std::size_t i = 0; offset_ != nullptr && i < 2; ++i) {
-      level_.axis[i].has_offset = true;
-      level_.axis[i].offset = splat((*offset_)[i]);
-    }
     axis_[0].set(level_.axis[0]);
     axis_[1].set(level_.axis[1]);
     square_.set(level_);
   }
-  HWY_INLINE auto taps(std::size_t i, std::size_t vector) const {
-    return axis_[i].taps(hn::LoadU(DF(), state_.coord[i] + vector * hn::Lanes(DF())));
+  HWY_INLINE VF coord(std::size_t i, std::size_t vector) const {
+    return hn::LoadU(DF(), state_.coord[i] + vector * hn::Lanes(DF()));
   }
-
   /// A vector by itself.
   HWY_NOINLINE Weighed read_alone(std::size_t vector) { return find_alone(vector); }
-  HWY_NOINLINE VU read_first_alone(std::size_t vector) { return find_first_alone(vector); }
   HWY_INLINE Weighed find_alone(std::size_t vector) {
     if (!whole_) load_level_of(vector);
     const std::byte* const base = p_.plan.view->base;
-    const auto x = taps(0, vector), y = taps(1, vector);
+    const auto x = axis_[0].taps(coord(0, vector)), y = axis_[1].taps(coord(1, vector));
     if (square_.uniform) {
       NearWave near;
       for (std::size_t v = 0; v < kVectors; ++v) {
@@ -297,18 +308,11 @@ class SquareReader {
     const VI row1 = hn::Add(square_.origin, hn::Mul(y.second, square_.row_pitch));
     return {load_rows_of_words(base, row0, row1, x.first, x.second), x.weight, y.weight};
   }
-  HWY_INLINE VU find_first_alone(std::size_t vector) {
-    if (!whole_) load_level_of(vector);
-    const auto x = taps(0, vector), y = taps(1, vector);
-    const VI row = hn::Add(square_.origin, hn::Mul(y.first, square_.row_pitch));
-    return load_words(p_.plan.view->base, hn::Add(row, hn::ShiftLeft<2>(x.first)));
-  }
 
   const PreparedSampler& p_;
   const SampleRequest& request_;
   const WaveState& state_;
   int which_;
-  const std::array<std::int32_t, 2>* offset_;
   bool whole_;
   bool is_near_ = false;
   LevelLanes level_;

@@ -54,8 +54,8 @@ HWY_INLINE void load_taps(const WordTaps& taps, std::size_t first, VU words[kTap
       words[k] = pair.first;
       words[k + 1] = pair.second;
     } else {
-      words[k] = load_words(base, offset(k));
-      words[k + 1] = load_words(base, offset(k + 1));
+      words[k] = load_narrow_words(base, offset(k), taps.view.format->block_bytes);
+      words[k + 1] = load_narrow_words(base, offset(k + 1), taps.view.format->block_bytes);
     }
   }
 }
