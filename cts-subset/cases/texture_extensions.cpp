@@ -9,7 +9,8 @@ namespace vitrine::cts {
 namespace {
 
 /// One lookup per pixel of a 64x64 target; `code` sets vec4 v from vec2 p (0..1 over the target).
-void look_up(Run& run, VkImageView view, VkSampler sampler, const std::string& code, const char* type) {
+void look_up(Run& run, VkImageView view, VkSampler sampler, const std::string& code, const char* type,
+             const char* extension = "") {
   Binding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, {}, {{sampler, view, VK_IMAGE_LAYOUT_GENERAL}}, {}};
   const Resources res = run.resources({binding});
   TargetSpec target_spec;
@@ -19,7 +20,7 @@ void look_up(Run& run, VkImageView view, VkSampler sampler, const std::string& c
   spec.layout = res.layout;
   spec.vertex = kFullScreenVertex;
   spec.fragment =
-      std::string("layout(binding = 0) uniform sampler") + type +
+      std::string(extension) + "layout(binding = 0) uniform sampler" + type +
       " t;\nlayout(location = 0) out vec4 v;\nvoid main() {\n  vec2 p = gl_FragCoord.xy * 0.015625;\n  v = " + code +
       ";\n}\n";
   const VkPipeline pipeline = make_pipeline(run, spec, target);
@@ -62,6 +63,30 @@ CTS_RANDOM("texture", "custom_border", 12) {
   }
   const VkImageView view = run.image_view(image, VK_IMAGE_VIEW_TYPE_2D, format, image.range(), mapping);
   look_up(run, view, run.sampler(info), "texture(t, p * 3.0 - 1.0)", "2D");
+}
+
+/// The operand MinLod, which the reference does not have: it samples the level that the lookup finds, or that one.
+CTS_RANDOM("texture", "shader_min_lod", 16) {
+  Random& random = run.random;
+  ImageSpec spec;
+  spec.format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32_SFLOAT});
+  spec.extent = {64, 32, 1};
+  spec.levels = 7;
+  spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  const Image image = run.image(spec);
+  run.fill_random(image);
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = random.chance(0.5f) ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  info.mipmapMode = random.chance(0.5f) ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+  info.minLod = random.chance(0.3f) ? random.real(0, 2) : 0;
+  info.maxLod = random.chance(0.5f) ? 5 : VK_LOD_CLAMP_NONE;
+  const std::string at = "p * p * " + std::to_string(random.real(0.5f, 12.0f));
+  const std::string level = std::to_string(random.real(0, 5)) + " * p.x";
+  const bool has = run.gpu.features.shaderResourceMinLod;
+  look_up(run, image.view, run.sampler(info),
+          has ? "textureClampARB(t, " + at + ", " + level + ")"
+              : "textureLod(t, " + at + ", max(textureQueryLod(t, " + at + ").y, " + level + "))",
+          "2D", has ? "#extension GL_ARB_sparse_texture_clamp : require\n" : "");
 }
 
 CTS_RANDOM("texture", "view_of_3d", 8) {
