@@ -32,6 +32,11 @@ const WideInfo& wide_info(Op op) {
   return kWideInfos[static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::kIntrinsicEnd) - 1];
 }
 
+std::uint32_t components_read(const Instr& instr, std::size_t index) {
+  if (instr.width != 64) return instr.components;
+  return alu_info(instr.op).operands[index] == 'B' && !is_selection(instr.op) ? 1 : 2;
+}
+
 const char* op_name(Op op) {
   if (op < Op::kAluCount) return alu_info(op).name;
   if (is_wide(op)) return wide_info(op).name;

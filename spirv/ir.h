@@ -49,6 +49,11 @@ struct AluInfo {
 };
 /// Row of ops.def; `op` < kAluCount.
 const AluInfo& alu_info(Op op);
+struct Instr;
+/// The ops that choose a value whatever it is.
+inline bool is_selection(Op op) { return op == Op::kSelect || op == Op::kSelectB; }
+/// Components that an ALU instruction reads of operand `index`.
+std::uint32_t components_read(const Instr& instr, std::size_t index);
 /// Row of wide_ops.def.
 struct WideInfo {
   const char* name;
@@ -90,7 +95,10 @@ struct Instr {
   Op op = Op::kMov;
   std::uint8_t components = 1;  ///< of the result; 0: no result
   bool boolean = false;         ///< result is a lane mask per component
-  bool exact = false;           ///< precise / NoContraction / feeds an invariant output: inexact rewrites do not apply
+  /// ALU: bits of the numbers that it computes. 16: binary16 in the low half of a word. 64: one double, the two words
+  /// of which are components 0 and 1 of every operand and of the result. Neither is left behind the rewrites.
+  std::uint8_t width = 32;
+  bool exact = false;   ///< precise / NoContraction / feeds an invariant output: inexact rewrites do not apply
   bool opaque = false;  ///< rewrites neither change it nor look through it: parts of what the reference has as one
                         ///< operation (5.1)
   ValueId result = kNoValue;
@@ -223,6 +231,12 @@ struct Function {
   std::vector<std::pair<std::uint32_t, std::string>> files;  ///< names that Origin::file stands for
   bool signed_zero_inf_nan_preserve = false;                 ///< execution mode: inexact rewrites are off (section 4.1)
   bool denorm_flush_to_zero = false;
+  std::uint8_t inexact_off = 0;  ///< sum of the widths, of 16 and 64, for which one of the two is declared
+
+  /// The inexact rewrites do not apply to numbers of `width` bits.
+  bool forbids_inexact(std::uint32_t width) const {
+    return width == 32 ? signed_zero_inf_nan_preserve || denorm_flush_to_zero : (inexact_off & width) != 0;
+  }
 
   ValueId new_value(std::uint8_t components, bool boolean) {
     values.push_back({components, boolean});

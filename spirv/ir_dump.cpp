@@ -57,6 +57,7 @@ struct Dump {
       text += " = ";
     }
     text += op_name(instr.op);
+    if (instr.width != 32) add("@%u", instr.width);
     if (instr.exact) text += '!';
     const bool alu = instr.op < Op::kAluCount;
     sources(instr.src, alu ? instr.components : instr.op == Op::kVec ? 1 : 0);

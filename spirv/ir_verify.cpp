@@ -52,7 +52,7 @@ struct Verifier {
     if (instr.src.size() != info.sources) return complain(std::string(info.name) + ": number of sources");
     if (instr.boolean != (info.result == 'B')) complain(std::string(info.name) + ": type of the result", instr.result);
     for (std::size_t i = 0; i < instr.src.size() && error.empty(); i++) {
-      use(instr.src[i], instr.components);
+      use(instr.src[i], components_read(instr, i));
       if (error.empty() && function.values[instr.src[i].value].boolean != (info.operands[i] == 'B'))
         complain(std::string(info.name) + ": type of operand", instr.src[i].value);
     }

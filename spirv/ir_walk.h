@@ -26,10 +26,11 @@ void each_operand(const Function& function, Node& node, const F& f) {
   if (node.kind == Node::Kind::kIf) f(node.condition, 1u);
   for (Src& src : node.init) f(src, static_cast<std::uint32_t>(function.values[src.value].components));
   Instr& instr = node.instr;
-  for (Src& src : instr.src) {
+  for (std::size_t i = 0; i < instr.src.size(); ++i) {
+    Src& src = instr.src[i];
     std::uint32_t width = function.values[src.value].components;
     if (instr.op < Op::kAluCount)
-      width = instr.components;
+      width = components_read(instr, i);
     else if (instr.op == Op::kVec || (src.swizzle[0] == src.swizzle[1] && src.swizzle[0] == src.swizzle[2]))
       width = 1;
     f(src, width);

@@ -155,6 +155,9 @@ void select(Translator& t, const Inst& inst, ir::Op) {
   const Expr condition = number_of(t, inst.operand(0));
   const Value &a = value_of(t, inst.operand(1)), &b = value_of(t, inst.operand(2));
   if (a.leaves.size() != b.leaves.size()) fail(inst, "operands differ in size");
+  const Type& number = number_type(t, inst.result_type);
+  if (number.kind == Type::Kind::kFloat && number.width != 32)
+    return set_number(t, inst, front::select(condition, number_of(t, inst.operand(1)), number_of(t, inst.operand(2))));
   std::vector<ir::ValueId> results;
   for (std::size_t i = 0; i < a.leaves.size(); i++) {
     const bool boolean = is_boolean(t, a.leaves[i]);

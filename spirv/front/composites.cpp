@@ -60,12 +60,14 @@ const Columns* pointer_to(const std::optional<Columns>& columns) { return column
 
 Expr dot(const Expr& a, const Expr& b) {
   Translator& t = *a.t;
-  const Expr products = a * b;
-  const std::uint32_t n = products.size();
-  if (n == 1) return products;
+  const std::uint32_t n = std::max(a.size(), b.size());
+  if (n == 1) return a * b;
   // Sums of three and four are opaque to the rewrites (5.1), those of two only in the first round, which rewrite()
   // ends.
-  const bool saved = std::exchange(t.opaque, true);
+  const bool saved = t.opaque;
+  t.opaque |= a.width == 64;  // its products are not one instruction, by which the rewrites know the sum
+  const Expr products = a * b;
+  t.opaque = true;
   Expr sum = products.at(0) + products.at(1);
   for (std::uint8_t i = 2; i < n; i++) sum = sum + products.at(i);
   t.opaque = saved;

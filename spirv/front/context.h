@@ -172,7 +172,8 @@ inline constexpr std::uint32_t kMaxDepth = 200;
 
 // ---- emit.cpp
 /// Appends an instruction with a result of `components`; returns the result.
-ir::ValueId emit(Translator& t, ir::Op op, std::uint32_t components, bool boolean, std::vector<ir::Src> src);
+ir::ValueId emit(Translator& t, ir::Op op, std::uint32_t components, bool boolean, std::vector<ir::Src> src,
+                 std::uint8_t width = 32);
 /// Appends an instruction without result and returns it.
 ir::Instr& emit_effect(Translator& t, ir::Op op, std::vector<ir::Src> src = {});
 /// The instruction that was appended last.

@@ -16,12 +16,14 @@ ir::Instr& append(Translator& t, ir::Op op, std::vector<ir::Src> src) {
 }
 
 /// Keeps ill-typed operands of a module that nobody validated out of the IR.
-void check_sources(const Translator& t, ir::Op op, std::uint32_t count, const std::vector<ir::Src>& sources) {
+void check_sources(const Translator& t, ir::Op op, std::uint32_t count, std::uint8_t width,
+                   const std::vector<ir::Src>& sources) {
   const ir::AluInfo& info = ir::alu_info(op);
   bool fits = sources.size() == info.sources;
   for (std::size_t i = 0; i < sources.size() && fits; i++) {
     fits = is_boolean(t, sources[i].value) == (info.operands[i] == 'B');
-    for (std::uint32_t c = 0; c < count; c++) fits &= sources[i].swizzle[c] < components(t, sources[i].value);
+    const std::uint32_t read = width == 64 && !ir::is_selection(op) ? info.operands[i] == 'B' ? 1 : 2 : count;
+    for (std::uint32_t c = 0; c < read; c++) fits &= sources[i].swizzle[c] < components(t, sources[i].value);
   }
   if (!fits) throw Failure("operand does not fit its type");
 }
@@ -63,11 +65,13 @@ ir::Node& emit_node(Translator& t, ir::Node::Kind kind) {
   return *t.list->back();
 }
 
-ir::ValueId emit(Translator& t, ir::Op op, std::uint32_t components, bool boolean, std::vector<ir::Src> src) {
-  if (op < ir::Op::kAluCount) check_sources(t, op, components, src);
+ir::ValueId emit(Translator& t, ir::Op op, std::uint32_t components, bool boolean, std::vector<ir::Src> src,
+                 std::uint8_t width) {
+  if (op < ir::Op::kAluCount) check_sources(t, op, components, width, src);
   ir::Instr& instr = append(t, op, std::move(src));
   instr.components = static_cast<std::uint8_t>(components);
   instr.boolean = boolean;
+  instr.width = width;
   return instr.result = t.function.new_value(instr.components, boolean);
 }
 

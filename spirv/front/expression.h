@@ -126,7 +126,9 @@ inline Expr multiply_add(Expr a, float b, Expr c) { return multiply_add(a, imm(*
 inline Expr multiply_add(Expr a, float b, float c) { return multiply_add(a, imm(*a.t, b), imm(*a.t, c)); }
 inline Expr min(Expr a, Expr b) { return apply(ir::Op::kFMin, {a, b}); }
 inline Expr max(Expr a, Expr b) { return apply(ir::Op::kFMax, {a, b}); }
-inline Expr bool_to_float(Expr a, std::uint8_t width) { return convert_float(apply(ir::Op::kB2F, {a}), width); }
+inline Expr bool_to_float(Expr a, std::uint8_t width) {
+  return width == 32 ? apply(ir::Op::kB2F, {a}) : apply_sized(ir::Op::kB2F, {&a, 1}, width);
+}
 inline Expr select(Expr condition, Expr a, Expr b) { return apply(ir::Op::kSelect, {condition, a, b}); }
 
 // Operators on words.

@@ -134,9 +134,11 @@ void read_modes(Translator& t) {
         break;
       case spv::ExecutionMode::SignedZeroInfNanPreserve:
         t.function.signed_zero_inf_nan_preserve |= word(0) == 32;
+        t.function.inexact_off |= static_cast<std::uint8_t>(word(0) & (16 | 64));
         break;
       case spv::ExecutionMode::DenormFlushToZero:
         t.function.denorm_flush_to_zero |= word(0) == 32;
+        t.function.inexact_off |= static_cast<std::uint8_t>(word(0) & (16 | 64));
         break;
       case spv::ExecutionMode::SubgroupUniformControlFlowKHR:  // invocations always meet again where constructs end
       case spv::ExecutionMode::PixelInterlockOrderedEXT:       // fragments that write memory run in order

@@ -1,8 +1,8 @@
 // ALU operations on numbers of 8, 16 and 64 bits, out of operations on 32-bit words (lavapipe-shader-math.md 7 and 8).
 //
 // Narrow integers lie zero-extended in a word: signed operations extend the sign first, and what may leave the width is
-// cut off. binary16 is computed in binary32 and rounded after every operation, which gives the bits of the operation in
-// binary16 (24 >= 2 * 11 + 2). 64-bit numbers are pairs of words for wide_ops.def.
+// cut off. 64-bit integers are pairs of words for wide_ops.def. Floats keep their operations until the rewrites have
+// seen them (ir::Instr::width).
 #include <bit>
 #include <cmath>
 
@@ -37,7 +37,12 @@ Expr with_width(Expr value, std::uint8_t width) {
 
 Expr words(Op op, std::initializer_list<Expr> operands) { return apply(op, operands); }
 
-bool is_float_op(Op op) {
+/// The operation computes with floats, or selects between what its instruction calls floats.
+bool is_float_op(const Translator& t, Op op) {
+  if (op == Op::kSelect)
+    return t.inst != nullptr && t.inst->result_type != 0 &&
+           number_type(t, t.inst->result_type).kind == Type::Kind::kFloat;
+  if (op == Op::kB2F) return true;
   const ir::AluInfo& info = ir::alu_info(op);
   return info.operands[0] == 'F' && op != Op::kF2I && op != Op::kF2U;
 }
@@ -55,34 +60,6 @@ Expr literal_at(const Expr& literal, std::uint8_t width) {
 
 Op wide_op(Op op) {
   switch (op) {
-    case Op::kFAdd:
-      return Op::kDAdd;
-    case Op::kFMul:
-      return Op::kDMul;
-    case Op::kFDiv:
-      return Op::kDDiv;
-    case Op::kFSqrt:
-      return Op::kDSqrt;
-    case Op::kFFloor:
-      return Op::kDFloor;
-    case Op::kFCeil:
-      return Op::kDCeil;
-    case Op::kFTrunc:
-      return Op::kDTrunc;
-    case Op::kFRoundEven:
-      return Op::kDRoundEven;
-    case Op::kFMin:
-      return Op::kDMin;
-    case Op::kFMax:
-      return Op::kDMax;
-    case Op::kFLt:
-      return Op::kDLt;
-    case Op::kFGe:
-      return Op::kDGe;
-    case Op::kFEq:
-      return Op::kDEq;
-    case Op::kFNeu:
-      return Op::kDNeu;
     case Op::kIAdd:
       return Op::kQAdd;
     case Op::kISub:
@@ -130,16 +107,6 @@ Expr zero_words(const Expr& like) {
   return {like.t, constant(*like.t, {zeros, like.size()})};
 }
 
-/// NaN and zeros give +0.
-Expr sign_wide(Expr a) {
-  Translator& t = *a.t;
-  const Expr zero = zero_wide(t);
-  const Expr below = apply(Op::kFLt, {a, zero}), above = apply(Op::kFLt, {zero, a});
-  const Expr magnitude = select(above, imm_u32(t, 0x3ff00000), imm_u32(t, 0));
-  const Expr high = select(below, imm_u32(t, 0xbff00000), magnitude);
-  return pair(zero_words(high), high);
-}
-
 Expr apply_64(Op op, std::span<const Expr> in) {
   Translator& t = *in[0].t;
   const Expr& a = in[0];
@@ -158,22 +125,6 @@ Expr apply_64(Op op, std::span<const Expr> in) {
     case Op::kINe:
       return words(op == Op::kIEq ? Op::kAndB : Op::kOrB,
                    {words(op, {low_word(a), low_word(in[1])}), words(op, {high_word(a), high_word(in[1])})});
-    case Op::kFNeg:
-      return pair(words(Op::kMov, {low_word(a)}), words(Op::kXor, {high_word(a), imm_u32(t, 0x80000000)}));
-    case Op::kFAbs:
-      return pair(words(Op::kMov, {low_word(a)}), words(Op::kAnd, {high_word(a), imm_u32(t, 0x7fffffff)}));
-    case Op::kFSub:
-      return a + -in[1];
-    case Op::kFRcp:
-      return constant_bits(t, std::bit_cast<std::uint64_t>(1.0), 64) / a;
-    case Op::kFRsq:
-      return constant_bits(t, std::bit_cast<std::uint64_t>(1.0), 64) / sqrt(a);
-    case Op::kFFract:
-      return a - apply(Op::kFFloor, {a});
-    case Op::kFSign:
-      return sign_wide(a);
-    case Op::kFMulAdd:
-      return a * in[1] + in[2];
     case Op::kINeg:
       return apply(Op::kISub, {zero_wide(t), a});
     case Op::kIAbs:
@@ -195,9 +146,6 @@ Expr apply_64(Op op, std::span<const Expr> in) {
       return convert_unsigned(words(Op::kB2I, {apply(Op::kULt, {apply(Op::kIAdd, {a, in[1]}), a})}), 64);
     case Op::kUSubBorrow:
       return convert_unsigned(words(Op::kB2I, {apply(Op::kULt, {a, in[1]})}), 64);
-    case Op::kB2F:
-    case Op::kB2I:
-      break;
     default:
       break;
   }
@@ -296,78 +244,84 @@ Expr apply_narrow_int(Op op, std::span<const Expr> in, std::uint8_t width) {
   }
 }
 
-Expr is_nan_half(const Expr& a) {
-  Translator& t = *a.t;
-  return words(Op::kULt, {imm_u32(t, 0x7c00), words(Op::kAnd, {zero_extended(a), imm_u32(t, 0x7fff)})});
-}
-
 Expr to_half(const Expr& value) { return with_width(words(Op::kF2Half, {value}), 16); }
 Expr from_half(const Expr& value) { return words(Op::kHalf2F, {zero_extended(value)}); }
 
-/// a < b (min) or a > b (max) or only b is NaN: a, else b. The reference has no instruction for binary16, and chooses
-/// otherwise than for binary32 when both are NaN.
-Expr min_max_half(Op op, const Expr& a, const Expr& b) {
-  const Expr wins = op == Op::kFMin ? apply(Op::kFLt, {a, b}) : apply(Op::kFLt, {b, a});
-  const Expr only_b = words(Op::kAndB, {is_nan_half(b), words(Op::kNotB, {is_nan_half(a)})});
-  return select(words(Op::kOrB, {wins, only_b}), a, b);
+/// Vector of components that are `low`, of 64 bits with their `high` words.
+Expr joined(Translator& t, std::vector<ir::Src> low, std::vector<ir::Src> high, bool boolean) {
+  const auto together = [&](std::vector<ir::Src> parts) {
+    // One word of a pair is a component of it; vec() joins scalars.
+    if (parts.size() == 1) return extract(t, parts[0].value, parts[0].swizzle[0]);
+    return vec(t, std::move(parts), boolean);
+  };
+  Expr result{&t, together(std::move(low))};
+  if (high.empty()) return result;
+  result.high = together(std::move(high));
+  result.width = 64;
+  return result;
 }
 
-/// The reference calls the C library for these.
-Expr library_half(Op op, const Expr& a) {
-  const Expr single = from_half(a);
-  return to_half(apply_wide(op, {&single, 1}));
+// ---- floats: operations that the rewrites expand
+
+bool has_double(Op op) {
+  switch (op) {
+    case Op::kFSin:
+    case Op::kFCos:
+    case Op::kFExp2:
+    case Op::kFLog2:
+    case Op::kFPow:
+    case Op::kFDdx:
+    case Op::kFDdy:
+      return false;
+    default:
+      return true;
+  }
 }
 
 Expr apply_half(Op op, std::span<const Expr> in) {
   Translator& t = *in[0].t;
-  const Expr& a = in[0];
-  const auto bits = [&](Op as, std::uint32_t constant) {
-    return with_width(words(as, {zero_extended(a), imm_u32(t, constant)}), 16);
-  };
-  switch (op) {
-    case Op::kFNeg:
-      return bits(Op::kXor, 0x8000);
-    case Op::kFAbs:
-      return bits(Op::kAnd, 0x7fff);
-    case Op::kFSign: {
-      const Expr magnitude = words(Op::kAnd, {zero_extended(a), imm_u32(t, 0x7fff)});
-      const Expr number = words(Op::kULt, {words(Op::kISub, {magnitude, imm_u32(t, 1)}), imm_u32(t, 0x7c00)});
-      const Expr one = words(Op::kOr, {words(Op::kAnd, {zero_extended(a), imm_u32(t, 0x8000)}), imm_u32(t, 0x3c00)});
-      return with_width(select(number, one, imm_u32(t, 0)), 16);
-    }
-    case Op::kFMin:
-    case Op::kFMax:
-      return min_max_half(op, a, in[1]);
-    case Op::kFSub:
-      return a + -in[1];
-    case Op::kFFract:
-      return a - apply(Op::kFFloor, {a});
-    case Op::kFRsq:
-      return apply(Op::kFRcp, {sqrt(a)});
-    case Op::kFSin:
-      return library_half(Op::kHSin, a);
-    case Op::kFCos:
-      return library_half(Op::kHCos, a);
-    case Op::kFExp2:
-      return library_half(Op::kHExp2, a);
-    case Op::kFLog2:
-      return library_half(Op::kHLog2, a);
-    case Op::kFMulAdd:
-      return a * in[1] + in[2];
-    case Op::kFPow: {
-      const Expr zero = constant_bits(t, 0, 16);
-      const Expr power = apply(Op::kFExp2, {apply(Op::kFLog2, {a}) * in[1]});
-      return select(words(Op::kOrB, {apply(Op::kFEq, {a, zero}), is_nan_half(a)}), zero, power);
-    }
-    default:
-      break;
+  std::uint32_t size = 1;
+  std::vector<ir::Src> sources;
+  for (const Expr& operand : in) {
+    size = std::max(size, operand.size());
+    sources.push_back(operand.src());
   }
-  std::vector<Expr> operands;
-  for (const Expr& operand : in) operands.push_back(from_half(operand));
-  const bool saved = std::exchange(t.opaque, true);
-  const Expr result = front::apply(op, operands);
-  t.opaque = saved;
-  return ir::alu_info(op).result == 'B' ? result : to_half(result);
+  const bool boolean = ir::alu_info(op).result == 'B';
+  Expr result{&t, emit(t, op, size, boolean, std::move(sources), 16)};
+  return boolean ? result : with_width(result, 16);
+}
+
+/// The words of component `c`, or the boolean.
+ir::Src double_source(const Expr& value, std::uint32_t c) {
+  Translator& t = *value.t;
+  const ir::Src src = value.src();
+  if (src.swizzle[c] >= components(t, src.value)) throw Failure("operands differ in size");
+  const ir::Src low = splat(src.value, src.swizzle[c]);
+  if (is_boolean(t, src.value)) return low;
+  if (value.high == ir::kNoValue) throw Failure("operand does not fit its type");
+  const auto *words = constant_of(t, src.value), *high = constant_of(t, value.high);
+  if (words != nullptr && high != nullptr) {
+    const std::uint32_t pair[2] = {(*words)[src.swizzle[c]], (*high)[src.swizzle[c]]};
+    return whole(constant(t, pair));
+  }
+  return whole(vec(t, {low, splat(value.high, src.swizzle[c])}, false));
+}
+
+Expr apply_double(Op op, std::span<const Expr> in) {
+  if (!has_double(op)) throw Failure(std::string(ir::op_name(op)) + " is not supported on 64-bit numbers");
+  Translator& t = *in[0].t;
+  std::uint32_t size = 1;
+  for (const Expr& operand : in) size = std::max(size, operand.size());
+  const bool boolean = ir::alu_info(op).result == 'B';
+  std::vector<ir::Src> low, high;
+  for (std::uint32_t c = 0; c < size; c++) {
+    std::vector<ir::Src> sources;
+    for (const Expr& operand : in) sources.push_back(double_source(operand, c));
+    const ir::ValueId value = emit(t, op, boolean ? 1 : 2, boolean, std::move(sources), 64);
+    low.push_back(splat(value, 0));
+    high.push_back(splat(value, 1));
+  }
+  return joined(t, std::move(low), boolean ? std::vector<ir::Src>{} : std::move(high), boolean);
 }
 
 }  // namespace
@@ -418,17 +372,7 @@ Expr apply_wide(Op op, std::span<const Expr> operands) {
     low.push_back(splat(value, 0));
     high.push_back(splat(value, 1));
   }
-  Expr result{&t, ir::kNoValue};
-  const auto joined = [&](std::vector<ir::Src> parts) {
-    // One word of a pair is a component of it; vec() joins scalars.
-    if (parts.size() == 1) return extract(t, parts[0].value, parts[0].swizzle[0]);
-    return vec(t, std::move(parts), info.result == 'B');
-  };
-  result.id = joined(std::move(low));
-  if (result_words == 1) return result;
-  result.high = joined(std::move(high));
-  result.width = 64;
-  return result;
+  return joined(t, std::move(low), result_words == 1 ? std::vector<ir::Src>{} : std::move(high), info.result == 'B');
 }
 
 Expr apply_sized(Op op, std::span<const Expr> operands, std::uint8_t width) {
@@ -440,8 +384,8 @@ Expr apply_sized(Op op, std::span<const Expr> operands, std::uint8_t width) {
     if (in[i].literal != Expr::Literal::kNone) in[i] = literal_at(in[i], width);
     if (!is_boolean(t, in[i].id) && in[i].width != width) throw Failure("operands differ in width");
   }
-  if (width == 64) return apply_64(op, in);
-  return is_float_op(op) ? apply_half(op, in) : apply_narrow_int(op, in, width);
+  if (width == 64) return is_float_op(t, op) ? apply_double(op, in) : apply_64(op, in);
+  return is_float_op(t, op) ? apply_half(op, in) : apply_narrow_int(op, in, width);
 }
 
 // ---- conversions (lavapipe-shader-math.md 7.1)

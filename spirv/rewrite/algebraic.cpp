@@ -9,6 +9,7 @@
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/pattern.h"
 #include "spirv/rewrite/range.h"
+#include "spirv/rewrite/sized.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -23,6 +24,7 @@ constexpr unsigned kMaxOrders = 8;  ///< commutative operations of one search th
 
 struct Match {
   std::array<Src, 8> variable;
+  std::array<std::uint8_t, 8> width{};  ///< bits of the variables that are numbers, 0: booleans
   std::uint32_t seen = 0;
   std::uint32_t orders = 0;  ///< bit i: commutative operation i has its operands swapped
   bool inexact = false;      ///< both stick over the attempts with other orders, as in the reference
@@ -33,14 +35,15 @@ class Rewriter {
  public:
   Rewriter(Graph& graph, const Rules& rules) : graph_(graph), rules_(rules), ranges_(graph) {
     states_.resize(graph.values.size());
-    inexact_off_ = graph.function.signed_zero_inf_nan_preserve || graph.function.denorm_flush_to_zero;
+    inexact_off_ = graph.function.forbids_inexact(32);
   }
 
   bool run() {
     std::vector<InstId> order;
     auto visit = [&](InstId id) {
-      if (graph_.insts[id].kind != Kind::kAlu) return;
+      if (!computes(graph_.insts[id])) return;
       update_state(id);
+      any_sized_ |= graph_.insts[id].width != 32;
       order.push_back(id);
     };
     for_each_inst(graph_, graph_.root, visit);
@@ -99,7 +102,7 @@ class Rewriter {
     for (std::size_t next = 0; next < pending.size(); ++next) {
       for (Slot slot = graph_.values[pending[next]].first_use; slot != kNone; slot = graph_.sources[slot].next) {
         const InstId user = graph_.sources[slot].user;
-        if (graph_.insts[user].kind != Kind::kAlu || !update_state(user)) continue;
+        if (!computes(graph_.insts[user]) || !update_state(user)) continue;
         queue_.push_back(user);
         pending.push_back(graph_.insts[user].result);
       }
@@ -151,15 +154,23 @@ class Rewriter {
   bool used_as_float_only(ValueId value) const {
     for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next) {
       const Inst& user = graph_.insts[graph_.sources[slot].user];
-      if (user.kind != Kind::kAlu || ir::alu_info(user.op).operands[slot - user.first] != 'F') return false;
+      if (!computes(user) || ir::alu_info(user.op).operands[slot - user.first] != 'F') return false;
     }
     return true;
+  }
+
+  /// Who reads one word of a double reads the other one, too, and is one use.
+  unsigned double_uses(ValueId value) const {
+    unsigned uses = 0;
+    for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next)
+      uses += graph_.sources[slot].src.swizzle[0] == 0 ? 1 : 0;
+    return uses;
   }
 
   bool holds_for_inst(Condition condition, const Inst& inst) const {
     switch (condition) {
       case Condition::kOnce:
-        return graph_.values[inst.result].uses == 1;
+        return inst.width == 64 && !inst.boolean ? double_uses(inst.result) == 1 : graph_.values[inst.result].uses == 1;
       case Condition::kUsed:
         return graph_.values[inst.result].uses != 0;
       case Condition::kFloatOnly:
@@ -171,7 +182,7 @@ class Rewriter {
 
   bool is_product(ValueId value) const {
     const Inst* inst = graph_.def(value);
-    if (!inst || inst->kind != Kind::kAlu || inst->opaque) return false;
+    if (!inst || !computes(*inst) || inst->opaque) return false;
     if (inst->op == Op::kFNeg) return is_product(graph_.source(*inst, 0).value);
     return inst->op == Op::kFMul;
   }
@@ -249,15 +260,26 @@ class Rewriter {
 
   // ---- matching
 
-  bool match_constant(const Pattern& pattern, ValueId value, const Swizzle& swizzle, unsigned components) const {
+  /// Bits of the numbers of operand `index`, 0: booleans.
+  static std::uint8_t operand_width(const Inst& inst, std::uint32_t index, std::uint8_t width) {
+    return ir::alu_info(inst.op).operands[index] == 'B' ? std::uint8_t{0} : width;
+  }
+
+  bool match_constant(const Pattern& pattern, ValueId value, const Swizzle& swizzle, unsigned components,
+                      unsigned width) const {
     const Inst* constant = graph_.constant(value);
     if (!constant) return false;
+    if (pattern.kind == Pattern::Kind::kFloat && width == 64)
+      return !constant->boolean && literal_number(*constant, swizzle, width) == pattern.number;
     const bool wants_boolean = pattern.kind == Pattern::Kind::kBoolean;
     if (constant->boolean != wants_boolean) return false;
     for (unsigned c = 0; c < components; ++c) {
       const std::uint32_t bits = constant->imm[swizzle[c]];
       if (pattern.kind == Pattern::Kind::kFloat) {
-        if (static_cast<double>(std::bit_cast<float>(bits)) != pattern.number) return false;
+        const Swizzle here{swizzle[c]};
+        if ((width == 32 ? static_cast<double>(std::bit_cast<float>(bits)) : literal_number(*constant, here, width)) !=
+            pattern.number)
+          return false;
       } else if (bits != pattern.bits) {
         return false;
       }
@@ -266,11 +288,11 @@ class Rewriter {
   }
 
   bool match_variable(const Pattern& pattern, const Inst& inst, std::uint32_t index, const Swizzle& swizzle,
-                      unsigned components, Match& match) {
+                      unsigned components, std::uint8_t width, Match& match) {
     const ValueId value = graph_.source(inst, index).value;
     Src& bound = match.variable[pattern.variable];
     if (match.seen >> pattern.variable & 1) {
-      if (bound.value != value) return false;
+      if (bound.value != value || match.width[pattern.variable] != width) return false;
       for (unsigned c = 0; c < components; ++c)
         if (bound.swizzle[c] != swizzle[c]) return false;
       return true;
@@ -278,26 +300,40 @@ class Rewriter {
     if (pattern.constant && (!graph_.constant(value) || is_veiled(inst))) return false;
     if (!holds_for_operand(pattern.condition, inst, index, swizzle, components)) return false;
     match.seen |= 1u << pattern.variable;
+    match.width[pattern.variable] = width;
     bound = {value, {}};
     for (unsigned c = 0; c < components; ++c) bound.swizzle[c] = swizzle[c];
     return true;
   }
 
   bool match_operand(std::uint16_t index, const Inst& inst, std::uint32_t operand, unsigned components,
-                     const Swizzle& outer, Match& match) {
+                     const Swizzle& outer, std::uint8_t width, Match& match) {
     const Src src = graph_.source(inst, operand);
     Swizzle swizzle{};
-    for (unsigned c = 0; c < components; ++c) swizzle[c] = src.swizzle[outer[c]];
+    if (inst.width == 64) components = operand_components(inst, operand);
+    for (unsigned c = 0; c < components; ++c) swizzle[c] = src.swizzle[inst.width == 64 ? c : outer[c]];
+    width = operand_width(inst, operand, width);
     const Pattern& pattern = rules_.patterns[index];
     if (pattern.kind == Pattern::Kind::kVariable)
-      return match_variable(pattern, inst, operand, swizzle, components, match);
+      return match_variable(pattern, inst, operand, swizzle, components, width, match);
     if (is_veiled(inst)) return false;
-    if (pattern.kind != Pattern::Kind::kOp) return match_constant(pattern, src.value, swizzle, components);
+    if (pattern.kind != Pattern::Kind::kOp) return match_constant(pattern, src.value, swizzle, components, width);
     const Inst* def = graph_.def(src.value);
-    return def && def->kind == Kind::kAlu && !def->opaque && match_op(pattern, *def, components, swizzle, match);
+    if (!def || !computes(*def) || def->opaque) return false;
+    if (def->boolean ? width != 0 : !makes(*def, width)) return false;
+    if (def->width == 64 && !def->boolean && (swizzle[0] != 0 || swizzle[1] != 1)) return false;
+    return match_op(pattern, *def, components, swizzle, def->boolean ? def->width : width, match);
   }
 
-  bool match_op(const Pattern& pattern, const Inst& inst, unsigned components, const Swizzle& swizzle, Match& match) {
+  /// The instruction's numbers have `width` bits. Selections of words may be of halves.
+  static bool makes(const Inst& inst, unsigned width) {
+    if (inst.width == width) return true;
+    return width == 16 && inst.kind == Kind::kAlu && ir::is_selection(inst.op);
+  }
+
+  /// `width`: bits of the numbers of the operation, of a comparison those of its operands.
+  bool match_op(const Pattern& pattern, const Inst& inst, unsigned components, const Swizzle& swizzle,
+                std::uint8_t width, Match& match) {
     if (pattern.op != inst.op || !holds_for_inst(pattern.condition, inst)) return false;
     match.inexact |= pattern.inexact;
     match.has_exact |= inst.exact;
@@ -306,23 +342,29 @@ class Rewriter {
                       (match.orders >> pattern.commutative & 1) != 0;
     for (unsigned i = 0; i < pattern.children; ++i) {
       const unsigned operand = swap && i < 2 ? i ^ 1 : i;
-      if (!match_operand(pattern.child[i], inst, operand, components, swizzle, match)) return false;
+      if (!match_operand(pattern.child[i], inst, operand, components, swizzle, width, match)) return false;
     }
     return true;
   }
 
   bool try_rule(const Rule& rule, const Inst& inst, Match& match) {
     const Pattern& search = rules_.patterns[rule.search];
-    if (search.inexact && inexact_off_) return false;
+    if (inst.width != 32 ? !applies(rule, search, inst.width) : search.inexact && inexact_off_) return false;
     if (rule.needs_free_zeros && graph_.function.signed_zero_inf_nan_preserve) return false;
     if (!has_shape(inst.result, search.shape)) return false;
     match = {};
     const std::uint32_t attempts = 1u << std::min<unsigned>(rule.commutative, kMaxOrders);
     for (match.orders = 0; match.orders < attempts; ++match.orders) {
       match.seen = 0;
-      if (match_op(search, inst, inst.components, {0, 1, 2, 3}, match)) return true;
+      if (match_op(search, inst, inst.components, {0, 1, 2, 3}, inst.width, match)) return true;
     }
     return false;
+  }
+
+  /// For numbers of 16 and 64 bits.
+  bool applies(const Rule& rule, const Pattern& search, unsigned width) const {
+    if (rule.needs_free_zeros && width == 64) return false;
+    return !(search.inexact || rule.needs_free_zeros) || !graph_.function.forbids_inexact(width);
   }
 
   // ---- replacing
@@ -337,32 +379,59 @@ class Rewriter {
     graph_.insts[made].origin = origin_;
   }
 
-  Src build_constant(const Pattern& pattern) {
-    const std::uint32_t bits = pattern.kind == Pattern::Kind::kFloat
-                                   ? std::bit_cast<std::uint32_t>(static_cast<float>(pattern.number))
-                                   : pattern.bits;
-    const InstId made = graph_.create_const(1, pattern.kind == Pattern::Kind::kBoolean, &bits);
+  Src build_constant(const Pattern& pattern, unsigned width) {
+    std::uint32_t bits[2] = {pattern.bits, 0};
+    if (pattern.kind == Pattern::Kind::kFloat) literal_words(pattern.number, width, bits);
+    const unsigned components = width == 64 && pattern.kind == Pattern::Kind::kFloat ? 2 : 1;
+    const InstId made =
+        graph_.create_const(static_cast<std::uint8_t>(components), pattern.kind == Pattern::Kind::kBoolean, bits);
     place(made);
     states_.resize(graph_.values.size());
-    return {graph_.insts[made].result, {0, 0, 0, 0}};
+    return {graph_.insts[made].result, {0, static_cast<std::uint8_t>(components - 1), 0, 0}};
   }
 
-  Src build(std::uint16_t index, unsigned components, const Match& match) {
+  /// Bits of the numbers that a pattern of a replacement makes, by the variables in it; 0: booleans, or literals alone.
+  std::uint8_t width_of(std::uint16_t index, const Match& match) const {
+    const Pattern& pattern = rules_.patterns[index];
+    if (pattern.kind == Pattern::Kind::kVariable) return match.width[pattern.variable];
+    if (pattern.kind != Pattern::Kind::kOp || ir::alu_info(pattern.op).result == 'B') return 0;
+    return computed_width(pattern, match);
+  }
+
+  /// Bits of the numbers that the operation computes with.
+  std::uint8_t computed_width(const Pattern& pattern, const Match& match) const {
+    for (unsigned i = 0; i < pattern.children; ++i)
+      if (const std::uint8_t width = width_of(pattern.child[i], match); width != 0) return width;
+    return 0;
+  }
+
+  Src build(std::uint16_t index, unsigned components, std::uint8_t width, const Match& match) {
     const Pattern& pattern = rules_.patterns[index];
     if (pattern.kind == Pattern::Kind::kVariable) return match.variable[pattern.variable];
-    if (pattern.kind != Pattern::Kind::kOp) return build_constant(pattern);
+    if (pattern.kind != Pattern::Kind::kOp) return build_constant(pattern, width);
+    const ir::AluInfo& info = ir::alu_info(pattern.op);
+    const bool boolean = info.result == 'B';
+    if (any_sized_)
+      if (const std::uint8_t known = computed_width(pattern, match); known != 0) width = known;
+    if (boolean && width == 0) width = 32;
+    const unsigned lanes = width != 64 ? components : boolean ? 1 : 2;
     std::array<Src, 3> operand;
-    for (unsigned i = 0; i < pattern.children; ++i) operand[i] = build(pattern.child[i], components, match);
-    const bool boolean = ir::alu_info(pattern.op).result == 'B';
-    const InstId made =
-        graph_.create(Kind::kAlu, pattern.op, static_cast<std::uint8_t>(components), boolean, pattern.children);
+    for (unsigned i = 0; i < pattern.children; ++i) operand[i] = build(pattern.child[i], lanes, width, match);
+    const bool sized = width != 32 && !ir::is_selection(pattern.op) && has_sizes(info);
+    const InstId made = graph_.create(sized ? Kind::kSized : Kind::kAlu, pattern.op, static_cast<std::uint8_t>(lanes),
+                                      boolean, pattern.children);
+    if (sized || pattern.op == Op::kSelect) graph_.insts[made].width = width;
     graph_.insts[made].exact = match.has_exact || pattern.exact;
     for (unsigned i = 0; i < pattern.children; ++i) graph_.set_source(made, i, operand[i]);
     place(made);
     states_.resize(graph_.values.size());
     update_state(made);
+    if (width == 64) return {graph_.insts[made].result, boolean ? Swizzle{} : Swizzle{0, 1, 0, 0}};
     return {graph_.insts[made].result, {0, 1, 2, 3}};
   }
+
+  /// The operation has an operand or a result that is a float.
+  static bool has_sizes(const ir::AluInfo& info) { return info.result == 'F' || info.operands[0] == 'F'; }
 
   /// A value of its own for a replacement that is a part or a rearrangement of another value.
   ValueId as_value(Src src, unsigned components, bool boolean) {
@@ -395,7 +464,7 @@ class Rewriter {
         return;
     }
     const InstId def = graph_.values[graph_.source(inst, 0).value].def;
-    if (def == kNone || graph_.insts[def].kind != Kind::kAlu) return;
+    if (def == kNone || !computes(graph_.insts[def])) return;
     cursor_ = def;
     after_ = true;
   }
@@ -408,7 +477,7 @@ class Rewriter {
       if (!try_rule(rule, graph_.insts[id], match)) continue;
       choose_cursor(id);
       const unsigned components = graph_.insts[id].components;
-      const Src built = build(rule.replacement, components, match);
+      const Src built = build(rule.replacement, components, graph_.insts[id].width, match);
       const ValueId value = as_value(built, components, graph_.insts[id].boolean);
       graph_.replace_uses(graph_.insts[id].result, value);
       graph_.remove(id);
@@ -426,6 +495,7 @@ class Rewriter {
   std::vector<State> states_;
   std::deque<InstId> queue_;
   bool inexact_off_ = false;
+  bool any_sized_ = false;  ///< there are numbers that do not have 32 bits
   InstId cursor_ = kNone;
   bool after_ = false;
   ir::Origin origin_;

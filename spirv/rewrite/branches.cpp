@@ -50,6 +50,7 @@ bool can_hoist(const Graph& graph, const Inst& inst, unsigned& cost) {
     case Kind::kVec:
       return true;
     case Kind::kAlu:
+    case Kind::kSized:
       cost += is_free(inst) ? 0 : cost_of(graph, inst);
       return true;
     case Kind::kIntrinsic:
@@ -74,6 +75,11 @@ std::vector<Src> take_branch(Graph& graph, InstId id, BlockId block) {
   return yielded;
 }
 
+bool is_half(const Graph& graph, ValueId value) {
+  const Inst* inst = graph.def(value);
+  return inst && computes(*inst) && inst->width == 16 && !inst->boolean;
+}
+
 void flatten(Graph& graph, InstId id) {
   const Src condition = graph.source(graph.insts[id], 0);
   const std::uint8_t lane = condition.swizzle[0];
@@ -85,6 +91,7 @@ void flatten(Graph& graph, InstId id) {
     const InstId select =
         graph.create(Kind::kAlu, value.boolean ? Op::kSelectB : Op::kSelect, value.components, value.boolean, 3);
     graph.insts[select].origin = graph.insts[id].origin;
+    if (is_half(graph, then_values[i].value) || is_half(graph, else_values[i].value)) graph.insts[select].width = 16;
     graph.set_source(select, 0, {condition.value, {lane, lane, lane, lane}});
     graph.set_source(select, 1, then_values[i]);
     graph.set_source(select, 2, else_values[i]);

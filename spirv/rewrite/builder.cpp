@@ -7,7 +7,9 @@
 #include <algorithm>
 
 #include "base/float_mode.h"
+#include "base/numeric.h"
 #include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/sized.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -99,11 +101,13 @@ class Builder {
   void visit(InstId id) {
     id_ = id;
     const Inst& inst = graph_.insts[id];
-    if (inst.kind != Kind::kAlu || inst.components != 1) return;
+    if (inst.kind == Kind::kSized ? inst.width == 16 && inst.components != 1
+                                  : inst.kind != Kind::kAlu || inst.components != 1)
+      return;
     if (!poison_.empty() && spread_poison()) return;
     if (inst.opaque && !sums_literals(inst)) return;
     if (shorten(inst.op)) return;
-    fold();
+    graph_.insts[id_].kind == Kind::kSized ? fold_sized() : fold();
   }
 
  private:
@@ -160,7 +164,7 @@ class Builder {
       case Op::kFAbs:
         return undefined_operand();
       case Op::kFPow:
-        if (!is(1, 0)) return false;
+        if (inst.width != 32 || !is(1, 0)) return false;
         power_of_zero();
         return true;
       default:
@@ -188,7 +192,7 @@ class Builder {
       case Op::kB2I:
       case Op::kI2F:
       case Op::kU2F:
-      case Op::kF2Half:  // parts of binary16 operations, which fold as a whole
+      case Op::kF2Half:
       case Op::kHalf2F:
         return true;
       default:
@@ -196,10 +200,18 @@ class Builder {
     }
   }
 
-  void become(std::uint32_t bits) {
-    const InstId made = graph_.create_const(1, graph_.insts[id_].boolean, &bits);
+  void become(std::uint32_t bits) { become_words(&bits); }
+
+  void become_words(const std::uint32_t* words) {
+    const InstId made = graph_.create_const(graph_.insts[id_].components, graph_.insts[id_].boolean, words);
     graph_.insert_before(id_, made);
     replace(value_of(made));
+  }
+
+  void fold_sized() {
+    const Inst& inst = graph_.insts[id_];
+    std::uint32_t words[2] = {};
+    if (folds(inst.op) && evaluate_sized(graph_, inst, 0, words)) become_words(words);
   }
 
   static bool is_nan(std::uint32_t bits) { return (bits & 0x7fffffffu) > 0x7f800000u; }
@@ -266,24 +278,34 @@ class Builder {
     become(inst.op == Op::kFSign && bits == 0x80000000u ? 0 : bits);
   }
 
+  /// `bits` of binary32: 0, -0 or 1.
   bool is(std::uint32_t index, std::uint32_t bits) const {
-    const Src src = graph_.source(graph_.insts[id_], index);
+    const Inst& inst = graph_.insts[id_];
+    const Src src = graph_.source(inst, index);
     const Inst* constant = graph_.constant(src.value);
-    return constant && constant->imm[src.swizzle[0]] == bits;
+    if (!constant) return false;
+    if (inst.width == 32) return constant->imm[src.swizzle[0]] == bits;
+    std::uint32_t words[2];
+    literal_words(static_cast<double>(base::float_of(bits)), inst.width, words);
+    return constant->imm[src.swizzle[0]] == words[0] && (inst.width == 16 || constant->imm[src.swizzle[1]] == words[1]);
   }
 
   /// One value, or literals of the same bits.
   bool equal_operands(std::uint32_t i, std::uint32_t j) const {
     const Src a = graph_.source(graph_.insts[id_], i);
     const Src b = graph_.source(graph_.insts[id_], j);
-    if (a.value == b.value && a.swizzle[0] == b.swizzle[0]) return true;
+    const unsigned words = operand_components(graph_.insts[id_], i);
     const Inst* x = graph_.constant(a.value);
     const Inst* y = graph_.constant(b.value);
-    return x && y && x->imm[a.swizzle[0]] == y->imm[b.swizzle[0]];
+    for (unsigned c = 0; c < words; ++c) {
+      const bool same = a.value == b.value && a.swizzle[c] == b.swizzle[c];
+      if (!same && !(x && y && x->imm[a.swizzle[c]] == y->imm[b.swizzle[c]])) return false;
+    }
+    return true;
   }
 
-  InstId add(Op op, bool boolean, std::initializer_list<Src> operands) {
-    const InstId made = graph_.create(Kind::kAlu, op, 1, boolean, static_cast<std::uint32_t>(operands.size()));
+  InstId add(Op op, bool boolean, std::initializer_list<Src> operands, std::uint8_t components = 1) {
+    const InstId made = graph_.create(Kind::kAlu, op, components, boolean, static_cast<std::uint32_t>(operands.size()));
     std::uint32_t index = 0;
     for (const Src& src : operands) graph_.set_source(made, index++, src);
     graph_.insts[made].origin = graph_.insts[id_].origin;
@@ -291,14 +313,19 @@ class Builder {
     return made;
   }
 
-  Src value_of(InstId inst) const { return {graph_.insts[inst].result, {0, 0, 0, 0}}; }
+  Src value_of(InstId inst) const {
+    return {graph_.insts[inst].result, {0, static_cast<std::uint8_t>(graph_.insts[inst].components - 1), 0, 0}};
+  }
 
+  /// A value of one number, which is two words of a double.
   ValueId scalar(Src src) {
-    if (graph_.values[src.value].components == 1) return src.value;
+    const std::uint8_t words = graph_.insts[id_].components;
+    if (graph_.values[src.value].components == words && (words == 1 || (src.swizzle[0] == 0 && src.swizzle[1] == 1)))
+      return src.value;
     const Inst* constant = graph_.constant(src.value);
-    if (!constant) return graph_.insts[add(Op::kMov, false, {src})].result;
-    const std::uint32_t bits = constant->imm[src.swizzle[0]];
-    const InstId made = graph_.create_const(1, false, &bits);
+    if (!constant) return graph_.insts[add(Op::kMov, false, {src}, words)].result;
+    const std::uint32_t bits[2] = {constant->imm[src.swizzle[0]], constant->imm[src.swizzle[1]]};
+    const InstId made = graph_.create_const(words, false, bits);
     graph_.insert_before(id_, made);
     return graph_.insts[made].result;
   }
@@ -306,7 +333,9 @@ class Builder {
   /// A literal that operations do not see.
   ValueId held(ValueId literal) {
     const bool boolean = graph_.insts[id_].boolean;
-    const InstId made = add(boolean ? Op::kMovB : Op::kMov, boolean, {{literal, {0, 0, 0, 0}}});
+    const std::uint8_t words = graph_.insts[id_].components;
+    const std::uint8_t last = static_cast<std::uint8_t>(words - 1);
+    const InstId made = add(boolean ? Op::kMovB : Op::kMov, boolean, {{literal, {0, last, 0, 0}}}, words);
     graph_.insts[made].opaque = true;
     return graph_.insts[made].result;
   }
@@ -326,7 +355,7 @@ class Builder {
   }
 
   void become_undefined() {
-    const InstId made = graph_.create(Kind::kIntrinsic, Op::kUndef, 1, false, 0);
+    const InstId made = graph_.create(Kind::kIntrinsic, Op::kUndef, graph_.insts[id_].components, false, 0);
     auto node = std::make_unique<ir::Node>();
     graph_.insts[made].node = static_cast<std::uint32_t>(graph_.nodes.size());
     graph_.insts[made].origin = graph_.insts[id_].origin;

@@ -155,7 +155,8 @@ void split(Graph& graph, InstId id) {
   const InstId vec = graph.create(Kind::kVec, Op::kVec, inst.components, inst.boolean, inst.components);
   graph.insts[vec].origin = inst.origin;
   for (unsigned c = 0; c < inst.components; ++c) {
-    const InstId part = graph.create(Kind::kAlu, inst.op, 1, inst.boolean, inst.count);
+    const InstId part = graph.create(inst.kind, inst.op, 1, inst.boolean, inst.count);
+    graph.insts[part].width = inst.width;
     graph.insts[part].exact = inst.exact;
     graph.insts[part].opaque = inst.opaque;
     graph.insts[part].opens = inst.opens;
@@ -178,7 +179,8 @@ void split(Graph& graph, InstId id) {
 unsigned components_read(const Graph& graph, const Inst& user, std::uint32_t index) {
   switch (user.kind) {
     case Kind::kAlu:
-      return user.components;
+    case Kind::kSized:
+      return operand_components(user, index);
     case Kind::kVec:
     case Kind::kIf:
       return 1;
@@ -219,6 +221,7 @@ unsigned components_read(const Graph& graph, const Inst& user, std::uint32_t ind
 bool is_pure(const Graph& graph, const Inst& inst) {
   switch (inst.kind) {
     case Kind::kAlu:
+    case Kind::kSized:
     case Kind::kConst:
     case Kind::kVec:
       return true;
@@ -248,7 +251,7 @@ bool scalarize(Graph& graph) {
   bool changed = false;
   auto visit = [&](InstId id) {
     const Inst& inst = graph.insts[id];
-    if (inst.kind != Kind::kAlu || inst.components < 2) return;
+    if (!computes(inst) || inst.width == 64 || inst.components < 2) return;
     split(graph, id);
     changed = true;
   };

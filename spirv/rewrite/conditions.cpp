@@ -114,7 +114,7 @@ bool take_equal_in(Graph& graph, BlockId side, Src unknown, Src known) {
       inside = graph.insts[at].block == side;
     if (!inside || inst.kind == Kind::kIf || inst.kind == Kind::kLoop) continue;
     const Src src = graph.sources[use].src;
-    const unsigned read = inst.kind == Kind::kAlu ? inst.components : inst.kind == Kind::kVec ? 1 : 0;
+    const unsigned read = computes(inst) ? operand_components(inst, use - inst.first) : inst.kind == Kind::kVec ? 1 : 0;
     bool only = read != 0 || graph.values[unknown.value].components == 1;
     for (unsigned c = 0; c < read; ++c) only &= src.swizzle[c] == unknown.swizzle[0];
     if (!only) continue;

@@ -30,12 +30,14 @@ bool is_invocation_constant(const Inst& inst) {
 }
 
 /// The two operands may be swapped (the reference compares them that way too).
-bool may_swap(const Inst& inst) { return inst.kind == Kind::kAlu && inst.count == 2 && is_commutative(inst.op); }
+bool may_swap(const Inst& inst) { return computes(inst) && inst.count == 2 && is_commutative(inst.op); }
 
 class Merger {
  public:
-  /// `by_value`: literals are equal by their bits, whatever constant they are a component of.
-  Merger(Graph& graph, bool by_value) : graph_(graph), by_value_(by_value), table_(256, kNone) {}
+  /// `by_value`: literals are equal by their bits, whatever constant they are a component of. `only_doubles`: nothing
+  /// but pairs of words that doubles are made of.
+  Merger(Graph& graph, bool by_value, bool only_doubles = false)
+      : graph_(graph), by_value_(by_value), only_doubles_(only_doubles), table_(256, kNone) {}
 
   bool run() {
     visit(graph_.root);
@@ -43,22 +45,31 @@ class Merger {
   }
 
  private:
+  bool makes_double(const Inst& inst) const {
+    if (inst.kind != Kind::kVec || inst.components != 2 || graph_.values[inst.result].uses == 0) return false;
+    const Inst& user = graph_.insts[graph_.sources[graph_.values[inst.result].first_use].user];
+    return computes(user) && user.width == 64;
+  }
+
   bool candidate(const Inst& inst) const {
-    return is_uniform_load(inst) || inst.kind == Kind::kAlu || inst.kind == Kind::kConst || inst.kind == Kind::kVec ||
+    if (only_doubles_) return makes_double(inst);
+    return is_uniform_load(inst) || computes(inst) || inst.kind == Kind::kConst || inst.kind == Kind::kVec ||
            is_invocation_constant(inst);
   }
 
-  unsigned components_of_operand(const Inst& inst) const { return inst.kind == Kind::kAlu ? inst.components : 1; }
+  unsigned components_of_operand(const Inst& inst, std::uint32_t index) const {
+    return computes(inst) ? operand_components(inst, index) : 1;
+  }
 
-  const Inst* literal_of(const Inst& inst, Src src) const {
-    return by_value_ && components_of_operand(inst) == 1 ? graph_.constant(src.value) : nullptr;
+  const Inst* literal_of(const Inst& inst, std::uint32_t index, Src src) const {
+    return by_value_ && components_of_operand(inst, index) == 1 ? graph_.constant(src.value) : nullptr;
   }
 
   std::uint32_t hash_operand(const Inst& inst, std::uint32_t index) const {
     const Src src = graph_.source(inst, index);
-    if (const Inst* literal = literal_of(inst, src)) return literal->imm[src.swizzle[0]] * 0xC2B2AE3Du;
+    if (const Inst* literal = literal_of(inst, index, src)) return literal->imm[src.swizzle[0]] * 0xC2B2AE3Du;
     std::uint32_t h = src.value * 0x9E3779B1u;
-    for (unsigned c = 0; c < components_of_operand(inst); ++c) h = (h ^ src.swizzle[c]) * 0x85EBCA6Bu;
+    for (unsigned c = 0; c < components_of_operand(inst, index); ++c) h = (h ^ src.swizzle[c]) * 0x85EBCA6Bu;
     return h;
   }
 
@@ -79,10 +90,10 @@ class Merger {
   bool same_operand(const Inst& a, std::uint32_t i, const Inst& b, std::uint32_t j) const {
     const Src x = graph_.source(a, i);
     const Src y = graph_.source(b, j);
-    const Inst *literal = literal_of(a, x), *other = literal_of(b, y);
+    const Inst *literal = literal_of(a, i, x), *other = literal_of(b, j, y);
     if (literal && other) return literal->imm[x.swizzle[0]] == other->imm[y.swizzle[0]];
     if (x.value != y.value) return false;
-    for (unsigned c = 0; c < components_of_operand(a); ++c)
+    for (unsigned c = 0; c < components_of_operand(a, i); ++c)
       if (x.swizzle[c] != y.swizzle[c]) return false;
     return true;
   }
@@ -101,8 +112,8 @@ class Merger {
   }
 
   bool equal(const Inst& a, const Inst& b) const {
-    if (a.op != b.op || a.kind != b.kind || a.components != b.components || a.boolean != b.boolean ||
-        a.count != b.count || a.opaque != b.opaque || !same_details(a, b))
+    if (a.op != b.op || a.kind != b.kind || a.components != b.components || a.width != b.width ||
+        a.boolean != b.boolean || a.count != b.count || a.opaque != b.opaque || !same_details(a, b))
       return false;
     bool same = true;
     for (std::uint32_t i = 0; i < a.count && same; ++i) same = same_operand(a, i, b, i);
@@ -161,13 +172,22 @@ class Merger {
   }
 
   Graph& graph_;
-  const bool by_value_;
+  const bool by_value_, only_doubles_;
   std::vector<InstId> table_;           ///< open addressing, a power of two
   std::vector<std::uint32_t> entered_;  ///< slots in use, in order of entry
   bool changed_ = false;
 };
 
 }  // namespace
+
+void merge_doubles(Graph& graph) {
+  for (const Inst& inst : graph.insts) {
+    if (inst.width != 64) continue;
+    propagate_copies(graph);
+    Merger(graph, false, true).run();
+    return;
+  }
+}
 
 bool merge_equal(Graph& graph) { return Merger(graph, false).run(); }
 bool merge_equal_code(Graph& graph) { return Merger(graph, true).run(); }

@@ -7,6 +7,7 @@
 #include "base/float_mode.h"
 #include "base/numeric.h"
 #include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/sized.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -374,10 +375,29 @@ bool fold_vector(Graph& graph, InstId id) {
   return true;
 }
 
+bool fold_sized(Graph& graph, InstId id) {
+  const Inst inst = graph.insts[id];
+  std::uint32_t bits[5] = {};
+  const unsigned steps = inst.width == 64 ? 1 : inst.components;
+  for (unsigned c = 0; c < steps; ++c)
+    if (!evaluate_sized(graph, inst, c, bits + c)) return false;
+  become_constant(graph, id, bits);
+  return true;
+}
+
+bool fold_conversion(Graph& graph, InstId id) {
+  std::uint32_t words[2] = {};
+  if (!evaluate_conversion(graph, graph.insts[id], words)) return false;
+  become_constant(graph, id, words);
+  return true;
+}
+
 /// Replaces `id` by a constant if all its operands are constant.
 bool fold(Graph& graph, InstId id) {
   const Inst inst = graph.insts[id];
   if (inst.kind == Inst::Kind::kVec) return fold_vector(graph, id);
+  if (inst.kind == Inst::Kind::kSized) return fold_sized(graph, id);
+  if (inst.kind == Inst::Kind::kIntrinsic) return fold_conversion(graph, id);
   if (inst.kind != Inst::Kind::kAlu || inst.count == 0) return false;
   const Inst* constants[3] = {};
   for (std::uint32_t i = 0; i < inst.count; ++i) {

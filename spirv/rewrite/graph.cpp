@@ -12,8 +12,9 @@ bool is_plain(const ir::Instr& instr) {
   return instr.op < Op::kAluCount || instr.op == Op::kConst || instr.op == Op::kVec;
 }
 
-Kind kind_of(Op op) {
-  if (op < Op::kAluCount) return Kind::kAlu;
+Kind kind_of(const ir::Instr& instr) {
+  const Op op = instr.op;
+  if (op < Op::kAluCount) return instr.width == 32 || ir::is_selection(op) ? Kind::kAlu : Kind::kSized;
   if (op == Op::kConst) return Kind::kConst;
   return op == Op::kVec ? Kind::kVec : Kind::kIntrinsic;
 }
@@ -54,10 +55,11 @@ void Graph::import_node(std::unique_ptr<ir::Node> node, BlockId block) {
   const ir::Instr& instr = node->instr;
   inst.origin = instr.origin;
   if (node->kind == ir::Node::Kind::kInstr) {
-    inst.kind = kind_of(instr.op);
+    inst.kind = kind_of(instr);
     inst.op = instr.op;
     inst.components = instr.components;
     inst.boolean = instr.boolean;
+    inst.width = instr.width;
     inst.exact = instr.exact;
     inst.opaque = instr.opaque && instr.op != Op::kMov && instr.op != Op::kMovB;
     inst.result = instr.result;

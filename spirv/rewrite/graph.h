@@ -34,11 +34,13 @@ enum class Opens : std::uint8_t {
   kAfterRules,         ///< after the rules of the first round
   kAfterRound,         ///< after the first round
   kVisitedAfterRound,  ///< when the rules come to it after the first round
+  kFinally,            ///< before the reference's finalisation
 };
 
 struct Inst {
   enum class Kind : std::uint8_t {
     kAlu,        ///< one of ops.def
+    kSized,      ///< one of ops.def on numbers of `width` bits, not 32 (ir::Instr::width)
     kConst,      ///< imm
     kVec,        ///< component i = operand i
     kIntrinsic,  ///< everything else of intrinsics.def, jumps included; details in `node`
@@ -48,6 +50,7 @@ struct Inst {
   Kind kind = Kind::kAlu;
   Op op = Op::kMov;
   std::uint8_t components = 1;
+  std::uint8_t width = 32;  ///< ir::Instr::width; of a kAlu, too, that selects between numbers of another width
   bool boolean = false;
   bool exact = false;
   bool opaque = false;
@@ -63,6 +66,15 @@ struct Inst {
   std::uint32_t node = kNone;  ///< index in Graph::nodes: what does not fit here
   ir::Origin origin;
 };
+
+/// An operation of ops.def, whatever the width of its numbers.
+inline bool computes(const Inst& inst) { return inst.kind == Inst::Kind::kAlu || inst.kind == Inst::Kind::kSized; }
+
+/// Components that an operation of ops.def reads of operand `index`.
+inline unsigned operand_components(const Inst& inst, std::uint32_t index) {
+  if (inst.width != 64) return inst.components;
+  return ir::alu_info(inst.op).operands[index] == 'B' && !ir::is_selection(inst.op) ? 1 : 2;
+}
 
 struct Block {
   InstId head = kNone, tail = kNone;

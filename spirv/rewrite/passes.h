@@ -20,6 +20,9 @@ bool forward_loads(Graph& graph);
 /// Loads of elements of local arrays become what was stored there; stores to arrays that nothing reads go.
 bool forward_arrays(Graph& graph);
 
+/// Doubles that are made of the same words become one value: to the reference each is one from the beginning.
+void merge_doubles(Graph& graph);
+
 /// Merges equal instructions, the later into the one that dominates it.
 bool merge_equal(Graph& graph);
 
@@ -84,6 +87,8 @@ bool apply_rules(Graph& graph, RuleSet rules);
 void hide_composed(Graph& graph);
 void show_products(Graph& graph);
 void show_short_products(Graph& graph);
+/// Mixes of halves are single operations until the finalisation, other mixes never.
+void show_mixes(Graph& graph);
 
 /// The instructions that make a remainder or ldexp together with the closed one that ends it, operands first; none: it
 /// ends neither.
@@ -108,6 +113,9 @@ void convert_waves(Graph& graph);
 /// Minima and maxima with an operand that is known to be a number become plain ones. The reference decides this on its
 /// intermediate code, before its code generator simplifies on its own.
 void choose_extrema(Graph& graph);
+
+/// Operations on numbers of 16 and 64 bits become what they consist of. Nothing else reads them after that.
+bool expand_sized(Graph& graph);
 
 /// Spelling that the executor likes and that keeps every bit: subtractions.
 void choose_spelling(Graph& graph);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/numeric.h"
+#include "spirv/rewrite/sized.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -47,7 +48,7 @@ bool equal_operands(const Graph& graph, const Inst& inst, bool negated) {
   bool negative = false;
   for (Src& src : operand) {
     const Inst* def = graph.def(src.value);
-    if (!negated || !def || def->kind != Inst::Kind::kAlu || def->op != Op::kFNeg || def->opaque) continue;
+    if (!negated || !def || !computes(*def) || def->op != Op::kFNeg || def->opaque) continue;
     const Src inner = graph.source(*def, 0);
     for (unsigned c = 0; c < inst.components; ++c) src.swizzle[c] = inner.swizzle[src.swizzle[c]];
     src.value = inner.value;
@@ -73,11 +74,30 @@ std::uint8_t sign_of(std::uint32_t bits, char type) {
 Range RangeAnalysis::of_constant(const Inst& user, std::uint32_t index, const Inst& constant, char type) const {
   const bool real = type == 'F';
   Range range{0, real, real, real};
+  if (real && user.width != 32) return of_sized_constant(user, index, constant);
   for (unsigned c = 0; c < user.components; ++c) {
     const std::uint32_t bits = constant.imm[graph_.source(user, index).swizzle[c]];
     range.signs = static_cast<std::uint8_t>(range.signs | sign_of(bits, type));
     if (!real) continue;
     const float v = base::float_of(bits);
+    range.integral &= std::floor(v) == v;
+    range.number &= v == v;
+    range.finite &= std::isfinite(v);
+  }
+  return range;
+}
+
+Range RangeAnalysis::of_sized_constant(const Inst& user, std::uint32_t index, const Inst& constant) const {
+  Range range{0, true, true, true};
+  const Src src = graph_.source(user, index);
+  for (unsigned c = 0; c < (user.width == 64 ? 1u : user.components); ++c) {
+    std::array<std::uint8_t, 4> swizzle = src.swizzle;
+    if (user.width != 64) swizzle[0] = src.swizzle[c];
+    const double v = literal_number(constant, swizzle, user.width);
+    range.signs = static_cast<std::uint8_t>(range.signs | (v == 0.0  ? kZero
+                                                           : v > 0.0 ? kPositive
+                                                           : v < 0.0 ? kNegative
+                                                                     : kAny));
     range.integral &= std::floor(v) == v;
     range.number &= v == v;
     range.finite &= std::isfinite(v);
@@ -94,7 +114,7 @@ Range RangeAnalysis::of_typed_source(const Inst& inst, std::uint32_t index, char
   const Inst* def = graph_.def(value);
   if (!def) return {};
   if (def->kind == Inst::Kind::kConst) return of_constant(inst, index, *def, type);
-  if (def->kind != Inst::Kind::kAlu) return {};
+  if (!computes(*def)) return {};
   if (def->opaque) return type == 'F' && def->op == Op::kFAdd && graph_.first_rules ? of_dot(*def) : Range{};
   const bool untyped = def->op == Op::kMov || def->op == Op::kSelect;
   if (!untyped && (ir::alu_info(def->op).result == 'F') != (type == 'F')) return {};

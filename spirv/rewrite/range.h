@@ -35,6 +35,7 @@ class RangeAnalysis {
   /// `type`: how the operand is read, F I U.
   Range of_typed_source(const Inst& inst, std::uint32_t index, char type);
   Range of_constant(const Inst& user, std::uint32_t index, const Inst& constant, char type) const;
+  Range of_sized_constant(const Inst& user, std::uint32_t index, const Inst& constant) const;
   Range of_result(const Inst& inst, char type);
   Range of_float_result(const Inst& inst);
   Range of_dot(const Inst& sum);

@@ -45,6 +45,7 @@ bool optimize_once(Graph& graph, bool first) {
 
 /// The reference's finalisation (3.2 step 4).
 void finish(Graph& graph) {
+  rewriting::show_mixes(graph);
   for (int round = 0; round < kMaxRounds; ++round) {
     bool changed = rewriting::fold_constants(graph);
     changed |= rewriting::apply_rules(graph, rewriting::RuleSet::kMain);
@@ -72,12 +73,18 @@ void rewrite(ir::Function& function) {
   Graph graph(function);
   rewriting::straighten_loops(graph);
   rewriting::open_loops(graph);
+  rewriting::merge_doubles(graph);
   rewriting::hide_composed(graph);
   optimize_once(graph, true);
   rewriting::show_short_products(graph);
   for (int round = 1; round < kMaxRounds; ++round)
     if (!optimize_once(graph, false)) break;
   finish(graph);
+  if (rewriting::expand_sized(graph)) {
+    rewriting::propagate_copies(graph);
+    rewriting::remove_dead(graph);
+    rewriting::merge_equal_code(graph);
+  }
   rewriting::choose_spelling(graph);
   rewriting::remove_dead(graph);
   rewriting::close_loops(graph);

@@ -1,5 +1,5 @@
-// Random expressions over numbers of every width: integers of 8 to 64 bits, precise binary16 and binary64 (the
-// reference's rewrites of code that is not precise are imitated for 32 bits only), and conversions between all of them.
+// Random expressions over numbers of every width: integers of 8 to 64 bits, binary16 and binary64, and conversions
+// between all of them; precise, and open to the reference's rewrites.
 #include "harness/case.h"
 #include "harness/run.h"
 
@@ -19,7 +19,7 @@ constexpr Sized kTypes[] = {{"int8_t", 8, 'i'},     {"uint8_t", 8, 'u'}, {"int16
 
 class Writer {
  public:
-  explicit Writer(Random& random) : random_(random) {}
+  Writer(Random& random, bool precise) : random_(random), precise_(precise) {}
 
   const Sized& any_type() { return kTypes[random_.below(std::size(kTypes))]; }
 
@@ -94,6 +94,7 @@ class Writer {
   }
 
   std::string real(const Sized& type, int depth) {
+    if (!precise_ && random_.chance(0.35f)) return rewritable(type, depth);
     const std::string a = expression(type, depth - 1), b = expression(type, depth - 1);
     switch (random_.below(12)) {
       case 0:
@@ -119,7 +120,45 @@ class Writer {
     }
   }
 
+  /// What the reference's inexact rules look for.
+  std::string rewritable(const Sized& type, int depth) {
+    const std::string name = type.name, x = leaf(type), a = expression(type, depth - 1),
+                      b = expression(type, depth - 1);
+    const std::string k = name + "(" + random_.pick<const char*>({"0.0", "1.0", "-1.0", "2.0", "4.0", "0.3"}) + ")";
+    switch (random_.below(14)) {
+      case 0:
+        return "(" + x + " * " + a + " + " + b + " * " + x + ")";
+      case 1:
+        return "((" + a + " * " + b + ") * " + k + ")";
+      case 2:
+        return "((" + a + " + " + b + ") + " + k + ")";
+      case 3:
+        return "(" + a + " * " + b + " + " + x + " * " + x + " + " + b + ")";
+      case 4:
+        return "mix(" + a + ", " + b + ", " + name + condition(depth - 1) + ")";
+      case 5:
+        return "mix(" + a + ", " + b + ", " + k + ")";
+      case 6:
+        return "(" + k + " * (" + a + " * " + name + "(0.7)))";
+      case 7:
+        return "(" + k + " - (" + a + " + " + name + "(0.7)))";
+      case 8:
+        return "(-" + x + " + (" + x + " + " + a + "))";
+      case 9:
+        return "(sqrt(abs(" + x + ")) * sqrt(abs(" + x + ")))";
+      case 10:
+        return "(" + k + " / (" + k + " / (abs(" + a + ") + " + name + "(0.5))))";
+      case 11:
+        return "(" + a + " * " + k + " + " + x + ")";
+      case 12:
+        return "(abs(" + x + ") * " + k + " - max(" + a + ", -" + x + "))";
+      default:
+        return "(" + condition(depth - 1) + " ? " + x + " * " + a + " : " + x + " * " + b + ")";
+    }
+  }
+
   Random& random_;
+  bool precise_;
 };
 
 /// A value of the type from the words `low` and `high`.
@@ -139,7 +178,7 @@ std::string stored(const Sized& type, const std::string& value) {
   return "uvec2(uint(" + value + "), 0u)";
 }
 
-CTS_RANDOM("glsl", "random_sized.compute", 40) {
+void compare_expressions(Run& run, bool precise) {
   const auto& sizes = run.gpu.extension_features.float16_int8;
   run.require(run.gpu.features.shaderInt64 && run.gpu.features.shaderFloat64 && run.gpu.features.shaderInt16 &&
                   sizes.shaderInt8 && sizes.shaderFloat16,
@@ -157,12 +196,12 @@ CTS_RANDOM("glsl", "random_sized.compute", 40) {
       const std::string low = next(), high = next();
       text += std::string("  ") + type.name + " " + name + type.name + " = " + loaded(type, low, high) + ";\n";
     }
-  Writer writer(run.random);
+  Writer writer(run.random, precise);
   for (uint32_t k = 0; k < kResults; ++k) {
     const Sized& type = writer.any_type();
     const std::string value = "t" + std::to_string(k);
-    text += std::string("  precise ") + type.name + " " + value + " = " + writer.expression(type, 4) + ";\n  r[id + " +
-            std::to_string(k * kInvocations) + "u] = " + stored(type, value) + ";\n";
+    text += std::string(precise ? "  precise " : "  ") + type.name + " " + value + " = " + writer.expression(type, 4) +
+            ";\n  r[id + " + std::to_string(k * kInvocations) + "u] = " + stored(type, value) + ";\n";
   }
   text += "}\n";
   run.note("shader", text);
@@ -174,6 +213,9 @@ CTS_RANDOM("glsl", "random_sized.compute", 40) {
   run.dispatch(res, pipeline, kInvocations / 64);
   run.out("results", out, VK_FORMAT_R32G32_UINT).may_be_blank = true;
 }
+
+CTS_RANDOM("glsl", "random_sized.compute", 40) { compare_expressions(run, true); }
+CTS_RANDOM("glsl", "random_sized.inexact", 40) { compare_expressions(run, false); }
 
 }  // namespace
 }  // namespace vitrine::cts

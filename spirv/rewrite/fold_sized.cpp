@@ -1,0 +1,205 @@
+// Constant folding of operations on numbers of 16 and 64 bits: halves are computed in binary32 and rounded at the end.
+#include <bit>
+#include <cmath>
+
+#include "base/numeric.h"
+#include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/sized.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+bool unary(Op op, double a, double& r) {
+  switch (op) {
+    case Op::kFNeg:
+      r = -a;
+      return true;
+    case Op::kFAbs:
+      r = std::abs(a);
+      return true;
+    case Op::kFRcp:
+      r = 1.0 / a;
+      return true;
+    case Op::kFSqrt:
+      r = std::sqrt(a);
+      return true;
+    case Op::kFRsq:
+      r = 1.0 / std::sqrt(a);
+      return true;
+    case Op::kFFloor:
+      r = std::floor(a);
+      return true;
+    case Op::kFCeil:
+      r = std::ceil(a);
+      return true;
+    case Op::kFTrunc:
+      r = std::trunc(a);
+      return true;
+    case Op::kFRoundEven:
+      r = std::nearbyint(a);
+      return true;
+    case Op::kFFract:
+      r = a - std::floor(a);
+      return true;
+    case Op::kFSign:
+      r = a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : 0.0;
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool binary(Op op, double a, double b, double& r) {
+  switch (op) {
+    case Op::kFAdd:
+      r = a + b;
+      return true;
+    case Op::kFSub:
+      r = a - b;
+      return true;
+    case Op::kFMul:
+      r = a * b;
+      return true;
+    case Op::kFDiv:
+      r = a / b;
+      return true;
+    case Op::kFMin:
+      r = a < b || std::isnan(b) ? a : b;
+      return true;
+    case Op::kFMax:
+      r = a > b || std::isnan(b) ? a : b;
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool compare(Op op, double a, double b, std::uint32_t& r) {
+  switch (op) {
+    case Op::kFLt:
+      r = a < b ? 1 : 0;
+      return true;
+    case Op::kFGe:
+      r = a >= b ? 1 : 0;
+      return true;
+    case Op::kFEq:
+      r = a == b ? 1 : 0;
+      return true;
+    case Op::kFNeu:
+      r = a != b ? 1 : 0;
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool is_zero(const Graph& graph, const Inst& inst, std::uint32_t index) {
+  const Src src = graph.source(inst, index);
+  const Inst* constant = graph.constant(src.value);
+  return constant && constant->imm[src.swizzle[0]] == 0;
+}
+
+}  // namespace
+
+bool evaluate_conversion(const Graph& graph, const Inst& inst, std::uint32_t words[2]) {
+  std::uint32_t source[2] = {};
+  if (!ir::is_wide(inst.op)) return false;
+  if (inst.op == Op::kQLt || inst.op == Op::kQGe) {  // nothing is less than 0
+    words[0] = inst.op == Op::kQGe ? 1 : 0;
+    return is_zero(graph, inst, 2) && is_zero(graph, inst, 3);
+  }
+  if (inst.count > 2) return false;
+  for (std::uint32_t i = 0; i < inst.count; ++i) {
+    const Inst* constant = graph.constant(graph.source(inst, i).value);
+    if (!constant) return false;
+    source[i] = constant->imm[graph.source(inst, i).swizzle[0]];
+  }
+  const std::uint64_t all = std::uint64_t{source[1]} << 32 | source[0];
+  switch (inst.op) {
+    case Op::kDFromF:
+      literal_words(static_cast<double>(base::float_of(source[0])), 64, words);
+      return true;
+    case Op::kDFromI:
+      literal_words(static_cast<std::int32_t>(source[0]), 64, words);
+      return true;
+    case Op::kDFromU:
+      literal_words(source[0], 64, words);
+      return true;
+    case Op::kDFromL:
+      literal_words(static_cast<double>(static_cast<std::int64_t>(all)), 64, words);
+      return true;
+    case Op::kDFromQ:
+      literal_words(static_cast<double>(all), 64, words);
+      return true;
+    case Op::kFFromD:
+      literal_words(std::bit_cast<double>(all), 32, words);
+      return true;
+    case Op::kFFromL:
+      words[0] = base::bits_of(static_cast<float>(static_cast<std::int64_t>(all)));
+      return true;
+    case Op::kFFromQ:
+      words[0] = base::bits_of(static_cast<float>(all));
+      return true;
+    default:
+      return false;
+  }
+}
+
+double literal_number(const Inst& constant, const std::array<std::uint8_t, 4>& swizzle, unsigned width) {
+  const std::uint32_t low = constant.imm[swizzle[0]];
+  if (width == 16) return static_cast<double>(base::half_to_float(static_cast<std::uint16_t>(low)));
+  if (width == 32) return static_cast<double>(base::float_of(low));
+  return std::bit_cast<double>(std::uint64_t{constant.imm[swizzle[1]]} << 32 | low);
+}
+
+void literal_words(double number, unsigned width, std::uint32_t words[2]) {
+  words[1] = 0;
+  if (width == 64) {
+    const auto bits = std::bit_cast<std::uint64_t>(number);
+    words[0] = static_cast<std::uint32_t>(bits);
+    words[1] = static_cast<std::uint32_t>(bits >> 32);
+  } else {
+    const auto single = static_cast<float>(number);
+    words[0] = width == 16 ? base::float_to_half_nearest(single) : base::bits_of(single);
+  }
+}
+
+bool evaluate_sized(const Graph& graph, const Inst& inst, unsigned c, std::uint32_t words[2]) {
+  const char* const letters = ir::alu_info(inst.op).operands;
+  double numbers[3] = {};
+  std::uint32_t singles[3] = {};
+  for (std::uint32_t i = 0; i < inst.count; ++i) {
+    const Src src = graph.source(inst, i);
+    const Inst* constant = graph.constant(src.value);
+    if (!constant) return false;
+    std::array<std::uint8_t, 4> swizzle = src.swizzle;
+    if (inst.width != 64) swizzle[0] = src.swizzle[c];
+    if (letters[i] == 'B') {
+      singles[i] = constant->imm[swizzle[0]];
+      numbers[i] = singles[i] != 0 ? 1.0 : 0.0;
+      continue;
+    }
+    numbers[i] = literal_number(*constant, swizzle, inst.width);
+    singles[i] = base::bits_of(static_cast<float>(numbers[i]));
+  }
+  if (compare(inst.op, numbers[0], numbers[1], words[0])) return true;
+  if (inst.width == 16) {
+    std::uint32_t result = 0;
+    if (!evaluate(inst.op, singles, result)) return false;
+    words[0] = base::float_to_half_nearest(base::float_of(result));
+    return true;
+  }
+  double result = 0.0;
+  if (inst.op == Op::kB2F) {
+    result = numbers[0];
+  } else if (inst.op == Op::kFMulAdd) {
+    const double product = numbers[0] * numbers[1];
+    result = product + numbers[2];
+  } else if (!unary(inst.op, numbers[0], result) && !binary(inst.op, numbers[0], numbers[1], result)) {
+    return false;
+  }
+  literal_words(result, 64, words);
+  return true;
+}
+
+}  // namespace vitrine::spirv::rewriting
