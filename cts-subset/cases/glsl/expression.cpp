@@ -274,17 +274,28 @@ std::string ExpressionWriter::booleans(Type type, int depth) {
   }
 }
 
+/// What converts to integers is clamped to what they can hold: OpConvertFToS and OpConvertFToU of anything else are
+/// undefined, and the reference drops the literals among it where it sees them. glsl.undefined_conversions has some of
+/// these, spirv_opcodes has what is no literal.
 std::string ExpressionWriter::converted(Type type, int depth) {
   const std::string name = type_name(type);
   if (random_.chance(0.15f)) return name + "(" + booleans(with(Base::kBool, type), depth - 1) + ")";
+  Base from = Base::kInt;
   switch (type.base) {
     case Base::kFloat:
-      return name + "(" + expression(with(random_.pick({Base::kInt, Base::kUint}), type), depth - 1) + ")";
+      from = random_.pick({Base::kInt, Base::kUint});
+      break;
     case Base::kInt:
-      return name + "(" + expression(with(random_.pick({Base::kFloat, Base::kUint}), type), depth - 1) + ")";
+      from = random_.pick({Base::kFloat, Base::kUint});
+      break;
     default:
-      return name + "(" + expression(with(random_.pick({Base::kFloat, Base::kInt}), type), depth - 1) + ")";
+      from = random_.pick({Base::kFloat, Base::kInt});
+      break;
   }
+  const std::string value = expression(with(from, type), depth - 1);
+  if (from != Base::kFloat) return name + "(" + value + ")";
+  return name + (type.base == Base::kInt ? "(clamp(" + value + ", -2147483648.0, 2147483520.0))"
+                                         : "(clamp(" + value + ", 0.0, 4294967040.0))");
 }
 
 std::string ExpressionWriter::swizzled_or_built(Type type, int depth) {
