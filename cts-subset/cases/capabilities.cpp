@@ -112,6 +112,64 @@ CTS_CASE("capabilities", "atomic_float.exchange") {
   run.out("result", out, VK_FORMAT_R32_SFLOAT);
 }
 
+/// Sums and extrema of small integers in doubles; the reference, which lacks the atomics, does the same one by one.
+void atomic_double(Run& run, const std::string& operation, const std::string& alone) {
+  const auto& first = run.gpu.extension_features.atomic_float;
+  const auto& second = run.gpu.extension_features.atomic_float2;
+  const bool has = first.shaderBufferFloat64Atomics && first.shaderBufferFloat64AtomicAdd &&
+                   first.shaderSharedFloat64Atomics && first.shaderSharedFloat64AtomicAdd &&
+                   second.shaderBufferFloat64AtomicMinMax && second.shaderSharedFloat64AtomicMinMax;
+  run.require(run.gpu.features.shaderFloat64, "shaderFloat64");
+  const Buffer out = run.buffer_of<double>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+  const auto act = [&](const std::string& at) {
+    if (has) return operation + "(" + at + ", value(i));\n";
+    return at + " = " + alone + "(" + at + ", value(j));\n";
+  };
+  const auto all = [&](const std::string& at, const std::string& when) {
+    return has ? "if (" + when + ") " + act(at)
+               : "if (i == 0u) for (uint j = 0u; j < 64u; j++) if (" + when + ") " + act(at);
+  };
+  const std::string k = has ? "(i & 3u)" : "(j & 3u)";
+  dispatch(run,
+           std::string(kAtomicFloat) +
+               "layout(local_size_x = 64) in;\nlayout(std430, binding = 0) buffer R { double r[]; };\n"
+               "shared double s[4];\n"
+               "double value(uint i) { return double(int(i * 7u % 61u) - 20) + 0.5LF; }\n"
+               "double sum(double a, double b) { return a + b; }\n"
+               "void main() {\n"
+               "  uint i = gl_LocalInvocationIndex;\n"
+               "  if (i < 4u) s[i] = 5.0LF;\n"
+               "  barrier();\n  " +
+               all("r[" + k + "]", "true") + "  " + all("s[" + k + "]", "true") + "  " + all("r[4]", "true") + "  " +
+               all("r[5]", has ? "i == 9u" : "j == 9u") +
+               "  barrier();\n"
+               "  if (i < 4u) r[8u + i] = s[i];\n"
+               "}\n",
+           {storage_buffer(0, out)});
+  run.out("result", out);
+}
+CTS_CASE("capabilities", "atomic_double.add") { atomic_double(run, "atomicAdd", "sum"); }
+CTS_CASE("capabilities", "atomic_double.min") { atomic_double(run, "atomicMin", "min"); }
+CTS_CASE("capabilities", "atomic_double.max") { atomic_double(run, "atomicMax", "max"); }
+
+/// Every invocation has a word of its own: the old values come back.
+CTS_CASE("capabilities", "atomic_double.exchange") {
+  run.require(run.gpu.features.shaderFloat64, "shaderFloat64");
+  const bool has = run.gpu.extension_features.atomic_float.shaderBufferFloat64Atomics;
+  const Buffer out = run.buffer_of<double>(std::vector<double>(65, 2.5));
+  dispatch(run,
+           std::string(kAtomicFloat) +
+               "layout(local_size_x = 64) in;\nlayout(std430, binding = 0) buffer R { double r[]; };\n"
+               "void main() {\n"
+               "  uint i = gl_LocalInvocationIndex;\n" +
+               (has ? "  double old = atomicExchange(r[i], double(i));\n"
+                      "  atomicStore(r[i], old + atomicLoad(r[i], gl_ScopeDevice, 0, 0), gl_ScopeDevice, 0, 0);\n"
+                    : "  r[i] += double(i);\n") +
+               "}\n",
+           {storage_buffer(0, out)});
+  run.out("result", out);
+}
+
 void atomic_float_image(Run& run, const std::string& operation) {
   run.require(run.gpu.extension_features.atomic_float.shaderImageFloat32AtomicAdd &&
                   run.gpu.extension_features.atomic_float2.shaderImageFloat32AtomicMinMax,

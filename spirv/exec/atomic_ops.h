@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cstdint>
 #include <type_traits>
 
@@ -12,11 +13,13 @@
 
 namespace vitrine::spirv::exec {
 
-inline std::uint32_t combine_float(ir::AtomicOp op, std::uint32_t old, std::uint32_t operand) {
-  const float a = base::float_of(old), b = base::float_of(operand);
-  return base::bits_of(op == ir::AtomicOp::kFAdd   ? a + b
-                       : op == ir::AtomicOp::kFMin ? base::min_second(a, b)
-                                                   : base::max_second(a, b));
+/// On binary32 or binary64; of two numbers that compare neither way minimum and maximum are the operand.
+template <class Word>
+inline Word combine_float(ir::AtomicOp op, Word old, Word operand) {
+  using Float = std::conditional_t<sizeof(Word) == 4, float, double>;
+  const auto a = std::bit_cast<Float>(old), b = std::bit_cast<Float>(operand);
+  if (op == ir::AtomicOp::kFAdd) return std::bit_cast<Word>(a + b);
+  return op == ir::AtomicOp::kFMin ? (a < b ? old : operand) : (a > b ? old : operand);
 }
 
 /// The new value of a word of 32 or 64 bits, for operations that always write.
@@ -46,8 +49,7 @@ inline Word combine(ir::AtomicOp op, Word old, Word operand) {
     case ir::AtomicOp::kFAdd:
     case ir::AtomicOp::kFMin:
     case ir::AtomicOp::kFMax:
-      if constexpr (sizeof(Word) == 4) return combine_float(op, old, operand);
-      break;
+      return combine_float(op, old, operand);
     case ir::AtomicOp::kExchange:
     case ir::AtomicOp::kStore:
       return operand;
