@@ -214,16 +214,17 @@ constexpr VkFormat kBlitFormats[] = {
 
 /// Formats that are halved by way of bytes or values.
 constexpr VkFormat kDecodedFormats[] = {
-    VK_FORMAT_R8_UNORM,      VK_FORMAT_R8G8_UNORM,           VK_FORMAT_R16G16_SFLOAT,           VK_FORMAT_R16_UNORM,
-    VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,  VK_FORMAT_B10G11R11_UFLOAT_PACK32, VK_FORMAT_R8_SNORM,
-    VK_FORMAT_R16_SFLOAT,    VK_FORMAT_R5G6B5_UNORM_PACK16,  VK_FORMAT_R16G16B16A16_SNORM,      VK_FORMAT_R8_SRGB,
-    VK_FORMAT_R32_SFLOAT,    VK_FORMAT_B4G4R4A4_UNORM_PACK16};
+    VK_FORMAT_R8G8_UNORM,          VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_R16_UNORM,  VK_FORMAT_R32G32_SFLOAT,
+    VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R8_SNORM,      VK_FORMAT_R16_SFLOAT, VK_FORMAT_R5G6B5_UNORM_PACK16,
+    VK_FORMAT_R16G16B16A16_SNORM,  VK_FORMAT_R8_SRGB,       VK_FORMAT_R32_SFLOAT, VK_FORMAT_B4G4R4A4_UNORM_PACK16};
 
 /// Levels of mips, and other regions at half the size: rows against texels one by one, on every SIMD target.
 void compare_halved(unsigned seed) {
   std::mt19937 random(seed);
-  constexpr VkFormat kFormats[] = {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB,
-                                   VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R16G16B16A16_SFLOAT};
+  constexpr VkFormat kFormats[] = {VK_FORMAT_R8G8B8A8_UNORM,         VK_FORMAT_B8G8R8A8_UNORM,
+                                   VK_FORMAT_R8G8B8A8_SRGB,          VK_FORMAT_B8G8R8A8_SRGB,
+                                   VK_FORMAT_R16G16B16A16_SFLOAT,    VK_FORMAT_R8_UNORM,
+                                   VK_FORMAT_B10G11R11_UFLOAT_PACK32};
   const FormatDesc& format = random() % 3 != 0 ? format_desc(kFormats[random() % std::size(kFormats)])
                                                : format_desc(kDecodedFormats[random() % std::size(kDecodedFormats)]);
   const auto size = [&] {

@@ -84,15 +84,6 @@ std::size_t decode_any(const FormatDesc& format, const std::byte* from, std::siz
                     [&]<Numeric kNumeric>() { return decode_fields<kNumeric>(format, from, count, to); });
 }
 
-/// Truncated binary16 without the low bits of its mantissa; negative numbers are 0, NaN keeps one bit.
-HWY_INLINE VU encode_unsigned_float(VF x, std::uint32_t bits) {
-  const int dropped = static_cast<int>(15 - bits);
-  const VU half = hn::ShiftRightSame(hn::PromoteTo(DU(), halves_of_floats(x)), dropped);
-  const VU nan = hn::Set(DU(), (0x7c00u >> dropped) | 1u << (bits - 6));
-  const VU positive = hn::IfThenElseZero(hn::RebindMask(DU(), hn::Gt(x, splat(0.0f))), half);
-  return hn::IfThenElse(hn::RebindMask(DU(), hn::Eq(x, x)), positive, nan);
-}
-
 template <Numeric kNumeric>
 HWY_INLINE VU encode_field(VU value, const Channel& channel) {
   const VF x = as_float(value), zero = splat(0.0f), one = splat(1.0f);
@@ -109,7 +100,7 @@ HWY_INLINE VU encode_field(VU value, const Channel& channel) {
     const VI clamped = hn::Max(hn::Min(hn::BitCast(DI(), value), splat(largest)), splat(-largest - 1));
     return hn::And(hn::BitCast(DU(), clamped), hn::Set(DU(), mask));
   } else if constexpr (kNumeric == Numeric::kUfloat) {
-    return encode_unsigned_float(x, channel.bits);
+    return unsigned_floats_of_floats(x, channel.bits);
   } else {
     if (channel.name == 'D') return as_unsigned(lanes_max_second(lanes_min_second(x, one), zero));
     return channel.bits == 16 ? hn::PromoteTo(DU(), halves_of_floats(x)) : value;

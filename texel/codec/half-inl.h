@@ -75,6 +75,19 @@ HWY_INLINE HalfLanes halves_of_floats(hn::Vec<hn::ScalableTag<float>> value) {
 #endif
 }
 
+/// Truncated binary16 without its sign and the low bits of its mantissa, `bits` in all; negative numbers are 0, NaN
+/// keeps one bit.
+HWY_INLINE hn::Vec<hn::ScalableTag<std::uint32_t>> unsigned_floats_of_floats(hn::Vec<hn::ScalableTag<float>> value,
+                                                                             std::uint32_t bits) {
+  const hn::ScalableTag<std::uint32_t> du;
+  const int dropped = static_cast<int>(15 - bits);
+  const auto half = hn::ShiftRightSame(hn::PromoteTo(du, halves_of_floats(value)), dropped);
+  const auto nan = hn::Set(du, (0x7c00u >> dropped) | 1u << (bits - 6));
+  const auto zero = hn::Zero(hn::ScalableTag<float>());
+  const auto positive = hn::IfThenElseZero(hn::RebindMask(du, hn::Gt(value, zero)), half);
+  return hn::IfThenElse(hn::RebindMask(du, hn::Eq(value, value)), positive, nan);
+}
+
 }  // namespace vitrine::texel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

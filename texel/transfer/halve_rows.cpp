@@ -145,16 +145,39 @@ HWY_INLINE CodeLanes average_srgb_bytes(ComponentLanes weight_x, ComponentLanes 
                 hn::Or(color(std::integral_constant<int, 8>()), color(std::integral_constant<int, 16>())));
 }
 
-void halve_srgb_bytes(const HalvedRow& row) {
+/// The averages of texels a b over c d of 11, 11 and 10 bits.
+HWY_INLINE CodeLanes average_small_floats(ComponentLanes weight_x, ComponentLanes weight_y, CodeLanes a, CodeLanes b,
+                                          CodeLanes c, CodeLanes d) {
+  const auto channel = [&](auto shift, auto bits) HWY_ATTR {
+    const auto value = [&](CodeLanes word) HWY_ATTR {
+      const auto mask = hn::Set(DI(), ((1 << bits()) - 1) << (15 - bits()));
+      const auto moved = shift() < 15 - bits() ? hn::ShiftLeft<15 - bits()>(word)
+                                               : hn::ShiftRight<std::max(0, shift() + bits() - 15)>(word);
+      const hn::Rebind<std::uint16_t, D> d16;
+      return floats_of_halves_quieted(hn::DemoteTo(d16, hn::And(moved, mask)));
+    };
+    const Square square{{value(a), value(b)}, {value(c), value(d)}};
+    return hn::ShiftLeft<shift()>(
+        hn::BitCast(DI(), unsigned_floats_of_floats(average(weight_x, weight_y, square), bits())));
+  };
+  using std::integral_constant;
+  return hn::Or(hn::Or(channel(integral_constant<int, 0>(), integral_constant<int, 11>()),
+                       channel(integral_constant<int, 11>(), integral_constant<int, 11>())),
+                channel(integral_constant<int, 22>(), integral_constant<int, 10>()));
+}
+
+/// Texels of one word; average_of(weight x, weight y, a, b, c, d) averages vectors of texels a b over c d.
+template <class Average>
+HWY_INLINE void halve_pairs_of_words(const HalvedRow& row, Average&& average_of) {
   const auto weight_y = hn::Set(D(), row.weight_y);
   const std::size_t lanes = hn::Lanes(D());
   const auto average_pairs = [&](const std::byte* upper, const std::byte* lower, const float* weight) HWY_ATTR {
     const auto load = [&](const std::byte* from, std::size_t i)
                           HWY_ATTR { return hn::LoadU(DI(), reinterpret_cast<const std::int32_t*>(from) + i * lanes); };
     const auto top0 = load(upper, 0), top1 = load(upper, 1), bottom0 = load(lower, 0), bottom1 = load(lower, 1);
-    return average_srgb_bytes(hn::LoadU(D(), weight), weight_y, hn::ConcatEven(DI(), top1, top0),
-                              hn::ConcatOdd(DI(), top1, top0), hn::ConcatEven(DI(), bottom1, bottom0),
-                              hn::ConcatOdd(DI(), bottom1, bottom0));
+    return average_of(hn::LoadU(D(), weight), weight_y, hn::ConcatEven(DI(), top1, top0),
+                      hn::ConcatOdd(DI(), top1, top0), hn::ConcatEven(DI(), bottom1, bottom0),
+                      hn::ConcatOdd(DI(), bottom1, bottom0));
   };
   std::size_t i = 0;
   for (; i + lanes <= row.count; i += lanes) {
@@ -171,6 +194,51 @@ void halve_srgb_bytes(const HalvedRow& row) {
   std::copy_n(row.weight_x + i, left, weight);
   hn::Store(average_pairs(upper, lower, weight), DI(), out);
   std::memcpy(row.out + 4 * i, out, 4 * left);
+}
+
+void halve_srgb_bytes(const HalvedRow& row) {
+  halve_pairs_of_words(row, [](auto x, auto y, auto a, auto b, auto c, auto d)
+                                HWY_ATTR { return average_srgb_bytes(x, y, a, b, c, d); });
+}
+void halve_small_floats(const HalvedRow& row) {
+  halve_pairs_of_words(row, [](auto x, auto y, auto a, auto b, auto c, auto d)
+                                HWY_ATTR { return average_small_floats(x, y, a, b, c, d); });
+}
+
+/// Texels of one byte: pairs of them are 16-bit lanes.
+void halve_single_bytes(const HalvedRow& row) {
+  constexpr std::size_t kLanes = hn::MaxLanes(D16());
+  const hn::Rebind<std::uint8_t, D16> d8;
+  const hn::Rebind<std::int16_t, DI> d_half;
+  const V16 weight_y = hn::Set(D16(), static_cast<std::int16_t>(128 * row.byte_weight_y));
+  const auto average_pairs = [&](const std::byte* upper, const std::byte* lower, const std::int32_t* weight) HWY_ATTR {
+    const auto half = [&](std::size_t i)
+                          HWY_ATTR { return hn::DemoteTo(d_half, hn::LoadU(DI(), weight + i * hn::Lanes(DI()))); };
+    const V16 weight_x = hn::ShiftLeft<7>(hn::Combine(D16(), half(1), half(0)));
+    const auto blend = [](V16 w, V16 a, V16 b) HWY_ATTR { return hn::Add(a, rounded_product(w, hn::Sub(b, a))); };
+    const auto mix_pairs = [&](const std::byte* from) HWY_ATTR {
+      const hn::RebindToUnsigned<D16> pairs;
+      const auto pair = hn::LoadU(pairs, reinterpret_cast<const std::uint16_t*>(from));
+      return blend(weight_x, hn::BitCast(D16(), hn::And(pair, hn::Set(pairs, std::uint16_t{255}))),
+                   hn::BitCast(D16(), hn::ShiftRight<8>(pair)));
+    };
+    return hn::DemoteTo(d8, blend(weight_y, mix_pairs(upper), mix_pairs(lower)));
+  };
+  std::size_t i = 0;
+  for (; i + kLanes <= row.count; i += kLanes) {
+    hn::StoreU(average_pairs(row.upper + 2 * i, row.lower + 2 * i, row.byte_weight_x + i), d8,
+               reinterpret_cast<std::uint8_t*>(row.out + i));
+  }
+  if (i == row.count) return;
+  const std::size_t left = row.count - i;
+  alignas(64) std::byte upper[2 * kLanes]{}, lower[2 * kLanes]{};
+  alignas(64) std::int32_t weight[kLanes]{};
+  alignas(64) std::uint8_t out[kLanes];
+  std::memcpy(upper, row.upper + 2 * i, 2 * left);
+  std::memcpy(lower, row.lower + 2 * i, 2 * left);
+  std::copy_n(row.byte_weight_x + i, left, weight);
+  hn::Store(average_pairs(upper, lower, weight), d8, out);
+  std::memcpy(row.out + i, out, left);
 }
 
 /// A vector of halves or floats.
@@ -245,6 +313,8 @@ namespace vitrine::texel {
 namespace {
 
 HWY_EXPORT(halve_words);
+HWY_EXPORT(halve_single_bytes);
+HWY_EXPORT(halve_small_floats);
 HWY_EXPORT(halve_srgb_bytes);
 HWY_EXPORT(halve_four_halves);
 HWY_EXPORT(halve_texels);
@@ -264,7 +334,9 @@ RowHalver word_halver() {
 
 RowHalver row_halver(const FormatDesc& format, bool bytes) {
   base::select_simd_target();
+  if (bytes && format.block_bytes == 1 && format.channel[0].bits == 8) return HWY_DYNAMIC_DISPATCH(halve_single_bytes);
   if (bytes) return is_four_bytes(format) ? HWY_DYNAMIC_DISPATCH(halve_words) : nullptr;
+  if (format.format == VK_FORMAT_B10G11R11_UFLOAT_PACK32) return HWY_DYNAMIC_DISPATCH(halve_small_floats);
   if (is_four_halves(format)) return HWY_DYNAMIC_DISPATCH(halve_four_halves);
   if (format.format == VK_FORMAT_R16G16_SFLOAT) return HWY_DYNAMIC_DISPATCH(halve_two_halves);
   if (format.format == VK_FORMAT_R32G32B32A32_SFLOAT) return texel_halver();
