@@ -221,6 +221,7 @@ Range RangeAnalysis::of_result(const Inst& inst, char type) {
     case Op::kMov:
       return of_typed_source(inst, 0, type);
     case Op::kSelect: {
+      if (!knows_selections_) return {};
       const Range a = of_typed_source(inst, 1, type), b = of_typed_source(inst, 2, type);
       return {static_cast<std::uint8_t>(a.signs | b.signs), a.integral && b.integral, a.number && b.number,
               a.finite && b.finite};

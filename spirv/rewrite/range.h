@@ -21,7 +21,9 @@ struct Range {
 /// Caches results until clear(); the graph may not change in between.
 class RangeAnalysis {
  public:
-  explicit RangeAnalysis(const Graph& graph) : graph_(graph) {}
+  /// The reference's code generator knows nothing of what is selected.
+  explicit RangeAnalysis(const Graph& graph, bool knows_selections = true)
+      : graph_(graph), knows_selections_(knows_selections) {}
   void clear() { ++epoch_; }
 
   /// Of operand `index` of a float operation, over its components.
@@ -47,6 +49,7 @@ class RangeAnalysis {
   Range of_converted(const Inst& inst);
 
   const Graph& graph_;
+  bool knows_selections_;
   std::vector<Entry> cache_;
   std::uint32_t epoch_ = 1;
 };

@@ -46,7 +46,7 @@ void plain_extremum(Graph& graph, RangeAnalysis& ranges, InstId id) {
 }  // namespace
 
 void choose_extrema(Graph& graph) {
-  RangeAnalysis ranges(graph);
+  RangeAnalysis ranges(graph, false);
   // From the end, so that the analysis still sees the operands' original operations.
   std::vector<InstId> order;
   auto visit = [&](InstId id) {

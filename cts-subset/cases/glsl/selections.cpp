@@ -87,6 +87,14 @@ CTS_CASE("glsl", "folded_extrema") {
       "  vec4 r2 = clamp(z.wzyx, vec4(0.0), b), r3 = max(-roundEven(vec4(-0.1, 255.0, 0.0, -1.0)), z);\n");
 }
 
+// A selection may be NaN to the code generator, whatever it selects: the minimum and maximum of two zeros is the
+// second.
+CTS_CASE("glsl", "extrema_of_selections") {
+  evaluate_specials(run, kVec4, 2,
+                    "  vec4 r0 = max(b.x == a.z ? vec4(-1.0) : min(a, 1.7), -abs(b) * p.x);\n"
+                    "  vec4 r1 = min(b.x == a.z ? vec4(-1.0) : max(a, -1.7), abs(b) * -p.x);\n");
+}
+
 // Loops that the compiler unrolls around an exit that is not counted, and branches that it finds to be constant one by
 // one: which sums the rules see as one expression, round by round, decides the last bits.
 CTS_CASE("glsl", "unrolled_exits") {
