@@ -24,6 +24,7 @@ constexpr char kUsage[] =
     "  --validation=0|1  validation layer (default 1)\n"
     "  --isolate         run cases in child processes; a crash is counted and the rest goes on\n"
     "  --jobs=N          child processes at a time\n"
+    "  CTS_MODULES=DIR   (environment) group modules: every .spv file below the folder, run on random resources\n"
     "  --self-test       cases that must fail, to test the suite itself\n"
     "  --timeout=S       a case running longer than this counts as crashed\n";
 
