@@ -4,7 +4,6 @@
 #include <hwy/targets.h>
 
 #include <cstdlib>
-#include <mutex>
 #include <string_view>
 
 namespace vitrine::base {
@@ -23,11 +22,13 @@ auto wanted_targets() {
 }  // namespace
 
 void select_simd_target() {
-  static std::once_flag once;
-  std::call_once(once, [] {
+  // Not std::call_once, which costs calls even when all is done: every fetch of a wave comes here.
+  static const bool selected = [] {
     hwy::DisableTargets(~wanted_targets());
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  });
+    return true;
+  }();
+  static_cast<void>(selected);
 }
 
 const char* simd_target_name() {

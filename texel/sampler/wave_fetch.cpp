@@ -80,6 +80,13 @@ HWY_NOINLINE void put_texels(const FormatDesc& format, const std::array<std::uin
     }
     const Channel channel = format.channel[static_cast<std::size_t>(index)];
     const WordLanes& from = words[channel.offset / 32];
+    if ((valid & active) == base::kAllLanes) {
+      for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
+        const VF value = convert_field<kNumeric>(hn::Load(DU(), from.lane + first), channel);
+        hn::Store(as_unsigned(value), DU(), result[c]->lane + first);
+      }
+      continue;
+    }
     for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
       const VU value = as_unsigned(convert_field<kNumeric>(hn::Load(DU(), from.lane + first), channel));
       store_lanes(hn::IfThenElseZero(lanes_mask_from_bits(DU(), valid >> first), value), active, first, *result[c]);
