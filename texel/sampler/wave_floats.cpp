@@ -1,7 +1,6 @@
 // The float sampler for whole waves (lavapipe-texture-blend.md A3 to A7, A9): every format, dimension and address mode,
 // comparison, gathers, reductions, one or two levels. Bits equal sample_scalar's.
 #include <algorithm>
-#include <cstring>
 
 #include "texel/sampler/cube.h"
 #include "texel/sampler/prepared.h"
@@ -218,14 +217,18 @@ HWY_NOINLINE void find_cube_taps(Call& call, int which, FloatTaps& taps) {
 HWY_NOINLINE void put_border(const Plan& plan, base::LaneMask outside, Components wanted, WaveTexels& texels) {
   for (std::size_t c = 0; c < 4; ++c) {
     if ((wanted >> c & 1) == 0) continue;
-    base::for_each_lane(
-        outside, [&](std::size_t lane) { std::memcpy(&texels.c[c].lane[lane], &plan.border[c], sizeof(float)); });
+    const VF border = as_float(hn::Set(DU(), plan.border[c]));
+    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
+      hn::BlendedStore(border, lanes_mask_from_bits(DF(), outside >> i), DF(), texels.c[c].lane + i);
+    }
   }
 }
 
 /// Tap k as values; with a comparison its result as 0 or 1 in component 0.
 HWY_NOINLINE void fetch_tap(Call& call, const FloatTaps& taps, std::uint32_t k, WaveTexels& out) {
-  fetch_texels(call.view(), taps.place[k], call.request.active, call.wanted, out);
+  if (taps.outside[k] != base::kAllLanes) {
+    fetch_texels(call.view(), taps.place[k], call.request.active, call.wanted, out);
+  }
   if (taps.outside[k] != 0) put_border(call.plan(), taps.outside[k], call.wanted, out);
   if (!call.compare) return;
   for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
