@@ -34,6 +34,10 @@ constexpr char kLines[] =
 constexpr char kLayers[] =
     "uniform sampler2DArray t; void main() { o = texture(t, vec3(uv * vec2(3.1, 2.3), floor(uv.y * 7.9))); }";
 
+constexpr char kPercentageCloser[] =
+    "uniform sampler2DShadow t; void main() { float s = 0.0; for (int y = -1; y < 2; ++y) for (int x = -1; x < 2; ++x)"
+    " s += texture(t, vec3(uv * vec2(3.1, 2.3) + vec2(x, y) / 512.0, 0.5)); o = vec4(s / 9.0); }";
+
 struct TextureSpec {
   const char* body = kOnce;
   VkFilter filter = VK_FILTER_LINEAR;
@@ -43,6 +47,7 @@ struct TextureSpec {
   VkImageViewType view = VK_IMAGE_VIEW_TYPE_2D;
   float anisotropy = 1;
   bool compare = false;
+  VkSamplerAddressMode address = VK_SAMPLER_ADDRESS_MODE_REPEAT;
 };
 
 double measure(Run& run, const TextureSpec& spec) {
@@ -65,6 +70,7 @@ double measure(Run& run, const TextureSpec& spec) {
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = info.minFilter = spec.filter;
   info.mipmapMode = spec.mip;
+  info.addressModeU = info.addressModeV = info.addressModeW = spec.address;
   info.maxLod = spec.levels > 1 ? 1000.0f : 0.0f;
   info.anisotropyEnable = spec.anisotropy > 1;
   info.maxAnisotropy = spec.anisotropy;
@@ -108,6 +114,18 @@ std::vector<Workload> texture_workloads() {
   add("tex_1d", {.body = kLine, .view = VK_IMAGE_VIEW_TYPE_1D});
   add("tex_1d_array", {.body = kLines, .view = VK_IMAGE_VIEW_TYPE_1D_ARRAY});
   add("tex_array", {.body = kLayers, .view = VK_IMAGE_VIEW_TYPE_2D_ARRAY});
+  add("tex_nearest_array", {.body = kLayers, .filter = VK_FILTER_NEAREST, .view = VK_IMAGE_VIEW_TYPE_2D_ARRAY});
+  add("tex_r8", {.format = VK_FORMAT_R8_UNORM});
+  add("tex_rg8", {.format = VK_FORMAT_R8G8_UNORM});
+  add("tex_r16", {.format = VK_FORMAT_R16_UNORM});
+  add("tex_rgb10a2", {.format = VK_FORMAT_A2B10G10R10_UNORM_PACK32});
+  add("tex_565", {.format = VK_FORMAT_R5G6B5_UNORM_PACK16});
+  add("tex_3d_r8", {.body = kVolume, .format = VK_FORMAT_R8_UNORM, .view = VK_IMAGE_VIEW_TYPE_3D});
+  add("tex_mirror", {.address = VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT});
+  add("tex_border", {.address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER});
+  add("tex_clamp_near", {.filter = VK_FILTER_NEAREST, .address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE});
+  add("tex_pcf9", {.body = kPercentageCloser, .format = VK_FORMAT_D32_SFLOAT, .compare = true});
+  add("tex_pcf9_d16", {.body = kPercentageCloser, .format = VK_FORMAT_D16_UNORM, .compare = true});
   return rows;
 }
 

@@ -1,5 +1,5 @@
-// Averages of four texels of one word each, or of comparisons with them, in two dimensions and one level or two: vector
-// by vector from coordinates to results. The bits of the general float sampler.
+// Averages of four texels of two or four bytes each, or of comparisons with them, in two dimensions and one level or
+// two: vector by vector from coordinates to results. The bits of the general float sampler.
 
 #include "texel/sampler/wave_square-inl.h"
 #include "texel/sampler/wave_words-inl.h"
@@ -62,7 +62,7 @@ HWY_INLINE VF average_comparison(const Channel& channel, VkCompareOp op, VF refe
 }
 
 /// Calls body(first, over_levels) for vectors with active lanes.
-template <class Body>
+template <std::size_t kBytes, class Body>
 HWY_INLINE void for_each_square(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                 Body&& body) {
   const bool two_levels = p.plan.mip == MipFilter::kLinear && p.plan.lod_needed;
@@ -72,14 +72,14 @@ HWY_INLINE void for_each_square(const PreparedSampler& p, const SampleRequest& r
       if ((request.active >> first & base::first_lanes(hn::Lanes(DF()))) != 0) read(v, first);
     }
   };
-  SquareReader<FloatAxis> nearer(p, request, state, 0);
+  SquareReader<FloatAxis, kBytes> nearer(p, request, state, 0);
   if (!two_levels) {
     return for_each_vector([&](std::size_t v, std::size_t first) HWY_ATTR {
       const WeighedSquare near = nearer.read(v);
       body(first, [&](auto&& average) { return average(near); });
     });
   }
-  SquareReader<FloatAxis> farther(p, request, state, 1);
+  SquareReader<FloatAxis, kBytes> farther(p, request, state, 1);
   for_each_vector([&](std::size_t v, std::size_t first) HWY_ATTR {
     const WeighedSquare near = nearer.read(v), far = farther.read(v);
     const VF fraction = hn::Load(DF(), state.fraction.lane + first);
@@ -87,11 +87,11 @@ HWY_INLINE void for_each_square(const PreparedSampler& p, const SampleRequest& r
   });
 }
 
-template <Numeric kNumeric>
+template <Numeric kNumeric, std::size_t kBytes>
 HWY_NOINLINE void sample_words(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                const SampleResult& result) {
   const ImageView& view = *p.plan.view;
-  for_each_square(p, request, state, [&](std::size_t first, auto&& over_levels) {
+  for_each_square<kBytes>(p, request, state, [&](std::size_t first, auto&& over_levels) {
     VF value[6];
     const auto component = [&](std::size_t c) {
       return over_levels([&](const WeighedSquare& s) { return average_component<kNumeric>(*view.format, c, s); });
@@ -108,13 +108,13 @@ HWY_NOINLINE void sample_words(const PreparedSampler& p, const SampleRequest& re
   });
 }
 
-template <Numeric kNumeric>
+template <Numeric kNumeric, std::size_t kBytes>
 HWY_NOINLINE void compare_words(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                 const SampleResult& result) {
   const ImageView& view = *p.plan.view;
   const Channel channel = view.format->channel[0];
   const VkCompareOp op = p.plan.sampler->compare_op;
-  for_each_square(p, request, state, [&](std::size_t first, auto&& over_levels) {
+  for_each_square<kBytes>(p, request, state, [&](std::size_t first, auto&& over_levels) {
     const VF reference = load_reference<kNumeric>(request, first);
     const VF average =
         over_levels([&](const WeighedSquare& s) { return average_comparison<kNumeric>(channel, op, reference, s); });
@@ -127,27 +127,31 @@ HWY_NOINLINE void compare_words(const PreparedSampler& p, const SampleRequest& r
   });
 }
 
+template <std::size_t kBytes>
 inline void sample_words_bilinear(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                   const SampleResult& result) {
   switch (p.plan.view->format->channel[0].numeric) {
     case Numeric::kUnorm:
-      return sample_words<Numeric::kUnorm>(p, request, state, result);
+      return sample_words<Numeric::kUnorm, kBytes>(p, request, state, result);
     case Numeric::kSnorm:
-      return sample_words<Numeric::kSnorm>(p, request, state, result);
+      return sample_words<Numeric::kSnorm, kBytes>(p, request, state, result);
     case Numeric::kSrgb:
-      return sample_words<Numeric::kSrgb>(p, request, state, result);
+      return sample_words<Numeric::kSrgb, kBytes>(p, request, state, result);
     case Numeric::kUfloat:
-      return sample_words<Numeric::kUfloat>(p, request, state, result);
+      // Two bytes have no such format.
+      if constexpr (kBytes == 4) return sample_words<Numeric::kUfloat, kBytes>(p, request, state, result);
+      return;
     default:
-      return sample_words<Numeric::kSfloat>(p, request, state, result);
+      return sample_words<Numeric::kSfloat, kBytes>(p, request, state, result);
   }
 }
 
+template <std::size_t kBytes>
 inline void compare_words_bilinear(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                    const SampleResult& result) {
   return p.plan.view->format->channel[0].numeric == Numeric::kUnorm
-             ? compare_words<Numeric::kUnorm>(p, request, state, result)
-             : compare_words<Numeric::kSfloat>(p, request, state, result);
+             ? compare_words<Numeric::kUnorm, kBytes>(p, request, state, result)
+             : compare_words<Numeric::kSfloat, kBytes>(p, request, state, result);
 }
 
 }  // namespace vitrine::texel::HWY_NAMESPACE

@@ -527,8 +527,12 @@ void sample_floats(const PreparedSampler& p, const SampleRequest& request, const
 
 void sample_words_or_compare(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                              const SampleResult& result) {
-  request.dref != nullptr ? compare_words_bilinear(p, request, state, result)
-                          : sample_words_bilinear(p, request, state, result);
+  const bool halves = p.plan.view->format->block_bytes == 2;
+  if (request.dref != nullptr)
+    halves ? compare_words_bilinear<2>(p, request, state, result)
+           : compare_words_bilinear<4>(p, request, state, result);
+  else
+    halves ? sample_words_bilinear<2>(p, request, state, result) : sample_words_bilinear<4>(p, request, state, result);
 }
 
 void sample_floats_bilinear(const PreparedSampler& p, const SampleRequest& request, const SampleResult& result) {
@@ -592,7 +596,7 @@ bool bilinear_suits(const Plan& plan) {
   const FormatDesc& format = *plan.view->format;
   const bool border = plan.address[0] == Address::kBorder || plan.address[1] == Address::kBorder;
   return plan.dims == 2 && plan.cube == plan.seamless && !plan.gather && !border && plan.min_linear &&
-         plan.mag_linear && averages_words(format) && format.block_bytes == 4 &&
+         plan.mag_linear && averages_words(format) && (format.block_bytes == 2 || format.block_bytes == 4) &&
          plan.sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
 }
 

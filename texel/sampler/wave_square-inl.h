@@ -44,8 +44,9 @@ struct SquareLevel {
 inline constexpr std::size_t kVectors = base::kWaveWidth / hn::MaxLanes(DU());
 
 #if HWY_TARGET <= HWY_AVX3
-/// The texels of a wave on one level, if those of every vector lie in four rows of 8 or 16 columns.
-class NearWave {
+/// The texels of 2 or 4 bytes of a wave on one level, if those of every vector lie in four rows of 8 or 16 columns.
+template <std::size_t kBytes>
+class NearTexels {
  public:
   static constexpr bool kExists = true;
 
@@ -63,6 +64,7 @@ class NearWave {
     const __m512i least = fold(low, [](__m512i a, __m512i b) { return _mm512_min_epi16(a, b); });
     const __m512i largest = fold(high, [](__m512i a, __m512i b) { return _mm512_max_epi16(a, b); });
     for (const std::int32_t columns : {8, 16}) {
+      if (kBytes == 2 && columns == 8) continue;
       if (level.width < columns || level.height < 4) return false;
       const __m512i limit = _mm512_set1_epi32((level.height - 4) << 16 | (level.width - columns));
       const __m512i corner = _mm512_min_epi16(least, limit);
@@ -77,7 +79,8 @@ class NearWave {
 
   /// `base`: of a slice.
   HWY_INLINE WordSquare load(const std::byte* base, const SquareLevel& level, std::size_t vector) const {
-    return wide_ ? load_wide(base, level, vector) : load_narrow(base, level, vector);
+    if constexpr (kBytes == 2) return load_square<Halves, 12>(base, level, vector);
+    return wide_ ? load_wide(base, level, vector) : load_square<Narrow, 13>(base, level, vector);
   }
   /// The first texels alone, of all lanes of the wave.
   HWY_INLINE void load_firsts(const std::byte* base, const SquareLevel& level, std::uint32_t* to) const {
@@ -98,10 +101,10 @@ class NearWave {
  private:
   /// The texels' first column and row.
   struct Corner {
-    Corner(const NearWave& wave, const std::byte* base, const SquareLevel& level, std::size_t vector)
+    Corner(const NearTexels& wave, const std::byte* base, const SquareLevel& level, std::size_t vector)
         : pitch(level.first_pitch) {
       const std::uint32_t corner = wave.corner_[4 * vector];
-      at = base + level.first_origin + (corner >> 16) * pitch + 4 * std::ptrdiff_t{corner & 0xFFFF};
+      at = base + level.first_origin + (corner >> 16) * pitch + std::ptrdiff_t{kBytes} * (corner & 0xFFFF);
       halves = _mm512_set1_epi32(static_cast<std::int32_t>(corner));
     }
     const std::byte* at;
@@ -120,7 +123,14 @@ class NearWave {
     HWY_INLINE VU pick(__m512i place) const { return VU{_mm512_permutex2var_epi32(upper, place, lower)}; }
     __m512i upper, lower;
   };
-  /// Four rows of sixteen; places are 16 * row + column.
+  /// Four rows of sixteen texels of two bytes; places are 16 * row + column in the low halves.
+  struct Halves : Narrow {
+    using Narrow::Narrow;
+    HWY_INLINE VU pick(__m512i place) const {
+      return VU{_mm512_maskz_permutex2var_epi16(0x55555555, this->upper, place, this->lower)};
+    }
+  };
+  /// Four rows of sixteen words; places are 16 * row + column.
   struct Wide {
     explicit Wide(const Corner& c)
         : row{_mm512_loadu_si512(c.at), _mm512_loadu_si512(c.at + c.pitch), _mm512_loadu_si512(c.at + 2 * c.pitch),
@@ -137,12 +147,14 @@ class NearWave {
   static HWY_INLINE __m512i halves(VI x, VI y) { return _mm512_or_si512(x.raw, _mm512_slli_epi32(y.raw, 16)); }
   static HWY_INLINE __mmask16 below(__m512i place) { return _mm512_test_epi32_mask(place, _mm512_set1_epi32(32)); }
 
-  HWY_INLINE WordSquare load_narrow(const std::byte* base, const SquareLevel& level, std::size_t vector) const {
+  /// kShift: from rows in the high halves to places.
+  template <class Rows, int kShift>
+  HWY_INLINE WordSquare load_square(const std::byte* base, const SquareLevel& level, std::size_t vector) const {
     const Corner corner(*this, base, level, vector);
-    const Narrow rows(corner);
+    const Rows rows(corner);
     const __m512i x0 = _mm512_sub_epi16(first_[vector], corner.halves);
     const __m512i x1 = _mm512_sub_epi16(second_[vector], corner.halves);
-    const __m512i y0 = _mm512_srli_epi32(x0, 13), y1 = _mm512_srli_epi32(x1, 13);
+    const __m512i y0 = _mm512_srli_epi32(x0, kShift), y1 = _mm512_srli_epi32(x1, kShift);
     return {{rows.pick(_mm512_or_si512(x0, y0)), rows.pick(_mm512_or_si512(x1, y0))},
             {rows.pick(_mm512_or_si512(x0, y1)), rows.pick(_mm512_or_si512(x1, y1))}};
   }
@@ -173,7 +185,8 @@ class NearWave {
   bool wide_ = false;
 };
 #else
-class NearWave {
+template <std::size_t kBytes>
+class NearTexels {
  public:
   static constexpr bool kExists = false;
 
@@ -190,6 +203,7 @@ class NearWave {
   void load_firsts(const std::byte*, const SquareLevel&, std::uint32_t*) const {}
 };
 #endif
+using NearWave = NearTexels<4>;
 
 /// Rows as byte offsets with the level's origin.
 HWY_INLINE WordSquare load_rows_of_words(const std::byte* base, VI row0, VI row1, VI x0, VI x1) {
@@ -201,6 +215,21 @@ HWY_INLINE WordSquare load_rows_of_words(const std::byte* base, VI row0, VI row1
   const VI right = hn::ShiftLeft<2>(x1);
   return {{load_words(base, top), load_words(base, hn::Add(row0, right))},
           {load_words(base, bottom), load_words(base, hn::Add(row1, right))}};
+}
+
+/// As above for texels of two bytes, of which two neighbours are a word.
+HWY_INLINE WordSquare load_rows_of_halves(const std::byte* base, VI row0, VI row1, VI x0, VI x1) {
+  const VI left = hn::ShiftLeft<1>(x0);
+  const VI top = hn::Add(row0, left), bottom = hn::Add(row1, left);
+  if (hn::AllTrue(DI(), hn::Eq(x1, hn::Add(x0, splat(1))))) {
+    const auto split = [](VU both) HWY_ATTR {
+      return WordPair{hn::And(both, hn::Set(DU(), 0xffffu)), hn::ShiftRight<16>(both)};
+    };
+    return {split(load_words(base, top)), split(load_words(base, bottom))};
+  }
+  const VI right = hn::ShiftLeft<1>(x1);
+  return {{load_narrow_words<2>(base, top), load_narrow_words<2>(base, hn::Add(row0, right))},
+          {load_narrow_words<2>(base, bottom), load_narrow_words<2>(base, hn::Add(row1, right))}};
 }
 
 /// Whether all lanes of the wave read one level of one layer or face, moved by one offset.
@@ -238,25 +267,29 @@ HWY_INLINE void with_known_addresses(const AxisLanes axis[2], Reader& reader) {
   }
 }
 
-/// The words around the points of a wave on one of the two levels that its lanes read; those of a cube inside their
-/// faces. Axis: set() from AxisLanes that stay where they are, taps(coordinate) for two texels and the weight of the
-/// second.
-template <class Axis>
+/// Texels with the weights of the second ones.
+template <class Weight>
+struct WeighedWords {
+  WordSquare words;
+  Weight x, y;
+};
+
+/// The texels of 2 or 4 bytes around the points of a wave on one of the two levels that its lanes read, as words; those
+/// of a cube inside their faces. Axis: set() from AxisLanes that stay where they are, taps(coordinate) for two texels
+/// and the weight of the second.
+template <class Axis, std::size_t kBytes = 4>
 class SquareReader {
  public:
   using Weight = decltype(std::declval<Axis>().taps(VF()).weight);
-  struct Weighed {
-    WordSquare words;
-    Weight x, y;
-  };
+  using Weighed = WeighedWords<Weight>;
 
   HWY_INLINE SquareReader(const PreparedSampler& p, const SampleRequest& request, const WaveState& state, int which)
       : p_(p), request_(request), state_(state), which_(which), whole_(wave_has_one_level(p, request, state, which)) {
     if (!whole_) return;
     load_level_of(0);
-    if constexpr (!NearWave::kExists) return;
+    if constexpr (!Near::kExists) return;
     with_known_addresses<false>(level_.axis, *this);
-    is_near_ = near_.find<true>(square_);
+    is_near_ = near_.template find<true>(square_);
   }
 
   /// Finds the texels of all vectors.
@@ -275,12 +308,14 @@ class SquareReader {
   }
 
   HWY_INLINE Weighed read(std::size_t vector) {
-    if constexpr (!NearWave::kExists) return find_alone(vector);
+    if constexpr (!Near::kExists) return find_alone(vector);
     if (is_near_) return {near_.load(p_.plan.view->base, square_, vector), x_[vector], y_[vector]};
     return read_alone(vector);
   }
 
  private:
+  using Near = NearTexels<kBytes>;
+
   HWY_INLINE void load_level_of(std::size_t vector) {
     load_level<2>(p_, request_, state_, which_, vector * hn::Lanes(DF()), p_.plan.cube, level_);
     axis_[0].set(level_.axis[0]);
@@ -297,16 +332,19 @@ class SquareReader {
     const std::byte* const base = p_.plan.view->base;
     const auto x = axis_[0].taps(coord(0, vector)), y = axis_[1].taps(coord(1, vector));
     if (square_.uniform) {
-      NearWave near;
+      Near near;
       for (std::size_t v = 0; v < kVectors; ++v) {
         near.add_first(v, x.first, y.first);
         near.add_second(v, x.second, y.second);
       }
-      if (near.find<true>(square_)) return {near.load(base, square_, 0), x.weight, y.weight};
+      if (near.template find<true>(square_)) return {near.load(base, square_, 0), x.weight, y.weight};
     }
     const VI row0 = hn::Add(square_.origin, hn::Mul(y.first, square_.row_pitch));
     const VI row1 = hn::Add(square_.origin, hn::Mul(y.second, square_.row_pitch));
-    return {load_rows_of_words(base, row0, row1, x.first, x.second), x.weight, y.weight};
+    if constexpr (kBytes == 2)
+      return {load_rows_of_halves(base, row0, row1, x.first, x.second), x.weight, y.weight};
+    else
+      return {load_rows_of_words(base, row0, row1, x.first, x.second), x.weight, y.weight};
   }
 
   const PreparedSampler& p_;
@@ -319,7 +357,7 @@ class SquareReader {
   Axis axis_[2];
   SquareLevel square_;
   Weight x_[kVectors], y_[kVectors];
-  NearWave near_;
+  Near near_;
 };
 
 }  // namespace vitrine::texel::HWY_NAMESPACE
