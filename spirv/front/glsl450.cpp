@@ -132,7 +132,6 @@ void clamp_int(Translator& t, const Inst& inst, ir::Op) {
   result(t, inst, clamp(t, inst, ir::Op::kIMin, ir::Op::kIMax));
 }
 
-/// lavapipe-shader-math.md 5.3.
 /// The literal half of a value whose components are all the same one.
 std::optional<float> uniform_half(const Expr& value) {
   const auto* words = constant_of(*value.t, value.id);
@@ -168,6 +167,7 @@ Expr mix_halves(Translator& t, const Inst& inst, const Expr& x, const Expr& y, c
   return sum;
 }
 
+/// lavapipe-shader-math.md 5.3.
 void mix(Translator& t, const Inst& inst, ir::Op) {
   const Expr x = arg(t, inst, 0), y = arg(t, inst, 1), a = arg(t, inst, 2);
   if (x.width == 16) return result(t, inst, mix_halves(t, inst, x, y, a));
