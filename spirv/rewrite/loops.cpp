@@ -331,10 +331,11 @@ Src copy_of(Graph& graph, InstId position, ValueId value) {
 }
 
 ValueId join_at_if(Graph& graph, InstId id, ValueId value) {
-  for (const BlockId child : graph.insts[id].child)
+  const auto children = std::to_array(graph.insts[id].child);  // a copy: new instructions move the old ones
+  for (const BlockId child : children)
     if (!ends_in(graph, child, Op::kYield)) return value;
   const ValueId result = add_results(graph, id, {value})[0].value;
-  for (const BlockId child : graph.insts[id].child) {
+  for (const BlockId child : children) {
     const InstId end = graph.blocks[child].tail;
     append_operand(graph, end, through_register(graph, end, {value, kWhole}, value));
   }
