@@ -99,13 +99,16 @@ VkSamplerCreateInfo random_sampler(Run& run, const Family& family, const Shape& 
     (random.chance(0.5f) ? info.addressModeU : info.addressModeV) = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
     if (random.chance(0.5f)) info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
   }
+  if (family.mixed)
+    for (VkSamplerAddressMode* mode : {&info.addressModeU, &info.addressModeV, &info.addressModeW})
+      *mode = random.pick({VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE});
   const auto plain = [](VkSamplerAddressMode m) {
     return m == VK_SAMPLER_ADDRESS_MODE_REPEAT || m == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   };
   const bool fixed_point_path = fits_8_bit(format) && family.kind == Kind::kImplicit && !cube &&
                                 plain(info.addressModeU) && plain(info.addressModeV) && plain(info.addressModeW);
   // Elsewhere nearest lookups change beside linear ones (deviations.md, mixed-filters).
-  if (fixed_point_path && random.chance(0.3f))
+  if (fixed_point_path && (family.mixed || random.chance(0.3f)))
     info.minFilter = info.magFilter == VK_FILTER_LINEAR ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
   // Special directions are at corners, and the reference reads beyond the face where one is no number.
   if (cube && family.special) info.magFilter = info.minFilter = VK_FILTER_NEAREST;

@@ -34,6 +34,7 @@ struct Family {
   bool reduced = false;       ///< minimum or maximum of the taps
   bool unnormalized = false;  ///< coordinates in texels
   bool special = false;       ///< coordinates, levels and gradients that are infinite, huge, tiny or no numbers
+  bool mixed = false;         ///< one filter linear and one nearest, wherever that can be compared
   bool integer = false;       ///< whole numbers alone
   bool lacking = false;       ///< formats that the reference lacks, or cannot filter: it gets a stand-in
 };

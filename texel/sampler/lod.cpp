@@ -150,7 +150,7 @@ void choose_levels(const Plan& plan, Lod& lod, std::int32_t nearest) {
 
 Lod shortcut(const Plan& plan, float rho) {
   Lod lod;
-  lod.minify = rho > 1.0f;
+  lod.minify = !(rho <= 1.0f);  // also where it is no number
   const float base = plan.squared_rho ? rho : rho * 1.41421356237309504880f;
   const auto exponent = static_cast<std::int32_t>((bits_of(base) >> 23) & 255);
   choose_levels(plan, lod, plan.squared_rho ? (exponent - 126) >> 1 : exponent - 127);
@@ -217,7 +217,7 @@ Lod level_of_detail(const Plan& plan, const SampleRequest& request, const LanePo
   if (plan.apply_max_lod) lod.clamped = min_second(lod.clamped, sampler.max_lod);
   if (plan.apply_min_lod) lod.clamped = max_second(lod.clamped, sampler.min_lod);
   if (request.min_lod != nullptr) lod.clamped = max_second(lod.clamped, value_at(request.min_lod, lane));
-  lod.minify = lod.clamped > 0.0f;
+  lod.minify = !(lod.clamped <= 0.0f);
   choose_levels(plan, lod, plan.anisotropic ? base::truncate_to_int(lod.clamped) : base::round_to_int(lod.clamped));
   return lod;
 }

@@ -187,8 +187,9 @@ HWY_INLINE void choose_levels(const Plan& plan, VF lod, VI nearest, std::size_t 
   hn::Store(fraction, DF(), state.fraction.lane + first);
 }
 
-HWY_INLINE void set_minify(hn::Mask<DF> minify, std::size_t first, WaveState& state) {
-  state.minify |= lanes_mask_bits(DF(), minify) << first;
+/// Where `lod` is no number the level is minified, too.
+HWY_INLINE void set_minify(VF lod, float largest_magnified, std::size_t first, WaveState& state) {
+  state.minify |= lanes_mask_bits(DF(), hn::Not(hn::Le(lod, splat(largest_magnified)))) << first;
 }
 
 /// Levels of detail before and after their clamps.
@@ -235,13 +236,13 @@ HWY_INLINE void find_levels(const Plan& plan, const SampleRequest& request, cons
   if (has_slopes(plan, request) && plan.shortcut_lod && request.min_lod == nullptr) {
     const VF base = plan.squared_rho ? rho : hn::Mul(rho, splat(1.41421356237309504880f));
     const VI exponent = exponent_field(base);
-    set_minify(hn::Gt(rho, splat(1.0f)), first, state);
+    set_minify(rho, 1.0f, first, state);
     return choose_levels(
         plan, rho, plan.squared_rho ? hn::ShiftRight<1>(hn::Sub(exponent, splat(126))) : hn::Sub(exponent, splat(127)),
         first, state);
   }
   const VF lod = find_lod(plan, request, rho, first).clamped;
-  set_minify(hn::Gt(lod, splat(0.0f)), first, state);
+  set_minify(lod, 0.0f, first, state);
   choose_levels(plan, lod, plan.anisotropic ? lanes_truncate_to_int(lod) : lanes_round_to_int(lod), first, state);
 }
 
