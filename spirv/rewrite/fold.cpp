@@ -6,6 +6,7 @@
 
 #include "base/float_mode.h"
 #include "base/numeric.h"
+#include "spirv/rewrite/fold_float.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/sized.h"
 
@@ -18,21 +19,6 @@ using base::float_of;
 /// False: not an op of one float operand.
 bool unary_float(Op op, float a, float& r) {
   switch (op) {
-    case Op::kFNeg:
-      r = float_of(bits_of(a) ^ 0x80000000u);
-      return true;
-    case Op::kFAbs:
-      r = float_of(bits_of(a) & 0x7fffffffu);
-      return true;
-    case Op::kFRcp:
-      r = 1.0f / a;
-      return true;
-    case Op::kFSqrt:
-      r = std::sqrt(a);
-      return true;
-    case Op::kFRsq:
-      r = 1.0f / std::sqrt(a);
-      return true;
     case Op::kFExp2:
       r = std::exp2(a);
       return true;
@@ -45,21 +31,6 @@ bool unary_float(Op op, float a, float& r) {
     case Op::kFCos:
       r = std::cos(a);
       return true;
-    case Op::kFFloor:
-      r = std::floor(a);
-      return true;
-    case Op::kFCeil:
-      r = std::ceil(a);
-      return true;
-    case Op::kFTrunc:
-      r = std::trunc(a);
-      return true;
-    case Op::kFRoundEven:
-      r = std::nearbyint(a);
-      return true;
-    case Op::kFFract:
-      r = a - std::floor(a);
-      return true;
     case Op::kFSign:
       r = a > 0.0f ? 1.0f : a < 0.0f ? -1.0f : a == 0.0f ? a : 0.0f;  // of -0 it is -0, unlike at run time
       return true;
@@ -68,54 +39,19 @@ bool unary_float(Op op, float a, float& r) {
       r = 0.0f;
       return true;
     default:
-      return false;
+      return fold_unary(op, a, r);
   }
 }
 
 bool binary_float(Op op, float a, float b, float& r) {
-  switch (op) {
-    case Op::kFAdd:
-      r = a + b;
-      return true;
-    case Op::kFSub:
-      r = a - b;
-      return true;
-    case Op::kFMul:
-      r = a * b;
-      return true;
-    case Op::kFDiv:
-      r = a / b;
-      return true;
-    case Op::kFPow:
-      r = std::pow(a, b);
-      return true;
-    case Op::kFMin:
-      r = a < b || std::isnan(b) ? a : b;
-      return true;
-    case Op::kFMax:
-      r = a > b || std::isnan(b) ? a : b;
-      return true;
-    default:
-      return false;
-  }
+  if (op != Op::kFPow) return fold_binary(op, a, b, r);
+  r = std::pow(a, b);
+  return true;
 }
 
 bool compare(Op op, const std::uint32_t* v, bool& r) {
-  const float x = float_of(v[0]), y = float_of(v[1]);
   const auto i = static_cast<std::int32_t>(v[0]), j = static_cast<std::int32_t>(v[1]);
   switch (op) {
-    case Op::kFLt:
-      r = x < y;
-      return true;
-    case Op::kFGe:
-      r = x >= y;
-      return true;
-    case Op::kFEq:
-      r = x == y;
-      return true;
-    case Op::kFNeu:
-      r = x != y;
-      return true;
     case Op::kIEq:
       r = v[0] == v[1];
       return true;
@@ -150,7 +86,7 @@ bool compare(Op op, const std::uint32_t* v, bool& r) {
       r = !v[0];
       return true;
     default:
-      return false;
+      return fold_comparison(op, float_of(v[0]), float_of(v[1]), r);
   }
 }
 

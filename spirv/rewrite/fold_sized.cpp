@@ -1,97 +1,13 @@
 // Constant folding of operations on numbers of 16 and 64 bits: halves are computed in binary32 and rounded at the end.
 #include <bit>
-#include <cmath>
 
 #include "base/numeric.h"
+#include "spirv/rewrite/fold_float.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/sized.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
-
-bool unary(Op op, double a, double& r) {
-  switch (op) {
-    case Op::kFNeg:
-      r = -a;
-      return true;
-    case Op::kFAbs:
-      r = std::abs(a);
-      return true;
-    case Op::kFRcp:
-      r = 1.0 / a;
-      return true;
-    case Op::kFSqrt:
-      r = std::sqrt(a);
-      return true;
-    case Op::kFRsq:
-      r = 1.0 / std::sqrt(a);
-      return true;
-    case Op::kFFloor:
-      r = std::floor(a);
-      return true;
-    case Op::kFCeil:
-      r = std::ceil(a);
-      return true;
-    case Op::kFTrunc:
-      r = std::trunc(a);
-      return true;
-    case Op::kFRoundEven:
-      r = std::nearbyint(a);
-      return true;
-    case Op::kFFract:
-      r = a - std::floor(a);
-      return true;
-    case Op::kFSign:
-      r = a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : 0.0;
-      return true;
-    default:
-      return false;
-  }
-}
-
-bool binary(Op op, double a, double b, double& r) {
-  switch (op) {
-    case Op::kFAdd:
-      r = a + b;
-      return true;
-    case Op::kFSub:
-      r = a - b;
-      return true;
-    case Op::kFMul:
-      r = a * b;
-      return true;
-    case Op::kFDiv:
-      r = a / b;
-      return true;
-    case Op::kFMin:
-      r = a < b || std::isnan(b) ? a : b;
-      return true;
-    case Op::kFMax:
-      r = a > b || std::isnan(b) ? a : b;
-      return true;
-    default:
-      return false;
-  }
-}
-
-bool compare(Op op, double a, double b, std::uint32_t& r) {
-  switch (op) {
-    case Op::kFLt:
-      r = a < b ? 1 : 0;
-      return true;
-    case Op::kFGe:
-      r = a >= b ? 1 : 0;
-      return true;
-    case Op::kFEq:
-      r = a == b ? 1 : 0;
-      return true;
-    case Op::kFNeu:
-      r = a != b ? 1 : 0;
-      return true;
-    default:
-      return false;
-  }
-}
 
 bool is_zero(const Graph& graph, const Inst& inst, std::uint32_t index) {
   const Src src = graph.source(inst, index);
@@ -182,7 +98,10 @@ bool evaluate_sized(const Graph& graph, const Inst& inst, unsigned c, std::uint3
     numbers[i] = literal_number(*constant, swizzle, inst.width);
     singles[i] = base::bits_of(static_cast<float>(numbers[i]));
   }
-  if (compare(inst.op, numbers[0], numbers[1], words[0])) return true;
+  if (bool holds = false; fold_comparison(inst.op, numbers[0], numbers[1], holds)) {
+    words[0] = holds ? 1 : 0;
+    return true;
+  }
   if (inst.width == 16) {
     std::uint32_t result = 0;
     if (!evaluate(inst.op, singles, result)) return false;
@@ -195,7 +114,9 @@ bool evaluate_sized(const Graph& graph, const Inst& inst, unsigned c, std::uint3
   } else if (inst.op == Op::kFMulAdd) {
     const double product = numbers[0] * numbers[1];
     result = product + numbers[2];
-  } else if (!unary(inst.op, numbers[0], result) && !binary(inst.op, numbers[0], numbers[1], result)) {
+  } else if (inst.op == Op::kFSign) {
+    result = numbers[0] > 0.0 ? 1.0 : numbers[0] < 0.0 ? -1.0 : 0.0;
+  } else if (!fold_unary(inst.op, numbers[0], result) && !fold_binary(inst.op, numbers[0], numbers[1], result)) {
     return false;
   }
   literal_words(result, 64, words);
