@@ -127,8 +127,7 @@ void load_vectors(const Bytes& bytes, const MemoryOp& row, const Register& offse
     } else if (inner && wanted_lanes == vector_lanes && hn::AllTrue(d, hn::Eq(spread, hn::Zero(d)))) {
       for (std::uint32_t c = 0; c < row.components; ++c)
         if (to[c] != nullptr)
-          hn::Store(hn::Set(d, *reinterpret_cast<const std::uint32_t*>(bytes.data + first + row.at[c])), d,
-                    to[c] + lane);
+          hn::Store(hn::Set(d, load_word(bytes, static_cast<std::uint32_t>(first + row.at[c]))), d, to[c] + lane);
     } else {
       const auto mask = lanes::lanes_mask_from_bits(d, wanted_lanes);
       for (std::uint32_t c = 0; c < row.components; ++c)
