@@ -147,19 +147,11 @@ bool walk_fours(const Plan& plan, const Footprint& in, Sums& sums) {
   }
   if (s3tc_kind(format) != S3tcKind::kNone && !format.is_srgb()) return walk_rows<S3tcSums>(plan, in, sums);
   if (!averages_words(format) || format.block_bytes != 4) return false;
-  switch (format.channel[0].numeric) {
-    case Numeric::kUnorm:
-      if (format.channel_count == 4 && fits_bytes(format)) return walk_rows<ByteSums>(plan, in, sums);
-      return walk_rows<WordSums<Numeric::kUnorm>>(plan, in, sums);
-    case Numeric::kSrgb:
-      return walk_rows<WordSums<Numeric::kSrgb>>(plan, in, sums);
-    case Numeric::kSnorm:
-      return walk_rows<WordSums<Numeric::kSnorm>>(plan, in, sums);
-    case Numeric::kUfloat:
-      return walk_rows<WordSums<Numeric::kUfloat>>(plan, in, sums);
-    default:
-      return walk_rows<WordSums<Numeric::kSfloat>>(plan, in, sums);
-  }
+  const Numeric numeric = format.channel[0].numeric;
+  if (numeric == Numeric::kUnorm && format.channel_count == 4 && fits_bytes(format))
+    return walk_rows<ByteSums>(plan, in, sums);
+  return by_averaged_numeric(numeric,
+                             [&]<Numeric kNumeric>() { return walk_rows<WordSums<kNumeric>>(plan, in, sums); });
 }
 
 /// Compressed texels are values already: those that may be infinite go with the floats.
@@ -174,18 +166,8 @@ void walk_any(const Plan& plan, const Footprint& in, bool compare, Sums& sums) {
                ? walk<Numeric::kSfloat, true>(plan, in, reference, sums)
                : walk<Numeric::kUnorm, true>(plan, in, reference, sums);
   }
-  switch (format.channel[0].numeric) {
-    case Numeric::kUnorm:
-      return walk<Numeric::kUnorm>(plan, in, reference, sums);
-    case Numeric::kSrgb:
-      return walk<Numeric::kSrgb>(plan, in, reference, sums);
-    case Numeric::kSnorm:
-      return walk<Numeric::kSnorm>(plan, in, reference, sums);
-    case Numeric::kUfloat:
-      return walk<Numeric::kUfloat>(plan, in, reference, sums);
-    default:
-      return walk<Numeric::kSfloat>(plan, in, reference, sums);
-  }
+  by_averaged_numeric(format.channel[0].numeric,
+                      [&]<Numeric kNumeric>() { walk<kNumeric>(plan, in, reference, sums); });
 }
 
 /// Formats that one of the instances above decodes.

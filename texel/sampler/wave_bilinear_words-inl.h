@@ -130,20 +130,8 @@ HWY_NOINLINE void compare_words(const PreparedSampler& p, const SampleRequest& r
 template <std::size_t kBytes>
 inline void sample_words_bilinear(const PreparedSampler& p, const SampleRequest& request, const WaveState& state,
                                   const SampleResult& result) {
-  switch (p.plan.view->format->channel[0].numeric) {
-    case Numeric::kUnorm:
-      return sample_words<Numeric::kUnorm, kBytes>(p, request, state, result);
-    case Numeric::kSnorm:
-      return sample_words<Numeric::kSnorm, kBytes>(p, request, state, result);
-    case Numeric::kSrgb:
-      return sample_words<Numeric::kSrgb, kBytes>(p, request, state, result);
-    case Numeric::kUfloat:
-      // Two bytes have no such format.
-      if constexpr (kBytes == 4) return sample_words<Numeric::kUfloat, kBytes>(p, request, state, result);
-      return;
-    default:
-      return sample_words<Numeric::kSfloat, kBytes>(p, request, state, result);
-  }
+  by_averaged_numeric(p.plan.view->format->channel[0].numeric,
+                      [&]<Numeric kNumeric>() { sample_words<kNumeric, kBytes>(p, request, state, result); });
 }
 
 template <std::size_t kBytes>

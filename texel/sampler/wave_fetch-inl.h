@@ -85,6 +85,23 @@ HWY_INLINE auto by_numeric(Numeric numeric, Body&& body) {
   }
 }
 
+/// The same for numeric formats that filters average: not those of integers.
+template <class Body>
+HWY_INLINE auto by_averaged_numeric(Numeric numeric, Body&& body) {
+  switch (numeric) {
+    case Numeric::kUnorm:
+      return body.template operator()<Numeric::kUnorm>();
+    case Numeric::kSnorm:
+      return body.template operator()<Numeric::kSnorm>();
+    case Numeric::kUfloat:
+      return body.template operator()<Numeric::kUfloat>();
+    case Numeric::kSrgb:
+      return body.template operator()<Numeric::kSrgb>();
+    default:
+      return body.template operator()<Numeric::kSfloat>();
+  }
+}
+
 struct TexelLanes {
   VF r, g, b, a;
 };

@@ -118,18 +118,8 @@ HWY_NOINLINE void average_comparisons(const WordTaps& taps, VkCompareOp op, cons
 
 template <std::uint32_t kTaps>
 inline void average_words(const WordTaps& taps, Components wanted, WaveTexels& out) {
-  switch (taps.view.format->channel[0].numeric) {
-    case Numeric::kUnorm:
-      return average_words<Numeric::kUnorm, kTaps>(taps, wanted, out);
-    case Numeric::kSnorm:
-      return average_words<Numeric::kSnorm, kTaps>(taps, wanted, out);
-    case Numeric::kSrgb:
-      return average_words<Numeric::kSrgb, kTaps>(taps, wanted, out);
-    case Numeric::kUfloat:
-      return average_words<Numeric::kUfloat, kTaps>(taps, wanted, out);
-    default:
-      return average_words<Numeric::kSfloat, kTaps>(taps, wanted, out);
-  }
+  by_averaged_numeric(taps.view.format->channel[0].numeric,
+                      [&]<Numeric kNumeric>() { average_words<kNumeric, kTaps>(taps, wanted, out); });
 }
 
 template <std::uint32_t kTaps>
