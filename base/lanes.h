@@ -24,6 +24,15 @@ constexpr LaneMask first_lanes(std::size_t count) {
   return count >= kWaveWidth ? kAllLanes : (LaneMask{1} << count) - 1;
 }
 
+/// The lowest lane of every quad.
+inline constexpr LaneMask kFirstOfQuads = 0x1111111111111111;
+
+/// The lowest lane of each quad that has a lane in `lanes`.
+constexpr LaneMask quads_of_lanes(LaneMask lanes) {
+  lanes |= lanes >> 1;
+  return (lanes | lanes >> 2) & kFirstOfQuads;
+}
+
 /// Calls f(lane) for every set bit, in increasing lane order.
 template <class F>
 inline void for_each_lane(LaneMask mask, F&& f) {

@@ -102,7 +102,7 @@ void set_inputs(TileWorker& worker, const Primitive& primitive, const Place& pla
 }
 
 /// All lanes of quads with a lane in `lanes`.
-LaneMask whole_quads(LaneMask lanes) { return quads_of_lanes(lanes) * 15; }
+LaneMask whole_quads(LaneMask lanes) { return base::quads_of_lanes(lanes) * 15; }
 
 /// The four registers of a colour, copied where they are not adjacent. Components that are not written are 0.
 const WaveRegister* collect_color(TileWorker& worker, const std::array<std::uint32_t, 4>& regs) {

@@ -49,12 +49,6 @@ struct LargeWindow {
 /// that are not there zero; single-sampled. False if nothing is covered.
 bool cover_large_window(const TileEdges& edges, const PixelRect& rect, LargeWindow& out);
 
-/// The lowest lane of each quad that has a lane in `lanes`.
-constexpr base::LaneMask quads_of_lanes(base::LaneMask lanes) {
-  lanes |= lanes >> 1;
-  return (lanes | lanes >> 2) & 0x1111111111111111;
-}
-
 /// Place of lane i in a block: x, y in [0, 8).
 constexpr int lane_x(std::uint32_t lane) { return static_cast<int>((lane >> 2 & 3) * 2 + (lane & 1)); }
 constexpr int lane_y(std::uint32_t lane) { return static_cast<int>((lane >> 4) * 2 + (lane >> 1 & 1)); }

@@ -153,12 +153,11 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
       worker.samples_passed += static_cast<std::uint64_t>(std::popcount(block.lanes[s]));
     return;
   }
-  constexpr base::LaneMask kLowestLanes = 0x1111111111111111;
-  const base::LaneMask quads = quads_of_lanes(any);
-  const bool whole = quads == kLowestLanes;
+  const base::LaneMask quads = base::quads_of_lanes(any);
+  const bool whole = quads == base::kFirstOfQuads;
   // The product's upper four bits are the sum of the 16 nibbles: the number of quads, modulo 16.
   const bool nearly =
-      whole || (quads * kLowestLanes) >> 60 >= (worker.block_draw.is_short ? kNearlyFullIfShort : kNearlyFull);
+      whole || (quads * base::kFirstOfQuads) >> 60 >= (worker.block_draw.is_short ? kNearlyFullIfShort : kNearlyFull);
   const bool alone = nearly && plan.shades_blocks && owns_square(worker, x, y, kBlockSize);
   if (!whole && !alone) {
     append_quads(worker, primitive, x, y, rasterized, block, quads);

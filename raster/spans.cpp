@@ -58,7 +58,7 @@ void pack(TileWorker& worker, const Primitive& primitive, const SpanWave& wave) 
       const std::size_t part = std::size_t{4} * std::min(kPart, span->count - q);
       const BlockCoverage block{{lanes >> 4 * (span->first + q) & base::first_lanes(part)}};
       append_quads(worker, primitive, wave.x + span->x + static_cast<int>(2 * q), wave.y + span->y, block, block,
-                   quads_of_lanes(block.lanes[0]));
+                   base::quads_of_lanes(block.lanes[0]));
     }
   }
 }

@@ -28,7 +28,7 @@ void emit_window(TileWorker& worker, const Primitive& primitive) {
     if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(block.lanes[0]));
     return;
   }
-  append_quads(worker, primitive, x, y, rasterized, block, quads_of_lanes(block.lanes[0]));
+  append_quads(worker, primitive, x, y, rasterized, block, base::quads_of_lanes(block.lanes[0]));
 }
 
 namespace {
@@ -67,7 +67,7 @@ void emit_small_windows(TileWorker& worker, const Primitive* const* primitives, 
     set_current_planes(worker, &primitive, planes[i]);
     const base::LaneMask quads = transpose_window(window.rows);
     const BlockCoverage block{{(quads & 0xff) | (quads & 0xff00) << 8}}, rasterized{{primitive.window}};
-    append_quads(worker, primitive, window.x, window.y, rasterized, block, quads_of_lanes(block.lanes[0]));
+    append_quads(worker, primitive, window.x, window.y, rasterized, block, base::quads_of_lanes(block.lanes[0]));
   }
 }
 

@@ -34,9 +34,7 @@ void prepare_floats(const ImageView& view, const Sampler& sampler, SampleOp op, 
 /// Whether some lanes take no part: no pixel of their quad does, or there are no quads. Those may hold anything.
 inline bool has_idle_lanes(const SampleRequest& request) {
   if (request.active == base::kAllLanes) return false;
-  constexpr base::LaneMask kFirstOfQuad = 0x1111111111111111;
-  const base::LaneMask pairs = request.active | request.active >> 1;
-  return !request.quads || ((pairs | pairs >> 2) & kFirstOfQuad) != kFirstOfQuad;
+  return !request.quads || base::quads_of_lanes(request.active) != base::kFirstOfQuads;
 }
 
 /// The same with idle lanes where busy ones are: wherever else they read, another tile may be writing.
