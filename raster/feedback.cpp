@@ -2,20 +2,25 @@
 #include "raster/feedback.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
+#include "base/numeric.h"
 #include "raster/assembly.h"
 #include "raster/front.h"
+#include "spirv/stage_memory.h"
 
 namespace vitrine::raster {
 namespace {
+
+std::uint32_t byte_of(const Capture& capture) { return capture.offset & spirv::kXfbBytes; }
 
 /// Room for one more primitive: all captures of all its vertices lie inside their buffers.
 bool fits(const TransformFeedback& feedback, const PipelinePlan& plan, std::span<const Capture> captures) {
   for (const Capture& capture : captures) {
     const XfbBuffer& buffer = feedback.buffer[capture.buffer];
     const std::uint64_t last = buffer.offset + std::uint64_t{plan.corners - 1} * plan.xfb_stride[capture.buffer];
-    if (!buffer.data || last + capture.offset + 4 > buffer.size) return false;
+    if (!buffer.data || last + byte_of(capture) + spirv::captured_bytes(capture.offset) > buffer.size) return false;
   }
   return true;
 }
@@ -28,7 +33,9 @@ void write_primitive(TransformFeedback& feedback, const PipelinePlan& plan, std:
   for (std::uint32_t v = 0; v < plan.corners; ++v) {
     for (const Capture& capture : captures) {
       XfbBuffer& buffer = feedback.buffer[capture.buffer];
-      std::memcpy(buffer.data + buffer.offset + capture.offset, words++, 4);
+      std::uint32_t bits = *words++;
+      if ((capture.offset & spirv::kXfbHalf) != 0) bits = base::float_to_half_nearest(std::bit_cast<float>(bits));
+      std::memcpy(buffer.data + buffer.offset + byte_of(capture), &bits, spirv::captured_bytes(capture.offset));
     }
     for (std::uint32_t b = 0; b < spirv::kMaxXfbBuffers; ++b)
       if ((used >> b & 1) != 0) feedback.buffer[b].offset += plan.xfb_stride[b];

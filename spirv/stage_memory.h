@@ -18,6 +18,14 @@ inline constexpr std::uint32_t kVertexHeaderWords = 24;
 inline constexpr std::uint32_t kPatchHeaderWords = 8;
 inline constexpr std::uint32_t kNoStageWord = ~std::uint32_t{0};
 
+/// In InterfaceSlot::xfb_offset beside the bytes: what is captured is the component as binary16, or its low half; else
+/// its 32 bits.
+inline constexpr std::uint32_t kXfbHalf = 1u << 31, kXfbShort = 1u << 30;
+inline constexpr std::uint32_t kXfbBytes = kXfbShort - 1;
+constexpr std::uint32_t captured_bytes(std::uint32_t xfb_offset) {
+  return (xfb_offset & (kXfbHalf | kXfbShort)) != 0 ? 2 : 4;
+}
+
 /// Word 0 of an emitted vertex: its stream, and whether it starts a primitive (a strip).
 inline constexpr std::uint32_t kEmitStream = 3;
 inline constexpr std::uint32_t kEmitStarts = 4;

@@ -272,6 +272,87 @@ void main() {
   run.may_be_blank();
 }
 
+/// Numbers of 16 bits take two bytes each. The reference, whose outputs have 32 bits, captures pairs of them as words.
+GraphicsSpec narrow_spec(Run& run) {
+  const auto& features = run.gpu.extension_features;
+  run.require(run.gpu.features.shaderInt16 && features.float16_int8.shaderFloat16, "16-bit arithmetic");
+  const bool narrow = features.storage_16bit.storageInputOutput16;
+  GraphicsSpec spec = base_spec(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP);
+  spec.vertex = "#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types : require\n";
+  spec.vertex += narrow ? R"(#extension GL_EXT_shader_16bit_storage : require
+layout(location = 2, xfb_buffer = 0, xfb_offset = 8, xfb_stride = 40) out f16vec3 a;
+layout(location = 3, xfb_buffer = 0, xfb_offset = 14) out int16_t b;
+layout(location = 4, xfb_buffer = 0, xfb_offset = 16) out float16_t list[4];
+struct Inner { u16vec2 x; float y; };
+layout(location = 10, xfb_buffer = 1, xfb_offset = 0, xfb_stride = 24) out Block {
+  float16_t h;
+  uint16_t u;
+  Inner inner;
+  int16_t last[2];
+};
+void give(f16vec3 va, int16_t vb, float16_t v[4], u16vec2 x, float y) {
+  a = va;
+  b = vb;
+  list = v;
+  h = v[1];
+  u = x.y;
+  inner.x = x;
+  inner.y = y;
+  last[0] = vb;
+  last[1] = int16_t(x.x);
+}
+)"
+                        : R"(
+layout(location = 2, xfb_buffer = 0, xfb_offset = 8, xfb_stride = 40) out uvec2 ab;
+layout(location = 4, xfb_buffer = 0, xfb_offset = 16) out uvec2 list;
+layout(location = 10, xfb_buffer = 1, xfb_offset = 0, xfb_stride = 24) out Block {
+  uint hu;
+  uint x;
+  float y;
+  uint last;
+};
+uint pair(uint low, uint high) { return (low & 65535u) | high << 16; }
+uint pair(float16_t low, float16_t high) { return packFloat2x16(f16vec2(low, high)); }
+void give(f16vec3 va, int16_t vb, float16_t v[4], u16vec2 xx, float yy) {
+  ab = uvec2(pair(va.x, va.y), pair(uint(float16BitsToUint16(va.z)), uint(vb)));
+  list = uvec2(pair(v[0], v[1]), pair(v[2], v[3]));
+  hu = pair(uint(float16BitsToUint16(v[1])), uint(xx.y));
+  x = pair(uint(xx.x), uint(xx.y));
+  y = yy;
+  last = pair(uint(vb), uint(xx.x));
+}
+)";
+  spec.fragment.clear();
+  spec.raster.rasterizerDiscardEnable = VK_TRUE;
+  return spec;
+}
+constexpr char kNarrowValues[] = R"(
+  float16_t list_of[4] = float16_t[4](float16_t(c.x), float16_t(c.y * 1e-4), float16_t(-c.z), float16_t(7.0));
+  give(f16vec3(c.xyz), int16_t(c.x * -900.0), list_of, u16vec2(c.yz * 10000.0), c.w + c.x);
+)";
+
+CTS_CASE("transform_feedback", "narrow.vertex") {
+  GraphicsSpec spec = narrow_spec(run);
+  spec.vertex +=
+      std::string("layout(location = 0) in vec4 position;\nlayout(location = 1) in vec4 c;\nvoid main() {\n") +
+      kNarrowValues + "  gl_Position = position;\n}\n";
+  capture(run, spec, false);
+  run.may_be_blank();
+}
+
+CTS_CASE("transform_feedback", "narrow.geometry") {
+  run.require(run.gpu.features.geometryShader, "geometry shaders");
+  GraphicsSpec spec = narrow_spec(run);
+  spec.geometry = spec.vertex +
+                  "layout(triangles) in;\nlayout(triangle_strip, max_vertices = 4) out;\n"
+                  "layout(location = 0) in vec4 passed[];\nvoid main() {\n  for (int i = 0; i < 4; i++) {\n"
+                  "    vec4 c = passed[i % 3] * float(i);\n" +
+                  kNarrowValues + "    gl_Position = gl_in[i % 3].gl_Position;\n    EmitVertex();\n  }\n}\n";
+  spec.vertex = kColorVertex;
+  capture(run, spec, false);
+  run.may_be_blank();
+}
+
 CTS_CASE("transform_feedback", "rasterizer_discard") {
   const Feedback f = load_feedback(run);
   const Target target = make_target(run, {});

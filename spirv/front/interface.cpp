@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "spirv/front/functions.h"
+#include "spirv/stage_memory.h"
 
 namespace vitrine::spirv::front {
 namespace {
@@ -77,12 +78,13 @@ struct Decorated {
   bool has(Decoration kind) const { return find(kind) != nullptr; }
 };
 
-bool has_wide_numbers(const Translator& t, std::uint32_t type_id) {
+/// Bits of the widest number in it.
+std::uint32_t widest_number(const Translator& t, std::uint32_t type_id) {
   const Type& type = t.module.type(type_id);
-  if (type.kind == Kind::kStruct)
-    return std::any_of(type.members.begin(), type.members.end(),
-                       [&](auto member) { return has_wide_numbers(t, member); });
-  return type.element != 0 ? has_wide_numbers(t, type.element) : type.width == 64;
+  if (type.kind != Kind::kStruct) return type.element != 0 ? widest_number(t, type.element) : type.width;
+  std::uint32_t width = 0;
+  for (const std::uint32_t member : type.members) width = std::max(width, widest_number(t, member));
+  return width;
 }
 
 struct Walk {
@@ -105,7 +107,7 @@ struct Walk {
     InterfaceSlot& slot = leaf.slot;
     const Type& type = t.module.type(type_id);
     const Type& number = type.kind == Kind::kVector ? t.module.type(type.element) : type;
-    slot.type = number.kind == Kind::kFloat && number.width == 32 ? BaseType::kFloat
+    slot.type = number.kind == Kind::kFloat && number.width <= 32 ? BaseType::kFloat
                 : number.kind == Kind::kInt && number.is_signed   ? BaseType::kInt
                                                                   : BaseType::kUint;
     if (const DecorationRow* row = decorated.find(Decoration::BuiltIn)) {
@@ -126,7 +128,7 @@ struct Walk {
         slot.index = static_cast<std::uint8_t>(index->value);
     }
     interpolation(slot, decorated);
-    if (!input) feedback(slot, decorated, info.components, type.leaves);
+    if (!input) feedback(slot, decorated, info.components * type.leaves, number.width);
     leaf.invariant = decorated.has(Decoration::Invariant);
     leaves.push_back(std::move(leaf));
   }
@@ -144,27 +146,30 @@ struct Walk {
 
   /// Transform feedback: leaves of a captured variable or block member lie one after the other; the blocks of an array
   /// go to consecutive buffers.
-  /// `words`: of a component.
-  void feedback(InterfaceSlot& slot, const Decorated& decorated, std::uint32_t components, std::uint32_t words) {
+  /// `words`: of the leaf; `width`: bits of a number.
+  void feedback(InterfaceSlot& slot, const Decorated& decorated, std::uint32_t words, std::uint32_t width) {
     const DecorationRow* stream = decorated.find(Decoration::Stream);
     if (stream != nullptr) slot.stream = static_cast<std::uint8_t>(stream->value & 3);
     if (!captured) return;
     const DecorationRow* buffer = decorated.find(Decoration::XfbBuffer);
     slot.xfb_buffer = static_cast<std::uint8_t>(((buffer != nullptr ? buffer->value : 0) + block) % kMaxXfbBuffers);
     slot.xfb_offset = xfb_offset;
-    xfb_offset += 4 * components * words;
+    if (width == 16) slot.xfb_offset |= slot.type == BaseType::kFloat ? kXfbHalf : kXfbShort;
+    xfb_offset += captured_bytes(slot.xfb_offset) * words;
     if (const DecorationRow* stride = decorated.find(Decoration::XfbStride))
       t.function.interface.xfb_stride[slot.xfb_buffer] = stride->value;
   }
 
   void start_capture(const DecorationRow* offset) {
     captured = offset != nullptr;
-    if (captured) xfb_offset = offset->value;
+    if (captured) xfb_offset = offset->value & kXfbBytes;
   }
 
-  /// Whatever has a 64-bit number in it is captured at a multiple of eight bytes.
+  /// Whatever is captured lies at a multiple of the bytes of its widest number.
   void align_capture(std::uint32_t type_id) {
-    if (captured && has_wide_numbers(t, type_id)) xfb_offset = (xfb_offset + 7) & ~7u;
+    if (!captured) return;
+    const std::uint32_t bytes = std::max(widest_number(t, type_id) / 8, 1u);
+    xfb_offset = (xfb_offset + bytes - 1) & ~(bytes - 1);
   }
 
   void type(std::uint32_t type_id, Decorated decorated) {
@@ -212,10 +217,13 @@ std::vector<ir::ValueId> input_values(Translator& t, const Leaf& leaf) {
   for (auto& part : parts) values.push_back(vec(t, std::move(part), false));
   if (info.boolean)
     values[0] = emit(t, ir::Op::kINe, info.components, true, {whole(values[0]), splat(constant_u32(t, 0))});
+  else
+    values[0] = from_interface(t, leaf.type, values[0]);
   return values;
 }
 
-void store_outputs(Translator& t, const Leaf& leaf, std::span<const ir::ValueId> values) {
+void store_outputs(Translator& t, const Leaf& leaf, std::vector<ir::ValueId> values) {
+  values[0] = to_interface(t, leaf.type, values[0]);
   const auto words = static_cast<std::uint32_t>(values.size());
   for (std::uint32_t i = 0; i < components(t, values[0]) * words; i++) {
     ir::Instr& instr =
@@ -252,7 +260,7 @@ const BuiltInRow& built_in_row(const Inst& variable, std::uint32_t built_in) {
 
 InterfaceSlot word_slot(const Leaf& leaf, std::uint32_t word) {
   InterfaceSlot slot = leaf.slot;
-  slot.xfb_offset += 4 * word;
+  slot.xfb_offset += captured_bytes(slot.xfb_offset) * word;
   if (slot.built_in != BuiltIn::kNone) {
     slot.component = static_cast<std::uint8_t>(slot.component + word);
     return slot;

@@ -33,6 +33,10 @@ InterfaceSlot word_slot(const Leaf& leaf, std::uint32_t word);
 /// The scalars and vectors an Input or Output variable consists of, in order, each with its place in the interface.
 std::vector<Leaf> interface_leaves(Translator& t, const Local& local);
 
+/// The scalar or vector of `type` as it crosses the interface: numbers of 16 bits as those of 32. And back.
+ir::ValueId to_interface(Translator& t, std::uint32_t type, ir::ValueId value);
+ir::ValueId from_interface(Translator& t, std::uint32_t type, ir::ValueId value);
+
 /// Loads one component of an input where t.list is, which dominates every later use: each slot is loaded once.
 ir::ValueId load_input(Translator& t, const InterfaceSlot& slot);
 

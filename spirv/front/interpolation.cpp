@@ -109,7 +109,7 @@ void interpolate(Translator& t, const Inst& inst, const Place* place) {
     target.path = leaf.path;
     target.component.reset();
     target.type = leaf.type;
-    store(t, target, {leaf.type, {vec(t, std::move(parts), false)}});
+    store(t, target, {leaf.type, {from_interface(t, leaf.type, vec(t, std::move(parts), false))}});
   }
   set_value(t, inst, load(t, copy).leaves);
 }

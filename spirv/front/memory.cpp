@@ -4,6 +4,7 @@
 
 #include "spirv/front/context.h"
 #include "spirv/front/functions.h"
+#include "spirv/front/interface.h"
 
 namespace vitrine::spirv::front {
 namespace {
@@ -215,6 +216,7 @@ void load_leaf_memory(Translator& t, const Pointer& pointer, std::vector<ir::Val
   const Layout layout = layout_of(t, pointer);
   if (layout.dense() && layout.words == 1) {
     leaves.push_back(load_words(t, pointer, layout.components, 0, layout.size));
+    if (pointer.stage) leaves.back() = from_interface(t, pointer.type, leaves.back());
   } else {
     std::vector<ir::Src> words;
     if (layout.dense()) words = load_adjacent(t, pointer, layout.components * layout.words, 0, layout.size);
@@ -239,6 +241,7 @@ void store_leaf_memory(Translator& t, const Pointer& pointer, std::span<const ir
   const Layout layout = layout_of(t, pointer);
   ir::ValueId first = leaves[0];
   if (info.boolean) first = emit(t, ir::Op::kB2I, info.components, false, {whole(first)});
+  if (pointer.stage) first = to_interface(t, pointer.type, first);
   if (layout.dense() && layout.words == 1)
     return store_words(t, pointer, whole(first), layout.components, 0, layout.size);
   std::vector<ir::Src> words;

@@ -297,7 +297,8 @@ void emit_vertex(Translator& t, const Inst& inst, ir::Op) {
     pointer.type = leaf.type;
     const std::vector<ir::ValueId> values = load(t, pointer).leaves;
     if (values.size() == 1)
-      return store_word(t, address, word, whole(values[0]), components(t, values[0]), leaf.invariant);
+      return store_word(t, address, word, whole(to_interface(t, leaf.type, values[0])), components(t, values[0]),
+                        leaf.invariant);
     for (std::uint32_t i = 0; i < t.module.type(leaf.type).scalars; i++) {
       const ir::Src part = splat(values[i % values.size()], static_cast<std::uint8_t>(i / values.size()));
       store_word(t, address, word + i, part, 1, leaf.invariant);
