@@ -112,63 +112,108 @@ CTS_CASE("capabilities", "atomic_float.exchange") {
   run.out("result", out, VK_FORMAT_R32_SFLOAT);
 }
 
-/// Sums and extrema of small integers in doubles; the reference, which lacks the atomics, does the same one by one.
-void atomic_double(Run& run, const std::string& operation, const std::string& alone) {
+/// A width whose atomics the reference lacks.
+struct Rare {
+  const char *type, *suffix;
+  bool has;       ///< this device has all its atomics
+  Buffer memory;  ///< 1, 2, 3, ... 12
+};
+
+Rare doubles(Run& run) {
   const auto& first = run.gpu.extension_features.atomic_float;
   const auto& second = run.gpu.extension_features.atomic_float2;
+  run.require(run.gpu.features.shaderFloat64, "shaderFloat64");
   const bool has = first.shaderBufferFloat64Atomics && first.shaderBufferFloat64AtomicAdd &&
                    first.shaderSharedFloat64Atomics && first.shaderSharedFloat64AtomicAdd &&
                    second.shaderBufferFloat64AtomicMinMax && second.shaderSharedFloat64AtomicMinMax;
-  run.require(run.gpu.features.shaderFloat64, "shaderFloat64");
-  const Buffer out = run.buffer_of<double>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+  return {"double", "LF", has, run.buffer_of<double>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12})};
+}
+
+Rare halves(Run& run) {
+  const auto& features = run.gpu.extension_features;
+  const auto& atomics = features.atomic_float2;
+  run.require(features.float16_int8.shaderFloat16 && features.storage_16bit.storageBuffer16BitAccess,
+              "binary16 in buffers");
+  const bool has = atomics.shaderBufferFloat16Atomics && atomics.shaderBufferFloat16AtomicAdd &&
+                   atomics.shaderBufferFloat16AtomicMinMax && atomics.shaderSharedFloat16Atomics &&
+                   atomics.shaderSharedFloat16AtomicAdd && atomics.shaderSharedFloat16AtomicMinMax;
+  return {"float16_t", "HF", has,
+          run.buffer_of<uint16_t>(
+              {0x3c00, 0x4000, 0x4200, 0x4400, 0x4500, 0x4600, 0x4700, 0x4800, 0x4880, 0x4900, 0x4980, 0x4a00})};
+}
+
+constexpr char kHalfExtensions[] =
+    "#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require\n"
+    "#extension GL_EXT_shader_16bit_storage : require\n#extension GL_EXT_buffer_reference : require\n";
+
+/// Sums and extrema of multiples of 1/2, exact in any order; the reference, which lacks the atomics, does the same one
+/// by one.
+void rare_atomic(Run& run, const Rare& rare, const std::string& operation, const std::string& alone) {
+  const std::string type = rare.type, suffix = rare.suffix;
   const auto act = [&](const std::string& at) {
-    if (has) return operation + "(" + at + ", value(i));\n";
+    if (rare.has) return operation + "(" + at + ", value(i));\n";
     return at + " = " + alone + "(" + at + ", value(j));\n";
   };
   const auto all = [&](const std::string& at, const std::string& when) {
-    return has ? "if (" + when + ") " + act(at)
-               : "if (i == 0u) for (uint j = 0u; j < 64u; j++) if (" + when + ") " + act(at);
+    return rare.has ? "if (" + when + ") " + act(at)
+                    : "if (i == 0u) for (uint j = 0u; j < 64u; j++) if (" + when + ") " + act(at);
   };
-  const std::string k = has ? "(i & 3u)" : "(j & 3u)";
+  const std::string k = rare.has ? "(i & 3u)" : "(j & 3u)";
   dispatch(run,
-           std::string(kAtomicFloat) +
-               "layout(local_size_x = 64) in;\nlayout(std430, binding = 0) buffer R { double r[]; };\n"
-               "shared double s[4];\n"
-               "double value(uint i) { return double(int(i * 7u % 61u) - 20) + 0.5LF; }\n"
-               "double sum(double a, double b) { return a + b; }\n"
+           std::string(kAtomicFloat) + kHalfExtensions +
+               "layout(local_size_x = 64) in;\nlayout(std430, binding = 0) buffer R { " + type +
+               " r[]; };\n"
+               "shared " +
+               type + " s[4];\n" + type + " value(uint i) { return " + type + "(int(i * 7u % 61u) - 20) + 0.5" +
+               suffix + "; }\n" + type + " sum(" + type + " a, " + type +
+               " b) { return a + b; }\n"
                "void main() {\n"
                "  uint i = gl_LocalInvocationIndex;\n"
-               "  if (i < 4u) s[i] = 5.0LF;\n"
+               "  if (i < 4u) s[i] = 5.0" +
+               suffix +
+               ";\n"
                "  barrier();\n  " +
                all("r[" + k + "]", "true") + "  " + all("s[" + k + "]", "true") + "  " + all("r[4]", "true") + "  " +
-               all("r[5]", has ? "i == 9u" : "j == 9u") +
+               all("r[5]", rare.has ? "i == 9u" : "j == 9u") +
                "  barrier();\n"
                "  if (i < 4u) r[8u + i] = s[i];\n"
                "}\n",
-           {storage_buffer(0, out)});
-  run.out("result", out);
+           {storage_buffer(0, rare.memory)});
+  run.out("result", rare.memory);
 }
-CTS_CASE("capabilities", "atomic_double.add") { atomic_double(run, "atomicAdd", "sum"); }
-CTS_CASE("capabilities", "atomic_double.min") { atomic_double(run, "atomicMin", "min"); }
-CTS_CASE("capabilities", "atomic_double.max") { atomic_double(run, "atomicMax", "max"); }
+CTS_CASE("capabilities", "atomic_double.add") { rare_atomic(run, doubles(run), "atomicAdd", "sum"); }
+CTS_CASE("capabilities", "atomic_double.min") { rare_atomic(run, doubles(run), "atomicMin", "min"); }
+CTS_CASE("capabilities", "atomic_double.max") { rare_atomic(run, doubles(run), "atomicMax", "max"); }
+CTS_CASE("capabilities", "atomic_half.add") { rare_atomic(run, halves(run), "atomicAdd", "sum"); }
+CTS_CASE("capabilities", "atomic_half.min") { rare_atomic(run, halves(run), "atomicMin", "min"); }
+CTS_CASE("capabilities", "atomic_half.max") { rare_atomic(run, halves(run), "atomicMax", "max"); }
 
-/// Every invocation has a word of its own: the old values come back.
-CTS_CASE("capabilities", "atomic_double.exchange") {
-  run.require(run.gpu.features.shaderFloat64, "shaderFloat64");
-  const bool has = run.gpu.extension_features.atomic_float.shaderBufferFloat64Atomics;
-  const Buffer out = run.buffer_of<double>(std::vector<double>(65, 2.5));
+/// Every invocation has a number of its own: the old values come back. In shared memory as in the buffer.
+void rare_exchange(Run& run, const Rare& rare) {
+  const std::string type = rare.type;
+  const Buffer memory = run.buffer(rare.memory.size / 12 * 66);
+  for (VkDeviceSize i = 0; i < memory.size; ++i) memory.data[i] = rare.memory.data[i % rare.memory.size];
+  const std::string exchanged =
+      rare.has ? "  " + type + " old = atomicExchange(r[i], " + type +
+                     "(i)), lone = atomicExchange(s[i], old);\n"
+                     "  atomicStore(r[i], old + atomicLoad(r[i], gl_ScopeDevice, 0, 0) + atomicLoad(s[i], "
+                     "gl_ScopeDevice, 0, 0) + lone, gl_ScopeDevice, 0, 0);\n"
+               : "  " + type + " old = r[i];\n  r[i] = old + " + type + "(i) + old + " + type + "(i & 7u);\n";
   dispatch(run,
-           std::string(kAtomicFloat) +
-               "layout(local_size_x = 64) in;\nlayout(std430, binding = 0) buffer R { double r[]; };\n"
+           std::string(kAtomicFloat) + kHalfExtensions +
+               "layout(local_size_x = 64) in;\nlayout(std430, binding = 0) buffer R { " + type +
+               " r[]; };\n"
+               "shared " +
+               type +
+               " s[64];\n"
                "void main() {\n"
-               "  uint i = gl_LocalInvocationIndex;\n" +
-               (has ? "  double old = atomicExchange(r[i], double(i));\n"
-                      "  atomicStore(r[i], old + atomicLoad(r[i], gl_ScopeDevice, 0, 0), gl_ScopeDevice, 0, 0);\n"
-                    : "  r[i] += double(i);\n") +
-               "}\n",
-           {storage_buffer(0, out)});
-  run.out("result", out);
+               "  uint i = gl_LocalInvocationIndex;\n  s[i] = " +
+               type + "(i & 7u);\n" + exchanged + "}\n",
+           {storage_buffer(0, memory)});
+  run.out("result", memory);
 }
+CTS_CASE("capabilities", "atomic_double.exchange") { rare_exchange(run, doubles(run)); }
+CTS_CASE("capabilities", "atomic_half.exchange") { rare_exchange(run, halves(run)); }
 
 void atomic_float_image(Run& run, const std::string& operation) {
   run.require(run.gpu.extension_features.atomic_float.shaderImageFloat32AtomicAdd &&

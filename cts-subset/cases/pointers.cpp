@@ -423,6 +423,49 @@ void main() {
   run.out("old", out);
 }
 
+/// Atomics of binary16 behind a pointer and in a block of workgroup memory. The reference, which lacks them, does the
+/// same one by one in a buffer.
+CTS_CASE("pointers", "address.atomics_half") {
+  const auto& features = run.gpu.extension_features;
+  const auto& atomics = features.atomic_float2;
+  run.require(features.storage_16bit.storageBuffer16BitAccess && features.float16_int8.shaderFloat16,
+              "binary16 in buffers");
+  const bool has = atomics.shaderBufferFloat16AtomicAdd && atomics.shaderBufferFloat16AtomicMinMax &&
+                   atomics.shaderSharedFloat16AtomicAdd &&
+                   features.workgroup_layout.workgroupMemoryExplicitLayout16BitAccess;
+  const Buffer a = addressed(run, 1024), out = run.buffer(kInvocations * 4), scratch = run.buffer(1024);
+  for (uint32_t i = 0; i < 512; i++) a.as<uint16_t>()[i] = static_cast<uint16_t>(0x4000 + 256 * (i & 3));
+  const std::string text = std::string("// target: spirv1.4\n") +
+                           (has ? "#extension GL_EXT_shader_atomic_float2 : require\n"
+                                  "#extension GL_EXT_shared_memory_block : require\n"
+                                  "#define ADD(at, v) atomicAdd(at, v)\n#define MAX(at, v) atomicMax(at, v)\n"
+                                : "#define ADD(at, v) at += v\n#define MAX(at, v) at = max(at, v)\n") +
+                           "#extension GL_EXT_shader_explicit_arithmetic_types : require\n"
+                           "#extension GL_EXT_shader_16bit_storage : require\n" +
+                           (has ? "shared" : "layout(std430, binding = 1) buffer") + R"( Block { float16_t s[8]; } b;
+layout(buffer_reference, std430, buffer_reference_align = 2) buffer Halves { float16_t h[512]; };
+layout(push_constant) uniform P { Halves c; } p;
+layout(std430, binding = 0) buffer R { float16_t r[]; };
+void act(uint i) {
+  float16_t v = float16_t(int(i * 7u % 61u) - 30);
+  ADD(p.c.h[1u + (i & 3u)], v);
+  MAX(p.c.h[5u + (i & 3u)], v);
+  ADD(p.c.h[9u], v);
+  ADD(p.c.h[64u + i], v);
+  ADD(b.s[i & 7u], v);
+}
+void main() {
+  uint i = gl_LocalInvocationIndex;
+  if (i < 8u) b.s[i] = float16_t(i);
+  memoryBarrierBuffer();
+  barrier();
+)" + (has ? "  act(i);\n" : "  if (i == 0u) for (uint j = 0u; j < 64u; j++) act(j);\n") +
+                           "  memoryBarrierBuffer();\n  barrier();\n  r[i] = b.s[i & 7u];\n}\n";
+  run_addresses(run, text, {address_of(run, a)}, {storage_buffer(0, out), storage_buffer(1, scratch)});
+  run.out("halves", a, VK_FORMAT_R16_SFLOAT);
+  run.out("shared", out, VK_FORMAT_R16_SFLOAT);
+}
+
 /// Blocks in workgroup memory; the reference, which does not have them, is given a storage buffer of the same layout.
 CTS_CASE("pointers", "workgroup_blocks") {
   const auto& features = run.gpu.extension_features;

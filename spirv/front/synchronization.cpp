@@ -30,6 +30,21 @@ ir::AtomicOp atomic_op(const Inst& inst) {
   fail(inst, "is not supported");
 }
 
+/// What binary16 has: nothing that compares or counts.
+bool has_half(ir::AtomicOp op) {
+  switch (op) {
+    case ir::AtomicOp::kLoad:
+    case ir::AtomicOp::kStore:
+    case ir::AtomicOp::kExchange:
+    case ir::AtomicOp::kFAdd:
+    case ir::AtomicOp::kFMin:
+    case ir::AtomicOp::kFMax:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// Operand and comparator of an atomic. Operands: pointer, scope, semantics, then what the operation takes.
 struct AtomicOperands {
   Expr value, comparator;  ///< no id: absent
@@ -85,10 +100,13 @@ void atomic(Translator& t, const Inst& inst, ir::Op) {
   const ir::AtomicOp op = atomic_op(inst);
   const std::uint32_t type = t.module.type(pointer.type).kind == Type::Kind::kPointer ? 0 : pointer.type;
   if (type == 0 || leaf_info(t, type).components != 1) fail(inst, "operand is not a pointer to a number");
-  const auto width = static_cast<std::uint8_t>(number_type(t, type).width);
+  const Type& kind_of_number = number_type(t, type);
+  const auto width = static_cast<std::uint8_t>(kind_of_number.width);
+  if (width < 32 && (width != 16 || kind_of_number.kind != Type::Kind::kFloat || !has_half(op)))
+    fail(inst, "is not supported on narrow integers");
   const AtomicOperands operands = atomic_operands(t, inst, width);
   for (const Expr& operand : {operands.value, operands.comparator})
-    if (width < 32 || (operand.id != ir::kNoValue && (operand.size() != 1 || operand.width != width)))
+    if (operand.id != ir::kNoValue && (operand.size() != 1 || operand.width != width))
       fail(inst, "operand does not fit its type");
   std::vector<ir::Src> src;
   const bool is_image = pointer.kind == Pointer::Kind::kTexel;
@@ -101,7 +119,7 @@ void atomic(Translator& t, const Inst& inst, ir::Op) {
   const bool shared = pointer.kind == Pointer::Kind::kShared;
   if (!shared && !is_image && !global && pointer.kind != Pointer::Kind::kStorage)
     fail(inst, "storage class is not supported");
-  if (is_image && width != 32) fail(inst, "64-bit atomics on images are not supported");
+  if (is_image && width != 32) fail(inst, std::to_string(width) + "-bit atomics on images are not supported");
   const bool wide = width == 64;
   const ir::Op kind = shared ? ir::Op::kAtomicShared : global ? ir::Op::kAtomicGlobal : ir::Op::kAtomicStorage;
   const ir::ValueId result = emit(t, kind, wide ? 2 : 1, false, std::move(src));
@@ -111,7 +129,8 @@ void atomic(Translator& t, const Inst& inst, ir::Op) {
   } else {
     set_buffer(instr, pointer);
     instr.imm[0] = static_cast<std::uint32_t>(op);
-    instr.imm[1] = wide ? 8 : 0;
+    if (width == 16) instr.imm[2] = 1;
+    instr.imm[1] = wide ? 8 : width == 16 && !pointer.word_layout() ? 2 : 0;
   }
   if (!shared && op != ir::AtomicOp::kLoad) t.function.interface.writes_memory = true;
   if (inst.result == 0) return;

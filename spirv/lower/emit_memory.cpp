@@ -1,4 +1,5 @@
 // Emission of intrinsics: side table rows of memory and image instructions, environment values.
+#include "spirv/exec/atomics_half.h"
 #include "spirv/lower/emitter.h"
 
 namespace vitrine::spirv::lowering {
@@ -161,9 +162,13 @@ void Emitter::atomic(const ScalarOp& op) {
   if (op.src.count > address + 1) row.data[0] = in_register(source(op, address + 1)).offset;
   if (op.src.count > address + 2) row.compare = in_register(source(op, address + 2)).offset;
   const Place at = place(source(op, address));
-  const bool uniform = at.file == 'u';
-  append(buffer ? exec::atomic_buffer(uniform) : exec::atomic_shared(uniform), buffer ? "atomic" : "atomic_shared",
-         op.instr, op.dst.count != 0 ? place(result(op, 0)) : Place{}, at);
+  const bool uniform = at.file == 'u', half = op.instr->imm[2] != 0;
+  row.element_bytes = ir::element_bytes(op.instr->imm);
+  const Handler handler = half     ? exec::atomic_half(buffer ? exec::Space::kBuffer : exec::Space::kShared, uniform)
+                          : buffer ? exec::atomic_buffer(uniform)
+                                   : exec::atomic_shared(uniform);
+  append(handler, buffer ? "atomic" : "atomic_shared", op.instr, op.dst.count != 0 ? place(result(op, 0)) : Place{},
+         at);
   attach(row);
 }
 
@@ -198,7 +203,9 @@ void Emitter::global(const ScalarOp& op) {
     for (std::uint32_t c = 0; c < 4; ++c)
       if (row.write_mask >> c & 1) row.data[c] = in_register(source(op, next++)).offset;
   } else {
-    handler = wide ? exec::atomic_wide(exec::Space::kGlobal, false) : exec::atomic_global;
+    handler = wide     ? exec::atomic_wide(exec::Space::kGlobal, false)
+              : narrow ? exec::atomic_half(exec::Space::kGlobal, false)
+                       : exec::atomic_global;
     row.atomic = static_cast<ir::AtomicOp>(op.instr->imm[0]);
     std::uint32_t* const values[4] = {&row.data[0], wide ? &row.data[1] : &row.compare, &row.data[2], &row.data[3]};
     for (std::uint32_t k = kValues; k < op.src.count && k < kValues + 4; ++k)
