@@ -99,6 +99,80 @@ const bool kRegistered = [] {
   return true;
 }();
 
+/// One of three input attachments, whose number is the draw's or the fragment's. The reference, which takes constants
+/// alone, chooses among them.
+void input_array(Run& run, bool nonuniform) {
+  const auto& indexing = run.gpu.extension_features.descriptor_indexing;
+  const bool has =
+      indexing.shaderInputAttachmentArrayDynamicIndexing && indexing.shaderInputAttachmentArrayNonUniformIndexing;
+  constexpr uint32_t kInputs = 3;
+  ImageSpec spec;
+  spec.extent = {70, 66, 1};
+  spec.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
+  std::vector<Image> images;
+  Binding inputs{};
+  std::vector<VkAttachmentDescription> attachments;
+  std::vector<VkAttachmentReference> references;
+  std::vector<VkImageView> views;
+  for (uint32_t i = 0; i <= kInputs; ++i) {
+    images.push_back(run.image(spec));
+    run.fill_random(images[i]);
+    attachments.push_back({0, spec.format, VK_SAMPLE_COUNT_1_BIT, VK_ATTACHMENT_LOAD_OP_LOAD,
+                           VK_ATTACHMENT_STORE_OP_STORE, VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                           VK_ATTACHMENT_STORE_OP_DONT_CARE, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL});
+    references.push_back({i, VK_IMAGE_LAYOUT_GENERAL});
+    views.push_back(images[i].view);
+    if (i == 0)
+      inputs = input_attachment(0, images[i]);
+    else if (i < kInputs)
+      inputs.images.push_back(input_attachment(0, images[i]).images[0]);
+  }
+  VkSubpassDescription subpass{};
+  subpass.inputAttachmentCount = kInputs;
+  subpass.pInputAttachments = references.data();
+  subpass.colorAttachmentCount = 1;
+  subpass.pColorAttachments = &references[kInputs];
+  VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+  info.attachmentCount = kInputs + 1;
+  info.pAttachments = attachments.data();
+  info.subpassCount = 1;
+  info.pSubpasses = &subpass;
+  const VkRenderPass pass = make_render_pass(run, info);
+  const VkFramebuffer framebuffer = make_framebuffer(run, pass, views, {70, 66});
+  const Resources res = run.resources({inputs}, 16);
+  GraphicsSpec graphics;
+  graphics.layout = res.layout;
+  graphics.vertex = kFullScreenVertex;
+  graphics.fragment = std::string("#extension GL_EXT_nonuniform_qualifier : require\n") +
+                      "layout(input_attachment_index = 0, binding = 0) uniform subpassInput a[3];\n"
+                      "layout(push_constant) uniform P { int k; } p;\n"
+                      "layout(location = 0) out vec4 result;\n"
+                      "void main() {\n  int k = p.k;\n" +
+                      (nonuniform ? "  k = (int(gl_FragCoord.x) / 3 + int(gl_FragCoord.y) + k) % 3;\n" : "") +
+                      (!has         ? "  result = k == 0 ? subpassLoad(a[0]) : k == 1 ? subpassLoad(a[1]) : "
+                                      "subpassLoad(a[2]);\n"
+                       : nonuniform ? "  result = subpassLoad(a[nonuniformEXT(k)]);\n"
+                                    : "  result = subpassLoad(a[k]);\n") +
+                      "}\n";
+  const VkPipeline pipeline = make_pipeline(run, graphics, pass, 0, 1, {70, 66}, VK_SAMPLE_COUNT_1_BIT);
+  const int32_t number = run.random.between(1, 2);
+  run.once([&](VkCommandBuffer cmd) {
+    VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    begin.renderPass = pass;
+    begin.framebuffer = framebuffer;
+    begin.renderArea = {{0, 0}, {70, 66}};
+    vkCmdBeginRenderPass(cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    bind_pipeline(cmd, pipeline);
+    res.bind(cmd);
+    vkCmdPushConstants(cmd, res.layout, VK_SHADER_STAGE_ALL, 0, 4, &number);
+    vkCmdDraw(cmd, 3, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  run.out("result", images[kInputs]);
+}
+CTS_CASE("renderpass", "input_attachment.array.dynamic") { input_array(run, false); }
+CTS_CASE("renderpass", "input_attachment.array.nonuniform") { input_array(run, true); }
+
 /// An input attachment that is the depth attachment as well: a fragment reads what was there before its own depth.
 void read_own_depth(Run& run) {
   ImageSpec spec;
