@@ -1,7 +1,7 @@
 // Random expressions over numbers of every width: integers of 8 to 64 bits, binary16 and binary64, and conversions
 // between all of them; precise, and open to the reference's rewrites.
+#include "cases/glsl/evaluate.h"
 #include "harness/case.h"
-#include "harness/run.h"
 
 namespace vitrine::cts {
 namespace {
@@ -178,17 +178,40 @@ std::string stored(const Sized& type, const std::string& value) {
   return "uvec2(uint(" + value + "), 0u)";
 }
 
-void compare_expressions(Run& run, bool precise) {
+/// One invocation per point or pixel.
+void draw(Run& run, Stage stage, const std::string& text, const Resources& res) {
+  const VkPhysicalDeviceFeatures& features = run.gpu.features;
+  run.require(stage == Stage::kVertex ? features.vertexPipelineStoresAndAtomics : features.fragmentStoresAndAtomics,
+              "stores in graphics stages");
+  TargetSpec target_spec;
+  target_spec.height = kInvocations / target_spec.width;
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  spec.layout = res.layout;
+  spec.vertex = stage == Stage::kVertex ? text : kFullScreenVertex;
+  spec.fragment =
+      stage == Stage::kVertex ? "layout(location = 0) out vec4 color;\nvoid main() { color = vec4(1.0); }\n" : text;
+  if (stage == Stage::kVertex) spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+  draw_once(run, target, make_pipeline(run, spec, target), &res, stage == Stage::kVertex ? kInvocations : 3);
+}
+
+void compare_expressions(Run& run, bool precise, Stage stage = Stage::kCompute) {
   const auto& sizes = run.gpu.extension_features.float16_int8;
   run.require(run.gpu.features.shaderInt64 && run.gpu.features.shaderFloat64 && run.gpu.features.shaderInt16 &&
                   sizes.shaderInt8 && sizes.shaderFloat16,
               "numbers of every width");
   constexpr uint32_t kResults = 8;
-  std::string text =
-      "#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types : require\nlayout(local_size_x = 64) in;\n"
+  std::string text = "#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types : require\n";
+  if (stage == Stage::kCompute) text += "layout(local_size_x = 64) in;\n";
+  if (stage == Stage::kFragment) text += "layout(location = 0) out vec4 color;\n";
+  text +=
       "layout(std430, binding = 0) readonly buffer In { uint v[]; };\n"
-      "layout(std430, binding = 1) writeonly buffer Out { uvec2 r[]; };\nvoid main() {\n"
-      "  uint id = gl_GlobalInvocationID.x;\n";
+      "layout(std430, binding = 1) writeonly buffer Out { uvec2 r[]; };\nvoid main() {\n";
+  if (stage == Stage::kCompute) text += "  uint id = gl_GlobalInvocationID.x;\n";
+  if (stage == Stage::kVertex)
+    text += "  uint id = uint(gl_VertexIndex);\n  gl_Position = vec4(0.0, 0.0, 0.5, 1.0);\n  gl_PointSize = 1.0;\n";
+  if (stage == Stage::kFragment)
+    text += "  uint id = uint(gl_FragCoord.x) + 64u * uint(gl_FragCoord.y);\n  color = vec4(1.0);\n";
   uint32_t word = 0;
   const auto next = [&] { return "v[id * 60u + " + std::to_string(word++) + "u]"; };
   for (const char* name : {"x_", "y_", "z_"})
@@ -209,13 +232,17 @@ void compare_expressions(Run& run, bool precise) {
   for (uint32_t& w : words) w = run.random.chance(0.3f) ? run.random.below(200) : run.random.bits();
   const Buffer in = run.buffer_of(words), out = run.buffer(kResults * kInvocations * 8);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
-  const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, text));
-  run.dispatch(res, pipeline, kInvocations / 64);
+  if (stage == Stage::kCompute)
+    run.dispatch(res, run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, text)), kInvocations / 64);
+  else
+    draw(run, stage, text, res);
   run.out("results", out, VK_FORMAT_R32G32_UINT).may_be_blank = true;
 }
 
 CTS_RANDOM("glsl", "random_sized.compute", 40) { compare_expressions(run, true); }
 CTS_RANDOM("glsl", "random_sized.inexact", 40) { compare_expressions(run, false); }
+CTS_RANDOM("glsl", "random_sized.vertex", 30) { compare_expressions(run, run.index % 2 == 0, Stage::kVertex); }
+CTS_RANDOM("glsl", "random_sized.fragment", 30) { compare_expressions(run, run.index % 2 == 0, Stage::kFragment); }
 
 }  // namespace
 }  // namespace vitrine::cts
