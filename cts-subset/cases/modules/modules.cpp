@@ -1,13 +1,15 @@
 // Modules of others: every .spv file below the folder that CTS_MODULES names becomes a case. Compute shaders run on
 // random resources, fragment shaders behind a vertex shader of random outputs, of vertex shaders the outputs are
-// captured.
+// captured; between.cpp has the stages between them.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
+#include "cases/modules/between.h"
 #include "cases/modules/reflect.h"
 #include "cases/modules/resources.h"
+#include "cases/modules/slots.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 
@@ -27,60 +29,6 @@ void run_compute(Run& run, const Reflection& r, const std::vector<uint32_t>& wor
     vkCmdDispatch(cmd, groups(0), r.local_size[1] > 1 ? groups(1) : 1, 1);
   });
   bound.out(run);
-}
-
-/// The kind of an input or output: float, int or uint with 1 to 4 components, and how many locations it takes.
-struct Slot {
-  std::string scalar;
-  uint32_t components = 1, columns = 1;
-  std::vector<uint32_t> lengths;  ///< of arrays, outermost first
-
-  uint32_t locations() const {
-    uint32_t count = columns;
-    for (const uint32_t n : lengths) count *= n;
-    return count;
-  }
-};
-
-Slot slot_of(const Reflection& r, uint32_t id) {
-  const Type& t = r.type(id);
-  Slot slot;
-  switch (t.op) {
-    case Op::OpTypeFloat:
-    case Op::OpTypeInt:
-      if (t.operands[0] != 32) throw Unsupported("width of an input or output");
-      slot.scalar = t.op == Op::OpTypeFloat ? "float" : t.operands[1] ? "int" : "uint";
-      return slot;
-    case Op::OpTypeVector:
-      slot = slot_of(r, t.operands[0]);
-      slot.components = t.operands[1];
-      return slot;
-    case Op::OpTypeMatrix:
-      slot = slot_of(r, t.operands[0]);
-      slot.columns = t.operands[1];
-      return slot;
-    case Op::OpTypeArray:
-      slot = slot_of(r, t.operands[0]);
-      slot.lengths.insert(slot.lengths.begin(), r.length(t, 0));
-      return slot;
-    default:
-      throw Unsupported("input or output of a block");
-  }
-}
-
-std::string glsl_type(const Slot& slot) {
-  if (slot.columns > 1) return "mat" + std::to_string(slot.columns) + "x" + std::to_string(slot.components);
-  if (slot.components == 1) return slot.scalar;
-  return (slot.scalar == "float" ? "" : slot.scalar.substr(0, 1)) + "vec" + std::to_string(slot.components);
-}
-
-/// An expression of random numbers, `seed` + the vertex index apart.
-std::string random_value(const Slot& slot, uint32_t seed) {
-  std::string parts;
-  for (uint32_t i = 0; i < slot.components * slot.columns; i++)
-    parts += (i ? ", " : "") + std::string(slot.scalar == "float" ? "number(" : slot.scalar + "(0.8 * number(") +
-             std::to_string(seed + i) + "u)" + (slot.scalar == "float" ? "" : ")");
-  return glsl_type(slot) + "(" + parts + ")";
 }
 
 /// Triangles over everything with a random value for every input of the fragment shader.
@@ -104,14 +52,7 @@ std::string vertex_for(const Reflection& r) {
       body += "  " + name + (slot.lengths.empty() ? "" : "[" + std::to_string(i) + "]") + " = " +
               random_value(slot, (*location + i) * 16 + component.value_or(0)) + ";\n";
   }
-  return declarations + R"(
-float number(uint k) {
-  k = (k + uint(gl_VertexIndex) * 977u) * 747796405u + 2891336453u;
-  k = ((k >> ((k >> 28) + 4u)) ^ k) * 277803737u;
-  return float((k >> 22 ^ k) & 0xffffu) / 32768.0 * 1.25 - 0.25;
-}
-void main() {
-)" + body +
+  return declarations + numbers_of("gl_VertexIndex") + "void main() {\n" + body +
          R"(
   vec2 at = gl_VertexIndex < 3 ? vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 4.0 - 1.0
                                : vec2(number(1001u), number(1002u)) * 2.0 - 1.0;
@@ -227,6 +168,12 @@ void run_module(Run& run, const std::filesystem::path& path) try {
     run_fragment(run, r, words);
   else if (r.model == spv::ExecutionModel::Vertex)
     run_vertex(run, r, words);
+  else if (r.model == spv::ExecutionModel::Geometry)
+    run_geometry(run, r, words);
+  else if (r.model == spv::ExecutionModel::TessellationControl)
+    run_control(run, r, words);
+  else if (r.model == spv::ExecutionModel::TessellationEvaluation)
+    run_evaluation(run, r, words);
   else
     throw Unsupported("the stage");
   run.may_be_blank();

@@ -36,8 +36,10 @@ void read_decoration(Reflection& r, std::span<const uint32_t> inst, bool member)
 }
 
 void read_mode(Reflection& r, std::span<const uint32_t> inst) {
-  if (inst[1] != r.entry || static_cast<spv::ExecutionMode>(inst[2]) != spv::ExecutionMode::LocalSize) return;
-  for (int i = 0; i < 3; i++) r.local_size[i] = inst[3 + i];
+  if (inst[1] != r.entry) return;
+  const auto mode = static_cast<spv::ExecutionMode>(inst[2]);
+  r.modes[mode] = inst.size() > 3 ? inst[3] : 0;
+  for (size_t i = 0; mode == spv::ExecutionMode::LocalSize && i < 3; i++) r.local_size[i] = inst[3 + i];
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ struct Reflection {
   std::string entry_name;
   std::set<uint32_t> interface;
   uint32_t local_size[3] = {1, 1, 1};
+  std::map<spv::ExecutionMode, uint32_t> modes;  ///< with their first operand
   std::set<spv::Capability> capabilities;
   bool compares_depth = false;
   std::map<uint32_t, Type> types;
