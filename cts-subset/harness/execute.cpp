@@ -20,6 +20,7 @@ std::set<std::string> g_known;
 struct SideResult {
   std::vector<Output> outputs;
   std::string error, unsupported;
+  bool lost = false;  ///< VK_ERROR_DEVICE_LOST
   std::vector<std::string> validation;
   std::vector<std::pair<std::string, std::string>> notes;
 };
@@ -36,7 +37,6 @@ uint64_t attempt_seed(const Case& c, uint32_t attempt) { return case_seed(c) + a
 SideResult run_side(Gpu& gpu, const Case& c, uint32_t attempt) {
   SideResult result;
   take_validation_errors();
-  bool lost = false;
   try {
     Run run(gpu, attempt_seed(c, attempt), c.index);
     const auto collect = [&] {
@@ -54,12 +54,12 @@ SideResult run_side(Gpu& gpu, const Case& c, uint32_t attempt) {
     result.unsupported = missing.what();
   } catch (const VulkanError& error) {
     result.error = error.what();
-    lost = error.code == VK_ERROR_DEVICE_LOST;
+    result.lost = error.code == VK_ERROR_DEVICE_LOST;
   } catch (const std::exception& error) {
     result.error = error.what();
   }
   result.validation = take_validation_errors();
-  if (lost) recreate(gpu);
+  if (result.lost) recreate(gpu);
   return result;
 }
 
@@ -108,6 +108,7 @@ bool all_blank(const std::vector<Output>& outputs) {
 
 /// A reference that drew nothing proves nothing.
 void check_blank(const std::vector<Output>& outputs, Judgement& judgement) {
+  if (options().mutate) return;
   for (const Output& output : outputs) {
     if (output.may_be_blank || !is_blank(output)) continue;
     judgement.verdict = Verdict::kDiffering;
@@ -154,6 +155,11 @@ Judgement judge(const Case& c, uint32_t attempt, bool& again) {
   if (!reference.unsupported.empty() || !device.unsupported.empty()) {
     judgement.verdict = Verdict::kUnsupported;
     judgement.message = "  " + (device.unsupported.empty() ? reference.unsupported : device.unsupported) + "\n";
+    return judgement;
+  }
+  if (device.lost && options().mutate) {
+    judgement.verdict = Verdict::kUnsupported;
+    judgement.message = "  a loop without an end\n";
     return judgement;
   }
   if (reference.error.empty() && reference.validation.empty() && refused(device)) {

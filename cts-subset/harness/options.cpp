@@ -22,6 +22,7 @@ constexpr char kUsage[] =
     "  --seed=N          seed of every random case (default 1)\n"
     "  --count=N         cases per random generator; those that draw nothing go on with other seeds\n"
     "  --validation=0|1  validation layer (default 1)\n"
+    "  --mutate          fuzz: every shader of a case is changed at random, into one that is still valid\n"
     "  --isolate         run cases in child processes; a crash is counted and the rest goes on\n"
     "  --jobs=N          child processes at a time\n"
     "  CTS_MODULES=DIR   (environment) group modules: every .spv file below the folder, run on random resources\n"
@@ -65,6 +66,8 @@ Options parse_options(int argc, char** argv) {
       result.count = small();
     else if (name == "--validation")
       result.validation = number() != 0;
+    else if (name == "--mutate")
+      result.mutate = true;
     else if (name == "--isolate")
       result.isolate = true;
     else if (name == "--self-test")
@@ -99,6 +102,8 @@ void prepare_environment(const Options& options) {
   // Its rasterizer threads keep denormals on for good after a store to a half-float target skips a masked-out block, so
   // later shaders depend on earlier work. Without threads of its own it sets the mode anew for every render pass.
   setenv("LP_NUM_THREADS", "0", 1);
+  // Mutation makes loops without an end; the reference leaves them after 65,535 rounds.
+  if (options.mutate) setenv("VITRINE_SHADER_BUDGET", "20000", 0);
   // It encodes sRGB with RSQRTPS, whose bits are the CPU vendor's; this device has one vendor's in a table.
   if (!rsqrt_as_recorded()) setenv("VITRINE_RSQRT", "cpu", 0);
 }

@@ -1,6 +1,8 @@
 // Objects of a run: buffers, samplers, shaders, descriptors, command buffers.
 #include "harness/run.h"
 
+#include "harness/mutant.h"
+#include "harness/options.h"
 #include "harness/shader.h"
 
 namespace vitrine::cts {
@@ -90,7 +92,9 @@ VkSampler Run::sampler(VkFilter filter, VkSamplerAddressMode mode) {
   return sampler(info);
 }
 
-VkShaderModule Run::module(const std::vector<uint32_t>& words) {
+VkShaderModule Run::module(const std::vector<uint32_t>& original) {
+  const std::vector<uint32_t> words = options().mutate ? mutant_of(original, options().seed) : original;
+  if (options().mutate) note("mutant" + std::to_string(notes.size()), disassemble(words));
   VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
   info.codeSize = words.size() * 4;
   info.pCode = words.data();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <unordered_set>
 
 #define SPV_ENABLE_UTILITY_CODE
 #include <spirv/unified1/spirv.hpp11>
@@ -35,10 +36,9 @@ std::vector<Place> instructions(const Words& words) {
   return list;
 }
 
-bool in_function(const std::vector<Place>& list, std::size_t index) {
-  for (std::size_t i = 0; i <= index; i++)
-    if (list[i].op == spv::Op::OpFunction) return true;
-  return false;
+std::vector<Place> in_functions(const std::vector<Place>& list) {
+  const auto is_function = [](const Place& place) { return place.op == spv::Op::OpFunction; };
+  return {std::find_if(list.begin(), list.end(), is_function), list.end()};
 }
 
 /// Opcodes of one shape: any may stand for another.
@@ -58,19 +58,35 @@ constexpr spv::Op kFamilies[][8] = {
      spv::Op::OpTerminateInvocation, spv::Op::OpUnreachable},
 };
 
-void swap_opcode(Words& words, const std::vector<Place>& list, Random& random) {
+/// Instructions that say where memory is accessed, that act on more than their own invocation, or whose results are
+/// undefined for some operands (remainders of negative numbers, far shifts).
+bool is_fixed(spv::Op op) {
+  return op == spv::Op::OpSRem || op == spv::Op::OpSMod || op == spv::Op::OpShiftLeftLogical ||
+         op == spv::Op::OpShiftRightLogical || op == spv::Op::OpShiftRightArithmetic || op == spv::Op::OpAccessChain ||
+         op == spv::Op::OpInBoundsAccessChain || op == spv::Op::OpPtrAccessChain || op == spv::Op::OpFunctionCall ||
+         op == spv::Op::OpImageTexelPointer || (op >= spv::Op::OpAtomicLoad && op <= spv::Op::OpAtomicXor) ||
+         op == spv::Op::OpAtomicFAddEXT || op == spv::Op::OpAtomicFMinEXT || op == spv::Op::OpAtomicFMaxEXT ||
+         op == spv::Op::OpConvertUToPtr || (op >= spv::Op::OpSampledImage && op <= spv::Op::OpImageQuerySamples) ||
+         (op >= spv::Op::OpGroupNonUniformElect && op <= spv::Op::OpGroupNonUniformQuadSwap);
+}
+
+/// `defined`: not into an opcode whose results are undefined for some operands.
+void swap_opcode(Words& words, const std::vector<Place>& list, Random& random, bool defined = false) {
   for (int tries = 0; tries < 50; tries++) {
     const Place& place = list[below(random, list.size())];
     for (const auto& family : kFamilies)
       if (std::find(std::begin(family), std::end(family), place.op) != std::end(family)) {
-        words[place.at] = place.length << 16 | static_cast<std::uint32_t>(family[below(random, std::size(family))]);
+        const spv::Op op = family[below(random, std::size(family))];
+        if (defined && is_fixed(op)) continue;
+        words[place.at] = place.length << 16 | static_cast<std::uint32_t>(op);
         return;
       }
   }
 }
 
-/// An operand of an instruction of a function becomes another id of the same type.
-void swap_operand(Words& words, const std::vector<Place>& list, Random& random) {
+/// An operand of one of the instructions `open` becomes another id of the same type.
+void swap_operand(Words& words, const std::vector<Place>& list, const std::vector<Place>& open, Random& random) {
+  if (open.empty()) return;
   std::unordered_map<std::uint32_t, std::uint32_t> type_of;
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> of_type;
   for (const Place& place : list) {
@@ -79,9 +95,8 @@ void swap_operand(Words& words, const std::vector<Place>& list, Random& random) 
     of_type[place.type].push_back(place.result);
   }
   for (int tries = 0; tries < 50; tries++) {
-    const std::size_t index = below(random, list.size());
-    const Place& place = list[index];
-    if (place.length <= place.first || !in_function(list, index)) continue;
+    const Place& place = open[below(random, open.size())];
+    if (place.length <= place.first) continue;
     std::uint32_t& operand = words[place.at + place.first + below(random, place.length - place.first)];
     const auto known = type_of.find(operand);
     if (known == type_of.end()) continue;
@@ -137,7 +152,67 @@ void exchange(Words& words, const std::vector<Place>& list, Random& random) {
   std::rotate(begin, begin + a.length, begin + a.length + b.length);
 }
 
+using Ids = std::unordered_set<std::uint32_t>;
+
+/// The conditions on which a loop is left.
+Ids loop_conditions(const Words& words, const std::vector<Place>& list) {
+  Ids exits, conditions;
+  for (const Place& place : list)
+    if (place.op == spv::Op::OpLoopMerge) exits.insert({words[place.at + 1], words[place.at + 2]});
+  for (const Place& place : list)
+    if (place.op == spv::Op::OpBranchConditional &&
+        (exits.contains(words[place.at + 2]) || exits.contains(words[place.at + 3])))
+      conditions.insert(words[place.at + 1]);
+  return conditions;
+}
+
+/// Every id that a fixed instruction or the end of a loop depends on, through values and through memory.
+Ids fixed_ids(const Words& words, const std::vector<Place>& list) {
+  Ids ids = loop_conditions(words, list);
+  const auto take = [&](const Place& place, std::uint32_t from) {
+    bool grew = false;
+    for (std::uint32_t i = from; i < place.length; i++) grew |= ids.insert(words[place.at + i]).second;
+    return grew;
+  };
+  for (bool grew = true; grew;) {
+    grew = false;
+    for (auto at = list.rbegin(); at != list.rend(); ++at) {  // users first
+      const Place& place = *at;
+      if (place.op == spv::Op::OpStore && place.length > 2 && ids.contains(words[place.at + 1]))
+        grew |= ids.insert(words[place.at + 2]).second;
+      else if (is_fixed(place.op) || (place.result != 0 && place.type != 0 && ids.contains(place.result)))
+        grew |= take(place, place.first);
+      // A store into a part of a variable changes the variable.
+      if (is_fixed(place.op) && place.length > place.first && ids.contains(words[place.at + place.first]))
+        grew |= ids.insert(place.result).second;
+    }
+  }
+  return ids;
+}
+
 }  // namespace
+
+void mutate_values(Words& words, Random& random) {
+  const std::vector<Place> list = instructions(words);
+  const Ids fixed = fixed_ids(words, list);
+  std::vector<Place> open;
+  for (Place place : in_functions(list)) {
+    const bool branch = place.op == spv::Op::OpBranchConditional && !fixed.contains(words[place.at + 1]);
+    const bool value = place.type != 0 && !fixed.contains(place.result);
+    const bool effect = place.op == spv::Op::OpStore && !fixed.contains(words[place.at + 1]);
+    if (branch) place.length = 2;  // the labels stay
+    if (effect) place.first = 2;   // and the variable
+    if (is_fixed(place.op) || (!value && !effect && !branch)) continue;
+    if (place.op != spv::Op::OpLoad && place.op != spv::Op::OpVariable) open.push_back(place);
+  }
+  if (open.empty()) return;
+  for (std::size_t left = 1 + below(random, 6); left > 0; left--) {
+    if (below(random, 2) == 0)
+      swap_opcode(words, open, random, true);
+    else
+      swap_operand(words, list, open, random);
+  }
+}
 
 void mutate(Words& words, Random& random) {
   for (std::size_t left = 1 + below(random, 4); left > 0; left--) {
@@ -163,7 +238,7 @@ void mutate(Words& words, Random& random) {
         swap_opcode(words, list, random);
         break;
       default:
-        swap_operand(words, list, random);
+        swap_operand(words, list, in_functions(list), random);
         break;
     }
   }

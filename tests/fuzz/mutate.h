@@ -13,4 +13,9 @@ using Random = std::mt19937_64;
 /// One to a few changes; most modules stay valid or nearly so.
 void mutate(Words& words, Random& random);
 
+/// A few changes of what functions compute: opcodes of one shape and operands of one type stand in for each other.
+/// What decides where memory is read or written and when loops end stays as it is, so that a module without races gets
+/// none.
+void mutate_values(Words& words, Random& random);
+
 }  // namespace vitrine::fuzz
