@@ -229,6 +229,63 @@ double measure_phong(Run& run) {
   return 1 / time_submissions(run, finish(cmd), 1.0);
 }
 
+constexpr char kObjectVertex[] =
+    "layout(location=0) in vec3 p; layout(location=1) in vec3 n; layout(location=2) in vec3 at; layout(location=3) in "
+    "float scale;"
+    "layout(push_constant) uniform P { mat4 m; vec4 light; } pc;"
+    "layout(location=0) out vec3 wn; layout(location=1) out vec3 wc; layout(location=2) out vec3 wv; "
+    "layout(location=3) out vec3 wl;"
+    "void main() { wn = n; wc = abs(n) * 0.5 + 0.5; vec3 q = p * scale + at; gl_Position = pc.m * vec4(q, 1.0);"
+    "wl = normalize(pc.light.xyz - q); wv = -q; }";
+constexpr char kObjectFragment[] =
+    "layout(location=0) in vec3 wn; layout(location=1) in vec3 wc; layout(location=2) in vec3 wv; layout(location=3) "
+    "in vec3 wl; layout(location=0) out vec4 o;"
+    "void main() { vec3 n = normalize(wn), l = normalize(wl); o = vec4(max(dot(n, l), 0.2) * wc, 1.0); }";
+
+/// A mesh of 2 * rings * sides triangles drawn by one multi-draw of indirect commands, as after culling on the device:
+/// one instance for half of the objects, none for the others.
+double measure_objects(Run& run, std::uint32_t rings, std::uint32_t sides, std::uint32_t columns, std::uint32_t rows) {
+  const cts::Target target = make_screen(run, 1280, 720);
+  const Knot knot = make_knot(rings, sides);
+  const auto count = static_cast<std::uint32_t>(knot.indices.size());
+  std::vector<float> instances;
+  std::vector<VkDrawIndexedIndirectCommand> commands;
+  const float width = 2 / static_cast<float>(columns), height = 2 / static_cast<float>(rows);
+  for (std::uint32_t i = 0; i < columns * rows; ++i) {
+    const auto x = static_cast<float>(i % columns) + 0.5f, y = static_cast<float>(i / columns) + 0.5f;
+    for (const float v : {x * width - 1, y * height - 1, 0.5f, width * 0.2f}) instances.push_back(v);
+    commands.push_back({count, i % 2, 0, 0, i});
+  }
+  const cts::Buffer vertices = run.buffer_of(knot.vertices), indices = run.buffer_of(knot.indices),
+                    places = run.buffer_of(instances), draws = run.buffer_of(commands);
+  const cts::Resources resources = run.resources({}, 80);
+  cts::GraphicsSpec spec;
+  spec.vertex = kObjectVertex;
+  spec.fragment = kObjectFragment;
+  spec.layout = resources.layout;
+  spec.bindings = {{0, 44, VK_VERTEX_INPUT_RATE_VERTEX}, {1, 16, VK_VERTEX_INPUT_RATE_INSTANCE}};
+  spec.attributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0},
+                     {1, 0, VK_FORMAT_R32G32B32_SFLOAT, 12},
+                     {2, 1, VK_FORMAT_R32G32B32_SFLOAT, 0},
+                     {3, 1, VK_FORMAT_R32_SFLOAT, 12}};
+  spec.depth.depthTestEnable = spec.depth.depthWriteEnable = VK_TRUE;
+  spec.depth.depthCompareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
+  const VkPipeline pipeline = cts::make_pipeline(run, spec, target);
+  const float push[20] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 2, 3, 4, 1};
+  VkCommandBuffer cmd = begin_repeatable(run);
+  target.begin(cmd);
+  cts::bind_pipeline(cmd, pipeline);
+  resources.bind(cmd);
+  vkCmdPushConstants(cmd, resources.layout, VK_SHADER_STAGE_ALL, 0, sizeof(push), push);
+  const VkBuffer streams[] = {vertices.handle, places.handle};
+  const VkDeviceSize offsets[] = {0, 0};
+  vkCmdBindVertexBuffers(cmd, 0, 2, streams, offsets);
+  vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT32);
+  vkCmdDrawIndexedIndirect(cmd, draws.handle, 0, columns * rows, sizeof(VkDrawIndexedIndirectCommand));
+  vkCmdEndRenderPass(cmd);
+  return count / 3.0 * (columns * rows / 2) / time_submissions(run, finish(cmd)) / 1e6;
+}
+
 }  // namespace
 
 std::vector<Workload> triangle_workloads() {
@@ -241,6 +298,8 @@ std::vector<Workload> triangle_workloads() {
           grid("depth_only_tiny", 2, 1, true),
           {"vertex_bound", "Mvert/s", false, measure_vertex_bound},
           {"instanced", "Mtri/s", false, measure_instanced},
+          {"indirect_objects", "Mtri/s", false, [](Run& run) { return measure_objects(run, 20, 8, 60, 50); }},
+          {"indirect_small", "Mtri/s", false, [](Run& run) { return measure_objects(run, 6, 3, 200, 150); }},
           {"scene_phong", "frame/s", false, measure_phong}};
 }
 
