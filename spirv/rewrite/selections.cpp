@@ -60,6 +60,11 @@ bool compares_floats(const Graph& graph, Src condition) {
          ir::alu_info(inst->op).operands[0] == 'F';
 }
 
+bool is_nan_test(const Graph& graph, const Inst& inst) {
+  const Src a = graph.source(inst, 0), b = graph.source(inst, 1);
+  return inst.op == Op::kFNeu && a.value == b.value && a.swizzle[0] == b.swizzle[0];
+}
+
 /// Operations that the reference computes as floats; it keeps the results of others, and what it loads from buffers,
 /// as integers.
 bool computes_float(const Inst& inst) {
@@ -118,26 +123,63 @@ std::uint32_t users_of(const Graph& graph, Src src) {
   return users;
 }
 
-/// True when a loop contains the instruction; `nested` when an If does.
-bool is_in_loop(const Graph& graph, const Inst& inst, bool& nested) {
-  nested = false;
-  for (InstId at = graph.blocks[inst.block].owner; at != kNone; at = graph.blocks[graph.insts[at].block].owner) {
-    if (graph.insts[at].kind == Kind::kLoop) return true;
-    nested = true;
+/// What contains an instruction.
+struct Nest {
+  bool in_loop = false;
+  bool in_branch = false;
+  bool complement = false;  ///< the mask of one of the branches is the complement of a condition
+};
+
+/// True when the reference needs the mask under which the block runs: it loads or stores, or writes a literal.
+bool needs_mask(const Graph& graph, BlockId block) {
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
+    const Inst& inst = graph.insts[id];
+    if (inst.kind == Kind::kIf || inst.kind == Kind::kLoop) return true;
+    if (inst.kind != Kind::kIntrinsic) continue;
+    if (inst.op != Op::kYield && !computes_float(inst)) return true;
+    for (std::uint32_t i = 0; inst.op == Op::kYield && i < inst.count; ++i)
+      if (graph.constant(graph.source(inst, i).value)) return true;
   }
   return false;
 }
 
-/// True when the reference's optimiser sees what the two branches write to a register as one selection. Where the
-/// condition is no comparison of floats, it does only if the else branch computes something.
-bool writes_selection(const Graph& graph, const Inst& branch, Src written, bool nested) {
+/// The complement of a comparison that serves nothing else is the opposite comparison.
+bool is_complement(const Graph& graph, const Inst& branch, BlockId block) {
+  const Src condition = graph.source(branch, 0);
+  const Inst* def = graph.def(condition.value);
+  const bool computed = def && def->kind == Kind::kAlu;
+  const bool negated = computed && def->op == Op::kNotB, in_then = branch.child[0] == block;
+  if (negated != in_then) return false;
+  if (in_then) return true;
+  const bool compares = computed && ir::alu_info(def->op).result == 'B' && ir::alu_info(def->op).operands[0] != 'B';
+  return !compares || graph.values[condition.value].uses > 1 || needs_mask(graph, branch.child[0]);
+}
+
+Nest nest_of(const Graph& graph, const Inst& inst) {
+  Nest nest;
+  for (BlockId block = inst.block; graph.blocks[block].owner != kNone;) {
+    const Inst& owner = graph.insts[graph.blocks[block].owner];
+    nest.in_loop |= owner.kind == Kind::kLoop;
+    nest.in_branch |= owner.kind == Kind::kIf;
+    nest.complement |= owner.kind == Kind::kIf && is_complement(graph, owner, block);
+    block = owner.block;
+  }
+  return nest;
+}
+
+/// True when the reference's optimiser sees what the two branches write to a register as one selection: it has to
+/// recognise the mask of one branch as the complement of the other's. Of comparisons of floats it does so for less-than
+/// and tests for NaN; where the condition is none, only if the else branch computes something. In a branch the mask of
+/// the else branch is the conjunction of the masks around it, which it recognises unless one of them is a complement
+/// itself.
+bool writes_selection(const Graph& graph, const Inst& branch, Src written, const Nest& nest) {
   const Src condition = graph.source(branch, 0);
   const Inst* def = graph.def(condition.value);
   const Inst* from = graph.def(written.value);
   const bool loads =
       from && from->kind == Kind::kIntrinsic && (from->op == Op::kLoadPush || from->op == Op::kLoadUniform);
-  if (nested) return !loads;
-  if (compares_floats(graph, condition)) return true;
+  if (nest.in_branch) return !loads && !nest.complement;
+  if (compares_floats(graph, condition)) return def->op == Op::kFLt || is_nan_test(graph, *def);
   const Block& else_block = graph.blocks[branch.child[1]];
   if (loads || else_block.head == else_block.tail || !def || def->op == Op::kNotB) return false;
   return converts_sides(graph, condition, written);
@@ -147,10 +189,11 @@ bool writes_selection(const Graph& graph, const Inst& branch, Src written, bool 
 /// else branch yields, a selection if that is literal.
 bool find_result(const Graph& graph, Src src, std::uint32_t identity, Selection& found) {
   const Inst* branch = graph.def(src.value);
-  bool nested = false;
-  if (!branch || branch->kind != Kind::kIf || users_of(graph, src) != 1 || is_in_loop(graph, *branch, nested) ||
+  if (!branch || branch->kind != Kind::kIf || users_of(graph, src) != 1 ||
       !ends_in(graph, branch->child[0], Op::kYield) || !ends_in(graph, branch->child[1], Op::kYield))
     return false;
+  const Nest nest = nest_of(graph, *branch);
+  if (nest.in_loop) return false;
   const std::vector<ValueId>& results = graph.nodes[branch->node]->results;
   const auto index = static_cast<std::uint32_t>(std::find(results.begin(), results.end(), src.value) - results.begin());
   const auto yielded = [&](unsigned side) {
@@ -159,7 +202,7 @@ bool find_result(const Graph& graph, Src src, std::uint32_t identity, Selection&
   };
   if (!is_literal(graph, yielded(1), identity)) return false;
   found = {graph.source(*branch, 0), 2, src, false};
-  return writes_selection(graph, *branch, yielded(0), nested);
+  return writes_selection(graph, *branch, yielded(0), nest);
 }
 
 /// What selects the literal `identity` on one side, for one user.

@@ -45,6 +45,36 @@ CTS_CASE("glsl", "branched_values") {
                     "  }\n");
 }
 
+// Branches in branches, and conditions of every kind.
+CTS_CASE("glsl", "nested_branched_values") {
+  const std::string head = "  vec4 r0 = vec4(3.0), r1 = r0, r2 = r0, r3 = r0, r4 = r0, r5 = r0, r6 = r0, r7 = r0;\n";
+  const auto inner = [](const std::string& condition, int k) {
+    const std::string g = "g" + std::to_string(k);
+    return "vec4 " + g + "; if (" + condition + ") " + g + " = in_a[id ^ 1u]; else " + g + " = vec4(1.0); r" +
+           std::to_string(k) + " = b * " + g + ";";
+  };
+  evaluate_specials(run, kVec4, 8,
+                    head + "  if (a.y > 0.0) { " + inner("a.z > 3.0", 0) + " } else { " + inner("i.z > 3", 1) + " }\n" +
+                        "  if (!(a.y > 0.5)) { " + inner("a.z > 2.0", 2) + " }\n" +
+                        "  if (i.y > 2) { r3 = a + p; } else { " + inner("a.z != 3.0", 3) + " }\n" +
+                        "  if (!(a.y > 0.25)) { r4 = a + p; } else { " + inner("!(a.z > 1.0)", 4) + " }\n" +
+                        "  if (a.y >= 0.0) { " + inner("a.z <= 3.0", 5) + " }\n" +
+                        "  if (a.x > 0.5) { r6 = a + p; } else { " + inner("a.w > 1.0", 6) + " }\n" +
+                        "  if (a.x > 0.75) { r7 = in_b[id ^ 1u]; } else { " + inner("a.w > 2.0", 7) + " }\n");
+}
+
+CTS_CASE("glsl", "compared_branched_values") {
+  std::string statements;
+  const char* const conditions[] = {"b.y > 1.0",     "!(b.y > 1.0)", "b.y != 1.0",
+                                    "!(b.y != 1.0)", "b.y <= 1.0",   "i.x > 3"};
+  for (int k = 0; k < 12; ++k) {
+    const std::string n = std::to_string(k);
+    statements += "  vec4 g" + n + "; if (" + conditions[k / 2] + ") g" + n + " = " + (k % 2 ? "in_a[id ^ 1u]" : "p") +
+                  "; else g" + n + " = vec4(1.0);\n  vec4 r" + n + " = a * g" + n + ";\n";
+  }
+  evaluate_specials(run, kVec4, 12, statements);
+}
+
 // Literals that convert to no integer, selected or as the source of further integers.
 CTS_CASE("glsl", "undefined_conversions") {
   evaluate_specials(run, kUint4, 4,
