@@ -335,8 +335,9 @@ std::uint32_t vertex_words(const std::vector<InterfaceSlot>& outputs, const Shad
 spirv::StageModes merge_modes(const spirv::StageModes& control, const spirv::StageModes& evaluation) {
   spirv::StageModes modes = evaluation;
   if (!modes.has_domain) modes.domain = control.domain;
-  if (!modes.has_spacing) modes.spacing = control.spacing;
-  if (!modes.has_order) modes.clockwise = control.clockwise;
+  // Where neither stage says, which Vulkan forbids, this is what the reference makes of it.
+  if (!modes.has_spacing) modes.spacing = control.has_spacing ? control.spacing : spirv::TessSpacing::kFractionalEven;
+  if (!modes.has_order) modes.clockwise = !control.has_order || control.clockwise;
   modes.point_mode |= control.point_mode;
   modes.control_points = std::max(control.control_points, evaluation.control_points);
   modes.vertex_words = control.vertex_words;

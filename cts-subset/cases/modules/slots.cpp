@@ -1,3 +1,4 @@
+// What a module reads and writes, spelled in GLSL.
 #include "cases/modules/slots.h"
 
 #include "harness/gpu.h"
