@@ -106,9 +106,25 @@ bool forget_source_languages(std::vector<std::uint32_t>& words) {
   return found;
 }
 
+/// ShaderLayer and ShaderViewportIndex in modules that are older than these (Slang's) become what geometry shaders
+/// declare for the same built-ins. False when there is none.
+bool age_layer_capabilities(std::vector<std::uint32_t>& words) {
+  constexpr auto word = [](spv::Capability capability) { return static_cast<std::uint32_t>(capability); };
+  bool found = false;
+  for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
+    if ((words[at] & spv::OpCodeMask) != static_cast<std::uint32_t>(spv::Op::OpCapability)) break;
+    std::uint32_t& capability = words[at + 1];
+    const bool layer = capability == word(spv::Capability::ShaderLayer);
+    if (!layer && capability != word(spv::Capability::ShaderViewportIndex)) continue;
+    capability = word(layer ? spv::Capability::Geometry : spv::Capability::MultiViewport);
+    found = true;
+  }
+  return found;
+}
+
 /// Empty if the module is valid but for capabilities that it uses without declaring them: applications that were tried
 /// on the reference alone get away with that there (zink decorates with Sample and leaves out SampleRateShading), and
-/// but for source languages that the validator does not know (Slang is 11).
+/// but for source languages that the validator does not know (Slang is 11) and capabilities of a later version.
 std::string validate_leniently(std::span<const std::uint32_t> words) {
   static constexpr int kMaxMissing = 8;
   const spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_3);
@@ -118,10 +134,14 @@ std::string validate_leniently(std::span<const std::uint32_t> words) {
     // Vertex inputs may share locations in OpenGL; each reads its attribute all the same.
     if (message.find("conflicting input location assignment") != std::string::npos) message.clear();
     const bool unknown_language = message.find("Invalid source language operand") != std::string::npos;
+    const bool young_capability = message.find("requires SPIR-V version 1.5 or later") != std::string::npos;
     const std::string name = missing_capability(message);
-    if (!unknown_language && name.empty()) break;
+    if (!unknown_language && !young_capability && name.empty()) break;
     if (completed.empty()) completed.assign(words.begin(), words.end());
-    if (!(unknown_language ? forget_source_languages(completed) : declare_capability(context, name, completed))) break;
+    if (!(unknown_language   ? forget_source_languages(completed)
+          : young_capability ? age_layer_capabilities(completed)
+                             : declare_capability(context, name, completed)))
+      break;
     message = validate(context, completed);
   }
   spvContextDestroy(context);
