@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "spirv/capabilities.h"
 #include "spirv/front/translate.h"
 #include "spirv/ir_passes.h"
 #include "spirv/lower/lower.h"
@@ -167,6 +168,7 @@ std::string check_module(std::span<const std::uint32_t> words) {
 
 base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> words, const CompileOptions& options) {
   if (std::string error = check_module(words); !error.empty()) return base::Error{error};
+  if (std::string error = missing_device_capability(words); !error.empty()) return base::Error{error};
   // The front end survives whatever the words say and bounds its work; the validator's time grows with the cube of the
   // nesting, so that it is not asked about large modules that are refused anyway. Its words are better otherwise.
   base::Result<ir::Function> function = translate(words, options);

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the shape of the tree: include directions, rooms in the README, tests behind claims and opcodes, long files.
+"""Checks the shape of the tree: include directions, rooms in the README, tests behind claims and opcodes, capabilities,
+long files.
 
 usage: structure.py SOURCE_FOLDER
 Exit status 1 and one line per fault. The tail of file sizes is printed, never a fault.
@@ -7,6 +8,7 @@ Exit status 1 and one line per fault. The tail of file sizes is printed, never a
 import pathlib
 import re
 import sys
+from xml.etree import ElementTree
 
 # DESIGN.md section 2: a room may include itself and what stands to its right.
 ORDER = ["icd", "raster", "spirv", "texel", "base"]
@@ -14,6 +16,7 @@ FREE = ["tests", "cts-subset"]
 DATA = ["manifest"]
 SHADER_HEADERS = ["shader.h", "shader_cost.h", "stage_memory.h", "resources.h"]  # what raster sees of spirv
 LONG_FILE = 350
+REGISTRIES = ["/usr/share/vulkan/registry/vk.xml", "/usr/local/share/vulkan/registry/vk.xml"]
 
 
 def sources(root, folder):
@@ -97,6 +100,25 @@ def opcode_faults(root):
                 yield f"{table}: no test uses {name}, and tests/spirv/opcode_tests does not say what does"
 
 
+def capability_faults(root):
+    """spirv/capabilities.def lists the SPIR-V capabilities whose features or extensions manifest/ claims, and no other.
+
+    Those that a property of the device enables may stand there or not; so may what the registry does not know."""
+    def claimed(file):
+        return set(re.findall(r"^(\w+) *;", (root / file).read_text(), re.MULTILINE))
+    listed = set(re.findall(r"^VITRINE_CAPABILITY\((\w+)\)", (root / "spirv/capabilities.def").read_text(), re.MULTILINE))
+    claims = claimed("manifest/features") | claimed("manifest/extensions")
+    registries = [p for p in map(pathlib.Path, REGISTRIES) if p.exists()]
+    for row in ElementTree.parse(registries[0]).iter("spirvcapability") if registries else ():
+        needs = [enable.attrib for enable in row.findall("enable")]
+        if any("property" in need for need in needs):
+            continue
+        name = row.attrib["name"]
+        allowed = any("version" in n or n.get("feature") in claims or n.get("extension") in claims for n in needs)
+        if allowed != (name in listed):
+            yield f"spirv/capabilities.def: {name} is {'claimed but missing' if allowed else 'not claimed'}"
+
+
 def shape_faults(root):
     for folder in ORDER + FREE:
         for path in sources(root, folder):
@@ -118,9 +140,12 @@ def report_tail(root):
         print(f"  {lines:5} {path.relative_to(root)}{'  (long)' if lines > LONG_FILE else ''}")
 
 
+CHECKS = (include_faults, room_faults, claim_faults, opcode_faults, capability_faults, shape_faults)
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
-    faults = [f for check in (include_faults, room_faults, claim_faults, opcode_faults, shape_faults) for f in check(root)]
+    faults = [f for check in CHECKS for f in check(root)]
     report_tail(root)
     for fault in faults:
         print(f"FAULT {fault}")
