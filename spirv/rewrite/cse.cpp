@@ -1,7 +1,12 @@
 // Common subexpressions: an instruction equal to one that dominates it is replaced by that one. A scope's entries are
-// forgotten when its block ends.
+// forgotten when its block ends, but for those that all ways behind it pass: of the side of an If that stays when the
+// other leaves, and of a loop what lies in front of every Break.
+#include <algorithm>
+#include <utility>
+
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/pattern.h"
+#include "spirv/rewrite/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -133,6 +138,10 @@ class Merger {
       changed_ = true;
       return;
     }
+    enter_at(at, id);
+  }
+
+  void enter_at(std::uint32_t at, InstId id) {
     table_[at] = id;
     entered_.push_back(at);
     if (entered_.size() * 2 > table_.size()) grow();
@@ -152,29 +161,94 @@ class Merger {
     }
   }
 
-  void visit(BlockId block) {
-    const std::size_t scope = entered_.size();
-    for (InstId id = graph_.blocks[block].head; id != kNone;) {
-      const InstId next = graph_.insts[id].next;
-      if (candidate(graph_.insts[id])) {
-        merge(id);
-      } else {
-        for (const BlockId child : {graph_.insts[id].child[0], graph_.insts[id].child[1]})
-          if (child != kNone) visit(child);
-      }
-      id = next;
-    }
-    // Last in, first out: probing chains of what remains stay whole.
+  /// Enters without looking for an equal one.
+  void enter(InstId id) {
+    const std::uint32_t mask = static_cast<std::uint32_t>(table_.size()) - 1;
+    std::uint32_t at = hash(graph_.insts[id]) & mask;
+    while (table_[at] != kNone) at = (at + 1) & mask;
+    enter_at(at, id);
+  }
+
+  std::vector<InstId> entered_since(std::size_t scope) const {
+    std::vector<InstId> ids;
+    for (std::size_t i = scope; i < entered_.size(); ++i) ids.push_back(table_[entered_[i]]);
+    return ids;
+  }
+
+  /// Last in, first out: probing chains of what remains stay whole.
+  void forget_since(std::size_t scope) {
     while (entered_.size() > scope) {
       table_[entered_.back()] = kNone;
       entered_.pop_back();
     }
   }
 
+  /// Visits the block in a scope of its own; what the scope holds at its end.
+  std::vector<InstId> visit_scope(BlockId block) {
+    const std::size_t scope = entered_.size();
+    visit(block);
+    const std::vector<InstId> held = entered_since(scope);
+    forget_since(scope);
+    return held;
+  }
+
+  void visit_if(const Inst& inst) {
+    const BlockId child[2] = {inst.child[0], inst.child[1]};
+    std::vector<InstId> held[2];
+    for (const unsigned side : {0u, 1u}) held[side] = visit_scope(child[side]);
+    const bool stays[2] = {ends_in(graph_, child[0], Op::kYield), ends_in(graph_, child[1], Op::kYield)};
+    if (!by_value_ && stays[0] != stays[1])
+      for (const InstId id : held[stays[0] ? 0 : 1]) enter(id);
+  }
+
+  void visit_loop(const Inst& inst) {
+    const BlockId child[2] = {inst.child[0], inst.child[1]};
+    Ways around = std::exchange(ways_, Ways{entered_.size(), false, {}});
+    for (const BlockId block : child) visit_scope(block);
+    const Ways out = std::exchange(ways_, std::move(around));
+    if (!by_value_)
+      for (const InstId id : out.common) enter(id);
+  }
+
+  /// Keeps of what lies in front of every Break what lies in front of this one, too.
+  void leave() {
+    const std::vector<InstId> held = entered_since(ways_.scope);
+    if (!std::exchange(ways_.any, true)) {
+      ways_.common = held;
+    } else {
+      std::erase_if(ways_.common, [&](InstId id) { return std::find(held.begin(), held.end(), id) == held.end(); });
+    }
+  }
+
+  void visit(BlockId block) {
+    for (InstId id = graph_.blocks[block].head; id != kNone;) {
+      const Inst& inst = graph_.insts[id];
+      const InstId next = inst.next;
+      if (inst.kind == Kind::kIf) {
+        visit_if(inst);
+      } else if (inst.kind == Kind::kLoop) {
+        visit_loop(inst);
+      } else if (is_jump(inst, Op::kBreak)) {
+        leave();
+      } else if (candidate(inst)) {
+        merge(id);
+      }
+      id = next;
+    }
+  }
+
+  /// The ways out of the innermost loop.
+  struct Ways {
+    std::size_t scope = 0;  ///< entries in front of the loop
+    bool any = false;
+    std::vector<InstId> common;  ///< in front of every Break so far
+  };
+
   Graph& graph_;
   const bool by_value_, only_doubles_;
   std::vector<InstId> table_;           ///< open addressing, a power of two
   std::vector<std::uint32_t> entered_;  ///< slots in use, in order of entry
+  Ways ways_;
   bool changed_ = false;
 };
 

@@ -1,6 +1,7 @@
 // Values that leave loops. The reference reads a value of a loop behind the loop as it is, so that its rules see how
 // the loop computed it; the shader core needs a result of the loop, which keeps what each lane left with. While the
 // rewrites run, uses behind a loop read the value itself wherever every way out of the loop yields it.
+#include <array>
 #include <map>
 #include <utility>
 
@@ -122,22 +123,26 @@ class Closer {
     Src src = graph_.source(graph_.insts[user], index);
     if (const Inst* def = graph_.def(src.value); def && def->removed) {  // of code that never runs
       const std::uint32_t zero[4] = {};
-      const Value shape = graph_.values[src.value];
-      const InstId made = graph_.create_const(shape.components, shape.boolean, zero);
-      graph_.insert_before(user, made);
-      src.value = graph_.insts[made].result;
-      graph_.set_source(user, index, src);
-      return;
+      return read_literal(user, index, src, zero);
     }
     const BlockId block = graph_.insts[user].block;
     if (only_ != kNone && (!is_inside(graph_, src.value, only_) || encloses(graph_, only_, block))) return;
-    bool closed = false;
-    for (InstId loop = loop_of(graph_, src.value); loop != kNone && !encloses(graph_, loop, block);
-         loop = loop_of(graph_, src.value)) {
+    const InstId innermost = loop_of(graph_, src.value);
+    if (innermost == kNone || encloses(graph_, innermost, block)) return;
+    if (const Inst* constant = graph_.constant(src.value))
+      return read_literal(user, index, src, std::to_array(constant->imm).data());
+    for (InstId loop = innermost; loop != kNone && !encloses(graph_, loop, block); loop = loop_of(graph_, src.value))
       src.value = result_for(loop, src.value);
-      closed = true;
-    }
-    if (closed) graph_.set_source(user, index, src);
+    graph_.set_source(user, index, src);
+  }
+
+  /// Operand `index`, which reads `src`, reads these bits instead.
+  void read_literal(InstId user, std::uint32_t index, Src src, const std::uint32_t* bits) {
+    const Value shape = graph_.values[src.value];
+    const InstId made = graph_.create_const(shape.components, shape.boolean, bits);
+    graph_.insert_before(user, made);
+    src.value = graph_.insts[made].result;
+    graph_.set_source(user, index, src);
   }
 
   /// The result of `loop` that is `value` where the loop ends.
