@@ -17,6 +17,9 @@ bool remove_dead(Graph& graph);
 /// Loads of words of push constants and buffers that an earlier load brought become its components.
 bool forward_loads(Graph& graph);
 
+/// Local arrays of which only constant elements are accessed become values.
+bool promote_arrays(Graph& graph);
+
 /// Loads of elements of local arrays become what was stored there; stores to arrays that nothing reads go.
 bool forward_arrays(Graph& graph);
 

@@ -15,7 +15,8 @@ constexpr int kMaxRounds = 64;
 
 /// One round of the reference's first loop (3.2 step 3).
 bool optimize_once(Graph& graph, bool first) {
-  bool changed = rewriting::forward_loads(graph);
+  bool changed = rewriting::promote_arrays(graph);
+  changed |= rewriting::forward_loads(graph);
   changed |= rewriting::forward_arrays(graph);
   changed |= rewriting::propagate_copies(graph);
   changed |= rewriting::remove_dead(graph);

@@ -5,7 +5,7 @@
 namespace vitrine::cts {
 namespace {
 
-constexpr Type kVec4{Base::kFloat, 4};
+constexpr Type kFloat{Base::kFloat, 1}, kVec4{Base::kFloat, 4};
 
 // What a loop computes in front of its only way out is known behind it.
 CTS_CASE("glsl", "control_flow.equal_behind_loop") {
@@ -17,6 +17,20 @@ CTS_CASE("glsl", "control_flow.equal_behind_loop") {
       "    s1 = array[((pi.z != i.w ? pi.x : pi.w) & 0x7fffffff) % 7];\n  }\n"
       "  if (!(s1 < 1.7)) s0 = s2.zwwz;\n";
   evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s0"}}, {}, false});
+}
+
+// An array is a set of values once the loop that walks through it is unrolled, even where another loop stores to it.
+CTS_CASE("glsl", "control_flow.array_of_values") {
+  const char* text =
+      "  float array[7] = float[7](a.x, a.y, a.z, a.w, b.x, b.y, b.z);\n  int k = pi.y & 7;\n"
+      "  do {\n    array[((~7) & 0x7fffffff) % 7] = dot(a.yw * b.zy, normalize(vec2(10.0, -0.1)));\n"
+      "  } while (--k > 0);\n"
+      "  float sum = 0.0;\n  for (int j = 0; j < 7; ++j) sum += array[j];\n"
+      "  float other[3] = float[3](a.x, b.x, a.z);\n"
+      "  for (int j = 0; j < (i.x & 3); ++j) {\n    if (j == i.y) other[(~6 & 0x7fffffff) % 3] = other[2] * a.x;\n"
+      "    else if (a.x > b.x) break;\n    if (i.z == j) continue;\n    other[1] += other[0];\n  }\n"
+      "  float total = 0.0;\n  for (int j = 0; j < 3; ++j) total += other[j];\n";
+  evaluate(run, Stage::kCompute, {"", text, {{kFloat, "sum"}, {kFloat, "total"}}, {}, false});
 }
 
 }  // namespace
