@@ -167,6 +167,13 @@ class Rewriter {
     return uses;
   }
 
+  /// True when an If reads the value as its condition.
+  bool decides(ValueId value) const {
+    for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next)
+      if (graph_.insts[graph_.sources[slot].user].kind == Kind::kIf) return true;
+    return false;
+  }
+
   bool holds_for_inst(Condition condition, const Inst& inst) const {
     switch (condition) {
       case Condition::kOnce:
@@ -175,6 +182,8 @@ class Rewriter {
         return graph_.values[inst.result].uses != 0;
       case Condition::kFloatOnly:
         return used_as_float_only(inst.result);
+      case Condition::kNotForIf:
+        return !decides(inst.result);
       default:
         return true;
     }

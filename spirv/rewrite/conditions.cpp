@@ -135,7 +135,8 @@ bool take_equal_by(Graph& graph, InstId branch, ValueId condition, bool accept_u
     changed |= take_equal_by(graph, branch, parts[1], false, depth + 1);
     return changed;
   }
-  if (inst.op != Op::kIEq && (inst.op != Op::kINe || !accept_unequal)) return false;
+  const bool unequal = inst.op == Op::kINe || inst.op == Op::kXorB;
+  if (inst.op != Op::kIEq && !(unequal && accept_unequal)) return false;
   for (const std::uint32_t i : {0u, 1u}) {
     const Src known = graph.source(inst, i), unknown = graph.source(inst, 1 - i);
     if (graph.constant(known.value) && unknown.value != known.value)

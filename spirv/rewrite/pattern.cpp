@@ -23,6 +23,7 @@ constexpr ConditionName kConditions[] = {
     {"once", Condition::kOnce},
     {"float_only", Condition::kFloatOnly},
     {"used", Condition::kUsed},
+    {"not_for_if", Condition::kNotForIf},
     {"not_const", Condition::kNotConst},
     {"fmul", Condition::kFmul},
     {"not_fmul", Condition::kNotFmul},

@@ -24,6 +24,7 @@ enum class Condition : std::uint8_t {
   kOnce,       ///< its result has one use
   kFloatOnly,  ///< all uses are float operands of arithmetic
   kUsed,       ///< it has a use
+  kNotForIf,   ///< no If decides by it
   // of an operand
   kNotConst,
   kFmul,  ///< a product, or the negation of one

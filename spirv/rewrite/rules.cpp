@@ -402,7 +402,7 @@ constexpr RuleText kMain[] = {
     {"XorB(a,a)", "false"},
     {"XorB(a,false)", "a"},
     {"XorB(a,XorB(a,b))", "b"},
-    {"XorB(a,true)", "NotB(a)"},
+    {"XorB:not_for_if(a,true)", "NotB(a)"},
     {"$($(a))", "a", "Not NotB"},
     {"Or(And(a,b),b)", "b"},
     {"OrB(AndB(a,b),b)", "b"},

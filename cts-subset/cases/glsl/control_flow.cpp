@@ -33,5 +33,13 @@ CTS_CASE("glsl", "control_flow.array_of_values") {
   evaluate(run, Stage::kCompute, {"", text, {{kFloat, "sum"}, {kFloat, "total"}}, {}, false});
 }
 
+// A branch on what is unequal to true: the comparison stays, so that the branch does not know what is equal.
+CTS_CASE("glsl", "control_flow.branch_on_unequal") {
+  const char* text =
+      "  vec4 s = b;\n"
+      "  if ((3 != i.x) ^^ true) {\n    for (int k = 0, n = i.x; k < n; ++k) s = (s.yxyw + s) * b;\n  }\n";
+  evaluate(run, Stage::kFragment, {"", text, {{kVec4, "s"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
