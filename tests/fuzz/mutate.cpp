@@ -154,11 +154,26 @@ void exchange(Words& words, const std::vector<Place>& list, Random& random) {
 
 using Ids = std::unordered_set<std::uint32_t>;
 
-/// The conditions on which a loop is left.
-Ids loop_conditions(const Words& words, const std::vector<Place>& list) {
-  Ids exits, conditions;
+/// Labels that leave a loop or a function, at once or at the end of their block.
+Ids exit_labels(const Words& words, const std::vector<Place>& list) {
+  Ids exits;
   for (const Place& place : list)
     if (place.op == spv::Op::OpLoopMerge) exits.insert({words[place.at + 1], words[place.at + 2]});
+  Ids all = exits;
+  std::uint32_t label = 0;
+  for (const Place& place : list) {
+    if (place.op == spv::Op::OpLabel) label = place.result;
+    if (place.op == spv::Op::OpReturn || place.op == spv::Op::OpReturnValue ||
+        (place.op == spv::Op::OpBranch && exits.contains(words[place.at + 1])))
+      all.insert(label);
+  }
+  return all;
+}
+
+/// The conditions on which a loop or a function is left.
+Ids exit_conditions(const Words& words, const std::vector<Place>& list) {
+  const Ids exits = exit_labels(words, list);
+  Ids conditions;
   for (const Place& place : list)
     if (place.op == spv::Op::OpBranchConditional &&
         (exits.contains(words[place.at + 2]) || exits.contains(words[place.at + 3])))
@@ -168,7 +183,7 @@ Ids loop_conditions(const Words& words, const std::vector<Place>& list) {
 
 /// Every id that a fixed instruction or the end of a loop depends on, through values and through memory.
 Ids fixed_ids(const Words& words, const std::vector<Place>& list) {
-  Ids ids = loop_conditions(words, list);
+  Ids ids = exit_conditions(words, list);
   const auto take = [&](const Place& place, std::uint32_t from) {
     bool grew = false;
     for (std::uint32_t i = from; i < place.length; i++) grew |= ids.insert(words[place.at + i]).second;
