@@ -129,7 +129,7 @@ void atomic(Translator& t, const Inst& inst, ir::Op) {
   } else {
     set_buffer(instr, pointer);
     instr.imm[0] = static_cast<std::uint32_t>(op);
-    if (width == 16) instr.imm[2] = 1;
+    if (width == 16) instr.imm[2] = 1;  // binary16, in imm[1] bytes or, where every scalar has a word, in that
     instr.imm[1] = wide ? 8 : width == 16 && !pointer.word_layout() ? 2 : 0;
   }
   if (!shared && op != ir::AtomicOp::kLoad) t.function.interface.writes_memory = true;
