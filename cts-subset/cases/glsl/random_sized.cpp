@@ -53,8 +53,9 @@ class Writer {
   std::string converted(const Sized& type, int depth) {
     const Sized& from = any_type();
     const std::string inner = expression(from, depth - 1);
-    if (from.kind != 'f' || type.kind == 'f') return std::string(type.name) + "(" + inner + ")";
     const std::string name = from.name;
+    if (name == "int" && std::string(type.name) == "int64_t") return "WIDENED(" + inner + ")";
+    if (from.kind != 'f' || type.kind == 'f') return std::string(type.name) + "(" + inner + ")";
     return std::string(type.name) + "(clamp(" + inner + ", " + name + (type.kind == 'u' ? "(0.0), " : "(-100.0), ") +
            name + "(100.0)))";
   }
@@ -178,6 +179,13 @@ std::string stored(const Sized& type, const std::string& value) {
   return "uvec2(uint(" + value + "), 0u)";
 }
 
+/// Sign extensions of 32-bit integers to 64 bits, and the same that the reference does not know for one: its
+/// comparisons of such numbers with constants are wrong (deviations.md, widened-comparisons).
+constexpr char kWidened[] = "#define WIDENED(x) int64_t(x)\n";
+constexpr char kWidenedByHand[] = "#define WIDENED(x) packInt2x32(ivec2(x) >> ivec2(0, 31))\n";
+
+constexpr uint32_t kResults = 8;
+
 /// One invocation per point or pixel.
 void draw(Run& run, Stage stage, const std::string& text, const Resources& res) {
   const VkPhysicalDeviceFeatures& features = run.gpu.features;
@@ -195,13 +203,9 @@ void draw(Run& run, Stage stage, const std::string& text, const Resources& res) 
   draw_once(run, target, make_pipeline(run, spec, target), &res, stage == Stage::kVertex ? kInvocations : 3);
 }
 
-void compare_expressions(Run& run, bool precise, Stage stage = Stage::kCompute) {
-  const auto& sizes = run.gpu.extension_features.float16_int8;
-  run.require(run.gpu.features.shaderInt64 && run.gpu.features.shaderFloat64 && run.gpu.features.shaderInt16 &&
-                  sizes.shaderInt8 && sizes.shaderFloat16,
-              "numbers of every width");
-  constexpr uint32_t kResults = 8;
-  std::string text = "#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types : require\n";
+/// The shader's start, which makes a value x_, y_ and z_ of each type out of words of a buffer.
+std::string loads(Stage stage) {
+  std::string text;
   if (stage == Stage::kCompute) text += "layout(local_size_x = 64) in;\n";
   if (stage == Stage::kFragment) text += "layout(location = 0) out vec4 color;\n";
   text +=
@@ -219,24 +223,55 @@ void compare_expressions(Run& run, bool precise, Stage stage = Stage::kCompute) 
       const std::string low = next(), high = next();
       text += std::string("  ") + type.name + " " + name + type.name + " = " + loaded(type, low, high) + ";\n";
     }
+  return text;
+}
+
+/// Result `k`.
+std::string assigned(const Sized& type, uint32_t k, const std::string& expression) {
+  const std::string value = "t" + std::to_string(k);
+  return std::string(type.name) + " " + value + " = " + expression + ";\n  r[id + " + std::to_string(k * kInvocations) +
+         "u] = " + stored(type, value) + ";\n";
+}
+
+/// Runs the shader, given without its first lines and its last one.
+void compare_shader(Run& run, std::string text, Stage stage) {
+  text += "}\n";
+  const std::string head = "#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types : require\n";
+  run.note("shader", head + kWidened + text);
+  std::vector<uint32_t> words(kInvocations * 60);
+  for (uint32_t& w : words) w = run.random.chance(0.3f) ? run.random.below(200) : run.random.bits();
+  const Buffer in = run.buffer_of(words);
+  const auto results = [&](const char* name, const std::string& source) {
+    const Buffer out = run.buffer(kResults * kInvocations * 8);
+    const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
+    if (stage == Stage::kCompute)
+      run.dispatch(res, run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, source)), kInvocations / 64);
+    else
+      draw(run, stage, source, res);
+    run.out(name, out, VK_FORMAT_R32G32_UINT).may_be_blank = true;
+  };
+  results("results", head + kWidened + text);
+  if (text.find("WIDENED(") == std::string::npos) return;
+  results("by_hand", head + kWidenedByHand + text);
+  if (run.outputs[0].bytes != run.outputs[1].bytes) run.outputs[0].deviation = "widened-comparisons";
+}
+
+void require_sizes(Run& run) {
+  const auto& sizes = run.gpu.extension_features.float16_int8;
+  run.require(run.gpu.features.shaderInt64 && run.gpu.features.shaderFloat64 && run.gpu.features.shaderInt16 &&
+                  sizes.shaderInt8 && sizes.shaderFloat16,
+              "numbers of every width");
+}
+
+void compare_expressions(Run& run, bool precise, Stage stage = Stage::kCompute) {
+  require_sizes(run);
+  std::string text = loads(stage);
   Writer writer(run.random, precise);
   for (uint32_t k = 0; k < kResults; ++k) {
     const Sized& type = writer.any_type();
-    const std::string value = "t" + std::to_string(k);
-    text += std::string(precise ? "  precise " : "  ") + type.name + " " + value + " = " + writer.expression(type, 4) +
-            ";\n  r[id + " + std::to_string(k * kInvocations) + "u] = " + stored(type, value) + ";\n";
+    text += (precise ? "  precise " : "  ") + assigned(type, k, writer.expression(type, 4));
   }
-  text += "}\n";
-  run.note("shader", text);
-  std::vector<uint32_t> words(kInvocations * 60);
-  for (uint32_t& w : words) w = run.random.chance(0.3f) ? run.random.below(200) : run.random.bits();
-  const Buffer in = run.buffer_of(words), out = run.buffer(kResults * kInvocations * 8);
-  const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
-  if (stage == Stage::kCompute)
-    run.dispatch(res, run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, text)), kInvocations / 64);
-  else
-    draw(run, stage, text, res);
-  run.out("results", out, VK_FORMAT_R32G32_UINT).may_be_blank = true;
+  compare_shader(run, text, stage);
 }
 
 CTS_RANDOM("glsl", "random_sized.compute", 40) { compare_expressions(run, true); }
