@@ -7,6 +7,7 @@
 
 #include "base/numeric.h"
 #include "spirv/front/functions.h"
+#include "spirv/mix.h"
 
 namespace vitrine::spirv::front {
 namespace glsl {
@@ -132,45 +133,10 @@ void clamp_int(Translator& t, const Inst& inst, ir::Op) {
   result(t, inst, clamp(t, inst, ir::Op::kIMin, ir::Op::kIMax));
 }
 
-/// The literal half of a value whose components are all the same one.
-std::optional<float> uniform_half(const Expr& value) {
-  const auto* words = constant_of(*value.t, value.id);
-  if (words == nullptr) return {};
-  for (std::uint32_t i = 1; i < value.size(); i++)
-    if ((*words)[i] != (*words)[0]) return {};
-  return base::half_to_float(static_cast<std::uint16_t>((*words)[0]));
-}
-
-/// The boolean of a weight that is 1 where it holds, else 0.
-std::optional<Expr> boolean_weight(Translator& t, std::uint32_t id) {
-  if (t.module.constant(id) != nullptr) return {};
-  const Inst& def = t.module.def(id);
-  if (def.op != spv::Op::OpSelect) return {};
-  const auto yes = uniform_half(number_of(t, def.operand(1))), no = uniform_half(number_of(t, def.operand(2)));
-  if (yes != 1.0f || no != 0.0f) return {};
-  return number_of(t, def.operand(0));
-}
-
-/// Of halves. The reference has one operation for it until its finalisation, with inexact rules of its own (4.2).
-Expr mix_halves(Translator& t, const Inst& inst, const Expr& x, const Expr& y, const Expr& a) {
-  if (!t.exact && !t.function.forbids_inexact(16)) {
-    if (const auto weight = uniform_half(a); weight == 0.0f || weight == 1.0f) return *weight == 0.0f ? x : y;
-    if (x.id == y.id) return x;
-    if (uniform_half(x) == 0.0f) return y * a;
-    if (const auto weight = boolean_weight(t, inst.operand(4))) return select(*weight, y, x);
-  }
-  const bool saved = std::exchange(t.opaque, true);
-  const Expr rest = imm(t, 1.0f) + -a;
-  const Expr left = x * rest;
-  const Expr sum = left + y * a;
-  t.opaque = saved;
-  return sum;
-}
-
 /// lavapipe-shader-math.md 5.3.
 void mix(Translator& t, const Inst& inst, ir::Op) {
   const Expr x = arg(t, inst, 0), y = arg(t, inst, 1), a = arg(t, inst, 2);
-  if (x.width == 16) return result(t, inst, mix_halves(t, inst, x, y, a));
+  if (x.width == 16) return result(t, inst, apply(ir::kHalfMix, {x, y, a}));
   const std::optional<float> x_literal = uniform_literal(x);
   if (similar_literals(x, y)) return result(t, inst, x + a * (y - x));
   if (x_literal == 1.0f) return result(t, inst, (imm(t, 1.0f) + -a) + y * a);

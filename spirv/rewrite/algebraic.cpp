@@ -6,6 +6,7 @@
 #include <bit>
 #include <deque>
 
+#include "spirv/mix.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/pattern.h"
 #include "spirv/rewrite/range.h"
@@ -344,6 +345,7 @@ class Rewriter {
   bool match_op(const Pattern& pattern, const Inst& inst, unsigned components, const Swizzle& swizzle,
                 std::uint8_t width, Match& match) {
     if (pattern.op != inst.op || !holds_for_inst(pattern.condition, inst)) return false;
+    if (pattern.op == ir::kHalfMix && width != 16) return false;
     match.inexact |= pattern.inexact;
     match.has_exact |= inst.exact;
     if (match.inexact && match.has_exact) return false;

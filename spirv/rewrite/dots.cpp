@@ -96,22 +96,6 @@ class Shortener {
   Graph& graph_;
 };
 
-/// The parts of a mix of halves that the instruction ends; none: it ends none. x * (1 + -a) + y * a.
-std::vector<InstId> parts_of_mix(const Graph& graph, const Inst& sum) {
-  if (sum.width != 16 || !sum.opaque || sum.op != Op::kFAdd) return {};
-  const auto part = [&](const Inst& user, std::uint32_t index, Op op) {
-    const Inst* def = graph.def(graph.source(user, index).value);
-    return is_alu(def, op) && def->opaque ? def : nullptr;
-  };
-  const Inst *left = part(sum, 0, Op::kFMul), *right = part(sum, 1, Op::kFMul);
-  const Inst* rest = left ? part(*left, 1, Op::kFAdd) : nullptr;
-  const Inst* negated = rest ? part(*rest, 1, Op::kFNeg) : nullptr;
-  if (!right || !negated) return {};
-  std::vector<InstId> parts;
-  for (const Inst* inst : {left, right, rest, negated}) parts.push_back(graph.values[inst->result].def);
-  return parts;
-}
-
 }  // namespace
 
 std::vector<InstId> parts_of_composed(const Graph& graph, InstId id) {
@@ -140,12 +124,6 @@ void hide_composed(Graph& graph) {
   auto visit = [&](InstId id) {
     Inst& inst = graph.insts[id];
     if (!inst.opaque) return;
-    const std::vector<InstId> mixed = parts_of_mix(graph, inst);
-    for (const InstId part : mixed) graph.insts[part].opens = Opens::kFinally;
-    if (!mixed.empty()) {
-      inst.opens = Opens::kFinally;
-      return;
-    }
     const std::vector<InstId> parts = parts_of_composed(graph, id);
     if (!parts.empty()) {
       inst.opens = Opens::kVisited;
@@ -175,11 +153,6 @@ void shorten_dot_products(Graph& graph) {
   for_each_inst(graph, graph.root, visit);
 }
 
-void show_mixes(Graph& graph) {
-  for (Inst& inst : graph.insts)
-    if (inst.opens == Opens::kFinally) inst.opaque = false;
-}
-
 void show_products(Graph& graph) {
   graph.first_rules = false;
   for (Inst& inst : graph.insts)
@@ -193,7 +166,6 @@ void show_short_products(Graph& graph) {
 
 unsigned cost_of(const Graph& graph, const Inst& inst) {
   if (inst.opaque && inst.opens == Opens::kWithResult) return 0;
-  if (inst.opaque && inst.opens == Opens::kFinally) return parts_of_mix(graph, inst).empty() ? 0 : 1;
   if (!inst.opaque || inst.op != Op::kFAdd) return 1;
   // One dot product, later one sum of products, where we have a chain of additions.
   const Inst* before = graph.def(graph.source(inst, 0).value);

@@ -2,6 +2,7 @@
 #include <bit>
 
 #include "base/numeric.h"
+#include "spirv/mix.h"
 #include "spirv/rewrite/fold_float.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/sized.h"
@@ -104,6 +105,13 @@ bool evaluate_sized(const Graph& graph, const Inst& inst, unsigned c, std::uint3
   }
   if (inst.width == 16) {
     std::uint32_t result = 0;
+    if (inst.op == ir::kHalfMix) {
+      const float x = base::float_of(singles[0]), y = base::float_of(singles[1]), weight = base::float_of(singles[2]);
+      const float rest = 1.0f - weight;
+      const float left = x * rest, right = y * weight;
+      words[0] = base::float_to_half_nearest(left + right);
+      return true;
+    }
     if (!evaluate(inst.op, singles, result)) return false;
     words[0] = base::float_to_half_nearest(base::float_of(result));
     return true;

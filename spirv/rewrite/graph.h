@@ -34,7 +34,6 @@ enum class Opens : std::uint8_t {
   kAfterRules,         ///< after the rules of the first round
   kAfterRound,         ///< after the first round
   kVisitedAfterRound,  ///< when the rules come to it after the first round
-  kFinally,            ///< before the reference's finalisation
 };
 
 struct Inst {

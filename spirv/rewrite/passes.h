@@ -91,7 +91,7 @@ void hide_composed(Graph& graph);
 void show_products(Graph& graph);
 void show_short_products(Graph& graph);
 /// Mixes of halves are single operations until the finalisation, other mixes never.
-void show_mixes(Graph& graph);
+void expand_mixes(Graph& graph);
 
 /// The instructions that make a remainder or ldexp together with the closed one that ends it, operands first; none: it
 /// ends neither.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/check.h"
+#include "spirv/mix.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -139,6 +140,7 @@ class Parser {
   }
 
   Op op_named(std::string_view word) {
+    if (word == "FMix") return ir::kHalfMix;
     const Op op = kOpNames.find(word);
     ok_ = ok_ && op != Op::kAluCount;
     return op == Op::kAluCount ? Op::kMov : op;

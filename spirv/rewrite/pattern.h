@@ -5,6 +5,7 @@
 //   a:cond     a variable with a condition; Op:cond(...)              the conditions of Condition below
 //   ~Op        inexact: the rule applies only if no matched instruction is exact
 //   !Op        (replacement) the new instruction is exact
+//   FMix       mix(a, b, c) of halves (mix.h)
 //   1.5        float constant, compared as a number; 3, -1, 0xff integer bits; true, false
 // Commutative operations of a search are tried in both operand orders.
 #pragma once

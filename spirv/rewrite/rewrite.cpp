@@ -46,7 +46,7 @@ bool optimize_once(Graph& graph, bool first) {
 
 /// The reference's finalisation (3.2 step 4).
 void finish(Graph& graph) {
-  rewriting::show_mixes(graph);
+  rewriting::expand_mixes(graph);
   for (int round = 0; round < kMaxRounds; ++round) {
     bool changed = rewriting::fold_constants(graph);
     changed |= rewriting::apply_rules(graph, rewriting::RuleSet::kMain);

@@ -274,10 +274,36 @@ void compare_expressions(Run& run, bool precise, Stage stage = Stage::kCompute) 
   compare_shader(run, text, stage);
 }
 
+/// At most kResults expressions of one type each.
+void compare_fixed(Run& run, const std::vector<std::pair<const char*, const char*>>& expressions) {
+  require_sizes(run);
+  std::string text = loads(Stage::kCompute);
+  uint32_t k = 0;
+  for (const auto& [name, expression] : expressions)
+    for (const Sized& type : kTypes)
+      if (std::string(type.name) == name) text += "  " + assigned(type, k++, expression);
+  compare_shader(run, text, Stage::kCompute);
+}
+
 CTS_RANDOM("glsl", "random_sized.compute", 40) { compare_expressions(run, true); }
 CTS_RANDOM("glsl", "random_sized.inexact", 40) { compare_expressions(run, false); }
 CTS_RANDOM("glsl", "random_sized.vertex", 30) { compare_expressions(run, run.index % 2 == 0, Stage::kVertex); }
 CTS_RANDOM("glsl", "random_sized.fragment", 30) { compare_expressions(run, run.index % 2 == 0, Stage::kFragment); }
+
+// Mixes of halves, which stay one operation in the reference until its end: terms and factors of both sides, literals
+// on both sides.
+CTS_CASE("glsl", "sized.mixes") {
+  compare_fixed(run, {{"float16_t", "mix(x_float16_t, x_float16_t + y_float16_t, z_float16_t)"},
+                      {"float16_t", "mix(x_float16_t + y_float16_t, x_float16_t + float16_t(0.3), z_float16_t)"},
+                      {"float16_t", "mix(x_float16_t, x_float16_t * y_float16_t, z_float16_t)"},
+                      {"float16_t", "mix(x_float16_t * y_float16_t, x_float16_t * z_float16_t, y_float16_t)"},
+                      {"float16_t", "mix(x_float16_t, float16_t(0.0), z_float16_t)"},
+                      {"float16_t", "mix(float16_t(0.3), float16_t(1.7), z_float16_t)"},
+                      {"float16_t",
+                       "x_int < y_int ? mix(x_float16_t, y_float16_t, z_float16_t) * x_float16_t"
+                       " : mix(x_float16_t, y_float16_t, float16_t(0.3)) * x_float16_t"},
+                      {"float16_t", "mix(float16_t(0.3), float16_t(2.0), float16_t(0.7)) * x_float16_t"}});
+}
 
 }  // namespace
 }  // namespace vitrine::cts
