@@ -302,7 +302,7 @@ ir::Src double_source(const Expr& value, std::uint32_t c) {
   const auto *words = constant_of(t, src.value), *high = constant_of(t, value.high);
   if (words != nullptr && high != nullptr) {
     const std::uint32_t pair[2] = {(*words)[src.swizzle[c]], (*high)[src.swizzle[c]]};
-    return whole(constant(t, pair));
+    return whole(literal(t, pair, false));
   }
   return whole(vec(t, {low, splat(value.high, src.swizzle[c])}, false));
 }

@@ -43,6 +43,48 @@ bool may_hoist(const Inst& inst) {
   }
 }
 
+bool is_literal(const Graph& graph, Src src, std::uint32_t bits) {
+  const Inst* constant = graph.constant(src.value);
+  return constant && constant->imm[src.swizzle[0]] == bits;
+}
+
+/// A shift that is a part of extending the sign of a number of 8 or 16 bits.
+bool extends_sign(const Graph& graph, const Inst& inst) {
+  const auto by = [&](const Inst& shift, std::uint32_t bits) {
+    return is_literal(graph, graph.source(shift, 1), bits);
+  };
+  const auto narrow = [&](const Inst& shift) { return by(shift, 16) || by(shift, 24); };
+  if (inst.op == Op::kIShr && narrow(inst)) {
+    const Inst* def = graph.def(graph.source(inst, 0).value);
+    return def && def->op == Op::kShl && by(*def, by(inst, 16) ? 16 : 24);
+  }
+  if (inst.op != Op::kShl || !narrow(inst)) return false;
+  const Slot use = graph.values[inst.result].first_use;
+  if (use == kNone || graph.values[inst.result].uses != 1) return false;
+  const Inst& user = graph.insts[graph.sources[use].user];
+  return user.op == Op::kIShr && by(user, by(inst, 16) ? 16 : 24);
+}
+
+/// The instruction is no operation of its own in the reference, which has numbers of every width: it ends a conversion
+/// from or to halves, or extends the sign of an operand.
+bool is_part(const Graph& graph, const Inst& inst) {
+  if (inst.count == 0) return false;
+  const Inst* def = graph.def(graph.source(inst, 0).value);
+  switch (inst.op) {
+    case Op::kF2Half:
+      return def && (def->op == Op::kI2F || def->op == Op::kU2F || def->op == Op::kFFromD || def->op == Op::kFFromL ||
+                     def->op == Op::kFFromQ);
+    case Op::kF2I:
+    case Op::kF2U:
+    case Op::kDFromF:
+    case Op::kLFromF:
+    case Op::kQFromF:
+      return def && def->op == Op::kHalf2F;
+    default:
+      return extends_sign(graph, inst);
+  }
+}
+
 /// Adds what an instruction costs; false if it must stay conditional.
 bool can_hoist(const Graph& graph, const Inst& inst, unsigned& cost) {
   switch (inst.kind) {
@@ -51,9 +93,13 @@ bool can_hoist(const Graph& graph, const Inst& inst, unsigned& cost) {
       return true;
     case Kind::kAlu:
     case Kind::kSized:
-      cost += is_free(inst) ? 0 : cost_of(graph, inst);
+      cost += is_free(inst) || is_part(graph, inst) ? 0 : cost_of(graph, inst);
       return true;
     case Kind::kIntrinsic:
+      if (ir::is_wide(inst.op)) {
+        cost += is_part(graph, inst) ? 0 : 1;
+        return true;
+      }
       return inst.op == Op::kYield || may_hoist(inst);
     default:
       return false;

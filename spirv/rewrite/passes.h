@@ -26,6 +26,12 @@ bool forward_arrays(Graph& graph);
 /// Doubles that are made of the same words become one value: to the reference each is one from the beginning.
 void merge_doubles(Graph& graph);
 
+/// Selections of both words of a double become one selection of doubles.
+bool join_doubles(Graph& graph);
+
+/// Comparisons of floats that were converted from narrower ones become those of the narrower ones.
+bool narrow_comparisons(Graph& graph);
+
 /// Merges equal instructions, the later into the one that dominates it.
 bool merge_equal(Graph& graph);
 

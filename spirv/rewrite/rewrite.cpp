@@ -21,6 +21,8 @@ bool optimize_once(Graph& graph, bool first) {
   changed |= rewriting::propagate_copies(graph);
   changed |= rewriting::remove_dead(graph);
   changed |= rewriting::flatten_branches(graph);
+  changed |= rewriting::join_doubles(graph);
+  changed |= rewriting::narrow_comparisons(graph);
   if (first) rewriting::shorten_dot_products(graph);
   changed |= rewriting::apply_rules(graph, rewriting::RuleSet::kMain);
   if (first) rewriting::show_products(graph);

@@ -305,5 +305,14 @@ CTS_CASE("glsl", "sized.mixes") {
                       {"float16_t", "mix(float16_t(0.3), float16_t(2.0), float16_t(0.7)) * x_float16_t"}});
 }
 
+// Literals are equal only from the second round on; selections move into both words of doubles; what widens numbers is
+// no use of them in comparisons.
+CTS_CASE("glsl", "sized.values") {
+  compare_fixed(run, {{"double", "double(3.0) * x_double + (sqrt(abs(y_double)) * sqrt(abs(y_double))) * double(3.0)"},
+                      {"double", "(x_int < y_int ? double(0.1) * y_double : double(0.1) * x_double) * double(0.7)"},
+                      {"double", "double((x_float16_t + y_float16_t) + float16_t(0.3))"},
+                      {"float16_t", "float16_t(3.0) * x_float16_t + (y_float16_t * z_float16_t) * float16_t(3.0)"}});
+}
+
 }  // namespace
 }  // namespace vitrine::cts

@@ -1,0 +1,180 @@
+// Doubles as the reference sees them, which has one value where the front end has two words: selections of both words
+// are one selection, and comparisons of numbers that were narrower before are those of the narrower numbers. Neither
+// changes a value; how often values are used decides whether inexact rules apply to them.
+#include "spirv/rewrite/passes.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+Src scalar(Src src) {
+  const std::uint8_t c = src.swizzle[0];
+  return {src.value, {c, c, c, c}};
+}
+
+/// Both words of a double.
+Src double_of(ValueId value) { return {value, {0, 1, 0, 1}}; }
+
+class Joiner {
+ public:
+  explicit Joiner(Graph& graph) : graph_(graph) {}
+
+  void visit(InstId id) {
+    const Inst& vec = graph_.insts[id];
+    if (vec.removed || vec.kind != Kind::kVec || vec.components != 2 || !is_read_as_double(vec.result)) return;
+    const InstId low = selection(vec, 0), high = selection(vec, 1);
+    if (low == kNone || high == kNone || low == high) return;
+    const Src condition = scalar(graph_.source(graph_.insts[low], 0));
+    const Src other = scalar(graph_.source(graph_.insts[high], 0));
+    if (condition.value != other.value || condition.swizzle != other.swizzle) return;
+    const InstId last = graph_.insts[low].block == graph_.insts[high].block ? later(low, high) : kNone;
+    if (last == kNone) return;
+    const Src yes = pair(last, low, high, 1), no = pair(last, low, high, 2);
+    const InstId made = graph_.create(Kind::kAlu, Op::kSelect, 2, false, 3);
+    graph_.insts[made].width = 64;
+    graph_.insts[made].exact = graph_.insts[low].exact;
+    graph_.insts[made].origin = graph_.insts[low].origin;
+    graph_.set_source(made, 0, condition);
+    graph_.set_source(made, 1, yes);
+    graph_.set_source(made, 2, no);
+    graph_.insert_before(last, made);
+    const ValueId whole = graph_.insts[made].result;
+    graph_.replace_uses(graph_.insts[id].result, whole);
+    graph_.remove(id);
+    read_word(graph_.insts[low].result, whole, 0);
+    read_word(graph_.insts[high].result, whole, 1);
+    graph_.remove(low);  // would count as a use of its operands
+    graph_.remove(high);
+    changed_ = true;
+  }
+
+  bool changed() const { return changed_; }
+
+ private:
+  bool is_read_as_double(ValueId value) const {
+    for (Slot use = graph_.values[value].first_use; use != kNone; use = graph_.sources[use].next) {
+      const Inst& user = graph_.insts[graph_.sources[use].user];
+      if (computes(user) && user.width == 64) return true;
+    }
+    return false;
+  }
+
+  /// The scalar selection that makes a word of the pair.
+  InstId selection(const Inst& vec, std::uint32_t word) const {
+    const InstId def = graph_.values[graph_.source(vec, word).value].def;
+    if (def == kNone) return kNone;
+    const Inst& inst = graph_.insts[def];
+    const bool selects =
+        inst.kind == Kind::kAlu && inst.op == Op::kSelect && inst.width == 32 && inst.components == 1 && !inst.opaque;
+    return selects ? def : kNone;
+  }
+
+  /// The second of two instructions of a block.
+  InstId later(InstId a, InstId b) const {
+    for (InstId at = a; at != kNone; at = graph_.insts[at].next)
+      if (at == b) return b;
+    return a;
+  }
+
+  /// The double of which the selections take the words as operand `index`.
+  Src pair(InstId position, InstId low, InstId high, std::uint32_t index) {
+    const Src first = scalar(graph_.source(graph_.insts[low], index));
+    const Src second = scalar(graph_.source(graph_.insts[high], index));
+    if (first.value == second.value && first.swizzle[0] == 0 && second.swizzle[0] == 1 &&
+        graph_.values[first.value].components == 2)
+      return double_of(first.value);
+    const Inst *one = graph_.constant(first.value), *two = graph_.constant(second.value);
+    InstId made = kNone;
+    if (one && two) {
+      const std::uint32_t words[2] = {one->imm[first.swizzle[0]], two->imm[second.swizzle[0]]};
+      made = graph_.create_const(2, false, words);
+    } else {
+      made = graph_.create(Kind::kVec, Op::kVec, 2, false, 2);
+      graph_.set_source(made, 0, first);
+      graph_.set_source(made, 1, second);
+    }
+    graph_.insert_before(position, made);
+    return double_of(graph_.insts[made].result);
+  }
+
+  void read_word(ValueId word, ValueId whole, std::uint8_t component) {
+    std::vector<Slot> uses;
+    for (Slot use = graph_.values[word].first_use; use != kNone; use = graph_.sources[use].next) uses.push_back(use);
+    for (const Slot use : uses) {
+      const InstId user = graph_.sources[use].user;
+      graph_.set_source(user, use - graph_.insts[user].first, {whole, {component, component, component, component}});
+    }
+  }
+
+  Graph& graph_;
+  bool changed_ = false;
+};
+
+class Narrower {
+ public:
+  explicit Narrower(Graph& graph) : graph_(graph) {}
+
+  void visit(InstId id) {
+    const Inst& inst = graph_.insts[id];
+    if (!computes(inst) || inst.opaque || !compares_floats(inst.op)) return;
+    if (inst.kind == Kind::kSized && inst.width == 64) from_double(id);
+    if (graph_.insts[id].kind == Kind::kAlu) from_single(id);
+  }
+
+  bool changed() const { return changed_; }
+
+ private:
+  static bool compares_floats(Op op) { return op == Op::kFLt || op == Op::kFGe || op == Op::kFEq || op == Op::kFNeu; }
+
+  void from_double(InstId id) {
+    Src narrow[2];
+    for (const std::uint32_t i : {0u, 1u}) {
+      const Inst* def = graph_.def(graph_.source(graph_.insts[id], i).value);
+      if (!def || def->kind != Kind::kIntrinsic || def->op != Op::kDFromF) return;
+      narrow[i] = scalar(graph_.source(*def, 0));
+    }
+    graph_.insts[id].kind = Kind::kAlu;
+    graph_.insts[id].width = 32;
+    for (const std::uint32_t i : {0u, 1u}) graph_.set_source(id, i, narrow[i]);
+    changed_ = true;
+  }
+
+  void from_single(InstId id) {
+    Src narrow[2];
+    for (const std::uint32_t i : {0u, 1u}) {
+      const Src src = graph_.source(graph_.insts[id], i);
+      const Inst* def = graph_.def(src.value);
+      if (!def || def->kind != Kind::kAlu || def->op != Op::kHalf2F || def->opaque) return;
+      narrow[i] = graph_.source(*def, 0);
+      const auto inner = narrow[i].swizzle;
+      for (std::size_t c = 0; c < 4; ++c) narrow[i].swizzle[c] = inner[src.swizzle[c]];
+    }
+    graph_.insts[id].kind = Kind::kSized;
+    graph_.insts[id].width = 16;
+    for (const std::uint32_t i : {0u, 1u}) graph_.set_source(id, i, narrow[i]);
+    changed_ = true;
+  }
+
+  Graph& graph_;
+  bool changed_ = false;
+};
+
+}  // namespace
+
+bool join_doubles(Graph& graph) {
+  Joiner joiner(graph);
+  auto visit = [&](InstId id) { joiner.visit(id); };
+  for_each_inst(graph, graph.root, visit);
+  if (joiner.changed()) merge_doubles(graph);
+  return joiner.changed();
+}
+
+bool narrow_comparisons(Graph& graph) {
+  Narrower narrower(graph);
+  auto visit = [&](InstId id) { narrower.visit(id); };
+  for_each_inst(graph, graph.root, visit);
+  return narrower.changed();
+}
+
+}  // namespace vitrine::spirv::rewriting
