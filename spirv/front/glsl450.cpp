@@ -68,6 +68,20 @@ Expr natural_log(Expr x) { return apply(ir::Op::kFLog2, {x}) * static_cast<float
 
 void unary(Translator& t, const Inst& inst, ir::Op op) { result(t, inst, apply(op, {arg(t, inst, 0)})); }
 
+/// abs(abs(x) >> n) is abs(x) >> n to the reference, even where abs(x) is the least integer. Rules see this in integers
+/// of 32 bits only.
+void int_abs(Translator& t, const Inst& inst, ir::Op op) {
+  const Expr x = arg(t, inst, 0);
+  const auto def = [&](std::uint32_t id) { return t.module.constant(id) != nullptr ? nullptr : &t.module.def(id); };
+  if (const Inst* shift = def(inst.operand(2)); shift != nullptr && shift->op == spv::Op::OpShiftRightArithmetic) {
+    const Inst* inner = def(shift->operand(0));
+    const bool absolute = inner != nullptr && inner->op == spv::Op::OpExtInst && inner->operand(0) == inst.operand(0) &&
+                          inner->operand(1) == inst.operand(1);
+    if (absolute && x.width != 32) return result(t, inst, x);
+  }
+  result(t, inst, apply(op, {x}));
+}
+
 void find_bit(Translator& t, const Inst& inst, ir::Op op) {
   const Expr found = apply(op, {arg(t, inst, 0)});
   result(t, inst, convert_signed(found, static_cast<std::uint8_t>(number_type(t, inst.result_type).width)));

@@ -314,5 +314,12 @@ CTS_CASE("glsl", "sized.values") {
                       {"float16_t", "float16_t(3.0) * x_float16_t + (y_float16_t * z_float16_t) * float16_t(3.0)"}});
 }
 
+// The absolute value of the least integer, shifted: the reference takes it for positive.
+CTS_CASE("glsl", "sized.absolutes") {
+  compare_fixed(run, {{"int64_t", "abs(abs(int64_t(x_int64_t << 63)) >> (y_int64_t & int64_t(3)))"},
+                      {"int16_t", "abs(abs(int16_t(x_int16_t << 15)) >> (y_int16_t & int16_t(3)))"},
+                      {"int8_t", "abs(abs(int8_t(x_int8_t << 7)) >> (y_int8_t & int8_t(3)))"}});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
