@@ -394,6 +394,59 @@ void draw_stages(Run& run, const Shape& shape) {
   out_target(run, target);
 }
 
+/// Columns of matrices take a location each, also where vertices lie in arrays.
+void draw_matrices(Run& run, bool has_geometry) {
+  const Interface interface(run);
+  run.require(!has_geometry || run.gpu.features.geometryShader, "geometry shaders");
+  const std::string matrix = run.gpu.extension_features.storage_16bit.storageInputOutput16 ? "f16mat3x2" : "mat3x2";
+  const Target target = make_target(run, {.colors = {VK_FORMAT_R32G32B32A32_UINT}});
+  GraphicsSpec spec;
+  spec.vertex = interface.head() + "layout(location = 0) in vec4 position;\nlayout(location = 0) out " + matrix +
+                " m[2];\n" + R"(
+void main() {
+  gl_Position = position;
+  f16vec4 a = f16vec4(position * 3.0);
+  f16mat3x2 x = f16mat3x2(a.xy, a.zw, a.yx + a.ww);
+  m[0] = )" + matrix +
+                "(x);\n  m[1] = " + matrix + "(-x);\n}\n";
+  if (has_geometry)
+    spec.geometry = interface.head() +
+                    "layout(triangles) in;\nlayout(triangle_strip, max_vertices = 3) out;\nlayout(location = 0) in " +
+                    matrix + " m[][2];\nlayout(location = 0) out " + matrix + " g[2];\n" + R"(
+void main() {
+  for (int i = 0; i < 3; i++) {
+    gl_Position = gl_in[i].gl_Position;
+    g[1] = m[2 - i][0];
+    g[0] = m[i][i & 1];
+    EmitVertex();
+  }
+})";
+  spec.fragment = interface.head() + "layout(location = 0) in " + matrix + " m[2];\n" + R"(
+layout(location = 0) out uvec4 result;
+void main() {
+  f16mat3x2 x = f16mat3x2(m[0]), y = f16mat3x2(m[1]);
+  result = uvec4(packFloat2x16(x[0]), packFloat2x16(x[1]), packFloat2x16(x[2]), packFloat2x16(y[2] + y[1]));
+})";
+  spec.floats({4});
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  std::vector<float> positions;
+  for (uint32_t i = 0; i < 12; ++i)
+    for (const float x :
+         {run.random.real(-1.3f, 1.3f), run.random.real(-1.3f, 1.3f), run.random.unit(), run.random.real(0.7f, 1.5f)})
+      positions.push_back(x);
+  const Buffer vertices = run.buffer_of(positions);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, 12, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+}
+CTS_CASE("glsl", "narrow_interface.matrices.vertex") { draw_matrices(run, false); }
+CTS_CASE("glsl", "narrow_interface.matrices.geometry") { draw_matrices(run, true); }
+
 CTS_RANDOM("glsl", "narrow_interface.vertex", 20) { draw_stages(run, {false, false}); }
 CTS_RANDOM("glsl", "narrow_interface.tessellation", 12) { draw_stages(run, {true, false}); }
 CTS_RANDOM("glsl", "narrow_interface.geometry", 12) { draw_stages(run, {false, true}); }
