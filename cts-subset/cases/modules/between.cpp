@@ -2,6 +2,8 @@
 // they write is captured by transform feedback.
 #include "cases/modules/between.h"
 
+#include <algorithm>
+
 #include "cases/modules/resources.h"
 #include "cases/modules/slots.h"
 #include "harness/graphics.h"
@@ -231,6 +233,17 @@ uint32_t points_of(const std::vector<Crossing>& inputs, uint32_t otherwise) {
   return otherwise;
 }
 
+/// Whether some instruction names the position among the outputs.
+bool writes_position(const Reflection& r) {
+  const auto position = static_cast<uint32_t>(spv::BuiltIn::Position);
+  return std::any_of(r.variables.begin(), r.variables.end(), [&](const Reflection::Variable& v) {
+    if (v.storage != spv::StorageClass::Output || !r.used.contains(v.id)) return false;
+    const Type& t = r.type(v.pointee);
+    return r.decoration(v.id, spv::Decoration::BuiltIn) == position ||
+           (t.op == Op::OpTypeArray && r.decoration(t.operands[0], spv::Decoration::BuiltIn, 0) == position);
+  });
+}
+
 /// Captures what a control shader gives to the patch and to one of its `points` vertices, chosen by gl_TessCoord.
 std::string evaluation_behind(Run& run, const Reflection& r, uint32_t points) {
   const std::vector<Crossing> crossing = crossings(r, spv::StorageClass::Output);
@@ -255,7 +268,8 @@ std::string evaluation_behind(Run& run, const Reflection& r, uint32_t points) {
   return "layout(" + tessellation_layout(r) + ") in;\n" + writer.structures + declarations +
          "out gl_PerVertex { layout(" + place(0) + ") vec4 gl_Position; };\nvoid main() {\n" +
          "  int vertex = min(int(gl_TessCoord.x * " + std::to_string(points) + ".0), " + std::to_string(points - 1) +
-         ");\n" + body + "  gl_Position = gl_in[vertex].gl_Position + vec4(gl_TessCoord, 0.0);\n}\n";
+         ");\n" + body + "  gl_Position = vec4(gl_TessCoord, 0.0)" +
+         (writes_position(r) ? " + gl_in[vertex].gl_Position" : "") + ";\n}\n";
 }
 
 /// Gives random numbers to the inputs of an evaluation shader.
