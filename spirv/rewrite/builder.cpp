@@ -163,6 +163,11 @@ class Builder {
       case Op::kFNeg:
       case Op::kFAbs:
         return undefined_operand();
+      case Op::kFLt:
+      case Op::kFGe:
+      case Op::kFEq:
+      case Op::kFNeu:
+        return compare_undefined(op == Op::kFNeu);
       case Op::kFPow:
         if (inst.width != 32 || !is(1, 0)) return false;
         power_of_zero();
@@ -364,15 +369,27 @@ class Builder {
     replace(value_of(made));
   }
 
-  bool undefined_operand() {
+  bool has_undefined_operand() const {
     const Inst& inst = graph_.insts[id_];
     for (std::uint32_t i = 0; i < inst.count; ++i) {
       const Inst* def = graph_.def(graph_.source(inst, i).value);
-      if (!def || def->kind != Kind::kIntrinsic || def->op != Op::kUndef) continue;
-      become_undefined();
-      return true;
+      if (def && def->kind == Kind::kIntrinsic && def->op == Op::kUndef) return true;
     }
     return false;
+  }
+
+  bool undefined_operand() {
+    if (!has_undefined_operand()) return false;
+    become_undefined();
+    return true;
+  }
+
+  /// The optimiser takes an undefined operand of a comparison for NaN.
+  bool compare_undefined(bool unordered) {
+    if (!has_undefined_operand()) return false;
+    const std::uint32_t truth = unordered ? 1 : 0;
+    become_words(&truth);
+    return true;
   }
 
   bool divide() {

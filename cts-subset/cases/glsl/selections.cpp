@@ -85,6 +85,16 @@ CTS_CASE("glsl", "undefined_conversions") {
                     "  uvec4 r3 = uvec4(ivec4(pow(bent, vec4(4.0))) ^ pi.w);\n");
 }
 
+CTS_CASE("glsl", "undefined_comparisons") {
+  evaluate_specials(
+      run, kVec4, 4,
+      "  float q = a.x / 0.0, s = p.x / 0.0;\n"
+      "  vec4 r0 = vec4(q == b.x, q < b.y, q >= b.z, q != b.w);\n"
+      "  vec4 r1 = vec4(b.x < s ? a.x : b.x, b.y >= s ? a.y : b.y, s == q ? a.z : b.z, isnan(q) ? a.w : b.w);\n"
+      "  vec4 r2 = b, r3 = vec4(a.x / -0.0 == b.x, q > 5.0, q != 5.0, s <= 0.0);\n"
+      "  if (q == b.y * 3.0) r2 = a;\n");
+}
+
 // A push constant that was loaded before, though the value is not used, makes a branch that loads it small.
 CTS_CASE("glsl", "repeated_loads") {
   evaluate_specials(run, kVec4, 1,
