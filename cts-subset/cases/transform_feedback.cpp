@@ -272,6 +272,30 @@ void main() {
   run.may_be_blank();
 }
 
+/// A structure that is no block is captured as a whole.
+CTS_CASE("transform_feedback", "structure") {
+  GraphicsSpec spec = base_spec(VK_PRIMITIVE_TOPOLOGY_LINE_STRIP);
+  spec.vertex = R"(
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+struct Inner { float a[2]; int b; };
+struct Outer { vec3 a; Inner b; mat2 c; };
+layout(location = 0, xfb_buffer = 0, xfb_offset = 12, xfb_stride = 68) out Outer whole;
+layout(location = 9, xfb_buffer = 1, xfb_offset = 0, xfb_stride = 24) out Inner list[2];
+void main() {
+  whole.a = color.xyz;
+  whole.b = Inner(float[2](position.x, color.w), gl_VertexIndex);
+  whole.c = mat2(position.yx, color.zw);
+  list[0] = whole.b;
+  list[1] = Inner(float[2](color.x, color.y), gl_InstanceIndex);
+  gl_Position = position;
+})";
+  spec.raster.rasterizerDiscardEnable = VK_TRUE;
+  spec.fragment.clear();
+  capture(run, spec, false);
+  run.may_be_blank();
+}
+
 /// Numbers of 16 bits take two bytes each. The reference, whose outputs have 32 bits, captures pairs of them as words.
 GraphicsSpec narrow_spec(Run& run) {
   const auto& features = run.gpu.extension_features;

@@ -189,7 +189,10 @@ struct Walk {
           decorated.member = i + 1;
           if (const DecorationRow* row = t.module.decoration(type_id, Decoration::Location, i + 1))
             location = row->value;
-          if (!input) start_capture(t.module.decoration(type_id, Decoration::Offset, i + 1));
+          // Members of a block are captured one by one, those of a structure follow its first.
+          const DecorationRow* offset = t.module.decoration(type_id, Decoration::Offset, i + 1);
+          const bool is_block = t.module.decoration(type_id, Decoration::Block) != nullptr;
+          if (!input && (is_block || offset != nullptr)) start_capture(offset);
           element = 0;
         }
         type(type_here.members[i], decorated);
