@@ -24,6 +24,12 @@ using Uint64 = std::uint64_t;
 template <ir::Op op>
 struct WideOp;
 
+/// What MIN and MAX make of a denormal where denormals count as zero, which comparisons know: zero with its sign.
+HWY_INLINE double flushed(double a) {
+  const Uint64 sign = std::bit_cast<Uint64>(a) & Uint64{1} << 63;
+  return a == 0.0 ? std::bit_cast<double>(sign) : a;
+}
+
 /// Truncation of a float or double as CVTT* does it: NaN and values out of range give the least integer.
 template <class Int, class Float>
 HWY_INLINE Int truncate_signed(Float a) {
@@ -134,8 +140,8 @@ template <> struct WideOp<ir::Op::kDFloor> { static HWY_INLINE double of(double 
 template <> struct WideOp<ir::Op::kDCeil> { static HWY_INLINE double of(double a) { return __builtin_ceil(a); } };
 template <> struct WideOp<ir::Op::kDTrunc> { static HWY_INLINE double of(double a) { return __builtin_trunc(a); } };
 template <> struct WideOp<ir::Op::kDRoundEven> { static HWY_INLINE double of(double a) { return __builtin_nearbyint(a); } };
-template <> struct WideOp<ir::Op::kDMin> { static HWY_INLINE double of(double a, double b) { return b != b ? a : a < b ? a : b; } };
-template <> struct WideOp<ir::Op::kDMax> { static HWY_INLINE double of(double a, double b) { return b != b ? a : a > b ? a : b; } };
+template <> struct WideOp<ir::Op::kDMin> { static HWY_INLINE double of(double a, double b) { return b != b ? a : flushed(a < b ? a : b); } };
+template <> struct WideOp<ir::Op::kDMax> { static HWY_INLINE double of(double a, double b) { return b != b ? a : flushed(a > b ? a : b); } };
 template <> struct WideOp<ir::Op::kDLt> { static HWY_INLINE bool of(double a, double b) { return a < b; } };
 template <> struct WideOp<ir::Op::kDGe> { static HWY_INLINE bool of(double a, double b) { return a >= b; } };
 template <> struct WideOp<ir::Op::kDEq> { static HWY_INLINE bool of(double a, double b) { return a == b; } };

@@ -275,14 +275,15 @@ void compare_expressions(Run& run, bool precise, Stage stage = Stage::kCompute) 
 }
 
 /// At most kResults expressions of one type each.
-void compare_fixed(Run& run, const std::vector<std::pair<const char*, const char*>>& expressions) {
+void compare_fixed(Run& run, const std::vector<std::pair<const char*, const char*>>& expressions,
+                   Stage stage = Stage::kCompute) {
   require_sizes(run);
-  std::string text = loads(Stage::kCompute);
+  std::string text = loads(stage);
   uint32_t k = 0;
   for (const auto& [name, expression] : expressions)
     for (const Sized& type : kTypes)
       if (std::string(type.name) == name) text += "  " + assigned(type, k++, expression);
-  compare_shader(run, text, Stage::kCompute);
+  compare_shader(run, text, stage);
 }
 
 CTS_RANDOM("glsl", "random_sized.compute", 40) { compare_expressions(run, true); }
@@ -319,6 +320,11 @@ CTS_CASE("glsl", "sized.absolutes") {
   compare_fixed(run, {{"int64_t", "abs(abs(int64_t(x_int64_t << 63)) >> (y_int64_t & int64_t(3)))"},
                       {"int16_t", "abs(abs(int16_t(x_int16_t << 15)) >> (y_int16_t & int16_t(3)))"},
                       {"int8_t", "abs(abs(int8_t(x_int8_t << 7)) >> (y_int8_t & int8_t(3)))"}});
+}
+
+// Where denormals count as zero, the smaller and the larger of two doubles do so, too.
+CTS_CASE("glsl", "sized.flushed_extrema") {
+  compare_fixed(run, {{"double", "min(x_double, y_double)"}, {"double", "max(x_double, z_double)"}}, Stage::kFragment);
 }
 
 }  // namespace
