@@ -442,6 +442,33 @@ void bind_arguments(Translator& t, const Inst& inst, const Function& callee) {
   }
 }
 
+bool is_shared(const Translator& t, const ir::Instr& instr) {
+  std::vector<std::uint32_t> key(instr.imm.begin(), instr.imm.begin() + instr.components);
+  key.push_back(instr.boolean ? 1 : 0);
+  key.push_back(instr.op == ir::Op::kUndef ? 1 : 0);
+  const auto found = t.constant_ids.find(key);
+  return found != t.constant_ids.end() && found->second == instr.result;
+}
+
+/// The literals that a function names, those behind the first `constants`, go in front of its instructions, as in the
+/// reference: a literal of a function that is called in a branch does not make equal literals in front of the branch.
+void place_literals(Translator& t, std::size_t constants, std::size_t prologue, ir::NodeList& list) {
+  std::unordered_set<ir::ValueId> early;
+  for (std::size_t i = prologue; i < t.prologue.size(); i++)
+    for (const ir::Src& src : t.prologue[i]->instr.src) early.insert(src.value);
+  ir::NodeList kept, moved;
+  for (std::size_t i = constants; i < t.constants.size(); i++) {
+    const ir::Instr& instr = t.constants[i]->instr;
+    const bool moves = instr.op == ir::Op::kConst && early.count(instr.result) == 0 && !is_shared(t, instr);
+    if (moves) t.constant_words.erase(instr.result);
+    (moves ? moved : kept).push_back(std::move(t.constants[i]));
+  }
+  t.constants.resize(constants);
+  append(t.constants, std::move(kept));
+  append(moved, std::move(list));
+  list = std::move(moved);
+}
+
 /// Inlines a function into the current list; afterwards `result_local` holds what it returned.
 void build_function(Translator& t, const Function& callee, std::uint32_t result_local) {
   for (const Frame& frame : t.frames)
@@ -450,6 +477,7 @@ void build_function(Translator& t, const Function& callee, std::uint32_t result_
   const auto blocks = std::exchange(t.built_blocks, {});
   const auto phis = std::exchange(t.phi_locals, {});
   ir::NodeList list;
+  const std::size_t constants = t.constants.size(), prologue = t.prologue.size();
   push_scope(t, Scope::Kind::kFunction, 0);
   if (t.meeting_points.count(callee.entry) == 0)
     t.meeting_points[callee.entry] = find_meeting_points(t.module, callee.entry);
@@ -459,6 +487,7 @@ void build_function(Translator& t, const Function& callee, std::uint32_t result_
     build(t, callee.entry, 0, false);
   }
   t.frames.pop_back();
+  if (!t.frames.empty()) place_literals(t, constants, prologue, list);
   close_scope(t, list);
   append(*t.list, std::move(list));
   t.built_blocks = blocks;

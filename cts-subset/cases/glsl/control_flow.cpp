@@ -41,5 +41,17 @@ CTS_CASE("glsl", "control_flow.branch_on_unequal") {
   evaluate(run, Stage::kFragment, {"", text, {{kVec4, "s"}}, {}, false});
 }
 
+// The literals of a function stay where it is called: the loop's step and the -1 that the function returns are two.
+CTS_CASE("glsl", "control_flow.literals_of_function") {
+  const char* walk =
+      "int walk(int x, int y) {\n  int n = 0;\n  while ((x & 15) != 0) {\n    if (++n > 20) return -1;\n"
+      "    x = (x & 1) != 0 ? x + y : x >> 1;\n  }\n  return x ^ n;\n}\n";
+  const char* text =
+      "  vec4 s1 = a.zwyw - a, s3 = s1 + 0.3;\n  int s2 = int(p.x), k = 1;\n  float s5 = p.y;\n"
+      "  while (k-- > 0) {\n    switch (s2) {\n      case 0:\n        s2 = walk(s2, i.w);\n        s5 = s1.y;\n    }\n"
+      "    s1 = vec4(0.0);\n  }\n  s1 = s3;\n";
+  evaluate(run, Stage::kCompute, {walk, text, {{kVec4, "s1"}, {kFloat, "s5"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
