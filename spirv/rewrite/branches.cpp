@@ -247,6 +247,24 @@ bool remove_equal_results(Graph& graph, InstId id) {
   return changed;
 }
 
+/// Results of an If of which one side leaves: what the other yields, if that is known outside. To the reference nothing
+/// joins there.
+bool remove_single_results(Graph& graph, InstId id) {
+  const BlockId child[2] = {graph.insts[id].child[0], graph.insts[id].child[1]};
+  const bool stays[2] = {ends_in(graph, child[0], Op::kYield), ends_in(graph, child[1], Op::kYield)};
+  if (stays[0] == stays[1]) return false;
+  const InstId end = graph.blocks[child[stays[0] ? 0 : 1]].tail;
+  const std::vector<ValueId> results = graph.nodes[graph.insts[id].node]->results;
+  bool changed = false;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const Src value = graph.source(graph.insts[end], static_cast<std::uint32_t>(i));
+    if (graph.values[results[i]].uses == 0 || is_inside(graph, value.value, id)) continue;
+    graph.replace_uses(results[i], whole_value(graph, id, value, results[i]));
+    changed = true;
+  }
+  return changed;
+}
+
 /// The value that all of `sources` are, apart from `self`; false if they differ or need a swizzle.
 bool common_source(const Graph& graph, const std::vector<Src>& sources, ValueId self, Src& common) {
   common = {};
@@ -289,6 +307,10 @@ bool flatten_branches(Graph& graph) { return flatten_in(graph, graph.root); }
 
 bool remove_trivial_results(Graph& graph) {
   bool changed = open_loops(graph);
+  auto visit_single = [&](InstId id) {
+    if (graph.insts[id].kind == Kind::kIf) changed |= remove_single_results(graph, id);
+  };
+  for_each_inst(graph, graph.root, visit_single);
   auto visit = [&](InstId id) {
     if (graph.insts[id].kind == Kind::kIf) changed |= remove_equal_results(graph, id);
     if (graph.insts[id].kind == Kind::kLoop) changed |= remove_constant_params(graph, id);

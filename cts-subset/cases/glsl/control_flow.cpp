@@ -53,5 +53,14 @@ CTS_CASE("glsl", "control_flow.literals_of_function") {
   evaluate(run, Stage::kCompute, {walk, text, {{kVec4, "s1"}, {kFloat, "s5"}}, {}, false});
 }
 
+// Nothing joins behind a branch that continues: a value that the loop does not change is known behind the loop.
+CTS_CASE("glsl", "control_flow.unchanged_by_dead_branch") {
+  const char* text =
+      "  vec4 s = fma(b, p.zxyx, a) - 3.0;\n  int k = 2;\n"
+      "  while (k-- > 0) {\n    if (0 < pi.w) continue;\n    if (false) {\n      switch (0) {\n"
+      "        default:\n          s = i.ywxw;\n      }\n    }\n  }\n  vec4 r = -vec4(s.x);\n";
+  evaluate(run, Stage::kFragment, {"", text, {{kVec4, "r"}, {kVec4, "s"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
