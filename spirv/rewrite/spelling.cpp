@@ -40,6 +40,7 @@ void plain_extremum(Graph& graph, RangeAnalysis& ranges, InstId id) {
     graph.set_source(id, 0, graph.source(graph.insts[id], 1));
     graph.set_source(id, 1, first);
   }
+  if (graph.insts[id].kind == Kind::kSized) return;  // b is a number, so that nobody asks whether it is one
   graph.insts[id].op = graph.insts[id].op == Op::kFMin ? Op::kFMinPlain : Op::kFMaxPlain;
 }
 
@@ -51,7 +52,8 @@ void choose_extrema(Graph& graph) {
   std::vector<InstId> order;
   auto visit = [&](InstId id) {
     const Inst& inst = graph.insts[id];
-    if (inst.kind == Kind::kAlu && (inst.op == Op::kFMin || inst.op == Op::kFMax)) order.push_back(id);
+    const bool wide = inst.kind == Kind::kSized && inst.width == 64;
+    if ((inst.kind == Kind::kAlu || wide) && (inst.op == Op::kFMin || inst.op == Op::kFMax)) order.push_back(id);
   };
   for_each_inst(graph, graph.root, visit);
   for (auto id = order.rbegin(); id != order.rend(); ++id) plain_extremum(graph, ranges, *id);

@@ -324,7 +324,11 @@ CTS_CASE("glsl", "sized.absolutes") {
 
 // Where denormals count as zero, the smaller and the larger of two doubles do so, too.
 CTS_CASE("glsl", "sized.flushed_extrema") {
-  compare_fixed(run, {{"double", "min(x_double, y_double)"}, {"double", "max(x_double, z_double)"}}, Stage::kFragment);
+  compare_fixed(run,
+                {{"double", "min(x_double, y_double)"},
+                 {"double", "max(x_double, z_double)"},
+                 {"double", "max(min(x_double, double(1.0)), -z_double)"}},
+                Stage::kFragment);
 }
 
 }  // namespace
