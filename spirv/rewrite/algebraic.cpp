@@ -214,6 +214,22 @@ class Rewriter {
     return true;
   }
 
+  /// `test` holds for every component that is read of a constant.
+  template <class Test>
+  bool all_components(const Inst& inst, std::uint32_t index, const Swizzle& swizzle, unsigned components,
+                      Test test) const {
+    const Inst* constant = graph_.constant(graph_.source(inst, index).value);
+    if (!constant) return false;
+    for (unsigned c = 0; c < components; ++c)
+      if (!test(constant->imm[swizzle[c]])) return false;
+    return true;
+  }
+
+  bool is_multiple(const Inst& inst, std::uint32_t index, const Swizzle& swizzle, unsigned components,
+                   std::uint32_t factor) const {
+    return all_components(inst, index, swizzle, components, [=](std::uint32_t v) { return v % factor == 0; });
+  }
+
   bool holds_for_range(Condition condition, const Range& range) const {
     const bool not_negative = (range.signs & Range::kNegative) == 0,
                not_positive = (range.signs & Range::kPositive) == 0;
@@ -263,6 +279,22 @@ class Rewriter {
         return is_power_of_two(inst, index, swizzle, components, false);
       case Condition::kNegPow2:
         return is_power_of_two(inst, index, swizzle, components, true);
+      case Condition::kShifts2:
+        return all_components(inst, index, swizzle, components, [](std::uint32_t v) { return (v & 31) >= 2; });
+      case Condition::kBelow32:
+        return all_components(inst, index, swizzle, components, [](std::uint32_t v) { return v < 32; });
+      case Condition::kMultiple2:
+        return is_multiple(inst, index, swizzle, components, 2);
+      case Condition::kMultiple4:
+        return is_multiple(inst, index, swizzle, components, 4);
+      case Condition::kMultiple8:
+        return is_multiple(inst, index, swizzle, components, 8);
+      case Condition::kMultiple16:
+        return is_multiple(inst, index, swizzle, components, 16);
+      case Condition::kMultiple32:
+        return is_multiple(inst, index, swizzle, components, 32);
+      case Condition::kMultiple64:
+        return is_multiple(inst, index, swizzle, components, 64);
       default:
         return holds_for_range(condition, ranges_.of_source(inst, index));
     }

@@ -32,6 +32,14 @@ enum class Condition : std::uint8_t {
   kNotFmul,
   kPosPow2,
   kNegPow2,
+  kShifts2,  ///< the lowest five bits are two or more
+  kBelow32,
+  kMultiple2,
+  kMultiple4,
+  kMultiple8,
+  kMultiple16,
+  kMultiple32,
+  kMultiple64,
   kNumber,  ///< range analysis: cannot be NaN
   kFinite,
   kIntegral,
@@ -78,7 +86,7 @@ struct Shape {
   std::uint16_t child[3] = {};  ///< kAnyShape, kConstShape or a shape
 };
 inline constexpr std::uint16_t kAnyShape = 0xffff, kConstShape = 0xfffe;
-inline constexpr std::size_t kMaxShapes = 768;
+inline constexpr std::size_t kMaxShapes = 832;
 
 struct Rules {
   std::vector<Pattern> patterns;
