@@ -167,11 +167,16 @@ void select(Translator& t, const Inst& inst, ir::Op) {
   set_value(t, inst, std::move(results));
 }
 
+/// The reference joins three components from the last to the first, four in pairs.
 void reduce_boolean(Translator& t, const Inst& inst, ir::Op op) {
   const ir::ValueId vector = scalar_or_vector(t, inst.operand(0));
+  const std::uint8_t count = components(t, vector);
+  const auto join = [&](ir::Src a, ir::Src b) { return emit(t, op, 1, true, {a, b}); };
   ir::ValueId result = extract(t, vector, 0);
-  for (std::uint8_t i = 1; i < components(t, vector); i++)
-    result = emit(t, op, 1, true, {whole(result), splat(vector, i)});
+  if (count == 2) result = join(whole(result), splat(vector, 1));
+  if (count == 3) result = join(whole(result), whole(join(splat(vector, 1), splat(vector, 2))));
+  if (count == 4)
+    result = join(whole(join(whole(result), splat(vector, 1))), whole(join(splat(vector, 2), splat(vector, 3))));
   set_value(t, inst, result);
 }
 

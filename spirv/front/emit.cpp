@@ -93,7 +93,10 @@ ir::ValueId literal(Translator& t, std::span<const std::uint32_t> words, bool bo
 
 ir::ValueId constant_u32(Translator& t, std::uint32_t word) { return constant(t, {&word, 1}); }
 
-ir::ValueId constant_float(Translator& t, float value) { return constant_u32(t, base::bits_of(value)); }
+ir::ValueId constant_float(Translator& t, float value) {
+  const std::uint32_t word = base::bits_of(value);
+  return literal(t, {&word, 1}, false);
+}
 
 ir::ValueId constant_bool(Translator& t, bool value) {
   const std::uint32_t word = value;
