@@ -400,7 +400,7 @@ class Builder {
     return true;
   }
 
-  /// exp2(0) where the base is neither zero nor NaN, else 0 (6.4).
+  /// exp2(0) where the base is neither zero nor NaN, else 0 (6.4). The generator computes exp2(0): it is no literal.
   void power_of_zero() {
     const Src base = graph_.source(graph_.insts[id_], 0);
     const std::uint32_t zero_bits = 0;
@@ -409,7 +409,8 @@ class Builder {
     const InstId below = add(Op::kFLt, true, {base, value_of(zero)});
     const InstId above = add(Op::kFLt, true, {value_of(zero), base});
     const InstId ordered = add(Op::kOrB, true, {value_of(below), value_of(above)});
-    replace(value_of(add(Op::kB2F, false, {value_of(ordered)})));
+    const InstId one = add(Op::kFExp2, false, {value_of(zero)});
+    replace(value_of(add(Op::kSelect, false, {value_of(ordered), value_of(one), value_of(zero)})));
   }
 
   Graph& graph_;

@@ -112,6 +112,12 @@ unsigned cost_of(const Graph& graph, const Inst& inst);
 /// What the reference's code generator simplifies on its own, for scalar code.
 void build_identities(Graph& graph);
 
+/// Zero divided by what is not literal is a literal to the reference's optimiser; so is what follows from it.
+void fold_late_constants(Graph& graph);
+
+/// Where the sides of an If yield x and x * y, or its like, for several x and one y, x is multiplied by 1.
+void share_selections(Graph& graph);
+
 /// x * (c ? y : 1) and its like become c ? x * y : x, as in the masked machine code of the reference.
 void select_identities(Graph& graph);
 

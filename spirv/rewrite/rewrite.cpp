@@ -63,9 +63,11 @@ void finish(Graph& graph) {
   rewriting::propagate_copies(graph);
   rewriting::choose_extrema(graph);
   rewriting::build_identities(graph);
+  rewriting::fold_late_constants(graph);
   rewriting::propagate_copies(graph);
   rewriting::remove_dead(graph);
   rewriting::merge_equal_code(graph);
+  rewriting::share_selections(graph);
   rewriting::select_identities(graph);
   rewriting::convert_waves(graph);
 }

@@ -105,13 +105,6 @@ bool converts_sides(const Graph& graph, Src condition, Src operand) {
   return !compares_integers(graph, condition) || is_float_for_one(graph, operand);
 }
 
-/// Component `component` of `src`, of the vector that composes it if there is one.
-Src component_of(const Graph& graph, Src src, std::uint8_t component) {
-  const std::uint8_t s = src.swizzle[component];
-  const Inst* vec = graph.def(src.value);
-  return vec && vec->kind == Kind::kVec ? graph.source(*vec, s) : Src{src.value, {s, s, s, s}};
-}
-
 /// Users of one component.
 std::uint32_t users_of(const Graph& graph, Src src) {
   std::uint32_t users = 0;

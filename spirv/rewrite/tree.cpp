@@ -61,6 +61,12 @@ ValueId whole_value(Graph& graph, InstId position, Src src, ValueId like) {
   return graph.insts[move].result;
 }
 
+Src component_of(const Graph& graph, Src src, std::uint8_t component) {
+  const std::uint8_t s = src.swizzle[component];
+  const Inst* vec = graph.def(src.value);
+  return vec && vec->kind == Inst::Kind::kVec ? graph.source(*vec, s) : Src{src.value, {s, s, s, s}};
+}
+
 void replace_results(Graph& graph, InstId id, const std::vector<Src>& values, InstId after) {
   const std::vector<ValueId> results = graph.nodes[graph.insts[id].node]->results;
   for (std::size_t i = 0; i < results.size() && i < values.size(); ++i) {

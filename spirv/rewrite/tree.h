@@ -28,6 +28,9 @@ Src substituted(Src src, const std::vector<ValueId>& values, const std::vector<S
 /// A value equal to `src` with the components of `like`; a Mov that it may need goes before `position`.
 ValueId whole_value(Graph& graph, InstId position, Src src, ValueId like);
 
+/// Component `component` of `src`, of the vector that composes it if there is one.
+Src component_of(const Graph& graph, Src src, std::uint8_t component);
+
 /// Uses of the results of an If or Loop become uses of `values`; Movs go in front of it, or behind `after`.
 void replace_results(Graph& graph, InstId id, const std::vector<Src>& values, InstId after = kNone);
 

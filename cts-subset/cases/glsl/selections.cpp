@@ -165,5 +165,37 @@ CTS_CASE("glsl", "forwarded_elements") {
       "  r2 += array[2] + array[0];\n");
 }
 
+// Branches that keep several x or multiply them by one y: the multiplication is computed where x is kept, too.
+CTS_CASE("glsl", "shared_selections") {
+  evaluate_specials(run, kVec4, 1, "  vec4 r0 = isinf(a.y * 0.3) ? b : b * p.wxzz;\n");
+}
+
+// Booleans that become floats before they are selected are no literals; nor is the power of zero, which is computed.
+CTS_CASE("glsl", "selected_numbers") {
+  evaluate_specials(run, kVec4, 2,
+                    "  vec4 r0 = b * (a.x > a.y ? float(b.x > a.z) : float(b.y > a.w));\n"
+                    "  vec4 base = a.wzxy + vec4(3.0, 255.0, 0.5, 1.0) - b.yyww * vec4(0.0, 3.0, 3.0, 1.0);\n"
+                    "  vec4 r1 = -b * pow(base.yxzw, vec4(0.0, 3.0, 0.0, 0.0));\n");
+}
+
+// Quotients that are known to be zero make exponents literal, and the multiplication by 1 goes.
+CTS_CASE("glsl", "late_literals") {
+  evaluate_specials(
+      run, kVec4, 3,
+      "  ivec4 small = (i & 255) / 1000003, none = pi.yzwx % 1 / pi.zxwy.x;\n"
+      "  vec4 r0 = ldexp(b, small), r1 = ldexp(b, none), r2 = ldexp(b, (small >> (i.wzyx & 31)) & 31);\n");
+}
+
+// What the rules take for the same value: sums of dot products read vectors, which differ in the order of their parts;
+// literals of built-in functions are values of their own; three booleans are joined from the last to the first.
+CTS_CASE("glsl", "order_of_rules") {
+  evaluate_specials(run, kVec4, 3,
+                    "  vec4 t0 = pow(a, p.zxzz), t1 = abs(a);\n"
+                    "  vec4 r0 = vec4(1.7 * (p.yy * mat2(a.zw, a.wz)), 1.7 * (p.ww * mat2(b.zw, b.wz)));\n"
+                    "  vec4 r1 = vec4(atanh(-0.25) + sinh(a.zxx), 0.0);\n"
+                    "  float y = all(greaterThan(u.ywx, u.wyy)) ? t0.x : t1.w;\n"
+                    "  vec4 r2 = vec4(distance(atan(vec2(pow(abs(10.0), p.z), y), b.xy), a.xy));\n");
+}
+
 }  // namespace
 }  // namespace vitrine::cts

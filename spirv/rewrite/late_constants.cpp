@@ -1,0 +1,217 @@
+// Literals that only the optimiser of the reference's code generator finds: quotients of what is known to be smaller
+// than its divisor, by the bits that can be set. What follows from them is folded, and operations that such a literal
+// leaves nothing to do for are taken away, so that x * 1 keeps a denormal x.
+#include <algorithm>
+#include <bit>
+
+#include "base/float_mode.h"
+#include "spirv/rewrite/passes.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+constexpr std::uint32_t kOne = 0x3f800000, kMinusZero = 0x80000000;
+constexpr unsigned kMaxDepth = 6;  ///< of operations that known bits are followed through
+
+class LateFolder {
+ public:
+  explicit LateFolder(Graph& graph) : graph_(graph) {}
+
+  void visit(InstId id) {
+    const Inst& inst = graph_.insts[id];
+    if (inst.kind != Kind::kAlu || inst.components != 1 || inst.width != 32 || inst.opaque) return;
+    if ((inst.op == Op::kIDiv || inst.op == Op::kUDiv) && is_zero_quotient(inst)) return become(id, 0);
+    if (late_.empty() || !reads_late(inst) || fold(id) || keep_zero(id)) return;
+    take_other(id);
+  }
+
+ private:
+  const Inst* constant(const Inst& inst, std::uint32_t index) const {
+    return graph_.constant(graph_.source(inst, index).value);
+  }
+
+  bool is(const Inst& inst, std::uint32_t index, std::uint32_t bits) const {
+    const Inst* literal = constant(inst, index);
+    return literal && literal->imm[graph_.source(inst, index).swizzle[0]] == bits;
+  }
+
+  /// A division by zero of signed numbers is 0, too, not that of unsigned ones.
+  bool is_zero_quotient(const Inst& inst) const {
+    if (inst.op == Op::kIDiv && is(inst, 0, 0)) return true;
+    const Inst* literal = constant(inst, 1);
+    if (!literal) return false;
+    const std::uint32_t bits = literal->imm[graph_.source(inst, 1).swizzle[0]];
+    const bool negative = inst.op == Op::kIDiv && (bits >> 31) != 0;
+    const std::uint64_t largest = (std::uint64_t{1} << (32 - leading_zeros(graph_.source(inst, 0), 0))) - 1;
+    return largest < (negative ? 0u - bits : bits) && (inst.op == Op::kUDiv || largest < 0x80000000u);
+  }
+
+  /// Highest bits that are known to be zero.
+  unsigned leading_zeros(Src src, unsigned depth) const {
+    const Inst* inst = graph_.def(src.value);
+    if (!inst || depth == kMaxDepth) return 0;
+    if (inst->kind == Kind::kConst)
+      return inst->boolean ? 0 : static_cast<unsigned>(std::countl_zero(inst->imm[src.swizzle[0]]));
+    if (inst->kind != Kind::kAlu || inst->components != 1 || inst->width != 32) return 0;
+    const auto of = [&](std::uint32_t index) { return leading_zeros(graph_.source(*inst, index), depth + 1); };
+    switch (inst->op) {
+      case Op::kMov:
+        return of(0);
+      case Op::kB2I:
+        return 31;
+      case Op::kAnd:
+        return std::max(of(0), of(1));
+      case Op::kOr:
+      case Op::kXor:
+        return std::min(of(0), of(1));
+      case Op::kSelect:
+        return std::min(of(1), of(2));
+      case Op::kIAdd:
+        return std::max(std::min(of(0), of(1)), 1u) - 1;
+      case Op::kUShr: {
+        const Inst* literal = constant(*inst, 1);
+        const unsigned more = literal ? literal->imm[graph_.source(*inst, 1).swizzle[0]] & 31 : 0;
+        return std::min(of(0) + more, 32u);
+      }
+      case Op::kIRem:
+      case Op::kIMod: {
+        const unsigned left = of(0), right = of(1);
+        return left != 0 && right != 0 ? std::max(left, right) : 0;
+      }
+      default:
+        return 0;
+    }
+  }
+
+  bool is_late(const Inst& inst, std::uint32_t index) const {
+    return std::find(late_.begin(), late_.end(), graph_.source(inst, index).value) != late_.end();
+  }
+
+  bool reads_late(const Inst& inst) const {
+    for (std::uint32_t i = 0; i < inst.count; ++i)
+      if (is_late(inst, i)) return true;
+    return false;
+  }
+
+  void become(InstId id, std::uint32_t bits) {
+    const InstId made = graph_.create_const(1, graph_.insts[id].boolean, &bits);
+    graph_.insert_before(id, made);
+    late_.push_back(graph_.insts[made].result);
+    graph_.replace_uses(graph_.insts[id].result, graph_.insts[made].result);
+    graph_.remove(id);
+  }
+
+  /// Becomes operand `result` if the other one is the identity `bits`. True: the operation is gone.
+  bool take_if(InstId id, std::uint32_t result, std::uint32_t bits) {
+    const Inst inst = graph_.insts[id];
+    if (!is(inst, 1 - result, bits) || !is_late(inst, 1 - result)) return false;
+    const InstId move = graph_.create(Kind::kAlu, Op::kMov, 1, false, 1);
+    graph_.set_source(move, 0, graph_.source(inst, result));
+    graph_.insts[move].origin = inst.origin;
+    graph_.insert_before(id, move);
+    graph_.replace_uses(inst.result, graph_.insts[move].result);
+    graph_.remove(id);
+    return true;
+  }
+
+  /// Zero that stays zero whatever the other operand is. True: the operation is gone.
+  bool keep_zero(InstId id) {
+    const Inst& inst = graph_.insts[id];
+    const bool first = is(inst, 0, 0) && is_late(inst, 0),
+               second = inst.count == 2 && is(inst, 1, 0) && is_late(inst, 1);
+    switch (inst.op) {
+      case Op::kShl:
+      case Op::kIShr:
+      case Op::kUShr:
+        if (!first) return false;
+        break;
+      case Op::kAnd:
+      case Op::kIMul:
+        if (!first && !second) return false;
+        break;
+      default:
+        return false;
+    }
+    become(id, 0);
+    return true;
+  }
+
+  /// Operations that leave one operand as it is for some other one.
+  void take_other(InstId id) {
+    std::uint32_t identity = 0;
+    bool commutes = true;
+    switch (graph_.insts[id].op) {
+      case Op::kFAdd:
+        identity = kMinusZero;
+        break;
+      case Op::kFDiv:
+        commutes = false;
+        [[fallthrough]];
+      case Op::kFMul:
+        identity = kOne;
+        break;
+      case Op::kIAdd:
+      case Op::kOr:
+      case Op::kXor:
+        break;
+      default:
+        return;
+    }
+    if (!take_if(id, 0, identity) && commutes) take_if(id, 1, identity);
+  }
+
+  /// Operations that fold to what they compute, whatever the operands.
+  static bool folds(const Inst& inst) {
+    switch (inst.op) {
+      case Op::kFAdd:
+      case Op::kFMul:
+      case Op::kFDiv:
+      case Op::kFNeg:
+      case Op::kFAbs:
+      case Op::kI2F:
+      case Op::kU2F:
+      case Op::kB2F:
+        return true;
+      case Op::kUDiv:
+      case Op::kIRem:
+      case Op::kIMod:
+      case Op::kUMod:
+      case Op::kF2I:
+      case Op::kF2U:
+        return false;
+      default:
+        return ir::alu_info(inst.op).result != 'F';
+    }
+  }
+
+  /// True: it is a literal now.
+  bool fold(InstId id) {
+    const Inst& inst = graph_.insts[id];
+    if (!folds(inst)) return false;
+    std::uint32_t operand[3] = {}, bits = 0;
+    for (std::uint32_t i = 0; i < inst.count; ++i) {
+      const Inst* literal = constant(inst, i);
+      if (!literal) return false;
+      operand[i] = literal->imm[graph_.source(inst, i).swizzle[0]];
+    }
+    if (!evaluate(inst.op, operand, bits)) return false;
+    become(id, bits);
+    return true;
+  }
+
+  Graph& graph_;
+  std::vector<ValueId> late_;
+};
+
+}  // namespace
+
+void fold_late_constants(Graph& graph) {
+  const base::ScopedFloatMode mode(base::Denormals::kHonour);
+  LateFolder folder(graph);
+  auto visit = [&](InstId id) { folder.visit(id); };
+  for_each_inst(graph, graph.root, visit);
+}
+
+}  // namespace vitrine::spirv::rewriting
