@@ -177,9 +177,9 @@ Range RangeAnalysis::of_extremum(const Inst& inst) {
   range.finite = a.finite && b.finite;
   range.number = a.number || b.number;
   range.signs = combine(a.signs, b.signs, inst.op == Op::kFMax ? larger_sign : smaller_sign);
-  // The reference does not combine these two.
-  const std::uint8_t not_zero = kNegative | kPositive;
-  if ((a.signs == kZero && b.signs == not_zero) || (a.signs == not_zero && b.signs == kZero)) range.signs = kAny;
+  // The reference does not combine these: nothing and zero, not zero and zero.
+  const auto unknown = [](std::uint8_t signs) { return signs == kAny || signs == (kNegative | kPositive); };
+  if ((a.signs == kZero && unknown(b.signs)) || (unknown(a.signs) && b.signs == kZero)) range.signs = kAny;
   if (!a.number) range.signs = static_cast<std::uint8_t>(range.signs | b.signs);
   if (!b.number) range.signs = static_cast<std::uint8_t>(range.signs | a.signs);
   return range;

@@ -127,6 +127,13 @@ CTS_CASE("glsl", "folded_extrema") {
       "  vec4 r2 = clamp(z.wzyx, vec4(0.0), b), r3 = max(-roundEven(vec4(-0.1, 255.0, 0.0, -1.0)), z);\n");
 }
 
+// What is limited to zero is of any sign to the rules: a comparison with it is computed.
+CTS_CASE("glsl", "extrema_with_zero") {
+  evaluate_specials(run, kVec4, 2,
+                    "  vec4 zero = b - b, r0 = -step(0.3, clamp(a, vec4(0.0), zero)) * b;\n"
+                    "  vec4 r1 = -step(min(max(a, zero), 0.0), vec4(-0.3)) * b;\n");
+}
+
 // A selection may be NaN to the code generator, whatever it selects: the minimum and maximum of two zeros is the
 // second.
 CTS_CASE("glsl", "extrema_of_selections") {
