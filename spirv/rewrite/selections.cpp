@@ -308,11 +308,12 @@ bool select_operation(Graph& graph, InstId id, std::uint32_t index, std::uint32_
   return true;
 }
 
-/// A power is 0 where its base is 0 or NaN, by a selection (lavapipe-shader-math.md 6.4).
-bool find_power(Graph& graph, Src src, Selection& found) {
+/// A power is 0 where its base is 0 or NaN, a sign where its operand is, by a selection (lavapipe-shader-math.md 6.4).
+bool find_zero(Graph& graph, Src src, Selection& found) {
   const Inst* power = only_user_of(graph, src, Op::kFPow);
-  if (!power) return false;
-  const Inst inst = *power;
+  const Inst* selecting = power ? power : only_user_of(graph, src, Op::kFSign);
+  if (!selecting) return false;
+  const Inst inst = *selecting;
   const auto add = [&](Op op, bool boolean, std::initializer_list<Src> operands) {
     const InstId made = graph.create(Kind::kAlu, op, 1, boolean, static_cast<std::uint32_t>(operands.size()));
     graph.insts[made].origin = inst.origin;
@@ -337,7 +338,7 @@ bool select_subtraction(Graph& graph, InstId id, std::uint32_t index) {
   Selection selection;
   if (!negation || graph.constant(other.value) || is_subtracted(graph, graph.insts[id], other)) return false;
   const Src subtracted = graph.source(*negation, 0);
-  if (!find_power(graph, subtracted, selection) && !find_selection(graph, subtracted, 0, selection)) return false;
+  if (!find_zero(graph, subtracted, selection) && !find_selection(graph, subtracted, 0, selection)) return false;
   const InstId negate = graph.values[negated.value].def;
   const Src operand = other_side(graph, negate, selection);
   select_result(graph, id, selection, other);

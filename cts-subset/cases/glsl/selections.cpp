@@ -185,6 +185,15 @@ CTS_CASE("glsl", "selected_numbers") {
                     "  vec4 r1 = -b * pow(base.yxzw, vec4(0.0, 3.0, 0.0, 0.0));\n");
 }
 
+// The sign of zero is selected; what subtracts it keeps denormals.
+CTS_CASE("glsl", "subtracted_signs") {
+  run.require(reference_cpu().float_to_uint_as_recorded, "what the reference does on a CPU with AVX-512");
+  evaluate_specials(
+      run, kVec4, 5,
+      "  vec4 r0 = a - sign(b), r1 = a - sign(floor(b * 0.25)), r2 = a + sign(b.wzyx), r3 = sign(a * b) - a;\n"
+      "  vec4 shared_sign = sign(b.yxwz), r4 = (a - shared_sign) + (a.wzyx - shared_sign);\n");
+}
+
 // Quotients that are known to be zero make exponents literal, and the multiplication by 1 goes.
 CTS_CASE("glsl", "late_literals") {
   evaluate_specials(
