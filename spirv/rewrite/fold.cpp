@@ -323,7 +323,8 @@ bool fold_sized(Graph& graph, InstId id) {
 
 bool fold_conversion(Graph& graph, InstId id) {
   std::uint32_t words[2] = {};
-  if (!evaluate_conversion(graph, graph.insts[id], words)) return false;
+  const Inst& inst = graph.insts[id];
+  if (!evaluate_conversion(graph, inst, words) && !evaluate_integers(graph, inst, words)) return false;
   become_constant(graph, id, words);
   return true;
 }
@@ -335,12 +336,16 @@ bool fold(Graph& graph, InstId id) {
   if (inst.kind == Inst::Kind::kSized) return fold_sized(graph, id);
   if (inst.kind == Inst::Kind::kIntrinsic) return fold_conversion(graph, id);
   if (inst.kind != Inst::Kind::kAlu || inst.count == 0) return false;
+  std::uint32_t bits[4] = {};
+  if (is_minimum_with_zero(graph, inst)) {
+    become_constant(graph, id, bits);
+    return true;
+  }
   const Inst* constants[3] = {};
   for (std::uint32_t i = 0; i < inst.count; ++i) {
     constants[i] = graph.constant(graph.source(inst, i).value);
     if (!constants[i]) return false;
   }
-  std::uint32_t bits[4] = {};
   for (unsigned c = 0; c < inst.components; ++c) {
     std::uint32_t operand[3] = {};
     for (std::uint32_t i = 0; i < inst.count; ++i) operand[i] = constants[i]->imm[graph.source(inst, i).swizzle[c]];

@@ -8,23 +8,9 @@
 #include "spirv/rewrite/sized.h"
 
 namespace vitrine::spirv::rewriting {
-namespace {
-
-bool is_zero(const Graph& graph, const Inst& inst, std::uint32_t index) {
-  const Src src = graph.source(inst, index);
-  const Inst* constant = graph.constant(src.value);
-  return constant && constant->imm[src.swizzle[0]] == 0;
-}
-
-}  // namespace
-
 bool evaluate_conversion(const Graph& graph, const Inst& inst, std::uint32_t words[2]) {
   std::uint32_t source[2] = {};
   if (!ir::is_wide(inst.op)) return false;
-  if (inst.op == Op::kQLt || inst.op == Op::kQGe) {  // nothing is less than 0
-    words[0] = inst.op == Op::kQGe ? 1 : 0;
-    return is_zero(graph, inst, 2) && is_zero(graph, inst, 3);
-  }
   if (inst.count > 2) return false;
   for (std::uint32_t i = 0; i < inst.count; ++i) {
     const Inst* constant = graph.constant(graph.source(inst, i).value);

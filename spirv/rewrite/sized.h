@@ -18,8 +18,13 @@ void literal_words(double number, unsigned width, std::uint32_t words[2]);
 /// is not folded.
 bool evaluate_sized(const Graph& graph, const Inst& inst, unsigned c, std::uint32_t words[2]);
 
-/// The same for conversions of wide_ops.def that make a float, and for comparisons with 0 of 64-bit integers that are
-/// never negative.
+/// The same for conversions of wide_ops.def that make a float.
 bool evaluate_conversion(const Graph& graph, const Inst& inst, std::uint32_t words[2]);
+
+/// The same for operations of wide_ops.def on 64-bit integers, also where not all operands are constant: x - x.
+bool evaluate_integers(const Graph& graph, const Inst& inst, std::uint32_t words[2]);
+
+/// True for a word of min(0, x) of unsigned 64-bit integers, which is spelled 0 < x ? 0 : x: it is 0.
+bool is_minimum_with_zero(const Graph& graph, const Inst& select);
 
 }  // namespace vitrine::spirv::rewriting

@@ -331,5 +331,16 @@ CTS_CASE("glsl", "sized.flushed_extrema") {
                 Stage::kFragment);
 }
 
+// 64-bit integers that are zero whatever their operands are: products with them are literal, without a sign.
+CTS_CASE("glsl", "sized.zeros") {
+  compare_fixed(run, {{"double", "x_double * double(min(uint64_t(7) ^ uint64_t(7), x_uint64_t))"},
+                      {"double", "y_double * double(x_uint64_t * min(uint64_t(0), y_uint64_t))"},
+                      {"double", "z_double * double((x_int64_t - x_int64_t) % y_int64_t)"},
+                      {"double", "x_double * double(y_int64_t % int64_t(-1))"},
+                      {"double", "y_double * double((uint64_t(y_uint - y_uint) << z_uint64_t) >> x_uint64_t)"},
+                      {"double", "z_double * double(x_uint64_t < x_uint64_t ? z_uint64_t : uint64_t(0))"},
+                      {"double", "x_double * double((uint64_t(y_uint - y_uint) + uint64_t(5)) / uint64_t(7))"}});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
