@@ -176,8 +176,10 @@ void composite_construct(Translator& t, const Inst& inst, ir::Op) {
     return set_value(t, inst, std::move(leaves));
   }
   std::vector<Expr> parts;
+  const std::uint32_t width = number_type(t, inst.result_type).width;
   for (std::uint32_t i = 0; inst.has(i); i++) {
     const Expr part = number_of(t, inst.operand(i));
+    if (part.width != width) fail(inst, "parts of another width");
     for (std::uint8_t c = 0; c < part.size(); c++) parts.push_back(part.at(c));
   }
   if (parts.size() != type.count) fail(inst, "parts do not fill the vector");

@@ -12,13 +12,40 @@ using Kind = Inst::Kind;
 
 // ---- what never runs
 
+void collect_values(const Graph& graph, InstId id, std::vector<ValueId>& values) {
+  const Inst& inst = graph.insts[id];
+  if (inst.components != 0) values.push_back(inst.result);
+  if (inst.kind != Kind::kIf && inst.kind != Kind::kLoop) return;
+  const ir::Node& node = *graph.nodes[inst.node];
+  for (const auto* list : {&node.results, &node.params, &node.continue_params})
+    values.insert(values.end(), list->begin(), list->end());
+  for (const BlockId child : inst.child)
+    for (InstId inner = graph.blocks[child].head; inner != kNone; inner = graph.insts[inner].next)
+      collect_values(graph, inner, values);
+}
+
+/// Removes `id`, which never runs. Nor does what still reads its values (code behind a loop whose only way out this
+/// was): that reads zeros.
+void remove_unreached(Graph& graph, InstId id) {
+  std::vector<ValueId> values;
+  collect_values(graph, id, values);
+  graph.remove(id);
+  for (const ValueId value : values) {
+    if (graph.values[value].uses == 0) continue;
+    constexpr std::uint32_t kZeros[4] = {};
+    const InstId zero = graph.create_const(graph.values[value].components, graph.values[value].boolean, kZeros);
+    graph.insert_before(graph.blocks[graph.root].head, zero);
+    graph.replace_uses(value, graph.insts[zero].result);
+  }
+}
+
 /// Removes `block`'s instructions from `first` to the end.
 void remove_from(Graph& graph, BlockId block, InstId first) {
   if (first == kNone) return;
   for (bool last = false; !last;) {
     const InstId tail = graph.blocks[block].tail;
     last = tail == first;
-    graph.remove(tail);
+    remove_unreached(graph, tail);
   }
 }
 
@@ -32,7 +59,7 @@ void take_branch(Graph& graph, InstId id, BlockId taken) {
     graph.splice_before(id, taken);
     remove_from(graph, graph.insts[id].block, graph.insts[id].next);
   }
-  graph.remove(id);
+  remove_unreached(graph, id);
 }
 
 /// A loop that has no effect but the values it carries.

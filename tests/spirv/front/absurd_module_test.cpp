@@ -12,8 +12,9 @@ namespace {
 /// A compute module whose functions are `functions`, and whose entry point runs `body` with %x, the number of the
 /// invocation, and %place, its word in a buffer.
 Words module_with(const std::string& declarations, const std::string& functions, const std::string& body,
-                  const std::string& locals = "") {
+                  const std::string& locals = "", const std::string& capabilities = "") {
   ComputeText module;
+  module.capabilities = capabilities;
   module.buffers = {"buffer"};
   module.declarations = "%u7 = OpConstant %uint 7\n%unary = OpTypeFunction %uint %uint\n" + declarations;
   module.locals = locals;
@@ -52,6 +53,29 @@ TEST(AbsurdModule, RecursionIsRefused) {
   const Words words = module_with("", f, "%r = OpFunctionCall %uint %f %x\n" + store("%r"));
   EXPECT_FALSE(compiles(words));
   EXPECT_FALSE(compiles(words, false));
+}
+
+TEST(AbsurdModule, ValueOfTheWayOutThatALoopLoses) {
+  // Valid: %sum is made on the only way out, whose condition is never true. Nothing behind the loop runs.
+  const std::string loop =
+      "OpBranch %head\n%head = OpLabel\n%turn = OpPhi %uint %x %entry %more %next\nOpLoopMerge %end %next None\n"
+      "OpBranch %inner\n%inner = OpLabel\n%more = OpGroupNonUniformBroadcastFirst %uint %u3 %turn\n"
+      "%never = OpULessThan %bool %more %more\nOpSelectionMerge %stay None\n"
+      "OpBranchConditional %never %leave %stay\n%leave = OpLabel\n"
+      "%all = OpGroupNonUniformIAdd %uint %u3 Reduce %x\n%sum = OpIAdd %uint %more %all\nOpBranch %end\n"
+      "%stay = OpLabel\nOpBranch %next\n%next = OpLabel\nOpBranch %head\n"
+      "%end = OpLabel\n%large = OpUGreaterThan %bool %all %u7\n%r = OpSelect %uint %large %sum %u7\n";
+  EXPECT_TRUE(compiles(module_with("%u3 = OpConstant %uint 3\n", "", loop + store("%r"), "",
+                                   "OpCapability GroupNonUniformArithmetic\nOpCapability GroupNonUniformBallot\n")));
+}
+
+TEST(AbsurdModule, PointersAreNoPartsOfVectors) {
+  const std::string declarations =
+      "%float = OpTypeFloat 32\n%v3float = OpTypeVector %float 3\n%f1 = OpConstant %float 1\n";
+  const std::string vector =
+      "%v = OpCompositeConstruct %v3float %place %f1 %f1\n%e = OpCompositeExtract %float %v 0\n"
+      "%r = OpBitcast %uint %e\n";
+  EXPECT_FALSE(compiles(module_with(declarations, "", vector + store("%r")), false));
 }
 
 TEST(AbsurdModule, StraightLineOfAHundredThousandInstructions) {
