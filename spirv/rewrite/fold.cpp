@@ -341,6 +341,11 @@ bool fold(Graph& graph, InstId id) {
     become_constant(graph, id, bits);
     return true;
   }
+  if (const Src number = extended_before(graph, inst); number.value != ir::kNoValue) {
+    graph.replace_uses(inst.result, number.value);
+    graph.remove(id);
+    return true;
+  }
   const Inst* constants[3] = {};
   for (std::uint32_t i = 0; i < inst.count; ++i) {
     constants[i] = graph.constant(graph.source(inst, i).value);

@@ -1,5 +1,6 @@
 // Constant folding of operations on numbers of 16 and 64 bits: halves are computed in binary32 and rounded at the end.
 #include <bit>
+#include <limits>
 
 #include "base/numeric.h"
 #include "spirv/mix.h"
@@ -8,6 +9,55 @@
 #include "spirv/rewrite/sized.h"
 
 namespace vitrine::spirv::rewriting {
+namespace {
+
+const Inst* scalar_of(const Graph& graph, Src src, Op op) {
+  const Inst* inst = graph.def(src.value);
+  return inst && inst->kind == Inst::Kind::kAlu && inst->op == op && inst->components == 1 ? inst : nullptr;
+}
+
+bool is_literal(const Graph& graph, Src src, std::uint32_t number) {
+  const Inst* constant = graph.constant(src.value);
+  return constant && constant->imm[src.swizzle[0]] == number;
+}
+
+/// What the shift of this op by `count` shifts; none: it is something else.
+Src shifted(const Graph& graph, Src src, Op op, std::uint32_t count) {
+  const Inst* shift = scalar_of(graph, src, op);
+  return shift && is_literal(graph, graph.source(*shift, 1), count) ? graph.source(*shift, 0) : Src{};
+}
+
+/// The number is one of 32 - `count` bits, extended from their sign; minima and maxima are followed `depth` levels.
+bool is_extended(const Graph& graph, Src src, std::uint32_t count, unsigned depth = 4) {
+  if (const Inst* constant = graph.constant(src.value)) {
+    const auto number = static_cast<std::int32_t>(constant->imm[src.swizzle[0]]);
+    const std::int32_t least = std::numeric_limits<std::int32_t>::min() >> count;
+    return number >= least && number < -least;
+  }
+  for (const Op op : {Op::kIMin, Op::kIMax})
+    if (const Inst* inst = scalar_of(graph, src, op))
+      return depth > 0 && is_extended(graph, graph.source(*inst, 0), count, depth - 1) &&
+             is_extended(graph, graph.source(*inst, 1), count, depth - 1);
+  const Src low = shifted(graph, src, Op::kIShr, count);
+  return low.value != ir::kNoValue && shifted(graph, low, Op::kShl, count).value != ir::kNoValue;
+}
+
+}  // namespace
+
+Src extended_before(const Graph& graph, const Inst& inst) {
+  if (inst.kind != Inst::Kind::kAlu || inst.op != Op::kIShr || inst.components != 1) return {};
+  for (const std::uint32_t count : {16u, 24u}) {
+    const Src low = shifted(graph, {inst.result, {0, 0, 0, 0}}, Op::kIShr, count);
+    Src number = low.value == ir::kNoValue ? low : shifted(graph, low, Op::kShl, count);
+    if (number.value == ir::kNoValue) continue;
+    if (const Inst* mask = scalar_of(graph, number, Op::kAnd);
+        mask && is_literal(graph, graph.source(*mask, 1), 0xffffffffu >> count))
+      number = graph.source(*mask, 0);
+    if (!graph.constant(number.value) && is_extended(graph, number, count)) return number;
+  }
+  return {};
+}
+
 bool evaluate_conversion(const Graph& graph, const Inst& inst, std::uint32_t words[2]) {
   std::uint32_t source[2] = {};
   if (!ir::is_wide(inst.op)) return false;

@@ -24,6 +24,10 @@ bool evaluate_conversion(const Graph& graph, const Inst& inst, std::uint32_t wor
 /// The same for operations of wide_ops.def on 64-bit integers, also where not all operands are constant: x - x.
 bool evaluate_integers(const Graph& graph, const Inst& inst, std::uint32_t words[2]);
 
+/// The 32-bit number that `inst` takes the low 8 or 16 bits of and extends from their sign, if it is such a number
+/// already: a smaller or larger one of extended numbers. None: it is something else.
+Src extended_before(const Graph& graph, const Inst& inst);
+
 /// True for a word of min(0, x) of unsigned 64-bit integers, which is spelled 0 < x ? 0 : x: it is 0.
 bool is_minimum_with_zero(const Graph& graph, const Inst& select);
 

@@ -342,5 +342,13 @@ CTS_CASE("glsl", "sized.zeros") {
                       {"double", "x_double * double((uint64_t(y_uint - y_uint) + uint64_t(5)) / uint64_t(7))"}});
 }
 
+// What is known of larger and smaller integers of 8 and 16 bits makes the weights literal.
+CTS_CASE("glsl", "sized.ordered") {
+  compare_fixed(run, {{"double", "1.0 - (mix(x_double, x_double, double(x_int8_t <= max(x_int8_t, y_int8_t))) + 0.7)"},
+                      {"double", "y_double * double(x_int16_t < min(y_int16_t, x_int16_t))"},
+                      {"double", "z_double * double(max(min(x_int8_t, y_int8_t), z_int8_t) < z_int8_t)"},
+                      {"double", "x_double * double(min(y_int16_t, int16_t(7)) > int16_t(7))"}});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
