@@ -60,8 +60,8 @@ void close_loops(Graph& graph, InstId only = kNone);
 /// True when something behind the loop reads a value of the loop that is no result.
 bool is_used_behind(const Graph& graph, InstId loop);
 
-/// Continues at the end of a loop become the way there.
-bool remove_trivial_continues(Graph& graph);
+/// Continues at the end of a loop become the way there; in the `first` round every loop has one.
+bool remove_trivial_continues(Graph& graph, bool first);
 
 /// Reads of an If's condition where only one of its sides leads become constants.
 bool evaluate_conditions(Graph& graph);

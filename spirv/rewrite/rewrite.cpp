@@ -28,9 +28,8 @@ bool optimize_once(Graph& graph, bool first) {
   if (first) rewriting::show_products(graph);
   changed |= rewriting::fold_constants(graph);
   changed |= rewriting::remove_trivial_results(graph);
-  // In the reference every body ends in a continue at first.
   const bool first_loops = first && rewriting::has_loops(graph);
-  if (rewriting::remove_trivial_continues(graph) || first_loops) {
+  if (rewriting::remove_trivial_continues(graph, first) || first_loops) {
     changed = true;
     rewriting::propagate_copies(graph);
     rewriting::remove_dead(graph);

@@ -200,18 +200,20 @@ bool drop_continues(Graph& graph, BlockId block, const std::vector<ValueId>& par
   return true;
 }
 
-bool drop_trivial_continues(Graph& graph, BlockId block) {
+/// `first`: in the reference every body that goes round ends in a continue.
+bool drop_trivial_continues(Graph& graph, BlockId block, bool first) {
   bool changed = false;
   for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
     for (const unsigned side : {0u, 1u}) {
       const BlockId child = graph.insts[id].child[side];
-      if (child != kNone) changed |= drop_trivial_continues(graph, child);
+      if (child != kNone) changed |= drop_trivial_continues(graph, child, first);
     }
     if (graph.insts[id].kind != Kind::kLoop) continue;
     const std::vector<ValueId> params = graph.nodes[graph.insts[id].node]->continue_params;
     const BlockId body = graph.insts[id].child[0];
     if (graph.blocks[body].tail == kNone) continue;
-    if (!drop_continues(graph, body, params)) continue;
+    const bool dropped = drop_continues(graph, body, params);
+    if (!dropped && !(first && ends_in(graph, body, Op::kYield))) continue;
     pass_through_registers(graph, id);
     changed = true;
   }
@@ -257,7 +259,7 @@ bool move_code(Graph& graph, BlockId block) {
 
 bool take_constant_branches(Graph& graph) { return prune(graph, graph.root); }
 
-bool remove_trivial_continues(Graph& graph) { return drop_trivial_continues(graph, graph.root); }
+bool remove_trivial_continues(Graph& graph, bool first) { return drop_trivial_continues(graph, graph.root, first); }
 
 bool improve_branches(Graph& graph) {
   const bool changed = improve(graph, graph.root);

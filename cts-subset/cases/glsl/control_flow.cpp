@@ -62,5 +62,14 @@ CTS_CASE("glsl", "control_flow.unchanged_by_dead_branch") {
   evaluate(run, Stage::kFragment, {"", text, {{kVec4, "r"}, {kVec4, "s"}}, {}, false});
 }
 
+// What a loop starts with is joined behind the branch in front of it: its literals are computed with, not folded.
+CTS_CASE("glsl", "control_flow.literals_joined_before_loop") {
+  const char* text =
+      "  vec4 start = vec4(p.y, 1.0, 0.3, p.y);\n  int steps = 0;\n  if (u.x == 2u) {\n    int k = i.z & 7;\n"
+      "    while (k-- > 0) ++steps;\n  }\n  int n = pi.y;\n  while (n-- > 0) {\n    if (!false) break;\n"
+      "    start = a;\n  }\n  vec4 r = (start - 1.0) * b.ywyx;\n  float turns = float(steps);\n";
+  evaluate(run, Stage::kCompute, {"", text, {{kVec4, "r"}, {kFloat, "turns"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
