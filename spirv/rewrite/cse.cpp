@@ -34,6 +34,9 @@ bool is_invocation_constant(const Inst& inst) {
   }
 }
 
+/// Arithmetic on 64-bit numbers and conversions of them: without effects, as all of wide_ops.def.
+bool is_wide_operation(const Inst& inst) { return inst.kind == Kind::kIntrinsic && ir::is_wide(inst.op); }
+
 /// The two operands may be swapped (the reference compares them that way too).
 bool may_swap(const Inst& inst) { return computes(inst) && inst.count == 2 && is_commutative(inst.op); }
 
@@ -59,7 +62,7 @@ class Merger {
   bool candidate(const Inst& inst) const {
     if (only_doubles_) return makes_double(inst);
     return is_uniform_load(inst) || computes(inst) || inst.kind == Kind::kConst || inst.kind == Kind::kVec ||
-           is_invocation_constant(inst);
+           is_invocation_constant(inst) || is_wide_operation(inst);
   }
 
   unsigned components_of_operand(const Inst& inst, std::uint32_t index) const {

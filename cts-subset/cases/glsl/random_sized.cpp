@@ -350,5 +350,16 @@ CTS_CASE("glsl", "sized.ordered") {
                       {"double", "x_double * double(min(y_int16_t, int16_t(7)) > int16_t(7))"}});
 }
 
+// Equal conversions are one value, so that rules see equal products.
+CTS_CASE("glsl", "sized.equal_conversions") {
+  const char* half =
+      "252.0 * ((double(x_float16_t) * y_double) * 2.0) * z_double + "
+      "252.0 * ((double(x_float16_t) * y_double) * 2.0)";
+  const char* integer =
+      "252.0 * ((double(y_int64_t) * x_double) * 2.0) * z_double + "
+      "252.0 * ((double(y_int64_t) * x_double) * 2.0)";
+  compare_fixed(run, {{"double", half}, {"double", integer}});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
