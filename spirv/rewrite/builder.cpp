@@ -2,8 +2,8 @@
 // every operation, `precise` or not: 0 + x is x (also for x = -0), 0 * x and 0 / x are 0, pow(x, 0) skips NaN. What it
 // leaves undefined (a division by literal 0) becomes an undefined value here too. Operations on literals become
 // literals at once where the generator's own building blocks fold (not those that are calls of intrinsics), so that the
-// next operation takes its shortcut too. A sum with -0 is what its optimiser takes away: x, denormal or not. Values
-// that share a register with the result of a branch are read from there: no operation knows that they are literal.
+// next operation takes its shortcut too. A sum with -0 is what its optimiser takes away: x, denormal or not. What a
+// branch yields is kept in a register and read from there: no operation knows that it is literal.
 #include <algorithm>
 
 #include "base/float_mode.h"
@@ -18,80 +18,24 @@ using Kind = Inst::Kind;
 
 constexpr std::uint32_t kOne = 0x3f800000, kMinusZero = 0x80000000;
 
-/// Which values the reference keeps in the register of an If's result that they are yielded to: those that are not
-/// needed any more once the result, or what the other branch yields to it, is there.
+/// Which values the reference keeps in registers: all that a branch yields to an If's result. One that is still needed
+/// once the result is there has a register of its own.
 class SharedRegisters {
  public:
-  explicit SharedRegisters(Graph& graph) : graph_(graph) {
-    order_.resize(graph.insts.size());
-    auto visit = [&](InstId id) { order_[id] = ++last_; };
-    for_each_inst(graph, graph.root, visit);
-  }
+  explicit SharedRegisters(const Graph& graph) : graph_(graph) {}
 
   bool holds(ValueId value) const {
     for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next) {
-      const InstId user = graph_.sources[slot].user;
-      if (!is_yield(user)) continue;
-      const InstId owner = graph_.blocks[graph_.insts[user].block].owner;
-      if (owner == kNone || graph_.insts[owner].kind != Kind::kIf) continue;
-      if (in_loop(value, owner) || used_after(value, owner, slot - graph_.insts[user].first)) continue;
-      return true;
+      const Inst& user = graph_.insts[graph_.sources[slot].user];
+      if (user.kind != Kind::kIntrinsic || user.op != Op::kYield) continue;
+      const InstId owner = graph_.blocks[user.block].owner;
+      if (owner != kNone && graph_.insts[owner].kind == Kind::kIf) return true;
     }
     return false;
   }
 
  private:
-  bool is_yield(InstId id) const {
-    return graph_.insts[id].kind == Kind::kIntrinsic && graph_.insts[id].op == Op::kYield;
-  }
-
-  std::uint32_t order_of(InstId id) const { return id < order_.size() ? order_[id] : 0; }
-
-  /// True when a loop that does not contain the value's definition contains the If: it reads the value again.
-  bool in_loop(ValueId value, InstId branch) const {
-    const BlockId home = graph_.insts[graph_.values[value].def].block;
-    for (BlockId block = graph_.insts[branch].block; block != home;) {
-      const InstId owner = graph_.blocks[block].owner;
-      if (owner == kNone) return false;
-      if (graph_.insts[owner].kind == Kind::kLoop) return true;
-      block = graph_.insts[owner].block;
-    }
-    return false;
-  }
-
-  /// What the branch yields to result `index`, kNone: it leaves.
-  InstId yielded(InstId branch, std::uint32_t side, std::uint32_t index) const {
-    const InstId last = graph_.blocks[graph_.insts[branch].child[side]].tail;
-    if (last == kNone || !is_yield(last)) return kNone;
-    return graph_.values[graph_.source(graph_.insts[last], index).value].def;
-  }
-
-  /// True when the value is read where result `index` of the If, or what a branch yields to it, exists already.
-  bool used_after(ValueId value, InstId branch, std::uint32_t index) const {
-    for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next) {
-      const InstId user = graph_.sources[slot].user;
-      if (is_yield(user) && graph_.blocks[graph_.insts[user].block].owner == branch) continue;
-      InstId inside = user;
-      BlockId block = graph_.insts[inside].block;
-      while (inside != kNone && graph_.blocks[block].owner != branch) {
-        inside = graph_.blocks[block].owner;
-        if (inside != kNone) block = graph_.insts[inside].block;
-      }
-      if (inside == kNone) {
-        if (order_of(user) > order_of(branch)) return true;
-        continue;
-      }
-      const std::uint32_t side = block == graph_.insts[branch].child[1] ? 1 : 0;
-      const InstId other = yielded(branch, side, index);
-      if (other == kNone || other == graph_.values[value].def) continue;
-      if (order_of(other) > order_of(branch) && order_of(user) > order_of(other)) return true;
-    }
-    return false;
-  }
-
-  Graph& graph_;
-  std::vector<std::uint32_t> order_;  ///< of instructions, in the program
-  std::uint32_t last_ = 0;
+  const Graph& graph_;
 };
 
 class Builder {

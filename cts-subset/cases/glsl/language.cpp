@@ -312,6 +312,13 @@ const bool kFragments = [] {
         "    switch (pi.w) {\n      case 0:\n        s = s * r;\n    }\n    r = s * r;\n  }\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 1}, "r"}, {{Base::kFloat, 1}, "s"}}, {}, false});
   });
+  // A value in a register of its own: it is still needed beside what is chosen from it.
+  AddCase("glsl", "rewrite.literal_in_own_register", [](Run& run) {
+    const char* text =
+        "  precise float s = (0.0 / b.z) * a.z, t = a.x * s;\n  precise float r = 4.0 < b.y ? s : p.y;\n";
+    const Base number = Base::kFloat;
+    evaluate(run, Stage::kVertex, {"", text, {{{number, 1}, "r"}, {{number, 1}, "s"}, {{number, 1}, "t"}}, {}, false});
+  });
   AddCase("glsl", "rewrite.sum_of_ldexp", [](Run& run) {
     const char* text = "  vec4 r = ldexp(vec4(-1.0), pi & 31) + mix(a, b, p);\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 4}, "r"}}, {}, false});
