@@ -162,8 +162,14 @@ void Graph::set_source(InstId inst, std::uint32_t index, Src src) {
 }
 
 void Graph::set_operands(InstId inst, const std::vector<Src>& src) {
-  for (std::uint32_t i = 0; i < insts[inst].count; ++i) unlink_use(insts[inst].first + i);
-  add_operands(inst, src);
+  const Slot first = insts[inst].first;
+  for (std::uint32_t i = 0; i < insts[inst].count; ++i) unlink_use(first + i);
+  if (src.size() > insts[inst].count) return add_operands(inst, src);
+  insts[inst].count = static_cast<std::uint32_t>(src.size());
+  for (std::uint32_t i = 0; i < insts[inst].count; ++i) {
+    sources[first + i].src = src[i];
+    link_use(first + i);
+  }
 }
 
 void Graph::link_use(Slot slot) {

@@ -54,11 +54,13 @@ void straighten(Graph& graph, InstId loop) {
   graph.set_operands(last, forwarded);
 }
 
-void append_operand(Graph& graph, InstId id, Src src) {
+void append_operands(Graph& graph, InstId id, const std::vector<Src>& more) {
   std::vector<Src> operands = operands_of(graph, id);
-  operands.push_back(src);
+  operands.insert(operands.end(), more.begin(), more.end());
   graph.set_operands(id, operands);
 }
+
+void append_operand(Graph& graph, InstId id, Src src) { append_operands(graph, id, {src}); }
 
 void erase_operand(Graph& graph, InstId id, std::size_t index) {
   std::vector<Src> operands = operands_of(graph, id);
@@ -298,6 +300,22 @@ ValueId add_param(Graph& graph, InstId loop, ValueId like, Src init, Src next) {
   for (const InstId way : ways_back(graph, loop)) append_operand(graph, way, next);
   append_operand(graph, graph.blocks[graph.insts[loop].child[1]].tail, {passed, kWhole});
   return param;
+}
+
+std::vector<ValueId> add_params(Graph& graph, InstId loop, const std::vector<ValueId>& initial) {
+  std::vector<ValueId> params;
+  std::vector<Src> first, passed;
+  for (const ValueId value : initial) {
+    params.push_back(new_value(graph, loop, value));
+    node_of(graph, loop).params.push_back(params.back());
+    first.push_back({value, kWhole});
+    passed.push_back({new_value(graph, loop, value), kWhole});
+    node_of(graph, loop).continue_params.push_back(passed.back().value);
+  }
+  append_operands(graph, loop, first);
+  for (const InstId way : ways_back(graph, loop)) append_operands(graph, way, first);
+  append_operands(graph, graph.blocks[graph.insts[loop].child[1]].tail, passed);
+  return params;
 }
 
 namespace {

@@ -28,6 +28,9 @@ int param_index(const Graph& graph, InstId loop, ValueId value);
 /// A new parameter, the same `next` on every way back.
 ValueId add_param(Graph& graph, InstId loop, ValueId like, Src init, Src next);
 
+/// New parameters, every one with its `initial` value on the ways back, too.
+std::vector<ValueId> add_params(Graph& graph, InstId loop, const std::vector<ValueId>& initial);
+
 /// A value equal to `src`, of the type of `like`, in front of `position`. The reference takes what a loop starts and
 /// goes on with through a register that it writes as far up as each block has one successor; where ways join in
 /// between, the next round's rules see only that they join.

@@ -90,9 +90,9 @@ class Promoter {
     return entry != state.end() ? entry->second : undefined_before(position);
   }
 
-  void append_operand(InstId id, ValueId value) {
+  void append_operands(InstId id, const std::vector<ValueId>& values) {
     std::vector<Src> operands = operands_of(graph_, id);
-    operands.push_back({value, {0, 1, 2, 3}});
+    for (const ValueId value : values) operands.push_back({value, {0, 1, 2, 3}});
     graph_.set_operands(id, operands);
   }
 
@@ -139,12 +139,13 @@ class Promoter {
   /// A result of the If or Loop `id`, of what the jumps `ends` find in `states`, for all elements that differ.
   void join(InstId id, const std::vector<InstId>& ends, const std::vector<const State*>& states) {
     State joined = *states[0];
-    for (const Element& element : differing(states)) {
-      std::vector<ValueId> values;
-      for (std::size_t i = 0; i < ends.size(); ++i) values.push_back(value_before(ends[i], *states[i], element));
-      joined[element] = add_results(graph_, id, {values[0]})[0].value;
-      for (std::size_t i = 0; i < ends.size(); ++i) append_operand(ends[i], values[i]);
-    }
+    const std::vector<Element> elements = differing(states);
+    std::vector<std::vector<ValueId>> values(ends.size());
+    for (const Element& element : elements)
+      for (std::size_t i = 0; i < ends.size(); ++i) values[i].push_back(value_before(ends[i], *states[i], element));
+    const std::vector<Src> results = add_results(graph_, id, values[0]);
+    for (std::size_t i = 0; i < elements.size(); ++i) joined[elements[i]] = results[i].value;
+    for (std::size_t i = 0; i < ends.size(); ++i) append_operands(ends[i], values[i]);
     state_ = std::move(joined);
   }
 
@@ -188,11 +189,13 @@ class Promoter {
     std::sort(stored.begin(), stored.end());
     stored.erase(std::unique(stored.begin(), stored.end()), stored.end());
     frames_.emplace_back();
-    for (const Element& element : stored) {
-      const Src init{value_before(loop, state_, element), {0, 1, 2, 3}};
-      const auto index = static_cast<std::uint32_t>(graph_.nodes[graph_.insts[loop].node]->params.size());
-      state_[element] = add_param(graph_, loop, init.value, init, init);
-      frames_.back().params.emplace_back(element, index);
+    std::vector<ValueId> initial;
+    for (const Element& element : stored) initial.push_back(value_before(loop, state_, element));
+    auto index = static_cast<std::uint32_t>(graph_.nodes[graph_.insts[loop].node]->params.size());
+    const std::vector<ValueId> params = add_params(graph_, loop, initial);
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+      state_[stored[i]] = params[i];
+      frames_.back().params.emplace_back(stored[i], index++);
     }
     visit(body);
     if (ends_in(graph_, body, Op::kYield)) pass(graph_.blocks[body].tail);

@@ -1,5 +1,7 @@
 // Valid modules of absurd size or shape: each becomes a shader or an error within reasonable time and memory; the stack
 // does not grow with the module.
+#include <sys/resource.h>
+
 #include <functional>
 
 #include "spirv/front/translate.h"
@@ -67,6 +69,28 @@ TEST(AbsurdModule, ValueOfTheWayOutThatALoopLoses) {
       "%end = OpLabel\n%large = OpUGreaterThan %bool %all %u7\n%r = OpSelect %uint %large %sum %u7\n";
   EXPECT_TRUE(compiles(module_with("%u3 = OpConstant %uint 3\n", "", loop + store("%r"), "",
                                    "OpCapability GroupNonUniformArithmetic\nOpCapability GroupNonUniformBallot\n")));
+}
+
+/// Peak memory of the process, in KiB.
+long peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+TEST(AbsurdModule, ArraysOfAThousandElementsThroughBranches) {
+  std::string source =
+      "layout(set = 0, binding = 0) buffer B { float v[]; }; void main() { uint n = gl_GlobalInvocationID.x;\n";
+  for (std::size_t i = 0; i < 4; i++)
+    source += "float a" + number(i) + "[1000]; for (int j = 0; j < 4; j++) a" + number(i) + "[j] = v[j + " + number(i) +
+              "];\n";
+  source += repeated(10, [](std::size_t i) {
+    return "if (v[" + number(i) + "] > 0.5) a" + number(i % 4) + " = a" + number((i + 1) % 4) + ";\n";
+  });
+  source += "for (int j = 0; j < 4; j++) v[n + j] = a0[j] + a1[j] + a2[j] + a3[j]; }";
+  const long before = peak_memory();
+  EXPECT_TRUE(compiles(compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, source.c_str())));
+  EXPECT_LT(peak_memory() - before, 300000);
 }
 
 TEST(AbsurdModule, PointersAreNoPartsOfVectors) {
