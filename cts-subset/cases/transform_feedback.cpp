@@ -126,6 +126,14 @@ void capture(Run& run, const GraphicsSpec& spec, bool indexed, VkDeviceSize firs
   run.out("counts", counts);
 }
 
+/// The same without a picture: primitives end behind the vertex shader.
+void capture_alone(Run& run, GraphicsSpec& spec) {
+  spec.raster.rasterizerDiscardEnable = VK_TRUE;
+  spec.fragment.clear();
+  capture(run, spec, false);
+  run.may_be_blank();
+}
+
 struct Topology {
   const char* name;
   VkPrimitiveTopology value;
@@ -242,10 +250,7 @@ void main() {
   blocks[1].narrow = color.xy;
   gl_Position = position;
 })";
-  spec.raster.rasterizerDiscardEnable = VK_TRUE;
-  spec.fragment.clear();
-  capture(run, spec, false);
-  run.may_be_blank();
+  capture_alone(run, spec);
 }
 
 /// Doubles, and structures with doubles, begin at multiples of eight bytes.
@@ -266,10 +271,7 @@ void main() {
   block.b = gl_VertexIndex;
   gl_Position = position;
 })";
-  spec.raster.rasterizerDiscardEnable = VK_TRUE;
-  spec.fragment.clear();
-  capture(run, spec, false);
-  run.may_be_blank();
+  capture_alone(run, spec);
 }
 
 /// A structure that is no block is captured as a whole.
@@ -290,10 +292,7 @@ void main() {
   list[1] = Inner(float[2](color.x, color.y), gl_InstanceIndex);
   gl_Position = position;
 })";
-  spec.raster.rasterizerDiscardEnable = VK_TRUE;
-  spec.fragment.clear();
-  capture(run, spec, false);
-  run.may_be_blank();
+  capture_alone(run, spec);
 }
 
 /// Numbers of 16 bits take two bytes each. The reference, whose outputs have 32 bits, captures pairs of them as words.

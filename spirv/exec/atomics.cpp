@@ -5,7 +5,7 @@
 
 #include "base/numeric.h"
 #include "spirv/exec/atomic_ops.h"
-#include "spirv/exec/buffers.h"
+#include "spirv/exec/atomic_spaces.h"
 #include "spirv/exec/handlers.h"
 
 namespace vitrine::spirv::exec {
@@ -48,16 +48,10 @@ void run(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& byt
   run_lanes<kAtomic>(wave, i, row, bytes, active, offsets.lane);
 }
 
-/// Lanes that do not take part (helpers) read 0.
-void clear_result(Wave& wave, const Instruction* i) {
-  if (i->dst == kNoOperand) return;
-  base::for_each_lane(wave.active & ~wave.live, [&](std::size_t lane) { reg(wave, i->dst).lane[lane] = 0; });
-}
-
 template <bool kUniform>
 const Instruction* on_buffer(Wave& wave, const Instruction* i) {
   const MemoryOp& row = memory_op(wave, i);
-  clear_result(wave, i);
+  clear_result(wave, i->dst);
   for_each_buffer(wave, row, wave.active & wave.live,
                   [&](const Bytes& bytes, base::LaneMask active) { run<true>(wave, i, row, bytes, active, kUniform); });
   return i + 1;
@@ -66,7 +60,7 @@ const Instruction* on_buffer(Wave& wave, const Instruction* i) {
 template <bool kUniform>
 const Instruction* on_shared(Wave& wave, const Instruction* i) {
   const MemoryOp& row = memory_op(wave, i);
-  clear_result(wave, i);
+  clear_result(wave, i->dst);
   run<false>(wave, i, row, shared_bytes(wave), wave.active & wave.live, kUniform);
   return i + 1;
 }
@@ -75,7 +69,7 @@ const Instruction* on_shared(Wave& wave, const Instruction* i) {
 
 const Instruction* atomic_global(Wave& wave, const Instruction* i) {
   const MemoryOp& row = memory_op(wave, i);
-  clear_result(wave, i);
+  clear_result(wave, i->dst);
   for_each_stretch(wave, i, row, wave.active & wave.live,
                    [&](const Bytes& bytes, base::LaneMask lanes, const base::WaveRegister& offset) {
                      run_lanes<true>(wave, i, row, bytes, lanes, offset.lane);

@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "base/numeric.h"
-#include "spirv/exec/buffers.h"
+#include "spirv/exec/atomic_spaces.h"
 
 namespace vitrine::spirv::exec {
 namespace {
@@ -49,66 +49,28 @@ std::uint16_t act_alone(ir::AtomicOp op, std::byte* at, std::uint16_t operand, s
   return old;
 }
 
-/// `offset_of`: byte offset of a lane.
-template <bool kAtomic, class F>
-void run_lanes(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes, base::LaneMask active,
-               const F& offset_of) {
-  base::for_each_lane(active, [&](std::size_t lane) {
-    const std::uint32_t offset = (offset_of(lane) + row.added) & ~(row.element_bytes - 1);
-    const auto operand = static_cast<std::uint16_t>(row.data[0] == kNoOperand ? 0 : reg(wave, row.data[0]).lane[lane]);
-    std::uint16_t old = 0;
-    if (std::uint64_t{offset} + row.element_bytes <= bytes.size)
-      old = kAtomic ? act_atomically(row.atomic, bytes.data + offset, operand)
-                    : act_alone(row.atomic, bytes.data + offset, operand, row.element_bytes);
-    if (i->dst != kNoOperand) reg(wave, i->dst).lane[lane] = old;
-  });
-}
+struct Halves {
+  static void clear_results(Wave& wave, const Instruction* i) { clear_result(wave, i->dst); }
 
-template <bool kAtomic, bool kUniform>
-void run(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes, base::LaneMask active) {
-  run_lanes<kAtomic>(wave, i, row, bytes, active, [&](std::size_t lane) {
-    return kUniform ? uniform_word(wave, i->src[0]) : reg(wave, i->src[0]).lane[lane];
-  });
-}
-
-/// Lanes that do not take part (helpers) read 0.
-void clear_result(Wave& wave, const Instruction* i) {
-  if (i->dst == kNoOperand) return;
-  base::for_each_lane(wave.active & ~wave.live, [&](std::size_t lane) { reg(wave, i->dst).lane[lane] = 0; });
-}
-
-template <bool kUniform>
-const Instruction* on_buffer(Wave& wave, const Instruction* i) {
-  const MemoryOp& row = memory_op(wave, i);
-  clear_result(wave, i);
-  for_each_buffer(wave, row, wave.active & wave.live,
-                  [&](const Bytes& bytes, base::LaneMask active) { run<true, kUniform>(wave, i, row, bytes, active); });
-  return i + 1;
-}
-
-template <bool kUniform>
-const Instruction* on_shared(Wave& wave, const Instruction* i) {
-  clear_result(wave, i);
-  run<false, kUniform>(wave, i, memory_op(wave, i), shared_bytes(wave), wave.active & wave.live);
-  return i + 1;
-}
-
-const Instruction* behind_pointers(Wave& wave, const Instruction* i) {
-  const MemoryOp& row = memory_op(wave, i);
-  clear_result(wave, i);
-  for_each_stretch(wave, i, row, wave.active & wave.live,
-                   [&](const Bytes& bytes, base::LaneMask active, const base::WaveRegister& offset) {
-                     run_lanes<true>(wave, i, row, bytes, active, [&](std::size_t lane) { return offset.lane[lane]; });
-                   });
-  return i + 1;
-}
+  /// `offset_of`: byte offset of a lane.
+  template <bool kAtomic, class F>
+  static void run_lanes(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes,
+                        base::LaneMask active, const F& offset_of) {
+    base::for_each_lane(active, [&](std::size_t lane) {
+      const std::uint32_t offset = (offset_of(lane) + row.added) & ~(row.element_bytes - 1);
+      const auto operand =
+          static_cast<std::uint16_t>(row.data[0] == kNoOperand ? 0 : reg(wave, row.data[0]).lane[lane]);
+      std::uint16_t old = 0;
+      if (std::uint64_t{offset} + row.element_bytes <= bytes.size)
+        old = kAtomic ? act_atomically(row.atomic, bytes.data + offset, operand)
+                      : act_alone(row.atomic, bytes.data + offset, operand, row.element_bytes);
+      if (i->dst != kNoOperand) reg(wave, i->dst).lane[lane] = old;
+    });
+  }
+};
 
 }  // namespace
 
-Handler atomic_half(Space space, bool uniform) {
-  if (space == Space::kGlobal) return behind_pointers;
-  if (space == Space::kBuffer) return uniform ? on_buffer<true> : on_buffer<false>;
-  return uniform ? on_shared<true> : on_shared<false>;
-}
+Handler atomic_half(Space space, bool uniform) { return AtomicSpaces<Halves>::handler(space, uniform); }
 
 }  // namespace vitrine::spirv::exec

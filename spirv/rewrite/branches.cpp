@@ -43,11 +43,6 @@ bool may_hoist(const Inst& inst) {
   }
 }
 
-bool is_literal(const Graph& graph, Src src, std::uint32_t bits) {
-  const Inst* constant = graph.constant(src.value);
-  return constant && constant->imm[src.swizzle[0]] == bits;
-}
-
 /// A shift that is a part of extending the sign of a number of 8 or 16 bits.
 bool extends_sign(const Graph& graph, const Inst& inst) {
   const auto by = [&](const Inst& shift, std::uint32_t bits) {

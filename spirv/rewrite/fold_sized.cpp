@@ -7,6 +7,7 @@
 #include "spirv/rewrite/fold_float.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/sized.h"
+#include "spirv/rewrite/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -14,11 +15,6 @@ namespace {
 const Inst* scalar_of(const Graph& graph, Src src, Op op) {
   const Inst* inst = graph.def(src.value);
   return inst && inst->kind == Inst::Kind::kAlu && inst->op == op && inst->components == 1 ? inst : nullptr;
-}
-
-bool is_literal(const Graph& graph, Src src, std::uint32_t number) {
-  const Inst* constant = graph.constant(src.value);
-  return constant && constant->imm[src.swizzle[0]] == number;
 }
 
 /// What the shift of this op by `count` shifts; none: it is something else.

@@ -3,9 +3,11 @@
 // leaves nothing to do for are taken away, so that x * 1 keeps a denormal x.
 #include <algorithm>
 #include <bit>
+#include <unordered_set>
 
 #include "base/float_mode.h"
 #include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -33,8 +35,7 @@ class LateFolder {
   }
 
   bool is(const Inst& inst, std::uint32_t index, std::uint32_t bits) const {
-    const Inst* literal = constant(inst, index);
-    return literal && literal->imm[graph_.source(inst, index).swizzle[0]] == bits;
+    return is_literal(graph_, graph_.source(inst, index), bits);
   }
 
   /// A division by zero of signed numbers is 0, too, not that of unsigned ones.
@@ -86,7 +87,7 @@ class LateFolder {
   }
 
   bool is_late(const Inst& inst, std::uint32_t index) const {
-    return std::find(late_.begin(), late_.end(), graph_.source(inst, index).value) != late_.end();
+    return late_.count(graph_.source(inst, index).value) != 0;
   }
 
   bool reads_late(const Inst& inst) const {
@@ -98,7 +99,7 @@ class LateFolder {
   void become(InstId id, std::uint32_t bits) {
     const InstId made = graph_.create_const(1, graph_.insts[id].boolean, &bits);
     graph_.insert_before(id, made);
-    late_.push_back(graph_.insts[made].result);
+    late_.insert(graph_.insts[made].result);
     graph_.replace_uses(graph_.insts[id].result, graph_.insts[made].result);
     graph_.remove(id);
   }
@@ -202,7 +203,7 @@ class LateFolder {
   }
 
   Graph& graph_;
-  std::vector<ValueId> late_;
+  std::unordered_set<ValueId> late_;
 };
 
 }  // namespace

@@ -95,11 +95,6 @@ bool is_float_for_one(const Graph& graph, Src src) {
   return users <= 1;
 }
 
-bool is_literal(const Graph& graph, Src src, std::uint32_t bits) {
-  const Inst* constant = graph.constant(src.value);
-  return constant && constant->imm[src.swizzle[0]] == bits;
-}
-
 /// True when the conversion to float moves into a selection of a literal and `operand`.
 bool converts_sides(const Graph& graph, Src condition, Src operand) {
   return !compares_integers(graph, condition) || is_float_for_one(graph, operand);

@@ -14,6 +14,12 @@ inline bool ends_in(const Graph& graph, BlockId block, Op op) {
   return last != kNone && is_jump(graph.insts[last], op);
 }
 
+/// The component that an operation on scalars reads is a constant with these bits.
+inline bool is_literal(const Graph& graph, Src src, std::uint32_t bits) {
+  const Inst* constant = graph.constant(src.value);
+  return constant && constant->imm[src.swizzle[0]] == bits;
+}
+
 /// A Continue of the loop around `block`.
 bool contains_continue(const Graph& graph, BlockId block);
 
