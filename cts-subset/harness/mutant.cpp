@@ -2,6 +2,9 @@
 #include "harness/mutant.h"
 
 #include <spirv-tools/libspirv.hpp>
+#include <spirv/unified1/spirv.hpp11>
+#include <unordered_map>
+#include <utility>
 
 #include "harness/random.h"
 #include "tests/fuzz/mutate.h"
@@ -18,17 +21,65 @@ bool is_valid(const std::vector<uint32_t>& words) {
   return tools.Validate(words.data(), words.size(), options);
 }
 
+/// What a walk over a module's instructions keeps of its loops, whose blocks stand between header and merge block.
+struct LoopWalk {
+  std::vector<std::pair<uint32_t, uint32_t>> open;  ///< merge block and number of each loop around, outermost first
+  std::unordered_map<uint32_t, uint32_t> loop_of;   ///< the innermost loop's number of each result in a loop
+  std::vector<uint32_t> of_block;                   ///< results of the block so far
+  uint32_t loops = 0;
+  uint32_t reads_behind = 0;
+};
+
+bool is_around(const LoopWalk& walk, uint32_t loop) {
+  for (const auto& [merge, number] : walk.open)
+    if (number == loop) return true;
+  return false;
+}
+
+spv_result_t visit(void* user, const spv_parsed_instruction_t* inst) {
+  LoopWalk& walk = *static_cast<LoopWalk*>(user);
+  const auto op = static_cast<spv::Op>(inst->opcode);
+  if (op == spv::Op::OpLabel) {
+    walk.of_block.clear();
+    while (!walk.open.empty() && walk.open.back().first == inst->result_id) walk.open.pop_back();
+  }
+  for (uint16_t i = 0; op != spv::Op::OpPhi && i < inst->num_operands; i++) {
+    const spv_parsed_operand_t& operand = inst->operands[i];
+    if (operand.type != SPV_OPERAND_TYPE_ID) continue;
+    const auto found = walk.loop_of.find(inst->words[operand.offset]);
+    walk.reads_behind += found != walk.loop_of.end() && !is_around(walk, found->second);
+  }
+  if (op == spv::Op::OpLoopMerge) {
+    walk.open.emplace_back(inst->words[1], ++walk.loops);
+    for (const uint32_t result : walk.of_block) walk.loop_of[result] = walk.loops;
+  } else if (inst->result_id != 0 && op != spv::Op::OpLabel && op != spv::Op::OpPhi) {
+    walk.of_block.push_back(inst->result_id);
+    if (!walk.open.empty()) walk.loop_of[inst->result_id] = walk.open.back().second;
+  }
+  return SPV_SUCCESS;
+}
+
+/// How many operands read a value of a loop behind it, which the reference gets wrong (deviations.md,
+/// value-leaves-loop).
+uint32_t reads_behind_loops(const std::vector<uint32_t>& words) {
+  static const spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_3);
+  LoopWalk walk;
+  spvBinaryParse(context, &walk, words.data(), words.size(), nullptr, visit, nullptr);
+  return walk.reads_behind;
+}
+
 }  // namespace
 
 std::vector<uint32_t> mutant_of(const std::vector<uint32_t>& words, uint64_t seed) {
   const std::string_view bytes(reinterpret_cast<const char*>(words.data()), words.size() * 4);
   fuzz::Random random(hash_name(bytes, seed));
   if (!is_valid(words)) return words;
+  const uint32_t reads_behind = reads_behind_loops(words);
   constexpr int kTries = 40;
   for (int i = 0; i < kTries; i++) {
     std::vector<uint32_t> mutant = words;
     fuzz::mutate_values(mutant, random);
-    if (mutant != words && is_valid(mutant)) return mutant;
+    if (mutant != words && is_valid(mutant) && reads_behind_loops(mutant) <= reads_behind) return mutant;
   }
   return words;
 }
