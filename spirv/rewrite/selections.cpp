@@ -4,6 +4,7 @@
 
 #include "base/float_mode.h"
 #include "base/numeric.h"
+#include "spirv/rewrite/negations.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/tree.h"
 
@@ -297,6 +298,7 @@ bool select_operation(Graph& graph, InstId id, std::uint32_t index, std::uint32_
   Selection selection;
   if (graph.constant(other.value) || is_subtracted(graph, graph.insts[id], other)) return false;
   if (!find_selection(graph, graph.source(graph.insts[id], index), identity, selection)) return false;
+  if (negates_selection(graph, id, index)) return false;
   const Src operand = other_side(graph, id, selection);
   select_result(graph, id, selection, other);
   graph.set_source(id, index, operand);

@@ -118,6 +118,18 @@ CTS_CASE("glsl", "subtracted_selections") {
                     "  vec4 r2 = a - (b.z >= b.w ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n");
 }
 
+// A negated product is that of a negated factor: of the selection, which has no identity then, or of the other.
+CTS_CASE("glsl", "negated_selections") {
+  run.require(reference_cpu().float_to_uint_as_recorded, "what the reference does on a CPU with AVX-512");
+  evaluate_specials(
+      run, kVec4, 8,
+      "  vec4 r0 = -(b * step(a, vec4(0.25))), r1 = -(abs(b) * (a.x < a.w ? vec4(1.0) : a.zzzz));\n"
+      "  vec4 r2 = -((b.x < a.x ? vec4(1.0) : a) * abs(b)), r3 = -(min(b, a.y) * (a.y < b.y ? 1.0 : a.z));\n"
+      "  vec4 r4 = -(max(b, b.y) * (a.z < b.x ? 1.0 : a.z)), r5 = b.x - b * (a.y < 0.5 ? 1.0 : a.x);\n"
+      "  vec4 r6 = -((a.x < a.w ? p : b) * (a.x < a.y ? 1.0 : a.z));\n"
+      "  vec4 r7 = -((i.x < i.y ? p : b) * (i.z < i.y ? 1.0 : a.z * b.x));\n");
+}
+
 // The minimum and maximum of two zeros that the compiler folds is the second.
 CTS_CASE("glsl", "folded_extrema") {
   evaluate_specials(
