@@ -129,7 +129,7 @@ class Closer {
     if (only_ != kNone && (!is_inside(graph_, src.value, only_) || encloses(graph_, only_, block))) return;
     const InstId innermost = loop_of(graph_, src.value);
     if (innermost == kNone || encloses(graph_, innermost, block)) return;
-    if (const Inst* constant = graph_.constant(src.value))
+    if (const Inst* constant = graph_.constant(src.value); constant && only_ == kNone)
       return read_literal(user, index, src, std::to_array(constant->imm).data());
     for (InstId loop = innermost; loop != kNone && !encloses(graph_, loop, block); loop = loop_of(graph_, src.value))
       src.value = result_for(loop, src.value);

@@ -71,5 +71,14 @@ CTS_CASE("glsl", "control_flow.literals_joined_before_loop") {
   evaluate(run, Stage::kCompute, {"", text, {{kVec4, "r"}, {kFloat, "turns"}}, {}, false});
 }
 
+// A literal that loops share comes from the first one: once that is unrolled, the second one's counter steps by what is
+// in front of it, and the second one stays a loop.
+CTS_CASE("glsl", "control_flow.literal_of_unrolled_loop") {
+  const char* text =
+      "  vec4 s = a, t = b;\n  int k = 1, n = 3;\n  while (k-- > 0) t = t * p;\n"
+      "  while (n-- > 0) s = (s + s) * 1.7;\n";
+  evaluate(run, Stage::kVertex, {"", text, {{kVec4, "s"}, {kVec4, "t"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
