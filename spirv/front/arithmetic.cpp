@@ -167,17 +167,35 @@ void select(Translator& t, const Inst& inst, ir::Op) {
   set_value(t, inst, std::move(results));
 }
 
-/// The reference joins three components from the last to the first, four in pairs.
+/// The reference compares the vector with a literal, which is one operation until its rules come to it, and joins three
+/// components from the last to the first, four in pairs. Equal to true is written as unequal to false here, which is
+/// one instruction, too.
 void reduce_boolean(Translator& t, const Inst& inst, ir::Op op) {
   const ir::ValueId vector = scalar_or_vector(t, inst.operand(0));
   const std::uint8_t count = components(t, vector);
-  const auto join = [&](ir::Src a, ir::Src b) { return emit(t, op, 1, true, {a, b}); };
-  ir::ValueId result = extract(t, vector, 0);
-  if (count == 2) result = join(whole(result), splat(vector, 1));
-  if (count == 3) result = join(whole(result), whole(join(splat(vector, 1), splat(vector, 2))));
-  if (count == 4)
-    result = join(whole(join(whole(result), splat(vector, 1))), whole(join(splat(vector, 2), splat(vector, 3))));
-  set_value(t, inst, result);
+  if (count == 1) return set_value(t, inst, vector);
+  const std::uint32_t word = 0;
+  const ir::Src never = whole(literal(t, {&word, 1}, true));
+  const bool saved = std::exchange(t.opaque, true);
+  std::array<ir::Src, 4> compared;
+  const auto compare = [&](std::uint8_t c) {
+    compared[c] = whole(emit(t, ir::Op::kXorB, 1, true, {splat(vector, c), never}));
+  };
+  const auto join = [&](ir::Src a, ir::Src b) { return whole(emit(t, op, 1, true, {a, b})); };
+  compare(0);
+  compare(1);
+  if (count == 3) {
+    compare(2);
+    compared[1] = join(compared[1], compared[2]);
+  }
+  ir::Src result = join(compared[0], compared[1]);
+  if (count == 4) {
+    compare(2);
+    compare(3);
+    result = join(result, join(compared[2], compared[3]));
+  }
+  t.opaque = saved;
+  set_value(t, inst, result.value);
 }
 
 void float_modulo(Translator& t, const Inst& inst, ir::Op round) {

@@ -86,13 +86,22 @@ class Rewriter {
     return child(0, 1) && child(1, 0) && (shape.children < 3 || child(2, 2));
   }
 
+  /// What the reference has where a part of a reduction of booleans compares a component.
+  Op comparison_of(const Inst& part) const {
+    const Slot use = graph_.values[part.result].first_use;
+    return use != kNone && graph_.insts[graph_.sources[use].user].op == Op::kOrB ? Op::kINe : Op::kIEq;
+  }
+
   /// True when the state changed.
   bool update_state(InstId id) {
     const Inst& inst = graph_.insts[id];
     State state{};
-    if (!inst.opaque)
-      for (const std::uint16_t shape : rules_.shapes_by_op[static_cast<std::size_t>(shape_op(inst.op))])
+    const auto add_shapes = [&](Op op) {
+      for (const std::uint16_t shape : rules_.shapes_by_op[static_cast<std::size_t>(op)])
         if (fits(inst, rules_.shapes[shape])) state[shape / 64] |= std::uint64_t{1} << (shape % 64);
+    };
+    if (!inst.opaque) add_shapes(shape_op(inst.op));
+    if (!inst.opaque && inst.op == Op::kXorB && inst.opens == Opens::kWithResult) add_shapes(comparison_of(inst));
     if (states_[inst.result] == state) return false;
     states_[inst.result] = state;
     return true;

@@ -1,6 +1,6 @@
-// Dot products, remainders and ldexp, which are single operations in the reference's first round: what the front end
-// made of them stays closed to the rules until then, and vectors that end in zeros shorten dot products
-// (lavapipe-shader-math.md 5.1).
+// Dot products, remainders, ldexp and reductions of booleans, which are single operations in the reference's first
+// round: what the front end made of them stays closed to the rules until then, and vectors that end in zeros shorten
+// dot products (lavapipe-shader-math.md 5.1).
 #include "spirv/rewrite/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -96,11 +96,27 @@ class Shortener {
   Graph& graph_;
 };
 
+/// The comparisons of components that a reduction of booleans joins, and their joints, operands first.
+std::vector<InstId> parts_of_reduction(const Graph& graph, const Inst& end) {
+  std::vector<InstId> parts;
+  for (std::uint32_t i = 0; i < end.count; ++i) {
+    const InstId part = graph.values[graph.source(end, i).value].def;
+    if (part == kNone || !graph.insts[part].opaque || graph.insts[part].kind != Kind::kAlu) continue;
+    if (graph.insts[part].op != Op::kXorB) {
+      const std::vector<InstId> inner = parts_of_reduction(graph, graph.insts[part]);
+      parts.insert(parts.end(), inner.begin(), inner.end());
+    }
+    parts.push_back(part);
+  }
+  return parts;
+}
+
 }  // namespace
 
 std::vector<InstId> parts_of_composed(const Graph& graph, InstId id) {
   const Inst& end = graph.insts[id];
   if (!end.opaque || end.kind != Kind::kAlu) return {};
+  if (end.op == Op::kAndB || end.op == Op::kOrB) return parts_of_reduction(graph, end);
   if (end.op == Op::kFMul) {
     const Inst* scaled = graph.def(graph.source(end, 0).value);
     const bool part = is_alu(scaled, Op::kFMul) && scaled->opaque &&

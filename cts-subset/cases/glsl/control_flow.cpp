@@ -80,5 +80,14 @@ CTS_CASE("glsl", "control_flow.literal_of_unrolled_loop") {
   evaluate(run, Stage::kVertex, {"", text, {{kVec4, "s"}, {kVec4, "t"}}, {}, false});
 }
 
+// all() is one operation until the rules come to it; the components' comparisons are theirs to see in the next round.
+CTS_CASE("glsl", "control_flow.branch_on_all") {
+  const char* text =
+      "  vec4 s = vec4(p.z, vec3(-2.5)) * (p * a);\n"
+      "  if (all(equal(uvec4(u.y, u.x, u.y, 255u), u.xxzw - u))) {\n    switch (~i.z) {\n      case 0:\n"
+      "        s = s.xwwy;\n    }\n  }\n";
+  evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
