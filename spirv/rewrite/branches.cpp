@@ -296,6 +296,20 @@ bool remove_constant_params(Graph& graph, InstId id) {
   return changed;
 }
 
+/// In the order in which ways join: those of an If behind what is in it, those of a loop in front.
+bool remove_equal_joins(Graph& graph, BlockId block) {
+  bool changed = false;
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
+    if (graph.insts[id].kind == Kind::kLoop) changed |= remove_constant_params(graph, id);
+    for (const unsigned side : {0u, 1u}) {
+      const BlockId child = graph.insts[id].child[side];
+      if (child != kNone) changed |= remove_equal_joins(graph, child);
+    }
+    if (graph.insts[id].kind == Kind::kIf) changed |= remove_equal_results(graph, id);
+  }
+  return changed;
+}
+
 }  // namespace
 
 bool flatten_branches(Graph& graph) { return flatten_in(graph, graph.root); }
@@ -306,12 +320,7 @@ bool remove_trivial_results(Graph& graph) {
     if (graph.insts[id].kind == Kind::kIf) changed |= remove_single_results(graph, id);
   };
   for_each_inst(graph, graph.root, visit_single);
-  auto visit = [&](InstId id) {
-    if (graph.insts[id].kind == Kind::kIf) changed |= remove_equal_results(graph, id);
-    if (graph.insts[id].kind == Kind::kLoop) changed |= remove_constant_params(graph, id);
-  };
-  for_each_inst(graph, graph.root, visit);
-  return changed;
+  return remove_equal_joins(graph, graph.root) || changed;
 }
 
 }  // namespace vitrine::spirv::rewriting

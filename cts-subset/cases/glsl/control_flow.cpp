@@ -89,5 +89,17 @@ CTS_CASE("glsl", "control_flow.branch_on_all") {
   evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}}, {}, false});
 }
 
+// What a branch inside a branch passes on unchanged is known behind both at once: the loop's first iteration goes in
+// front of it in the same round.
+CTS_CASE("glsl", "control_flow.unchanged_by_inner_branch") {
+  const char* text =
+      "  vec4 s = a;\n  float array[7] = float[7](a.x, a.y, a.z, a.w, b.x, b.y, b.z);\n  int k = pi.z & 7;\n"
+      "  do {\n    if (u.w > u.x) {\n      s = vec4(p.y);\n      if (isinf(a.y)) array[(pi.z & 255) % 7] = a.w;\n    "
+      "}\n"
+      "    s = (a - s.ywxz) + 1.0;\n  } while (--k > 0);\n  array[0] = s.w;\n"
+      "  float sum = 0.0;\n  for (int j = 0; j < 7; ++j) sum += array[j];\n";
+  evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}, {kFloat, "sum"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
