@@ -225,6 +225,20 @@ bool flatten_in(Graph& graph, BlockId block) {
   return changed;
 }
 
+/// Where both branches yield copies of one value, its copy behind the If is the result.
+bool join_moves(Graph& graph, InstId id, Src a, Src b, ValueId result) {
+  const Inst *first = graph.def(a.value), *second = graph.def(b.value);
+  if (!first || !is_move(*first) || !is_whole(graph, a, result)) return false;
+  if (!second || !is_move(*second) || !is_whole(graph, b, result)) return false;
+  const Src source = graph.source(*first, 0);
+  if (!same_value(graph, source, graph.source(*second, 0), result)) return false;
+  const InstId copy = make_move(graph, source, result);
+  graph.insts[copy].origin = graph.insts[id].origin;
+  graph.insert_after(id, copy);
+  graph.replace_uses(result, graph.insts[copy].result);
+  return true;
+}
+
 /// Results of an If whose branches yield the same value.
 bool remove_equal_results(Graph& graph, InstId id) {
   bool changed = false;
@@ -235,8 +249,11 @@ bool remove_equal_results(Graph& graph, InstId id) {
     const auto index = static_cast<std::uint32_t>(i);
     const Src a = graph.source(graph.insts[graph.blocks[then_block].tail], index);
     const Src b = graph.source(graph.insts[graph.blocks[else_block].tail], index);
-    if (graph.values[results[i]].uses == 0 || !same_value(graph, a, b, results[i])) continue;
-    graph.replace_uses(results[i], whole_value(graph, id, a, results[i]));
+    if (graph.values[results[i]].uses == 0) continue;
+    if (same_value(graph, a, b, results[i]))
+      graph.replace_uses(results[i], whole_value(graph, id, a, results[i]));
+    else if (!join_moves(graph, id, a, b, results[i]))
+      continue;
     changed = true;
   }
   return changed;

@@ -5,13 +5,12 @@
 #include "spirv/ir_walk.h"
 #include "spirv/rewrite/loops.h"
 #include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
 
 using Kind = Inst::Kind;
-
-bool is_move(const Inst& inst) { return inst.kind == Kind::kAlu && (inst.op == Op::kMov || inst.op == Op::kMovB); }
 
 /// Looks through one copy. False: the operand's definition is no copy, or the components read come from several values.
 bool look_through(const Graph& graph, Src& src, unsigned read) {

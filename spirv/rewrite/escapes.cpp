@@ -44,19 +44,13 @@ bool is_same(const Graph& graph, Src a, Src b, ValueId like) {
   return a.value == b.value;
 }
 
-bool is_whole(const Graph& graph, Src src, ValueId like) {
-  return graph.values[src.value].components == graph.values[like].components &&
-         is_same(graph, src, {src.value, {0, 1, 2, 3}}, like);
-}
-
 /// The value that result `index` is at every way out, or kNoValue.
 ValueId value_at_breaks(Graph& graph, ValueId result, std::uint32_t index, const std::vector<InstId>& breaks) {
   if (breaks.empty()) return ir::kNoValue;
   const Src first = graph.source(graph.insts[breaks[0]], index);
   if (breaks.size() == 1) {
     const Inst* copy = graph.def(first.value);
-    const bool is_copy = copy && copy->kind == Kind::kAlu && (copy->op == Op::kMov || copy->op == Op::kMovB);
-    if (is_copy && is_whole(graph, first, result) && is_whole(graph, graph.source(*copy, 0), result))
+    if (copy && is_move(*copy) && is_whole(graph, first, result) && is_whole(graph, graph.source(*copy, 0), result))
       return graph.source(*copy, 0).value;
     return whole_value(graph, breaks[0], first, result);
   }

@@ -36,8 +36,6 @@ Src substituted(Src src, const std::vector<ValueId>& values, const std::vector<S
   return src;
 }
 
-namespace {
-
 bool is_whole(const Graph& graph, Src src, ValueId like) {
   bool whole = graph.values[src.value].components == graph.values[like].components;
   for (unsigned c = 0; c < graph.values[like].components; ++c) whole &= src.swizzle[c] == c;
@@ -51,8 +49,6 @@ InstId make_move(Graph& graph, Src src, ValueId like) {
   graph.set_source(move, 0, src);
   return move;
 }
-
-}  // namespace
 
 ValueId whole_value(Graph& graph, InstId position, Src src, ValueId like) {
   if (is_whole(graph, src, like)) return src.value;

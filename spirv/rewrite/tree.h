@@ -14,6 +14,10 @@ inline bool ends_in(const Graph& graph, BlockId block, Op op) {
   return last != kNone && is_jump(graph.insts[last], op);
 }
 
+inline bool is_move(const Inst& inst) {
+  return inst.kind == Inst::Kind::kAlu && (inst.op == Op::kMov || inst.op == Op::kMovB);
+}
+
 /// The component that an operation on scalars reads is a constant with these bits.
 inline bool is_literal(const Graph& graph, Src src, std::uint32_t bits) {
   const Inst* constant = graph.constant(src.value);
@@ -30,6 +34,12 @@ std::vector<Src> operands_of(const Graph& graph, InstId id);
 
 /// `src`, or the value that stands for it if it is one of `values`.
 Src substituted(Src src, const std::vector<ValueId>& values, const std::vector<Src>& by);
+
+/// `src` reads the components of its value in their order, and as many as `like` has.
+bool is_whole(const Graph& graph, Src src, ValueId like);
+
+/// A Mov of `src`, of the type of `like`, that is in no block yet.
+InstId make_move(Graph& graph, Src src, ValueId like);
 
 /// A value equal to `src` with the components of `like`; a Mov that it may need goes before `position`.
 ValueId whole_value(Graph& graph, InstId position, Src src, ValueId like);

@@ -101,5 +101,15 @@ CTS_CASE("glsl", "control_flow.unchanged_by_inner_branch") {
   evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}, {kFloat, "sum"}}, {}, false});
 }
 
+// Both sides of the branch copy what the loop ends with: the product behind the loop is known to be zero.
+CTS_CASE("glsl", "control_flow.copied_by_both_sides") {
+  const char* text =
+      "  vec4 s = p;\n  float array[7] = float[7](a.x, a.y, a.z, a.w, b.x, b.y, b.z);\n  int k = pi.x & 7;\n"
+      "  do {\n    s = p.zzzz * vec4(a.w, vec3(0.0));\n    if (u.w > u.x) array[(i.x & 255) % 7] = p.y;\n"
+      "  } while (--k > 0);\n  if ((i.z & 3) == 0) s = s * a.zzwz;\n"
+      "  float sum = 0.0;\n  for (int j = 0; j < 7; ++j) sum += array[j];\n";
+  evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}, {kFloat, "sum"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
