@@ -162,6 +162,11 @@ Judgement judge(const Case& c, uint32_t attempt, bool& again) {
     judgement.message = "  a loop without an end\n";
     return judgement;
   }
+  if (options().mutate && reference.error.empty() && device.error.empty() && reference.notes != device.notes) {
+    judgement.verdict = Verdict::kUnsupported;
+    judgement.message = "  the two devices are given different shaders, and so different mutants\n";
+    return judgement;
+  }
   if (reference.error.empty() && reference.validation.empty() && refused(device)) {
     judgement.verdict = Verdict::kUnsupported;
     judgement.message = "  " + device.validation.front() + "\n";

@@ -181,9 +181,23 @@ Ids exit_conditions(const Words& words, const std::vector<Place>& list) {
   return conditions;
 }
 
-/// Every id that a fixed instruction or the end of a loop depends on, through values and through memory.
+/// Conditions that may keep invocations from what is not theirs: all, where a workgroup shares memory.
+Ids guards(const Words& words, const std::vector<Place>& list) {
+  const auto is_shared = [&](const Place& place) {
+    return place.op == spv::Op::OpVariable && place.length > place.first &&
+           words[place.at + place.first] == static_cast<std::uint32_t>(spv::StorageClass::Workgroup);
+  };
+  Ids conditions;
+  if (std::none_of(list.begin(), list.end(), is_shared)) return conditions;
+  for (const Place& place : list)
+    if (place.op == spv::Op::OpBranchConditional) conditions.insert(words[place.at + 1]);
+  return conditions;
+}
+
+/// Every id that a fixed instruction, the end of a loop or a guard depends on, through values and through memory.
 Ids fixed_ids(const Words& words, const std::vector<Place>& list) {
   Ids ids = exit_conditions(words, list);
+  ids.merge(guards(words, list));
   const auto take = [&](const Place& place, std::uint32_t from) {
     bool grew = false;
     for (std::uint32_t i = from; i < place.length; i++) grew |= ids.insert(words[place.at + i]).second;
