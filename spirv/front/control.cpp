@@ -160,28 +160,31 @@ std::vector<Case> read_cases(const Inst& inst, std::uint8_t width) {
   return cases;
 }
 
-ir::ValueId any_of(Translator& t, ir::ValueId a, ir::ValueId b) {
-  return a == ir::kNoValue ? b : emit(t, ir::Op::kOrB, 1, true, {whole(a), whole(b)});
+ir::ValueId either(Translator& t, ir::ValueId a, ir::ValueId b) {
+  return emit(t, ir::Op::kOrB, 1, true, {whole(a), whole(b)});
 }
 
-/// Conditions of all cases, default last: none of the literals that lead elsewhere.
-std::vector<ir::ValueId> case_conditions(Translator& t, const Expr& selector, const std::vector<Case>& cases) {
-  std::vector<ir::ValueId> conditions(cases.size(), ir::kNoValue);
-  ir::ValueId others = ir::kNoValue;
-  std::size_t default_index = 0;
-  for (std::size_t i = 0; i < cases.size(); i++) {
-    if (cases[i].is_default) {
-      default_index = i;
-      continue;
-    }
-    for (std::uint64_t literal : cases[i].literals)
-      conditions[i] =
-          any_of(t, conditions[i], apply(ir::Op::kIEq, {selector, constant_bits(t, literal, selector.width)}).id);
-    others = any_of(t, others, conditions[i]);
-  }
-  conditions[default_index] =
-      others == ir::kNoValue ? constant_bool(t, true) : emit(t, ir::Op::kNotB, 1, true, {whole(others)});
-  return conditions;
+ir::ValueId literal_false(Translator& t) {
+  const std::uint32_t word = 0;
+  return literal(t, {&word, 1}, true);
+}
+
+/// One of the case's literals. The reference compares for every case, and again for the default, and joins with false.
+ir::ValueId equals_literal(Translator& t, const Expr& selector, const Case& c) {
+  ir::ValueId condition = literal_false(t);
+  for (const std::uint64_t value : c.literals)
+    condition = either(t, condition, apply(ir::Op::kIEq, {selector, constant_bits(t, value, selector.width)}).id);
+  return condition;
+}
+
+/// That a case is entered from the switch; the default where none of the literals leads elsewhere.
+ir::ValueId case_condition(Translator& t, const Expr& selector, const Case& c, const std::vector<Case>& cases,
+                           const std::vector<std::size_t>& order) {
+  if (!c.is_default) return equals_literal(t, selector, c);
+  ir::ValueId others = literal_false(t);
+  for (const std::size_t i : order)
+    if (!cases[i].is_default) others = either(t, others, equals_literal(t, selector, cases[i]));
+  return emit(t, ir::Op::kNotB, 1, true, {whole(others)});
 }
 
 /// Flags by which a case is entered from the case before it.
@@ -239,7 +242,6 @@ void build_switch(Translator& t, const Block& block, const Inst& inst) {
   const Expr selector = number_of(t, inst.operand(0));
   if (selector.size() != 1 || is_boolean(t, selector.id)) fail(inst, "selector is not an integer");
   std::vector<Case> cases = read_cases(inst, selector.width);
-  const std::vector<ir::ValueId> conditions = case_conditions(t, selector, cases);
   Falls falls;
   for (const Case& c : cases) {
     // A fall-through writes the phis of its target later than this, so writing them for every target is safe.
@@ -253,9 +255,11 @@ void build_switch(Translator& t, const Block& block, const Inst& inst) {
   for (std::size_t to = 0; to < cases.size(); to++)
     for (std::size_t from = 0; from < cases.size() && falls.count(cases[to].label) != 0; from++)
       if (stores_flag(t, cases[from].body, falls[cases[to].label])) into[to].push_back(from);
-  for (std::size_t i : case_order(cases, into)) {
-    ir::ValueId condition = conditions[i];
-    if (!into[i].empty()) condition = any_of(t, load_flag(t, falls[cases[i].label]), condition);
+  const std::vector<std::size_t> order = case_order(cases, into);
+  for (const std::size_t i : order) {
+    const ir::ValueId entered = case_condition(t, selector, cases[i], cases, order);
+    const ir::ValueId fallen = into[i].empty() ? literal_false(t) : load_flag(t, falls[cases[i].label]);
+    const ir::ValueId condition = either(t, entered, fallen);
     ir::Node& node = emit_node(t, ir::Node::Kind::kIf);
     node.condition = whole(condition);
     node.then_list = std::move(cases[i].body);

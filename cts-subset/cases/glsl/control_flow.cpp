@@ -111,5 +111,14 @@ CTS_CASE("glsl", "control_flow.copied_by_both_sides") {
   evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}, {kFloat, "sum"}}, {}, false});
 }
 
+// The default of a switch compares again what the case that falls into it has compared: that one of both holds is not
+// known.
+CTS_CASE("glsl", "control_flow.fall_into_default") {
+  const char* text =
+      "  vec4 s = a.xwzw, r = s.zzwz;\n  s = s.yyzx;\n  switch (u.y & 3u) {\n    case 0:\n      r = a;\n    default:\n"
+      "      s = vec4(0.5);\n  }\n  s = mix(p, vec4(10.0), s) - b.wyxz;\n";
+  evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
