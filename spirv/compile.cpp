@@ -2,12 +2,14 @@
 #include "spirv/compile.h"
 
 #include <spirv-tools/libspirv.h>
+#define SPV_ENABLE_UTILITY_CODE
 #include <spirv/unified1/spirv.hpp11>
 
 #include <algorithm>
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -123,9 +125,31 @@ bool age_layer_capabilities(std::vector<std::uint32_t>& words) {
   return found;
 }
 
+/// Conversions of floats to the width that they have (glslang writes them where a 16-bit constant is named as such)
+/// become copies. False when there is none.
+bool copy_unconverted(std::vector<std::uint32_t>& words) {
+  std::unordered_map<std::uint32_t, std::uint32_t> types;
+  bool found = false;
+  for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
+    const std::uint32_t length = words[at] >> 16;
+    const auto op = static_cast<spv::Op>(words[at] & spv::OpCodeMask);
+    bool has_result = false, has_type = false;
+    spv::HasResultAndType(op, &has_result, &has_type);
+    if (!has_result || !has_type || length < 3) continue;
+    types[words[at + 2]] = words[at + 1];
+    if (op != spv::Op::OpFConvert || length != 4) continue;
+    const auto value = types.find(words[at + 3]);
+    if (value == types.end() || value->second != words[at + 1]) continue;
+    words[at] = length << spv::WordCountShift | static_cast<std::uint32_t>(spv::Op::OpCopyObject);
+    found = true;
+  }
+  return found;
+}
+
 /// Empty if the module is valid but for capabilities that it uses without declaring them: applications that were tried
 /// on the reference alone get away with that there (zink decorates with Sample and leaves out SampleRateShading), and
-/// but for source languages that the validator does not know (Slang is 11) and capabilities of a later version.
+/// but for source languages that the validator does not know (Slang is 11), capabilities of a later version, and
+/// conversions to the same width.
 std::string validate_leniently(std::span<const std::uint32_t> words) {
   static constexpr int kMaxMissing = 8;
   const spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_3);
@@ -136,11 +160,13 @@ std::string validate_leniently(std::span<const std::uint32_t> words) {
     if (message.find("conflicting input location assignment") != std::string::npos) message.clear();
     const bool unknown_language = message.find("Invalid source language operand") != std::string::npos;
     const bool young_capability = message.find("requires SPIR-V version 1.5 or later") != std::string::npos;
+    const bool same_width = message.find("different bit width from Result Type: FConvert") != std::string::npos;
     const std::string name = missing_capability(message);
-    if (!unknown_language && !young_capability && name.empty()) break;
+    if (!unknown_language && !young_capability && !same_width && name.empty()) break;
     if (completed.empty()) completed.assign(words.begin(), words.end());
     if (!(unknown_language   ? forget_source_languages(completed)
           : young_capability ? age_layer_capabilities(completed)
+          : same_width       ? copy_unconverted(completed)
                              : declare_capability(context, name, completed)))
       break;
     message = validate(context, completed);

@@ -66,6 +66,20 @@ TEST(Capabilities, LayersInModulesOlderThanTheirCapability) {
   EXPECT_TRUE(shader.ok()) << shader.message();
 }
 
+/// As glslang writes `float16_t(x)` of a value that is one already.
+TEST(Capabilities, ConversionsToTheSameWidth) {
+  const Words words = assemble(
+      "OpCapability Shader\nOpCapability Float16\nOpMemoryModel Logical GLSL450\n"
+      "OpEntryPoint GLCompute %main \"main\"\nOpExecutionMode %main LocalSize 1 1 1\n"
+      "%void = OpTypeVoid\n%function = OpTypeFunction %void\n%half = OpTypeFloat 16\n%one = OpConstant %half 1\n"
+      "%main = OpFunction %void None %function\n%entry = OpLabel\n%same = OpFConvert %half %one\nOpReturn\n"
+      "OpFunctionEnd\n");
+  CompileOptions options = options_for(VK_SHADER_STAGE_COMPUTE_BIT);
+  options.validate = true;
+  const auto shader = compile(words, options);
+  EXPECT_TRUE(shader.ok()) << shader.message();
+}
+
 TEST(Capabilities, OthersAreRefusedByName) {
   for (const std::string name :
        {"RayQueryKHR", "RayTracingKHR", "MeshShadingEXT", "FragmentShadingRateKHR", "FragmentBarycentricKHR",
