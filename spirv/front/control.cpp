@@ -12,6 +12,8 @@ namespace {
 
 using spv::Op;
 
+constexpr std::uint32_t kAnyCase = 0;  ///< no label: the key of the flag that all cases of a switch share
+
 void build(Translator& t, std::uint32_t label, std::uint32_t end, bool enter_first);
 
 /// Counts the depth of the recursion over nested constructs.
@@ -90,6 +92,7 @@ bool jump_out(Translator& t, std::uint32_t label) {
     if (scope.falls == nullptr) continue;
     if (const auto fall = scope.falls->find(label); fall != scope.falls->end()) {
       store_flag(t, fall->second, true);
+      store_flag(t, scope.falls->at(kAnyCase), true);
       exit_scope(t, scope);
       return true;
     }
@@ -187,7 +190,8 @@ ir::ValueId case_condition(Translator& t, const Expr& selector, const Case& c, c
   return emit(t, ir::Op::kNotB, 1, true, {whole(others)});
 }
 
-/// Flags by which a case is entered from the case before it.
+/// Flags by which a case is entered from the case before it; they tell the order of cases. The reference has one for
+/// all of them, which is what cases read.
 using Falls = std::unordered_map<std::uint32_t, std::uint32_t>;
 
 void build_case(Translator& t, Case& c, const Falls& falls, std::uint32_t merge) {
@@ -197,6 +201,7 @@ void build_case(Translator& t, Case& c, const Falls& falls, std::uint32_t merge)
   scope.falls = &others;
   {
     const Into into(t, c.body);
+    store_flag(t, falls.at(kAnyCase), false);
     build(t, c.label, merge, false);
   }
   close_scope(t, c.body);
@@ -243,6 +248,7 @@ void build_switch(Translator& t, const Block& block, const Inst& inst) {
   if (selector.size() != 1 || is_boolean(t, selector.id)) fail(inst, "selector is not an integer");
   std::vector<Case> cases = read_cases(inst, selector.width);
   Falls falls;
+  falls[kAnyCase] = new_flag(t);
   for (const Case& c : cases) {
     // A fall-through writes the phis of its target later than this, so writing them for every target is safe.
     store_phis(t, block.label, c.label);
@@ -258,8 +264,7 @@ void build_switch(Translator& t, const Block& block, const Inst& inst) {
   const std::vector<std::size_t> order = case_order(cases, into);
   for (const std::size_t i : order) {
     const ir::ValueId entered = case_condition(t, selector, cases[i], cases, order);
-    const ir::ValueId fallen = into[i].empty() ? literal_false(t) : load_flag(t, falls[cases[i].label]);
-    const ir::ValueId condition = either(t, entered, fallen);
+    const ir::ValueId condition = either(t, entered, load_flag(t, falls[kAnyCase]));
     ir::Node& node = emit_node(t, ir::Node::Kind::kIf);
     node.condition = whole(condition);
     node.then_list = std::move(cases[i].body);

@@ -120,5 +120,18 @@ CTS_CASE("glsl", "control_flow.fall_into_default") {
   evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}}, {}, false});
 }
 
+// One flag says that a case was left for the next: what falls into the default fell into the case before, too.
+CTS_CASE("glsl", "control_flow.fall_through_cases") {
+  const char* text =
+      "  vec4 s = normalize(a.xwzw), r = s.zzwz - a, q = s.yyzx + p.wzyx;\n"
+      "  float array[7] = float[7](a.x, a.y, a.z, a.w, b.x, b.y, b.z);\n"
+      "  switch (max(int(u.y), pi.y) & 3) {\n    case 0:\n      r = ldexp(a, pi & ivec4(31)) * (b.ywyz * a);\n"
+      "    case 2:\n      array[(pi.z & 255) % 7] = degrees(min(a.y, q.w));\n    default:\n"
+      "      q = vec4(0.5, -0.1, 1.7, 0.5) * (i.w != i.z ? s.z : 0.5);\n  }\n"
+      "  s = mix(p, vec4(10.0, 255.0, 1.0, 4.0), q) - q.zyxx / b.wyxz;\n"
+      "  float sum = 0.0;\n  for (int j = 0; j < 7; ++j) sum += array[j];\n";
+  evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}, {kFloat, "sum"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
