@@ -52,8 +52,7 @@ void choose_extrema(Graph& graph) {
   std::vector<InstId> order;
   auto visit = [&](InstId id) {
     const Inst& inst = graph.insts[id];
-    const bool wide = inst.kind == Kind::kSized && inst.width == 64;
-    if ((inst.kind == Kind::kAlu || wide) && (inst.op == Op::kFMin || inst.op == Op::kFMax)) order.push_back(id);
+    if (computes(inst) && (inst.op == Op::kFMin || inst.op == Op::kFMax)) order.push_back(id);
   };
   for_each_inst(graph, graph.root, visit);
   for (auto id = order.rbegin(); id != order.rend(); ++id) plain_extremum(graph, ranges, *id);

@@ -275,7 +275,7 @@ void compare_expressions(Run& run, bool precise, Stage stage = Stage::kCompute) 
 }
 
 /// At most kResults expressions of one type each.
-void compare_fixed(Run& run, const std::vector<std::pair<const char*, const char*>>& expressions,
+void compare_fixed(Run& run, const std::vector<std::pair<const char*, std::string>>& expressions,
                    Stage stage = Stage::kCompute) {
   require_sizes(run);
   std::string text = loads(stage);
@@ -329,6 +329,16 @@ CTS_CASE("glsl", "sized.flushed_extrema") {
                  {"double", "max(x_double, z_double)"},
                  {"double", "max(min(x_double, double(1.0)), -z_double)"}},
                 Stage::kFragment);
+}
+
+// Of two zeros the extremum is the second, and a literal comes second.
+CTS_CASE("glsl", "sized.half_extrema_of_zeros") {
+  const std::string zero = "uint16BitsToFloat16(uint16_t(x_uint16_t & uint16_t(0x8000)))";
+  compare_fixed(run, {{"float16_t", "max(float16_t(0.0), " + zero + ")"},
+                      {"float16_t", "min(-float16_t(0.0), " + zero + ")"},
+                      {"float16_t", "max(" + zero + ", -float16_t(0.0))"},
+                      {"float16_t", "min(x_float16_t, float16_t(y_uint16_t & uint16_t(1)))"},
+                      {"float16_t", "max(float16_t(y_uint16_t & uint16_t(1)), x_float16_t)"}});
 }
 
 // 64-bit integers that are zero whatever their operands are: products with them are literal, without a sign.
