@@ -168,7 +168,7 @@ bool writes_selection(const Graph& graph, const Inst& branch, Src written, const
   const bool loads =
       from && from->kind == Kind::kIntrinsic && (from->op == Op::kLoadPush || from->op == Op::kLoadUniform);
   if (nest.in_branch) return !loads && !nest.complement;
-  if (compares_floats(graph, condition)) return def->op == Op::kFLt || is_nan_test(graph, *def);
+  if (compares_floats(graph, condition) && (def->op == Op::kFLt || is_nan_test(graph, *def))) return true;
   const Block& else_block = graph.blocks[branch.child[1]];
   if (loads || else_block.head == else_block.tail || !def || def->op == Op::kNotB) return false;
   return converts_sides(graph, condition, written);

@@ -45,6 +45,21 @@ CTS_CASE("glsl", "branched_values") {
                     "  }\n");
 }
 
+// Both branches compute something, on conditions of every kind.
+CTS_CASE("glsl", "both_branches_values") {
+  run.require(reference_cpu().float_to_uint_as_recorded, "what the reference does on a CPU with AVX-512");
+  std::string statements;
+  const char* const conditions[] = {"a.x > 3.0", "a.y >= 3.0",      "a.z == 3.0", "b.x != 3.0",
+                                    "b.y > 2.0", "!(a.w == 255.0)", "i.x > 3",    "b.z <= a.w"};
+  for (int k = 0; k < 8; ++k) {
+    const std::string n = std::to_string(k), other = k % 2 ? "in_a[id ^ 2u]" : "sqrt(a)";
+    statements += "  vec4 g" + n + ", d" + n + "; if (" + conditions[k] + ") { g" + n + " = in_a[id ^ 1u]; d" + n +
+                  " = vec4(1.0); } else { g" + n + " = vec4(1.0); d" + n + " = " + other + "; }\n  vec4 r" +
+                  std::to_string(2 * k) + " = b * g" + n + ", r" + std::to_string(2 * k + 1) + " = b / d" + n + ";\n";
+  }
+  evaluate_specials(run, kVec4, 16, statements);
+}
+
 // Branches in branches, and conditions of every kind.
 CTS_CASE("glsl", "nested_branched_values") {
   const std::string head = "  vec4 r0 = vec4(3.0), r1 = r0, r2 = r0, r3 = r0, r4 = r0, r5 = r0, r6 = r0, r7 = r0;\n";
