@@ -19,10 +19,12 @@ bool ends_in_jump(const ir::NodeList& list) {
 
 struct Builder {
   Translator& t;
-  std::vector<ir::ValueId> current;       ///< per slot
-  std::vector<ir::ValueInfo> info;        ///< per slot
-  std::vector<ir::ValueId> replacement;   ///< of a LoadVar's result
-  std::unordered_set<ir::ValueId> words;  ///< vectors of loaded words, each of which an earlier load may have brought
+  std::vector<ir::ValueId> current;      ///< per slot
+  std::vector<ir::ValueInfo> info;       ///< per slot
+  std::vector<ir::ValueId> replacement;  ///< of a LoadVar's result
+  /// Vectors of loaded words, each of which an earlier load may have brought, and composed vectors.
+  std::unordered_set<ir::ValueId> words;
+  std::unordered_set<ir::ValueId> supplied;  ///< components of inputs, as declared or interpolated elsewhere
   std::unordered_map<const ir::Node*, Slots> stored;
   /// The loop around the current list.
   struct Loop {
@@ -121,8 +123,14 @@ struct Builder {
       case ir::Op::kLoadStorage:
         if (instr.components > 1) words.insert(instr.result);
         return false;
-      case ir::Op::kMov:
+      case ir::Op::kLoadInput:
+      case ir::Op::kFFused:
+        supplied.insert(instr.result);
+        return false;
       case ir::Op::kVec:
+        if (is_composed(instr)) words.insert(instr.result);
+        return false;
+      case ir::Op::kMov:
         if (instr.components > 1 && words.count(instr.src[0].value) != 0) words.insert(instr.result);
         return false;
       default:
@@ -130,8 +138,19 @@ struct Builder {
     }
   }
 
-  /// Each load of a variable that holds loaded words is a copy of them: rewrite() may compose them of several values,
-  /// and the first rules of the reference tell each such vector from its copies.
+  /// Whether a vector is composed in the reference, too, and has all its components. One of an input's components
+  /// stands for one load; copies of it, and of what is in part undefined, would keep inputs and outputs that nothing
+  /// uses.
+  bool is_composed(const ir::Instr& vec) const {
+    const auto holds = [&](const std::unordered_set<ir::ValueId>& ids) {
+      return [&](const ir::Src& part) { return ids.count(part.value) != 0; };
+    };
+    return !std::all_of(vec.src.begin(), vec.src.end(), holds(supplied)) &&
+           std::none_of(vec.src.begin(), vec.src.end(), holds(t.undefined_ids));
+  }
+
+  /// Each load of a variable that holds loaded words or a composed vector is a copy of it: rewrite() may compose loaded
+  /// words of several values, and the first rules of the reference tell each composed vector from its copies.
   bool becomes_copy(ir::Instr& instr) {
     const ir::ValueId loaded = value(instr.data[1]);
     if (words.count(loaded) == 0) {
@@ -221,7 +240,7 @@ struct Builder {
 }  // namespace
 
 void build_ssa(Translator& t) {
-  Builder builder{t, {}, {}, {}, {}, {}, {}};
+  Builder builder{t, {}, {}, {}, {}, {}, {}, {}};
   t.list = &t.function.body;
   Slots all;
   builder.collect(t.function.body, all);

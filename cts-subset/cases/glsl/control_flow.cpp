@@ -133,5 +133,14 @@ CTS_CASE("glsl", "control_flow.fall_through_cases") {
   evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}, {kFloat, "sum"}}, {}, false});
 }
 
+// A vector that is composed in front of a branch and read inside of it is composed there again: its parts have two
+// uses.
+CTS_CASE("glsl", "control_flow.composed_twice") {
+  const char* text =
+      "  vec4 s = vec4(u) * a;\n  s = vec4(i.x > 3 ? b.z : a.z, s.z * 0.3, b.x, p.w);\n"
+      "  if (u.w < ~u.w) s = clamp(vec4(4.0, 0.3, -1.0, 1.0) - s, vec4(a.z, p.x, a.z, a.z), vec4(1.0));\n";
+  evaluate(run, Stage::kVertex, {"", text, {{kVec4, "s"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
