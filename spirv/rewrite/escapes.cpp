@@ -1,6 +1,7 @@
 // Values that leave loops. The reference reads a value of a loop behind the loop as it is, so that its rules see how
 // the loop computed it; the shader core needs a result of the loop, which keeps what each lane left with. While the
 // rewrites run, uses behind a loop read the value itself wherever every way out of the loop yields it.
+#include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
@@ -44,19 +45,25 @@ bool is_same(const Graph& graph, Src a, Src b, ValueId like) {
   return a.value == b.value;
 }
 
-/// The value that result `index` is at every way out, or kNoValue.
+/// The whole value of which `src` is a copy, or kNoValue.
+ValueId copied(const Graph& graph, Src src, ValueId like) {
+  const Inst* copy = graph.def(src.value);
+  if (!copy || !is_move(*copy) || !is_whole(graph, src, like)) return ir::kNoValue;
+  const Src source = graph.source(*copy, 0);
+  return is_whole(graph, source, like) ? source.value : ir::kNoValue;
+}
+
+/// The value that result `index` is at every way out, or kNoValue. Copies of one value are that value.
 ValueId value_at_breaks(Graph& graph, ValueId result, std::uint32_t index, const std::vector<InstId>& breaks) {
   if (breaks.empty()) return ir::kNoValue;
-  const Src first = graph.source(graph.insts[breaks[0]], index);
-  if (breaks.size() == 1) {
-    const Inst* copy = graph.def(first.value);
-    if (copy && is_move(*copy) && is_whole(graph, first, result) && is_whole(graph, graph.source(*copy, 0), result))
-      return graph.source(*copy, 0).value;
-    return whole_value(graph, breaks[0], first, result);
-  }
-  for (const InstId id : breaks)
-    if (!is_same(graph, graph.source(graph.insts[id], index), first, result)) return ir::kNoValue;
-  return is_whole(graph, first, result) ? first.value : ir::kNoValue;
+  const auto at = [&](InstId id) { return graph.source(graph.insts[id], index); };
+  const auto every = [&](auto&& holds) { return std::all_of(breaks.begin(), breaks.end(), holds); };
+  const Src first = at(breaks[0]);
+  const ValueId origin = copied(graph, first, result);
+  if (breaks.size() == 1) return origin != ir::kNoValue ? origin : whole_value(graph, breaks[0], first, result);
+  if (every([&](InstId id) { return is_same(graph, at(id), first, result); }))
+    return is_whole(graph, first, result) ? first.value : ir::kNoValue;
+  return every([&](InstId id) { return copied(graph, at(id), result) == origin; }) ? origin : ir::kNoValue;
 }
 
 bool open_loop(Graph& graph, InstId loop) {

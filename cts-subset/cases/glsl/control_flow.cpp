@@ -142,5 +142,15 @@ CTS_CASE("glsl", "control_flow.composed_twice") {
   evaluate(run, Stage::kVertex, {"", text, {{kVec4, "s"}}, {}, false});
 }
 
+// A product in front of a loop that is left in two places: both hand on copies of it, so that it has one use.
+CTS_CASE("glsl", "control_flow.copies_at_two_breaks") {
+  const char* text =
+      "  vec4 s = p;\n  float f = i.x;\n  int r = i.x;\n  int k = pi.x;\n"
+      "  do {\n    s = vec4(f, vec3(-2.5)) * (a.wyyy * f);\n    int n = 0;\n"
+      "    while (r != 0) {\n      if (++n > 20) {\n        r = -1;\n        break;\n      }\n    }\n"
+      "  } while (--k > 0);\n";
+  evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}, {kFloat, "float(r)"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
