@@ -85,6 +85,16 @@ CTS_CASE("glsl", "selected_ones") {
   evaluate(run, Stage::kFragment, body);
 }
 
+// Components that are read of a variable are not constants before the vector that it is composed of is split.
+CTS_CASE("glsl", "gathered_components") {
+  const char* text =
+      "  vec4 t = vec4(a.x, vec3(0.3, -2.5, -1.0)), c = vec4(a.x, 0.3, b.y, -1.0);\n  vec2 two = vec2(2.0, 0.0);\n"
+      "  vec2 r0 = fract(two) * t.wz;\n"
+      "  vec3 r1 = vec3(4.0, -1.0, 1.7) * ((c.ywy + a.xyz) + (c.xww + b.xyz));\n";
+  for (const Stage stage : {Stage::kCompute, Stage::kVertex, Stage::kFragment})
+    evaluate(run, stage, {"", text, {{kVec2, "r0"}, {kVec3, "r1"}}, {}, false});
+}
+
 // Integers of sines of NaN and infinities.
 CTS_CASE("glsl", "integers_of_sines") {
   ShaderBody body;
