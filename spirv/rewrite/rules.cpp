@@ -112,6 +112,7 @@ constexpr RuleText kMain[] = {
     {"FMulAdd(a,b,c)", "FAdd(FMul(a,b),c)"},
     {"$(a,b,0)", "0", "BfeU BfeI"},
     {"$(0,a,b)", "0", "BfeU BfeI"},
+    {"BfeU(#a,#b,c)", "And(UShr(a,b),Select(IEq(c,32),0xffffffff,ISub(Shl(1,c),1)))"},
     {"BfiMask(0,a)", "0"},
     // -- shifts
     {"Shl(IAdd(IMul(a,#b),#c),#d)", "IAdd(IMul(a,Shl(b,d)),Shl(c,d))"},

@@ -152,5 +152,15 @@ CTS_CASE("glsl", "control_flow.copies_at_two_breaks") {
   evaluate(run, Stage::kCompute, {"", text, {{kVec4, "s"}, {kFloat, "float(r)"}}, {}, false});
 }
 
+// Bits of a literal that has none there are zero before the loop is looked at; its division by them becomes that of a
+// literal in front of the loop, which is zero.
+CTS_CASE("glsl", "control_flow.bits_of_literal") {
+  const char* text =
+      "  uint s = bitfieldExtract(1u, 2, i.x & 15), t = s;\n  int k = pi.w & 7;\n"
+      "  do {\n    if (7u / t == t) s = max(3u >> (u.x & 31u), min(7u, u.z));\n"
+      "    t = uint(clamp(p.y, 0.0, 4294967040.0));\n  } while (--k > 0);\n";
+  evaluate(run, Stage::kCompute, {"", text, {{kFloat, "uintBitsToFloat(s)"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
