@@ -61,11 +61,6 @@ bool compares_floats(const Graph& graph, Src condition) {
          ir::alu_info(inst->op).operands[0] == 'F';
 }
 
-bool is_nan_test(const Graph& graph, const Inst& inst) {
-  const Src a = graph.source(inst, 0), b = graph.source(inst, 1);
-  return inst.op == Op::kFNeu && a.value == b.value && a.swizzle[0] == b.swizzle[0];
-}
-
 /// Operations that the reference computes as floats; it keeps the results of others, and what it loads from buffers,
 /// as integers.
 bool computes_float(const Inst& inst) {
@@ -119,17 +114,37 @@ struct Nest {
   bool complement = false;  ///< the mask of one of the branches is the complement of a condition
 };
 
-/// True when the reference needs the mask under which the block runs: it loads or stores, or writes a literal.
-bool needs_mask(const Graph& graph, BlockId block) {
+/// True when the reference's memory accesses and inner branches need the mask under which the block runs.
+bool masks_accesses(const Graph& graph, BlockId block) {
   for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
     const Inst& inst = graph.insts[id];
     if (inst.kind == Kind::kIf || inst.kind == Kind::kLoop) return true;
-    if (inst.kind != Kind::kIntrinsic) continue;
-    if (inst.op != Op::kYield && !computes_float(inst)) return true;
-    for (std::uint32_t i = 0; inst.op == Op::kYield && i < inst.count; ++i)
-      if (graph.constant(graph.source(inst, i).value)) return true;
+    if (inst.kind == Kind::kIntrinsic && inst.op != Op::kYield && !computes_float(inst)) return true;
   }
   return false;
+}
+
+/// What a branch yields to a component of its results, from one of its sides, in the order of the results.
+template <typename Visit>
+void for_each_yielded(const Graph& graph, BlockId block, Visit visit) {
+  if (!ends_in(graph, block, Op::kYield)) return;
+  const Inst& end = graph.insts[graph.blocks[block].tail];
+  for (std::uint32_t i = 0; i < end.count; ++i) {
+    const Src src = graph.source(end, i);
+    const std::uint32_t components = graph.values[src.value].components;
+    for (std::uint32_t c = 0; c < components; ++c) visit(component_of(graph, src, static_cast<std::uint8_t>(c)));
+  }
+}
+
+bool yields_literal(const Graph& graph, BlockId block) {
+  bool found = false;
+  for_each_yielded(graph, block, [&](Src src) { found |= graph.constant(src.value) != nullptr; });
+  return found;
+}
+
+/// True when the reference needs the mask under which the block runs: it loads or stores, or writes a literal.
+bool needs_mask(const Graph& graph, BlockId block) {
+  return masks_accesses(graph, block) || yields_literal(graph, block);
 }
 
 /// The complement of a comparison that serves nothing else is the opposite comparison.
@@ -156,26 +171,81 @@ Nest nest_of(const Graph& graph, const Inst& inst) {
   return nest;
 }
 
-/// True when the reference's optimiser sees what the two branches write to a register as one selection: it has to
-/// recognise the mask of one branch as the complement of the other's. Of comparisons of floats it does so for less-than
-/// and tests for NaN; where the condition is none, only if the else branch computes something. In a branch the mask of
-/// the else branch is the conjunction of the masks around it, which it recognises unless one of them is a complement
-/// itself.
-bool writes_selection(const Graph& graph, const Inst& branch, Src written, const Nest& nest) {
-  const Src condition = graph.source(branch, 0);
-  const Inst* def = graph.def(condition.value);
-  const Inst* from = graph.def(written.value);
-  const bool loads =
-      from && from->kind == Kind::kIntrinsic && (from->op == Op::kLoadPush || from->op == Op::kLoadUniform);
-  if (nest.in_branch) return !loads && !nest.complement;
-  if (compares_floats(graph, condition) && (def->op == Op::kFLt || is_nan_test(graph, *def))) return true;
-  const Block& else_block = graph.blocks[branch.child[1]];
-  if (loads || else_block.head == else_block.tail || !def || def->op == Op::kNotB) return false;
-  return converts_sides(graph, condition, written);
+/// What the masks of a branch serve besides the selection between what its sides write.
+struct MaskUses {
+  bool then_mask = false;
+  bool else_mask = false;
+};
+
+void add_mask_uses(const Graph& graph, const Inst& branch, bool negated, MaskUses& uses) {
+  uses.then_mask |= masks_accesses(graph, branch.child[negated ? 1 : 0]);
+  uses.else_mask |= masks_accesses(graph, branch.child[negated ? 0 : 1]);
 }
 
-/// The result of an If outside of loops, for one user: the last that the reference writes to its register is what the
-/// else branch yields, a selection if that is literal.
+/// Other branches on the same condition or on its complement share the masks.
+void add_other_branches(const Graph& graph, ValueId condition, const Inst& branch, bool negated, MaskUses& uses) {
+  for (Slot slot = graph.values[condition].first_use; slot != kNone; slot = graph.sources[slot].next) {
+    const Inst& user = graph.insts[graph.sources[slot].user];
+    if (user.kind == Kind::kAlu && user.op == Op::kNotB && !negated)
+      add_other_branches(graph, user.result, branch, true, uses);
+    if (user.kind != Kind::kIf || &user == &branch) continue;
+    add_mask_uses(graph, user, negated, uses);
+    (negated ? uses.else_mask : uses.then_mask) = true;
+  }
+}
+
+/// The other components that an else branch writes: a value or a later other literal needs its mask, the same literal
+/// the mask of the other branch. Where the condition is negated, so does every literal.
+void add_writes(const Graph& graph, BlockId block, std::uint32_t identity, bool negated, MaskUses& uses) {
+  std::uint32_t same = 0;
+  for_each_yielded(graph, block, [&](Src src) {
+    const bool literal = graph.constant(src.value) != nullptr;
+    if (is_literal(graph, src, identity) || (negated && literal))
+      ++same;
+    else
+      uses.else_mask |= !literal || same > 0;
+  });
+  uses.then_mask |= same > 1;
+}
+
+/// The value is loaded from push constants or uniforms, without a mask and as integers.
+bool is_unmasked_load(const Graph& graph, Src src) {
+  const Inst* from = graph.def(src.value);
+  return from && from->kind == Kind::kIntrinsic && (from->op == Op::kLoadPush || from->op == Op::kLoadUniform);
+}
+
+/// True when the reference's optimiser sees what the two branches write to a register as one selection, the literal
+/// `side` (1: then, 2: else) of which is `identity`. It masks what each branch writes and joins both: if the mask of
+/// the else branch serves something else, as a whole by its being the complement of the mask of the then branch;
+/// otherwise it moves the literal into a selection by the condition first, and the other value, too, if that is all
+/// that its mask still serves. A negated condition is the complement of a mask itself: it becomes a condition of its
+/// own where the one that is negated serves nothing else. In a branch the mask of the else branch is the conjunction of
+/// the masks around it, which it recognises unless one of them is a complement itself.
+bool writes_selection(const Graph& graph, const Inst& branch, unsigned side, Src written, std::uint32_t identity,
+                      const Nest& nest) {
+  const bool loads = is_unmasked_load(graph, written);
+  if (nest.in_branch) return side == 2 && !loads && !nest.complement;
+  const Src condition = graph.source(branch, 0);
+  const Inst* def = graph.def(condition.value);
+  if (!def) return false;
+  const bool negated = def->kind == Kind::kAlu && def->op == Op::kNotB;
+  const Src compared = negated ? graph.source(*def, 0) : condition;
+  MaskUses uses;
+  add_mask_uses(graph, branch, negated, uses);
+  add_other_branches(graph, compared.value, branch, false, uses);
+  if (side == 1) {
+    const Inst* from = graph.def(written.value);
+    const bool accesses = from && from->kind == Kind::kIntrinsic && !computes_float(*from);
+    return compares_floats(graph, compared) && !uses.then_mask && (negated || accesses);
+  }
+  if (compares_integers(graph, condition) && loads) return false;
+  const bool masks_else = uses.else_mask;
+  add_writes(graph, branch.child[1], identity, negated, uses);
+  const bool joins = negated ? !uses.then_mask && !masks_else : uses.else_mask || !uses.then_mask;
+  return joins && converts_sides(graph, compared, written);
+}
+
+/// The result of an If outside of loops, for one user: a selection if one branch yields a literal.
 bool find_result(const Graph& graph, Src src, std::uint32_t identity, Selection& found) {
   const Inst* branch = graph.def(src.value);
   if (!branch || branch->kind != Kind::kIf || users_of(graph, src) != 1 ||
@@ -186,12 +256,15 @@ bool find_result(const Graph& graph, Src src, std::uint32_t identity, Selection&
   const std::vector<ValueId>& results = graph.nodes[branch->node]->results;
   const auto index = static_cast<std::uint32_t>(std::find(results.begin(), results.end(), src.value) - results.begin());
   const auto yielded = [&](unsigned side) {
-    const Inst& end = graph.insts[graph.blocks[branch->child[side]].tail];
+    const Inst& end = graph.insts[graph.blocks[branch->child[side - 1]].tail];
     return component_of(graph, graph.source(end, index), src.swizzle[0]);
   };
-  if (!is_literal(graph, yielded(1), identity)) return false;
-  found = {graph.source(*branch, 0), 2, src, false};
-  return writes_selection(graph, *branch, yielded(0), nest);
+  for (const unsigned side : {2u, 1u}) {
+    if (!is_literal(graph, yielded(side), identity)) continue;
+    found = {graph.source(*branch, 0), side, src, false};
+    return writes_selection(graph, *branch, side, yielded(3 - side), identity, nest);
+  }
+  return false;
 }
 
 /// What selects the literal `identity` on one side, for one user.

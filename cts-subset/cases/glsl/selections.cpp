@@ -90,6 +90,78 @@ CTS_CASE("glsl", "compared_branched_values") {
   evaluate_specials(run, kVec4, 12, statements);
 }
 
+/// What the two branches of a form do besides writing the factor g; K: a number that tells the blocks apart.
+struct MaskedForm {
+  const char* name;
+  const char* then_block;
+  const char* else_block;
+};
+
+std::string numbered(std::string text, int k) {
+  for (size_t at; (at = text.find('K')) != std::string::npos;) text.replace(at, 1, std::to_string(k));
+  return text;
+}
+
+/// Denormals multiplied by what two branches write to g: by conditions of every kind, used once or (but for joined
+/// ones) for a selection, too.
+void evaluate_masked(Run& run, const MaskedForm& form, bool selects) {
+  run.require(reference_cpu().float_to_uint_as_recorded, "what the reference does on a CPU with AVX-512");
+  const char* const conditions[] = {"a.x > K.5",
+                                    "b.y >= K.5",
+                                    "fract(a.z) == 0.0",
+                                    "fract(b.w) != 0.0",
+                                    "!(a.y > K.5)",
+                                    "!(b.z >= K.5)",
+                                    "!(fract(a.w) == 0.0)",
+                                    "!(fract(b.x) != 0.0)",
+                                    "isnan(a.z * K.)",
+                                    "!isnan(b.y * K.)",
+                                    "i.x > K",
+                                    "i.y == K",
+                                    "!(i.z > K)",
+                                    "bool(u.x & Ku)",
+                                    "b.x < K. && a.x > K.",
+                                    "b.z > K. || a.z < -K."};
+  ShaderBody body;
+  body.statements =
+      "  vec4 r0, r1, r2, r3 = vec4(0.0), r4 = vec4(0.0), r5 = vec4(0.0), r6 = vec4(0.0), r7 = vec4(0.0);\n";
+  for (int k = 0; k < (selects ? 14 : 16); ++k) {
+    const std::string n = std::to_string(k / 4), component = std::string(".") + "xyzw"[k % 4];
+    body.statements += "  { bool c = " + numbered(conditions[k], k + 1) + "; float g, d = 0.0; if (c) { " +
+                       numbered(form.then_block, k) + " } else { " + numbered(form.else_block, k) + " } r" + n +
+                       component + " = uintBitsToFloat(id * 3u + 7u) * g; r" + std::to_string(k / 4 + 4) + component +
+                       " = " + (selects ? "c ? d : 5.0" : "d") + "; }\n";
+  }
+  for (int k = 0; k < 8; ++k) body.results.push_back({kVec4, "r" + std::to_string(k)});
+  body.specials = true;
+  evaluate(run, Stage::kVertex, body);
+}
+
+// A literal that one of two branches writes: the reference selects it by the masks of the branches, and whether that is
+// a selection by the condition depends on what else the masks serve.
+const bool kMaskedForms = [] {
+  static const MaskedForm kForms[] = {
+      {"loads", "g = in_a[id ^ (Ku & 3u)].y;", "g = 1.0;"},
+      {"computes_stores", "g = sqrt(a.y + K.); results[id] = uvec4(K);", "g = 1.0;"},
+      {"both_load", "g = in_a[id ^ (Ku & 3u)].y; d = 2.0;", "g = 1.0; d = in_b[id ^ (Ku & 3u)].z;"},
+      {"loads_computes", "g = in_a[id ^ (Ku & 3u)].y; d = 2.0;", "g = 1.0; d = sqrt(a.x + K.);"},
+      {"computes_else_stores", "g = sqrt(a.y + K.);", "g = 1.0; results[id] = uvec4(K);"},
+      {"pushed_stores", "g = p.y;", "g = 1.0; results[id] = uvec4(K);"},
+      {"other_literal", "g = sqrt(a.y + K.); d = in_b[id ^ (Ku & 3u)].z;", "g = 1.0; d = 2.0;"},
+      {"same_literal", "g = sqrt(a.y + K.); d = in_b[id ^ (Ku & 3u)].z;", "g = 1.0; d = 1.0;"},
+      {"then_literal_loads", "g = 1.0;", "g = in_a[id ^ (Ku & 3u)].y;"},
+      {"then_literal_stores", "g = 1.0; results[id] = uvec4(K);", "g = sqrt(a.y + K.);"},
+      {"then_literal_both", "g = 1.0; results[id] = uvec4(K);", "g = in_a[id ^ (Ku & 3u)].y;"},
+      {"then_literal_else_stores", "g = 1.0;", "g = sqrt(a.y + K.); results[id] = uvec4(K);"},
+      {"then_literal_other_literal", "g = 1.0; d = in_b[id ^ (Ku & 3u)].z;", "g = sqrt(a.y + K.); d = 2.0;"},
+      {"then_literals", "g = 1.0; d = 2.0;", "g = sqrt(a.y + K.); d = in_b[id ^ (Ku & 3u)].z;"}};
+  for (const MaskedForm& form : kForms)
+    for (const bool selects : {false, true})
+      AddCase("glsl", std::string("masked_selections.") + form.name + (selects ? "_used_twice" : ""),
+              [&form, selects](Run& run) { evaluate_masked(run, form, selects); });
+  return true;
+}();
+
 // Literals that convert to no integer, selected or as the source of further integers.
 CTS_CASE("glsl", "undefined_conversions") {
   evaluate_specials(run, kUint4, 4,
