@@ -36,15 +36,19 @@ class Order {
     const Inst& inst = graph_.insts[id];
     if (has_place(inst)) return {number_[id], 0};
     const auto [known, fresh] = known_.try_emplace(src.value);
-    if (!fresh) return known->second;
+    if (!fresh || depth_ == kMaxDepth) return known->second;
+    ++depth_;
     Readiness result;
     for (std::uint32_t i = 0; i < inst.count; ++i) result = std::max(result, of(graph_.source(inst, i)));
     if (inst.kind == Kind::kIf) result = std::max(result, of_yields(inst, src.value));
     result.operations += operations_of(inst);
+    --depth_;
     return known_[src.value] = result;
   }
 
  private:
+  static constexpr std::uint32_t kMaxDepth = 1000;  ///< what lies deeper counts as ready: chains of any length end
+
   Readiness of_yields(const Inst& branch, ValueId value) {
     const std::vector<ValueId>& results = graph_.nodes[branch.node]->results;
     const auto index = static_cast<std::uint32_t>(std::find(results.begin(), results.end(), value) - results.begin());
@@ -72,6 +76,7 @@ class Order {
   Graph& graph_;
   std::vector<std::uint32_t> number_;
   std::uint32_t count_ = 0;
+  std::uint32_t depth_ = 0;
   std::unordered_map<ValueId, Readiness> known_;
 };
 

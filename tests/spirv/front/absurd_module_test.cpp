@@ -278,5 +278,18 @@ TEST(AbsurdModule, ManyVariablesAndPhis) {
   EXPECT_TRUE(compiles(module_with("", "", body + store("%q19999"))));
 }
 
+/// What a negated product reads is followed as far as it goes, but not down any chain.
+TEST(AbsurdModule, LongChainInANegatedProduct) {
+  const std::string declarations = "%float = OpTypeFloat 32\n%one = OpConstant %float 1\n";
+  std::string body = "%f = OpConvertUToF %float %x\n%q0 = OpFDiv %float %one %f\n";
+  body += repeated(200000,
+                   [](std::size_t i) { return "%q" + number(i + 1) + " = OpFDiv %float %f %q" + number(i) + "\n"; });
+  body +=
+      "%less = OpFOrdLessThan %bool %f %one\n%either = OpSelect %float %less %one %f\n"
+      "%product = OpFMul %float %either %q200000\n%negative = OpFNegate %float %product\n"
+      "%bits = OpBitcast %uint %negative\n";
+  EXPECT_TRUE(compiles(module_with(declarations, "", body + store("%bits"))));
+}
+
 }  // namespace
 }  // namespace vitrine::spirv::test
