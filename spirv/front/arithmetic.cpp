@@ -153,7 +153,8 @@ void is_inf(Translator& t, const Inst& inst, ir::Op op) {
 
 void select(Translator& t, const Inst& inst, ir::Op) {
   const Expr condition = number_of(t, inst.operand(0));
-  const Value &a = value_of(t, inst.operand(1)), &b = value_of(t, inst.operand(2));
+  const Value a = value_of(t, inst.operand(1));  // a copy: the same literal is another value where it is named again
+  const Value& b = value_of(t, inst.operand(2));
   if (a.leaves.size() != b.leaves.size()) fail(inst, "operands differ in size");
   const Type& number = number_type(t, inst.result_type);
   if (number.kind == Type::Kind::kFloat && number.width != 32)

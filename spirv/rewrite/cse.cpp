@@ -14,9 +14,10 @@ namespace {
 using Kind = Inst::Kind;
 
 bool is_uniform_load(const Inst& inst) {
-  if (inst.kind != Kind::kIntrinsic) return false;
-  return inst.op == Op::kLoadInput || inst.op == Op::kLoadPush || inst.op == Op::kLoadUniform;
+  return inst.kind == Kind::kIntrinsic && (inst.op == Op::kLoadInput || inst.op == Op::kLoadUniform);
 }
+
+bool is_push_load(const Inst& inst) { return inst.kind == Kind::kIntrinsic && inst.op == Op::kLoadPush; }
 
 bool is_invocation_constant(const Inst& inst) {
   if (inst.kind != Kind::kIntrinsic) return false;
@@ -43,9 +44,9 @@ bool may_swap(const Inst& inst) { return computes(inst) && inst.count == 2 && is
 class Merger {
  public:
   /// `by_value`: literals are equal by their bits, whatever constant they are a component of. `only_doubles`: nothing
-  /// but pairs of words that doubles are made of.
-  Merger(Graph& graph, bool by_value, bool only_doubles = false)
-      : graph_(graph), by_value_(by_value), only_doubles_(only_doubles), table_(256, kNone) {}
+  /// but pairs of words that doubles are made of. `push`: loads of push constants, too.
+  Merger(Graph& graph, bool by_value, bool only_doubles = false, bool push = true)
+      : graph_(graph), by_value_(by_value), only_doubles_(only_doubles), push_(push), table_(256, kNone) {}
 
   bool run() {
     visit(graph_.root);
@@ -61,6 +62,7 @@ class Merger {
 
   bool candidate(const Inst& inst) const {
     if (only_doubles_) return makes_double(inst);
+    if (is_push_load(inst)) return push_;
     return is_uniform_load(inst) || computes(inst) || inst.kind == Kind::kConst || inst.kind == Kind::kVec ||
            is_invocation_constant(inst) || is_wide_operation(inst);
   }
@@ -248,7 +250,7 @@ class Merger {
   };
 
   Graph& graph_;
-  const bool by_value_, only_doubles_;
+  const bool by_value_, only_doubles_, push_;
   std::vector<InstId> table_;           ///< open addressing, a power of two
   std::vector<std::uint32_t> entered_;  ///< slots in use, in order of entry
   Ways ways_;
@@ -266,7 +268,7 @@ void merge_doubles(Graph& graph) {
   }
 }
 
-bool merge_equal(Graph& graph) { return Merger(graph, false).run(); }
+bool merge_equal(Graph& graph, bool push) { return Merger(graph, false, false, push).run(); }
 bool merge_equal_code(Graph& graph) { return Merger(graph, true).run(); }
 
 }  // namespace vitrine::spirv::rewriting

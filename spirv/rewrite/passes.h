@@ -32,8 +32,9 @@ bool join_doubles(Graph& graph);
 /// Comparisons of floats that were converted from narrower ones become those of the narrower ones.
 bool narrow_comparisons(Graph& graph);
 
-/// Merges equal instructions, the later into the one that dominates it.
-bool merge_equal(Graph& graph);
+/// Merges equal instructions, the later into the one that dominates it. Loads of `push` constants are left to
+/// forward_loads() in the rounds: the reference has variables there.
+bool merge_equal(Graph& graph, bool push = true);
 
 /// The same for scalar code as the reference's code generator sees it: literals are equal by their bits.
 bool merge_equal_code(Graph& graph);

@@ -39,7 +39,7 @@ bool optimize_once(Graph& graph, bool first) {
   changed |= rewriting::improve_branches(graph);
   changed |= rewriting::take_constant_branches(graph);
   changed |= rewriting::remove_trivial_results(graph);
-  changed |= rewriting::merge_equal(graph);
+  changed |= rewriting::merge_equal(graph, false);
   changed |= rewriting::scalarize(graph);
   changed |= rewriting::unroll_loops(graph);
   return changed;
@@ -82,7 +82,7 @@ void rewrite(ir::Function& function) {
   optimize_once(graph, true);
   rewriting::show_short_products(graph);
   for (int round = 1; round < kMaxRounds; ++round)
-    if (!optimize_once(graph, false)) break;
+    if (!optimize_once(graph, false) && !rewriting::merge_equal(graph)) break;
   finish(graph);
   if (rewriting::expand_sized(graph)) {
     rewriting::propagate_copies(graph);

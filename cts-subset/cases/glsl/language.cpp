@@ -85,6 +85,23 @@ CTS_CASE("glsl", "selected_ones") {
   evaluate(run, Stage::kFragment, body);
 }
 
+// Push constants that are loaded in a branch which is always taken meet those behind it only in the next round, in
+// which differences of equal ones are zero before their negation becomes a precise one.
+CTS_CASE("glsl", "differences_of_push_constants") {
+  const char* text =
+      "  precise float x = true ? -p.x : 2.0, y = true ? -p.y : 2.0, z = true ? -p.z : 2.0, w = true ? -p.w : 2.0;\n"
+      "  vec4 r = vec4(x * (p.x - p.x), y * (p.y - p.y), z * (p.z - p.z), w * (p.w - p.w));\n";
+  for (const Stage stage : {Stage::kCompute, Stage::kVertex, Stage::kFragment})
+    evaluate(run, stage, {"", text, {{kVec4, "r"}}, {}, false});
+}
+
+// Both sides of a selection are the same literal, which is one value only where equal instructions have been merged.
+CTS_CASE("glsl", "selection_of_one_literal") {
+  const char* text = "  vec4 r = p * a.wzyx - (p * a.wzyx) * (a.x < b.x ? -2.5 : -2.5);\n";
+  for (const Stage stage : {Stage::kCompute, Stage::kVertex, Stage::kFragment})
+    evaluate(run, stage, {"", text, {{kVec4, "r"}}, {}, false});
+}
+
 // Components that are read of a variable are not constants before the vector that it is composed of is split.
 CTS_CASE("glsl", "gathered_components") {
   const char* text =
