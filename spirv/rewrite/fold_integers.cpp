@@ -42,6 +42,49 @@ bool is_negation(const Graph& graph, const Integer& negated, const Integer& numb
          same(operand_of(graph, *inst, 2), number);
 }
 
+/// The smaller or larger one of two operands, which the front end writes as a comparison and a selection of each word.
+struct Extremum {
+  bool found = false, maximum = false;
+  Integer a, b;
+};
+
+/// `less`: the comparison that it is for signed or unsigned numbers.
+Extremum extremum_of(const Graph& graph, const Integer& number, Op less) {
+  const Inst *low = graph.def(number.low.value), *high = graph.def(number.high.value);
+  for (const Inst* word : {low, high})
+    if (!word || word->kind != Kind::kAlu || word->op != Op::kSelect || word->components != 1) return {};
+  const Inst* compared = graph.def(graph.source(*low, 0).value);
+  if (!compared || compared->kind != Kind::kIntrinsic || compared->op != less ||
+      !same(graph.source(*low, 0), graph.source(*high, 0)))
+    return {};
+  const Integer a = operand_of(graph, *compared, 0), b = operand_of(graph, *compared, 2);
+  const Integer first{graph.source(*low, 1), graph.source(*high, 1)},
+      second{graph.source(*low, 2), graph.source(*high, 2)};
+  const bool maximum = same(first, b) && same(second, a);
+  return {maximum || (same(first, a) && same(second, b)), maximum, a, b};
+}
+
+/// What is known of left < right where one of them is the smaller or larger one of two numbers: the other one is one of
+/// these, or literal as one of these is.
+bool compare_extremum(const Graph& graph, const Integer& left, const Integer& right, Op less, bool& result) {
+  const auto literal_less = [&](const Integer& x, const Integer& y) {
+    return less == Op::kLLt ? static_cast<std::int64_t>(x.value) < static_cast<std::int64_t>(y.value)
+                            : x.value < y.value;
+  };
+  for (const bool is_left : {true, false}) {
+    const Integer& other = is_left ? right : left;
+    const Extremum extremum = extremum_of(graph, is_left ? left : right, less);
+    if (!extremum.found) continue;
+    result = is_left != extremum.maximum;
+    for (const Integer& part : {extremum.a, extremum.b}) {
+      if (same(part, other) && !result) return true;
+      if (part.known && other.known && (is_left ? literal_less(part, other) : literal_less(other, part)) == result)
+        return true;
+    }
+  }
+  return false;
+}
+
 bool evaluate_shift(const Graph& graph, const Inst& inst, std::uint64_t& result) {
   const Integer a = operand_of(graph, inst, 0);
   std::uint64_t count = 0;
@@ -51,6 +94,16 @@ bool evaluate_shift(const Graph& graph, const Inst& inst, std::uint64_t& result)
   if (inst.op == Op::kQShr) result = a.value >> count;
   if (inst.op == Op::kLShr) result = static_cast<std::uint64_t>(static_cast<std::int64_t>(a.value) >> count);
   return a.is(0) || (a.known && known);
+}
+
+bool evaluate_comparison(const Graph& graph, const Inst& inst, std::uint64_t& result) {
+  const bool negated = inst.op == Op::kLGe || inst.op == Op::kQGe;
+  if (!negated && inst.op != Op::kLLt && inst.op != Op::kQLt) return false;
+  const Op less = inst.op == Op::kLLt || inst.op == Op::kLGe ? Op::kLLt : Op::kQLt;
+  bool is_less = false;
+  if (!compare_extremum(graph, operand_of(graph, inst, 0), operand_of(graph, inst, 2), less, is_less)) return false;
+  result = is_less != negated ? 1 : 0;
+  return true;
 }
 
 bool evaluate_binary(const Graph& graph, const Inst& inst, std::uint64_t& result) {
@@ -100,7 +153,9 @@ bool evaluate_integers(const Graph& graph, const Inst& inst, std::uint32_t words
   std::uint64_t result = 0;
   const bool shifts = inst.op == Op::kQShl || inst.op == Op::kQShr || inst.op == Op::kLShr;
   if (inst.count != (shifts ? 3u : 4u)) return false;
-  if (shifts ? !evaluate_shift(graph, inst, result) : !evaluate_binary(graph, inst, result)) return false;
+  if (shifts ? !evaluate_shift(graph, inst, result)
+             : !evaluate_binary(graph, inst, result) && !evaluate_comparison(graph, inst, result))
+    return false;
   words[0] = static_cast<std::uint32_t>(result);
   words[1] = static_cast<std::uint32_t>(result >> 32);
   return true;

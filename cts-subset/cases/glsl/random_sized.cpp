@@ -360,6 +360,21 @@ CTS_CASE("glsl", "sized.ordered") {
                       {"double", "x_double * double(min(y_int16_t, int16_t(7)) > int16_t(7))"}});
 }
 
+// The same of 64-bit integers, and of literals beside them.
+CTS_CASE("glsl", "sized.ordered_wide") {
+  const std::string product =
+      "z_float16_t * (max(z_int64_t, int64_t(5)) < z_int64_t ? x_float16_t : "
+      "x_float16_t * y_float16_t) + (z_float16_t * y_float16_t) * z_float16_t";
+  compare_fixed(run, {{"float16_t", product},
+                      {"double", "y_double * double(x_int64_t < min(y_int64_t, x_int64_t))"},
+                      {"double", "z_double * double(max(x_uint64_t, y_uint64_t) < y_uint64_t)"},
+                      {"double", "x_double * double(min(y_uint64_t, uint64_t(7)) > uint64_t(7))"},
+                      {"double", "y_double * double(int64_t(5) >= max(z_int64_t, int64_t(9)))"},
+                      {"double", "(z_double + double(x_int64_t >= min(x_int64_t, y_int64_t))) + double(0.7)"},
+                      {"double", "(x_double + double(min(z_uint64_t, uint64_t(7)) < uint64_t(9))) + double(0.3)"},
+                      {"double", "x_double * double(x_int64_t < max(y_int64_t, x_int64_t))"}});
+}
+
 // Equal conversions are one value, so that rules see equal products.
 CTS_CASE("glsl", "sized.equal_conversions") {
   const char* half =
