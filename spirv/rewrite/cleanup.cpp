@@ -38,7 +38,7 @@ bool look_through(const Graph& graph, Src& src, unsigned read) {
 /// A whole vector that is another value, component by component.
 bool look_through_whole(const Graph& graph, Src& src) {
   const Inst* copy = graph.def(src.value);
-  if (!copy || src.swizzle != std::array<std::uint8_t, 4>{0, 1, 2, 3}) return false;
+  if (!copy || !is_whole(graph, src, src.value)) return false;
   const bool move = is_move(*copy);
   if (!move && copy->kind != Kind::kVec) return false;
   const ValueId from = graph.source(*copy, 0).value;
@@ -75,7 +75,8 @@ bool reads_whole(const Graph& graph, const Inst& user, const Inst& copy) {
 }
 
 /// The uses of a copy become uses of what it copies, in their order, which is the order in which the rules wake users.
-bool propagate(Graph& graph, InstId id) {
+/// A join reads whole values, a component of one by a copy, unless `into_joins`.
+bool propagate(Graph& graph, InstId id, bool into_joins) {
   if (!is_move(graph.insts[id]) && graph.insts[id].kind != Kind::kVec) return false;
   std::vector<Slot> uses;
   for (Slot slot = graph.values[graph.insts[id].result].first_use; slot != kNone; slot = graph.sources[slot].next)
@@ -85,8 +86,9 @@ bool propagate(Graph& graph, InstId id) {
     const InstId user = graph.sources[slot].user;
     if (reads_whole(graph, graph.insts[user], graph.insts[id])) continue;
     const std::uint32_t index = slot - graph.insts[user].first;
-    const unsigned read = components_read(graph, graph.insts[user], index);
     Src src = graph.source(graph.insts[user], index);
+    unsigned read = components_read(graph, graph.insts[user], index);
+    if (read == 0 && into_joins && graph.values[src.value].components == 1) read = 1;
     if (read == 0 ? look_through_whole(graph, src) : look_through(graph, src, read)) {
       graph.set_source(user, index, src);
       changed = true;
@@ -221,6 +223,10 @@ unsigned components_read(const Graph& graph, const Inst& user, std::uint32_t ind
       return index < 1 ? 1 : 0;
     case Op::kStoreGlobal:
       return index < 3 ? 1 : 0;
+    case Op::kYield:
+    case Op::kBreak:
+    case Op::kContinue:
+      return 0;
     default:
       return graph.values[graph.source(user, index).value].components == 1 ? 1 : 0;
   }
@@ -243,9 +249,9 @@ bool is_pure(const Graph& graph, const Inst& inst) {
   return false;
 }
 
-bool propagate_copies(Graph& graph) {
+bool propagate_copies(Graph& graph, bool into_joins) {
   bool changed = false;
-  auto visit = [&](InstId id) { changed |= propagate(graph, id); };
+  auto visit = [&](InstId id) { changed |= propagate(graph, id, into_joins); };
   for_each_inst(graph, graph.root, visit);
   return changed;
 }

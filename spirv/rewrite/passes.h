@@ -8,8 +8,9 @@
 
 namespace vitrine::spirv::rewriting {
 
-/// Uses of Mov, MovB and of components of Vec read the source instead.
-bool propagate_copies(Graph& graph);
+/// Uses of Mov, MovB and of components of Vec read the source instead. Joins do so where the source is a value as a
+/// whole, as in the reference; `into_joins`: where it is a component, too.
+bool propagate_copies(Graph& graph, bool into_joins = false);
 
 /// Removes what has no effect and whose results nobody uses, and results and parameters that nobody uses.
 bool remove_dead(Graph& graph);

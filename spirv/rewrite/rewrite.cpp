@@ -63,7 +63,7 @@ void finish(Graph& graph) {
   rewriting::choose_extrema(graph);
   rewriting::build_identities(graph);
   rewriting::fold_late_constants(graph);
-  rewriting::propagate_copies(graph);
+  rewriting::propagate_copies(graph, true);
   rewriting::remove_dead(graph);
   rewriting::merge_equal_code(graph);
   rewriting::share_selections(graph);

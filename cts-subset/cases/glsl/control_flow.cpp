@@ -162,5 +162,14 @@ CTS_CASE("glsl", "control_flow.bits_of_literal") {
   evaluate(run, Stage::kCompute, {"", text, {{kFloat, "uintBitsToFloat(s)"}}, {}, false});
 }
 
+// A component that a loop hands on is copied as long as it is that of a vector, and a second use of the sum when it is
+// not.
+CTS_CASE("glsl", "control_flow.component_at_join") {
+  const char* text =
+      "  float s = a.x;\n  vec4 r = reflect(b, vec4(0.5, 0.5, 10.0, 3.0)) + vec4(-2.5, 3.0, 0.3, 1.0);\n"
+      "  for (int k = 0; k < (i.y & 7); ++k) s = r.z;\n";
+  evaluate(run, Stage::kFragment, {"", text, {{kFloat, "s"}, {kVec4, "r"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
