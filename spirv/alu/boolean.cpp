@@ -19,6 +19,8 @@ constexpr Bits apply(Op op, Bits a, Bits b, Bits c) {
       return a | b;
     case Op::kXorB:
       return a ^ b;
+    case Op::kEqB:
+      return ~(a ^ b);
     case Op::kNotB:
       return ~a;
     default:
@@ -63,6 +65,7 @@ constexpr Table make_table() {
   table[Op::kAndB] = handlers_of<Op::kAndB, 2>();
   table[Op::kOrB] = handlers_of<Op::kOrB, 2>();
   table[Op::kXorB] = handlers_of<Op::kXorB, 2>();
+  table[Op::kEqB] = handlers_of<Op::kEqB, 2>();
   table[Op::kNotB] = handlers_of<Op::kNotB, 1>();
   table[Op::kSelectB] = handlers_of<Op::kSelectB, 3>();
   return table;

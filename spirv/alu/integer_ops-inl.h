@@ -375,16 +375,6 @@ struct LaneOp<Op::kBfeI> {
   }
 };
 
-template <>
-struct LaneOp<Op::kBfiMask> {
-  template <class V>
-  static HWY_INLINE auto of(V a, V b) {
-    const V one = lanes_set<V>(1u);
-    const V mask = hn::Shl(hn::Sub(hn::Shl(one, shift_count(a)), one), shift_count(b));
-    return hn::Or(mask, hn::VecFromMask(hn::DFromV<V>(), hn::Gt(a, lanes_set<V>(31u))));
-  }
-};
-
 }  // namespace vitrine::spirv::alu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -116,7 +116,7 @@ void compare_swapped_exact(Translator& t, const Inst& inst, ir::Op op) {
 }
 
 void compare_negated(Translator& t, const Inst& inst, ir::Op op) {
-  set_number(t, inst, negate(compare(t, inst, op, false, op != ir::Op::kXorB)));
+  set_number(t, inst, negate(compare(t, inst, op, false, true)));
 }
 
 void compare_swapped_negated(Translator& t, const Inst& inst, ir::Op op) {
@@ -169,18 +169,18 @@ void select(Translator& t, const Inst& inst, ir::Op) {
 }
 
 /// The reference compares the vector with a literal, which is one operation until its rules come to it, and joins three
-/// components from the last to the first, four in pairs. Equal to true is written as unequal to false here, which is
-/// one instruction, too.
+/// components from the last to the first, four in pairs.
 void reduce_boolean(Translator& t, const Inst& inst, ir::Op op) {
   const ir::ValueId vector = scalar_or_vector(t, inst.operand(0));
   const std::uint8_t count = components(t, vector);
   if (count == 1) return set_value(t, inst, vector);
-  const std::uint32_t word = 0;
-  const ir::Src never = whole(literal(t, {&word, 1}, true));
+  const bool all = op == ir::Op::kAndB;
+  const std::uint32_t word = all ? 1 : 0;
+  const ir::Src neutral = whole(literal(t, {&word, 1}, true));
   const bool saved = std::exchange(t.opaque, true);
   std::array<ir::Src, 4> compared;
   const auto compare = [&](std::uint8_t c) {
-    compared[c] = whole(emit(t, ir::Op::kXorB, 1, true, {splat(vector, c), never}));
+    compared[c] = whole(emit(t, all ? ir::Op::kEqB : ir::Op::kXorB, 1, true, {splat(vector, c), neutral}));
   };
   const auto join = [&](ir::Src a, ir::Src b) { return whole(emit(t, op, 1, true, {a, b})); };
   compare(0);
@@ -231,12 +231,17 @@ void bit_field_insert(Translator& t, const Inst& inst, ir::Op) {
   const Expr base = number_of(t, inst.operand(0)), value = number_of(t, inst.operand(1));
   const Expr offset = convert_unsigned(number_of(t, inst.operand(2)), 32);
   const Expr bits = convert_unsigned(number_of(t, inst.operand(3)), 32);
-  const Expr mask = apply(ir::Op::kBfiMask, {bits, offset});
-  const Expr kept = base & apply(ir::Op::kNot, {mask});
-  const Expr added = apply(ir::Op::kShl, {value, offset}) & mask;
-  const Expr joined = kept | added;
+  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
+  const Expr one = imm_u32(t, 1);
+  const auto mask = [&] {
+    return apply(ir::Op::kShl, {apply(ir::Op::kISub, {apply(ir::Op::kShl, {one, bits}), one}), offset});
+  };
+  const Expr kept = base & apply(ir::Op::kNot, {mask()});
+  const Expr joined = kept | (apply(ir::Op::kShl, {value, offset}) & mask());
   const Expr all = apply(ir::Op::kULt, {imm_u32(t, 31), bits});
-  set_number(t, inst, select(all, value, joined));
+  const Expr inserted = select(all, value, joined);
+  t.opaque = saved;
+  set_number(t, inst, inserted);
 }
 
 void derivative(Translator& t, const Inst& inst, ir::Op op) {

@@ -35,7 +35,12 @@ bool similar_literals(const Expr& x, const Expr& y) {
   return true;
 }
 
-Expr saturate(Expr x) { return min(max(x, imm(*x.t, 0.0f)), imm(*x.t, 1.0f)); }
+Expr saturate(Expr x) {
+  const bool saved = std::exchange(x.t->opaque, true);  // one operation until the reference's rules come to it
+  const Expr limited = min(max(x, imm(*x.t, 0.0f)), imm(*x.t, 1.0f));
+  x.t->opaque = saved;
+  return limited;
+}
 
 /// a - b * c as the front end of the reference writes it: (-b * c) + a.
 Expr minus_product(Expr a, Expr b, Expr c) { return multiply_add(-b, c, a); }
@@ -242,6 +247,7 @@ void ldexp(Translator& t, const Inst& inst, ir::Op) {
   const std::int32_t limit = 2 * shape.bias;
   const Expr low = int_constant(t, -limit), high = int_constant(t, limit);
   const Expr given = convert_signed(arg(t, inst, 1), 32);
+  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
   const Expr e = apply(ir::Op::kIMin, {apply(ir::Op::kIMax, {given, low}), high});
   const Expr half = apply(ir::Op::kIShr, {e, imm_u32(t, 1)});
   const Expr rest = apply(ir::Op::kISub, {e, half});
@@ -253,7 +259,6 @@ void ldexp(Translator& t, const Inst& inst, ir::Op) {
     return with_top(number, top);
   };
   const Expr first = power(half), second = power(rest);
-  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
   const Expr scaled = x * first * second;
   t.opaque = saved;
   result(t, inst, scaled);

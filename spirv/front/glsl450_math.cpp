@@ -208,37 +208,59 @@ void inverse(Translator& t, const Inst& inst, ir::Op) {
 
 void pack_unorm(Translator& t, const Inst& inst, ir::Op) {
   const Expr v = arg(t, inst, 0);
+  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
   const Expr clamped = min(max(v, imm(t, 0.0f)), imm(t, 1.0f));
   const Expr rounded = apply(ir::Op::kFRoundEven, {clamped * (v.size() == 2 ? 65535.0f : 255.0f)});
-  result(t, inst, pack_fields(t, apply(ir::Op::kF2U, {rounded})));
+  const Expr word = pack_fields(t, apply(ir::Op::kF2U, {rounded}));
+  t.opaque = saved;
+  result(t, inst, word);
 }
 
 void pack_snorm(Translator& t, const Inst& inst, ir::Op) {
   const Expr v = arg(t, inst, 0);
+  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
   const Expr clamped = min(imm(t, 1.0f), max(imm(t, -1.0f), v));
   const Expr rounded = apply(ir::Op::kFRoundEven, {clamped * (v.size() == 2 ? 32767.0f : 127.0f)});
-  result(t, inst, pack_fields(t, apply(ir::Op::kF2I, {rounded})));
+  const Expr word = pack_fields(t, apply(ir::Op::kF2I, {rounded}));
+  t.opaque = saved;
+  result(t, inst, word);
 }
 
 void pack_half(Translator& t, const Inst& inst, ir::Op) {
-  result(t, inst, pack_fields(t, apply(ir::Op::kF2Half, {arg(t, inst, 0)})));
+  const Expr v = arg(t, inst, 0);
+  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
+  const Expr word = pack_fields(t, apply(ir::Op::kF2Half, {v}));
+  t.opaque = saved;
+  result(t, inst, word);
 }
 
 void unpack_unorm(Translator& t, const Inst& inst, ir::Op) {
   const std::uint32_t count = result_count(t, inst);
-  const Expr fields = apply(ir::Op::kU2F, {unpack_fields(t, arg(t, inst, 0), count, false)});
-  result(t, inst, fields / imm(t, count == 2 ? 65535.0f : 255.0f));
+  const Expr word = arg(t, inst, 0);
+  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
+  const Expr fields = apply(ir::Op::kU2F, {unpack_fields(t, word, count, false)});
+  const Expr numbers = fields / imm(t, count == 2 ? 65535.0f : 255.0f);
+  t.opaque = saved;
+  result(t, inst, numbers);
 }
 
 void unpack_snorm(Translator& t, const Inst& inst, ir::Op) {
   const std::uint32_t count = result_count(t, inst);
-  const Expr fields = apply(ir::Op::kI2F, {unpack_fields(t, arg(t, inst, 0), count, true)});
+  const Expr word = arg(t, inst, 0);
+  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
+  const Expr fields = apply(ir::Op::kI2F, {unpack_fields(t, word, count, true)});
   const Expr scaled = fields / imm(t, count == 2 ? 32767.0f : 127.0f);
-  result(t, inst, min(imm(t, 1.0f), max(imm(t, -1.0f), scaled)));
+  const Expr numbers = min(imm(t, 1.0f), max(imm(t, -1.0f), scaled));
+  t.opaque = saved;
+  result(t, inst, numbers);
 }
 
 void unpack_half(Translator& t, const Inst& inst, ir::Op) {
-  result(t, inst, apply(ir::Op::kHalf2F, {unpack_fields(t, arg(t, inst, 0), 2, false)}));
+  const Expr word = arg(t, inst, 0);
+  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
+  const Expr numbers = apply(ir::Op::kHalf2F, {unpack_fields(t, word, 2, false)});
+  t.opaque = saved;
+  result(t, inst, numbers);
 }
 
 }  // namespace vitrine::spirv::front::glsl

@@ -21,6 +21,7 @@ bool commutes(Op op) {
     case Op::kAndB:
     case Op::kOrB:
     case Op::kXorB:
+    case Op::kEqB:
       return true;
     default:
       return false;  // float operand order decides which NaN survives

@@ -86,12 +86,6 @@ class Rewriter {
     return child(0, 1) && child(1, 0) && (shape.children < 3 || child(2, 2));
   }
 
-  /// What the reference has where a part of a reduction of booleans compares a component.
-  Op comparison_of(const Inst& part) const {
-    const Slot use = graph_.values[part.result].first_use;
-    return use != kNone && graph_.insts[graph_.sources[use].user].op == Op::kOrB ? Op::kINe : Op::kIEq;
-  }
-
   /// True when the state changed.
   bool update_state(InstId id) {
     const Inst& inst = graph_.insts[id];
@@ -101,7 +95,6 @@ class Rewriter {
         if (fits(inst, rules_.shapes[shape])) state[shape / 64] |= std::uint64_t{1} << (shape % 64);
     };
     if (!inst.opaque) add_shapes(shape_op(inst.op));
-    if (!inst.opaque && inst.op == Op::kXorB && inst.opens == Opens::kWithResult) add_shapes(comparison_of(inst));
     if (states_[inst.result] == state) return false;
     states_[inst.result] = state;
     return true;

@@ -61,20 +61,22 @@ bool extends_sign(const Graph& graph, const Inst& inst) {
 }
 
 /// The instruction is no operation of its own in the reference, which has numbers of every width: it ends a conversion
-/// from or to halves, or extends the sign of an operand.
+/// from or to halves, or extends the sign of an operand. What packs or unpacks halves is not meant.
 bool is_part(const Graph& graph, const Inst& inst) {
   if (inst.count == 0) return false;
+  const auto is_arithmetic = [](const Inst& half) { return half.opens == Opens::kNever; };
   const Inst* def = graph.def(graph.source(inst, 0).value);
   switch (inst.op) {
     case Op::kF2Half:
-      return def && (def->op == Op::kI2F || def->op == Op::kU2F || def->op == Op::kFFromD || def->op == Op::kFFromL ||
-                     def->op == Op::kFFromQ);
+      return def && is_arithmetic(inst) &&
+             (def->op == Op::kI2F || def->op == Op::kU2F || def->op == Op::kFFromD || def->op == Op::kFFromL ||
+              def->op == Op::kFFromQ);
     case Op::kF2I:
     case Op::kF2U:
     case Op::kDFromF:
     case Op::kLFromF:
     case Op::kQFromF:
-      return def && def->op == Op::kHalf2F;
+      return def && def->op == Op::kHalf2F && is_arithmetic(*def);
     default:
       return extends_sign(graph, inst);
   }

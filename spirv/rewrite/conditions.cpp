@@ -136,11 +136,12 @@ bool take_equal_by(Graph& graph, InstId branch, ValueId condition, bool accept_u
     return changed;
   }
   const bool unequal = inst.op == Op::kINe || inst.op == Op::kXorB;
-  if (inst.op != Op::kIEq && !(unequal && accept_unequal)) return false;
+  const bool equal = inst.op == Op::kIEq || inst.op == Op::kEqB;
+  if (!equal && !(unequal && accept_unequal)) return false;
   for (const std::uint32_t i : {0u, 1u}) {
     const Src known = graph.source(inst, i), unknown = graph.source(inst, 1 - i);
     if (graph.constant(known.value) && unknown.value != known.value)
-      return take_equal_in(graph, graph.insts[branch].child[inst.op == Op::kIEq ? 0 : 1], unknown, known);
+      return take_equal_in(graph, graph.insts[branch].child[equal ? 0 : 1], unknown, known);
   }
   return false;
 }

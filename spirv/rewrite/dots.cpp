@@ -1,6 +1,9 @@
-// Dot products, remainders, ldexp and reductions of booleans, which are single operations in the reference's first
-// round: what the front end made of them stays closed to the rules until then, and vectors that end in zeros shorten
-// dot products (lavapipe-shader-math.md 5.1).
+// Dot products, remainders, ldexp, reductions of booleans, inserted and unpacked bits, which are single operations in
+// the reference's first round: what the front end made of them stays closed to the rules until then, and vectors that
+// end in zeros shorten dot products (lavapipe-shader-math.md 5.1).
+#include <algorithm>
+#include <initializer_list>
+
 #include "spirv/rewrite/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -96,19 +99,105 @@ class Shortener {
   Graph& graph_;
 };
 
-/// The comparisons of components that a reduction of booleans joins, and their joints, operands first.
-std::vector<InstId> parts_of_reduction(const Graph& graph, const Inst& end) {
-  std::vector<InstId> parts;
-  for (std::uint32_t i = 0; i < end.count; ++i) {
-    const InstId part = graph.values[graph.source(end, i).value].def;
-    if (part == kNone || !graph.insts[part].opaque || graph.insts[part].kind != Kind::kAlu) continue;
-    if (graph.insts[part].op != Op::kXorB) {
-      const std::vector<InstId> inner = parts_of_reduction(graph, graph.insts[part]);
-      parts.insert(parts.end(), inner.begin(), inner.end());
-    }
-    parts.push_back(part);
+/// Whether operand `index` of the operation, which ends a composed one or is a part of it, can be made by a part of
+/// this kind: of a reduction of booleans, of inserted, packed or unpacked bits, of a number limited to 0 and 1, or of a
+/// power of two (of ldexp). What a composed operation takes is no part of it, though it may end another one.
+bool is_part_of(const Graph& graph, const Inst& inst, std::uint32_t index, const Inst& part) {
+  const auto one_of = [&](std::initializer_list<Op> ops) {
+    return std::find(ops.begin(), ops.end(), part.op) != ops.end();
+  };
+  switch (inst.op) {
+    case Op::kAndB:
+    case Op::kOrB:
+      return one_of({inst.op, Op::kEqB, Op::kXorB});
+    case Op::kSelect:
+      return part.op == (index == 0 ? Op::kULt : Op::kOr) && index != 1;
+    case Op::kOr:
+      return one_of({Op::kOr, Op::kAnd, Op::kShl});
+    case Op::kAnd:
+      return one_of({Op::kNot, Op::kShl, Op::kF2U, Op::kF2I, Op::kF2Half});
+    case Op::kNot:
+      return part.op == Op::kShl;
+    case Op::kShl:
+      return one_of({Op::kISub, Op::kAnd, Op::kIAdd});
+    case Op::kIAdd:
+    case Op::kISub:
+      return one_of({Op::kShl, Op::kISub, Op::kIShr, Op::kIMin});
+    case Op::kIShr:
+      return part.op == Op::kIMin;
+    case Op::kIMin:
+      return part.op == Op::kIMax;
+    case Op::kF2U:
+    case Op::kF2I:
+      return part.op == Op::kFRoundEven;
+    case Op::kFRoundEven:
+      return part.op == Op::kFMul;
+    case Op::kFMul:
+      return part.op == Op::kFMin;
+    case Op::kFMin:
+      return part.op == Op::kFMax;
+    case Op::kFMax:
+      return part.op == Op::kFDiv && is_alu(graph.def(graph.source(part, 0).value), Op::kI2F);
+    case Op::kFDiv:
+      return one_of({Op::kI2F, Op::kU2F});
+    case Op::kI2F:
+      return part.op == Op::kBfeI;
+    case Op::kU2F:
+    case Op::kHalf2F:
+      return part.op == Op::kBfeU;
+    default:
+      return false;
   }
+}
+
+/// The parts of a composed operation that operand `index` of what ends it, or of a part, is made of, operands first.
+void add_parts(const Graph& graph, const Inst& inst, std::uint32_t index, std::vector<InstId>& parts) {
+  const auto add = [&](Src src) {
+    InstId id = graph.values[src.value].def;
+    if (id != kNone && graph.insts[id].op == Op::kMov) id = graph.values[graph.source(graph.insts[id], 0).value].def;
+    if (id == kNone) return;
+    const Inst& part = graph.insts[id];
+    if (!part.opaque || part.kind != Kind::kAlu || !is_part_of(graph, inst, index, part)) return;
+    for (std::uint32_t i = 0; i < part.count; ++i) add_parts(graph, part, i, parts);
+    parts.push_back(id);
+  };
+  const Src src = graph.source(inst, index);
+  const Inst* fields = graph.def(src.value);
+  const bool unpacks = inst.op == Op::kI2F || inst.op == Op::kU2F || inst.op == Op::kHalf2F;
+  if (!unpacks || !fields || fields->kind != Kind::kVec) return add(src);
+  for (std::uint32_t i = 0; i < fields->count; ++i) add(graph.source(*fields, i));
+}
+
+std::vector<InstId> parts_of_tree(const Graph& graph, const Inst& end) {
+  std::vector<InstId> parts;
+  for (std::uint32_t i = 0; i < end.count; ++i) add_parts(graph, end, i, parts);
   return parts;
+}
+
+/// ldexp: the first product, and what makes the powers of two that both products multiply by.
+std::vector<InstId> parts_of_product(const Graph& graph, const Inst& end) {
+  const Inst* scaled = graph.def(graph.source(end, 0).value);
+  const bool part = is_alu(scaled, Op::kFMul) && scaled->opaque &&
+                    (scaled->opens == Opens::kAfterRules || scaled->opens == Opens::kWithResult);
+  if (!part) return {};
+  std::vector<InstId> parts;
+  for (const Inst* product : {scaled, &end}) {
+    const InstId power = graph.values[graph.source(*product, 1).value].def;
+    if (power == kNone || !is_alu(&graph.insts[power], Op::kShl) || !graph.insts[power].opaque) continue;
+    add_parts(graph, graph.insts[power], 0, parts);
+    parts.push_back(power);
+  }
+  parts.push_back(graph.values[scaled->result].def);
+  return parts;
+}
+
+/// Limits a number to 0 and 1, which is free where the reference counts operations.
+bool saturates(const Graph& graph, const Inst& end) {
+  if (end.op != Op::kFMin) return false;
+  const Inst* largest = graph.def(graph.source(end, 0).value);
+  if (!is_alu(largest, Op::kFMax) || !largest->opaque) return false;
+  const Inst* scaled = graph.def(graph.source(*largest, 0).value);
+  return !is_alu(scaled, Op::kFDiv) || !scaled->opaque;
 }
 
 }  // namespace
@@ -116,14 +205,9 @@ std::vector<InstId> parts_of_reduction(const Graph& graph, const Inst& end) {
 std::vector<InstId> parts_of_composed(const Graph& graph, InstId id) {
   const Inst& end = graph.insts[id];
   if (!end.opaque || end.kind != Kind::kAlu) return {};
-  if (end.op == Op::kAndB || end.op == Op::kOrB) return parts_of_reduction(graph, end);
-  if (end.op == Op::kFMul) {
-    const Inst* scaled = graph.def(graph.source(end, 0).value);
-    const bool part = is_alu(scaled, Op::kFMul) && scaled->opaque &&
-                      (scaled->opens == Opens::kAfterRules || scaled->opens == Opens::kWithResult);
-    return part ? std::vector<InstId>{graph.values[scaled->result].def} : std::vector<InstId>{};
-  }
-  const Inst* product = end.op == Op::kFSub ? graph.def(graph.source(end, 1).value) : nullptr;
+  if (end.op == Op::kFMul) return parts_of_product(graph, end);
+  if (end.op != Op::kFSub) return parts_of_tree(graph, end);
+  const Inst* product = graph.def(graph.source(end, 1).value);
   if (!is_alu(product, Op::kFMul)) return {};
   const Inst* rounded = graph.def(graph.source(*product, 1).value);
   if (!is_alu(rounded, Op::kFFloor) && !is_alu(rounded, Op::kFTrunc)) return {};
@@ -182,6 +266,7 @@ void show_short_products(Graph& graph) {
 
 unsigned cost_of(const Graph& graph, const Inst& inst) {
   if (inst.opaque && inst.opens == Opens::kWithResult) return 0;
+  if (inst.opaque && saturates(graph, inst)) return 0;
   if (!inst.opaque || inst.op != Op::kFAdd) return 1;
   // One dot product, later one sum of products, where we have a chain of additions.
   const Inst* before = graph.def(graph.source(inst, 0).value);

@@ -82,6 +82,9 @@ bool compare(Op op, const std::uint32_t* v, bool& r) {
     case Op::kXorB:
       r = v[0] != v[1];
       return true;
+    case Op::kEqB:
+      r = v[0] == v[1];
+      return true;
     case Op::kNotB:
       r = !v[0];
       return true;
@@ -159,9 +162,6 @@ bool bit_operation(Op op, const std::uint32_t* v, std::uint32_t& r) {
       return true;
     case Op::kFindLsb:
       r = a == 0 ? ~0u : static_cast<std::uint32_t>(std::countr_zero(a));
-      return true;
-    case Op::kBfiMask:
-      r = a > 31 ? ~0u : ((1u << a) - 1) << b;
       return true;
     case Op::kBfeU:
       r = (a >> b) & (v[2] == 32 ? ~0u : (1u << (v[2] & 31)) - 1);

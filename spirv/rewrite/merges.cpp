@@ -37,7 +37,7 @@ bool merge_next(Graph& graph, InstId id) {
 
 bool is_comparison(const Inst* inst) {
   if (!inst || inst->kind != Kind::kAlu || inst->components != 1) return false;
-  if (inst->op == Op::kNotB || inst->op == Op::kXorB) return true;
+  if (inst->op == Op::kNotB || inst->op == Op::kXorB || inst->op == Op::kEqB) return true;
   const ir::AluInfo& info = ir::alu_info(inst->op);
   return info.sources == 2 && info.result == 'B' && info.operands[0] != 'B';
 }

@@ -284,6 +284,7 @@ bool is_commutative(Op op) {
     case Op::kAndB:
     case Op::kOrB:
     case Op::kXorB:
+    case Op::kEqB:
       return true;
     default:
       return false;
@@ -297,7 +298,9 @@ ir::Op shape_op(ir::Op op) {
     case Op::kOrB:
       return Op::kOr;
     case Op::kXorB:
-      return Op::kXor;
+      return Op::kINe;
+    case Op::kEqB:
+      return Op::kIEq;
     case Op::kNotB:
       return Op::kNot;
     case Op::kSelectB:

@@ -13,7 +13,7 @@ constexpr const char* kIntegerMinMax = "IMin IMax UMin UMax";
 constexpr const char* kSides = "FLt FGe ILt IGe ULt UGe";
 constexpr const char* kEqualities = "FEq FNeu IEq INe";
 constexpr const char* kLeftFactor = "FMul IAdd IMul And Or Xor FMin FMax IMin IMax UMin UMax";
-constexpr const char* kBooleanFactor = "AndB OrB XorB";
+constexpr const char* kBooleanFactor = "AndB OrB";
 constexpr const char* kUnary = "FRcp FRsq FSqrt FExp2 FLog2 FSign FSin FCos FNeg FAbs";
 
 constexpr RuleText kMain[] = {
@@ -110,10 +110,6 @@ constexpr RuleText kMain[] = {
     {"~FMix(a,0.0,c)", "FAdd(FMul(FNeg(a),c),a)"},
     {"FAdd(a,FNeg(FFract(a)))", "FFloor(a)"},
     {"FMulAdd(a,b,c)", "FAdd(FMul(a,b),c)"},
-    {"$(a,b,0)", "0", "BfeU BfeI"},
-    {"$(0,a,b)", "0", "BfeU BfeI"},
-    {"BfeU(#a,#b,c)", "And(UShr(a,b),Select(IEq(c,32),0xffffffff,ISub(Shl(1,c),1)))"},
-    {"BfiMask(0,a)", "0"},
     // -- shifts
     {"Shl(IAdd(IMul(a,#b),#c),#d)", "IAdd(IMul(a,Shl(b,d)),Shl(c,d))"},
     {"Shl(IMul(a,#b),#c)", "IMul(a,Shl(b,c))"},
@@ -150,10 +146,12 @@ constexpr RuleText kMain[] = {
     {"NotB(UGe:once(a,b))", "ULt(a,b)"},
     {"NotB(IEq:once(a,b))", "INe(a,b)"},
     {"NotB(INe:once(a,b))", "IEq(a,b)"},
+    {"NotB(EqB:once(a,b))", "XorB(a,b)"},
+    {"NotB(XorB:once(a,b))", "EqB(a,b)"},
     {"AndB(FEq(a,b),FNeu(a,b))", "false"},
     {"AndB(FLt(a,b),FLt(b,a))", "false"},
     {"AndB(IEq(a,b),INe(a,b))", "false"},
-    {"AndB(NotB(XorB(a,b)),XorB(a,b))", "false"},
+    {"AndB(EqB(a,b),XorB(a,b))", "false"},
     {"AndB(ILt(a,b),ILt(b,a))", "false"},
     {"AndB(ULt(a,b),ULt(b,a))", "false"},
     {"$(FNeg(a),FNeg(b))", "$(b,a)", "FLt FGe FEq FNeu"},
@@ -178,9 +176,9 @@ constexpr RuleText kMain[] = {
     {"FEq(B2F(a),FNeg(B2F(b)))", "NotB(OrB(a,b))"},
     {"FEq(FMul(B2F(a),B2F(b)),0.0)", "NotB(AndB(a,b))"},
     {"FEq(Select(a,B2F(b),0.0),0.0)", "NotB(AndB(a,b))"},
-    {"FEq(FAdd(B2F(a),FNeg(B2F(b))),0.0)", "NotB(XorB(a,b))"},
-    {"FEq(B2F(a),B2F(b))", "NotB(XorB(a,b))"},
-    {"FEq(FNeg(B2F(a)),FNeg(B2F(b)))", "NotB(XorB(a,b))"},
+    {"FEq(FAdd(B2F(a),FNeg(B2F(b))),0.0)", "EqB(a,b)"},
+    {"FEq(B2F(a),B2F(b))", "EqB(a,b)"},
+    {"FEq(FNeg(B2F(a)),FNeg(B2F(b)))", "EqB(a,b)"},
     {"FLt(0.0,FAdd(B2F(a),B2F(b)))", "OrB(a,b)"},
     {"FLt(FNeg(FAdd(B2F(a),B2F(b))),0.0)", "OrB(a,b)"},
     {"FGe(0.0,FAdd(B2F(a),B2F(b)))", "NotB(OrB(a,b))"},
@@ -203,7 +201,7 @@ constexpr RuleText kMain[] = {
     {"FNeu(B2F(a),0.0)", "a"},
     {"IEq(B2I(a),0)", "NotB(a)"},
     {"INe(B2I(a),0)", "a"},
-    {"IEq(B2I(a),B2I(b))", "NotB(XorB(a,b))"},
+    {"IEq(B2I(a),B2I(b))", "EqB(a,b)"},
     {"INe(B2I(a),B2I(b))", "XorB(a,b)"},
     {"INe(INeg(B2I(a)),INeg(B2I(b)))", "XorB(a,b)"},
     {"FNeu($(a),0.0)", "INe(a,0)", "U2F I2F"},
@@ -366,7 +364,7 @@ constexpr RuleText kMain[] = {
     {"OrB(IEq(a,0),IEq(a,1))", "UGe(1,a)"},
     {"OrB(UGe(1,a),IEq(a,2))", "UGe(2,a)"},
     {"OrB(UGe(2,a),IEq(a,3))", "UGe(3,a)"},
-    {"OrB(a,NotB(XorB(a,false)))", "true"},
+    {"OrB(a,EqB(a,false))", "true"},
     // -- comparisons with a minimum or maximum of the same value
     {"FLt(a,FMax(b,a))", "FLt(a,b)"},
     {"FLt(FMin(a,b),a)", "FLt(b,a)"},
@@ -422,8 +420,8 @@ constexpr RuleText kMain[] = {
     {"FMul(B2F(a),B2F(b))", "B2F(AndB(a,b))"},
     {"FLt(FNeg(B2F(a)),0)", "a"},
     // -- operations on equal operands
-    {"$(a,a)", "false", "ILt INe ULt FLt"},
-    {"$(a,a)", "true", "IGe IEq UGe"},
+    {"$(a,a)", "false", "ILt INe ULt FLt XorB"},
+    {"$(a,a)", "true", "IGe IEq UGe EqB"},
     {"FGe(a:number,a)", "true"},
     {"FEq(a:number,a)", "true"},
     {"FNeu(a:number,a)", "false"},
@@ -444,10 +442,6 @@ constexpr RuleText kMain[] = {
     {"OrB(a,false)", "a"},
     {"OrB(a,true)", "true"},
     {"OrB(a,NotB(a))", "true"},
-    {"XorB(a,a)", "false"},
-    {"XorB(a,false)", "a"},
-    {"XorB(a,XorB(a,b))", "b"},
-    {"XorB:not_for_if(a,true)", "NotB(a)"},
     {"$($(a))", "a", "Not NotB"},
     {"Or(And(a,b),b)", "b"},
     {"OrB(AndB(a,b),b)", "b"},
@@ -490,6 +484,10 @@ constexpr RuleText kMain[] = {
     {"~FRcp(FSqrt(a))", "FRsq(a)"},
     {"~FRcp(FRsq(a))", "FSqrt(a)"},
     // -- selections between constants
+    {"EqB(a,true)", "a"},
+    {"XorB:not_for_if(a,true)", "NotB(a)"},
+    {"XorB(a,false)", "a"},
+    {"EqB:not_for_if(a,false)", "NotB(a)"},
     {"SelectB(a,true,false)", "a"},
     {"SelectB(a,false,true)", "NotB(a)"},
     {"$(true,b,c)", "b", "Select SelectB"},
@@ -576,8 +574,13 @@ constexpr RuleText kMain[] = {
     {"~Select(FLt(a,0.0),FNeg(a),a)", "FAbs(a)"},
     {"$(a,$(b,c,d),d)", "$(AndB(a,b),c,d)", "Select SelectB"},
     {"$(a,b,$(c,b,d))", "$(OrB(a,c),b,d)", "Select SelectB"},
+    {"UAddCarry(a,b)", "B2I(ULt(IAdd(a,b),a))"},
+    {"USubBorrow(a,b)", "B2I(ULt(a,b))"},
     {"ULt(a,UMin(And(a,b),c))", "false"},
     {"ULt(31,UMin(#a:below32,b))", "false"},
+    {"BfeI(a,b,c)", "Select(IEq(0,c),0,IShr(Shl(a,ISub(ISub(32,c),b)),ISub(32,c)))"},
+    {"BfeU(a,b,c)", "And(UShr(a,b),Select(IEq(c,32),0xffffffff,ISub(Shl(1,c),1)))"},
+    {"IFindMsb(a)", "UFindMsb(Select(ILt(a,0),Not(a),a))"},
     {"IMin(IMax(a,-1),1)", "ISign(a)"},
     {"IMax(IMin(a,1),-1)", "ISign(a)"},
     {"NotB(OrB:once(FEq(a,b),FEq(c,d)))", "AndB(FNeu(a,b),FNeu(c,d))"},
@@ -592,8 +595,7 @@ constexpr RuleText kMain[] = {
     {"AndB(FEq(a,a),$(b,a))", "!$(b,a)", "FLt FGe FEq"},
     // -- operations moved into and out of selections
     {"$(Select(a,#b,#c),#d)", "SelectB(a,$(b,d),$(c,d))", kEqualities},
-    {"NotB(XorB(SelectB(a,#b,#c),#d))", "SelectB(a,NotB(XorB(b,d)),NotB(XorB(c,d)))"},
-    {"XorB(SelectB(a,#b,#c),#d)", "SelectB(a,XorB(b,d),XorB(c,d))"},
+    {"$(SelectB(a,#b,#c),#d)", "SelectB(a,$(b,d),$(c,d))", "EqB XorB"},
     {"$(Select(a,#b,#c),#d)", "SelectB(a,$(b,d),$(c,d))", kSides},
     {"$(#d,Select(a,#b,#c))", "SelectB(a,$(d,b),$(d,c))", kSides},
     {"$(Select:once(a,#b,c),#d)", "Select(a,$(b,d),$(c,d))", "FAdd FMul IAdd IMul"},

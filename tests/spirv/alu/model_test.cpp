@@ -198,6 +198,8 @@ bool comparison(Op op, std::uint32_t a, std::uint32_t b) {
       return a || b;
     case Op::kXorB:
       return a != b;
+    case Op::kEqB:
+      return a == b;
     default:
       return !a;  // kNotB
   }
@@ -229,7 +231,6 @@ std::uint32_t divide(Op op, std::uint32_t a, std::uint32_t b) {  // 7.2, 7.3
 }
 
 std::uint32_t bit_field(Op op, std::uint32_t a, std::uint32_t b, std::uint32_t c) {  // 7.4
-  if (op == Op::kBfiMask) return a > 31 ? ~0u : ((1u << a) - 1) << (b & 31);
   if (op == Op::kBfeU) return (a >> (b & 31)) & (c == 32 ? ~0u : (1u << (c & 31)) - 1);
   if (c == 0) return 0;
   const auto moved = static_cast<std::int32_t>(a << ((32 - c - b) & 31));
@@ -302,7 +303,6 @@ std::uint32_t integer_result(Op op, std::uint32_t a, std::uint32_t b, std::uint3
       return a ? 1u : 0u;
     case Op::kBfeU:
     case Op::kBfeI:
-    case Op::kBfiMask:
       return bit_field(op, a, b, c);
     default:
       return divide(op, a, b);
