@@ -214,6 +214,25 @@ bool is_unmasked_load(const Graph& graph, Src src) {
   return from && from->kind == Kind::kIntrinsic && (from->op == Op::kLoadPush || from->op == Op::kLoadUniform);
 }
 
+/// A conjunction or disjunction.
+const Inst* joint_of(const Graph& graph, Src condition) {
+  const Inst* def = graph.def(condition.value);
+  return def && def->kind == Kind::kAlu && (def->op == Op::kAndB || def->op == Op::kOrB) ? def : nullptr;
+}
+
+/// A conjunction or disjunction whose complement the reference computes from the mask instead of from the opposite
+/// comparisons: it selects something else, too, or joins more than two.
+bool keeps_joint(const Graph& graph, Src condition) {
+  const Inst* joint = joint_of(graph, condition);
+  if (!joint) return false;
+  if (joint_of(graph, graph.source(*joint, 0)) || joint_of(graph, graph.source(*joint, 1))) return true;
+  for (Slot slot = graph.values[condition.value].first_use; slot != kNone; slot = graph.sources[slot].next) {
+    const Inst& user = graph.insts[graph.sources[slot].user];
+    if (user.kind == Kind::kAlu && ir::is_selection(user.op) && slot == user.first) return true;
+  }
+  return false;
+}
+
 /// True when the reference's optimiser sees what the two branches write to a register as one selection, the literal
 /// `side` (1: then, 2: else) of which is `identity`. It masks what each branch writes and joins both: if the mask of
 /// the else branch serves something else, as a whole by its being the complement of the mask of the then branch;
@@ -236,7 +255,8 @@ bool writes_selection(const Graph& graph, const Inst& branch, unsigned side, Src
   if (side == 1) {
     const Inst* from = graph.def(written.value);
     const bool accesses = from && from->kind == Kind::kIntrinsic && !computes_float(*from);
-    return compares_floats(graph, compared) && !uses.then_mask && (negated || accesses);
+    if (uses.then_mask || !(negated || accesses)) return false;
+    return compares_floats(graph, compared) || (accesses && keeps_joint(graph, condition));
   }
   if (compares_integers(graph, condition) && loads) return false;
   const bool masks_else = uses.else_mask;

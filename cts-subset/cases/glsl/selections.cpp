@@ -102,9 +102,9 @@ std::string numbered(std::string text, int k) {
   return text;
 }
 
-/// Denormals multiplied by what two branches write to g: by conditions of every kind, used once or (but for joined
-/// ones) for a selection, too.
-void evaluate_masked(Run& run, const MaskedForm& form, bool selects) {
+/// Denormals multiplied by what two branches write to g: by conditions of every kind, used once or for a selection,
+/// too.
+void evaluate_masked(Run& run, const MaskedForm& form, bool selects, const char* joined = "b.z > K. || a.z < -K.") {
   run.require(reference_cpu().float_to_uint_as_recorded, "what the reference does on a CPU with AVX-512");
   const char* const conditions[] = {"a.x > K.5",
                                     "b.y >= K.5",
@@ -121,11 +121,11 @@ void evaluate_masked(Run& run, const MaskedForm& form, bool selects) {
                                     "!(i.z > K)",
                                     "bool(u.x & Ku)",
                                     "b.x < K. && a.x > K.",
-                                    "b.z > K. || a.z < -K."};
+                                    joined};
   ShaderBody body;
   body.statements =
       "  vec4 r0, r1, r2, r3 = vec4(0.0), r4 = vec4(0.0), r5 = vec4(0.0), r6 = vec4(0.0), r7 = vec4(0.0);\n";
-  for (int k = 0; k < (selects ? 14 : 16); ++k) {
+  for (int k = 0; k < 16; ++k) {
     const std::string n = std::to_string(k / 4), component = std::string(".") + "xyzw"[k % 4];
     body.statements += "  { bool c = " + numbered(conditions[k], k + 1) + "; float g, d = 0.0; if (c) { " +
                        numbered(form.then_block, k) + " } else { " + numbered(form.else_block, k) + " } r" + n +
@@ -161,6 +161,11 @@ const bool kMaskedForms = [] {
               [&form, selects](Run& run) { evaluate_masked(run, form, selects); });
   return true;
 }();
+
+// A condition that joins three: its complement is that of a mask.
+CTS_CASE("glsl", "masked_selections.joins_three") {
+  evaluate_masked(run, {"", "g = 1.0;", "g = in_a[id ^ (Ku & 3u)].y;"}, false, "b.x < 3.0 && a.x > 3.0 && a.y < K.");
+}
 
 // Literals that convert to no integer, selected or as the source of further integers.
 CTS_CASE("glsl", "undefined_conversions") {
