@@ -146,30 +146,39 @@ bool copy_unconverted(std::vector<std::uint32_t>& words) {
   return found;
 }
 
+/// What is wrong with modules that applications give drivers all the same, by the validator's words.
+struct Leniency {
+  const char* message;
+  bool (*repair)(std::vector<std::uint32_t>& words);  ///< false when there is nothing to repair
+};
+constexpr Leniency kLeniencies[] = {
+    {"Invalid source language operand", forget_source_languages},
+    {"requires SPIR-V version 1.5 or later", age_layer_capabilities},
+    {"different bit width from Result Type: FConvert", copy_unconverted},
+};
+
+/// Changes the words such that the validator has something else to say. False if nothing is known that would.
+bool repair(spv_context context, const std::string& message, std::vector<std::uint32_t>& words) {
+  for (const Leniency& leniency : kLeniencies)
+    if (message.find(leniency.message) != std::string::npos) return leniency.repair(words);
+  const std::string capability = missing_capability(message);
+  return !capability.empty() && declare_capability(context, capability, words);
+}
+
 /// Empty if the module is valid but for capabilities that it uses without declaring them: applications that were tried
 /// on the reference alone get away with that there (zink decorates with Sample and leaves out SampleRateShading), and
-/// but for source languages that the validator does not know (Slang is 11), capabilities of a later version, and
-/// conversions to the same width.
+/// but for what the table above lists.
 std::string validate_leniently(std::span<const std::uint32_t> words) {
-  static constexpr int kMaxMissing = 8;
+  static constexpr int kMaxRepairs = 8;
   const spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_3);
   std::string message = validate(context, words);
-  std::vector<std::uint32_t> completed;
-  for (int i = 0; i < kMaxMissing && !message.empty(); ++i) {
+  std::vector<std::uint32_t> repaired;
+  for (int i = 0; i < kMaxRepairs && !message.empty(); ++i) {
     // Vertex inputs may share locations in OpenGL; each reads its attribute all the same.
     if (message.find("conflicting input location assignment") != std::string::npos) message.clear();
-    const bool unknown_language = message.find("Invalid source language operand") != std::string::npos;
-    const bool young_capability = message.find("requires SPIR-V version 1.5 or later") != std::string::npos;
-    const bool same_width = message.find("different bit width from Result Type: FConvert") != std::string::npos;
-    const std::string name = missing_capability(message);
-    if (!unknown_language && !young_capability && !same_width && name.empty()) break;
-    if (completed.empty()) completed.assign(words.begin(), words.end());
-    if (!(unknown_language   ? forget_source_languages(completed)
-          : young_capability ? age_layer_capabilities(completed)
-          : same_width       ? copy_unconverted(completed)
-                             : declare_capability(context, name, completed)))
-      break;
-    message = validate(context, completed);
+    if (repaired.empty()) repaired.assign(words.begin(), words.end());
+    if (message.empty() || !repair(context, message, repaired)) break;
+    message = validate(context, repaired);
   }
   spvContextDestroy(context);
   return message;

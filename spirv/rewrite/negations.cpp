@@ -3,8 +3,6 @@
 #include "spirv/rewrite/negations.h"
 
 #include <algorithm>
-#include <compare>
-#include <unordered_map>
 
 #include "spirv/rewrite/tree.h"
 
@@ -15,70 +13,19 @@ using Kind = Inst::Kind;
 
 bool is_alu(const Inst* inst, Op op) { return inst && inst->kind == Kind::kAlu && inst->op == op; }
 
-/// When a value is ready: after the last instruction with a fixed place that it depends on, and so many operations.
-struct Readiness {
-  std::uint32_t place = 0;
-  std::uint32_t operations = 0;
-  auto operator<=>(const Readiness&) const = default;
-};
+/// What the reference's optimiser does not move.
+bool has_place(const Inst& inst) {
+  if (inst.kind == Kind::kIntrinsic || inst.kind == Kind::kLoop) return true;
+  return is_alu(&inst, Op::kFMin) || is_alu(&inst, Op::kFMax) || is_alu(&inst, Op::kFMinPlain) ||
+         is_alu(&inst, Op::kFMaxPlain);
+}
 
-class Order {
- public:
-  explicit Order(Graph& graph) : graph_(graph), number_(graph.insts.size()) {
-    auto visit = [&](InstId id) { number_[id] = ++count_; };
-    for_each_inst(graph, graph.root, visit);
-  }
-
-  Readiness of(Src read) {
-    const Src src = component_of(graph_, read, read.swizzle[0]);
-    const InstId id = graph_.values[src.value].def;
-    if (id == kNone) return {};
-    const Inst& inst = graph_.insts[id];
-    if (has_place(inst)) return {number_[id], 0};
-    const auto [known, fresh] = known_.try_emplace(src.value);
-    if (!fresh || depth_ == kMaxDepth) return known->second;
-    ++depth_;
-    Readiness result;
-    for (std::uint32_t i = 0; i < inst.count; ++i) result = std::max(result, of(graph_.source(inst, i)));
-    if (inst.kind == Kind::kIf) result = std::max(result, of_yields(inst, src.value));
-    result.operations += operations_of(inst);
-    --depth_;
-    return known_[src.value] = result;
-  }
-
- private:
-  static constexpr std::uint32_t kMaxDepth = 1000;  ///< what lies deeper counts as ready: chains of any length end
-
-  Readiness of_yields(const Inst& branch, ValueId value) {
-    const std::vector<ValueId>& results = graph_.nodes[branch.node]->results;
-    const auto index = static_cast<std::uint32_t>(std::find(results.begin(), results.end(), value) - results.begin());
-    Readiness result;
-    for (const BlockId side : branch.child)
-      if (ends_in(graph_, side, Op::kYield))
-        result = std::max(result, of(graph_.source(graph_.insts[graph_.blocks[side].tail], index)));
-    return result;
-  }
-
-  /// What the reference's optimiser does not move.
-  static bool has_place(const Inst& inst) {
-    if (inst.kind == Kind::kIntrinsic || inst.kind == Kind::kLoop) return true;
-    return is_alu(&inst, Op::kFMin) || is_alu(&inst, Op::kFMax) || is_alu(&inst, Op::kFMinPlain) ||
-           is_alu(&inst, Op::kFMaxPlain);
-  }
-
-  /// About as many as the reference needs.
-  static std::uint32_t operations_of(const Inst& inst) {
-    if (inst.kind == Kind::kConst || inst.kind == Kind::kVec || is_alu(&inst, Op::kFNeg)) return 0;
-    if (inst.kind == Kind::kIf || is_alu(&inst, Op::kSelect)) return 3;
-    return inst.kind == Kind::kAlu && ir::alu_info(inst.op).result == 'B' ? 2 : 1;
-  }
-
-  Graph& graph_;
-  std::vector<std::uint32_t> number_;
-  std::uint32_t count_ = 0;
-  std::uint32_t depth_ = 0;
-  std::unordered_map<ValueId, Readiness> known_;
-};
+/// About as many as the reference needs.
+std::uint32_t operations_of(const Inst& inst) {
+  if (inst.kind == Kind::kConst || inst.kind == Kind::kVec || is_alu(&inst, Op::kFNeg)) return 0;
+  if (inst.kind == Kind::kIf || is_alu(&inst, Op::kSelect)) return 3;
+  return inst.kind == Kind::kAlu && ir::alu_info(inst.op).result == 'B' ? 2 : 1;
+}
 
 /// A conversion to the reference: what is loaded from a buffer, and what is computed as an integer.
 bool is_converted(const Inst* inst) {
@@ -100,13 +47,48 @@ bool is_negated(const Graph& graph, const Inst& product) {
 
 }  // namespace
 
-bool negates_selection(Graph& graph, InstId product, std::uint32_t index) {
-  const Inst& inst = graph.insts[product];
-  if (inst.op != Op::kFMul || !is_negated(graph, inst)) return false;
-  const Src other = graph.source(inst, 1 - index);
-  if (is_converted(graph.def(other.value))) return true;
-  Order order(graph);
-  const Readiness mine = order.of(graph.source(inst, index)), others = order.of(other);
+void NegatedProducts::number_places() {
+  places_.resize(graph_.insts.size());
+  std::uint32_t count = 0;
+  auto visit = [&](InstId id) { places_[id] = ++count; };
+  for_each_inst(graph_, graph_.root, visit);
+}
+
+NegatedProducts::Readiness NegatedProducts::readiness(Src read) {
+  static constexpr std::uint32_t kMaxDepth = 1000;  // what lies deeper counts as ready: chains of any length end
+  const Src src = component_of(graph_, read, read.swizzle[0]);
+  const InstId id = graph_.values[src.value].def;
+  if (id == kNone) return {};
+  const Inst& inst = graph_.insts[id];
+  if (has_place(inst)) return {places_[id], 0};
+  const auto [known, fresh] = known_.try_emplace(src.value);
+  if (!fresh || depth_ == kMaxDepth) return known->second;
+  ++depth_;
+  Readiness result;
+  for (std::uint32_t i = 0; i < inst.count; ++i) result = std::max(result, readiness(graph_.source(inst, i)));
+  if (inst.kind == Kind::kIf) result = std::max(result, readiness_of_yields(inst, src.value));
+  result.operations += operations_of(inst);
+  --depth_;
+  return known_[src.value] = result;
+}
+
+NegatedProducts::Readiness NegatedProducts::readiness_of_yields(const Inst& branch, ValueId value) {
+  const std::vector<ValueId>& results = graph_.nodes[branch.node]->results;
+  const auto index = static_cast<std::uint32_t>(std::find(results.begin(), results.end(), value) - results.begin());
+  Readiness result;
+  for (const BlockId side : branch.child)
+    if (ends_in(graph_, side, Op::kYield))
+      result = std::max(result, readiness(graph_.source(graph_.insts[graph_.blocks[side].tail], index)));
+  return result;
+}
+
+bool NegatedProducts::negates_selection(InstId product, std::uint32_t index) {
+  const Inst& inst = graph_.insts[product];
+  if (inst.op != Op::kFMul || !is_negated(graph_, inst)) return false;
+  const Src other = graph_.source(inst, 1 - index);
+  if (is_converted(graph_.def(other.value))) return true;
+  if (places_.empty()) number_places();
+  const Readiness mine = readiness(graph_.source(inst, index)), others = readiness(other);
   return mine == others ? index == 0 : mine < others;
 }
 

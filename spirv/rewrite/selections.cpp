@@ -386,12 +386,12 @@ bool is_subtracted(const Graph& graph, const Inst& sum, Src src) {
 
 /// Operand `index` of `id`, a selection used once with `identity` on one side: x op (c ? y : identity) becomes
 /// c ? x op y : x, which keeps denormals of x.
-bool select_operation(Graph& graph, InstId id, std::uint32_t index, std::uint32_t identity) {
+bool select_operation(Graph& graph, NegatedProducts& products, InstId id, std::uint32_t index, std::uint32_t identity) {
   const Src other = graph.source(graph.insts[id], 1 - index);
   Selection selection;
   if (graph.constant(other.value) || is_subtracted(graph, graph.insts[id], other)) return false;
   if (!find_selection(graph, graph.source(graph.insts[id], index), identity, selection)) return false;
-  if (negates_selection(graph, id, index)) return false;
+  if (products.negates_selection(id, index)) return false;
   const Src operand = other_side(graph, id, selection);
   select_result(graph, id, selection, other);
   graph.set_source(id, index, operand);
@@ -422,7 +422,7 @@ bool find_zero(Graph& graph, Src src, Selection& found) {
 }
 
 /// The same for the subtraction of a selected zero, x + -(c ? y : 0).
-bool select_subtraction(Graph& graph, InstId id, std::uint32_t index) {
+bool select_subtraction(Graph& graph, NegatedProducts& products, InstId id, std::uint32_t index) {
   const Src negated = graph.source(graph.insts[id], index), other = graph.source(graph.insts[id], 1 - index);
   const Inst* negation = only_user_of(graph, negated, Op::kFNeg);
   Selection selection;
@@ -433,6 +433,7 @@ bool select_subtraction(Graph& graph, InstId id, std::uint32_t index) {
   const Src operand = other_side(graph, negate, selection);
   select_result(graph, id, selection, other);
   graph.set_source(negate, 0, operand);
+  products.forget(negated.value);
   return true;
 }
 
@@ -465,6 +466,7 @@ void drop_undefined(Graph& graph, InstId id) {
 
 void select_identities(Graph& graph) {
   const base::ScopedFloatMode mode(base::Denormals::kHonour);
+  NegatedProducts products(graph);
   auto visit = [&](InstId id) {
     const Inst& inst = graph.insts[id];
     std::uint32_t identity = 0;
@@ -473,8 +475,10 @@ void select_identities(Graph& graph) {
     if (inst.kind != Kind::kAlu || inst.components != 1 || !identity_of(inst.op, identity)) return;
     if (fold_into_selection(graph, id)) return;
     const bool commutes = inst.op != Op::kFDiv, adds = inst.op == Op::kFAdd;
-    if (select_operation(graph, id, 1, identity) || (commutes && select_operation(graph, id, 0, identity))) return;
-    if (adds && !select_subtraction(graph, id, 1)) select_subtraction(graph, id, 0);
+    if (select_operation(graph, products, id, 1, identity) ||
+        (commutes && select_operation(graph, products, id, 0, identity)))
+      return;
+    if (adds && !select_subtraction(graph, products, id, 1)) select_subtraction(graph, products, id, 0);
   };
   for_each_inst(graph, graph.root, visit);
 }

@@ -291,5 +291,20 @@ TEST(AbsurdModule, LongChainInANegatedProduct) {
   EXPECT_TRUE(compiles(module_with(declarations, "", body + store("%bits"))));
 }
 
+/// Each asks when its operands are ready; none walks the whole shader for that.
+TEST(AbsurdModule, ManyNegatedProducts) {
+  const std::string declarations = "%float = OpTypeFloat 32\n%one = OpConstant %float 1\n";
+  std::string body =
+      "%f = OpConvertUToF %float %x\n%less = OpFOrdLessThan %bool %one %f\n%g = OpFDiv %float %one %f\n"
+      "%q0 = OpFDiv %float %g %f\n";
+  body += repeated(30000, [](std::size_t i) {
+    return "%e" + number(i) + " = OpSelect %float %less %one %q" + number(i) + "\n%p" + number(i) +
+           " = OpFMul %float %e" + number(i) + " %g\n%n" + number(i) + " = OpFNegate %float %p" + number(i) + "\n%q" +
+           number(i + 1) + " = OpFDiv %float %n" + number(i) + " %g\n";
+  });
+  body += "%bits = OpBitcast %uint %q30000\n";
+  EXPECT_TRUE(compiles(module_with(declarations, "", body + store("%bits"))));
+}
+
 }  // namespace
 }  // namespace vitrine::spirv::test
