@@ -28,11 +28,14 @@ struct ReferenceCpu {
   std::vector<uint32_t> float_to_uint;  ///< of -1, -0.5, 3e9, 5e9 and NaN
   uint64_t srgb_hash = 0;               ///< of the bytes that 65536 ramp values become in an sRGB attachment
   bool float_to_uint_as_recorded = false, srgb_as_recorded = false;
+  bool uint_comparable = false;  ///< as recorded, or this device can follow the CPU (VITRINE_REFERENCE_CPU)
   bool srgb_comparable = false;  ///< as recorded, or this device can follow the CPU (VITRINE_RSQRT)
 };
 
 /// Whether RSQRTPS of this CPU gives the bits of this device's table (true where there is no such instruction).
 bool rsqrt_as_recorded();
+/// Whether this is an x86 CPU without what of AVX-512 the reference uses.
+bool lacks_avx512();
 
 /// Asks the reference, once per process.
 const ReferenceCpu& reference_cpu();

@@ -106,6 +106,8 @@ void prepare_environment(const Options& options) {
   if (options.mutate) setenv("VITRINE_SHADER_BUDGET", "20000", 0);
   // It encodes sRGB with RSQRTPS, whose bits are the CPU vendor's; this device has one vendor's in a table.
   if (!rsqrt_as_recorded()) setenv("VITRINE_RSQRT", "cpu", 0);
+  // Without AVX-512 it converts floats to unsigned integers and selects operands otherwise.
+  if (lacks_avx512()) setenv("VITRINE_REFERENCE_CPU", "avx2", 0);
 }
 
 }  // namespace vitrine::cts

@@ -52,6 +52,8 @@ void main() {
 
 // As on an AMD processor with AVX-512. The last is of RSQRTPS itself, over [0.5, 2) in steps of 2^-12 of a binade.
 constexpr uint32_t kRecordedFloatToUint[] = {0xffffffff, 0, 0xb2d05e00, 0xffffffff, 0xffffffff};
+// Without AVX-512, which this device can follow.
+constexpr uint32_t kOtherFloatToUint[] = {0xffffffff, 0, 0xb2d05e00, 0x2a05f200, 0};
 constexpr uint64_t kRecordedSrgbHash = 0x7ec15a18a9834496;
 #ifdef __SSE__
 constexpr uint64_t kRecordedRsqrtHash = 0x5f8d15e90b98a325;
@@ -66,6 +68,9 @@ ReferenceCpu ask() {
   result.float_to_uint = float_to_uint(run);
   result.float_to_uint_as_recorded =
       std::equal(result.float_to_uint.begin(), result.float_to_uint.end(), std::begin(kRecordedFloatToUint));
+  result.uint_comparable =
+      result.float_to_uint_as_recorded ||
+      std::equal(result.float_to_uint.begin(), result.float_to_uint.end(), std::begin(kOtherFloatToUint));
   result.srgb_hash = srgb_hash(run);
   result.srgb_as_recorded = result.srgb_hash == kRecordedSrgbHash;
   result.srgb_comparable = result.srgb_as_recorded || kHasRsqrt;
@@ -87,6 +92,15 @@ bool rsqrt_as_recorded() {
 #endif
 }
 
+bool lacks_avx512() {
+#ifdef __x86_64__
+  return !__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512dq") ||
+         !__builtin_cpu_supports("avx512bw") || !__builtin_cpu_supports("avx512vl");
+#else
+  return false;
+#endif
+}
+
 const ReferenceCpu& reference_cpu() {
   static const ReferenceCpu result = ask();
   return result;
@@ -97,7 +111,9 @@ void print_reference_cpu() {
   std::printf("reference: float to uint of -1, -0.5, 3e9, 5e9, NaN:");
   for (const uint32_t value : cpu.float_to_uint) std::printf(" %08x", value);
   std::printf(" (%s)\n", cpu.float_to_uint_as_recorded ? "as recorded"
-                                                       : "NOT as recorded: cases with such conversions are left out");
+                         : cpu.uint_comparable
+                             ? "a CPU without AVX-512: this device follows it, VITRINE_REFERENCE_CPU=avx2"
+                             : "NOT as recorded: cases with such conversions are left out");
   std::printf("reference: sRGB encode (RSQRTPS) of 65536 values: hash %016llx (%s)\n",
               static_cast<unsigned long long>(cpu.srgb_hash),
               cpu.srgb_as_recorded  ? "as recorded"

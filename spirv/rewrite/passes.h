@@ -134,6 +134,9 @@ void choose_extrema(Graph& graph);
 /// Operations on numbers of 16 and 64 bits become what they consist of. Nothing else reads them after that.
 bool expand_sized(Graph& graph);
 
+/// Floats become unsigned integers, and doubles are rounded, as in a reference on a CPU without AVX-512.
+void follow_avx2(Graph& graph);
+
 /// Spelling that the executor likes and that keeps every bit: subtractions.
 void choose_spelling(Graph& graph);
 

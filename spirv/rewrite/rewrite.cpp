@@ -1,6 +1,7 @@
 // The order of the steps, which decides bits: that of the reference (lavapipe-shader-math.md 3.2).
 #include "spirv/rewrite/rewrite.h"
 
+#include "base/reference_cpu.h"
 #include "spirv/rewrite/loops.h"
 #include "spirv/rewrite/passes.h"
 
@@ -89,6 +90,7 @@ void rewrite(ir::Function& function) {
     rewriting::remove_dead(graph);
     rewriting::merge_equal_code(graph);
   }
+  if (base::reference_lacks_avx512()) rewriting::follow_avx2(graph);
   rewriting::choose_spelling(graph);
   rewriting::remove_dead(graph);
   rewriting::close_loops(graph);

@@ -4,6 +4,7 @@
 
 #include "base/float_mode.h"
 #include "base/numeric.h"
+#include "base/reference_cpu.h"
 #include "spirv/rewrite/negations.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/tree.h"
@@ -473,7 +474,7 @@ void select_identities(Graph& graph) {
     if (inst.kind == Kind::kAlu && inst.components == 1 && (inst.op == Op::kF2I || inst.op == Op::kF2U))
       drop_undefined(graph, id);
     if (inst.kind != Kind::kAlu || inst.components != 1 || !identity_of(inst.op, identity)) return;
-    if (fold_into_selection(graph, id)) return;
+    if (fold_into_selection(graph, id) || base::reference_lacks_avx512()) return;
     const bool commutes = inst.op != Op::kFDiv, adds = inst.op == Op::kFAdd;
     if (select_operation(graph, products, id, 1, identity) ||
         (commutes && select_operation(graph, products, id, 0, identity)))

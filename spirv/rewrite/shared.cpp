@@ -4,6 +4,7 @@
 #include <map>
 #include <tuple>
 
+#include "base/reference_cpu.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/tree.h"
 
@@ -43,7 +44,7 @@ class Sharer {
       choices_.clear();
       collect(id);
       for (const auto& [key, choices] : choices_)
-        if (choices.size() > 1)
+        if (choices.size() > 1 || base::reference_lacks_avx512())
           for (const Choice& choice : choices) compute(choice);
     }
   }
