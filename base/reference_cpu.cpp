@@ -1,3 +1,4 @@
+// Reads what the environment asks for, once.
 #include "base/reference_cpu.h"
 
 #include <cstdlib>
