@@ -4,6 +4,7 @@
 #include <spirv-tools/libspirv.hpp>
 #include <spirv/unified1/spirv.hpp11>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "harness/random.h"
@@ -68,18 +69,71 @@ uint32_t reads_behind_loops(const std::vector<uint32_t>& words) {
   return walk.reads_behind;
 }
 
+/// Which results have a literal zero as a component, and how many floats are divided by one.
+struct ZeroWalk {
+  std::unordered_set<uint32_t> zeros;
+  uint32_t divisions = 0;
+};
+
+spv_result_t visit_division(void* user, const spv_parsed_instruction_t* inst) {
+  ZeroWalk& walk = *static_cast<ZeroWalk*>(user);
+  const auto is_zero = [&](uint16_t word) { return walk.zeros.count(inst->words[word]) != 0; };
+  bool zero = false;
+  switch (static_cast<spv::Op>(inst->opcode)) {
+    case spv::Op::OpFDiv:
+    case spv::Op::OpFRem:
+    case spv::Op::OpFMod:
+      walk.divisions += is_zero(4);
+      break;
+    case spv::Op::OpConstantNull:
+      zero = true;
+      break;
+    case spv::Op::OpConstant:
+      zero = (inst->words[inst->num_words - 1] & 0x7fffffffu) == 0;
+      break;
+    case spv::Op::OpConstantComposite:
+    case spv::Op::OpCompositeConstruct:
+    case spv::Op::OpVectorShuffle:
+    case spv::Op::OpCompositeExtract:
+    case spv::Op::OpCompositeInsert:
+    case spv::Op::OpCopyObject:
+    case spv::Op::OpFNegate:
+    case spv::Op::OpSelect:
+      for (uint16_t i = 2; i < inst->num_operands; i++)
+        zero |= inst->operands[i].type == SPV_OPERAND_TYPE_ID && is_zero(inst->operands[i].offset);
+      break;
+    default:
+      break;
+  }
+  if (zero) walk.zeros.insert(inst->result_id);
+  return SPV_SUCCESS;
+}
+
+/// How many floats are divided by a literal zero, which the reference leaves to chance.
+uint32_t divisions_by_zero(const std::vector<uint32_t>& words) {
+  static const spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_3);
+  ZeroWalk walk;
+  spvBinaryParse(context, &walk, words.data(), words.size(), nullptr, visit_division, nullptr);
+  return walk.divisions;
+}
+
+/// Nothing of the mutant is without a defined result in the reference that is not so in the original.
+bool is_comparable(const std::vector<uint32_t>& mutant, const std::vector<uint32_t>& original) {
+  return reads_behind_loops(mutant) <= reads_behind_loops(original) &&
+         divisions_by_zero(mutant) <= divisions_by_zero(original);
+}
+
 }  // namespace
 
 std::vector<uint32_t> mutant_of(const std::vector<uint32_t>& words, uint64_t seed) {
   const std::string_view bytes(reinterpret_cast<const char*>(words.data()), words.size() * 4);
   fuzz::Random random(hash_name(bytes, seed));
   if (!is_valid(words)) return words;
-  const uint32_t reads_behind = reads_behind_loops(words);
   constexpr int kTries = 40;
   for (int i = 0; i < kTries; i++) {
     std::vector<uint32_t> mutant = words;
     fuzz::mutate_values(mutant, random);
-    if (mutant != words && is_valid(mutant) && reads_behind_loops(mutant) <= reads_behind) return mutant;
+    if (mutant != words && is_valid(mutant) && is_comparable(mutant, words)) return mutant;
   }
   return words;
 }

@@ -1,6 +1,6 @@
-// Literals that only the optimiser of the reference's code generator finds: quotients of what is known to be smaller
-// than its divisor, by the bits that can be set. What follows from them is folded, and operations that such a literal
-// leaves nothing to do for are taken away, so that x * 1 keeps a denormal x.
+// Literals that only the optimiser of the reference's code generator finds: quotients and comparisons of what is known
+// to be smaller than a literal, by the bits that can be set. What follows from them is folded, and operations that such
+// a literal leaves nothing to do for are taken away, so that x * 1 keeps a denormal x.
 #include <algorithm>
 #include <bit>
 #include <unordered_set>
@@ -23,9 +23,11 @@ class LateFolder {
 
   void visit(InstId id) {
     const Inst& inst = graph_.insts[id];
+    if (inst.kind == Kind::kIf) return take_literals(id);
     if (inst.kind != Kind::kAlu || inst.components != 1 || inst.width != 32 || inst.opaque) return;
     if ((inst.op == Op::kIDiv || inst.op == Op::kUDiv) && is_zero_quotient(inst)) return become(id, 0);
-    if (late_.empty() || !reads_late(inst) || fold(id) || keep_zero(id)) return;
+    if (const int known = known_comparison(inst); known >= 0) return become(id, static_cast<std::uint32_t>(known));
+    if (late_.empty() || !reads_late(inst) || fold(id) || keep_zero(id) || take_selected(id)) return;
     take_other(id);
   }
 
@@ -47,6 +49,51 @@ class LateFolder {
     const bool negative = inst.op == Op::kIDiv && (bits >> 31) != 0;
     const std::uint64_t largest = (std::uint64_t{1} << (32 - leading_zeros(graph_.source(inst, 0), 0))) - 1;
     return largest < (negative ? 0u - bits : bits) && (inst.op == Op::kUDiv || largest < 0x80000000u);
+  }
+
+  /// What the comparison of an integer with a literal gives for every value that the integer can have; -1: both.
+  int known_comparison(const Inst& inst) const {
+    const bool is_signed = inst.op == Op::kILt || inst.op == Op::kIGe;
+    const bool equal = inst.op == Op::kIEq || inst.op == Op::kINe;
+    if (!is_signed && !equal && inst.op != Op::kULt && inst.op != Op::kUGe) return -1;
+    const Inst* literal = constant(inst, 1);
+    const unsigned zeros = literal ? leading_zeros(graph_.source(inst, 0), 0) : 0;
+    if (zeros == 0) return -1;
+    const std::uint32_t bits = literal->imm[graph_.source(inst, 1).swizzle[0]];
+    const std::uint32_t largest = 0xffffffffu >> std::min(zeros, 31u);
+    const bool is_least = bits == 0 || (is_signed && bits >> 31 != 0), is_beyond = largest < bits && !is_least;
+    if (equal) return is_beyond ? inst.op == Op::kINe : -1;
+    if (!is_least && !is_beyond) return -1;
+    return is_beyond == (inst.op == Op::kILt || inst.op == Op::kULt);
+  }
+
+  /// The results of a branch on such a literal are those of one side; in loops the reference masks them all the same.
+  void take_literals(InstId id) {
+    const Inst branch = graph_.insts[id];
+    const Inst* literal = constant(branch, 0);
+    if (!literal || !is_late(branch, 0) || is_in_loop(branch)) return;
+    const BlockId side = branch.child[literal->imm[graph_.source(branch, 0).swizzle[0]] != 0 ? 0 : 1];
+    if (!ends_in(graph_, side, Op::kYield)) return;
+    const std::vector<ValueId> results = graph_.nodes[branch.node]->results;
+    for (std::uint32_t i = 0; i < results.size(); ++i) {
+      const Src yielded = graph_.source(graph_.insts[graph_.blocks[side].tail], i);
+      const Inst* value = graph_.constant(yielded.value);
+      if (!value || graph_.values[results[i]].components != 1) continue;
+      const std::uint32_t bits = value->imm[yielded.swizzle[0]];
+      const InstId made = graph_.create_const(1, value->boolean, &bits);
+      graph_.insert_after(id, made);
+      late_.insert(graph_.insts[made].result);
+      graph_.replace_uses(results[i], graph_.insts[made].result);
+    }
+  }
+
+  bool is_in_loop(const Inst& inst) const {
+    for (BlockId block = inst.block; graph_.blocks[block].owner != kNone;) {
+      const Inst& owner = graph_.insts[graph_.blocks[block].owner];
+      if (owner.kind == Kind::kLoop) return true;
+      block = owner.block;
+    }
+    return false;
   }
 
   /// Highest bits that are known to be zero.
@@ -108,12 +155,31 @@ class LateFolder {
   bool take_if(InstId id, std::uint32_t result, std::uint32_t bits) {
     const Inst inst = graph_.insts[id];
     if (!is(inst, 1 - result, bits) || !is_late(inst, 1 - result)) return false;
+    become_operand(id, result);
+    return true;
+  }
+
+  void become_operand(InstId id, std::uint32_t index) {
+    const Inst inst = graph_.insts[id];
     const InstId move = graph_.create(Kind::kAlu, Op::kMov, 1, false, 1);
-    graph_.set_source(move, 0, graph_.source(inst, result));
+    graph_.set_source(move, 0, graph_.source(inst, index));
     graph_.insts[move].origin = inst.origin;
     graph_.insert_before(id, move);
     graph_.replace_uses(inst.result, graph_.insts[move].result);
     graph_.remove(id);
+  }
+
+  /// A selection by a literal is its operand. True: the operation is gone.
+  bool take_selected(InstId id) {
+    const Inst& inst = graph_.insts[id];
+    const Inst* literal = inst.op == Op::kSelect && is_late(inst, 0) ? constant(inst, 0) : nullptr;
+    if (!literal) return false;
+    const std::uint32_t index = literal->imm[graph_.source(inst, 0).swizzle[0]] != 0 ? 1 : 2;
+    const Inst* taken = constant(inst, index);
+    if (taken)
+      become(id, taken->imm[graph_.source(inst, index).swizzle[0]]);
+    else
+      become_operand(id, index);
     return true;
   }
 

@@ -298,6 +298,22 @@ CTS_CASE("glsl", "subtracted_signs") {
       "  vec4 shared_sign = sign(b.yxwz), r4 = (a - shared_sign) + (a.wzyx - shared_sign);\n");
 }
 
+// Comparisons that only known bits decide make the literal of a branch a factor, which leaves denormals alone.
+CTS_CASE("glsl", "late_comparisons") {
+  const char* const conditions[] = {"int(u.x & 14u) < 0",         "int(u.y & 7u) >= 0", "(u.z & 14u) < 100u",
+                                    "(u.w >> 4u) >= 0x20000000u", "(u.x & 3u) == 5u",   "(u.y & 3u) != 9u",
+                                    "int(u.z >> 1u) < -3",        "int(u.x & 14u) < 3"};
+  std::string statements = "  vec4 r0, r1;\n";
+  for (int k = 0; k < 8; ++k) {
+    const bool then = k == 1 || k == 2 || k == 5;
+    const std::string n = std::to_string(k), other = "sqrt(a.y + " + n + ".)";
+    statements += "  float g" + n + "; if (" + conditions[k] + ") g" + n + " = " + (then ? "1.0" : other) + "; else g" +
+                  n + " = " + (then ? other : "1.0") + ";\n  r" + std::to_string(k / 4) + "[" + std::to_string(k % 4) +
+                  "] = uintBitsToFloat(id * 3u + 7u) * g" + n + ";\n";
+  }
+  evaluate_specials(run, kVec4, 2, statements);
+}
+
 // Quotients that are known to be zero make exponents literal, and the multiplication by 1 goes.
 CTS_CASE("glsl", "late_literals") {
   evaluate_specials(
