@@ -1,7 +1,11 @@
 // Modules that no GLSL compiler writes: undefined values, selects of composites, phis, switches, odd but valid forms.
+#include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 
+#include "cases/deviations/deviation.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
 #include "harness/shader.h"
@@ -324,10 +328,8 @@ CTS_CASE("spirv_assembly", "odd_constants_and_undefined_objects") {
 }
 
 /// Stores of binary16 that round toward zero, of floats around and beyond what binary16 holds.
-CTS_CASE("spirv_assembly", "convert_toward_zero") {
-  const auto& storage = run.gpu.extension_features.storage_16bit;
-  run.require(storage.storageBuffer16BitAccess && run.gpu.features.shaderFloat64, "16-bit stores and doubles");
-  const std::string text = R"(; target: vulkan1.1
+/// Converts floats x, and doubles x * ratio, to halves toward zero.
+constexpr char kTowardZero[] = R"(; target: vulkan1.1
 OpCapability Shader
 OpCapability Float64
 OpCapability StorageBuffer16BitAccess
@@ -369,7 +371,7 @@ OpDecorate %k FPRoundingMode RTZ
 %out = OpVariable %out_ptr StorageBuffer
 %u0 = OpConstant %uint 0
 %u1 = OpConstant %uint 1
-%ratio = OpConstant %double 1.0009765
+%ratio = OpConstant %double RATIO
 %main = OpFunction %void None %fn
 %entry = OpLabel
 %gid = OpLoad %v3uint %id
@@ -389,18 +391,50 @@ OpStore %too %k
 OpReturn
 OpFunctionEnd
 )";
-  constexpr uint32_t kInvocations = 1024;
-  std::vector<float> values(kInvocations);
-  for (float& value : values) value = std::ldexp(run.random.real(-2, 2), static_cast<int>(run.random.below(46)) - 28);
+
+constexpr double kRatio = 1.0009765;
+
+/// The reference converts to the nearest binary32 on the way, which is a half further from zero than the double.
+bool rounds_up_to_half(double number) {
+  const float nearest = static_cast<float>(number);
+  const int least = std::max(std::ilogb(nearest), -14) - 10;
+  const float scaled = std::ldexp(nearest, -least);
+  return std::fabs(nearest) > std::fabs(number) && scaled == std::trunc(scaled);
+}
+
+void convert_toward_zero(Run& run, const std::string& name, double ratio, const std::vector<float>& values) {
+  const auto& storage = run.gpu.extension_features.storage_16bit;
+  run.require(storage.storageBuffer16BitAccess && run.gpu.features.shaderFloat64, "16-bit stores and doubles");
+  std::ostringstream written;
+  written << std::setprecision(17) << ratio;
+  std::string text = kTowardZero;
+  text.replace(text.find("RATIO"), 5, written.str());
+  const Buffer in = run.buffer_of(values), out = run.buffer(values.size() * 4);
+  const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
+  const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
+  run.dispatch(res, pipeline, static_cast<uint32_t>(values.size() / 64));
+  run.out(name, out);
+}
+
+CTS_CASE("spirv_assembly", "convert_toward_zero") {
+  std::vector<float> values(1024);
+  for (float& value : values) do
+      value = std::ldexp(run.random.real(-2, 2), static_cast<int>(run.random.below(46)) - 28);
+    while (rounds_up_to_half(value * kRatio));
   values[0] = std::numeric_limits<float>::infinity();
   values[1] = std::numeric_limits<float>::quiet_NaN();
   values[2] = -0.0f;
-  const Buffer in = run.buffer_of(values), out = run.buffer(kInvocations * 4);
-  const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
-  const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
-  run.dispatch(res, pipeline, kInvocations / 64);
-  run.out("halves", out);
+  convert_toward_zero(run, "halves", kRatio, values);
 }
+
+/// Powers of two times something just below 1, and times something that rounds to no half in binary32.
+const AddCase kDoubleToHalf("spirv_assembly", "deviation.double_to_half", "double-to-half", case_against_control,
+                            [](Run& run) {
+                              std::vector<float> values(64);
+                              for (int i = 0; i < 64; ++i) values[i] = std::ldexp(i % 2 ? -1.0f : 1.0f, i % 25 - 12);
+                              convert_toward_zero(run, "close", 1.0 - 0x1p-30, values);
+                              convert_toward_zero(run, "clear", 1.0 - 0x1p-12, values);
+                            });
 
 /// There is one device in every group.
 CTS_CASE("spirv_assembly", "device_index") {
