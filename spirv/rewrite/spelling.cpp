@@ -1,6 +1,6 @@
 // Equal bits, fewer instructions: subtractions from additions of negations, extracted bits from shifts and masks. And
-// the plain minimum and maximum where an
-// operand is known to be a number (lavapipe-shader-math.md 5.1, which also swaps operands).
+// the plain minimum and maximum where an operand is known to be a number (lavapipe-shader-math.md 5.1, which also swaps
+// operands).
 #include <bit>
 
 #include "spirv/rewrite/passes.h"
