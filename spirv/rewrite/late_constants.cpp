@@ -47,7 +47,7 @@ class LateFolder {
     if (!literal) return false;
     const std::uint32_t bits = literal->imm[graph_.source(inst, 1).swizzle[0]];
     const bool negative = inst.op == Op::kIDiv && (bits >> 31) != 0;
-    const std::uint64_t largest = (std::uint64_t{1} << (32 - leading_zeros(graph_.source(inst, 0), 0))) - 1;
+    const std::uint32_t largest = possible_bits(graph_.source(inst, 0), 0);
     return largest < (negative ? 0u - bits : bits) && (inst.op == Op::kUDiv || largest < 0x80000000u);
   }
 
@@ -57,14 +57,18 @@ class LateFolder {
     const bool equal = inst.op == Op::kIEq || inst.op == Op::kINe;
     if (!is_signed && !equal && inst.op != Op::kULt && inst.op != Op::kUGe) return -1;
     const Inst* literal = constant(inst, 1);
-    const unsigned zeros = literal ? leading_zeros(graph_.source(inst, 0), 0) : 0;
-    if (zeros == 0) return -1;
+    if (!literal) return -1;
+    const std::uint32_t largest = possible_bits(graph_.source(inst, 0), 0);
+    const std::uint32_t least = certain_bits(graph_.source(inst, 0), 0);
     const std::uint32_t bits = literal->imm[graph_.source(inst, 1).swizzle[0]];
-    const std::uint32_t largest = 0xffffffffu >> std::min(zeros, 31u);
-    const bool is_least = bits == 0 || (is_signed && bits >> 31 != 0), is_beyond = largest < bits && !is_least;
-    if (equal) return is_beyond ? inst.op == Op::kINe : -1;
-    if (!is_least && !is_beyond) return -1;
-    return is_beyond == (inst.op == Op::kILt || inst.op == Op::kULt);
+    if (equal) return ((bits & ~largest) | (least & ~bits)) != 0 ? inst.op == Op::kINe : -1;
+    if (is_signed && ((largest ^ least) >> 31) != 0) return -1;
+    const auto number = [&](std::uint32_t value) {
+      return is_signed ? std::int64_t{static_cast<std::int32_t>(value)} : std::int64_t{value};
+    };
+    const bool asks_less = inst.op == Op::kILt || inst.op == Op::kULt;
+    if (number(largest) < number(bits)) return asks_less;
+    return number(least) >= number(bits) ? !asks_less : -1;
   }
 
   /// The results of a branch on such a literal are those of one side; in loops the reference masks them all the same.
@@ -96,38 +100,62 @@ class LateFolder {
     return false;
   }
 
-  /// Highest bits that are known to be zero.
-  unsigned leading_zeros(Src src, unsigned depth) const {
+  /// All bits up to the highest of these.
+  static std::uint32_t filled(std::uint32_t bits) { return bits == 0 ? 0 : ~0u >> std::countl_zero(bits); }
+
+  /// Bits that are not known to be zero.
+  std::uint32_t possible_bits(Src src, unsigned depth) const {
     const Inst* inst = graph_.def(src.value);
-    if (!inst || depth == kMaxDepth) return 0;
-    if (inst->kind == Kind::kConst)
-      return inst->boolean ? 0 : static_cast<unsigned>(std::countl_zero(inst->imm[src.swizzle[0]]));
-    if (inst->kind != Kind::kAlu || inst->components != 1 || inst->width != 32) return 0;
-    const auto of = [&](std::uint32_t index) { return leading_zeros(graph_.source(*inst, index), depth + 1); };
+    if (!inst || depth == kMaxDepth) return ~0u;
+    if (inst->kind == Kind::kConst) return inst->boolean ? ~0u : inst->imm[src.swizzle[0]];
+    if (inst->kind != Kind::kAlu || inst->components != 1 || inst->width != 32) return ~0u;
+    const auto of = [&](std::uint32_t index) { return possible_bits(graph_.source(*inst, index), depth + 1); };
     switch (inst->op) {
       case Op::kMov:
         return of(0);
       case Op::kB2I:
-        return 31;
+        return 1;
       case Op::kAnd:
-        return std::max(of(0), of(1));
+        return of(0) & of(1);
       case Op::kOr:
       case Op::kXor:
-        return std::min(of(0), of(1));
+        return of(0) | of(1);
       case Op::kSelect:
-        return std::min(of(1), of(2));
-      case Op::kIAdd:
-        return std::max(std::min(of(0), of(1)), 1u) - 1;
+        return of(1) | of(2);
+      case Op::kIAdd: {
+        const std::uint32_t either = of(0) | of(1), sum = filled(either) << 1 | 1;
+        return either >> 31 != 0 ? ~0u : either == 0 ? 0 : sum & ~0u << std::countr_zero(either);
+      }
       case Op::kUShr: {
         const Inst* literal = constant(*inst, 1);
-        const unsigned more = literal ? literal->imm[graph_.source(*inst, 1).swizzle[0]] & 31 : 0;
-        return std::min(of(0) + more, 32u);
+        return literal ? of(0) >> (literal->imm[graph_.source(*inst, 1).swizzle[0]] & 31) : filled(of(0));
       }
       case Op::kIRem:
       case Op::kIMod: {
-        const unsigned left = of(0), right = of(1);
-        return left != 0 && right != 0 ? std::max(left, right) : 0;
+        const std::uint32_t left = filled(of(0)), right = filled(of(1));
+        return left >> 31 == 0 && right >> 31 == 0 ? std::min(left, right) : ~0u;
       }
+      default:
+        return ~0u;
+    }
+  }
+
+  /// Bits that are known to be one.
+  std::uint32_t certain_bits(Src src, unsigned depth) const {
+    const Inst* inst = graph_.def(src.value);
+    if (!inst || depth == kMaxDepth) return 0;
+    if (inst->kind == Kind::kConst) return inst->boolean ? 0 : inst->imm[src.swizzle[0]];
+    if (inst->kind != Kind::kAlu || inst->components != 1 || inst->width != 32) return 0;
+    const auto of = [&](std::uint32_t index) { return certain_bits(graph_.source(*inst, index), depth + 1); };
+    switch (inst->op) {
+      case Op::kMov:
+        return of(0);
+      case Op::kAnd:
+        return of(0) & of(1);
+      case Op::kOr:
+        return of(0) | of(1);
+      case Op::kSelect:
+        return of(1) & of(2);
       default:
         return 0;
     }

@@ -300,18 +300,31 @@ CTS_CASE("glsl", "subtracted_signs") {
 
 // Comparisons that only known bits decide make the literal of a branch a factor, which leaves denormals alone.
 CTS_CASE("glsl", "late_comparisons") {
-  const char* const conditions[] = {"int(u.x & 14u) < 0",         "int(u.y & 7u) >= 0", "(u.z & 14u) < 100u",
-                                    "(u.w >> 4u) >= 0x20000000u", "(u.x & 3u) == 5u",   "(u.y & 3u) != 9u",
-                                    "int(u.z >> 1u) < -3",        "int(u.x & 14u) < 3"};
-  std::string statements = "  vec4 r0, r1;\n";
-  for (int k = 0; k < 8; ++k) {
-    const bool then = k == 1 || k == 2 || k == 5;
+  const char* const conditions[] = {"int(u.x & 14u) < 0",
+                                    "int(u.y & 7u) >= 0",
+                                    "(u.z & 14u) < 100u",
+                                    "(u.w >> 4u) >= 0x20000000u",
+                                    "(u.x & 3u) == 5u",
+                                    "(u.y & 3u) != 9u",
+                                    "int(u.z >> 1u) < -3",
+                                    "int(u.x & 14u) < 3",
+                                    "(u.x & 14u) == 3u",
+                                    "(u.y & 10u) != 5u",
+                                    "(u.z | 4u) == 3u",
+                                    "(u.w | 8u) < 8u",
+                                    "(u.x & 14u) < 15u",
+                                    "(u.x ^ 14u) == 3u",
+                                    "int(u.y | 0x80000000u) >= 0",
+                                    "(u.w | 6u) >= 4u"};
+  std::string statements = "  vec4 r0, r1, r2, r3;\n";
+  for (int k = 0; k < 16; ++k) {
+    const bool then = k == 1 || k == 2 || k == 5 || k == 9 || k == 12 || k == 15;
     const std::string n = std::to_string(k), other = "sqrt(a.y + " + n + ".)";
     statements += "  float g" + n + "; if (" + conditions[k] + ") g" + n + " = " + (then ? "1.0" : other) + "; else g" +
                   n + " = " + (then ? other : "1.0") + ";\n  r" + std::to_string(k / 4) + "[" + std::to_string(k % 4) +
                   "] = uintBitsToFloat(id * 3u + 7u) * g" + n + ";\n";
   }
-  evaluate_specials(run, kVec4, 2, statements);
+  evaluate_specials(run, kVec4, 4, statements);
 }
 
 // Quotients that are known to be zero make exponents literal, and the multiplication by 1 goes.
