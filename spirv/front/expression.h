@@ -162,4 +162,13 @@ class ExactScope {
   bool saved_;
 };
 
+/// What `make()` writes is one operation until the reference's rules come to it: closed to them, and one of a count.
+template <class Make>
+Expr composed(Translator& t, Make make) {
+  const bool saved = std::exchange(t.opaque, true);
+  const Expr made = make();
+  t.opaque = saved;
+  return made;
+}
+
 }  // namespace vitrine::spirv::front

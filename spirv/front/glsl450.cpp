@@ -36,10 +36,7 @@ bool similar_literals(const Expr& x, const Expr& y) {
 }
 
 Expr saturate(Expr x) {
-  const bool saved = std::exchange(x.t->opaque, true);  // one operation until the reference's rules come to it
-  const Expr limited = min(max(x, imm(*x.t, 0.0f)), imm(*x.t, 1.0f));
-  x.t->opaque = saved;
-  return limited;
+  return composed(*x.t, [&] { return min(max(x, imm(*x.t, 0.0f)), imm(*x.t, 1.0f)); });
 }
 
 /// a - b * c as the front end of the reference writes it: (-b * c) + a.

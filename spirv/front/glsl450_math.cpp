@@ -208,59 +208,49 @@ void inverse(Translator& t, const Inst& inst, ir::Op) {
 
 void pack_unorm(Translator& t, const Inst& inst, ir::Op) {
   const Expr v = arg(t, inst, 0);
-  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
-  const Expr clamped = min(max(v, imm(t, 0.0f)), imm(t, 1.0f));
-  const Expr rounded = apply(ir::Op::kFRoundEven, {clamped * (v.size() == 2 ? 65535.0f : 255.0f)});
-  const Expr word = pack_fields(t, apply(ir::Op::kF2U, {rounded}));
-  t.opaque = saved;
-  result(t, inst, word);
+  result(t, inst, composed(t, [&] {
+           const Expr clamped = min(max(v, imm(t, 0.0f)), imm(t, 1.0f));
+           const Expr rounded = apply(ir::Op::kFRoundEven, {clamped * (v.size() == 2 ? 65535.0f : 255.0f)});
+           return pack_fields(t, apply(ir::Op::kF2U, {rounded}));
+         }));
 }
 
 void pack_snorm(Translator& t, const Inst& inst, ir::Op) {
   const Expr v = arg(t, inst, 0);
-  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
-  const Expr clamped = min(imm(t, 1.0f), max(imm(t, -1.0f), v));
-  const Expr rounded = apply(ir::Op::kFRoundEven, {clamped * (v.size() == 2 ? 32767.0f : 127.0f)});
-  const Expr word = pack_fields(t, apply(ir::Op::kF2I, {rounded}));
-  t.opaque = saved;
-  result(t, inst, word);
+  result(t, inst, composed(t, [&] {
+           const Expr clamped = min(imm(t, 1.0f), max(imm(t, -1.0f), v));
+           const Expr rounded = apply(ir::Op::kFRoundEven, {clamped * (v.size() == 2 ? 32767.0f : 127.0f)});
+           return pack_fields(t, apply(ir::Op::kF2I, {rounded}));
+         }));
 }
 
 void pack_half(Translator& t, const Inst& inst, ir::Op) {
   const Expr v = arg(t, inst, 0);
-  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
-  const Expr word = pack_fields(t, apply(ir::Op::kF2Half, {v}));
-  t.opaque = saved;
-  result(t, inst, word);
+  result(t, inst, composed(t, [&] { return pack_fields(t, apply(ir::Op::kF2Half, {v})); }));
 }
 
 void unpack_unorm(Translator& t, const Inst& inst, ir::Op) {
   const std::uint32_t count = result_count(t, inst);
   const Expr word = arg(t, inst, 0);
-  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
-  const Expr fields = apply(ir::Op::kU2F, {unpack_fields(t, word, count, false)});
-  const Expr numbers = fields / imm(t, count == 2 ? 65535.0f : 255.0f);
-  t.opaque = saved;
-  result(t, inst, numbers);
+  result(t, inst, composed(t, [&] {
+           const Expr fields = apply(ir::Op::kU2F, {unpack_fields(t, word, count, false)});
+           return fields / imm(t, count == 2 ? 65535.0f : 255.0f);
+         }));
 }
 
 void unpack_snorm(Translator& t, const Inst& inst, ir::Op) {
   const std::uint32_t count = result_count(t, inst);
   const Expr word = arg(t, inst, 0);
-  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
-  const Expr fields = apply(ir::Op::kI2F, {unpack_fields(t, word, count, true)});
-  const Expr scaled = fields / imm(t, count == 2 ? 32767.0f : 127.0f);
-  const Expr numbers = min(imm(t, 1.0f), max(imm(t, -1.0f), scaled));
-  t.opaque = saved;
-  result(t, inst, numbers);
+  result(t, inst, composed(t, [&] {
+           const Expr fields = apply(ir::Op::kI2F, {unpack_fields(t, word, count, true)});
+           const Expr scaled = fields / imm(t, count == 2 ? 32767.0f : 127.0f);
+           return min(imm(t, 1.0f), max(imm(t, -1.0f), scaled));
+         }));
 }
 
 void unpack_half(Translator& t, const Inst& inst, ir::Op) {
   const Expr word = arg(t, inst, 0);
-  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
-  const Expr numbers = apply(ir::Op::kHalf2F, {unpack_fields(t, word, 2, false)});
-  t.opaque = saved;
-  result(t, inst, numbers);
+  result(t, inst, composed(t, [&] { return apply(ir::Op::kHalf2F, {unpack_fields(t, word, 2, false)}); }));
 }
 
 }  // namespace vitrine::spirv::front::glsl
