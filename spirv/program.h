@@ -130,6 +130,11 @@ struct Preset {
   std::uint32_t uniform = 0;
 };
 
+/// Bytes of the varying file.
+struct RegisterRange {
+  std::uint32_t begin = 0, end = 0;
+};
+
 struct Program {
   std::vector<Instruction> preamble;  ///< draw-uniform work on the uniform file alone
   std::vector<Instruction> code;
@@ -142,6 +147,9 @@ struct Program {
   std::uint32_t mask_count = 0;
   std::uint32_t array_bytes = 0;
   std::vector<Preset> mask_presets, register_presets;
+  /// What every wave begins with as zeros: registers whose inactive lanes a neighbour in the quad may read (an undefined
+  /// value, which must not be that of an earlier wave).
+  std::vector<RegisterRange> cleared;
   std::vector<MemoryOp> memory_ops;
   std::vector<ImageOp> image_ops;
   bool has_barrier = false;

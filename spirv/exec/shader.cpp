@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 #include <utility>
 
@@ -91,6 +92,8 @@ base::LaneMask WaveRunner::run(base::LaneMask active, base::LaneMask helpers) {
   wave.active = wave.launched = active;
   wave.live = active & ~helpers;
   wave.budget = exec::shader_budget();
+  for (const RegisterRange& range : wave.program->cleared)
+    std::memset(wave.registers + range.begin, 0, range.end - range.begin);
   execute(wave, wave.program->code.data());
   if (wave.status == Wave::Status::kFault) exec::raise_fault(state_->shader->fault(), wave);
   return wave.live;

@@ -244,8 +244,11 @@ const Instruction* shuffle(Wave& wave, const Instruction* i) {
   const std::uint32_t* index = reg(wave, i->src[1]).lane;
   std::uint32_t* to = reg(wave, i->dst).lane;
   const std::uint32_t inside = i->extra[0] - 1;
-  for (std::uint32_t lane = 0; lane < base::kWaveWidth; ++lane)
-    to[lane] = from.lane[(lane & ~inside) | (index[lane] & inside)];
+  // What an inactive lane has is undefined, and could be another wave's.
+  for (std::uint32_t lane = 0; lane < base::kWaveWidth; ++lane) {
+    const std::uint32_t other = (lane & ~inside) | (index[lane] & inside);
+    to[lane] = (wave.active >> other & 1) != 0 ? from.lane[other] : 0;
+  }
   return i + 1;
 }
 

@@ -227,6 +227,21 @@ void Emitter::moves(std::vector<Move> list, const ir::Instr* instr) {
   }
 }
 
+/// Lanes that diverged leave registers as they were, and derivatives read them all the same.
+void Emitter::clear_registers(const ShaderInterface& interface) {
+  const bool diverges = std::any_of(f_.body.begin(), f_.body.end(), [](const ScalarOp& op) { return op.masked; });
+  if (!interface.needs_helpers || !diverges) return;
+  std::vector<bool> kept(program->register_count + 1, false);
+  kept.back() = true;
+  for (const InterfaceSlot& slot : interface.inputs) kept[slot.reg] = true;
+  for (const Preset& preset : program->register_presets) kept[preset.to / kRegisterStride] = true;
+  for (std::uint32_t at = 0, begin = 0; at < kept.size(); ++at) {
+    if (!kept[at]) continue;
+    if (begin < at) program->cleared.push_back({begin * kRegisterStride, at * kRegisterStride});
+    begin = at + 1;
+  }
+}
+
 std::unique_ptr<Program> Emitter::finish(ShaderInterface& interface) {
   for (const Fixup& fixup : fixups_)
     program->code[fixup.instruction].extra[0] = label_[fixup.label] - fixup.instruction;
@@ -243,6 +258,7 @@ std::unique_ptr<Program> Emitter::finish(ShaderInterface& interface) {
   }
   interface.inputs = std::move(inputs);
   interface.outputs = std::move(outputs);
+  clear_registers(interface);
   program->uniform_words = std::max(program->uniform_words, program->draw_words);
   return std::move(program);
 }

@@ -70,6 +70,7 @@ class Emitter {
   void assign_words();
   void assign_word(ScalarId id);
   void share_counter_words();
+  void clear_registers(const ShaderInterface& interface);
   void one_move(Place to, Place from, bool masked, const ir::Instr* instr);
   Place temporary(char file);
   Place word(ScalarId id) const { return {'u', words_[id] * 4}; }

@@ -1,11 +1,10 @@
 // Literals that only the optimiser of the reference's code generator finds: quotients and comparisons of what is known
 // to be smaller than a literal, by the bits that can be set. What follows from them is folded, and operations that such
 // a literal leaves nothing to do for are taken away, so that x * 1 keeps a denormal x.
-#include <algorithm>
-#include <bit>
 #include <unordered_set>
 
 #include "base/float_mode.h"
+#include "spirv/rewrite/integer_range.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/tree.h"
 
@@ -15,7 +14,6 @@ namespace {
 using Kind = Inst::Kind;
 
 constexpr std::uint32_t kOne = 0x3f800000, kMinusZero = 0x80000000;
-constexpr unsigned kMaxDepth = 6;  ///< of operations that known bits are followed through
 
 class LateFolder {
  public:
@@ -26,7 +24,8 @@ class LateFolder {
     if (inst.kind == Kind::kIf) return take_literals(id);
     if (inst.kind != Kind::kAlu || inst.components != 1 || inst.width != 32 || inst.opaque) return;
     if ((inst.op == Op::kIDiv || inst.op == Op::kUDiv) && is_zero_quotient(inst)) return become(id, 0);
-    if (const int known = known_comparison(inst); known >= 0) return become(id, static_cast<std::uint32_t>(known));
+    if (const int known = known_comparison(graph_, inst); known >= 0)
+      return become(id, static_cast<std::uint32_t>(known));
     if (late_.empty() || !reads_late(inst) || fold(id) || keep_zero(id) || take_selected(id)) return;
     take_other(id);
   }
@@ -47,28 +46,8 @@ class LateFolder {
     if (!literal) return false;
     const std::uint32_t bits = literal->imm[graph_.source(inst, 1).swizzle[0]];
     const bool negative = inst.op == Op::kIDiv && (bits >> 31) != 0;
-    const std::uint32_t largest = possible_bits(graph_.source(inst, 0), 0);
+    const std::uint32_t largest = known_bits(graph_, graph_.source(inst, 0)).possible;
     return largest < (negative ? 0u - bits : bits) && (inst.op == Op::kUDiv || largest < 0x80000000u);
-  }
-
-  /// What the comparison of an integer with a literal gives for every value that the integer can have; -1: both.
-  int known_comparison(const Inst& inst) const {
-    const bool is_signed = inst.op == Op::kILt || inst.op == Op::kIGe;
-    const bool equal = inst.op == Op::kIEq || inst.op == Op::kINe;
-    if (!is_signed && !equal && inst.op != Op::kULt && inst.op != Op::kUGe) return -1;
-    const Inst* literal = constant(inst, 1);
-    if (!literal) return -1;
-    const std::uint32_t largest = possible_bits(graph_.source(inst, 0), 0);
-    const std::uint32_t least = certain_bits(graph_.source(inst, 0), 0);
-    const std::uint32_t bits = literal->imm[graph_.source(inst, 1).swizzle[0]];
-    if (equal) return ((bits & ~largest) | (least & ~bits)) != 0 ? inst.op == Op::kINe : -1;
-    if (is_signed && ((largest ^ least) >> 31) != 0) return -1;
-    const auto number = [&](std::uint32_t value) {
-      return is_signed ? std::int64_t{static_cast<std::int32_t>(value)} : std::int64_t{value};
-    };
-    const bool asks_less = inst.op == Op::kILt || inst.op == Op::kULt;
-    if (number(largest) < number(bits)) return asks_less;
-    return number(least) >= number(bits) ? !asks_less : -1;
   }
 
   /// The results of a branch on such a literal are those of one side; in loops the reference masks them all the same.
@@ -98,67 +77,6 @@ class LateFolder {
       block = owner.block;
     }
     return false;
-  }
-
-  /// All bits up to the highest of these.
-  static std::uint32_t filled(std::uint32_t bits) { return bits == 0 ? 0 : ~0u >> std::countl_zero(bits); }
-
-  /// Bits that are not known to be zero.
-  std::uint32_t possible_bits(Src src, unsigned depth) const {
-    const Inst* inst = graph_.def(src.value);
-    if (!inst || depth == kMaxDepth) return ~0u;
-    if (inst->kind == Kind::kConst) return inst->boolean ? ~0u : inst->imm[src.swizzle[0]];
-    if (inst->kind != Kind::kAlu || inst->components != 1 || inst->width != 32) return ~0u;
-    const auto of = [&](std::uint32_t index) { return possible_bits(graph_.source(*inst, index), depth + 1); };
-    switch (inst->op) {
-      case Op::kMov:
-        return of(0);
-      case Op::kB2I:
-        return 1;
-      case Op::kAnd:
-        return of(0) & of(1);
-      case Op::kOr:
-      case Op::kXor:
-        return of(0) | of(1);
-      case Op::kSelect:
-        return of(1) | of(2);
-      case Op::kIAdd: {
-        const std::uint32_t either = of(0) | of(1), sum = filled(either) << 1 | 1;
-        return either >> 31 != 0 ? ~0u : either == 0 ? 0 : sum & ~0u << std::countr_zero(either);
-      }
-      case Op::kUShr: {
-        const Inst* literal = constant(*inst, 1);
-        return literal ? of(0) >> (literal->imm[graph_.source(*inst, 1).swizzle[0]] & 31) : filled(of(0));
-      }
-      case Op::kIRem:
-      case Op::kIMod: {
-        const std::uint32_t left = filled(of(0)), right = filled(of(1));
-        return left >> 31 == 0 && right >> 31 == 0 ? std::min(left, right) : ~0u;
-      }
-      default:
-        return ~0u;
-    }
-  }
-
-  /// Bits that are known to be one.
-  std::uint32_t certain_bits(Src src, unsigned depth) const {
-    const Inst* inst = graph_.def(src.value);
-    if (!inst || depth == kMaxDepth) return 0;
-    if (inst->kind == Kind::kConst) return inst->boolean ? 0 : inst->imm[src.swizzle[0]];
-    if (inst->kind != Kind::kAlu || inst->components != 1 || inst->width != 32) return 0;
-    const auto of = [&](std::uint32_t index) { return certain_bits(graph_.source(*inst, index), depth + 1); };
-    switch (inst->op) {
-      case Op::kMov:
-        return of(0);
-      case Op::kAnd:
-        return of(0) & of(1);
-      case Op::kOr:
-        return of(0) | of(1);
-      case Op::kSelect:
-        return of(1) & of(2);
-      default:
-        return 0;
-    }
   }
 
   bool is_late(const Inst& inst, std::uint32_t index) const {

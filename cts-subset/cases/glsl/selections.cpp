@@ -298,33 +298,86 @@ CTS_CASE("glsl", "subtracted_signs") {
       "  vec4 shared_sign = sign(b.yxwz), r4 = (a - shared_sign) + (a.wzyx - shared_sign);\n");
 }
 
-// Comparisons that only known bits decide make the literal of a branch a factor, which leaves denormals alone.
-CTS_CASE("glsl", "late_comparisons") {
-  const char* const conditions[] = {"int(u.x & 14u) < 0",
-                                    "int(u.y & 7u) >= 0",
-                                    "(u.z & 14u) < 100u",
-                                    "(u.w >> 4u) >= 0x20000000u",
-                                    "(u.x & 3u) == 5u",
-                                    "(u.y & 3u) != 9u",
-                                    "int(u.z >> 1u) < -3",
-                                    "int(u.x & 14u) < 3",
-                                    "(u.x & 14u) == 3u",
-                                    "(u.y & 10u) != 5u",
-                                    "(u.z | 4u) == 3u",
-                                    "(u.w | 8u) < 8u",
-                                    "(u.x & 14u) < 15u",
-                                    "(u.x ^ 14u) == 3u",
-                                    "int(u.y | 0x80000000u) >= 0",
-                                    "(u.w | 6u) >= 4u"};
-  std::string statements = "  vec4 r0, r1, r2, r3;\n";
-  for (int k = 0; k < 16; ++k) {
-    const bool then = k == 1 || k == 2 || k == 5 || k == 9 || k == 12 || k == 15;
-    const std::string n = std::to_string(k), other = "sqrt(a.y + " + n + ".)";
-    statements += "  float g" + n + "; if (" + conditions[k] + ") g" + n + " = " + (then ? "1.0" : other) + "; else g" +
-                  n + " = " + (then ? other : "1.0") + ";\n  r" + std::to_string(k / 4) + "[" + std::to_string(k % 4) +
+/// Branches whose condition `conditions[k]` is decided without running the shader: to a root where `ones[k]` is '0', to
+/// 1 otherwise. The literal 1 is then a factor, which leaves denormals alone.
+void compare_decided(Run& run, std::span<const char* const> conditions, std::string_view ones) {
+  std::string statements;
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    const std::string n = std::to_string(k), root = "sqrt(a.y + " + n + ".)";
+    const bool then = ones[k] == '1';
+    if (k % 4 == 0) statements += "  vec4 r" + std::to_string(k / 4) + ";\n";
+    statements += "  float g" + n + "; if (" + conditions[k] + ") g" + n + " = " + (then ? "1.0" : root) + "; else g" +
+                  n + " = " + (then ? root : "1.0") + ";\n  r" + std::to_string(k / 4) + "[" + std::to_string(k % 4) +
                   "] = uintBitsToFloat(id * 3u + 7u) * g" + n + ";\n";
   }
-  evaluate_specials(run, kVec4, 4, statements);
+  evaluate_specials(run, kVec4, static_cast<int>(conditions.size() / 4), statements);
+}
+
+// Comparisons with literals that known bits decide.
+CTS_CASE("glsl", "late_comparisons") {
+  constexpr const char* kConditions[] = {"int(u.x & 14u) < 0",
+                                         "int(u.y & 7u) >= 0",
+                                         "(u.z & 14u) < 100u",
+                                         "(u.w >> 4u) >= 0x20000000u",
+                                         "(u.x & 3u) == 5u",
+                                         "(u.y & 3u) != 9u",
+                                         "int(u.z >> 1u) < -3",
+                                         "int(u.x & 14u) < 3",
+                                         "(u.x & 14u) == 3u",
+                                         "(u.y & 10u) != 5u",
+                                         "(u.z | 4u) == 3u",
+                                         "(u.w | 8u) < 8u",
+                                         "(u.x & 14u) < 15u",
+                                         "(u.x ^ 14u) == 3u",
+                                         "int(u.y | 0x80000000u) >= 0",
+                                         "(u.w | 6u) >= 4u"};
+  compare_decided(run, kConditions, "0110010001001001");
+}
+
+// The literal in front, bits of both operands, and bits of what integers are made of.
+CTS_CASE("glsl", "known_bits") {
+  constexpr const char* kConditions[] = {"(u.x & 14u) <= 15u",
+                                         "15u < (u.y & 14u)",
+                                         "(u.z & 3u) < (u.w | 4u)",
+                                         "(u.x & 3u) == (u.y | 4u)",
+                                         "int(u.z & 0x8000000fu) < 16",
+                                         "(u.w & 3u) << 2u == 2u",
+                                         "int(u.x | 0x80000000u) >> 4 >= 0",
+                                         "~(u.y | 1u) == 1u",
+                                         "(u.z & 6u) * 4u == 4u",
+                                         "(u.w & 7u) * 3u > 21u",
+                                         "((u.x & 3u) - 8u) < 4294967288u",
+                                         "bitCount(u.y) > 32",
+                                         "(u.z & 7u) % 5u == 5u",
+                                         "(u.w >> 28u) / 3u > 5u",
+                                         "max(u.x, 9u) < 9u",
+                                         "min(u.y & 12u, u.z & 3u) >= 4u",
+                                         "-int(u.w | 1u) == 4",
+                                         "((u.x | 1u) ^ 5u) == 5u",
+                                         "(u.y > u.z ? u.w & 7u : 9u) > 9u",
+                                         "(u.x | 3u) - (u.y & 29u) == 4096u"};
+  compare_decided(run, kConditions, "10101000001000000000");
+}
+
+// Ranges of operations that do not overflow, and equalities that say something about the operand behind such ones.
+CTS_CASE("glsl", "known_ranges") {
+  constexpr const char* kConditions[] = {"(u.x >> 17u) + 17u >= 10u",
+                                         "int((u.y & 14u) - 4u) > 32",
+                                         "(u.z & 1u) + 5u == 4u",
+                                         "(u.w | 8192u) - 14u == 1u",
+                                         "(u.x >> 15u) * 45u == 32u",
+                                         "(u.y | 372u) / 40u >= 7u",
+                                         "(u.z & 65536u) / 21u == 7u",
+                                         "int(u.w | 32768u) >> 8 == 589049585",
+                                         "(u.x > u.y ? u.z | 6u : u.w | 9u) == 4u",
+                                         "min(u.x & 16777216u, u.y | 31u) == 39u",
+                                         "(u.z > u.w ? u.x | 23u : 33u) >= 21u",
+                                         "int(max(u.y & 268435456u, 31u)) <= 4",
+                                         "(u.z | 16u) % 13u != (u.w | 16u)",
+                                         "((u.x & 33u) >> 9u & 10u) == ((u.y & 3u) >> 8u)",
+                                         "(u.z | 28118852u) / 10u != 33554432u",
+                                         "int(u.w) % 7 > 6"};
+  compare_decided(run, kConditions, "1000010000101110");
 }
 
 // Quotients that are known to be zero make exponents literal, and the multiplication by 1 goes.

@@ -284,7 +284,39 @@ TEST(Subgroups, BroadcastsAndShuffles) {
   expect_group_divergent("uint(subgroupBroadcastFirst(x > 9u))",
                          [](const Group& group, std::uint32_t) { return group.x[group.first()] > 9 ? 1u : 0u; });
   expect_group_divergent("subgroupShuffleXor(vec3(x, 2.0, x + 1u), 1u).z == 0.0 ? 0u : 7u",
-                         [](const Group&, std::uint32_t) { return 7u; });
+                         [](const Group& group, std::uint32_t lane) -> std::optional<std::uint32_t> {
+                           return group.is_active(lane ^ 1) ? std::optional(7u) : std::nullopt;
+                         });
+}
+
+// Undefined, and so that of no earlier wave: x is another register in lanes that never left the loop.
+TEST(Subgroups, ShufflesReadZeroFromInactiveLanes) {
+  constexpr char kSource[] = R"(
+layout(local_size_x = 5) in;
+layout(set = 0, binding = 0) buffer B { uint v[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x, x = v[i];
+  for (;;)
+    if (subgroupBroadcastFirst(x) == x) { x *= subgroupAdd(3u); break; }
+  v[i] = subgroupShuffleXor(x, 7u) + subgroupShuffle(x, 6u);
+}
+)";
+  constexpr char kLeavesOnes[] = R"(
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) buffer B { uint v[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x, x[16], sum = 0u;
+  for (uint k = 0u; k < 16u; k++) x[k] = v[(i + k) % 16u] | 1u;
+  for (uint k = 0u; k < 16u; k++) sum += x[(k + i) % 16u] * x[k];
+  v[i] = sum | 0x01010101u;
+}
+)";
+  for (const std::uint32_t size : {8u, 64u}) {
+    dispatch_words(kLeavesOnes, size, Lanes(64, ~0u), 1);
+    const Lanes values{4, 4, 4, 4, 4};
+    // Lanes 0, 1 and 2 ask lanes 7, 6 and 5; nobody is lane 6.
+    EXPECT_EQ(dispatch_words(kSource, size, values, 1), (Lanes{0, 0, 0, 60, 60})) << size;
+  }
 }
 
 TEST(Subgroups, ActiveLanesInLoopsAfterContinueBreakAndReturn) {

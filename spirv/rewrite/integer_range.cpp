@@ -1,0 +1,224 @@
+#include "spirv/rewrite/integer_range.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+constexpr unsigned kMaxDepth = 6;  ///< of operations that are followed
+
+/// Each reading tells something about the other one where the sign is known.
+IntegerRange agreed(IntegerRange range) {
+  range.least = std::max(range.least, range.bits.certain);
+  range.largest = std::min(range.largest, range.bits.possible);
+  range.least_signed = std::max(range.least_signed, range.bits.least_signed());
+  range.largest_signed = std::min(range.largest_signed, range.bits.largest_signed());
+  const auto as_signed = [](std::uint32_t value) { return static_cast<std::int32_t>(value); };
+  const auto as_unsigned = [](std::int32_t value) { return static_cast<std::uint32_t>(value); };
+  if ((range.least ^ range.largest) >> 31 == 0) {
+    range.least_signed = std::max(range.least_signed, as_signed(range.least));
+    range.largest_signed = std::min(range.largest_signed, as_signed(range.largest));
+  }
+  if ((range.least_signed < 0) == (range.largest_signed < 0)) {
+    range.least = std::max(range.least, as_unsigned(range.least_signed));
+    range.largest = std::min(range.largest, as_unsigned(range.largest_signed));
+  }
+  return range;
+}
+
+void bound(IntegerRange& range, std::uint64_t least, std::uint64_t largest) {
+  if (largest >> 32 != 0) return;
+  range.least = static_cast<std::uint32_t>(least);
+  range.largest = static_cast<std::uint32_t>(largest);
+}
+
+void bound_signed(IntegerRange& range, std::int64_t least, std::int64_t largest) {
+  if (least < INT32_MIN || largest > INT32_MAX) return;
+  range.least_signed = static_cast<std::int32_t>(least);
+  range.largest_signed = static_cast<std::int32_t>(largest);
+}
+
+class Analysis {
+ public:
+  /// `reads_signed`: a signed comparison asks. It does not see the least quotient of unsigned numbers.
+  Analysis(const Graph& graph, bool reads_signed) : graph_(graph), reads_signed_(reads_signed) {}
+
+  IntegerRange of(Src src, unsigned depth) const {
+    IntegerRange range;
+    range.bits = known_bits(graph_, src);
+    const Inst* inst = operation(src);
+    if (inst && depth < kMaxDepth) of_operation(*inst, depth + 1, range);
+    return agreed(range);
+  }
+
+  /// Whether the integer can be this literal.
+  bool can_be(Src src, std::uint32_t literal, unsigned depth) const {
+    const IntegerRange range = of(src, depth);
+    const auto number = static_cast<std::int32_t>(literal);
+    if (((literal & ~range.bits.possible) | (range.bits.certain & ~literal)) != 0) return false;
+    if (literal < range.least || literal > range.largest) return false;
+    if (number < range.least_signed || number > range.largest_signed) return false;
+    const Inst* inst = operation(src);
+    return !inst || depth == kMaxDepth || can_give(*inst, literal, depth + 1);
+  }
+
+  /// The operand where all of its bits are known.
+  std::optional<std::uint32_t> literal(Src src) const {
+    const KnownBits bits = known_bits(graph_, src);
+    return bits.possible == bits.certain ? std::optional(bits.certain) : std::nullopt;
+  }
+
+ private:
+  const Inst* operation(Src src) const {
+    const Inst* inst = graph_.def(src.value);
+    return inst && inst->kind == Inst::Kind::kAlu && inst->components == 1 && inst->width == 32 ? inst : nullptr;
+  }
+
+  Src source(const Inst& inst, std::uint32_t index) const { return graph_.source(inst, index); }
+
+  void of_operation(const Inst& inst, unsigned depth, IntegerRange& range) const {
+    const auto operand = [&](std::uint32_t index) { return of(source(inst, index), depth); };
+    switch (inst.op) {
+      case Op::kBitCount:
+        return bound(range, 0, 32);
+      case Op::kSelect: {
+        const IntegerRange a = operand(1), b = operand(2);
+        bound(range, std::min(a.least, b.least), std::max(a.largest, b.largest));
+        return bound_signed(range, std::min(a.least_signed, b.least_signed),
+                            std::max(a.largest_signed, b.largest_signed));
+      }
+      default:
+        break;
+    }
+    if (inst.count != 2) return;
+    for (const std::uint32_t index : {0u, 1u})
+      if (const std::optional<std::uint32_t> by = literal(source(inst, index)))
+        return with_literal(inst.op, index, operand(1 - index), *by, range);
+  }
+
+  /// `by` is operand `index`, and a is the range of the other one.
+  void with_literal(Op op, std::uint32_t index, const IntegerRange& a, std::uint32_t by, IntegerRange& range) const {
+    const auto number = std::int64_t{static_cast<std::int32_t>(by)};
+    const std::int64_t low = a.least_signed, high = a.largest_signed;
+    const std::uint32_t least = std::min(a.least, by), largest = std::max(a.largest, by);
+    switch (op) {
+      case Op::kUMin:
+        return bound(range, least, std::min(a.largest, by));
+      case Op::kUMax:
+        return bound(range, std::max(a.least, by), largest);
+      case Op::kIMin:
+        return bound_signed(range, std::min(low, number), std::min(high, number));
+      case Op::kIMax:
+        return bound_signed(range, std::max(low, number), std::max(high, number));
+      case Op::kIAdd:
+        bound(range, std::uint64_t{a.least} + by, std::uint64_t{a.largest} + by);
+        return bound_signed(range, low + number, high + number);
+      default:
+        break;
+    }
+    if (index == 0) return;
+    switch (op) {
+      case Op::kISub:
+        return bound_signed(range, low - number, high - number);
+      case Op::kUDiv:
+        return by == 0 ? void() : bound(range, reads_signed_ ? 0 : a.least / by, a.largest / by);
+      case Op::kUMod:
+        return by == 0 ? void() : bound(range, 0, std::min(a.largest, by - 1));
+      case Op::kIDiv:
+        return number <= 0 ? void() : bound_signed(range, low / number, high / number);
+      case Op::kIRem:
+      case Op::kIMod: {
+        const std::int64_t most = (number < 0 ? -number : number) - 1;
+        return number == 0 ? void() : bound_signed(range, low >= 0 ? 0 : -most, high <= 0 ? 0 : std::min(high, most));
+      }
+      case Op::kShl:
+        return bound(range, std::uint64_t{a.least} << (by & 31), std::uint64_t{a.largest} << (by & 31));
+      case Op::kUShr:
+        return bound(range, a.least >> (by & 31), a.largest >> (by & 31));
+      case Op::kIShr:
+        return bound_signed(range, low >> (by & 31), high >> (by & 31));
+      default:
+        return;
+    }
+  }
+
+  bool can_give(const Inst& inst, std::uint32_t bits, unsigned depth) const {
+    const auto one_can = [&](std::uint32_t first, std::uint32_t second) {
+      return can_be(source(inst, first), bits, depth) || can_be(source(inst, second), bits, depth);
+    };
+    switch (inst.op) {
+      case Op::kNot:
+        return can_be(source(inst, 0), ~bits, depth);
+      case Op::kINeg:
+        return can_be(source(inst, 0), 0u - bits, depth);
+      case Op::kSelect:
+        return one_can(1, 2);
+      case Op::kUMin:
+      case Op::kUMax:
+      case Op::kIMin:
+      case Op::kIMax:
+        return one_can(0, 1);
+      default:
+        break;
+    }
+    if (inst.count != 2) return true;
+    for (const std::uint32_t index : {0u, 1u}) {
+      const std::optional<std::uint32_t> by = literal(source(inst, index));
+      if (!by) continue;
+      const Src other = source(inst, 1 - index);
+      switch (inst.op) {
+        case Op::kIAdd:
+          return can_be(other, bits - *by, depth);
+        case Op::kISub:
+          return can_be(other, index == 1 ? bits + *by : *by - bits, depth);
+        case Op::kXor:
+          return can_be(other, bits ^ *by, depth);
+        case Op::kIMul:
+          if (*by == 0 || std::uint64_t{of(other, depth).largest} * *by >> 32 != 0) return true;
+          return bits % *by == 0 && can_be(other, bits / *by, depth);
+        case Op::kUDiv:  // it is a range of the dividend, asked for by its distance to the first of them
+          if (index == 0 || *by == 0) return true;
+          return sum(known_bits(graph_, other), 0u - bits * *by).certain < *by;
+        default:
+          return true;
+      }
+    }
+    return true;
+  }
+
+  const Graph& graph_;
+  bool reads_signed_;
+};
+
+}  // namespace
+
+IntegerRange integer_range(const Graph& graph, Src src) { return Analysis(graph, false).of(src, 0); }
+
+int known_comparison(const Graph& graph, const Inst& inst) {
+  const bool is_signed = inst.op == Op::kILt || inst.op == Op::kIGe;
+  const bool equal = inst.op == Op::kIEq || inst.op == Op::kINe;
+  if (!is_signed && !equal && inst.op != Op::kULt && inst.op != Op::kUGe) return -1;
+  const Analysis analysis(graph, is_signed);
+  const bool has_literal = analysis.literal(graph.source(inst, 0)) || analysis.literal(graph.source(inst, 1));
+  const auto range = [&](std::uint32_t index) {
+    return has_literal ? analysis.of(graph.source(inst, index), 0)
+                       : agreed({known_bits(graph, graph.source(inst, index))});
+  };
+  const IntegerRange a = range(0), b = range(1);
+  if (equal) {
+    const auto same = [](const IntegerRange& x) { return x.bits.possible == x.bits.certain; };
+    if (same(a) && same(b) && a.bits.certain == b.bits.certain) return inst.op == Op::kIEq;
+    bool differ = ((a.bits.certain & ~b.bits.possible) | (b.bits.certain & ~a.bits.possible)) != 0;
+    for (const std::uint32_t index : {0u, 1u})
+      if (const std::optional<std::uint32_t> literal = analysis.literal(graph.source(inst, index)))
+        differ = differ || !analysis.can_be(graph.source(inst, 1 - index), *literal, 0);
+    return differ ? inst.op == Op::kINe : -1;
+  }
+  const bool asks_less = inst.op == Op::kILt || inst.op == Op::kULt;
+  const bool less = is_signed ? a.largest_signed < b.least_signed : a.largest < b.least;
+  const bool greater_or_equal = is_signed ? a.least_signed >= b.largest_signed : a.least >= b.largest;
+  return less ? asks_less : greater_or_equal ? !asks_less : -1;
+}
+
+}  // namespace vitrine::spirv::rewriting
