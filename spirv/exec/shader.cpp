@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
-#include <cstring>
 #include <new>
 #include <utility>
 
@@ -92,8 +91,7 @@ base::LaneMask WaveRunner::run(base::LaneMask active, base::LaneMask helpers) {
   wave.active = wave.launched = active;
   wave.live = active & ~helpers;
   wave.budget = exec::shader_budget();
-  for (const RegisterRange& range : wave.program->cleared)
-    std::memset(wave.registers + range.begin, 0, range.end - range.begin);
+  if (!wave.program->cleared.empty()) exec::clear_undefined(*wave.program, wave);
   execute(wave, wave.program->code.data());
   if (wave.status == Wave::Status::kFault) exec::raise_fault(state_->shader->fault(), wave);
   return wave.live;

@@ -17,9 +17,13 @@ constexpr std::size_t kAlignment = 64;
 
 std::size_t aligned(std::size_t bytes) { return (bytes + kAlignment - 1) & ~(kAlignment - 1); }
 
-void apply_presets(const Program& program, Wave& wave) {
+void apply_mask_presets(const Program& program, Wave& wave) {
   for (const Preset& preset : program.mask_presets)
     wave.masks[preset.to / sizeof(base::LaneMask)] = wave.uniforms[preset.uniform / 4] != 0 ? base::kAllLanes : 0;
+}
+
+void apply_presets(const Program& program, Wave& wave) {
+  apply_mask_presets(program, wave);
   for (const Preset& preset : program.register_presets) {
     auto* lanes = reinterpret_cast<std::uint32_t*>(wave.registers + preset.to);
     std::fill_n(lanes, base::kWaveWidth, wave.uniforms[preset.uniform / 4]);
@@ -59,6 +63,13 @@ void WaveMemory::bind(const BoundShader& shader, Wave& wave) {
   wave.resources = &shader.resources();
   wave.program = &program;
   apply_presets(program, wave);
+}
+
+void clear_undefined(const Program& program, Wave& wave) {
+  for (const RegisterRange& range : program.cleared)
+    std::memset(wave.registers + range.begin, 0, range.end - range.begin);
+  std::fill_n(wave.masks, program.mask_count, base::LaneMask{0});
+  apply_mask_presets(program, wave);
 }
 
 std::int64_t shader_budget() {

@@ -26,6 +26,9 @@ class WaveMemory {
   std::size_t size_ = 0;
 };
 
+/// Zeros in what Program::cleared names, and in all masks without a preset.
+void clear_undefined(const Program& program, Wave& wave);
+
 /// Back edges a wave may take: 2^28, or VITRINE_SHADER_BUDGET.
 std::int64_t shader_budget();
 

@@ -144,11 +144,13 @@ class Analysis {
                                         : KnownBits{};
       }
       case Op::kUMod:
-        return {std::min(filled(source(0).possible), filled(source(1).possible)), 0};
       case Op::kIRem:
       case Op::kIMod: {
-        const std::uint32_t left = filled(source(0).possible), right = filled(source(1).possible);
-        return {left >> 31 == 0 && right >> 31 == 0 ? std::min(left, right) : ~0u, 0};
+        const std::uint32_t* divisor = literal(inst, 1);
+        if (!divisor || *divisor == 0) return {};  // the remainder of a division by zero is ~0
+        const std::uint32_t left = filled(source(0).possible), right = filled(*divisor);
+        if (inst.op != Op::kUMod && (left | right) >> 31 != 0) return {};
+        return {std::min(left, right), 0};
       }
       default:
         return of_shift(inst, source(0));
