@@ -2,6 +2,7 @@
 // are one selection, and comparisons of numbers that were narrower before are those of the narrower numbers. Neither
 // changes a value; how often values are used decides whether inexact rules apply to them.
 #include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -21,32 +22,20 @@ class Joiner {
   explicit Joiner(Graph& graph) : graph_(graph) {}
 
   void visit(InstId id) {
-    const Inst& vec = graph_.insts[id];
-    if (vec.removed || vec.kind != Kind::kVec || vec.components != 2 || !is_read_as_double(vec.result)) return;
-    const InstId low = selection(vec, 0), high = selection(vec, 1);
-    if (low == kNone || high == kNone || low == high) return;
-    const Src condition = scalar(graph_.source(graph_.insts[low], 0));
-    const Src other = scalar(graph_.source(graph_.insts[high], 0));
-    if (condition.value != other.value || condition.swizzle != other.swizzle) return;
-    const InstId last = graph_.insts[low].block == graph_.insts[high].block ? later(low, high) : kNone;
-    if (last == kNone) return;
-    const Src yes = pair(last, low, high, 1), no = pair(last, low, high, 2);
-    const InstId made = graph_.create(Kind::kAlu, Op::kSelect, 2, false, 3);
-    graph_.insts[made].width = 64;
-    graph_.insts[made].exact = graph_.insts[low].exact;
-    graph_.insts[made].origin = graph_.insts[low].origin;
-    graph_.set_source(made, 0, condition);
-    graph_.set_source(made, 1, yes);
-    graph_.set_source(made, 2, no);
-    graph_.insert_before(last, made);
-    const ValueId whole = graph_.insts[made].result;
-    graph_.replace_uses(graph_.insts[id].result, whole);
-    graph_.remove(id);
-    read_word(graph_.insts[low].result, whole, 0);
-    read_word(graph_.insts[high].result, whole, 1);
-    graph_.remove(low);  // would count as a use of its operands
-    graph_.remove(high);
-    changed_ = true;
+    const Inst& inst = graph_.insts[id];
+    if (inst.removed) return;
+    if (inst.kind == Kind::kVec && inst.components == 2 && is_read_as_double(inst.result)) {
+      const InstId low = selection(graph_.source(inst, 0).value), high = selection(graph_.source(inst, 1).value);
+      const ValueId whole = join(low, high);
+      if (whole == kNone) return;
+      graph_.replace_uses(graph_.insts[id].result, whole);
+      graph_.remove(id);
+      replace(low, high, whole);
+    } else if (const InstId high = selection(inst.result) == id ? second_word(id) : kNone; high != kNone) {
+      if (const ValueId whole = join(id, high); whole != kNone) replace(id, high, whole);
+    } else if (selection(inst.result) == id) {
+      widen(id);
+    }
   }
 
   bool changed() const { return changed_; }
@@ -60,9 +49,72 @@ class Joiner {
     return false;
   }
 
-  /// The scalar selection that makes a word of the pair.
-  InstId selection(const Inst& vec, std::uint32_t word) const {
-    const InstId def = graph_.values[graph_.source(vec, word).value].def;
+  /// One double selected by the conditions of two words; none if these differ.
+  ValueId join(InstId low, InstId high) {
+    if (low == kNone || high == kNone || low == high || !same_condition(low, high)) return kNone;
+    const InstId last = graph_.insts[low].block == graph_.insts[high].block ? later(low, high) : kNone;
+    if (last == kNone) return kNone;
+    const Src yes = pair(last, low, high, 1), no = pair(last, low, high, 2);
+    return select_double(last, low, yes, no);
+  }
+
+  /// Selects as `like` does.
+  ValueId select_double(InstId position, InstId like, Src yes, Src no) {
+    const InstId made = graph_.create(Kind::kAlu, Op::kSelect, 2, false, 3);
+    graph_.insts[made].width = 64;
+    graph_.insts[made].exact = graph_.insts[like].exact;
+    graph_.insts[made].origin = graph_.insts[like].origin;
+    graph_.set_source(made, 0, scalar(graph_.source(graph_.insts[like], 0)));
+    graph_.set_source(made, 1, yes);
+    graph_.set_source(made, 2, no);
+    graph_.insert_before(position, made);
+    changed_ = true;
+    return graph_.insts[made].result;
+  }
+
+  /// One word of two computed doubles, of which the other word is not read.
+  void widen(InstId id) {
+    const Src yes = moved(scalar(graph_.source(graph_.insts[id], 1)));
+    const Src no = moved(scalar(graph_.source(graph_.insts[id], 2)));
+    if (yes.swizzle[0] != no.swizzle[0] || !is_computed_double(yes) || !is_computed_double(no)) return;
+    const ValueId whole = select_double(id, id, double_of(yes.value), double_of(no.value));
+    read_word(graph_.insts[id].result, whole, yes.swizzle[0]);
+    remove_selection(id);
+  }
+
+  bool is_computed_double(Src word) const {
+    const Inst* def = graph_.def(word.value);
+    return def && computes(*def) && def->width == 64 && !def->boolean && def->components == 2;
+  }
+
+  void replace(InstId low, InstId high, ValueId whole) {
+    read_word(graph_.insts[low].result, whole, 0);
+    read_word(graph_.insts[high].result, whole, 1);
+    remove_selection(low);
+    remove_selection(high);
+  }
+
+  bool same_condition(InstId a, InstId b) const {
+    const Src one = scalar(graph_.source(graph_.insts[a], 0)), other = scalar(graph_.source(graph_.insts[b], 0));
+    return one.value == other.value && one.swizzle == other.swizzle;
+  }
+
+  /// The selection behind this one that selects the high word where it selects the low word of a computed double.
+  InstId second_word(InstId low) const {
+    const InstId next = graph_.insts[low].next;
+    if (next == kNone || selection(graph_.insts[next].result) != next || !same_condition(low, next)) return kNone;
+    for (const std::uint32_t index : {1u, 2u}) {
+      const Src first = moved(scalar(graph_.source(graph_.insts[low], index)));
+      const Src second = moved(scalar(graph_.source(graph_.insts[next], index)));
+      if (is_computed_double(first) && first.value == second.value && first.swizzle[0] == 0 && second.swizzle[0] == 1)
+        return next;
+    }
+    return kNone;
+  }
+
+  /// The scalar selection that makes the value.
+  InstId selection(ValueId value) const {
+    const InstId def = value == ir::kNoValue ? kNone : graph_.values[value].def;
     if (def == kNone) return kNone;
     const Inst& inst = graph_.insts[def];
     const bool selects =
@@ -77,10 +129,29 @@ class Joiner {
     return a;
   }
 
+  /// What moves have brought: a branch that has become selections yields words by them.
+  Src moved(Src src) const {
+    for (const Inst* def = graph_.def(src.value); def && is_move(*def) && !def->opaque; def = graph_.def(src.value)) {
+      const Src from = graph_.source(*def, 0);
+      src = scalar({from.value, {from.swizzle[src.swizzle[0]]}});
+    }
+    return src;
+  }
+
+  /// It would count as a use of its operands, and so would moves for it alone.
+  void remove_selection(InstId id) {
+    const std::vector<Src> operands = operands_of(graph_, id);
+    graph_.remove(id);
+    for (const Src& operand : operands) {
+      const InstId def = graph_.values[operand.value].def;
+      if (def != kNone && is_move(graph_.insts[def]) && graph_.values[operand.value].uses == 0) graph_.remove(def);
+    }
+  }
+
   /// The double of which the selections take the words as operand `index`.
   Src pair(InstId position, InstId low, InstId high, std::uint32_t index) {
-    const Src first = scalar(graph_.source(graph_.insts[low], index));
-    const Src second = scalar(graph_.source(graph_.insts[high], index));
+    const Src first = moved(scalar(graph_.source(graph_.insts[low], index)));
+    const Src second = moved(scalar(graph_.source(graph_.insts[high], index)));
     if (first.value == second.value && first.swizzle[0] == 0 && second.swizzle[0] == 1 &&
         graph_.values[first.value].components == 2)
       return double_of(first.value);

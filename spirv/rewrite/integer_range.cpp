@@ -1,6 +1,7 @@
 #include "spirv/rewrite/integer_range.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 
 namespace vitrine::spirv::rewriting {
@@ -61,6 +62,22 @@ class Analysis {
     if (number < range.least_signed || number > range.largest_signed) return false;
     const Inst* inst = operation(src);
     return !inst || depth == kMaxDepth || can_give(*inst, literal, depth + 1);
+  }
+
+  /// Whether the integer can be below 2^k: behind the addition of a literal that asks for the upper bits of its
+  /// operand.
+  bool can_be_below(Src src, std::uint32_t power) const {
+    const Inst* inst = operation(src);
+    if (!std::has_single_bit(power) || !inst || (inst->op != Op::kIAdd && inst->op != Op::kISub)) return true;
+    for (const std::uint32_t index : {0u, 1u}) {
+      const std::optional<std::uint32_t> by = literal(source(*inst, index));
+      if (!by || (inst->op == Op::kISub && index == 0)) continue;
+      const std::uint32_t first = inst->op == Op::kISub ? *by : 0u - *by;
+      if ((first & (power - 1)) != 0) return true;
+      const KnownBits bits = known_bits(graph_, source(*inst, 1 - index));
+      return (((bits.certain & ~first) | (first & ~bits.possible)) & ~(power - 1)) == 0;
+    }
+    return true;
   }
 
   /// The operand where all of its bits are known.
@@ -218,7 +235,13 @@ int known_comparison(const Graph& graph, const Inst& inst) {
   const bool asks_less = inst.op == Op::kILt || inst.op == Op::kULt;
   const bool less = is_signed ? a.largest_signed < b.least_signed : a.largest < b.least;
   const bool greater_or_equal = is_signed ? a.least_signed >= b.largest_signed : a.least >= b.largest;
-  return less ? asks_less : greater_or_equal ? !asks_less : -1;
+  if (less || greater_or_equal) return less ? asks_less : !asks_less;
+  if (is_signed) return -1;
+  if (const std::optional<std::uint32_t> bound = analysis.literal(graph.source(inst, 1)))
+    return analysis.can_be_below(graph.source(inst, 0), *bound) ? -1 : !asks_less;
+  if (const std::optional<std::uint32_t> bound = analysis.literal(graph.source(inst, 0)))
+    return analysis.can_be_below(graph.source(inst, 1), *bound + 1) ? -1 : asks_less;
+  return -1;
 }
 
 }  // namespace vitrine::spirv::rewriting

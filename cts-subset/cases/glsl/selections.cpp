@@ -376,8 +376,12 @@ CTS_CASE("glsl", "known_ranges") {
                                          "(u.z | 16u) % 13u != (u.w | 16u)",
                                          "((u.x & 33u) >> 9u & 10u) == ((u.y & 3u) >> 8u)",
                                          "(u.z | 28118852u) / 10u != 33554432u",
-                                         "int(u.w) % 7 > 6"};
-  compare_decided(run, kConditions, "1000010000101110");
+                                         "int(u.w) % 7 > 6",
+                                         "(u.x | 8192u) - 14u < 1u",
+                                         "(u.y | 256u) - 8u >= 8u",
+                                         "7u < (u.z | 256u) - 8u",
+                                         "3u >= (u.w & 12u) + 4294967264u"};
+  compare_decided(run, kConditions, "10000100001011100110");
 }
 
 // Quotients that are known to be zero make exponents literal, and the multiplication by 1 goes.
