@@ -147,7 +147,9 @@ class Analysis {
       case Op::kIRem:
       case Op::kIMod: {
         const std::int64_t most = (number < 0 ? -number : number) - 1;
-        return number == 0 ? void() : bound_signed(range, low >= 0 ? 0 : -most, high <= 0 ? 0 : std::min(high, most));
+        if (number == 0) return;
+        if (op == Op::kIRem) return bound_signed(range, low >= 0 ? 0 : -most, high <= 0 ? 0 : std::min(high, most));
+        return bound_signed(range, low >= 0 && number > 0 ? 0 : -most, most);
       }
       case Op::kShl:
         return bound(range, std::uint64_t{a.least} << (by & 31), std::uint64_t{a.largest} << (by & 31));
