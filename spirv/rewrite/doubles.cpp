@@ -21,19 +21,25 @@ class Joiner {
  public:
   explicit Joiner(Graph& graph) : graph_(graph) {}
 
-  void visit(InstId id) {
+  /// Words that are composed to a double.
+  void visit_pair(InstId id) {
+    const Inst& vec = graph_.insts[id];
+    if (vec.removed || vec.kind != Kind::kVec || vec.components != 2 || !is_read_as_double(vec.result)) return;
+    const InstId low = selection(graph_.source(vec, 0).value), high = selection(graph_.source(vec, 1).value);
+    const ValueId whole = join(low, high);
+    if (whole == kNone) return;
+    graph_.replace_uses(graph_.insts[id].result, whole);
+    graph_.remove(id);
+    replace(low, high, whole);
+  }
+
+  /// Words of computed doubles, which are only read as words.
+  void visit_words(InstId id) {
     const Inst& inst = graph_.insts[id];
-    if (inst.removed) return;
-    if (inst.kind == Kind::kVec && inst.components == 2 && is_read_as_double(inst.result)) {
-      const InstId low = selection(graph_.source(inst, 0).value), high = selection(graph_.source(inst, 1).value);
-      const ValueId whole = join(low, high);
-      if (whole == kNone) return;
-      graph_.replace_uses(graph_.insts[id].result, whole);
-      graph_.remove(id);
-      replace(low, high, whole);
-    } else if (const InstId high = selection(inst.result) == id ? second_word(id) : kNone; high != kNone) {
+    if (inst.removed || selection(inst.result) != id) return;
+    if (const InstId high = second_word(id); high != kNone) {
       if (const ValueId whole = join(id, high); whole != kNone) replace(id, high, whole);
-    } else if (selection(inst.result) == id) {
+    } else {
       widen(id);
     }
   }
@@ -235,8 +241,10 @@ class Narrower {
 
 bool join_doubles(Graph& graph) {
   Joiner joiner(graph);
-  auto visit = [&](InstId id) { joiner.visit(id); };
-  for_each_inst(graph, graph.root, visit);
+  auto visit_pair = [&](InstId id) { joiner.visit_pair(id); };
+  for_each_inst(graph, graph.root, visit_pair);
+  auto visit_words = [&](InstId id) { joiner.visit_words(id); };
+  for_each_inst(graph, graph.root, visit_words);
   if (joiner.changed()) merge_doubles(graph);
   return joiner.changed();
 }

@@ -108,6 +108,10 @@ class Analysis {
       default:
         break;
     }
+    if (inst.op == Op::kINeg) {
+      const IntegerRange a = operand(0);
+      return bound_signed(range, -std::int64_t{a.largest_signed}, -std::int64_t{a.least_signed});
+    }
     if (inst.count != 2) return;
     for (const std::uint32_t index : {0u, 1u})
       if (const std::optional<std::uint32_t> by = literal(source(inst, index)))
@@ -134,7 +138,7 @@ class Analysis {
       default:
         break;
     }
-    if (index == 0) return;
+    if (index == 0) return op == Op::kISub ? bound_signed(range, number - high, number - low) : void();
     switch (op) {
       case Op::kISub:
         return bound_signed(range, low - number, high - number);
@@ -212,38 +216,20 @@ class Analysis {
 
 }  // namespace
 
-IntegerRange integer_range(const Graph& graph, Src src) { return Analysis(graph, false).of(src, 0); }
+IntegerRange integer_range(const Graph& graph, Src src, bool reads_signed) {
+  return Analysis(graph, reads_signed).of(src, 0);
+}
 
-int known_comparison(const Graph& graph, const Inst& inst) {
-  const bool is_signed = inst.op == Op::kILt || inst.op == Op::kIGe;
-  const bool equal = inst.op == Op::kIEq || inst.op == Op::kINe;
-  if (!is_signed && !equal && inst.op != Op::kULt && inst.op != Op::kUGe) return -1;
-  const Analysis analysis(graph, is_signed);
-  const bool has_literal = analysis.literal(graph.source(inst, 0)) || analysis.literal(graph.source(inst, 1));
-  const auto range = [&](std::uint32_t index) {
-    return has_literal ? analysis.of(graph.source(inst, index), 0)
-                       : agreed({known_bits(graph, graph.source(inst, index))});
-  };
-  const IntegerRange a = range(0), b = range(1);
-  if (equal) {
-    const auto same = [](const IntegerRange& x) { return x.bits.possible == x.bits.certain; };
-    if (same(a) && same(b) && a.bits.certain == b.bits.certain) return inst.op == Op::kIEq;
-    bool differ = ((a.bits.certain & ~b.bits.possible) | (b.bits.certain & ~a.bits.possible)) != 0;
-    for (const std::uint32_t index : {0u, 1u})
-      if (const std::optional<std::uint32_t> literal = analysis.literal(graph.source(inst, index)))
-        differ = differ || !analysis.can_be(graph.source(inst, 1 - index), *literal, 0);
-    return differ ? inst.op == Op::kINe : -1;
-  }
-  const bool asks_less = inst.op == Op::kILt || inst.op == Op::kULt;
-  const bool less = is_signed ? a.largest_signed < b.least_signed : a.largest < b.least;
-  const bool greater_or_equal = is_signed ? a.least_signed >= b.largest_signed : a.least >= b.largest;
-  if (less || greater_or_equal) return less ? asks_less : !asks_less;
-  if (is_signed) return -1;
-  if (const std::optional<std::uint32_t> bound = analysis.literal(graph.source(inst, 1)))
-    return analysis.can_be_below(graph.source(inst, 0), *bound) ? -1 : !asks_less;
-  if (const std::optional<std::uint32_t> bound = analysis.literal(graph.source(inst, 0)))
-    return analysis.can_be_below(graph.source(inst, 1), *bound + 1) ? -1 : asks_less;
-  return -1;
+IntegerRange range_of_bits(const Graph& graph, Src src) { return agreed({known_bits(graph, src)}); }
+
+std::optional<std::uint32_t> known_literal(const Graph& graph, Src src) { return Analysis(graph, false).literal(src); }
+
+bool can_be(const Graph& graph, Src src, std::uint32_t literal) {
+  return Analysis(graph, false).can_be(src, literal, 0);
+}
+
+bool can_be_below(const Graph& graph, Src src, std::uint32_t power) {
+  return Analysis(graph, false).can_be_below(src, power);
 }
 
 }  // namespace vitrine::spirv::rewriting

@@ -1,9 +1,9 @@
-// What a comparison of integers gives whatever they are, as far as the optimiser of the reference's code generator
-// tells it: by known bits, by ranges of operations with a literal that do not overflow, and by what an equality says
-// about the operand behind such operations.
+// Bounds of integers as far as the optimiser of the reference's code generator tells them: by known bits, by operations
+// with a literal that do not overflow, and by what an equality says about the operand behind such operations.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "spirv/rewrite/known_bits.h"
 
@@ -16,10 +16,20 @@ struct IntegerRange {
   std::int32_t least_signed = INT32_MIN, largest_signed = INT32_MAX;
 };
 
-/// Of what an operation on scalars reads.
-IntegerRange integer_range(const Graph& graph, Src src);
+/// Of what an operation on scalars reads. `reads_signed`: a signed comparison asks, which does not see the least
+/// quotient of unsigned numbers.
+IntegerRange integer_range(const Graph& graph, Src src, bool reads_signed = false);
 
-/// The result (0 or 1) of a comparison of 32-bit integers; -1 if it can be either or `inst` is none.
-int known_comparison(const Graph& graph, const Inst& inst);
+/// What the bits alone tell.
+IntegerRange range_of_bits(const Graph& graph, Src src);
+
+/// The integer, if all of its bits are known.
+std::optional<std::uint32_t> known_literal(const Graph& graph, Src src);
+
+/// Whether the integer can be this literal.
+bool can_be(const Graph& graph, Src src, std::uint32_t literal);
+
+/// Whether the integer can be below 2^k where it is a sum with a literal: asks for the upper bits of the other operand.
+bool can_be_below(const Graph& graph, Src src, std::uint32_t power);
 
 }  // namespace vitrine::spirv::rewriting

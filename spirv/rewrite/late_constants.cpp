@@ -4,6 +4,7 @@
 #include <unordered_set>
 
 #include "base/float_mode.h"
+#include "spirv/rewrite/integer_order.h"
 #include "spirv/rewrite/integer_range.h"
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/tree.h"

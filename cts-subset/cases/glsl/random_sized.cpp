@@ -381,12 +381,14 @@ CTS_CASE("glsl", "sized.selected_products") {
   const std::string number = "double((int(y_uint * 3u) + 7 * x_int) << (z_uint & 31u))";
   const std::string product =
       "(x_int < y_int ? x_double * " + number + " : x_double * sqrt(abs(double(y_uint - y_uint))))";
-  compare_fixed(run, {{"double", product},
-                      {"double", "x_int < y_int ? z_double * double(y_uint) : z_double * double(z_uint - z_uint)"},
-                      {"uint64_t", "packUint2x32(unpackDouble2x32" + product + ")"},
-                      {"uint",
-                       "unpackDouble2x32(x_int < y_int ? y_double * double(y_uint)"
-                       " : y_double * double(x_uint - x_uint)).y"}});
+  compare_fixed(
+      run, {{"double", product},
+            {"double", "x_int < y_int ? z_double * double(y_uint) : z_double * double(z_uint - z_uint)"},
+            {"double", "-1.0 - ((x_uint != y_uint ? ceil(double(0.5)) : 0.3 * ((x_double + z_double) * 0.7)) + 0.7)"},
+            {"uint64_t", "packUint2x32(unpackDouble2x32" + product + ")"},
+            {"uint",
+             "unpackDouble2x32(x_int < y_int ? y_double * double(y_uint)"
+             " : y_double * double(x_uint - x_uint)).y"}});
 }
 
 // Equal conversions are one value, so that rules see equal products.

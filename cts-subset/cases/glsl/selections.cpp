@@ -384,6 +384,31 @@ CTS_CASE("glsl", "known_ranges") {
   compare_decided(run, kConditions, "10000100001011100110");
 }
 
+// Operations beside their own operands.
+CTS_CASE("glsl", "known_orders") {
+  constexpr const char* kConditions[] = {"-int(u.x | 1u) == int(u.x | 1u)",
+                                         "(u.y | 33u) != max(u.y | 33u, 26u)",
+                                         "int(u.z | 11u) > int((u.z | 11u) | (u.w >> 27u))",
+                                         "(u.w | 1u) >> 29u <= (u.w | 1u)",
+                                         "(u.x > u.z ? u.y >> 23u : 658743351u) < u.y >> 23u",
+                                         "(u.z | 13u) / 38u < (u.z | 13u)",
+                                         "(u.w << 4u) % 40u > u.w << 4u",
+                                         "(u.x >> 24u) + 25u >= u.x >> 24u",
+                                         "-int(u.y >> 15u) <= int(u.y >> 15u)",
+                                         "(u.z & 4u) % 37u == (u.z & 4u)",
+                                         "(u.w >> 13u ^ 20u) != u.w >> 13u",
+                                         "(u.x & 19u) >= (u.x & 19u) + 1u",
+                                         "int(u.y >> 9u) <= int(u.y >> 9u) - 13",
+                                         "(u.z | 960u) - 8u >= (u.z | 960u)",
+                                         "((u.w | 14u) ^ 12u) > (u.w | 14u)",
+                                         "((u.x & 25u) & (u.y | 31u)) != (u.x & 25u)",
+                                         "int(max(u.y << 9u, 27u)) < int(u.y << 9u)",
+                                         "int(u.z & 4096u) >> 3u <= int(u.z & 4096u)",
+                                         "int(u.w >> 16u) < int(u.w >> 16u) - int(u.x >> 12u)",
+                                         "min(u.y & 4u, 128u) != (u.y & 4u)"};
+  compare_decided(run, kConditions, "00010101111000000100");
+}
+
 // Quotients that are known to be zero make exponents literal, and the multiplication by 1 goes.
 CTS_CASE("glsl", "late_literals") {
   evaluate_specials(

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "spirv/rewrite/integer_order.h"
 #include "spirv/rewrite/integer_range.h"
 #include "spirv/rewrite/passes.h"
 #include "tests/spirv/ir_builder.h"
@@ -25,17 +26,22 @@ class RandomGraph {
   explicit RandomGraph(std::uint32_t seed) : random_(seed) {
     for (std::uint32_t i = 0; i < kInputs; ++i) words_.push_back(builder_.input(i));
     for (std::uint32_t i = 0; i < kOperations; ++i) {
-      conditions_.push_back(builder_.alu(pick(kComparisons), {word(), word()}));
+      const ValueId a = word(), b = word();
+      conditions_.push_back(builder_.alu(pick(kComparisons), {a, b}));
       const Op op = pick(kOps);
       if (op == Op::kSelect) {
-        words_.push_back(builder_.alu(op, {conditions_[below(conditions_.size())], word(), word()}));
+        words_.push_back(builder_.alu(op, {conditions_[below(conditions_.size())], a, b}));
       } else if (op == Op::kB2I) {
         words_.push_back(builder_.alu(op, {conditions_[below(conditions_.size())]}));
       } else if (ir::alu_info(op).sources == 1) {
-        words_.push_back(builder_.alu(op, {word()}));
+        words_.push_back(builder_.alu(op, {a}));
       } else {
-        words_.push_back(builder_.alu(op, {word(), word()}));
+        words_.push_back(builder_.alu(op, {a, b}));
       }
+      // Beside its own operand.
+      const ValueId made = words_.back(), operand = below(2) == 0 ? a : b;
+      conditions_.push_back(below(2) == 0 ? builder_.alu(pick(kComparisons), {made, operand})
+                                          : builder_.alu(pick(kComparisons), {operand, made}));
     }
   }
 
