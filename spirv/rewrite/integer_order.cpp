@@ -1,3 +1,4 @@
+// Facts about two integers, each of which may decide a comparison: the optimiser does not put facts together.
 #include "spirv/rewrite/integer_order.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// Ranges of integers, followed through operations with literals.
 #include "spirv/rewrite/integer_range.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Known bits of integers, followed through the operations that make them.
 #include "spirv/rewrite/known_bits.h"
 
 #include <algorithm>
