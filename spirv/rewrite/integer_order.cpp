@@ -2,7 +2,6 @@
 #include "spirv/rewrite/integer_order.h"
 
 #include <array>
-#include <vector>
 
 #include "spirv/rewrite/integer_range.h"
 
@@ -47,10 +46,7 @@ class Analysis {
     return result & reversed(by_operation(b, a, is_signed, depth + 1));
   }
 
-  const Inst* operation(Src src) const {
-    const Inst* inst = graph_.def(src.value);
-    return inst && inst->kind == Inst::Kind::kAlu && inst->components == 1 && inst->width == 32 ? inst : nullptr;
-  }
+  const Inst* operation(Src src) const { return scalar_operation(graph_, src); }
   bool is_operation(Src src, Op op) const {
     const Inst* inst = operation(src);
     return inst && inst->op == op;
@@ -208,23 +204,23 @@ int known_comparison(const Graph& graph, const Inst& inst) {
   if (!is_signed && !equal && inst.op != Op::kULt && inst.op != Op::kUGe) return -1;
   const Src a = graph.source(inst, 0), b = graph.source(inst, 1);
   const Analysis analysis(graph);
-  std::vector<Orders> facts;
-  const auto add = [&](Orders orders) { facts.push_back(orders); };
+  const bool asks_first = inst.op == Op::kIEq || inst.op == Op::kILt || inst.op == Op::kULt;
+  const Orders asked = equal ? kEqual : kLess;
+  int known = -1;
+  const auto add = [&](Orders orders) {
+    if (known < 0 && (orders & asked) == 0) known = !asks_first;
+    if (known < 0 && (orders & ~asked) == 0) known = asks_first;
+  };
   for (const Orders orders : analysis.facts(a, b, is_signed)) add(orders);
   if (equal)
     for (const Orders orders : analysis.facts(a, b, true)) add(orders);
+  if (known >= 0) return known;
   const std::optional<std::uint32_t> left = known_literal(graph, a), right = known_literal(graph, b);
   if (left && right && *left == *right) add(kEqual);
   if (equal && ((right && !can_be(graph, a, *right)) || (left && !can_be(graph, b, *left)))) add(kLess | kGreater);
   if (!is_signed && right && !can_be_below(graph, a, *right)) add(kEqual | kGreater);
   if (!is_signed && left && !can_be_below(graph, b, *left + 1)) add(kLess);
-  const bool asks_first = inst.op == Op::kIEq || inst.op == Op::kILt || inst.op == Op::kULt;
-  const Orders asked = equal ? kEqual : kLess;
-  for (const Orders orders : facts) {
-    if ((orders & asked) == 0) return !asks_first;
-    if ((orders & ~asked) == 0) return asks_first;
-  }
-  return -1;
+  return known;
 }
 
 }  // namespace vitrine::spirv::rewriting

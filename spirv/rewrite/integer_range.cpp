@@ -88,10 +88,7 @@ class Analysis {
   }
 
  private:
-  const Inst* operation(Src src) const {
-    const Inst* inst = graph_.def(src.value);
-    return inst && inst->kind == Inst::Kind::kAlu && inst->components == 1 && inst->width == 32 ? inst : nullptr;
-  }
+  const Inst* operation(Src src) const { return scalar_operation(graph_, src); }
 
   Src source(const Inst& inst, std::uint32_t index) const { return graph_.source(inst, index); }
 

@@ -68,14 +68,12 @@ class Analysis {
   explicit Analysis(const Graph& graph) : graph_(graph) {}
 
   KnownBits of(Src src, unsigned depth) const {
-    const Inst* inst = graph_.def(src.value);
-    if (!inst) return {};
-    if (inst->kind == Inst::Kind::kConst) {
-      const std::uint32_t bits = inst->imm[src.swizzle[0]];
-      return inst->boolean ? KnownBits{} : KnownBits{bits, bits};
+    if (const Inst* constant = graph_.constant(src.value)) {
+      const std::uint32_t bits = constant->imm[src.swizzle[0]];
+      return constant->boolean ? KnownBits{} : KnownBits{bits, bits};
     }
-    if (depth == kMaxDepth || inst->kind != Inst::Kind::kAlu || inst->components != 1 || inst->width != 32) return {};
-    return of_result(*inst, depth + 1);
+    const Inst* inst = scalar_operation(graph_, src);
+    return inst && depth != kMaxDepth ? of_result(*inst, depth + 1) : KnownBits{};
   }
 
  private:
@@ -83,13 +81,6 @@ class Analysis {
     const Src src = graph_.source(inst, index);
     const Inst* constant = graph_.constant(src.value);
     return constant ? &constant->imm[src.swizzle[0]] : nullptr;
-  }
-
-  const Inst* negated(const Inst& inst, std::uint32_t index) const {
-    const Inst* operand = graph_.def(graph_.source(inst, index).value);
-    return operand && operand->kind == Inst::Kind::kAlu && operand->op == Op::kINeg && operand->components == 1
-               ? operand
-               : nullptr;
   }
 
   KnownBits of_result(const Inst& inst, unsigned depth) const {
@@ -120,8 +111,9 @@ class Analysis {
         return either(source(1), source(2));
       case Op::kIAdd:
         for (const std::uint32_t index : {0u, 1u})  // the optimiser subtracts
-          if (const Inst* negation = negated(inst, index))
-            return difference(source(1 - index), of(graph_.source(*negation, 0), depth + 1));
+          if (const Inst* operand = scalar_operation(graph_, graph_.source(inst, index));
+              operand && operand->op == Op::kINeg)
+            return difference(source(1 - index), of(graph_.source(*operand, 0), depth + 1));
         return sum(source(0), source(1), 0);
       case Op::kISub:
         return difference(source(0), source(1));
