@@ -227,18 +227,29 @@ bool flatten_in(Graph& graph, BlockId block) {
   return changed;
 }
 
-/// Where both branches yield copies of one value, its copy behind the If is the result.
-bool join_moves(Graph& graph, InstId id, Src a, Src b, ValueId result) {
-  const Inst *first = graph.def(a.value), *second = graph.def(b.value);
-  if (!first || !is_move(*first) || !is_whole(graph, a, result)) return false;
-  if (!second || !is_move(*second) || !is_whole(graph, b, result)) return false;
-  const Src source = graph.source(*first, 0);
-  if (!same_value(graph, source, graph.source(*second, 0), result)) return false;
-  const InstId copy = make_move(graph, source, result);
+/// What all of `sources`, apart from `joined`, are copies of; no value if they are not.
+Src copied_source(const Graph& graph, const std::vector<Src>& sources, ValueId joined) {
+  Src common;
+  for (const Src& src : sources) {
+    if (src.value == joined) continue;
+    const Inst* def = graph.def(src.value);
+    if (!def || !is_move(*def) || !is_whole(graph, src, joined)) return {};
+    const Src source = graph.source(*def, 0);
+    if (common.value != ir::kNoValue && !same_value(graph, common, source, joined)) return {};
+    common = source;
+  }
+  return common;
+}
+
+/// Where all ways that join bring copies of one value, a copy of it is what they join to; kNone if they do not. The
+/// copy is not in a block yet.
+InstId join_moves(Graph& graph, InstId id, const std::vector<Src>& sources, ValueId joined) {
+  const Src source = copied_source(graph, sources, joined);
+  if (source.value == ir::kNoValue) return kNone;
+  const InstId copy = make_move(graph, source, joined);
   graph.insts[copy].origin = graph.insts[id].origin;
-  graph.insert_after(id, copy);
-  graph.replace_uses(result, graph.insts[copy].result);
-  return true;
+  graph.replace_uses(joined, graph.insts[copy].result);
+  return copy;
 }
 
 /// Results of an If whose branches yield the same value.
@@ -252,10 +263,13 @@ bool remove_equal_results(Graph& graph, InstId id) {
     const Src a = graph.source(graph.insts[graph.blocks[then_block].tail], index);
     const Src b = graph.source(graph.insts[graph.blocks[else_block].tail], index);
     if (graph.values[results[i]].uses == 0) continue;
-    if (same_value(graph, a, b, results[i]))
+    if (same_value(graph, a, b, results[i])) {
       graph.replace_uses(results[i], whole_value(graph, id, a, results[i]));
-    else if (!join_moves(graph, id, a, b, results[i]))
-      continue;
+    } else {
+      const InstId copy = join_moves(graph, id, {a, b}, results[i]);
+      if (copy == kNone) continue;
+      graph.insert_after(id, copy);
+    }
     changed = true;
   }
   return changed;
@@ -304,12 +318,15 @@ bool remove_constant_params(Graph& graph, InstId id) {
     std::vector<Src> sources{init};
     for (const InstId way : ways) sources.push_back(graph.source(graph.insts[way], index));
     Src common;
-    if (ways.empty())
+    if (ways.empty()) {
       graph.replace_uses(params[i], whole_value(graph, id, init, params[i]));
-    else if (common_source(graph, sources, params[i], common))
+    } else if (common_source(graph, sources, params[i], common)) {
       graph.replace_uses(params[i], common.value);
-    else
-      continue;
+    } else {
+      const InstId copy = join_moves(graph, id, sources, params[i]);
+      if (copy == kNone) continue;
+      graph.insert_before(graph.blocks[graph.insts[id].child[0]].head, copy);
+    }
     changed = true;
   }
   return changed;

@@ -33,6 +33,7 @@ class Peeler {
     latch_ = latch_of(graph_, loop_);
     if (latch_ == kNone || !find_branch()) return false;
     close_loops(graph_, loop_);
+    joined_ = node(branch_).results.size();
     pass_through_registers(graph_, loop_);
     read_registers();
     peel();
@@ -107,11 +108,17 @@ class Peeler {
       replaced.emplace_back(value, stand_in(value, first_.translated(whole), again_.translated(whole), goes_on));
     }
     for (std::size_t i = 0; i < results.size(); ++i)
-      replaced.emplace_back(results[i], stand_in(results[i], copied(loop_, at_entry[i], results[i]),
-                                                 goes_on ? copied(latch_, later[i], results[i]) : Src{}, goes_on));
+      replaced.emplace_back(results[i],
+                            stand_in(results[i], in_register(i, loop_, at_entry[i], results[i]),
+                                     goes_on ? in_register(i, latch_, later[i], results[i]) : Src{}, goes_on));
     // Last, because what is passed to an iteration may be a value of the one before.
     for (const auto& [value, by] : replaced) graph_.replace_uses(value, by);
     if (!goes_on) graph_.remove(latch_);
+  }
+
+  /// What the branch hands on as result `index`, in a register; what the loop's parameters take is already.
+  Src in_register(std::size_t index, InstId position, Src src, ValueId like) {
+    return index < joined_ ? copied(position, src, like) : src;
   }
 
   Src copied(InstId position, Src src, ValueId like) {
@@ -131,6 +138,7 @@ class Peeler {
   Graph& graph_;
   InstId loop_, latch_ = kNone, branch_ = kNone;
   BlockId entry_side_ = kNone, later_side_ = kNone;
+  std::size_t joined_ = 0;  ///< results of the branch that are not registers of the loop
   std::vector<InstId> header_;
   Copier first_, again_;
 };

@@ -171,5 +171,15 @@ CTS_CASE("glsl", "control_flow.component_at_join") {
   evaluate(run, Stage::kFragment, {"", text, {{kFloat, "s"}, {kVec4, "r"}}, {}, false});
 }
 
+// Every iteration copies the same literal: it is the loop's own before the rules come a second time, which then know
+// the product of two negations behind it.
+CTS_CASE("glsl", "control_flow.literal_of_every_iteration") {
+  const char* text =
+      "  vec4 s = a;\n  float f = a.y, g = a.z;\n  int k = pi.y & 7;\n"
+      "  do {\n    s = -vec4(0.3, 1.0, 0.0, 255.0);\n    f = b.x;\n  } while (--k > 0);\n"
+      "  if (p.x != distance(vec2(1.0, 255.0), b.yw)) {\n    f = length(-s.zz);\n    g = (-s.z) * (-s.z);\n  }\n";
+  evaluate(run, Stage::kVertex, {"", text, {{kFloat, "f"}, {kFloat, "g"}, {kVec4, "s"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts
