@@ -93,8 +93,9 @@ VkSampler Run::sampler(VkFilter filter, VkSamplerAddressMode mode) {
 }
 
 VkShaderModule Run::module(const std::vector<uint32_t>& original) {
-  const std::vector<uint32_t> words = options().mutate ? mutant_of(original, options().seed) : original;
-  if (options().mutate) note("mutant" + std::to_string(notes.size()), disassemble(words));
+  const bool mutate = options().mutate && mutates;
+  const std::vector<uint32_t> words = mutate ? mutant_of(original, options().seed) : original;
+  if (mutate) note("mutant" + std::to_string(notes.size()), disassemble(words));
   VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
   info.codeSize = words.size() * 4;
   info.pCode = words.data();

@@ -84,6 +84,9 @@ class Run {
   VkDevice device;
   Random random;   ///< same seed on both devices
   uint32_t index;  ///< number within the random generator
+  /// False: --mutate leaves the shaders as they are. What they do is undefined in SPIR-V, and equal to the reference's
+  /// only as far as the case's own literals go.
+  bool mutates = true;
   std::vector<Output> outputs;
   std::vector<std::pair<std::string, std::string>> notes;
 

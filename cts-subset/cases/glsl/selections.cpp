@@ -169,6 +169,7 @@ CTS_CASE("glsl", "masked_selections.joins_three") {
 
 // Literals that convert to no integer, selected or as the source of further integers.
 CTS_CASE("glsl", "undefined_conversions") {
+  run.mutates = false;
   evaluate_specials(run, kUint4, 4,
                     "  uvec4 r0 = uvec4(i.x > 3 ? abs(b) + abs(b) : vec4(-3.0));\n"
                     "  uvec4 r1 = uvec4(a.x > 3.0 ? abs(b) : vec4(-3.0));\n"
@@ -178,6 +179,7 @@ CTS_CASE("glsl", "undefined_conversions") {
 }
 
 CTS_CASE("glsl", "undefined_comparisons") {
+  run.mutates = false;
   evaluate_specials(
       run, kVec4, 4,
       "  float q = a.x / 0.0, s = p.x / 0.0;\n"
