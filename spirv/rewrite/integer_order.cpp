@@ -218,8 +218,11 @@ int known_comparison(const Graph& graph, const Inst& inst) {
   const std::optional<std::uint32_t> left = known_literal(graph, a), right = known_literal(graph, b);
   if (left && right && *left == *right) add(kEqual);
   if (equal && ((right && !can_be(graph, a, *right)) || (left && !can_be(graph, b, *left)))) add(kLess | kGreater);
-  if (!is_signed && right && !can_be_below(graph, a, *right)) add(kEqual | kGreater);
-  if (!is_signed && left && !can_be_below(graph, b, *left + 1)) add(kLess);
+  if (is_signed || equal) return known;
+  const std::optional<bool> less = right ? is_below(graph, a, *right) : std::nullopt;
+  const std::optional<bool> at_most = left ? is_below(graph, b, *left + 1) : std::nullopt;
+  if (less) add(*less ? kLess : kEqual | kGreater);
+  if (at_most) add(*at_most ? kEqual | kGreater : kLess);
   return known;
 }
 

@@ -65,20 +65,18 @@ class Analysis {
     return !inst || depth == kMaxDepth || can_give(*inst, literal, depth + 1);
   }
 
-  /// Whether the integer can be below 2^k: behind the addition of a literal that asks for the upper bits of its
-  /// operand.
-  bool can_be_below(Src src, std::uint32_t power) const {
+  /// Whether x + literal is below `limit`, if that is known: as a question about the upper bits of x where the limit is
+  /// 2^k, and as one that asks whether x + literal - limit is below -limit.
+  std::optional<bool> is_below(Src src, std::uint32_t limit) const {
     const Inst* inst = operation(src);
-    if (!std::has_single_bit(power) || !inst || (inst->op != Op::kIAdd && inst->op != Op::kISub)) return true;
+    if (limit == 0 || !inst || (inst->op != Op::kIAdd && inst->op != Op::kISub)) return std::nullopt;
+    if (!is_used_once(*inst)) return std::nullopt;
     for (const std::uint32_t index : {0u, 1u}) {
       const std::optional<std::uint32_t> by = literal(source(*inst, index));
       if (!by || (inst->op == Op::kISub && index == 0)) continue;
-      const std::uint32_t first = inst->op == Op::kISub ? *by : 0u - *by;
-      if ((first & (power - 1)) != 0) return true;
-      const KnownBits bits = known_bits(graph_, source(*inst, 1 - index));
-      return (((bits.certain & ~first) | (first & ~bits.possible)) & ~(power - 1)) == 0;
+      return is_below(known_bits(graph_, source(*inst, 1 - index)), inst->op == Op::kISub ? 0u - *by : *by, limit);
     }
-    return true;
+    return std::nullopt;
   }
 
   /// The operand where all of its bits are known.
@@ -91,6 +89,18 @@ class Analysis {
   const Inst* operation(Src src) const { return scalar_operation(graph_, src); }
 
   Src source(const Inst& inst, std::uint32_t index) const { return graph_.source(inst, index); }
+
+  /// Sums that something else reads, too, stay; the comparison is not asked of their operands.
+  bool is_used_once(const Inst& inst) const { return graph_.values[inst.result].uses == 1; }
+
+  static std::optional<bool> is_below(KnownBits bits, std::uint32_t by, std::uint32_t limit) {
+    const KnownBits moved = sum(bits, by - limit);
+    if (moved.certain >= 0u - limit) return true;
+    if (moved.possible < 0u - limit) return false;
+    const std::uint32_t first = 0u - by, lower = limit - 1;
+    if (!std::has_single_bit(limit) || (first & lower) != 0) return std::nullopt;
+    return (((bits.certain & ~first) | (first & ~bits.possible)) & ~lower) == 0 ? std::nullopt : std::optional(false);
+  }
 
   void of_operation(const Inst& inst, unsigned depth, IntegerRange& range) const {
     const auto operand = [&](std::uint32_t index) { return of(source(inst, index), depth); };
@@ -190,9 +200,9 @@ class Analysis {
       const Src other = source(inst, 1 - index);
       switch (inst.op) {
         case Op::kIAdd:
-          return can_be(other, bits - *by, depth);
+          return !is_used_once(inst) || can_be(other, bits - *by, depth);
         case Op::kISub:
-          return can_be(other, index == 1 ? bits + *by : *by - bits, depth);
+          return !is_used_once(inst) || can_be(other, index == 1 ? bits + *by : *by - bits, depth);
         case Op::kXor:
           return can_be(other, bits ^ *by, depth);
         case Op::kIMul:
@@ -226,8 +236,8 @@ bool can_be(const Graph& graph, Src src, std::uint32_t literal) {
   return Analysis(graph, false).can_be(src, literal, 0);
 }
 
-bool can_be_below(const Graph& graph, Src src, std::uint32_t power) {
-  return Analysis(graph, false).can_be_below(src, power);
+std::optional<bool> is_below(const Graph& graph, Src src, std::uint32_t limit) {
+  return Analysis(graph, false).is_below(src, limit);
 }
 
 }  // namespace vitrine::spirv::rewriting

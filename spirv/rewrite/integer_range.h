@@ -29,7 +29,7 @@ std::optional<std::uint32_t> known_literal(const Graph& graph, Src src);
 /// Whether the integer can be this literal.
 bool can_be(const Graph& graph, Src src, std::uint32_t literal);
 
-/// Whether the integer can be below 2^k where it is a sum with a literal: asks for the upper bits of the other operand.
-bool can_be_below(const Graph& graph, Src src, std::uint32_t power);
+/// Whether the integer is below `limit` where it is a sum with a literal, if the other operand's bits tell.
+std::optional<bool> is_below(const Graph& graph, Src src, std::uint32_t limit);
 
 }  // namespace vitrine::spirv::rewriting

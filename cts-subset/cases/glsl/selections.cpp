@@ -386,6 +386,16 @@ CTS_CASE("glsl", "known_ranges") {
   compare_decided(run, kConditions, "10000100001011100110");
 }
 
+// Sums beside literals: the operand's bits tell, unless something else reads the sum, too.
+CTS_CASE("glsl", "known_sums") {
+  constexpr const char* kConditions[] = {
+      "(u.x | 372u) + 40u >= 7u",        "(u.y | 372u) + 40u < 28u",  "6u < (u.z | 372u) + 40u",
+      "28u > (u.w | 372u) + 40u",        "(u.x | 244u) + 40u >= 9u",  "(u.y | 372u) + 41u >= 7u",
+      "(u.z | 4294967280u) + 20u < 20u", "(u.w | 372u) + 40u >= 29u", "(u.x | 372u) + 60u >= 7u",
+      "(u.x | 372u) + 60u != u.y",       "(u.y | 372u) + 80u == 7u",  "(u.y | 372u) + 80u < u.z"};
+  compare_decided(run, kConditions, "101011111100");
+}
+
 // Operations beside their own operands.
 CTS_CASE("glsl", "known_orders") {
   constexpr const char* kConditions[] = {"-int(u.x | 1u) == int(u.x | 1u)",
