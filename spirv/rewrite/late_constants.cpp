@@ -25,6 +25,7 @@ class LateFolder {
     if (inst.kind == Kind::kIf) return take_literals(id);
     if (inst.kind != Kind::kAlu || inst.components != 1 || inst.width != 32 || inst.opaque) return;
     if ((inst.op == Op::kIDiv || inst.op == Op::kUDiv) && is_zero_quotient(inst)) return become(id, 0);
+    if (inst.op == Op::kAnd && masks_quotient_by_zero(inst)) return become(id, 0);
     if (const int known = known_comparison(graph_, inst); known >= 0)
       return become(id, static_cast<std::uint32_t>(known));
     if (late_.empty() || !reads_late(inst) || fold(id) || keep_zero(id) || take_selected(id)) return;
@@ -49,6 +50,17 @@ class LateFolder {
     const bool negative = inst.op == Op::kIDiv && (bits >> 31) != 0;
     const std::uint32_t largest = known_bits(graph_, graph_.source(inst, 0)).possible;
     return largest < (negative ? 0u - bits : bits) && (inst.op == Op::kUDiv || largest < 0x80000000u);
+  }
+
+  /// Bits of a signed quotient by zero, of which at most the sign is set.
+  bool masks_quotient_by_zero(const Inst& inst) const {
+    for (const std::uint32_t index : {0u, 1u}) {
+      const Inst* quotient = scalar_operation(graph_, graph_.source(inst, index));
+      const Inst* mask = constant(inst, 1 - index);
+      if (!quotient || quotient->op != Op::kIDiv || !is(*quotient, 1, 0) || !mask) continue;
+      if (mask->imm[graph_.source(inst, 1 - index).swizzle[0]] >> 31 == 0) return true;
+    }
+    return false;
   }
 
   /// The results of a branch on such a literal are those of one side; in loops the reference masks them all the same.

@@ -423,10 +423,10 @@ CTS_CASE("glsl", "known_orders") {
 
 // Quotients that are known to be zero make exponents literal, and the multiplication by 1 goes.
 CTS_CASE("glsl", "late_literals") {
-  evaluate_specials(
-      run, kVec4, 3,
-      "  ivec4 small = (i & 255) / 1000003, none = pi.yzwx % 1 / pi.zxwy.x;\n"
-      "  vec4 r0 = ldexp(b, small), r1 = ldexp(b, none), r2 = ldexp(b, (small >> (i.wzyx & 31)) & 31);\n");
+  evaluate_specials(run, kVec4, 4,
+                    "  ivec4 small = (i & 255) / 1000003, none = pi.yzwx % 1 / pi.zxwy.x;\n"
+                    "  vec4 r0 = ldexp(b, small), r1 = ldexp(b, none), r2 = ldexp(b, (small >> (i.wzyx & 31)) & 31);\n"
+                    "  vec4 r3 = ldexp(b, (pi / 0) & 31);\n");
 }
 
 // What the rules take for the same value: sums of dot products read vectors, which differ in the order of their parts;
