@@ -340,10 +340,7 @@ bool is_behind(const Graph& graph, InstId join, ValueId value) {
 
 /// A copy of the whole value in front of `position`.
 Src copy_of(Graph& graph, InstId position, ValueId value) {
-  const Value shape = graph.values[value];
-  const InstId move =
-      graph.create(Kind::kAlu, shape.boolean ? Op::kMovB : Op::kMov, shape.components, shape.boolean, 1);
-  graph.set_source(move, 0, {value, kWhole});
+  const InstId move = make_move(graph, {value, kWhole}, value);
   graph.insert_before(position, move);
   return {graph.insts[move].result, kWhole};
 }
@@ -392,9 +389,7 @@ Src through_register(Graph& graph, InstId position, Src src, ValueId like) {
     value = join_at_header(graph, owner, value);
   }
   if (value != src.value) return {value, kWhole};
-  const InstId move =
-      graph.create(Kind::kAlu, shape.boolean ? Op::kMovB : Op::kMov, shape.components, shape.boolean, 1);
-  graph.set_source(move, 0, src);
+  const InstId move = make_move(graph, src, like);
   graph.insert_before(position, move);
   return {graph.insts[move].result, kWhole};
 }

@@ -122,10 +122,7 @@ class Peeler {
   }
 
   Src copied(InstId position, Src src, ValueId like) {
-    const Value shape = graph_.values[like];
-    const InstId move =
-        graph_.create(Kind::kAlu, shape.boolean ? Op::kMovB : Op::kMov, shape.components, shape.boolean, 1);
-    graph_.set_source(move, 0, src);
+    const InstId move = make_move(graph_, src, like);
     graph_.insert_before(position, move);
     return {graph_.insts[move].result, kWhole};
   }
