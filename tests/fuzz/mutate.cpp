@@ -219,16 +219,33 @@ Ids fixed_ids(const Words& words, const std::vector<Place>& list) {
   return ids;
 }
 
+/// Conditions that ask for a NaN. Behind them cases hide the bits of NaNs, which are not defined.
+Ids nan_conditions(const Words& words, const std::vector<Place>& list) {
+  Ids ids;
+  for (const Place& place : list) {
+    const bool logical = place.op == spv::Op::OpAny || place.op == spv::Op::OpAll || place.op == spv::Op::OpLogicalOr ||
+                         place.op == spv::Op::OpLogicalAnd || place.op == spv::Op::OpLogicalNot;
+    bool asks = place.op == spv::Op::OpIsNan;
+    for (std::uint32_t i = place.first; logical && i < place.length; i++) asks |= ids.contains(words[place.at + i]);
+    if (asks) ids.insert(place.result);
+  }
+  return ids;
+}
+
 }  // namespace
 
 void mutate_values(Words& words, Random& random) {
   const std::vector<Place> list = instructions(words);
   const Ids fixed = fixed_ids(words, list);
+  const Ids nans = nan_conditions(words, list);
   std::vector<Place> open;
   for (Place place : in_functions(list)) {
     const bool branch = place.op == spv::Op::OpBranchConditional && !fixed.contains(words[place.at + 1]);
     const bool value = place.type != 0 && !fixed.contains(place.result);
     const bool effect = place.op == spv::Op::OpStore && !fixed.contains(words[place.at + 1]);
+    const bool on_nan = nans.contains(place.result) ||
+                        ((place.op == spv::Op::OpSelect || branch) && nans.contains(words[place.at + place.first]));
+    if (on_nan || place.op == spv::Op::OpBitcast) continue;
     if (branch) place.length = 2;  // the labels stay
     if (effect) place.first = 2;   // and the variable
     if (is_fixed(place.op) || (!value && !effect && !branch)) continue;
