@@ -436,6 +436,27 @@ const AddCase kDoubleToHalf("spirv_assembly", "deviation.double_to_half", "doubl
                               convert_toward_zero(run, "clear", 1.0 - 0x1p-12, values);
                             });
 
+/// The absolute value of -2 in a vector of literals.
+void literal_magnitude(Run& run, const std::string& name, const std::string& neighbour) {
+  run_body(run, R"(
+%magnitudes = OpExtInst %v4float %glsl FAbs %numbers
+%magnitude = OpCompositeExtract %float %magnitudes 1
+%bits = OpBitcast %uint %magnitude
+%r = OpIAdd %uint %x %bits
+)",
+           "%f3 = OpConstant %float 3\n%negative = OpConstant %float -2\n%neighbour = OpConstant %float " + neighbour +
+               "\n%numbers = OpConstantComposite %v4float %f1 %negative %neighbour %f3\n");
+  run.outputs.back().name = name;
+}
+
+const AddCase kNanLiterals("spirv_assembly", "deviation.nan_literals", "nan-literals", case_against_control,
+                           [](Run& run) {
+                             const Random random = run.random;
+                             literal_magnitude(run, "beside_nan", "0x1.8p+128");
+                             run.random = random;  // the same input
+                             literal_magnitude(run, "beside_number", "5");
+                           });
+
 /// There is one device in every group.
 CTS_CASE("spirv_assembly", "device_index") {
   run_body(run, "%d = OpLoad %uint %device\n%r = OpIAdd %uint %x %d\n",

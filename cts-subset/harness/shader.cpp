@@ -5,8 +5,11 @@
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 #include <spirv-tools/libspirv.hpp>
+#include <spirv/unified1/spirv.hpp11>
 
+#include <algorithm>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 namespace vitrine::cts {
@@ -44,6 +47,25 @@ Target target_of(const std::string& source) {
   return {glslang::EShTargetVulkan_1_0, glslang::EShTargetSpv_1_0, SPV_ENV_VULKAN_1_0};
 }
 
+/// glslang folds what has no result (pow(-2.5, 2.2)) to NaN. In literals of vectors beside numbers those are taken out:
+/// deviations.md, nan-literals.
+void replace_nans(std::vector<uint32_t>& words) {
+  std::set<uint32_t> floats, nans;  // ids
+  for (size_t at = 5; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16) {
+    const size_t length = words[at] >> 16;
+    const auto op = static_cast<spv::Op>(words[at] & 0xffff);
+    if (op == spv::Op::OpTypeFloat && words[at + 2] == 32) floats.insert(words[at + 1]);
+    if (op == spv::Op::OpConstant && floats.contains(words[at + 1]) && (words[at + 3] & 0x7fffffff) > 0x7f800000)
+      nans.insert(words[at + 2]);
+    if (op != spv::Op::OpConstantComposite) continue;
+    const auto begin = words.begin() + static_cast<ptrdiff_t>(at + 3), end = begin + static_cast<ptrdiff_t>(length - 3);
+    const auto number = std::find_if(begin, end, [&](uint32_t id) { return !nans.contains(id); });
+    if (number != end)
+      std::replace_if(
+          begin, end, [&](uint32_t id) { return nans.contains(id); }, *number);
+  }
+}
+
 std::vector<uint32_t> compile(VkShaderStageFlagBits stage, const std::string& source) {
   static const bool initialized = glslang::InitializeProcess();
   (void)initialized;
@@ -69,6 +91,7 @@ std::vector<uint32_t> compile(VkShaderStageFlagBits stage, const std::string& so
   glslang::SpvOptions spv;
   spv.disableOptimizer = true;
   glslang::GlslangToSpv(*program.getIntermediate(lang), words, &spv);
+  replace_nans(words);
   return words;
 }
 

@@ -29,7 +29,7 @@ bool same(Src a, Src b) { return a.value == b.value && a.swizzle[0] == b.swizzle
 
 class Analysis {
  public:
-  explicit Analysis(const Graph& graph) : graph_(graph) {}
+  Analysis(const Graph& graph, bool equality) : graph_(graph), equality_(equality) {}
 
   /// What is known, each for itself: the optimiser does not put facts together.
   std::array<Orders, 3> facts(Src a, Src b, bool is_signed) const {
@@ -58,7 +58,8 @@ class Analysis {
 
   Orders by_range(Src a, Src b, bool is_signed) const {
     const bool literal = known_literal(graph_, a).has_value() || known_literal(graph_, b).has_value();
-    const auto range = [&](Src src) { return literal ? integer_range(graph_, src, is_signed) : bits(src); };
+    const Asking asking = equality_ ? Asking::kEquality : is_signed ? Asking::kSigned : Asking::kUnsigned;
+    const auto range = [&](Src src) { return literal ? integer_range(graph_, src, asking) : bits(src); };
     const IntegerRange x = range(a), y = range(b);
     Orders result = is_signed ? orders_of(x.least_signed, x.largest_signed, y.least_signed, y.largest_signed)
                               : orders_of(x.least, x.largest, y.least, y.largest);
@@ -194,6 +195,7 @@ class Analysis {
   }
 
   const Graph& graph_;
+  bool equality_;  ///< a comparison for equality asks
 };
 
 }  // namespace
@@ -203,7 +205,7 @@ int known_comparison(const Graph& graph, const Inst& inst) {
   const bool equal = inst.op == Op::kIEq || inst.op == Op::kINe;
   if (!is_signed && !equal && inst.op != Op::kULt && inst.op != Op::kUGe) return -1;
   const Src a = graph.source(inst, 0), b = graph.source(inst, 1);
-  const Analysis analysis(graph);
+  const Analysis analysis(graph, equal);
   const bool asks_first = inst.op == Op::kIEq || inst.op == Op::kILt || inst.op == Op::kULt;
   const Orders asked = equal ? kEqual : kLess;
   int known = -1;

@@ -43,8 +43,7 @@ void bound_signed(IntegerRange& range, std::int64_t least, std::int64_t largest)
 
 class Analysis {
  public:
-  /// `reads_signed`: a signed comparison asks. It does not see the least quotient of unsigned numbers.
-  Analysis(const Graph& graph, bool reads_signed) : graph_(graph), reads_signed_(reads_signed) {}
+  Analysis(const Graph& graph, Asking asking) : graph_(graph), asking_(asking) {}
 
   IntegerRange of(Src src, unsigned depth) const {
     IntegerRange range;
@@ -92,6 +91,54 @@ class Analysis {
 
   /// Sums that something else reads, too, stay; the comparison is not asked of their operands.
   bool is_used_once(const Inst& inst) const { return graph_.values[inst.result].uses == 1; }
+
+  /// What a quotient divides by, where that is a positive literal: whether it equals another one is asked of the
+  /// dividend.
+  std::optional<std::int64_t> divisor(const Inst& inst) const {
+    if (inst.op != Op::kUDiv && inst.op != Op::kIDiv) return std::nullopt;
+    const std::optional<std::uint32_t> by = literal(source(inst, 1));
+    if (!by || *by == 0 || (inst.op == Op::kIDiv && *by >> 31 != 0)) return std::nullopt;
+    return *by;
+  }
+
+  /// Whether no number from `first` to `last` is in the range that sums without overflow, extrema and selections have.
+  bool is_outside(Src src, std::int64_t first, std::int64_t last, bool is_signed, unsigned depth) const {
+    const Inst* inst = operation(src);
+    if (!inst) return false;
+    switch (inst->op) {
+      case Op::kIAdd:
+      case Op::kUMin:
+      case Op::kUMax:
+      case Op::kIMin:
+      case Op::kIMax:
+      case Op::kSelect:
+        break;
+      default:
+        return false;
+    }
+    const IntegerRange range = of(src, depth);
+    if (is_signed) return range.largest_signed < first || range.least_signed > last;
+    return range.largest < first || range.least > last;
+  }
+
+  /// Whether a division by `by` can give `bits`: it is a range of the dividend, asked for by its distance to the first
+  /// of them, or by one of its ends where the other one is the last number.
+  bool can_divide(const Inst& inst, std::int64_t by, std::uint32_t bits, unsigned depth) const {
+    const KnownBits dividend = known_bits(graph_, source(inst, 0));
+    const bool is_signed = inst.op == Op::kIDiv;
+    const std::int64_t quotient = is_signed ? std::int64_t{static_cast<std::int32_t>(bits)} : std::int64_t{bits};
+    const std::int64_t product = quotient * by;
+    const std::int64_t first = is_signed && quotient <= 0 ? product - by + 1 : product;
+    const std::int64_t last = is_signed && quotient < 0 ? product : product + by - 1;
+    const std::int64_t least = is_signed ? INT32_MIN : 0, largest = is_signed ? INT32_MAX : UINT32_MAX;
+    if (product < least || product > largest) return false;
+    if (last >= largest) return (is_signed ? dividend.largest_signed() : std::int64_t{dividend.possible}) >= first;
+    if (first <= least) return (is_signed ? dividend.least_signed() : std::int64_t{dividend.certain}) <= last;
+    if (is_outside(source(inst, 0), first, last, is_signed, depth)) return false;
+    const std::uint32_t distance = 0u - static_cast<std::uint32_t>(first);
+    const auto count = static_cast<std::uint32_t>(last - first + 1);
+    return sum(dividend, distance).certain < count && is_below(dividend, distance, count).value_or(true);
+  }
 
   static std::optional<bool> is_below(KnownBits bits, std::uint32_t by, std::uint32_t limit) {
     const KnownBits moved = sum(bits, by - limit);
@@ -151,11 +198,15 @@ class Analysis {
       case Op::kISub:
         return bound_signed(range, low - number, high - number);
       case Op::kUDiv:
-        return by == 0 ? void() : bound(range, reads_signed_ ? 0 : a.least / by, a.largest / by);
+        if (by == 0) return;
+        if (asking_ == Asking::kEquality) return bound(range, 0, ~0u / by);
+        return bound(range, asking_ == Asking::kSigned ? 0 : a.least / by, a.largest / by);
       case Op::kUMod:
         return by == 0 ? void() : bound(range, 0, std::min(a.largest, by - 1));
       case Op::kIDiv:
-        return number <= 0 ? void() : bound_signed(range, low / number, high / number);
+        if (number <= 0) return;
+        if (asking_ == Asking::kEquality) return bound_signed(range, INT32_MIN / number, INT32_MAX / number);
+        return bound_signed(range, low / number, high / number);
       case Op::kIRem:
       case Op::kIMod: {
         const std::int64_t most = (number < 0 ? -number : number) - 1;
@@ -194,6 +245,7 @@ class Analysis {
         break;
     }
     if (inst.count != 2) return true;
+    if (const std::optional<std::int64_t> by = divisor(inst)) return can_divide(inst, *by, bits, depth);
     for (const std::uint32_t index : {0u, 1u}) {
       const std::optional<std::uint32_t> by = literal(source(inst, index));
       if (!by) continue;
@@ -208,9 +260,6 @@ class Analysis {
         case Op::kIMul:
           if (*by == 0 || std::uint64_t{of(other, depth).largest} * *by >> 32 != 0) return true;
           return bits % *by == 0 && can_be(other, bits / *by, depth);
-        case Op::kUDiv:  // it is a range of the dividend, asked for by its distance to the first of them
-          if (index == 0 || *by == 0) return true;
-          return sum(known_bits(graph_, other), 0u - bits * *by).certain < *by;
         default:
           return true;
       }
@@ -219,25 +268,25 @@ class Analysis {
   }
 
   const Graph& graph_;
-  bool reads_signed_;
+  Asking asking_;
 };
 
 }  // namespace
 
-IntegerRange integer_range(const Graph& graph, Src src, bool reads_signed) {
-  return Analysis(graph, reads_signed).of(src, 0);
-}
+IntegerRange integer_range(const Graph& graph, Src src, Asking asking) { return Analysis(graph, asking).of(src, 0); }
 
 IntegerRange range_of_bits(const Graph& graph, Src src) { return agreed({known_bits(graph, src)}); }
 
-std::optional<std::uint32_t> known_literal(const Graph& graph, Src src) { return Analysis(graph, false).literal(src); }
+std::optional<std::uint32_t> known_literal(const Graph& graph, Src src) {
+  return Analysis(graph, Asking::kUnsigned).literal(src);
+}
 
 bool can_be(const Graph& graph, Src src, std::uint32_t literal) {
-  return Analysis(graph, false).can_be(src, literal, 0);
+  return Analysis(graph, Asking::kEquality).can_be(src, literal, 0);
 }
 
 std::optional<bool> is_below(const Graph& graph, Src src, std::uint32_t limit) {
-  return Analysis(graph, false).is_below(src, limit);
+  return Analysis(graph, Asking::kUnsigned).is_below(src, limit);
 }
 
 }  // namespace vitrine::spirv::rewriting

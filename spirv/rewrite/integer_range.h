@@ -16,9 +16,12 @@ struct IntegerRange {
   std::int32_t least_signed = INT32_MIN, largest_signed = INT32_MAX;
 };
 
-/// Of what an operation on scalars reads. `reads_signed`: a signed comparison asks, which does not see the least
-/// quotient of unsigned numbers.
-IntegerRange integer_range(const Graph& graph, Src src, bool reads_signed = false);
+/// What asks for a range. Signed comparisons do not see the least quotient of unsigned numbers, equalities see nothing
+/// of what is divided: they are asked of the dividend (can_be).
+enum class Asking : std::uint8_t { kUnsigned, kSigned, kEquality };
+
+/// Of what an operation on scalars reads.
+IntegerRange integer_range(const Graph& graph, Src src, Asking asking = Asking::kUnsigned);
 
 /// What the bits alone tell.
 IntegerRange range_of_bits(const Graph& graph, Src src);

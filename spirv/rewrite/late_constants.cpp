@@ -26,6 +26,7 @@ class LateFolder {
     if (inst.kind != Kind::kAlu || inst.components != 1 || inst.width != 32 || inst.opaque) return;
     if ((inst.op == Op::kIDiv || inst.op == Op::kUDiv) && is_zero_quotient(inst)) return become(id, 0);
     if (inst.op == Op::kAnd && masks_quotient_by_zero(inst)) return become(id, 0);
+    if ((inst.op == Op::kOrB || inst.op == Op::kAndB) && joins_opposites(inst)) return become(id, inst.op == Op::kOrB);
     if (const int known = known_comparison(graph_, inst); known >= 0)
       return become(id, static_cast<std::uint32_t>(known));
     if (late_.empty() || !reads_late(inst) || fold(id) || keep_zero(id) || take_selected(id)) return;
@@ -61,6 +62,19 @@ class LateFolder {
       if (mask->imm[graph_.source(inst, 1 - index).swizzle[0]] >> 31 == 0) return true;
     }
     return false;
+  }
+
+  /// x == y beside x != y, of floats.
+  bool joins_opposites(const Inst& inst) const {
+    const Inst* a = scalar_operation(graph_, graph_.source(inst, 0));
+    const Inst* b = scalar_operation(graph_, graph_.source(inst, 1));
+    if (!a || !b || a->width != 32 || b->width != 32) return false;
+    if (!(a->op == Op::kFEq && b->op == Op::kFNeu) && !(a->op == Op::kFNeu && b->op == Op::kFEq)) return false;
+    const auto same = [&](std::uint32_t i, std::uint32_t j) {
+      const Src x = graph_.source(*a, i), y = graph_.source(*b, j);
+      return x.value == y.value && x.swizzle[0] == y.swizzle[0];
+    };
+    return (same(0, 0) && same(1, 1)) || (same(0, 1) && same(1, 0));
   }
 
   /// The results of a branch on such a literal are those of one side; in loops the reference masks them all the same.

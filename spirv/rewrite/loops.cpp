@@ -412,6 +412,33 @@ void leave_through_registers(Graph& graph, InstId loop) {
       graph.set_source(id, i, through_register(graph, id, graph.source(graph.insts[id], i), results[i]));
 }
 
+std::vector<Join> joins_in(const Graph& graph, InstId loop) {
+  std::vector<Join> joins;
+  for (InstId id = graph.blocks[graph.insts[loop].child[0]].head; id != kNone; id = graph.insts[id].next) {
+    const Inst& inst = graph.insts[id];
+    if (inst.kind != Kind::kIf || !ends_in(graph, inst.child[0], Op::kYield) ||
+        !ends_in(graph, inst.child[1], Op::kYield))
+      continue;
+    joins.push_back({id, graph.nodes[inst.node]->results.size()});
+  }
+  return joins;
+}
+
+void join_through_registers(Graph& graph, const std::vector<Join>& joins) {
+  for (const auto& [branch, count] : joins)
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const ValueId result = node_of(graph, branch).results[i];
+      for (const BlockId child : std::to_array(graph.insts[branch].child)) {
+        const InstId end = graph.blocks[child].tail;
+        graph.set_source(end, i, through_register(graph, end, graph.source(graph.insts[end], i), result));
+      }
+      const InstId read = make_move(graph, {result, kWhole}, result);
+      graph.replace_uses(result, graph.insts[read].result);
+      graph.set_source(read, 0, {result, kWhole});
+      graph.insert_after(branch, read);
+    }
+}
+
 bool drop_dead_joins(Graph& graph) { return JoinSweeper(graph).run(); }
 
 void close_continues(Graph& graph) {

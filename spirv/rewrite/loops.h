@@ -41,6 +41,14 @@ void pass_through_registers(Graph& graph, InstId loop);
 
 /// All that the loop ends with.
 void leave_through_registers(Graph& graph, InstId loop);
+/// Results of the body's Ifs, at its top level.
+struct Join {
+  InstId branch = kNone;
+  std::size_t results = 0;
+};
+std::vector<Join> joins_in(const Graph& graph, InstId loop);
+/// The same for them: each is read from its register behind the If.
+void join_through_registers(Graph& graph, const std::vector<Join>& joins);
 
 /// Drops parameters of loops and results that only serve themselves.
 bool drop_dead_joins(Graph& graph);

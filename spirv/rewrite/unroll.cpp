@@ -414,7 +414,9 @@ bool try_unroll(Graph& graph, InstId loop) {
   }
   close_loops(graph, loop);
   if (!shape.once) {
+    const std::vector<Join> joins = joins_in(graph, loop);
     pass_through_registers(graph, loop);
+    join_through_registers(graph, joins);
     leave_through_registers(graph, loop);
   }
   Unroller(graph, loop, shape).run();

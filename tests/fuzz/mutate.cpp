@@ -232,12 +232,23 @@ Ids nan_conditions(const Words& words, const std::vector<Place>& list) {
   return ids;
 }
 
+bool to_integer(spv::Op op) { return op == spv::Op::OpConvertFToU || op == spv::Op::OpConvertFToS; }
+
+/// Numbers that become integers: those that an integer cannot hold have no result, so that cases clamp them.
+Ids converted(const Words& words, const std::vector<Place>& list) {
+  Ids ids;
+  for (const Place& place : list)
+    if (to_integer(place.op) && place.length > place.first) ids.insert(words[place.at + place.first]);
+  return ids;
+}
+
 }  // namespace
 
 void mutate_values(Words& words, Random& random) {
   const std::vector<Place> list = instructions(words);
   const Ids fixed = fixed_ids(words, list);
   const Ids nans = nan_conditions(words, list);
+  const Ids clamped = converted(words, list);
   std::vector<Place> open;
   for (Place place : in_functions(list)) {
     const bool branch = place.op == spv::Op::OpBranchConditional && !fixed.contains(words[place.at + 1]);
@@ -245,7 +256,7 @@ void mutate_values(Words& words, Random& random) {
     const bool effect = place.op == spv::Op::OpStore && !fixed.contains(words[place.at + 1]);
     const bool on_nan = nans.contains(place.result) ||
                         ((place.op == spv::Op::OpSelect || branch) && nans.contains(words[place.at + place.first]));
-    if (on_nan || place.op == spv::Op::OpBitcast) continue;
+    if (on_nan || place.op == spv::Op::OpBitcast || to_integer(place.op) || clamped.contains(place.result)) continue;
     if (branch) place.length = 2;  // the labels stay
     if (effect) place.first = 2;   // and the variable
     if (is_fixed(place.op) || (!value && !effect && !branch)) continue;

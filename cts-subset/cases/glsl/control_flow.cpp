@@ -181,5 +181,15 @@ CTS_CASE("glsl", "control_flow.literal_of_every_iteration") {
   evaluate(run, Stage::kVertex, {"", text, {{kFloat, "f"}, {kFloat, "g"}, {kVec4, "s"}}, {}, false});
 }
 
+// What joins in the body of an unrolled loop passes through registers: copies in each of the branches read the sum, so
+// that it is not read once and its literal stays where it is.
+CTS_CASE("glsl", "control_flow.joins_of_unrolled_body") {
+  const char* text =
+      "  vec4 s = b.xxww * a.xwzy;\n  float f = a.x * b.x;\n  int k = 1;\n"
+      "  while (k-- > 0) {\n    if (u.y != 0u) {\n      s = (a - b) - vec4(-1.0, -1.0, 1.0, 0.0);\n"
+      "      if (ldexp(a.z, 31) < step(b.y, p.x)) f = float(1000003 ^ pi.x);\n    }\n  }\n";
+  evaluate(run, Stage::kCompute, {"", text, {{kFloat, "f"}, {kVec4, "s"}}, {}, false});
+}
+
 }  // namespace
 }  // namespace vitrine::cts

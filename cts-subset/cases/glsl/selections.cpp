@@ -212,6 +212,16 @@ CTS_CASE("glsl", "subtracted_selections") {
                     "  vec4 r2 = a - (b.z >= b.w ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n");
 }
 
+// A number is equal to itself or is not, which the reference finds after its rules.
+CTS_CASE("glsl", "selections_by_everything") {
+  evaluate_specials(run, kVec4, 4,
+                    "  bvec2 x = bvec2(isnan(b.w), b.w == b.w), y = bvec2(b.x == a.y, b.x != a.y);\n"
+                    "  vec4 r0 = a - (any(x) ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n"
+                    "  vec4 r1 = a - (all(x) ? b.zzxx : vec4(0.0, 0.3, 255.0, -0.0));\n"
+                    "  vec4 r2 = a - (any(y) ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n"
+                    "  vec4 r3 = a - (any(bvec2(a.y != b.x, y.x)) ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n");
+}
+
 // A negated product is that of a negated factor: of the selection, which has no identity then, or of the other.
 CTS_CASE("glsl", "negated_selections") {
   run.require(reference_cpu().uint_comparable, "what the reference does on this CPU");
@@ -384,6 +394,27 @@ CTS_CASE("glsl", "known_ranges") {
                                          "7u < (u.z | 256u) - 8u",
                                          "3u >= (u.w & 12u) + 4294967264u"};
   compare_decided(run, kConditions, "10000100001011100110");
+}
+
+// Whether a quotient equals a literal is asked of the dividend: its bits tell, and the range of what is no overflow.
+CTS_CASE("glsl", "known_quotients") {
+  constexpr const char* kConditions[] = {"(u.x | 8192u) / 14u == 1u",
+                                         "(u.y & 27u) / 14u == 2u",
+                                         "((u.z & 255u) | 64u) / 14u == 1u",
+                                         "int((u.w & 255u) | 64u) / 14 == 1",
+                                         "int((u.x & 255u) | 64u) / 14 == 30",
+                                         "int(u.y & 255u) / 14 == -1",
+                                         "int(u.z | 2147483648u) / 14 == 3",
+                                         "int(u.w | 2147483648u) / 14 == 0",
+                                         "(u.x & 2147483647u) / 1000u == 4294967u",
+                                         "(u.y | 8192u) / 4096u == 1u",
+                                         "((u.z | 8192u) - 14u) / 14u == 1u",
+                                         "min(u.w & 255u, 77u) / 14u == 9u",
+                                         "((u.x >> 17u) + 17u) / 5u == 2u",
+                                         "((u.y & 255u) | 64u) / 14u + 3u == 4u",
+                                         "(u.z | 8192u) / 14u * 3u == 3u",
+                                         "u.w / 1000u == 4294968u"};
+  compare_decided(run, kConditions, "0000000000000000");
 }
 
 // Sums beside literals: the operand's bits tell, unless something else reads the sum, too.
