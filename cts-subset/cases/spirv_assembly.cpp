@@ -436,6 +436,25 @@ const AddCase kDoubleToHalf("spirv_assembly", "deviation.double_to_half", "doubl
                               convert_toward_zero(run, "clear", 1.0 - 0x1p-12, values);
                             });
 
+/// Unordered comparisons are exact, and what the rules make of a selection by their negation is.
+CTS_CASE("spirv_assembly", "unordered_comparisons_are_exact") {
+  const char* comparisons[] = {"LessThan", "LessThanEqual", "GreaterThan", "GreaterThanEqual", "Equal", "NotEqual"};
+  for (const std::string comparison : comparisons) {
+    run_body(run,
+             "%low = OpBitwiseAnd %uint %n %u3\n%f = OpConvertUToF %float %x\n%g = OpConvertUToF %float %low\n%c = "
+             "OpFUnord" +
+                 comparison + R"( %bool %f %g
+%tenth_of_f = OpFMul %float %f %tenth
+%negative = OpFMul %float %tenth_of_f %minus
+%chosen = OpSelect %float %c %negative %f1
+%product = OpFMul %float %chosen %tenth
+%r = OpBitcast %uint %product
+)",
+             "%tenth = OpConstant %float 0.1\n%minus = OpConstant %float -1\n");
+    run.outputs.back().name = comparison;
+  }
+}
+
 /// The absolute value of -2 in a vector of literals.
 void literal_magnitude(Run& run, const std::string& name, const std::string& neighbour) {
   run_body(run, R"(

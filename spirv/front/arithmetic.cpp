@@ -116,10 +116,12 @@ void compare_swapped_exact(Translator& t, const Inst& inst, ir::Op op) {
 }
 
 void compare_negated(Translator& t, const Inst& inst, ir::Op op) {
+  const ExactScope exact(t);
   set_number(t, inst, negate(compare(t, inst, op, false, true)));
 }
 
 void compare_swapped_negated(Translator& t, const Inst& inst, ir::Op op) {
+  const ExactScope exact(t);
   set_number(t, inst, negate(compare(t, inst, op, true, true)));
 }
 
