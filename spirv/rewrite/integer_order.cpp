@@ -136,7 +136,8 @@ class Analysis {
       case Op::kUMin:
         return as_unsigned ? kAtMost : kAny;
       case Op::kUMax:
-        return as_unsigned || (by && is_positive(y)) ? kAtLeast : kAny;
+        // A literal below every number but 0 that x can be stands for that alone.
+        return as_unsigned || (by && *by < lowest_bit(bits(x).bits.possible)) ? kAtLeast : kAny;
       case Op::kIMin:
       case Op::kIMax:
         return !is_signed ? kAny : inst.op == Op::kIMin ? kAtMost : kAtLeast;
@@ -158,6 +159,7 @@ class Analysis {
     }
   }
 
+  static std::uint32_t lowest_bit(std::uint32_t bits) { return bits & (0u - bits); }
   static std::int64_t signed_of(std::uint32_t bits) { return static_cast<std::int32_t>(bits); }
 
   bool are_disjoint(Src x, Src y) const { return (bits(x).bits.possible & bits(y).bits.possible) == 0; }

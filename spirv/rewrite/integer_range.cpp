@@ -180,7 +180,7 @@ class Analysis {
     const std::uint32_t least = std::min(a.least, by), largest = std::max(a.largest, by);
     switch (op) {
       case Op::kUMin:
-        return bound(range, least, std::min(a.largest, by));
+        return bound(range, asking_ == Asking::kSigned ? 0 : least, std::min(a.largest, by));
       case Op::kUMax:
         return bound(range, std::max(a.least, by), largest);
       case Op::kIMin:

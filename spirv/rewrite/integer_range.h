@@ -16,8 +16,8 @@ struct IntegerRange {
   std::int32_t least_signed = INT32_MIN, largest_signed = INT32_MAX;
 };
 
-/// What asks for a range. Signed comparisons do not see the least quotient of unsigned numbers, equalities see nothing
-/// of what is divided: they are asked of the dividend (can_be).
+/// What asks for a range. Signed comparisons do not see the least quotient or minimum of unsigned numbers, equalities
+/// see nothing of what is divided: they are asked of the dividend (can_be).
 enum class Asking : std::uint8_t { kUnsigned, kSigned, kEquality };
 
 /// Of what an operation on scalars reads.

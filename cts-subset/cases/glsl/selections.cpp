@@ -417,6 +417,14 @@ CTS_CASE("glsl", "known_quotients") {
   compare_decided(run, kConditions, "0000000000000000");
 }
 
+// Extrema of unsigned numbers, asked as signed ones.
+CTS_CASE("glsl", "known_extrema") {
+  constexpr const char* kConditions[] = {"int(min(u.x | 18u, 28773u)) < 12", "int(min(u.y | 18u, 28773u)) > 28773",
+                                         "int(max(u.z << 14u, 75476063u)) < int(u.z << 14u)",
+                                         "int(max(u.w << 9u, 511u)) < int(u.w << 9u)"};
+  compare_decided(run, kConditions, "0000");
+}
+
 // Sums beside literals: the operand's bits tell, unless something else reads the sum, too.
 CTS_CASE("glsl", "known_sums") {
   constexpr const char* kConditions[] = {
