@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <utility>
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -102,22 +103,24 @@ class Analysis {
   }
 
   /// Whether no number from `first` to `last` is in the range that sums without overflow, extrema and selections have.
-  bool is_outside(Src src, std::int64_t first, std::int64_t last, bool is_signed, unsigned depth) const {
+  /// `ends`: they reach to the least or to the largest number.
+  bool is_outside(Src src, std::int64_t first, std::int64_t last, bool ends, unsigned depth) const {
     const Inst* inst = operation(src);
     if (!inst) return false;
     switch (inst->op) {
       case Op::kIAdd:
       case Op::kUMin:
-      case Op::kUMax:
       case Op::kIMin:
-      case Op::kIMax:
       case Op::kSelect:
+        break;
+      case Op::kUMax:
+      case Op::kIMax:
+        if (!ends) return false;
         break;
       default:
         return false;
     }
     const IntegerRange range = of(src, depth);
-    if (is_signed) return range.largest_signed < first || range.least_signed > last;
     return range.largest < first || range.least > last;
   }
 
@@ -125,19 +128,34 @@ class Analysis {
   /// of them, or by one of its ends where the other one is the last number.
   bool can_divide(const Inst& inst, std::int64_t by, std::uint32_t bits, unsigned depth) const {
     const KnownBits dividend = known_bits(graph_, source(inst, 0));
-    const bool is_signed = inst.op == Op::kIDiv;
+    const bool is_signed = inst.op == Op::kIDiv && dividend.possible >> 31 != 0;
     const std::int64_t quotient = is_signed ? std::int64_t{static_cast<std::int32_t>(bits)} : std::int64_t{bits};
     const std::int64_t product = quotient * by;
     const std::int64_t first = is_signed && quotient <= 0 ? product - by + 1 : product;
     const std::int64_t last = is_signed && quotient < 0 ? product : product + by - 1;
     const std::int64_t least = is_signed ? INT32_MIN : 0, largest = is_signed ? INT32_MAX : UINT32_MAX;
     if (product < least || product > largest) return false;
+    const bool ends = first <= least || last >= largest;
+    if (!is_signed && (dividend.possible < first || is_outside(source(inst, 0), first, last, ends, depth)))
+      return false;
     if (last >= largest) return (is_signed ? dividend.largest_signed() : std::int64_t{dividend.possible}) >= first;
     if (first <= least) return (is_signed ? dividend.least_signed() : std::int64_t{dividend.certain}) <= last;
-    if (is_outside(source(inst, 0), first, last, is_signed, depth)) return false;
-    const std::uint32_t distance = 0u - static_cast<std::uint32_t>(first);
     const auto count = static_cast<std::uint32_t>(last - first + 1);
-    return sum(dividend, distance).certain < count && is_below(dividend, distance, count).value_or(true);
+    const auto [base, offset] = moved(source(inst, 0));
+    const std::uint32_t distance = offset - static_cast<std::uint32_t>(first);
+    const KnownBits bits_of_base = known_bits(graph_, base);
+    return sum(bits_of_base, distance).certain < count && is_below(bits_of_base, distance, count).value_or(true);
+  }
+
+  /// x and literal of x + literal; x itself and 0 of what is no such sum.
+  std::pair<Src, std::uint32_t> moved(Src src) const {
+    const Inst* inst = operation(src);
+    if (!inst || (inst->op != Op::kIAdd && inst->op != Op::kISub)) return {src, 0};
+    if (const std::optional<std::uint32_t> by = literal(source(*inst, 1)))
+      return {source(*inst, 0), inst->op == Op::kISub ? 0u - *by : *by};
+    if (inst->op == Op::kISub) return {src, 0};
+    if (const std::optional<std::uint32_t> by = literal(source(*inst, 0))) return {source(*inst, 1), *by};
+    return {src, 0};
   }
 
   static std::optional<bool> is_below(KnownBits bits, std::uint32_t by, std::uint32_t limit) {
@@ -168,7 +186,7 @@ class Analysis {
       return bound_signed(range, -std::int64_t{a.largest_signed}, -std::int64_t{a.least_signed});
     }
     if (inst.count != 2) return;
-    for (const std::uint32_t index : {0u, 1u})
+    for (const std::uint32_t index : {1u, 0u})
       if (const std::optional<std::uint32_t> by = literal(source(inst, index)))
         return with_literal(inst.op, index, operand(1 - index), *by, range);
   }
@@ -180,7 +198,7 @@ class Analysis {
     const std::uint32_t least = std::min(a.least, by), largest = std::max(a.largest, by);
     switch (op) {
       case Op::kUMin:
-        return bound(range, asking_ == Asking::kSigned ? 0 : least, std::min(a.largest, by));
+        return bound(range, asking_ == Asking::kSigned && a.least < by ? 0 : least, std::min(a.largest, by));
       case Op::kUMax:
         return bound(range, std::max(a.least, by), largest);
       case Op::kIMin:
@@ -197,16 +215,17 @@ class Analysis {
     switch (op) {
       case Op::kISub:
         return bound_signed(range, low - number, high - number);
+      case Op::kIDiv:
+        if (number <= 0) return;
+        if (asking_ != Asking::kEquality) return bound_signed(range, low / number, high / number);
+        if (low < 0) return bound_signed(range, INT32_MIN / number, INT32_MAX / number);
+        [[fallthrough]];  // what has no sign is divided as unsigned numbers are
       case Op::kUDiv:
         if (by == 0) return;
         if (asking_ == Asking::kEquality) return bound(range, 0, ~0u / by);
         return bound(range, asking_ == Asking::kSigned ? 0 : a.least / by, a.largest / by);
       case Op::kUMod:
         return by == 0 ? void() : bound(range, 0, std::min(a.largest, by - 1));
-      case Op::kIDiv:
-        if (number <= 0) return;
-        if (asking_ == Asking::kEquality) return bound_signed(range, INT32_MIN / number, INT32_MAX / number);
-        return bound_signed(range, low / number, high / number);
       case Op::kIRem:
       case Op::kIMod: {
         const std::int64_t most = (number < 0 ? -number : number) - 1;
@@ -217,7 +236,7 @@ class Analysis {
       case Op::kShl:
         return bound(range, std::uint64_t{a.least} << (by & 31), std::uint64_t{a.largest} << (by & 31));
       case Op::kUShr:
-        return bound(range, a.least >> (by & 31), a.largest >> (by & 31));
+        return bound(range, asking_ == Asking::kEquality ? 0 : a.least >> (by & 31), a.largest >> (by & 31));
       case Op::kIShr:
         return bound_signed(range, low >> (by & 31), high >> (by & 31));
       default:

@@ -83,6 +83,23 @@ class Analysis {
     return constant ? &constant->imm[src.swizzle[0]] : nullptr;
   }
 
+  /// The operand of an absolute value or a sign has none and is not zero: a bit is set, or it is the sum or the maximum
+  /// of a literal and what has no sign.
+  bool is_above_zero(const Inst& inst, unsigned depth) const {
+    const Src src = graph_.source(inst, 0);
+    const KnownBits bits = of(src, depth);
+    if (bits.possible >> 31 != 0) return false;
+    if (bits.certain != 0) return true;
+    const Inst* operand = scalar_operation(graph_, src);
+    if (!operand || (operand->op != Op::kIAdd && operand->op != Op::kUMax)) return false;
+    for (const std::uint32_t index : {0u, 1u}) {
+      const std::uint32_t* by = literal(*operand, index);
+      if (by && *by != 0 && *by >> 31 == 0 && of(graph_.source(*operand, 1 - index), depth).possible >> 31 == 0)
+        return true;
+    }
+    return false;
+  }
+
   KnownBits of_result(const Inst& inst, unsigned depth) const {
     const auto source = [&](std::uint32_t index) { return of(graph_.source(inst, index), depth); };
     switch (inst.op) {
@@ -109,6 +126,10 @@ class Analysis {
       }
       case Op::kSelect:
         return either(source(1), source(2));
+      case Op::kIAbs:
+        return is_above_zero(inst, depth) ? source(0) : KnownBits{};
+      case Op::kISign:
+        return is_above_zero(inst, depth) ? KnownBits{1, 1} : KnownBits{};
       case Op::kIAdd:
         for (const std::uint32_t index : {0u, 1u})  // the optimiser subtracts
           if (const Inst* operand = scalar_operation(graph_, graph_.source(inst, index));

@@ -413,8 +413,16 @@ CTS_CASE("glsl", "known_quotients") {
                                          "((u.x >> 17u) + 17u) / 5u == 2u",
                                          "((u.y & 255u) | 64u) / 14u + 3u == 4u",
                                          "(u.z | 8192u) / 14u * 3u == 3u",
-                                         "u.w / 1000u == 4294968u"};
-  compare_decided(run, kConditions, "0000000000000000");
+                                         "u.w / 1000u == 4294968u",
+                                         "int(u.x & 2147483647u) / 14 == -1",
+                                         "int(u.y & 2147483647u) / 14 == 153391690",
+                                         "int(min(u.z | 1024u, 15u)) / 10 >= 214748364",
+                                         "int((u.w | 27u) - 14u) / 5 == -4",
+                                         "int((u.x >> 18u) + 6u) / 4096 < -53030",
+                                         "((u.y >> 10u) + 2115u) / 16u == 3u",
+                                         "max(u.z & 13134703u, 769u) / 7u == 14u",
+                                         "int(u.w >> 25u) / 4096 <= -3338530"};
+  compare_decided(run, kConditions, "000000000000000000000000");
 }
 
 // Extrema of unsigned numbers, asked as signed ones.
