@@ -7,12 +7,9 @@
 namespace vitrine::spirv::front {
 namespace {
 
-Expr compare(Translator& t, const Inst& inst, ir::Op op, bool swapped, bool exact) {
-  const bool saved = std::exchange(t.exact, t.exact || exact);
+Expr compare(Translator& t, const Inst& inst, ir::Op op, bool swapped) {
   const Expr a = number_of(t, inst.operand(swapped ? 1 : 0)), b = number_of(t, inst.operand(swapped ? 0 : 1));
-  const Expr result = apply(op, {a, b});
-  t.exact = saved;
-  return result;
+  return apply(op, {a, b});
 }
 
 Expr negate(Expr value) { return apply(ir::Op::kNotB, {value}); }
@@ -104,25 +101,25 @@ void convert_number(Translator& t, const Inst& inst, ir::Op) {
 }
 
 void compare_exact(Translator& t, const Inst& inst, ir::Op op) {
-  set_number(t, inst, compare(t, inst, op, false, true));
+  const ExactScope exact(t);
+  set_number(t, inst, compare(t, inst, op, false));
 }
 
-void compare_swapped(Translator& t, const Inst& inst, ir::Op op) {
-  set_number(t, inst, compare(t, inst, op, true, false));
-}
+void compare_swapped(Translator& t, const Inst& inst, ir::Op op) { set_number(t, inst, compare(t, inst, op, true)); }
 
 void compare_swapped_exact(Translator& t, const Inst& inst, ir::Op op) {
-  set_number(t, inst, compare(t, inst, op, true, true));
+  const ExactScope exact(t);
+  set_number(t, inst, compare(t, inst, op, true));
 }
 
 void compare_negated(Translator& t, const Inst& inst, ir::Op op) {
   const ExactScope exact(t);
-  set_number(t, inst, negate(compare(t, inst, op, false, true)));
+  set_number(t, inst, negate(compare(t, inst, op, false)));
 }
 
 void compare_swapped_negated(Translator& t, const Inst& inst, ir::Op op) {
   const ExactScope exact(t);
-  set_number(t, inst, negate(compare(t, inst, op, true, true)));
+  set_number(t, inst, negate(compare(t, inst, op, true)));
 }
 
 void ordered_not_equal(Translator& t, const Inst& inst, ir::Op) {

@@ -1,6 +1,7 @@
 // Folding of 64-bit integers: operations on literals, and those that are literal whatever their operands are.
 #include "spirv/rewrite/passes.h"
 #include "spirv/rewrite/sized.h"
+#include "spirv/rewrite/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -16,8 +17,7 @@ struct Integer {
   bool is(std::uint64_t number) const { return known && value == number; }
 };
 
-bool same(Src a, Src b) { return a.value == b.value && a.swizzle[0] == b.swizzle[0]; }
-bool same(const Integer& a, const Integer& b) { return same(a.low, b.low) && same(a.high, b.high); }
+bool same_integer(const Integer& a, const Integer& b) { return same(a.low, b.low) && same(a.high, b.high); }
 
 bool read_word(const Graph& graph, Src src, std::uint64_t& word) {
   const Inst* constant = graph.constant(src.value);
@@ -39,7 +39,7 @@ bool is_negation(const Graph& graph, const Integer& negated, const Integer& numb
   const Inst* inst = graph.def(negated.low.value);
   return inst && inst->kind == Kind::kIntrinsic && inst->op == Op::kQSub && negated.low.value == negated.high.value &&
          negated.low.swizzle[0] == 0 && negated.high.swizzle[0] == 1 && operand_of(graph, *inst, 0).is(0) &&
-         same(operand_of(graph, *inst, 2), number);
+         same_integer(operand_of(graph, *inst, 2), number);
 }
 
 /// The smaller or larger one of two operands, which the front end writes as a comparison and a selection of each word.
@@ -60,8 +60,8 @@ Extremum extremum_of(const Graph& graph, const Integer& number, Op less) {
   const Integer a = operand_of(graph, *compared, 0), b = operand_of(graph, *compared, 2);
   const Integer first{graph.source(*low, 1), graph.source(*high, 1)},
       second{graph.source(*low, 2), graph.source(*high, 2)};
-  const bool maximum = same(first, b) && same(second, a);
-  return {maximum || (same(first, a) && same(second, b)), maximum, a, b};
+  const bool maximum = same_integer(first, b) && same_integer(second, a);
+  return {maximum || (same_integer(first, a) && same_integer(second, b)), maximum, a, b};
 }
 
 /// What is known of left < right where one of them is the smaller or larger one of two numbers: the other one is one of
@@ -77,7 +77,7 @@ bool compare_extremum(const Graph& graph, const Integer& left, const Integer& ri
     if (!extremum.found) continue;
     result = is_left != extremum.maximum;
     for (const Integer& part : {extremum.a, extremum.b}) {
-      if (same(part, other) && !result) return true;
+      if (same_integer(part, other) && !result) return true;
       if (part.known && other.known && (is_left ? literal_less(part, other) : literal_less(other, part)) == result)
         return true;
     }
@@ -108,7 +108,7 @@ bool evaluate_comparison(const Graph& graph, const Inst& inst, std::uint64_t& re
 
 bool evaluate_binary(const Graph& graph, const Inst& inst, std::uint64_t& result) {
   const Integer a = operand_of(graph, inst, 0), b = operand_of(graph, inst, 2);
-  const bool known = a.known && b.known, equal = same(a, b);
+  const bool known = a.known && b.known, equal = same_integer(a, b);
   const auto left = static_cast<std::int64_t>(a.value), right = static_cast<std::int64_t>(b.value);
   switch (inst.op) {
     case Op::kQAdd:

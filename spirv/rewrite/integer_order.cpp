@@ -4,6 +4,7 @@
 #include <array>
 
 #include "spirv/rewrite/integer_range.h"
+#include "spirv/rewrite/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -24,8 +25,6 @@ Orders orders_of(T least_a, T largest_a, T least_b, T largest_b) {
   const bool equal = least_a <= largest_b && least_b <= largest_a;
   return static_cast<Orders>((less ? kLess : 0) | (equal ? kEqual : 0) | (greater ? kGreater : 0));
 }
-
-bool same(Src a, Src b) { return a.value == b.value && a.swizzle[0] == b.swizzle[0]; }
 
 class Analysis {
  public:

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
-#include <utility>
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -69,14 +68,9 @@ class Analysis {
   /// 2^k, and as one that asks whether x + literal - limit is below -limit.
   std::optional<bool> is_below(Src src, std::uint32_t limit) const {
     const Inst* inst = operation(src);
-    if (limit == 0 || !inst || (inst->op != Op::kIAdd && inst->op != Op::kISub)) return std::nullopt;
-    if (!is_used_once(*inst)) return std::nullopt;
-    for (const std::uint32_t index : {0u, 1u}) {
-      const std::optional<std::uint32_t> by = literal(source(*inst, index));
-      if (!by || (inst->op == Op::kISub && index == 0)) continue;
-      return is_below(known_bits(graph_, source(*inst, 1 - index)), inst->op == Op::kISub ? 0u - *by : *by, limit);
-    }
-    return std::nullopt;
+    if (limit == 0 || !inst || !is_used_once(*inst)) return std::nullopt;
+    const std::optional<Sum> sum = sum_with_literal(*inst);
+    return sum ? is_below(known_bits(graph_, sum->base), sum->offset, limit) : std::nullopt;
   }
 
   /// The operand where all of its bits are known.
@@ -141,21 +135,25 @@ class Analysis {
     if (last >= largest) return (is_signed ? dividend.largest_signed() : std::int64_t{dividend.possible}) >= first;
     if (first <= least) return (is_signed ? dividend.least_signed() : std::int64_t{dividend.certain}) <= last;
     const auto count = static_cast<std::uint32_t>(last - first + 1);
-    const auto [base, offset] = moved(source(inst, 0));
-    const std::uint32_t distance = offset - static_cast<std::uint32_t>(first);
-    const KnownBits bits_of_base = known_bits(graph_, base);
-    return sum(bits_of_base, distance).certain < count && is_below(bits_of_base, distance, count).value_or(true);
+    const Inst* def = operation(source(inst, 0));
+    const std::optional<Sum> moved = def ? sum_with_literal(*def) : std::nullopt;
+    const KnownBits base = moved ? known_bits(graph_, moved->base) : dividend;
+    const std::uint32_t distance = (moved ? moved->offset : 0) - static_cast<std::uint32_t>(first);
+    return sum(base, distance).certain < count && is_below(base, distance, count).value_or(true);
   }
 
-  /// x and literal of x + literal; x itself and 0 of what is no such sum.
-  std::pair<Src, std::uint32_t> moved(Src src) const {
-    const Inst* inst = operation(src);
-    if (!inst || (inst->op != Op::kIAdd && inst->op != Op::kISub)) return {src, 0};
-    if (const std::optional<std::uint32_t> by = literal(source(*inst, 1)))
-      return {source(*inst, 0), inst->op == Op::kISub ? 0u - *by : *by};
-    if (inst->op == Op::kISub) return {src, 0};
-    if (const std::optional<std::uint32_t> by = literal(source(*inst, 0))) return {source(*inst, 1), *by};
-    return {src, 0};
+  /// base + offset.
+  struct Sum {
+    Src base;
+    std::uint32_t offset;
+  };
+
+  std::optional<Sum> sum_with_literal(const Inst& inst) const {
+    if (inst.op != Op::kIAdd && inst.op != Op::kISub) return std::nullopt;
+    if (const std::optional<std::uint32_t> by = literal(source(inst, 1)))
+      return Sum{source(inst, 0), inst.op == Op::kISub ? 0u - *by : *by};
+    const std::optional<std::uint32_t> by = inst.op == Op::kIAdd ? literal(source(inst, 0)) : std::nullopt;
+    return by ? std::optional(Sum{source(inst, 1), *by}) : std::nullopt;
   }
 
   static std::optional<bool> is_below(KnownBits bits, std::uint32_t by, std::uint32_t limit) {

@@ -70,11 +70,10 @@ class LateFolder {
     const Inst* b = scalar_operation(graph_, graph_.source(inst, 1));
     if (!a || !b || a->width != 32 || b->width != 32) return false;
     if (!(a->op == Op::kFEq && b->op == Op::kFNeu) && !(a->op == Op::kFNeu && b->op == Op::kFEq)) return false;
-    const auto same = [&](std::uint32_t i, std::uint32_t j) {
-      const Src x = graph_.source(*a, i), y = graph_.source(*b, j);
-      return x.value == y.value && x.swizzle[0] == y.swizzle[0];
+    const auto read_same = [&](std::uint32_t i, std::uint32_t j) {
+      return same(graph_.source(*a, i), graph_.source(*b, j));
     };
-    return (same(0, 0) && same(1, 1)) || (same(0, 1) && same(1, 0));
+    return (read_same(0, 0) && read_same(1, 1)) || (read_same(0, 1) && read_same(1, 0));
   }
 
   /// The results of a branch on such a literal are those of one side; in loops the reference masks them all the same.

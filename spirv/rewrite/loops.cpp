@@ -13,8 +13,6 @@ namespace {
 
 using Kind = Inst::Kind;
 
-constexpr std::array<std::uint8_t, 4> kWhole{0, 1, 2, 3};
-
 void collect_jumps(const Graph& graph, BlockId block, Op op, std::vector<InstId>& found) {
   for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
     const Inst& inst = graph.insts[id];
@@ -339,11 +337,7 @@ bool is_behind(const Graph& graph, InstId join, ValueId value) {
 }
 
 /// A copy of the whole value in front of `position`.
-Src copy_of(Graph& graph, InstId position, ValueId value) {
-  const InstId move = make_move(graph, {value, kWhole}, value);
-  graph.insert_before(position, move);
-  return {graph.insts[move].result, kWhole};
-}
+Src copy_of(Graph& graph, InstId position, ValueId value) { return copied(graph, position, {value, kWhole}, value); }
 
 ValueId join_at_if(Graph& graph, InstId id, ValueId value) {
   const auto children = std::to_array(graph.insts[id].child);  // a copy: new instructions move the old ones
@@ -389,9 +383,7 @@ Src through_register(Graph& graph, InstId position, Src src, ValueId like) {
     value = join_at_header(graph, owner, value);
   }
   if (value != src.value) return {value, kWhole};
-  const InstId move = make_move(graph, src, like);
-  graph.insert_before(position, move);
-  return {graph.insts[move].result, kWhole};
+  return copied(graph, position, src, like);
 }
 
 void pass_through_registers(Graph& graph, InstId loop) {

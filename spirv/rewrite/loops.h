@@ -41,13 +41,15 @@ void pass_through_registers(Graph& graph, InstId loop);
 
 /// All that the loop ends with.
 void leave_through_registers(Graph& graph, InstId loop);
-/// Results of the body's Ifs, at its top level.
+
+/// The results of an If at the top level of a loop's body, before registers join them.
 struct Join {
   InstId branch = kNone;
   std::size_t results = 0;
 };
 std::vector<Join> joins_in(const Graph& graph, InstId loop);
-/// The same for them: each is read from its register behind the If.
+
+/// All that those Ifs hand on, which is read from its register behind each.
 void join_through_registers(Graph& graph, const std::vector<Join>& joins);
 
 /// Drops parameters of loops and results that only serve themselves.

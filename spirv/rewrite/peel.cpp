@@ -13,8 +13,6 @@ namespace {
 
 using Kind = Inst::Kind;
 
-constexpr std::array<std::uint8_t, 4> kWhole{0, 1, 2, 3};
-
 bool contains_jump(const Graph& graph, BlockId block) {
   for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
     const Inst& inst = graph.insts[id];
@@ -67,7 +65,7 @@ class Peeler {
     const std::vector<ValueId> params = node(loop_).params;
     for (const InstId id : {loop_, latch_})
       for (std::uint32_t i = 0; i < params.size(); ++i)
-        graph_.set_source(id, i, copied(id, graph_.source(graph_.insts[id], i), params[i]));
+        graph_.set_source(id, i, copied(graph_, id, graph_.source(graph_.insts[id], i), params[i]));
   }
 
   BlockId new_block() {
@@ -118,13 +116,7 @@ class Peeler {
 
   /// What the branch hands on as result `index`, in a register; what the loop's parameters take is already.
   Src in_register(std::size_t index, InstId position, Src src, ValueId like) {
-    return index < joined_ ? copied(position, src, like) : src;
-  }
-
-  Src copied(InstId position, Src src, ValueId like) {
-    const InstId move = make_move(graph_, src, like);
-    graph_.insert_before(position, move);
-    return {graph_.insts[move].result, kWhole};
+    return index < joined_ ? copied(graph_, position, src, like) : src;
   }
 
   /// The value that the rest of the body reads.

@@ -28,8 +28,6 @@ struct Choice {
 /// The side that keeps, the operand and the identity: the selection that operations of one If share.
 using Key = std::tuple<std::uint32_t, ValueId, unsigned, std::uint32_t>;
 
-bool same(Src a, Src b) { return a.value == b.value && a.swizzle[0] == b.swizzle[0]; }
-
 const Inst* scalar_of(const Graph& graph, Src src) {
   const Inst* inst = graph.def(src.value);
   return inst && inst->kind == Kind::kAlu && inst->components == 1 && !inst->opaque ? inst : nullptr;

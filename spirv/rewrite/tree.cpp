@@ -50,11 +50,15 @@ InstId make_move(Graph& graph, Src src, ValueId like) {
   return move;
 }
 
-ValueId whole_value(Graph& graph, InstId position, Src src, ValueId like) {
-  if (is_whole(graph, src, like)) return src.value;
+Src copied(Graph& graph, InstId position, Src src, ValueId like) {
   const InstId move = make_move(graph, src, like);
   graph.insert_before(position, move);
-  return graph.insts[move].result;
+  return {graph.insts[move].result, kWhole};
+}
+
+ValueId whole_value(Graph& graph, InstId position, Src src, ValueId like) {
+  if (is_whole(graph, src, like)) return src.value;
+  return copied(graph, position, src, like).value;
 }
 
 Src component_of(const Graph& graph, Src src, std::uint8_t component) {

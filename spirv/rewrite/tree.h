@@ -1,11 +1,16 @@
 // Small questions and changes about the tree of instructions that several steps share.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "spirv/rewrite/graph.h"
 
 namespace vitrine::spirv::rewriting {
+
+/// All components, in their order.
+inline constexpr std::array<std::uint8_t, 4> kWhole{0, 1, 2, 3};
 
 inline bool is_jump(const Inst& inst, Op op) { return inst.kind == Inst::Kind::kIntrinsic && inst.op == op; }
 inline bool leaves_loop(const Inst& inst) { return is_jump(inst, Op::kBreak) || is_jump(inst, Op::kContinue); }
@@ -24,6 +29,9 @@ inline bool is_literal(const Graph& graph, Src src, std::uint32_t bits) {
   return constant && constant->imm[src.swizzle[0]] == bits;
 }
 
+/// Two operations on scalars read the same component.
+inline bool same(Src a, Src b) { return a.value == b.value && a.swizzle[0] == b.swizzle[0]; }
+
 /// A Continue of the loop around `block`.
 bool contains_continue(const Graph& graph, BlockId block);
 
@@ -40,6 +48,9 @@ bool is_whole(const Graph& graph, Src src, ValueId like);
 
 /// A Mov of `src`, of the type of `like`, that is in no block yet.
 InstId make_move(Graph& graph, Src src, ValueId like);
+
+/// The same in front of `position`; what reads it.
+Src copied(Graph& graph, InstId position, Src src, ValueId like);
 
 /// A value equal to `src` with the components of `like`; a Mov that it may need goes before `position`.
 ValueId whole_value(Graph& graph, InstId position, Src src, ValueId like);
