@@ -54,6 +54,7 @@ class Analysis {
   IntegerRange bits(Src src) const { return range_of_bits(graph_, src); }
   bool is_positive(Src src) const { return bits(src).least_signed >= 0; }
   bool is_nonzero(Src src) const { return bits(src).bits.certain != 0; }
+  bool is_divisor(Src src) const { return rewriting::is_nonzero(graph_, src); }
 
   Orders by_range(Src a, Src b, bool is_signed) const {
     const bool literal = known_literal(graph_, a).has_value() || known_literal(graph_, b).has_value();
@@ -141,10 +142,18 @@ class Analysis {
       case Op::kIMax:
         return !is_signed ? kAny : inst.op == Op::kIMin ? kAtMost : kAtLeast;
       case Op::kUMod:
-        return index == 0 && by && *by != 0 && as_unsigned ? kAtMost : kAny;
+        if (index == 1) return is_divisor(x) && as_unsigned ? kLess : kAny;
+        return is_divisor(y) && as_unsigned ? kAtMost : kAny;
+      case Op::kIRem:
+      case Op::kIMod:  // of what has no sign
+        if (!is_positive(x) || !is_positive(y) || !is_divisor(source(inst, 1))) return kAny;
+        return index == 1 ? kLess : kAtMost;
+      case Op::kIDiv:
+        return index == 0 && is_positive(x) && is_positive(y) && is_divisor(y) ? kAtMost : kAny;
       case Op::kUDiv:
       case Op::kUShr:
       case Op::kIShr: {
+        if (inst.op == Op::kUDiv && index == 0 && !by && is_divisor(y)) return as_unsigned ? kAtMost : kAny;
         if (index != 0 || !by) return kAny;
         // A shift of a positive number is an unsigned one, which goes together with that of its operand.
         if (inst.op == Op::kIShr && (!is_positive(x) || is_operation(x, Op::kUShr))) return kAny;

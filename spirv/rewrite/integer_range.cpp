@@ -221,7 +221,9 @@ class Analysis {
       case Op::kUDiv:
         if (by == 0) return;
         if (asking_ == Asking::kEquality) return bound(range, 0, ~0u / by);
-        return bound(range, asking_ == Asking::kSigned ? 0 : a.least / by, a.largest / by);
+        // What has a sign bit leaves the signed comparison of its quotient a signed one.
+        return bound(range, asking_ == Asking::kSigned && a.bits.possible >> 31 != 0 ? 0 : a.least / by,
+                     a.largest / by);
       case Op::kUMod:
         return by == 0 ? void() : bound(range, 0, std::min(a.largest, by - 1));
       case Op::kIRem:
@@ -263,6 +265,8 @@ class Analysis {
     }
     if (inst.count != 2) return true;
     if (const std::optional<std::int64_t> by = divisor(inst)) return can_divide(inst, *by, bits, depth);
+    if (inst.op == Op::kUDiv && bits == 0 && is_nonzero(graph_, source(inst, 1)))
+      return known_bits(graph_, source(inst, 0)).certain < known_bits(graph_, source(inst, 1)).possible;
     for (const std::uint32_t index : {0u, 1u}) {
       const std::optional<std::uint32_t> by = literal(source(inst, index));
       if (!by) continue;

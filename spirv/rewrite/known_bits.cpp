@@ -76,6 +76,12 @@ class Analysis {
     return inst && depth != kMaxDepth ? of_result(*inst, depth + 1) : KnownBits{};
   }
 
+  bool is_nonzero(Src src, unsigned depth) const {
+    if (of(src, depth).certain != 0) return true;
+    const Inst* inst = scalar_operation(graph_, src);
+    return inst && depth < kMaxDepth && is_nonzero(*inst, depth + 1);
+  }
+
  private:
   const std::uint32_t* literal(const Inst& inst, std::uint32_t index) const {
     const Src src = graph_.source(inst, index);
@@ -91,13 +97,33 @@ class Analysis {
     if (bits.possible >> 31 != 0) return false;
     if (bits.certain != 0) return true;
     const Inst* operand = scalar_operation(graph_, src);
-    if (!operand || (operand->op != Op::kIAdd && operand->op != Op::kUMax)) return false;
-    for (const std::uint32_t index : {0u, 1u}) {
-      const std::uint32_t* by = literal(*operand, index);
-      if (by && *by != 0 && *by >> 31 == 0 && of(graph_.source(*operand, 1 - index), depth).possible >> 31 == 0)
-        return true;
+    return operand && (operand->op == Op::kIAdd || operand->op == Op::kUMax) && is_nonzero(*operand, depth + 1);
+  }
+
+  /// What is not zero though no bit is known to be set.
+  bool is_nonzero(const Inst& inst, unsigned depth) const {
+    const auto one = [&](std::uint32_t index) { return is_nonzero(graph_.source(inst, index), depth); };
+    const auto has_sign = [&](std::uint32_t index) {
+      return of(graph_.source(inst, index), depth).possible >> 31 != 0;
+    };
+    switch (inst.op) {
+      case Op::kUMin:
+        return one(0) && one(1);
+      case Op::kSelect:
+        return one(1) && one(2);
+      case Op::kUMax:
+      case Op::kOr:
+        return one(0) || one(1);
+      case Op::kIAdd:
+        return !has_sign(0) && !has_sign(1) && (one(0) || one(1));
+      case Op::kShl: {
+        const std::uint32_t* shifted = literal(inst, 0);
+        const std::uint32_t furthest = of(graph_.source(inst, 1), depth).possible & 31;
+        return shifted && (*shifted & ~0u >> furthest) != 0;
+      }
+      default:
+        return false;
     }
-    return false;
   }
 
   KnownBits of_result(const Inst& inst, unsigned depth) const {
@@ -152,45 +178,41 @@ class Analysis {
         return turned(larger(turned(source(0)), turned(source(1))));
       case Op::kBitCount:
         return {filled(static_cast<std::uint32_t>(std::popcount(source(0).possible))), 0};
-      case Op::kUDiv: {
-        const std::uint32_t* divisor = literal(inst, 1);
-        return divisor && *divisor != 0 ? KnownBits{filled(source(0).possible) >> (31 - std::countl_zero(*divisor)), 0}
-                                        : KnownBits{};
+      case Op::kUDiv:
+      case Op::kIDiv: {
+        const KnownBits dividend = source(0), divisor = source(1);
+        if (!is_nonzero(graph_.source(inst, 1), depth)) return {};  // a division by zero is ~0
+        if (inst.op == Op::kIDiv && (dividend.possible | divisor.possible) >> 31 != 0) return {};
+        return {filled(dividend.possible) >> (31 - std::countl_zero(divisor.certain | 1)), 0};
       }
       case Op::kUMod:
       case Op::kIRem:
       case Op::kIMod: {
-        const std::uint32_t* divisor = literal(inst, 1);
-        if (!divisor || *divisor == 0) return {};  // the remainder of a division by zero is ~0
-        const std::uint32_t left = filled(source(0).possible), right = filled(*divisor);
+        if (!is_nonzero(graph_.source(inst, 1), depth)) return {};  // the remainder of a division by zero is ~0
+        const std::uint32_t left = filled(source(0).possible), right = filled(source(1).possible);
         if (inst.op != Op::kUMod && (left | right) >> 31 != 0) return {};
         return {std::min(left, right), 0};
       }
       default:
-        return of_shift(inst, source(0));
+        return of_shift(inst, depth);
     }
   }
 
-  KnownBits of_shift(const Inst& inst, KnownBits a) const {
-    const std::uint32_t* by = inst.count == 2 ? literal(inst, 1) : nullptr;
-    const std::uint32_t distance = by ? *by & 31 : 0;
-    switch (inst.op) {
-      case Op::kShl:
-        if (by) return {a.possible << distance, a.certain << distance};
-        return {a.possible == 0 ? 0 : ~0u << std::countr_zero(a.possible), 0};
-      case Op::kUShr:
-        if (by) return {a.possible >> distance, a.certain >> distance};
-        return {filled(a.possible), 0};
-      case Op::kIShr: {
-        const auto shifted = [&](std::uint32_t bits) {
-          return static_cast<std::uint32_t>(static_cast<std::int32_t>(bits) >> distance);
-        };
-        if (by) return {shifted(a.possible), shifted(a.certain)};
-        return {filled(a.possible), a.certain >> 31 != 0 ? a.certain & ~0u << (32 - std::countl_one(a.certain)) : 0};
-      }
-      default:
-        return {};
-    }
+  /// What holds for every distance that the other operand can be.
+  KnownBits of_shift(const Inst& inst, unsigned depth) const {
+    if (inst.op != Op::kShl && inst.op != Op::kUShr && inst.op != Op::kIShr) return {};
+    const KnownBits a = of(graph_.source(inst, 0), depth), by = of(graph_.source(inst, 1), depth);
+    const auto shifted = [&](std::uint32_t bits, std::uint32_t distance) {
+      if (inst.op == Op::kShl) return bits << distance;
+      if (inst.op == Op::kUShr) return bits >> distance;
+      return static_cast<std::uint32_t>(static_cast<std::int32_t>(bits) >> distance);
+    };
+    KnownBits result{0, ~0u};
+    const std::uint32_t least = by.certain & 31, largest = by.possible & 31;
+    for (std::uint32_t distance = least; distance <= largest; ++distance)
+      if (((distance & ~largest) | (least & ~distance)) == 0)
+        result = either(result, {shifted(a.possible, distance), shifted(a.certain, distance)});
+    return result;
   }
 
   const Graph& graph_;
@@ -201,5 +223,7 @@ class Analysis {
 KnownBits sum(KnownBits a, std::uint32_t literal) { return sum(a, {literal, literal}, 0); }
 
 KnownBits known_bits(const Graph& graph, Src src) { return Analysis(graph).of(src, 0); }
+
+bool is_nonzero(const Graph& graph, Src src) { return Analysis(graph).is_nonzero(src, 0); }
 
 }  // namespace vitrine::spirv::rewriting

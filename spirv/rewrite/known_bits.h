@@ -31,4 +31,7 @@ KnownBits sum(KnownBits a, std::uint32_t literal);
 /// Of what an operation on scalars reads.
 KnownBits known_bits(const Graph& graph, Src src);
 
+/// Whether it is known not to be zero: by a bit that is set, or by what makes it.
+bool is_nonzero(const Graph& graph, Src src);
+
 }  // namespace vitrine::spirv::rewriting

@@ -29,7 +29,7 @@ class LateFolder {
     if ((inst.op == Op::kOrB || inst.op == Op::kAndB) && joins_opposites(inst)) return become(id, inst.op == Op::kOrB);
     if (const int known = known_comparison(graph_, inst); known >= 0)
       return become(id, static_cast<std::uint32_t>(known));
-    if (late_.empty() || !reads_late(inst) || fold(id) || keep_zero(id) || take_selected(id)) return;
+    if (late_.empty() || !reads_late(inst) || fold(id) || keep_literal(id) || take_selected(id)) return;
     take_other(id);
   }
 
@@ -64,16 +64,20 @@ class LateFolder {
     return false;
   }
 
-  /// x == y beside x != y, of floats.
+  /// x == y beside x != y, of floats; x >= x is x == x.
   bool joins_opposites(const Inst& inst) const {
     const Inst* a = scalar_operation(graph_, graph_.source(inst, 0));
     const Inst* b = scalar_operation(graph_, graph_.source(inst, 1));
     if (!a || !b || a->width != 32 || b->width != 32) return false;
-    if (!(a->op == Op::kFEq && b->op == Op::kFNeu) && !(a->op == Op::kFNeu && b->op == Op::kFEq)) return false;
+    if (!(is_equality(*a) && b->op == Op::kFNeu) && !(a->op == Op::kFNeu && is_equality(*b))) return false;
     const auto read_same = [&](std::uint32_t i, std::uint32_t j) {
       return same(graph_.source(*a, i), graph_.source(*b, j));
     };
     return (read_same(0, 0) && read_same(1, 1)) || (read_same(0, 1) && read_same(1, 0));
+  }
+
+  bool is_equality(const Inst& inst) const {
+    return inst.op == Op::kFEq || (inst.op == Op::kFGe && same(graph_.source(inst, 0), graph_.source(inst, 1)));
   }
 
   /// The results of a branch on such a literal are those of one side; in loops the reference masks them all the same.
@@ -155,9 +159,17 @@ class LateFolder {
     return true;
   }
 
-  /// Zero that stays zero whatever the other operand is. True: the operation is gone.
-  bool keep_zero(InstId id) {
+  /// Zero, or truth, that stays what it is whatever the other operand is. True: the operation is gone.
+  bool keep_literal(InstId id) {
     const Inst& inst = graph_.insts[id];
+    if (inst.op == Op::kOrB) {
+      const auto is_true = [&](std::uint32_t index) {
+        return is_late(inst, index) && constant(inst, index) && !is(inst, index, 0);
+      };
+      if (!is_true(0) && !is_true(1)) return false;
+      become(id, 1);
+      return true;
+    }
     const bool first = is(inst, 0, 0) && is_late(inst, 0),
                second = inst.count == 2 && is(inst, 1, 0) && is_late(inst, 1);
     switch (inst.op) {
@@ -167,6 +179,7 @@ class LateFolder {
         if (!first) return false;
         break;
       case Op::kAnd:
+      case Op::kAndB:
       case Op::kIMul:
         if (!first && !second) return false;
         break;
@@ -191,8 +204,12 @@ class LateFolder {
       case Op::kFMul:
         identity = kOne;
         break;
+      case Op::kAndB:
+        identity = 1;
+        break;
       case Op::kIAdd:
       case Op::kOr:
+      case Op::kOrB:
       case Op::kXor:
         break;
       default:

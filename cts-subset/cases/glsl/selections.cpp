@@ -214,12 +214,17 @@ CTS_CASE("glsl", "subtracted_selections") {
 
 // A number is equal to itself or is not, which the reference finds after its rules.
 CTS_CASE("glsl", "selections_by_everything") {
-  evaluate_specials(run, kVec4, 4,
+  evaluate_specials(run, kVec4, 8,
                     "  bvec2 x = bvec2(isnan(b.w), b.w == b.w), y = bvec2(b.x == a.y, b.x != a.y);\n"
                     "  vec4 r0 = a - (any(x) ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n"
                     "  vec4 r1 = a - (all(x) ? b.zzxx : vec4(0.0, 0.3, 255.0, -0.0));\n"
                     "  vec4 r2 = a - (any(y) ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n"
-                    "  vec4 r3 = a - (any(bvec2(a.y != b.x, y.x)) ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n");
+                    "  vec4 r3 = a - (any(bvec2(a.y != b.x, y.x)) ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n"
+                    "  bool less = a.y < b.x;\n"
+                    "  vec4 r4 = a - (any(x) || less ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n"
+                    "  vec4 r5 = a - (less && all(x) ? b.zzxx : vec4(0.0, 0.3, 255.0, -0.0));\n"
+                    "  vec4 r6 = a - (any(x) && less ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n"
+                    "  vec4 r7 = a - (isnan(a.z) || a.z >= a.z ? vec4(0.0, 0.3, 255.0, -0.0) : b.zzxx);\n");
 }
 
 // A negated product is that of a negated factor: of the selection, which has no identity then, or of the other.
@@ -311,8 +316,10 @@ CTS_CASE("glsl", "subtracted_signs") {
 }
 
 /// Branches whose condition `conditions[k]` is decided without running the shader: to a root where `ones[k]` is '0', to
-/// 1 otherwise. The literal 1 is then a factor, which leaves denormals alone.
+/// 1 otherwise. The literal 1 is then a factor, which leaves denormals alone. Mutants would ask for other comparisons
+/// that the reference may decide: a class of its own (known-differences.txt), which would hide what else they find.
 void compare_decided(Run& run, std::span<const char* const> conditions, std::string_view ones) {
+  run.mutates = false;
   std::string statements;
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     const std::string n = std::to_string(k), root = "sqrt(a.y + " + n + ".)";
@@ -431,6 +438,31 @@ CTS_CASE("glsl", "known_extrema") {
                                          "int(max(u.z << 14u, 75476063u)) < int(u.z << 14u)",
                                          "int(max(u.w << 9u, 511u)) < int(u.w << 9u)"};
   compare_decided(run, kConditions, "0000");
+}
+
+// Quotients and remainders of what has no sign: asked as signed numbers, and of divisors that are no literals.
+CTS_CASE("glsl", "known_divisors") {
+  constexpr const char* kConditions[] = {"int(((u.x >> 17u) + 17u) / 5u) < 2",
+                                         "int(((u.y & 255u) | 64u) / 5u) < 12",
+                                         "int((u.z | 255u) / 5u) < 51",
+                                         "int((u.w % 1000u + 20u) / 5u) < 4",
+                                         "(u.x & 25u) % (u.y | 31u) > (u.x & 25u)",
+                                         "u.y % (u.z | 31u) < (u.z | 31u)",
+                                         "u.z / (u.w | 31u) > u.z",
+                                         "(u.w & 255u) / (u.x | 31u) > 255u",
+                                         "(u.x & 255u) % (u.y & 15u | 1u) > 15u",
+                                         "int(u.y & 255u) / int(u.z & 15u | 8u) > 31",
+                                         "int(u.z & 255u) % int(u.w & 15u | 8u) > int(u.z & 255u)",
+                                         "(u.w | 255u) / (u.x & 15u | 8u) == 0u",
+                                         "u.x % max(u.y, 8u) >= max(u.y, 8u)",
+                                         "u.y / ((u.z >> 4u) + 1u) > u.y",
+                                         "u.z % (1u << (u.w & 7u)) > u.z",
+                                         "((u.w & 2147483647u) | 62u) / (u.x >> 29u) != 0u",
+                                         "u.x % min(u.y | 3u, 8u) > 15u",
+                                         "(u.y | 2147483647u) % (8192u << (u.z & 15u)) < (8192u << (u.z & 15u))",
+                                         "min(u.z & 255u, 215u) / (2147483647u << (u.w & 15u)) > 0u",
+                                         "((u.w >> 29u) + 1663u) % ((u.x >> 24u) + 14u) >= 65062910u"};
+  compare_decided(run, kConditions, "00000100000000010100");
 }
 
 // Sums beside literals: the operand's bits tell, unless something else reads the sum, too.
