@@ -4,6 +4,7 @@
 #include <unordered_set>
 
 #include "base/float_mode.h"
+#include "base/numeric.h"
 #include "spirv/rewrite/integer_order.h"
 #include "spirv/rewrite/integer_range.h"
 #include "spirv/rewrite/passes.h"
@@ -29,6 +30,8 @@ class LateFolder {
     if ((inst.op == Op::kOrB || inst.op == Op::kAndB) && joins_opposites(inst)) return become(id, inst.op == Op::kOrB);
     if (const int known = known_comparison(graph_, inst); known >= 0)
       return become(id, static_cast<std::uint32_t>(known));
+    if (inst.op == Op::kFLog2 && log_of_power(id)) return;
+    if (folds_alone(inst) && fold(id)) return;
     if (late_.empty() || !reads_late(inst) || fold(id) || keep_literal(id) || take_selected(id)) return;
     take_other(id);
   }
@@ -218,6 +221,42 @@ class LateFolder {
     if (!take_if(id, 0, identity) && commutes) take_if(id, 1, identity);
   }
 
+  /// Operations on literals that the generator leaves to the optimiser: of NaN, of the roots of negative numbers and of
+  /// numbers that are no integers it leaves them, too.
+  bool folds_alone(const Inst& inst) const {
+    const Inst* literal = inst.count == 1 ? constant(inst, 0) : nullptr;
+    if (!literal) return false;
+    const float number = base::float_of(literal->imm[graph_.source(inst, 0).swizzle[0]]);
+    switch (inst.op) {
+      case Op::kFSqrt:
+      case Op::kFRsq:
+        return number >= 0;
+      case Op::kFFloor:
+      case Op::kFCeil:
+      case Op::kFTrunc:
+      case Op::kFRoundEven:
+      case Op::kFFract:
+      case Op::kFAbs:
+        return number == number;
+      case Op::kF2I:
+      case Op::kF2U:
+        return number >= 0 && number < 0x1p31f;
+      default:
+        return false;
+    }
+  }
+
+  /// The logarithm of a literal power of two, of which the polynomial leaves the exponent. True: it is a literal now.
+  bool log_of_power(InstId id) {
+    const Inst* literal = constant(graph_.insts[id], 0);
+    if (!literal) return false;
+    const std::uint32_t bits = literal->imm[graph_.source(graph_.insts[id], 0).swizzle[0]];
+    const std::uint32_t exponent = bits >> 23;
+    if ((bits & 0x7fffff) != 0 || exponent == 0 || exponent >= 255) return false;
+    become(id, base::bits_of(static_cast<float>(static_cast<int>(exponent) - 127)));
+    return true;
+  }
+
   /// Operations that fold to what they compute, whatever the operands.
   static bool folds(const Inst& inst) {
     switch (inst.op) {
@@ -245,7 +284,7 @@ class LateFolder {
   /// True: it is a literal now.
   bool fold(InstId id) {
     const Inst& inst = graph_.insts[id];
-    if (!folds(inst)) return false;
+    if (!folds(inst) && !folds_alone(inst)) return false;
     std::uint32_t operand[3] = {}, bits = 0;
     for (std::uint32_t i = 0; i < inst.count; ++i) {
       const Inst* literal = constant(inst, i);

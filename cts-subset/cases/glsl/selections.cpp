@@ -500,6 +500,17 @@ CTS_CASE("glsl", "known_orders") {
   compare_decided(run, kConditions, "00010101111000000100");
 }
 
+// Functions of literals that are found only in the reference's generator: what is 1 leaves the factor beside it alone.
+CTS_CASE("glsl", "late_functions") {
+  evaluate_specials(
+      run, kVec4, 4,
+      "  float n = 0.0 / b.w;\n"
+      "  vec4 r0 = vec4(sqrt(1.0 - n), inversesqrt(4.0 + n) * 2.0, floor(1.5 + n), ceil(0.5 + n)) * a.z;\n"
+      "  vec4 r1 = vec4(round(1.0 + n), trunc(1.5 + n), fract(n + 1.5) * 2.0, abs(1.0 + n)) * a.y;\n"
+      "  vec4 r2 = vec4(float(int(n + 1.7)), float(uint(n + 1.0)), log2(n + 2.0), log2(n + 0.25) + 3.0) * a.x;\n"
+      "  vec4 r3 = vec4(refract(a.wyw + vec3(0.25, 255.0, 3.0), a.wzz, n), length(vec2(n + 1.0, 0.0)) * a.w);\n");
+}
+
 // Quotients that are known to be zero make exponents literal, and the multiplication by 1 goes.
 CTS_CASE("glsl", "late_literals") {
   evaluate_specials(run, kVec4, 4,
