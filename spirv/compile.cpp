@@ -165,6 +165,68 @@ bool repair(spv_context context, const std::string& message, std::vector<std::ui
   return !capability.empty() && declare_capability(context, capability, words);
 }
 
+/// Locations that the inputs and outputs of a module take. The validator notes each of them: its memory is theirs.
+class LocationCounter {
+ public:
+  explicit LocationCounter(std::span<const std::uint32_t> words) {
+    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) visit(words.subspan(at, words[at] >> 16));
+  }
+
+  /// Of the largest variable.
+  std::uint64_t largest() const { return largest_; }
+
+ private:
+  static constexpr std::uint64_t kMany = std::uint64_t{1} << 31;
+
+  void visit(std::span<const std::uint32_t> inst) {
+    switch (static_cast<spv::Op>(inst[0] & spv::OpCodeMask)) {
+      case spv::Op::OpConstant:
+      case spv::Op::OpSpecConstant:
+        if (inst.size() > 3) literals_[inst[2]] = inst.size() > 4 && inst[4] != 0 ? kMany : inst[3];
+        break;
+      case spv::Op::OpTypeMatrix:
+        if (inst.size() > 3) take(inst[1], locations(inst[2]) * inst[3]);
+        break;
+      case spv::Op::OpTypeArray:
+        if (inst.size() > 3) take(inst[1], locations(inst[2]) * literal(inst[3]));
+        break;
+      case spv::Op::OpTypeStruct: {
+        std::uint64_t sum = 0;
+        for (const std::uint32_t member : inst.subspan(std::min<std::size_t>(2, inst.size()))) sum += locations(member);
+        if (inst.size() > 1) take(inst[1], sum);
+        break;
+      }
+      case spv::Op::OpTypePointer:
+        if (inst.size() <= 3) break;
+        if (inst[2] == static_cast<std::uint32_t>(spv::StorageClass::Input) ||
+            inst[2] == static_cast<std::uint32_t>(spv::StorageClass::Output))
+          largest_ = std::max(largest_, locations(inst[3]));
+        break;
+      default:
+        break;
+    }
+  }
+
+  void take(std::uint32_t id, std::uint64_t count) { locations_[id] = std::min(count, kMany); }
+
+  /// Of a type: one where nothing else is known.
+  std::uint64_t locations(std::uint32_t id) const {
+    const auto found = locations_.find(id);
+    return found == locations_.end() ? 1 : found->second;
+  }
+
+  std::uint64_t literal(std::uint32_t id) const {
+    const auto found = literals_.find(id);
+    return found == literals_.end() ? 1 : found->second;
+  }
+
+  std::unordered_map<std::uint32_t, std::uint64_t> literals_, locations_;
+  std::uint64_t largest_ = 0;
+};
+
+/// More than any stage has; geometry shaders' inputs are arrays.
+constexpr std::uint64_t kMaxLocations = 1 << 16;
+
 /// Empty if the module is valid but for capabilities that it uses without declaring them: applications that were tried
 /// on the reference alone get away with that there (zink decorates with Sample and leaves out SampleRateShading), and
 /// but for what the table above lists.
@@ -208,6 +270,7 @@ base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> wor
   // nesting, so that it is not asked about large modules that are refused anyway. Its words are better otherwise.
   base::Result<ir::Function> function = translate(words, options);
   if (!function && words.size() > kSmallModule) return function.error();
+  if (LocationCounter(words).largest() > kMaxLocations) return base::Error{"SPIR-V interface takes too many locations"};
   if (options.validate)
     if (std::string error = validate_leniently(words); !error.empty()) return base::Error{error};
   if (!function) return function.error();

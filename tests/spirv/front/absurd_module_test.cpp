@@ -278,6 +278,30 @@ TEST(AbsurdModule, ManyVariablesAndPhis) {
   EXPECT_TRUE(compiles(module_with("", "", body + store("%q19999"))));
 }
 
+/// The validator would note every location.
+TEST(AbsurdModule, HugeInterface) {
+  const auto module = [](const std::string& storage, const std::string& length, const std::string& decorations) {
+    return assemble(
+        "OpCapability Shader\nOpMemoryModel Logical GLSL450\nOpEntryPoint Fragment %main \"main\" %v\n"
+        "OpExecutionMode %main OriginUpperLeft\nOpDecorate %v Location 0\n" +
+        decorations +
+        "%void = OpTypeVoid\n%fn = OpTypeFunction %void\n%float = OpTypeFloat 32\n%vec2 = OpTypeVector %float 2\n"
+        "%uint = OpTypeInt 32 0\n%length = OpConstant %uint " +
+        length + "\n%array = OpTypeArray %vec2 %length\n%outer = OpTypeArray %array %length\n%ptr = OpTypePointer " +
+        storage + " %outer\n%v = OpVariable %ptr " + storage +
+        "\n%main = OpFunction %void None %fn\n%l = OpLabel\nOpReturn\nOpFunctionEnd\n");
+  };
+  CompileOptions options = options_for(VK_SHADER_STAGE_FRAGMENT_BIT);
+  for (const char* length : {"20000", "4294967295"}) {
+    const long before = peak_memory();
+    EXPECT_FALSE(compile(module("Input", length, "OpDecorate %v Flat\n"), options).ok());
+    EXPECT_FALSE(compile(module("Output", length, ""), options).ok());
+    EXPECT_LT(peak_memory() - before, 100 << 10) << length;
+  }
+  const auto small = compile(module("Output", "2", ""), options);
+  EXPECT_TRUE(small.ok()) << small.message();
+}
+
 /// What a negated product reads is followed as far as it goes, but not down any chain.
 TEST(AbsurdModule, LongChainInANegatedProduct) {
   const std::string declarations = "%float = OpTypeFloat 32\n%one = OpConstant %float 1\n";
