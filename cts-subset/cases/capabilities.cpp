@@ -97,6 +97,50 @@ CTS_CASE("capabilities", "atomic_float.add") { atomic_float(run, "atomicAdd"); }
 CTS_CASE("capabilities", "atomic_float.min") { atomic_float(run, "atomicMin"); }
 CTS_CASE("capabilities", "atomic_float.max") { atomic_float(run, "atomicMax"); }
 
+/// Both signs of 1, zero, infinity, quiet and signaling NaN, the least and the greatest denormal.
+std::vector<std::uint32_t> special_floats() {
+  std::vector<std::uint32_t> bits;
+  for (const std::uint32_t magnitude :
+       {0x3f800000u, 0u, 0x7f800000u, 0x7fc00001u, 0x7fa00001u, 0x7fffffffu, 1u, 0x007fffffu})
+    for (const std::uint32_t sign : {0u, 0x80000000u}) bits.push_back(magnitude | sign);
+  return bits;
+}
+
+/// Every pair of them, one as what memory holds and one as the operand; in a buffer and in shared memory.
+void atomic_float_specials(Run& run, const std::string& operation) {
+  run.require(run.gpu.extension_features.atomic_float2.shaderBufferFloat32AtomicMinMax &&
+                  run.gpu.extension_features.atomic_float2.shaderSharedFloat32AtomicMinMax,
+              "float atomic min and max");
+  const std::vector<std::uint32_t> bits = special_floats();
+  const std::size_t count = bits.size();
+  std::vector<std::uint32_t> memory, operands;
+  for (std::size_t i = 0; i < count * count; ++i) {
+    memory.push_back(bits[i / count]);
+    operands.push_back(bits[i % count]);
+  }
+  const Buffer out = run.buffer_of(memory), in = run.buffer_of(operands), shared = run.buffer_of(memory);
+  dispatch(run,
+           std::string(kAtomicFloat) +
+               "layout(local_size_x = 256) in;\nlayout(std430, binding = 0) buffer R { float r[256]; };\n"
+               "layout(std430, binding = 1) buffer V { float v[256]; };\n"
+               "layout(std430, binding = 2) buffer S { float t[256]; };\n"
+               "shared float s[256];\n"
+               "void main() {\n"
+               "  uint i = gl_LocalInvocationIndex;\n"
+               "  s[i] = t[i];\n"
+               "  barrier();\n  " +
+               operation + "(r[i], v[i]);\n  " + operation +
+               "(s[i], v[i]);\n"
+               "  barrier();\n"
+               "  t[i] = s[i];\n"
+               "}\n",
+           {storage_buffer(0, out), storage_buffer(1, in), storage_buffer(2, shared)});
+  run.out("buffer", out);
+  run.out("shared", shared);
+}
+CTS_CASE("capabilities", "atomic_float.special_min") { atomic_float_specials(run, "atomicMin"); }
+CTS_CASE("capabilities", "atomic_float.special_max") { atomic_float_specials(run, "atomicMax"); }
+
 CTS_CASE("capabilities", "atomic_float.exchange") {
   run.require(run.gpu.extension_features.atomic_float.shaderBufferFloat32Atomics, "shaderBufferFloat32Atomics");
   const Buffer out = run.buffer_of<float>(std::vector<float>(65, 2.5f));

@@ -13,13 +13,19 @@
 
 namespace vitrine::spirv::exec {
 
-/// On binary32 or binary64; of two numbers that compare neither way minimum and maximum are the operand.
+/// Minimum or maximum of what memory holds and of the operand, whose values are `a` and `b` (LLVM's minnum and maxnum
+/// on x86): of a NaN, quiet or signaling, and a number it is the number; of two NaN the operand; of equal ones the old.
+template <class Word, class Float>
+inline Word extremum(ir::AtomicOp op, Word old, Word operand, Float a, Float b) {
+  return a != a || (op == ir::AtomicOp::kFMin ? b < a : b > a) ? operand : old;
+}
+
+/// On binary32 or binary64.
 template <class Word>
 inline Word combine_float(ir::AtomicOp op, Word old, Word operand) {
   using Float = std::conditional_t<sizeof(Word) == 4, float, double>;
   const auto a = std::bit_cast<Float>(old), b = std::bit_cast<Float>(operand);
-  if (op == ir::AtomicOp::kFAdd) return std::bit_cast<Word>(a + b);
-  return op == ir::AtomicOp::kFMin ? (a < b ? old : operand) : (a > b ? old : operand);
+  return op == ir::AtomicOp::kFAdd ? std::bit_cast<Word>(a + b) : extremum(op, old, operand, a, b);
 }
 
 /// The new value of a word of 32 or 64 bits, for operations that always write.

@@ -5,22 +5,21 @@
 #include <atomic>
 
 #include "base/numeric.h"
+#include "spirv/exec/atomic_ops.h"
 #include "spirv/exec/atomic_spaces.h"
 
 namespace vitrine::spirv::exec {
 namespace {
 
-/// Of two numbers that compare neither way minimum and maximum are the operand, as of wider floats. A sum has one
-/// rounding: binary32 has the bits that make the second harmless.
+/// A sum has one rounding: binary32 has the bits that make the second harmless.
 std::uint16_t combine(ir::AtomicOp op, std::uint16_t old, std::uint16_t operand) {
   const float a = base::half_to_float(old), b = base::half_to_float(operand);
   switch (op) {
     case ir::AtomicOp::kFAdd:
       return base::float_to_half_nearest(a + b);
     case ir::AtomicOp::kFMin:
-      return a < b ? old : operand;
     case ir::AtomicOp::kFMax:
-      return a > b ? old : operand;
+      return extremum(op, old, operand, a, b);
     case ir::AtomicOp::kExchange:
     case ir::AtomicOp::kStore:
       return operand;
