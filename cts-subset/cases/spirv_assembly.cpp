@@ -327,16 +327,17 @@ CTS_CASE("spirv_assembly", "odd_constants_and_undefined_objects") {
            "OpCapability Int16\nOpCapability Int64\n");
 }
 
-/// Stores of binary16 that round toward zero, of floats around and beyond what binary16 holds.
-/// Converts floats x, and doubles x * ratio, to halves toward zero.
-constexpr char kTowardZero[] = R"(; target: vulkan1.1
+/// Converts floats x, and doubles x * ratio, to halves and stores them.
+constexpr char kRoundedHalves[] = R"(; target: vulkan1.1
 OpCapability Shader
 OpCapability Float64
 OpCapability StorageBuffer16BitAccess
+CAPABILITIES
 OpExtension "SPV_KHR_16bit_storage"
 OpMemoryModel Logical GLSL450
 OpEntryPoint GLCompute %main "main" %id
 OpExecutionMode %main LocalSize 64 1 1
+MODES
 OpDecorate %id BuiltIn GlobalInvocationId
 OpDecorate %floats ArrayStride 4
 OpDecorate %halves ArrayStride 2
@@ -348,8 +349,7 @@ OpDecorate %in DescriptorSet 0
 OpDecorate %in Binding 0
 OpDecorate %out DescriptorSet 0
 OpDecorate %out Binding 1
-OpDecorate %h FPRoundingMode RTZ
-OpDecorate %k FPRoundingMode RTZ
+DECORATIONS
 %void = OpTypeVoid
 %fn = OpTypeFunction %void
 %uint = OpTypeInt 32 0
@@ -372,6 +372,7 @@ OpDecorate %k FPRoundingMode RTZ
 %u0 = OpConstant %uint 0
 %u1 = OpConstant %uint 1
 %ratio = OpConstant %double RATIO
+CONSTANTS
 %main = OpFunction %void None %fn
 %entry = OpLabel
 %gid = OpLoad %v3uint %id
@@ -386,7 +387,7 @@ OpDecorate %k FPRoundingMode RTZ
 OpStore %to %h
 %d = OpFConvert %double %x
 %e = OpFMul %double %d %ratio
-%k = OpFConvert %half %e
+%k = HALF
 OpStore %too %k
 OpReturn
 OpFunctionEnd
@@ -402,13 +403,40 @@ bool rounds_up_to_half(double number) {
   return std::fabs(nearest) > std::fabs(number) && scaled == std::trunc(scaled);
 }
 
-void convert_toward_zero(Run& run, const std::string& name, double ratio, const std::vector<float>& values) {
+/// How the shader asks for its rounding.
+struct Rounding {
+  const char *capabilities, *modes, *decorations;
+  const char* constants = "";
+  const char* half = "OpFConvert %half %e";  ///< `constants` have another one
+};
+constexpr Rounding kTowardZero = {"", "", "OpDecorate %h FPRoundingMode RTZ\nOpDecorate %k FPRoundingMode RTZ"};
+constexpr Rounding kNearest = {"", "", "OpDecorate %h FPRoundingMode RTE\nOpDecorate %k FPRoundingMode RTE"};
+constexpr char kFloatControls[] =
+    "OpCapability Float16\nOpCapability RoundingModeRTE\nOpExtension \"SPV_KHR_float_controls\"";
+constexpr Rounding kNearestMode = {kFloatControls, "OpExecutionMode %main RoundingModeRTE 16", ""};
+constexpr Rounding kNearestConstant = {kFloatControls, "OpExecutionMode %main RoundingModeRTE 16", "",
+                                       "%exact = OpSpecConstant %double RATIO\n"
+                                       "%rounded = OpSpecConstantOp %half FConvert %exact",
+                                       "OpCopyObject %half %rounded"};
+
+void convert_to_half(Run& run, const std::string& name, const Rounding& rounding, double ratio,
+                     const std::vector<float>& values) {
   const auto& storage = run.gpu.extension_features.storage_16bit;
   run.require(storage.storageBuffer16BitAccess && run.gpu.features.shaderFloat64, "16-bit stores and doubles");
+  run.require(*rounding.modes == 0 || run.gpu.has("VK_KHR_shader_float_controls"), "VK_KHR_shader_float_controls");
   std::ostringstream written;
   written << std::setprecision(17) << ratio;
-  std::string text = kTowardZero;
-  text.replace(text.find("RATIO"), 5, written.str());
+  std::string text = kRoundedHalves;
+  const auto fill_in = [&](const std::string& name_of_part, const std::string& part) {
+    for (std::size_t at = 0; (at = text.find(name_of_part)) != std::string::npos;)
+      text.replace(at, name_of_part.size(), part);
+  };
+  fill_in("CAPABILITIES", rounding.capabilities);
+  fill_in("MODES", rounding.modes);
+  fill_in("DECORATIONS", rounding.decorations);
+  fill_in("CONSTANTS", rounding.constants);
+  fill_in("HALF", rounding.half);
+  fill_in("RATIO", written.str());
   const Buffer in = run.buffer_of(values), out = run.buffer(values.size() * 4);
   const Resources res = run.resources({storage_buffer(0, in), storage_buffer(1, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.module(assemble_spirv(text)));
@@ -416,6 +444,7 @@ void convert_toward_zero(Run& run, const std::string& name, double ratio, const 
   run.out(name, out);
 }
 
+/// Stores of binary16 that round toward zero, of floats around and beyond what binary16 holds.
 CTS_CASE("spirv_assembly", "convert_toward_zero") {
   std::vector<float> values(1024);
   for (float& value : values) do
@@ -424,17 +453,31 @@ CTS_CASE("spirv_assembly", "convert_toward_zero") {
   values[0] = std::numeric_limits<float>::infinity();
   values[1] = std::numeric_limits<float>::quiet_NaN();
   values[2] = -0.0f;
-  convert_toward_zero(run, "halves", kRatio, values);
+  convert_to_half(run, "halves", kTowardZero, kRatio, values);
 }
 
-/// Powers of two times something just below 1, and times something that rounds to no half in binary32.
+/// Powers of two and their negatives, times something whose half the reference gets wrong and something else.
+void close_and_clear(Run& run, const Rounding& rounding, double close, double clear) {
+  std::vector<float> values(64);
+  for (int i = 0; i < 64; ++i) values[i] = std::ldexp(i % 2 ? -1.0f : 1.0f, i % 25 - 12);
+  convert_to_half(run, "close", rounding, close, values);
+  convert_to_half(run, "clear", rounding, clear, values);
+}
+
+/// Just below 1, and what rounds to no half in binary32.
 const AddCase kDoubleToHalf("spirv_assembly", "deviation.double_to_half", "double-to-half", case_against_control,
-                            [](Run& run) {
-                              std::vector<float> values(64);
-                              for (int i = 0; i < 64; ++i) values[i] = std::ldexp(i % 2 ? -1.0f : 1.0f, i % 25 - 12);
-                              convert_toward_zero(run, "close", 1.0 - 0x1p-30, values);
-                              convert_toward_zero(run, "clear", 1.0 - 0x1p-12, values);
-                            });
+                            [](Run& run) { close_and_clear(run, kTowardZero, 1.0 - 0x1p-30, 1.0 - 0x1p-12); });
+
+/// Just above the middle of two halves, and what binary32 can tell from it.
+constexpr double kAboveMiddle = 1.0 + 0x1p-11 + 0x1p-30, kBehindMiddle = 1.0 + 0x1p-11 + 0x1p-12;
+const AddCase kNearestHalf("spirv_assembly", "deviation.nearest_half", "nearest-half", case_against_control,
+                           [](Run& run) { close_and_clear(run, kNearest, kAboveMiddle, kBehindMiddle); });
+const AddCase kNearestHalfMode("spirv_assembly", "deviation.nearest_half_mode", "nearest-half", case_against_control,
+                               [](Run& run) { close_and_clear(run, kNearestMode, kAboveMiddle, kBehindMiddle); });
+const AddCase kNearestHalfConstant("spirv_assembly", "deviation.nearest_half_constant", "nearest-half",
+                                   case_against_control, [](Run& run) {
+                                     close_and_clear(run, kNearestConstant, kAboveMiddle, kBehindMiddle);
+                                   });
 
 /// Unordered comparisons are exact, and what the rules make of a selection by their negation is.
 CTS_CASE("spirv_assembly", "unordered_comparisons_are_exact") {

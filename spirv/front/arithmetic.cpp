@@ -92,8 +92,10 @@ void convert_number(Translator& t, const Inst& inst, ir::Op) {
         return convert_signed(value, width);
       default: {
         const DecorationRow* mode = t.module.decoration(inst.result, spv::Decoration::FPRoundingMode);
-        const bool truncates = mode != nullptr && mode->value == static_cast<std::uint32_t>(spv::FPRoundingMode::RTZ);
-        return truncates ? truncate_float(value, width) : convert_float(value, width);
+        if (mode != nullptr && mode->value == static_cast<std::uint32_t>(spv::FPRoundingMode::RTZ))
+          return truncate_float(value, width);
+        const bool nearest = mode != nullptr || t.module.rounds_to_nearest(width);
+        return nearest && value.width == 64 && width == 16 ? nearest_half(value) : convert_float(value, width);
       }
     }
   };

@@ -98,10 +98,16 @@ double float_of_width(std::uint64_t bits, std::uint32_t width) {
                                          : base::float_of(word));
 }
 
-std::uint64_t bits_of_float(double value, std::uint32_t width) {
+/// `once`: a half of a double is rounded once, not to binary32 on the way as in the reference.
+std::uint64_t bits_of_float(double value, std::uint32_t width, bool once) {
   if (width == 64) return std::bit_cast<std::uint64_t>(value);
-  const float single = static_cast<float>(value);
-  return width == 16 ? base::float_to_half_nearest(single) : base::bits_of(single);
+  float single = static_cast<float>(value);
+  if (width == 32) return base::bits_of(single);
+  if (once && static_cast<double>(single) != value) {  // round to odd: no tie that is none
+    const bool grown = std::fabs(static_cast<double>(single)) > std::fabs(value);
+    single = base::float_of((base::bits_of(single) - grown) | 1);
+  }
+  return base::float_to_half_nearest(single);
 }
 
 std::uint64_t quantize(std::uint64_t bits) {
@@ -111,7 +117,7 @@ std::uint64_t quantize(std::uint64_t bits) {
 }
 
 /// One component of a component-wise integer or boolean operation. `width`: of the operands.
-std::uint64_t fold(const Inst& inst, Op op, std::uint64_t a, std::uint64_t b, std::uint32_t width,
+std::uint64_t fold(const Module& module, const Inst& inst, Op op, std::uint64_t a, std::uint64_t b, std::uint32_t width,
                    std::uint32_t result_width) {
   const std::int64_t signed_a = signed_of(a, width), signed_b = signed_of(b, width);
   const std::uint32_t count = static_cast<std::uint32_t>(b) & (width - 1);
@@ -123,7 +129,9 @@ std::uint64_t fold(const Inst& inst, Op op, std::uint64_t a, std::uint64_t b, st
     case Op::OpSConvert:
       return static_cast<std::uint64_t>(signed_a);
     case Op::OpFConvert:
-      return width == result_width ? a : bits_of_float(float_of_width(a, width), result_width);
+      return width == result_width
+                 ? a
+                 : bits_of_float(float_of_width(a, width), result_width, module.rounds_to_nearest(result_width));
     case Op::OpQuantizeToF16:
       return quantize(a);
     case Op::OpSNegate:
@@ -254,7 +262,7 @@ Words spec_constant_op(const Module& module, const Inst& inst) {
   if (second.size() != first.size()) fail(inst, "operands differ in size");
   if (op == Op::OpBitcast && width != result_width) fail(inst, "size of the components changes");
   for (std::size_t i = 0; i < first.size(); i++)
-    push(words, fold(inst, op, first[i], second[i], width, result_width), result_width);
+    push(words, fold(module, inst, op, first[i], second[i], width, result_width), result_width);
   return words;
 }
 

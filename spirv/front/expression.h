@@ -56,6 +56,8 @@ Expr convert_signed(Expr value, std::uint8_t width);
 Expr convert_float(Expr value, std::uint8_t width);
 /// Rounds towards zero (FPRoundingMode RTZ).
 Expr truncate_float(Expr value, std::uint8_t width);
+/// binary64 to the nearest binary16, rounded once; convert_float rounds to binary32 on the way, as the reference does.
+Expr nearest_half(Expr value);
 Expr float_to_int(Expr value, std::uint8_t width, bool is_signed);
 Expr int_to_float(Expr value, std::uint8_t width, bool is_signed);
 /// Constant of `width` bits.

@@ -362,6 +362,13 @@ std::uint32_t Module::constant_u32(std::uint32_t id, const Inst& user) const {
   return wide && value->words[1] != 0 ? UINT32_MAX : value->words[0];
 }
 
+bool Module::rounds_to_nearest(std::uint32_t width) const {
+  return std::any_of(modes.begin(), modes.end(), [&](const Inst& mode) {
+    return static_cast<spv::ExecutionMode>(mode.operand(1)) == spv::ExecutionMode::RoundingModeRTE &&
+           mode.operand(2) == width;
+  });
+}
+
 const DecorationRow* Module::decoration(std::uint32_t id, spv::Decoration kind, std::uint32_t member) const {
   auto at = std::lower_bound(decorations.begin(), decorations.end(), std::pair(id, member),
                              [](const DecorationRow& row, const auto& key) {

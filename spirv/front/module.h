@@ -130,6 +130,8 @@ struct Module {
   const Constant* constant(std::uint32_t id) const;
   /// Value of a 32-bit integer constant.
   std::uint32_t constant_u32(std::uint32_t id, const Inst& user) const;
+  /// The entry point asks for results of `width` bits that are rounded once, to nearest even (RoundingModeRTE).
+  bool rounds_to_nearest(std::uint32_t width) const;
   /// The decoration on `id` (member = 0) or on its member number `member` - 1; null when absent.
   const DecorationRow* decoration(std::uint32_t id, spv::Decoration kind, std::uint32_t member = 0) const;
 };

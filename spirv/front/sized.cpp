@@ -423,6 +423,13 @@ Expr truncate_float(Expr value, std::uint8_t width) {
   return apply(Op::kISub, {rounded, step});
 }
 
+Expr nearest_half(Expr value) {
+  const ExactScope exact(*value.t);
+  const Expr low = truncate_float(value, 32);
+  const Expr cut_off = apply(Op::kFNeu, {convert_float(low, 64), value});
+  return to_half(low | words(Op::kB2I, {cut_off}));  // round to odd: no tie that is none
+}
+
 Expr float_to_int(Expr value, std::uint8_t width, bool is_signed) {
   if (value.width == 16) value = from_half(value);
   const bool is_double = value.width == 64;
