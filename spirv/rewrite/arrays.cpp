@@ -30,6 +30,12 @@ class Forwarder {
  private:
   using Element = std::pair<std::uint32_t, std::uint32_t>;  ///< array, index
   using Known = std::map<Element, Src>;
+  /// The last store to an array, at an index that is not constant.
+  struct Stored {
+    Src index, value;
+    std::uint32_t added = 0;
+  };
+  using Latest = std::map<std::uint32_t, Stored>;
 
   const ir::Instr& node(const Inst& inst) const { return graph_.nodes[inst.node]->instr; }
 
@@ -43,12 +49,36 @@ class Forwarder {
     return number < graph_.function.arrays[element.first].elements;
   }
 
-  void forget(std::uint32_t array) { known_.erase(known_.lower_bound({array, 0}), known_.lower_bound({array + 1, 0})); }
+  void forget(std::uint32_t array) {
+    known_.erase(known_.lower_bound({array, 0}), known_.lower_bound({array + 1, 0}));
+    latest_.erase(array);
+  }
 
-  void store(const Inst& inst) {
+  static bool same(const Src& a, const Src& b) { return a.value == b.value && a.swizzle[0] == b.swizzle[0]; }
+
+  /// Writes once more what the last store to the array wrote there.
+  bool repeats(const Inst& inst) const {
+    const auto entry = latest_.find(node(inst).data[0]);
+    return entry != latest_.end() && entry->second.added == node(inst).data[1] &&
+           same(entry->second.index, graph_.source(inst, 0)) && same(entry->second.value, graph_.source(inst, 1));
+  }
+
+  void store(InstId id) {
+    const Inst& inst = graph_.insts[id];
     Element element;
-    if (!element_of(inst, element)) return forget(node(inst).data[0]);
+    if (!element_of(inst, element)) {
+      if (repeats(inst)) {
+        changed_ = true;
+        return graph_.remove(id);
+      }
+      const std::uint32_t array = node(inst).data[0];
+      forget(array);
+      if (latest_.size() < kMostKnown)
+        latest_[array] = {graph_.source(inst, 0), graph_.source(inst, 1), node(inst).data[1]};
+      return;
+    }
     known_.erase(element);
+    latest_.erase(element.first);
     if (known_.size() < kMostKnown) known_.emplace(element, graph_.source(inst, 1));
   }
 
@@ -84,6 +114,7 @@ class Forwarder {
       if (is_access(inst, Op::kStoreArray)) {
         if (element_of(inst, element)) {
           known_.erase(element);
+          latest_.erase(element.first);
         } else {
           forget(node(inst).data[0]);
         }
@@ -100,10 +131,12 @@ class Forwarder {
     };
     if (graph_.insts[id].kind == Kind::kLoop) forget_children();
     const Known before = known_;
+    const Latest latest_before = latest_;
     for (const BlockId block : child) {
       if (block == kNone) continue;
       visit(block);
       known_ = before;
+      latest_ = latest_before;
     }
     forget_children();
   }
@@ -113,7 +146,7 @@ class Forwarder {
       const Inst& inst = graph_.insts[id];
       const InstId next = inst.next;
       if (is_access(inst, Op::kStoreArray)) {
-        store(inst);
+        store(id);
       } else if (is_access(inst, Op::kLoadArray)) {
         load(id);
       } else if (inst.child[0] != kNone) {
@@ -125,6 +158,7 @@ class Forwarder {
 
   Graph& graph_;
   Known known_;
+  Latest latest_;
   bool changed_ = false;
 };
 
