@@ -192,21 +192,16 @@ CTS_CASE("glsl", "control_flow.joins_of_unrolled_body") {
 }
 
 // Every turn of the unrolled loop stores the same to one element: only the first does, and as nothing else reads the
-// product, its literal goes inward.
+// product, its literal goes inward. Not so if a store to another element comes between.
 CTS_CASE("glsl", "control_flow.repeated_stores") {
-  const char* text =
-      "  float e[7] = float[7](a.x, a.y, a.z, a.w, b.x, b.y, b.z);\n  int k = 2;\n"
-      "  while (k-- > 0) e[(i.x & 0x7fffffff) % 7] = 0.3 * dot(p.xw, a.ww);\n"
-      "  e[(i.y & 0x7fffffff) % 7] = 1.5 * dot(p.xw, b.ww);\n"  // another element, the first one again, the same
-                                                                // product
-      "  e[(i.x & 0x7fffffff) % 7] = 0.3 * dot(p.xw, a.ww);\n"
-      "  float f = 0.0;\n  for (int n = 0; n < 7; ++n) f += e[n];\n";
-  evaluate(run, Stage::kCompute, {"", text, {{kFloat, "f"}}, {}, false});
-  const char* once =
-      "  float e[7] = float[7](a.x, a.y, a.z, a.w, b.x, b.y, b.z);\n  int k = 2;\n"
-      "  while (k-- > 0) e[(i.x & 0x7fffffff) % 7] = 0.3 * dot(p.xw, a.ww);\n"
-      "  float f = 0.0;\n  for (int n = 0; n < 7; ++n) f += e[n];\n";
-  evaluate(run, Stage::kCompute, {"", once, {{kFloat, "f"}}, {}, false});
+  const std::string store = "  e[(i.x & 0x7fffffff) % 7] = 0.3 * dot(p.xw, a.ww);\n";
+  const std::string between = "  e[(i.y & 0x7fffffff) % 7] = 1.5 * dot(p.xw, b.ww);\n";
+  for (const std::string& behind : {between + store, std::string()}) {
+    const std::string text =
+        "  float e[7] = float[7](a.x, a.y, a.z, a.w, b.x, b.y, b.z);\n  int k = 2;\n  while (k-- > 0)\n" + store +
+        behind + "  float f = 0.0;\n  for (int n = 0; n < 7; ++n) f += e[n];\n";
+    evaluate(run, Stage::kCompute, {"", text, {{kFloat, "f"}}, {}, false});
+  }
 }
 
 }  // namespace
