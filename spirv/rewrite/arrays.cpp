@@ -1,9 +1,11 @@
-// Elements of local arrays whose value is known where they are read, because a store or load of the same element comes
-// before: what stays of an array that a loop walked through once the loop is unrolled (lavapipe-shader-math.md 3.2
-// step 3, copy propagation and splitting of variables).
+// Elements of local arrays whose value is known where they are read, because a store or load of the same element, at a
+// constant index or at the same dynamic one, comes before; and stores of what an element already holds. What stays of
+// an array that a loop walked through once the loop is unrolled (lavapipe-shader-math.md 3.2 step 3, copy propagation
+// and splitting of variables).
 #include <algorithm>
+#include <compare>
+#include <cstdint>
 #include <map>
-#include <utility>
 #include <vector>
 
 #include "spirv/rewrite/passes.h"
@@ -28,69 +30,57 @@ class Forwarder {
   }
 
  private:
-  using Element = std::pair<std::uint32_t, std::uint32_t>;  ///< array, index
-  using Known = std::map<Element, Src>;
-  /// The last store to an array, at an index that is not constant.
-  struct Stored {
-    Src index, value;
-    std::uint32_t added = 0;
+  /// Of an array. At a constant index: `index` is kNone, `added` the whole index; else the index plus `added`.
+  struct Element {
+    std::uint32_t array;
+    ValueId index;
+    std::uint32_t swizzle;
+    std::uint64_t added;
+    auto operator<=>(const Element&) const = default;
   };
-  using Latest = std::map<std::uint32_t, Stored>;
+  using Known = std::map<Element, Src>;
 
   const ir::Instr& node(const Inst& inst) const { return graph_.nodes[inst.node]->instr; }
 
-  /// False: its index is not constant, or behind the array.
-  bool element_of(const Inst& inst, Element& element) const {
+  Element element_of(const Inst& inst) const {
     const Src index = graph_.source(inst, 0);
+    const ir::Instr& access = node(inst);
     const Inst* constant = graph_.constant(index.value);
-    if (constant == nullptr) return false;
-    const std::uint64_t number = std::uint64_t{constant->imm[index.swizzle[0]]} + node(inst).data[1];
-    element = {node(inst).data[0], static_cast<std::uint32_t>(number)};
-    return number < graph_.function.arrays[element.first].elements;
+    if (constant == nullptr) return {access.data[0], index.value, index.swizzle[0], access.data[1]};
+    return {access.data[0], kNone, 0, std::uint64_t{constant->imm[index.swizzle[0]]} + access.data[1]};
   }
 
-  void forget(std::uint32_t array) {
-    known_.erase(known_.lower_bound({array, 0}), known_.lower_bound({array + 1, 0}));
-    latest_.erase(array);
+  /// Forgets what a store to `stored` may change: not the elements whose index differs from it by a constant.
+  void forget(const Element& stored) {
+    const Element first = {stored.array, stored.index, stored.swizzle, 0};
+    const Element last = {stored.array, stored.index, stored.swizzle, UINT64_MAX};
+    known_.erase(known_.lower_bound({stored.array, 0, 0, 0}), known_.lower_bound(first));
+    known_.erase(known_.upper_bound(last), known_.lower_bound({stored.array + 1, 0, 0, 0}));
+    known_.erase(stored);
   }
 
-  static bool same(const Src& a, const Src& b) { return a.value == b.value && a.swizzle[0] == b.swizzle[0]; }
-
-  /// Writes once more what the last store to the array wrote there.
-  bool repeats(const Inst& inst) const {
-    const auto entry = latest_.find(node(inst).data[0]);
-    return entry != latest_.end() && entry->second.added == node(inst).data[1] &&
-           same(entry->second.index, graph_.source(inst, 0)) && same(entry->second.value, graph_.source(inst, 1));
+  void remember(const Element& element, const Src& value) {
+    if (known_.size() < kMostKnown) known_.emplace(element, value);
   }
 
   void store(InstId id) {
     const Inst& inst = graph_.insts[id];
-    Element element;
-    if (!element_of(inst, element)) {
-      if (repeats(inst)) {
-        changed_ = true;
-        return graph_.remove(id);
-      }
-      const std::uint32_t array = node(inst).data[0];
-      forget(array);
-      if (latest_.size() < kMostKnown)
-        latest_[array] = {graph_.source(inst, 0), graph_.source(inst, 1), node(inst).data[1]};
-      return;
+    const Element element = element_of(inst);
+    const Src value = graph_.source(inst, 1);
+    const auto entry = known_.find(element);
+    if (entry != known_.end() && entry->second.value == value.value && entry->second.swizzle[0] == value.swizzle[0]) {
+      changed_ = true;
+      return graph_.remove(id);
     }
-    known_.erase(element);
-    latest_.erase(element.first);
-    if (known_.size() < kMostKnown) known_.emplace(element, graph_.source(inst, 1));
+    forget(element);
+    remember(element, value);
   }
 
   void load(InstId id) {
     const Inst inst = graph_.insts[id];
-    Element element;
-    if (!element_of(inst, element)) return;
+    const Element element = element_of(inst);
     const auto entry = known_.find(element);
-    if (entry == known_.end()) {
-      if (known_.size() < kMostKnown) known_.emplace(element, Src{inst.result, {}});
-      return;
-    }
+    if (entry == known_.end()) return remember(element, Src{inst.result, {}});
     const Src value = entry->second;
     changed_ = true;
     if (graph_.values[value.value].components == 1) {
@@ -110,15 +100,7 @@ class Forwarder {
     if (block == kNone) return;
     for (InstId id = graph_.blocks[block].head; id != kNone; id = graph_.insts[id].next) {
       const Inst& inst = graph_.insts[id];
-      Element element;
-      if (is_access(inst, Op::kStoreArray)) {
-        if (element_of(inst, element)) {
-          known_.erase(element);
-          latest_.erase(element.first);
-        } else {
-          forget(node(inst).data[0]);
-        }
-      }
+      if (is_access(inst, Op::kStoreArray)) forget(element_of(inst));
       for (const BlockId child : inst.child) forget_stored(child);
     }
   }
@@ -131,12 +113,10 @@ class Forwarder {
     };
     if (graph_.insts[id].kind == Kind::kLoop) forget_children();
     const Known before = known_;
-    const Latest latest_before = latest_;
     for (const BlockId block : child) {
       if (block == kNone) continue;
       visit(block);
       known_ = before;
-      latest_ = latest_before;
     }
     forget_children();
   }
@@ -158,7 +138,6 @@ class Forwarder {
 
   Graph& graph_;
   Known known_;
-  Latest latest_;
   bool changed_ = false;
 };
 

@@ -204,5 +204,31 @@ CTS_CASE("glsl", "control_flow.repeated_stores") {
   }
 }
 
+// What is read of an element is what was stored to it or read of it before, whatever its index: infinity less itself is
+// then zero. Not so behind a store to what may be the same element.
+CTS_CASE("glsl", "control_flow.values_of_dynamic_elements") {
+  const std::string x = "e[(i.x & 0x7fffffff) % 7]", y = "e[(i.y & 0x7fffffff) % 7]";
+  const std::string stored = "  float f = a.x * 1e30 * 1e30;\n  " + x + " = f;\n";
+  const std::string between[] = {"", "  " + y + " = b.x;\n", "  e[2] = b.y;\n",
+                                 "  for (int k = 0; k < (i.w & 3); ++k) { " + y + " += 1.0; }\n",
+                                 "  if (a.y > b.z) e[(i.z & 0x7fffffff) % 7] = b.w;\n"};
+  for (const std::string& other : between)
+    for (const std::string& first : {stored, "  float f = " + x + ";\n"}) {
+      const std::string text = "  float e[7] = float[7](a.x, a.y, 1e38 * a.z * 1e38, a.w, b.x, b.y, b.z);\n" + first +
+                               other + "  float d = " + x + " - f;\n  float g = e[3] - e[3];\n";
+      evaluate(run, Stage::kCompute, {"", text, {{kFloat, "d"}, {kFloat, "g"}}, {}, false});
+    }
+}
+
+// A store of what the element holds goes: the product that it would read keeps one reader.
+CTS_CASE("glsl", "control_flow.stores_of_what_is_there") {
+  const std::string store = "  e[3] = 0.3 * dot(p.xw, a.ww);\n";
+  for (const std::string between : {"", "  e[4] = b.w;\n", "  e[(i.y & 0x7fffffff) % 7] = 1.5;\n"}) {
+    const std::string text = "  float e[7] = float[7](a.x, a.y, a.z, a.w, b.x, b.y, b.z);\n" + store + between + store +
+                             "  float f = e[(i.x & 0x7fffffff) % 7];\n";
+    evaluate(run, Stage::kCompute, {"", text, {{kFloat, "f"}}, {}, false});
+  }
+}
+
 }  // namespace
 }  // namespace vitrine::cts
