@@ -20,7 +20,7 @@
 #define VITRINE_SPIRV_ALU_LANE_OP_INL_H_
 #endif
 
-HWY_BEFORE_NAMESPACE();
+// No function here that HWY_BEFORE_NAMESPACE could give a target to: clang refuses one without.
 namespace vitrine::spirv::alu::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -38,6 +38,5 @@ struct Bools {
 };
 
 }  // namespace vitrine::spirv::alu::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
 
 #endif

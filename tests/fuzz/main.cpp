@@ -6,14 +6,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <string>
 
 #include <fcntl.h>
 #include <unistd.h>
-
-#include <glslang/Public/ResourceLimits.h>
-#include <glslang/Public/ShaderLang.h>
-#include <glslang/SPIRV/GlslangToSpv.h>
 
 #include "tests/fuzz/module_fuzz.h"
 #include "tests/fuzz/mutate.h"
@@ -24,21 +19,6 @@ namespace {
 
 Words current;
 VkShaderStageFlagBits current_stage = VK_SHADER_STAGE_COMPUTE_BIT;
-
-constexpr VkShaderStageFlagBits kOrder[] = {VK_SHADER_STAGE_COMPUTE_BIT,
-                                            VK_SHADER_STAGE_FRAGMENT_BIT,
-                                            VK_SHADER_STAGE_VERTEX_BIT,
-                                            VK_SHADER_STAGE_GEOMETRY_BIT,
-                                            VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT,
-                                            VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT};
-constexpr EShLanguage kLanguages[] = {EShLangCompute,  EShLangFragment,    EShLangVertex,
-                                      EShLangGeometry, EShLangTessControl, EShLangTessEvaluation};
-
-std::uint8_t number_of(VkShaderStageFlagBits stage) {
-  std::uint8_t number = 0;
-  while (kOrder[number] != stage) number++;
-  return number;
-}
 
 void keep_input() {
   const int file = open("fuzz-input", O_WRONLY | O_CREAT | O_TRUNC, 0644);
@@ -54,43 +34,13 @@ extern "C" void on_death(int signal) {
   std::raise(signal);
 }
 
-Words compile_seed(const Seed& seed) {
-  const EShLanguage language = kLanguages[number_of(seed.stage)];
-  const std::string text = std::string("#version 460\n") + kSubgroupExtensions + seed.text;
-  const char* strings[] = {text.c_str()};
-  glslang::TShader shader(language);
-  shader.setStrings(strings, 1);
-  shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
-  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
-  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
-  constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-  glslang::TProgram program;
-  if (!shader.parse(GetDefaultResources(), 460, false, kMessages)) {
-    std::fprintf(stderr, "%s\n%s\n", text.c_str(), shader.getInfoLog());
-    std::exit(2);
-  }
-  program.addShader(&shader);
-  if (!program.link(kMessages)) std::exit(2);
-  Words words;
-  glslang::SpvOptions options;
-  options.disableOptimizer = true;
-  glslang::GlslangToSpv(*program.getIntermediate(language), words, &options);
-  return words;
-}
-
-struct Entry {
-  VkShaderStageFlagBits stage;
-  Words words;
-};
-
 /// Runs the seeds; empty if one is refused.
-std::vector<Entry> run_seeds() {
-  std::vector<Entry> pool;
-  for (const Seed& row : kSeeds) {
-    pool.push_back({row.stage, compile_seed(row)});
-    current_stage = row.stage;
-    current = pool.back().words;
-    if (run_module(row.stage, current) != Outcome::kRan) {
+std::vector<Module> run_seeds() {
+  std::vector<Module> pool = compile_seeds();
+  for (const Module& seed : pool) {
+    current_stage = seed.stage;
+    current = seed.words;
+    if (run_module(current_stage, current) != Outcome::kRan) {
       std::fprintf(stderr, "a seed does not run\n");
       return {};
     }
@@ -100,15 +50,16 @@ std::vector<Entry> run_seeds() {
 
 /// Mutants of seeds and of mutants that ran.
 int loop(double seconds, std::uint64_t seed) {
-  std::vector<Entry> pool = run_seeds();
+  std::vector<Module> pool = run_seeds();
   if (pool.empty()) return 1;
+  const std::size_t seeds = pool.size();
   Random random(seed);
   std::size_t runs = 0, ran = 0;
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   double slowest = 0;
   while (elapsed() < seconds) {
-    const Entry& from = pool[static_cast<std::size_t>(random() % pool.size())];
+    const Module& from = pool[static_cast<std::size_t>(random() % pool.size())];
     current_stage = from.stage;
     current = from.words;
     mutate(current, random);
@@ -124,8 +75,7 @@ int loop(double seconds, std::uint64_t seed) {
     if (pool.size() < 400)
       pool.push_back({current_stage, current});
     else
-      pool[std::size(kSeeds) + static_cast<std::size_t>(random() % (pool.size() - std::size(kSeeds)))] = {current_stage,
-                                                                                                          current};
+      pool[seeds + static_cast<std::size_t>(random() % (pool.size() - seeds))] = {current_stage, current};
   }
   std::printf("%zu mutants, %zu of them ran; the slowest took %.1f s\n", runs, ran, slowest);
   return 0;
@@ -133,7 +83,6 @@ int loop(double seconds, std::uint64_t seed) {
 
 int main(int count, char** arguments) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL}) std::signal(signal, on_death);
-  glslang::InitializeProcess();
   if (count > 1 && std::isdigit(static_cast<unsigned char>(arguments[1][0])) == 0) {
     // What other shaders leave in registers must not matter.
     if (run_seeds().empty()) return 1;

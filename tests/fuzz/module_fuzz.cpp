@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 
 #include "spirv/front/translate.h"
 #include "spirv/ir_passes.h"
@@ -14,12 +15,6 @@
 namespace vitrine::fuzz {
 namespace {
 
-constexpr VkShaderStageFlagBits kStages[] = {VK_SHADER_STAGE_COMPUTE_BIT,
-                                             VK_SHADER_STAGE_FRAGMENT_BIT,
-                                             VK_SHADER_STAGE_VERTEX_BIT,
-                                             VK_SHADER_STAGE_GEOMETRY_BIT,
-                                             VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT,
-                                             VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT};
 constexpr std::uint32_t kBindings = 8, kElements = 4, kBufferWords = 256;
 constexpr std::size_t kStageWords = std::size_t{1} << 20;
 
@@ -104,10 +99,14 @@ Outcome run_module(VkShaderStageFlagBits stage, std::span<const std::uint32_t> w
   return Outcome::kRan;
 }
 
+std::uint8_t number_of(VkShaderStageFlagBits stage) {
+  return static_cast<std::uint8_t>(std::find(std::begin(kStages), std::end(kStages), stage) - std::begin(kStages));
+}
+
 Outcome run_bytes(std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return Outcome::kRefused;
   std::vector<std::uint32_t> words((bytes.size() - 1) / 4);
-  std::memcpy(words.data(), bytes.data() + 1, words.size() * 4);
+  if (!words.empty()) std::memcpy(words.data(), bytes.data() + 1, words.size() * 4);
   return run_module(kStages[bytes[0] % std::size(kStages)], words);
 }
 

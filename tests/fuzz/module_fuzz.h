@@ -17,6 +17,15 @@ enum class Outcome : std::uint8_t { kRefused, kCompiled, kRan };
 /// between the runs ends the process, as does every fault that a sanitizer sees.
 Outcome run_module(VkShaderStageFlagBits stage, std::span<const std::uint32_t> words);
 
+/// The stages by the number that an input's first byte names them with (modulo how many there are).
+inline constexpr VkShaderStageFlagBits kStages[] = {VK_SHADER_STAGE_COMPUTE_BIT,
+                                                    VK_SHADER_STAGE_FRAGMENT_BIT,
+                                                    VK_SHADER_STAGE_VERTEX_BIT,
+                                                    VK_SHADER_STAGE_GEOMETRY_BIT,
+                                                    VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT,
+                                                    VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT};
+std::uint8_t number_of(VkShaderStageFlagBits stage);
+
 /// Bytes: the first chooses the stage, the rest are words.
 Outcome run_bytes(std::span<const std::uint8_t> bytes);
 
