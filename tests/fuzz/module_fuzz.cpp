@@ -103,11 +103,15 @@ std::uint8_t number_of(VkShaderStageFlagBits stage) {
   return static_cast<std::uint8_t>(std::find(std::begin(kStages), std::end(kStages), stage) - std::begin(kStages));
 }
 
-Outcome run_bytes(std::span<const std::uint8_t> bytes) {
-  if (bytes.empty()) return Outcome::kRefused;
+std::vector<std::uint32_t> words_of(std::span<const std::uint8_t> bytes) {
   std::vector<std::uint32_t> words((bytes.size() - 1) / 4);
   if (!words.empty()) std::memcpy(words.data(), bytes.data() + 1, words.size() * 4);
-  return run_module(kStages[bytes[0] % std::size(kStages)], words);
+  return words;
+}
+
+Outcome run_bytes(std::span<const std::uint8_t> bytes) {
+  if (bytes.empty()) return Outcome::kRefused;
+  return run_module(kStages[bytes[0] % std::size(kStages)], words_of(bytes));
 }
 
 }  // namespace vitrine::fuzz

@@ -26,7 +26,8 @@ inline constexpr VkShaderStageFlagBits kStages[] = {VK_SHADER_STAGE_COMPUTE_BIT,
                                                     VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT};
 std::uint8_t number_of(VkShaderStageFlagBits stage);
 
-/// Bytes: the first chooses the stage, the rest are words.
+/// Inputs are bytes: the first chooses the stage, the rest are words. words_of() takes at least one byte.
+std::vector<std::uint32_t> words_of(std::span<const std::uint8_t> bytes);
 Outcome run_bytes(std::span<const std::uint8_t> bytes);
 
 }  // namespace vitrine::fuzz

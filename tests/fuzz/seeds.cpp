@@ -1,23 +1,14 @@
-// The texts of the seeds, and glslang's modules of them.
+// The texts of the seeds, and their modules.
 #include "tests/fuzz/seeds.h"
 
 #include <cstdio>
 #include <cstdlib>
-#include <iterator>
 #include <string>
 
-#include <glslang/Public/ResourceLimits.h>
-#include <glslang/Public/ShaderLang.h>
-#include <glslang/SPIRV/GlslangToSpv.h>
-
-#include "tests/fuzz/module_fuzz.h"
+#include "tests/glsl/compile.h"
 
 namespace vitrine::fuzz {
 namespace {
-
-constexpr EShLanguage kLanguages[] = {EShLangCompute,  EShLangFragment,    EShLangVertex,
-                                      EShLangGeometry, EShLangTessControl, EShLangTessEvaluation};
-static_assert(std::size(kLanguages) == std::size(kStages));
 
 struct Seed {
   VkShaderStageFlagBits stage;
@@ -163,37 +154,23 @@ void main() {
   gl_Position = gl_in[gl_PrimitiveID % 3].gl_Position + vec4(gl_TessLevelOuter[2], gl_TessCoord);
 })"},
 };
+
 Words compile_seed(const Seed& seed) {
-  const EShLanguage language = kLanguages[number_of(seed.stage)];
   const std::string text = std::string("#version 460\n") + kSubgroupExtensions + seed.text;
-  const char* strings[] = {text.c_str()};
-  glslang::TShader shader(language);
-  shader.setStrings(strings, 1);
-  shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
-  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
-  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
-  constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-  glslang::TProgram program;
-  if (!shader.parse(GetDefaultResources(), 460, false, kMessages)) {
-    std::fprintf(stderr, "%s\n%s\n", text.c_str(), shader.getInfoLog());
+  std::string log;
+  Words words = test::compile_glsl(seed.stage, text, test::VulkanVersion::k12, log);
+  if (words.empty()) {
+    std::fprintf(stderr, "%s\n%s\n", text.c_str(), log.c_str());
     std::exit(2);
   }
-  program.addShader(&shader);
-  if (!program.link(kMessages)) std::exit(2);
-  Words words;
-  glslang::SpvOptions options;
-  options.disableOptimizer = true;
-  glslang::GlslangToSpv(*program.getIntermediate(language), words, &options);
   return words;
 }
 
 }  // namespace
 
 std::vector<Module> compile_seeds() {
-  glslang::InitializeProcess();
   std::vector<Module> modules;
   for (const Seed& seed : kSeeds) modules.push_back({seed.stage, compile_seed(seed)});
-  glslang::FinalizeProcess();
   return modules;
 }
 

@@ -1,49 +1,25 @@
 // GLSL and SPIR-V assembly to words, and the options of a pipeline layout that has everything the tests bind.
 #pragma once
 
-#include <glslang/Public/ResourceLimits.h>
-#include <glslang/Public/ShaderLang.h>
-#include <glslang/SPIRV/GlslangToSpv.h>
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <spirv-tools/libspirv.hpp>
 
 #include "spirv/compile.h"
+#include "tests/glsl/compile.h"
 
 namespace vitrine::spirv::test {
 
 using Words = std::vector<std::uint32_t>;
 
 inline Words compile_glsl(VkShaderStageFlagBits stage, const std::string& body) {
-  static const bool initialized = glslang::InitializeProcess();
-  static_cast<void>(initialized);
-  const EShLanguage language = stage == VK_SHADER_STAGE_VERTEX_BIT                    ? EShLangVertex
-                               : stage == VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT    ? EShLangTessControl
-                               : stage == VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT ? EShLangTessEvaluation
-                               : stage == VK_SHADER_STAGE_GEOMETRY_BIT                ? EShLangGeometry
-                               : stage == VK_SHADER_STAGE_FRAGMENT_BIT                ? EShLangFragment
-                                                                                      : EShLangCompute;
   const std::string text = "#version 450\n" + body;
-  const char* strings[] = {text.c_str()};
-  glslang::TShader shader(language);
-  shader.setStrings(strings, 1);
-  shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
-  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
-  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
-  constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-  glslang::TProgram program;
-  Words words;
-  if (!shader.parse(GetDefaultResources(), 450, false, kMessages)) {
-    ADD_FAILURE() << shader.getInfoLog() << text;
-    return words;
-  }
-  program.addShader(&shader);
-  if (!program.link(kMessages)) {
-    ADD_FAILURE() << program.getInfoLog();
-    return words;
-  }
-  glslang::SpvOptions options;
-  options.disableOptimizer = true;
-  glslang::GlslangToSpv(*program.getIntermediate(language), words, &options);
+  std::string log;
+  Words words = vitrine::test::compile_glsl(stage, text, vitrine::test::VulkanVersion::k11, log);
+  if (words.empty()) ADD_FAILURE() << log << text;
   return words;
 }
 

@@ -1,6 +1,8 @@
 // What the front end makes of GLSL: shapes of control flow, interface, memory, refusals.
 #include "spirv/front/translate.h"
 
+#include <cstring>
+
 #include "spirv/ir_passes.h"
 #include "spirv/ir_walk.h"
 #include "spirv/rewrite/rewrite.h"

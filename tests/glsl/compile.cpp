@@ -1,0 +1,61 @@
+// glslang, as the tests and the fuzzers use it.
+#include "tests/glsl/compile.h"
+
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+
+namespace vitrine::test {
+namespace {
+
+EShLanguage language_of(VkShaderStageFlagBits stage) {
+  switch (stage) {
+    case VK_SHADER_STAGE_VERTEX_BIT:
+      return EShLangVertex;
+    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
+      return EShLangTessControl;
+    case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
+      return EShLangTessEvaluation;
+    case VK_SHADER_STAGE_GEOMETRY_BIT:
+      return EShLangGeometry;
+    case VK_SHADER_STAGE_FRAGMENT_BIT:
+      return EShLangFragment;
+    default:
+      return EShLangCompute;
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> compile_glsl(VkShaderStageFlagBits stage, const std::string& text, VulkanVersion version,
+                                        std::string& log) {
+  static const bool initialized = glslang::InitializeProcess();
+  static_cast<void>(initialized);
+  const EShLanguage language = language_of(stage);
+  const bool newer = version == VulkanVersion::k12;
+  const char* strings[] = {text.c_str()};
+  glslang::TShader shader(language);
+  shader.setStrings(strings, 1);
+  shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
+  shader.setEnvClient(glslang::EShClientVulkan, newer ? glslang::EShTargetVulkan_1_2 : glslang::EShTargetVulkan_1_1);
+  shader.setEnvTarget(glslang::EShTargetSpv, newer ? glslang::EShTargetSpv_1_5 : glslang::EShTargetSpv_1_3);
+  constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+  constexpr int kVersionOfTextsWithout = 450;
+  std::vector<std::uint32_t> words;
+  if (!shader.parse(GetDefaultResources(), kVersionOfTextsWithout, false, kMessages)) {
+    log = shader.getInfoLog();
+    return words;
+  }
+  glslang::TProgram program;
+  program.addShader(&shader);
+  if (!program.link(kMessages)) {
+    log = program.getInfoLog();
+    return words;
+  }
+  glslang::SpvOptions options;
+  options.disableOptimizer = true;
+  glslang::GlslangToSpv(*program.getIntermediate(language), words, &options);
+  return words;
+}
+
+}  // namespace vitrine::test

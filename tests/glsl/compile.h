@@ -1,0 +1,19 @@
+// GLSL to SPIR-V, for tests and fuzzers of the rooms below the driver.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <vulkan/vulkan_core.h>
+
+namespace vitrine::test {
+
+/// What the module is for: 1.1 takes SPIR-V 1.3, 1.2 SPIR-V 1.5.
+enum class VulkanVersion : std::uint8_t { k11, k12 };
+
+/// The words of `text`, a whole shader with its #version, not optimised. Empty: it does not compile, `log` says why.
+std::vector<std::uint32_t> compile_glsl(VkShaderStageFlagBits stage, const std::string& text, VulkanVersion version,
+                                        std::string& log);
+
+}  // namespace vitrine::test
