@@ -12,9 +12,9 @@
 #include "base/simd.h"
 #include "base/workers.h"
 #include "raster/arena.h"
-#include "raster/assembly.h"
-#include "raster/front.h"
-#include "raster/tile.h"
+#include "raster/front/assembly.h"
+#include "raster/front/front.h"
+#include "raster/tile/tile.h"
 #include "texel/transfer.h"
 
 namespace vitrine::raster {

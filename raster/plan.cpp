@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raster/feedback.h"
-#include "raster/hierarchical_depth.h"
+#include "raster/front/feedback.h"
+#include "raster/tile/hierarchical_depth.h"
 #include "spirv/stage_memory.h"
 #include "texel/format.h"
 

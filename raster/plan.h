@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "raster/color.h"
 #include "raster/draw.h"
+#include "raster/output/color.h"
 #include "raster/pass.h"
 #include "raster/stage.h"
 
@@ -182,9 +182,9 @@ struct PipelinePlan {
   bool shades = true;            ///< the fragment shader's run can be observed
   bool may_kill = false;         ///< discard, sample mask output, alpha to coverage
   bool windows = false;          ///< small triangles are covered in the front end (Primitive::window)
-  bool tests_rows = false;       ///< depth of whole blocks is tested row by row (raster/block.h)
-  bool hides_blocks = false;     ///< limits of stored depths reject whole blocks (raster/hierarchical_depth.h)
-  bool shades_blocks = false;    ///< nearly full blocks are shaded on their own, without packing (raster/block.h)
+  bool tests_rows = false;       ///< depth of whole blocks is tested row by row (raster/tile/block.h)
+  bool hides_blocks = false;     ///< limits of stored depths reject whole blocks (raster/tile/hierarchical_depth.h)
+  bool shades_blocks = false;    ///< nearly full blocks are shaded on their own, without packing (raster/tile/block.h)
 };
 
 /// Fills `plan`. False if nothing can be drawn (a sample mask of 0, no samples).

@@ -147,8 +147,8 @@ struct Program {
   std::uint32_t mask_count = 0;
   std::uint32_t array_bytes = 0;
   std::vector<Preset> mask_presets, register_presets;
-  /// What every wave begins with as zeros: registers whose inactive lanes a neighbour in the quad may read (an undefined
-  /// value, which must not be that of an earlier wave).
+  /// What every wave begins with as zeros: registers whose inactive lanes a neighbour in the quad may read (an
+  /// undefined value, which must not be that of an earlier wave).
   std::vector<RegisterRange> cleared;
   std::vector<MemoryOp> memory_ops;
   std::vector<ImageOp> image_ops;

@@ -1,11 +1,11 @@
 // Recording what draws and dispatches use: pipelines, descriptor sets, push constants, vertex and index buffers (Vulkan
 // 1.3.239, Pipelines: Pipeline Binding; Resource Descriptors: Descriptor Set Binding, Push Constant Updates;
 // Fixed-Function Vertex Processing; Drawing Commands).
-#include "icd/command_buffer.h"
-#include "icd/descriptors.h"
 #include "icd/entry_points.h"
-#include "icd/memory.h"
-#include "icd/pipeline.h"
+#include "icd/object/descriptors.h"
+#include "icd/object/memory.h"
+#include "icd/object/pipeline.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd::entry {
 

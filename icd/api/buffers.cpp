@@ -1,8 +1,8 @@
 // Buffers and buffer views (Vulkan 1.3.239, Resource Creation: Buffers, Buffer Views).
-#include "icd/device.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/memory.h"
-#include "icd/util.h"
+#include "icd/object/device.h"
+#include "icd/object/memory.h"
 
 namespace vitrine::icd {
 namespace {

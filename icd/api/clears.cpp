@@ -1,7 +1,7 @@
 // Recording clears (Vulkan 1.3.239, Clear Commands).
-#include "icd/command_buffer.h"
 #include "icd/entry_points.h"
-#include "icd/image.h"
+#include "icd/object/image.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
 namespace {

@@ -1,9 +1,9 @@
 // Command pools and command buffers (Vulkan 1.3.239, Command Buffers).
-#include "icd/command_buffer.h"
-#include "icd/edge.h"
+#include "icd/edge/edge.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
+#include "icd/record/command_buffer.h"
 #include "icd/replay/replay.h"
-#include "icd/util.h"
 
 namespace vitrine::icd {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <bit>
 
-#include "icd/command_buffer.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/image.h"
-#include "icd/memory.h"
-#include "icd/util.h"
+#include "icd/object/image.h"
+#include "icd/object/memory.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
 namespace {

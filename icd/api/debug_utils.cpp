@@ -3,10 +3,10 @@
 #include <array>
 
 #include "base/log.h"
-#include "icd/diagnostics.h"
+#include "icd/edge/diagnostics.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/object_notes.h"
-#include "icd/util.h"
+#include "icd/object/object_notes.h"
 
 namespace vitrine::icd {
 namespace {

@@ -2,10 +2,10 @@
 // Layouts).
 #include <algorithm>
 
-#include "icd/descriptors.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/image.h"
-#include "icd/util.h"
+#include "icd/object/descriptors.h"
+#include "icd/object/image.h"
 
 namespace vitrine::icd {
 namespace {

@@ -1,9 +1,9 @@
 // Descriptor pools and the allocation of sets (Vulkan 1.3.239, Resource Descriptors: Allocation of Descriptor Sets).
 #include <algorithm>
 
-#include "icd/descriptors.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/util.h"
+#include "icd/object/descriptors.h"
 
 namespace vitrine::icd {
 namespace {

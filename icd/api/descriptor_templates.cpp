@@ -1,12 +1,12 @@
 // Descriptor update templates and layout support (Vulkan 1.3.239, Resource Descriptors: Descriptor Update Templates;
 // Descriptor Set Layouts).
-#include "icd/descriptor_template.h"
+#include "icd/object/descriptor_template.h"
 
 #include <cstring>
 
-#include "icd/descriptors.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/util.h"
+#include "icd/object/descriptors.h"
 
 namespace vitrine::icd {
 namespace {

@@ -1,11 +1,11 @@
 // Writing and copying descriptors (Vulkan 1.3.239, Resource Descriptors: Descriptor Set Updates).
 #include <algorithm>
 
-#include "icd/descriptors.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/image.h"
-#include "icd/memory.h"
-#include "icd/util.h"
+#include "icd/object/descriptors.h"
+#include "icd/object/image.h"
+#include "icd/object/memory.h"
 
 namespace vitrine::icd {
 namespace {

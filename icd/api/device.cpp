@@ -1,8 +1,8 @@
 // Devices and queues as objects (Vulkan 1.3.239, Devices and Queues: Device Creation, Queues).
-#include "icd/device.h"
+#include "icd/object/device.h"
 
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/util.h"
 
 namespace vitrine::icd {
 namespace {

@@ -1,12 +1,12 @@
 // Recording dispatches (Vulkan 1.3.239, Dispatching Commands).
-#include "icd/command_buffer.h"
 #include "icd/entry_points.h"
-#include "icd/memory.h"
+#include "icd/object/memory.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
 namespace {
 
-// Rough nanoseconds: they only decide which thread replays (icd/queue.cpp).
+// Rough nanoseconds: they only decide which thread replays (icd/object/queue.cpp).
 constexpr std::uint64_t kDispatchCost = 500;
 constexpr std::uint64_t kWorkgroupCost = 2000;
 constexpr std::uint64_t kIndirectDispatchCost = 50000;

@@ -1,12 +1,12 @@
 // Recording draws (Vulkan 1.3.239, Drawing Commands).
-#include "icd/command_buffer.h"
 #include "icd/entry_points.h"
-#include "icd/memory.h"
+#include "icd/object/memory.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
 namespace {
 
-// Rough nanoseconds of a draw, a vertex, a shaded pixel: they only decide which thread replays (icd/queue.cpp).
+// Rough nanoseconds of a draw, a vertex, a shaded pixel: they only decide which thread replays (icd/object/queue.cpp).
 constexpr std::uint64_t kDrawCost = 2000;
 constexpr std::uint64_t kVertexCost = 10;
 constexpr std::uint64_t kIndirectDrawCost = 50000;

@@ -1,8 +1,8 @@
 // Recording dynamic state (Vulkan 1.3.239, Pipelines: Dynamic State, and the commands of the fixed-function chapters).
 #include <algorithm>
 
-#include "icd/command_buffer.h"
 #include "icd/entry_points.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
 namespace {

@@ -3,10 +3,10 @@
 // the device.
 #include <unistd.h>
 
-#include "icd/device.h"
 #include "icd/entry_points.h"
-#include "icd/external.h"
-#include "icd/memory.h"
+#include "icd/object/device.h"
+#include "icd/object/external.h"
+#include "icd/object/memory.h"
 
 namespace vitrine::icd {
 

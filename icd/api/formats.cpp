@@ -1,9 +1,9 @@
 // Format and image capabilities of physical devices (Vulkan 1.3.239, Capabilities; Sparse Resources).
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/external.h"
-#include "icd/format_properties.h"
+#include "icd/object/external.h"
+#include "icd/object/format_properties.h"
 #include "icd/registry/registry.h"
-#include "icd/util.h"
 
 namespace vitrine::icd::entry {
 

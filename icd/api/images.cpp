@@ -1,11 +1,11 @@
 // Images and image views (Vulkan 1.3.239, Resource Creation: Images, Image Views).
-#include "icd/image.h"
+#include "icd/object/image.h"
 
 #include <algorithm>
 
-#include "icd/device.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/util.h"
+#include "icd/object/device.h"
 
 namespace vitrine::icd {
 namespace {

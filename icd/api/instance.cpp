@@ -1,11 +1,11 @@
 // Instances and enumeration of physical devices (Vulkan 1.3.239, Initialization; Devices and Queues: Physical Devices,
 // Device Groups).
-#include "icd/instance.h"
+#include "icd/object/instance.h"
 
 #include <string_view>
 
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/util.h"
 
 namespace vitrine::icd {
 namespace {

@@ -1,13 +1,13 @@
 // Device memory and binding (Vulkan 1.3.239, Memory Allocation: Device Memory; Resource Creation: Resource Memory
 // Association).
-#include "icd/memory.h"
+#include "icd/object/memory.h"
 
 #include <algorithm>
 
-#include "icd/diagnostics.h"
+#include "icd/edge/diagnostics.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/image.h"
-#include "icd/util.h"
+#include "icd/object/image.h"
 #include "spirv/addresses.h"
 
 namespace vitrine::icd {

@@ -10,9 +10,9 @@
 
 #include "base/simd.h"
 #include "base/workers.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/instance.h"
-#include "icd/util.h"
+#include "icd/object/instance.h"
 
 namespace vitrine::icd {
 namespace {

@@ -1,14 +1,14 @@
 // Graphics and compute pipelines (Vulkan 1.3.239, Pipelines).
-#include "icd/pipeline.h"
+#include "icd/object/pipeline.h"
 
 #include <algorithm>
 #include <chrono>
 
 #include "base/check.h"
-#include "icd/diagnostics.h"
+#include "icd/edge/diagnostics.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/render_pass.h"
-#include "icd/util.h"
+#include "icd/object/render_pass.h"
 
 namespace vitrine::icd {
 namespace {

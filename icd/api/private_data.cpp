@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "icd/entry_points.h"
-#include "icd/object_notes.h"
+#include "icd/object/object_notes.h"
 
 namespace vitrine::icd {
 namespace {

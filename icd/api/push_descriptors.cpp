@@ -3,9 +3,9 @@
 // keep what they saw.
 #include <algorithm>
 
-#include "icd/command_buffer.h"
-#include "icd/descriptor_template.h"
 #include "icd/entry_points.h"
+#include "icd/object/descriptor_template.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
 namespace {

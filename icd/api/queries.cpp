@@ -5,11 +5,11 @@
 #include <cstring>
 #include <memory>
 
-#include "icd/command_buffer.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/memory.h"
-#include "icd/query_pool.h"
-#include "icd/util.h"
+#include "icd/object/memory.h"
+#include "icd/object/query_pool.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
 namespace {

@@ -1,8 +1,8 @@
 // Queue submission and waiting for queues (Vulkan 1.3.239, Command Buffers: Command Buffer Submission; Synchronization:
 // Wait Idle Operations).
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/queue.h"
-#include "icd/util.h"
+#include "icd/object/queue.h"
 
 namespace vitrine::icd {
 namespace {

@@ -1,8 +1,8 @@
 // Recording render pass instances (Vulkan 1.3.239, Render Pass: Render Pass Commands).
-#include "icd/command_buffer.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/render_pass.h"
-#include "icd/util.h"
+#include "icd/object/render_pass.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
 namespace {

@@ -1,10 +1,10 @@
 // Render passes and framebuffers as objects (Vulkan 1.3.239, Render Pass: Render Pass Creation, Framebuffers).
 #include <algorithm>
 
-#include "icd/device.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/render_pass.h"
-#include "icd/util.h"
+#include "icd/object/device.h"
+#include "icd/object/render_pass.h"
 
 namespace vitrine::icd {
 namespace {

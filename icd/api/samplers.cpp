@@ -1,10 +1,10 @@
 // Samplers and Y'CbCr conversions (Vulkan 1.3.239, Samplers).
 #include <cstring>
 
-#include "icd/device.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/image.h"
-#include "icd/util.h"
+#include "icd/object/device.h"
+#include "icd/object/image.h"
 #include "texel/sampler/plan.h"
 #include "texel/swizzle.h"
 

@@ -1,11 +1,11 @@
 // Shader modules and pipeline caches (Vulkan 1.3.239, Shaders: Shader Modules; Pipelines: Pipeline Cache).
-#include "icd/shader_module.h"
+#include "icd/object/shader_module.h"
 
 #include <cstring>
 
-#include "icd/device.h"
-#include "icd/diagnostics.h"
+#include "icd/edge/diagnostics.h"
 #include "icd/entry_points.h"
+#include "icd/object/device.h"
 #include "spirv/compile.h"
 
 namespace vitrine::icd::entry {

@@ -1,9 +1,9 @@
 // Surfaces and queries of what they can do (Vulkan 1.3.239, Window System Integration: WSI Surface, Surface Queries).
 #include <array>
 
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/instance.h"
-#include "icd/util.h"
+#include "icd/object/instance.h"
 #include "icd/wsi/surface.h"
 
 namespace vitrine::icd {

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <chrono>
 
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/queue.h"
-#include "icd/sync.h"
-#include "icd/util.h"
+#include "icd/object/queue.h"
+#include "icd/object/sync.h"
 #include "icd/wsi/swapchain.h"
 
 namespace vitrine::icd {

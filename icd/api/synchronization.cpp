@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <chrono>
 
-#include "icd/diagnostics.h"
+#include "icd/edge/diagnostics.h"
+#include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/sync.h"
-#include "icd/util.h"
+#include "icd/object/sync.h"
 
 namespace vitrine::icd {
 namespace {

@@ -1,9 +1,9 @@
 // Recording events and barriers (Vulkan 1.3.239, Synchronization and Cache Control: Events, Pipeline Barriers).
 // Commands replay one after the other and memory is coherent, so that a barrier only ends what a render pass has put
 // off.
-#include "icd/command_buffer.h"
 #include "icd/entry_points.h"
-#include "icd/sync.h"
+#include "icd/object/sync.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd::entry {
 

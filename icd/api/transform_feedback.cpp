@@ -1,10 +1,10 @@
 // Recording of transform feedback (VK_EXT_transform_feedback; Vulkan 1.3.239, Transform Feedback).
 #include <algorithm>
 
-#include "icd/command_buffer.h"
 #include "icd/entry_points.h"
-#include "icd/memory.h"
-#include "icd/query_pool.h"
+#include "icd/object/memory.h"
+#include "icd/object/query_pool.h"
+#include "icd/record/command_buffer.h"
 #include "spirv/shader.h"
 
 namespace vitrine::icd {

@@ -102,7 +102,7 @@ enum class Feature : std::uint16_t {{
                         for s in self.registry.structs.values() if s.stype and "," not in s.stype)
         return f"""#pragma once
 
-#include "icd/vulkan_api.h"
+#include "icd/edge/vulkan_api.h"
 
 namespace vitrine::icd {{
 
@@ -120,7 +120,7 @@ inline constexpr VkStructureType kStructureTypeOf = VK_STRUCTURE_TYPE_MAX_ENUM;
 
 #include <type_traits>
 
-#include "icd/vulkan_api.h"
+#include "icd/edge/vulkan_api.h"
 
 /// Commands are ordinary functions named after the Vulkan command without "vk". They are declared weak: one that no
 /// source file defines is null, and icd/registry/ reports it if its version or extension is claimed.
@@ -260,7 +260,7 @@ namespace vitrine::icd::entry {{
         claimed_features = ["Feature::" + n for n in self.feature_names if n in self.claims.features]
         return f"""#include <cstddef>
 
-#include "icd/edge.h"
+#include "icd/edge/edge.h"
 #include "icd/entry_points.h"
 #include "icd/registry/registry.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "icd/util.h"
+#include "icd/edge/util.h"
 
 namespace vitrine::icd {
 namespace {

@@ -7,8 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include "icd/edge/vulkan_api.h"
 #include "icd/enums.h"
-#include "icd/vulkan_api.h"
 
 namespace vitrine::icd {
 

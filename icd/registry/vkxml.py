@@ -7,7 +7,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
 
-# Platforms whose declarations icd/vulkan_api.h can supply without the window system's own headers.
+# Platforms whose declarations icd/edge/vulkan_api.h can supply without the window system's own headers.
 PLATFORMS = {None, "xcb", "xlib", "wayland"}
 APIS = {"vulkan", "vulkanbase", "vulkancompute", "vulkangraphics"}
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "icd/allocation.h"
+#include "icd/edge/allocation.h"
 
 namespace vitrine::icd {
 

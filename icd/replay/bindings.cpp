@@ -1,7 +1,7 @@
 // Replay of what sets state: bindings, push constants, buffers; and how it reaches a draw or dispatch.
 #include <algorithm>
 
-#include "icd/memory.h"
+#include "icd/object/memory.h"
 #include "icd/replay/replay.h"
 
 namespace vitrine::icd {

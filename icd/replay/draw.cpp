@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "icd/memory.h"
+#include "icd/object/memory.h"
 #include "icd/replay/replay.h"
 
 namespace vitrine::icd {

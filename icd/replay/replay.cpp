@@ -1,8 +1,8 @@
 // The loop over recorded commands.
 #include "icd/replay/replay.h"
 
-#include "icd/command_buffer.h"
-#include "icd/sync.h"
+#include "icd/object/sync.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
 namespace {

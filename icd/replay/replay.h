@@ -4,11 +4,11 @@
 
 #include <optional>
 
-#include "icd/commands.h"
-#include "icd/descriptors.h"
-#include "icd/pipeline.h"
-#include "icd/query_pool.h"
-#include "icd/render_pass.h"
+#include "icd/object/descriptors.h"
+#include "icd/object/pipeline.h"
+#include "icd/object/query_pool.h"
+#include "icd/object/render_pass.h"
+#include "icd/record/commands.h"
 #include "icd/replay/arena.h"
 #include "icd/replay/transient.h"
 #include "raster/pass.h"

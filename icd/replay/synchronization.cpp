@@ -1,9 +1,9 @@
 // Replay of queries, events and barriers.
 #include <bit>
 
-#include "icd/memory.h"
+#include "icd/object/memory.h"
+#include "icd/object/sync.h"
 #include "icd/replay/replay.h"
-#include "icd/sync.h"
 
 namespace vitrine::icd {
 namespace {

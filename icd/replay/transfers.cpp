@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "base/workers.h"
-#include "icd/memory.h"
+#include "icd/object/memory.h"
 #include "icd/replay/replay.h"
 #include "texel/transfer.h"
 

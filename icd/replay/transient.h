@@ -4,7 +4,7 @@
 
 #include <list>
 
-#include "icd/image.h"
+#include "icd/object/image.h"
 
 namespace vitrine::icd {
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "icd/object.h"
+#include "icd/object/object.h"
 #include "icd/wsi/window.h"
 
 namespace vitrine::icd {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <mutex>
 
-#include "icd/device.h"
-#include "icd/image.h"
-#include "icd/memory.h"
+#include "icd/object/device.h"
+#include "icd/object/image.h"
+#include "icd/object/memory.h"
 #include "icd/wsi/surface.h"
 
 namespace vitrine::icd {

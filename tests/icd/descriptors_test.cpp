@@ -1,7 +1,7 @@
 // Descriptor pools and their limits; writes and copies into sets; dynamic buffers.
-#include "icd/descriptors.h"
+#include "icd/object/descriptors.h"
 
-#include "icd/memory.h"
+#include "icd/object/memory.h"
 #include "tests/icd/fixture.h"
 
 namespace vitrine::icd::test {

@@ -8,8 +8,8 @@
 #include <map>
 #include <mutex>
 
-#include "icd/util.h"
-#include "icd/vulkan_api.h"
+#include "icd/edge/util.h"
+#include "icd/edge/vulkan_api.h"
 
 extern "C" VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vk_icdGetInstanceProcAddr(VkInstance instance, const char* name);
 

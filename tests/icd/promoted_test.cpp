@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string>
 
-#include "icd/diagnostics.h"
+#include "icd/edge/diagnostics.h"
 #include "tests/icd/fixture.h"
 #include "tests/icd/shaders.h"
 

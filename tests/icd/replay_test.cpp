@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "icd/command_buffer.h"
+#include "icd/record/command_buffer.h"
 #include "tests/icd/fixture.h"
 
 namespace vitrine::icd::test {

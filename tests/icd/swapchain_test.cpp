@@ -2,7 +2,7 @@
 #include <set>
 #include <vector>
 
-#include "icd/image.h"
+#include "icd/object/image.h"
 #include "tests/icd/fixture.h"
 
 namespace vitrine::icd::test {

@@ -2,8 +2,8 @@
 #include <string>
 #include <thread>
 
-#include "icd/diagnostics.h"
-#include "icd/sync.h"
+#include "icd/edge/diagnostics.h"
+#include "icd/object/sync.h"
 #include "tests/icd/fixture.h"
 
 namespace vitrine::icd::test {

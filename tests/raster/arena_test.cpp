@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "raster/setup.h"
+#include "raster/front/setup.h"
 
 namespace vitrine::raster {
 namespace {

@@ -12,9 +12,9 @@
 #include "tests/simd_targets.h"
 #include "texel/capabilities.h"
 #include "texel/codec.h"
+#include "texel/load_store/shape.h"
 #include "texel/sampler.h"
 #include "texel/sampler/plan.h"
-#include "texel/sampler/shape.h"
 
 namespace vitrine::texel {
 namespace {

@@ -16,7 +16,7 @@
 #include "base/float_mode.h"
 #include "base/numeric.h"
 #include "tests/simd_targets.h"
-#include "texel/sampler/anisotropic.h"
+#include "texel/sampler/model/anisotropic.h"
 #include "texel/sampler/prepared.h"
 
 namespace vitrine::texel {

@@ -14,7 +14,7 @@
 #include "texel/codec/four_bytes-inl.h"
 #include "texel/codec/half-inl.h"
 #include "texel/codec/widen-inl.h"
-#include "texel/sampler/wave_fetch-inl.h"
+#include "texel/sampler/wave/fetch-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {

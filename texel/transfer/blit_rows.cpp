@@ -14,7 +14,7 @@
 #include "texel/capabilities.h"
 #include "texel/codec/field_rows.h"
 #include "texel/codec/rows.h"
-#include "texel/sampler/address.h"
+#include "texel/sampler/model/address.h"
 #include "texel/transfer/blend_rows.h"
 #include "texel/transfer/blit.h"
 #include "texel/transfer/halve_rows.h"

@@ -1,0 +1,33 @@
+// Messages to the application: VK_EXT_debug_utils messengers first, VITRINE_LOG on stderr beside them.
+#pragma once
+
+#include <string_view>
+
+#include "icd/object/device.h"
+
+namespace vitrine::icd {
+
+struct ObjectRef {
+  VkObjectType type = VK_OBJECT_TYPE_UNKNOWN;
+  std::uint64_t handle = 0;
+};
+template <class T>
+ObjectRef ref(const T& object) {
+  return {T::kType, reinterpret_cast<std::uint64_t>(&object)};
+}
+
+/// Sends a message to every messenger of the instance that listens for `severity`. `id` names the kind of message
+/// ("pipeline", "queue"...). Never throws.
+void report(Instance& instance, VkDebugUtilsMessageSeverityFlagBitsEXT severity, ObjectRef object, const char* id,
+            std::string_view message) noexcept;
+inline void report(Device& device, VkDebugUtilsMessageSeverityFlagBitsEXT severity, ObjectRef object, const char* id,
+                   std::string_view message) noexcept {
+  report(device.physical_device.instance, severity, object, id, message);
+}
+/// An error that an API call is about to return.
+template <class Owner>
+void report_error(Owner& owner, ObjectRef object, const char* id, std::string_view message) noexcept {
+  report(owner, VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT, object, id, message);
+}
+
+}  // namespace vitrine::icd

@@ -1,0 +1,49 @@
+// VkDevice and VkQueue: what every other object is made from.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+
+#include "icd/object/instance.h"
+#include "icd/object/shader_table.h"
+
+namespace vitrine::icd {
+
+struct Device;
+struct QueueWorker;
+struct ReplayState;
+
+/// The one queue of the universal family. What runs on it is the queue chapter's business: it hangs its thread and
+/// lists on `worker`.
+struct Queue : DispatchableObject<VkQueue, VK_OBJECT_TYPE_QUEUE> {
+  Queue(const HostMemory& m, Device& owner) : DispatchableObject(m), device(owner) {}
+
+  Device& device;
+  VkDeviceQueueCreateFlags flags = 0;
+  QueueWorker* worker = nullptr;
+};
+
+struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {
+  Device(const HostMemory& m, PhysicalDevice& parent)
+      : DispatchableObject(m), physical_device(parent), queue(m, *this), shaders(m) {}
+
+  PhysicalDevice& physical_device;
+  ExtensionSet extensions;  ///< enabled
+  FeatureSet features;      ///< enabled
+  Queue queue;
+  ShaderTable shaders;
+  std::atomic<std::uint64_t> next_private_data_slot = 1;
+  std::shared_ptr<ReplayState> replay;  ///< made with the first command pool; used by whoever runs a batch of the queue
+
+  /// Guards the states of fences, semaphores and events, and `lost` (icd/object/sync.h).
+  std::mutex sync_mutex;
+  std::condition_variable sync_changed;
+  bool lost = false;
+};
+
+/// Defined with the queue (weak until then): called at the end of vkCreateDevice and the start of vkDestroyDevice.
+/// start_queue may throw std::bad_alloc.
+__attribute__((weak)) void start_queue(Queue& queue);
+__attribute__((weak)) void stop_queue(Queue& queue) noexcept;
+
+}  // namespace vitrine::icd

@@ -1,0 +1,82 @@
+// Device memory as mappings (Linux): anonymous, of a memory file, or the application's own pages.
+#include "icd/object/memory.h"
+
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+namespace vitrine::icd {
+namespace {
+
+std::size_t page_size() { return static_cast<std::size_t>(sysconf(_SC_PAGESIZE)); }
+
+/// NORESERVE: a large allocation that is never touched costs address space only.
+void* map_anonymous(std::size_t bytes) {
+  return mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+}
+
+bool is_readable(const void* address) {
+  std::byte out{};
+  iovec to{&out, 1}, from{const_cast<void*>(address), 1};
+  return process_vm_readv(getpid(), &to, 1, &from, 1, 0) == 1;
+}
+
+}  // namespace
+
+DeviceMemory::DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<VkDeviceSize>& total)
+    : Object(m), size(bytes) {
+  mapping_bytes_ = size + kTailBytes;
+  void* mapping = map_anonymous(mapping_bytes_);
+  if (mapping == MAP_FAILED) return;
+  mapping_ = mapping;
+  data = static_cast<std::byte*>(mapping);
+  counted_ = &total;
+  total += size;
+}
+
+DeviceMemory::~DeviceMemory() {
+  if (mapping_) munmap(mapping_, mapping_bytes_);
+  if (file >= 0) close(file);
+  if (counted_) *counted_ -= size;
+}
+
+bool DeviceMemory::map_file(int descriptor) {
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0 || static_cast<VkDeviceSize>(status.st_size) < size) return false;
+  // The file lies over the front of an anonymous mapping that is a page longer.
+  const std::size_t page = page_size();
+  mapping_bytes_ = (size + page - 1) / page * page + page;
+  void* mapping = map_anonymous(mapping_bytes_);
+  if (mapping == MAP_FAILED) return false;
+  mapping_ = mapping;
+  if (mmap(mapping, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, descriptor, 0) == MAP_FAILED) return false;
+  data = static_cast<std::byte*>(mapping);
+  file = descriptor;
+  return true;
+}
+
+bool DeviceMemory::map_new_file() {
+  const int descriptor = memfd_create("vitrine-memory", MFD_CLOEXEC);
+  if (descriptor < 0) return false;
+  if (ftruncate(descriptor, static_cast<off_t>(size)) == 0 && map_file(descriptor)) return true;
+  close(descriptor);
+  return false;
+}
+
+bool DeviceMemory::use_host_pages(void* pages) {
+  std::byte* end = static_cast<std::byte*>(pages) + size;
+  const std::size_t page = page_size();
+  void* guard = mmap(end, page, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE, -1, 0);
+  if (guard == end) {
+    mapping_ = guard;
+    mapping_bytes_ = page;
+  } else {
+    if (guard != MAP_FAILED) munmap(guard, page);
+    if (!is_readable(end)) return false;
+  }
+  data = static_cast<std::byte*>(pages);
+  return true;
+}
+
+}  // namespace vitrine::icd

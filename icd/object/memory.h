@@ -1,0 +1,62 @@
+// VkDeviceMemory, VkBuffer, VkBufferView: host memory seen by the device.
+#pragma once
+
+#include <atomic>
+
+#include "icd/object/object.h"
+#include "texel/view.h"
+
+namespace vitrine::icd {
+
+/// Readable bytes behind the last one of every allocation, so that vector loads of a tail need no care.
+inline constexpr VkDeviceSize kTailBytes = 64;
+
+/// A zero-filled mapping; pages appear when they are touched. kTailBytes follow the last one. It is private, or of a
+/// file that other devices and processes can map, or the application's.
+struct DeviceMemory : Object<VkDeviceMemory, VK_OBJECT_TYPE_DEVICE_MEMORY> {
+  /// data stays null if the system has no memory. `total` counts the bytes while the object lives.
+  DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<VkDeviceSize>& total);
+  /// Nothing yet: one of the functions below follows.
+  DeviceMemory(const HostMemory& m, VkDeviceSize bytes) : Object(m), size(bytes) {}
+  ~DeviceMemory();
+
+  /// Maps `size` bytes of the file and owns the descriptor. False: not that many bytes, or no memory; the descriptor is
+  /// the caller's again.
+  bool map_file(int descriptor);
+  /// Makes a file and maps it. False: the system has no memory.
+  bool map_new_file();
+  /// Uses the application's pages. False if what follows them cannot be read.
+  bool use_host_pages(void* pages);
+
+  std::byte* data = nullptr;
+  VkDeviceSize size = 0;
+  int file = -1;
+
+ private:
+  void* mapping_ = nullptr;  ///< what ends with the object; null: nothing
+  std::size_t mapping_bytes_ = 0;
+  std::atomic<VkDeviceSize>* counted_ = nullptr;
+};
+
+struct Buffer : Object<VkBuffer, VK_OBJECT_TYPE_BUFFER> {
+  using Object::Object;
+
+  VkBufferCreateFlags flags = 0;
+  VkBufferUsageFlags usage = 0;
+  VkDeviceSize size = 0;
+  std::byte* data = nullptr;  ///< null until memory is bound
+
+  /// Bytes from `offset` on that `range` (may be VK_WHOLE_SIZE) names, never past the end.
+  VkDeviceSize resolve_range(VkDeviceSize offset, VkDeviceSize range) const {
+    if (offset >= size) return 0;
+    return range < size - offset ? range : size - offset;
+  }
+};
+
+struct BufferView : Object<VkBufferView, VK_OBJECT_TYPE_BUFFER_VIEW> {
+  using Object::Object;
+
+  texel::BufferTexelView view;
+};
+
+}  // namespace vitrine::icd

@@ -1,0 +1,68 @@
+// VkPipeline: compiled stages and the fixed-function state that does not change.
+#pragma once
+
+#include "icd/object/descriptors.h"
+#include "icd/object/shader_cache.h"
+#include "icd/record/dynamic_state.h"
+#include "raster/draw.h"
+
+namespace vitrine::icd {
+
+/// A stage of a library, which is compiled when the library is linked: copies of what the application gave.
+struct LibraryStage {
+  explicit LibraryStage(const HostMemory& m) : words(m), entry_point(m), map(m), data(m) {}
+
+  VkShaderStageFlagBits stage = VK_SHADER_STAGE_VERTEX_BIT;
+  Vector<std::uint32_t> words;
+  String entry_point;
+  std::uint32_t subgroup_size = 0;  ///< required; 0: none is
+  Vector<VkSpecializationMapEntry> map;
+  Vector<std::byte> data;
+};
+
+inline constexpr VkGraphicsPipelineLibraryFlagsEXT kAllPipelineParts =
+    VK_GRAPHICS_PIPELINE_LIBRARY_VERTEX_INPUT_INTERFACE_BIT_EXT |
+    VK_GRAPHICS_PIPELINE_LIBRARY_PRE_RASTERIZATION_SHADERS_BIT_EXT |
+    VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT |
+    VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT;
+
+/// Immutable after creation.
+struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
+  explicit Pipeline(const HostMemory& m) : Object(m), library_stages(m) {}
+
+  VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS;
+  std::shared_ptr<const PipelineLayoutShape> layout;
+  // graphics
+  std::shared_ptr<const CompiledShader> vertex;
+  std::shared_ptr<const CompiledShader> control, evaluation, geometry;  ///< may be null
+  std::shared_ptr<const CompiledShader> fragment;                       ///< may be null
+  raster::State state;
+  DynamicStates dynamic;
+  ColorWrites color_writes = kAllColorWrites;
+  bool clip_follows_clamp = true;  ///< depth clipping is off where depth clamping is on
+  VertexStreams streams{};
+  std::uint32_t live_colors = 0;  ///< bit i: there is a colour attachment i
+  /// Of a library: the parts that it has, and its stages, not yet compiled.
+  VkGraphicsPipelineLibraryFlagsEXT parts = 0;
+  Vector<LibraryStage> library_stages;
+  /// Without rasterization for good: there is no fragment stage.
+  bool never_rasterizes() const {
+    return state.rasterizer_discard && !dynamic.test(DynamicState::kRasterizerDiscardEnable);
+  }
+  // compute
+  std::shared_ptr<const CompiledShader> compute;
+};
+
+struct Subpass;
+
+/// Fills the state of `parts` from the create info; `subpass` tells which attachments there are.
+void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& info, const Subpass& subpass,
+                       VkGraphicsPipelineLibraryFlagsEXT parts);
+
+/// The parts that a create info itself has: all, unless it makes or links libraries.
+VkGraphicsPipelineLibraryFlagsEXT own_parts(const VkGraphicsPipelineCreateInfo& info);
+/// Takes over the parts and stages of a library.
+void link_library(Pipeline& pipeline, const Pipeline& library);
+LibraryStage copy_stage(const VkPipelineShaderStageCreateInfo& stage, const HostMemory& memory);
+
+}  // namespace vitrine::icd

@@ -1,0 +1,37 @@
+// VkQueryPool: counters that replay fills and the host reads.
+#pragma once
+
+#include <atomic>
+
+#include "icd/object/device.h"
+
+namespace vitrine::icd {
+
+inline constexpr std::uint32_t kStatisticsCounters = 11;
+
+struct QueryPool : Object<VkQueryPool, VK_OBJECT_TYPE_QUERY_POOL> {
+  QueryPool(const HostMemory& m, const VkQueryPoolCreateInfo& info);
+  ~QueryPool();
+
+  VkQueryType type;
+  VkQueryPipelineStatisticFlags statistics;  ///< enabled ones: the values a result consists of
+  std::uint32_t count;
+  std::uint32_t stride;  ///< counters per query: all 11 statistics in bit order; written and needed primitives; or one
+  std::atomic<std::uint64_t>* counters;
+  std::atomic<std::uint8_t>* available;
+
+  std::atomic<std::uint64_t>* counters_of(std::uint32_t query) const { return counters + std::size_t{query} * stride; }
+};
+
+/// What timestamps are: CLOCK_MONOTONIC.
+std::uint64_t monotonic_nanoseconds();
+
+/// Sets the counters of a range to zero and the queries unavailable.
+void reset_queries(QueryPool& pool, std::uint32_t first, std::uint32_t count);
+
+/// Writes the results of a range as VkQueryResultFlags say (without waiting), `stride` bytes apart, no byte beyond
+/// `size`. VK_NOT_READY if a query was not available.
+VkResult write_query_results(const QueryPool& pool, std::uint32_t first, std::uint32_t count, std::byte* out,
+                             std::size_t size, VkDeviceSize stride, VkQueryResultFlags flags);
+
+}  // namespace vitrine::icd

@@ -1,0 +1,236 @@
+// The queue: a list of batches and, once one has to wait or is large, a thread that works through it.
+#include "icd/object/queue.h"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <mutex>
+#include <system_error>
+#include <thread>
+
+#include "icd/object/sync.h"
+#include "icd/record/command_buffer.h"
+#include "icd/replay/replay.h"
+
+namespace vitrine::icd {
+
+/// A batch on its way through the queue.
+struct Batch {
+  explicit Batch(const HostMemory& m) : memory(m), waits(m), command_buffers(m), calls(m), signals(m) {}
+
+  HostMemory memory;
+  Vector<SemaphoreOp> waits;
+  Vector<VkCommandBuffer> command_buffers;
+  Vector<QueueCall> calls;
+  Vector<SemaphoreOp> signals;
+  VkFence fence = VK_NULL_HANDLE;
+  Batch* next = nullptr;
+};
+
+struct QueueWorker {
+  std::mutex mutex;
+  std::condition_variable changed;
+  Batch* first = nullptr;
+  Batch* last = nullptr;
+  bool running = false;  ///< a batch is executing, on whatever thread
+  bool stopping = false;
+  std::thread thread;
+
+  bool idle() const { return first == nullptr && !running; }
+};
+
+namespace {
+
+/// Work below this many estimated nanoseconds stays on the submitting thread.
+constexpr std::uint64_t kInlineCost = 150'000;
+
+Batch* make_batch(const HostMemory& memory, const BatchInfo& info) {
+  void* storage = memory.allocate(sizeof(Batch), alignof(Batch), VK_SYSTEM_ALLOCATION_SCOPE_DEVICE);
+  Batch* batch = ::new (storage) Batch(memory);
+  try {
+    batch->waits.assign(info.waits.begin(), info.waits.end());
+    batch->command_buffers.assign(info.command_buffers.begin(), info.command_buffers.end());
+    batch->calls.assign(info.calls.begin(), info.calls.end());
+    batch->signals.assign(info.signals.begin(), info.signals.end());
+    batch->fence = info.fence;
+  } catch (...) {
+    batch->~Batch();
+    memory.free(storage);
+    throw;
+  }
+  return batch;
+}
+
+void free_batch(Batch* batch) noexcept {
+  const HostMemory memory = batch->memory;
+  batch->~Batch();
+  memory.free(batch);
+}
+
+/// Batches between creation and the queue.
+class BatchList {
+ public:
+  ~BatchList() {
+    while (first_) free_batch(take());
+  }
+  void append(Batch* batch) {
+    (last_ ? last_->next : first_) = batch;
+    last_ = batch;
+  }
+  Batch* take() {
+    Batch* batch = first_;
+    first_ = batch->next;
+    if (!first_) last_ = nullptr;
+    batch->next = nullptr;
+    return batch;
+  }
+  bool empty() const { return first_ == nullptr; }
+
+ private:
+  Batch* first_ = nullptr;
+  Batch* last_ = nullptr;
+};
+
+/// Executes one batch on the calling thread. After a device loss only the fences and swapchains are still served, so
+/// that nobody waits for ever.
+void execute(Device& device, const Batch& batch) noexcept {
+  bool lost = false;
+  for (const SemaphoreOp& op : batch.waits) {
+    lost |= !wait_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
+  }
+  for (const VkCommandBuffer buffer : batch.command_buffers) {
+    if (lost) break;
+    if (replay(device, from_handle<CommandBuffer>(buffer)) != VK_SUCCESS) {
+      lose_device(device, "a command buffer could not be executed");
+      lost = true;
+    }
+  }
+  for (const QueueCall& call : batch.calls) call.run(call.object, call.argument);
+  if (lost) return;
+  for (const SemaphoreOp& op : batch.signals) {
+    signal_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
+  }
+  if (batch.fence) signal_fence(device, from_handle<Fence>(batch.fence));
+}
+
+/// Whether executing the batch now cannot block, and is short.
+bool fits_inline(Device& device, const BatchInfo& info) {
+  std::uint64_t cost = 0;
+  for (const VkCommandBuffer handle : info.command_buffers) {
+    const CommandBuffer& buffer = from_handle<CommandBuffer>(handle);
+    if (buffer.waits_for_host) return false;
+    cost += buffer.cost;
+  }
+  if (cost > kInlineCost) return false;
+  const std::lock_guard lock(device.sync_mutex);
+  return std::all_of(info.waits.begin(), info.waits.end(),
+                     [](const SemaphoreOp& op) { return is_reached(from_handle<Semaphore>(op.semaphore), op.value); });
+}
+
+void work(Queue& queue, QueueWorker& worker) {
+  pthread_setname_np(pthread_self(), "vitrine-queue");
+  std::unique_lock lock(worker.mutex);
+  for (;;) {
+    worker.changed.wait(lock, [&] { return worker.stopping || (worker.first && !worker.running); });
+    if (!worker.first || worker.running) {
+      if (worker.stopping) return;
+      continue;
+    }
+    Batch* batch = worker.first;
+    worker.first = batch->next;
+    if (!worker.first) worker.last = nullptr;
+    worker.running = true;
+    lock.unlock();
+    execute(queue.device, *batch);
+    free_batch(batch);
+    lock.lock();
+    worker.running = false;
+    worker.changed.notify_all();
+  }
+}
+
+bool is_lost(Device& device) {
+  const std::lock_guard lock(device.sync_mutex);
+  return device.lost;
+}
+
+/// Runs the batches here, each while the queue is marked busy. The caller has marked it.
+void run_inline(Queue& queue, QueueWorker& worker, BatchList& list) noexcept {
+  while (!list.empty()) {
+    Batch* batch = list.take();
+    execute(queue.device, *batch);
+    free_batch(batch);
+  }
+  const std::lock_guard lock(worker.mutex);
+  worker.running = false;
+  worker.changed.notify_all();
+}
+
+/// False when the system has no thread to give.
+bool start_thread(Queue& queue, QueueWorker& worker) {
+  if (worker.thread.joinable()) return true;
+  try {
+    worker.thread = std::thread([&queue, &worker] { work(queue, worker); });
+  } catch (const std::system_error&) {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void start_queue(Queue& queue) {
+  const HostMemory& memory = queue.device.memory;
+  void* storage = memory.allocate(sizeof(QueueWorker), alignof(QueueWorker), VK_SYSTEM_ALLOCATION_SCOPE_DEVICE);
+  queue.worker = ::new (storage) QueueWorker;
+}
+
+void stop_queue(Queue& queue) noexcept {
+  QueueWorker* worker = queue.worker;
+  if (!worker) return;
+  {
+    const std::lock_guard lock(worker->mutex);
+    worker->stopping = true;
+  }
+  worker->changed.notify_all();
+  if (worker->thread.joinable()) worker->thread.join();
+  worker->~QueueWorker();
+  queue.device.memory.free(worker);
+  queue.worker = nullptr;
+}
+
+VkResult submit(Queue& queue, std::span<const BatchInfo> batches) {
+  if (is_lost(queue.device)) return VK_ERROR_DEVICE_LOST;
+  QueueWorker& worker = *queue.worker;
+  BatchList list;
+  for (const BatchInfo& info : batches) list.append(make_batch(queue.device.memory, info));
+  const bool small = std::all_of(batches.begin(), batches.end(),
+                                 [&](const BatchInfo& info) { return fits_inline(queue.device, info); });
+  std::unique_lock lock(worker.mutex);
+  if ((small && worker.idle()) || !start_thread(queue, worker)) {
+    worker.changed.wait(lock, [&] { return worker.idle(); });
+    worker.running = true;
+    lock.unlock();
+    run_inline(queue, worker, list);
+    return is_lost(queue.device) ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
+  }
+  while (!list.empty()) {
+    Batch* batch = list.take();
+    (worker.last ? worker.last->next : worker.first) = batch;
+    worker.last = batch;
+  }
+  lock.unlock();
+  worker.changed.notify_all();
+  return VK_SUCCESS;
+}
+
+VkResult wait_idle(Queue& queue) {
+  QueueWorker& worker = *queue.worker;
+  {
+    std::unique_lock lock(worker.mutex);
+    worker.changed.wait(lock, [&] { return worker.idle(); });
+  }
+  return is_lost(queue.device) ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
+}
+
+}  // namespace vitrine::icd

@@ -1,0 +1,45 @@
+// VkRenderPass and VkFramebuffer.
+#pragma once
+
+#include "icd/object/image.h"
+
+namespace vitrine::icd {
+
+struct Attachment {
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  std::uint32_t samples = 1;
+  VkAttachmentLoadOp load = VK_ATTACHMENT_LOAD_OP_DONT_CARE;          ///< colour or depth
+  VkAttachmentLoadOp stencil_load = VK_ATTACHMENT_LOAD_OP_DONT_CARE;  ///< stencil
+};
+
+struct Subpass {
+  explicit Subpass(const HostMemory& m) : inputs(m), colors(m), resolves(m), first_uses(m) {}
+
+  // Indices of attachments; VK_ATTACHMENT_UNUSED where there is none.
+  Vector<std::uint32_t> inputs, colors, resolves;  ///< resolves: empty, or as many as colours
+  std::uint32_t depth_stencil = VK_ATTACHMENT_UNUSED;
+  std::uint32_t depth_stencil_resolve = VK_ATTACHMENT_UNUSED;
+  VkResolveModeFlagBits depth_resolve_mode = VK_RESOLVE_MODE_NONE, stencil_resolve_mode = VK_RESOLVE_MODE_NONE;
+  std::uint32_t view_mask = 0;
+  std::uint32_t forced_samples = 1;  ///< of single-sampled attachments while they are drawn to
+  Vector<std::uint32_t> first_uses;  ///< attachments no earlier subpass uses: their load ops happen here
+};
+
+struct RenderPass : Object<VkRenderPass, VK_OBJECT_TYPE_RENDER_PASS> {
+  explicit RenderPass(const HostMemory& m) : Object(m), attachments(m), subpasses(m) {}
+
+  Vector<Attachment> attachments;
+  Vector<Subpass> subpasses;
+};
+
+/// The sample count of a VkMultisampledRenderToSingleSampledInfoEXT in the chain, 1 if it is off.
+std::uint32_t forced_samples(const void* chain);
+
+struct Framebuffer : Object<VkFramebuffer, VK_OBJECT_TYPE_FRAMEBUFFER> {
+  explicit Framebuffer(const HostMemory& m) : Object(m), attachments(m) {}
+
+  Vector<const ImageView*> attachments;
+  std::uint32_t width = 0, height = 0, layers = 1;
+};
+
+}  // namespace vitrine::icd

@@ -1,0 +1,37 @@
+// Compiled shaders by what they were compiled from. The device knows all that are alive (a second pipeline from the
+// same words costs a look-up); a VkPipelineCache keeps those it saw alive.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "icd/object/descriptors.h"
+#include "icd/object/shader_module.h"
+
+namespace vitrine::icd {
+
+/// A shader and what it refers to: immutable samplers belong to the layout.
+struct CompiledShader {
+  std::unique_ptr<spirv::Shader> shader;
+  std::shared_ptr<const PipelineLayoutShape> layout;
+};
+
+/// What one stage of a pipeline is made of.
+struct StageRequest {
+  const VkPipelineShaderStageCreateInfo* stage = nullptr;
+  std::shared_ptr<const PipelineLayoutShape> layout;
+  std::uint32_t live_color_outputs = 0xff;
+  bool may_compile = true;  ///< false: only what has been compiled before
+};
+
+/// What becomes of a request.
+struct StageResult {
+  std::shared_ptr<const CompiledShader> shader;  ///< null: not compiled
+  std::string problem;                           ///< why not: invalid or not covered; empty: it may not be compiled
+  bool was_in_cache = false;                     ///< in the application's
+};
+
+/// The compiled stage, from the device's table or new. `cache` may be null.
+StageResult compile_stage(Device& device, PipelineCache* cache, const StageRequest& request);
+
+}  // namespace vitrine::icd

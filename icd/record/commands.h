@@ -1,0 +1,339 @@
+// Every recorded command: a trivially destructible struct each, and the one list of them all. Replay has an execute()
+// overload per struct (icd/replay/execute.h); a missing one does not compile.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "icd/edge/vulkan_api.h"
+#include "icd/record/dynamic_state.h"
+
+namespace vitrine::icd {
+
+struct Buffer;
+struct CommandBuffer;
+struct DescriptorSet;
+struct Event;
+struct Framebuffer;
+struct Image;
+struct ImageView;
+struct Pipeline;
+struct QueryPool;
+struct RenderPass;
+
+// ---- state
+
+struct CmdBindPipeline {
+  const Pipeline* pipeline;
+};
+struct CmdBindDescriptorSets {
+  VkPipelineBindPoint bind_point;
+  std::uint32_t first_set;
+  std::span<DescriptorSet* const> sets;
+  std::span<const std::uint32_t> first_dynamic;  ///< per set, in the pseudo set of dynamic buffers
+  std::span<const std::uint32_t> offsets;        ///< dynamic offsets of all sets in order
+};
+struct CmdPushConstants {
+  std::uint32_t offset;
+  std::span<const std::byte> bytes;
+};
+struct CmdBindVertexBuffers {
+  std::uint32_t first;
+  std::span<const Buffer* const> buffers;  ///< null: reads as out of bounds
+  std::span<const VkDeviceSize> offsets;
+  std::span<const VkDeviceSize> sizes;    ///< empty: to the end
+  std::span<const VkDeviceSize> strides;  ///< empty: as they are
+};
+struct CmdBindIndexBuffer {
+  const Buffer* buffer;
+  VkDeviceSize offset;
+  VkIndexType type;
+};
+struct CmdSetViewport {
+  std::uint32_t first;
+  std::span<const VkViewport> viewports;
+  bool sets_count;
+};
+struct CmdSetScissor {
+  std::uint32_t first;
+  std::span<const VkRect2D> scissors;
+};
+struct CmdSetLineWidth {
+  float width;
+};
+struct CmdSetDepthBias {
+  float constant, clamp, slope;
+};
+struct CmdSetBlendConstants {
+  std::array<float, 4> constants;
+};
+struct CmdSetDepthBounds {
+  float min, max;
+};
+enum class StencilValue : std::uint8_t { kCompareMask, kWriteMask, kReference };
+struct CmdSetStencil {
+  StencilValue which;
+  VkStencilFaceFlags faces;
+  std::uint32_t value;
+};
+struct CmdSetStencilOp {
+  VkStencilFaceFlags faces;
+  VkStencilOp fail, pass, depth_fail;
+  VkCompareOp compare;
+};
+/// A state that is one word.
+struct CmdSetValue {
+  DynamicState which;
+  std::uint32_t value;
+};
+struct CmdSetSampleLocations {
+  raster::SampleLocations locations;
+};
+struct CmdSetLineStipple {
+  std::uint32_t factor;
+  std::uint16_t pattern;
+};
+struct CmdSetColorWriteEnable {
+  ColorWrites writes;
+};
+/// One of kBlendEnable, kBlendEquation, kWriteMask for attachments from `first` on: the members that it names.
+struct CmdSetBlend {
+  DynamicState which;
+  std::uint32_t first;
+  std::span<const raster::BlendAttachment> attachments;
+};
+struct CmdSetVertexInput {
+  std::span<const VkVertexInputBindingDescription2EXT> bindings;
+  std::span<const VkVertexInputAttributeDescription2EXT> attributes;
+};
+
+// ---- work
+
+struct CmdDraw {
+  std::uint32_t vertex_count, instance_count, first_vertex, first_instance;
+};
+struct CmdDrawIndexed {
+  std::uint32_t index_count, instance_count, first_index;
+  std::int32_t vertex_offset;
+  std::uint32_t first_instance;
+};
+struct CmdDrawMulti {
+  std::span<const VkMultiDrawInfoEXT> draws;
+  std::uint32_t instance_count, first_instance;
+};
+struct CmdDrawMultiIndexed {
+  std::span<const VkMultiDrawIndexedInfoEXT> draws;
+  std::uint32_t instance_count, first_instance;
+};
+/// Draws, dispatches and clears of attachments have no effect while the word is zero (or, inverted, is not).
+struct CmdBeginConditionalRendering {
+  const Buffer* buffer;
+  VkDeviceSize offset;
+  bool inverted;
+};
+struct CmdEndConditionalRendering {};
+struct CmdDrawIndirect {
+  const Buffer* buffer;
+  VkDeviceSize offset;
+  const Buffer* count_buffer;  ///< null: draw_count as it is
+  VkDeviceSize count_offset;
+  std::uint32_t draw_count;  ///< at most
+  std::uint32_t stride;
+  bool indexed;
+};
+struct CounterBuffer {
+  Buffer* buffer;  ///< may be null
+  VkDeviceSize offset;
+};
+/// vkCmdDrawIndirectByteCountEXT: (counter - subtracted) / stride vertices.
+struct CmdDrawByteCount {
+  CounterBuffer counter;
+  std::uint32_t instance_count, first_instance, subtracted, stride;
+};
+struct FeedbackBinding {
+  Buffer* buffer;  ///< may be null
+  VkDeviceSize offset, size;
+};
+struct CmdBindTransformFeedbackBuffers {
+  std::uint32_t first;
+  std::span<const FeedbackBinding> bindings;
+};
+struct CmdBeginTransformFeedback {
+  std::uint32_t first;
+  std::span<const CounterBuffer> counters;
+};
+struct CmdEndTransformFeedback {
+  std::uint32_t first;
+  std::span<const CounterBuffer> counters;
+};
+struct CmdDispatch {
+  std::uint32_t base[3];
+  std::uint32_t groups[3];
+};
+struct CmdDispatchIndirect {
+  const Buffer* buffer;
+  VkDeviceSize offset;
+};
+
+// ---- render passes
+
+struct CmdBeginRenderPass {
+  const RenderPass* render_pass;
+  const Framebuffer* framebuffer;
+  VkRect2D area;
+  std::span<const VkClearValue> clear_values;
+  std::span<const ImageView* const> attachments;  ///< the framebuffer's
+};
+struct RenderingAttachment {
+  const ImageView* view;               ///< null: unused
+  const ImageView* resolve;            ///< null: none
+  VkResolveModeFlagBits resolve_mode;  ///< of `resolve`
+  VkAttachmentLoadOp load;
+  VkClearValue clear;
+};
+struct CmdBeginRendering {
+  VkRenderingFlags flags;
+  VkRect2D area;
+  std::uint32_t layers, view_mask;
+  std::uint32_t forced_samples;  ///< of single-sampled attachments while they are drawn to
+  std::span<const RenderingAttachment> colors;
+  RenderingAttachment depth, stencil;
+};
+struct CmdEndRendering {};
+struct CmdNextSubpass {};
+struct CmdEndRenderPass {};
+struct CmdClearAttachments {
+  std::span<const VkClearAttachment> attachments;
+  std::span<const VkClearRect> rects;
+};
+struct CmdExecuteCommands {
+  std::span<const CommandBuffer* const> buffers;
+};
+
+// ---- transfers
+
+struct CmdCopyBuffer {
+  const Buffer* source;
+  const Buffer* target;
+  std::span<const VkBufferCopy> regions;
+};
+struct CmdCopyImage {
+  const Image* source;
+  const Image* target;
+  std::span<const VkImageCopy> regions;
+};
+struct CmdBlitImage {
+  const Image* source;
+  const Image* target;
+  std::span<const VkImageBlit> regions;
+  VkFilter filter;
+};
+struct CmdResolveImage {
+  const Image* source;
+  const Image* target;
+  std::span<const VkImageResolve> regions;
+};
+struct CmdCopyBufferToImage {
+  const Buffer* source;
+  const Image* target;
+  std::span<const VkBufferImageCopy> regions;
+};
+struct CmdCopyImageToBuffer {
+  const Image* source;
+  const Buffer* target;
+  std::span<const VkBufferImageCopy> regions;
+};
+struct CmdUpdateBuffer {
+  const Buffer* target;
+  VkDeviceSize offset;
+  std::span<const std::byte> bytes;
+};
+struct CmdFillBuffer {
+  const Buffer* target;
+  VkDeviceSize offset, size;  ///< size may be VK_WHOLE_SIZE
+  std::uint32_t value;
+};
+struct CmdClearColorImage {
+  const Image* image;
+  VkClearColorValue value;
+  std::span<const VkImageSubresourceRange> ranges;
+};
+struct CmdClearDepthStencilImage {
+  const Image* image;
+  VkClearDepthStencilValue value;
+  std::span<const VkImageSubresourceRange> ranges;
+};
+
+// ---- synchronisation and queries
+
+struct CmdPipelineBarrier {};
+struct CmdSetEvent {
+  Event* event;
+  bool set;
+};
+struct CmdWaitEvents {
+  std::span<const VkEvent> events;
+};
+struct CmdBeginQuery {
+  QueryPool* pool;
+  std::uint32_t query;
+  VkQueryControlFlags flags;
+  std::uint32_t index = 0;  ///< vertex stream
+};
+struct CmdEndQuery {
+  QueryPool* pool;
+  std::uint32_t query;
+  std::uint32_t index = 0;  ///< vertex stream
+};
+struct CmdResetQueryPool {
+  QueryPool* pool;
+  std::uint32_t first, count;
+};
+struct CmdWriteTimestamp {
+  QueryPool* pool;
+  std::uint32_t query;
+  bool after_work;  ///< the stage needs earlier commands to be done
+};
+struct CmdCopyQueryPoolResults {
+  const QueryPool* pool;
+  std::uint32_t first, count;
+  const Buffer* target;
+  VkDeviceSize offset, stride;
+  VkQueryResultFlags flags;
+};
+
+template <class... Ts>
+struct CommandList {
+  static constexpr std::size_t kCount = sizeof...(Ts);
+};
+
+using Commands = CommandList<
+    CmdBindPipeline, CmdBindDescriptorSets, CmdPushConstants, CmdBindVertexBuffers, CmdBindIndexBuffer, CmdSetViewport,
+    CmdSetScissor, CmdSetLineWidth, CmdSetDepthBias, CmdSetBlendConstants, CmdSetDepthBounds, CmdSetStencil,
+    CmdSetStencilOp, CmdSetValue, CmdSetSampleLocations, CmdSetLineStipple, CmdSetColorWriteEnable, CmdSetBlend,
+    CmdSetVertexInput, CmdDraw, CmdDrawIndexed, CmdDrawMulti, CmdDrawMultiIndexed, CmdBeginConditionalRendering,
+    CmdEndConditionalRendering, CmdDrawIndirect, CmdDrawByteCount, CmdBindTransformFeedbackBuffers,
+    CmdBeginTransformFeedback, CmdEndTransformFeedback, CmdDispatch, CmdDispatchIndirect, CmdBeginRenderPass,
+    CmdNextSubpass, CmdEndRenderPass, CmdBeginRendering, CmdEndRendering, CmdClearAttachments, CmdExecuteCommands,
+    CmdCopyBuffer, CmdCopyImage, CmdBlitImage, CmdResolveImage, CmdCopyBufferToImage, CmdCopyImageToBuffer,
+    CmdUpdateBuffer, CmdFillBuffer, CmdClearColorImage, CmdClearDepthStencilImage, CmdPipelineBarrier, CmdSetEvent,
+    CmdWaitEvents, CmdBeginQuery, CmdEndQuery, CmdResetQueryPool, CmdWriteTimestamp, CmdCopyQueryPoolResults>;
+
+namespace detail {
+
+template <class T, class... Ts>
+constexpr std::uint32_t index_of(CommandList<Ts...>) {
+  std::uint32_t index = 0;
+  static_cast<void>(((std::is_same_v<T, Ts> ? false : (++index, true)) && ...));
+  static_assert((std::is_same_v<T, Ts> || ...), "the command is missing from the list");
+  return index;
+}
+
+}  // namespace detail
+
+template <class T>
+inline constexpr std::uint32_t kCommandIndex = detail::index_of<T>(Commands{});
+
+}  // namespace vitrine::icd

@@ -1,0 +1,160 @@
+// Geometry shading (Vulkan 1.3.239, Geometry Shading): waves of (primitive, invocation), emitted vertices in order.
+#include <algorithm>
+
+#include "raster/front/assembly.h"
+#include "raster/front/front.h"
+#include "raster/front/stages/stages.h"
+#include "spirv/stage_memory.h"
+
+namespace vitrine::raster {
+namespace {
+
+using spirv::BuiltIn;
+using spirv::InterfaceSlot;
+
+constexpr std::uint32_t kTableWords = 8;  ///< of one primitive
+
+/// One wave: lane i runs invocation (first + i) % invocations of primitive (first + i) / invocations.
+struct GeometryWave {
+  std::uint64_t first = 0;
+  std::uint32_t lanes = 0;
+  std::size_t table = 0, emit = 0;  ///< words in stage memory
+};
+
+void fill_inputs(const StageContext& c, std::span<const GeometryInput> inputs, const GeometryWave& wave) {
+  StageScratch& s = c.scratch.stages;
+  const spirv::ShaderInterface& shader = *c.plan.stages.geometry;
+  const std::uint32_t invocations = shader.modes.invocations;
+  const auto table = static_cast<std::uint32_t>(wave.table * 4), emit = static_cast<std::uint32_t>(wave.emit * 4);
+  const std::uint32_t lane_bytes = shader.modes.max_vertices * shader.modes.vertex_words * 4;
+  const auto input_of = [&](std::uint32_t i) -> const GeometryInput& { return inputs[(wave.first + i) / invocations]; };
+  for (std::uint32_t i = 0; i < wave.lanes; ++i)
+    std::copy_n(input_of(i).vertex, 6, s.memory.data() + wave.table + i * kTableWords);
+  for (const InterfaceSlot& slot : shader.inputs) {
+    std::uint32_t* lane = s.geometry.input(slot.reg).lane;
+    for (std::uint32_t i = 0; i < wave.lanes; ++i) {
+      switch (slot.built_in) {
+        case BuiltIn::kPrimitiveId:
+          lane[i] = input_of(i).id;
+          break;
+        case BuiltIn::kInvocationId:
+          lane[i] = static_cast<std::uint32_t>((wave.first + i) % invocations);
+          break;
+        case BuiltIn::kVertexTable:
+          lane[i] = table + i * kTableWords * 4;
+          break;
+        case BuiltIn::kEmitOffset:
+          lane[i] = emit + i * lane_bytes;
+          break;
+        case BuiltIn::kViewIndex:
+          lane[i] = c.chunk.view;
+          break;
+        default:
+          lane[i] = 0;
+          break;
+      }
+    }
+  }
+}
+
+/// Primitives of the strip of emitted vertices [begin, end).
+void list_strip(const StageContext& c, std::uint32_t begin, std::uint32_t end, std::uint32_t id) {
+  const std::uint32_t corners = c.plan.corners;
+  const VkPrimitiveTopology output = c.plan.stages.geometry->modes.output;
+  for (std::uint32_t i = 0; begin + i + corners <= end; ++i) {
+    const Corners at = corners_of(output, c.plan.state->provoking_vertex_last, i);
+    c.scratch.stages.listed.push_back({{begin + at.at[0], begin + at.at[1], begin + at.at[2]}, id, i != 0});
+  }
+}
+
+/// Vertices of a stream and their primitives, invocation after invocation.
+void collect(const StageContext& c, std::span<const GeometryInput> inputs, const GeometryWave& wave,
+             std::uint32_t stream) {
+  StageScratch& s = c.scratch.stages;
+  const spirv::ShaderInterface& shader = *c.plan.stages.geometry;
+  const spirv::StageModes& modes = shader.modes;
+  s.emitted.clear();
+  s.listed.clear();
+  const InterfaceSlot* count = nullptr;
+  for (const InterfaceSlot& slot : shader.outputs)
+    if (slot.built_in == BuiltIn::kEmittedVertices) count = &slot;
+  if (!count) return;
+  for (std::uint32_t i = 0; i < wave.lanes; ++i) {
+    const std::uint32_t id = inputs[(wave.first + i) / modes.invocations].id;
+    const std::uint32_t vertices = std::min(s.geometry.output(count->reg).lane[i], modes.max_vertices);
+    auto begin = static_cast<std::uint32_t>(s.emitted.size());
+    std::size_t word = wave.emit + std::size_t{i} * modes.max_vertices * modes.vertex_words;
+    for (std::uint32_t v = 0; v < vertices; ++v, word += modes.vertex_words) {
+      const std::uint32_t flags = s.memory[word];
+      if ((flags & spirv::kEmitStream) != stream) continue;
+      const auto end = static_cast<std::uint32_t>(s.emitted.size());
+      if ((flags & spirv::kEmitStarts) != 0) {
+        list_strip(c, begin, end, id);
+        begin = end;
+      }
+      s.emitted.push_back(static_cast<std::uint32_t>(word));
+    }
+    list_strip(c, begin, static_cast<std::uint32_t>(s.emitted.size()), id);
+  }
+}
+
+void capture_streams(const StageContext& c, std::span<const GeometryInput> inputs, const GeometryWave& wave) {
+  StageScratch& s = c.scratch.stages;
+  for (std::uint32_t stream = 0; stream < kMaxStreams; ++stream) {
+    collect(c, inputs, wave, stream);
+    capture_emitted(c.plan, stream, s.listed, s.emitted, s.memory.data(), c.scratch.capture);
+  }
+}
+
+/// Emitted vertices to records, wave by wave.
+void transform_emitted(const StageContext& c) {
+  FrontScratch& scratch = c.scratch;
+  StageScratch& s = scratch.stages;
+  const auto count = static_cast<std::uint32_t>(s.emitted.size());
+  const std::uint32_t words = c.plan.stages.geometry->modes.vertex_words;
+  reserve_vertices(scratch, count);
+  scratch.records = c.arena.take<Vertex>(std::size_t{count} * c.plan.vertex_stride);
+  if (s.staging.size() < words) s.staging.resize(words);
+  for (std::uint32_t base = 0; base < count; base += base::kWaveWidth) {
+    const std::uint32_t lanes = std::min<std::uint32_t>(count - base, base::kWaveWidth);
+    for (std::uint32_t i = 0; i < lanes; ++i) {
+      const std::uint32_t* vertex = s.memory.data() + s.emitted[base + i];
+      for (std::uint32_t w = 0; w < words; ++w) s.staging[w].lane[i] = vertex[w];
+    }
+    store_wave(c.plan, {nullptr, s.staging.data()}, base, lanes, scratch);
+  }
+  if (c.plan.out.primitive_id == kNoReg) return;
+  const std::uint32_t provoking = c.plan.state->provoking_vertex_last ? c.plan.corners - 1 : 0;
+  for (ListedPrimitive& primitive : s.listed)
+    primitive.id = s.memory[s.emitted[primitive.slot[provoking]] + c.plan.out.primitive_id];
+}
+
+}  // namespace
+
+void run_geometry(const StageContext& c, std::span<const GeometryInput> inputs) {
+  StageScratch& s = c.scratch.stages;
+  const spirv::StageModes& modes = c.plan.stages.geometry->modes;
+  const std::size_t mark = s.used;
+  if (!(s.bound_geometry == c.chunk.draw->geometry)) s.geometry.bind(c.chunk.draw->geometry);
+  s.bound_geometry = c.chunk.draw->geometry;
+  GeometryWave wave;
+  wave.table = s.take(base::kWaveWidth * kTableWords);
+  wave.emit = s.take(std::size_t{base::kWaveWidth} * modes.max_vertices * modes.vertex_words);
+  s.geometry.set_stage_memory(s.memory.data(), s.used);
+  const std::uint64_t total = std::uint64_t{inputs.size()} * modes.invocations;
+  for (; wave.first < total; wave.first += base::kWaveWidth) {
+    wave.lanes = static_cast<std::uint32_t>(std::min<std::uint64_t>(total - wave.first, base::kWaveWidth));
+    fill_inputs(c, inputs, wave);
+    s.geometry.run(base::first_lanes(wave.lanes), 0);
+    if (c.scratch.capture.active) capture_streams(c, inputs, wave);
+    collect(c, inputs, wave, 0);        // the rasterized stream
+    count_statistic(c, 3, wave.lanes);  // geometry shader invocations
+    count_statistic(c, 4, s.listed.size());
+    if (c.plan.state->rasterizer_discard || s.listed.empty()) continue;
+    transform_emitted(c);
+    assemble_listed(c.chunk, c.pass, c.arena, c.scratch, s.listed);
+  }
+  s.used = mark;
+}
+
+}  // namespace vitrine::raster

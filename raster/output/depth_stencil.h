@@ -1,0 +1,42 @@
+// Depth and stencil tests and writes (Vulkan 1.3.239, Stencil Test, Depth Test; lavapipe-rasterization.md 5.3, 5.5),
+// quad by quad in order, so that quads of one wave may lie on the same pixels.
+#pragma once
+
+#include <cstdint>
+
+#include "base/lanes.h"
+#include "raster/output/color.h"
+#include "raster/primitive.h"
+#include "texel/view.h"
+
+namespace vitrine::raster {
+
+enum class DepthFormat : std::uint8_t { kNone, kD16, kD24, kD32 };
+DepthFormat depth_format(const texel::ImageView& view);
+
+/// Depth and stencil planes of one layer and sample. Rows are `pitch` bytes apart.
+struct DepthStencilTarget {
+  std::byte* depth = nullptr;
+  std::byte* stencil = nullptr;
+  std::uint64_t depth_pitch = 0, stencil_pitch = 0;
+  int width = 0, height = 0;
+  DepthFormat format = DepthFormat::kNone;
+};
+
+/// The depths of a viewport, low <= high.
+struct DepthRange {
+  float low, high;
+};
+DepthRange depth_range(const PipelinePlan& plan, std::uint32_t viewport);
+
+/// 5.3 steps 1 (where `restricted`) and 2: in place, lanes of quads [0, quads). `clamp`: null, or z range per quad.
+void clamp_depth(const DepthRange* clamp, bool restricted, std::uint32_t quads, float* z);
+
+/// Tests lanes of `mask`: depth bounds, stencil, depth; returns those that pass. `z` is clamped. Writes depth where
+/// `write` and the state say, and stencil always as the state says. `front`: bit q is the facing of quad q.
+/// `reference`: per-lane stencil reference or null.
+base::LaneMask test_depth_stencil(const PipelinePlan& plan, const DepthStencilTarget& target,
+                                  const QuadPositions& quads, std::uint32_t front, const float* z,
+                                  const std::uint32_t* reference, base::LaneMask mask, bool write);
+
+}  // namespace vitrine::raster

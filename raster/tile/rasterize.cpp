@@ -1,0 +1,206 @@
+// One primitive in a tile: its blocks are covered, rejected where they are hidden, and tested.
+#include <algorithm>
+#include <bit>
+
+#include "raster/tile/spans.h"
+#include "raster/tile/tile.h"
+
+namespace vitrine::raster {
+namespace {
+
+BlockCoverage block_of(const TileCoverage& coverage, std::uint32_t place, std::uint32_t samples) {
+  BlockCoverage block;
+  for (std::uint32_t s = 0; s < samples; ++s) block.lanes[s] = coverage.lanes[s][place];
+  return block;
+}
+
+/// Whether something else than its edges limits the pixels of a primitive.
+bool is_cut(const PipelinePlan& plan, const Primitive& p) {
+  if (plan.raster_samples > 1 || p.kind != PrimitiveKind::kTriangle) return true;
+  const PixelRect& region = plan.region[p.viewport];
+  if (p.x0 > region.x0 && p.y0 > region.y0 && p.x1 < region.x1 && p.y1 < region.y1) return false;
+  const auto [left, right] = std::minmax({p.x[0], p.x[1], p.x[2]});
+  const auto [top, bottom] = std::minmax({p.y[0], p.y[1], p.y[2]});
+  return p.x0 != (left + 255) >> 8 || p.y0 != (top + 255) >> 8 || p.x1 != (right - 1) >> 8 || p.y1 != (bottom - 1) >> 8;
+}
+
+/// Where the grid of a primitive's blocks starts: pixels from the tile's first one, even.
+struct GridOrigin {
+  int x = 0, y = 0;
+  bool operator==(const GridOrigin&) const = default;
+};
+
+/// Sides of primitives whose blocks do not keep to the tile's grid, in pixels.
+constexpr int kOwnGridReach = 2 * kBlockSize;
+
+/// The start of a grid with as few blocks as possible over pixels [first, last] of a tile, the first of them at the
+/// start or the last of them at the end of a block.
+int grid_start(int first, int last, bool from_start) {
+  const int begin = first & ~1, end = (last + 2) & ~1;
+  const int span = (end - begin + kBlockSize - 1) & ~(kBlockSize - 1);
+  return std::clamp(from_start ? begin : end - span, 0, kTileSize - span);
+}
+
+/// Small primitives have a grid of their own that puts most of their pixels into one block: the block starts or ends
+/// where the bounds do, on the side to which the centre of mass lies.
+GridOrigin grid_origin(const Primitive& p, const PixelRect& rect) {
+  if (rect.x1 - rect.x0 >= kOwnGridReach - 1 || rect.y1 - rect.y0 >= kOwnGridReach - 1) return {};
+  const auto leans_back = [&](const std::int32_t* at, int first, int last) {
+    return p.kind != PrimitiveKind::kTriangle || 2 * (at[0] + at[1] + at[2]) < 3 * 256 * (first + last);
+  };
+  return {grid_start(rect.x0, rect.x1, leans_back(p.x, p.x0, p.x1)),
+          grid_start(rect.y0, rect.y1, leans_back(p.y, p.y0, p.y1))};
+}
+
+/// Moves a primitive's edges and bounds in the tile to another first pixel.
+void move_origin(const SampleLocations& locations, GridOrigin origin, TileEdges& edges, PixelRect& rect) {
+  for (std::uint32_t s = 0; s < locations.count; ++s)
+    for (std::uint32_t e = 0; e < edges.count; ++e)
+      edges.f[s][e] += origin.x * edges.step_x[e] + origin.y * edges.step_y[e];
+  rect = {rect.x0 - origin.x, rect.y0 - origin.y, rect.x1 - origin.x, rect.y1 - origin.y};
+}
+
+/// Blocks with pixels of `rect`, which is in the tile.
+PixelRect blocks_of(const PixelRect& rect) {
+  return {rect.x0 / kBlockSize, rect.y0 / kBlockSize, rect.x1 / kBlockSize, rect.y1 / kBlockSize};
+}
+
+base::LaneMask places_of(const PixelRect& rect) {
+  const auto [bx0, by0, bx1, by1] = blocks_of(rect);
+  return rect_lanes(bx0, by0, bx1, by1);
+}
+
+/// Covered lanes of the blocks among `places` that a primitive touches; returns their places. `rect`: the primitive's,
+/// from the first block on.
+base::LaneMask cover_tile(const PipelinePlan& plan, const Primitive& primitive, const TileEdges& edges,
+                          const PixelRect& rect, base::LaneMask places, TileCoverage& out) {
+  const auto [bx0, by0, bx1, by1] = blocks_of(rect);
+  base::LaneMask any = base::kAllLanes, all = edges.count == 0 ? base::kAllLanes : 0;
+  if (edges.count != 0 && (bx1 - bx0 + 1) * (by1 - by0 + 1) > 9) classify_blocks(edges, plan.raster_samples, any, all);
+  any &= places;
+  base::LaneMask cut = 0;
+  if (is_cut(plan, primitive))
+    cut = any & ~rect_lanes((rect.x0 + kBlockSize - 1) / kBlockSize, (rect.y0 + kBlockSize - 1) / kBlockSize,
+                            (rect.x1 + 1) / kBlockSize - 1, (rect.y1 + 1) / kBlockSize - 1);
+  for (std::uint32_t s = 0; s < plan.raster_samples; ++s) {
+    base::LaneMask* lanes = out.lanes[s];
+    if ((any & all) != 0) std::fill_n(lanes, base::kWaveWidth, base::kAllLanes);
+    cover_blocks(edges, s, any & ~all, lanes);
+    for (base::LaneMask left = cut; left != 0; left &= left - 1) {
+      const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+      const int x = lane_x(place) * kBlockSize, y = lane_y(place) * kBlockSize;
+      lanes[place] &= rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
+    }
+  }
+  for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s)
+    std::copy_n(out.lanes[0], base::kWaveWidth, out.lanes[s]);
+  for (std::uint32_t s = 0; s < plan.samples; ++s)
+    if ((plan.sample_mask >> s & 1) == 0) std::fill_n(out.lanes[s], base::kWaveWidth, 0);
+  return any;
+}
+
+/// Early tests of the blocks at `places` of a grid.
+void test_tile(TileWorker& worker, const Primitive& primitive, GridOrigin origin, base::LaneMask places,
+               TileCoverage& coverage) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const TileTarget& target = worker.target;
+  const int x = target.x + origin.x, y = target.y + origin.y;
+  if (plan.tests_rows) {
+    const base::LaneMask owned =
+        places & rect_lanes(0, 0, (target.right - x) / kBlockSize - 1, (target.bottom - y) / kBlockSize - 1);
+    base::LaneMask hidden = 0;
+    for (std::uint32_t s = 0; s < plan.samples; ++s)
+      hidden |=
+          test_blocks(worker, primitive, s, x, y, owned, coverage.lanes[s], plan.depth_order == TestOrder::kEarly);
+    for (base::LaneMask left = plan.samples > 1 ? hidden : 0; left != 0; left &= left - 1) {
+      const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+      if (any_sample(block_of(coverage, place, plan.samples), plan.samples) != 0) hidden &= ~(left & -left);
+    }
+    if (hidden != 0 && plan.hides_blocks && origin == GridOrigin{}) learn_hidden_places(worker, primitive, hidden);
+    places &= ~owned;
+  }
+  for (; places != 0; places &= places - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(places));
+    BlockCoverage block = block_of(coverage, place, plan.samples);
+    test_any_block(worker, primitive, x + lane_x(place) * kBlockSize, y + lane_y(place) * kBlockSize, block);
+    for (std::uint32_t s = 0; s < plan.samples; ++s) coverage.lanes[s][place] = block.lanes[s];
+  }
+}
+
+/// The part of a tile a primitive may cover, pixels relative to the tile.
+PixelRect rect_in_tile(const TileTarget& target, const Primitive& p) {
+  return intersect({p.x0 - target.x, p.y0 - target.y, p.x1 - target.x, p.y1 - target.y},
+                   {0, 0, kTileSize - 1, kTileSize - 1});
+}
+
+}  // namespace
+
+void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
+  QuadPositions quads;
+  place_block(x, y, quads);
+  DepthRange range[base::kQuadsPerWave];
+  const bool clamps = plan.state->depth_clamp;
+  if (clamps) std::fill_n(range, base::kQuadsPerWave, depth_range(plan, primitive.viewport));
+  for (std::uint32_t s = 0; s < plan.samples; ++s) {
+    if (!block.lanes[s]) continue;
+    if (plan.depth_test) {
+      const float dx = plan.locations->pixel_x(s), dy = plan.locations->pixel_y(s);
+      evaluate_block_depth(plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, plan.restricts_depth,
+                           worker.depth);
+      if (clamps) clamp_depth(range, plan.restricts_depth, base::kQuadsPerWave, worker.depth);
+    }
+    block.lanes[s] = test_depth_stencil(plan, worker.target.depth_stencil[s], quads, primitive.front ? 0xffffu : 0,
+                                        worker.depth, nullptr, block.lanes[s], plan.depth_order == TestOrder::kEarly);
+  }
+}
+
+void learn_hidden_rect(TileWorker& worker, const Primitive& primitive, const PixelRect& rect) {
+  const TileTarget& target = worker.target;
+  const base::LaneMask owned =
+      rect_lanes(0, 0, (target.right - target.x) / kBlockSize - 1, (target.bottom - target.y) / kBlockSize - 1);
+  learn_hidden_places(worker, primitive, places_of(rect) & owned);
+}
+
+void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const bool in_order = plan.in_order || plan.state->ordered_attachment_access;
+  if (in_order && worker.wave.quads != 0) shade_wave(worker, worker.wave);
+  if (primitive.window != 0) {
+    emit_window(worker, primitive);
+    return;
+  }
+  TileEdges edges;
+  if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
+  PixelRect rect = rect_in_tile(worker.target, primitive);
+  if (rect.empty()) return;
+  base::LaneMask places = base::kAllLanes;
+  if (plan.hides_blocks && worker.hierarchy.known != 0) {
+    places = places_of(rect);
+    if ((worker.hierarchy.known & places) != 0) places = unhidden_places(worker, primitive, places);
+    if (places == 0) return;
+  }
+  if (emit_large_window(worker, primitive, edges, rect)) return;
+  places &= places_of(rect);
+  const GridOrigin origin = grid_origin(primitive, rect);
+  if (origin != GridOrigin{}) {
+    move_origin(*plan.locations, origin, edges, rect);
+    places = places_of(rect);
+  }
+  places = cover_tile(plan, primitive, edges, rect, places, worker.covered);
+  if (places == 0) return;
+  if (reads_rasterized(worker)) worker.rasterized = worker.covered;
+  if (plan.depth_order == TestOrder::kEarly || plan.early_reject)
+    test_tile(worker, primitive, origin, places, worker.covered);
+  BlockCoverage rasterized{};
+  for (base::LaneMask left = places; left != 0; left &= left - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+    const int x = worker.target.x + origin.x + lane_x(place) * kBlockSize;
+    const int y = worker.target.y + origin.y + lane_y(place) * kBlockSize;
+    if (reads_rasterized(worker)) rasterized = block_of(worker.rasterized, place, plan.samples);
+    emit_block(worker, primitive, x, y, rasterized, block_of(worker.covered, place, plan.samples));
+  }
+}
+
+}  // namespace vitrine::raster

@@ -1,0 +1,233 @@
+// The work of a tile: its clears and primitives in order, from the first one that can be seen on.
+#include "raster/tile/tile.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/float_mode.h"
+#include "texel/transfer.h"
+
+namespace vitrine::raster {
+namespace {
+
+/// Where a tile's work starts.
+struct TileStart {
+  std::size_t item = 0;
+  std::uint32_t primitive = 0;
+};
+
+/// Walks the primitives of a tile some steps ahead of the work on them and asks for their memory: the front end filled
+/// more than the caches near the core hold.
+class Prefetcher {
+ public:
+  Prefetcher(const std::vector<TileItem>& items, TileStart start)
+      : end_(items.data() + items.size()),
+        primitive_{items.data() + start.item, start.primitive},
+        vertices_(primitive_) {
+    for (std::uint32_t i = 0; i < kPrimitivesAhead; ++i) ask_for_primitive();
+    for (std::uint32_t i = 0; i < kVerticesAhead; ++i) ask_for_vertices();
+  }
+  /// To be called once per primitive.
+  void step() {
+    ask_for_primitive();
+    ask_for_vertices();
+  }
+
+ private:
+  /// How many primitives lie between the one at work and the one asked for, or the one whose vertices are.
+  static constexpr std::uint32_t kPrimitivesAhead = 8, kVerticesAhead = 4;
+
+  struct Cursor {
+    const TileItem* item;
+    std::uint32_t k;
+  };
+
+  /// The next primitive, or null at the end.
+  const Primitive* next(Cursor& cursor) const {
+    while (cursor.item != end_ && cursor.k >= cursor.item->count) cursor = {cursor.item + 1, 0};
+    return cursor.item == end_ ? nullptr : cursor.item->primitives + cursor.item->index[cursor.k++];
+  }
+  void ask_for_primitive() {
+    const TileItem* before = primitive_.item;
+    const Primitive* primitive = next(primitive_);
+    if (!primitive) return;
+    __builtin_prefetch(primitive);
+    __builtin_prefetch(reinterpret_cast<const std::byte*>(primitive + 1) - 1);
+    if (primitive_.item != before && primitive_.item + 1 != end_) __builtin_prefetch(primitive_.item[1].index);
+  }
+  void ask_for_vertices() {
+    if (const Primitive* primitive = next(vertices_))
+      for (const Vertex* vertex : primitive->v) __builtin_prefetch(vertex);
+  }
+
+  const TileItem* end_;
+  Cursor primitive_, vertices_;
+};
+
+/// The primitives of one item, groups of small windows together.
+void rasterize_primitives(TileWorker& worker, const TileItem& item, std::uint32_t first, Prefetcher& prefetcher) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const bool tests = plan.depth_order == TestOrder::kEarly || plan.early_reject;
+  const bool groups =
+      plan.windows && !plan.in_order && !plan.state->ordered_attachment_access && (!tests || plan.tests_rows);
+  const Primitive* group[kWindowGroup];
+  std::uint32_t count = 0;
+  for (std::uint32_t k = first; k < item.count; ++k) {
+    prefetcher.step();
+    const Primitive& primitive = item.primitives[item.index[k]];
+    const bool small = groups && is_small_window(worker, primitive);
+    if (count != 0 && (!small || count == kWindowGroup || group[0]->viewport != primitive.viewport)) {
+      emit_small_windows(worker, group, count);
+      count = 0;
+    }
+    if (small)
+      group[count++] = &primitive;
+    else
+      rasterize_primitive(worker, primitive);
+  }
+  if (count != 0) emit_small_windows(worker, group, count);
+}
+
+void begin_draw(TileWorker& worker, const DrawRecord* draw) {
+  worker.draw = draw;
+  worker.counts = draw->call.queries.occlusion || draw->call.queries.statistics;
+  worker.wave.quads = worker.wave.slots = 0;
+  if (draw->plan->shades && !(worker.bound == draw->fragment)) {
+    worker.runner.bind(draw->fragment);
+    worker.bound = draw->fragment;
+  }
+  begin_blocks(worker);
+  worker.hierarchy.begin_draw(*draw->plan);
+}
+
+void end_draw(TileWorker& worker) {
+  if (!worker.draw) return;
+  if (worker.wave.quads) shade_wave(worker, worker.wave);
+  const QueryCounters& queries = worker.draw->call.queries;
+  if (queries.occlusion && worker.samples_passed)
+    queries.occlusion->fetch_add(worker.samples_passed, std::memory_order_relaxed);
+  if (queries.statistics && worker.fragment_invocations)
+    queries.statistics[7].fetch_add(worker.fragment_invocations, std::memory_order_relaxed);
+  worker.samples_passed = worker.fragment_invocations = 0;
+  worker.draw = nullptr;
+}
+
+void clear_tile(TileWorker& worker, const ClearCommand& clear) {
+  const TileTarget& target = worker.target;
+  if (target.layer < clear.base_layer || target.layer - clear.base_layer >= clear.layer_count) return;
+  const PixelRect rect =
+      intersect(clear.rect, {target.x, target.y, target.x + kTileSize - 1, target.y + kTileSize - 1});
+  if (rect.empty()) return;
+  const texel::ImageView& view = *clear.view;
+  if (&view == &worker.pass->depth) worker.hierarchy.reset();
+  const std::size_t bytes = view.format->block_bytes, width = static_cast<std::size_t>(rect.x1 - rect.x0 + 1);
+  for (std::uint32_t s = 0; s < std::max<std::uint32_t>(view.samples, 1); ++s) {
+    std::byte* first =
+        view.block(0, target.layer, s, static_cast<std::uint32_t>(rect.x0), static_cast<std::uint32_t>(rect.y0), 0);
+    texel::fill_rows(first, view.level[0].row_pitch, width * bytes, static_cast<std::size_t>(rect.y1 - rect.y0 + 1),
+                     clear.value, bytes);
+  }
+}
+
+/// Whether a primitive replaces every colour of the tile, so that nothing drawn before it can be seen.
+bool hides_tile(const TileWorker& worker, const PipelinePlan& plan, const Primitive& p) {
+  if (!plan.replaces_colors || p.kind != PrimitiveKind::kTriangle) return false;
+  const TileTarget& target = worker.target;
+  const VkRect2D& area = worker.pass->render_area;
+  const int right = std::min(target.x + kTileSize, area.offset.x + static_cast<int>(area.extent.width)) - 1;
+  const int bottom = std::min(target.y + kTileSize, area.offset.y + static_cast<int>(area.extent.height)) - 1;
+  if (p.x0 > target.x || p.y0 > target.y || p.x1 < right || p.y1 < bottom) return false;
+  TileEdges edges;
+  return make_tile_edges(p, target.x, target.y, *plan.locations, edges) && edges.count == 0;
+}
+
+/// Whether the draw of an item does more than give colours.
+bool leaves_traces(const TileItem& item) {
+  if (item.clear) return false;
+  const PipelinePlan& plan = *item.draw->plan;
+  const QueryCounters& queries = item.draw->call.queries;
+  return queries.occlusion || queries.statistics || plan.depth_order != TestOrder::kNone ||
+         (plan.fragment && plan.fragment->writes_memory);
+}
+
+/// The last primitive that hides the colours of everything before it, if nothing before it can be noticed otherwise.
+/// Clears of depth and stencil stay to be done.
+TileStart first_visible(const TileWorker& worker, const std::vector<TileItem>& items) {
+  for (std::size_t i = items.size(); i-- > 0;) {
+    const TileItem& item = items[i];
+    if (item.clear) continue;
+    if (leaves_traces(item)) return {};
+    const PipelinePlan& plan = *item.draw->plan;
+    for (std::uint32_t k = plan.replaces_colors ? item.count : 0; k-- > 0;)
+      if (hides_tile(worker, plan, item.primitives[item.index[k]])) {
+        const bool noticed = std::any_of(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(i), leaves_traces);
+        return noticed ? TileStart{} : TileStart{i, k};
+      }
+  }
+  return {};
+}
+
+void set_target(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, std::uint32_t tile) {
+  worker.pass = &pass;
+  TileTarget& target = worker.target;
+  const std::uint32_t in_layer = tile % (grid.columns * grid.rows);
+  target.layer = tile / (grid.columns * grid.rows);
+  target.x = static_cast<int>(in_layer % grid.columns) * kTileSize;
+  target.y = static_cast<int>(in_layer / grid.columns) * kTileSize;
+  target.right = target.x + kTileSize;
+  target.bottom = target.y + kTileSize;
+  const auto cut = [&](const texel::ImageView& view) {
+    if (!view.format) return;
+    target.right = std::min(target.right, static_cast<int>(view.level[0].extent.width));
+    target.bottom = std::min(target.bottom, static_cast<int>(view.level[0].extent.height));
+  };
+  for (std::uint32_t i = 0; i < pass.color_count; ++i) cut(pass.color[i]);
+  cut(pass.depth);
+  for (std::uint32_t s = 0; s < std::clamp<std::uint32_t>(pass.samples, 1, kMaxSamples); ++s) {
+    DepthStencilTarget& out = target.depth_stencil[s];
+    out = {};
+    out.format = depth_format(pass.depth);
+    if (pass.depth.format && target.layer < pass.depth.layer_count) {
+      out.depth = pass.depth.block(0, target.layer, s, 0, 0, 0);
+      out.depth_pitch = pass.depth.level[0].row_pitch;
+      out.width = static_cast<int>(pass.depth.level[0].extent.width);
+      out.height = static_cast<int>(pass.depth.level[0].extent.height);
+    }
+    if (pass.stencil.format && target.layer < pass.stencil.layer_count) {
+      out.stencil = pass.stencil.block(0, target.layer, s, 0, 0, 0);
+      out.stencil_pitch = pass.stencil.level[0].row_pitch;
+    }
+  }
+}
+
+}  // namespace
+
+void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, std::uint32_t tile,
+                  const std::vector<TileItem>& items) {
+  const base::ScopedFloatMode mode(base::Denormals::kFlush);
+  set_target(worker, pass, grid, tile);
+  worker.draw = nullptr;
+  worker.planes = nullptr;
+  worker.planes_of = nullptr;
+  worker.pool.reset();
+  if (pass.depth.format) worker.hierarchy.reset();
+  const TileStart start = first_visible(worker, items);
+  Prefetcher prefetcher(items, start);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const TileItem& item = items[i];
+    if (i < start.item && (item.draw || !item.clear->view->format->is_depth_stencil())) continue;
+    if (item.clear) {
+      end_draw(worker);
+      clear_tile(worker, *item.clear);
+      continue;
+    }
+    if (item.draw != worker.draw) {
+      end_draw(worker);
+      begin_draw(worker, item.draw);
+    }
+    rasterize_primitives(worker, item, i == start.item ? start.primitive : 0, prefetcher);
+  }
+  end_draw(worker);
+}
+
+}  // namespace vitrine::raster

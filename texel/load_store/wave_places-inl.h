@@ -1,0 +1,140 @@
+// Where the texels that integer coordinates name lie in the memory of a view, for a wave (lavapipe-texture-blend.md
+// A10), and their words in lanes.
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "texel/load_store/shape.h"
+#include "texel/sampler/wave/texels-inl.h"
+
+#if defined(VITRINE_TEXEL_WAVE_PLACES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRINE_TEXEL_WAVE_PLACES_INL_H_
+#undef VITRINE_TEXEL_WAVE_PLACES_INL_H_
+#else
+#define VITRINE_TEXEL_WAVE_PLACES_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrine::texel::HWY_NAMESPACE {
+
+HWY_INLINE VI load_or_zero(const base::WaveRegister* values, std::size_t first) {
+  return values != nullptr ? load_ints(values, first) : splat(0);
+}
+
+/// 0 <= i < size.
+HWY_INLINE hn::Mask<DI> within(VI i, VI size) { return hn::And(hn::Not(hn::Lt(i, splat(0))), hn::Lt(i, size)); }
+
+/// Where the texels of a wave lie in memory.
+struct Places {
+  IntLanes offset;            ///< bytes; anything where no texel is wanted
+  base::LaneMask wanted = 0;  ///< the lane is active and inside the level
+
+  HWY_INLINE hn::Mask<DI> valid(std::size_t first) const { return lanes_mask_from_bits(DI(), wanted >> first); }
+
+  /// Whether all lanes of a vector want texels and these follow one another.
+  HWY_INLINE bool adjacent(std::size_t first, std::int32_t texel_bytes) const {
+    const base::LaneMask all = base::first_lanes(hn::Lanes(DI()));
+    if ((wanted >> first & all) != all) return false;
+    const VI expected = hn::Add(splat(offset.lane[first]), hn::Mul(hn::Iota(DI(), 0), splat(texel_bytes)));
+    return hn::AllTrue(DI(), hn::Eq(hn::Load(DI(), offset.lane + first), expected));
+  }
+};
+
+/// One level of a view, or that of each lane.
+struct LevelFields {
+  VI width, height, depth, pitch, slice_pitch, sample_stride, origin;
+};
+
+/// The level of all lanes, if it is one for all of them and exists; else level_count.
+HWY_INLINE std::uint32_t common_level(const ImageView& view, const base::WaveRegister* lod) {
+  if (lod == nullptr) return 0;
+  const VI level = hn::Set(DI(), static_cast<std::int32_t>(lod->lane[0]));
+  auto differs = hn::Ne(level, level);
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI()))
+    differs = hn::Or(differs, hn::Ne(load_ints(lod, first), level));
+  return hn::AllFalse(DI(), differs) ? std::min(lod->lane[0], view.level_count) : view.level_count;
+}
+
+/// Calls place(first lane, in which lanes the level exists, its fields) for every vector of lanes.
+template <class Place>
+HWY_INLINE void for_each_level(const ImageView& view, const base::WaveRegister* lod, Place&& place) {
+  const auto integer = [](auto value) { return static_cast<std::int32_t>(value); };
+  if (const std::uint32_t common = common_level(view, lod); common < view.level_count) {
+    const LevelLayout& level = view.level[common];
+    const LevelFields fields{splat(integer(level.extent.width)), splat(integer(level.extent.height)),
+                             splat(integer(level.extent.depth)), splat(integer(level.row_pitch)),
+                             splat(integer(level.slice_pitch)),  splat(integer(level.sample_stride)),
+                             splat(integer(level.offset))};
+    for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI()))
+      place(first, hn::Eq(splat(0), splat(0)), fields);
+    return;
+  }
+  struct alignas(64) Table {
+    std::int32_t of[kMaxLevels] = {};
+  };
+  Table width, height, depth, pitch, slice_pitch, sample_stride, origin;
+  for (std::uint32_t i = 0; i < view.level_count; ++i) {
+    const LevelLayout& level = view.level[i];
+    width.of[i] = integer(level.extent.width);
+    height.of[i] = integer(level.extent.height);
+    depth.of[i] = integer(level.extent.depth);
+    pitch.of[i] = integer(level.row_pitch);
+    slice_pitch.of[i] = integer(level.slice_pitch);
+    sample_stride.of[i] = integer(level.sample_stride);
+    origin.of[i] = integer(level.offset);
+  }
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI())) {
+    VI level = load_or_zero(lod, first);
+    const auto exists = within(level, splat(integer(view.level_count)));
+    level = hn::IfThenElseZero(exists, level);
+    const auto of = [level](const Table& table) HWY_ATTR { return hn::GatherIndex(DI(), table.of, level); };
+    place(first, exists,
+          LevelFields{of(width), of(height), of(depth), of(pitch), of(slice_pitch), of(sample_stride), of(origin)});
+  }
+}
+
+/// Of views whose bytes' offsets fit 31 bits.
+inline HWY_NOINLINE void place_texels(const ImageView& view, const FetchRequest& request, Places& out) {
+  const Shape shape = shape_of(view.type);
+  const auto count = [](std::uint64_t value) { return splat(static_cast<std::int32_t>(value)); };
+  const VI texel_bytes = count(view.format->block_bytes), layer_stride = count(view.layer_stride);
+  const VI layer_count = count(view.layer_count), samples = count(view.samples);
+  for_each_level(view, request.lod, [&](std::size_t first, hn::Mask<DI> exists, const LevelFields& level) HWY_ATTR {
+    const auto at = [&](std::uint32_t i) HWY_ATTR {
+      return hn::Add(load_or_zero(request.coord[i], first), load_or_zero(request.offset[i], first));
+    };
+    const auto active = hn::RebindMask(DI(), lanes_mask_from_bits(DU(), request.active >> first));
+    auto valid = hn::And(active, exists);
+    VI offset = level.origin;
+    const auto step = [&](VI i, VI size, VI stride) HWY_ATTR {
+      valid = hn::And(valid, within(i, size));
+      offset = hn::Add(offset, hn::Mul(i, stride));
+    };
+    step(at(0), level.width, texel_bytes);
+    if (shape.dims > 1) step(at(1), level.height, level.pitch);
+    if (shape.dims > 2) step(at(2), level.depth, level.slice_pitch);
+    if (shape.layered) step(load_or_zero(request.coord[shape.dims], first), layer_count, layer_stride);
+    if (request.sample != nullptr) step(load_ints(request.sample, first), samples, level.sample_stride);
+    hn::Store(offset, DI(), out.offset.lane + first);
+    out.wanted |= static_cast<base::LaneMask>(lanes_mask_bits(DI(), valid)) << first;
+  });
+}
+
+/// Of texels of a buffer.
+inline HWY_NOINLINE void place_texels(const BufferTexelView& view, base::LaneMask active,
+                                      const base::WaveRegister& index, Places& out) {
+  const VI count = splat(static_cast<std::int32_t>(view.count));
+  const VI texel_bytes = splat(static_cast<std::int32_t>(view.format->block_bytes));
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI())) {
+    const VI i = load_ints(&index, first);
+    const auto valid = hn::And(hn::RebindMask(DI(), lanes_mask_from_bits(DU(), active >> first)), within(i, count));
+    hn::Store(hn::Mul(i, texel_bytes), DI(), out.offset.lane + first);
+    out.wanted |= static_cast<base::LaneMask>(lanes_mask_bits(DI(), valid)) << first;
+  }
+}
+
+}  // namespace vitrine::texel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
