@@ -2,8 +2,13 @@
 #include "spirv/rewrite/rewrite.h"
 
 #include "base/reference_cpu.h"
-#include "spirv/rewrite/loops.h"
-#include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/gallivm/passes.h"
+#include "spirv/rewrite/graph/loops.h"
+#include "spirv/rewrite/llvm/passes.h"
+#include "spirv/rewrite/lower/passes.h"
+#include "spirv/rewrite/nir/algebraic/composed.h"
+#include "spirv/rewrite/nir/passes.h"
+#include "spirv/rewrite/nir/to_lcssa.h"
 
 namespace vitrine::spirv {
 namespace {
@@ -16,60 +21,60 @@ constexpr int kMaxRounds = 64;
 
 /// One round of the reference's first loop (3.2 step 3).
 bool optimize_once(Graph& graph, bool first) {
-  bool changed = rewriting::promote_arrays(graph);
-  changed |= rewriting::forward_loads(graph);
-  changed |= rewriting::forward_arrays(graph);
-  changed |= rewriting::propagate_copies(graph);
-  changed |= rewriting::remove_dead(graph);
-  changed |= rewriting::flatten_branches(graph);
+  bool changed = rewriting::lower_vars_to_ssa(graph);
+  changed |= rewriting::opt_copy_prop_vars(graph);
+  changed |= rewriting::opt_copy_prop_arrays(graph);
+  changed |= rewriting::copy_prop(graph);
+  changed |= rewriting::opt_dce(graph);
+  changed |= rewriting::opt_peephole_select(graph);
   changed |= rewriting::join_doubles(graph);
   changed |= rewriting::narrow_comparisons(graph);
   if (first) rewriting::shorten_dot_products(graph);
-  changed |= rewriting::apply_rules(graph, rewriting::RuleSet::kMain);
+  changed |= rewriting::opt_algebraic(graph);
   if (first) rewriting::show_products(graph);
-  changed |= rewriting::fold_constants(graph);
-  changed |= rewriting::remove_trivial_results(graph);
+  changed |= rewriting::opt_constant_folding(graph);
+  changed |= rewriting::opt_remove_phis(graph);
   const bool first_loops = first && rewriting::has_loops(graph);
-  if (rewriting::remove_trivial_continues(graph, first) || first_loops) {
+  if (rewriting::opt_trivial_continues(graph, first) || first_loops) {
     changed = true;
-    rewriting::propagate_copies(graph);
-    rewriting::remove_dead(graph);
-    rewriting::remove_trivial_results(graph);
+    rewriting::copy_prop(graph);
+    rewriting::opt_dce(graph);
+    rewriting::opt_remove_phis(graph);
   }
-  changed |= rewriting::evaluate_conditions(graph);
-  changed |= rewriting::improve_branches(graph);
-  changed |= rewriting::take_constant_branches(graph);
-  changed |= rewriting::remove_trivial_results(graph);
-  changed |= rewriting::merge_equal(graph, false);
-  changed |= rewriting::scalarize(graph);
-  changed |= rewriting::unroll_loops(graph);
+  changed |= rewriting::opt_if_safe(graph);
+  changed |= rewriting::opt_if(graph);
+  changed |= rewriting::opt_dead_cf(graph);
+  changed |= rewriting::opt_remove_phis(graph);
+  changed |= rewriting::opt_cse(graph, false);
+  changed |= rewriting::lower_alu_to_scalar(graph);
+  changed |= rewriting::opt_loop_unroll(graph);
   return changed;
 }
 
-/// The reference's finalisation (3.2 step 4).
+/// The reference's finalisation (3.2 step 4), its code generator and what optimises that.
 void finish(Graph& graph) {
-  rewriting::expand_mixes(graph);
+  rewriting::lower_flrp(graph);
   for (int round = 0; round < kMaxRounds; ++round) {
-    bool changed = rewriting::fold_constants(graph);
-    changed |= rewriting::apply_rules(graph, rewriting::RuleSet::kMain);
+    bool changed = rewriting::opt_constant_folding(graph);
+    changed |= rewriting::opt_algebraic(graph);
     if (!changed) break;
   }
   for (int round = 0; round < kMaxRounds; ++round) {
-    if (!rewriting::apply_rules(graph, rewriting::RuleSet::kLate)) break;
-    rewriting::propagate_copies(graph);
-    rewriting::remove_dead(graph);
-    rewriting::merge_equal(graph);
+    if (!rewriting::opt_algebraic_late(graph)) break;
+    rewriting::copy_prop(graph);
+    rewriting::opt_dce(graph);
+    rewriting::opt_cse(graph);
   }
-  rewriting::propagate_copies(graph);
-  rewriting::choose_extrema(graph);
-  rewriting::build_identities(graph);
-  rewriting::fold_late_constants(graph);
-  rewriting::propagate_copies(graph, true);
-  rewriting::remove_dead(graph);
-  rewriting::merge_equal_code(graph);
-  rewriting::share_selections(graph);
-  rewriting::select_identities(graph);
-  rewriting::convert_waves(graph);
+  rewriting::copy_prop(graph);
+  rewriting::choose_min_max(graph);
+  rewriting::build_arit(graph);
+  rewriting::inst_simplify(graph);
+  rewriting::copy_prop(graph, true);
+  rewriting::opt_dce(graph);
+  rewriting::early_cse(graph);
+  rewriting::fold_select_into_op(graph);
+  rewriting::fold_select_with_identity(graph);
+  rewriting::fold_fp_to_int_poison(graph);
 }
 
 }  // namespace
@@ -77,23 +82,23 @@ void finish(Graph& graph) {
 void rewrite(ir::Function& function) {
   Graph graph(function);
   rewriting::straighten_loops(graph);
-  rewriting::open_loops(graph);
+  rewriting::leave_lcssa(graph);
   rewriting::merge_doubles(graph);
   rewriting::hide_composed(graph);
   optimize_once(graph, true);
   rewriting::show_short_products(graph);
   for (int round = 1; round < kMaxRounds; ++round)
-    if (!optimize_once(graph, false) && !rewriting::merge_equal(graph)) break;
+    if (!optimize_once(graph, false) && !rewriting::opt_cse(graph)) break;
   finish(graph);
   if (rewriting::expand_sized(graph)) {
-    rewriting::propagate_copies(graph);
-    rewriting::remove_dead(graph);
-    rewriting::merge_equal_code(graph);
+    rewriting::copy_prop(graph);
+    rewriting::opt_dce(graph);
+    rewriting::early_cse(graph);
   }
-  if (base::reference_lacks_avx512()) rewriting::follow_avx2(graph);
+  if (base::reference_lacks_avx512()) rewriting::lower_without_avx512(graph);
   rewriting::choose_spelling(graph);
-  rewriting::remove_dead(graph);
-  rewriting::close_loops(graph);
+  rewriting::opt_dce(graph);
+  rewriting::convert_to_lcssa(graph);
   rewriting::close_continues(graph);
   graph.write_back();
 }

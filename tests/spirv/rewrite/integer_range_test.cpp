@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "spirv/rewrite/integer_order.h"
-#include "spirv/rewrite/integer_range.h"
-#include "spirv/rewrite/passes.h"
+#include "spirv/rewrite/llvm/constant_range.h"
+#include "spirv/rewrite/llvm/simplify_icmp.h"
+#include "spirv/rewrite/nir/constant_expressions.h"
 #include "tests/spirv/ir_builder.h"
 
 namespace vitrine::spirv::test {
@@ -96,12 +96,12 @@ void check(const Graph& graph, std::uint32_t seed) {
       value[inst.result] = result;
       has_value[inst.result] = true;
       if (inst.boolean) {
-        const int known = rewriting::known_comparison(graph, inst);
+        const int known = rewriting::simplify_icmp(graph, inst);
         decided += known >= 0;
         ASSERT_TRUE(known < 0 || static_cast<std::uint32_t>(known) == result) << ir::op_name(inst.op) << ' ' << seed;
         continue;
       }
-      const rewriting::IntegerRange range = rewriting::integer_range(graph, {inst.result, {0, 0, 0, 0}});
+      const rewriting::ConstantRange range = rewriting::constant_range(graph, {inst.result, {0, 0, 0, 0}});
       const auto number = static_cast<std::int32_t>(result);
       ASSERT_EQ(result & ~range.bits.possible, 0u) << ir::op_name(inst.op) << ' ' << seed;
       ASSERT_EQ(range.bits.certain & ~result, 0u) << ir::op_name(inst.op) << ' ' << seed;
@@ -112,7 +112,7 @@ void check(const Graph& graph, std::uint32_t seed) {
   }
 }
 
-TEST(IntegerRange, HoldsForWhatIsComputed) {
+TEST(ConstantRange, HoldsForWhatIsComputed) {
   for (std::uint32_t seed = 0; seed < 2000; ++seed) {
     RandomGraph random(seed);
     const Graph graph(random.function());

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "spirv/rewrite/pattern.h"
+#include "spirv/rewrite/nir/algebraic/pattern.h"
 #include "tests/spirv/rewrite/expression.h"
 
 namespace vitrine::spirv {

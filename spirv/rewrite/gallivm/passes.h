@@ -1,0 +1,15 @@
+// Steps that mirror gallivm (Mesa 22.3.6, src/gallium/auxiliary/gallivm), which makes LLVM's instructions of NIR's.
+#pragma once
+
+#include "spirv/rewrite/graph/graph.h"
+
+namespace vitrine::spirv::rewriting {
+
+/// Minima and maxima with an operand that is known to be a number become plain ones. The reference decides this on its
+/// intermediate code, before its code generator simplifies on its own.
+void choose_min_max(Graph& graph);
+
+/// What the building blocks of arithmetic simplify on their own, for scalar code.
+void build_arit(Graph& graph);
+
+}  // namespace vitrine::spirv::rewriting

@@ -1,0 +1,36 @@
+// Copies of instructions with other operands: iterations of loops.
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "spirv/rewrite/graph/graph.h"
+
+namespace vitrine::spirv::rewriting {
+
+/// Copies instructions to the end of a block, operands translated.
+class Copier {
+ public:
+  explicit Copier(Graph& graph) : graph_(graph) {}
+
+  Src translated(Src src) const;
+  void bind(ValueId value, Src src) { map_[value] = src; }
+  void bind_all(const std::vector<ValueId>& values, const std::vector<Src>& sources);
+
+  /// Copies [first, last).
+  void copy(InstId first, InstId last, BlockId to);
+  /// Copies a branch without its final jump; returns the translated operands of the jump.
+  std::vector<Src> copy_branch(BlockId block, BlockId to);
+  std::vector<Src> operands_of(InstId id) const;
+
+ private:
+  ValueId fresh(ValueId value);
+  InstId copy_inst(InstId id);
+  void copy_node(InstId made, std::uint32_t from);
+  BlockId copy_block(BlockId from, InstId owner);
+
+  Graph& graph_;
+  std::unordered_map<ValueId, Src> map_;
+};
+
+}  // namespace vitrine::spirv::rewriting

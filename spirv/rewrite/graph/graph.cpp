@@ -1,0 +1,260 @@
+// ir::Function to the flat form of the rewrites and back.
+#include "spirv/rewrite/graph/graph.h"
+
+#include <utility>
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+bool is_plain(const ir::Instr& instr) {
+  return instr.op < Op::kAluCount || instr.op == Op::kConst || instr.op == Op::kVec;
+}
+
+Kind kind_of(const ir::Instr& instr) {
+  const Op op = instr.op;
+  if (op < Op::kAluCount) return instr.width == 32 || ir::is_selection(op) ? Kind::kAlu : Kind::kSized;
+  if (op == Op::kConst) return Kind::kConst;
+  return op == Op::kVec ? Kind::kVec : Kind::kIntrinsic;
+}
+
+}  // namespace
+
+Graph::Graph(ir::Function& from) : function(from) {
+  values.resize(from.values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i].components = from.values[i].components;
+    values[i].boolean = from.values[i].boolean;
+  }
+  insts.reserve(values.size() * 2);
+  sources.reserve(values.size() * 4);
+  root = import_list(from.body, kNone);
+}
+
+BlockId Graph::import_list(ir::NodeList& list, InstId owner) {
+  const auto id = static_cast<BlockId>(blocks.size());
+  blocks.push_back({kNone, kNone, owner});
+  for (auto& node : list) import_node(std::move(node), id);
+  list.clear();
+  return id;
+}
+
+void Graph::add_operands(InstId inst, const std::vector<Src>& src) {
+  insts[inst].first = static_cast<Slot>(sources.size());
+  insts[inst].count = static_cast<std::uint32_t>(src.size());
+  for (const Src& operand : src) {
+    sources.push_back({operand, inst, kNone, kNone});
+    link_use(static_cast<Slot>(sources.size() - 1));
+  }
+}
+
+void Graph::import_node(std::unique_ptr<ir::Node> node, BlockId block) {
+  const auto id = static_cast<InstId>(insts.size());
+  Inst& inst = insts.emplace_back();
+  const ir::Instr& instr = node->instr;
+  inst.origin = instr.origin;
+  if (node->kind == ir::Node::Kind::kInstr) {
+    inst.kind = kind_of(instr);
+    inst.op = instr.op;
+    inst.components = instr.components;
+    inst.boolean = instr.boolean;
+    inst.width = instr.width;
+    inst.exact = instr.exact;
+    inst.opaque = instr.opaque && instr.op != Op::kMov && instr.op != Op::kMovB;
+    inst.result = instr.result;
+    std::copy(instr.imm.begin(), instr.imm.end(), inst.imm);
+    if (instr.result != ir::kNoValue) values[instr.result].def = id;
+    append(block, id);
+    add_operands(id, instr.src);
+    if (is_plain(instr)) return;
+    insts[id].node = static_cast<std::uint32_t>(nodes.size());
+    node->instr.src.clear();
+    nodes.push_back(std::move(node));
+    return;
+  }
+  const bool is_if = node->kind == ir::Node::Kind::kIf;
+  inst.kind = is_if ? Kind::kIf : Kind::kLoop;
+  inst.components = 0;
+  inst.node = static_cast<std::uint32_t>(nodes.size());
+  for (const ValueId result : node->results) values[result].def = id;
+  for (const ValueId param : node->params) values[param].def = id;
+  for (const ValueId param : node->continue_params) values[param].def = id;
+  append(block, id);
+  add_operands(id, is_if ? std::vector<Src>{node->condition} : node->init);
+  nodes.push_back(std::move(node));
+  ir::Node& kept = *nodes.back();
+  const BlockId first = import_list(is_if ? kept.then_list : kept.body, id);
+  const BlockId second = import_list(is_if ? kept.else_list : kept.continuing, id);
+  insts[id].child[0] = first;
+  insts[id].child[1] = second;
+}
+
+void Graph::write_back() {
+  function.body = export_block(root);
+  function.values.resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) function.values[i] = {values[i].components, values[i].boolean};
+}
+
+ir::NodeList Graph::export_block(BlockId block) {
+  ir::NodeList list;
+  for (InstId id = blocks[block].head; id != kNone; id = insts[id].next) list.push_back(export_inst(id));
+  return list;
+}
+
+std::unique_ptr<ir::Node> Graph::export_inst(InstId id) {
+  Inst& inst = insts[id];
+  std::unique_ptr<ir::Node> node = inst.node == kNone ? std::make_unique<ir::Node>() : std::move(nodes[inst.node]);
+  std::vector<Src> operands(inst.count);
+  for (std::uint32_t i = 0; i < inst.count; ++i) operands[i] = source(inst, i);
+  if (inst.kind == Kind::kIf) {
+    node->condition = operands[0];
+    node->then_list = export_block(inst.child[0]);
+    node->else_list = export_block(inst.child[1]);
+    return node;
+  }
+  if (inst.kind == Kind::kLoop) {
+    node->init = std::move(operands);
+    node->body = export_block(inst.child[0]);
+    node->continuing = export_block(inst.child[1]);
+    return node;
+  }
+  node->instr.src = std::move(operands);
+  node->instr.op = inst.op;
+  node->instr.components = inst.components;
+  node->instr.boolean = inst.boolean;
+  node->instr.exact = inst.exact;
+  node->instr.opaque = inst.opaque;
+  node->instr.result = inst.result;
+  std::copy(std::begin(inst.imm), std::end(inst.imm), node->instr.imm.begin());
+  node->instr.origin = inst.origin;
+  return node;
+}
+
+InstId Graph::create(Kind kind, Op op, std::uint8_t components, bool boolean, std::uint32_t count) {
+  const auto id = static_cast<InstId>(insts.size());
+  Inst& inst = insts.emplace_back();
+  inst.kind = kind;
+  inst.op = op;
+  inst.components = components;
+  inst.boolean = boolean;
+  inst.first = static_cast<Slot>(sources.size());
+  inst.count = count;
+  for (std::uint32_t i = 0; i < count; ++i) sources.push_back({Src{}, id, kNone, kNone});
+  if (components != 0) {
+    inst.result = static_cast<ValueId>(values.size());
+    values.push_back({id, kNone, kNone, 0, components, boolean});
+  }
+  return id;
+}
+
+InstId Graph::create_const(std::uint8_t components, bool boolean, const std::uint32_t* bits) {
+  const InstId id = create(Kind::kConst, Op::kConst, components, boolean, 0);
+  std::copy(bits, bits + components, insts[id].imm);
+  return id;
+}
+
+void Graph::set_source(InstId inst, std::uint32_t index, Src src) {
+  const Slot slot = insts[inst].first + index;
+  if (sources[slot].src.value != ir::kNoValue) unlink_use(slot);
+  sources[slot].src = src;
+  link_use(slot);
+}
+
+void Graph::set_operands(InstId inst, const std::vector<Src>& src) {
+  const Slot first = insts[inst].first;
+  for (std::uint32_t i = 0; i < insts[inst].count; ++i) unlink_use(first + i);
+  if (src.size() > insts[inst].count) return add_operands(inst, src);
+  insts[inst].count = static_cast<std::uint32_t>(src.size());
+  for (std::uint32_t i = 0; i < insts[inst].count; ++i) {
+    sources[first + i].src = src[i];
+    link_use(first + i);
+  }
+}
+
+void Graph::link_use(Slot slot) {
+  Operand& operand = sources[slot];
+  Value& value = values[operand.src.value];
+  operand.next = kNone;
+  operand.previous = value.last_use;
+  (value.last_use == kNone ? value.first_use : sources[value.last_use].next) = slot;
+  value.last_use = slot;
+  ++value.uses;
+}
+
+void Graph::unlink_use(Slot slot) {
+  const Operand& operand = sources[slot];
+  Value& value = values[operand.src.value];
+  (operand.previous == kNone ? value.first_use : sources[operand.previous].next) = operand.next;
+  (operand.next == kNone ? value.last_use : sources[operand.next].previous) = operand.previous;
+  --value.uses;
+}
+
+void Graph::insert_before(InstId position, InstId inst) {
+  const BlockId block = insts[position].block;
+  const InstId before = insts[position].previous;
+  insts[inst].block = block;
+  insts[inst].next = position;
+  insts[inst].previous = before;
+  insts[position].previous = inst;
+  (before == kNone ? blocks[block].head : insts[before].next) = inst;
+}
+
+void Graph::insert_after(InstId position, InstId inst) {
+  const InstId after = insts[position].next;
+  if (after == kNone) {
+    append(insts[position].block, inst);
+  } else {
+    insert_before(after, inst);
+  }
+}
+
+void Graph::append(BlockId block, InstId inst) {
+  insts[inst].block = block;
+  insts[inst].next = kNone;
+  insts[inst].previous = blocks[block].tail;
+  (blocks[block].tail == kNone ? blocks[block].head : insts[blocks[block].tail].next) = inst;
+  blocks[block].tail = inst;
+}
+
+void Graph::replace_uses(ValueId from, ValueId to) {
+  while (values[from].first_use != kNone) {
+    const Slot slot = values[from].first_use;
+    unlink_use(slot);
+    sources[slot].src.value = to;
+    link_use(slot);
+  }
+}
+
+void Graph::unlink(InstId inst) {
+  const Inst& gone = insts[inst];
+  (gone.previous == kNone ? blocks[gone.block].head : insts[gone.previous].next) = gone.next;
+  (gone.next == kNone ? blocks[gone.block].tail : insts[gone.next].previous) = gone.previous;
+}
+
+void Graph::remove(InstId inst) {
+  unlink(inst);
+  for (std::uint32_t i = 0; i < insts[inst].count; ++i) unlink_use(insts[inst].first + i);
+  insts[inst].removed = true;
+  for (const BlockId child : insts[inst].child)
+    if (child != kNone)
+      while (blocks[child].head != kNone) remove(blocks[child].head);
+}
+
+void Graph::move_before(InstId position, InstId inst) {
+  unlink(inst);
+  insert_before(position, inst);
+}
+
+void Graph::move_after(InstId position, InstId inst) {
+  unlink(inst);
+  insert_after(position, inst);
+}
+
+void Graph::splice_before(InstId position, BlockId block) {
+  while (blocks[block].head != kNone) {
+    move_before(position, blocks[block].head);
+  }
+}
+
+}  // namespace vitrine::spirv::rewriting

@@ -1,0 +1,555 @@
+// The engine that applies the rule table the way the reference's compiler does (lavapipe-shader-math.md 4.1): users
+// before producers, the first matching rule in table order; replaced values wake those of their users for whom the
+// change of structure matters; replaced instructions' operands stay, and count as uses, until dead code is removed.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <deque>
+
+#include "spirv/mix.h"
+#include "spirv/rewrite/graph/literals.h"
+#include "spirv/rewrite/nir/algebraic/composed.h"
+#include "spirv/rewrite/nir/algebraic/pattern.h"
+#include "spirv/rewrite/nir/passes.h"
+#include "spirv/rewrite/nir/range_analysis.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+using Swizzle = std::array<std::uint8_t, 4>;
+
+/// Bit per shape that an instruction has.
+using State = std::array<std::uint64_t, kMaxShapes / 64>;
+
+constexpr unsigned kMaxOrders = 8;  ///< commutative operations of one search that are tried in both orders
+
+struct Match {
+  std::array<Src, 8> variable;
+  std::array<std::uint8_t, 8> width{};  ///< bits of the variables that are numbers, 0: booleans
+  std::uint32_t seen = 0;
+  std::uint32_t orders = 0;  ///< bit i: commutative operation i has its operands swapped
+  bool inexact = false;      ///< both stick over the attempts with other orders, as in the reference
+  bool has_exact = false;
+};
+
+class Rewriter {
+ public:
+  Rewriter(Graph& graph, const Rules& rules) : graph_(graph), rules_(rules), ranges_(graph) {
+    states_.resize(graph.values.size());
+    inexact_off_ = graph.function.forbids_inexact(32);
+  }
+
+  bool run() {
+    std::vector<InstId> order;
+    auto visit = [&](InstId id) {
+      if (!computes(graph_.insts[id])) return;
+      update_state(id);
+      any_sized_ |= graph_.insts[id].width != 32;
+      order.push_back(id);
+    };
+    for_each_inst(graph_, graph_.root, visit);
+    queue_.assign(order.rbegin(), order.rend());
+    bool changed = false;
+    for (std::size_t visit_number = 0; !queue_.empty(); ++visit_number) {
+      const InstId id = queue_.front();
+      queue_.pop_front();
+      const Inst& inst = graph_.insts[id];
+      if (inst.removed) continue;
+      const bool woken = visit_number >= order.size();
+      if (inst.opaque) {
+        show_product(id);
+        changed |= show_sum(id);
+      } else if (woken || !graph_.first_rules ||
+                 (inst.opens != Opens::kAfterRules && inst.opens != Opens::kWithResult)) {
+        changed |= rewrite(id);
+      }
+    }
+    return changed;
+  }
+
+ private:
+  // ---- states
+
+  bool has_shape(ValueId value, std::uint16_t shape) const {
+    if (shape == kAnyShape) return true;
+    if (shape == kConstShape) return graph_.constant(value) != nullptr;
+    return (states_[value][shape / 64] >> (shape % 64) & 1) != 0;
+  }
+
+  bool fits(const Inst& inst, const Shape& shape) const {
+    const auto child = [&](unsigned operand, unsigned pattern) {
+      return has_shape(graph_.source(inst, operand).value, shape.child[pattern]);
+    };
+    bool straight = true;
+    for (unsigned i = 0; i < shape.children && straight; ++i) straight = child(i, i);
+    if (straight || !shape.commutative) return straight;
+    return child(0, 1) && child(1, 0) && (shape.children < 3 || child(2, 2));
+  }
+
+  /// True when the state changed.
+  bool update_state(InstId id) {
+    const Inst& inst = graph_.insts[id];
+    State state{};
+    const auto add_shapes = [&](Op op) {
+      for (const std::uint16_t shape : rules_.shapes_by_op[static_cast<std::size_t>(op)])
+        if (fits(inst, rules_.shapes[shape])) state[shape / 64] |= std::uint64_t{1} << (shape % 64);
+    };
+    if (!inst.opaque) add_shapes(shape_op(inst.op));
+    if (states_[inst.result] == state) return false;
+    states_[inst.result] = state;
+    return true;
+  }
+
+  void wake_users(ValueId value) {
+    std::vector<ValueId> pending{value};
+    for (std::size_t next = 0; next < pending.size(); ++next) {
+      for (Slot slot = graph_.values[pending[next]].first_use; slot != kNone; slot = graph_.sources[slot].next) {
+        const InstId user = graph_.sources[slot].user;
+        if (!computes(graph_.insts[user]) || !update_state(user)) continue;
+        queue_.push_back(user);
+        pending.push_back(graph_.insts[user].result);
+      }
+    }
+  }
+
+  /// When the reference's rules first come to a dot product they make it a sum of products. They do not visit the
+  /// product then, only when one of its operands changes.
+  void show_product(InstId id) {
+    const Inst& sum = graph_.insts[id];
+    if (!graph_.first_rules || sum.op != Op::kFAdd) return;
+    const InstId product = graph_.values[graph_.source(sum, 1).value].def;
+    if (product == kNone || !graph_.insts[product].opaque || graph_.insts[product].op != Op::kFMul ||
+        graph_.insts[product].opens != Opens::kAfterRules)
+      return;
+    graph_.insts[product].opaque = false;
+    update_state(product);
+  }
+
+  /// The reference replaces its sum of two by an addition here, so that other rules see it only later.
+  bool show_sum(InstId id) {
+    const Opens opens = graph_.insts[id].opens;
+    if (opens != Opens::kVisited && (opens != Opens::kVisitedAfterRound || graph_.first_rules)) return false;
+    show_parts(id);
+    graph_.insts[id].opaque = false;
+    if (opens == Opens::kVisitedAfterRound) veiled_.push_back(graph_.insts[id].result);
+    update_state(id);
+    wake_users(graph_.insts[id].result);
+    return true;
+  }
+
+  /// Opens the parts of the composed operation that the instruction ends, if it does. The reference's rules do not
+  /// visit them then, only when one of their operands changes.
+  void show_parts(InstId id) {
+    for (const InstId part : parts_of_composed(graph_, id)) {
+      graph_.insts[part].opaque = false;
+      update_state(part);
+    }
+  }
+
+  /// A sum opened in this run: in the reference its operands are components of a vector, and the rules do not look
+  /// through it before the next round.
+  bool is_veiled(const Inst& inst) const {
+    return std::find(veiled_.begin(), veiled_.end(), inst.result) != veiled_.end();
+  }
+
+  // ---- conditions
+
+  bool used_as_float_only(ValueId value) const {
+    for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next) {
+      const Inst& user = graph_.insts[graph_.sources[slot].user];
+      if (!computes(user) || ir::alu_info(user.op).operands[slot - user.first] != 'F') return false;
+    }
+    return true;
+  }
+
+  /// Who reads one word of a double reads the other one, too, and is one use.
+  unsigned double_uses(ValueId value) const {
+    unsigned uses = 0;
+    for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next)
+      uses += graph_.sources[slot].src.swizzle[0] == 0 ? 1 : 0;
+    return uses;
+  }
+
+  /// True when an If reads the value as its condition.
+  bool decides(ValueId value) const {
+    for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next)
+      if (graph_.insts[graph_.sources[slot].user].kind == Kind::kIf) return true;
+    return false;
+  }
+
+  bool holds_for_inst(Condition condition, const Inst& inst) const {
+    switch (condition) {
+      case Condition::kOnce:
+        return inst.width == 64 && !inst.boolean ? double_uses(inst.result) == 1 : graph_.values[inst.result].uses == 1;
+      case Condition::kUsed:
+        return graph_.values[inst.result].uses != 0;
+      case Condition::kFloatOnly:
+        return used_as_float_only(inst.result);
+      case Condition::kNotForIf:
+        return !decides(inst.result);
+      default:
+        return true;
+    }
+  }
+
+  bool is_product(ValueId value) const {
+    const Inst* inst = graph_.def(value);
+    if (!inst || !computes(*inst) || inst->opaque) return false;
+    if (inst->op == Op::kFNeg) return is_product(graph_.source(*inst, 0).value);
+    return inst->op == Op::kFMul;
+  }
+
+  /// Every component that is read is a power of two (or minus one) in the operand's type.
+  bool is_power_of_two(const Inst& inst, std::uint32_t index, const Swizzle& swizzle, unsigned components,
+                       bool negative) const {
+    const Inst* constant = graph_.constant(graph_.source(inst, index).value);
+    if (!constant) return false;
+    const bool is_unsigned = ir::alu_info(inst.op).operands[index] == 'U';
+    for (unsigned c = 0; c < components; ++c) {
+      const std::uint32_t bits = constant->imm[swizzle[c]];
+      const bool sign = (bits & 0x80000000u) != 0;
+      const std::uint32_t magnitude = negative ? 0u - bits : bits;
+      if (negative && (!sign || bits == 0x80000000u)) return false;
+      if (!negative && sign && !is_unsigned) return false;
+      if (magnitude == 0 || (magnitude & (magnitude - 1)) != 0) return false;
+    }
+    return true;
+  }
+
+  /// `test` holds for every component that is read of a constant.
+  template <class Test>
+  bool all_components(const Inst& inst, std::uint32_t index, const Swizzle& swizzle, unsigned components,
+                      Test test) const {
+    const Inst* constant = graph_.constant(graph_.source(inst, index).value);
+    if (!constant) return false;
+    for (unsigned c = 0; c < components; ++c)
+      if (!test(constant->imm[swizzle[c]])) return false;
+    return true;
+  }
+
+  bool is_multiple(const Inst& inst, std::uint32_t index, const Swizzle& swizzle, unsigned components,
+                   std::uint32_t factor) const {
+    return all_components(inst, index, swizzle, components, [=](std::uint32_t v) { return v % factor == 0; });
+  }
+
+  bool holds_for_range(Condition condition, const Range& range) const {
+    const bool not_negative = (range.signs & Range::kNegative) == 0,
+               not_positive = (range.signs & Range::kPositive) == 0;
+    switch (condition) {
+      case Condition::kNumber:
+        return range.number;
+      case Condition::kFinite:
+        return range.finite;
+      case Condition::kIntegral:
+        return range.integral;
+      case Condition::kNotNegative:
+        return not_negative;
+      case Condition::kNotPositive:
+        return not_positive;
+      case Condition::kNotZero:
+        return (range.signs & Range::kZero) == 0;
+      case Condition::kGt0:
+        return range.signs == Range::kPositive;
+      case Condition::kLt0:
+        return range.signs == Range::kNegative;
+      case Condition::kNumberNotNegative:
+        return range.number && not_negative;
+      case Condition::kNumberNotPositive:
+        return range.number && not_positive;
+      case Condition::kNumberGt0:
+        return range.number && range.signs == Range::kPositive;
+      case Condition::kNumberLt0:
+        return range.number && range.signs == Range::kNegative;
+      default:
+        return true;
+    }
+  }
+
+  bool holds_for_operand(Condition condition, const Inst& inst, std::uint32_t index, const Swizzle& swizzle,
+                         unsigned components) {
+    const ValueId value = graph_.source(inst, index).value;
+    switch (condition) {
+      case Condition::kNone:
+        return true;
+      case Condition::kNotConst:
+        return graph_.constant(value) == nullptr || is_veiled(inst);
+      case Condition::kFmul:
+        return is_product(value) && !is_veiled(inst);
+      case Condition::kNotFmul:
+        return !is_product(value) || is_veiled(inst);
+      case Condition::kPosPow2:
+        return is_power_of_two(inst, index, swizzle, components, false);
+      case Condition::kNegPow2:
+        return is_power_of_two(inst, index, swizzle, components, true);
+      case Condition::kShifts2:
+        return all_components(inst, index, swizzle, components, [](std::uint32_t v) { return (v & 31) >= 2; });
+      case Condition::kBelow32:
+        return all_components(inst, index, swizzle, components, [](std::uint32_t v) { return v < 32; });
+      case Condition::kMultiple2:
+        return is_multiple(inst, index, swizzle, components, 2);
+      case Condition::kMultiple4:
+        return is_multiple(inst, index, swizzle, components, 4);
+      case Condition::kMultiple8:
+        return is_multiple(inst, index, swizzle, components, 8);
+      case Condition::kMultiple16:
+        return is_multiple(inst, index, swizzle, components, 16);
+      case Condition::kMultiple32:
+        return is_multiple(inst, index, swizzle, components, 32);
+      case Condition::kMultiple64:
+        return is_multiple(inst, index, swizzle, components, 64);
+      default:
+        return holds_for_range(condition, ranges_.of_source(inst, index));
+    }
+  }
+
+  // ---- matching
+
+  /// Bits of the numbers of operand `index`, 0: booleans.
+  static std::uint8_t operand_width(const Inst& inst, std::uint32_t index, std::uint8_t width) {
+    return ir::alu_info(inst.op).operands[index] == 'B' ? std::uint8_t{0} : width;
+  }
+
+  bool match_constant(const Pattern& pattern, ValueId value, const Swizzle& swizzle, unsigned components,
+                      unsigned width) const {
+    const Inst* constant = graph_.constant(value);
+    if (!constant) return false;
+    if (pattern.kind == Pattern::Kind::kFloat && width == 64)
+      return !constant->boolean && literal_number(*constant, swizzle, width) == pattern.number;
+    const bool wants_boolean = pattern.kind == Pattern::Kind::kBoolean;
+    if (constant->boolean != wants_boolean) return false;
+    for (unsigned c = 0; c < components; ++c) {
+      const std::uint32_t bits = constant->imm[swizzle[c]];
+      if (pattern.kind == Pattern::Kind::kFloat) {
+        const Swizzle here{swizzle[c]};
+        if ((width == 32 ? static_cast<double>(std::bit_cast<float>(bits)) : literal_number(*constant, here, width)) !=
+            pattern.number)
+          return false;
+      } else if (bits != pattern.bits) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  bool match_variable(const Pattern& pattern, const Inst& inst, std::uint32_t index, const Swizzle& swizzle,
+                      unsigned components, std::uint8_t width, Match& match) {
+    const ValueId value = graph_.source(inst, index).value;
+    Src& bound = match.variable[pattern.variable];
+    if (match.seen >> pattern.variable & 1) {
+      if (bound.value != value || match.width[pattern.variable] != width) return false;
+      for (unsigned c = 0; c < components; ++c)
+        if (bound.swizzle[c] != swizzle[c]) return false;
+      return true;
+    }
+    if (pattern.constant && (!graph_.constant(value) || is_veiled(inst))) return false;
+    if (!holds_for_operand(pattern.condition, inst, index, swizzle, components)) return false;
+    match.seen |= 1u << pattern.variable;
+    match.width[pattern.variable] = width;
+    bound = {value, {}};
+    for (unsigned c = 0; c < components; ++c) bound.swizzle[c] = swizzle[c];
+    return true;
+  }
+
+  bool match_operand(std::uint16_t index, const Inst& inst, std::uint32_t operand, unsigned components,
+                     const Swizzle& outer, std::uint8_t width, Match& match) {
+    const Src src = graph_.source(inst, operand);
+    Swizzle swizzle{};
+    if (inst.width == 64) components = operand_components(inst, operand);
+    for (unsigned c = 0; c < components; ++c) swizzle[c] = src.swizzle[inst.width == 64 ? c : outer[c]];
+    width = operand_width(inst, operand, width);
+    const Pattern& pattern = rules_.patterns[index];
+    if (pattern.kind == Pattern::Kind::kVariable)
+      return match_variable(pattern, inst, operand, swizzle, components, width, match);
+    if (is_veiled(inst)) return false;
+    if (pattern.kind != Pattern::Kind::kOp) return match_constant(pattern, src.value, swizzle, components, width);
+    const Inst* def = graph_.def(src.value);
+    if (!def || !computes(*def) || def->opaque) return false;
+    if (def->boolean ? width != 0 : !makes(*def, width)) return false;
+    if (def->width == 64 && !def->boolean && (swizzle[0] != 0 || swizzle[1] != 1)) return false;
+    return match_op(pattern, *def, components, swizzle, def->boolean ? def->width : width, match);
+  }
+
+  /// The instruction's numbers have `width` bits. Selections of words may be of halves.
+  static bool makes(const Inst& inst, unsigned width) {
+    if (inst.width == width) return true;
+    return width == 16 && inst.kind == Kind::kAlu && ir::is_selection(inst.op);
+  }
+
+  /// `width`: bits of the numbers of the operation, of a comparison those of its operands.
+  bool match_op(const Pattern& pattern, const Inst& inst, unsigned components, const Swizzle& swizzle,
+                std::uint8_t width, Match& match) {
+    if (pattern.op != inst.op || !holds_for_inst(pattern.condition, inst)) return false;
+    if (pattern.op == ir::kHalfMix && width != 16) return false;
+    match.inexact |= pattern.inexact;
+    match.has_exact |= inst.exact;
+    if (match.inexact && match.has_exact) return false;
+    const bool swap = pattern.commutative >= 0 && pattern.commutative < static_cast<int>(kMaxOrders) &&
+                      (match.orders >> pattern.commutative & 1) != 0;
+    for (unsigned i = 0; i < pattern.children; ++i) {
+      const unsigned operand = swap && i < 2 ? i ^ 1 : i;
+      if (!match_operand(pattern.child[i], inst, operand, components, swizzle, width, match)) return false;
+    }
+    return true;
+  }
+
+  bool try_rule(const Rule& rule, const Inst& inst, Match& match) {
+    const Pattern& search = rules_.patterns[rule.search];
+    if (inst.width != 32 ? !applies(rule, search, inst.width) : search.inexact && inexact_off_) return false;
+    if (rule.needs_free_zeros && graph_.function.signed_zero_inf_nan_preserve) return false;
+    if (!has_shape(inst.result, search.shape)) return false;
+    match = {};
+    const std::uint32_t attempts = 1u << std::min<unsigned>(rule.commutative, kMaxOrders);
+    for (match.orders = 0; match.orders < attempts; ++match.orders) {
+      match.seen = 0;
+      if (match_op(search, inst, inst.components, {0, 1, 2, 3}, inst.width, match)) return true;
+    }
+    return false;
+  }
+
+  /// For numbers of 16 and 64 bits.
+  bool applies(const Rule& rule, const Pattern& search, unsigned width) const {
+    if (rule.needs_free_zeros && width == 64) return false;
+    return !(search.inexact || rule.needs_free_zeros) || !graph_.function.forbids_inexact(width);
+  }
+
+  // ---- replacing
+
+  void place(InstId made) {
+    if (after_) {
+      graph_.insert_after(cursor_, made);
+      cursor_ = made;
+    } else {
+      graph_.insert_before(cursor_, made);
+    }
+    graph_.insts[made].origin = origin_;
+  }
+
+  Src build_constant(const Pattern& pattern, unsigned width) {
+    std::uint32_t bits[2] = {pattern.bits, 0};
+    if (pattern.kind == Pattern::Kind::kFloat) literal_words(pattern.number, width, bits);
+    const unsigned components = width == 64 && pattern.kind == Pattern::Kind::kFloat ? 2 : 1;
+    const InstId made =
+        graph_.create_const(static_cast<std::uint8_t>(components), pattern.kind == Pattern::Kind::kBoolean, bits);
+    place(made);
+    states_.resize(graph_.values.size());
+    return {graph_.insts[made].result, {0, static_cast<std::uint8_t>(components - 1), 0, 0}};
+  }
+
+  /// Bits of the numbers that a pattern of a replacement makes, by the variables in it; 0: booleans, or literals alone.
+  std::uint8_t width_of(std::uint16_t index, const Match& match) const {
+    const Pattern& pattern = rules_.patterns[index];
+    if (pattern.kind == Pattern::Kind::kVariable) return match.width[pattern.variable];
+    if (pattern.kind != Pattern::Kind::kOp || ir::alu_info(pattern.op).result == 'B') return 0;
+    return computed_width(pattern, match);
+  }
+
+  /// Bits of the numbers that the operation computes with.
+  std::uint8_t computed_width(const Pattern& pattern, const Match& match) const {
+    for (unsigned i = 0; i < pattern.children; ++i)
+      if (const std::uint8_t width = width_of(pattern.child[i], match); width != 0) return width;
+    return 0;
+  }
+
+  Src build(std::uint16_t index, unsigned components, std::uint8_t width, const Match& match) {
+    const Pattern& pattern = rules_.patterns[index];
+    if (pattern.kind == Pattern::Kind::kVariable) return match.variable[pattern.variable];
+    if (pattern.kind != Pattern::Kind::kOp) return build_constant(pattern, width);
+    const ir::AluInfo& info = ir::alu_info(pattern.op);
+    const bool boolean = info.result == 'B';
+    if (any_sized_)
+      if (const std::uint8_t known = computed_width(pattern, match); known != 0) width = known;
+    if (boolean && width == 0) width = 32;
+    const unsigned lanes = width != 64 ? components : boolean ? 1 : 2;
+    std::array<Src, 3> operand;
+    for (unsigned i = 0; i < pattern.children; ++i) operand[i] = build(pattern.child[i], lanes, width, match);
+    const bool sized = width != 32 && !ir::is_selection(pattern.op) && has_sizes(info);
+    const InstId made = graph_.create(sized ? Kind::kSized : Kind::kAlu, pattern.op, static_cast<std::uint8_t>(lanes),
+                                      boolean, pattern.children);
+    if (sized || pattern.op == Op::kSelect) graph_.insts[made].width = width;
+    graph_.insts[made].exact = match.has_exact || pattern.exact;
+    for (unsigned i = 0; i < pattern.children; ++i) graph_.set_source(made, i, operand[i]);
+    place(made);
+    states_.resize(graph_.values.size());
+    update_state(made);
+    if (width == 64) return {graph_.insts[made].result, boolean ? Swizzle{} : Swizzle{0, 1, 0, 0}};
+    return {graph_.insts[made].result, {0, 1, 2, 3}};
+  }
+
+  /// The operation has an operand or a result that is a float.
+  static bool has_sizes(const ir::AluInfo& info) { return info.result == 'F' || info.operands[0] == 'F'; }
+
+  /// A value of its own for a replacement that is a part or a rearrangement of another value.
+  ValueId as_value(Src src, unsigned components, bool boolean) {
+    bool whole = graph_.values[src.value].components == components;
+    for (unsigned c = 0; c < components; ++c) whole &= src.swizzle[c] == c;
+    if (whole) return src.value;
+    const InstId move =
+        graph_.create(Kind::kAlu, boolean ? Op::kMovB : Op::kMov, static_cast<std::uint8_t>(components), boolean, 1);
+    graph_.set_source(move, 0, src);
+    place(move);
+    states_.resize(graph_.values.size());
+    return graph_.insts[move].result;
+  }
+
+  /// Replacements of unary operations go where their operand is, so that they do not prolong other values' lives.
+  void choose_cursor(InstId id) {
+    const Inst& inst = graph_.insts[id];
+    origin_ = inst.origin;
+    cursor_ = id;
+    after_ = false;
+    switch (inst.op) {
+      case Op::kFNeg:
+      case Op::kFAbs:
+      case Op::kINeg:
+      case Op::kIAbs:
+      case Op::kNot:
+      case Op::kNotB:
+        break;
+      default:
+        return;
+    }
+    const InstId def = graph_.values[graph_.source(inst, 0).value].def;
+    if (def == kNone || !computes(graph_.insts[def])) return;
+    cursor_ = def;
+    after_ = true;
+  }
+
+  bool rewrite(InstId id) {
+    const Op op = graph_.insts[id].op;
+    for (const std::uint16_t number : rules_.by_op[static_cast<std::size_t>(op)]) {
+      const Rule& rule = rules_.rules[number];
+      Match match;
+      if (!try_rule(rule, graph_.insts[id], match)) continue;
+      choose_cursor(id);
+      const unsigned components = graph_.insts[id].components;
+      const Src built = build(rule.replacement, components, graph_.insts[id].width, match);
+      const ValueId value = as_value(built, components, graph_.insts[id].boolean);
+      graph_.replace_uses(graph_.insts[id].result, value);
+      graph_.remove(id);
+      wake_users(value);
+      ranges_.clear();
+      return true;
+    }
+    return false;
+  }
+
+  Graph& graph_;
+  const Rules& rules_;
+  RangeAnalysis ranges_;
+  std::vector<ValueId> veiled_;  ///< results of the sums that is_veiled() knows
+  std::vector<State> states_;
+  std::deque<InstId> queue_;
+  bool inexact_off_ = false;
+  bool any_sized_ = false;  ///< there are numbers that do not have 32 bits
+  InstId cursor_ = kNone;
+  bool after_ = false;
+  ir::Origin origin_;
+};
+
+}  // namespace
+
+bool opt_algebraic(Graph& graph) { return Rewriter(graph, main_rules()).run(); }
+bool opt_algebraic_late(Graph& graph) { return Rewriter(graph, late_rules()).run(); }
+
+}  // namespace vitrine::spirv::rewriting

@@ -1,0 +1,91 @@
+// Operations on constants become their results (nir_opt_constant_folding.c).
+#include "base/float_mode.h"
+#include "spirv/rewrite/nir/constant_expressions.h"
+#include "spirv/rewrite/nir/passes.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+void become_constant(Graph& graph, InstId id, const std::uint32_t* bits) {
+  const Inst inst = graph.insts[id];
+  const InstId folded = graph.create_const(inst.components, inst.boolean, bits);
+  graph.insert_before(id, folded);
+  graph.replace_uses(inst.result, graph.insts[folded].result);
+  graph.remove(id);
+}
+
+bool fold_vector(Graph& graph, InstId id) {
+  const Inst& inst = graph.insts[id];
+  std::uint32_t bits[4] = {};
+  for (std::uint32_t c = 0; c < inst.count; ++c) {
+    const Src part = graph.source(inst, c);
+    const Inst* constant = graph.constant(part.value);
+    if (!constant) return false;
+    bits[c] = constant->imm[part.swizzle[0]];
+  }
+  become_constant(graph, id, bits);
+  return true;
+}
+
+bool fold_sized(Graph& graph, InstId id) {
+  const Inst inst = graph.insts[id];
+  std::uint32_t bits[5] = {};
+  const unsigned steps = inst.width == 64 ? 1 : inst.components;
+  for (unsigned c = 0; c < steps; ++c)
+    if (!evaluate_sized(graph, inst, c, bits + c)) return false;
+  become_constant(graph, id, bits);
+  return true;
+}
+
+bool fold_conversion(Graph& graph, InstId id) {
+  std::uint32_t words[2] = {};
+  const Inst& inst = graph.insts[id];
+  if (!evaluate_conversion(graph, inst, words) && !evaluate_integers(graph, inst, words)) return false;
+  become_constant(graph, id, words);
+  return true;
+}
+
+/// Replaces `id` by a constant if all its operands are constant.
+bool fold(Graph& graph, InstId id) {
+  const Inst inst = graph.insts[id];
+  if (inst.kind == Inst::Kind::kVec) return fold_vector(graph, id);
+  if (inst.kind == Inst::Kind::kSized) return fold_sized(graph, id);
+  if (inst.kind == Inst::Kind::kIntrinsic) return fold_conversion(graph, id);
+  if (inst.kind != Inst::Kind::kAlu || inst.count == 0) return false;
+  std::uint32_t bits[4] = {};
+  if (is_minimum_with_zero(graph, inst)) {
+    become_constant(graph, id, bits);
+    return true;
+  }
+  if (const Src number = extended_before(graph, inst); number.value != ir::kNoValue) {
+    graph.replace_uses(inst.result, number.value);
+    graph.remove(id);
+    return true;
+  }
+  const Inst* constants[3] = {};
+  for (std::uint32_t i = 0; i < inst.count; ++i) {
+    constants[i] = graph.constant(graph.source(inst, i).value);
+    if (!constants[i]) return false;
+  }
+  for (unsigned c = 0; c < inst.components; ++c) {
+    std::uint32_t operand[3] = {};
+    for (std::uint32_t i = 0; i < inst.count; ++i) operand[i] = constants[i]->imm[graph.source(inst, i).swizzle[c]];
+    if (!evaluate(inst.op, operand, bits[c])) return false;
+  }
+  become_constant(graph, id, bits);
+  return true;
+}
+
+}  // namespace
+
+bool opt_constant_folding(Graph& graph) {
+  const base::ScopedFloatMode mode(base::Denormals::kHonour);
+  bool changed = false;
+  auto visit = [&](InstId id) { changed |= fold(graph, id); };
+  for_each_inst(graph, graph.root, visit);
+  return changed;
+}
+
+}  // namespace vitrine::spirv::rewriting

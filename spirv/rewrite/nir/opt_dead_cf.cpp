@@ -1,0 +1,122 @@
+// Control flow that need not be (nir_opt_dead_cf.c): branches on constants, code that never runs, loops without effect.
+#include "spirv/rewrite/graph/effects.h"
+#include "spirv/rewrite/graph/tree.h"
+#include "spirv/rewrite/nir/passes.h"
+#include "spirv/rewrite/nir/to_lcssa.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+void collect_values(const Graph& graph, InstId id, std::vector<ValueId>& values) {
+  const Inst& inst = graph.insts[id];
+  if (inst.components != 0) values.push_back(inst.result);
+  if (inst.kind != Kind::kIf && inst.kind != Kind::kLoop) return;
+  const ir::Node& node = *graph.nodes[inst.node];
+  for (const auto* list : {&node.results, &node.params, &node.continue_params})
+    values.insert(values.end(), list->begin(), list->end());
+  for (const BlockId child : inst.child)
+    for (InstId inner = graph.blocks[child].head; inner != kNone; inner = graph.insts[inner].next)
+      collect_values(graph, inner, values);
+}
+
+/// Removes `id`, which never runs. Nor does what still reads its values (code behind a loop whose only way out this
+/// was): that reads zeros.
+void remove_unreached(Graph& graph, InstId id) {
+  std::vector<ValueId> values;
+  collect_values(graph, id, values);
+  graph.remove(id);
+  for (const ValueId value : values) {
+    if (graph.values[value].uses == 0) continue;
+    constexpr std::uint32_t kZeros[4] = {};
+    const InstId zero = graph.create_const(graph.values[value].components, graph.values[value].boolean, kZeros);
+    graph.insert_before(graph.blocks[graph.root].head, zero);
+    graph.replace_uses(value, graph.insts[zero].result);
+  }
+}
+
+/// Removes `block`'s instructions from `first` to the end.
+void remove_from(Graph& graph, BlockId block, InstId first) {
+  if (first == kNone) return;
+  for (bool last = false; !last;) {
+    const InstId tail = graph.blocks[block].tail;
+    last = tail == first;
+    remove_unreached(graph, tail);
+  }
+}
+
+void take_branch(Graph& graph, InstId id, BlockId taken) {
+  if (ends_in(graph, taken, Op::kYield)) {
+    const std::vector<Src> yielded = operands_of(graph, graph.blocks[taken].tail);
+    graph.remove(graph.blocks[taken].tail);
+    graph.splice_before(id, taken);
+    replace_results(graph, id, yielded);
+  } else {
+    graph.splice_before(id, taken);
+    remove_from(graph, graph.insts[id].block, graph.insts[id].next);
+  }
+  remove_unreached(graph, id);
+}
+
+/// A loop that has no effect but the values it carries.
+bool only_computes(const Graph& graph, BlockId block) {
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
+    const Inst& inst = graph.insts[id];
+    if (inst.kind == Kind::kIf || inst.kind == Kind::kLoop) {
+      if (!only_computes(graph, inst.child[0]) || !only_computes(graph, inst.child[1])) return false;
+    } else if (!is_jump(inst, Op::kYield) && !leaves_loop(inst) && !is_pure(graph, inst)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool is_dead_loop(const Graph& graph, InstId id) {
+  for (const ValueId result : graph.nodes[graph.insts[id].node]->results)
+    if (graph.values[result].uses != 0) return false;
+  return only_computes(graph, graph.insts[id].child[0]) && only_computes(graph, graph.insts[id].child[1]) &&
+         !is_used_behind(graph, id);
+}
+
+/// Removes the branch or loop `id` if it need not be: a branch on a constant becomes the side that it takes.
+bool prune_node(Graph& graph, InstId id) {
+  const Inst inst = graph.insts[id];
+  if (inst.kind == Kind::kLoop && is_dead_loop(graph, id)) {
+    graph.remove(id);
+    return true;
+  }
+  if (inst.kind != Kind::kIf) return false;
+  const Src condition = graph.source(inst, 0);
+  const Inst* constant = graph.constant(condition.value);
+  if (constant) take_branch(graph, id, inst.child[constant->imm[condition.swizzle[0]] ? 0 : 1]);
+  return constant != nullptr;
+}
+
+/// After a removal the next branch or loop of the block stays until the next round, as in the reference.
+bool prune(Graph& graph, BlockId block) {
+  bool changed = false, removed = false;
+  for (InstId id = graph.blocks[block].head; id != kNone;) {
+    const Inst inst = graph.insts[id];
+    if (inst.kind != Kind::kIf && inst.kind != Kind::kLoop) {
+      id = inst.next;
+      continue;
+    }
+    removed = !removed && prune_node(graph, id);
+    changed |= removed;
+    if (removed) {
+      id = inst.previous == kNone ? graph.blocks[block].head : graph.insts[inst.previous].next;
+      continue;
+    }
+    for (const BlockId child : inst.child)
+      if (child != kNone) changed |= prune(graph, child);
+    id = graph.insts[id].next;
+  }
+  return changed;
+}
+
+}  // namespace
+
+bool opt_dead_cf(Graph& graph) { return prune(graph, graph.root); }
+
+}  // namespace vitrine::spirv::rewriting

@@ -1,0 +1,153 @@
+// Neighbouring branches and neighbouring ways out of a loop that become one (lavapipe-shader-math.md 3.2 step 3,
+// nir_opt_if).
+#include "spirv/rewrite/graph/tree.h"
+#include "spirv/rewrite/nir/opt_if.h"
+
+namespace vitrine::spirv::rewriting {
+namespace {
+
+using Kind = Inst::Kind;
+
+bool is_empty(const Graph& graph, BlockId block) {
+  const InstId last = graph.blocks[block].tail;
+  return last == kNone || (graph.blocks[block].head == last && is_jump(graph.insts[last], Op::kYield));
+}
+
+bool is_comparison(const Inst* inst) {
+  if (!inst || inst->kind != Kind::kAlu || inst->components != 1) return false;
+  if (inst->op == Op::kNotB || inst->op == Op::kXorB || inst->op == Op::kEqB) return true;
+  const ir::AluInfo& info = ir::alu_info(inst->op);
+  return info.sources == 2 && info.result == 'B' && info.operands[0] != 'B';
+}
+
+InstId negation_of(Graph& graph, Src condition) {
+  const InstId made = graph.create(Kind::kAlu, Op::kNotB, 1, true, 1);
+  graph.set_source(made, 0, condition);
+  return made;
+}
+
+void become_yield(Graph& graph, InstId jump) { graph.insts[jump].op = Op::kYield; }
+
+InstId loop_around(const Graph& graph, InstId id) {
+  InstId owner = graph.blocks[graph.insts[id].block].owner;
+  while (graph.insts[owner].kind != Kind::kLoop) owner = graph.blocks[graph.insts[owner].block].owner;
+  return owner;
+}
+
+/// Both sides leave the loop.
+void break_behind(Graph& graph, InstId id) {
+  const InstId first = graph.blocks[graph.insts[id].child[0]].tail, last = graph.blocks[graph.insts[id].child[1]].tail;
+  const std::vector<ValueId> like = node_of(graph, loop_around(graph, id)).results;
+  become_yield(graph, first);
+  const InstId jump = graph.create(Kind::kIntrinsic, Op::kBreak, 0, false, 0);
+  graph.insts[jump].node = static_cast<std::uint32_t>(graph.nodes.size());
+  graph.nodes.push_back(std::make_unique<ir::Node>());
+  become_yield(graph, last);
+  node_of(graph, id).results.clear();
+  const std::vector<Src> results = add_results(graph, id, like);
+  graph.set_operands(jump, results);
+  graph.append(graph.insts[id].block, jump);
+}
+
+bool contains_jump(const Graph& graph, InstId id) {
+  const Inst& inst = graph.insts[id];
+  if (leaves_loop(inst) || is_jump(inst, Op::kKill) || is_jump(inst, Op::kReturn)) return true;
+  for (const BlockId child : inst.child)
+    for (InstId at = child == kNone ? kNone : graph.blocks[child].head; at != kNone; at = graph.insts[at].next)
+      if (contains_jump(graph, at)) return true;
+  return false;
+}
+
+/// One side leaves the loop, as does what follows the other.
+bool break_once(Graph& graph, InstId id, unsigned leaving) {
+  const BlockId staying = graph.insts[id].child[1 - leaving];
+  const InstId end = graph.blocks[graph.insts[id].block].tail;
+  if (!ends_in(graph, staying, Op::kYield) || end == id || !is_jump(graph.insts[end], Op::kBreak)) return false;
+  for (InstId at = graph.insts[id].next; at != end; at = graph.insts[at].next)
+    if (contains_jump(graph, at)) return false;
+  const std::vector<ValueId> like = node_of(graph, loop_around(graph, id)).results;
+  const InstId stay_end = graph.blocks[staying].tail;
+  replace_results(graph, id, operands_of(graph, stay_end), graph.insts[stay_end].previous);
+  node_of(graph, id).results.clear();
+  while (graph.insts[id].next != end) graph.move_before(stay_end, graph.insts[id].next);
+  const std::vector<Src> values = operands_of(graph, end);
+  graph.set_operands(stay_end, values);
+  become_yield(graph, graph.blocks[graph.insts[id].child[leaving]].tail);
+  graph.set_operands(end, add_results(graph, id, like));
+  return true;
+}
+
+}  // namespace
+
+bool opt_merge_breaks(Graph& graph, InstId id) {
+  const bool leaves[2] = {ends_in(graph, graph.insts[id].child[0], Op::kBreak),
+                          ends_in(graph, graph.insts[id].child[1], Op::kBreak)};
+  if (!leaves[0] && !leaves[1]) return false;
+  if (!leaves[0] || !leaves[1]) return break_once(graph, id, leaves[0] ? 0 : 1);
+  if (graph.insts[id].next != kNone) return false;
+  break_behind(graph, id);
+  return true;
+}
+
+bool opt_if_merge(Graph& graph, InstId id) {
+  const InstId next = graph.insts[id].next;
+  if (next == kNone || graph.insts[next].kind != Kind::kIf || !node_of(graph, id).results.empty()) return false;
+  const Src a = graph.source(graph.insts[id], 0), b = graph.source(graph.insts[next], 0);
+  if (a.value != b.value || a.swizzle[0] != b.swizzle[0]) return false;
+  for (const BlockId child : graph.insts[id].child)
+    if (!ends_in(graph, child, Op::kYield)) return false;
+  for (const unsigned side : {0u, 1u}) {
+    const BlockId to = graph.insts[id].child[side], from = graph.insts[next].child[side];
+    const InstId end = graph.blocks[to].tail;
+    graph.splice_before(end, from);
+    graph.remove(end);
+  }
+  node_of(graph, id).results = std::move(node_of(graph, next).results);
+  node_of(graph, next).results.clear();
+  for (const ValueId result : node_of(graph, id).results) graph.values[result].def = id;
+  graph.remove(next);
+  return true;
+}
+
+bool opt_if_simplification(Graph& graph, InstId id) {
+  if (!is_empty(graph, graph.insts[id].child[0]) || is_empty(graph, graph.insts[id].child[1])) return false;
+  const Src condition = graph.source(graph.insts[id], 0);
+  if (!is_comparison(graph.def(condition.value))) return false;
+  const InstId made = negation_of(graph, condition);
+  graph.insert_after(graph.values[condition.value].def, made);
+  graph.set_source(id, 0, {graph.insts[made].result, {0, 0, 0, 0}});
+  std::swap(graph.insts[id].child[0], graph.insts[id].child[1]);
+  return true;
+}
+
+bool opt_if_phi_is_condition(Graph& graph, InstId id) {
+  const BlockId side[2] = {graph.insts[id].child[0], graph.insts[id].child[1]};
+  if (!ends_in(graph, side[0], Op::kYield) || !ends_in(graph, side[1], Op::kYield)) return false;
+  const Src condition = graph.source(graph.insts[id], 0);
+  const std::vector<ValueId> results = node_of(graph, id).results;
+  bool changed = false;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const Value value = graph.values[results[i]];
+    if (!value.boolean || value.components != 1 || value.uses == 0) continue;
+    bool truth[2] = {};
+    bool known = true;
+    for (const unsigned s : {0u, 1u}) {
+      const Src src = graph.source(graph.insts[graph.blocks[side[s]].tail], static_cast<std::uint32_t>(i));
+      const Inst* constant = graph.constant(src.value);
+      known &= constant != nullptr;
+      if (constant) truth[s] = constant->imm[src.swizzle[0]] != 0;
+    }
+    if (!known || truth[0] == truth[1]) continue;
+    Src by = condition;
+    if (truth[1]) {
+      const InstId made = negation_of(graph, condition);
+      graph.insert_before(id, made);
+      by = {graph.insts[made].result, {0, 0, 0, 0}};
+    }
+    graph.replace_uses(results[i], whole_value(graph, id, by, results[i]));
+    changed = true;
+  }
+  return changed;
+}
+
+}  // namespace vitrine::spirv::rewriting

@@ -1,0 +1,68 @@
+// Steps that mirror passes of NIR, the reference's first compiler (Mesa 22.3.6, src/compiler/nir): each one walk over
+// the graph. All return whether they changed anything.
+#pragma once
+
+#include "spirv/rewrite/graph/graph.h"
+
+namespace vitrine::spirv::rewriting {
+
+/// Uses of Mov, MovB and of components of Vec read the source instead. Joins do so where the source is a value as a
+/// whole, as in the reference; `into_joins`: where it is a component, too.
+bool copy_prop(Graph& graph, bool into_joins = false);
+
+/// Removes what has no effect and whose results nobody uses, and results and parameters that nobody uses.
+bool opt_dce(Graph& graph);
+
+/// Loads of words of push constants and buffers that an earlier load brought become its components.
+bool opt_copy_prop_vars(Graph& graph);
+
+/// Loads of elements of local arrays become what was stored there; stores to arrays that nothing reads go.
+bool opt_copy_prop_arrays(Graph& graph);
+
+/// Local arrays of which only constant elements are accessed become values.
+bool lower_vars_to_ssa(Graph& graph);
+
+/// Comparisons of floats that were converted from narrower ones become those of the narrower ones.
+bool narrow_comparisons(Graph& graph);
+
+/// Merges equal instructions, the later into the one that dominates it. Loads of `push` constants are left to
+/// opt_copy_prop_vars() in the rounds: the reference has variables there.
+bool opt_cse(Graph& graph, bool push = true);
+
+/// Splits ALU instructions into components, rejoined by Vec.
+bool lower_alu_to_scalar(Graph& graph);
+
+/// Evaluates ALU instructions whose operands are all constant, with C semantics and denormals (section 1).
+bool opt_constant_folding(Graph& graph);
+
+/// Small branches become unconditional code and selects (3.2: limit 8).
+bool opt_peephole_select(Graph& graph);
+
+/// Results and parameters that always carry one value are replaced by it.
+bool opt_remove_phis(Graph& graph);
+
+/// Continues at the end of a loop become the way there; in the `first` round every loop has one.
+bool opt_trivial_continues(Graph& graph, bool first);
+
+/// Reads of an If's condition where only one of its sides leads become constants: the first of the three walks of
+/// opt_if().
+bool opt_if_safe(Graph& graph);
+
+/// Where one branch leaves, the other needs no condition; what follows a continue moves into the other branch;
+/// neighbours merge; then loops are peeled.
+bool opt_if(Graph& graph);
+
+/// An If on a constant becomes its branch; loops without effect go.
+bool opt_dead_cf(Graph& graph);
+
+/// Loops with few, constantly many iterations become straight-line code.
+bool opt_loop_unroll(Graph& graph);
+
+/// One run of the rule table (section 4.1), and of the table of late rules.
+bool opt_algebraic(Graph& graph);
+bool opt_algebraic_late(Graph& graph);
+
+/// Mixes of halves are single operations until the finalisation, other mixes never.
+void lower_flrp(Graph& graph);
+
+}  // namespace vitrine::spirv::rewriting
