@@ -1,4 +1,4 @@
-// The four words for "not done" (DESIGN.md section 6) and the assertion of debug builds. None of them ever ends the
+// The four words for "not done" (design.md section 6) and the assertion of debug builds. None of them ever ends the
 // host process in release: they log, and the caller returns the error value that follows.
 #pragma once
 

@@ -8,7 +8,7 @@
 namespace vitrine::base {
 
 /// Invocations executed together. A compile-time constant, never the CPU's vector width, so that results do not depend
-/// on the machine (DESIGN.md section 4; 64 is the measured knee of BARS.md section 6).
+/// on the machine (design.md section 4; 64 is the measured knee of bars.md section 6).
 inline constexpr std::size_t kWaveWidth = 64;
 
 /// Fragments per quad. Lanes 4q..4q+3 of a wave are quad q in the order (x0,y0) (x1,y0) (x0,y1) (x1,y1).

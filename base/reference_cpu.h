@@ -1,5 +1,5 @@
 // The reference's numbers depend on its CPU in a few places; these are those of an AMD processor with AVX-512, on every
-// CPU (DESIGN.md section 8), unless a comparison with a reference on another kind asks for its.
+// CPU (design.md section 8), unless a comparison with a reference on another kind asks for its.
 #pragma once
 
 namespace vitrine::base {

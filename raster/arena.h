@@ -1,4 +1,4 @@
-// A bump allocator whose blocks are kept: after the first frames nothing is allocated any more (DESIGN.md section 6).
+// A bump allocator whose blocks are kept: after the first frames nothing is allocated any more (design.md section 6).
 #pragma once
 
 #include <algorithm>

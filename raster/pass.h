@@ -1,5 +1,5 @@
 // A render pass instance (one subpass, or one dynamic rendering scope) being drawn: takes clears and draws in order,
-// bins them, and writes attachments when flushed. DESIGN.md section 3.
+// bins them, and writes attachments when flushed. design.md section 3.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

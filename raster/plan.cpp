@@ -232,7 +232,8 @@ void plan_fragment_inputs(PipelinePlan& plan) {
   }
 }
 
-/// gl_PointSize travels with the vertices through the clipper, like an output no fragment shader reads (1.5).
+/// gl_PointSize travels with the vertices through the clipper, like an output no fragment shader reads
+/// (lavapipe-rasterization.md 1.5).
 void add_point_size(PipelinePlan& plan) {
   const State& state = *plan.state;
   const bool points = plan.corners == 1 || state.polygon_mode == VK_POLYGON_MODE_POINT;

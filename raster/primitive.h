@@ -1,5 +1,5 @@
 // What the front end leaves for the back end: vertices in window coordinates, primitives with snapped positions, and
-// per chunk the list of primitives of every tile.
+// per chunk the list of primitives of every tile. Sections cited are of lavapipe-rasterization.md.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // The intermediate representation between the SPIR-V front end and the lowering to Program: SSA values over a tree of
 // structured control flow. Front end: words -> Function. Rewrites: Function -> Function. Lowering: Function -> Program.
-//
+// Sections cited are of lavapipe-shader-math.md.
 // Control flow is a tree, so there are no phi instructions: values cross joins as arguments.
 //   If    cond; each branch ends in Yield(values) or in a jump; results[i] is the i-th yielded value.
 //   Loop  params: initial values `init`, and per iteration the Yield of `continuing`. `body` ends in Yield (= falls

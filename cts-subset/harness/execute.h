@@ -23,7 +23,7 @@ uint64_t case_seed(const Case& c);
 Judgement execute(const Case& c);
 /// Reads the list of known differences that the options name. Throws when it cannot be read.
 void load_known_differences();
-/// What the reference does where its bits depend on the CPU (DESIGN.md section 8).
+/// What the reference does where its bits depend on the CPU (design.md section 8).
 struct ReferenceCpu {
   std::vector<uint32_t> float_to_uint;  ///< of -1, -0.5, 3e9, 5e9 and NaN
   uint64_t srgb_hash = 0;               ///< of the bytes that 65536 ramp values become in an sRGB attachment

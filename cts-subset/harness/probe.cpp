@@ -1,4 +1,4 @@
-// What the reference does where its bits depend on the CPU (DESIGN.md section 8).
+// What the reference does where its bits depend on the CPU (design.md section 8).
 #include <algorithm>
 #include <bit>
 #include <cstdio>

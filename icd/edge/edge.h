@@ -9,7 +9,7 @@
 
 namespace vitrine::icd {
 
-/// Makes the first error of a recording stick (DESIGN.md section 6); vkEndCommandBuffer returns it. Defined with the
+/// Makes the first error of a recording stick (design.md section 6); vkEndCommandBuffer returns it. Defined with the
 /// command buffer.
 __attribute__((weak)) void stick_record_error(VkCommandBuffer command_buffer, VkResult error);
 

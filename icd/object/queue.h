@@ -1,5 +1,5 @@
 // What runs on VkQueue: batches in submission order, on a thread of the queue's own, or on the submitting thread when
-// they are small and nothing has to be waited for (a thread switch costs more than small work: BARS.md section 4).
+// they are small and nothing has to be waited for (a thread switch costs more than small work: bars.md section 4).
 #pragma once
 
 #include <cstdint>

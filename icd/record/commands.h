@@ -1,5 +1,5 @@
 // Every recorded command: a trivially destructible struct each, and the one list of them all. Replay has an execute()
-// overload per struct (icd/replay/execute.h); a missing one does not compile.
+// overload per struct (icd/replay/replay.h); a missing one does not compile.
 #pragma once
 
 #include <array>

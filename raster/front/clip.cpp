@@ -32,7 +32,7 @@ Plane plane_of(const ClipContext& context, std::uint32_t index) {
   }
 }
 
-/// All four products are computed, so that an infinite coordinate gives NaN (1.5).
+/// All four products are computed, so that an infinite coordinate gives NaN (lavapipe-rasterization.md 1.5).
 float distance_to(const ClipContext& context, std::uint32_t plane, const ClipVertex& v) {
   if (plane >= kFirstUserPlane) return v.distance[plane - kFirstUserPlane];
   const Plane p = plane_of(context, plane);

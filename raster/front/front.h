@@ -1,4 +1,4 @@
-// The front end: one chunk of a draw from vertex fetch to per-tile lists of primitives (DESIGN.md section 3). Chunks
+// The front end: one chunk of a draw from vertex fetch to per-tile lists of primitives (design.md section 3). Chunks
 // share nothing, so any number of threads may work on them; their number is their order.
 #pragma once
 

@@ -1,5 +1,5 @@
-// The back end: one tile at a time, its primitives in API order (DESIGN.md section 3). Covered quads are packed into
-// waves across primitives of a draw, shaded, tested and written.
+// The back end: one tile at a time, its primitives in API order (design.md section 3). Covered quads are packed into
+// waves across primitives of a draw, shaded, tested and written. Sections cited are of lavapipe-rasterization.md.
 #pragma once
 
 #include <cstdint>

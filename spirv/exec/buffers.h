@@ -1,4 +1,4 @@
-// Which bytes a memory instruction may touch: descriptors resolved with bounds, robust by default (DESIGN.md section
+// Which bytes a memory instruction may touch: descriptors resolved with bounds, robust by default (design.md section
 // 6).
 #pragma once
 

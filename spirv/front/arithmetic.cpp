@@ -24,7 +24,7 @@ bool float_from_int(spv::Op op) { return op == spv::Op::OpConvertSToF || op == s
 bool int_from_float(spv::Op op) { return op == spv::Op::OpConvertFToS || op == spv::Op::OpConvertFToU; }
 
 /// A conversion of a conversion back to the type that it came from: signed integers of floats become truncation,
-/// floats of integers nothing (4.2). The rewrites know that for 32 bits.
+/// floats of integers nothing (lavapipe-shader-math.md 4.2). The rewrites know that for 32 bits.
 std::optional<Expr> convert_back(Translator& t, const Inst& inst, std::uint8_t width) {
   const std::uint32_t operand = inst.operand(0);
   const ir::Function& f = t.function;

@@ -302,7 +302,7 @@ void repair_scopes(Translator& t);
 /// variables.cpp, ssa.cpp: LoadVar / StoreVar become SSA values, If / Loop arguments and ir::Array accesses.
 void resolve_arrays(Translator& t);
 void build_ssa(Translator& t);
-/// invariant.cpp: everything that feeds a StoreOutput marked exact becomes exact (section 3.3).
+/// invariant.cpp: everything that feeds a StoreOutput marked exact becomes exact (lavapipe-shader-math.md 3.3).
 void propagate_invariant(ir::Function& function);
 
 }  // namespace vitrine::spirv::front

@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 EXPORTS = {"vk_icdNegotiateLoaderICDInterfaceVersion", "vk_icdGetInstanceProcAddr", "vk_icdGetPhysicalDeviceProcAddr"}
-# Window libraries are loaded with the first surface (DESIGN.md section 2), so none stands here.
+# Window libraries are loaded with the first surface (design.md section 2), so none stands here.
 LIBRARIES = {"libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2"}
 SANITIZER_LIBRARIES = ("libasan", "libubsan", "libtsan", "libstdc++", "libgcc_s")
 

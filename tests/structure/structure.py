@@ -10,7 +10,7 @@ import re
 import sys
 from xml.etree import ElementTree
 
-# DESIGN.md section 2: a room may include itself and what stands to its right.
+# design.md section 2: a room may include itself and what stands to its right.
 ORDER = ["icd", "raster", "spirv", "texel", "base"]
 FREE = ["tests", "cts-subset"]
 DATA = ["manifest"]

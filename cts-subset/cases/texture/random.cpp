@@ -1,4 +1,4 @@
-// Random lookups of fragments: textures, samplers and coordinates of every kind (texture_lookup.cpp).
+// Random lookups of fragments: textures, samplers and coordinates of every kind (lookup.cpp).
 #include "cases/texture/lookup.h"
 #include "harness/case.h"
 #include "harness/graphics.h"

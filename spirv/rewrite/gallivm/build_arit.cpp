@@ -3,7 +3,8 @@
 // leaves undefined (a division by literal 0) becomes an undefined value here too. Operations on literals become
 // literals at once where the generator's own building blocks fold (not those that are calls of intrinsics), so that the
 // next operation takes its shortcut too. A sum with -0 is what its optimiser takes away: x, denormal or not. What a
-// branch yields is kept in a register and read from there: no operation knows that it is literal.
+// branch yields is kept in a register and read from there: no operation knows that it is literal
+// (lavapipe-optimizer.md section 6).
 #include <algorithm>
 
 #include "base/float_mode.h"
@@ -345,7 +346,8 @@ class Builder {
     return true;
   }
 
-  /// exp2(0) where the base is neither zero nor NaN, else 0 (6.4). The generator computes exp2(0): it is no literal.
+  /// exp2(0) where the base is neither zero nor NaN, else 0 (lavapipe-shader-math.md 6.4). The generator computes
+  /// exp2(0): it is no literal.
   void power_of_zero() {
     const Src base = graph_.source(graph_.insts[id_], 0);
     const std::uint32_t zero_bits = 0;

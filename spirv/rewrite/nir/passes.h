@@ -1,5 +1,5 @@
 // Steps that mirror passes of NIR, the reference's first compiler (Mesa 22.3.6, src/compiler/nir): each one walk over
-// the graph. All return whether they changed anything.
+// the graph. All return whether they changed anything. Sections cited are of lavapipe-shader-math.md.
 #pragma once
 
 #include "spirv/rewrite/graph/graph.h"

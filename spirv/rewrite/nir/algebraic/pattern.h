@@ -1,4 +1,4 @@
-// Rules in their parsed form.
+// Rules in their parsed form (lavapipe-shader-math.md section 4, lavapipe-optimizer.md section 4).
 //
 // A rule is written "search => replacement" in functional notation over the names of ops.def:
 //   a ... h    a variable: any value, the same one at each place      #a   a constant
