@@ -27,7 +27,7 @@ PLANNED = {"docs/glass.md": ("glass/",)}  # paths of what is not there yet
 # Sections about other projects or about citations as such; "" is what comes before the first.
 NOT_READ = {"docs/conventions.md": ("", "2", "3", "6")}
 
-ITEM = r"(?:[A-G]\d{1,2}|[A-G]|\d{1,2}(?:\.\d{1,2})?)(?![\w]|\.\d|-\w)(?: (?:step|form) \w+)?"
+ITEM = r"(?:[A-G]\d{1,2}|[A-G]|\d{1,2}(?:\.\d{1,2})?)(?![\w]|\.\d|-[a-z])(?: (?:step|form) \w+)?"
 LIST = rf"{ITEM}(?:(?:, and |, | and | to |-){ITEM})*"
 DOCUMENT = re.compile(rf"(?<![\w/.-])((?:[\w.-]+/)*[A-Za-z][\w-]*\.md)\b(?:`?,? ?\(?(?:sections? |parts? |§|(?<= ))({LIST}))?")
 ROW = r"[a-z0-9]+(?:-[a-z0-9]+)+"

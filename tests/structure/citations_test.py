@@ -49,6 +49,7 @@ class Citations(unittest.TestCase):
         self.check("// math.md section\n// 7\n", "docs/math.md has no section 7")
         self.check("// math.md 4.1 to 4.7\n", "docs/math.md has no section 4.7")
         self.check("// math.md part B\n", "docs/math.md has no section B")
+        self.check("// math.md 4.1-4.3, of 8-bit numbers\n", "docs/math.md has no section 4.3")
 
     def test_steps(self):
         self.check("// math.md 4.2 step 2\n")
