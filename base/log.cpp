@@ -7,8 +7,8 @@
 namespace vitrine::base {
 namespace {
 
-/// A topic that slows shaders down is not meant by "all".
-constexpr std::string_view kOnlyByName = "shader-profile";
+/// Topics that slow shaders down or print a lot are not meant by "all".
+bool is_only_by_name(std::string_view topic) { return topic == "shader-profile" || topic == "ir"; }
 
 std::string_view requested_topics() {
   const char* value = std::getenv("VITRINE_LOG");
@@ -23,7 +23,7 @@ bool log_enabled(std::string_view topic) {
   while (!rest.empty()) {
     const std::size_t comma = rest.find(',');
     const std::string_view item = rest.substr(0, comma);
-    if (item == topic || (item == "all" && topic != kOnlyByName)) return true;
+    if (item == topic || (item == "all" && !is_only_by_name(topic))) return true;
     if (comma == std::string_view::npos) break;
     rest.remove_prefix(comma + 1);
   }

@@ -6,7 +6,7 @@
 
 namespace vitrine::base {
 
-/// True when VITRINE_LOG names `topic`, or "all" ("shader-profile" must be named). Read once per process.
+/// True when VITRINE_LOG names `topic`, or "all" ("shader-profile" and "ir" must be named). Read once per process.
 bool log_enabled(std::string_view topic);
 
 /// Writes "vitrine: <topic>: <message>\n" to stderr when the topic is enabled. Thread-safe.

@@ -1,6 +1,7 @@
 // Passes over ir::Function that carry no arithmetic rule: used by the front end, the rewrites and tests.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "spirv/ir.h"
@@ -10,9 +11,13 @@ namespace vitrine::spirv::ir {
 /// Text form for tests and logs: one instruction per line, nesting by indentation.
 std::string dump(const Function& function);
 
+/// Where values may be used: in the list that defines them and below; or also, between the rewrites, behind a loop if
+/// they are visible at all of its ways out, and behind an If of which the other side leaves.
+enum class Scope : std::uint8_t { kLists, kBehindExits };
+
 /// Checks the invariants of ir.h (operands defined in an enclosing list before use, component counts, arities of
 /// Yield / Break / Continue, jumps only at the end of a list). Empty: valid; otherwise what is wrong.
-std::string verify(const Function& function);
+std::string verify(const Function& function, Scope scope = Scope::kLists);
 
 /// Splits every ALU instruction of n components into n of one, rejoined by Vec where a vector is wanted.
 void scalarize(Function& function);

@@ -1,4 +1,7 @@
 // Checks the invariants that ir.h states. Run after every pass in debug builds and in tests.
+#include <algorithm>
+#include <utility>
+
 #include "spirv/ir_passes.h"
 
 namespace vitrine::spirv::ir {
@@ -6,9 +9,19 @@ namespace {
 
 struct Verifier {
   const Function& function;
+  Scope scope;
   std::vector<bool> visible;
-  std::string error;
-  const Node* loop = nullptr;
+  std::vector<ValueId> defined{};  ///< what is visible, in the order of definition
+  std::string error{};
+
+  /// The innermost loop, and what is visible at each of its ways out.
+  struct Loop {
+    const Node* node = nullptr;
+    std::size_t outside = 0;  ///< of `defined`
+    bool left = false;
+    std::vector<ValueId> at_exits;
+  };
+  Loop loop{};
 
   void complain(const std::string& what, ValueId value = kNoValue) {
     if (!error.empty()) return;
@@ -16,11 +29,15 @@ struct Verifier {
     if (value != kNoValue) error += " %" + std::to_string(value);
   }
 
-  void define(ValueId value, std::vector<ValueId>& defined) {
+  void define(ValueId value) {
     if (value >= function.values.size()) return complain("result without ValueInfo", value);
     if (visible[value]) complain("defined twice", value);
     visible[value] = true;
     defined.push_back(value);
+  }
+
+  void hide_since(std::size_t count) {
+    for (; defined.size() > count; defined.pop_back()) visible[defined.back()] = false;
   }
 
   void use(const Src& src, std::uint32_t width) {
@@ -65,11 +82,12 @@ struct Verifier {
         if (yields == nullptr) return complain("Yield outside If and Loop");
         return pass(instr.src, *yields, "Yield");
       case Op::kBreak:
-        if (loop == nullptr) return complain("Break outside Loop");
-        return pass(instr.src, loop->results, "Break");
+        if (loop.node == nullptr) return complain("Break outside Loop");
+        leave_loop();
+        return pass(instr.src, loop.node->results, "Break");
       case Op::kContinue:
-        if (loop == nullptr) return complain("Continue outside Loop");
-        return pass(instr.src, loop->continue_params, "Continue");
+        if (loop.node == nullptr) return complain("Continue outside Loop");
+        return pass(instr.src, loop.node->continue_params, "Continue");
       case Op::kVec:
         if (instr.src.size() != instr.components) complain("Vec: number of sources", instr.result);
         for (const Src& src : instr.src) use(src, 1);
@@ -93,15 +111,27 @@ struct Verifier {
       complain(std::string(info.name) + ": type of the result", instr.result);
   }
 
-  void list(const NodeList& nodes, const std::vector<ValueId>* yields) {
-    std::vector<ValueId> defined;
+  /// What all ways out so far have in common stays visible behind the loop.
+  void leave_loop() {
+    if (scope == Scope::kLists) return;
+    const std::vector<ValueId> here(defined.begin() + static_cast<std::ptrdiff_t>(loop.outside), defined.end());
+    if (!std::exchange(loop.left, true)) {
+      loop.at_exits = here;
+    } else {
+      std::erase_if(loop.at_exits, [&](ValueId id) { return std::find(here.begin(), here.end(), id) == here.end(); });
+    }
+  }
+
+  /// `stays`: what the list defines is visible behind it.
+  void list(const NodeList& nodes, const std::vector<ValueId>* yields, bool stays = false) {
+    const std::size_t before = defined.size();
     for (std::size_t i = 0; i < nodes.size() && error.empty(); i++) {
       const Node& node = *nodes[i];
       switch (node.kind) {
         case Node::Kind::kInstr:
           node.instr.op < Op::kAluCount ? alu(node.instr) : intrinsic(node.instr, yields, i + 1 == nodes.size());
           if (node.instr.result != kNoValue) {
-            define(node.instr.result, defined);
+            define(node.instr.result);
             const ValueInfo info = function.values[node.instr.result];
             if (info.components != node.instr.components || info.boolean != node.instr.boolean)
               complain("ValueInfo differs from the instruction", node.instr.result);
@@ -109,40 +139,48 @@ struct Verifier {
           break;
         case Node::Kind::kIf:
           use(node.condition, 1);
-          list(node.then_list, &node.results);
-          list(node.else_list, &node.results);
-          for (ValueId value : node.results) define(value, defined);
+          check_if(node);
           break;
         case Node::Kind::kLoop:
-          check_loop(node, defined);
+          check_loop(node);
           break;
       }
     }
     if (yields != nullptr && error.empty() &&
         (nodes.empty() || nodes.back()->kind != Node::Kind::kInstr || !is_jump(nodes.back()->instr.op)))
       complain("list without Yield or jump at its end");
-    for (ValueId value : defined) visible[value] = false;
+    if (!stays) hide_since(before);
   }
 
-  void check_loop(const Node& node, std::vector<ValueId>& defined) {
+  bool leaves(const NodeList& nodes) const {
+    return scope == Scope::kBehindExits && !nodes.empty() && nodes.back()->kind == Node::Kind::kInstr &&
+           nodes.back()->instr.op != Op::kYield;
+  }
+
+  void check_if(const Node& node) {
+    list(node.then_list, &node.results, leaves(node.else_list));
+    list(node.else_list, &node.results, leaves(node.then_list));
+    for (ValueId value : node.results) define(value);
+  }
+
+  void check_loop(const Node& node) {
     pass(node.init, node.params, "Loop");
-    const Node* const outer = loop;
-    std::vector<ValueId> inside;
-    for (ValueId value : node.params) define(value, inside);
-    loop = &node;
-    list(node.body, &node.continue_params);
-    for (ValueId value : node.continue_params) define(value, inside);
+    const Loop outer = std::exchange(loop, Loop{&node, defined.size(), false, {}});
+    for (ValueId value : node.params) define(value);
+    list(node.body, &node.continue_params, scope == Scope::kBehindExits);
+    for (ValueId value : node.continue_params) define(value);
     list(node.continuing, &node.params);
+    hide_since(loop.outside);
+    for (ValueId value : loop.at_exits) define(value);
     loop = outer;
-    for (ValueId value : inside) visible[value] = false;
-    for (ValueId value : node.results) define(value, defined);
+    for (ValueId value : node.results) define(value);
   }
 };
 
 }  // namespace
 
-std::string verify(const Function& function) {
-  Verifier verifier{function, std::vector<bool>(function.values.size(), false), {}};
+std::string verify(const Function& function, Scope scope) {
+  Verifier verifier{function, scope, std::vector<bool>(function.values.size(), false)};
   verifier.list(function.body, nullptr);
   return std::move(verifier.error);
 }

@@ -119,6 +119,26 @@ def capability_faults(root):
             yield f"spirv/capabilities.def: {name} is {'claimed but missing' if allowed else 'not claimed'}"
 
 
+def pass_faults(root):
+    """spirv/rewrite/passes.def names the file of each step, and every step and its file are in it."""
+    base = root / "spirv/rewrite"
+    row = r'^VITRINE_PASS\(\w+, \w+, \w+, (\w+), "([\w/.]+)"'
+    rows = set(re.findall(row, (base / "passes.def").read_text(), re.MULTILINE))
+    for function, file in sorted(rows):
+        text = (base / file).read_text() if (base / file).exists() else ""
+        if not re.search(rf"^(bool|void) {function}\(Graph& graph", text, re.MULTILINE):
+            yield f"spirv/rewrite/passes.def: {file} has no {function}()"
+    for folder in ("gallivm", "llvm", "lower", "nir"):
+        for name in re.findall(r"^(?:bool|void) (\w+)\(", (base / folder / "passes.h").read_text(), re.MULTILINE):
+            if name not in {function for function, _ in rows}:
+                yield f"spirv/rewrite/passes.def: lacks {name}() of {folder}/passes.h"
+        for path in sorted((base / folder).rglob("*.cpp")):
+            own = re.search(r'^#include "([\w/.]+)"', path.read_text(), re.MULTILINE)
+            helper = own and not own[1].endswith("/passes.h") and own[1].startswith(f"spirv/rewrite/{folder}/")
+            if str(path.relative_to(base)) not in {file for _, file in rows} and not helper:
+                yield f"{path.relative_to(root)}: neither a step of passes.def nor the file of a header beside it"
+
+
 def shape_faults(root):
     for folder in ORDER + FREE:
         for path in sources(root, folder):
@@ -140,7 +160,7 @@ def report_tail(root):
         print(f"  {lines:5} {path.relative_to(root)}{'  (long)' if lines > LONG_FILE else ''}")
 
 
-CHECKS = (include_faults, room_faults, claim_faults, opcode_faults, capability_faults, shape_faults)
+CHECKS = (include_faults, room_faults, claim_faults, opcode_faults, capability_faults, pass_faults, shape_faults)
 
 
 def main():

@@ -19,6 +19,18 @@ Kind kind_of(const ir::Instr& instr) {
   return op == Op::kVec ? Kind::kVec : Kind::kIntrinsic;
 }
 
+/// All of an instruction but its operands.
+void describe(const Inst& inst, ir::Instr& instr) {
+  instr.op = inst.op;
+  instr.components = inst.components;
+  instr.boolean = inst.boolean;
+  instr.exact = inst.exact;
+  instr.opaque = inst.opaque;
+  instr.result = inst.result;
+  std::copy(std::begin(inst.imm), std::end(inst.imm), instr.imm.begin());
+  instr.origin = inst.origin;
+}
+
 }  // namespace
 
 Graph::Graph(ir::Function& from) : function(from) {
@@ -120,14 +132,7 @@ std::unique_ptr<ir::Node> Graph::export_inst(InstId id) {
     return node;
   }
   node->instr.src = std::move(operands);
-  node->instr.op = inst.op;
-  node->instr.components = inst.components;
-  node->instr.boolean = inst.boolean;
-  node->instr.exact = inst.exact;
-  node->instr.opaque = inst.opaque;
-  node->instr.result = inst.result;
-  std::copy(std::begin(inst.imm), std::end(inst.imm), node->instr.imm.begin());
-  node->instr.origin = inst.origin;
+  describe(inst, node->instr);
   return node;
 }
 
@@ -255,6 +260,54 @@ void Graph::splice_before(InstId position, BlockId block) {
   while (blocks[block].head != kNone) {
     move_before(position, blocks[block].head);
   }
+}
+
+namespace {
+
+ir::NodeList copy_block(const Graph& graph, BlockId block);
+
+std::unique_ptr<ir::Node> copy_inst(const Graph& graph, const Inst& inst) {
+  auto node = std::make_unique<ir::Node>();
+  if (inst.node != kNone) {
+    const ir::Node& details = *graph.nodes[inst.node];
+    node->kind = details.kind;
+    node->instr = details.instr;
+    node->params = details.params;
+    node->continue_params = details.continue_params;
+    node->results = details.results;
+  }
+  std::vector<Src> operands;
+  for (std::uint32_t i = 0; i < inst.count; ++i) operands.push_back(graph.source(inst, i));
+  if (inst.kind == Kind::kIf) {
+    node->condition = operands[0];
+    node->then_list = copy_block(graph, inst.child[0]);
+    node->else_list = copy_block(graph, inst.child[1]);
+  } else if (inst.kind == Kind::kLoop) {
+    node->init = std::move(operands);
+    node->body = copy_block(graph, inst.child[0]);
+    node->continuing = copy_block(graph, inst.child[1]);
+  } else {
+    node->instr.src = std::move(operands);
+    describe(inst, node->instr);
+    node->instr.width = inst.width;
+  }
+  return node;
+}
+
+ir::NodeList copy_block(const Graph& graph, BlockId block) {
+  ir::NodeList list;
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next)
+    list.push_back(copy_inst(graph, graph.insts[id]));
+  return list;
+}
+
+}  // namespace
+
+ir::Function snapshot(const Graph& graph) {
+  ir::Function function;
+  function.body = copy_block(graph, graph.root);
+  for (const Value& value : graph.values) function.values.push_back({value.components, value.boolean});
+  return function;
 }
 
 }  // namespace vitrine::spirv::rewriting

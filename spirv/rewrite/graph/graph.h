@@ -100,7 +100,8 @@ class Graph {
   std::vector<Block> blocks;
   std::vector<std::unique_ptr<ir::Node>> nodes;  ///< If, Loop and intrinsic nodes; their lists and src are empty
   BlockId root = 0;
-  bool first_rules = true;  ///< before and in the first run of the rules: dot products are single operations
+  bool first_rules = true;   ///< before and in the first run of the rules: dot products are single operations
+  bool first_round = false;  ///< the first round of a phase of passes.def runs
   ir::Function& function;
 
   const Src& source(const Inst& inst, std::uint32_t index) const { return sources[inst.first + index].src; }
@@ -143,6 +144,9 @@ class Graph {
   void unlink_use(Slot slot);
   void unlink(InstId inst);
 };
+
+/// A copy as a tree, with its body and values alone: what to print and verify while the graph is being rewritten.
+ir::Function snapshot(const Graph& graph);
 
 /// Calls f(id) for every instruction in program order, an If or Loop before what it contains. f may remove or replace
 /// the instruction it gets and insert around it.

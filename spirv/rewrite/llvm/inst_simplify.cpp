@@ -140,8 +140,7 @@ class LateFolder {
 
   void become_operand(InstId id, std::uint32_t index) {
     const Inst inst = graph_.insts[id];
-    const InstId move = graph_.create(Kind::kAlu, Op::kMov, 1, false, 1);
-    graph_.set_source(move, 0, graph_.source(inst, index));
+    const InstId move = make_move(graph_, graph_.source(inst, index), inst.result);
     graph_.insts[move].origin = inst.origin;
     graph_.insert_before(id, move);
     graph_.replace_uses(inst.result, graph_.insts[move].result);

@@ -22,7 +22,7 @@ void fold_select_with_identity(Graph& graph);
 /// become those of 1: the optimiser drops the NaN, of which no integer is defined.
 void fold_fp_to_int_poison(Graph& graph);
 
-/// Floats become unsigned integers, and doubles are rounded, as in a reference on a CPU without AVX-512.
+/// If the reference runs on a CPU without AVX-512: floats become unsigned integers, and doubles are rounded, as there.
 void lower_without_avx512(Graph& graph);
 
 }  // namespace vitrine::spirv::rewriting

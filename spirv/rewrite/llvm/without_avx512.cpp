@@ -1,5 +1,6 @@
 // What the reference's code computes otherwise on a CPU without AVX-512 (deviations.md: float-to-uint,
 // double-rounding).
+#include "base/reference_cpu.h"
 #include "spirv/rewrite/llvm/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -134,6 +135,7 @@ class Converter {
 }  // namespace
 
 void lower_without_avx512(Graph& graph) {
+  if (!base::reference_lacks_avx512()) return;
   Converter converter(graph);
   auto visit = [&](InstId id) { converter.visit(id); };
   for_each_inst(graph, graph.root, visit);

@@ -1,6 +1,7 @@
 // Folding of 64-bit integers: operations on literals, and those that are literal whatever their operands are.
-#include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/constant_expressions.h"
+
+#include "spirv/rewrite/graph/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {

@@ -98,13 +98,16 @@ bool propagate(Graph& graph, InstId id, bool into_joins) {
   return changed;
 }
 
-}  // namespace
-
-bool copy_prop(Graph& graph, bool into_joins) {
+bool propagate_all(Graph& graph, bool into_joins) {
   bool changed = false;
   auto visit = [&](InstId id) { changed |= propagate(graph, id, into_joins); };
   for_each_inst(graph, graph.root, visit);
   return changed;
 }
+
+}  // namespace
+
+bool copy_prop(Graph& graph) { return propagate_all(graph, false); }
+bool copy_prop_into_joins(Graph& graph) { return propagate_all(graph, true); }
 
 }  // namespace vitrine::spirv::rewriting

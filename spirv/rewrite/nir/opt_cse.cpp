@@ -4,6 +4,7 @@
 
 namespace vitrine::spirv::rewriting {
 
-bool opt_cse(Graph& graph, bool push) { return merge_equal(graph, {.push = push}); }
+bool opt_cse(Graph& graph) { return merge_equal(graph, {}); }
+bool opt_cse_but_push(Graph& graph) { return merge_equal(graph, {.push = false}); }
 
 }  // namespace vitrine::spirv::rewriting

@@ -1,7 +1,8 @@
 // Neighbouring branches and neighbouring ways out of a loop that become one (lavapipe-shader-math.md 3.2 step 3,
 // nir_opt_if).
-#include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/opt_if.h"
+
+#include "spirv/rewrite/graph/tree.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {

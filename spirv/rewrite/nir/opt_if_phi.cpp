@@ -1,12 +1,13 @@
 // Arithmetic on parameters of loops in the loop's header: computed in front of the loop and at the end of the body
 // instead, and selections between parameters that only the first iteration decides
 // (lavapipe-shader-math.md 3.2 step 3, nir_opt_if).
+#include "spirv/rewrite/nir/opt_if.h"
+
 #include <algorithm>
 #include <array>
 
 #include "spirv/rewrite/graph/loops.h"
 #include "spirv/rewrite/graph/tree.h"
-#include "spirv/rewrite/nir/opt_if.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {

@@ -1,12 +1,13 @@
 // A loop whose first branch only the first iteration decides: what the first iteration does there goes in front of the
 // loop, what the others do to the end of the body (lavapipe-shader-math.md 3.2 step 3, nir_opt_if).
+#include "spirv/rewrite/nir/opt_if.h"
+
 #include <array>
 #include <utility>
 
 #include "spirv/rewrite/graph/copier.h"
 #include "spirv/rewrite/graph/loops.h"
 #include "spirv/rewrite/graph/tree.h"
-#include "spirv/rewrite/nir/opt_if.h"
 #include "spirv/rewrite/nir/phis_to_regs.h"
 #include "spirv/rewrite/nir/to_lcssa.h"
 

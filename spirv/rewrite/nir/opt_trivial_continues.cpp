@@ -1,4 +1,5 @@
 // Continues at the end of a loop become the way there (nir_opt_trivial_continues.c).
+#include "spirv/rewrite/graph/loops.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/passes.h"
 #include "spirv/rewrite/nir/phis_to_regs.h"
@@ -38,20 +39,19 @@ bool drop_continues(Graph& graph, BlockId block, const std::vector<ValueId>& par
   return true;
 }
 
-/// `first`: in the reference every body that goes round ends in a continue.
-bool drop_trivial_continues(Graph& graph, BlockId block, bool first) {
+bool drop_trivial_continues(Graph& graph, BlockId block) {
   bool changed = false;
   for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
     for (const unsigned side : {0u, 1u}) {
       const BlockId child = graph.insts[id].child[side];
-      if (child != kNone) changed |= drop_trivial_continues(graph, child, first);
+      if (child != kNone) changed |= drop_trivial_continues(graph, child);
     }
     if (graph.insts[id].kind != Kind::kLoop) continue;
     const std::vector<ValueId> params = graph.nodes[graph.insts[id].node]->continue_params;
     const BlockId body = graph.insts[id].child[0];
     if (graph.blocks[body].tail == kNone) continue;
     const bool dropped = drop_continues(graph, body, params);
-    if (!dropped && !(first && ends_in(graph, body, Op::kYield))) continue;
+    if (!dropped && !(graph.first_round && ends_in(graph, body, Op::kYield))) continue;
     pass_through_registers(graph, id);
     changed = true;
   }
@@ -60,6 +60,9 @@ bool drop_trivial_continues(Graph& graph, BlockId block, bool first) {
 
 }  // namespace
 
-bool opt_trivial_continues(Graph& graph, bool first) { return drop_trivial_continues(graph, graph.root, first); }
+bool opt_trivial_continues(Graph& graph) {
+  const bool dropped = drop_trivial_continues(graph, graph.root);
+  return dropped || (graph.first_round && has_loops(graph));
+}
 
 }  // namespace vitrine::spirv::rewriting

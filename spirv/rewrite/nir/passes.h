@@ -7,8 +7,11 @@
 namespace vitrine::spirv::rewriting {
 
 /// Uses of Mov, MovB and of components of Vec read the source instead. Joins do so where the source is a value as a
-/// whole, as in the reference; `into_joins`: where it is a component, too.
-bool copy_prop(Graph& graph, bool into_joins = false);
+/// whole.
+bool copy_prop(Graph& graph);
+
+/// The same, joins also where the source is a component: LLVM has scalars only.
+bool copy_prop_into_joins(Graph& graph);
 
 /// Removes what has no effect and whose results nobody uses, and results and parameters that nobody uses.
 bool opt_dce(Graph& graph);
@@ -25,9 +28,12 @@ bool lower_vars_to_ssa(Graph& graph);
 /// Comparisons of floats that were converted from narrower ones become those of the narrower ones.
 bool narrow_comparisons(Graph& graph);
 
-/// Merges equal instructions, the later into the one that dominates it. Loads of `push` constants are left to
-/// opt_copy_prop_vars() in the rounds: the reference has variables there.
-bool opt_cse(Graph& graph, bool push = true);
+/// Merges equal instructions, the later into the one that dominates it.
+bool opt_cse(Graph& graph);
+
+/// The same but for loads of push constants, which are left to opt_copy_prop_vars() in the rounds: the reference has
+/// variables there.
+bool opt_cse_but_push(Graph& graph);
 
 /// Splits ALU instructions into components, rejoined by Vec.
 bool lower_alu_to_scalar(Graph& graph);
@@ -41,8 +47,9 @@ bool opt_peephole_select(Graph& graph);
 /// Results and parameters that always carry one value are replaced by it.
 bool opt_remove_phis(Graph& graph);
 
-/// Continues at the end of a loop become the way there; in the `first` round every loop has one.
-bool opt_trivial_continues(Graph& graph, bool first);
+/// Continues at the end of a loop become the way there. In the first round every body that goes round ends in a
+/// continue in the reference, so that all loops change.
+bool opt_trivial_continues(Graph& graph);
 
 /// Reads of an If's condition where only one of its sides leads become constants: the first of the three walks of
 /// opt_if().
