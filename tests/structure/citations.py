@@ -36,6 +36,7 @@ CASE = re.compile(r"`[a-z_]+\.(deviation\.[a-z0-9_]+)[a-z0-9_.*]*`")
 SHORT = re.compile(rf"(?<![\w\])])\((?:sections? |(?=[A-G]\d|[1-9]\d?\.\d))({LIST})(?=[):,;])")
 WITHIN = re.compile(rf"(?<!\.md )(?<!\.md` )\b[Ss]ections? ({LIST})(?! of (?!this))")
 EFFECT = re.compile(rf"(?:section |(?=[A-G]\d|[1-9]\d?\.\d))({LIST})(?=:|,| |$)")
+MIRROR = re.compile(rf", (?=[A-G]\d|[1-9]\d?\.\d)({LIST}) ?$")  # of a string of passes.def
 HEADING = re.compile(r"^#+ +(?:Part )?((?:[A-G]?\d+(?:\.\d+)*|[A-G])(?=[.: ])\.?)? *(.*)$", re.MULTILINE)
 PATH = re.compile(r"(?<![\w/.<@$\"+*-])((?:[\w.*{},-]+/)+[\w.*{},-]*)")
 NAME = re.compile(r"(?<![\w/.<*$\"`:-])([a-z][\w-]*\.(?:h|cpp|def|py|txt))\b")
@@ -70,7 +71,7 @@ def joined(comments):
 
 
 def c_texts(source):
-    """Comments, and the effects of tables: strings that close a row."""
+    """Comments, and the strings of tables."""
     comments, effects = [], []
     for match in C_TOKEN.finditer(source):
         token, line = match.group(), source.count("\n", 0, match.start()) + 1
@@ -79,7 +80,7 @@ def c_texts(source):
             comments.append((line, token.lstrip("/<! ").rstrip(), alone))
         elif token.startswith("/*"):
             comments.append((line, token.strip("/* \n"), alone))
-        elif token[0] == '"' and source[match.end():match.end() + 1] == ")":
+        elif token[0] == '"':
             effects.append(Text([(line, token[1:-1])], "effect"))
     return list(joined(comments)), effects
 
@@ -223,7 +224,7 @@ class Reader:
         if not own:
             marks += [(m.start(), False, m) for m in SHORT.finditer(text.text)]
         if text.kind == "effect":
-            marks += [(m.start(), False, m) for m in [EFFECT.match(text.text)] if m]
+            marks += [(m.start(), False, m) for m in (EFFECT.match(text.text), MIRROR.search(text.text)) if m]
         for position, long, match in sorted(marks, key=lambda mark: mark[0]):
             if long:
                 yield from self.document(position, match, own)
@@ -270,7 +271,7 @@ class Reader:
                     yield match.start(), f"{own.fault(item)} here"
 
     def paths(self, text):
-        if text.kind == "effect":
+        if text.kind == "effect" and not PATH.match(text.text):
             return
         others = TELLS_OF_OTHERS.match(self.where) is not None
         code = re.finditer(r"`([^`]+)`", text.text)

@@ -69,6 +69,9 @@ class Citations(unittest.TestCase):
         table = "// Rows. Sections cited are of math.md.\n"
         self.check(table + 'ROW(A, "4.1: by 0 -> 0")\nROW(B, "section 1 flush")\nROW(C, "0.5 * a")\n', place="spirv/x.def")
         self.check(table + 'ROW(A, "4.9")\n', "docs/math.md has no section 4.9", place="spirv/x.def")
+        self.check(table + 'ROW("exec/chain.h", "nir.c: a, 4.1 and 4.2",\n    "why")\n', place="spirv/x.def")
+        self.check(table + 'ROW("exec/chains.h", "nir.c: a, 4.1 and 4.6", "")\n', "there is no exec/chains.h",
+                   "docs/math.md has no section 4.6", place="spirv/x.def")
         self.check('// Rows.\nROW(A, "4.1")\n', "4.1: the file names no document above", place="spirv/x.def")
 
     def test_rows_of_deviations(self):
