@@ -1,5 +1,5 @@
 // Minima and maxima with an operand that is known to be a number become plain ones (lavapipe-shader-math.md 5.1, which
-// also swaps operands).
+// also swaps operands; lavapipe-optimizer.md 6.4).
 #include "spirv/rewrite/gallivm/passes.h"
 #include "spirv/rewrite/nir/range_analysis.h"
 

@@ -1,6 +1,6 @@
 // The form the rewrites work on: ir::Function flattened to arrays, with a use list per value, so that a value can be
 // replaced in the time of its uses. Blocks are doubly linked lists of instructions; If and Loop are instructions that
-// own blocks. Values keep their ids; import and export cost one walk each.
+// own blocks. Values keep their ids; import and export cost one walk each (lavapipe-optimizer.md 2.1).
 #pragma once
 
 #include <cstdint>

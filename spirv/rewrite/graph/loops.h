@@ -1,5 +1,6 @@
 // Loops in the form that the rewrites keep: every value that changes is a parameter; what goes round is passed at the
-// end of the body and by Continue, parameter by parameter; the continue construct only hands it on.
+// end of the body and by Continue, parameter by parameter; the continue construct only hands it on
+// (lavapipe-optimizer.md 2.2).
 #pragma once
 
 #include <vector>

@@ -1,5 +1,6 @@
 // Bounds of integers as far as the optimiser of the reference's code generator tells them: by known bits, by operations
-// with a literal that do not overflow, and by what an equality says about the operand behind such operations.
+// with a literal that do not overflow, and by what an equality says about the operand behind such operations
+// (lavapipe-optimizer.md 7.5).
 #pragma once
 
 #include <cstdint>

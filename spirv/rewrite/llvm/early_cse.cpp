@@ -1,4 +1,4 @@
-// Common subexpressions of scalar code (EarlyCSE.cpp).
+// Common subexpressions of scalar code (EarlyCSE.cpp; lavapipe-optimizer.md 7.1).
 #include "spirv/rewrite/graph/merge_equal.h"
 #include "spirv/rewrite/llvm/passes.h"
 

@@ -1,6 +1,6 @@
 // An If that yields x on one side and x op y on the other is x op (c ? identity : y) to the reference's optimiser. Its
 // masked instructions turn that back, unless several operations share the selection: then all of them are computed, and
-// denormals of x are flushed where those are.
+// denormals of x are flushed where those are (lavapipe-optimizer.md 7.8).
 #include <map>
 #include <tuple>
 

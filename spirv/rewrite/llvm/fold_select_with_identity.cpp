@@ -1,5 +1,6 @@
 // Selections with a literal side as operands of arithmetic, in scalar code: the reference's optimiser and its masked
-// instructions move the operation into the side that is not literal, so that x op identity is x, denormal or not.
+// instructions move the operation into the side that is not literal, so that x op identity is x, denormal or not
+// (lavapipe-optimizer.md 7.9).
 #include <algorithm>
 
 #include "base/float_mode.h"

@@ -1,4 +1,5 @@
-// What the reference makes of results that are undefined, where that differs from what its operations give.
+// What the reference makes of results that are undefined, where that differs from what its operations give
+// (lavapipe-optimizer.md 7.10).
 #include "spirv/rewrite/llvm/passes.h"
 
 namespace vitrine::spirv::rewriting {

@@ -1,5 +1,5 @@
 // What can be told about the bits of a 32-bit integer without running the shader, as far as the optimiser of the
-// reference's code generator tells it (its passes follow six operations, and so does this).
+// reference's code generator tells it: through six operations, as its passes do (lavapipe-optimizer.md 7.4).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Which branches the reference's optimiser sees as selections, and which selections of floats it keeps as such.
+// Which branches the reference's optimiser sees as selections, and which selections of floats it keeps as such
+// (lavapipe-optimizer.md 7.9).
 #pragma once
 
 #include "spirv/rewrite/graph/graph.h"

@@ -1,4 +1,4 @@
-// Which operand of a product the reference's optimiser negates instead of the product.
+// Which operand of a product the reference's optimiser negates instead of the product (lavapipe-optimizer.md 7.2).
 #pragma once
 
 #include <compare>

@@ -1,5 +1,5 @@
 // What a comparison of integers gives whatever they are, as far as the optimiser of the reference's code generator
-// tells it: by their ranges, and by how operations relate to their own operands.
+// tells it: by their ranges, and by how operations relate to their own operands (lavapipe-optimizer.md 7.6).
 #pragma once
 
 #include "spirv/rewrite/graph/graph.h"

@@ -1,5 +1,5 @@
-// What the reference's code computes otherwise on a CPU without AVX-512 (deviations.md: float-to-uint,
-// double-rounding).
+// What the reference's code computes otherwise on a CPU without AVX-512 (deviations.md: float-to-uint, double-rounding)
+// (lavapipe-optimizer.md 7.11).
 #include "base/reference_cpu.h"
 #include "spirv/rewrite/llvm/passes.h"
 

@@ -1,5 +1,5 @@
 // The opposite of what the front end does to continue constructs: what runs from the second iteration on, and has
-// stayed at the top of the body, becomes the continue construct.
+// stayed at the top of the body, becomes the continue construct (lavapipe-optimizer.md 8.3).
 #include "spirv/rewrite/graph/loops.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/lower/passes.h"

@@ -1,6 +1,6 @@
 // Doubles as the reference sees them, which has one value where the front end has two words: pairs of the same words
 // are one value, and selections of both words are one selection. Neither changes a number; how often values are used
-// decides whether inexact rules apply to them.
+// decides whether inexact rules apply to them (lavapipe-optimizer.md 4.8).
 #include "spirv/rewrite/graph/merge_equal.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/lower/passes.h"

@@ -1,5 +1,5 @@
-// What operations on numbers of 16 and 64 bits consist of, once no rule looks at them any more
-// (lavapipe-shader-math.md 6.6).
+// What operations on numbers of 16 and 64 bits consist of, once no rule looks at them any more (lavapipe-shader-math.md
+// 6.6; lavapipe-optimizer.md 8.1).
 //
 // binary16 is computed in binary32 and rounded after every operation, which gives the bits of the operation in binary16
 // (24 >= 2 * 11 + 2). A double is two words for wide_ops.def.

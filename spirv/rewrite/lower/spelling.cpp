@@ -1,4 +1,5 @@
-// Equal bits, fewer instructions: subtractions from additions of negations, extracted bits from shifts and masks.
+// Equal bits, fewer instructions: subtractions from additions of negations, extracted bits from shifts and masks
+// (lavapipe-optimizer.md 8.2).
 #include <bit>
 
 #include "spirv/rewrite/graph/tree.h"

@@ -1,4 +1,4 @@
-// Gives loops the form that the rewrites keep (graph/loops.h), before the first of them.
+// Gives loops the form that the rewrites keep (graph/loops.h), before the first of them (lavapipe-optimizer.md 2.2).
 #include "spirv/rewrite/graph/loops.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/lower/passes.h"

@@ -1,4 +1,5 @@
-// Operations on constants, as the reference's compiler computes them on the host (nir_constant_expressions.py).
+// Operations on constants, as the reference's compiler computes them on the host
+// (nir_constant_expressions.py; lavapipe-optimizer.md 4.7).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Folding of 64-bit integers: operations on literals, and those that are literal whatever their operands are.
+// Folding of 64-bit integers: operations on literals, and those that are literal whatever their operands are
+// (lavapipe-optimizer.md 4.7).
 #include "spirv/rewrite/nir/constant_expressions.h"
 
 #include "spirv/rewrite/graph/tree.h"

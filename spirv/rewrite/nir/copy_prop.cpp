@@ -1,4 +1,4 @@
-// Copy propagation (nir_opt_copy_propagate.c): uses of copies read what was copied.
+// Copy propagation (nir_opt_copy_propagate.c; lavapipe-optimizer.md 3.4): uses of copies read what was copied.
 #include <array>
 #include <vector>
 

@@ -1,5 +1,5 @@
-// What is known of a loop before it is unrolled (nir_loop_analyze.c). Exits are Ifs at the top level of the body with a
-// Break on one side.
+// What is known of a loop before it is unrolled (nir_loop_analyze.c; lavapipe-optimizer.md 5.20). Exits are Ifs at the
+// top level of the body with a Break on one side.
 #pragma once
 
 #include <vector>

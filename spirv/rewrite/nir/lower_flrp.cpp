@@ -1,5 +1,6 @@
 // What mixes of halves consist of: x * (1 + -a) + y * a, or x + a * (y + -x) between literals. The reference decides by
-// reading halves as doubles, to which all literals but 0 are alike, and none is 1 or -1 (lavapipe-shader-math.md 5.3).
+// reading halves as doubles, to which all literals but 0 are alike, and none is 1 or -1 (lavapipe-shader-math.md 5.3;
+// lavapipe-optimizer.md 3.8).
 #include "spirv/mix.h"
 #include "spirv/rewrite/nir/passes.h"
 

@@ -1,5 +1,6 @@
 // Local arrays of which only constant elements are accessed become values: what stays of an array when the loops that
-// walked through it are unrolled (lavapipe-shader-math.md 3.2 step 3, splitting of variables, variables to SSA).
+// walked through it are unrolled (lavapipe-shader-math.md 3.2 step 3, splitting of variables, variables to SSA;
+// lavapipe-optimizer.md 3.1).
 #include <algorithm>
 #include <map>
 #include <utility>

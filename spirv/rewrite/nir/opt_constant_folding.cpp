@@ -1,4 +1,4 @@
-// Operations on constants become their results (nir_opt_constant_folding.c).
+// Operations on constants become their results (nir_opt_constant_folding.c; lavapipe-optimizer.md 4.7).
 #include "base/float_mode.h"
 #include "spirv/rewrite/nir/constant_expressions.h"
 #include "spirv/rewrite/nir/passes.h"

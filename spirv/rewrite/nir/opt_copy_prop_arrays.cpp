@@ -1,7 +1,6 @@
 // Elements of local arrays whose value is known where they are read, because a store or load of the same element, at a
 // constant index or at the same dynamic one, comes before; and stores of what an element already holds. What stays of
-// an array that a loop walked through once the loop is unrolled (lavapipe-shader-math.md 3.2 step 3, copy propagation
-// and splitting of variables).
+// an array that a loop walked through once the loop is unrolled (lavapipe-optimizer.md 3.3).
 #include <algorithm>
 #include <compare>
 #include <cstdint>

@@ -1,6 +1,5 @@
 // Loads of what an earlier load brought already: the reference knows a push constant, uniform or storage vector by its
-// components, so that p.y and the second component of p are one value (lavapipe-shader-math.md 3.2 step 3, copy
-// propagation of variables).
+// components, so that p.y and the second component of p are one value (lavapipe-optimizer.md 3.2).
 #include <array>
 #include <unordered_map>
 #include <utility>

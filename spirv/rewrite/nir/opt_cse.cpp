@@ -1,4 +1,4 @@
-// Common subexpressions (nir_opt_cse.c).
+// Common subexpressions (nir_opt_cse.c; lavapipe-optimizer.md 3.6).
 #include "spirv/rewrite/graph/merge_equal.h"
 #include "spirv/rewrite/nir/passes.h"
 

@@ -1,5 +1,5 @@
-// Dead code (nir_opt_dce.c). What joins values, results of an If and parameters and results of a loop, is dead where
-// nothing but such joins reads it.
+// Dead code (nir_opt_dce.c; lavapipe-optimizer.md 3.5). What joins values, results of an If and parameters and results
+// of a loop, is dead where nothing but such joins reads it.
 #include <map>
 #include <vector>
 

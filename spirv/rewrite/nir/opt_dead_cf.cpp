@@ -1,4 +1,5 @@
-// Control flow that need not be (nir_opt_dead_cf.c): branches on constants, code that never runs, loops without effect.
+// Control flow that need not be (nir_opt_dead_cf.c; lavapipe-optimizer.md 5.16): branches on constants, code that never
+// runs, loops without effect.
 #include "spirv/rewrite/graph/effects.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/passes.h"

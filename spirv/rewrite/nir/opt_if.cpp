@@ -1,5 +1,5 @@
-// Branches and what follows them (nir_opt_if.c): the walks of the pass, and the steps on branches that leave. Which
-// code is unconditional decides what later steps see.
+// Branches and what follows them (nir_opt_if.c; lavapipe-optimizer.md 5.8, 5.13): the walks of the pass, and the steps
+// on branches that leave. Which code is unconditional decides what later steps see.
 #include "spirv/rewrite/nir/opt_if.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/passes.h"

@@ -1,5 +1,5 @@
-// Neighbouring branches and neighbouring ways out of a loop that become one (lavapipe-shader-math.md 3.2 step 3,
-// nir_opt_if).
+// Neighbouring branches and neighbouring ways out of a loop that become one (nir_opt_if.c; lavapipe-optimizer.md 5.9 to
+// 5.11, 5.14).
 #include "spirv/rewrite/nir/opt_if.h"
 
 #include "spirv/rewrite/graph/tree.h"

@@ -1,6 +1,6 @@
 // Arithmetic on parameters of loops in the loop's header: computed in front of the loop and at the end of the body
-// instead, and selections between parameters that only the first iteration decides
-// (lavapipe-shader-math.md 3.2 step 3, nir_opt_if).
+// instead, and selections between parameters that only the first iteration decides (nir_opt_if.c; lavapipe-optimizer.md
+// 5.7, 5.12).
 #include "spirv/rewrite/nir/opt_if.h"
 
 #include <algorithm>

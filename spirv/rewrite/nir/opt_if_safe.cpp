@@ -1,5 +1,5 @@
-// What a branch knows of its condition: where only one side of an If leads, its condition is a constant
-// (lavapipe-shader-math.md 3.2 step 3, nir_opt_if).
+// What a branch knows of its condition: where only one side of an If leads, its condition is a constant (nir_opt_if.c;
+// lavapipe-optimizer.md 5.5, 5.6).
 #include <vector>
 
 #include "spirv/rewrite/graph/tree.h"

@@ -1,6 +1,7 @@
 // Loops with a constant number of iterations become straight-line code, as in the reference (nir_opt_loop_unroll.c,
-// lavapipe-shader-math.md 3.2 and 9): unrolled code sees the counter as constants, which changes what the algebraic
-// rules do. Covered: exits that are all counted by constants; a counted and another one; a body that ends in Break.
+// lavapipe-shader-math.md 3.2 and 9; lavapipe-optimizer.md 5.19): unrolled code sees the counter as constants, which
+// changes what the algebraic rules do. Covered: exits that are all counted by constants; a counted and another one; a
+// body that ends in Break.
 #include "spirv/rewrite/graph/copier.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/loop_analyze.h"

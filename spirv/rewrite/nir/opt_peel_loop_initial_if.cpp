@@ -1,5 +1,5 @@
 // A loop whose first branch only the first iteration decides: what the first iteration does there goes in front of the
-// loop, what the others do to the end of the body (lavapipe-shader-math.md 3.2 step 3, nir_opt_if).
+// loop, what the others do to the end of the body (nir_opt_if.c; lavapipe-optimizer.md 5.15).
 #include "spirv/rewrite/nir/opt_if.h"
 
 #include <array>

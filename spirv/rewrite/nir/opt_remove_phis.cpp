@@ -1,4 +1,4 @@
-// Results and parameters that always carry one value are that value (nir_opt_remove_phis.c).
+// Results and parameters that always carry one value are that value (nir_opt_remove_phis.c; lavapipe-optimizer.md 5.3).
 #include "spirv/rewrite/graph/loops.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/passes.h"

@@ -1,4 +1,4 @@
-// Continues at the end of a loop become the way there (nir_opt_trivial_continues.c).
+// Continues at the end of a loop become the way there (nir_opt_trivial_continues.c; lavapipe-optimizer.md 5.4).
 #include "spirv/rewrite/graph/loops.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/passes.h"

@@ -1,4 +1,5 @@
-// Joins of a loop that become registers and joins again where a step of the reference moves blocks.
+// Joins of a loop that become registers and joins again where a step of the reference moves blocks
+// (lavapipe-optimizer.md 5.17).
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // What can be told about a float value without running the shader: its possible signs, whether it can be NaN, infinite
-// or fractional (lavapipe-shader-math.md 4.3, 5.1 min/max).
+// or fractional (lavapipe-shader-math.md 4.3, 5.1 min/max; lavapipe-optimizer.md 4.4).
 #pragma once
 
 #include <cstdint>

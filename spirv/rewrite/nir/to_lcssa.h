@@ -1,5 +1,5 @@
 // Values that leave loops: read behind the loop as they are while the rewrites run, results of the loop otherwise
-// (nir_to_lcssa.c).
+// (nir_to_lcssa.c; lavapipe-optimizer.md 5.18).
 #pragma once
 
 #include "spirv/rewrite/graph/graph.h"

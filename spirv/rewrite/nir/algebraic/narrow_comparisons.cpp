@@ -1,5 +1,5 @@
 // Comparisons of floats that were converted from narrower ones are those of the narrower ones: rules on conversions,
-// which rows on one width cannot say.
+// which rows on one width cannot say (lavapipe-optimizer.md 4.8).
 #include "spirv/rewrite/nir/passes.h"
 
 namespace vitrine::spirv::rewriting {

@@ -1,7 +1,7 @@
 // The algebraic rules of the reference's compiler that concern floats of every width, 32-bit integers and booleans, in
-// its order (lavapipe-shader-math.md section 4). For one instruction the first rule that matches wins, so the order is
-// part of the numeric contract. Inexact rules (~) do not touch `precise` code. Rules whose condition this driver's
-// reference never meets (saturation, fused multiply-add, rotates, ...) are left out.
+// its order (lavapipe-shader-math.md section 4; lavapipe-optimizer.md 4.2, 4.6). For one instruction the first rule
+// that matches wins, so the order is part of the numeric contract. Inexact rules (~) do not touch `precise` code. Rules
+// whose condition this driver's reference never meets (saturation, fused multiply-add, rotates, ...) are left out.
 #include "spirv/rewrite/nir/algebraic/pattern.h"
 
 #include "base/lasting.h"

@@ -1,6 +1,7 @@
-// The engine that applies the rule table the way the reference's compiler does (lavapipe-shader-math.md 4.1): users
-// before producers, the first matching rule in table order; replaced values wake those of their users for whom the
-// change of structure matters; replaced instructions' operands stay, and count as uses, until dead code is removed.
+// The engine that applies the rule table the way the reference's compiler does (lavapipe-shader-math.md 4.1;
+// lavapipe-optimizer.md 4.1): users before producers, the first matching rule in table order; replaced values wake
+// those of their users for whom the change of structure matters; replaced instructions' operands stay, and count as
+// uses, until dead code is removed.
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -1,6 +1,6 @@
 // Shapes of the reference's rules that never apply here (other bit sizes, options that are off, rules without an effect
 // on bits). They still count: an instruction is visited again when the set of shapes that it has changes, whichever
-// rules those belong to (lavapipe-shader-math.md 4.1). a: any operand, #: a constant.
+// rules those belong to (lavapipe-shader-math.md 4.1; lavapipe-optimizer.md 4.3). a: any operand, #: a constant.
 #include "spirv/rewrite/nir/algebraic/pattern.h"
 
 namespace vitrine::spirv::rewriting {
