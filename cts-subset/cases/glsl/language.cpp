@@ -356,6 +356,14 @@ const bool kFragments = [] {
         "  vec3 s = vec3(a.x, vec2(-1.0)) * (m - m).xyy;\n";
     evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 2}, "r"}, {{Base::kFloat, 3}, "s"}}, {}, false});
   });
+  // 1 / sqrt as drivers for Direct3D 9 spell it: a minimum, which is no NaN where the operand is one.
+  AddCase("glsl", "rewrite.limited_inverse_root", [](Run& run) {
+    const char* text =
+        "  float x = abs(uintBitsToFloat(pi.x == 0x7fffffff ? 0x3f800000u : 0x7fc00000u)), y = abs(a.y);\n"
+        "  float r = sqrt(x) == 0.0 ? 3.4028234663852886e+38 : inversesqrt(x);\n"
+        "  float s = sqrt(y) == 0.0 ? 3.4028234663852886e+38 : inversesqrt(y);\n";
+    evaluate(run, Stage::kCompute, {"", text, {{{Base::kFloat, 1}, "r"}, {{Base::kFloat, 1}, "s"}}, {}, false});
+  });
   AddCase("glsl", "discard.then_derivative", [](Run& run) {
     fragment_expression(run, "vec4(dFdx(passed.x), dFdy(passed.y), passed.zw)", "  if (passed.x > 0.3) discard;\n");
   });

@@ -67,6 +67,7 @@ constexpr Case kChanged[] = {
     {"FAdd(FMul(0.0,FSub(1.0,b)),FMul(a,b))", "FMul(a,b)"},
     {"FAdd(FMul(a,FSub(1.0,0.5)),FMul(b,0.5))", "FMul(0.5,FAdd(a,b))"},
     {"FSin(FAdd(1.0,2.0))", "0.141120002"},
+    {"Select(FEq(FSqrt(FAbs(a)),0.0),3.4028234663852886e+38,FRsq(FAbs(a)))", "FMinPlain(FRsq(FAbs(a)),3.40282347e+38)"},
 };
 
 constexpr Case kKept[] = {
@@ -99,6 +100,8 @@ INSTANTIATE_TEST_SUITE_P(Changed, Rewrite, ::testing::ValuesIn(kChanged), name_o
 INSTANTIATE_TEST_SUITE_P(Kept, Rewrite, ::testing::ValuesIn(kKept), name_of);
 
 TEST(RuleTable, EveryRuleParses) {
+  EXPECT_EQ(rewriting::main_rules().ill_formed, std::vector<std::string>());
+  EXPECT_EQ(rewriting::late_rules().ill_formed, std::vector<std::string>());
   EXPECT_GT(rewriting::main_rules().rules.size(), 400u);
   EXPECT_GT(rewriting::late_rules().rules.size(), 30u);
   EXPECT_LT(rewriting::main_rules().shapes.size(), rewriting::kMaxShapes);

@@ -87,8 +87,10 @@ struct OpNames {
 };
 constexpr OpNames kOpNames;
 
+/// Of names and numbers, with their exponents.
 bool is_word(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == '-';
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' ||
+         c == '-' || c == '+';
 }
 
 class Parser {
@@ -140,10 +142,14 @@ class Parser {
       pattern.variable = static_cast<std::uint8_t>(first - 'a');
     } else if (word.find('.') != std::string_view::npos) {
       pattern.kind = Pattern::Kind::kFloat;
-      std::from_chars(word.data(), word.data() + word.size(), pattern.number);
+      const char* const end = word.data() + word.size();
+      ok_ = ok_ && std::from_chars(word.data(), end, pattern.number).ptr == end;
     } else {
       pattern.kind = Pattern::Kind::kInteger;
-      pattern.bits = static_cast<std::uint32_t>(std::strtoll(std::string(word).c_str(), nullptr, 0));
+      const std::string text(word);
+      char* end = nullptr;
+      pattern.bits = static_cast<std::uint32_t>(std::strtoll(text.c_str(), &end, 0));
+      ok_ = ok_ && end == text.c_str() + text.size();
     }
   }
 
@@ -231,6 +237,7 @@ void add_rule(Rules& rules, std::string_view search, std::string_view replacemen
   rule.replacement = right.expression();
   if (!left.ok() || !right.ok() || rules.patterns[rule.search].kind != Pattern::Kind::kOp) {
     VITRINE_UNREACHABLE(std::string(search).c_str());
+    rules.ill_formed.emplace_back(search);
     rules.patterns.resize(before);
     return;
   }
@@ -246,8 +253,12 @@ void add_shape(Rules& rules, const char* text) {
   const std::size_t before = rules.patterns.size();
   Parser parser(rules, text);
   const std::uint16_t index = parser.expression();
-  if (!parser.ok()) VITRINE_UNREACHABLE(text);
-  if (parser.ok()) shape_of(rules, index);
+  if (parser.ok()) {
+    shape_of(rules, index);
+  } else {
+    VITRINE_UNREACHABLE(text);
+    rules.ill_formed.emplace_back(text);
+  }
   rules.patterns.resize(before);
 }
 

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -93,6 +94,7 @@ struct Rules {
   std::vector<Rule> rules;
   std::vector<std::uint16_t> by_op[static_cast<std::size_t>(ir::Op::kAluCount)];  ///< rules, in table order
   std::vector<Shape> shapes;                                                      ///< children before parents
+  std::vector<std::string> ill_formed;                                            ///< rules and shapes left out
   std::vector<std::uint16_t> shapes_by_op[static_cast<std::size_t>(ir::Op::kAluCount)];
 };
 

@@ -180,7 +180,6 @@ constexpr const char* kLate[] = {
     "IAdd(ISub(a,a),a)",
     "IAdd(a,INeg(a))",
     "ISub(ISub(a,a),a)",
-    "Select(FEq(FSqrt(a),#),#,FRsq(a))",
     "Select(FGe(#,a),a,a)",
     "Select(FGe(a,#),a,a)",
     "Select(FLt(#,a),a,a)",
