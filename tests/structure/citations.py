@@ -23,7 +23,7 @@ EXTERNAL = re.compile(r"(vk_icd|vulkan_core|enums|structure_types|entry_points)\
 EXTERNAL_FOLDERS = ("hwy/", "vulkan/", "spirv/unified1/", "generated/", "build/")
 # Documents that name others' files: only paths that begin with a room are checked there.
 TELLS_OF_OTHERS = re.compile(r"docs/(lavapipe-[\w-]+|requirements)\.md")
-PLANNED = {"docs/glass.md": ("glass/",)}  # paths of what is not there yet
+PLANNED = {"docs/glass.md": ("glass/", "VITRINE_TOOLS", "VITRINE_REPORT")}  # what is not there yet
 # Sections about other projects or about citations as such; "" is what comes before the first.
 NOT_READ = {"docs/conventions.md": ("", "2", "3", "6")}
 
@@ -41,6 +41,7 @@ HEADING = re.compile(r"^#+ +(?:Part )?((?:[A-G]?\d+(?:\.\d+)*|[A-G])(?=[.: ])\.?
 PATH = re.compile(r"(?<![\w/.<@$\"+*-])((?:[\w.*{},-]+/)+[\w.*{},-]*)")
 NAME = re.compile(r"(?<![\w/.<*$\"`:-])([a-z][\w-]*\.(?:h|cpp|def|py|txt))\b")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
+SETTING = re.compile(r"\bVITRINE_[A-Z_]+\b")
 C_TOKEN = re.compile(r'R"([^(\s]*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'|//[^\n]*|/\*.*?\*/', re.DOTALL)
 
 
@@ -166,8 +167,9 @@ class Tree:
         self.documents = {place: Document((root / place).read_text()) for place in self.places if place.endswith(".md")}
         rows = (root / DEVIATIONS).read_text() if DEVIATIONS in self.places else ""
         self.rows = set(re.findall(r"^\| ([\w-]+) \|", rows, re.MULTILINE))
-        cases = "".join(p.read_text() for p in self.files if p.suffix == ".cpp" and "cases" in p.parts)
-        self.cases = set(re.findall(r'"(deviation\.[a-z0-9_]+)', cases))
+        code = "".join(p.read_text(errors="replace") for p in self.files if p.suffix != ".md")
+        self.cases = set(re.findall(r'"(deviation\.[a-z0-9_]+)', code))
+        self.settings = set(SETTING.findall(code))
 
     def document(self, name, where):
         """Its place, or None: as a path, in docs/, or the only one of that name."""
@@ -214,7 +216,7 @@ class Reader:
     def faults(self, text):
         found = [*self.documents(text), *self.rows(text), *self.paths(text)]
         if text.kind == "document":
-            found += [*self.links(text), *self.within(text), *self.cases(text)]
+            found += [*self.links(text), *self.within(text), *self.cases(text), *self.settings(text)]
         return [(text.line(position), fault) for position, fault in sorted(found)]
 
     def documents(self, text):
@@ -261,6 +263,12 @@ class Reader:
         for match in CASE.finditer(text.text if self.where == DEVIATIONS else ""):
             if match.group(1) not in self.tree.cases:
                 yield match.start(), f"there is no case {match.group(1)}"
+
+    def settings(self, text):
+        """Environment variables, macros and build options."""
+        for match in SETTING.finditer(text.text):
+            if match.group() not in self.tree.settings and match.group() not in PLANNED.get(self.where, ()):
+                yield match.start(), f"nothing reads {match.group()}"
 
     def within(self, text):
         """Sections of the document itself."""

@@ -102,6 +102,11 @@ class Citations(unittest.TestCase):
         self.check("# Page\n## 1. One\nas in section 2\n", "no section 2 here", place="docs/page.md")
         self.check("# Page\n`math.md` section 6\n", "docs/math.md has no section 6", place="docs/page.md")
 
+    def test_settings(self):
+        page = {"docs/page.md": "# Page\n`VITRINE_LOG`\n", "base/log.cpp": '// Log.\nauto a = getenv("VITRINE_LOG");\n'}
+        self.assertEqual(self.faults(page), [])
+        self.check("# Page\n`VITRINE_LOGS`\n", "nothing reads VITRINE_LOGS", place="docs/page.md")
+
     def test_lines(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "base/a.h"
