@@ -91,6 +91,7 @@ bool compare_all(const Case& c, const SideResult& device, const SideResult& refe
   for (size_t i = 0; i < std::min(device.outputs.size(), reference.outputs.size()); ++i) {
     const Comparison found = compare(device.outputs[i], reference.outputs[i]);
     judgement.nan_bits |= found.nan_bits != 0;
+    if (options().pictures) write_pictures(c, device.outputs[i], reference.outputs[i]);
     if (found.first.empty()) continue;
     if (!reference.outputs[i].deviation.empty()) {
       judgement.verdict = Verdict::kDeviation;

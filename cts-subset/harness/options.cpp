@@ -17,7 +17,8 @@ constexpr char kUsage[] =
     "  --icd=FILE        manifest of the device under test (or CTS_ICD)\n"
     "  --reference=FILE  manifest of the reference (or CTS_REFERENCE_ICD)\n"
     "  --known=FILE      known differences (a name and its reason per line): told, but no failure of the run\n"
-    "  --results=DIR     where images of failing cases go\n"
+    "  --results=DIR     where pictures of differing cases go\n"
+    "  --pictures        write pictures of every case\n"
     "  --fingerprints=FILE  compare nothing: append each case's name and a hash of the device's bytes\n"
     "  --seed=N          seed of every random case (default 1)\n"
     "  --count=N         cases per random generator; those that draw nothing go on with other seeds\n"
@@ -58,6 +59,8 @@ Options parse_options(int argc, char** argv) {
       result.reference_icd = value;
     else if (name == "--results")
       result.results = value;
+    else if (name == "--pictures")
+      result.pictures = true;
     else if (name == "--fingerprints")
       result.fingerprints = value;
     else if (name == "--seed")

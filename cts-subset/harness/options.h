@@ -15,6 +15,7 @@ struct Options {
   uint64_t seed = 1;
   uint32_t count = 0;        ///< cases per random generator; 0 = each generator's default
   bool validation = true;    ///< VK_LAYER_KHRONOS_validation on both devices
+  bool pictures = false;     ///< of every case, not only of those that differ
   bool mutate = false;       ///< shaders of the cases are changed at random
   bool isolate = false;      ///< run cases in child processes and survive crashes
   bool self_test = false;    ///< only the cases that must fail
