@@ -19,9 +19,6 @@ enum class Scope : std::uint8_t { kLists, kBehindExits };
 /// Yield / Break / Continue, jumps only at the end of a list). Empty: valid; otherwise what is wrong.
 std::string verify(const Function& function, Scope scope = Scope::kLists);
 
-/// Splits every ALU instruction of n components into n of one, rejoined by Vec where a vector is wanted.
-void scalarize(Function& function);
-
 /// Replaces uses of Mov / MovB / Vec by their sources, removes loop parameters and results that always carry one value.
 void propagate_copies(Function& function);
 

@@ -13,7 +13,7 @@
 namespace vitrine::spirv {
 
 /// Specialises, inlines and structures the entry point `options.entry_point` and builds SSA. ALU instructions are still
-/// vectors as the SPIR-V wrote them; ir::scalarize() makes them scalar.
+/// vectors as the SPIR-V wrote them; rewrite() makes them scalar.
 base::Result<ir::Function> translate(std::span<const std::uint32_t> words, const CompileOptions& options);
 
 }  // namespace vitrine::spirv

@@ -1,6 +1,7 @@
 // Runs the steps of passes.def in their order, and shows what each does to those who ask.
 #include "spirv/rewrite/passes.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -60,23 +61,59 @@ constexpr bool has_first_round(Phase phase) {
   return false;
 }
 
-/// Steps that may run, of those that are not needed.
-std::uint32_t pass_limit() {
-  static const std::uint32_t limit = [] {
-    const char* value = std::getenv("VITRINE_PASS_LIMIT");
-    return value ? static_cast<std::uint32_t>(std::strtoul(value, nullptr, 10)) : ~std::uint32_t{0};
-  }();
-  return limit;
+/// Which steps, of those that are not needed, run over one shader.
+class Choice {
+ public:
+  explicit Choice(std::uint32_t shader) {
+    static const char* const off = std::getenv("VITRINE_PASS_OFF");
+    static const char* const limit = std::getenv("VITRINE_PASS_LIMIT");
+    if (off) off_ = off;
+    if (!limit) return;
+    char* end = nullptr;
+    const auto number = static_cast<std::uint32_t>(std::strtoul(limit, &end, 10));
+    if (*end != ':') {
+      limit_ = number;
+    } else if (number == shader) {
+      limit_ = static_cast<std::uint32_t>(std::strtoul(end + 1, nullptr, 10));
+    }
+  }
+
+  /// `step`: how many have run.
+  bool leaves_out(const Pass& pass, std::uint32_t step) const {
+    return pass.needed == Needed::kOptional && (step >= limit_ || is_off(pass.name));
+  }
+
+ private:
+  bool is_off(std::string_view name) const {
+    for (std::string_view rest = off_; !rest.empty();) {
+      const std::size_t comma = std::min(rest.find(','), rest.size());
+      if (rest.substr(0, comma) == name) return true;
+      rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+    return false;
+  }
+
+  std::string_view off_;
+  std::uint32_t limit_ = ~std::uint32_t{0};
+};
+
+/// Shaders of the process, counted from 1.
+std::uint32_t next_shader() {
+  static std::atomic<std::uint32_t> count{0};
+  return ++count;
 }
 
 /// Shows what the steps make of one shader.
 class Printer {
  public:
-  explicit Printer(const Graph& graph) : graph_(graph), on_(base::log_enabled("ir")) {
-    if (!on_) return;
-    static std::atomic<std::uint32_t> shaders{0};
-    shader_ = ++shaders;
-    print("front end");
+  Printer(const Graph& graph, std::uint32_t shader) : graph_(graph), shader_(shader), on_(base::log_enabled("ir")) {
+    if (on_) print("front end");
+  }
+
+  /// What is left in the end, changed or not.
+  void final() {
+    before_.clear();
+    if (on_) print("final");
   }
 
   void after(const Pass& pass, std::uint32_t step, int round) {
@@ -96,22 +133,26 @@ class Printer {
   }
 
   const Graph& graph_;
+  const std::uint32_t shader_;
   const bool on_;
-  std::uint32_t shader_ = 0;
   std::string before_;
 };
 
 /// Runs the phases over one shader.
 class Runner {
  public:
-  explicit Runner(Graph& graph) : graph_(graph), printer_(graph) {}
+  explicit Runner(Graph& graph) : Runner(graph, next_shader()) {}
 
-  void run(const PhaseInfo& phase) {
-    for (int round = 0; round < phase.rounds; ++round)
-      if (!run_round(phase.phase, round)) return;
+  void run() {
+    for (const PhaseInfo& phase : kPhases)
+      for (int round = 0; round < phase.rounds; ++round)
+        if (!run_round(phase.phase, round)) break;
+    printer_.final();
   }
 
  private:
+  Runner(Graph& graph, std::uint32_t shader) : graph_(graph), choice_(shader), printer_(graph, shader) {}
+
   /// True when another round is wanted.
   bool run_round(Phase phase, int round) {
     graph_.first_round = round == 0;
@@ -127,7 +168,7 @@ class Runner {
   }
 
   bool run_pass(const Pass& pass, int round) {
-    if (pass.needed == Needed::kOptional && step_ == pass_limit()) return false;
+    if (choice_.leaves_out(pass, step_)) return false;
     step_ += pass.needed == Needed::kOptional ? 1 : 0;
     const bool changed = pass.run(graph_);
     printer_.after(pass, step_, round);
@@ -145,6 +186,7 @@ class Runner {
   }
 
   Graph& graph_;
+  const Choice choice_;
   Printer printer_;
   std::uint32_t step_ = 0;  ///< optional steps that have run
 };
@@ -159,9 +201,6 @@ const Pass* find_pass(std::string_view name) {
   return nullptr;
 }
 
-void run_passes(Graph& graph) {
-  Runner runner(graph);
-  for (const PhaseInfo& phase : kPhases) runner.run(phase);
-}
+void run_passes(Graph& graph) { Runner(graph).run(); }
 
 }  // namespace vitrine::spirv::rewriting

@@ -36,7 +36,8 @@ std::span<const Pass> passes();
 const Pass* find_pass(std::string_view name);
 
 /// Runs all steps in their order. Under VITRINE_LOG=ir prints the shader before them and after each that changes
-/// something; runs no more than VITRINE_PASS_LIMIT steps that are not needed; verifies after each in debug builds.
+/// something; leaves out the steps that VITRINE_PASS_LIMIT and VITRINE_PASS_OFF name; verifies after each in debug
+/// builds.
 void run_passes(Graph& graph);
 
 }  // namespace vitrine::spirv::rewriting
