@@ -23,15 +23,6 @@ inline bool is_move(const Inst& inst) {
   return inst.kind == Inst::Kind::kAlu && (inst.op == Op::kMov || inst.op == Op::kMovB);
 }
 
-/// The component that an operation on scalars reads is a constant with these bits.
-inline bool is_literal(const Graph& graph, Src src, std::uint32_t bits) {
-  const Inst* constant = graph.constant(src.value);
-  return constant && constant->imm[src.swizzle[0]] == bits;
-}
-
-/// Two operations on scalars read the same component.
-inline bool same(Src a, Src b) { return a.value == b.value && a.swizzle[0] == b.swizzle[0]; }
-
 /// Two operands read the same components of one value, as many as `like` has.
 bool same_value(const Graph& graph, Src a, Src b, ValueId like);
 

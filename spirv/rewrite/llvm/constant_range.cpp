@@ -5,6 +5,8 @@
 #include <bit>
 #include <optional>
 
+#include "spirv/rewrite/graph/match.h"
+
 namespace vitrine::spirv::rewriting {
 namespace {
 

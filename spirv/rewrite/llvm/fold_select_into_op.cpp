@@ -5,6 +5,8 @@
 #include <tuple>
 
 #include "base/reference_cpu.h"
+#include "spirv/rewrite/graph/build.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/llvm/passes.h"
 
@@ -28,9 +30,10 @@ struct Choice {
 /// The side that keeps, the operand and the identity: the selection that operations of one If share.
 using Key = std::tuple<std::uint32_t, ValueId, unsigned, std::uint32_t>;
 
-const Inst* scalar_of(const Graph& graph, Src src) {
-  const Inst* inst = graph.def(src.value);
-  return inst && inst->kind == Kind::kAlu && inst->components == 1 && !inst->opaque ? inst : nullptr;
+/// The operation on scalars that makes what is read, which steps may look through.
+const Inst* open_operation(const Graph& graph, Src src) {
+  const Inst* inst = scalar_operation(graph, src);
+  return inst && !inst->opaque ? inst : nullptr;
 }
 
 class Sharer {
@@ -71,8 +74,8 @@ class Sharer {
   }
 
   bool find_operation(Src result, Choice& choice) const {
-    const Inst* inst = scalar_of(graph_, result);
-    if (!inst || graph_.values[result.value].uses != 1 || graph_.constant(choice.kept.value)) return false;
+    const Inst* inst = open_operation(graph_, result);
+    if (!inst || !is_used_once(graph_, result) || graph_.constant(choice.kept.value)) return false;
     if (inst->op != Op::kFMul && inst->op != Op::kFAdd && inst->op != Op::kFDiv) return false;
     choice.op = inst->op;
     choice.identity = inst->op == Op::kFAdd ? kMinusZero : kOne;
@@ -80,7 +83,7 @@ class Sharer {
       if (index == 1 && inst->op == Op::kFDiv) break;
       if (!same(graph_.source(*inst, index), choice.kept)) continue;
       choice.operand = graph_.source(*inst, 1 - index);
-      const Inst* negation = inst->op == Op::kFAdd ? scalar_of(graph_, choice.operand) : nullptr;
+      const Inst* negation = inst->op == Op::kFAdd ? open_operation(graph_, choice.operand) : nullptr;
       if (negation && negation->op == Op::kFNeg) {
         choice.operand = graph_.source(*negation, 0);
         choice.identity = kZero;
@@ -90,21 +93,11 @@ class Sharer {
     return false;
   }
 
-  Src add(InstId position, Op op, std::initializer_list<Src> operands) {
-    const InstId made = graph_.create(Kind::kAlu, op, 1, false, static_cast<std::uint32_t>(operands.size()));
-    std::uint32_t index = 0;
-    for (const Src& src : operands) graph_.set_source(made, index++, src);
-    graph_.insts[made].origin = graph_.insts[position].origin;
-    graph_.insert_before(position, made);
-    return {graph_.insts[made].result, {0, 0, 0, 0}};
-  }
-
   /// The operation with its identity, in place of what is kept. It is opaque: nothing takes it away.
   void compute(const Choice& choice) {
     const std::uint32_t bits = choice.identity == kZero ? kMinusZero : choice.identity;
-    const InstId literal = graph_.create_const(1, false, &bits);
-    graph_.insert_before(choice.end, literal);
-    const Src computed = add(choice.end, choice.op, {choice.kept, {graph_.insts[literal].result, {0, 0, 0, 0}}});
+    Builder build(graph_, choice.end);
+    const Src computed = build.alu(choice.op, {choice.kept, build.literal(bits)});
     graph_.insts[graph_.values[computed.value].def].opaque = true;
     replace_component(choice.end, choice.index, choice.component, computed);
   }
@@ -114,11 +107,9 @@ class Sharer {
     const Src src = graph_.source(graph_.insts[yield], index);
     const std::uint8_t components = graph_.values[src.value].components;
     if (components == 1) return graph_.set_source(yield, index, by);
-    const InstId vec = graph_.create(Kind::kVec, Op::kVec, components, false, components);
-    for (std::uint8_t i = 0; i < components; ++i) graph_.set_source(vec, i, i == c ? by : component_of(graph_, src, i));
-    graph_.insts[vec].origin = graph_.insts[yield].origin;
-    graph_.insert_before(yield, vec);
-    graph_.set_source(yield, index, {graph_.insts[vec].result, {0, 1, 2, 3}});
+    std::vector<Src> parts;
+    for (std::uint8_t i = 0; i < components; ++i) parts.push_back(i == c ? by : component_of(graph_, src, i));
+    graph_.set_source(yield, index, Builder(graph_, yield).vec(parts));
   }
 
   Graph& graph_;

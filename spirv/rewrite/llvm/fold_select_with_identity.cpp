@@ -6,6 +6,8 @@
 #include "base/float_mode.h"
 #include "base/numeric.h"
 #include "base/reference_cpu.h"
+#include "spirv/rewrite/graph/build.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/llvm/masked_store_select.h"
 #include "spirv/rewrite/llvm/operand_rank.h"
@@ -33,11 +35,9 @@ struct Selection {
   bool converts = false;   ///< bool to float: 1 and 0
 };
 
-/// The instruction of this op that defines `src` for one user.
+/// The operation of this op that makes what is read, for one user.
 const Inst* only_user_of(const Graph& graph, Src src, Op op) {
-  const Inst* inst = graph.def(src.value);
-  const bool fits = inst && inst->kind == Kind::kAlu && inst->op == op && inst->components == 1;
-  return fits && graph.values[src.value].uses == 1 ? inst : nullptr;
+  return is_used_once(graph, src) ? scalar_operation(graph, src, op) : nullptr;
 }
 
 /// Users of one component.
@@ -101,10 +101,9 @@ bool find_literals(const Graph& graph, Src src, Src& condition, std::uint32_t (&
     if (!select) return false;
     condition = graph.source(*select, 0);
     for (const std::uint32_t side : {1u, 2u}) {
-      const Src literal = graph.source(*select, side);
-      const Inst* constant = graph.constant(literal.value);
-      if (!constant) return false;
-      literals[side - 1] = constant->imm[literal.swizzle[0]];
+      const std::optional<std::uint32_t> literal = literal_of(graph, graph.source(*select, side));
+      if (!literal) return false;
+      literals[side - 1] = *literal;
     }
   }
   for (std::uint32_t& literal : literals)
@@ -117,26 +116,19 @@ bool fold_into_selection(Graph& graph, InstId id) {
   const Op op = graph.insts[id].op;
   if (op != Op::kFAdd && op != Op::kFMul) return false;
   for (const std::uint32_t index : {0u, 1u}) {
-    const Src src = graph.source(graph.insts[id], 1 - index);
-    const Inst* constant = graph.constant(src.value);
+    const std::optional<std::uint32_t> other = literal_of(graph, graph.source(graph.insts[id], 1 - index));
     Src condition;
     std::uint32_t literals[2];
-    if (!constant || !find_literals(graph, graph.source(graph.insts[id], index), condition, literals)) continue;
-    const std::uint32_t other = constant->imm[src.swizzle[0]];
-    const InstId made = graph.create(Kind::kAlu, Op::kSelect, 1, false, 3);
-    graph.insts[made].origin = graph.insts[id].origin;
-    graph.set_source(made, 0, condition);
-    for (const std::uint32_t side : {1u, 2u}) {
-      const std::uint32_t operands[3] = {literals[side - 1], other};
+    if (!other || !find_literals(graph, graph.source(graph.insts[id], index), condition, literals)) continue;
+    Builder build(graph, id);
+    Src sides[2];
+    for (const std::uint32_t side : {0u, 1u}) {
+      const std::uint32_t operands[3] = {literals[side], *other};
       std::uint32_t bits = 0;
       evaluate(op, operands, bits);
-      const InstId literal = graph.create_const(1, false, &bits);
-      graph.insert_before(id, literal);
-      graph.set_source(made, side, {graph.insts[literal].result, {0, 0, 0, 0}});
+      sides[side] = build.literal(bits);
     }
-    graph.insert_before(id, made);
-    graph.replace_uses(graph.insts[id].result, graph.insts[made].result);
-    graph.remove(id);
+    replace_inst(graph, id, build.alu(Op::kSelect, {condition, sides[0], sides[1]}).value);
     return true;
   }
   return false;
@@ -145,21 +137,15 @@ bool fold_into_selection(Graph& graph, InstId id) {
 /// The side of the selection that is not the identity.
 Src other_side(Graph& graph, InstId position, const Selection& selection) {
   if (!selection.converts) return selection.operand;
-  const std::uint32_t bits = selection.side == 1 ? 0 : kOne;
-  const InstId made = graph.create_const(1, false, &bits);
-  graph.insert_before(position, made);
-  return {graph.insts[made].result, {0, 0, 0, 0}};
+  return Builder(graph, position).literal(selection.side == 1 ? 0 : kOne);
 }
 
 /// The result of `id` becomes that of `id` on one side of the selection and `kept` on the other.
 void select_result(Graph& graph, InstId id, const Selection& selection, Src kept) {
-  const InstId made = graph.create(Kind::kAlu, Op::kSelect, 1, false, 3);
-  graph.insert_after(id, made);
-  graph.insts[made].origin = graph.insts[id].origin;
-  graph.replace_uses(graph.insts[id].result, graph.insts[made].result);
-  graph.set_source(made, 0, selection.condition);
-  graph.set_source(made, selection.side, kept);
-  graph.set_source(made, 3 - selection.side, {graph.insts[id].result, {0, 0, 0, 0}});
+  const Src result = result_of(graph, id);
+  const Src selected = Builder::behind(graph, id).alu(Op::kSelect, {selection.condition, kept, kept});
+  graph.replace_uses(result.value, selected.value);
+  graph.set_source(graph.values[selected.value].def, 3 - selection.side, result);
 }
 
 /// Added to what is negated, an operand is what the reference subtracts from, and zero is no identity of that.
@@ -187,20 +173,10 @@ bool find_zero(Graph& graph, Src src, Selection& found) {
   const Inst* power = only_user_of(graph, src, Op::kFPow);
   const Inst* selecting = power ? power : only_user_of(graph, src, Op::kFSign);
   if (!selecting) return false;
-  const Inst inst = *selecting;
-  const auto add = [&](Op op, bool boolean, std::initializer_list<Src> operands) {
-    const InstId made = graph.create(Kind::kAlu, op, 1, boolean, static_cast<std::uint32_t>(operands.size()));
-    graph.insts[made].origin = inst.origin;
-    std::uint32_t index = 0;
-    for (const Src& operand : operands) graph.set_source(made, index++, operand);
-    graph.insert_before(graph.values[inst.result].def, made);
-    return Src{graph.insts[made].result, {0, 0, 0, 0}};
-  };
-  const std::uint32_t zero = 0;
-  const InstId literal = graph.create_const(1, false, &zero);
-  graph.insert_before(graph.values[inst.result].def, literal);
-  const Src size = add(Op::kFAbs, false, {graph.source(inst, 0)});
-  const Src condition = add(Op::kFLt, true, {{graph.insts[literal].result, {0, 0, 0, 0}}, size});
+  const Src base = graph.source(*selecting, 0);
+  Builder build(graph, graph.values[selecting->result].def);
+  const Src zero = build.literal(0);
+  const Src condition = build.alu(Op::kFLt, {zero, build.alu(Op::kFAbs, {base})});
   found = {condition, 2, src, false};
   return true;
 }
@@ -235,9 +211,9 @@ void drop_undefined(Graph& graph, InstId id) {
     Src kept;
     for (const std::uint32_t side : {1u, 2u}) {
       if (!select) break;
-      const Src literal = graph.source(*select, side), other = graph.source(*select, 3 - side);
-      const Inst* constant = graph.constant(literal.value);
-      if (!constant || !is_undefined(graph.insts[id].op, constant->imm[literal.swizzle[0]])) continue;
+      const std::optional<std::uint32_t> literal = literal_of(graph, graph.source(*select, side));
+      const Src other = graph.source(*select, 3 - side);
+      if (!literal || !is_undefined(graph.insts[id].op, *literal)) continue;
       const Src condition = graph.source(*select, 0);
       if (!compares_floats(graph, condition) && converts_sides(graph, condition, other)) kept = other;
     }

@@ -5,6 +5,8 @@
 
 #include "base/float_mode.h"
 #include "base/numeric.h"
+#include "spirv/rewrite/graph/build.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/llvm/constant_range.h"
 #include "spirv/rewrite/llvm/passes.h"
@@ -37,8 +39,8 @@ class LateFolder {
   }
 
  private:
-  const Inst* constant(const Inst& inst, std::uint32_t index) const {
-    return graph_.constant(graph_.source(inst, index).value);
+  std::optional<std::uint32_t> literal(const Inst& inst, std::uint32_t index) const {
+    return literal_of(graph_, graph_.source(inst, index));
   }
 
   bool is(const Inst& inst, std::uint32_t index, std::uint32_t bits) const {
@@ -48,21 +50,21 @@ class LateFolder {
   /// A division by zero of signed numbers is 0, too, not that of unsigned ones.
   bool is_zero_quotient(const Inst& inst) const {
     if (inst.op == Op::kIDiv && is(inst, 0, 0)) return true;
-    const Inst* literal = constant(inst, 1);
-    if (!literal) return false;
-    const std::uint32_t bits = literal->imm[graph_.source(inst, 1).swizzle[0]];
-    const bool negative = inst.op == Op::kIDiv && (bits >> 31) != 0;
+    const std::optional<std::uint32_t> divisor = literal(inst, 1);
+    if (!divisor) return false;
+    const bool negative = inst.op == Op::kIDiv && (*divisor >> 31) != 0;
     const std::uint32_t largest = known_bits(graph_, graph_.source(inst, 0)).possible;
-    return largest < (negative ? 0u - bits : bits) && (inst.op == Op::kUDiv || largest < 0x80000000u);
+    return largest < (negative ? 0u - *divisor : *divisor) && (inst.op == Op::kUDiv || largest < 0x80000000u);
   }
 
   /// Bits of a signed quotient by zero, of which at most the sign is set.
   bool masks_quotient_by_zero(const Inst& inst) const {
     for (const std::uint32_t index : {0u, 1u}) {
-      const Inst* quotient = scalar_operation(graph_, graph_.source(inst, index));
-      const Inst* mask = constant(inst, 1 - index);
-      if (!quotient || quotient->op != Op::kIDiv || !is(*quotient, 1, 0) || !mask) continue;
-      if (mask->imm[graph_.source(inst, 1 - index).swizzle[0]] >> 31 == 0) return true;
+      const std::optional<std::uint32_t> mask = literal(inst, 1 - index);
+      Src dividend;
+      if (mask && *mask >> 31 == 0 &&
+          match(graph_, graph_.source(inst, index), m_op(Op::kIDiv, m_value(dividend), m_literal(0))))
+        return true;
     }
     return false;
   }
@@ -86,9 +88,9 @@ class LateFolder {
   /// The results of a branch on such a literal are those of one side; in loops the reference masks them all the same.
   void take_literals(InstId id) {
     const Inst branch = graph_.insts[id];
-    const Inst* literal = constant(branch, 0);
-    if (!literal || !is_late(branch, 0) || is_in_loop(branch)) return;
-    const BlockId side = branch.child[literal->imm[graph_.source(branch, 0).swizzle[0]] != 0 ? 0 : 1];
+    const std::optional<std::uint32_t> condition = literal(branch, 0);
+    if (!condition || !is_late(branch, 0) || is_in_loop(branch)) return;
+    const BlockId side = branch.child[*condition != 0 ? 0 : 1];
     if (!ends_in(graph_, side, Op::kYield)) return;
     const std::vector<ValueId> results = graph_.nodes[branch.node]->results;
     for (std::uint32_t i = 0; i < results.size(); ++i) {
@@ -96,10 +98,9 @@ class LateFolder {
       const Inst* value = graph_.constant(yielded.value);
       if (!value || graph_.values[results[i]].components != 1) continue;
       const std::uint32_t bits = value->imm[yielded.swizzle[0]];
-      const InstId made = graph_.create_const(1, value->boolean, &bits);
-      graph_.insert_after(id, made);
-      late_.insert(graph_.insts[made].result);
-      graph_.replace_uses(results[i], graph_.insts[made].result);
+      const Src made = Builder::behind(graph_, id).literal(1, value->boolean, &bits);
+      late_.insert(made.value);
+      graph_.replace_uses(results[i], made.value);
     }
   }
 
@@ -123,11 +124,9 @@ class LateFolder {
   }
 
   void become(InstId id, std::uint32_t bits) {
-    const InstId made = graph_.create_const(1, graph_.insts[id].boolean, &bits);
-    graph_.insert_before(id, made);
-    late_.insert(graph_.insts[made].result);
-    graph_.replace_uses(graph_.insts[id].result, graph_.insts[made].result);
-    graph_.remove(id);
+    const Src made = Builder(graph_, id).literal(1, graph_.insts[id].boolean, &bits);
+    late_.insert(made.value);
+    replace_inst(graph_, id, made.value);
   }
 
   /// Becomes operand `result` if the other one is the identity `bits`. True: the operation is gone.
@@ -139,23 +138,17 @@ class LateFolder {
   }
 
   void become_operand(InstId id, std::uint32_t index) {
-    const Inst inst = graph_.insts[id];
-    const InstId move = make_move(graph_, graph_.source(inst, index), inst.result);
-    graph_.insts[move].origin = inst.origin;
-    graph_.insert_before(id, move);
-    graph_.replace_uses(inst.result, graph_.insts[move].result);
-    graph_.remove(id);
+    const Inst& inst = graph_.insts[id];
+    replace_inst(graph_, id, Builder(graph_, id).move(graph_.source(inst, index), inst.result).value);
   }
 
   /// A selection by a literal is its operand. True: the operation is gone.
   bool take_selected(InstId id) {
     const Inst& inst = graph_.insts[id];
-    const Inst* literal = inst.op == Op::kSelect && is_late(inst, 0) ? constant(inst, 0) : nullptr;
-    if (!literal) return false;
-    const std::uint32_t index = literal->imm[graph_.source(inst, 0).swizzle[0]] != 0 ? 1 : 2;
-    const Inst* taken = constant(inst, index);
-    if (taken)
-      become(id, taken->imm[graph_.source(inst, index).swizzle[0]]);
+    if (inst.op != Op::kSelect || !is_late(inst, 0) || !literal(inst, 0)) return false;
+    const std::uint32_t index = *literal(inst, 0) != 0 ? 1 : 2;
+    if (const std::optional<std::uint32_t> taken = literal(inst, index))
+      become(id, *taken);
     else
       become_operand(id, index);
     return true;
@@ -166,7 +159,7 @@ class LateFolder {
     const Inst& inst = graph_.insts[id];
     if (inst.op == Op::kOrB) {
       const auto is_true = [&](std::uint32_t index) {
-        return is_late(inst, index) && constant(inst, index) && !is(inst, index, 0);
+        return is_late(inst, index) && literal(inst, index).value_or(0) != 0;
       };
       if (!is_true(0) && !is_true(1)) return false;
       become(id, 1);
@@ -223,9 +216,8 @@ class LateFolder {
   /// Operations on literals that the generator leaves to the optimiser: of NaN, of the roots of negative numbers and of
   /// numbers that are no integers it leaves them, too.
   bool folds_alone(const Inst& inst) const {
-    const Inst* literal = inst.count == 1 ? constant(inst, 0) : nullptr;
-    if (!literal) return false;
-    const float number = base::float_of(literal->imm[graph_.source(inst, 0).swizzle[0]]);
+    if (inst.count != 1 || !literal(inst, 0)) return false;
+    const float number = base::float_of(*literal(inst, 0));
     switch (inst.op) {
       case Op::kFSqrt:
       case Op::kFRsq:
@@ -247,11 +239,10 @@ class LateFolder {
 
   /// The logarithm of a literal power of two, of which the polynomial leaves the exponent. True: it is a literal now.
   bool log_of_power(InstId id) {
-    const Inst* literal = constant(graph_.insts[id], 0);
-    if (!literal) return false;
-    const std::uint32_t bits = literal->imm[graph_.source(graph_.insts[id], 0).swizzle[0]];
-    const std::uint32_t exponent = bits >> 23;
-    if ((bits & 0x7fffff) != 0 || exponent == 0 || exponent >= 255) return false;
+    const std::optional<std::uint32_t> bits = literal(graph_.insts[id], 0);
+    if (!bits) return false;
+    const std::uint32_t exponent = *bits >> 23;
+    if ((*bits & 0x7fffff) != 0 || exponent == 0 || exponent >= 255) return false;
     become(id, base::bits_of(static_cast<float>(static_cast<int>(exponent) - 127)));
     return true;
   }
@@ -286,9 +277,9 @@ class LateFolder {
     if (!folds(inst) && !folds_alone(inst)) return false;
     std::uint32_t operand[3] = {}, bits = 0;
     for (std::uint32_t i = 0; i < inst.count; ++i) {
-      const Inst* literal = constant(inst, i);
-      if (!literal) return false;
-      operand[i] = literal->imm[graph_.source(inst, i).swizzle[0]];
+      const std::optional<std::uint32_t> known = literal(inst, i);
+      if (!known) return false;
+      operand[i] = *known;
     }
     if (!evaluate(inst.op, operand, bits)) return false;
     become(id, bits);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "spirv/rewrite/graph/match.h"
+
 namespace vitrine::spirv::rewriting {
 namespace {
 
@@ -83,12 +85,6 @@ class Analysis {
   }
 
  private:
-  const std::uint32_t* literal(const Inst& inst, std::uint32_t index) const {
-    const Src src = graph_.source(inst, index);
-    const Inst* constant = graph_.constant(src.value);
-    return constant ? &constant->imm[src.swizzle[0]] : nullptr;
-  }
-
   /// The operand of an absolute value or a sign has none and is not zero: a bit is set, or it is the sum or the maximum
   /// of a literal and what has no sign.
   bool is_above_zero(const Inst& inst, unsigned depth) const {
@@ -117,7 +113,7 @@ class Analysis {
       case Op::kIAdd:
         return !has_sign(0) && !has_sign(1) && (one(0) || one(1));
       case Op::kShl: {
-        const std::uint32_t* shifted = literal(inst, 0);
+        const std::optional<std::uint32_t> shifted = literal_of(graph_, graph_.source(inst, 0));
         const std::uint32_t furthest = of(graph_.source(inst, 1), depth).possible & 31;
         return shifted && (*shifted & ~0u >> furthest) != 0;
       }
@@ -158,8 +154,7 @@ class Analysis {
         return is_above_zero(inst, depth) ? KnownBits{1, 1} : KnownBits{};
       case Op::kIAdd:
         for (const std::uint32_t index : {0u, 1u})  // the optimiser subtracts
-          if (const Inst* operand = scalar_operation(graph_, graph_.source(inst, index));
-              operand && operand->op == Op::kINeg)
+          if (const Inst* operand = scalar_operation(graph_, graph_.source(inst, index), Op::kINeg))
             return difference(source(1 - index), of(graph_.source(*operand, 0), depth + 1));
         return sum(source(0), source(1), 0);
       case Op::kISub:

@@ -19,12 +19,6 @@ struct KnownBits {
   static constexpr std::uint32_t kSign = 0x80000000;
 };
 
-/// The operation on scalars of 32 bits that makes what is read; null if something else does.
-inline const Inst* scalar_operation(const Graph& graph, Src src) {
-  const Inst* inst = graph.def(src.value);
-  return inst && inst->kind == Inst::Kind::kAlu && inst->components == 1 && inst->width == 32 ? inst : nullptr;
-}
-
 /// Of a + literal.
 KnownBits sum(KnownBits a, std::uint32_t literal);
 

@@ -1,6 +1,7 @@
 // Which branches the reference's optimiser sees as selections: it masks what each branch writes and joins both.
 #include "spirv/rewrite/llvm/masked_store_select.h"
 
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 
 namespace vitrine::spirv::rewriting {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 
 namespace vitrine::spirv::rewriting {
@@ -11,19 +12,17 @@ namespace {
 
 using Kind = Inst::Kind;
 
-bool is_alu(const Inst* inst, Op op) { return inst && inst->kind == Kind::kAlu && inst->op == op; }
-
 /// What the reference's optimiser does not move.
 bool has_place(const Inst& inst) {
   if (inst.kind == Kind::kIntrinsic || inst.kind == Kind::kLoop) return true;
-  return is_alu(&inst, Op::kFMin) || is_alu(&inst, Op::kFMax) || is_alu(&inst, Op::kFMinPlain) ||
-         is_alu(&inst, Op::kFMaxPlain);
+  return is_op(&inst, Op::kFMin) || is_op(&inst, Op::kFMax) || is_op(&inst, Op::kFMinPlain) ||
+         is_op(&inst, Op::kFMaxPlain);
 }
 
 /// About as many as the reference needs.
 std::uint32_t operations_of(const Inst& inst) {
-  if (inst.kind == Kind::kConst || inst.kind == Kind::kVec || is_alu(&inst, Op::kFNeg)) return 0;
-  if (inst.kind == Kind::kIf || is_alu(&inst, Op::kSelect)) return 3;
+  if (inst.kind == Kind::kConst || inst.kind == Kind::kVec || is_op(&inst, Op::kFNeg)) return 0;
+  if (inst.kind == Kind::kIf || is_op(&inst, Op::kSelect)) return 3;
   return inst.kind == Kind::kAlu && ir::alu_info(inst.op).result == 'B' ? 2 : 1;
 }
 
@@ -40,9 +39,9 @@ bool is_negated(const Graph& graph, const Inst& product) {
   const Value& value = graph.values[product.result];
   if (value.uses != 1) return false;
   const Inst& user = graph.insts[graph.sources[value.first_use].user];
-  if (!is_alu(&user, Op::kFNeg)) return false;
+  if (!is_op(&user, Op::kFNeg)) return false;
   const Value& negated = graph.values[user.result];
-  return negated.uses != 1 || !is_alu(&graph.insts[graph.sources[negated.first_use].user], Op::kFAdd);
+  return negated.uses != 1 || !is_op(&graph.insts[graph.sources[negated.first_use].user], Op::kFAdd);
 }
 
 }  // namespace

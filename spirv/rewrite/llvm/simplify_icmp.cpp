@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "spirv/rewrite/graph/tree.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/llvm/constant_range.h"
 
 namespace vitrine::spirv::rewriting {
@@ -46,10 +46,7 @@ class Analysis {
   }
 
   const Inst* operation(Src src) const { return scalar_operation(graph_, src); }
-  bool is_operation(Src src, Op op) const {
-    const Inst* inst = operation(src);
-    return inst && inst->op == op;
-  }
+  bool is_operation(Src src, Op op) const { return scalar_operation(graph_, src, op) != nullptr; }
   Src source(const Inst& inst, std::uint32_t index) const { return graph_.source(inst, index); }
   ConstantRange bits(Src src) const { return range_of_bits(graph_, src); }
   bool is_positive(Src src) const { return bits(src).least_signed >= 0; }

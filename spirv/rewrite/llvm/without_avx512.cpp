@@ -1,6 +1,7 @@
 // What the reference's code computes otherwise on a CPU without AVX-512 (deviations.md: float-to-uint, double-rounding)
 // (lavapipe-optimizer.md 7.11).
 #include "base/reference_cpu.h"
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/llvm/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -26,8 +27,7 @@ class Converter {
     else if (inst.kind == Kind::kIntrinsic)
       made = wide(inst.op);
     if (made.value == ir::kNoValue) return;
-    graph_.replace_uses(inst.result, made.value);
-    graph_.remove(id);
+    replace_inst(graph_, id, made.value);
   }
 
  private:
@@ -108,25 +108,11 @@ class Converter {
   }
   static std::vector<Src> words(Src pair) { return {component(pair, 0), component(pair, 1)}; }
 
-  Src literal(std::uint32_t bits) {
-    const InstId made = graph_.create_const(1, false, &bits);
-    graph_.insert_before(id_, made);
-    return {graph_.insts[made].result, {0, 0, 0, 0}};
-  }
-  Src create(Kind kind, Op op, std::size_t components, bool boolean, const std::vector<Src>& sources) {
-    const InstId made = graph_.create(kind, op, static_cast<std::uint8_t>(components), boolean,
-                                      static_cast<std::uint32_t>(sources.size()));
-    graph_.insts[made].origin = graph_.insts[id_].origin;
-    for (std::uint32_t i = 0; i < sources.size(); ++i) graph_.set_source(made, i, sources[i]);
-    graph_.insert_before(id_, made);
-    return {graph_.insts[made].result, {0, 1, 2, 3}};
-  }
-  Src alu(Op op, const std::vector<Src>& sources) { return component(create(Kind::kAlu, op, 1, false, sources), 0); }
-  Src vec(const std::vector<Src>& sources) { return create(Kind::kVec, Op::kVec, sources.size(), false, sources); }
-  Src apply(Op op, const std::vector<Src>& sources) {
-    const bool boolean = ir::wide_info(op).result == 'B';
-    return create(Kind::kIntrinsic, op, boolean ? 1 : 2, boolean, sources);
-  }
+  Builder build() { return {graph_, id_}; }
+  Src literal(std::uint32_t bits) { return build().literal(bits); }
+  Src alu(Op op, std::initializer_list<Src> operands) { return build().alu(op, operands); }
+  Src apply(Op op, const std::vector<Src>& operands) { return build().wide(op, operands); }
+  Src vec(const std::vector<Src>& components) { return build().vec(components); }
 
   Graph& graph_;
   InstId id_ = kNone;

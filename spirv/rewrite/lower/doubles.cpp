@@ -1,6 +1,8 @@
 // Doubles as the reference sees them, which has one value where the front end has two words: pairs of the same words
 // are one value, and selections of both words are one selection. Neither changes a number; how often values are used
 // decides whether inexact rules apply to them (lavapipe-optimizer.md 4.8).
+#include "spirv/rewrite/graph/build.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/merge_equal.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/lower/passes.h"
@@ -71,11 +73,10 @@ class Joiner {
     const InstId made = graph_.create(Kind::kAlu, Op::kSelect, 2, false, 3);
     graph_.insts[made].width = 64;
     graph_.insts[made].exact = graph_.insts[like].exact;
-    graph_.insts[made].origin = graph_.insts[like].origin;
     graph_.set_source(made, 0, scalar(graph_.source(graph_.insts[like], 0)));
     graph_.set_source(made, 1, yes);
     graph_.set_source(made, 2, no);
-    graph_.insert_before(position, made);
+    Builder(graph_, position).place(made);
     changed_ = true;
     return graph_.insts[made].result;
   }
@@ -163,18 +164,11 @@ class Joiner {
     if (first.value == second.value && first.swizzle[0] == 0 && second.swizzle[0] == 1 &&
         graph_.values[first.value].components == 2)
       return double_of(first.value);
-    const Inst *one = graph_.constant(first.value), *two = graph_.constant(second.value);
-    InstId made = kNone;
-    if (one && two) {
-      const std::uint32_t words[2] = {one->imm[first.swizzle[0]], two->imm[second.swizzle[0]]};
-      made = graph_.create_const(2, false, words);
-    } else {
-      made = graph_.create(Kind::kVec, Op::kVec, 2, false, 2);
-      graph_.set_source(made, 0, first);
-      graph_.set_source(made, 1, second);
-    }
-    graph_.insert_before(position, made);
-    return double_of(graph_.insts[made].result);
+    const std::optional<std::uint32_t> one = literal_of(graph_, first), two = literal_of(graph_, second);
+    Builder build(graph_, position);
+    if (!one || !two) return double_of(build.vec({first, second}).value);
+    const std::uint32_t words[2] = {*one, *two};
+    return double_of(build.literal(2, false, words).value);
   }
 
   void read_word(ValueId word, ValueId whole, std::uint8_t component) {

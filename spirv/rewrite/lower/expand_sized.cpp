@@ -3,6 +3,7 @@
 //
 // binary16 is computed in binary32 and rounded after every operation, which gives the bits of the operation in binary16
 // (24 >= 2 * 11 + 2). A double is two words for wide_ops.def.
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/lower/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -74,8 +75,7 @@ class Expander {
     components_ = graph_.insts[id].components;
     const Op op = graph_.insts[id].op;
     const Src made = graph_.insts[id].width == 64 ? wide(op) : half(op);
-    graph_.replace_uses(graph_.insts[id].result, made.value);
-    graph_.remove(id);
+    replace_inst(graph_, id, made.value);
     changed_ = true;
   }
 
@@ -84,29 +84,9 @@ class Expander {
  private:
   Src operand(std::uint32_t index) const { return graph_.source(graph_.insts[id_], index); }
 
-  Src place(InstId made) {
-    graph_.insts[made].origin = graph_.insts[id_].origin;
-    graph_.insert_before(id_, made);
-    return {graph_.insts[made].result, {0, 1, 2, 3}};
-  }
-
-  Src create(Kind kind, Op op, unsigned components, bool boolean, std::initializer_list<Src> operands) {
-    const InstId made = graph_.create(kind, op, static_cast<std::uint8_t>(components), boolean,
-                                      static_cast<std::uint32_t>(operands.size()));
-    std::uint32_t index = 0;
-    for (const Src& src : operands) graph_.set_source(made, index++, src);
-    return place(made);
-  }
-
-  Src alu(Op op, std::initializer_list<Src> operands) {
-    return create(Kind::kAlu, op, components_, ir::alu_info(op).result == 'B', operands);
-  }
-
-  Src literal(std::uint32_t bits) {
-    const InstId made = graph_.create_const(1, false, &bits);
-    place(made);
-    return splat(graph_.insts[made].result, 0);
-  }
+  Builder build() { return {graph_, id_}; }
+  Src literal(std::uint32_t bits) { return build().literal(bits); }
+  Src alu(Op op, std::initializer_list<Src> operands) { return build().alu(op, operands, components_); }
 
   // ---- binary16
 
@@ -133,12 +113,9 @@ class Expander {
 
   Src half_function(Op op, Src a) {
     const Src argument = single(a);
-    const InstId vec = graph_.create(Kind::kVec, Op::kVec, static_cast<std::uint8_t>(components_), false, components_);
-    for (std::uint8_t c = 0; c < components_; ++c) {
-      const Src part = create(Kind::kIntrinsic, op, 1, false, {splat(argument.value, c)});
-      graph_.set_source(vec, c, splat(part.value, 0));
-    }
-    return rounded(place(vec));
+    std::vector<Src> parts;
+    for (std::uint8_t c = 0; c < components_; ++c) parts.push_back(build().wide(op, {splat(argument.value, c)}));
+    return rounded(build().vec(parts));
   }
 
   Src half_power(Src a, Src b) {
@@ -180,18 +157,11 @@ class Expander {
   // ---- doubles
 
   Src word(Src value, std::size_t index) const { return splat(value.value, value.swizzle[index]); }
-  Src pair(Src low, Src high) { return create(Kind::kVec, Op::kVec, 2, false, {low, high}); }
-  Src scalar(Op op, std::initializer_list<Src> operands) {
-    return splat(create(Kind::kAlu, op, 1, ir::alu_info(op).result == 'B', operands).value, 0);
-  }
+  Src pair(Src low, Src high) { return build().vec({low, high}); }
+  Src scalar(Op op, std::initializer_list<Src> operands) { return build().alu(op, operands); }
 
-  Src apply(Op op, Src a) { return create(Kind::kIntrinsic, op, 2, false, {word(a, 0), word(a, 1)}); }
-  Src apply(Op op, Src a, Src b) {
-    const bool boolean = ir::wide_info(op).result == 'B';
-    const Src made =
-        create(Kind::kIntrinsic, op, boolean ? 1 : 2, boolean, {word(a, 0), word(a, 1), word(b, 0), word(b, 1)});
-    return boolean ? splat(made.value, 0) : made;
-  }
+  Src apply(Op op, Src a) { return build().wide(op, {word(a, 0), word(a, 1)}); }
+  Src apply(Op op, Src a, Src b) { return build().wide(op, {word(a, 0), word(a, 1), word(b, 0), word(b, 1)}); }
 
   Src negated(Src a) { return pair(word(a, 0), scalar(Op::kXor, {word(a, 1), literal(0x80000000)})); }
   Src one() { return pair(literal(0), literal(0x3ff00000)); }

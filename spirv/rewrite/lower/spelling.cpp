@@ -2,7 +2,8 @@
 // (lavapipe-optimizer.md 8.2).
 #include <bit>
 
-#include "spirv/rewrite/graph/tree.h"
+#include "spirv/rewrite/graph/build.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/lower/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -34,74 +35,44 @@ void subtract(Graph& graph, InstId id, Op negate, Op subtraction) {
   }
 }
 
-const Inst* scalar(const Graph& graph, Src src, Op op) {
-  const Inst* inst = graph.def(src.value);
-  return inst && inst->kind == Kind::kAlu && inst->op == op && inst->components == 1 ? inst : nullptr;
-}
-
-/// What is added to or taken from, if the other operand of the addition or subtraction is this literal.
-Src beside_literal(const Graph& graph, Src sum, Op op, unsigned index, std::uint32_t bits) {
-  const Inst* inst = scalar(graph, sum, op);
-  return inst && is_literal(graph, graph.source(*inst, index), bits) ? graph.source(*inst, 1 - index) : Src{};
-}
-
 void extract(Graph& graph, InstId id, Op op, Src word, Src offset, Src bits) {
-  const InstId made = graph.create(Kind::kAlu, op, 1, false, 3);
-  graph.insts[made].origin = graph.insts[id].origin;
-  graph.set_source(made, 0, word);
-  graph.set_source(made, 1, offset);
-  graph.set_source(made, 2, bits);
-  graph.insert_before(id, made);
-  graph.replace_uses(graph.insts[id].result, graph.insts[made].result);
-  graph.remove(id);
-}
-
-Src new_literal(Graph& graph, InstId position, std::uint32_t bits) {
-  const InstId made = graph.create_const(1, false, &bits);
-  graph.insert_before(position, made);
-  return {graph.insts[made].result, {0, 0, 0, 0}};
+  replace_inst(graph, id, Builder(graph, id).alu(op, {word, offset, bits}).value);
 }
 
 /// The number of bits c where `mask` is c == 32 ? ~0 : (1 << c) + -1.
 Src bits_of_mask(const Graph& graph, Src mask) {
-  const Inst* select = scalar(graph, mask, Op::kSelect);
-  if (!select || !is_literal(graph, graph.source(*select, 1), ~0u)) return {};
-  const Src whole = beside_literal(graph, graph.source(*select, 0), Op::kIEq, 1, 32);
-  const Src power = beside_literal(graph, graph.source(*select, 2), Op::kIAdd, 1, ~0u);
-  if (whole.value == ir::kNoValue || power.value == ir::kNoValue) return {};
-  const Src bits = beside_literal(graph, power, Op::kShl, 0, 1);
-  return bits.value == whole.value && bits.swizzle[0] == whole.swizzle[0] ? bits : Src{};
+  Src bits;
+  const auto is_whole = m_op(Op::kIEq, m_value(bits), m_literal(32));
+  const auto power = m_op(Op::kShl, m_literal(1), m_same(bits));
+  return match(graph, mask, m_op(Op::kSelect, is_whole, m_literal(~0u), m_op(Op::kIAdd, power, m_literal(~0u))))
+             ? bits
+             : Src{};
 }
 
 /// (a >> b) & mask.
 void extract_unsigned(Graph& graph, InstId id) {
   for (const std::uint32_t index : {0u, 1u}) {
-    const Inst* shift = scalar(graph, graph.source(graph.insts[id], index), Op::kUShr);
-    if (!shift || graph.values[shift->result].uses != 1) continue;
-    const Src word = graph.source(*shift, 0), offset = graph.source(*shift, 1);
-    const Src mask = graph.source(graph.insts[id], 1 - index);
+    Src word, offset;
+    const Src shift = graph.source(graph.insts[id], index), mask = graph.source(graph.insts[id], 1 - index);
+    if (!match(graph, shift, m_once(m_op(Op::kUShr, m_value(word), m_value(offset))))) continue;
     Src bits = bits_of_mask(graph, mask);
-    if (const Inst* literal = graph.constant(mask.value)) {
-      const std::uint32_t ones = literal->imm[mask.swizzle[0]];
-      if (ones != 0 && ones != ~0u && (ones & (ones + 1)) == 0)
-        bits = new_literal(graph, id, static_cast<std::uint32_t>(std::popcount(ones)));
-    }
+    if (const std::optional<std::uint32_t> ones = literal_of(graph, mask))
+      if (*ones != 0 && *ones != ~0u && (*ones & (*ones + 1)) == 0)
+        bits = Builder(graph, id).literal(static_cast<std::uint32_t>(std::popcount(*ones)));
     if (bits.value != ir::kNoValue) return extract(graph, id, Op::kBfeU, word, offset, bits);
   }
 }
 
 /// bits == 0 ? 0 : (a << 32 - bits - offset) >> 32 - bits.
 void extract_signed(Graph& graph, InstId id) {
+  Src bits, word, offset, rest, left;
+  const auto is_empty = m_op(Op::kIEq, m_literal(0), m_value(bits));
+  const auto shifted = m_op(Op::kShl, m_value(word), m_op(Op::kISub, m_value(rest), m_value(offset)));
   const Inst& select = graph.insts[id];
-  const Inst* right = scalar(graph, graph.source(select, 2), Op::kIShr);
-  if (!right || !is_literal(graph, graph.source(select, 1), 0)) return;
-  const Inst* left = scalar(graph, graph.source(*right, 0), Op::kShl);
-  const Inst* rest = left ? scalar(graph, graph.source(*left, 1), Op::kISub) : nullptr;
-  if (!rest || graph.source(*rest, 0).value != graph.source(*right, 1).value) return;
-  const Src bits = beside_literal(graph, graph.source(*right, 1), Op::kISub, 0, 32);
-  const Src none = beside_literal(graph, graph.source(select, 0), Op::kIEq, 0, 0);
-  if (bits.value == ir::kNoValue || bits.value != none.value || bits.swizzle[0] != none.swizzle[0]) return;
-  extract(graph, id, Op::kBfeI, graph.source(*left, 0), graph.source(*rest, 1), bits);
+  const bool found = match(graph, graph.source(select, 0), is_empty) && is_literal(graph, graph.source(select, 1), 0) &&
+                     match(graph, graph.source(select, 2), m_op(Op::kIShr, shifted, m_value(left))) &&
+                     rest.value == left.value && match(graph, left, m_op(Op::kISub, m_literal(32), m_same(bits)));
+  if (found) extract(graph, id, Op::kBfeI, word, offset, bits);
 }
 
 }  // namespace

@@ -7,20 +7,15 @@
 #include "base/numeric.h"
 #include "spirv/mix.h"
 #include "spirv/rewrite/graph/literals.h"
-#include "spirv/rewrite/graph/tree.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/nir/constant_expressions_float.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
 
-const Inst* scalar_of(const Graph& graph, Src src, Op op) {
-  const Inst* inst = graph.def(src.value);
-  return inst && inst->kind == Inst::Kind::kAlu && inst->op == op && inst->components == 1 ? inst : nullptr;
-}
-
 /// What the shift of this op by `count` shifts; none: it is something else.
 Src shifted(const Graph& graph, Src src, Op op, std::uint32_t count) {
-  const Inst* shift = scalar_of(graph, src, op);
+  const Inst* shift = scalar_operation(graph, src, op);
   return shift && is_literal(graph, graph.source(*shift, 1), count) ? graph.source(*shift, 0) : Src{};
 }
 
@@ -32,7 +27,7 @@ bool is_extended(const Graph& graph, Src src, std::uint32_t count, unsigned dept
     return number >= least && number < -least;
   }
   for (const Op op : {Op::kIMin, Op::kIMax})
-    if (const Inst* inst = scalar_of(graph, src, op))
+    if (const Inst* inst = scalar_operation(graph, src, op))
       return depth > 0 && is_extended(graph, graph.source(*inst, 0), count, depth - 1) &&
              is_extended(graph, graph.source(*inst, 1), count, depth - 1);
   const Src low = shifted(graph, src, Op::kIShr, count);
@@ -47,7 +42,7 @@ Src extended_before(const Graph& graph, const Inst& inst) {
     const Src low = shifted(graph, {inst.result, {0, 0, 0, 0}}, Op::kIShr, count);
     Src number = low.value == ir::kNoValue ? low : shifted(graph, low, Op::kShl, count);
     if (number.value == ir::kNoValue) continue;
-    if (const Inst* mask = scalar_of(graph, number, Op::kAnd);
+    if (const Inst* mask = scalar_operation(graph, number, Op::kAnd);
         mask && is_literal(graph, graph.source(*mask, 1), 0xffffffffu >> count))
       number = graph.source(*mask, 0);
     if (!graph.constant(number.value) && is_extended(graph, number, count)) return number;

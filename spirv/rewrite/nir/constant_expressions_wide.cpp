@@ -2,7 +2,7 @@
 // (lavapipe-optimizer.md 4.7).
 #include "spirv/rewrite/nir/constant_expressions.h"
 
-#include "spirv/rewrite/graph/tree.h"
+#include "spirv/rewrite/graph/match.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {

@@ -1,4 +1,5 @@
 // Small branches become unconditional code and selections (nir_opt_peephole_select.c; lavapipe-optimizer.md 5.1, 5.2).
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/algebraic/composed.h"
 #include "spirv/rewrite/nir/passes.h"
