@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 # design.md section 2: a room may include itself and what stands to its right.
 ORDER = ["icd", "raster", "spirv", "texel", "base"]
 FREE = ["tests", "cts-subset"]
-DATA = ["manifest"]
+DATA = ["manifest", "docs"]
 SHADER_HEADERS = ["shader.h", "shader_cost.h", "stage_memory.h", "resources.h"]  # what raster sees of spirv
 LONG_FILE = 350
 REGISTRIES = ["/usr/share/vulkan/registry/vk.xml", "/usr/local/share/vulkan/registry/vk.xml"]
