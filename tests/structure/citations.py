@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that every citation leads somewhere: documents, their sections and steps, rows of deviations.md, paths and names
-of files in comments, in the effects of the .def tables and in documents; links and section numbers in documents. What is
-a citation is written in docs/conventions.md section 6.
+of files and functions in comments, in the effects of the .def tables and in documents; links and section numbers in
+documents. What is a citation is written in docs/conventions.md section 6.
 
 usage: citations.py SOURCE_FOLDER
 Exit status 1 and one line per fault.
@@ -41,6 +41,7 @@ HEADING = re.compile(r"^#+ +(?:Part )?((?:[A-G]?\d+(?:\.\d+)*|[A-G])(?=[.: ])\.?
 PATH = re.compile(r"(?<![\w/.<@$\"+*-])((?:[\w.*{},-]+/)+[\w.*{},-]*)")
 NAME = re.compile(r"(?<![\w/.<*$\"`:-])([a-z][\w-]*\.(?:h|cpp|def|py|txt))\b")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
+FUNCTION = re.compile(r"(?<![\w.:>])([a-z][a-z0-9]*(?:_[a-z0-9]+)*)\(\)")
 SETTING = re.compile(r"\bVITRINE_[A-Z_]+\b")
 C_TOKEN = re.compile(r'R"([^(\s]*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'|//[^\n]*|/\*.*?\*/', re.DOTALL)
 
@@ -170,6 +171,7 @@ class Tree:
         code = "".join(p.read_text(errors="replace") for p in self.files if p.suffix != ".md")
         self.cases = set(re.findall(r'"(deviation\.[a-z0-9_]+)', code))
         self.settings = set(SETTING.findall(code))
+        self.words = set(re.findall(r"\b[a-z]\w*", re.sub(r"//[^\n]*", "", code)))
 
     def document(self, name, where):
         """Its place, or None: as a path, in docs/, or the only one of that name."""
@@ -214,7 +216,7 @@ class Reader:
         self.named = where if where in tree.documents and tree.documents[where].sections else None
 
     def faults(self, text):
-        found = [*self.documents(text), *self.rows(text), *self.paths(text)]
+        found = [*self.documents(text), *self.rows(text), *self.paths(text), *self.functions(text)]
         if text.kind == "document":
             found += [*self.links(text), *self.within(text), *self.cases(text), *self.settings(text)]
         return [(text.line(position), fault) for position, fault in sorted(found)]
@@ -269,6 +271,11 @@ class Reader:
         for match in SETTING.finditer(text.text):
             if match.group() not in self.tree.settings and match.group() not in PLANNED.get(self.where, ()):
                 yield match.start(), f"nothing reads {match.group()}"
+
+    def functions(self, text):
+        for match in FUNCTION.finditer(text.text):
+            if match.group(1) not in self.tree.words:
+                yield match.start(), f"there is no {match.group()}"
 
     def within(self, text):
         """Sections of the document itself."""

@@ -107,6 +107,10 @@ class Citations(unittest.TestCase):
         self.assertEqual(self.faults(page), [])
         self.check("# Page\n`VITRINE_LOGS`\n", "nothing reads VITRINE_LOGS", place="docs/page.md")
 
+    def test_functions(self):
+        files = {"base/a.h": "// A. See fill_all(), or std::sort() and GLSL's dFdx().\nvoid fill_all();  // not empty_all()\n"}
+        self.assertEqual(self.faults(files), ["there is no empty_all()"])
+
     def test_lines(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "base/a.h"

@@ -53,7 +53,7 @@ class NearTexels {
   HWY_INLINE void add_first(std::size_t vector, VI x, VI y) { first_[vector] = halves(x, y); }
   HWY_INLINE void add_second(std::size_t vector, VI x, VI y) { second_[vector] = halves(x, y); }
 
-  /// After all vectors were added: whether load() may be called; without `kPairs` only load_first().
+  /// After all vectors were added: whether load() may be called; without `kPairs` only load_firsts().
   template <bool kPairs>
   HWY_INLINE bool find(const SquareLevel& level) {
     __m512i low[kVectors], high[kVectors];
