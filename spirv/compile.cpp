@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "spirv/capabilities.h"
+#include "spirv/exec/trace.h"
 #include "spirv/front/translate.h"
 #include "spirv/ir_passes.h"
 #include "spirv/lower/lower.h"
@@ -276,7 +277,7 @@ base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> wor
   if (!function) return function.error();
   rewrite(function.value());
   ir::make_joins_whole(function.value());
-  return lower(function.take());
+  return lower(function.take(), options.observer ? options.observer : exec::requested_tracer(options.stage));
 }
 
 }  // namespace vitrine::spirv

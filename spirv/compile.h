@@ -15,6 +15,10 @@
 
 namespace vitrine::spirv {
 
+namespace exec {
+class Observer;
+}
+
 /// Where the descriptors of one binding lie in the ResourceTable.
 struct BindingInfo {
   std::uint32_t binding = 0;
@@ -43,6 +47,8 @@ struct CompileOptions {
   std::uint32_t live_color_outputs = 0xff;
   std::uint32_t subgroup_size = 64;  ///< invocations: 8, 16, 32 or 64; a wave holds one subgroup or several
   bool validate = true;              ///< run SPIRV-Tools' validator (false only where the same words passed before)
+  /// Whom the program tells what it does (spirv/exec/observe.h). Null: whom VITRINE_TRACE asks for, mostly nobody.
+  std::shared_ptr<const exec::Observer> observer;
 };
 
 /// Validates, specialises, optimises structurally, applies the reference's rewrites, analyses and lowers.

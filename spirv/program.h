@@ -25,6 +25,9 @@ namespace vitrine::spirv {
 
 struct Wave;
 struct Instruction;
+namespace exec {
+struct Observation;  // spirv/exec/observe.h
+}
 
 /// Executes one instruction for a wave and returns the next one to run; null ends or suspends the wave (Wave::status).
 using Handler = const Instruction* (*)(Wave& wave, const Instruction* instruction);
@@ -114,13 +117,17 @@ struct ImageOp {
   std::array<std::uint32_t, 4> result{kNoOperand, kNoOperand, kNoOperand, kNoOperand};
 };
 
-/// What instruction i is, for the disassembler, faults and the debugger: kept beside the code, not in it.
+/// What instruction i is, for the disassembler, faults, the trace and the debugger: kept beside the code, not in it.
 struct InstructionNote {
   const char* name = "";
   char files[4] = {' ', ' ', ' ', ' '};  ///< of dst, src[0..2]: r varying, u uniform, m mask, ' ' none
   ir::Origin origin;
   /// What extra[0] is: a jump distance, a row of a side table.
   enum class Extra : std::uint8_t { kNone, kJump, kMemory, kImage } extra = Extra::kNone;
+  char fourth = ' ';   ///< file of extra[0], a fourth source
+  char high = ' ';     ///< file of extra[1], the high word of the result
+  char data = 'r';     ///< file of MemoryOp::data
+  bool loads = false;  ///< MemoryOp::data are results
 };
 
 /// A word of the uniform file that bind() copies once into a mask (0 / ~0) or a whole register that no instruction
@@ -157,10 +164,15 @@ struct Program {
   std::uint32_t local_size[3] = {1, 1, 1};
   std::uint32_t shared_bytes = 0;
   std::uint32_t groups_per_wave = 1;  ///< compute: small workgroups, adjacent in x, that share a wave
+  std::shared_ptr<const exec::Observation> observation;  ///< null: nobody looks
 };
 
 /// Runs from `start` until the wave ends, stops at a barrier or faults (Wave::status).
 void execute(Wave& wave, const Instruction* start);
+
+/// The loop that runs the waves of `program`: execute(), or one that watches. Asked once per draw or dispatch.
+using Loop = void (*)(Wave& wave, const Instruction* start);
+Loop loop_of(const Program& program);
 
 /// Text form: one instruction per line with its registers, jump targets and source lines.
 std::string disassemble(const Program& program);

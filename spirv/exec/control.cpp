@@ -3,13 +3,18 @@
 #include <functional>
 
 #include "spirv/exec/handlers.h"
+#include "spirv/exec/observe.h"
 #include "spirv/exec/operands.h"
 #include "spirv/exec/profile.h"
 
 namespace vitrine::spirv {
 
+Loop loop_of(const Program& program) {
+  if (program.observation) return exec::execute_observed;
+  return exec::profile_enabled() ? exec::execute_profiled : execute;
+}
+
 void execute(Wave& wave, const Instruction* start) {
-  if (exec::profile_enabled()) return exec::execute_profiled(wave, start);
   wave.status = Wave::Status::kRunning;
   for (const Instruction* next = start; next != nullptr;) next = next->handler(wave, next);
 }

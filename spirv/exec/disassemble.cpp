@@ -29,8 +29,7 @@ std::string operands(char file, const std::array<std::uint32_t, 4>& offsets) {
 
 /// Words loaded or stored, and where: descriptor and constant offset.
 std::string memory(const MemoryOp& row, const InstructionNote& note) {
-  const bool words = note.files[1] == 'u' && std::string_view(note.name).starts_with("load");
-  std::string text = " (" + operands(words ? 'u' : 'r', row.data) + " )";
+  std::string text = " (" + operands(note.data, row.data) + " )";
   text += " set " + std::to_string(row.set) + " slot " + std::to_string(row.slot);
   if (row.added != 0) text += " +" + std::to_string(static_cast<std::int32_t>(row.added));
   return text;

@@ -25,6 +25,7 @@ constexpr std::uint64_t kItemWork = 4000;
 struct Launch {
   const BoundShader& shader;
   const Program& program;
+  const Loop loop;
   const std::uint32_t* base;
   const std::uint32_t* groups;
   std::uint64_t invocations = 0;              ///< of a workgroup
@@ -69,7 +70,7 @@ void start(Wave& wave, const Launch& launch, std::uint32_t index, const std::uin
 
 /// Runs a wave to its end or next barrier. False after a fault.
 bool run(Wave& wave, const Launch& launch) {
-  execute(wave, wave.resume);
+  launch.loop(wave, wave.resume);
   if (wave.status != Wave::Status::kFault) return true;
   exec::raise_fault(launch.shader.fault(), wave);
   return false;
@@ -128,7 +129,8 @@ void run_range(const Launch& launch, std::uint64_t first, std::uint64_t last) {
 }  // namespace
 
 void dispatch(const BoundShader& shader, const std::uint32_t base[3], const std::uint32_t groups[3]) {
-  Launch launch{shader, shader.shader().program(), base, groups};
+  const Program& program = shader.shader().program();
+  Launch launch{shader, program, loop_of(program), base, groups};
   const std::uint32_t per_wave = launch.program.groups_per_wave;
   launch.columns = groups[0] / per_wave + (groups[0] % per_wave != 0 ? 1 : 0);
   const std::uint64_t total = std::uint64_t{launch.columns} * groups[1] * groups[2];

@@ -39,7 +39,7 @@ BoundShader::BoundShader(const Shader& shader, const ResourceTable& resources, F
   wave.resources = &resources_;
   wave.program = &program;
   wave.active = wave.live = wave.launched = 1;
-  execute(wave, program.preamble.data());
+  (exec::profile_enabled() ? exec::execute_profiled : execute)(wave, program.preamble.data());
 }
 
 BoundShader::~BoundShader() {
@@ -56,6 +56,7 @@ struct WaveRunner::State {
   exec::WaveMemory memory;
   Wave wave;
   const BoundShader* shader = nullptr;
+  Loop loop = execute;
 };
 
 WaveRunner::WaveRunner() : state_(std::make_unique<State>()) {}
@@ -63,6 +64,7 @@ WaveRunner::~WaveRunner() = default;
 
 void WaveRunner::bind(const BoundShader& shader) {
   state_->shader = &shader;
+  state_->loop = loop_of(shader.shader().program());
   state_->memory.bind(shader, state_->wave);
 }
 
@@ -81,8 +83,9 @@ const base::WaveRegister& WaveRunner::output(std::uint32_t reg) const {
 
 bool WaveRunner::is_constant(std::uint32_t reg) const {
   const Program& program = state_->shader->shader().program();
-  return program.code.size() <= 1 && std::any_of(program.register_presets.begin(), program.register_presets.end(),
-                                                 [&](const Preset& p) { return p.to == reg * kRegisterStride; });
+  if (program.code.size() > 1 || program.observation) return false;
+  return std::any_of(program.register_presets.begin(), program.register_presets.end(),
+                     [&](const Preset& p) { return p.to == reg * kRegisterStride; });
 }
 
 base::LaneMask WaveRunner::run(base::LaneMask active, base::LaneMask helpers) {
@@ -92,7 +95,7 @@ base::LaneMask WaveRunner::run(base::LaneMask active, base::LaneMask helpers) {
   wave.live = active & ~helpers;
   wave.budget = exec::shader_budget();
   if (!wave.program->cleared.empty()) exec::clear_undefined(*wave.program, wave);
-  execute(wave, wave.program->code.data());
+  state_->loop(wave, wave.program->code.data());
   if (wave.status == Wave::Status::kFault) exec::raise_fault(state_->shader->fault(), wave);
   return wave.live;
 }

@@ -82,10 +82,12 @@ MemoryOp Emitter::buffer_row(const ScalarOp& op, bool indexed) {
   return row;
 }
 
-void Emitter::attach(const MemoryOp& row) {
+void Emitter::attach(const MemoryOp& row, char data, bool loads) {
   (in_preamble ? program->preamble : program->code).back().extra[0] =
       static_cast<std::uint32_t>(program->memory_ops.size());
-  (in_preamble ? program->preamble_notes : program->notes).back().extra = InstructionNote::Extra::kMemory;
+  note().extra = InstructionNote::Extra::kMemory;
+  note().data = data;
+  note().loads = loads;
   program->memory_ops.push_back(row);
 }
 
@@ -99,7 +101,8 @@ void Emitter::memory(const ScalarOp& op, MemoryOp row, std::uint32_t address, Ha
                      const char* name) {
   const Place at = place(source(op, address));
   append(at.file == 'u' ? uniform : wave, name, op.instr, {}, at);
-  attach(row);
+  const bool loads = op.dst.count != 0;
+  attach(row, loads && level(result(op, 0)) != Level::kVarying ? 'u' : 'r', loads);
 }
 
 void Emitter::load(const ScalarOp& op) {
@@ -180,6 +183,7 @@ void Emitter::atomic_wide(const ScalarOp& op, MemoryOp row, std::uint32_t addres
   Instruction& instruction = append(exec::atomic_wide(space, at.file == 'u'), "atomic_wide", op.instr,
                                     op.dst.count != 0 ? place(result(op, 0)) : Place{}, at);
   instruction.extra[1] = op.dst.count > 1 ? place(result(op, 1)).offset : kNoOperand;
+  note().high = 'r';
   attach(row);
 }
 
@@ -214,7 +218,8 @@ void Emitter::global(const ScalarOp& op) {
   }
   const Place low = in_register(source(op, 0)), high = in_register(source(op, 1)), offset = in_register(source(op, 2));
   append(handler, ir::op_name(op.op), op.instr, to[0], low, high, offset).extra[1] = to[1].offset;
-  attach(row);
+  note().high = to[1].file;
+  attach(row, 'r', op.op == Op::kLoadGlobal);
 }
 
 void Emitter::local_array(const ScalarOp& op) {
@@ -278,6 +283,8 @@ void Emitter::wide(const ScalarOp& op) {
   for (std::uint32_t i = 0; i < 3; ++i) instruction.src[i] = encoded(sources[i]);
   instruction.extra[0] = encoded(sources[3]);
   instruction.extra[1] = op.dst.count > 1 ? encoded(place(result(op, 1))) : kNoOperand;
+  note().fourth = sources[3].file;
+  note().high = op.dst.count > 1 ? place(result(op, 1)).file : ' ';
 }
 
 void Emitter::group(const ScalarOp& op) {
@@ -288,6 +295,7 @@ void Emitter::group(const ScalarOp& op) {
                                       "reduce.wide", op.instr, place(result(op, 0)), from, in_register(source(op, 1)));
     instruction.extra[0] = op.instr->data[0];
     instruction.extra[1] = place(result(op, 1)).offset;
+    note().high = place(result(op, 1)).file;
     return;
   }
   for (std::uint32_t c = 0; c < op.dst.count; ++c) {

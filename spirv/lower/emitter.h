@@ -76,9 +76,10 @@ class Emitter {
   Place word(ScalarId id) const { return {'u', words_[id] * 4}; }
 
   /// Adds a side table row for the instruction appended last.
-  void attach(const MemoryOp& row);
+  void attach(const MemoryOp& row, char data = 'r', bool loads = false);
   void attach(const ImageOp& row);
   void memory(const ScalarOp& op, MemoryOp row, std::uint32_t address, Handler wave, Handler uniform, const char* name);
+  InstructionNote& note() { return (in_preamble ? program->preamble_notes : program->notes).back(); }
   void load(const ScalarOp& op);
   void store(const ScalarOp& op);
   void atomic(const ScalarOp& op);

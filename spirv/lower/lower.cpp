@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/simd.h"
+#include "spirv/exec/observe.h"
 #include "spirv/lower/emit.h"
 #include "spirv/lower/registers.h"
 #include "spirv/lower/scalar.h"
@@ -15,7 +16,7 @@ constexpr std::uint32_t kMaxRegisters = 65536;
 
 }  // namespace
 
-base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function) {
+base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared_ptr<const exec::Observer> observer) {
   base::select_simd_target();
   std::string error;
   lowering::ScalarFunction scalars = lowering::scalarize(function, error);
@@ -28,10 +29,11 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function) {
   lowering::remove_dead(scalars);
   lowering::fuse_multiply_add(scalars);
   lowering::select_operations(scalars);
-  lowering::schedule_chains(scalars);
+  lowering::schedule_chains(scalars, observer != nullptr);
+  ShaderInterface interface = function.interface;
+  if (observer) lowering::keep_identity(scalars, interface);
   const lowering::Allocation allocation = lowering::allocate(scalars);
   if (allocation.register_count > kMaxRegisters) return base::Error{"the shader keeps too many values alive"};
-  ShaderInterface interface = function.interface;
   std::unique_ptr<Program> program = lowering::emit(scalars, allocation, interface, error);
   if (!error.empty()) return base::Error{error};
   program->flush_denormals = interface.stage != VK_SHADER_STAGE_COMPUTE_BIT;
@@ -39,6 +41,8 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function) {
   program->groups_per_wave = scalars.groups_per_wave;
   program->files = std::move(function.files);
   program->shared_bytes = interface.shared_bytes;
+  if (observer)
+    program->observation = std::make_shared<exec::Observation>(exec::Observation{std::move(observer), interface});
   if (base::log_enabled("shader")) base::log("shader", disassemble(*program));
   return std::make_unique<Shader>(std::move(interface), std::unique_ptr<const Program>(std::move(program)));
 }

@@ -9,7 +9,13 @@
 
 namespace vitrine::spirv {
 
-/// In: what rewrite() gives. Errors name what exceeds a limit (registers, program size).
-base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function);
+namespace exec {
+class Observer;
+}
+
+/// In: what rewrite() gives. Errors name what exceeds a limit (registers, program size). `observer`: whom the program
+/// tells what it does (spirv/exec/observe.h); null: nobody.
+base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function,
+                                            std::shared_ptr<const exec::Observer> observer = nullptr);
 
 }  // namespace vitrine::spirv

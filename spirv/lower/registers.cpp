@@ -106,6 +106,7 @@ class Allocator {
     for (std::uint32_t i = 0; i < f_.body.size(); ++i) visit(i);
     for (const ScalarId id : f_.outputs)
       if (id != kNoScalar && varying(id)) use(id, end_);
+    for (const ScalarId id : f_.observed) use(id, 0);
     make_holes();
   }
 

@@ -96,8 +96,9 @@ struct ScalarFunction {
   std::vector<std::vector<ScalarId>> join_sources;
   bool writes_memory = false;
   std::uint32_t groups_per_wave = 1;
-  std::vector<ScalarId> outputs;  ///< per interface.outputs: the value that leaves (kNoScalar: never stored)
-  std::vector<ScalarId> preset;   ///< constants and uniforms that bind() keeps broadcast in registers
+  std::vector<ScalarId> outputs;   ///< per interface.outputs: the value that leaves (kNoScalar: never stored)
+  std::vector<ScalarId> preset;    ///< constants and uniforms that bind() keeps broadcast in registers
+  std::vector<ScalarId> observed;  ///< inputs that are there when the program starts, though no operation reads them
 
   ScalarId add(bool boolean, Level level) {
     scalars.push_back({boolean, level, false, 0, kNoIndex});
@@ -141,7 +142,11 @@ void fuse_multiply_add(ScalarFunction& function);
 /// Replaces operand combinations that have no handler by moves; decides how outputs leave. Drops dead operations.
 void select_operations(ScalarFunction& function);
 
-/// Orders straight-line arithmetic into chains.
-void schedule_chains(ScalarFunction& function);
+/// Orders straight-line arithmetic into chains. `apart`: the same order, but every operation stores its result.
+void schedule_chains(ScalarFunction& function, bool apart);
+
+/// Inputs that tell invocations apart, at the start of the program only, where the shader does not read them anyway
+/// (spirv/exec/observe.h). Adds them to `interface`.
+void keep_identity(ScalarFunction& function, ShaderInterface& interface);
 
 }  // namespace vitrine::spirv::lowering

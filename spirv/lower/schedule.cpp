@@ -97,8 +97,12 @@ bool swappable(Op op) {
 
 class ChainScheduler {
  public:
-  explicit ChainScheduler(ScalarFunction& function)
-      : f_(function), uses_(count_uses(function)), definition_(function.scalars.size(), kNoIndex) {}
+  /// `apart`: the order of chains, of which every operation stores its result, as in targets without them.
+  ChainScheduler(ScalarFunction& function, bool apart)
+      : f_(function),
+        connects_(!apart && exec::chain_handler(Op::kOr, exec::kNoAccumulator, 0, Link::kKeep) != nullptr),
+        uses_(count_uses(function)),
+        definition_(function.scalars.size(), kNoIndex) {}
 
   void run() {
     for (std::uint32_t i = 0; i < f_.body.size();) {
@@ -151,7 +155,7 @@ class ChainScheduler {
       if (f_.scalars[result(begin_ + current)].boolean) break;
       const std::uint32_t next = pick_user(current);
       if (next == kNoIndex) break;
-      if (target_has_chains_) connect(current, next);
+      if (connects_) connect(current, next);
       emit(next);
       current = next;
     }
@@ -200,12 +204,12 @@ class ChainScheduler {
   bool try_accumulator(std::uint32_t user, int accumulator, unsigned skip) {
     ScalarOp& op = f_.body[begin_ + user];
     if (!exec::is_chain_link(op.op, accumulator, uniform_sources(user, skip), Link::kLast)) return false;
-    if (target_has_chains_) op.accumulator = accumulator;
+    if (connects_) op.accumulator = accumulator;
     return true;
   }
 
   ScalarFunction& f_;
-  const bool target_has_chains_ = exec::chain_handler(Op::kOr, exec::kNoAccumulator, 0, Link::kKeep) != nullptr;
+  const bool connects_;
   std::vector<std::uint32_t> uses_;
   std::vector<std::uint32_t> definition_;  ///< per scalar: operation of the current stretch that gives it
   std::uint32_t begin_ = 0;
@@ -218,6 +222,6 @@ class ChainScheduler {
 }  // namespace
 
 void fuse_multiply_add(ScalarFunction& function) { MultiplyAdd(function).run(); }
-void schedule_chains(ScalarFunction& function) { ChainScheduler(function).run(); }
+void schedule_chains(ScalarFunction& function, bool apart) { ChainScheduler(function, apart).run(); }
 
 }  // namespace vitrine::spirv::lowering
