@@ -10,7 +10,9 @@
 #include "base/float_mode.h"
 #include "base/numeric.h"
 #include "spirv/rewrite/gallivm/passes.h"
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/literals.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/nir/constant_expressions.h"
 
 namespace vitrine::spirv::rewriting {
@@ -40,9 +42,9 @@ class SharedRegisters {
   const Graph& graph_;
 };
 
-class Builder {
+class ArithmeticBuilder {
  public:
-  explicit Builder(Graph& graph) : graph_(graph), registers_(graph) {}
+  explicit ArithmeticBuilder(Graph& graph) : graph_(graph), registers_(graph) {}
 
   void visit(InstId id) {
     id_ = id;
@@ -154,9 +156,7 @@ class Builder {
   void become(std::uint32_t bits) { become_words(&bits); }
 
   void become_words(const std::uint32_t* words) {
-    const InstId made = graph_.create_const(graph_.insts[id_].components, graph_.insts[id_].boolean, words);
-    graph_.insert_before(id_, made);
-    replace(value_of(made));
+    replace(build().literal(graph_.insts[id_].components, graph_.insts[id_].boolean, words));
   }
 
   void fold_sized() {
@@ -174,10 +174,9 @@ class Builder {
 
   void become_poison() {
     const std::uint32_t zero = 0;
-    const InstId made = graph_.create_const(1, graph_.insts[id_].boolean, &zero);
-    graph_.insert_before(id_, made);
-    poison_.push_back(graph_.insts[made].result);
-    replace(value_of(made));
+    const Src made = build().literal(1, graph_.insts[id_].boolean, &zero);
+    poison_.push_back(made.value);
+    replace(made);
   }
 
   /// Whatever is computed from an undefined integer is undefined too; a selection takes its other side. True: the
@@ -202,11 +201,10 @@ class Builder {
     const bool arithmetic = inst.op == Op::kFAdd || inst.op == Op::kFMul || inst.op == Op::kFDiv;
     if (!arithmetic && inst.op != Op::kF2I && inst.op != Op::kF2U) return false;
     for (std::uint32_t i = 0; i < inst.count; ++i) {
-      const Src src = graph_.source(inst, i);
-      const Inst* constant = graph_.constant(src.value);
-      if (!constant || !is_nan(constant->imm[src.swizzle[0]])) continue;
+      const std::optional<std::uint32_t> literal = literal_of(graph_, graph_.source(inst, i));
+      if (!literal || !is_nan(*literal)) continue;
       if (arithmetic)
-        become(constant->imm[src.swizzle[0]] | 0x00400000u);
+        become(*literal | 0x00400000u);
       else
         become_poison();
       return true;
@@ -219,10 +217,9 @@ class Builder {
     if (fold_nan() || !folds(inst.op)) return;
     std::uint32_t operand[3] = {}, bits = 0;
     for (std::uint32_t i = 0; i < inst.count; ++i) {
-      const Src src = graph_.source(inst, i);
-      const Inst* constant = graph_.constant(src.value);
-      if (!constant) return;
-      operand[i] = constant->imm[src.swizzle[0]];
+      const std::optional<std::uint32_t> literal = literal_of(graph_, graph_.source(inst, i));
+      if (!literal) return;
+      operand[i] = *literal;
     }
     if (inst.op == Op::kFSign && is_nan(operand[0])) return;
     if (!evaluate(inst.op, operand, bits)) return;
@@ -255,18 +252,7 @@ class Builder {
     return true;
   }
 
-  InstId add(Op op, bool boolean, std::initializer_list<Src> operands, std::uint8_t components = 1) {
-    const InstId made = graph_.create(Kind::kAlu, op, components, boolean, static_cast<std::uint32_t>(operands.size()));
-    std::uint32_t index = 0;
-    for (const Src& src : operands) graph_.set_source(made, index++, src);
-    graph_.insts[made].origin = graph_.insts[id_].origin;
-    graph_.insert_before(id_, made);
-    return made;
-  }
-
-  Src value_of(InstId inst) const {
-    return {graph_.insts[inst].result, {0, static_cast<std::uint8_t>(graph_.insts[inst].components - 1), 0, 0}};
-  }
+  Builder build() { return {graph_, id_}; }
 
   /// A value of one number, which is two words of a double.
   ValueId scalar(Src src) {
@@ -274,21 +260,18 @@ class Builder {
     if (graph_.values[src.value].components == words && (words == 1 || (src.swizzle[0] == 0 && src.swizzle[1] == 1)))
       return src.value;
     const Inst* constant = graph_.constant(src.value);
-    if (!constant) return graph_.insts[add(Op::kMov, false, {src}, words)].result;
+    if (!constant) return build().alu(Op::kMov, {src}, words).value;
     const std::uint32_t bits[2] = {constant->imm[src.swizzle[0]], constant->imm[src.swizzle[1]]};
-    const InstId made = graph_.create_const(words, false, bits);
-    graph_.insert_before(id_, made);
-    return graph_.insts[made].result;
+    return build().literal(words, false, bits).value;
   }
 
   /// A literal that operations do not see.
   ValueId held(ValueId literal) {
-    const bool boolean = graph_.insts[id_].boolean;
-    const std::uint8_t words = graph_.insts[id_].components;
-    const std::uint8_t last = static_cast<std::uint8_t>(words - 1);
-    const InstId made = add(boolean ? Op::kMovB : Op::kMov, boolean, {{literal, {0, last, 0, 0}}}, words);
-    graph_.insts[made].opaque = true;
-    return graph_.insts[made].result;
+    const Inst& inst = graph_.insts[id_];
+    const Src whole = result_of(graph_, graph_.values[literal].def);
+    const ValueId made = build().alu(inst.boolean ? Op::kMovB : Op::kMov, {whole}, inst.components).value;
+    graph_.insts[graph_.values[made].def].opaque = true;
+    return made;
   }
 
   void replace(Src src) {
@@ -305,15 +288,7 @@ class Builder {
     return true;
   }
 
-  void become_undefined() {
-    const InstId made = graph_.create(Kind::kIntrinsic, Op::kUndef, graph_.insts[id_].components, false, 0);
-    auto node = std::make_unique<ir::Node>();
-    graph_.insts[made].node = static_cast<std::uint32_t>(graph_.nodes.size());
-    graph_.insts[made].origin = graph_.insts[id_].origin;
-    graph_.nodes.push_back(std::move(node));
-    graph_.insert_before(id_, made);
-    replace(value_of(made));
-  }
+  void become_undefined() { replace(build().undefined(graph_.insts[id_].components)); }
 
   bool has_undefined_operand() const {
     const Inst& inst = graph_.insts[id_];
@@ -350,14 +325,11 @@ class Builder {
   /// exp2(0): it is no literal.
   void power_of_zero() {
     const Src base = graph_.source(graph_.insts[id_], 0);
-    const std::uint32_t zero_bits = 0;
-    const InstId zero = graph_.create_const(1, false, &zero_bits);
-    graph_.insert_before(id_, zero);
-    const InstId below = add(Op::kFLt, true, {base, value_of(zero)});
-    const InstId above = add(Op::kFLt, true, {value_of(zero), base});
-    const InstId ordered = add(Op::kOrB, true, {value_of(below), value_of(above)});
-    const InstId one = add(Op::kFExp2, false, {value_of(zero)});
-    replace(value_of(add(Op::kSelect, false, {value_of(ordered), value_of(one), value_of(zero)})));
+    const Src zero = build().literal(0);
+    const Src below = build().alu(Op::kFLt, {base, zero}), above = build().alu(Op::kFLt, {zero, base});
+    const Src ordered = build().alu(Op::kOrB, {below, above});
+    const Src one = build().alu(Op::kFExp2, {zero});
+    replace(build().alu(Op::kSelect, {ordered, one, zero}));
   }
 
   Graph& graph_;
@@ -369,7 +341,7 @@ class Builder {
 }  // namespace
 
 void build_arit(Graph& graph) {
-  Builder builder(graph);
+  ArithmeticBuilder builder(graph);
   const base::ScopedFloatMode mode(base::Denormals::kHonour);
   auto visit = [&](InstId id) { builder.visit(id); };
   for_each_inst(graph, graph.root, visit);

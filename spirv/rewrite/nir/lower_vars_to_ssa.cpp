@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/loops.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/passes.h"
@@ -78,13 +79,7 @@ class Promoter {
 
   bool promotes(const Inst& inst) const { return is_access(inst) && promoted_[graph_.nodes[inst.node]->instr.data[0]]; }
 
-  ValueId undefined_before(InstId position) {
-    const InstId made = graph_.create(Kind::kIntrinsic, Op::kUndef, 1, false, 0);
-    graph_.insts[made].node = static_cast<std::uint32_t>(graph_.nodes.size());
-    graph_.nodes.push_back(std::make_unique<ir::Node>());
-    graph_.insert_before(position, made);
-    return graph_.insts[made].result;
-  }
+  ValueId undefined_before(InstId position) { return Builder(graph_, position).undefined(1).value; }
 
   ValueId value_before(InstId position, const State& state, Element element) {
     const auto entry = state.find(element);
@@ -92,17 +87,14 @@ class Promoter {
   }
 
   void append_operands(InstId id, const std::vector<ValueId>& values) {
-    std::vector<Src> operands = operands_of(graph_, id);
-    for (const ValueId value : values) operands.push_back({value, {0, 1, 2, 3}});
-    graph_.set_operands(id, operands);
+    std::vector<Src> more;
+    for (const ValueId value : values) more.push_back({value, kWhole});
+    rewriting::append_operands(graph_, id, more);
   }
 
   ValueId scalar_before(InstId position, Src src) {
     if (graph_.values[src.value].components == 1) return src.value;
-    const InstId move = graph_.create(Kind::kAlu, Op::kMov, 1, false, 1);
-    graph_.set_source(move, 0, src);
-    graph_.insert_before(position, move);
-    return graph_.insts[move].result;
+    return Builder(graph_, position).alu(Op::kMov, {src}).value;
   }
 
   void access(InstId id) {

@@ -1,6 +1,8 @@
 // Control flow that need not be (nir_opt_dead_cf.c; lavapipe-optimizer.md 5.16): branches on constants, code that never
 // runs, loops without effect.
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/effects.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/passes.h"
 #include "spirv/rewrite/nir/to_lcssa.h"
@@ -31,9 +33,9 @@ void remove_unreached(Graph& graph, InstId id) {
   for (const ValueId value : values) {
     if (graph.values[value].uses == 0) continue;
     constexpr std::uint32_t kZeros[4] = {};
-    const InstId zero = graph.create_const(graph.values[value].components, graph.values[value].boolean, kZeros);
-    graph.insert_before(graph.blocks[graph.root].head, zero);
-    graph.replace_uses(value, graph.insts[zero].result);
+    Builder first(graph, graph.blocks[graph.root].head);
+    const Value shape = graph.values[value];
+    graph.replace_uses(value, first.literal(shape.components, shape.boolean, kZeros).value);
   }
 }
 
@@ -88,10 +90,9 @@ bool prune_node(Graph& graph, InstId id) {
     return true;
   }
   if (inst.kind != Kind::kIf) return false;
-  const Src condition = graph.source(inst, 0);
-  const Inst* constant = graph.constant(condition.value);
-  if (constant) take_branch(graph, id, inst.child[constant->imm[condition.swizzle[0]] ? 0 : 1]);
-  return constant != nullptr;
+  const std::optional<std::uint32_t> condition = literal_of(graph, graph.source(inst, 0));
+  if (condition) take_branch(graph, id, inst.child[*condition != 0 ? 0 : 1]);
+  return condition.has_value();
 }
 
 /// After a removal the next branch or loop of the block stays until the next round, as in the reference.

@@ -2,6 +2,8 @@
 // 5.11, 5.14).
 #include "spirv/rewrite/nir/opt_if.h"
 
+#include "spirv/rewrite/graph/build.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 
 namespace vitrine::spirv::rewriting {
@@ -21,12 +23,6 @@ bool is_comparison(const Inst* inst) {
   return info.sources == 2 && info.result == 'B' && info.operands[0] != 'B';
 }
 
-InstId negation_of(Graph& graph, Src condition) {
-  const InstId made = graph.create(Kind::kAlu, Op::kNotB, 1, true, 1);
-  graph.set_source(made, 0, condition);
-  return made;
-}
-
 void become_yield(Graph& graph, InstId jump) { graph.insts[jump].op = Op::kYield; }
 
 InstId loop_around(const Graph& graph, InstId id) {
@@ -40,13 +36,9 @@ void break_behind(Graph& graph, InstId id) {
   const InstId first = graph.blocks[graph.insts[id].child[0]].tail, last = graph.blocks[graph.insts[id].child[1]].tail;
   const std::vector<ValueId> like = node_of(graph, loop_around(graph, id)).results;
   become_yield(graph, first);
-  const InstId jump = graph.create(Kind::kIntrinsic, Op::kBreak, 0, false, 0);
-  graph.insts[jump].node = static_cast<std::uint32_t>(graph.nodes.size());
-  graph.nodes.push_back(std::make_unique<ir::Node>());
   become_yield(graph, last);
   node_of(graph, id).results.clear();
-  const std::vector<Src> results = add_results(graph, id, like);
-  graph.set_operands(jump, results);
+  const InstId jump = make_jump(graph, Op::kBreak, add_results(graph, id, like));
   graph.append(graph.insts[id].block, jump);
 }
 
@@ -114,9 +106,7 @@ bool opt_if_simplification(Graph& graph, InstId id) {
   if (!is_empty(graph, graph.insts[id].child[0]) || is_empty(graph, graph.insts[id].child[1])) return false;
   const Src condition = graph.source(graph.insts[id], 0);
   if (!is_comparison(graph.def(condition.value))) return false;
-  const InstId made = negation_of(graph, condition);
-  graph.insert_after(graph.values[condition.value].def, made);
-  graph.set_source(id, 0, {graph.insts[made].result, {0, 0, 0, 0}});
+  graph.set_source(id, 0, Builder::behind(graph, graph.values[condition.value].def).alu(Op::kNotB, {condition}));
   std::swap(graph.insts[id].child[0], graph.insts[id].child[1]);
   return true;
 }
@@ -134,17 +124,12 @@ bool opt_if_phi_is_condition(Graph& graph, InstId id) {
     bool known = true;
     for (const unsigned s : {0u, 1u}) {
       const Src src = graph.source(graph.insts[graph.blocks[side[s]].tail], static_cast<std::uint32_t>(i));
-      const Inst* constant = graph.constant(src.value);
-      known &= constant != nullptr;
-      if (constant) truth[s] = constant->imm[src.swizzle[0]] != 0;
+      const std::optional<std::uint32_t> literal = literal_of(graph, src);
+      known &= literal.has_value();
+      truth[s] = literal.value_or(0) != 0;
     }
     if (!known || truth[0] == truth[1]) continue;
-    Src by = condition;
-    if (truth[1]) {
-      const InstId made = negation_of(graph, condition);
-      graph.insert_before(id, made);
-      by = {graph.insts[made].result, {0, 0, 0, 0}};
-    }
+    const Src by = truth[1] ? Builder(graph, id).alu(Op::kNotB, {condition}) : condition;
     graph.replace_uses(results[i], whole_value(graph, id, by, results[i]));
     changed = true;
   }

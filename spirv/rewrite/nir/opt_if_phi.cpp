@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/loops.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 
 namespace vitrine::spirv::rewriting {
@@ -25,10 +27,6 @@ struct Header {
   Src next(int index) const { return graph.source(graph.insts[latch], static_cast<std::uint32_t>(index)); }
 };
 
-bool is_selection(const Inst& inst) {
-  return inst.kind == Kind::kAlu && (inst.op == Op::kSelect || inst.op == Op::kSelectB);
-}
-
 bool reads_whole(const Graph& graph, const Inst& inst, std::uint32_t index) {
   const Src src = graph.source(inst, index);
   if (graph.values[src.value].components != inst.components) return false;
@@ -42,7 +40,7 @@ bool reads_whole(const Graph& graph, const Inst& inst, std::uint32_t index) {
 bool is_trivial_selection(const Header& header, InstId id, bool allow_other) {
   const Graph& graph = header.graph;
   const Inst& inst = graph.insts[id];
-  if (!is_selection(inst) || !header.contains(id)) return false;
+  if (inst.kind != Kind::kAlu || !ir::is_selection(inst.op) || !header.contains(id)) return false;
   for (std::uint32_t i = 0; i < 3; ++i) {
     const Src src = graph.source(inst, i);
     if (!reads_whole(graph, inst, i)) return false;
@@ -112,9 +110,7 @@ bool split(Graph& graph, const Header& header, InstId id) {
   const InstId first = copy_with(graph, id, before), other = copy_with(graph, id, again);
   graph.insert_before(header.loop, first);
   graph.insert_before(header.latch, other);
-  const std::array<std::uint8_t, 4> whole{0, 1, 2, 3};
-  const ValueId param = add_param(graph, header.loop, inst.result, {graph.insts[first].result, whole},
-                                  {graph.insts[other].result, whole});
+  const ValueId param = add_param(graph, header.loop, inst.result, result_of(graph, first), result_of(graph, other));
   graph.replace_uses(inst.result, param);
   graph.remove(id);
   return true;
@@ -142,7 +138,7 @@ bool opt_simplify_bcsel_of_phi(Graph& graph, InstId loop) {
     if (!is_trivial_selection(header, id, false)) continue;
     const Inst inst = graph.insts[id];
     const int chooser = header.param(graph.source(inst, 0).value);
-    const auto truth = [&](Src src) { return graph.constant(src.value)->imm[src.swizzle[0]] != 0; };
+    const auto truth = [&](Src src) { return literal_of(graph, src) != 0u; };
     const bool entry = truth(header.init(chooser));
     if (entry == truth(header.next(chooser))) continue;
     const ValueId at_entry = graph.source(inst, entry ? 1 : 2).value, later = graph.source(inst, entry ? 2 : 1).value;

@@ -2,6 +2,7 @@
 // lavapipe-optimizer.md 5.5, 5.6).
 #include <vector>
 
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/opt_if.h"
 #include "spirv/rewrite/nir/passes.h"
@@ -31,13 +32,6 @@ Known condition_at(const Graph& graph, InstId branch, InstId user) {
     at = graph.blocks[block].owner;
   }
   return Known::kNothing;
-}
-
-ValueId truth(Graph& graph, Known known, InstId position) {
-  const std::uint32_t bits[1] = {known == Known::kTrue ? 1u : 0u};
-  const InstId made = graph.create_const(1, true, bits);
-  graph.insert_before(position, made);
-  return graph.insts[made].result;
 }
 
 std::vector<Slot> uses_of(const Graph& graph, ValueId value) {
@@ -73,9 +67,10 @@ bool evaluate_reader(Graph& graph, InstId branch, ValueId condition, InstId read
     const InstId copy = graph.create(Kind::kAlu, inst.op, inst.components, inst.boolean, inst.count);
     graph.insts[copy].exact = inst.exact;
     graph.insts[copy].origin = inst.origin;
+    const Src truth = Builder(graph, user).truth(known == Known::kTrue);
     for (std::uint32_t i = 0; i < inst.count; ++i) {
       const Src src = graph.source(inst, i);
-      graph.set_source(copy, i, src.value == condition ? Src{truth(graph, known, user), {0, 0, 0, 0}} : src);
+      graph.set_source(copy, i, src.value == condition ? truth : src);
     }
     graph.insert_before(user, copy);
     const std::uint32_t operand = use - graph.insts[user].first;
@@ -95,7 +90,7 @@ bool opt_if_evaluate_condition_use(Graph& graph, InstId branch) {
     const std::uint32_t operand = use - graph.insts[user].first;
     const Known known = condition_at(graph, branch, user);
     if (known != Known::kNothing) {
-      graph.set_source(user, operand, {truth(graph, known, user), {0, 0, 0, 0}});
+      graph.set_source(user, operand, Builder(graph, user).truth(known == Known::kTrue));
       changed = true;
     } else if (hands_on(graph.insts[user], operand)) {
       changed |= evaluate_reader(graph, branch, condition, user);

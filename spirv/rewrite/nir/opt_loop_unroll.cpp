@@ -2,6 +2,7 @@
 // lavapipe-shader-math.md 3.2 and 9; lavapipe-optimizer.md 5.19): unrolled code sees the counter as constants, which
 // changes what the algebraic rules do. Covered: exits that are all counted by constants; a counted and another one; a
 // body that ends in Break.
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/copier.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/loop_analyze.h"
@@ -104,10 +105,7 @@ class Unroller {
   }
 
   void yield(BlockId block, const std::vector<Src>& values) {
-    const auto made = graph_.create(Kind::kIntrinsic, Op::kYield, 0, false, 0);
-    graph_.insts[made].node = static_cast<std::uint32_t>(graph_.nodes.size());
-    graph_.nodes.push_back(std::make_unique<ir::Node>());
-    graph_.set_operands(made, values);
+    const InstId made = make_jump(graph_, Op::kYield, values);
     graph_.append(block, made);
   }
 

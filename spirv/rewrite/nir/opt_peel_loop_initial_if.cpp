@@ -7,6 +7,7 @@
 
 #include "spirv/rewrite/graph/copier.h"
 #include "spirv/rewrite/graph/loops.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/phis_to_regs.h"
 #include "spirv/rewrite/nir/to_lcssa.h"
@@ -51,13 +52,12 @@ class Peeler {
     const Src condition = graph_.source(graph_.insts[branch_], 0);
     const int index = param_index(graph_, loop_, condition.value);
     if (index < 0) return false;
-    const Src init = graph_.source(graph_.insts[loop_], static_cast<std::uint32_t>(index));
-    const Src next = graph_.source(graph_.insts[latch_], static_cast<std::uint32_t>(index));
-    const Inst* entry = graph_.constant(init.value);
-    const Inst* later = graph_.constant(next.value);
+    const auto i = static_cast<std::uint32_t>(index);
+    const std::optional<std::uint32_t> entry = literal_of(graph_, graph_.source(graph_.insts[loop_], i));
+    const std::optional<std::uint32_t> later = literal_of(graph_, graph_.source(graph_.insts[latch_], i));
     if (!entry || !later) return false;
-    const bool taken = entry->imm[init.swizzle[0]] != 0;
-    if (taken == (later->imm[next.swizzle[0]] != 0)) return false;
+    const bool taken = *entry != 0;
+    if (taken == (*later != 0)) return false;
     entry_side_ = graph_.insts[branch_].child[taken ? 0 : 1];
     later_side_ = graph_.insts[branch_].child[taken ? 1 : 0];
     return !contains_jump(graph_, entry_side_) && ends_in(graph_, entry_side_, Op::kYield);

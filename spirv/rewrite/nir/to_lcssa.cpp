@@ -8,6 +8,8 @@
 
 #include "spirv/rewrite/nir/to_lcssa.h"
 
+#include "spirv/rewrite/graph/build.h"
+#include "spirv/rewrite/graph/loops.h"
 #include "spirv/rewrite/graph/tree.h"
 
 namespace vitrine::spirv::rewriting {
@@ -15,18 +17,9 @@ namespace {
 
 using Kind = Inst::Kind;
 
-void collect_breaks(const Graph& graph, BlockId block, std::vector<InstId>& breaks) {
-  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
-    const Inst& inst = graph.insts[id];
-    if (is_jump(inst, Op::kBreak)) breaks.push_back(id);
-    if (inst.kind == Kind::kIf)
-      for (const BlockId child : inst.child) collect_breaks(graph, child, breaks);
-  }
-}
-
 std::vector<InstId> breaks_of(const Graph& graph, InstId loop) {
   std::vector<InstId> breaks;
-  for (const BlockId child : graph.insts[loop].child) collect_breaks(graph, child, breaks);
+  for (const BlockId child : graph.insts[loop].child) collect_jumps(graph, child, Op::kBreak, breaks);
   return breaks;
 }
 
@@ -38,12 +31,6 @@ void drop_result(Graph& graph, InstId loop, std::size_t index, const std::vector
   }
   auto& results = graph.nodes[graph.insts[loop].node]->results;
   results.erase(results.begin() + static_cast<std::ptrdiff_t>(index));
-}
-
-bool is_same(const Graph& graph, Src a, Src b, ValueId like) {
-  for (unsigned c = 0; c < graph.values[like].components; ++c)
-    if (a.swizzle[c] != b.swizzle[c]) return false;
-  return a.value == b.value;
 }
 
 /// The whole value of which `src` is a copy, or kNoValue.
@@ -62,7 +49,7 @@ ValueId value_at_breaks(Graph& graph, ValueId result, std::uint32_t index, const
   const Src first = at(breaks[0]);
   const ValueId origin = copied(graph, first, result);
   if (breaks.size() == 1) return origin != ir::kNoValue ? origin : whole_value(graph, breaks[0], first, result);
-  if (every([&](InstId id) { return is_same(graph, at(id), first, result); }))
+  if (every([&](InstId id) { return same_value(graph, at(id), first, result); }))
     return is_whole(graph, first, result) ? first.value : ir::kNoValue;
   return every([&](InstId id) { return copied(graph, at(id), result) == origin; }) ? origin : ir::kNoValue;
 }
@@ -141,9 +128,7 @@ class Closer {
   /// Operand `index`, which reads `src`, reads these bits instead.
   void read_literal(InstId user, std::uint32_t index, Src src, const std::uint32_t* bits) {
     const Value shape = graph_.values[src.value];
-    const InstId made = graph_.create_const(shape.components, shape.boolean, bits);
-    graph_.insert_before(user, made);
-    src.value = graph_.insts[made].result;
+    src.value = Builder(graph_, user).literal(shape.components, shape.boolean, bits).value;
     graph_.set_source(user, index, src);
   }
 
@@ -153,9 +138,7 @@ class Closer {
     if (!is_new) return entry->second;
     entry->second = add_results(graph_, loop, {value})[0].value;
     for (const InstId id : breaks_of(graph_, loop)) {
-      std::vector<Src> operands = operands_of(graph_, id);
-      operands.push_back({value, {0, 1, 2, 3}});
-      graph_.set_operands(id, operands);
+      append_operands(graph_, id, {{value, kWhole}});
     }
     return entry->second;
   }
