@@ -1,8 +1,8 @@
 // The object base: what every Vulkan object of this driver shares, handle <-> object casts, creation and destruction.
 //
-//   struct Buffer : Object<VkBuffer, VK_OBJECT_TYPE_BUFFER> { explicit Buffer(const HostMemory& m) : Object(m) {} ...
-//   }; Buffer* b = create_object<Buffer>(device.memory, pAllocator, args...);   // throws std::bad_alloc *pBuffer =
-//   to_handle(b);           Buffer& b = from_handle<Buffer>(handle);          destroy_object(b);
+//   struct Buffer : Object<VkBuffer, VK_OBJECT_TYPE_BUFFER> { explicit Buffer(const HostMemory& m) : Object(m) {} };
+//   Buffer* b = create_object<Buffer>(device.memory, pAllocator);  *pBuffer = to_handle(b);  // throws std::bad_alloc
+//   Buffer& b = from_handle<Buffer>(handle);  destroy_object(b);
 #pragma once
 
 #include <vulkan/vk_icd.h>

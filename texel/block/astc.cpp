@@ -1,4 +1,4 @@
-// Block modes, integer sequences, partitions, end points and weights of ASTC.
+// Block modes, integer sequences, partitions, endpoints and weights of ASTC.
 #include "texel/block/astc.h"
 
 #include <algorithm>
@@ -277,7 +277,7 @@ std::uint32_t partition_of(std::uint32_t index, std::uint32_t count, std::uint32
   return c >= d ? 2 : 3;
 }
 
-// ---- end points
+// ---- endpoints
 
 struct EndPoints {
   Color low{}, high{};
@@ -300,7 +300,7 @@ Color clamped(Color c) {
 
 constexpr EndPoints kError{{255, 0, 255, 255}, {255, 0, 255, 255}};
 
-/// End points of a colour mode; the error colour for those of high dynamic range.
+/// Endpoints of a colour mode; the error colour for those of high dynamic range.
 EndPoints decode_end_points(std::uint32_t mode, std::int32_t* v) {
   const auto scaled = [&](std::int32_t a) { return Color{v[0] * v[3] >> 8, v[1] * v[3] >> 8, v[2] * v[3] >> 8, a}; };
   switch (mode) {

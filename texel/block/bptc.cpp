@@ -138,11 +138,11 @@ void read_endpoints(Bits& block, const UnormMode& mode, Endpoint ends[6]) {
 // ---- BC6H
 
 struct FloatMode {
-  bool transformed = false;  ///< end points after the first are differences
+  bool transformed = false;  ///< endpoints after the first are differences
   std::uint8_t partition_bits = 0;
-  std::uint8_t bits = 0;  ///< of an end point; 0: reserved mode
+  std::uint8_t bits = 0;  ///< of an endpoint; 0: reserved mode
   std::array<std::uint8_t, 3> delta_bits{};
-  /// Order of the end points' bits in the block: component, end point, range. A descending range [high:low] has its
+  /// Order of the endpoints' bits in the block: component, endpoint, range. A descending range [high:low] has its
   /// low bit first, an ascending one its high bit.
   std::string_view layout;
 };
@@ -227,7 +227,7 @@ std::uint32_t number_at(std::string_view text, std::size_t& i) {
   return value;
 }
 
-/// Collects the scattered bits of all end points as the mode's layout says.
+/// Collects the scattered bits of all endpoints as the mode's layout says.
 FloatEndpoints read_endpoints(Bits& block, std::string_view layout) {
   FloatEndpoints ends{};
   for (std::size_t i = 0; i < layout.size(); ++i) {
@@ -275,7 +275,7 @@ void unquantize(const FloatMode& mode, bool is_signed, FloatEndpoints& ends) {
     for (std::size_t c = 0; c < 3; ++c) {
       std::int32_t& value = ends[e][c];
       if (mode.transformed && e > 0) {
-        // The first end point still has its bits here: it is unquantized last.
+        // The first endpoint still has its bits here: it is unquantized last.
         value = (ends[0][c] + sign_extend(value, mode.delta_bits[c])) & mask;
       }
     }

@@ -25,7 +25,7 @@ std::uint32_t code_of(const std::byte* block, std::uint32_t index) {
   return static_cast<std::uint32_t>(bits >> (16 + 3 * index)) & 7;
 }
 
-/// Weighted value between two end points; weights have 6 fractional bits less than their product's 8.
+/// Weighted value between two endpoints; weights have 6 fractional bits less than their product's 8.
 std::uint32_t between(std::uint32_t a0, std::uint32_t a1, std::uint32_t scale, std::uint32_t step) {
   const std::uint32_t weight = (scale * step) >> 6;
   const std::uint32_t product = ((a1 - a0) * weight) & 0xFFFFu;

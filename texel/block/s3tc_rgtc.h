@@ -9,7 +9,7 @@ namespace vitrine::texel {
 
 enum class ColorBlock : std::uint8_t { kRgb, kRgba, kFourColors };  ///< BC1 RGB, BC1 RGBA, BC2 and BC3
 
-/// Weights between the two end points of a channel, in 6 fractional bits of 255ths.
+/// Weights between the two endpoints of a channel, in 6 fractional bits of 255ths.
 inline constexpr std::uint32_t kSevenths = 2331;  ///< 255 * 64 / 7
 inline constexpr std::uint32_t kFifths = 3264;    ///< 255 * 64 / 5
 

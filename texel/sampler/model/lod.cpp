@@ -150,7 +150,7 @@ void choose_levels(const Plan& plan, Lod& lod, std::int32_t nearest) {
 
 Lod shortcut(const Plan& plan, float rho) {
   Lod lod;
-  lod.minify = !(rho <= 1.0f);  // also where it is no number
+  lod.minify = !(rho <= 1.0f);  // also of NaN
   const float base = plan.squared_rho ? rho : rho * 1.41421356237309504880f;
   const auto exponent = static_cast<std::int32_t>((bits_of(base) >> 23) & 255);
   choose_levels(plan, lod, plan.squared_rho ? (exponent - 126) >> 1 : exponent - 127);

@@ -34,7 +34,7 @@ struct BlockLanes {
   }
 };
 
-/// Two end points and what lies between them, in 16-bit lanes of 8 bits.
+/// Two endpoints and what lies between them, in 16-bit lanes of 8 bits.
 struct ColorSteps {
   VU first, second, third, fourth;
 };

@@ -187,7 +187,7 @@ HWY_INLINE void choose_levels(const Plan& plan, VF lod, VI nearest, std::size_t 
   hn::Store(fraction, DF(), state.fraction.lane + first);
 }
 
-/// Where `lod` is no number the level is minified, too.
+/// Where `lod` is NaN the level is minified, too.
 HWY_INLINE void set_minify(VF lod, float largest_magnified, std::size_t first, WaveState& state) {
   state.minify |= lanes_mask_bits(DF(), hn::Not(hn::Le(lod, splat(largest_magnified)))) << first;
 }
