@@ -7,9 +7,9 @@ namespace {
 constexpr char kF = 'F', kI = 'I', kU = 'U', kB = 'B', kD = 'D', kL = 'L', kQ = 'Q';
 #define VITRINE_STRING(x) #x
 constexpr AluInfo kAluInfos[] = {
-#define VITRINE_ALU(name, sources, result, operands, effect) {#name, sources, k##result, VITRINE_STRING(operands)},
+#define VITRINE_ALU(name, sources, result, operands, swap, chain, effect) \
+  {#name, sources, k##result, VITRINE_STRING(operands), #swap[0]},
 #include "spirv/ops.def"
-#undef VITRINE_ALU
 };
 constexpr WideInfo kWideInfos[] = {
 #define VITRINE_WIDE(name, result, operands, effect) {#name, k##result, VITRINE_STRING(operands)},

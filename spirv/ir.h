@@ -27,9 +27,8 @@
 namespace vitrine::spirv::ir {
 
 enum class Op : std::uint16_t {
-#define VITRINE_ALU(name, sources, result, operands, effect) k##name,
+#define VITRINE_ALU(name, sources, result, operands, swap, chain, effect) k##name,
 #include "spirv/ops.def"
-#undef VITRINE_ALU
   kAluCount,
 #define VITRINE_INTRINSIC(name, sources, result, effect) k##name,
 #include "spirv/intrinsics.def"
@@ -46,6 +45,7 @@ struct AluInfo {
   std::uint8_t sources;
   char result;  ///< F I U B
   const char* operands;
+  char swap;  ///< S R _
 };
 /// Row of ops.def; `op` < kAluCount.
 const AluInfo& alu_info(Op op);

@@ -31,6 +31,7 @@ struct Shape {
   unsigned sources;
   char result;
   std::array<char, 4> operand;
+  unsigned chain;
 };
 
 constexpr std::array<char, 4> letters(const char* operands) {
@@ -42,9 +43,9 @@ constexpr std::array<char, 4> letters(const char* operands) {
 constexpr char kF = 'F', kI = 'I', kU = 'U', kB = 'B';
 #define VITRINE_STRING(x) #x
 constexpr Shape kShapes[] = {
-#define VITRINE_ALU(name, sources, result, operands, effect) {sources, k##result, letters(VITRINE_STRING(operands))},
+#define VITRINE_ALU(name, sources, result, operands, swap, chain, effect) \
+  {sources, k##result, letters(VITRINE_STRING(operands)), chain},
 #include "spirv/ops.def"
-#undef VITRINE_ALU
 };
 #undef VITRINE_STRING
 

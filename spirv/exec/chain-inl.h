@@ -1,5 +1,5 @@
-// Handlers of chain links (spirv/exec/chain.h), made from the arithmetic of spirv/alu for the ops that the including
-// file lists. Last Highway include of its .cpp.
+// Handlers of chain links (spirv/exec/chain.h), made from the arithmetic of spirv/alu that the including file has
+// seen. Last Highway include of its .cpp.
 
 #include <array>
 #include <cstddef>
@@ -174,6 +174,25 @@ Handler find_chain(int accumulator, UniformSources uniform, Link link) {
     if (accumulator == exec::kAllSources)
       return find_link<op, exec::kAllSources>(uniform, link, std::integer_sequence<unsigned, 0>());
   return nullptr;
+}
+
+template <Op op>
+Handler find_chain_of(int accumulator, UniformSources uniform, Link link) {
+  if constexpr (shape(op).chain != 0 && HasLaneOp<op>)
+    return find_chain<op, shape(op).chain>(accumulator, uniform, link);
+  return nullptr;
+}
+
+/// A link of an operation that is in chains (column `chain` of ops.def) and whose arithmetic the including file has.
+inline Handler find_family_chain(Op op, int accumulator, UniformSources uniform, Link link) {
+  switch (op) {
+#define VITRINE_ALU(name, sources, result, operands, swap, chain, effect) \
+  case Op::k##name:                                                       \
+    return find_chain_of<Op::k##name>(accumulator, uniform, link);
+#include "spirv/ops.def"
+    default:
+      return nullptr;
+  }
 }
 
 }  // namespace

@@ -13,32 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vitrine::spirv::alu::HWY_NAMESPACE {
 
 Handler find_compare_chain(Op op, int accumulator, UniformSources uniform, Link link) {
-  switch (op) {
-    case Op::kFLt:
-      return find_chain<Op::kFLt, 1 | 2>(accumulator, uniform, link);
-    case Op::kFGe:
-      return find_chain<Op::kFGe, 1 | 2>(accumulator, uniform, link);
-    case Op::kFEq:
-      return find_chain<Op::kFEq, 1 | 2>(accumulator, uniform, link);
-    case Op::kFNeu:
-      return find_chain<Op::kFNeu, 1 | 2>(accumulator, uniform, link);
-    case Op::kIEq:
-      return find_chain<Op::kIEq, 1 | 2>(accumulator, uniform, link);
-    case Op::kINe:
-      return find_chain<Op::kINe, 1 | 2>(accumulator, uniform, link);
-    case Op::kILt:
-      return find_chain<Op::kILt, 1 | 2>(accumulator, uniform, link);
-    case Op::kIGe:
-      return find_chain<Op::kIGe, 1 | 2>(accumulator, uniform, link);
-    case Op::kULt:
-      return find_chain<Op::kULt, 1 | 2>(accumulator, uniform, link);
-    case Op::kUGe:
-      return find_chain<Op::kUGe, 1 | 2>(accumulator, uniform, link);
-    case Op::kSelect:
-      return find_chain<Op::kSelect, 2 | 4>(accumulator, uniform, link);
-    default:
-      return nullptr;
-  }
+  return find_family_chain(op, accumulator, uniform, link);
 }
 
 }  // namespace vitrine::spirv::alu::HWY_NAMESPACE

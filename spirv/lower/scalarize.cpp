@@ -9,24 +9,8 @@
 namespace vitrine::spirv::lowering {
 namespace {
 
-bool commutes(Op op) {
-  switch (op) {
-    case Op::kIAdd:
-    case Op::kIMul:
-    case Op::kAnd:
-    case Op::kOr:
-    case Op::kXor:
-    case Op::kIEq:
-    case Op::kINe:
-    case Op::kAndB:
-    case Op::kOrB:
-    case Op::kXorB:
-    case Op::kEqB:
-      return true;
-    default:
-      return false;  // float operand order decides which NaN survives
-  }
-}
+/// Not of floats: their order decides which NaN survives.
+bool commutes(Op op) { return ir::alu_info(op).swap == 'S'; }
 
 bool writes_memory(const ir::NodeList& list) {
   for (const auto& node : list) {

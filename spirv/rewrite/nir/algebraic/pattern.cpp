@@ -80,9 +80,8 @@ struct OpNames {
   }
 
   static constexpr std::string_view kNames[] = {
-#define VITRINE_ALU(name, sources, result, operands, effect) #name,
+#define VITRINE_ALU(name, sources, result, operands, swap, chain, effect) #name,
 #include "spirv/ops.def"
-#undef VITRINE_ALU
   };
 };
 constexpr OpNames kOpNames;
@@ -269,38 +268,7 @@ std::string with_op(std::string text, std::string_view op) {
 
 }  // namespace
 
-bool is_commutative(Op op) {
-  switch (op) {
-    case Op::kFAdd:
-    case Op::kFMul:
-    case Op::kFMulAdd:  // in its first two operands
-    case Op::kFMin:
-    case Op::kFMax:
-    case Op::kFEq:
-    case Op::kFNeu:
-    case Op::kIAdd:
-    case Op::kIMul:
-    case Op::kIMulHigh:
-    case Op::kUMulHigh:
-    case Op::kUAddCarry:
-    case Op::kIMin:
-    case Op::kIMax:
-    case Op::kUMin:
-    case Op::kUMax:
-    case Op::kIEq:
-    case Op::kINe:
-    case Op::kAnd:
-    case Op::kOr:
-    case Op::kXor:
-    case Op::kAndB:
-    case Op::kOrB:
-    case Op::kXorB:
-    case Op::kEqB:
-      return true;
-    default:
-      return false;
-  }
-}
+bool is_commutative(Op op) { return ir::alu_info(op).swap != '_'; }
 
 ir::Op shape_op(ir::Op op) {
   switch (op) {
