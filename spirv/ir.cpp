@@ -8,7 +8,10 @@ constexpr char kF = 'F', kI = 'I', kU = 'U', kB = 'B', kD = 'D', kL = 'L', kQ = 
 #define VITRINE_STRING(x) #x
 constexpr AluInfo kAluInfos[] = {
 #define VITRINE_ALU(name, sources, result, operands, swap, chain, effect) \
-  {#name, sources, k##result, VITRINE_STRING(operands), #swap[0]},
+  {#name, sources, k##result, VITRINE_STRING(operands), #swap[0], 0},
+#include "spirv/ops.def"
+#define VITRINE_NIR(name, sources, result, operands, swap, reads, effect) \
+  {#name, sources, k##result, VITRINE_STRING(operands), #swap[0], reads},
 #include "spirv/ops.def"
 };
 constexpr WideInfo kWideInfos[] = {
@@ -32,9 +35,14 @@ const WideInfo& wide_info(Op op) {
   return kWideInfos[static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::kIntrinsicEnd) - 1];
 }
 
+std::uint32_t components_read(Op op, std::uint32_t width, std::uint32_t components, std::size_t index) {
+  if (op >= Op::kExecutedCount && alu_info(op).reads != 0) return alu_info(op).reads;
+  if (width != 64) return components;
+  return is_selection(op) || alu_info(op).operands[index] == 'F' ? 2 : 1;
+}
+
 std::uint32_t components_read(const Instr& instr, std::size_t index) {
-  if (instr.width != 64) return instr.components;
-  return alu_info(instr.op).operands[index] == 'B' && !is_selection(instr.op) ? 1 : 2;
+  return components_read(instr.op, instr.width, instr.components, index);
 }
 
 const char* op_name(Op op) {

@@ -29,6 +29,10 @@ namespace vitrine::spirv::ir {
 enum class Op : std::uint16_t {
 #define VITRINE_ALU(name, sources, result, operands, swap, chain, effect) k##name,
 #include "spirv/ops.def"
+  kExecutedCount,  ///< the operations before this have handlers; the lowering sees no others
+  kLastExecuted = kExecutedCount - 1,
+#define VITRINE_NIR(name, sources, result, operands, swap, reads, effect) k##name,
+#include "spirv/ops.def"
   kAluCount,
 #define VITRINE_INTRINSIC(name, sources, result, effect) k##name,
 #include "spirv/intrinsics.def"
@@ -45,14 +49,17 @@ struct AluInfo {
   std::uint8_t sources;
   char result;  ///< F I U B
   const char* operands;
-  char swap;  ///< S R _
+  char swap;           ///< S R _
+  std::uint8_t reads;  ///< components of every operand that are read; 0: as many as the result has
 };
 /// Row of ops.def; `op` < kAluCount.
 const AluInfo& alu_info(Op op);
 struct Instr;
 /// The ops that choose a value whatever it is.
 inline bool is_selection(Op op) { return op == Op::kSelect || op == Op::kSelectB; }
-/// Components that an ALU instruction reads of operand `index`.
+/// Components that an operation on numbers of `width` bits with `components` components of its result reads of operand
+/// `index`.
+std::uint32_t components_read(Op op, std::uint32_t width, std::uint32_t components, std::size_t index);
 std::uint32_t components_read(const Instr& instr, std::size_t index);
 /// Row of wide_ops.def.
 struct WideInfo {
@@ -98,9 +105,7 @@ struct Instr {
   /// ALU: bits of the numbers that it computes. 16: binary16 in the low half of a word. 64: one double, the two words
   /// of which are components 0 and 1 of every operand and of the result. Neither is left behind the rewrites.
   std::uint8_t width = 32;
-  bool exact = false;   ///< precise / NoContraction / feeds an invariant output: inexact rewrites do not apply
-  bool opaque = false;  ///< rewrites neither change it nor look through it: parts of what the reference has as one
-                        ///< operation (5.1)
+  bool exact = false;  ///< precise / NoContraction / feeds an invariant output: inexact rewrites do not apply
   ValueId result = kNoValue;
   std::vector<Src> src;
   std::array<std::uint32_t, 4> imm{};             ///< constants: component bits (booleans: 0 / 1)

@@ -80,7 +80,7 @@ struct Copies {
     if (instr.result == kNoValue) return;
     define(instr.result);
     if (instr.result >= definition.size()) definition.resize(function.values.size(), nullptr);
-    const bool copy = (instr.op == Op::kMov || instr.op == Op::kMovB || instr.op == Op::kVec) && !instr.opaque;
+    const bool copy = instr.op == Op::kMov || instr.op == Op::kMovB || instr.op == Op::kVec;
     definition[instr.result] = copy ? &instr : nullptr;
   }
 

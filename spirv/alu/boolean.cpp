@@ -55,7 +55,7 @@ constexpr OpHandlers handlers_of() {
 }
 
 struct Table {
-  OpHandlers op[static_cast<std::size_t>(Op::kAluCount)];
+  OpHandlers op[static_cast<std::size_t>(Op::kExecutedCount)];
   constexpr OpHandlers& operator[](Op which) { return op[static_cast<std::size_t>(which)]; }
 };
 

@@ -190,7 +190,7 @@ constexpr std::array<OpHandlers, sizeof...(op)> all_handlers(std::index_sequence
 }
 
 /// The handlers of every LaneOp included so far.
-constexpr auto kHandlers = all_handlers(std::make_index_sequence<static_cast<std::size_t>(Op::kAluCount)>());
+constexpr auto kHandlers = all_handlers(std::make_index_sequence<static_cast<std::size_t>(Op::kExecutedCount)>());
 
 }  // namespace
 }  // namespace vitrine::spirv::alu::HWY_NAMESPACE

@@ -1,6 +1,4 @@
 // Arithmetic, bit, conversion, comparison and derivative instructions (SPIR-V 3.42.11, .13 to .16).
-#include <utility>
-
 #include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
 
@@ -169,43 +167,14 @@ void select(Translator& t, const Inst& inst, ir::Op) {
   set_value(t, inst, std::move(results));
 }
 
-/// The reference compares the vector with a literal, which is one operation until its rules come to it, and joins three
-/// components from the last to the first, four in pairs.
+/// `op`: that for two components; those for three and four follow it.
 void reduce_boolean(Translator& t, const Inst& inst, ir::Op op) {
   const ir::ValueId vector = scalar_or_vector(t, inst.operand(0));
-  const std::uint8_t count = components(t, vector);
+  const std::uint32_t count = components(t, vector);
   if (count == 1) return set_value(t, inst, vector);
-  const bool all = op == ir::Op::kAndB;
-  const std::uint32_t word = all ? 1 : 0;
-  const ir::Src neutral = whole(literal(t, {&word, 1}, true));
-  const bool saved = std::exchange(t.opaque, true);
-  std::array<ir::Src, 4> compared;
-  const auto compare = [&](std::uint8_t c) {
-    compared[c] = whole(emit(t, all ? ir::Op::kEqB : ir::Op::kXorB, 1, true, {splat(vector, c), neutral}));
-  };
-  const auto join = [&](ir::Src a, ir::Src b) { return whole(emit(t, op, 1, true, {a, b})); };
-  compare(0);
-  compare(1);
-  if (count == 3) {
-    compare(2);
-    compared[1] = join(compared[1], compared[2]);
-  }
-  ir::Src result = join(compared[0], compared[1]);
-  if (count == 4) {
-    compare(2);
-    compare(3);
-    result = join(result, join(compared[2], compared[3]));
-  }
-  t.opaque = saved;
-  set_value(t, inst, result.value);
-}
-
-void float_modulo(Translator& t, const Inst& inst, ir::Op round) {
-  const Expr a = number_of(t, inst.operand(0)), b = number_of(t, inst.operand(1));
-  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
-  const Expr remainder = a - b * apply(round, {a / b});
-  t.opaque = saved;
-  set_number(t, inst, remainder);
+  const std::uint32_t word = op == ir::Op::kBAllIEqual2 ? 1 : 0;
+  const ir::ValueId neutral = literal(t, {&word, 1}, true);
+  set_value(t, inst, emit(t, for_size(op, count), 1, true, {whole(vector), splat(neutral)}));
 }
 
 void extended_add(Translator& t, const Inst& inst, ir::Op carry) {
@@ -232,17 +201,7 @@ void bit_field_insert(Translator& t, const Inst& inst, ir::Op) {
   const Expr base = number_of(t, inst.operand(0)), value = number_of(t, inst.operand(1));
   const Expr offset = convert_unsigned(number_of(t, inst.operand(2)), 32);
   const Expr bits = convert_unsigned(number_of(t, inst.operand(3)), 32);
-  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
-  const Expr one = imm_u32(t, 1);
-  const auto mask = [&] {
-    return apply(ir::Op::kShl, {apply(ir::Op::kISub, {apply(ir::Op::kShl, {one, bits}), one}), offset});
-  };
-  const Expr kept = base & apply(ir::Op::kNot, {mask()});
-  const Expr joined = kept | (apply(ir::Op::kShl, {value, offset}) & mask());
-  const Expr all = apply(ir::Op::kULt, {imm_u32(t, 31), bits});
-  const Expr inserted = select(all, value, joined);
-  t.opaque = saved;
-  set_number(t, inst, inserted);
+  set_number(t, inst, apply(ir::Op::kBitfieldInsert, {base, value, offset, bits}));
 }
 
 void derivative(Translator& t, const Inst& inst, ir::Op op) {

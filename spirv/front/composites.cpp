@@ -62,15 +62,13 @@ Expr dot(const Expr& a, const Expr& b) {
   Translator& t = *a.t;
   const std::uint32_t n = std::max(a.size(), b.size());
   if (n == 1) return a * b;
-  // Sums of three and four are opaque to the rewrites (5.1), those of two only in the first round, which rewrite()
-  // ends.
-  const bool saved = t.opaque;
-  t.opaque |= a.width == 64;  // its products are not one instruction, by which the rewrites know the sum
-  const Expr products = a * b;
-  t.opaque = true;
-  Expr sum = products.at(0) + products.at(1);
-  for (std::uint8_t i = 2; i < n; i++) sum = sum + products.at(i);
-  t.opaque = saved;
+  if (a.width != 64) {
+    Expr sum{&t, emit(t, for_size(ir::Op::kFDot2, n), 1, false, {a.src(), b.src()}, a.width)};
+    sum.width = a.width;
+    return sum;
+  }
+  Expr sum = a.at(0) * b.at(0);
+  for (std::uint8_t i = 1; i < n; i++) sum = apply(ir::Op::kFAddInSum, {sum, a.at(i) * b.at(i)});
   return sum;
 }
 

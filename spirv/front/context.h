@@ -159,7 +159,6 @@ struct Translator {
 
   const Inst* inst = nullptr;  ///< being translated
   bool exact = false;          ///< the instruction is decorated NoContraction
-  bool opaque = false;         ///< what is emitted now is Instr::opaque
 };
 
 /// A path of an interface variable (first step) that is stored to somewhere; kWholeVariable: at a dynamic index.

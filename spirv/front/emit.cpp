@@ -10,7 +10,6 @@ ir::Instr& append(Translator& t, ir::Op op, std::vector<ir::Src> src) {
   node.instr.op = op;
   node.instr.src = std::move(src);
   node.instr.exact = t.exact;
-  node.instr.opaque = t.opaque;
   if (t.inst != nullptr) node.instr.origin = t.inst->origin;
   return node.instr;
 }
@@ -22,7 +21,7 @@ void check_sources(const Translator& t, ir::Op op, std::uint32_t count, std::uin
   bool fits = sources.size() == info.sources;
   for (std::size_t i = 0; i < sources.size() && fits; i++) {
     fits = is_boolean(t, sources[i].value) == (info.operands[i] == 'B');
-    const std::uint32_t read = width == 64 && !ir::is_selection(op) ? info.operands[i] == 'B' ? 1 : 2 : count;
+    const std::uint32_t read = ir::is_selection(op) ? count : ir::components_read(op, width, count, i);
     for (std::uint32_t c = 0; c < read; c++) fits &= sources[i].swizzle[c] < components(t, sources[i].value);
   }
   if (!fits) throw Failure("operand does not fit its type");

@@ -65,9 +65,14 @@ Expr constant_bits(Translator& t, std::uint64_t bits, std::uint8_t width);
 /// Vector of scalars of one width.
 Expr vector_of(std::span<const Expr> scalars);
 
+/// The second operand is a number of bits or an exponent, of a width of its own.
+inline bool is_scaling(ir::Op op) {
+  return op == ir::Op::kShl || op == ir::Op::kIShr || op == ir::Op::kUShr || op == ir::Op::kLdExp;
+}
+
 /// Width at which `op` computes.
 inline std::uint8_t common_width(ir::Op op, std::span<const Expr> operands) {
-  if (op == ir::Op::kShl || op == ir::Op::kIShr || op == ir::Op::kUShr) return operands[0].width;
+  if (is_scaling(op)) return operands[0].width;
   std::uint8_t width = 0;
   for (const Expr& operand : operands)
     if (operand.literal == Expr::Literal::kNone && !is_boolean(*operand.t, operand.id))
@@ -141,6 +146,11 @@ inline Expr operator|(Expr a, std::uint32_t b) { return a | imm_u32(*a.t, b); }
 inline Expr operator<<(Expr a, std::uint32_t b) { return apply(ir::Op::kShl, {a, imm_u32(*a.t, b)}); }
 inline Expr operator>>(Expr a, std::uint32_t b) { return apply(ir::Op::kUShr, {a, imm_u32(*a.t, b)}); }
 
+/// The row of ops.def for vectors of `size` components, given that for two.
+constexpr ir::Op for_size(ir::Op two, std::uint32_t size) {
+  return static_cast<ir::Op>(static_cast<std::uint32_t>(two) + size - 2);
+}
+
 /// composites.cpp: sum of products, order of section 5.1.
 Expr dot(const Expr& a, const Expr& b);
 
@@ -163,14 +173,5 @@ class ExactScope {
   Translator& t_;
   bool saved_;
 };
-
-/// What `make()` writes is one operation until the reference's rules come to it: closed to them, and one of a count.
-template <class Make>
-Expr composed(Translator& t, Make make) {
-  const bool saved = std::exchange(t.opaque, true);
-  const Expr made = make();
-  t.opaque = saved;
-  return made;
-}
 
 }  // namespace vitrine::spirv::front

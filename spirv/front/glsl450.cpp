@@ -7,7 +7,6 @@
 
 #include "base/numeric.h"
 #include "spirv/front/functions.h"
-#include "spirv/mix.h"
 
 namespace vitrine::spirv::front {
 namespace glsl {
@@ -35,9 +34,7 @@ bool similar_literals(const Expr& x, const Expr& y) {
   return true;
 }
 
-Expr saturate(Expr x) {
-  return composed(*x.t, [&] { return min(max(x, imm(*x.t, 0.0f)), imm(*x.t, 1.0f)); });
-}
+Expr saturate(Expr x) { return apply(ir::Op::kFSat, {x}); }
 
 /// a - b * c as the front end of the reference writes it: (-b * c) + a.
 Expr minus_product(Expr a, Expr b, Expr c) { return multiply_add(-b, c, a); }
@@ -152,7 +149,7 @@ void clamp_int(Translator& t, const Inst& inst, ir::Op) {
 /// lavapipe-shader-math.md 5.3.
 void mix(Translator& t, const Inst& inst, ir::Op) {
   const Expr x = arg(t, inst, 0), y = arg(t, inst, 1), a = arg(t, inst, 2);
-  if (x.width == 16) return result(t, inst, apply(ir::kHalfMix, {x, y, a}));
+  if (x.width == 16) return result(t, inst, apply(ir::Op::kFLrp, {x, y, a}));
   const std::optional<float> x_literal = uniform_literal(x);
   if (similar_literals(x, y)) return result(t, inst, x + a * (y - x));
   if (x_literal == 1.0f) return result(t, inst, (imm(t, 1.0f) + -a) + y * a);
@@ -167,9 +164,7 @@ void step(Translator& t, const Inst& inst, ir::Op) {
   Expr below{&t, ir::kNoValue};
   {
     const ExactScope exact(t);
-    const bool saved = std::exchange(t.opaque, true);  // one operation in the reference's first round
-    below = bool_to_float(x < edge, x.width);
-    t.opaque = saved;
+    below = apply(ir::Op::kSLt, {x, edge});
   }
   result(t, inst, imm(t, 1.0f) - below);
 }
@@ -184,8 +179,6 @@ void smooth_step(Translator& t, const Inst& inst, ir::Op) {
 void fma(Translator& t, const Inst& inst, ir::Op) {
   result(t, inst, multiply_add(arg(t, inst, 0), arg(t, inst, 1), arg(t, inst, 2)));
 }
-
-constexpr std::uint32_t kZeros[4] = {};
 
 /// Where the parts of a floating-point number are.
 struct FloatShape {
@@ -238,27 +231,8 @@ void frexp(Translator& t, const Inst& inst, ir::Op) {
   two_results(t, inst, inst.has(3), significand, exponent);
 }
 
-void ldexp(Translator& t, const Inst& inst, ir::Op) {
-  const Expr x = arg(t, inst, 0);
-  const FloatShape shape = shape_of(x);
-  const std::int32_t limit = 2 * shape.bias;
-  const Expr low = int_constant(t, -limit), high = int_constant(t, limit);
-  const Expr given = convert_signed(arg(t, inst, 1), 32);
-  const bool saved = std::exchange(t.opaque, true);  // one operation until the reference's rules come to it
-  const Expr e = apply(ir::Op::kIMin, {apply(ir::Op::kIMax, {given, low}), high});
-  const Expr half = apply(ir::Op::kIShr, {e, imm_u32(t, 1)});
-  const Expr rest = apply(ir::Op::kISub, {e, half});
-  auto power = [&](Expr exponent) {
-    const Expr top = apply(ir::Op::kIAdd, {exponent, int_constant(t, shape.bias)}) << shape.mantissa;
-    if (x.width == 32) return top;
-    Expr number = constant_bits(t, 0, x.width);
-    if (x.width == 64 && top.size() > 1) number.id = constant(t, std::span(kZeros).first(top.size()));
-    return with_top(number, top);
-  };
-  const Expr first = power(half), second = power(rest);
-  const Expr scaled = x * first * second;
-  t.opaque = saved;
-  result(t, inst, scaled);
+void ldexp(Translator& t, const Inst& inst, ir::Op op) {
+  result(t, inst, apply(op, {arg(t, inst, 0), convert_signed(arg(t, inst, 1), 32)}));
 }
 
 void length(Translator& t, const Inst& inst, ir::Op) { result(t, inst, length_of(arg(t, inst, 0))); }

@@ -89,25 +89,6 @@ std::vector<Expr> matrix_argument(Translator& t, const Inst& inst) {
   return columns;
 }
 
-/// Fields of `count` components packed into a word: 2 x 16 or 4 x 8 bits.
-Expr pack_fields(Translator& t, Expr fields) {
-  const std::uint32_t count = fields.size(), bits = 32 / count;
-  const Expr masked = fields & (bits == 16 ? 0xffffu : 0xffu);
-  Expr word = masked[0];
-  for (std::uint32_t i = 1; i < count; i++) word = word | (masked[i] << (i * bits));
-  static_cast<void>(t);
-  return word;
-}
-
-Expr unpack_fields(Translator& t, Expr word, std::uint32_t count, bool is_signed) {
-  const std::uint32_t bits = 32 / count;
-  std::vector<ir::Src> parts;
-  for (std::uint32_t i = 0; i < count; i++)
-    parts.push_back(
-        whole(apply(is_signed ? ir::Op::kBfeI : ir::Op::kBfeU, {word, imm_u32(t, i * bits), imm_u32(t, bits)}).id));
-  return {&t, vec(t, std::move(parts), false)};
-}
-
 std::uint32_t result_count(const Translator& t, const Inst& inst) { return leaf_info(t, inst.result_type).components; }
 
 }  // namespace
@@ -206,51 +187,17 @@ void inverse(Translator& t, const Inst& inst, ir::Op) {
   set_numbers(t, inst, result_columns);
 }
 
-void pack_unorm(Translator& t, const Inst& inst, ir::Op) {
+void pack(Translator& t, const Inst& inst, ir::Op op) {
   const Expr v = arg(t, inst, 0);
-  result(t, inst, composed(t, [&] {
-           const Expr clamped = min(max(v, imm(t, 0.0f)), imm(t, 1.0f));
-           const Expr rounded = apply(ir::Op::kFRoundEven, {clamped * (v.size() == 2 ? 65535.0f : 255.0f)});
-           return pack_fields(t, apply(ir::Op::kF2U, {rounded}));
-         }));
+  if (v.width != 32 || v.size() != ir::alu_info(op).reads) fail(inst, "operand does not fit its type");
+  result(t, inst, {&t, emit(t, op, 1, false, {v.src()})});
 }
 
-void pack_snorm(Translator& t, const Inst& inst, ir::Op) {
-  const Expr v = arg(t, inst, 0);
-  result(t, inst, composed(t, [&] {
-           const Expr clamped = min(imm(t, 1.0f), max(imm(t, -1.0f), v));
-           const Expr rounded = apply(ir::Op::kFRoundEven, {clamped * (v.size() == 2 ? 32767.0f : 127.0f)});
-           return pack_fields(t, apply(ir::Op::kF2I, {rounded}));
-         }));
-}
-
-void pack_half(Translator& t, const Inst& inst, ir::Op) {
-  const Expr v = arg(t, inst, 0);
-  result(t, inst, composed(t, [&] { return pack_fields(t, apply(ir::Op::kF2Half, {v})); }));
-}
-
-void unpack_unorm(Translator& t, const Inst& inst, ir::Op) {
-  const std::uint32_t count = result_count(t, inst);
-  const Expr word = arg(t, inst, 0);
-  result(t, inst, composed(t, [&] {
-           const Expr fields = apply(ir::Op::kU2F, {unpack_fields(t, word, count, false)});
-           return fields / imm(t, count == 2 ? 65535.0f : 255.0f);
-         }));
-}
-
-void unpack_snorm(Translator& t, const Inst& inst, ir::Op) {
-  const std::uint32_t count = result_count(t, inst);
-  const Expr word = arg(t, inst, 0);
-  result(t, inst, composed(t, [&] {
-           const Expr fields = apply(ir::Op::kI2F, {unpack_fields(t, word, count, true)});
-           const Expr scaled = fields / imm(t, count == 2 ? 32767.0f : 127.0f);
-           return min(imm(t, 1.0f), max(imm(t, -1.0f), scaled));
-         }));
-}
-
-void unpack_half(Translator& t, const Inst& inst, ir::Op) {
-  const Expr word = arg(t, inst, 0);
-  result(t, inst, composed(t, [&] { return apply(ir::Op::kHalf2F, {unpack_fields(t, word, 2, false)}); }));
+void unpack(Translator& t, const Inst& inst, ir::Op op) {
+  const bool bytes = op == ir::Op::kUnpackUnorm4x8 || op == ir::Op::kUnpackSnorm4x8;
+  const std::uint32_t count = bytes ? 4 : 2;
+  if (result_count(t, inst) != count) fail(inst, "result does not fit its type");
+  result(t, inst, {&t, emit(t, op, count, false, {arg(t, inst, 0).src()})});
 }
 
 }  // namespace vitrine::spirv::front::glsl

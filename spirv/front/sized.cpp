@@ -291,13 +291,13 @@ Expr apply_half(Op op, std::span<const Expr> in) {
   return boolean ? result : with_width(result, 16);
 }
 
-/// The words of component `c`, or the boolean.
-ir::Src double_source(const Expr& value, std::uint32_t c) {
+/// The words of component `c`, or the boolean or exponent.
+ir::Src double_source(const Expr& value, std::uint32_t c, char letter) {
   Translator& t = *value.t;
   const ir::Src src = value.src();
   if (src.swizzle[c] >= components(t, src.value)) throw Failure("operands differ in size");
   const ir::Src low = splat(src.value, src.swizzle[c]);
-  if (is_boolean(t, src.value)) return low;
+  if (is_boolean(t, src.value) || letter == 'I') return low;
   if (value.high == ir::kNoValue) throw Failure("operand does not fit its type");
   const auto *words = constant_of(t, src.value), *high = constant_of(t, value.high);
   if (words != nullptr && high != nullptr) {
@@ -316,7 +316,8 @@ Expr apply_double(Op op, std::span<const Expr> in) {
   std::vector<ir::Src> low, high;
   for (std::uint32_t c = 0; c < size; c++) {
     std::vector<ir::Src> sources;
-    for (const Expr& operand : in) sources.push_back(double_source(operand, c));
+    for (std::size_t i = 0; i < in.size(); i++)
+      sources.push_back(double_source(in[i], c, ir::alu_info(op).operands[i]));
     const ir::ValueId value = emit(t, op, boolean ? 1 : 2, boolean, std::move(sources), 64);
     low.push_back(splat(value, 0));
     high.push_back(splat(value, 1));
@@ -377,10 +378,9 @@ Expr apply_wide(Op op, std::span<const Expr> operands) {
 
 Expr apply_sized(Op op, std::span<const Expr> operands, std::uint8_t width) {
   Translator& t = *operands[0].t;
-  const bool is_shift = op == Op::kShl || op == Op::kIShr || op == Op::kUShr;
   std::vector<Expr> in(operands.begin(), operands.end());
   for (std::size_t i = 0; i < in.size(); i++) {
-    if (is_shift && i == 1) continue;
+    if (is_scaling(op) && i == 1) continue;
     if (in[i].literal != Expr::Literal::kNone) in[i] = literal_at(in[i], width);
     if (!is_boolean(t, in[i].id) && in[i].width != width) throw Failure("operands differ in width");
   }

@@ -159,10 +159,9 @@ struct Builder {
       return false;
     }
     words.insert(instr.result);
-    instr.op = is_boolean(t, loaded) ? ir::Op::kMovB : ir::Op::kMov;
+    instr.op = is_boolean(t, loaded) ? ir::Op::kCopyVarB : ir::Op::kCopyVar;
     instr.src = {whole(loaded)};
     std::fill(std::begin(instr.data), std::end(instr.data), 0u);
-    instr.opaque = true;
     return true;
   }
 

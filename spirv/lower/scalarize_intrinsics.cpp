@@ -6,7 +6,8 @@
 namespace vitrine::spirv::lowering {
 
 void Scalarizer::build_instr(const ir::Instr& instr) {
-  if (instr.op < Op::kAluCount) return build_alu(instr);
+  if (instr.op < Op::kExecutedCount) return build_alu(instr);
+  if (instr.op < Op::kAluCount) return fail("operation that the rewrites should have taken apart");
   if (ir::is_wide(instr.op)) return build_wide(instr);
   switch (instr.op) {
     case Op::kConst: {

@@ -13,7 +13,6 @@
 #include "spirv/rewrite/gallivm/passes.h"
 #include "spirv/rewrite/llvm/passes.h"
 #include "spirv/rewrite/lower/passes.h"
-#include "spirv/rewrite/nir/algebraic/composed.h"
 #include "spirv/rewrite/nir/passes.h"
 #include "spirv/rewrite/nir/to_lcssa.h"
 
@@ -54,12 +53,6 @@ constexpr PhaseInfo kPhases[] = {
 #undef VITRINE_PHASE
 #undef VITRINE_PASS
 };
-
-constexpr bool has_first_round(Phase phase) {
-  for (const Pass& pass : kPasses)
-    if (pass.phase == phase && pass.when == When::kFirst) return true;
-  return false;
-}
 
 /// Which steps, of those that are not needed, run over one shader.
 class Choice {
@@ -156,10 +149,9 @@ class Runner {
   /// True when another round is wanted.
   bool run_round(Phase phase, int round) {
     graph_.first_round = round == 0;
-    bool changed = round == 0 && has_first_round(phase), before = false;
+    bool changed = false, before = false;
     for (const Pass& pass : kPasses) {
       if (pass.phase != phase) continue;
-      if (pass.when == When::kFirst && round == 0) run_pass(pass, round);
       if (pass.when == When::kIfBefore && before) run_pass(pass, round);
       if (pass.when == When::kAlways || (pass.when == When::kAtRest && !changed))
         changed |= before = run_pass(pass, round);

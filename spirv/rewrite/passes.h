@@ -18,7 +18,7 @@ enum class Phase : std::uint8_t {
 };
 
 /// Columns of passes.def.
-enum class When : std::uint8_t { kAlways, kFirst, kIfBefore, kAtRest };
+enum class When : std::uint8_t { kAlways, kIfBefore, kAtRest };
 enum class Needed : std::uint8_t { kOptional, kNeeded };
 
 struct Pass {

@@ -108,7 +108,7 @@ class Evaluator {
 
   void instruction(const ir::Instr& instr) {
     Value result{};
-    if (instr.op < ir::Op::kAluCount) {
+    if (instr.op < ir::Op::kExecutedCount) {
       for (std::size_t c = 0; c < instr.components; ++c) {
         std::uint32_t operand[3] = {};
         for (std::size_t i = 0; i < instr.src.size(); ++i) operand[i] = get(instr.src[i], c);

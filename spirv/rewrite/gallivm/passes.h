@@ -9,6 +9,9 @@ namespace vitrine::spirv::rewriting {
 /// intermediate code, before its code generator simplifies on its own.
 void choose_min_max(Graph& graph);
 
+/// Sums of three and four numbers, which the rules do not look into, become additions.
+void build_sums(Graph& graph);
+
 /// What the building blocks of arithmetic simplify on their own, for scalar code.
 void build_arit(Graph& graph);
 

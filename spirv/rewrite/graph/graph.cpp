@@ -25,7 +25,6 @@ void describe(const Inst& inst, ir::Instr& instr) {
   instr.components = inst.components;
   instr.boolean = inst.boolean;
   instr.exact = inst.exact;
-  instr.opaque = inst.opaque;
   instr.result = inst.result;
   std::copy(std::begin(inst.imm), std::end(inst.imm), instr.imm.begin());
   instr.origin = inst.origin;
@@ -68,12 +67,11 @@ void Graph::import_node(std::unique_ptr<ir::Node> node, BlockId block) {
   inst.origin = instr.origin;
   if (node->kind == ir::Node::Kind::kInstr) {
     inst.kind = kind_of(instr);
-    inst.op = instr.op;
+    inst.op = instr.op == Op::kCopyVar ? Op::kMov : instr.op == Op::kCopyVarB ? Op::kMovB : instr.op;
     inst.components = instr.components;
     inst.boolean = instr.boolean;
     inst.width = instr.width;
     inst.exact = instr.exact;
-    inst.opaque = instr.opaque && instr.op != Op::kMov && instr.op != Op::kMovB;
     inst.result = instr.result;
     std::copy(instr.imm.begin(), instr.imm.end(), inst.imm);
     if (instr.result != ir::kNoValue) values[instr.result].def = id;

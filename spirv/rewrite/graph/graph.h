@@ -26,16 +26,6 @@ struct Operand {
   Slot next = kNone, previous = kNone;  ///< use list
 };
 
-/// When an opaque instruction becomes an ordinary one to the rules.
-enum class Opens : std::uint8_t {
-  kNever,
-  kVisited,            ///< when the rules first come to it
-  kWithResult,         ///< when the rules first come to what ends its remainder or ldexp
-  kAfterRules,         ///< after the rules of the first round
-  kAfterRound,         ///< after the first round
-  kVisitedAfterRound,  ///< when the rules come to it after the first round
-};
-
 struct Inst {
   enum class Kind : std::uint8_t {
     kAlu,        ///< one of ops.def
@@ -52,8 +42,8 @@ struct Inst {
   std::uint8_t width = 32;  ///< ir::Instr::width; of a kAlu, too, that selects between numbers of another width
   bool boolean = false;
   bool exact = false;
-  bool opaque = false;
-  Opens opens = Opens::kNever;  ///< parts of dot products, remainders, ldexp
+  bool opaque = false;  ///< made behind the rules of NIR: nothing looks into it or takes it away
+  bool packs = false;   ///< F2Half, Half2F: an operation of its own in the reference, of packed halves
   bool removed = false;
   ValueId result = ir::kNoValue;
   Slot first = 0;  ///< operands are sources[first, first + count)
@@ -71,8 +61,8 @@ inline bool computes(const Inst& inst) { return inst.kind == Inst::Kind::kAlu ||
 
 /// Components that an operation of ops.def reads of operand `index`.
 inline unsigned operand_components(const Inst& inst, std::uint32_t index) {
-  if (inst.width != 64) return inst.components;
-  return ir::alu_info(inst.op).operands[index] == 'B' && !ir::is_selection(inst.op) ? 1 : 2;
+  if (inst.width != 64 && inst.op < Op::kExecutedCount) return inst.components;
+  return ir::components_read(inst.op, inst.width, inst.components, index);
 }
 
 struct Block {
@@ -100,7 +90,6 @@ class Graph {
   std::vector<Block> blocks;
   std::vector<std::unique_ptr<ir::Node>> nodes;  ///< If, Loop and intrinsic nodes; their lists and src are empty
   BlockId root = 0;
-  bool first_rules = true;   ///< before and in the first run of the rules: dot products are single operations
   bool first_round = false;  ///< the first round of a phase of passes.def runs
   ir::Function& function;
 

@@ -126,8 +126,7 @@ class Joiner {
     const InstId def = value == ir::kNoValue ? kNone : graph_.values[value].def;
     if (def == kNone) return kNone;
     const Inst& inst = graph_.insts[def];
-    const bool selects =
-        inst.kind == Kind::kAlu && inst.op == Op::kSelect && inst.width == 32 && inst.components == 1 && !inst.opaque;
+    const bool selects = inst.kind == Kind::kAlu && inst.op == Op::kSelect && inst.width == 32 && inst.components == 1;
     return selects ? def : kNone;
   }
 
@@ -140,7 +139,7 @@ class Joiner {
 
   /// What moves have brought: a branch that has become selections yields words by them.
   Src moved(Src src) const {
-    for (const Inst* def = graph_.def(src.value); def && is_move(*def) && !def->opaque; def = graph_.def(src.value)) {
+    for (const Inst* def = graph_.def(src.value); def && is_move(*def); def = graph_.def(src.value)) {
       const Src from = graph_.source(*def, 0);
       src = scalar({from.value, {from.swizzle[src.swizzle[0]]}});
     }

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/numeric.h"
-#include "spirv/mix.h"
 #include "spirv/rewrite/graph/literals.h"
 #include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/nir/constant_expressions_float.h"
@@ -114,7 +113,7 @@ bool evaluate_sized(const Graph& graph, const Inst& inst, unsigned c, std::uint3
   }
   if (inst.width == 16) {
     std::uint32_t result = 0;
-    if (inst.op == ir::kHalfMix) {
+    if (inst.op == Op::kFLrp) {
       const float x = base::float_of(singles[0]), y = base::float_of(singles[1]), weight = base::float_of(singles[2]);
       const float rest = 1.0f - weight;
       const float left = x * rest, right = y * weight;
@@ -133,6 +132,8 @@ bool evaluate_sized(const Graph& graph, const Inst& inst, unsigned c, std::uint3
     result = product + numbers[2];
   } else if (inst.op == Op::kFSign) {
     result = numbers[0] > 0.0 ? 1.0 : numbers[0] < 0.0 ? -1.0 : 0.0;
+  } else if (inst.op == Op::kFAddInSum) {
+    result = numbers[0] + numbers[1];
   } else if (!fold_unary(inst.op, numbers[0], result) && !fold_binary(inst.op, numbers[0], numbers[1], result)) {
     return false;
   }

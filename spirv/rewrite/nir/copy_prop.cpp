@@ -65,14 +65,6 @@ bool move_to_vec(Graph& graph, InstId id, const Inst& vec) {
   return true;
 }
 
-/// A sum that is still closed reads a vector of two products as a whole: of several values, it stays one.
-bool reads_whole(const Graph& graph, const Inst& user, const Inst& copy) {
-  if (!user.opaque || user.opens != Opens::kVisitedAfterRound || copy.kind != Kind::kVec) return false;
-  for (std::uint32_t i = 1; i < copy.count; ++i)
-    if (graph.source(copy, i).value != graph.source(copy, 0).value) return true;
-  return false;
-}
-
 /// The uses of a copy become uses of what it copies, in their order, which is the order in which the rules wake users.
 /// A join reads whole values, a component of one by a copy, unless `into_joins`.
 bool propagate(Graph& graph, InstId id, bool into_joins) {
@@ -83,7 +75,6 @@ bool propagate(Graph& graph, InstId id, bool into_joins) {
   bool changed = false;
   for (const Slot slot : uses) {
     const InstId user = graph.sources[slot].user;
-    if (reads_whole(graph, graph.insts[user], graph.insts[id])) continue;
     const std::uint32_t index = slot - graph.insts[user].first;
     Src src = graph.source(graph.insts[user], index);
     unsigned read = components_read(graph, graph.insts[user], index);

@@ -8,7 +8,6 @@
 
 #include "base/float_mode.h"
 #include "spirv/rewrite/graph/tree.h"
-#include "spirv/rewrite/nir/algebraic/composed.h"
 #include "spirv/rewrite/nir/constant_expressions.h"
 
 namespace vitrine::spirv::rewriting {
@@ -218,11 +217,12 @@ class Pricer {
   unsigned price_of(const Inst& inst) const {
     if (inst.kind == Kind::kVec) return 1;
     if (inst.kind == Kind::kIntrinsic) return leaves_loop(inst) || is_jump(inst, Op::kYield) ? 0 : 1;
-    if (inst.kind == Kind::kSized) return cost_of(graph_, inst);
+    if (inst.op == Op::kFAddInSum) return 0;
+    if (inst.kind == Kind::kSized) return 1;
     if (inst.kind != Kind::kAlu || is_address(inst, 0)) return 0;
     if ((inst.op == Op::kSelect || inst.op == Op::kSelectB) && compares_counter(inst))
       return graph_.values[graph_.source(inst, 0).value].uses == 1 ? ~0u : 0;  // the comparison goes as well
-    return cost_of(graph_, inst);
+    return 1;
   }
 
   bool walks_array(const Inst& inst) const {

@@ -1,10 +1,19 @@
 // Arithmetic on vectors becomes arithmetic on their components (nir_lower_alu_to_scalar.c).
+#include <initializer_list>
+
 #include "spirv/rewrite/nir/passes.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
 
 using Kind = Inst::Kind;
+
+/// Component `c` of operand `index`, for all components of a user.
+Src component(const Graph& graph, const Inst& inst, std::uint32_t index, unsigned c) {
+  const Src src = graph.source(inst, index);
+  const std::uint8_t s = src.swizzle[c];
+  return {src.value, {s, s, s, s}};
+}
 
 /// One scalar instruction per component, and a Vec of them.
 void split(Graph& graph, InstId id) {
@@ -15,14 +24,9 @@ void split(Graph& graph, InstId id) {
     const InstId part = graph.create(inst.kind, inst.op, 1, inst.boolean, inst.count);
     graph.insts[part].width = inst.width;
     graph.insts[part].exact = inst.exact;
-    graph.insts[part].opaque = inst.opaque;
-    graph.insts[part].opens = inst.opens;
+    graph.insts[part].packs = inst.packs;
     graph.insts[part].origin = inst.origin;
-    for (std::uint32_t i = 0; i < inst.count; ++i) {
-      const Src src = graph.source(inst, i);
-      const std::uint8_t s = src.swizzle[c];
-      graph.set_source(part, i, {src.value, {s, s, s, s}});
-    }
+    for (std::uint32_t i = 0; i < inst.count; ++i) graph.set_source(part, i, component(graph, inst, i, c));
     graph.insert_before(id, part);
     graph.set_source(vec, c, {graph.insts[part].result, {0, 0, 0, 0}});
   }
@@ -31,14 +35,98 @@ void split(Graph& graph, InstId id) {
   graph.remove(id);
 }
 
+/// What takes a vector to one number, or one number to a vector.
+class Reducer {
+ public:
+  Reducer(Graph& graph, InstId id) : graph_(graph), inst_(graph.insts[id]), id_(id) {}
+
+  void run() {
+    const Src made = reduced();
+    graph_.replace_uses(inst_.result, made.value);
+    graph_.remove(id_);
+  }
+
+  static bool knows(Op op) {
+    switch (op) {
+      case Op::kFDot2:
+      case Op::kFDot3:
+      case Op::kFDot4:
+      case Op::kPackUvec2ToUint:
+      case Op::kPackUvec4ToUint:
+      case Op::kPackHalf2x16:
+      case Op::kUnpackHalf2x16:
+        return true;
+      default:
+        return false;
+    }
+  }
+
+ private:
+  Src reduced() {
+    switch (inst_.op) {
+      case Op::kPackUvec2ToUint:
+        return add(Op::kOr, {field(1, 16, 0xffff), field(0, 0, 0xffff)});
+      case Op::kPackUvec4ToUint: {
+        const Src upper = add(Op::kOr, {field(3, 24, 0xff), field(2, 16, 0xff)});
+        return add(Op::kOr, {upper, add(Op::kOr, {field(1, 8, 0xff), field(0, 0, 0xff)})});
+      }
+      case Op::kPackHalf2x16:
+        return add(Op::kPackHalf2x16Split, {part(0, 0), part(0, 1)});
+      case Op::kUnpackHalf2x16: {
+        const Src low = add(Op::kUnpackHalf2x16SplitX, {part(0, 0)});
+        return place(graph_.create(Kind::kVec, Op::kVec, 2, false, 2),
+                     {low, add(Op::kUnpackHalf2x16SplitY, {part(0, 0)})});
+      }
+      default:
+        return dot();
+    }
+  }
+
+  /// Products, added from the last to the first.
+  Src dot() {
+    Src sum;
+    for (unsigned c = operand_components(inst_, 0); c-- > 0;) {
+      const Src product = add(Op::kFMul, {part(0, c), part(1, c)});
+      sum = sum.value == ir::kNoValue ? product : add(Op::kFAdd, {sum, product});
+    }
+    return sum;
+  }
+
+  Src field(unsigned c, std::uint32_t shift, std::uint32_t mask) {
+    const Src bits = add(Op::kAnd, {part(0, c), literal(mask)});
+    return shift == 0 ? bits : add(Op::kShl, {bits, literal(shift)});
+  }
+
+  Src part(std::uint32_t index, unsigned c) const { return component(graph_, inst_, index, c); }
+  Src literal(std::uint32_t bits) { return place(graph_.create_const(1, false, &bits), {}); }
+  Src add(Op op, std::initializer_list<Src> operands) {
+    const auto count = static_cast<std::uint32_t>(operands.size());
+    return place(graph_.create(inst_.kind, op, 1, false, count), operands);
+  }
+
+  Src place(InstId made, std::initializer_list<Src> operands) {
+    graph_.insts[made].width = inst_.width;
+    graph_.insts[made].exact = inst_.exact;
+    graph_.insts[made].origin = inst_.origin;
+    std::uint32_t index = 0;
+    for (const Src& src : operands) graph_.set_source(made, index++, src);
+    graph_.insert_before(id_, made);
+    return {graph_.insts[made].result, {}};
+  }
+
+  Graph& graph_;
+  const Inst inst_;
+  const InstId id_;
+};
+
 }  // namespace
 
 bool lower_alu_to_scalar(Graph& graph) {
   bool changed = false;
   auto visit = [&](InstId id) {
     const Inst& inst = graph.insts[id];
-    if (!computes(inst) || inst.width == 64 || inst.components < 2) return;
-    split(graph, id);
+    if (!computes(inst) || inst.width == 64 || (inst.components < 2 && !Reducer::knows(inst.op))) return;
+    Reducer::knows(inst.op) ? Reducer(graph, id).run() : split(graph, id);
     changed = true;
   };
   for_each_inst(graph, graph.root, visit);

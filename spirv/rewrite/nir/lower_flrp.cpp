@@ -1,7 +1,6 @@
 // What mixes of halves consist of: x * (1 + -a) + y * a, or x + a * (y + -x) between literals. The reference decides by
 // reading halves as doubles, to which all literals but 0 are alike, and none is 1 or -1 (lavapipe-shader-math.md 5.3;
 // lavapipe-optimizer.md 3.8).
-#include "spirv/mix.h"
 #include "spirv/rewrite/nir/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -15,7 +14,7 @@ class Mixer {
 
   void visit(InstId id) {
     const Inst& mix = graph_.insts[id];
-    if (mix.kind != Kind::kSized || mix.op != ir::kHalfMix) return;
+    if (mix.kind != Kind::kSized || mix.op != Op::kFLrp) return;
     id_ = id;
     const Src x = graph_.source(mix, 0), y = graph_.source(mix, 1), weight = graph_.source(mix, 2);
     const bool open = !mix.exact && similar_literals(x, y);

@@ -1,5 +1,7 @@
 // Operations on constants become their results (nir_opt_constant_folding.c; lavapipe-optimizer.md 4.7).
 #include "base/float_mode.h"
+#include "base/numeric.h"
+#include "spirv/rewrite/graph/literals.h"
 #include "spirv/rewrite/nir/constant_expressions.h"
 #include "spirv/rewrite/nir/passes.h"
 
@@ -29,6 +31,24 @@ bool fold_vector(Graph& graph, InstId id) {
   return true;
 }
 
+/// A sum of literals, of halves rounded once.
+bool fold_sum(Graph& graph, InstId id) {
+  const Inst& inst = graph.insts[id];
+  const Src src = graph.source(inst, 0);
+  const Inst* constant = graph.constant(src.value);
+  if (!constant) return false;
+  float sum = 0.0f;
+  for (unsigned c = 0; c < operand_components(inst, 0); ++c) {
+    const std::uint8_t s = src.swizzle[c];
+    const auto number = static_cast<float>(literal_number(*constant, {s, s, s, s}, inst.width));
+    sum = c == 0 ? number : sum + number;
+  }
+  std::uint32_t words[2] = {base::bits_of(sum), 0};
+  if (inst.width == 16) words[0] = base::float_to_half_nearest(sum);
+  become_constant(graph, id, words);
+  return true;
+}
+
 bool fold_sized(Graph& graph, InstId id) {
   const Inst inst = graph.insts[id];
   std::uint32_t bits[5] = {};
@@ -51,6 +71,9 @@ bool fold_conversion(Graph& graph, InstId id) {
 bool fold(Graph& graph, InstId id) {
   const Inst inst = graph.insts[id];
   if (inst.kind == Inst::Kind::kVec) return fold_vector(graph, id);
+  if (inst.op == Op::kFSum2 || inst.op == Op::kFSum3 || inst.op == Op::kFSum4) return fold_sum(graph, id);
+  if (computes(inst) && inst.op >= Op::kExecutedCount && inst.op != Op::kFLrp && inst.op != Op::kFAddInSum)
+    return false;  // its turn comes when it has been taken apart
   if (inst.kind == Inst::Kind::kSized) return fold_sized(graph, id);
   if (inst.kind == Inst::Kind::kIntrinsic) return fold_conversion(graph, id);
   if (inst.kind != Inst::Kind::kAlu || inst.count == 0) return false;

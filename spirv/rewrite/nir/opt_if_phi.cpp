@@ -58,7 +58,7 @@ bool is_conversion(Op op) {
 }
 
 bool may_split(const Inst& inst) {
-  if (inst.kind != Kind::kAlu || inst.opaque || inst.op == Op::kMov || inst.op == Op::kMovB) return false;
+  if (inst.kind != Kind::kAlu || inst.op == Op::kMov || inst.op == Op::kMovB) return false;
   if (inst.op == Op::kNot || inst.op == Op::kNotB || is_conversion(inst.op)) return false;
   return ir::alu_info(inst.op).result != 'B' || ir::alu_info(inst.op).operands[0] == 'B';
 }

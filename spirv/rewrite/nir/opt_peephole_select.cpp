@@ -1,7 +1,6 @@
 // Small branches become unconditional code and selections (nir_opt_peephole_select.c; lavapipe-optimizer.md 5.1, 5.2).
 #include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
-#include "spirv/rewrite/nir/algebraic/composed.h"
 #include "spirv/rewrite/nir/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -9,7 +8,8 @@ namespace {
 
 using Kind = Inst::Kind;
 
-/// Instructions that both branches together may hold to become selects; moves, negations and absolute values are free.
+/// Instructions that both branches together may hold to become selects; moves, negations, absolute values and
+/// saturations are free.
 constexpr unsigned kFlattenLimit = 8;
 
 bool is_free(const Inst& inst) {
@@ -20,6 +20,8 @@ bool is_free(const Inst& inst) {
     case Op::kINeg:
     case Op::kFAbs:
     case Op::kIAbs:
+    case Op::kFSat:
+    case Op::kFAddInSum:
       return true;
     default:
       return false;
@@ -65,7 +67,7 @@ bool extends_sign(const Graph& graph, const Inst& inst) {
 /// from or to halves, or extends the sign of an operand. What packs or unpacks halves is not meant.
 bool is_part(const Graph& graph, const Inst& inst) {
   if (inst.count == 0) return false;
-  const auto is_arithmetic = [](const Inst& half) { return half.opens == Opens::kNever; };
+  const auto is_arithmetic = [](const Inst& half) { return !half.packs; };
   const Inst* def = graph.def(graph.source(inst, 0).value);
   switch (inst.op) {
     case Op::kF2Half:
@@ -91,7 +93,7 @@ bool can_hoist(const Graph& graph, const Inst& inst, unsigned& cost) {
       return true;
     case Kind::kAlu:
     case Kind::kSized:
-      cost += is_free(inst) || is_part(graph, inst) ? 0 : cost_of(graph, inst);
+      cost += is_free(inst) || is_part(graph, inst) ? 0 : 1;
       return true;
     case Kind::kIntrinsic:
       if (ir::is_wide(inst.op)) {

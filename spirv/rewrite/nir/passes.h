@@ -69,6 +69,9 @@ bool opt_loop_unroll(Graph& graph);
 bool opt_algebraic(Graph& graph);
 bool opt_algebraic_late(Graph& graph);
 
+/// Operations that no program has, but for sums and mixes, are taken apart as the rules and lower_alu_to_scalar() do.
+bool lower_operations(Graph& graph);
+
 /// Mixes of halves are single operations until the finalisation, other mixes never.
 void lower_flrp(Graph& graph);
 

@@ -48,14 +48,14 @@ bool equal_operands(const Graph& graph, const Inst& inst, bool negated) {
   bool negative = false;
   for (Src& src : operand) {
     const Inst* def = graph.def(src.value);
-    if (!negated || !def || !computes(*def) || def->op != Op::kFNeg || def->opaque) continue;
+    if (!negated || !def || !computes(*def) || def->op != Op::kFNeg) continue;
     const Src inner = graph.source(*def, 0);
-    for (unsigned c = 0; c < inst.components; ++c) src.swizzle[c] = inner.swizzle[src.swizzle[c]];
+    for (unsigned c = 0; c < operand_components(inst, 0); ++c) src.swizzle[c] = inner.swizzle[src.swizzle[c]];
     src.value = inner.value;
     negative = !negative;
   }
   if (operand[0].value != operand[1].value || negative != negated) return false;
-  for (unsigned c = 0; c < inst.components; ++c)
+  for (unsigned c = 0; c < operand_components(inst, 0); ++c)
     if (operand[0].swizzle[c] != operand[1].swizzle[c]) return false;
   return true;
 }
@@ -75,7 +75,7 @@ Range RangeAnalysis::of_constant(const Inst& user, std::uint32_t index, const In
   const bool real = type == 'F';
   Range range{0, real, real, real};
   if (real && user.width != 32) return of_sized_constant(user, index, constant);
-  for (unsigned c = 0; c < user.components; ++c) {
+  for (unsigned c = 0; c < operand_components(user, index); ++c) {
     const std::uint32_t bits = constant.imm[graph_.source(user, index).swizzle[c]];
     range.signs = static_cast<std::uint8_t>(range.signs | sign_of(bits, type));
     if (!real) continue;
@@ -90,7 +90,7 @@ Range RangeAnalysis::of_constant(const Inst& user, std::uint32_t index, const In
 Range RangeAnalysis::of_sized_constant(const Inst& user, std::uint32_t index, const Inst& constant) const {
   Range range{0, true, true, true};
   const Src src = graph_.source(user, index);
-  for (unsigned c = 0; c < (user.width == 64 ? 1u : user.components); ++c) {
+  for (unsigned c = 0; c < (user.width == 64 ? 1u : operand_components(user, index)); ++c) {
     std::array<std::uint8_t, 4> swizzle = src.swizzle;
     if (user.width != 64) swizzle[0] = src.swizzle[c];
     const double v = literal_number(constant, swizzle, user.width);
@@ -115,7 +115,6 @@ Range RangeAnalysis::of_typed_source(const Inst& inst, std::uint32_t index, char
   if (!def) return {};
   if (def->kind == Inst::Kind::kConst) return of_constant(inst, index, *def, type);
   if (!computes(*def)) return {};
-  if (def->opaque) return type == 'F' && def->op == Op::kFAdd && graph_.first_rules ? of_dot(*def) : Range{};
   const bool untyped = def->op == Op::kMov || def->op == Op::kSelect;
   if (!untyped && (ir::alu_info(def->op).result == 'F') != (type == 'F')) return {};
   if (cache_.size() < graph_.values.size()) cache_.resize(graph_.values.size());
@@ -129,14 +128,12 @@ Range RangeAnalysis::of_typed_source(const Inst& inst, std::uint32_t index, char
   return cache_[value].range[slot];
 }
 
-/// The reference has one operation for a dot product, of which it knows the sign when both vectors are the same.
-Range RangeAnalysis::of_dot(const Inst& sum) {
-  const Inst* product = graph_.def(graph_.source(sum, 1).value);
-  if (!product || product->kind != Inst::Kind::kAlu || product->op != Op::kFMul) return {};
+/// A dot product has a sign where both vectors are the same, or one the negation of the other.
+Range RangeAnalysis::of_dot(const Inst& inst) {
   for (const bool negated : {false, true})
-    if (equal_operands(graph_, *product, negated))
-      return {static_cast<std::uint8_t>(kZero | (negated ? kNegative : kPositive)), false,
-              of_source(*product, 0).number, false};
+    if (equal_operands(graph_, inst, negated))
+      return {static_cast<std::uint8_t>(kZero | (negated ? kNegative : kPositive)), false, of_source(inst, 0).number,
+              false};
   return {};
 }
 
@@ -249,6 +246,10 @@ Range RangeAnalysis::of_result(const Inst& inst, char type) {
     case Op::kFSqrt:
     case Op::kFRsq:
       return {kZero | kPositive, false, false, false};
+    case Op::kFDot2:
+    case Op::kFDot3:
+    case Op::kFDot4:
+      return of_dot(inst);
     default:
       return of_float_result(inst);
   }

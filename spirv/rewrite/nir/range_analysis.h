@@ -40,7 +40,7 @@ class RangeAnalysis {
   Range of_sized_constant(const Inst& user, std::uint32_t index, const Inst& constant) const;
   Range of_result(const Inst& inst, char type);
   Range of_float_result(const Inst& inst);
-  Range of_dot(const Inst& sum);
+  Range of_dot(const Inst& inst);
   Range of_sum(const Inst& inst);
   Range of_product(const Inst& inst);
   Range of_power(const Inst& inst);

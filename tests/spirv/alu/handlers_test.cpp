@@ -130,7 +130,7 @@ TEST_P(EveryOp, EqualsTheModel) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Alu, EveryOp, ::testing::Range(std::size_t{0}, static_cast<std::size_t>(Op::kAluCount)),
+INSTANTIATE_TEST_SUITE_P(Alu, EveryOp, ::testing::Range(std::size_t{0}, static_cast<std::size_t>(Op::kExecutedCount)),
                          [](const auto& info) { return ir::op_name(static_cast<Op>(info.param)); });
 
 /// Results of one op on random operands, NaNs of all kinds among them, for every combination of uniform operands.

@@ -105,7 +105,7 @@ void check(Op op, int accumulator, UniformSources uniform, std::uint32_t seed) {
 TEST(Chain, LinksEqualPlainHandlers) {
   if (chain_handler(Op::kOr, kNoAccumulator, 0, Link::kKeep) == nullptr) GTEST_SKIP() << "target without chains";
   std::uint32_t links = 0;
-  for (std::uint32_t op = 0; op < static_cast<std::uint32_t>(Op::kAluCount); ++op) {
+  for (std::uint32_t op = 0; op < static_cast<std::uint32_t>(Op::kExecutedCount); ++op) {
     for (int accumulator = kNoAccumulator; accumulator <= kAllSources; ++accumulator) {
       for (std::uint32_t uniform = 0; uniform < 8; ++uniform) {
         if (chain_handler(static_cast<Op>(op), accumulator, static_cast<UniformSources>(uniform), Link::kStore) ==

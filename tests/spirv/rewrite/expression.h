@@ -1,6 +1,6 @@
 // Shaders of one expression, as text: "FAdd(FMul(a,b),2.0)". a ... h are scalar inputs, `!Op` is exact, numbers with a
-// point are floats, others integers; true and false are booleans. Each occurrence of an operation is an SSA value of
-// its own, each letter is one load.
+// point are floats, others integers; true and false are booleans; Vec(a,b) puts a vector together. Each occurrence of
+// an operation is an SSA value of its own, each letter is one load.
 #pragma once
 
 #include <string>

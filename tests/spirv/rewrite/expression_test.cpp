@@ -79,6 +79,7 @@ class Builder {
   }
 
   ValueId operation(const std::string& name, bool exact) {
+    if (name == "Vec") return vector();
     Op op = Op::kAluCount;
     for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(Op::kAluCount); ++i)
       if (name == ir::alu_info(static_cast<Op>(i)).name) op = static_cast<Op>(i);
@@ -88,9 +89,22 @@ class Builder {
     do operands.push_back({expression(), {0, 0, 0, 0}});
     while (take(','));
     take(')');
+    if (ir::alu_info(op).reads > 1)
+      for (ir::Src& operand : operands) operand.swizzle = {0, 1, 2, 3};
     ir::Node& node = add(op, 1, ir::alu_info(op).result == 'B');
     node.instr.exact = exact;
     node.instr.src = operands;
+    return node.instr.result;
+  }
+
+  ValueId vector() {
+    std::vector<ir::Src> parts;
+    take('(');
+    do parts.push_back({expression(), {0, 0, 0, 0}});
+    while (take(','));
+    take(')');
+    ir::Node& node = add(Op::kVec, static_cast<std::uint8_t>(parts.size()), false);
+    node.instr.src = parts;
     return node.instr.result;
   }
 

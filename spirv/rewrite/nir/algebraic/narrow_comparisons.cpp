@@ -18,7 +18,7 @@ class Narrower {
 
   void visit(InstId id) {
     const Inst& inst = graph_.insts[id];
-    if (!computes(inst) || inst.opaque || !compares_floats(inst.op)) return;
+    if (!computes(inst) || !compares_floats(inst.op)) return;
     if (inst.kind == Kind::kSized && inst.width == 64) from_double(id);
     if (graph_.insts[id].kind == Kind::kAlu) from_single(id);
   }
@@ -46,7 +46,7 @@ class Narrower {
     for (const std::uint32_t i : {0u, 1u}) {
       const Src src = graph_.source(graph_.insts[id], i);
       const Inst* def = graph_.def(src.value);
-      if (!def || def->kind != Kind::kAlu || def->op != Op::kHalf2F || def->opaque) return;
+      if (!def || def->kind != Kind::kAlu || def->op != Op::kHalf2F) return;
       narrow[i] = graph_.source(*def, 0);
       const auto inner = narrow[i].swizzle;
       for (std::size_t c = 0; c < 4; ++c) narrow[i].swizzle[c] = inner[src.swizzle[c]];

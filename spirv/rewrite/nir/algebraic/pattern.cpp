@@ -8,7 +8,6 @@
 #include <string>
 
 #include "base/check.h"
-#include "spirv/mix.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
@@ -25,6 +24,9 @@ constexpr ConditionName kConditions[] = {
     {"float_only", Condition::kFloatOnly},
     {"used", Condition::kUsed},
     {"not_for_if", Condition::kNotForIf},
+    {"bits16", Condition::kBits16},
+    {"bits32", Condition::kBits32},
+    {"bits64", Condition::kBits64},
     {"not_const", Condition::kNotConst},
     {"fmul", Condition::kFmul},
     {"not_fmul", Condition::kNotFmul},
@@ -82,6 +84,8 @@ struct OpNames {
   static constexpr std::string_view kNames[] = {
 #define VITRINE_ALU(name, sources, result, operands, swap, chain, effect) #name,
 #include "spirv/ops.def"
+#define VITRINE_NIR(name, sources, result, operands, swap, reads, effect) #name,
+#include "spirv/ops.def"
   };
 };
 constexpr OpNames kOpNames;
@@ -137,8 +141,9 @@ class Parser {
     } else if (first >= 'A' && first <= 'Z') {
       pattern.kind = Pattern::Kind::kOp;
       pattern.op = op_named(word);
-    } else if (word.size() == 1 && first >= 'a' && first <= 'h') {
+    } else if (first >= 'a' && first <= 'h' && (word.size() == 1 || word[1] == '.')) {
       pattern.variable = static_cast<std::uint8_t>(first - 'a');
+      if (word.size() > 1) pattern.component = component(word.substr(2));
     } else if (word.find('.') != std::string_view::npos) {
       pattern.kind = Pattern::Kind::kFloat;
       const char* const end = word.data() + word.size();
@@ -152,8 +157,14 @@ class Parser {
     }
   }
 
+  std::int8_t component(std::string_view name) {
+    const std::size_t number = std::string_view("xyzw").find(name);
+    ok_ = ok_ && name.size() == 1 && number != std::string_view::npos;
+    return static_cast<std::int8_t>(number);
+  }
+
   Op op_named(std::string_view word) {
-    if (word == "FMix") return ir::kHalfMix;
+    if (word == "Vec") return Op::kVec;
     const Op op = kOpNames.find(word);
     ok_ = ok_ && op != Op::kAluCount;
     return op == Op::kAluCount ? Op::kMov : op;
@@ -168,11 +179,12 @@ class Parser {
 
   void operands(Pattern& pattern) {
     ok_ = ok_ && take('(');
-    while (ok_ && pattern.children < 3) {
+    while (ok_ && pattern.children < kMaxChildren) {
       pattern.child[pattern.children++] = expression();
       if (!take(',')) break;
     }
-    ok_ = ok_ && take(')') && pattern.children == ir::alu_info(pattern.op).sources;
+    ok_ = ok_ && take(')');
+    if (ok_ && pattern.op != Op::kVec) ok_ = pattern.children == ir::alu_info(pattern.op).sources;
   }
 
   Rules& rules_;
@@ -184,7 +196,8 @@ class Parser {
 bool same_tree(const Rules& rules, std::uint16_t a, std::uint16_t b) {
   const Pattern& x = rules.patterns[a];
   const Pattern& y = rules.patterns[b];
-  if (x.kind != y.kind || x.op != y.op || x.variable != y.variable || x.number != y.number || x.bits != y.bits)
+  if (x.kind != y.kind || x.op != y.op || x.variable != y.variable || x.component != y.component ||
+      x.children != y.children || x.number != y.number || x.bits != y.bits)
     return false;
   for (unsigned i = 0; i < x.children; ++i)
     if (!same_tree(rules, x.child[i], y.child[i])) return false;
@@ -207,6 +220,8 @@ std::uint16_t shape_of(Rules& rules, std::uint16_t index) {
     case Pattern::Kind::kVariable:
       return pattern.constant ? kConstShape : kAnyShape;
     case Pattern::Kind::kOp:
+      if (pattern.op == Op::kVec)
+        return kAnyShape;  // a dot product is taken apart at its first visit: nothing wakes it
       break;
     default:
       return kConstShape;
@@ -268,7 +283,7 @@ std::string with_op(std::string text, std::string_view op) {
 
 }  // namespace
 
-bool is_commutative(Op op) { return ir::alu_info(op).swap != '_'; }
+bool is_commutative(Op op) { return op < Op::kAluCount && ir::alu_info(op).swap != '_'; }
 
 ir::Op shape_op(ir::Op op) {
   switch (op) {

@@ -5,7 +5,8 @@
 //   a:cond     a variable with a condition; Op:cond(...)              the conditions of Condition below
 //   ~Op        inexact: the rule applies only if no matched instruction is exact
 //   !Op        (replacement) the new instruction is exact
-//   FMix       mix(a, b, c) of halves (mix.h)
+//   a.x        (replacement) a component of what the variable stands for
+//   Vec(...)   components put together
 //   1.5        float constant, compared as a number; 3, -1, 0xff integer bits; true, false
 // Commutative operations of a search are tried in both operand orders.
 #pragma once
@@ -25,8 +26,11 @@ enum class Condition : std::uint8_t {
   // of an instruction
   kOnce,       ///< its result has one use
   kFloatOnly,  ///< all uses are float operands of arithmetic
-  kUsed,       ///< it has a use
+  kUsed,       ///< it has a use other than by FSat
   kNotForIf,   ///< no If decides by it
+  kBits16,     ///< its numbers have 16 bits
+  kBits32,
+  kBits64,
   // of an operand
   kNotConst,
   kFmul,  ///< a product, or the negation of one
@@ -55,6 +59,8 @@ enum class Condition : std::uint8_t {
   kNumberLt0,
 };
 
+inline constexpr unsigned kMaxChildren = 4;
+
 /// A node of a search or replacement tree.
 struct Pattern {
   enum class Kind : std::uint8_t { kOp, kVariable, kFloat, kInteger, kBoolean } kind = Kind::kVariable;
@@ -65,9 +71,10 @@ struct Pattern {
   bool constant = false;         ///< variable that matches constants only
   std::int8_t commutative = -1;  ///< number among the commutative operations of the search, in pre-order
   std::uint8_t variable = 0;     ///< 0 = a
+  std::int8_t component = -1;    ///< of the variable, in replacements; -1: all, in their order
   std::uint8_t children = 0;
-  std::uint16_t child[3] = {};  ///< indices in Rules::patterns
-  std::uint16_t shape = 0;      ///< operations of searches: number of the structural pattern (see Shape)
+  std::uint16_t child[kMaxChildren] = {};  ///< indices in Rules::patterns
+  std::uint16_t shape = 0;                 ///< operations of searches: number of the structural pattern (see Shape)
   double number = 0.0;
   std::uint32_t bits = 0;
 };
@@ -84,7 +91,7 @@ struct Shape {
   ir::Op op = ir::Op::kMov;
   std::uint8_t children = 0;
   bool commutative = false;
-  std::uint16_t child[3] = {};  ///< kAnyShape, kConstShape or a shape
+  std::uint16_t child[kMaxChildren] = {};  ///< kAnyShape, kConstShape or a shape
 };
 inline constexpr std::uint16_t kAnyShape = 0xffff, kConstShape = 0xfffe;
 inline constexpr std::size_t kMaxShapes = 832;

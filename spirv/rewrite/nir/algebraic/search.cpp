@@ -7,9 +7,7 @@
 #include <bit>
 #include <deque>
 
-#include "spirv/mix.h"
 #include "spirv/rewrite/graph/literals.h"
-#include "spirv/rewrite/nir/algebraic/composed.h"
 #include "spirv/rewrite/nir/algebraic/pattern.h"
 #include "spirv/rewrite/nir/passes.h"
 #include "spirv/rewrite/nir/range_analysis.h"
@@ -36,7 +34,9 @@ struct Match {
 
 class Rewriter {
  public:
-  Rewriter(Graph& graph, const Rules& rules) : graph_(graph), rules_(rules), ranges_(graph) {
+  /// `lowers`: only what programs do not have is replaced.
+  Rewriter(Graph& graph, const Rules& rules, bool lowers = false)
+      : graph_(graph), rules_(rules), lowers_(lowers), ranges_(graph) {
     states_.resize(graph.values.size());
     inexact_off_ = graph.function.forbids_inexact(32);
   }
@@ -52,19 +52,9 @@ class Rewriter {
     for_each_inst(graph_, graph_.root, visit);
     queue_.assign(order.rbegin(), order.rend());
     bool changed = false;
-    for (std::size_t visit_number = 0; !queue_.empty(); ++visit_number) {
-      const InstId id = queue_.front();
-      queue_.pop_front();
-      const Inst& inst = graph_.insts[id];
-      if (inst.removed) continue;
-      const bool woken = visit_number >= order.size();
-      if (inst.opaque) {
-        show_product(id);
-        changed |= show_sum(id);
-      } else if (woken || !graph_.first_rules ||
-                 (inst.opens != Opens::kAfterRules && inst.opens != Opens::kWithResult)) {
-        changed |= rewrite(id);
-      }
+    for (; !queue_.empty(); queue_.pop_front()) {
+      const Inst& inst = graph_.insts[queue_.front()];
+      if (!inst.removed && (!lowers_ || inst.op >= Op::kExecutedCount)) changed |= rewrite(queue_.front());
     }
     return changed;
   }
@@ -96,7 +86,7 @@ class Rewriter {
       for (const std::uint16_t shape : rules_.shapes_by_op[static_cast<std::size_t>(op)])
         if (fits(inst, rules_.shapes[shape])) state[shape / 64] |= std::uint64_t{1} << (shape % 64);
     };
-    if (!inst.opaque) add_shapes(shape_op(inst.op));
+    add_shapes(shape_op(inst.op));
     if (states_[inst.result] == state) return false;
     states_[inst.result] = state;
     return true;
@@ -112,46 +102,6 @@ class Rewriter {
         pending.push_back(graph_.insts[user].result);
       }
     }
-  }
-
-  /// When the reference's rules first come to a dot product they make it a sum of products. They do not visit the
-  /// product then, only when one of its operands changes.
-  void show_product(InstId id) {
-    const Inst& sum = graph_.insts[id];
-    if (!graph_.first_rules || sum.op != Op::kFAdd) return;
-    const InstId product = graph_.values[graph_.source(sum, 1).value].def;
-    if (product == kNone || !graph_.insts[product].opaque || graph_.insts[product].op != Op::kFMul ||
-        graph_.insts[product].opens != Opens::kAfterRules)
-      return;
-    graph_.insts[product].opaque = false;
-    update_state(product);
-  }
-
-  /// The reference replaces its sum of two by an addition here, so that other rules see it only later.
-  bool show_sum(InstId id) {
-    const Opens opens = graph_.insts[id].opens;
-    if (opens != Opens::kVisited && (opens != Opens::kVisitedAfterRound || graph_.first_rules)) return false;
-    show_parts(id);
-    graph_.insts[id].opaque = false;
-    if (opens == Opens::kVisitedAfterRound) veiled_.push_back(graph_.insts[id].result);
-    update_state(id);
-    wake_users(graph_.insts[id].result);
-    return true;
-  }
-
-  /// Opens the parts of the composed operation that the instruction ends, if it does. The reference's rules do not
-  /// visit them then, only when one of their operands changes.
-  void show_parts(InstId id) {
-    for (const InstId part : parts_of_composed(graph_, id)) {
-      graph_.insts[part].opaque = false;
-      update_state(part);
-    }
-  }
-
-  /// A sum opened in this run: in the reference its operands are components of a vector, and the rules do not look
-  /// through it before the next round.
-  bool is_veiled(const Inst& inst) const {
-    return std::find(veiled_.begin(), veiled_.end(), inst.result) != veiled_.end();
   }
 
   // ---- conditions
@@ -172,6 +122,14 @@ class Rewriter {
     return uses;
   }
 
+  bool used_but_for_saturation(ValueId value) const {
+    for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next)
+      if (!is_alu(graph_.insts[graph_.sources[slot].user], Op::kFSat)) return true;
+    return false;
+  }
+
+  static bool is_alu(const Inst& inst, Op op) { return computes(inst) && inst.op == op; }
+
   /// True when an If reads the value as its condition.
   bool decides(ValueId value) const {
     for (Slot slot = graph_.values[value].first_use; slot != kNone; slot = graph_.sources[slot].next)
@@ -184,11 +142,17 @@ class Rewriter {
       case Condition::kOnce:
         return inst.width == 64 && !inst.boolean ? double_uses(inst.result) == 1 : graph_.values[inst.result].uses == 1;
       case Condition::kUsed:
-        return graph_.values[inst.result].uses != 0;
+        return used_but_for_saturation(inst.result);
       case Condition::kFloatOnly:
         return used_as_float_only(inst.result);
       case Condition::kNotForIf:
         return !decides(inst.result);
+      case Condition::kBits16:
+        return inst.width == 16;
+      case Condition::kBits32:
+        return inst.width == 32;
+      case Condition::kBits64:
+        return inst.width == 64;
       default:
         return true;
     }
@@ -196,7 +160,7 @@ class Rewriter {
 
   bool is_product(ValueId value) const {
     const Inst* inst = graph_.def(value);
-    if (!inst || !computes(*inst) || inst->opaque) return false;
+    if (!inst || !computes(*inst)) return false;
     if (inst->op == Op::kFNeg) return is_product(graph_.source(*inst, 0).value);
     return inst->op == Op::kFMul;
   }
@@ -274,11 +238,11 @@ class Rewriter {
       case Condition::kNone:
         return true;
       case Condition::kNotConst:
-        return graph_.constant(value) == nullptr || is_veiled(inst);
+        return graph_.constant(value) == nullptr;
       case Condition::kFmul:
-        return is_product(value) && !is_veiled(inst);
+        return is_product(value);
       case Condition::kNotFmul:
-        return !is_product(value) || is_veiled(inst);
+        return !is_product(value);
       case Condition::kPosPow2:
         return is_power_of_two(inst, index, swizzle, components, false);
       case Condition::kNegPow2:
@@ -308,7 +272,17 @@ class Rewriter {
 
   /// Bits of the numbers of operand `index`, 0: booleans.
   static std::uint8_t operand_width(const Inst& inst, std::uint32_t index, std::uint8_t width) {
-    return ir::alu_info(inst.op).operands[index] == 'B' ? std::uint8_t{0} : width;
+    if (inst.kind == Kind::kVec) return inst.boolean ? std::uint8_t{0} : width;
+    const char letter = ir::alu_info(inst.op).operands[index];
+    if (letter == 'B') return 0;
+    return letter == 'F' || ir::is_selection(inst.op) ? width : std::uint8_t{32};
+  }
+
+  /// Components that the instruction reads of an operand whatever its result has; 0: those of the result.
+  static unsigned fixed_components(const Inst& inst, std::uint32_t index) {
+    if (inst.kind == Kind::kVec) return 1;
+    if (inst.width == 64) return operand_components(inst, index);
+    return ir::alu_info(inst.op).reads;
   }
 
   bool match_constant(const Pattern& pattern, ValueId value, const Swizzle& swizzle, unsigned components,
@@ -343,7 +317,7 @@ class Rewriter {
         if (bound.swizzle[c] != swizzle[c]) return false;
       return true;
     }
-    if (pattern.constant && (!graph_.constant(value) || is_veiled(inst))) return false;
+    if (pattern.constant && !graph_.constant(value)) return false;
     if (!holds_for_operand(pattern.condition, inst, index, swizzle, components)) return false;
     match.seen |= 1u << pattern.variable;
     match.width[pattern.variable] = width;
@@ -356,19 +330,28 @@ class Rewriter {
                      const Swizzle& outer, std::uint8_t width, Match& match) {
     const Src src = graph_.source(inst, operand);
     Swizzle swizzle{};
-    if (inst.width == 64) components = operand_components(inst, operand);
-    for (unsigned c = 0; c < components; ++c) swizzle[c] = src.swizzle[inst.width == 64 ? c : outer[c]];
+    const unsigned fixed = fixed_components(inst, operand);
+    if (fixed != 0) components = fixed;
+    for (unsigned c = 0; c < components; ++c) swizzle[c] = src.swizzle[fixed != 0 ? c : outer[c]];
     width = operand_width(inst, operand, width);
     const Pattern& pattern = rules_.patterns[index];
     if (pattern.kind == Pattern::Kind::kVariable)
       return match_variable(pattern, inst, operand, swizzle, components, width, match);
-    if (is_veiled(inst)) return false;
     if (pattern.kind != Pattern::Kind::kOp) return match_constant(pattern, src.value, swizzle, components, width);
     const Inst* def = graph_.def(src.value);
-    if (!def || !computes(*def) || def->opaque) return false;
+    if (pattern.op == Op::kVec) return def && match_vec(pattern, *def, components, swizzle, width, match);
+    if (!def || !computes(*def)) return false;
     if (def->boolean ? width != 0 : !makes(*def, width)) return false;
     if (def->width == 64 && !def->boolean && (swizzle[0] != 0 || swizzle[1] != 1)) return false;
     return match_op(pattern, *def, components, swizzle, def->boolean ? def->width : width, match);
+  }
+
+  bool match_vec(const Pattern& pattern, const Inst& vec, unsigned components, const Swizzle& swizzle,
+                 std::uint8_t width, Match& match) {
+    if (vec.kind != Kind::kVec || vec.count != pattern.children || components != vec.count) return false;
+    for (std::uint8_t c = 0; c < vec.count; ++c)
+      if (swizzle[c] != c || !match_operand(pattern.child[c], vec, c, 1, {0}, width, match)) return false;
+    return true;
   }
 
   /// The instruction's numbers have `width` bits. Selections of words may be of halves.
@@ -381,7 +364,6 @@ class Rewriter {
   bool match_op(const Pattern& pattern, const Inst& inst, unsigned components, const Swizzle& swizzle,
                 std::uint8_t width, Match& match) {
     if (pattern.op != inst.op || !holds_for_inst(pattern.condition, inst)) return false;
-    if (pattern.op == ir::kHalfMix && width != 16) return false;
     match.inexact |= pattern.inexact;
     match.has_exact |= inst.exact;
     if (match.inexact && match.has_exact) return false;
@@ -441,7 +423,8 @@ class Rewriter {
   std::uint8_t width_of(std::uint16_t index, const Match& match) const {
     const Pattern& pattern = rules_.patterns[index];
     if (pattern.kind == Pattern::Kind::kVariable) return match.width[pattern.variable];
-    if (pattern.kind != Pattern::Kind::kOp || ir::alu_info(pattern.op).result == 'B') return 0;
+    if (pattern.kind != Pattern::Kind::kOp || pattern.op == Op::kVec) return 0;
+    if (ir::alu_info(pattern.op).result == 'B') return 0;
     return computed_width(pattern, match);
   }
 
@@ -452,23 +435,43 @@ class Rewriter {
     return 0;
   }
 
+  static Src read(const Pattern& pattern, const Match& match) {
+    const Src& src = match.variable[pattern.variable];
+    if (pattern.component < 0) return src;
+    const std::uint8_t c = src.swizzle[static_cast<std::size_t>(pattern.component)];
+    return {src.value, {c, c, c, c}};
+  }
+
+  Src build_vec(const Pattern& pattern, std::uint8_t width, const Match& match) {
+    std::array<Src, kMaxChildren> part;
+    for (unsigned c = 0; c < pattern.children; ++c) part[c] = build(pattern.child[c], 1, width, match);
+    const InstId made = graph_.create(Kind::kVec, Op::kVec, pattern.children, false, pattern.children);
+    for (unsigned c = 0; c < pattern.children; ++c) graph_.set_source(made, c, part[c]);
+    place(made);
+    states_.resize(graph_.values.size());
+    return {graph_.insts[made].result, {0, 1, 2, 3}};
+  }
+
   Src build(std::uint16_t index, unsigned components, std::uint8_t width, const Match& match) {
     const Pattern& pattern = rules_.patterns[index];
-    if (pattern.kind == Pattern::Kind::kVariable) return match.variable[pattern.variable];
+    if (pattern.kind == Pattern::Kind::kVariable) return read(pattern, match);
     if (pattern.kind != Pattern::Kind::kOp) return build_constant(pattern, width);
+    if (pattern.op == Op::kVec) return build_vec(pattern, width, match);
     const ir::AluInfo& info = ir::alu_info(pattern.op);
     const bool boolean = info.result == 'B';
     if (any_sized_)
       if (const std::uint8_t known = computed_width(pattern, match); known != 0) width = known;
     if (boolean && width == 0) width = 32;
     const unsigned lanes = width != 64 ? components : boolean ? 1 : 2;
-    std::array<Src, 3> operand;
-    for (unsigned i = 0; i < pattern.children; ++i) operand[i] = build(pattern.child[i], lanes, width, match);
+    std::array<Src, kMaxChildren> operand;
+    const unsigned parts = info.reads != 0 ? info.reads : lanes;
+    for (unsigned i = 0; i < pattern.children; ++i) operand[i] = build(pattern.child[i], parts, width, match);
     const bool sized = width != 32 && !ir::is_selection(pattern.op) && has_sizes(info);
     const InstId made = graph_.create(sized ? Kind::kSized : Kind::kAlu, pattern.op, static_cast<std::uint8_t>(lanes),
                                       boolean, pattern.children);
     if (sized || pattern.op == Op::kSelect) graph_.insts[made].width = width;
     graph_.insts[made].exact = match.has_exact || pattern.exact;
+    graph_.insts[made].packs = pattern.op == Op::kF2Half || pattern.op == Op::kHalf2F;
     for (unsigned i = 0; i < pattern.children; ++i) graph_.set_source(made, i, operand[i]);
     place(made);
     states_.resize(graph_.values.size());
@@ -537,8 +540,8 @@ class Rewriter {
 
   Graph& graph_;
   const Rules& rules_;
+  const bool lowers_;
   RangeAnalysis ranges_;
-  std::vector<ValueId> veiled_;  ///< results of the sums that is_veiled() knows
   std::vector<State> states_;
   std::deque<InstId> queue_;
   bool inexact_off_ = false;
@@ -549,6 +552,23 @@ class Rewriter {
 };
 
 }  // namespace
+
+bool lower_operations(Graph& graph) {
+  bool any = false;
+  auto visit = [&](InstId id) {
+    const Op op = graph.insts[id].op;
+    const bool is_sum = op == Op::kFSum3 || op == Op::kFSum4 || op == Op::kFAddInSum;  // build_sums()
+    any |= computes(graph.insts[id]) && op >= Op::kExecutedCount && !is_sum;
+  };
+  for_each_inst(graph, graph.root, visit);
+  bool changed = false;
+  while (any) {
+    any = Rewriter(graph, main_rules(), true).run();
+    any |= lower_alu_to_scalar(graph);
+    changed |= any;
+  }
+  return changed;
+}
 
 bool opt_algebraic(Graph& graph) { return Rewriter(graph, main_rules()).run(); }
 bool opt_algebraic_late(Graph& graph) { return Rewriter(graph, late_rules()).run(); }
