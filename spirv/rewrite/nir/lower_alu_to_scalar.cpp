@@ -1,4 +1,4 @@
-// Arithmetic on vectors becomes arithmetic on their components (nir_lower_alu_to_scalar.c).
+// Arithmetic on vectors becomes arithmetic on their components (nir_lower_alu_width.c; lavapipe-optimizer.md 3.7).
 #include <initializer_list>
 
 #include "spirv/rewrite/nir/passes.h"
