@@ -10,6 +10,38 @@ bool same_value(const Graph& graph, Src a, Src b, ValueId like) {
   return true;
 }
 
+bool is_empty(const Graph& graph, BlockId block) {
+  const InstId last = graph.blocks[block].tail;
+  return last != kNone && graph.blocks[block].head == last && is_jump(graph.insts[last], Op::kYield);
+}
+
+bool jumps(const Graph& graph, InstId id) {
+  const Inst& inst = graph.insts[id];
+  if (leaves_loop(inst) || is_jump(inst, Op::kKill) || is_jump(inst, Op::kReturn)) return true;
+  for (const BlockId child : inst.child)
+    if (child != kNone && contains_jump(graph, child)) return true;
+  return false;
+}
+
+bool contains_jump(const Graph& graph, BlockId block) {
+  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next)
+    if (jumps(graph, id)) return true;
+  return false;
+}
+
+InstId loop_around(const Graph& graph, BlockId block) {
+  InstId owner = graph.blocks[block].owner;
+  while (owner != kNone && graph.insts[owner].kind != Inst::Kind::kLoop)
+    owner = graph.blocks[graph.insts[owner].block].owner;
+  return owner;
+}
+
+std::vector<Slot> uses_of(const Graph& graph, ValueId value) {
+  std::vector<Slot> uses;
+  for (Slot use = graph.values[value].first_use; use != kNone; use = graph.sources[use].next) uses.push_back(use);
+  return uses;
+}
+
 bool contains_continue(const Graph& graph, BlockId block) {
   for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
     const Inst& inst = graph.insts[id];

@@ -26,6 +26,19 @@ inline bool is_move(const Inst& inst) {
 /// Two operands read the same components of one value, as many as `like` has.
 bool same_value(const Graph& graph, Src a, Src b, ValueId like);
 
+/// The block holds nothing but a Yield.
+bool is_empty(const Graph& graph, BlockId block);
+
+/// The instruction, or one in it, leaves a loop or ends the invocation.
+bool jumps(const Graph& graph, InstId id);
+bool contains_jump(const Graph& graph, BlockId block);
+
+/// The innermost loop that `block` is in; kNone: none.
+InstId loop_around(const Graph& graph, BlockId block);
+
+/// The uses of a value, in their order: for walks that change them.
+std::vector<Slot> uses_of(const Graph& graph, ValueId value);
+
 /// A Continue of the loop around `block`.
 bool contains_continue(const Graph& graph, BlockId block);
 

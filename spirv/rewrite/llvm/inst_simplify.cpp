@@ -89,7 +89,7 @@ class LateFolder {
   void take_literals(InstId id) {
     const Inst branch = graph_.insts[id];
     const std::optional<std::uint32_t> condition = literal(branch, 0);
-    if (!condition || !is_late(branch, 0) || is_in_loop(branch)) return;
+    if (!condition || !is_late(branch, 0) || loop_around(graph_, branch.block) != kNone) return;
     const BlockId side = branch.child[*condition != 0 ? 0 : 1];
     if (!ends_in(graph_, side, Op::kYield)) return;
     const std::vector<ValueId> results = graph_.nodes[branch.node]->results;
@@ -102,15 +102,6 @@ class LateFolder {
       late_.insert(made.value);
       graph_.replace_uses(results[i], made.value);
     }
-  }
-
-  bool is_in_loop(const Inst& inst) const {
-    for (BlockId block = inst.block; graph_.blocks[block].owner != kNone;) {
-      const Inst& owner = graph_.insts[graph_.blocks[block].owner];
-      if (owner.kind == Kind::kLoop) return true;
-      block = owner.block;
-    }
-    return false;
   }
 
   bool is_late(const Inst& inst, std::uint32_t index) const {

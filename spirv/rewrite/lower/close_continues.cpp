@@ -1,6 +1,7 @@
 // The opposite of what the front end does to continue constructs: what runs from the second iteration on, and has
 // stayed at the top of the body, becomes the continue construct (lavapipe-optimizer.md 8.3).
 #include "spirv/rewrite/graph/loops.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/lower/passes.h"
 
@@ -15,9 +16,9 @@ bool is_continue_flag(const Graph& graph, InstId loop, Src condition, bool& firs
   if (index < 0) return false;
   const auto i = static_cast<std::uint32_t>(index);
   const auto read = [&](Src src, bool& value) {
-    const Inst* constant = graph.constant(src.value);
-    if (constant) value = constant->imm[src.swizzle[0]] != 0;
-    return constant != nullptr;
+    const std::optional<std::uint32_t> literal = literal_of(graph, src);
+    value = literal.value_or(value ? 1 : 0) != 0;
+    return literal.has_value();
   };
   if (!read(graph.source(graph.insts[loop], i), first)) return false;
   for (const InstId way : ways_back(graph, loop)) {

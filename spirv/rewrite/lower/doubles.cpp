@@ -171,9 +171,7 @@ class Joiner {
   }
 
   void read_word(ValueId word, ValueId whole, std::uint8_t component) {
-    std::vector<Slot> uses;
-    for (Slot use = graph_.values[word].first_use; use != kNone; use = graph_.sources[use].next) uses.push_back(use);
-    for (const Slot use : uses) {
+    for (const Slot use : uses_of(graph_, word)) {
       const InstId user = graph_.sources[use].user;
       graph_.set_source(user, use - graph_.insts[user].first, {whole, {component, component, component, component}});
     }

@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/nir/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -85,11 +86,7 @@ class Forwarder {
     if (graph_.values[value.value].components == 1) {
       graph_.replace_uses(inst.result, value.value);
     } else {
-      const InstId made = graph_.create(Kind::kVec, Op::kVec, 1, false, 1);
-      graph_.insts[made].origin = inst.origin;
-      graph_.replace_uses(inst.result, graph_.insts[made].result);
-      graph_.set_source(made, 0, value);
-      graph_.insert_after(id, made);
+      graph_.replace_uses(inst.result, Builder::behind(graph_, id).vec({value}).value);
     }
     graph_.remove(id);
   }

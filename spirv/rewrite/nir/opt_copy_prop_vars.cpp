@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/effects.h"
 #include "spirv/rewrite/nir/passes.h"
 
@@ -118,11 +119,9 @@ class Forwarder {
   ValueId compose(InstId id, const std::array<Src, 4>& parts) {
     const Inst inst = graph_.insts[id];
     const InstId made = graph_.create(Kind::kVec, Op::kVec, inst.components, inst.boolean, inst.components);
-    graph_.insts[made].origin = inst.origin;
-    graph_.replace_uses(inst.result, graph_.insts[made].result);
+    graph_.replace_uses(inst.result, graph_.insts[made].result);  // before the vector may use it
     for (unsigned c = 0; c < inst.components; ++c) graph_.set_source(made, c, parts[c]);
-    graph_.insert_after(id, made);
-    return graph_.insts[made].result;
+    return Builder::behind(graph_, id).place(made).value;
   }
 
   /// True when a user of the value reads one of its components that `parts` has from elsewhere.

@@ -11,11 +11,6 @@ namespace {
 
 using Kind = Inst::Kind;
 
-bool is_empty(const Graph& graph, BlockId block) {
-  const InstId last = graph.blocks[block].tail;
-  return last == kNone || (graph.blocks[block].head == last && is_jump(graph.insts[last], Op::kYield));
-}
-
 bool is_comparison(const Inst* inst) {
   if (!inst || inst->kind != Kind::kAlu || inst->components != 1) return false;
   if (inst->op == Op::kNotB || inst->op == Op::kXorB || inst->op == Op::kEqB) return true;
@@ -25,30 +20,15 @@ bool is_comparison(const Inst* inst) {
 
 void become_yield(Graph& graph, InstId jump) { graph.insts[jump].op = Op::kYield; }
 
-InstId loop_around(const Graph& graph, InstId id) {
-  InstId owner = graph.blocks[graph.insts[id].block].owner;
-  while (graph.insts[owner].kind != Kind::kLoop) owner = graph.blocks[graph.insts[owner].block].owner;
-  return owner;
-}
-
 /// Both sides leave the loop.
 void break_behind(Graph& graph, InstId id) {
   const InstId first = graph.blocks[graph.insts[id].child[0]].tail, last = graph.blocks[graph.insts[id].child[1]].tail;
-  const std::vector<ValueId> like = node_of(graph, loop_around(graph, id)).results;
+  const std::vector<ValueId> like = node_of(graph, loop_around(graph, graph.insts[id].block)).results;
   become_yield(graph, first);
   become_yield(graph, last);
   node_of(graph, id).results.clear();
   const InstId jump = make_jump(graph, Op::kBreak, add_results(graph, id, like));
   graph.append(graph.insts[id].block, jump);
-}
-
-bool contains_jump(const Graph& graph, InstId id) {
-  const Inst& inst = graph.insts[id];
-  if (leaves_loop(inst) || is_jump(inst, Op::kKill) || is_jump(inst, Op::kReturn)) return true;
-  for (const BlockId child : inst.child)
-    for (InstId at = child == kNone ? kNone : graph.blocks[child].head; at != kNone; at = graph.insts[at].next)
-      if (contains_jump(graph, at)) return true;
-  return false;
 }
 
 /// One side leaves the loop, as does what follows the other.
@@ -57,8 +37,8 @@ bool break_once(Graph& graph, InstId id, unsigned leaving) {
   const InstId end = graph.blocks[graph.insts[id].block].tail;
   if (!ends_in(graph, staying, Op::kYield) || end == id || !is_jump(graph.insts[end], Op::kBreak)) return false;
   for (InstId at = graph.insts[id].next; at != end; at = graph.insts[at].next)
-    if (contains_jump(graph, at)) return false;
-  const std::vector<ValueId> like = node_of(graph, loop_around(graph, id)).results;
+    if (jumps(graph, at)) return false;
+  const std::vector<ValueId> like = node_of(graph, loop_around(graph, graph.insts[id].block)).results;
   const InstId stay_end = graph.blocks[staying].tail;
   replace_results(graph, id, operands_of(graph, stay_end), graph.insts[stay_end].previous);
   node_of(graph, id).results.clear();

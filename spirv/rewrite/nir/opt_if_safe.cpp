@@ -34,12 +34,6 @@ Known condition_at(const Graph& graph, InstId branch, InstId user) {
   return Known::kNothing;
 }
 
-std::vector<Slot> uses_of(const Graph& graph, ValueId value) {
-  std::vector<Slot> uses;
-  for (Slot use = graph.values[value].first_use; use != kNone; use = graph.sources[use].next) uses.push_back(use);
-  return uses;
-}
-
 bool hands_on(const Inst& inst, std::uint32_t operand) {
   if (inst.kind != Kind::kAlu || inst.components != 1) return false;
   switch (inst.op) {

@@ -17,16 +17,6 @@ namespace {
 
 using Kind = Inst::Kind;
 
-bool contains_jump(const Graph& graph, BlockId block) {
-  for (InstId id = graph.blocks[block].head; id != kNone; id = graph.insts[id].next) {
-    const Inst& inst = graph.insts[id];
-    if (leaves_loop(inst) || is_jump(inst, Op::kKill) || is_jump(inst, Op::kReturn)) return true;
-    for (const BlockId child : inst.child)
-      if (child != kNone && contains_jump(graph, child)) return true;
-  }
-  return false;
-}
-
 class Peeler {
  public:
   Peeler(Graph& graph, InstId loop) : graph_(graph), loop_(loop), first_(graph), again_(graph) {}

@@ -147,11 +147,6 @@ void flatten(Graph& graph, InstId id) {
   graph.remove(id);
 }
 
-bool is_empty(const Graph& graph, BlockId block) {
-  const InstId last = graph.blocks[block].tail;
-  return last != kNone && graph.blocks[block].head == last && is_jump(graph.insts[last], Op::kYield);
-}
-
 /// What `outer` yields for results of `inner` when it does not run must be what `inner` yields when it does not; the
 /// operands of outer's first Yield that are such results.
 bool results_agree(const Graph& graph, InstId outer, InstId inner, std::vector<std::uint32_t>& operands) {

@@ -70,12 +70,6 @@ bool open_loop(Graph& graph, InstId loop) {
   return changed;
 }
 
-InstId loop_around(const Graph& graph, BlockId block) {
-  InstId owner = graph.blocks[block].owner;
-  while (owner != kNone && graph.insts[owner].kind != Kind::kLoop) owner = graph.blocks[graph.insts[owner].block].owner;
-  return owner;
-}
-
 /// The innermost loop in which the value changes.
 InstId loop_of(const Graph& graph, ValueId value) {
   const InstId def = graph.values[value].def;
