@@ -8,6 +8,7 @@ namespace {
 
 struct Dump {
   const Function& function;
+  Origins origins;
   std::string text;
 
   void add(const char* format, std::uint32_t value) {
@@ -64,7 +65,15 @@ struct Dump {
     if (instr.op == Op::kConst)
       for (std::uint8_t i = 0; i < instr.components; i++) add(" %#x", instr.imm[i]);
     if (!alu && instr.op != Op::kConst && instr.op != Op::kVec && instr.op != Op::kUndef) parameters(instr);
+    if (origins == Origins::kShow) origin(instr.origin);
     text += '\n';
+  }
+
+  void origin(const Origin& origin) {
+    if (origin.spirv_id == 0 && origin.line == 0) return;
+    text += "  ;";
+    if (origin.spirv_id != 0) add(" %%%u", origin.spirv_id);
+    if (origin.line != 0) add(" line %u", origin.line);
   }
 
   void parameters(const Instr& instr) {
@@ -129,8 +138,8 @@ struct Dump {
 
 }  // namespace
 
-std::string dump(const Function& function) {
-  Dump dump{function, {}};
+std::string dump(const Function& function, Origins origins) {
+  Dump dump{function, origins, {}};
   dump.list(function.body, 0);
   return std::move(dump.text);
 }

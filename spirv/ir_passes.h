@@ -8,8 +8,11 @@
 
 namespace vitrine::spirv::ir {
 
+/// Whether the text says behind each instruction which SPIR-V id and source line it comes from.
+enum class Origins : std::uint8_t { kHide, kShow };
+
 /// Text form for tests and logs: one instruction per line, nesting by indentation.
-std::string dump(const Function& function);
+std::string dump(const Function& function, Origins origins = Origins::kHide);
 
 /// Where values may be used: in the list that defines them and below; or also, between the rewrites, behind a loop if
 /// they are visible at all of its ways out, and behind an If of which the other side leaves.

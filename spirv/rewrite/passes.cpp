@@ -119,7 +119,7 @@ class Printer {
 
  private:
   void print(const char* title) {
-    std::string text = ir::dump(snapshot(graph_));
+    std::string text = ir::dump(snapshot(graph_), ir::Origins::kShow);
     if (text == before_) return;
     base::log("ir", "shader " + std::to_string(shader_) + ", " + title + "\n" + text);
     before_ = std::move(text);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the shape of the tree: include directions, rooms in the README, tests behind claims and opcodes, capabilities,
+"""Checks the shape of the tree: include directions, rooms in the README, tests behind claims, opcodes and steps, capabilities,
 long files.
 
 usage: structure.py SOURCE_FOLDER
@@ -100,6 +100,16 @@ def opcode_faults(root):
                 yield f"{table}: no test uses {name}, and tests/spirv/opcode_tests does not say what does"
 
 
+def step_faults(root):
+    """Every step of the rewrites has a table in the test file that mirrors its source, which names it."""
+    rows = re.findall(r'^VITRINE_PASS\(\w+, \w+, \w+, (\w+), "([^"]+)\.cpp"', (root / "spirv/rewrite/passes.def").read_text(),
+                      re.MULTILINE)
+    for function, file in sorted(set(rows)):
+        test = root / f"tests/spirv/rewrite/{file}_test.cpp"
+        if not test.exists() or not re.search(rf"\b{function}\b", test.read_text()):
+            yield f"spirv/rewrite/passes.def: {test.relative_to(root)} has no table for {function}"
+
+
 def capability_faults(root):
     """spirv/capabilities.def lists the SPIR-V capabilities whose features or extensions manifest/ claims, and no other.
 
@@ -160,7 +170,7 @@ def report_tail(root):
         print(f"  {lines:5} {path.relative_to(root)}{'  (long)' if lines > LONG_FILE else ''}")
 
 
-CHECKS = (include_faults, room_faults, claim_faults, opcode_faults, capability_faults, pass_faults, shape_faults)
+CHECKS = (include_faults, room_faults, claim_faults, opcode_faults, step_faults, capability_faults, pass_faults, shape_faults)
 
 
 def main():
