@@ -19,6 +19,7 @@ inline constexpr std::uint32_t kMaxColorAttachments = 8;
 inline constexpr std::uint32_t kMaxViewports = 16;
 inline constexpr std::uint32_t kMaxVertexBindings = 32;
 inline constexpr std::uint32_t kMaxVertexAttributes = 32;
+inline constexpr std::uint32_t kMaxPatchVertices = 32;
 
 struct VertexBinding {
   const std::byte* data = nullptr;  ///< null: reads as out of bounds
@@ -118,15 +119,34 @@ struct TransformFeedback {
   std::array<XfbBuffer, spirv::kMaxXfbBuffers> buffer{};
 };
 
+/// Counters of a pipeline statistics query, in the order of VkQueryPipelineStatisticFlagBits.
+enum class Statistic : std::uint8_t {
+  kInputAssemblyVertices,
+  kInputAssemblyPrimitives,
+  kVertexInvocations,
+  kGeometryInvocations,
+  kGeometryPrimitives,
+  kClippingInvocations,
+  kClippingPrimitives,
+  kFragmentInvocations,
+  kTessellationControlPatches,
+  kTessellationEvaluationInvocations,
+  kComputeInvocations,
+};
+
 /// Counters of active queries; null members do not count. Fixed function adds to them while it works; they are final
 /// after Pass::flush().
 struct QueryCounters {
   std::atomic<std::uint64_t>* occlusion = nullptr;  ///< samples that passed all tests
-  /// VkQueryPipelineStatisticFlagBits order: bit n counts into statistics[n] (11 counters); null: off.
+  /// One counter for each Statistic; null: off.
   std::atomic<std::uint64_t>* statistics = nullptr;
   /// Per vertex stream: primitives written by transform feedback, and primitives that would have been; two counters.
   std::array<std::atomic<std::uint64_t>*, kMaxStreams> feedback{};
   std::array<std::atomic<std::uint64_t>*, kMaxStreams> generated{};  ///< per vertex stream: primitives
+
+  void count(Statistic statistic, std::uint64_t value) const {
+    if (statistics) statistics[static_cast<std::size_t>(statistic)].fetch_add(value, std::memory_order_relaxed);
+  }
 };
 
 struct NativeShader;  // raster/stage.h

@@ -14,6 +14,7 @@
 #include "raster/arena.h"
 #include "raster/front/assembly.h"
 #include "raster/front/front.h"
+#include "raster/plan/make_plan.h"
 #include "raster/tile/tile.h"
 #include "texel/transfer.h"
 
@@ -81,17 +82,11 @@ ScratchPool& scratch_pool() {
 
 /// Cuts the render area to what all attachments have, so that no draw leaves memory.
 void cut_render_area(PassDesc& desc) {
-  std::int64_t right = std::int64_t{desc.render_area.offset.x} + desc.render_area.extent.width;
-  std::int64_t bottom = std::int64_t{desc.render_area.offset.y} + desc.render_area.extent.height;
-  const auto cut = [&](const texel::ImageView& view) {
-    if (!view.format) return;
-    right = std::min<std::int64_t>(right, view.level[0].extent.width);
-    bottom = std::min<std::int64_t>(bottom, view.level[0].extent.height);
-  };
-  for (std::uint32_t i = 0; i < desc.color_count; ++i) cut(desc.color[i]);
-  cut(desc.depth);
-  cut(desc.stencil);
-  const std::int64_t x = std::max(desc.render_area.offset.x, 0), y = std::max(desc.render_area.offset.y, 0);
+  const VkExtent2D room = cut_to_attachments(desc, {UINT32_MAX, UINT32_MAX});
+  const VkRect2D& area = desc.render_area;
+  const std::int64_t right = std::min(std::int64_t{area.offset.x} + area.extent.width, std::int64_t{room.width});
+  const std::int64_t bottom = std::min(std::int64_t{area.offset.y} + area.extent.height, std::int64_t{room.height});
+  const std::int64_t x = std::max(area.offset.x, 0), y = std::max(area.offset.y, 0);
   desc.render_area = {{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
                       {static_cast<std::uint32_t>(std::clamp<std::int64_t>(right - x, 0, 1 << 15)),
                        static_cast<std::uint32_t>(std::clamp<std::int64_t>(bottom - y, 0, 1 << 15))}};
@@ -318,16 +313,13 @@ struct Pass::Impl {
              std::uint32_t base_layer, std::uint32_t layer_count) {
     if (!view.format || grid.count() == 0) return;
     ClearCommand* command = new (scratch->arena.take<ClearCommand>(1)) ClearCommand{};
-    const auto end = [](std::int32_t offset, std::uint32_t extent, std::uint32_t limit) {
-      return static_cast<int>(std::min<std::int64_t>(std::int64_t{offset} + extent, limit)) - 1;
-    };
     const PixelRect tiles{0, 0, static_cast<int>(grid.columns) * kTileSize - 1,
                           static_cast<int>(grid.rows) * kTileSize - 1};
     const texel::Extent& extent = view.level[0].extent;
+    const PixelRect image = pixel_rect({{0, 0}, {extent.width, extent.height}});
     command->view = &view;
     command->value = value;
-    command->rect = intersect(tiles, {rect.offset.x, rect.offset.y, end(rect.offset.x, rect.extent.width, extent.width),
-                                      end(rect.offset.y, rect.extent.height, extent.height)});
+    command->rect = intersect(tiles, intersect(image, pixel_rect(rect)));
     command->base_layer = base_layer;
     command->layer_count = std::min(layer_count, view.layer_count - std::min(base_layer, view.layer_count));
     if (!command->rect.empty() && command->layer_count) scratch->commands.push_back({command, {}, {}});

@@ -4,26 +4,13 @@
 
 #include <vulkan/vulkan_core.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 
 #include "raster/draw.h"
-#include "texel/view.h"
+#include "raster/pass_desc.h"
 
 namespace vitrine::raster {
-
-/// Attachments are views of one mip level; view.level[0] is that level. format == null: unused attachment.
-struct PassDesc {
-  std::array<texel::ImageView, kMaxColorAttachments> color{};
-  std::uint32_t color_count = 0;
-  texel::ImageView depth;    ///< the depth plane
-  texel::ImageView stencil;  ///< the stencil plane
-  VkRect2D render_area{};
-  std::uint32_t layers = 1;
-  std::uint32_t view_mask = 0;
-  std::uint32_t samples = 1;
-};
 
 class Pass {
  public:

@@ -1,5 +1,6 @@
 // What is derived once from the state and the shader interfaces of a draw and then shared by all of its chunks and
-// tiles: register numbers, the order of varyings, viewport constants, draw regions, the order of tests.
+// tiles: register numbers, the order of varyings, viewport constants, draw regions, the order of tests, and which of
+// the ways through the back end may be taken. Values only: raster/plan/make_plan.h fills them in.
 #pragma once
 
 #include <array>
@@ -7,9 +8,11 @@
 #include <vector>
 
 #include "raster/draw.h"
-#include "raster/output/color.h"
-#include "raster/pass.h"
+#include "raster/output/color_writer.h"
+#include "raster/output/depth_stencil.h"
+#include "raster/pixel_rect.h"
 #include "raster/stage.h"
+#include "raster/topology.h"
 
 namespace vitrine::raster {
 
@@ -17,18 +20,8 @@ inline constexpr std::uint32_t kNoReg = ~std::uint32_t{0};
 inline constexpr std::uint32_t kMaxVaryings = 128;
 inline constexpr std::uint32_t kMaxClipDistances = 8;
 inline constexpr int kTileSize = 64;
-inline constexpr std::uint32_t kMaxPatchVertices = 32;
 /// Vertex or index positions of a chunk, about; runs are cut to this many.
 inline constexpr std::uint32_t kChunkPositions = 1024;
-
-/// Pixels, all bounds inclusive; empty if x1 < x0 or y1 < y0.
-struct PixelRect {
-  int x0 = 0, y0 = 0, x1 = -1, y1 = -1;
-  bool empty() const { return x1 < x0 || y1 < y0; }
-};
-inline PixelRect intersect(const PixelRect& a, const PixelRect& b) {
-  return {a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0, a.x1 < b.x1 ? a.x1 : b.x1, a.y1 < b.y1 ? a.y1 : b.y1};
-}
 
 /// Window coordinates = clip / w * scale + translate (lavapipe-rasterization.md 1.1).
 struct ViewportTransform {
@@ -91,15 +84,6 @@ struct FragmentRegisters {
   std::array<std::array<std::uint32_t, 4>, kMaxColorAttachments> color;
   std::array<std::uint32_t, 4> color_second;  ///< attachment 0, index 1
   std::uint32_t depth = kNoReg, stencil = kNoReg, sample_mask = kNoReg;
-};
-
-/// How positions of a draw form primitives.
-struct TopologyShape {
-  std::uint32_t first = 1;    ///< positions the first primitive needs
-  std::uint32_t step = 1;     ///< positions each further primitive adds
-  std::uint32_t corners = 1;  ///< of what is drawn; patches: control points; 0: nothing can be drawn
-  bool fan = false;
-  bool neighbours = false;  ///< primitives also need a position in front of and behind their own
 };
 
 /// Tessellation and geometry stages of a draw, and where vertices lie between them (spirv/stage_memory.h).
@@ -169,7 +153,7 @@ struct PipelinePlan {
   std::uint32_t sample_mask = ~0u;  ///< 0: nothing is drawn
 
   TestOrder depth_order = TestOrder::kNone;
-  bool depth_test = false, depth_write = false, depth_bounds = false, stencil_test = false;
+  DepthStencilTests tests;
   bool restricts_depth = true;  ///< fragments' depth is clamped to [0, 1] (5.3)
   bool early_reject = false;    ///< late order: failing now means failing later, so such quads need not be shaded
   bool in_order = false;        ///< fragments that write memory (interlock), early_reject whose outcome the shader
@@ -182,15 +166,15 @@ struct PipelinePlan {
   bool shades = true;            ///< the fragment shader's run can be observed
   bool may_kill = false;         ///< discard, sample mask output, alpha to coverage
   bool windows = false;          ///< small triangles are covered in the front end (Primitive::window)
-  bool tests_rows = false;       ///< depth of whole blocks is tested row by row (raster/tile/block.h)
+  bool tests_rows = false;       ///< depth of whole blocks is tested row by row (raster/tile/block_depth.h)
   bool hides_blocks = false;     ///< limits of stored depths reject whole blocks (raster/tile/hierarchical_depth.h)
-  bool shades_blocks = false;    ///< nearly full blocks are shaded on their own, without packing (raster/tile/block.h)
+  bool shades_blocks =
+      false;  ///< nearly full blocks are shaded on their own, without packing (raster/tile/block_shade.h)
 };
 
-/// Fills `plan`. False if nothing can be drawn (a sample mask of 0, no samples).
-bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan);
-
-/// The shape of what a draw assembles. Patches without tessellation stages have no corners.
-TopologyShape topology_shape(const DrawCall& draw);
+/// Where depth clamp keeps the depths of a viewport.
+inline DepthRange depth_range(const PipelinePlan& plan, std::uint32_t viewport) {
+  return {plan.viewport[viewport].z_min, plan.viewport[viewport].z_max};
+}
 
 }  // namespace vitrine::raster

@@ -38,6 +38,13 @@ struct Primitive {
   std::uint8_t provoking;  ///< index in v whose flat values hold
 };
 
+/// The fill rule (lavapipe-rasterization.md 3.2) for an edge from one corner to the next: whether samples on it are
+/// inside. `a` = y - next y, `b` = x - next x.
+template <class T>
+constexpr bool owns_edge(T a, T b) {
+  return a < 0 || (a == 0 && b > 0);
+}
+
 /// Primitives of one tile in one chunk: index[0..count) into primitives, in API order.
 struct TileRange {
   std::uint32_t tile;

@@ -1,21 +1,21 @@
 // The front end's primitive half: cull distances, clipping, culling, polygon modes, hand-over to setup
 // (lavapipe-rasterization.md 1.4 to 1.7, 2.2, 7.1, 10.2).
+#include "raster/front/assemble.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "base/numeric.h"
 #include "raster/front/assembly.h"
-#include "raster/front/front.h"
+#include "raster/front/clip.h"
+#include "raster/front/setup_batch.h"
+#include "raster/front/setup_wide.h"
 
 namespace vitrine::raster {
 namespace {
 
-struct Assembler {
-  const Chunk& chunk;
-  const PassDesc& pass;
-  Arena& arena;
-  FrontScratch& scratch;
+struct Assembler : AssembleContext {
   const PipelinePlan& plan;
   SetupContext setup;
   ViewportTransform viewport;
@@ -23,13 +23,10 @@ struct Assembler {
   std::uint32_t stipple_counter = 0;  ///< pixels of the pattern used up by earlier lines of the strip
   TriangleBatch batch;
 
-  Assembler(const Chunk& of_chunk, const PassDesc& of_pass, Arena& to_arena, FrontScratch& with_scratch)
-      : chunk(of_chunk),
-        pass(of_pass),
-        arena(to_arena),
-        scratch(with_scratch),
-        plan(*of_chunk.draw->plan),
-        setup{&plan, &of_pass, &with_scratch.primitives, !of_chunk.draw->call.queries.statistics},
+  explicit Assembler(const AssembleContext& context)
+      : AssembleContext(context),
+        plan(*chunk.draw->plan),
+        setup{&plan, &pass, &primitives, !chunk.draw->call.queries.statistics},
         viewport(plan.viewport[0]),
         batches(plan.windows && plan.out.layer == kNoReg && !plan.per_vertex_viewport && !plan.bias_in_vertices &&
                 plan.out.cull_count == 0) {
@@ -39,10 +36,10 @@ struct Assembler {
 
 ClipVertex clip_vertex(const Assembler& a, std::uint32_t slot) {
   ClipVertex v;
-  std::memcpy(v.clip, &a.scratch.clip[slot * 4], sizeof(v.clip));
-  std::memcpy(v.distance, &a.scratch.clip_distance[slot * kMaxClipDistances], sizeof(v.distance));
-  v.record = a.scratch.records + std::size_t{slot} * a.plan.vertex_stride;
-  v.code = a.scratch.code[slot];
+  std::memcpy(v.clip, &a.vertices.clip[slot * 4], sizeof(v.clip));
+  std::memcpy(v.distance, &a.vertices.clip_distance[slot * kMaxClipDistances], sizeof(v.distance));
+  v.record = a.vertices.records + std::size_t{slot} * a.plan.vertex_stride;
+  v.code = a.vertices.code[slot];
   return v;
 }
 
@@ -51,7 +48,7 @@ bool culled_by_distance(const Assembler& a, const std::uint32_t* slot, std::uint
   for (std::uint32_t d = 0; d < a.plan.out.cull_count; ++d) {
     bool all = true;
     for (std::uint32_t c = 0; c < corners; ++c) {
-      const float value = a.scratch.cull_distance[slot[c] * kMaxClipDistances + d];
+      const float value = a.vertices.cull_distance[slot[c] * kMaxClipDistances + d];
       all &= !(value >= 0) || !std::isfinite(value);
     }
     if (all) return true;
@@ -63,11 +60,11 @@ bool culled_by_distance(const Assembler& a, const std::uint32_t* slot, std::uint
 void choose_layer_and_viewport(Assembler& a, std::uint32_t provoking_slot) {
   a.setup.layer = static_cast<std::uint16_t>(a.chunk.view);
   if (a.plan.out.layer != kNoReg) {
-    const std::uint32_t layer = a.scratch.layer[provoking_slot] + a.chunk.view;
+    const std::uint32_t layer = a.vertices.layer[provoking_slot] + a.chunk.view;
     a.setup.layer = static_cast<std::uint16_t>(std::min(layer, std::max<std::uint32_t>(a.pass.layers, 1) - 1));
   }
   if (!a.plan.per_vertex_viewport) return;
-  const std::uint32_t index = a.scratch.viewport_index[provoking_slot];
+  const std::uint32_t index = a.vertices.viewport_index[provoking_slot];
   a.setup.viewport = index < kMaxViewports ? static_cast<std::uint8_t>(index) : std::uint8_t{0};
   a.viewport = a.plan.viewport[a.setup.viewport];
 }
@@ -155,7 +152,7 @@ void emit_unfilled(Assembler& a, const Vertex* const in[3], const bool edge[3], 
     const float offset = vertex_depth_bias(a.plan, a.pass, v[0], v[1], v[2]);
     for (const Vertex*& corner : v) corner = biased_copy(a, corner, offset);
   }
-  const Vertex* provoking = v[state.provoking_vertex_last ? 2 : 0];
+  const Vertex* provoking = v[provoking_corner(3, state.provoking_vertex_last)];
   for (const Vertex*& corner : v) corner = with_flat_values(a.plan, a.arena, corner, provoking);
   const bool ccw = state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE;
   const bool front = ccw ? determinant < 0 : determinant > 0;
@@ -209,7 +206,7 @@ void flush_batch(Assembler& a) {
 }
 
 void add_to_batch(Assembler& a, const std::uint32_t slot[3]) {
-  const FrontScratch& s = a.scratch;
+  const VertexScratch& s = a.vertices;
   TriangleBatch& batch = a.batch;
   const std::uint32_t at = batch.count++;
   for (int c = 0; c < 3; ++c) {
@@ -222,13 +219,13 @@ void add_to_batch(Assembler& a, const std::uint32_t slot[3]) {
 }
 
 void assemble_triangle(Assembler& a, const std::uint32_t slot[3]) {
-  const FrontScratch& s = a.scratch;
+  const VertexScratch& s = a.vertices;
   const ClipCode c0 = s.code[slot[0]], c1 = s.code[slot[1]], c2 = s.code[slot[2]];
   if ((c0 & c1 & c2) != 0) return;
   if (a.batches && (c0 | c1 | c2) == 0) return add_to_batch(a, slot);
   flush_batch(a);
   if (a.plan.out.cull_count && culled_by_distance(a, slot, 3)) return;
-  const std::uint32_t provoking = a.plan.state->provoking_vertex_last ? 2 : 0;
+  const std::uint32_t provoking = provoking_corner(3, a.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(a, slot[provoking]);
   const bool simple =
       (c0 | c1 | c2) == 0 && !a.plan.per_vertex_viewport && !a.plan.bias_in_vertices && a.plan.out.cull_count == 0;
@@ -254,10 +251,10 @@ void assemble_triangle(Assembler& a, const std::uint32_t slot[3]) {
 }
 
 void assemble_line(Assembler& a, const std::uint32_t slot[2]) {
-  const ClipCode c0 = a.scratch.code[slot[0]], c1 = a.scratch.code[slot[1]];
+  const ClipCode c0 = a.vertices.code[slot[0]], c1 = a.vertices.code[slot[1]];
   if ((c0 & c1) != 0) return;
   if (a.plan.out.cull_count && culled_by_distance(a, slot, 2)) return;
-  const std::uint32_t provoking = a.plan.state->provoking_vertex_last ? 1 : 0;
+  const std::uint32_t provoking = provoking_corner(2, a.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(a, slot[provoking]);
   ClipVertex line[2] = {clip_vertex(a, slot[0]), clip_vertex(a, slot[1])};
   const ClipContext context{&a.plan, &a.viewport, &a.arena, false};
@@ -269,13 +266,12 @@ void assemble_line(Assembler& a, const std::uint32_t slot[2]) {
 /// unchanged if it lies within the clip volume; otherwise, it is discarded." (The reference keeps those outside in x
 /// and y: deviation point-clipping.)
 void assemble_point(Assembler& a, std::uint32_t slot) {
-  const ClipCode code = a.scratch.code[slot];
+  const ClipCode code = a.vertices.code[slot];
   if ((code & ~kClipXY) != 0) return;
   const ClipVertex v = clip_vertex(a, slot);
   if (a.plan.out.cull_count && culled_by_distance(a, &slot, 1)) return;
   // Clipping primitives: the reference's count, and any is allowed for what is outside.
-  if (std::atomic<std::uint64_t>* statistics = a.chunk.draw->call.queries.statistics)
-    statistics[6].fetch_add(1, std::memory_order_relaxed);
+  a.chunk.draw->call.queries.count(Statistic::kClippingPrimitives, 1);
   if (code != 0) return;
   choose_layer_and_viewport(a, slot);
   setup_point(a.setup, window_record(a, v), true);
@@ -289,81 +285,84 @@ bool starts_at_center(const Assembler& a, const Run& run, const std::uint16_t* s
   if (run.begin != 0 || a.chunk.draw->call.index_data || plan.flat_count != 0) return false;
   if (plan.bias_in_vertices || plan.out.cull_count != 0 || plan.per_vertex_viewport) return false;
   for (int i = 0; i < 4; ++i) {
-    if (a.scratch.code[slot[i]] != 0) return false;
-    if (plan.out.layer != kNoReg && a.scratch.layer[slot[i]] != a.scratch.layer[slot[0]]) return false;
+    if (a.vertices.code[slot[i]] != 0) return false;
+    if (plan.out.layer != kNoReg && a.vertices.layer[slot[i]] != a.vertices.layer[slot[0]]) return false;
   }
   return true;
 }
 
+void assemble_primitive(Assembler& a, std::uint32_t corners, const std::uint32_t* slot) {
+  if (corners == 3)
+    assemble_triangle(a, slot);
+  else if (corners == 2)
+    assemble_line(a, slot);
+  else
+    assemble_point(a, slot[0]);
+}
+
+/// The most frequent topology, without tables.
+void assemble_triangle_list(Assembler& a, const Run& run, std::uint32_t first_entry) {
+  const std::uint16_t* corner = a.vertices.slot.data() + first_entry;
+  for (std::uint32_t i = run.begin; i < run.end; ++i, corner += 3) {
+    const std::uint32_t slot[3] = {corner[0], corner[1], corner[2]};
+    a.setup.id = run.first_id + i;
+    assemble_triangle(a, slot);
+  }
+}
+
+void assemble_run(Assembler& a, const Run& run, const RunSpan& span, std::uint32_t first_entry) {
+  const State& state = *a.plan.state;
+  const TopologyShape& shape = a.plan.shape;
+  const std::uint16_t* slots = a.vertices.slot.data() + first_entry;
+  const bool last = state.provoking_vertex_last || starts_at_center(a, run, slots);
+  for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    const Corners corners = corners_of(state.topology, last, i);
+    std::uint32_t slot[3];
+    for (std::uint32_t c = 0; c < shape.corners; ++c) slot[c] = slots[span.entry(corners.at[c])];
+    a.setup.id = run.first_id + i;
+    if (i == 0 || shape.step > 1) a.stipple_counter = 0;  // strips go on with the pattern
+    assemble_primitive(a, shape.corners, slot);
+  }
+}
+
 }  // namespace
 
-void assemble_chunk(const Chunk& chunk, const PassDesc& pass, Arena& arena, FrontScratch& scratch) {
-  const PipelinePlan& plan = *chunk.draw->plan;
-  const State& state = *plan.state;
-  Assembler a(chunk, pass, arena, scratch);
-  const TopologyShape& shape = plan.shape;
-  if (state.cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return;
+void assemble_chunk(const AssembleContext& context) {
+  Assembler a(context);
+  const Chunk& chunk = a.chunk;
+  const TopologyShape& shape = a.plan.shape;
+  if (a.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return;
   if (chunk.stipple_counter) a.stipple_counter = *chunk.stipple_counter;
   std::uint32_t first_entry = 0, expected = 0;
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) expected += chunk.runs[r].end - chunk.runs[r].begin;
-  scratch.primitives.reserve(expected);
+  a.primitives.reserve(expected);
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
-    const Run& run = chunk.runs[r];
-    const RunSpan span = run_span(shape, run);
-    if (state.topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST) {
-      const std::uint16_t* corner = scratch.slot.data() + first_entry;
-      for (std::uint32_t i = run.begin; i < run.end; ++i, corner += 3) {
-        const std::uint32_t slot[3] = {corner[0], corner[1], corner[2]};
-        a.setup.id = run.first_id + i;
-        assemble_triangle(a, slot);
-      }
-      first_entry += span.count();
-      continue;
-    }
-    const bool last = state.provoking_vertex_last || starts_at_center(a, run, scratch.slot.data() + first_entry);
-    for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const Corners corners = corners_of(state.topology, last, i);
-      std::uint32_t slot[3];
-      for (std::uint32_t c = 0; c < shape.corners; ++c) slot[c] = scratch.slot[first_entry + span.entry(corners.at[c])];
-      a.setup.id = run.first_id + i;
-      if (i == 0 || shape.step > 1) a.stipple_counter = 0;  // strips go on with the pattern
-      if (shape.corners == 3)
-        assemble_triangle(a, slot);
-      else if (shape.corners == 2)
-        assemble_line(a, slot);
-      else
-        assemble_point(a, slot[0]);
-    }
+    const RunSpan span = run_span(shape, chunk.runs[r]);
+    if (a.plan.state->topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST)
+      assemble_triangle_list(a, chunk.runs[r], first_entry);
+    else
+      assemble_run(a, chunk.runs[r], span, first_entry);
     first_entry += span.count();
   }
   flush_batch(a);
   if (chunk.stipple_counter) *chunk.stipple_counter = a.stipple_counter;
-  if (chunk.draw->call.queries.statistics && !plan.draws_points)  // clipping primitives
-    chunk.draw->call.queries.statistics[6].fetch_add(scratch.primitives.size(), std::memory_order_relaxed);
+  if (!a.plan.draws_points) chunk.draw->call.queries.count(Statistic::kClippingPrimitives, a.primitives.size());
 }
 
-void assemble_listed(const Chunk& chunk, const PassDesc& pass, Arena& arena, FrontScratch& scratch,
-                     std::span<const ListedPrimitive> primitives) {
-  const PipelinePlan& plan = *chunk.draw->plan;
-  Assembler a(chunk, pass, arena, scratch);
-  const std::uint32_t before = scratch.primitives.size();
-  const bool invisible = plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && plan.corners == 3;
-  for (const ListedPrimitive& primitive : primitives) {
+void assemble_listed(const AssembleContext& context, std::span<const ListedPrimitive> listed) {
+  Assembler a(context);
+  const std::uint32_t before = a.primitives.size();
+  const bool invisible = a.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && a.plan.corners == 3;
+  for (const ListedPrimitive& primitive : listed) {
     if (invisible) break;
     a.setup.id = primitive.id;
     if (!primitive.continues) a.stipple_counter = 0;
-    if (plan.corners == 3)
-      assemble_triangle(a, primitive.slot);
-    else if (plan.corners == 2)
-      assemble_line(a, primitive.slot);
-    else
-      assemble_point(a, primitive.slot[0]);
+    assemble_primitive(a, a.plan.corners, primitive.slot);
   }
   flush_batch(a);
-  if (std::atomic<std::uint64_t>* statistics = chunk.draw->call.queries.statistics) {
-    statistics[5].fetch_add(primitives.size(), std::memory_order_relaxed);  // clipping invocations, primitives
-    if (!plan.draws_points) statistics[6].fetch_add(scratch.primitives.size() - before, std::memory_order_relaxed);
-  }
+  const QueryCounters& queries = a.chunk.draw->call.queries;
+  queries.count(Statistic::kClippingInvocations, listed.size());
+  if (!a.plan.draws_points) queries.count(Statistic::kClippingPrimitives, a.primitives.size() - before);
 }
 
 }  // namespace vitrine::raster

@@ -1,4 +1,4 @@
-// Primitive assembly: decomposition tables, primitive restart, cutting into runs.
+// Primitive restart and cutting into runs.
 #include "raster/front/assembly.h"
 
 #include <algorithm>
@@ -43,63 +43,6 @@ std::uint32_t read_index(const DrawCall& draw, std::uint64_t position) {
   std::uint32_t value = 0;
   std::memcpy(&value, draw.index_data + at, size);
   return value;
-}
-
-Corners corners_of(VkPrimitiveTopology topology, bool last, std::uint32_t i) {
-  const bool odd = (i & 1) != 0;
-  switch (topology) {
-    case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
-      return {{i, 0, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
-      return {{2 * i, 2 * i + 1, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
-      return {{i, i + 1, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
-      return {{4 * i + 1, 4 * i + 2, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
-      return {{i + 1, i + 2, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
-      return {{3 * i, 3 * i + 1, 3 * i + 2}};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP:
-      if (!odd) return {{i, i + 1, i + 2}};
-      if (last) return {{i + 1, i, i + 2}};
-      return {{i, i + 2, i + 1}};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN:
-      if (last) return {{0, i + 1, i + 2}};
-      return {{i + 1, i + 2, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
-      return {{6 * i, 6 * i + 2, 6 * i + 4}};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY:
-      if (!odd) return {{2 * i, 2 * i + 2, 2 * i + 4}};
-      if (last) return {{2 * i + 2, 2 * i, 2 * i + 4}};
-      return {{2 * i, 2 * i + 4, 2 * i + 2}};
-    default:
-      return {{0, 0, 0}};
-  }
-}
-
-InputVertices input_vertices(VkPrimitiveTopology topology, bool last, std::uint32_t i, bool last_of_strip) {
-  switch (topology) {
-    case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
-      return {4, {4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3, 0, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
-      return {4, {i, i + 1, i + 2, i + 3, 0, 0}};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
-      return {6, {6 * i, 6 * i + 1, 6 * i + 2, 6 * i + 3, 6 * i + 4, 6 * i + 5}};
-    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY: {
-      const std::uint32_t a = 2 * i, b = a + 2, c = a + 4;
-      const std::uint32_t ab = i == 0 ? 1 : a - 2, bc = last_of_strip ? a + 5 : a + 6, ca = a + 3;
-      if ((i & 1) == 0) return {6, {a, ab, b, bc, c, ca}};
-      if (last) return {6, {b, ab, a, ca, c, bc}};
-      return {6, {a, ca, c, bc, b, ab}};
-    }
-    default: {
-      const Corners corners = corners_of(topology, last, i);
-      const bool point = topology == VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
-      const bool line = topology == VK_PRIMITIVE_TOPOLOGY_LINE_LIST || topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
-      return {point ? 1u : line ? 2u : 3u, {corners.at[0], corners.at[1], corners.at[2], 0, 0, 0}};
-    }
-  }
 }
 
 RunSpan run_span(const TopologyShape& shape, const Run& run) {

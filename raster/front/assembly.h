@@ -1,30 +1,21 @@
-// Primitive assembly (Vulkan 1.3.239, Primitive Topologies): which positions of a run form its primitives, in which
-// order (lavapipe-rasterization.md 10.1). Does not know vertices.
+// Primitive assembly (Vulkan 1.3.239, Primitive Topologies; Primitive Restart): draws cut into runs, and the positions
+// of a run. The order of a primitive's corners is the table's (raster/topology.h). Does not know vertices.
 #pragma once
-
-#include <vulkan/vulkan_core.h>
 
 #include <cstdint>
 #include <vector>
 
 #include "raster/primitive.h"
+#include "raster/topology.h"
 
 namespace vitrine::raster {
 
-/// Corners of primitive `i` of a strip, list or fan, as positions from its start; `corners` of TopologyShape are set.
-/// The provoking corner is the first, or the last of them, as `last` says.
-struct Corners {
-  std::uint32_t at[3];
+/// A primitive between assembly and clipping: slots of the last stage's vertices.
+struct ListedPrimitive {
+  std::uint32_t slot[3];
+  std::uint32_t id;        ///< gl_PrimitiveID
+  bool continues = false;  ///< a strip: the line stipple pattern goes on
 };
-Corners corners_of(VkPrimitiveTopology topology, bool last, std::uint32_t i);
-
-/// All positions of primitive `i`, adjacent ones too, in the order a geometry shader sees them. `last_of_strip`: no
-/// primitive follows in the strip.
-struct InputVertices {
-  std::uint32_t count;
-  std::uint32_t at[6];
-};
-InputVertices input_vertices(VkPrimitiveTopology topology, bool last, std::uint32_t i, bool last_of_strip);
 
 /// Positions a run needs: [0] for fans, then [low, high).
 struct RunSpan {

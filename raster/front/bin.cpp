@@ -1,5 +1,5 @@
 // Binning: which tiles a primitive may touch, as one list per tile of a chunk.
-#include "raster/front/front.h"
+#include "raster/front/bin.h"
 
 namespace vitrine::raster {
 namespace {
@@ -21,12 +21,12 @@ bool outside_an_edge(const Primitive& p, int tile_x, int tile_y) {
   return false;
 }
 
-void add_pair(FrontScratch& s, std::uint32_t tile, std::uint32_t primitive) {
+void add_pair(BinScratch& s, std::uint32_t tile, std::uint32_t primitive) {
   if (s.tile_count[tile]++ == 0) s.tiles.push_back(tile);
   s.tile_pairs.push_back(std::uint64_t{tile} << 32 | primitive);
 }
 
-void bin_primitive(const TileGrid& grid, const Primitive& p, std::uint32_t index, FrontScratch& s) {
+void bin_primitive(const TileGrid& grid, const Primitive& p, std::uint32_t index, BinScratch& s) {
   const int x0 = p.x0 >> kShift, x1 = p.x1 >> kShift, y0 = p.y0 >> kShift, y1 = p.y1 >> kShift;
   const bool check = p.kind == PrimitiveKind::kTriangle && (x1 - x0) + (y1 - y0) >= 2;
   for (int y = y0; y <= y1; ++y) {
@@ -39,13 +39,13 @@ void bin_primitive(const TileGrid& grid, const Primitive& p, std::uint32_t index
 
 }  // namespace
 
-ChunkOutput bin_chunk(const PipelinePlan&, const TileGrid& grid, Arena& arena, FrontScratch& s) {
+ChunkOutput bin_chunk(PrimitiveList& primitives, const TileGrid& grid, Arena& arena, BinScratch& s) {
   s.tile_pairs.clear();
   s.tiles.clear();
   if (s.tile_count.size() < grid.count()) s.tile_count.assign(grid.count(), 0);
-  s.primitives.end();
-  for (std::uint32_t i = 0; i < s.primitives.size(); ++i)
-    if (s.primitives[i].layer < grid.layers) bin_primitive(grid, s.primitives[i], i, s);
+  primitives.end();
+  for (std::uint32_t i = 0; i < primitives.size(); ++i)
+    if (primitives[i].layer < grid.layers) bin_primitive(grid, primitives[i], i, s);
   if (s.tiles.empty()) return {};
 
   std::uint32_t* index = arena.take<std::uint32_t>(s.tile_pairs.size());
@@ -60,7 +60,7 @@ ChunkOutput bin_chunk(const PipelinePlan&, const TileGrid& grid, Arena& arena, F
   }
   for (const std::uint64_t pair : s.tile_pairs) index[s.tile_count[pair >> 32]++] = static_cast<std::uint32_t>(pair);
   for (const std::uint32_t tile : s.tiles) s.tile_count[tile] = 0;
-  return {s.primitives.data(), ranges, static_cast<std::uint32_t>(s.tiles.size())};
+  return {primitives.data(), ranges, static_cast<std::uint32_t>(s.tiles.size())};
 }
 
 }  // namespace vitrine::raster

@@ -15,7 +15,7 @@ struct Plane {
 };
 
 Plane plane_of(const ClipContext& context, std::uint32_t index) {
-  const float k = context.half_xy ? 0.5f : 1.0f;
+  const float k = context.guard_band ? 0.5f : 1.0f;
   switch (index) {
     case 0:
       return {-k, 0, 0, 1};

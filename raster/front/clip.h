@@ -22,8 +22,8 @@ struct ClipVertex {
 struct ClipContext {
   const PipelinePlan* plan;
   const ViewportTransform* viewport;
-  Arena* arena;          ///< records of new vertices
-  bool half_xy = false;  ///< polygon mode POINT clips x and y at twice the volume
+  Arena* arena;             ///< records of new vertices
+  bool guard_band = false;  ///< in x and y, of twice the volume: where polygon mode POINT clips
 };
 
 /// 3 corners cut by at most 6 + 8 planes, and a repeated first corner.

@@ -6,8 +6,6 @@
 #include <cstring>
 
 #include "base/numeric.h"
-#include "raster/front/assembly.h"
-#include "raster/front/front.h"
 #include "spirv/stage_memory.h"
 
 namespace vitrine::raster {
@@ -52,23 +50,6 @@ std::span<const Capture> captures_of(const PipelinePlan& plan, std::uint32_t str
 
 }  // namespace
 
-void plan_captures(PipelinePlan& plan) {
-  const spirv::ShaderInterface& last = plan.stages.geometry     ? *plan.stages.geometry
-                                       : plan.stages.evaluation ? *plan.stages.evaluation
-                                                                : *plan.vertex;
-  plan.capture_begin.fill(0);
-  if (!last.captures) return;
-  std::copy_n(last.xfb_stride, spirv::kMaxXfbBuffers, plan.xfb_stride.begin());
-  std::uint32_t number = 0;
-  for (std::uint32_t stream = 0; stream < kMaxStreams; ++stream) {
-    for (const spirv::InterfaceSlot& slot : *plan.outputs) {
-      if (slot.stream != stream || slot.xfb_buffer >= spirv::kMaxXfbBuffers || number == plan.capture.size()) continue;
-      plan.capture[number++] = {slot.reg, slot.xfb_offset, slot.xfb_buffer};
-    }
-    plan.capture_begin[stream + 1] = number;
-  }
-}
-
 bool is_captured(const DrawCall& draw) {
   if (draw.feedback) return true;
   for (std::uint32_t stream = 0; stream < kMaxStreams; ++stream)
@@ -96,21 +77,15 @@ void capture_primitive(const PipelinePlan& plan, const std::uint32_t* slot, Capt
   ++scratch.primitives[0];
 }
 
-void capture_runs(const Chunk& chunk, FrontScratch& scratch) {
+void capture_runs(const Chunk& chunk, const VertexScratch& vertices, CaptureScratch& scratch) {
   const PipelinePlan& plan = *chunk.draw->plan;
   const State& state = *plan.state;
-  std::uint32_t first_entry = 0;
-  for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
-    const Run& run = chunk.runs[r];
-    const RunSpan span = run_span(plan.shape, run);
-    for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const Corners corners = corners_of(state.topology, state.provoking_vertex_last, i);
-      std::uint32_t slot[3] = {};
-      for (std::uint32_t c = 0; c < plan.corners; ++c) slot[c] = scratch.slot[first_entry + span.entry(corners.at[c])];
-      capture_primitive(plan, slot, scratch.capture);
-    }
-    first_entry += span.count();
-  }
+  for_each_primitive(chunk, [&](const Run&, std::uint32_t i, const auto& entry_of) {
+    const Corners corners = corners_of(state.topology, state.provoking_vertex_last, i);
+    std::uint32_t slot[3] = {};
+    for (std::uint32_t c = 0; c < plan.corners; ++c) slot[c] = vertices.slot[entry_of(corners.at[c])];
+    capture_primitive(plan, slot, scratch);
+  });
 }
 
 void capture_emitted(const PipelinePlan& plan, std::uint32_t stream, std::span<const ListedPrimitive> primitives,
@@ -123,7 +98,7 @@ void capture_emitted(const PipelinePlan& plan, std::uint32_t stream, std::span<c
   scratch.primitives[stream] += static_cast<std::uint32_t>(primitives.size());
 }
 
-const CaptureOutput* finish_capture(const PipelinePlan&, Arena& arena, CaptureScratch& scratch) {
+const CaptureOutput* finish_capture(Arena& arena, CaptureScratch& scratch) {
   CaptureOutput* output = nullptr;
   for (std::uint32_t stream = 0; stream < kMaxStreams; ++stream) {
     if (scratch.primitives[stream] == 0) continue;

@@ -7,14 +7,12 @@
 #include <vector>
 
 #include "raster/arena.h"
+#include "raster/front/assembly.h"
+#include "raster/front/chunk.h"
+#include "raster/front/vertex_scratch.h"
 #include "raster/primitive.h"
 
 namespace vitrine::raster {
-
-struct Chunk;
-struct FrontScratch;
-struct ListedPrimitive;
-struct WaveOutputs;
 
 /// What a chunk captured: words of the stream's captures for every vertex of every primitive.
 struct CaptureOutput {
@@ -33,9 +31,6 @@ struct CaptureScratch {
   std::uint32_t primitives[kMaxStreams] = {};
 };
 
-/// Which outputs the last stage has captured.
-void plan_captures(PipelinePlan& plan);
-
 /// Whether transform feedback or a query of its primitives is active.
 bool is_captured(const DrawCall& draw);
 
@@ -45,13 +40,13 @@ void capture_wave(const PipelinePlan& plan, const WaveOutputs& outputs, std::uin
 /// A primitive of those vertices.
 void capture_primitive(const PipelinePlan& plan, const std::uint32_t* slot, CaptureScratch& scratch);
 /// All primitives of a chunk that has no stages behind the vertex shader.
-void capture_runs(const Chunk& chunk, FrontScratch& scratch);
+void capture_runs(const Chunk& chunk, const VertexScratch& vertices, CaptureScratch& scratch);
 /// Primitives of a geometry shader: `emitted` are words of `memory` where their vertices lie.
 void capture_emitted(const PipelinePlan& plan, std::uint32_t stream, std::span<const ListedPrimitive> primitives,
                      std::span<const std::uint32_t> emitted, const std::uint32_t* memory, CaptureScratch& scratch);
 
 /// What was captured since the last call, in `arena`; null if nothing was.
-const CaptureOutput* finish_capture(const PipelinePlan& plan, Arena& arena, CaptureScratch& scratch);
+const CaptureOutput* finish_capture(Arena& arena, CaptureScratch& scratch);
 
 /// Writes to the buffers of the draw and counts for its queries. Chunks in order, one thread.
 void write_capture(const DrawRecord& draw, const CaptureOutput& output);

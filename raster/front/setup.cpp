@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/numeric.h"
-#include "raster/tile/coverage.h"
+#include "raster/front/window_coverage.h"
 #include "texel/format.h"
 
 namespace vitrine::raster {
@@ -129,9 +129,7 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
     const SetupVertex *second = area < 0 ? &v2 : &v1, *third = area < 0 ? &v1 : &v2;  // either rotation will do
     const std::int32_t x[3] = {v0.x, second->x, third->x}, y[3] = {v0.y, second->y, third->y};
     window = cover_window(x, y, wx, wy, bounds.x1 - wx < 4 && bounds.y1 - wy < 4);
-    const bool cut =
-        visible.x0 != bounds.x0 || visible.y0 != bounds.y0 || visible.x1 != bounds.x1 || visible.y1 != bounds.y1;
-    if (cut) window &= rect_lanes(visible.x0 - wx, visible.y0 - wy, visible.x1 - wx, visible.y1 - wy);
+    window = cut_window(window, wx, wy, bounds, visible);
     if (window == 0 && context.drops_empty) return;
   }
 

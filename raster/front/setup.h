@@ -1,12 +1,13 @@
-// Primitive setup (Vulkan 1.3.239, Rasterization): window-space vertices to Primitive records: facing and culling,
-// depth bias, snapped corners, pixel bounds. lavapipe-rasterization.md 2, 3.1, 3.3, 5.1, 6, 7.
+// Setup of triangles (Vulkan 1.3.239, Rasterization): window-space vertices to Primitive records: facing and culling,
+// depth bias, snapped corners, pixel bounds. lavapipe-rasterization.md 2, 3.1, 3.3, 5.1. Batches of them:
+// setup_batch.h; lines and points: setup_wide.h.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <new>
 
-#include "raster/arena.h"
+#include "raster/front/primitive_list.h"
+#include "raster/pass_desc.h"
+#include "raster/pixel_rect.h"
 #include "raster/primitive.h"
 
 namespace vitrine::raster {
@@ -15,47 +16,6 @@ namespace vitrine::raster {
 struct SetupVertex {
   const Vertex* record;
   std::int32_t x, y;
-};
-
-/// Primitives of one chunk, in order, where the back end will read them.
-class PrimitiveList {
- public:
-  /// Empty, in `arena`.
-  void begin(Arena& arena) {
-    arena_ = &arena;
-    first_ = nullptr;
-    size_ = room_ = 0;
-  }
-  /// Room for `more` primitives.
-  void reserve(std::uint32_t more) {
-    if (room_ - size_ < more) grow(size_ + more);
-  }
-  /// A primitive to be filled in; later ones may move it.
-  Primitive& append() {
-    if (size_ == room_) grow(std::max<std::uint32_t>(64, 2 * size_));
-    return *new (first_ + size_++) Primitive(Primitive::Unset());
-  }
-  /// Gives room that is left back to the arena, if nothing was taken from it since. Nothing is appended any more.
-  void end() {
-    if (room_ != 0 && arena_->used() == used_) arena_->trim(first_, size_);
-  }
-  std::uint32_t size() const { return size_; }
-  const Primitive* data() const { return first_; }
-  const Primitive& operator[](std::uint32_t i) const { return first_[i]; }
-
- private:
-  void grow(std::uint32_t room) {
-    Primitive* grown = arena_->take<Primitive>(room);
-    used_ = arena_->used();
-    std::copy_n(first_, size_, grown);
-    first_ = grown;
-    room_ = room;
-  }
-
-  Arena* arena_ = nullptr;
-  Primitive* first_ = nullptr;
-  std::uint32_t size_ = 0, room_ = 0;
-  std::size_t used_ = 0;  ///< of the arena, with the room
 };
 
 /// What setup needs besides vertices: constant over a chunk but for the members with defaults.
@@ -83,19 +43,6 @@ bool culled_by_determinant(const State& state, float determinant);
 /// Filled triangle in API order (provoking vertex first or last as the state says).
 void setup_triangle(const SetupContext& context, const SetupVertex& v0, const SetupVertex& v1, const SetupVertex& v2);
 
-/// Filled triangles of one chunk waiting to be set up together.
-struct TriangleBatch {
-  static constexpr std::uint32_t kSize = 16;
-  std::uint32_t count = 0;
-  alignas(64) std::int32_t x[3][kSize], y[3][kSize];  ///< snapped, by corner
-  const Vertex* record[3][kSize];
-  std::uint32_t id[kSize];
-};
-
-/// setup_triangle() of all of them in their order, those of a few pixels a vector at a time; empties the batch. Only
-/// for plans with windows. context.id is not looked at.
-void setup_triangles(SetupContext context, TriangleBatch& batch);
-
 /// What is known of a triangle before it becomes a primitive.
 struct TriangleFacts {
   bool front;
@@ -104,11 +51,6 @@ struct TriangleFacts {
 };
 /// Fills in everything but the corners.
 void complete_triangle(const SetupContext& context, const TriangleFacts& facts, Primitive& p);
-
-void setup_line(const SetupContext& context, const Vertex* v1, const Vertex* v2, bool front);
-/// 6.5: two triangles around the line, with records in `arena`. Flat values of both ends are the same.
-void setup_smooth_line(SetupContext context, Arena& arena, const Vertex* v0, const Vertex* v1, bool front);
-void setup_point(const SetupContext& context, const Vertex* v, bool front);
 
 /// 5.1, second form: depth of the three corners biased in place (polygon modes LINE and POINT).
 float vertex_depth_bias(const PipelinePlan& plan, const PassDesc& pass, const Vertex* v0, const Vertex* v1,

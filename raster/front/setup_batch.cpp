@@ -1,8 +1,9 @@
 // Setup of batches of triangles: facing, bounds and coverage of those that cover no more than a 4x4 window, one
 // triangle a lane. The others, and what is left to do for each, go the way of single triangles.
+#include "raster/front/setup_batch.h"
+
 #include "base/simd.h"
-#include "raster/front/setup.h"
-#include "raster/tile/coverage.h"
+#include "raster/front/window_coverage.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/front/setup_batch.cpp"
@@ -163,16 +164,13 @@ base::LaneMask window_of(const BatchFacts& facts, std::uint32_t i, const PixelRe
   const int x = visible.x0 & ~1, y = visible.y0 & ~1;
   base::LaneMask window;
   if (facts.step[i] == BatchStep::kSmallWindow) {
-    const base::LaneMask inside = ~facts.outside[i] & 0xffffu;
-    window = (inside & 0xff) | (inside & 0xff00) << 8;
+    window = block_of_small_window(~facts.outside[i] & 0xffffu);
   } else {
     const std::int32_t corner_x[3] = {facts.x[0][i], facts.x[1][i], facts.x[2][i]};
     const std::int32_t corner_y[3] = {facts.y[0][i], facts.y[1][i], facts.y[2][i]};
     window = cover_window(corner_x, corner_y, x, y, false);
   }
-  const bool cut =
-      visible.x0 != bounds.x0 || visible.y0 != bounds.y0 || visible.x1 != bounds.x1 || visible.y1 != bounds.y1;
-  return cut ? window & rect_lanes(visible.x0 - x, visible.y0 - y, visible.x1 - x, visible.y1 - y) : window;
+  return cut_window(window, x, y, bounds, visible);
 }
 
 }  // namespace

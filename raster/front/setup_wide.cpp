@@ -1,10 +1,12 @@
-// Setup of lines and points, which rasterize as polygons (lavapipe-rasterization.md 6 and 7).
+// Polygons of lines and points: Bresenham, rectangular and smooth lines, square points (lavapipe-rasterization.md 6 and
+// 7).
+#include "raster/front/setup_wide.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "base/numeric.h"
-#include "raster/front/setup.h"
 
 namespace vitrine::raster {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "base/numeric.h"
-#include "raster/output/color.h"
+#include "raster/output/color_writer.h"
 
 namespace vitrine::raster {
 
@@ -126,6 +126,9 @@ struct BlendShape {
 /// Whether the factors are f and 1 - f of the same thing; kSource if f stands at the source.
 BlendShape::Lerp complementary(VkBlendFactor src, VkBlendFactor dst);
 BlendShape blend_shape(const ColorWriter& writer);
+
+/// Whether a blend factor is a dual-source one.
+bool reads_second_source(const ColorWriter& writer);
 
 /// One channel of a pixel.
 template <class Ops>

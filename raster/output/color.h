@@ -3,81 +3,14 @@
 // Takes waves of quads; knows nothing of coverage, depth or primitives.
 #pragma once
 
-#include <cstdint>
-
-#include "base/lanes.h"
-#include "raster/draw.h"
-#include "texel/codec.h"
-#include "texel/view.h"
+#include "raster/output/color_writer.h"
 
 namespace vitrine::raster {
 
-/// Pixels of a wave: quad q (lanes 4q..4q+3) has its top-left pixel at (x[q], y[q]), framebuffer pixels, both even.
-struct QuadPositions {
-  std::uint16_t x[base::kQuadsPerWave];
-  std::uint16_t y[base::kQuadsPerWave];
-};
-
-/// What arithmetic blending uses (E1).
-enum class BlendType : std::uint8_t { kNone, kByte, kWord, kFloat };
-
-/// One side of a blend equation after what E4 says of formats without alpha. Same numbers as VkBlendFactor.
-struct BlendEquation {
-  VkBlendFactor src = VK_BLEND_FACTOR_ONE, dst = VK_BLEND_FACTOR_ZERO;
-  VkBlendOp op = VK_BLEND_OP_ADD;
-};
-
-struct ColorWriter;
-struct BlockColorFunctions;  // raster/tile/block.h
-
-/// One attachment of one wave: everything a writer's function needs.
-struct ColorWave {
-  const texel::ImageView* view;
-  std::uint32_t layer;  ///< within the view
-  std::uint32_t sample;
-  const QuadPositions* quads;
-  base::LaneMask mask;               ///< covered lanes that passed all tests
-  const base::WaveRegister* color;   ///< four registers: RGBA, raw bits
-  const base::WaveRegister* second;  ///< four registers: dual-source colour, or null
-};
-
-using ColorFunction = void (*)(const ColorWriter& writer, const ColorWave& wave);
-
-/// How fragments reach one colour attachment, decided once per draw. Trivially copyable.
-struct ColorWriter {
-  ColorFunction function = nullptr;            ///< null: nothing is written
-  const BlockColorFunctions* block = nullptr;  ///< for whole blocks; null: `function` does them too
-  const texel::FormatDesc* format = nullptr;
-  BlendType blend = BlendType::kNone;
-  BlendEquation rgb, alpha;
-  float constants[4] = {};
-  bool logic = false;
-  VkLogicOp logic_op = VK_LOGIC_OP_COPY;
-  bool masked = false;            ///< some channel is not written
-  texel::StoredTexel write_bits;  ///< bits of a texel that may change
-  /// Formats of four bytes: byte shuffles of a quad, from the order BytePacker leaves, and to its alphas.
-  alignas(16) std::uint8_t pack_places[16] = {}, alpha_places[16] = {};
-  bool reads_destination() const { return blend != BlendType::kNone || logic || masked; }
-};
-
+/// The writer of an attachment, with the fastest functions that give the right bits.
 ColorWriter make_color_writer(VkFormat format, const BlendAttachment& blend, const State& state);
 
-/// The same writer with the general function: for tests, which compare it with the fast ones.
+/// The same writer with the general function alone: for tests, which compare it with the fast ones.
 ColorWriter make_general_color_writer(VkFormat format, const BlendAttachment& blend, const State& state);
-
-/// Writes the masked lanes; lanes that hit the same pixel take effect in lane order.
-inline void write_color(const ColorWriter& writer, const ColorWave& wave) {
-  if (writer.function && wave.mask) writer.function(writer, wave);
-}
-
-/// Address of a lane's pixel.
-inline std::byte* pixel_address(const ColorWave& wave, std::size_t lane) {
-  const std::size_t quad = lane / base::kQuadSize;
-  return wave.view->block(0, wave.layer, wave.sample, wave.quads->x[quad] + (lane & 1u),
-                          wave.quads->y[quad] + (lane >> 1 & 1u), 0);
-}
-
-/// The fast function for this writer, or null (color_fast.cpp).
-ColorFunction fast_color_function(const ColorWriter& writer);
 
 }  // namespace vitrine::raster

@@ -1,11 +1,12 @@
 // Colour output of whole blocks to targets of four UNORM bytes: conversion of a wave, stores and blending of rows.
 // Blending works on the bytes as they lie in memory, even and odd ones apart, so that nothing is shuffled.
+#include "raster/output/color_block.h"
+
 #include <cstring>
 
 #include "raster/output/blend.h"
-#include "raster/output/color_fast.h"
-#include "raster/tile/block.h"
-#include "raster/tile/spans.h"
+#include "raster/output/byte_texels.h"
+#include "raster/pixel_order.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/output/color_block.cpp"
@@ -397,17 +398,6 @@ HWY_AFTER_NAMESPACE();
 namespace vitrine::raster {
 
 HWY_EXPORT(byte_block_functions);
-
-void set_byte_places(ColorWriter& writer) {
-  constexpr std::size_t kPlace[4] = {0, 4, 8, 12};  // of the first pixel's components in what BytePacker shuffles
-  const std::size_t alpha = static_cast<std::size_t>(shift_of(writer, 3)) / 8;
-  for (std::size_t p = 0; p < 4; ++p)
-    for (std::size_t c = 0; c < 4; ++c) {
-      writer.pack_places[4 * p + static_cast<std::size_t>(shift_of(writer, c)) / 8] =
-          static_cast<std::uint8_t>(kPlace[c] + p);
-      writer.alpha_places[4 * p + c] = static_cast<std::uint8_t>(4 * p + alpha);
-    }
-}
 
 const BlockColorFunctions* block_color_functions(const ColorWriter& writer) {
   if (writer.logic || !is_four_bytes(*writer.format)) return nullptr;

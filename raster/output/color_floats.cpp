@@ -1,10 +1,12 @@
 // Fast colour output for targets of one, two or four channels in the order R, G, B, A: binary16 and 32-bit words of any
 // type, with masks; the floats also blended. Same bits as the general function of color.cpp (tests compare them).
+#include "raster/output/color_floats.h"
+
 #include <cstring>
 
 #include "base/float_mode.h"
 #include "raster/output/blend.h"
-#include "raster/output/color_fast.h"
+#include "raster/output/color_passes.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/output/color_floats.cpp"

@@ -4,7 +4,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
-#include "raster/output/color_fast.h"
+#include "raster/output/byte_texels.h"
 
 #if defined(VITRINE_RASTER_COLOR_PACK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VITRINE_RASTER_COLOR_PACK_INL_H_

@@ -5,7 +5,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
-#include "raster/output/color_fast.h"
+#include "raster/output/byte_texels.h"
 #include "texel/codec/srgb_encode-inl.h"
 
 #if defined(VITRINE_RASTER_COLOR_SRGB_INL_H_) == defined(HWY_TARGET_TOGGLE)

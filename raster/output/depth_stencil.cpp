@@ -7,6 +7,7 @@
 
 #include "base/numeric.h"
 #include "base/simd.h"
+#include "raster/output/depth_compare.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/output/depth_stencil.cpp"
@@ -177,28 +178,6 @@ namespace {
 HWY_EXPORT(test_depth);
 HWY_EXPORT(clamp_to_range);
 
-template <class T>
-bool compare_values(VkCompareOp op, T value, T stored) {
-  switch (op) {
-    case VK_COMPARE_OP_NEVER:
-      return false;
-    case VK_COMPARE_OP_LESS:
-      return value < stored;
-    case VK_COMPARE_OP_EQUAL:
-      return value == stored;
-    case VK_COMPARE_OP_LESS_OR_EQUAL:
-      return value <= stored;
-    case VK_COMPARE_OP_GREATER:
-      return value > stored;
-    case VK_COMPARE_OP_NOT_EQUAL:
-      return value != stored;
-    case VK_COMPARE_OP_GREATER_OR_EQUAL:
-      return value >= stored;
-    default:
-      return true;
-  }
-}
-
 std::uint8_t apply(VkStencilOp op, std::uint8_t stored, std::uint8_t reference) {
   switch (op) {
     case VK_STENCIL_OP_ZERO:
@@ -271,18 +250,18 @@ base::LaneMask inside_depth_bounds(const State& state, const DepthStencilTarget&
   return inside;
 }
 
-base::LaneMask depth_only(const PipelinePlan& plan, const DepthStencilTarget& target, const QuadPositions& quads,
+base::LaneMask depth_only(const DepthStencilTests& tests, const DepthStencilTarget& target, const QuadPositions& quads,
                           const float* z, base::LaneMask mask, bool write) {
-  const DepthPass pass{target.depth,  target.depth_pitch,        target.width,
-                       target.height, plan.state->depth_compare, write && plan.depth_write};
+  const DepthPass pass{target.depth,  target.depth_pitch,         target.width,
+                       target.height, tests.state->depth_compare, write && tests.depth_write};
   return HWY_DYNAMIC_DISPATCH(test_depth)(target.format, pass, quads, z, mask);
 }
 
 /// One quad with stencil: stencil test, depth test of what passed, stencil write of all.
-std::uint32_t stencil_quad(const PipelinePlan& plan, const DepthStencilTarget& target, const QuadPositions& quads,
+std::uint32_t stencil_quad(const DepthStencilTests& tests, const DepthStencilTarget& target, const QuadPositions& quads,
                            std::uint32_t q, bool front, const float* z, const std::uint32_t* reference,
                            std::uint32_t nibble, bool write) {
-  const StencilFace& face = front ? plan.state->front : plan.state->back;
+  const StencilFace& face = front ? tests.state->front : tests.state->back;
   std::byte* texel[4];
   for (std::uint32_t lane = 0; lane < 4; ++lane)
     texel[lane] = target.stencil + (quads.y[q] + (lane >> 1)) * target.stencil_pitch + quads.x[q] + (lane & 1);
@@ -291,9 +270,9 @@ std::uint32_t stencil_quad(const PipelinePlan& plan, const DepthStencilTarget& t
   for (std::uint32_t lane = 0; lane < 4; ++lane)
     if ((nibble >> lane & 1) != 0 && stencil.test(lane)) passed |= 1u << lane;
   std::uint32_t depth_passed = passed;
-  if (plan.depth_test && passed)
+  if (tests.depth && passed)
     depth_passed = static_cast<std::uint32_t>(
-        depth_only(plan, target, quads, z, base::LaneMask{passed} << (4 * q), write) >> (4 * q));
+        depth_only(tests, target, quads, z, base::LaneMask{passed} << (4 * q), write) >> (4 * q));
   for (std::uint32_t lane = 0; lane < 4; ++lane) {
     if ((nibble >> lane & 1) == 0) continue;
     const bool stencil_ok = (passed >> lane & 1) != 0, depth_ok = (depth_passed >> lane & 1) != 0;
@@ -321,29 +300,25 @@ DepthFormat depth_format(const texel::ImageView& view) {
   }
 }
 
-DepthRange depth_range(const PipelinePlan& plan, std::uint32_t viewport) {
-  return {plan.viewport[viewport].z_min, plan.viewport[viewport].z_max};
-}
-
 void clamp_depth(const DepthRange* clamp, bool restricted, std::uint32_t quads, float* z) {
   HWY_DYNAMIC_DISPATCH(clamp_to_range)(clamp, restricted, quads, z);
 }
 
-base::LaneMask test_depth_stencil(const PipelinePlan& plan, const DepthStencilTarget& target,
+base::LaneMask test_depth_stencil(const DepthStencilTests& tests, const DepthStencilTarget& target,
                                   const QuadPositions& quads, std::uint32_t front, const float* z,
                                   const std::uint32_t* reference, base::LaneMask mask, bool write) {
-  if (!plan.depth_bounds && !plan.stencil_test) return depth_only(plan, target, quads, z, mask, write);
+  if (!tests.depth_bounds && !tests.stencil) return depth_only(tests, target, quads, z, mask, write);
   base::LaneMask result = 0;
   for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
     base::LaneMask quad = mask & base::LaneMask{15} << (4 * q);
-    if (plan.depth_bounds) quad = inside_depth_bounds(*plan.state, target, quads, quad);
+    if (tests.depth_bounds) quad = inside_depth_bounds(*tests.state, target, quads, quad);
     if (quad == 0) continue;
-    if (plan.stencil_test) {
+    if (tests.stencil) {
       const auto nibble = static_cast<std::uint32_t>(quad >> (4 * q)) & 15u;
       const bool faces = (front >> q & 1) != 0;
-      quad = base::LaneMask{stencil_quad(plan, target, quads, q, faces, z, reference, nibble, write)} << (4 * q);
-    } else if (plan.depth_test) {
-      quad = depth_only(plan, target, quads, z, quad, write);
+      quad = base::LaneMask{stencil_quad(tests, target, quads, q, faces, z, reference, nibble, write)} << (4 * q);
+    } else if (tests.depth) {
+      quad = depth_only(tests, target, quads, z, quad, write);
     }
     result |= quad;
   }

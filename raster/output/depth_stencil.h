@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "base/lanes.h"
-#include "raster/output/color.h"
-#include "raster/primitive.h"
+#include "raster/draw.h"
+#include "raster/pixel_order.h"
 #include "texel/view.h"
 
 namespace vitrine::raster {
@@ -23,11 +23,20 @@ struct DepthStencilTarget {
   DepthFormat format = DepthFormat::kNone;
 };
 
+/// Bytes of a texel's depth.
+constexpr std::uint64_t depth_bytes(DepthFormat format) { return format == DepthFormat::kD16 ? 2 : 4; }
+
+/// Which tests a draw has, with the state of each; decided once per draw.
+struct DepthStencilTests {
+  const State* state = nullptr;
+  bool depth = false, depth_write = false, depth_bounds = false, stencil = false;
+  bool any() const { return depth || depth_bounds || stencil; }
+};
+
 /// The depths of a viewport, low <= high.
 struct DepthRange {
   float low, high;
 };
-DepthRange depth_range(const PipelinePlan& plan, std::uint32_t viewport);
 
 /// 5.3 steps 1 (where `restricted`) and 2: in place, lanes of quads [0, quads). `clamp`: null, or z range per quad.
 void clamp_depth(const DepthRange* clamp, bool restricted, std::uint32_t quads, float* z);
@@ -35,7 +44,7 @@ void clamp_depth(const DepthRange* clamp, bool restricted, std::uint32_t quads, 
 /// Tests lanes of `mask`: depth bounds, stencil, depth; returns those that pass. `z` is clamped. Writes depth where
 /// `write` and the state say, and stencil always as the state says. `front`: bit q is the facing of quad q.
 /// `reference`: per-lane stencil reference or null.
-base::LaneMask test_depth_stencil(const PipelinePlan& plan, const DepthStencilTarget& target,
+base::LaneMask test_depth_stencil(const DepthStencilTests& tests, const DepthStencilTarget& target,
                                   const QuadPositions& quads, std::uint32_t front, const float* z,
                                   const std::uint32_t* reference, base::LaneMask mask, bool write);
 

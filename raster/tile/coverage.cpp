@@ -2,7 +2,6 @@
 #include "raster/tile/coverage.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include "base/simd.h"
@@ -25,9 +24,6 @@ using V = hn::Vec<I>;
 alignas(64) constexpr std::int32_t kRowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
 alignas(64) constexpr std::int32_t kRowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
 
-/// Places of the 16 lanes of a window.
-alignas(64) constexpr std::int32_t kWindowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 0, 1, 0, 1, 2, 3, 2, 3};
-alignas(64) constexpr std::int32_t kWindowY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3, 2, 2, 3, 3};
 alignas(64) constexpr std::int32_t kColumns[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// Lanes where origin + x*step_x + y*step_y >= 0 for all edges; (x, y) is the lane's place.
@@ -111,52 +107,6 @@ void inside_blocks(const TileEdges& edges, std::uint32_t sample, base::LaneMask 
     inside_blocks_of<4>(edges, sample, places, out);
 }
 
-/// Values of three edges at lanes [i, i + n) of the places (x, y), and their steps two rows down.
-struct WindowEdges {
-  V row[3], down[3];
-
-  HWY_INLINE WindowEdges(const std::int32_t* places_x, const std::int32_t* places_y, const std::int32_t* step_x,
-                         const std::int32_t* step_y, const std::int32_t* origin) {
-    const I d;
-    const V x = hn::Load(d, places_x), y = hn::Load(d, places_y);
-    for (std::size_t e = 0; e < 3; ++e) {
-      const V within = hn::Add(hn::Mul(x, hn::Set(d, step_x[e])), hn::Mul(y, hn::Set(d, step_y[e])));
-      row[e] = hn::Add(within, hn::Set(d, origin[e]));
-      down[e] = hn::Set(d, 2 * step_y[e]);
-    }
-  }
-  HWY_INLINE base::LaneMask outside() const {
-    const V sign = hn::Or(row[0], hn::Or(row[1], row[2]));
-    return bits_of_mask(hn::Lt(sign, hn::Zero(I()))) & base::first_lanes(hn::Lanes(I()));
-  }
-  HWY_INLINE void step() {
-    for (std::size_t e = 0; e < 3; ++e) row[e] = hn::Add(row[e], down[e]);
-  }
-};
-
-/// The 64 pixels of a window.
-base::LaneMask window_lanes(const std::int32_t* step_x, const std::int32_t* step_y, const std::int32_t* origin) {
-  const std::size_t n = hn::Lanes(I());
-  base::LaneMask outside = 0;
-  for (std::size_t i = 0; i < 16; i += n) {
-    WindowEdges edges(kRowX + i, kRowY + i, step_x, step_y, origin);
-    for (std::size_t r = 0; r < 4; ++r) {
-      outside |= edges.outside() << (r * 16 + i);
-      edges.step();
-    }
-  }
-  return ~outside;
-}
-
-/// Its first 4x4 pixels: quads 0, 1, 4 and 5 as 16 lanes.
-base::LaneMask small_window_lanes(const std::int32_t* step_x, const std::int32_t* step_y, const std::int32_t* origin) {
-  const std::size_t n = hn::Lanes(I());
-  base::LaneMask outside = 0;
-  for (std::size_t i = 0; i < 16; i += n)
-    outside |= WindowEdges(kWindowX + i, kWindowY + i, step_x, step_y, origin).outside() << i;
-  return ~outside;
-}
-
 bool large_window_rows(const TileEdges& edges, const PixelRect& rect, LargeWindow& out) {
   const I d;
   constexpr std::size_t n = hn::MaxLanes(I()), kVectors = kLargeWindow / n;
@@ -202,8 +152,6 @@ namespace {
 
 HWY_EXPORT(inside_lanes);
 HWY_EXPORT(inside_blocks);
-HWY_EXPORT(window_lanes);
-HWY_EXPORT(small_window_lanes);
 HWY_EXPORT(large_window_rows);
 
 struct Edge {
@@ -212,8 +160,7 @@ struct Edge {
 
 Edge edge_between(std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int64_t y1) {
   const std::int64_t a = y0 - y1, b = x0 - x1;
-  const bool owns = a < 0 || (a == 0 && b > 0);
-  return {a, b, a * x0 - b * y0 + (owns ? 1 : 0)};
+  return {a, b, a * x0 - b * y0 + (owns_edge(a, b) ? 1 : 0)};
 }
 
 std::uint32_t edges_of(const Primitive& p, Edge edges[4]) {
@@ -247,22 +194,12 @@ void make_small_edges(const Primitive& p, int tile_x, int tile_y, TileEdges& out
   for (int e = 0; e < 3; ++e) {
     const int n = e == 2 ? 0 : e + 1;
     const std::int32_t a = p.y[e] - p.y[n], b = p.x[e] - p.x[n];
-    const std::int32_t last = a < 0 || (a == 0 && b > 0) ? 0 : 1;
+    const std::int32_t last = owns_edge(a, b) ? 0 : 1;
     out.step_x[e] = -a;
     out.step_y[e] = b;
     out.f[0][e] = (a * (p.x[e] - tile_x * 256) - b * (p.y[e] - tile_y * 256) - last) >> 8;
   }
 }
-
-constexpr std::array<base::LaneMask, 9> lanes_below(bool vertical) {
-  std::array<base::LaneMask, 9> table{};
-  for (int limit = 0; limit <= 8; ++limit)
-    for (std::uint32_t lane = 0; lane < 64; ++lane)
-      if ((vertical ? lane_y(lane) : lane_x(lane)) < limit) table[static_cast<std::size_t>(limit)] |= 1ull << lane;
-  return table;
-}
-constexpr auto kLanesLeftOf = lanes_below(false);
-constexpr auto kLanesAbove = lanes_below(true);
 
 }  // namespace
 
@@ -321,28 +258,8 @@ void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMa
   all = HWY_DYNAMIC_DISPATCH(inside_lanes)(edges.count, step_x, step_y, least);
 }
 
-base::LaneMask rect_lanes(int x0, int y0, int x1, int y1) {
-  const auto at = [](int v) { return static_cast<std::size_t>(std::clamp(v, 0, 8)); };
-  return kLanesLeftOf[at(x1 + 1)] & ~kLanesLeftOf[at(x0)] & kLanesAbove[at(y1 + 1)] & ~kLanesAbove[at(y0)];
-}
-
 bool cover_large_window(const TileEdges& edges, const PixelRect& rect, LargeWindow& out) {
   return HWY_DYNAMIC_DISPATCH(large_window_rows)(edges, rect, out);
-}
-
-base::LaneMask cover_window(const std::int32_t corner_x[3], const std::int32_t corner_y[3], int x, int y, bool small) {
-  std::int32_t step_x[3], step_y[3], origin[3];
-  for (int e = 0; e < 3; ++e) {
-    const int n = e == 2 ? 0 : e + 1;
-    const std::int32_t a = corner_y[e] - corner_y[n], b = corner_x[e] - corner_x[n];
-    const bool owns = a < 0 || (a == 0 && b > 0);
-    step_x[e] = -256 * a;
-    step_y[e] = 256 * b;
-    origin[e] = a * (corner_x[e] - x * 256) - b * (corner_y[e] - y * 256) - (owns ? 0 : 1);
-  }
-  if (!small) return HWY_DYNAMIC_DISPATCH(window_lanes)(step_x, step_y, origin);
-  const base::LaneMask lanes = HWY_DYNAMIC_DISPATCH(small_window_lanes)(step_x, step_y, origin);
-  return (lanes & 0xff) | (lanes & 0xff00) << 8;
 }
 
 }  // namespace vitrine::raster

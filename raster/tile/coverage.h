@@ -8,11 +8,10 @@
 #include <cstdint>
 
 #include "base/lanes.h"
+#include "raster/pixel_order.h"
 #include "raster/primitive.h"
 
 namespace vitrine::raster {
-
-inline constexpr int kBlockSize = 8;
 
 /// Edges of a primitive relative to the top-left pixel of a tile.
 struct TileEdges {
@@ -26,17 +25,22 @@ struct TileEdges {
 bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, const SampleLocations& samples,
                      TileEdges& edges);
 
-/// Covered pixels of the blocks of `places`: out[i] for the block at quad-ordered place i of the tile. Lanes are the
-/// pixels of an 8x8 block in quads: quad q at (2*(q%4), 2*(q/4)), see base::kQuadSize.
+/// Columns and rows of the blocks with pixels of `rect`, which is in the tile, and their places.
+inline PixelRect blocks_of(const PixelRect& rect) {
+  return {rect.x0 / kBlockSize, rect.y0 / kBlockSize, rect.x1 / kBlockSize, rect.y1 / kBlockSize};
+}
+inline base::LaneMask places_of(const PixelRect& rect) {
+  const auto [bx0, by0, bx1, by1] = blocks_of(rect);
+  return rect_lanes(bx0, by0, bx1, by1);
+}
+
+/// Covered pixels of the blocks of `places`: out[i] for the block at quad-ordered place i of the tile. Lanes are in
+/// quad order.
 void cover_blocks(const TileEdges& edges, std::uint32_t sample, base::LaneMask places, base::LaneMask out[64]);
 
 /// Which of the tile's 64 blocks may be touched (`any`) and are covered completely in all samples (`all`). Bit i is the
 /// block at quad-ordered place i.
 void classify_blocks(const TileEdges& edges, std::uint32_t samples, base::LaneMask& any, base::LaneMask& all);
-
-/// Covered pixels, in quad order, of the 8x8 window at (x, y) for a single-sampled triangle of positive area whose
-/// corners lie within 32 pixels of there. `small`: only its first 4x4 pixels can be covered.
-base::LaneMask cover_window(const std::int32_t corner_x[3], const std::int32_t corner_y[3], int x, int y, bool small);
 
 /// Pixels of a window of 16x16: bit 16 * (y % 4) + x of word y / 4.
 inline constexpr int kLargeWindow = 16;
@@ -48,12 +52,5 @@ struct LargeWindow {
 /// Covers the pixels of `rect` of the window at the first pixel of `edges`, of which there are at most three, those
 /// that are not there zero; single-sampled. False if nothing is covered.
 bool cover_large_window(const TileEdges& edges, const PixelRect& rect, LargeWindow& out);
-
-/// Place of lane i in a block: x, y in [0, 8).
-constexpr int lane_x(std::uint32_t lane) { return static_cast<int>((lane >> 2 & 3) * 2 + (lane & 1)); }
-constexpr int lane_y(std::uint32_t lane) { return static_cast<int>((lane >> 4) * 2 + (lane >> 1 & 1)); }
-
-/// Lanes of a block inside columns [x0, x1] and rows [y0, y1], each clamped to the block.
-base::LaneMask rect_lanes(int x0, int y0, int x1, int y1);
 
 }  // namespace vitrine::raster

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "base/simd.h"
+#include "raster/output/depth_compare.h"
 #include "raster/plan.h"
-#include "raster/tile/coverage.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/tile/hierarchical_depth.cpp"
@@ -160,13 +160,6 @@ HWY_EXPORT(learn);
 /// Looks at a block that may be in vain, in a tile's life.
 constexpr std::uint8_t kPatience = 4;
 
-bool passes_nearer(VkCompareOp compare) {
-  return compare == VK_COMPARE_OP_LESS || compare == VK_COMPARE_OP_LESS_OR_EQUAL;
-}
-bool passes_farther(VkCompareOp compare) {
-  return compare == VK_COMPARE_OP_GREATER || compare == VK_COMPARE_OP_GREATER_OR_EQUAL;
-}
-
 }  // namespace
 
 void HierarchicalDepth::reset() {
@@ -175,15 +168,13 @@ void HierarchicalDepth::reset() {
 }
 
 void HierarchicalDepth::begin_draw(const PipelinePlan& plan) {
-  if (!plan.depth_write) return;
+  if (!plan.tests.depth_write) return;
   const VkCompareOp compare = plan.state->depth_compare;
   const bool kept = compare == VK_COMPARE_OP_NEVER || compare == VK_COMPARE_OP_EQUAL ||
                     (largest ? passes_nearer(compare) : passes_farther(compare));
   // Depths without restriction may be stored that are not numbers.
   if (!kept || !plan.restricts_depth) known = 0;
 }
-
-bool has_limit(VkCompareOp compare) { return passes_nearer(compare) || passes_farther(compare); }
 
 base::LaneMask unhidden_blocks(const HierarchicalDepth& depths, const HierarchicalTest& test, base::LaneMask places) {
   const bool nearer = passes_nearer(test.test.compare);

@@ -7,11 +7,9 @@
 
 #include "base/lanes.h"
 #include "raster/sample_locations.h"
-#include "raster/tile/block.h"
+#include "raster/tile/block_depth.h"
 
 namespace vitrine::raster {
-
-struct PipelinePlan;
 
 /// What is known of a tile's stored depths, by quad-ordered place of the block.
 struct HierarchicalDepth {
@@ -34,9 +32,6 @@ struct HierarchicalTest {
   float x, y;
   const SampleLocations* locations;
 };
-
-/// Whether depths that pass `compare` are all on one side of the stored one, so that a limit tells who cannot pass.
-bool has_limit(VkCompareOp compare);
 
 /// Those of `places` in which a sample of the primitive may pass.
 base::LaneMask unhidden_blocks(const HierarchicalDepth& depths, const HierarchicalTest& test, base::LaneMask places);

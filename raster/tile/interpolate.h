@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "base/lanes.h"
-#include "raster/output/color.h"
+#include "raster/pixel_order.h"
+#include "raster/plan.h"
 #include "raster/primitive.h"
-#include "raster/tile/coverage.h"
 
 namespace vitrine::raster {
 

@@ -1,36 +1,32 @@
-// Planes of a worker's primitives, and their blocks on the way to the shader: quads are packed into waves across
-// primitives, blocks with few empty quads are shaded on their own.
+// Packed waves, and which blocks need none.
+#include "raster/tile/pack.h"
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
 
-#include "raster/tile/tile.h"
+#include "raster/tile/block_shade.h"
+#include "raster/tile/fragment.h"
+#include "raster/tile/fragment_outputs.h"
+#include "raster/tile/primitive_planes.h"
 
 namespace vitrine::raster {
 namespace {
 
-/// Positions of the quads of a block.
-constexpr QuadPositions block_offsets() {
-  QuadPositions offsets{};
-  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
-    offsets.x[q] = static_cast<std::uint16_t>(lane_x(4 * q));
-    offsets.y[q] = static_cast<std::uint16_t>(lane_y(4 * q));
-  }
-  return offsets;
-}
-constexpr QuadPositions kBlockOffsets = block_offsets();
+/// Quads of a block from which on it is shaded on its own: fewer would waste more lanes than packing costs.
+constexpr std::uint32_t kNearlyFull = 12, kNearlyFullIfShort = 2;
 
 /// Whether quads of the block at (x, y) wait in the packed wave. `quads`: their lowest lanes.
 bool waits_in_wave(const TileWorker& worker, int x, int y, base::LaneMask quads) {
   if (worker.wave.quads == 0) return false;
-  const auto column = static_cast<std::uint32_t>(x - worker.target.x) / 2;
-  const std::uint32_t* row = worker.packed.row + (y - worker.target.y) / 2;
+  const auto column = static_cast<std::uint32_t>(x - worker.target.x);
+  const auto row = static_cast<std::uint32_t>(y - worker.target.y);
   // Bits 0, 4, 8 and 12 of 16 become neighbours.
   quads |= quads >> 3;
   quads |= quads >> 6;
   const auto wanted = [&](std::uint32_t r) { return static_cast<std::uint32_t>(quads >> (16 * r)) & 15; };
-  return (((row[0] >> column & wanted(0)) | (row[1] >> column & wanted(1)) | (row[2] >> column & wanted(2)) |
-           (row[3] >> column & wanted(3)))) != 0;
+  const auto waiting = [&](std::uint32_t r) { return worker.packed.from(column, row + 2 * r) & wanted(r); };
+  return (waiting(0) | waiting(1) | waiting(2) | waiting(3)) != 0;
 }
 
 /// A block none of whose quads is empty makes a wave of its own.
@@ -61,8 +57,8 @@ std::uint32_t fill_places(TileWorker& worker, int x, int y, base::LaneMask& quad
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(quads));
     wave.position.x[q] = static_cast<std::uint16_t>(x + lane_x(lane));
     wave.position.y[q] = static_cast<std::uint16_t>(y + lane_y(lane));
-    worker.packed.row[(row + static_cast<std::uint32_t>(lane_y(lane))) / 2] |=
-        1u << ((column + static_cast<std::uint32_t>(lane_x(lane))) / 2);
+    worker.packed.add(column + static_cast<std::uint32_t>(lane_x(lane)),
+                      row + static_cast<std::uint32_t>(lane_y(lane)));
     coverage |= (lanes >> lane & 15) << (4 * q);
   }
   return q - first;
@@ -77,35 +73,6 @@ base::LaneMask compress_quads(base::LaneMask lanes, base::LaneMask quads, std::u
 }
 
 }  // namespace
-
-void set_current_planes(TileWorker& worker, const Primitive* primitive, PlaneSet* planes) {
-  const PackedWave& wave = worker.wave;
-  const bool used = wave.slots != 0 && wave.planes.set[wave.slots - 1] == worker.planes;
-  if (worker.planes && !used) worker.pool.give_back(worker.planes);
-  worker.planes = planes;
-  worker.planes_of = primitive;
-}
-
-void release_planes(TileWorker& worker, const PackedWave& wave) {
-  for (std::uint32_t slot = 0; slot < wave.slots; ++slot)
-    if (wave.planes.set[slot] != worker.planes) worker.pool.give_back(wave.planes.set[slot]);
-}
-
-const PlaneSet& current_planes(TileWorker& worker, const Primitive& primitive) {
-  if (worker.planes_of == &primitive) return *worker.planes;
-  set_current_planes(worker, nullptr, nullptr);
-  PlaneSet* planes = worker.pool.take();
-  compute_planes(*worker.draw->plan, primitive, *planes);
-  set_current_planes(worker, &primitive, planes);
-  return *planes;
-}
-
-void place_block(int x, int y, QuadPositions& out) {
-  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
-    out.x[q] = static_cast<std::uint16_t>(x + kBlockOffsets.x[q]);
-    out.y[q] = static_cast<std::uint16_t>(y + kBlockOffsets.y[q]);
-  }
-}
 
 void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
                   const BlockCoverage& block, base::LaneMask quads) {
@@ -136,21 +103,13 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
   }
 }
 
-namespace {
-
-/// Quads of a block from which on it is shaded on its own: fewer would waste more lanes than packing costs.
-constexpr std::uint32_t kNearlyFull = 12, kNearlyFullIfShort = 2;
-
-}  // namespace
-
 void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
                 const BlockCoverage& block) {
   const PipelinePlan& plan = *worker.draw->plan;
   const base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
   if (!plan.shades) {
-    for (std::uint32_t s = 0; worker.counts && s < plan.samples; ++s)
-      worker.samples_passed += static_cast<std::uint64_t>(std::popcount(block.lanes[s]));
+    for (std::uint32_t s = 0; s < plan.samples; ++s) count_samples(worker, block.lanes[s]);
     return;
   }
   const base::LaneMask quads = base::quads_of_lanes(any);

@@ -1,9 +1,15 @@
 // One primitive in a tile: its blocks are covered, rejected where they are hidden, and tested.
+#include "raster/tile/rasterize.h"
+
 #include <algorithm>
 #include <bit>
 
+#include "raster/tile/coverage.h"
+#include "raster/tile/early_tests.h"
+#include "raster/tile/fragment.h"
+#include "raster/tile/pack.h"
 #include "raster/tile/spans.h"
-#include "raster/tile/tile.h"
+#include "raster/tile/windows.h"
 
 namespace vitrine::raster {
 namespace {
@@ -58,16 +64,6 @@ void move_origin(const SampleLocations& locations, GridOrigin origin, TileEdges&
     for (std::uint32_t e = 0; e < edges.count; ++e)
       edges.f[s][e] += origin.x * edges.step_x[e] + origin.y * edges.step_y[e];
   rect = {rect.x0 - origin.x, rect.y0 - origin.y, rect.x1 - origin.x, rect.y1 - origin.y};
-}
-
-/// Blocks with pixels of `rect`, which is in the tile.
-PixelRect blocks_of(const PixelRect& rect) {
-  return {rect.x0 / kBlockSize, rect.y0 / kBlockSize, rect.x1 / kBlockSize, rect.y1 / kBlockSize};
-}
-
-base::LaneMask places_of(const PixelRect& rect) {
-  const auto [bx0, by0, bx1, by1] = blocks_of(rect);
-  return rect_lanes(bx0, by0, bx1, by1);
 }
 
 /// Covered lanes of the blocks among `places` that a primitive touches; returns their places. `rect`: the primitive's,
@@ -134,34 +130,6 @@ PixelRect rect_in_tile(const TileTarget& target, const Primitive& p) {
 }
 
 }  // namespace
-
-void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block) {
-  const PipelinePlan& plan = *worker.draw->plan;
-  const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
-  QuadPositions quads;
-  place_block(x, y, quads);
-  DepthRange range[base::kQuadsPerWave];
-  const bool clamps = plan.state->depth_clamp;
-  if (clamps) std::fill_n(range, base::kQuadsPerWave, depth_range(plan, primitive.viewport));
-  for (std::uint32_t s = 0; s < plan.samples; ++s) {
-    if (!block.lanes[s]) continue;
-    if (plan.depth_test) {
-      const float dx = plan.locations->pixel_x(s), dy = plan.locations->pixel_y(s);
-      evaluate_block_depth(plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, plan.restricts_depth,
-                           worker.depth);
-      if (clamps) clamp_depth(range, plan.restricts_depth, base::kQuadsPerWave, worker.depth);
-    }
-    block.lanes[s] = test_depth_stencil(plan, worker.target.depth_stencil[s], quads, primitive.front ? 0xffffu : 0,
-                                        worker.depth, nullptr, block.lanes[s], plan.depth_order == TestOrder::kEarly);
-  }
-}
-
-void learn_hidden_rect(TileWorker& worker, const Primitive& primitive, const PixelRect& rect) {
-  const TileTarget& target = worker.target;
-  const base::LaneMask owned =
-      rect_lanes(0, 0, (target.right - target.x) / kBlockSize - 1, (target.bottom - target.y) / kBlockSize - 1);
-  learn_hidden_places(worker, primitive, places_of(rect) & owned);
-}
 
 void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   const PipelinePlan& plan = *worker.draw->plan;

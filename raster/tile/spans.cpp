@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <bit>
 
-#include "raster/tile/tile.h"
+#include "raster/tile/block_shade.h"
+#include "raster/tile/early_tests.h"
+#include "raster/tile/fragment.h"
+#include "raster/tile/fragment_outputs.h"
+#include "raster/tile/pack.h"
 
 namespace vitrine::raster {
 namespace {
@@ -35,10 +39,11 @@ constexpr std::uint32_t first_bits(std::uint32_t count) { return (1u << count) -
 /// Whether quads of `wave` wait in the packed wave.
 bool waits_in_wave(const TileWorker& worker, const SpanWave& wave) {
   if (worker.wave.quads == 0) return false;
-  const int x = wave.x - worker.target.x, y = wave.y - worker.target.y;
+  const auto x = static_cast<std::uint32_t>(wave.x - worker.target.x);
+  const auto y = static_cast<std::uint32_t>(wave.y - worker.target.y);
   std::uint32_t waiting = 0;
   for (const QuadSpan* span = wave.span; span != wave.span + wave.count; ++span)
-    waiting |= worker.packed.row[(y + span->y) / 2] >> (x + span->x) / 2 & first_bits(span->count);
+    waiting |= worker.packed.from(x + span->x, y + span->y) & first_bits(span->count);
   return waiting != 0;
 }
 
@@ -137,9 +142,8 @@ bool emit_large_window(TileWorker& worker, const Primitive& primitive, TileEdges
   }
   if (plan.shades) {
     shade_window(worker, primitive, left, top, window);
-  } else if (worker.counts) {
-    for (const std::uint64_t rows : window.rows)
-      worker.samples_passed += static_cast<std::uint64_t>(std::popcount(rows));
+  } else {
+    for (const std::uint64_t rows : window.rows) count_samples(worker, rows);
   }
   return true;
 }

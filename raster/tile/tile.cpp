@@ -5,6 +5,11 @@
 #include <atomic>
 
 #include "base/float_mode.h"
+#include "raster/tile/block_shade.h"
+#include "raster/tile/coverage.h"
+#include "raster/tile/fragment.h"
+#include "raster/tile/rasterize.h"
+#include "raster/tile/windows.h"
 #include "texel/transfer.h"
 
 namespace vitrine::raster {
@@ -106,8 +111,7 @@ void end_draw(TileWorker& worker) {
   const QueryCounters& queries = worker.draw->call.queries;
   if (queries.occlusion && worker.samples_passed)
     queries.occlusion->fetch_add(worker.samples_passed, std::memory_order_relaxed);
-  if (queries.statistics && worker.fragment_invocations)
-    queries.statistics[7].fetch_add(worker.fragment_invocations, std::memory_order_relaxed);
+  if (worker.fragment_invocations) queries.count(Statistic::kFragmentInvocations, worker.fragment_invocations);
   worker.samples_passed = worker.fragment_invocations = 0;
   worker.draw = nullptr;
 }
@@ -133,9 +137,8 @@ void clear_tile(TileWorker& worker, const ClearCommand& clear) {
 bool hides_tile(const TileWorker& worker, const PipelinePlan& plan, const Primitive& p) {
   if (!plan.replaces_colors || p.kind != PrimitiveKind::kTriangle) return false;
   const TileTarget& target = worker.target;
-  const VkRect2D& area = worker.pass->render_area;
-  const int right = std::min(target.x + kTileSize, area.offset.x + static_cast<int>(area.extent.width)) - 1;
-  const int bottom = std::min(target.y + kTileSize, area.offset.y + static_cast<int>(area.extent.height)) - 1;
+  const PixelRect area = pixel_rect(worker.pass->render_area);
+  const int right = std::min(target.x + kTileSize - 1, area.x1), bottom = std::min(target.y + kTileSize - 1, area.y1);
   if (p.x0 > target.x || p.y0 > target.y || p.x1 < right || p.y1 < bottom) return false;
   TileEdges edges;
   return make_tile_edges(p, target.x, target.y, *plan.locations, edges) && edges.count == 0;
@@ -174,15 +177,10 @@ void set_target(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, 
   target.layer = tile / (grid.columns * grid.rows);
   target.x = static_cast<int>(in_layer % grid.columns) * kTileSize;
   target.y = static_cast<int>(in_layer / grid.columns) * kTileSize;
-  target.right = target.x + kTileSize;
-  target.bottom = target.y + kTileSize;
-  const auto cut = [&](const texel::ImageView& view) {
-    if (!view.format) return;
-    target.right = std::min(target.right, static_cast<int>(view.level[0].extent.width));
-    target.bottom = std::min(target.bottom, static_cast<int>(view.level[0].extent.height));
-  };
-  for (std::uint32_t i = 0; i < pass.color_count; ++i) cut(pass.color[i]);
-  cut(pass.depth);
+  const VkExtent2D room = cut_to_attachments(
+      pass, {static_cast<std::uint32_t>(target.x + kTileSize), static_cast<std::uint32_t>(target.y + kTileSize)});
+  target.right = static_cast<int>(room.width);
+  target.bottom = static_cast<int>(room.height);
   for (std::uint32_t s = 0; s < std::clamp<std::uint32_t>(pass.samples, 1, kMaxSamples); ++s) {
     DepthStencilTarget& out = target.depth_stencil[s];
     out = {};

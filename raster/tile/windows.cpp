@@ -1,7 +1,12 @@
 // Primitives whose coverage the front end found: windows of 8x8 pixels one by one, those of 4x4 in groups.
+#include "raster/tile/windows.h"
+
 #include <bit>
 
-#include "raster/tile/tile.h"
+#include "raster/tile/early_tests.h"
+#include "raster/tile/fragment_outputs.h"
+#include "raster/tile/pack.h"
+#include "raster/tile/primitive_planes.h"
 
 namespace vitrine::raster {
 
@@ -25,18 +30,11 @@ void emit_window(TileWorker& worker, const Primitive& primitive) {
     if (block.lanes[0] == 0) return;
   }
   if (!plan.shades) {
-    if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(block.lanes[0]));
+    count_samples(worker, block.lanes[0]);
     return;
   }
   append_quads(worker, primitive, x, y, rasterized, block, base::quads_of_lanes(block.lanes[0]));
 }
-
-namespace {
-
-/// The lanes of a window's first 4x4 pixels.
-constexpr base::LaneMask kSmallWindow = 0x00ff00ff;
-
-}  // namespace
 
 bool is_small_window(const TileWorker& worker, const Primitive& primitive) {
   return primitive.window != 0 && (primitive.window & ~kSmallWindow) == 0 &&
@@ -51,8 +49,8 @@ void emit_small_windows(TileWorker& worker, const Primitive* const* primitives, 
     const Primitive& primitive = *primitives[i];
     planes[i] = worker.pool.take();
     compute_planes(plan, primitive, *planes[i]);
-    const auto quads = static_cast<std::uint32_t>((primitive.window & 0xff) | (primitive.window >> 8 & 0xff00));
-    windows[i] = {depth_plane(*planes[i], primitive), primitive.x0 & ~1, primitive.y0 & ~1, transpose_window(quads)};
+    windows[i] = {depth_plane(*planes[i], primitive), primitive.x0 & ~1, primitive.y0 & ~1,
+                  transpose_window(quads_of_small_window(primitive.window))};
   }
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject)
     test_windows(worker, primitives[0]->viewport, windows, count);
@@ -61,12 +59,11 @@ void emit_small_windows(TileWorker& worker, const Primitive* const* primitives, 
     const DepthWindow& window = windows[i];
     if (window.rows == 0 || !plan.shades) {
       worker.pool.give_back(planes[i]);
-      if (worker.counts) worker.samples_passed += static_cast<std::uint64_t>(std::popcount(window.rows));
+      count_samples(worker, window.rows);
       continue;
     }
     set_current_planes(worker, &primitive, planes[i]);
-    const base::LaneMask quads = transpose_window(window.rows);
-    const BlockCoverage block{{(quads & 0xff) | (quads & 0xff00) << 8}}, rasterized{{primitive.window}};
+    const BlockCoverage block{{block_of_small_window(transpose_window(window.rows))}}, rasterized{{primitive.window}};
     append_quads(worker, primitive, window.x, window.y, rasterized, block, base::quads_of_lanes(block.lanes[0]));
   }
 }

@@ -8,8 +8,6 @@
 #include <random>
 #include <vector>
 
-#include "raster/front/setup.h"
-
 namespace vitrine::raster {
 namespace {
 
@@ -33,25 +31,6 @@ TEST(Arena, KeepsWhatIsTakenApartAfterTrimming) {
     }
     for (const Piece& piece : pieces)
       for (std::size_t i = 0; i < piece.size; ++i) ASSERT_EQ(static_cast<int>(piece.memory[i]), piece.value);
-  }
-}
-
-TEST(PrimitiveList, KeepsItsPrimitivesWhereverTheArenaGrows) {
-  Arena arena;
-  PrimitiveList list;
-  for (const std::uint32_t expected : {0u, 10u, 5000u}) {
-    for (const bool takes : {false, true}) {
-      list.begin(arena);
-      list.reserve(expected);
-      for (std::uint32_t i = 0; i < 1000; ++i) {
-        list.append().id = i;
-        if (takes) std::memset(arena.take<std::byte>(100), 0xff, 100);
-      }
-      list.end();
-      std::memset(arena.take<std::byte>(4000), 0xff, 4000);
-      ASSERT_EQ(list.size(), 1000u);
-      for (std::uint32_t i = 0; i < 1000; ++i) ASSERT_EQ(list[i].id, i);
-    }
   }
 }
 

@@ -1,9 +1,10 @@
 // Geometry shading (Vulkan 1.3.239, Geometry Shading): waves of (primitive, invocation), emitted vertices in order.
+#include "raster/front/stages/geometry.h"
+
 #include <algorithm>
 
-#include "raster/front/assembly.h"
-#include "raster/front/front.h"
-#include "raster/front/stages/stages.h"
+#include "raster/front/gather.h"
+#include "raster/front/vertices.h"
 #include "spirv/stage_memory.h"
 
 namespace vitrine::raster {
@@ -22,7 +23,7 @@ struct GeometryWave {
 };
 
 void fill_inputs(const StageContext& c, std::span<const GeometryInput> inputs, const GeometryWave& wave) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const spirv::ShaderInterface& shader = *c.plan.stages.geometry;
   const std::uint32_t invocations = shader.modes.invocations;
   const auto table = static_cast<std::uint32_t>(wave.table * 4), emit = static_cast<std::uint32_t>(wave.emit * 4);
@@ -63,14 +64,14 @@ void list_strip(const StageContext& c, std::uint32_t begin, std::uint32_t end, s
   const VkPrimitiveTopology output = c.plan.stages.geometry->modes.output;
   for (std::uint32_t i = 0; begin + i + corners <= end; ++i) {
     const Corners at = corners_of(output, c.plan.state->provoking_vertex_last, i);
-    c.scratch.stages.listed.push_back({{begin + at.at[0], begin + at.at[1], begin + at.at[2]}, id, i != 0});
+    c.stages.listed.push_back({{begin + at.at[0], begin + at.at[1], begin + at.at[2]}, id, i != 0});
   }
 }
 
 /// Vertices of a stream and their primitives, invocation after invocation.
 void collect(const StageContext& c, std::span<const GeometryInput> inputs, const GeometryWave& wave,
              std::uint32_t stream) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const spirv::ShaderInterface& shader = *c.plan.stages.geometry;
   const spirv::StageModes& modes = shader.modes;
   s.emitted.clear();
@@ -99,21 +100,21 @@ void collect(const StageContext& c, std::span<const GeometryInput> inputs, const
 }
 
 void capture_streams(const StageContext& c, std::span<const GeometryInput> inputs, const GeometryWave& wave) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   for (std::uint32_t stream = 0; stream < kMaxStreams; ++stream) {
     collect(c, inputs, wave, stream);
-    capture_emitted(c.plan, stream, s.listed, s.emitted, s.memory.data(), c.scratch.capture);
+    capture_emitted(c.plan, stream, s.listed, s.emitted, s.memory.data(), c.capture);
   }
 }
 
 /// Emitted vertices to records, wave by wave.
 void transform_emitted(const StageContext& c) {
-  FrontScratch& scratch = c.scratch;
-  StageScratch& s = scratch.stages;
+  VertexScratch& vertices = c.vertices;
+  StageScratch& s = c.stages;
   const auto count = static_cast<std::uint32_t>(s.emitted.size());
   const std::uint32_t words = c.plan.stages.geometry->modes.vertex_words;
-  reserve_vertices(scratch, count);
-  scratch.records = c.arena.take<Vertex>(std::size_t{count} * c.plan.vertex_stride);
+  reserve_vertices(vertices, count);
+  vertices.records = c.arena.take<Vertex>(std::size_t{count} * c.plan.vertex_stride);
   if (s.staging.size() < words) s.staging.resize(words);
   for (std::uint32_t base = 0; base < count; base += base::kWaveWidth) {
     const std::uint32_t lanes = std::min<std::uint32_t>(count - base, base::kWaveWidth);
@@ -121,10 +122,10 @@ void transform_emitted(const StageContext& c) {
       const std::uint32_t* vertex = s.memory.data() + s.emitted[base + i];
       for (std::uint32_t w = 0; w < words; ++w) s.staging[w].lane[i] = vertex[w];
     }
-    store_wave(c.plan, {nullptr, s.staging.data()}, base, lanes, scratch);
+    store_wave(c.plan, {nullptr, s.staging.data()}, base, lanes, vertices);
   }
   if (c.plan.out.primitive_id == kNoReg) return;
-  const std::uint32_t provoking = c.plan.state->provoking_vertex_last ? c.plan.corners - 1 : 0;
+  const std::uint32_t provoking = provoking_corner(c.plan.corners, c.plan.state->provoking_vertex_last);
   for (ListedPrimitive& primitive : s.listed)
     primitive.id = s.memory[s.emitted[primitive.slot[provoking]] + c.plan.out.primitive_id];
 }
@@ -132,11 +133,10 @@ void transform_emitted(const StageContext& c) {
 }  // namespace
 
 void run_geometry(const StageContext& c, std::span<const GeometryInput> inputs) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const spirv::StageModes& modes = c.plan.stages.geometry->modes;
   const std::size_t mark = s.used;
-  if (!(s.bound_geometry == c.chunk.draw->geometry)) s.geometry.bind(c.chunk.draw->geometry);
-  s.bound_geometry = c.chunk.draw->geometry;
+  bind_stage(s.geometry, s.bound_geometry, c.chunk.draw->geometry);
   GeometryWave wave;
   wave.table = s.take(base::kWaveWidth * kTableWords);
   wave.emit = s.take(std::size_t{base::kWaveWidth} * modes.max_vertices * modes.vertex_words);
@@ -146,13 +146,13 @@ void run_geometry(const StageContext& c, std::span<const GeometryInput> inputs) 
     wave.lanes = static_cast<std::uint32_t>(std::min<std::uint64_t>(total - wave.first, base::kWaveWidth));
     fill_inputs(c, inputs, wave);
     s.geometry.run(base::first_lanes(wave.lanes), 0);
-    if (c.scratch.capture.active) capture_streams(c, inputs, wave);
-    collect(c, inputs, wave, 0);        // the rasterized stream
-    count_statistic(c, 3, wave.lanes);  // geometry shader invocations
-    count_statistic(c, 4, s.listed.size());
+    if (c.capture.active) capture_streams(c, inputs, wave);
+    collect(c, inputs, wave, 0);  // the rasterized stream
+    c.queries().count(Statistic::kGeometryInvocations, wave.lanes);
+    c.queries().count(Statistic::kGeometryPrimitives, s.listed.size());
     if (c.plan.state->rasterizer_discard || s.listed.empty()) continue;
     transform_emitted(c);
-    assemble_listed(c.chunk, c.pass, c.arena, c.scratch, s.listed);
+    assemble_listed(c.assembly(), s.listed);
   }
   s.used = mark;
 }

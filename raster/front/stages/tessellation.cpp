@@ -1,11 +1,14 @@
 // Tessellation (Vulkan 1.3.239, Tessellation): control shaders over waves of whole patches, the tessellator, evaluation
 // shaders over waves of domain points.
+#include "raster/front/stages/tessellation.h"
+
 #include <algorithm>
 #include <cstring>
 
 #include "base/numeric.h"
-#include "raster/front/front.h"
-#include "raster/front/stages/stages.h"
+#include "raster/front/gather.h"
+#include "raster/front/stages/geometry.h"
+#include "raster/front/vertices.h"
 #include "spirv/stage_memory.h"
 
 namespace vitrine::raster {
@@ -24,14 +27,9 @@ struct Batch {
 
 std::uint32_t byte_offset(std::size_t word) { return static_cast<std::uint32_t>(word * 4); }
 
-void bind(StageRunner& runner, Stage& bound, const Stage& stage) {
-  if (!(bound == stage)) runner.bind(stage);
-  bound = stage;
-}
-
 /// Offsets of the vertices that both stages read.
 void fill_tables(const StageContext& c, const Batch& batch) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const spirv::StageModes& modes = c.plan.stages.tessellation;
   const std::uint32_t points = c.plan.shape.step;
   for (std::uint32_t p = 0; p < batch.count; ++p) {
@@ -44,7 +42,7 @@ void fill_tables(const StageContext& c, const Batch& batch) {
 }
 
 void run_control(const StageContext& c, const Batch& batch) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const std::uint32_t invocations = c.plan.stages.tessellation.control_points;
   const std::uint32_t lanes = batch.count * invocations;
   for (const InterfaceSlot& slot : c.plan.stages.control->inputs) {
@@ -78,7 +76,7 @@ void run_control(const StageContext& c, const Batch& batch) {
   }
   s.control.set_stage_memory(s.memory.data(), s.used);
   s.control.run(base::first_lanes(lanes), 0);
-  count_statistic(c, 8, batch.count);  // tessellation control shader patches
+  c.queries().count(Statistic::kTessellationControlPatches, batch.count);
 }
 
 /// Corners of what the tessellator makes.
@@ -88,7 +86,7 @@ std::uint32_t tessellated_corners(const spirv::StageModes& modes) {
 
 /// Domain points and primitives (slots are numbers of points) of all patches of the batch.
 void tessellate(const StageContext& c, const Batch& batch) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const spirv::StageModes& modes = c.plan.stages.tessellation;
   const bool flip = c.plan.state->domain_origin_lower_left;
   const std::uint32_t corners = tessellated_corners(modes);
@@ -119,7 +117,7 @@ float tess_coord(const PatchPoint& point, std::uint32_t component, spirv::TessDo
 }
 
 void run_evaluation_wave(const StageContext& c, const Batch& batch, std::uint32_t base, std::uint32_t lanes) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const spirv::StageModes& modes = c.plan.stages.tessellation;
   for (const InterfaceSlot& slot : c.plan.stages.evaluation->inputs) {
     std::uint32_t* lane = s.evaluation.input(slot.reg).lane;
@@ -156,7 +154,7 @@ void run_evaluation_wave(const StageContext& c, const Batch& batch, std::uint32_
 /// Calls f(first point, number) after each wave of evaluation shaders.
 template <class F>
 void run_evaluation(const StageContext& c, const Batch& batch, F&& f) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const auto count = static_cast<std::uint32_t>(s.points.size());
   s.evaluation.set_stage_memory(s.memory.data(), s.used);
   for (std::uint32_t base = 0; base < count; base += base::kWaveWidth) {
@@ -164,11 +162,11 @@ void run_evaluation(const StageContext& c, const Batch& batch, F&& f) {
     run_evaluation_wave(c, batch, base, lanes);
     f(base, lanes);
   }
-  count_statistic(c, 9, count);  // tessellation evaluation shader invocations
+  c.queries().count(Statistic::kTessellationEvaluationInvocations, count);
 }
 
 void evaluate_for_geometry(const StageContext& c, const Batch& batch) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const std::uint32_t words = c.plan.stages.evaluation_words;
   const std::size_t first = s.take(s.points.size() * words);
   run_evaluation(c, batch, [&](std::uint32_t base, std::uint32_t lanes) {
@@ -186,26 +184,26 @@ void evaluate_for_geometry(const StageContext& c, const Batch& batch) {
 }
 
 void evaluate_and_assemble(const StageContext& c, const Batch& batch) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const auto count = static_cast<std::uint32_t>(s.points.size());
-  reserve_vertices(c.scratch, count);
-  c.scratch.records = c.arena.take<Vertex>(std::size_t{count} * c.plan.vertex_stride);
+  reserve_vertices(c.vertices, count);
+  c.vertices.records = c.arena.take<Vertex>(std::size_t{count} * c.plan.vertex_stride);
   run_evaluation(c, batch, [&](std::uint32_t base, std::uint32_t lanes) {
-    store_wave(c.plan, {&s.evaluation, nullptr}, base, lanes, c.scratch);
-    if (c.scratch.capture.active) capture_wave(c.plan, {&s.evaluation, nullptr}, base, lanes, c.scratch.capture);
+    store_wave(c.plan, {&s.evaluation, nullptr}, base, lanes, c.vertices);
+    if (c.capture.active) capture_wave(c.plan, {&s.evaluation, nullptr}, base, lanes, c.capture);
   });
-  if (c.scratch.capture.active)
-    for (const ListedPrimitive& primitive : s.listed) capture_primitive(c.plan, primitive.slot, c.scratch.capture);
-  if (!c.plan.state->rasterizer_discard) assemble_listed(c.chunk, c.pass, c.arena, c.scratch, s.listed);
+  if (c.capture.active)
+    for (const ListedPrimitive& primitive : s.listed) capture_primitive(c.plan, primitive.slot, c.capture);
+  if (!c.plan.state->rasterizer_discard) assemble_listed(c.assembly(), s.listed);
 }
 
 }  // namespace
 
 void run_tessellation(const StageContext& c) {
-  StageScratch& s = c.scratch.stages;
+  StageScratch& s = c.stages;
   const spirv::StageModes& modes = c.plan.stages.tessellation;
-  bind(s.control, s.bound_control, c.chunk.draw->control);
-  bind(s.evaluation, s.bound_evaluation, c.chunk.draw->evaluation);
+  bind_stage(s.control, s.bound_control, c.chunk.draw->control);
+  bind_stage(s.evaluation, s.bound_evaluation, c.chunk.draw->evaluation);
   Batch batch;
   batch.patch_stride = modes.patch_words + modes.control_points * modes.vertex_words;
   const std::size_t mark = s.used;

@@ -27,22 +27,10 @@ bool is_even(float level) { return (static_cast<int>(level) & 1) == 0; }
 
 }  // namespace
 
-std::uint32_t Tessellator::Ring::at(std::uint32_t step) const {
-  if (total == 0) return base;
-  step %= total;
-  if (backwards && step != 0) step = total - step;
-  return base + (collapsed && step > total / 2 ? total - step : step);
-}
-
 void Tessellator::add_point(Fixed u, Fixed v) { points_.push_back({to_float(u), to_float(v)}); }
 
-void Tessellator::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  if (!modes_.clockwise) std::swap(b, c);
-  indices_.insert(indices_.end(), {a, b, c});
-}
-
 void Tessellator::list_points() {
-  for (std::uint32_t i = 0; i < points_.size(); ++i) indices_.push_back(i);
+  for (std::uint32_t i = 0; i < points_.size(); ++i) triangles_.indices.push_back(i);
 }
 
 /// To the range of the spacing; NaN becomes its lower end. `picture_frame`: more than 1, so that there is a ring.
@@ -69,7 +57,8 @@ Side Tessellator::inside_side(float level) const {
 void Tessellator::run(const TessModes& modes, const TessLevels& levels) {
   modes_ = modes;
   points_.clear();
-  indices_.clear();
+  triangles_.indices.clear();
+  triangles_.clockwise = modes.clockwise;
   const int used = modes.domain == TessDomain::kIsolines ? 2 : modes.domain == TessDomain::kTriangles ? 3 : 4;
   for (int i = 0; i < used; ++i)
     if (!(levels.outer[i] > 0)) return;
@@ -96,7 +85,7 @@ void Tessellator::triangles(const TessLevels& levels) {
     add_point(0, 0);
     add_point(kFixedOne, 0);
     if (modes_.point_mode) return list_points();
-    return add_triangle(0, 1, 2);
+    return triangles_.add(0, 1, 2);
   }
   const Side inner = inside_side(level);
   const std::uint32_t count = std::max(inner.count, inner.odd ? 4u : 3u);
@@ -140,16 +129,16 @@ void Tessellator::triangle_rings(const Side outer[3], const Side& inner, std::ui
     Seam seam{outside, inside, 0, 0};
     for (int e = 0; e < 3; ++e) {
       if (ring == 1)
-        join_sides(seam, outer[e], inner);
+        triangles_.join_sides(seam, outer[e], inner);
       else
-        join_rows(seam, n);
+        triangles_.join_rows(seam, n);
       seam.outside_start += outside_count[e] - 1;
       seam.inside_start += n - 1;
       outside_count[e] = n;
     }
     outside = inside;
   }
-  if (inner.odd) add_triangle(outside.base, outside.base + 1, outside.base + 2);
+  if (inner.odd) triangles_.add(outside.base, outside.base + 1, outside.base + 2);
 }
 
 void Tessellator::quads(const TessLevels& levels) {
@@ -176,8 +165,8 @@ void Tessellator::quads(const TessLevels& levels) {
     add_point(kFixedOne, kFixedOne);
     add_point(0, kFixedOne);
     if (modes_.point_mode) return list_points();
-    add_triangle(0, 1, 3);
-    return add_triangle(1, 2, 3);
+    triangles_.add(0, 1, 3);
+    return triangles_.add(1, 2, 3);
   }
   quad_points(outer, inner, count);
   if (modes_.point_mode) return list_points();
@@ -229,9 +218,9 @@ void Tessellator::quad_rings(const Side outer[4], const Side inner[2], const std
     for (int e = 0; e < 4; ++e) {
       const int along = (e + 1) % 2;
       if (ring == 1)
-        join_sides(seam, outer[e], inner[along]);
+        triangles_.join_sides(seam, outer[e], inner[along]);
       else
-        join_rows(seam, n[along]);
+        triangles_.join_rows(seam, n[along]);
       seam.outside_start += outside_count[e] - 1;
       seam.inside_start += n[along] - 1;
       outside_count[e] = n[along];
@@ -249,7 +238,7 @@ void Tessellator::quad_center(const Ring& ring, const Side inner[2], const std::
   Ring back = ring;
   back.backwards = true;
   const std::uint32_t points = (wide ? count[0] - count[1] : count[1] - count[0]) + 2;
-  join_strip({ring, back, wide ? 1u : 0u, wide ? 0u : 1u}, points, !wide && inner[1].odd);
+  triangles_.join_strip({ring, back, wide ? 1u : 0u, wide ? 0u : 1u}, points, !wide && inner[1].odd);
 }
 
 void Tessellator::isolines(const TessLevels& levels) {
@@ -260,7 +249,7 @@ void Tessellator::isolines(const TessLevels& levels) {
     for (std::uint32_t p = 0; p < detail.count; ++p) {
       const auto number = static_cast<std::uint32_t>(points_.size());
       add_point(detail.place(p), density.place(line));
-      if (p != 0 && !modes_.point_mode) indices_.insert(indices_.end(), {number - 1, number});
+      if (p != 0 && !modes_.point_mode) triangles_.indices.insert(triangles_.indices.end(), {number - 1, number});
     }
   }
   if (modes_.point_mode) list_points();

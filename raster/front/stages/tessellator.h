@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "raster/front/stages/tessellator_seam.h"
 #include "raster/front/stages/tessellator_side.h"
 #include "spirv/shader.h"
 
@@ -34,26 +35,10 @@ class Tessellator {
 
   const std::vector<DomainPoint>& points() const { return points_; }
   /// 3 (triangles), 2 (isolines) or 1 (point mode) per primitive, in order.
-  const std::vector<std::uint32_t>& indices() const { return indices_; }
+  const std::vector<std::uint32_t>& indices() const { return triangles_.indices; }
 
  private:
-  /// A closed walk around the domain: `total` steps; of a collapsed ring only the first total / 2 + 1 points exist,
-  /// and the walk goes back over them.
-  struct Ring {
-    std::uint32_t base = 0, total = 0;
-    bool collapsed = false, backwards = false;
-    std::uint32_t at(std::uint32_t step) const;
-  };
-  /// An edge of two neighbouring rings: where it starts on each.
-  struct Seam {
-    Ring outside, inside;
-    std::uint32_t outside_start, inside_start;
-    std::uint32_t outer(std::uint32_t i) const { return outside.at(outside_start + i); }
-    std::uint32_t inner(std::uint32_t i) const { return inside.at(inside_start + i); }
-  };
-
   void add_point(Fixed u, Fixed v);
-  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
   void list_points();
   Side inside_side(float level) const;
   Side outside_side(float level) const;
@@ -68,19 +53,9 @@ class Tessellator {
   void quad_center(const Ring& ring, const Side inner[2], const std::uint32_t count[2]);
   void isolines(const TessLevels& levels);
 
-  // tessellator_seam.cpp
-  /// Between sides of any two levels: the outermost ring and the next.
-  void join_sides(const Seam& seam, const Side& outside, const Side& inside);
-  /// Between rings inside: the outer row has two points more than the inner one's `count`.
-  void join_rows(const Seam& seam, std::uint32_t count);
-  /// One quad.
-  void add_quad(const Seam& seam, std::uint32_t i, bool from_inside);
-  /// Rows of equally many points; diagonals all one way, but for the middle one if `except_middle`.
-  void join_strip(const Seam& seam, std::uint32_t count, bool except_middle);
-
   TessModes modes_{};
   std::vector<DomainPoint> points_;
-  std::vector<std::uint32_t> indices_;
+  TriangleList triangles_;
 };
 
 }  // namespace vitrine::raster

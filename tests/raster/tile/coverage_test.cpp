@@ -102,15 +102,5 @@ TEST(Coverage, SharedEdgeIsCoveredOnce) {
   }
 }
 
-TEST(Coverage, RectLanesCutsColumnsAndRows) {
-  for (int x0 = -1; x0 < 9; ++x0)
-    for (int x1 = -1; x1 < 9; ++x1)
-      for (std::uint32_t lane = 0; lane < 64; ++lane) {
-        const bool in = lane_x(lane) >= x0 && lane_x(lane) <= x1;
-        ASSERT_EQ(in, (rect_lanes(x0, -3, x1, 20) >> lane & 1) != 0);
-        ASSERT_EQ(lane_y(lane) >= x0 && lane_y(lane) <= x1, (rect_lanes(0, x0, 7, x1) >> lane & 1) != 0);
-      }
-}
-
 }  // namespace
 }  // namespace vitrine::raster

@@ -1,35 +1,14 @@
-// What the fast colour functions share with the code that picks them.
+// Waves whose quads may lie on the same pixels, cut so that loads and stores of whole waves keep the order of the
+// lanes.
 #pragma once
 
-#include "raster/output/color.h"
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "raster/output/color_writer.h"
 
 namespace vitrine::raster {
-
-/// Colour functions of the SIMD target in use for targets of four 8-bit UNORM channels.
-struct ByteColorFunctions {
-  ColorFunction store, blend;
-  ColorFunction store_srgb, blend_srgb;  ///< three of them sRGB
-};
-ByteColorFunctions byte_color_functions();
-
-/// The colour function for channels of 16-bit floats or 32-bit words that lie in the order R, G, B, A, or null
-/// (color_floats.cpp).
-ColorFunction float_color_function(const ColorWriter& writer);
-
-/// Four UNORM bytes, in any order.
-bool is_four_bytes(const texel::FormatDesc& format);
-/// The same with sRGB colours.
-bool is_four_srgb_bytes(const texel::FormatDesc& format);
-/// Whether a blend factor is a dual-source one.
-bool reads_second_source(const ColorWriter& writer);
-
-/// Fills in pack_places and alpha_places for such a format.
-void set_byte_places(ColorWriter& writer);
-
-/// Position of a component's byte in the texel of such a format, bits.
-inline int shift_of(const ColorWriter& writer, std::size_t component) {
-  return writer.format->channel[static_cast<std::size_t>(writer.format->rgba[component])].offset;
-}
 
 /// Lanes of a set of quads (bit q = quad q).
 constexpr base::LaneMask lanes_of(std::uint32_t quads) {

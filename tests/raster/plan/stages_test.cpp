@@ -1,10 +1,11 @@
 // What a draw's plan takes from its stages together.
-#include "raster/plan.h"
+#include "raster/plan/stages.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
+#include "raster/plan/make_plan.h"
 #include "raster/stage.h"
 #include "spirv/program.h"
 

@@ -1,6 +1,6 @@
-// Whole blocks against packed waves: the same draws with and without the fast paths leave the same bytes, whatever the
-// state, the formats and the number of samples.
-#include "raster/tile/block.h"
+// The ways a primitive may take against packed waves alone: the same draws with and without the fast paths leave the
+// same bytes, whatever the state, the formats and the number of samples.
+#include "raster/tile/rasterize.h"
 
 #include <gtest/gtest.h>
 
@@ -11,29 +11,11 @@
 
 #include "raster/pass.h"
 #include "raster/stage.h"
-#include "raster/tile/coverage.h"
-#include "raster/tile/spans.h"
 
 namespace vitrine::raster {
 namespace {
 
 constexpr std::uint32_t kWidth = 205, kHeight = 141;  // blocks stick out to the right and below
-
-TEST(Block, OrdersOfLanesAreInverse) {
-  for (std::uint32_t lane = 0; lane < 64; ++lane) {
-    const base::LaneMask row = base::LaneMask{1} << (8 * lane_y(lane) + lane_x(lane));
-    EXPECT_EQ(rows_of_quads(base::LaneMask{1} << lane), row);
-    EXPECT_EQ(quads_of_rows(row), base::LaneMask{1} << lane);
-  }
-}
-
-TEST(Block, RowsOfSpansAreTheirLanes) {
-  for (std::uint32_t lane = 0; lane < 64; ++lane) {
-    const std::uint64_t row = std::uint64_t{1} << (lane / 4 * 2 + (lane & 1) + 32 * (lane >> 1 & 1));
-    EXPECT_EQ(lanes_of_spans(row), base::LaneMask{1} << lane);
-    EXPECT_EQ(rows_of_spans(base::LaneMask{1} << lane), row);
-  }
-}
 
 struct Corner {
   float position[4], color[4];
@@ -243,7 +225,7 @@ struct Scene {
   }
 };
 
-TEST(Block, FastPathsEqualTheGeneralOne) {
+TEST(Routes, FastPathsEqualTheGeneralOne) {
   std::mt19937 random(11);
   std::uint32_t drawn = 0;
   for (int n = 0; n < 300; ++n) {
@@ -273,7 +255,7 @@ TEST(Block, FastPathsEqualTheGeneralOne) {
 
 /// Draws with all kinds of depth tests and clears in between, in one pass: what has been learnt of the stored depths
 /// never rejects what the general path draws.
-TEST(Block, HierarchicalRejectionIsNotNoticed) {
+TEST(Routes, HierarchicalRejectionIsNotNoticed) {
   std::mt19937 random(23);
   const auto unit = [&] { return static_cast<float>(random() % 1001) / 1000; };
   for (int n = 0; n < 60; ++n) {

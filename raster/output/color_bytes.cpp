@@ -1,13 +1,15 @@
 // Fast colour output for the most common targets: four UNORM bytes in any order, with and without blending. Same bits
 // as the general function of color.cpp (tests compare them).
-#include "raster/output/color_fast.h"
+#include "raster/output/color_bytes.h"
 
 #include <cstring>
 
 #include "raster/output/blend.h"
+#include "raster/output/byte_texels.h"
+#include "raster/output/color_passes.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "raster/output/color_fast.cpp"
+#define HWY_TARGET_INCLUDE "raster/output/color_bytes.cpp"
 #include "base/simd.h"
 
 #include <hwy/foreach_target.h>
@@ -320,7 +322,10 @@ void blend_srgb(const ColorWriter& writer, const ColorWave& wave) {
 
 }  // namespace
 
-ByteColorFunctions byte_functions() { return {store_bytes, blend_bytes, store_srgb, blend_srgb}; }
+ColorFunction choose_byte_function(bool srgb, bool blends) {
+  if (srgb) return blends ? blend_srgb : store_srgb;
+  return blends ? blend_bytes : store_bytes;
+}
 
 }  // namespace vitrine::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -328,47 +333,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vitrine::raster {
 
-HWY_EXPORT(byte_functions);
+HWY_EXPORT(choose_byte_function);
 
-ByteColorFunctions byte_color_functions() {
+ColorFunction byte_color_function(const ColorWriter& writer) {
+  const bool srgb = is_four_srgb_bytes(*writer.format);
+  if (srgb ? texel::encodes_by_cpu() : !is_four_bytes(*writer.format)) return nullptr;
+  const bool blends = writer.blend != BlendType::kNone;
+  if (blends && reads_second_source(writer)) return nullptr;
   base::select_simd_target();
-  return HWY_DYNAMIC_DISPATCH(byte_functions)();
-}
-
-namespace {
-
-bool four_bytes(const texel::FormatDesc& format, texel::Numeric numeric) {
-  if (format.channel_count != 4 || format.block_bytes != 4) return false;
-  for (std::size_t c = 0; c < 4; ++c) {
-    const texel::Channel& channel = format.channel[c];
-    if (channel.bits != 8 || channel.numeric != numeric || format.rgba[c] < 0) return false;
-  }
-  return true;
-}
-
-}  // namespace
-
-bool is_four_bytes(const texel::FormatDesc& format) { return four_bytes(format, texel::Numeric::kUnorm); }
-bool is_four_srgb_bytes(const texel::FormatDesc& format) { return four_bytes(format, texel::Numeric::kSrgb); }
-
-bool reads_second_source(const ColorWriter& writer) {
-  for (const VkBlendFactor factor : {writer.rgb.src, writer.rgb.dst, writer.alpha.src, writer.alpha.dst}) {
-    if (factor >= VK_BLEND_FACTOR_SRC1_COLOR) return true;
-  }
-  return false;
-}
-
-ColorFunction fast_color_function(const ColorWriter& writer) {
-  if (writer.logic) return nullptr;
-  if (is_four_bytes(*writer.format)) {
-    if (writer.blend == BlendType::kNone) return byte_color_functions().store;
-    return reads_second_source(writer) ? nullptr : byte_color_functions().blend;
-  }
-  if (is_four_srgb_bytes(*writer.format) && !texel::encodes_by_cpu()) {
-    if (writer.blend == BlendType::kNone) return byte_color_functions().store_srgb;
-    return reads_second_source(writer) ? nullptr : byte_color_functions().blend_srgb;
-  }
-  return float_color_function(writer);
+  return HWY_DYNAMIC_DISPATCH(choose_byte_function)(srgb, blends);
 }
 
 }  // namespace vitrine::raster

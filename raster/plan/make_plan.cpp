@@ -1,0 +1,43 @@
+// The parts of a plan in the order in which they need each other.
+#include "raster/plan/make_plan.h"
+
+#include "raster/plan/fragment_operations.h"
+#include "raster/plan/routes.h"
+#include "raster/plan/stages.h"
+#include "raster/plan/varyings.h"
+#include "raster/plan/vertex_interface.h"
+#include "raster/plan/viewports.h"
+
+namespace vitrine::raster {
+namespace {
+
+using spirv::ShaderInterface;
+
+const ShaderInterface* interface_of(const spirv::Shader* shader, const NativeShader* native) {
+  if (native) return &native->interface;
+  return shader ? &shader->interface() : nullptr;
+}
+
+}  // namespace
+
+bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
+  plan.state = draw.state;
+  plan.vertex = interface_of(draw.vertex, draw.native_vertex);
+  plan.fragment = interface_of(draw.fragment, draw.native_fragment);
+  if (!plan.vertex || pass.samples > kMaxSamples) return false;
+  if (!plan_stages(draw, plan)) return false;
+  plan_captures(plan);
+  plan_vertex_inputs(plan);
+  plan_vertex_outputs(plan);
+  plan_rasterization(plan, pass);
+  plan_varyings(plan);
+  plan_viewports(plan, pass);
+  // 8.2: with one sample only a mask of all zeros has an effect.
+  if (plan.samples == 1 && draw.state->sample_mask != 0) plan.sample_mask = 1;
+  plan_tests(plan, pass);
+  plan_colors(plan, pass, draw.general_path);
+  plan_routes(plan, draw.general_path);
+  return true;
+}
+
+}  // namespace vitrine::raster

@@ -1,0 +1,190 @@
+// Interpolation over packed waves (lavapipe-rasterization.md 4.2, 8.4) and the built-ins of their fragments.
+#include "raster/tile/packed_inputs.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "raster/tile/fragment_inputs.h"
+
+namespace vitrine::raster {
+
+namespace {
+
+using base::LaneMask;
+using base::WaveRegister;
+
+/// 8.4: the centre where all samples are covered or none is, else the first covered sample.
+void set_centroids(const ShadeRun& run, WavePoints& out) {
+  const PackedWave& wave = run.wave;
+  out = run.worker.center;
+  base::for_each_lane(run.used, [&](std::size_t lane) {
+    std::uint32_t covered = 0;
+    for (std::uint32_t s = 0; s < run.plan.samples; ++s)
+      covered |= static_cast<std::uint32_t>(wave.coverage[s] >> lane & 1) << s;
+    if (covered == 0 || covered == (1u << run.plan.samples) - 1) return;
+    const auto s = static_cast<std::uint32_t>(std::countr_zero(covered));
+    out.x[lane] = (out.x[lane] - 0.5f) + run.plan.locations->pixel_x(s);
+    out.y[lane] = (out.y[lane] - 0.5f) + run.plan.locations->pixel_y(s);
+  });
+}
+
+/// Points of a location other than the centre, in worker.place.
+const WavePoints& points_of(ShadeRun& run, spirv::SampleLocation location, spirv::SampleLocation& prepared) {
+  TileWorker& worker = run.worker;
+  if (location == spirv::SampleLocation::kCenter || run.plan.raster_samples == 1) return worker.center;
+  if (location == spirv::SampleLocation::kSample && !run.single()) return worker.center;
+  if (prepared != location) {
+    if (location == spirv::SampleLocation::kCentroid)
+      set_centroids(run, worker.place);
+    else
+      set_points(run.wave, run.x(), run.y(), worker.place);
+    prepared = location;
+  }
+  return worker.place;
+}
+
+/// A plane's coefficients for interpolateAt*.
+void copy_plane_part(const WavePlanes& planes, std::uint32_t plane, spirv::InputPart part, WaveRegister& out) {
+  std::uint32_t* lane = out.lane;
+  for (std::uint32_t slot = 0; slot < planes.slots; ++slot) {
+    const PlaneSet& set = *planes.set[slot];
+    const float* coefficients = part == spirv::InputPart::kPlaneOrigin ? set.a0
+                                : part == spirv::InputPart::kPlaneX    ? set.dadx
+                                                                       : set.dady;
+    std::uint32_t* const end = out.lane + 4 * planes.end[slot];
+    for (const std::uint32_t value = base::bits_of(coefficients[plane]); lane != end; ++lane) *lane = value;
+  }
+}
+
+/// Perspective and linear varyings.
+void read_varyings(ShadeRun& run) {
+  const PipelinePlan& plan = run.plan;
+  TileWorker& worker = run.worker;
+  auto prepared = spirv::SampleLocation::kCenter;
+  const std::uint32_t smooth = plan.perspective_count + plan.linear_count;
+  for (std::uint32_t i = 0; i < plan.read_count; ++i) {
+    const VaryingRead& read = plan.read[i];
+    const std::uint32_t plane = kFirstVaryingPlane + read.varying;
+    if (read.varying >= smooth) continue;
+    if (read.part != spirv::InputPart::kValue) {
+      copy_plane_part(run.wave.planes, plane, read.part, worker.runner.input(read.reg));
+    } else {
+      const float* scale = read.varying < plan.perspective_count ? run.scale : nullptr;
+      evaluate_plane(run.wave.planes, plane, points_of(run, read.location, prepared), scale,
+                     as_floats(worker.runner.input(read.reg)));
+    }
+  }
+}
+
+/// Where interpolateAt* evaluates planes.
+void set_interpolation_places(ShadeRun& run) {
+  const FragmentRegisters& frag = run.plan.frag;
+  TileWorker& worker = run.worker;
+  const auto copy = [&](const float* from, std::uint32_t reg) {
+    if (reg != kNoReg) std::copy_n(from, base::kWaveWidth, as_floats(worker.runner.input(reg)));
+  };
+  copy(worker.center.x, frag.interpolation_center[0]);
+  copy(worker.center.y, frag.interpolation_center[1]);
+  if (run.scale)
+    copy(run.scale, frag.interpolation_scale);
+  else if (frag.interpolation_scale != kNoReg)
+    splat(worker.runner.input(frag.interpolation_scale), base::bits_of(1.0f));
+  for (std::uint32_t s = 0; s < kMaxSamples; ++s) {
+    const std::uint32_t x = frag.interpolation_sample[2 * s], y = frag.interpolation_sample[2 * s + 1];
+    if (x == kNoReg && y == kNoReg) continue;
+    WavePoints points;
+    set_points(run.wave, run.plan.locations->pixel_x(s), run.plan.locations->pixel_y(s), points);
+    copy(points.x, x);
+    copy(points.y, y);
+  }
+}
+
+void set_sample_inputs(ShadeRun& run) {
+  const FragmentRegisters& frag = run.plan.frag;
+  StageRunner& runner = run.worker.runner;
+  const bool located = run.plan.raster_samples > 1 && run.single();
+  if (frag.sample_id != kNoReg) splat(runner.input(frag.sample_id), located ? run.first_sample : 0);
+  if (frag.sample_position[0] != kNoReg)
+    splat(runner.input(frag.sample_position[0]), base::bits_of(located ? run.x() : 0.5f));
+  if (frag.sample_position[1] != kNoReg)
+    splat(runner.input(frag.sample_position[1]), base::bits_of(located ? run.y() : 0.5f));
+  if (frag.sample_mask_in == kNoReg) return;
+  const LaneMask* samples = run.plan.fragment->post_depth_coverage ? run.wave.coverage : run.wave.rasterized;
+  WaveRegister& out = runner.input(frag.sample_mask_in);
+  for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
+    std::uint32_t mask = 0;
+    for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
+      mask |= static_cast<std::uint32_t>(samples[s] >> lane & 1) << s;
+    out.lane[lane] = run.plan.samples == 1 ? 1 : mask;
+  }
+}
+
+/// The fragments of a packed wave, of several primitives (fragment_inputs.h).
+struct PackedFragments {
+  const ShadeRun& run;
+
+  bool has_unit_w() const {
+    const WavePlanes& planes = run.wave.planes;
+    return std::all_of(planes.set, planes.set + run.wave.slots, [](const PlaneSet* set) { return set->unit_w; });
+  }
+  void reciprocal_w(float* out) const {
+    evaluate_plane(run.wave.planes, kReciprocalWPlane, run.worker.center, nullptr, out);
+  }
+  void position(float* x, float* y) const {
+    WavePoints points;
+    set_points(run.wave, run.single() ? run.x() : 0.5f, run.single() ? run.y() : 0.5f, points);
+    if (x) std::copy_n(points.x, base::kWaveWidth, x);
+    if (y) std::copy_n(points.y, base::kWaveWidth, y);
+  }
+  void depth(float* out) const {
+    WavePoints points;
+    if (run.single()) set_points(run.wave, run.x(), run.y(), points);
+    evaluate_plane(run.wave.planes, kDepthPlane, run.single() ? points : run.worker.center, nullptr, out);
+    add_depth_offset(run.wave, out);
+  }
+  template <class F>
+  void per_primitive(WaveRegister& out, F&& word) const {
+    const PackedWave& wave = run.wave;
+    if (wave.slots == 1) return splat(out, word(*wave.primitive[0]));
+    std::uint32_t* lane = out.lane;
+    for (std::uint32_t slot = 0; slot < wave.slots; ++slot) {
+      std::uint32_t* const end = out.lane + 4 * wave.planes.end[slot];
+      for (const std::uint32_t value = word(*wave.primitive[slot]); lane != end; ++lane) *lane = value;
+    }
+  }
+};
+
+}  // namespace
+
+void begin_packed_inputs(ShadeRun& run) {
+  const PipelinePlan& plan = run.plan;
+  const float center = plan.raster_samples > 1 ? 0.5f : 0.0f;
+  const bool interpolates = plan.perspective_count + plan.linear_count != 0 || plan.depth_order == TestOrder::kLate ||
+                            plan.frag.frag_coord[2] != kNoReg || plan.frag.frag_coord[3] != kNoReg ||
+                            plan.frag.point_coord[0] != kNoReg || plan.frag.point_coord[1] != kNoReg;
+  if (interpolates) set_points(run.wave, center, center, run.worker.center);
+  if (has_perspective(plan)) run.scale = perspective_scale(run.worker, PackedFragments{run});
+}
+
+void set_packed_inputs(ShadeRun& run) {
+  read_varyings(run);
+  set_common_inputs(run.worker, PackedFragments{run});
+  const FragmentRegisters& frag = run.plan.frag;
+  StageRunner& runner = run.worker.runner;
+  const std::uint32_t point_plane = kFirstVaryingPlane + run.plan.perspective_count + run.plan.linear_count;
+  for (std::uint32_t c = 0; c < 2; ++c)
+    if (frag.point_coord[c] != kNoReg)
+      evaluate_plane(run.wave.planes, point_plane + c, run.worker.center, run.scale,
+                     as_floats(runner.input(frag.point_coord[c])));
+  if (frag.view_index != kNoReg)
+    splat(runner.input(frag.view_index), run.worker.pass->view_mask != 0 ? run.worker.target.layer : 0);
+  if (frag.helper != kNoReg) {
+    WaveRegister& out = runner.input(frag.helper);
+    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
+      out.lane[lane] = (run.pixels >> lane & 1) != 0 ? 0u : ~0u;
+  }
+  set_sample_inputs(run);
+  set_interpolation_places(run);
+}
+
+}  // namespace vitrine::raster

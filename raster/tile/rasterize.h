@@ -1,0 +1,12 @@
+// One primitive in a tile: which of the four ways it takes, and the longest of them, blocks. The ways, the words for
+// them and why all give the same bits: docs/raster.md.
+#pragma once
+
+#include "raster/tile/worker.h"
+
+namespace vitrine::raster {
+
+/// Covers, tests early and packs one primitive.
+void rasterize_primitive(TileWorker& worker, const Primitive& primitive);
+
+}  // namespace vitrine::raster
