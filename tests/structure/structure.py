@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the shape of the tree: include directions, rooms in the README, tests behind claims, opcodes and steps, capabilities,
-long files.
+"""Checks the shape of the tree: include directions between rooms and inside them, rooms in the README, tests behind
+claims, opcodes and steps, capabilities, long files.
 
 usage: structure.py SOURCE_FOLDER
 Exit status 1 and one line per fault. The tail of file sizes is printed, never a fault.
@@ -15,6 +15,26 @@ ORDER = ["icd", "raster", "spirv", "texel", "base"]
 FREE = ["tests", "cts-subset"]
 DATA = ["manifest", "docs"]
 SHADER_HEADERS = ["shader.h", "shader_cost.h", "stage_memory.h", "resources.h"]  # what raster sees of spirv
+# Inside raster: a part (a folder, or files of one name) includes itself and parts of lines below its own.
+RASTER_PARTS = [
+    ["pass"],
+    ["front", "tile"],
+    ["primitive"],
+    ["plan"],
+    ["output", "pass_desc", "topology"],
+    ["draw"],
+    ["arena", "lane_bits", "pixel_order", "pixel_rect", "sample_locations", "stage"],
+]
+# What must not be included from where, besides: files whose path begins so, and the beginnings of paths they must not see.
+NEVER = [
+    ("raster/front/stages/", ["raster/front/front.h"]),
+    ("texel/sampler/model/", ["texel/sampler/wave/", "texel/load_store/"]),
+    ("texel/sampler/wave/", ["texel/load_store/"]),
+    ("texel/format/", ["texel/codec", "texel/block", "texel/sampler", "texel/load_store", "texel/transfer"]),
+    ("icd/registry/", ["icd/api/", "icd/object/", "icd/record/", "icd/replay/", "icd/wsi/"]),
+]
+# Folders in which includes between parts still run in a circle.
+CIRCLES = ["icd", "icd/replay", "spirv", "spirv/exec", "spirv/lower", "spirv/rewrite", "texel"]
 LONG_FILE = 350
 REGISTRIES = ["/usr/share/vulkan/registry/vk.xml", "/usr/local/share/vulkan/registry/vk.xml"]
 
@@ -41,6 +61,70 @@ def include_faults(root):
                     yield f"{where}: raster sees spirv through spirv/shader.h, not {header}"
                 if room != "icd" and "vk_icd" in header:
                     yield f"{where}: only icd knows the loader"
+
+
+def includes(path):
+    """(line number, included path) of a file."""
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        match = re.match(r'\s*#\s*include\s+"([^"]+)"', line)
+        if match:
+            yield number, match.group(1)
+
+
+def part_of(path, folder):
+    """The part of a folder that a file is in: the folder below, or the name that a header and its source share."""
+    first, *rest = pathlib.PurePosixPath(path).relative_to(folder).parts
+    return first if rest else re.sub(r"(-inl)?\.\w+$", "", first)
+
+
+def part_faults(root):
+    """Inside raster includes go down the list of its parts; NEVER lists single pairs elsewhere."""
+    line_of = {part: line for line, parts in enumerate(RASTER_PARTS) for part in parts}
+    for path in sources(root, "raster"):
+        name = path.relative_to(root).as_posix()
+        part = part_of(name, "raster")
+        if part not in line_of:
+            yield f"{name}: tests/structure/structure.py does not say where in raster {part} stands"
+            continue
+        for number, target in includes(path):
+            if not target.startswith("raster/") or part_of(target, "raster") == part:
+                continue
+            if line_of.get(part_of(target, "raster"), -1) <= line_of[part]:
+                yield f"{name}:{number}: raster's {part} must not include {target}"
+    for beginning, forbidden in NEVER:
+        for path in sources(root, beginning.split("/")[0]):
+            name = path.relative_to(root).as_posix()
+            for number, target in includes(path) if name.startswith(beginning) else ():
+                if target.startswith(tuple(forbidden)):
+                    yield f"{name}:{number}: {beginning} must not include {target}"
+
+
+def circle_faults(root):
+    """No circle of includes between the parts of a folder, and none listed in CIRCLES that is gone."""
+    files = [path for room in ORDER for path in sources(root, room)]
+    folders = {folder.relative_to(root).as_posix() for path in files for folder in path.parents if root in folder.parents}
+    arrows = [(path.relative_to(root).as_posix(), target) for path in files for _, target in includes(path)]
+    for folder in sorted(folders):
+        below = {}
+        for source, target in arrows:
+            if source.startswith(folder + "/") and target.startswith(folder + "/"):
+                below.setdefault(part_of(source, folder), set()).add(part_of(target, folder))
+        left = {part: targets - {part} for part, targets in below.items()}
+        while free := [part for part, targets in left.items() if not targets & left.keys()]:
+            for part in free:
+                del left[part]
+        if left and folder not in CIRCLES:
+            yield f"{folder}/: includes run in a circle between {', '.join(sorted(left))}"
+        if not left and folder in CIRCLES:
+            yield f"{folder}/: has no circle of includes any more; tests/structure/structure.py still lists it"
+
+
+def header_faults(root):
+    """Every source of raster has a header of its own name, and includes it first."""
+    for path in sources(root, "raster"):
+        own = path.with_suffix(".h").relative_to(root).as_posix()
+        if path.suffix == ".cpp" and next((target for _, target in includes(path)), None) != own:
+            yield f"{path.relative_to(root)}: does not include {own} first"
 
 
 def room_faults(root):
@@ -170,7 +254,8 @@ def report_tail(root):
         print(f"  {lines:5} {path.relative_to(root)}{'  (long)' if lines > LONG_FILE else ''}")
 
 
-CHECKS = (include_faults, room_faults, claim_faults, opcode_faults, step_faults, capability_faults, pass_faults, shape_faults)
+CHECKS = (include_faults, part_faults, circle_faults, header_faults, room_faults, claim_faults, opcode_faults,
+          step_faults, capability_faults, pass_faults, shape_faults)
 
 
 def main():
