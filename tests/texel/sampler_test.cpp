@@ -359,13 +359,13 @@ void compare_paths_of_every_target(unsigned seeds, bool anisotropic) {
 TEST(Sampler, VectorPathsEqualTheScalarOne) { compare_paths_of_every_target(2000, false); }
 TEST(Sampler, AnisotropicVectorPathsEqualTheScalarOne) { compare_paths_of_every_target(1500, true); }
 
-TEST(Sampler, WeightsOfEllipsesFollowFromTheirFactors) {
-  const EllipseFactors& f = kEllipseFactors;
-  for (std::size_t i = 0; i < kEllipseWeights.size(); ++i) {
+TEST(Sampler, EwaWeightsFollowFromTheirFactors) {
+  const EwaFactors& f = kEwaFactors;
+  for (std::size_t i = 0; i < kEwaWeights.size(); ++i) {
     const float whole = f.whole[i / 32];
     const float millionths = whole + std::nearbyint(std::fma(whole, f.less[i % 32], f.rest[i / 32]));
-    const float weight = std::fma(millionths, EllipseFactors::kMillionth, millionths * EllipseFactors::kMillionthRest);
-    EXPECT_EQ(weight, kEllipseWeights[i]) << i;
+    const float weight = std::fma(millionths, EwaFactors::kMillionth, millionths * EwaFactors::kMillionthRest);
+    EXPECT_EQ(weight, kEwaWeights[i]) << i;
   }
 }
 

@@ -1,5 +1,5 @@
-// Anisotropic filtering as the reference does it: texels inside an ellipse, weighted by a table of a Gaussian
-// (lavapipe-texture-blend.md A8). Its steps are numbered as there.
+// EWA as the reference does it: the footprint of a pixel is an ellipse, its texels are weighted by a table of a
+// Gaussian (lavapipe-texture-blend.md A8). Its steps are numbered as there.
 #include "texel/sampler/model/anisotropic.h"
 
 #include <algorithm>
@@ -47,10 +47,10 @@ constexpr std::array<float, 1024> make_weights() {
 
 float weight_of(float q) {
   const std::int32_t i = base::truncate_to_int(q);
-  return i <= 1023 ? kEllipseWeights[static_cast<std::size_t>(std::max(i, 0))] : 0.0f;
+  return i <= 1023 ? kEwaWeights[static_cast<std::size_t>(std::max(i, 0))] : 0.0f;
 }
 
-/// The ellipse in texels of the level: centre, bounds, and the quadratic form A, B, C scaled for the table.
+/// An ellipse in texels of the level: centre, bounds, and the quadratic form A, B, C scaled for the table.
 struct Ellipse {
   float tu = 0, tv = 0;
   float a = 0, b = 0, c = 0;
@@ -97,10 +97,10 @@ bool reasonable(const Ellipse& e) {
 
 }  // namespace
 
-constinit const std::array<float, 1024> kEllipseWeights = make_weights();
+constinit const std::array<float, 1024> kEwaWeights = make_weights();
 
-constinit const EllipseFactors kEllipseFactors = [] {
-  EllipseFactors f{};
+constinit const EwaFactors kEwaFactors = [] {
+  EwaFactors f{};
   const std::array<float, 1024> weights = make_weights();
   const auto millionths = [&](std::size_t i) { return static_cast<double>(weights[i]) * 1e6; };
   for (std::size_t k = 0; k < 32; ++k) {

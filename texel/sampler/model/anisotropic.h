@@ -1,26 +1,27 @@
-// Anisotropic filtering by an elliptical weighted average (lavapipe-texture-blend.md A8).
+// Anisotropic filtering by EWA, an elliptical weighted average of the texels of a footprint (lavapipe-texture-blend.md
+// A8).
 #pragma once
 
 #include <array>
 
+#include "texel/sampler/model/level.h"
 #include "texel/sampler/model/lod.h"
-#include "texel/sampler/model/scalar.h"
 
 namespace vitrine::texel {
 
 /// exp(-2 i / 1023) to six decimals; the reference's table differs in the last digit of a few entries.
-extern const std::array<float, 1024> kEllipseWeights;
+extern const std::array<float, 1024> kEwaWeights;
 
 /// The same in tables that fit into registers: entry 32 i + k is the fused product of kMillionth with
 /// m = whole[i] + round(whole[i] * less[k] + rest[i]), plus m * kMillionthRest.
-struct EllipseFactors {
+struct EwaFactors {
   static constexpr float kMillionth = 1e-6f;
   static constexpr float kMillionthRest = static_cast<float>(1e-6 - static_cast<double>(kMillionth));
   alignas(64) float whole[32];  ///< millionths, of entry 32 i
   alignas(64) float rest[32];   ///< parts of a millionth, where the rounded weights leave room
   alignas(64) float less[32];   ///< exp(-2 k / 1023) - 1
 };
-extern const EllipseFactors kEllipseFactors;
+extern const EwaFactors kEwaFactors;
 
 /// The average around a point on one level: texels (u, v) of the box around the ellipse A U^2 + B U V + C V^2 = F, with
 /// U, V counted from the point in texels, are weighted by the table at 1023 / F of that form, found by differences

@@ -7,8 +7,8 @@
 #include "texel/sampler/model/address.h"
 #include "texel/sampler/model/anisotropic.h"
 #include "texel/sampler/model/cube.h"
+#include "texel/sampler/model/level.h"
 #include "texel/sampler/model/lod.h"
-#include "texel/sampler/model/scalar.h"
 
 namespace vitrine::texel {
 namespace {
@@ -16,60 +16,10 @@ namespace {
 using base::bits_of;
 using base::float_of;
 
-bool inside(std::int32_t i, std::uint32_t size) { return i >= 0 && static_cast<std::uint32_t>(i) < size; }
-
-bool compare(VkCompareOp op, float reference, float texel) {
-  switch (op) {
-    case VK_COMPARE_OP_LESS:
-      return reference < texel;
-    case VK_COMPARE_OP_EQUAL:
-      return reference == texel;
-    case VK_COMPARE_OP_LESS_OR_EQUAL:
-      return reference <= texel;
-    case VK_COMPARE_OP_GREATER:
-      return reference > texel;
-    case VK_COMPARE_OP_NOT_EQUAL:
-      return !(reference == texel);
-    case VK_COMPARE_OP_GREATER_OR_EQUAL:
-      return reference >= texel;
-    case VK_COMPARE_OP_ALWAYS:
-      return true;
-    default:
-      return false;
-  }
-}
-
-Axis make_axis(const LaneSample& lane, std::uint32_t level, std::uint32_t i) {
-  const Extent& extent = lane.plan->view->level[level].extent;
-  const std::uint32_t size[3] = {extent.width, extent.height, extent.depth};
-  Axis axis;
-  axis.address = lane.plan->address[i];
-  axis.pot = lane.plan->pot[i];
-  axis.normalized = !lane.plan->sampler->unnormalized;
-  axis.size = static_cast<std::int32_t>(size[i]);
-  axis.offset = lane.offset[i];
-  axis.has_offset = lane.has_offset;
-  return axis;
-}
-
-/// Interpolates by the sampler's reduction mode.
-float reduce(VkSamplerReductionMode mode, float weight, float a, float b) {
-  if (mode == VK_SAMPLER_REDUCTION_MODE_MIN) return weight == 0.0f ? a : base::min_second(a, b);
-  if (mode == VK_SAMPLER_REDUCTION_MODE_MAX) return weight == 0.0f ? a : base::max_second(a, b);
-  return base::fma_exact(weight, b - a, a);
-}
-
 std::uint8_t reduce_byte(VkSamplerReductionMode mode, std::int32_t weight, std::int32_t a, std::int32_t b) {
   if (mode == VK_SAMPLER_REDUCTION_MODE_MIN) return static_cast<std::uint8_t>(weight == 0 ? a : std::min(a, b));
   if (mode == VK_SAMPLER_REDUCTION_MODE_MAX) return static_cast<std::uint8_t>(weight == 0 ? a : std::max(a, b));
   return static_cast<std::uint8_t>(a + ((weight * (b - a) + 128) >> 8));
-}
-
-void reduce_texel(const LaneSample& lane, float weight, Texel& a, const Texel& b) {
-  const std::size_t channels = lane.compare ? 1 : 4;
-  for (std::size_t c = 0; c < channels; ++c) {
-    a[c] = bits_of(reduce(lane.plan->sampler->reduction, weight, float_of(a[c]), float_of(b[c])));
-  }
 }
 
 /// Between mip levels values are averaged in every reduction mode (bytes are reduced).
@@ -78,74 +28,6 @@ void blend_levels(const LaneSample& lane, float weight, Texel& a, const Texel& b
   for (std::size_t c = 0; c < channels; ++c) {
     a[c] = bits_of(base::fma_exact(weight, float_of(b[c]) - float_of(a[c]), float_of(a[c])));
   }
-}
-
-/// Along x comparisons are weighted by selection, so that equal results give it exactly.
-void reduce_x(const LaneSample& lane, float weight, Texel& a, const Texel& b) {
-  if (!lane.compare) return reduce_texel(lane, weight, a, b);
-  const float second = float_of(b[0]) != 0.0f ? weight : 0.0f;
-  const float first = float_of(a[0]) != 0.0f ? 1.0f - weight : 0.0f;
-  a[0] = bits_of(second + first);
-}
-
-Texel sample_nearest(const LaneSample& lane, std::uint32_t level) {
-  std::int32_t c[3] = {};
-  for (std::uint32_t i = 0; i < lane.plan->dims; ++i) c[i] = nearest_texel(make_axis(lane, level, i), lane.coord[i]);
-  return texel_or_border(lane, level, lane.layer + (lane.plan->cube ? lane.face : 0), c[0], c[1], c[2]);
-}
-
-/// Taps of all axes; unused axes stay at 0.
-void find_taps(const LaneSample& lane, std::uint32_t level, Taps taps[3]) {
-  for (std::uint32_t i = 0; i < lane.plan->dims; ++i) {
-    const Axis axis = make_axis(lane, level, i);
-    taps[i] = lane.plan->gather ? gather_texels(axis, lane.coord[i]) : linear_texels(axis, lane.coord[i]);
-  }
-}
-
-Texel filter_slice(const LaneSample& lane, std::uint32_t level, const Taps taps[3], std::int32_t z) {
-  const std::uint32_t layer = lane.layer + (lane.plan->cube ? lane.face : 0);
-  Texel upper = texel_or_border(lane, level, layer, taps[0].first, taps[1].first, z);
-  reduce_x(lane, taps[0].weight, upper, texel_or_border(lane, level, layer, taps[0].second, taps[1].first, z));
-  if (lane.plan->dims == 1) return upper;
-  Texel lower = texel_or_border(lane, level, layer, taps[0].first, taps[1].second, z);
-  reduce_x(lane, taps[0].weight, lower, texel_or_border(lane, level, layer, taps[0].second, taps[1].second, z));
-  reduce_texel(lane, taps[1].weight, upper, lower);
-  return upper;
-}
-
-Texel sample_linear(const LaneSample& lane, std::uint32_t level) {
-  Taps taps[3];
-  find_taps(lane, level, taps);
-  Texel result = filter_slice(lane, level, taps, taps[2].first);
-  if (lane.plan->dims == 3) reduce_texel(lane, taps[2].weight, result, filter_slice(lane, level, taps, taps[2].second));
-  return result;
-}
-
-/// LINEAR across the edges of a cube: texels of neighbouring faces, weights by thirds at a corner.
-Texel sample_cube_linear(const LaneSample& lane, std::uint32_t level) {
-  const auto size = static_cast<std::int32_t>(lane.plan->view->level[level].extent.width);
-  const CubeTaps taps = cube_taps(lane.face, lane.coord[0], lane.coord[1], size);
-  Texel texel[4];
-  for (std::size_t i = 0; i < 4; ++i) {
-    const CubeTexel& at = taps.texel[i];
-    texel[i] = texel_or_border(lane, level, lane.layer + at.face, at.x, at.y, 0);
-  }
-  const bool average = lane.plan->sampler->reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
-  if (taps.corner < 4 && average) {
-    float weight[4];
-    corner_weights(taps, weight);
-    const std::size_t channels = lane.compare ? 1 : 4;
-    for (std::size_t c = 0; c < channels; ++c) {
-      float sum = weight[0] * float_of(texel[0][c]);
-      for (std::size_t i = 1; i < 4; ++i) sum = weight[i] * float_of(texel[i][c]) + sum;
-      texel[0][c] = bits_of(sum);
-    }
-    return texel[0];
-  }
-  reduce_x(lane, taps.weight_x, texel[0], texel[1]);
-  reduce_x(lane, taps.weight_x, texel[2], texel[3]);
-  reduce_texel(lane, taps.weight_y, texel[0], texel[2]);
-  return texel[0];
 }
 
 ByteTexel bytes_at(const LaneSample& lane, std::uint32_t level, std::int32_t x, std::int32_t y, std::int32_t z) {
@@ -268,17 +150,7 @@ Texel gather_each_offset(LaneSample& lane, const SampleRequest& request) {
   return result;
 }
 
-Texel query_lod(const Plan& plan, const Lod& lod) {
-  float level = 0;
-  if (plan.mip == MipFilter::kNearest) level = std::nearbyintf(lod.clamped);
-  if (plan.mip == MipFilter::kLinear) level = lod.clamped;
-  const float last = static_cast<float>(plan.view->level_count - 1);
-  level = base::min_second(base::max_second(level, 0.0f), last);
-  return {bits_of(level), bits_of(lod.value), 0, 0};
-}
-
-}  // namespace
-
+/// The array layer of the view that a lane's last coordinate names; the first face for cubes.
 std::uint32_t select_layer(const Plan& plan, const SampleRequest& request, std::size_t lane) {
   const base::WaveRegister* coord = request.coord[plan.cube ? 3 : plan.dims];
   if (!plan.arrayed || coord == nullptr) return 0;
@@ -291,25 +163,16 @@ std::uint32_t select_layer(const Plan& plan, const SampleRequest& request, std::
   return static_cast<std::uint32_t>(std::clamp(layer, 0, last));
 }
 
-Texel texel_or_border(const LaneSample& lane, std::uint32_t level, std::uint32_t layer, std::int32_t x, std::int32_t y,
-                      std::int32_t z) {
-  const ImageView& view = *lane.plan->view;
-  const Extent& extent = view.level[level].extent;
-  Texel texel = lane.plan->border;
-  if (inside(x, extent.width) && inside(y, extent.height) && inside(z, extent.depth) && layer < view.layer_count) {
-    fetch_texel(*lane.plan, level, layer, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                static_cast<std::uint32_t>(z), texel);
-  }
-  if (lane.compare) {
-    texel[0] = bits_of(compare(lane.plan->sampler->compare_op, lane.reference, float_of(texel[0])) ? 1.0f : 0.0f);
-  }
-  return texel;
+Texel query_lod(const Plan& plan, const Lod& lod) {
+  float level = 0;
+  if (plan.mip == MipFilter::kNearest) level = std::nearbyintf(lod.clamped);
+  if (plan.mip == MipFilter::kLinear) level = lod.clamped;
+  const float last = static_cast<float>(plan.view->level_count - 1);
+  level = base::min_second(base::max_second(level, 0.0f), last);
+  return {bits_of(level), bits_of(lod.value), 0, 0};
 }
 
-Texel sample_level(const LaneSample& lane, std::uint32_t level, bool linear) {
-  if (lane.plan->seamless && linear) return sample_cube_linear(lane, level);
-  return linear ? sample_linear(lane, level) : sample_nearest(lane, level);
-}
+}  // namespace
 
 void sample_scalar(const Plan& plan, const SampleRequest& request, base::WaveRegister result[4]) {
   const bool fixed_point = plan.view->format->channel[0].numeric != Numeric::kSfloat;

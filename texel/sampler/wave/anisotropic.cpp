@@ -1,5 +1,6 @@
 // Anisotropic filtering for whole waves (lavapipe-texture-blend.md A8): the twin of sample_anisotropic, for compressed
-// formats and comparisons too. The lanes of a vector walk through their ellipses together, each inside its own bounds.
+// formats and comparisons too. The lanes of a vector walk through their footprints together, each inside its own
+// bounds.
 #include <algorithm>
 #include <cstring>
 
@@ -112,14 +113,14 @@ HWY_NOINLINE void walk(const Plan& plan, const Footprint& in, const VF* referenc
   const bool bordered = has_border(plan);
   const auto live = lanes_mask_from_bits(DI(), in.active);
   const WalkAxis x_axis(level.axis[0], e.u0, e.u1, live), y_axis(level.axis[1], e.v0, e.v1, live);
-  const EllipseWalk ellipse(e);
+  const EllipseWalk walk(e);
   VI v = e.v0;
   for (auto lanes = live; !hn::AllFalse(DI(), lanes);
        v = hn::Add(v, splat(1)), lanes = hn::And(live, hn::Not(hn::Gt(v, e.v1)))) {
     hn::Mask<DI> outside_y, outside_x;
     const WalkPlaces place = place_row<kBlocks>(format, level, y_axis.nearest(v, outside_y));
     outside_y = hn::Or(outside_y, in.outside);
-    RowWalk row = ellipse.row(lanes_int_to_float(v), lanes);
+    RowWalk row = walk.row(lanes_int_to_float(v), lanes);
     for (RowWalk::Weight w; row.next_weighed(w);) {
       const VI at = x_axis.nearest(hn::Sub(row.u, splat(1)), outside_x);
       const TexelLanes texel = texel_at<kNumeric, kBlocks>(plan, place_in_row<kBlocks>(format, place, at), w.inside,
@@ -210,7 +211,7 @@ void sample_anisotropic_wave(const PreparedSampler& p, const SampleRequest& requ
   WaveState state;
   find_state(p, request, state);
   WaveTexels texels;
-  base::LaneMask leftover = 0;  // empty ellipses, and huge ones
+  base::LaneMask leftover = 0;  // empty footprints, and huge ones
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DF())) {
     const base::LaneMask lanes = base::first_lanes(hn::Lanes(DF()));
     const base::LaneMask active = request.active >> first & lanes;

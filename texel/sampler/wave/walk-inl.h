@@ -1,9 +1,9 @@
-// Walks of a vector of lanes through their ellipses (lavapipe-texture-blend.md A8, steps 5 and 6): sums of texels times
-// weights. Formats whose texels are words, halves or floats go four texels of a row at a time, others one by one.
+// Walks of a vector of lanes through their footprints (lavapipe-texture-blend.md A8, steps 5 and 6): sums of texels
+// times weights. Formats whose texels are words, halves or floats go four texels of a row at a time, others one by one.
 
 #include <algorithm>
 
-#include "texel/sampler/wave/ellipse-inl.h"
+#include "texel/sampler/wave/ewa-inl.h"
 #include "texel/sampler/wave/four-inl.h"
 #include "texel/sampler/wave/s3tc-inl.h"
 #include "texel/sampler/wave/texels-inl.h"
@@ -301,14 +301,14 @@ HWY_NOINLINE bool walk_rows(const Plan& plan, const Footprint& in, Sums& sums) {
   const WalkAxis x_axis(level.axis[0], e.u0, hn::Add(e.u1, splat(4)), live);
   const WalkAxis y_axis(level.axis[1], e.v0, e.v1, live);
   const bool wide = hn::AllFalse(DI(), hn::Lt(level.axis[0].size, splat(4)));
-  const EllipseWalk ellipse(e);
+  const EllipseWalk walk(e);
   TexelSums texels(*plan.view->format);
   VF total = splat(0.0f);
   VI v = e.v0;
   for (auto lanes = live; !hn::AllFalse(DI(), lanes);
        v = hn::Add(v, splat(1)), lanes = hn::And(live, hn::Not(hn::Gt(v, e.v1)))) {
     texels.set_row(level, y_axis.nearest(v));
-    RowWalk row = ellipse.row(lanes_int_to_float(v), lanes);
+    RowWalk row = walk.row(lanes_int_to_float(v), lanes);
     for (RowWalk::Weight w[4]; row.next_weighed(w[0]);) {
       const VI u = hn::Sub(row.u, splat(1));
       for (std::size_t i = 1; i < 4; ++i) w[i] = row.next();

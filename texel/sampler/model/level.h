@@ -1,6 +1,11 @@
-// What the scalar sampler knows about one lane, and the texels it reads.
+// Lookups of one lane on one level, as values: nearest and linear, on cubes too, with comparison and border. What
+// scalar.cpp and the anisotropic filter are made of.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
+#include "texel/sampler/model/address.h"
 #include "texel/sampler/plan.h"
 
 namespace vitrine::texel {
@@ -20,8 +25,14 @@ struct LaneSample {
 Texel texel_or_border(const LaneSample& lane, std::uint32_t level, std::uint32_t layer, std::int32_t x, std::int32_t y,
                       std::int32_t z);
 
-/// The array layer of the view that a lane's last coordinate names; the first face for cubes.
-std::uint32_t select_layer(const Plan& plan, const SampleRequest& request, std::size_t lane);
+/// How coordinate i meets the level's texels.
+Axis make_axis(const LaneSample& lane, std::uint32_t level, std::uint32_t i);
+
+/// Taps of all axes; unused axes stay at 0.
+void find_taps(const LaneSample& lane, std::uint32_t level, Taps taps[3]);
+
+/// Moves `a` towards `b` as the sampler's reduction mode says.
+void reduce_texel(const LaneSample& lane, float weight, Texel& a, const Texel& b);
 
 /// One level, filtered as values.
 Texel sample_level(const LaneSample& lane, std::uint32_t level, bool linear);

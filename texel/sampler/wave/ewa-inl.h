@@ -1,21 +1,21 @@
-// The ellipses of anisotropic lookups for a vector of lanes, and the weights of the texels inside
-// (lavapipe-texture-blend.md A8): twins of the steps of anisotropic.cpp.
+// EWA (elliptical weighted average) for a vector of lanes: the footprints, ellipses, and the weights of the texels
+// inside (lavapipe-texture-blend.md A8): twins of the steps of anisotropic.cpp.
 
 #include "texel/sampler/model/anisotropic.h"
 #include "texel/sampler/prepared.h"
 #include "texel/sampler/wave/state-inl.h"
 
-#if defined(VITRINE_TEXEL_WAVE_ELLIPSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef VITRINE_TEXEL_WAVE_ELLIPSE_INL_H_
-#undef VITRINE_TEXEL_WAVE_ELLIPSE_INL_H_
+#if defined(VITRINE_TEXEL_WAVE_EWA_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRINE_TEXEL_WAVE_EWA_INL_H_
+#undef VITRINE_TEXEL_WAVE_EWA_INL_H_
 #else
-#define VITRINE_TEXEL_WAVE_ELLIPSE_INL_H_
+#define VITRINE_TEXEL_WAVE_EWA_INL_H_
 #endif
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
 
-/// The ellipse of each lane; names as in anisotropic.cpp.
+/// The ellipse of each lane; names as in model/anisotropic.cpp.
 struct EllipseLanes {
   VF tu, tv;
   VF a, b, c;
@@ -90,20 +90,19 @@ HWY_INLINE bool small_boxes(const EllipseLanes& e, base::LaneMask active) {
   return (~static_cast<base::LaneMask>(lanes_mask_bits(DI(), good)) & lanes) == 0;
 }
 
-/// kEllipseWeights[max(index, 0)]; anything of indices above 1023.
-HWY_INLINE VF ellipse_weight(VI index) {
+/// kEwaWeights[max(index, 0)]; anything of indices above 1023.
+HWY_INLINE VF ewa_weight(VI index) {
 #if HWY_TARGET <= HWY_AVX3
-  const EllipseFactors& t = kEllipseFactors;
+  const EwaFactors& t = kEwaFactors;
   const __m512i fine = hn::Max(index, splat(0)).raw, coarse = _mm512_srli_epi32(fine, 5);
   const auto lookup = [](const float* table, __m512i i) HWY_ATTR {
     return VF{_mm512_permutex2var_ps(_mm512_load_ps(table), i, _mm512_load_ps(table + 16))};
   };
   const VF whole = lookup(t.whole, coarse);
   const VF millionths = hn::Add(whole, hn::Round(lanes_fma(whole, lookup(t.less, fine), lookup(t.rest, coarse))));
-  return lanes_fma(millionths, splat(EllipseFactors::kMillionth),
-                   hn::Mul(millionths, splat(EllipseFactors::kMillionthRest)));
+  return lanes_fma(millionths, splat(EwaFactors::kMillionth), hn::Mul(millionths, splat(EwaFactors::kMillionthRest)));
 #else
-  return hn::GatherIndex(DF(), kEllipseWeights.data(), hn::Min(hn::Max(index, splat(0)), splat(1023)));
+  return hn::GatherIndex(DF(), kEwaWeights.data(), hn::Min(hn::Max(index, splat(0)), splat(1023)));
 #endif
 }
 
@@ -124,7 +123,7 @@ struct RowWalk {
     const VI index = lanes_truncate_to_int(q);
     Weight w;
     w.inside = hn::And(rest(), hn::Not(hn::Gt(index, splat(1023))));
-    w.value = hn::IfThenElseZero(hn::RebindMask(DF(), w.inside), ellipse_weight(index));
+    w.value = hn::IfThenElseZero(hn::RebindMask(DF(), w.inside), ewa_weight(index));
     q = hn::Add(q, dq);
     dq = hn::Add(dq, ddq);
     u = hn::Add(u, splat(1));
