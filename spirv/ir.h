@@ -74,9 +74,19 @@ constexpr std::uint32_t wide_words(char letter) { return letter == 'D' || letter
 /// Name of any op.
 const char* op_name(Op op);
 
-/// Set of a buffer instruction whose array element is a handle, made by pointers that may lead to several bindings:
-/// (set + 1) << 24 | slot; 0 leads nowhere.
+/// Set of a buffer instruction whose array element is a BufferHandle, made by pointers that may lead to several
+/// bindings.
 inline constexpr std::uint32_t kAnySet = ~std::uint32_t{0};
+
+/// A descriptor in one word: its slot in the low bits, above it the set plus one, so that 0 leads nowhere.
+struct BufferHandle {
+  static constexpr std::uint32_t kSlotBits = 24;
+  static constexpr std::uint32_t kSlotMask = (1u << kSlotBits) - 1;
+  static constexpr std::uint32_t make(std::uint32_t set, std::uint32_t slot) { return (set + 1) << kSlotBits | slot; }
+  /// UINT32_MAX of a handle that leads nowhere.
+  static constexpr std::uint32_t set(std::uint32_t handle) { return (handle >> kSlotBits) - 1; }
+  static constexpr std::uint32_t slot(std::uint32_t handle) { return handle & kSlotMask; }
+};
 
 using ValueId = std::uint32_t;
 inline constexpr ValueId kNoValue = ~ValueId{0};
@@ -181,6 +191,12 @@ enum class GroupOp : std::uint8_t {
   kOr,
   kXor,
 };
+enum class ImageDim : std::uint8_t { k1D, k2D, k3D, kCube, kBuffer, kSubpass };
+/// Components of a coordinate, the array layer not counted.
+constexpr std::uint32_t coordinate_components(ImageDim dim) {
+  constexpr std::uint8_t kComponents[] = {1, 2, 3, 3, 1, 2};
+  return kComponents[static_cast<std::uint8_t>(dim)];
+}
 enum class GroupMode : std::uint8_t { kReduce, kInclusive, kExclusive };
 
 struct ImageInfo {
@@ -190,7 +206,7 @@ struct ImageInfo {
   std::uint32_t sampler_set = 0, sampler_slot = 0, sampler_count = 1;
   bool combined = false;  ///< image and sampler come from one descriptor
   const texel::Sampler* immutable_sampler = nullptr;
-  std::uint8_t dim = 2;  ///< 1, 2, 3; 4 = cube; 5 = texel buffer; 6 = subpass input
+  ImageDim dim = ImageDim::k2D;
   bool arrayed = false, multisampled = false;
   bool projective = false;         ///< divide already applied by the front end; kept for information
   bool explicit_lod_zero = false;  ///< implicit LOD outside fragment shaders

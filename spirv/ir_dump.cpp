@@ -87,7 +87,7 @@ struct Dump {
     }
     if (instr.image == nullptr) return;
     add(" access=%u", static_cast<std::uint32_t>(instr.image->access));
-    add(" dim=%u", instr.image->dim);
+    add(" dim=%u", static_cast<std::uint32_t>(instr.image->dim));
     add(" slot=%u", instr.image->slot);
     add(" operands=%#x", instr.image->operands);
   }

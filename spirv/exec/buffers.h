@@ -21,8 +21,8 @@ inline const MemoryOp& memory_op(const Wave& wave, const Instruction* instructio
 /// The descriptor at a slot, or null.
 inline const Descriptor* find_descriptor(const Wave& wave, std::uint32_t set, std::uint32_t slot) {
   if (set == ir::kAnySet) {
-    set = (slot >> 24) - 1;
-    slot &= 0xffffff;
+    set = ir::BufferHandle::set(slot);
+    slot = ir::BufferHandle::slot(slot);
   }
   if (set > kMaxSets || slot >= wave.resources->set_size[set]) return nullptr;
   return wave.resources->set[set] == nullptr ? nullptr : wave.resources->set[set] + slot;

@@ -68,7 +68,8 @@ texel::SampleRequest sample_request(const Call& call) {
 
 /// Whether a view has the dimension that the instruction gives coordinates for, as in every valid use.
 bool has_dimension(const Call& call, const texel::ImageView& view) {
-  static constexpr std::uint8_t kDimensions[] = {1, 2, 3, 4, 1, 2, 4};  // by VkImageViewType; see ir::ImageInfo::dim
+  using enum ir::ImageDim;
+  static constexpr ir::ImageDim kDimensions[] = {k1D, k2D, k3D, kCube, k1D, k2D, kCube};  // by VkImageViewType
   return call.op.info.dim == kDimensions[view.type];
 }
 
@@ -141,7 +142,7 @@ texel::FetchRequest fetch_request(const Call& call, base::LaneMask lanes) {
   return request;
 }
 
-bool is_buffer(const Call& call) { return call.op.info.dim == 5; }
+bool is_buffer(const Call& call) { return call.op.info.dim == ir::ImageDim::kBuffer; }
 
 /// Whether there is nothing of the kind that the instruction expects.
 bool is_null(const Call& call, const Descriptor& image) {

@@ -6,6 +6,7 @@ namespace vitrine::spirv::front {
 namespace {
 
 using ir::ImageAccess;
+using ir::ImageDim;
 using ir::ImageOperand;
 using spv::Op;
 
@@ -15,29 +16,28 @@ const ImageHandle& handle_of(Translator& t, const Inst& inst, std::uint32_t id) 
   return found->second;
 }
 
-std::uint8_t dimension(const Type& image) {
+ImageDim dimension(const Type& image) {
   switch (image.dim) {
     case spv::Dim::Dim1D:
-      return 1;
+      return ImageDim::k1D;
     case spv::Dim::Dim2D:
-      return 2;
+      return ImageDim::k2D;
     case spv::Dim::Dim3D:
-      return 3;
+      return ImageDim::k3D;
     case spv::Dim::Cube:
-      return 4;
+      return ImageDim::kCube;
     case spv::Dim::Buffer:
-      return 5;
+      return ImageDim::kBuffer;
     case spv::Dim::SubpassData:
-      return 6;
+      return ImageDim::kSubpass;
     default:
       throw Failure("image dimension is not supported");
   }
 }
 
-/// Components of a coordinate without the array layer.
-std::uint32_t spatial_components(const ir::ImageInfo& info) {
-  constexpr std::uint8_t kComponents[] = {0, 1, 2, 3, 3, 1, 2};
-  return kComponents[info.dim];
+/// Components of the coordinate of one texel: the faces of a cube are the layers of its array.
+std::uint32_t texel_components(const ir::ImageInfo& info) {
+  return coordinate_components(info.dim) + (info.arrayed && info.dim != ImageDim::kCube ? 1 : 0);
 }
 
 ir::ValueId first_components(Translator& t, ir::ValueId vector, std::uint32_t count) {
@@ -74,7 +74,7 @@ struct Request {
 void add_image_operands(Translator& t, const Inst& inst, std::uint32_t at, Request request) {
   if (!inst.has(at)) return;
   const std::uint32_t mask = inst.operand(at++);
-  const std::uint32_t dimensions = spatial_components(request.info);
+  const std::uint32_t dimensions = coordinate_components(request.info.dim);
   auto next = [&](std::uint32_t count = 1) { return number(t, inst.operand(at++), count); };
   auto has = [&](spv::ImageOperandsMask bit) { return (mask & static_cast<std::uint32_t>(bit)) != 0; };
   using Mask = spv::ImageOperandsMask;
@@ -228,7 +228,7 @@ void image_sample(Translator& t, const Inst& inst, ir::Op) {
   ImageSources sources(*info);
   add_elements(t, handle, *info, sources);
   const ir::ValueId full = scalar_or_vector(t, inst.operand(1));
-  ir::ValueId coord = first_components(t, full, spatial_components(*info) + (info->arrayed ? 1 : 0));
+  ir::ValueId coord = first_components(t, full, coordinate_components(info->dim) + (info->arrayed ? 1 : 0));
   std::uint32_t next = 2;
   ir::ValueId dref = shape.dref ? number(t, inst.operand(next++)) : ir::kNoValue;
   if (shape.gather && !shape.dref) info->gather_component = t.module.constant_u32(inst.operand(next++), inst);
@@ -263,14 +263,13 @@ void image_access(Translator& t, const Inst& inst, ir::Op) {
   ImageSources sources(*info);
   add_elements(t, handle, *info, sources);
   const bool write = inst.op == Op::OpImageWrite;
-  const bool subpass = info->dim == 6;
+  const bool subpass = info->dim == ImageDim::kSubpass;
   info->access = write                         ? ImageAccess::kWrite
                  : subpass                     ? ImageAccess::kSubpass
                  : inst.op == Op::OpImageFetch ? ImageAccess::kFetch
                                                : ImageAccess::kRead;
   const ir::ValueId coord = scalar_or_vector(t, inst.operand(1));
-  const std::uint32_t wanted = spatial_components(*info) + (info->arrayed && info->dim != 4 ? 1 : 0);
-  const ir::ValueId texel = first_components(t, coord, wanted);
+  const ir::ValueId texel = first_components(t, coord, texel_components(*info));
   info->arrayed |= subpass;  // the view is the layer
   sources.add(ImageOperand::kCoord, subpass ? own_texel(t, texel) : texel);
   if (write) sources.add(ImageOperand::kValue, padded_texel(t, scalar_or_vector(t, inst.operand(2))));
@@ -305,7 +304,7 @@ void image_query_lod(Translator& t, const Inst& inst, ir::Op) {
   info->access = ImageAccess::kQueryLod;
   t.function.interface.needs_helpers = true;
   const ir::ValueId coord = scalar_or_vector(t, inst.operand(1));
-  sources.add(ImageOperand::kCoord, first_components(t, coord, spatial_components(*info)));
+  sources.add(ImageOperand::kCoord, first_components(t, coord, coordinate_components(info->dim)));
   set_value(t, inst, finish(t, std::move(info), sources, 2));
 }
 
@@ -322,8 +321,7 @@ void image_texel_pointer(Translator& t, const Inst& inst, ir::Op) {
   pointer.image.image = image.binding;
   pointer.image.image_element = image.element;
   const ir::ImageInfo info = image_info(t, pointer.image);
-  pointer.coord = first_components(t, scalar_or_vector(t, inst.operand(1)),
-                                   spatial_components(info) + (info.arrayed && info.dim != 4 ? 1 : 0));
+  pointer.coord = first_components(t, scalar_or_vector(t, inst.operand(1)), texel_components(info));
   if (type.multisampled) pointer.sample = number(t, inst.operand(2));
   t.pointers[inst.result] = std::move(pointer);
 }

@@ -1,5 +1,5 @@
 // Pointers as values (SPIR-V 2.16.1, variable pointers; SPV_KHR_physical_storage_buffer): what OpPhi, OpSelect, loads
-// and calls pass on. Two words: of an address, the low and the high one; else a handle of the buffer (ir::kAnySet;
+// and calls pass on. Two words: of an address, the low and the high one; else a handle of the buffer (ir::BufferHandle;
 // Workgroup: 1, so that no pointer equals a null one) and a byte offset.
 #include <algorithm>
 
@@ -9,17 +9,17 @@
 namespace vitrine::spirv::front {
 namespace {
 
-std::uint32_t handle_of(std::uint32_t set, std::uint32_t slot) { return (set + 1) << 24 | slot; }
-
 /// The handle of the buffer; an array element outside of the binding leads nowhere.
 Expr buffer_handle(Translator& t, const Pointer& pointer) {
   const Binding& binding = pointer.binding;
   if (binding.set == ir::kAnySet) return {&t, pointer.element};
-  if (binding.slot + std::uint64_t{binding.count} > 0xffffff) throw Failure("the binding has too many descriptors");
-  const Expr first = imm_u32(t, handle_of(binding.set, binding.slot));
+  if (binding.slot + std::uint64_t{binding.count} > ir::BufferHandle::kSlotMask)
+    throw Failure("the binding has too many descriptors");
+  const Expr first = imm_u32(t, ir::BufferHandle::make(binding.set, binding.slot));
   if (pointer.element == ir::kNoValue) return first;
   if (const auto* words = constant_of(t, pointer.element))
-    return imm_u32(t, (*words)[0] < binding.count ? handle_of(binding.set, binding.slot + (*words)[0]) : 0);
+    return imm_u32(t,
+                   (*words)[0] < binding.count ? ir::BufferHandle::make(binding.set, binding.slot + (*words)[0]) : 0);
   const Expr element{&t, pointer.element};
   const Expr inside = apply(ir::Op::kULt, {element, imm_u32(t, binding.count)});
   return select(inside, apply(ir::Op::kIAdd, {first, element}), imm_u32(t, 0));

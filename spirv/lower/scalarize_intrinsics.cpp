@@ -206,7 +206,7 @@ void Scalarizer::build_image(const ir::Instr& instr) {
 }
 
 std::uint32_t image_operand_components(const ir::ImageInfo& info, ir::ImageOperand operand) {
-  const std::uint32_t dimensions = info.dim == 4 ? 3 : info.dim == 5 ? 1 : info.dim == 6 ? 2 : info.dim;
+  const std::uint32_t dimensions = ir::coordinate_components(info.dim);
   switch (operand) {
     case ir::ImageOperand::kCoord:
       return dimensions + (info.arrayed ? 1 : 0);
