@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace vitrine::icd {
 
@@ -27,6 +28,15 @@ void HostMemory::free(void* memory) const noexcept {
   } else {
     std::free(memory);
   }
+}
+
+base::ArenaBlock* HostBlocks::take(std::size_t size) const {
+  void* block = memory.allocate(sizeof(base::ArenaBlock) + size, alignof(std::max_align_t), scope);
+  return ::new (block) base::ArenaBlock{nullptr, size};
+}
+
+void HostBlocks::give_back(base::ArenaBlock* first) const noexcept {
+  while (first) memory.free(std::exchange(first, first->next));
 }
 
 }  // namespace vitrine::icd

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/arena.h"
 #include "icd/edge/vulkan_api.h"
 
 namespace vitrine::icd {
@@ -49,6 +50,15 @@ struct HostAllocator {
   bool operator==(const HostAllocator<U>&) const {
     return true;  // containers of one object share one HostMemory
   }
+};
+
+/// Blocks of an arena from host memory.
+struct HostBlocks {
+  HostMemory memory;
+  VkSystemAllocationScope scope = VK_SYSTEM_ALLOCATION_SCOPE_OBJECT;
+
+  base::ArenaBlock* take(std::size_t size) const;
+  void give_back(base::ArenaBlock* first) const noexcept;
 };
 
 template <class T>

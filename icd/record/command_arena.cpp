@@ -1,53 +1,30 @@
-// Blocks of command memory: taking, reusing, releasing.
+// Blocks of command memory: taking, reusing, returning.
 #include "icd/record/command_arena.h"
 
-#include <algorithm>
+#include <utility>
 
 namespace vitrine::icd {
 
-CommandBlock* BlockStore::take(std::uint32_t capacity) {
-  CommandBlock* block = free_;
-  if (block && block->capacity >= capacity) {
-    free_ = block->next;
-  } else {
-    void* memory =
-        memory_.allocate(sizeof(CommandBlock) + capacity, alignof(CommandBlock), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT);
-    block = ::new (memory) CommandBlock;
-    block->capacity = capacity;
+using base::ArenaBlock;
+
+ArenaBlock* BlockStore::take(std::size_t size) {
+  if (free_ && free_->size >= size) {
+    ArenaBlock* block = std::exchange(free_, free_->next);
+    block->next = nullptr;
+    return block;
   }
-  block->next = nullptr;
-  block->front = 0;
-  block->back = block->capacity;
-  return block;
+  return memory_.take(size);
 }
 
-void BlockStore::give_back(CommandBlock* first) noexcept {
+void BlockStore::give_back(ArenaBlock* first) noexcept {
   while (first) {
-    CommandBlock* next = first->next;
+    ArenaBlock* next = first->next;
     first->next = free_;
     free_ = first;
     first = next;
   }
 }
 
-void BlockStore::trim() noexcept {
-  while (free_) {
-    CommandBlock* next = free_->next;
-    memory_.free(free_);
-    free_ = next;
-  }
-}
-
-void CommandArena::release() noexcept {
-  store_.give_back(first_);
-  first_ = last_ = nullptr;
-}
-
-CommandBlock* CommandArena::add_block(std::uint32_t bytes) {
-  CommandBlock* block = store_.take(std::max(bytes, kBlockBytes));
-  (last_ ? last_->next : first_) = block;
-  last_ = block;
-  return block;
-}
+void BlockStore::trim() noexcept { memory_.give_back(std::exchange(free_, nullptr)); }
 
 }  // namespace vitrine::icd

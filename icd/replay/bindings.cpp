@@ -33,8 +33,8 @@ void fill_resources(ReplayState& state, const BindPoint& point, spirv::ResourceT
   const std::size_t dynamic_count = std::min<std::size_t>(layout.dynamic_count, point.dynamic.size());
   spirv::Descriptor* dynamic = nullptr;
   if (dynamic_count) {
-    dynamic = state.arena.make<spirv::Descriptor>(dynamic_count);
-    std::copy_n(point.dynamic.begin(), dynamic_count, dynamic);
+    dynamic = state.arena.take<spirv::Descriptor>(dynamic_count);
+    std::uninitialized_copy_n(point.dynamic.begin(), dynamic_count, dynamic);
   }
   table.set[spirv::kDynamicSet] = dynamic;
   table.set_size[spirv::kDynamicSet] = static_cast<std::uint32_t>(dynamic_count);

@@ -27,7 +27,7 @@ void resolve_vertex_buffers(ReplayState& state) {
 }
 
 const std::byte* copy_push_constants(ReplayState& state) {
-  auto* copy = state.arena.make<std::byte>(spirv::kMaxPushConstantBytes);
+  auto* copy = state.arena.take<std::byte>(spirv::kMaxPushConstantBytes);
   std::memcpy(copy, state.push_constants.data(), spirv::kMaxPushConstantBytes);
   return copy;
 }
@@ -36,7 +36,7 @@ const std::byte* copy_push_constants(ReplayState& state) {
 bool prepare_draw(ReplayState& state) {
   const Pipeline* pipeline = state.graphics.pipeline;
   if (!pipeline || !state.pass || state.suppressed) return false;
-  if (state.arena.size() > kArenaBudget) flush_pass(state);
+  if (state.arena.used() > kArenaBudget) flush_pass(state);
   raster::DrawCall& draw = state.draw;
   if (state.dirty & kDirtyState) {
     draw.state = resolve_state(state);

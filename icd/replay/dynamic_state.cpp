@@ -30,8 +30,7 @@ const raster::State* resolve_state(ReplayState& state) {
   const Pipeline& pipeline = *state.graphics.pipeline;
   const DynamicStates& dynamic = pipeline.dynamic;
   if (dynamic.none()) return &pipeline.state;
-  raster::State* out = state.arena.make<raster::State>();
-  *out = pipeline.state;
+  auto* out = ::new (state.arena.take<raster::State>(1)) raster::State(pipeline.state);
   const DynamicValues& values = state.dynamic;
   for (std::uint8_t i = 0; i < static_cast<std::uint8_t>(DynamicState::kCount); ++i) {
     const auto which = static_cast<DynamicState>(i);

@@ -39,15 +39,9 @@ void forget_bindings(ReplayState& state) {
 }  // namespace
 
 void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
-  for (const CommandBlock* block = buffer.arena.first(); block; block = block->next) {
-    for (std::uint32_t at = 0; at < block->front;) {
-      const std::byte* bytes = block->bytes() + at;
-      CommandHeader header;
-      std::memcpy(&header, bytes, sizeof header);
-      kExecutors[header.type](state, bytes + sizeof header);
-      if (state.fault.raised.load(std::memory_order_relaxed)) return;
-      at += header.size;
-    }
+  for (const CommandHeader* header = buffer.arena.first(); header; header = header->next) {
+    kExecutors[header->type](state, header->command());
+    if (state.fault.raised.load(std::memory_order_relaxed)) return;
   }
 }
 

@@ -9,7 +9,6 @@
 #include "icd/object/query_pool.h"
 #include "icd/object/render_pass.h"
 #include "icd/record/commands.h"
-#include "icd/replay/arena.h"
 #include "icd/replay/transient.h"
 #include "raster/pass.h"
 
@@ -67,9 +66,17 @@ struct PendingQuery {
   bool timestamp;  ///< gets its value then: the work before it is done when the pass is flushed
 };
 
+inline constexpr std::size_t kReplayBlockBytes = 256 * 1024;
+/// Memory of values that draws point to until their pass is flushed.
+using ReplayArena = base::Arena<base::ArenaShape{16, 0, kReplayBlockBytes, kReplayBlockBytes}, HostBlocks>;
+
 struct ReplayState {
   explicit ReplayState(Device& d)
-      : device(d), arena(d.memory), transients(d.memory), pending_queries(d.memory), views_loaded(d.memory) {}
+      : device(d),
+        arena({d.memory, VK_SYSTEM_ALLOCATION_SCOPE_DEVICE}),
+        transients(d.memory),
+        pending_queries(d.memory),
+        views_loaded(d.memory) {}
 
   Device& device;
   ReplayArena arena;

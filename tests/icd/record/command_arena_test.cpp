@@ -22,16 +22,8 @@ void add(CommandArena& arena, std::uint32_t type, std::uint64_t value) {
 /// What a replay would see: (type, value) of every command in order.
 std::vector<std::pair<std::uint32_t, std::uint64_t>> commands_of(const CommandArena& arena) {
   std::vector<std::pair<std::uint32_t, std::uint64_t>> out;
-  for (const CommandBlock* block = arena.first(); block; block = block->next) {
-    for (std::uint32_t at = 0; at < block->front;) {
-      CommandHeader header;
-      std::memcpy(&header, block->bytes() + at, sizeof header);
-      Number number;
-      std::memcpy(&number, block->bytes() + at + sizeof header, sizeof number);
-      out.emplace_back(header.type, number.value);
-      at += header.size;
-    }
-  }
+  for (const CommandHeader* header = arena.first(); header; header = header->next)
+    out.emplace_back(header->type, static_cast<const Number*>(header->command())->value);
   return out;
 }
 
