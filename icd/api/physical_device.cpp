@@ -13,6 +13,7 @@
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/instance.h"
+#include "icd/version.h"
 
 namespace vitrine::icd {
 namespace {
@@ -37,9 +38,7 @@ void write_uuid(std::uint8_t (&uuid)[VK_UUID_SIZE], const char (&tag)[9], std::u
 
 VkPhysicalDeviceProperties make_properties() {
   VkPhysicalDeviceProperties properties = claimed_properties();
-  base::select_simd_target();
-  std::snprintf(properties.deviceName, sizeof properties.deviceName, "%.100s (%.20s, %zu threads)",
-                claimed_properties().deviceName, base::simd_target_name(), base::worker_count());
+  base::select_simd_target();  // before anything is computed
   properties.deviceType = device_type(properties.deviceType);
   write_uuid(properties.pipelineCacheUUID, "vitrCACH", properties.driverVersion);
   return properties;
@@ -75,11 +74,18 @@ ExtensionSet make_device_extensions() {
   return extensions;
 }
 
-/// Identity of the device: a UUID is the one property that depends on more than claims.
+/// Which device this is, across processes and other APIs.
 template <class T>
 void write_identity(const PhysicalDevice& device, T& ids) {
   write_uuid(ids.deviceUUID, "vitrDEVC", device.properties.driverVersion);
   write_uuid(ids.driverUUID, "vitrDRVR", device.properties.driverVersion);
+}
+
+/// What runs here: results are the same for all of it, speed is not.
+template <class T>
+void write_driver_info(T& driver) {
+  std::snprintf(driver.driverInfo, sizeof driver.driverInfo, "%s, %s, %zu threads", kDriverVersionText,
+                base::simd_target_name(), base::worker_count());
 }
 
 /// What this process has allocated, and what it could have: that, and what the machine has free.
@@ -120,6 +126,11 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice device,
   if (auto* core = find_in_out_chain<VkPhysicalDeviceVulkan11Properties>(out->pNext);
       core && physical_device.properties.apiVersion >= VK_API_VERSION_1_2) {
     write_identity(physical_device, *core);
+  }
+  if (auto* driver = find_in_out_chain<VkPhysicalDeviceDriverProperties>(out->pNext)) write_driver_info(*driver);
+  if (auto* core = find_in_out_chain<VkPhysicalDeviceVulkan12Properties>(out->pNext);
+      core && physical_device.properties.apiVersion >= VK_API_VERSION_1_2) {
+    write_driver_info(*core);
   }
 }
 

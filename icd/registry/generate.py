@@ -263,6 +263,7 @@ namespace vitrine::icd::entry {{
 #include "icd/edge/edge.h"
 #include "icd/entry_points.h"
 #include "icd/registry/registry.h"
+#include "icd/version.h"
 
 namespace vitrine::icd {{
 namespace {{

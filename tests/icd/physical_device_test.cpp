@@ -4,6 +4,7 @@
 #include <string>
 
 #include "icd/registry/registry.h"
+#include "icd/version.h"
 #include "tests/icd/fixture.h"
 #include "texel/capabilities.h"
 #include "texel/view.h"
@@ -17,7 +18,8 @@ using Formats = DeviceTest;
 TEST_F(PhysicalDevice, SaysWhatItIs) {
   VkPhysicalDeviceProperties properties;
   VK_GET(instance, GetPhysicalDeviceProperties)(physical_device, &properties);
-  EXPECT_EQ(std::string(properties.deviceName).rfind("Vitrine (", 0), 0u) << properties.deviceName;
+  EXPECT_STREQ(properties.deviceName, "Vitrine") << "the same on every machine";
+  EXPECT_EQ(properties.driverVersion, kDriverVersion);
   EXPECT_EQ(properties.deviceType, VK_PHYSICAL_DEVICE_TYPE_CPU);
   EXPECT_GE(properties.apiVersion, VK_API_VERSION_1_1);
   EXPECT_EQ(properties.limits.maxPushConstantsSize, 256u);
@@ -52,11 +54,14 @@ TEST_F(PhysicalDevice, FeaturesChainAgreesWithThePlainQuery) {
 }
 
 TEST_F(PhysicalDevice, NamesItsDriverAndAlignments) {
-  auto driver = make_struct<VkPhysicalDeviceDriverProperties>();
+  auto core = make_struct<VkPhysicalDeviceVulkan12Properties>();
+  auto driver = make_struct<VkPhysicalDeviceDriverProperties>(&core);
   auto texel_buffers = make_struct<VkPhysicalDeviceTexelBufferAlignmentProperties>(&driver);
   auto chain = make_struct<VkPhysicalDeviceProperties2>(&texel_buffers);
   VK_GET(instance, GetPhysicalDeviceProperties2)(physical_device, &chain);
   EXPECT_STREQ(driver.driverName, "Vitrine");
+  EXPECT_EQ(std::string(driver.driverInfo).rfind(std::string(kDriverVersionText) + ", ", 0), 0u) << driver.driverInfo;
+  EXPECT_STREQ(driver.driverInfo, core.driverInfo);
   EXPECT_EQ(driver.conformanceVersion.major, 1u) << "wgpu hides devices that name no version";
   EXPECT_EQ(texel_buffers.uniformTexelBufferOffsetAlignmentBytes, 16u);
   std::uint32_t count = 3;
