@@ -1,5 +1,6 @@
 // Recording dynamic state (Vulkan 1.3.239, Pipelines: Dynamic State, and the commands of the fixed-function chapters).
 #include <algorithm>
+#include <bit>
 
 #include "icd/entry_points.h"
 #include "icd/record/command_buffer.h"
@@ -17,7 +18,11 @@ void record_blend(VkCommandBuffer buffer, DynamicState which, std::uint32_t firs
 
 template <class T>
 void record_value(VkCommandBuffer buffer, DynamicState which, T value) {
-  record(buffer, CmdSetValue{which, static_cast<std::uint32_t>(value)});
+  if constexpr (std::is_same_v<T, float>) {
+    record(buffer, CmdSetValue{which, std::bit_cast<std::uint32_t>(value)});
+  } else {
+    record(buffer, CmdSetValue{which, static_cast<std::uint32_t>(value)});
+  }
 }
 
 }  // namespace
@@ -34,10 +39,6 @@ VKAPI_ATTR void VKAPI_CALL CmdSetScissor(VkCommandBuffer buffer, std::uint32_t f
   record(buffer, icd::CmdSetScissor{first, copy_array(buffer, scissors, count)});
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdSetLineWidth(VkCommandBuffer buffer, float width) {
-  record(buffer, icd::CmdSetLineWidth{width});
-}
-
 VKAPI_ATTR void VKAPI_CALL CmdSetDepthBias(VkCommandBuffer buffer, float constant, float clamp, float slope) {
   record(buffer, icd::CmdSetDepthBias{constant, clamp, slope});
 }
@@ -52,17 +53,17 @@ VKAPI_ATTR void VKAPI_CALL CmdSetDepthBounds(VkCommandBuffer buffer, float min, 
 
 VKAPI_ATTR void VKAPI_CALL CmdSetStencilCompareMask(VkCommandBuffer buffer, VkStencilFaceFlags faces,
                                                     std::uint32_t mask) {
-  record(buffer, icd::CmdSetStencil{StencilValue::kCompareMask, faces, mask});
+  record(buffer, icd::CmdSetStencil{&raster::StencilFace::compare_mask, faces, mask});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdSetStencilWriteMask(VkCommandBuffer buffer, VkStencilFaceFlags faces,
                                                   std::uint32_t mask) {
-  record(buffer, icd::CmdSetStencil{StencilValue::kWriteMask, faces, mask});
+  record(buffer, icd::CmdSetStencil{&raster::StencilFace::write_mask, faces, mask});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdSetStencilReference(VkCommandBuffer buffer, VkStencilFaceFlags faces,
                                                   std::uint32_t reference) {
-  record(buffer, icd::CmdSetStencil{StencilValue::kReference, faces, reference});
+  record(buffer, icd::CmdSetStencil{&raster::StencilFace::reference, faces, reference});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdSetViewportWithCount(VkCommandBuffer buffer, std::uint32_t count,
@@ -141,105 +142,13 @@ VKAPI_ATTR void VKAPI_CALL CmdSetProvokingVertexModeEXT(VkCommandBuffer buffer, 
 
 // Commands whose argument is the word that CmdSetValue takes.
 
-VKAPI_ATTR void VKAPI_CALL CmdSetCullMode(VkCommandBuffer buffer, VkCullModeFlags value) {
-  record_value(buffer, DynamicState::kCullMode, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetFrontFace(VkCommandBuffer buffer, VkFrontFace value) {
-  record_value(buffer, DynamicState::kFrontFace, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetPrimitiveTopology(VkCommandBuffer buffer, VkPrimitiveTopology value) {
-  record_value(buffer, DynamicState::kTopology, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetDepthTestEnable(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kDepthTestEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetDepthWriteEnable(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kDepthWriteEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetDepthCompareOp(VkCommandBuffer buffer, VkCompareOp value) {
-  record_value(buffer, DynamicState::kDepthCompareOp, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetDepthBoundsTestEnable(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kDepthBoundsTestEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetStencilTestEnable(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kStencilTestEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetRasterizerDiscardEnable(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kRasterizerDiscardEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetDepthBiasEnable(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kDepthBiasEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetPrimitiveRestartEnable(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kPrimitiveRestartEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetLogicOpEXT(VkCommandBuffer buffer, VkLogicOp value) {
-  record_value(buffer, DynamicState::kLogicOp, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetPatchControlPointsEXT(VkCommandBuffer buffer, std::uint32_t value) {
-  record_value(buffer, DynamicState::kPatchControlPoints, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetTessellationDomainOriginEXT(VkCommandBuffer buffer, VkTessellationDomainOrigin value) {
-  record_value(buffer, DynamicState::kTessellationDomainOrigin, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetDepthClampEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kDepthClampEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetPolygonModeEXT(VkCommandBuffer buffer, VkPolygonMode value) {
-  record_value(buffer, DynamicState::kPolygonMode, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetRasterizationSamplesEXT(VkCommandBuffer buffer, VkSampleCountFlagBits value) {
-  record_value(buffer, DynamicState::kRasterizationSamples, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetAlphaToCoverageEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kAlphaToCoverageEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetAlphaToOneEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kAlphaToOneEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetLogicOpEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kLogicOpEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetDepthClipEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kDepthClipEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetLineRasterizationModeEXT(VkCommandBuffer buffer, VkLineRasterizationModeEXT value) {
-  record_value(buffer, DynamicState::kLineRasterizationMode, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetSampleLocationsEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kSampleLocationsEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetLineStippleEnableEXT(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kLineStippleEnable, value);
-}
-
-VKAPI_ATTR void VKAPI_CALL CmdSetDepthClipNegativeOneToOneEXT(VkCommandBuffer buffer, VkBool32 value) {
-  record_value(buffer, DynamicState::kDepthClipNegativeOneToOne, value);
-}
+#define VITRINE_DYNAMIC_STATE(...)
+#define VITRINE_DYNAMIC_VALUE(...)
+#define VITRINE_DYNAMIC_COMMAND(name, vulkan, part, member, command, type) \
+  VKAPI_ATTR void VKAPI_CALL command(VkCommandBuffer buffer, type value) { \
+    record_value(buffer, DynamicState::k##name, value);                    \
+  }
+#include "icd/record/dynamic_state.def"
 
 // Commands of VK_EXT_extended_dynamic_state3 whose features are not claimed: they have addresses, but no valid call.
 

@@ -49,7 +49,7 @@ struct CommandBuffer : DispatchableObject<VkCommandBuffer, VK_OBJECT_TYPE_COMMAN
 template <class T>
 T& record(CommandBuffer& buffer, const T& command) {
   static_assert(std::is_trivially_destructible_v<T> && alignof(T) <= 8);
-  return *::new (buffer.arena.add_command(kCommandIndex<T>, sizeof(T))) T(command);
+  return *::new (buffer.arena.add_command(static_cast<std::uint32_t>(kCommandType<T>), sizeof(T))) T(command);
 }
 
 /// Appends a command to the buffer behind the handle.

@@ -1,5 +1,5 @@
-// Every recorded command: a trivially destructible struct each, and the one list of them all. Replay has an execute()
-// overload per struct (icd/replay/replay.h); a missing one does not compile.
+// Every recorded command: a trivially destructible struct each, Cmd and its name in icd/record/commands.def, the one
+// list of them all. Replay has an execute() per row (icd/replay/replay.h); a missing one does not link.
 #pragma once
 
 #include <array>
@@ -60,9 +60,6 @@ struct CmdSetScissor {
   std::uint32_t first;
   std::span<const VkRect2D> scissors;
 };
-struct CmdSetLineWidth {
-  float width;
-};
 struct CmdSetDepthBias {
   float constant, clamp, slope;
 };
@@ -72,9 +69,8 @@ struct CmdSetBlendConstants {
 struct CmdSetDepthBounds {
   float min, max;
 };
-enum class StencilValue : std::uint8_t { kCompareMask, kWriteMask, kReference };
 struct CmdSetStencil {
-  StencilValue which;
+  std::uint8_t raster::StencilFace::*which;
   VkStencilFaceFlags faces;
   std::uint32_t value;
 };
@@ -83,7 +79,7 @@ struct CmdSetStencilOp {
   VkStencilOp fail, pass, depth_fail;
   VkCompareOp compare;
 };
-/// A state that is one word.
+/// A state that is one word: VITRINE_DYNAMIC_VALUE and VITRINE_DYNAMIC_COMMAND of dynamic_state.def.
 struct CmdSetValue {
   DynamicState which;
   std::uint32_t value;
@@ -304,36 +300,18 @@ struct CmdCopyQueryPoolResults {
   VkQueryResultFlags flags;
 };
 
-template <class... Ts>
-struct CommandList {
-  static constexpr std::size_t kCount = sizeof...(Ts);
+/// Every recorded command, numbered.
+enum class CommandType : std::uint32_t {
+#define VITRINE_COMMAND(name) k##name,
+#include "icd/record/commands.def"
 };
 
-using Commands = CommandList<
-    CmdBindPipeline, CmdBindDescriptorSets, CmdPushConstants, CmdBindVertexBuffers, CmdBindIndexBuffer, CmdSetViewport,
-    CmdSetScissor, CmdSetLineWidth, CmdSetDepthBias, CmdSetBlendConstants, CmdSetDepthBounds, CmdSetStencil,
-    CmdSetStencilOp, CmdSetValue, CmdSetSampleLocations, CmdSetLineStipple, CmdSetColorWriteEnable, CmdSetBlend,
-    CmdSetVertexInput, CmdDraw, CmdDrawIndexed, CmdDrawMulti, CmdDrawMultiIndexed, CmdBeginConditionalRendering,
-    CmdEndConditionalRendering, CmdDrawIndirect, CmdDrawByteCount, CmdBindTransformFeedbackBuffers,
-    CmdBeginTransformFeedback, CmdEndTransformFeedback, CmdDispatch, CmdDispatchIndirect, CmdBeginRenderPass,
-    CmdNextSubpass, CmdEndRenderPass, CmdBeginRendering, CmdEndRendering, CmdClearAttachments, CmdExecuteCommands,
-    CmdCopyBuffer, CmdCopyImage, CmdBlitImage, CmdResolveImage, CmdCopyBufferToImage, CmdCopyImageToBuffer,
-    CmdUpdateBuffer, CmdFillBuffer, CmdClearColorImage, CmdClearDepthStencilImage, CmdPipelineBarrier, CmdSetEvent,
-    CmdWaitEvents, CmdBeginQuery, CmdEndQuery, CmdResetQueryPool, CmdWriteTimestamp, CmdCopyQueryPoolResults>;
-
-namespace detail {
-
-template <class T, class... Ts>
-constexpr std::uint32_t index_of(CommandList<Ts...>) {
-  std::uint32_t index = 0;
-  static_cast<void>(((std::is_same_v<T, Ts> ? false : (++index, true)) && ...));
-  static_assert((std::is_same_v<T, Ts> || ...), "the command is missing from the list");
-  return index;
-}
-
-}  // namespace detail
-
+/// Number of a command's struct.
 template <class T>
-inline constexpr std::uint32_t kCommandIndex = detail::index_of<T>(Commands{});
+inline constexpr CommandType kCommandType = T::missing_from_commands_def;
+#define VITRINE_COMMAND(name) \
+  template <>                 \
+  inline constexpr CommandType kCommandType<Cmd##name> = CommandType::k##name;
+#include "icd/record/commands.def"
 
 }  // namespace vitrine::icd

@@ -1,5 +1,5 @@
-// State that a pipeline may leave to commands (Vulkan 1.3.239, Pipelines: Dynamic State): which there is, and its
-// values as last set.
+// State that a pipeline may leave to commands (Vulkan 1.3.239, Pipelines: Dynamic State): which there is
+// (dynamic_state.def), and its values as last set.
 #pragma once
 
 #include <array>
@@ -10,55 +10,10 @@
 
 namespace vitrine::icd {
 
-/// What can be dynamic. From kCullMode on, a state is one word, which CmdSetValue sets.
+/// What can be dynamic.
 enum class DynamicState : std::uint8_t {
-  kViewport,
-  kViewportCount,
-  kScissor,
-  kScissorCount,
-  kLineWidth,
-  kDepthBias,
-  kBlendConstants,
-  kDepthBounds,
-  kStencilCompareMask,
-  kStencilWriteMask,
-  kStencilReference,
-  kStencilOp,
-  kVertexStride,
-  kVertexInput,
-  kSampleMask,
-  kBlendEnable,
-  kBlendEquation,
-  kWriteMask,
-  kColorWriteEnable,
-  kLineStipple,
-  kSampleLocations,
-  kCullMode,
-  kFrontFace,
-  kTopology,
-  kDepthTestEnable,
-  kDepthWriteEnable,
-  kDepthCompareOp,
-  kDepthBoundsTestEnable,
-  kStencilTestEnable,
-  kRasterizerDiscardEnable,
-  kDepthBiasEnable,
-  kPrimitiveRestartEnable,
-  kLogicOp,
-  kLogicOpEnable,
-  kPatchControlPoints,
-  kTessellationDomainOrigin,
-  kDepthClampEnable,
-  kDepthClipEnable,
-  kPolygonMode,
-  kRasterizationSamples,
-  kAlphaToCoverageEnable,
-  kAlphaToOneEnable,
-  kProvokingVertexMode,
-  kLineRasterizationMode,
-  kLineStippleEnable,
-  kDepthClipNegativeOneToOne,
-  kSampleLocationsEnable,
+#define VITRINE_DYNAMIC_STATE(name, vulkan, part, ...) k##name,
+#include "icd/record/dynamic_state.def"
   kCount
 };
 
@@ -104,7 +59,7 @@ struct DynamicValues {
 /// The part of a graphics pipeline that a state belongs to (VK_EXT_graphics_pipeline_library).
 VkGraphicsPipelineLibraryFlagBitsEXT part_of(DynamicState state);
 
-/// Sets a state that is one word, as its command has it.
+/// Sets a state that is one word (icd/record/dynamic_state.def), as its command has it; a float by its bits.
 void set_value(raster::State& state, DynamicState which, std::uint32_t value);
 
 /// Copies one state, whatever it consists of, but for those that raster::State does not have.

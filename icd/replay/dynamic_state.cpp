@@ -54,8 +54,6 @@ void execute(ReplayState& state, const CmdSetScissor& command) {
   set_range(change(state).state.scissor, command.first, command.scissors);
 }
 
-void execute(ReplayState& state, const CmdSetLineWidth& command) { change(state).state.line_width = command.width; }
-
 void execute(ReplayState& state, const CmdSetDepthBias& command) {
   raster::State& out = change(state).state;
   out.depth_bias_constant = command.constant;
@@ -74,20 +72,8 @@ void execute(ReplayState& state, const CmdSetDepthBounds& command) {
 }
 
 void execute(ReplayState& state, const CmdSetStencil& command) {
-  const auto value = static_cast<std::uint8_t>(command.value);
-  for_each_face(change(state).state, command.faces, [&](raster::StencilFace& face) {
-    switch (command.which) {
-      case StencilValue::kCompareMask:
-        face.compare_mask = value;
-        break;
-      case StencilValue::kWriteMask:
-        face.write_mask = value;
-        break;
-      case StencilValue::kReference:
-        face.reference = value;
-        break;
-    }
-  });
+  for_each_face(change(state).state, command.faces,
+                [&](raster::StencilFace& face) { face.*command.which = static_cast<std::uint8_t>(command.value); });
 }
 
 void execute(ReplayState& state, const CmdSetStencilOp& command) {

@@ -14,12 +14,10 @@ void execute_erased(ReplayState& state, const void* command) {
   execute(state, *static_cast<const T*>(command));
 }
 
-template <class... Ts>
-constexpr std::array<Executor, sizeof...(Ts)> make_executors(CommandList<Ts...>) {
-  return {execute_erased<Ts>...};
-}
-
-constexpr auto kExecutors = make_executors(Commands{});
+constexpr Executor kExecutors[] = {
+#define VITRINE_COMMAND(name) execute_erased<Cmd##name>,
+#include "icd/record/commands.def"
+};
 
 /// A command buffer starts with nothing bound, and nothing that an earlier one bound may be touched again.
 void forget_bindings(ReplayState& state) {

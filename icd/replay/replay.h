@@ -1,5 +1,5 @@
 // Replay: runs recorded commands, one after the other, on the thread of the queue. ReplayState is what a command
-// buffer's commands share while they run; execute() has one overload per command.
+// buffer's commands share while they run.
 #pragma once
 
 #include <optional>
@@ -132,62 +132,8 @@ void fill_resources(ReplayState& state, const BindPoint& bind_point, spirv::Reso
 /// Reads a counter of transform feedback. False if it is not there.
 bool read_counter(const CounterBuffer& counter, std::uint32_t& value);
 
-void execute(ReplayState& state, const CmdBindPipeline& command);
-void execute(ReplayState& state, const CmdBindDescriptorSets& command);
-void execute(ReplayState& state, const CmdPushConstants& command);
-void execute(ReplayState& state, const CmdBindVertexBuffers& command);
-void execute(ReplayState& state, const CmdBindIndexBuffer& command);
-void execute(ReplayState& state, const CmdSetViewport& command);
-void execute(ReplayState& state, const CmdSetScissor& command);
-void execute(ReplayState& state, const CmdSetLineWidth& command);
-void execute(ReplayState& state, const CmdSetDepthBias& command);
-void execute(ReplayState& state, const CmdSetBlendConstants& command);
-void execute(ReplayState& state, const CmdSetDepthBounds& command);
-void execute(ReplayState& state, const CmdSetStencil& command);
-void execute(ReplayState& state, const CmdSetStencilOp& command);
-void execute(ReplayState& state, const CmdSetValue& command);
-void execute(ReplayState& state, const CmdSetLineStipple& command);
-void execute(ReplayState& state, const CmdSetSampleLocations& command);
-void execute(ReplayState& state, const CmdSetColorWriteEnable& command);
-void execute(ReplayState& state, const CmdSetBlend& command);
-void execute(ReplayState& state, const CmdSetVertexInput& command);
-void execute(ReplayState& state, const CmdDraw& command);
-void execute(ReplayState& state, const CmdDrawIndexed& command);
-void execute(ReplayState& state, const CmdDrawMulti& command);
-void execute(ReplayState& state, const CmdDrawMultiIndexed& command);
-void execute(ReplayState& state, const CmdDrawIndirect& command);
-void execute(ReplayState& state, const CmdBeginConditionalRendering& command);
-void execute(ReplayState& state, const CmdEndConditionalRendering& command);
-void execute(ReplayState& state, const CmdDrawByteCount& command);
-void execute(ReplayState& state, const CmdBindTransformFeedbackBuffers& command);
-void execute(ReplayState& state, const CmdBeginTransformFeedback& command);
-void execute(ReplayState& state, const CmdEndTransformFeedback& command);
-void execute(ReplayState& state, const CmdDispatch& command);
-void execute(ReplayState& state, const CmdDispatchIndirect& command);
-void execute(ReplayState& state, const CmdBeginRenderPass& command);
-void execute(ReplayState& state, const CmdNextSubpass& command);
-void execute(ReplayState& state, const CmdEndRenderPass& command);
-void execute(ReplayState& state, const CmdBeginRendering& command);
-void execute(ReplayState& state, const CmdEndRendering& command);
-void execute(ReplayState& state, const CmdClearAttachments& command);
-void execute(ReplayState& state, const CmdExecuteCommands& command);
-void execute(ReplayState& state, const CmdCopyBuffer& command);
-void execute(ReplayState& state, const CmdCopyImage& command);
-void execute(ReplayState& state, const CmdBlitImage& command);
-void execute(ReplayState& state, const CmdResolveImage& command);
-void execute(ReplayState& state, const CmdCopyBufferToImage& command);
-void execute(ReplayState& state, const CmdCopyImageToBuffer& command);
-void execute(ReplayState& state, const CmdUpdateBuffer& command);
-void execute(ReplayState& state, const CmdFillBuffer& command);
-void execute(ReplayState& state, const CmdClearColorImage& command);
-void execute(ReplayState& state, const CmdClearDepthStencilImage& command);
-void execute(ReplayState& state, const CmdPipelineBarrier& command);
-void execute(ReplayState& state, const CmdSetEvent& command);
-void execute(ReplayState& state, const CmdWaitEvents& command);
-void execute(ReplayState& state, const CmdBeginQuery& command);
-void execute(ReplayState& state, const CmdEndQuery& command);
-void execute(ReplayState& state, const CmdResetQueryPool& command);
-void execute(ReplayState& state, const CmdWriteTimestamp& command);
-void execute(ReplayState& state, const CmdCopyQueryPoolResults& command);
+/// Runs one command: an overload per row of icd/record/commands.def.
+#define VITRINE_COMMAND(name) void execute(ReplayState& state, const Cmd##name& command);
+#include "icd/record/commands.def"
 
 }  // namespace vitrine::icd
