@@ -79,41 +79,27 @@ VkInstance create_instance(bool validation, uint32_t api_version) {
   return instance;
 }
 
-/// Whether the suite knows the extension, and so enables it.
-bool is_wanted(const char* name) {
-  static constexpr const char* kNames[] = {
-#define CTS_NAME(member, type, stype, extension) extension,
-      CTS_EXTENSION_FEATURES(CTS_NAME)
-#undef CTS_NAME
-#define CTS_NAME(extension) extension,
-          CTS_EXTENSIONS(CTS_NAME)
-#undef CTS_NAME
-  };
-  return std::any_of(std::begin(kNames), std::end(kNames),
-                     [&](const char* known) { return !std::strcmp(known, name); });
-}
-
 void list_extensions(Gpu& gpu) {
   uint32_t count = 0;
   vkEnumerateDeviceExtensionProperties(gpu.physical, nullptr, &count, nullptr);
   std::vector<VkExtensionProperties> offered(count);
   vkEnumerateDeviceExtensionProperties(gpu.physical, nullptr, &count, offered.data());
   for (const VkExtensionProperties& extension : offered)
-    if (is_wanted(extension.extensionName)) gpu.extensions.push_back(extension.extensionName);
+    if (std::any_of(std::begin(kWantedExtensions), std::end(kWantedExtensions),
+                    [&](const char* wanted) { return !std::strcmp(wanted, extension.extensionName); }))
+      gpu.extensions.push_back(extension.extensionName);
 }
 
-/// Links the feature structures of the device's extensions.
+/// Links the feature structures that the device has.
 void* feature_chain(Gpu& gpu) {
   void* first = nullptr;
-  [[maybe_unused]] const auto link = [&](auto& structure, const char* extension) {
-    structure.pNext = nullptr;
-    if (!gpu.has(extension)) return;
+  const auto has = [&](const char* extension) { return gpu.has(extension); };
+  for_each_structure(gpu.extension_features, has, [&](auto& structure, VkStructureType type, bool is_there) {
+    if (!is_there) return;
+    structure.sType = type;
     structure.pNext = first;
     first = &structure;
-  };
-#define CTS_LINK(member, type, stype, extension) link(gpu.extension_features.member, extension);
-  CTS_EXTENSION_FEATURES(CTS_LINK)
-#undef CTS_LINK
+  });
   return first;
 }
 

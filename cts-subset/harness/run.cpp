@@ -50,7 +50,7 @@ VkDeviceMemory Run::allocate(const VkMemoryRequirements& requirements, VkMemoryP
   info.allocationSize = requirements.size;
   VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
   flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-  if (gpu.extension_features.buffer_address.bufferDeviceAddress) info.pNext = &flags;
+  if (gpu.extension_features.bufferDeviceAddress) info.pNext = &flags;
   info.memoryTypeIndex = gpu.memory_type(requirements.memoryTypeBits, wanted);
   VkDeviceMemory memory;
   CTS_VK(vkAllocateMemory(device, &info, nullptr, &memory));

@@ -94,7 +94,7 @@ CTS_CASE("api", "copy_commands2.blit_and_resolve") {
 
 /// Queries that only the host ever resets.
 CTS_CASE("api", "host_query_reset") {
-  run.require(run.gpu.extension_features.host_query_reset.hostQueryReset, "hostQueryReset");
+  run.require(run.gpu.extension_features.hostQueryReset, "hostQueryReset");
   const Target target = make_target(run, {});
   GraphicsSpec spec;
   spec.vertex = kFullScreenVertex;
@@ -153,14 +153,13 @@ void block_layout(Run& run, bool claimed, const char* feature, const std::string
 }
 
 CTS_CASE("glsl", "block_layout.uniform_std430") {
-  block_layout(run, run.gpu.extension_features.uniform_buffer_standard_layout.uniformBufferStandardLayout,
-               "uniformBufferStandardLayout", "std430",
+  block_layout(run, run.gpu.extension_features.uniformBufferStandardLayout, "uniformBufferStandardLayout", "std430",
                "float list[11]; vec2 pairs[9]; S s[3]; mat2 m[2]; float tail[50];",
                "u.list[i % 11u] + b.list[(i * 3u) % 11u] * u.pairs[i % 9u].y + u.s[i % 3u].v.z - b.s[i % 3u].f + "
                "u.m[i & 1u][1].x + u.tail[i % 50u]");
 }
 CTS_CASE("glsl", "block_layout.scalar") {
-  block_layout(run, run.gpu.extension_features.scalar_block_layout.scalarBlockLayout, "scalarBlockLayout", "scalar",
+  block_layout(run, run.gpu.extension_features.scalarBlockLayout, "scalarBlockLayout", "scalar",
                "vec3 first[7]; float x; S s[5]; vec3 y; mat3 m[2]; float tail[50];",
                "u.first[i % 7u].z + b.first[(i * 3u) % 7u].x * u.x + u.s[i % 5u].v.y - b.s[i % 5u].f + b.y.z + "
                "u.m[i & 1u][2].y + u.tail[i % 50u]");

@@ -70,10 +70,10 @@ constexpr char kAtomicFloat[] =
 
 /// Sums of small integers: exact in any order.
 void atomic_float(Run& run, const std::string& operation) {
-  run.require(run.gpu.extension_features.atomic_float.shaderBufferFloat32AtomicAdd &&
-                  run.gpu.extension_features.atomic_float.shaderSharedFloat32AtomicAdd,
+  run.require(run.gpu.extension_features.shaderBufferFloat32AtomicAdd &&
+                  run.gpu.extension_features.shaderSharedFloat32AtomicAdd,
               "shaderBufferFloat32AtomicAdd");
-  run.require(run.gpu.extension_features.atomic_float2.shaderBufferFloat32AtomicMinMax, "float atomic min and max");
+  run.require(run.gpu.extension_features.shaderBufferFloat32AtomicMinMax, "float atomic min and max");
   const Buffer out = run.buffer_of<float>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
   dispatch(run,
            std::string(kAtomicFloat) +
@@ -108,8 +108,8 @@ std::vector<std::uint32_t> special_floats() {
 
 /// Every pair of them, one as what memory holds and one as the operand; in a buffer and in shared memory.
 void atomic_float_specials(Run& run, const std::string& operation) {
-  run.require(run.gpu.extension_features.atomic_float2.shaderBufferFloat32AtomicMinMax &&
-                  run.gpu.extension_features.atomic_float2.shaderSharedFloat32AtomicMinMax,
+  run.require(run.gpu.extension_features.shaderBufferFloat32AtomicMinMax &&
+                  run.gpu.extension_features.shaderSharedFloat32AtomicMinMax,
               "float atomic min and max");
   const std::vector<std::uint32_t> bits = special_floats();
   const std::size_t count = bits.size();
@@ -142,7 +142,7 @@ CTS_CASE("capabilities", "atomic_float.special_min") { atomic_float_specials(run
 CTS_CASE("capabilities", "atomic_float.special_max") { atomic_float_specials(run, "atomicMax"); }
 
 CTS_CASE("capabilities", "atomic_float.exchange") {
-  run.require(run.gpu.extension_features.atomic_float.shaderBufferFloat32Atomics, "shaderBufferFloat32Atomics");
+  run.require(run.gpu.extension_features.shaderBufferFloat32Atomics, "shaderBufferFloat32Atomics");
   const Buffer out = run.buffer_of<float>(std::vector<float>(65, 2.5f));
   dispatch(run,
            std::string(kAtomicFloat) +
@@ -164,23 +164,20 @@ struct Rare {
 };
 
 Rare doubles(Run& run) {
-  const auto& first = run.gpu.extension_features.atomic_float;
-  const auto& second = run.gpu.extension_features.atomic_float2;
+  const auto& features = run.gpu.extension_features;
   run.require(run.gpu.features.shaderFloat64, "shaderFloat64");
-  const bool has = first.shaderBufferFloat64Atomics && first.shaderBufferFloat64AtomicAdd &&
-                   first.shaderSharedFloat64Atomics && first.shaderSharedFloat64AtomicAdd &&
-                   second.shaderBufferFloat64AtomicMinMax && second.shaderSharedFloat64AtomicMinMax;
+  const bool has = features.shaderBufferFloat64Atomics && features.shaderBufferFloat64AtomicAdd &&
+                   features.shaderSharedFloat64Atomics && features.shaderSharedFloat64AtomicAdd &&
+                   features.shaderBufferFloat64AtomicMinMax && features.shaderSharedFloat64AtomicMinMax;
   return {"double", "LF", has, run.buffer_of<double>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12})};
 }
 
 Rare halves(Run& run) {
   const auto& features = run.gpu.extension_features;
-  const auto& atomics = features.atomic_float2;
-  run.require(features.float16_int8.shaderFloat16 && features.storage_16bit.storageBuffer16BitAccess,
-              "binary16 in buffers");
-  const bool has = atomics.shaderBufferFloat16Atomics && atomics.shaderBufferFloat16AtomicAdd &&
-                   atomics.shaderBufferFloat16AtomicMinMax && atomics.shaderSharedFloat16Atomics &&
-                   atomics.shaderSharedFloat16AtomicAdd && atomics.shaderSharedFloat16AtomicMinMax;
+  run.require(features.shaderFloat16 && features.storageBuffer16BitAccess, "binary16 in buffers");
+  const bool has = features.shaderBufferFloat16Atomics && features.shaderBufferFloat16AtomicAdd &&
+                   features.shaderBufferFloat16AtomicMinMax && features.shaderSharedFloat16Atomics &&
+                   features.shaderSharedFloat16AtomicAdd && features.shaderSharedFloat16AtomicMinMax;
   return {"float16_t", "HF", has,
           run.buffer_of<uint16_t>(
               {0x3c00, 0x4000, 0x4200, 0x4400, 0x4500, 0x4600, 0x4700, 0x4800, 0x4880, 0x4900, 0x4980, 0x4a00})};
@@ -260,8 +257,8 @@ CTS_CASE("capabilities", "atomic_double.exchange") { rare_exchange(run, doubles(
 CTS_CASE("capabilities", "atomic_half.exchange") { rare_exchange(run, halves(run)); }
 
 void atomic_float_image(Run& run, const std::string& operation) {
-  run.require(run.gpu.extension_features.atomic_float.shaderImageFloat32AtomicAdd &&
-                  run.gpu.extension_features.atomic_float2.shaderImageFloat32AtomicMinMax,
+  run.require(run.gpu.extension_features.shaderImageFloat32AtomicAdd &&
+                  run.gpu.extension_features.shaderImageFloat32AtomicMinMax,
               "float atomics on images");
   const Image image = storage(run, VK_FORMAT_R32_SFLOAT);
   std::vector<float> texels(64);
@@ -284,8 +281,7 @@ CTS_CASE("capabilities", "atomic_float.image_min") { atomic_float_image(run, "im
 CTS_CASE("capabilities", "atomic_float.image_max") { atomic_float_image(run, "imageAtomicMax"); }
 
 CTS_CASE("capabilities", "memory_model") {
-  run.require(run.gpu.extension_features.memory_model.vulkanMemoryModel &&
-                  run.gpu.extension_features.memory_model.vulkanMemoryModelDeviceScope,
+  run.require(run.gpu.extension_features.vulkanMemoryModel && run.gpu.extension_features.vulkanMemoryModelDeviceScope,
               "vulkanMemoryModel");
   const Buffer out = run.buffer(64 * 4);
   dispatch(run, R"(// target: vulkan1.1
@@ -342,8 +338,7 @@ void main() {
 }
 
 CTS_CASE("capabilities", "clock") {
-  run.require(run.gpu.extension_features.shader_clock.shaderSubgroupClock &&
-                  run.gpu.extension_features.shader_clock.shaderDeviceClock,
+  run.require(run.gpu.extension_features.shaderSubgroupClock && run.gpu.extension_features.shaderDeviceClock,
               "shaderSubgroupClock, shaderDeviceClock");
   const Buffer out = run.buffer(64 * 4);
   dispatch(run, R"(// target: vulkan1.1
@@ -375,7 +370,7 @@ void draw(Run& run, const std::string& fragment) {
 }
 
 CTS_CASE("capabilities", "demote") {
-  run.require(run.gpu.extension_features.demote.shaderDemoteToHelperInvocation, "shaderDemoteToHelperInvocation");
+  run.require(run.gpu.extension_features.shaderDemoteToHelperInvocation, "shaderDemoteToHelperInvocation");
   draw(run, R"(// target: vulkan1.1
 #extension GL_EXT_demote_to_helper_invocation : require
 layout(location = 0) in vec2 uv;
@@ -391,7 +386,7 @@ void main() {
 }
 
 CTS_CASE("capabilities", "terminate") {
-  run.require(run.gpu.extension_features.terminate.shaderTerminateInvocation, "shaderTerminateInvocation");
+  run.require(run.gpu.extension_features.shaderTerminateInvocation, "shaderTerminateInvocation");
   draw(run, R"(// target: vulkan1.1
 #extension GL_EXT_terminate_invocation : require
 layout(location = 0) in vec2 uv;
@@ -411,7 +406,7 @@ void main() {
 }
 
 CTS_CASE("capabilities", "draw_parameters") {
-  run.require(run.gpu.extension_features.draw_parameters.shaderDrawParameters, "shaderDrawParameters");
+  run.require(run.gpu.extension_features.shaderDrawParameters, "shaderDrawParameters");
   const Target target = make_target(run, {.colors = {VK_FORMAT_R32G32B32A32_SFLOAT}});
   GraphicsSpec spec;
   spec.vertex = R"(// target: vulkan1.1

@@ -169,7 +169,7 @@ const AddCase kSmoothOutside(
     },
     [](Run& run) {
       run.require(offers_extension(run.gpu, kExtension), kExtension);
-      run.require(run.gpu.extension_features.line_rasterization.smoothLines, "smoothLines");
+      run.require(run.gpu.extension_features.smoothLines, "smoothLines");
       OwnDevice own(run.gpu, kExtension);
       Run inner(own.gpu, 1, 0);
       TargetSpec target_spec;

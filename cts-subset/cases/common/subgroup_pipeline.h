@@ -9,7 +9,7 @@ namespace vitrine::cts {
 inline constexpr uint32_t kSubgroupSize = 8;
 
 inline VkPipeline subgroup_pipeline(Run& run, VkPipelineLayout layout, VkShaderModule module) {
-  run.require(run.gpu.extension_features.subgroup_size.subgroupSizeControl, "subgroupSizeControl");
+  run.require(run.gpu.extension_features.subgroupSizeControl, "subgroupSizeControl");
   VkPhysicalDeviceSubgroupSizeControlProperties sizes{
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_PROPERTIES};
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &sizes};

@@ -121,7 +121,7 @@ const bool kAtomics64 = [] {
   for (const char* type : {"uint64_t", "int64_t"})
     for (const char* op : {"Add", "Min", "Max", "And", "Or", "Xor", "Exchange"})
       AddCase("compute", std::string("atomics_64.") + type + "." + op, [=](Run& run) {
-        const auto& features = run.gpu.extension_features.atomic_int64;
+        const auto& features = run.gpu.extension_features;
         run.require(
             run.gpu.features.shaderInt64 && features.shaderBufferInt64Atomics && features.shaderSharedInt64Atomics,
             "64-bit atomics");
@@ -160,8 +160,7 @@ const bool kAtomics64 = [] {
 }();
 
 CTS_CASE("compute", "zero_initialized") {
-  run.require(run.gpu.extension_features.zero_workgroup.shaderZeroInitializeWorkgroupMemory,
-              "shaderZeroInitializeWorkgroupMemory");
+  run.require(run.gpu.extension_features.shaderZeroInitializeWorkgroupMemory, "shaderZeroInitializeWorkgroupMemory");
   dispatch(run, R"(#version 450
 #extension GL_EXT_null_initializer : require
 layout(local_size_x = 64) in;

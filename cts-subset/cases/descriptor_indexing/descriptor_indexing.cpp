@@ -9,11 +9,11 @@ namespace {
 
 constexpr uint32_t kElements = 4;
 
-bool is_claimed(Run& run) { return run.gpu.extension_features.descriptor_indexing.runtimeDescriptorArray; }
+bool is_claimed(Run& run) { return run.gpu.extension_features.runtimeDescriptorArray; }
 
 /// Both devices take part only if ours claims the extension.
 void require_indexing(Run& run) {
-  run.require(gpus().device.extension_features.descriptor_indexing.runtimeDescriptorArray, "descriptor indexing");
+  run.require(gpus().device.extension_features.runtimeDescriptorArray, "descriptor indexing");
 }
 
 /// An expression whose '#' is an element: once with the index itself, or chosen among constant ones.

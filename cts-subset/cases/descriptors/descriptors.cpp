@@ -49,8 +49,7 @@ struct Push {
 
   explicit Push(Run& run) {
     run.require(run.gpu.has("VK_KHR_push_descriptor"), "VK_KHR_push_descriptor");
-    run.require(run.gpu.extension_features.uniform_buffer_standard_layout.uniformBufferStandardLayout,
-                "uniformBufferStandardLayout");
+    run.require(run.gpu.extension_features.uniformBufferStandardLayout, "uniformBufferStandardLayout");
     uniform = run.buffer_of(random_words(run, 64));
     first = run.buffer_of(random_words(run, 64));
     second = run.buffer_of(random_words(run, 64));
@@ -139,7 +138,7 @@ struct InlineBlocks {
   VkDescriptorPool pool;
 
   explicit InlineBlocks(Run& run) {
-    run.require(run.gpu.extension_features.inline_uniform_block.inlineUniformBlock, "inlineUniformBlock");
+    run.require(run.gpu.extension_features.inlineUniformBlock, "inlineUniformBlock");
     result = run.buffer(256);
     set_layout =
         make_layout(run,

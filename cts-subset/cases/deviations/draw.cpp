@@ -53,7 +53,7 @@ void main() {
 
 const AddCase kPatchNumbers("tessellation", "deviation.patch_numbers", "patch-numbers", case_against_control,
                             [](Run& run) {
-                              run.require(run.gpu.extension_features.list_restart.primitiveTopologyPatchListRestart,
+                              run.require(run.gpu.extension_features.primitiveTopologyPatchListRestart,
                                           "primitiveTopologyPatchListRestart");
                               draw_patches(run, "restarted", true);
                               draw_patches(run, "list", false);
@@ -88,7 +88,7 @@ const AddCase kGeometryFacing(
 
 /// Two draws of two instances each, all over each other; each instance has its own colour and moves a little.
 const AddCase kMultiDraw("draw", "deviation.multi_draw_order", "multi-draw-order", case_against_control, [](Run& run) {
-  run.require(run.gpu.extension_features.multi_draw.multiDraw, "multiDraw");
+  run.require(run.gpu.extension_features.multiDraw, "multiDraw");
   GraphicsSpec spec;
   spec.vertex = R"(
 layout(location = 0) in vec4 position;

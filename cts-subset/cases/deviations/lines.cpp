@@ -44,7 +44,7 @@ const AddCase kShortOutline(
       return loses_lower_samples(device[0], reference[0], 20);
     },
     [](Run& run) {
-      run.require(run.gpu.extension_features.line_rasterization.bresenhamLines, "bresenhamLines");
+      run.require(run.gpu.extension_features.bresenhamLines, "bresenhamLines");
       TargetSpec target;
       target.samples = VK_SAMPLE_COUNT_4_BIT;
       target.colors = {VK_FORMAT_R32G32B32A32_SFLOAT};
@@ -64,7 +64,7 @@ const AddCase kShortOutline(
 /// A strip after a line: with its first line outside of the volume, and without that line.
 const AddCase kStippleCounter("rasterization", "deviation.stipple_counter", "stipple-counter", case_against_control,
                               [](Run& run) {
-                                run.require(run.gpu.extension_features.line_rasterization.stippledRectangularLines,
+                                run.require(run.gpu.extension_features.stippledRectangularLines,
                                             "stippledRectangularLines");
                                 VkPipelineRasterizationLineStateCreateInfoEXT line{
                                     VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
@@ -102,7 +102,7 @@ const AddCase kStippleCounter("rasterization", "deviation.stipple_counter", "sti
                               });
 
 VkPipelineRasterizationLineStateCreateInfoEXT line_state(Run& run, VkLineRasterizationModeEXT mode, bool stippled) {
-  const auto& features = run.gpu.extension_features.line_rasterization;
+  const auto& features = run.gpu.extension_features;
   run.require(features.rectangularLines && features.smoothLines && features.stippledRectangularLines,
               "smooth and stippled lines");
   VkPipelineRasterizationLineStateCreateInfoEXT line{
@@ -374,7 +374,7 @@ const AddCase kLineDepth(
       return std::string();
     },
     [](Run& run) {
-      run.require(run.gpu.extension_features.line_rasterization.bresenhamLines, "bresenhamLines");
+      run.require(run.gpu.extension_features.bresenhamLines, "bresenhamLines");
       TargetSpec target_spec;
       target_spec.samples = VK_SAMPLE_COUNT_4_BIT;
       target_spec.depth = VK_FORMAT_D32_SFLOAT;

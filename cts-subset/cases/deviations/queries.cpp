@@ -93,7 +93,7 @@ const AddCase kEarly("pipeline", "deviation.early_sample_counting", "early-sampl
 /// A line of 41 pixels with four samples each.
 const AddCase kLine("rasterization", "deviation.one_sample_line_count", "one-sample-line-masks", counts(4 * 41, 41),
                     [](Run& run) {
-                      run.require(run.gpu.extension_features.line_rasterization.bresenhamLines, "bresenhamLines");
+                      run.require(run.gpu.extension_features.bresenhamLines, "bresenhamLines");
                       TargetSpec target_spec;
                       target_spec.samples = VK_SAMPLE_COUNT_4_BIT;
                       const Target target = make_target(run, target_spec);

@@ -101,7 +101,7 @@ const AddCase kIdentity(
 /// The bias carries one corner of a filled triangle beyond depth 1; the state of lines is smooth, and not.
 const AddCase kLineStateBias("rasterization", "deviation.line_state_depth_bias", "line-state-depth-bias",
                              case_against_control, [](Run& run) {
-                               run.require(run.gpu.extension_features.line_rasterization.smoothLines, "smoothLines");
+                               run.require(run.gpu.extension_features.smoothLines, "smoothLines");
                                for (const bool smooth : {true, false}) {
                                  VkPipelineRasterizationLineStateCreateInfoEXT line{
                                      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};

@@ -78,8 +78,7 @@ CTS_RANDOM("draw", "random_short_fans", 16) {
   VkPipelineRasterizationProvokingVertexStateCreateInfoEXT mode{
       VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT};
   mode.provokingVertexMode = VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
-  if (run.gpu.extension_features.provoking_vertex.provokingVertexLast && random.chance(0.25f))
-    spec.raster.pNext = &mode;
+  if (run.gpu.extension_features.provokingVertexLast && random.chance(0.25f)) spec.raster.pNext = &mode;
   const VkPipeline pipeline = make_pipeline(run, spec, target);
   const uint32_t count = random.pick({3u, 4u, 4u, 4u, 5u}), instances = 1 + random.below(3);
   const bool indexed = random.chance(0.2f);

@@ -80,7 +80,7 @@ void clear_all(Run& run, const Image& image) {
 }
 
 Rendering make_rendering(Run& run, const RenderingSpec& spec) {
-  run.require(run.gpu.extension_features.dynamic_rendering.dynamicRendering, "dynamicRendering");
+  run.require(run.gpu.extension_features.dynamicRendering, "dynamicRendering");
   Rendering r;
   r.width = spec.width;
   r.height = spec.height;
@@ -296,7 +296,7 @@ CTS_CASE("dynamic_rendering", "load_store_op_none") {
 
 /// Without attachments: fragments count what they cover, and a query counts samples.
 CTS_CASE("dynamic_rendering", "no_attachments") {
-  run.require(run.gpu.extension_features.dynamic_rendering.dynamicRendering, "dynamicRendering");
+  run.require(run.gpu.extension_features.dynamicRendering, "dynamicRendering");
   constexpr VkExtent2D kSize{45, 33};
   const Buffer counters = run.buffer(size_t{4} * kSize.width * kSize.height);
   const Resources res = run.resources({storage_buffer(0, counters)});

@@ -34,9 +34,9 @@ struct Varying {
 
 class Interface {
  public:
-  explicit Interface(const Run& run) : narrow_(run.gpu.extension_features.storage_16bit.storageInputOutput16) {
+  explicit Interface(const Run& run) : narrow_(run.gpu.extension_features.storageInputOutput16) {
     const auto& sizes = run.gpu.extension_features;
-    run.require(run.gpu.features.shaderInt16 && sizes.float16_int8.shaderFloat16, "16-bit arithmetic");
+    run.require(run.gpu.features.shaderInt16 && sizes.shaderFloat16, "16-bit arithmetic");
   }
 
   std::string head() const {
@@ -398,7 +398,7 @@ void draw_stages(Run& run, const Shape& shape) {
 void draw_matrices(Run& run, bool has_geometry) {
   const Interface interface(run);
   run.require(!has_geometry || run.gpu.features.geometryShader, "geometry shaders");
-  const std::string matrix = run.gpu.extension_features.storage_16bit.storageInputOutput16 ? "f16mat3x2" : "mat3x2";
+  const std::string matrix = run.gpu.extension_features.storageInputOutput16 ? "f16mat3x2" : "mat3x2";
   const Target target = make_target(run, {.colors = {VK_FORMAT_R32G32B32A32_UINT}});
   GraphicsSpec spec;
   spec.vertex = interface.head() + "layout(location = 0) in vec4 position;\nlayout(location = 0) out " + matrix +

@@ -17,10 +17,9 @@ constexpr uint32_t kCount = 256;
 
 void require_narrow(const Run& run) {
   const auto& features = run.gpu.extension_features;
-  run.require(run.gpu.features.shaderInt16 && features.float16_int8.shaderInt8 && features.float16_int8.shaderFloat16,
+  run.require(run.gpu.features.shaderInt16 && features.shaderInt8 && features.shaderFloat16,
               "8- and 16-bit arithmetic");
-  run.require(features.storage_8bit.storageBuffer8BitAccess && features.storage_16bit.storageBuffer16BitAccess,
-              "8- and 16-bit storage");
+  run.require(features.storageBuffer8BitAccess && features.storageBuffer16BitAccess, "8- and 16-bit storage");
 }
 
 /// Words whose bytes are small numbers and whose halves are finite binary16.

@@ -257,7 +257,7 @@ void compare_shader(Run& run, std::string text, Stage stage) {
 }
 
 void require_sizes(Run& run) {
-  const auto& sizes = run.gpu.extension_features.float16_int8;
+  const auto& sizes = run.gpu.extension_features;
   run.require(run.gpu.features.shaderInt64 && run.gpu.features.shaderFloat64 && run.gpu.features.shaderInt16 &&
                   sizes.shaderInt8 && sizes.shaderFloat16,
               "numbers of every width");

@@ -160,7 +160,7 @@ void in_render_pass(Run& run, const Resolve& r, const Image& source, const Image
 }
 
 void in_dynamic_rendering(Run& run, const Resolve& r, const Image& source, const Image& target) {
-  run.require(run.gpu.extension_features.dynamic_rendering.dynamicRendering, "dynamicRendering");
+  run.require(run.gpu.extension_features.dynamicRendering, "dynamicRendering");
   const auto attachment = [&](VkResolveModeFlagBits mode) {
     VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
     info.imageView = source.view;

@@ -54,7 +54,7 @@ struct RandomPipeline {
     raster.depthClampEnable = random.chance(0.3f);
     raster.depthBiasEnable = random.chance(0.3f);
     raster.depthBiasConstantFactor = 1000;
-    if (both([](const auto& f) { return f.provoking_vertex.provokingVertexLast; })) {
+    if (both([](const auto& f) { return f.provokingVertexLast; })) {
       provoking.provokingVertexMode = static_cast<VkProvokingVertexModeEXT>(random.below(2));
       raster.pNext = &provoking;
     }
@@ -87,7 +87,7 @@ struct RandomPipeline {
     for (float& constant : spec.blend.blendConstants) constant = random.unit();
     spec.blend.logicOpEnable = random.chance(0.2f);
     spec.blend.logicOp = static_cast<VkLogicOp>(random.below(16));
-    if (!both([](const auto& f) { return f.color_write_enable.colorWriteEnable; })) return;
+    if (!both([](const auto& f) { return f.colorWriteEnable; })) return;
     for (VkBool32& write : color_writes) write = random.chance(0.7f);
     color_write_info.attachmentCount = 2;
     color_write_info.pColorWriteEnables = color_writes;
@@ -112,7 +112,7 @@ Buffer random_vertices(Run& run, bool outside_depth) {
 }
 
 CTS_RANDOM("pipeline", "random_dynamic_state", 80) {
-  run.require(run.gpu.extension_features.extended_dynamic_state.extendedDynamicState, "extendedDynamicState");
+  run.require(run.gpu.extension_features.extendedDynamicState, "extendedDynamicState");
   run.require(run.gpu.features.independentBlend && run.gpu.features.logicOp && run.gpu.features.depthClamp &&
                   run.gpu.features.fillModeNonSolid,
               "features of Vulkan 1.0");

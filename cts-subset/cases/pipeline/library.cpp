@@ -151,7 +151,7 @@ VkPipeline link(Run& run, const std::vector<VkPipeline>& libraries, VkPipelineLa
 }
 
 void library(Run& run) {
-  run.require(run.gpu.extension_features.graphics_pipeline_library.graphicsPipelineLibrary, "graphicsPipelineLibrary");
+  run.require(run.gpu.extension_features.graphicsPipelineLibrary, "graphicsPipelineLibrary");
   TargetSpec target_spec;
   target_spec.depth = VK_FORMAT_D32_SFLOAT;
   target_spec.samples = run.random.chance(0.4f) ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;

@@ -67,7 +67,7 @@ CTS_RANDOM("pipeline", "random_many_attachments", 30) {
   VkPipelineColorWriteCreateInfoEXT writes{VK_STRUCTURE_TYPE_PIPELINE_COLOR_WRITE_CREATE_INFO_EXT};
   writes.attachmentCount = count;
   writes.pColorWriteEnables = enables.data();
-  if (run.gpu.extension_features.color_write_enable.colorWriteEnable) spec.blend.pNext = &writes;
+  if (run.gpu.extension_features.colorWriteEnable) spec.blend.pNext = &writes;
   const VkPipeline pipeline = make_pipeline(run, spec, target);
   const Buffer vertices = run.buffer_of(random_colored_vertices(random, 30));
   run.once([&](VkCommandBuffer cmd) {

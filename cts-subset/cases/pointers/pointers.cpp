@@ -15,7 +15,7 @@ constexpr uint32_t kInvocations = 64;
 /// 64 invocations of a body that makes %r from %x (a random word) and %n (their number). Buffers: %a and %b of 256
 /// random words, %out.
 void run_body(Run& run, const std::string& body, const std::string& declarations = "", bool newer = false) {
-  run.require(run.gpu.extension_features.variable_pointers.variablePointers, "variablePointers");
+  run.require(run.gpu.extension_features.variablePointers, "variablePointers");
   if (newer) run.require(run.gpu.has("VK_KHR_spirv_1_4"), "VK_KHR_spirv_1_4");
   ComputeText module;
   module.capabilities = "OpCapability VariablePointers\n";
@@ -160,7 +160,7 @@ CTS_CASE("pointers", "variable.compare") {
 
 /// The chosen pointer leads to an array of blocks, which is indexed afterwards.
 CTS_CASE("pointers", "variable.select_arrays_of_blocks") {
-  run.require(run.gpu.extension_features.variable_pointers.variablePointers, "variablePointers");
+  run.require(run.gpu.extension_features.variablePointers, "variablePointers");
   ComputeText module;
   module.capabilities = "OpCapability VariablePointers\n";
   module.buffers = {"out"};
@@ -254,7 +254,7 @@ layout(local_size_x = 64) in;
 )";
 
 Buffer addressed(Run& run, VkDeviceSize size) {
-  run.require(run.gpu.extension_features.buffer_address.bufferDeviceAddress, "bufferDeviceAddress");
+  run.require(run.gpu.extension_features.bufferDeviceAddress, "bufferDeviceAddress");
   return run.buffer(size, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT);
 }
 
@@ -371,8 +371,8 @@ void main() {
 
 CTS_CASE("pointers", "address.narrow") {
   const auto& features = run.gpu.extension_features;
-  run.require(features.storage_8bit.storageBuffer8BitAccess && features.storage_16bit.storageBuffer16BitAccess &&
-                  features.float16_int8.shaderInt8 && features.float16_int8.shaderFloat16,
+  run.require(features.storageBuffer8BitAccess && features.storageBuffer16BitAccess && features.shaderInt8 &&
+                  features.shaderFloat16,
               "8- and 16-bit storage");
   const Buffer a = addressed(run, 4096), b = addressed(run, 4096);
   for (uint32_t i = 0; i < 1024; i++) a.as<uint32_t>()[i] = run.random.bits() & 0xbbffbbffu;
@@ -398,8 +398,7 @@ void main() {
 }
 
 CTS_CASE("pointers", "address.atomics_64") {
-  run.require(run.gpu.features.shaderInt64 && run.gpu.extension_features.atomic_int64.shaderBufferInt64Atomics,
-              "64-bit atomics");
+  run.require(run.gpu.features.shaderInt64 && run.gpu.extension_features.shaderBufferInt64Atomics, "64-bit atomics");
   const Buffer a = addressed(run, 1024), out = run.buffer(kInvocations * 8);
   for (uint32_t i = 0; i < 256; i++) a.as<uint32_t>()[i] = run.random.bits();
   run_addresses(run, R"(
@@ -427,12 +426,9 @@ void main() {
 /// same one by one in a buffer.
 CTS_CASE("pointers", "address.atomics_half") {
   const auto& features = run.gpu.extension_features;
-  const auto& atomics = features.atomic_float2;
-  run.require(features.storage_16bit.storageBuffer16BitAccess && features.float16_int8.shaderFloat16,
-              "binary16 in buffers");
-  const bool has = atomics.shaderBufferFloat16AtomicAdd && atomics.shaderBufferFloat16AtomicMinMax &&
-                   atomics.shaderSharedFloat16AtomicAdd &&
-                   features.workgroup_layout.workgroupMemoryExplicitLayout16BitAccess;
+  run.require(features.storageBuffer16BitAccess && features.shaderFloat16, "binary16 in buffers");
+  const bool has = features.shaderBufferFloat16AtomicAdd && features.shaderBufferFloat16AtomicMinMax &&
+                   features.shaderSharedFloat16AtomicAdd && features.workgroupMemoryExplicitLayout16BitAccess;
   const Buffer a = addressed(run, 1024), out = run.buffer(kInvocations * 4), scratch = run.buffer(1024);
   for (uint32_t i = 0; i < 512; i++) a.as<uint16_t>()[i] = static_cast<uint16_t>(0x4000 + 256 * (i & 3));
   const std::string text = std::string("// target: spirv1.4\n") +
@@ -469,13 +465,12 @@ void main() {
 /// Blocks in workgroup memory; the reference, which does not have them, is given a storage buffer of the same layout.
 CTS_CASE("pointers", "workgroup_blocks") {
   const auto& features = run.gpu.extension_features;
-  run.require(features.storage_8bit.storageBuffer8BitAccess && features.storage_16bit.storageBuffer16BitAccess &&
-                  features.float16_int8.shaderInt8 && features.float16_int8.shaderFloat16,
+  run.require(features.storageBuffer8BitAccess && features.storageBuffer16BitAccess && features.shaderInt8 &&
+                  features.shaderFloat16,
               "8- and 16-bit storage");
-  const auto& layout = features.workgroup_layout;
-  const bool blocks = layout.workgroupMemoryExplicitLayout && layout.workgroupMemoryExplicitLayout8BitAccess &&
-                      layout.workgroupMemoryExplicitLayout16BitAccess &&
-                      layout.workgroupMemoryExplicitLayoutScalarBlockLayout;
+  const bool blocks = features.workgroupMemoryExplicitLayout && features.workgroupMemoryExplicitLayout8BitAccess &&
+                      features.workgroupMemoryExplicitLayout16BitAccess &&
+                      features.workgroupMemoryExplicitLayoutScalarBlockLayout;
   std::vector<uint32_t> words(512);
   for (uint32_t& word : words) word = run.random.bits() & 0xbbffbbffu;
   const Buffer in = run.buffer_of(words), out = run.buffer(kInvocations * 16), scratch = run.buffer(8192);
@@ -513,8 +508,7 @@ void main() {
 }
 
 CTS_CASE("pointers", "zeroed_workgroup") {
-  run.require(run.gpu.extension_features.zero_workgroup.shaderZeroInitializeWorkgroupMemory,
-              "shaderZeroInitializeWorkgroupMemory");
+  run.require(run.gpu.extension_features.shaderZeroInitializeWorkgroupMemory, "shaderZeroInitializeWorkgroupMemory");
   const Buffer out = run.buffer(kInvocations * 4);
   const Resources res = run.resources({storage_buffer(0, out)});
   const VkPipeline pipeline = run.compute(res.layout, run.shader(VK_SHADER_STAGE_COMPUTE_BIT, R"(// target: vulkan1.1

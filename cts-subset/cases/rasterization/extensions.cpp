@@ -88,7 +88,7 @@ VkPrimitiveTopology any_topology(Random& random) {
 
 CTS_RANDOM("rasterization", "random_provoking_vertex", 30) {
   Random& random = run.random;
-  run.require(run.gpu.extension_features.provoking_vertex.provokingVertexLast, "provokingVertexLast");
+  run.require(run.gpu.extension_features.provokingVertexLast, "provokingVertexLast");
   Scene scene(random, random.pick({VK_FORMAT_UNDEFINED, VK_FORMAT_D16_UNORM}));
   VkPipelineRasterizationProvokingVertexStateCreateInfoEXT mode{
       VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT};
@@ -108,8 +108,8 @@ CTS_RANDOM("rasterization", "random_provoking_vertex", 30) {
 
 CTS_RANDOM("clipping", "random_depth_clip", 50) {
   Random& random = run.random;
-  const bool has_clip = run.gpu.extension_features.depth_clip_enable.depthClipEnable;
-  const bool has_control = run.gpu.extension_features.depth_clip_control.depthClipControl;
+  const bool has_clip = run.gpu.extension_features.depthClipEnable;
+  const bool has_control = run.gpu.extension_features.depthClipControl;
   run.require(has_clip && has_control, "depthClipEnable, depthClipControl");
   Scene scene(random, random.pick({VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM, VK_FORMAT_X8_D24_UNORM_PACK32}));
   VkPipelineRasterizationDepthClipStateCreateInfoEXT clip{
@@ -136,7 +136,7 @@ CTS_RANDOM("clipping", "random_depth_clip", 50) {
 /// `by_command`: mode and stipple are set by commands, and are others in the pipeline.
 void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool smooth, bool by_command = false) {
   Random& random = run.random;
-  const auto& features = run.gpu.extension_features.line_rasterization;
+  const auto& features = run.gpu.extension_features;
   run.require(features.bresenhamLines && features.rectangularLines, "bresenhamLines, rectangularLines");
   Scene scene(random, random.pick({VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT}));
   scene.target.samples = samples;
@@ -222,7 +222,7 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool s
                         std::to_string(line.lineStippleFactor) + ", pattern " +
                         std::to_string(line.lineStipplePattern) + ", vertices " + std::to_string(scene.count) + "\n");
   if (!by_command) return draw(run, scene);
-  const auto& dynamic = run.gpu.extension_features.extended_dynamic_state3;
+  const auto& dynamic = run.gpu.extension_features;
   run.require(dynamic.extendedDynamicState3LineRasterizationMode && dynamic.extendedDynamicState3LineStippleEnable,
               "dynamic line state");
   const VkLineRasterizationModeEXT mode = line.lineRasterizationMode;
@@ -239,7 +239,7 @@ void random_lines(Run& run, VkSampleCountFlagBits samples, bool stippled, bool s
 
 /// A strip of more lines than a worker takes at a time: the pattern runs on. All but the last lines lie in a corner.
 CTS_CASE("rasterization", "long_stippled_strip") {
-  run.require(run.gpu.extension_features.line_rasterization.stippledRectangularLines, "stippledRectangularLines");
+  run.require(run.gpu.extension_features.stippledRectangularLines, "stippledRectangularLines");
   Random& random = run.random;
   Scene scene(random);
   scene.target.width = scene.target.height = 64;
@@ -265,7 +265,7 @@ CTS_CASE("rasterization", "long_stippled_strip") {
 /// than a pixel in both directions (deviations.md, multisample-short-lines).
 CTS_RANDOM("rasterization", "random_line_stipple.samples_4", 15) {
   Random& random = run.random;
-  run.require(run.gpu.extension_features.line_rasterization.stippledRectangularLines, "stippledRectangularLines");
+  run.require(run.gpu.extension_features.stippledRectangularLines, "stippledRectangularLines");
   Scene scene(random);
   scene.target.samples = VK_SAMPLE_COUNT_4_BIT;
   scene.target.width = scene.target.height = 64;  // deviations.md, multisample-line-tiles
@@ -304,7 +304,7 @@ const bool kLines = [] {
   AddGenerator("rasterization", "random_line_stipple", 40,
                [](Run& run) { random_lines(run, VK_SAMPLE_COUNT_1_BIT, true, false); });
   AddGenerator("rasterization", "random_smooth_lines", 30, [](Run& run) {
-    run.require(run.gpu.extension_features.line_rasterization.smoothLines, "smoothLines");
+    run.require(run.gpu.extension_features.smoothLines, "smoothLines");
     const auto samples = run.random.pick({VK_SAMPLE_COUNT_1_BIT, VK_SAMPLE_COUNT_4_BIT});
     random_lines(run, samples, run.random.chance(0.3f), true);
   });
@@ -313,7 +313,7 @@ const bool kLines = [] {
 
 CTS_RANDOM("draw", "random_instance_divisor", 15) {
   Random& random = run.random;
-  const auto& features = run.gpu.extension_features.vertex_attribute_divisor;
+  const auto& features = run.gpu.extension_features;
   run.require(features.vertexAttributeInstanceRateDivisor && features.vertexAttributeInstanceRateZeroDivisor,
               "vertexAttributeInstanceRateDivisor");
   Scene scene(random);
@@ -358,7 +358,7 @@ void main() {
 
 CTS_RANDOM("draw", "random_list_restart", 20) {
   Random& random = run.random;
-  run.require(run.gpu.extension_features.list_restart.primitiveTopologyListRestart, "primitiveTopologyListRestart");
+  run.require(run.gpu.extension_features.primitiveTopologyListRestart, "primitiveTopologyListRestart");
   Scene scene(random);
   scene.spec.assembly.topology = any_topology(random);
   scene.spec.assembly.primitiveRestartEnable = VK_TRUE;

@@ -86,7 +86,7 @@ void record(Run& run, const Pass& pass, const std::function<void(VkCommandBuffer
 /// is 0, depth or stencil, which fragments read, too.
 void rasterization_order(Run& run, VkImageAspectFlags second) {
   const bool depth = second == VK_IMAGE_ASPECT_DEPTH_BIT, stencil = second == VK_IMAGE_ASPECT_STENCIL_BIT;
-  const auto& claimed = run.gpu.extension_features.rasterization_order;
+  const auto& claimed = run.gpu.extension_features;
   run.require(claimed.rasterizationOrderColorAttachmentAccess && claimed.rasterizationOrderDepthAttachmentAccess &&
                   claimed.rasterizationOrderStencilAttachmentAccess,
               "rasterization order attachment access");
@@ -146,8 +146,7 @@ CTS_RANDOM("renderpass", "rasterization_order.stencil", 4) { rasterization_order
 
 /// Draws that sample the texel they write; a barrier between them.
 CTS_CASE("renderpass", "feedback_loop.sampled") {
-  run.require(run.gpu.extension_features.attachment_feedback_loop.attachmentFeedbackLoopLayout,
-              "attachmentFeedbackLoopLayout");
+  run.require(run.gpu.extension_features.attachmentFeedbackLoopLayout, "attachmentFeedbackLoopLayout");
   const Image color = make_image(run, VK_FORMAT_R8G8B8A8_UNORM,
                                  VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                      VK_IMAGE_USAGE_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT);
@@ -183,9 +182,7 @@ void main() { result = fract(texelFetch(before, ivec2(gl_FragCoord.xy), 0).yzwx 
 /// Draws of one triangle each that read the texels they cover, a barrier between them: as an input attachment, or in a
 /// feedback loop. Fragments beside the triangle read what nobody writes.
 void read_between_draws(Run& run, bool input) {
-  if (!input)
-    run.require(run.gpu.extension_features.attachment_feedback_loop.attachmentFeedbackLoopLayout,
-                "attachmentFeedbackLoopLayout");
+  if (!input) run.require(run.gpu.extension_features.attachmentFeedbackLoopLayout, "attachmentFeedbackLoopLayout");
   const Image color =
       make_image(run, VK_FORMAT_R8G8B8A8_UNORM,
                  VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |

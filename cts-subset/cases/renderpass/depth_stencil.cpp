@@ -91,8 +91,7 @@ CTS_CASE("renderpass", "depth_stencil_resolve.d32_s8") { depth_stencil_resolve(r
 
 /// Depth and stencil of one image in layouts of their own, before, in and after the pass.
 CTS_CASE("renderpass", "separate_depth_stencil_layouts") {
-  run.require(run.gpu.extension_features.separate_depth_stencil_layouts.separateDepthStencilLayouts,
-              "separateDepthStencilLayouts");
+  run.require(run.gpu.extension_features.separateDepthStencilLayouts, "separateDepthStencilLayouts");
   constexpr VkExtent2D kExtent{64, 40};
   ImageSpec spec;
   spec.format = VK_FORMAT_D24_UNORM_S8_UINT;

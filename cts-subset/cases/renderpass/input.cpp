@@ -102,7 +102,7 @@ const bool kRegistered = [] {
 /// One of three input attachments, whose number is the draw's or the fragment's. The reference, which takes constants
 /// alone, chooses among them.
 void input_array(Run& run, bool nonuniform) {
-  const auto& indexing = run.gpu.extension_features.descriptor_indexing;
+  const auto& indexing = run.gpu.extension_features;
   const bool has =
       indexing.shaderInputAttachmentArrayDynamicIndexing && indexing.shaderInputAttachmentArrayNonUniformIndexing;
   constexpr uint32_t kInputs = 3;

@@ -212,7 +212,7 @@ void draw_views(Run& run, const ViewScene& scene, const ViewImages& images, uint
 /// One view at a time: with several the reference is wrong (deviations.md, multiview-layers).
 CTS_RANDOM("renderpass", "random_multiview", 40) {
   Random& random = run.random;
-  run.require(run.gpu.extension_features.multiview.multiview, "multiview");
+  run.require(run.gpu.extension_features.multiview, "multiview");
   const auto op = [&] { return static_cast<VkAttachmentLoadOp>(random.below(2)); };  // LOAD or CLEAR
   ViewScene scene{
       {16 + random.below(60), 16 + random.below(60)}, kLayers, op(), op(), random.chance(0.5f), {}, false, false};
@@ -232,10 +232,9 @@ constexpr float kInside = 0.5f;
 CTS_RANDOM("renderpass", "random_multiview_stages", 20) {
   Random& random = run.random;
   const bool geometry = random.chance(0.5f), tessellates = !geometry || random.chance(0.5f);
-  run.require(run.gpu.extension_features.multiview.multiview, "multiview");
-  run.require(!geometry || run.gpu.extension_features.multiview.multiviewGeometryShader, "multiviewGeometryShader");
-  run.require(!tessellates || run.gpu.extension_features.multiview.multiviewTessellationShader,
-              "multiviewTessellationShader");
+  run.require(run.gpu.extension_features.multiview, "multiview");
+  run.require(!geometry || run.gpu.extension_features.multiviewGeometryShader, "multiviewGeometryShader");
+  run.require(!tessellates || run.gpu.extension_features.multiviewTessellationShader, "multiviewTessellationShader");
   constexpr VkAttachmentLoadOp kClear = VK_ATTACHMENT_LOAD_OP_CLEAR;
   ViewScene scene{
       {16 + random.below(60), 16 + random.below(60)}, kLayers, kClear, kClear, false, {}, geometry, tessellates};
@@ -256,7 +255,7 @@ std::string judge_views(const std::vector<Output>& device, const std::vector<Out
 }
 
 void draw_together_and_alone(Run& run, bool geometry, bool tessellates) {
-  run.require(run.gpu.extension_features.multiview.multiview, "multiview");
+  run.require(run.gpu.extension_features.multiview, "multiview");
   constexpr VkAttachmentLoadOp kClear = VK_ATTACHMENT_LOAD_OP_CLEAR;
   ViewScene scene{{60, 50}, 3,          kClear,
                   kClear,   true,       run.buffer_of(random_vertices(run.random, 18, geometry ? kInside : 1.2f)),
@@ -274,9 +273,9 @@ const AddCase kViews("renderpass", "deviation.multiview_layers", "multiview-laye
 
 /// With stages behind the vertex shader the reference does it right.
 const AddCase kViewsBehindStages("renderpass", "multiview_behind_stages", [](Run& run) {
-  run.require(run.gpu.extension_features.multiview.multiviewGeometryShader &&
-                  run.gpu.extension_features.multiview.multiviewTessellationShader,
-              "multiview with all stages");
+  run.require(
+      run.gpu.extension_features.multiviewGeometryShader && run.gpu.extension_features.multiviewTessellationShader,
+      "multiview with all stages");
   draw_together_and_alone(run, true, true);
 });
 

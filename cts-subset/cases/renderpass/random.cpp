@@ -382,7 +382,7 @@ CTS_RANDOM("renderpass", "random", 200) { random_render_pass(run, Form::kFirst);
 
 CTS_RANDOM("renderpass", "random_renderpass2_imageless", 40) {
   run.require(run.gpu.has("VK_KHR_create_renderpass2"), "VK_KHR_create_renderpass2");
-  run.require(run.gpu.extension_features.imageless_framebuffer.imagelessFramebuffer, "imagelessFramebuffer");
+  run.require(run.gpu.extension_features.imagelessFramebuffer, "imagelessFramebuffer");
   random_render_pass(run, Form::kSecond);
 }
 

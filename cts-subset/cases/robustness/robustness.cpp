@@ -135,7 +135,7 @@ Binding null_image(uint32_t binding, VkDescriptorType type, VkSampler sampler = 
 }
 
 CTS_CASE("robustness", "null.buffers") {
-  run.require(run.gpu.extension_features.robustness2.nullDescriptor, "nullDescriptor");
+  run.require(run.gpu.extension_features.nullDescriptor, "nullDescriptor");
   const Buffer out = run.buffer(64 * 4);
   dispatch(run,
            run.resources({null_buffer(0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
@@ -154,7 +154,7 @@ void main() {
 }
 
 CTS_CASE("robustness", "null.images") {
-  run.require(run.gpu.extension_features.robustness2.nullDescriptor, "nullDescriptor");
+  run.require(run.gpu.extension_features.nullDescriptor, "nullDescriptor");
   const Buffer out = run.buffer(64 * 16);
   const VkSampler sampler = run.sampler(VK_FILTER_LINEAR);
   Binding texels{2, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, {}, {}, {VK_NULL_HANDLE}};
@@ -178,7 +178,7 @@ void main() {
 
 /// Vectors that begin inside of the bound range and end outside: each component by itself.
 CTS_CASE("robustness", "vector_partly_outside") {
-  run.require(run.gpu.extension_features.robustness2.robustBufferAccess2, "robustBufferAccess2");
+  run.require(run.gpu.extension_features.robustBufferAccess2, "robustBufferAccess2");
   const Buffer in = random_buffer(run, 64), out = run.buffer(64 * 16), stored = random_buffer(run, 64);
   Binding part = storage_buffer(0, in), target = storage_buffer(2, stored);
   part.buffers[0].range = target.buffers[0].range = 16 * 5 + 8;
@@ -199,7 +199,7 @@ void main() {
 
 /// Coordinates, layers, levels and samples that do not exist, for formats with and without alpha.
 void image_outside(Run& run, VkFormat format, VkImageViewType view, const char* sampler_type, const char* coord) {
-  run.require(run.gpu.extension_features.robustness2.robustImageAccess2, "robustImageAccess2");
+  run.require(run.gpu.extension_features.robustImageAccess2, "robustImageAccess2");
   ImageSpec spec;
   spec.format = format;
   spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;

@@ -86,7 +86,7 @@ CTS_CASE("spirv_assembly", "decorate_string") {
 }
 
 CTS_CASE("spirv_assembly", "local_size_id") {
-  run.require(run.gpu.extension_features.maintenance4.maintenance4, "maintenance4");
+  run.require(run.gpu.extension_features.maintenance4, "maintenance4");
   run_body(run, "%r = OpIAdd %uint %x %n\n", "%size = OpSpecConstant %uint 64\n", "; target: vulkan1.1\n",
            "OpExecutionModeId %main LocalSizeId %size %u1 %u1\nOpDecorate %size SpecId 9\n", "", "");
 }
@@ -224,8 +224,7 @@ CTS_CASE("spirv_assembly", "extended_arithmetic") {
 const bool kDotProducts = [] {
   for (const char* kind : {"SDot", "UDot", "SUDot"})
     AddCase("spirv_assembly", std::string("dot_product.") + kind, [kind](Run& run) {
-      run.require(run.gpu.extension_features.integer_dot_product.shaderIntegerDotProduct &&
-                      run.gpu.extension_features.float16_int8.shaderInt8,
+      run.require(run.gpu.extension_features.shaderIntegerDotProduct && run.gpu.extension_features.shaderInt8,
                   "shaderIntegerDotProduct");
       const std::string name = std::string("Op") + kind + "KHR", saturated = std::string("Op") + kind + "AccSatKHR";
       const std::string type = std::string(kind) == "UDot" ? "u" : "";
@@ -421,7 +420,7 @@ constexpr Rounding kNearestConstant = {kFloatControls, "OpExecutionMode %main Ro
 
 void convert_to_half(Run& run, const std::string& name, const Rounding& rounding, double ratio,
                      const std::vector<float>& values) {
-  const auto& storage = run.gpu.extension_features.storage_16bit;
+  const auto& storage = run.gpu.extension_features;
   run.require(storage.storageBuffer16BitAccess && run.gpu.features.shaderFloat64, "16-bit stores and doubles");
   run.require(*rounding.modes == 0 || run.gpu.has("VK_KHR_shader_float_controls"), "VK_KHR_shader_float_controls");
   std::ostringstream written;

@@ -70,7 +70,7 @@ constexpr char kOperands[] = R"(
 
 /// %r of type uint is stored.
 void run_row(Run& run, const std::string& body) {
-  run.require(run.gpu.extension_features.variable_pointers.variablePointers, "variablePointers");
+  run.require(run.gpu.extension_features.variablePointers, "variablePointers");
   ComputeText module;
   module.capabilities = kCapabilities;
   module.local_size = "8 1 1";

@@ -86,8 +86,7 @@ const bool kOperations = [] {
 
 /// The types beyond 32 bits that the device has.
 void extended_types(Run& run, const char* extensions, const std::string& statements, bool wide = true) {
-  run.require(run.gpu.extension_features.subgroup_extended_types.shaderSubgroupExtendedTypes,
-              "shaderSubgroupExtendedTypes");
+  run.require(run.gpu.extension_features.shaderSubgroupExtendedTypes, "shaderSubgroupExtendedTypes");
   run.require(!wide || (run.gpu.features.shaderInt64 && run.gpu.features.shaderFloat64),
               "shaderInt64 and shaderFloat64");
   run_statements(run, statements, 40, (std::string(kHeader) + extensions).c_str());
@@ -113,7 +112,7 @@ CTS_CASE("subgroups", "extended_types.double") {
 }
 
 CTS_CASE("subgroups", "extended_types.small") {
-  run.require(run.gpu.extension_features.float16_int8.shaderFloat16 && run.gpu.features.shaderInt16,
+  run.require(run.gpu.extension_features.shaderFloat16 && run.gpu.features.shaderInt16,
               "shaderFloat16 and shaderInt16");
   extended_types(run,
                  "#extension GL_EXT_shader_explicit_arithmetic_types : require\n"
@@ -257,7 +256,7 @@ CTS_RANDOM("subgroups", "random", 40) {
 
 /// Quads of fragments, helpers at the edges included, as derivatives see them.
 CTS_CASE("subgroups", "quad.fragment") {
-  run.require(run.gpu.extension_features.subgroup_size.subgroupSizeControl, "subgroupSizeControl");
+  run.require(run.gpu.extension_features.subgroupSizeControl, "subgroupSizeControl");
   const Target target = make_target(run, {.colors = {VK_FORMAT_R32G32B32A32_SFLOAT}});
   GraphicsSpec spec;
   spec.vertex =

@@ -56,11 +56,9 @@ VkSemaphoreSubmitInfo at(VkSemaphore semaphore, uint64_t value) {
 }
 
 void require_synchronization2(Run& run) {
-  run.require(run.gpu.extension_features.synchronization2.synchronization2, "synchronization2");
+  run.require(run.gpu.extension_features.synchronization2, "synchronization2");
 }
-void require_timeline(Run& run) {
-  run.require(run.gpu.extension_features.timeline_semaphore.timelineSemaphore, "timelineSemaphore");
-}
+void require_timeline(Run& run) { run.require(run.gpu.extension_features.timelineSemaphore, "timelineSemaphore"); }
 
 CTS_CASE("synchronization2", "pipeline_barrier") {
   require_synchronization2(run);

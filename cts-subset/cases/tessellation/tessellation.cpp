@@ -292,8 +292,7 @@ void main() {
 
 /// A restart ends a list of patches; what is left of a patch is dropped.
 CTS_CASE("tessellation", "patch_restart") {
-  run.require(run.gpu.extension_features.list_restart.primitiveTopologyPatchListRestart,
-              "primitiveTopologyPatchListRestart");
+  run.require(run.gpu.extension_features.primitiveTopologyPatchListRestart, "primitiveTopologyPatchListRestart");
   const Target target = make_target(run, large());
   GraphicsSpec spec = base_spec(run);
   spec.evaluation = evaluation("quads, equal_spacing, ccw");
@@ -408,10 +407,8 @@ void main() { result = vec4(passed.xy, float(gl_PrimitiveID % 256) / 255.0, floa
 
 /// Patch size and domain origin as commands.
 CTS_CASE("tessellation", "dynamic_state") {
-  run.require(run.gpu.extension_features.extended_dynamic_state2.extendedDynamicState2PatchControlPoints,
-              "dynamic patch size");
-  run.require(run.gpu.extension_features.extended_dynamic_state3.extendedDynamicState3TessellationDomainOrigin,
-              "dynamic domain origin");
+  run.require(run.gpu.extension_features.extendedDynamicState2PatchControlPoints, "dynamic patch size");
+  run.require(run.gpu.extension_features.extendedDynamicState3TessellationDomainOrigin, "dynamic domain origin");
   const Target target = make_target(run, large());
   GraphicsSpec spec = base_spec(run);
   spec.evaluation = evaluation("quads, equal_spacing, cw");

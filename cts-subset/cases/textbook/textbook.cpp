@@ -16,7 +16,7 @@ std::vector<uint32_t> words(const uint32_t (&array)[N]) {
 }
 
 void draw_scene(Run& run, const demo::TextbookScene& scene) {
-  run.require(run.gpu.extension_features.line_rasterization.bresenhamLines, "bresenhamLines");
+  run.require(run.gpu.extension_features.bresenhamLines, "bresenhamLines");
   TargetSpec target_spec;
   target_spec.width = demo::kTextbookWidth;
   target_spec.height = demo::kTextbookHeight;

@@ -44,7 +44,7 @@ Image random_image(Run& run, VkFormat format, VkExtent3D extent, VkImageViewType
 }
 
 CTS_RANDOM("texture", "custom_border", 12) {
-  run.require(run.gpu.extension_features.custom_border.customBorderColors, "customBorderColors");
+  run.require(run.gpu.extension_features.customBorderColors, "customBorderColors");
   Random& random = run.random;
   const VkFormat format =
       random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SNORM, VK_FORMAT_R16G16B16A16_SFLOAT,
@@ -90,7 +90,7 @@ CTS_RANDOM("texture", "shader_min_lod", 16) {
 }
 
 CTS_RANDOM("texture", "view_of_3d", 8) {
-  run.require(run.gpu.extension_features.view_of_3d.sampler2DViewOf3D, "sampler2DViewOf3D");
+  run.require(run.gpu.extension_features.sampler2DViewOf3D, "sampler2DViewOf3D");
   Random& random = run.random;
   const VkFormat format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT});
   const Image image =
@@ -127,7 +127,7 @@ CTS_RANDOM("texture", "block_texel_view", 24) {
 
 /// A slice of a volume as a storage image: read and written, with the other slices left alone.
 CTS_RANDOM("texture", "storage_view_of_3d", 8) {
-  run.require(run.gpu.extension_features.view_of_3d.image2DViewOf3D, "image2DViewOf3D");
+  run.require(run.gpu.extension_features.image2DViewOf3D, "image2DViewOf3D");
   Random& random = run.random;
   ImageSpec spec;
   spec.format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT});
@@ -171,7 +171,7 @@ CTS_RANDOM("texture", "minmax", 16) {
 
 /// Each face is an image of its own. The reference clamps to the edge whatever the address mode, so that is the mode.
 CTS_RANDOM("texture", "non_seamless_cube", 24) {
-  run.require(run.gpu.extension_features.non_seamless_cube.nonSeamlessCubeMap, "nonSeamlessCubeMap");
+  run.require(run.gpu.extension_features.nonSeamlessCubeMap, "nonSeamlessCubeMap");
   Random& random = run.random;
   const VkFormat format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R16G16B16A16_SFLOAT,
                                        VK_FORMAT_R5G6B5_UNORM_PACK16});

@@ -307,7 +307,7 @@ RandomLookup random_lookup(Run& run, const Family& family) {
   VkSamplerCreateInfo sampler_info = random_sampler(run, family, shape, image_spec);
   VkSamplerCustomBorderColorCreateInfoEXT custom{VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT};
   if (family.bordered && random.chance(0.7f)) {
-    run.require(run.gpu.extension_features.custom_border.customBorderColors, "customBorderColors");
+    run.require(run.gpu.extension_features.customBorderColors, "customBorderColors");
     for (int c = 0; c < 4; ++c) {
       if (is_integer(info))
         custom.customBorderColor.uint32[c] = random.below(100);

@@ -137,7 +137,7 @@ std::vector<Plane> make_planes(Run& run, VkFormat format, VkExtent3D extent, uin
   const bool disjoint = run.random.chance(0.4f);
   const bool by_planes = &run.gpu == &gpus().reference;
   run.note("format", std::string(desc.name) + (disjoint ? " disjoint" : ""));
-  run.require(by_planes || run.gpu.extension_features.ycbcr.samplerYcbcrConversion, "samplerYcbcrConversion");
+  run.require(by_planes || run.gpu.extension_features.samplerYcbcrConversion, "samplerYcbcrConversion");
   const VkImage whole = by_planes ? VK_NULL_HANDLE : make_image(run, format, extent, layers, usage, disjoint);
   std::vector<Plane> planes;
   for (uint32_t p = 0; p < desc.plane_count; ++p) {

@@ -195,7 +195,7 @@ void main() { r[gl_GlobalInvocationID.x] = textureLod(t, at[gl_GlobalInvocationI
 
 void convert(Run& run, const YcbcrFormat& format) {
   const bool by_formulas = &run.gpu == &gpus().reference;
-  run.require(by_formulas || run.gpu.extension_features.ycbcr.samplerYcbcrConversion, "samplerYcbcrConversion");
+  run.require(by_formulas || run.gpu.extension_features.samplerYcbcrConversion, "samplerYcbcrConversion");
   const Planes planes(run.random, format.name);
   const VkImage image = by_formulas ? VK_NULL_HANDLE : make_image(run, format, planes);
   for (int n = 0; n < 4; ++n) {

@@ -152,7 +152,7 @@ const bool kRegistered = [] {
     AddCase("transform_feedback", std::string("vertex.") + topology.name,
             [=](Run& run) { capture(run, base_spec(topology.value), false); });
     AddCase("transform_feedback", std::string("last_provoking_vertex.") + topology.name, [=](Run& run) {
-      run.require(run.gpu.extension_features.provoking_vertex.transformFeedbackPreservesProvokingVertex,
+      run.require(run.gpu.extension_features.transformFeedbackPreservesProvokingVertex,
                   "transformFeedbackPreservesProvokingVertex");
       VkPipelineRasterizationProvokingVertexStateCreateInfoEXT provoking{
           VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT};
@@ -298,8 +298,8 @@ void main() {
 /// Numbers of 16 bits take two bytes each. The reference, whose outputs have 32 bits, captures pairs of them as words.
 GraphicsSpec narrow_spec(Run& run) {
   const auto& features = run.gpu.extension_features;
-  run.require(run.gpu.features.shaderInt16 && features.float16_int8.shaderFloat16, "16-bit arithmetic");
-  const bool narrow = features.storage_16bit.storageInputOutput16;
+  run.require(run.gpu.features.shaderInt16 && features.shaderFloat16, "16-bit arithmetic");
+  const bool narrow = features.storageInputOutput16;
   GraphicsSpec spec = base_spec(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP);
   spec.vertex = "#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types : require\n";
   spec.vertex += narrow ? R"(#extension GL_EXT_shader_16bit_storage : require

@@ -6,13 +6,13 @@ namespace vitrine::cts {
 namespace {
 
 bool eds1() {
-  return both([](const auto& f) { return f.extended_dynamic_state.extendedDynamicState; });
+  return both([](const auto& f) { return f.extendedDynamicState; });
 }
 bool eds2(VkBool32 VkPhysicalDeviceExtendedDynamicState2FeaturesEXT::*member) {
-  return both([&](const auto& f) { return f.extended_dynamic_state2.*member; });
+  return both([&](const auto& f) { return f.*member; });
 }
 bool eds3(VkBool32 VkPhysicalDeviceExtendedDynamicState3FeaturesEXT::*member) {
-  return both([&](const auto& f) { return f.extended_dynamic_state3.*member; });
+  return both([&](const auto& f) { return f.*member; });
 }
 using Second = VkPhysicalDeviceExtendedDynamicState2FeaturesEXT;
 using Third = VkPhysicalDeviceExtendedDynamicState3FeaturesEXT;
@@ -172,7 +172,7 @@ void DynamicState::leave_viewports() {
           else
             vkCmdSetScissor(c, 0, count, right_.scissors.data());
         });
-  const bool control = both([](const auto& f) { return f.depth_clip_control.depthClipControl; });
+  const bool control = both([](const auto& f) { return f.depthClipControl; });
   const VkBool32 symmetric = control_ && control_->negativeOneToOne;
   leave_value(
       VK_DYNAMIC_STATE_DEPTH_CLIP_NEGATIVE_ONE_TO_ONE_EXT,
@@ -204,7 +204,7 @@ void DynamicState::leave_rasterization() {
   leave_value(
       VK_DYNAMIC_STATE_DEPTH_CLAMP_ENABLE_EXT, eds3(&Third::extendedDynamicState3DepthClampEnable),
       [&] { wrong.depthClampEnable = VK_FALSE; }, CTS_COMMAND(gpu, CmdSetDepthClampEnableEXT), right.depthClampEnable);
-  const bool clips = both([](const auto& f) { return f.depth_clip_enable.depthClipEnable; });
+  const bool clips = both([](const auto& f) { return f.depthClipEnable; });
   const VkBool32 clip = clip_ ? clip_->depthClipEnable : !right.depthClampEnable;
   leave_value(
       VK_DYNAMIC_STATE_DEPTH_CLIP_ENABLE_EXT, clips && eds3(&Third::extendedDynamicState3DepthClipEnable),
@@ -391,8 +391,7 @@ void DynamicState::leave_blending(uint32_t colors) {
       writes_ ? std::vector<VkBool32>(writes_->pColorWriteEnables, writes_->pColorWriteEnables + colors)
               : std::vector<VkBool32>(colors, VK_TRUE);
   leave(
-      VK_DYNAMIC_STATE_COLOR_WRITE_ENABLE_EXT,
-      both([](const auto& f) { return f.color_write_enable.colorWriteEnable; }),
+      VK_DYNAMIC_STATE_COLOR_WRITE_ENABLE_EXT, both([](const auto& f) { return f.colorWriteEnable; }),
       [&] {
         // The structure's array stays: it is the application's. Without the structure everything is written.
         if (writes_) spec_.blend.pNext = nullptr;
@@ -406,8 +405,7 @@ void DynamicState::leave_blending(uint32_t colors) {
 void DynamicState::leave_vertex_input() {
   const Gpu& gpu = run_.gpu;
   if (right_.bindings.size() != 1) return;
-  const bool all =
-      both([](const auto& f) { return f.vertex_input_dynamic_state.vertexInputDynamicState; }) && random_.chance(0.5f);
+  const bool all = both([](const auto& f) { return f.vertexInputDynamicState; }) && random_.chance(0.5f);
   if (!all) {
     binds_with_stride_ = takes(VK_DYNAMIC_STATE_VERTEX_INPUT_BINDING_STRIDE, eds1());
     if (binds_with_stride_) spec_.bindings[0].stride = 16;

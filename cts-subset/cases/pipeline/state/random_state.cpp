@@ -29,14 +29,13 @@ void random_pass(Random& second, Scene& scene) {
   TargetSpec& target = scene.target;
   const bool dynamic = second.chance(0.4f), suspends = second.chance(0.4f), secondary = second.chance(0.2f);
   const bool depth = second.chance(0.5f), views = second.chance(0.1f), nothing = second.chance(0.3f);
-  scene.dynamic_rendering = dynamic && both([](const auto& f) { return f.dynamic_rendering.dynamicRendering; });
+  scene.dynamic_rendering = dynamic && both([](const auto& f) { return f.dynamicRendering; });
   scene.suspends = scene.dynamic_rendering && suspends;
   scene.secondary = secondary && !scene.suspends;
   if (target.colors.empty() && nothing) target.depth = VK_FORMAT_UNDEFINED;
   scene.resolves_depth = scene.dynamic_rendering && scene.multisampled && target.depth && depth;
-  const bool all_stages = both([](const auto& f) {
-    return f.multiview.multiview && f.multiview.multiviewGeometryShader && f.multiview.multiviewTessellationShader;
-  });
+  const bool all_stages =
+      both([](const auto& f) { return f.multiview && f.multiviewGeometryShader && f.multiviewTessellationShader; });
   if (!views || !all_stages || scene.attachmentless()) return;
   target.layers = 3;
   // deviations.md, multiview-layers
@@ -117,7 +116,7 @@ void random_rasterization(Run& run, const Scene& scene, DrawState& draw) {
     draw.drawn = lines ? Drawn::kLines : Drawn::kPoints;
   }
   draw.provoking.provokingVertexMode = static_cast<VkProvokingVertexModeEXT>(random.below(2));
-  if (run.gpu.extension_features.provoking_vertex.provokingVertexLast) raster.pNext = &draw.provoking;
+  if (run.gpu.extension_features.provokingVertexLast) raster.pNext = &draw.provoking;
   if (draw.drawn == Drawn::kLines) random_lines(run, scene, draw);
   const bool stippled = draw.drawn == Drawn::kLines && draw.line.stippledLineEnable;
   // deviations.md: point-clipping, stipple-counter, multisample-short-lines
@@ -308,14 +307,14 @@ void random_surroundings(Run& run, Random& second, const Scene& scene, DrawState
   const bool writes = second.chance(0.15f), lower = second.chance(0.4f), left = second.chance(0.5f);
   draw.indirect = second.chance(0.2f);
   draw.dynamic_share = left ? second.unit() : 0;
-  draw.conditional = conditional && both([](const auto& f) { return f.conditional_rendering.conditionalRendering; });
+  draw.conditional = conditional && both([](const auto& f) { return f.conditionalRendering; });
   draw.predicate = second.below(2);
   draw.predicate_flags = second.below(2) ? VK_CONDITIONAL_RENDERING_INVERTED_BIT_EXT : 0;
   const bool views = scene.target.view_mask != 0;
   draw.stages.captured = captured && !views && run.gpu.has("VK_EXT_transform_feedback");
   draw.queried = queried && !views;
   draw.stages.views = views;
-  if (writes && both([](const auto& f) { return f.color_write_enable.colorWriteEnable; })) {
+  if (writes && both([](const auto& f) { return f.colorWriteEnable; })) {
     for (size_t i = 0; i < scene.target.colors.size(); ++i) draw.color_writes.push_back(second.chance(0.6f));
     draw.color_write_info.attachmentCount = static_cast<uint32_t>(draw.color_writes.size());
     draw.color_write_info.pColorWriteEnables = draw.color_writes.data();
@@ -398,8 +397,7 @@ void random_command(Random& second, const Scene& scene, RecordedDraw& draw) {
   draw.seed = second.bits64();
   const VkIndexType type =
       second.pick({VK_INDEX_TYPE_UINT16, VK_INDEX_TYPE_UINT16, VK_INDEX_TYPE_UINT32, VK_INDEX_TYPE_UINT8_EXT});
-  if (type != VK_INDEX_TYPE_UINT8_EXT || both([](const auto& f) { return f.index_type_uint8.indexTypeUint8; }))
-    draw.index_type = type;
+  if (type != VK_INDEX_TYPE_UINT8_EXT || both([](const auto& f) { return f.indexTypeUint8; })) draw.index_type = type;
   draw.first_vertex = second.chance(0.2f) ? 1 + second.below(9) : 0;
   draw.first_instance = second.chance(0.2f) ? 1 + second.below(2) : 0;
   if (draw.state.indirect && !gpus().reference.features.drawIndirectFirstInstance) draw.first_instance = 0;
