@@ -15,10 +15,6 @@ bool is_scaled(const FormatDesc& format) { return any_numeric(format, Numeric::k
 
 bool can_decode(const FormatDesc& format) { return format.plain; }
 
-bool can_fetch_vertices(const FormatDesc& format) {
-  return format.plain || (format.channel_count != 0 && format.channel[0].bits == 64 && format.is_integer());
-}
-
 bool can_encode(const FormatDesc& format) { return format.plain && !is_scaled(format); }
 
 bool can_sample(const FormatDesc& format) {
@@ -36,17 +32,8 @@ bool can_sample(const FormatDesc& format) {
   }
 }
 
-bool can_filter(const FormatDesc& format) { return can_sample(format) && !format.is_integer(); }
-
 bool can_store(const FormatDesc& format) {
   return can_encode(format) && !format.is_depth_stencil() && format.format != VK_FORMAT_E5B9G9R9_UFLOAT_PACK32;
 }
-
-bool can_atomic(const FormatDesc& format) {
-  return format.format == VK_FORMAT_R32_UINT || format.format == VK_FORMAT_R32_SINT ||
-         format.format == VK_FORMAT_R32_SFLOAT;
-}
-
-bool can_copy(const FormatDesc& format) { return format.block_bytes != 0; }
 
 }  // namespace vitrine::texel

@@ -4,7 +4,8 @@
 usage: generate.py VK_XML MANIFEST_FOLDER OUTPUT_FOLDER
 
 Output: enums.h (Extension, Feature), structure_types.h (sType of every structure), entry_points.h (declaration of every
-command), tables.cpp (entry points, extensions, feature and property structures as constexpr tables).
+command), tables.cpp (entry points, extensions, feature and property structures as constexpr tables), limit_rules.h (what
+the tests ask of the limits).
 """
 import pathlib
 import re
@@ -225,8 +226,8 @@ namespace vitrine::icd::entry {{
                 structs.append(f"    {{{struct.stype}, sizeof({struct.name}), &k{struct.name}}},\n")
         return constants, structs
 
-    def _limit_checks(self):
-        """One row per number of VkPhysicalDeviceLimits: value, required minimum, direction."""
+    def limit_rules(self):
+        """For the tests: one row per number of VkPhysicalDeviceLimits: value, required minimum, direction."""
         lines = []
         for member in self.registry.structs["VkPhysicalDeviceLimits"].members:
             limit = self.claims.limit(member.name)
@@ -241,7 +242,28 @@ namespace vitrine::icd::entry {{
                 direction = {"min": "kAtMost", "bitmask": "kContains"}.get(kind, "kAtLeast")
                 lines.append(f'    {{"{member.name}", static_cast<double>({value}), '
                              f'static_cast<double>({minimum}), LimitRule::{direction}}},\n')
-        return lines
+        return f"""#pragma once
+
+#include <cstdint>
+
+#include "icd/edge/vulkan_api.h"
+
+namespace vitrine::icd {{
+
+/// A claimed number beside what the specification requires of it.
+struct LimitRule {{
+  enum Direction : std::uint8_t {{ kAtLeast, kAtMost, kContains }};
+  const char* name;
+  double value;
+  double required;
+  Direction direction;
+}};
+
+inline constexpr LimitRule kLimitRules[] = {{
+{"".join(lines)}}};
+
+}}  // namespace vitrine::icd
+"""
 
     def _format_table(self):
         def bits(words):
@@ -293,9 +315,6 @@ constexpr PropertyStruct kPropertyStructs[] = {{
 constexpr FormatClaim kFormatClaims[] = {{
 {"".join(self._format_table())}}};
 
-constexpr LimitRule kLimitRules[] = {{
-{"".join(self._limit_checks())}}};
-
 }}  // namespace
 
 std::span<const EntryPoint> entry_points() {{ return kEntryPoints; }}
@@ -308,7 +327,6 @@ std::span<const FeatureMember> feature_members(const FeatureStruct& structure) {
 }}
 std::span<const PropertyStruct> property_structs() {{ return kPropertyStructs; }}
 std::span<const FormatClaim> format_claims() {{ return kFormatClaims; }}
-std::span<const LimitRule> limit_rules() {{ return kLimitRules; }}
 const VkPhysicalDeviceProperties& claimed_properties() {{ return kVkPhysicalDeviceProperties; }}
 
 }}  // namespace vitrine::icd
@@ -323,6 +341,7 @@ def main():
     write(output / "structure_types.h", generator.structure_types())
     write(output / "entry_points.h", generator.entry_points())
     write(output / "tables.cpp", generator.tables())
+    write(output / "limit_rules.h", generator.limit_rules())
 
 
 if __name__ == "__main__":

@@ -77,15 +77,6 @@ struct PropertyStruct {
   const void* values;
 };
 
-/// A claimed number beside what the specification requires of it.
-struct LimitRule {
-  enum Direction : std::uint8_t { kAtLeast, kAtMost, kContains };
-  const char* name;
-  double value;
-  double required;
-  Direction direction;
-};
-
 struct FormatClaim {
   VkFormat format;
   VkFormatProperties properties;
@@ -101,7 +92,6 @@ std::span<const FeatureStruct> feature_structs();
 std::span<const FeatureMember> feature_members(const FeatureStruct& structure);
 std::span<const PropertyStruct> property_structs();
 std::span<const FormatClaim> format_claims();
-std::span<const LimitRule> limit_rules();
 /// VkPhysicalDeviceProperties as claimed; name, type and UUIDs are filled in by the physical device.
 const VkPhysicalDeviceProperties& claimed_properties();
 

@@ -146,6 +146,17 @@ void project(Translator& t, ir::ValueId full, ir::ValueId& coord, ir::ValueId& d
   if (dref != ir::kNoValue) dref = emit(t, ir::Op::kFMul, 1, false, {whole(dref), whole(inverse)});
 }
 
+/// "The coordinates are relative to the fragment's own (x, y, layer)" (Vulkan, Image Operations: Texel Input). The
+/// layer is that of the view; a view of an image without layers ignores it.
+ir::ValueId own_texel(Translator& t, ir::ValueId offset) {
+  const ir::ValueId own = fragment_position(t);
+  std::vector<ir::Src> parts;
+  for (std::uint8_t c = 0; c < 2; c++)
+    parts.push_back(whole(emit(t, ir::Op::kIAdd, 1, false, {splat(own, c), splat(offset, c)})));
+  parts.push_back(splat(own, 2));
+  return vec(t, std::move(parts), false);
+}
+
 }  // namespace
 
 void ImageSources::add(ImageOperand operand, ir::ValueId value) {
@@ -244,17 +255,6 @@ void image_sample(Translator& t, const Inst& inst, ir::Op) {
   if (info->in_quads && !given && !shape.gather) t.function.interface.needs_helpers = true;
   const std::uint32_t count = leaf_info(t, inst.result_type).components;
   set_value(t, inst, finish(t, std::move(info), sources, count));
-}
-
-/// "The coordinates are relative to the fragment's own (x, y, layer)" (Vulkan, Image Operations: Texel Input). The
-/// layer is that of the view; a view of an image without layers ignores it.
-ir::ValueId own_texel(Translator& t, ir::ValueId offset) {
-  const ir::ValueId own = fragment_position(t);
-  std::vector<ir::Src> parts;
-  for (std::uint8_t c = 0; c < 2; c++)
-    parts.push_back(whole(emit(t, ir::Op::kIAdd, 1, false, {splat(own, c), splat(offset, c)})));
-  parts.push_back(splat(own, 2));
-  return vec(t, std::move(parts), false);
 }
 
 void image_access(Translator& t, const Inst& inst, ir::Op) {

@@ -203,10 +203,16 @@ TEST_F(Formats, ClaimsDoNotExceedWhatTexelDoes) {
       {VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT, texel::can_sample},
       // Of a combined format the depth aspect is filtered.
       {VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT,
-       [](const texel::FormatDesc& format) { return texel::can_filter(format) || format.has_stencil(); }},
+       [](const texel::FormatDesc& format) {
+         return (texel::can_sample(format) && !format.is_integer()) || format.has_stencil();
+       }},
       {VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT, texel::can_store},
-      {VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT, texel::can_atomic},
-      {VK_FORMAT_FEATURE_TRANSFER_SRC_BIT, texel::can_copy},
+      {VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT,
+       [](const texel::FormatDesc& format) {
+         return format.format == VK_FORMAT_R32_UINT || format.format == VK_FORMAT_R32_SINT ||
+                format.format == VK_FORMAT_R32_SFLOAT;
+       }},
+      {VK_FORMAT_FEATURE_TRANSFER_SRC_BIT, [](const texel::FormatDesc& format) { return format.block_bytes != 0; }},
       {VK_FORMAT_FEATURE_BLIT_SRC_BIT, texel::can_sample},
       {VK_FORMAT_FEATURE_BLIT_DST_BIT, texel::can_encode},
       {VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT, texel::can_encode},
@@ -214,7 +220,10 @@ TEST_F(Formats, ClaimsDoNotExceedWhatTexelDoes) {
        [](const texel::FormatDesc& format) { return format.is_depth_stencil(); }},
   };
   constexpr Backing kBuffer[] = {
-      {VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT, texel::can_fetch_vertices},
+      {VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT,
+       [](const texel::FormatDesc& format) {
+         return format.plain || (format.channel_count != 0 && format.channel[0].bits == 64 && format.is_integer());
+       }},
       {VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT, texel::can_decode},
       {VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT, texel::can_store},
   };

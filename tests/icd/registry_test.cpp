@@ -2,8 +2,10 @@
 #include "icd/registry/registry.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
+#include "icd/limit_rules.h"
 #include "tests/icd/fixture.h"
 
 namespace vitrine::icd {
@@ -48,8 +50,8 @@ TEST(Registry, ExtensionCommandsNeedTheirExtension) {
 }
 
 TEST(Registry, LimitsMeetTheSpecification) {
-  EXPECT_GT(limit_rules().size(), 80u);
-  for (const LimitRule& rule : limit_rules()) {
+  EXPECT_GT(std::size(kLimitRules), 80u);
+  for (const LimitRule& rule : kLimitRules) {
     const auto value = static_cast<std::int64_t>(rule.value);
     const auto required = static_cast<std::int64_t>(rule.required);
     const bool met = rule.direction == LimitRule::kAtLeast  ? rule.value >= rule.required
