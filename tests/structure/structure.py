@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks the shape of the tree: include directions between rooms and inside them, rooms in the README, tests behind
-claims, opcodes and steps, capabilities, long files.
+claims, opcodes and steps, capabilities, dynamic states, long files.
 
 usage: structure.py SOURCE_FOLDER
 Exit status 1 and one line per fault. The tail of file sizes is printed, never a fault.
@@ -213,6 +213,25 @@ def capability_faults(root):
             yield f"spirv/capabilities.def: {name} is {'claimed but missing' if allowed else 'not claimed'}"
 
 
+def dynamic_state_faults(root):
+    """icd/record/dynamic_state.def has every VkDynamicState that extensions bring which manifest/ claims.
+
+    VK_EXT_extended_dynamic_state3 has a feature for each of its states: those that are claimed."""
+    text = (root / "icd/record/dynamic_state.def").read_text()
+    listed = set(re.findall(r"^VITRINE_DYNAMIC_\w+\(\w+, (\w+),", text, re.MULTILINE))
+    claimed = {file: set(re.findall(r"^(\w+) *;", (root / "manifest" / file).read_text(), re.MULTILINE))
+               for file in ("extensions", "features")}
+    for registry in [p for p in map(pathlib.Path, REGISTRIES) if p.exists()][:1]:
+        for extension in ElementTree.parse(registry).iter("extension"):
+            for row in extension.iterfind("require/enum[@extends='VkDynamicState']"):
+                state = row.attrib["name"].removeprefix("VK_DYNAMIC_STATE_")
+                feature = "extendedDynamicState3" + "".join(w.title() for w in state.split("_")[:-1])
+                third = extension.attrib["name"] == "VK_EXT_extended_dynamic_state3"
+                wanted = feature in claimed["features"] if third else extension.attrib["name"] in claimed["extensions"]
+                if "alias" not in row.attrib and wanted and state not in listed:
+                    yield f"icd/record/dynamic_state.def: lacks {state}, which {extension.attrib['name']} brings"
+
+
 def pass_faults(root):
     """spirv/rewrite/passes.def names the file of each step, and every step and its file are in it."""
     base = root / "spirv/rewrite"
@@ -255,7 +274,7 @@ def report_tail(root):
 
 
 CHECKS = (include_faults, part_faults, circle_faults, header_faults, room_faults, claim_faults, opcode_faults,
-          step_faults, capability_faults, pass_faults, shape_faults)
+          step_faults, capability_faults, dynamic_state_faults, pass_faults, shape_faults)
 
 
 def main():
