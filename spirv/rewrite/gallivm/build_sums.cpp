@@ -3,6 +3,8 @@
 // vector it does not know, unless all of the vector is literal (lavapipe-optimizer.md 6.5).
 #include "base/float_mode.h"
 #include "spirv/rewrite/gallivm/passes.h"
+#include "spirv/rewrite/graph/build.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/nir/constant_expressions.h"
 
 namespace vitrine::spirv::rewriting {
@@ -21,8 +23,7 @@ class Adder {
     if (sum.op != Op::kFSum2 && sum.op != Op::kFSum3 && sum.op != Op::kFSum4) return;
     Src total = part(sum, 0);
     for (unsigned c = 1; c < operand_components(sum, 0); ++c) total = add(id, sum, total, part(sum, c));
-    graph_.replace_uses(sum.result, total.value);
-    graph_.remove(id);
+    replace_inst(graph_, id, total.value);
   }
 
  private:
@@ -40,14 +41,8 @@ class Adder {
   }
 
   Src add(InstId position, const Inst& like, Src a, Src b) {
-    const InstId made = graph_.create(like.kind, Op::kFAdd, 1, false, 2);
-    graph_.insts[made].width = like.width;
-    graph_.insts[made].exact = like.exact;
-    graph_.insts[made].origin = like.origin;
+    const InstId made = graph_.values[Builder(graph_, position).like(like, Op::kFAdd, {a, b}).value].def;
     graph_.insts[made].opaque = true;
-    graph_.set_source(made, 0, a);
-    graph_.set_source(made, 1, b);
-    graph_.insert_before(position, made);
     return folded(made);
   }
 
@@ -56,20 +51,18 @@ class Adder {
     std::uint32_t literal[3] = {};
     const Inst& inst = graph_.insts[id];
     for (const std::uint32_t i : {0u, 1u}) {
-      const Src src = graph_.source(inst, i);
-      const Inst* constant = graph_.constant(src.value);
-      if (!constant) return {inst.result, {0, 0, 0, 0}};
-      literal[i] = constant->imm[src.swizzle[0]];
+      const std::optional<std::uint32_t> known = literal_of(graph_, graph_.source(inst, i));
+      if (!known) return result_of(graph_, id);
+      literal[i] = *known;
     }
     if (inst.kind == Kind::kAlu) {
       evaluate(inst.op, literal, words[0]);
     } else {
       evaluate_sized(graph_, inst, 0, words);
     }
-    const InstId made = graph_.create_const(1, false, words);
-    graph_.insert_before(id, made);
+    const Src made = Builder(graph_, id).literal(words[0]);
     graph_.remove(id);
-    return {graph_.insts[made].result, {0, 0, 0, 0}};
+    return made;
   }
 
   Graph& graph_;

@@ -50,6 +50,18 @@ Src Builder::alu(Op op, std::initializer_list<Src> operands, unsigned components
   return make(Kind::kAlu, op, components, ir::alu_info(op).result == 'B', std::span(operands.begin(), operands.size()));
 }
 
+Src Builder::like(const Inst& model, Op op, std::initializer_list<Src> operands, unsigned components) {
+  const Kind kind = model.kind;
+  const std::uint8_t width = model.width;
+  const bool exact = model.exact;
+  const Src made =
+      make(kind, op, components, ir::alu_info(op).result == 'B', std::span(operands.begin(), operands.size()));
+  Inst& inst = graph_.insts[graph_.values[made.value].def];
+  inst.width = width;
+  inst.exact = exact;
+  return made;
+}
+
 Src Builder::wide(Op op, std::span<const Src> operands) {
   const char result = ir::wide_info(op).result;
   return make(Kind::kIntrinsic, op, ir::wide_words(result), result == 'B', operands);

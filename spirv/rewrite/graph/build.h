@@ -21,6 +21,9 @@ class Builder {
   /// An operation of ops.def on numbers of 32 bits.
   Src alu(Op op, std::initializer_list<Src> operands, unsigned components = 1);
 
+  /// An operation on numbers as wide as those of `model`, exact if that is.
+  Src like(const Inst& model, Op op, std::initializer_list<Src> operands, unsigned components = 1);
+
   /// An operation of wide_ops.def.
   Src wide(Op op, std::span<const Src> operands);
   Src wide(Op op, std::initializer_list<Src> operands) {

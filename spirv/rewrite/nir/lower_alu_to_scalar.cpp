@@ -1,6 +1,7 @@
 // Arithmetic on vectors becomes arithmetic on their components (nir_lower_alu_width.c; lavapipe-optimizer.md 3.7).
 #include <initializer_list>
 
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/nir/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -40,11 +41,7 @@ class Reducer {
  public:
   Reducer(Graph& graph, InstId id) : graph_(graph), inst_(graph.insts[id]), id_(id) {}
 
-  void run() {
-    const Src made = reduced();
-    graph_.replace_uses(inst_.result, made.value);
-    graph_.remove(id_);
-  }
+  void run() { replace_inst(graph_, id_, reduced().value); }
 
   static bool knows(Op op) {
     switch (op) {
@@ -74,8 +71,7 @@ class Reducer {
         return add(Op::kPackHalf2x16Split, {part(0, 0), part(0, 1)});
       case Op::kUnpackHalf2x16: {
         const Src low = add(Op::kUnpackHalf2x16SplitX, {part(0, 0)});
-        return place(graph_.create(Kind::kVec, Op::kVec, 2, false, 2),
-                     {low, add(Op::kUnpackHalf2x16SplitY, {part(0, 0)})});
+        return build().vec({low, add(Op::kUnpackHalf2x16SplitY, {part(0, 0)})});
       }
       default:
         return dot();
@@ -98,21 +94,9 @@ class Reducer {
   }
 
   Src part(std::uint32_t index, unsigned c) const { return component(graph_, inst_, index, c); }
-  Src literal(std::uint32_t bits) { return place(graph_.create_const(1, false, &bits), {}); }
-  Src add(Op op, std::initializer_list<Src> operands) {
-    const auto count = static_cast<std::uint32_t>(operands.size());
-    return place(graph_.create(inst_.kind, op, 1, false, count), operands);
-  }
-
-  Src place(InstId made, std::initializer_list<Src> operands) {
-    graph_.insts[made].width = inst_.width;
-    graph_.insts[made].exact = inst_.exact;
-    graph_.insts[made].origin = inst_.origin;
-    std::uint32_t index = 0;
-    for (const Src& src : operands) graph_.set_source(made, index++, src);
-    graph_.insert_before(id_, made);
-    return {graph_.insts[made].result, {}};
-  }
+  Builder build() { return {graph_, id_}; }
+  Src literal(std::uint32_t bits) { return build().literal(bits); }
+  Src add(Op op, std::initializer_list<Src> operands) { return build().like(inst_, op, operands); }
 
   Graph& graph_;
   const Inst inst_;

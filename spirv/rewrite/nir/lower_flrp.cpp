@@ -1,6 +1,7 @@
 // What mixes of halves consist of: x * (1 + -a) + y * a, or x + a * (y + -x) between literals. The reference decides by
 // reading halves as doubles, to which all literals but 0 are alike, and none is 1 or -1 (lavapipe-shader-math.md 5.3;
 // lavapipe-optimizer.md 3.8).
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/nir/passes.h"
 
 namespace vitrine::spirv::rewriting {
@@ -33,25 +34,11 @@ class Mixer {
     return true;
   }
 
-  Src place(InstId made) {
-    graph_.insts[made].origin = graph_.insts[id_].origin;
-    graph_.insert_before(id_, made);
-    return {graph_.insts[made].result, {0, 1, 2, 3}};
-  }
-
-  Src one() {
-    const std::uint32_t bits = 0x3c00;
-    return {place(graph_.create_const(1, false, &bits)).value, {0, 0, 0, 0}};
-  }
-
+  Builder build() { return {graph_, id_}; }
+  Src one() { return build().literal(0x3c00); }
   Src apply(Op op, std::initializer_list<Src> operands) {
-    const InstId made = graph_.create(Kind::kSized, op, graph_.insts[id_].components, false,
-                                      static_cast<std::uint32_t>(operands.size()));
-    graph_.insts[made].width = 16;
-    graph_.insts[made].exact = graph_.insts[id_].exact;
-    std::uint32_t index = 0;
-    for (const Src& src : operands) graph_.set_source(made, index++, src);
-    return place(made);
+    const Inst& mix = graph_.insts[id_];
+    return build().like(mix, op, operands, mix.components);
   }
 
   Src negate(Src a) { return apply(Op::kFNeg, {a}); }

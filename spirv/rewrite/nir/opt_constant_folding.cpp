@@ -1,7 +1,9 @@
 // Operations on constants become their results (nir_opt_constant_folding.c; lavapipe-optimizer.md 4.7).
 #include "base/float_mode.h"
 #include "base/numeric.h"
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/literals.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/nir/constant_expressions.h"
 #include "spirv/rewrite/nir/passes.h"
 
@@ -11,21 +13,17 @@ namespace {
 using Kind = Inst::Kind;
 
 void become_constant(Graph& graph, InstId id, const std::uint32_t* bits) {
-  const Inst inst = graph.insts[id];
-  const InstId folded = graph.create_const(inst.components, inst.boolean, bits);
-  graph.insert_before(id, folded);
-  graph.replace_uses(inst.result, graph.insts[folded].result);
-  graph.remove(id);
+  const Inst& inst = graph.insts[id];
+  replace_inst(graph, id, Builder(graph, id).literal(inst.components, inst.boolean, bits).value);
 }
 
 bool fold_vector(Graph& graph, InstId id) {
   const Inst& inst = graph.insts[id];
   std::uint32_t bits[4] = {};
   for (std::uint32_t c = 0; c < inst.count; ++c) {
-    const Src part = graph.source(inst, c);
-    const Inst* constant = graph.constant(part.value);
-    if (!constant) return false;
-    bits[c] = constant->imm[part.swizzle[0]];
+    const std::optional<std::uint32_t> part = literal_of(graph, graph.source(inst, c));
+    if (!part) return false;
+    bits[c] = *part;
   }
   become_constant(graph, id, bits);
   return true;
