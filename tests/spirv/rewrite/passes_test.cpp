@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "spirv/ir_passes.h"
+#include "spirv/ir_walk.h"
 #include "spirv/rewrite/rewrite.h"
 #include "tests/spirv/rewrite/expression.h"
 
@@ -30,6 +31,23 @@ TEST(Passes, SnapshotsAreWhatIsWrittenBack) {
   EXPECT_EQ(ir::verify(rewriting::snapshot(graph)), "");
   graph.write_back();
   EXPECT_EQ(ir::dump(function), text);
+}
+
+TEST(Passes, LowerWhatProgramsDoNotHaveWithoutTheRules) {
+  for (const char* expression :
+       {"FMod(a,b)", "LdExp(a,3)", "FSat(FRem(a,b))", "FDot2(Vec(a,b),Vec(c,d))", "FDot4(Vec(a,b,c,d),Vec(d,c,b,a))",
+        "BitfieldInsert(a,b,c,d)", "PackUnorm4x8(Vec(a,b,c,d))", "PackHalf2x16(Vec(a,b))"}) {
+    ir::Function function = test::shader_of(expression);
+    rewriting::Graph graph(function);
+    for (const rewriting::Pass& pass : rewriting::passes())
+      if (pass.needed == rewriting::Needed::kNeeded) pass.run(graph);
+    graph.write_back();
+    EXPECT_EQ(ir::verify(function), "") << expression;
+    ir::each_node(function.body, [&](const ir::Node& node) {
+      const ir::Op op = node.instr.op;
+      EXPECT_FALSE(op >= ir::Op::kExecutedCount && op < ir::Op::kAluCount) << expression << ": " << ir::op_name(op);
+    });
+  }
 }
 
 }  // namespace
