@@ -243,7 +243,7 @@ class Parser {
     if (instr.op != Op::kImage) return;
     auto image = std::make_shared<ir::ImageInfo>();
     if (take("access=")) image->access = static_cast<ir::ImageAccess>(number());
-    if (take("dim=")) image->dim = static_cast<std::uint8_t>(number());
+    if (take("dim=")) image->dim = static_cast<ir::ImageDim>(number());
     if (take("slot=")) image->slot = number();
     if (take("operands=")) image->operands = number();
     instr.image = std::move(image);
