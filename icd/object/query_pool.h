@@ -4,10 +4,13 @@
 #include <atomic>
 
 #include "icd/object/device.h"
+#include "raster/draw.h"
 
 namespace vitrine::icd {
 
-inline constexpr std::uint32_t kStatisticsCounters = 11;
+/// One counter per raster::Statistic.
+inline constexpr std::uint32_t kStatisticsCounters =
+    static_cast<std::uint32_t>(raster::Statistic::kComputeInvocations) + 1;
 
 struct QueryPool : Object<VkQueryPool, VK_OBJECT_TYPE_QUERY_POOL> {
   QueryPool(const HostMemory& m, const VkQueryPoolCreateInfo& info);
@@ -16,7 +19,7 @@ struct QueryPool : Object<VkQueryPool, VK_OBJECT_TYPE_QUERY_POOL> {
   VkQueryType type;
   VkQueryPipelineStatisticFlags statistics;  ///< enabled ones: the values a result consists of
   std::uint32_t count;
-  std::uint32_t stride;  ///< counters per query: all 11 statistics in bit order; written and needed primitives; or one
+  std::uint32_t stride;  ///< counters per query: all statistics in bit order; written and needed primitives; or one
   std::atomic<std::uint64_t>* counters;
   std::atomic<std::uint8_t>* available;
 

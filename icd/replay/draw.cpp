@@ -10,7 +10,6 @@ namespace {
 
 // Beyond this, values of recorded draws are given up by flushing the pass.
 constexpr std::size_t kArenaBudget = std::size_t{32} << 20;
-constexpr std::uint32_t kComputeInvocationsCounter = 10;  // bit of COMPUTE_SHADER_INVOCATIONS
 
 void resolve_vertex_buffers(ReplayState& state) {
   const Pipeline& pipeline = *state.graphics.pipeline;
@@ -103,11 +102,9 @@ void dispatch(ReplayState& state, const std::uint32_t base[3], const std::uint32
   const spirv::Shader& shader = *pipeline->compute->shader;
   const spirv::BoundShader bound(shader, resources, state.fault);
   spirv::dispatch(bound, base, groups);
-  if (state.counters.statistics) {
-    const std::uint32_t* local = shader.interface().local_size;
-    state.counters.statistics[kComputeInvocationsCounter].fetch_add(std::uint64_t{local[0]} * local[1] * local[2] *
-                                                                    groups[0] * groups[1] * groups[2]);
-  }
+  const std::uint32_t* local = shader.interface().local_size;
+  state.counters.count(raster::Statistic::kComputeInvocations,
+                       std::uint64_t{local[0]} * local[1] * local[2] * groups[0] * groups[1] * groups[2]);
   if (!state.pass) {
     state.arena.reset();
     state.dirty = kDirtyAll;
