@@ -95,7 +95,7 @@ void cut_render_area(PassDesc& desc) {
 bool same_resources(const spirv::ResourceTable& a, const spirv::ResourceTable& b) {
   return std::equal(std::begin(a.set), std::end(a.set), std::begin(b.set)) &&
          std::equal(std::begin(a.set_size), std::end(a.set_size), std::begin(b.set_size)) &&
-         a.push_constants == b.push_constants;
+         a.push_constants == b.push_constants && a.command == b.command;
 }
 
 }  // namespace

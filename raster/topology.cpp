@@ -43,6 +43,8 @@ InputVertices strip_with_adjacency(bool last, std::uint32_t i, bool last_of_stri
 
 }  // namespace
 
+std::span<const Topology> topologies() { return kTopologies; }
+
 const Topology& topology_of(VkPrimitiveTopology topology) {
   const auto index = static_cast<std::size_t>(topology);
   return kTopologies[index < std::size(kTopologies) ? index : 0];

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "base/lanes.h"
 #include "texel/format.h"
 
 namespace vitrine::texel {
@@ -35,10 +34,6 @@ TexelDecoder texel_decoder(const FormatDesc& format);
 
 /// `count` adjacent texels.
 void decode_row(const FormatDesc& format, const std::byte* blocks, std::size_t count, Texel* out);
-
-/// One address per lane; only lanes of `mask` are read and written.
-void decode_lanes(const FormatDesc& format, const std::byte* const address[base::kWaveWidth], base::LaneMask mask,
-                  base::WaveRegister out[4]);
 
 /// Encodes one texel; what encode_texel calls. Chosen once per row, wave or draw. Null for formats that can_encode
 /// denies.

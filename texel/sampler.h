@@ -46,9 +46,9 @@ enum class SampleOp : std::uint8_t { kSample, kGather, kQueryLod };
 enum class LodMode : std::uint8_t {
   kImplicit,  ///< from quad derivatives of the coordinates (fragment); stages without derivatives use kZero
   kBias,      ///< implicit plus `lod` per lane
-  kExplicit,  ///< `lod` per lane
+  kExplicit,  ///< `lod` per lane, before the sampler's bias and clamps
   kGrad,      ///< `ddx`, `ddy` per lane
-  kZero,      ///< level 0 of the view
+  kZero,      ///< 0, before the same
 };
 
 /// One image instruction for a wave. Pointers are to 64-lane registers holding float bits (integers where noted); null

@@ -1,5 +1,6 @@
-// Primitive assembly (Vulkan 1.3.239, Primitive Topologies; Primitive Restart): draws cut into runs, and the positions
-// of a run. The order of a primitive's corners is the table's (raster/topology.h). Does not know vertices.
+// Input assembly (Vulkan 1.3.239, Primitive Topologies; Primitive Restart): draws cut into runs, and the positions of a
+// run. The order of a primitive's corners is the table's (raster/topology.h). Does not know vertices: what becomes of
+// the primitives when those are shaded is primitives.h.
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 #include "raster/front/front.h"
 
 #include "base/float_mode.h"
-#include "raster/front/assemble.h"
+#include "raster/front/primitives.h"
 #include "raster/front/stages/stages.h"
 #include "raster/front/vertices.h"
 
@@ -19,7 +19,7 @@ ChunkOutput process_chunk(const Chunk& chunk, const PassDesc& pass, const TileGr
   } else {
     shade_chunk_vertices(chunk, arena, scratch.vertices, scratch.capture);
     if (scratch.capture.active) capture_runs(chunk, scratch.vertices, scratch.capture);
-    if (!plan.state->rasterizer_discard) assemble_chunk({chunk, pass, arena, scratch.vertices, scratch.primitives});
+    if (!plan.state->rasterizer_discard) process_primitives({chunk, pass, arena, scratch.vertices, scratch.primitives});
   }
   ChunkOutput output;
   if (!plan.state->rasterizer_discard) output = bin_chunk(scratch.primitives, grid, arena, scratch.bins);

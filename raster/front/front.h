@@ -1,5 +1,6 @@
 // The front end: one chunk of a draw from vertex fetch to per-tile lists of primitives (docs/design.md section 3).
-// gather -> vertex shader (vertices) -> tessellation and geometry (stages/) -> assemble: clip, cull -> setup -> bin.
+// gather -> vertex shader (vertices) -> tessellation and geometry (stages/) -> primitives: clip, cull -> setup -> bin.
+// Before, the pass has cut the draw into runs (assembly.h), and those into chunks (raster/pass.cpp).
 #pragma once
 
 #include "raster/arena.h"

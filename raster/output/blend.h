@@ -12,6 +12,15 @@
 
 namespace vitrine::raster {
 
+/// The operations of equations; the tests of raster go through them.
+inline constexpr std::array kBlendOps = {VK_BLEND_OP_ADD, VK_BLEND_OP_SUBTRACT, VK_BLEND_OP_REVERSE_SUBTRACT,
+                                         VK_BLEND_OP_MIN, VK_BLEND_OP_MAX};
+
+/// Whether an operation combines products with factors (E3 and E5 are about those) rather than the colours themselves.
+constexpr bool takes_factors(VkBlendOp op) {
+  return op == VK_BLEND_OP_ADD || op == VK_BLEND_OP_SUBTRACT || op == VK_BLEND_OP_REVERSE_SUBTRACT;
+}
+
 /// uint8 or uint16 as normalised numbers, held in 32-bit integers (E2).
 template <int Bits>
 struct NormalizedBlend {
@@ -139,18 +148,18 @@ typename Ops::Value blend_channel(const BlendEquation& equation, const BlendShap
   const T src = in.src[c], dst = in.dst[c];
   const T src_factor = blend_factor<Ops>(equation.src, in, c), dst_factor = blend_factor<Ops>(equation.dst, in, c);
   const VkBlendOp op = equation.op;
-  const bool additive = op == VK_BLEND_OP_ADD || op == VK_BLEND_OP_SUBTRACT || op == VK_BLEND_OP_REVERSE_SUBTRACT;
+  const bool factors = takes_factors(op);
   if (shape.lerp != Lerp::kNone && op == VK_BLEND_OP_ADD) {
     return shape.lerp == Lerp::kSource ? Ops::lerp(src_factor, dst, src) : Ops::lerp(dst_factor, src, dst);
   }
-  if (Ops::kFloating && additive && shape.lerp != Lerp::kNone) {
+  if (Ops::kFloating && factors && shape.lerp != Lerp::kNone) {
     const bool at_source = shape.lerp == Lerp::kSource;
     const T product = Ops::mul(Ops::add(src, dst), at_source ? src_factor : dst_factor);
     const bool product_first = (op == VK_BLEND_OP_SUBTRACT) == at_source;
     const T other = at_source ? dst : src;
     return product_first ? Ops::sub(product, other) : Ops::sub(other, product);
   }
-  if (Ops::kFloating && additive && shape.common_factor) {
+  if (Ops::kFloating && factors && shape.common_factor) {
     const T combined = op == VK_BLEND_OP_ADD        ? Ops::add(src, dst)
                        : op == VK_BLEND_OP_SUBTRACT ? Ops::sub(src, dst)
                                                     : Ops::sub(dst, src);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "raster/output/blend.h"
 #include "raster/output/byte_texels.h"
 #include "raster/output/color_block.h"
 #include "raster/output/color_bytes.h"
@@ -36,9 +37,9 @@ BlendType blend_type(const FormatDesc& format) {
   }
 }
 
-/// E4: without alpha in the target, destination alpha is one. MIN and MAX take no factors.
+/// E4: without alpha in the target, destination alpha is one.
 VkBlendFactor sanitize(VkBlendFactor factor, VkBlendOp op, bool has_alpha, bool normalized) {
-  if (op == VK_BLEND_OP_MIN || op == VK_BLEND_OP_MAX) return VK_BLEND_FACTOR_ONE;
+  if (!takes_factors(op)) return VK_BLEND_FACTOR_ONE;
   if (has_alpha) return factor;
   if (factor == VK_BLEND_FACTOR_DST_ALPHA) return VK_BLEND_FACTOR_ONE;
   if (factor == VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA) return VK_BLEND_FACTOR_ZERO;

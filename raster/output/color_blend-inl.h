@@ -141,11 +141,11 @@ HWY_INLINE VF blend_floats(const BlendEquation& equation, const BlendShape& shap
   const FloatFactors in{operands, c, i};
   const VF src = in.src(), dst = in.dst(), zero = in.zero();
   const VkBlendOp op = equation.op;
-  const bool additive = op != VK_BLEND_OP_MIN && op != VK_BLEND_OP_MAX;
-  if (additive && shape.lerp != BlendShape::Lerp::kNone)
+  const bool factors = takes_factors(op);
+  if (factors && shape.lerp != BlendShape::Lerp::kNone)
     return blend_complementary(equation, shape.lerp == BlendShape::Lerp::kSource, src, dst, in);
   const VF src_factor = blend_factor_lanes(equation.src, in);
-  if (additive && shape.common_factor) {
+  if (factors && shape.common_factor) {
     const VF combined = combine_floats(op, src, dst);
     return shape.src_one ? combined : shape.src_zero ? zero : hn::Mul(combined, src_factor);
   }

@@ -83,14 +83,6 @@ HWY_INLINE std::uint32_t write_word(const ColorWriter& writer) {
   return word;
 }
 
-/// Leaves vector code: the compiler forgets VZEROUPPER in functions that end with a call to a local function without
-/// vectors, and scalar SSE code after it then pays for the transition each time.
-HWY_INLINE void leave_vectors() {
-#if HWY_TARGET <= HWY_AVX2
-  _mm256_zeroupper();
-#endif
-}
-
 /// Two whole quads side by side: two rows of four pixels.
 HWY_INLINE void store_pair(const std::uint32_t* quads, std::byte* top, std::byte* bottom) {
   const hn::FixedTag<std::uint64_t, 2> d;

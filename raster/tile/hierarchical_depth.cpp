@@ -44,7 +44,7 @@ HWY_INLINE base::LaneMask unhidden_of(const HierarchicalDepth& depths, const Blo
   for (std::size_t i = 0; i < base::kWaveWidth; i += n) {
     if ((places >> i & base::first_lanes(n)) == 0) continue;
     const auto fx = hn::Add(hn::Set(f, x), hn::Load(f, kBlockX + i % 16));
-    const auto fy = hn::Add(hn::Set(f, y + static_cast<float>(i / 16 * 16)), hn::Load(f, kBlockY + i % 16));
+    const auto fy = hn::Add(hn::Set(f, y + static_cast<float>(i - i % 16)), hn::Load(f, kBlockY + i % 16));
     const auto inner = lanes_fma(hn::Set(f, plane.dadx), fx, hn::Set(f, plane.a0));
     auto z = hn::Add(lanes_fma(hn::Set(f, plane.dady), fy, inner), hn::Set(f, plane.offset));
     z = lanes_max_second(lanes_min_second(z, hn::Set(f, 1.0f)), hn::Zero(f));

@@ -2,7 +2,7 @@
 """Says at which step of the shader compiler, and at which instruction, a case of cts-subset first differs.
 
 usage: bisect_case.py CASE [--build=DIR] [--against=reference | --other-icd=FILE | --setting=NAME=VALUE]
-                 [--trace=INVOCATION] [options of cts_subset: --seed=N --count=N --mutate --icd=FILE ...]
+                 [--trace=INVOCATION] [--origin=%ID] [options of cts_subset: --seed=N --count=N --mutate --icd=FILE ...]
 
 CASE is a case's full name, as glsl.random_float.compute/3 (CTest prints it; `cts_subset --gtest_list_tests` lists all).
 
@@ -14,12 +14,14 @@ Against another build of this driver (--other-icd) or another setting of it (--s
 --setting=VITRINE_PASS_OFF=opt_cse): the shaders are compared after every step; the first step after which they are
 different ones is told. Where all shaders are the same, one invocation of both is compared, value by value.
 
+With --origin=%305 nothing is compared: the instructions that come from that SPIR-V id (or "line 12") are shown after
+every step that changed them.
+
 Told are the step, its row of spirv/rewrite/passes.def (file, what it mirrors), what it changed in the shader, with
 SPIR-V ids and lines, the first instruction whose value differs, and commands to look further.
 Exit status: 0 nothing differs, 1 something does, 2 could not be run.
 """
 import argparse
-import collections
 import difflib
 import os
 import pathlib
@@ -29,9 +31,8 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-Step = collections.namedtuple("Step", "number round name text")  # number -1: before all steps
-Row = collections.namedtuple("Row", "file mirrors why")
+import logs
+from logs import ROOT, Step, invocations, without_names
 
 
 # ---- running a case
@@ -40,8 +41,9 @@ class Suite:
     """cts_subset with the options of this call."""
 
     def __init__(self, build, case, options):
+        self.build, self.case, self.options = build, case, options
         self.binary = build / "cts-subset/cts_subset"
-        self.case, self.options = case, options
+        self.folder = build / "bisect"  # of what is left for the reader
 
     def command(self, more=()):
         return [str(self.binary), "--validation=0", f"--gtest_filter={self.case}", *self.options, *more]
@@ -49,18 +51,16 @@ class Suite:
     def run(self, more=(), **environment):
         """Output, and diagnostics of the driver."""
         done = subprocess.run(self.command(more), env={**os.environ, **environment}, capture_output=True, text=True,
-                              errors="replace", cwd=tempfile.gettempdir(), timeout=600)
+                              errors="replace", timeout=600)
         if re.search(r"Running 0 tests", done.stdout):
-            sys.exit(f"no case is called {self.case} (seed and count are options of cts_subset: --seed=N --count=N)")
+            cannot(f"no case is called {self.case} (seed and count are options of cts_subset: --seed=N --count=N)")
         return done.stdout, done.stderr
 
-    def judgement(self, more=(), **environment):
-        """(number of differing texels, what is said of the first of them); None: identical."""
-        out, _ = self.run((*more, f"--results={tempfile.gettempdir()}/bisect-pictures"), **environment)
-        found = re.search(r"^  (.*; (\d+) of \d+ differ)$", out, re.MULTILINE)
-        if found:
-            return int(found[2]), found[1]
-        return (1, out.strip().splitlines()[-1]) if "[  FAILED  ]" in out else None
+    def judgement(self, more=(), of=None, **environment):
+        """(number of differing texels, what is said of the first of them) of a result, None: of the first that differs.
+        None: identical."""
+        out, _ = self.run((*more, f"--results={self.folder}/pictures"), **environment)
+        return logs.judgement(out, of)
 
     def fingerprint(self, more=(), **environment):
         """Hash of what the device puts out."""
@@ -72,7 +72,12 @@ class Suite:
         """{number of the shader: its steps}, from VITRINE_LOG=ir."""
         with tempfile.NamedTemporaryFile() as file:
             _, log = self.run((*more, f"--fingerprints={file.name}"), VITRINE_LOG="ir", **environment)
-        return read_steps(log)
+        shaders = logs.read_steps(log)
+        if not shaders:
+            icd = next((option for option in (*more, *self.options) if option.startswith("--icd=")), "this build")
+            cannot(f"{icd} wrote no steps of a shader (VITRINE_LOG=ir): only other builds of this driver can be compared "
+                   "step by step (another driver is a --reference=FILE), and only cases that have shaders")
+        return shaders
 
     def trace(self, invocation, more=(), **environment):
         """Lines of all runs of one invocation."""
@@ -82,36 +87,12 @@ class Suite:
             return path.read_text().splitlines() if path.exists() else []
 
 
-def read_steps(log):
-    shaders, steps = {}, None
-    for line in log.splitlines():
-        head = re.match(r"vitrine: ir: shader (\d+), (?:front end|final|step (\d+)[^,]*, round (\d+): (\w+))$", line)
-        if head:
-            steps = shaders.setdefault(int(head[1]), [])
-            steps.append(Step(int(head[2] or -1), int(head[3] or 0), head[4] or line.rsplit(", ", 1)[1], []))
-        elif line.startswith("vitrine: "):
-            steps = None
-        elif steps is not None and line:
-            steps[-1].text.append(line)
-    return shaders
-
-
-def read_rows():
-    """{function: its first row of passes.def}."""
-    text = (ROOT / "spirv/rewrite/passes.def").read_text()
-    rows = {}
-    pattern = r'^VITRINE_PASS\(\w+, \w+, \w+, (\w+), "([^"]*)",\s*"([^"]*)",\s*"([^"]*)"\)'
-    for row in re.finditer(pattern, text, re.MULTILINE):
-        rows.setdefault(row[1], Row(*row.groups()[1:]))
-    return rows
+def cannot(why):
+    print(f"bisect_case.py: {why}", file=sys.stderr)
+    sys.exit(2)
 
 
 # ---- telling
-
-def without_names(line):
-    """The instruction without the numbers of values, which steps that run give away differently."""
-    return re.sub(r"%\d+(?=[:.,\s]|$)", "%", line.split("  ;")[0]).strip()
-
 
 def tell_difference(old, new, old_name, new_name, origin=None, most=30):
     """What a step did, of the instructions from `origin` if it did something to them; literals alone say nothing."""
@@ -141,39 +122,14 @@ def tell_step(shader, step, rows):
         print(f"  here     {row.why}")
 
 
-def tell_alone(build, shader, step, before):
+def tell_alone(suite, shader, step, before):
     """How to run the step on what it got."""
     if step.number < 0:
         return
-    path = pathlib.Path(tempfile.gettempdir()) / f"before-{step.name}-{shader}-{step.number}.ir"
+    path = suite.folder / f"before-{step.name}-{shader}-{step.number}.ir"
+    suite.folder.mkdir(exist_ok=True)
     path.write_text("\n".join(before) + "\n")
-    print(f"  alone    {build}/tests/vitrine_step {step.name} < {path}")
-
-
-def invocations(case, message):
-    """Invocations that may have made the place of the first difference, best first."""
-    element = re.search(r", element (\d+):", message)
-    pixel = re.search(r", pixel \((\d+), (\d+)\)", message)
-    if pixel:
-        yield f"fragment:{pixel[1]},{pixel[2]}"
-    if element:
-        index = int(element[1])
-        stages = [s for s in ("compute", "vertex", "fragment") if s in case] or ["compute", "vertex", "fragment"]
-        for words in (1, 2, 4, 3, 8):
-            for stage in stages:
-                number = index // words
-                yield {"compute": f"compute:{number},0,0", "vertex": f"vertex:{number}",
-                       "fragment": f"fragment:{number % 64},{number // 64}"}[stage]
-
-
-def values(lines):
-    """{origin: (value, line)} of results, in the order of the trace; the last run of an instruction counts."""
-    result = {}
-    for line in lines:
-        found = re.search(r" = ([0-9a-f]{8}|[01]\b).*  ; (.*)$", line)
-        if found:
-            result[found[2]] = (found[1], line.strip())
-    return result
+    print(f"  alone    {suite.build}/tests/vitrine_step {step.name} < {path}")
 
 
 def tell_instruction(suite, case, message, wanted, here, there, names=("here ", "there")):
@@ -184,7 +140,7 @@ def tell_instruction(suite, case, message, wanted, here, there, names=("here ", 
         new = suite.trace(invocation, there[0], **there[1])
         if not old or not new:
             continue
-        a, b = values(old), values(new)
+        a, b = logs.values(old), logs.values(new)
         for origin, (value, line) in a.items():
             if origin in b and b[origin][0] != value:
                 print(f"  first value that differs, of {invocation}: {origin}")
@@ -197,28 +153,46 @@ def tell_instruction(suite, case, message, wanted, here, there, names=("here ", 
 
 # ---- the two comparisons
 
-def changed_steps(shaders):
-    """{N: [(shader, index)]}: the optional steps after which a shader is another one."""
-    steps = collections.defaultdict(list)
-    for shader, list_of in shaders.items():
-        for index, step in enumerate(list_of):
-            if index and step.number > 0:
-                steps[step.number].append((shader, index))
-    return dict(sorted(steps.items()))
+def tell_missing(suite, case, message, trace):
+    """What remains where no step makes a difference: one that ours lack, or something else than a step."""
+    print("\nno step adds to what differs. Either the reference does a rewrite that is missing here: compare the statement"
+          "\nwith the tables of docs/lavapipe-shader-math.md 4.2 and 4.3, and write it for vitrine_step to see what becomes"
+          "\nof it (tests/spirv/ir_text.h). Or the difference lies outside the rewrites: in an operation, a texture, the"
+          "\ninterface.")
+    for invocation in [trace] if trace else invocations(case, message):
+        lines = logs.slice_of(suite.trace(invocation), message)
+        if lines:
+            print(f"what computes the components that differ, of {invocation} (last shader, values of this driver):")
+            print("\n".join("    " + line for line in lines))
+            return
 
 
-def against_reference(suite, build, case, rows, trace):
+def tell_origin(suite, origin):
+    """Instructions that come from a SPIR-V id, after every step that changed them."""
+    found = {shader: logs.lines_of(origin, steps) for shader, steps in suite.shaders().items()}
+    for shader, changes in found.items():
+        for step, lines in changes:
+            where = f", step {step.number}, round {step.round}" if step.number >= 0 else ""
+            print(f"shader {shader}{where}: {step.name}")
+            print("\n".join("    " + line for line in lines) or "    nothing is left of it")
+    if not any(found.values()):
+        print(f"no instruction of {suite.case} comes from {origin}")
+    return 0
+
+
+def against_reference(suite, case, rows, trace):
     whole = suite.judgement()
     if not whole:
         print(f"{case}: nothing differs from the reference")
         return 0
     print(f"{case}\n  {whole[1]}")
+    result = logs.result_of(whole[1])
     shaders = suite.shaders()
-    steps = changed_steps(shaders)
+    steps = logs.changed_steps(shaders)
     print(f"  {len(shaders)} shaders, {len(steps)} limits to try\n\n   limit  differing  step")
     before, told, suspects, last = None, None, [], None
     for number in [0, *steps]:
-        judged = suite.judgement(VITRINE_PASS_LIMIT=str(number))
+        judged = suite.judgement(of=result, VITRINE_PASS_LIMIT=str(number))
         count = judged[0] if judged else 0
         names = ", ".join(f"{shaders[s][i].name} (shader {s}, round {shaders[s][i].round})"
                           for s, i in steps.get(number, []))
@@ -229,11 +203,10 @@ def against_reference(suite, build, case, rows, trace):
                 if count > (before or 0):
                     suspects.append(number)
         before, told = count, judged
+    if not suspects:
+        tell_missing(suite, case, whole[1], trace)
     if last and last not in suspects:
         suspects.append(last)
-    if not suspects:
-        print("\nno step changes what differs: the difference is not one of the rewrites; look at the trace of an "
-              "invocation")
     for number in suspects[-3:]:
         kind = "the last step that changes what differs" if number == last else "a step that makes it worse"
         print(f"\n{kind}:")
@@ -243,12 +216,12 @@ def against_reference(suite, build, case, rows, trace):
             step, previous = shaders[shader][index], shaders[shader][index - 1]
             tell_step(shader, step, rows)
             tell_difference(previous.text, step.text, "before", "after", origin)
-            tell_alone(build, shader, step, previous.text)
+            tell_alone(suite, shader, step, previous.text)
     tell_further(suite, case, whole[1], trace)
     return 1
 
 
-def against_twin(suite, build, case, rows, trace, options, environment, name):
+def against_twin(suite, case, rows, trace, options, environment, name):
     """Against another build or setting of this driver."""
     same = suite.fingerprint() == suite.fingerprint(options, **environment)
     print(f"{case}: the outputs of this build and of {name} are {'the same' if same else 'not the same'}")
@@ -279,7 +252,7 @@ def against_twin(suite, build, case, rows, trace, options, environment, name):
                 print(f"  it changes nothing there: the next that does is {other.name}, round {other.round}")
                 tell_difference((ours if told is mine else theirs)[index - 1].text, told.text, "before", "after")
             if index:
-                tell_alone(build, shader, told, (ours if told is mine else theirs)[index - 1].text)
+                tell_alone(suite, shader, told, (ours if told is mine else theirs)[index - 1].text)
             tell_instruction(suite, case, message, trace, ((), {}), (options, environment))
             tell_further(suite, case, message, trace)
             return 1
@@ -301,21 +274,22 @@ def tell_further(suite, case, message, trace):
 
 
 def main():
-    parser = argparse.ArgumentParser(usage=__doc__, add_help=True)
+    parser = argparse.ArgumentParser(usage=__doc__.replace("%", "%%"), add_help=True)
     parser.add_argument("case")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
     parser.add_argument("--against", choices=["reference"], default="reference")
     parser.add_argument("--other-icd")
     parser.add_argument("--setting")
     parser.add_argument("--trace")
+    parser.add_argument("--origin")
     arguments, options = parser.parse_known_args()
+    if not (arguments.build / "cts-subset/cts_subset").exists():
+        cannot(f"no cts_subset: cmake --build {arguments.build} --target cts_subset vitrine_icd_library vitrine_step")
     suite = Suite(arguments.build, arguments.case.removeprefix("--gtest_filter="), options)
-    if not suite.binary.exists():
-        print(f"{suite.binary} is missing: cmake --build {arguments.build} --target cts_subset vitrine_icd_library",
-              file=sys.stderr)
-        return 2
-    rows = read_rows()
-    told = (suite, arguments.build, suite.case, rows, arguments.trace)
+    if arguments.origin:
+        return tell_origin(suite, arguments.origin)
+    rows = logs.read_rows()
+    told = (suite, suite.case, rows, arguments.trace)
     if arguments.other_icd:
         more = (f"--icd={pathlib.Path(arguments.other_icd).resolve()}",)
         return against_twin(*told, more, {}, arguments.other_icd)

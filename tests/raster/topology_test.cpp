@@ -10,24 +10,22 @@
 namespace vitrine::raster {
 namespace {
 
-constexpr int kCount = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY + 1;
-
 /// Corners are positions of the primitive, the provoking one stays the first or the last when a primitive is turned
 /// around, and a turned primitive has the corners it would have anyway.
 TEST(Topology, CornersBelongToTheirPrimitive) {
-  for (int name = 0; name < kCount; ++name) {
-    const Topology& topology = topology_of(static_cast<VkPrimitiveTopology>(name));
+  for (const Topology& topology : topologies()) {
+    const VkPrimitiveTopology name = topology.name;
     const TopologyShape& shape = topology.shape;
-    ASSERT_EQ(topology.name, name);
+    ASSERT_EQ(&topology_of(name), &topology);
     for (const bool last : {false, true})
       for (std::uint32_t i = 0; i < 4; ++i) {
-        const Corners corners = corners_of(topology.name, last, i);
+        const Corners corners = corners_of(name, last, i);
         for (std::uint32_t c = 0; c < shape.corners; ++c) {
           EXPECT_LT(corners.at[c], i * shape.step + shape.first) << name;
           EXPECT_TRUE(shape.fan || corners.at[c] >= i * shape.step) << name;
         }
         if (shape.corners != 3) continue;
-        Corners other = corners_of(topology.name, !last, i);
+        Corners other = corners_of(name, !last, i);
         Corners sorted = corners;
         std::sort(sorted.at, sorted.at + 3);
         std::sort(other.at, other.at + 3);
@@ -39,15 +37,14 @@ TEST(Topology, CornersBelongToTheirPrimitive) {
 }
 
 TEST(Topology, GeometryShadersSeeTheCornersAmongTheirVertices) {
-  for (int name = 0; name < kCount; ++name)
+  for (const Topology& topology : topologies())
     for (std::uint32_t i = 0; i < 3; ++i) {
-      const Topology& topology = topology_of(static_cast<VkPrimitiveTopology>(name));
       const InputVertices vertices = input_vertices(topology.name, false, i, true);
       const Corners corners = corners_of(topology.name, false, i);
-      EXPECT_EQ(vertices.count, topology.inputs) << name;
+      EXPECT_EQ(vertices.count, topology.inputs) << topology.name;
       for (std::uint32_t c = 0; c < topology.shape.corners; ++c)
         EXPECT_NE(std::find(vertices.at, vertices.at + vertices.count, corners.at[c]), vertices.at + vertices.count)
-            << name;
+            << topology.name;
     }
 }
 

@@ -13,13 +13,13 @@ import re
 import sys
 import tokenize
 
-ROOMS = ("base", "texel", "spirv", "raster", "icd", "manifest", "cts-subset", "tests", "docs")
+ROOMS = ("base", "texel", "spirv", "raster", "glass", "icd", "manifest", "cts-subset", "tests", "docs")
 ROOT_FILES = ("CMakeLists.txt", "README.md", "CONTRIBUTING.md", "run", "check", ".ci/run", ".clang-tidy")
 C_FILES = (".h", ".cpp", ".def", ".frag", ".vert")
 SKIPPED = (".png", ".json", ".pyc")
 DEVIATIONS = "cts-subset/deviations.md"
 # Files of others and of the build that comments name: without a path, and in these folders.
-EXTERNAL = re.compile(r"(vk_icd|vulkan_core|enums|structure_types|entry_points|limit_rules)\.h|(nir|vtn|lp|lvp|draw)_\w+\.(h|py)")
+EXTERNAL = re.compile(r"(vk_icd|vulkan_core|enums|structure_types|entry_points|limit_rules|properties)\.h|(nir|vtn|lp|lvp|draw)_\w+\.(h|py)")
 EXTERNAL_FOLDERS = ("hwy/", "vulkan/", "spirv/unified1/", "generated/", "build/")
 # Documents that name others' files: only paths that begin with a room are checked there.
 TELLS_OF_OTHERS = re.compile(r"docs/(lavapipe-[\w-]+|requirements)\.md")

@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 VERSION = "14"
-ROOMS = ["base", "texel", "spirv", "raster", "icd", "cts-subset", "tests"]
+ROOMS = ["base", "texel", "spirv", "raster", "glass", "icd", "cts-subset", "tests"]
 
 
 def formatter():

@@ -11,7 +11,7 @@ import sys
 from xml.etree import ElementTree
 
 # design.md section 2: a room may include itself and what stands to its right.
-ORDER = ["icd", "raster", "spirv", "texel", "base"]
+ORDER = ["icd", "glass", "raster", "spirv", "texel", "base"]
 FREE = ["tests", "cts-subset"]
 DATA = ["manifest", "docs"]
 SHADER_HEADERS = ["shader.h", "shader_cost.h", "stage_memory.h", "resources.h"]  # what raster sees of spirv

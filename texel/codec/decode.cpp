@@ -174,15 +174,4 @@ void decode_row(const FormatDesc& format, const std::byte* blocks, std::size_t c
   for (std::size_t i = 0; i < count; ++i) decode(format, blocks + i * format.block_bytes, out[i]);
 }
 
-void decode_lanes(const FormatDesc& format, const std::byte* const address[base::kWaveWidth], base::LaneMask mask,
-                  base::WaveRegister out[4]) {
-  const TexelDecoder decode = texel_decoder(format);
-  if (decode == nullptr) return;
-  base::for_each_lane(mask, [&](std::size_t lane) {
-    Texel texel;
-    decode(format, address[lane], texel);
-    for (std::size_t c = 0; c < 4; ++c) out[c].lane[lane] = texel[c];
-  });
-}
-
 }  // namespace vitrine::texel

@@ -29,7 +29,8 @@ constexpr float decode_srgb(int code) {
 constexpr float to_eight_digits(double v) {
   double scale = 1e7;
   while (v * scale < 1e7) scale *= 10;
-  return static_cast<float>(static_cast<double>(static_cast<std::int64_t>(v * scale + 0.5)) / scale);
+  const auto digits = static_cast<std::int64_t>(v * scale + 0.5);  // NOLINT(bugprone-incorrect-roundings): v >= 0
+  return static_cast<float>(static_cast<double>(digits) / scale);
 }
 
 constexpr float decode_srgb_exact(int code) {

@@ -1,4 +1,5 @@
-// Derives the state of a sampling operation once per wave (lavapipe-texture-blend.md A1, A3 border colours, A4).
+// Derives the state of a sampling operation, once per draw and image instruction (lavapipe-texture-blend.md A1, A3
+// border colours, A4).
 #include "texel/sampler/plan.h"
 
 #include <algorithm>
@@ -10,8 +11,8 @@
 namespace vitrine::texel {
 namespace {
 
-/// The reference ignores maxLod from here on: its images have at most 15 levels.
-constexpr float kNoMaxLod = 14.0f;
+/// The reference ignores maxLod from here on, the last of the 16 levels that its images may have.
+constexpr float kNoMaxLod = 15.0f;
 
 Address convert(VkSamplerAddressMode mode) {
   switch (mode) {

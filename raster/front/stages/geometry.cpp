@@ -152,7 +152,7 @@ void run_geometry(const StageContext& c, std::span<const GeometryInput> inputs) 
     c.queries().count(Statistic::kGeometryPrimitives, s.listed.size());
     if (c.plan.state->rasterizer_discard || s.listed.empty()) continue;
     transform_emitted(c);
-    assemble_listed(c.assembly(), s.listed);
+    process_listed(c.primitive_context(), s.listed);
   }
   s.used = mark;
 }

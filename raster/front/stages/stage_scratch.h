@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "raster/arena.h"
-#include "raster/front/assemble.h"
 #include "raster/front/feedback.h"
+#include "raster/front/primitives.h"
 #include "raster/front/stages/tessellator.h"
 #include "raster/front/vertex_scratch.h"
 
@@ -55,7 +55,7 @@ struct StageContext {
   CaptureScratch& capture;
   const PipelinePlan& plan;
 
-  AssembleContext assembly() const { return {chunk, pass, arena, vertices, primitives}; }
+  PrimitiveContext primitive_context() const { return {chunk, pass, arena, vertices, primitives}; }
   const QueryCounters& queries() const { return chunk.draw->call.queries; }
 };
 

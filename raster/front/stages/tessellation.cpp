@@ -194,7 +194,7 @@ void evaluate_and_assemble(const StageContext& c, const Batch& batch) {
   });
   if (c.capture.active)
     for (const ListedPrimitive& primitive : s.listed) capture_primitive(c.plan, primitive.slot, c.capture);
-  if (!c.plan.state->rasterizer_discard) assemble_listed(c.assembly(), s.listed);
+  if (!c.plan.state->rasterizer_discard) process_listed(c.primitive_context(), s.listed);
 }
 
 }  // namespace

@@ -61,11 +61,11 @@ TEST(Assembly, CuttingIntoRunsChangesNothing) {
   DrawCall draw;
   draw.state = &state;
   draw.count = 103;
-  for (int topology = 0; topology <= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY; ++topology) {
-    state.topology = static_cast<VkPrimitiveTopology>(topology);
+  for (const Topology& topology : topologies()) {
+    state.topology = topology.name;
     for (const bool last : {false, true}) {
       state.provoking_vertex_last = last;
-      EXPECT_EQ(decompose(draw, 100000), decompose(draw, 8)) << topology;
+      EXPECT_EQ(decompose(draw, 100000), decompose(draw, 8)) << topology.name;
     }
   }
 }
@@ -111,9 +111,9 @@ TEST(Assembly, CuttingIntoRunsKeepsAdjacentVertices) {
   DrawCall draw;
   draw.state = &state;
   draw.count = 103;
-  for (int topology = 0; topology <= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY; ++topology) {
-    state.topology = static_cast<VkPrimitiveTopology>(topology);
-    EXPECT_EQ(input_positions(draw, 100000), input_positions(draw, 8)) << topology;
+  for (const Topology& topology : topologies()) {
+    state.topology = topology.name;
+    EXPECT_EQ(input_positions(draw, 100000), input_positions(draw, 8)) << topology.name;
   }
 }
 

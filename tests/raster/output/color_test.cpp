@@ -81,8 +81,8 @@ BlendAttachment random_blend(std::mt19937& random) {
   blend.dst_color = static_cast<VkBlendFactor>(random() % factors);
   blend.src_alpha = static_cast<VkBlendFactor>(random() % factors);
   blend.dst_alpha = static_cast<VkBlendFactor>(random() % factors);
-  blend.color_op = static_cast<VkBlendOp>(random() % 5);
-  blend.alpha_op = static_cast<VkBlendOp>(random() % 5);
+  blend.color_op = kBlendOps[random() % kBlendOps.size()];
+  blend.alpha_op = kBlendOps[random() % kBlendOps.size()];
   blend.write_mask = random() % 3 ? 0xf : random() % 16;
   return blend;
 }

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "raster/output/blend.h"
 #include "raster/pass.h"
 #include "raster/stage.h"
 
@@ -184,8 +185,8 @@ struct Scene {
     blend.dst_color = static_cast<VkBlendFactor>(random() % 15);
     blend.src_alpha = random() % 2 ? blend.src_color : static_cast<VkBlendFactor>(random() % 15);
     blend.dst_alpha = random() % 2 ? blend.dst_color : static_cast<VkBlendFactor>(random() % 15);
-    blend.color_op = static_cast<VkBlendOp>(random() % 5);
-    blend.alpha_op = random() % 2 ? blend.color_op : static_cast<VkBlendOp>(random() % 5);
+    blend.color_op = kBlendOps[random() % kBlendOps.size()];
+    blend.alpha_op = random() % 2 ? blend.color_op : kBlendOps[random() % kBlendOps.size()];
     blend.write_mask = random() % 3 ? 0xf : random() % 16;
     state.logic_op_enable = random() % 10 == 0;
     state.logic_op = static_cast<VkLogicOp>(random() % 16);

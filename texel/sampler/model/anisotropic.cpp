@@ -26,12 +26,16 @@ constexpr double exponential(double x) {
   return sum;
 }
 
+/// v >= 0, half up; std::lround() is no constant expression.
+constexpr std::int64_t nearest(double v) {
+  return static_cast<std::int64_t>(v + 0.5);  // NOLINT(bugprone-incorrect-roundings): v >= 0
+}
+
 constexpr std::array<float, 1024> make_weights() {
   std::array<float, 1024> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double value = exponential(-2.0 * static_cast<double>(i) / 1023.0);
-    const auto millionths = static_cast<std::int64_t>(value * 1e6 + 0.5);
-    table[i] = static_cast<float>(static_cast<double>(millionths) / 1e6);
+    table[i] = static_cast<float>(static_cast<double>(nearest(value * 1e6)) / 1e6);
   }
   table[44] = 0.917575f;
   table[388] = 0.468343f;
@@ -109,10 +113,10 @@ constinit const EwaFactors kEwaFactors = [] {
     f.less[k] = static_cast<float>(exponential(-2.0 * static_cast<double>(k) / 1023.0) - 1 + moved);
   }
   for (std::size_t i = 0; i < 32; ++i) {
-    f.whole[i] = static_cast<float>(static_cast<std::int32_t>(millionths(32 * i) + 0.5));
+    f.whole[i] = static_cast<float>(nearest(millionths(32 * i)));
     double low = -1, high = 1;
     for (std::size_t k = 0; k < 32; ++k) {
-      const double rounded = static_cast<std::int32_t>(millionths(32 * i + k) + 0.5);
+      const auto rounded = static_cast<double>(nearest(millionths(32 * i + k)));
       const double missing = rounded - static_cast<double>(f.whole[i]) * (1 + static_cast<double>(f.less[k]));
       low = std::max(low, missing - 0.5);
       high = std::min(high, missing + 0.5);

@@ -1,4 +1,5 @@
-// Level of detail and cube projection of single lanes (lavapipe-texture-blend.md A4, A5).
+// Level of detail and cube projection of single lanes (lavapipe-texture-blend.md A4, A5). The twin for waves:
+// texel/sampler/wave/state-inl.h.
 #pragma once
 
 #include "texel/sampler/plan.h"

@@ -1,0 +1,368 @@
+// The front end's second half: cull distances, clipping, culling, polygon modes, hand-over to setup
+// (lavapipe-rasterization.md 1.4 to 1.7, 2.2, 7.1, 10.2).
+#include "raster/front/primitives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/numeric.h"
+#include "raster/front/assembly.h"
+#include "raster/front/clip.h"
+#include "raster/front/setup_batch.h"
+#include "raster/front/setup_wide.h"
+
+namespace vitrine::raster {
+namespace {
+
+struct PrimitiveWork : PrimitiveContext {
+  const PipelinePlan& plan;
+  SetupContext setup;
+  ViewportTransform viewport;
+  bool batches;                       ///< triangles inside the view volume need nothing but setup
+  std::uint32_t stipple_counter = 0;  ///< pixels of the pattern used up by earlier lines of the strip
+  TriangleBatch batch;
+
+  explicit PrimitiveWork(const PrimitiveContext& context)
+      : PrimitiveContext(context),
+        plan(*chunk.draw->plan),
+        setup{&plan, &pass, &primitives, !chunk.draw->call.queries.statistics},
+        viewport(plan.viewport[0]),
+        batches(plan.windows && plan.out.layer == kNoReg && !plan.per_vertex_viewport && !plan.bias_in_vertices &&
+                plan.out.cull_count == 0) {
+    setup.layer = static_cast<std::uint16_t>(chunk.view);
+  }
+};
+
+ClipVertex clip_vertex(const PrimitiveWork& w, std::uint32_t slot) {
+  ClipVertex v;
+  std::memcpy(v.clip, &w.vertices.clip[slot * 4], sizeof(v.clip));
+  std::memcpy(v.distance, &w.vertices.clip_distance[slot * kMaxClipDistances], sizeof(v.distance));
+  v.record = w.vertices.records + std::size_t{slot} * w.plan.vertex_stride;
+  v.code = w.vertices.code[slot];
+  return v;
+}
+
+/// 1.7: dropped if all corners are outside of one cull distance.
+bool culled_by_distance(const PrimitiveWork& w, const std::uint32_t* slot, std::uint32_t corners) {
+  for (std::uint32_t d = 0; d < w.plan.out.cull_count; ++d) {
+    bool all = true;
+    for (std::uint32_t c = 0; c < corners; ++c) {
+      const float value = w.vertices.cull_distance[slot[c] * kMaxClipDistances + d];
+      all &= !(value >= 0) || !std::isfinite(value);
+    }
+    if (all) return true;
+  }
+  return false;
+}
+
+/// 3.4: layer and viewport from the provoking vertex.
+void choose_layer_and_viewport(PrimitiveWork& w, std::uint32_t provoking_slot) {
+  w.setup.layer = static_cast<std::uint16_t>(w.chunk.view);
+  if (w.plan.out.layer != kNoReg) {
+    const std::uint32_t layer = w.vertices.layer[provoking_slot] + w.chunk.view;
+    w.setup.layer = static_cast<std::uint16_t>(std::min(layer, std::max<std::uint32_t>(w.pass.layers, 1) - 1));
+  }
+  if (!w.plan.per_vertex_viewport) return;
+  const std::uint32_t index = w.vertices.viewport_index[provoking_slot];
+  w.setup.viewport = index < kMaxViewports ? static_cast<std::uint8_t>(index) : std::uint8_t{0};
+  w.viewport = w.plan.viewport[w.setup.viewport];
+}
+
+/// A record transformed by the primitive's own viewport (1.2 form B), when the viewport is chosen per primitive.
+const Vertex* window_record(const PrimitiveWork& w, const ClipVertex& v) {
+  if (!w.plan.per_vertex_viewport || v.code != 0) return v.record;
+  Vertex* copy = w.arena.take<Vertex>(w.plan.vertex_stride);
+  std::memcpy(copy, v.record, w.plan.vertex_stride * sizeof(Vertex));
+  transform_vertex(v.clip, w.viewport, copy);
+  return copy;
+}
+
+SetupVertex setup_vertex(const PrimitiveWork& w, const Vertex* record) {
+  return {record, snap_coordinate(record[0], w.plan.pixel_offset), snap_coordinate(record[1], w.plan.pixel_offset)};
+}
+
+Vertex* biased_copy(const PrimitiveWork& w, const Vertex* record, float offset) {
+  Vertex* copy = w.arena.take<Vertex>(w.plan.vertex_stride);
+  std::memcpy(copy, record, w.plan.vertex_stride * sizeof(Vertex));
+  const float z = copy[2] + offset;
+  copy[2] = z > 0 ? (z > 1 ? 1 : z) : 0;  // NaN: 0
+  return copy;
+}
+
+/// A vertex on the way from one to the other, in window space and without perspective; flat values as in the first.
+const Vertex* between(const PrimitiveWork& w, const Vertex* from, const Vertex* to, float t) {
+  Vertex* made = w.arena.take<Vertex>(w.plan.vertex_stride);
+  const std::uint32_t smooth = 4 + w.plan.perspective_count + w.plan.linear_count;
+  for (std::uint32_t i = 0; i < smooth; ++i) made[i] = from[i] + t * (to[i] - from[i]);
+  std::memcpy(made + smooth, from + smooth, (w.plan.vertex_stride - smooth) * sizeof(Vertex));
+  return made;
+}
+
+/// Length in units of the pattern (6.4): Euclidean, of Bresenham lines along the major axis.
+float stipple_length(const State& state, const Vertex* v0, const Vertex* v1) {
+  const float dx = v1[0] - v0[0], dy = v1[1] - v0[1];
+  if (state.line_mode != VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT) return std::sqrt(dx * dx + dy * dy);
+  return base::max_second(std::fabs(dx), std::fabs(dy));
+}
+
+void emit_segment(const PrimitiveWork& w, const Vertex* v0, const Vertex* v1, bool front) {
+  if (w.plan.smooth_lines)
+    setup_smooth_line(w.setup, w.arena, v0, v1, front);
+  else
+    setup_line(w.setup, v0, v1, front);
+}
+
+/// A line in window space: as a whole, or the stretches where the stipple pattern has ones.
+void emit_line(PrimitiveWork& w, const Vertex* v0, const Vertex* v1, bool front) {
+  const State& state = *w.plan.state;
+  if (!state.line_stipple && !w.plan.smooth_lines) return setup_line(w.setup, v0, v1, front);
+  const Vertex* provoking = state.provoking_vertex_last ? v1 : v0;
+  v0 = with_flat_values(w.plan, w.arena, v0, provoking);
+  v1 = with_flat_values(w.plan, w.arena, v1, provoking);
+  if (!state.line_stipple) return emit_segment(w, v0, v1, front);
+  const float length = stipple_length(state, v0, v1);
+  if (!std::isfinite(length)) return;
+  const auto pixels = static_cast<std::uint32_t>(std::ceil(length));
+  const auto segment = [&](float t0, float t1) {
+    emit_segment(w, t0 > 0 ? between(w, v0, v1, t0) : v0, t1 < 1 ? between(w, v0, v1, t1) : v1, front);
+  };
+  const std::uint32_t factor = std::max<std::uint32_t>(state.line_stipple_factor, 1);
+  bool drawing = false;
+  float start = 0;
+  for (std::uint32_t i = 0; i < pixels; ++i) {
+    const std::uint32_t bit = (w.stipple_counter + i) / factor & 15;
+    const bool on = (state.line_stipple_pattern >> bit & 1) != 0;
+    if (on == drawing) continue;
+    if (drawing)
+      segment(start / length, static_cast<float>(i) / length);
+    else
+      start = static_cast<float>(i);
+    drawing = on;
+  }
+  if (drawing && start < length) segment(start / length, 1.0f);
+  w.stipple_counter += pixels;
+}
+
+/// 10.2: the outline or the corners of one triangle after clipping. edge[i]: of the edge that starts at corner i.
+void emit_unfilled(PrimitiveWork& w, const Vertex* const in[3], const bool edge[3], float determinant) {
+  const State& state = *w.plan.state;
+  const Vertex* v[3] = {in[0], in[1], in[2]};
+  if (w.plan.depth_bias) {
+    const float offset = vertex_depth_bias(w.plan, w.pass, v[0], v[1], v[2]);
+    for (const Vertex*& corner : v) corner = biased_copy(w, corner, offset);
+  }
+  const Vertex* provoking = v[provoking_corner(3, state.provoking_vertex_last)];
+  for (const Vertex*& corner : v) corner = with_flat_values(w.plan, w.arena, corner, provoking);
+  const bool ccw = state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE;
+  const bool front = ccw ? determinant < 0 : determinant > 0;
+  if (state.polygon_mode == VK_POLYGON_MODE_POINT) {
+    for (int i = 0; i < 3; ++i)
+      if (edge[i]) setup_point(w.setup, v[i], front);
+    return;
+  }
+  if (edge[2]) emit_line(w, v[2], v[0], front);
+  if (edge[0]) emit_line(w, v[0], v[1], front);
+  if (edge[1]) emit_line(w, v[1], v[2], front);
+}
+
+/// One triangle that went through the clipper or needs the slow path anyway.
+void emit_slow(PrimitiveWork& w, const Vertex* const v[3], const bool edge[3]) {
+  const float determinant = window_determinant(v[0], v[1], v[2]);
+  if (culled_by_determinant(*w.plan.state, determinant)) return;
+  if (w.plan.bias_in_vertices) {
+    emit_unfilled(w, v, edge, determinant);
+    return;
+  }
+  setup_triangle(w.setup, setup_vertex(w, v[0]), setup_vertex(w, v[1]), setup_vertex(w, v[2]));
+}
+
+void emit_clipped(PrimitiveWork& w, std::uint32_t provoking, ClipPolygon& polygon) {
+  const ClipContext context{&w.plan, &w.viewport, &w.arena, w.plan.state->polygon_mode == VK_POLYGON_MODE_POINT};
+  if (!clip_triangle(context, provoking, polygon)) return;
+  const Vertex* record[kMaxPolygon];
+  for (std::uint32_t i = 0; i < polygon.count; ++i) record[i] = window_record(w, polygon.corner[i]);
+  const bool last_mode = w.plan.state->provoking_vertex_last;
+  for (std::uint32_t i = 2; i < polygon.count; ++i) {
+    // Fan (p0, p[i-1], p[i]); edges inside the polygon are not part of the outline.
+    const bool from_p0 = i == 2 && polygon.corner[0].edge;
+    const bool between = polygon.corner[i - 1].edge;
+    const bool to_p0 = i == polygon.count - 1 && polygon.corner[i].edge;
+    if (last_mode) {
+      const Vertex* v[3] = {record[i - 1], record[i], record[0]};
+      const bool edge[3] = {between, to_p0, from_p0};
+      emit_slow(w, v, edge);
+    } else {
+      const Vertex* v[3] = {record[0], record[i - 1], record[i]};
+      const bool edge[3] = {from_p0, between, to_p0};
+      emit_slow(w, v, edge);
+    }
+  }
+}
+
+/// Sets up the triangles that wait: before any other primitive, which comes behind them.
+void flush_batch(PrimitiveWork& w) {
+  if (w.batch.count != 0) setup_triangles(w.setup, w.batch);
+}
+
+void add_to_batch(PrimitiveWork& w, const std::uint32_t slot[3]) {
+  const VertexScratch& s = w.vertices;
+  TriangleBatch& batch = w.batch;
+  const std::uint32_t at = batch.count++;
+  for (int c = 0; c < 3; ++c) {
+    batch.x[c][at] = s.snapped[slot[c] * 2];
+    batch.y[c][at] = s.snapped[slot[c] * 2 + 1];
+    batch.record[c][at] = s.records + std::size_t{slot[c]} * w.plan.vertex_stride;
+  }
+  batch.id[at] = w.setup.id;
+  if (batch.count == TriangleBatch::kSize) setup_triangles(w.setup, batch);
+}
+
+void process_triangle(PrimitiveWork& w, const std::uint32_t slot[3]) {
+  const VertexScratch& s = w.vertices;
+  const ClipCode c0 = s.code[slot[0]], c1 = s.code[slot[1]], c2 = s.code[slot[2]];
+  if ((c0 & c1 & c2) != 0) return;
+  if (w.batches && (c0 | c1 | c2) == 0) return add_to_batch(w, slot);
+  flush_batch(w);
+  if (w.plan.out.cull_count && culled_by_distance(w, slot, 3)) return;
+  const std::uint32_t provoking = provoking_corner(3, w.plan.state->provoking_vertex_last);
+  choose_layer_and_viewport(w, slot[provoking]);
+  const bool simple =
+      (c0 | c1 | c2) == 0 && !w.plan.per_vertex_viewport && !w.plan.bias_in_vertices && w.plan.out.cull_count == 0;
+  if (simple) {
+    const auto corner = [&](std::uint32_t i) {
+      return SetupVertex{s.records + std::size_t{i} * w.plan.vertex_stride, s.snapped[i * 2], s.snapped[i * 2 + 1]};
+    };
+    setup_triangle(w.setup, corner(slot[0]), corner(slot[1]), corner(slot[2]));
+    return;
+  }
+  w.stipple_counter = 0;
+  if ((c0 | c1 | c2) == 0) {
+    const Vertex* v[3];
+    for (int i = 0; i < 3; ++i) v[i] = window_record(w, clip_vertex(w, slot[i]));
+    const bool outline[3] = {true, true, true};
+    emit_slow(w, v, outline);
+    return;
+  }
+  ClipPolygon polygon;
+  polygon.count = 3;
+  for (int i = 0; i < 3; ++i) polygon.corner[i] = clip_vertex(w, slot[i]);
+  emit_clipped(w, provoking, polygon);
+}
+
+void process_line(PrimitiveWork& w, const std::uint32_t slot[2]) {
+  const ClipCode c0 = w.vertices.code[slot[0]], c1 = w.vertices.code[slot[1]];
+  if ((c0 & c1) != 0) return;
+  if (w.plan.out.cull_count && culled_by_distance(w, slot, 2)) return;
+  const std::uint32_t provoking = provoking_corner(2, w.plan.state->provoking_vertex_last);
+  choose_layer_and_viewport(w, slot[provoking]);
+  ClipVertex line[2] = {clip_vertex(w, slot[0]), clip_vertex(w, slot[1])};
+  const ClipContext context{&w.plan, &w.viewport, &w.arena, false};
+  if ((c0 | c1) != 0 && !clip_line(context, provoking, line)) return;
+  emit_line(w, window_record(w, line[0]), window_record(w, line[1]), true);
+}
+
+/// Vulkan 1.3.239, Primitive Clipping: "If the primitive under consideration is a point, then clipping passes it
+/// unchanged if it lies within the clip volume; otherwise, it is discarded." (The reference keeps those outside in x
+/// and y: deviation point-clipping.)
+void process_point(PrimitiveWork& w, std::uint32_t slot) {
+  const ClipCode code = w.vertices.code[slot];
+  if ((code & ~kClipXY) != 0) return;
+  const ClipVertex v = clip_vertex(w, slot);
+  if (w.plan.out.cull_count && culled_by_distance(w, &slot, 1)) return;
+  // Clipping primitives: the reference's count, and any is allowed for what is outside.
+  w.chunk.draw->call.queries.count(Statistic::kClippingPrimitives, 1);
+  if (code != 0) return;
+  choose_layer_and_viewport(w, slot);
+  setup_point(w.setup, window_record(w, v), true);
+}
+
+/// 10.1: a fan of four vertices that lies inside the view volume and has no flat values is set up from its centre on,
+/// whatever vertex is the provoking one; that tells only in the last bits of what is interpolated.
+bool starts_at_center(const PrimitiveWork& w, const Run& run, const std::uint16_t* slot) {
+  const PipelinePlan& plan = w.plan;
+  if (plan.state->topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN || run.end - run.begin != 2 || !run.ends) return false;
+  if (run.begin != 0 || w.chunk.draw->call.index_data || plan.flat_count != 0) return false;
+  if (plan.bias_in_vertices || plan.out.cull_count != 0 || plan.per_vertex_viewport) return false;
+  for (int i = 0; i < 4; ++i) {
+    if (w.vertices.code[slot[i]] != 0) return false;
+    if (plan.out.layer != kNoReg && w.vertices.layer[slot[i]] != w.vertices.layer[slot[0]]) return false;
+  }
+  return true;
+}
+
+void process_primitive(PrimitiveWork& w, std::uint32_t corners, const std::uint32_t* slot) {
+  if (corners == 3)
+    process_triangle(w, slot);
+  else if (corners == 2)
+    process_line(w, slot);
+  else
+    process_point(w, slot[0]);
+}
+
+/// The most frequent topology, without tables.
+void process_triangle_list(PrimitiveWork& w, const Run& run, std::uint32_t first_entry) {
+  const std::uint16_t* corner = w.vertices.slot.data() + first_entry;
+  for (std::uint32_t i = run.begin; i < run.end; ++i, corner += 3) {
+    const std::uint32_t slot[3] = {corner[0], corner[1], corner[2]};
+    w.setup.id = run.first_id + i;
+    process_triangle(w, slot);
+  }
+}
+
+void process_run(PrimitiveWork& w, const Run& run, const RunSpan& span, std::uint32_t first_entry) {
+  const State& state = *w.plan.state;
+  const TopologyShape& shape = w.plan.shape;
+  const std::uint16_t* slots = w.vertices.slot.data() + first_entry;
+  const bool last = state.provoking_vertex_last || starts_at_center(w, run, slots);
+  for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    const Corners corners = corners_of(state.topology, last, i);
+    std::uint32_t slot[3];
+    for (std::uint32_t c = 0; c < shape.corners; ++c) slot[c] = slots[span.entry(corners.at[c])];
+    w.setup.id = run.first_id + i;
+    if (i == 0 || shape.step > 1) w.stipple_counter = 0;  // strips go on with the pattern
+    process_primitive(w, shape.corners, slot);
+  }
+}
+
+}  // namespace
+
+void process_primitives(const PrimitiveContext& context) {
+  PrimitiveWork w(context);
+  const Chunk& chunk = w.chunk;
+  const TopologyShape& shape = w.plan.shape;
+  if (w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return;
+  if (chunk.stipple_counter) w.stipple_counter = *chunk.stipple_counter;
+  std::uint32_t first_entry = 0, expected = 0;
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) expected += chunk.runs[r].end - chunk.runs[r].begin;
+  w.primitives.reserve(expected);
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
+    const RunSpan span = run_span(shape, chunk.runs[r]);
+    if (w.plan.state->topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST)
+      process_triangle_list(w, chunk.runs[r], first_entry);
+    else
+      process_run(w, chunk.runs[r], span, first_entry);
+    first_entry += span.count();
+  }
+  flush_batch(w);
+  if (chunk.stipple_counter) *chunk.stipple_counter = w.stipple_counter;
+  if (!w.plan.draws_points) chunk.draw->call.queries.count(Statistic::kClippingPrimitives, w.primitives.size());
+}
+
+void process_listed(const PrimitiveContext& context, std::span<const ListedPrimitive> listed) {
+  PrimitiveWork w(context);
+  const std::uint32_t before = w.primitives.size();
+  const bool invisible = w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && w.plan.corners == 3;
+  for (const ListedPrimitive& primitive : listed) {
+    if (invisible) break;
+    w.setup.id = primitive.id;
+    if (!primitive.continues) w.stipple_counter = 0;
+    process_primitive(w, w.plan.corners, primitive.slot);
+  }
+  flush_batch(w);
+  const QueryCounters& queries = w.chunk.draw->call.queries;
+  queries.count(Statistic::kClippingInvocations, listed.size());
+  if (!w.plan.draws_points) queries.count(Statistic::kClippingPrimitives, w.primitives.size() - before);
+}
+
+}  // namespace vitrine::raster
