@@ -269,7 +269,8 @@ base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> wor
   if (std::string error = missing_device_capability(words); !error.empty()) return base::Error{error};
   // The front end survives whatever the words say and bounds its work; the validator's time grows with the cube of the
   // nesting, so that it is not asked about large modules that are refused anyway. Its words are better otherwise.
-  base::Result<ir::Function> function = translate(words, options);
+  const auto observer = options.observer ? options.observer : exec::requested_tracer(options.stage);
+  base::Result<ir::Function> function = translate(words, options, observer ? observer->interest() : exec::Interest{});
   if (!function && words.size() > kSmallModule) return function.error();
   if (LocationCounter(words).largest() > kMaxLocations) return base::Error{"SPIR-V interface takes too many locations"};
   if (options.validate)
@@ -277,7 +278,7 @@ base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> wor
   if (!function) return function.error();
   rewrite(function.value());
   ir::make_joins_whole(function.value());
-  return lower(function.take(), options.observer ? options.observer : exec::requested_tracer(options.stage));
+  return lower(function.take(), observer);
 }
 
 }  // namespace vitrine::spirv

@@ -22,7 +22,9 @@
 #include <vector>
 
 #include "base/lanes.h"
+#include "spirv/probe.h"
 #include "spirv/shader.h"
+#include "spirv/source_info.h"
 
 namespace vitrine::spirv::ir {
 
@@ -103,8 +105,7 @@ inline std::uint32_t element_bytes(const std::array<std::uint32_t, 4>& imm) { re
 /// Where an instruction came from.
 struct Origin {
   std::uint32_t spirv_id = 0;  ///< result id, 0: none
-  std::uint32_t file = 0;      ///< OpString id, 0: none
-  std::uint32_t line = 0;
+  std::uint32_t place = 0;     ///< SourceInfo::places, 0: unknown
 };
 
 /// One instruction. `imm` and `data` mean what the op's row says.
@@ -249,8 +250,9 @@ struct Function {
   NodeList body;
   std::vector<ValueInfo> values;  ///< indexed by ValueId
   std::vector<Array> arrays;
-  std::vector<std::pair<std::uint32_t, std::string>> files;  ///< names that Origin::file stands for
-  bool signed_zero_inf_nan_preserve = false;                 ///< execution mode: inexact rewrites are off (section 4.1)
+  std::shared_ptr<const SourceInfo> sources;  ///< what Origin::place stands for; null: nothing is known
+  std::vector<Probe> probes;                  ///< of kProbe
+  bool signed_zero_inf_nan_preserve = false;  ///< execution mode: inexact rewrites are off (section 4.1)
   bool denorm_flush_to_zero = false;
   std::uint8_t inexact_off = 0;  ///< sum of the widths, of 16 and 64, for which one of the two is declared
 

@@ -231,6 +231,7 @@ bool has_effect(Op op, const ImageInfo* image) {
     case Op::kBarrier:
     case Op::kMemoryBarrier:
     case Op::kDemote:
+    case Op::kProbe:
     case Op::kKill:
     case Op::kReturn:
     case Op::kStoreVar:

@@ -70,10 +70,10 @@ struct Dump {
   }
 
   void origin(const Origin& origin) {
-    if (origin.spirv_id == 0 && origin.line == 0) return;
+    if (origin.spirv_id == 0 && origin.place == 0) return;
     text += "  ;";
     if (origin.spirv_id != 0) add(" %%%u", origin.spirv_id);
-    if (origin.line != 0) add(" line %u", origin.line);
+    if (origin.place != 0 && function.sources) text += ' ' + function.sources->text(origin.place);
   }
 
   void parameters(const Instr& instr) {

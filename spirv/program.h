@@ -27,7 +27,8 @@ struct Wave;
 struct Instruction;
 namespace exec {
 struct Observation;  // spirv/exec/observe.h
-}
+class Watch;
+}  // namespace exec
 
 /// Executes one instruction for a wave and returns the next one to run; null ends or suspends the wave (Wave::status).
 using Handler = const Instruction* (*)(Wave& wave, const Instruction* instruction);
@@ -76,7 +77,8 @@ struct Wave {
   std::byte* arrays = nullptr;    ///< local arrays: element e of array a at a.offset + e*256
   std::uint32_t workgroup_id[3] = {}, num_workgroups[3] = {};
   std::uint32_t first_invocation = 0;  ///< compute: LocalInvocationIndex of lane 0
-  std::int64_t budget = 0;             ///< back edges left; below 0: fault
+  std::int64_t budget = 0;             ///< instructions in loops that are left; below 0: fault
+  exec::Watch* watch = nullptr;        ///< whom probes tell; null: nobody
   enum class Status : std::uint8_t { kRunning, kDone, kAtBarrier, kFault } status = Status::kRunning;
   const Instruction* resume = nullptr;  ///< after a barrier: where to go on; after a fault: the instruction at fault
 };
@@ -85,6 +87,12 @@ struct Wave {
 inline constexpr std::uint32_t kRegisterStride = sizeof(base::WaveRegister);
 /// Operand offset that means "none".
 inline constexpr std::uint32_t kNoOperand = ~std::uint32_t{0};
+
+/// A file of the wave and a byte offset in it.
+struct OperandPlace {
+  char file = ' ';  ///< r varying, u uniform, m mask, ' ' none
+  std::uint32_t offset = 0;
+};
 
 /// An operand whose file is known only to the instruction's side table. Index operands of descriptor arrays.
 struct IndexOperand {
@@ -117,6 +125,19 @@ struct ImageOp {
   std::array<std::uint32_t, 4> result{kNoOperand, kNoOperand, kNoOperand, kNoOperand};
 };
 
+/// Side table row of a probe.
+struct ProbeOp {
+  std::uint32_t probe = 0;             ///< Program::probes
+  std::vector<OperandPlace> operands;  ///< a word each, in the order of Probe::values
+  /// Conditions under which the lanes that are active come by: booleans, and whether they must hold.
+  std::vector<std::pair<OperandPlace, bool>> guards;
+};
+
+/// What an instruction does with memory.
+enum class Access : std::uint8_t { kNone, kLoad, kStore, kAtomic, kImage };
+/// Which memory: what MemoryOp says holds for it.
+enum class MemorySpace : std::uint8_t { kUniformBuffer, kStorageBuffer, kPush, kShared, kGlobal, kArray };
+
 /// What instruction i is, for the disassembler, faults, the trace and the debugger: kept beside the code, not in it.
 struct InstructionNote {
   const char* name = "";
@@ -128,6 +149,8 @@ struct InstructionNote {
   char high = ' ';     ///< file of extra[1], the high word of the result
   char data = 'r';     ///< file of MemoryOp::data
   bool loads = false;  ///< MemoryOp::data are results
+  Access access = Access::kNone;
+  MemorySpace space = MemorySpace::kStorageBuffer;
 };
 
 /// A word of the uniform file that bind() copies once into a mask (0 / ~0) or a whole register that no instruction
@@ -146,10 +169,10 @@ struct Program {
   std::vector<Instruction> preamble;  ///< draw-uniform work on the uniform file alone
   std::vector<Instruction> code;
   std::vector<InstructionNote> preamble_notes, notes;
-  std::vector<std::pair<std::uint32_t, std::string>> files;  ///< names that ir::Origin::file stands for
-  std::vector<std::uint32_t> constants;                      ///< first words of the uniform file
-  std::uint32_t draw_words = 0;                              ///< words of constants and preamble results
-  std::uint32_t uniform_words = 0;                           ///< all, wave-uniform scratch included
+  std::shared_ptr<const SourceInfo> sources;  ///< what ir::Origin::place stands for; or null
+  std::vector<std::uint32_t> constants;       ///< first words of the uniform file
+  std::uint32_t draw_words = 0;               ///< words of constants and preamble results
+  std::uint32_t uniform_words = 0;            ///< all, wave-uniform scratch included
   std::uint32_t register_count = 0;
   std::uint32_t mask_count = 0;
   std::uint32_t array_bytes = 0;
@@ -159,6 +182,8 @@ struct Program {
   std::vector<RegisterRange> cleared;
   std::vector<MemoryOp> memory_ops;
   std::vector<ImageOp> image_ops;
+  std::vector<ProbeOp> probe_ops;
+  std::vector<Probe> probes;
   bool has_barrier = false;
   bool flush_denormals = false;  ///< floating-point mode of the preamble
   std::uint32_t local_size[3] = {1, 1, 1};

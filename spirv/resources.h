@@ -10,6 +10,8 @@
 
 namespace vitrine::spirv {
 
+class ObservedCommand;  // spirv/observed_command.h
+
 /// One array element of one binding. Each kind has fields of its own, so that a shader which expects another kind than
 /// was bound (an invalid use) finds a null descriptor: buffers of size 0, images that read 0.
 struct Descriptor {
@@ -33,6 +35,8 @@ struct ResourceTable {
   /// Of the draw or dispatch, given by BoundShader: what is derived from descriptors may be kept for as long as it
   /// stays. 0: for one use.
   std::uint64_t serial = 0;
+  /// What observers are told of the draw or dispatch; null where nobody observes.
+  const ObservedCommand* command = nullptr;
 };
 
 }  // namespace vitrine::spirv

@@ -18,7 +18,8 @@
 
 namespace vitrine::spirv {
 
-struct Program;  // spirv/program.h
+struct Program;     // spirv/program.h
+struct SourceInfo;  // spirv/source_info.h
 
 enum class BaseType : std::uint8_t { kFloat, kInt, kUint };
 enum class Interpolation : std::uint8_t { kPerspective, kLinear, kFlat };
@@ -154,10 +155,16 @@ class Shader {
   std::unique_ptr<const Program> program_;
 };
 
-/// What went wrong while a shader ran (instruction budget exhausted, divergent barrier): set once, by any thread.
+/// What went wrong while a shader ran: its instruction budget is spent. Set by any thread; of several workgroups of a
+/// dispatch the first in order counts.
 struct Fault {
   std::atomic<bool> raised{false};
-  std::string message;  ///< names the source line; valid once `raised` is true and all threads are done
+  std::atomic<std::uint64_t> order{~std::uint64_t{0}};  ///< of the workgroup
+  // Valid once `raised` is true and all threads are done.
+  std::string message;  ///< names the source line
+  std::shared_ptr<const SourceInfo> sources;
+  std::uint32_t place = 0;     ///< of the loop; SourceInfo::places
+  std::uint32_t spirv_id = 0;  ///< 0: unknown
 };
 
 /// A shader with its resources and the results of its uniform preamble. Built once per draw or dispatch, then constant.

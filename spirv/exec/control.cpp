@@ -30,8 +30,9 @@ const Instruction* next_or_target(const Wave& wave, const Instruction* instructi
   return wave.active != 0 ? instruction + 1 : target(instruction);
 }
 
-const Instruction* count_iteration(Wave& wave, const Instruction* instruction) {
-  if (--wave.budget >= 0) return target(instruction);
+const Instruction* count_turn(Wave& wave, const Instruction* instruction) {
+  wave.budget -= instruction->extra[1];
+  if (wave.budget >= 0) return target(instruction);
   wave.status = Wave::Status::kFault;
   wave.resume = instruction;
   return nullptr;
@@ -151,12 +152,12 @@ const Instruction* rejoin(Wave& wave, const Instruction* i) {
 }
 
 const Instruction* loop_back_mask(Wave& wave, const Instruction* i) {
-  if (wave.active != 0) return count_iteration(wave, i);
+  if (wave.active != 0) return count_turn(wave, i);
   wave.active = mask(wave, i->src[0]);
   return i + 1;
 }
 
-const Instruction* loop_back(Wave& wave, const Instruction* i) { return count_iteration(wave, i); }
+const Instruction* loop_back(Wave& wave, const Instruction* i) { return count_turn(wave, i); }
 
 const Instruction* return_if(Wave& wave, const Instruction* i) {
   wave.active &= ~mask(wave, i->src[0]);

@@ -70,7 +70,7 @@ std::string list(const Program& program, const std::vector<Instruction>& code,
     for (int k = 0; k < 3; ++k) text += operand(note.files[k + 1], code[i].src[k]);
     text += extra(program, code[i], note, i);
     if (note.origin.spirv_id != 0) text += "  ; %" + std::to_string(note.origin.spirv_id);
-    if (note.origin.line != 0) text += " line " + std::to_string(note.origin.line);
+    if (note.origin.place != 0 && program.sources) text += ' ' + program.sources->text(note.origin.place);
     text += '\n';
   }
   return text;

@@ -30,6 +30,7 @@ struct Launch {
   const std::uint32_t* groups;
   std::uint64_t invocations = 0;              ///< of a workgroup
   std::uint32_t waves = 0;                    ///< of a workgroup
+  std::int64_t budget = 0;                    ///< of a wave
   std::uint32_t columns = 0;                  ///< of the grid in x: workgroups, or waves full of them
   mutable std::atomic<bool> reported{false};  ///< a divergent barrier
 };
@@ -64,15 +65,15 @@ void start(Wave& wave, const Launch& launch, std::uint32_t index, const std::uin
     lanes *= std::min(most, launch.base[0] + launch.groups[0] - group[0]);
   wave.launched = base::first_lanes(static_cast<std::size_t>(std::min(kWidth, lanes)));
   wave.active = wave.live = wave.launched;
-  wave.budget = exec::shader_budget();
+  wave.budget = launch.budget;
   wave.resume = launch.program.code.data();
 }
 
-/// Runs a wave to its end or next barrier. False after a fault.
-bool run(Wave& wave, const Launch& launch) {
+/// Runs a wave of the n-th workgroup to its end or next barrier. False after a fault.
+bool run(Wave& wave, const Launch& launch, std::uint64_t n) {
   launch.loop(wave, wave.resume);
   if (wave.status != Wave::Status::kFault) return true;
-  exec::raise_fault(launch.shader.fault(), wave);
+  exec::raise_fault(launch.shader.fault(), wave, n);
   return false;
 }
 
@@ -91,12 +92,12 @@ void report_divergence(const GroupMemory& memory, const Launch& launch) {
   base::log("error", "a barrier is not reached by all invocations of the workgroup" + exec::place_of(*waiting));
 }
 
-void run_group(GroupMemory& memory, const Launch& launch, const std::uint32_t group[3]) {
+void run_group(GroupMemory& memory, const Launch& launch, const std::uint32_t group[3], std::uint64_t n) {
   std::fill(memory.shared.begin(), memory.shared.end(), 0u);
   if (!launch.program.has_barrier) {
     for (std::uint32_t w = 0; w < launch.waves; ++w) {
       start(memory.waves[0], launch, w, group);
-      if (!run(memory.waves[0], launch)) return;
+      if (!run(memory.waves[0], launch, n)) return;
     }
     return;
   }
@@ -105,7 +106,7 @@ void run_group(GroupMemory& memory, const Launch& launch, const std::uint32_t gr
     waiting = false;
     for (Wave& wave : memory.waves) {
       if (wave.status == Wave::Status::kDone) continue;
-      if (!run(wave, launch)) return;
+      if (!run(wave, launch, n)) return;
       waiting |= wave.status == Wave::Status::kAtBarrier;
     }
     if (waiting) report_divergence(memory, launch);
@@ -116,13 +117,14 @@ void run_range(const Launch& launch, std::uint64_t first, std::uint64_t last) {
   const base::ScopedFloatMode mode(base::Denormals::kHonour);
   GroupMemory& memory = thread_memory();
   bind(memory, launch);
-  for (std::uint64_t g = first; g < last && !launch.shader.fault().raised.load(std::memory_order_relaxed); ++g) {
+  // After a fault the workgroups before that one still run, so that it is the same one every time.
+  for (std::uint64_t g = first; g < last && g < launch.shader.fault().order.load(std::memory_order_relaxed); ++g) {
     const std::uint64_t x = launch.columns, y = launch.groups[1];
     const std::uint32_t group[3] = {launch.base[0] + static_cast<std::uint32_t>(g % x) * launch.program.groups_per_wave,
                                     launch.base[1] + static_cast<std::uint32_t>(g / x % y),
                                     launch.base[2] + static_cast<std::uint32_t>(g / x / y)};
     for (Wave& wave : memory.waves) wave.status = Wave::Status::kRunning;
-    run_group(memory, launch, group);
+    run_group(memory, launch, group, g);
   }
 }
 
@@ -138,6 +140,8 @@ void dispatch(const BoundShader& shader, const std::uint32_t base[3], const std:
   const std::uint32_t* size = launch.program.local_size;
   launch.invocations = std::uint64_t{size[0]} * size[1] * size[2];
   launch.waves = static_cast<std::uint32_t>((launch.invocations + kWidth - 1) / kWidth);
+  // Waves that wait for each other take turns: together they have the budget of one.
+  launch.budget = exec::shader_budget() / (program.has_barrier ? launch.waves : 1);
   const std::uint64_t group_work = launch.waves * launch.program.code.size();
   if (group_work * total <= kInlineWork) return run_range(launch, 0, total);
   const std::uint64_t per_item =

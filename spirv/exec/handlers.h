@@ -37,9 +37,10 @@ const Instruction* leave_begin(Wave&, const Instruction*);
 const Instruction* leave_end(Wave&, const Instruction*);
 /// active |= mask dst, which becomes 0; to the target if no lane is active.
 const Instruction* rejoin(Wave&, const Instruction*);
-/// To the target (top of the loop) if a lane is active, else active = mask src[0] and on. Counts against the budget.
+/// To the target (top of the loop) if a lane is active, else active = mask src[0] and on. A turn takes extra[1] from
+/// the budget; when it is spent: fault.
 const Instruction* loop_back_mask(Wave&, const Instruction*);
-/// To the target. Counts against the budget.
+/// To the target. A turn takes extra[1] from the budget; when it is spent: fault.
 const Instruction* loop_back(Wave&, const Instruction*);
 /// Lanes of mask src[0] end; to the target if no lane is active then.
 const Instruction* return_if(Wave&, const Instruction*);
@@ -61,6 +62,11 @@ const Instruction* broadcast_mask_active(Wave&, const Instruction*);
 /// Register dst = register src[0] / uniform word src[0], in active lanes.
 Handler move_active();
 Handler broadcast_active();
+
+// ---- probes (spirv/exec/observe.cpp)
+
+/// Tells the wave's watch of row extra[0] of Program::probe_ops.
+const Instruction* probe(Wave&, const Instruction*);
 
 // ---- environment (spirv/exec/environment.cpp)
 

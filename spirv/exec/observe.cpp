@@ -1,18 +1,79 @@
-// The loop of observed programs.
+// The loop of observed programs, and probes.
 #include "spirv/exec/observe.h"
 
-namespace vitrine::spirv::exec {
+#include <utility>
 
-void execute_observed(Wave& wave, const Instruction* start) {
-  const std::unique_ptr<Watch> watch = wave.program->observation->observer->watch(wave, start);
-  if (!watch) return execute(wave, start);
+#include "spirv/exec/handlers.h"
+
+namespace vitrine::spirv::exec {
+namespace {
+
+void execute_watched(Wave& wave, const Instruction* start, Watch& watch) {
   wave.status = Wave::Status::kRunning;
   for (const Instruction* next = start; next != nullptr;) {
     const Instruction* const instruction = next;
-    watch->before(wave, instruction);
+    watch.before(wave, instruction);
     next = instruction->handler(wave, instruction);
-    watch->after(wave, instruction, next);
+    watch.after(wave, instruction, next);
   }
+}
+
+const Instruction* hook(Wave& wave, const Instruction* i) {
+  const Program& program = *wave.program;
+  const auto index = static_cast<std::size_t>(i - program.code.data());
+  if (wave.watch != nullptr) wave.watch->access(wave, i, program.notes[index]);
+  return program.observation->hooked[index](wave, i);
+}
+
+}  // namespace
+
+void hook_accesses(Program& program) {
+  Observation observation = *program.observation;
+  observation.hooked.assign(program.code.size(), nullptr);
+  for (std::size_t i = 0; i < program.code.size(); ++i) {
+    if (program.notes[i].access == Access::kNone) continue;
+    observation.hooked[i] = std::exchange(program.code[i].handler, hook);
+  }
+  program.observation = std::make_shared<const Observation>(std::move(observation));
+}
+
+void execute_observed(Wave& wave, const Instruction* start) {
+  const Observation& observation = *wave.program->observation;
+  const std::unique_ptr<Watch> watch = observation.observer->watch(wave, start);
+  wave.watch = watch.get();
+  if (watch && observation.interest.instructions) {
+    execute_watched(wave, start, *watch);
+  } else {
+    execute(wave, start);
+  }
+  wave.watch = nullptr;
+}
+
+std::uint32_t word_of(const Wave& wave, OperandPlace place, std::size_t lane) {
+  switch (place.file) {
+    case 'r':
+      return reinterpret_cast<const base::WaveRegister*>(wave.registers + place.offset)->lane[lane];
+    case 'm':
+      return static_cast<std::uint32_t>(wave.masks[place.offset / sizeof(base::LaneMask)] >> lane & 1);
+    default:
+      return wave.uniforms[place.offset / 4];
+  }
+}
+
+base::LaneMask lanes_at(const Wave& wave, const ProbeOp& op) {
+  base::LaneMask lanes = wave.active;
+  for (const auto& [place, holds] : op.guards) {
+    const base::LaneMask where = place.file == 'm' ? wave.masks[place.offset / sizeof(base::LaneMask)]
+                                 : wave.uniforms[place.offset / 4] != 0 ? base::kAllLanes
+                                                                        : 0;
+    lanes &= holds ? where : ~where;
+  }
+  return lanes;
+}
+
+const Instruction* probe(Wave& wave, const Instruction* i) {
+  if (wave.watch != nullptr) wave.watch->probe(wave, wave.program->probe_ops[i->extra[0]]);
+  return i + 1;
 }
 
 }  // namespace vitrine::spirv::exec

@@ -1,6 +1,6 @@
-// Observed programs: a second execution loop, chosen before a draw or dispatch, that tells somebody about every
-// instruction of the waves he asks for. The plain loop knows nothing of it. An observed program is lowered without
-// chains, so that every instruction leaves its result in a register, and computes the same bits.
+// Observed programs: whoever observes one is told of what its waves do, as much as he asks for. Which loop runs is
+// decided before a draw or dispatch; the plain one knows nothing of observers. An observed program computes the same
+// bits.
 #pragma once
 
 #include <memory>
@@ -15,15 +15,34 @@ namespace vitrine::spirv::exec {
 class Watch {
  public:
   virtual ~Watch() = default;
-  virtual void before(const Wave& wave, const Instruction* instruction) = 0;
+  /// Around every instruction, if Interest::instructions.
+  virtual void before(const Wave&, const Instruction*) {}
   /// `next`: what runs now; null: the wave has ended or waits.
-  virtual void after(const Wave& wave, const Instruction* instruction, const Instruction* next) = 0;
+  virtual void after(const Wave&, const Instruction*, const Instruction* /*next*/) {}
+  /// Before an instruction that reads or writes memory or an image, if Interest::accesses, or one whose result may be
+  /// undefined, if Interest::arithmetic.
+  virtual void access(const Wave&, const Instruction*, const InstructionNote&) {}
+  /// The active lanes come by a probe.
+  virtual void probe(const Wave&, const ProbeOp&) {}
+};
+
+/// What an observer wants to be told. Fixed when a program is made.
+struct Interest {
+  bool instructions = false;  ///< all of them: no chains, every instruction leaves its result in a register
+  bool accesses = false;      ///< of memory and images: each stays where and what the shader has it
+  bool arithmetic = false;    ///< operations that are undefined for some operands: no chains
+  bool blocks = false;        ///< probes where blocks begin
+  bool printf = false;        ///< probes of NonSemantic.DebugPrintf
+  bool operator==(const Interest&) const = default;
 };
 
 /// Shared by all threads that run a program.
 class Observer {
  public:
   virtual ~Observer() = default;
+  virtual Interest interest() const { return {.instructions = true}; }
+  /// Called when a program that this observes has been made.
+  virtual void made(const Program&) const {}
   /// Called before each run. Null: this one is not watched.
   virtual std::unique_ptr<Watch> watch(const Wave& wave, const Instruction* start) const = 0;
 };
@@ -33,9 +52,19 @@ class Observer {
 struct Observation {
   std::shared_ptr<const Observer> observer;
   ShaderInterface interface;
+  Interest interest;
+  std::vector<Handler> hooked;  ///< per instruction that is watched: what it does; null: it is not
 };
+
+/// Lets the wave's watch be told before every instruction of `program` that accesses memory.
+void hook_accesses(Program& program);
 
 /// As execute(), for a program with an Observation.
 void execute_observed(Wave& wave, const Instruction* start);
+
+/// The lanes that come by a probe.
+base::LaneMask lanes_at(const Wave& wave, const ProbeOp& op);
+/// A word of an operand in `lane`; masks as 0 or 1.
+std::uint32_t word_of(const Wave& wave, OperandPlace place, std::size_t lane);
 
 }  // namespace vitrine::spirv::exec

@@ -7,12 +7,6 @@
 
 namespace vitrine::spirv::exec {
 
-/// A place in one of the files: 'r' varying, 'u' uniform, 'm' mask.
-struct OperandPlace {
-  char file = ' ';
-  std::uint32_t offset = 0;  ///< bytes
-};
-
 struct OperandList {
   std::vector<OperandPlace> results, sources;
 };

@@ -96,7 +96,7 @@ base::LaneMask WaveRunner::run(base::LaneMask active, base::LaneMask helpers) {
   wave.budget = exec::shader_budget();
   if (!wave.program->cleared.empty()) exec::clear_undefined(*wave.program, wave);
   state_->loop(wave, wave.program->code.data());
-  if (wave.status == Wave::Status::kFault) exec::raise_fault(state_->shader->fault(), wave);
+  if (wave.status == Wave::Status::kFault) exec::raise_fault(state_->shader->fault(), wave, 0);
   return wave.live;
 }
 

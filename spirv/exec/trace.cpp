@@ -11,6 +11,7 @@
 
 #include "base/lasting.h"
 #include "base/numeric.h"
+#include "spirv/exec/invocation.h"
 #include "spirv/exec/trace_line.h"
 
 namespace vitrine::spirv::exec {
@@ -25,38 +26,6 @@ std::string list_text(const std::uint32_t* numbers, std::size_t count) {
   return text;
 }
 
-/// Where an input of this wave lies. Null: the stage has none such.
-const base::WaveRegister* input_of(const Wave& wave, BuiltIn built_in, std::uint8_t component) {
-  for (const InterfaceSlot& slot : wave.program->observation->interface.inputs)
-    if (slot.built_in == built_in && slot.component == component)
-      return reinterpret_cast<const base::WaveRegister*>(wave.registers + std::size_t{slot.reg} * kRegisterStride);
-  return nullptr;
-}
-
-/// The numbers that tell the invocation of a lane from others, as in TraceTarget.
-std::array<std::uint32_t, 3> compute_id(const Wave& wave, std::size_t lane) {
-  const std::uint32_t* size = wave.program->local_size;
-  const std::uint32_t invocations = size[0] * size[1] * size[2];
-  const std::uint32_t at = wave.first_invocation + static_cast<std::uint32_t>(lane);
-  const std::uint32_t group = wave.program->groups_per_wave > 1 ? at / invocations : 0, local = at % invocations;
-  return {(wave.workgroup_id[0] + group) * size[0] + local % size[0],
-          wave.workgroup_id[1] * size[1] + local / size[0] % size[1],
-          wave.workgroup_id[2] * size[2] + local / size[0] / size[1]};
-}
-
-std::array<std::uint32_t, 3> id_of(const Wave& wave, VkShaderStageFlagBits stage, std::size_t lane) {
-  if (stage == VK_SHADER_STAGE_COMPUTE_BIT) return compute_id(wave, lane);
-  std::array<std::uint32_t, 3> id{};
-  const bool vertex = stage == VK_SHADER_STAGE_VERTEX_BIT;
-  for (std::uint8_t i = 0; i < 2; ++i) {
-    const BuiltIn built_in = !vertex ? BuiltIn::kFragCoord : i == 0 ? BuiltIn::kVertexIndex : BuiltIn::kInstanceIndex;
-    const base::WaveRegister* const input = input_of(wave, built_in, vertex ? 0 : i);
-    if (input == nullptr) continue;
-    id[i] = vertex ? input->lane[lane] : base::truncate_to_uint(base::float_of(input->lane[lane]));
-  }
-  return id;
-}
-
 constexpr std::pair<std::string_view, VkShaderStageFlagBits> kStages[] = {
     {"compute", VK_SHADER_STAGE_COMPUTE_BIT},
     {"vertex", VK_SHADER_STAGE_VERTEX_BIT},
@@ -68,7 +37,7 @@ std::string head_text(const Wave& wave, const TraceTarget& target, std::size_t l
   for (const auto& [name, stage] : kStages)
     if (stage == target.stage) text += name;
   const bool compute = target.stage == VK_SHADER_STAGE_COMPUTE_BIT;
-  const auto id = id_of(wave, target.stage, lane);
+  const auto id = invocation_of(wave, lane);
   text += ' ' + list_text(id.data(), compute ? 3 : 2) + " (";
   if (compute) text += "workgroup " + list_text(wave.workgroup_id, 3) + ", ";
   text += "lane " + std::to_string(lane);
@@ -177,7 +146,7 @@ class Tracer : public Observer {
   std::unique_ptr<Watch> watch(const Wave& wave, const Instruction* start) const override {
     base::LaneMask lanes = 0;
     base::for_each_lane(wave.launched, [&](std::size_t lane) {
-      const auto id = id_of(wave, target_.stage, lane);
+      const auto id = invocation_of(wave, lane);
       if (std::equal(id.begin(), id.begin() + static_cast<std::ptrdiff_t>(target_.count), target_.id.begin()))
         lanes |= base::LaneMask{1} << lane;
     });

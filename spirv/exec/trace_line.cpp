@@ -7,20 +7,10 @@
 #include <utility>
 
 #include "base/numeric.h"
+#include "spirv/exec/observe.h"
 
 namespace vitrine::spirv::exec {
 namespace {
-
-std::uint32_t value_of(const Wave& wave, OperandPlace place, std::size_t lane) {
-  switch (place.file) {
-    case 'r':
-      return reinterpret_cast<const base::WaveRegister*>(wave.registers + place.offset)->lane[lane];
-    case 'm':
-      return static_cast<std::uint32_t>(wave.masks[place.offset / sizeof(base::LaneMask)] >> lane & 1);
-    default:
-      return wave.uniforms[place.offset / 4];
-  }
-}
 
 std::string name_of(OperandPlace place) {
   const std::uint32_t size = place.file == 'r' ? kRegisterStride : place.file == 'm' ? sizeof(base::LaneMask) : 4;
@@ -43,7 +33,7 @@ std::string bits_text(std::uint32_t bits) {
 }
 
 std::string value_text(const Wave& wave, OperandPlace place, std::size_t lane) {
-  const std::uint32_t value = value_of(wave, place, lane);
+  const std::uint32_t value = word_of(wave, place, lane);
   return name_of(place) + (place.file == 'm' ? ' ' + std::to_string(value) : ' ' + bits_text(value));
 }
 
@@ -69,9 +59,7 @@ std::string extra_text(const Program& program, const Instruction& instruction, c
 std::string origin_text(const Program& program, const ir::Origin& origin) {
   std::string text;
   if (origin.spirv_id != 0) text += " %" + std::to_string(origin.spirv_id);
-  if (origin.line != 0) text += " line " + std::to_string(origin.line);
-  for (const auto& [id, name] : program.files)
-    if (origin.line != 0 && id == origin.file) text += " of " + name;
+  if (origin.place != 0 && program.sources) text += ' ' + program.sources->text(origin.place);
   return text.empty() ? text : "  ;" + text;
 }
 
@@ -83,7 +71,7 @@ std::string padded(std::string text, std::size_t column) {
 }
 
 std::string result_text(const Wave& wave, OperandPlace place, std::size_t lane) {
-  const std::uint32_t value = value_of(wave, place, lane);
+  const std::uint32_t value = word_of(wave, place, lane);
   return name_of(place) + " = " + (place.file == 'm' ? std::to_string(value) : bits_text(value));
 }
 

@@ -2,18 +2,20 @@
 #include "spirv/exec/wave_memory.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <new>
 #include <string>
 
-#include "base/log.h"
-
 namespace vitrine::spirv::exec {
 namespace {
 
 constexpr std::size_t kAlignment = 64;
+
+/// About a second of one wave on a slow machine.
+constexpr std::int64_t kShaderBudget = std::int64_t{1} << 28;
 
 std::size_t aligned(std::size_t bytes) { return (bytes + kAlignment - 1) & ~(kAlignment - 1); }
 
@@ -28,6 +30,15 @@ void apply_presets(const Program& program, Wave& wave) {
     auto* lanes = reinterpret_cast<std::uint32_t*>(wave.registers + preset.to);
     std::fill_n(lanes, base::kWaveWidth, wave.uniforms[preset.uniform / 4]);
   }
+}
+
+/// Of the instruction at which a wave stands; markers of control flow have none of their own: the nearest before them.
+ir::Origin origin_of(const Wave& wave) {
+  if (wave.resume == nullptr) return {};
+  auto index = static_cast<std::size_t>(wave.resume - wave.program->code.data());
+  while (index > 0 && wave.program->notes[index].origin.place == 0 && wave.program->notes[index].origin.spirv_id == 0)
+    --index;
+  return wave.program->notes[index].origin;
 }
 
 }  // namespace
@@ -76,32 +87,32 @@ std::int64_t shader_budget() {
   static const std::int64_t budget = [] {
     const char* value = std::getenv("VITRINE_SHADER_BUDGET");
     const long long wanted = value ? std::strtoll(value, nullptr, 10) : 0;
-    return wanted > 0 ? std::int64_t{wanted} : std::int64_t{1} << 28;
+    return wanted > 0 ? std::int64_t{wanted} : kShaderBudget;
   }();
   return budget;
 }
 
 std::string place_of(const Wave& wave) {
-  if (wave.resume == nullptr) return {};
-  // Markers of control flow have no origin of their own: the nearest instruction before them does.
-  auto index = static_cast<std::size_t>(wave.resume - wave.program->code.data());
-  while (index > 0 && wave.program->notes[index].origin.line == 0 && wave.program->notes[index].origin.spirv_id == 0)
-    --index;
-  const ir::Origin& origin = wave.program->notes[index].origin;
+  const ir::Origin origin = origin_of(wave);
   std::string where;
-  if (origin.line != 0) where = " near source line " + std::to_string(origin.line);
-  for (const auto& [id, name] : wave.program->files)
-    if (origin.line != 0 && id == origin.file) where += " of " + name;
+  if (origin.place != 0 && wave.program->sources) where = " near " + wave.program->sources->stack(origin.place);
   if (origin.spirv_id != 0) where += " (SPIR-V id " + std::to_string(origin.spirv_id) + ")";
   return where;
 }
 
-void raise_fault(Fault& fault, const Wave& wave) {
+void raise_fault(Fault& fault, const Wave& wave, std::uint64_t order) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
-  if (fault.raised.load(std::memory_order_relaxed)) return;
-  fault.message = "the shader did not end within its instruction budget" + place_of(wave);
-  base::log("error", fault.message);
+  if (fault.raised.load(std::memory_order_relaxed) && fault.order.load(std::memory_order_relaxed) <= order) return;
+  const ir::Origin origin = origin_of(wave);
+  fault.message = "the shader did not end within its budget of " + std::to_string(shader_budget()) +
+                  " instructions: " + std::to_string(std::popcount(wave.active)) + " of " +
+                  std::to_string(std::popcount(wave.launched)) + " invocations of a wave are in a loop" +
+                  place_of(wave);
+  fault.sources = wave.program->sources;
+  fault.place = origin.place;
+  fault.spirv_id = origin.spirv_id;
+  fault.order.store(order, std::memory_order_relaxed);
   fault.raised.store(true, std::memory_order_release);
 }
 

@@ -29,13 +29,14 @@ class WaveMemory {
 /// Zeros in what Program::cleared names, and in all masks without a preset.
 void clear_undefined(const Program& program, Wave& wave);
 
-/// Back edges a wave may take: 2^28, or VITRINE_SHADER_BUDGET.
+/// Instructions in loops that a wave may run: kShaderBudget, or VITRINE_SHADER_BUDGET.
 std::int64_t shader_budget();
 
-/// "near source line 7 of a.comp (SPIR-V id 12)": where a wave stands (Wave::resume); empty if unknown.
+/// " near a.comp:7:3 in f, called at a.comp:12 in main (SPIR-V id 12)": where a wave stands (Wave::resume); empty if
+/// unknown.
 std::string place_of(const Wave& wave);
 
-/// Records that `wave` exhausted its budget; the first fault wins.
-void raise_fault(Fault& fault, const Wave& wave);
+/// Records that `wave` has spent its budget. Of several faults that of the lowest order counts; of those the first.
+void raise_fault(Fault& fault, const Wave& wave, std::uint64_t order);
 
 }  // namespace vitrine::spirv::exec

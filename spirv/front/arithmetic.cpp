@@ -57,13 +57,6 @@ void alu(Translator& t, const Inst& inst, ir::Op op) {
   set_numbers(t, inst, results);
 }
 
-/// Operands after the first are scalars that apply to every component.
-void alu_scalar_tail(Translator& t, const Inst& inst, ir::Op op) {
-  std::vector<Expr> operands;
-  for (std::uint32_t i = 0; i < ir::alu_info(op).sources; i++) operands.push_back(number_of(t, inst.operand(i)));
-  set_number(t, inst, front::apply(op, operands));
-}
-
 /// Bits that a 32-bit operation counts or finds, as the result's type.
 void bit_count(Translator& t, const Inst& inst, ir::Op op) {
   const Expr count = apply(op, {number_of(t, inst.operand(0))});

@@ -11,6 +11,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "spirv/exec/observe.h"
 #include "spirv/front/convergence.h"
 #include "spirv/front/module.h"
 
@@ -118,10 +119,18 @@ struct Frame {
 };
 
 struct Translator {
-  Translator(const Module& m, const CompileOptions& o) : module(m), options(o) {}
+  Translator(const Module& m, const CompileOptions& o, const exec::Interest& i, SourceInfo s)
+      : module(m), options(o), interest(i), sources(std::move(s)) {}
 
   const Module& module;
   const CompileOptions& options;
+  exec::Interest interest;  ///< of whoever observes the shader
+  SourceInfo sources;       ///< the module's, then a place for each call that leads to one
+  std::uint32_t call = 0;   ///< place of the call that the running function instance stands for; 0: the entry point
+  using InCall = std::pair<std::uint32_t, std::uint32_t>;  ///< a number, the call
+  std::map<InCall, std::uint32_t> inlined_places, inlined_scopes;
+  std::uint32_t near = 0;  ///< place of what was made last
+  ir::Origin fallback;     ///< of what is made while no instruction with a place is being translated
   ir::Function function;
   ir::NodeList* list = nullptr;  ///< where instructions go
   ir::NodeList constants;        ///< goes in front of everything
@@ -147,7 +156,6 @@ struct Translator {
   std::unordered_map<std::uint32_t, std::uint32_t> phi_locals;  ///< OpPhi -> local of the running function instance
   std::vector<Local> locals;
   std::vector<Access> accesses;
-  std::unordered_map<std::uint32_t, std::uint32_t> shared_offsets;  ///< Workgroup variable -> bytes
 
   std::vector<Scope> scopes;
   std::vector<Frame> frames;
@@ -168,6 +176,14 @@ inline constexpr std::uint32_t kWholeVariable = ~std::uint32_t{0};
 inline constexpr std::size_t kMaxNodes = 1u << 20;
 /// Bounds the recursion over nested control flow.
 inline constexpr std::uint32_t kMaxDepth = 200;
+
+// ---- call_stack.cpp
+/// Where the entry point begins: the place of its interface.
+std::uint32_t entry_place(const Module& module);
+/// A place of the module, in the running function instance.
+std::uint32_t inlined_place(Translator& t, std::uint32_t place);
+/// Of the instruction being translated.
+ir::Origin origin_here(Translator& t);
 
 // ---- emit.cpp
 /// Appends an instruction with a result of `components`; returns the result.

@@ -67,7 +67,8 @@ void store_phis(Translator& t, std::uint32_t from, std::uint32_t to) {
   for (std::uint32_t i = block.first; i <= block.last; i++) {
     const Inst& phi = t.module.code[i];
     if (phi.op != Op::OpPhi) {
-      if (phi.op == Op::OpLine || phi.op == Op::OpNoLine) continue;
+      // OpExtInst: debug information, which optimizers leave between phis.
+      if (phi.op == Op::OpLine || phi.op == Op::OpNoLine || phi.op == Op::OpExtInst) continue;
       break;
     }
     for (std::uint32_t p = 0; p + 1 < phi.count(); p += 2)
@@ -288,6 +289,7 @@ void put_in_front(Translator& t, ir::Node& loop, ir::NodeList&& continuing, std:
 void build_loop(Translator& t, const Block& header) {
   const std::uint32_t continues = new_flag(t);
   store_flag(t, continues, false);
+  t.inst = &t.module.code[header.last - 1];
   ir::Node& node = emit_node(t, ir::Node::Kind::kLoop);
   t.scopes.push_back({Scope::Kind::kLoop, header.merge, header.continue_target, 0, false, nullptr});
   {
@@ -407,6 +409,7 @@ void load_phi(Translator& t, const Inst& inst) {
 void call(Translator& t, const Inst& inst);
 
 void build_block(Translator& t, const Block& block) {
+  if (t.interest.blocks) probe_block(t, block);
   for (std::uint32_t i = block.first; i < block.last; i++) {
     const Inst& inst = t.module.code[i];
     t.inst = &inst;
@@ -510,7 +513,10 @@ void call(Translator& t, const Inst& inst) {
   bind_arguments(t, inst, callee->second);
   const bool has_result = t.module.type(inst.result_type).kind != Type::Kind::kVoid;
   const std::uint32_t local = has_result ? new_local(t, inst.result_type, spv::StorageClass::Function, 0) : 0;
+  const std::uint32_t here = inlined_place(t, inst.origin.place), caller = t.call;
+  if (here != 0) t.call = here;
   build_function(t, callee->second, local);
+  t.call = caller;
   t.inst = &inst;
   if (has_result) t.values[inst.result] = load(t, local_pointer(t, local));
 }

@@ -22,27 +22,13 @@ struct Graph {
   }
 };
 
-std::vector<std::uint32_t> successors(const Module& module, const Block& block) {
-  const Inst& inst = module.code[block.last];
-  std::vector<std::uint32_t> labels;
-  if (inst.op == spv::Op::OpBranch) labels = {inst.operand(0)};
-  if (inst.op == spv::Op::OpBranchConditional) labels = {inst.operand(1), inst.operand(2)};
-  if (inst.op == spv::Op::OpSwitch) {
-    const std::uint32_t selector_type = module.def(inst.operand(0)).result_type;
-    const std::uint32_t words = module.type(selector_type).width == 64 ? 2 : 1;
-    labels = {inst.operand(1)};
-    for (std::uint32_t i = 2 + words; inst.has(i); i += words + 1) labels.push_back(inst.operand(i));
-  }
-  return labels;
-}
-
 void collect_blocks(const Module& module, std::uint32_t entry, Graph& graph) {
   struct Visit {
     const Block* block;
     std::vector<std::uint32_t> next;
   };
   std::unordered_set<std::uint32_t> seen{entry};
-  std::vector<Visit> stack{{&module.block(entry), successors(module, module.block(entry))}};
+  std::vector<Visit> stack{{&module.block(entry), successors_of(module, module.block(entry))}};
   while (!stack.empty()) {
     if (stack.back().next.empty()) {
       graph.order.push_back(stack.back().block);
@@ -51,13 +37,13 @@ void collect_blocks(const Module& module, std::uint32_t entry, Graph& graph) {
     }
     const std::uint32_t label = stack.back().next.back();
     stack.back().next.pop_back();
-    if (seen.insert(label).second) stack.push_back({&module.block(label), successors(module, module.block(label))});
+    if (seen.insert(label).second) stack.push_back({&module.block(label), successors_of(module, module.block(label))});
   }
   std::reverse(graph.order.begin(), graph.order.end());
   for (std::uint32_t i = 0; i < graph.order.size(); i++) graph.index[graph.order[i]->label] = i;
   graph.predecessors.resize(graph.order.size());
   for (std::uint32_t i = 0; i < graph.order.size(); i++)
-    for (const std::uint32_t label : successors(module, *graph.order[i])) {
+    for (const std::uint32_t label : successors_of(module, *graph.order[i])) {
       auto& from = graph.predecessors[graph.index[label]];
       if (std::find(from.begin(), from.end(), i) == from.end()) from.push_back(i);
     }
@@ -84,6 +70,20 @@ void find_dominators(Graph& graph) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> successors_of(const Module& module, const Block& block) {
+  const Inst& inst = module.code[block.last];
+  std::vector<std::uint32_t> labels;
+  if (inst.op == spv::Op::OpBranch) labels = {inst.operand(0)};
+  if (inst.op == spv::Op::OpBranchConditional) labels = {inst.operand(1), inst.operand(2)};
+  if (inst.op == spv::Op::OpSwitch) {
+    const std::uint32_t selector_type = module.def(inst.operand(0)).result_type;
+    const std::uint32_t words = module.type(selector_type).width == 64 ? 2 : 1;
+    labels = {inst.operand(1)};
+    for (std::uint32_t i = 2 + words; inst.has(i); i += words + 1) labels.push_back(inst.operand(i));
+  }
+  return labels;
+}
 
 MeetingPoints find_meeting_points(const Module& module, std::uint32_t entry) {
   Graph graph;

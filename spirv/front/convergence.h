@@ -12,6 +12,9 @@ namespace vitrine::spirv::front {
 /// merge block passes.
 using MeetingPoints = std::unordered_map<std::uint32_t, std::uint32_t>;
 
+/// Labels of the blocks that may follow, in the order of the terminator's operands.
+std::vector<std::uint32_t> successors_of(const Module& module, const Block& block);
+
 /// `entry`: label of a function's first block.
 MeetingPoints find_meeting_points(const Module& module, std::uint32_t entry);
 

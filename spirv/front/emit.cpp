@@ -10,7 +10,6 @@ ir::Instr& append(Translator& t, ir::Op op, std::vector<ir::Src> src) {
   node.instr.op = op;
   node.instr.src = std::move(src);
   node.instr.exact = t.exact;
-  if (t.inst != nullptr) node.instr.origin = t.inst->origin;
   return node.instr;
 }
 
@@ -59,8 +58,13 @@ ir::ValueId make_constant(Translator& t, std::span<const std::uint32_t> words, b
 
 ir::Node& emit_node(Translator& t, ir::Node::Kind kind) {
   if (++t.nodes > kMaxNodes) throw Failure("the shader expands to too many instructions");
+  ir::Origin origin = origin_here(t);
+  // Compilers leave the ends of blocks without a line: control flow has that of what was made before it.
+  if (kind != ir::Node::Kind::kInstr && origin.place == 0) origin.place = t.near;
+  if (origin.place != 0) t.near = origin.place;
   t.list->push_back(std::make_unique<ir::Node>());
   t.list->back()->kind = kind;
+  t.list->back()->instr.origin = origin;
   return *t.list->back();
 }
 

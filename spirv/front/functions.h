@@ -9,6 +9,11 @@ namespace vitrine::spirv::front {
 #include "spirv/opcodes.def"
 #undef VITRINE_OPCODE
 
+/// A probe where a block begins (spirv/probe.h).
+void probe_block(Translator& t, const Block& block);
+/// NonSemantic.DebugPrintf: a probe with its arguments, if somebody listens.
+void debug_printf(Translator& t, const Inst& inst);
+
 /// Follows one step of an access chain.
 void step_into(Translator& t, const Inst& inst, Pointer& pointer, const Step& step);
 /// The descriptors of a resource variable. Fails if the pipeline layout has none of its kind there.

@@ -5,34 +5,11 @@
 
 #include <spirv/unified1/GLSL.std.450.h>
 
-#include "base/numeric.h"
 #include "spirv/front/functions.h"
 
 namespace vitrine::spirv::front {
 namespace glsl {
 namespace {
-
-/// The literal of a value whose components are all the same literal.
-std::optional<float> uniform_literal(const Expr& value) {
-  const auto* words = constant_of(*value.t, value.id);
-  if (words == nullptr || value.width != 32) return {};
-  for (std::uint32_t i = 1; i < value.size(); i++)
-    if ((*words)[i] != (*words)[0]) return {};
-  return base::float_of((*words)[0]);
-}
-
-/// Every pair of literal components has exponents at most 11 apart, so that y - x loses nothing that matters (5.3).
-bool similar_literals(const Expr& x, const Expr& y) {
-  const auto *a = constant_of(*x.t, x.id), *b = constant_of(*y.t, y.id);
-  if (a == nullptr || b == nullptr || x.width != 32) return false;
-  for (std::uint32_t i = 0; i < std::max(x.size(), y.size()); i++) {
-    int ea = 0, eb = 0;
-    std::frexp(base::float_of((*a)[x.size() == 1 ? 0 : i]), &ea);
-    std::frexp(base::float_of((*b)[y.size() == 1 ? 0 : i]), &eb);
-    if (std::abs(ea - eb) > 11) return false;
-  }
-  return true;
-}
 
 Expr saturate(Expr x) { return apply(ir::Op::kFSat, {x}); }
 
@@ -106,6 +83,10 @@ void binary(Translator& t, const Inst& inst, ir::Op op) {
   result(t, inst, apply(op, {arg(t, inst, 0), arg(t, inst, 1)}));
 }
 
+void ternary(Translator& t, const Inst& inst, ir::Op op) {
+  result(t, inst, apply(op, {arg(t, inst, 0), arg(t, inst, 1), arg(t, inst, 2)}));
+}
+
 void binary_exact(Translator& t, const Inst& inst, ir::Op op) {
   const ExactScope exact(t);
   binary(t, inst, op);
@@ -146,19 +127,6 @@ void clamp_int(Translator& t, const Inst& inst, ir::Op) {
   result(t, inst, clamp(t, inst, ir::Op::kIMin, ir::Op::kIMax));
 }
 
-/// lavapipe-shader-math.md 5.3.
-void mix(Translator& t, const Inst& inst, ir::Op) {
-  const Expr x = arg(t, inst, 0), y = arg(t, inst, 1), a = arg(t, inst, 2);
-  if (x.width == 16) return result(t, inst, apply(ir::Op::kFLrp, {x, y, a}));
-  const std::optional<float> x_literal = uniform_literal(x);
-  if (similar_literals(x, y)) return result(t, inst, x + a * (y - x));
-  if (x_literal == 1.0f) return result(t, inst, (imm(t, 1.0f) + -a) + y * a);
-  if (x_literal == -1.0f) return result(t, inst, (a + -1.0f) + y * a);
-  const Expr rest = imm(t, 1.0f) + -a;
-  const Expr left = x * rest;
-  result(t, inst, left + y * a);
-}
-
 void step(Translator& t, const Inst& inst, ir::Op) {
   const Expr edge = arg(t, inst, 0), x = arg(t, inst, 1);
   Expr below{&t, ir::kNoValue};
@@ -174,10 +142,6 @@ void smooth_step(Translator& t, const Inst& inst, ir::Op) {
   const Expr offset = x - edge0;
   const Expr at = saturate(offset / (edge1 - edge0));
   result(t, inst, at * (at * minus_product(imm(t, 3.0f), imm(t, 2.0f), at)));
-}
-
-void fma(Translator& t, const Inst& inst, ir::Op) {
-  result(t, inst, multiply_add(arg(t, inst, 0), arg(t, inst, 1), arg(t, inst, 2)));
 }
 
 /// Where the parts of a floating-point number are.
@@ -301,6 +265,8 @@ void extended_instruction(Translator& t, const Inst& inst, ir::Op) {
   switch (set == t.module.ext_imports.end() ? kExtUnknown : set->second) {
     case kExtGlsl450:
       return translate_glsl(t, inst);
+    case kExtDebugPrintf:
+      return debug_printf(t, inst);
     case kExtNonSemantic:
     case kExtDebugInfo:
       return;

@@ -1,14 +1,11 @@
-// Splits SPIR-V words into instructions and reads the declarations of a module (SPIR-V 1.6, section 2.4: logical
-// layout).
+// A module's instructions, types and decorations, found by id (SPIR-V 1.6, section 2.4: logical layout).
 #include "spirv/front/module.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include <spirv-tools/libspirv.h>
 
 namespace vitrine::spirv::front {
-namespace {
 
 using spv::Op;
 
@@ -39,287 +36,6 @@ std::string string_at(const Inst& inst, std::uint32_t operand) {
   return text;
 }
 
-std::uint32_t string_words(const Inst& inst, std::uint32_t operand) {
-  return static_cast<std::uint32_t>(string_at(inst, operand).size() / 4 + 1);
-}
-
-ExtSet ext_set(const std::string& name) {
-  if (name == "GLSL.std.450") return kExtGlsl450;
-  if (name == "NonSemantic.Shader.DebugInfo.100") return kExtDebugInfo;
-  if (name.rfind("NonSemantic.", 0) == 0) return kExtNonSemantic;
-  return kExtUnknown;
-}
-
-std::uint32_t saturating(std::uint64_t value) {
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>(value, UINT32_MAX));
-}
-
-/// Pointers that are values: an address, or a buffer and an offset.
-void set_pointer_size(Type& type) {
-  switch (type.storage) {
-    case spv::StorageClass::PhysicalStorageBuffer:
-    case spv::StorageClass::StorageBuffer:
-    case spv::StorageClass::Workgroup:
-      type.width = 64;
-      type.leaves = type.scalars = 2;
-      break;
-    default:
-      break;
-  }
-}
-
-/// A pointer type that structures use before it is declared.
-void read_forward_pointer(Module& module, const Inst& inst) {
-  Type type;
-  type.kind = Type::Kind::kPointer;
-  type.id = inst.operand(0);
-  type.storage = static_cast<spv::StorageClass>(inst.operand(1));
-  set_pointer_size(type);
-  module.types[type.id] = type;
-}
-
-void read_type(Module& module, const Inst& inst) {
-  Type type;
-  using Kind = Type::Kind;
-  type.id = inst.operand(0);
-  auto element = [&](Kind kind) -> const Type& {
-    type.kind = kind;
-    type.element = inst.operand(1);
-    const Type& of = module.type(type.element);
-    type.depth_of_nesting = of.depth_of_nesting + 1;
-    return of;
-  };
-  auto repeat = [&](const Type& of, std::uint64_t count) {
-    type.count = saturating(count);
-    type.leaves = saturating(of.leaves * count);
-    type.scalars = saturating(of.scalars * count);
-  };
-  switch (inst.op) {
-    case Op::OpTypeVoid:
-      type.kind = Kind::kVoid;
-      break;
-    case Op::OpTypeBool:
-      type.kind = Kind::kBool;
-      type.width = 32;
-      type.leaves = type.scalars = 1;
-      break;
-    case Op::OpTypeInt:
-    case Op::OpTypeFloat:
-      type.kind = inst.op == Op::OpTypeInt ? Kind::kInt : Kind::kFloat;
-      type.width = inst.operand(1);
-      type.is_signed = inst.op == Op::OpTypeInt && inst.operand(2) != 0;
-      if (type.width != 8 && type.width != 16 && type.width != 32 && type.width != 64) fail(inst, "unsupported width");
-      type.leaves = type.scalars = type.width == 64 ? 2 : 1;
-      break;
-    case Op::OpTypeVector:
-      repeat(element(Kind::kVector), inst.operand(2));
-      if (type.count < 2 || type.count > 4) fail(inst, "unsupported vector size");
-      type.leaves = module.type(type.element).leaves;
-      break;
-    case Op::OpTypeMatrix:
-      repeat(element(Kind::kMatrix), inst.operand(2));
-      break;
-    case Op::OpTypeArray:
-      repeat(element(Kind::kArray), module.constant_u32(inst.operand(2), inst));
-      break;
-    case Op::OpTypeRuntimeArray:
-      element(Kind::kRuntimeArray);
-      break;
-    case Op::OpTypeStruct: {
-      type.kind = Kind::kStruct;
-      std::uint64_t leaves = 0, scalars = 0;
-      for (std::uint32_t i = 1; inst.has(i); i++) {
-        const Type& member = module.type(inst.operand(i));
-        type.members.push_back(member.id);
-        type.depth_of_nesting = std::max(type.depth_of_nesting, member.depth_of_nesting + 1);
-        leaves += member.leaves;
-        scalars += member.scalars;
-      }
-      type.leaves = saturating(leaves);
-      type.scalars = saturating(scalars);
-      break;
-    }
-    case Op::OpTypePointer:
-      type.kind = Kind::kPointer;
-      type.storage = static_cast<spv::StorageClass>(inst.operand(1));
-      type.element = inst.operand(2);
-      set_pointer_size(type);
-      break;
-    case Op::OpTypeImage:
-      element(Kind::kImage);
-      type.dim = static_cast<spv::Dim>(inst.operand(2));
-      type.depth = inst.operand(3) == 1;
-      type.arrayed = inst.operand(4) != 0;
-      type.multisampled = inst.operand(5) != 0;
-      break;
-    case Op::OpTypeSampler:
-      type.kind = Kind::kSampler;
-      break;
-    case Op::OpTypeSampledImage:
-      element(Kind::kSampledImage);
-      break;
-    case Op::OpTypeFunction:
-      type.kind = Kind::kFunction;
-      type.element = inst.operand(1);
-      for (std::uint32_t i = 2; inst.has(i); i++) type.members.push_back(inst.operand(i));
-      break;
-    default:
-      break;
-  }
-  if (type.depth_of_nesting > kMaxTypeDepth) fail(inst, "type is too deeply nested");
-  if (const DecorationRow* stride = module.decoration(type.id, spv::Decoration::ArrayStride))
-    type.array_stride = stride->value;
-  module.types[type.id] = std::move(type);
-}
-
-void read_decoration(Module& module, const Inst& inst) {
-  DecorationRow row;
-  row.id = inst.operand(0);
-  std::uint32_t next = 1;
-  if (inst.op == Op::OpMemberDecorate) {
-    row.member = inst.operand(next++);
-    if (row.member > UINT32_MAX - 1) fail(inst, "member number too large");
-    row.member++;
-  }
-  row.kind = static_cast<spv::Decoration>(inst.operand(next++));
-  if (inst.has(next)) row.value = inst.operand(next);
-  module.decorations.push_back(row);
-}
-
-void read_group_decoration(Module& module, const Inst& inst) {
-  const std::uint32_t group = inst.operand(0);
-  const bool members = inst.op == Op::OpGroupMemberDecorate;
-  const std::size_t before = module.decorations.size();
-  for (std::uint32_t i = 1; inst.has(i); i += members ? 2 : 1)
-    for (std::size_t row = 0; row < before; row++) {
-      if (module.decorations[row].id != group) continue;
-      DecorationRow copy = module.decorations[row];
-      copy.id = inst.operand(i);
-      if (members) copy.member = inst.operand(i + 1) + 1;
-      module.decorations.push_back(copy);
-    }
-}
-
-/// Splits the words into instructions, keeping the OpLine in force with each.
-void split(Module& module, std::span<const std::uint32_t> words) {
-  if (words.size() < 5 || words[0] != spv::MagicNumber) throw Failure("not a SPIR-V module");
-  ir::Origin line;
-  for (std::size_t at = 5; at < words.size();) {
-    const std::uint32_t length = words[at] >> 16;
-    if (length == 0 || length > words.size() - at) throw Failure("SPIR-V instruction runs past the end of the module");
-    Inst inst;
-    inst.words = words.subspan(at, length);
-    inst.op = static_cast<Op>(words[at] & 0xffff);
-    bool has_result = false, has_type = false;
-    spv::HasResultAndType(inst.op, &has_result, &has_type);
-    if (has_type) inst.result_type = inst.words.size() > inst.first ? inst.words[inst.first] : 0, inst.first++;
-    if (has_result) inst.result = inst.words.size() > inst.first ? inst.words[inst.first] : 0, inst.first++;
-    if (inst.first > inst.words.size()) throw Failure("SPIR-V instruction is too short");
-    // Types keep their own id as operand 0, so that operands count as in the specification's table of a type.
-    if (has_result && !has_type && spv::Op::OpTypeVoid <= inst.op && inst.op <= spv::Op::OpTypeFunction) inst.first--;
-    if (inst.op == Op::OpLine)
-      line = {0, inst.operand(0), inst.operand(1)};
-    else if (inst.op == Op::OpNoLine)
-      line = {};
-    inst.origin = line;
-    inst.origin.spirv_id = inst.result;
-    if (is_block_end(inst.op) || inst.op == Op::OpFunctionEnd) line = {};
-    if (inst.result != 0) module.definition[inst.result] = static_cast<std::uint32_t>(module.code.size());
-    module.code.push_back(inst);
-    at += length;
-  }
-}
-
-spv::ExecutionModel model_of(VkShaderStageFlagBits stage) {
-  switch (stage) {
-    case VK_SHADER_STAGE_VERTEX_BIT:
-      return spv::ExecutionModel::Vertex;
-    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
-      return spv::ExecutionModel::TessellationControl;
-    case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
-      return spv::ExecutionModel::TessellationEvaluation;
-    case VK_SHADER_STAGE_GEOMETRY_BIT:
-      return spv::ExecutionModel::Geometry;
-    case VK_SHADER_STAGE_FRAGMENT_BIT:
-      return spv::ExecutionModel::Fragment;
-    case VK_SHADER_STAGE_COMPUTE_BIT:
-      return spv::ExecutionModel::GLCompute;
-    default:
-      throw Failure("shader stage is not supported");
-  }
-}
-
-/// Entry point, its execution modes, imports, decorations: everything that may be referred to before it is declared.
-void read_preamble(Module& module, const CompileOptions& options) {
-  const spv::ExecutionModel model = model_of(options.stage);
-  for (const Inst& inst : module.code) switch (inst.op) {
-      case Op::OpEntryPoint: {
-        if (static_cast<spv::ExecutionModel>(inst.operand(0)) != model || string_at(inst, 2) != options.entry_point)
-          break;
-        module.entry_function = inst.operand(1);
-        for (std::uint32_t i = 2 + string_words(inst, 2); inst.has(i); i++) module.interface.push_back(inst.operand(i));
-        break;
-      }
-      case Op::OpString:
-        module.files.emplace_back(inst.result, string_at(inst, 0));
-        break;
-      case Op::OpExtInstImport:
-        module.ext_imports[inst.result] = ext_set(string_at(inst, 0));
-        break;
-      case Op::OpDecorate:
-      case Op::OpDecorateId:
-      case Op::OpMemberDecorate:
-        read_decoration(module, inst);
-        break;
-      case Op::OpGroupDecorate:
-      case Op::OpGroupMemberDecorate:
-        read_group_decoration(module, inst);
-        break;
-      default:
-        break;
-    }
-  if (module.entry_function == 0) throw Failure("no entry point \"" + options.entry_point + "\" for this stage");
-  for (const Inst& inst : module.code)
-    if ((inst.op == Op::OpExecutionMode || inst.op == Op::OpExecutionModeId) &&
-        inst.operand(0) == module.entry_function)
-      module.modes.push_back(inst);
-  std::stable_sort(
-      module.decorations.begin(), module.decorations.end(),
-      [](const DecorationRow& a, const DecorationRow& b) { return a.id != b.id ? a.id < b.id : a.member < b.member; });
-}
-
-void read_functions(Module& module) {
-  Function function;
-  Block block;
-  bool inside = false;
-  for (std::uint32_t i = 0; i < module.code.size(); i++) {
-    const Inst& inst = module.code[i];
-    if (inst.op == Op::OpFunction) {
-      function = {inst.result, inst.result_type, {}, 0};
-    } else if (inst.op == Op::OpFunctionParameter) {
-      function.params.push_back(inst.result);
-    } else if (inst.op == Op::OpFunctionEnd) {
-      module.functions[function.id] = function;
-    } else if (inst.op == Op::OpLabel) {
-      if (function.entry == 0) function.entry = inst.result;
-      block = {};
-      block.label = inst.result;
-      block.first = i + 1;
-      inside = true;
-    } else if (inst.op == Op::OpSelectionMerge || inst.op == Op::OpLoopMerge) {
-      block.merge_op = inst.op;
-      block.merge = inst.operand(0);
-      if (inst.op == Op::OpLoopMerge) block.continue_target = inst.operand(1);
-    } else if (is_block_end(inst.op) && inside) {
-      block.last = i;
-      module.blocks[block.label] = block;
-      inside = false;
-    }
-  }
-}
-
-}  // namespace
-
 std::uint32_t Inst::operand(std::uint32_t i) const {
   if (!has(i)) fail(*this, "operand is missing");
   return words[first + i];
@@ -328,7 +44,7 @@ std::uint32_t Inst::operand(std::uint32_t i) const {
 void fail(const Inst& inst, const std::string& why) {
   std::string text = std::string("Op") + spvOpcodeString(static_cast<std::uint32_t>(inst.op));
   if (inst.result != 0) text += " %" + std::to_string(inst.result);
-  if (inst.origin.line != 0) text += " (line " + std::to_string(inst.origin.line) + ")";
+  if (inst.line != 0) text += " (line " + std::to_string(inst.line) + ")";
   throw Failure(text + ": " + why);
 }
 
@@ -377,24 +93,6 @@ const DecorationRow* Module::decoration(std::uint32_t id, spv::Decoration kind, 
   for (; at != decorations.end() && at->id == id && at->member == member; ++at)
     if (at->kind == kind) return &*at;
   return nullptr;
-}
-
-Module parse_module(std::span<const std::uint32_t> words, const CompileOptions& options) {
-  Module module;
-  split(module, words);
-  read_preamble(module, options);
-  bool in_function = false;
-  for (std::uint32_t i = 0; i < module.code.size(); i++) {
-    const Inst& inst = module.code[i];
-    if (inst.op == Op::OpFunction) in_function = true;
-    if (Op::OpTypeVoid <= inst.op && inst.op <= Op::OpTypeFunction) read_type(module, inst);
-    if (inst.op == Op::OpTypeForwardPointer) read_forward_pointer(module, inst);
-    if (Op::OpConstantTrue <= inst.op && inst.op <= Op::OpSpecConstantOp) fold_constant(module, inst, options);
-    if (inst.op == Op::OpUndef && !in_function) fold_constant(module, inst, options);
-    if (inst.op == Op::OpVariable && !in_function) module.globals.push_back(i);
-  }
-  read_functions(module);
-  return module;
 }
 
 }  // namespace vitrine::spirv::front

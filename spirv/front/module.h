@@ -30,13 +30,20 @@ struct Inst {
   std::uint32_t result = 0;       ///< result id, 0: none
   std::uint32_t result_type = 0;  ///< result type id, 0: none
   std::uint32_t first = 1;        ///< index of the first operand after result type and result
-  ir::Origin origin;
+  ir::Origin origin;              ///< its place: a number of Module::sources
+  std::uint32_t line = 0;         ///< of the source; 0: unknown
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(words.size()) - first; }
   bool has(std::uint32_t i) const { return first + i < words.size(); }
   /// i-th operand after result type and result id.
   std::uint32_t operand(std::uint32_t i) const;
 };
+
+/// Whether it ends a block.
+bool is_block_end(spv::Op op);
+
+/// The string literal that begins at an operand.
+std::string string_at(const Inst& inst, std::uint32_t operand);
 
 /// "OpFoo %12 (line 7): why".
 [[noreturn]] void fail(const Inst& inst, const std::string& why);
@@ -95,7 +102,6 @@ struct Block {
 
 struct Function {
   std::uint32_t id = 0;
-  std::uint32_t return_type = 0;
   std::vector<std::uint32_t> params;
   std::uint32_t entry = 0;  ///< label
 };
@@ -119,9 +125,9 @@ struct Module {
   std::vector<std::uint32_t> globals;                            ///< indices in code of module-scope OpVariable
   std::unordered_map<std::uint32_t, std::uint32_t> ext_imports;  ///< id -> ExtSet
   std::uint32_t entry_function = 0;
-  std::vector<std::pair<std::uint32_t, std::string>> files;  ///< OpString ids that OpLine names
-  std::vector<std::uint32_t> interface;                      ///< ids named by OpEntryPoint
-  std::vector<Inst> modes;                                   ///< execution modes of the entry point
+  SourceInfo sources;                    ///< without the calls that the translation inlines
+  std::vector<std::uint32_t> interface;  ///< ids named by OpEntryPoint
+  std::vector<Inst> modes;               ///< execution modes of the entry point
 
   const Type& type(std::uint32_t id) const;
   const Inst& def(std::uint32_t id) const;
@@ -136,10 +142,7 @@ struct Module {
   const DecorationRow* decoration(std::uint32_t id, spv::Decoration kind, std::uint32_t member = 0) const;
 };
 
-enum ExtSet : std::uint32_t { kExtUnknown, kExtGlsl450, kExtNonSemantic, kExtDebugInfo };
-
-/// Splits the words and reads every declaration; constants are specialised and folded.
-Module parse_module(std::span<const std::uint32_t> words, const CompileOptions& options);
+enum ExtSet : std::uint32_t { kExtUnknown, kExtGlsl450, kExtNonSemantic, kExtDebugInfo, kExtDebugPrintf };
 
 /// constants.cpp: folds one OpConstant* / OpSpecConstant* / OpUndef into module.constants.
 void fold_constant(Module& module, const Inst& inst, const CompileOptions& options);

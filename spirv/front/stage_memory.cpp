@@ -280,6 +280,7 @@ void prepare_stage(Translator& t) {
 
 void emit_vertex(Translator& t, const Inst& inst, ir::Op) {
   const StageModes& modes = t.function.interface.modes;
+  const ir::Origin fallback = std::exchange(t.fallback, origin_here(t));
   const std::uint32_t stream = stream_of(t, inst);
   const ir::ValueId count = load_raw(t, t.emitted_local);
   const ir::ValueId limit = constant_u32(t, modes.max_vertices);
@@ -309,6 +310,7 @@ void emit_vertex(Translator& t, const Inst& inst, ir::Op) {
   const ir::ValueId next = emit(t, ir::Op::kIAdd, 1, false, {whole(count), whole(constant_u32(t, 1))});
   store_raw(t, t.emitted_local, next);
   t.list = list;
+  t.fallback = fallback;
 }
 
 void end_primitive(Translator& t, const Inst& inst, ir::Op) {

@@ -2,6 +2,7 @@
 #include "spirv/front/translate.h"
 
 #include "spirv/front/context.h"
+#include "spirv/front/parse.h"
 #include "spirv/ir_passes.h"
 
 namespace vitrine::spirv {
@@ -9,14 +10,19 @@ namespace {
 
 using namespace front;
 
-ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& options) {
-  const Module module = parse_module(words, options);
-  Translator t(module, options);
+ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& options, const exec::Interest& interest) {
+  const bool observed = interest != exec::Interest{};
+  Module module = parse_module(words, options, observed ? SourceTexts::kKeep : SourceTexts::kDrop);
+  Translator t(module, options, interest, std::move(module.sources));
   read_modes(t);
+  t.fallback.place = entry_place(module);
   try {
     prepare_stage(t);
+    const ir::Origin entry = std::exchange(t.fallback, {});
     translate_entry(t);
+    t.fallback = entry;
     connect_interface(t);
+    t.fallback = {};
     repair_scopes(t);
     resolve_arrays(t);
     build_ssa(t);
@@ -34,15 +40,16 @@ ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& opt
   ir::propagate_copies(t.function);
   ir::remove_dead(t.function, ir::Loads::kKeep);
   propagate_invariant(t.function);
-  t.function.files = module.files;
+  t.function.sources = std::make_shared<const SourceInfo>(std::move(t.sources));
   return std::move(t.function);
 }
 
 }  // namespace
 
-base::Result<ir::Function> translate(std::span<const std::uint32_t> words, const CompileOptions& options) {
+base::Result<ir::Function> translate(std::span<const std::uint32_t> words, const CompileOptions& options,
+                                     const exec::Interest& interest) {
   try {
-    return run(words, options);
+    return run(words, options, interest);
   } catch (const Failure& failure) {
     return base::Error{failure.what()};
   }

@@ -146,6 +146,7 @@ void rewrite(Arrays& a, ir::NodeList& list) {
     const bool is_load = node->kind == Kind::kInstr && instr.op == ir::Op::kLoadVar;
     const bool is_store = node->kind == Kind::kInstr && instr.op == ir::Op::kStoreVar;
     if (is_load || is_store) {
+      a.t.fallback = instr.origin;
       const std::span<const ir::Src> sources(instr.src);
       const Target target = resolve(a, a.t.accesses[instr.data[0]], sources.subspan(is_store ? 1 : 0));
       if (target.array) {
@@ -166,6 +167,7 @@ void resolve_arrays(Translator& t) {
   t.exact = false;
   find_memory(arrays);
   rewrite(arrays, t.function.body);
+  t.fallback = {};
 }
 
 }  // namespace vitrine::spirv::front

@@ -126,6 +126,8 @@ class LoadCombiner {
 
 }  // namespace
 
-void combine_loads(ScalarFunction& function) { LoadCombiner(function).run(); }
+void combine_loads(ScalarFunction& function) {
+  if (!function.accesses_stay) LoadCombiner(function).run();
+}
 
 }  // namespace vitrine::spirv::lowering

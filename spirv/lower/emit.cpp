@@ -46,6 +46,7 @@ class BodyEmitter {
 
   void emit(std::uint32_t i) {
     const ScalarOp& op = f_.body[i];
+    if (op.instr != nullptr && op.instr->origin.place != 0) out_.near = op.instr->origin.place;
     switch (op.kind) {
       case Kind::kAlu:
         return out_.alu(op);

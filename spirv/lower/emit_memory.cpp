@@ -10,6 +10,51 @@ using ir::Op;
 /// A slot that lies in no set: the null descriptor.
 constexpr std::uint32_t kNullSlot = ~std::uint32_t{0};
 
+Access access_of(Op op) {
+  switch (op) {
+    case Op::kLoadPush:
+    case Op::kLoadUniform:
+    case Op::kLoadStorage:
+    case Op::kLoadShared:
+    case Op::kLoadGlobal:
+    case Op::kLoadArray:
+      return Access::kLoad;
+    case Op::kStoreStorage:
+    case Op::kStoreShared:
+    case Op::kStoreGlobal:
+    case Op::kStoreArray:
+      return Access::kStore;
+    case Op::kAtomicStorage:
+    case Op::kAtomicShared:
+    case Op::kAtomicGlobal:
+      return Access::kAtomic;
+    default:
+      return Access::kNone;
+  }
+}
+
+MemorySpace space_of(Op op) {
+  switch (op) {
+    case Op::kLoadPush:
+      return MemorySpace::kPush;
+    case Op::kLoadUniform:
+      return MemorySpace::kUniformBuffer;
+    case Op::kLoadShared:
+    case Op::kStoreShared:
+    case Op::kAtomicShared:
+      return MemorySpace::kShared;
+    case Op::kLoadGlobal:
+    case Op::kStoreGlobal:
+    case Op::kAtomicGlobal:
+      return MemorySpace::kGlobal;
+    case Op::kLoadArray:
+    case Op::kStoreArray:
+      return MemorySpace::kArray;
+    default:
+      return MemorySpace::kStorageBuffer;
+  }
+}
+
 }  // namespace
 
 bool Emitter::intrinsic(const ScalarOp& op) {
@@ -82,18 +127,21 @@ MemoryOp Emitter::buffer_row(const ScalarOp& op, bool indexed) {
   return row;
 }
 
-void Emitter::attach(const MemoryOp& row, char data, bool loads) {
+void Emitter::attach(const ScalarOp& op, const MemoryOp& row, char data, bool loads) {
   (in_preamble ? program->preamble : program->code).back().extra[0] =
       static_cast<std::uint32_t>(program->memory_ops.size());
   note().extra = InstructionNote::Extra::kMemory;
   note().data = data;
   note().loads = loads;
+  note().access = access_of(op.op);
+  note().space = space_of(op.op);
   program->memory_ops.push_back(row);
 }
 
 void Emitter::attach(const ImageOp& row) {
   program->code.back().extra[0] = static_cast<std::uint32_t>(program->image_ops.size());
   program->notes.back().extra = InstructionNote::Extra::kImage;
+  program->notes.back().access = Access::kImage;
   program->image_ops.push_back(row);
 }
 
@@ -102,7 +150,7 @@ void Emitter::memory(const ScalarOp& op, MemoryOp row, std::uint32_t address, Ha
   const Place at = place(source(op, address));
   append(at.file == 'u' ? uniform : wave, name, op.instr, {}, at);
   const bool loads = op.dst.count != 0;
-  attach(row, loads && level(result(op, 0)) != Level::kVarying ? 'u' : 'r', loads);
+  attach(op, row, loads && level(result(op, 0)) != Level::kVarying ? 'u' : 'r', loads);
 }
 
 void Emitter::load(const ScalarOp& op) {
@@ -113,7 +161,7 @@ void Emitter::load(const ScalarOp& op) {
     row.length_offset = op.instr->imm[0];
     row.length_stride = op.instr->imm[1];
     append(varying ? exec::array_length : exec::array_length_uniform, "array_length", op.instr, place(result(op, 0)));
-    attach(row);
+    attach(op, row);
     return;
   }
   if (op.op == Op::kLoadPush) row.added = op.instr->data[0] + op.offset;
@@ -172,7 +220,7 @@ void Emitter::atomic(const ScalarOp& op) {
                                    : exec::atomic_shared(uniform);
   append(handler, buffer ? "atomic" : "atomic_shared", op.instr, op.dst.count != 0 ? place(result(op, 0)) : Place{},
          at);
-  attach(row);
+  attach(op, row);
 }
 
 void Emitter::atomic_wide(const ScalarOp& op, MemoryOp row, std::uint32_t address) {
@@ -184,7 +232,7 @@ void Emitter::atomic_wide(const ScalarOp& op, MemoryOp row, std::uint32_t addres
                                     op.dst.count != 0 ? place(result(op, 0)) : Place{}, at);
   instruction.extra[1] = op.dst.count > 1 ? place(result(op, 1)).offset : kNoOperand;
   note().high = 'r';
-  attach(row);
+  attach(op, row);
 }
 
 /// Sources: the address (two words), the offset, then values.
@@ -219,7 +267,7 @@ void Emitter::global(const ScalarOp& op) {
   const Place low = in_register(source(op, 0)), high = in_register(source(op, 1)), offset = in_register(source(op, 2));
   append(handler, ir::op_name(op.op), op.instr, to[0], low, high, offset).extra[1] = to[1].offset;
   note().high = to[1].file;
-  attach(row, 'r', op.op == Op::kLoadGlobal);
+  attach(op, row, 'r', op.op == Op::kLoadGlobal);
 }
 
 void Emitter::local_array(const ScalarOp& op) {
@@ -236,7 +284,7 @@ void Emitter::local_array(const ScalarOp& op) {
   } else {
     append(exec::store_array(uniform), "store_array", op.instr, {}, element, in_register(source(op, 1)));
   }
-  attach(row);
+  attach(op, row);
 }
 
 void Emitter::image(const ScalarOp& op) {
@@ -315,6 +363,22 @@ void Emitter::group(const ScalarOp& op) {
   }
 }
 
+void Emitter::probe(const ScalarOp& op) {
+  ProbeOp row;
+  row.probe = op.instr->data[0];
+  const std::uint32_t guards = op.instr->data[1];
+  for (std::uint32_t k = 0; k < op.src.count; ++k) {
+    const Place from = place(source(op, k));
+    if (k < guards) {
+      row.guards.push_back({{from.file, from.offset}, (op.instr->data[2 + k / 32] >> k % 32 & 1) != 0});
+    } else {
+      row.operands.push_back({from.file, from.offset});
+    }
+  }
+  append(exec::probe, "probe", op.instr).extra[0] = static_cast<std::uint32_t>(program->probe_ops.size());
+  program->probe_ops.push_back(std::move(row));
+}
+
 void Emitter::environment(const ScalarOp& op) {
   Handler handler = nullptr;
   switch (op.op) {
@@ -327,6 +391,8 @@ void Emitter::environment(const ScalarOp& op) {
       return;
     case Op::kMemoryBarrier:
       return;
+    case Op::kProbe:
+      return probe(op);
     case Op::kHelperInvocation:
       handler = exec::helper_invocation;
       break;

@@ -122,8 +122,9 @@ Instruction& Emitter::append(Handler handler, const char* name, const ir::Instr*
   if (handler == nullptr) fail("operation without a handler for its operands");
   std::vector<Instruction>& code = in_preamble ? program->preamble : program->code;
   code.push_back({handler, dst.offset, {a.offset, b.offset, c.offset}, {0, 0}});
+  const ir::Origin origin = instr ? instr->origin : ir::Origin{0, near};
   (in_preamble ? program->preamble_notes : program->notes)
-      .push_back({name, {dst.file, a.file, b.file, c.file}, instr ? instr->origin : ir::Origin{}, {}});
+      .push_back({name, {dst.file, a.file, b.file, c.file}, origin, {}});
   return code.back();
 }
 
@@ -167,6 +168,7 @@ void Emitter::alu(const ScalarOp& op) {
   const Handler handler =
       op.in_chain ? exec::chain_handler(op.op, op.accumulator, uniform, op.link) : alu_handler(op.op, uniform);
   append(handler, ir::op_name(op.op), op.instr, place(result), sources[0], sources[1], sources[2]);
+  if (ir::is_selection(op.op)) settle_note();
 }
 
 Place Emitter::temporary(char file) {
@@ -191,6 +193,7 @@ void Emitter::one_move(Place to, Place from, bool masked, const ir::Instr* instr
     handler = alu_handler(ir::Op::kMov, from.file == 'u' ? 1 : 0);
   }
   append(handler, masked ? "move.active" : "move", instr, to, from);
+  settle_note();
 }
 
 void Emitter::moves(std::vector<Move> list, const ir::Instr* instr) {
@@ -245,6 +248,7 @@ void Emitter::clear_registers(const ShaderInterface& interface) {
 std::unique_ptr<Program> Emitter::finish(ShaderInterface& interface) {
   for (const Fixup& fixup : fixups_)
     program->code[fixup.instruction].extra[0] = label_[fixup.label] - fixup.instruction;
+  charge_loops(*program);
   std::vector<InterfaceSlot> inputs, outputs;
   for (ScalarId id = 0; id < f_.scalars.size(); ++id) {
     if (f_.scalars[id].input == kNoIndex || place(id).file == ' ') continue;

@@ -62,6 +62,7 @@ class Emitter {
 
   std::unique_ptr<Program> program = std::make_unique<Program>();
   bool in_preamble = false;
+  std::uint32_t near = 0;  ///< place that instructions without one of their own are told to have: jumps, moves
 
   /// Patches jumps, fills the interface.
   std::unique_ptr<Program> finish(ShaderInterface& interface);
@@ -76,9 +77,13 @@ class Emitter {
   Place word(ScalarId id) const { return {'u', words_[id] * 4}; }
 
   /// Adds a side table row for the instruction appended last.
-  void attach(const MemoryOp& row, char data = 'r', bool loads = false);
+  void attach(const ScalarOp& op, const MemoryOp& row, char data = 'r', bool loads = false);
   void attach(const ImageOp& row);
   void memory(const ScalarOp& op, MemoryOp row, std::uint32_t address, Handler wave, Handler uniform, const char* name);
+  /// Moves, and selections that control flow became, have the place of what is near unless they have their own.
+  void settle_note() {
+    if (std::uint32_t& place = note().origin.place; place == 0) place = near;
+  }
   InstructionNote& note() { return (in_preamble ? program->preamble_notes : program->notes).back(); }
   void load(const ScalarOp& op);
   void store(const ScalarOp& op);
@@ -88,6 +93,7 @@ class Emitter {
   void local_array(const ScalarOp& op);
   void image(const ScalarOp& op);
   void environment(const ScalarOp& op);
+  void probe(const ScalarOp& op);
   void read_first(const ScalarOp& op);
   void wide(const ScalarOp& op);
   void group(const ScalarOp& op);

@@ -29,9 +29,9 @@ class Hoister {
   }
 
  private:
-  static bool is_pure(const ScalarOp& op) {
+  bool is_pure(const ScalarOp& op) const {
     return op.kind == Kind::kAlu ||
-           (op.kind == Kind::kIntrinsic && (op.op == Op::kLoadUniform || op.op == Op::kLoadPush));
+           (op.kind == Kind::kIntrinsic && !f_.accesses_stay && (op.op == Op::kLoadUniform || op.op == Op::kLoadPush));
   }
 
   bool visit(const ScalarOp& op, std::uint32_t i) {

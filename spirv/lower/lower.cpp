@@ -18,8 +18,9 @@ constexpr std::uint32_t kMaxRegisters = 65536;
 
 base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared_ptr<const exec::Observer> observer) {
   base::select_simd_target();
+  const exec::Interest interest = observer ? observer->interest() : exec::Interest{};
   std::string error;
-  lowering::ScalarFunction scalars = lowering::scalarize(function, error);
+  lowering::ScalarFunction scalars = lowering::scalarize(function, error, interest.accesses);
   if (!error.empty()) return base::Error{error};
   lowering::remove_dead(scalars);
   lowering::find_wave_uniform(scalars);
@@ -29,7 +30,7 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   lowering::remove_dead(scalars);
   lowering::fuse_multiply_add(scalars);
   lowering::select_operations(scalars);
-  lowering::schedule_chains(scalars, observer != nullptr);
+  lowering::schedule_chains(scalars, interest.instructions || interest.arithmetic);
   ShaderInterface interface = function.interface;
   if (observer) lowering::keep_identity(scalars, interface);
   const lowering::Allocation allocation = lowering::allocate(scalars);
@@ -39,10 +40,14 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   program->flush_denormals = interface.stage != VK_SHADER_STAGE_COMPUTE_BIT;
   for (int i = 0; i < 3; ++i) program->local_size[i] = interface.local_size[i];
   program->groups_per_wave = scalars.groups_per_wave;
-  program->files = std::move(function.files);
+  program->sources = std::move(function.sources);
+  program->probes = std::move(function.probes);
   program->shared_bytes = interface.shared_bytes;
-  if (observer)
-    program->observation = std::make_shared<exec::Observation>(exec::Observation{std::move(observer), interface});
+  if (observer) {
+    program->observation = std::make_shared<exec::Observation>(exec::Observation{observer, interface, interest, {}});
+    if (interest.accesses) exec::hook_accesses(*program);
+    observer->made(*program);
+  }
   if (base::log_enabled("shader")) base::log("shader", disassemble(*program));
   return std::make_unique<Shader>(std::move(interface), std::unique_ptr<const Program>(std::move(program)));
 }

@@ -95,6 +95,7 @@ struct ScalarFunction {
   /// For each join: the values it may take.
   std::vector<std::vector<ScalarId>> join_sources;
   bool writes_memory = false;
+  bool accesses_stay = false;  ///< somebody observes loads: each stays where and what it was
   std::uint32_t groups_per_wave = 1;
   std::vector<ScalarId> outputs;   ///< per interface.outputs: the value that leaves (kNoScalar: never stored)
   std::vector<ScalarId> preset;    ///< constants and uniforms that bind() keeps broadcast in registers
@@ -119,7 +120,7 @@ std::uint32_t image_operand_components(const ir::ImageInfo& info, ir::ImageOpera
 
 /// Splits values into scalars, folds constants, merges equal expressions, moves draw-uniform work to the preamble and
 /// turns small branches into selects. `function` must outlive the result. `error` says what is not covered.
-ScalarFunction scalarize(const ir::Function& function, std::string& error);
+ScalarFunction scalarize(const ir::Function& function, std::string& error, bool accesses_stay = false);
 
 /// Marks operations and joins that nothing needs as dead / removes them from the operand lists.
 void remove_dead(ScalarFunction& function);

@@ -81,7 +81,9 @@ std::uint32_t groups_per_wave(const ir::Function& function) {
 
 }  // namespace
 
-Scalarizer::Scalarizer(const ir::Function& function, std::string& error) : ir_(function), error_(error) {
+Scalarizer::Scalarizer(const ir::Function& function, std::string& error, bool accesses_stay)
+    : ir_(function), error_(error) {
+  out_.accesses_stay = accesses_stay;
   out_.ir = &function;
   out_.writes_memory = writes_memory(function.body);
   out_.groups_per_wave = groups_per_wave(function);
@@ -207,7 +209,7 @@ ScalarId Scalarizer::alu(Op op, std::span<const ScalarId> given, const ir::Instr
   ScalarOp out;
   out.kind = Kind::kAlu;
   out.op = op;
-  out.instr = instr;
+  out.instr = instr != nullptr ? instr : here_;
   return emit_pure(out, key_of(op, sources, nullptr), sources, 1, boolean, highest <= Level::kUniform)[0];
 }
 
@@ -260,6 +262,8 @@ void Scalarizer::build_alu(const ir::Instr& instr) {
   define(instr.result, result);
 }
 
-ScalarFunction scalarize(const ir::Function& function, std::string& error) { return Scalarizer(function, error).run(); }
+ScalarFunction scalarize(const ir::Function& function, std::string& error, bool accesses_stay) {
+  return Scalarizer(function, error, accesses_stay).run();
+}
 
 }  // namespace vitrine::spirv::lowering

@@ -32,19 +32,19 @@ std::uint32_t weight_of(Op op) {
   }
 }
 
-/// Weight of a list that may run unconditionally; above kFlattenWeight if it may not.
-std::uint32_t flatten_weight(const ir::NodeList& list) {
+/// Weight of a list that may run unconditionally; above kFlattenWeight if it may not. `loads`: so may its loads.
+std::uint32_t flatten_weight(const ir::NodeList& list, bool loads) {
   std::uint32_t weight = 0;
   for (const auto& node : list) {
     if (node->kind == ir::Node::Kind::kLoop) return kFlattenWeight + 1;
     if (node->kind == ir::Node::Kind::kIf) {
-      weight += flatten_weight(node->then_list) + flatten_weight(node->else_list) +
+      weight += flatten_weight(node->then_list, loads) + flatten_weight(node->else_list, loads) +
                 static_cast<std::uint32_t>(node->results.size());
     } else {
       const ir::Instr& instr = node->instr;
       if (instr.op < Op::kAluCount) {
         weight += weight_of(instr.op) * instr.components;
-      } else if (instr.op == Op::kLoadUniform || instr.op == Op::kLoadPush) {
+      } else if (loads && (instr.op == Op::kLoadUniform || instr.op == Op::kLoadPush)) {
         weight += 2;
       } else if (instr.op != Op::kConst && instr.op != Op::kUndef && instr.op != Op::kVec && instr.op != Op::kYield &&
                  instr.op != Op::kLoadInput) {
@@ -62,7 +62,7 @@ void Scalarizer::emit_jump(Kind kind, ScalarId cond, const ir::Instr* instr) {
   ScalarOp op;
   op.kind = kind;
   op.cond = cond;
-  op.instr = instr;
+  op.instr = instr != nullptr ? instr : here_;
   if (kind == Kind::kBreak || kind == Kind::kContinue) {
     if (loops_.empty()) return fail("break or continue outside a loop");
     LoopContext& loop = loops_.back();
@@ -100,6 +100,7 @@ Kind Scalarizer::jump_kind(Op op) {
 ListEnd Scalarizer::build_list(const ir::NodeList& list, const std::vector<ir::ValueId>& targets) {
   for (const auto& node : list) {
     if (!error_.empty()) return {};
+    here_ = &node->instr;
     switch (node->kind) {
       case ir::Node::Kind::kInstr:
         if (node->instr.op == Op::kYield) return {true, arguments(node->instr.src, targets)};
@@ -161,10 +162,12 @@ bool Scalarizer::build_if(const ir::Node& node) {
     define_all(node.results, build_list(then_jump ? node.else_list : node.then_list, node.results).values);
     return true;
   }
+  const bool loads = !out_.accesses_stay;
   if (level(cond) > Level::kUniform &&
-      flatten_weight(node.then_list) + flatten_weight(node.else_list) <= kFlattenWeight) {
+      flatten_weight(node.then_list, loads) + flatten_weight(node.else_list, loads) <= kFlattenWeight) {
     const ListEnd then_end = build_list(node.then_list, node.results);
     const ListEnd else_end = build_list(node.else_list, node.results);
+    here_ = &node.instr;
     define_all(node.results, select_all(cond, then_end.values, else_end.values));
     return true;
   }
@@ -187,8 +190,10 @@ bool Scalarizer::build_branches(const ir::Node& node, ScalarId cond) {
   const std::uint32_t if_index = add_marker(Kind::kIf);
   out_.body[if_index].cond = cond;
   const ListEnd then_end = build_scope(node.then_list, node.results);
+  here_ = &node.instr;
   const std::uint32_t else_index = add_marker(Kind::kElse);
   const ListEnd else_end = build_scope(node.else_list, node.results);
+  here_ = &node.instr;
   const std::uint32_t end_index = add_marker(Kind::kEndIf);
   out_.body[if_index].partner = else_index;
   out_.body[else_index].partner = end_index;
@@ -226,6 +231,7 @@ void Scalarizer::join_branches(const ir::Node& node, ScalarId cond, std::uint32_
 std::uint32_t Scalarizer::add_marker(Kind kind) {
   ScalarOp op;
   op.kind = kind;
+  op.instr = here_;
   out_.body.push_back(op);
   return static_cast<std::uint32_t>(out_.body.size() - 1);
 }
@@ -249,6 +255,7 @@ void Scalarizer::build_loop(const ir::Node& node) {
   const ListEnd body_end = build_list(node.body, node.continue_params);
   const bool has_continue = loops_.back().has_continue;
   if (has_continue) forget(mark);  // lanes that continued early have not computed the rest of the body
+  here_ = &node.instr;
   const std::uint32_t continuing_index = add_marker(Kind::kContinuing);
   out_.body[continuing_index].falls = body_end.falls;
   if (body_end.falls && !has_continue) {
@@ -258,6 +265,7 @@ void Scalarizer::build_loop(const ir::Node& node) {
   }
   ListEnd next{false, {}};
   if (body_end.falls || has_continue) next = build_list(node.continuing, node.params);
+  here_ = &node.instr;
   const std::uint32_t end_index = add_marker(Kind::kEndLoop);
   out_.body[end_index].falls = next.falls;
   if (next.falls) set_join(out_.body[end_index], next.values, params);

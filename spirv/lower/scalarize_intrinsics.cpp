@@ -52,6 +52,7 @@ void Scalarizer::build_instr(const ir::Instr& instr) {
     case Op::kBarrier:
     case Op::kMemoryBarrier:
     case Op::kDemote:
+    case Op::kProbe:
     case Op::kHelperInvocation:
     case Op::kElect:
     case Op::kReadClock:
@@ -168,7 +169,7 @@ void Scalarizer::build_load(const ir::Instr& instr) {
     sources.push_back(component(src, 0));
     uniform = uniform && level(sources.back()) <= Level::kUniform;
   }
-  if (instr.op == Op::kLoadStorage && (out_.writes_memory || instr.imm[2] != 0))
+  if (out_.accesses_stay || (instr.op == Op::kLoadStorage && (out_.writes_memory || instr.imm[2] != 0)))
     return define(instr.result, emit(instr, sources, instr.components, false));
   ScalarOp op;
   op.kind = Kind::kIntrinsic;

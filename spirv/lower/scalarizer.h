@@ -37,7 +37,7 @@ struct LoopContext {
 
 class Scalarizer {
  public:
-  Scalarizer(const ir::Function& function, std::string& error);
+  Scalarizer(const ir::Function& function, std::string& error, bool accesses_stay);
   ScalarFunction run();
 
  private:
@@ -118,6 +118,7 @@ class Scalarizer {
   std::unordered_map<Key, ScalarId, KeyHash> global_, scoped_;
   std::vector<Key> undo_;
   std::vector<LoopContext> loops_;
+  const ir::Instr* here_ = nullptr;  ///< whose origin markers, selections and address arithmetic have
 };
 
 }  // namespace vitrine::spirv::lowering

@@ -2,13 +2,30 @@
 // the steps of passes.def over a graph.
 #include "spirv/rewrite/rewrite.h"
 
+#include "base/log.h"
+#include "spirv/ir_passes.h"
 #include "spirv/rewrite/passes.h"
 
 namespace vitrine::spirv {
+namespace {
+
+/// What observers alone have asked for becomes part of the shader, after all that looks at it: the steps that the
+/// lowering relies on take it apart.
+void release_attached(rewriting::Graph& graph) {
+  graph.release_attached();
+  for (const char* step :
+       {"lower_alu_to_scalar", "lower_flrp", "lower_operations", "build_sums", "expand_sized", "convert_to_lcssa"})
+    rewriting::find_pass(step)->run(graph);
+  if (base::log_enabled("ir"))
+    base::log("ir", "with what observers ask for\n" + ir::dump(rewriting::snapshot(graph), ir::Origins::kShow));
+}
+
+}  // namespace
 
 void rewrite(ir::Function& function) {
   rewriting::Graph graph(function);
   rewriting::run_passes(graph);
+  if (!graph.attached.empty()) release_attached(graph);
   graph.write_back();
 }
 

@@ -19,7 +19,7 @@ constexpr std::uint32_t kBindings = 8, kElements = 4, kBufferWords = 256;
 constexpr std::size_t kStageWords = std::size_t{1} << 20;
 
 // Loops that never end are what mutation makes most.
-const int budget_is_set = setenv("VITRINE_SHADER_BUDGET", "2000", 1);
+const int budget_is_set = setenv("VITRINE_SHADER_BUDGET", "100000", 1);
 // Mutants race: one thread, so that two runs of one are equal.
 const int threads_are_set = setenv("VITRINE_THREADS", "1", 1);
 

@@ -28,32 +28,37 @@ EShLanguage language_of(VkShaderStageFlagBits stage) {
 }  // namespace
 
 std::vector<std::uint32_t> compile_glsl(VkShaderStageFlagBits stage, const std::string& text, VulkanVersion version,
-                                        std::string& log) {
+                                        std::string& log, DebugInfo debug) {
   static const bool initialized = glslang::InitializeProcess();
   static_cast<void>(initialized);
   const EShLanguage language = language_of(stage);
   const bool newer = version == VulkanVersion::k12;
   const char* strings[] = {text.c_str()};
+  const char* names[] = {kSourceName};
   glslang::TShader shader(language);
-  shader.setStrings(strings, 1);
+  shader.setStringsWithLengthsAndNames(strings, nullptr, names, 1);
   shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
   shader.setEnvClient(glslang::EShClientVulkan, newer ? glslang::EShTargetVulkan_1_2 : glslang::EShTargetVulkan_1_1);
   shader.setEnvTarget(glslang::EShTargetSpv, newer ? glslang::EShTargetSpv_1_5 : glslang::EShTargetSpv_1_3);
-  constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+  const bool lines = debug != DebugInfo::kNone;
+  const auto messages =
+      static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | (lines ? EShMsgDebugInfo : EShMsgDefault));
   constexpr int kVersionOfTextsWithout = 450;
   std::vector<std::uint32_t> words;
-  if (!shader.parse(GetDefaultResources(), kVersionOfTextsWithout, false, kMessages)) {
+  if (!shader.parse(GetDefaultResources(), kVersionOfTextsWithout, false, messages)) {
     log = shader.getInfoLog();
     return words;
   }
   glslang::TProgram program;
   program.addShader(&shader);
-  if (!program.link(kMessages)) {
+  if (!program.link(messages)) {
     log = program.getInfoLog();
     return words;
   }
   glslang::SpvOptions options;
   options.disableOptimizer = true;
+  options.generateDebugInfo = lines;
+  options.emitNonSemanticShaderDebugInfo = options.emitNonSemanticShaderDebugSource = debug == DebugInfo::kNonSemantic;
   glslang::GlslangToSpv(*program.getIntermediate(language), words, &options);
   return words;
 }

@@ -12,8 +12,13 @@ namespace vitrine::test {
 /// What the module is for: 1.1 takes SPIR-V 1.3, 1.2 SPIR-V 1.5.
 enum class VulkanVersion : std::uint8_t { k11, k12 };
 
+/// What the module says of its source, a file kSourceName: nothing, OpLine and OpSource, or
+/// NonSemantic.Shader.DebugInfo.100.
+enum class DebugInfo : std::uint8_t { kNone, kLines, kNonSemantic };
+inline constexpr char kSourceName[] = "shader.glsl";
+
 /// The words of `text`, a whole shader with its #version, not optimised. Empty: it does not compile, `log` says why.
 std::vector<std::uint32_t> compile_glsl(VkShaderStageFlagBits stage, const std::string& text, VulkanVersion version,
-                                        std::string& log);
+                                        std::string& log, DebugInfo debug = DebugInfo::kNone);
 
 }  // namespace vitrine::test

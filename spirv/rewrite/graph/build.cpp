@@ -20,12 +20,16 @@ Src result_of(const Graph& graph, InstId inst) {
   return {graph.insts[inst].result, graph.insts[inst].components == 1 ? std::array<std::uint8_t, 4>{} : kWhole};
 }
 
-Builder::Builder(Graph& graph, InstId position) : Builder(graph, position, false) {}
+Builder::Builder(Graph& graph, InstId position) : Builder(graph, position, false, graph.insts[position].origin) {}
 
-Builder::Builder(Graph& graph, InstId position, bool behind)
-    : graph_(graph), position_(position), behind_(behind), origin_(graph.insts[position].origin) {}
+Builder::Builder(Graph& graph, InstId position, bool behind, const ir::Origin& origin)
+    : graph_(graph), position_(position), behind_(behind), origin_(origin) {}
 
-Builder Builder::behind(Graph& graph, InstId position) { return {graph, position, true}; }
+Builder Builder::behind(Graph& graph, InstId position) { return behind(graph, position, graph.insts[position].origin); }
+
+Builder Builder::behind(Graph& graph, InstId position, const ir::Origin& origin) {
+  return {graph, position, true, origin};
+}
 
 Src Builder::place(InstId made) {
   graph_.insts[made].origin = origin_;
@@ -50,15 +54,15 @@ Src Builder::alu(Op op, std::initializer_list<Src> operands, unsigned components
   return make(Kind::kAlu, op, components, ir::alu_info(op).result == 'B', std::span(operands.begin(), operands.size()));
 }
 
-Src Builder::like(const Inst& model, Op op, std::initializer_list<Src> operands, unsigned components) {
+Src Builder::like(const Inst& model, Op op, std::span<const Src> operands, unsigned components) {
   const Kind kind = model.kind;
   const std::uint8_t width = model.width;
-  const bool exact = model.exact;
-  const Src made =
-      make(kind, op, components, ir::alu_info(op).result == 'B', std::span(operands.begin(), operands.size()));
+  const bool exact = model.exact, packs = model.packs;
+  const Src made = make(kind, op, components, ir::alu_info(op).result == 'B', operands);
   Inst& inst = graph_.insts[graph_.values[made.value].def];
   inst.width = width;
   inst.exact = exact;
+  inst.packs = packs;
   return made;
 }
 

@@ -11,18 +11,28 @@ namespace vitrine::spirv::rewriting {
 /// What an operation reads of the whole result of `inst`.
 Src result_of(const Graph& graph, InstId inst);
 
+/// One component of what is read, for every component of who reads it.
+inline Src scalar(Src src, unsigned component = 0) {
+  const std::uint8_t c = src.swizzle[component];
+  return {src.value, {c, c, c, c}};
+}
+
 class Builder {
  public:
   /// What it makes goes in front of `position`, in its order, and has its origin.
   Builder(Graph& graph, InstId position);
   /// The same, behind `position`.
   static Builder behind(Graph& graph, InstId position);
+  static Builder behind(Graph& graph, InstId position, const ir::Origin& origin);
 
   /// An operation of ops.def on numbers of 32 bits.
   Src alu(Op op, std::initializer_list<Src> operands, unsigned components = 1);
 
   /// An operation on numbers as wide as those of `model`, exact if that is.
-  Src like(const Inst& model, Op op, std::initializer_list<Src> operands, unsigned components = 1);
+  Src like(const Inst& model, Op op, std::span<const Src> operands, unsigned components = 1);
+  Src like(const Inst& model, Op op, std::initializer_list<Src> operands, unsigned components = 1) {
+    return like(model, op, std::span(operands.begin(), operands.size()), components);
+  }
 
   /// An operation of wide_ops.def.
   Src wide(Op op, std::span<const Src> operands);
@@ -48,7 +58,7 @@ class Builder {
   Src place(InstId made);
 
  private:
-  Builder(Graph& graph, InstId position, bool behind);
+  Builder(Graph& graph, InstId position, bool behind, const ir::Origin& origin);
   Src make(Inst::Kind kind, Op op, unsigned components, bool boolean, std::span<const Src> operands);
 
   Graph& graph_;

@@ -13,8 +13,28 @@ Src Copier::translated(Src src) const {
 
 void Copier::copy(InstId first, InstId last, BlockId to) {
   for (InstId id = first; id != last; id = graph_.insts[id].next) {
+    copy_attached(graph_.attached.in_front(id), to);
     const InstId made = copy_inst(id);
     graph_.append(to, made);
+  }
+  if (last == kNone && first != kNone) copy_attached(graph_.attached.at_end(graph_.insts[first].block), to);
+  if (last != kNone) copy_attached(graph_.attached.in_front(last), to);
+}
+
+void Copier::copy_attached(const std::vector<InstId>& list, BlockId to) {
+  for (const InstId id : std::vector<InstId>(list)) {
+    const Inst original = graph_.insts[id];
+    const auto made = static_cast<InstId>(graph_.insts.size());
+    graph_.insts.push_back(original);
+    const std::vector<Src> operands = operands_of(id);
+    graph_.attached.set_operands(graph_, made, operands);
+    if (original.result != ir::kNoValue) {
+      const ValueId result = fresh(original.result);
+      graph_.insts[made].result = result;
+      graph_.values[result].def = made;
+    }
+    if (original.node != kNone) copy_node(made, original.node);
+    graph_.attached.append(graph_, to, made);
   }
 }
 
@@ -87,9 +107,11 @@ BlockId Copier::copy_block(BlockId from, InstId owner) {
   const auto block = static_cast<BlockId>(graph_.blocks.size());
   graph_.blocks.push_back({kNone, kNone, owner});
   for (InstId id = graph_.blocks[from].head; id != kNone; id = graph_.insts[id].next) {
+    copy_attached(graph_.attached.in_front(id), block);
     const InstId made = copy_inst(id);
     graph_.append(block, made);
   }
+  copy_attached(graph_.attached.at_end(from), block);
   return block;
 }
 

@@ -27,6 +27,7 @@ class Copier {
   ValueId fresh(ValueId value);
   InstId copy_inst(InstId id);
   void copy_node(InstId made, std::uint32_t from);
+  void copy_attached(const std::vector<InstId>& list, BlockId to);
   BlockId copy_block(BlockId from, InstId owner);
 
   Graph& graph_;

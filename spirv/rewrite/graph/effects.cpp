@@ -54,6 +54,7 @@ unsigned components_read(const Graph& graph, const Inst& user, std::uint32_t ind
     case Op::kBallot:
     case Op::kShuffle:
     case Op::kReduce:
+    case Op::kProbe:
       return 1;
     case Op::kStoreStorage:
       return index < 2 ? 1 : 0;

@@ -1,6 +1,8 @@
 // ir::Function to the flat form of the rewrites and back.
 #include "spirv/rewrite/graph/graph.h"
 
+#include "spirv/ir_walk.h"
+
 #include <utility>
 
 namespace vitrine::spirv::rewriting {
@@ -17,6 +19,17 @@ Kind kind_of(const ir::Instr& instr) {
   if (op < Op::kAluCount) return instr.width == 32 || ir::is_selection(op) ? Kind::kAlu : Kind::kSized;
   if (op == Op::kConst) return Kind::kConst;
   return op == Op::kVec ? Kind::kVec : Kind::kIntrinsic;
+}
+
+/// A jump, behind which a list has nothing.
+bool ends_list(const Inst& inst) {
+  return inst.kind == Kind::kIntrinsic && (inst.op == Op::kYield || inst.op == Op::kBreak || inst.op == Op::kContinue ||
+                                           inst.op == Op::kReturn || inst.op == Op::kKill);
+}
+
+/// What a step makes without saying where it comes from has the place of the instruction that it is put beside.
+void take_place(ir::Origin& made, const ir::Origin& neighbour) {
+  if (made.place == 0 && made.spirv_id == 0) made.place = neighbour.place;
 }
 
 /// All of an instruction but its operands.
@@ -41,6 +54,19 @@ Graph::Graph(ir::Function& from) : function(from) {
   insts.reserve(values.size() * 2);
   sources.reserve(values.size() * 4);
   root = import_list(from.body, kNone);
+  if (!attached.empty()) attach_unused();
+}
+
+/// What nothing but probes reads is attached before the first step sees it. Backwards, so that whole chains are.
+void Graph::attach_unused() {
+  for (InstId id = static_cast<InstId>(insts.size()); id-- > 0;)
+    if (!insts[id].removed && insts[id].block != kNone && becomes_attached(insts[id])) remove(id);
+}
+
+bool Graph::becomes_attached(const Inst& inst) const {
+  return inst.result != ir::kNoValue && inst.kind != Kind::kIf && inst.kind != Kind::kLoop &&
+         values[inst.result].uses == 0 && attached.reads(inst.result) &&
+         !ir::has_effect(inst.op, inst.op == Op::kImage ? nodes[inst.node]->instr.image.get() : nullptr);
 }
 
 BlockId Graph::import_list(ir::NodeList& list, InstId owner) {
@@ -56,8 +82,9 @@ void Graph::add_operands(InstId inst, const std::vector<Src>& src) {
   insts[inst].count = static_cast<std::uint32_t>(src.size());
   for (const Src& operand : src) {
     sources.push_back({operand, inst, kNone, kNone});
-    link_use(static_cast<Slot>(sources.size() - 1));
+    if (insts[inst].op != Op::kProbe) link_use(static_cast<Slot>(sources.size() - 1));
   }
+  if (insts[inst].op == Op::kProbe) attached.link(*this, inst);
 }
 
 void Graph::import_node(std::unique_ptr<ir::Node> node, BlockId block) {
@@ -75,7 +102,11 @@ void Graph::import_node(std::unique_ptr<ir::Node> node, BlockId block) {
     inst.result = instr.result;
     std::copy(instr.imm.begin(), instr.imm.end(), inst.imm);
     if (instr.result != ir::kNoValue) values[instr.result].def = id;
-    append(block, id);
+    if (instr.op == Op::kProbe) {
+      attached.append(*this, block, id);
+    } else {
+      append(block, id);
+    }
     add_operands(id, instr.src);
     if (is_plain(instr)) return;
     insts[id].node = static_cast<std::uint32_t>(nodes.size());
@@ -194,6 +225,7 @@ void Graph::unlink_use(Slot slot) {
 }
 
 void Graph::insert_before(InstId position, InstId inst) {
+  take_place(insts[inst].origin, insts[position].origin);
   const BlockId block = insts[position].block;
   const InstId before = insts[position].previous;
   insts[inst].block = block;
@@ -204,6 +236,7 @@ void Graph::insert_before(InstId position, InstId inst) {
 }
 
 void Graph::insert_after(InstId position, InstId inst) {
+  take_place(insts[inst].origin, insts[position].origin);
   const InstId after = insts[position].next;
   if (after == kNone) {
     append(insts[position].block, inst);
@@ -213,6 +246,7 @@ void Graph::insert_after(InstId position, InstId inst) {
 }
 
 void Graph::append(BlockId block, InstId inst) {
+  if (!attached.empty()) attached.settle(block, inst);
   insts[inst].block = block;
   insts[inst].next = kNone;
   insts[inst].previous = blocks[block].tail;
@@ -227,6 +261,7 @@ void Graph::replace_uses(ValueId from, ValueId to) {
     sources[slot].src.value = to;
     link_use(slot);
   }
+  if (!attached.empty()) attached.replace_uses(*this, from, to);
 }
 
 void Graph::unlink(InstId inst) {
@@ -236,27 +271,82 @@ void Graph::unlink(InstId inst) {
 }
 
 void Graph::remove(InstId inst) {
+  const bool kept = !attached.empty() && becomes_attached(insts[inst]);
+  if (!attached.empty()) attached.leave(*this, inst, kept);
   unlink(inst);
   for (std::uint32_t i = 0; i < insts[inst].count; ++i) unlink_use(insts[inst].first + i);
+  if (kept) attached.link(*this, inst);
   insts[inst].removed = true;
+  if (!attached.empty())
+    for (const BlockId child : insts[inst].child)
+      if (child != kNone) attached.forget(*this, child);
   for (const BlockId child : insts[inst].child)
     if (child != kNone)
       while (blocks[child].head != kNone) remove(blocks[child].head);
 }
 
 void Graph::move_before(InstId position, InstId inst) {
+  if (!attached.empty()) attached.leave(*this, inst, false);
   unlink(inst);
   insert_before(position, inst);
 }
 
 void Graph::move_after(InstId position, InstId inst) {
+  if (!attached.empty()) attached.leave(*this, inst, false);
   unlink(inst);
   insert_after(position, inst);
 }
 
-void Graph::splice_before(InstId position, BlockId block) {
-  while (blocks[block].head != kNone) {
-    move_before(position, blocks[block].head);
+void Graph::splice_before(InstId position, BlockId block) { move_range(position, blocks[block].head, kNone, block); }
+
+void Graph::move_range_before(InstId position, InstId first, InstId last) { move_range(position, first, last, kNone); }
+
+void Graph::move_range(InstId position, InstId first, InstId last, BlockId block) {
+  if (!attached.empty()) attached.splice(position, first, last, block);
+  for (InstId id = first; id != last;) {
+    const InstId next = insts[id].next;
+    std::vector<InstId> with = attached.take(id);
+    unlink(id);
+    insert_before(position, id);
+    attached.give(id, std::move(with));
+    id = next;
+  }
+}
+
+void Graph::release_attached() {
+  const Attachments released = std::exchange(attached, {});
+  std::vector<InstId> placed;
+  const auto place = [&](InstId id, auto&& insert) {
+    insts[id].removed = false;
+    placed.push_back(id);
+    insert();
+    for (std::uint32_t i = 0; i < insts[id].count; ++i) link_use(insts[id].first + i);
+  };
+  const auto visit = [&](const auto& self, BlockId block) -> void {
+    for (InstId at = blocks[block].head; at != kNone; at = insts[at].next) {
+      for (const InstId id : released.in_front(at)) place(id, [&] { insert_before(at, id); });
+      for (const BlockId child : insts[at].child)
+        if (child != kNone) self(self, child);
+    }
+    const InstId tail = blocks[block].tail;
+    const bool ends = tail != kNone && ends_list(insts[tail]);
+    for (const InstId id : released.at_end(block))
+      place(id, [&] { ends ? insert_before(tail, id) : append(block, id); });
+  };
+  visit(visit, root);
+  for (const InstId id : placed) zero_lost_operands(id);
+}
+
+/// What a probe read of a loop that is gone is zero.
+void Graph::zero_lost_operands(InstId id) {
+  for (std::uint32_t i = 0; i < insts[id].count; ++i) {
+    const Src src = source(insts[id], i);
+    const InstId def = values[src.value].def;
+    if (def != kNone && !insts[def].removed) continue;
+    constexpr std::uint32_t kZeros[4] = {};
+    const InstId zero = create_const(values[src.value].components, values[src.value].boolean, kZeros);
+    insert_before(blocks[root].head, zero);
+    set_source(id, i, {insts[zero].result, src.swizzle});
   }
 }
 

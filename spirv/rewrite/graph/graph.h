@@ -6,94 +6,21 @@
 #include <cstdint>
 #include <vector>
 
-#include "spirv/ir.h"
+#include "spirv/rewrite/graph/attached.h"
 
 namespace vitrine::spirv::rewriting {
 
-using ir::Op;
-using ir::Src;
-using ir::ValueId;
-
-using InstId = std::uint32_t;
-using BlockId = std::uint32_t;
-using Slot = std::uint32_t;  ///< index of an operand in Graph::sources
-inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
-/// An operand and its place in the use list of its value.
-struct Operand {
-  Src src;
-  InstId user = kNone;
-  Slot next = kNone, previous = kNone;  ///< use list
-};
-
-struct Inst {
-  enum class Kind : std::uint8_t {
-    kAlu,        ///< one of ops.def
-    kSized,      ///< one of ops.def on numbers of `width` bits, not 32 (ir::Instr::width)
-    kConst,      ///< imm
-    kVec,        ///< component i = operand i
-    kIntrinsic,  ///< everything else of intrinsics.def, jumps included; details in `node`
-    kIf,         ///< operand 0: condition; child[0] then, child[1] else; results in `node`
-    kLoop,       ///< operands: initial values; child[0] body, child[1] continuing
-  };
-  Kind kind = Kind::kAlu;
-  Op op = Op::kMov;
-  std::uint8_t components = 1;
-  std::uint8_t width = 32;  ///< ir::Instr::width; of a kAlu, too, that selects between numbers of another width
-  bool boolean = false;
-  bool exact = false;
-  bool opaque = false;  ///< made behind the rules of NIR: nothing looks into it or takes it away
-  bool packs = false;   ///< F2Half, Half2F: an operation of its own in the reference, of packed halves
-  bool removed = false;
-  ValueId result = ir::kNoValue;
-  Slot first = 0;  ///< operands are sources[first, first + count)
-  std::uint32_t count = 0;
-  BlockId block = kNone;
-  InstId next = kNone, previous = kNone;
-  BlockId child[2] = {kNone, kNone};
-  std::uint32_t imm[4] = {};
-  std::uint32_t node = kNone;  ///< index in Graph::nodes: what does not fit here
-  ir::Origin origin;
-};
-
-/// An operation of ops.def, whatever the width of its numbers.
-inline bool computes(const Inst& inst) { return inst.kind == Inst::Kind::kAlu || inst.kind == Inst::Kind::kSized; }
-
-/// Components that an operation of ops.def reads of operand `index`.
-inline unsigned operand_components(const Inst& inst, std::uint32_t index) {
-  if (inst.width != 64 && inst.op < Op::kExecutedCount) return inst.components;
-  return ir::components_read(inst.op, inst.width, inst.components, index);
-}
-
-struct Block {
-  InstId head = kNone, tail = kNone;
-  InstId owner = kNone;  ///< the If or Loop, kNone: the function
-};
-
-struct Value {
-  InstId def = kNone;
-  Slot first_use = kNone, last_use = kNone;
-  std::uint32_t uses = 0;
-  std::uint8_t components = 1;
-  bool boolean = false;
-};
-
-class Graph {
+class Graph : public GraphData {
  public:
   /// Takes the function's body; write_back() returns it.
   explicit Graph(ir::Function& function);
   void write_back();
 
-  std::vector<Inst> insts;
-  std::vector<Operand> sources;
-  std::vector<Value> values;
-  std::vector<Block> blocks;
-  std::vector<std::unique_ptr<ir::Node>> nodes;  ///< If, Loop and intrinsic nodes; their lists and src are empty
   BlockId root = 0;
+  Attachments attached;      ///< what is computed for observers alone
   bool first_round = false;  ///< the first round of a phase of passes.def runs
   ir::Function& function;
 
-  const Src& source(const Inst& inst, std::uint32_t index) const { return sources[inst.first + index].src; }
   const Inst* def(ValueId value) const {
     const InstId id = values[value].def;
     return id == kNone ? nullptr : &insts[id];
@@ -122,6 +49,10 @@ class Graph {
   void move_after(InstId position, InstId inst);
   /// Moves all instructions of `block` in front of `position`.
   void splice_before(InstId position, BlockId block);
+  /// Moves the instructions [first, last) of one block in front of `position`, with what is attached to them.
+  void move_range_before(InstId position, InstId first, InstId last);
+  /// Puts what is attached into the blocks, where it is code like all other.
+  void release_attached();
 
  private:
   BlockId import_list(ir::NodeList& list, InstId owner);
@@ -132,6 +63,10 @@ class Graph {
   void link_use(Slot slot);
   void unlink_use(Slot slot);
   void unlink(InstId inst);
+  void move_range(InstId position, InstId first, InstId last, BlockId block);
+  void attach_unused();
+  void zero_lost_operands(InstId id);
+  bool becomes_attached(const Inst& inst) const;
 };
 
 /// A copy as a tree, with its body and values alone: what to print and verify while the graph is being rewritten.

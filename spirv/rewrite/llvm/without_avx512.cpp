@@ -9,11 +9,6 @@ namespace {
 
 using Kind = Inst::Kind;
 
-Src component(Src src, std::size_t index) {
-  const std::uint8_t c = src.swizzle[index];
-  return {src.value, {c, c, c, c}};
-}
-
 class Converter {
  public:
   explicit Converter(Graph& graph) : graph_(graph) {}
@@ -78,10 +73,10 @@ class Converter {
   /// The same for 64 bits: what is no signed integer is converted less 2^63.
   Src by_two_integers(const std::vector<Src>& number, const std::vector<Src>& reduced, Op conversion) {
     const Src small = apply(conversion, number), large = apply(conversion, reduced);
-    const Src is_large = alu(Op::kIShr, {component(small, 1), literal(31)});
+    const Src is_large = alu(Op::kIShr, {scalar(small, 1), literal(31)});
     std::vector<Src> result;
     for (const std::size_t word : {0u, 1u})
-      result.push_back(alu(Op::kOr, {component(small, word), alu(Op::kAnd, {component(large, word), is_large})}));
+      result.push_back(alu(Op::kOr, {scalar(small, word), alu(Op::kAnd, {scalar(large, word), is_large})}));
     return vec(result);
   }
 
@@ -92,21 +87,21 @@ class Converter {
     const Src fits = apply(Op::kDGe, {literal(0), literal(0x41700000), operand(0), size});
     std::vector<Src> result;
     for (const std::size_t word : {0u, 1u})
-      result.push_back(alu(Op::kSelect, {component(fits, 0), component(whole, word), operand(word)}));
+      result.push_back(alu(Op::kSelect, {scalar(fits, 0), scalar(whole, word), operand(word)}));
     return vec(result);
   }
 
   Src sum(const std::vector<Src>& added) { return apply(Op::kDAdd, {operand(0), operand(1), added[0], added[1]}); }
 
   Src operand(std::size_t index) const {
-    return component(graph_.source(graph_.insts[id_], static_cast<std::uint32_t>(index)), 0);
+    return scalar(graph_.source(graph_.insts[id_], static_cast<std::uint32_t>(index)), 0);
   }
   std::vector<Src> operands() const {
     std::vector<Src> all;
     for (std::uint32_t i = 0; i < graph_.insts[id_].count; ++i) all.push_back(operand(i));
     return all;
   }
-  static std::vector<Src> words(Src pair) { return {component(pair, 0), component(pair, 1)}; }
+  static std::vector<Src> words(Src pair) { return {scalar(pair, 0), scalar(pair, 1)}; }
 
   Builder build() { return {graph_, id_}; }
   Src literal(std::uint32_t bits) { return build().literal(bits); }

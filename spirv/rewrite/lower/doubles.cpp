@@ -13,11 +13,6 @@ namespace {
 
 using Kind = Inst::Kind;
 
-Src scalar(Src src) {
-  const std::uint8_t c = src.swizzle[0];
-  return {src.value, {c, c, c, c}};
-}
-
 /// Both words of a double.
 Src double_of(ValueId value) { return {value, {0, 1, 0, 1}}; }
 
@@ -70,15 +65,10 @@ class Joiner {
 
   /// Selects as `like` does.
   ValueId select_double(InstId position, InstId like, Src yes, Src no) {
-    const InstId made = graph_.create(Kind::kAlu, Op::kSelect, 2, false, 3);
-    graph_.insts[made].width = 64;
-    graph_.insts[made].exact = graph_.insts[like].exact;
-    graph_.set_source(made, 0, scalar(graph_.source(graph_.insts[like], 0)));
-    graph_.set_source(made, 1, yes);
-    graph_.set_source(made, 2, no);
-    Builder(graph_, position).place(made);
+    Inst model = graph_.insts[like];
+    model.width = 64;
     changed_ = true;
-    return graph_.insts[made].result;
+    return Builder(graph_, position).like(model, Op::kSelect, {scalar(graph_.source(model, 0)), yes, no}, 2).value;
   }
 
   /// One word of two computed doubles, of which the other word is not read.

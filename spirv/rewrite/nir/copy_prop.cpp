@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/effects.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/passes.h"
@@ -24,7 +25,7 @@ bool look_through(const Graph& graph, Src& src, unsigned read) {
   }
   if (copy->kind != Kind::kVec) return false;
   const Src first = graph.source(*copy, src.swizzle[0]);
-  Src result{first.value, {first.swizzle[0], first.swizzle[0], first.swizzle[0], first.swizzle[0]}};
+  Src result = scalar(first);
   for (unsigned i = 1; i < read; ++i) {
     const Src component = graph.source(*copy, src.swizzle[i]);
     if (component.value != first.value) return false;
@@ -57,11 +58,8 @@ bool move_to_vec(Graph& graph, InstId id, const Inst& vec) {
   const Src from = graph.source(inst, 0);
   std::array<Src, 4> parts;
   for (unsigned i = 0; i < inst.components; ++i) parts[i] = graph.source(vec, from.swizzle[i]);
-  const InstId made = graph.create(Kind::kVec, Op::kVec, inst.components, inst.boolean, inst.components);
-  graph.insts[made].origin = inst.origin;
-  for (unsigned i = 0; i < inst.components; ++i) graph.set_source(made, i, parts[i]);
-  graph.insert_after(id, made);
-  graph.replace_uses(inst.result, graph.insts[made].result);
+  const Src made = Builder::behind(graph, id).vec(std::span(parts).first(inst.components), inst.boolean);
+  graph.replace_uses(inst.result, made.value);
   return true;
 }
 

@@ -1,4 +1,5 @@
 // Arithmetic on vectors becomes arithmetic on their components (nir_lower_alu_width.c; lavapipe-optimizer.md 3.7).
+#include <array>
 #include <initializer_list>
 
 #include "spirv/rewrite/graph/build.h"
@@ -9,31 +10,16 @@ namespace {
 
 using Kind = Inst::Kind;
 
-/// Component `c` of operand `index`, for all components of a user.
-Src component(const Graph& graph, const Inst& inst, std::uint32_t index, unsigned c) {
-  const Src src = graph.source(inst, index);
-  const std::uint8_t s = src.swizzle[c];
-  return {src.value, {s, s, s, s}};
-}
-
 /// One scalar instruction per component, and a Vec of them.
 void split(Graph& graph, InstId id) {
   const Inst inst = graph.insts[id];
-  const InstId vec = graph.create(Kind::kVec, Op::kVec, inst.components, inst.boolean, inst.components);
-  graph.insts[vec].origin = inst.origin;
+  Builder build(graph, id);
+  std::array<Src, 4> parts, operands;
   for (unsigned c = 0; c < inst.components; ++c) {
-    const InstId part = graph.create(inst.kind, inst.op, 1, inst.boolean, inst.count);
-    graph.insts[part].width = inst.width;
-    graph.insts[part].exact = inst.exact;
-    graph.insts[part].packs = inst.packs;
-    graph.insts[part].origin = inst.origin;
-    for (std::uint32_t i = 0; i < inst.count; ++i) graph.set_source(part, i, component(graph, inst, i, c));
-    graph.insert_before(id, part);
-    graph.set_source(vec, c, {graph.insts[part].result, {0, 0, 0, 0}});
+    for (std::uint32_t i = 0; i < inst.count; ++i) operands[i] = scalar(graph.source(inst, i), c);
+    parts[c] = build.like(inst, inst.op, std::span(operands).first(inst.count));
   }
-  graph.insert_before(id, vec);
-  graph.replace_uses(inst.result, graph.insts[vec].result);
-  graph.remove(id);
+  replace_inst(graph, id, build.vec(std::span(parts).first(inst.components), inst.boolean).value);
 }
 
 /// What takes a vector to one number, or one number to a vector.
@@ -93,7 +79,7 @@ class Reducer {
     return shift == 0 ? bits : add(Op::kShl, {bits, literal(shift)});
   }
 
-  Src part(std::uint32_t index, unsigned c) const { return component(graph_, inst_, index, c); }
+  Src part(std::uint32_t index, unsigned c) const { return scalar(graph_.source(inst_, index), c); }
   Builder build() { return {graph_, id_}; }
   Src literal(std::uint32_t bits) { return build().literal(bits); }
   Src add(Op op, std::initializer_list<Src> operands) { return build().like(inst_, op, operands); }

@@ -57,8 +57,10 @@ class JoinSweeper {
   }
 
   void index(BlockId block, InstId loop) {
+    need_attached(graph_.attached.at_end(block));
     for (InstId id = graph_.blocks[block].head; id != kNone; id = graph_.insts[id].next) {
       const Inst& inst = graph_.insts[id];
+      need_attached(graph_.attached.in_front(id));
       if (inst.kind == Kind::kLoop) {
         loops_.try_emplace(id).first->second.back = ways_back(graph_, id);
         for (const BlockId child : inst.child) index(child, id);
@@ -74,9 +76,14 @@ class JoinSweeper {
     }
   }
 
+  void need_attached(const std::vector<InstId>& list) {
+    for (const InstId id : list)
+      for (std::uint32_t i = 0; i < graph_.insts[id].count; ++i) need_operand(id, i);
+  }
+
   void trace(ValueId value) {
     const InstId id = graph_.values[value].def;
-    if (id == kNone) return;
+    if (id == kNone || (graph_.insts[id].removed && graph_.insts[id].child[0] != kNone)) return;
     const Inst& inst = graph_.insts[id];
     if (inst.kind == Kind::kLoop) {
       trace_loop(id, value);
@@ -140,7 +147,7 @@ bool drop_unused_results(Graph& graph, InstId id) {
   bool changed = false;
   auto& results = graph.nodes[graph.insts[id].node]->results;
   for (std::size_t i = results.size(); i-- > 0;) {
-    if (graph.values[results[i]].uses != 0) continue;
+    if (graph.values[results[i]].uses != 0 || graph.attached.reads(results[i])) continue;
     for (const BlockId child : graph.insts[id].child) {
       const InstId last = graph.blocks[child].tail;
       if (last != kNone && graph.insts[last].kind == Kind::kIntrinsic && graph.insts[last].op == Op::kYield)
@@ -165,6 +172,7 @@ bool remove_dead_in(Graph& graph, BlockId block) {
     const bool unused = inst.result == ir::kNoValue || graph.values[inst.result].uses == 0;
     const bool empty_if = kind == Kind::kIf && graph.nodes[inst.node]->results.empty();
     if ((kind == Kind::kIf ? empty_if : unused && inst.result != ir::kNoValue) && is_pure(graph, inst)) {
+      if (kind == Kind::kIf) graph.attached.keep_branches(graph, id);
       graph.remove(id);
       changed = true;
     }

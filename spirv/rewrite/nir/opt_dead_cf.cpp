@@ -29,9 +29,10 @@ void collect_values(const Graph& graph, InstId id, std::vector<ValueId>& values)
 void remove_unreached(Graph& graph, InstId id) {
   std::vector<ValueId> values;
   collect_values(graph, id, values);
+  graph.attached.drop(graph, id);
   graph.remove(id);
   for (const ValueId value : values) {
-    if (graph.values[value].uses == 0) continue;
+    if (graph.values[value].uses == 0 && !graph.attached.reads(value)) continue;
     constexpr std::uint32_t kZeros[4] = {};
     Builder first(graph, graph.blocks[graph.root].head);
     const Value shape = graph.values[value];
@@ -77,7 +78,9 @@ bool only_computes(const Graph& graph, BlockId block) {
 
 bool is_dead_loop(const Graph& graph, InstId id) {
   for (const ValueId result : graph.nodes[graph.insts[id].node]->results)
-    if (graph.values[result].uses != 0) return false;
+    if (graph.values[result].uses != 0 || graph.attached.reads(result)) return false;
+  if (graph.attached.any_in(graph, graph.insts[id].child[0]) || graph.attached.any_in(graph, graph.insts[id].child[1]))
+    return false;
   return only_computes(graph, graph.insts[id].child[0]) && only_computes(graph, graph.insts[id].child[1]) &&
          !is_used_behind(graph, id);
 }

@@ -21,7 +21,9 @@ bool opt_if_loop_terminator(Graph& graph, InstId id) {
     InstId position = id;
     while (graph.blocks[staying].head != last) {
       const InstId moved = graph.blocks[staying].head;
+      std::vector<InstId> with = graph.attached.take(moved);
       graph.move_after(position, moved);
+      graph.attached.give(moved, std::move(with));
       position = moved;
     }
     replace_results(graph, id, yielded, position);
@@ -50,7 +52,7 @@ bool opt_if_loop_last_continue(Graph& graph, InstId loop) {
   if (!graph.nodes[graph.insts[branch].node]->results.empty()) return false;  // hoisting comes first
   const BlockId other = graph.insts[branch].child[1 - leaving];
   const InstId other_end = graph.blocks[other].tail;
-  while (graph.insts[branch].next != end) graph.move_before(other_end, graph.insts[branch].next);
+  graph.move_range_before(other_end, graph.insts[branch].next, end);
   const std::vector<Src> passed = operands_of(graph, end);
   graph.set_operands(other_end, passed);
   graph.set_operands(end, add_results(graph, branch, graph.nodes[graph.insts[loop].node]->continue_params));

@@ -42,7 +42,7 @@ bool break_once(Graph& graph, InstId id, unsigned leaving) {
   const InstId stay_end = graph.blocks[staying].tail;
   replace_results(graph, id, operands_of(graph, stay_end), graph.insts[stay_end].previous);
   node_of(graph, id).results.clear();
-  while (graph.insts[id].next != end) graph.move_before(stay_end, graph.insts[id].next);
+  graph.move_range_before(stay_end, graph.insts[id].next, end);
   const std::vector<Src> values = operands_of(graph, end);
   graph.set_operands(stay_end, values);
   become_yield(graph, graph.blocks[graph.insts[id].child[leaving]].tail);

@@ -89,8 +89,12 @@ class Peeler {
 
     const std::vector<ValueId> results = node(branch_).results;
     graph_.nodes[graph_.insts[branch_].node]->results.clear();
+    graph_.attached.drop(graph_, branch_);
     graph_.remove(branch_);
-    for (auto id = header_.rbegin(); id != header_.rend(); ++id) graph_.remove(*id);
+    for (auto id = header_.rbegin(); id != header_.rend(); ++id) {
+      graph_.attached.drop(graph_, *id);  // the copies have it
+      graph_.remove(*id);
+    }
     std::vector<std::pair<ValueId, ValueId>> replaced;
     for (const InstId id : header_) {
       const ValueId value = graph_.insts[id].result;

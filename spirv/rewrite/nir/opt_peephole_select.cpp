@@ -1,4 +1,5 @@
 // Small branches become unconditional code and selections (nir_opt_peephole_select.c; lavapipe-optimizer.md 5.1, 5.2).
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/passes.h"
@@ -46,7 +47,8 @@ bool may_hoist(const Inst& inst) {
   }
 }
 
-/// A shift that is a part of extending the sign of a number of 8 or 16 bits.
+/// A shift that is a part of extending the sign of a number of 8 or 16 bits. Here and below, operations are vectors in
+/// the first round, which patterns do not match.
 bool extends_sign(const Graph& graph, const Inst& inst) {
   const auto by = [&](const Inst& shift, std::uint32_t bits) {
     return is_literal(graph, graph.source(shift, 1), bits);
@@ -113,7 +115,9 @@ bool can_flatten(const Graph& graph, BlockId block, unsigned& cost) {
 }
 
 /// What a branch yields; the branch's instructions move in front of the If.
-std::vector<Src> take_branch(Graph& graph, InstId id, BlockId block) {
+std::vector<Src> take_branch(Graph& graph, InstId id, unsigned side) {
+  const BlockId block = graph.insts[id].child[side];
+  graph.attached.guard(graph, block, graph.source(graph.insts[id], 0), side == 0);
   const InstId last = graph.blocks[block].tail;
   std::vector<Src> yielded = operands_of(graph, last);
   graph.remove(last);
@@ -127,22 +131,18 @@ bool is_half(const Graph& graph, ValueId value) {
 }
 
 void flatten(Graph& graph, InstId id) {
-  const Src condition = graph.source(graph.insts[id], 0);
-  const std::uint8_t lane = condition.swizzle[0];
-  const std::vector<Src> then_values = take_branch(graph, id, graph.insts[id].child[0]);
-  const std::vector<Src> else_values = take_branch(graph, id, graph.insts[id].child[1]);
+  const Src condition = scalar(graph.source(graph.insts[id], 0));
+  const std::vector<Src> then_values = take_branch(graph, id, 0);
+  const std::vector<Src> else_values = take_branch(graph, id, 1);
   const std::vector<ValueId> results = graph.nodes[graph.insts[id].node]->results;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Value value = graph.values[results[i]];
-    const InstId select =
-        graph.create(Kind::kAlu, value.boolean ? Op::kSelectB : Op::kSelect, value.components, value.boolean, 3);
-    graph.insts[select].origin = graph.insts[id].origin;
-    if (is_half(graph, then_values[i].value) || is_half(graph, else_values[i].value)) graph.insts[select].width = 16;
-    graph.set_source(select, 0, {condition.value, {lane, lane, lane, lane}});
-    graph.set_source(select, 1, then_values[i]);
-    graph.set_source(select, 2, else_values[i]);
-    graph.insert_before(id, select);
-    graph.replace_uses(results[i], graph.insts[select].result);
+    const bool halves = is_half(graph, then_values[i].value) || is_half(graph, else_values[i].value);
+    const Op op = value.boolean ? Op::kSelectB : Op::kSelect;
+    const ValueId chosen =
+        Builder(graph, id).alu(op, {condition, then_values[i], else_values[i]}, value.components).value;
+    if (halves) graph.insts[graph.values[chosen].def].width = 16;
+    graph.replace_uses(results[i], chosen);
   }
   graph.remove(id);
 }
@@ -182,17 +182,10 @@ bool collapse(Graph& graph, InstId inner) {
   if (cost > kFlattenLimit || !results_agree(graph, outer, inner, operands)) return false;
   for (const std::uint32_t operand : operands)
     graph.set_source(graph.blocks[else_block].tail, operand, graph.source(graph.insts[then_end], operand));
-  const InstId both = graph.create(Kind::kAlu, Op::kAndB, 1, true, 2);
-  graph.insts[both].origin = graph.insts[inner].origin;
-  const auto condition = [&](InstId id) {
-    const Src src = graph.source(graph.insts[id], 0);
-    return Src{src.value, {src.swizzle[0], src.swizzle[0], src.swizzle[0], src.swizzle[0]}};
-  };
-  graph.set_source(both, 0, condition(inner));
-  graph.set_source(both, 1, condition(outer));
-  graph.insert_before(inner, both);
-  graph.set_source(inner, 0, {graph.insts[both].result, {0, 0, 0, 0}});
-  while (graph.blocks[then_block].head != then_end) graph.move_before(outer, graph.blocks[then_block].head);
+  const auto condition = [&](InstId id) { return scalar(graph.source(graph.insts[id], 0)); };
+  graph.set_source(inner, 0, Builder(graph, inner).alu(Op::kAndB, {condition(inner), condition(outer)}));
+  graph.attached.guard(graph, then_block, graph.source(graph.insts[outer], 0), true);
+  graph.move_range_before(outer, graph.blocks[then_block].head, then_end);
   return true;
 }
 

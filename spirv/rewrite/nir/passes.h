@@ -72,7 +72,11 @@ bool opt_algebraic_late(Graph& graph);
 /// Operations that no program has, but for sums and mixes, are taken apart as the rules and lower_alu_to_scalar() do.
 bool lower_operations(Graph& graph);
 
-/// Mixes of halves are single operations until the finalisation, other mixes never.
+/// Mixes of 32 and 64 bits become sums of products before any rule sees them; no rule makes such a mix of anything
+/// else.
+void lower_flrp_but_half(Graph& graph);
+
+/// The same of all mixes: those of halves are single operations until the finalisation.
 void lower_flrp(Graph& graph);
 
 }  // namespace vitrine::spirv::rewriting

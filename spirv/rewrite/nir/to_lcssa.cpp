@@ -59,7 +59,7 @@ bool open_loop(Graph& graph, InstId loop) {
   bool changed = false;
   for (std::size_t i = graph.nodes[graph.insts[loop].node]->results.size(); i-- > 0;) {
     const ValueId result = graph.nodes[graph.insts[loop].node]->results[i];
-    if (graph.values[result].uses != 0) {
+    if (graph.values[result].uses != 0 || graph.attached.reads(result)) {
       const ValueId value = value_at_breaks(graph, result, static_cast<std::uint32_t>(i), breaks);
       if (value == ir::kNoValue) continue;
       graph.replace_uses(result, value);

@@ -17,16 +17,21 @@ namespace {
 
 using exec::parse_trace_target;
 
-/// The text without the numbers of SPIR-V ids, which glslang chooses.
+/// The text without the numbers of SPIR-V ids, which glslang chooses, and the lines of the disassembly.
 std::string without_ids(std::string_view text) {
+  static constexpr std::string_view kFile = " main.spvasm:";
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text.substr(i, kFile.size()) == kFile) {
+      i = text.find_first_not_of("0123456789", i + kFile.size()) - 1;
+      continue;
+    }
     result += text[i];
     if (text[i] != '%') continue;
     while (i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9') ++i;
     result += "id";
   }
-  return result;
+  return std::regex_replace(result, std::regex(" *;(\n|  lane)"), "$1");
 }
 
 /// What the tracer writes, run by run.
@@ -88,14 +93,14 @@ preamble
     2  FAdd              u8 = 40400000 3 <- u6 40000000 2, u7 3f800000 1  ; %id
 code
     0  SubgroupInvocation r0 = 0000000b 11  ; %id
-    1  And               r1 = 00000003 3 <- r0 0000000b 11, u1 00000007 7
+    1  And               r1 = 00000003 3 <- r0 0000000b 11, u1 00000007 7  ; %id
     2  WorkgroupId       u9 = 00000000 0  ; %id
     3  WorkgroupId       u10 = 00000000 0  ; %id
     4  WorkgroupId       u11 = 00000000 0  ; %id
-    5  UShr              r0 = 00000001 1 <- r0 0000000b 11, u2 00000003 3
+    5  UShr              r0 = 00000001 1 <- r0 0000000b 11, u2 00000003 3  ; %id
     6  IAdd              r0 = 00000001 1 <- r0 00000001 1, u9 00000000 0  ; %id
     7  IMul              r0 = 00000008 8 <- r0 00000001 1, u3 00000008 8  ; %id
-    8  And               r1 = 00000003 3 <- u1 00000007 7, r1 00000003 3
+    8  And               r1 = 00000003 3 <- u1 00000007 7, r1 00000003 3  ; %id
     9  IAdd              r0 = 0000000b 11 <- r1 00000003 3, r0 00000008 8  ; %id
    10  Shl               r0 = 0000002c 44 <- r0 0000000b 11, u4 00000002 2  ; %id
    11  load_storage      r1 = 41300000 11 <- r0 0000002c 44  set 0 slot 0  ; %id
@@ -229,8 +234,7 @@ TEST(Trace, NamesIdAndLine) {
   options.observer = exec::make_tracer(*parse_trace_target("compute:3,0,0"), [&](std::string_view run) { text = run; });
   std::vector<std::uint32_t> words(64, 5);
   dispatch_over(words, assemble(module.text()), options, 1);
-  EXPECT_TRUE(std::regex_search(text, std::regex("IAdd +r\\d+ = 00000008 8 <- .*  ; %\\d+ line 7 of a.comp\n")))
-      << text;
+  EXPECT_TRUE(std::regex_search(text, std::regex("IAdd +r\\d+ = 00000008 8 <- .*  ; %\\d+ a.comp:7:3\n"))) << text;
 }
 
 TEST(Trace, TargetsAreParsed) {

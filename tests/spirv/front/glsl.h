@@ -15,10 +15,12 @@ namespace vitrine::spirv::test {
 
 using Words = std::vector<std::uint32_t>;
 
-inline Words compile_glsl(VkShaderStageFlagBits stage, const std::string& body) {
+using vitrine::test::DebugInfo;
+
+inline Words compile_glsl(VkShaderStageFlagBits stage, const std::string& body, DebugInfo debug = DebugInfo::kNone) {
   const std::string text = "#version 450\n" + body;
   std::string log;
-  Words words = vitrine::test::compile_glsl(stage, text, vitrine::test::VulkanVersion::k11, log);
+  Words words = vitrine::test::compile_glsl(stage, text, vitrine::test::VulkanVersion::k11, log, debug);
   if (words.empty()) ADD_FAILURE() << log << text;
   return words;
 }

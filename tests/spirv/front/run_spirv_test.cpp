@@ -380,8 +380,9 @@ OpFunctionEnd
 )"),
                         options);
   ASSERT_TRUE(shader) << shader.message();
-  EXPECT_EQ(shader.value()->program().files.size(), 1u);
-  EXPECT_EQ(shader.value()->program().files[0].second, "endless.comp");
+  const SourceInfo& sources = *shader.value()->program().sources;
+  ASSERT_EQ(sources.files.size(), 2u);
+  EXPECT_EQ(sources.files[1].name, "endless.comp");
 }
 
 TEST(RunSpirv, ProfilesCountInstructionsByName) {

@@ -36,7 +36,7 @@ TEST(Passes, SnapshotsAreWhatIsWrittenBack) {
 TEST(Passes, LowerWhatProgramsDoNotHaveWithoutTheRules) {
   for (const char* expression :
        {"FMod(a,b)", "LdExp(a,3)", "FSat(FRem(a,b))", "FDot2(Vec(a,b),Vec(c,d))", "FDot4(Vec(a,b,c,d),Vec(d,c,b,a))",
-        "BitfieldInsert(a,b,c,d)", "PackUnorm4x8(Vec(a,b,c,d))", "PackHalf2x16(Vec(a,b))"}) {
+        "BitfieldInsert(a,b,c,d)", "FLrp(a,b,c)", "PackUnorm4x8(Vec(a,b,c,d))", "PackHalf2x16(Vec(a,b))"}) {
     ir::Function function = test::shader_of(expression);
     rewriting::Graph graph(function);
     for (const rewriting::Pass& pass : rewriting::passes())

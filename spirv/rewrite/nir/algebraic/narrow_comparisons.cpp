@@ -1,16 +1,13 @@
 // Comparisons of floats that were converted from narrower ones are those of the narrower ones: rules on conversions,
 // which rows on one width cannot say (lavapipe-optimizer.md 4.8).
+#include "spirv/rewrite/graph/build.h"
+#include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/nir/passes.h"
 
 namespace vitrine::spirv::rewriting {
 namespace {
 
 using Kind = Inst::Kind;
-
-Src scalar(Src src) {
-  const std::uint8_t c = src.swizzle[0];
-  return {src.value, {c, c, c, c}};
-}
 
 class Narrower {
  public:
@@ -46,7 +43,7 @@ class Narrower {
     for (const std::uint32_t i : {0u, 1u}) {
       const Src src = graph_.source(graph_.insts[id], i);
       const Inst* def = graph_.def(src.value);
-      if (!def || def->kind != Kind::kAlu || def->op != Op::kHalf2F) return;
+      if (!is_op(def, Op::kHalf2F)) return;
       narrow[i] = graph_.source(*def, 0);
       const auto inner = narrow[i].swizzle;
       for (std::size_t c = 0; c < 4; ++c) narrow[i].swizzle[c] = inner[src.swizzle[c]];

@@ -7,7 +7,9 @@
 #include <bit>
 #include <deque>
 
+#include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/literals.h"
+#include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/algebraic/pattern.h"
 #include "spirv/rewrite/nir/passes.h"
 #include "spirv/rewrite/nir/range_analysis.h"
@@ -268,7 +270,7 @@ class Rewriter {
     }
   }
 
-  // ---- matching
+  // ---- matching: by the table's patterns, of vectors and of every width; those of graph/match.h are of scalars
 
   /// Bits of the numbers of operand `index`, 0: booleans.
   static std::uint8_t operand_width(const Inst& inst, std::uint32_t index, std::uint8_t width) {
@@ -398,25 +400,17 @@ class Rewriter {
 
   // ---- replacing
 
-  void place(InstId made) {
-    if (after_) {
-      graph_.insert_after(cursor_, made);
-      cursor_ = made;
-    } else {
-      graph_.insert_before(cursor_, made);
-    }
-    graph_.insts[made].origin = origin_;
+  /// Makes room for the state of what has been made.
+  Src with_state(Src made) {
+    states_.resize(graph_.values.size());
+    return made;
   }
 
-  Src build_constant(const Pattern& pattern, unsigned width) {
+  Src build_constant(Builder& at, const Pattern& pattern, unsigned width) {
     std::uint32_t bits[2] = {pattern.bits, 0};
     if (pattern.kind == Pattern::Kind::kFloat) literal_words(pattern.number, width, bits);
     const unsigned components = width == 64 && pattern.kind == Pattern::Kind::kFloat ? 2 : 1;
-    const InstId made =
-        graph_.create_const(static_cast<std::uint8_t>(components), pattern.kind == Pattern::Kind::kBoolean, bits);
-    place(made);
-    states_.resize(graph_.values.size());
-    return {graph_.insts[made].result, {0, static_cast<std::uint8_t>(components - 1), 0, 0}};
+    return with_state(at.literal(components, pattern.kind == Pattern::Kind::kBoolean, bits));
   }
 
   /// Bits of the numbers that a pattern of a replacement makes, by the variables in it; 0: booleans, or literals alone.
@@ -438,25 +432,20 @@ class Rewriter {
   static Src read(const Pattern& pattern, const Match& match) {
     const Src& src = match.variable[pattern.variable];
     if (pattern.component < 0) return src;
-    const std::uint8_t c = src.swizzle[static_cast<std::size_t>(pattern.component)];
-    return {src.value, {c, c, c, c}};
+    return scalar(src, static_cast<unsigned>(pattern.component));
   }
 
-  Src build_vec(const Pattern& pattern, std::uint8_t width, const Match& match) {
+  Src build_vec(Builder& at, const Pattern& pattern, std::uint8_t width, const Match& match) {
     std::array<Src, kMaxChildren> part;
-    for (unsigned c = 0; c < pattern.children; ++c) part[c] = build(pattern.child[c], 1, width, match);
-    const InstId made = graph_.create(Kind::kVec, Op::kVec, pattern.children, false, pattern.children);
-    for (unsigned c = 0; c < pattern.children; ++c) graph_.set_source(made, c, part[c]);
-    place(made);
-    states_.resize(graph_.values.size());
-    return {graph_.insts[made].result, {0, 1, 2, 3}};
+    for (unsigned c = 0; c < pattern.children; ++c) part[c] = build(at, pattern.child[c], 1, width, match);
+    return with_state(at.vec(std::span(part).first(pattern.children)));
   }
 
-  Src build(std::uint16_t index, unsigned components, std::uint8_t width, const Match& match) {
+  Src build(Builder& at, std::uint16_t index, unsigned components, std::uint8_t width, const Match& match) {
     const Pattern& pattern = rules_.patterns[index];
     if (pattern.kind == Pattern::Kind::kVariable) return read(pattern, match);
-    if (pattern.kind != Pattern::Kind::kOp) return build_constant(pattern, width);
-    if (pattern.op == Op::kVec) return build_vec(pattern, width, match);
+    if (pattern.kind != Pattern::Kind::kOp) return build_constant(at, pattern, width);
+    if (pattern.op == Op::kVec) return build_vec(at, pattern, width, match);
     const ir::AluInfo& info = ir::alu_info(pattern.op);
     const bool boolean = info.result == 'B';
     if (any_sized_)
@@ -465,43 +454,24 @@ class Rewriter {
     const unsigned lanes = width != 64 ? components : boolean ? 1 : 2;
     std::array<Src, kMaxChildren> operand;
     const unsigned parts = info.reads != 0 ? info.reads : lanes;
-    for (unsigned i = 0; i < pattern.children; ++i) operand[i] = build(pattern.child[i], parts, width, match);
+    for (unsigned i = 0; i < pattern.children; ++i) operand[i] = build(at, pattern.child[i], parts, width, match);
     const bool sized = width != 32 && !ir::is_selection(pattern.op) && has_sizes(info);
-    const InstId made = graph_.create(sized ? Kind::kSized : Kind::kAlu, pattern.op, static_cast<std::uint8_t>(lanes),
-                                      boolean, pattern.children);
-    if (sized || pattern.op == Op::kSelect) graph_.insts[made].width = width;
-    graph_.insts[made].exact = match.has_exact || pattern.exact;
-    graph_.insts[made].packs = pattern.op == Op::kF2Half || pattern.op == Op::kHalf2F;
-    for (unsigned i = 0; i < pattern.children; ++i) graph_.set_source(made, i, operand[i]);
-    place(made);
-    states_.resize(graph_.values.size());
-    update_state(made);
-    if (width == 64) return {graph_.insts[made].result, boolean ? Swizzle{} : Swizzle{0, 1, 0, 0}};
-    return {graph_.insts[made].result, {0, 1, 2, 3}};
+    Inst model;
+    model.kind = sized ? Kind::kSized : Kind::kAlu;
+    if (sized || pattern.op == Op::kSelect) model.width = width;
+    model.exact = match.has_exact || pattern.exact;
+    model.packs = pattern.op == Op::kF2Half || pattern.op == Op::kHalf2F;
+    const Src made = with_state(at.like(model, pattern.op, std::span(operand).first(pattern.children), lanes));
+    update_state(graph_.values[made.value].def);
+    return made;
   }
 
   /// The operation has an operand or a result that is a float.
   static bool has_sizes(const ir::AluInfo& info) { return info.result == 'F' || info.operands[0] == 'F'; }
 
-  /// A value of its own for a replacement that is a part or a rearrangement of another value.
-  ValueId as_value(Src src, unsigned components, bool boolean) {
-    bool whole = graph_.values[src.value].components == components;
-    for (unsigned c = 0; c < components; ++c) whole &= src.swizzle[c] == c;
-    if (whole) return src.value;
-    const InstId move =
-        graph_.create(Kind::kAlu, boolean ? Op::kMovB : Op::kMov, static_cast<std::uint8_t>(components), boolean, 1);
-    graph_.set_source(move, 0, src);
-    place(move);
-    states_.resize(graph_.values.size());
-    return graph_.insts[move].result;
-  }
-
   /// Replacements of unary operations go where their operand is, so that they do not prolong other values' lives.
-  void choose_cursor(InstId id) {
+  Builder place_of(InstId id) {
     const Inst& inst = graph_.insts[id];
-    origin_ = inst.origin;
-    cursor_ = id;
-    after_ = false;
     switch (inst.op) {
       case Op::kFNeg:
       case Op::kFAbs:
@@ -511,12 +481,19 @@ class Rewriter {
       case Op::kNotB:
         break;
       default:
-        return;
+        return {graph_, id};
     }
     const InstId def = graph_.values[graph_.source(inst, 0).value].def;
-    if (def == kNone || !computes(graph_.insts[def])) return;
-    cursor_ = def;
-    after_ = true;
+    if (def == kNone || !computes(graph_.insts[def])) return {graph_, id};
+    return Builder::behind(graph_, def, inst.origin);
+  }
+
+  /// What takes the place of the result: a value of its own where it is a part or a rearrangement of another one.
+  ValueId replacement(InstId id, const Rule& rule, const Match& match) {
+    Builder at = place_of(id);
+    const ValueId result = graph_.insts[id].result;
+    const Src built = build(at, rule.replacement, graph_.insts[id].components, graph_.insts[id].width, match);
+    return is_whole(graph_, built, result) ? built.value : with_state(at.move(built, result)).value;
   }
 
   bool rewrite(InstId id) {
@@ -525,12 +502,8 @@ class Rewriter {
       const Rule& rule = rules_.rules[number];
       Match match;
       if (!try_rule(rule, graph_.insts[id], match)) continue;
-      choose_cursor(id);
-      const unsigned components = graph_.insts[id].components;
-      const Src built = build(rule.replacement, components, graph_.insts[id].width, match);
-      const ValueId value = as_value(built, components, graph_.insts[id].boolean);
-      graph_.replace_uses(graph_.insts[id].result, value);
-      graph_.remove(id);
+      const ValueId value = replacement(id, rule, match);
+      replace_inst(graph_, id, value);
       wake_users(value);
       ranges_.clear();
       return true;
@@ -546,9 +519,6 @@ class Rewriter {
   std::deque<InstId> queue_;
   bool inexact_off_ = false;
   bool any_sized_ = false;  ///< there are numbers that do not have 32 bits
-  InstId cursor_ = kNone;
-  bool after_ = false;
-  ir::Origin origin_;
 };
 
 }  // namespace

@@ -19,6 +19,14 @@ StoreOutput FAdd(FMul(%a, %b), FMul(%a, %c))
 %1 = FMul %a, %0
 StoreOutput %1
 )"},
+    {"a b + b c: the factor stands elsewhere", R"(
+StoreOutput FAdd(FMul(%a, %b), FMul(%b, %c))
+)",
+     R"(
+%0 = FAdd %a, %c
+%1 = FMul %b, %0
+StoreOutput %1
+)"},
     {"exact operations keep inexact rules away", R"(
 StoreOutput FAdd!(FMul(%a, %b), FMul(%a, %c))
 )"},

@@ -1,0 +1,62 @@
+// See invocation.h.
+#include "spirv/exec/invocation.h"
+
+#include "base/numeric.h"
+#include "spirv/exec/observe.h"
+
+namespace vitrine::spirv::exec {
+namespace {
+
+/// Where an input of this wave lies. Null: the stage has none such.
+const base::WaveRegister* input_of(const Wave& wave, BuiltIn built_in, std::uint8_t component) {
+  for (const InterfaceSlot& slot : wave.program->observation->interface.inputs)
+    if (slot.built_in == built_in && slot.component == component)
+      return reinterpret_cast<const base::WaveRegister*>(wave.registers + std::size_t{slot.reg} * kRegisterStride);
+  return nullptr;
+}
+
+std::array<std::uint32_t, 3> compute_id(const Wave& wave, std::size_t lane) {
+  const std::uint32_t* size = wave.program->local_size;
+  const std::uint32_t invocations = size[0] * size[1] * size[2];
+  const std::uint32_t at = wave.first_invocation + static_cast<std::uint32_t>(lane);
+  const std::uint32_t group = wave.program->groups_per_wave > 1 ? at / invocations : 0, local = at % invocations;
+  return {(wave.workgroup_id[0] + group) * size[0] + local % size[0],
+          wave.workgroup_id[1] * size[1] + local / size[0] % size[1],
+          wave.workgroup_id[2] * size[2] + local / size[0] / size[1]};
+}
+
+/// The two inputs of a stage; null: it has none.
+std::array<const base::WaveRegister*, 2> inputs_of(const Wave& wave) {
+  switch (wave.program->observation->interface.stage) {
+    case VK_SHADER_STAGE_VERTEX_BIT:
+      return {input_of(wave, BuiltIn::kVertexIndex, 0), input_of(wave, BuiltIn::kInstanceIndex, 0)};
+    case VK_SHADER_STAGE_FRAGMENT_BIT:
+      return {input_of(wave, BuiltIn::kFragCoord, 0), input_of(wave, BuiltIn::kFragCoord, 1)};
+    default:
+      return {};
+  }
+}
+
+std::uint32_t number_of(const Wave& wave, const base::WaveRegister& input, std::size_t lane) {
+  const bool vertex = wave.program->observation->interface.stage == VK_SHADER_STAGE_VERTEX_BIT;
+  return vertex ? input.lane[lane] : base::truncate_to_uint(base::float_of(input.lane[lane]));
+}
+
+}  // namespace
+
+std::array<std::uint32_t, 3> invocation_of(const Wave& wave, std::size_t lane) { return Invocations(wave)(wave, lane); }
+
+Invocations::Invocations(const Wave& wave) {
+  const auto inputs = inputs_of(wave);
+  if (inputs[0] == nullptr || inputs[1] == nullptr) return;
+  for (; count_ < inputs.size(); ++count_) inputs_[count_] = *inputs[count_];
+}
+
+std::array<std::uint32_t, 3> Invocations::operator()(const Wave& wave, std::size_t lane) const {
+  if (wave.program->observation->interface.stage == VK_SHADER_STAGE_COMPUTE_BIT) return compute_id(wave, lane);
+  std::array<std::uint32_t, 3> id{};
+  for (std::uint8_t i = 0; i < count_; ++i) id[i] = number_of(wave, inputs_[i], lane);
+  return id;
+}
+
+}  // namespace vitrine::spirv::exec

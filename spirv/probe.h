@@ -1,0 +1,36 @@
+// Probes: places in a shader at which observers are told which lanes come by, with values. Only shaders that somebody
+// observes have any (spirv/exec/observe.h); they change no result.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vitrine::spirv {
+
+/// One argument of a printf: a scalar or vector.
+struct ProbeValue {
+  char type = 'U';               ///< of a component: F I U of `width` bits, B boolean, S id of a string
+  std::uint8_t width = 32;       ///< 8, 16 (in the low bits of a word), 32, 64 (two words, low first)
+  std::uint8_t components = 1;   ///< of a vector
+  std::uint32_t first_word = 0;  ///< number of its first word among the probe's words
+};
+
+struct Probe {
+  enum class Kind : std::uint8_t {
+    kBlock,   ///< a block of the module begins: SPIR-V label `id`
+    kPrintf,  ///< NonSemantic.DebugPrintf
+  } kind = Kind::kBlock;
+  std::uint32_t id = 0;     ///< SPIR-V id of the block or instruction
+  std::uint32_t place = 0;  ///< SourceInfo::places
+  std::string format;       ///< kPrintf
+  std::vector<ProbeValue> values;
+  // kBlock
+  std::uint32_t function = 0;             ///< id of the function that the block is in
+  bool enters = false;                    ///< the block is its function's first
+  std::vector<std::uint32_t> places;      ///< of the block's instructions, in their order, without repetitions in a row
+  std::uint32_t end_place = 0;            ///< of the instruction that ends it
+  std::vector<std::uint32_t> successors;  ///< labels of the blocks that may come next, in the order of the operands
+};
+
+}  // namespace vitrine::spirv
