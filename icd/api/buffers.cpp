@@ -1,14 +1,15 @@
 // Buffers and buffer views (Vulkan 1.3.239, Resource Creation: Buffers, Buffer Views).
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/object/device.h"
+#include "icd/object/address_book.h"
 #include "icd/object/memory.h"
+#include "icd/properties.h"
 
 namespace vitrine::icd {
 namespace {
 
-// An allocation can be no larger, so neither can a buffer (manifest/limits, maxMemoryAllocationSize).
-constexpr VkDeviceSize kMaxBufferSize = VkDeviceSize{1} << 36;
+// An allocation can be no larger, so neither can a buffer.
+constexpr VkDeviceSize kMaxBufferSize = kClaimedPhysicalDeviceMaintenance3Properties.maxMemoryAllocationSize;
 
 }  // namespace
 
@@ -25,7 +26,12 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateBuffer(VkDevice device, const VkBufferCreat
   return VK_SUCCESS;
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyBuffer(VkDevice, VkBuffer buffer, const VkAllocationCallbacks*) {
+VKAPI_ATTR void VKAPI_CALL DestroyBuffer(VkDevice device, VkBuffer buffer, const VkAllocationCallbacks*) {
+  if (const auto* object = from_nullable<Buffer>(buffer)) {
+    leave_address(from_handle<Device>(device), object);
+    report_binding(from_handle<Device>(device), ref(*object), object->data, object->size,
+                   VK_DEVICE_ADDRESS_BINDING_TYPE_UNBIND_EXT);
+  }
   destroy_handle<Buffer>(buffer);
 }
 
@@ -52,11 +58,13 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateBufferView(VkDevice device, const VkBufferV
   object->view.data = buffer.data ? buffer.data + info->offset : nullptr;
   object->view.count = object->view.data ? buffer.resolve_range(info->offset, info->range) / format.block_bytes : 0;
   object->view.format = &format;
+  enter_address(from_handle<Device>(device), &object->view, sizeof object->view, *object);
   *view = to_handle(object);
   return VK_SUCCESS;
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyBufferView(VkDevice, VkBufferView view, const VkAllocationCallbacks*) {
+VKAPI_ATTR void VKAPI_CALL DestroyBufferView(VkDevice device, VkBufferView view, const VkAllocationCallbacks*) {
+  leave_address(from_handle<Device>(device), from_nullable<BufferView>(view));
   destroy_handle<BufferView>(view);
 }
 

@@ -30,6 +30,8 @@ void stick_record_error(VkCommandBuffer command_buffer, VkResult error) {
   if (buffer.error == VK_SUCCESS) buffer.error = error;
 }
 
+void mark_command(VkCommandBuffer command_buffer, const char* name) { record(command_buffer, CmdMark{name}); }
+
 void CommandBuffer::reset() noexcept {
   for (DescriptorSet* set : pushed_sets) set->~DescriptorSet();
   pushed_sets.clear();

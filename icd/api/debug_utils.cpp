@@ -1,20 +1,21 @@
 // VK_EXT_debug_utils: messengers, names, tags and labels (Vulkan 1.3.239, Debugging).
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "base/log.h"
+#include "glass/session.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/object_notes.h"
+#include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
-namespace {
 
-/// Calls every messenger that listens for the severity and type. The lock is not held during callbacks, which may call
-/// Vulkan again.
-void send(Instance& instance, VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT types,
-          const VkDebugUtilsMessengerCallbackDataEXT& data) {
+// The lock is not held during callbacks, which may call Vulkan again.
+void send_message(Instance& instance, VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                  VkDebugUtilsMessageTypeFlagsEXT types, const VkDebugUtilsMessengerCallbackDataEXT& data) {
   std::array<VkDebugUtilsMessengerCreateInfoEXT, 16> listeners;
   std::size_t count = 0;
   {
@@ -29,15 +30,12 @@ void send(Instance& instance, VkDebugUtilsMessageSeverityFlagBitsEXT severity, V
   for (std::size_t i = 0; i < count; ++i) listeners[i].pfnUserCallback(severity, types, &data, listeners[i].pUserData);
 }
 
-/// The name that the application gave, or nothing.
 std::string name_of(Instance& instance, ObjectRef object) {
   if (!object.handle) return {};
   const std::lock_guard lock(instance.notes_mutex);
   const ObjectNotes* notes = object_of(object.type, object.handle).notes;
   return notes ? std::string(notes->name.begin(), notes->name.end()) : std::string();
 }
-
-}  // namespace
 
 void report(Instance& instance, VkDebugUtilsMessageSeverityFlagBitsEXT severity, ObjectRef object, const char* id,
             std::string_view message) noexcept {
@@ -54,11 +52,29 @@ void report(Instance& instance, VkDebugUtilsMessageSeverityFlagBitsEXT severity,
     data.pMessage = text.c_str();
     data.objectCount = object.handle ? 1 : 0;
     data.pObjects = &name;
-    send(instance, severity, VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT, data);
+    send_message(instance, severity, VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT, data);
   } catch (...) {
     // No memory for a message: the error code that follows has to do.
   }
 }
+
+namespace {
+
+bool keeps_labels() { return !glass::session().idle(); }
+
+template <class Change>
+void change_labels(VkQueue handle, Change change) {
+  if (!keeps_labels()) return;
+  Queue& queue = from_handle<Queue>(handle);
+  const std::lock_guard lock(queue.label_mutex);
+  change(queue.labels);
+}
+
+std::span<const char> copy_name(VkCommandBuffer buffer, const VkDebugUtilsLabelEXT& label) {
+  return copy_array(buffer, label.pLabelName, std::strlen(label.pLabelName));
+}
+
+}  // namespace
 
 namespace entry {
 
@@ -89,7 +105,7 @@ VKAPI_ATTR void VKAPI_CALL SubmitDebugUtilsMessageEXT(VkInstance instance,
                                                       VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                       VkDebugUtilsMessageTypeFlagsEXT types,
                                                       const VkDebugUtilsMessengerCallbackDataEXT* data) {
-  send(from_handle<Instance>(instance), severity, types, *data);
+  send_message(from_handle<Instance>(instance), severity, types, *data);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL SetDebugUtilsObjectNameEXT(VkDevice device, const VkDebugUtilsObjectNameInfoEXT* info) {
@@ -98,16 +114,30 @@ VKAPI_ATTR VkResult VKAPI_CALL SetDebugUtilsObjectNameEXT(VkDevice device, const
   return VK_SUCCESS;
 }
 
-// Tags and labels are accepted; tools above the driver keep them.
+// Tags are accepted; tools above the driver keep them.
 VKAPI_ATTR VkResult VKAPI_CALL SetDebugUtilsObjectTagEXT(VkDevice, const VkDebugUtilsObjectTagInfoEXT*) {
   return VK_SUCCESS;
 }
-VKAPI_ATTR void VKAPI_CALL QueueBeginDebugUtilsLabelEXT(VkQueue, const VkDebugUtilsLabelEXT*) {}
-VKAPI_ATTR void VKAPI_CALL QueueEndDebugUtilsLabelEXT(VkQueue) {}
-VKAPI_ATTR void VKAPI_CALL QueueInsertDebugUtilsLabelEXT(VkQueue, const VkDebugUtilsLabelEXT*) {}
-VKAPI_ATTR void VKAPI_CALL CmdBeginDebugUtilsLabelEXT(VkCommandBuffer, const VkDebugUtilsLabelEXT*) {}
-VKAPI_ATTR void VKAPI_CALL CmdEndDebugUtilsLabelEXT(VkCommandBuffer) {}
-VKAPI_ATTR void VKAPI_CALL CmdInsertDebugUtilsLabelEXT(VkCommandBuffer, const VkDebugUtilsLabelEXT*) {}
+
+// Labels are kept where tools are on.
+VKAPI_ATTR void VKAPI_CALL QueueBeginDebugUtilsLabelEXT(VkQueue queue, const VkDebugUtilsLabelEXT* label) {
+  change_labels(queue, [&](LabelStack& labels) { labels.begin(label->pLabelName); });
+}
+VKAPI_ATTR void VKAPI_CALL QueueEndDebugUtilsLabelEXT(VkQueue queue) {
+  change_labels(queue, [](LabelStack& labels) { labels.end(); });
+}
+VKAPI_ATTR void VKAPI_CALL QueueInsertDebugUtilsLabelEXT(VkQueue queue, const VkDebugUtilsLabelEXT* label) {
+  change_labels(queue, [&](LabelStack& labels) { labels.insert(label->pLabelName); });
+}
+VKAPI_ATTR void VKAPI_CALL CmdBeginDebugUtilsLabelEXT(VkCommandBuffer buffer, const VkDebugUtilsLabelEXT* label) {
+  if (keeps_labels()) record(buffer, CmdBeginLabel{copy_name(buffer, *label)});
+}
+VKAPI_ATTR void VKAPI_CALL CmdEndDebugUtilsLabelEXT(VkCommandBuffer buffer) {
+  if (keeps_labels()) record(buffer, CmdEndLabel{});
+}
+VKAPI_ATTR void VKAPI_CALL CmdInsertDebugUtilsLabelEXT(VkCommandBuffer buffer, const VkDebugUtilsLabelEXT* label) {
+  if (keeps_labels()) record(buffer, CmdInsertLabel{copy_name(buffer, *label)});
+}
 
 }  // namespace entry
 }  // namespace vitrine::icd

@@ -7,11 +7,10 @@
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/descriptors.h"
+#include "icd/properties.h"
 
 namespace vitrine::icd {
 namespace {
-
-constexpr std::uint64_t kMaxInlineBlockSize = 4096;  // manifest/limits, maxInlineUniformBlockSize
 
 /// Array elements lie `stride` bytes apart in the application's data.
 template <class Info>
@@ -91,8 +90,8 @@ VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSetWithTemplate(VkDevice device, VkDe
 
 VKAPI_ATTR void VKAPI_CALL GetDescriptorSetLayoutSupport(VkDevice, const VkDescriptorSetLayoutCreateInfo* info,
                                                          VkDescriptorSetLayoutSupport* support) {
-  // Descriptors are host memory: only the count of one set is bounded (maxPerSetDescriptors).
-  constexpr std::uint64_t kMaxDescriptors = 1u << 20;
+  // Descriptors are host memory: only the count of one set is bounded.
+  constexpr std::uint32_t kMaxDescriptors = kClaimedPhysicalDeviceMaintenance3Properties.maxPerSetDescriptors;
   std::uint64_t descriptors = 0;
   const VkDescriptorSetLayoutBinding* last = nullptr;
   for (std::uint32_t i = 0; i < info->bindingCount; ++i) {
@@ -111,7 +110,9 @@ VKAPI_ATTR void VKAPI_CALL GetDescriptorSetLayoutSupport(VkDevice, const VkDescr
   const std::uint64_t others = descriptors - last->descriptorCount;
   const std::uint64_t room = others < kMaxDescriptors ? kMaxDescriptors - others : 0;
   variable->maxVariableDescriptorCount =
-      static_cast<std::uint32_t>(is_inline_block(last->descriptorType) ? kMaxInlineBlockSize : room);
+      is_inline_block(last->descriptorType)
+          ? kClaimedPhysicalDeviceInlineUniformBlockProperties.maxInlineUniformBlockSize
+          : static_cast<std::uint32_t>(room);
 }
 
 }  // namespace entry

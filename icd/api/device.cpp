@@ -1,8 +1,10 @@
 // Devices and queues as objects (Vulkan 1.3.239, Devices and Queues: Device Creation, Queues).
 #include "icd/object/device.h"
 
+#include "glass/session.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
+#include "icd/object/address_book.h"
 
 namespace vitrine::icd {
 namespace {
@@ -41,6 +43,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physical_device, co
   Owned<Device> object(create_object<Device>(parent.instance.memory, allocator, parent));
   object->extensions = extensions;
   object->features = features;
+  if (!glass::session().idle()) object->addresses = std::make_shared<AddressBook>();
   if (info->queueCreateInfoCount) object->queue.flags = info->pQueueCreateInfos[0].flags;
   if (start_queue) start_queue(object->queue);
   *device = to_handle(object.release());
@@ -51,6 +54,7 @@ VKAPI_ATTR void VKAPI_CALL DestroyDevice(VkDevice device, const VkAllocationCall
   if (!device) return;
   if (stop_queue) stop_queue(from_handle<Device>(device).queue);
   destroy_handle<Device>(device);
+  glass::session().write();
 }
 
 VKAPI_ATTR void VKAPI_CALL GetDeviceQueue(VkDevice device, std::uint32_t family, std::uint32_t index, VkQueue* queue) {

@@ -5,12 +5,15 @@
 
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
+#include "icd/object/address_book.h"
 #include "icd/object/device.h"
+#include "icd/properties.h"
 
 namespace vitrine::icd {
 namespace {
 
-constexpr VkDeviceSize kMaxImageSize = VkDeviceSize{1} << 36;  // as maxResourceSize of image_format_properties
+// As maxResourceSize of image_format_properties.
+constexpr VkDeviceSize kMaxImageSize = kClaimedPhysicalDeviceMaintenance3Properties.maxMemoryAllocationSize;
 
 /// The first aspect of a view, as shaders and attachments see it; `second` is stencil where both are there.
 VkImageAspectFlagBits first_aspect(VkImageAspectFlags aspects) {
@@ -96,7 +99,8 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImage(VkDevice device, const VkImageCreateI
   return VK_SUCCESS;
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyImage(VkDevice, VkImage image, const VkAllocationCallbacks*) {
+VKAPI_ATTR void VKAPI_CALL DestroyImage(VkDevice device, VkImage image, const VkAllocationCallbacks*) {
+  if (const Image* object = from_nullable<Image>(image)) report_unbinding(from_handle<Device>(device), *object);
   destroy_handle<Image>(image);
 }
 
@@ -133,11 +137,13 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
   if ((aspects & kBoth) == kBoth) {
     object->stencil = view_of_aspect(image, VK_IMAGE_ASPECT_STENCIL_BIT, info->viewType, info->format, object->range);
   }
+  enter_address(from_handle<Device>(device), &object->view, sizeof object->view, *object);
   *view = to_handle(object.release());
   return VK_SUCCESS;
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyImageView(VkDevice, VkImageView view, const VkAllocationCallbacks*) {
+VKAPI_ATTR void VKAPI_CALL DestroyImageView(VkDevice device, VkImageView view, const VkAllocationCallbacks*) {
+  leave_address(from_handle<Device>(device), from_nullable<ImageView>(view));
   destroy_handle<ImageView>(view);
 }
 

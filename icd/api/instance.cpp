@@ -6,6 +6,7 @@
 
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
+#include "icd/properties.h"
 
 namespace vitrine::icd {
 namespace {
@@ -41,7 +42,7 @@ VkResult enable_instance_extensions(const VkInstanceCreateInfo& info, ExtensionS
 namespace entry {
 
 VKAPI_ATTR VkResult VKAPI_CALL EnumerateInstanceVersion(std::uint32_t* version) {
-  *version = claimed_properties().apiVersion;
+  *version = kClaimedPhysicalDeviceProperties.apiVersion;
   return VK_SUCCESS;
 }
 

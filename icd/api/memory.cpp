@@ -7,6 +7,7 @@
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
+#include "icd/object/address_book.h"
 #include "icd/object/image.h"
 #include "spirv/addresses.h"
 
@@ -40,6 +41,15 @@ void bind_image(Image& image, VkImageAspectFlagBits aspect, std::byte* memory) {
 }
 
 }  // namespace
+
+void report_unbinding(Device& device, const Image& image) {
+  const bool disjoint = image.desc().disjoint;
+  for (std::uint32_t i = 0; i < (disjoint ? image.layout.plane_count : 1u); ++i) {
+    report_binding(device, ref(image), image.plane_data[i],
+                   disjoint ? image.layout.plane[i].size : bytes_of(image.layout),
+                   VK_DEVICE_ADDRESS_BINDING_TYPE_UNBIND_EXT);
+  }
+}
 
 namespace entry {
 
@@ -169,7 +179,8 @@ VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory(VkDevice device, VkBuffer buffer
   return BindBufferMemory2(device, 1, &info);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory2(VkDevice, std::uint32_t count, const VkBindBufferMemoryInfo* infos) {
+VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory2(VkDevice device, std::uint32_t count,
+                                                 const VkBindBufferMemoryInfo* infos) {
   for (std::uint32_t i = 0; i < count; ++i) {
     Buffer& buffer = from_handle<Buffer>(infos[i].buffer);
     const DeviceMemory& memory = from_handle<DeviceMemory>(infos[i].memory);
@@ -177,6 +188,9 @@ VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory2(VkDevice, std::uint32_t count, 
       return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     }
     buffer.data = memory.data + infos[i].memoryOffset;
+    enter_address(from_handle<Device>(device), buffer.data, buffer.size, buffer);
+    report_binding(from_handle<Device>(device), ref(buffer), buffer.data, buffer.size,
+                   VK_DEVICE_ADDRESS_BINDING_TYPE_BIND_EXT);
   }
   return VK_SUCCESS;
 }
@@ -190,7 +204,8 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory(VkDevice device, VkImage image, V
   return BindImageMemory2(device, 1, &info);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice, std::uint32_t count, const VkBindImageMemoryInfo* infos) {
+VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice device, std::uint32_t count,
+                                                const VkBindImageMemoryInfo* infos) {
   for (std::uint32_t i = 0; i < count; ++i) {
     Image& image = from_handle<Image>(infos[i].image);
     if (const auto* swapchain = find_in_chain<VkBindImageMemorySwapchainInfoKHR>(infos[i].pNext);
@@ -205,7 +220,10 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice, std::uint32_t count, c
     if (infos[i].memoryOffset > memory.size || bytes_of(image.layout, aspect) > memory.size - infos[i].memoryOffset) {
       return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     }
-    bind_image(image, aspect, memory.data + infos[i].memoryOffset);
+    std::byte* const data = memory.data + infos[i].memoryOffset;
+    bind_image(image, aspect, data);
+    report_binding(from_handle<Device>(device), ref(image), data, bytes_of(image.layout, aspect),
+                   VK_DEVICE_ADDRESS_BINDING_TYPE_BIND_EXT);
   }
   return VK_SUCCESS;
 }

@@ -13,6 +13,7 @@
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/instance.h"
+#include "icd/properties.h"
 #include "icd/version.h"
 
 namespace vitrine::icd {
@@ -37,7 +38,7 @@ void write_uuid(std::uint8_t (&uuid)[VK_UUID_SIZE], const char (&tag)[9], std::u
 }
 
 VkPhysicalDeviceProperties make_properties() {
-  VkPhysicalDeviceProperties properties = claimed_properties();
+  VkPhysicalDeviceProperties properties = kClaimedPhysicalDeviceProperties;
   base::select_simd_target();  // before anything is computed
   properties.deviceType = device_type(properties.deviceType);
   write_uuid(properties.pipelineCacheUUID, "vitrCACH", properties.driverVersion);

@@ -3,7 +3,7 @@
 
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/object/device.h"
+#include "icd/object/address_book.h"
 #include "icd/object/image.h"
 #include "texel/sampler/plan.h"
 #include "texel/swizzle.h"
@@ -64,11 +64,13 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCre
   if (const auto* conversion = find_in_chain<VkSamplerYcbcrConversionInfo>(info->pNext)) {
     state.conversion = from_handle<SamplerYcbcrConversion>(conversion->conversion).state;
   }
+  enter_address(from_handle<Device>(device), &state, sizeof state, *object);
   *sampler = to_handle(object);
   return VK_SUCCESS;
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice, VkSampler sampler, const VkAllocationCallbacks*) {
+VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice device, VkSampler sampler, const VkAllocationCallbacks*) {
+  leave_address(from_handle<Device>(device), from_nullable<Sampler>(sampler));
   destroy_handle<Sampler>(sampler);
 }
 

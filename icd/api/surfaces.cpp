@@ -4,6 +4,7 @@
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/instance.h"
+#include "icd/properties.h"
 #include "icd/wsi/surface.h"
 
 namespace vitrine::icd {
@@ -42,7 +43,7 @@ VkResult surface_capabilities(Surface& surface, VkSurfaceCapabilitiesKHR& capabi
   capabilities.currentExtent = extent;
   capabilities.minImageExtent = capabilities.maxImageExtent = extent;
   if (extent.width == kSwapchainDecides) {
-    const std::uint32_t largest = claimed_properties().limits.maxImageDimension2D;
+    const std::uint32_t largest = kClaimedPhysicalDeviceProperties.limits.maxImageDimension2D;
     capabilities.minImageExtent = {1, 1};
     capabilities.maxImageExtent = {largest, largest};
   }

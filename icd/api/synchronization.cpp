@@ -75,9 +75,12 @@ bool wait_events(Device& device, const VkEvent* events, std::uint32_t count) {
   return !device.lost;
 }
 
-void lose_device(Device& device, const char* reason) {
-  report_error(device, ref(device), "device-lost", reason);
-  change_state(device, [&] { device.lost = true; });
+void lose_device(Device& device, DeviceLoss loss) noexcept {
+  report_error(device, ref(device), "device-lost", loss.reason);
+  change_state(device, [&] {
+    device.lost = true;
+    device.loss = std::move(loss);
+  });
 }
 
 namespace entry {

@@ -1,6 +1,7 @@
 // The API edge: the one wrapper through which applications reach every command. No exception passes it.
 #pragma once
 
+#include <cstddef>
 #include <new>
 #include <type_traits>
 
@@ -12,6 +13,9 @@ namespace vitrine::icd {
 /// Makes the first error of a recording stick (design.md section 6); vkEndCommandBuffer returns it. Defined with the
 /// command buffer.
 __attribute__((weak)) void stick_record_error(VkCommandBuffer command_buffer, VkResult error);
+
+/// Records that the application called a command, for observers (icd/replay/observed_replay.h).
+void mark_command(VkCommandBuffer command_buffer, const char* name);
 
 namespace detail {
 
@@ -49,6 +53,27 @@ struct Edge<Function> {
       detail::report_void_failure(error, args...);
       if constexpr (!std::is_void_v<R>) return R{};
     }
+  }
+};
+
+/// The name of a command as a template argument.
+template <std::size_t N>
+struct CommandName {
+  char text[N];
+  consteval CommandName(const char (&name)[N]) {  // NOLINT: implicit, a literal is the argument
+    for (std::size_t i = 0; i < N; ++i) text[i] = name[i];
+  }
+};
+
+/// A command of command buffers where tools are on: its name is recorded before it.
+template <auto Function, CommandName Name>
+struct Marked;
+
+template <class R, class... Args, R(VKAPI_PTR* Function)(VkCommandBuffer, Args...), CommandName Name>
+struct Marked<Function, Name> {
+  static VKAPI_ATTR R VKAPI_CALL call(VkCommandBuffer command_buffer, Args... args) {
+    mark_command(command_buffer, Name.text);
+    return Function(command_buffer, args...);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "glass/session.h"
 #include "icd/entry_points.h"
 #include "icd/object/device.h"
 #include "icd/registry/registry.h"
@@ -17,7 +18,10 @@ namespace {
 // Interface 7: the loader may ask vk_icdGetInstanceProcAddr for the vk_icd functions too.
 constexpr std::uint32_t kLoaderInterface = 7;
 
-PFN_vkVoidFunction thunk_of(const EntryPoint& entry) { return entry.implementation ? entry.thunk : nullptr; }
+PFN_vkVoidFunction thunk_of(const EntryPoint& entry) {
+  if (!entry.implementation) return nullptr;
+  return glass::session().idle() ? entry.thunk : entry.observed;
+}
 
 bool is_always_global(const char* name) {
   static constexpr const char* kNames[] = {"vkEnumerateInstanceVersion", "vkEnumerateInstanceExtensionProperties",

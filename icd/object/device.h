@@ -5,10 +5,12 @@
 #include <condition_variable>
 
 #include "icd/object/instance.h"
+#include "icd/object/labels.h"
 #include "icd/object/shader_table.h"
 
 namespace vitrine::icd {
 
+class AddressBook;
 struct Device;
 struct QueueWorker;
 struct ReplayState;
@@ -21,6 +23,20 @@ struct Queue : DispatchableObject<VkQueue, VK_OBJECT_TYPE_QUEUE> {
   Device& device;
   VkDeviceQueueCreateFlags flags = 0;
   QueueWorker* worker = nullptr;
+  std::mutex label_mutex;
+  LabelStack labels;  ///< open now; guarded by label_mutex
+};
+
+/// Why a device was lost (VK_EXT_device_fault).
+struct DeviceLoss {
+  /// One of the calls that lead to the place of the loss, innermost first.
+  struct Call {
+    std::string text;        ///< "in function blur at a.comp:12:3"
+    std::uint64_t line = 0;  ///< 0: unknown
+  };
+  std::string reason;
+  std::uint32_t spirv_id = 0;  ///< 0: unknown
+  std::vector<Call> calls;
 };
 
 struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {
@@ -35,10 +51,13 @@ struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {
   std::atomic<std::uint64_t> next_private_data_slot = 1;
   std::shared_ptr<ReplayState> replay;  ///< made with the first command pool; used by whoever runs a batch of the queue
 
+  std::shared_ptr<AddressBook> addresses;  ///< null: nobody observes
+
   /// Guards the states of fences, semaphores and events, and `lost` (icd/object/sync.h).
   std::mutex sync_mutex;
   std::condition_variable sync_changed;
   bool lost = false;
+  DeviceLoss loss;  ///< constant once `lost` is set
 };
 
 /// Defined with the queue (weak until then): called at the end of vkCreateDevice and the start of vkDestroyDevice.

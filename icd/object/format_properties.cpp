@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "icd/edge/util.h"
+#include "icd/properties.h"
 #include "icd/registry/registry.h"
 #include "texel/format.h"
 
@@ -51,7 +52,7 @@ bool flags_supported(const VkPhysicalDeviceImageFormatInfo2& info, VkFormatFeatu
 }
 
 VkSampleCountFlags sample_counts(const VkPhysicalDeviceImageFormatInfo2& info, VkFormatFeatureFlags features) {
-  const VkPhysicalDeviceLimits& limits = claimed_properties().limits;
+  const VkPhysicalDeviceLimits& limits = kClaimedPhysicalDeviceProperties.limits;
   const bool attachment =
       features & (VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT);
   if (info.type != VK_IMAGE_TYPE_2D || info.tiling != VK_IMAGE_TILING_OPTIMAL || !attachment ||
@@ -65,7 +66,7 @@ VkSampleCountFlags sample_counts(const VkPhysicalDeviceImageFormatInfo2& info, V
 }
 
 VkExtent3D max_extent(VkImageType type, VkImageCreateFlags flags) {
-  const VkPhysicalDeviceLimits& limits = claimed_properties().limits;
+  const VkPhysicalDeviceLimits& limits = kClaimedPhysicalDeviceProperties.limits;
   if (type == VK_IMAGE_TYPE_1D) return {limits.maxImageDimension1D, 1, 1};
   if (flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT)
     return {limits.maxImageDimensionCube, limits.maxImageDimensionCube, 1};
@@ -117,12 +118,13 @@ VkResult image_format_properties(const VkPhysicalDeviceImageFormatInfo2& info, V
   if (conversion && (info.type != VK_IMAGE_TYPE_2D || (info.flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT))) {
     return VK_ERROR_FORMAT_NOT_SUPPORTED;
   }
-  const VkPhysicalDeviceLimits& limits = claimed_properties().limits;
+  const VkPhysicalDeviceLimits& limits = kClaimedPhysicalDeviceProperties.limits;
   out->maxExtent = max_extent(info.type, info.flags);
   out->maxMipLevels = conversion ? 1 : static_cast<std::uint32_t>(std::bit_width(out->maxExtent.width));
   out->maxArrayLayers = info.type == VK_IMAGE_TYPE_3D ? 1 : limits.maxImageArrayLayers;
   out->sampleCounts = conversion ? VkSampleCountFlags{VK_SAMPLE_COUNT_1_BIT} : sample_counts(info, features);
-  out->maxResourceSize = VkDeviceSize{1} << 36;  // maxMemoryAllocationSize: an image fills one allocation at most
+  // An image fills one allocation at most.
+  out->maxResourceSize = kClaimedPhysicalDeviceMaintenance3Properties.maxMemoryAllocationSize;
   return VK_SUCCESS;
 }
 

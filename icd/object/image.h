@@ -7,6 +7,8 @@
 
 namespace vitrine::icd {
 
+struct Device;
+
 struct Image : Object<VkImage, VK_OBJECT_TYPE_IMAGE> {
   using Object::Object;
 
@@ -59,6 +61,10 @@ VkImageSubresourceRange resolve_range(const Image& image, const VkImageSubresour
 /// A view of one aspect of an image: what transfers work on. Levels and layers as in `range` (resolved).
 texel::ImageView view_of_aspect(const Image& image, VkImageAspectFlagBits aspect, VkImageViewType type, VkFormat format,
                                 const VkImageSubresourceRange& range, const VkComponentMapping& components = {});
+
+/// Tells messengers that the image gives up its addresses (icd/edge/diagnostics.h: report_binding). Defined with
+/// memory.
+void report_unbinding(Device& device, const Image& image);
 
 /// Memory of a swapchain's image, for vkBindImageMemory2 with VkBindImageMemorySwapchainInfoKHR; null if there is no
 /// such image. Defined with the swapchain.

@@ -8,9 +8,10 @@
 #include <system_error>
 #include <thread>
 
+#include "glass/session.h"
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
-#include "icd/replay/replay.h"
+#include "icd/replay/observed_replay.h"
 
 namespace vitrine::icd {
 
@@ -23,6 +24,7 @@ struct Batch {
   Vector<VkCommandBuffer> command_buffers;
   Vector<QueueCall> calls;
   Vector<SemaphoreOp> signals;
+  std::vector<std::string> labels;  ///< of the queue when it was submitted; kept where tools are on
   VkFence fence = VK_NULL_HANDLE;
   Batch* next = nullptr;
 };
@@ -44,7 +46,8 @@ namespace {
 /// Work below this many estimated nanoseconds stays on the submitting thread.
 constexpr std::uint64_t kInlineCost = 150'000;
 
-Batch* make_batch(const HostMemory& memory, const BatchInfo& info) {
+Batch* make_batch(Queue& queue, const BatchInfo& info) {
+  const HostMemory& memory = queue.device.memory;
   void* storage = memory.allocate(sizeof(Batch), alignof(Batch), VK_SYSTEM_ALLOCATION_SCOPE_DEVICE);
   Batch* batch = ::new (storage) Batch(memory);
   try {
@@ -53,6 +56,10 @@ Batch* make_batch(const HostMemory& memory, const BatchInfo& info) {
     batch->calls.assign(info.calls.begin(), info.calls.end());
     batch->signals.assign(info.signals.begin(), info.signals.end());
     batch->fence = info.fence;
+    if (!glass::session().idle()) {
+      const std::lock_guard lock(queue.label_mutex);
+      batch->labels = queue.labels.open();
+    }
   } catch (...) {
     batch->~Batch();
     memory.free(storage);
@@ -91,20 +98,24 @@ class BatchList {
   Batch* last_ = nullptr;
 };
 
+/// False if the device was lost.
+bool replay_all(Device& device, Batch& batch) noexcept {
+  begin_observed_submission(device, std::move(batch.labels));
+  const bool done = std::all_of(batch.command_buffers.begin(), batch.command_buffers.end(), [&](VkCommandBuffer b) {
+    return replay(device, from_handle<CommandBuffer>(b)) == VK_SUCCESS;
+  });
+  end_observed_submission(device);
+  return done;
+}
+
 /// Executes one batch on the calling thread. After a device loss only the fences and swapchains are still served, so
 /// that nobody waits for ever.
-void execute(Device& device, const Batch& batch) noexcept {
+void execute(Device& device, Batch& batch) noexcept {
   bool lost = false;
   for (const SemaphoreOp& op : batch.waits) {
     lost |= !wait_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
   }
-  for (const VkCommandBuffer buffer : batch.command_buffers) {
-    if (lost) break;
-    if (replay(device, from_handle<CommandBuffer>(buffer)) != VK_SUCCESS) {
-      lose_device(device, "a command buffer could not be executed");
-      lost = true;
-    }
-  }
+  if (!lost && !batch.command_buffers.empty()) lost = !replay_all(device, batch);
   for (const QueueCall& call : batch.calls) call.run(call.object, call.argument);
   if (lost) return;
   for (const SemaphoreOp& op : batch.signals) {
@@ -203,7 +214,7 @@ VkResult submit(Queue& queue, std::span<const BatchInfo> batches) {
   if (is_lost(queue.device)) return VK_ERROR_DEVICE_LOST;
   QueueWorker& worker = *queue.worker;
   BatchList list;
-  for (const BatchInfo& info : batches) list.append(make_batch(queue.device.memory, info));
+  for (const BatchInfo& info : batches) list.append(make_batch(queue, info));
   const bool small = std::all_of(batches.begin(), batches.end(),
                                  [&](const BatchInfo& info) { return fits_inline(queue.device, info); });
   std::unique_lock lock(worker.mutex);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/lanes.h"
+#include "glass/session.h"
 #include "icd/edge/util.h"
 
 namespace vitrine::icd {
@@ -88,6 +89,8 @@ spirv::CompileOptions make_options(const StageRequest& request) {
   options.live_color_outputs = request.live_color_outputs;
   options.subgroup_size = subgroup_size(stage);
   options.sets = set_layout_infos(*request.layout);
+  if (glass::Session& session = glass::session(); !session.idle())
+    options.observer = session.observe({stage.stage, stage.pName, words_of(stage)});
   if (const VkSpecializationInfo* s = stage.pSpecializationInfo) {
     for (std::uint32_t i = 0; i < s->mapEntryCount; ++i) {
       const VkSpecializationMapEntry& entry = s->pMapEntries[i];

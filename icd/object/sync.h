@@ -38,6 +38,7 @@ bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value);
 bool wait_events(Device& device, const VkEvent* events, std::uint32_t count);
 
 /// Marks the device lost and wakes all waiters; every later wait or submission returns VK_ERROR_DEVICE_LOST.
-void lose_device(Device& device, const char* reason);
+/// The first loss counts.
+void lose_device(Device& device, DeviceLoss loss) noexcept;
 
 }  // namespace vitrine::icd

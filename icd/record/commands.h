@@ -300,6 +300,20 @@ struct CmdCopyQueryPoolResults {
   VkQueryResultFlags flags;
 };
 
+// ---- what observers are told; a command buffer has none where no tool is on
+
+/// The application called a command: what follows, to the next mark, is what it recorded.
+struct CmdMark {
+  const char* name;  ///< "vkCmdDraw", static
+};
+struct CmdBeginLabel {
+  std::span<const char> name;
+};
+struct CmdEndLabel {};
+struct CmdInsertLabel {
+  std::span<const char> name;
+};
+
 /// Every recorded command, numbered.
 enum class CommandType : std::uint32_t {
 #define VITRINE_COMMAND(name) k##name,

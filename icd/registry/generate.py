@@ -4,8 +4,8 @@
 usage: generate.py VK_XML MANIFEST_FOLDER OUTPUT_FOLDER
 
 Output: enums.h (Extension, Feature), structure_types.h (sType of every structure), entry_points.h (declaration of every
-command), tables.cpp (entry points, extensions, feature and property structures as constexpr tables), limit_rules.h (what
-the tests ask of the limits).
+command), properties.h (every property structure with its claimed values), tables.cpp (entry points, extensions, feature
+and property structures as constexpr tables), limit_rules.h (what the tests ask of the limits).
 """
 import pathlib
 import re
@@ -162,9 +162,12 @@ namespace vitrine::icd::entry {{
             gates += rows
             target = command.implementation.removeprefix("vk")
             scope = "k" + command.scope.title().replace("_", "")
-            commands.append(f'    {{"{name}", Scope::{scope}, {first}, {len(rows)}, '
-                            f'reinterpret_cast<VoidFunction>(&entry::{target}), '
-                            f'reinterpret_cast<VoidFunction>(&Edge<&entry::{target}>::call)}},\n')
+            thunk = observed = f"&Edge<&entry::{target}>::call"
+            # Debug labels describe the commands between them, and are none.
+            if name.startswith("vkCmd") and "DebugUtilsLabel" not in name:
+                observed = f'&Edge<&Marked<&entry::{target}, "{name}">::call>::call'
+            functions = ", ".join(f"reinterpret_cast<VoidFunction>({f})" for f in (f"&entry::{target}", thunk, observed))
+            commands.append(f'    {{"{name}", Scope::{scope}, {first}, {len(rows)}, {functions}}},\n')
         return gates, commands
 
     def _extension_table(self):
@@ -215,16 +218,31 @@ namespace vitrine::icd::entry {{
         return ", ".join(parts)
 
     def _property_tables(self):
+        """Constants of properties.h, and rows of the table of their addresses."""
         constants, structs = [], []
         for struct in self.registry.structs.values():
             is_core = struct.name == "VkPhysicalDeviceProperties"
             if not is_core and "VkPhysicalDeviceProperties2" not in struct.extends or not self.available(struct):
                 continue
             start = "" if is_core else f".sType = {struct.stype}, .pNext = nullptr, "
-            constants.append(f"constexpr {struct.name} k{struct.name} = {{{start}{self._initializer(struct)}}};\n")
+            name = "kClaimed" + struct.name.removeprefix("Vk")
+            constants.append(f"inline constexpr {struct.name} {name} = {{{start}{self._initializer(struct)}}};\n")
             if not is_core:
-                structs.append(f"    {{{struct.stype}, sizeof({struct.name}), &k{struct.name}}},\n")
+                structs.append(f"    {{{struct.stype}, sizeof({struct.name}), &{name}}},\n")
         return constants, structs
+
+    def properties(self):
+        return f"""#pragma once
+
+#include "icd/edge/vulkan_api.h"
+#include "icd/version.h"
+
+namespace vitrine::icd {{
+
+// Every structure of properties that is claimed; name, type and UUIDs are filled in by the physical device.
+{"".join(self._property_tables()[0])}
+}}  // namespace vitrine::icd
+"""
 
     def limit_rules(self):
         """For the tests: one row per number of VkPhysicalDeviceLimits: value, required minimum, direction."""
@@ -278,14 +296,14 @@ inline constexpr LimitRule kLimitRules[] = {{
     def tables(self):
         gates, commands = self._command_tables()
         feature_members, feature_structs = self._feature_tables()
-        constants, property_structs = self._property_tables()
+        property_structs = self._property_tables()[1]
         claimed_features = ["Feature::" + n for n in self.feature_names if n in self.claims.features]
         return f"""#include <cstddef>
 
 #include "icd/edge/edge.h"
 #include "icd/entry_points.h"
+#include "icd/properties.h"
 #include "icd/registry/registry.h"
-#include "icd/version.h"
 
 namespace vitrine::icd {{
 namespace {{
@@ -308,7 +326,6 @@ constexpr FeatureMember kFeatureMembers[] = {{
 constexpr FeatureStruct kFeatureStructs[] = {{
 {"".join(feature_structs)}}};
 
-{"".join(constants)}
 constexpr PropertyStruct kPropertyStructs[] = {{
 {"".join(property_structs)}}};
 
@@ -327,7 +344,6 @@ std::span<const FeatureMember> feature_members(const FeatureStruct& structure) {
 }}
 std::span<const PropertyStruct> property_structs() {{ return kPropertyStructs; }}
 std::span<const FormatClaim> format_claims() {{ return kFormatClaims; }}
-const VkPhysicalDeviceProperties& claimed_properties() {{ return kVkPhysicalDeviceProperties; }}
 
 }}  // namespace vitrine::icd
 """
@@ -340,6 +356,7 @@ def main():
     write(output / "enums.h", generator.enums())
     write(output / "structure_types.h", generator.structure_types())
     write(output / "entry_points.h", generator.entry_points())
+    write(output / "properties.h", generator.properties())
     write(output / "tables.cpp", generator.tables())
     write(output / "limit_rules.h", generator.limit_rules())
 

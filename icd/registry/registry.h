@@ -46,6 +46,7 @@ struct EntryPoint {
   std::uint16_t gate_count;
   VoidFunction implementation;  ///< null: claimed, but no source file defines it
   VoidFunction thunk;           ///< what the application gets: the implementation behind the API edge
+  VoidFunction observed;        ///< what it gets where tools are on: recorded commands leave their names, too
 };
 
 struct ExtensionInfo {
@@ -92,8 +93,6 @@ std::span<const FeatureStruct> feature_structs();
 std::span<const FeatureMember> feature_members(const FeatureStruct& structure);
 std::span<const PropertyStruct> property_structs();
 std::span<const FormatClaim> format_claims();
-/// VkPhysicalDeviceProperties as claimed; name, type and UUIDs are filled in by the physical device.
-const VkPhysicalDeviceProperties& claimed_properties();
 
 /// Null when the name is unknown or its gate is not claimed.
 const EntryPoint* find_entry_point(std::string_view name);

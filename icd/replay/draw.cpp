@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "icd/object/memory.h"
-#include "icd/replay/replay.h"
+#include "icd/replay/observed_replay.h"
 
 namespace vitrine::icd {
 namespace {
@@ -53,6 +53,10 @@ bool prepare_draw(ReplayState& state) {
   if (state.dirty & (kDirtyDescriptors | kDirtyPushConstants)) draw.fragment_resources = draw.vertex_resources;
   if (state.dirty & kDirtyVertexBuffers) resolve_vertex_buffers(state);
   state.dirty = 0;
+  if (state.observed) {
+    draw.vertex_resources.command = observe_command(state, *pipeline, draw.vertex_resources);
+    draw.fragment_resources.command = draw.vertex_resources.command;
+  }
   draw.queries = state.counters;
   return true;
 }
@@ -99,16 +103,14 @@ void dispatch(ReplayState& state, const std::uint32_t base[3], const std::uint32
   spirv::ResourceTable resources;
   fill_resources(state, state.compute, resources);
   resources.push_constants = state.push_constants.data();
+  if (state.observed) resources.command = observe_command(state, *pipeline, resources);
   const spirv::Shader& shader = *pipeline->compute->shader;
   const spirv::BoundShader bound(shader, resources, state.fault);
   spirv::dispatch(bound, base, groups);
   const std::uint32_t* local = shader.interface().local_size;
   state.counters.count(raster::Statistic::kComputeInvocations,
                        std::uint64_t{local[0]} * local[1] * local[2] * groups[0] * groups[1] * groups[2]);
-  if (!state.pass) {
-    state.arena.reset();
-    state.dirty = kDirtyAll;
-  }
+  if (!state.pass) reset_arena(state);
 }
 
 }  // namespace

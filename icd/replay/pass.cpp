@@ -3,6 +3,7 @@
 // memory.
 #include <algorithm>
 
+#include "icd/replay/observed_replay.h"
 #include "icd/replay/scope.h"
 #include "texel/transfer.h"
 
@@ -138,10 +139,15 @@ void clear_rect(ReplayState& state, const VkClearAttachment& clear, const VkClea
 
 }  // namespace
 
+void reset_arena(ReplayState& state) {
+  state.arena.reset();
+  if (state.observed) state.observed->commands.clear();
+  state.dirty = kDirtyAll;
+}
+
 void flush_pass(ReplayState& state) {
   if (state.pass) state.pass->flush();
-  state.arena.reset();
-  state.dirty = kDirtyAll;
+  reset_arena(state);
   publish_queries(state);
 }
 

@@ -1,8 +1,12 @@
 // The loop over recorded commands.
 #include "icd/replay/replay.h"
 
+#include "glass/place.h"
+#include "glass/session.h"
+#include "icd/edge/diagnostics.h"
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
+#include "icd/replay/observed_replay.h"
 
 namespace vitrine::icd {
 namespace {
@@ -34,6 +38,28 @@ void forget_bindings(ReplayState& state) {
   state.dirty = kDirtyAll;
 }
 
+/// The calls that lead to a place in a shader, innermost first.
+std::vector<DeviceLoss::Call> calls_to(const spirv::SourceInfo* sources, std::uint32_t place) {
+  std::vector<DeviceLoss::Call> calls;
+  for (const glass::Frame& frame : glass::frames_of(sources, place)) {
+    std::string text = calls.empty() ? "in" : "called from";
+    if (!frame.function.empty()) text.append(" function ").append(frame.function);
+    if (const std::string where = glass::to_text(frame); !where.empty()) text.append(" at ").append(where);
+    calls.push_back({std::move(text), frame.line});
+  }
+  return calls;
+}
+
+/// What the application is told: of a shader that did not end, or the other reason.
+DeviceLoss loss_of(const spirv::Fault& fault, const char* reason) noexcept {
+  try {
+    if (!fault.raised.load()) return {reason, 0, {}};
+    return {fault.message, fault.spirv_id, calls_to(fault.sources.get(), fault.place)};
+  } catch (const std::bad_alloc&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
@@ -48,6 +74,7 @@ VkResult replay(Device& device, const CommandBuffer& buffer) noexcept {
   const char* reason = nullptr;
   try {
     forget_bindings(state);
+    if (state.observed) state.observed->command_buffer = ref(buffer);
     replay_commands(state, buffer);
     flush_pass(state);
   } catch (const std::bad_alloc&) {
@@ -57,16 +84,16 @@ VkResult replay(Device& device, const CommandBuffer& buffer) noexcept {
   }
   state.pass.reset();
   state.instance = nullptr;
-  if (state.fault.raised.load()) reason = state.fault.message.c_str();
-  if (!reason) return VK_SUCCESS;
-  lose_device(device, reason);
+  if (!reason && !state.fault.raised.load()) return VK_SUCCESS;
+  lose_device(device, loss_of(state.fault, reason));
   return VK_ERROR_DEVICE_LOST;
 }
 
 void prepare_replay(Device& device) {
   const std::lock_guard lock(device.sync_mutex);
-  if (!device.replay)
-    device.replay = std::allocate_shared<ReplayState>(HostAllocator<ReplayState>(device.memory), device);
+  if (device.replay) return;
+  device.replay = std::allocate_shared<ReplayState>(HostAllocator<ReplayState>(device.memory), device);
+  if (!glass::session().idle()) device.replay->observed = std::make_shared<ObservedReplay>();
 }
 
 void execute(ReplayState& state, const CmdExecuteCommands& command) {

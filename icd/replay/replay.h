@@ -8,17 +8,22 @@
 #include "icd/object/pipeline.h"
 #include "icd/object/query_pool.h"
 #include "icd/object/render_pass.h"
+#include "icd/properties.h"
 #include "icd/record/commands.h"
 #include "icd/replay/transient.h"
 #include "raster/pass.h"
 
 namespace vitrine::icd {
 
+inline constexpr std::uint32_t kMaxDynamicBuffers =
+    kClaimedPhysicalDeviceProperties.limits.maxDescriptorSetUniformBuffersDynamic +
+    kClaimedPhysicalDeviceProperties.limits.maxDescriptorSetStorageBuffersDynamic;
+
 /// What is bound at one bind point.
 struct BindPoint {
   const Pipeline* pipeline = nullptr;
   std::array<const DescriptorSet*, spirv::kMaxSets> sets{};
-  std::array<spirv::Descriptor, 512> dynamic{};  ///< the limits of dynamic buffers (manifest/limits), offsets applied
+  std::array<spirv::Descriptor, kMaxDynamicBuffers> dynamic{};  ///< offsets applied
 };
 
 /// What is readable of a bound buffer, from the bound offset on.
@@ -66,6 +71,8 @@ struct PendingQuery {
   bool timestamp;  ///< gets its value then: the work before it is done when the pass is flushed
 };
 
+struct ObservedReplay;  // icd/replay/observed_replay.h
+
 inline constexpr std::size_t kReplayBlockBytes = 256 * 1024;
 /// Memory of values that draws point to until their pass is flushed.
 using ReplayArena = base::Arena<base::ArenaShape{16, 0, kReplayBlockBytes, kReplayBlockBytes}, HostBlocks>;
@@ -81,6 +88,7 @@ struct ReplayState {
   Device& device;
   ReplayArena arena;
   spirv::Fault fault;
+  std::shared_ptr<ObservedReplay> observed;  ///< null: nobody observes
 
   BindPoint graphics, compute;
   alignas(16) std::array<std::byte, spirv::kMaxPushConstantBytes> push_constants{};
@@ -117,6 +125,9 @@ void replay_commands(ReplayState& state, const CommandBuffer& buffer);
 /// Ends what the current pass has put off: attachments are in memory, counters of ended queries final, and nothing
 /// points into the arena.
 void flush_pass(ReplayState& state);
+
+/// Nothing points into the arena any more: its memory can be used again.
+void reset_arena(ReplayState& state);
 
 /// Makes ended queries readable.
 void publish_queries(ReplayState& state);

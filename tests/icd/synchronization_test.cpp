@@ -48,7 +48,7 @@ TEST_F(Synchronization, LosingTheDeviceEndsEveryWait) {
   const VkFenceCreateInfo info = make_struct<VkFenceCreateInfo>();
   VkFence fence;
   ASSERT_EQ(VK_GET(instance, CreateFence)(device, &info, nullptr, &fence), VK_SUCCESS);
-  std::thread loser([&] { lose_device(from_handle<icd::Device>(device), "a test"); });
+  std::thread loser([&] { lose_device(from_handle<icd::Device>(device), {"a test", 0, {}}); });
   EXPECT_EQ(VK_GET(instance, WaitForFences)(device, 1, &fence, VK_TRUE, ~std::uint64_t{0}), VK_ERROR_DEVICE_LOST);
   loser.join();
   VK_GET(instance, DestroyFence)(device, fence, nullptr);
@@ -158,7 +158,7 @@ TEST_F(TimelineSemaphore, TwoThreadsPassABatonThroughTheQueue) {
 TEST_F(TimelineSemaphore, LosingTheDeviceEndsWaits) {
   const VkSemaphore a = make(0), b = make(0);
   ASSERT_EQ(submit(a, 1, b, 1), VK_SUCCESS);
-  std::thread loser([&] { lose_device(from_handle<icd::Device>(device), "a test"); });
+  std::thread loser([&] { lose_device(from_handle<icd::Device>(device), {"a test", 0, {}}); });
   EXPECT_EQ(wait({b}, {1}, kForever), VK_ERROR_DEVICE_LOST);
   loser.join();
 }

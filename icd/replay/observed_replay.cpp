@@ -1,0 +1,115 @@
+// Keeping track of the application's commands for observers.
+#include "icd/replay/observed_replay.h"
+
+#include <algorithm>
+
+#include "glass/session.h"
+#include "icd/record/command_buffer.h"
+
+namespace vitrine::icd {
+namespace {
+
+/// A binding of a pipeline layout and an element of it.
+struct LayoutPlace {
+  std::uint32_t set = 0;
+  const SetBinding* binding = nullptr;  ///< null: the layout has no such slot
+  std::uint32_t element = 0;
+};
+
+std::uint32_t slots_of(const SetBinding& binding) { return is_inline_block(binding.type) ? 1 : binding.count; }
+
+LayoutPlace find_in_set(const SetShape& shape, std::uint32_t set, std::uint32_t slot, bool dynamic) {
+  for (const SetBinding& b : shape.bindings) {
+    const bool here = is_dynamic(b.type) == dynamic && slot >= b.first_slot && slot - b.first_slot < slots_of(b);
+    if (here) return {set, &b, slot - b.first_slot};
+  }
+  return {};
+}
+
+/// What lies at a slot of a ResourceTable: dynamic buffers of all sets are a set of their own there.
+LayoutPlace find_slot(const PipelineLayoutShape& layout, std::uint32_t set, std::uint32_t slot) {
+  if (set != spirv::kDynamicSet) {
+    if (set >= layout.sets.size() || !layout.sets[set]) return {};
+    return find_in_set(*layout.sets[set], set, slot, false);
+  }
+  for (std::uint32_t s = 0; s < layout.sets.size(); ++s) {
+    if (!layout.sets[s] || slot < layout.first_dynamic[s]) continue;
+    const LayoutPlace found = find_in_set(*layout.sets[s], s, slot - layout.first_dynamic[s], true);
+    if (found.binding) return found;
+  }
+  return {};
+}
+
+ObservedReplay* observed_of(const Device& device) { return device.replay ? device.replay->observed.get() : nullptr; }
+
+}  // namespace
+
+ReplayedCommand::ReplayedCommand(const Device& device, const Pipeline& bound, const spirv::ResourceTable& resources)
+    : device_(device), layout_(bound.layout), resources_(resources) {}
+
+std::string ReplayedCommand::resource(std::uint32_t set, std::uint32_t slot) const {
+  const LayoutPlace place = find_slot(*layout_, set, slot);
+  if (!place.binding) return {};
+  const bool there = resources_.set[set] && slot < resources_.set_size[set];
+  return describe_descriptor(device_, place.set, *place.binding, place.element,
+                             there ? &resources_.set[set][slot] : nullptr);
+}
+
+const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline& pipeline,
+                                              const spirv::ResourceTable& resources) {
+  ObservedReplay& observed = *state.observed;
+  // The draws of an indirect command, say, share what is bound.
+  if (!observed.commands.empty() && observed.commands.back()->command == observed.command)
+    return observed.commands.back().get();
+  auto made = std::make_unique<ReplayedCommand>(state.device, pipeline, resources);
+  made->submission = observed.submission;
+  made->command = observed.command;
+  made->name = observed.name;
+  made->labels = observed.queue_labels;
+  made->labels.insert(made->labels.end(), observed.labels.open().begin(), observed.labels.open().end());
+  made->pipeline = name_of(state.device.physical_device.instance, ref(pipeline));
+  observed.commands.push_back(std::move(made));
+  observed.objects.push_back({observed.command, observed.command_buffer, ref(pipeline)});
+  return observed.commands.back().get();
+}
+
+void begin_observed_submission(Device& device, std::vector<std::string> queue_labels) noexcept {
+  ObservedReplay* observed = observed_of(device);
+  if (!observed) return;
+  ++observed->submission;
+  observed->command = 0;
+  observed->name = "";
+  observed->queue_labels = std::move(queue_labels);
+  observed->objects.clear();
+}
+
+void end_observed_submission(Device& device) noexcept {
+  ObservedReplay* observed = observed_of(device);
+  if (!observed) return;
+  observed->commands.clear();
+  try {
+    glass::session().end_submission([&](const glass::Finding& f) { send_finding(device, *observed, f); });
+  } catch (...) {
+    report_error(device, ref(device), "tools", "out of host memory while findings were delivered");
+  }
+}
+
+void execute(ReplayState& state, const CmdMark& command) {
+  if (!state.observed) return;
+  ++state.observed->command;
+  state.observed->name = command.name;
+}
+
+void execute(ReplayState& state, const CmdBeginLabel& command) {
+  if (state.observed) state.observed->labels.begin({command.name.data(), command.name.size()});
+}
+
+void execute(ReplayState& state, const CmdEndLabel&) {
+  if (state.observed) state.observed->labels.end();
+}
+
+void execute(ReplayState& state, const CmdInsertLabel& command) {
+  if (state.observed) state.observed->labels.insert({command.name.data(), command.name.size()});
+}
+
+}  // namespace vitrine::icd

@@ -1,0 +1,63 @@
+// What observers are told of the commands that replay runs: numbers, names, debug labels, what is bound; and how what
+// they find reaches the application. A device has it only where tools are on (glass/session.h).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "glass/finding.h"
+#include "icd/edge/diagnostics.h"
+#include "icd/object/labels.h"
+#include "icd/replay/replay.h"
+#include "spirv/observed_command.h"
+
+namespace vitrine::icd {
+
+/// A draw or dispatch as it is replayed: valid until its pass is flushed.
+class ReplayedCommand final : public spirv::ObservedCommand {
+ public:
+  ReplayedCommand(const Device& device, const Pipeline& bound, const spirv::ResourceTable& resources);
+  std::string resource(std::uint32_t set, std::uint32_t slot) const override;
+
+ private:
+  const Device& device_;
+  std::shared_ptr<const PipelineLayoutShape> layout_;
+  spirv::ResourceTable resources_;
+};
+
+struct ObservedReplay {
+  /// The objects of a draw or dispatch of the submission.
+  struct Objects {
+    std::uint32_t command;
+    ObjectRef command_buffer, pipeline;
+  };
+
+  std::uint64_t submission = 0;  ///< counted from 1
+  std::uint32_t command = 0;     ///< of the submission, counted from 1; 0: none yet
+  const char* name = "";         ///< of the command
+  ObjectRef command_buffer;      ///< primary
+  LabelStack labels;             ///< of command buffers; they go on from one submission to the next
+  std::vector<std::string> queue_labels;
+  std::vector<std::unique_ptr<const ReplayedCommand>> commands;  ///< that observers may still ask
+  std::vector<Objects> objects;                                  ///< ascending commands
+};
+
+/// What observers are told of the draw or dispatch that is being replayed.
+const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline& pipeline,
+                                              const spirv::ResourceTable& resources);
+
+/// A submission begins, on a queue with these labels. Nothing if nobody observes.
+void begin_observed_submission(Device& device, std::vector<std::string> queue_labels) noexcept;
+/// It is done, or lost: what has been found goes to the application's messengers. No lock is held.
+void end_observed_submission(Device& device) noexcept;
+
+/// Sends a finding to the messengers of the device's instance.
+void send_finding(Device& device, const ObservedReplay& observed, const glass::Finding& finding);
+
+/// What a descriptor of this binding is, in words: "storage buffer 'particles' (set 0, binding 1, 4096 bytes)".
+std::string describe_descriptor(const Device& device, std::uint32_t set, const SetBinding& binding,
+                                std::uint32_t element, const spirv::Descriptor* descriptor);
+
+}  // namespace vitrine::icd
