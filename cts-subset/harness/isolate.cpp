@@ -63,8 +63,7 @@ void report_failure(const std::string& name, const std::string& message) {
   std::string text = message;
   for (char& c : text)
     if (c == '\x1f') c = '\n';
-  std::printf("FAILED %s\n%s  reproduce: cts_subset --seed=%llu --gtest_filter='%s'\n", name.c_str(), text.c_str(),
-              static_cast<unsigned long long>(options().seed), name.c_str());
+  std::printf("FAILED %s\n%s  reproduce: %s\n", name.c_str(), text.c_str(), command_of(name).c_str());
   std::fflush(stdout);
 }
 

@@ -28,8 +28,7 @@ class CaseTest : public testing::Test {
                 " " + (judgement.blank ? "1" : "0") + " " + judgement.message);
     if (judgement.verdict == Verdict::kUnsupported) GTEST_SKIP() << judgement.message;
     if (judgement.verdict == Verdict::kDiffering)
-      ADD_FAILURE() << judgement.message << "  reproduce: cts_subset --seed=" << options().seed << " --gtest_filter='"
-                    << full_name(case_) << "'";
+      ADD_FAILURE() << judgement.message << "  reproduce: " << command_of(full_name(case_));
   }
 
  private:

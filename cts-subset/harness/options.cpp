@@ -106,7 +106,7 @@ void prepare_environment(const Options& options) {
   // later shaders depend on earlier work. Without threads of its own it sets the mode anew for every render pass.
   setenv("LP_NUM_THREADS", "0", 1);
   // Mutation makes loops without an end; the reference leaves them after 65,535 rounds.
-  if (options.mutate) setenv("VITRINE_SHADER_BUDGET", "20000", 0);
+  if (options.mutate) setenv("VITRINE_SHADER_BUDGET", "1000000", 0);
   // It encodes sRGB with RSQRTPS, whose bits are the CPU vendor's; this device has one vendor's in a table.
   if (!rsqrt_as_recorded()) setenv("VITRINE_RSQRT", "cpu", 0);
   // Without AVX-512 it converts floats to unsigned integers and selects operands otherwise.

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "harness/options.h"
+
 namespace vitrine::cts {
 namespace {
 
@@ -21,6 +23,13 @@ void print_row(const char* name, const GroupCounts& c) {
 }
 
 }  // namespace
+
+std::string command_of(const std::string& name) {
+  std::string command = "cts_subset --seed=" + std::to_string(options().seed);
+  if (options().count != 0) command += " --count=" + std::to_string(options().count);
+  if (options().mutate) command += " --mutate";
+  return command + " --gtest_filter='" + name + "'";
+}
 
 void set_parent(int pipe) { g_parent = pipe; }
 

@@ -20,6 +20,9 @@ void count(Counts& counts, const std::string& group, const Judgement& judgement)
 /// One line per group and a total. Returns whether nothing differed or crashed.
 bool print_counts(const Counts& counts);
 
+/// The command that runs a case again as this process did: with its seed, its number of cases, its mutants.
+std::string command_of(const std::string& name);
+
 /// The pipe to the parent of this child.
 void set_parent(int pipe);
 /// Writes a line to the parent, if there is one: "B index name" when a case begins, "D" when the reference is done with

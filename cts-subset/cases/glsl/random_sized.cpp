@@ -306,6 +306,18 @@ CTS_CASE("glsl", "sized.mixes") {
                       {"float16_t", "mix(float16_t(0.3), float16_t(2.0), float16_t(0.7)) * x_float16_t"}});
 }
 
+// Mixes of doubles between literals: of similar sizes and not, from one and from minus one.
+CTS_CASE("glsl", "sized.mixes_of_literals") {
+  compare_fixed(run, {{"double", "mix(double(0.3), double(1.7), x_double)"},
+                      {"double", "mix(double(3.0e-7), double(1.7), y_double)"},
+                      {"double", "mix(double(1.0e-9), double(1.7), z_double)"},
+                      {"double", "mix(double(1.0), double(1.0e-9), x_double)"},
+                      {"double", "mix(double(1.0), x_double, y_double)"},
+                      {"double", "mix(double(-1.0), y_double, z_double)"},
+                      {"double", "mix(z_double, double(-1.0), x_double)"},
+                      {"double", "mix(dvec2(0.3, 1.0), dvec2(1.7, 3.0), dvec2(x_double, y_double)).x"}});
+}
+
 // Literals are equal only from the second round on; selections move into both words of doubles; what widens numbers is
 // no use of them in comparisons.
 CTS_CASE("glsl", "sized.values") {

@@ -16,7 +16,6 @@
 namespace vitrine::cts {
 namespace {
 
-using spv::Op;
 using Type = Reflection::Type;
 
 void run_compute(Run& run, const Reflection& r, const std::vector<uint32_t>& words) {

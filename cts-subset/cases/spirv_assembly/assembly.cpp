@@ -150,6 +150,18 @@ CTS_CASE("spirv_assembly", "composite_select_and_copy") {
            "%v2bool = OpTypeVector %bool 2\n%pair = OpTypeStruct %v2uint %float\n");
 }
 
+// Mixes between literals have a shorter form, but not where they are precise.
+CTS_CASE("spirv_assembly", "precise_mix_of_literals") {
+  run_body(run, R"(
+%integer = OpConvertUToF %float %x
+%weight = OpFMul %float %integer %third
+%precise = OpExtInst %float %glsl FMix %third %seventh %weight
+%r = OpBitcast %uint %precise
+)",
+           "%third = OpConstant %float 0.333\n%seventh = OpConstant %float 1.7\n", "",
+           "OpDecorate %precise NoContraction\n");
+}
+
 CTS_CASE("spirv_assembly", "unordered_compare") {
   run_body(run, R"(
 %f = OpBitcast %float %x

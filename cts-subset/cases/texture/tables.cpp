@@ -154,6 +154,21 @@ const bool kMipmaps = [] {
   return true;
 }();
 
+/// Bounds from which on the reference leaves maxLod away, and so takes its short cut: slopes of rho * rho = 2 then lead
+/// to level 1, where a level of detail of 0.5 is rounded to 0 (lavapipe-texture-blend.md A4).
+const bool kLargeBounds = [] {
+  for (const auto& [name, bound] : {std::pair("13_5", 13.5f), {"14", 14.0f}, {"14_5", 14.5f}, {"15", 15.0f}}) {
+    AddCase("texture", std::string("mipmap.max_lod_") + name, [bound](Run& run) {
+      VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+      info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
+      info.maxLod = bound;
+      look_up(run, random_image(run, VK_FORMAT_R32G32B32A32_SFLOAT, {64, 64, 1}, 7), run.sampler(info),
+              "textureGrad(t, p, vec2(0.015625), vec2(0.0))", "2D");
+    });
+  }
+  return true;
+}();
+
 const bool kShapes = [] {
   struct Shape {
     const char *type, *code;

@@ -1,0 +1,91 @@
+// vitrine check: runs an application with tools that find faults, gathers what all of its processes found, and fails if
+// there is anything.
+#include <algorithm>
+#include <cstdio>
+
+#include "glass/cli/application.h"
+#include "glass/cli/commands.h"
+#include "glass/cli/files.h"
+#include "glass/cli/findings.h"
+#include "glass/cli/say.h"
+#include "glass/report/report.h"
+
+namespace vitrine::glass::cli {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
+  return text;
+}
+
+/// "1 error", "2 processes".
+std::string amount(std::size_t number, const std::string& what) {
+  return std::to_string(number) + " " + what + (number == 1 ? "" : what.ends_with('s') ? "es" : "s");
+}
+
+/// The findings of all reports in the folder. False: one of them could not be read.
+bool gather(const std::vector<std::filesystem::path>& reports, std::vector<Finding>& findings) {
+  bool good = true;
+  for (const std::filesystem::path& path : reports) {
+    std::string error = "it cannot be opened";
+    const std::optional<std::string> text = read_file(path);
+    if (text && read_findings(*text, findings, error)) continue;
+    say("the report of process " + path.stem().string() + " cannot be read: " + error);
+    good = false;
+  }
+  findings = folded(std::move(findings));
+  quote_files(findings);
+  return good;
+}
+
+std::size_t count_of(const std::vector<Finding>& findings, Severity severity) {
+  return static_cast<std::size_t>(std::count_if(
+      findings.begin(), findings.end(), [&](const Finding& finding) { return finding.rule->severity == severity; }));
+}
+
+/// Errors and warnings; notes are what shaders say.
+std::size_t summarize(const std::vector<Finding>& findings, std::size_t processes) {
+  const std::size_t errors = count_of(findings, Severity::kError), warnings = count_of(findings, Severity::kWarning);
+  std::string text = errors + warnings == 0 ? "no findings" : "";
+  if (errors) text += amount(errors, "error");
+  if (warnings) text += (errors ? ", " : "") + amount(warnings, "warning");
+  say(text + " in " + amount(processes, "process"));
+  return errors + warnings;
+}
+
+bool write_reports(const CheckOptions& options, const std::vector<Finding>& findings) {
+  bool good = true;
+  if (!options.sarif.empty()) good &= write_file(options.sarif, to_report(ReportFormat::kSarif, findings));
+  if (!options.json.empty()) good &= write_file(options.json, to_report(ReportFormat::kJson, findings));
+  return good;
+}
+
+}  // namespace
+
+int check(const CheckOptions& options) {
+  if (options.tools.empty()) {
+    say("no tool that finds faults is there (yet)");
+    return kCouldNotRun;
+  }
+  for (const std::string& tool : options.tools) {
+    if (!demand_tool(tool)) return kCouldNotRun;
+  }
+  const TemporaryFolder folder;
+  if (folder.path().empty()) return kCouldNotRun;
+  const Ending ending = run_application(
+      options.application, {{"VITRINE_TOOLS", joined(options.tools)}, {"VITRINE_REPORT", folder.path() / "%p.json"}});
+  if (!ending.error.empty()) return kCouldNotRun;
+  const auto reports = folder.files(".json");
+  if (reports.empty()) say("nothing was checked: no process of the application used this driver");
+  std::vector<Finding> findings;
+  const bool good = gather(reports, findings);
+  if (!options.quiet) std::fputs(to_report(ReportFormat::kText, findings).c_str(), stderr);
+  const bool written = write_reports(options, findings);
+  const bool found = !reports.empty() && summarize(findings, reports.size()) != 0;
+  if (ending.code) return ending.code;
+  if (found) return kFound;
+  return good && written && !reports.empty() ? 0 : kCouldNotRun;
+}
+
+}  // namespace vitrine::glass::cli

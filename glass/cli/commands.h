@@ -1,0 +1,50 @@
+// The subcommands of `vitrine`: each takes its options and gives the exit code.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vitrine::glass::cli {
+
+/// What the command answers besides what the application does.
+inline constexpr int kFound = 1;  ///< findings; counters that grew; too little coverage
+inline constexpr int kCouldNotRun = 2;
+
+/// The application and its arguments.
+using CommandLine = std::vector<std::string>;
+
+/// The application on this driver, nothing else.
+int run(const CommandLine& application);
+
+struct CheckOptions {
+  std::vector<std::string> tools;
+  std::string sarif, json;  ///< files; empty: none
+  bool quiet = false;       ///< no text
+  CommandLine application;
+};
+int check(const CheckOptions& options);
+
+struct CoverageOptions {
+  std::string output = "shaders.info";
+  std::string sources;                ///< folder for sources that are in the modules alone; empty: the tool's default
+  bool append = false;                ///< add to what the file has
+  std::optional<double> least_lines;  ///< percent
+  CommandLine application;
+};
+int coverage(const CoverageOptions& options);
+
+struct CountOptions {
+  std::string output = "counts.json";
+  CommandLine application;
+};
+int count(const CountOptions& options);
+
+struct DiffOptions {
+  std::string before, after;
+  std::string pattern = "*";          ///< which counters, as the shell matches names
+  std::optional<double> most_growth;  ///< percent
+};
+int diff(const DiffOptions& options);
+
+}  // namespace vitrine::glass::cli

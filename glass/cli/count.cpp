@@ -1,0 +1,73 @@
+// vitrine count: runs an application with the tool that counts and adds up what its processes counted. vitrine diff:
+// compares two such files.
+#include <cstdio>
+
+#include "glass/cli/application.h"
+#include "glass/cli/commands.h"
+#include "glass/cli/counters.h"
+#include "glass/cli/files.h"
+#include "glass/cli/say.h"
+
+namespace vitrine::glass::cli {
+namespace {
+
+/// The counters of all files, added up. Nothing: one cannot be read.
+std::optional<std::string> sum_of(const std::vector<std::filesystem::path>& files) {
+  std::string sum = "{}";
+  for (const std::filesystem::path& path : files) {
+    const std::optional<std::string> text = read_file(path);
+    std::optional<std::string> next = text ? sum_of_counters(sum, *text) : std::nullopt;
+    if (!next) {
+      say("the counters of process " + path.stem().string() + " cannot be read");
+      return std::nullopt;
+    }
+    sum = std::move(*next);
+  }
+  return sum;
+}
+
+std::optional<Counters> counters_of(const std::string& file) {
+  const std::optional<std::string> text = read_file(file);
+  std::optional<Counters> counters = text ? read_counters(*text) : std::nullopt;
+  if (!counters) say(file + (text ? " is no file of counters" : " cannot be read"));
+  return counters;
+}
+
+void print(const CounterChange& change) {
+  std::fprintf(stdout, "%14.0f %14.0f %+9.2f %%  %s\n", change.before, change.after, change.growth(),
+               change.name.c_str());
+}
+
+}  // namespace
+
+int count(const CountOptions& options) {
+  const TemporaryFolder folder;
+  if (!demand_tool("count") || folder.path().empty()) return kCouldNotRun;
+  const Ending ending =
+      run_application(options.application, {{"VITRINE_TOOLS", "count"}, {"VITRINE_COUNTS", folder.path() / "%p.json"}});
+  if (!ending.error.empty()) return kCouldNotRun;
+  const auto files = folder.files(".json");
+  if (files.empty()) say("nothing was counted: no process of the application used this driver");
+  const std::optional<std::string> sum = sum_of(files);
+  const bool written = sum && !files.empty() && write_file(options.output, *sum);
+  if (ending.code) return ending.code;
+  return written ? 0 : kCouldNotRun;
+}
+
+int diff(const DiffOptions& options) {
+  const std::optional<Counters> before = counters_of(options.before), after = counters_of(options.after);
+  if (!before || !after) return kCouldNotRun;
+  std::size_t too_many = 0;
+  const std::vector<CounterChange> changed = changes(*before, *after, options.pattern);
+  if (!changed.empty()) std::fprintf(stdout, "%14s %14s %11s  counter\n", "before", "after", "growth");
+  for (const CounterChange& change : changed) {
+    print(change);
+    too_many += options.most_growth && change.growth() > *options.most_growth;
+  }
+  if (changed.empty()) say("no counter differs");
+  if (too_many == 0) return 0;
+  say(std::to_string(too_many) + (too_many == 1 ? " counter has" : " counters have") + " grown by more than the limit");
+  return kFound;
+}
+
+}  // namespace vitrine::glass::cli

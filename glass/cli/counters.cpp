@@ -1,0 +1,84 @@
+// Files of counters: added up over processes, compared.
+#include "glass/cli/counters.h"
+
+#include <fnmatch.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "glass/report/json.h"
+
+namespace vitrine::glass::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_header(std::string_view name) { return name == "version" || name == "format"; }
+
+void add(Json& sum, const Json& part) {
+  for (const auto& [name, value] : part.items()) {
+    Json* const there = sum.contains(name) ? &sum[name] : nullptr;
+    if (!there)
+      sum[name] = value;
+    else if (there->is_object() && value.is_object())
+      add(*there, value);
+    else if (is_header(name))
+      continue;
+    else if (there->is_number_integer() && value.is_number_integer())
+      *there = there->get<std::int64_t>() + value.get<std::int64_t>();
+    else if (there->is_number() && value.is_number())
+      *there = there->get<double>() + value.get<double>();
+  }
+}
+
+void collect(const Json& group, const std::string& path, Counters& counters) {
+  for (const auto& [name, value] : group.items()) {
+    if (value.is_object())
+      collect(value, path + name + "/", counters);
+    else if (value.is_number() && !is_header(name))
+      counters[path + name] = value.get<double>();
+  }
+}
+
+double value_of(const Counters& counters, const std::string& name) {
+  const auto entry = counters.find(name);
+  return entry == counters.end() ? 0 : entry->second;
+}
+
+}  // namespace
+
+std::optional<std::string> sum_of_counters(std::string_view a, std::string_view b) {
+  Json sum = Json::parse(a, nullptr, false);
+  const Json part = Json::parse(b, nullptr, false);
+  if (!sum.is_object() || !part.is_object()) return std::nullopt;
+  add(sum, part);
+  return sum.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::optional<Counters> read_counters(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  Counters counters;
+  collect(json, "", counters);
+  return counters;
+}
+
+double CounterChange::growth() const {
+  if (before == 0) return after == 0 ? 0 : std::numeric_limits<double>::infinity();
+  return (after - before) / before * 100;
+}
+
+std::vector<CounterChange> changes(const Counters& before, const Counters& after, const std::string& pattern) {
+  std::set<std::string> names;
+  for (const auto& [name, value] : before) names.insert(name);
+  for (const auto& [name, value] : after) names.insert(name);
+  std::vector<CounterChange> result;
+  for (const std::string& name : names) {
+    const CounterChange change{name, value_of(before, name), value_of(after, name)};
+    if (change.before != change.after && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) result.push_back(change);
+  }
+  return result;
+}
+
+}  // namespace vitrine::glass::cli

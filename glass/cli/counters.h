@@ -1,0 +1,32 @@
+// Files of counters: JSON objects in which numbers are counters and objects are groups of them, to any depth. A
+// counter's name is the path that leads to it: "pipelines/gauss/instructions".
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vitrine::glass::cli {
+
+using Counters = std::map<std::string, double>;
+
+/// The sum of two files: counters of the same name are added, what is no counter is as in the first that has it.
+/// Nothing: one of them is no JSON object.
+std::optional<std::string> sum_of_counters(std::string_view a, std::string_view b);
+
+/// All counters of a file but "version".
+std::optional<Counters> read_counters(std::string_view text);
+
+struct CounterChange {
+  std::string name;
+  double before = 0, after = 0;
+  /// In percent of what it was; from nothing to something: infinite.
+  double growth() const;
+};
+/// Counters that differ (one that a file does not have is 0 there) and whose names match the pattern of fnmatch(3).
+std::vector<CounterChange> changes(const Counters& before, const Counters& after, const std::string& pattern);
+
+}  // namespace vitrine::glass::cli

@@ -1,0 +1,22 @@
+// Findings of several processes: read from their reports, the same ones made one.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "glass/finding.h"
+
+namespace vitrine::glass::cli {
+
+/// The findings of a JSON report, in its order. False, and why: it is none, or one of another version.
+bool read_findings(std::string_view report, std::vector<Finding>& findings, std::string& error);
+
+/// Findings that say the same of the same place become the first of them, with the sum of their counts. What shaders
+/// say (Severity::kNote) stays as it is.
+std::vector<Finding> folded(std::vector<Finding> findings);
+
+/// Lines that the modules do not have, from the source files that they name, as far as they are there.
+void quote_files(std::vector<Finding>& findings);
+
+}  // namespace vitrine::glass::cli

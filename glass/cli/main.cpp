@@ -1,0 +1,166 @@
+// The command `vitrine`: its options, through CLI11.
+#include <CLI/CLI.hpp>
+
+#include "glass/cli/application.h"
+#include "glass/cli/commands.h"
+#include "glass/version.h"
+
+namespace vitrine::glass::cli {
+namespace {
+
+constexpr char kApplication[] = "[--] APPLICATION [ARGUMENTS...]";
+/// Tools that find faults: what `check` asks for without further words, as far as they are there.
+constexpr const char* kFinders[] = {"sanitize", "race", "sync"};
+
+/// Usage lines end with what the subcommand takes.
+class Help : public CLI::Formatter {
+ public:
+  explicit Help(std::string operands) : operands_(std::move(operands)) {}
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    return "Usage: " + name + " [OPTIONS] " + (app->get_subcommands({}).empty() ? operands_ : "COMMAND ...") + "\n";
+  }
+
+ private:
+  std::string operands_;
+};
+
+/// A subcommand that runs an application: whatever follows its options belongs to that.
+CLI::App* add_runner(CLI::App& app, const char* name, const char* text) {
+  CLI::App* command = app.add_subcommand(name, text);
+  command->prefix_command();
+  command->formatter(std::make_shared<Help>(kApplication));
+  return command;
+}
+
+/// The command line in two: CLI11 does not hand on what stands behind "--".
+struct Words {
+  std::vector<std::string> ours, behind;
+  bool divided = false;  ///< there is a "--"
+};
+
+Words split(int argc, char** argv) {
+  Words words;
+  for (int i = 1; i < argc; ++i) {
+    if (words.divided)
+      words.behind.emplace_back(argv[i]);
+    else if (std::string_view(argv[i]) == "--")
+      words.divided = true;
+    else
+      words.ours.emplace_back(argv[i]);
+  }
+  return words;
+}
+
+/// What stands behind the options, with or without "--"; a later "--" belongs to the application.
+CommandLine application_of(const CLI::App& command, const Words& words) {
+  CommandLine application = command.remaining();
+  if (!application.empty() && words.divided) application.emplace_back("--");
+  application.insert(application.end(), words.behind.begin(), words.behind.end());
+  if (application.empty()) throw CLI::RequiredError("APPLICATION");
+  return application;
+}
+
+void add_run(CLI::App& app, const Words& words, int& code) {
+  CLI::App* command = add_runner(app, "run", "Run an application on this driver");
+  command->callback([=, &words, &code] { code = run(application_of(*command, words)); });
+}
+
+void add_tools(CheckOptions& options, const std::string& list) {
+  for (const std::string& tool : CLI::detail::split(list, ',')) options.tools.push_back(tool);
+}
+
+void add_check(CLI::App& app, const Words& words, CheckOptions& options, int& code) {
+  CLI::App* command = add_runner(app, "check", "Run it with tools that find faults; exit code 1 if there are any");
+  for (const char* const tool : kFinders) {
+    command->add_flag_callback(
+        "--" + std::string(tool), [&options, tool] { options.tools.push_back(tool); },
+        "With this tool (none named: all that are there)");
+  }
+  command
+      ->add_option_function<std::string>(
+          "--tools", [&options](const std::string& list) { add_tools(options, list); }, "With these, comma-separated")
+      ->type_name("LIST");
+  command->add_option("--sarif", options.sarif, "Write the findings as SARIF 2.1.0")->type_name("FILE");
+  command->add_option("--json", options.json, "Write the findings as JSON")->type_name("FILE");
+  command->add_flag("-q,--quiet", options.quiet, "Print the summary alone");
+  command->callback([=, &words, &options, &code] {
+    options.application = application_of(*command, words);
+    for (const char* const tool : kFinders) {
+      if (command->count("--tools") == 0 && options.tools.empty() && is_tool(tool)) options.tools.push_back(tool);
+    }
+    code = check(options);
+  });
+}
+
+/// A number of percent, with or without the sign.
+std::string without_sign(std::string text) {
+  if (text.ends_with('%')) text.pop_back();
+  return text;
+}
+
+void add_coverage(CLI::App& app, const Words& words, CoverageOptions& options, int& code) {
+  CLI::App* command = add_runner(app, "coverage", "Run it and write which lines of its shaders ran");
+  command->add_option("-o,--output", options.output, "lcov tracefile")->type_name("FILE")->capture_default_str();
+  command->add_flag("-a,--append", options.append, "Add to what the file has");
+  command->add_option("--sources", options.sources, "Folder for sources that are in the modules alone")
+      ->type_name("FOLDER");
+  command->add_option("--min-lines", options.least_lines, "Exit code 1 if fewer lines have run")
+      ->transform(without_sign)
+      ->type_name("PERCENT");
+  command->callback([=, &words, &options, &code] {
+    options.application = application_of(*command, words);
+    code = coverage(options);
+  });
+}
+
+void add_count(CLI::App& app, const Words& words, CountOptions& options, int& code) {
+  CLI::App* command = add_runner(app, "count", "Run it and write what its shaders cost, in numbers that do not move");
+  command->add_option("-o,--output", options.output, "Counters as JSON")->type_name("FILE")->capture_default_str();
+  command->callback([=, &words, &options, &code] {
+    options.application = application_of(*command, words);
+    code = count(options);
+  });
+}
+
+void add_diff(CLI::App& app, DiffOptions& options, int& code) {
+  CLI::App* command = app.add_subcommand("diff", "Compare two files of counters");
+  command->formatter(std::make_shared<Help>("BEFORE AFTER"));
+  command->add_option("BEFORE", options.before, "Counters as JSON")->required()->type_name("FILE");
+  command->add_option("AFTER", options.after, "Counters as JSON")->required()->type_name("FILE");
+  command->add_option("--max", options.most_growth, "Exit code 1 if a counter has grown by more")
+      ->transform(without_sign)
+      ->type_name("PERCENT");
+  command->add_option("--counters", options.pattern, "Only counters whose names match, as the shell matches files")
+      ->type_name("PATTERN")
+      ->capture_default_str();
+  command->callback([&] { code = diff(options); });
+}
+
+int main_of(int argc, char** argv) {
+  CLI::App app{"Runs applications on the Vulkan driver Vitrine, and tells what their shaders do.", "vitrine"};
+  app.formatter(std::make_shared<Help>("COMMAND ..."));
+  app.set_version_flag("--version", std::string("vitrine ") + kVersion);
+  app.require_subcommand(1);
+  const Words words = split(argc, argv);
+  int code = 0;
+  CheckOptions check_options;
+  CoverageOptions coverage_options;
+  CountOptions count_options;
+  DiffOptions diff_options;
+  add_run(app, words, code);
+  add_check(app, words, check_options, code);
+  add_coverage(app, words, coverage_options, code);
+  add_count(app, words, count_options, code);
+  add_diff(app, diff_options, code);
+  try {
+    app.parse(std::vector<std::string>(words.ours.rbegin(), words.ours.rend()));  // the last one first
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kCouldNotRun;
+  }
+  return code;
+}
+
+}  // namespace
+}  // namespace vitrine::glass::cli
+
+int main(int argc, char** argv) { return vitrine::glass::cli::main_of(argc, argv); }

@@ -1,0 +1,31 @@
+// Where in the source something happened.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "glass/tool.h"
+#include "spirv/source_info.h"
+
+namespace vitrine::glass {
+
+/// What is the same for all that happens in one program.
+struct ShaderContext {
+  VkShaderStageFlagBits stage{};
+  std::string entry_point;
+  std::shared_ptr<const spirv::SourceInfo> sources;
+
+  ShaderContext(const ShaderIdentity& shader, const spirv::Program& program)
+      : stage(shader.stage), entry_point(shader.entry_point), sources(program.sources) {}
+
+  /// Of something that an invocation of a wave does; `id` as spirv::exec::invocation_of().
+  Address address(const spirv::Wave& wave, const std::array<std::uint32_t, 3>& id, std::uint32_t spirv_id,
+                  std::uint32_t place) const;
+};
+
+/// The place and the calls that lead there, innermost first; empty: nothing is known.
+std::vector<Frame> frames_of(const spirv::SourceInfo* sources, std::uint32_t place);
+
+}  // namespace vitrine::glass

@@ -1,0 +1,120 @@
+// Messages of shaders (NonSemantic.DebugPrintf), in an order that does not depend on threads: by submission, command,
+// stage, invocation, and for one invocation as it said them.
+#include <algorithm>
+#include <bit>
+#include <mutex>
+#include <tuple>
+
+#include "glass/format.h"
+#include "glass/place.h"
+#include "glass/tools.h"
+#include "spirv/exec/invocation.h"
+
+namespace vitrine::glass {
+namespace {
+
+using Id = std::array<std::uint32_t, 3>;
+
+struct Message {
+  Finding finding;
+  std::uint64_t sequence = 0;  ///< of all messages as they came
+};
+
+/// Invocations in the order of rows.
+auto key(const Message& message) {
+  const Address& address = message.finding.address;
+  const Id& id = address.invocation.id;
+  return std::tuple(address.submission, address.command, address.stage, id[2], id[1], id[0], message.sequence);
+}
+
+/// What all programs say.
+class Collector {
+ public:
+  void add(Finding finding) {
+    const std::lock_guard lock(mutex_);
+    messages_.push_back({std::move(finding), messages_.size()});
+  }
+
+  std::vector<Finding> take() {
+    std::vector<Message> messages;
+    {
+      const std::lock_guard lock(mutex_);
+      messages.swap(messages_);
+    }
+    std::sort(messages.begin(), messages.end(), [](const Message& a, const Message& b) { return key(a) < key(b); });
+    std::vector<Finding> findings;
+    for (Message& message : messages) findings.push_back(std::move(message.finding));
+    return findings;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Message> messages_;
+};
+
+/// What all messages of a program have.
+struct Speaker {
+  ShaderContext context;
+  std::shared_ptr<Collector> collector;
+  std::vector<spirv::Probe> probes;
+};
+
+class PrintfWatch : public spirv::exec::Watch {
+ public:
+  PrintfWatch(const Speaker& speaker, const spirv::Wave& wave) : speaker_(speaker), invocations_(wave) {}
+
+  void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override {
+    const spirv::Probe& probe = speaker_.probes[op.probe];
+    if (probe.kind != spirv::Probe::Kind::kPrintf) return;
+    std::vector<std::uint32_t> words(op.operands.size());
+    base::for_each_lane(spirv::exec::lanes_at(wave, op) & wave.live, [&](std::size_t lane) {
+      for (std::size_t i = 0; i < words.size(); ++i) words[i] = spirv::exec::word_of(wave, op.operands[i], lane);
+      say(wave, probe, lane, format_text(probe.format, probe.values, words));
+    });
+  }
+
+ private:
+  void say(const spirv::Wave& wave, const spirv::Probe& probe, std::size_t lane, std::string text) {
+    Finding finding;
+    finding.rule = &rule("printf");
+    finding.message = std::move(text);
+    finding.address = speaker_.context.address(wave, invocations_(wave, lane), probe.id, probe.place);
+    speaker_.collector->add(std::move(finding));
+  }
+
+  const Speaker& speaker_;
+  const spirv::exec::Invocations invocations_;
+};
+
+class PrintfProgram : public ProgramTool {
+ public:
+  explicit PrintfProgram(Speaker speaker) : speaker_(std::move(speaker)) {}
+  std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave& wave, const spirv::Instruction*) override {
+    return std::make_unique<PrintfWatch>(speaker_, wave);
+  }
+
+ private:
+  Speaker speaker_;
+};
+
+class Printf : public Tool {
+ public:
+  spirv::exec::Interest interest() const override { return {.printf = true}; }
+
+  std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
+    const auto speaks = [](const spirv::Probe& probe) { return probe.kind == spirv::Probe::Kind::kPrintf; };
+    if (std::none_of(program.probes.begin(), program.probes.end(), speaks)) return nullptr;
+    return std::make_shared<PrintfProgram>(Speaker{{shader, program}, collector_, program.probes});
+  }
+
+  std::vector<Finding> take_findings() override { return collector_->take(); }
+
+ private:
+  std::shared_ptr<Collector> collector_ = std::make_shared<Collector>();
+};
+
+}  // namespace
+
+std::unique_ptr<Tool> make_printf() { return std::make_unique<Printf>(); }
+
+}  // namespace vitrine::glass

@@ -1,0 +1,330 @@
+// Accesses that the specification does not allow: outside of buffers, shared memory, local arrays, images and live
+// memory. Each place in a shader is one finding, with a count and the first invocation in order.
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <tuple>
+
+#include "glass/place.h"
+#include "glass/tools.h"
+#include "spirv/exec/buffers.h"
+#include "spirv/exec/invocation.h"
+#include "spirv/exec/observe.h"
+#include "spirv/observed_command.h"
+
+namespace vitrine::glass {
+namespace {
+
+using spirv::Access;
+using spirv::Instruction;
+using spirv::InstructionNote;
+using spirv::MemoryOp;
+using spirv::MemorySpace;
+using spirv::Wave;
+using Id = std::array<std::uint32_t, 3>;
+
+/// Findings of one program, one for each place and rule, until they are taken.
+class Places {
+ public:
+  using Key = std::tuple<std::size_t, std::string_view>;  ///< instruction, rule
+
+  /// `make` gives the finding; called for the first invocation only, and for those before it in order.
+  template <class F>
+  void add(const Key& key, std::uint64_t count, const std::tuple<std::uint64_t, std::uint32_t, Id>& order, F&& make) {
+    const std::lock_guard lock(mutex_);
+    const auto [at, added] = findings_.try_emplace(key);
+    Entry& entry = at->second;
+    entry.count += count;
+    if (!added && (entry.delivered || entry.order <= order)) return;
+    entry.order = order;
+    entry.finding = make();
+  }
+
+  void take(std::vector<Finding>& to) {
+    const std::lock_guard lock(mutex_);
+    for (auto& [key, entry] : findings_) {
+      if (std::exchange(entry.delivered, true)) continue;
+      entry.finding.count = entry.count;
+      to.push_back(std::move(entry.finding));
+    }
+  }
+
+ private:
+  struct Entry {
+    std::uint64_t count = 0;
+    std::tuple<std::uint64_t, std::uint32_t, Id> order;
+    Finding finding;
+    bool delivered = false;
+  };
+  std::mutex mutex_;
+  std::map<Key, Entry> findings_;
+};
+
+class SanitizedProgram : public ProgramTool {
+ public:
+  SanitizedProgram(const ShaderIdentity& shader, const spirv::Program& program) : context(shader, program) {}
+  std::unique_ptr<spirv::exec::Watch> watch(const Wave& wave, const Instruction*) override;
+
+  const ShaderContext context;
+  Places places;
+};
+
+/// Rows down, as Id has x first.
+Id rows_first(const Id& id) { return {id[2], id[1], id[0]}; }
+
+std::string bytes_text(std::uint64_t size, std::uint64_t offset) {
+  std::string text = std::to_string(size);
+  text += size == 1 ? " byte at offset " : " bytes at offset ";
+  return text += std::to_string(offset);
+}
+
+const char* verb_of(Access access) {
+  return access == Access::kLoad ? "load of " : access == Access::kStore ? "store of " : "atomic operation on ";
+}
+
+const char* buffer_rule(Access access) {
+  return access == Access::kLoad    ? "out-of-bounds-load"
+         : access == Access::kStore ? "out-of-bounds-store"
+                                    : "out-of-bounds-atomic";
+}
+
+/// The bytes of one lane's access: [first, first + size) behind its address.
+struct Extent {
+  std::uint32_t first = ~0u, end = 0;
+};
+
+/// What a memory instruction touches behind its address, besides MemoryOp::added.
+Extent extent_of(const MemoryOp& row, Access access) {
+  const std::uint32_t bytes = row.element_bytes;
+  if (access == Access::kAtomic) return {0, bytes};
+  Extent extent;
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    const bool used = access == Access::kLoad ? c < row.components && row.data[c] != spirv::kNoOperand
+                                              : (row.write_mask >> c & 1) != 0;
+    if (!used) continue;
+    const std::uint32_t at = access == Access::kLoad ? row.at[c] : c * bytes;
+    extent.first = std::min(extent.first, at);
+    extent.end = std::max(extent.end, at + bytes);
+  }
+  return extent;
+}
+
+class SanitizeWatch : public spirv::exec::Watch {
+ public:
+  SanitizeWatch(SanitizedProgram& program, const Wave& wave) : program_(program), invocations_(wave) {}
+
+  void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
+    const base::LaneMask lanes = wave.active & wave.live;
+    if (lanes == 0 || note.access == Access::kImage) return;
+    const MemoryOp& row = wave.program->memory_ops[i->extra[0]];
+    const spirv::OperandPlace address{note.files[1], i->src[0]};
+    switch (note.space) {
+      case MemorySpace::kUniformBuffer:
+      case MemorySpace::kStorageBuffer:
+        return check_buffer(wave, i, note, row, address, lanes);
+      case MemorySpace::kShared:
+        if (program_.context.stage != VK_SHADER_STAGE_COMPUTE_BIT) return;  // memory of the stage, not the shader's
+        return check_range(wave, i, note, row, address, lanes, wave.shared_size, "out-of-bounds-shared",
+                           [&] { return shared_text(wave); });
+      case MemorySpace::kPush:
+        return check_range(wave, i, note, row, address, lanes, spirv::kMaxPushConstantBytes,
+                           "out-of-bounds-push-constant", [] { return std::string("the push constants"); });
+      case MemorySpace::kArray:
+        return check_array(wave, i, note, row, address, lanes);
+      case MemorySpace::kGlobal:
+        return check_global(wave, i, note, row, lanes);
+    }
+  }
+
+ private:
+  static std::string shared_text(const Wave& wave) {
+    std::string text = "shared memory (";
+    text += std::to_string(wave.shared_size);
+    return text += " bytes)";
+  }
+
+  static std::string resource_text(const Wave& wave, std::uint32_t set, std::uint32_t slot, std::uint64_t size) {
+    std::string text = wave.resources->command ? wave.resources->command->resource(set, slot) : std::string();
+    if (!text.empty()) return text;
+    text = "a buffer of ";
+    text += std::to_string(size);
+    return text += " bytes";
+  }
+
+  /// Lanes of `lanes` whose access lies outside of [0, size).
+  static base::LaneMask outside(const Wave& wave, const MemoryOp& row, Extent extent, spirv::OperandPlace address,
+                                base::LaneMask lanes, std::uint64_t size) {
+    const auto is_outside = [&](std::uint32_t offset) {
+      return std::uint64_t{offset + row.added + extent.first} + (extent.end - extent.first) > size;
+    };
+    if (address.file != 'r') return is_outside(spirv::exec::word_of(wave, address, 0)) ? lanes : 0;
+    const auto& offsets = *reinterpret_cast<const base::WaveRegister*>(wave.registers + address.offset);
+    std::uint32_t highest = 0;
+    if (extent.end - extent.first <= size) {
+      // An offset from where the extent begins, so that it wraps as the access does.
+      const std::uint32_t added = row.added + extent.first;
+      for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
+        highest = std::max(highest, (lanes >> lane & 1) != 0 ? offsets.lane[lane] + added : 0u);
+      if (highest + std::uint64_t{extent.end - extent.first} <= size) return 0;
+    }
+    base::LaneMask result = 0;
+    base::for_each_lane(lanes, [&](std::size_t lane) {
+      if (is_outside(offsets.lane[lane])) result |= base::LaneMask{1} << lane;
+    });
+    return result;
+  }
+
+  template <class F>
+  void check_range(const Wave& wave, const Instruction* i, const InstructionNote& note, const MemoryOp& row,
+                   spirv::OperandPlace address, base::LaneMask lanes, std::uint64_t size, const char* rule, F&& what) {
+    const Extent extent = extent_of(row, note.access);
+    if (extent.end == 0) return;
+    const base::LaneMask wrong = outside(wave, row, extent, address, lanes, size);
+    if (wrong == 0) return;
+    report(wave, i, note, rule, wrong, [&](std::size_t lane) {
+      const std::uint32_t offset = spirv::exec::word_of(wave, address, lane) + row.added + extent.first;
+      std::string text = verb_of(note.access);
+      text += bytes_text(extent.end - extent.first, offset);
+      return text += ", outside of " + what();
+    });
+  }
+
+  void check_buffer(const Wave& wave, const Instruction* i, const InstructionNote& note, const MemoryOp& row,
+                    spirv::OperandPlace address, base::LaneMask lanes) {
+    spirv::exec::for_each_buffer(
+        const_cast<Wave&>(wave), row, lanes, [&](const spirv::exec::Bytes& bytes, base::LaneMask same) {
+          const std::uint32_t element = element_of(wave, row, same);
+          if (bytes.data == nullptr) return check_descriptor(wave, i, note, row, element, same);
+          check_range(wave, i, note, row, address, same, bytes.size, buffer_rule(note.access),
+                      [&] { return resource_text(wave, row.set, row.slot + element, bytes.size); });
+        });
+  }
+
+  static std::uint32_t element_of(const Wave& wave, const MemoryOp& row, base::LaneMask lanes) {
+    if (row.index.file == spirv::IndexOperand::File::kConstant) return 0;
+    const bool uniform = row.index.file == spirv::IndexOperand::File::kUniform;
+    return spirv::exec::word_of(wave, {uniform ? 'u' : 'r', row.index.value},
+                                static_cast<std::size_t>(std::countr_zero(lanes)));
+  }
+
+  /// A descriptor that leads nowhere: past the end of its array. (One that is null reads zeros where the device was
+  /// made so, and is not told apart from one that was never written.)
+  void check_descriptor(const Wave& wave, const Instruction* i, const InstructionNote& note, const MemoryOp& row,
+                        std::uint32_t element, base::LaneMask lanes) {
+    if (row.set == spirv::ir::kAnySet || element == 0 || element < row.count) return;
+    report(wave, i, note, "out-of-range-descriptor", lanes, [&](std::size_t) {
+      std::string text = "descriptor ";
+      text += std::to_string(element);
+      text += " of an array of ";
+      return text += std::to_string(row.count);
+    });
+  }
+
+  void check_array(const Wave& wave, const Instruction* i, const InstructionNote& note, const MemoryOp& row,
+                   spirv::OperandPlace address, base::LaneMask lanes) {
+    base::LaneMask wrong = 0;
+    base::for_each_lane(lanes, [&](std::size_t lane) {
+      if (spirv::exec::word_of(wave, address, lane) + row.added >= row.array_elements)
+        wrong |= base::LaneMask{1} << lane;
+    });
+    if (wrong == 0) return;
+    report(wave, i, note, "out-of-bounds-array", wrong, [&](std::size_t lane) {
+      std::string text = note.access == Access::kLoad ? "load of word " : "store of word ";
+      text += std::to_string(static_cast<std::int32_t>(spirv::exec::word_of(wave, address, lane) + row.added));
+      text += " of an array variable of ";
+      text += std::to_string(row.array_elements);
+      return text += " words";
+    });
+  }
+
+  void check_global(const Wave& wave, const Instruction* i, const InstructionNote& note, const MemoryOp& row,
+                    base::LaneMask lanes) {
+    const Extent extent = extent_of(row, note.access);
+    if (extent.end == 0) return;
+    const auto address_of = [&](std::size_t lane) {
+      const auto word = [&](std::size_t k) { return spirv::exec::word_of(wave, {note.files[k + 1], i->src[k]}, lane); };
+      const auto distance = static_cast<std::int32_t>(word(2) + row.added + extent.first);
+      return (std::uint64_t{word(1)} << 32 | word(0)) + static_cast<std::uint64_t>(std::int64_t{distance});
+    };
+    base::LaneMask wrong = 0;
+    base::for_each_lane(lanes, [&](std::size_t lane) {
+      const std::uint64_t address = address_of(lane);
+      const spirv::AddressRange range = spirv::find_addresses(address);
+      if (range.begin == range.end || range.end - address < extent.end - extent.first)
+        wrong |= base::LaneMask{1} << lane;
+    });
+    if (wrong == 0) return;
+    report(wave, i, note, "bad-device-address", wrong, [&](std::size_t lane) {
+      char address[32];
+      std::snprintf(address, sizeof address, "0x%llx", static_cast<unsigned long long>(address_of(lane)));
+      std::string text = verb_of(note.access);
+      text += std::to_string(extent.end - extent.first);
+      text += " bytes at address ";
+      text += address;
+      return text += ", which is not inside of live memory";
+    });
+  }
+
+  template <class F>
+  void report(const Wave& wave, const Instruction* i, const InstructionNote& note, const char* rule_id,
+              base::LaneMask lanes, F&& message) {
+    Id first = invocations_(wave, static_cast<std::size_t>(std::countr_zero(lanes)));
+    auto first_lane = static_cast<std::size_t>(std::countr_zero(lanes));
+    base::for_each_lane(lanes, [&](std::size_t lane) {
+      const Id id = invocations_(wave, lane);
+      if (rows_first(id) < rows_first(first)) first = id, first_lane = lane;
+    });
+    const spirv::ObservedCommand* command = wave.resources->command;
+    const auto order = std::tuple(command ? command->submission : 0, command ? command->command : 0, rows_first(first));
+    const auto number = static_cast<std::size_t>(i - wave.program->code.data());
+    program_.places.add({number, rule_id}, static_cast<std::uint64_t>(std::popcount(lanes)), order, [&] {
+      Finding finding;
+      finding.rule = &rule(rule_id);
+      finding.message = message(first_lane);
+      finding.address = program_.context.address(wave, first, note.origin.spirv_id, note.origin.place);
+      return finding;
+    });
+  }
+
+  SanitizedProgram& program_;
+  const spirv::exec::Invocations invocations_;
+};
+
+std::unique_ptr<spirv::exec::Watch> SanitizedProgram::watch(const Wave& wave, const Instruction*) {
+  return std::make_unique<SanitizeWatch>(*this, wave);
+}
+
+class Sanitize : public Tool {
+ public:
+  spirv::exec::Interest interest() const override { return {.accesses = true}; }
+
+  std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
+    auto made = std::make_shared<SanitizedProgram>(shader, program);
+    const std::lock_guard lock(mutex_);
+    programs_.push_back(made);
+    return made;
+  }
+
+  std::vector<Finding> take_findings() override {
+    std::vector<Finding> findings;
+    const std::lock_guard lock(mutex_);
+    for (const auto& program : programs_) program->places.take(findings);
+    const auto key = [](const Finding& f) {
+      return std::tuple(f.address.submission, f.address.command, f.address.stage);
+    };
+    std::stable_sort(findings.begin(), findings.end(),
+                     [&](const Finding& a, const Finding& b) { return key(a) < key(b); });
+    return findings;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::shared_ptr<SanitizedProgram>> programs_;  ///< in the order in which they were made
+};
+
+}  // namespace
+
+std::unique_ptr<Tool> make_sanitize() { return std::make_unique<Sanitize>(); }
+
+}  // namespace vitrine::glass

@@ -1,0 +1,152 @@
+// Which tools are on, one observer for all of them, and the way of findings.
+#include "glass/session.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
+#include <string_view>
+
+#include "base/lasting.h"
+#include "glass/output.h"
+#include "glass/tools.h"
+
+namespace vitrine::glass {
+namespace {
+
+using spirv::exec::Interest;
+using spirv::exec::Watch;
+
+/// The watches of several tools.
+class Watches : public Watch {
+ public:
+  explicit Watches(std::vector<std::unique_ptr<Watch>> watches) : watches_(std::move(watches)) {}
+  void before(const spirv::Wave& wave, const spirv::Instruction* instruction) override {
+    for (const auto& watch : watches_) watch->before(wave, instruction);
+  }
+  void after(const spirv::Wave& wave, const spirv::Instruction* instruction, const spirv::Instruction* next) override {
+    for (const auto& watch : watches_) watch->after(wave, instruction, next);
+  }
+  void access(const spirv::Wave& wave, const spirv::Instruction* instruction,
+              const spirv::InstructionNote& note) override {
+    for (const auto& watch : watches_) watch->access(wave, instruction, note);
+  }
+  void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override {
+    for (const auto& watch : watches_) watch->probe(wave, op);
+  }
+
+ private:
+  std::vector<std::unique_ptr<Watch>> watches_;
+};
+
+/// All tools that are on, for one program.
+class ProgramObserver : public spirv::exec::Observer {
+ public:
+  ProgramObserver(std::span<const std::unique_ptr<Tool>> tools, const ShaderIdentity& shader)
+      : tools_(tools), shader_(shader) {
+    for (const auto& tool : tools) {
+      const Interest wanted = tool->interest();
+      interest_.instructions |= wanted.instructions;
+      interest_.accesses |= wanted.accesses;
+      interest_.arithmetic |= wanted.arithmetic;
+      interest_.blocks |= wanted.blocks;
+      interest_.printf |= wanted.printf;
+    }
+  }
+
+  Interest interest() const override { return interest_; }
+
+  /// Before compile() returns: the words are still there.
+  void made(const spirv::Program& program) const override {
+    for (const auto& tool : tools_)
+      if (auto attached = tool->attach(shader_, program)) programs_.push_back(std::move(attached));
+  }
+
+  std::unique_ptr<Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) const override {
+    if (programs_.size() == 1) return programs_[0]->watch(wave, start);
+    std::vector<std::unique_ptr<Watch>> watches;
+    for (const auto& program : programs_)
+      if (auto one = program->watch(wave, start)) watches.push_back(std::move(one));
+    if (watches.size() == 1) return std::move(watches[0]);
+    return watches.empty() ? nullptr : std::make_unique<Watches>(std::move(watches));
+  }
+
+ private:
+  std::span<const std::unique_ptr<Tool>> tools_;
+  ShaderIdentity shader_;  ///< valid until made() has been called
+  Interest interest_;
+  mutable std::vector<std::shared_ptr<ProgramTool>> programs_;  ///< constant behind made()
+};
+
+struct Row {
+  std::string_view name;
+  std::unique_ptr<Tool> (*make)();
+};
+
+constexpr Row kTools[] = {
+#define VITRINE_TOOL(name, make, effect) {#name, make},
+#include "glass/tools.def"
+#undef VITRINE_TOOL
+};
+
+std::unique_ptr<Tool> make_tool(std::string_view name) {
+  for (const Row& row : kTools)
+    if (row.name == name) return row.make();
+  std::string known;
+  for (const Row& row : kTools) known.append(known.empty() ? "" : ", ").append(row.name);
+  complain("VITRINE_TOOLS: there is no tool '" + std::string(name) + "'; there are " + known);
+  return nullptr;
+}
+
+/// The loader unloads the driver with its last instance, and applications make several, one after the other: what the
+/// tools know of the process must last until it ends.
+void stay_loaded() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&session), &info) != 0 && info.dli_fname != nullptr) {
+    dlopen(info.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
+  }
+}
+
+}  // namespace
+
+Session::Session() {
+  const char* wanted = std::getenv("VITRINE_TOOLS");
+  for (std::string_view rest = wanted ? wanted : ""; !rest.empty();) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    if (comma != 0)
+      if (auto tool = make_tool(rest.substr(0, comma))) tools_.push_back(std::move(tool));
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  if (idle()) return;
+  stay_loaded();
+  const char* report = std::getenv("VITRINE_REPORT");
+  if (report != nullptr && *report != 0) report_ = std::make_unique<ReportFile>(report);
+}
+
+Session::~Session() { write(); }
+
+void Session::add(std::unique_ptr<Tool> tool) { tools_.push_back(std::move(tool)); }
+
+std::shared_ptr<const spirv::exec::Observer> Session::observe(const ShaderIdentity& shader) {
+  if (idle()) return nullptr;
+  return std::make_shared<ProgramObserver>(tools_, shader);
+}
+
+void Session::end_submission(const std::function<void(const Finding&)>& deliver) {
+  std::vector<Finding> findings;
+  for (const auto& tool : tools_) std::ranges::move(tool->take_findings(), std::back_inserter(findings));
+  if (report_) report_->append(findings);
+  for (const Finding& finding : findings) deliver(finding);
+}
+
+void Session::write() {
+  for (const auto& tool : tools_) tool->write();
+}
+
+Session& session() {
+  static const std::unique_ptr<Session>& session = base::lasting([] { return std::make_unique<Session>(); });
+  return *session;
+}
+
+}  // namespace vitrine::glass

@@ -1,0 +1,38 @@
+// The tools that this process asked for (VITRINE_TOOLS), and where what they find goes (VITRINE_REPORT, messengers).
+// Nothing of it exists in a process that asked for none.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "glass/report/report_file.h"
+#include "glass/tool.h"
+
+namespace vitrine::glass {
+
+class Session {
+ public:
+  Session();
+  ~Session();  ///< write()s: the library is unloaded, or the process ends
+
+  /// No tool is on: nothing is observed.
+  bool idle() const { return tools_.empty(); }
+  /// Turns on one more tool, for shaders and devices that are made from now on.
+  void add(std::unique_ptr<Tool> tool);
+  /// Who observes a shader that is about to be compiled; null: nobody. One for each program.
+  std::shared_ptr<const spirv::exec::Observer> observe(const ShaderIdentity& shader);
+  /// A submission is done: what the tools have found goes to the report and to `deliver`, in a fixed order.
+  void end_submission(const std::function<void(const Finding&)>& deliver);
+  /// The tools write what they write at the end.
+  void write();
+
+ private:
+  std::vector<std::unique_ptr<Tool>> tools_;
+  std::unique_ptr<ReportFile> report_;  ///< null: VITRINE_REPORT names none
+};
+
+/// The session of this process.
+Session& session();
+
+}  // namespace vitrine::glass

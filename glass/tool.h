@@ -1,0 +1,41 @@
+// A tool: watches shaders and commands and says what it has found. One file a tool, one row in tools.def.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "glass/finding.h"
+#include "spirv/exec/observe.h"
+
+namespace vitrine::glass {
+
+/// A shader that is about to be compiled.
+struct ShaderIdentity {
+  VkShaderStageFlagBits stage = VK_SHADER_STAGE_VERTEX_BIT;
+  std::string_view entry_point;
+  std::span<const std::uint32_t> words;
+};
+
+/// What a tool keeps of one program. Threads that run the program call watch() and the watches at the same time.
+class ProgramTool {
+ public:
+  virtual ~ProgramTool() = default;
+  /// As spirv::exec::Observer::watch().
+  virtual std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) = 0;
+};
+
+class Tool {
+ public:
+  virtual ~Tool() = default;
+  virtual spirv::exec::Interest interest() const = 0;
+  /// A program has been made for a shader. It may be destroyed before the tool's state is.
+  virtual std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) = 0;
+  /// A submission is done: what has been found since the last one, in an order that does not depend on threads.
+  virtual std::vector<Finding> take_findings() { return {}; }
+  /// Writes what the tool writes of itself (coverage, counts). Called when a device is destroyed and when the library
+  /// is unloaded; may be called again.
+  virtual void write() {}
+};
+
+}  // namespace vitrine::glass

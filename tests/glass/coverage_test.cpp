@@ -1,0 +1,106 @@
+// Which blocks of a shader ran, whatever the rewrites made of its control flow.
+#include "tests/glass/observed.h"
+
+#include <map>
+
+namespace vitrine::glass::test {
+namespace {
+
+/// How often each block ran, in invocations, by its label in the order of the module.
+class Counter : public Tool, public ProgramTool, public std::enable_shared_from_this<Counter> {
+ public:
+  spirv::exec::Interest interest() const override { return {.blocks = true}; }
+  std::shared_ptr<ProgramTool> attach(const ShaderIdentity&, const spirv::Program& program) override {
+    probes_ = program.probes;
+    for (const spirv::Probe& probe : probes_) counts[probe.id] = 0;
+    return std::shared_ptr<ProgramTool>(this, [](ProgramTool*) {});
+  }
+  std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave&, const spirv::Instruction*) override {
+    struct Watch : spirv::exec::Watch {
+      explicit Watch(Counter& c) : counter(c) {}
+      void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override {
+        const auto lanes = spirv::exec::lanes_at(wave, op);
+        counter.counts[counter.probes_[op.probe].id] += static_cast<unsigned>(std::popcount(lanes));
+      }
+      Counter& counter;
+    };
+    return std::make_unique<Watch>(*this);
+  }
+
+  std::map<std::uint32_t, unsigned> counts;
+
+ private:
+  std::vector<spirv::Probe> probes_;
+};
+
+std::vector<unsigned> counts_of(const std::string& body) {
+  const std::string glsl = R"(#version 460
+layout(local_size_x = 8) in;
+layout(set = 0, binding = 0) buffer B { uint v[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+)" + body + "}\n";
+  std::vector<std::uint32_t> plain(64), observed(64);
+  for (std::uint32_t i = 0; i < plain.size(); ++i) plain[i] = observed[i] = i * 3;
+  Counter counter;
+  run_observed(nullptr, glsl, plain, 1);
+  run_observed(&counter, glsl, observed, 1);
+  EXPECT_EQ(plain, observed);
+  std::vector<unsigned> counts;
+  for (const auto& [label, count] : counter.counts) counts.push_back(count);
+  return counts;
+}
+
+using Counts = std::vector<unsigned>;
+
+// Labels in the order in which glslang numbers them: entry, then, merge, else.
+TEST(BlockProbes, SeeBranchesThatBecomeSelections) {
+  EXPECT_EQ(counts_of("uint x = 1u; if (i < 3u) x = 2u; else x = 5u; v[i] = x;"), (Counts{8, 3, 8, 5}));
+}
+
+TEST(BlockProbes, SeeBranchesWithoutEffect) {
+  EXPECT_EQ(counts_of("uint x = 1u; if (i < 3u) x = 2u; v[i] = 1u;"), (Counts{8, 3, 8}));
+}
+
+TEST(BlockProbes, SeeNestedBranches) {
+  EXPECT_EQ(counts_of("uint x = 1u; if (i < 6u) { if (i < 2u) x = 2u; } v[i] = x;"), (Counts{8, 6, 8, 2, 6}));
+}
+
+TEST(BlockProbes, SeeBranchesOnTheSameCondition) {
+  EXPECT_EQ(counts_of("if (i < 3u) v[i] = 1u; if (i < 3u) v[i + 8u] = 2u;"), (Counts{8, 3, 8, 3, 8}));
+}
+
+TEST(BlockProbes, SeeStoresUnderConditions) {
+  EXPECT_EQ(counts_of("if (i < 3u) v[i] = v[i] + 7u;"), (Counts{8, 3, 8}));
+}
+
+TEST(BlockProbes, SeeConstantConditions) {
+  EXPECT_EQ(counts_of("const uint k = 4u; uint n = k; if (n == 5u) v[i] = 1u; else v[i] = 2u;"), (Counts{8, 0, 8, 8}));
+}
+
+// entry, header, body, merge, continue, condition
+TEST(BlockProbes, SeeUnrolledLoops) {
+  const Counts counts = counts_of("uint x = 0u; for (uint k = 0u; k < 3u; ++k) x += v[i + k]; v[i] = x;");
+  EXPECT_EQ(counts, (Counts{8, 32, 24, 8, 24, 32}));
+}
+
+TEST(BlockProbes, SeeLoopsThatStay) {
+  const Counts counts = counts_of("uint x = 0u; for (uint k = 0u; k < i; ++k) x += v[i + k]; v[i] = x;");
+  EXPECT_EQ(counts, (Counts{8, 36, 28, 8, 28, 36}));
+}
+
+TEST(BlockProbes, SeeLoopsWithoutEffect) {
+  const Counts counts = counts_of("uint x = 0u; for (uint k = 0u; k < i; ++k) x += 1u; v[i] = 3u;");
+  EXPECT_EQ(counts, (Counts{8, 36, 28, 8, 28, 36}));
+}
+
+TEST(BlockProbes, SeeLoopsThatAreLeftEarly) {
+  counts_of(
+      "uint s = v[i], steps = 0u; int k0 = int(v[i]) & 7;\n"
+      "do { ++steps; if (v[0] != v[2]) break; } while (--k0 > 0);\n"
+      "switch (((v[3] <= v[4]) ? 16 : int(i)) & 3) { case 0: int k2 = 1; while (k2-- > 0) s = s + v[5]; }\n"
+      "v[i] = s + steps;");
+}
+
+}  // namespace
+}  // namespace vitrine::glass::test
