@@ -1,19 +1,13 @@
-// Accesses that the specification does not allow: outside of buffers, shared memory, local arrays, images and live
-// memory. Each place in a shader is one finding, with a count and the first invocation in order.
+// Accesses to memory that the specification does not allow: outside of buffers, shared memory, push constants, local
+// arrays and live memory.
 #include <algorithm>
-#include <map>
-#include <mutex>
-#include <optional>
-#include <tuple>
+#include <string>
 
-#include "glass/place.h"
-#include "glass/tools.h"
+#include "glass/sanitize/checks.h"
 #include "spirv/exec/buffers.h"
-#include "spirv/exec/invocation.h"
 #include "spirv/exec/observe.h"
-#include "spirv/observed_command.h"
 
-namespace vitrine::glass {
+namespace vitrine::glass::sanitize {
 namespace {
 
 using spirv::Access;
@@ -22,56 +16,6 @@ using spirv::InstructionNote;
 using spirv::MemoryOp;
 using spirv::MemorySpace;
 using spirv::Wave;
-using Id = std::array<std::uint32_t, 3>;
-
-/// Findings of one program, one for each place and rule, until they are taken.
-class Places {
- public:
-  using Key = std::tuple<std::size_t, std::string_view>;  ///< instruction, rule
-
-  /// `make` gives the finding; called for the first invocation only, and for those before it in order.
-  template <class F>
-  void add(const Key& key, std::uint64_t count, const std::tuple<std::uint64_t, std::uint32_t, Id>& order, F&& make) {
-    const std::lock_guard lock(mutex_);
-    const auto [at, added] = findings_.try_emplace(key);
-    Entry& entry = at->second;
-    entry.count += count;
-    if (!added && (entry.delivered || entry.order <= order)) return;
-    entry.order = order;
-    entry.finding = make();
-  }
-
-  void take(std::vector<Finding>& to) {
-    const std::lock_guard lock(mutex_);
-    for (auto& [key, entry] : findings_) {
-      if (std::exchange(entry.delivered, true)) continue;
-      entry.finding.count = entry.count;
-      to.push_back(std::move(entry.finding));
-    }
-  }
-
- private:
-  struct Entry {
-    std::uint64_t count = 0;
-    std::tuple<std::uint64_t, std::uint32_t, Id> order;
-    Finding finding;
-    bool delivered = false;
-  };
-  std::mutex mutex_;
-  std::map<Key, Entry> findings_;
-};
-
-class SanitizedProgram : public ProgramTool {
- public:
-  SanitizedProgram(const ShaderIdentity& shader, const spirv::Program& program) : context(shader, program) {}
-  std::unique_ptr<spirv::exec::Watch> watch(const Wave& wave, const Instruction*) override;
-
-  const ShaderContext context;
-  Places places;
-};
-
-/// Rows down, as Id has x first.
-Id rows_first(const Id& id) { return {id[2], id[1], id[0]}; }
 
 std::string bytes_text(std::uint64_t size, std::uint64_t offset) {
   std::string text = std::to_string(size);
@@ -110,13 +54,14 @@ Extent extent_of(const MemoryOp& row, Access access) {
   return extent;
 }
 
-class SanitizeWatch : public spirv::exec::Watch {
+/// Checks one access.
+class MemoryCheck {
  public:
-  SanitizeWatch(SanitizedProgram& program, const Wave& wave) : program_(program), invocations_(wave) {}
+  explicit MemoryCheck(Reporter& reporter) : reporter_(reporter) {}
 
-  void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
+  void access(const Wave& wave, const Instruction* i, const InstructionNote& note) {
     const base::LaneMask lanes = wave.active & wave.live;
-    if (lanes == 0 || note.access == Access::kImage) return;
+    if (lanes == 0) return;
     const MemoryOp& row = wave.program->memory_ops[i->extra[0]];
     const spirv::OperandPlace address{note.files[1], i->src[0]};
     switch (note.space) {
@@ -124,7 +69,7 @@ class SanitizeWatch : public spirv::exec::Watch {
       case MemorySpace::kStorageBuffer:
         return check_buffer(wave, i, note, row, address, lanes);
       case MemorySpace::kShared:
-        if (program_.context.stage != VK_SHADER_STAGE_COMPUTE_BIT) return;  // memory of the stage, not the shader's
+        if (reporter_.stage() != VK_SHADER_STAGE_COMPUTE_BIT) return;  // memory of the stage, not the shader's
         return check_range(wave, i, note, row, address, lanes, wave.shared_size, "out-of-bounds-shared",
                            [&] { return shared_text(wave); });
       case MemorySpace::kPush:
@@ -182,7 +127,7 @@ class SanitizeWatch : public spirv::exec::Watch {
     if (extent.end == 0) return;
     const base::LaneMask wrong = outside(wave, row, extent, address, lanes, size);
     if (wrong == 0) return;
-    report(wave, i, note, rule, wrong, [&](std::size_t lane) {
+    reporter_.report(wave, i, note, rule, wrong, [&](std::size_t lane) {
       const std::uint32_t offset = spirv::exec::word_of(wave, address, lane) + row.added + extent.first;
       std::string text = verb_of(note.access);
       text += bytes_text(extent.end - extent.first, offset);
@@ -213,7 +158,7 @@ class SanitizeWatch : public spirv::exec::Watch {
   void check_descriptor(const Wave& wave, const Instruction* i, const InstructionNote& note, const MemoryOp& row,
                         std::uint32_t element, base::LaneMask lanes) {
     if (row.set == spirv::ir::kAnySet || element == 0 || element < row.count) return;
-    report(wave, i, note, "out-of-range-descriptor", lanes, [&](std::size_t) {
+    reporter_.report(wave, i, note, "out-of-range-descriptor", lanes, [&](std::size_t) {
       std::string text = "descriptor ";
       text += std::to_string(element);
       text += " of an array of ";
@@ -229,7 +174,7 @@ class SanitizeWatch : public spirv::exec::Watch {
         wrong |= base::LaneMask{1} << lane;
     });
     if (wrong == 0) return;
-    report(wave, i, note, "out-of-bounds-array", wrong, [&](std::size_t lane) {
+    reporter_.report(wave, i, note, "out-of-bounds-array", wrong, [&](std::size_t lane) {
       std::string text = note.access == Access::kLoad ? "load of word " : "store of word ";
       text += std::to_string(static_cast<std::int32_t>(spirv::exec::word_of(wave, address, lane) + row.added));
       text += " of an array variable of ";
@@ -255,7 +200,7 @@ class SanitizeWatch : public spirv::exec::Watch {
         wrong |= base::LaneMask{1} << lane;
     });
     if (wrong == 0) return;
-    report(wave, i, note, "bad-device-address", wrong, [&](std::size_t lane) {
+    reporter_.report(wave, i, note, "bad-device-address", wrong, [&](std::size_t lane) {
       char address[32];
       std::snprintf(address, sizeof address, "0x%llx", static_cast<unsigned long long>(address_of(lane)));
       std::string text = verb_of(note.access);
@@ -266,65 +211,13 @@ class SanitizeWatch : public spirv::exec::Watch {
     });
   }
 
-  template <class F>
-  void report(const Wave& wave, const Instruction* i, const InstructionNote& note, const char* rule_id,
-              base::LaneMask lanes, F&& message) {
-    Id first = invocations_(wave, static_cast<std::size_t>(std::countr_zero(lanes)));
-    auto first_lane = static_cast<std::size_t>(std::countr_zero(lanes));
-    base::for_each_lane(lanes, [&](std::size_t lane) {
-      const Id id = invocations_(wave, lane);
-      if (rows_first(id) < rows_first(first)) first = id, first_lane = lane;
-    });
-    const spirv::ObservedCommand* command = wave.resources->command;
-    const auto order = std::tuple(command ? command->submission : 0, command ? command->command : 0, rows_first(first));
-    const auto number = static_cast<std::size_t>(i - wave.program->code.data());
-    program_.places.add({number, rule_id}, static_cast<std::uint64_t>(std::popcount(lanes)), order, [&] {
-      Finding finding;
-      finding.rule = &rule(rule_id);
-      finding.message = message(first_lane);
-      finding.address = program_.context.address(wave, first, note.origin.spirv_id, note.origin.place);
-      return finding;
-    });
-  }
-
-  SanitizedProgram& program_;
-  const spirv::exec::Invocations invocations_;
-};
-
-std::unique_ptr<spirv::exec::Watch> SanitizedProgram::watch(const Wave& wave, const Instruction*) {
-  return std::make_unique<SanitizeWatch>(*this, wave);
-}
-
-class Sanitize : public Tool {
- public:
-  spirv::exec::Interest interest() const override { return {.accesses = true}; }
-
-  std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
-    auto made = std::make_shared<SanitizedProgram>(shader, program);
-    const std::lock_guard lock(mutex_);
-    programs_.push_back(made);
-    return made;
-  }
-
-  std::vector<Finding> take_findings() override {
-    std::vector<Finding> findings;
-    const std::lock_guard lock(mutex_);
-    for (const auto& program : programs_) program->places.take(findings);
-    const auto key = [](const Finding& f) {
-      return std::tuple(f.address.submission, f.address.command, f.address.stage);
-    };
-    std::stable_sort(findings.begin(), findings.end(),
-                     [&](const Finding& a, const Finding& b) { return key(a) < key(b); });
-    return findings;
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::shared_ptr<SanitizedProgram>> programs_;  ///< in the order in which they were made
+  Reporter& reporter_;
 };
 
 }  // namespace
 
-std::unique_ptr<Tool> make_sanitize() { return std::make_unique<Sanitize>(); }
+void check_memory(Reporter& reporter, const Wave& wave, const Instruction* i, const InstructionNote& note) {
+  MemoryCheck(reporter).access(wave, i, note);
+}
 
-}  // namespace vitrine::glass
+}  // namespace vitrine::glass::sanitize
