@@ -50,6 +50,8 @@ class ProgramObserver : public spirv::exec::Observer {
       interest_.instructions |= wanted.instructions;
       interest_.accesses |= wanted.accesses;
       interest_.arithmetic |= wanted.arithmetic;
+      interest_.numbers |= wanted.numbers;
+      interest_.control |= wanted.control;
       interest_.blocks |= wanted.blocks;
       interest_.printf |= wanted.printf;
     }
@@ -61,6 +63,10 @@ class ProgramObserver : public spirv::exec::Observer {
   void made(const spirv::Program& program) const override {
     for (const auto& tool : tools_)
       if (auto attached = tool->attach(shader_, program)) programs_.push_back(std::move(attached));
+  }
+
+  void apart(const spirv::Wave& wave) const override {
+    for (const auto& program : programs_) program->apart(wave);
   }
 
   std::unique_ptr<Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) const override {

@@ -23,6 +23,8 @@ class ProgramTool {
   virtual ~ProgramTool() = default;
   /// As spirv::exec::Observer::watch().
   virtual std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) = 0;
+  /// As spirv::exec::Observer::apart().
+  virtual void apart(const spirv::Wave&) {}
 };
 
 class Tool {

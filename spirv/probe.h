@@ -18,13 +18,21 @@ struct ProbeValue {
 
 struct Probe {
   enum class Kind : std::uint8_t {
-    kBlock,   ///< a block of the module begins: SPIR-V label `id`
-    kPrintf,  ///< NonSemantic.DebugPrintf
+    kBlock,        ///< a block of the module begins: SPIR-V label `id`
+    kPrintf,       ///< NonSemantic.DebugPrintf
+    kOperation,    ///< an operation that is undefined for some operands, or whose result somebody wants to see
+    kQuad,         ///< a derivative, or a lookup that takes some, comes next
+    kBarrier,      ///< a barrier of the workgroup comes next
+    kUnreachable,  ///< OpUnreachable
   } kind = Kind::kBlock;
   std::uint32_t id = 0;     ///< SPIR-V id of the block or instruction
   std::uint32_t place = 0;  ///< SourceInfo::places
   std::string format;       ///< kPrintf
   std::vector<ProbeValue> values;
+  // kOperation: `values` are its operands, then its result if somebody wants to see it; kQuad
+  std::uint16_t opcode = 0;  ///< in the SPIR-V specification
+  std::uint32_t number = 0;  ///< OpExtInst: the GLSL.std.450 instruction; others: bits of the result's components
+  bool has_result = false;   ///< the last of `values` is the result
   // kBlock
   std::uint32_t function = 0;             ///< id of the function that the block is in
   bool enters = false;                    ///< the block is its function's first

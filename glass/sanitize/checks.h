@@ -9,4 +9,16 @@ namespace vitrine::glass::sanitize {
 void check_memory(Reporter& reporter, const spirv::Wave& wave, const spirv::Instruction* i,
                   const spirv::InstructionNote& note);
 
+/// The active lanes come by a probe of an operation with operands for which it may be undefined. (arithmetic.cpp)
+void check_operation(Reporter& reporter, const spirv::Wave& wave, const spirv::ProbeOp& op, const spirv::Probe& probe);
+
+/// The same of an operation whose result is a floating-point number: a NaN or infinity made of numbers? (numbers.cpp)
+void check_number(Reporter& reporter, const spirv::Wave& wave, const spirv::ProbeOp& op, const spirv::Probe& probe);
+
+/// A derivative, a barrier or what must not be reached comes next. (control.cpp)
+void check_control(Reporter& reporter, const spirv::Wave& wave, const spirv::ProbeOp& op, const spirv::Probe& probe);
+
+/// Waves of a workgroup wait at a barrier, as this one does, that others do not reach. (control.cpp)
+void check_apart(Reporter& reporter, const spirv::Wave& wave);
+
 }  // namespace vitrine::glass::sanitize

@@ -1,5 +1,5 @@
-// What shaders do that the specification does not allow. Each place in a shader is one finding, with a count and the
-// first invocation in order.
+// What shaders do that the specification does not allow, and where their numbers end. Each place in a shader is one
+// finding, with a count and the first invocation in order.
 #include <algorithm>
 #include <mutex>
 #include <tuple>
@@ -15,32 +15,25 @@ using spirv::Instruction;
 using spirv::InstructionNote;
 using spirv::Wave;
 
-class SanitizeWatch : public spirv::exec::Watch {
- public:
-  SanitizeWatch(sanitize::ProgramPlaces& program, const Wave& wave) : reporter_(program, wave) {}
-
-  void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
-    if (note.access != spirv::Access::kImage) sanitize::check_memory(reporter_, wave, i, note);
-  }
-
- private:
-  sanitize::Reporter reporter_;
-};
-
-class SanitizedProgram : public ProgramTool, public sanitize::ProgramPlaces {
+/// A program all of whose waves a watch of this kind looks at.
+template <class WatchType>
+class WatchedProgram : public ProgramTool, public sanitize::ProgramPlaces {
  public:
   using ProgramPlaces::ProgramPlaces;
   std::unique_ptr<spirv::exec::Watch> watch(const Wave& wave, const Instruction*) override {
-    return std::make_unique<SanitizeWatch>(*this, wave);
+    return std::make_unique<WatchType>(*this, wave);
   }
 };
 
-class Sanitize : public Tool {
+/// A tool that finds faults at places of programs.
+template <class Watched>
+class PlacesTool : public Tool {
  public:
-  spirv::exec::Interest interest() const override { return {.accesses = true}; }
+  explicit PlacesTool(const spirv::exec::Interest& interest) : interest_(interest) {}
+  spirv::exec::Interest interest() const override { return interest_; }
 
   std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
-    auto made = std::make_shared<SanitizedProgram>(shader, program);
+    auto made = std::make_shared<Watched>(shader, program);
     const std::lock_guard lock(mutex_);
     programs_.push_back(made);
     return made;
@@ -59,12 +52,69 @@ class Sanitize : public Tool {
   }
 
  private:
+  const spirv::exec::Interest interest_;
   std::mutex mutex_;
-  std::vector<std::shared_ptr<SanitizedProgram>> programs_;  ///< in the order in which they were made
+  std::vector<std::shared_ptr<Watched>> programs_;  ///< in the order in which they were made
+};
+
+class SanitizeWatch : public spirv::exec::Watch {
+ public:
+  SanitizeWatch(sanitize::ProgramPlaces& program, const Wave& wave) : reporter_(program, wave) {}
+
+  void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
+    if (note.access != spirv::Access::kImage) sanitize::check_memory(reporter_, wave, i, note);
+  }
+
+  void probe(const Wave& wave, const spirv::ProbeOp& op) override {
+    const spirv::Probe& probe = wave.program->probes[op.probe];
+    switch (probe.kind) {
+      case spirv::Probe::Kind::kOperation:
+        return sanitize::check_operation(reporter_, wave, op, probe);
+      case spirv::Probe::Kind::kQuad:
+      case spirv::Probe::Kind::kBarrier:
+      case spirv::Probe::Kind::kUnreachable:
+        return sanitize::check_control(reporter_, wave, op, probe);
+      default:
+        return;
+    }
+  }
+
+ private:
+  sanitize::Reporter reporter_;
+};
+
+class SanitizedProgram : public WatchedProgram<SanitizeWatch> {
+ public:
+  using WatchedProgram::WatchedProgram;
+  void apart(const Wave& wave) override {
+    sanitize::Reporter reporter(*this, wave);
+    sanitize::check_apart(reporter, wave);
+  }
+};
+
+/// The tool `numbers`.
+class NumbersWatch : public spirv::exec::Watch {
+ public:
+  NumbersWatch(sanitize::ProgramPlaces& program, const Wave& wave) : reporter_(program, wave) {}
+
+  void probe(const Wave& wave, const spirv::ProbeOp& op) override {
+    const spirv::Probe& probe = wave.program->probes[op.probe];
+    if (probe.has_result) sanitize::check_number(reporter_, wave, op, probe);
+  }
+
+ private:
+  sanitize::Reporter reporter_;
 };
 
 }  // namespace
 
-std::unique_ptr<Tool> make_sanitize() { return std::make_unique<Sanitize>(); }
+std::unique_ptr<Tool> make_sanitize() {
+  return std::make_unique<PlacesTool<SanitizedProgram>>(
+      spirv::exec::Interest{.accesses = true, .arithmetic = true, .control = true});
+}
+
+std::unique_ptr<Tool> make_numbers() {
+  return std::make_unique<PlacesTool<WatchedProgram<NumbersWatch>>>(spirv::exec::Interest{.numbers = true});
+}
 
 }  // namespace vitrine::glass

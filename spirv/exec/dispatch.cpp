@@ -10,6 +10,7 @@
 #include "base/lasting.h"
 #include "base/log.h"
 #include "base/workers.h"
+#include "spirv/exec/observe.h"
 #include "spirv/exec/wave_memory.h"
 
 namespace vitrine::spirv {
@@ -88,7 +89,9 @@ void report_divergence(const GroupMemory& memory, const Launch& launch) {
     if (waiting != nullptr && waiting->resume != wave.resume) apart = true;
     waiting = &wave;
   }
-  if (!apart || waiting == nullptr || launch.reported.exchange(true)) return;
+  if (!apart || waiting == nullptr) return;
+  if (launch.program.observation) launch.program.observation->observer->apart(*waiting);
+  if (launch.reported.exchange(true)) return;
   base::log("error", "a barrier is not reached by all invocations of the workgroup" + exec::place_of(*waiting));
 }
 

@@ -19,8 +19,7 @@ class Watch {
   virtual void before(const Wave&, const Instruction*) {}
   /// `next`: what runs now; null: the wave has ended or waits.
   virtual void after(const Wave&, const Instruction*, const Instruction* /*next*/) {}
-  /// Before an instruction that reads or writes memory or an image, if Interest::accesses, or one whose result may be
-  /// undefined, if Interest::arithmetic.
+  /// Before an instruction that reads or writes memory or an image, if Interest::accesses.
   virtual void access(const Wave&, const Instruction*, const InstructionNote&) {}
   /// The active lanes come by a probe.
   virtual void probe(const Wave&, const ProbeOp&) {}
@@ -30,7 +29,9 @@ class Watch {
 struct Interest {
   bool instructions = false;  ///< all of them: no chains, every instruction leaves its result in a register
   bool accesses = false;      ///< of memory and images: each stays where and what the shader has it
-  bool arithmetic = false;    ///< operations that are undefined for some operands: no chains
+  bool arithmetic = false;    ///< probes of operations that are undefined for some operands
+  bool numbers = false;       ///< probes of floating-point results
+  bool control = false;       ///< probes of what needs invocations together, and of what must not be reached
   bool blocks = false;        ///< probes where blocks begin
   bool printf = false;        ///< probes of NonSemantic.DebugPrintf
   bool operator==(const Interest&) const = default;
@@ -43,6 +44,8 @@ class Observer {
   virtual Interest interest() const { return {.instructions = true}; }
   /// Called when a program that this observes has been made.
   virtual void made(const Program&) const {}
+  /// Waves of a workgroup wait, as this one does, at a barrier that the others have not reached or will not reach.
+  virtual void apart(const Wave&) const {}
   /// Called before each run. Null: this one is not watched.
   virtual std::unique_ptr<Watch> watch(const Wave& wave, const Instruction* start) const = 0;
 };
@@ -61,6 +64,11 @@ void hook_accesses(Program& program);
 
 /// As execute(), for a program with an Observation.
 void execute_observed(Wave& wave, const Instruction* start);
+
+/// What a wave that waits at a barrier waits at.
+inline const InstructionNote& waits_at(const Wave& wave) {
+  return wave.program->notes[static_cast<std::size_t>(wave.resume - wave.program->code.data()) - 1];
+}
 
 /// The lanes that come by a probe.
 base::LaneMask lanes_at(const Wave& wave, const ProbeOp& op);

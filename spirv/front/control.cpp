@@ -397,6 +397,9 @@ std::uint32_t build_terminator(Translator& t, const Block& block, std::uint32_t 
     case Op::OpTerminateInvocation:
       end_invocation(t);
       return 0;
+    case Op::OpUnreachable:
+      if (t.interest.control) probe_before(t, inst);
+      return 0;
     default:
       return 0;
   }
@@ -408,6 +411,12 @@ void load_phi(Translator& t, const Inst& inst) {
 
 void call(Translator& t, const Inst& inst);
 
+void translate_observed(Translator& t, const Inst& inst) {
+  if (t.interest.control) probe_before(t, inst);
+  translate_instruction(t, inst);
+  if (t.interest.arithmetic || t.interest.numbers) probe_after(t, inst);
+}
+
 void build_block(Translator& t, const Block& block) {
   if (t.interest.blocks) probe_block(t, block);
   for (std::uint32_t i = block.first; i < block.last; i++) {
@@ -418,7 +427,7 @@ void build_block(Translator& t, const Block& block) {
     else if (inst.op == Op::OpFunctionCall)
       call(t, inst);
     else
-      translate_instruction(t, inst);
+      translate_observed(t, inst);
   }
 }
 

@@ -11,6 +11,14 @@ namespace vitrine::spirv::front {
 
 /// A probe where a block begins (spirv/probe.h).
 void probe_block(Translator& t, const Block& block);
+/// What observers want to know before an instruction, and of its operands and its result when it has been translated
+/// (checks.cpp).
+void probe_before(Translator& t, const Inst& inst);
+void probe_after(Translator& t, const Inst& inst);
+/// Appends the words of a number, boolean or vector to `words` and says what they are.
+ProbeValue probe_value(Translator& t, const Inst& inst, std::uint32_t id, std::vector<ir::Src>& words);
+/// Appends a probe that reads `words`.
+void emit_probe(Translator& t, Probe probe, std::vector<ir::Src> words);
 /// NonSemantic.DebugPrintf: a probe with its arguments, if somebody listens.
 void debug_printf(Translator& t, const Inst& inst);
 

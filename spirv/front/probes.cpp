@@ -14,8 +14,9 @@ std::string string_of(const Translator& t, std::uint32_t id) {
   return string_at(definition, 0);
 }
 
-/// Appends the words of an argument to `words` and says what they are.
-ProbeValue add_argument(Translator& t, const Inst& inst, std::uint32_t id, std::vector<ir::Src>& words) {
+}  // namespace
+
+ProbeValue probe_value(Translator& t, const Inst& inst, std::uint32_t id, std::vector<ir::Src>& words) {
   ProbeValue result;
   result.first_word = static_cast<std::uint32_t>(words.size());
   const Value value = value_of(t, id);
@@ -43,8 +44,6 @@ void emit_probe(Translator& t, Probe probe, std::vector<ir::Src> words) {
   t.function.probes.push_back(std::move(probe));
 }
 
-}  // namespace
-
 void probe_block(Translator& t, const Block& block) {
   t.inst = &t.module.code[block.first];
   Probe probe;
@@ -71,7 +70,7 @@ void debug_printf(Translator& t, const Inst& inst) {
   probe.format = string_of(t, inst.operand(kFormat));
   std::vector<ir::Src> words;
   for (std::uint32_t i = kFirstArgument; inst.has(i); ++i)
-    probe.values.push_back(add_argument(t, inst, inst.operand(i), words));
+    probe.values.push_back(probe_value(t, inst, inst.operand(i), words));
   emit_probe(t, std::move(probe), std::move(words));
 }
 

@@ -30,7 +30,7 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   lowering::remove_dead(scalars);
   lowering::fuse_multiply_add(scalars);
   lowering::select_operations(scalars);
-  lowering::schedule_chains(scalars, interest.instructions || interest.arithmetic);
+  lowering::schedule_chains(scalars, interest.instructions);
   ShaderInterface interface = function.interface;
   if (observer) lowering::keep_identity(scalars, interface);
   const lowering::Allocation allocation = lowering::allocate(scalars);

@@ -11,8 +11,8 @@ namespace {
 
 /// What observers alone have asked for becomes part of the shader, after all that looks at it: the steps that the
 /// lowering relies on take it apart.
-void release_attached(rewriting::Graph& graph) {
-  graph.release_attached();
+void release_attached(rewriting::Graph& graph, const std::vector<Probe>& probes) {
+  graph.release_attached(probes);
   for (const char* step :
        {"lower_alu_to_scalar", "lower_flrp", "lower_operations", "build_sums", "expand_sized", "convert_to_lcssa"})
     rewriting::find_pass(step)->run(graph);
@@ -25,7 +25,7 @@ void release_attached(rewriting::Graph& graph) {
 void rewrite(ir::Function& function) {
   rewriting::Graph graph(function);
   rewriting::run_passes(graph);
-  if (!graph.attached.empty()) release_attached(graph);
+  if (!graph.attached.empty()) release_attached(graph, function.probes);
   graph.write_back();
 }
 

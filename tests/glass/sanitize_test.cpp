@@ -5,8 +5,8 @@ namespace vitrine::glass::test {
 namespace {
 
 /// "rule xCOUNT first: message" of each finding.
-std::vector<std::string> found(const std::string& declarations, const std::string& body, std::uint32_t groups = 1) {
-  const auto tool = make_sanitize();
+std::vector<std::string> found(const std::string& declarations, const std::string& body, std::uint32_t groups = 1,
+                               const std::unique_ptr<Tool>& tool = make_sanitize()) {
   std::vector<std::uint32_t> words(64);
   for (std::uint32_t i = 0; i < words.size(); ++i) words[i] = i;
   run_observed(tool.get(), R"(#version 460
@@ -70,6 +70,77 @@ TEST(Sanitize, FindsIndicesPastTheEndOfArrays) {
   EXPECT_EQ(found("", fill + "v[i] = a[v[i]];"),
             Texts{"out-of-bounds-array x3 at 5: load of word 5 of an array variable of 5 words"});
   EXPECT_EQ(found("", fill + "v[i] = a[v[i] % 5u];"), Texts{});
+}
+
+TEST(Sanitize, FindsIntegersDividedByZero) {
+  EXPECT_EQ(found("", "v[i] = 100u / v[i];"), Texts{"division-by-zero x1 at 0: 100 divided by 0"});
+  EXPECT_EQ(found("", "v[i] = 100u % (v[i] - 5u);"), Texts{"division-by-zero x1 at 5: 100 divided by 0"});
+  EXPECT_EQ(found("", "v[i] = uint((int(v[i]) - 2147483647 - 1) / (int(v[i + 1u]) - 2));"),
+            Texts{"division-by-zero x2 at 0: -2147483648 divided by -1"});
+  EXPECT_EQ(found("", "if (v[i] != 0u) v[i] = 100u / v[i];"), Texts{});
+}
+
+TEST(Sanitize, FindsOperandsOfVectorsOncePerInvocation) {
+  EXPECT_EQ(found("", "uvec2 q = uvec2(100u) / uvec2(v[i], v[i] / 2u); v[i] = q.x + q.y;"),
+            Texts{"division-by-zero x2 at 0: 100 divided by 0"});
+}
+
+TEST(Sanitize, FindsShiftsThatGoTooFar) {
+  EXPECT_EQ(found("", "v[i] = 1u << (v[i] + 30u);"),
+            Texts{"shift-too-far x6 at 2: shift by 32 of a number of 32 bits"});
+  EXPECT_EQ(found("", "v[i] = uint(int(v[i]) >> (v[i] + 20u));"), Texts{});
+}
+
+TEST(Sanitize, FindsBitFieldsThatDoNotFit) {
+  EXPECT_EQ(found("", "v[i] = bitfieldExtract(v[i], 30, int(v[i]));"),
+            Texts{"bit-field-out-of-range x5 at 3: field of 3 bits at offset 30 of a number of 32 bits"});
+  EXPECT_EQ(found("", "v[i] = bitfieldInsert(v[i], 7u, 30, int(min(v[i], 2u)));"), Texts{});
+}
+
+TEST(Sanitize, FindsConversionsThatDoNotFit) {
+  EXPECT_EQ(found("", "v[i] = uint(float(v[i]) - 2.5);"),
+            Texts{"conversion-out-of-range x2 at 0: conversion of -2.5 to an unsigned integer of 32 bits"});
+  EXPECT_EQ(found("", "v[i] = uint(int(float(v[i]) * 1e9));"),
+            Texts{"conversion-out-of-range x5 at 3: conversion of 3e+09 to a signed integer of 32 bits"});
+  EXPECT_EQ(found("", "v[i] = uint(float(v[i]) - 0.5);"), Texts{});
+}
+
+TEST(Sanitize, FindsArgumentsOfFunctions) {
+  EXPECT_EQ(found("", "v[i] = floatBitsToUint(sqrt(float(v[i]) - 1.0));"), Texts{"undefined-math x1 at 0: sqrt(-1)"});
+  EXPECT_EQ(found("", "v[i] = floatBitsToUint(pow(float(v[i]) - 2.0, 3.0));"),
+            Texts{"undefined-math x2 at 0: pow(-2, 3)"});
+  EXPECT_EQ(found("", "v[i] = clamp(3u, v[i], 5u);"), Texts{"undefined-math x2 at 6: clamp(3, 6, 5)"});
+  EXPECT_EQ(found("", "v[i] = floatBitsToUint(smoothstep(float(v[i]), 6.0, 1.0));"),
+            Texts{"undefined-math x2 at 6: smoothstep(6, 6, 1)"});
+  EXPECT_EQ(found("", "v[i] = floatBitsToUint(log(float(v[i]) + 1.0) + asin(float(v[i]) / 7.0));"), Texts{});
+}
+
+TEST(Sanitize, FindsOperandsInLoopsThatAreUnrolled) {
+  EXPECT_EQ(found("", "uint s = 0u; for (uint k = 0u; k < 4u; ++k) s += v[i] / (3u - k); v[i] = s;"),
+            Texts{"division-by-zero x8 at 0: 0 divided by 0"});
+  EXPECT_EQ(found("", "uint s = 0u; for (uint k = 0u; k < 4u; ++k) s += v[i] / (4u - k); v[i] = s;"), Texts{});
+}
+
+TEST(Sanitize, FindsBarriersThatNotAllReach) {
+  EXPECT_EQ(found("shared uint s;", "if (i < 3u) { s = i; barrier(); } v[i] = i;"),
+            Texts{"divergent-barrier x3 at 0: barrier of a workgroup that not all its invocations reach"});
+  EXPECT_EQ(found("shared uint s;", "if (v[10] == 10u) { s = i; barrier(); } v[i] = i;"), Texts{});
+}
+
+TEST(Sanitize, FindsCasesThatAreMissing) {
+  EXPECT_EQ(found("uint f(uint x) { switch (x) { case 0u: return 1u; default: return 2u; } }", "v[i] = f(v[i]);"),
+            Texts{});
+}
+
+TEST(Numbers, AreFoundWhereTheyBecomeInfiniteOrNone) {
+  const auto numbers = [](const std::string& body) { return found("", body, 1, make_numbers()); };
+  EXPECT_EQ(numbers("float x = 1.0 / float(v[i]); float y = x * float(v[i]); v[i] = floatBitsToUint(y * 2.0);"),
+            (Texts{"infinity x1 at 0: infinity made of 1, 0", "not-a-number x1 at 0: NaN made of inf, 0"}));
+  EXPECT_EQ(numbers("float x = float(v[i]); x = x / x; v[i] = floatBitsToUint(x + 1.0);"),
+            Texts{"not-a-number x1 at 0: NaN made of 0, 0"});
+  EXPECT_EQ(numbers("vec3 n = normalize(vec3(v[i])); v[i] = floatBitsToUint(dot(n, vec3(1.0)));"),
+            Texts{"not-a-number x1 at 0: NaN made of (0, 0, 0)"});
+  EXPECT_EQ(numbers("vec3 n = normalize(vec3(v[i] + 1u)); v[i] = floatBitsToUint(dot(n, vec3(1.0)));"), Texts{});
 }
 
 TEST(Sanitize, CountsAPlaceOnce) {

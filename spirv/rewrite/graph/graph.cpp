@@ -313,7 +313,7 @@ void Graph::move_range(InstId position, InstId first, InstId last, BlockId block
   }
 }
 
-void Graph::release_attached() {
+void Graph::release_attached(const std::vector<Probe>& probes) {
   const Attachments released = std::exchange(attached, {});
   std::vector<InstId> placed;
   const auto place = [&](InstId id, auto&& insert) {
@@ -334,15 +334,33 @@ void Graph::release_attached() {
       place(id, [&] { ends ? insert_before(tail, id) : append(block, id); });
   };
   visit(visit, root);
-  for (const InstId id : placed) zero_lost_operands(id);
+  for (const InstId id : placed) {
+    const bool needs_all =
+        insts[id].op == Op::kProbe && probes[nodes[insts[id].node]->instr.data[0]].kind == Probe::Kind::kOperation;
+    if (needs_all && has_lost_operand(id)) {
+      remove(id);
+    } else {
+      zero_lost_operands(id);
+    }
+  }
+}
+
+bool Graph::is_lost(ir::ValueId value) const {
+  const InstId def = values[value].def;
+  return def == kNone || insts[def].removed;
+}
+
+bool Graph::has_lost_operand(InstId id) const {
+  for (std::uint32_t i = 0; i < insts[id].count; ++i)
+    if (is_lost(source(insts[id], i).value)) return true;
+  return false;
 }
 
 /// What a probe read of a loop that is gone is zero.
 void Graph::zero_lost_operands(InstId id) {
   for (std::uint32_t i = 0; i < insts[id].count; ++i) {
     const Src src = source(insts[id], i);
-    const InstId def = values[src.value].def;
-    if (def != kNone && !insts[def].removed) continue;
+    if (!is_lost(src.value)) continue;
     constexpr std::uint32_t kZeros[4] = {};
     const InstId zero = create_const(values[src.value].components, values[src.value].boolean, kZeros);
     insert_before(blocks[root].head, zero);

@@ -51,8 +51,9 @@ class Graph : public GraphData {
   void splice_before(InstId position, BlockId block);
   /// Moves the instructions [first, last) of one block in front of `position`, with what is attached to them.
   void move_range_before(InstId position, InstId first, InstId last);
-  /// Puts what is attached into the blocks, where it is code like all other.
-  void release_attached();
+  /// Puts what is attached into the blocks, where it is code like all other. `probes`: those of the function. A check
+  /// of an operation that lost an operand is dropped.
+  void release_attached(const std::vector<Probe>& probes);
 
  private:
   BlockId import_list(ir::NodeList& list, InstId owner);
@@ -65,6 +66,8 @@ class Graph : public GraphData {
   void unlink(InstId inst);
   void move_range(InstId position, InstId first, InstId last, BlockId block);
   void attach_unused();
+  bool is_lost(ir::ValueId value) const;
+  bool has_lost_operand(InstId id) const;
   void zero_lost_operands(InstId id);
   bool becomes_attached(const Inst& inst) const;
 };
