@@ -7,6 +7,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -126,6 +127,7 @@ struct ShaderInterface {
   std::uint32_t xfb_stride[kMaxXfbBuffers] = {};  ///< bytes
   std::uint32_t local_size[3] = {1, 1, 1};
   std::uint32_t shared_bytes = 0;
+  std::vector<std::array<std::uint32_t, 2>> zeroed_shared;  ///< byte ranges [first, end) of it that shaders rely on
 
   bool uses_discard = false;          ///< may end fragments (kill, terminate, demote)
   bool writes_memory = false;         ///< stores or atomics to buffers or images

@@ -9,6 +9,11 @@ namespace vitrine::glass::sanitize {
 void check_memory(Reporter& reporter, const spirv::Wave& wave, const spirv::Instruction* i,
                   const spirv::InstructionNote& note);
 
+class SharedShadow;
+/// An instruction that accesses shared memory is about to run: has what it reads been written? (shared.cpp)
+void check_shared(Reporter& reporter, const spirv::Wave& wave, const spirv::Instruction* i,
+                  const spirv::InstructionNote& note, SharedShadow& shadow);
+
 /// The active lanes come by a probe of an operation with operands for which it may be undefined. (arithmetic.cpp)
 void check_operation(Reporter& reporter, const spirv::Wave& wave, const spirv::ProbeOp& op, const spirv::Probe& probe);
 

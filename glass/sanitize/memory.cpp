@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "glass/sanitize/accesses.h"
 #include "glass/sanitize/checks.h"
 #include "spirv/exec/buffers.h"
 #include "spirv/exec/observe.h"
@@ -10,48 +11,15 @@
 namespace vitrine::glass::sanitize {
 namespace {
 
-using spirv::Access;
 using spirv::Instruction;
 using spirv::InstructionNote;
-using spirv::MemoryOp;
 using spirv::MemorySpace;
 using spirv::Wave;
-
-std::string bytes_text(std::uint64_t size, std::uint64_t offset) {
-  std::string text = std::to_string(size);
-  text += size == 1 ? " byte at offset " : " bytes at offset ";
-  return text += std::to_string(offset);
-}
-
-const char* verb_of(Access access) {
-  return access == Access::kLoad ? "load of " : access == Access::kStore ? "store of " : "atomic operation on ";
-}
 
 const char* buffer_rule(Access access) {
   return access == Access::kLoad    ? "out-of-bounds-load"
          : access == Access::kStore ? "out-of-bounds-store"
                                     : "out-of-bounds-atomic";
-}
-
-/// The bytes of one lane's access: [first, first + size) behind its address.
-struct Extent {
-  std::uint32_t first = ~0u, end = 0;
-};
-
-/// What a memory instruction touches behind its address, besides MemoryOp::added.
-Extent extent_of(const MemoryOp& row, Access access) {
-  const std::uint32_t bytes = row.element_bytes;
-  if (access == Access::kAtomic) return {0, bytes};
-  Extent extent;
-  for (std::uint32_t c = 0; c < 4; ++c) {
-    const bool used = access == Access::kLoad ? c < row.components && row.data[c] != spirv::kNoOperand
-                                              : (row.write_mask >> c & 1) != 0;
-    if (!used) continue;
-    const std::uint32_t at = access == Access::kLoad ? row.at[c] : c * bytes;
-    extent.first = std::min(extent.first, at);
-    extent.end = std::max(extent.end, at + bytes);
-  }
-  return extent;
 }
 
 /// Checks one access.

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "glass/sanitize/checks.h"
+#include "glass/sanitize/shared.h"
 #include "glass/tools.h"
 #include "spirv/exec/observe.h"
 
@@ -16,12 +17,12 @@ using spirv::InstructionNote;
 using spirv::Wave;
 
 /// A program all of whose waves a watch of this kind looks at.
-template <class WatchType>
-class WatchedProgram : public ProgramTool, public sanitize::ProgramPlaces {
+template <class WatchType, class PlacesType>
+class WatchedProgram : public ProgramTool, public PlacesType {
  public:
-  using ProgramPlaces::ProgramPlaces;
-  std::unique_ptr<spirv::exec::Watch> watch(const Wave& wave, const Instruction*) override {
-    return std::make_unique<WatchType>(*this, wave);
+  using PlacesType::PlacesType;
+  std::unique_ptr<spirv::exec::Watch> watch(const Wave& wave, const Instruction* start) override {
+    return std::make_unique<WatchType>(*this, wave, start);
   }
 };
 
@@ -57,12 +58,21 @@ class PlacesTool : public Tool {
   std::vector<std::shared_ptr<Watched>> programs_;  ///< in the order in which they were made
 };
 
+struct SanitizedPlaces : sanitize::ProgramPlaces {
+  using ProgramPlaces::ProgramPlaces;
+  sanitize::SharedShadows shared;
+};
+
 class SanitizeWatch : public spirv::exec::Watch {
  public:
-  SanitizeWatch(sanitize::ProgramPlaces& program, const Wave& wave) : reporter_(program, wave) {}
+  SanitizeWatch(SanitizedPlaces& program, const Wave& wave, const Instruction* start)
+      : reporter_(program, wave), shared_(program.shared.of(wave, start)) {}
 
   void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
-    if (note.access != spirv::Access::kImage) sanitize::check_memory(reporter_, wave, i, note);
+    if (note.access == spirv::Access::kImage) return;
+    sanitize::check_memory(reporter_, wave, i, note);
+    if (shared_ != nullptr && note.space == spirv::MemorySpace::kShared)
+      sanitize::check_shared(reporter_, wave, i, note, *shared_);
   }
 
   void probe(const Wave& wave, const spirv::ProbeOp& op) override {
@@ -81,9 +91,10 @@ class SanitizeWatch : public spirv::exec::Watch {
 
  private:
   sanitize::Reporter reporter_;
+  sanitize::SharedShadow* const shared_;  ///< null: the workgroup has none
 };
 
-class SanitizedProgram : public WatchedProgram<SanitizeWatch> {
+class SanitizedProgram : public WatchedProgram<SanitizeWatch, SanitizedPlaces> {
  public:
   using WatchedProgram::WatchedProgram;
   void apart(const Wave& wave) override {
@@ -95,7 +106,7 @@ class SanitizedProgram : public WatchedProgram<SanitizeWatch> {
 /// The tool `numbers`.
 class NumbersWatch : public spirv::exec::Watch {
  public:
-  NumbersWatch(sanitize::ProgramPlaces& program, const Wave& wave) : reporter_(program, wave) {}
+  NumbersWatch(sanitize::ProgramPlaces& program, const Wave& wave, const Instruction*) : reporter_(program, wave) {}
 
   void probe(const Wave& wave, const spirv::ProbeOp& op) override {
     const spirv::Probe& probe = wave.program->probes[op.probe];
@@ -114,7 +125,8 @@ std::unique_ptr<Tool> make_sanitize() {
 }
 
 std::unique_ptr<Tool> make_numbers() {
-  return std::make_unique<PlacesTool<WatchedProgram<NumbersWatch>>>(spirv::exec::Interest{.numbers = true});
+  return std::make_unique<PlacesTool<WatchedProgram<NumbersWatch, sanitize::ProgramPlaces>>>(
+      spirv::exec::Interest{.numbers = true});
 }
 
 }  // namespace vitrine::glass

@@ -83,6 +83,8 @@ Pointer shared_pointer(Translator& t, const Inst& variable, std::uint32_t type_i
   const std::uint64_t end = pointer.constant_offset + size;
   if (end > (1u << 20)) fail(variable, "too much Workgroup memory");
   bytes = std::max(bytes, static_cast<std::uint32_t>(end));
+  if (variable.has(1))
+    t.function.interface.zeroed_shared.push_back({pointer.constant_offset, static_cast<std::uint32_t>(end)});
   return pointer;
 }
 

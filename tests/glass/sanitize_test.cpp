@@ -60,9 +60,9 @@ TEST(Sanitize, FindsWhatWrapsAround) {
 
 TEST(Sanitize, FindsAccessesOutsideOfSharedMemory) {
   const std::string shared = "shared uint s[12];";
-  EXPECT_EQ(found(shared, "s[i + 8u] = i; barrier(); v[i] = s[i];"),
+  EXPECT_EQ(found(shared, "s[i] = i; s[i + 8u] = i; barrier(); v[i] = s[i];"),
             Texts{"out-of-bounds-shared x4 at 4: store of 4 bytes at offset 48, outside of shared memory (48 bytes)"});
-  EXPECT_EQ(found(shared, "s[i + 4u] = i; barrier(); v[i] = s[i];"), Texts{});
+  EXPECT_EQ(found(shared, "s[i] = i; s[i + 4u] = i; barrier(); v[i] = s[i];"), Texts{});
 }
 
 TEST(Sanitize, FindsIndicesPastTheEndOfArrays) {
@@ -119,6 +119,25 @@ TEST(Sanitize, FindsOperandsInLoopsThatAreUnrolled) {
   EXPECT_EQ(found("", "uint s = 0u; for (uint k = 0u; k < 4u; ++k) s += v[i] / (3u - k); v[i] = s;"),
             Texts{"division-by-zero x8 at 0: 0 divided by 0"});
   EXPECT_EQ(found("", "uint s = 0u; for (uint k = 0u; k < 4u; ++k) s += v[i] / (4u - k); v[i] = s;"), Texts{});
+}
+
+TEST(Sanitize, FindsSharedMemoryThatNobodyHasWritten) {
+  const std::string shared = "shared uint s[8];";
+  EXPECT_EQ(found(shared, "if (i != 3u) s[i] = i; barrier(); v[i] = s[7u - i];"),
+            Texts{"uninitialized-shared x1 at 4: load of 4 bytes at offset 12 of shared memory that no invocation has "
+                  "written"});
+  EXPECT_EQ(found(shared, "s[i % 8u] = i; barrier(); v[i] = s[7u - i % 8u];", 3), Texts{});
+  EXPECT_EQ(found("shared uint n;", "atomicAdd(n, i); barrier(); v[i] = n;"),
+            Texts{"uninitialized-shared x1 at 0: atomic operation on 4 bytes at offset 0 of shared memory that no "
+                  "invocation has written"});
+  EXPECT_EQ(found("shared uint n;", "if (i % 8u == 0u) n = 0u; barrier(); atomicAdd(n, i); barrier(); v[i] = n;", 2),
+            Texts{});
+}
+
+TEST(Sanitize, ForgetsSharedMemoryWithItsWorkgroup) {
+  EXPECT_EQ(found("shared uint s[8];", "if (gl_WorkGroupID.x == 0u) s[i % 8u] = i; barrier(); v[i] = s[i % 8u];", 2),
+            Texts{"uninitialized-shared x8 at 8: load of 4 bytes at offset 0 of shared memory that no invocation has "
+                  "written"});
 }
 
 TEST(Sanitize, FindsBarriersThatNotAllReach) {
