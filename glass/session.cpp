@@ -52,6 +52,7 @@ class ProgramObserver : public spirv::exec::Observer {
       interest_.arithmetic |= wanted.arithmetic;
       interest_.numbers |= wanted.numbers;
       interest_.control |= wanted.control;
+      interest_.initialization |= wanted.initialization;
       interest_.blocks |= wanted.blocks;
       interest_.printf |= wanted.printf;
     }

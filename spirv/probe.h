@@ -2,6 +2,7 @@
 // observes have any (spirv/exec/observe.h); they change no result.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -24,15 +25,25 @@ struct Probe {
     kQuad,         ///< a derivative, or a lookup that takes some, comes next
     kBarrier,      ///< a barrier of the workgroup comes next
     kUnreachable,  ///< OpUnreachable
+    kWrite,        ///< cells of variables get a value
+    kRead,         ///< slots say which lanes read cells that have not been written
+    kUse,          ///< something depends on slots
   } kind = Kind::kBlock;
   std::uint32_t id = 0;     ///< SPIR-V id of the block or instruction
   std::uint32_t place = 0;  ///< SourceInfo::places
-  std::string format;       ///< kPrintf
+  std::string format;       ///< kPrintf; kUse: what depends on what
   std::vector<ProbeValue> values;
   // kOperation: `values` are its operands, then its result if somebody wants to see it; kQuad
   std::uint16_t opcode = 0;  ///< in the SPIR-V specification
   std::uint32_t number = 0;  ///< OpExtInst: the GLSL.std.450 instruction; others: bits of the result's components
   bool has_result = false;   ///< the last of `values` is the result
+  // kWrite, kRead, kUse: scalars of variables and phis are numbered cells, values that may be undefined numbered slots.
+  // Operands: indices of elements, as unsigned words; ~0: not known any more
+  std::uint32_t first_cell = 0, cells = 0;
+  std::vector<std::array<std::uint32_t, 2>> steps;  ///< by operand: cells of an element, number of elements
+  std::uint32_t first_slot = 0;                     ///< kRead: of `cells` slots
+  std::vector<std::vector<std::uint32_t>> slots;    ///< kWrite: by cell, those that it depends on (none at all: all are
+                                                    ///< defined); kUse: in [0], those that matter
   // kBlock
   std::uint32_t function = 0;             ///< id of the function that the block is in
   bool enters = false;                    ///< the block is its function's first

@@ -6,6 +6,7 @@
 
 #include "glass/sanitize/checks.h"
 #include "glass/sanitize/shared.h"
+#include "glass/sanitize/variables.h"
 #include "glass/tools.h"
 #include "spirv/exec/observe.h"
 
@@ -59,14 +60,18 @@ class PlacesTool : public Tool {
 };
 
 struct SanitizedPlaces : sanitize::ProgramPlaces {
-  using ProgramPlaces::ProgramPlaces;
+  SanitizedPlaces(const ShaderIdentity& shader, const spirv::Program& program)
+      : ProgramPlaces(shader, program), variables(program) {}
   sanitize::SharedShadows shared;
+  sanitize::VariableShadows variables;
 };
 
 class SanitizeWatch : public spirv::exec::Watch {
  public:
   SanitizeWatch(SanitizedPlaces& program, const Wave& wave, const Instruction* start)
-      : reporter_(program, wave), shared_(program.shared.of(wave, start)) {}
+      : reporter_(program, wave),
+        shared_(program.shared.of(wave, start)),
+        variables_(program.variables.of(wave, start)) {}
 
   void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
     if (note.access == spirv::Access::kImage) return;
@@ -84,6 +89,11 @@ class SanitizeWatch : public spirv::exec::Watch {
       case spirv::Probe::Kind::kBarrier:
       case spirv::Probe::Kind::kUnreachable:
         return sanitize::check_control(reporter_, wave, op, probe);
+      case spirv::Probe::Kind::kWrite:
+      case spirv::Probe::Kind::kRead:
+      case spirv::Probe::Kind::kUse:
+        if (variables_ != nullptr) sanitize::check_variable(reporter_, wave, op, probe, *variables_);
+        return;
       default:
         return;
     }
@@ -91,7 +101,8 @@ class SanitizeWatch : public spirv::exec::Watch {
 
  private:
   sanitize::Reporter reporter_;
-  sanitize::SharedShadow* const shared_;  ///< null: the workgroup has none
+  sanitize::SharedShadow* const shared_;       ///< null: the workgroup has none
+  sanitize::VariableShadow* const variables_;  ///< null: nothing is to be known of variables
 };
 
 class SanitizedProgram : public WatchedProgram<SanitizeWatch, SanitizedPlaces> {
@@ -121,7 +132,7 @@ class NumbersWatch : public spirv::exec::Watch {
 
 std::unique_ptr<Tool> make_sanitize() {
   return std::make_unique<PlacesTool<SanitizedProgram>>(
-      spirv::exec::Interest{.accesses = true, .arithmetic = true, .control = true});
+      spirv::exec::Interest{.accesses = true, .arithmetic = true, .initialization = true, .control = true});
 }
 
 std::unique_ptr<Tool> make_numbers() {

@@ -27,13 +27,14 @@ class Watch {
 
 /// What an observer wants to be told. Fixed when a program is made.
 struct Interest {
-  bool instructions = false;  ///< all of them: no chains, every instruction leaves its result in a register
-  bool accesses = false;      ///< of memory and images: each stays where and what the shader has it
-  bool arithmetic = false;    ///< probes of operations that are undefined for some operands
-  bool numbers = false;       ///< probes of floating-point results
-  bool control = false;       ///< probes of what needs invocations together, and of what must not be reached
-  bool blocks = false;        ///< probes where blocks begin
-  bool printf = false;        ///< probes of NonSemantic.DebugPrintf
+  bool instructions = false;    ///< all of them: no chains, every instruction leaves its result in a register
+  bool accesses = false;        ///< of memory and images: each stays where and what the shader has it
+  bool arithmetic = false;      ///< probes of operations that are undefined for some operands
+  bool numbers = false;         ///< probes of floating-point results
+  bool initialization = false;  ///< probes of variables that may not have been written where they are read
+  bool control = false;         ///< probes of what needs invocations together, and of what must not be reached
+  bool blocks = false;          ///< probes where blocks begin
+  bool printf = false;          ///< probes of NonSemantic.DebugPrintf
   bool operator==(const Interest&) const = default;
 };
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -102,6 +103,9 @@ struct Access {
   std::vector<Step> path;
 };
 
+struct Assigned;  // initialization.h
+struct Initialization;
+
 /// A construct of the control flow that is being built and can be left.
 struct Scope {
   enum class Kind : std::uint8_t { kSelection, kCase, kLoop, kFunction } kind = Kind::kSelection;
@@ -109,6 +113,8 @@ struct Scope {
   std::uint32_t exit = 0;  ///< number in Exit instructions (not kLoop)
   bool exit_used = false;
   const std::unordered_map<std::uint32_t, std::uint32_t>* falls = nullptr;  ///< kCase: case label -> fall-through flag
+  std::shared_ptr<Assigned>
+      left;  ///< what holds on all jumps to its end so far; null: there are none (initialization.h)
 };
 
 /// A function instance that is being inlined.
@@ -164,6 +170,8 @@ struct Translator {
   std::uint32_t exits = 0;
   std::uint32_t depth = 0;  ///< of the recursion over the control flow
   std::size_t nodes = 0;    ///< emitted so far
+
+  std::shared_ptr<Initialization> initialization;  ///< null: nobody asks which variables have been written
 
   const Inst* inst = nullptr;  ///< being translated
   bool exact = false;          ///< the instruction is decorated NoContraction

@@ -6,6 +6,7 @@
 #include "spirv/front/convergence.h"
 #include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
+#include "spirv/front/initialization.h"
 
 namespace vitrine::spirv::front {
 namespace {
@@ -34,12 +35,13 @@ struct Into {
 };
 
 Scope& push_scope(Translator& t, Scope::Kind kind, std::uint32_t merge) {
-  t.scopes.push_back({kind, merge, 0, t.exits++, false, nullptr});
+  t.scopes.push_back({kind, merge, 0, t.exits++, false, nullptr, nullptr});
   return t.scopes.back();
 }
 
 void exit_scope(Translator& t, Scope& scope) {
   scope.exit_used = true;
+  jump_to_end(t, &scope);
   emit_effect(t, ir::Op::kExit).data[0] = scope.exit;
 }
 
@@ -47,6 +49,7 @@ void exit_scope(Translator& t, Scope& scope) {
 void close_scope(Translator& t, ir::NodeList& list) {
   const Scope scope = t.scopes.back();
   t.scopes.pop_back();
+  arrive(t, scope);
   if (scope.exit_used) lower_exits(t, list, scope.exit);
 }
 
@@ -61,6 +64,11 @@ std::uint32_t phi_local(Translator& t, const Inst& phi) {
   return at->second;
 }
 
+void store_phi(Translator& t, std::uint32_t local, std::uint32_t value) {
+  store(t, local_pointer(t, local), value_of(t, value));
+  copy_to_local(t, local, value);
+}
+
 /// Writes the phis of `to` for the edge from the block `from`.
 void store_phis(Translator& t, std::uint32_t from, std::uint32_t to) {
   const Block& block = t.module.block(to);
@@ -72,7 +80,7 @@ void store_phis(Translator& t, std::uint32_t from, std::uint32_t to) {
       break;
     }
     for (std::uint32_t p = 0; p + 1 < phi.count(); p += 2)
-      if (phi.operand(p + 1) == from) store(t, local_pointer(t, phi_local(t, phi)), value_of(t, phi.operand(p)));
+      if (phi.operand(p + 1) == from) store_phi(t, phi_local(t, phi), phi.operand(p));
   }
 }
 
@@ -84,6 +92,7 @@ bool jump_out(Translator& t, std::uint32_t label) {
     if (scope.kind == Scope::Kind::kLoop) {
       if (label != scope.merge && label != scope.continue_target) return false;
       emit_effect(t, label == scope.merge ? ir::Op::kBreak : ir::Op::kContinue);
+      jump_to_end(t, label == scope.merge ? &scope : nullptr);
       return true;
     }
     if (label == scope.merge) {
@@ -119,6 +128,15 @@ void build_branch(Translator& t, ir::NodeList& list, std::uint32_t from, std::ui
   build(t, label, end, false);
 }
 
+/// Both branches of a conditional.
+void build_branches(Translator& t, ir::Node& node, std::uint32_t from, const Inst& branch, std::uint32_t end) {
+  const Assigned before = assigned_here(t);
+  build_branch(t, node.then_list, from, branch.operand(1), end);
+  const Assigned behind = go_on_from(t, before);
+  build_branch(t, node.else_list, from, branch.operand(2), end);
+  go_on_from(t, meet(behind, assigned_here(t)));
+}
+
 void build_if(Translator& t, const Block& block, const Inst& branch) {
   const ir::ValueId chooser = condition(t, branch.operand(0));
   push_scope(t, Scope::Kind::kSelection, block.merge);
@@ -130,8 +148,7 @@ void build_if(Translator& t, const Block& block, const Inst& branch) {
     const Into into(t, list);
     ir::Node& node = emit_node(t, ir::Node::Kind::kIf);
     node.condition = whole(chooser);
-    build_branch(t, node.then_list, block.label, branch.operand(1), block.merge);
-    build_branch(t, node.else_list, block.label, branch.operand(2), block.merge);
+    build_branches(t, node, block.label, branch, block.merge);
   }
   close_scope(t, list);
   append(*t.list, std::move(list));
@@ -256,7 +273,15 @@ void build_switch(Translator& t, const Block& block, const Inst& inst) {
     if (c.label != block.merge && !is_exit(t, c.label)) falls[c.label] = new_flag(t);
   }
   for (const auto& [label, flag] : falls) store_flag(t, flag, false);
-  for (Case& c : cases) build_case(t, c, falls, block.merge);
+  const Assigned before = assigned_here(t);
+  Assigned behind;
+  behind.reachable = false;
+  for (Case& c : cases) {
+    go_on_from(t, before);
+    build_case(t, c, falls, block.merge);
+    behind = meet(behind, assigned_here(t));
+  }
+  go_on_from(t, behind);
 
   std::vector<std::vector<std::size_t>> into(cases.size());
   for (std::size_t to = 0; to < cases.size(); to++)
@@ -291,7 +316,8 @@ void build_loop(Translator& t, const Block& header) {
   store_flag(t, continues, false);
   t.inst = &t.module.code[header.last - 1];
   ir::Node& node = emit_node(t, ir::Node::Kind::kLoop);
-  t.scopes.push_back({Scope::Kind::kLoop, header.merge, header.continue_target, 0, false, nullptr});
+  t.scopes.push_back({Scope::Kind::kLoop, header.merge, header.continue_target, 0, false, nullptr, nullptr});
+  const Assigned before = assigned_here(t);
   {
     const Into into(t, node.body);
     build(t, header.label, header.continue_target, true);
@@ -299,6 +325,7 @@ void build_loop(Translator& t, const Block& header) {
   if (header.continue_target != header.label) {
     // In the continue construct a jump to the continue target is no longer possible; the header ends it.
     t.scopes.back().continue_target = 0;
+    go_on_from(t, before);
     ir::NodeList continuing;
     {
       const Into into(t, continuing);
@@ -306,6 +333,8 @@ void build_loop(Translator& t, const Block& header) {
     }
     if (!continuing.empty()) put_in_front(t, node, std::move(continuing), continues);
   }
+  jump_to_end(t, nullptr);
+  arrive(t, t.scopes.back());
   t.scopes.pop_back();
 }
 
@@ -322,30 +351,34 @@ std::uint32_t build_conditional_jump(Translator& t, const Block& block, const In
   ir::Node& node = emit_node(t, ir::Node::Kind::kIf);
   node.condition = whole(condition(t, branch.operand(0)));
   if (yes_leaves && no_leaves) {
-    build_branch(t, node.then_list, block.label, yes, end);
-    build_branch(t, node.else_list, block.label, no, end);
+    build_branches(t, node, block.label, branch, end);
     return 0;
   }
   const std::uint32_t leaving = yes_leaves ? yes : no, staying = yes_leaves ? no : yes;
   ir::NodeList& jump = yes_leaves ? node.then_list : node.else_list;
   ir::NodeList& rest = yes_leaves ? node.else_list : node.then_list;
+  const Assigned before = assigned_here(t);
   build_branch(t, jump, block.label, leaving, end);
   if (leaving != end) {
+    go_on_from(t, before);
     store_phis(t, block.label, staying);
     return staying;
   }
+  const Assigned behind = go_on_from(t, before);
   build_branch(t, rest, block.label, staying, end);
+  go_on_from(t, meet(behind, assigned_here(t)));
   return 0;
 }
 
 void leave_function(Translator& t, const Inst& inst) {
   const Frame& frame = t.frames.back();
-  if (inst.op == Op::OpReturnValue) store(t, local_pointer(t, frame.result_local), value_of(t, inst.operand(0)));
+  if (inst.op == Op::OpReturnValue) store_phi(t, frame.result_local, inst.operand(0));
   exit_scope(t, t.scopes[frame.scope]);
 }
 
 void end_invocation(Translator& t) {
   t.function.interface.uses_discard = true;
+  jump_to_end(t, nullptr);
   for (const Scope& scope : t.scopes)
     if (scope.kind == Scope::Kind::kLoop) {
       emit_effect(t, ir::Op::kKill);
@@ -377,6 +410,7 @@ void build_selection(Translator& t, const Block& block, const Inst& branch) {
 std::uint32_t build_terminator(Translator& t, const Block& block, std::uint32_t end) {
   const Inst& inst = t.module.code[block.last];
   t.inst = &inst;
+  if (inst.op == Op::OpBranchConditional || inst.op == Op::OpSwitch) use_in_branch(t, inst.operand(0));
   switch (inst.op) {
     case Op::OpBranch:
       store_phis(t, block.label, inst.operand(0));
@@ -399,6 +433,7 @@ std::uint32_t build_terminator(Translator& t, const Block& block, std::uint32_t 
       return 0;
     case Op::OpUnreachable:
       if (t.interest.control) probe_before(t, inst);
+      jump_to_end(t, nullptr);
       return 0;
     default:
       return 0;
@@ -407,13 +442,16 @@ std::uint32_t build_terminator(Translator& t, const Block& block, std::uint32_t 
 
 void load_phi(Translator& t, const Inst& inst) {
   t.values[inst.result] = load(t, local_pointer(t, phi_local(t, inst)));
+  copy_from_local(t, inst.result, phi_local(t, inst));
 }
 
 void call(Translator& t, const Inst& inst);
 
 void translate_observed(Translator& t, const Inst& inst) {
   if (t.interest.control) probe_before(t, inst);
+  before_instruction(t, inst);
   translate_instruction(t, inst);
+  after_instruction(t, inst);
   if (t.interest.arithmetic || t.interest.numbers) probe_after(t, inst);
 }
 
@@ -459,7 +497,7 @@ void bind_arguments(Translator& t, const Inst& inst, const Function& callee) {
     else if (t.module.type(t.module.def(param).result_type).kind == Type::Kind::kPointer)
       t.pointers[param] = pointer_of(t, argument);
     else
-      t.values[param] = value_of(t, argument);
+      t.values[param] = value_of(t, argument), copy_value(t, param, argument);
   }
 }
 
@@ -527,7 +565,9 @@ void call(Translator& t, const Inst& inst) {
   build_function(t, callee->second, local);
   t.call = caller;
   t.inst = &inst;
-  if (has_result) t.values[inst.result] = load(t, local_pointer(t, local));
+  if (!has_result) return;
+  t.values[inst.result] = load(t, local_pointer(t, local));
+  copy_from_local(t, inst.result, local);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "spirv/front/translate.h"
 
 #include "spirv/front/context.h"
+#include "spirv/front/initialization.h"
 #include "spirv/front/parse.h"
 #include "spirv/ir_passes.h"
 
@@ -14,12 +15,14 @@ ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& opt
   const bool observed = interest != exec::Interest{};
   Module module = parse_module(words, options, observed ? SourceTexts::kKeep : SourceTexts::kDrop);
   Translator t(module, options, interest, std::move(module.sources));
+  if (interest.initialization) t.initialization = begin_initialization(module);
   read_modes(t);
   t.fallback.place = entry_place(module);
   try {
     prepare_stage(t);
     const ir::Origin entry = std::exchange(t.fallback, {});
     translate_entry(t);
+    drop_idle_writes(t);
     t.fallback = entry;
     connect_interface(t);
     t.fallback = {};

@@ -134,6 +134,50 @@ TEST(Sanitize, FindsSharedMemoryThatNobodyHasWritten) {
             Texts{});
 }
 
+TEST(Sanitize, FindsVariablesThatWereNotWritten) {
+  EXPECT_EQ(
+      found("", "uint x; if (i < 5u) x = i; v[i] = x;"),
+      Texts{"uninitialized-variable x3 at 5: what is stored depends on variable 'x', which has not been written"});
+  EXPECT_EQ(found("", "uint x; if (i < 5u) x = i; else x = 2u; v[i] = x;"), Texts{});
+  EXPECT_EQ(
+      found("", "uint s; for (uint k = 0u; k < v[4]; ++k) s += k; v[i] = s;"),
+      Texts{"uninitialized-variable x8 at 0: what is stored depends on variable 's', which has not been written"});
+  EXPECT_EQ(found("", "uint x; if (v[i] > 100u) { if (x == 3u) v[i] = 1u; }"), Texts{});
+  EXPECT_EQ(found("", "uint x; if (x + v[i] == 3u) v[i] = 1u;"),
+            Texts{"uninitialized-variable x8 at 0: a branch depends on variable 'x', which has not been written"});
+}
+
+TEST(Sanitize, KnowsComponentsOfVariables) {
+  EXPECT_EQ(found("", "uvec4 x; x.xyz = uvec3(i); uvec4 y = x * 2u; v[i] = y.x + y.y;"), Texts{});
+  EXPECT_EQ(
+      found("", "uvec4 x; x.xyz = uvec3(i); uvec4 y = x * 2u; v[i] = y.x + y.w;"),
+      Texts{"uninitialized-variable x8 at 0: what is stored depends on variable 'x', which has not been written"});
+  const std::string parts = "struct P { uint a; uvec2 b; }; void f(inout P p) { p.b.y = p.a; }";
+  EXPECT_EQ(found(parts, "P p; p.a = i; f(p); v[i] = p.b.y;"), Texts{});
+  EXPECT_EQ(found(parts, "P p; p.b.x = i; f(p); v[i] = p.b.x;"), Texts{});
+  EXPECT_EQ(
+      found(parts, "P p; p.b.x = i; f(p); v[i] = p.b.y;"),
+      Texts{"uninitialized-variable x8 at 0: what is stored depends on variable 'p', which has not been written"});
+}
+
+TEST(Sanitize, KnowsElementsOfArrays) {
+  const std::string fill = "uint a[8]; for (uint k = 0u; k < v[7]; ++k) a[k] = k;";
+  EXPECT_EQ(found("", fill + "v[i] = a[i % 7u];"), Texts{});
+  EXPECT_EQ(
+      found("", fill + "v[i] = a[i];"),
+      Texts{"uninitialized-variable x1 at 7: what is stored depends on variable 'a', which has not been written"});
+  EXPECT_EQ(found("", "uint a[8]; for (uint k = 0u; k < 8u; ++k) a[k] = k; v[i] = a[i];"), Texts{});
+}
+
+TEST(Sanitize, ForgetsVariablesWhereTheyBegin) {
+  EXPECT_EQ(found("uint f(uint k) { uint x; if (k == 0u) x = 7u; return x; }",
+                  "for (uint k = 0u; k < v[2]; ++k) if (f(k) == 7u) v[i] = 3u;"),
+            Texts{"uninitialized-variable x16 at 0: a branch depends on variable 'x', which has not been written"});
+  EXPECT_EQ(
+      found("uint f(uint x) { uint r; if (x > 0u) { r = 1u; } return r; }", "v[i] = f(i) + f(v[i] + 1u);"),
+      Texts{"uninitialized-variable x1 at 0: what is stored depends on variable 'r', which has not been written"});
+}
+
 TEST(Sanitize, ForgetsSharedMemoryWithItsWorkgroup) {
   EXPECT_EQ(found("shared uint s[8];", "if (gl_WorkGroupID.x == 0u) s[i % 8u] = i; barrier(); v[i] = s[i % 8u];", 2),
             Texts{"uninitialized-shared x8 at 8: load of 4 bytes at offset 0 of shared memory that no invocation has "

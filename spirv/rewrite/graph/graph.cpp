@@ -334,15 +334,7 @@ void Graph::release_attached(const std::vector<Probe>& probes) {
       place(id, [&] { ends ? insert_before(tail, id) : append(block, id); });
   };
   visit(visit, root);
-  for (const InstId id : placed) {
-    const bool needs_all =
-        insts[id].op == Op::kProbe && probes[nodes[insts[id].node]->instr.data[0]].kind == Probe::Kind::kOperation;
-    if (needs_all && has_lost_operand(id)) {
-      remove(id);
-    } else {
-      zero_lost_operands(id);
-    }
-  }
+  for (const InstId id : placed) repair_lost_operands(id, probes);
 }
 
 bool Graph::is_lost(ir::ValueId value) const {
@@ -356,15 +348,31 @@ bool Graph::has_lost_operand(InstId id) const {
   return false;
 }
 
-/// What a probe read of a loop that is gone is zero.
-void Graph::zero_lost_operands(InstId id) {
+/// A probe, or what only probes read, that has lost operands with a loop that is gone: a check of an operation is
+/// dropped; an index is ~0, a condition of a write holds, all else is zero.
+void Graph::repair_lost_operands(InstId id, const std::vector<Probe>& probes) {
+  if (!has_lost_operand(id)) return;
+  if (insts[id].op != Op::kProbe) return replace_lost_operands(id, [](std::uint32_t) { return 0u; });
+  const ir::Instr& instr = nodes[insts[id].node]->instr;
+  const Probe::Kind kind = probes[instr.data[0]].kind;
+  if (kind == Probe::Kind::kOperation) return remove(id);
+  const bool writes = kind == Probe::Kind::kWrite, indexed = writes || kind == Probe::Kind::kRead;
+  replace_lost_operands(id, [&](std::uint32_t operand) -> std::uint32_t {
+    if (operand >= instr.data[1]) return indexed ? ~0u : 0;
+    return writes ? instr.data[2 + operand / 32] >> operand % 32 & 1 : 0;
+  });
+}
+
+template <class F>
+void Graph::replace_lost_operands(InstId id, F&& word) {
   for (std::uint32_t i = 0; i < insts[id].count; ++i) {
     const Src src = source(insts[id], i);
     if (!is_lost(src.value)) continue;
-    constexpr std::uint32_t kZeros[4] = {};
-    const InstId zero = create_const(values[src.value].components, values[src.value].boolean, kZeros);
-    insert_before(blocks[root].head, zero);
-    set_source(id, i, {insts[zero].result, src.swizzle});
+    const std::uint32_t value = word(i);
+    const std::uint32_t words[4] = {value, value, value, value};
+    const InstId made = create_const(values[src.value].components, values[src.value].boolean, words);
+    insert_before(blocks[root].head, made);
+    set_source(id, i, {insts[made].result, src.swizzle});
   }
 }
 

@@ -68,7 +68,9 @@ class Graph : public GraphData {
   void attach_unused();
   bool is_lost(ir::ValueId value) const;
   bool has_lost_operand(InstId id) const;
-  void zero_lost_operands(InstId id);
+  void repair_lost_operands(InstId id, const std::vector<Probe>& probes);
+  template <class F>
+  void replace_lost_operands(InstId id, F&& word);
   bool becomes_attached(const Inst& inst) const;
 };
 

@@ -60,6 +60,7 @@ void take_branch(Graph& graph, InstId id, BlockId taken) {
     graph.splice_before(id, taken);
     remove_from(graph, graph.insts[id].block, graph.insts[id].next);
   }
+  graph.attached.leave(graph, id, false);  // what was at the end of the branch
   remove_unreached(graph, id);
 }
 
