@@ -1,12 +1,11 @@
 // Which lines, functions and branches of shaders ran, in invocations (helpers do not count). Written to
 // VITRINE_COVERAGE ("%p" is the process; default vitrine.info).
-#include <atomic>
-#include <bit>
 #include <cstdlib>
 #include <map>
 #include <mutex>
 #include <set>
 
+#include "glass/block_counts.h"
 #include "glass/lcov.h"
 #include "glass/output.h"
 #include "glass/tools.h"
@@ -28,7 +27,9 @@ class CoverageProgram : public ProgramTool {
     for (std::size_t i = 0; i < names_.size(); ++i) names_[i] = name_of_source(sources_->files[i]);
   }
 
-  std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave&, const spirv::Instruction*) override;
+  std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave&, const spirv::Instruction*) override {
+    return counts_.watch();
+  }
 
   void add_to(Coverage& coverage) const;
 
@@ -53,35 +54,17 @@ class CoverageProgram : public ProgramTool {
   std::shared_ptr<const spirv::SourceInfo> sources_;
   std::vector<Probe> probes_;
   std::vector<std::string> names_;  ///< of files, in reports
-  std::vector<std::atomic<std::uint64_t>> counts_;
-
-  friend class CoverageWatch;
+  BlockCounts counts_;
 };
-
-class CoverageWatch : public spirv::exec::Watch {
- public:
-  explicit CoverageWatch(CoverageProgram& program) : program_(program) {}
-  void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override {
-    const base::LaneMask lanes = spirv::exec::lanes_at(wave, op) & wave.live;
-    if (lanes == 0) return;
-    program_.counts_[op.probe].fetch_add(static_cast<std::uint64_t>(std::popcount(lanes)), std::memory_order_relaxed);
-  }
-
- private:
-  CoverageProgram& program_;
-};
-
-std::unique_ptr<spirv::exec::Watch> CoverageProgram::watch(const spirv::Wave&, const spirv::Instruction*) {
-  return std::make_unique<CoverageWatch>(*this);
-}
 
 CoverageProgram::Blocks CoverageProgram::blocks() const {
   Blocks blocks;
+  const std::vector<BlockCounts::Count> counts = counts_.sum();
   for (std::size_t i = 0; i < probes_.size(); ++i) {
     if (probes_[i].kind != Probe::Kind::kBlock) continue;
     Block& block = blocks[probes_[i].id];
     block.probe = &probes_[i];
-    block.count += counts_[i].load(std::memory_order_relaxed);
+    block.count += counts[i].invocations;
   }
   return blocks;
 }

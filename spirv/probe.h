@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vitrine::spirv {
@@ -16,6 +17,27 @@ struct ProbeValue {
   std::uint8_t components = 1;   ///< of a vector
   std::uint32_t first_word = 0;  ///< number of its first word among the probe's words
 };
+
+/// What instructions of SPIR-V do, for those who count them.
+enum class Cost : std::uint8_t {
+  kArithmetic,   ///< numbers, booleans, bits, functions of GLSL.std.450
+  kConversions,  ///< between types of numbers
+  kMoves,        ///< composites, copies, phis, selections, pointers, variables
+  kLoads,        ///< from buffers, push constants, shared memory
+  kStores,       ///< to buffers, shared memory
+  kAtomics,      ///< of memory and images
+  kLookups,      ///< of sampled images, and queries of them
+  kTexels,       ///< texels read or written one by one
+  kDerivatives,
+  kSubgroup,  ///< operations over a subgroup
+  kBarriers,
+  kBranches,  ///< conditional ones and switches
+  kCalls,
+  kBytesLoaded,  ///< by kLoads
+  kBytesStored,  ///< by kStores
+  kCount
+};
+inline constexpr std::size_t kCosts = static_cast<std::size_t>(Cost::kCount);
 
 struct Probe {
   enum class Kind : std::uint8_t {
@@ -45,9 +67,12 @@ struct Probe {
   std::vector<std::vector<std::uint32_t>> slots;    ///< kWrite: by cell, those that it depends on (none at all: all are
                                                     ///< defined); kUse: in [0], those that matter
   // kBlock
-  std::uint32_t function = 0;             ///< id of the function that the block is in
-  bool enters = false;                    ///< the block is its function's first
-  std::vector<std::uint32_t> places;      ///< of the block's instructions, in their order, without repetitions in a row
+  std::uint32_t function = 0;         ///< id of the function that the block is in
+  bool enters = false;                ///< the block is its function's first
+  std::vector<std::uint32_t> places;  ///< of the block's instructions, in their order, without repetitions in a row
+  std::array<std::uint32_t, kCosts> costs{};  ///< of one pass through the block, by Cost
+  /// Instructions by place, in the order in which places first come.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> instructions;
   std::uint32_t end_place = 0;            ///< of the instruction that ends it
   std::vector<std::uint32_t> successors;  ///< labels of the blocks that may come next, in the order of the operands
 };

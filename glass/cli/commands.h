@@ -35,7 +35,8 @@ struct CoverageOptions {
 int coverage(const CoverageOptions& options);
 
 struct CountOptions {
-  std::string output = "counts.json";
+  std::string output;  ///< file for the counters; empty: none
+  bool lines = false;  ///< prints sources with what each line costs
   CommandLine application;
 };
 int count(const CountOptions& options);

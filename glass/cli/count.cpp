@@ -26,6 +26,19 @@ std::optional<std::string> sum_of(const std::vector<std::filesystem::path>& file
   return sum;
 }
 
+/// A table of the totals and of the dearest shaders.
+void print_table(const Counters& counters) {
+  std::fprintf(stdout, "%18s  counter\n", "total");
+  for (const auto& [name, value] : counters)
+    if (name.starts_with("total/")) std::fprintf(stdout, "%18.0f  %s\n", value, name.c_str() + 6);
+  constexpr std::size_t kShown = 10;
+  const auto dearest = dearest_shaders(counters);
+  std::fprintf(stdout, "\n%18s  shader\n", "instructions");
+  for (std::size_t i = 0; i < std::min(dearest.size(), kShown); ++i)
+    std::fprintf(stdout, "%18.0f  %s\n", dearest[i].second, dearest[i].first.c_str());
+  if (dearest.size() > kShown) std::fprintf(stdout, "%18s  %zu more\n", "", dearest.size() - kShown);
+}
+
 std::optional<Counters> counters_of(const std::string& file) {
   const std::optional<std::string> text = read_file(file);
   std::optional<Counters> counters = text ? read_counters(*text) : std::nullopt;
@@ -38,18 +51,26 @@ void print(const CounterChange& change) {
                change.name.c_str());
 }
 
+Environment environment_of(const CountOptions& options, const std::filesystem::path& folder) {
+  Environment environment{{"VITRINE_TOOLS", "count"}, {"VITRINE_COUNTS", folder / "%p.json"}};
+  if (options.lines) environment.emplace("VITRINE_COUNT_LINES", "1");
+  return environment;
+}
+
 }  // namespace
 
 int count(const CountOptions& options) {
   const TemporaryFolder folder;
   if (!demand_tool("count") || folder.path().empty()) return kCouldNotRun;
-  const Ending ending =
-      run_application(options.application, {{"VITRINE_TOOLS", "count"}, {"VITRINE_COUNTS", folder.path() / "%p.json"}});
+  const Ending ending = run_application(options.application, environment_of(options, folder.path()));
   if (!ending.error.empty()) return kCouldNotRun;
   const auto files = folder.files(".json");
   if (files.empty()) say("nothing was counted: no process of the application used this driver");
   const std::optional<std::string> sum = sum_of(files);
-  const bool written = sum && !files.empty() && write_file(options.output, *sum);
+  if (files.empty() || !sum) return ending.code ? ending.code : kCouldNotRun;
+  if (const auto counters = read_counters(*sum)) print_table(*counters);
+  if (options.lines) std::fputs(annotated_sources(*sum).c_str(), stdout);
+  const bool written = options.output.empty() || write_file(options.output, *sum);
   if (ending.code) return ending.code;
   return written ? 0 : kCouldNotRun;
 }

@@ -3,9 +3,11 @@
 
 #include <fnmatch.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "glass/report/json.h"
 
@@ -64,6 +66,40 @@ std::optional<Counters> read_counters(std::string_view text) {
   return counters;
 }
 
+std::vector<std::pair<std::string, double>> dearest_shaders(const Counters& counters) {
+  constexpr std::string_view kGroup = "shaders/", kCounter = "/instructions";
+  std::vector<std::pair<std::string, double>> shaders;
+  for (const auto& [name, value] : counters)
+    if (name.starts_with(kGroup) && name.ends_with(kCounter) && name.size() > kGroup.size() + kCounter.size())
+      shaders.emplace_back(name.substr(kGroup.size(), name.size() - kGroup.size() - kCounter.size()), value);
+  std::stable_sort(shaders.begin(), shaders.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  return shaders;
+}
+
+std::string annotated_sources(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  const Json none = Json::object();
+  const auto group = [&](const Json& of, const std::string& name) -> const Json& {
+    return of.is_object() && of.contains(name) && of[name].is_object() ? of[name] : none;
+  };
+  std::string result;
+  for (const auto& [file, source] : group(json, "sources").items()) {
+    if (!source.is_string()) continue;
+    const Json& costs = group(group(json, "lines"), file);
+    result += "\n" + file + "\n";
+    std::istringstream lines(source.get<std::string>());
+    std::size_t number = 1;
+    for (std::string line; std::getline(lines, line); ++number) {
+      const std::string key = std::to_string(number);
+      const bool known = costs.contains(key) && costs[key].is_number_unsigned();
+      std::string cost = known ? std::to_string(costs[key].get<std::uint64_t>()) : "";
+      cost.insert(0, std::size_t{14} - std::min<std::size_t>(cost.size(), 14), ' ');
+      result += cost + " | " + line + "\n";
+    }
+  }
+  return result;
+}
+
 double CounterChange::growth() const {
   if (before == 0) return after == 0 ? 0 : std::numeric_limits<double>::infinity();
   return (after - before) / before * 100;
@@ -75,6 +111,7 @@ std::vector<CounterChange> changes(const Counters& before, const Counters& after
   for (const auto& [name, value] : after) names.insert(name);
   std::vector<CounterChange> result;
   for (const std::string& name : names) {
+    if (pattern == "*" && name.starts_with("lines/")) continue;
     const CounterChange change{name, value_of(before, name), value_of(after, name)};
     if (change.before != change.after && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) result.push_back(change);
   }

@@ -115,7 +115,8 @@ void add_coverage(CLI::App& app, const Words& words, CoverageOptions& options, i
 
 void add_count(CLI::App& app, const Words& words, CountOptions& options, int& code) {
   CLI::App* command = add_runner(app, "count", "Run it and write what its shaders cost, in numbers that do not move");
-  command->add_option("-o,--output", options.output, "Counters as JSON")->type_name("FILE")->capture_default_str();
+  command->add_option("-o,--output", options.output, "Counters as JSON")->type_name("FILE");
+  command->add_flag("--lines", options.lines, "Print the sources, with the instructions that each line ran");
   command->callback([=, &words, &options, &code] {
     options.application = application_of(*command, words);
     code = count(options);

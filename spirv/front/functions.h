@@ -11,6 +11,8 @@ namespace vitrine::spirv::front {
 
 /// A probe where a block begins (spirv/probe.h).
 void probe_block(Translator& t, const Block& block);
+/// Counts the instructions of a block: Probe::costs, Probe::instructions (costs.cpp).
+void count_costs(const Module& module, const Block& block, Probe& probe);
 /// What observers want to know before an instruction, and of its operands and its result when it has been translated
 /// (checks.cpp).
 void probe_before(Translator& t, const Inst& inst);

@@ -58,6 +58,7 @@ void probe_block(Translator& t, const Block& block) {
     if (probe.places.empty() || probe.places.back() != inst.origin.place) probe.places.push_back(inst.origin.place);
   }
   probe.end_place = t.module.code[block.last].origin.place;
+  count_costs(t.module, block, probe);
   probe.successors = successors_of(t.module, block);
   emit_probe(t, std::move(probe), {});
 }

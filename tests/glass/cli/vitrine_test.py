@@ -195,6 +195,24 @@ class Command(unittest.TestCase):
         self.assertRegex(result.stderr, r"(?m)^tests/glass/app/fill\.comp:8:.* error: .* \[vitrine/out-of-bounds-store\]$")
         self.assertRegex(result.stderr, r"command 3 \(vkCmdDispatch\), compute shader main, invocation \(8, 0, 0\); 8 times")
 
+    def test_counts_do_not_move_and_grow_with_the_work(self):
+        for name, rounds in (("a.json", "1"), ("b.json", "1"), ("c.json", "2")):
+            result = self.run_it("count", "-o", name, self.small_application, rounds)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"(?m)^ +16  stores$")
+        self.assertEqual((self.folder / "a.json").read_bytes(), (self.folder / "b.json").read_bytes())
+        self.assertEqual(self.run_it("diff", "a.json", "b.json", "--max=0").returncode, 0)
+        result = self.run_it("diff", "a.json", "c.json", "--max=5%")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stdout, r"8 +16 +\+100\.00 % +total/stores")
+
+    def test_lines_with_their_costs(self):
+        result = self.run_it("count", "--lines", self.small_application)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"(?m)^ +32 \|   data\[i\] = i;$")
+        self.assertRegex(result.stdout, r"(?m)^ +\| #version 450$")
+        self.assertFalse((self.folder / "vitrine-sources").exists())
+
     def test_coverage_of_all_instances_and_processes(self):
         two_processes = ["sh", "-c", f"{self.small_application} 2 && {self.small_application}"]
         result = self.run_it("coverage", "-o", "a.info", "--sources=sources", *two_processes)

@@ -1,0 +1,45 @@
+// How often the blocks of one program ran. Every thread counts for itself, so that counting waits for nobody.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "spirv/exec/observe.h"
+
+namespace vitrine::glass {
+
+class BlockCounts {
+ public:
+  /// Of one block.
+  struct Count {
+    std::uint64_t invocations = 0;  ///< that came by, without helpers
+    std::uint64_t helpers = 0;
+    std::uint64_t waves = 0;  ///< in which any did
+  };
+
+  /// `probes`: how many the program has.
+  explicit BlockCounts(std::size_t probes) : probes_(probes) {}
+
+  /// Counts what a wave does.
+  std::unique_ptr<spirv::exec::Watch> watch();
+  /// So far, by probe.
+  std::vector<Count> sum() const;
+
+ private:
+  /// Written by one thread.
+  struct Cell {
+    std::atomic<std::uint64_t> invocations{0}, helpers{0}, waves{0};
+  };
+  using Cells = std::vector<Cell>;
+  class Counter;
+
+  const std::size_t probes_;
+  mutable std::mutex mutex_;
+  std::map<std::thread::id, Cells> of_thread_;
+};
+
+}  // namespace vitrine::glass
