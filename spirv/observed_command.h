@@ -17,6 +17,7 @@ class ObservedCommand {
   const char* name = "";            ///< "vkCmdDraw"...
   std::vector<std::string> labels;  ///< VK_EXT_debug_utils: those that are open, outermost first
   std::string pipeline;             ///< name of the pipeline; empty: it has none
+  bool null_descriptors = false;    ///< descriptors may be null (nullDescriptor): accesses through them are defined
 
   /// Name of what is bound at a descriptor ("buffer 'particles' (4096 bytes)"); empty: nothing is known.
   virtual std::string resource(std::uint32_t set, std::uint32_t slot) const = 0;

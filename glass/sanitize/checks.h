@@ -9,6 +9,10 @@ namespace vitrine::glass::sanitize {
 void check_memory(Reporter& reporter, const spirv::Wave& wave, const spirv::Instruction* i,
                   const spirv::InstructionNote& note);
 
+/// An image instruction is about to run: texels that the view has? (images.cpp)
+void check_image(Reporter& reporter, const spirv::Wave& wave, const spirv::Instruction* i,
+                 const spirv::InstructionNote& note);
+
 class SharedShadow;
 /// An instruction that accesses shared memory is about to run: has what it reads been written? (shared.cpp)
 void check_shared(Reporter& reporter, const spirv::Wave& wave, const spirv::Instruction* i,

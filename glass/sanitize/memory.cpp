@@ -5,6 +5,7 @@
 
 #include "glass/sanitize/accesses.h"
 #include "glass/sanitize/checks.h"
+#include "glass/sanitize/descriptors.h"
 #include "spirv/exec/buffers.h"
 #include "spirv/exec/observe.h"
 
@@ -57,14 +58,6 @@ class MemoryCheck {
     return text += " bytes)";
   }
 
-  static std::string resource_text(const Wave& wave, std::uint32_t set, std::uint32_t slot, std::uint64_t size) {
-    std::string text = wave.resources->command ? wave.resources->command->resource(set, slot) : std::string();
-    if (!text.empty()) return text;
-    text = "a buffer of ";
-    text += std::to_string(size);
-    return text += " bytes";
-  }
-
   /// Lanes of `lanes` whose access lies outside of [0, size).
   static base::LaneMask outside(const Wave& wave, const MemoryOp& row, Extent extent, spirv::OperandPlace address,
                                 base::LaneMask lanes, std::uint64_t size) {
@@ -108,9 +101,12 @@ class MemoryCheck {
     spirv::exec::for_each_buffer(
         const_cast<Wave&>(wave), row, lanes, [&](const spirv::exec::Bytes& bytes, base::LaneMask same) {
           const std::uint32_t element = element_of(wave, row, same);
-          if (bytes.data == nullptr) return check_descriptor(wave, i, note, row, element, same);
-          check_range(wave, i, note, row, address, same, bytes.size, buffer_rule(note.access),
-                      [&] { return resource_text(wave, row.set, row.slot + element, bytes.size); });
+          if (bytes.data == nullptr)
+            return report_descriptor(reporter_, wave, i, note, row.set, row.slot, element, row.count, same);
+          check_range(wave, i, note, row, address, same, bytes.size, buffer_rule(note.access), [&] {
+            return resource_text(wave, row.set, row.slot + element,
+                                 "a buffer of " + std::to_string(bytes.size) + " bytes");
+          });
         });
   }
 
@@ -119,19 +115,6 @@ class MemoryCheck {
     const bool uniform = row.index.file == spirv::IndexOperand::File::kUniform;
     return spirv::exec::word_of(wave, {uniform ? 'u' : 'r', row.index.value},
                                 static_cast<std::size_t>(std::countr_zero(lanes)));
-  }
-
-  /// A descriptor that leads nowhere: past the end of its array. (One that is null reads zeros where the device was
-  /// made so, and is not told apart from one that was never written.)
-  void check_descriptor(const Wave& wave, const Instruction* i, const InstructionNote& note, const MemoryOp& row,
-                        std::uint32_t element, base::LaneMask lanes) {
-    if (row.set == spirv::ir::kAnySet || element == 0 || element < row.count) return;
-    reporter_.report(wave, i, note, "out-of-range-descriptor", lanes, [&](std::size_t) {
-      std::string text = "descriptor ";
-      text += std::to_string(element);
-      text += " of an array of ";
-      return text += std::to_string(row.count);
-    });
   }
 
   void check_array(const Wave& wave, const Instruction* i, const InstructionNote& note, const MemoryOp& row,

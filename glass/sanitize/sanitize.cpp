@@ -74,7 +74,7 @@ class SanitizeWatch : public spirv::exec::Watch {
         variables_(program.variables.of(wave, start)) {}
 
   void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
-    if (note.access == spirv::Access::kImage) return;
+    if (note.access == spirv::Access::kImage) return sanitize::check_image(reporter_, wave, i, note);
     sanitize::check_memory(reporter_, wave, i, note);
     if (shared_ != nullptr && note.space == spirv::MemorySpace::kShared)
       sanitize::check_shared(reporter_, wave, i, note, *shared_);

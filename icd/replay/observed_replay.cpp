@@ -67,6 +67,7 @@ const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline
   made->name = observed.name;
   made->labels = observed.queue_labels;
   made->labels.insert(made->labels.end(), observed.labels.open().begin(), observed.labels.open().end());
+  made->null_descriptors = state.device.features.test(Feature::nullDescriptor);
   made->pipeline = name_of(state.device.physical_device.instance, ref(pipeline));
   observed.commands.push_back(std::move(made));
   observed.objects.push_back({observed.command, observed.command_buffer, ref(pipeline)});

@@ -43,4 +43,35 @@ inline void run_observed(Tool* tool, const std::string& glsl, std::vector<std::u
   ASSERT_TRUE(spirv::test::dispatch_over(words, module, options, groups));
 }
 
+/// "rule xCOUNT at INVOCATION: message" of each finding.
+inline std::vector<std::string> texts_of(Tool& tool) {
+  std::vector<std::string> texts;
+  for (const Finding& finding : tool.take_findings())
+    texts.push_back(std::string(finding.rule->id) + " x" + std::to_string(finding.count) + " at " +
+                    std::to_string(finding.address.invocation.id[0]) + ": " + finding.message);
+  return texts;
+}
+
+/// What sanitize finds in one workgroup of a compute shader with these resources, whose set 0 is laid out so.
+inline std::vector<std::string> found_with(const spirv::ResourceTable& resources, const spirv::SetLayoutInfo& set,
+                                           const std::string& glsl) {
+  std::string log;
+  const auto module =
+      vitrine::test::compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, glsl, vitrine::test::VulkanVersion::k12, log);
+  EXPECT_FALSE(module.empty()) << log;
+  const auto tool = make_sanitize();
+  spirv::CompileOptions options;
+  options.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  options.sets = {set};
+  options.observer = std::make_shared<ToolObserver>(*tool, ShaderIdentity{options.stage, "main", module});
+  const auto shader = spirv::compile(module, options);
+  EXPECT_TRUE(shader) << shader.message();
+  if (!shader) return {};
+  spirv::Fault fault;
+  const spirv::BoundShader bound(*shader.value(), resources, fault);
+  const std::uint32_t base[3] = {0, 0, 0}, counts[3] = {1, 1, 1};
+  spirv::dispatch(bound, base, counts);
+  return texts_of(*tool);
+}
+
 }  // namespace vitrine::glass::test

@@ -4,7 +4,7 @@
 namespace vitrine::glass::test {
 namespace {
 
-/// "rule xCOUNT first: message" of each finding.
+/// As texts_of().
 std::vector<std::string> found(const std::string& declarations, const std::string& body, std::uint32_t groups = 1,
                                const std::unique_ptr<Tool>& tool = make_sanitize()) {
   std::vector<std::uint32_t> words(64);
@@ -17,11 +17,7 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
 )" + body + "}\n",
                words, groups);
-  std::vector<std::string> texts;
-  for (const Finding& finding : tool->take_findings())
-    texts.push_back(std::string(finding.rule->id) + " x" + std::to_string(finding.count) + " at " +
-                    std::to_string(finding.address.invocation.id[0]) + ": " + finding.message);
-  return texts;
+  return texts_of(*tool);
 }
 
 using Texts = std::vector<std::string>;
