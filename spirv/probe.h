@@ -49,6 +49,7 @@ struct Probe {
     kUnreachable,  ///< OpUnreachable
     kWrite,        ///< cells of variables get a value
     kRead,         ///< slots say which lanes read cells that have not been written
+    kChoose,       ///< slots are those of one value or of another
     kUse,          ///< something depends on slots
   } kind = Kind::kBlock;
   std::uint32_t id = 0;     ///< SPIR-V id of the block or instruction
@@ -60,10 +61,11 @@ struct Probe {
   std::uint32_t number = 0;  ///< OpExtInst: the GLSL.std.450 instruction; others: bits of the result's components
   bool has_result = false;   ///< the last of `values` is the result
   // kWrite, kRead, kUse: scalars of variables and phis are numbered cells, values that may be undefined numbered slots.
-  // Operands: indices of elements, as unsigned words; ~0: not known any more
+  // Operands: indices of elements, as unsigned words; ~0: not known any more. kChoose: by slot of the result a
+  // condition, and in `slots` two entries, where it holds and where it does not
   std::uint32_t first_cell = 0, cells = 0;
   std::vector<std::array<std::uint32_t, 2>> steps;  ///< by operand: cells of an element, number of elements
-  std::uint32_t first_slot = 0;                     ///< kRead: of `cells` slots
+  std::uint32_t first_slot = 0;                     ///< kRead, kChoose: of `cells` slots
   std::vector<std::vector<std::uint32_t>> slots;    ///< kWrite: by cell, those that it depends on (none at all: all are
                                                     ///< defined); kUse: in [0], those that matter
   // kBlock

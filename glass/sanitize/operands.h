@@ -17,18 +17,23 @@ class Words {
   Words(const spirv::Wave& wave, spirv::OperandPlace place) {
     if (place.file == 'r') {
       words_ = reinterpret_cast<const base::WaveRegister*>(wave.registers + place.offset)->lane;
-      step_ = 1;
+    } else if (place.file == 'm') {
+      mask_ = wave.masks[place.offset / sizeof(base::LaneMask)];
+      is_mask_ = true;
     } else {
       word_ = spirv::exec::word_of(wave, place, 0);
     }
   }
-  std::uint32_t operator[](std::size_t lane) const { return step_ != 0 ? words_[lane] : word_; }
-  bool varying() const { return step_ != 0; }
+  std::uint32_t operator[](std::size_t lane) const {
+    if (words_ != nullptr) return words_[lane];
+    return is_mask_ ? static_cast<std::uint32_t>(mask_ >> lane & 1) : word_;
+  }
 
  private:
   const std::uint32_t* words_ = nullptr;
   std::uint32_t word_ = 0;
-  std::size_t step_ = 0;  ///< 0: the same in all lanes
+  base::LaneMask mask_ = 0;
+  bool is_mask_ = false;
 };
 
 /// One component of a value.

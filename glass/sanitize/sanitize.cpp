@@ -91,6 +91,7 @@ class SanitizeWatch : public spirv::exec::Watch {
         return sanitize::check_control(reporter_, wave, op, probe);
       case spirv::Probe::Kind::kWrite:
       case spirv::Probe::Kind::kRead:
+      case spirv::Probe::Kind::kChoose:
       case spirv::Probe::Kind::kUse:
         if (variables_ != nullptr) sanitize::check_variable(reporter_, wave, op, probe, *variables_);
         return;

@@ -61,6 +61,16 @@ void read(VariableShadow& shadow, const Wave& wave, const ProbeOp& op, const Pro
   });
 }
 
+void choose(VariableShadow& shadow, const Wave& wave, const ProbeOp& op, const Probe& probe, base::LaneMask lanes) {
+  for (std::uint32_t c = 0; c < probe.cells; ++c) {
+    const Words condition(wave, op.operands[c]);
+    const base::LaneMask holds = lanes_where(lanes, [&](std::size_t lane) { return condition[lane] != 0; });
+    const base::LaneMask undefined =
+        (undefined_in(shadow, probe.slots[2 * c]) & holds) | (undefined_in(shadow, probe.slots[2 * c + 1]) & ~holds);
+    set(shadow.undefined[probe.first_slot + c], lanes, undefined);
+  }
+}
+
 /// Says it once: what else depends on the same values is the same fault.
 void use(VariableShadow& shadow, Reporter& reporter, const Wave& wave, const ProbeOp& op, const Probe& probe,
          base::LaneMask lanes) {
@@ -84,6 +94,7 @@ VariableShadows::VariableShadows(const spirv::Program& program) {
   for (const spirv::ProbeOp& op : program.probe_ops) {
     const Probe& probe = program.probes[op.probe];
     if (probe.kind == Probe::Kind::kUse) slots_ = std::max(slots_, 1u);
+    if (probe.kind == Probe::Kind::kChoose) slots_ = std::max(slots_, probe.first_slot + probe.cells);
     if (probe.kind != Probe::Kind::kRead && probe.kind != Probe::Kind::kWrite) continue;
     std::uint32_t end = probe.first_cell + probe.cells;
     for (const auto& [cells, length] : probe.steps) end += cells * (length - 1);
@@ -115,6 +126,8 @@ void check_variable(Reporter& reporter, const Wave& wave, const ProbeOp& op, con
       return write(shadow, wave, op, probe, lanes);
     case Probe::Kind::kRead:
       return read(shadow, wave, op, probe, lanes);
+    case Probe::Kind::kChoose:
+      return choose(shadow, wave, op, probe, lanes);
     default:
       return use(shadow, reporter, wave, op, probe, lanes);
   }

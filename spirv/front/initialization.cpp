@@ -289,13 +289,6 @@ SlotsOf of_operation(const Translator& t, const Inst& inst, std::uint32_t first,
   return slots;
 }
 
-/// Which way a choice goes is known at run time alone: undefined where both values are.
-SlotsOf of_select(const Translator& t, const Inst& inst) {
-  const SlotsOf a = slots_of(t, inst.operand(1)), b = slots_of(t, inst.operand(2));
-  if (a.empty() || b.empty()) return {};
-  return of_operation(t, inst, 1, true);
-}
-
 /// Operations all of whose operands are values.
 bool is_operation(Op op) {
   const auto in = [op](Op first, Op last) { return op >= first && op <= last; };
@@ -339,8 +332,6 @@ SlotsOf slots_of_result(const Translator& t, const Inst& inst) {
       return of_insert(t, inst);
     case Op::OpVectorShuffle:
       return of_shuffle(t, inst);
-    case Op::OpSelect:
-      return of_select(t, inst);
     default:
       return is_operation(inst.op) ? of_operation(t, inst, 0, !mixes_components(inst.op)) : SlotsOf{};
   }
@@ -416,6 +407,35 @@ void copy_memory(Translator& t, const Inst& inst) {
   }
 }
 
+/// OpSelect of scalars, vectors or composites (whose condition is a scalar): which value it is, is known at run time.
+void choose(Translator& t, const Inst& inst) {
+  const std::uint32_t count = scalars_of(t, inst.result_type);
+  const SlotsOf conditions = slots_of(t, inst.operand(0));
+  SlotsOf holds = slots_of(t, inst.operand(1)), else_ = slots_of(t, inst.operand(2));
+  if (holds.empty() && else_.empty() && conditions.empty()) return set_slots(t, inst.result, {});
+  holds.resize(count), else_.resize(count);
+  Initialization& state = *t.initialization;
+  Probe probe;
+  probe.kind = Probe::Kind::kChoose;
+  probe.id = inst.result;
+  probe.cells = count;
+  probe.first_slot = state.slots;
+  std::vector<ir::Src> words;
+  const ProbeValue condition = probe_value(t, inst, inst.operand(0), words);
+  if (condition.components == 1) words.resize(count, words.front());
+  SlotsOf slots;
+  for (std::uint32_t c = 0; c < count; ++c) {
+    slots.push_back({state.slots++});
+    if (!conditions.empty()) unite(slots.back(), conditions[conditions.size() == 1 ? 0 : c]);
+    const Slots& source = holds[c].empty() ? else_[c] : holds[c];
+    state.variable_of_slot.push_back(source.empty() ? 0 : state.variable_of_slot[source.front()]);
+    probe.slots.push_back(std::move(holds[c]));
+    probe.slots.push_back(std::move(else_[c]));
+  }
+  emit_probe(t, std::move(probe), std::move(words));
+  set_slots(t, inst.result, std::move(slots));
+}
+
 bool is_idle_write(const Translator& t, const ir::Node& node) {
   if (node.kind != ir::Node::Kind::kInstr || node.instr.op != ir::Op::kProbe) return false;
   const std::uint32_t number = node.instr.data[0];
@@ -486,6 +506,8 @@ void after_instruction(Translator& t, const Inst& inst) {
       return write_cells(t, cells_of(t, pointer_of(t, inst.operand(0))), slots_of(t, inst.operand(1)));
     case Op::OpCopyMemory:
       return copy_memory(t, inst);
+    case Op::OpSelect:
+      return choose(t, inst);
     case Op::OpExtInst:
       return after_function(t, inst);
     default:

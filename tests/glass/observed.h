@@ -26,11 +26,8 @@ class ToolObserver : public spirv::exec::Observer {
 };
 
 /// Runs `groups` workgroups of a compute shader over `words`, binding 0 of set 0; with `tool`, if there is one.
-inline void run_observed(Tool* tool, const std::string& glsl, std::vector<std::uint32_t>& words, std::uint32_t groups) {
-  std::string log;
-  const std::vector<std::uint32_t> module =
-      vitrine::test::compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, glsl, vitrine::test::VulkanVersion::k12, log);
-  ASSERT_FALSE(module.empty()) << log;
+inline void run_observed(Tool* tool, const std::vector<std::uint32_t>& module, std::vector<std::uint32_t>& words,
+                         std::uint32_t groups) {
   spirv::CompileOptions options;
   options.stage = VK_SHADER_STAGE_COMPUTE_BIT;
   spirv::SetLayoutInfo set;
@@ -41,6 +38,15 @@ inline void run_observed(Tool* tool, const std::string& glsl, std::vector<std::u
   if (tool != nullptr)
     options.observer = std::make_shared<ToolObserver>(*tool, ShaderIdentity{options.stage, "main", module});
   ASSERT_TRUE(spirv::test::dispatch_over(words, module, options, groups));
+}
+
+/// The same with a shader in GLSL.
+inline void run_observed(Tool* tool, const std::string& glsl, std::vector<std::uint32_t>& words, std::uint32_t groups) {
+  std::string log;
+  const std::vector<std::uint32_t> module =
+      vitrine::test::compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, glsl, vitrine::test::VulkanVersion::k12, log);
+  ASSERT_FALSE(module.empty()) << log;
+  run_observed(tool, module, words, groups);
 }
 
 /// "rule xCOUNT at INVOCATION: message" of each finding.

@@ -17,8 +17,15 @@ enum class VulkanVersion : std::uint8_t { k11, k12 };
 enum class DebugInfo : std::uint8_t { kNone, kLines, kNonSemantic };
 inline constexpr char kSourceName[] = "shader.glsl";
 
-/// The words of `text`, a whole shader with its #version, not optimised. Empty: it does not compile, `log` says why.
+enum class Language : std::uint8_t { kGlsl, kHlsl };
+
+/// The words of `text`, a whole shader (GLSL: with its #version; the entry point is main), not optimised. Empty: it
+/// does not compile, `log` says why.
 std::vector<std::uint32_t> compile_glsl(VkShaderStageFlagBits stage, const std::string& text, VulkanVersion version,
-                                        std::string& log, DebugInfo debug = DebugInfo::kNone);
+                                        std::string& log, DebugInfo debug = DebugInfo::kNone,
+                                        Language language = Language::kGlsl);
+
+/// The module as spirv-opt -O makes it; empty: it cannot be read.
+std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& module);
 
 }  // namespace vitrine::test

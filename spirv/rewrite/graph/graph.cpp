@@ -355,7 +355,7 @@ void Graph::repair_lost_operands(InstId id, const std::vector<Probe>& probes) {
   if (insts[id].op != Op::kProbe) return replace_lost_operands(id, [](std::uint32_t) { return 0u; });
   const ir::Instr& instr = nodes[insts[id].node]->instr;
   const Probe::Kind kind = probes[instr.data[0]].kind;
-  if (kind == Probe::Kind::kOperation) return remove(id);
+  if (kind == Probe::Kind::kOperation || kind == Probe::Kind::kChoose) return remove(id);
   const bool writes = kind == Probe::Kind::kWrite, indexed = writes || kind == Probe::Kind::kRead;
   replace_lost_operands(id, [&](std::uint32_t operand) -> std::uint32_t {
     if (operand >= instr.data[1]) return indexed ? ~0u : 0;
