@@ -30,11 +30,24 @@ class BlockCounts::Counter : public spirv::exec::Watch {
   Cells& cells_;
 };
 
-std::unique_ptr<spirv::exec::Watch> BlockCounts::watch() {
+BlockCounts::BlockCounts(std::size_t probes)
+    : serial_([] {
+        static std::atomic<std::uint64_t> made{0};
+        return ++made;
+      }()),
+      probes_(probes) {}
+
+BlockCounts::Cells& BlockCounts::cells_of_this_thread() {
+  static thread_local std::uint64_t serial = 0;
+  static thread_local Cells* cells = nullptr;
+  if (serial == serial_) return *cells;  // most waves are of the program that ran last
   const std::lock_guard lock(mutex_);
-  const auto [at, added] = of_thread_.try_emplace(std::this_thread::get_id(), probes_);
-  return std::make_unique<Counter>(at->second);
+  cells = &of_thread_.try_emplace(std::this_thread::get_id(), probes_).first->second;
+  serial = serial_;
+  return *cells;
 }
+
+std::unique_ptr<spirv::exec::Watch> BlockCounts::watch() { return std::make_unique<Counter>(cells_of_this_thread()); }
 
 std::vector<BlockCounts::Count> BlockCounts::sum() const {
   std::vector<Count> sum(probes_);

@@ -22,7 +22,7 @@ class BlockCounts {
   };
 
   /// `probes`: how many the program has.
-  explicit BlockCounts(std::size_t probes) : probes_(probes) {}
+  explicit BlockCounts(std::size_t probes);
 
   /// Counts what a wave does.
   std::unique_ptr<spirv::exec::Watch> watch();
@@ -37,6 +37,9 @@ class BlockCounts {
   using Cells = std::vector<Cell>;
   class Counter;
 
+  Cells& cells_of_this_thread();
+
+  const std::uint64_t serial_;  ///< of all that this process made: addresses come again
   const std::size_t probes_;
   mutable std::mutex mutex_;
   std::map<std::thread::id, Cells> of_thread_;
