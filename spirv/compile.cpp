@@ -18,6 +18,7 @@
 #include "spirv/front/translate.h"
 #include "spirv/ir_passes.h"
 #include "spirv/lower/lower.h"
+#include "spirv/program.h"
 #include "spirv/rewrite/rewrite.h"
 
 namespace vitrine::spirv {
@@ -247,6 +248,26 @@ std::string validate_leniently(std::span<const std::uint32_t> words) {
   return message;
 }
 
+/// The module as SPIRV-Tools prints it, with the ids by number, which the other representations name.
+std::string module_text(std::span<const std::uint32_t> words) {
+  const spv_context context = spvContextCreate(SPV_ENV_UNIVERSAL_1_6);
+  spv_text text = nullptr;
+  std::string result;
+  if (spvBinaryToText(context, words.data(), words.size(), SPV_BINARY_TO_TEXT_OPTION_INDENT, &text, nullptr) ==
+      SPV_SUCCESS)
+    result.assign(text->str, text->length);
+  spvTextDestroy(text);
+  spvContextDestroy(context);
+  return result;
+}
+
+/// Numbers the forms that the rewrites give a shader: the same step may change it in several rounds.
+StepListener keep_steps(std::vector<Representation>& kept) {
+  return [&kept, number = 0](const char* step, const std::string& place, const std::string& text) mutable {
+    kept.push_back({"IR " + std::to_string(++number) + ": " + step, "the shader in SSA form, " + place, text});
+  };
+}
+
 }  // namespace
 
 std::string check_module(std::span<const std::uint32_t> words) {
@@ -276,9 +297,15 @@ base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> wor
   if (options.validate)
     if (std::string error = validate_leniently(words); !error.empty()) return base::Error{error};
   if (!function) return function.error();
-  rewrite(function.value());
+  std::vector<Representation>* const kept = options.representations;
+  if (kept) kept->push_back({"SPIR-V", "the module as the application gave it, disassembled", module_text(words)});
+  rewrite(function.value(), kept ? keep_steps(*kept) : StepListener());
   ir::make_joins_whole(function.value());
-  return lower(function.take(), observer);
+  base::Result<std::unique_ptr<Shader>> shader = lower(function.take(), observer);
+  if (kept && shader)
+    kept->push_back(
+        {"program", "the instructions that run, with their registers", disassemble(shader.value()->program())});
+  return shader;
 }
 
 }  // namespace vitrine::spirv

@@ -38,6 +38,13 @@ struct SpecializationConstant {
   std::vector<std::byte> bytes;
 };
 
+/// The shader at one point of its way through the compiler.
+struct Representation {
+  std::string name;         ///< no two of a shader have the same
+  std::string description;  ///< what it is, in a sentence
+  std::string text;
+};
+
 struct CompileOptions {
   VkShaderStageFlagBits stage = VK_SHADER_STAGE_VERTEX_BIT;
   std::string entry_point = "main";
@@ -49,6 +56,9 @@ struct CompileOptions {
   bool validate = true;              ///< run SPIRV-Tools' validator (false only where the same words passed before)
   /// Whom the program tells what it does (spirv/exec/observe.h). Null: whom VITRINE_TRACE asks for, mostly nobody.
   std::shared_ptr<const exec::Observer> observer;
+  /// Gets the module as text, the shader after the front end and after each step that changes it, and the program, in
+  /// this order. Null: they are not made.
+  std::vector<Representation>* representations = nullptr;
 };
 
 /// Validates, specialises, optimises structurally, applies the reference's rewrites, analyses and lowers.

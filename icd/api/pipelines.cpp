@@ -18,25 +18,6 @@ namespace {
 // gets the reason.
 constexpr VkResult kCompileError = VK_ERROR_UNKNOWN;
 
-const char* stage_name(VkShaderStageFlagBits stage) {
-  switch (stage) {
-    case VK_SHADER_STAGE_VERTEX_BIT:
-      return "vertex";
-    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
-      return "tessellation control";
-    case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
-      return "tessellation evaluation";
-    case VK_SHADER_STAGE_GEOMETRY_BIT:
-      return "geometry";
-    case VK_SHADER_STAGE_FRAGMENT_BIT:
-      return "fragment";
-    case VK_SHADER_STAGE_COMPUTE_BIT:
-      return "compute";
-    default:
-      return "unsupported";
-  }
-}
-
 /// Compiles the stages of one pipeline, and tells the application how that went (VkPipelineCreationFeedback).
 class StageCompiler {
  public:
@@ -53,10 +34,9 @@ class StageCompiler {
 
   /// `index` is the stage's in pStages. Null, after a report, if it cannot be compiled; failure() has the code.
   std::shared_ptr<const CompiledShader> compile(const VkPipelineShaderStageCreateInfo& stage, std::uint32_t index,
-                                                const std::shared_ptr<const PipelineLayoutShape>& layout,
-                                                std::uint32_t live_color_outputs) {
+                                                const Pipeline& pipeline, std::uint32_t live_color_outputs) {
     const Clock::time_point start = Clock::now();
-    StageRequest request{&stage, layout, live_color_outputs, may_compile_};
+    StageRequest request{&stage, pipeline.layout, live_color_outputs, may_compile_, pipeline.captured};
     StageResult result = compile_stage(device_, cache_, request);
     if (feedback_ && index < feedback_->pipelineStageCreationFeedbackCount) {
       fill(feedback_->pPipelineStageCreationFeedbacks[index], start, result.was_in_cache);
@@ -130,7 +110,7 @@ bool compile_graphics_stage(StageCompiler& compiler, const VkPipelineShaderStage
   }
   const bool fragment = stage.stage == VK_SHADER_STAGE_FRAGMENT_BIT;
   if (fragment && pipeline.never_rasterizes()) return true;
-  *shader = compiler.compile(stage, index, pipeline.layout, fragment ? live_outputs(pipeline) : 0);
+  *shader = compiler.compile(stage, index, pipeline, fragment ? live_outputs(pipeline) : 0);
   return *shader != nullptr;
 }
 
@@ -197,6 +177,7 @@ VkResult create_graphics_pipeline(Device& device, PipelineCache* cache, const Vk
   const Subpass& subpass = pass ? pass->subpasses[info.subpass] : dynamic;
   StageCompiler compiler(device, cache, info.flags, info.pNext);
   Owned<Pipeline> pipeline(create_object<Pipeline>(device.memory, allocator));
+  pipeline->captured = info.flags & VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
   if (const auto* layout = from_nullable<PipelineLayout>(info.layout)) pipeline->layout = layout->shape;
   if (const auto* libraries = find_in_chain<VkPipelineLibraryCreateInfoKHR>(info.pNext)) {
     for (std::uint32_t i = 0; i < libraries->libraryCount; ++i) {
@@ -225,9 +206,10 @@ VkResult create_compute_pipeline(Device& device, PipelineCache* cache, const VkC
                                  const VkAllocationCallbacks* allocator, VkPipeline* out) {
   StageCompiler compiler(device, cache, info.flags, info.pNext);
   Owned<Pipeline> pipeline(create_object<Pipeline>(device.memory, allocator));
+  pipeline->captured = info.flags & VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
   pipeline->bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
   pipeline->layout = from_handle<PipelineLayout>(info.layout).shape;
-  pipeline->compute = compiler.compile(info.stage, 0, pipeline->layout, 0);
+  pipeline->compute = compiler.compile(info.stage, 0, *pipeline, 0);
   if (!pipeline->compute) return compiler.failure();
   compiler.finish();
   *out = to_handle(pipeline.release());
@@ -256,6 +238,25 @@ VkResult create_all(VkDevice device, VkPipelineCache cache, std::uint32_t count,
 }
 
 }  // namespace
+
+const char* stage_name(VkShaderStageFlagBits stage) {
+  switch (stage) {
+    case VK_SHADER_STAGE_VERTEX_BIT:
+      return "vertex";
+    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
+      return "tessellation control";
+    case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
+      return "tessellation evaluation";
+    case VK_SHADER_STAGE_GEOMETRY_BIT:
+      return "geometry";
+    case VK_SHADER_STAGE_FRAGMENT_BIT:
+      return "fragment";
+    case VK_SHADER_STAGE_COMPUTE_BIT:
+      return "compute";
+    default:
+      return "unsupported";
+  }
+}
 
 namespace entry {
 

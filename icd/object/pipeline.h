@@ -31,6 +31,7 @@ struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   explicit Pipeline(const HostMemory& m) : Object(m), library_stages(m) {}
 
   VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS;
+  bool captured = false;  ///< its shaders, and those of pipelines that link it, keep their internal representations
   std::shared_ptr<const PipelineLayoutShape> layout;
   // graphics
   std::shared_ptr<const CompiledShader> vertex;
@@ -52,6 +53,9 @@ struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   // compute
   std::shared_ptr<const CompiledShader> compute;
 };
+
+/// "tessellation control", ...
+const char* stage_name(VkShaderStageFlagBits stage);
 
 struct Subpass;
 

@@ -28,6 +28,7 @@ void link_library(Pipeline& pipeline, const Pipeline& library) {
     pipeline.color_writes = library.color_writes;
     pipeline.live_colors = library.live_colors;
   }
+  pipeline.captured |= library.captured;
   pipeline.state.ordered_attachment_access |= library.state.ordered_attachment_access;
   // The two parts that have the multisample state agree on it where both have it.
   if (library.state.sample_shading) {

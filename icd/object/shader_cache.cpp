@@ -70,6 +70,7 @@ ShaderKey make_key(const StageRequest& request) {
   key.add(stage.pName, std::strlen(stage.pName));
   key.add(request.live_color_outputs);
   key.add(subgroup_size(stage));
+  key.add(std::uint64_t{request.captured});
   if (const VkSpecializationInfo* s = stage.pSpecializationInfo) {
     for (std::uint32_t i = 0; i < s->mapEntryCount; ++i) {
       const VkSpecializationMapEntry& entry = s->pMapEntries[i];
@@ -144,8 +145,10 @@ StageResult compile_stage(Device& device, PipelineCache* cache, const StageReque
   out.shader = find_alive(device.shaders, key);
   if (!out.shader) {
     if (!request.may_compile) return out;
-    base::Result<std::unique_ptr<spirv::Shader>> result =
-        spirv::compile(words_of(*request.stage), make_options(request));
+    spirv::CompileOptions options = make_options(request);
+    std::vector<spirv::Representation> representations;
+    if (request.captured) options.representations = &representations;
+    base::Result<std::unique_ptr<spirv::Shader>> result = spirv::compile(words_of(*request.stage), options);
     if (!result) {
       out.problem = result.message();
       return out;
@@ -153,6 +156,8 @@ StageResult compile_stage(Device& device, PipelineCache* cache, const StageReque
     const auto compiled = std::allocate_shared<CompiledShader>(HostAllocator<CompiledShader>(device.memory));
     compiled->shader = result.take();
     compiled->layout = request.layout;
+    compiled->subgroup_size = options.subgroup_size;
+    compiled->representations = std::move(representations);
     out.shader = add_shader(device.shaders, key, compiled);
   }
   if (cache) out.was_in_cache = keep(*cache, out.shader);

@@ -4,9 +4,11 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "icd/object/descriptors.h"
 #include "icd/object/shader_module.h"
+#include "spirv/compile.h"
 
 namespace vitrine::icd {
 
@@ -14,6 +16,8 @@ namespace vitrine::icd {
 struct CompiledShader {
   std::unique_ptr<spirv::Shader> shader;
   std::shared_ptr<const PipelineLayoutShape> layout;
+  std::uint32_t subgroup_size = 0;                     ///< invocations
+  std::vector<spirv::Representation> representations;  ///< of captured shaders alone
 };
 
 /// What one stage of a pipeline is made of.
@@ -22,6 +26,7 @@ struct StageRequest {
   std::shared_ptr<const PipelineLayoutShape> layout;
   std::uint32_t live_color_outputs = 0xff;
   bool may_compile = true;  ///< false: only what has been compiled before
+  bool captured = false;    ///< keeps its internal representations; a shader apart from the same one without
 };
 
 /// What becomes of a request.

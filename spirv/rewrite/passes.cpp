@@ -99,42 +99,48 @@ std::uint32_t next_shader() {
 /// Shows what the steps make of one shader.
 class Printer {
  public:
-  Printer(const Graph& graph, std::uint32_t shader) : graph_(graph), shader_(shader), on_(base::log_enabled("ir")) {
-    if (on_) print("front end");
+  Printer(const Graph& graph, std::uint32_t shader, const StepListener& listener)
+      : graph_(graph), shader_(shader), listener_(listener), logs_(base::log_enabled("ir")) {
+    if (on()) print("front end", "before all steps", "front end");
   }
 
   /// What is left in the end, changed or not.
   void final() {
     before_.clear();
-    if (on_) print("final");
+    if (logs_) print("final", {}, nullptr);
   }
 
   void after(const Pass& pass, std::uint32_t step, int round) {
-    if (!on_) return;
-    char title[96];
+    if (!on()) return;
+    char place[96];
     const char* const needed = pass.needed == Needed::kNeeded ? " (needed)" : "";
-    std::snprintf(title, sizeof(title), "step %u%s, round %d: %s", step, needed, round + 1, pass.name);
-    print(title);
+    std::snprintf(place, sizeof(place), "step %u%s, round %d", step, needed, round + 1);
+    print(std::string(place) + ": " + pass.name, place, pass.name);
   }
 
  private:
-  void print(const char* title) {
+  bool on() const { return logs_ || listener_; }
+
+  /// Without a `step` the listener is not told.
+  void print(const std::string& title, const std::string& place, const char* step) {
     std::string text = ir::dump(snapshot(graph_), ir::Origins::kShow);
     if (text == before_) return;
-    base::log("ir", "shader " + std::to_string(shader_) + ", " + title + "\n" + text);
+    if (logs_) base::log("ir", "shader " + std::to_string(shader_) + ", " + title + "\n" + text);
+    if (listener_ && step) listener_(step, place, text);
     before_ = std::move(text);
   }
 
   const Graph& graph_;
   const std::uint32_t shader_;
-  const bool on_;
+  const StepListener& listener_;
+  const bool logs_;
   std::string before_;
 };
 
 /// Runs the phases over one shader.
 class Runner {
  public:
-  explicit Runner(Graph& graph) : Runner(graph, next_shader()) {}
+  Runner(Graph& graph, const StepListener& listener) : Runner(graph, next_shader(), listener) {}
 
   void run() {
     for (const PhaseInfo& phase : kPhases)
@@ -144,7 +150,8 @@ class Runner {
   }
 
  private:
-  Runner(Graph& graph, std::uint32_t shader) : graph_(graph), choice_(shader), printer_(graph, shader) {}
+  Runner(Graph& graph, std::uint32_t shader, const StepListener& listener)
+      : graph_(graph), choice_(shader), printer_(graph, shader, listener) {}
 
   /// True when another round is wanted.
   bool run_round(Phase phase, int round) {
@@ -193,6 +200,6 @@ const Pass* find_pass(std::string_view name) {
   return nullptr;
 }
 
-void run_passes(Graph& graph) { Runner(graph).run(); }
+void run_passes(Graph& graph, const StepListener& listener) { Runner(graph, listener).run(); }
 
 }  // namespace vitrine::spirv::rewriting

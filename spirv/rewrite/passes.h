@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "spirv/rewrite/graph/graph.h"
+#include "spirv/rewrite/rewrite.h"
 
 namespace vitrine::spirv::rewriting {
 
@@ -36,8 +37,8 @@ std::span<const Pass> passes();
 const Pass* find_pass(std::string_view name);
 
 /// Runs all steps in their order. Under VITRINE_LOG=ir prints the shader before them and after each that changes
-/// something; leaves out the steps that VITRINE_PASS_LIMIT and VITRINE_PASS_OFF name; verifies after each in debug
-/// builds.
-void run_passes(Graph& graph);
+/// something, and tells `listener` of the same; leaves out the steps that VITRINE_PASS_LIMIT and VITRINE_PASS_OFF name;
+/// verifies after each in debug builds.
+void run_passes(Graph& graph, const StepListener& listener = {});
 
 }  // namespace vitrine::spirv::rewriting
