@@ -14,6 +14,7 @@
 #include "raster/arena.h"
 #include "raster/front/assembly.h"
 #include "raster/front/front.h"
+#include "raster/front/rectangles.h"
 #include "raster/plan/make_plan.h"
 #include "raster/tile/tile.h"
 #include "texel/transfer.h"
@@ -206,9 +207,11 @@ struct Pass::Impl {
   void draw_view(const DrawRecord* record, std::uint32_t view) {
     const bool stippled_strip = record->plan->state->line_stipple && record->plan->draws_lines;
     const std::uint32_t limit = stippled_strip ? kStippledChunkPositions : record->plan->chunk_positions;
+    const RectanglePlan& rectangles = record->plan->rectangles;
+    const std::uint32_t piece = rectangles.any ? rectangles.segment : piece_of(record->plan->shape, limit);
     for (std::uint32_t instance = 0; instance < record->call.instance_count; ++instance) {
       const std::size_t before = scratch->runs.size();
-      append_runs(record->call, instance, limit, scratch->runs);
+      append_runs(record->call, instance, piece, scratch->runs);
       if (scratch->runs.size() == before) break;  // too few vertices: no instance has a primitive
       // Such draws are not parallel: every instance counts from 0.
       const auto counter = [&] { return new (scratch->arena.take<std::uint32_t>(1)) std::uint32_t{0}; };
@@ -269,6 +272,33 @@ struct Pass::Impl {
     return true;
   }
 
+  /// Whether a batch of clipped triangles goes on from a command to the next one (ChunkOutput). Vertices that have been
+  /// shaded and can be noticed otherwise are not shaded again for it.
+  bool shares_batch(std::size_t index) const {
+    if (index + 1 >= scratch->commands.size()) return false;
+    const Command &a = scratch->commands[index], &b = scratch->commands[index + 1];
+    if (a.clear || b.clear || a.chunk.draw != b.chunk.draw || a.chunk.view != b.chunk.view) return false;
+    const DrawCall& call = a.chunk.draw->call;
+    const bool noticed = call.queries.statistics || call.feedback || a.chunk.draw->plan->vertex->writes_memory;
+    return a.output.ends_clipped && b.output.begins_clipped && !noticed;
+  }
+
+  /// Works again, in order, on chunks from `first` on that share a batch; returns the first one behind them.
+  std::size_t join_batches(std::size_t first) {
+    std::size_t end = first + 1;
+    while (shares_batch(end - 1)) ++end;
+    if (end - first == 1) return end;
+    ClippedBatch batch;
+    batch.begin(*scratch->commands[first].chunk.draw->plan);
+    for (std::size_t i = first; i < end; ++i) {
+      Command& command = scratch->commands[i];
+      command.chunk.batch = &batch;
+      command.chunk.ends_batch = i + 1 == end;
+      command.output = process_chunk(command.chunk, desc, grid, scratch->workers[0]->arena, scratch->workers[0]->front);
+    }
+    return end;
+  }
+
   /// Runs the front end of everything recorded and hands its results to the tiles, in order.
   void run_front() {
     std::vector<Command>& commands = scratch->commands;
@@ -278,6 +308,7 @@ struct Pass::Impl {
     } else {
       base::parallel_for(commands.size(), [this](std::size_t i, std::size_t worker) { front_item(i, worker); });
     }
+    for (std::size_t i = 0; i < commands.size();) i = join_batches(i);
     for (std::unique_ptr<Worker>& worker : scratch->workers) worker->front.forget_stages();
     for (const Command& command : commands) {
       if (command.clear) add_clear(*command.clear);

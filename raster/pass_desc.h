@@ -22,6 +22,7 @@ struct PassDesc {
   std::uint32_t layers = 1;
   std::uint32_t view_mask = 0;
   std::uint32_t samples = 1;
+  bool plain_image = false;  ///< color[0] is of a 2D image of one layer
 };
 
 /// Calls f(view) for the attachments that are there.

@@ -45,6 +45,13 @@ struct VaryingRead {
 /// Values at two places (the centre's, the centroid's or a sample's) and three parts of the plane.
 inline constexpr std::uint32_t kMaxVaryingReads = 5 * kMaxVaryings;
 
+/// Pairs of triangles that become rectangles (9.2).
+struct RectanglePlan {
+  bool any = false;                  ///< pairs are looked for
+  std::uint32_t segment = 0;         ///< primitives of a strip, list or fan that are worked on together
+  std::uint32_t batch_vertices = 0;  ///< vertices of those that go through the clipper together, at most
+};
+
 /// When depth and stencil are tested relative to shading (5.4).
 enum class TestOrder : std::uint8_t { kNone, kEarly, kLate };
 
@@ -145,6 +152,8 @@ struct PipelinePlan {
       false;  ///< lines become quads whose coverage scales alpha (6.5): the last four perspective varyings
   bool bias_in_vertices = false;  ///< polygon mode LINE / POINT: bias per vertex (5.1, second form)
   bool depth_bias = false;
+  bool guard_band = false;  ///< clipped in x and y at twice the volume, and cut to viewport 0's rectangle (9.1)
+  RectanglePlan rectangles;
 
   std::uint32_t samples = 1;         ///< of the attachments
   std::uint32_t raster_samples = 1;  ///< locations at which coverage is computed: 1 for Bresenham lines

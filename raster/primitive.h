@@ -13,7 +13,10 @@ namespace vitrine::raster {
 /// chunk's arena; `PipelinePlan::vertex_stride` words long.
 using Vertex = float;
 
-enum class PrimitiveKind : std::uint8_t { kTriangle, kLine, kPoint };
+/// Rectangles are two triangles drawn as one (9.3): all pixels of their bounds, interpolated as the triangle `v`.
+enum class PrimitiveKind : std::uint8_t { kTriangle, kRectangle, kLine, kPoint };
+/// Of polygons.
+constexpr bool is_area(PrimitiveKind kind) { return kind <= PrimitiveKind::kRectangle; }
 
 /// Positions are 24.8 fixed point relative to the sample grid of 3.1 (pixel centres at multiples of 256 when
 /// single-sampled, pixel corners when multisampled).
@@ -23,7 +26,8 @@ struct Primitive {
   explicit Primitive(Unset) {}  ///< for those who fill in everything: zeros first would take longer than that
 
   std::int32_t x[4],
-      y[4];            ///< triangle: 3 corners with positive area; line: 4 corners; point: x0, y0, x1, y1 in [0], [1]
+      y[4];  ///< triangle: 3 corners with positive area; line: 4 corners; point: x0, y0, x1, y1 in [0], [1]; rectangle:
+             ///< none
   const Vertex* v[3];  ///< triangle: interpolation order (2.1); line: both ends; point: one
   /// Nonzero: covered pixels, in quad order, of the 8x8 window at the even pixel at or before (x0, y0), of a primitive
   /// that covers nothing outside of it.
@@ -57,6 +61,9 @@ struct ChunkOutput {
   const TileRange* ranges = nullptr;
   std::uint32_t range_count = 0;
   const struct CaptureOutput* capture = nullptr;  ///< transform feedback
+  /// Rectangles: the first and the last of the chunk's segments went through the clipper, so that a batch of clipped
+  /// triangles reaches over the ends of the chunk.
+  bool begins_clipped = false, ends_clipped = false;
 };
 
 /// Tiles of a pass: 64x64 pixels, layer after layer, rows from the top.

@@ -36,6 +36,7 @@ raster::PassDesc describe_pass(ReplayState& state) {
     const ImageView* view = drawn_view(state, subpass.colors[i]);
     if (!view) continue;
     desc.color[i] = view->view;
+    if (i == 0) desc.plain_image = view->image->desc().type == VK_IMAGE_TYPE_2D && view->image->desc().layers == 1;
     desc.samples = view->image->desc().samples;
   }
   if (const ImageView* view = drawn_view(state, subpass.depth_stencil)) {

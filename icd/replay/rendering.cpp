@@ -48,6 +48,7 @@ raster::PassDesc describe_pass(const CmdBeginRendering& command, const DrawScope
     const ImageView* view = command.colors[i].view;
     if (!view) continue;
     desc.color[i] = view->view;
+    if (i == 0) desc.plain_image = view->image->desc().type == VK_IMAGE_TYPE_2D && view->image->desc().layers == 1;
     use(*view);
   }
   if (const ImageView* view = command.depth.view) {

@@ -19,11 +19,10 @@ std::uint32_t primitives_in(const TopologyShape& shape, std::uint32_t positions)
   return shape.corners == 0 || positions < shape.first ? 0 : (positions - shape.first) / shape.step + 1;
 }
 
-/// One strip of `positions` positions. Pieces hold an even number of primitives, so that strips keep their parity.
-std::uint32_t append_strip(const TopologyShape& shape, const Run& strip, std::uint32_t positions, std::uint32_t limit,
+/// One strip of `positions` positions, in pieces of at most `piece` primitives.
+std::uint32_t append_strip(const TopologyShape& shape, const Run& strip, std::uint32_t positions, std::uint32_t piece,
                            std::vector<Run>& runs) {
   const std::uint32_t total = primitives_in(shape, positions);
-  const std::uint32_t piece = std::max<std::uint32_t>(limit / shape.step & ~1u, 2);
   for (std::uint32_t begin = 0; begin < total; begin += piece) {
     Run run = strip;
     run.begin = begin;
@@ -45,6 +44,10 @@ std::uint32_t read_index(const DrawCall& draw, std::uint64_t position) {
   return value;
 }
 
+std::uint32_t piece_of(const TopologyShape& shape, std::uint32_t positions) {
+  return std::max<std::uint32_t>(positions / shape.step & ~1u, 2);
+}
+
 RunSpan run_span(const TopologyShape& shape, const Run& run) {
   if (shape.neighbours)
     return {run.begin == 0 ? 0 : run.begin * shape.step - 2,
@@ -53,11 +56,11 @@ RunSpan run_span(const TopologyShape& shape, const Run& run) {
   return {run.begin * shape.step, (run.end - 1) * shape.step + shape.first, false};
 }
 
-void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t limit, std::vector<Run>& runs) {
+void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, std::vector<Run>& runs) {
   const TopologyShape shape = topology_shape(draw);
   Run strip{0, 0, 0, instance, 0, true};
   if (!draw.index_data || !draw.state->primitive_restart) {
-    append_strip(shape, strip, draw.count, limit, runs);
+    append_strip(shape, strip, draw.count, piece, runs);
     return;
   }
   const std::uint32_t restart = restart_value(draw.index_type);
@@ -65,7 +68,7 @@ void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t lim
   for (std::uint32_t i = 0; i <= draw.count; ++i) {
     if (i < draw.count && read_index(draw, std::uint64_t{draw.first} + i) != restart) continue;
     strip.start = start;
-    strip.first_id += append_strip(shape, strip, i - start, limit, runs);
+    strip.first_id += append_strip(shape, strip, i - start, piece, runs);
     start = i + 1;
   }
 }

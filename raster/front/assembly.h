@@ -28,8 +28,11 @@ struct RunSpan {
 };
 RunSpan run_span(const TopologyShape& shape, const Run& run);
 
-/// Cuts one instance of a draw at restart indices and into stretches of at most `limit` positions, and appends them.
-void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t limit, std::vector<Run>& runs);
+/// Primitives of about `positions` positions: an even number, so that strips which are cut there keep their parity.
+std::uint32_t piece_of(const TopologyShape& shape, std::uint32_t positions);
+
+/// Cuts one instance of a draw at restart indices and into stretches of at most `piece` primitives, and appends them.
+void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, std::vector<Run>& runs);
 
 /// Index `position` of the bound index buffer; 0 beyond its end.
 std::uint32_t read_index(const DrawCall& draw, std::uint64_t position);

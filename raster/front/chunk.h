@@ -9,6 +9,8 @@
 
 namespace vitrine::raster {
 
+class ClippedBatch;  // raster/front/rectangles.h
+
 /// The stipple pattern runs on along a strip: its lines stay in one chunk, up to this many positions. Chunks of longer
 /// strips hand the counter on (Chunk::stipple_counter).
 inline constexpr std::uint32_t kStippledChunkPositions = 32768;
@@ -20,6 +22,8 @@ struct Chunk {
   std::uint32_t view = 0;                    ///< multiview: index of the view, also the layer
   std::uint32_t* primitive_count = nullptr;  ///< PipelinePlan::counts_primitives: of the instance so far
   std::uint32_t* stipple_counter = nullptr;  ///< of strips cut into chunks: what the chunks before have used up
+  ClippedBatch* batch = nullptr;             ///< clipped triangles of the chunks before, which this one goes on with
+  bool ends_batch = true;                    ///< no chunk follows that does
 };
 
 /// Positions (before de-duplication) that the chunk's runs need.

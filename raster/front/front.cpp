@@ -13,17 +13,21 @@ ChunkOutput process_chunk(const Chunk& chunk, const PassDesc& pass, const TileGr
   const base::ScopedFloatMode mode(base::Denormals::kFlush);
   scratch.primitives.begin(arena);
   const PipelinePlan& plan = *chunk.draw->plan;
+  ClippedEnds clipped;
   scratch.capture.active = is_captured(chunk.draw->call);
   if (plan.stages.any()) {
     process_stages({chunk, pass, arena, scratch.vertices, scratch.primitives, scratch.stages, scratch.capture, plan});
   } else {
     shade_chunk_vertices(chunk, arena, scratch.vertices, scratch.capture);
     if (scratch.capture.active) capture_runs(chunk, scratch.vertices, scratch.capture);
-    if (!plan.state->rasterizer_discard) process_primitives({chunk, pass, arena, scratch.vertices, scratch.primitives});
+    if (!plan.state->rasterizer_discard)
+      clipped = process_primitives({chunk, pass, arena, scratch.vertices, scratch.primitives});
   }
   ChunkOutput output;
   if (!plan.state->rasterizer_discard) output = bin_chunk(scratch.primitives, grid, arena, scratch.bins);
   if (scratch.capture.active) output.capture = finish_capture(arena, scratch.capture);
+  output.begins_clipped = clipped.first;
+  output.ends_clipped = clipped.last;
   return output;
 }
 

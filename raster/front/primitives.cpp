@@ -9,6 +9,7 @@
 #include "base/numeric.h"
 #include "raster/front/assembly.h"
 #include "raster/front/clip.h"
+#include "raster/front/rectangles.h"
 #include "raster/front/setup_batch.h"
 #include "raster/front/setup_wide.h"
 
@@ -22,6 +23,10 @@ struct PrimitiveWork : PrimitiveContext {
   bool batches;                       ///< triangles inside the view volume need nothing but setup
   std::uint32_t stipple_counter = 0;  ///< pixels of the pattern used up by earlier lines of the strip
   TriangleBatch batch;
+  bool clips_segment = false;  ///< triangles go to `clipped`, not to setup
+  ClippedBatch own_batch;
+  ClippedBatch& clipped;         ///< the chunk's own, or one that several chunks share
+  std::uint32_t rectangles = 0;  ///< primitives that are two triangles
 
   explicit PrimitiveWork(const PrimitiveContext& context)
       : PrimitiveContext(context),
@@ -29,8 +34,10 @@ struct PrimitiveWork : PrimitiveContext {
         setup{&plan, &pass, &primitives, !chunk.draw->call.queries.statistics},
         viewport(plan.viewport[0]),
         batches(plan.windows && plan.out.layer == kNoReg && !plan.per_vertex_viewport && !plan.bias_in_vertices &&
-                plan.out.cull_count == 0) {
+                plan.out.cull_count == 0),
+        clipped(chunk.batch ? *chunk.batch : own_batch) {
     setup.layer = static_cast<std::uint16_t>(chunk.view);
+    if (plan.rectangles.any && !chunk.batch) own_batch.begin(plan);
   }
 };
 
@@ -166,6 +173,44 @@ void emit_unfilled(PrimitiveWork& w, const Vertex* const in[3], const bool edge[
   if (edge[1]) emit_line(w, v[1], v[2], front);
 }
 
+void emit_filled(PrimitiveWork& w, const Vertex* const v[3]) {
+  setup_triangle(w.setup, setup_vertex(w, v[0]), setup_vertex(w, v[1]), setup_vertex(w, v[2]));
+}
+
+/// Two triangles that may be a rectangle. False: they are not; nothing has been set up.
+bool emit_pair(PrimitiveWork& w, const PairCorners& v) {
+  const TrianglePair pair = pair_triangles(w.plan, v);
+  if (pair.kind == TrianglePair::Kind::kApart) return false;
+  if (pair.kind == TrianglePair::Kind::kFirst) emit_filled(w, v.data());
+  if (pair.kind == TrianglePair::Kind::kSecond) emit_filled(w, v.data() + 3);
+  if (pair.kind != TrianglePair::Kind::kRectangle) return true;
+  const std::uint32_t before = w.primitives.size();
+  setup_rectangle(w.setup, pair);
+  w.rectangles += w.primitives.size() - before;
+  return true;
+}
+
+void emit_pair_or_both(PrimitiveWork& w, const PairCorners& v) {
+  if (emit_pair(w, v)) return;
+  emit_filled(w, v.data());
+  emit_filled(w, v.data() + 3);
+}
+
+/// Sets up what has gone through the clipper: by pairs if it comes out even. `another`: a triangle that does not fit
+/// comes next.
+void flush_clipped(PrimitiveWork& w, bool another) {
+  const std::span<const TriangleCorners> triangles = w.clipped.triangles();
+  const bool even = triangles.size() % 2 == 0;
+  for (std::size_t i = 0; i < triangles.size(); i += even ? 2 : 1) {
+    const TriangleCorners& t = triangles[i];
+    if (even)
+      emit_pair_or_both(w, {t[0], t[1], t[2], triangles[i + 1][0], triangles[i + 1][1], triangles[i + 1][2]});
+    else
+      emit_filled(w, t.data());
+  }
+  if (!triangles.empty()) w.clipped.clear(another);
+}
+
 /// One triangle that went through the clipper or needs the slow path anyway.
 void emit_slow(PrimitiveWork& w, const Vertex* const v[3], const bool edge[3]) {
   const float determinant = window_determinant(v[0], v[1], v[2]);
@@ -174,11 +219,14 @@ void emit_slow(PrimitiveWork& w, const Vertex* const v[3], const bool edge[3]) {
     emit_unfilled(w, v, edge, determinant);
     return;
   }
-  setup_triangle(w.setup, setup_vertex(w, v[0]), setup_vertex(w, v[1]), setup_vertex(w, v[2]));
+  if (!w.clips_segment) return emit_filled(w, v);
+  if (w.clipped.is_complete()) flush_clipped(w, true);
+  w.clipped.add({v[0], v[1], v[2]});
 }
 
 void emit_clipped(PrimitiveWork& w, std::uint32_t provoking, ClipPolygon& polygon) {
-  const ClipContext context{&w.plan, &w.viewport, &w.arena, w.plan.state->polygon_mode == VK_POLYGON_MODE_POINT};
+  const bool guard_band = w.plan.guard_band || w.plan.state->polygon_mode == VK_POLYGON_MODE_POINT;
+  const ClipContext context{&w.plan, &w.viewport, &w.arena, guard_band};
   if (!clip_triangle(context, provoking, polygon)) return;
   const Vertex* record[kMaxPolygon];
   for (std::uint32_t i = 0; i < polygon.count; ++i) record[i] = window_record(w, polygon.corner[i]);
@@ -222,13 +270,13 @@ void process_triangle(PrimitiveWork& w, const std::uint32_t slot[3]) {
   const VertexScratch& s = w.vertices;
   const ClipCode c0 = s.code[slot[0]], c1 = s.code[slot[1]], c2 = s.code[slot[2]];
   if ((c0 & c1 & c2) != 0) return;
-  if (w.batches && (c0 | c1 | c2) == 0) return add_to_batch(w, slot);
+  if (w.batches && !w.clips_segment && (c0 | c1 | c2) == 0) return add_to_batch(w, slot);
   flush_batch(w);
   if (w.plan.out.cull_count && culled_by_distance(w, slot, 3)) return;
   const std::uint32_t provoking = provoking_corner(3, w.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(w, slot[provoking]);
-  const bool simple =
-      (c0 | c1 | c2) == 0 && !w.plan.per_vertex_viewport && !w.plan.bias_in_vertices && w.plan.out.cull_count == 0;
+  const bool simple = (c0 | c1 | c2) == 0 && !w.plan.per_vertex_viewport && !w.plan.bias_in_vertices &&
+                      w.plan.out.cull_count == 0 && !w.clips_segment;
   if (simple) {
     const auto corner = [&](std::uint32_t i) {
       return SetupVertex{s.records + std::size_t{i} * w.plan.vertex_stride, s.snapped[i * 2], s.snapped[i * 2 + 1]};
@@ -257,7 +305,7 @@ void process_line(PrimitiveWork& w, const std::uint32_t slot[2]) {
   const std::uint32_t provoking = provoking_corner(2, w.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(w, slot[provoking]);
   ClipVertex line[2] = {clip_vertex(w, slot[0]), clip_vertex(w, slot[1])};
-  const ClipContext context{&w.plan, &w.viewport, &w.arena, false};
+  const ClipContext context{&w.plan, &w.viewport, &w.arena, w.plan.guard_band};
   if ((c0 | c1) != 0 && !clip_line(context, provoking, line)) return;
   emit_line(w, window_record(w, line[0]), window_record(w, line[1]), true);
 }
@@ -325,28 +373,90 @@ void process_run(PrimitiveWork& w, const Run& run, const RunSpan& span, std::uin
   }
 }
 
+void process_any_run(PrimitiveWork& w, const Run& run, const RunSpan& span, std::uint32_t first_entry) {
+  if (w.plan.state->topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST)
+    process_triangle_list(w, run, first_entry);
+  else
+    process_run(w, run, span, first_entry);
+}
+
+/// How many triangles of a run that needs no clipping are looked at two by two, and how many the next pair is on.
+struct Pairing {
+  bool any = false;
+  std::uint32_t missed = 2;  ///< triangles by which the next pair is on if one was none
+};
+
+Pairing pairing_of(const PrimitiveWork& w, const Run& run) {
+  const std::uint32_t count = run.end - run.begin;
+  const bool indexed = w.chunk.draw->call.index_data != nullptr;
+  switch (w.plan.state->topology) {
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
+      return {count % 2 == 0, 2};
+    case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP:
+      return {!indexed && !w.plan.state->provoking_vertex_last, 1};
+    default:
+      return {!indexed && count == 2 && run.begin == 0 && run.ends, 2};
+  }
+}
+
+/// A run of a draw whose triangles may form rectangles.
+void process_segment(PrimitiveWork& w, const Run& run, const RunSpan& span, std::uint32_t first_entry) {
+  const std::uint16_t* slots = w.vertices.slot.data() + first_entry;
+  w.clips_segment = w.plan.out.cull_count != 0 || std::any_of(slots, slots + span.count(), [&](std::uint16_t slot) {
+                      return w.vertices.code[slot] != 0;
+                    });
+  if (w.clips_segment) {
+    w.clipped.begin_segment();
+    return process_any_run(w, run, span, first_entry);
+  }
+  flush_clipped(w, false);
+  const Pairing pairing = pairing_of(w, run);
+  if (!pairing.any) return process_any_run(w, run, span, first_entry);
+  flush_batch(w);
+  const bool last = w.plan.state->provoking_vertex_last || starts_at_center(w, run, slots);
+  const auto corner = [&](std::uint32_t i, std::uint32_t c) -> const Vertex* {
+    const std::uint32_t position = corners_of(w.plan.state->topology, last, i).at[c];
+    return w.vertices.records + std::size_t{slots[span.entry(position)]} * w.plan.vertex_stride;
+  };
+  for (std::uint32_t i = run.begin; i < run.end;) {
+    const TriangleCorners first = {corner(i, 0), corner(i, 1), corner(i, 2)};
+    if (i + 1 == run.end) return emit_filled(w, first.data());
+    const PairCorners v = {first[0], first[1], first[2], corner(i + 1, 0), corner(i + 1, 1), corner(i + 1, 2)};
+    const bool paired = emit_pair(w, v);
+    if (!paired) emit_filled(w, first.data());
+    if (!paired && pairing.missed == 2) emit_filled(w, v.data() + 3);
+    i += paired ? 2 : pairing.missed;
+  }
+}
+
 }  // namespace
 
-void process_primitives(const PrimitiveContext& context) {
+ClippedEnds process_primitives(const PrimitiveContext& context) {
   PrimitiveWork w(context);
+  ClippedEnds ends;
   const Chunk& chunk = w.chunk;
   const TopologyShape& shape = w.plan.shape;
-  if (w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return;
+  if (w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return ends;
   if (chunk.stipple_counter) w.stipple_counter = *chunk.stipple_counter;
   std::uint32_t first_entry = 0, expected = 0;
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) expected += chunk.runs[r].end - chunk.runs[r].begin;
   w.primitives.reserve(expected);
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
     const RunSpan span = run_span(shape, chunk.runs[r]);
-    if (w.plan.state->topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST)
-      process_triangle_list(w, chunk.runs[r], first_entry);
+    if (w.plan.rectangles.any)
+      process_segment(w, chunk.runs[r], span, first_entry);
     else
-      process_run(w, chunk.runs[r], span, first_entry);
+      process_any_run(w, chunk.runs[r], span, first_entry);
     first_entry += span.count();
+    ends.last = w.clips_segment;
+    if (r == 0) ends.first = ends.last;
   }
   flush_batch(w);
+  if (chunk.ends_batch) flush_clipped(w, false);
   if (chunk.stipple_counter) *chunk.stipple_counter = w.stipple_counter;
-  if (!w.plan.draws_points) chunk.draw->call.queries.count(Statistic::kClippingPrimitives, w.primitives.size());
+  if (!w.plan.draws_points)
+    chunk.draw->call.queries.count(Statistic::kClippingPrimitives, w.primitives.size() + w.rectangles);
+  return ends;
 }
 
 void process_listed(const PrimitiveContext& context, std::span<const ListedPrimitive> listed) {

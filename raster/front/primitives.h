@@ -22,8 +22,13 @@ struct PrimitiveContext {
   PrimitiveList& primitives;  ///< what is visible is appended
 };
 
+/// Whether the first and the last segment of a chunk went through the clipper (ChunkOutput).
+struct ClippedEnds {
+  bool first = false, last = false;
+};
+
 /// Culls, clips and sets up the primitives of a chunk whose vertices are shaded.
-void process_primitives(const PrimitiveContext& context);
+ClippedEnds process_primitives(const PrimitiveContext& context);
 
 /// The same for primitives of the last stage's vertices.
 void process_listed(const PrimitiveContext& context, std::span<const ListedPrimitive> listed);

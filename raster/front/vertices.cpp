@@ -62,9 +62,10 @@ void store_wave(const PipelinePlan& plan, const WaveOutputs& outputs, std::uint3
   const float* clip[4];
   for (int c = 0; c < 4; ++c) clip[c] = as_floats(out.position[c] == kNoReg ? zero : outputs.at(out.position[c]));
   const State& state = *plan.state;
-  transform_wave(
-      clip, {plan.viewport[0], plan.pixel_offset, state.depth_clip, state.negative_one_to_one, plan.fused_transform},
-      s.transformed);
+  transform_wave(clip,
+                 {plan.viewport[0], plan.pixel_offset, state.depth_clip, state.negative_one_to_one,
+                  plan.fused_transform, plan.guard_band},
+                 s.transformed);
   const TransformedWave& t = s.transformed;
   const std::uint32_t stride = plan.vertex_stride;
   const auto words = [](auto* memory) { return reinterpret_cast<std::uint32_t*>(memory); };

@@ -31,6 +31,10 @@ HWY_INLINE VU exceeds(VF a, VF b, std::uint32_t bit) {
 
 HWY_INLINE VU clip_code(VF x, VF y, VF z, VF w, const TransformParameters& p) {
   const VF zero = hn::Zero(F());
+  if (p.guard_band && !p.fused) {
+    x = hn::Mul(x, hn::Set(F(), 0.5f));
+    y = hn::Mul(y, hn::Set(F(), 0.5f));
+  }
   VU code = exceeds(x, w, 1);
   code = hn::Or(code, exceeds(zero, hn::Add(x, w), 2));
   code = hn::Or(code, exceeds(y, w, 4));

@@ -28,7 +28,8 @@ struct TransformParameters {
   float pixel_offset;
   bool depth_clip;
   bool negative_one_to_one;
-  bool fused;  ///< form A of 1.2, else form B
+  bool fused;       ///< form A of 1.2, else form B
+  bool guard_band;  ///< form B: in x and y against twice the volume
 };
 
 /// `clip`: registers of x, y, z, w.

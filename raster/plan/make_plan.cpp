@@ -2,6 +2,7 @@
 #include "raster/plan/make_plan.h"
 
 #include "raster/plan/fragment_operations.h"
+#include "raster/plan/rectangles.h"
 #include "raster/plan/routes.h"
 #include "raster/plan/stages.h"
 #include "raster/plan/varyings.h"
@@ -31,6 +32,7 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   plan_vertex_outputs(plan);
   plan_rasterization(plan, pass);
   plan_varyings(plan);
+  plan_rectangles(plan, draw, pass);
   plan_viewports(plan, pass);
   // 8.2: with one sample only a mask of all zeros has an effect.
   if (plan.samples == 1 && draw.state->sample_mask != 0) plan.sample_mask = 1;

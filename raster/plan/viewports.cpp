@@ -48,6 +48,7 @@ void plan_viewports(PipelinePlan& plan, const PassDesc& pass) {
     plan.region[i] = intersect(framebuffer, pixel_rect(plan.state->scissor[source]));
   }
   plan.wide_region = intersect(plan.region[0], viewport_rect(plan.viewport[0]));
+  if (plan.guard_band) plan.region.fill(plan.wide_region);
   plan.per_vertex_viewport = plan.out.viewport_index != kNoReg;
   plan.fused_transform = !plan.stages.any();
 }

@@ -164,7 +164,8 @@ Edge edge_between(std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int64_
 }
 
 std::uint32_t edges_of(const Primitive& p, Edge edges[4]) {
-  if (p.kind == PrimitiveKind::kPoint) {  // X0 <= qx < X1, Y0 <= qy < Y1
+  if (p.kind == PrimitiveKind::kRectangle) return 0;  // its bounds say all
+  if (p.kind == PrimitiveKind::kPoint) {              // X0 <= qx < X1, Y0 <= qy < Y1
     edges[0] = {-1, 0, std::int64_t{1} - p.x[0]};
     edges[1] = {1, 0, p.x[1]};
     edges[2] = {0, 1, std::int64_t{1} - p.y[0]};

@@ -244,7 +244,7 @@ void point_coord_planes(const Primitive& p, std::uint32_t plane, PlaneSet& out) 
 void compute_planes(const PipelinePlan& plan, const Primitive& p, PlaneSet& out) {
   const std::size_t perspective_end = kFirstVaryingPlane + plan.perspective_count;
   const std::size_t count = perspective_end + plan.linear_count;
-  if (p.kind == PrimitiveKind::kTriangle) {
+  if (is_area(p.kind)) {
     HWY_DYNAMIC_DISPATCH(triangle_planes)(p, plan.pixel_offset, count, perspective_end, out);
   } else if (p.kind == PrimitiveKind::kLine) {
     const LineDeltas d = line_deltas(*plan.state, p);

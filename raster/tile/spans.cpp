@@ -24,7 +24,7 @@ int window_start(int first) { return std::min(first & ~1, kTileSize - kLargeWind
 
 bool fits_window(const TileWorker& worker, const Primitive& p, const TileEdges& edges, const PixelRect& rect) {
   const PipelinePlan& plan = *worker.draw->plan;
-  if (!plan.windows || p.kind != PrimitiveKind::kTriangle || edges.count > 3) return false;
+  if (!plan.windows || !is_area(p.kind) || edges.count > 3) return false;
   if (plan.shades && (!plan.shades_blocks || plan.depth_order == TestOrder::kLate)) return false;
   if (!plan.tests_rows && plan.depth_order == TestOrder::kEarly) return false;
   const int x = window_start(rect.x0), y = window_start(rect.y0);

@@ -135,7 +135,7 @@ void clear_tile(TileWorker& worker, const ClearCommand& clear) {
 
 /// Whether a primitive replaces every colour of the tile, so that nothing drawn before it can be seen.
 bool hides_tile(const TileWorker& worker, const PipelinePlan& plan, const Primitive& p) {
-  if (!plan.replaces_colors || p.kind != PrimitiveKind::kTriangle) return false;
+  if (!plan.replaces_colors || !is_area(p.kind)) return false;
   const TileTarget& target = worker.target;
   const PixelRect area = pixel_rect(worker.pass->render_area);
   const int right = std::min(target.x + kTileSize - 1, area.x1), bottom = std::min(target.y + kTileSize - 1, area.y1);

@@ -48,23 +48,6 @@ const AddCase kClippedLayer(
       }
     });
 
-/// The same triangles, crossing the view volume, into BGRA8 with and without a depth attachment.
-const AddCase kBgra("clipping", "deviation.bgra8_route", "bgra8-route", case_against_control, [](Run& run) {
-  std::vector<float> values;
-  for (int i = 0; i < 3 * 12; ++i) {
-    const float w = run.random.real(0.7f, 1.4f);
-    for (const float v : {run.random.real(-1.7f, 1.7f) * w, run.random.real(-1.7f, 1.7f) * w, 0.5f * w, w})
-      values.push_back(v);
-    for (int c = 0; c < 4; ++c) values.push_back(run.random.unit());
-  }
-  TargetSpec target;
-  target.colors = {VK_FORMAT_B8G8R8A8_UNORM};
-  target.width = target.height = 200;
-  draw(run, "alone", target, {}, values);
-  target.depth = VK_FORMAT_D32_SFLOAT;
-  draw(run, "with_depth", target, {}, values);
-});
-
 /// A triangle whose corners differ so much in w that a corner made by clipping has no finite place.
 const AddCase kWrapped("clipping", "deviation.wrapped_coordinates", "wrapped-coordinates", case_against_control,
                        [](Run& run) {

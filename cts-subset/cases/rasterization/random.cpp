@@ -124,9 +124,6 @@ TargetSpec random_target(Run& run, bool multisample) {
   if (random.chance(0.6f))
     spec.depth = random.pick({VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT, VK_FORMAT_X8_D24_UNORM_PACK32,
                               VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT});
-  // A single BGRA8 target without depth sends the reference on a route of its own (deviations.md, bgra8-route).
-  if (spec.colors == std::vector{VK_FORMAT_B8G8R8A8_UNORM} && !spec.depth && !multisample)
-    spec.colors = {VK_FORMAT_R8G8B8A8_UNORM};
   if (multisample) {
     spec.samples = VK_SAMPLE_COUNT_4_BIT;
     spec.resolve = random.chance(0.5f);

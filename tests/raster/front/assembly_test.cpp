@@ -15,7 +15,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// Corners as stream positions of every primitive of a draw, through runs of at most `limit` positions.
 std::vector<Triangle> decompose(const DrawCall& draw, std::uint32_t limit) {
   std::vector<Run> runs;
-  append_runs(draw, 0, limit, runs);
+  append_runs(draw, 0, piece_of(topology_shape(draw), limit), runs);
   const TopologyShape shape = topology_shape(draw);
   std::vector<Triangle> result;
   for (const Run& run : runs) {
@@ -73,7 +73,7 @@ TEST(Assembly, CuttingIntoRunsChangesNothing) {
 /// Positions of every primitive as a geometry shader sees them, through runs of at most `limit` positions.
 std::vector<std::array<std::uint32_t, 6>> input_positions(const DrawCall& draw, std::uint32_t limit) {
   std::vector<Run> runs;
-  append_runs(draw, 0, limit, runs);
+  append_runs(draw, 0, piece_of(topology_shape(draw), limit), runs);
   TopologyShape shape = topology_shape(draw);
   shape.neighbours = draw.state->topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY;
   std::vector<std::array<std::uint32_t, 6>> result;

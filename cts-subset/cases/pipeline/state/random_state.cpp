@@ -66,8 +66,6 @@ Scene random_scene(Run& run, Random& second) {
                                 VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT, VK_FORMAT_S8_UINT});
   if (target.depth && !(gpus().reference.features_of(target.depth) & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT))
     target.depth = VK_FORMAT_D32_SFLOAT_S8_UINT;
-  // deviations.md, bgra8-route
-  if (target.colors == std::vector{VK_FORMAT_B8G8R8A8_UNORM} && !target.depth) target.depth = VK_FORMAT_D16_UNORM;
   if (scene.multisampled) {
     target.samples = VK_SAMPLE_COUNT_4_BIT;
     target.resolve = random.chance(0.4f) && !target.colors.empty();
