@@ -150,6 +150,7 @@ struct QueryCounters {
 };
 
 struct NativeShader;  // raster/stage.h
+class DrawObserver;   // raster/observe.h
 
 struct DrawCall {
   const State* state = nullptr;  ///< lives until the flush
@@ -176,6 +177,10 @@ struct DrawCall {
   QueryCounters queries;
   bool general_path = false;              ///< tests: without the fast paths, which must not be noticed otherwise
   TransformFeedback* feedback = nullptr;  ///< null: not active; lives until the flush
+  DrawObserver* observer = nullptr;       ///< null: nobody observes
+
+  /// Whether only packed waves are drawn.
+  bool takes_general_path() const { return general_path || observer != nullptr; }
 };
 
 }  // namespace vitrine::raster

@@ -156,7 +156,7 @@ struct Pass::Impl {
                       last->call.geometry == call.geometry && last->call.fragment == call.fragment &&
                       last->call.native_vertex == call.native_vertex &&
                       last->call.native_fragment == call.native_fragment &&
-                      last->call.general_path == call.general_path;
+                      last->call.takes_general_path() == call.takes_general_path();
     if (same) {
       record->plan = last->plan;
     } else {
@@ -230,7 +230,7 @@ struct Pass::Impl {
 
   void front_item(std::size_t index, std::size_t worker_index) {
     Command& command = scratch->commands[index];
-    if (command.clear || command.done) return;
+    if (command.clear || command.done || works_in_order(command)) return;
     command.done = true;
     Worker& worker = *scratch->workers[worker_index];
     command.output = process_chunk(command.chunk, desc, grid, worker.arena, worker.front);
@@ -272,22 +272,28 @@ struct Pass::Impl {
     return true;
   }
 
-  /// Whether a batch of clipped triangles goes on from a command to the next one (ChunkOutput). Vertices that have been
-  /// shaded and can be noticed otherwise are not shaded again for it.
+  /// Chunks that may share batches of clipped triangles, and whose vertices cannot be shaded again without notice.
+  static bool works_in_order(const Command& command) {
+    if (command.clear) return false;
+    const DrawRecord& draw = *command.chunk.draw;
+    return draw.plan->rectangles.any && (draw.call.queries.statistics || draw.call.feedback || draw.call.observer ||
+                                         draw.plan->vertex->writes_memory);
+  }
+
+  /// Whether a batch of clipped triangles may go on from a command to the next one (ChunkOutput).
   bool shares_batch(std::size_t index) const {
     if (index + 1 >= scratch->commands.size()) return false;
     const Command &a = scratch->commands[index], &b = scratch->commands[index + 1];
     if (a.clear || b.clear || a.chunk.draw != b.chunk.draw || a.chunk.view != b.chunk.view) return false;
-    const DrawCall& call = a.chunk.draw->call;
-    const bool noticed = call.queries.statistics || call.feedback || a.chunk.draw->plan->vertex->writes_memory;
-    return a.output.ends_clipped && b.output.begins_clipped && !noticed;
+    return works_in_order(a) || (a.output.ends_clipped && b.output.begins_clipped);
   }
 
-  /// Works again, in order, on chunks from `first` on that share a batch; returns the first one behind them.
+  /// Works in order on chunks from `first` on that share a batch, again or for the first time; returns the first one
+  /// behind them.
   std::size_t join_batches(std::size_t first) {
     std::size_t end = first + 1;
     while (shares_batch(end - 1)) ++end;
-    if (end - first == 1) return end;
+    if (end - first == 1 && !works_in_order(scratch->commands[first])) return end;
     ClippedBatch batch;
     batch.begin(*scratch->commands[first].chunk.draw->plan);
     for (std::size_t i = first; i < end; ++i) {

@@ -26,8 +26,7 @@ struct Primitive {
   explicit Primitive(Unset) {}  ///< for those who fill in everything: zeros first would take longer than that
 
   std::int32_t x[4],
-      y[4];  ///< triangle: 3 corners with positive area; line: 4 corners; point: x0, y0, x1, y1 in [0], [1]; rectangle:
-             ///< none
+      y[4];  ///< triangle: 3 corners with positive area; line: 4 corners; point, rectangle: x0, y0, x1, y1 in [0], [1]
   const Vertex* v[3];  ///< triangle: interpolation order (2.1); line: both ends; point: one
   /// Nonzero: covered pixels, in quad order, of the 8x8 window at the even pixel at or before (x0, y0), of a primitive
   /// that covers nothing outside of it.
@@ -47,6 +46,31 @@ struct Primitive {
 template <class T>
 constexpr bool owns_edge(T a, T b) {
   return a < 0 || (a == 0 && b > 0);
+}
+
+/// An edge function of samples q in 24.8: inside where c - a*qx + b*qy > 0, the fill rule's unit included.
+struct PrimitiveEdge {
+  std::int64_t a, b, c;
+};
+struct PrimitiveEdges {
+  std::uint32_t count;
+  PrimitiveEdge edge[4];
+};
+
+inline PrimitiveEdge edge_between(std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int64_t y1) {
+  const std::int64_t a = y0 - y1, b = x0 - x1;
+  return {a, b, a * x0 - b * y0 + (owns_edge(a, b) ? 1 : 0)};
+}
+
+inline PrimitiveEdges edges_of(const Primitive& p) {
+  if (p.kind == PrimitiveKind::kPoint || p.kind == PrimitiveKind::kRectangle)  // X0 <= qx < X1, Y0 <= qy < Y1
+    return {4, {{-1, 0, std::int64_t{1} - p.x[0]}, {1, 0, p.x[1]}, {0, 1, std::int64_t{1} - p.y[0]}, {0, -1, p.y[1]}}};
+  PrimitiveEdges edges{p.kind == PrimitiveKind::kTriangle ? 3u : 4u, {}};
+  for (std::uint32_t e = 0; e < edges.count; ++e) {
+    const std::uint32_t n = e + 1 == edges.count ? 0 : e + 1;
+    edges.edge[e] = edge_between(p.x[e], p.y[e], p.x[n], p.y[n]);
+  }
+  return edges;
 }
 
 /// Primitives of one tile in one chunk: index[0..count) into primitives, in API order.

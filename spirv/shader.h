@@ -93,6 +93,7 @@ struct InterfaceSlot {
   Interpolation interpolation = Interpolation::kPerspective;
   SampleLocation sample_location = SampleLocation::kCenter;
   InputPart part = InputPart::kValue;
+  bool implied = false;   ///< not the shader reads it, but this device: layers of input attachments, for observers
   std::uint32_t reg = 0;  ///< register of the wave: WaveRunner::input(reg) / output(reg)
 };
 

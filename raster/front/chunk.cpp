@@ -22,6 +22,7 @@ std::uint64_t count_assembly(const Chunk& chunk, std::uint32_t vertices) {
   queries.count(Statistic::kInputAssemblyVertices, assembled);
   queries.count(Statistic::kInputAssemblyPrimitives, primitives);
   queries.count(Statistic::kVertexInvocations, vertices);
+  if (chunk.watch) chunk.watch->assembled(vertices, primitives);
   return primitives;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "raster/front/assembly.h"
+#include "raster/observe.h"
 #include "raster/primitive.h"
 
 namespace vitrine::raster {
@@ -24,14 +25,15 @@ struct Chunk {
   std::uint32_t* stipple_counter = nullptr;  ///< of strips cut into chunks: what the chunks before have used up
   ClippedBatch* batch = nullptr;             ///< clipped triangles of the chunks before, which this one goes on with
   bool ends_batch = true;                    ///< no chunk follows that does
+  DrawWatch* watch = nullptr;                ///< while an observed chunk is worked on
 };
 
 /// Positions (before de-duplication) that the chunk's runs need.
 std::uint32_t positions_of(const Chunk& chunk);
 
 /// Counts the chunk's vertices and primitives, and the `vertices` that are shaded for it, in an active pipeline
-/// statistics query; returns the number of primitives. Vertices that complete no primitive are not counted ("Vertices
-/// corresponding to incomplete primitives may contribute to the count").
+/// statistics query, and tells who observes; returns the number of primitives. Vertices that complete no primitive are
+/// not counted ("Vertices corresponding to incomplete primitives may contribute to the count").
 std::uint64_t count_assembly(const Chunk& chunk, std::uint32_t vertices);
 
 /// Calls f(run, i, entry of position) for every primitive i of the chunk's runs: entry_of(p) is where position p of the

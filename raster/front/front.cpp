@@ -2,14 +2,17 @@
 #include "raster/front/front.h"
 
 #include "base/float_mode.h"
+#include "raster/front/observed.h"
 #include "raster/front/primitives.h"
 #include "raster/front/stages/stages.h"
 #include "raster/front/vertices.h"
 
 namespace vitrine::raster {
 
-ChunkOutput process_chunk(const Chunk& chunk, const PassDesc& pass, const TileGrid& grid, Arena& arena,
-                          FrontScratch& scratch) {
+namespace {
+
+ChunkOutput work_on(const Chunk& chunk, const PassDesc& pass, const TileGrid& grid, Arena& arena,
+                    FrontScratch& scratch) {
   const base::ScopedFloatMode mode(base::Denormals::kFlush);
   scratch.primitives.begin(arena);
   const PipelinePlan& plan = *chunk.draw->plan;
@@ -23,12 +26,27 @@ ChunkOutput process_chunk(const Chunk& chunk, const PassDesc& pass, const TileGr
     if (!plan.state->rasterizer_discard)
       clipped = process_primitives({chunk, pass, arena, scratch.vertices, scratch.primitives});
   }
+  if (chunk.watch) finish_observed(chunk, pass, scratch.primitives);
   ChunkOutput output;
   if (!plan.state->rasterizer_discard) output = bin_chunk(scratch.primitives, grid, arena, scratch.bins);
   if (scratch.capture.active) output.capture = finish_capture(arena, scratch.capture);
   output.begins_clipped = clipped.first;
   output.ends_clipped = clipped.last;
   return output;
+}
+
+}  // namespace
+
+ChunkOutput process_chunk(const Chunk& chunk, const PassDesc& pass, const TileGrid& grid, Arena& arena,
+                          FrontScratch& scratch) {
+  const DrawCall& call = chunk.draw->call;
+  const std::unique_ptr<DrawWatch> watch =
+      call.observer ? call.observer->watch_chunk(call.vertex_resources.command) : nullptr;
+  if (!call.observer) return work_on(chunk, pass, grid, arena, scratch);
+  Chunk observed = chunk;
+  DrawWatch nobody;
+  observed.watch = watch ? watch.get() : &nobody;
+  return work_on(observed, pass, grid, arena, scratch);
 }
 
 }  // namespace vitrine::raster

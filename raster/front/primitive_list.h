@@ -35,6 +35,7 @@ class PrimitiveList {
   std::uint32_t size() const { return size_; }
   const Primitive* data() const { return first_; }
   const Primitive& operator[](std::uint32_t i) const { return first_[i]; }
+  Primitive& operator[](std::uint32_t i) { return first_[i]; }
 
  private:
   void grow(std::uint32_t room) {

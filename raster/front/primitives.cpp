@@ -38,6 +38,7 @@ struct PrimitiveWork : PrimitiveContext {
         clipped(chunk.batch ? *chunk.batch : own_batch) {
     setup.layer = static_cast<std::uint16_t>(chunk.view);
     if (plan.rectangles.any && !chunk.batch) own_batch.begin(plan);
+    setup.watch = chunk.watch;
   }
 };
 
@@ -179,55 +180,62 @@ void emit_filled(PrimitiveWork& w, const Vertex* const v[3]) {
 
 /// Two triangles that may be a rectangle. False: they are not; nothing has been set up.
 bool emit_pair(PrimitiveWork& w, const PairCorners& v) {
+  using Kind = TrianglePair::Kind;
   const TrianglePair pair = pair_triangles(w.plan, v);
-  if (pair.kind == TrianglePair::Kind::kApart) return false;
-  if (pair.kind == TrianglePair::Kind::kFirst) emit_filled(w, v.data());
-  if (pair.kind == TrianglePair::Kind::kSecond) emit_filled(w, v.data() + 3);
-  if (pair.kind != TrianglePair::Kind::kRectangle) return true;
+  if (pair.kind == Kind::kApart) return false;
+  if (pair.kind == Kind::kFirst) emit_filled(w, v.data());
+  if (pair.kind == Kind::kSecond) emit_filled(w, v.data() + 3);
+  if (pair.kind != Kind::kRectangle) {
+    for (int culled = pair.kind == Kind::kNothing ? 2 : 1; culled > 0; --culled) w.setup.tell(PrimitiveFate::kFacing);
+    return true;
+  }
   const std::uint32_t before = w.primitives.size();
   setup_rectangle(w.setup, pair);
   w.rectangles += w.primitives.size() - before;
   return true;
 }
 
-void emit_pair_or_both(PrimitiveWork& w, const PairCorners& v) {
-  if (emit_pair(w, v)) return;
-  emit_filled(w, v.data());
-  emit_filled(w, v.data() + 3);
-}
-
 /// Sets up what has gone through the clipper: by pairs if it comes out even. `another`: a triangle that does not fit
 /// comes next.
 void flush_clipped(PrimitiveWork& w, bool another) {
-  const std::span<const TriangleCorners> triangles = w.clipped.triangles();
+  const std::span<const ClippedTriangle> triangles = w.clipped.triangles();
   const bool even = triangles.size() % 2 == 0;
-  for (std::size_t i = 0; i < triangles.size(); i += even ? 2 : 1) {
-    const TriangleCorners& t = triangles[i];
-    if (even)
-      emit_pair_or_both(w, {t[0], t[1], t[2], triangles[i + 1][0], triangles[i + 1][1], triangles[i + 1][2]});
-    else
-      emit_filled(w, t.data());
+  const std::uint32_t id = w.setup.id;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const TriangleCorners& v = triangles[i].v;
+    w.setup.id = triangles[i].id;
+    if (even && i % 2 == 0) {
+      const TriangleCorners& next = triangles[i + 1].v;
+      if (emit_pair(w, {v[0], v[1], v[2], next[0], next[1], next[2]})) {
+        ++i;
+        continue;
+      }
+    }
+    emit_filled(w, v.data());
   }
+  w.setup.id = id;
   if (!triangles.empty()) w.clipped.clear(another);
 }
 
 /// One triangle that went through the clipper or needs the slow path anyway.
 void emit_slow(PrimitiveWork& w, const Vertex* const v[3], const bool edge[3]) {
   const float determinant = window_determinant(v[0], v[1], v[2]);
-  if (culled_by_determinant(*w.plan.state, determinant)) return;
+  if (culled_by_determinant(*w.plan.state, determinant))
+    return w.setup.tell(determinant == 0 ? PrimitiveFate::kZeroArea : PrimitiveFate::kFacing);
   if (w.plan.bias_in_vertices) {
     emit_unfilled(w, v, edge, determinant);
     return;
   }
   if (!w.clips_segment) return emit_filled(w, v);
   if (w.clipped.is_complete()) flush_clipped(w, true);
-  w.clipped.add({v[0], v[1], v[2]});
+  w.clipped.add({{v[0], v[1], v[2]}, w.setup.id});
 }
 
 void emit_clipped(PrimitiveWork& w, std::uint32_t provoking, ClipPolygon& polygon) {
   const bool guard_band = w.plan.guard_band || w.plan.state->polygon_mode == VK_POLYGON_MODE_POINT;
   const ClipContext context{&w.plan, &w.viewport, &w.arena, guard_band};
-  if (!clip_triangle(context, provoking, polygon)) return;
+  if (!clip_triangle(context, provoking, polygon)) return w.setup.tell(PrimitiveFate::kOutside);
+  w.setup.tell(PrimitiveFate::kClipped);
   const Vertex* record[kMaxPolygon];
   for (std::uint32_t i = 0; i < polygon.count; ++i) record[i] = window_record(w, polygon.corner[i]);
   const bool last_mode = w.plan.state->provoking_vertex_last;
@@ -269,10 +277,10 @@ void add_to_batch(PrimitiveWork& w, const std::uint32_t slot[3]) {
 void process_triangle(PrimitiveWork& w, const std::uint32_t slot[3]) {
   const VertexScratch& s = w.vertices;
   const ClipCode c0 = s.code[slot[0]], c1 = s.code[slot[1]], c2 = s.code[slot[2]];
-  if ((c0 & c1 & c2) != 0) return;
+  if ((c0 & c1 & c2) != 0) return w.setup.tell(PrimitiveFate::kOutside);
   if (w.batches && !w.clips_segment && (c0 | c1 | c2) == 0) return add_to_batch(w, slot);
   flush_batch(w);
-  if (w.plan.out.cull_count && culled_by_distance(w, slot, 3)) return;
+  if (w.plan.out.cull_count && culled_by_distance(w, slot, 3)) return w.setup.tell(PrimitiveFate::kCulledByDistance);
   const std::uint32_t provoking = provoking_corner(3, w.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(w, slot[provoking]);
   const bool simple = (c0 | c1 | c2) == 0 && !w.plan.per_vertex_viewport && !w.plan.bias_in_vertices &&
@@ -300,13 +308,16 @@ void process_triangle(PrimitiveWork& w, const std::uint32_t slot[3]) {
 
 void process_line(PrimitiveWork& w, const std::uint32_t slot[2]) {
   const ClipCode c0 = w.vertices.code[slot[0]], c1 = w.vertices.code[slot[1]];
-  if ((c0 & c1) != 0) return;
-  if (w.plan.out.cull_count && culled_by_distance(w, slot, 2)) return;
+  if ((c0 & c1) != 0) return w.setup.tell(PrimitiveFate::kOutside);
+  if (w.plan.out.cull_count && culled_by_distance(w, slot, 2)) return w.setup.tell(PrimitiveFate::kCulledByDistance);
   const std::uint32_t provoking = provoking_corner(2, w.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(w, slot[provoking]);
   ClipVertex line[2] = {clip_vertex(w, slot[0]), clip_vertex(w, slot[1])};
   const ClipContext context{&w.plan, &w.viewport, &w.arena, w.plan.guard_band};
-  if ((c0 | c1) != 0 && !clip_line(context, provoking, line)) return;
+  if ((c0 | c1) != 0) {
+    if (!clip_line(context, provoking, line)) return w.setup.tell(PrimitiveFate::kOutside);
+    w.setup.tell(PrimitiveFate::kClipped);
+  }
   emit_line(w, window_record(w, line[0]), window_record(w, line[1]), true);
 }
 
@@ -315,12 +326,12 @@ void process_line(PrimitiveWork& w, const std::uint32_t slot[2]) {
 /// and y: deviation point-clipping.)
 void process_point(PrimitiveWork& w, std::uint32_t slot) {
   const ClipCode code = w.vertices.code[slot];
-  if ((code & ~kClipXY) != 0) return;
+  if ((code & ~kClipXY) != 0) return w.setup.tell(PrimitiveFate::kOutside);
   const ClipVertex v = clip_vertex(w, slot);
-  if (w.plan.out.cull_count && culled_by_distance(w, &slot, 1)) return;
+  if (w.plan.out.cull_count && culled_by_distance(w, &slot, 1)) return w.setup.tell(PrimitiveFate::kCulledByDistance);
   // Clipping primitives: the reference's count, and any is allowed for what is outside.
   w.chunk.draw->call.queries.count(Statistic::kClippingPrimitives, 1);
-  if (code != 0) return;
+  if (code != 0) return w.setup.tell(PrimitiveFate::kOutside);
   choose_layer_and_viewport(w, slot);
   setup_point(w.setup, window_record(w, v), true);
 }
@@ -420,12 +431,23 @@ void process_segment(PrimitiveWork& w, const Run& run, const RunSpan& span, std:
   };
   for (std::uint32_t i = run.begin; i < run.end;) {
     const TriangleCorners first = {corner(i, 0), corner(i, 1), corner(i, 2)};
+    w.setup.id = run.first_id + i;
     if (i + 1 == run.end) return emit_filled(w, first.data());
     const PairCorners v = {first[0], first[1], first[2], corner(i + 1, 0), corner(i + 1, 1), corner(i + 1, 2)};
     const bool paired = emit_pair(w, v);
     if (!paired) emit_filled(w, first.data());
     if (!paired && pairing.missed == 2) emit_filled(w, v.data() + 3);
     i += paired ? 2 : pairing.missed;
+  }
+}
+
+/// Both faces are culled.
+void tell_invisible(PrimitiveWork& w) {
+  if (!w.setup.watch) return;
+  for (std::uint32_t r = 0; r < w.chunk.run_count; ++r) {
+    const Run& run = w.chunk.runs[r];
+    for (std::uint32_t i = run.begin; i < run.end; ++i)
+      w.setup.watch->primitive(run.first_id + i, PrimitiveFate::kFacing);
   }
 }
 
@@ -436,7 +458,10 @@ ClippedEnds process_primitives(const PrimitiveContext& context) {
   ClippedEnds ends;
   const Chunk& chunk = w.chunk;
   const TopologyShape& shape = w.plan.shape;
-  if (w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) return ends;
+  if (w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) {
+    tell_invisible(w);
+    return ends;
+  }
   if (chunk.stipple_counter) w.stipple_counter = *chunk.stipple_counter;
   std::uint32_t first_entry = 0, expected = 0;
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) expected += chunk.runs[r].end - chunk.runs[r].begin;
@@ -462,10 +487,14 @@ ClippedEnds process_primitives(const PrimitiveContext& context) {
 void process_listed(const PrimitiveContext& context, std::span<const ListedPrimitive> listed) {
   PrimitiveWork w(context);
   const std::uint32_t before = w.primitives.size();
+  if (w.setup.watch) w.setup.watch->emitted(listed.size());
   const bool invisible = w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && w.plan.corners == 3;
   for (const ListedPrimitive& primitive : listed) {
-    if (invisible) break;
     w.setup.id = primitive.id;
+    if (invisible) {
+      w.setup.tell(PrimitiveFate::kFacing);
+      continue;
+    }
     if (!primitive.continues) w.stipple_counter = 0;
     process_primitive(w, w.plan.corners, primitive.slot);
   }

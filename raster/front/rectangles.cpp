@@ -107,21 +107,25 @@ void setup_rectangle(const SetupContext& context, const TrianglePair& pair) {
     x[i] = base::round_half_away(256.0f * (pair.corner[i][0] - plan.pixel_offset));
     y[i] = base::round_half_away(256.0f * (pair.corner[i][1] - plan.pixel_offset));
   }
-  if ((x[2] < x[1]) != (y[0] < y[2])) return;
+  const auto tell = [&](PrimitiveFate fate) {
+    for (int triangle = 0; triangle < 2; ++triangle) context.tell(fate);
+  };
+  if ((x[2] < x[1]) != (y[0] < y[2])) return tell(PrimitiveFate::kZeroArea);
   const auto [left, right] = std::minmax({x[0], x[1], x[2]});
   const auto [top, bottom] = std::minmax({y[0], y[1], y[2]});
   const PixelRect bounds{(left + 255) >> 8, (top + 255) >> 8, ((right + 255) >> 8) - 1, ((bottom + 255) >> 8) - 1};
-  if (bounds.empty()) return;
+  if (bounds.empty()) return tell(PrimitiveFate::kNoSample);
   const PixelRect visible = intersect(bounds, plan.region[context.viewport]);
-  if (visible.empty()) return;
+  if (visible.empty()) return tell(PrimitiveFate::kScissor);
   const int wx = visible.x0 & ~1, wy = visible.y0 & ~1;
   base::LaneMask window = 0;
   if (plan.windows && visible.x1 - wx < 8 && visible.y1 - wy < 8)
     window = rect_lanes(visible.x0 - wx, visible.y0 - wy, visible.x1 - wx, visible.y1 - wy);
   Primitive& p = context.out->append();
   std::copy_n(pair.corner.data(), 3, p.v);
-  std::fill_n(p.x, 4, 0);
-  std::fill_n(p.y, 4, 0);
+  const std::int32_t box_x[4] = {left, right, 0, 0}, box_y[4] = {top, bottom, 0, 0};
+  std::copy_n(box_x, 4, p.x);
+  std::copy_n(box_y, 4, p.y);
   complete_triangle(context, {pair.front, visible, window}, p);
   p.kind = PrimitiveKind::kRectangle;
 }
@@ -138,9 +142,9 @@ void ClippedBatch::clear(bool another) {
   vertices_ = 0;
 }
 
-void ClippedBatch::add(const TriangleCorners& v) {
-  triangles_.push_back(v);
-  for (const Vertex* corner : v) {
+void ClippedBatch::add(const ClippedTriangle& triangle) {
+  triangles_.push_back(triangle);
+  for (const Vertex* corner : triangle.v) {
     auto at = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(corner) >> 4) * 0x9e3779b1u >> 22;
     while (known_[at] != nullptr && known_[at] != corner) at = (at + 1) % kTable;
     if (known_[at] == corner) continue;

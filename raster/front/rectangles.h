@@ -34,6 +34,11 @@ TrianglePair pair_triangles(const PipelinePlan& plan, const PairCorners& v);
 /// 9.3: appends the rectangle unless nothing of it is visible.
 void setup_rectangle(const SetupContext& context, const TrianglePair& pair);
 
+struct ClippedTriangle {
+  TriangleCorners v;
+  std::uint32_t id;  ///< gl_PrimitiveID
+};
+
 /// Triangles that have been through the clipper and wait for the others of their batch.
 class ClippedBatch {
  public:
@@ -45,8 +50,8 @@ class ClippedBatch {
   }
   /// The triangles that come are of another segment: it has vertices of its own.
   void begin_segment() { known_.assign(kTable, nullptr); }
-  void add(const TriangleCorners& v);
-  std::span<const TriangleCorners> triangles() const { return triangles_; }
+  void add(const ClippedTriangle& triangle);
+  std::span<const ClippedTriangle> triangles() const { return triangles_; }
   /// The batch has been worked off: because another triangle comes, or because none does.
   void clear(bool another);
 
@@ -55,7 +60,7 @@ class ClippedBatch {
   static constexpr std::uint32_t kTable = 1024;    ///< more than twice as many as a batch has vertices
 
   const PipelinePlan* plan_ = nullptr;
-  std::vector<TriangleCorners> triangles_;
+  std::vector<ClippedTriangle> triangles_;
   std::uint32_t vertices_ = 0;  ///< distinct ones
   bool alone_ = false;          ///< the next triangle, or the one that is there, is a batch of its own
   std::vector<const Vertex*> known_;

@@ -108,20 +108,21 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   };
   const std::int64_t area =
       std::int64_t{minus(v0.x, v1.x)} * minus(v2.y, v0.y) - std::int64_t{minus(v2.x, v0.x)} * minus(v0.y, v1.y);
-  if (area == 0) return;
+  if (area == 0) return context.tell(PrimitiveFate::kZeroArea);
   const bool faces = (area > 0) == (state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE);
   const bool front = context.of_line ? context.line_front : faces;
-  if (!context.of_line && cull_facing(state, front)) return;
+  if (!context.of_line && cull_facing(state, front)) return context.tell(PrimitiveFate::kFacing);
   const std::int32_t left = std::min({v0.x, v1.x, v2.x}), right = std::max({v0.x, v1.x, v2.x});
   const std::int32_t top = std::min({v0.y, v1.y, v2.y}), bottom = std::max({v0.y, v1.y, v2.y});
   // Positions that no viewport can give come from NaN and infinities; edge arithmetic need not cope with them.
   constexpr std::int32_t kLimit = 1 << 23;
-  if (left < -kLimit || top < -kLimit || right > kLimit || bottom > kLimit) return;
-  if (right - left > kLimit || bottom - top > kLimit) return;
+  if (left < -kLimit || top < -kLimit || right > kLimit || bottom > kLimit || right - left > kLimit ||
+      bottom - top > kLimit)
+    return context.tell(PrimitiveFate::kTooFar);
   const int first = plan.raster_samples > 1 ? 0 : 255;
   const PixelRect bounds{(left + first) >> 8, (top + first) >> 8, (right - 1) >> 8, (bottom - 1) >> 8};
   const PixelRect visible = intersect(bounds, plan.region[context.viewport]);
-  if (visible.empty()) return;
+  if (visible.empty()) return context.tell(bounds.empty() ? PrimitiveFate::kNoSample : PrimitiveFate::kScissor);
   base::LaneMask window = 0;
   const int wx = visible.x0 & ~1, wy = visible.y0 & ~1;
   if (plan.windows && visible.x1 - wx < 8 && visible.y1 - wy < 8 && right - left <= kWindowReach &&

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "raster/front/primitive_list.h"
+#include "raster/observe.h"
 #include "raster/pass_desc.h"
 #include "raster/pixel_rect.h"
 #include "raster/primitive.h"
@@ -29,6 +30,12 @@ struct SetupContext {
   std::uint8_t viewport = 0;
   bool of_line = false;  ///< the triangle is half of a smooth line: never culled or biased, faces as `line_front` says
   bool line_front = true;
+  DrawWatch* watch = nullptr;  ///< null: nobody observes
+
+  /// A primitive ends here.
+  void tell(PrimitiveFate fate) const {
+    if (watch) watch->primitive(id, fate);
+  }
 };
 
 /// Snapped coordinate of triangles: nearest even (3.1).

@@ -148,7 +148,10 @@ void rectangular_polygon(const State& state, const Vertex* v1, const Vertex* v2,
 bool set_bounds(const SetupContext& context, const PixelRect& bounds, Primitive& p) {
   const PipelinePlan& plan = *context.plan;
   const PixelRect visible = intersect(bounds, context.viewport == 0 ? plan.wide_region : plan.region[context.viewport]);
-  if (visible.empty()) return false;
+  if (visible.empty()) {
+    context.tell(bounds.empty() ? PrimitiveFate::kNoSample : PrimitiveFate::kScissor);
+    return false;
+  }
   p.x0 = static_cast<std::uint16_t>(visible.x0);
   p.y0 = static_cast<std::uint16_t>(visible.y0);
   p.x1 = static_cast<std::uint16_t>(visible.x1);
@@ -171,10 +174,10 @@ void setup_line(const SetupContext& context, const Vertex* v1, const Vertex* v2,
   const PipelinePlan& plan = *context.plan;
   const float dx = v1[0] - v2[0], dy = v1[1] - v2[1];
   const float area = dx * dx + dy * dy;
-  if (!(area > 0 && area < 1e12f)) return;
+  if (!(area > 0 && area < 1e12f)) return context.tell(area == 0 ? PrimitiveFate::kZeroArea : PrimitiveFate::kTooFar);
   const float limit = 32768;
   for (const Vertex* v : {v1, v2})
-    if (!(std::fabs(v[0]) < limit && std::fabs(v[1]) < limit)) return;
+    if (!(std::fabs(v[0]) < limit && std::fabs(v[1]) < limit)) return context.tell(PrimitiveFate::kTooFar);
   Primitive p{};
   if (plan.state->line_mode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT)
     bresenham_polygon(*plan.state, v1, v2, plan.pixel_offset, p);
@@ -222,7 +225,7 @@ void setup_smooth_line(SetupContext context, Arena& arena, const Vertex* v0, con
 void setup_point(const SetupContext& context, const Vertex* v, bool front) {
   const PipelinePlan& plan = *context.plan;
   const float limit = 32768;
-  if (!(std::fabs(v[0]) < limit && std::fabs(v[1]) < limit)) return;
+  if (!(std::fabs(v[0]) < limit && std::fabs(v[1]) < limit)) return context.tell(PrimitiveFate::kTooFar);
   const float size = std::min(plan.point_size_word == kNoReg ? 1.0f : v[plan.point_size_word], 255.0f);
   const std::int32_t width = std::max(256, base::round_half_away(256 * size));
   Primitive p{};

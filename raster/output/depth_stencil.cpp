@@ -257,10 +257,15 @@ base::LaneMask depth_only(const DepthStencilTests& tests, const DepthStencilTarg
   return HWY_DYNAMIC_DISPATCH(test_depth)(target.format, pass, quads, z, mask);
 }
 
+/// Lanes of a quad that passed.
+struct QuadTests {
+  std::uint32_t stencil, depth;
+};
+
 /// One quad with stencil: stencil test, depth test of what passed, stencil write of all.
-std::uint32_t stencil_quad(const DepthStencilTests& tests, const DepthStencilTarget& target, const QuadPositions& quads,
-                           std::uint32_t q, bool front, const float* z, const std::uint32_t* reference,
-                           std::uint32_t nibble, bool write) {
+QuadTests stencil_quad(const DepthStencilTests& tests, const DepthStencilTarget& target, const QuadPositions& quads,
+                       std::uint32_t q, bool front, const float* z, const std::uint32_t* reference,
+                       std::uint32_t nibble, bool write) {
   const StencilFace& face = front ? tests.state->front : tests.state->back;
   std::byte* texel[4];
   for (std::uint32_t lane = 0; lane < 4; ++lane)
@@ -278,7 +283,51 @@ std::uint32_t stencil_quad(const DepthStencilTests& tests, const DepthStencilTar
     const bool stencil_ok = (passed >> lane & 1) != 0, depth_ok = (depth_passed >> lane & 1) != 0;
     if (write) stencil.write(lane, !stencil_ok ? face.fail : depth_ok ? face.pass : face.depth_fail);
   }
-  return depth_passed;
+  return {passed, depth_passed};
+}
+
+/// Nobody wants to know what failed.
+struct Untold {
+  void depth_bounds(base::LaneMask) {}
+  void stencil(base::LaneMask) {}
+  void depth(base::LaneMask) {}
+};
+
+struct Told {
+  FailedTests& failed;
+  void depth_bounds(base::LaneMask lanes) { failed.depth_bounds |= lanes; }
+  void stencil(base::LaneMask lanes) { failed.stencil |= lanes; }
+  void depth(base::LaneMask lanes) { failed.depth |= lanes; }
+};
+
+template <class Teller>
+base::LaneMask test_quads(const DepthStencilTests& tests, const DepthStencilTarget& target, const QuadPositions& quads,
+                          std::uint32_t front, const float* z, const std::uint32_t* reference, base::LaneMask mask,
+                          bool write, Teller teller) {
+  base::LaneMask result = 0;
+  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
+    base::LaneMask quad = mask & base::LaneMask{15} << (4 * q);
+    if (tests.depth_bounds) {
+      const base::LaneMask inside = inside_depth_bounds(*tests.state, target, quads, quad);
+      teller.depth_bounds(quad & ~inside);
+      quad = inside;
+    }
+    if (quad == 0) continue;
+    if (tests.stencil) {
+      const auto nibble = static_cast<std::uint32_t>(quad >> (4 * q)) & 15u;
+      const bool faces = (front >> q & 1) != 0;
+      const QuadTests passed = stencil_quad(tests, target, quads, q, faces, z, reference, nibble, write);
+      teller.stencil(base::LaneMask{nibble & ~passed.stencil} << (4 * q));
+      teller.depth(base::LaneMask{passed.stencil & ~passed.depth} << (4 * q));
+      quad = base::LaneMask{passed.depth} << (4 * q);
+    } else if (tests.depth) {
+      const base::LaneMask passed = depth_only(tests, target, quads, z, quad, write);
+      teller.depth(quad & ~passed);
+      quad = passed;
+    }
+    result |= quad;
+  }
+  return result;
 }
 
 }  // namespace
@@ -306,23 +355,11 @@ void clamp_depth(const DepthRange* clamp, bool restricted, std::uint32_t quads, 
 
 base::LaneMask test_depth_stencil(const DepthStencilTests& tests, const DepthStencilTarget& target,
                                   const QuadPositions& quads, std::uint32_t front, const float* z,
-                                  const std::uint32_t* reference, base::LaneMask mask, bool write) {
+                                  const std::uint32_t* reference, base::LaneMask mask, bool write,
+                                  FailedTests* failed) {
+  if (failed) return test_quads(tests, target, quads, front, z, reference, mask, write, Told{*failed});
   if (!tests.depth_bounds && !tests.stencil) return depth_only(tests, target, quads, z, mask, write);
-  base::LaneMask result = 0;
-  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
-    base::LaneMask quad = mask & base::LaneMask{15} << (4 * q);
-    if (tests.depth_bounds) quad = inside_depth_bounds(*tests.state, target, quads, quad);
-    if (quad == 0) continue;
-    if (tests.stencil) {
-      const auto nibble = static_cast<std::uint32_t>(quad >> (4 * q)) & 15u;
-      const bool faces = (front >> q & 1) != 0;
-      quad = base::LaneMask{stencil_quad(tests, target, quads, q, faces, z, reference, nibble, write)} << (4 * q);
-    } else if (tests.depth) {
-      quad = depth_only(tests, target, quads, z, quad, write);
-    }
-    result |= quad;
-  }
-  return result;
+  return test_quads(tests, target, quads, front, z, reference, mask, write, Untold{});
 }
 
 }  // namespace vitrine::raster

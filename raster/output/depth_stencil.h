@@ -41,11 +41,17 @@ struct DepthRange {
 /// 5.3 steps 1 (where `restricted`) and 2: in place, lanes of quads [0, quads). `clamp`: null, or z range per quad.
 void clamp_depth(const DepthRange* clamp, bool restricted, std::uint32_t quads, float* z);
 
+/// Lanes by the first test that they failed.
+struct FailedTests {
+  base::LaneMask depth_bounds = 0, stencil = 0, depth = 0;
+};
+
 /// Tests lanes of `mask`: depth bounds, stencil, depth; returns those that pass. `z` is clamped. Writes depth where
 /// `write` and the state say, and stencil always as the state says. `front`: bit q is the facing of quad q.
-/// `reference`: per-lane stencil reference or null.
+/// `reference`: per-lane stencil reference or null. `failed`: for observers, or null.
 base::LaneMask test_depth_stencil(const DepthStencilTests& tests, const DepthStencilTarget& target,
                                   const QuadPositions& quads, std::uint32_t front, const float* z,
-                                  const std::uint32_t* reference, base::LaneMask mask, bool write);
+                                  const std::uint32_t* reference, base::LaneMask mask, bool write,
+                                  FailedTests* failed = nullptr);
 
 }  // namespace vitrine::raster

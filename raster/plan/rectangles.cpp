@@ -21,6 +21,17 @@ bool reads(const PipelinePlan& plan, BuiltIn built_in) {
                                       [=](const InterfaceSlot& slot) { return slot.built_in == built_in; });
 }
 
+/// Whether an input has a value that is not interpolated; gl_PrimitiveID has.
+bool reads_flat(const PipelinePlan& plan) {
+  if (!plan.fragment) return false;
+  return std::any_of(plan.fragment->inputs.begin(), plan.fragment->inputs.end(), [](const InterfaceSlot& slot) {
+    const bool numbers = slot.built_in == BuiltIn::kLayer || slot.built_in == BuiltIn::kPrimitiveId;
+    const bool by_location = slot.built_in == BuiltIn::kNone;
+    return !slot.implied && (numbers || (by_location && (slot.type != spirv::BaseType::kFloat ||
+                                                         slot.interpolation == spirv::Interpolation::kFlat)));
+  });
+}
+
 bool has_guard_band(const PipelinePlan& plan, const PassDesc& pass) {
   if (pass.color_count != 1 || !pass.color[0].format || !pass.plain_image || pass.samples > 1) return false;
   if (pass.color[0].format->format != VK_FORMAT_B8G8R8A8_UNORM) return false;
@@ -35,6 +46,7 @@ std::uint32_t attributes_of(const PipelinePlan& plan) {
   if (!plan.fragment) return count;
   std::set<std::pair<BuiltIn, std::uint32_t>> read;
   for (const InterfaceSlot& slot : plan.fragment->inputs) {
+    if (slot.implied) continue;
     switch (slot.built_in) {
       case BuiltIn::kNone:
         read.emplace(slot.built_in, slot.location);
@@ -71,7 +83,7 @@ void plan_rectangles(PipelinePlan& plan, const DrawCall& draw, const PassDesc& p
                          topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP ||
                          topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN;
   if (!plan.guard_band || !triangles || plan.stages.any() || plan.bias_in_vertices) return;
-  if (plan.flat_count != 0 || reads(plan, BuiltIn::kPrimitiveId)) return;
+  if (reads_flat(plan)) return;
   plan.rectangles.any = true;
   plan.rectangles.segment = segment_primitives(plan, draw.index_data ? kSegmentIndices : kSegmentVertices);
   plan.rectangles.batch_vertices = kBatchBytes / (kAttributeBytes * attributes_of(plan));

@@ -154,32 +154,6 @@ HWY_EXPORT(inside_lanes);
 HWY_EXPORT(inside_blocks);
 HWY_EXPORT(large_window_rows);
 
-struct Edge {
-  std::int64_t a, b, c;  ///< E = c - a*qx + b*qy, the fill rule's unit included
-};
-
-Edge edge_between(std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int64_t y1) {
-  const std::int64_t a = y0 - y1, b = x0 - x1;
-  return {a, b, a * x0 - b * y0 + (owns_edge(a, b) ? 1 : 0)};
-}
-
-std::uint32_t edges_of(const Primitive& p, Edge edges[4]) {
-  if (p.kind == PrimitiveKind::kRectangle) return 0;  // its bounds say all
-  if (p.kind == PrimitiveKind::kPoint) {              // X0 <= qx < X1, Y0 <= qy < Y1
-    edges[0] = {-1, 0, std::int64_t{1} - p.x[0]};
-    edges[1] = {1, 0, p.x[1]};
-    edges[2] = {0, 1, std::int64_t{1} - p.y[0]};
-    edges[3] = {0, -1, p.y[1]};
-    return 4;
-  }
-  const std::uint32_t corners = p.kind == PrimitiveKind::kTriangle ? 3 : 4;
-  for (std::uint32_t e = 0; e < corners; ++e) {
-    const std::uint32_t n = e + 1 == corners ? 0 : e + 1;
-    edges[e] = edge_between(p.x[e], p.y[e], p.x[n], p.y[n]);
-  }
-  return corners;
-}
-
 /// Whether all of a triangle lies so near to a tile that it touches that its edge functions fit 32 bits there.
 bool is_small_triangle(const Primitive& p) {
   constexpr std::int32_t kReach = 32 * 256;
@@ -210,11 +184,11 @@ bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, const S
     make_small_edges(primitive, tile_x, tile_y, out);
     return true;
   }
-  Edge edges[4];
-  const std::uint32_t count = edges_of(primitive, edges);
   out.count = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Edge& e = edges[i];
+  if (primitive.kind == PrimitiveKind::kRectangle) return true;  // its bounds say all
+  const PrimitiveEdges edges = edges_of(primitive);
+  for (std::uint32_t i = 0; i < edges.count; ++i) {
+    const PrimitiveEdge& e = edges.edge[i];
     const std::int64_t low = std::min<std::int64_t>(0, -63 * e.a) + std::min<std::int64_t>(0, 63 * e.b);
     const std::int64_t high = std::max<std::int64_t>(0, -63 * e.a) + std::max<std::int64_t>(0, 63 * e.b);
     std::int64_t f[kMaxSamples];

@@ -35,7 +35,8 @@ HierarchicalTest hierarchical_test(TileWorker& worker, const Primitive& primitiv
 
 }  // namespace
 
-void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block) {
+void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,
+                    FailedTests* failed) {
   const PipelinePlan& plan = *worker.draw->plan;
   const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
   QuadPositions quads;
@@ -51,9 +52,9 @@ void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y
                            worker.depth);
       if (clamps) clamp_depth(range, plan.restricts_depth, base::kQuadsPerWave, worker.depth);
     }
-    block.lanes[s] =
-        test_depth_stencil(plan.tests, worker.target.depth_stencil[s], quads, primitive.front ? 0xffffu : 0,
-                           worker.depth, nullptr, block.lanes[s], plan.depth_order == TestOrder::kEarly);
+    block.lanes[s] = test_depth_stencil(plan.tests, worker.target.depth_stencil[s], quads,
+                                        primitive.front ? 0xffffu : 0, worker.depth, nullptr, block.lanes[s],
+                                        plan.depth_order == TestOrder::kEarly, failed ? failed + s : nullptr);
   }
 }
 

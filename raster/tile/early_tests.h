@@ -11,8 +11,9 @@
 namespace vitrine::raster {
 
 /// Tests a block before shading, whatever is tested and wherever it lies. Writes unless the test is only a preview of a
-/// late one.
-void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block);
+/// late one. `failed`: what failed, by sample, for observers; or null.
+void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,
+                    FailedTests* failed = nullptr);
 
 /// Depth test, in one sample, of the blocks at the quad-ordered places of `places`, all of which lie inside all
 /// attachments; the block at place 0 is at (x, y). Cuts lanes[place] to what passed and returns where nothing did.

@@ -8,6 +8,7 @@
 
 #include "base/numeric.h"
 #include "raster/tile/fragment_outputs.h"
+#include "raster/tile/observed.h"
 #include "raster/tile/packed_inputs.h"
 #include "raster/tile/primitive_planes.h"
 
@@ -31,18 +32,21 @@ void cover_smooth_lines(ShadeRun& run) {
         saturate(half_width[lane] - std::fabs(across[lane])) * saturate(half_length[lane] - std::fabs(along[lane]));
 }
 
-/// 8.6, and gl_SampleMask.
-void change_coverage(ShadeRun& run) {
+/// gl_SampleMask.
+void mask_coverage(ShadeRun& run) {
   const PipelinePlan& plan = run.plan;
-  StageRunner& runner = run.worker.runner;
-  if (plan.frag.sample_mask != kNoReg) {
-    const std::uint32_t* mask = runner.output(plan.frag.sample_mask).lane;
-    for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
-      for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
-        if ((mask[lane] >> s & 1) == 0) run.kept[s] &= ~(LaneMask{1} << lane);
-  }
+  if (plan.frag.sample_mask == kNoReg) return;
+  const std::uint32_t* mask = run.worker.runner.output(plan.frag.sample_mask).lane;
+  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
+    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
+      if ((mask[lane] >> s & 1) == 0) run.kept[s] &= ~(LaneMask{1} << lane);
+}
+
+/// 8.6.
+void cover_by_alpha(ShadeRun& run) {
+  const PipelinePlan& plan = run.plan;
   if (!plan.state->alpha_to_coverage || plan.frag.color[0][3] == kNoReg) return;
-  const std::uint32_t* alpha = runner.output(plan.frag.color[0][3]).lane;
+  const std::uint32_t* alpha = run.worker.runner.output(plan.frag.color[0][3]).lane;
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
     const float limit = plan.samples == 1 ? 0.5f : static_cast<float>(s) / static_cast<float>(plan.samples);
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
@@ -81,19 +85,23 @@ void late_depth(ShadeRun& run, std::uint32_t sample) {
   clamp_depth(plan.state->depth_clamp ? range : nullptr, plan.restricts_depth, run.wave.quads, worker.depth);
 }
 
+template <bool kObserved>
 void test_late(ShadeRun& run) {
   TileWorker& worker = run.worker;
   const PipelinePlan& plan = run.plan;
   const std::uint32_t front = facing_bits(run.wave);
   const std::uint32_t* reference = plan.frag.stencil != kNoReg ? worker.runner.output(plan.frag.stencil).lane : nullptr;
+  [[maybe_unused]] FailedTests failed[kObserved ? kMaxSamples : 1];
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
     if (!run.kept[s]) continue;
     if (plan.tests.depth) late_depth(run, s);
     run.kept[s] = test_depth_stencil(plan.tests, worker.target.depth_stencil[s], run.wave.position, front, worker.depth,
-                                     reference, run.kept[s], true);
+                                     reference, run.kept[s], true, kObserved ? failed + s : nullptr);
   }
+  if constexpr (kObserved) tell_tests(worker, failed, front, run.first_sample, run.end_sample, true);
 }
 
+template <bool kObserved>
 void write_colors(ShadeRun& run) {
   TileWorker& worker = run.worker;
   const PipelinePlan& plan = run.plan;
@@ -110,6 +118,7 @@ void write_colors(ShadeRun& run) {
     const WaveRegister* second = dual ? collect_color(worker, plan.frag.color_second, scaled, worker.second) : nullptr;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
       write_color(plan.writer[i], {&view, worker.target.layer, s, &run.wave.position, run.kept[s], color, second});
+    if constexpr (kObserved) tell_colors(worker, view, run.kept, run.first_sample, run.end_sample);
   }
 }
 
@@ -117,6 +126,7 @@ void count_kept(ShadeRun& run) {
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) count_samples(run.worker, run.kept[s]);
 }
 
+template <bool kObserved>
 void shade(ShadeRun& run) {
   TileWorker& worker = run.worker;
   const PipelinePlan& plan = run.plan;
@@ -134,11 +144,34 @@ void shade(ShadeRun& run) {
   run.alive = worker.runner.run(active, active & ~run.pixels);
   if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(run.pixels));
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) run.kept[s] &= run.alive;
+  const auto tell = [&](FragmentTest test) {
+    if constexpr (kObserved) tell_lost(worker, test, run.kept, run.first_sample, run.end_sample);
+  };
+  if constexpr (kObserved) worker.watch->shaded(worker.told.group, run.pixels, active & ~run.pixels);
+  tell(FragmentTest::kDiscard);
   if (plan.smooth_lines) cover_smooth_lines(run);
-  if (plan.may_kill) change_coverage(run);
-  if (plan.depth_order == TestOrder::kLate) test_late(run);
+  if (plan.may_kill) {
+    mask_coverage(run);
+    tell(FragmentTest::kShaderMask);
+    cover_by_alpha(run);
+    tell(FragmentTest::kAlphaToCoverage);
+  }
+  if (plan.depth_order == TestOrder::kLate) test_late<kObserved>(run);
   if (!plan.fragment->early_fragment_tests) count_kept(run);
-  write_colors(run);
+  write_colors<kObserved>(run);
+}
+
+/// All runs of a wave.
+template <bool kObserved>
+void shade_samples(ShadeRun& run, PackedWave& wave) {
+  if constexpr (kObserved) tell_wave(run.worker, wave);
+  if (!run.plan.sample_shading) return shade<kObserved>(run);
+  for (std::uint32_t s = 0; s < run.plan.samples; ++s) {
+    run.first_sample = s;
+    run.end_sample = s + 1;
+    shade<kObserved>(run);
+    wave.coverage[s] &= run.alive;  // 8.4: the centroids of later samples do not see what was discarded
+  }
 }
 
 }  // namespace
@@ -152,15 +185,11 @@ void shade_wave(TileWorker& worker, PackedWave& wave) {
   std::fill(wave.position.x + wave.quads, std::end(wave.position.x), wave.position.x[0]);
   std::fill(wave.position.y + wave.quads, std::end(wave.position.y), wave.position.y[0]);
   begin_packed_inputs(run);
-  if (!plan.sample_shading) {
-    shade(run);
+  if (worker.watch) {
+    shade_samples<true>(run, wave);
+    tell_passed(worker);
   } else {
-    for (std::uint32_t s = 0; s < plan.samples; ++s) {
-      run.first_sample = s;
-      run.end_sample = s + 1;
-      shade(run);
-      wave.coverage[s] &= run.alive;  // 8.4: the centroids of later samples do not see what was discarded
-    }
+    shade_samples<false>(run, wave);
   }
   release_planes(worker, wave);
   wave.quads = wave.slots = 0;

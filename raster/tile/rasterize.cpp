@@ -7,6 +7,7 @@
 #include "raster/tile/coverage.h"
 #include "raster/tile/early_tests.h"
 #include "raster/tile/fragment.h"
+#include "raster/tile/observed.h"
 #include "raster/tile/pack.h"
 #include "raster/tile/spans.h"
 #include "raster/tile/windows.h"
@@ -90,9 +91,13 @@ base::LaneMask cover_tile(const PipelinePlan& plan, const Primitive& primitive, 
   }
   for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s)
     std::copy_n(out.lanes[0], base::kWaveWidth, out.lanes[s]);
+  return any;
+}
+
+/// 8.2.
+void mask_samples(const PipelinePlan& plan, TileCoverage& out) {
   for (std::uint32_t s = 0; s < plan.samples; ++s)
     if ((plan.sample_mask >> s & 1) == 0) std::fill_n(out.lanes[s], base::kWaveWidth, 0);
-  return any;
 }
 
 /// Early tests of the blocks at `places` of a grid.
@@ -158,6 +163,7 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   }
   places = cover_tile(plan, primitive, edges, rect, places, worker.covered);
   if (places == 0) return;
+  mask_samples(plan, worker.covered);
   if (reads_rasterized(worker)) worker.rasterized = worker.covered;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject)
     test_tile(worker, primitive, origin, places, worker.covered);
@@ -168,6 +174,24 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
     const int y = worker.target.y + origin.y + lane_y(place) * kBlockSize;
     if (reads_rasterized(worker)) rasterized = block_of(worker.rasterized, place, plan.samples);
     emit_block(worker, primitive, x, y, rasterized, block_of(worker.covered, place, plan.samples));
+  }
+}
+
+void rasterize_observed_primitive(TileWorker& worker, const Primitive& primitive) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const bool in_order = plan.in_order || plan.state->ordered_attachment_access;
+  if (in_order && worker.wave.quads != 0) shade_wave(worker, worker.wave);
+  TileEdges edges;
+  if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
+  const PixelRect rect = rect_in_tile(worker.target, primitive);
+  if (rect.empty()) return;
+  base::LaneMask left = cover_tile(plan, primitive, edges, rect, places_of(rect), worker.covered);
+  for (; left != 0; left &= left - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+    const int x = worker.target.x + lane_x(place) * kBlockSize, y = worker.target.y + lane_y(place) * kBlockSize;
+    BlockCoverage block = block_of(worker.covered, place, plan.samples), rasterized{};
+    observe_block(worker, primitive, x, y, block, rasterized);
+    emit_block(worker, primitive, x, y, rasterized, block);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "raster/tile/block_shade.h"
 #include "raster/tile/coverage.h"
 #include "raster/tile/fragment.h"
+#include "raster/tile/observed.h"
 #include "raster/tile/rasterize.h"
 #include "raster/tile/windows.h"
 #include "texel/transfer.h"
@@ -93,8 +94,15 @@ void rasterize_primitives(TileWorker& worker, const TileItem& item, std::uint32_
   if (count != 0) emit_small_windows(worker, group, count);
 }
 
-void begin_draw(TileWorker& worker, const DrawRecord* draw) {
+/// The same for an observed draw: one by one.
+void rasterize_observed(TileWorker& worker, const TileItem& item, std::uint32_t first) {
+  for (std::uint32_t k = first; k < item.count; ++k)
+    rasterize_observed_primitive(worker, item.primitives[item.index[k]]);
+}
+
+void begin_draw(TileWorker& worker, const DrawRecord* draw, std::uint32_t tile) {
   worker.draw = draw;
+  if (draw->call.observer) begin_observed(worker, tile);
   worker.counts = draw->call.queries.occlusion || draw->call.queries.statistics;
   worker.wave.quads = worker.wave.slots = 0;
   if (draw->plan->shades && !(worker.bound == draw->fragment)) {
@@ -113,6 +121,7 @@ void end_draw(TileWorker& worker) {
     queries.occlusion->fetch_add(worker.samples_passed, std::memory_order_relaxed);
   if (worker.fragment_invocations) queries.count(Statistic::kFragmentInvocations, worker.fragment_invocations);
   worker.samples_passed = worker.fragment_invocations = 0;
+  worker.watch.reset();
   worker.draw = nullptr;
 }
 
@@ -149,7 +158,7 @@ bool leaves_traces(const TileItem& item) {
   if (item.clear) return false;
   const PipelinePlan& plan = *item.draw->plan;
   const QueryCounters& queries = item.draw->call.queries;
-  return queries.occlusion || queries.statistics || plan.depth_order != TestOrder::kNone ||
+  return item.draw->call.observer || queries.occlusion || queries.statistics || plan.depth_order != TestOrder::kNone ||
          (plan.fragment && plan.fragment->writes_memory);
 }
 
@@ -205,6 +214,7 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
   const base::ScopedFloatMode mode(base::Denormals::kFlush);
   set_target(worker, pass, grid, tile);
   worker.draw = nullptr;
+  worker.watch.reset();
   worker.planes = nullptr;
   worker.planes_of = nullptr;
   worker.pool.reset();
@@ -221,9 +231,13 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
     }
     if (item.draw != worker.draw) {
       end_draw(worker);
-      begin_draw(worker, item.draw);
+      begin_draw(worker, item.draw, tile);
     }
-    rasterize_primitives(worker, item, i == start.item ? start.primitive : 0, prefetcher);
+    const std::uint32_t first = i == start.item ? start.primitive : 0;
+    if (worker.watch)
+      rasterize_observed(worker, item, first);
+    else
+      rasterize_primitives(worker, item, first, prefetcher);
   }
   end_draw(worker);
 }

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "raster/observe.h"
 #include "raster/output/color_block.h"
 #include "raster/output/depth_stencil.h"
 #include "raster/pass_desc.h"
@@ -92,6 +94,12 @@ struct BlockDraw {
   PackedBlock color[kMaxColorAttachments];
 };
 
+/// The fragments that the watch of an observed draw is told of.
+struct ToldFragments {
+  FragmentGroup group;
+  base::LaneMask left[kMaxSamples];  ///< those that have failed no test, by sample
+};
+
 /// Working memory of one thread, kept between tiles.
 struct TileWorker {
   const PassDesc* pass = nullptr;
@@ -116,6 +124,8 @@ struct TileWorker {
   bool counts = false;                                ///< the draw has queries
   std::uint64_t samples_passed = 0;                   ///< not yet added to the draw's query
   std::uint64_t fragment_invocations = 0;             ///< likewise
+  std::unique_ptr<DrawWatch> watch;                   ///< null: nobody observes the draw
+  ToldFragments told;
 };
 
 /// Whether rows of a square may be read and written without looking at their pixels: it lies inside all attachments,

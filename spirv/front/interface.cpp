@@ -289,7 +289,11 @@ ir::ValueId load_input(Translator& t, const InterfaceSlot& slot) {
   // Fixed function fills one register per component of a built-in, however it is declared.
   const Interpolation mode = slot.built_in == BuiltIn::kNone ? slot.interpolation : Interpolation::kPerspective;
   const Translator::InputKey key{slot.built_in, slot.location, slot.component, mode, slot.part, slot.sample_location};
-  if (const auto known = t.loaded_inputs.find(key); known != t.loaded_inputs.end()) return known->second;
+  if (const auto known = t.loaded_inputs.find(key); known != t.loaded_inputs.end()) {
+    for (InterfaceSlot& loaded : t.function.interface.inputs)
+      if (loaded.built_in == slot.built_in && loaded.component == slot.component) loaded.implied &= slot.implied;
+    return known->second;
+  }
   const ir::ValueId value = emit(t, ir::Op::kLoadInput, 1, false, {});
   last_instr(t).data[0] = static_cast<std::uint32_t>(t.function.interface.inputs.size());
   t.function.interface.inputs.push_back(slot);
@@ -322,6 +326,7 @@ ir::ValueId fragment_position(Translator& t) {
   slot.type = BaseType::kInt;
   const ir::ValueId view = load_input(t, slot);
   slot.built_in = BuiltIn::kLayer;
+  slot.implied = true;
   parts.push_back(whole(emit(t, ir::Op::kIAdd, 1, false, {whole(view), whole(load_input(t, slot))})));
   const ir::ValueId position = vec(t, std::move(parts), false);
   t.list = list;

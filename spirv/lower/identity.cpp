@@ -16,6 +16,7 @@ void keep(ScalarFunction& f, ShaderInterface& interface, BuiltIn built_in, std::
     InterfaceSlot added;
     added.built_in = built_in;
     added.component = component;
+    added.implied = true;
     interface.inputs.push_back(added);
   }
   for (ScalarId id = 0; id < f.scalars.size(); ++id)

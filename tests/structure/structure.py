@@ -22,7 +22,7 @@ RASTER_PARTS = [
     ["primitive"],
     ["plan"],
     ["output", "pass_desc", "topology"],
-    ["draw"],
+    ["draw", "observe"],
     ["arena", "lane_bits", "pixel_order", "pixel_rect", "sample_locations", "stage"],
 ]
 # What must not be included from where, besides: files whose path begins so, and the beginnings of paths they must not see.

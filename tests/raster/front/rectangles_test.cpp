@@ -100,7 +100,7 @@ TEST(Rectangles, EndsBatchesWhenVerticesAreFull) {
       batch.clear(true);
     }
     const float* first = vertices.data() + 8 * 3 * i;
-    batch.add({first, first + 8, first + 16});
+    batch.add({{first, first + 8, first + 16}, 0});
   }
   EXPECT_EQ(sizes, (std::vector<std::size_t>{42, 1, 42, 1}));
 }
@@ -112,7 +112,7 @@ TEST(Rectangles, EndsBatchesWhenIndicesAreFull) {
   ClippedBatch batch;
   batch.begin(draw.plan);
   std::size_t count = 0;
-  for (; !batch.is_complete(); ++count) batch.add({quad.corner[0], quad.corner[1], quad.corner[2]});
+  for (; !batch.is_complete(); ++count) batch.add({{quad.corner[0], quad.corner[1], quad.corner[2]}, 0});
   EXPECT_EQ(count, 340u);
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "raster/observe.h"
 #include "raster/output/blend.h"
 #include "raster/pass.h"
 #include "raster/stage.h"
@@ -89,6 +90,7 @@ struct Scene {
   VkFormat color_format, depth_format;
   std::uint32_t samples;
   bool drops;
+  DrawObserver* observer = nullptr;
 
   explicit Scene(std::mt19937& random) {
     const VkFormat colors[] = {VK_FORMAT_R8G8B8A8_UNORM,      VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_A8B8G8R8_UNORM_PACK32,
@@ -133,6 +135,7 @@ struct Scene {
     call.count = static_cast<std::uint32_t>(corners.size());
     call.general_path = general;
     call.queries.occlusion = &count;
+    call.observer = observer;
     return call;
   }
 
@@ -226,7 +229,33 @@ struct Scene {
   }
 };
 
-TEST(Routes, FastPathsEqualTheGeneralOne) {
+/// Samples by what becomes of them.
+struct FragmentSums : DrawObserver {
+  std::atomic<std::uint64_t> generated{0}, lost{0}, passed{0};
+
+  struct Watch : DrawWatch {
+    explicit Watch(FragmentSums& sums) : out(sums) {}
+    void generated(const FragmentGroup&, SampleLanes lanes) override { add(out.generated, lanes); }
+    void failed(const FragmentGroup&, FragmentTest, SampleLanes lost, SampleLanes) override { add(out.lost, lost); }
+    void passed(const FragmentGroup&, SampleLanes lanes) override { add(out.passed, lanes); }
+    static void add(std::atomic<std::uint64_t>& sum, SampleLanes lanes) {
+      for (const base::LaneMask mask : lanes) sum += static_cast<std::uint64_t>(std::popcount(mask));
+    }
+    FragmentSums& out;
+  };
+  std::unique_ptr<DrawWatch> watch_chunk(const spirv::ObservedCommand*) override { return nullptr; }
+  std::unique_ptr<DrawWatch> watch_tile(const spirv::ObservedCommand*, std::uint32_t) override {
+    return std::make_unique<Watch>(*this);
+  }
+};
+
+Attachment copy_of(const Attachment& attachment, VkFormat format, std::uint32_t samples) {
+  Attachment copy(format, samples);
+  std::copy(attachment.memory.begin(), attachment.memory.end(), copy.memory.begin());
+  return copy;
+}
+
+TEST(Routes, FastPathsAndObservedDrawsEqualTheGeneralOne) {
   std::mt19937 random(11);
   std::uint32_t drawn = 0;
   for (int n = 0; n < 300; ++n) {
@@ -244,11 +273,22 @@ TEST(Routes, FastPathsEqualTheGeneralOne) {
       for (Attachment& attachment : depth) std::memcpy(attachment.memory.data() + i, &word, 4);
     }
     const std::vector<std::byte> before = color[0].memory;
-    std::uint64_t passed[2];
+    Attachment observed_color = copy_of(color[0], scene.color_format, scene.samples);
+    Attachment observed_depth = copy_of(depth[0], depth_format, scene.samples);
+    std::uint64_t passed[3];
     for (std::size_t i = 0; i < 2; ++i) scene.draw(i == 1, color[i], has_depth ? &depth[i] : nullptr, passed[i]);
     ASSERT_EQ(color[0].memory, color[1].memory) << "case " << n << ", format " << scene.color_format;
     ASSERT_EQ(depth[0].memory, depth[1].memory) << "case " << n << ", format " << depth_format;
     ASSERT_EQ(passed[0], passed[1]) << "case " << n;
+    FragmentSums sums;
+    scene.observer = &sums;
+    scene.draw(false, observed_color, has_depth ? &observed_depth : nullptr, passed[2]);
+    ASSERT_EQ(color[0].memory, observed_color.memory) << "observed, case " << n;
+    ASSERT_EQ(depth[0].memory, observed_depth.memory) << "observed, case " << n;
+    ASSERT_EQ(passed[0], passed[2]) << "observed, case " << n;
+    ASSERT_EQ(sums.generated, sums.lost + sums.passed) << "case " << n;
+    const bool counts_before = scene.fragment.interface.early_fragment_tests;
+    ASSERT_TRUE(counts_before || sums.passed == passed[0]) << "case " << n;
     drawn += color[0].memory != before;
   }
   EXPECT_GT(drawn, 170u);

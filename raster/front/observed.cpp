@@ -1,0 +1,67 @@
+// Bounds and coverage of whole primitives, one row of samples at a time (lavapipe-rasterization.md 3.2 and 3.3).
+#include "raster/front/observed.h"
+
+#include <algorithm>
+
+namespace vitrine::raster {
+namespace {
+
+/// Pixels of which a sample can be covered, as setup finds them, but cut to nothing.
+PixelRect bounds_of(const PipelinePlan& plan, const Primitive& p) {
+  const int first = plan.raster_samples > 1 ? 0 : 255;
+  const int corners = p.kind == PrimitiveKind::kTriangle ? 3 : p.kind == PrimitiveKind::kLine ? 4 : 2;
+  const auto [left, right] = std::minmax_element(p.x, p.x + corners);
+  const auto [top, bottom] = std::minmax_element(p.y, p.y + corners);
+  const int last = p.kind == PrimitiveKind::kLine ? 0 : 1;
+  return {(*left + first) >> 8, (*top + first) >> 8, (*right - last) >> 8, (*bottom - last) >> 8};
+}
+
+/// The largest whole number that is not above n / d; d > 0.
+std::int64_t floor_of(std::int64_t n, std::int64_t d) { return n >= 0 ? n / d : -((d - 1 - n) / d); }
+
+/// Whether the primitive covers sample (sx, sy) of a pixel [x0, x1] of row y. An edge is inside where
+/// f - a * x >= 0, f being its value at the row's first pixel (raster/tile/coverage.h).
+bool covers_row(const PrimitiveEdges& edges, std::int64_t sx, std::int64_t sy, std::int64_t y, std::int64_t x0,
+                std::int64_t x1) {
+  for (std::uint32_t i = 0; i < edges.count; ++i) {
+    const PrimitiveEdge& e = edges.edge[i];
+    const std::int64_t f = ((e.c - 1 - e.a * sx + e.b * sy) >> 8) + e.b * y;
+    if (e.a > 0)
+      x1 = std::min(x1, floor_of(f, e.a));
+    else if (e.a < 0)
+      x0 = std::max(x0, -floor_of(f, -e.a));
+    else if (f < 0)
+      return false;
+  }
+  return x0 <= x1;
+}
+
+bool covers_sample(const PipelinePlan& plan, const Primitive& p, const PixelRect& rect) {
+  const PrimitiveEdges edges = edges_of(p);
+  for (int y = rect.y0; y <= rect.y1; ++y)
+    for (std::uint32_t s = 0; s < plan.raster_samples; ++s)
+      if (covers_row(edges, plan.locations->x[s], plan.locations->y[s], y, rect.x0, rect.x1)) return true;
+  return false;
+}
+
+}  // namespace
+
+void finish_observed(const Chunk& chunk, const PassDesc& pass, PrimitiveList& primitives) {
+  const PipelinePlan& plan = *chunk.draw->plan;
+  PixelRect framebuffer = pixel_rect(pass.render_area);
+  framebuffer.x0 = framebuffer.y0 = 0;
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+    Primitive& p = primitives[i];
+    const PixelRect rect = intersect(bounds_of(plan, p), framebuffer);
+    const auto fate = covers_sample(plan, p, rect) ? PrimitiveFate::kRasterized : PrimitiveFate::kNoSample;
+    for (int triangle = p.kind == PrimitiveKind::kRectangle ? 2 : 1; triangle > 0; --triangle)
+      chunk.watch->primitive(p.id, fate);
+    if (rect.empty()) continue;
+    p.x0 = static_cast<std::uint16_t>(rect.x0);
+    p.y0 = static_cast<std::uint16_t>(rect.y0);
+    p.x1 = static_cast<std::uint16_t>(rect.x1);
+    p.y1 = static_cast<std::uint16_t>(rect.y1);
+  }
+}
+
+}  // namespace vitrine::raster

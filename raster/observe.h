@@ -1,0 +1,89 @@
+// Observed draws: who observes one is told what becomes of its primitives and fragments. An observed draw takes packed
+// waves alone, as DrawCall::general_path has it, and leaves the same bytes; which it is, is decided once per draw, tile
+// and wave.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "raster/pixel_order.h"
+#include "spirv/resources.h"
+#include "texel/view.h"
+
+namespace vitrine::raster {
+
+/// What becomes of a primitive. Each that is assembled, or that a tessellator or geometry shader makes, is culled or
+/// rasterized; one that is clipped becomes parts, each of which is culled or rasterized. Of polygons that are drawn as
+/// lines or points, and of smooth and stippled lines, the pieces are told of.
+enum class PrimitiveFate : std::uint8_t {
+  kCulledByDistance,  ///< all corners are outside of a cull distance
+  kOutside,           ///< of the view volume, or of a clip distance
+  kClipped,           ///< its parts come behind
+  kFacing,            ///< cullMode
+  kZeroArea,
+  kTooFar,   ///< for fixed point: coordinates of NaN and infinity, too
+  kScissor,  ///< outside of the scissor or the framebuffer
+  kNoSample,
+  kRasterized,
+};
+inline constexpr std::size_t kPrimitiveFates = static_cast<std::size_t>(PrimitiveFate::kRasterized) + 1;
+
+/// What a sample of a fragment can fail, in the order of Vulkan 1.3.239, Fragment Operations.
+enum class FragmentTest : std::uint8_t {
+  kScissor,
+  kSampleMask,  ///< of the pipeline
+  kDepthBounds,
+  kStencil,
+  kDepth,
+  kDiscard,     ///< by the shader
+  kShaderMask,  ///< gl_SampleMask
+  kAlphaToCoverage,
+};
+inline constexpr std::size_t kFragmentTests = static_cast<std::size_t>(FragmentTest::kAlphaToCoverage) + 1;
+
+/// Fragments that are dealt with together. Of quads that are not in use no lane is told of.
+struct FragmentGroup {
+  QuadPositions position;
+  std::uint32_t primitive[base::kQuadsPerWave];  ///< gl_PrimitiveID by quad
+  std::uint32_t layer = 0;
+};
+/// Lanes of a group, by sample.
+using SampleLanes = std::span<const base::LaneMask>;
+
+/// What one thread sees of a draw: a chunk of it in the front end, or a tile of it in the back end. The thread makes,
+/// calls and destroys it.
+class DrawWatch {
+ public:
+  virtual ~DrawWatch() = default;
+
+  /// A chunk: its vertices are shaded, its primitives (or patches) assembled.
+  virtual void assembled(std::uint64_t /*vertices*/, std::uint64_t /*primitives*/) {}
+  /// Primitives that tessellator or geometry shader have made for the rasterizer.
+  virtual void emitted(std::uint64_t /*primitives*/) {}
+  /// `id`: gl_PrimitiveID.
+  virtual void primitive(std::uint32_t /*id*/, PrimitiveFate) {}
+
+  /// A tile: samples of fragments are covered.
+  virtual void generated(const FragmentGroup&, SampleLanes) {}
+  /// Samples fail a test; `left`: those of the group that have failed none so far.
+  virtual void failed(const FragmentGroup&, FragmentTest, SampleLanes /*lost*/, SampleLanes /*left*/) {}
+  /// The fragment shader runs: once for all samples, or, with sample shading, for one after the other.
+  virtual void shaded(const FragmentGroup&, base::LaneMask /*invocations*/, base::LaneMask /*helpers*/) {}
+  /// Samples have passed all tests.
+  virtual void passed(const FragmentGroup&, SampleLanes) {}
+  /// They are in an attachment.
+  virtual void written(const FragmentGroup&, const texel::ImageView&, SampleLanes) {}
+};
+
+/// Shared by all threads that work on a draw; lives until the flush. Watches may be null. `command`: the draw; null:
+/// nobody has named it.
+class DrawObserver {
+ public:
+  virtual ~DrawObserver() = default;
+  virtual std::unique_ptr<DrawWatch> watch_chunk(const spirv::ObservedCommand* command) = 0;
+  /// `tile`: number of the tile in its pass.
+  virtual std::unique_ptr<DrawWatch> watch_tile(const spirv::ObservedCommand* command, std::uint32_t tile) = 0;
+};
+
+}  // namespace vitrine::raster

@@ -1,0 +1,142 @@
+// Fragments on their way through the fragment operations, for who observes (Vulkan 1.3.239, Fragment Operations).
+#include "raster/tile/observed.h"
+
+#include <algorithm>
+
+#include "raster/tile/early_tests.h"
+
+namespace vitrine::raster {
+namespace {
+
+using base::LaneMask;
+
+SampleLanes left_samples(const TileWorker& worker) { return {worker.told.left, worker.draw->plan->samples}; }
+
+/// Takes `lost[s]` from what is left, for all samples.
+void tell_failed(TileWorker& worker, FragmentTest test, const LaneMask* lost) {
+  const std::uint32_t samples = worker.draw->plan->samples;
+  LaneMask any = 0;
+  for (std::uint32_t s = 0; s < samples; ++s) {
+    worker.told.left[s] &= ~lost[s];
+    any |= lost[s];
+  }
+  if (any != 0) worker.watch->failed(worker.told.group, test, {lost, samples}, left_samples(worker));
+}
+
+void tell_written(TileWorker& worker, const texel::ImageView& view, const LaneMask* lanes) {
+  const std::uint32_t samples = worker.draw->plan->samples;
+  if (std::any_of(lanes, lanes + samples, [](LaneMask mask) { return mask != 0; }))
+    worker.watch->written(worker.told.group, view, {lanes, samples});
+}
+
+LaneMask lanes_of_quads(std::uint32_t quads) {
+  LaneMask lanes = 0;
+  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q)
+    if ((quads >> q & 1) != 0) lanes |= LaneMask{15} << (4 * q);
+  return lanes;
+}
+
+/// Lanes whose stencil value is replaced, by whatever.
+LaneMask stencil_writes(const State& state, const FailedTests& failed, LaneMask passed, LaneMask front) {
+  LaneMask written = 0;
+  for (const bool faces : {true, false}) {
+    const StencilFace& face = faces ? state.front : state.back;
+    const LaneMask lanes = faces ? front : ~front;
+    if (face.write_mask == 0) continue;
+    if (face.fail != VK_STENCIL_OP_KEEP) written |= failed.stencil & lanes;
+    if (face.depth_fail != VK_STENCIL_OP_KEEP) written |= failed.depth & lanes;
+    if (face.pass != VK_STENCIL_OP_KEEP) written |= passed & lanes;
+  }
+  return written;
+}
+
+/// The pixels of a block inside the primitive's draw region.
+LaneMask scissor_lanes(const PipelinePlan& plan, const Primitive& primitive, int x, int y) {
+  const bool wide = primitive.kind != PrimitiveKind::kTriangle && primitive.viewport == 0;
+  const PixelRect& region = wide ? plan.wide_region : plan.region[primitive.viewport];
+  return rect_lanes(region.x0 - x, region.y0 - y, region.x1 - x, region.y1 - y);
+}
+
+}  // namespace
+
+void begin_observed(TileWorker& worker, std::uint32_t tile) {
+  const DrawCall& call = worker.draw->call;
+  worker.watch = call.observer->watch_tile(call.vertex_resources.command, tile);
+  if (!worker.watch) worker.watch = std::make_unique<DrawWatch>();
+}
+
+void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,
+                   BlockCoverage& rasterized) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  if (any_sample(block, plan.samples) == 0) return;
+  FragmentGroup& group = worker.told.group;
+  place_block(x, y, group.position);
+  std::fill(std::begin(group.primitive), std::end(group.primitive), primitive.id);
+  group.layer = worker.target.layer;
+  std::copy_n(block.lanes, plan.samples, worker.told.left);
+  worker.watch->generated(group, left_samples(worker));
+  const LaneMask inside = scissor_lanes(plan, primitive, x, y);
+  for (std::uint32_t s = 0; s < plan.samples; ++s) block.lanes[s] &= inside;
+  tell_lost(worker, FragmentTest::kScissor, block.lanes, 0, plan.samples);
+  for (std::uint32_t s = 0; s < plan.samples; ++s)
+    if ((plan.sample_mask >> s & 1) == 0) block.lanes[s] = 0;
+  tell_lost(worker, FragmentTest::kSampleMask, block.lanes, 0, plan.samples);
+  rasterized = block;
+  if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
+    FailedTests failed[kMaxSamples];
+    test_any_block(worker, primitive, x, y, block, failed);
+    tell_tests(worker, failed, primitive.front ? 0xffffu : 0, 0, plan.samples, plan.depth_order == TestOrder::kEarly);
+  }
+  if (!plan.shades) tell_passed(worker);
+}
+
+void tell_wave(TileWorker& worker, const PackedWave& wave) {
+  FragmentGroup& group = worker.told.group;
+  group.position = wave.position;
+  for (std::uint32_t q = 0; q < wave.quads; ++q) group.primitive[q] = wave.primitive[wave.slot[q]]->id;
+  group.layer = worker.target.layer;
+  std::copy_n(wave.coverage, worker.draw->plan->samples, worker.told.left);
+}
+
+void tell_lost(TileWorker& worker, FragmentTest test, const LaneMask* kept, std::uint32_t first, std::uint32_t end) {
+  LaneMask lost[kMaxSamples] = {};
+  for (std::uint32_t s = first; s < end; ++s) lost[s] = worker.told.left[s] & ~kept[s];
+  tell_failed(worker, test, lost);
+}
+
+void tell_tests(TileWorker& worker, const FailedTests* failed, std::uint32_t front, std::uint32_t first,
+                std::uint32_t end, bool writes) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  LaneMask bounds[kMaxSamples] = {}, stencil[kMaxSamples] = {}, depth[kMaxSamples] = {};
+  for (std::uint32_t s = first; s < end; ++s) {
+    bounds[s] = failed[s].depth_bounds;
+    stencil[s] = failed[s].stencil;
+    depth[s] = failed[s].depth;
+  }
+  tell_failed(worker, FragmentTest::kDepthBounds, bounds);
+  tell_failed(worker, FragmentTest::kStencil, stencil);
+  tell_failed(worker, FragmentTest::kDepth, depth);
+  if (!writes) return;
+  LaneMask passed[kMaxSamples] = {}, replaced[kMaxSamples] = {};
+  for (std::uint32_t s = first; s < end; ++s) {
+    passed[s] = worker.told.left[s];
+    replaced[s] = stencil_writes(*plan.state, failed[s], passed[s], lanes_of_quads(front));
+  }
+  if (plan.tests.depth_write) tell_written(worker, worker.pass->depth, passed);
+  if (plan.tests.stencil) tell_written(worker, worker.pass->stencil, replaced);
+}
+
+void tell_colors(TileWorker& worker, const texel::ImageView& view, const LaneMask* kept, std::uint32_t first,
+                 std::uint32_t end) {
+  LaneMask lanes[kMaxSamples] = {};
+  std::copy(kept + first, kept + end, lanes + first);
+  tell_written(worker, view, lanes);
+}
+
+void tell_passed(TileWorker& worker) {
+  const SampleLanes left = left_samples(worker);
+  if (std::any_of(left.begin(), left.end(), [](LaneMask mask) { return mask != 0; }))
+    worker.watch->passed(worker.told.group, left);
+}
+
+}  // namespace vitrine::raster

@@ -1,0 +1,30 @@
+// What the watch of an observed draw is told of fragments: blocks before they are shaded, packed waves while they are.
+#pragma once
+
+#include "raster/tile/worker.h"
+
+namespace vitrine::raster {
+
+/// Begins to watch the tile for its draw.
+void begin_observed(TileWorker& worker, std::uint32_t tile);
+
+/// A block of `primitive` at (x, y): what the scissor, the sample mask and the early tests leave of it, told. On return
+/// `rasterized` is what they were before the early tests.
+void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,
+                   BlockCoverage& rasterized);
+
+/// The wave's fragments are those that what follows is about.
+void tell_wave(TileWorker& worker, const PackedWave& wave);
+/// Of the samples [first, end) those that are no longer in `kept` failed a test.
+void tell_lost(TileWorker& worker, FragmentTest test, const base::LaneMask* kept, std::uint32_t first,
+               std::uint32_t end);
+/// Tests of depth and stencil, by sample; `front`: bit q is the facing of quad q. `writes`: they have written, too.
+void tell_tests(TileWorker& worker, const FailedTests* failed, std::uint32_t front, std::uint32_t first,
+                std::uint32_t end, bool writes);
+/// Samples [first, end) of `kept` have been written to a colour attachment.
+void tell_colors(TileWorker& worker, const texel::ImageView& view, const base::LaneMask* kept, std::uint32_t first,
+                 std::uint32_t end);
+/// What is left has passed.
+void tell_passed(TileWorker& worker);
+
+}  // namespace vitrine::raster

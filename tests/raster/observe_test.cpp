@@ -1,0 +1,257 @@
+// What observers of draws are told of primitives and fragments, in numbers that can be counted by hand.
+#include "raster/observe.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <mutex>
+#include <vector>
+
+#include "raster/pass.h"
+#include "raster/stage.h"
+
+namespace vitrine::raster {
+namespace {
+
+constexpr std::uint32_t kSide = 64;
+
+struct Corner {
+  float position[4];
+  float cull_distance = 0;
+};
+
+/// Outputs 0..3: the position, 4: a cull distance.
+base::LaneMask shade_vertices(const void* user, const base::WaveRegister* in, base::WaveRegister* out,
+                              base::LaneMask active, base::LaneMask) {
+  const auto* corners = static_cast<const Corner*>(user);
+  base::for_each_lane(active, [&](std::size_t lane) {
+    const Corner& corner = corners[in[0].lane[lane]];
+    for (std::size_t c = 0; c < 4; ++c) out[c].lane[lane] = std::bit_cast<std::uint32_t>(corner.position[c]);
+    out[4].lane[lane] = std::bit_cast<std::uint32_t>(corner.cull_distance);
+  });
+  return active;
+}
+
+/// White, or nothing where x is odd, if `user` says so.
+base::LaneMask shade_fragments(const void* user, const base::WaveRegister*, base::WaveRegister* out,
+                               base::LaneMask active, base::LaneMask helpers) {
+  for (std::size_t c = 0; c < 4; ++c)
+    for (std::uint32_t& lane : out[c].lane) lane = std::bit_cast<std::uint32_t>(1.0f);
+  const base::LaneMask even = 0x5555555555555555;
+  return active & ~helpers & (*static_cast<const bool*>(user) ? even : base::kAllLanes);
+}
+
+spirv::InterfaceSlot slot(spirv::BuiltIn built_in, std::uint32_t component, std::uint32_t reg) {
+  spirv::InterfaceSlot result;
+  result.built_in = built_in;
+  result.component = static_cast<std::uint8_t>(component);
+  result.reg = reg;
+  return result;
+}
+
+/// Counts what it is told.
+struct Counted : DrawObserver {
+  std::mutex mutex;
+  std::uint64_t vertices = 0, assembled = 0, generated = 0, invocations = 0, helpers = 0, passed = 0, written = 0;
+  std::array<std::uint64_t, kPrimitiveFates> primitives{};
+  std::array<std::uint64_t, kFragmentTests> lost{}, ended{};  ///< samples, and fragments whose last sample was lost
+
+  std::unique_ptr<DrawWatch> watch_chunk(const spirv::ObservedCommand*) override;
+  std::unique_ptr<DrawWatch> watch_tile(const spirv::ObservedCommand*, std::uint32_t) override;
+  std::uint64_t of(PrimitiveFate fate) const { return primitives[static_cast<std::size_t>(fate)]; }
+  std::uint64_t of(FragmentTest test) const { return lost[static_cast<std::size_t>(test)]; }
+};
+
+std::uint64_t count(base::LaneMask lanes) { return static_cast<std::uint64_t>(std::popcount(lanes)); }
+
+std::uint64_t samples_in(SampleLanes lanes) {
+  std::uint64_t sum = 0;
+  for (const base::LaneMask mask : lanes) sum += count(mask);
+  return sum;
+}
+
+base::LaneMask any_of(SampleLanes lanes) {
+  base::LaneMask any = 0;
+  for (const base::LaneMask mask : lanes) any |= mask;
+  return any;
+}
+
+class Counter : public DrawWatch {
+ public:
+  explicit Counter(Counted& out) : out_(out) {}
+  void assembled(std::uint64_t vertices, std::uint64_t primitives) override {
+    const std::lock_guard lock(out_.mutex);
+    out_.vertices += vertices;
+    out_.assembled += primitives;
+  }
+  void primitive(std::uint32_t, PrimitiveFate fate) override {
+    add(out_.primitives[static_cast<std::size_t>(fate)], 1);
+  }
+  void generated(const FragmentGroup&, SampleLanes lanes) override { add(out_.generated, count(any_of(lanes))); }
+  void failed(const FragmentGroup&, FragmentTest test, SampleLanes lost, SampleLanes left) override {
+    add(out_.lost[static_cast<std::size_t>(test)], samples_in(lost));
+    add(out_.ended[static_cast<std::size_t>(test)], count(any_of(lost) & ~any_of(left)));
+  }
+  void shaded(const FragmentGroup&, base::LaneMask invocations, base::LaneMask helpers) override {
+    add(out_.invocations, count(invocations));
+    add(out_.helpers, count(helpers));
+  }
+  void passed(const FragmentGroup&, SampleLanes lanes) override { add(out_.passed, count(any_of(lanes))); }
+  void written(const FragmentGroup&, const texel::ImageView&, SampleLanes lanes) override {
+    add(out_.written, samples_in(lanes));
+  }
+
+ private:
+  void add(std::uint64_t& counter, std::uint64_t value) {
+    const std::lock_guard lock(out_.mutex);
+    counter += value;
+  }
+  Counted& out_;
+};
+
+std::unique_ptr<DrawWatch> Counted::watch_chunk(const spirv::ObservedCommand*) {
+  return std::make_unique<Counter>(*this);
+}
+std::unique_ptr<DrawWatch> Counted::watch_tile(const spirv::ObservedCommand*, std::uint32_t) {
+  return std::make_unique<Counter>(*this);
+}
+
+class Observed : public testing::Test {
+ protected:
+  Observed() {
+    vertex.interface.inputs = {slot(spirv::BuiltIn::kVertexIndex, 0, 0)};
+    vertex.run = shade_vertices;
+    fragment.run = shade_fragments;
+    for (std::uint32_t c = 0; c < 4; ++c) {
+      vertex.interface.outputs.push_back(slot(spirv::BuiltIn::kPosition, c, c));
+      fragment.interface.outputs.push_back(slot(spirv::BuiltIn::kNone, c, c));
+    }
+    vertex.interface.outputs.push_back(slot(spirv::BuiltIn::kCullDistance, 0, 4));
+    state.viewport[0] = {0, 0, kSide, kSide, 0, 1};
+    state.scissor[0] = {{0, 0}, {kSide, kSide}};
+  }
+
+  /// A triangle in pixels, counter-clockwise for Vulkan if given so.
+  void add(std::array<float, 6> xy, float z = 0.5f, float cull_distance = 0) {
+    for (std::size_t i = 0; i < 6; i += 2)
+      corners.push_back({{xy[i] / kSide * 2 - 1, xy[i + 1] / kSide * 2 - 1, z, 1}, cull_distance});
+  }
+  /// Two triangles over everything.
+  void add_screen(float z = 0.5f) {
+    add({0, 0, 0, kSide, kSide, 0}, z);
+    add({kSide, 0, 0, kSide, kSide, kSide}, z);
+  }
+
+  static texel::ImageView view(VkFormat format, std::vector<float>& memory) {
+    texel::ImageView result;
+    result.base = reinterpret_cast<std::byte*>(memory.data());
+    result.format = &texel::format_desc(format);
+    result.level[0].extent = {kSide, kSide, 1};
+    result.level[0].row_pitch = std::uint64_t{kSide} * result.format->block_bytes;
+    return result;
+  }
+
+  void draw() {
+    PassDesc desc;
+    desc.color[0] = view(VK_FORMAT_R32G32B32A32_SFLOAT, color);
+    desc.color_count = 1;
+    if (state.depth_test) desc.depth = view(VK_FORMAT_D32_SFLOAT, depth);
+    desc.render_area = {{0, 0}, {kSide, kSide}};
+    vertex.user = corners.data();
+    fragment.user = &discards;
+    fragment.interface.uses_discard = discards;
+    DrawCall call;
+    call.state = &state;
+    call.native_vertex = &vertex;
+    call.native_fragment = &fragment;
+    call.count = static_cast<std::uint32_t>(corners.size());
+    call.observer = &told;
+    Pass pass(desc);
+    pass.draw(call);
+  }
+
+  std::vector<Corner> corners;
+  std::vector<float> color = std::vector<float>(std::size_t{kSide} * kSide * 4);
+  std::vector<float> depth = std::vector<float>(std::size_t{kSide} * kSide, 0.5f);
+  State state;
+  NativeShader vertex, fragment;
+  bool discards = false;
+  Counted told;
+};
+
+TEST_F(Observed, TellsWhyPrimitivesAreCulled) {
+  state.cull_mode = VK_CULL_MODE_BACK_BIT;
+  state.scissor[0] = {{0, 0}, {32, kSide}};
+  add({1, 1, 1, 9, 9, 1});                    // rasterized
+  add({1, 1, 9, 1, 1, 9});                    // faces away
+  add({1, 1, 5, 5, 9, 9});                    // no area
+  add({40, 1, 40, 9, 48, 1});                 // outside of the scissor
+  add({70, 1, 70, 9, 78, 1});                 // outside of the view volume
+  add({-8, 1, 5, 9, 9, 1});                   // clipped, and rasterized
+  add({1, 1, 1, 9, 9, 1}, 0.5f, -1.0f);       // outside of the cull distance
+  add({1.6f, 1.6f, 1.6f, 1.9f, 1.9f, 1.6f});  // between pixel centres
+  draw();
+  EXPECT_EQ(told.vertices, 24u);
+  EXPECT_EQ(told.assembled, 8u);
+  EXPECT_EQ(told.of(PrimitiveFate::kFacing), 1u);
+  EXPECT_EQ(told.of(PrimitiveFate::kZeroArea), 1u);
+  EXPECT_EQ(told.of(PrimitiveFate::kScissor), 1u);
+  EXPECT_EQ(told.of(PrimitiveFate::kOutside), 1u);
+  EXPECT_EQ(told.of(PrimitiveFate::kClipped), 1u);
+  EXPECT_EQ(told.of(PrimitiveFate::kCulledByDistance), 1u);
+  EXPECT_EQ(told.of(PrimitiveFate::kNoSample), 1u);
+  // The clipped one has a part of four corners, which are two triangles.
+  EXPECT_EQ(told.of(PrimitiveFate::kRasterized), 1u + 2u);
+}
+
+TEST_F(Observed, TellsSliversFromWhatIsSeen) {
+  add({1, 1, 1, 1.4f, 60, 1.2f});      // between two rows
+  add({1, 1.2f, 1, 1.8f, 60, 1.45f});  // takes a centre at its wide end
+  draw();
+  EXPECT_EQ(told.of(PrimitiveFate::kNoSample), 1u);
+  EXPECT_EQ(told.of(PrimitiveFate::kRasterized), 1u);
+}
+
+TEST_F(Observed, CountsFragmentsOutsideOfTheScissor) {
+  state.scissor[0] = {{16, 0}, {32, kSide}};
+  add_screen();
+  draw();
+  EXPECT_EQ(told.generated, 64u * 64u);
+  EXPECT_EQ(told.of(FragmentTest::kScissor), 32u * 64u);
+  EXPECT_EQ(told.invocations, 32u * 64u);
+  EXPECT_EQ(told.passed, 32u * 64u);
+  EXPECT_EQ(told.written, 32u * 64u);
+  EXPECT_EQ(color[0], 0.0f);
+  EXPECT_EQ(color[16 * 4], 1.0f);
+}
+
+TEST_F(Observed, TellsEarlyAndLateDepthTestsApartFromDiscards) {
+  state.depth_test = state.depth_write = true;
+  state.depth_compare = VK_COMPARE_OP_LESS;
+  add_screen(0.75f);  // behind what is there
+  add_screen(0.25f);
+  draw();
+  EXPECT_EQ(told.of(FragmentTest::kDepth), 64u * 64u);
+  EXPECT_EQ(told.invocations, 64u * 64u);
+  EXPECT_EQ(told.written, 2u * 64u * 64u) << "depth and colour";
+  discards = true;
+  told.lost = told.ended = {};
+  told.passed = 0;
+  std::fill(depth.begin(), depth.end(), 0.5f);
+  draw();
+  EXPECT_EQ(told.of(FragmentTest::kDepth), 64u * 64u);
+  EXPECT_EQ(told.of(FragmentTest::kDiscard), 32u * 64u);
+  EXPECT_EQ(told.passed, 32u * 64u);
+}
+
+TEST_F(Observed, TellsOfSampleMasks) {
+  state.sample_mask = 0;
+  add_screen();
+  draw();
+  EXPECT_EQ(told.of(FragmentTest::kSampleMask), 64u * 64u);
+  EXPECT_EQ(told.invocations, 0u);
+}
+
+}  // namespace
+}  // namespace vitrine::raster
