@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <string_view>
 
-#include "spirv/observed_command.h"
-
 namespace vitrine::glass {
 namespace {
 
@@ -41,10 +39,10 @@ Invocation::Kind kind_of(VkShaderStageFlagBits stage) {
 
 }  // namespace
 
-Address ShaderContext::address(const spirv::Wave& wave, const std::array<std::uint32_t, 3>& id, std::uint32_t spirv_id,
-                               std::uint32_t place) const {
+Address ShaderContext::address(const spirv::ObservedCommand* command, const std::array<std::uint32_t, 3>& id,
+                               std::uint32_t spirv_id, std::uint32_t place) const {
   Address address;
-  if (const spirv::ObservedCommand* command = wave.resources->command) {
+  if (command != nullptr) {
     address.submission = command->submission;
     address.command = command->command;
     address.command_name = command->name;

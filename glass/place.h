@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "glass/tool.h"
+#include "spirv/observed_command.h"
 #include "spirv/source_info.h"
 
 namespace vitrine::glass {
@@ -20,9 +21,13 @@ struct ShaderContext {
   ShaderContext(const ShaderIdentity& shader, const spirv::Program& program)
       : stage(shader.stage), entry_point(shader.entry_point), sources(program.sources) {}
 
-  /// Of something that an invocation of a wave does; `id` as spirv::exec::invocation_of().
-  Address address(const spirv::Wave& wave, const std::array<std::uint32_t, 3>& id, std::uint32_t spirv_id,
+  /// Of something that an invocation does; `id` as spirv::exec::invocation_of(). No command: nothing is known of it.
+  Address address(const spirv::ObservedCommand* command, const std::array<std::uint32_t, 3>& id, std::uint32_t spirv_id,
                   std::uint32_t place) const;
+  Address address(const spirv::Wave& wave, const std::array<std::uint32_t, 3>& id, std::uint32_t spirv_id,
+                  std::uint32_t place) const {
+    return address(wave.resources->command, id, spirv_id, place);
+  }
 };
 
 /// The place and the calls that lead there, innermost first; empty: nothing is known.

@@ -11,6 +11,7 @@
 #include "base/lasting.h"
 #include "glass/output.h"
 #include "glass/tools.h"
+#include "raster/draw.h"
 
 namespace vitrine::glass {
 namespace {
@@ -68,6 +69,10 @@ class ProgramObserver : public spirv::exec::Observer {
 
   void apart(const spirv::Wave& wave) const override {
     for (const auto& program : programs_) program->apart(wave);
+  }
+
+  void draw(const raster::DrawCall& call) const {
+    for (const auto& program : programs_) program->draw(call);
   }
 
   std::unique_ptr<Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) const override {
@@ -138,6 +143,16 @@ void Session::add(std::unique_ptr<Tool> tool) { tools_.push_back(std::move(tool)
 std::shared_ptr<const spirv::exec::Observer> Session::observe(const ShaderIdentity& shader) {
   if (idle()) return nullptr;
   return std::make_shared<ProgramObserver>(tools_, shader);
+}
+
+void Session::draw(const raster::DrawCall& call) {
+  const auto& observation = call.vertex->program().observation;
+  if (!observation) return;
+  if (const auto* observer = dynamic_cast<const ProgramObserver*>(observation->observer.get())) observer->draw(call);
+}
+
+void Session::broken(const spirv::ObservedCommand& command, std::string_view rule, const std::string& message) {
+  for (const auto& tool : tools_) tool->broken(command, rule, message);
 }
 
 void Session::end_submission(const std::function<void(const Finding&)>& deliver) {

@@ -22,6 +22,9 @@ class Session {
   void add(std::unique_ptr<Tool> tool);
   /// Who observes a shader that is about to be compiled; null: nobody. One for each program.
   std::shared_ptr<const spirv::exec::Observer> observe(const ShaderIdentity& shader);
+  /// As ProgramTool::draw() and Tool::broken().
+  void draw(const raster::DrawCall& call);
+  void broken(const spirv::ObservedCommand& command, std::string_view rule, const std::string& message);
   /// A submission is done: what the tools have found goes to the report and to `deliver`, in a fixed order.
   void end_submission(const std::function<void(const Finding&)>& deliver);
   /// The tools write what they write at the end.

@@ -3,10 +3,16 @@
 
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "glass/finding.h"
 #include "spirv/exec/observe.h"
+
+namespace vitrine::raster {
+struct DrawCall;
+}
 
 namespace vitrine::glass {
 
@@ -25,6 +31,8 @@ class ProgramTool {
   virtual std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) = 0;
   /// As spirv::exec::Observer::apart().
   virtual void apart(const spirv::Wave&) {}
+  /// The program is the vertex shader of a draw that comes next. The thread that replays calls it.
+  virtual void draw(const raster::DrawCall&) {}
 };
 
 class Tool {
@@ -33,6 +41,8 @@ class Tool {
   virtual spirv::exec::Interest interest() const = 0;
   /// A program has been made for a shader. It may be destroyed before the tool's state is.
   virtual std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) = 0;
+  /// A command breaks a rule by itself, whatever its shaders do. The thread that replays calls it.
+  virtual void broken(const spirv::ObservedCommand&, std::string_view /*rule*/, const std::string& /*message*/) {}
   /// A submission is done: what has been found since the last one, in an order that does not depend on threads.
   virtual std::vector<Finding> take_findings() { return {}; }
   /// Writes what the tool writes of itself (coverage, counts). Called when a device is destroyed and when the library

@@ -2,6 +2,7 @@
 // the names that the application gave. Made by icd/, which keeps it until the command's work is done.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,9 +19,15 @@ class ObservedCommand {
   std::vector<std::string> labels;  ///< VK_EXT_debug_utils: those that are open, outermost first
   std::string pipeline;             ///< name of the pipeline; empty: it has none
   bool null_descriptors = false;    ///< descriptors may be null (nullDescriptor): accesses through them are defined
+  bool robust_vertices = false;     ///< vertex data and indices outside of buffers are zeros (robustBufferAccess2)
 
   /// Name of what is bound at a descriptor ("buffer 'particles' (4096 bytes)"); empty: nothing is known.
   virtual std::string resource(std::uint32_t set, std::uint32_t slot) const = 0;
+  /// The same of these bytes of a buffer that is bound for vertices or indices: "'mesh' (96 bytes at offset 32)".
+  virtual std::string bytes(const std::byte* first, std::uint64_t size) const {
+    (void)first;
+    return std::to_string(size) + " bytes";
+  }
 };
 
 }  // namespace vitrine::spirv

@@ -30,6 +30,10 @@ void check_control(Reporter& reporter, const spirv::Wave& wave, const spirv::Pro
 /// Waves of a workgroup wait at a barrier, as this one does, that others do not reach. (control.cpp)
 void check_apart(Reporter& reporter, const spirv::Wave& wave);
 
+/// A draw with the program as its vertex shader comes next: are vertices and indices inside of what is bound?
+/// (vertices.cpp)
+void check_draw(ProgramPlaces& program, const raster::DrawCall& call);
+
 struct VariableShadow;
 /// The active lanes write, read or use parts of variables. (variables.cpp)
 void check_variable(Reporter& reporter, const spirv::Wave& wave, const spirv::ProbeOp& op, const spirv::Probe& probe,

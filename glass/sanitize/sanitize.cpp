@@ -4,6 +4,7 @@
 #include <mutex>
 #include <tuple>
 
+#include "glass/sanitize/broken_commands.h"
 #include "glass/sanitize/checks.h"
 #include "glass/sanitize/shared.h"
 #include "glass/sanitize/variables.h"
@@ -45,12 +46,17 @@ class PlacesTool : public Tool {
     std::vector<Finding> findings;
     const std::lock_guard lock(mutex_);
     for (const auto& program : programs_) program->places.take(findings);
+    sort(findings);
+    return findings;
+  }
+
+ protected:
+  static void sort(std::vector<Finding>& findings) {
     const auto key = [](const Finding& f) {
       return std::tuple(f.address.submission, f.address.command, f.address.stage);
     };
     std::stable_sort(findings.begin(), findings.end(),
                      [&](const Finding& a, const Finding& b) { return key(a) < key(b); });
-    return findings;
   }
 
  private:
@@ -106,13 +112,33 @@ class SanitizeWatch : public spirv::exec::Watch {
   sanitize::VariableShadow* const variables_;  ///< null: nothing is to be known of variables
 };
 
-class SanitizedProgram : public WatchedProgram<SanitizeWatch, SanitizedPlaces> {
+class SanitizedProgram final : public WatchedProgram<SanitizeWatch, SanitizedPlaces> {
  public:
   using WatchedProgram::WatchedProgram;
   void apart(const Wave& wave) override {
     sanitize::Reporter reporter(*this, wave);
     sanitize::check_apart(reporter, wave);
   }
+  void draw(const raster::DrawCall& call) override { sanitize::check_draw(*this, call); }
+};
+
+/// The tool `sanitize`.
+class SanitizeTool : public PlacesTool<SanitizedProgram> {
+ public:
+  using PlacesTool::PlacesTool;
+
+  void broken(const spirv::ObservedCommand& command, std::string_view id, const std::string& message) override {
+    commands_.add(command, rule(id), message);
+  }
+  std::vector<Finding> take_findings() override {
+    std::vector<Finding> findings = PlacesTool::take_findings();
+    commands_.take(findings);
+    sort(findings);
+    return findings;
+  }
+
+ private:
+  sanitize::BrokenCommands commands_;
 };
 
 /// The tool `numbers`.
@@ -132,7 +158,7 @@ class NumbersWatch : public spirv::exec::Watch {
 }  // namespace
 
 std::unique_ptr<Tool> make_sanitize() {
-  return std::make_unique<PlacesTool<SanitizedProgram>>(
+  return std::make_unique<SanitizeTool>(
       spirv::exec::Interest{.accesses = true, .arithmetic = true, .initialization = true, .control = true});
 }
 

@@ -99,6 +99,15 @@ Thing describe_thing(const Device& device, const SetBinding& binding, const spir
 
 }  // namespace
 
+std::string describe_bytes(const Device& device, const std::byte* first, std::uint64_t size) {
+  const auto* buffer = first ? find_object<Buffer>(device, first, size) : nullptr;
+  const std::string name = name_of(device, buffer);
+  std::string out = name.empty() ? "(" : "'" + name + "' (";
+  out.append(std::to_string(size)).append(" bytes");
+  if (buffer && first != buffer->data) out.append(" at offset ").append(std::to_string(first - buffer->data));
+  return out.append(")");
+}
+
 std::string describe_descriptor(const Device& device, std::uint32_t set, const SetBinding& binding,
                                 std::uint32_t element, const spirv::Descriptor* descriptor) {
   const Thing thing = descriptor ? describe_thing(device, binding, *descriptor) : Thing{{}, "nothing is bound"};

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "glass/session.h"
 #include "icd/object/memory.h"
 #include "icd/replay/observed_replay.h"
 
@@ -61,6 +62,12 @@ bool prepare_draw(ReplayState& state) {
   return true;
 }
 
+/// Hands the draw to the pass; observers see it first.
+void submit_draw(ReplayState& state) {
+  if (state.observed) glass::session().draw(state.draw);
+  state.pass->draw(state.draw);
+}
+
 void draw_direct(ReplayState& state, const CmdDraw& command, std::uint32_t draw_index) {
   raster::DrawCall& draw = state.draw;
   draw.index_data = nullptr;
@@ -71,7 +78,7 @@ void draw_direct(ReplayState& state, const CmdDraw& command, std::uint32_t draw_
   draw.first_instance = command.first_instance;
   draw.instance_count = command.instance_count;
   draw.draw_index = draw_index;
-  state.pass->draw(draw);
+  submit_draw(state);
 }
 
 void draw_indexed(ReplayState& state, const CmdDrawIndexed& command, std::uint32_t draw_index) {
@@ -86,15 +93,24 @@ void draw_indexed(ReplayState& state, const CmdDrawIndexed& command, std::uint32
   draw.first_instance = command.first_instance;
   draw.instance_count = command.instance_count;
   draw.draw_index = draw_index;
-  state.pass->draw(draw);
+  submit_draw(state);
 }
 
 /// Reads a T at `offset` of a buffer. False if it is not all inside.
 template <class T>
-bool read_arguments(const Buffer& buffer, VkDeviceSize offset, T& out) {
+bool read_value(const Buffer& buffer, VkDeviceSize offset, T& out) {
   if (!buffer.data || buffer.resolve_range(offset, sizeof(T)) != sizeof(T)) return false;
   std::memcpy(&out, buffer.data + offset, sizeof(T));
   return true;
+}
+
+/// The same for what a draw or dispatch needs: observers are told of what is missing.
+template <class T>
+bool read_arguments(ReplayState& state, const BindPoint& point, const char* what, const Buffer& buffer,
+                    VkDeviceSize offset, T& out) {
+  const bool there = read_value(buffer, offset, out);
+  if (!there && state.observed) report_arguments(state, point, buffer, offset, sizeof(T), what);
+  return there;
 }
 
 void dispatch(ReplayState& state, const std::uint32_t base[3], const std::uint32_t groups[3]) {
@@ -140,28 +156,31 @@ void execute(ReplayState& state, const CmdDrawMultiIndexed& command) {
 
 void execute(ReplayState& state, const CmdBeginConditionalRendering& command) {
   std::uint32_t value = 0;
-  read_arguments(*command.buffer, command.offset, value);
+  read_value(*command.buffer, command.offset, value);
   state.suppressed = (value == 0) != command.inverted;
 }
 
 void execute(ReplayState& state, const CmdEndConditionalRendering&) { state.suppressed = false; }
 
 void execute(ReplayState& state, const CmdDrawIndirect& command) {
+  const auto read = [&](const char* what, const Buffer& buffer, VkDeviceSize offset, auto& out) {
+    return read_arguments(state, state.graphics, what, buffer, offset, out);
+  };
   std::uint32_t count = command.draw_count;
   if (command.count_buffer) {
     std::uint32_t stored = 0;
-    if (!read_arguments(*command.count_buffer, command.count_offset, stored)) return;
+    if (!read("number of draws", *command.count_buffer, command.count_offset, stored)) return;
     count = std::min(count, stored);
   }
   for (std::uint32_t i = 0; i < count && prepare_draw(state); ++i) {
     const VkDeviceSize offset = command.offset + VkDeviceSize{i} * command.stride;
     if (command.indexed) {
       VkDrawIndexedIndirectCommand a;
-      if (!read_arguments(*command.buffer, offset, a)) return;
+      if (!read("arguments of a draw", *command.buffer, offset, a)) return;
       draw_indexed(state, {a.indexCount, a.instanceCount, a.firstIndex, a.vertexOffset, a.firstInstance}, i);
     } else {
       VkDrawIndirectCommand a;
-      if (!read_arguments(*command.buffer, offset, a)) return;
+      if (!read("arguments of a draw", *command.buffer, offset, a)) return;
       draw_direct(state, {a.vertexCount, a.instanceCount, a.firstVertex, a.firstInstance}, i);
     }
   }
@@ -179,7 +198,7 @@ void execute(ReplayState& state, const CmdDispatch& command) { dispatch(state, c
 void execute(ReplayState& state, const CmdDispatchIndirect& command) {
   constexpr std::uint32_t kBase[3] = {0, 0, 0};
   VkDispatchIndirectCommand a;
-  if (!read_arguments(*command.buffer, command.offset, a)) return;
+  if (!read_arguments(state, state.compute, "arguments of a dispatch", *command.buffer, command.offset, a)) return;
   const std::uint32_t groups[3] = {a.x, a.y, a.z};
   dispatch(state, kBase, groups);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glass/session.h"
+#include "icd/object/memory.h"
 #include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
@@ -55,6 +56,10 @@ std::string ReplayedCommand::resource(std::uint32_t set, std::uint32_t slot) con
                              there ? &resources_.set[set][slot] : nullptr);
 }
 
+std::string ReplayedCommand::bytes(const std::byte* first, std::uint64_t size) const {
+  return describe_bytes(device_, first, size);
+}
+
 const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline& pipeline,
                                               const spirv::ResourceTable& resources) {
   ObservedReplay& observed = *state.observed;
@@ -68,10 +73,22 @@ const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline
   made->labels = observed.queue_labels;
   made->labels.insert(made->labels.end(), observed.labels.open().begin(), observed.labels.open().end());
   made->null_descriptors = state.device.features.test(Feature::nullDescriptor);
+  made->robust_vertices = state.device.features.test(Feature::robustBufferAccess2);
   made->pipeline = name_of(state.device.physical_device.instance, ref(pipeline));
   observed.commands.push_back(std::move(made));
   observed.objects.push_back({observed.command, observed.command_buffer, ref(pipeline)});
   return observed.commands.back().get();
+}
+
+void report_arguments(ReplayState& state, const BindPoint& bind_point, const Buffer& buffer, std::uint64_t offset,
+                      std::uint64_t size, const char* what) {
+  if (!bind_point.pipeline || state.suppressed) return;
+  const spirv::ObservedCommand* command = observe_command(state, *bind_point.pipeline, {});
+  std::string text = what;
+  text.append(": ").append(std::to_string(size)).append(" bytes at offset ").append(std::to_string(offset));
+  text.append(buffer.data ? ", outside of buffer " : ", of a buffer without memory ");
+  glass::session().broken(*command, "out-of-bounds-arguments",
+                          text + describe_bytes(state.device, buffer.data, buffer.size));
 }
 
 void begin_observed_submission(Device& device, std::vector<std::string> queue_labels) noexcept {

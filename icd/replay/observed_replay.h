@@ -20,6 +20,7 @@ class ReplayedCommand final : public spirv::ObservedCommand {
  public:
   ReplayedCommand(const Device& device, const Pipeline& bound, const spirv::ResourceTable& resources);
   std::string resource(std::uint32_t set, std::uint32_t slot) const override;
+  std::string bytes(const std::byte* first, std::uint64_t size) const override;
 
  private:
   const Device& device_;
@@ -48,6 +49,10 @@ struct ObservedReplay {
 const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline& pipeline,
                                               const spirv::ResourceTable& resources);
 
+/// The arguments of an indirect draw or dispatch lie outside of their buffer: `what` names them.
+void report_arguments(ReplayState& state, const BindPoint& bind_point, const Buffer& buffer, std::uint64_t offset,
+                      std::uint64_t size, const char* what);
+
 /// A submission begins, on a queue with these labels. Nothing if nobody observes.
 void begin_observed_submission(Device& device, std::vector<std::string> queue_labels) noexcept;
 /// It is done, or lost: what has been found goes to the application's messengers. No lock is held.
@@ -56,6 +61,8 @@ void end_observed_submission(Device& device) noexcept;
 /// Sends a finding to the messengers of the device's instance.
 void send_finding(Device& device, const ObservedReplay& observed, const glass::Finding& finding);
 
+/// Bytes of a buffer: "'mesh' (96 bytes at offset 32)".
+std::string describe_bytes(const Device& device, const std::byte* first, std::uint64_t size);
 /// What a descriptor of this binding is, in words: "storage buffer 'particles' (set 0, binding 1, 4096 bytes)".
 std::string describe_descriptor(const Device& device, std::uint32_t set, const SetBinding& binding,
                                 std::uint32_t element, const spirv::Descriptor* descriptor);

@@ -15,6 +15,7 @@ class ToolObserver : public spirv::exec::Observer {
   ToolObserver(Tool& tool, ShaderIdentity shader) : tool_(tool), shader_(shader) {}
   spirv::exec::Interest interest() const override { return tool_.interest(); }
   void made(const spirv::Program& program) const override { program_ = tool_.attach(shader_, program); }
+  void draw(const raster::DrawCall& call) const { program_->draw(call); }
   std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) const override {
     return program_ ? program_->watch(wave, start) : nullptr;
   }
