@@ -127,7 +127,7 @@ Session::Session() {
   for (std::string_view rest = wanted ? wanted : ""; !rest.empty();) {
     const std::size_t comma = std::min(rest.find(','), rest.size());
     if (comma != 0)
-      if (auto tool = make_tool(rest.substr(0, comma))) tools_.push_back(std::move(tool));
+      if (auto tool = make_tool(rest.substr(0, comma))) add(std::move(tool));
     rest.remove_prefix(std::min(comma + 1, rest.size()));
   }
   if (idle()) return;
@@ -138,7 +138,10 @@ Session::Session() {
 
 Session::~Session() { write(); }
 
-void Session::add(std::unique_ptr<Tool> tool) { tools_.push_back(std::move(tool)); }
+void Session::add(std::unique_ptr<Tool> tool) {
+  shadows_memory_ |= tool->shadows_memory();
+  tools_.push_back(std::move(tool));
+}
 
 std::shared_ptr<const spirv::exec::Observer> Session::observe(const ShaderIdentity& shader) {
   if (idle()) return nullptr;
@@ -153,6 +156,10 @@ void Session::draw(const raster::DrawCall& call) {
 
 void Session::broken(const spirv::ObservedCommand& command, std::string_view rule, const std::string& message) {
   for (const auto& tool : tools_) tool->broken(command, rule, message);
+}
+
+void Session::commands_done(const void* owner) {
+  for (const auto& tool : tools_) tool->commands_done(owner);
 }
 
 void Session::end_submission(const std::function<void(const Finding&)>& deliver) {

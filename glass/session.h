@@ -25,6 +25,10 @@ class Session {
   /// As ProgramTool::draw() and Tool::broken().
   void draw(const raster::DrawCall& call);
   void broken(const spirv::ObservedCommand& command, std::string_view rule, const std::string& message);
+  /// Whether any tool wants a shadow of device memory.
+  bool shadows_memory() const { return shadows_memory_; }
+  /// As Tool::commands_done().
+  void commands_done(const void* owner);
   /// A submission is done: what the tools have found goes to the report and to `deliver`, in a fixed order.
   void end_submission(const std::function<void(const Finding&)>& deliver);
   /// The tools write what they write at the end.
@@ -32,6 +36,7 @@ class Session {
 
  private:
   std::vector<std::unique_ptr<Tool>> tools_;
+  bool shadows_memory_ = false;
   std::unique_ptr<ReportFile> report_;  ///< null: VITRINE_REPORT names none
 };
 

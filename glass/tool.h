@@ -43,6 +43,11 @@ class Tool {
   virtual std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) = 0;
   /// A command breaks a rule by itself, whatever its shaders do. The thread that replays calls it.
   virtual void broken(const spirv::ObservedCommand&, std::string_view /*rule*/, const std::string& /*message*/) {}
+  /// Whether it reads or writes the shadow of device memory (glass/memory_shadow.h): none is kept if no tool does.
+  virtual bool shadows_memory() const { return false; }
+  /// The work of these commands is done, of all that have run since the last call for the same owner
+  /// (ObservedCommand::owner): what one invocation read and another has written can be told apart.
+  virtual void commands_done(const void* /*owner*/) {}
   /// A submission is done: what has been found since the last one, in an order that does not depend on threads.
   virtual std::vector<Finding> take_findings() { return {}; }
   /// Writes what the tool writes of itself (coverage, counts). Called when a device is destroyed and when the library

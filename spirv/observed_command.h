@@ -13,6 +13,7 @@ class ObservedCommand {
  public:
   virtual ~ObservedCommand() = default;
 
+  const void* owner = nullptr;      ///< tells the devices apart whose commands run at the same time
   std::uint64_t submission = 0;     ///< of the device's queues, counted from 1
   std::uint32_t command = 0;        ///< recorded commands before it in the submission, counted from 1
   const char* name = "";            ///< "vkCmdDraw"...

@@ -8,11 +8,15 @@
 namespace vitrine::glass::sanitize {
 
 /// What is bound: "storage image 'heights' (set 0, binding 2, 64 x 64)"; else `otherwise`.
-inline std::string resource_text(const spirv::Wave& wave, std::uint32_t set, std::uint32_t slot,
+inline std::string resource_text(const spirv::ObservedCommand* command, std::uint32_t set, std::uint32_t slot,
                                  std::string otherwise) {
-  const spirv::ObservedCommand* command = wave.resources->command;
   std::string text = command ? command->resource(set, slot) : std::string();
   return text.empty() ? otherwise : text;
+}
+
+inline std::string resource_text(const spirv::Wave& wave, std::uint32_t set, std::uint32_t slot,
+                                 std::string otherwise) {
+  return resource_text(wave.resources->command, set, slot, std::move(otherwise));
 }
 
 /// `lanes` use array element `element` of a binding with `count` descriptors, which leads nowhere.

@@ -5,8 +5,7 @@
 
 #include "glass/sanitize/checks.h"
 #include "glass/sanitize/descriptors.h"
-#include "spirv/exec/buffers.h"
-#include "spirv/exec/observe.h"
+#include "glass/sanitize/image_lanes.h"
 #include "texel/sampler.h"
 
 namespace vitrine::glass::sanitize {
@@ -14,7 +13,6 @@ namespace {
 
 using spirv::Descriptor;
 using spirv::ImageOp;
-using spirv::IndexOperand;
 using spirv::Instruction;
 using spirv::InstructionNote;
 using spirv::Wave;
@@ -28,11 +26,6 @@ bool names_texels(ImageAccess access) {
          access == ImageAccess::kAtomic;
 }
 
-std::uint32_t element_of(const Wave& wave, const IndexOperand& index, std::size_t lane) {
-  if (index.file == IndexOperand::File::kConstant) return 0;
-  return spirv::exec::word_of(wave, {index.file == IndexOperand::File::kUniform ? 'u' : 'r', index.value}, lane);
-}
-
 const char* verb_of(ImageAccess access) {
   return access == ImageAccess::kWrite    ? "store to "
          : access == ImageAccess::kAtomic ? "atomic operation on "
@@ -43,23 +36,22 @@ const char* verb_of(ImageAccess access) {
 class ImageCheck {
  public:
   ImageCheck(Reporter& reporter, const Wave& wave, const Instruction* i, const InstructionNote& note)
-      : reporter_(reporter), wave_(wave), i_(i), note_(note), op_(wave.program->image_ops[i->extra[0]]) {}
+      : reporter_(reporter),
+        wave_(wave),
+        i_(i),
+        note_(note),
+        op_(wave.program->image_ops[i->extra[0]]),
+        lanes_(wave, op_) {}
 
   void run();
 
  private:
   std::optional<std::int32_t> operand(ImageOperand which, std::uint32_t component, std::size_t lane) const {
-    const std::uint32_t offset = op_.operand[static_cast<std::size_t>(which)][component];
-    if (offset == spirv::kNoOperand) return std::nullopt;
-    return static_cast<std::int32_t>(spirv::exec::word_of(wave_, {'r', offset}, lane));
+    return lanes_.operand(which, component, lane);
   }
-  std::uint32_t dimensions() const {
-    return spirv::ir::coordinate_components(op_.info.dim) + (op_.info.arrayed && op_.info.dim != ImageDim::kCube);
-  }
-  /// The texel of a lane: a coordinate with its offset.
+  std::uint32_t dimensions() const { return lanes_.dimensions(); }
   std::int64_t coordinate(std::uint32_t component, std::size_t lane) const {
-    return std::int64_t{operand(ImageOperand::kCoord, component, lane).value_or(0)} +
-           operand(ImageOperand::kOffset, std::min(component, 2u), lane).value_or(0);
+    return lanes_.coordinate(component, lane);
   }
   /// Texels, and layers behind them, of the level that a lane names.
   std::array<std::uint32_t, 3> size_of(const texel::ImageView& view, std::size_t lane) const {
@@ -84,6 +76,7 @@ class ImageCheck {
   const Instruction* const i_;
   const InstructionNote& note_;
   const ImageOp& op_;
+  const ImageLanes lanes_;
 };
 
 bool ImageCheck::is_outside(const texel::ImageView& view, std::size_t lane) const {
@@ -139,27 +132,14 @@ void ImageCheck::check_texels(const Descriptor& image, std::uint32_t element, ba
 void ImageCheck::run() {
   const spirv::ir::ImageInfo& info = op_.info;
   if (info.set == spirv::ir::kAnySet || info.access == ImageAccess::kSubpass) return;
-  for (base::LaneMask remaining = wave_.active; remaining != 0;) {
-    const std::uint32_t element =
-        element_of(wave_, op_.image_index, static_cast<std::size_t>(std::countr_zero(remaining)));
-    base::LaneMask lanes = remaining;
-    if (op_.image_index.file == IndexOperand::File::kVarying)
-      base::for_each_lane(remaining, [&](std::size_t lane) {
-        if (element_of(wave_, op_.image_index, lane) != element) lanes &= ~(base::LaneMask{1} << lane);
-      });
-    remaining &= ~lanes;
-    const bool in_range = element == 0 || element < info.count;
-    const Descriptor* const image =
-        in_range ? spirv::exec::find_descriptor(wave_, info.set, info.slot + element) : nullptr;
-    const bool missing =
-        image == nullptr || (info.dim == ImageDim::kBuffer ? image->texels == nullptr : image->image == nullptr);
-    if (missing) {
+  for_each_image(wave_, op_, [&](const Descriptor* image, std::uint32_t element, base::LaneMask lanes) {
+    if (image == nullptr) {
       if (const base::LaneMask real = lanes & wave_.live)
         report_descriptor(reporter_, wave_, i_, note_, info.set, info.slot, element, info.count, real);
     } else if (names_texels(info.access)) {
       check_texels(*image, element, lanes);
     }
-  }
+  });
 }
 
 }  // namespace

@@ -6,8 +6,7 @@
 #include "glass/sanitize/accesses.h"
 #include "glass/sanitize/checks.h"
 #include "glass/sanitize/descriptors.h"
-#include "spirv/exec/buffers.h"
-#include "spirv/exec/observe.h"
+#include "glass/sanitize/image_lanes.h"
 
 namespace vitrine::glass::sanitize {
 namespace {
@@ -100,7 +99,7 @@ class MemoryCheck {
                     spirv::OperandPlace address, base::LaneMask lanes) {
     spirv::exec::for_each_buffer(
         const_cast<Wave&>(wave), row, lanes, [&](const spirv::exec::Bytes& bytes, base::LaneMask same) {
-          const std::uint32_t element = element_of(wave, row, same);
+          const std::uint32_t element = element_of(wave, row.index, static_cast<std::size_t>(std::countr_zero(same)));
           if (bytes.data == nullptr)
             return report_descriptor(reporter_, wave, i, note, row.set, row.slot, element, row.count, same);
           check_range(wave, i, note, row, address, same, bytes.size, buffer_rule(note.access), [&] {
@@ -108,13 +107,6 @@ class MemoryCheck {
                                  "a buffer of " + std::to_string(bytes.size) + " bytes");
           });
         });
-  }
-
-  static std::uint32_t element_of(const Wave& wave, const MemoryOp& row, base::LaneMask lanes) {
-    if (row.index.file == spirv::IndexOperand::File::kConstant) return 0;
-    const bool uniform = row.index.file == spirv::IndexOperand::File::kUniform;
-    return spirv::exec::word_of(wave, {uniform ? 'u' : 'r', row.index.value},
-                                static_cast<std::size_t>(std::countr_zero(lanes)));
   }
 
   void check_array(const Wave& wave, const Instruction* i, const InstructionNote& note, const MemoryOp& row,

@@ -39,6 +39,13 @@ class Places {
     entry.finding = make();
   }
 
+  /// Whether the finding has been taken: there is nothing more to say about the place.
+  bool is_told(const Key& key) {
+    const std::lock_guard lock(mutex_);
+    const auto at = findings_.find(key);
+    return at != findings_.end() && at->second.delivered;
+  }
+
   void take(std::vector<Finding>& to) {
     const std::lock_guard lock(mutex_);
     for (auto& [key, entry] : findings_) {
@@ -72,6 +79,12 @@ class Reporter {
   Reporter(ProgramPlaces& program, const spirv::Wave& wave) : program_(program), invocations_(wave) {}
 
   VkShaderStageFlagBits stage() const { return program_.context.stage; }
+  ProgramPlaces& program() const { return program_; }
+  Id invocation(const spirv::Wave& wave, std::size_t lane) const { return invocations_(wave, lane); }
+  static Order order_of(const spirv::Wave& wave, const Id& id) {
+    const spirv::ObservedCommand* command = wave.resources->command;
+    return {command ? command->submission : 0, command ? command->command : 0, rows_first(id)};
+  }
 
   /// `lanes` broke a rule at a place: `place` tells it apart, `message` says what the lane that it is given did.
   template <class F>
@@ -83,9 +96,8 @@ class Reporter {
       const Id id = invocations_(wave, lane);
       if (rows_first(id) < rows_first(first)) first = id, first_lane = lane;
     });
-    const spirv::ObservedCommand* command = wave.resources->command;
-    const Order order(command ? command->submission : 0, command ? command->command : 0, rows_first(first));
-    program_.places.add({place, rule_id}, static_cast<std::uint64_t>(std::popcount(lanes)), order, [&] {
+    const auto count = static_cast<std::uint64_t>(std::popcount(lanes));
+    program_.places.add({place, rule_id}, count, order_of(wave, first), [&] {
       Finding finding;
       finding.rule = &rule(rule_id);
       finding.message = message(first_lane);

@@ -8,6 +8,7 @@
 #include "glass/sanitize/checks.h"
 #include "glass/sanitize/shared.h"
 #include "glass/sanitize/variables.h"
+#include "glass/sanitize/written.h"
 #include "glass/tools.h"
 #include "spirv/exec/observe.h"
 
@@ -70,16 +71,19 @@ struct SanitizedPlaces : sanitize::ProgramPlaces {
       : ProgramPlaces(shader, program), variables(program) {}
   sanitize::SharedShadows shared;
   sanitize::VariableShadows variables;
+  sanitize::UnwrittenReads* reads = nullptr;  ///< the tool's
 };
 
 class SanitizeWatch : public spirv::exec::Watch {
  public:
   SanitizeWatch(SanitizedPlaces& program, const Wave& wave, const Instruction* start)
       : reporter_(program, wave),
+        written_(reporter_, program.reads),
         shared_(program.shared.of(wave, start)),
         variables_(program.variables.of(wave, start)) {}
 
   void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
+    written_.access(wave, i, note);
     if (note.access == spirv::Access::kImage) return sanitize::check_image(reporter_, wave, i, note);
     sanitize::check_memory(reporter_, wave, i, note);
     if (shared_ != nullptr && note.space == spirv::MemorySpace::kShared)
@@ -108,6 +112,7 @@ class SanitizeWatch : public spirv::exec::Watch {
 
  private:
   sanitize::Reporter reporter_;
+  sanitize::WrittenCheck written_;
   sanitize::SharedShadow* const shared_;       ///< null: the workgroup has none
   sanitize::VariableShadow* const variables_;  ///< null: nothing is to be known of variables
 };
@@ -126,11 +131,19 @@ class SanitizedProgram final : public WatchedProgram<SanitizeWatch, SanitizedPla
 class SanitizeTool : public PlacesTool<SanitizedProgram> {
  public:
   using PlacesTool::PlacesTool;
+  bool shadows_memory() const override { return true; }
 
+  std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
+    auto made = PlacesTool::attach(shader, program);
+    static_cast<SanitizedProgram&>(*made).reads = &reads_;
+    return made;
+  }
+  void commands_done(const void* owner) override { reads_.settle(owner); }
   void broken(const spirv::ObservedCommand& command, std::string_view id, const std::string& message) override {
     commands_.add(command, rule(id), message);
   }
   std::vector<Finding> take_findings() override {
+    reads_.settle(nullptr);  // of programs that no device runs
     std::vector<Finding> findings = PlacesTool::take_findings();
     commands_.take(findings);
     sort(findings);
@@ -138,6 +151,7 @@ class SanitizeTool : public PlacesTool<SanitizedProgram> {
   }
 
  private:
+  sanitize::UnwrittenReads reads_;
   sanitize::BrokenCommands commands_;
 };
 

@@ -8,39 +8,6 @@
 #include "glass/sanitize/operands.h"
 
 namespace vitrine::glass::sanitize {
-namespace {
-
-/// What one lane's access touches behind its address: one row per component.
-struct Touched {
-  std::uint32_t at[4] = {};
-  std::uint32_t count = 0;
-};
-
-Touched touched_by(const MemoryOp& row, Access access) {
-  Touched touched;
-  const auto add = [&](std::uint32_t at) { touched.at[touched.count++] = row.added + at; };
-  if (access == Access::kAtomic) {
-    add(0);
-  } else if (access == Access::kLoad) {
-    for (std::uint32_t c = 0; c < row.components && c < 4; ++c)
-      if (row.data[c] != spirv::kNoOperand) add(row.at[c]);
-  } else {
-    for (std::uint32_t c = 0; c < 4; ++c)
-      if ((row.write_mask >> c & 1) != 0) add(c * row.element_bytes);
-  }
-  return touched;
-}
-
-bool reads(const MemoryOp& row, Access access) {
-  if (access != Access::kAtomic) return access == Access::kLoad;
-  return row.atomic != spirv::ir::AtomicOp::kStore && row.atomic != spirv::ir::AtomicOp::kExchange;
-}
-
-bool writes(const MemoryOp& row, Access access) {
-  return access == Access::kStore || (access == Access::kAtomic && row.atomic != spirv::ir::AtomicOp::kLoad);
-}
-
-}  // namespace
 
 void SharedShadow::begin(const spirv::Wave& wave) {
   written_.assign(wave.shared_size, 0);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "glass/memory_shadow.h"
+#include "glass/session.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
@@ -90,11 +92,15 @@ VKAPI_ATTR void VKAPI_CALL FreeMemory(VkDevice, VkDeviceMemory memory, const VkA
   destroy_handle<DeviceMemory>(memory);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize,
+VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size,
                                          VkMemoryMapFlags, void** data) {
   const DeviceMemory& m = from_handle<DeviceMemory>(memory);
   if (offset > m.size) return VK_ERROR_MEMORY_MAP_FAILED;
   *data = m.data + offset;
+  if (glass::session().shadows_memory()) {
+    if (glass::ShadowRegion* shadow = glass::find_shadow(m.data))
+      shadow->map(shadow->first() + offset, std::min(size, m.size - offset));
+  }
   return VK_SUCCESS;
 }
 

@@ -22,6 +22,7 @@ RenderingAttachment make_attachment(const VkRenderingAttachmentInfo* info) {
   out.resolve_mode = info->resolveMode;
   if (info->resolveMode != VK_RESOLVE_MODE_NONE) out.resolve = from_nullable<ImageView>(info->resolveImageView);
   out.load = info->loadOp;
+  out.store = info->storeOp;
   out.clear = info->clearValue;
   return out;
 }

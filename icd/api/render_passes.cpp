@@ -50,6 +50,15 @@ void find_first_uses(RenderPass& pass, const HostMemory& memory) {
   }
 }
 
+/// The aspects that a render pass begins with in VK_IMAGE_LAYOUT_UNDEFINED.
+VkImageAspectFlags undefined_aspects(const VkAttachmentDescription2& info) {
+  constexpr VkImageAspectFlags kStencil = VK_IMAGE_ASPECT_STENCIL_BIT;
+  const auto* separate = find_in_chain<VkAttachmentDescriptionStencilLayout>(info.pNext);
+  const VkImageLayout stencil = separate ? separate->stencilInitialLayout : info.initialLayout;
+  return (info.initialLayout == VK_IMAGE_LAYOUT_UNDEFINED ? ~kStencil : 0) |
+         (stencil == VK_IMAGE_LAYOUT_UNDEFINED ? kStencil : 0);
+}
+
 // ---- VkRenderPassCreateInfo as VkRenderPassCreateInfo2
 
 /// The structures of the second form, made from the first; alive for one call.
@@ -148,7 +157,8 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateRenderPass2(VkDevice device, const VkRender
   Owned<RenderPass> object(create_object<RenderPass>(d.memory, allocator));
   for (std::uint32_t i = 0; i < info->attachmentCount; ++i) {
     const VkAttachmentDescription2& a = info->pAttachments[i];
-    object->attachments.push_back({a.format, static_cast<std::uint32_t>(a.samples), a.loadOp, a.stencilLoadOp});
+    object->attachments.push_back({a.format, static_cast<std::uint32_t>(a.samples), a.loadOp, a.stencilLoadOp,
+                                   a.storeOp, a.stencilStoreOp, undefined_aspects(a)});
   }
   for (std::uint32_t i = 0; i < info->subpassCount; ++i) {
     object->subpasses.push_back(make_subpass(info->pSubpasses[i], object->memory));

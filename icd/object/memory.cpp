@@ -6,6 +6,9 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "glass/memory_shadow.h"
+#include "glass/session.h"
+
 namespace vitrine::icd {
 namespace {
 
@@ -33,9 +36,11 @@ DeviceMemory::DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<
   data = static_cast<std::byte*>(mapping);
   counted_ = &total;
   total += size;
+  if (glass::session().shadows_memory()) glass::add_shadow(data, size);
 }
 
 DeviceMemory::~DeviceMemory() {
+  if (counted_ && glass::session().shadows_memory()) glass::remove_shadow(data);
   if (mapping_) munmap(mapping_, mapping_bytes_);
   if (file >= 0) close(file);
   if (counted_) *counted_ -= size;

@@ -10,6 +10,9 @@ struct Attachment {
   std::uint32_t samples = 1;
   VkAttachmentLoadOp load = VK_ATTACHMENT_LOAD_OP_DONT_CARE;          ///< colour or depth
   VkAttachmentLoadOp stencil_load = VK_ATTACHMENT_LOAD_OP_DONT_CARE;  ///< stencil
+  // What observers are told: contents that are given up.
+  VkAttachmentStoreOp store = VK_ATTACHMENT_STORE_OP_STORE, stencil_store = VK_ATTACHMENT_STORE_OP_STORE;
+  VkImageAspectFlags undefined_aspects = 0;  ///< from VK_IMAGE_LAYOUT_UNDEFINED
 };
 
 struct Subpass {

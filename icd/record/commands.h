@@ -187,6 +187,7 @@ struct RenderingAttachment {
   const ImageView* resolve;            ///< null: none
   VkResolveModeFlagBits resolve_mode;  ///< of `resolve`
   VkAttachmentLoadOp load;
+  VkAttachmentStoreOp store;  ///< what observers are told
   VkClearValue clear;
 };
 struct CmdBeginRendering {
@@ -312,6 +313,14 @@ struct CmdBeginLabel {
 struct CmdEndLabel {};
 struct CmdInsertLabel {
   std::span<const char> name;
+};
+struct DiscardedImage {
+  const Image* image;
+  VkImageSubresourceRange range;
+};
+/// Barriers from VK_IMAGE_LAYOUT_UNDEFINED: they leave the contents of these images undefined.
+struct CmdDiscardImages {
+  std::span<const DiscardedImage> images;
 };
 
 /// Every recorded command, numbered.

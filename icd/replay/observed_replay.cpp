@@ -67,6 +67,7 @@ const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline
   if (!observed.commands.empty() && observed.commands.back()->command == observed.command)
     return observed.commands.back().get();
   auto made = std::make_unique<ReplayedCommand>(state.device, pipeline, resources);
+  made->owner = &state.device;
   made->submission = observed.submission;
   made->command = observed.command;
   made->name = observed.name;
@@ -104,8 +105,9 @@ void begin_observed_submission(Device& device, std::vector<std::string> queue_la
 void end_observed_submission(Device& device) noexcept {
   ObservedReplay* observed = observed_of(device);
   if (!observed) return;
-  observed->commands.clear();
   try {
+    glass::session().commands_done(&device);
+    observed->commands.clear();
     glass::session().end_submission([&](const glass::Finding& f) { send_finding(device, *observed, f); });
   } catch (...) {
     report_error(device, ref(device), "tools", "out of host memory while findings were delivered");

@@ -28,6 +28,13 @@ class ReplayedCommand final : public spirv::ObservedCommand {
   spirv::ResourceTable resources_;
 };
 
+/// The attachments of the pass that is being replayed, and what draws have counted as writing of each (colours, depth,
+/// stencil): kept where tools shadow memory.
+struct ObservedPass {
+  raster::PassDesc desc;
+  std::array<VkRect2D, raster::kMaxColorAttachments + 2> drawn{};
+};
+
 struct ObservedReplay {
   /// The objects of a draw or dispatch of the submission.
   struct Objects {
@@ -35,6 +42,7 @@ struct ObservedReplay {
     ObjectRef command_buffer, pipeline;
   };
 
+  bool shadows_memory = false;   ///< icd/replay/written.h is told
   std::uint64_t submission = 0;  ///< counted from 1
   std::uint32_t command = 0;     ///< of the submission, counted from 1; 0: none yet
   const char* name = "";         ///< of the command
@@ -43,6 +51,8 @@ struct ObservedReplay {
   std::vector<std::string> queue_labels;
   std::vector<std::unique_ptr<const ReplayedCommand>> commands;  ///< that observers may still ask
   std::vector<Objects> objects;                                  ///< ascending commands
+  ObservedPass pass;
+  const CmdBeginRendering* rendering = nullptr;  ///< dynamic rendering that has begun
 };
 
 /// What observers are told of the draw or dispatch that is being replayed.

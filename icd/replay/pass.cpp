@@ -3,12 +3,15 @@
 // memory.
 #include <algorithm>
 
-#include "icd/replay/observed_replay.h"
+#include "glass/session.h"
 #include "icd/replay/scope.h"
+#include "icd/replay/written.h"
 #include "texel/transfer.h"
 
 namespace vitrine::icd {
 namespace {
+
+constexpr VkImageAspectFlags kAllButStencil = ~VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT};
 
 const Subpass& current_subpass(const ReplayState& state) {
   return state.instance->render_pass->subpasses[state.subpass];
@@ -72,11 +75,44 @@ void clear_in_memory(const ImageView& view, VkImageAspectFlags aspects, const Vk
   }
 }
 
+/// Tells the shadow of device memory of the load ops of an attachment, in views that no earlier subpass has used.
+void note_loads(const ReplayState& state, std::uint32_t attachment, std::uint32_t views) {
+  const Attachment& desc = state.instance->render_pass->attachments[attachment];
+  const ImageView* view = attachment_view(state, attachment);
+  if (!view) return;
+  if (state.views_loaded[attachment] == 0) note_undefined(*view, desc.undefined_aspects);
+  for_each_layer_range(views, state.scope.layers, [&](std::uint32_t layer, std::uint32_t layers) {
+    note_load({view, kAllButStencil, state.scope.area, layer, layers}, desc.load);
+    note_load({view, VK_IMAGE_ASPECT_STENCIL_BIT, state.scope.area, layer, layers}, desc.stencil_load);
+  });
+}
+
+bool is_used(const RenderPass& pass, std::uint32_t attachment) {
+  return std::any_of(pass.subpasses.begin(), pass.subpasses.end(), [&](const Subpass& subpass) {
+    return std::find(subpass.first_uses.begin(), subpass.first_uses.end(), attachment) != subpass.first_uses.end();
+  });
+}
+
+/// The same of the store ops of the instance that ends.
+void note_stores(const ReplayState& state) {
+  const RenderPass& pass = *state.instance->render_pass;
+  for (std::uint32_t i = 0; i < pass.attachments.size(); ++i) {
+    const ImageView* view = attachment_view(state, i);
+    if (!view || !is_used(pass, i)) continue;
+    for_each_layer_range(state.views_loaded[i], state.scope.layers, [&](std::uint32_t layer, std::uint32_t layers) {
+      note_store({view, kAllButStencil, state.scope.area, layer, layers}, pass.attachments[i].store);
+      note_store({view, VK_IMAGE_ASPECT_STENCIL_BIT, state.scope.area, layer, layers},
+                 pass.attachments[i].stencil_store);
+    });
+  }
+}
+
 void load_attachment(ReplayState& state, std::uint32_t attachment) {
   const Subpass& subpass = current_subpass(state);
   const ImageView* view = attachment_view(state, attachment);
   const VkImageAspectFlags aspects = cleared_aspects(state.instance->render_pass->attachments[attachment]);
   const std::uint32_t views = subpass.view_mask & ~state.views_loaded[attachment];
+  if (shadows_memory(state)) note_loads(state, attachment, views);
   state.views_loaded[attachment] |= subpass.view_mask;
   if (!view || !aspects || attachment >= state.instance->clear_values.size()) return;
   const VkClearValue& value = state.instance->clear_values[attachment];
@@ -120,7 +156,9 @@ DrawScope describe_scope(ReplayState& state) {
 
 void begin_subpass(ReplayState& state) {
   state.scope = describe_scope(state);
-  state.pass.emplace(describe_pass(state));
+  const raster::PassDesc desc = describe_pass(state);
+  state.pass.emplace(desc);
+  if (shadows_memory(state)) note_pass(state, desc);
   for (const std::uint32_t attachment : current_subpass(state).first_uses) load_attachment(state, attachment);
 }
 
@@ -142,7 +180,10 @@ void clear_rect(ReplayState& state, const VkClearAttachment& clear, const VkClea
 
 void reset_arena(ReplayState& state) {
   state.arena.reset();
-  if (state.observed) state.observed->commands.clear();
+  if (state.observed && !state.observed->commands.empty()) {
+    glass::session().commands_done(&state.device);
+    state.observed->commands.clear();
+  }
   state.dirty = kDirtyAll;
 }
 
@@ -169,6 +210,7 @@ void execute(ReplayState& state, const CmdNextSubpass&) {
 void execute(ReplayState& state, const CmdEndRenderPass&) {
   if (!state.instance) return;
   end_scope(state);
+  if (shadows_memory(state)) note_stores(state);
   state.instance = nullptr;
 }
 

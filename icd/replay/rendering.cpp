@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "icd/replay/scope.h"
+#include "icd/replay/written.h"
 
 namespace vitrine::icd {
 namespace {
@@ -110,6 +111,36 @@ void clear_attachments(ReplayState& state, const CmdBeginRendering& command, std
   clear_plane(command.stencil, VK_IMAGE_ASPECT_STENCIL_BIT);
 }
 
+/// Calls f(part, attachment) for the attachments of a rendering instance, in each range of layers that it draws to.
+template <class F>
+void for_each_part(const ReplayState& state, const CmdBeginRendering& command, F&& f) {
+  for_each_layer_range(command.view_mask, command.layers, [&](std::uint32_t layer, std::uint32_t layers) {
+    const auto part_of = [&](const RenderingAttachment& attachment, VkImageAspectFlags aspects) {
+      if (attachment.view) f(AttachmentPart{attachment.view, aspects, state.scope.area, layer, layers}, attachment);
+    };
+    for (const RenderingAttachment& color : command.colors) part_of(color, VK_IMAGE_ASPECT_COLOR_BIT);
+    part_of(command.depth, VK_IMAGE_ASPECT_DEPTH_BIT);
+    part_of(command.stencil, VK_IMAGE_ASPECT_STENCIL_BIT);
+  });
+}
+
+/// Tells the shadow of device memory of load ops, and of store ops when the instance ends.
+void note_loads(ReplayState& state, const CmdBeginRendering& command) {
+  state.observed->rendering = &command;
+  if (command.flags & VK_RENDERING_RESUMING_BIT) return;
+  for_each_part(state, command, [](const AttachmentPart& part, const RenderingAttachment& attachment) {
+    note_load(part, attachment.load);
+  });
+}
+
+void note_stores(ReplayState& state) {
+  const CmdBeginRendering* command = std::exchange(state.observed->rendering, nullptr);
+  if (!command || (command->flags & VK_RENDERING_SUSPENDING_BIT)) return;
+  for_each_part(state, *command, [](const AttachmentPart& part, const RenderingAttachment& attachment) {
+    note_store(part, attachment.store);
+  });
+}
+
 }  // namespace
 
 void execute(ReplayState& state, const CmdBeginRendering& recorded) {
@@ -118,7 +149,12 @@ void execute(ReplayState& state, const CmdBeginRendering& recorded) {
   const CmdBeginRendering command = with_transients(state, recorded, colors);
   state.scope = describe_scope(command);
   resolve_transients(recorded, command, state.scope);
-  state.pass.emplace(describe_pass(command, state.scope));
+  const raster::PassDesc desc = describe_pass(command, state.scope);
+  state.pass.emplace(desc);
+  if (shadows_memory(state)) {
+    note_pass(state, desc);
+    note_loads(state, recorded);
+  }
   if (command.flags & VK_RENDERING_RESUMING_BIT) return;  // the one that was suspended has loaded
   for_each_layer_range(command.view_mask, command.layers, [&](std::uint32_t layer, std::uint32_t count) {
     clear_attachments(state, command, layer, count);
@@ -126,7 +162,9 @@ void execute(ReplayState& state, const CmdBeginRendering& recorded) {
 }
 
 void execute(ReplayState& state, const CmdEndRendering&) {
-  if (state.pass) end_scope(state);
+  if (!state.pass) return;
+  end_scope(state);
+  if (shadows_memory(state)) note_stores(state);
 }
 
 }  // namespace vitrine::icd

@@ -6,7 +6,7 @@
 #include "icd/edge/diagnostics.h"
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
-#include "icd/replay/observed_replay.h"
+#include "icd/replay/written.h"
 
 namespace vitrine::icd {
 namespace {
@@ -20,6 +20,18 @@ void execute_erased(ReplayState& state, const void* command) {
 
 constexpr Executor kExecutors[] = {
 #define VITRINE_COMMAND(name) execute_erased<Cmd##name>,
+#include "icd/record/commands.def"
+};
+
+/// What the shadow of device memory is told of a command; most write nothing.
+template <class T>
+void note_erased(ReplayState& state, const void* command) {
+  if constexpr (requires(const T& typed) { note_written(state, typed); })
+    note_written(state, *static_cast<const T*>(command));
+}
+
+constexpr Executor kNotes[] = {
+#define VITRINE_COMMAND(name) note_erased<Cmd##name>,
 #include "icd/record/commands.def"
 };
 
@@ -63,8 +75,10 @@ DeviceLoss loss_of(const spirv::Fault& fault, const char* reason) noexcept {
 }  // namespace
 
 void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
+  const bool shadows = shadows_memory(state);
   for (const CommandHeader* header = buffer.arena.first(); header; header = header->next) {
     kExecutors[header->type](state, header->command());
+    if (shadows) kNotes[header->type](state, header->command());
     if (state.fault.raised.load(std::memory_order_relaxed)) return;
   }
 }
@@ -93,7 +107,9 @@ void prepare_replay(Device& device) {
   const std::lock_guard lock(device.sync_mutex);
   if (device.replay) return;
   device.replay = std::allocate_shared<ReplayState>(HostAllocator<ReplayState>(device.memory), device);
-  if (!glass::session().idle()) device.replay->observed = std::make_shared<ObservedReplay>();
+  if (glass::session().idle()) return;
+  device.replay->observed = std::make_shared<ObservedReplay>();
+  device.replay->observed->shadows_memory = glass::session().shadows_memory();
 }
 
 void execute(ReplayState& state, const CmdExecuteCommands& command) {

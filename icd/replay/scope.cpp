@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "icd/replay/written.h"
 #include "texel/transfer.h"
 
 namespace vitrine::icd {
@@ -39,6 +40,7 @@ void end_scope(ReplayState& state) {
     if (!source.format || !target.format) continue;
     for_each_layer_range(scope.view_mask, scope.layers, [&](std::uint32_t layer, std::uint32_t count) {
       texel::resolve_view(source, target, r.mode, scope.area, layer, count);
+      if (shadows_memory(state)) note_filled({r.target, r.aspect, scope.area, layer, count});
     });
   }
   if (!scope.suspended) state.transients.clear();

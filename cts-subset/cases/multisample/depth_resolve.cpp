@@ -212,8 +212,14 @@ CTS_RANDOM("multisample", "random_depth_resolve", 60) {
   spec.format = r.format;
   spec.extent = {kExtent.width, kExtent.height, 1};
   spec.samples = r.samples;
-  spec.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  spec.usage =
+      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   const Image source = run.image(spec);
+  // All samples are fetched, those outside of the area too.
+  run.once([&](VkCommandBuffer cmd) {
+    const VkImageSubresourceRange all{aspects, 0, 1, 0, 1};
+    vkCmdClearDepthStencilImage(cmd, source.handle, VK_IMAGE_LAYOUT_GENERAL, &kClear.depthStencil, 1, &all);
+  });
   spec.samples = VK_SAMPLE_COUNT_1_BIT;
   const Image target = run.image(spec);
   run.fill_random(target);
