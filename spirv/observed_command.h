@@ -2,6 +2,8 @@
 // the names that the application gave. Made by icd/, which keeps it until the command's work is done.
 #pragma once
 
+#include <vulkan/vulkan_core.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -21,6 +23,7 @@ class ObservedCommand {
   std::string pipeline;             ///< name of the pipeline; empty: it has none
   bool null_descriptors = false;    ///< descriptors may be null (nullDescriptor): accesses through them are defined
   bool robust_vertices = false;     ///< vertex data and indices outside of buffers are zeros (robustBufferAccess2)
+  std::uint64_t pushed = ~0ull;     ///< push constants, a bit a word: set, with a layout that is compatible
 
   /// Name of what is bound at a descriptor ("buffer 'particles' (4096 bytes)"); empty: nothing is known.
   virtual std::string resource(std::uint32_t set, std::uint32_t slot) const = 0;
@@ -29,6 +32,8 @@ class ObservedCommand {
     (void)first;
     return std::to_string(size) + " bytes";
   }
+  /// Push constants that ranges of the pipeline layout give a stage, a bit a word.
+  virtual std::uint64_t push_range(VkShaderStageFlagBits) const { return ~0ull; }
 };
 
 }  // namespace vitrine::spirv

@@ -45,7 +45,10 @@ struct Probe {
     kPrintf,       ///< NonSemantic.DebugPrintf
     kOperation,    ///< an operation that is undefined for some operands, or whose result somebody wants to see
     kQuad,         ///< a derivative, or a lookup that takes some, comes next
-    kBarrier,      ///< a barrier of the workgroup comes next
+    kBarrier,      ///< a barrier of the workgroup, or of the patch, comes next
+    kAligned,      ///< an access to PhysicalStorageBuffer memory comes next: low and high word of an address, two
+                   ///< distances from it; `number`: bytes of which it must be a multiple
+    kDescriptor,   ///< an access comes next to descriptors whose index is not NonUniform: an index each
     kUnreachable,  ///< OpUnreachable
     kWrite,        ///< cells of variables get a value
     kRead,         ///< slots say which lanes read cells that have not been written
@@ -56,7 +59,7 @@ struct Probe {
   std::uint32_t place = 0;  ///< SourceInfo::places
   std::string format;       ///< kPrintf; kUse: what depends on what
   std::vector<ProbeValue> values;
-  // kOperation: `values` are its operands, then its result if somebody wants to see it; kQuad
+  // kOperation: `values` are its operands, then its result if somebody wants to see it; kQuad, kAligned, kDescriptor
   std::uint16_t opcode = 0;  ///< in the SPIR-V specification
   std::uint32_t number = 0;  ///< OpExtInst: the GLSL.std.450 instruction; others: bits of the result's components
   bool has_result = false;   ///< the last of `values` is the result

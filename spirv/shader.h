@@ -128,6 +128,7 @@ struct ShaderInterface {
   std::uint32_t xfb_stride[kMaxXfbBuffers] = {};  ///< bytes
   std::uint32_t local_size[3] = {1, 1, 1};
   std::uint32_t shared_bytes = 0;
+  std::uint32_t push_bytes = 0;                             ///< where the block of push constants ends
   std::vector<std::array<std::uint32_t, 2>> zeroed_shared;  ///< byte ranges [first, end) of it that shaders rely on
 
   bool uses_discard = false;          ///< may end fragments (kill, terminate, demote)

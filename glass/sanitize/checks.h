@@ -13,6 +13,11 @@ void check_memory(Reporter& reporter, const spirv::Wave& wave, const spirv::Inst
 void check_image(Reporter& reporter, const spirv::Wave& wave, const spirv::Instruction* i,
                  const spirv::InstructionNote& note);
 
+/// An instruction that loads push constants is about to run: are they in the layout, have they been set?
+/// (push_constants.cpp)
+void check_push_constants(Reporter& reporter, const spirv::Wave& wave, const spirv::Instruction* i,
+                          const spirv::InstructionNote& note);
+
 class SharedShadow;
 /// An instruction that accesses shared memory is about to run: has what it reads been written? (shared.cpp)
 void check_shared(Reporter& reporter, const spirv::Wave& wave, const spirv::Instruction* i,
@@ -26,6 +31,12 @@ void check_number(Reporter& reporter, const spirv::Wave& wave, const spirv::Prob
 
 /// A derivative, a barrier or what must not be reached comes next. (control.cpp)
 void check_control(Reporter& reporter, const spirv::Wave& wave, const spirv::ProbeOp& op, const spirv::Probe& probe);
+
+/// An access comes next to an address that must be a multiple of something. (alignment.cpp)
+void check_alignment(Reporter& reporter, const spirv::Wave& wave, const spirv::ProbeOp& op, const spirv::Probe& probe);
+
+/// An access comes next to descriptors on which the invocations must agree. (uniformity.cpp)
+void check_uniformity(Reporter& reporter, const spirv::Wave& wave, const spirv::ProbeOp& op, const spirv::Probe& probe);
 
 /// Waves of a workgroup wait at a barrier, as this one does, that others do not reach. (control.cpp)
 void check_apart(Reporter& reporter, const spirv::Wave& wave);

@@ -43,8 +43,26 @@ constexpr const char* kBarrierRule = "divergent-barrier";
 /// One place for a barrier however its workgroup comes apart.
 std::uint64_t barrier_place(const spirv::ir::Origin& origin) { return std::uint64_t{2} << 32 | origin.place; }
 
+/// Lanes of `lanes` whose patch misses some: a wave of control shaders has several patches, one after the other.
+base::LaneMask in_broken_patches(const Wave& wave, base::LaneMask lanes) {
+  const std::uint32_t size = wave.program->observation->interface.modes.control_points;
+  base::LaneMask broken = 0;
+  for (std::uint32_t first = 0; size != 0 && first < base::kWaveWidth; first += size) {
+    const base::LaneMask patch = base::first_lanes(size) << first & wave.launched;
+    if ((lanes & patch) != patch) broken |= lanes & patch;
+  }
+  return broken;
+}
+
 void check_barrier(Reporter& reporter, const Wave& wave, const ProbeOp& op, const Probe& probe) {
   const base::LaneMask lanes = spirv::exec::lanes_at(wave, op);
+  if (reporter.stage() == VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT) {
+    const base::LaneMask wrong = in_broken_patches(wave, lanes);
+    if (wrong == 0) return;
+    return reporter.report(
+        wave, barrier_place(origin_of(probe)), origin_of(probe), kBarrierRule, wrong,
+        [](std::size_t) { return std::string("barrier of a patch that not all its invocations reach"); });
+  }
   if (lanes == 0 || lanes == wave.launched) return;
   reporter.report(wave, barrier_place(origin_of(probe)), origin_of(probe), kBarrierRule, lanes, barrier_text);
 }

@@ -41,8 +41,8 @@ class MemoryCheck {
         return check_range(wave, i, note, row, address, lanes, wave.shared_size, "out-of-bounds-shared",
                            [&] { return shared_text(wave); });
       case MemorySpace::kPush:
-        return check_range(wave, i, note, row, address, lanes, spirv::kMaxPushConstantBytes,
-                           "out-of-bounds-push-constant", [] { return std::string("the push constants"); });
+        return check_range(wave, i, note, row, address, lanes, push_bytes(wave), "out-of-bounds-push-constant",
+                           [&] { return push_text(wave); });
       case MemorySpace::kArray:
         return check_array(wave, i, note, row, address, lanes);
       case MemorySpace::kGlobal:
@@ -51,6 +51,12 @@ class MemoryCheck {
   }
 
  private:
+  static std::uint32_t push_bytes(const Wave& wave) { return wave.program->observation->interface.push_bytes; }
+
+  static std::string push_text(const Wave& wave) {
+    return "the block of push constants (" + std::to_string(push_bytes(wave)) + " bytes)";
+  }
+
   static std::string shared_text(const Wave& wave) {
     std::string text = "shared memory (";
     text += std::to_string(wave.shared_size);

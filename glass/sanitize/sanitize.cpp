@@ -86,6 +86,7 @@ class SanitizeWatch : public spirv::exec::Watch {
     written_.access(wave, i, note);
     if (note.access == spirv::Access::kImage) return sanitize::check_image(reporter_, wave, i, note);
     sanitize::check_memory(reporter_, wave, i, note);
+    if (note.space == spirv::MemorySpace::kPush) sanitize::check_push_constants(reporter_, wave, i, note);
     if (shared_ != nullptr && note.space == spirv::MemorySpace::kShared)
       sanitize::check_shared(reporter_, wave, i, note, *shared_);
   }
@@ -99,6 +100,10 @@ class SanitizeWatch : public spirv::exec::Watch {
       case spirv::Probe::Kind::kBarrier:
       case spirv::Probe::Kind::kUnreachable:
         return sanitize::check_control(reporter_, wave, op, probe);
+      case spirv::Probe::Kind::kAligned:
+        return sanitize::check_alignment(reporter_, wave, op, probe);
+      case spirv::Probe::Kind::kDescriptor:
+        return sanitize::check_uniformity(reporter_, wave, op, probe);
       case spirv::Probe::Kind::kWrite:
       case spirv::Probe::Kind::kRead:
       case spirv::Probe::Kind::kChoose:

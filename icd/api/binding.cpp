@@ -28,10 +28,12 @@ VKAPI_ATTR void VKAPI_CALL CmdBindDescriptorSets(VkCommandBuffer buffer, VkPipel
                                             arena.copy_array(offsets, offset_count)});
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdPushConstants(VkCommandBuffer buffer, VkPipelineLayout, VkShaderStageFlags,
+VKAPI_ATTR void VKAPI_CALL CmdPushConstants(VkCommandBuffer buffer, VkPipelineLayout layout, VkShaderStageFlags,
                                             std::uint32_t offset, std::uint32_t size, const void* values) {
   if (offset > spirv::kMaxPushConstantBytes || size > spirv::kMaxPushConstantBytes - offset) return;
-  record(buffer, icd::CmdPushConstants{offset, copy_array(buffer, static_cast<const std::byte*>(values), size)});
+  const auto& ranges = from_handle<PipelineLayout>(layout).shape->push_ranges;
+  record(buffer, icd::CmdPushConstants{offset, copy_array(buffer, static_cast<const std::byte*>(values), size),
+                                       copy_array(buffer, ranges.data(), ranges.size())});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,

@@ -1,6 +1,7 @@
 // Descriptor set layouts and pipeline layouts (Vulkan 1.3.239, Resource Descriptors: Descriptor Set Layout, Pipeline
 // Layouts).
 #include <algorithm>
+#include <tuple>
 
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
@@ -125,6 +126,10 @@ VKAPI_ATTR VkResult VKAPI_CALL CreatePipelineLayout(VkDevice device, const VkPip
     shape->first_dynamic.push_back(shape->dynamic_count);
     if (set) shape->dynamic_count += set->shape->dynamic_count;
   }
+  shape->push_ranges.assign(info->pPushConstantRanges, info->pPushConstantRanges + info->pushConstantRangeCount);
+  std::sort(shape->push_ranges.begin(), shape->push_ranges.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.offset, a.size, a.stageFlags) < std::tie(b.offset, b.size, b.stageFlags);
+  });
   object->shape = std::move(shape);
   *layout = to_handle(object.release());
   return VK_SUCCESS;

@@ -58,11 +58,12 @@ struct DescriptorSetLayout : Object<VkDescriptorSetLayout, VK_OBJECT_TYPE_DESCRI
 };
 
 struct PipelineLayoutShape {
-  explicit PipelineLayoutShape(const HostMemory& m) : sets(m), first_dynamic(m) {}
+  explicit PipelineLayoutShape(const HostMemory& m) : sets(m), first_dynamic(m), push_ranges(m) {}
 
   Vector<std::shared_ptr<const SetShape>> sets;  ///< by set number; may hold nulls
   Vector<std::uint32_t> first_dynamic;           ///< kDynamicSet slot of each set's first dynamic buffer
   std::uint32_t dynamic_count = 0;
+  Vector<VkPushConstantRange> push_ranges;  ///< in an order of their own: layouts with the same ones are compatible
 };
 
 struct PipelineLayout : Object<VkPipelineLayout, VK_OBJECT_TYPE_PIPELINE_LAYOUT> {

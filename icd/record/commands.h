@@ -38,6 +38,7 @@ struct CmdBindDescriptorSets {
 struct CmdPushConstants {
   std::uint32_t offset;
   std::span<const std::byte> bytes;
+  std::span<const VkPushConstantRange> ranges;  ///< of the layout, which may be gone when the command is replayed
 };
 struct CmdBindVertexBuffers {
   std::uint32_t first;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "icd/object/memory.h"
+#include "icd/replay/observed_replay.h"
 #include "icd/replay/replay.h"
 
 namespace vitrine::icd {
@@ -65,6 +66,7 @@ void execute(ReplayState& state, const CmdBindDescriptorSets& command) {
 void execute(ReplayState& state, const CmdPushConstants& command) {
   std::copy(command.bytes.begin(), command.bytes.end(), state.push_constants.begin() + command.offset);
   state.dirty |= kDirtyPushConstants;
+  if (state.observed) note_push_constants(state, command);
 }
 
 void execute(ReplayState& state, const CmdBindVertexBuffers& command) {

@@ -41,6 +41,21 @@ LayoutPlace find_slot(const PipelineLayoutShape& layout, std::uint32_t set, std:
   return {};
 }
 
+bool same_ranges(std::span<const VkPushConstantRange> a, std::span<const VkPushConstantRange> b) {
+  return std::ranges::equal(a, b, [](const VkPushConstantRange& x, const VkPushConstantRange& y) {
+    return x.offset == y.offset && x.size == y.size && x.stageFlags == y.stageFlags;
+  });
+}
+
+/// Words that have been set with a layout "compatible for push constants": one with the same ranges (Vulkan 1.3.239,
+/// Pipeline Layout Compatibility).
+std::uint64_t pushed_words(const ObservedReplay& observed, const PipelineLayoutShape& layout) {
+  std::uint64_t words = 0;
+  for (std::size_t i = 0; i < observed.pushed.size(); ++i)
+    words |= std::uint64_t{!observed.pushed[i].empty() && same_ranges(observed.pushed[i], layout.push_ranges)} << i;
+  return words;
+}
+
 ObservedReplay* observed_of(const Device& device) { return device.replay ? device.replay->observed.get() : nullptr; }
 
 }  // namespace
@@ -60,6 +75,14 @@ std::string ReplayedCommand::bytes(const std::byte* first, std::uint64_t size) c
   return describe_bytes(device_, first, size);
 }
 
+std::uint64_t ReplayedCommand::push_range(VkShaderStageFlagBits stage) const {
+  std::uint64_t words = 0;
+  for (const VkPushConstantRange& range : layout_->push_ranges)
+    for (std::uint32_t i = range.offset / 4; i < std::min((range.offset + range.size) / 4, 64u); ++i)
+      words |= std::uint64_t{(range.stageFlags & stage) != 0} << i;
+  return words;
+}
+
 const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline& pipeline,
                                               const spirv::ResourceTable& resources) {
   ObservedReplay& observed = *state.observed;
@@ -75,6 +98,7 @@ const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline
   made->labels.insert(made->labels.end(), observed.labels.open().begin(), observed.labels.open().end());
   made->null_descriptors = state.device.features.test(Feature::nullDescriptor);
   made->robust_vertices = state.device.features.test(Feature::robustBufferAccess2);
+  made->pushed = pushed_words(observed, *pipeline.layout);
   made->pipeline = name_of(state.device.physical_device.instance, ref(pipeline));
   observed.commands.push_back(std::move(made));
   observed.objects.push_back({observed.command, observed.command_buffer, ref(pipeline)});
@@ -90,6 +114,16 @@ void report_arguments(ReplayState& state, const BindPoint& bind_point, const Buf
   text.append(buffer.data ? ", outside of buffer " : ", of a buffer without memory ");
   glass::session().broken(*command, "out-of-bounds-arguments",
                           text + describe_bytes(state.device, buffer.data, buffer.size));
+}
+
+void note_push_constants(ReplayState& state, const CmdPushConstants& command) {
+  auto& pushed = state.observed->pushed;
+  const auto end = std::min((command.offset + command.bytes.size()) / 4, pushed.size());
+  for (std::size_t i = command.offset / 4; i < end; ++i) pushed[i] = command.ranges;
+}
+
+void forget_push_constants(ReplayState& state) {
+  if (state.observed) state.observed->pushed.fill({});
 }
 
 void begin_observed_submission(Device& device, std::vector<std::string> queue_labels) noexcept {

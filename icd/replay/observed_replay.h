@@ -2,6 +2,7 @@
 // they find reaches the application. A device has it only where tools are on (glass/session.h).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -21,6 +22,7 @@ class ReplayedCommand final : public spirv::ObservedCommand {
   ReplayedCommand(const Device& device, const Pipeline& bound, const spirv::ResourceTable& resources);
   std::string resource(std::uint32_t set, std::uint32_t slot) const override;
   std::string bytes(const std::byte* first, std::uint64_t size) const override;
+  std::uint64_t push_range(VkShaderStageFlagBits stage) const override;
 
  private:
   const Device& device_;
@@ -53,6 +55,8 @@ struct ObservedReplay {
   std::vector<Objects> objects;                                  ///< ascending commands
   ObservedPass pass;
   const CmdBeginRendering* rendering = nullptr;  ///< dynamic rendering that has begun
+  /// By word of the push constants: ranges of the layout that it was set with, in the command buffer; none: it was not.
+  std::array<std::span<const VkPushConstantRange>, spirv::kMaxPushConstantBytes / 4> pushed{};
 };
 
 /// What observers are told of the draw or dispatch that is being replayed.
@@ -62,6 +66,10 @@ const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline
 /// The arguments of an indirect draw or dispatch lie outside of their buffer: `what` names them.
 void report_arguments(ReplayState& state, const BindPoint& bind_point, const Buffer& buffer, std::uint64_t offset,
                       std::uint64_t size, const char* what);
+/// Words of the push constants have been set.
+void note_push_constants(ReplayState& state, const CmdPushConstants& command);
+/// None have been in what is replayed next. Nothing if nobody observes.
+void forget_push_constants(ReplayState& state);
 
 /// A submission begins, on a queue with these labels. Nothing if nobody observes.
 void begin_observed_submission(Device& device, std::vector<std::string> queue_labels) noexcept;

@@ -89,6 +89,7 @@ VkResult replay(Device& device, const CommandBuffer& buffer) noexcept {
   try {
     forget_bindings(state);
     if (state.observed) state.observed->command_buffer = ref(buffer);
+    forget_push_constants(state);
     replay_commands(state, buffer);
     flush_pass(state);
   } catch (const std::bad_alloc&) {
@@ -113,7 +114,13 @@ void prepare_replay(Device& device) {
 }
 
 void execute(ReplayState& state, const CmdExecuteCommands& command) {
-  for (const CommandBuffer* buffer : command.buffers) replay_commands(state, *buffer);
+  // "the secondary command buffer inherits no state", and that of the primary one "is undefined after" it (Vulkan
+  // 1.3.239, Command Buffers).
+  for (const CommandBuffer* buffer : command.buffers) {
+    forget_push_constants(state);
+    replay_commands(state, *buffer);
+  }
+  forget_push_constants(state);
 }
 
 }  // namespace vitrine::icd

@@ -149,7 +149,8 @@ void probe_before(Translator& t, const Inst& inst) {
   probe.opcode = static_cast<std::uint16_t>(inst.op);
   if (takes_derivatives(inst.op) && t.options.stage == VK_SHADER_STAGE_FRAGMENT_BIT) {
     probe.kind = Probe::Kind::kQuad;
-  } else if (inst.op == Op::OpControlBarrier && t.options.stage == VK_SHADER_STAGE_COMPUTE_BIT) {
+  } else if (inst.op == Op::OpControlBarrier && (t.options.stage == VK_SHADER_STAGE_COMPUTE_BIT ||
+                                                 t.options.stage == VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT)) {
     const auto* scope = constant_of(t, index_word(t, inst.operand(0)));
     if (scope == nullptr || (*scope)[0] != static_cast<std::uint32_t>(spv::Scope::Workgroup)) return;
     probe.kind = Probe::Kind::kBarrier;

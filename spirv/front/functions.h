@@ -17,6 +17,8 @@ void count_costs(const Module& module, const Block& block, Probe& probe);
 /// (checks.cpp).
 void probe_before(Translator& t, const Inst& inst);
 void probe_after(Translator& t, const Inst& inst);
+/// What observers want to know before an access to memory or an image (access_checks.cpp).
+void probe_access(Translator& t, const Inst& inst);
 /// Appends the words of a number, boolean or vector to `words` and says what they are.
 ProbeValue probe_value(Translator& t, const Inst& inst, std::uint32_t id, std::vector<ir::Src>& words);
 /// Appends a probe that reads `words`.

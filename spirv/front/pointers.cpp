@@ -10,21 +10,6 @@ namespace {
 using spv::Decoration;
 using spv::StorageClass;
 
-/// Block variables: uniform buffers, storage buffers, push constants.
-Pointer buffer_pointer(const Translator& t, const Inst& variable, StorageClass storage, std::uint32_t type_id) {
-  Pointer pointer;
-  pointer.type = type_id;
-  if (storage == StorageClass::PushConstant) {
-    pointer.kind = Pointer::Kind::kPush;
-    return pointer;
-  }
-  const Type& type = t.module.type(type_id);
-  pointer.descriptor_array = type.kind == Type::Kind::kArray || type.kind == Type::Kind::kRuntimeArray;
-  pointer.kind = is_storage_buffer(t, variable) ? Pointer::Kind::kStorage : Pointer::Kind::kUniform;
-  pointer.binding = find_binding(t, variable);
-  return pointer;
-}
-
 Pointer descriptor_pointer(const Translator& t, const Inst& variable, std::uint32_t type_id) {
   Pointer pointer;
   pointer.kind = Pointer::Kind::kDescriptor;
@@ -63,6 +48,23 @@ std::uint64_t explicit_bytes(const Translator& t, std::uint32_t type_id,
     default:
       return type.width / 8;
   }
+}
+
+/// Block variables: uniform buffers, storage buffers, push constants.
+Pointer buffer_pointer(Translator& t, const Inst& variable, StorageClass storage, std::uint32_t type_id) {
+  Pointer pointer;
+  pointer.type = type_id;
+  if (storage == StorageClass::PushConstant) {
+    pointer.kind = Pointer::Kind::kPush;
+    const auto bytes = std::min<std::uint64_t>(explicit_bytes(t, type_id, {}), kMaxPushConstantBytes);
+    t.function.interface.push_bytes = std::max(t.function.interface.push_bytes, static_cast<std::uint32_t>(bytes));
+    return pointer;
+  }
+  const Type& type = t.module.type(type_id);
+  pointer.descriptor_array = type.kind == Type::Kind::kArray || type.kind == Type::Kind::kRuntimeArray;
+  pointer.kind = is_storage_buffer(t, variable) ? Pointer::Kind::kStorage : Pointer::Kind::kUniform;
+  pointer.binding = find_binding(t, variable);
+  return pointer;
 }
 
 Pointer shared_pointer(Translator& t, const Inst& variable, std::uint32_t type_id) {

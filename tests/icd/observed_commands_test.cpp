@@ -17,6 +17,7 @@ struct Told {
   std::uint32_t command = 0;
   std::string name, pipeline;
   std::vector<std::string> labels, resources;
+  std::uint64_t pushed = 0, push_range = 0;
 };
 
 std::mutex told_mutex;
@@ -28,7 +29,10 @@ class TellingProgram : public glass::ProgramTool {
     const spirv::ObservedCommand* command = wave.resources->command;
     const std::lock_guard lock(told_mutex);
     if (!command) return nullptr;
-    Told one{command->submission, command->command, command->name, command->pipeline, command->labels, {}};
+    Told one{command->submission, command->command,
+             command->name,       command->pipeline,
+             command->labels,     {},
+             command->pushed,     command->push_range(VK_SHADER_STAGE_COMPUTE_BIT)};
     for (std::uint32_t slot = 0; slot <= kKinds; ++slot) one.resources.push_back(command->resource(0, slot));
     one.resources.push_back(command->resource(1, 0));
     one.resources.push_back(command->resource(spirv::kDynamicSet, 0));
@@ -270,6 +274,58 @@ TEST_F(ObservedCommands, ResourcesThatAreNotThereSaySo) {
   ASSERT_EQ(news().size(), 2u);
   EXPECT_EQ(news()[0].resources[1], "storage buffer (set 0, binding 1, nothing is bound)");
   EXPECT_EQ(news()[1].resources[1], "storage buffer (set 0, binding 1, no resource)");
+}
+
+TEST_F(ObservedCommands, PushConstantsAreSetByCompatibleLayouts) {
+  const VkDescriptorSet inputs = make_full_set(set_layout, kTypes);
+  const VkPipelineLayout same = make_layout(set_layout), larger = make_layout(set_layout, 16);
+  const std::uint32_t values[4] = {};
+  const auto push = [&](VkCommandBuffer commands, VkPipelineLayout with, std::uint32_t words) {
+    VK_CALL(CmdPushConstants)(commands, with, VK_SHADER_STAGE_ALL, 0, words * 4, values);
+    dispatch_one(commands, inputs);
+  };
+  VkCommandBuffer commands = begin();
+  dispatch_one(commands, inputs);
+  push(commands, larger, 4);
+  push(commands, same, 1);
+  run(commands);
+  commands = begin();
+  dispatch_one(commands, inputs);
+  pipeline = make_compute(larger);
+  push(commands, larger, 3);
+  push(commands, same, 1);
+  run(commands);
+  ASSERT_EQ(news().size(), 6u);
+  const std::uint64_t pushed[] = {0, 0, 1, 0, 7, 6}, ranges[] = {1, 1, 1, 1, 15, 15};
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(news()[i].pushed, pushed[i]) << i;
+    EXPECT_EQ(news()[i].push_range, ranges[i]) << i;
+  }
+}
+
+TEST_F(ObservedCommands, PushConstantsOfOtherCommandBuffersAreNotSet) {
+  const VkDescriptorSet inputs = make_full_set(set_layout, kTypes);
+  auto allocate = make_struct<VkCommandBufferAllocateInfo>();
+  allocate.commandPool = command_pool;
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_SECONDARY;
+  allocate.commandBufferCount = 1;
+  VkCommandBuffer secondary = VK_NULL_HANDLE;
+  ASSERT_EQ(VK_CALL(AllocateCommandBuffers)(device, &allocate, &secondary), VK_SUCCESS);
+  auto inheritance = make_struct<VkCommandBufferInheritanceInfo>();
+  auto info = make_struct<VkCommandBufferBeginInfo>();
+  info.pInheritanceInfo = &inheritance;
+  ASSERT_EQ(VK_CALL(BeginCommandBuffer)(secondary, &info), VK_SUCCESS);
+  dispatch_one(secondary, inputs);
+  ASSERT_EQ(VK_CALL(EndCommandBuffer)(secondary), VK_SUCCESS);
+  const VkCommandBuffer commands = begin();
+  const std::uint32_t value = 0;
+  VK_CALL(CmdPushConstants)(commands, layout, VK_SHADER_STAGE_ALL, 0, 4, &value);
+  dispatch_one(commands, inputs);
+  VK_CALL(CmdExecuteCommands)(commands, 1, &secondary);
+  dispatch_one(commands, inputs);
+  run(commands);
+  ASSERT_EQ(news().size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(news()[i].pushed, i == 0 ? 1u : 0u) << i;
 }
 
 TEST_F(ObservedCommands, MessagesComeBeforeFencesWithRulesObjectsAndLabels) {

@@ -179,9 +179,9 @@ class ResourceTest : public DeviceTest {
     return set;
   }
 
-  VkPipelineLayout make_layout(VkDescriptorSetLayout inputs) {
+  VkPipelineLayout make_layout(VkDescriptorSetLayout inputs, std::uint32_t push_bytes = 4) {
     const VkDescriptorSetLayout sets[] = {inputs, output_layout};
-    const VkPushConstantRange range{VK_SHADER_STAGE_ALL, 0, 4};
+    const VkPushConstantRange range{VK_SHADER_STAGE_ALL, 0, push_bytes};
     auto info = make_struct<VkPipelineLayoutCreateInfo>();
     info.setLayoutCount = 2;
     info.pSetLayouts = sets;
