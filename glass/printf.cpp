@@ -2,11 +2,13 @@
 // stage, invocation, and for one invocation as it said them.
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <mutex>
 #include <tuple>
 
 #include "glass/format.h"
 #include "glass/place.h"
+#include "glass/printf_output.h"
 #include "glass/tools.h"
 #include "spirv/exec/invocation.h"
 
@@ -27,9 +29,19 @@ auto key(const Message& message) {
   return std::tuple(address.submission, address.command, address.stage, id[2], id[1], id[0], message.sequence);
 }
 
+std::string_view setting(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value != nullptr ? value : "";
+}
+
+/// An assertion in a shader is a message that says so: there is no instruction for it.
+constexpr std::string_view kAssertion = "assertion failed";
+
 /// What all programs say.
 class Collector {
  public:
+  const PrintfFilter filter{setting("VITRINE_PRINTF_FILTER")};
+
   void add(Finding finding) {
     const std::lock_guard lock(mutex_);
     messages_.push_back({std::move(finding), messages_.size()});
@@ -68,17 +80,19 @@ class PrintfWatch : public spirv::exec::Watch {
     if (probe.kind != spirv::Probe::Kind::kPrintf) return;
     std::vector<std::uint32_t> words(op.operands.size());
     base::for_each_lane(spirv::exec::lanes_at(wave, op) & wave.live, [&](std::size_t lane) {
+      const Id id = invocations_(wave, lane);
+      if (!speaker_.collector->filter.wants(speaker_.context.stage, id)) return;
       for (std::size_t i = 0; i < words.size(); ++i) words[i] = spirv::exec::word_of(wave, op.operands[i], lane);
-      say(wave, probe, lane, format_text(probe.format, probe.values, words));
+      say(wave, probe, id, format_text(probe.format, probe.values, words));
     });
   }
 
  private:
-  void say(const spirv::Wave& wave, const spirv::Probe& probe, std::size_t lane, std::string text) {
+  void say(const spirv::Wave& wave, const spirv::Probe& probe, const Id& id, std::string text) {
     Finding finding;
-    finding.rule = &rule("printf");
+    finding.rule = &rule(text.starts_with(kAssertion) ? "assertion" : "printf");
     finding.message = std::move(text);
-    finding.address = speaker_.context.address(wave, invocations_(wave, lane), probe.id, probe.place);
+    finding.address = speaker_.context.address(wave, id, probe.id, probe.place);
     speaker_.collector->add(std::move(finding));
   }
 
@@ -107,9 +121,14 @@ class Printf : public Tool {
     return std::make_shared<PrintfProgram>(Speaker{{shader, program}, collector_, program.probes});
   }
 
-  std::vector<Finding> take_findings() override { return collector_->take(); }
+  std::vector<Finding> take_findings() override {
+    std::vector<Finding> messages = collector_->take();
+    output_.write(messages);
+    return messages;
+  }
 
  private:
+  PrintfOutput output_{setting("VITRINE_PRINTF")};
   std::shared_ptr<Collector> collector_ = std::make_shared<Collector>();
 };
 

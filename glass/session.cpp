@@ -111,6 +111,16 @@ std::unique_ptr<Tool> make_tool(std::string_view name) {
   return nullptr;
 }
 
+/// Whether a list separated by commas has the word.
+bool names(std::string_view list, std::string_view word) {
+  for (std::size_t at = 0; at <= list.size();) {
+    const std::size_t comma = std::min(list.find(',', at), list.size());
+    if (list.substr(at, comma - at) == word) return true;
+    at = comma + 1;
+  }
+  return false;
+}
+
 /// The loader unloads the driver with its last instance, and applications make several, one after the other: what the
 /// tools know of the process must last until it ends.
 void stay_loaded() {
@@ -130,6 +140,10 @@ Session::Session() {
       if (auto tool = make_tool(rest.substr(0, comma))) add(std::move(tool));
     rest.remove_prefix(std::min(comma + 1, rest.size()));
   }
+  // Whoever says where messages go wants them.
+  const char* messages = std::getenv("VITRINE_PRINTF");
+  const bool named = wanted != nullptr && names(wanted, "printf");
+  if (messages != nullptr && *messages != 0 && !named) tools_.push_back(make_printf());
   if (idle()) return;
   stay_loaded();
   const char* report = std::getenv("VITRINE_REPORT");

@@ -73,8 +73,9 @@ int check(const CheckOptions& options) {
   }
   const TemporaryFolder folder;
   if (folder.path().empty()) return kCouldNotRun;
-  const Ending ending = run_application(
-      options.application, {{"VITRINE_TOOLS", joined(options.tools)}, {"VITRINE_REPORT", folder.path() / "%p.json"}});
+  Environment environment{{"VITRINE_TOOLS", joined(options.tools)}, {"VITRINE_REPORT", folder.path() / "%p.json"}};
+  if (!options.invocations.empty()) environment["VITRINE_PRINTF_FILTER"] = options.invocations;
+  const Ending ending = run_application(options.application, environment);
   if (!ending.error.empty()) return kCouldNotRun;
   const auto reports = folder.files(".json");
   if (reports.empty()) say("nothing was checked: no process of the application used this driver");

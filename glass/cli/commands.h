@@ -21,6 +21,7 @@ struct CheckOptions {
   std::vector<std::string> tools;
   std::string sarif, json;  ///< files; empty: none
   bool quiet = false;       ///< no text
+  std::string invocations;  ///< whose messages are wanted, separated by semicolons; empty: all
   CommandLine application;
 };
 int check(const CheckOptions& options);

@@ -80,6 +80,12 @@ void add_check(CLI::App& app, const Words& words, CheckOptions& options, int& co
       ->add_option_function<std::string>(
           "--tools", [&options](const std::string& list) { add_tools(options, list); }, "With these, comma-separated")
       ->type_name("LIST");
+  command
+      ->add_option_function<std::string>(
+          "--invocation", [&options](const std::string& one) { options.invocations += one + ";"; },
+          "Messages of this invocation alone, as compute:5,0,0, fragment:3,7 or vertex:2; may be repeated")
+      ->type_name("STAGE:NUMBERS")
+      ->trigger_on_parse();
   command->add_option("--sarif", options.sarif, "Write the findings as SARIF 2.1.0")->type_name("FILE");
   command->add_option("--json", options.json, "Write the findings as JSON")->type_name("FILE");
   command->add_flag("-q,--quiet", options.quiet, "Print the summary alone");

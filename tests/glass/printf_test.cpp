@@ -1,4 +1,8 @@
 // What shaders say with debugPrintfEXT.
+#include <filesystem>
+#include <fstream>
+
+#include "glass/printf_output.h"
 #include "tests/glass/observed.h"
 
 namespace vitrine::glass::test {
@@ -67,6 +71,57 @@ TEST(Printf, SaysInFunctionsThatLeaveEarly) {
       said("for (uint k = 0u; k < 100u; ++k) { if (v[i] + k > 4u) { debugPrintfEXT(\"out %u %u\", i, k); break; } }", 1,
            2),
       (Texts{"out 0 5", "out 1 4"}));
+}
+
+TEST(Printf, AssertionsAreErrors) {
+  const auto tool = make_printf();
+  std::vector<std::uint32_t> words(64);
+  run_observed(tool.get(), R"(#version 460
+#extension GL_EXT_debug_printf : require
+layout(local_size_x = 4) in;
+layout(set = 0, binding = 0) buffer B { uint v[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  debugPrintfEXT("no assertion failed");
+  if (i > 2u) debugPrintfEXT("assertion failed: %u is small", i);
+  v[i] = 3u;
+})",
+               words, 1);
+  const std::vector<Finding> findings = tool->take_findings();
+  ASSERT_EQ(findings.size(), 5u);
+  EXPECT_EQ(findings[0].rule, &rule("printf"));
+  EXPECT_EQ(findings[4].rule, &rule("assertion"));
+  EXPECT_EQ(findings[4].message, "assertion failed: 3 is small");
+  EXPECT_EQ(words[3], 3u) << "the shader goes on";
+}
+
+TEST(Printf, FilterNamesInvocations) {
+  const PrintfFilter all(""), some("compute:5,0,0;vertex:3 fragment:1,2;vertex:4,1"), nobody("compute:x");
+  EXPECT_TRUE(all.wants(VK_SHADER_STAGE_GEOMETRY_BIT, {1, 2, 3}));
+  EXPECT_TRUE(some.wants(VK_SHADER_STAGE_COMPUTE_BIT, {5, 0, 0}));
+  EXPECT_FALSE(some.wants(VK_SHADER_STAGE_COMPUTE_BIT, {5, 1, 0}));
+  EXPECT_TRUE(some.wants(VK_SHADER_STAGE_VERTEX_BIT, {3, 7})) << "any instance";
+  EXPECT_TRUE(some.wants(VK_SHADER_STAGE_VERTEX_BIT, {4, 1}));
+  EXPECT_FALSE(some.wants(VK_SHADER_STAGE_VERTEX_BIT, {4, 0}));
+  EXPECT_TRUE(some.wants(VK_SHADER_STAGE_FRAGMENT_BIT, {1, 2}));
+  EXPECT_FALSE(some.wants(VK_SHADER_STAGE_GEOMETRY_BIT, {5, 0, 0}));
+  EXPECT_FALSE(nobody.wants(VK_SHADER_STAGE_COMPUTE_BIT, {0, 0, 0}));
+}
+
+TEST(Printf, OutputHasALineAMessage) {
+  const std::string name = testing::TempDir() + "vitrine_printf_output_test.txt";
+  std::filesystem::remove(name);
+  std::vector<Finding> messages(2);
+  messages[0].message = "one";
+  messages[1].message = "two\n";
+  PrintfOutput output(name);
+  output.write(messages);
+  output.write(messages);
+  std::ifstream file(name);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "one\ntwo\none\ntwo\n");
+  PrintfOutput nowhere("/no/such/folder/messages");
+  nowhere.write(messages);
+  std::filesystem::remove(name);
 }
 
 }  // namespace

@@ -188,6 +188,20 @@ class Command(unittest.TestCase):
         place = results[0]["locations"][0]["physicalLocation"]
         self.assertEqual((place["artifactLocation"]["uri"], place["region"]["startLine"]), ("tests/glass/app/fill.comp", 13))
 
+    def test_messages_of_one_invocation(self):
+        for target, count in (("compute:3,0,0", 1), ("compute:4,0,0", 0)):
+            result = self.run_it("check", "--tools=printf", "--invocation", target, self.small_application)
+            self.assertEqual((result.returncode, result.stderr.count("i is 3")), (0, count), result.stderr)
+
+    def test_messages_without_the_command(self):
+        result = self.run_without_command(VITRINE_PRINTF="stdout")
+        self.assertEqual((result.returncode, result.stdout), (0, "i is 3\n"), result.stderr)
+        result = self.run_without_command(VITRINE_PRINTF="said-%p.txt", VITRINE_PRINTF_FILTER="fragment:1;compute:3,0,0")
+        self.assertEqual([file.read_text() for file in self.folder.glob("said-*.txt")], ["i is 3\n"])
+        self.assertIn("'fragment:1' names no invocation", result.stderr)
+        result = self.run_without_command(VITRINE_PRINTF="/no/such/folder/said")
+        self.assertEqual((result.returncode, result.stderr), (0, "vitrine: VITRINE_PRINTF: '/no/such/folder/said' cannot be written\n"))
+
     def test_faults_of_an_application(self):
         self.assertEqual(self.run_it("check", self.small_application).returncode, 0)
         result = self.run_it("check", self.small_application, "1", "16")
