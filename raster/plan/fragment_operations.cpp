@@ -91,8 +91,6 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
 void plan_colors(PipelinePlan& plan, const PassDesc& pass, bool general) {
   plan.color_count = std::min(pass.color_count, kMaxColorAttachments);
   const ShaderInterface* fragment = plan.fragment;
-  plan.shades = fragment &&
-                (fragment->writes_memory || plan.may_kill || plan.frag.depth != kNoReg || plan.frag.stencil != kNoReg);
   plan.replaces_colors = fragment && !plan.may_kill && !fragment->writes_memory && plan.color_count != 0 &&
                          plan.depth_order == TestOrder::kNone && plan.sample_mask == (1u << plan.samples) - 1;
   const auto& second = plan.frag.color_second;
@@ -109,9 +107,17 @@ void plan_colors(PipelinePlan& plan, const PassDesc& pass, bool general) {
     }
     plan.writer[i] =
         (general ? make_general_color_writer : make_color_writer)(format->format, plan.state->blend[i], *plan.state);
-    plan.shades |= plan.writer[i].function != nullptr;
     plan.replaces_colors &= plan.writer[i].function != nullptr && !plan.writer[i].reads_destination();
   }
+  plan.shades = fragments_have_effects(plan);
+}
+
+bool fragments_have_effects(const PipelinePlan& plan) {
+  const ShaderInterface* fragment = plan.fragment;
+  if (!fragment) return false;
+  const auto* const writers = plan.writer.data();
+  return fragment->writes_memory || plan.may_kill || plan.frag.depth != kNoReg || plan.frag.stencil != kNoReg ||
+         std::any_of(writers, writers + plan.color_count, [](const ColorWriter& w) { return w.function != nullptr; });
 }
 
 }  // namespace vitrine::raster

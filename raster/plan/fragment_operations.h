@@ -16,4 +16,7 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass);
 /// How colours reach the attachments, and whether the fragment shader need run. `general`: without the fast functions.
 void plan_colors(PipelinePlan& plan, const PassDesc& pass, bool general);
 
+/// Whether what fragments compute reaches anything: only observers see the others run.
+bool fragments_have_effects(const PipelinePlan& plan);
+
 }  // namespace vitrine::raster

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "base/float_mode.h"
+#include "raster/plan/fragment_operations.h"
 #include "raster/tile/block_shade.h"
 #include "raster/tile/coverage.h"
 #include "raster/tile/fragment.h"
@@ -119,7 +120,8 @@ void end_draw(TileWorker& worker) {
   const QueryCounters& queries = worker.draw->call.queries;
   if (queries.occlusion && worker.samples_passed)
     queries.occlusion->fetch_add(worker.samples_passed, std::memory_order_relaxed);
-  if (worker.fragment_invocations) queries.count(Statistic::kFragmentInvocations, worker.fragment_invocations);
+  if (worker.fragment_invocations && fragments_have_effects(*worker.draw->plan))
+    queries.count(Statistic::kFragmentInvocations, worker.fragment_invocations);
   worker.samples_passed = worker.fragment_invocations = 0;
   worker.watch.reset();
   worker.draw = nullptr;
@@ -156,6 +158,7 @@ bool hides_tile(const TileWorker& worker, const PipelinePlan& plan, const Primit
 /// Whether the draw of an item does more than give colours.
 bool leaves_traces(const TileItem& item) {
   if (item.clear) return false;
+  if (item.draw->call.fragment_resources.command) return true;  // somebody observes it
   const PipelinePlan& plan = *item.draw->plan;
   const QueryCounters& queries = item.draw->call.queries;
   return item.draw->call.observer || queries.occlusion || queries.statistics || plan.depth_order != TestOrder::kNone ||
