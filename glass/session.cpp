@@ -44,9 +44,8 @@ class Watches : public Watch {
 /// All tools that are on, for one program.
 class ProgramObserver : public spirv::exec::Observer {
  public:
-  ProgramObserver(std::span<const std::unique_ptr<Tool>> tools, const ShaderIdentity& shader)
-      : tools_(tools), shader_(shader) {
-    for (const auto& tool : tools) {
+  ProgramObserver(std::vector<Tool*> tools, const ShaderIdentity& shader) : tools_(std::move(tools)), shader_(shader) {
+    for (const Tool* tool : tools_) {
       const Interest wanted = tool->interest();
       interest_.instructions |= wanted.instructions;
       interest_.accesses |= wanted.accesses;
@@ -63,7 +62,7 @@ class ProgramObserver : public spirv::exec::Observer {
 
   /// Before compile() returns: the words are still there.
   void made(const spirv::Program& program) const override {
-    for (const auto& tool : tools_)
+    for (Tool* tool : tools_)
       if (auto attached = tool->attach(shader_, program)) programs_.push_back(std::move(attached));
   }
 
@@ -85,7 +84,7 @@ class ProgramObserver : public spirv::exec::Observer {
   }
 
  private:
-  std::span<const std::unique_ptr<Tool>> tools_;
+  std::vector<Tool*> tools_;
   ShaderIdentity shader_;  ///< valid until made() has been called
   Interest interest_;
   mutable std::vector<std::shared_ptr<ProgramTool>> programs_;  ///< constant behind made()
@@ -154,12 +153,16 @@ Session::~Session() { write(); }
 
 void Session::add(std::unique_ptr<Tool> tool) {
   shadows_memory_ |= tool->shadows_memory();
+  if (raster::DrawObserver* draws = tool->draws()) draws_.add(*draws);
   tools_.push_back(std::move(tool));
 }
 
-std::shared_ptr<const spirv::exec::Observer> Session::observe(const ShaderIdentity& shader) {
-  if (idle()) return nullptr;
-  return std::make_shared<ProgramObserver>(tools_, shader);
+std::shared_ptr<const spirv::exec::Observer> Session::observe(const ShaderIdentity& shader, Tool* more) {
+  std::vector<Tool*> tools;
+  for (const auto& tool : tools_)
+    if (tool->interest() != Interest{}) tools.push_back(tool.get());
+  if (more) tools.push_back(more);
+  return tools.empty() ? nullptr : std::make_shared<ProgramObserver>(std::move(tools), shader);
 }
 
 void Session::draw(const raster::DrawCall& call) {

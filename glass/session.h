@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "glass/draw_observers.h"
 #include "glass/report/report_file.h"
 #include "glass/tool.h"
 
@@ -21,7 +22,8 @@ class Session {
   /// Turns on one more tool, for shaders and devices that are made from now on.
   void add(std::unique_ptr<Tool> tool);
   /// Who observes a shader that is about to be compiled; null: nobody. One for each program.
-  std::shared_ptr<const spirv::exec::Observer> observe(const ShaderIdentity& shader);
+  /// `more`: who observes it besides the tools; null: nobody.
+  std::shared_ptr<const spirv::exec::Observer> observe(const ShaderIdentity& shader, Tool* more = nullptr);
   /// As ProgramTool::draw() and Tool::broken().
   void draw(const raster::DrawCall& call);
   void broken(const spirv::ObservedCommand& command, std::string_view rule, const std::string& message);
@@ -29,6 +31,8 @@ class Session {
   bool shadows_memory() const { return shadows_memory_; }
   /// As Tool::commands_done().
   void commands_done(const void* owner);
+  /// Who is told of draws; null: nobody.
+  raster::DrawObserver* draws() { return draws_.observer(); }
   /// A submission is done: what the tools have found goes to the report and to `deliver`, in a fixed order.
   void end_submission(const std::function<void(const Finding&)>& deliver);
   /// The tools write what they write at the end.
@@ -37,6 +41,7 @@ class Session {
  private:
   std::vector<std::unique_ptr<Tool>> tools_;
   bool shadows_memory_ = false;
+  DrawObservers draws_;
   std::unique_ptr<ReportFile> report_;  ///< null: VITRINE_REPORT names none
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "glass/finding.h"
+#include "raster/observe.h"
 #include "spirv/exec/observe.h"
 
 namespace vitrine::raster {
@@ -48,6 +49,8 @@ class Tool {
   /// The work of these commands is done, of all that have run since the last call for the same owner
   /// (ObservedCommand::owner): what one invocation read and another has written can be told apart.
   virtual void commands_done(const void* /*owner*/) {}
+  /// Who is told of draws; null: the tool does not want to be, and its draws are drawn as others are.
+  virtual raster::DrawObserver* draws() { return nullptr; }
   /// A submission is done: what has been found since the last one, in an order that does not depend on threads.
   virtual std::vector<Finding> take_findings() { return {}; }
   /// Writes what the tool writes of itself (coverage, counts). Called when a device is destroyed and when the library

@@ -15,15 +15,17 @@ class ObservedCommand {
  public:
   virtual ~ObservedCommand() = default;
 
-  const void* owner = nullptr;      ///< tells the devices apart whose commands run at the same time
-  std::uint64_t submission = 0;     ///< of the device's queues, counted from 1
-  std::uint32_t command = 0;        ///< recorded commands before it in the submission, counted from 1
-  const char* name = "";            ///< "vkCmdDraw"...
-  std::vector<std::string> labels;  ///< VK_EXT_debug_utils: those that are open, outermost first
-  std::string pipeline;             ///< name of the pipeline; empty: it has none
-  bool null_descriptors = false;    ///< descriptors may be null (nullDescriptor): accesses through them are defined
-  bool robust_vertices = false;     ///< vertex data and indices outside of buffers are zeros (robustBufferAccess2)
-  std::uint64_t pushed = ~0ull;     ///< push constants, a bit a word: set, with a layout that is compatible
+  const void* owner = nullptr;        ///< tells the devices apart whose commands run at the same time
+  std::uint64_t submission = 0;       ///< of the device's queues, counted from 1
+  std::uint32_t command = 0;          ///< recorded commands before it in the submission, counted from 1
+  const char* name = "";              ///< "vkCmdDraw"...
+  std::vector<std::string> labels;    ///< VK_EXT_debug_utils: those that are open, outermost first
+  std::string pipeline;               ///< name of the pipeline; empty: it has none
+  std::uint64_t pipeline_number = 0;  ///< of all pipelines that this process made, counted from 1
+  std::uint64_t pass = 0;             ///< tells passes of this process apart: one a subpass or rendering scope
+  bool null_descriptors = false;      ///< descriptors may be null (nullDescriptor): accesses through them are defined
+  bool robust_vertices = false;       ///< vertex data and indices outside of buffers are zeros (robustBufferAccess2)
+  std::uint64_t pushed = ~0ull;       ///< push constants, a bit a word: set, with a layout that is compatible
 
   /// Name of what is bound at a descriptor ("buffer 'particles' (4096 bytes)"); empty: nothing is known.
   virtual std::string resource(std::uint32_t set, std::uint32_t slot) const = 0;

@@ -38,6 +38,7 @@ int coverage(const CoverageOptions& options);
 struct CountOptions {
   std::string output;  ///< file for the counters; empty: none
   bool lines = false;  ///< prints sources with what each line costs
+  bool draws = false;  ///< the file has every draw
   CommandLine application;
 };
 int count(const CountOptions& options);

@@ -26,6 +26,28 @@ std::optional<std::string> sum_of(const std::vector<std::filesystem::path>& file
   return sum;
 }
 
+double value_of(const Counters& counters, const std::string& name) {
+  const auto entry = counters.find(name);
+  return entry == counters.end() ? 0 : entry->second;
+}
+
+/// What pipelines drew, and how often fragments lie on each other.
+void print_draws(const Counters& counters) {
+  const std::vector<std::string> pipelines = names_in_group(counters, "pipelines");
+  if (pipelines.empty()) return;
+  std::fprintf(stdout, "\n%12s %12s %12s %12s  pipeline\n", "rasterized", "fragments", "shaded", "passed");
+  for (const std::string& name : pipelines) {
+    const auto value = [&](const char* counter) { return value_of(counters, "pipelines/" + name + "/" + counter); };
+    std::fprintf(stdout, "%12.0f %12.0f %12.0f %12.0f  %s\n", value("primitives/rasterized"),
+                 value("fragments/generated"), value("shading/invocations"), value("fragments/passed"), name.c_str());
+  }
+  const double pixels = value_of(counters, "total/shading/pixels");
+  if (pixels == 0) return;
+  std::fprintf(stdout, "\noverdraw: %.2f fragments shaded per pixel of a pass that has any, %.0f at most\n",
+               value_of(counters, "total/shading/invocations") / pixels,
+               value_of(counters, "total/shading/mostOverdraw"));
+}
+
 /// A table of the totals and of the dearest shaders.
 void print_table(const Counters& counters) {
   std::fprintf(stdout, "%18s  counter\n", "total");
@@ -54,6 +76,7 @@ void print(const CounterChange& change) {
 Environment environment_of(const CountOptions& options, const std::filesystem::path& folder) {
   Environment environment{{"VITRINE_TOOLS", "count"}, {"VITRINE_COUNTS", folder / "%p.json"}};
   if (options.lines) environment.emplace("VITRINE_COUNT_LINES", "1");
+  if (options.draws) environment.emplace("VITRINE_COUNT_DRAWS", "1");
   return environment;
 }
 
@@ -68,7 +91,10 @@ int count(const CountOptions& options) {
   if (files.empty()) say("nothing was counted: no process of the application used this driver");
   const std::optional<std::string> sum = sum_of(files);
   if (files.empty() || !sum) return ending.code ? ending.code : kCouldNotRun;
-  if (const auto counters = read_counters(*sum)) print_table(*counters);
+  if (const auto counters = read_counters(*sum)) {
+    print_table(*counters);
+    print_draws(*counters);
+  }
   if (options.lines) std::fputs(annotated_sources(*sum).c_str(), stdout);
   const bool written = options.output.empty() || write_file(options.output, *sum);
   if (ending.code) return ending.code;

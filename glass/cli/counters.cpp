@@ -27,6 +27,8 @@ void add(Json& sum, const Json& part) {
       add(*there, value);
     else if (is_header(name))
       continue;
+    else if (name.starts_with("most") && there->is_number() && value.is_number())
+      *there = std::max(*there, value);
     else if (there->is_number_integer() && value.is_number_integer())
       *there = there->get<std::int64_t>() + value.get<std::int64_t>();
     else if (there->is_number() && value.is_number())
@@ -74,6 +76,17 @@ std::vector<std::pair<std::string, double>> dearest_shaders(const Counters& coun
       shaders.emplace_back(name.substr(kGroup.size(), name.size() - kGroup.size() - kCounter.size()), value);
   std::stable_sort(shaders.begin(), shaders.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return shaders;
+}
+
+std::vector<std::string> names_in_group(const Counters& counters, const std::string& group) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : counters) {
+    if (!name.starts_with(group + "/")) continue;
+    const std::string rest = name.substr(group.size() + 1);
+    const std::string first = rest.substr(0, rest.find('/'));
+    if (names.empty() || names.back() != first) names.push_back(first);
+  }
+  return names;
 }
 
 std::string annotated_sources(std::string_view text) {

@@ -14,7 +14,8 @@ namespace vitrine::glass::cli {
 
 using Counters = std::map<std::string, double>;
 
-/// The sum of two files: counters of the same name are added, what is no counter is as in the first that has it.
+/// The sum of two files: counters of the same name are added (of those named "most..." the larger counts), what is no
+/// counter is as in the first that has it.
 /// Nothing: one of them is no JSON object.
 std::optional<std::string> sum_of_counters(std::string_view a, std::string_view b);
 
@@ -23,6 +24,8 @@ std::optional<Counters> read_counters(std::string_view text);
 
 /// Shaders with the instructions that they ran, the dearest first.
 std::vector<std::pair<std::string, double>> dearest_shaders(const Counters& counters);
+/// The groups of a group: "gauss" for "pipelines/gauss/instructions" in "pipelines".
+std::vector<std::string> names_in_group(const Counters& counters, const std::string& group);
 /// The sources in a file of counters, each line behind the instructions that it ran; empty: it has none.
 std::string annotated_sources(std::string_view text);
 

@@ -123,6 +123,7 @@ void add_count(CLI::App& app, const Words& words, CountOptions& options, int& co
   CLI::App* command = add_runner(app, "count", "Run it and write what its shaders cost, in numbers that do not move");
   command->add_option("-o,--output", options.output, "Counters as JSON")->type_name("FILE");
   command->add_flag("--lines", options.lines, "Print the sources, with the instructions that each line ran");
+  command->add_flag("--draws", options.draws, "Write what became of each draw's primitives and fragments to the file");
   command->callback([=, &words, &options, &code] {
     options.application = application_of(*command, words);
     code = count(options);

@@ -2,6 +2,7 @@
 #include "icd/object/pipeline.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 
 #include "base/check.h"
@@ -11,6 +12,12 @@
 #include "icd/object/render_pass.h"
 
 namespace vitrine::icd {
+
+std::uint64_t Pipeline::next_number() {
+  static std::atomic<std::uint64_t> made{0};
+  return ++made;
+}
+
 namespace {
 
 // Of a stage that does not compile: "an unknown error has occurred; either the application has provided invalid input,

@@ -30,6 +30,9 @@ inline constexpr VkGraphicsPipelineLibraryFlagsEXT kAllPipelineParts =
 struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   explicit Pipeline(const HostMemory& m) : Object(m), library_stages(m) {}
 
+  static std::uint64_t next_number();
+
+  const std::uint64_t number = next_number();  ///< of all that this process made, counted from 1
   VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS;
   bool captured = false;  ///< its shaders, and those of pipelines that link it, keep their internal representations
   std::shared_ptr<const PipelineLayoutShape> layout;

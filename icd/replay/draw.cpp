@@ -58,6 +58,7 @@ bool prepare_draw(ReplayState& state) {
     draw.vertex_resources.command = observe_command(state, *pipeline, draw.vertex_resources);
     draw.fragment_resources.command = draw.vertex_resources.command;
   }
+  draw.observer = state.observed ? glass::session().draws() : nullptr;
   draw.queries = state.counters;
   return true;
 }

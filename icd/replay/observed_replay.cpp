@@ -2,6 +2,7 @@
 #include "icd/replay/observed_replay.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "glass/session.h"
 #include "icd/object/memory.h"
@@ -100,6 +101,8 @@ const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline
   made->robust_vertices = state.device.features.test(Feature::robustBufferAccess2);
   made->pushed = pushed_words(observed, *pipeline.layout);
   made->pipeline = name_of(state.device.physical_device.instance, ref(pipeline));
+  made->pipeline_number = pipeline.number;
+  made->pass = state.pass ? observed.pass_number : 0;
   observed.commands.push_back(std::move(made));
   observed.objects.push_back({observed.command, observed.command_buffer, ref(pipeline)});
   return observed.commands.back().get();
@@ -146,6 +149,11 @@ void end_observed_submission(Device& device) noexcept {
   } catch (...) {
     report_error(device, ref(device), "tools", "out of host memory while findings were delivered");
   }
+}
+
+void begin_observed_pass(ReplayState& state) {
+  static std::atomic<std::uint64_t> begun{0};
+  if (state.observed) state.observed->pass_number = ++begun;
 }
 
 void execute(ReplayState& state, const CmdMark& command) {

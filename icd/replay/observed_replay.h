@@ -44,12 +44,13 @@ struct ObservedReplay {
     ObjectRef command_buffer, pipeline;
   };
 
-  bool shadows_memory = false;   ///< icd/replay/written.h is told
-  std::uint64_t submission = 0;  ///< counted from 1
-  std::uint32_t command = 0;     ///< of the submission, counted from 1; 0: none yet
-  const char* name = "";         ///< of the command
-  ObjectRef command_buffer;      ///< primary
-  LabelStack labels;             ///< of command buffers; they go on from one submission to the next
+  bool shadows_memory = false;    ///< icd/replay/written.h is told
+  std::uint64_t submission = 0;   ///< counted from 1
+  std::uint32_t command = 0;      ///< of the submission, counted from 1; 0: none yet
+  const char* name = "";          ///< of the command
+  std::uint64_t pass_number = 0;  ///< of the draws at hand: spirv::ObservedCommand::pass
+  ObjectRef command_buffer;       ///< primary
+  LabelStack labels;              ///< of command buffers; they go on from one submission to the next
   std::vector<std::string> queue_labels;
   std::vector<std::unique_ptr<const ReplayedCommand>> commands;  ///< that observers may still ask
   std::vector<Objects> objects;                                  ///< ascending commands
@@ -70,6 +71,8 @@ void report_arguments(ReplayState& state, const BindPoint& bind_point, const Buf
 void note_push_constants(ReplayState& state, const CmdPushConstants& command);
 /// None have been in what is replayed next. Nothing if nobody observes.
 void forget_push_constants(ReplayState& state);
+/// A pass begins.
+void begin_observed_pass(ReplayState& state);
 
 /// A submission begins, on a queue with these labels. Nothing if nobody observes.
 void begin_observed_submission(Device& device, std::vector<std::string> queue_labels) noexcept;

@@ -159,6 +159,7 @@ void begin_subpass(ReplayState& state) {
   const raster::PassDesc desc = describe_pass(state);
   state.pass.emplace(desc);
   if (shadows_memory(state)) note_pass(state, desc);
+  begin_observed_pass(state);
   for (const std::uint32_t attachment : current_subpass(state).first_uses) load_attachment(state, attachment);
 }
 

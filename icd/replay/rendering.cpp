@@ -2,6 +2,7 @@
 // are in memory, which is also all that suspending and resuming takes.
 #include <algorithm>
 
+#include "icd/replay/observed_replay.h"
 #include "icd/replay/scope.h"
 #include "icd/replay/written.h"
 
@@ -155,6 +156,7 @@ void execute(ReplayState& state, const CmdBeginRendering& recorded) {
     note_pass(state, desc);
     note_loads(state, recorded);
   }
+  begin_observed_pass(state);
   if (command.flags & VK_RENDERING_RESUMING_BIT) return;  // the one that was suspended has loaded
   for_each_layer_range(command.view_mask, command.layers, [&](std::uint32_t layer, std::uint32_t count) {
     clear_attachments(state, command, layer, count);

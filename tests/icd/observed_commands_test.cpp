@@ -44,7 +44,7 @@ class TellingProgram : public glass::ProgramTool {
 /// Finds something in every dispatch.
 class TellingTool : public glass::Tool {
  public:
-  spirv::exec::Interest interest() const override { return {}; }
+  spirv::exec::Interest interest() const override { return {.blocks = true}; }
   std::shared_ptr<glass::ProgramTool> attach(const glass::ShaderIdentity&, const spirv::Program&) override {
     return std::make_shared<TellingProgram>();
   }

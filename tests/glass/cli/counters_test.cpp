@@ -18,6 +18,19 @@ TEST(CliCounters, AddUpByName) {
   EXPECT_NE(sum->find("\"version\": 1"), std::string::npos);
 }
 
+TEST(CliCounters, OfTheMostTheLargerCounts) {
+  const auto sum = sum_of_counters(R"({"total": {"mostOverdraw": 3}})", R"({"total": {"mostOverdraw": 2}})");
+  ASSERT_TRUE(sum);
+  EXPECT_EQ(read_counters(*sum), (Counters{{"total/mostOverdraw", 3}}));
+}
+
+TEST(CliCounters, GroupsHaveNames) {
+  const Counters counters = {
+      {"pipelines/a/vertices", 1}, {"pipelines/a/x/y", 2}, {"pipelines/b/x/y", 2}, {"total/c", 1}};
+  EXPECT_EQ(names_in_group(counters, "pipelines"), (std::vector<std::string>{"a", "b"}));
+  EXPECT_TRUE(names_in_group(counters, "draws").empty());
+}
+
 TEST(CliCounters, RefuseWhatIsNoObject) {
   for (const char* const text : {"", "3", "[1]", "{\"a\":"}) {
     EXPECT_FALSE(sum_of_counters("{}", text)) << text;

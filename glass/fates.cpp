@@ -1,0 +1,212 @@
+// Counting draws: each watch counts for itself and adds what it has when it is done.
+#include "glass/fates.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/lanes.h"
+
+namespace vitrine::glass {
+namespace {
+
+using base::LaneMask;
+using raster::FragmentGroup;
+using raster::SampleLanes;
+
+template <raster::PrimitiveFate fate>
+std::uint64_t of(const Fates& fates) {
+  return fates.primitives[static_cast<std::size_t>(fate)];
+}
+template <raster::FragmentTest test>
+std::uint64_t ended_by(const Fates& fates) {
+  return fates.ended[static_cast<std::size_t>(test)];
+}
+
+using Fate = raster::PrimitiveFate;
+using Test = raster::FragmentTest;
+
+constexpr FateCounter kCounters[] = {
+    {"", "vertices", "vertices shaded", [](const Fates& f) { return f.vertices; }},
+    {"primitives", "assembled", "primitives or patches of vertices", [](const Fates& f) { return f.assembled; }},
+    {"primitives", "emitted", "primitives made by tessellator or geometry shader",
+     [](const Fates& f) { return f.emitted; }},
+    {"primitives", "culledByDistance", "outside of a cull distance", of<Fate::kCulledByDistance>},
+    {"primitives", "outside", "outside of the view volume or a clip distance", of<Fate::kOutside>},
+    {"primitives", "clipped", "cut by the view volume or a clip distance", of<Fate::kClipped>},
+    {"primitives", "facing", "culled because of where they face", of<Fate::kFacing>},
+    {"primitives", "zeroArea", "without area", of<Fate::kZeroArea>},
+    {"primitives", "tooFar", "too far away, or at coordinates that are no numbers", of<Fate::kTooFar>},
+    {"primitives", "scissor", "outside of scissor and framebuffer", of<Fate::kScissor>},
+    {"primitives", "noSample", "that cover no sample", of<Fate::kNoSample>},
+    {"primitives", "rasterized", "rasterized, parts of clipped ones one by one", of<Fate::kRasterized>},
+    {"fragments", "generated", "fragments, before any test", [](const Fates& f) { return f.generated; }},
+    {"fragments", "scissor", "fragments that the scissor ended", ended_by<Test::kScissor>},
+    {"fragments", "sampleMask", "fragments that the pipeline's sample mask ended", ended_by<Test::kSampleMask>},
+    {"fragments", "depthBounds", "fragments that the depth bounds test ended", ended_by<Test::kDepthBounds>},
+    {"fragments", "stencil", "fragments that the stencil test ended", ended_by<Test::kStencil>},
+    {"fragments", "depth", "fragments that the depth test ended", ended_by<Test::kDepth>},
+    {"fragments", "discard", "fragments that the shader discarded", ended_by<Test::kDiscard>},
+    {"fragments", "shaderMask", "fragments that gl_SampleMask ended", ended_by<Test::kShaderMask>},
+    {"fragments", "alphaToCoverage", "fragments that alpha to coverage ended", ended_by<Test::kAlphaToCoverage>},
+    {"fragments", "passed", "fragments with a sample that passed all tests", [](const Fates& f) { return f.passed; }},
+    {"shading", "invocations", "lanes that shaded a fragment", [](const Fates& f) { return f.invocations; }},
+    {"shading", "helpers", "lanes that helped with derivatives", [](const Fates& f) { return f.helpers; }},
+    {"shading", "idleLanes", "lanes of waves of fragments without work", [](const Fates& f) { return f.idle; }},
+    {"attachments", "texels", "texels written to attachments", [](const Fates& f) { return f.texels; }},
+    {"attachments", "bytes", "bytes written to attachments", [](const Fates& f) { return f.bytes; }},
+};
+
+/// Pixels of a tile in a row.
+constexpr std::uint32_t kTileSide = 64;
+/// Passes that may go on at a time: one a device.
+constexpr std::size_t kOpenPasses = 4;
+
+std::uint64_t count(LaneMask lanes) { return static_cast<std::uint64_t>(std::popcount(lanes)); }
+
+LaneMask any_of(SampleLanes samples) {
+  LaneMask any = 0;
+  for (const LaneMask lanes : samples) any |= lanes;
+  return any;
+}
+
+std::uint64_t sum_of(SampleLanes samples) {
+  std::uint64_t sum = 0;
+  for (const LaneMask lanes : samples) sum += count(lanes);
+  return sum;
+}
+
+}  // namespace
+
+void Fates::add(const Fates& other) {
+  vertices += other.vertices;
+  assembled += other.assembled;
+  emitted += other.emitted;
+  for (std::size_t i = 0; i < primitives.size(); ++i) primitives[i] += other.primitives[i];
+  generated += other.generated;
+  for (std::size_t i = 0; i < ended.size(); ++i) ended[i] += other.ended[i];
+  passed += other.passed;
+  invocations += other.invocations;
+  helpers += other.helpers;
+  idle += other.idle;
+  texels += other.texels;
+  bytes += other.bytes;
+}
+
+std::span<const FateCounter> fate_counters() { return kCounters; }
+
+class DrawCounts::Watch : public raster::DrawWatch {
+ public:
+  Watch(DrawCounts& counts, const spirv::ObservedCommand* command, std::shared_ptr<TilePixels> pixels)
+      : counts_(counts), command_(command), pixels_(std::move(pixels)) {}
+  ~Watch() override {
+    try {
+      counts_.add(command_, fates_);
+    } catch (const std::bad_alloc&) {
+      // Not counted.
+    }
+  }
+
+  void assembled(std::uint64_t vertices, std::uint64_t primitives) override {
+    fates_.vertices += vertices;
+    fates_.assembled += primitives;
+  }
+  void emitted(std::uint64_t primitives) override { fates_.emitted += primitives; }
+  void primitive(std::uint32_t, raster::PrimitiveFate fate) override {
+    ++fates_.primitives[static_cast<std::size_t>(fate)];
+  }
+  void generated(const FragmentGroup&, SampleLanes lanes) override { fates_.generated += count(any_of(lanes)); }
+  void failed(const FragmentGroup&, raster::FragmentTest test, SampleLanes lost, SampleLanes left) override {
+    fates_.ended[static_cast<std::size_t>(test)] += count(any_of(lost) & ~any_of(left));
+  }
+  void shaded(const FragmentGroup& group, LaneMask invocations, LaneMask helpers) override {
+    fates_.invocations += count(invocations);
+    fates_.helpers += count(helpers);
+    fates_.idle += base::kWaveWidth - count(invocations | helpers);
+    if (!pixels_) return;
+    base::for_each_lane(invocations, [&](std::size_t lane) {
+      const std::uint32_t x = group.position.x[lane / 4] + (lane & 1), y = group.position.y[lane / 4] + (lane >> 1 & 1);
+      ++(*pixels_)[y % kTileSide * kTileSide + x % kTileSide];
+    });
+  }
+  void passed(const FragmentGroup&, SampleLanes lanes) override { fates_.passed += count(any_of(lanes)); }
+  void written(const FragmentGroup&, const texel::ImageView& view, SampleLanes lanes) override {
+    const std::uint64_t texels = sum_of(lanes);
+    fates_.texels += texels;
+    fates_.bytes += texels * view.format->block_bytes;
+  }
+
+ private:
+  DrawCounts& counts_;
+  const spirv::ObservedCommand* command_;
+  std::shared_ptr<TilePixels> pixels_;  ///< of the tile; null: not counted
+  Fates fates_;
+};
+
+std::unique_ptr<raster::DrawWatch> DrawCounts::watch_chunk(const spirv::ObservedCommand* command) {
+  return std::make_unique<Watch>(*this, command, nullptr);
+}
+
+std::unique_ptr<raster::DrawWatch> DrawCounts::watch_tile(const spirv::ObservedCommand* command, std::uint32_t tile) {
+  return std::make_unique<Watch>(*this, command, command ? pixels_of(command, tile) : nullptr);
+}
+
+/// A tile of a pass belongs to one thread at a time.
+std::shared_ptr<DrawCounts::TilePixels> DrawCounts::pixels_of(const spirv::ObservedCommand* command,
+                                                              std::uint32_t tile) {
+  const std::lock_guard lock(mutex_);
+  PassPixels& pass = passes_[command->pass];
+  if (const auto oldest = passes_.begin(); passes_.size() > kOpenPasses && &oldest->second != &pass) {
+    add(overdraw_, oldest->second);
+    passes_.erase(oldest);
+  }
+  std::shared_ptr<TilePixels>& pixels = pass[tile];
+  if (!pixels) pixels = std::make_shared<TilePixels>(std::size_t{kTileSide} * kTileSide);
+  return pixels;
+}
+
+void DrawCounts::add(const spirv::ObservedCommand* command, const Fates& fates) {
+  const std::lock_guard lock(mutex_);
+  total_.add(fates);
+  if (!command) return;
+  const std::string pipeline =
+      command->pipeline.empty() ? "pipeline " + std::to_string(command->pipeline_number) : command->pipeline;
+  pipelines_[pipeline].add(fates);
+  if (!by_draw_) return;
+  Draw& draw = draws_[{command->submission, command->command}];
+  if (draw.command == 0) draw = {command->submission, command->command, command->name, pipeline, {}};
+  draw.fates.add(fates);
+}
+
+void DrawCounts::add(Overdraw& overdraw, const PassPixels& pass) {
+  for (const auto& [tile, pixels] : pass)
+    for (const std::uint32_t fragments : *pixels) {
+      overdraw.pixels += fragments != 0;
+      overdraw.most = std::max<std::uint64_t>(overdraw.most, fragments);
+    }
+}
+
+Fates DrawCounts::total() const {
+  const std::lock_guard lock(mutex_);
+  return total_;
+}
+
+std::map<std::string, Fates> DrawCounts::of_pipelines() const {
+  const std::lock_guard lock(mutex_);
+  return pipelines_;
+}
+
+std::vector<DrawCounts::Draw> DrawCounts::of_draws() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Draw> draws;
+  for (const auto& [place, draw] : draws_) draws.push_back(draw);
+  return draws;
+}
+
+Overdraw DrawCounts::overdraw() const {
+  const std::lock_guard lock(mutex_);
+  Overdraw overdraw = overdraw_;
+  for (const auto& [number, pass] : passes_) add(overdraw, pass);
+  return overdraw;
+}
+
+}  // namespace vitrine::glass
