@@ -122,20 +122,8 @@ bool compile_graphics_stage(StageCompiler& compiler, const VkPipelineShaderStage
 }
 
 /// A stage that a library kept, as the application gave it.
-bool compile_library_stage(StageCompiler& compiler, const LibraryStage& kept, Pipeline& pipeline) {
-  VkShaderModuleCreateInfo module = make_struct<VkShaderModuleCreateInfo>();
-  module.codeSize = kept.words.size() * sizeof(std::uint32_t);
-  module.pCode = kept.words.data();
-  auto subgroup_size = make_struct<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>();
-  subgroup_size.requiredSubgroupSize = kept.subgroup_size;
-  if (kept.subgroup_size) module.pNext = &subgroup_size;
-  const VkSpecializationInfo specialization{static_cast<std::uint32_t>(kept.map.size()), kept.map.data(),
-                                            kept.data.size(), kept.data.data()};
-  VkPipelineShaderStageCreateInfo stage = make_struct<VkPipelineShaderStageCreateInfo>(&module);
-  stage.stage = kept.stage;
-  stage.pName = kept.entry_point.c_str();
-  stage.pSpecializationInfo = &specialization;
-  return compile_graphics_stage(compiler, stage, UINT32_MAX, pipeline);
+bool compile_library_stage(StageCompiler& compiler, const KeptStage& kept, Pipeline& pipeline) {
+  return compile_graphics_stage(compiler, StageInfo(kept).info(), UINT32_MAX, pipeline);
 }
 
 /// Compiles the stages of the info and of linked libraries. False after a report.
@@ -145,7 +133,7 @@ bool compile_graphics(StageCompiler& compiler, const VkGraphicsPipelineCreateInf
     if (!(info.pStages[i].stage & own_stages)) continue;
     if (!compile_graphics_stage(compiler, info.pStages[i], i, pipeline)) return false;
   }
-  for (const LibraryStage& kept : pipeline.library_stages) {
+  for (const KeptStage& kept : pipeline.library_stages) {
     if (!compile_library_stage(compiler, kept, pipeline)) return false;
   }
   return pipeline.vertex != nullptr;

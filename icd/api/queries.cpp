@@ -5,6 +5,8 @@
 #include <cstring>
 #include <memory>
 
+#include "glass/profile.h"
+#include "glass/session.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/memory.h"
@@ -42,6 +44,10 @@ class ResultWriter {
 
 void write_values(const QueryPool& pool, std::uint32_t query, bool write, ResultWriter& writer) {
   const std::atomic<std::uint64_t>* counters = pool.counters_of(query);
+  if (pool.type == VK_QUERY_TYPE_PERFORMANCE_QUERY_KHR) {
+    for (const std::uint32_t index : pool.selected) writer.put(counters[index].load(std::memory_order_relaxed));
+    return;
+  }
   const bool statistics = pool.type == VK_QUERY_TYPE_PIPELINE_STATISTICS;
   for (std::uint32_t bit = 0; bit < pool.stride; ++bit) {
     if (statistics && !(pool.statistics & (1u << bit))) continue;
@@ -55,18 +61,32 @@ void write_values(const QueryPool& pool, std::uint32_t query, bool write, Result
 
 std::uint32_t counters_per_query(VkQueryType type) {
   if (type == VK_QUERY_TYPE_PIPELINE_STATISTICS) return kStatisticsCounters;
+  if (type == VK_QUERY_TYPE_PERFORMANCE_QUERY_KHR) return static_cast<std::uint32_t>(glass::profile_counters().size());
   return type == VK_QUERY_TYPE_TRANSFORM_FEEDBACK_STREAM_EXT ? 2 : 1;  // written, needed
+}
+
+std::shared_ptr<glass::Profile> profile_of(Device& device) {
+  const std::lock_guard lock(device.sync_mutex);
+  if (!device.profile) device.profile = std::make_shared<glass::Profile>(glass::session().draws());
+  return device.profile;
 }
 
 }  // namespace
 
-QueryPool::QueryPool(const HostMemory& m, const VkQueryPoolCreateInfo& info)
+QueryPool::QueryPool(const HostMemory& m, Device& owner, const VkQueryPoolCreateInfo& info)
     : Object(m),
       type(info.queryType),
       statistics(info.pipelineStatistics),
+      selected(m),
       count(info.queryCount),
       stride(counters_per_query(info.queryType)) {
   const std::size_t counter_bytes = sizeof(*counters) * count * stride;
+  if (const auto* wanted = find_in_chain<VkQueryPoolPerformanceCreateInfoKHR>(info.pNext);
+      wanted && type == VK_QUERY_TYPE_PERFORMANCE_QUERY_KHR) {
+    profile = profile_of(owner);
+    selected.assign(wanted->pCounterIndices, wanted->pCounterIndices + wanted->counterIndexCount);
+    std::erase_if(selected, [&](std::uint32_t index) { return index >= stride; });
+  }
   auto* storage =
       static_cast<std::byte*>(m.allocate(counter_bytes + sizeof(*available) * count,
                                          alignof(std::atomic<std::uint64_t>), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT));
@@ -93,7 +113,8 @@ VkResult write_query_results(const QueryPool& pool, std::uint32_t first, std::ui
     if (offset >= size) break;
     const bool available = pool.available[first + i].load(std::memory_order_acquire);
     if (!available) result = VK_NOT_READY;
-    ResultWriter writer(out + offset, size - offset, flags & VK_QUERY_RESULT_64_BIT);
+    const bool performance = pool.type == VK_QUERY_TYPE_PERFORMANCE_QUERY_KHR;  // VkPerformanceCounterResultKHR
+    ResultWriter writer(out + offset, size - offset, performance || (flags & VK_QUERY_RESULT_64_BIT));
     write_values(pool, first + i, available || (flags & VK_QUERY_RESULT_PARTIAL_BIT), writer);
     if (flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT) writer.put(available);
   }
@@ -111,7 +132,8 @@ namespace entry {
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateQueryPool(VkDevice device, const VkQueryPoolCreateInfo* info,
                                                const VkAllocationCallbacks* allocator, VkQueryPool* pool) {
-  *pool = to_handle(create_object<QueryPool>(from_handle<Device>(device).memory, allocator, *info));
+  Device& d = from_handle<Device>(device);
+  *pool = to_handle(create_object<QueryPool>(d.memory, allocator, d, *info));
   return VK_SUCCESS;
 }
 

@@ -8,6 +8,10 @@
 #include "icd/object/labels.h"
 #include "icd/object/shader_table.h"
 
+namespace vitrine::glass {
+class Profile;
+}
+
 namespace vitrine::icd {
 
 class AddressBook;
@@ -51,7 +55,8 @@ struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {
   std::atomic<std::uint64_t> next_private_data_slot = 1;
   std::shared_ptr<ReplayState> replay;  ///< made with the first command pool; used by whoever runs a batch of the queue
 
-  std::shared_ptr<AddressBook> addresses;  ///< null: nobody observes
+  std::shared_ptr<AddressBook> addresses;   ///< null: nobody observes
+  std::shared_ptr<glass::Profile> profile;  ///< made with the first pool of performance queries; guarded by sync_mutex
 
   /// Guards the states of fences, semaphores and events, and `lost` (icd/object/sync.h).
   std::mutex sync_mutex;

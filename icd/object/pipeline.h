@@ -2,23 +2,12 @@
 #pragma once
 
 #include "icd/object/descriptors.h"
+#include "icd/object/kept_stage.h"
 #include "icd/object/shader_cache.h"
 #include "icd/record/dynamic_state.h"
 #include "raster/draw.h"
 
 namespace vitrine::icd {
-
-/// A stage of a library, which is compiled when the library is linked: copies of what the application gave.
-struct LibraryStage {
-  explicit LibraryStage(const HostMemory& m) : words(m), entry_point(m), map(m), data(m) {}
-
-  VkShaderStageFlagBits stage = VK_SHADER_STAGE_VERTEX_BIT;
-  Vector<std::uint32_t> words;
-  String entry_point;
-  std::uint32_t subgroup_size = 0;  ///< required; 0: none is
-  Vector<VkSpecializationMapEntry> map;
-  Vector<std::byte> data;
-};
 
 inline constexpr VkGraphicsPipelineLibraryFlagsEXT kAllPipelineParts =
     VK_GRAPHICS_PIPELINE_LIBRARY_VERTEX_INPUT_INTERFACE_BIT_EXT |
@@ -48,7 +37,7 @@ struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   std::uint32_t live_colors = 0;  ///< bit i: there is a colour attachment i
   /// Of a library: the parts that it has, and its stages, not yet compiled.
   VkGraphicsPipelineLibraryFlagsEXT parts = 0;
-  Vector<LibraryStage> library_stages;
+  Vector<KeptStage> library_stages;
   /// Without rasterization for good: there is no fragment stage.
   bool never_rasterizes() const {
     return state.rasterizer_discard && !dynamic.test(DynamicState::kRasterizerDiscardEnable);
@@ -70,6 +59,5 @@ void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& i
 VkGraphicsPipelineLibraryFlagsEXT own_parts(const VkGraphicsPipelineCreateInfo& info);
 /// Takes over the parts and stages of a library.
 void link_library(Pipeline& pipeline, const Pipeline& library);
-LibraryStage copy_stage(const VkPipelineShaderStageCreateInfo& stage, const HostMemory& memory);
 
 }  // namespace vitrine::icd

@@ -41,21 +41,4 @@ void link_library(Pipeline& pipeline, const Pipeline& library) {
   pipeline.parts |= library.parts;
 }
 
-LibraryStage copy_stage(const VkPipelineShaderStageCreateInfo& stage, const HostMemory& memory) {
-  LibraryStage out(memory);
-  out.stage = stage.stage;
-  const std::span<const std::uint32_t> words = words_of(stage);
-  out.words.assign(words.begin(), words.end());
-  out.entry_point = stage.pName;
-  if (const auto* size = find_in_chain<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>(stage.pNext)) {
-    out.subgroup_size = size->requiredSubgroupSize;
-  }
-  if (const VkSpecializationInfo* s = stage.pSpecializationInfo) {
-    out.map.assign(s->pMapEntries, s->pMapEntries + s->mapEntryCount);
-    const auto* bytes = static_cast<const std::byte*>(s->pData);
-    out.data.assign(bytes, bytes + s->dataSize);
-  }
-  return out;
-}
-
 }  // namespace vitrine::icd

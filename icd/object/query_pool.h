@@ -13,13 +13,16 @@ inline constexpr std::uint32_t kStatisticsCounters =
     static_cast<std::uint32_t>(raster::Statistic::kComputeInvocations) + 1;
 
 struct QueryPool : Object<VkQueryPool, VK_OBJECT_TYPE_QUERY_POOL> {
-  QueryPool(const HostMemory& m, const VkQueryPoolCreateInfo& info);
+  QueryPool(const HostMemory& m, Device& owner, const VkQueryPoolCreateInfo& info);
   ~QueryPool();
 
   VkQueryType type;
   VkQueryPipelineStatisticFlags statistics;  ///< enabled ones: the values a result consists of
+  Vector<std::uint32_t> selected;            ///< of performance queries: the counters that a result consists of
+  std::shared_ptr<glass::Profile> profile;   ///< of performance queries: what they read
   std::uint32_t count;
-  std::uint32_t stride;  ///< counters per query: all statistics in bit order; written and needed primitives; or one
+  std::uint32_t stride;  ///< counters per query: all statistics in bit order; written and needed primitives;
+                         ///< all of glass::profile_counters(); or one
   std::atomic<std::uint64_t>* counters;
   std::atomic<std::uint8_t>* available;
 

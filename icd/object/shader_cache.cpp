@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/lanes.h"
+#include "glass/profile.h"
 #include "glass/session.h"
 #include "icd/edge/util.h"
 
@@ -82,7 +83,7 @@ ShaderKey make_key(const StageRequest& request) {
   return key.key();
 }
 
-spirv::CompileOptions make_options(const StageRequest& request) {
+spirv::CompileOptions make_options(const StageRequest& request, glass::Tool* more = nullptr) {
   const VkPipelineShaderStageCreateInfo& stage = *request.stage;
   spirv::CompileOptions options;
   options.stage = stage.stage;
@@ -90,8 +91,8 @@ spirv::CompileOptions make_options(const StageRequest& request) {
   options.live_color_outputs = request.live_color_outputs;
   options.subgroup_size = subgroup_size(stage);
   options.sets = set_layout_infos(*request.layout);
-  if (glass::Session& session = glass::session(); !session.idle())
-    options.observer = session.observe({stage.stage, stage.pName, words_of(stage)});
+  if (glass::Session& session = glass::session(); more || !session.idle())
+    options.observer = session.observe({stage.stage, stage.pName, words_of(stage)}, more);
   if (const VkSpecializationInfo* s = stage.pSpecializationInfo) {
     for (std::uint32_t i = 0; i < s->mapEntryCount; ++i) {
       const VkSpecializationMapEntry& entry = s->pMapEntries[i];
@@ -158,10 +159,24 @@ StageResult compile_stage(Device& device, PipelineCache* cache, const StageReque
     compiled->layout = request.layout;
     compiled->subgroup_size = options.subgroup_size;
     compiled->representations = std::move(representations);
+    compiled->live_color_outputs = request.live_color_outputs;
+    if (device.features.test(Feature::performanceCounterQueryPools))
+      compiled->kept = std::make_shared<KeptStage>(copy_stage(*request.stage, device.memory));
     out.shader = add_shader(device.shaders, key, compiled);
   }
   if (cache) out.was_in_cache = keep(*cache, out.shader);
   return out;
+}
+
+const spirv::Shader& counted_shader(const CompiledShader& shader, glass::Profile& profile) {
+  const std::lock_guard lock(shader.counted_mutex);
+  if (!shader.counted && shader.kept) {
+    const StageInfo kept(*shader.kept);
+    const spirv::CompileOptions options =
+        make_options({&kept.info(), shader.layout, shader.live_color_outputs}, &profile);
+    if (auto result = spirv::compile(shader.kept->words, options)) shader.counted = result.take();
+  }
+  return shader.counted ? *shader.counted : *shader.shader;
 }
 
 }  // namespace vitrine::icd

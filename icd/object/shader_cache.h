@@ -3,10 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "icd/object/descriptors.h"
+#include "icd/object/kept_stage.h"
 #include "icd/object/shader_module.h"
 #include "spirv/compile.h"
 
@@ -18,6 +20,12 @@ struct CompiledShader {
   std::shared_ptr<const PipelineLayoutShape> layout;
   std::uint32_t subgroup_size = 0;                     ///< invocations
   std::vector<spirv::Representation> representations;  ///< of captured shaders alone
+  std::uint32_t live_color_outputs = 0xff;
+  /// On devices with performance queries: what it was compiled from, and the same shader with its blocks counted, made
+  /// when a query first sees it.
+  std::shared_ptr<const KeptStage> kept;
+  mutable std::mutex counted_mutex;
+  mutable std::unique_ptr<spirv::Shader> counted;
 };
 
 /// What one stage of a pipeline is made of.
@@ -38,5 +46,8 @@ struct StageResult {
 
 /// The compiled stage, from the device's table or new. `cache` may be null.
 StageResult compile_stage(Device& device, PipelineCache* cache, const StageRequest& request);
+
+/// The shader as `profile` counts it; the shader itself where nothing was kept of it.
+const spirv::Shader& counted_shader(const CompiledShader& shader, glass::Profile& profile);
 
 }  // namespace vitrine::icd

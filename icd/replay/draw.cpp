@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "glass/profile.h"
 #include "glass/session.h"
 #include "icd/object/memory.h"
 #include "icd/replay/observed_replay.h"
@@ -32,6 +33,17 @@ const std::byte* copy_push_constants(ReplayState& state) {
   return copy;
 }
 
+/// In a performance query the shader whose blocks are counted.
+const spirv::Shader& running_shader(const ReplayState& state, const CompiledShader& compiled) {
+  return state.profiled ? counted_shader(compiled, *state.profiled->profile) : *compiled.shader;
+}
+
+/// Who is told of draws; null: nobody.
+raster::DrawObserver* observer_of(const ReplayState& state) {
+  if (state.profiled) return state.profiled->profile->draws();
+  return state.observed ? glass::session().draws() : nullptr;
+}
+
 /// Brings `state.draw` up to date. False if there is nothing to draw with or to.
 bool prepare_draw(ReplayState& state) {
   const Pipeline* pipeline = state.graphics.pipeline;
@@ -40,10 +52,10 @@ bool prepare_draw(ReplayState& state) {
   raster::DrawCall& draw = state.draw;
   if (state.dirty & kDirtyState) {
     draw.state = resolve_state(state);
-    draw.vertex = pipeline->vertex->shader.get();
-    const auto shader_of = [](const std::shared_ptr<const CompiledShader>& stage) {
-      return stage ? stage->shader.get() : nullptr;
+    const auto shader_of = [&](const std::shared_ptr<const CompiledShader>& stage) {
+      return stage ? &running_shader(state, *stage) : nullptr;
     };
+    draw.vertex = shader_of(pipeline->vertex);
     draw.control = shader_of(pipeline->control);
     draw.evaluation = shader_of(pipeline->evaluation);
     draw.geometry = shader_of(pipeline->geometry);
@@ -58,7 +70,7 @@ bool prepare_draw(ReplayState& state) {
     draw.vertex_resources.command = observe_command(state, *pipeline, draw.vertex_resources);
     draw.fragment_resources.command = draw.vertex_resources.command;
   }
-  draw.observer = state.observed ? glass::session().draws() : nullptr;
+  draw.observer = observer_of(state);
   draw.queries = state.counters;
   return true;
 }
@@ -121,7 +133,7 @@ void dispatch(ReplayState& state, const std::uint32_t base[3], const std::uint32
   fill_resources(state, state.compute, resources);
   resources.push_constants = state.push_constants.data();
   if (state.observed) resources.command = observe_command(state, *pipeline, resources);
-  const spirv::Shader& shader = *pipeline->compute->shader;
+  const spirv::Shader& shader = running_shader(state, *pipeline->compute);
   const spirv::BoundShader bound(shader, resources, state.fault);
   spirv::dispatch(bound, base, groups);
   const std::uint32_t* local = shader.interface().local_size;

@@ -45,6 +45,7 @@ void forget_bindings(ReplayState& state) {
   state.draw = {};
   state.draw.fault = &state.fault;
   state.counters = {};
+  state.profiled = nullptr;
   state.suppressed = false;
   state.feedback = {};
   state.dirty = kDirtyAll;

@@ -107,7 +107,9 @@ struct ReplayState {
   std::optional<raster::Pass> pass;  ///< none: outside
   TransientAttachments transients;   ///< of the scope, or of one that was suspended
 
-  raster::QueryCounters counters;  ///< of active queries
+  raster::QueryCounters counters;              ///< of active queries
+  const QueryPool* profiled = nullptr;         ///< of the performance query that is active; null: none is
+  std::vector<std::uint64_t> profile_started;  ///< what its counters were when it began
   Vector<PendingQuery> pending_queries;
   Vector<std::uint32_t> views_loaded;  ///< per attachment: views whose load op has happened
 };

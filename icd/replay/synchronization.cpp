@@ -1,6 +1,7 @@
 // Replay of queries, events and barriers.
 #include <bit>
 
+#include "glass/profile.h"
 #include "icd/object/memory.h"
 #include "icd/object/sync.h"
 #include "icd/replay/replay.h"
@@ -33,6 +34,22 @@ void set_counters(raster::QueryCounters& active, VkQueryType type, std::uint32_t
   if (type == VK_QUERY_TYPE_PRIMITIVES_GENERATED_EXT) active.generated[index] = counters;
 }
 
+/// What was recorded before is done, and what comes is counted: by other shaders, in observed draws.
+void begin_profile(ReplayState& state, const QueryPool& pool) {
+  flush_pass(state);
+  state.profiled = &pool;
+  state.profile_started = pool.profile->read();
+}
+
+void end_profile(ReplayState& state, const QueryPool& pool, std::uint32_t query) {
+  if (state.profiled != &pool) return;
+  flush_pass(state);
+  state.profiled = nullptr;
+  const std::vector<std::uint64_t> now = pool.profile->read();
+  for (std::size_t i = 0; i < now.size(); ++i)
+    pool.counters_of(query)[i].store(now[i] - state.profile_started[i], std::memory_order_relaxed);
+}
+
 }  // namespace
 
 void publish_queries(ReplayState& state) {
@@ -51,11 +68,13 @@ void publish_queries(ReplayState& state) {
 
 void execute(ReplayState& state, const CmdBeginQuery& command) {
   if (command.query >= command.pool->count) return;
+  if (command.pool->profile) return begin_profile(state, *command.pool);
   set_counters(state.counters, command.pool->type, command.index, command.pool->counters_of(command.query));
 }
 
 void execute(ReplayState& state, const CmdEndQuery& command) {
   if (command.query >= command.pool->count) return;
+  if (command.pool->profile) end_profile(state, *command.pool, command.query);
   set_counters(state.counters, command.pool->type, command.index, nullptr);
   end_queries(state, *command.pool, command.query);
 }
