@@ -2,6 +2,7 @@
 #include "base/workers.h"
 
 #include "base/lasting.h"
+#include "base/loop_watch.h"
 
 #include <pthread.h>
 #include <sched.h>
@@ -20,6 +21,7 @@
 namespace vitrine::base {
 namespace {
 
+std::atomic<LoopWatch> loop_watch{nullptr};
 thread_local bool inside_loop = false;
 thread_local std::size_t current_worker = 0;
 
@@ -45,9 +47,20 @@ struct Loop {
   std::exception_ptr failure{};  // the first one
 
   void run(std::size_t worker) noexcept {
+    const LoopWatch watch = loop_watch.load(std::memory_order_relaxed);
+    if (!watch) return static_cast<void>(work(worker));
+    const auto begin = std::chrono::steady_clock::now();
+    if (const std::size_t items = work(worker); items != 0) watch(begin, std::chrono::steady_clock::now(), items);
+  }
+
+ private:
+  /// How many items this thread has begun.
+  std::size_t work(std::size_t worker) noexcept {
+    std::size_t items = 0;
     try {
       for (std::size_t i = next.fetch_add(1, std::memory_order_relaxed); i < count;
            i = next.fetch_add(1, std::memory_order_relaxed)) {
+        ++items;
         body(i, worker);
       }
     } catch (...) {
@@ -55,6 +68,7 @@ struct Loop {
       const std::lock_guard lock(failure_mutex);
       if (!failure) failure = std::current_exception();
     }
+    return items;
   }
 };
 
@@ -163,6 +177,8 @@ Pool& pool() {
 }
 
 }  // namespace
+
+void set_loop_watch(LoopWatch watch) { loop_watch = watch; }
 
 std::size_t worker_count() { return pool().size(); }
 

@@ -43,6 +43,12 @@ struct CountOptions {
 };
 int count(const CountOptions& options);
 
+struct TimelineOptions {
+  std::string output = "timeline.json";
+  CommandLine application;
+};
+int timeline(const TimelineOptions& options);
+
 struct DiffOptions {
   std::string before, after;
   std::string pattern = "*";          ///< which counters, as the shell matches names

@@ -130,6 +130,15 @@ void add_count(CLI::App& app, const Words& words, CountOptions& options, int& co
   });
 }
 
+void add_timeline(CLI::App& app, const Words& words, TimelineOptions& options, int& code) {
+  CLI::App* command = add_runner(app, "timeline", "Run it and write when what ran, for Perfetto");
+  command->add_option("-o,--output", options.output, "Chrome trace events")->type_name("FILE")->capture_default_str();
+  command->callback([=, &words, &options, &code] {
+    options.application = application_of(*command, words);
+    code = timeline(options);
+  });
+}
+
 void add_diff(CLI::App& app, DiffOptions& options, int& code) {
   CLI::App* command = app.add_subcommand("diff", "Compare two files of counters");
   command->formatter(std::make_shared<Help>("BEFORE AFTER"));
@@ -154,11 +163,13 @@ int main_of(int argc, char** argv) {
   CheckOptions check_options;
   CoverageOptions coverage_options;
   CountOptions count_options;
+  TimelineOptions timeline_options;
   DiffOptions diff_options;
   add_run(app, words, code);
   add_check(app, words, check_options, code);
   add_coverage(app, words, coverage_options, code);
   add_count(app, words, count_options, code);
+  add_timeline(app, words, timeline_options, code);
   add_diff(app, diff_options, code);
   try {
     app.parse(std::vector<std::string>(words.ours.rbegin(), words.ours.rend()));  // the last one first

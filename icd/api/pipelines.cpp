@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "base/check.h"
+#include "glass/timeline.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
@@ -218,6 +219,7 @@ VkResult create_all(VkDevice device, VkPipelineCache cache, std::uint32_t count,
   VkResult result = VK_SUCCESS;
   std::fill_n(pipelines, count, VkPipeline{});
   for (std::uint32_t i = 0; i < count; ++i) {
+    const glass::Span span("pipeline", "create pipeline");
     VkResult one;
     try {
       one =

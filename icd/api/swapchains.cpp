@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "glass/timeline.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/queue.h"
@@ -157,6 +158,7 @@ VKAPI_ATTR VkResult VKAPI_CALL GetSwapchainImagesKHR(VkDevice, VkSwapchainKHR sw
 VKAPI_ATTR VkResult VKAPI_CALL AcquireNextImage2KHR(VkDevice device_handle, const VkAcquireNextImageInfoKHR* info,
                                                     std::uint32_t* index) {
   Device& device = from_handle<Device>(device_handle);
+  const glass::Span span("wait", "vkAcquireNextImageKHR");
   const VkResult result = acquire(from_handle<Swapchain>(info->swapchain), info->timeout, *index);
   if (result != VK_SUCCESS && result != VK_SUBOPTIMAL_KHR) return result;
   // The image is free when it is handed out: showing it has ended.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "glass/timeline.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
@@ -112,6 +113,7 @@ VKAPI_ATTR VkResult VKAPI_CALL GetFenceStatus(VkDevice device, VkFence fence) {
 
 VKAPI_ATTR VkResult VKAPI_CALL WaitForFences(VkDevice device, std::uint32_t count, const VkFence* fences,
                                              VkBool32 wait_all, std::uint64_t timeout) {
+  const glass::Span span("wait", "vkWaitForFences");
   const auto signaled = [](VkFence fence) { return from_handle<Fence>(fence).signaled; };
   return wait_until(from_handle<Device>(device), timeout, [&] {
     return wait_all ? std::all_of(fences, fences + count, signaled) : std::any_of(fences, fences + count, signaled);
@@ -142,6 +144,7 @@ VKAPI_ATTR VkResult VKAPI_CALL SignalSemaphore(VkDevice device, const VkSemaphor
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL WaitSemaphores(VkDevice device, const VkSemaphoreWaitInfo* info, std::uint64_t timeout) {
+  const glass::Span span("wait", "vkWaitSemaphores");
   const auto done = [&] {
     std::uint32_t reached = 0;
     for (std::uint32_t i = 0; i < info->semaphoreCount; ++i) {

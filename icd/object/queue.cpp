@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "glass/session.h"
+#include "glass/timeline.h"
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
 #include "icd/replay/observed_replay.h"
@@ -112,11 +113,16 @@ bool replay_all(Device& device, Batch& batch) noexcept {
 /// that nobody waits for ever.
 void execute(Device& device, Batch& batch) noexcept {
   bool lost = false;
+  const glass::Span span("queue", "submission");
   for (const SemaphoreOp& op : batch.waits) {
+    const glass::Span wait("wait", "wait for semaphore");
     lost |= !wait_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
   }
   if (!lost && !batch.command_buffers.empty()) lost = !replay_all(device, batch);
-  for (const QueueCall& call : batch.calls) call.run(call.object, call.argument);
+  for (const QueueCall& call : batch.calls) {
+    const glass::Span present("present", "present");
+    call.run(call.object, call.argument);
+  }
   if (lost) return;
   for (const SemaphoreOp& op : batch.signals) {
     signal_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
@@ -236,6 +242,7 @@ VkResult submit(Queue& queue, std::span<const BatchInfo> batches) {
 }
 
 VkResult wait_idle(Queue& queue) {
+  const glass::Span span("wait", "wait for idle queue");
   QueueWorker& worker = *queue.worker;
   {
     std::unique_lock lock(worker.mutex);

@@ -3,9 +3,11 @@
 
 #include "glass/place.h"
 #include "glass/session.h"
+#include "glass/timeline.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
+#include "icd/replay/timed_replay.h"
 #include "icd/replay/written.h"
 
 namespace vitrine::icd {
@@ -34,6 +36,12 @@ constexpr Executor kNotes[] = {
 #define VITRINE_COMMAND(name) note_erased<Cmd##name>,
 #include "icd/record/commands.def"
 };
+
+/// One command of a timeline.
+void run_command(ReplayState& state, const CommandHeader& header) {
+  kExecutors[header.type](state, header.command());
+  if (shadows_memory(state)) kNotes[header.type](state, header.command());
+}
 
 /// A command buffer starts with nothing bound, and nothing that an earlier one bound may be touched again.
 void forget_bindings(ReplayState& state) {
@@ -76,6 +84,7 @@ DeviceLoss loss_of(const spirv::Fault& fault, const char* reason) noexcept {
 }  // namespace
 
 void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
+  if (state.observed && glass::has_timeline()) return replay_timed(state, buffer, run_command);
   const bool shadows = shadows_memory(state);
   for (const CommandHeader* header = buffer.arena.first(); header; header = header->next) {
     kExecutors[header->type](state, header->command());
@@ -87,7 +96,9 @@ void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
 VkResult replay(Device& device, const CommandBuffer& buffer) noexcept {
   ReplayState& state = *device.replay;
   const char* reason = nullptr;
+  glass::Span span("commands", "command buffer");
   try {
+    if (span.on()) span.describe(name_of(device.physical_device.instance, ref(buffer)));
     forget_bindings(state);
     if (state.observed) state.observed->command_buffer = ref(buffer);
     forget_push_constants(state);

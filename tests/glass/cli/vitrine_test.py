@@ -220,6 +220,24 @@ class Command(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stdout, r"8 +16 +\+100\.00 % +total/stores")
 
+    def test_timelines_nest_and_have_all_processes(self):
+        two_processes = ["sh", "-c", f"{self.small_application} 1 && {self.small_application}"]
+        result = self.run_it("timeline", "-o", "a.json", *two_processes)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        events = json.loads((self.folder / "a.json").read_text())["traceEvents"]
+        spans = [event for event in events if event["ph"] == "X"]
+        names = [span["name"] for span in spans]
+        for name in ("create pipeline", "submission", "command buffer", "vkCmdDispatch"):
+            self.assertEqual(names.count(name), 2, names)
+        self.assertEqual(len({span["pid"] for span in spans}), 2)
+        open_until = {}
+        for span in spans:  # in the order in which they begin, outer ones first
+            ends = open_until.setdefault((span["pid"], span["tid"]), [])
+            while ends and ends[-1] <= span["ts"]:
+                ends.pop()
+            self.assertLessEqual(span["ts"] + span["dur"], ends[-1] + 0.001 if ends else float("inf"), span)
+            ends.append(span["ts"] + span["dur"])
+
     def test_lines_with_their_costs(self):
         result = self.run_it("count", "--lines", self.small_application)
         self.assertEqual(result.returncode, 0, result.stderr)
