@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "spirv/addresses.h"
+
 namespace vitrine::spirv {
 
 class ObservedCommand {
@@ -36,6 +38,12 @@ class ObservedCommand {
   }
   /// Push constants that ranges of the pipeline layout give a stage, a bit a word.
   virtual std::uint64_t push_range(VkShaderStageFlagBits) const { return ~0ull; }
+  /// What a descriptor named and is gone, or what lay at a device address: "buffer 'mesh', destroyed after submission
+  /// 2"; empty: nothing is known to be gone. Such a descriptor is null.
+  virtual std::string departed(std::uint32_t /*set*/, std::uint32_t /*slot*/) const { return {}; }
+  virtual std::string departed(std::uint64_t /*address*/) const { return {}; }
+  /// The stretch of live buffers that an address lies in; empty: in none.
+  virtual AddressRange buffers_at(std::uint64_t address) const { return find_addresses(address); }
 };
 
 }  // namespace vitrine::spirv

@@ -29,6 +29,10 @@ inline void report_descriptor(Reporter& reporter, const spirv::Wave& wave, const
       return "descriptor " + std::to_string(element) + " of an array of " + std::to_string(count);
     });
   const spirv::ObservedCommand* command = wave.resources->command;
+  if (command != nullptr && !command->departed(set, slot + element).empty())
+    return reporter.report(wave, i, note, "destroyed-descriptor", lanes, [&](std::size_t) {
+      return "use of " + resource_text(wave, set, slot + element, "a descriptor");
+    });
   if (command == nullptr || command->null_descriptors) return;
   reporter.report(wave, i, note, "unwritten-descriptor", lanes, [&](std::size_t) {
     return "use of " + resource_text(wave, set, slot + element, "a descriptor") + ", to which nothing has been written";

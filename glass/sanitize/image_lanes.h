@@ -17,25 +17,32 @@ inline std::uint32_t element_of(const spirv::Wave& wave, const spirv::IndexOpera
   return spirv::exec::word_of(wave, {index.file == File::kUniform ? 'u' : 'r', index.value}, lane);
 }
 
+/// Calls f(element, lanes) for each array element that active lanes name.
+template <class F>
+void for_each_element(const spirv::Wave& wave, const spirv::IndexOperand& index, F&& f) {
+  for (base::LaneMask remaining = wave.active; remaining != 0;) {
+    const std::uint32_t element = element_of(wave, index, static_cast<std::size_t>(std::countr_zero(remaining)));
+    base::LaneMask lanes = remaining;
+    if (index.file == spirv::IndexOperand::File::kVarying)
+      base::for_each_lane(remaining, [&](std::size_t lane) {
+        if (element_of(wave, index, lane) != element) lanes &= ~(base::LaneMask{1} << lane);
+      });
+    remaining &= ~lanes;
+    f(element, lanes);
+  }
+}
+
 /// Calls f(descriptor, element, lanes) for each image among the active lanes; null: there is none.
 template <class F>
 void for_each_image(const spirv::Wave& wave, const spirv::ImageOp& op, F&& f) {
-  for (base::LaneMask remaining = wave.active; remaining != 0;) {
-    const std::uint32_t element =
-        element_of(wave, op.image_index, static_cast<std::size_t>(std::countr_zero(remaining)));
-    base::LaneMask lanes = remaining;
-    if (op.image_index.file == spirv::IndexOperand::File::kVarying)
-      base::for_each_lane(remaining, [&](std::size_t lane) {
-        if (element_of(wave, op.image_index, lane) != element) lanes &= ~(base::LaneMask{1} << lane);
-      });
-    remaining &= ~lanes;
+  for_each_element(wave, op.image_index, [&](std::uint32_t element, base::LaneMask lanes) {
     const bool in_range = element == 0 || element < op.info.count;
     const spirv::Descriptor* image =
         in_range ? spirv::exec::find_descriptor(wave, op.info.set, op.info.slot + element) : nullptr;
     const bool buffer = op.info.dim == spirv::ir::ImageDim::kBuffer;
     const bool missing = image == nullptr || (buffer ? image->texels == nullptr : image->image == nullptr);
     f(missing ? nullptr : image, element, lanes);
-  }
+  });
 }
 
 /// The operands of one instruction.

@@ -26,6 +26,12 @@ bool names_texels(ImageAccess access) {
          access == ImageAccess::kAtomic;
 }
 
+bool has_sampler(const spirv::ir::ImageInfo& info) {
+  const bool samples = info.access == ImageAccess::kSample || info.access == ImageAccess::kGather ||
+                       info.access == ImageAccess::kQueryLod;
+  return samples && !info.combined && info.immutable_sampler == nullptr;
+}
+
 const char* verb_of(ImageAccess access) {
   return access == ImageAccess::kWrite    ? "store to "
          : access == ImageAccess::kAtomic ? "atomic operation on "
@@ -70,6 +76,7 @@ class ImageCheck {
     return "a texel buffer of " + std::to_string(view.count) + " texels";
   }
   void check_texels(const Descriptor& image, std::uint32_t element, base::LaneMask lanes);
+  void check_sampler();
 
   Reporter& reporter_;
   const Wave& wave_;
@@ -129,6 +136,21 @@ void ImageCheck::check_texels(const Descriptor& image, std::uint32_t element, ba
       });
 }
 
+/// A sampler apart from the image that is gone.
+void ImageCheck::check_sampler() {
+  const spirv::ir::ImageInfo& info = op_.info;
+  const spirv::ObservedCommand* command = wave_.resources->command;
+  if (!has_sampler(info) || command == nullptr) return;
+  for_each_element(wave_, op_.sampler_index, [&](std::uint32_t element, base::LaneMask lanes) {
+    if (element != 0 && element >= info.sampler_count) return;
+    const Descriptor* const found = spirv::exec::find_descriptor(wave_, info.sampler_set, info.sampler_slot + element);
+    if (found == nullptr || found->sampler != nullptr || (lanes & wave_.live) == 0) return;
+    if (command->departed(info.sampler_set, info.sampler_slot + element).empty()) return;
+    report_descriptor(reporter_, wave_, i_, note_, info.sampler_set, info.sampler_slot, element, info.sampler_count,
+                      lanes & wave_.live);
+  });
+}
+
 void ImageCheck::run() {
   const spirv::ir::ImageInfo& info = op_.info;
   if (info.set == spirv::ir::kAnySet || info.access == ImageAccess::kSubpass) return;
@@ -140,6 +162,7 @@ void ImageCheck::run() {
       check_texels(*image, element, lanes);
     }
   });
+  check_sampler();
 }
 
 }  // namespace

@@ -141,23 +141,29 @@ class MemoryCheck {
       const auto distance = static_cast<std::int32_t>(word(2) + row.added + extent.first);
       return (std::uint64_t{word(1)} << 32 | word(0)) + static_cast<std::uint64_t>(std::int64_t{distance});
     };
-    base::LaneMask wrong = 0;
+    const spirv::ObservedCommand* command = wave.resources->command;
+    spirv::AddressRange range;
+    base::LaneMask wrong = 0, departed = 0;
     base::for_each_lane(lanes, [&](std::size_t lane) {
-      const std::uint64_t address = address_of(lane);
-      const spirv::AddressRange range = spirv::find_addresses(address);
-      if (range.begin == range.end || range.end - address < extent.end - extent.first)
-        wrong |= base::LaneMask{1} << lane;
+      const std::uint64_t address = address_of(lane), bytes = extent.end - extent.first;
+      if (address - range.begin >= range.end - range.begin)
+        range = command != nullptr ? command->buffers_at(address) : spirv::find_addresses(address);
+      if (range.begin != range.end && range.end - address >= bytes) return;
+      const bool gone = command != nullptr && range.begin == range.end && !command->departed(address).empty();
+      (gone ? departed : wrong) |= base::LaneMask{1} << lane;
     });
-    if (wrong == 0) return;
-    reporter_.report(wave, i, note, "bad-device-address", wrong, [&](std::size_t lane) {
+    const auto access_text = [&](std::size_t lane) {
       char address[32];
       std::snprintf(address, sizeof address, "0x%llx", static_cast<unsigned long long>(address_of(lane)));
-      std::string text = verb_of(note.access);
-      text += std::to_string(extent.end - extent.first);
-      text += " bytes at address ";
-      text += address;
-      return text += ", which is not inside of live memory";
-    });
+      return verb_of(note.access) + std::to_string(extent.end - extent.first) + " bytes at address " + address;
+    };
+    if (departed != 0)
+      reporter_.report(wave, i, note, "freed-device-address", departed, [&](std::size_t lane) {
+        return access_text(lane) + ", inside of " + command->departed(address_of(lane));
+      });
+    if (wrong != 0)
+      reporter_.report(wave, i, note, "bad-device-address", wrong,
+                       [&](std::size_t lane) { return access_text(lane) + ", which is not inside of a live buffer"; });
   }
 
   Reporter& reporter_;

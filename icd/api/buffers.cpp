@@ -58,7 +58,8 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateBufferView(VkDevice device, const VkBufferV
   object->view.data = buffer.data ? buffer.data + info->offset : nullptr;
   object->view.count = object->view.data ? buffer.resolve_range(info->offset, info->range) / format.block_bytes : 0;
   object->view.format = &format;
-  enter_address(from_handle<Device>(device), &object->view, sizeof object->view, *object);
+  enter_address(from_handle<Device>(device), {&object->view, sizeof object->view, object->view.data, ref(buffer)},
+                *object);
   *view = to_handle(object);
   return VK_SUCCESS;
 }

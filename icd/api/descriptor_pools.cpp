@@ -1,6 +1,7 @@
 // Descriptor pools and the allocation of sets (Vulkan 1.3.239, Resource Descriptors: Allocation of Descriptor Sets).
 #include <algorithm>
 
+#include "glass/session.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/descriptors.h"
@@ -52,6 +53,7 @@ void take(DescriptorPool& pool, const DescriptorSet& set) {
 /// What a set of this shape has in place of the shape's own counts.
 struct SetSizes {
   std::uint32_t slots, dynamic, inline_bytes;
+  std::uint32_t times = 0;  ///< tools are on: when each was written
 };
 
 SetSizes sizes_of(const SetShape& shape, std::uint32_t variable_count) {
@@ -61,6 +63,7 @@ SetSizes sizes_of(const SetShape& shape, std::uint32_t variable_count) {
   if (variable && !is_inline_block(variable->type) && variable_count < variable->count) {
     sizes.slots -= variable->count - variable_count;
   }
+  if (!glass::session().idle()) sizes.times = sizes.slots + sizes.dynamic;
   return sizes;
 }
 
@@ -126,7 +129,7 @@ VkResult allocate_sets(DescriptorPool& pool, const VkDescriptorSetAllocateInfo& 
 std::size_t set_bytes(const SetShape& shape, std::uint32_t variable_count) {
   const SetSizes sizes = sizes_of(shape, variable_count);
   return sizeof(DescriptorSet) + sizes.inline_bytes + sizeof(spirv::Descriptor) * sizes.slots +
-         sizeof(DynamicBuffer) * sizes.dynamic;
+         sizeof(DynamicBuffer) * sizes.dynamic + sizeof(std::uint64_t) * sizes.times;
 }
 
 DescriptorSet* construct_set(void* storage, const HostMemory& memory, const std::shared_ptr<const SetShape>& shape,
@@ -145,6 +148,10 @@ DescriptorSet* construct_set(void* storage, const HostMemory& memory, const std:
   std::fill_n(set->inline_data, sizes.inline_bytes, std::byte{});
   std::uninitialized_fill_n(set->slots, sizes.slots, spirv::Descriptor{});
   std::uninitialized_fill_n(set->dynamic, sizes.dynamic, DynamicBuffer{});
+  if (sizes.times) {
+    set->written = reinterpret_cast<std::uint64_t*>(set->dynamic + sizes.dynamic);
+    std::uninitialized_fill_n(set->written, sizes.times, std::uint64_t{0});
+  }
   place_inline_blocks(*set);
   write_immutable_samplers(*set);
   return set;

@@ -3,6 +3,7 @@
 
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
+#include "icd/object/address_book.h"
 #include "icd/object/descriptors.h"
 #include "icd/object/image.h"
 #include "icd/object/memory.h"
@@ -96,6 +97,11 @@ void write_element(const VkWriteDescriptorSet& write, std::uint32_t i, const Ele
   }
 }
 
+/// When the descriptor at the cursor was written.
+std::uint64_t& time_of(DescriptorSet& set, const ElementCursor& at) {
+  return is_dynamic(at.binding().type) ? set.written_dynamic(at.slot()) : set.written_slot(at.slot());
+}
+
 void write_inline_block(const VkWriteDescriptorSet& write, DescriptorSet& set) {
   const auto* block = find_in_chain<VkWriteDescriptorSetInlineUniformBlock>(write.pNext);
   if (!block) return;
@@ -116,6 +122,8 @@ void copy_descriptors(const VkCopyDescriptorSet& copy) {
        ++i, source.advance(), target.advance()) {
     const VkDescriptorType type = target.binding().type;
     if (source.binding().type != type) return;
+    if (target_set.written && source_set.written && !is_inline_block(type))
+      time_of(target_set, target) = time_of(source_set, source);
     if (is_dynamic(type)) {
       target_set.dynamic[target.slot()] = source_set.dynamic[source.slot()];
       continue;
@@ -140,6 +148,7 @@ void write_descriptors(const VkWriteDescriptorSet& write, DescriptorSet& set) {
     // The types agree in every valid call; where they do not, a slot must not change its meaning.
     if (at.binding().type != write.descriptorType) return;
     write_element(write, i, at, set);
+    if (set.written) time_of(set, at) = AddressBook::clock();
   }
 }
 

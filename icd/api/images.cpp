@@ -100,7 +100,10 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImage(VkDevice device, const VkImageCreateI
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroyImage(VkDevice device, VkImage image, const VkAllocationCallbacks*) {
-  if (const Image* object = from_nullable<Image>(image)) report_unbinding(from_handle<Device>(device), *object);
+  if (const Image* object = from_nullable<Image>(image)) {
+    leave_address(from_handle<Device>(device), object);
+    report_unbinding(from_handle<Device>(device), *object);
+  }
   destroy_handle<Image>(image);
 }
 
@@ -137,7 +140,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
   if ((aspects & kBoth) == kBoth) {
     object->stencil = view_of_aspect(image, VK_IMAGE_ASPECT_STENCIL_BIT, info->viewType, info->format, object->range);
   }
-  enter_address(from_handle<Device>(device), &object->view, sizeof object->view, *object);
+  enter_address(from_handle<Device>(device), {&object->view, sizeof object->view, image.data, ref(image)}, *object);
   *view = to_handle(object.release());
   return VK_SUCCESS;
 }

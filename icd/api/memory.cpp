@@ -76,6 +76,7 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateMemory(VkDevice device, const VkMemoryAll
       return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     }
     spirv::add_addresses(object->data, object->size);
+    enter_address(d, {object->data, object->size, object->data, {}}, *object);
     *memory = to_handle(object.release());
     return VK_SUCCESS;
   }
@@ -83,12 +84,16 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateMemory(VkDevice device, const VkMemoryAll
                                                          d.physical_device.instance.allocated_bytes));
   if (!object->data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   spirv::add_addresses(object->data, object->size);
+  enter_address(d, {object->data, object->size, object->data, {}}, *object);
   *memory = to_handle(object.release());
   return VK_SUCCESS;
 }
 
-VKAPI_ATTR void VKAPI_CALL FreeMemory(VkDevice, VkDeviceMemory memory, const VkAllocationCallbacks*) {
-  if (const auto* object = from_nullable<DeviceMemory>(memory)) spirv::remove_addresses(object->data);
+VKAPI_ATTR void VKAPI_CALL FreeMemory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks*) {
+  if (const auto* object = from_nullable<DeviceMemory>(memory)) {
+    leave_address(from_handle<Device>(device), object);
+    spirv::remove_addresses(object->data);
+  }
   destroy_handle<DeviceMemory>(memory);
 }
 
@@ -194,7 +199,7 @@ VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory2(VkDevice device, std::uint32_t 
       return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     }
     buffer.data = memory.data + infos[i].memoryOffset;
-    enter_address(from_handle<Device>(device), buffer.data, buffer.size, buffer);
+    enter_address(from_handle<Device>(device), {buffer.data, buffer.size, buffer.data, ref(memory)}, buffer);
     report_binding(from_handle<Device>(device), ref(buffer), buffer.data, buffer.size,
                    VK_DEVICE_ADDRESS_BINDING_TYPE_BIND_EXT);
   }

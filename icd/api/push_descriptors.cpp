@@ -19,7 +19,10 @@ DescriptorSet& add_set(CommandBuffer& buffer, VkPipelineBindPoint bind_point, co
   DescriptorSet* set = construct_set(storage, buffer.memory, shape, 0);
   buffer.pushed_sets.push_back(set);
   DescriptorSet*& current = buffer.current_push[bind_point == VK_PIPELINE_BIND_POINT_COMPUTE][number];
-  if (current && current->shape == shape) std::copy_n(current->slots, set->slot_count, set->slots);
+  if (current && current->shape == shape) {
+    std::copy_n(current->slots, set->slot_count, set->slots);
+    if (set->written && current->written) std::copy_n(current->written, set->slot_count, set->written);
+  }
   current = set;
   return *set;
 }

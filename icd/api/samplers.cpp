@@ -64,7 +64,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCre
   if (const auto* conversion = find_in_chain<VkSamplerYcbcrConversionInfo>(info->pNext)) {
     state.conversion = from_handle<SamplerYcbcrConversion>(conversion->conversion).state;
   }
-  enter_address(from_handle<Device>(device), &state, sizeof state, *object);
+  enter_address(from_handle<Device>(device), {&state, sizeof state, nullptr, {}}, *object);
   *sampler = to_handle(object);
   return VK_SUCCESS;
 }

@@ -99,7 +99,11 @@ struct DescriptorSet : Object<VkDescriptorSet, VK_OBJECT_TYPE_DESCRIPTOR_SET> {
   spirv::Descriptor* slots = nullptr;
   DynamicBuffer* dynamic = nullptr;
   std::byte* inline_data = nullptr;
+  /// When each slot, then each dynamic buffer, was written, by AddressBook::clock(); null: no tool is on.
+  std::uint64_t* written = nullptr;
 
+  std::uint64_t& written_slot(std::uint32_t slot) { return written[slot]; }
+  std::uint64_t& written_dynamic(std::uint32_t number) { return written[slot_count + number]; }
   /// Elements (or bytes) that this set has of a binding of its shape.
   std::uint32_t count_of(const SetBinding& binding) const {
     return &binding == shape->variable_binding() ? variable_count : binding.count;

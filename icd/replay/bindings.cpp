@@ -39,6 +39,7 @@ void fill_resources(ReplayState& state, const BindPoint& point, spirv::ResourceT
   }
   table.set[spirv::kDynamicSet] = dynamic;
   table.set_size[spirv::kDynamicSet] = static_cast<std::uint32_t>(dynamic_count);
+  if (state.observed) hide_departed(state, point, table);
 }
 
 void execute(ReplayState& state, const CmdBindPipeline& command) {

@@ -109,8 +109,11 @@ std::string describe_bytes(const Device& device, const std::byte* first, std::ui
 }
 
 std::string describe_descriptor(const Device& device, std::uint32_t set, const SetBinding& binding,
-                                std::uint32_t element, const spirv::Descriptor* descriptor) {
-  const Thing thing = descriptor ? describe_thing(device, binding, *descriptor) : Thing{{}, "nothing is bound"};
+                                std::uint32_t element, const spirv::Descriptor* descriptor,
+                                const std::string& departed) {
+  const Thing thing = !departed.empty() ? Thing{{}, departed}
+                      : descriptor      ? describe_thing(device, binding, *descriptor)
+                                        : Thing{{}, "nothing is bound"};
   std::string out = kind_of(binding.type);
   if (!thing.name.empty()) out.append(" '").append(thing.name).append("'");
   out.append(" (set ").append(std::to_string(set)).append(", binding ").append(std::to_string(binding.binding));

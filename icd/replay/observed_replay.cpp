@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "glass/session.h"
+#include "icd/object/address_book.h"
 #include "icd/object/memory.h"
 #include "icd/record/command_buffer.h"
 
@@ -64,12 +65,34 @@ ObservedReplay* observed_of(const Device& device) { return device.replay ? devic
 ReplayedCommand::ReplayedCommand(const Device& device, const Pipeline& bound, const spirv::ResourceTable& resources)
     : device_(device), layout_(bound.layout), resources_(resources) {}
 
+const spirv::Descriptor* ReplayedCommand::find(std::uint32_t set, std::uint32_t slot) const {
+  return resources_.set[set] && slot < resources_.set_size[set] ? &resources_.set[set][slot] : nullptr;
+}
+
 std::string ReplayedCommand::resource(std::uint32_t set, std::uint32_t slot) const {
   const LayoutPlace place = find_slot(*layout_, set, slot);
   if (!place.binding) return {};
-  const bool there = resources_.set[set] && slot < resources_.set_size[set];
-  return describe_descriptor(device_, place.set, *place.binding, place.element,
-                             there ? &resources_.set[set][slot] : nullptr);
+  return describe_descriptor(device_, place.set, *place.binding, place.element, find(set, slot), departed(set, slot));
+}
+
+std::string ReplayedCommand::departed(std::uint32_t set, std::uint32_t slot) const {
+  const auto& departed = observed_of(device_)->departed;
+  const auto at = departed.find(find(set, slot));
+  return at == departed.end() ? std::string() : at->second;
+}
+
+std::string ReplayedCommand::departed(std::uint64_t address) const {
+  return device_.addresses ? device_.addresses->departed(reinterpret_cast<const void*>(address), 1) : std::string();
+}
+
+spirv::AddressRange ReplayedCommand::buffers_at(std::uint64_t address) const {
+  if (!device_.addresses) return spirv::find_addresses(address);
+  std::call_once(looked_up_, [&] { buffers_ = device_.addresses->buffers(); });
+  const auto after =
+      std::upper_bound(buffers_.begin(), buffers_.end(), address,
+                       [](std::uint64_t wanted, const spirv::AddressRange& range) { return wanted < range.begin; });
+  if (after == buffers_.begin() || address >= std::prev(after)->end) return {};
+  return *std::prev(after);
 }
 
 std::string ReplayedCommand::bytes(const std::byte* first, std::uint64_t size) const {
@@ -137,6 +160,8 @@ void begin_observed_submission(Device& device, std::vector<std::string> queue_la
   observed->name = "";
   observed->queue_labels = std::move(queue_labels);
   observed->objects.clear();
+  observed->departed.clear();
+  if (device.addresses) device.addresses->begin_submission();
 }
 
 void end_observed_submission(Device& device) noexcept {

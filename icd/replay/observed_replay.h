@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,11 +25,18 @@ class ReplayedCommand final : public spirv::ObservedCommand {
   std::string resource(std::uint32_t set, std::uint32_t slot) const override;
   std::string bytes(const std::byte* first, std::uint64_t size) const override;
   std::uint64_t push_range(VkShaderStageFlagBits stage) const override;
+  std::string departed(std::uint32_t set, std::uint32_t slot) const override;
+  std::string departed(std::uint64_t address) const override;
+  spirv::AddressRange buffers_at(std::uint64_t address) const override;
 
  private:
+  const spirv::Descriptor* find(std::uint32_t set, std::uint32_t slot) const;
+
   const Device& device_;
   std::shared_ptr<const PipelineLayoutShape> layout_;
   spirv::ResourceTable resources_;
+  mutable std::once_flag looked_up_;
+  mutable std::vector<spirv::AddressRange> buffers_;  ///< those of the book, once somebody has asked
 };
 
 /// The attachments of the pass that is being replayed, and what draws have counted as writing of each (colours, depth,
@@ -52,6 +61,10 @@ struct ObservedReplay {
   ObjectRef command_buffer;       ///< primary
   LabelStack labels;              ///< of command buffers; they go on from one submission to the next
   std::vector<std::string> queue_labels;
+  /// What descriptors that were hidden named, by their nulls; and the sets without such ones, as of how many
+  /// departures.
+  std::map<const spirv::Descriptor*, std::string> departed;
+  std::map<const DescriptorSet*, std::uint64_t> alive;
   std::vector<std::unique_ptr<const ReplayedCommand>> commands;  ///< that observers may still ask
   std::vector<Objects> objects;                                  ///< ascending commands
   ObservedPass pass;
@@ -63,6 +76,10 @@ struct ObservedReplay {
 /// What observers are told of the draw or dispatch that is being replayed.
 const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline& pipeline,
                                               const spirv::ResourceTable& resources);
+
+/// Descriptors whose resources are gone: gives the table copies of their sets in which they are null, before anything
+/// reads what they point to.
+void hide_departed(ReplayState& state, const BindPoint& bind_point, spirv::ResourceTable& table);
 
 /// The arguments of an indirect draw or dispatch lie outside of their buffer: `what` names them.
 void report_arguments(ReplayState& state, const BindPoint& bind_point, const Buffer& buffer, std::uint64_t offset,
@@ -84,8 +101,10 @@ void send_finding(Device& device, const ObservedReplay& observed, const glass::F
 
 /// Bytes of a buffer: "'mesh' (96 bytes at offset 32)".
 std::string describe_bytes(const Device& device, const std::byte* first, std::uint64_t size);
-/// What a descriptor of this binding is, in words: "storage buffer 'particles' (set 0, binding 1, 4096 bytes)".
+/// What a descriptor of this binding is or, if it is `departed`, was, in words: "storage buffer 'particles' (set 0,
+/// binding 1, 4096 bytes)".
 std::string describe_descriptor(const Device& device, std::uint32_t set, const SetBinding& binding,
-                                std::uint32_t element, const spirv::Descriptor* descriptor);
+                                std::uint32_t element, const spirv::Descriptor* descriptor,
+                                const std::string& departed);
 
 }  // namespace vitrine::icd
