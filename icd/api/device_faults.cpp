@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "glass/report/report.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
@@ -16,6 +17,27 @@ void copy_text(std::string_view text, char (&to)[VK_MAX_DESCRIPTION_SIZE]) {
   const std::size_t size = std::min(text.size(), sizeof to - 1);
   std::memcpy(to, text.data(), size);
   to[size] = 0;
+}
+
+/// "vendor-specific binary crash dump": the header that the specification asks for, and behind it what we know of the
+/// fault as a report in JSON (docs/glass/report.md section 2). Empty: no shader is at fault.
+std::string vendor_binary(const Device& device) {
+  if (!device.features.test(Feature::deviceFaultVendorBinary) || !device.loss.of_shader) return {};
+  glass::Finding finding;
+  finding.rule = &glass::rule("endless-shader");
+  finding.message = device.loss.reason;
+  for (const DeviceLoss::Call& call : device.loss.calls) finding.message.append("\n").append(call.text);
+  finding.address.spirv_id = device.loss.spirv_id;
+  const VkPhysicalDeviceProperties& properties = device.physical_device.properties;
+  VkDeviceFaultVendorBinaryHeaderVersionOneEXT header{};  // names of application and engine: none
+  header.headerSize = sizeof header;
+  header.headerVersion = VK_DEVICE_FAULT_VENDOR_BINARY_HEADER_VERSION_ONE_EXT;
+  header.vendorID = properties.vendorID;
+  header.deviceID = properties.deviceID;
+  header.driverVersion = properties.driverVersion;
+  std::memcpy(header.pipelineCacheUUID, properties.pipelineCacheUUID, VK_UUID_SIZE);
+  return std::string(reinterpret_cast<const char*>(&header), sizeof header) +
+         glass::to_report(glass::ReportFormat::kJson, {&finding, 1});
 }
 
 }  // namespace
@@ -52,9 +74,11 @@ VKAPI_ATTR VkResult VKAPI_CALL GetDeviceFaultInfoEXT(VkDevice device, VkDeviceFa
   const std::lock_guard lock(d.sync_mutex);
   const auto calls = static_cast<std::uint32_t>(d.loss.calls.size());
   const std::uint32_t room = info ? counts->vendorInfoCount : calls;
+  const std::string binary = vendor_binary(d);
+  const VkDeviceSize bytes = info && info->pVendorBinaryData ? counts->vendorBinarySize : binary.size();
   // No fault so far has an address.
   counts->addressInfoCount = 0;
-  counts->vendorBinarySize = 0;
+  counts->vendorBinarySize = std::min<VkDeviceSize>(bytes, binary.size());
   counts->vendorInfoCount = std::min(calls, room);
   if (!info) return VK_SUCCESS;
   copy_text(d.loss.reason, info->description);
@@ -63,7 +87,8 @@ VKAPI_ATTR VkResult VKAPI_CALL GetDeviceFaultInfoEXT(VkDevice device, VkDeviceFa
     info->pVendorInfos[i].vendorFaultCode = d.loss.spirv_id;
     info->pVendorInfos[i].vendorFaultData = d.loss.calls[i].line;
   }
-  return room < calls ? VK_INCOMPLETE : VK_SUCCESS;
+  if (info->pVendorBinaryData) std::memcpy(info->pVendorBinaryData, binary.data(), counts->vendorBinarySize);
+  return room < calls || bytes < binary.size() ? VK_INCOMPLETE : VK_SUCCESS;
 }
 
 }  // namespace entry

@@ -41,6 +41,7 @@ struct DeviceLoss {
   std::string reason;
   std::uint32_t spirv_id = 0;  ///< 0: unknown
   std::vector<Call> calls;
+  bool of_shader = false;  ///< a shader did not end
 };
 
 struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {

@@ -75,7 +75,7 @@ std::vector<DeviceLoss::Call> calls_to(const spirv::SourceInfo* sources, std::ui
 DeviceLoss loss_of(const spirv::Fault& fault, const char* reason) noexcept {
   try {
     if (!fault.raised.load()) return {reason, 0, {}};
-    return {fault.message, fault.spirv_id, calls_to(fault.sources.get(), fault.place)};
+    return {fault.message, fault.spirv_id, calls_to(fault.sources.get(), fault.place), true};
   } catch (const std::bad_alloc&) {
     return {};
   }

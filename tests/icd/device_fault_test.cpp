@@ -1,5 +1,6 @@
 // Lost devices: what a shader that does not end leaves behind, what can be asked of it, and that everything else lives
 // on. Reports of addresses.
+#include <cstring>
 #include <string>
 
 #include "tests/icd/endless_shaders.h"
@@ -10,6 +11,12 @@ namespace {
 
 class DeviceFault : public ResourceTest {
  protected:
+  void make_device() override {
+    auto features = make_struct<VkPhysicalDeviceFaultFeaturesEXT>();
+    features.deviceFault = features.deviceFaultVendorBinary = VK_TRUE;
+    ASSERT_EQ(create_device(instance, physical_device, &device, nullptr, &features), VK_SUCCESS);
+  }
+
   /// Runs a shader that does not end; what the host is told.
   VkResult lose() {
     const VkPipelineLayout layout = make_layout(make_set_layout_of(kTypes));
@@ -61,10 +68,10 @@ TEST_F(DeviceFault, NamesTheLoopAndTheCallsThatLeadThere) {
   auto counts = make_struct<VkDeviceFaultCountsEXT>();
   EXPECT_EQ(VK_CALL(GetDeviceFaultInfoEXT)(device, &counts, nullptr), VK_SUCCESS);
   EXPECT_EQ(counts.vendorInfoCount, 0u) << "nothing has happened";
+  EXPECT_EQ(counts.vendorBinarySize, 0u);
   ASSERT_EQ(lose(), VK_ERROR_DEVICE_LOST);
   ASSERT_EQ(VK_CALL(GetDeviceFaultInfoEXT)(device, &counts, nullptr), VK_SUCCESS);
   EXPECT_EQ(counts.addressInfoCount, 0u);
-  EXPECT_EQ(counts.vendorBinarySize, 0u);
   ASSERT_GE(counts.vendorInfoCount, 1u);
   std::vector<VkDeviceFaultVendorInfoEXT> calls(counts.vendorInfoCount);
   auto info = make_struct<VkDeviceFaultInfoEXT>();
@@ -78,6 +85,38 @@ TEST_F(DeviceFault, NamesTheLoopAndTheCallsThatLeadThere) {
   EXPECT_EQ(calls[0].vendorFaultData, 5u);
   counts.vendorInfoCount = 0;
   EXPECT_EQ(VK_CALL(GetDeviceFaultInfoEXT)(device, &counts, &info), VK_INCOMPLETE);
+}
+
+TEST_F(DeviceFault, TheVendorBinaryIsAHeaderAndAReport) {
+  ASSERT_EQ(lose(), VK_ERROR_DEVICE_LOST);
+  auto counts = make_struct<VkDeviceFaultCountsEXT>();
+  ASSERT_EQ(VK_CALL(GetDeviceFaultInfoEXT)(device, &counts, nullptr), VK_SUCCESS);
+  const auto size = static_cast<std::size_t>(counts.vendorBinarySize);
+  ASSERT_GT(size, sizeof(VkDeviceFaultVendorBinaryHeaderVersionOneEXT));
+  std::vector<char> binary(size + 1, '#');
+  auto info = make_struct<VkDeviceFaultInfoEXT>();
+  info.pVendorBinaryData = binary.data();
+  counts.vendorBinarySize = size - 1;
+  EXPECT_EQ(VK_CALL(GetDeviceFaultInfoEXT)(device, &counts, &info), VK_INCOMPLETE);
+  EXPECT_EQ(counts.vendorBinarySize, size - 1);
+  EXPECT_EQ(binary[size - 1], '#') << "no byte more than there is room for";
+  counts.vendorBinarySize = size + 1;
+  ASSERT_EQ(VK_CALL(GetDeviceFaultInfoEXT)(device, &counts, &info), VK_SUCCESS);
+  EXPECT_EQ(counts.vendorBinarySize, size);
+  VkDeviceFaultVendorBinaryHeaderVersionOneEXT header;
+  std::memcpy(&header, binary.data(), sizeof header);
+  VkPhysicalDeviceProperties properties;
+  VK_CALL(GetPhysicalDeviceProperties)(physical_device, &properties);
+  EXPECT_EQ(header.headerSize, sizeof header);
+  EXPECT_EQ(header.headerVersion, VK_DEVICE_FAULT_VENDOR_BINARY_HEADER_VERSION_ONE_EXT);
+  EXPECT_EQ(header.vendorID, properties.vendorID);
+  EXPECT_EQ(header.deviceID, properties.deviceID);
+  EXPECT_EQ(header.driverVersion, properties.driverVersion);
+  EXPECT_EQ(std::memcmp(header.pipelineCacheUUID, properties.pipelineCacheUUID, VK_UUID_SIZE), 0);
+  const std::string report(binary.data() + sizeof header, binary.data() + size);
+  EXPECT_EQ(report.find("{\"format\":\"vitrine-findings\""), 0u) << report;
+  EXPECT_NE(report.find("endless-shader"), std::string::npos) << report;
+  EXPECT_NE(report.find("called from function main at spin.comp:10"), std::string::npos) << report;
 }
 
 TEST_F(DeviceFault, OtherDevicesLiveOnAndNewOnesCanBeMade) {

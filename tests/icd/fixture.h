@@ -98,8 +98,9 @@ class DeviceTest : public ::testing::Test {
     ASSERT_EQ(create_instance(&instance, nullptr, {VK_EXT_DEBUG_UTILS_EXTENSION_NAME}), VK_SUCCESS);
     std::uint32_t count = 1;
     ASSERT_EQ(VK_GET(instance, EnumeratePhysicalDevices)(instance, &count, &physical_device), VK_SUCCESS);
-    ASSERT_EQ(create_device(instance, physical_device, &device), VK_SUCCESS);
+    make_device();
   }
+  virtual void make_device() { ASSERT_EQ(create_device(instance, physical_device, &device), VK_SUCCESS); }
   void TearDown() override {
     if (device) VK_GET(instance, DestroyDevice)(device, nullptr);
     if (instance) VK_GET(instance, DestroyInstance)(instance, nullptr);
