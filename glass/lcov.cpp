@@ -17,11 +17,18 @@ void add_line(std::string& text, const Parts&... parts) {
   text += '\n';
 }
 
+/// Names come from modules, which may say anything; lines end records.
+std::string on_one_line(std::string name) {
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < 0x20) c = '?';
+  return name;
+}
+
 void add_functions(std::string& text, const FileCoverage& file) {
   std::size_t hit = 0;
-  for (const auto& [name, function] : file.functions) add_line(text, "FN:", function.line, ",", name);
+  for (const auto& [name, function] : file.functions) add_line(text, "FN:", function.line, ",", on_one_line(name));
   for (const auto& [name, function] : file.functions) {
-    add_line(text, "FNDA:", function.count, ",", name);
+    add_line(text, "FNDA:", function.count, ",", on_one_line(name));
     hit += function.count != 0;
   }
   add_line(text, "FNF:", file.functions.size());
@@ -56,7 +63,7 @@ std::string to_lcov(const Coverage& coverage) {
   std::string text;
   for (const auto& [name, file] : coverage) {
     add_line(text, "TN:");
-    add_line(text, "SF:", name);
+    add_line(text, "SF:", on_one_line(name));
     add_functions(text, file);
     add_branches(text, file);
     add_lines(text, file);

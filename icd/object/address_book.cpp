@@ -87,6 +87,8 @@ ObjectRef AddressBook::find(const void* first, std::uint64_t bytes) const {
   ObjectRef best;
   std::uint64_t best_bytes = UINT64_MAX;
   for (const auto& [handle, entry] : entries_) {
+    // Memory is no object that descriptors name.
+    if (entry.object.type == VK_OBJECT_TYPE_DEVICE_MEMORY) continue;
     if (!entry.has(begin, bytes) || entry.place.bytes >= best_bytes) continue;
     best = entry.object;
     best_bytes = entry.place.bytes;
@@ -120,7 +122,6 @@ bool AddressBook::is_alive(const void* first, std::uint64_t bytes, std::uint64_t
   const std::lock_guard lock(mutex_);
   return std::any_of(entries_.begin(), entries_.end(), [&](const auto& row) {
     const Entry& entry = row.second;
-    // Memory is no object that descriptors name.
     return entry.object.type != VK_OBJECT_TYPE_DEVICE_MEMORY && entry.serial <= time && entry.has(begin, bytes);
   });
 }
