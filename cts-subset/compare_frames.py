@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs a windowed Vulkan application on two drivers under a virtual display and compares every presented frame.
 
-compare_frames.py --layer DIR --icd FILE --reference FILE --out DIR [--frames N] -- APP ARGS...
-Exit status: 0 equal, 1 different or failed, 77 something needed is not installed.
+compare_frames.py --layer DIR --icd FILE --reference FILE --suite CTS_SUBSET --out DIR [--frames N] -- APP ARGS...
+Exit status: 0 equal, 1 different or failed, 77 something needed is not installed: the reference in the recorded version, too.
 """
 import argparse
 import os
@@ -77,7 +77,7 @@ def compare(name, device, reference, out):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    for option in ("--layer", "--icd", "--reference", "--out"):
+    for option in ("--layer", "--icd", "--reference", "--suite", "--out"):
         parser.add_argument(option, required=True)
     parser.add_argument("--frames", type=int, default=60)
     parser.add_argument("--timeout", type=int, default=300)
@@ -87,6 +87,10 @@ def main():
         if not shutil.which(tool):
             print(f"{tool} is not installed")
             sys.exit(77)
+    chosen = subprocess.check_output([options.suite, "--which-reference"], text=True)
+    if chosen.startswith("recorded"):
+        print(f"frames are not recorded; the reference is {chosen}")
+        sys.exit(77)
     device, reference = (os.path.join(options.out, side) for side in ("device", "reference"))
     expected = run_app(options.app, options.reference, options.layer, reference, options.timeout)
     found = run_app(options.app, options.icd, options.layer, device, options.timeout)

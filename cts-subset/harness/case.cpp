@@ -2,6 +2,16 @@
 #include "harness/case.h"
 
 namespace vitrine::cts {
+namespace {
+
+/// The compiler names a file from the build folder on, or from "/" on.
+std::string file_of(const std::source_location& where) {
+  const std::string path = where.file_name();
+  const size_t start = path.rfind("cts-subset/");
+  return start == std::string::npos ? path : path.substr(start);
+}
+
+}  // namespace
 
 std::vector<Case>& cases() {
   static std::vector<Case> list;
@@ -13,17 +23,18 @@ std::vector<Generator>& generators() {
   return list;
 }
 
-AddCase::AddCase(const char* group, std::string name, std::function<void(Run&)> body) {
-  cases().push_back({group, std::move(name), std::move(body), {}, {}, 0});
+AddCase::AddCase(const char* group, std::string name, std::function<void(Run&)> body, std::source_location where) {
+  cases().push_back({group, std::move(name), std::move(body), {}, {}, 0, file_of(where)});
 }
 
 AddCase::AddCase(const char* group, std::string name, const char* deviation, DeviationCheck check,
-                 std::function<void(Run&)> body) {
-  cases().push_back({group, std::move(name), std::move(body), deviation, std::move(check), 0});
+                 std::function<void(Run&)> body, std::source_location where) {
+  cases().push_back({group, std::move(name), std::move(body), deviation, std::move(check), 0, file_of(where)});
 }
 
-AddGenerator::AddGenerator(const char* group, const char* name, uint32_t count, std::function<void(Run&)> body) {
-  generators().push_back({group, name, count, std::move(body)});
+AddGenerator::AddGenerator(const char* group, const char* name, uint32_t count, std::function<void(Run&)> body,
+                           std::source_location where) {
+  generators().push_back({group, name, count, std::move(body), file_of(where)});
 }
 
 }  // namespace vitrine::cts

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <source_location>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Case {
   std::string deviation;  ///< row id in deviations.md; empty for a case that must be identical
   DeviationCheck check;   ///< only with a deviation
   uint32_t index = 0;     ///< number within its random generator
+  std::string file = {};  ///< that defines it, from the root of the tree on
 };
 
 /// A family of random cases: `body` is run `count` times with seeds derived from the suite's seed, name and number.
@@ -29,6 +31,7 @@ struct Generator {
   std::string group, name;
   uint32_t count;
   std::function<void(Run&)> body;
+  std::string file;
 };
 
 std::vector<Case>& cases();
@@ -36,13 +39,15 @@ std::vector<Generator>& generators();
 
 /// Static registration objects; a case file defines one per case.
 struct AddCase {
-  AddCase(const char* group, std::string name, std::function<void(Run&)> body);
+  AddCase(const char* group, std::string name, std::function<void(Run&)> body,
+          std::source_location where = std::source_location::current());
   /// A listed deviation: the outputs must differ, exactly as `check` says.
   AddCase(const char* group, std::string name, const char* deviation, DeviationCheck check,
-          std::function<void(Run&)> body);
+          std::function<void(Run&)> body, std::source_location where = std::source_location::current());
 };
 struct AddGenerator {
-  AddGenerator(const char* group, const char* name, uint32_t count, std::function<void(Run&)> body);
+  AddGenerator(const char* group, const char* name, uint32_t count, std::function<void(Run&)> body,
+               std::source_location where = std::source_location::current());
 };
 
 }  // namespace vitrine::cts

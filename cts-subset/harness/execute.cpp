@@ -3,27 +3,21 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <set>
 #include <string_view>
 
 #include "harness/options.h"
+#include "harness/random.h"
+#include "harness/recorded.h"
+#include "harness/reference.h"
 #include "harness/report.h"
-#include "harness/run.h"
+#include "harness/side.h"
 
 namespace vitrine::cts {
 namespace {
 
 std::set<std::string> g_known;
-
-struct SideResult {
-  std::vector<Output> outputs;
-  std::string error, unsupported;
-  bool lost = false;  ///< VK_ERROR_DEVICE_LOST
-  std::vector<std::string> validation;
-  std::vector<std::pair<std::string, std::string>> notes;
-};
 
 /// How often a random case that draws nothing is run, each time with another seed: in sweeps; the default run stays
 /// short.
@@ -31,50 +25,6 @@ uint32_t attempts() { return options().count ? 8 : 1; }
 
 /// Only the names of generators' cases have a number behind a slash.
 bool is_random(const Case& c) { return c.name.find('/') != std::string::npos; }
-
-uint64_t attempt_seed(const Case& c, uint32_t attempt) { return case_seed(c) + attempt * 0x9e3779b97f4a7c15u; }
-
-SideResult run_side(Gpu& gpu, const Case& c, uint32_t attempt) {
-  SideResult result;
-  take_validation_errors();
-  try {
-    Run run(gpu, attempt_seed(c, attempt), c.index);
-    const auto collect = [&] {
-      result.outputs = std::move(run.outputs);
-      result.notes = std::move(run.notes);
-    };
-    try {
-      c.body(run);
-    } catch (...) {
-      collect();
-      throw;
-    }
-    collect();
-  } catch (const Unsupported& missing) {
-    result.unsupported = missing.what();
-  } catch (const VulkanError& error) {
-    result.error = error.what();
-    result.lost = error.code == VK_ERROR_DEVICE_LOST;
-  } catch (const std::exception& error) {
-    result.error = error.what();
-  }
-  result.validation = take_validation_errors();
-  if (result.lost) recreate(gpu);
-  return result;
-}
-
-/// Path below the results folder for a part of a case's results.
-std::string result_path(const Case& c, const std::string& part) {
-  std::string stem = full_name(c) + "." + part;
-  std::replace(stem.begin(), stem.end(), '/', '_');
-  std::error_code ignored;
-  std::filesystem::create_directories(options().results, ignored);
-  return options().results + "/" + stem;
-}
-
-void write_notes(const Case& c, const SideResult& side) {
-  for (const auto& [name, text] : side.notes) std::ofstream(result_path(c, name) + ".txt") << text;
-}
 
 std::string write_pictures(const Case& c, const Output& device, const Output& reference) {
   const std::string path = result_path(c, reference.name);
@@ -101,10 +51,6 @@ bool compare_all(const Case& c, const SideResult& device, const SideResult& refe
     judgement.message += "  " + found.first + "\n" + write_pictures(c, device.outputs[i], reference.outputs[i]);
   }
   return same;
-}
-
-bool all_blank(const std::vector<Output>& outputs) {
-  return !outputs.empty() && std::all_of(outputs.begin(), outputs.end(), is_blank);
 }
 
 /// A reference that drew nothing proves nothing.
@@ -137,21 +83,13 @@ void judge_outputs(const Case& c, const SideResult& device, const SideResult& re
   if (!wrong.empty()) judgement.message += "  deviation " + c.deviation + " is not as listed: " + wrong + "\n";
 }
 
-/// Whether the device refused a pipeline and named the instruction that it does not cover yet: no wrong picture, and
-/// counted as unsupported.
-bool refused(const SideResult& device) {
-  if (device.error.find("Pipelines") == std::string::npos) return false;
-  for (const std::string& text : device.validation)
-    if (text.ends_with("is not supported")) return true;
-  return false;
-}
-
 Judgement judge(const Case& c, uint32_t attempt, bool& again) {
   Judgement judgement;
   if (attempt != 0) tell_parent("R");
   const SideResult reference = run_side(gpus().reference, c, attempt);
   tell_parent("D");
   const SideResult device = run_side(gpus().device, c, attempt);
+  if (!options().record.empty()) record_case(c, device, reference);
   again = is_random(c) && attempt + 1 < attempts() && all_blank(reference.outputs);
   if (!reference.unsupported.empty() || !device.unsupported.empty()) {
     judgement.verdict = Verdict::kUnsupported;
@@ -224,7 +162,8 @@ void load_known_differences() {
 Judgement execute(const Case& c) {
   if (!options().fingerprints.empty()) return record_fingerprint(c);
   Judgement judgement;
-  bool again = true;
+  if (recorded_reference()) judgement = judge_by_record(c);
+  bool again = !recorded_reference();
   for (uint32_t attempt = 0; again && judgement.verdict == Verdict::kIdentical; ++attempt)
     judgement = judge(c, attempt, again);
   const bool known = g_known.contains(full_name(c));

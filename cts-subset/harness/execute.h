@@ -7,7 +7,13 @@
 
 namespace vitrine::cts {
 
-enum class Verdict { kIdentical, kDeviation, kUnsupported, kKnown, kDiffering, kCrashed };
+/// The last two are of a recorded reference: it has no result of the case, or one of what the case was before.
+enum class Verdict { kIdentical, kDeviation, kUnsupported, kKnown, kDiffering, kCrashed, kUnrecorded, kChanged };
+
+/// Whether it fails a run and has a message that says why.
+inline bool is_failure(Verdict verdict) {
+  return verdict == Verdict::kDiffering || verdict == Verdict::kUnrecorded || verdict == Verdict::kChanged;
+}
 
 struct Judgement {
   Verdict verdict = Verdict::kIdentical;
@@ -32,12 +38,16 @@ struct ReferenceCpu {
   bool srgb_comparable = false;  ///< as recorded, or this device can follow the CPU (VITRINE_RSQRT)
 };
 
-/// Whether RSQRTPS of this CPU gives the bits of this device's table (true where there is no such instruction).
-bool rsqrt_as_recorded();
-/// Whether this is an x86 CPU without what of AVX-512 the reference uses.
-bool lacks_avx512();
+/// What this device must do to follow the reference, or the CPU that it was recorded on.
+struct CpuSettings {
+  bool own_rsqrt;  ///< encode sRGB with this CPU's instruction (VITRINE_RSQRT)
+  bool avx2;       ///< convert as without AVX-512 (VITRINE_REFERENCE_CPU)
+};
+CpuSettings cpu_settings();
+/// Tells CPUs apart by their RSQRTPS; 0 where there is no such instruction.
+uint64_t rsqrt_hash();
 
-/// Asks the reference, once per process.
+/// Asks the reference, or its record, once per process.
 const ReferenceCpu& reference_cpu();
 void print_reference_cpu();
 

@@ -6,7 +6,10 @@
 #include <mutex>
 #include <utility>
 
+#include "harness/claims.h"
 #include "harness/options.h"
+#include "harness/recorded.h"
+#include "harness/reference.h"
 
 namespace vitrine::cts {
 namespace {
@@ -84,10 +87,8 @@ void list_extensions(Gpu& gpu) {
   vkEnumerateDeviceExtensionProperties(gpu.physical, nullptr, &count, nullptr);
   std::vector<VkExtensionProperties> offered(count);
   vkEnumerateDeviceExtensionProperties(gpu.physical, nullptr, &count, offered.data());
-  for (const VkExtensionProperties& extension : offered)
-    if (std::any_of(std::begin(kWantedExtensions), std::end(kWantedExtensions),
-                    [&](const char* wanted) { return !std::strcmp(wanted, extension.extensionName); }))
-      gpu.extensions.push_back(extension.extensionName);
+  for (const VkExtensionProperties& extension : offered) gpu.offered.push_back(extension.extensionName);
+  keep_wanted_extensions(gpu);
 }
 
 /// Links the feature structures that the device has.
@@ -158,20 +159,22 @@ Gpus create_gpus() {
 
   VkPhysicalDevice reference = VK_NULL_HANDLE, device = VK_NULL_HANDLE;
   std::string seen;
+  result.same_driver = options().icd == options().reference_icd && !recorded_reference();
   for (VkPhysicalDevice physical : list) {
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(physical, &properties);
     seen += std::string(" '") + properties.deviceName + "'";
-    const bool is_reference = std::strncmp(properties.deviceName, "llvmpipe", 8) == 0;
+    const bool is_reference = result.same_driver || std::strncmp(properties.deviceName, "llvmpipe", 8) == 0;
     (is_reference ? reference : device) = physical;
     result.api_version = std::min(result.api_version, properties.apiVersion & ~0xfffu);
   }
-  result.same_driver = options().icd == options().reference_icd;
   if (result.same_driver) device = reference;
-  if (!reference || !device)
+  if (!device || (!reference && !recorded_reference()))
     throw std::runtime_error("the loader found" + (seen.empty() ? " no device" : seen) + "; wanted one of " +
-                             options().icd + " and llvmpipe from " + options().reference_icd);
-  result.reference = open(result.instance, reference);
+                             options().icd +
+                             (recorded_reference() ? "" : " and llvmpipe from " + options().reference_icd));
+  result.reference = recorded_reference() ? gpu_of_claims(recorded_reference()->device, recorded_reference()->claims)
+                                          : open(result.instance, reference);
   result.device = open(result.instance, device);
   if (const std::vector<std::string> errors = take_validation_errors(); !errors.empty())
     throw std::runtime_error("creating the devices is invalid: " + errors.front());
@@ -187,9 +190,17 @@ void check(VkResult result, const char* call) {
   if (result < 0) throw VulkanError(result, call);
 }
 
+VkFormatProperties Gpu::format_properties(VkFormat format) const {
+  VkFormatProperties found{};
+  if (physical)
+    vkGetPhysicalDeviceFormatProperties(physical, format, &found);
+  else if (const auto row = recorded_formats.find(format); row != recorded_formats.end())
+    found = row->second;
+  return found;
+}
+
 VkFormatFeatureFlags Gpu::features_of(VkFormat format, VkImageTiling tiling) const {
-  VkFormatProperties found;
-  vkGetPhysicalDeviceFormatProperties(physical, format, &found);
+  const VkFormatProperties found = format_properties(format);
   return tiling == VK_IMAGE_TILING_LINEAR ? found.linearTilingFeatures : found.optimalTilingFeatures;
 }
 
@@ -210,6 +221,19 @@ Gpus& gpus() {
   return both;
 }
 
+void keep_wanted_extensions(Gpu& gpu) {
+  for (const std::string& name : gpu.offered)
+    if (std::find(std::begin(kWantedExtensions), std::end(kWantedExtensions), name) != std::end(kWantedExtensions))
+      gpu.extensions.push_back(name);
+}
+
+std::string driver_info(const Gpu& gpu) {
+  VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver};
+  vkGetPhysicalDeviceProperties2(gpu.physical, &properties);
+  return driver.driverInfo;
+}
+
 void recreate(Gpu& gpu) {
   vkDestroyDevice(gpu.device, nullptr);
   gpu.device = VK_NULL_HANDLE;
@@ -219,6 +243,7 @@ void recreate(Gpu& gpu) {
 void destroy_gpus() {
   Gpus& both = gpus();
   for (Gpu* gpu : {&both.device, &both.reference}) {
+    if (!gpu->device) continue;
     vkDeviceWaitIdle(gpu->device);
     vkDestroyDevice(gpu->device, nullptr);
   }

@@ -3,6 +3,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,8 +37,11 @@ struct Gpu {
   VkPhysicalDeviceFeatures features{};     ///< all that the device offers; all are enabled
   ExtensionFeatures extension_features{};  ///< offered and enabled; all false where the extension is missing
   std::vector<std::string> extensions;     ///< of kWantedExtensions: offered and enabled
+  std::vector<std::string> offered;        ///< all extensions of the device
   VkPhysicalDeviceMemoryProperties memory{};
+  std::map<VkFormat, VkFormatProperties> recorded_formats;  ///< of a device that is only recorded (claims.h)
 
+  VkFormatProperties format_properties(VkFormat format) const;
   VkFormatFeatureFlags features_of(VkFormat format, VkImageTiling tiling = VK_IMAGE_TILING_OPTIMAL) const;
   /// Index of a memory type out of `allowed` with all of `wanted`.
   uint32_t memory_type(uint32_t allowed, VkMemoryPropertyFlags wanted) const;
@@ -55,8 +59,13 @@ struct Gpus {
   bool same_driver = false;  ///< the reference stands on both sides: the suite tests itself
 };
 
-/// Creates both devices at the first call. Throws if a driver cannot be found.
+/// Creates both devices at the first call. Throws if a driver cannot be found. Where the reference is recorded, it can
+/// be asked what it claims, and no more.
 Gpus& gpus();
+/// Fills `extensions` from `offered`.
+void keep_wanted_extensions(Gpu& gpu);
+/// The driver's own name of its version (VkPhysicalDeviceDriverProperties::driverInfo).
+std::string driver_info(const Gpu& gpu);
 /// Destroys and creates a device again, after it was lost.
 void recreate(Gpu& gpu);
 void destroy_gpus();

@@ -249,6 +249,7 @@ VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, const Target& targe
 
 VkPipeline make_pipeline(Run& run, const GraphicsSpec& spec, VkRenderPass pass, uint32_t subpass, uint32_t colors,
                          VkExtent2D extent, VkSampleCountFlagBits samples) {
+  run.inputs.pipeline(spec);
   std::vector<VkPipelineShaderStageCreateInfo> stages;
   const auto stage = [&](VkShaderStageFlagBits bit, VkShaderModule module, const VkSpecializationInfo* special) {
     stages.push_back({VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, bit, module, "main", special});

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "harness/options.h"
+#include "harness/recorded.h"
 #include "harness/report.h"
 
 namespace vitrine::cts {
@@ -32,7 +33,7 @@ struct Worker {
   bool done = false, killed = false;
 };
 
-void start(Worker& worker, int argc, char** argv) {
+void start(Worker& worker, const std::vector<std::string>& command) {
   int ends[2];
   if (pipe(ends) != 0) std::abort();
   fcntl(ends[0], F_SETFD, FD_CLOEXEC);
@@ -46,7 +47,7 @@ void start(Worker& worker, int argc, char** argv) {
     for (const char* name : {"GTEST_TOTAL_SHARDS", "GTEST_SHARD_INDEX", "GTEST_SHARD_STATUS_FILE"}) unsetenv(name);
     const int null = open("/dev/null", O_WRONLY);
     dup2(null, 1);
-    std::vector<std::string> words(argv, argv + argc);
+    std::vector<std::string> words = command;
     words.push_back("--child-first=" + std::to_string(worker.first));
     words.push_back("--child-stride=" + std::to_string(worker.stride));
     words.push_back("--child-progress=" + std::to_string(ends[1]));
@@ -83,13 +84,14 @@ void handle_line(Worker& worker, const std::string& line, Counts& counts) {
     worker.on_reference = line[0] == 'R';
     return;
   }
+  if (line[0] == 'L') return keep_recorded_line(line.substr(2));
   Judgement judgement;
   judgement.verdict = static_cast<Verdict>(line[2] - '0');
   judgement.nan_bits = line[4] == '1';
   judgement.blank = line[6] == '1';
   judgement.message = line.substr(8);
   count(counts, group_of(worker.running), judgement);
-  if (judgement.verdict == Verdict::kDiffering) report_failure(worker.running, judgement.message);
+  if (is_failure(judgement.verdict)) report_failure(worker.running, judgement.message);
   worker.running.clear();
   worker.since = Clock::now();
 }
@@ -107,7 +109,7 @@ void count_crash(Worker& worker, int status, Counts& counts) {
 }
 
 /// Called at the end of a child: counts a crash and starts the next child, or is done.
-void finish(Worker& worker, Counts& counts, int argc, char** argv) {
+void finish(Worker& worker, Counts& counts, const std::vector<std::string>& command) {
   int status = 0;
   waitpid(worker.pid, &status, 0);
   close(worker.pipe);
@@ -117,7 +119,7 @@ void finish(Worker& worker, Counts& counts, int argc, char** argv) {
   if (in_case && worker.on_reference && !worker.killed && worker.retried != worker.running) {
     worker.retried = worker.running;
     worker.first = worker.running_index;
-    start(worker, argc, argv);
+    start(worker, command);
     return;
   }
   if (failed || in_case) count_crash(worker, status, counts);
@@ -126,13 +128,13 @@ void finish(Worker& worker, Counts& counts, int argc, char** argv) {
     return;
   }
   worker.first = worker.running_index + worker.stride;
-  start(worker, argc, argv);
+  start(worker, command);
 }
 
-void receive(Worker& worker, Counts& counts, int argc, char** argv) {
+void receive(Worker& worker, Counts& counts, const std::vector<std::string>& command) {
   char bytes[4096];
   const ssize_t got = read(worker.pipe, bytes, sizeof bytes);
-  if (got <= 0) return finish(worker, counts, argc, argv);
+  if (got <= 0) return finish(worker, counts, command);
   worker.buffer.append(bytes, static_cast<size_t>(got));
   for (size_t end; (end = worker.buffer.find('\n')) != std::string::npos;) {
     handle_line(worker, worker.buffer.substr(0, end), counts);
@@ -147,13 +149,13 @@ uint32_t number_from(const char* variable, uint32_t fallback) {
 
 }  // namespace
 
-int run_isolated(int argc, char** argv) {
+int run_isolated(const std::vector<std::string>& command) {
   const uint32_t shards = number_from("GTEST_TOTAL_SHARDS", 1), shard = number_from("GTEST_SHARD_INDEX", 0);
   std::vector<Worker> workers(options().jobs);
   for (uint32_t i = 0; i < workers.size(); ++i) {
     workers[i].first = shard + shards * i;
     workers[i].stride = shards * options().jobs;
-    start(workers[i], argc, argv);
+    start(workers[i], command);
   }
   Counts counts;
   for (;;) {
@@ -168,7 +170,7 @@ int run_isolated(int argc, char** argv) {
     poll(polls.data(), polls.size(), 1000);
     for (size_t i = 0; i < live.size(); ++i) {
       if (polls[i].revents)
-        receive(*live[i], counts, argc, argv);
+        receive(*live[i], counts, command);
       else if (Clock::now() - live[i]->since > std::chrono::seconds(options().timeout_s) && !live[i]->killed) {
         live[i]->killed = true;
         kill(live[i]->pid, SIGKILL);

@@ -8,6 +8,8 @@
 #include "harness/execute.h"
 #include "harness/gpu.h"
 #include "harness/options.h"
+#include "harness/recorded.h"
+#include "harness/reference.h"
 #include "harness/report.h"
 #include "harness/self_test.h"
 
@@ -27,7 +29,7 @@ class CaseTest : public testing::Test {
     tell_parent("E " + std::to_string(static_cast<int>(judgement.verdict)) + " " + (judgement.nan_bits ? "1" : "0") +
                 " " + (judgement.blank ? "1" : "0") + " " + judgement.message);
     if (judgement.verdict == Verdict::kUnsupported) GTEST_SKIP() << judgement.message;
-    if (judgement.verdict == Verdict::kDiffering)
+    if (is_failure(judgement.verdict))
       ADD_FAILURE() << judgement.message << "  reproduce: " << command_of(full_name(case_));
   }
 
@@ -44,7 +46,8 @@ void register_cases() {
   for (const Generator& generator : generators()) {
     const uint32_t count = options().count ? options().count : generator.count;
     for (uint32_t i = 0; i < count; ++i)
-      all.push_back({generator.group, generator.name + "/" + std::to_string(i), generator.body, {}, {}, i});
+      all.push_back(
+          {generator.group, generator.name + "/" + std::to_string(i), generator.body, {}, {}, i, generator.file});
   }
   // GoogleTest runs group by group: numbers must rise in that order, for a child goes on after the number that crashed.
   std::stable_sort(all.begin(), all.end(), [](const Case& a, const Case& b) { return a.group < b.group; });
@@ -56,31 +59,53 @@ void register_cases() {
   }
 }
 
-int run(int argc, char** argv) {
-  std::vector<std::string> original(argv, argv + argc);
-  testing::InitGoogleTest(&argc, argv);
-  Options parsed = parse_options(argc, argv);
-  set_options(parsed);
-  prepare_environment(parsed);
-  const bool child = !parsed.progress.empty();
-  if (child) set_parent(std::atoi(parsed.progress.c_str()));
-  const bool parent = parsed.isolate && !child && !GTEST_FLAG_GET(list_tests);
-  if (parent) {
-    std::vector<char*> words;
-    for (std::string& word : original) words.push_back(word.data());
-    return run_isolated(static_cast<int>(words.size()), words.data());
-  }
-  if (parsed.self_test) register_self_test();
-  load_known_differences();
-  register_cases();
-  if (GTEST_FLAG_GET(list_tests)) return RUN_ALL_TESTS();
-  std::printf("device: %s\nreference: %s\n", gpus().device.name.c_str(), gpus().reference.name.c_str());
-  if (parsed.validation && !validation_is_on()) std::printf("the validation layer is not installed\n");
+/// What runs in children compares with the same reference as their parent.
+int run_children(std::vector<std::string> command) {
+  const Options& chosen = options();
+  command.push_back(chosen.recorded.empty() ? "--reference=" + chosen.reference_icd : "--recorded=" + chosen.recorded);
+  const int status = run_isolated(command);
+  write_recorded_reference();
+  return status;
+}
+
+int run_here(bool child) {
+  std::printf("device: %s\n", gpus().device.name.c_str());
+  if (options().validation && !validation_is_on()) std::printf("the validation layer is not installed\n");
   if (!child) print_reference_cpu();
   const int status = RUN_ALL_TESTS();
-  if (!child) print_counts(g_counts);
+  if (!child) {
+    print_counts(g_counts);
+    write_recorded_reference();
+  }
   destroy_gpus();
   return status;
+}
+
+int run(int argc, char** argv) {
+  const std::vector<std::string> command(argv, argv + argc);
+  testing::InitGoogleTest(&argc, argv);
+  Options parsed = parse_options(argc, argv);
+  const bool child = !parsed.progress.empty(), lists = GTEST_FLAG_GET(list_tests);
+  const std::string reference = lists ? "" : choose_reference(parsed);
+  if (parsed.which_reference) {
+    std::printf("%s\n", reference.c_str());
+    return 0;
+  }
+  set_options(parsed);
+  if (parsed.self_test) register_self_test();
+  if (lists) {
+    register_cases();
+    return RUN_ALL_TESTS();
+  }
+  load_recorded_reference();
+  prepare_environment(parsed);
+  if (child) set_parent(std::atoi(parsed.progress.c_str()));
+  std::printf("reference: %s\n", reference.c_str());
+  std::fflush(stdout);
+  if (parsed.isolate && !child) return run_children(command);
+  load_known_differences();
+  register_cases();
+  return run_here(child);
 }
 
 }  // namespace

@@ -15,7 +15,12 @@ Options g_options;
 constexpr char kUsage[] =
     "cts_subset [GoogleTest flags] [options]\n"
     "  --icd=FILE        manifest of the device under test (or CTS_ICD)\n"
-    "  --reference=FILE  manifest of the reference (or CTS_REFERENCE_ICD)\n"
+    "  --reference=FILE  manifest of the reference, which is loaded whatever its version (CTS_REFERENCE_ICD: if it "
+    "has\n"
+    "                    the recorded version)\n"
+    "  --recorded[=FILE] take the recorded reference instead, as without --reference where another version is there\n"
+    "  --record[=FILE]   write the reference's results; with a filter, those of these cases into the file\n"
+    "  --which-reference print which one is taken\n"
     "  --known=FILE      known differences (a name and its reason per line): told, but no failure of the run\n"
     "  --results=DIR     where pictures of differing cases go\n"
     "  --pictures        write pictures of every case\n"
@@ -56,7 +61,13 @@ Options parse_options(int argc, char** argv) {
     else if (name == "--icd")
       result.icd = value;
     else if (name == "--reference")
-      result.reference_icd = value;
+      result.reference_icd = value, result.reference_is_given = true;
+    else if (name == "--recorded")
+      result.recorded = value.empty() ? default_record() : value;
+    else if (name == "--record")
+      result.record = value.empty() ? default_record() : value;
+    else if (name == "--which-reference")
+      result.which_reference = true;
     else if (name == "--results")
       result.results = value;
     else if (name == "--pictures")
@@ -93,10 +104,9 @@ Options parse_options(int argc, char** argv) {
   return result;
 }
 
-void prepare_environment(const Options& options) {
-  std::string files = options.icd;
-  if (options.reference_icd != options.icd) files += ":" + options.reference_icd;
-  setenv("VK_DRIVER_FILES", files.c_str(), 1);
+const char* default_record() { return CTS_DEFAULT_RECORD; }
+
+void prepare_reference() {
   unsetenv("VK_ICD_FILENAMES");
   unsetenv("VK_INSTANCE_LAYERS");
   setenv("VK_LOADER_LAYERS_DISABLE", "~implicit~", 1);
@@ -105,12 +115,19 @@ void prepare_environment(const Options& options) {
   // Its rasterizer threads keep denormals on for good after a store to a half-float target skips a masked-out block, so
   // later shaders depend on earlier work. Without threads of its own it sets the mode anew for every render pass.
   setenv("LP_NUM_THREADS", "0", 1);
+}
+
+void prepare_environment(const Options& options) {
+  std::string files = options.icd;
+  if (options.recorded.empty() && options.reference_icd != options.icd) files += ":" + options.reference_icd;
+  setenv("VK_DRIVER_FILES", files.c_str(), 1);
   // Mutation makes loops without an end; the reference leaves them after 65,535 rounds.
   if (options.mutate) setenv("VITRINE_SHADER_BUDGET", "1000000", 0);
+  const CpuSettings settings = cpu_settings();
   // It encodes sRGB with RSQRTPS, whose bits are the CPU vendor's; this device has one vendor's in a table.
-  if (!rsqrt_as_recorded()) setenv("VITRINE_RSQRT", "cpu", 0);
+  if (settings.own_rsqrt) setenv("VITRINE_RSQRT", "cpu", 0);
   // Without AVX-512 it converts floats to unsigned integers and selects operands otherwise.
-  if (lacks_avx512()) setenv("VITRINE_REFERENCE_CPU", "avx2", 0);
+  if (settings.avx2) setenv("VITRINE_REFERENCE_CPU", "avx2", 0);
 }
 
 }  // namespace vitrine::cts

@@ -7,9 +7,13 @@
 namespace vitrine::cts {
 
 struct Options {
-  std::string icd;            ///< manifest of the device under test
-  std::string reference_icd;  ///< manifest of the reference
-  std::string known;          ///< list of known differences: these fail no run
+  std::string icd;                  ///< manifest of the device under test
+  std::string reference_icd;        ///< manifest of the reference
+  bool reference_is_given = false;  ///< by the command line: it is loaded, whatever its version
+  std::string recorded;  ///< file of the recorded reference, which is taken instead; empty: the reference itself
+  std::string record;    ///< file that receives the reference's results
+  bool which_reference = false;  ///< only tell which one would be taken
+  std::string known;             ///< list of known differences: these fail no run
   std::string results = "cts-results";
   std::string fingerprints;  ///< file that receives the name and a hash of every case instead of a comparison
   uint64_t seed = 1;
@@ -33,7 +37,11 @@ Options parse_options(int argc, char** argv);
 const Options& options();
 void set_options(Options value);
 
-/// Points the loader at the two drivers. Call before anything touches Vulkan.
+/// Where the recorded reference stands in the tree.
+const char* default_record();
+/// How the reference is run. Call before it is loaded for the first time.
+void prepare_reference();
+/// Points the loader at the drivers and lets this device follow the reference's CPU. Call before gpus().
 void prepare_environment(const Options& options);
 
 }  // namespace vitrine::cts

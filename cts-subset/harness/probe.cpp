@@ -5,6 +5,8 @@
 
 #include "harness/execute.h"
 #include "harness/graphics.h"
+#include "harness/recorded.h"
+#include "harness/reference.h"
 
 #ifdef __SSE__
 #include <immintrin.h>
@@ -59,37 +61,12 @@ constexpr uint64_t kRecordedSrgbHash = 0x7ec15a18a9834496;
 constexpr uint64_t kRecordedRsqrtHash = 0x5f8d15e90b98a325;
 constexpr bool kHasRsqrt = true;
 #else
+constexpr uint64_t kRecordedRsqrtHash = 0;
 constexpr bool kHasRsqrt = false;
 #endif
 
-ReferenceCpu ask() {
-  Run run(gpus().reference, 1, 0);
-  ReferenceCpu result;
-  result.float_to_uint = float_to_uint(run);
-  result.float_to_uint_as_recorded =
-      std::equal(result.float_to_uint.begin(), result.float_to_uint.end(), std::begin(kRecordedFloatToUint));
-  result.uint_comparable =
-      result.float_to_uint_as_recorded ||
-      std::equal(result.float_to_uint.begin(), result.float_to_uint.end(), std::begin(kOtherFloatToUint));
-  result.srgb_hash = srgb_hash(run);
-  result.srgb_as_recorded = result.srgb_hash == kRecordedSrgbHash;
-  result.srgb_comparable = result.srgb_as_recorded || kHasRsqrt;
-  return result;
-}
-
-}  // namespace
-
-bool rsqrt_as_recorded() {
-#ifdef __SSE__
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (uint32_t bits = 0x3f000000u; bits < 0x40000000u; bits += 2048) {
-    const float result = _mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(std::bit_cast<float>(bits))));
-    hash = (hash ^ std::bit_cast<uint32_t>(result)) * 0x100000001b3u;
-  }
-  return hash == kRecordedRsqrtHash;
-#else
-  return true;
-#endif
+bool same_values(const std::vector<uint32_t>& found, const uint32_t (&expected)[5]) {
+  return std::equal(found.begin(), found.end(), std::begin(expected), std::end(expected));
 }
 
 bool lacks_avx512() {
@@ -99,6 +76,46 @@ bool lacks_avx512() {
 #else
   return false;
 #endif
+}
+
+ReferenceCpu ask() {
+  ReferenceCpu result;
+  bool has_same_rsqrt = kHasRsqrt;
+  if (const Record* record = recorded_reference()) {
+    result.float_to_uint = record->float_to_uint;
+    result.srgb_hash = record->srgb_hash;
+    has_same_rsqrt = rsqrt_hash() == record->rsqrt_hash;
+  } else {
+    Run run(gpus().reference, 1, 0);
+    result.float_to_uint = float_to_uint(run);
+    result.srgb_hash = srgb_hash(run);
+  }
+  result.float_to_uint_as_recorded = same_values(result.float_to_uint, kRecordedFloatToUint);
+  result.uint_comparable = result.float_to_uint_as_recorded || same_values(result.float_to_uint, kOtherFloatToUint);
+  result.srgb_as_recorded = result.srgb_hash == kRecordedSrgbHash;
+  result.srgb_comparable = result.srgb_as_recorded || has_same_rsqrt;
+  return result;
+}
+
+}  // namespace
+
+uint64_t rsqrt_hash() {
+#ifdef __SSE__
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (uint32_t bits = 0x3f000000u; bits < 0x40000000u; bits += 2048) {
+    const float result = _mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(std::bit_cast<float>(bits))));
+    hash = (hash ^ std::bit_cast<uint32_t>(result)) * 0x100000001b3u;
+  }
+  return hash;
+#else
+  return 0;
+#endif
+}
+
+CpuSettings cpu_settings() {
+  if (const Record* record = recorded_reference())
+    return {record->srgb_hash != kRecordedSrgbHash, same_values(record->float_to_uint, kOtherFloatToUint)};
+  return {kHasRsqrt && rsqrt_hash() != kRecordedRsqrtHash, lacks_avx512()};
 }
 
 const ReferenceCpu& reference_cpu() {

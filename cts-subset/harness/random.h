@@ -15,6 +15,9 @@ class Random {
  public:
   explicit Random(uint64_t seed) : state_(seed) {}
 
+  /// Tells what has been drawn so far.
+  uint64_t state() const { return state_; }
+
   uint64_t bits64() {
     uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;

@@ -17,6 +17,8 @@ void print_row(const char* name, const GroupCounts& c) {
   std::printf("%-16s %6u cases  %6u identical  %4u listed deviation  %4u unsupported  %4u differing  %4u crashed", name,
               c.cases, c.identical, c.deviation, c.unsupported, c.differing, c.crashed);
   if (c.known) std::printf("  (%u known differences)", c.known);
+  if (c.unrecorded) std::printf("  (%u without a record)", c.unrecorded);
+  if (c.changed) std::printf("  (%u changed since they were recorded)", c.changed);
   if (c.nan_bits) std::printf("  (%u with other NaN bits)", c.nan_bits);
   if (c.blank) std::printf("  (%u blank)", c.blank);
   std::printf("\n");
@@ -32,13 +34,18 @@ std::string command_of(const std::string& name) {
 }
 
 void set_parent(int pipe) { g_parent = pipe; }
+bool has_parent() { return g_parent >= 0; }
 
 void tell_parent(std::string line) {
   if (g_parent < 0) return;
   for (char& c : line)
     if (c == '\n') c = '\x1f';
   line += '\n';
-  if (write(g_parent, line.data(), line.size()) < 0) std::_Exit(3);
+  for (size_t sent = 0; sent < line.size();) {
+    const ssize_t count = write(g_parent, line.data() + sent, line.size() - sent);
+    if (count < 0) std::_Exit(3);
+    sent += static_cast<size_t>(count);
+  }
 }
 
 void count(Counts& counts, const std::string& group, const Judgement& judgement) {
@@ -50,6 +57,8 @@ void count(Counts& counts, const std::string& group, const Judgement& judgement)
   row.known += judgement.verdict == Verdict::kKnown;
   row.differing += judgement.verdict == Verdict::kDiffering;
   row.crashed += judgement.verdict == Verdict::kCrashed;
+  row.unrecorded += judgement.verdict == Verdict::kUnrecorded;
+  row.changed += judgement.verdict == Verdict::kChanged;
   row.nan_bits += judgement.nan_bits;
   row.blank += judgement.blank;
 }
@@ -65,12 +74,14 @@ bool print_counts(const Counts& counts) {
     total.known += row.known;
     total.differing += row.differing;
     total.crashed += row.crashed;
+    total.unrecorded += row.unrecorded;
+    total.changed += row.changed;
     total.nan_bits += row.nan_bits;
     total.blank += row.blank;
   }
   print_row("total", total);
   std::fflush(stdout);
-  return total.differing == 0 && total.crashed == 0;
+  return total.differing == 0 && total.crashed == 0 && total.unrecorded == 0 && total.changed == 0;
 }
 
 }  // namespace vitrine::cts

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "harness/execute.h"
 
@@ -10,7 +11,7 @@ namespace vitrine::cts {
 
 struct GroupCounts {
   uint32_t cases = 0, identical = 0, deviation = 0, unsupported = 0, known = 0, differing = 0, crashed = 0,
-           nan_bits = 0, blank = 0;
+           nan_bits = 0, blank = 0, unrecorded = 0, changed = 0;
 };
 
 /// Group name -> counts.
@@ -25,12 +26,14 @@ std::string command_of(const std::string& name);
 
 /// The pipe to the parent of this child.
 void set_parent(int pipe);
+bool has_parent();
 /// Writes a line to the parent, if there is one: "B index name" when a case begins, "D" when the reference is done with
 /// it and the device is next, "R" when the reference runs it again with another seed, "E verdict nan blank message"
-/// when it has ended.
+/// when it has ended, "L line" for keep_recorded_line().
 void tell_parent(std::string line);
 
-/// Runs the (filtered) cases in child processes, so that a crash costs one case. Returns the exit status.
-int run_isolated(int argc, char** argv);
+/// Runs the (filtered) cases in child processes, so that a crash costs one case. `command`: their words. Returns the
+/// exit status.
+int run_isolated(const std::vector<std::string>& command);
 
 }  // namespace vitrine::cts

@@ -75,10 +75,12 @@ Buffer Run::buffer(VkDeviceSize size, VkBufferUsageFlags extra_usage) {
   CTS_VK(vkBindBufferMemory(device, result.handle, memory, 0));
   CTS_VK(vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, reinterpret_cast<void**>(&result.data)));
   std::memset(result.data, 0, size);
+  inputs.buffer(result, extra_usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT);
   return result;
 }
 
 VkSampler Run::sampler(const VkSamplerCreateInfo& info) {
+  inputs.sampler(info);
   VkSampler result;
   CTS_VK(vkCreateSampler(device, &info, nullptr, &result));
   return own(result, vkDestroySampler);
@@ -92,7 +94,12 @@ VkSampler Run::sampler(VkFilter filter, VkSamplerAddressMode mode) {
   return sampler(info);
 }
 
-VkShaderModule Run::module(const std::vector<uint32_t>& original) {
+VkShaderModule Run::module(const std::vector<uint32_t>& words) {
+  inputs.module(words, false);
+  return create_module(words);
+}
+
+VkShaderModule Run::create_module(const std::vector<uint32_t>& original) {
   const bool mutate = options().mutate && mutates;
   const std::vector<uint32_t> words = mutate ? mutant_of(original, options().seed) : original;
   if (mutate) note("mutant" + std::to_string(notes.size()), disassemble(words));
@@ -105,10 +112,14 @@ VkShaderModule Run::module(const std::vector<uint32_t>& original) {
 }
 
 VkShaderModule Run::shader(VkShaderStageFlagBits stage, const std::string& glsl) {
-  return module(compile_glsl(stage, glsl));
+  const std::vector<uint32_t>& words = compile_glsl(stage, glsl);
+  inputs.shader(stage, glsl);
+  inputs.module(words, true);
+  return create_module(words);
 }
 
 Resources Run::resources(const std::vector<Binding>& bindings, uint32_t push_bytes) {
+  inputs.bindings(bindings, push_bytes);
   Resources result;
   std::vector<VkDescriptorSetLayoutBinding> layout_bindings;
   std::vector<VkDescriptorPoolSize> sizes;
@@ -174,6 +185,7 @@ VkPipeline Run::compute(VkPipelineLayout layout, VkShaderModule module, const Vk
                 "main",
                 special};
   info.layout = layout;
+  inputs.special(special);
   VkPipeline result;
   CTS_VK(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &result));
   return own(result, vkDestroyPipeline);
@@ -219,6 +231,7 @@ void Run::barrier(VkCommandBuffer cmd) {
 }
 
 void Run::submit(VkCommandBuffer cmd) {
+  inputs.submission();
   barrier(cmd);
   CTS_VK(vkEndCommandBuffer(cmd));
   VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
@@ -241,6 +254,7 @@ void Run::once(const std::function<void(VkCommandBuffer)>& record) {
 }
 
 void Run::dispatch(const Resources& resources, VkPipeline pipeline, uint32_t x, uint32_t y, uint32_t z) {
+  inputs.given().numbers(x, y, z);
   once([&](VkCommandBuffer cmd) {
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     resources.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
@@ -249,6 +263,8 @@ void Run::dispatch(const Resources& resources, VkPipeline pipeline, uint32_t x, 
 }
 
 void Run::dispatch(const Resources& resources, VkPipeline pipeline, uint32_t x, std::span<const std::byte> push) {
+  inputs.given().numbers(x);
+  inputs.push_constants(push);
   once([&](VkCommandBuffer cmd) {
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     resources.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/gpu.h"
+#include "harness/inputs.h"
 #include "harness/output.h"
 #include "harness/random.h"
 
@@ -89,6 +90,7 @@ class Run {
   bool mutates = true;
   std::vector<Output> outputs;
   std::vector<std::pair<std::string, std::string>> notes;
+  Inputs inputs;  ///< what the device is given
 
   /// Ends the run as unsupported unless the device claims what the case needs.
   void require(bool claimed, const char* what) const;
@@ -149,6 +151,7 @@ class Run {
   }
 
  private:
+  VkShaderModule create_module(const std::vector<uint32_t>& words);
   VkDeviceMemory allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags wanted);
   std::vector<std::function<void()>> deferred_;
   std::vector<VkImageMemoryBarrier> pending_;  // first transitions of new images

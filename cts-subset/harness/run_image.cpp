@@ -56,6 +56,7 @@ Image Run::image(const ImageSpec& spec) {
   const FormatInfo& format = format_info(spec.format);
   require((gpu.features_of(spec.format, spec.tiling) & needed_features(spec.usage)) == needed_features(spec.usage),
           format.name);
+  inputs.image(spec);
   Image result;
   result.spec = spec;
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, spec.next};

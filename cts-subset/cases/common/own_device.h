@@ -2,21 +2,14 @@
 // they are enabled.
 #pragma once
 
-#include <cstring>
-#include <vector>
+#include <algorithm>
 
 #include "harness/run.h"
 
 namespace vitrine::cts {
 
 inline bool offers_extension(const Gpu& gpu, const char* name) {
-  uint32_t count = 0;
-  vkEnumerateDeviceExtensionProperties(gpu.physical, nullptr, &count, nullptr);
-  std::vector<VkExtensionProperties> offered(count);
-  vkEnumerateDeviceExtensionProperties(gpu.physical, nullptr, &count, offered.data());
-  for (const VkExtensionProperties& extension : offered)
-    if (!std::strcmp(extension.extensionName, name)) return true;
-  return false;
+  return std::find(gpu.offered.begin(), gpu.offered.end(), name) != gpu.offered.end();
 }
 
 /// A device like the run's, with the extension.

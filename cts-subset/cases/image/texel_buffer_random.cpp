@@ -15,8 +15,7 @@ std::vector<VkFormat> buffer_formats(VkFormatFeatureFlags features) {
   std::vector<VkFormat> result;
   for (int number = 1; number <= VK_FORMAT_E5B9G9R9_UFLOAT_PACK32; ++number) {
     const auto format = static_cast<VkFormat>(number);
-    VkFormatProperties properties;
-    vkGetPhysicalDeviceFormatProperties(gpus().reference.physical, format, &properties);
+    const VkFormatProperties properties = gpus().reference.format_properties(format);
     if ((properties.bufferFeatures & features) == features && texel::format_desc(format).plain)
       result.push_back(format);
   }
@@ -90,8 +89,7 @@ CTS_RANDOM("texture", "random_texel_buffer", 90) {
 std::vector<VkFormat> storable_formats() {
   std::vector<VkFormat> result;
   for (const VkFormat format : storage_formats(VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT)) {
-    VkFormatProperties properties;
-    vkGetPhysicalDeviceFormatProperties(gpus().reference.physical, format, &properties);
+    const VkFormatProperties properties = gpus().reference.format_properties(format);
     if (properties.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT) result.push_back(format);
   }
   return result;
