@@ -200,8 +200,13 @@ Expr reduce_part(const Inst& inst, Expr part, std::uint32_t cluster, ir::GroupMo
     case ir::GroupOp::kFMax:
       return convert_float(emit_reduce(convert_float(part, 32), op, cluster, mode), width);
     case ir::GroupOp::kIMin:
-    case ir::GroupOp::kIMax:
-      return convert_unsigned(emit_reduce(convert_signed(part, 32), op, cluster, mode), width);
+    case ir::GroupOp::kIMax: {
+      // In the high bits of a word, so that the result of no invocations is the greatest or least number of `width`
+      // bits.
+      const Expr shift = imm_u32(t, 32u - width);
+      const Expr high = apply(ir::Op::kShl, {convert_unsigned(part, 32), shift});
+      return convert_unsigned(apply(ir::Op::kIShr, {emit_reduce(high, op, cluster, mode), shift}), width);
+    }
     default:
       return convert_unsigned(emit_reduce(convert_unsigned(part, 32), op, cluster, mode), width);
   }

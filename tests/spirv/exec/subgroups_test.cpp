@@ -40,6 +40,10 @@ constexpr char kExtensions[] = R"(
 #extension GL_KHR_shader_subgroup_shuffle_relative : enable
 #extension GL_KHR_shader_subgroup_clustered : enable
 #extension GL_KHR_shader_subgroup_quad : enable
+#extension GL_EXT_shader_explicit_arithmetic_types_int8 : enable
+#extension GL_EXT_shader_explicit_arithmetic_types_int16 : enable
+#extension GL_EXT_shader_subgroup_extended_types_int8 : enable
+#extension GL_EXT_shader_subgroup_extended_types_int16 : enable
 )";
 
 std::vector<std::uint32_t> dispatch_words(const std::string& source, std::uint32_t size,
@@ -138,6 +142,28 @@ TEST(Subgroups, SignedMinAndMax) {
   using namespace std::placeholders;
   expect_group_divergent("uint(subgroupMin(int(x) - 16))", std::bind(shifted, _1, _2, false));
   expect_group_divergent("uint(subgroupMax(int(x) - 16))", std::bind(shifted, _1, _2, true));
+}
+
+TEST(Subgroups, NarrowMinAndMaxOfNoLanesAreOfTheirWidth) {
+  // SPIR-V, OpGroupNonUniformSMin: "The identity I for Operation is INT_MAX", that of the type.
+  const auto exclusive = [](bool want_max, std::int32_t none) -> Model {
+    return [=](const Group& group, std::uint32_t lane) {
+      std::int32_t best = none;
+      for (std::uint32_t k = 0; k < lane; k++)
+        if (group.is_active(k)) {
+          const std::int32_t value = static_cast<std::int32_t>(group.x[k]) - 16;
+          best = want_max ? std::max(best, value) : std::min(best, value);
+        }
+      return std::optional<std::uint32_t>(static_cast<std::uint32_t>(best));
+    };
+  };
+  expect_group_divergent("uint(int(subgroupExclusiveMin(int8_t(int(x) - 16))))", exclusive(false, INT8_MAX));
+  expect_group_divergent("uint(int(subgroupExclusiveMax(int8_t(int(x) - 16))))", exclusive(true, INT8_MIN));
+  expect_group_divergent("uint(int(subgroupExclusiveMin(int16_t(int(x) - 16))))", exclusive(false, INT16_MAX));
+  expect_group_divergent("uint(int(subgroupExclusiveMax(int16_t(int(x) - 16))))", exclusive(true, INT16_MIN));
+  expect_group_divergent("uint(subgroupExclusiveMin(uint8_t(x)))",
+                         reduce_model<std::uint32_t>(
+                             UINT8_MAX, [](std::uint32_t a, std::uint32_t b) { return std::min(a, b); }, 2));
 }
 
 TEST(Subgroups, FloatSumsGoFromTheLowestLaneToTheHighest) {
