@@ -196,7 +196,12 @@ void frexp(Translator& t, const Inst& inst, ir::Op) {
 }
 
 void ldexp(Translator& t, const Inst& inst, ir::Op op) {
-  result(t, inst, apply(op, {arg(t, inst, 0), convert_signed(arg(t, inst, 1), 32)}));
+  Expr exponent = arg(t, inst, 1);
+  // Any exponent beyond those of 32 bits gives what the greatest and the least of these do: infinities and zeros.
+  if (exponent.width == 64)
+    for (const auto& [bound, limit] : {std::pair{ir::Op::kIMax, INT32_MIN}, std::pair{ir::Op::kIMin, INT32_MAX}})
+      exponent = apply(bound, {exponent, constant_bits(t, static_cast<std::uint64_t>(std::int64_t{limit}), 64)});
+  result(t, inst, apply(op, {arg(t, inst, 0), convert_signed(exponent, 32)}));
 }
 
 void length(Translator& t, const Inst& inst, ir::Op) { result(t, inst, length_of(arg(t, inst, 0))); }

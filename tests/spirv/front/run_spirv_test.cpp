@@ -2,7 +2,9 @@
 #include <spirv/unified1/spirv.hpp11>
 
 #include <algorithm>
+#include <limits>
 
+#include "base/numeric.h"
 #include "spirv/addresses.h"
 #include "spirv/exec/profile.h"
 #include "spirv/exec/wave_memory.h"
@@ -96,6 +98,22 @@ TEST(RunSpirv, InputsThatNothingSuppliesAreZero) {
 )",
                                                    "", "Logical", "", " %buffer %lost");
   for (std::uint32_t i = 0; i < kCount; i++) ASSERT_EQ(got[i], i);
+}
+
+/// The upper half of an exponent counts: 2^32 has a zero for its lower one.
+TEST(RunSpirv, ExponentsOf64BitsAreNotCut) {
+  const auto scaled = [](const std::string& exponent) {
+    return run_spirv("%scaled = OpExtInst %float %glsl Ldexp %three %far\n%r = OpBitcast %uint %scaled\n",
+                     "%float = OpTypeFloat 32\n%three = OpConstant %float 3\n%long = OpTypeInt 64 1\n"
+                     "%far = OpConstant %long " +
+                         exponent + "\n",
+                     "OpCapability Int64\n%glsl = OpExtInstImport \"GLSL.std.450\"\n")[0];
+  };
+  EXPECT_EQ(scaled("2"), base::bits_of(12.0f));
+  EXPECT_EQ(scaled("-2"), base::bits_of(0.75f));
+  EXPECT_EQ(scaled("4294967296"), base::bits_of(std::numeric_limits<float>::infinity()));
+  EXPECT_EQ(scaled("-4294967296"), base::bits_of(0.0f));
+  EXPECT_EQ(scaled("9223372036854775807"), base::bits_of(std::numeric_limits<float>::infinity()));
 }
 
 TEST(RunSpirv, NonSemanticInstructionsAreIgnored) {
