@@ -80,8 +80,7 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateMemory(VkDevice device, const VkMemoryAll
     *memory = to_handle(object.release());
     return VK_SUCCESS;
   }
-  Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info->allocationSize,
-                                                         d.physical_device.instance.allocated_bytes));
+  Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info->allocationSize, allocated_bytes()));
   if (!object->data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   spirv::add_addresses(object->data, object->size);
   enter_address(d, {object->data, object->size, object->data, {}}, *object);

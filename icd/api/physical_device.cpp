@@ -13,6 +13,7 @@
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/instance.h"
+#include "icd/object/memory.h"
 #include "icd/properties.h"
 #include "icd/version.h"
 
@@ -89,14 +90,14 @@ void write_driver_info(T& driver) {
                 base::simd_target_name(), base::worker_count());
 }
 
-/// What this process has allocated, and what it could have: that, and what the machine has free.
+/// What all instances of this process have allocated, and what they could have: that, and what the machine has free.
 void write_budget(const PhysicalDevice& device, VkPhysicalDeviceMemoryBudgetPropertiesEXT& out) {
   std::fill(std::begin(out.heapBudget), std::end(out.heapBudget), 0);
   std::fill(std::begin(out.heapUsage), std::end(out.heapUsage), 0);
   const long pages = sysconf(_SC_AVPHYS_PAGES), page_size = sysconf(_SC_PAGESIZE);
   const VkDeviceSize heap = device.memory_properties.memoryHeaps[0].size;
   const VkDeviceSize free = pages > 0 && page_size > 0 ? VkDeviceSize(pages) * VkDeviceSize(page_size) : heap;
-  out.heapUsage[0] = device.instance.allocated_bytes.load();
+  out.heapUsage[0] = allocated_bytes().load();
   out.heapBudget[0] = std::min(heap, out.heapUsage[0] + free);
 }
 

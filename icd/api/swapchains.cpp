@@ -28,14 +28,13 @@ VkImageCreateInfo image_info(const VkSwapchainCreateInfoKHR& info) {
   return image;
 }
 
-VkResult create_images(Device& device, Swapchain& swapchain, const VkSwapchainCreateInfoKHR& info) {
+VkResult create_images(Swapchain& swapchain, const VkSwapchainCreateInfoKHR& info) {
   const VkImageCreateInfo image = image_info(info);
   swapchain.slots.resize(std::max(info.minImageCount, 2u));
   for (Swapchain::Slot& slot : swapchain.slots) {
     slot.image = create_object<Image>(swapchain.memory, nullptr);
     if (const VkResult result = init_image(*slot.image, image); result != VK_SUCCESS) return result;
-    slot.backing = create_object<DeviceMemory>(swapchain.memory, nullptr, slot.image->layout.size,
-                                               device.physical_device.instance.allocated_bytes);
+    slot.backing = create_object<DeviceMemory>(swapchain.memory, nullptr, slot.image->layout.size, allocated_bytes());
     if (!slot.backing->data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     slot.image->data = slot.backing->data;
   }
@@ -130,7 +129,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSwapchainKHR(VkDevice device_handle, const 
   swapchain.extent = info->imageExtent;
   swapchain.mode = info->presentMode;
   swapchain.red_first = info->imageFormat == VK_FORMAT_R8G8B8A8_UNORM || info->imageFormat == VK_FORMAT_R8G8B8A8_SRGB;
-  if (const VkResult result = create_images(device, swapchain, *info); result != VK_SUCCESS) return result;
+  if (const VkResult result = create_images(swapchain, *info); result != VK_SUCCESS) return result;
   *out = to_handle(swapchain_owner.release());
   return VK_SUCCESS;
 }

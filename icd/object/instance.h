@@ -1,7 +1,6 @@
 // VkInstance and VkPhysicalDevice: one physical device, inside the instance.
 #pragma once
 
-#include <atomic>
 #include <mutex>
 
 #include "icd/object/object.h"
@@ -34,8 +33,7 @@ struct Instance : DispatchableObject<VkInstance, VK_OBJECT_TYPE_INSTANCE> {
   std::uint32_t api_version = VK_API_VERSION_1_0;  ///< what the application asked for
   ExtensionSet extensions;                         ///< enabled
   PhysicalDevice physical_device;
-  std::atomic<VkDeviceSize> allocated_bytes = 0;  ///< of VkDeviceMemory
-  std::mutex notes_mutex;                         ///< guards names and private data of all objects
+  std::mutex notes_mutex;  ///< guards names and private data of all objects
   std::mutex messenger_mutex;
   Vector<Messenger*> messengers;
 };

@@ -27,6 +27,11 @@ bool is_readable(const void* address) {
 
 }  // namespace
 
+std::atomic<VkDeviceSize>& allocated_bytes() {
+  static std::atomic<VkDeviceSize> bytes = 0;
+  return bytes;
+}
+
 DeviceMemory::DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<VkDeviceSize>& total)
     : Object(m), size(bytes) {
   mapping_bytes_ = size + kTailBytes;

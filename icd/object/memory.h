@@ -11,6 +11,9 @@ namespace vitrine::icd {
 /// Readable bytes behind the last one of every allocation, so that vector loads of a tail need no care.
 inline constexpr VkDeviceSize kTailBytes = 64;
 
+/// Bytes of the live DeviceMemory of all instances of the process: a heap is the machine's, not an instance's.
+std::atomic<VkDeviceSize>& allocated_bytes();
+
 /// A zero-filled mapping; pages appear when they are touched. kTailBytes follow the last one. It is private, or of a
 /// file that other devices and processes can map, or the application's.
 struct DeviceMemory : Object<VkDeviceMemory, VK_OBJECT_TYPE_DEVICE_MEMORY> {

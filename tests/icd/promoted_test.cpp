@@ -230,24 +230,32 @@ TEST_F(Timestamps, AreOfTheMonotonicClock) {
 }
 
 TEST_F(Memory, TheBudgetKnowsWhatIsAllocated) {
-  const auto usage = [&] {
+  const auto usage = [](VkInstance of, VkPhysicalDevice seen) {
     auto budget = make_struct<VkPhysicalDeviceMemoryBudgetPropertiesEXT>();
     auto properties = make_struct<VkPhysicalDeviceMemoryProperties2>(&budget);
-    VK_GET(instance, GetPhysicalDeviceMemoryProperties2)(physical_device, &properties);
+    VK_GET(of, GetPhysicalDeviceMemoryProperties2)(seen, &properties);
     EXPECT_GE(budget.heapBudget[0], budget.heapUsage[0]);
     EXPECT_LE(budget.heapBudget[0], properties.memoryProperties.memoryHeaps[0].size);
     EXPECT_GT(budget.heapBudget[0], 0u);
     EXPECT_EQ(budget.heapBudget[1] + budget.heapUsage[1], 0u);
     return budget.heapUsage[0];
   };
-  const VkDeviceSize before = usage();
+  const VkDeviceSize before = usage(instance, physical_device);
   auto info = make_struct<VkMemoryAllocateInfo>();
   info.allocationSize = 1 << 20;
   VkDeviceMemory memory;
   ASSERT_EQ(VK_GET(instance, AllocateMemory)(device, &info, nullptr, &memory), VK_SUCCESS);
-  EXPECT_EQ(usage(), before + (1 << 20));
+  EXPECT_EQ(usage(instance, physical_device), before + (1 << 20));
+  // "A heap's usage is an estimate of how much memory the process is currently using in that heap": all instances do.
+  VkInstance other;
+  ASSERT_EQ(create_instance(&other), VK_SUCCESS);
+  std::uint32_t count = 1;
+  VkPhysicalDevice same_device;
+  ASSERT_EQ(VK_GET(other, EnumeratePhysicalDevices)(other, &count, &same_device), VK_SUCCESS);
+  EXPECT_EQ(usage(other, same_device), before + (1 << 20));
+  VK_GET(other, DestroyInstance)(other, nullptr);
   VK_GET(instance, FreeMemory)(device, memory, nullptr);
-  EXPECT_EQ(usage(), before);
+  EXPECT_EQ(usage(instance, physical_device), before);
 }
 
 }  // namespace
