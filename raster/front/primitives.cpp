@@ -25,13 +25,14 @@ struct PrimitiveWork : PrimitiveContext {
   TriangleBatch batch;
   bool clips_segment = false;  ///< triangles go to `clipped`, not to setup
   ClippedBatch own_batch;
-  ClippedBatch& clipped;         ///< the chunk's own, or one that several chunks share
-  std::uint32_t rectangles = 0;  ///< primitives that are two triangles
+  ClippedBatch& clipped;        ///< the chunk's own, or one that several chunks share
+  std::uint32_t discarded = 0;  ///< lines and triangles that the clipper leaves nothing of
+  std::uint32_t parts = 0;      ///< triangles that it makes beyond the first of a polygon
 
   explicit PrimitiveWork(const PrimitiveContext& context)
       : PrimitiveContext(context),
         plan(*chunk.draw->plan),
-        setup{&plan, &pass, &primitives, !chunk.draw->call.queries.statistics},
+        setup{&plan, &pass, &primitives},
         viewport(plan.viewport[0]),
         batches(plan.windows && plan.out.layer == kNoReg && !plan.per_vertex_viewport && !plan.bias_in_vertices &&
                 plan.out.cull_count == 0),
@@ -41,6 +42,20 @@ struct PrimitiveWork : PrimitiveContext {
     setup.watch = chunk.watch;
   }
 };
+
+/// The clipper's end of a line or triangle.
+void discard(PrimitiveWork& w, PrimitiveFate fate) {
+  ++w.discarded;
+  w.setup.tell(fate);
+}
+
+/// Vulkan 1.3.239, VkQueryPipelineStatisticFlagBits: "If at least one vertex of the input primitive lies inside the
+/// clipping volume, the counter is incremented by one or more", whatever its area and the culling by its face.
+/// (The reference leaves out those that its clipper culls, and rectangles.)
+void count_behind_clipper(const PrimitiveWork& w, std::uint64_t input) {
+  if (!w.plan.draws_points)
+    w.chunk.draw->call.queries.count(Statistic::kClippingPrimitives, input + w.parts - w.discarded);
+}
 
 ClipVertex clip_vertex(const PrimitiveWork& w, std::uint32_t slot) {
   ClipVertex v;
@@ -189,9 +204,7 @@ bool emit_pair(PrimitiveWork& w, const PairCorners& v) {
     for (int culled = pair.kind == Kind::kNothing ? 2 : 1; culled > 0; --culled) w.setup.tell(PrimitiveFate::kFacing);
     return true;
   }
-  const std::uint32_t before = w.primitives.size();
   setup_rectangle(w.setup, pair);
-  w.rectangles += w.primitives.size() - before;
   return true;
 }
 
@@ -234,7 +247,8 @@ void emit_slow(PrimitiveWork& w, const Vertex* const v[3], const bool edge[3]) {
 void emit_clipped(PrimitiveWork& w, std::uint32_t provoking, ClipPolygon& polygon) {
   const bool guard_band = w.plan.guard_band || w.plan.state->polygon_mode == VK_POLYGON_MODE_POINT;
   const ClipContext context{&w.plan, &w.viewport, &w.arena, guard_band};
-  if (!clip_triangle(context, provoking, polygon)) return w.setup.tell(PrimitiveFate::kOutside);
+  if (!clip_triangle(context, provoking, polygon)) return discard(w, PrimitiveFate::kOutside);
+  w.parts += polygon.count - 3;
   w.setup.tell(PrimitiveFate::kClipped);
   const Vertex* record[kMaxPolygon];
   for (std::uint32_t i = 0; i < polygon.count; ++i) record[i] = window_record(w, polygon.corner[i]);
@@ -277,10 +291,10 @@ void add_to_batch(PrimitiveWork& w, const std::uint32_t slot[3]) {
 void process_triangle(PrimitiveWork& w, const std::uint32_t slot[3]) {
   const VertexScratch& s = w.vertices;
   const ClipCode c0 = s.code[slot[0]], c1 = s.code[slot[1]], c2 = s.code[slot[2]];
-  if ((c0 & c1 & c2) != 0) return w.setup.tell(PrimitiveFate::kOutside);
+  if ((c0 & c1 & c2) != 0) return discard(w, PrimitiveFate::kOutside);
   if (w.batches && !w.clips_segment && (c0 | c1 | c2) == 0) return add_to_batch(w, slot);
   flush_batch(w);
-  if (w.plan.out.cull_count && culled_by_distance(w, slot, 3)) return w.setup.tell(PrimitiveFate::kCulledByDistance);
+  if (w.plan.out.cull_count && culled_by_distance(w, slot, 3)) return discard(w, PrimitiveFate::kCulledByDistance);
   const std::uint32_t provoking = provoking_corner(3, w.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(w, slot[provoking]);
   const bool simple = (c0 | c1 | c2) == 0 && !w.plan.per_vertex_viewport && !w.plan.bias_in_vertices &&
@@ -308,14 +322,14 @@ void process_triangle(PrimitiveWork& w, const std::uint32_t slot[3]) {
 
 void process_line(PrimitiveWork& w, const std::uint32_t slot[2]) {
   const ClipCode c0 = w.vertices.code[slot[0]], c1 = w.vertices.code[slot[1]];
-  if ((c0 & c1) != 0) return w.setup.tell(PrimitiveFate::kOutside);
-  if (w.plan.out.cull_count && culled_by_distance(w, slot, 2)) return w.setup.tell(PrimitiveFate::kCulledByDistance);
+  if ((c0 & c1) != 0) return discard(w, PrimitiveFate::kOutside);
+  if (w.plan.out.cull_count && culled_by_distance(w, slot, 2)) return discard(w, PrimitiveFate::kCulledByDistance);
   const std::uint32_t provoking = provoking_corner(2, w.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(w, slot[provoking]);
   ClipVertex line[2] = {clip_vertex(w, slot[0]), clip_vertex(w, slot[1])};
   const ClipContext context{&w.plan, &w.viewport, &w.arena, w.plan.guard_band};
   if ((c0 | c1) != 0) {
-    if (!clip_line(context, provoking, line)) return w.setup.tell(PrimitiveFate::kOutside);
+    if (!clip_line(context, provoking, line)) return discard(w, PrimitiveFate::kOutside);
     w.setup.tell(PrimitiveFate::kClipped);
   }
   emit_line(w, window_record(w, line[0]), window_record(w, line[1]), true);
@@ -458,13 +472,14 @@ ClippedEnds process_primitives(const PrimitiveContext& context) {
   ClippedEnds ends;
   const Chunk& chunk = w.chunk;
   const TopologyShape& shape = w.plan.shape;
+  std::uint32_t first_entry = 0, expected = 0;
+  for (std::uint32_t r = 0; r < chunk.run_count; ++r) expected += chunk.runs[r].end - chunk.runs[r].begin;
   if (w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && shape.corners == 3) {
     tell_invisible(w);
+    count_behind_clipper(w, expected);
     return ends;
   }
   if (chunk.stipple_counter) w.stipple_counter = *chunk.stipple_counter;
-  std::uint32_t first_entry = 0, expected = 0;
-  for (std::uint32_t r = 0; r < chunk.run_count; ++r) expected += chunk.runs[r].end - chunk.runs[r].begin;
   w.primitives.reserve(expected);
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
     const RunSpan span = run_span(shape, chunk.runs[r]);
@@ -479,14 +494,12 @@ ClippedEnds process_primitives(const PrimitiveContext& context) {
   flush_batch(w);
   if (chunk.ends_batch) flush_clipped(w, false);
   if (chunk.stipple_counter) *chunk.stipple_counter = w.stipple_counter;
-  if (!w.plan.draws_points)
-    chunk.draw->call.queries.count(Statistic::kClippingPrimitives, w.primitives.size() + w.rectangles);
+  count_behind_clipper(w, expected);
   return ends;
 }
 
 void process_listed(const PrimitiveContext& context, std::span<const ListedPrimitive> listed) {
   PrimitiveWork w(context);
-  const std::uint32_t before = w.primitives.size();
   if (w.setup.watch) w.setup.watch->emitted(listed.size());
   const bool invisible = w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && w.plan.corners == 3;
   for (const ListedPrimitive& primitive : listed) {
@@ -499,9 +512,8 @@ void process_listed(const PrimitiveContext& context, std::span<const ListedPrimi
     process_primitive(w, w.plan.corners, primitive.slot);
   }
   flush_batch(w);
-  const QueryCounters& queries = w.chunk.draw->call.queries;
-  queries.count(Statistic::kClippingInvocations, listed.size());
-  if (!w.plan.draws_points) queries.count(Statistic::kClippingPrimitives, w.primitives.size() - before);
+  w.chunk.draw->call.queries.count(Statistic::kClippingInvocations, listed.size());
+  count_behind_clipper(w, listed.size());
 }
 
 }  // namespace vitrine::raster

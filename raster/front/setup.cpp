@@ -131,7 +131,7 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
     const std::int32_t x[3] = {v0.x, second->x, third->x}, y[3] = {v0.y, second->y, third->y};
     window = cover_window(x, y, wx, wy, bounds.x1 - wx < 4 && bounds.y1 - wy < 4);
     window = cut_window(window, wx, wy, bounds, visible);
-    if (window == 0 && context.drops_empty) return;
+    if (window == 0) return;
   }
 
   Primitive& p = context.out->append();

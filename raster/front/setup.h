@@ -24,7 +24,6 @@ struct SetupContext {
   const PipelinePlan* plan;
   const PassDesc* pass;
   PrimitiveList* out;
-  bool drops_empty = false;  ///< triangles that cover nothing are not counted by a query
   std::uint32_t id = 0;
   std::uint16_t layer = 0;
   std::uint8_t viewport = 0;

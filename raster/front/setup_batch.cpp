@@ -201,7 +201,7 @@ void setup_triangles(SetupContext context, TriangleBatch& batch) {
     base::LaneMask window = 0;
     if (facts.step[i] != BatchStep::kWide) {
       window = window_of(facts, i, bounds, visible);
-      if (window == 0 && context.drops_empty) continue;
+      if (window == 0) continue;
     }
     const bool positive = facts.area[i] > 0;
     Primitive& p = context.out->append();

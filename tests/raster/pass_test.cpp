@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <random>
@@ -55,6 +57,7 @@ struct Scene {
   State state;
   NativeShader vertex, fragment;
   bool late = false;
+  QueryCounters queries;
 
   Scene() {
     vertex.interface.inputs = {slot(spirv::BuiltIn::kVertexIndex, 0, 0)};
@@ -99,6 +102,7 @@ struct Scene {
       call.state = &state;
       call.native_vertex = &vertex;
       call.native_fragment = &fragment;
+      call.queries = queries;
       call.first = total / 3 * i / pieces * 3;
       call.count = total / 3 * (i + 1) / pieces * 3 - call.first;
       pass.draw(call);
@@ -272,6 +276,28 @@ TEST(Pass, DrawsNothingForEmptyScissorsAndMasks) {
   scene.state.sample_mask = 0;
   scene.draw();
   EXPECT_EQ(std::vector<float>(kWidth * kHeight * 4, 0.0f), scene.color);
+}
+
+/// Vulkan 1.3.239, VkQueryPipelineStatisticFlagBits: what has a vertex in the clipping volume counts behind the
+/// clipper.
+TEST(Pass, WhatTheClipperKeepsCountsWhateverIsCulledLater) {
+  Scene scene;
+  const auto add = [&](float x0, float y0, float x1, float y1, float x2, float y2) {
+    for (const auto& [x, y] : {std::pair{x0, y0}, {x1, y1}, {x2, y2}})
+      scene.corners.push_back({x, y, 0.5f, 1.0f, {1, 1, 1, 1}});
+  };
+  add(0.0f, -0.5f, 0.5f, 0.5f, -0.5f, 0.5f);        // one face
+  add(0.0f, -0.5f, -0.5f, 0.5f, 0.5f, 0.5f);        // the other
+  add(0.25f, -0.5f, 0.25f, 0.0f, 0.25f, 0.5f);      // no area
+  add(2.0f, 2.0f, 3.0f, 2.0f, 2.0f, 3.0f);          // outside
+  add(0.501f, 0.5f, 0.502f, 0.5f, 0.501f, 0.501f);  // between samples
+  for (const VkCullModeFlags mode : {VK_CULL_MODE_NONE, VK_CULL_MODE_FRONT_BIT, VK_CULL_MODE_BACK_BIT}) {
+    std::array<std::atomic<std::uint64_t>, 11> counters{};
+    scene.queries.statistics = counters.data();
+    scene.state.cull_mode = mode;
+    scene.draw();
+    EXPECT_EQ(counters[static_cast<std::size_t>(Statistic::kClippingPrimitives)], 4u) << "cull mode " << mode;
+  }
 }
 
 TEST(Pass, SurvivesPositionsThatAreNotNumbers) {
