@@ -111,7 +111,7 @@ void transpose(Translator& t, const Inst& inst, ir::Op) {
 
 void undef(Translator& t, const Inst& inst, ir::Op) {
   const Type& type = t.module.type(inst.result_type);
-  if (type.scalars > kMaxScalars) fail(inst, "value is too large");
+  if (is_too_large(type)) fail(inst, "value is too large");
   if (type.leaves == 0) return;  // an image or a sampler: nothing can be done with it
   const std::vector<std::uint32_t> zeros(type.scalars, 0);
   set_value(t, inst, constant_value(t, inst.result_type, zeros, true).leaves);

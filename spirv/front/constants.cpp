@@ -14,6 +14,9 @@ namespace {
 using spv::Op;
 using Words = std::vector<std::uint32_t>;
 
+/// Of all constants of a module: more than large tables take.
+constexpr std::size_t kMaxConstantWords = std::size_t{1} << 24;
+
 /// Words of an OpSpecConstant* given at pipeline creation; null: keep the default.
 const SpecializationConstant* override_of(const Module& module, const Inst& inst, const CompileOptions& options) {
   const DecorationRow* spec_id = module.decoration(inst.result, spv::Decoration::SpecId);
@@ -272,7 +275,7 @@ void fold_constant(Module& module, const Inst& inst, const CompileOptions& optio
   Constant value;
   value.type = inst.result_type;
   const Type& type = module.type(value.type);
-  if (type.scalars > kMaxScalars) fail(inst, "constant is too large");
+  if (is_too_large(type) || module.constant_words > kMaxConstantWords) fail(inst, "constant is too large");
   switch (inst.op) {
     case Op::OpConstantTrue:
       value.words = {1};
@@ -313,6 +316,7 @@ void fold_constant(Module& module, const Inst& inst, const CompileOptions& optio
       fail(inst, "is not supported");
   }
   if (value.words.size() != type.scalars) fail(inst, "constant does not fit its type");
+  module.constant_words += value.words.size();
   module.constants[inst.result] = std::move(value);
 }
 

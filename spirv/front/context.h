@@ -106,6 +106,8 @@ struct Access {
 struct Assigned;  // initialization.h
 struct Initialization;
 
+inline constexpr std::uint32_t kNoLocal = ~std::uint32_t{0};
+
 /// A construct of the control flow that is being built and can be left.
 struct Scope {
   enum class Kind : std::uint8_t { kSelection, kCase, kLoop, kFunction } kind = Kind::kSelection;
@@ -113,6 +115,7 @@ struct Scope {
   std::uint32_t exit = 0;  ///< number in Exit instructions (not kLoop)
   bool exit_used = false;
   const std::unordered_map<std::uint32_t, std::uint32_t>* falls = nullptr;  ///< kCase: case label -> fall-through flag
+  std::uint32_t own_case = 0;  ///< kCase: its label, to which nothing falls
   std::shared_ptr<Assigned>
       left;  ///< what holds on all jumps to its end so far; null: there are none (initialization.h)
 };
@@ -120,8 +123,8 @@ struct Scope {
 /// A function instance that is being inlined.
 struct Frame {
   const Function* function = nullptr;
-  std::uint32_t result_local = 0;
-  std::size_t scope = 0;  ///< index of its kFunction scope
+  std::uint32_t result_local = 0;  ///< kNoLocal: it returns nothing
+  std::size_t scope = 0;           ///< index of its kFunction scope
 };
 
 struct Translator {
@@ -168,8 +171,11 @@ struct Translator {
   std::unordered_set<std::uint32_t> built_blocks;                   ///< in the running function instance
   std::unordered_map<std::uint32_t, MeetingPoints> meeting_points;  ///< entry block of a function -> those in it
   std::uint32_t exits = 0;
-  std::uint32_t depth = 0;  ///< of the recursion over the control flow
-  std::size_t nodes = 0;    ///< emitted so far
+  std::uint32_t depth = 0;    ///< of the recursion over the control flow
+  std::size_t nodes = 0;      ///< emitted so far
+  std::size_t steps = 0;      ///< instructions of the module translated so far, in every function instance
+  std::size_t leaves = 0;     ///< of all values so far
+  std::size_t arguments = 0;  ///< that values cross joins as, so far
 
   std::shared_ptr<Initialization> initialization;  ///< null: nobody asks which variables have been written
 
@@ -180,8 +186,13 @@ struct Translator {
 /// A path of an interface variable (first step) that is stored to somewhere; kWholeVariable: at a dynamic index.
 inline constexpr std::uint32_t kWholeVariable = ~std::uint32_t{0};
 
-/// Bounds the size of what a module may expand to, so that a small module cannot ask for endless memory.
+/// Bounds the size of what a module may expand to, so that a small module cannot ask for endless memory or time.
 inline constexpr std::size_t kMaxNodes = 1u << 20;
+inline constexpr std::size_t kMaxSteps = 1u << 24;
+inline constexpr std::size_t kMaxLeaves = 1u << 25;
+inline constexpr std::size_t kMaxArguments = 1u << 24;
+/// Scalars of all variables that stay in memory.
+inline constexpr std::size_t kMaxArrayScalars = 1u << 18;
 /// Bounds the recursion over nested control flow.
 inline constexpr std::uint32_t kMaxDepth = 200;
 
@@ -218,8 +229,13 @@ inline ir::Src whole(ir::ValueId value) { return {value, {0, 1, 2, 3}}; }
 inline ir::Src splat(ir::ValueId value, std::uint8_t component = 0) {
   return {value, {component, component, component, component}};
 }
-inline std::uint32_t components(const Translator& t, ir::ValueId value) { return t.function.values[value].components; }
-inline bool is_boolean(const Translator& t, ir::ValueId value) { return t.function.values[value].boolean; }
+/// Fails where an operand is none: a number that lacks its high word.
+inline const ir::ValueInfo& info_of(const Translator& t, ir::ValueId value) {
+  if (value >= t.function.values.size()) throw Failure("operand does not fit its type");
+  return t.function.values[value];
+}
+inline std::uint32_t components(const Translator& t, ir::ValueId value) { return info_of(t, value).components; }
+inline bool is_boolean(const Translator& t, ir::ValueId value) { return info_of(t, value).boolean; }
 
 /// Component of a vector as a scalar value.
 ir::ValueId extract(Translator& t, ir::ValueId vector, std::uint32_t component);

@@ -35,7 +35,7 @@ struct Into {
 };
 
 Scope& push_scope(Translator& t, Scope::Kind kind, std::uint32_t merge) {
-  t.scopes.push_back({kind, merge, 0, t.exits++, false, nullptr, nullptr});
+  t.scopes.push_back({kind, merge, 0, t.exits++, false, nullptr, 0, nullptr});
   return t.scopes.back();
 }
 
@@ -99,7 +99,7 @@ bool jump_out(Translator& t, std::uint32_t label) {
       exit_scope(t, scope);
       return true;
     }
-    if (scope.falls == nullptr) continue;
+    if (scope.falls == nullptr || label == scope.own_case) continue;
     if (const auto fall = scope.falls->find(label); fall != scope.falls->end()) {
       store_flag(t, fall->second, true);
       store_flag(t, scope.falls->at(kAnyCase), true);
@@ -116,7 +116,7 @@ bool is_exit(const Translator& t, std::uint32_t label) {
     if (scope.kind == Scope::Kind::kFunction) return false;
     if (label == scope.merge) return true;
     if (scope.kind == Scope::Kind::kLoop) return label == scope.continue_target;
-    if (scope.falls != nullptr && scope.falls->count(label) != 0) return true;
+    if (scope.falls != nullptr && label != scope.own_case && scope.falls->count(label) != 0) return true;
   }
   return false;
 }
@@ -164,12 +164,11 @@ struct Case {
 /// Literals have as many words as the selector.
 std::vector<Case> read_cases(const Inst& inst, std::uint8_t width) {
   std::vector<Case> cases;
+  std::unordered_map<std::uint32_t, std::size_t> index;  ///< by label
   auto find = [&](std::uint32_t label) -> Case& {
-    for (Case& c : cases)
-      if (c.label == label) return c;
-    cases.push_back({});
-    cases.back().label = label;
-    return cases.back();
+    const auto [at, added] = index.try_emplace(label, cases.size());
+    if (added) cases.emplace_back().label = label;
+    return cases[at->second];
   };
   find(inst.operand(1)).is_default = true;
   const std::uint32_t words = width == 64 ? 2 : 1;
@@ -214,9 +213,8 @@ using Falls = std::unordered_map<std::uint32_t, std::uint32_t>;
 
 void build_case(Translator& t, Case& c, const Falls& falls, std::uint32_t merge) {
   Scope& scope = push_scope(t, Scope::Kind::kCase, merge);
-  Falls others = falls;
-  others.erase(c.label);
-  scope.falls = &others;
+  scope.falls = &falls;
+  scope.own_case = c.label;
   {
     const Into into(t, c.body);
     store_flag(t, falls.at(kAnyCase), false);
@@ -227,10 +225,8 @@ void build_case(Translator& t, Case& c, const Falls& falls, std::uint32_t merge)
 
 /// Order in which no case comes before one that falls into it; otherwise backwards, so that the default comes last: the
 /// reference's order, which decides what its rewrites see.
-std::vector<std::size_t> case_order(const std::vector<Case>& cases, const std::vector<std::vector<std::size_t>>& into) {
-  std::vector<std::size_t> target(cases.size(), cases.size());  ///< the case that a case falls into
-  for (std::size_t to = 0; to < cases.size(); to++)
-    for (const std::size_t from : into[to]) target[from] = to;
+/// `target`: the case that a case falls into; none: how many there are.
+std::vector<std::size_t> case_order(const std::vector<Case>& cases, const std::vector<std::size_t>& target) {
   std::vector<std::size_t> order;
   std::vector<bool> placed(cases.size(), false);
   for (std::size_t root = 0; root < cases.size(); root++) {
@@ -249,16 +245,34 @@ std::vector<std::size_t> case_order(const std::vector<Case>& cases, const std::v
   return order;
 }
 
-bool stores_flag(const Translator& t, const ir::NodeList& list, std::uint32_t flag) {
+/// The last of the cases whose flags (local -> number of the case) a list sets; `none`: none.
+std::size_t last_set(const Translator& t, const ir::NodeList& list,
+                     const std::unordered_map<std::uint32_t, std::size_t>& flags, std::size_t none) {
+  std::size_t last = none;
+  const auto take = [&](std::size_t number) {
+    if (number != none && (last == none || number > last)) last = number;
+  };
   for (const auto& node : list) {
     if (node->kind == ir::Node::Kind::kInstr) {
-      if (node->instr.op == ir::Op::kStoreVar && t.accesses[node->instr.data[0]].local == flag) return true;
-    } else if (stores_flag(t, node->then_list, flag) || stores_flag(t, node->else_list, flag) ||
-               stores_flag(t, node->body, flag) || stores_flag(t, node->continuing, flag)) {
-      return true;
+      if (node->instr.op != ir::Op::kStoreVar) continue;
+      const auto flag = flags.find(t.accesses[node->instr.data[0]].local);
+      if (flag != flags.end()) take(flag->second);
+    } else {
+      for (const ir::NodeList* part : {&node->then_list, &node->else_list, &node->body, &node->continuing})
+        take(last_set(t, *part, flags, none));
     }
   }
-  return false;
+  return last;
+}
+
+/// Into which case each falls.
+std::vector<std::size_t> fall_targets(const Translator& t, const std::vector<Case>& cases, const Falls& falls) {
+  std::unordered_map<std::uint32_t, std::size_t> flags;
+  for (std::size_t i = 0; i < cases.size(); i++)
+    if (const auto flag = falls.find(cases[i].label); flag != falls.end()) flags[flag->second] = i;
+  std::vector<std::size_t> targets;
+  for (const Case& c : cases) targets.push_back(last_set(t, c.body, flags, cases.size()));
+  return targets;
 }
 
 void build_switch(Translator& t, const Block& block, const Inst& inst) {
@@ -283,11 +297,7 @@ void build_switch(Translator& t, const Block& block, const Inst& inst) {
   }
   go_on_from(t, behind);
 
-  std::vector<std::vector<std::size_t>> into(cases.size());
-  for (std::size_t to = 0; to < cases.size(); to++)
-    for (std::size_t from = 0; from < cases.size() && falls.count(cases[to].label) != 0; from++)
-      if (stores_flag(t, cases[from].body, falls[cases[to].label])) into[to].push_back(from);
-  const std::vector<std::size_t> order = case_order(cases, into);
+  const std::vector<std::size_t> order = case_order(cases, fall_targets(t, cases, falls));
   for (const std::size_t i : order) {
     const ir::ValueId entered = case_condition(t, selector, cases[i], cases, order);
     const ir::ValueId condition = either(t, entered, load_flag(t, falls[kAnyCase]));
@@ -316,7 +326,7 @@ void build_loop(Translator& t, const Block& header) {
   store_flag(t, continues, false);
   t.inst = &t.module.code[header.last - 1];
   ir::Node& node = emit_node(t, ir::Node::Kind::kLoop);
-  t.scopes.push_back({Scope::Kind::kLoop, header.merge, header.continue_target, 0, false, nullptr, nullptr});
+  t.scopes.push_back({Scope::Kind::kLoop, header.merge, header.continue_target, 0, false, nullptr, 0, nullptr});
   const Assigned before = assigned_here(t);
   {
     const Into into(t, node.body);
@@ -372,6 +382,7 @@ std::uint32_t build_conditional_jump(Translator& t, const Block& block, const In
 
 void leave_function(Translator& t, const Inst& inst) {
   const Frame& frame = t.frames.back();
+  if (inst.op == Op::OpReturnValue && frame.result_local == kNoLocal) fail(inst, "the function returns no value");
   if (inst.op == Op::OpReturnValue) store_phi(t, frame.result_local, inst.operand(0));
   exit_scope(t, t.scopes[frame.scope]);
 }
@@ -461,6 +472,7 @@ void build_block(Translator& t, const Block& block) {
   for (std::uint32_t i = block.first; i < block.last; i++) {
     const Inst& inst = t.module.code[i];
     t.inst = &inst;
+    if (++t.steps > kMaxSteps) fail(inst, "the shader expands to too many instructions");
     if (inst.op == Op::OpPhi)
       load_phi(t, inst);
     else if (inst.op == Op::OpFunctionCall)
@@ -529,7 +541,7 @@ void place_literals(Translator& t, std::size_t constants, std::size_t prologue, 
   list = std::move(moved);
 }
 
-/// Inlines a function into the current list; afterwards `result_local` holds what it returned.
+/// Inlines a function into the current list; afterwards `result_local` (kNoLocal: none) holds what it returned.
 void build_function(Translator& t, const Function& callee, std::uint32_t result_local) {
   for (const Frame& frame : t.frames)
     if (frame.function == &callee) throw Failure("function %" + std::to_string(callee.id) + " is recursive");
@@ -560,7 +572,7 @@ void call(Translator& t, const Inst& inst) {
   if (callee == t.module.functions.end()) fail(inst, "calls something that is no function");
   bind_arguments(t, inst, callee->second);
   const bool has_result = t.module.type(inst.result_type).kind != Type::Kind::kVoid;
-  const std::uint32_t local = has_result ? new_local(t, inst.result_type, spv::StorageClass::Function, 0) : 0;
+  const std::uint32_t local = has_result ? new_local(t, inst.result_type, spv::StorageClass::Function, 0) : kNoLocal;
   const std::uint32_t here = inlined_place(t, inst.origin.place), caller = t.call;
   if (here != 0) t.call = here;
   build_function(t, callee->second, local);
@@ -577,7 +589,7 @@ void translate_entry(Translator& t) {
   const auto entry = t.module.functions.find(t.module.entry_function);
   if (entry == t.module.functions.end()) throw Failure("the entry point has no function");
   t.list = &t.function.body;
-  build_function(t, entry->second, 0);
+  build_function(t, entry->second, kNoLocal);
 }
 
 }  // namespace vitrine::spirv::front

@@ -26,6 +26,38 @@ void check_sources(const Translator& t, ir::Op op, std::uint32_t count, std::uin
   if (!fits) throw Failure("operand does not fit its type");
 }
 
+struct IntrinsicRow {
+  int sources, components;
+};
+constexpr IntrinsicRow kIntrinsics[] = {
+#define VITRINE_INTRINSIC(name, sources, components, effect) {sources, components},
+#include "spirv/intrinsics.def"
+#undef VITRINE_INTRINSIC
+};
+
+/// Whether the instruction passes values on whatever they are.
+bool takes_all(ir::Op op) {
+  return op == ir::Op::kVec || op == ir::Op::kConst || op == ir::Op::kUndef || op == ir::Op::kLoadVar ||
+         op == ir::Op::kStoreVar || op == ir::Op::kProbe;
+}
+
+/// Of all others each reads and gives numbers, but for Ballot, Elect and HelperInvocation.
+void check_intrinsic(const Translator& t, ir::Op op, std::uint32_t count, bool boolean,
+                     const std::vector<ir::Src>& sources) {
+  bool fits = count <= 4;
+  for (const ir::Src& src : sources) {
+    fits &= src.swizzle[0] < components(t, src.value);
+    fits &= takes_all(op) || is_boolean(t, src.value) == (op == ir::Op::kBallot);
+  }
+  if (op > ir::Op::kAluCount && op < ir::Op::kIntrinsicEnd) {
+    const IntrinsicRow& row = kIntrinsics[static_cast<int>(op) - static_cast<int>(ir::Op::kAluCount) - 1];
+    fits &= row.sources < 0 || sources.size() == static_cast<std::size_t>(row.sources);
+    fits &= row.components < 0 || count == static_cast<std::uint32_t>(row.components);
+    fits &= takes_all(op) || boolean == (op == ir::Op::kElect || op == ir::Op::kHelperInvocation);
+  }
+  if (!fits) throw Failure("operand does not fit its type");
+}
+
 /// Const instructions go to the front of the function.
 ir::ValueId add_constant(Translator& t, std::span<const std::uint32_t> words, bool boolean, bool is_undefined) {
   auto node = std::make_unique<ir::Node>();
@@ -70,7 +102,10 @@ ir::Node& emit_node(Translator& t, ir::Node::Kind kind) {
 
 ir::ValueId emit(Translator& t, ir::Op op, std::uint32_t components, bool boolean, std::vector<ir::Src> src,
                  std::uint8_t width) {
-  if (op < ir::Op::kAluCount) check_sources(t, op, components, width, src);
+  if (op < ir::Op::kAluCount)
+    check_sources(t, op, components, width, src);
+  else
+    check_intrinsic(t, op, components, boolean, src);
   ir::Instr& instr = append(t, op, std::move(src));
   instr.components = static_cast<std::uint8_t>(components);
   instr.boolean = boolean;
@@ -79,6 +114,7 @@ ir::ValueId emit(Translator& t, ir::Op op, std::uint32_t components, bool boolea
 }
 
 ir::Instr& emit_effect(Translator& t, ir::Op op, std::vector<ir::Src> src) {
+  check_intrinsic(t, op, 0, false, src);
   ir::Instr& instr = append(t, op, std::move(src));
   instr.components = 0;
   return instr;
@@ -131,6 +167,7 @@ ir::ValueId extract(Translator& t, ir::ValueId vector, std::uint32_t component) 
 }
 
 ir::ValueId vec(Translator& t, std::vector<ir::Src> scalars, bool boolean) {
+  if (scalars.empty()) throw Failure("operand does not fit its type");
   for (const ir::Src& part : scalars)
     if (scalars.size() > 4 || part.swizzle[0] >= components(t, part.value) || is_boolean(t, part.value) != boolean)
       throw Failure("operand does not fit its type");

@@ -47,6 +47,9 @@ ir::ValueId fragment_position(Translator& t);
 /// Descriptors and dimensions of an image: everything but what is done with it.
 ir::ImageInfo image_info(Translator& t, const ImageHandle& handle);
 
+/// Fails where the image or the operands are not what the instruction works on. `components`: of the result.
+void check_image(const Inst& inst, const ir::ImageInfo& info, std::uint32_t components);
+
 /// Collects the sources of an image instruction in the order of ir::ImageOperand.
 class ImageSources {
  public:

@@ -98,6 +98,7 @@ void add_image_operands(Translator& t, const Inst& inst, std::uint32_t at, Reque
 
 /// Emits the Image instruction with `count` result components (0: none).
 ir::ValueId finish(Translator& t, std::shared_ptr<ir::ImageInfo> info, ImageSources& sources, std::uint32_t count) {
+  check_image(*t.inst, *info, count);
   std::vector<ir::Src> src = sources.take();
   ir::ValueId result = ir::kNoValue;
   if (count == 0)
@@ -177,13 +178,13 @@ std::vector<ir::Src> ImageSources::take() {
 
 ir::ImageInfo image_info(Translator& t, const ImageHandle& handle) {
   ir::ImageInfo info;
-  if (handle.image_type != 0) {
-    const Type& type = t.module.type(handle.image_type);
-    info.dim = dimension(type);
-    if (type.dim == spv::Dim::SubpassData) t.function.interface.reads_attachment = true;
-    info.arrayed = type.arrayed;
-    info.multisampled = type.multisampled;
-  }
+  if (handle.image_type == 0) throw Failure("operand is a sampler, not an image");
+  const Type& type = t.module.type(handle.image_type);
+  if (type.kind != Type::Kind::kImage) throw Failure("operand is not an image");
+  info.dim = dimension(type);
+  if (type.dim == spv::Dim::SubpassData) t.function.interface.reads_attachment = true;
+  info.arrayed = type.arrayed;
+  info.multisampled = type.multisampled;
   info.set = handle.image.set;
   info.slot = handle.image.slot;
   info.count = handle.image.count;

@@ -81,7 +81,9 @@ struct Decorated {
 /// Bits of the widest number in it.
 std::uint32_t widest_number(const Translator& t, std::uint32_t type_id) {
   const Type& type = t.module.type(type_id);
-  if (type.kind != Kind::kStruct) return type.element != 0 ? widest_number(t, type.element) : type.width;
+  if (type.kind == Kind::kArray || type.kind == Kind::kMatrix || type.kind == Kind::kVector)
+    return widest_number(t, type.element);
+  if (type.kind != Kind::kStruct) return type.width;
   std::uint32_t width = 0;
   for (const std::uint32_t member : type.members) width = std::max(width, widest_number(t, member));
   return width;
@@ -174,6 +176,7 @@ struct Walk {
 
   void type(std::uint32_t type_id, Decorated decorated) {
     const Type& type_here = t.module.type(type_id);
+    if (is_too_large(type_here)) fail(variable, "interface variable is too large");
     align_capture(type_id);
     const bool is_struct = type_here.kind == Kind::kStruct;
     if (!is_struct && type_here.kind != Kind::kArray && type_here.kind != Kind::kMatrix)

@@ -43,7 +43,7 @@ void each_local_leaf(Translator& t, std::uint32_t type_id, std::vector<Step>& pa
   const bool is_struct = type.kind == Type::Kind::kStruct;
   const bool is_leaf = !is_struct && type.kind != Type::Kind::kArray && type.kind != Type::Kind::kMatrix;
   if (is_leaf && type.leaves < 2) return f(type_id, path);
-  if (type.scalars > kMaxScalars) throw Failure("variable of type %" + std::to_string(type_id) + " is too large");
+  if (is_too_large(type)) throw Failure("variable of type %" + std::to_string(type_id) + " is too large");
   const std::uint32_t count = is_leaf     ? type.leaves
                               : is_struct ? static_cast<std::uint32_t>(type.members.size())
                                           : type.count;
@@ -166,7 +166,7 @@ void each_memory_leaf(Translator& t, const Pointer& pointer, const F& f) {
   const Type& type = t.module.type(pointer.type);
   const bool is_struct = type.kind == Type::Kind::kStruct;
   if (!is_struct && type.kind != Type::Kind::kArray && type.kind != Type::Kind::kMatrix) return f(pointer);
-  if (type.scalars > kMaxScalars) throw Failure("value of type %" + std::to_string(type.id) + " is too large");
+  if (is_too_large(type)) throw Failure("value of type %" + std::to_string(type.id) + " is too large");
   const std::uint32_t count = is_struct ? static_cast<std::uint32_t>(type.members.size()) : type.count;
   for (std::uint32_t i = 0; i < count; i++) {
     Pointer part = pointer;

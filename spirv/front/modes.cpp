@@ -1,11 +1,20 @@
 // Execution modes (SPIR-V 3.6; Vulkan, the chapters of the stages): what the entry point declares about itself, into
 // its interface.
+#include <algorithm>
+
 #include "spirv/front/functions.h"
 
 namespace vitrine::spirv::front {
 namespace {
 
 using spv::Decoration;
+
+bool is_per_sample(const DecorationRow& row) {
+  const auto built_in = static_cast<spv::BuiltIn>(row.value);
+  return row.kind == Decoration::Sample ||
+         (row.kind == Decoration::BuiltIn &&
+          (built_in == spv::BuiltIn::SampleId || built_in == spv::BuiltIn::SamplePosition));
+}
 
 /// Vulkan 1.3.239, Sample Shading: "If a fragment shader entry point's interface includes an input variable decorated
 /// with SamplePosition, Sample Shading is considered enabled with a minSampleShading value of 1.0." The same holds for
@@ -14,13 +23,11 @@ bool shades_per_sample(const Module& module) {
   for (const std::uint32_t id : module.interface) {
     const Type& pointer = module.type(module.def(id).result_type);
     if (pointer.storage != spv::StorageClass::Input) continue;
-    for (const DecorationRow& row : module.decorations) {
-      if (row.id != id && (row.id != pointer.element || row.member == 0)) continue;
-      if (row.kind == Decoration::Sample) return true;
-      if (row.kind != Decoration::BuiltIn) continue;
-      const auto built_in = static_cast<spv::BuiltIn>(row.value);
-      if (built_in == spv::BuiltIn::SampleId || built_in == spv::BuiltIn::SamplePosition) return true;
-    }
+    const auto of_variable = module.decorations_of(id), of_type = module.decorations_of(pointer.element);
+    if (std::any_of(of_variable.begin(), of_variable.end(), is_per_sample)) return true;
+    if (std::any_of(of_type.begin(), of_type.end(),
+                    [](const DecorationRow& row) { return row.member != 0 && is_per_sample(row); }))
+      return true;
   }
   return false;
 }
@@ -30,6 +37,7 @@ void set_local_size(Translator& t, const std::uint32_t size[3]) {
     if (size[i] == 0 || size[i] > 1024) throw Failure("local size is out of range");
     t.function.interface.local_size[i] = size[i];
   }
+  if (std::uint64_t{size[0]} * size[1] * size[2] > 1024) throw Failure("local size is out of range");
 }
 
 /// Modes of tessellation and geometry stages. False: another one.

@@ -95,4 +95,10 @@ const DecorationRow* Module::decoration(std::uint32_t id, spv::Decoration kind, 
   return nullptr;
 }
 
+std::span<const DecorationRow> Module::decorations_of(std::uint32_t id) const {
+  const auto [first, end] = std::equal_range(decorations.begin(), decorations.end(), DecorationRow{id},
+                                             [](const auto& a, const auto& b) { return a.id < b.id; });
+  return {first, end};
+}
+
 }  // namespace vitrine::spirv::front

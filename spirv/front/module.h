@@ -79,12 +79,15 @@ struct Type {
   std::uint32_t leaves = 0;            ///< IR values that a value of this type consists of
   std::uint32_t depth_of_nesting = 0;  ///< of aggregates
   std::uint32_t scalars = 0;           ///< 32-bit components that a value of this type consists of
+  std::uint32_t parts = 1;             ///< it and all that it consists of, elements and members
 };
 
 /// Deepest nesting of aggregate types (bounds the recursion over a type).
 inline constexpr std::uint32_t kMaxTypeDepth = 64;
 /// Largest number of scalars of one value that the front end takes apart.
 inline constexpr std::uint32_t kMaxScalars = 1u << 16;
+/// Whether a value of the type is beyond what the front end takes apart: too many scalars, or structures without any.
+inline bool is_too_large(const Type& type) { return type.scalars > kMaxScalars || type.parts > 16 * kMaxScalars; }
 
 struct DecorationRow {
   std::uint32_t id = 0;
@@ -128,6 +131,8 @@ struct Module {
   SourceInfo sources;                    ///< without the calls that the translation inlines
   std::vector<std::uint32_t> interface;  ///< ids named by OpEntryPoint
   std::vector<Inst> modes;               ///< execution modes of the entry point
+  bool has_workgroup_blocks = false;     ///< variables of Workgroup memory are blocks
+  std::size_t constant_words = 0;        ///< of all constants
 
   const Type& type(std::uint32_t id) const;
   const Inst& def(std::uint32_t id) const;
@@ -140,6 +145,8 @@ struct Module {
   bool rounds_to_nearest(std::uint32_t width) const;
   /// The decoration on `id` (member = 0) or on its member number `member` - 1; null when absent.
   const DecorationRow* decoration(std::uint32_t id, spv::Decoration kind, std::uint32_t member = 0) const;
+  /// All decorations on an id and its members.
+  std::span<const DecorationRow> decorations_of(std::uint32_t id) const;
 };
 
 enum ExtSet : std::uint32_t { kExtUnknown, kExtGlsl450, kExtNonSemantic, kExtDebugInfo, kExtDebugPrintf };

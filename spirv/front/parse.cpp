@@ -12,6 +12,8 @@ using spv::Op;
 
 namespace {
 
+constexpr std::size_t kMaxDecorations = std::size_t{1} << 20;
+
 std::uint32_t string_words(const Inst& inst, std::uint32_t operand) {
   return static_cast<std::uint32_t>(string_at(inst, operand).size() / 4 + 1);
 }
@@ -49,7 +51,23 @@ void read_forward_pointer(Module& module, const Inst& inst) {
   type.id = inst.operand(0);
   type.storage = static_cast<spv::StorageClass>(inst.operand(1));
   set_pointer_size(type);
-  module.types[type.id] = type;
+  if (!module.types.emplace(type.id, type).second) fail(inst, "the type is declared already");
+}
+
+/// What was made of a pointer that was announced holds for the pointer that is declared.
+void check_announced(const Module& module, const Inst& inst, const Type& type) {
+  const auto announced = module.types.find(type.id);
+  if (announced == module.types.end()) return;
+  if (type.kind != Type::Kind::kPointer || announced->second.storage != type.storage)
+    fail(inst, "is not the pointer that OpTypeForwardPointer announced");
+}
+
+void expect(const Inst& inst, bool fits) {
+  if (!fits) fail(inst, "a type cannot consist of this one");
+}
+
+bool is_scalar(const Type& type) {
+  return type.kind == Type::Kind::kBool || type.kind == Type::Kind::kInt || type.kind == Type::Kind::kFloat;
 }
 
 void read_type(Module& module, const Inst& inst) {
@@ -67,6 +85,7 @@ void read_type(Module& module, const Inst& inst) {
     type.count = saturating(count);
     type.leaves = saturating(of.leaves * count);
     type.scalars = saturating(of.scalars * count);
+    type.parts = saturating(of.parts * count + 1);
   };
   switch (inst.op) {
     case Op::OpTypeVoid:
@@ -82,16 +101,21 @@ void read_type(Module& module, const Inst& inst) {
       type.kind = inst.op == Op::OpTypeInt ? Kind::kInt : Kind::kFloat;
       type.width = inst.operand(1);
       type.is_signed = inst.op == Op::OpTypeInt && inst.operand(2) != 0;
-      if (type.width != 8 && type.width != 16 && type.width != 32 && type.width != 64) fail(inst, "unsupported width");
+      if ((type.width != 8 || inst.op == Op::OpTypeFloat) && type.width != 16 && type.width != 32 && type.width != 64)
+        fail(inst, "unsupported width");
       type.leaves = type.scalars = type.width == 64 ? 2 : 1;
       break;
     case Op::OpTypeVector:
       repeat(element(Kind::kVector), inst.operand(2));
       if (type.count < 2 || type.count > 4) fail(inst, "unsupported vector size");
+      expect(inst, is_scalar(module.type(type.element)));
       type.leaves = module.type(type.element).leaves;
+      type.parts = 1;
       break;
     case Op::OpTypeMatrix:
       repeat(element(Kind::kMatrix), inst.operand(2));
+      if (type.count < 2 || type.count > 4) fail(inst, "unsupported matrix size");
+      expect(inst, module.type(type.element).kind == Kind::kVector);
       break;
     case Op::OpTypeArray:
       repeat(element(Kind::kArray), module.constant_u32(inst.operand(2), inst));
@@ -101,16 +125,18 @@ void read_type(Module& module, const Inst& inst) {
       break;
     case Op::OpTypeStruct: {
       type.kind = Kind::kStruct;
-      std::uint64_t leaves = 0, scalars = 0;
+      std::uint64_t leaves = 0, scalars = 0, parts = 1;
       for (std::uint32_t i = 1; inst.has(i); i++) {
         const Type& member = module.type(inst.operand(i));
         type.members.push_back(member.id);
         type.depth_of_nesting = std::max(type.depth_of_nesting, member.depth_of_nesting + 1);
         leaves += member.leaves;
         scalars += member.scalars;
+        parts += member.parts;
       }
       type.leaves = saturating(leaves);
       type.scalars = saturating(scalars);
+      type.parts = saturating(parts);
       break;
     }
     case Op::OpTypePointer:
@@ -130,7 +156,7 @@ void read_type(Module& module, const Inst& inst) {
       type.kind = Kind::kSampler;
       break;
     case Op::OpTypeSampledImage:
-      element(Kind::kSampledImage);
+      expect(inst, element(Kind::kSampledImage).kind == Kind::kImage);
       break;
     case Op::OpTypeFunction:
       type.kind = Kind::kFunction;
@@ -143,6 +169,7 @@ void read_type(Module& module, const Inst& inst) {
   if (type.depth_of_nesting > kMaxTypeDepth) fail(inst, "type is too deeply nested");
   if (const DecorationRow* stride = module.decoration(type.id, spv::Decoration::ArrayStride))
     type.array_stride = stride->value;
+  check_announced(module, inst, type);
   module.types[type.id] = std::move(type);
 }
 
@@ -171,6 +198,7 @@ void read_group_decoration(Module& module, const Inst& inst) {
       copy.id = inst.operand(i);
       if (members) copy.member = inst.operand(i + 1) + 1;
       module.decorations.push_back(copy);
+      if (module.decorations.size() > kMaxDecorations) fail(inst, "too many decorations");
     }
 }
 
@@ -191,7 +219,10 @@ void split(Module& module, std::span<const std::uint32_t> words) {
     // Types keep their own id as operand 0, so that operands count as in the specification's table of a type.
     if (has_result && !has_type && spv::Op::OpTypeVoid <= inst.op && inst.op <= spv::Op::OpTypeFunction) inst.first--;
     inst.origin = {inst.result, 0};
-    if (inst.result != 0) module.definition[inst.result] = static_cast<std::uint32_t>(module.code.size());
+    if (has_result && inst.result == 0) throw Failure("SPIR-V instruction defines the id 0");
+    // All tables go by id: what an id means must never change.
+    const auto index = static_cast<std::uint32_t>(module.code.size());
+    if (has_result && !module.definition.emplace(inst.result, index).second) fail(inst, "the id is defined already");
     module.code.push_back(inst);
     at += length;
   }
@@ -282,6 +313,14 @@ void read_functions(Module& module) {
   }
 }
 
+bool has_workgroup_blocks(const Module& module) {
+  return std::any_of(module.globals.begin(), module.globals.end(), [&](std::uint32_t index) {
+    const Type& pointer = module.type(module.code[index].result_type);
+    return pointer.storage == spv::StorageClass::Workgroup &&
+           module.decoration(pointer.element, spv::Decoration::Block) != nullptr;
+  });
+}
+
 }  // namespace
 
 Module parse_module(std::span<const std::uint32_t> words, const CompileOptions& options, SourceTexts texts) {
@@ -299,6 +338,7 @@ Module parse_module(std::span<const std::uint32_t> words, const CompileOptions& 
     if (inst.op == Op::OpUndef && !in_function) fold_constant(module, inst, options);
     if (inst.op == Op::OpVariable && !in_function) module.globals.push_back(i);
   }
+  module.has_workgroup_blocks = has_workgroup_blocks(module);
   read_functions(module);
   return module;
 }

@@ -51,6 +51,8 @@ bool is_block_array(const Translator& t, const Type& type) {
 /// Bytes from the start of a value in a buffer to its end: the stride of an array of them whose pointers have none.
 std::uint32_t bytes_of(const Translator& t, std::uint32_t type_id) {
   const Type& type = t.module.type(type_id);
+  if (type.kind == Type::Kind::kStruct && is_too_large(type))
+    throw Failure("type %" + std::to_string(type_id) + " is too large");
   std::uint32_t end = 0;
   switch (type.kind) {
     case Type::Kind::kArray:

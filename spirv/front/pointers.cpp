@@ -25,6 +25,7 @@ Pointer descriptor_pointer(const Translator& t, const Inst& variable, std::uint3
 std::uint64_t explicit_bytes(const Translator& t, std::uint32_t type_id,
                              std::pair<std::uint32_t, std::uint32_t> member) {
   const Type& type = t.module.type(type_id);
+  if (is_too_large(type)) throw Failure("type %" + std::to_string(type_id) + " is too large");
   switch (type.kind) {
     case Type::Kind::kStruct: {
       std::uint64_t bytes = 0;
@@ -68,6 +69,7 @@ Pointer buffer_pointer(Translator& t, const Inst& variable, StorageClass storage
 }
 
 Pointer shared_pointer(Translator& t, const Inst& variable, std::uint32_t type_id) {
+  if (t.options.stage != VK_SHADER_STAGE_COMPUTE_BIT) fail(variable, "Workgroup memory is of compute shaders only");
   if (variable.has(1)) {  // "must be OpConstantNull" (Vulkan, Workgroup storage class); the memory starts as zeros
     const Constant* start = t.module.constant(variable.operand(1));
     if (start == nullptr || std::any_of(start->words.begin(), start->words.end(), [](auto word) { return word != 0; }))
@@ -137,8 +139,8 @@ Step make_step(Translator& t, std::uint32_t index_id) {
 }
 
 void step_local(const Inst& inst, const Type& type, Pointer& pointer, Step step) {
+  if (type.kind != Type::Kind::kStruct && type.count == 0) fail(inst, "index into an array without elements");
   if (!step.dynamic && step.index >= type.count && type.kind != Type::Kind::kStruct) {
-    if (type.count == 0) fail(inst, "index into an array without elements");
     step.index = type.count - 1;  // lavapipe-shader-math.md 10: clamped to the last element
   }
   if (type.kind == Type::Kind::kVector)
@@ -201,13 +203,7 @@ void step_memory(Translator& t, const Inst& inst, const Type& type, Pointer& poi
 
 }  // namespace
 
-bool has_workgroup_blocks(const Translator& t) {
-  return std::any_of(t.module.globals.begin(), t.module.globals.end(), [&](std::uint32_t index) {
-    const Type& pointer = t.module.type(t.module.code[index].result_type);
-    return pointer.storage == StorageClass::Workgroup &&
-           t.module.decoration(pointer.element, Decoration::Block) != nullptr;
-  });
-}
+bool has_workgroup_blocks(const Translator& t) { return t.module.has_workgroup_blocks; }
 
 std::uint32_t component_bytes(const Translator& t, const Pointer& pointer) {
   if (pointer.component_stride != 0) return pointer.component_stride;
@@ -263,7 +259,8 @@ void step_into(Translator& t, const Inst& inst, Pointer& pointer, const Step& st
     fail(inst, "member out of range");
   if (pointer.component) fail(inst, "index into a scalar");
   if (pointer.kind == Pointer::Kind::kLocal) {
-    if (type.kind == Type::Kind::kRuntimeArray || type.element + type.members.size() == 0)
+    if (type.kind != Type::Kind::kStruct && type.kind != Type::Kind::kArray && type.kind != Type::Kind::kMatrix &&
+        type.kind != Type::Kind::kVector)
       fail(inst, "index into a scalar");
     step_local(inst, type, pointer, step);
   } else if (pointer.kind == Pointer::Kind::kDescriptor || pointer.kind == Pointer::Kind::kTexel) {

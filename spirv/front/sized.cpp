@@ -335,6 +335,7 @@ Expr constant_bits(Translator& t, std::uint64_t bits, std::uint8_t width) {
 }
 
 Expr vector_of(std::span<const Expr> scalars) {
+  if (scalars.empty()) throw Failure("operand does not fit its type");
   const Expr& first = scalars[0];
   Translator& t = *first.t;
   std::vector<ir::Src> low, high;

@@ -69,7 +69,13 @@ struct Builder {
     info[slot] = t.function.values[instr.op == ir::Op::kLoadVar ? instr.result : instr.src[0].value];
   }
 
+  void count_arguments(std::size_t count) {
+    t.arguments += count;
+    if (t.arguments > kMaxArguments) throw Failure("too many variables live across the control flow");
+  }
+
   std::vector<ir::Src> values(const Slots& slots) {
+    count_arguments(slots.size());
     std::vector<ir::Src> sources;
     for (std::uint32_t slot : slots) sources.push_back(whole(value(slot)));
     return sources;
@@ -178,6 +184,7 @@ struct Builder {
   void process_if(ir::Node& node) {
     resolve(node.condition);
     const Slots slots = stored[&node];
+    count_arguments(slots.size());
     std::vector<ir::ValueId> before, after_then, after_else;
     for (std::uint32_t slot : slots) before.push_back(value(slot));
     auto branch = [&](ir::NodeList& list, std::vector<ir::ValueId>& after) {

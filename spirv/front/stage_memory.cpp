@@ -16,6 +16,8 @@ using spv::Decoration;
 using Kind = Type::Kind;
 
 constexpr std::uint32_t kMaxLocations = 128;
+/// Of an emitted vertex: its locations and built-ins.
+constexpr std::uint32_t kMaxVertexWords = 4 * kMaxLocations + 128;
 
 bool is_tess_level(const Translator& t, const Inst& variable) {
   const DecorationRow* row = t.module.decoration(variable.result, Decoration::BuiltIn);
@@ -39,7 +41,7 @@ bool is_patch(const Translator& t, const Inst& variable) {
 /// Locations that a value of this type takes.
 std::uint32_t locations(const Translator& t, std::uint32_t type_id) {
   const Type& type = t.module.type(type_id);
-  if (type.scalars > kMaxScalars) throw Failure("interface variable is too large");
+  if (is_too_large(type)) throw Failure("interface variable is too large");
   std::uint32_t sum = 0;
   switch (type.kind) {
     case Kind::kStruct:
@@ -57,20 +59,23 @@ std::uint32_t location_word(bool patch, std::uint32_t location) {
   return (patch ? kPatchHeaderWords : kVertexHeaderWords) + 4 * location;
 }
 
+std::uint32_t end_of(const Inst& variable, std::uint32_t location, std::uint32_t count) {
+  if (location > kMaxLocations || count > kMaxLocations - location) fail(variable, "location is too large");
+  return location + count;
+}
+
 /// Locations up to the last one that the variable (of `type_id` per vertex) uses.
 std::uint32_t locations_end(const Translator& t, const Inst& variable, std::uint32_t type_id) {
   const DecorationRow* location = t.module.decoration(variable.result, Decoration::Location);
   const bool built_in = t.module.decoration(variable.result, Decoration::BuiltIn) != nullptr;
   const Type& type = t.module.type(type_id);
-  std::uint32_t end = location != nullptr ? location->value + locations(t, type_id) : 0;
+  std::uint32_t end = location != nullptr ? end_of(variable, location->value, locations(t, type_id)) : 0;
   if (type.kind == Kind::kStruct) {
     for (std::uint32_t i = 0; i < type.members.size(); i++)
       if (const DecorationRow* row = t.module.decoration(type_id, Decoration::Location, i + 1))
-        end = std::max(end, row->value + locations(t, type.members[i]));
+        end = std::max(end, end_of(variable, row->value, locations(t, type.members[i])));
   }
-  if (built_in) end = 0;
-  if (end > kMaxLocations) fail(variable, "location is too large");
-  return end;
+  return built_in ? 0 : end;
 }
 
 std::uint32_t byte_of_built_in(const Inst& inst, std::uint32_t built_in) {
@@ -161,6 +166,7 @@ void prepare_geometry(Translator& t) {
   }
   t.emitted_locals = static_cast<std::uint32_t>(t.locals.size());
   t.function.interface.modes.vertex_words = each_emitted(t, [](std::uint32_t, const Leaf&, std::uint32_t) {});
+  if (t.function.interface.modes.vertex_words > kMaxVertexWords) throw Failure("outputs of a vertex are too many");
   t.list = &t.prologue;
   t.emitted_local = new_local(t, ir::ValueInfo{1, false});
   store_raw(t, t.emitted_local, constant_u32(t, 0));

@@ -80,6 +80,7 @@ void image_atomic(Translator& t, ir::AtomicOp op, const Pointer& pointer, const 
   sources.add(ir::ImageOperand::kSample, pointer.sample);
   sources.add(ir::ImageOperand::kValue, operands.value.id);
   sources.add(ir::ImageOperand::kCompare, operands.comparator.id);
+  check_image(*t.inst, *info, 1);
   instr.op = ir::Op::kImage;
   instr.src = sources.take();
   instr.image = std::move(info);

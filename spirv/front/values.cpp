@@ -28,7 +28,7 @@ ir::ValueInfo leaf_info(const Translator& t, std::uint32_t type_id) {
 
 void leaf_types(const Translator& t, std::uint32_t type_id, std::vector<std::uint32_t>& leaves) {
   const Type& type = t.module.type(type_id);
-  if (type.scalars > kMaxScalars) throw Failure("value of type %" + std::to_string(type_id) + " is too large");
+  if (is_too_large(type)) throw Failure("value of type %" + std::to_string(type_id) + " is too large");
   switch (type.kind) {
     case Type::Kind::kStruct:
       for (std::uint32_t member : type.members) leaf_types(t, member, leaves);
@@ -62,7 +62,10 @@ Value constant_value(Translator& t, std::uint32_t type, std::span<const std::uin
     if (at + parts * info.components > words.size()) throw Failure("constant does not fit its type");
     for (std::uint32_t part = 0; part < parts; part++) {
       std::uint32_t leaf[4] = {};
-      for (std::uint32_t c = 0; c < info.components; c++) leaf[c] = words[at + c * parts + part];
+      for (std::uint32_t c = 0; c < info.components; c++) {
+        leaf[c] = words[at + c * parts + part];
+        if (info.boolean) leaf[c] = leaf[c] != 0;
+      }
       const std::span<const std::uint32_t> own(leaf, info.components);
       value.leaves.push_back(is_undefined                  ? undefined(t, info.components, info.boolean)
                              : words.size() <= kMaxLiteral ? literal(t, own, info.boolean)
@@ -148,6 +151,8 @@ void set_value(Translator& t, const Inst& inst, std::vector<ir::ValueId> leaves)
   std::vector<std::uint32_t> types;
   leaf_types(t, inst.result_type, types);
   if (types.size() != leaves.size()) fail(inst, "value does not fit its type");
+  t.leaves += leaves.size();
+  if (t.leaves > kMaxLeaves) fail(inst, "the values of the shader are too large");
   for (std::size_t i = 0; i < types.size(); i++) check_leaf(t, types[i], leaves[i]);
   t.values[inst.result] = {inst.result_type, std::move(leaves)};
 }

@@ -16,6 +16,7 @@ struct Arrays {
   std::set<Key> in_memory;             ///< paths whose next step is dynamic somewhere
   std::map<Key, std::uint32_t> slots;  ///< SSA slot of a leaf
   std::map<Key, std::uint32_t> arrays;
+  std::size_t scalars = 0;  ///< of all arrays
 };
 
 /// What an access means: a slot, or scalars of an array at constant + dynamic.
@@ -91,7 +92,9 @@ Target resolve(Arrays& a, const Access& access, std::span<const ir::Src> dynamic
   const auto [at, added] = a.arrays.try_emplace(key, static_cast<std::uint32_t>(a.t.function.arrays.size()));
   if (added) {
     const std::uint32_t scalars = a.t.module.type(type).scalars;
-    if (scalars > kMaxScalars) throw Failure("a dynamically indexed variable is too large");
+    a.scalars += scalars;
+    if (scalars == 0 || scalars > kMaxScalars || a.scalars > kMaxArrayScalars)
+      throw Failure("a dynamically indexed variable is too large");
     a.t.function.arrays.push_back({scalars});
   }
   target.number = at->second;
@@ -162,7 +165,7 @@ void rewrite(Arrays& a, ir::NodeList& list) {
 }  // namespace
 
 void resolve_arrays(Translator& t) {
-  Arrays arrays{t, {}, {}, {}};
+  Arrays arrays{t, {}, {}, {}, 0};
   t.inst = nullptr;
   t.exact = false;
   find_memory(arrays);

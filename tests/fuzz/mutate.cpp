@@ -129,6 +129,45 @@ void change_word(Words& words, const std::vector<Place>& list, Random& random) {
   }
 }
 
+/// A word of an instruction becomes any id, of whatever it is: types where values are wanted, and the other way round.
+void confuse(Words& words, const std::vector<Place>& list, Random& random) {
+  const Place& place = list[below(random, list.size())];
+  const Place& other = list[below(random, list.size())];
+  if (place.length < 2 || other.result == 0) return;
+  const bool retype = place.type != 0 && below(random, 3) == 0;
+  if (retype && other.type == 0 && other.op != spv::Op::OpLabel)
+    words[place.at + 1] = other.result;
+  else
+    words[place.at + 1 + below(random, place.length - 1u)] = other.result;
+}
+
+/// An instruction loses its last word, or has it twice.
+void resize(Words& words, const std::vector<Place>& list, Random& random) {
+  const Place& place = list[below(random, list.size())];
+  if (place.length < 2 || place.length == UINT16_MAX) return;
+  const auto last = words.begin() + static_cast<std::ptrdiff_t>(place.at + place.length - 1);
+  const bool grow = below(random, 2) == 0;
+  if (grow)
+    words.insert(last, *last);
+  else
+    words.erase(last);
+  words[place.at] = (place.length + (grow ? 1u : -1u)) << 16 | static_cast<std::uint32_t>(place.op);
+}
+
+/// A declaration moves to another place in front of the functions: what it names may come later then.
+void move_declaration(Words& words, const std::vector<Place>& list, Random& random) {
+  const std::size_t bodies = list.size() - in_functions(list).size();
+  if (bodies < 2) return;
+  const Place& from = list[below(random, bodies)];
+  const Place& to = list[below(random, bodies)];
+  const auto begin = words.begin() + static_cast<std::ptrdiff_t>(from.at), end = begin + from.length;
+  const auto target = words.begin() + static_cast<std::ptrdiff_t>(to.at);
+  if (to.at < from.at)
+    std::rotate(target, begin, end);
+  else if (to.at > from.at)
+    std::rotate(begin, end, target);
+}
+
 void remove(Words& words, const std::vector<Place>& list, Random& random) {
   const Place& place = list[below(random, list.size())];
   const auto begin = words.begin() + static_cast<std::ptrdiff_t>(place.at);
@@ -275,7 +314,7 @@ void mutate(Words& words, Random& random) {
   for (std::size_t left = 1 + below(random, 4); left > 0; left--) {
     const std::vector<Place> list = instructions(words);
     if (list.size() < 2) return;
-    switch (below(random, 12)) {
+    switch (below(random, 17)) {
       case 0:
         remove(words, list, random);
         break;
@@ -293,6 +332,17 @@ void mutate(Words& words, Random& random) {
       case 6:
       case 7:
         swap_opcode(words, list, random);
+        break;
+      case 8:
+      case 9:
+      case 10:
+        confuse(words, list, random);
+        break;
+      case 11:
+        resize(words, list, random);
+        break;
+      case 12:
+        move_declaration(words, list, random);
         break;
       default:
         swap_operand(words, list, in_functions(list), random);
