@@ -169,6 +169,21 @@ TEST_F(Device, CommandsOfTheDeviceNeedItsExtensions) {
   EXPECT_EQ(get(device, "vkCreateDevice"), nullptr) << "not a device command";
 }
 
+TEST(DeviceCommands, OfDebugUtilsNeedTheInstancesExtension) {
+  VkInstance instance;
+  ASSERT_EQ(create_instance(&instance), VK_SUCCESS);
+  std::uint32_t count = 1;
+  VkPhysicalDevice physical_device;
+  ASSERT_EQ(VK_GET(instance, EnumeratePhysicalDevices)(instance, &count, &physical_device), VK_SUCCESS);
+  VkDevice device;
+  ASSERT_EQ(create_device(instance, physical_device, &device), VK_SUCCESS);
+  for (const char* name : {"vkSetDebugUtilsObjectNameEXT", "vkQueueBeginDebugUtilsLabelEXT",
+                           "vkCmdBeginDebugUtilsLabelEXT", "vkCmdInsertDebugUtilsLabelEXT"})
+    EXPECT_EQ(VK_GET(instance, GetDeviceProcAddr)(device, name), nullptr) << name;
+  VK_GET(instance, DestroyDevice)(device, nullptr);
+  VK_GET(instance, DestroyInstance)(instance, nullptr);
+}
+
 TEST_F(Device, PipelineCacheDataIsAHeader) {
   const VkPipelineCacheCreateInfo info = make_struct<VkPipelineCacheCreateInfo>();
   VkPipelineCache cache;
