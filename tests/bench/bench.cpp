@@ -11,10 +11,11 @@
 namespace vitrine::bench {
 
 std::vector<Workload> workloads() {
+  std::vector<Workload> transfers = transfer_workloads();
+  for (Workload& transfer : transfers) transfer.runs_shaders = false;
   std::vector<Workload> all;
-  for (auto& group :
-       {fill_workloads(), triangle_workloads(), scene_workloads(), shader_workloads(), texture_workloads(),
-        lookup_workloads(), compute_workloads(), transfer_workloads(), overhead_workloads()}) {
+  for (auto& group : {fill_workloads(), triangle_workloads(), scene_workloads(), shader_workloads(),
+                      texture_workloads(), lookup_workloads(), compute_workloads(), transfers, overhead_workloads()}) {
     all.insert(all.end(), group.begin(), group.end());
   }
   return all;

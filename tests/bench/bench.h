@@ -18,6 +18,7 @@ struct Workload {
   const char* unit;
   bool lower_is_better = false;
   std::function<double(Run&)> measure;
+  bool runs_shaders = true;  ///< draws and dispatches are most of it, so that tools that watch shaders cost something
 };
 
 /// Every workload, in the order of the table.

@@ -1,5 +1,6 @@
 // The benchmark's driver: runs each workload in a child process on Vitrine, lavapipe and SwiftShader in turn, several
 // rounds, and prints medians and ratios. Usage: vitrine_bench [--rounds=N] [--filter=TEXT] [--icd=NAME=MANIFEST]...
+// [--tools=LIST]...: another column, Vitrine with these tools, instead of the peers; what they report is thrown away.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +20,7 @@ namespace {
 
 struct Driver {
   std::string name, manifest;
+  std::string tools = {};  ///< as VITRINE_TOOLS has them
 };
 
 cts::Gpu open_gpu() {
@@ -110,6 +112,10 @@ void spawn(const Driver& driver, const std::string& workload, std::map<std::stri
     setenv("LP_PERF", "no_rast_linear", 1);
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     setenv("VK_LOADER_LAYERS_DISABLE", "~all~", 1);
+    setenv("VITRINE_TOOLS", driver.tools.c_str(), 1);
+    for (const char* output :
+         {"VITRINE_REPORT", "VITRINE_COVERAGE", "VITRINE_COUNTS", "VITRINE_TIMELINE", "VITRINE_SOURCES"})
+      setenv(output, "/dev/null", 1);
     const std::string argument = "--child=" + workload;
     execl("/proc/self/exe", "vitrine_bench", argument.c_str(), nullptr);
     _exit(127);
@@ -132,12 +138,23 @@ double median(std::vector<double> values) {
 
 struct Row {
   std::string name, unit;
-  bool lower_is_better;
+  bool lower_is_better, runs_shaders;
 };
 
-/// One table row; the ratios say how many times better the first driver is than each other one.
+/// What a geometric mean is made of.
+struct Ratios {
+  double log_sum = 0;
+  std::size_t rows = 0;
+  void add(double ratio) {
+    log_sum += std::log(ratio);
+    ++rows;
+  }
+};
+
+/// One table row; the ratios say how many times better the first driver is than each other one. Those of rows without
+/// shaders count only where no tools are on.
 void print_row(const Row& row, const std::vector<Driver>& drivers,
-               const std::map<std::string, std::vector<double>>* samples, std::vector<double>& log_ratios) {
+               const std::map<std::string, std::vector<double>>* samples, std::vector<Ratios>& ratios) {
   std::printf("| %-16s | %-9s |", row.name.c_str(), row.unit.c_str());
   std::vector<double> values;
   for (std::size_t d = 0; d < drivers.size(); ++d) {
@@ -148,32 +165,33 @@ void print_row(const Row& row, const std::vector<Driver>& drivers,
   for (std::size_t d = 1; d < drivers.size(); ++d) {
     const double ratio = row.lower_is_better ? values[d] / values[0] : values[0] / values[d];
     std::printf(" %10.2f |", ratio);
-    if (d == 1 && std::isfinite(ratio)) log_ratios.push_back(std::log(ratio));
+    if (std::isfinite(ratio) && (row.runs_shaders || drivers[d].tools.empty())) ratios[d].add(ratio);
   }
   std::printf("\n");
   std::fflush(stdout);
 }
 
-std::vector<Driver> default_drivers() {
-  std::vector<Driver> drivers{{"vitrine", BENCH_DEFAULT_ICD},
-                              {"lavapipe", "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json"}};
+void add_peers(std::vector<Driver>& drivers) {
+  drivers.push_back({"lavapipe", "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json"});
   const char* swiftshader = "/usr/lib/chromium/vk_swiftshader_icd.json";
   if (access(swiftshader, R_OK) == 0) drivers.push_back({"swiftshader", swiftshader});
-  return drivers;
 }
 
-int run_parent(std::vector<Driver> drivers, int rounds, const std::string& filter) {
-  if (drivers.empty()) drivers = default_drivers();
-  std::vector<std::vector<Row>> groups{{{"start_to_pixel", "ms", true}, {"start_rss", "MB", true}}};
-  for (const Workload& workload : workloads())
-    groups.push_back({{workload.name, workload.unit, workload.lower_is_better}});
+void print_head(const std::vector<Driver>& drivers) {
   std::printf("| %-16s | %-9s |", "workload", "unit");
   for (const Driver& driver : drivers) std::printf(" %11s |", driver.name.c_str());
   for (std::size_t d = 1; d < drivers.size(); ++d) std::printf(" x %-8.8s |", drivers[d].name.c_str());
   std::printf("\n|---|---|");
   for (std::size_t column = 0; column < drivers.size() * 2 - 1; ++column) std::printf("---:|");
   std::printf("\n");
-  std::vector<double> log_ratios;
+}
+
+int run_parent(const std::vector<Driver>& drivers, int rounds, const std::string& filter) {
+  std::vector<std::vector<Row>> groups{{{"start_to_pixel", "ms", true, false}, {"start_rss", "MB", true, false}}};
+  for (const Workload& workload : workloads())
+    groups.push_back({{workload.name, workload.unit, workload.lower_is_better, workload.runs_shaders}});
+  print_head(drivers);
+  std::vector<Ratios> ratios(drivers.size());
   for (const std::vector<Row>& group : groups) {
     if (group[0].name.find(filter) == std::string::npos) continue;
     std::vector<std::map<std::string, std::vector<double>>> samples(drivers.size());
@@ -181,13 +199,13 @@ int run_parent(std::vector<Driver> drivers, int rounds, const std::string& filte
     for (int round = 0; round < rounds; ++round) {
       for (std::size_t d = 0; d < drivers.size(); ++d) spawn(drivers[d], child, samples[d]);
     }
-    for (const Row& row : group) print_row(row, drivers, samples.data(), log_ratios);
+    for (const Row& row : group) print_row(row, drivers, samples.data(), ratios);
   }
-  double sum = 0;
-  for (const double value : log_ratios) sum += value;
-  if (!log_ratios.empty()) {
-    std::printf("geometric mean against %s over %zu rows: %.2f\n", drivers.at(1).name.c_str(), log_ratios.size(),
-                std::exp(sum / static_cast<double>(log_ratios.size())));
+  for (std::size_t d = 1; d < drivers.size(); ++d) {
+    if (ratios[d].rows == 0) continue;
+    std::printf("geometric mean against %s over %zu rows%s: %.2f\n", drivers[d].name.c_str(), ratios[d].rows,
+                drivers[d].tools.empty() ? "" : " that run shaders",
+                std::exp(ratios[d].log_sum / static_cast<double>(ratios[d].rows)));
   }
   return 0;
 }
@@ -197,7 +215,7 @@ int run_parent(std::vector<Driver> drivers, int rounds, const std::string& filte
 
 int main(int argc, char** argv) {
   using namespace vitrine::bench;
-  std::vector<Driver> drivers;
+  std::vector<Driver> drivers, with_tools;
   std::string filter;
   int rounds = 3;
   for (int i = 1; i < argc; ++i) {
@@ -214,10 +232,22 @@ int main(int argc, char** argv) {
     } else if (const char* icd = value("--icd=")) {
       const char* equals = std::strchr(icd, '=');
       if (equals) drivers.push_back({std::string(icd, equals), equals + 1});
+    } else if (const char* tools = value("--tools=")) {
+      with_tools.push_back({tools, {}, tools});
     } else {
-      std::fprintf(stderr, "usage: %s [--rounds=N] [--filter=TEXT] [--icd=NAME=MANIFEST]...\n", argv[0]);
+      std::fprintf(stderr, "usage: %s [--rounds=N] [--filter=TEXT] [--icd=NAME=MANIFEST]... [--tools=LIST]...\n",
+                   argv[0]);
       return 2;
     }
+  }
+  if (drivers.empty()) {
+    drivers.push_back({"vitrine", BENCH_DEFAULT_ICD});
+    if (with_tools.empty()) add_peers(drivers);
+  }
+  // Tools are those of the first driver, against which everything is held.
+  for (Driver& driver : with_tools) {
+    driver.manifest = drivers[0].manifest;
+    drivers.push_back(driver);
   }
   return run_parent(drivers, rounds, filter);
 }

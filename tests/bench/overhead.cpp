@@ -107,13 +107,13 @@ double new_pipeline(Run& run, std::uint32_t statements) {
 
 std::vector<Workload> overhead_workloads() {
   return {{"draws_push", "kdraw/s", false, many_draws},
-          {"renderpasses", "kpass/s", false, render_passes},
+          {"renderpasses", "kpass/s", false, render_passes, false},
           {"c_dispatches", "kdisp/s", false, dispatches},
-          {"empty_submit", "ksubmit/s", false, empty_submits},
-          {"clears", "GB/s", false, clears},
-          {"pipeline_tiny", "ms", true, [](Run& run) { return new_pipeline(run, 1); }},
-          {"pipeline_medium", "ms", true, [](Run& run) { return new_pipeline(run, 20); }},
-          {"pipeline_large", "ms", true, [](Run& run) { return new_pipeline(run, 100); }}};
+          {"empty_submit", "ksubmit/s", false, empty_submits, false},
+          {"clears", "GB/s", false, clears, false},
+          {"pipeline_tiny", "ms", true, [](Run& run) { return new_pipeline(run, 1); }, false},
+          {"pipeline_medium", "ms", true, [](Run& run) { return new_pipeline(run, 20); }, false},
+          {"pipeline_large", "ms", true, [](Run& run) { return new_pipeline(run, 100); }, false}};
 }
 
 }  // namespace vitrine::bench
