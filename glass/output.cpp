@@ -3,30 +3,45 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <set>
-
-#include "base/lasting.h"
 
 namespace vitrine::glass {
 namespace {
 
-/// Writes beside the file and renames, so that whoever reads it sees all or nothing.
-bool replace_file(const std::string& name, std::string_view text) {
-  const std::string beside = name + ".part" + std::to_string(getpid());
-  {
-    std::ofstream file(beside, std::ios::binary);
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    file.flush();
-    if (!file) return false;
-  }
+/// Empty: done; else why not.
+using Failure = std::string;
+
+Failure write_file(const std::string& name, std::string_view text) {
+  std::FILE* const file = std::fopen(name.c_str(), "wbe");
+  if (file == nullptr) return std::strerror(errno);
+  const bool whole = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  const int reason = errno;
+  const bool closed = std::fclose(file) == 0;  // writes what is left
+  if (whole && closed) return {};
+  return std::strerror(whole ? errno : reason);
+}
+
+/// Writes beside the file and renames, so that whoever reads it sees all or nothing. What is no file (a device, a pipe)
+/// stays what it is: it is written to.
+Failure replace_file(const std::string& name, std::string_view text) {
   std::error_code error;
-  std::filesystem::rename(beside, name, error);
-  return !error;
+  const std::filesystem::file_status status = std::filesystem::status(name, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) return write_file(name, text);
+  const std::string beside = name + ".part" + std::to_string(getpid());
+  Failure failure = write_file(beside, text);
+  if (failure.empty()) {
+    std::filesystem::rename(beside, name, error);
+    if (!error) return {};
+    failure = error.message();
+  }
+  std::filesystem::remove(beside, error);
+  return failure;
 }
 
 /// FNV-1a: different texts of one name go to different folders.
@@ -38,7 +53,8 @@ std::uint64_t hash_of(std::string_view text) {
 
 void complain_once(const std::string& text) {
   static std::mutex mutex;
-  static std::set<std::string>& said = base::lasting([] { return std::set<std::string>(); });
+  static std::set<std::string>& said =
+      *new std::set<std::string>;  // the session's destructor writes, and is among the last
   const std::lock_guard lock(mutex);
   if (said.insert(text).second) complain(text);
 }
@@ -59,7 +75,8 @@ std::string output_name(const char* variable, const char* otherwise) {
 
 void write_output(const char* variable, const char* otherwise, std::string_view text) {
   const std::string name = output_name(variable, otherwise);
-  if (!replace_file(name, text)) complain_once(std::string(variable) + ": '" + name + "' cannot be written");
+  const Failure failure = replace_file(name, text);
+  if (!failure.empty()) complain_once(std::string(variable) + ": '" + name + "' cannot be written: " + failure);
 }
 
 std::string name_of_source(const spirv::SourceFile& file) {
@@ -73,7 +90,7 @@ std::string name_of_source(const spirv::SourceFile& file) {
   const std::string name = (folder / std::filesystem::path(file.name).filename()).string();
   if (std::filesystem::exists(name, error)) return name;
   std::filesystem::create_directories(folder, error);
-  return replace_file(name, file.text) ? name : file.name;
+  return replace_file(name, file.text).empty() ? name : file.name;
 }
 
 }  // namespace vitrine::glass

@@ -2,7 +2,9 @@
 #include "glass/printf_output.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include "glass/output.h"
 #include "glass/report/report_file.h"
@@ -40,11 +42,12 @@ void PrintfOutput::write(std::span<const Finding> messages) {
   std::FILE* const given = name_ == "stdout" ? stdout : name_ == "stderr" ? stderr : nullptr;
   const std::string path = given ? name_ : report_path(name_);
   std::FILE* const file = given ? given : std::fopen(path.c_str(), "ae");
-  bool good = file && std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
-  if (file && !given) good &= std::fclose(file) == 0;
+  const bool good = file && std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+  const int reason = errno;
+  if (file && !given) std::fclose(file);
   if (good) return;
   failed_ = true;
-  complain("VITRINE_PRINTF: '" + path + "' cannot be written");
+  complain("VITRINE_PRINTF: '" + path + "' cannot be written: " + std::strerror(reason));
 }
 
 }  // namespace vitrine::glass

@@ -153,6 +153,13 @@ void add_diff(CLI::App& app, DiffOptions& options, int& code) {
   command->callback([&] { code = diff(options); });
 }
 
+/// CLI11 says of a word that is no command that a command is missing.
+void check_command(const CLI::App& app, const Words& words) {
+  if (words.ours.empty() || words.ours[0].starts_with('-')) return;
+  if (app.get_subcommands([&](const CLI::App* command) { return command->get_name() == words.ours[0]; }).empty())
+    throw CLI::ValidationError("vitrine", "there is no command '" + words.ours[0] + "'");
+}
+
 int main_of(int argc, char** argv) {
   CLI::App app{"Runs applications on the Vulkan driver Vitrine, and tells what their shaders do.", "vitrine"};
   app.formatter(std::make_shared<Help>("COMMAND ..."));
@@ -172,6 +179,7 @@ int main_of(int argc, char** argv) {
   add_timeline(app, words, timeline_options, code);
   add_diff(app, diff_options, code);
   try {
+    check_command(app, words);
     app.parse(std::vector<std::string>(words.ours.rbegin(), words.ours.rend()));  // the last one first
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kCouldNotRun;
