@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs cases on this driver with every SIMD target and compares all bytes, those of NaNs too.
+"""Runs cases on this driver with every SIMD target, and with all tools on, and compares all bytes, those of NaNs too.
 
 compare_targets.py --out DIR [--targets sse4,avx2,avx3] -- cts_subset ARGS...
 Exit status: 0 equal, 1 different or failed.
@@ -9,13 +9,16 @@ import os
 import subprocess
 import sys
 
+TOOLS = {"VITRINE_TOOLS": "sanitize,numbers,coverage,count,printf",
+         **{name: "/dev/null" for name in ("VITRINE_REPORT", "VITRINE_COVERAGE", "VITRINE_COUNTS", "VITRINE_SOURCES")}}
+
 
 def fingerprints(command, target, out):
     """Hash of every case's output by its name."""
     path = os.path.join(out, target + ".txt")
     if os.path.exists(path):
         os.remove(path)
-    env = dict(os.environ, VITRINE_TARGET=target)
+    env = {**os.environ, **(TOOLS if target == "tools" else {"VITRINE_TARGET": target})}
     done = subprocess.run(command + [f"--fingerprints={path}", f"--results={out}"], env=env,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if done.returncode:
@@ -27,7 +30,7 @@ def fingerprints(command, target, out):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--out", required=True)
-    parser.add_argument("--targets", default="sse4,avx2,avx3")
+    parser.add_argument("--targets", default="sse4,avx2,avx3,tools", help="tools: any target, with all tools on")
     parser.add_argument("command", nargs="+")
     arguments = parser.parse_args()
     os.makedirs(arguments.out, exist_ok=True)

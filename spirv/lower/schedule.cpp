@@ -14,26 +14,46 @@ using ir::Op;
 /// Links of one chain: bounds the stack in builds without tail calls.
 constexpr std::uint32_t kMaxChain = 48;
 
+void count_sources(const ScalarFunction& f, const ScalarOp& op, std::vector<std::uint32_t>& uses) {
+  if (op.reads_condition()) ++uses[op.cond];
+  for (const ScalarId id : f.of(op.test_sources)) ++uses[id];
+  for (const ScalarId id : f.of(op.src)) ++uses[id];
+}
+
 std::vector<std::uint32_t> count_uses(const ScalarFunction& f) {
   std::vector<std::uint32_t> uses(f.scalars.size(), 0);
-  for (const ScalarOp& op : f.body) {
-    if (op.dead) continue;
-    if (op.reads_condition()) ++uses[op.cond];
-    for (const ScalarId id : f.of(op.test_sources)) ++uses[id];
-    for (const ScalarId id : f.of(op.src)) ++uses[id];
-  }
+  for (const ScalarOp& op : f.body)
+    if (!op.dead) count_sources(f, op, uses);
   for (const ScalarId id : f.outputs)
     if (id != kNoScalar) ++uses[id];
   return uses;
 }
 
+/// Uses in the program that nobody observes: without probes and the arithmetic that only they need.
+std::vector<std::uint32_t> count_plain_uses(const ScalarFunction& f) {
+  std::vector<std::uint32_t> uses(f.scalars.size(), 0);
+  for (const ScalarId id : f.outputs)
+    if (id != kNoScalar) ++uses[id];
+  // Backwards, as arithmetic is used behind where it is.
+  for (auto op = f.body.rbegin(); op != f.body.rend(); ++op) {
+    const bool probe = op->kind == Kind::kIntrinsic && op->op == Op::kProbe;
+    const bool needed = op->kind != Kind::kAlu || uses[f.operands[op->dst.begin]] != 0;
+    if (!op->dead && !probe && needed) count_sources(f, *op, uses);
+  }
+  return uses;
+}
+
 bool varying(const ScalarFunction& f, ScalarId id) { return f.scalars[id].level == Level::kVarying; }
 
-/// Replaces `a * b` used once, by an addition or subtraction of the same stretch, by one two-rounding operation.
+/// Replaces `a * b` used once, by an addition or subtraction of the same stretch, by one two-rounding operation. Of two
+/// NaNs a product's survives then; so it does where a probe, too, reads the product, which has to stay.
 class MultiplyAdd {
  public:
   explicit MultiplyAdd(ScalarFunction& function)
-      : f_(function), uses_(count_uses(function)), product_(function.scalars.size(), kNoIndex) {}
+      : f_(function),
+        uses_(count_plain_uses(function)),
+        all_uses_(count_uses(function)),
+        product_(function.scalars.size(), kNoIndex) {}
 
   void run() {
     std::uint32_t stretch_start = 0;
@@ -63,6 +83,11 @@ class MultiplyAdd {
   }
 
   void replace(std::uint32_t i, ScalarId product, ScalarId addend, Op op) {
+    if (all_uses_[product] != 1) {
+      const ScalarId sources[2] = {product, addend};
+      if (f_.body[i].op == Op::kFAdd) f_.body[i].src = f_.add_operands(sources);
+      return;
+    }
     ScalarOp& multiply = f_.body[product_[product]];
     const ScalarId sources[3] = {f_.operands[multiply.src.begin], f_.operands[multiply.src.begin + 1], addend};
     multiply.dead = true;
@@ -71,24 +96,19 @@ class MultiplyAdd {
   }
 
   ScalarFunction& f_;
-  std::vector<std::uint32_t> uses_;
-  std::vector<std::uint32_t> product_;  ///< per scalar: the multiplication in the body that gives it
+  std::vector<std::uint32_t> uses_, all_uses_;  ///< by the plain program; by probes, too
+  std::vector<std::uint32_t> product_;          ///< per scalar: the multiplication in the body that gives it
 };
 
-/// Whether the first two sources may be exchanged without changing a number. Of two NaNs the first operand's survives,
-/// so every target exchanges the same ones.
+/// Whether the sources may be exchanged. Those of sums and products of floats are not: of two NaNs the first operand's
+/// survives, in a program that somebody observes, where chains are others, as in the plain one.
 bool swappable(Op op) {
   switch (op) {
-    case Op::kFAdd:
-    case Op::kFMul:
     case Op::kIAdd:
     case Op::kIMul:
     case Op::kAnd:
     case Op::kOr:
     case Op::kXor:
-    case Op::kFMulAdd:
-    case Op::kFMulSub:
-    case Op::kFNMulAdd:
       return true;
     default:
       return false;

@@ -33,7 +33,7 @@ code:
     0  FMul           r0 r0 r1
     1  FAdd           r1 r0 r2
     2  FAdd           r0 r0 r3
-    3  FMul           r0 r0 r1
+    3  FMul           r0 r1 r0
     4  end
 )"},
 };
@@ -55,7 +55,7 @@ code:
     1  FSqrt          r0 r0
     2  FMul           r1 r2 r3
     3  FSqrt          r1 r1
-    4  FMul           r0 r1 r0
+    4  FMul           r0 r0 r1
     5  end
 )"},
 };
