@@ -21,12 +21,11 @@ class BlockCounts {
     std::uint64_t waves = 0;  ///< in which any did
   };
 
-  /// `probes`: how many the program has.
-  explicit BlockCounts(std::size_t probes);
+  explicit BlockCounts(const spirv::Program& program);
 
   /// Counts what a wave does.
   std::unique_ptr<spirv::exec::Watch> watch();
-  /// So far, by probe.
+  /// So far, by row of Program::probes.
   std::vector<Count> sum() const;
 
  private:
@@ -40,7 +39,9 @@ class BlockCounts {
   Cells& cells_of_this_thread();
 
   const std::uint64_t serial_;  ///< of all that this process made: addresses come again
-  const std::size_t probes_;
+  const std::size_t probes_;    ///< rows
+  /// What the program's instructions tell of: rows. A cell belongs to each instruction.
+  std::vector<std::vector<std::uint32_t>> told_;
   mutable std::mutex mutex_;
   std::map<std::thread::id, Cells> of_thread_;
 };

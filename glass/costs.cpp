@@ -83,7 +83,7 @@ CountedProgram::CountedProgram(const ShaderIdentity& shader, const spirv::Progra
       name(name_of(shader)),
       sources_(program.sources),
       probes_(program.probes),
-      counts_(program.probes.size()) {}
+      counts_(program) {}
 
 Costs CountedProgram::costs() const {
   Costs costs;

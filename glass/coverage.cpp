@@ -23,7 +23,7 @@ class CoverageProgram : public ProgramTool {
         sources_(program.sources),
         probes_(program.probes),
         names_(program.sources ? program.sources->files.size() : 0),
-        counts_(program.probes.size()) {
+        counts_(program) {
     for (std::size_t i = 0; i < names_.size(); ++i) names_[i] = name_of_source(sources_->files[i]);
   }
 

@@ -131,6 +131,7 @@ struct ProbeOp {
   std::vector<OperandPlace> operands;  ///< a word each, in the order of Probe::values
   /// Conditions under which the lanes that are active come by: booleans, and whether they must hold.
   std::vector<std::pair<OperandPlace, bool>> guards;
+  std::vector<std::uint32_t> also;  ///< of a block: further ones that the same lanes come by, rows of Program::probes
 };
 
 /// What an instruction does with memory.

@@ -364,6 +364,7 @@ void Emitter::group(const ScalarOp& op) {
 }
 
 void Emitter::probe(const ScalarOp& op) {
+  if (op.dead) return;  // another one tells of it
   ProbeOp row;
   row.probe = op.instr->data[0];
   const std::uint32_t guards = op.instr->data[1];
@@ -375,6 +376,7 @@ void Emitter::probe(const ScalarOp& op) {
       row.operands.push_back({from.file, from.offset});
     }
   }
+  if (const auto joined = f_.joined_probes.find(op.instr); joined != f_.joined_probes.end()) row.also = joined->second;
   append(exec::probe, "probe", op.instr).extra[0] = static_cast<std::uint32_t>(program->probe_ops.size());
   program->probe_ops.push_back(std::move(row));
 }

@@ -28,6 +28,7 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   lowering::fuse_tests(scalars);
   lowering::combine_loads(scalars);
   lowering::remove_dead(scalars);
+  if (observer) lowering::join_probes(scalars);
   lowering::fuse_multiply_add(scalars);
   lowering::select_operations(scalars);
   lowering::schedule_chains(scalars, interest.instructions);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -97,8 +98,11 @@ struct ScalarFunction {
   bool writes_memory = false;
   bool accesses_stay = false;  ///< somebody observes loads: each stays where and what it was
   std::uint32_t groups_per_wave = 1;
-  std::vector<ScalarId> outputs;   ///< per interface.outputs: the value that leaves (kNoScalar: never stored)
-  std::vector<ScalarId> preset;    ///< constants and uniforms that bind() keeps broadcast in registers
+  std::vector<ScalarId> outputs;  ///< per interface.outputs: the value that leaves (kNoScalar: never stored)
+  std::vector<ScalarId> preset;   ///< constants and uniforms that bind() keeps broadcast in registers
+  /// By the instruction of a probe of a block: further blocks that the same lanes come by, rows of
+  /// ir::Function::probes.
+  std::map<const ir::Instr*, std::vector<std::uint32_t>> joined_probes;
   std::vector<ScalarId> observed;  ///< inputs that are there when the program starts, though no operation reads them
 
   ScalarId add(bool boolean, Level level) {
@@ -136,6 +140,9 @@ void fuse_tests(ScalarFunction& function);
 
 /// Moves constants into addresses and merges loads that share one.
 void combine_loads(ScalarFunction& function);
+
+/// Lets one probe tell of all blocks that the same lanes come by.
+void join_probes(ScalarFunction& function);
 
 /// Replaces `a * b` used once by an addition or subtraction by one operation (still two roundings).
 void fuse_multiply_add(ScalarFunction& function);

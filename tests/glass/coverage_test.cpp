@@ -19,8 +19,9 @@ class Counter : public Tool, public ProgramTool, public std::enable_shared_from_
     struct Watch : spirv::exec::Watch {
       explicit Watch(Counter& c) : counter(c) {}
       void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override {
-        const auto lanes = spirv::exec::lanes_at(wave, op);
-        counter.counts[counter.probes_[op.probe].id] += static_cast<unsigned>(std::popcount(lanes));
+        const auto lanes = static_cast<unsigned>(std::popcount(spirv::exec::lanes_at(wave, op)));
+        counter.counts[counter.probes_[op.probe].id] += lanes;
+        for (const std::uint32_t row : op.also) counter.counts[counter.probes_[row].id] += lanes;
       }
       Counter& counter;
     };
