@@ -2,9 +2,8 @@
 #include "glass/fates.h"
 
 #include <algorithm>
-#include <bit>
 
-#include "base/lanes.h"
+#include "base/lane_count.h"
 
 namespace vitrine::glass {
 namespace {
@@ -56,12 +55,27 @@ constexpr FateCounter kCounters[] = {
     {"attachments", "bytes", "bytes written to attachments", [](const Fates& f) { return f.bytes; }},
 };
 
+std::string name_of_pipeline(std::uint64_t number, const std::string& name) {
+  return name.empty() ? "pipeline " + std::to_string(number) : name;
+}
+
 /// Pixels of a tile in a row.
 constexpr std::uint32_t kTileSide = 64;
 /// Passes that may go on at a time: one a device.
 constexpr std::size_t kOpenPasses = 4;
 
-std::uint64_t count(LaneMask lanes) { return static_cast<std::uint64_t>(std::popcount(lanes)); }
+std::uint64_t count(LaneMask lanes) { return base::count_lanes(lanes); }
+
+/// One more fragment on pixels of a tile, those of a quad whose bits `lanes` has.
+void add_quad(std::uint32_t* pixels, std::uint32_t x, std::uint32_t y, LaneMask lanes) {
+  static constexpr std::uint32_t kPairs[4][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+  for (std::uint32_t row = 0; row < 2; ++row) {
+    std::uint32_t* const two = pixels + std::size_t{(y + row) % kTileSide} * kTileSide + x % kTileSide;
+    const std::uint32_t(&more)[2] = kPairs[lanes >> 2 * row & 3];
+    two[0] += more[0];
+    two[1] += more[1];
+  }
+}
 
 LaneMask any_of(SampleLanes samples) {
   LaneMask any = 0;
@@ -123,10 +137,9 @@ class DrawCounts::Watch : public raster::DrawWatch {
     fates_.helpers += count(helpers);
     fates_.idle += base::kWaveWidth - count(invocations | helpers);
     if (!pixels_) return;
-    base::for_each_lane(invocations, [&](std::size_t lane) {
-      const std::uint32_t x = group.position.x[lane / 4] + (lane & 1), y = group.position.y[lane / 4] + (lane >> 1 & 1);
-      ++(*pixels_)[y % kTileSide * kTileSide + x % kTileSide];
-    });
+    for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q)
+      if (const LaneMask lanes = invocations >> 4 * q & 15; lanes != 0)
+        add_quad(pixels_->data(), group.position.x[q], group.position.y[q], lanes);
   }
   void passed(const FragmentGroup&, SampleLanes lanes) override { fates_.passed += count(any_of(lanes)); }
   void written(const FragmentGroup&, const texel::ImageView& view, SampleLanes lanes) override {
@@ -168,12 +181,15 @@ void DrawCounts::add(const spirv::ObservedCommand* command, const Fates& fates) 
   const std::lock_guard lock(mutex_);
   total_.add(fates);
   if (!command) return;
-  const std::string pipeline =
-      command->pipeline.empty() ? "pipeline " + std::to_string(command->pipeline_number) : command->pipeline;
-  pipelines_[pipeline].add(fates);
+  pipelines_[command->pipeline_number][command->pipeline].add(fates);
   if (!by_draw_) return;
   Draw& draw = draws_[{command->submission, command->command}];
-  if (draw.command == 0) draw = {command->submission, command->command, command->name, pipeline, {}};
+  if (draw.command == 0)
+    draw = {command->submission,
+            command->command,
+            command->name,
+            name_of_pipeline(command->pipeline_number, command->pipeline),
+            {}};
   draw.fates.add(fates);
 }
 
@@ -192,7 +208,10 @@ Fates DrawCounts::total() const {
 
 std::map<std::string, Fates> DrawCounts::of_pipelines() const {
   const std::lock_guard lock(mutex_);
-  return pipelines_;
+  std::map<std::string, Fates> pipelines;
+  for (const auto& [number, names] : pipelines_)
+    for (const auto& [name, fates] : names) pipelines[name_of_pipeline(number, name)].add(fates);
+  return pipelines;
 }
 
 std::vector<DrawCounts::Draw> DrawCounts::of_draws() const {

@@ -79,7 +79,7 @@ class DrawCounts : public raster::DrawObserver {
   const bool by_draw_;
   mutable std::mutex mutex_;
   Fates total_;
-  std::map<std::string, Fates> pipelines_;
+  std::map<std::uint64_t, std::map<std::string, Fates>> pipelines_;  ///< by number and name
   std::map<std::pair<std::uint64_t, std::uint32_t>, Draw> draws_;
   std::map<std::uint64_t, PassPixels> passes_;  ///< those that may go on
   Overdraw overdraw_;                           ///< of those that are done

@@ -1,6 +1,5 @@
 // Observed draws: who observes one is told what becomes of its primitives and fragments. An observed draw takes packed
-// waves alone, as DrawCall::general_path has it, and leaves the same bytes; which it is, is decided once per draw, tile
-// and wave.
+// waves and whole blocks alone, and leaves the same bytes; which it is, is decided once per draw, tile and wave.
 #pragma once
 
 #include <cstdint>

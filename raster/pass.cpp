@@ -151,12 +151,12 @@ struct Pass::Impl {
   const DrawRecord* record_draw(const DrawCall& call) {
     DrawRecord* record = new (scratch->arena.take<DrawRecord>(1)) DrawRecord{};
     record->call = call;
-    const bool same = last && last->call.state == call.state && last->call.vertex == call.vertex &&
-                      last->call.control == call.control && last->call.evaluation == call.evaluation &&
-                      last->call.geometry == call.geometry && last->call.fragment == call.fragment &&
-                      last->call.native_vertex == call.native_vertex &&
-                      last->call.native_fragment == call.native_fragment &&
-                      last->call.takes_general_path() == call.takes_general_path();
+    const bool same =
+        last && last->call.state == call.state && last->call.vertex == call.vertex &&
+        last->call.control == call.control && last->call.evaluation == call.evaluation &&
+        last->call.geometry == call.geometry && last->call.fragment == call.fragment &&
+        last->call.native_vertex == call.native_vertex && last->call.native_fragment == call.native_fragment &&
+        last->call.general_path == call.general_path && last->call.takes_general_path() == call.takes_general_path();
     if (same) {
       record->plan = last->plan;
     } else {

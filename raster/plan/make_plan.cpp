@@ -37,10 +37,10 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   // 8.2: with one sample only a mask of all zeros has an effect.
   if (plan.samples == 1 && draw.state->sample_mask != 0) plan.sample_mask = 1;
   plan_tests(plan, pass);
-  plan_colors(plan, pass, draw.takes_general_path());
+  plan_colors(plan, pass, draw.general_path);
   // Whoever observes a draw sees what its shaders do, wherever their colours go.
   plan.shades |= plan.fragment && draw.fragment_resources.command;
-  plan_routes(plan, draw.takes_general_path());
+  plan_routes(plan, draw.general_path, draw.observer != nullptr);
   return true;
 }
 

@@ -18,9 +18,9 @@ bool reads_elsewhere(const PipelinePlan& plan) {
 
 }  // namespace
 
-void plan_routes(PipelinePlan& plan, bool general) {
-  plan.windows = !general && plan.samples == 1 && plan.raster_samples == 1 && plan.sample_mask != 0;
-  plan.tests_rows = !general && !plan.tests.stencil && !plan.tests.depth_bounds;
+void plan_routes(PipelinePlan& plan, bool general, bool observed) {
+  plan.windows = !general && !observed && plan.samples == 1 && plan.raster_samples == 1 && plan.sample_mask != 0;
+  plan.tests_rows = !general && !observed && !plan.tests.stencil && !plan.tests.depth_bounds;
   // Depths beyond [0, 1] wrap in formats of fixed point.
   const bool clamps_inside = std::all_of(plan.viewport.begin(), plan.viewport.end(),
                                          [](const ViewportTransform& t) { return t.z_min >= 0 && t.z_max <= 1; });

@@ -8,6 +8,7 @@
 #include "raster/tile/early_tests.h"
 #include "raster/tile/fragment_inputs.h"
 #include "raster/tile/fragment_outputs.h"
+#include "raster/tile/observed.h"
 #include "raster/tile/primitive_planes.h"
 #include "spirv/shader_cost.h"
 
@@ -124,6 +125,53 @@ void write_block(TileWorker& worker, int x, int y, const LaneMask* kept) {
   }
 }
 
+void tell_written_colors(TileWorker& worker, const LaneMask* kept) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  for (std::uint32_t i = 0; i < plan.color_count; ++i) {
+    const texel::ImageView& view = worker.pass->color[i];
+    if (plan.writer[i].function && worker.target.layer < view.layer_count)
+      tell_colors(worker, view, kept, 0, plan.samples);
+  }
+}
+
+/// shade_block() and shade_observed_block().
+template <bool kObserved>
+void shade(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const LaneMask pixels = any_sample(block, plan.samples);
+  const LaneMask active = plan.fragment->needs_helpers ? whole_quads(pixels) : pixels;
+  LaneMask alive = pixels;
+  if (!worker.block_draw.solid) {
+    set_inputs(worker, primitive, BlockPlace{x, y});
+    alive = worker.runner.run(active, active & ~pixels);
+  }
+  if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(pixels));
+  const bool counts_early = plan.fragment->early_fragment_tests;  // also what the shader discards
+  const bool late = plan.depth_order == TestOrder::kLate;
+  LaneMask kept[kMaxSamples];
+  [[maybe_unused]] FailedTests failed[kObserved ? kMaxSamples : 1];
+  for (std::uint32_t s = 0; s < plan.samples; ++s) {
+    kept[s] = block.lanes[s] & alive;
+    const LaneMask before = kept[s];
+    if (late) test_blocks(worker, primitive, s, x, y, 1, &kept[s], true);
+    if constexpr (kObserved) failed[s].depth = before & ~kept[s];
+    count_samples(worker, counts_early ? block.lanes[s] : kept[s]);
+  }
+  if constexpr (kObserved) {
+    worker.watch->shaded(worker.told.group, pixels, active & ~pixels);
+    LaneMask shaded[kMaxSamples];
+    for (std::uint32_t s = 0; s < plan.samples; ++s) shaded[s] = block.lanes[s] & alive;
+    tell_lost(worker, FragmentTest::kDiscard, shaded, 0, plan.samples);
+    if (late) tell_tests(worker, failed, primitive.front ? 0xffffu : 0, 0, plan.samples, true);
+  }
+  if (std::any_of(kept, kept + plan.samples, [](LaneMask lanes) { return lanes != 0; }))
+    write_block(worker, x, y, kept);
+  if constexpr (kObserved) {
+    tell_written_colors(worker, kept);
+    tell_passed(worker);
+  }
+}
+
 /// The quads of a wave; those beyond are at the window's first pixel.
 void place_quads(const SpanWave& wave, QuadPositions& out) {
   for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q) {
@@ -184,24 +232,12 @@ void begin_blocks(TileWorker& worker) {
 }
 
 void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {
-  const PipelinePlan& plan = *worker.draw->plan;
-  const LaneMask pixels = any_sample(block, plan.samples);
-  LaneMask alive = pixels;
-  if (!worker.block_draw.solid) {
-    set_inputs(worker, primitive, BlockPlace{x, y});
-    const LaneMask active = plan.fragment->needs_helpers ? whole_quads(pixels) : pixels;
-    alive = worker.runner.run(active, active & ~pixels);
-  }
-  if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(pixels));
-  const bool counts_early = plan.fragment->early_fragment_tests;  // also what the shader discards
-  LaneMask kept[kMaxSamples];
-  for (std::uint32_t s = 0; s < plan.samples; ++s) {
-    kept[s] = block.lanes[s] & alive;
-    if (plan.depth_order == TestOrder::kLate) test_blocks(worker, primitive, s, x, y, 1, &kept[s], true);
-    count_samples(worker, counts_early ? block.lanes[s] : kept[s]);
-  }
-  if (std::any_of(kept, kept + plan.samples, [](LaneMask lanes) { return lanes != 0; }))
-    write_block(worker, x, y, kept);
+  shade<false>(worker, primitive, x, y, block);
+}
+
+void shade_observed_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {
+  tell_block(worker, primitive, x, y, block);
+  shade<true>(worker, primitive, x, y, block);
 }
 
 void shade_spans(TileWorker& worker, const Primitive& primitive, SpanWave& wave) {

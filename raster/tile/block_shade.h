@@ -14,6 +14,9 @@ void begin_blocks(TileWorker& worker);
 /// Shades, tests late and writes a block inside all attachments whose first pixel is (x, y), in the framebuffer.
 void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block);
 
+/// The same for an observed draw, whose watch is told.
+void shade_observed_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block);
+
 /// Shades and writes a wave, nothing of which is tested any more, and cuts its rows to what was written.
 void shade_spans(TileWorker& worker, const Primitive& primitive, SpanWave& wave);
 

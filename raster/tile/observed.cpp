@@ -69,18 +69,17 @@ void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y,
                    BlockCoverage& rasterized) {
   const PipelinePlan& plan = *worker.draw->plan;
   if (any_sample(block, plan.samples) == 0) return;
-  FragmentGroup& group = worker.told.group;
-  place_block(x, y, group.position);
-  std::fill(std::begin(group.primitive), std::end(group.primitive), primitive.id);
-  group.layer = worker.target.layer;
-  std::copy_n(block.lanes, plan.samples, worker.told.left);
-  worker.watch->generated(group, left_samples(worker));
-  const LaneMask inside = scissor_lanes(plan, primitive, x, y);
-  for (std::uint32_t s = 0; s < plan.samples; ++s) block.lanes[s] &= inside;
-  tell_lost(worker, FragmentTest::kScissor, block.lanes, 0, plan.samples);
-  for (std::uint32_t s = 0; s < plan.samples; ++s)
-    if ((plan.sample_mask >> s & 1) == 0) block.lanes[s] = 0;
-  tell_lost(worker, FragmentTest::kSampleMask, block.lanes, 0, plan.samples);
+  tell_block(worker, primitive, x, y, block);
+  worker.watch->generated(worker.told.group, left_samples(worker));
+  if (const LaneMask inside = scissor_lanes(plan, primitive, x, y); inside != base::kAllLanes) {
+    for (std::uint32_t s = 0; s < plan.samples; ++s) block.lanes[s] &= inside;
+    tell_lost(worker, FragmentTest::kScissor, block.lanes, 0, plan.samples);
+  }
+  if (plan.sample_mask != (1u << plan.samples) - 1) {
+    for (std::uint32_t s = 0; s < plan.samples; ++s)
+      if ((plan.sample_mask >> s & 1) == 0) block.lanes[s] = 0;
+    tell_lost(worker, FragmentTest::kSampleMask, block.lanes, 0, plan.samples);
+  }
   rasterized = block;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
     FailedTests failed[kMaxSamples];
@@ -88,6 +87,14 @@ void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y,
     tell_tests(worker, failed, primitive.front ? 0xffffu : 0, 0, plan.samples, plan.depth_order == TestOrder::kEarly);
   }
   if (!plan.shades) tell_passed(worker);
+}
+
+void tell_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {
+  FragmentGroup& group = worker.told.group;
+  place_block(x, y, group.position);
+  std::fill(std::begin(group.primitive), std::end(group.primitive), primitive.id);
+  group.layer = worker.target.layer;
+  std::copy_n(block.lanes, worker.draw->plan->samples, worker.told.left);
 }
 
 void tell_wave(TileWorker& worker, const PackedWave& wave) {

@@ -13,6 +13,8 @@ void begin_observed(TileWorker& worker, std::uint32_t tile);
 void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,
                    BlockCoverage& rasterized);
 
+/// The block's fragments are those that what follows is about.
+void tell_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block);
 /// The wave's fragments are those that what follows is about.
 void tell_wave(TileWorker& worker, const PackedWave& wave);
 /// Of the samples [first, end) those that are no longer in `kept` failed a test.

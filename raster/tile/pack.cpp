@@ -130,4 +130,25 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
     append_full_block(worker, primitive, x, y, rasterized, block);
 }
 
+void emit_observed_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
+                         const BlockCoverage& block) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const base::LaneMask any = any_sample(block, plan.samples);
+  if (!any) return;
+  if (!plan.shades) {
+    for (std::uint32_t s = 0; s < plan.samples; ++s) count_samples(worker, block.lanes[s]);
+    return;
+  }
+  const base::LaneMask quads = base::quads_of_lanes(any);
+  if (quads != base::kFirstOfQuads) {
+    append_quads(worker, primitive, x, y, rasterized, block, quads);
+    return;
+  }
+  if (waits_in_wave(worker, x, y, quads)) shade_wave(worker, worker.wave);
+  if (plan.shades_blocks && owns_square(worker, x, y, kBlockSize))
+    shade_observed_block(worker, primitive, x, y, block);
+  else
+    append_full_block(worker, primitive, x, y, rasterized, block);
+}
+
 }  // namespace vitrine::raster

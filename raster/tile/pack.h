@@ -15,4 +15,8 @@ void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, 
 void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
                 const BlockCoverage& block);
 
+/// The same for an observed draw: blocks without empty quads are shaded on their own.
+void emit_observed_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
+                         const BlockCoverage& block);
+
 }  // namespace vitrine::raster

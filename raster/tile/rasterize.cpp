@@ -191,7 +191,7 @@ void rasterize_observed_primitive(TileWorker& worker, const Primitive& primitive
     const int x = worker.target.x + lane_x(place) * kBlockSize, y = worker.target.y + lane_y(place) * kBlockSize;
     BlockCoverage block = block_of(worker.covered, place, plan.samples), rasterized{};
     observe_block(worker, primitive, x, y, block, rasterized);
-    emit_block(worker, primitive, x, y, rasterized, block);
+    emit_observed_block(worker, primitive, x, y, rasterized, block);
   }
 }
 
