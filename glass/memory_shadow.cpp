@@ -59,10 +59,16 @@ std::uint32_t load_word(const std::uint8_t* states) {
       .load(std::memory_order_relaxed);
 }
 
+/// More changes than a region sees lie between two regions.
+std::uint64_t first_generation() {
+  static std::atomic<std::uint64_t> regions{0};
+  return ++regions << 32;
+}
+
 }  // namespace
 
 ShadowRegion::ShadowRegion(const std::byte* data, std::uint64_t size)
-    : first_(reinterpret_cast<std::uintptr_t>(data)), size_(size) {
+    : first_(reinterpret_cast<std::uintptr_t>(data)), size_(size), generation_(first_generation()) {
   void* states = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (states != MAP_FAILED) states_ = static_cast<std::uint8_t*>(states);
 }
@@ -89,14 +95,17 @@ bool ShadowRegion::byte_written(std::uintptr_t address, Contents contents) const
   return true;
 }
 
-bool ShadowRegion::written(std::uintptr_t address, std::uint64_t bytes, Contents contents) const {
-  if (!contains(address, bytes)) return true;
-  if (contents == Contents::kBytes && is_mapped(address, bytes)) return true;
+std::uint64_t ShadowRegion::first_unwritten(std::uintptr_t address, std::uint64_t bytes, Contents contents) const {
+  if (!contains(address, bytes)) return bytes;
+  if (contents == Contents::kBytes && is_mapped(address, bytes)) return bytes;
   const std::uint8_t* const states = states_ + (address - first_);
-  if (is_word(address, bytes) && load_word(states) == kFourWritten) return true;
-  for (std::uint64_t i = 0; i < bytes; ++i)
-    if (!byte_written(address + i, contents)) return false;
-  return true;
+  if (is_word(address, bytes) && load_word(states) == kFourWritten) return bytes;
+  for (std::uint64_t i = 0; i < bytes; ++i) {
+    if ((address + i) % 4 == 0)
+      while (bytes - i >= 4 && load_word(states + i) == kFourWritten) i += 4;
+    if (i < bytes && !byte_written(address + i, contents)) return i;
+  }
+  return bytes;
 }
 
 void ShadowRegion::mark(std::uintptr_t address, std::uint32_t bytes, ByteState state) const {
@@ -121,7 +130,9 @@ void ShadowRegion::mark(std::uintptr_t address, std::uint32_t bytes, ByteState s
 
 void ShadowRegion::fill(std::uintptr_t address, std::uint64_t bytes, ByteState state) const {
   const std::uintptr_t begin = std::max(address, first()), stop = std::min(address + bytes, end());
-  if (begin < stop) std::memset(states(begin), static_cast<int>(state), stop - begin);
+  if (begin >= stop) return;
+  if (state != ByteState::kWritten) generation_.fetch_add(1, std::memory_order_relaxed);
+  std::memset(states_ + (begin - first_), static_cast<int>(state), stop - begin);
 }
 
 void ShadowRegion::settle(std::uintptr_t address, std::uint64_t bytes, Contents contents) const {

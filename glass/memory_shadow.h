@@ -35,8 +35,13 @@ class ShadowRegion {
   bool contains(std::uintptr_t address, std::uint64_t bytes) const {
     return address >= first_ && bytes <= size_ && address - first_ <= size_ - bytes;
   }
-  /// States of the bytes from `address` on, one byte each.
-  std::byte* states(std::uintptr_t address) const { return reinterpret_cast<std::byte*>(states_ + (address - first_)); }
+  /// States of the bytes from `address` on, one byte each, for who copies them.
+  std::byte* states(std::uintptr_t address) const {
+    generation_.fetch_add(1, std::memory_order_relaxed);
+    return reinterpret_cast<std::byte*>(states_ + (address - first_));
+  }
+  /// Changes whenever bytes that had been written may no longer be; of no two regions ever the same.
+  std::uint64_t generation() const { return generation_.load(std::memory_order_relaxed); }
 
   /// The host may write these bytes at any time from now on.
   void map(std::uintptr_t first, std::uint64_t bytes);
@@ -45,8 +50,12 @@ class ShadowRegion {
            address + bytes <= mapped_end_.load(std::memory_order_relaxed);
   }
 
-  /// Whether all these bytes have been written; bytes outside count as written. Any thread.
-  bool written(std::uintptr_t address, std::uint64_t bytes, Contents contents) const;
+  /// The offset of the first of these bytes that has not been written; `bytes`: all have. What lies outside counts as
+  /// written. Any thread.
+  std::uint64_t first_unwritten(std::uintptr_t address, std::uint64_t bytes, Contents contents) const;
+  bool written(std::uintptr_t address, std::uint64_t bytes, Contents contents) const {
+    return first_unwritten(address, bytes, contents) == bytes;
+  }
   /// A shader writes a few bytes. Any thread.
   void mark(std::uintptr_t address, std::uint32_t bytes, ByteState state = ByteState::kWritten) const;
   /// A command writes or gives up many. No shader runs on them.
@@ -60,6 +69,7 @@ class ShadowRegion {
   std::uintptr_t first_ = 0;
   std::uint64_t size_ = 0;
   std::uint8_t* states_ = nullptr;
+  mutable std::atomic<std::uint64_t> generation_;
   /// Ranges that have ever been mapped, together.
   std::atomic<std::uintptr_t> mapped_first_{UINTPTR_MAX}, mapped_end_{0};
 };

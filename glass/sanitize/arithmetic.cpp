@@ -5,7 +5,7 @@
 #include <spirv/unified1/spirv.hpp11>
 
 #include "glass/sanitize/checks.h"
-#include "glass/sanitize/operands.h"
+#include "glass/sanitize/lane_tests.h"
 
 namespace vitrine::glass::sanitize {
 namespace {
@@ -41,26 +41,31 @@ std::string of_two(const Operands& operands, std::size_t lane, const char* betwe
 
 Fault unsigned_division(const Operands& operands, base::LaneMask lanes) {
   const Number divisor = operands[1];
-  return {"division-by-zero", lanes_where(lanes, [&](std::size_t l) { return divisor.bits(l) == 0; }),
+  return {"division-by-zero",
+          lanes_where_bits(
+              lanes, [](auto by) { return by == 0; }, divisor),
           [](const Operands& o, std::size_t lane) { return of_two(o, lane, " divided by "); }};
 }
 
 Fault signed_division(const Operands& operands, base::LaneMask lanes) {
   const Number number = operands[0], divisor = operands[1];
   const std::uint64_t smallest = std::uint64_t{1} << (number.width() - 1), mask = smallest | (smallest - 1);
-  const auto wrong = [&](std::size_t l) {
-    const std::uint64_t by = divisor.bits(l);
-    return by == 0 || (by == mask && number.bits(l) == smallest);
+  const auto wrong = [=](auto by, auto divided) {
+    using Bits = decltype(by);
+    const bool too_large = (by == static_cast<Bits>(mask)) & (divided == static_cast<Bits>(smallest));
+    return (by == 0) | too_large;
   };
-  return {"division-by-zero", lanes_where(lanes, wrong), [](const Operands& o, std::size_t lane) {
+  return {"division-by-zero", lanes_where_bits(lanes, wrong, divisor, number), [](const Operands& o, std::size_t lane) {
             return std::to_string(o[0].as_signed(lane)) + " divided by " + std::to_string(o[1].as_signed(lane));
           }};
 }
 
 Fault shift(const Operands& operands, base::LaneMask lanes) {
   const Number amount = operands[1];
-  const std::uint64_t width = operands[0].width();
-  return {"shift-too-far", lanes_where(lanes, [&](std::size_t l) { return amount.bits(l) >= width; }),
+  const std::uint32_t width = operands[0].width();
+  return {"shift-too-far",
+          lanes_where_bits(
+              lanes, [=](auto by) { return by >= width; }, amount),
           [](const Operands& o, std::size_t lane) {
             return "shift by " + o[1].text(lane) + " of a number of " + std::to_string(o[0].width()) + " bits";
           }};
@@ -69,12 +74,10 @@ Fault shift(const Operands& operands, base::LaneMask lanes) {
 /// Offset and count are the operands from `first` on.
 Fault bit_field(const Operands& operands, base::LaneMask lanes, std::size_t first) {
   const Number offset = operands[first], count = operands[first + 1];
-  const std::uint64_t width = operands[0].width();
-  const auto wrong = [&](std::size_t l) {
-    const std::uint64_t from = offset.bits(l), bits = count.bits(l);
-    return from > width || bits > width || from + bits > width;
-  };
-  return {"bit-field-out-of-range", lanes_where(lanes, wrong), [](const Operands& o, std::size_t lane) {
+  const std::uint32_t width = operands[0].width();
+  const auto wrong = [=](auto from, auto bits) { return (from > width) | (bits > width) | (from + bits > width); };
+  return {"bit-field-out-of-range", lanes_where_bits(lanes, wrong, offset, count),
+          [](const Operands& o, std::size_t lane) {
             const std::size_t at = o.probe.values.size() - 2 - o.probe.has_result;
             return "field of " + o[at + 1].text(lane) + " bits at offset " + o[at].text(lane) + " of a number of " +
                    std::to_string(o[0].width()) + " bits";
@@ -92,13 +95,12 @@ std::string conversion_text(const Operands& o, std::size_t lane) {
 Fault conversion(const Operands& operands, base::LaneMask lanes, bool is_signed) {
   const Number number = operands[0];
   const int width = static_cast<int>(operands.probe.number);
-  const double lowest = is_signed ? -std::ldexp(1.0, width - 1) : 0.0;
+  // What becomes the lowest number when its fraction is cut off is larger than the next integer below, if doubles have
+  // that; or else is the lowest itself.
+  const double lowest = is_signed ? -std::ldexp(1.0, width - 1) : 0.0, below = lowest - 1;
   const double end = std::ldexp(1.0, is_signed ? width - 1 : width);
-  const auto wrong = [&](std::size_t l) {
-    const double whole = std::trunc(number.as_float(l));
-    return !(whole >= lowest && whole < end);
-  };
-  return {"conversion-out-of-range", lanes_where(lanes, wrong), conversion_text};
+  const auto wrong = [=](double x) { return !((x > below) | (x == lowest)) | !(x < end); };
+  return {"conversion-out-of-range", lanes_where_floats(lanes, wrong, number), conversion_text};
 }
 
 // ---- functions
@@ -113,52 +115,40 @@ std::string arguments_text(const Operands& o, std::size_t lane, const char* name
 template <class F>
 Fault of_first(const Operands& operands, base::LaneMask lanes, F&& wrong,
                std::string (*text)(const Operands&, std::size_t)) {
-  const Number x = operands[0];
-  return {"undefined-math", lanes_where(lanes, [&](std::size_t l) { return wrong(x.as_float(l)); }), text};
-}
-
-template <class F>
-Fault of_all(base::LaneMask lanes, F&& wrong, std::string (*text)(const Operands&, std::size_t)) {
-  return {"undefined-math", lanes_where(lanes, wrong), text};
+  return {"undefined-math", lanes_where_floats(lanes, wrong, operands[0]), text};
 }
 
 Fault remainder(const Operands& operands, base::LaneMask lanes) {
-  const Number divisor = operands[1];
-  return of_all(
-      lanes, [&](std::size_t l) { return divisor.as_float(l) == 0; },
-      [](const Operands& o, std::size_t lane) { return "remainder of " + of_two(o, lane, " divided by "); });
+  return {"undefined-math",
+          lanes_where_floats(
+              lanes, [](double by) { return by == 0; }, operands[1]),
+          [](const Operands& o, std::size_t lane) { return "remainder of " + of_two(o, lane, " divided by "); }};
 }
 
 Fault power(const Operands& operands, base::LaneMask lanes) {
-  const Number x = operands[0], y = operands[1];
-  const auto wrong = [&](std::size_t l) {
-    const double base = x.as_float(l);
-    return base < 0 || (base == 0 && y.as_float(l) <= 0);
-  };
-  return of_all(lanes, wrong, [](const Operands& o, std::size_t lane) { return arguments_text(o, lane, "pow"); });
+  const auto wrong = [](double x, double y) { return (x < 0) | ((x == 0) & (y <= 0)); };
+  return {"undefined-math", lanes_where_floats(lanes, wrong, operands[0], operands[1]),
+          [](const Operands& o, std::size_t lane) { return arguments_text(o, lane, "pow"); }};
 }
 
 Fault clamp(const Operands& operands, base::LaneMask lanes) {
   const Number low = operands[1], high = operands[2];
-  const auto text = [](const Operands& o, std::size_t lane) { return arguments_text(o, lane, "clamp"); };
-  switch (low.type()) {
-    case 'F':
-      return of_all(
-          lanes, [&](std::size_t l) { return low.as_float(l) > high.as_float(l); }, text);
-    case 'I':
-      return of_all(
-          lanes, [&](std::size_t l) { return low.as_signed(l) > high.as_signed(l); }, text);
-    default:
-      return of_all(
-          lanes, [&](std::size_t l) { return low.bits(l) > high.bits(l); }, text);
-  }
+  const auto crossed = [](auto low, auto high) { return low > high; };
+  base::LaneMask wrong = 0;
+  if (low.type() == 'F')
+    wrong = lanes_where_floats(lanes, crossed, low, high);
+  else if (low.type() == 'I')
+    wrong = lanes_where(lanes, [&](std::size_t l) { return low.as_signed(l) > high.as_signed(l); });
+  else
+    wrong = lanes_where_bits(lanes, crossed, low, high);
+  return {"undefined-math", wrong,
+          [](const Operands& o, std::size_t lane) { return arguments_text(o, lane, "clamp"); }};
 }
 
 Fault smoothstep(const Operands& operands, base::LaneMask lanes) {
-  const Number low = operands[0], high = operands[1];
-  return of_all(
-      lanes, [&](std::size_t l) { return low.as_float(l) >= high.as_float(l); },
-      [](const Operands& o, std::size_t lane) { return arguments_text(o, lane, "smoothstep"); });
+  const auto wrong = [](double low, double high) { return low >= high; };
+  return {"undefined-math", lanes_where_floats(lanes, wrong, operands[0], operands[1]),
+          [](const Operands& o, std::size_t lane) { return arguments_text(o, lane, "smoothstep"); }};
 }
 
 #define VITRINE_TEXT(name) [](const Operands& o, std::size_t lane) { return arguments_text(o, lane, name); }

@@ -28,6 +28,9 @@ class Words {
     if (words_ != nullptr) return words_[lane];
     return is_mask_ ? static_cast<std::uint32_t>(mask_ >> lane & 1) : word_;
   }
+  /// The words of all lanes; null: they are not there.
+  const std::uint32_t* in_register() const { return words_; }
+  bool is_uniform() const { return words_ == nullptr && !is_mask_; }
 
  private:
   const std::uint32_t* words_ = nullptr;

@@ -71,7 +71,7 @@ struct SanitizedPlaces : sanitize::ProgramPlaces {
       : ProgramPlaces(shader, program), variables(program) {}
   sanitize::SharedShadows shared;
   sanitize::VariableShadows variables;
-  sanitize::UnwrittenReads* reads = nullptr;  ///< the tool's
+  sanitize::UnwrittenReads* reads = nullptr;  ///< the tool's; null: it does not ask what has been written
 };
 
 class SanitizeWatch : public spirv::exec::Watch {
@@ -79,7 +79,7 @@ class SanitizeWatch : public spirv::exec::Watch {
   SanitizeWatch(SanitizedPlaces& program, const Wave& wave, const Instruction* start)
       : reporter_(program, wave),
         written_(reporter_, program.reads),
-        shared_(program.shared.of(wave, start)),
+        shared_(program.reads != nullptr ? program.shared.of(wave, start) : nullptr),
         variables_(program.variables.of(wave, start)) {}
 
   void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
@@ -132,15 +132,17 @@ class SanitizedProgram final : public WatchedProgram<SanitizeWatch, SanitizedPla
   void draw(const raster::DrawCall& call) override { sanitize::check_draw(*this, call); }
 };
 
-/// The tool `sanitize`.
+/// The tools `sanitize` and `sanitize_quick`. `follows`: what nobody has written, too.
 class SanitizeTool : public PlacesTool<SanitizedProgram> {
  public:
-  using PlacesTool::PlacesTool;
-  bool shadows_memory() const override { return true; }
+  explicit SanitizeTool(bool follows)
+      : PlacesTool({.accesses = true, .arithmetic = true, .initialization = follows, .control = true}),
+        follows_(follows) {}
+  bool shadows_memory() const override { return follows_; }
 
   std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
     auto made = PlacesTool::attach(shader, program);
-    static_cast<SanitizedProgram&>(*made).reads = &reads_;
+    if (follows_) static_cast<SanitizedProgram&>(*made).reads = &reads_;
     return made;
   }
   void commands_done(const void* owner) override { reads_.settle(owner); }
@@ -156,6 +158,7 @@ class SanitizeTool : public PlacesTool<SanitizedProgram> {
   }
 
  private:
+  const bool follows_;
   sanitize::UnwrittenReads reads_;
   sanitize::BrokenCommands commands_;
 };
@@ -176,10 +179,9 @@ class NumbersWatch : public spirv::exec::Watch {
 
 }  // namespace
 
-std::unique_ptr<Tool> make_sanitize() {
-  return std::make_unique<SanitizeTool>(
-      spirv::exec::Interest{.accesses = true, .arithmetic = true, .initialization = true, .control = true});
-}
+std::unique_ptr<Tool> make_sanitize() { return std::make_unique<SanitizeTool>(true); }
+
+std::unique_ptr<Tool> make_sanitize_quick() { return std::make_unique<SanitizeTool>(false); }
 
 std::unique_ptr<Tool> make_numbers() {
   return std::make_unique<PlacesTool<WatchedProgram<NumbersWatch, sanitize::ProgramPlaces>>>(

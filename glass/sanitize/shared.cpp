@@ -2,12 +2,19 @@
 #include "glass/sanitize/shared.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "glass/sanitize/accesses.h"
 #include "glass/sanitize/checks.h"
 #include "glass/sanitize/operands.h"
 
 namespace vitrine::glass::sanitize {
+namespace {
+
+/// States of a word.
+constexpr std::uint32_t kFourWritten = 0x01010101;
+
+}  // namespace
 
 void SharedShadow::begin(const spirv::Wave& wave) {
   written_.assign(wave.shared_size, 0);
@@ -16,11 +23,16 @@ void SharedShadow::begin(const spirv::Wave& wave) {
 
 void SharedShadow::write(std::uint32_t offset, std::uint32_t bytes) {
   if (std::uint64_t{offset} + bytes > written_.size()) return;
+  if (bytes == sizeof kFourWritten) {
+    std::memcpy(&written_[offset], &kFourWritten, sizeof kFourWritten);
+    return;
+  }
   std::fill_n(written_.begin() + offset, bytes, std::uint8_t{1});
 }
 
 bool SharedShadow::written(std::uint32_t offset, std::uint32_t bytes) const {
   if (std::uint64_t{offset} + bytes > written_.size()) return true;  // another rule's
+  if (bytes == sizeof kFourWritten) return std::memcmp(&written_[offset], &kFourWritten, sizeof kFourWritten) == 0;
   const auto first = written_.begin() + offset;
   return std::find(first, first + bytes, 0) == first + bytes;
 }

@@ -2,6 +2,7 @@
 // of an image in VK_IMAGE_LAYOUT_UNDEFINED are undefined").
 #include "glass/sanitize/written.h"
 
+#include "glass/known_shadow.h"
 #include "glass/sanitize/accesses.h"
 #include "glass/sanitize/descriptors.h"
 #include "glass/sanitize/footprint.h"
@@ -162,6 +163,7 @@ void WrittenAccess::buffer(const spirv::MemoryOp& row, Effect effect) {
   const auto access_buffer = [&](const spirv::exec::Bytes& bytes, base::LaneMask same) {
     const ShadowRegion* region = bytes.data ? find_shadow(bytes.data) : nullptr;
     if (region == nullptr || region->is_mapped(number_of(bytes.data), bytes.size)) return;
+    if (is_all_written(*region, bytes.data, bytes.size, wave_.resources->command)) return;
     base::for_each_lane(same, [&](std::size_t lane) {
       UnwrittenRead read;
       bool known = true;
@@ -246,6 +248,10 @@ void WrittenAccess::texels(const Descriptor& image, std::uint32_t element, base:
   const std::byte* const base = buffer ? image.texels->data : view->base;
   const ShadowRegion* const region = find_shadow(base);
   if (region == nullptr || (!buffer && view->planes != nullptr)) return;
+  const spirv::ObservedCommand* const command = wave_.resources->command;
+  if (buffer ? is_all_written(*region, base, image.texels->count * image.texels->format->block_bytes, command)
+             : is_all_written(*region, *view, command))
+    return;
   const ImageLanes operands(wave_, op);
   base::for_each_lane(lanes, [&](std::size_t lane) {
     Piece piece;
@@ -283,6 +289,7 @@ void WrittenAccess::lookups(const Descriptor& image, std::uint32_t element, base
   const texel::ImageView& view = *image.image;
   const ShadowRegion* const region = find_shadow(view.base);
   if (region == nullptr || !has_dimension(op.info.dim, view.type) || op.info.has_gather_offsets) return;
+  if (is_all_written(*region, view, wave_.resources->command)) return;
   const ImageLanes operands(wave_, op);
   base::for_each_lane(lanes, [&](std::size_t lane) {
     const texel::Sampler* sampler = sampler_of(image, lane);
