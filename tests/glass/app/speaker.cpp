@@ -1,9 +1,10 @@
 // A small application, linked to the loader, for the tests of printf: runs one pipeline whose shaders want no
 // resources, and writes what the validation layer or the driver says of it to where those were told to.
 //
-//   vitrine_test_speaker FILE.spv...    FILE ends with .comp.spv, .vert.spv, .tesc.spv, .tese.spv, .geom.spv,
+//   vitrine_test_speaker [--many] FILE.spv...    FILE ends with .comp.spv, .vert.spv, .tesc.spv, .tese.spv, .geom.spv,
 //   .frag.spv:
-//                                       one workgroup, or one triangle or patch of three vertices on 4 x 4 pixels
+//                                       one workgroup, or one triangle or patch of three vertices on 4 x 4 pixels;
+//                                       --many: 40 workgroups, or 40 instances on 160 x 160 pixels
 #include <vulkan/vulkan.h>
 
 #include <algorithm>
@@ -31,7 +32,9 @@ constexpr std::pair<const char*, VkShaderStageFlagBits> kStages[] = {
     {".geom.spv", VK_SHADER_STAGE_GEOMETRY_BIT},
     {".frag.spv", VK_SHADER_STAGE_FRAGMENT_BIT},
 };
-constexpr VkExtent2D kPixels = {4, 4};
+/// With --many, 40.
+std::uint32_t times = 1;
+VkExtent2D pixels() { return {4 * times, 4 * times}; }
 
 struct Device {
   VkInstance instance{};
@@ -110,8 +113,8 @@ VkPipeline make_graphics(VkDevice device, const Stages& stages, VkPipelineLayout
                                                                             : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
   VkPipelineTessellationStateCreateInfo tessellation{VK_STRUCTURE_TYPE_PIPELINE_TESSELLATION_STATE_CREATE_INFO};
   tessellation.patchControlPoints = 3;
-  const VkViewport viewport{0, 0, static_cast<float>(kPixels.width), static_cast<float>(kPixels.height), 0, 1};
-  const VkRect2D scissor{{0, 0}, kPixels};
+  const VkViewport viewport{0, 0, static_cast<float>(pixels().width), static_cast<float>(pixels().height), 0, 1};
+  const VkRect2D scissor{{0, 0}, pixels()};
   VkPipelineViewportStateCreateInfo viewports{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
   viewports.viewportCount = viewports.scissorCount = 1;
   viewports.pViewports = &viewport;
@@ -148,18 +151,18 @@ VkPipeline make_compute(VkDevice device, const Stages& stages, VkPipelineLayout 
 void draw(VkDevice device, VkCommandBuffer commands, VkRenderPass pass, VkPipeline pipeline) {
   VkFramebufferCreateInfo info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
   info.renderPass = pass;
-  info.width = kPixels.width;
-  info.height = kPixels.height;
+  info.width = pixels().width;
+  info.height = pixels().height;
   info.layers = 1;
   VkFramebuffer framebuffer;
   must(vkCreateFramebuffer(device, &info, nullptr, &framebuffer), "vkCreateFramebuffer");
   VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
   begin.renderPass = pass;
   begin.framebuffer = framebuffer;
-  begin.renderArea = {{0, 0}, kPixels};
+  begin.renderArea = {{0, 0}, pixels()};
   vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-  vkCmdDraw(commands, 3, 1, 0, 0);
+  vkCmdDraw(commands, 3, times, 0, 0);
   vkCmdEndRenderPass(commands);
 }
 
@@ -169,7 +172,7 @@ void record(VkDevice device, const Stages& stages, VkCommandBuffer commands) {
   must(vkCreatePipelineLayout(device, &info, nullptr, &layout), "vkCreatePipelineLayout");
   if (has(stages, VK_SHADER_STAGE_COMPUTE_BIT)) {
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, make_compute(device, stages, layout));
-    vkCmdDispatch(commands, 1, 1, 1);
+    vkCmdDispatch(commands, times, 1, 1);
   } else {
     const VkRenderPass pass = make_pass(device);
     draw(device, commands, pass, make_graphics(device, stages, layout, pass));
@@ -181,7 +184,12 @@ void record(VkDevice device, const Stages& stages, VkCommandBuffer commands) {
 int main(int argc, char** argv) {
   const Device d = make_device();
   Stages stages;
-  for (int i = 1; i < argc; ++i) stages.push_back(stage_of(d.device, argv[i]));
+  for (int i = 1; i < argc; ++i) {
+    if (std::string(argv[i]) == "--many")
+      times = 40;
+    else
+      stages.push_back(stage_of(d.device, argv[i]));
+  }
   VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   VkCommandPool pool;
   must(vkCreateCommandPool(d.device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
