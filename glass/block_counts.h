@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -35,15 +36,21 @@ class BlockCounts {
   };
   using Cells = std::vector<Cell>;
   class Counter;
+  struct OfThread {
+    explicit OfThread(std::size_t size) : cells(size) {}
+    Cells cells;
+    /// Where the counter of the wave that the thread runs is: one at a time.
+    alignas(void*) std::byte counter[2 * sizeof(void*)];
+  };
 
-  Cells& cells_of_this_thread();
+  OfThread& of_this_thread();
 
   const std::uint64_t serial_;  ///< of all that this process made: addresses come again
   const std::size_t probes_;    ///< rows
   /// What the program's instructions tell of: rows. A cell belongs to each instruction.
   std::vector<std::vector<std::uint32_t>> told_;
   mutable std::mutex mutex_;
-  std::map<std::thread::id, Cells> of_thread_;
+  std::map<std::thread::id, OfThread> of_thread_;
 };
 
 }  // namespace vitrine::glass

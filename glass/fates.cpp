@@ -2,6 +2,7 @@
 #include "glass/fates.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "base/lane_count.h"
 
@@ -68,12 +69,14 @@ std::uint64_t count(LaneMask lanes) { return base::count_lanes(lanes); }
 
 /// One more fragment on pixels of a tile, those of a quad whose bits `lanes` has.
 void add_quad(std::uint32_t* pixels, std::uint32_t x, std::uint32_t y, LaneMask lanes) {
-  static constexpr std::uint32_t kPairs[4][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+  // Two neighbours at a time: no pixel has so many that they reach the other one's word.
+  static constexpr std::uint64_t kPairs[4] = {0, 1, 1ull << 32, 1 | 1ull << 32};
   for (std::uint32_t row = 0; row < 2; ++row) {
     std::uint32_t* const two = pixels + std::size_t{(y + row) % kTileSide} * kTileSide + x % kTileSide;
-    const std::uint32_t(&more)[2] = kPairs[lanes >> 2 * row & 3];
-    two[0] += more[0];
-    two[1] += more[1];
+    std::uint64_t both = 0;
+    std::memcpy(&both, two, sizeof both);
+    both += kPairs[lanes >> 2 * row & 3];
+    std::memcpy(two, &both, sizeof both);
   }
 }
 
@@ -170,9 +173,16 @@ std::shared_ptr<DrawCounts::TilePixels> DrawCounts::pixels_of(const spirv::Obser
   PassPixels& pass = passes_[command->pass];
   if (const auto oldest = passes_.begin(); passes_.size() > kOpenPasses && &oldest->second != &pass) {
     add(overdraw_, oldest->second);
+    for (auto& [number, pixels] : oldest->second)
+      if (pixels.use_count() == 1) spare_.push_back(std::move(pixels));
     passes_.erase(oldest);
   }
   std::shared_ptr<TilePixels>& pixels = pass[tile];
+  if (!pixels && !spare_.empty()) {
+    pixels = std::move(spare_.back());
+    spare_.pop_back();
+    std::fill(pixels->begin(), pixels->end(), 0u);
+  }
   if (!pixels) pixels = std::make_shared<TilePixels>(std::size_t{kTileSide} * kTileSide);
   return pixels;
 }

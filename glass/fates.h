@@ -81,8 +81,9 @@ class DrawCounts : public raster::DrawObserver {
   Fates total_;
   std::map<std::uint64_t, std::map<std::string, Fates>> pipelines_;  ///< by number and name
   std::map<std::pair<std::uint64_t, std::uint32_t>, Draw> draws_;
-  std::map<std::uint64_t, PassPixels> passes_;  ///< those that may go on
-  Overdraw overdraw_;                           ///< of those that are done
+  std::map<std::uint64_t, PassPixels> passes_;      ///< those that may go on
+  std::vector<std::shared_ptr<TilePixels>> spare_;  ///< memory of those that are done
+  Overdraw overdraw_;                               ///< of those
 };
 
 }  // namespace vitrine::glass

@@ -55,6 +55,12 @@ class ImageLanes {
     if (offset == spirv::kNoOperand) return std::nullopt;
     return static_cast<std::int32_t>(spirv::exec::word_of(wave_, {'r', offset}, lane));
   }
+  /// An operand in all lanes; null: there is none.
+  const std::uint32_t* column(spirv::ir::ImageOperand which, std::uint32_t component) const {
+    const std::uint32_t offset = op_.operand[static_cast<std::size_t>(which)][component];
+    if (offset == spirv::kNoOperand) return nullptr;
+    return reinterpret_cast<const base::WaveRegister*>(wave_.registers + offset)->lane;
+  }
   /// Coordinates, the array layer or face included.
   std::uint32_t dimensions() const {
     const spirv::ir::ImageInfo& info = op_.info;

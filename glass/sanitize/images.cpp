@@ -6,6 +6,7 @@
 #include "glass/sanitize/checks.h"
 #include "glass/sanitize/descriptors.h"
 #include "glass/sanitize/image_lanes.h"
+#include "glass/sanitize/lane_tests.h"
 #include "texel/sampler.h"
 
 namespace vitrine::glass::sanitize {
@@ -70,6 +71,7 @@ class ImageCheck {
     const std::int64_t at = coordinate(0, lane);
     return at < 0 || static_cast<std::uint64_t>(at) >= view.count;
   }
+  bool all_inside(const Descriptor& image, std::size_t first_lane) const;
   std::string texel_text(std::size_t lane) const;
   std::string size_text(const texel::ImageView& view, std::size_t lane) const;
   static std::string size_text(const texel::BufferTexelView& view) {
@@ -99,6 +101,28 @@ bool ImageCheck::is_outside(const texel::ImageView& view, std::size_t lane) cons
   return false;
 }
 
+/// Whether all lanes, active or not, are inside, as far as that can be told of all of them together.
+bool ImageCheck::all_inside(const Descriptor& image, std::size_t first_lane) const {
+  if (lanes_.column(ImageOperand::kSample, 0) != nullptr || lanes_.column(ImageOperand::kOffset, 0) != nullptr)
+    return false;
+  std::array<std::uint32_t, 3> size{};
+  if (op_.info.dim == ImageDim::kBuffer) {
+    size[0] = static_cast<std::uint32_t>(std::min<std::uint64_t>(image.texels->count, 1u << 31));
+  } else {
+    if (const std::uint32_t* const level = lanes_.column(ImageOperand::kLod, 0)) {
+      const std::uint32_t first = level[first_lane];
+      const bool several = any_lane([=](std::uint32_t other) { return other != first; }, level);
+      if (several || first >= image.image->level_count) return false;
+    }
+    size = size_of(*image.image, first_lane);
+  }
+  for (std::uint32_t c = 0; c < std::min(dimensions(), 3u); ++c) {
+    const std::uint32_t* const at = lanes_.column(ImageOperand::kCoord, c);
+    if (at == nullptr || any_lane([end = size[c]](std::uint32_t x) { return x >= end; }, at)) return false;
+  }
+  return true;
+}
+
 std::string ImageCheck::texel_text(std::size_t lane) const {
   std::string text = std::string(verb_of(op_.info.access)) + "texel (";
   const std::uint32_t count = std::min(dimensions(), 3u);
@@ -124,6 +148,7 @@ std::string ImageCheck::size_text(const texel::ImageView& view, std::size_t lane
 
 void ImageCheck::check_texels(const Descriptor& image, std::uint32_t element, base::LaneMask lanes) {
   const bool buffer = op_.info.dim == ImageDim::kBuffer;
+  if (all_inside(image, static_cast<std::size_t>(std::countr_zero(lanes)))) return;
   base::LaneMask wrong = 0;
   base::for_each_lane(lanes & wave_.live, [&](std::size_t lane) {
     if (buffer ? is_outside(*image.texels, lane) : is_outside(*image.image, lane)) wrong |= base::LaneMask{1} << lane;

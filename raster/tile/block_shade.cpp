@@ -134,6 +134,19 @@ void tell_written_colors(TileWorker& worker, const LaneMask* kept) {
   }
 }
 
+/// What discarding has left, `alive`, and the late depth test: `kept`; null: there is none.
+void tell_shaded(TileWorker& worker, const Primitive& primitive, const BlockCoverage& block, LaneMask alive,
+                 const LaneMask* kept) {
+  const std::uint32_t samples = worker.draw->plan->samples;
+  LaneMask shaded[kMaxSamples];
+  for (std::uint32_t s = 0; s < samples; ++s) shaded[s] = block.lanes[s] & alive;
+  if ((any_sample(block, samples) & ~alive) != 0) tell_lost(worker, FragmentTest::kDiscard, shaded, 0, samples);
+  if (kept == nullptr) return;
+  FailedTests failed[kMaxSamples];
+  for (std::uint32_t s = 0; s < samples; ++s) failed[s].depth = shaded[s] & ~kept[s];
+  tell_tests(worker, failed, primitive.front ? 0xffffu : 0, 0, samples, true);
+}
+
 /// shade_block() and shade_observed_block().
 template <bool kObserved>
 void shade(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {
@@ -149,20 +162,14 @@ void shade(TileWorker& worker, const Primitive& primitive, int x, int y, const B
   const bool counts_early = plan.fragment->early_fragment_tests;  // also what the shader discards
   const bool late = plan.depth_order == TestOrder::kLate;
   LaneMask kept[kMaxSamples];
-  [[maybe_unused]] FailedTests failed[kObserved ? kMaxSamples : 1];
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
     kept[s] = block.lanes[s] & alive;
-    const LaneMask before = kept[s];
     if (late) test_blocks(worker, primitive, s, x, y, 1, &kept[s], true);
-    if constexpr (kObserved) failed[s].depth = before & ~kept[s];
     count_samples(worker, counts_early ? block.lanes[s] : kept[s]);
   }
   if constexpr (kObserved) {
     worker.watch->shaded(worker.told.group, pixels, active & ~pixels);
-    LaneMask shaded[kMaxSamples];
-    for (std::uint32_t s = 0; s < plan.samples; ++s) shaded[s] = block.lanes[s] & alive;
-    tell_lost(worker, FragmentTest::kDiscard, shaded, 0, plan.samples);
-    if (late) tell_tests(worker, failed, primitive.front ? 0xffffu : 0, 0, plan.samples, true);
+    tell_shaded(worker, primitive, block, alive, late ? kept : nullptr);
   }
   if (std::any_of(kept, kept + plan.samples, [](LaneMask lanes) { return lanes != 0; }))
     write_block(worker, x, y, kept);

@@ -28,6 +28,14 @@ TEST(Sanitize, FindsLoadsOutsideOfBuffers) {
   EXPECT_EQ(found("", "v[0] = v[i + 56u];"), Texts{});
 }
 
+TEST(Sanitize, QuickAsksForNothingThatIsWritten) {
+  const std::string body = "uint x; if (i > 3u) x = 1u; s[i] = i; v[i + 61u] = x + s[i + 8u];";
+  const auto quick = found("shared uint s[16];", body, 1, make_sanitize_quick());
+  EXPECT_EQ(quick,
+            Texts{"out-of-bounds-store x5 at 3: store of 4 bytes at offset 256, outside of a buffer of 256 bytes"});
+  EXPECT_EQ(found("shared uint s[16];", body).size(), 3u);
+}
+
 TEST(Sanitize, FindsStoresOutsideOfBuffers) {
   EXPECT_EQ(found("", "v[i + 61u] = 1u;"),
             Texts{"out-of-bounds-store x5 at 3: store of 4 bytes at offset 256, outside of a buffer of 256 bytes"});
