@@ -12,6 +12,7 @@ class Counter : public Tool, public ProgramTool, public std::enable_shared_from_
   spirv::exec::Interest interest() const override { return {.blocks = true}; }
   std::shared_ptr<ProgramTool> attach(const ShaderIdentity&, const spirv::Program& program) override {
     probes_ = program.probes;
+    instructions = program.probe_ops.size();
     for (const spirv::Probe& probe : probes_) counts[probe.id] = 0;
     return std::shared_ptr<ProgramTool>(this, [](ProgramTool*) {});
   }
@@ -29,12 +30,14 @@ class Counter : public Tool, public ProgramTool, public std::enable_shared_from_
   }
 
   std::map<std::uint32_t, unsigned> counts;
+  std::size_t instructions = 0;  ///< that tell of blocks
 
  private:
   std::vector<spirv::Probe> probes_;
 };
 
-std::vector<unsigned> counts_of(const std::string& body) {
+/// `instructions`: how many tell of the blocks.
+std::vector<unsigned> counts_of(const std::string& body, std::size_t* instructions = nullptr) {
   const std::string glsl = R"(#version 460
 layout(local_size_x = 8) in;
 layout(set = 0, binding = 0) buffer B { uint v[]; };
@@ -49,10 +52,19 @@ void main() {
   EXPECT_EQ(plain, observed);
   std::vector<unsigned> counts;
   for (const auto& [label, count] : counter.counts) counts.push_back(count);
+  if (instructions != nullptr) *instructions = counter.instructions;
   return counts;
 }
 
 using Counts = std::vector<unsigned>;
+
+TEST(BlockProbes, OneTellsOfBlocksThatTheSameLanesComeBy) {
+  std::size_t instructions = 0;
+  // Entry, loop header, merge, body, continue target, condition.
+  EXPECT_EQ(counts_of("uint x = 0u; for (uint k = 0u; k < i; ++k) x += v[k]; v[i] = x;", &instructions),
+            (Counts{8, 36, 28, 8, 28, 36}));
+  EXPECT_EQ(instructions, 5u) << "header and condition together";
+}
 
 // Labels in the order in which glslang numbers them: entry, then, merge, else.
 TEST(BlockProbes, SeeBranchesThatBecomeSelections) {
