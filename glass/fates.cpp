@@ -62,10 +62,22 @@ std::string name_of_pipeline(std::uint64_t number, const std::string& name) {
 
 /// Pixels of a tile in a row.
 constexpr std::uint32_t kTileSide = 64;
+/// Blocks of a tile in a row, and pixels of a block.
+constexpr std::uint32_t kBlockSide = 8;
 /// Passes that may go on at a time: one a device.
 constexpr std::size_t kOpenPasses = 4;
 
 std::uint64_t count(LaneMask lanes) { return base::count_lanes(lanes); }
+
+/// Whether the quads are those of a block of the tile's grid, in its order.
+bool is_block(const raster::QuadPositions& quads) {
+  const std::uint32_t x = quads.x[0], y = quads.y[0];
+  std::uint32_t differs = x % kBlockSide | y % kBlockSide;
+  for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q)
+    differs |= ((quads.x[q] - x) ^ static_cast<std::uint32_t>(raster::lane_x(4 * q))) |
+               ((quads.y[q] - y) ^ static_cast<std::uint32_t>(raster::lane_y(4 * q)));
+  return differs == 0;
+}
 
 /// One more fragment on pixels of a tile, those of a quad whose bits `lanes` has.
 void add_quad(std::uint32_t* pixels, std::uint32_t x, std::uint32_t y, LaneMask lanes) {
@@ -140,9 +152,15 @@ class DrawCounts::Watch : public raster::DrawWatch {
     fates_.helpers += count(helpers);
     fates_.idle += base::kWaveWidth - count(invocations | helpers);
     if (!pixels_) return;
+    if (invocations == base::kAllLanes && is_block(group.position)) {
+      ++pixels_->blocks[group.position.y[0] % kTileSide / kBlockSide * kBlockSide +
+                        group.position.x[0] % kTileSide / kBlockSide];
+      return;
+    }
+    if (pixels_->single.empty()) pixels_->single.resize(std::size_t{kTileSide} * kTileSide);
     for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q)
       if (const LaneMask lanes = invocations >> 4 * q & 15; lanes != 0)
-        add_quad(pixels_->data(), group.position.x[q], group.position.y[q], lanes);
+        add_quad(pixels_->single.data(), group.position.x[q], group.position.y[q], lanes);
   }
   void passed(const FragmentGroup&, SampleLanes lanes) override { fates_.passed += count(any_of(lanes)); }
   void written(const FragmentGroup&, const texel::ImageView& view, SampleLanes lanes) override {
@@ -181,9 +199,10 @@ std::shared_ptr<DrawCounts::TilePixels> DrawCounts::pixels_of(const spirv::Obser
   if (!pixels && !spare_.empty()) {
     pixels = std::move(spare_.back());
     spare_.pop_back();
-    std::fill(pixels->begin(), pixels->end(), 0u);
+    pixels->blocks.fill(0);
+    pixels->single.clear();
   }
-  if (!pixels) pixels = std::make_shared<TilePixels>(std::size_t{kTileSide} * kTileSide);
+  if (!pixels) pixels = std::make_shared<TilePixels>();
   return pixels;
 }
 
@@ -205,10 +224,13 @@ void DrawCounts::add(const spirv::ObservedCommand* command, const Fates& fates) 
 
 void DrawCounts::add(Overdraw& overdraw, const PassPixels& pass) {
   for (const auto& [tile, pixels] : pass)
-    for (const std::uint32_t fragments : *pixels) {
-      overdraw.pixels += fragments != 0;
-      overdraw.most = std::max<std::uint64_t>(overdraw.most, fragments);
-    }
+    for (std::uint32_t y = 0; y < kTileSide; ++y)
+      for (std::uint32_t x = 0; x < kTileSide; ++x) {
+        std::uint64_t fragments = pixels->blocks[y / kBlockSide * kBlockSide + x / kBlockSide];
+        if (!pixels->single.empty()) fragments += pixels->single[std::size_t{y} * kTileSide + x];
+        overdraw.pixels += fragments != 0;
+        overdraw.most = std::max(overdraw.most, fragments);
+      }
 }
 
 Fates DrawCounts::total() const {

@@ -68,8 +68,11 @@ class DrawCounts : public raster::DrawObserver {
 
  private:
   class Watch;
-  /// Fragments shaded by pixel of a tile.
-  using TilePixels = std::vector<std::uint32_t>;
+  /// Fragments shaded on the pixels of a tile: in whole blocks by block, the others by pixel.
+  struct TilePixels {
+    std::array<std::uint32_t, 64> blocks{};
+    std::vector<std::uint32_t> single;  ///< empty until there are any
+  };
   using PassPixels = std::map<std::uint32_t, std::shared_ptr<TilePixels>>;
 
   void add(const spirv::ObservedCommand* command, const Fates& fates);

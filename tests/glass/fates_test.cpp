@@ -105,6 +105,24 @@ TEST(Fates, OverdrawIsOfOnePass) {
   EXPECT_EQ(counts.overdraw().most, 3u);
 }
 
+TEST(Fates, OverdrawAddsWholeBlocksAndPixels) {
+  DrawCounts counts(false);
+  for (const std::uint64_t pass : {1, 2, 3, 4, 5, 6, 7}) {  // memory of the first ones is used again
+    const Command command(1, "", pass);
+    const auto tile = counts.watch_tile(&command, 3);
+    FragmentGroup block, beside = quads();
+    raster::place_block(64 + 16, 128 + 8, block.position);
+    tile->shaded(block, base::kAllLanes, 0);
+    tile->shaded(block, base::kAllLanes, 0);
+    tile->shaded(block, 0x11, 0);              // two pixels of it
+    tile->shaded(beside, base::kAllLanes, 0);  // 32 x 2 pixels, no block
+    raster::place_block(64 + 18, 128 + 8, block.position);
+    tile->shaded(block, base::kAllLanes, 0);  // no block of the grid: 16 new pixels
+  }
+  EXPECT_EQ(counts.overdraw().pixels, 7u * (64 + 64 + 16));
+  EXPECT_EQ(counts.overdraw().most, 4u);
+}
+
 TEST(Fates, SeveralObserversHearTheSame) {
   DrawCounts one(false), two(false);
   DrawObservers both;
