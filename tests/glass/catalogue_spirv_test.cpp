@@ -93,6 +93,25 @@ Assembly with_array() {
 const char kNever[] =
     "OpSelectionMerge %merge None\nOpBranchConditional %c %merge %never\n%never = OpLabel\n"
     "@OpUnreachable\n%merge = OpLabel\n";
+/// Four rounds of a loop: %k counts them, %again is where the next one comes from.
+std::string loop_of(const std::string& round) {
+  return "OpBranch %head\n%head = OpLabel\n%k = OpPhi %uint %u0 %entry %next %again\n%more = OpULessThan %bool %k %u4\n"
+         "OpLoopMerge %out %again None\nOpBranchConditional %more %round %out\n%round = OpLabel\n" +
+         round + "%again = OpLabel\n%next = OpIAdd %uint %k %u1\nOpBranch %head\n%out = OpLabel\n";
+}
+/// A selection of which both sides continue; `end`: how the second one ends.
+std::string continues(const std::string& end) {
+  return loop_of(
+      "%c = OpULessThan %bool %x %u3\n%d = OpULessThan %bool %x %u7\nOpSelectionMerge %never None\n"
+      "OpBranchConditional %c %left %right\n%left = OpLabel\nOpStore %at %k\nOpBranch %again\n%right = OpLabel\n" +
+      end + "%never = OpLabel\n@OpUnreachable\n");
+}
+/// Divides by %k where `condition` does not hold; nobody uses the quotient.
+std::string unused_quotient(const std::string& condition) {
+  return loop_of("%c = " + condition +
+                 "\nOpSelectionMerge %rest None\nOpBranchConditional %c %left %rest\n%left = OpLabel\nOpStore %at %k\n"
+                 "OpBranch %again\n%rest = OpLabel\n@%d = OpUDiv %uint %u7 %k\nOpBranch %again\n");
+}
 const char kSwitch[] =
     "%f = OpFunction %uint None %of_word\n%a = OpFunctionParameter %uint\n%start = OpLabel\n"
     "OpSelectionMerge %end None\nOpSwitch %a %other 0 %zero 1 %one\n%zero = OpLabel\nOpReturnValue %u7\n"
@@ -127,6 +146,18 @@ std::vector<Text> flow() {
       {"unreachable_in_a_patch", "unreachable", in_stage(kControl), below_7 + kNever, below_9 + kNever, false},
       {"unreachable_case", "unreachable", with_function(kSwitch), stored("%q = OpFunctionCall %uint %f %x\n"),
        stored("%y = OpUMod %uint %x %u2\n%q = OpFunctionCall %uint %f %y\n"), false},
+      {"unreachable_behind_continues",
+       "unreachable",
+       {},
+       continues("OpBranchConditional %d %again %never\n"),
+       continues("OpBranch %again\n"),
+       false},
+      {"unused_quotient_behind_a_continue",
+       "division-by-zero",
+       {},
+       unused_quotient("OpULessThan %bool %x %u3"),
+       unused_quotient("OpIEqual %bool %k %u0"),
+       false},
       {"barrier_in_a_branch", "divergent-barrier", with_shared(),
        in_branch("OpULessThan %bool %x %u3", "@OpControlBarrier %u2 %u2 %u264\n"),
        in_branch("OpULessThan %bool %x %u8", "OpControlBarrier %u2 %u2 %u264\n")},

@@ -1,6 +1,8 @@
 // See copier.h.
 #include "spirv/rewrite/graph/copier.h"
 
+#include "spirv/rewrite/graph/tree.h"
+
 namespace vitrine::spirv::rewriting {
 
 Src Copier::translated(Src src) const {
@@ -113,6 +115,19 @@ BlockId Copier::copy_block(BlockId from, InstId owner) {
   }
   copy_attached(graph_.attached.at_end(from), block);
   return block;
+}
+
+void move_attached_into_sides(Graph& graph, InstId branch, InstId position) {
+  if (graph.attached.in_front(position).empty()) return;
+  const std::vector<ValueId> results = graph.nodes[graph.insts[branch].node]->results;
+  for (const unsigned side : {0u, 1u}) {
+    const BlockId block = graph.insts[branch].child[side];
+    if (!ends_in(graph, block, Op::kYield)) continue;
+    Copier copier(graph);
+    copier.bind_all(results, copier.operands_of(graph.blocks[block].tail));
+    copier.copy(position, position, block);
+  }
+  graph.attached.drop(graph, position);
 }
 
 }  // namespace vitrine::spirv::rewriting

@@ -34,4 +34,8 @@ class Copier {
   std::unordered_map<ValueId, Src> map_;
 };
 
+/// What is attached between the branch `branch` and what follows it, `position`, goes to the ends of those sides that
+/// come there, with what they yield for the branch's results. Where no side comes there it is gone: it has never run.
+void move_attached_into_sides(Graph& graph, InstId branch, InstId position);
+
 }  // namespace vitrine::spirv::rewriting

@@ -2,7 +2,10 @@
 // 5.11, 5.14).
 #include "spirv/rewrite/nir/opt_if.h"
 
+#include <algorithm>
+
 #include "spirv/rewrite/graph/build.h"
+#include "spirv/rewrite/graph/copier.h"
 #include "spirv/rewrite/graph/match.h"
 #include "spirv/rewrite/graph/tree.h"
 
@@ -50,6 +53,22 @@ bool break_once(Graph& graph, InstId id, unsigned leaving) {
   return true;
 }
 
+/// What is attached between two branches on one condition goes to the ends of the first one's sides; but for arithmetic
+/// on what was there before, which others may read and which goes in front of it.
+void move_attached_between(Graph& graph, InstId first, InstId second) {
+  std::vector<InstId> before = graph.attached.take(first), between;
+  for (const InstId id : graph.attached.take(second)) {
+    const Inst& inst = graph.insts[id];
+    bool moves = inst.kind != Kind::kIntrinsic;
+    for (const Src& src : operands_of(graph, id))
+      moves &= std::find(between.begin(), between.end(), graph.values[src.value].def) == between.end();
+    (moves ? before : between).push_back(id);
+  }
+  graph.attached.give(first, std::move(before));
+  graph.attached.give(second, std::move(between));
+  move_attached_into_sides(graph, first, second);
+}
+
 }  // namespace
 
 bool opt_merge_breaks(Graph& graph, InstId id) {
@@ -69,6 +88,7 @@ bool opt_if_merge(Graph& graph, InstId id) {
   if (a.value != b.value || a.swizzle[0] != b.swizzle[0]) return false;
   for (const BlockId child : graph.insts[id].child)
     if (!ends_in(graph, child, Op::kYield)) return false;
+  if (!graph.attached.empty()) move_attached_between(graph, id, next);
   for (const unsigned side : {0u, 1u}) {
     const BlockId to = graph.insts[id].child[side], from = graph.insts[next].child[side];
     const InstId end = graph.blocks[to].tail;

@@ -1,4 +1,5 @@
 // Continues at the end of a loop become the way there (nir_opt_trivial_continues.c; lavapipe-optimizer.md 5.4).
+#include "spirv/rewrite/graph/copier.h"
 #include "spirv/rewrite/graph/loops.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/passes.h"
@@ -22,6 +23,7 @@ bool drop_continues(Graph& graph, BlockId block, const std::vector<ValueId>& par
   if (branch == kNone || graph.insts[branch].kind != Kind::kIf) return changed;
   const BlockId side[2] = {graph.insts[branch].child[0], graph.insts[branch].child[1]};
   if (!contains_continue(graph, side[0]) && !contains_continue(graph, side[1])) return changed;
+  move_attached_into_sides(graph, branch, end);
   const std::vector<ValueId> results = graph.nodes[graph.insts[branch].node]->results;
   const std::vector<Src> passed = operands_of(graph, end);
   for (const BlockId child : side) {
