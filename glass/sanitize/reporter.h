@@ -19,6 +19,11 @@ namespace vitrine::glass::sanitize {
 
 using Id = std::array<std::uint32_t, 3>;  ///< of an invocation, as spirv::exec::invocation_of()
 
+/// What tells the accesses of a program apart: the SPIR-V instruction, or, for stores, which have no id, what they
+/// store to, on a line and on its way of calls. So what the compiler makes of one access, by parts or in unrolled
+/// rounds of a loop, is one place.
+std::uint64_t place_of_access(const spirv::Wave& wave, const spirv::Instruction* i, const spirv::InstructionNote& note);
+
 /// What comes first is reported: submission, command, rows of invocations downwards.
 using Order = std::tuple<std::uint64_t, std::uint32_t, Id>;
 
@@ -106,12 +111,11 @@ class Reporter {
     });
   }
 
-  /// The same for what an instruction of the program does.
+  /// The same for an access.
   template <class F>
   void report(const spirv::Wave& wave, const spirv::Instruction* i, const spirv::InstructionNote& note,
               const char* rule_id, base::LaneMask lanes, F&& message) {
-    const auto number = static_cast<std::uint64_t>(i - wave.program->code.data());
-    report(wave, number, note.origin, rule_id, lanes, std::forward<F>(message));
+    report(wave, place_of_access(wave, i, note), note.origin, rule_id, lanes, std::forward<F>(message));
   }
 
  private:

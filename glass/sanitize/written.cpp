@@ -134,7 +134,7 @@ class WrittenAccess {
   }
   void keep(const char* rule, std::size_t lane, UnwrittenRead read) {
     Reporter& reporter = check_.reporter_;
-    const auto number = static_cast<std::uint64_t>(i_ - wave_.program->code.data());
+    const std::uint64_t number = place_of_access(wave_, i_, note_);
     if (reporter.program().places.is_told({number, rule})) return;
     const Id id = reporter.invocation(wave_, lane);
     check_.reads_->add({&reporter.program(), number, rule, note_.origin}, wave_.resources->command, id,

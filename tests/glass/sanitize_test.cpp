@@ -42,6 +42,17 @@ TEST(Sanitize, FindsStoresOutsideOfBuffers) {
   EXPECT_EQ(found("", "if (i < 3u) v[i + 61u] = 1u;"), Texts{});
 }
 
+TEST(Sanitize, TellsOfAnAccessOnceHoweverManyInstructionsItBecomes) {
+  EXPECT_EQ(found("", "for (uint k = 0u; k < 4u; ++k) v[i * 4u + k + 40u] = k;"),
+            Texts{"out-of-bounds-store x8 at 6: store of 4 bytes at offset 256, outside of a buffer of 256 bytes"});
+  EXPECT_EQ(found("layout(set = 0, binding = 0) buffer M { mat4 m[]; };", "v[i] = uint(m[i][0][0] + m[i][3][3]);"),
+            (Texts{"out-of-bounds-load x4 at 4: load of 4 bytes at offset 256, outside of a buffer of 256 bytes",
+                   "out-of-bounds-load x4 at 4: load of 4 bytes at offset 316, outside of a buffer of 256 bytes"}));
+  EXPECT_EQ(
+      found("layout(set = 0, binding = 0) buffer M { mat4 m[]; };", "mat4 a = m[i]; v[i] = uint(a[0][0] + a[3][3]);"),
+      Texts{"out-of-bounds-load x8 at 4: load of 4 bytes at offset 256, outside of a buffer of 256 bytes"});
+}
+
 TEST(Sanitize, FindsAtomicsOutsideOfBuffers) {
   EXPECT_EQ(
       found("", "atomicAdd(v[i * 10u], 1u);"),
