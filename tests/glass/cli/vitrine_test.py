@@ -253,14 +253,18 @@ class Command(unittest.TestCase):
         if not shutil.which("genhtml"):
             self.skipTest("genhtml is missing")
         root = pathlib.Path(__file__).resolve().parents[3]
-        result = subprocess.run([self.vitrine, "coverage", "-o", self.folder / "a.info", self.small_application],
-                                cwd=root, capture_output=True, text=True, check=False)
+        two_processes = ["sh", "-c", f"{self.small_application} && {self.small_application} 1 16"]
+        result = subprocess.run([self.vitrine, "coverage", "-o", self.folder / "a.info", *two_processes], cwd=root,
+                                capture_output=True, text=True, check=False)
         self.assertEqual(result.returncode, 0, result.stderr)
         result = subprocess.run(["genhtml", "--branch-coverage", "-o", self.folder / "pages", self.folder / "a.info"],
                                 cwd=root, capture_output=True, text=True, check=False)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         [page] = (self.folder / "pages").rglob("fill.comp.gcov.html")
-        self.assertIn("data[i] = i;", page.read_text())
+        text = re.sub("<[^>]*>", "", page.read_text())
+        self.assertRegex(text, r"(?m)^ +8 +: +24 :   data\[i\] = i;")
+        self.assertRegex(text, r"(?m)^ +14 +\[ \+  \+ \]: +32 :   if \(i &lt; count\) put\(i\);")
+        self.assertRegex(text, r"(?m)^ +15 +: +: \}")
 
     def test_reports_do_not_depend_on_threads(self):
         reports = set()
