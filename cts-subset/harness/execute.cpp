@@ -7,6 +7,7 @@
 #include <set>
 #include <string_view>
 
+#include "harness/findings.h"
 #include "harness/options.h"
 #include "harness/random.h"
 #include "harness/recorded.h"
@@ -145,21 +146,7 @@ Judgement record_fingerprint(const Case& c) {
   return judgement;
 }
 
-}  // namespace
-
-std::string full_name(const Case& c) { return c.group + "." + c.name; }
-
-uint64_t case_seed(const Case& c) { return hash_name(full_name(c), options().seed); }
-
-void load_known_differences() {
-  if (options().known.empty()) return;
-  std::ifstream file(options().known);
-  if (!file) throw std::runtime_error("cannot read " + options().known);
-  for (std::string line; std::getline(file, line);)
-    if (!line.empty() && line[0] != '#') g_known.insert(line.substr(0, line.find(' ')));
-}
-
-Judgement execute(const Case& c) {
+Judgement judge_outputs_of(const Case& c) {
   if (!options().fingerprints.empty()) return record_fingerprint(c);
   Judgement judgement;
   if (recorded_reference()) judgement = judge_by_record(c);
@@ -168,6 +155,31 @@ Judgement execute(const Case& c) {
     judgement = judge(c, attempt, again);
   const bool known = g_known.contains(full_name(c));
   if (known && judgement.verdict == Verdict::kDiffering) judgement.verdict = Verdict::kKnown;
+  return judgement;
+}
+
+}  // namespace
+
+std::string full_name(const Case& c) { return c.group + "." + c.name; }
+
+uint64_t case_seed(const Case& c) { return hash_name(full_name(c), options().seed); }
+
+void load_lists() {
+  load_expected_findings();
+  if (options().known.empty()) return;
+  std::ifstream file(options().known);
+  if (!file) throw std::runtime_error("cannot read " + options().known);
+  for (std::string line; std::getline(file, line);)
+    if (!line.empty() && line[0] != '#') g_known.insert(line.substr(0, line.find(' ')));
+}
+
+Judgement execute(const Case& c) {
+  take_findings();
+  Judgement judgement = judge_outputs_of(c);
+  const std::string wrong = unexpected_findings(full_name(c), take_findings());
+  if (wrong.empty()) return judgement;
+  judgement.verdict = Verdict::kDiffering;
+  judgement.message += wrong;
   return judgement;
 }
 

@@ -27,8 +27,8 @@ std::string full_name(const Case& c);
 /// The case's seed, from the suite's seed and its name.
 uint64_t case_seed(const Case& c);
 Judgement execute(const Case& c);
-/// Reads the list of known differences that the options name. Throws when it cannot be read.
-void load_known_differences();
+/// Reads the lists of known differences and of expected findings that the options name. Throws when one cannot be read.
+void load_lists();
 /// What the reference does where its bits depend on the CPU (design.md section 8).
 struct ReferenceCpu {
   std::vector<uint32_t> float_to_uint;  ///< of -1, -0.5, 3e9, 5e9 and NaN

@@ -2,8 +2,10 @@
 #include "harness/gpu.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <string>
 #include <utility>
 
 #include "harness/claims.h"
@@ -20,6 +22,7 @@ std::mutex g_messages_mutex;
 std::vector<std::string> g_messages;
 bool g_validation = false;
 VkDebugUtilsMessengerEXT g_messenger = VK_NULL_HANDLE;
+std::vector<Finding> g_findings;
 
 // The layer's own mistakes, or notes that are no errors of the case; each with its reason.
 constexpr const char* kIgnored[] = {
@@ -28,11 +31,16 @@ constexpr const char* kIgnored[] = {
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void*) {
-  const char* id = data->pMessageIdName ? data->pMessageIdName : "";
+  const std::string id = data->pMessageIdName ? data->pMessageIdName : "";
   for (const char* ignored : kIgnored)
-    if (std::strcmp(id, ignored) == 0) return VK_FALSE;
+    if (id == ignored) return VK_FALSE;
   const std::lock_guard lock(g_messages_mutex);
   std::string text = data->pMessage ? data->pMessage : "";
+  if (text.find("[vitrine/" + id + "]") != std::string::npos) {
+    g_findings.push_back({id, std::move(text)});
+    return VK_FALSE;
+  }
+  if (!g_validation) return VK_FALSE;
   constexpr size_t kEnough = 500;  // the rest quotes the specification
   if (text.size() > kEnough) text = text.substr(0, kEnough) + "...";
   if (std::find(g_messages.begin(), g_messages.end(), text) == g_messages.end() && g_messages.size() < 20)
@@ -57,6 +65,9 @@ bool layer_present() {
                      [](const VkLayerProperties& layer) { return !std::strcmp(layer.layerName, kValidationLayer); });
 }
 
+/// Whether this driver's tools are on: they tell through messengers.
+bool tools_are_on() { return std::getenv("VITRINE_TOOLS") != nullptr; }
+
 VkInstance create_instance(bool validation, uint32_t api_version) {
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.pApplicationName = "cts_subset";
@@ -66,15 +77,19 @@ VkInstance create_instance(bool validation, uint32_t api_version) {
   const char* layer = kValidationLayer;
   const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
   const VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info();
+  const bool listens = validation || tools_are_on();
   if (validation) {
-    info.enabledLayerCount = info.enabledExtensionCount = 1;
+    info.enabledLayerCount = 1;
     info.ppEnabledLayerNames = &layer;
+  }
+  if (listens) {
+    info.enabledExtensionCount = 1;
     info.ppEnabledExtensionNames = &extension;
     info.pNext = &messenger;
   }
   VkInstance instance = VK_NULL_HANDLE;
   CTS_VK(vkCreateInstance(&info, nullptr, &instance));
-  if (validation) {
+  if (listens) {
     const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
         vkGetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
     if (create) CTS_VK(create(instance, &messenger, nullptr, &g_messenger));
@@ -258,6 +273,11 @@ void destroy_gpus() {
 std::vector<std::string> take_validation_errors() {
   const std::lock_guard lock(g_messages_mutex);
   return std::exchange(g_messages, {});
+}
+
+std::vector<Finding> take_findings() {
+  const std::lock_guard lock(g_messages_mutex);
+  return std::exchange(g_findings, {});
 }
 
 bool validation_is_on() { return g_validation; }

@@ -72,6 +72,12 @@ void destroy_gpus();
 
 /// Validation errors since the last call, each once.
 std::vector<std::string> take_validation_errors();
+/// What a tool of this driver (VITRINE_TOOLS) said of a shader: the rule that it breaks, and the message.
+struct Finding {
+  std::string rule, message;
+};
+/// Findings since the last call. Only faults, no warnings.
+std::vector<Finding> take_findings();
 /// Whether the validation layer is there and on.
 bool validation_is_on();
 

@@ -103,7 +103,7 @@ int run(int argc, char** argv) {
   std::printf("reference: %s\n", reference.c_str());
   std::fflush(stdout);
   if (parsed.isolate && !child) return run_children(command);
-  load_known_differences();
+  load_lists();
   register_cases();
   return run_here(child);
 }

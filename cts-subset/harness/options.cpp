@@ -22,6 +22,9 @@ constexpr char kUsage[] =
     "  --record[=FILE]   write the reference's results; with a filter, those of these cases into the file\n"
     "  --which-reference print which one is taken\n"
     "  --known=FILE      known differences (a name and its reason per line): told, but no failure of the run\n"
+    "  --findings=FILE   what the tools that VITRINE_TOOLS names may find (cases, a rule and the reason per line): any "
+    "other\n"
+    "                    fault that they find fails the case\n"
     "  --results=DIR     where pictures of differing cases go\n"
     "  --pictures        write pictures of every case\n"
     "  --fingerprints=FILE  compare nothing: append each case's name and a hash of the device's bytes\n"
@@ -68,6 +71,8 @@ Options parse_options(int argc, char** argv) {
       result.record = value.empty() ? default_record() : value;
     else if (name == "--which-reference")
       result.which_reference = true;
+    else if (name == "--findings")
+      result.findings = value;
     else if (name == "--results")
       result.results = value;
     else if (name == "--pictures")

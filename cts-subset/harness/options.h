@@ -14,6 +14,7 @@ struct Options {
   std::string record;    ///< file that receives the reference's results
   bool which_reference = false;  ///< only tell which one would be taken
   std::string known;             ///< list of known differences: these fail no run
+  std::string findings;          ///< list of what tools may find, where they are on; empty: anything
   std::string results = "cts-results";
   std::string fingerprints;  ///< file that receives the name and a hash of every case instead of a comparison
   uint64_t seed = 1;
