@@ -8,6 +8,7 @@
 #include <array>
 #include <map>
 
+#include "glass/memory_shadow.h"
 #include "glass/tools.h"
 #include "raster/pass.h"
 #include "spirv/addresses.h"
@@ -38,17 +39,36 @@ struct Image {
   texel::ImageView view;
 };
 
-/// Of the push constants five words are in the layout, and the first four have been set.
+/// Of the push constants five words are in the layout, and the first four have been set. What a descriptor named is
+/// gone, and what lay at some addresses.
 struct SceneCommand : spirv::ObservedCommand {
   SceneCommand() { pushed = 0xf; }
   std::string resource(std::uint32_t, std::uint32_t) const override { return {}; }
   std::uint64_t push_range(VkShaderStageFlagBits) const override { return 0x1f; }
+  std::string departed(std::uint32_t, std::uint32_t slot) const override { return slot == gone_slot ? kGone : ""; }
+  std::string departed(std::uint64_t address) const override { return address - gone_address < 256 ? kGone : ""; }
+  static constexpr char kGone[] = "buffer 'old', destroyed after submission 3";
+  std::uint32_t gone_slot = ~0u;
+  std::uint64_t gone_address = 0;  ///< of 256 bytes
+};
+
+/// While it lives, nothing has written some memory but its first bytes.
+struct Unwritten {
+  Unwritten(const void* memory, std::uint64_t size, std::uint64_t written)
+      : first(static_cast<const std::byte*>(memory)) {
+    add_shadow(first, size);
+    find_shadow(first)->fill(reinterpret_cast<std::uintptr_t>(first), written, ByteState::kWritten);
+  }
+  ~Unwritten() { remove_shadow(first); }
+  Unwritten(const Unwritten&) = delete;
+  const std::byte* first;
 };
 
 /// Set 0: 64 words that hold their numbers (binding 0), a texture with two levels (1), a storage image (2), one with
 /// two layers (3), a texel buffer of 8 texels (4), nothing (5), three storage images of which the last is not there
-/// (6), four buffers (7), a combined image sampler of floats (8). Push constants: the address of 64 words (two words),
-/// then words that hold 1, 2...
+/// (6), four buffers (7), a combined image sampler of floats (8), 64 words of which the first 32 are written (9), a
+/// storage image and a texture of which the first row is (10, 11), a buffer that is gone (12). Push constants: the
+/// address of 64 words (two words; another buffer was 512 bytes behind), then words that hold 1, 2...
 class Scene {
  public:
   Scene() {
@@ -72,6 +92,12 @@ class Scene {
     spirv::Descriptor sampled = image(floats_);
     sampled.sampler = &sampler_;
     add(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, {sampled});
+    add(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, {buffer(fresh_)});
+    add(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, {image(fresh_image_)});
+    add(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, {image(fresh_image_)});
+    command_.gone_slot = static_cast<std::uint32_t>(descriptors_.size());
+    command_.gone_address = address + 512;
+    add(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, {{}});
     table_.set[0] = descriptors_.data();
     table_.set_size[0] = static_cast<std::uint32_t>(descriptors_.size());
     table_.push_constants = reinterpret_cast<const std::byte*>(push_.data());
@@ -85,6 +111,14 @@ class Scene {
 
   /// Runs the module as the shader of `stage`, observed by the tool.
   void run(Tool& tool, VkShaderStageFlagBits stage, const std::vector<std::uint32_t>& module) {
+    const Unwritten words(fresh_.data(), sizeof(fresh_), sizeof(fresh_) / 2);
+    const Unwritten texels(fresh_image_.words.data(), fresh_image_.layout.size, std::uint64_t{4} * 4);
+    run_shader(tool, stage, module);
+    tool.commands_done(command_.owner);
+  }
+
+ private:
+  void run_shader(Tool& tool, VkShaderStageFlagBits stage, const std::vector<std::uint32_t>& module) {
     const auto shader =
         compile(stage, module, std::make_shared<ToolObserver>(tool, ShaderIdentity{stage, "main", module}));
     if (!shader) return;
@@ -96,7 +130,6 @@ class Scene {
     EXPECT_FALSE(fault.raised) << fault.message;
   }
 
- private:
   using Words = std::array<std::uint32_t, 64>;
 
   static spirv::Descriptor buffer(Words& words) {
@@ -203,10 +236,11 @@ void main() { gl_Position = vec4(0.0, 0.0, 0.5, 1.0); })";
 layout(location = 0) out vec4 color;
 void main() { color = vec4(1.0); })";
 
-  alignas(16) Words words_{}, other_{}, memory_{};
+  alignas(16) Words words_{}, other_{}, memory_{}, fresh_{};
   alignas(16) std::array<std::uint32_t, spirv::kMaxPushConstantBytes / 4> push_{};
   Image flat_{VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R32_UINT, 2, 1};
   Image layered_{VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_FORMAT_R32_UINT, 1, 2};
+  Image fresh_image_{VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R32_UINT, 1, 1};
   Image floats_{VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R32_SFLOAT, 1, 1};
   std::array<std::uint32_t, 8> texel_words_{};
   texel::BufferTexelView texels_{reinterpret_cast<std::byte*>(texel_words_.data()), 8,

@@ -147,6 +147,13 @@ TEST_F(Vertices, RestartIsNoVertex) {
   EXPECT_EQ(found().size(), 2u);
 }
 
+TEST_F(Vertices, IndicesUpToTheLastByteAreFine) {
+  use_indices<std::uint16_t>({0, 1, 2}, VK_INDEX_TYPE_UINT16);
+  EXPECT_EQ(found(), Texts{});
+  call.first = 2, call.count = 1;
+  EXPECT_EQ(found(), Texts{});
+}
+
 TEST_F(Vertices, IndicesOutsideAreTold) {
   use_indices<std::uint16_t>({0, 1, 2}, VK_INDEX_TYPE_UINT16);
   call.first = 1, call.count = 6;

@@ -50,10 +50,16 @@ TEST_F(SanitizedCommands, ArgumentsOutsideOfTheirBuffer) {
   const VkDescriptorSetLayout set_layout = make_set_layout_of(kTypes);
   const VkPipelineLayout layout = make_layout(set_layout);
   const VkPipeline pipeline = make_compute(layout);
-  const VkCommandBuffer commands = begin();
-  VK_CALL(CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-  VK_CALL(CmdDispatchIndirect)(commands, data.buffer, kBytes - 8);
-  run(commands);
+  const auto dispatch_at = [&](VkDeviceSize offset) {
+    const VkCommandBuffer commands = begin();
+    VK_CALL(CmdFillBuffer)(commands, data.buffer, 0, VK_WHOLE_SIZE, 0);
+    VK_CALL(CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    VK_CALL(CmdDispatchIndirect)(commands, data.buffer, offset);
+    run(commands);
+  };
+  dispatch_at(kBytes - 12);
+  EXPECT_EQ(heard, Lines{});
+  dispatch_at(kBytes - 8);
   EXPECT_EQ(
       heard,
       Lines{"vitrine: error: arguments of a dispatch: 12 bytes at offset 4088, outside of buffer 'arguments' (4096 "
