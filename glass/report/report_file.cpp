@@ -15,11 +15,19 @@
 namespace vitrine::glass {
 namespace {
 
+/// The application's own descriptor that a path names; -1: a file. Opened anew, a file behind it would have a position
+/// of its own, and what others write to the descriptor would go over the report.
+int standard_descriptor(std::string_view path) {
+  return path == "/dev/stdout" ? STDOUT_FILENO : path == "/dev/stderr" ? STDERR_FILENO : -1;
+}
+
 /// A file that is open and locked.
 class LockedFile {
  public:
-  explicit LockedFile(const std::string& path) : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-    while (file_ >= 0 && ::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
+  explicit LockedFile(const std::string& path) : standard_(standard_descriptor(path)) {
+    file_ = standard_ >= 0 ? ::fcntl(standard_, F_DUPFD_CLOEXEC, 0)
+                           : ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    while (standard_ < 0 && file_ >= 0 && ::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
     }
   }
   LockedFile(const LockedFile&) = delete;
@@ -29,8 +37,9 @@ class LockedFile {
   }
 
   bool is_open() const { return file_ >= 0; }
-  /// Bytes; -1: it is no regular file.
+  /// Bytes; -1: it is no regular file, or not ours.
   off_t size() const {
+    if (standard_ >= 0) return -1;
     struct stat status {};
     return ::fstat(file_, &status) == 0 && S_ISREG(status.st_mode) ? status.st_size : -1;
   }
@@ -40,7 +49,7 @@ class LockedFile {
            there == text;
   }
   bool truncate(off_t size) { return ::ftruncate(file_, size) == 0; }
-  /// At an offset; -1: to what cannot be sought (a terminal, a pipe).
+  /// At an offset; -1: to what cannot be sought (a terminal, a pipe), or where others write, too.
   bool write(std::string_view text, off_t offset) {
     while (!text.empty()) {
       const ssize_t written =
@@ -54,7 +63,7 @@ class LockedFile {
   }
 
  private:
-  int file_;
+  int standard_, file_ = -1;
 };
 
 /// Where a document that grows ends; 0: the file is no such document.

@@ -283,6 +283,17 @@ class Command(unittest.TestCase):
         [report_file] = self.folder.glob("a*.txt")
         self.assertIn("note: i is 3 [vitrine/printf]", report_file.read_text())
 
+    def test_reports_on_an_stderr_that_goes_to_a_file(self):
+        script = f"echo before >&2; {self.small_application} 1 16; echo behind >&2"
+        with open(self.folder / "log", "w", encoding="utf-8") as log:
+            subprocess.run(["sh", "-c", script], check=True, stderr=log,
+                           env={**os.environ, "VK_DRIVER_FILES": self.manifest, "VITRINE_TOOLS": "sanitize",
+                                "VITRINE_REPORT": "/dev/stderr"})
+        lines = (self.folder / "log").read_text().splitlines()
+        self.assertEqual((lines[0], lines[-1]), ("before", "behind"))
+        self.assertRegex(lines[1], r"^tests/glass/app/fill\.comp:8:.*\[vitrine/out-of-bounds-store\]$")
+        self.assertRegex(lines[-3], "; 8 times$")
+
     def test_driver_stays_loaded_while_tools_are_on(self):
         code = ("import _ctypes, ctypes, sys; driver = ctypes.CDLL(sys.argv[1]);"
                 "driver.vk_icdGetInstanceProcAddr(None, b'vkCreateInstance'); _ctypes.dlclose(driver._handle);"
