@@ -8,7 +8,9 @@ namespace vitrine::base {
 namespace {
 
 /// Topics that slow shaders down or print a lot are not meant by "all".
-bool is_only_by_name(std::string_view topic) { return topic == "shader-profile" || topic == "ir"; }
+bool is_only_by_name(std::string_view topic) {
+  return topic == "shader-profile" || topic == "ir" || topic == "validator";
+}
 
 std::string_view requested_topics() {
   const char* value = std::getenv("VITRINE_LOG");

@@ -53,7 +53,6 @@ struct CompileOptions {
   /// Fragment stage: locations that reach an attachment; outputs elsewhere are dead. Bit i = location i.
   std::uint32_t live_color_outputs = 0xff;
   std::uint32_t subgroup_size = 64;  ///< invocations: 8, 16, 32 or 64; a wave holds one subgroup or several
-  bool validate = true;              ///< run SPIRV-Tools' validator (false only where the same words passed before)
   /// Whom the program tells what it does (spirv/exec/observe.h). Null: whom VITRINE_TRACE asks for, mostly nobody.
   std::shared_ptr<const exec::Observer> observer;
   /// Gets the module as text, the shader after the front end and after each step that changes it, and the program, in
@@ -61,7 +60,7 @@ struct CompileOptions {
   std::vector<Representation>* representations = nullptr;
 };
 
-/// Validates, specialises, optimises structurally, applies the reference's rewrites, analyses and lowers.
+/// Specialises, optimises structurally, applies the reference's rewrites, analyses and lowers.
 base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> words, const CompileOptions& options);
 
 /// Checks the words without a pipeline (vkCreateShaderModule): magic, version, word counts. Empty string: acceptable.

@@ -20,6 +20,7 @@ struct Verifier {
     std::size_t outside = 0;  ///< of `defined`
     bool left = false;
     std::vector<ValueId> at_exits;
+    std::vector<ValueId> inside{};  ///< all that is defined in it
   };
   Loop loop{};
 
@@ -34,6 +35,7 @@ struct Verifier {
     if (visible[value]) complain("defined twice", value);
     visible[value] = true;
     defined.push_back(value);
+    if (loop.node != nullptr && scope == Scope::kBehindExits) loop.inside.push_back(value);
   }
 
   void hide_since(std::size_t count) {
@@ -165,14 +167,18 @@ struct Verifier {
 
   void check_loop(const Node& node) {
     pass(node.init, node.params, "Loop");
-    const Loop outer = std::exchange(loop, Loop{&node, defined.size(), false, {}});
+    Loop outer = std::exchange(loop, Loop{&node, defined.size(), false, {}, {}});
     for (ValueId value : node.params) define(value);
     list(node.body, &node.continue_params, scope == Scope::kBehindExits);
     for (ValueId value : node.continue_params) define(value);
     list(node.continuing, &node.params);
     hide_since(loop.outside);
-    for (ValueId value : loop.at_exits) define(value);
-    loop = outer;
+    // Nothing behind a loop without a way out runs, whatever it reads.
+    const Loop inner = std::exchange(loop, std::move(outer));
+    const std::vector<ValueId>& stays = inner.left ? inner.at_exits : inner.inside;
+    if (loop.node != nullptr) loop.inside.insert(loop.inside.end(), inner.inside.begin(), inner.inside.end());
+    for (const ValueId value : stays)
+      if (!visible[value]) define(value);
     for (ValueId value : node.results) define(value);
   }
 };

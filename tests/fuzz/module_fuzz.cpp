@@ -71,6 +71,13 @@ std::vector<std::uint32_t> run_once(const spirv::Shader& shader) {
   return buffers;
 }
 
+/// Ends the process where the front end has made what nothing behind it may rely on.
+void expect_none(const std::string& complaint) {
+  if (complaint.empty()) return;
+  std::fprintf(stderr, "the front end makes what is malformed: %s\n", complaint.c_str());
+  std::abort();
+}
+
 bool has_clock(const spirv::Shader& shader) {
   const auto& notes = shader.program().notes;
   return std::any_of(notes.begin(), notes.end(), [](const auto& note) { return !std::strcmp(note.name, "ReadClock"); });
@@ -80,11 +87,13 @@ bool has_clock(const spirv::Shader& shader) {
 
 Outcome run_module(VkShaderStageFlagBits stage, std::span<const std::uint32_t> words) {
   static_cast<void>(budget_is_set + threads_are_set);
-  spirv::CompileOptions options = options_of(stage);
-  options.validate = false;
+  const spirv::CompileOptions options = options_of(stage);
   if (spirv::check_module(words).empty()) {
-    const base::Result<spirv::ir::Function> function = spirv::translate(words, options);
-    if (function) static_cast<void>(spirv::ir::verify(function.value()));
+    constexpr spirv::exec::Interest kAll{true, true, true, true, true, true, true, true};
+    for (const spirv::exec::Interest& interest : {spirv::exec::Interest{}, kAll}) {
+      const base::Result<spirv::ir::Function> function = spirv::translate(words, options, interest);
+      if (function) expect_none(spirv::ir::verify(function.value()));
+    }
   }
   const auto shader = spirv::compile(words, options);
   if (!shader) return Outcome::kRefused;

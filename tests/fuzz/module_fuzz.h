@@ -13,8 +13,8 @@ namespace vitrine::fuzz {
 /// How far an input came.
 enum class Outcome : std::uint8_t { kRefused, kCompiled, kRan };
 
-/// Compiles the words, as they are and behind the validator's back, and runs what became of them twice; a difference
-/// between the runs ends the process, as does every fault that a sanitizer sees.
+/// Compiles the words, once as they are and once for somebody who watches everything, and runs what became of them
+/// twice; a difference between the runs ends the process, as does every fault that a sanitizer sees.
 Outcome run_module(VkShaderStageFlagBits stage, std::span<const std::uint32_t> words);
 
 /// The stages by the number that an input's first byte names them with (modulo how many there are).

@@ -83,7 +83,6 @@ Outcome run(Tool& tool, const Words& module) {
   buffer.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   set.bindings = {buffer};
   options.sets = {set};
-  options.validate = false;  // SPIRV-Tools' validator knows these instructions, too, and would refuse most lies
   options.observer = std::make_shared<ToolObserver>(tool, ShaderIdentity{options.stage, "main", module});
   const auto shader = spirv::compile(module, options);
   if (!shader) {

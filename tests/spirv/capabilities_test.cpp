@@ -25,7 +25,6 @@ std::string message_of(const std::string& capability) {
                      "%main = OpFunction %void None %function\n%entry = OpLabel\nOpReturn\nOpFunctionEnd\n",
                  SPV_ENV_VULKAN_1_3);
     CompileOptions options = options_for(VK_SHADER_STAGE_COMPUTE_BIT);
-    options.validate = true;
     const auto shader = compile(words, options);
     if (shader) return {};
     message = shader.message();
@@ -61,7 +60,6 @@ TEST(Capabilities, LayersInModulesOlderThanTheirCapability) {
   ASSERT_EQ(words[6], static_cast<std::uint32_t>(spv::Capability::MultiViewport));
   words[6] = static_cast<std::uint32_t>(spv::Capability::ShaderLayer);
   CompileOptions options = options_for(VK_SHADER_STAGE_GEOMETRY_BIT);
-  options.validate = true;
   const auto shader = compile(words, options);
   EXPECT_TRUE(shader.ok()) << shader.message();
 }
@@ -75,7 +73,6 @@ TEST(Capabilities, ConversionsToTheSameWidth) {
       "%main = OpFunction %void None %function\n%entry = OpLabel\n%same = OpFConvert %half %one\nOpReturn\n"
       "OpFunctionEnd\n");
   CompileOptions options = options_for(VK_SHADER_STAGE_COMPUTE_BIT);
-  options.validate = true;
   const auto shader = compile(words, options);
   EXPECT_TRUE(shader.ok()) << shader.message();
 }

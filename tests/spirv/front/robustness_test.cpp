@@ -34,8 +34,8 @@ TEST(DamagedModule, EveryTruncation) {
   }
 }
 
-/// Behind the validator's back: the front end itself must survive whatever the words say.
-TEST(DamagedModule, BitFlipsWithoutValidation) {
+/// The front end must survive whatever the words say.
+TEST(DamagedModule, BitFlipsThroughTheFrontEnd) {
   const Words words = compile_glsl(kFragment, kSource);
   const auto start = std::chrono::steady_clock::now();
   std::size_t accepted = 0;
@@ -80,7 +80,7 @@ TEST(DamagedModule, HeaderIsChecked) {
   EXPECT_NE(check_module(wrong).find("end of the module"), std::string::npos);
 }
 
-TEST(DamagedModule, InvalidModuleSaysWhatTheValidatorSays) {
+TEST(DamagedModule, WhatIsRefusedSaysWhatTheValidatorSaysToo) {
   const Words words = assemble(R"(OpCapability Shader
     OpMemoryModel Logical GLSL450
     OpEntryPoint Fragment %main "main"
@@ -91,12 +91,14 @@ TEST(DamagedModule, InvalidModuleSaysWhatTheValidatorSays) {
     %one = OpConstant %float 1
     %main = OpFunction %void None %fn
     %entry = OpLabel
-    %sum = OpIAdd %float %one %one
+    %sum = OpIAdd %float %main %one
     OpReturn
     OpFunctionEnd)");
   const auto result = compile(words, options_for(kFragment));
   ASSERT_FALSE(result);
-  EXPECT_NE(result.message().find("IAdd"), std::string::npos) << result.message();
+  EXPECT_NE(result.message().find("OpIAdd"), std::string::npos) << result.message();
+  EXPECT_NE(result.message().find("(SPIRV-Tools: Invalid use of function result id"), std::string::npos)
+      << result.message();
 }
 
 /// A fragment shader with a Sample input and no SampleRateShading, as zink writes them.
@@ -125,19 +127,96 @@ TEST(DamagedModule, CapabilitiesThatVulkanKnowsNeedNoDeclaration) {
   EXPECT_TRUE(result) << result.message();
 }
 
-TEST(DamagedModule, CapabilitiesThatVulkanForbidsStayErrors) {
-  const Words words = assemble(R"(OpCapability Shader
+/// What nothing does anything with harms nobody.
+TEST(DamagedModule, WhatVulkanForbidsIsRefusedWhereItCannotBeExecuted) {
+  const auto with = [](const std::string& body) {
+    return assemble(R"(OpCapability Shader
     OpMemoryModel Logical GLSL450
     OpEntryPoint Fragment %main "main"
     OpExecutionMode %main OriginUpperLeft
     %void = OpTypeVoid
     %fn = OpTypeFunction %void
     %event = OpTypeEvent
+    %ptr = OpTypePointer Function %event
     %main = OpFunction %void None %fn
     %entry = OpLabel
+    )" + body + R"(
     OpReturn
     OpFunctionEnd)");
-  EXPECT_FALSE(compile(words, options_for(kFragment)));
+  };
+  EXPECT_TRUE(compile(with(""), options_for(kFragment)));
+  const auto used = compile(with("%v = OpVariable %ptr Function\n%value = OpLoad %event %v"), options_for(kFragment));
+  ASSERT_FALSE(used);
+  EXPECT_NE(used.message().find("OpLoad"), std::string::npos) << used.message();
+}
+
+/// gfxreconstruct restores stencil contents with such a shader; the reference takes the bits.
+TEST(DamagedModule, StencilReferencesMayBeFloats) {
+  const Words words = assemble(R"(OpCapability Shader
+    OpCapability StencilExportEXT
+    OpExtension "SPV_EXT_shader_stencil_export"
+    OpMemoryModel Logical GLSL450
+    OpEntryPoint Fragment %main "main" %out
+    OpExecutionMode %main OriginUpperLeft
+    OpExecutionMode %main StencilRefReplacingEXT
+    OpDecorate %out BuiltIn FragStencilRefEXT
+    %void = OpTypeVoid
+    %fn = OpTypeFunction %void
+    %float = OpTypeFloat 32
+    %two = OpConstant %float 2
+    %ptr = OpTypePointer Output %float
+    %out = OpVariable %ptr Output
+    %main = OpFunction %void None %fn
+    %entry = OpLabel
+    OpStore %out %two
+    OpReturn
+    OpFunctionEnd)");
+  const auto shader = compile(words, options_for(kFragment));
+  ASSERT_TRUE(shader) << shader.message();
+  ASSERT_EQ(shader.value()->interface().outputs.size(), 1u);
+  EXPECT_EQ(shader.value()->interface().outputs[0].built_in, BuiltIn::kFragStencilRef);
+}
+
+/// As the conformance suite's interface matching has it: two arrays of a geometry shader share a location.
+TEST(DamagedModule, InputsOfGeometryShadersShareLocations) {
+  const Words words = assemble(R"(OpCapability Geometry
+    OpMemoryModel Logical GLSL450
+    OpEntryPoint Geometry %main "main" %a %b %out
+    OpExecutionMode %main Triangles
+    OpExecutionMode %main Invocations 1
+    OpExecutionMode %main OutputPoints
+    OpExecutionMode %main OutputVertices 1
+    OpDecorate %a Location 0
+    OpDecorate %b Location 0
+    OpDecorate %b Component 2
+    OpDecorate %out Location 0
+    %void = OpTypeVoid
+    %fn = OpTypeFunction %void
+    %float = OpTypeFloat 32
+    %vec2 = OpTypeVector %float 2
+    %uint = OpTypeInt 32 0
+    %three = OpConstant %uint 3
+    %one = OpConstant %uint 1
+    %vertices = OpTypeArray %vec2 %three
+    %in_ptr = OpTypePointer Input %vertices
+    %vertex_ptr = OpTypePointer Input %vec2
+    %out_ptr = OpTypePointer Output %vec2
+    %a = OpVariable %in_ptr Input
+    %b = OpVariable %in_ptr Input
+    %out = OpVariable %out_ptr Output
+    %main = OpFunction %void None %fn
+    %entry = OpLabel
+    %at_a = OpAccessChain %vertex_ptr %a %one
+    %at_b = OpAccessChain %vertex_ptr %b %one
+    %value_a = OpLoad %vec2 %at_a
+    %value_b = OpLoad %vec2 %at_b
+    %sum = OpFAdd %vec2 %value_a %value_b
+    OpStore %out %sum
+    OpEmitVertex
+    OpReturn
+    OpFunctionEnd)");
+  const auto shader = compile(words, options_for(VK_SHADER_STAGE_GEOMETRY_BIT));
+  EXPECT_TRUE(shader) << shader.message();
 }
 
 }  // namespace
