@@ -171,7 +171,7 @@ struct Translator {
   std::unordered_set<std::uint32_t> built_blocks;                   ///< in the running function instance
   std::unordered_map<std::uint32_t, MeetingPoints> meeting_points;  ///< entry block of a function -> those in it
   std::uint32_t exits = 0;
-  std::uint32_t depth = 0;    ///< of the recursion over the control flow
+  std::uint32_t depth = 0;    ///< of the recursion over what nests
   std::size_t nodes = 0;      ///< emitted so far
   std::size_t steps = 0;      ///< instructions of the module translated so far, in every function instance
   std::size_t leaves = 0;     ///< of all values so far
@@ -193,8 +193,17 @@ inline constexpr std::size_t kMaxLeaves = 1u << 25;
 inline constexpr std::size_t kMaxArguments = 1u << 24;
 /// Scalars of all variables that stay in memory.
 inline constexpr std::size_t kMaxArrayScalars = 1u << 18;
-/// Bounds the recursion over nested control flow.
+/// Bounds the recursion over nested control flow, and over variables that begin as pointers to variables.
 inline constexpr std::uint32_t kMaxDepth = 200;
+
+/// Counts the depth of such a recursion.
+struct Deeper {
+  Deeper(Translator& t, const char* what) : translator(t) {
+    if (++t.depth > kMaxDepth) throw Failure(std::string(what) + " too deeply nested");
+  }
+  ~Deeper() { translator.depth--; }
+  Translator& translator;
+};
 
 // ---- call_stack.cpp
 /// Where the entry point begins: the place of its interface.

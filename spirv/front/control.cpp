@@ -17,15 +17,6 @@ constexpr std::uint32_t kAnyCase = 0;  ///< no label: the key of the flag that a
 
 void build(Translator& t, std::uint32_t label, std::uint32_t end, bool enter_first);
 
-/// Counts the depth of the recursion over nested constructs.
-struct Deeper {
-  explicit Deeper(Translator& t) : translator(t) {
-    if (++t.depth > kMaxDepth) throw Failure("control flow is too deeply nested");
-  }
-  ~Deeper() { translator.depth--; }
-  Translator& translator;
-};
-
 /// Redirects emission to `list` for a while.
 struct Into {
   Into(Translator& t, ir::NodeList& list) : translator(t), saved(std::exchange(t.list, &list)) {}
@@ -484,7 +475,7 @@ void build_block(Translator& t, const Block& block) {
 
 /// Blocks from `label` until `end` or a jump. `enter_first`: `label` is a loop header or continue target being entered.
 void build(Translator& t, std::uint32_t label, std::uint32_t end, bool enter_first) {
-  const Deeper deeper(t);
+  const Deeper deeper(t, "control flow is");
   bool header_entered = enter_first;
   while (label != 0) {
     if (!header_entered && (label == end || jump_out(t, label))) return;
@@ -567,7 +558,7 @@ void build_function(Translator& t, const Function& callee, std::uint32_t result_
 }
 
 void call(Translator& t, const Inst& inst) {
-  const Deeper deeper(t);
+  const Deeper deeper(t, "control flow is");
   const auto callee = t.module.functions.find(inst.operand(0));
   if (callee == t.module.functions.end()) fail(inst, "calls something that is no function");
   bind_arguments(t, inst, callee->second);

@@ -239,6 +239,7 @@ const Pointer& pointer_of(Translator& t, std::uint32_t id) {
     return t.value_pointers[id] = pointer_from(t, value_of(t, id));
   const Inst& variable = t.module.def(id);
   if (variable.op != spv::Op::OpVariable) fail(variable, "is not a pointer that is supported");
+  const Deeper deeper(t, "initial values are");
   Pointer pointer = declare(t, variable);
   pointer.variable = id;
   pointer.is_volatile = t.module.decoration(id, Decoration::Volatile) != nullptr;

@@ -267,6 +267,19 @@ TEST(MonsterModule, LongLadders) {
 }
 
 /// A value used in front of the instruction that makes it.
+TEST(MonsterModule, VariablesThatBeginAsPointersToEachOther) {
+  const std::string capabilities = "OpCapability VariablePointers\n";
+  const Words itself = module_with(
+      "%p0 = OpTypePointer Private %uint\n%p1 = OpTypePointer Private %p0\n%v = OpVariable %p1 Private %v\n",
+      "%r = OpLoad %p0 %v\n%y = OpLoad %uint %r\nOpStore %place %y\n", "", "", capabilities);
+  EXPECT_NE(refusal(itself), "");
+  std::string chain = "%p0 = OpTypePointer Private %uint\n%v0 = OpVariable %p0 Private %u7\n";
+  for (std::size_t i = 1; i <= 20000; i++)
+    chain += "%p" + number(i) + " = OpTypePointer Private %p" + number(i - 1) + "\n%v" + number(i) +
+             " = OpVariable %p" + number(i) + " Private %v" + number(i - 1) + "\n";
+  EXPECT_NE(refusal(module_with(chain, "%r = OpLoad %p19999 %v20000\n", "", "", capabilities)), "");
+}
+
 TEST(MonsterModule, ForwardReferences) {
   expect_refused(module_with("", "%r = OpIAdd %uint %later %x\n%later = OpIAdd %uint %x %x\nOpStore %place %r\n"),
                  "has no value here");
