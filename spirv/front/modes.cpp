@@ -33,11 +33,18 @@ bool shades_per_sample(const Module& module) {
 }
 
 void set_local_size(Translator& t, const std::uint32_t size[3]) {
-  for (int i = 0; i < 3; i++) {
-    if (size[i] == 0 || size[i] > 1024) throw Failure("local size is out of range");
-    t.function.interface.local_size[i] = size[i];
+  for (int i = 0; i < 3; i++) t.function.interface.local_size[i] = size[i];
+}
+
+/// maxComputeWorkGroupSize and maxComputeWorkGroupInvocations.
+void check_local_size(const ShaderInterface& interface) {
+  constexpr std::uint64_t kMost = 1024;
+  std::uint64_t product = 1;
+  for (const std::uint32_t size : interface.local_size) {
+    if (size == 0 || size > kMost) throw Failure("local size is out of range");
+    product *= size;
   }
-  if (std::uint64_t{size[0]} * size[1] * size[2] > 1024) throw Failure("local size is out of range");
+  if (product > kMost) throw Failure("local size is out of range");
 }
 
 /// Modes of tessellation and geometry stages. False: another one.
@@ -175,6 +182,7 @@ void read_modes(Translator& t) {
     if (row.kind == Decoration::BuiltIn && row.value == static_cast<std::uint32_t>(spv::BuiltIn::WorkgroupSize))
       if (const Constant* size = t.module.constant(row.id); size != nullptr && size->words.size() == 3)
         set_local_size(t, size->words.data());
+  check_local_size(interface);
 }
 
 }  // namespace vitrine::spirv::front

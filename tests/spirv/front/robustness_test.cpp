@@ -3,6 +3,7 @@
 
 #include "spirv/front/translate.h"
 #include "spirv/ir_passes.h"
+#include "tests/spirv/compute_text.h"
 #include "tests/spirv/front/glsl.h"
 
 namespace vitrine::spirv::test {
@@ -99,6 +100,20 @@ TEST(DamagedModule, WhatIsRefusedSaysWhatTheValidatorSaysToo) {
   EXPECT_NE(result.message().find("OpIAdd"), std::string::npos) << result.message();
   EXPECT_NE(result.message().find("(SPIRV-Tools: Invalid use of function result id"), std::string::npos)
       << result.message();
+}
+
+/// As the Khronos suite has it: what LocalSize says does not count, so that it may say too much.
+TEST(DamagedModule, WorkgroupSizeOverridesLocalSize) {
+  ComputeText module;
+  module.local_size = "9 13 106";
+  module.annotations = "OpDecorate %size BuiltIn WorkgroupSize\n";
+  module.declarations = "%u4 = OpConstant %uint 4\n%size = OpConstantComposite %v3uint %u4 %u1 %u1\n";
+  const auto shader = compile(assemble(module.text()), options_for(VK_SHADER_STAGE_COMPUTE_BIT));
+  ASSERT_TRUE(shader) << shader.message();
+  EXPECT_EQ(shader.value()->interface().local_size[0], 4u);
+  EXPECT_EQ(shader.value()->interface().local_size[2], 1u);
+  module.annotations.clear();
+  EXPECT_FALSE(compile(assemble(module.text()), options_for(VK_SHADER_STAGE_COMPUTE_BIT)));
 }
 
 /// A fragment shader with a Sample input and no SampleRateShading, as zink writes them.
