@@ -227,18 +227,17 @@ std::uint16_t shape_of(Rules& rules, std::uint16_t index) {
       return kConstShape;
   }
   Shape shape;
-  shape.op = shape_op(pattern.op);
+  const Op op = shape_op(pattern.op);
   shape.children = pattern.children;
   shape.commutative = is_commutative(pattern.op);
   for (unsigned i = 0; i < pattern.children; ++i) shape.child[i] = shape_of(rules, pattern.child[i]);
-  auto& same_op = rules.shapes_by_op[static_cast<std::size_t>(shape.op)];
-  for (const std::uint16_t known : same_op) {
-    const Shape& other = rules.shapes[known];
-    if (std::equal(shape.child, shape.child + shape.children, other.child)) return rules.patterns[index].shape = known;
-  }
-  const auto number = static_cast<std::uint16_t>(rules.shapes.size());
-  rules.shapes.push_back(shape);
-  same_op.push_back(number);
+  auto& same_op = rules.shapes[static_cast<std::size_t>(op)];
+  const auto known = std::find_if(same_op.begin(), same_op.end(), [&](const Shape& other) {
+    return std::equal(shape.child, shape.child + shape.children, other.child);
+  });
+  const std::uint16_t number = shape_number(op, static_cast<std::size_t>(known - same_op.begin()));
+  if (known == same_op.end()) same_op.push_back(shape);
+  if (same_op.size() > kMaxShapes) VITRINE_UNREACHABLE("too many shapes of rules");
   return rules.patterns[index].shape = number;
 }
 
@@ -258,8 +257,9 @@ void add_rule(Rules& rules, std::string_view search, std::string_view replacemen
   rule.commutative = number_commutative(rules, rule.search, 0);
   rule.needs_free_zeros = flag == 'z';
   shape_of(rules, rule.search);
-  const Op op = rules.patterns[rule.search].op;
-  rules.by_op[static_cast<std::size_t>(op)].push_back(static_cast<std::uint16_t>(rules.rules.size()));
+  const Pattern& root = rules.patterns[rule.search];
+  rules.by_op[static_cast<std::size_t>(root.op)].push_back(
+      {root.shape, static_cast<std::uint16_t>(rules.rules.size())});
   rules.rules.push_back(rule);
 }
 
@@ -308,7 +308,6 @@ Rules parse_rules(std::span<const RuleText> texts, std::span<const char* const> 
   Rules rules;
   rules.patterns.reserve(texts.size() * 16);
   rules.rules.reserve(texts.size() * 2);
-  rules.shapes.reserve(kMaxShapes);
   for (const RuleText& text : texts) {
     std::string_view ops = text.ops;
     if (ops.empty()) add_rule(rules, text.search, text.replacement, text.flag);
@@ -320,7 +319,6 @@ Rules parse_rules(std::span<const RuleText> texts, std::span<const char* const> 
     }
   }
   for (const char* shape : shapes) add_shape(rules, shape);
-  if (rules.shapes.size() > kMaxShapes) VITRINE_UNREACHABLE("too many shapes of rules");
   return rules;
 }
 

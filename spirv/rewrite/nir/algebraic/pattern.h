@@ -88,21 +88,30 @@ struct Rule {
 /// A search tree with variables made anonymous: what can be told without comparing values. An instruction's set of
 /// matching shapes is its state; when a replacement changes the state of a user, the user is visited again (4.1).
 struct Shape {
-  ir::Op op = ir::Op::kMov;
   std::uint8_t children = 0;
   bool commutative = false;
-  std::uint16_t child[kMaxChildren] = {};  ///< kAnyShape, kConstShape or a shape
+  std::uint16_t child[kMaxChildren] = {};  ///< kAnyShape, kConstShape or a shape's number
 };
 inline constexpr std::uint16_t kAnyShape = 0xffff, kConstShape = 0xfffe;
-inline constexpr std::size_t kMaxShapes = 832;
+inline constexpr std::size_t kMaxShapes = 64;  ///< of one operation: bits of a state
+
+/// Of the shape at `index` among those of an operation.
+constexpr std::uint16_t shape_number(ir::Op op, std::size_t index) {
+  return static_cast<std::uint16_t>(static_cast<std::size_t>(op) * kMaxShapes + index);
+}
+
+/// A rule of an operation, with the shape that what it applies to has.
+struct Candidate {
+  std::uint16_t shape = 0;
+  std::uint16_t rule = 0;
+};
 
 struct Rules {
   std::vector<Pattern> patterns;
   std::vector<Rule> rules;
-  std::vector<std::uint16_t> by_op[static_cast<std::size_t>(ir::Op::kAluCount)];  ///< rules, in table order
-  std::vector<Shape> shapes;                                                      ///< children before parents
-  std::vector<std::string> ill_formed;                                            ///< rules and shapes left out
-  std::vector<std::uint16_t> shapes_by_op[static_cast<std::size_t>(ir::Op::kAluCount)];
+  std::vector<Candidate> by_op[static_cast<std::size_t>(ir::Op::kAluCount)];  ///< in table order
+  std::vector<Shape> shapes[static_cast<std::size_t>(ir::Op::kAluCount)];     ///< of each operation
+  std::vector<std::string> ill_formed;                                        ///< rules and shapes left out
 };
 
 /// How a rule is written in the table; `ops`: names separated by blanks, each put for every $ in turn; flags: 'z'

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <deque>
+#include <utility>
 
 #include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/literals.h"
@@ -20,8 +21,11 @@ namespace {
 using Kind = Inst::Kind;
 using Swizzle = std::array<std::uint8_t, 4>;
 
-/// Bit per shape that an instruction has.
-using State = std::array<std::uint64_t, kMaxShapes / 64>;
+/// Bit per shape of its operation that an instruction has.
+struct State {
+  std::uint64_t shapes = 0;
+  Op op = Op::kMov;  ///< shape_op()
+};
 
 constexpr unsigned kMaxOrders = 8;  ///< commutative operations of one search that are tried in both orders
 
@@ -64,34 +68,44 @@ class Rewriter {
  private:
   // ---- states
 
-  bool has_shape(ValueId value, std::uint16_t shape) const {
-    if (shape == kAnyShape) return true;
-    if (shape == kConstShape) return graph_.constant(value) != nullptr;
-    return (states_[value][shape / 64] >> (shape % 64) & 1) != 0;
+  static bool has(const State& state, std::uint16_t shape) {
+    return static_cast<std::size_t>(state.op) == shape / kMaxShapes && (state.shapes >> shape % kMaxShapes & 1) != 0;
   }
 
-  bool fits(const Inst& inst, const Shape& shape) const {
-    const auto child = [&](unsigned operand, unsigned pattern) {
-      return has_shape(graph_.source(inst, operand).value, shape.child[pattern]);
-    };
+  /// What shapes ask of an instruction's operands.
+  struct Operands {
+    std::array<State, kMaxChildren> state;
+    std::array<bool, kMaxChildren> constant;
+
+    bool has(unsigned operand, std::uint16_t shape) const {
+      if (shape == kAnyShape) return true;
+      return shape == kConstShape ? constant[operand] : Rewriter::has(state[operand], shape);
+    }
+  };
+
+  static bool fits(const Operands& operands, const Shape& shape) {
     bool straight = true;
-    for (unsigned i = 0; i < shape.children && straight; ++i) straight = child(i, i);
+    for (unsigned i = 0; i < shape.children && straight; ++i) straight = operands.has(i, shape.child[i]);
     if (straight || !shape.commutative) return straight;
-    return child(0, 1) && child(1, 0) && (shape.children < 3 || child(2, 2));
+    return operands.has(0, shape.child[1]) && operands.has(1, shape.child[0]) &&
+           (shape.children < 3 || operands.has(2, shape.child[2]));
   }
 
   /// True when the state changed.
   bool update_state(InstId id) {
     const Inst& inst = graph_.insts[id];
-    State state{};
-    const auto add_shapes = [&](Op op) {
-      for (const std::uint16_t shape : rules_.shapes_by_op[static_cast<std::size_t>(op)])
-        if (fits(inst, rules_.shapes[shape])) state[shape / 64] |= std::uint64_t{1} << (shape % 64);
-    };
-    add_shapes(shape_op(inst.op));
-    if (states_[inst.result] == state) return false;
-    states_[inst.result] = state;
-    return true;
+    Operands operands{};
+    for (unsigned i = 0; i < std::min<unsigned>(inst.count, kMaxChildren); ++i) {
+      const ValueId value = graph_.source(inst, i).value;
+      operands.state[i] = states_[value];
+      operands.constant[i] = graph_.constant(value) != nullptr;
+    }
+    State state{0, shape_op(inst.op)};
+    const std::vector<Shape>& shapes = rules_.shapes[static_cast<std::size_t>(state.op)];
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      if (fits(operands, shapes[i])) state.shapes |= std::uint64_t{1} << i;
+    const State before = std::exchange(states_[inst.result], state);
+    return before.shapes != state.shapes || (state.shapes != 0 && before.op != state.op);
   }
 
   void wake_users(ValueId value) {
@@ -382,8 +396,6 @@ class Rewriter {
     const Pattern& search = rules_.patterns[rule.search];
     if (inst.width != 32 ? !applies(rule, search, inst.width) : search.inexact && inexact_off_) return false;
     if (rule.needs_free_zeros && graph_.function.signed_zero_inf_nan_preserve) return false;
-    if (!has_shape(inst.result, search.shape)) return false;
-    match = {};
     const std::uint32_t attempts = 1u << std::min<unsigned>(rule.commutative, kMaxOrders);
     for (match.orders = 0; match.orders < attempts; ++match.orders) {
       match.seen = 0;
@@ -498,8 +510,10 @@ class Rewriter {
 
   bool rewrite(InstId id) {
     const Op op = graph_.insts[id].op;
-    for (const std::uint16_t number : rules_.by_op[static_cast<std::size_t>(op)]) {
-      const Rule& rule = rules_.rules[number];
+    const ValueId result = graph_.insts[id].result;
+    for (const Candidate& candidate : rules_.by_op[static_cast<std::size_t>(op)]) {
+      if (candidate.shape != kAnyShape && !has(states_[result], candidate.shape)) continue;
+      const Rule& rule = rules_.rules[candidate.rule];
       Match match;
       if (!try_rule(rule, graph_.insts[id], match)) continue;
       const ValueId value = replacement(id, rule, match);
