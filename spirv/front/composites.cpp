@@ -124,7 +124,6 @@ void copy_object(Translator& t, const Inst& inst, ir::Op) {
   } else if (t.module.type(inst.result_type).kind == Type::Kind::kPointer) {
     t.pointers[inst.result] = pointer_of(t, id);
   } else {
-    if (t.module.type(inst.result_type).leaves == 1) leaf_info(t, inst.result_type);
     set_value(t, inst, value_of(t, id).leaves);
   }
 }

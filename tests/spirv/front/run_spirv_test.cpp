@@ -64,6 +64,19 @@ TEST(RunSpirv, PointersCompareAndSubtract) {
   }
 }
 
+/// As glslang copies between block layouts: structures of one number are no numbers.
+TEST(RunSpirv, StructuresOfOneMemberAreCopiedLogically) {
+  const auto copied = run_spirv(
+      "%one = OpCompositeConstruct %one_a %x\n%two = OpCopyLogical %one_b %one\n"
+      "%three = OpCopyLogical %row_a %row\n%y = OpCompositeExtract %uint %two 0\n"
+      "%z = OpCompositeExtract %uint %three 0 0\n%r = OpIAdd %uint %y %z\n",
+      "%one_a = OpTypeStruct %uint\n%one_b = OpTypeStruct %uint\n%row_a = OpTypeArray %one_a %u1\n"
+      "%row_b = OpTypeArray %one_b %u1\n%seven = OpConstantComposite %one_b %u7\n"
+      "%row = OpConstantComposite %row_b %seven\n",
+      "", "Logical", "", " %buffer");
+  for (std::uint32_t i = 0; i < kCount; i++) EXPECT_EQ(copied[i], i + 7);
+}
+
 TEST(RunSpirv, GroupsRotateAndCombineBooleans) {
   const std::string capabilities =
       "OpCapability GroupNonUniformArithmetic\nOpCapability GroupNonUniformRotateKHR\n"
