@@ -104,6 +104,22 @@ std::uint64_t sum_of(SampleLanes samples) {
   return sum;
 }
 
+/// The most fragments on a pixel of a block, by pixel of the tile; adds to `covered`, unless it is all of them, how
+/// many pixels have any.
+std::uint32_t add_block(const std::uint32_t* pixels, std::uint32_t block, std::uint32_t& covered) {
+  const std::uint32_t* const first =
+      pixels + std::size_t{block / kBlockSide * kBlockSide} * kTileSide + block % kBlockSide * kBlockSide;
+  std::uint32_t most = 0, any = 0;
+  for (std::uint32_t y = 0; y < kBlockSide; ++y)
+    for (std::uint32_t x = 0; x < kBlockSide; ++x) {
+      const std::uint32_t fragments = first[y * kTileSide + x];
+      most = std::max(most, fragments);
+      any += fragments != 0;
+    }
+  if (covered == 0) covered = any;
+  return most;
+}
+
 }  // namespace
 
 void Fates::add(const Fates& other) {
@@ -223,14 +239,16 @@ void DrawCounts::add(const spirv::ObservedCommand* command, const Fates& fates) 
 }
 
 void DrawCounts::add(Overdraw& overdraw, const PassPixels& pass) {
-  for (const auto& [tile, pixels] : pass)
-    for (std::uint32_t y = 0; y < kTileSide; ++y)
-      for (std::uint32_t x = 0; x < kTileSide; ++x) {
-        std::uint64_t fragments = pixels->blocks[y / kBlockSide * kBlockSide + x / kBlockSide];
-        if (!pixels->single.empty()) fragments += pixels->single[std::size_t{y} * kTileSide + x];
-        overdraw.pixels += fragments != 0;
-        overdraw.most = std::max(overdraw.most, fragments);
-      }
+  for (const auto& [tile, pixels] : pass) {
+    const bool whole = pixels->single.empty();
+    for (std::uint32_t b = 0; b < pixels->blocks.size(); ++b) {
+      const std::uint32_t fragments = pixels->blocks[b];
+      std::uint32_t most = fragments, covered = fragments != 0 ? kBlockSide * kBlockSide : 0;
+      if (!whole) most += add_block(pixels->single.data(), b, covered);
+      overdraw.pixels += covered;
+      overdraw.most = std::max<std::uint64_t>(overdraw.most, most);
+    }
+  }
 }
 
 Fates DrawCounts::total() const {

@@ -54,6 +54,8 @@ LaneMask stencil_writes(const State& state, const FailedTests& failed, LaneMask 
 LaneMask scissor_lanes(const PipelinePlan& plan, const Primitive& primitive, int x, int y) {
   const bool wide = primitive.kind != PrimitiveKind::kTriangle && primitive.viewport == 0;
   const PixelRect& region = wide ? plan.wide_region : plan.region[primitive.viewport];
+  if (x >= region.x0 && y >= region.y0 && x + kBlockSize <= region.x1 + 1 && y + kBlockSize <= region.y1 + 1)
+    return base::kAllLanes;
   return rect_lanes(region.x0 - x, region.y0 - y, region.x1 - x, region.y1 - y);
 }
 

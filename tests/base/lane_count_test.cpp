@@ -1,3 +1,4 @@
+// Lanes of a mask, counted.
 #include "base/lane_count.h"
 
 #include <gtest/gtest.h>
