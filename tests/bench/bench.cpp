@@ -11,11 +11,13 @@
 namespace vitrine::bench {
 
 std::vector<Workload> workloads() {
-  std::vector<Workload> transfers = transfer_workloads();
+  std::vector<Workload> transfers = transfer_workloads(), fills = fill_workloads(), triangles = triangle_workloads();
   for (Workload& transfer : transfers) transfer.runs_shaders = false;
+  for (Workload& fill : fills) fill.fixed_function = true;
+  for (Workload& triangle : triangles) triangle.fixed_function = true;
   std::vector<Workload> all;
-  for (auto& group : {fill_workloads(), triangle_workloads(), scene_workloads(), shader_workloads(),
-                      texture_workloads(), lookup_workloads(), compute_workloads(), transfers, overhead_workloads()}) {
+  for (auto& group : {fills, triangles, scene_workloads(), shader_workloads(), texture_workloads(), lookup_workloads(),
+                      compute_workloads(), transfers, overhead_workloads()}) {
     all.insert(all.end(), group.begin(), group.end());
   }
   return all;

@@ -19,6 +19,7 @@ struct Workload {
   bool lower_is_better = false;
   std::function<double(Run&)> measure;
   bool runs_shaders = true;  ///< draws and dispatches are most of it, so that tools that watch shaders cost something
+  bool fixed_function = false;  ///< but most of those is not the shaders
 };
 
 /// Every workload, in the order of the table.

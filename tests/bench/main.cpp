@@ -138,7 +138,7 @@ double median(std::vector<double> values) {
 
 struct Row {
   std::string name, unit;
-  bool lower_is_better, runs_shaders;
+  bool lower_is_better, runs_shaders, fixed_function;
 };
 
 /// What a geometric mean is made of.
@@ -149,12 +149,21 @@ struct Ratios {
     log_sum += std::log(ratio);
     ++rows;
   }
+  void print(const std::string& against, const char* which) const {
+    if (rows != 0)
+      std::printf("geometric mean against %s over %zu rows%s: %.2f\n", against.c_str(), rows, which,
+                  std::exp(log_sum / static_cast<double>(rows)));
+  }
+};
+/// Of one column: of all rows that count, and of those of shaders.
+struct Means {
+  Ratios all, shaders;
 };
 
 /// One table row; the ratios say how many times better the first driver is than each other one. Those of rows without
 /// shaders count only where no tools are on.
 void print_row(const Row& row, const std::vector<Driver>& drivers,
-               const std::map<std::string, std::vector<double>>* samples, std::vector<Ratios>& ratios) {
+               const std::map<std::string, std::vector<double>>* samples, std::vector<Means>& means) {
   std::printf("| %-16s | %-9s |", row.name.c_str(), row.unit.c_str());
   std::vector<double> values;
   for (std::size_t d = 0; d < drivers.size(); ++d) {
@@ -165,7 +174,9 @@ void print_row(const Row& row, const std::vector<Driver>& drivers,
   for (std::size_t d = 1; d < drivers.size(); ++d) {
     const double ratio = row.lower_is_better ? values[d] / values[0] : values[0] / values[d];
     std::printf(" %10.2f |", ratio);
-    if (std::isfinite(ratio) && (row.runs_shaders || drivers[d].tools.empty())) ratios[d].add(ratio);
+    if (!std::isfinite(ratio) || (!row.runs_shaders && !drivers[d].tools.empty())) continue;
+    means[d].all.add(ratio);
+    if (!row.fixed_function) means[d].shaders.add(ratio);
   }
   std::printf("\n");
   std::fflush(stdout);
@@ -187,11 +198,13 @@ void print_head(const std::vector<Driver>& drivers) {
 }
 
 int run_parent(const std::vector<Driver>& drivers, int rounds, const std::string& filter) {
-  std::vector<std::vector<Row>> groups{{{"start_to_pixel", "ms", true, false}, {"start_rss", "MB", true, false}}};
+  std::vector<std::vector<Row>> groups{
+      {{"start_to_pixel", "ms", true, false, true}, {"start_rss", "MB", true, false, true}}};
   for (const Workload& workload : workloads())
-    groups.push_back({{workload.name, workload.unit, workload.lower_is_better, workload.runs_shaders}});
+    groups.push_back(
+        {{workload.name, workload.unit, workload.lower_is_better, workload.runs_shaders, workload.fixed_function}});
   print_head(drivers);
-  std::vector<Ratios> ratios(drivers.size());
+  std::vector<Means> means(drivers.size());
   for (const std::vector<Row>& group : groups) {
     if (group[0].name.find(filter) == std::string::npos) continue;
     std::vector<std::map<std::string, std::vector<double>>> samples(drivers.size());
@@ -199,13 +212,11 @@ int run_parent(const std::vector<Driver>& drivers, int rounds, const std::string
     for (int round = 0; round < rounds; ++round) {
       for (std::size_t d = 0; d < drivers.size(); ++d) spawn(drivers[d], child, samples[d]);
     }
-    for (const Row& row : group) print_row(row, drivers, samples.data(), ratios);
+    for (const Row& row : group) print_row(row, drivers, samples.data(), means);
   }
   for (std::size_t d = 1; d < drivers.size(); ++d) {
-    if (ratios[d].rows == 0) continue;
-    std::printf("geometric mean against %s over %zu rows%s: %.2f\n", drivers[d].name.c_str(), ratios[d].rows,
-                drivers[d].tools.empty() ? "" : " that run shaders",
-                std::exp(ratios[d].log_sum / static_cast<double>(ratios[d].rows)));
+    means[d].all.print(drivers[d].name, drivers[d].tools.empty() ? "" : " that run shaders");
+    if (!drivers[d].tools.empty()) means[d].shaders.print(drivers[d].name, " whose work is mostly shaders");
   }
   return 0;
 }

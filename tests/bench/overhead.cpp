@@ -106,9 +106,9 @@ double new_pipeline(Run& run, std::uint32_t statements) {
 }  // namespace
 
 std::vector<Workload> overhead_workloads() {
-  return {{"draws_push", "kdraw/s", false, many_draws},
+  return {{"draws_push", "kdraw/s", false, many_draws, true, true},
           {"renderpasses", "kpass/s", false, render_passes, false},
-          {"c_dispatches", "kdisp/s", false, dispatches},
+          {"c_dispatches", "kdisp/s", false, dispatches, true, true},
           {"empty_submit", "ksubmit/s", false, empty_submits, false},
           {"clears", "GB/s", false, clears, false},
           {"pipeline_tiny", "ms", true, [](Run& run) { return new_pipeline(run, 1); }, false},

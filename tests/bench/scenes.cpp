@@ -138,7 +138,7 @@ double measure_deferred(Run& run) {
 }  // namespace
 
 std::vector<Workload> scene_workloads() {
-  return {{"overdraw", "Mpix/s", false, measure_overdraw},
+  return {{"overdraw", "Mpix/s", false, measure_overdraw, true, true},
           {"scene_shadow", "frame/s", false, measure_shadow},
           {"scene_deferred", "frame/s", false, measure_deferred}};
 }
