@@ -118,6 +118,17 @@ const char kSwitch[] =
     "%one = OpLabel\nOpReturnValue %u9\n%other = OpLabel\n@OpUnreachable\n%end = OpLabel\nOpReturnValue %u2\n"
     "OpFunctionEnd\n";
 
+/// A loop to %x whose body is a selection without a way to its merge block, but for what `on` may be.
+std::string merge_in_a_loop(const std::string& on, const std::string& mark) {
+  return "OpBranch %header\n%header = OpLabel\n%k = OpPhi %uint %u0 %entry %next %on\n"
+         "OpLoopMerge %done %on None\nOpBranch %choice\n%choice = OpLabel\n"
+         "%enough = OpUGreaterThanEqual %bool %k %x\nOpSelectionMerge %never None\n"
+         "OpBranchConditional %enough %out %again\n%out = OpLabel\nOpBranch %done\n%again = OpLabel\n" +
+         on + "%never = OpLabel\n" + mark +
+         "OpUnreachable\n%on = OpLabel\n%next = OpIAdd %uint %k %u1\nOpBranch %header\n%done = OpLabel\n"
+         "OpStore %at %k\n";
+}
+
 /// A result of %q that goes to word %i.
 std::string stored(const std::string& what) { return what + "OpStore %at %q\n"; }
 
@@ -157,6 +168,12 @@ std::vector<Text> flow() {
        {},
        unused_quotient("OpULessThan %bool %x %u3"),
        unused_quotient("OpIEqual %bool %k %u0"),
+       false},
+      {"unreachable_merge_in_a_loop",
+       "unreachable",
+       {},
+       merge_in_a_loop("%seven = OpUGreaterThanEqual %bool %x %u7\nOpBranchConditional %seven %never %on\n", "@"),
+       merge_in_a_loop("OpBranch %on\n", ""),
        false},
       {"barrier_in_a_branch", "divergent-barrier", with_shared(),
        in_branch("OpULessThan %bool %x %u3", "@OpControlBarrier %u2 %u2 %u264\n"),

@@ -107,6 +107,23 @@ TEST(BlockProbes, SeeLoopsWithoutEffect) {
   EXPECT_EQ(counts, (Counts{8, 36, 28, 8, 28, 36}));
 }
 
+// entry, header, body, merge, continue, condition, then, what a loop that continues leaves out
+TEST(BlockProbes, SeeWhatContinuesLeaveOut) {
+  const Counts counts = counts_of(
+      "uint x = 0u; for (uint k = 0u; k < i; ++k) { x += v[k]; if (x > 8u) { x += 5u; continue; } uint unused = x; }\n"
+      "v[i + 8u] = x;");
+  EXPECT_EQ(counts, (Counts{8, 36, 28, 8, 28, 36, 15, 13}));
+}
+
+// Twice: both ways through the inner branch come to what the continues leave out.
+TEST(BlockProbes, SeeWhatNestedContinuesLeaveOut) {
+  const Counts counts = counts_of(
+      "uint x = 0u; for (uint k = 0u; k < i; ++k) { x += v[k];\n"
+      "if (x < 8u) { x += 1u; if (x < 3u) continue; } uint unused = x; }\n"
+      "v[i + 8u] = x;");
+  EXPECT_EQ(counts, (Counts{8, 36, 28, 8, 28, 36, 13, 21, 7, 6}));
+}
+
 TEST(BlockProbes, SeeLoopsThatAreLeftEarly) {
   counts_of(
       "uint s = v[i], steps = 0u; int k0 = int(v[i]) & 7;\n"
