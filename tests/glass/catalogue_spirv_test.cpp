@@ -60,7 +60,7 @@ Assembly with_images() {
   return frame;
 }
 
-Assembly with_function(const char* text) {
+Assembly with_function(const std::string& text) {
   Assembly frame;
   frame.declarations = "%of_word = OpTypeFunction %uint %uint\n";
   frame.functions = text;
@@ -117,6 +117,16 @@ const char kSwitch[] =
     "OpSelectionMerge %end None\nOpSwitch %a %other 0 %zero 1 %one\n%zero = OpLabel\nOpReturnValue %u7\n"
     "%one = OpLabel\nOpReturnValue %u9\n%other = OpLabel\n@OpUnreachable\n%end = OpLabel\nOpReturnValue %u2\n"
     "OpFunctionEnd\n";
+
+/// Returns from two loops, which nothing else leaves.
+const char kReturns[] =
+    "%g = OpFunction %uint None %of_word\n%b = OpFunctionParameter %uint\n%begin = OpLabel\n"
+    "%early = OpULessThan %bool %b %u2\nOpSelectionMerge %rest None\nOpBranchConditional %early %first %rest\n"
+    "%first = OpLabel\nOpReturnValue %u7\n%rest = OpLabel\nOpBranch %outer\n"
+    "%outer = OpLabel\nOpLoopMerge %behind %outer_on None\nOpBranch %turn\n%turn = OpLabel\nOpBranch %inner\n"
+    "%inner = OpLabel\nOpLoopMerge %left %inner_on None\nOpBranch %back\n%back = OpLabel\nOpReturnValue %u7\n"
+    "%inner_on = OpLabel\nOpBranch %inner\n%left = OpLabel\nOpBranch %outer_on\n"
+    "%outer_on = OpLabel\nOpBranch %outer\n%behind = OpLabel\nOpUnreachable\nOpFunctionEnd\n";
 
 /// A loop to %x whose body is a selection without a way to its merge block, but for what `on` may be.
 std::string merge_in_a_loop(const std::string& on, const std::string& mark) {
@@ -175,6 +185,8 @@ std::vector<Text> flow() {
        merge_in_a_loop("%seven = OpUGreaterThanEqual %bool %x %u7\nOpBranchConditional %seven %never %on\n", "@"),
        merge_in_a_loop("OpBranch %on\n", ""),
        false},
+      {"unreachable_behind_returns", "unreachable", with_function(std::string(kSwitch) + kReturns),
+       "%q = OpFunctionCall %uint %f %x\nOpStore %at %x\n", "%q = OpFunctionCall %uint %g %x\nOpStore %at %x\n", false},
       {"barrier_in_a_branch", "divergent-barrier", with_shared(),
        in_branch("OpULessThan %bool %x %u3", "@OpControlBarrier %u2 %u2 %u264\n"),
        in_branch("OpULessThan %bool %x %u8", "OpControlBarrier %u2 %u2 %u264\n")},

@@ -349,7 +349,8 @@ bool Graph::has_lost_operand(InstId id) const {
 }
 
 /// A probe, or what only probes read, that has lost operands with a loop that is gone: a check of an operation is
-/// dropped; an index is ~0, a condition of a write holds, all else is zero.
+/// dropped; an index is ~0, a condition of a write holds, any other does not (nobody is accused wrongly), all else is
+/// zero.
 void Graph::repair_lost_operands(InstId id, const std::vector<Probe>& probes) {
   if (!has_lost_operand(id)) return;
   if (insts[id].op != Op::kProbe) return replace_lost_operands(id, [](std::uint32_t) { return 0u; });
@@ -359,7 +360,8 @@ void Graph::repair_lost_operands(InstId id, const std::vector<Probe>& probes) {
   const bool writes = kind == Probe::Kind::kWrite, indexed = writes || kind == Probe::Kind::kRead;
   replace_lost_operands(id, [&](std::uint32_t operand) -> std::uint32_t {
     if (operand >= instr.data[1]) return indexed ? ~0u : 0;
-    return writes ? instr.data[2 + operand / 32] >> operand % 32 & 1 : 0;
+    const bool holds = (instr.data[2 + operand / 32] >> operand % 32 & 1) != 0;
+    return holds == writes ? 1 : 0;
   });
 }
 

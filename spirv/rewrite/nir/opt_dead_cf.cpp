@@ -1,5 +1,7 @@
 // Control flow that need not be (nir_opt_dead_cf.c; lavapipe-optimizer.md 5.16): branches on constants, code that never
 // runs, loops without effect.
+#include <algorithm>
+
 #include "spirv/rewrite/graph/build.h"
 #include "spirv/rewrite/graph/effects.h"
 #include "spirv/rewrite/graph/match.h"
@@ -77,11 +79,20 @@ bool only_computes(const Graph& graph, BlockId block) {
   return true;
 }
 
+/// Observers look into the loop, or need a value of it: whether what follows is reached may depend on one.
+bool is_observed(const Graph& graph, InstId loop) {
+  if (graph.attached.empty()) return false;
+  const Inst& inst = graph.insts[loop];
+  if (graph.attached.any_in(graph, inst.child[0]) || graph.attached.any_in(graph, inst.child[1])) return true;
+  std::vector<ValueId> values;
+  collect_values(graph, loop, values);
+  return std::any_of(values.begin(), values.end(), [&](ValueId value) { return graph.attached.reads(value); });
+}
+
 bool is_dead_loop(const Graph& graph, InstId id) {
   for (const ValueId result : graph.nodes[graph.insts[id].node]->results)
-    if (graph.values[result].uses != 0 || graph.attached.reads(result)) return false;
-  if (graph.attached.any_in(graph, graph.insts[id].child[0]) || graph.attached.any_in(graph, graph.insts[id].child[1]))
-    return false;
+    if (graph.values[result].uses != 0) return false;
+  if (is_observed(graph, id)) return false;
   return only_computes(graph, graph.insts[id].child[0]) && only_computes(graph, graph.insts[id].child[1]) &&
          !is_used_behind(graph, id);
 }
