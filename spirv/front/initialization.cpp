@@ -345,11 +345,33 @@ std::uint32_t coordinate_of(Op op) {
   return samples || op == Op::OpImageTexelPointer ? 1 : 0;
 }
 
+/// Whether scalar `at` of the value `id` is scalar `own` of what was loaded from `pointer`.
+bool is_copy_of(const Translator& t, std::uint32_t id, std::uint32_t at, std::uint32_t pointer, std::uint32_t own) {
+  const auto definition = t.module.definition.find(id);
+  if (definition == t.module.definition.end()) return false;
+  const Inst& inst = t.module.code[definition->second];
+  if (inst.op == Op::OpLoad) return inst.operand(0) == pointer && at == own;
+  if (inst.op == Op::OpCompositeInsert) {
+    const auto [first, count] = part_of(t, inst, inst.result_type, 2);
+    if (at - first < count) return is_copy_of(t, inst.operand(0), at - first, pointer, own);
+    return is_copy_of(t, inst.operand(1), at, pointer, own);
+  }
+  if (inst.op != Op::OpVectorShuffle || !inst.has(2 + at)) return false;
+  const std::uint32_t from = inst.operand(2 + at), first = scalars_of(t, t.module.def(inst.operand(0)).result_type);
+  if (from < first) return is_copy_of(t, inst.operand(0), from, pointer, own);
+  return is_copy_of(t, inst.operand(1), from - first, pointer, own);
+}
+
+/// Where a shader writes some components of an output, compilers load it, insert them and store the whole: the others
+/// stay what they were, which is no use of them.
 void use_store(Translator& t, const Inst& inst) {
   const Pointer pointer = pointer_of(t, inst.operand(0));
-  const bool output =
-      pointer.kind != Pointer::Kind::kLocal || t.locals[pointer.local].storage == spv::StorageClass::Output;
-  if (output) use_value(t, inst.operand(1), "what is stored");
+  const bool local = pointer.kind == Pointer::Kind::kLocal;
+  if (local && t.locals[pointer.local].storage != spv::StorageClass::Output) return;
+  SlotsOf slots = slots_of(t, inst.operand(1));
+  for (std::uint32_t c = 0; local && c < slots.size(); ++c)
+    if (!slots[c].empty() && is_copy_of(t, inst.operand(1), c, inst.operand(0), c)) slots[c].clear();
+  use(t, all_of(slots), "what is stored");
 }
 
 void use_indices(Translator& t, const Inst& inst) {

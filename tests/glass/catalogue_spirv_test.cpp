@@ -76,6 +76,17 @@ Assembly with_shared() {
   return frame;
 }
 
+/// A fragment shader with an output.
+Assembly with_color() {
+  Assembly frame = in_stage(kFragment);
+  frame.decorations = "OpDecorate %color Location 0\n";
+  frame.declarations =
+      "%color_pointer = OpTypePointer Output %v4float\n%color = OpVariable %color_pointer Output\n"
+      "%ones = OpConstantComposite %v4float %f1 %f1 %f1 %f1\n";
+  frame.interface = "%color";
+  return frame;
+}
+
 Assembly with_undefined(const char* type) {
   Assembly frame;
   frame.declarations = "%undefined = OpUndef " + std::string(type) + "\n";
@@ -204,6 +215,15 @@ std::vector<Text> flow() {
        in_branch("OpULessThan %bool %i %u4",
                  "%g = OpCompositeExtract %float %position 1\n%d = OpDPdx %float %g\n"
                  "%q = OpBitcast %uint %d\nOpStore %at %q\n")},
+      {"output_added_to", "uninitialized-variable", with_color(),
+       "%old = OpLoad %v4float %color\n%sum = OpFAdd %v4float %old %ones\n@OpStore %color %sum\n",
+       "%old = OpLoad %v4float %color\n%new = OpVectorShuffle %v4float %old %ones 4 5 6 3\nOpStore %color %new\n",
+       false},
+      {"component_of_an_output_moved", "uninitialized-variable", with_color(),
+       "%old = OpLoad %v4float %color\n%new = OpVectorShuffle %v4float %old %ones 4 0 6 7\n@OpStore %color %new\n",
+       "%old = OpLoad %v4float %color\n%one = OpCompositeInsert %v4float %f1 %old 0\n"
+       "%new = OpCompositeInsert %v4float %f5 %one 2\nOpStore %color %new\n",
+       false},
       {"undefined_value_stored", "uninitialized-variable", with_undefined("%uint"), "@OpStore %at %undefined\n",
        "OpStore %at %u5\n", false},
       {"undefined_branch", "uninitialized-variable", with_undefined("%bool"),

@@ -236,7 +236,7 @@ void main() { gl_Position = vec4(0.0, 0.0, 0.5, 1.0); })";
 layout(location = 0) out vec4 color;
 void main() { color = vec4(1.0); })";
 
-  alignas(16) Words words_{}, other_{}, memory_{}, fresh_{};
+  alignas(16) Words fresh_{}, words_{}, other_{}, memory_{};
   alignas(16) std::array<std::uint32_t, spirv::kMaxPushConstantBytes / 4> push_{};
   Image flat_{VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R32_UINT, 2, 1};
   Image layered_{VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_FORMAT_R32_UINT, 1, 2};
