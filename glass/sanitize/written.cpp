@@ -331,7 +331,9 @@ void WrittenAccess::image() {
       effect.writes = true;
       break;
     case ImageAccess::kAtomic:
-      (op.info.atomic == spirv::ir::AtomicOp::kExchange ? effect.writes : effect.reads) = true;
+      using spirv::ir::AtomicOp;
+      (op.info.atomic == AtomicOp::kExchange || op.info.atomic == AtomicOp::kStore ? effect.writes : effect.reads) =
+          true;
       break;
     case ImageAccess::kSample:
     case ImageAccess::kGather:

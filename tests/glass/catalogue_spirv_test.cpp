@@ -87,6 +87,18 @@ Assembly with_color() {
   return frame;
 }
 
+/// An image of which the first row alone is written, and a texel of another one.
+Assembly with_fresh_image() {
+  Assembly frame;
+  frame.decorations = "OpDecorate %fresh DescriptorSet 0\nOpDecorate %fresh Binding 10\n";
+  frame.declarations =
+      "%image = OpTypeImage %uint 2D 0 0 0 2 R32ui\n%image_pointer = OpTypePointer UniformConstant %image\n"
+      "%texel_pointer = OpTypePointer Image %uint\n%fresh = OpVariable %image_pointer UniformConstant\n"
+      "%third = OpConstantComposite %v2uint %u0 %u2\n";
+  frame.interface = "%fresh";
+  return frame;
+}
+
 Assembly with_undefined(const char* type) {
   Assembly frame;
   frame.declarations = "%undefined = OpUndef " + std::string(type) + "\n";
@@ -117,6 +129,10 @@ std::string continues(const std::string& end) {
       "OpBranchConditional %c %left %right\n%left = OpLabel\nOpStore %at %k\nOpBranch %again\n%right = OpLabel\n" +
       end + "%never = OpLabel\n@OpUnreachable\n");
 }
+/// A loop whose only round returns.
+const char kReturns[] =
+    "OpBranch %head\n%head = OpLabel\nOpLoopMerge %out %again None\nOpBranch %round\n%round = OpLabel\n"
+    "OpStore %at %u5\nOpReturn\n%again = OpLabel\nOpBranch %head\n%out = OpLabel\nOpUnreachable\n%end = OpLabel\n";
 /// Divides by %k where `condition` does not hold; nobody uses the quotient.
 std::string unused_quotient(const std::string& condition) {
   return loop_of("%c = " + condition +
@@ -309,6 +325,10 @@ std::vector<Text> accesses() {
        {},
        at_address("%u2", "@%q = OpAtomicIAdd %uint %p %u1 %u0 %u3\nOpStore %at %q\n"),
        at_address("%u4", "%q = OpAtomicIAdd %uint %p %u1 %u0 %u3\nOpStore %at %q\n")},
+      {"atomic_on_a_texel_that_is_not_written", "uninitialized-image", with_fresh_image(),
+       "%texel = OpImageTexelPointer %texel_pointer %fresh %third %u0\n"
+       "@%q = OpAtomicIAdd %uint %texel %u1 %u0 %u3\nOpStore %at %q\n",
+       "%texel = OpImageTexelPointer %texel_pointer %fresh %third %u0\nOpAtomicStore %texel %u1 %u0 %u3\n"},
       {"address_past_the_end",
        "bad-device-address",
        {},
@@ -467,6 +487,12 @@ TEST_P(CatalogueSpirv, TwinIsSilent) {
 INSTANTIATE_TEST_SUITE_P(Catalogue, CatalogueSpirv, testing::ValuesIn(choices()), [](const auto& info) {
   return texts()[std::get<0>(info.param)].name + (std::get<1>(info.param) ? "_optimized" : "");
 });
+
+/// Has no fault beside it: the loop takes the condition along with which the check could be made.
+TEST(CatalogueSpirvTwins, UnreachableBehindALoopThatReturnsIsSilent) {
+  std::uint32_t line = 0;
+  EXPECT_EQ(found_in({}, kReturns, false, line), Texts{});
+}
 
 TEST(CatalogueSpirvCount, IsNotLess) { EXPECT_GE(texts().size(), 40u); }
 

@@ -349,8 +349,7 @@ bool Graph::has_lost_operand(InstId id) const {
 }
 
 /// A probe, or what only probes read, that has lost operands with a loop that is gone: a check of an operation is
-/// dropped; an index is ~0, a condition of a write holds, any other does not (nobody is accused wrongly), all else is
-/// zero.
+/// dropped; an index is ~0; a write acts, whatever its condition, and nothing else does; all else is zero.
 void Graph::repair_lost_operands(InstId id, const std::vector<Probe>& probes) {
   if (!has_lost_operand(id)) return;
   if (insts[id].op != Op::kProbe) return replace_lost_operands(id, [](std::uint32_t) { return 0u; });
