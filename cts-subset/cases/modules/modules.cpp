@@ -1,6 +1,7 @@
 // Modules of others: every .spv file below the folder that CTS_MODULES names becomes a case. Compute shaders run on
 // random resources, fragment shaders behind a vertex shader of random outputs, of vertex shaders the outputs are
-// captured; between.cpp has the stages between them.
+// captured; between.cpp has the stages between them. With CTS_MODULES_FILTERS fragment shaders are filters of a whole
+// picture of the format of windows.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -30,6 +31,16 @@ void run_compute(Run& run, const Reflection& r, const std::vector<uint32_t>& wor
   bound.out(run);
 }
 
+bool filters() { return std::getenv("CTS_MODULES_FILTERS") != nullptr; }
+
+/// Two triangles that are the whole target; `coordinates` go from 0 to 1 over it.
+std::string rectangle_of(const std::string& declarations, const std::string& body) {
+  return declarations +
+         "void main() {\n  vec2 at = vec2[](vec2(0), vec2(1, 0), vec2(0, 1), vec2(1, 0), vec2(0, 1), vec2(1))"
+         "[gl_VertexIndex];\n  vec4 coordinates = at.xyxy;\n" +
+         body + "  gl_Position = vec4(at * 2.0 - 1.0, 0.0, 1.0);\n}\n";
+}
+
 /// Triangles over everything with a random value for every input of the fragment shader.
 std::string vertex_for(const Reflection& r) {
   std::string declarations, body;
@@ -49,8 +60,12 @@ std::string vertex_for(const Reflection& r) {
                     " " + name + (slot.lengths.empty() ? "" : "[" + std::to_string(slot.lengths[0]) + "]") + ";\n";
     for (uint32_t i = 0; i < (slot.lengths.empty() ? 1 : slot.lengths[0]); i++)
       body += "  " + name + (slot.lengths.empty() ? "" : "[" + std::to_string(i) + "]") + " = " +
-              random_value(slot, (*location + i) * 16 + component.value_or(0)) + ";\n";
+              (filters() && slot.scalar == "float" && slot.columns == 1
+                   ? glsl_type(slot) + "(coordinates)"
+                   : random_value(slot, (*location + i) * 16 + component.value_or(0))) +
+              ";\n";
   }
+  if (filters()) return rectangle_of(declarations + numbers_of("0"), body);
   return declarations + numbers_of("gl_VertexIndex") + "void main() {\n" + body +
          R"(
   vec2 at = gl_VertexIndex < 3 ? vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 4.0 - 1.0
@@ -72,12 +87,21 @@ void run_fragment(Run& run, const Reflection& r, const std::vector<uint32_t>& wo
     if (*location + slot.locations() > 8) throw Unsupported("many outputs");
     target_spec.colors.resize(std::max<size_t>(target_spec.colors.size(), *location + slot.locations()),
                               VK_FORMAT_R32G32B32A32_SFLOAT);
+    if (filters() && slot.scalar == "float") {
+      target_spec.colors[*location] = VK_FORMAT_B8G8R8A8_UNORM;
+      continue;
+    }
     for (uint32_t i = 0; i < slot.locations(); i++)
       target_spec.colors[*location + i] = slot.scalar == "float" ? VK_FORMAT_R32G32B32A32_SFLOAT
                                           : slot.scalar == "int" ? VK_FORMAT_R32G32B32A32_SINT
                                                                  : VK_FORMAT_R32G32B32A32_UINT;
   }
   if (target_spec.colors.empty()) target_spec.depth = VK_FORMAT_D32_SFLOAT;
+  if (filters()) {
+    run.require(target_spec.colors.size() == 1, "one colour");
+    target_spec.width = 320;
+    target_spec.height = 180;
+  }
   const Target target = make_target(run, target_spec);
   GraphicsSpec spec;
   spec.vertex = vertex_for(r);
@@ -91,7 +115,7 @@ void run_fragment(Run& run, const Reflection& r, const std::vector<uint32_t>& wo
     target.begin(cmd);
     bind_pipeline(cmd, pipeline);
     bound.bind(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS);
-    vkCmdDraw(cmd, 24, 1, 0, 0);
+    vkCmdDraw(cmd, filters() ? 6 : 24, 1, 0, 0);
     vkCmdEndRenderPass(cmd);
   });
   out_target(run, target);
