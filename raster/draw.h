@@ -173,6 +173,7 @@ struct DrawCall {
   std::uint32_t count = 0;  ///< vertexCount or indexCount
   std::int32_t vertex_offset = 0;
   std::uint32_t first_instance = 0, instance_count = 1;
+  std::uint32_t skipped_instances = 0;  ///< of those, the first ones that are not drawn
   std::uint32_t draw_index = 0;
   QueryCounters queries;
   bool general_path = false;              ///< tests: without the fast paths, which must not be noticed otherwise

@@ -99,6 +99,12 @@ bool same_resources(const spirv::ResourceTable& a, const spirv::ResourceTable& b
          a.push_constants == b.push_constants && a.command == b.command;
 }
 
+/// Segments are longer without indices.
+bool same_segments(const DrawRecord& last, const DrawCall& call) {
+  const bool counts = last.plan->rectangles.any || last.plan->as_reference.segment != 0;
+  return !counts || (last.call.index_data == nullptr) == (call.index_data == nullptr);
+}
+
 }  // namespace
 
 struct Pass::Impl {
@@ -151,12 +157,13 @@ struct Pass::Impl {
   const DrawRecord* record_draw(const DrawCall& call) {
     DrawRecord* record = new (scratch->arena.take<DrawRecord>(1)) DrawRecord{};
     record->call = call;
-    const bool same =
-        last && last->call.state == call.state && last->call.vertex == call.vertex &&
-        last->call.control == call.control && last->call.evaluation == call.evaluation &&
-        last->call.geometry == call.geometry && last->call.fragment == call.fragment &&
-        last->call.native_vertex == call.native_vertex && last->call.native_fragment == call.native_fragment &&
-        last->call.general_path == call.general_path && last->call.takes_general_path() == call.takes_general_path();
+    const bool same = last && last->call.state == call.state && last->call.vertex == call.vertex &&
+                      last->call.control == call.control && last->call.evaluation == call.evaluation &&
+                      last->call.geometry == call.geometry && last->call.fragment == call.fragment &&
+                      last->call.native_vertex == call.native_vertex &&
+                      last->call.native_fragment == call.native_fragment &&
+                      last->call.general_path == call.general_path &&
+                      last->call.takes_general_path() == call.takes_general_path() && same_segments(*last, call);
     if (same) {
       record->plan = last->plan;
     } else {
@@ -181,7 +188,7 @@ struct Pass::Impl {
 
   /// Turns the gathered runs into chunks of about kChunkPositions. Chunks that count are worked on at once, in order.
   void cut_chunks(const DrawRecord* record, std::uint32_t view, std::uint32_t* primitive_count = nullptr,
-                  std::uint32_t* stipple_counter = nullptr) {
+                  std::uint32_t* stipple_counter = nullptr, ViewLayer* view_layer = nullptr) {
     const std::vector<Run>& runs = scratch->runs;
     const PipelinePlan& plan = *record->plan;
     const TopologyShape& shape = plan.shape;
@@ -195,8 +202,8 @@ struct Pass::Impl {
       if (positions < plan.chunk_positions && i + 1 < runs.size()) continue;
       const auto count = static_cast<std::uint32_t>(i + 1 - first);
       scratch->commands.push_back(
-          {nullptr, {record, stored + first, count, view, primitive_count, stipple_counter}, {}});
-      if (primitive_count || stipple_counter) front_item(scratch->commands.size() - 1, 0);
+          {nullptr, {record, stored + first, count, view, primitive_count, stipple_counter, view_layer}, {}});
+      if (primitive_count || stipple_counter || view_layer) front_item(scratch->commands.size() - 1, 0);
       first = i + 1;
       positions = 0;
     }
@@ -204,14 +211,15 @@ struct Pass::Impl {
     if (pending_positions >= kPendingPositions) run_front();
   }
 
-  void draw_view(const DrawRecord* record, std::uint32_t view) {
+  void draw_view(const DrawRecord* record, std::uint32_t view, ViewLayer* view_layer = nullptr) {
     const bool stippled_strip = record->plan->state->line_stipple && record->plan->draws_lines;
     const std::uint32_t limit = stippled_strip ? kStippledChunkPositions : record->plan->chunk_positions;
     const RectanglePlan& rectangles = record->plan->rectangles;
-    const std::uint32_t piece = rectangles.any ? rectangles.segment : piece_of(record->plan->shape, limit);
-    for (std::uint32_t instance = 0; instance < record->call.instance_count; ++instance) {
+    const std::uint32_t segment = rectangles.any ? rectangles.segment : record->plan->as_reference.segment;
+    const std::uint32_t piece = segment != 0 ? segment : piece_of(record->plan->shape, limit);
+    for (std::uint32_t instance = record->call.skipped_instances; instance < record->call.instance_count; ++instance) {
       const std::size_t before = scratch->runs.size();
-      append_runs(record->call, instance, piece, scratch->runs);
+      append_runs(record->call, instance, piece, record->plan->as_reference.numbers_segments, scratch->runs);
       if (scratch->runs.size() == before) break;  // too few vertices: no instance has a primitive
       // Such draws are not parallel: every instance counts from 0.
       const auto counter = [&] { return new (scratch->arena.take<std::uint32_t>(1)) std::uint32_t{0}; };
@@ -219,13 +227,13 @@ struct Pass::Impl {
       const bool counts_stipple =
           stippled_strip && std::any_of(first, scratch->runs.end(), [](const Run& run) { return run.begin != 0; });
       if (record->plan->counts_primitives)
-        cut_chunks(record, view, counter(), counts_stipple ? counter() : nullptr);
+        cut_chunks(record, view, counter(), counts_stipple ? counter() : nullptr, view_layer);
       else if (counts_stipple)
-        cut_chunks(record, view, nullptr, counter());
+        cut_chunks(record, view, nullptr, counter(), view_layer);
       else if (scratch->runs.size() >= 4096)
-        cut_chunks(record, view);
+        cut_chunks(record, view, nullptr, nullptr, view_layer);
     }
-    if (!scratch->runs.empty()) cut_chunks(record, view);
+    if (!scratch->runs.empty()) cut_chunks(record, view, nullptr, nullptr, view_layer);
   }
 
   void front_item(std::size_t index, std::size_t worker_index) {
@@ -396,8 +404,10 @@ void Pass::draw(const DrawCall& draw) {
   const DrawRecord* record = impl_->record_draw(draw);
   if (!record) return unfinished.done();
   if (impl_->desc.view_mask == 0) impl_->draw_view(record, 0);
+  ViewLayer* const view_layer =
+      record->plan->as_reference.first_layer ? new (impl_->scratch->arena.take<ViewLayer>(1)) ViewLayer{} : nullptr;
   for (std::uint32_t view = 0; view < 32; ++view)
-    if ((impl_->desc.view_mask >> view & 1) != 0) impl_->draw_view(record, view);
+    if ((impl_->desc.view_mask >> view & 1) != 0) impl_->draw_view(record, view, view_layer);
   unfinished.done();
 }
 

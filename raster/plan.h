@@ -109,6 +109,28 @@ struct Capture {
   std::uint8_t buffer = 0;
 };
 
+/// Ways of the reference that somebody asked for (deviations.md; base/as_reference.h), where they concern the draw.
+struct ReferenceWays {
+  bool keeps_outside_points = false;  ///< point-clipping
+  std::uint32_t segment = 0;  ///< primitives that the reference works on at a time, where a chunk has to be that; or 0
+  bool numbers_segments = false;            ///< each counts gl_PrimitiveID from 0 (patch-numbers)
+  std::uint32_t tessellated_mask = ~0u;     ///< of numbers of vertices in a segment (tessellated-vertices)
+  bool evaluated_ids = false;               ///< fragments' gl_PrimitiveID is 0 (tessellation-primitive-id)
+  bool first_layer = false;                 ///< clipped primitives of all views go to one layer (multiview-layers)
+  bool outlines_face_front = false;         ///< polygon-mode-facing
+  bool smooth_outlines_face_front = false;  ///< smooth-outline-facing
+  bool flushes_flat = false;                ///< stipple-flat-integers
+  bool stipples_lines = false;              ///< stipple-per-line
+  bool scales_integers = false;             ///< smooth-line-integers
+  bool divides = true;                      ///< by w, in the viewport transform (identity-viewport)
+  bool counts_segments = false;             ///< long-strip-vertices
+  bool one_sample_masks = false;            ///< sample 0 stands for all of a line (one-sample-line-masks)
+  bool first_sample_depth = false;          ///< the same for its tests (line-depth-first-sample)
+  bool needs_corner = false;                ///< lines without a corner of a pixel vanish (multisample-short-lines)
+  bool leaks_scissor = false;               ///< multisample-scissor
+  bool nine_vertices = false;               ///< nine-vertices
+};
+
 struct PipelinePlan {
   const State* state = nullptr;
   const spirv::ShaderInterface* vertex = nullptr;
@@ -152,6 +174,7 @@ struct PipelinePlan {
       false;  ///< lines become quads whose coverage scales alpha (6.5): the last four perspective varyings
   bool bias_in_vertices = false;  ///< polygon mode LINE / POINT: bias per vertex (5.1, second form)
   bool depth_bias = false;
+  ReferenceWays as_reference;
   bool guard_band = false;  ///< clipped in x and y at twice the volume, and cut to viewport 0's rectangle (9.1)
   RectanglePlan rectangles;
 
@@ -164,6 +187,7 @@ struct PipelinePlan {
   TestOrder depth_order = TestOrder::kNone;
   DepthStencilTests tests;
   bool restricts_depth = true;  ///< fragments' depth is clamped to [0, 1] (5.3)
+  bool clamps_depth = false;    ///< and to the range of its viewport
   bool early_reject = false;    ///< late order: failing now means failing later, so such quads need not be shaded
   bool in_order = false;        ///< fragments that write memory (interlock), early_reject whose outcome the shader
                                 ///< sees, as the centroid: no primitive is tested or shaded before the writes of those
@@ -171,6 +195,8 @@ struct PipelinePlan {
   std::uint32_t color_count = 0;
   std::array<ColorWriter, kMaxColorAttachments> writer;
   bool dual_source = false;
+  bool alpha_to_one = false;
+  bool counts_early = false;     ///< samples are counted before the fragment shader runs
   bool replaces_colors = false;  ///< every covered pixel of every attachment is overwritten, whatever it held
   bool shades = true;            ///< the fragment shader's run can be observed
   bool may_kill = false;         ///< discard, sample mask output, alpha to coverage

@@ -27,6 +27,9 @@ std::string full_name(const Case& c);
 /// The case's seed, from the suite's seed and its name.
 uint64_t case_seed(const Case& c);
 Judgement execute(const Case& c);
+/// Whether VITRINE_AS_REFERENCE asks the device for the reference's way in all of these rows of deviations.md, which
+/// blanks separate: there is no difference to be expected then.
+bool is_asked(const std::string& rows);
 /// Reads the lists of known differences and of expected findings that the options name. Throws when one cannot be read.
 void load_lists();
 /// What the reference does where its bits depend on the CPU (design.md section 8).

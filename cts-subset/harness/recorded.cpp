@@ -65,7 +65,7 @@ void compare_output(const Case& c, const Output& output, const RecordedOutput& r
     if (options().pictures) write_png(result_path(c, output.name) + ".device.png", output);
     if (output.may_be_blank || recorded.has_deviation || !is_blank(output)) return;
     judgement.message += "  " + output.name + ": the reference's output is blank, so the case tests nothing\n";
-  } else if (recorded.has_deviation) {
+  } else if (recorded.has_deviation && !is_asked(output.deviation)) {
     judgement.verdict = Verdict::kDeviation;
     return;
   } else {
@@ -81,6 +81,11 @@ void compare_outputs(const Case& c, const SideResult& device, const RecordedCase
   if (device.outputs.size() != recorded.outputs.size()) {
     judgement.message = "  " + std::to_string(device.outputs.size()) + " outputs, recorded are " +
                         std::to_string(recorded.outputs.size()) + "\n";
+  } else if (is_asked(c.deviation)) {
+    const std::vector<Output> wanted = recorded_outputs(device, recorded);
+    for (size_t i = 0; i < wanted.size(); ++i)
+      if (const Comparison found = compare(device.outputs[i], wanted[i]); !found.first.empty())
+        judgement.message += "  " + found.first + "\n";
   } else if (!c.deviation.empty()) {
     const std::string wrong = c.check(device.outputs, recorded_outputs(device, recorded));
     judgement.verdict = Verdict::kDeviation;

@@ -4,6 +4,8 @@
 
 #include <string_view>
 
+#include "base/as_reference.h"
+#include "glass/output.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/properties.h"
@@ -37,6 +39,17 @@ VkResult enable_instance_extensions(const VkInstanceCreateInfo& info, ExtensionS
   return VK_SUCCESS;
 }
 
+/// Whoever asks for a row that is none hears of it, once; the application goes on.
+void complain_of_rows() {
+  static const bool said = [] {
+    for (const std::string& name : base::asked_rows().unknown)
+      glass::complain("VITRINE_AS_REFERENCE: '" + name + "' cannot be asked for; there are all, " +
+                      base::names_of_rows());
+    return true;
+  }();
+  static_cast<void>(said);
+}
+
 }  // namespace
 
 namespace entry {
@@ -62,6 +75,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateInstance(const VkInstanceCreateInfo* info, 
   ExtensionSet extensions;
   const VkResult result = enable_instance_extensions(*info, extensions);
   if (result != VK_SUCCESS) return result;
+  complain_of_rows();
   Instance* object = create_object<Instance>(HostMemory(), allocator);
   if (info->pApplicationInfo && info->pApplicationInfo->apiVersion) {
     object->api_version = info->pApplicationInfo->apiVersion;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/as_reference.h"
 #include "glass/profile.h"
 #include "glass/session.h"
 #include "icd/object/memory.h"
@@ -79,9 +80,24 @@ bool prepare_draw(ReplayState& state) {
 void submit_draw(ReplayState& state) {
   if (state.observed) glass::session().draw(state.draw);
   state.pass->draw(state.draw);
+  if (state.draw.queries.statistics && state.draw.state->rasterizer_discard &&
+      base::as_reference(base::Deviation::kDiscardedClippingInvocations)) {
+    state.pass->flush();  // the draws before count, too
+    state.draw.queries.statistics[static_cast<std::size_t>(raster::Statistic::kClippingInvocations)] = 0;
+  }
 }
 
-void draw_direct(ReplayState& state, const CmdDraw& command, std::uint32_t draw_index) {
+/// The instances of a draw that are drawn: all, or one.
+struct Instances {
+  std::uint32_t first = 0, end = UINT32_MAX;
+};
+
+void choose_instances(raster::DrawCall& draw, std::uint32_t count, const Instances& chosen) {
+  draw.instance_count = std::min(count, chosen.end);
+  draw.skipped_instances = chosen.first;
+}
+
+void draw_direct(ReplayState& state, const CmdDraw& command, std::uint32_t draw_index, const Instances& chosen = {}) {
   raster::DrawCall& draw = state.draw;
   draw.index_data = nullptr;
   draw.index_bytes = 0;
@@ -89,12 +105,13 @@ void draw_direct(ReplayState& state, const CmdDraw& command, std::uint32_t draw_
   draw.count = command.vertex_count;
   draw.vertex_offset = 0;
   draw.first_instance = command.first_instance;
-  draw.instance_count = command.instance_count;
+  choose_instances(draw, command.instance_count, chosen);
   draw.draw_index = draw_index;
   submit_draw(state);
 }
 
-void draw_indexed(ReplayState& state, const CmdDrawIndexed& command, std::uint32_t draw_index) {
+void draw_indexed(ReplayState& state, const CmdDrawIndexed& command, std::uint32_t draw_index,
+                  const Instances& chosen = {}) {
   // An indexed draw without indices: every index is out of bounds, so it reads 0.
   static constexpr std::byte kNoIndices{};
   raster::DrawCall& draw = state.draw;
@@ -104,9 +121,20 @@ void draw_indexed(ReplayState& state, const CmdDrawIndexed& command, std::uint32
   draw.count = command.index_count;
   draw.vertex_offset = command.vertex_offset;
   draw.first_instance = command.first_instance;
-  draw.instance_count = command.instance_count;
+  choose_instances(draw, command.instance_count, chosen);
   draw.draw_index = draw_index;
   submit_draw(state);
+}
+
+/// Calls f(number of the draw, instances) for the draws of a vkCmdDrawMulti*EXT, one after the other. (The reference:
+/// all draws of an instance, then those of the next; deviations.md, multi-draw-order.)
+template <class Command, class F>
+void for_each_draw(ReplayState& state, const Command& command, F&& f) {
+  const bool by_instance = base::as_reference(base::Deviation::kMultiDrawOrder);
+  const std::uint32_t rounds = by_instance ? command.instance_count : 1;
+  for (std::uint32_t round = 0; round < rounds; ++round)
+    for (std::uint32_t i = 0; i < command.draws.size() && prepare_draw(state); ++i)
+      f(i, by_instance ? Instances{round, round + 1} : Instances{});
 }
 
 /// Reads a T at `offset` of a buffer. False if it is not all inside.
@@ -153,18 +181,18 @@ void execute(ReplayState& state, const CmdDrawIndexed& command) {
 }
 
 void execute(ReplayState& state, const CmdDrawMulti& command) {
-  for (std::uint32_t i = 0; i < command.draws.size() && prepare_draw(state); ++i) {
+  for_each_draw(state, command, [&](std::uint32_t i, const Instances& instances) {
     const VkMultiDrawInfoEXT& d = command.draws[i];
-    draw_direct(state, {d.vertexCount, command.instance_count, d.firstVertex, command.first_instance}, i);
-  }
+    draw_direct(state, {d.vertexCount, command.instance_count, d.firstVertex, command.first_instance}, i, instances);
+  });
 }
 
 void execute(ReplayState& state, const CmdDrawMultiIndexed& command) {
-  for (std::uint32_t i = 0; i < command.draws.size() && prepare_draw(state); ++i) {
+  for_each_draw(state, command, [&](std::uint32_t i, const Instances& instances) {
     const VkMultiDrawIndexedInfoEXT& d = command.draws[i];
-    draw_indexed(state, {d.indexCount, command.instance_count, d.firstIndex, d.vertexOffset, command.first_instance},
-                 i);
-  }
+    draw_indexed(state, {d.indexCount, command.instance_count, d.firstIndex, d.vertexOffset, command.first_instance}, i,
+                 instances);
+  });
 }
 
 void execute(ReplayState& state, const CmdBeginConditionalRendering& command) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/as_reference.h"
 #include "base/workers.h"
 #include "icd/object/memory.h"
 #include "icd/replay/replay.h"
@@ -70,7 +71,13 @@ void execute(ReplayState&, const CmdCopyImage& command) {
 }
 
 void execute(ReplayState&, const CmdBlitImage& command) {
-  for (const VkImageBlit& region : command.regions) {
+  // (This device alone: the other aspect, too; deviations.md, blit-other-aspect.)
+  const bool both = base::as_reference(base::Deviation::kBlitOtherAspect);
+  constexpr VkImageAspectFlags kDepthStencil = VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
+  for (VkImageBlit region : command.regions) {
+    if (both && (region.srcSubresource.aspectMask & kDepthStencil) != 0)
+      region.srcSubresource.aspectMask = region.dstSubresource.aspectMask =
+          texel::format_desc(command.source->desc().format).aspects & kDepthStencil;
     texel::blit_image(memory_of(*command.source), memory_of(*command.target), region, command.filter);
   }
 }

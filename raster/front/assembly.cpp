@@ -21,13 +21,14 @@ std::uint32_t primitives_in(const TopologyShape& shape, std::uint32_t positions)
 
 /// One strip of `positions` positions, in pieces of at most `piece` primitives.
 std::uint32_t append_strip(const TopologyShape& shape, const Run& strip, std::uint32_t positions, std::uint32_t piece,
-                           std::vector<Run>& runs) {
+                           bool numbers_pieces, std::vector<Run>& runs) {
   const std::uint32_t total = primitives_in(shape, positions);
   for (std::uint32_t begin = 0; begin < total; begin += piece) {
     Run run = strip;
     run.begin = begin;
     run.end = std::min(total, begin + piece);
     run.ends = run.end == total;
+    if (numbers_pieces) run.first_id = 0 - begin;
     runs.push_back(run);
   }
   return total;
@@ -56,11 +57,12 @@ RunSpan run_span(const TopologyShape& shape, const Run& run) {
   return {run.begin * shape.step, (run.end - 1) * shape.step + shape.first, false};
 }
 
-void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, std::vector<Run>& runs) {
+void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, bool numbers_pieces,
+                 std::vector<Run>& runs) {
   const TopologyShape shape = topology_shape(draw);
   Run strip{0, 0, 0, instance, 0, true};
   if (!draw.index_data || !draw.state->primitive_restart) {
-    append_strip(shape, strip, draw.count, piece, runs);
+    append_strip(shape, strip, draw.count, piece, numbers_pieces, runs);
     return;
   }
   const std::uint32_t restart = restart_value(draw.index_type);
@@ -68,7 +70,7 @@ void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t pie
   for (std::uint32_t i = 0; i <= draw.count; ++i) {
     if (i < draw.count && read_index(draw, std::uint64_t{draw.first} + i) != restart) continue;
     strip.start = start;
-    strip.first_id += append_strip(shape, strip, i - start, piece, runs);
+    strip.first_id += append_strip(shape, strip, i - start, piece, numbers_pieces, runs);
     start = i + 1;
   }
 }

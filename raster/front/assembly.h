@@ -32,7 +32,9 @@ RunSpan run_span(const TopologyShape& shape, const Run& run);
 std::uint32_t piece_of(const TopologyShape& shape, std::uint32_t positions);
 
 /// Cuts one instance of a draw at restart indices and into stretches of at most `piece` primitives, and appends them.
-void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, std::vector<Run>& runs);
+/// `numbers_pieces`: gl_PrimitiveID begins anew in each.
+void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, bool numbers_pieces,
+                 std::vector<Run>& runs);
 
 /// Index `position` of the bound index buffer; 0 beyond its end.
 std::uint32_t read_index(const DrawCall& draw, std::uint64_t position);

@@ -16,6 +16,9 @@ std::uint64_t count_assembly(const Chunk& chunk, std::uint32_t vertices) {
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
     const Run& run = chunk.runs[r];
     primitives += run.end - run.begin;
+    // (The reference counts anew what two segments of a strip share: deviations.md, long-strip-vertices.)
+    if (chunk.draw->plan->as_reference.counts_segments && run.ends && run.end > 0)
+      assembled += std::uint64_t{(run.end - 1) / chunk.draw->plan->as_reference.segment} * (shape.first - shape.step);
     assembled += std::uint64_t{run.end - run.begin} * shape.step + (run.begin == 0 ? shape.first - shape.step : 0);
   }
   const QueryCounters& queries = chunk.draw->call.queries;

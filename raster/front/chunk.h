@@ -16,6 +16,12 @@ class ClippedBatch;  // raster/front/rectangles.h
 /// strips hand the counter on (Chunk::stipple_counter).
 inline constexpr std::uint32_t kStippledChunkPositions = 32768;
 
+/// What waits behind the reference's clipper, of all views of a draw (deviations.md, multiview-layers).
+struct ViewLayer {
+  bool any = false;
+  std::uint32_t layer = 0;
+};
+
 struct Chunk {
   const DrawRecord* draw = nullptr;
   const Run* runs = nullptr;
@@ -23,6 +29,7 @@ struct Chunk {
   std::uint32_t view = 0;                    ///< multiview: index of the view, also the layer
   std::uint32_t* primitive_count = nullptr;  ///< PipelinePlan::counts_primitives: of the instance so far
   std::uint32_t* stipple_counter = nullptr;  ///< of strips cut into chunks: what the chunks before have used up
+  ViewLayer* view_layer = nullptr;           ///< ReferenceWays::first_layer: chunks are worked on in order
   ClippedBatch* batch = nullptr;             ///< clipped triangles of the chunks before, which this one goes on with
   bool ends_batch = true;                    ///< no chunk follows that does
   DrawWatch* watch = nullptr;                ///< while an observed chunk is worked on

@@ -26,6 +26,7 @@ struct PrimitiveWork : PrimitiveContext {
   bool clips_segment = false;  ///< triangles go to `clipped`, not to setup
   ClippedBatch own_batch;
   ClippedBatch& clipped;        ///< the chunk's own, or one that several chunks share
+  std::uint32_t base_layer;     ///< of the view
   std::uint32_t discarded = 0;  ///< lines and triangles that the clipper leaves nothing of
   std::uint32_t parts = 0;      ///< triangles that it makes beyond the first of a polygon
 
@@ -36,8 +37,9 @@ struct PrimitiveWork : PrimitiveContext {
         viewport(plan.viewport[0]),
         batches(plan.windows && plan.out.layer == kNoReg && !plan.per_vertex_viewport && !plan.bias_in_vertices &&
                 plan.out.cull_count == 0),
-        clipped(chunk.batch ? *chunk.batch : own_batch) {
-    setup.layer = static_cast<std::uint16_t>(chunk.view);
+        clipped(chunk.batch ? *chunk.batch : own_batch),
+        base_layer(chunk.view) {
+    setup.layer = static_cast<std::uint16_t>(base_layer);
     if (plan.rectangles.any && !chunk.batch) own_batch.begin(plan);
     setup.watch = chunk.watch;
   }
@@ -55,6 +57,20 @@ void discard(PrimitiveWork& w, PrimitiveFate fate) {
 void count_behind_clipper(const PrimitiveWork& w, std::uint64_t input) {
   if (!w.plan.draws_points)
     w.chunk.draw->call.queries.count(Statistic::kClippingPrimitives, input + w.parts - w.discarded);
+}
+
+/// deviations.md, multiview-layers: what goes through the reference's clipper waits, and goes to the layer of the view
+/// that the first of it is of; what does not sends that off.
+void choose_view_layer(PrimitiveWork& w, bool clips) {
+  if (!w.chunk.view_layer) return;
+  ViewLayer& waiting = *w.chunk.view_layer;
+  const State& state = *w.plan.state;
+  clips |= w.plan.bias_in_vertices || w.plan.smooth_lines || w.plan.out.cull_count != 0 ||
+           (w.plan.draws_lines && state.line_stipple);
+  if (!waiting.any || !clips) waiting.layer = w.chunk.view;
+  waiting.any = clips;
+  w.base_layer = waiting.layer;
+  w.setup.layer = static_cast<std::uint16_t>(w.base_layer);
 }
 
 ClipVertex clip_vertex(const PrimitiveWork& w, std::uint32_t slot) {
@@ -81,9 +97,9 @@ bool culled_by_distance(const PrimitiveWork& w, const std::uint32_t* slot, std::
 
 /// 3.4: layer and viewport from the provoking vertex.
 void choose_layer_and_viewport(PrimitiveWork& w, std::uint32_t provoking_slot) {
-  w.setup.layer = static_cast<std::uint16_t>(w.chunk.view);
+  w.setup.layer = static_cast<std::uint16_t>(w.base_layer);
   if (w.plan.out.layer != kNoReg) {
-    const std::uint32_t layer = w.vertices.layer[provoking_slot] + w.chunk.view;
+    const std::uint32_t layer = w.vertices.layer[provoking_slot] + w.base_layer;
     w.setup.layer = static_cast<std::uint16_t>(std::min(layer, std::max<std::uint32_t>(w.pass.layers, 1) - 1));
   }
   if (!w.plan.per_vertex_viewport) return;
@@ -116,7 +132,9 @@ Vertex* biased_copy(const PrimitiveWork& w, const Vertex* record, float offset) 
 /// A vertex on the way from one to the other, in window space and without perspective; flat values as in the first.
 const Vertex* between(const PrimitiveWork& w, const Vertex* from, const Vertex* to, float t) {
   Vertex* made = w.arena.take<Vertex>(w.plan.vertex_stride);
-  const std::uint32_t smooth = 4 + w.plan.perspective_count + w.plan.linear_count;
+  // (This device alone: deviations.md, stipple-flat-integers.)
+  const bool flushes = w.plan.as_reference.flushes_flat;
+  const std::uint32_t smooth = 4 + (flushes ? w.plan.varying_count() : w.plan.perspective_count + w.plan.linear_count);
   for (std::uint32_t i = 0; i < smooth; ++i) made[i] = from[i] + t * (to[i] - from[i]);
   std::memcpy(made + smooth, from + smooth, (w.plan.vertex_stride - smooth) * sizeof(Vertex));
   return made;
@@ -131,7 +149,7 @@ float stipple_length(const State& state, const Vertex* v0, const Vertex* v1) {
 
 void emit_segment(const PrimitiveWork& w, const Vertex* v0, const Vertex* v1, bool front) {
   if (w.plan.smooth_lines)
-    setup_smooth_line(w.setup, w.arena, v0, v1, front);
+    setup_smooth_line(w.setup, w.arena, v0, v1, front || w.plan.as_reference.smooth_outlines_face_front);
   else
     setup_line(w.setup, v0, v1, front);
 }
@@ -167,6 +185,10 @@ void emit_line(PrimitiveWork& w, const Vertex* v0, const Vertex* v1, bool front)
   w.stipple_counter += pixels;
 }
 
+void emit_filled(PrimitiveWork& w, const Vertex* const v[3]) {
+  setup_triangle(w.setup, setup_vertex(w, v[0]), setup_vertex(w, v[1]), setup_vertex(w, v[2]));
+}
+
 /// 10.2: the outline or the corners of one triangle after clipping. edge[i]: of the edge that starts at corner i.
 void emit_unfilled(PrimitiveWork& w, const Vertex* const in[3], const bool edge[3], float determinant) {
   const State& state = *w.plan.state;
@@ -175,10 +197,11 @@ void emit_unfilled(PrimitiveWork& w, const Vertex* const in[3], const bool edge[
     const float offset = vertex_depth_bias(w.plan, w.pass, v[0], v[1], v[2]);
     for (const Vertex*& corner : v) corner = biased_copy(w, corner, offset);
   }
+  if (state.polygon_mode == VK_POLYGON_MODE_FILL) return emit_filled(w, v);
   const Vertex* provoking = v[provoking_corner(3, state.provoking_vertex_last)];
   for (const Vertex*& corner : v) corner = with_flat_values(w.plan, w.arena, corner, provoking);
   const bool ccw = state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE;
-  const bool front = ccw ? determinant < 0 : determinant > 0;
+  const bool front = w.plan.as_reference.outlines_face_front || (ccw ? determinant < 0 : determinant > 0);
   if (state.polygon_mode == VK_POLYGON_MODE_POINT) {
     for (int i = 0; i < 3; ++i)
       if (edge[i]) setup_point(w.setup, v[i], front);
@@ -187,10 +210,6 @@ void emit_unfilled(PrimitiveWork& w, const Vertex* const in[3], const bool edge[
   if (edge[2]) emit_line(w, v[2], v[0], front);
   if (edge[0]) emit_line(w, v[0], v[1], front);
   if (edge[1]) emit_line(w, v[1], v[2], front);
-}
-
-void emit_filled(PrimitiveWork& w, const Vertex* const v[3]) {
-  setup_triangle(w.setup, setup_vertex(w, v[0]), setup_vertex(w, v[1]), setup_vertex(w, v[2]));
 }
 
 /// Two triangles that may be a rectangle. False: they are not; nothing has been set up.
@@ -335,9 +354,20 @@ void process_line(PrimitiveWork& w, const std::uint32_t slot[2]) {
   emit_line(w, window_record(w, line[0]), window_record(w, line[1]), true);
 }
 
+/// A point that the reference keeps (deviations.md, point-clipping).
+void process_outside_point(PrimitiveWork& w, const ClipVertex& v) {
+  if (v.clip[3] <= 0 || !std::isfinite(v.clip[0]) || !std::isfinite(v.clip[1]))
+    return w.setup.tell(PrimitiveFate::kOutside);
+  if (w.plan.fused_transform && !w.plan.per_vertex_viewport) return setup_point(w.setup, v.record, true);
+  Vertex* copy = w.arena.take<Vertex>(w.plan.vertex_stride);
+  std::memcpy(copy, v.record, w.plan.vertex_stride * sizeof(Vertex));
+  std::copy_n(v.clip, 4, copy);
+  setup_point(w.setup, copy, true);
+}
+
 /// Vulkan 1.3.239, Primitive Clipping: "If the primitive under consideration is a point, then clipping passes it
 /// unchanged if it lies within the clip volume; otherwise, it is discarded." (The reference keeps those outside in x
-/// and y: deviation point-clipping.)
+/// and y: deviation point-clipping. Behind a tessellation or geometry shader it forgets to transform them.)
 void process_point(PrimitiveWork& w, std::uint32_t slot) {
   const ClipCode code = w.vertices.code[slot];
   if ((code & ~kClipXY) != 0) return w.setup.tell(PrimitiveFate::kOutside);
@@ -345,8 +375,9 @@ void process_point(PrimitiveWork& w, std::uint32_t slot) {
   if (w.plan.out.cull_count && culled_by_distance(w, &slot, 1)) return w.setup.tell(PrimitiveFate::kCulledByDistance);
   // Clipping primitives: the reference's count, and any is allowed for what is outside.
   w.chunk.draw->call.queries.count(Statistic::kClippingPrimitives, 1);
-  if (code != 0) return w.setup.tell(PrimitiveFate::kOutside);
+  if (code != 0 && !w.plan.as_reference.keeps_outside_points) return w.setup.tell(PrimitiveFate::kOutside);
   choose_layer_and_viewport(w, slot);
+  if (code != 0) return process_outside_point(w, v);
   setup_point(w.setup, window_record(w, v), true);
 }
 
@@ -373,6 +404,20 @@ void process_primitive(PrimitiveWork& w, std::uint32_t corners, const std::uint3
     process_point(w, slot[0]);
 }
 
+/// deviations.md, nine-vertices: of three triangles, the last of which lies in a row, nothing is drawn unless the
+/// others are this rectangle.
+bool vanishes(const PrimitiveWork& w, const Run& run, const std::uint16_t* slots) {
+  if (run.begin != 0 || run.end != 3 || !run.ends || w.chunk.draw->call.index_data) return false;
+  const Vertex* v[9];
+  for (int i = 0; i < 9; ++i) {
+    if (w.vertices.code[slots[i]] != 0) return false;
+    v[i] = w.vertices.records + std::size_t{slots[i]} * w.plan.vertex_stride;
+  }
+  if (v[6][1] != v[7][1] || v[6][1] != v[8][1]) return false;
+  const auto same = [&](int word, int a, int b, int c) { return v[a][word] == v[b][word] && v[a][word] == v[c][word]; };
+  return !(same(0, 0, 1, 5) && same(0, 2, 3, 4) && same(1, 0, 3, 5) && same(1, 1, 2, 4));
+}
+
 /// The most frequent topology, without tables.
 void process_triangle_list(PrimitiveWork& w, const Run& run, std::uint32_t first_entry) {
   const std::uint16_t* corner = w.vertices.slot.data() + first_entry;
@@ -393,12 +438,14 @@ void process_run(PrimitiveWork& w, const Run& run, const RunSpan& span, std::uin
     std::uint32_t slot[3];
     for (std::uint32_t c = 0; c < shape.corners; ++c) slot[c] = slots[span.entry(corners.at[c])];
     w.setup.id = run.first_id + i;
-    if (i == 0 || shape.step > 1) w.stipple_counter = 0;  // strips go on with the pattern
+    // Strips go on with the pattern.
+    if (i == 0 || shape.step > 1 || w.plan.as_reference.stipples_lines) w.stipple_counter = 0;
     process_primitive(w, shape.corners, slot);
   }
 }
 
 void process_any_run(PrimitiveWork& w, const Run& run, const RunSpan& span, std::uint32_t first_entry) {
+  if (w.plan.as_reference.nine_vertices && vanishes(w, run, w.vertices.slot.data() + first_entry)) return;
   if (w.plan.state->topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST)
     process_triangle_list(w, run, first_entry);
   else
@@ -480,6 +527,9 @@ ClippedEnds process_primitives(const PrimitiveContext& context) {
     return ends;
   }
   if (chunk.stipple_counter) w.stipple_counter = *chunk.stipple_counter;
+  const auto slots = w.vertices.slot.begin();
+  choose_view_layer(w, std::any_of(slots, slots + positions_of(chunk),
+                                   [&](std::uint16_t slot) { return w.vertices.code[slot] != 0; }));
   w.primitives.reserve(expected);
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
     const RunSpan span = run_span(shape, chunk.runs[r]);
@@ -502,6 +552,10 @@ void process_listed(const PrimitiveContext& context, std::span<const ListedPrimi
   PrimitiveWork w(context);
   if (w.setup.watch) w.setup.watch->emitted(listed.size());
   const bool invisible = w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK && w.plan.corners == 3;
+  choose_view_layer(w, std::any_of(listed.begin(), listed.end(), [&](const ListedPrimitive& primitive) {
+                      return (w.vertices.code[primitive.slot[0]] | w.vertices.code[primitive.slot[1]] |
+                              w.vertices.code[primitive.slot[2]]) != 0;
+                    }));
   for (const ListedPrimitive& primitive : listed) {
     w.setup.id = primitive.id;
     if (invisible) {

@@ -51,6 +51,12 @@ bool cull_facing(const State& state, bool front) {
   return (state.cull_mode & (front ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT)) != 0;
 }
 
+/// deviations.md, multisample-scissor: a pixel further, but not into another tile.
+void leak(PixelRect& region) {
+  region.x0 -= region.x0 % kTileSize != 0 ? 1 : 0;
+  region.y0 -= region.y0 % kTileSize != 0 ? 1 : 0;
+}
+
 /// Extent up to which edge functions near the triangle fit 32 bits with ease: 16 pixels.
 constexpr std::int32_t kWindowReach = 16 * 256;
 
@@ -85,7 +91,7 @@ float vertex_depth_bias(const PipelinePlan& plan, const PassDesc& pass, const Ve
 
 void complete_triangle(const SetupContext& context, const TriangleFacts& facts, Primitive& p) {
   const PipelinePlan& plan = *context.plan;
-  p.depth_offset = plan.depth_bias && !context.of_line ? triangle_bias(context, p.v) : 0.0f;
+  p.depth_offset = plan.depth_bias && !context.of_line && !plan.bias_in_vertices ? triangle_bias(context, p.v) : 0.0f;
   p.id = context.id;
   p.x0 = static_cast<std::uint16_t>(facts.visible.x0);
   p.y0 = static_cast<std::uint16_t>(facts.visible.y0);
@@ -121,7 +127,9 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
     return context.tell(PrimitiveFate::kTooFar);
   const int first = plan.raster_samples > 1 ? 0 : 255;
   const PixelRect bounds{(left + first) >> 8, (top + first) >> 8, (right - 1) >> 8, (bottom - 1) >> 8};
-  const PixelRect visible = intersect(bounds, plan.region[context.viewport]);
+  PixelRect region = plan.region[context.viewport];
+  if (plan.as_reference.leaks_scissor) leak(region);
+  const PixelRect visible = intersect(bounds, region);
   if (visible.empty()) return context.tell(bounds.empty() ? PrimitiveFate::kNoSample : PrimitiveFate::kScissor);
   base::LaneMask window = 0;
   const int wx = visible.x0 & ~1, wy = visible.y0 & ~1;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/as_reference.h"
 #include "base/numeric.h"
 #include "texel/codec.h"
 #include "texel/format.h"
@@ -15,6 +16,26 @@ using base::WaveRegister;
 using texel::Channel;
 using texel::FormatDesc;
 using texel::Numeric;
+
+/// deviations.md, vertex-format-numbers: the formats that the lower eight bits of the reference's numbers name.
+const FormatDesc& fetched_format(VkFormat format) {
+  if (!base::as_reference(base::Deviation::kVertexFormatNumbers)) return texel::format_desc(format);
+  static const FormatDesc luminance = [] {
+    FormatDesc desc = texel::format_desc(VK_FORMAT_R8_UNORM);
+    desc.rgba = {0, 0, 0, -1};
+    return desc;
+  }();
+  switch (format) {
+    case VK_FORMAT_B4G4R4A4_UNORM_PACK16:
+      return luminance;
+    case VK_FORMAT_R5G5B5A1_UNORM_PACK16:
+      return texel::format_desc(VK_FORMAT_A4R4G4B4_UNORM_PACK16);
+    case VK_FORMAT_B5G5R5A1_UNORM_PACK16:
+      return texel::format_desc(VK_FORMAT_A4B4G4R4_UNORM_PACK16);
+    default:
+      return texel::format_desc(format);
+  }
+}
 
 struct Addresses {
   const std::byte* at[base::kWaveWidth];  ///< null: out of bounds
@@ -100,10 +121,28 @@ void fetch_words(const Addresses& addresses, std::uint32_t count, std::uint32_t 
   }
 }
 
+/// deviations.md, wide-attributes: four words, of signed numbers one for each component, as if they had 32 bits.
+void fetch_narrowed_component(const FormatDesc& format, const Addresses& addresses, std::uint32_t count,
+                              std::uint32_t word, WaveRegister& out) {
+  const bool is_signed = format.channel[0].numeric == Numeric::kSint;
+  const std::uint32_t first = is_signed ? word * 8u : word * 4u;
+  const bool there = word < 4 && first < format.block_bytes;
+  std::fill_n(out.lane, count, is_signed && !there && word == 3 ? 1u : 0u);
+  if (!there) return;
+  if (!is_signed) return fetch_words(addresses, count, first, out);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::int64_t value = 0;
+    if (addresses.at[i]) std::memcpy(&value, addresses.at[i] + first, 8);
+    out.lane[i] = static_cast<std::uint32_t>(std::clamp<std::int64_t>(value, INT32_MIN, INT32_MAX));
+  }
+}
+
 /// `word`: half of a 64-bit component. Components that the format lacks are undefined (Vulkan 1.3.239, Vertex Input
 /// Extraction): zero.
 void fetch_wide_component(const FormatDesc& format, const Addresses& addresses, std::uint32_t count, std::uint32_t word,
                           WaveRegister& out) {
+  if (base::as_reference(base::Deviation::kWideAttributes))
+    return fetch_narrowed_component(format, addresses, count, word, out);
   if (word * 4u < format.block_bytes) return fetch_words(addresses, count, word * 4u, out);
   std::fill_n(out.lane, count, 0u);
 }
@@ -181,7 +220,7 @@ void fetch_vertices(const DrawRecord& draw, const VertexLanes& lanes, std::uint3
       continue;
     }
     const VertexAttribute& attribute = plan.state->attribute[input.attribute];
-    const FormatDesc& format = texel::format_desc(attribute.format);
+    const FormatDesc& format = fetched_format(attribute.format);
     if (addressed != input.attribute) compute_addresses(draw, attribute, format.block_bytes, lanes, addresses);
     addressed = input.attribute;
     fetch_component(format, addresses, lanes.count, input.component, out);

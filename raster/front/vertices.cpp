@@ -6,6 +6,7 @@
 
 #include "raster/front/gather.h"
 #include "raster/front/records.h"
+#include "raster/front/setup.h"
 
 namespace vitrine::raster {
 
@@ -42,6 +43,16 @@ void scatter_distances(const PipelinePlan& plan, const WaveOutputs& outputs, std
   }
 }
 
+/// deviations.md, identity-viewport.
+void keep_clip_coordinates(const float* const clip[4], std::uint32_t lanes, float pixel_offset, TransformedWave& out) {
+  float* const window[4] = {out.x, out.y, out.z, out.w};
+  for (int c = 0; c < 4; ++c) std::copy_n(clip[c], lanes, window[c]);
+  for (std::uint32_t i = 0; i < lanes; ++i) {
+    out.snapped_x[i] = snap_coordinate(out.x[i], pixel_offset);
+    out.snapped_y[i] = snap_coordinate(out.y[i], pixel_offset);
+  }
+}
+
 }  // namespace
 
 void shade_vertex_wave(const DrawRecord& draw, std::uint32_t base, std::uint32_t count, std::uint32_t view,
@@ -66,6 +77,7 @@ void store_wave(const PipelinePlan& plan, const WaveOutputs& outputs, std::uint3
                  {plan.viewport[0], plan.pixel_offset, state.depth_clip, state.negative_one_to_one,
                   plan.fused_transform, plan.guard_band},
                  s.transformed);
+  if (!plan.as_reference.divides) keep_clip_coordinates(clip, lanes, plan.pixel_offset, s.transformed);
   const TransformedWave& t = s.transformed;
   const std::uint32_t stride = plan.vertex_stride;
   const auto words = [](auto* memory) { return reinterpret_cast<std::uint32_t*>(memory); };

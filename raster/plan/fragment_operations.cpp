@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/as_reference.h"
 #include "raster/output/color.h"
 #include "raster/output/depth_compare.h"
 #include "texel/format.h"
 
 namespace vitrine::raster {
 namespace {
+
+using base::Deviation;
 
 using spirv::ShaderInterface;
 
@@ -46,7 +49,10 @@ void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {
   const bool wants = state.sample_shading && std::ceil(static_cast<float>(plan.samples) * state.min_sample_shading) > 1;
   plan.sample_shading = plan.raster_samples > 1 && plan.fragment && (wants || plan.fragment->per_sample);
   plan.depth_bias = state.depth_bias && (state.depth_bias_slope != 0 || state.depth_bias_constant != 0);
-  plan.bias_in_vertices = state.polygon_mode != VK_POLYGON_MODE_FILL && !plan.draws_lines && !plan.draws_points;
+  const bool areas = !plan.draws_lines && !plan.draws_points;
+  plan.bias_in_vertices = state.polygon_mode != VK_POLYGON_MODE_FILL && areas;
+  if (areas && plan.depth_bias && base::as_reference(Deviation::kLineStateDepthBias))
+    plan.bias_in_vertices |= state.line_stipple || state.line_mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
 }
 
 void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
@@ -58,6 +64,7 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
   plan.tests.stencil = state.stencil_test && pass.stencil.format != nullptr;
   const ShaderInterface* fragment = plan.fragment;
   const texel::FormatDesc* depth_format = pass.depth.format;
+  plan.clamps_depth = state.depth_clamp;
   plan.restricts_depth = !state.unrestricted_depth || depth_format == nullptr ||
                          depth_format->channel[0].numeric != texel::Numeric::kSfloat;
   // Numbers of fixed point stay in [0, 1] after the depth clamp, too.
@@ -66,6 +73,12 @@ void plan_tests(PipelinePlan& plan, const PassDesc& pass) {
       viewport.z_min = std::clamp(viewport.z_min, 0.0f, 1.0f);
       viewport.z_max = std::clamp(viewport.z_max, 0.0f, 1.0f);
     }
+  if (plan.smooth_lines && base::as_reference(Deviation::kSmoothLineDepthClamp)) {
+    plan.clamps_depth = false;
+    plan.restricts_depth = true;
+  }
+  plan.counts_early =
+      fragment && fragment->early_fragment_tests && !base::as_reference(Deviation::kEarlySampleCounting);
   plan.may_kill = state.alpha_to_coverage || (fragment && (fragment->uses_discard || plan.frag.sample_mask != kNoReg));
   plan.depth_order = TestOrder::kNone;
   plan.early_reject = false;

@@ -3,6 +3,7 @@
 
 #include "raster/plan/fragment_operations.h"
 #include "raster/plan/rectangles.h"
+#include "raster/plan/reference_ways.h"
 #include "raster/plan/routes.h"
 #include "raster/plan/stages.h"
 #include "raster/plan/varyings.h"
@@ -32,6 +33,7 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   plan_vertex_outputs(plan);
   plan_rasterization(plan, pass);
   plan_varyings(plan);
+  plan_reference_ways(plan, draw, pass);
   plan_rectangles(plan, draw, pass);
   plan_viewports(plan, pass);
   // 8.2: with one sample only a mask of all zeros has an effect.

@@ -21,17 +21,6 @@ bool reads(const PipelinePlan& plan, BuiltIn built_in) {
                                       [=](const InterfaceSlot& slot) { return slot.built_in == built_in; });
 }
 
-/// Whether an input has a value that is not interpolated; gl_PrimitiveID has.
-bool reads_flat(const PipelinePlan& plan) {
-  if (!plan.fragment) return false;
-  return std::any_of(plan.fragment->inputs.begin(), plan.fragment->inputs.end(), [](const InterfaceSlot& slot) {
-    const bool numbers = slot.built_in == BuiltIn::kLayer || slot.built_in == BuiltIn::kPrimitiveId;
-    const bool by_location = slot.built_in == BuiltIn::kNone;
-    return !slot.implied && (numbers || (by_location && (slot.type != spirv::BaseType::kFloat ||
-                                                         slot.interpolation == spirv::Interpolation::kFlat)));
-  });
-}
-
 bool has_guard_band(const PipelinePlan& plan, const PassDesc& pass) {
   if (pass.color_count != 1 || !pass.color[0].format || !pass.plain_image || pass.samples > 1) return false;
   if (pass.color[0].format->format != VK_FORMAT_B8G8R8A8_UNORM) return false;
@@ -67,13 +56,22 @@ std::uint32_t attributes_of(const PipelinePlan& plan) {
   return count + static_cast<std::uint32_t>(read.size());
 }
 
-/// Primitives of a list or strip that lie in one segment; strips keep an even number.
-std::uint32_t segment_primitives(const PipelinePlan& plan, std::uint32_t positions) {
-  const std::uint32_t count = (positions - plan.shape.first) / plan.shape.step + 1;
-  return plan.shape.step == 1 ? count & ~1u : count;
+}  // namespace
+
+bool reads_flat(const PipelinePlan& plan) {
+  if (!plan.fragment) return false;
+  return std::any_of(plan.fragment->inputs.begin(), plan.fragment->inputs.end(), [](const InterfaceSlot& slot) {
+    const bool numbers = slot.built_in == BuiltIn::kLayer || slot.built_in == BuiltIn::kPrimitiveId;
+    const bool by_location = slot.built_in == BuiltIn::kNone;
+    return !slot.implied && (numbers || (by_location && (slot.type != spirv::BaseType::kFloat ||
+                                                         slot.interpolation == spirv::Interpolation::kFlat)));
+  });
 }
 
-}  // namespace
+std::uint32_t segment_of(const TopologyShape& shape, bool indexed) {
+  const std::uint32_t positions = indexed ? kSegmentIndices : kSegmentVertices;
+  return (positions - shape.first) / shape.step + 1;
+}
 
 void plan_rectangles(PipelinePlan& plan, const DrawCall& draw, const PassDesc& pass) {
   plan.guard_band = has_guard_band(plan, pass);
@@ -85,7 +83,8 @@ void plan_rectangles(PipelinePlan& plan, const DrawCall& draw, const PassDesc& p
   if (!plan.guard_band || !triangles || plan.stages.any() || plan.bias_in_vertices) return;
   if (reads_flat(plan)) return;
   plan.rectangles.any = true;
-  plan.rectangles.segment = segment_primitives(plan, draw.index_data ? kSegmentIndices : kSegmentVertices);
+  const std::uint32_t segment = segment_of(plan.shape, draw.index_data != nullptr);
+  plan.rectangles.segment = plan.shape.step == 1 ? segment & ~1u : segment;  // strips keep an even number
   plan.rectangles.batch_vertices = kBatchBytes / (kAttributeBytes * attributes_of(plan));
 }
 

@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/as_reference.h"
+
 namespace vitrine::raster {
 namespace {
+
+using base::Deviation;
 
 /// lavapipe-rasterization.md 1.1.
 ViewportTransform viewport_transform(const VkViewport& viewport, bool negative_one_to_one) {
@@ -48,7 +52,7 @@ void plan_viewports(PipelinePlan& plan, const PassDesc& pass) {
     plan.region[i] = intersect(framebuffer, pixel_rect(plan.state->scissor[source]));
   }
   plan.wide_region = intersect(plan.region[0], viewport_rect(plan.viewport[0]));
-  if (plan.guard_band) plan.region.fill(plan.wide_region);
+  if (plan.guard_band || base::as_reference(Deviation::kViewportScissor)) plan.region[0] = plan.wide_region;
   plan.per_vertex_viewport = plan.out.viewport_index != kNoReg;
   plan.fused_transform = !plan.stages.any();
 }

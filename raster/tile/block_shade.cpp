@@ -159,7 +159,7 @@ void shade(TileWorker& worker, const Primitive& primitive, int x, int y, const B
     alive = worker.runner.run(active, active & ~pixels);
   }
   if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(pixels));
-  const bool counts_early = plan.fragment->early_fragment_tests;  // also what the shader discards
+  const bool counts_early = plan.counts_early;  // also what the shader discards
   const bool late = plan.depth_order == TestOrder::kLate;
   LaneMask kept[kMaxSamples];
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
@@ -258,7 +258,7 @@ void shade_spans(TileWorker& worker, const Primitive& primitive, SpanWave& wave)
     if ((pixels & ~alive) != 0) wave.rows = rows_of_spans(pixels & alive);
   }
   if (worker.counts) {
-    const bool counts_early = plan.fragment->early_fragment_tests;  // also what the shader discards
+    const bool counts_early = plan.counts_early;  // also what the shader discards
     worker.fragment_invocations += covered;
     worker.samples_passed += counts_early ? covered : static_cast<std::uint64_t>(std::popcount(wave.rows));
   }

@@ -20,7 +20,7 @@ BlockPixels depth_pixels(const DepthStencilTarget& target, int x, int y) {
 BlockDepthTest depth_test(const PipelinePlan& plan, const DepthStencilTarget& target, bool write,
                           const DepthRange& range) {
   return {target.format, plan.state->depth_compare, write && plan.tests.depth_write,
-          plan.state->depth_clamp ? &range : nullptr, plan.restricts_depth};
+          plan.clamps_depth ? &range : nullptr, plan.restricts_depth};
 }
 
 /// `range`: room for the primitive's depth clamp.
@@ -42,7 +42,7 @@ void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y
   QuadPositions quads;
   place_block(x, y, quads);
   DepthRange range[base::kQuadsPerWave];
-  const bool clamps = plan.state->depth_clamp;
+  const bool clamps = plan.clamps_depth;
   if (clamps) std::fill_n(range, base::kQuadsPerWave, depth_range(plan, primitive.viewport));
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
     if (!block.lanes[s]) continue;
@@ -55,6 +55,9 @@ void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y
     block.lanes[s] = test_depth_stencil(plan.tests, worker.target.depth_stencil[s], quads,
                                         primitive.front ? 0xffffu : 0, worker.depth, nullptr, block.lanes[s],
                                         plan.depth_order == TestOrder::kEarly, failed ? failed + s : nullptr);
+    if (!plan.as_reference.first_sample_depth) continue;
+    std::fill(block.lanes + s, block.lanes + plan.samples, block.lanes[s]);
+    break;
   }
 }
 

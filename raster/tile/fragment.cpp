@@ -39,7 +39,7 @@ void mask_coverage(ShadeRun& run) {
   const std::uint32_t* mask = run.worker.runner.output(plan.frag.sample_mask).lane;
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
-      if ((mask[lane] >> s & 1) == 0) run.kept[s] &= ~(LaneMask{1} << lane);
+      if ((mask[lane] >> (plan.as_reference.one_sample_masks ? 0 : s) & 1) == 0) run.kept[s] &= ~(LaneMask{1} << lane);
 }
 
 /// 8.6.
@@ -79,10 +79,10 @@ void late_depth(ShadeRun& run, std::uint32_t sample) {
     add_depth_offset(run.wave, worker.depth);
   }
   DepthRange range[base::kQuadsPerWave];
-  if (plan.state->depth_clamp)
+  if (plan.clamps_depth)
     for (std::uint32_t q = 0; q < run.wave.quads; ++q)
       range[q] = depth_range(plan, run.wave.primitive[run.wave.slot[q]]->viewport);
-  clamp_depth(plan.state->depth_clamp ? range : nullptr, plan.restricts_depth, run.wave.quads, worker.depth);
+  clamp_depth(plan.clamps_depth ? range : nullptr, plan.restricts_depth, run.wave.quads, worker.depth);
 }
 
 template <bool kObserved>
@@ -97,6 +97,9 @@ void test_late(ShadeRun& run) {
     if (plan.tests.depth) late_depth(run, s);
     run.kept[s] = test_depth_stencil(plan.tests, worker.target.depth_stencil[s], run.wave.position, front, worker.depth,
                                      reference, run.kept[s], true, kObserved ? failed + s : nullptr);
+    if (!plan.as_reference.first_sample_depth) continue;
+    std::fill(run.kept + s, run.kept + run.end_sample, run.kept[s]);
+    break;
   }
   if constexpr (kObserved) tell_tests(worker, failed, front, run.first_sample, run.end_sample, true);
 }
@@ -112,7 +115,8 @@ void write_colors(ShadeRun& run) {
     const texel::ImageView& view = worker.pass->color[i];
     if (!plan.writer[i].function || worker.target.layer >= view.layer_count) continue;
     const texel::Numeric numeric = view.format->channel[0].numeric;
-    const bool scaled = numeric != texel::Numeric::kUint && numeric != texel::Numeric::kSint;
+    const bool integer = numeric == texel::Numeric::kUint || numeric == texel::Numeric::kSint;
+    const bool scaled = !integer || plan.as_reference.scales_integers;
     const WaveRegister* color = collect_color(worker, plan.frag.color[i], scaled, worker.color);
     const bool dual = i == 0 && plan.dual_source;
     const WaveRegister* second = dual ? collect_color(worker, plan.frag.color_second, scaled, worker.second) : nullptr;
@@ -123,6 +127,7 @@ void write_colors(ShadeRun& run) {
 }
 
 void count_kept(ShadeRun& run) {
+  if (run.plan.as_reference.one_sample_masks) return count_samples(run.worker, run.kept[0]);
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) count_samples(run.worker, run.kept[s]);
 }
 
@@ -138,7 +143,7 @@ void shade(ShadeRun& run) {
   }
   if (!run.pixels) return;
   // Vulkan 1.3.239, Early Fragment Tests: sample counting is performed before the shader runs, too.
-  if (plan.fragment->early_fragment_tests) count_kept(run);
+  if (plan.counts_early) count_kept(run);
   set_packed_inputs(run);
   const LaneMask active = plan.fragment->needs_helpers ? run.used : run.pixels;
   run.alive = worker.runner.run(active, active & ~run.pixels);
@@ -157,7 +162,7 @@ void shade(ShadeRun& run) {
     tell(FragmentTest::kAlphaToCoverage);
   }
   if (plan.depth_order == TestOrder::kLate) test_late<kObserved>(run);
-  if (!plan.fragment->early_fragment_tests) count_kept(run);
+  if (!plan.counts_early) count_kept(run);
   write_colors<kObserved>(run);
 }
 

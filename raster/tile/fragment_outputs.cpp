@@ -12,7 +12,7 @@ const base::WaveRegister* collect_color(const TileWorker& worker, const std::arr
   const StageRunner& runner = worker.runner;
   const PipelinePlan& plan = *worker.draw->plan;
   const bool written = std::find(registers.begin(), registers.end(), kNoReg) == registers.end();
-  if (written && !plan.state->alpha_to_one && !plan.smooth_lines) {
+  if (written && !plan.alpha_to_one && !plan.smooth_lines) {
     const base::WaveRegister* first = &runner.output(registers[0]);
     if (&runner.output(registers[1]) == first + 1 && &runner.output(registers[2]) == first + 2 &&
         &runner.output(registers[3]) == first + 3)
@@ -27,7 +27,7 @@ const base::WaveRegister* collect_color(const TileWorker& worker, const std::arr
   if (plan.smooth_lines && scaled)
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
       scratch[3].lane[lane] = base::bits_of(base::float_of(scratch[3].lane[lane]) * worker.line_coverage[lane]);
-  if (plan.state->alpha_to_one) std::fill_n(scratch[3].lane, base::kWaveWidth, base::bits_of(1.0f));
+  if (plan.alpha_to_one) std::fill_n(scratch[3].lane, base::kWaveWidth, base::bits_of(1.0f));
   return scratch;
 }
 

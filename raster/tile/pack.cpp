@@ -109,7 +109,8 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
   const base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
   if (!plan.shades) {
-    for (std::uint32_t s = 0; s < plan.samples; ++s) count_samples(worker, block.lanes[s]);
+    const std::uint32_t counted = plan.as_reference.one_sample_masks ? 1 : plan.samples;
+    for (std::uint32_t s = 0; s < counted; ++s) count_samples(worker, block.lanes[s]);
     return;
   }
   const base::LaneMask quads = base::quads_of_lanes(any);
@@ -136,7 +137,8 @@ void emit_observed_block(TileWorker& worker, const Primitive& primitive, int x, 
   const base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
   if (!plan.shades) {
-    for (std::uint32_t s = 0; s < plan.samples; ++s) count_samples(worker, block.lanes[s]);
+    const std::uint32_t counted = plan.as_reference.one_sample_masks ? 1 : plan.samples;
+    for (std::uint32_t s = 0; s < counted; ++s) count_samples(worker, block.lanes[s]);
     return;
   }
   const base::LaneMask quads = base::quads_of_lanes(any);

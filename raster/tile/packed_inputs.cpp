@@ -115,7 +115,7 @@ void set_sample_inputs(ShadeRun& run) {
     std::uint32_t mask = 0;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
       mask |= static_cast<std::uint32_t>(samples[s] >> lane & 1) << s;
-    out.lane[lane] = run.plan.samples == 1 ? 1 : mask;
+    out.lane[lane] = run.plan.samples == 1 || run.plan.as_reference.one_sample_masks ? 1 : mask;
   }
 }
 

@@ -67,6 +67,14 @@ void move_origin(const SampleLocations& locations, GridOrigin origin, TileEdges&
   rect = {rect.x0 - origin.x, rect.y0 - origin.y, rect.x1 - origin.x, rect.y1 - origin.y};
 }
 
+/// 1: the first column or row of pixels lies outside of the scissor, and has samples in its farther half alone
+/// (deviations.md, multisample-scissor).
+GridOrigin leaked_pixels(const PipelinePlan& plan, const Primitive& primitive) {
+  if (!plan.as_reference.leaks_scissor || primitive.kind != PrimitiveKind::kTriangle) return {0, 0};
+  const PixelRect& region = plan.region[primitive.viewport];
+  return {primitive.x0 + 1 == region.x0 ? 1 : 0, primitive.y0 + 1 == region.y0 ? 1 : 0};
+}
+
 /// Covered lanes of the blocks among `places` that a primitive touches; returns their places. `rect`: the primitive's,
 /// from the first block on.
 base::LaneMask cover_tile(const PipelinePlan& plan, const Primitive& primitive, const TileEdges& edges,
@@ -76,9 +84,11 @@ base::LaneMask cover_tile(const PipelinePlan& plan, const Primitive& primitive, 
   if (edges.count != 0 && (bx1 - bx0 + 1) * (by1 - by0 + 1) > 9) classify_blocks(edges, plan.raster_samples, any, all);
   any &= places;
   base::LaneMask cut = 0;
+  const GridOrigin leak = leaked_pixels(plan, primitive);
   if (is_cut(plan, primitive))
-    cut = any & ~rect_lanes((rect.x0 + kBlockSize - 1) / kBlockSize, (rect.y0 + kBlockSize - 1) / kBlockSize,
-                            (rect.x1 + 1) / kBlockSize - 1, (rect.y1 + 1) / kBlockSize - 1);
+    cut = any & ~rect_lanes((rect.x0 + leak.x + kBlockSize - 1) / kBlockSize,
+                            (rect.y0 + leak.y + kBlockSize - 1) / kBlockSize, (rect.x1 + 1) / kBlockSize - 1,
+                            (rect.y1 + 1) / kBlockSize - 1);
   for (std::uint32_t s = 0; s < plan.raster_samples; ++s) {
     base::LaneMask* lanes = out.lanes[s];
     if ((any & all) != 0) std::fill_n(lanes, base::kWaveWidth, base::kAllLanes);
@@ -86,7 +96,8 @@ base::LaneMask cover_tile(const PipelinePlan& plan, const Primitive& primitive, 
     for (base::LaneMask left = cut; left != 0; left &= left - 1) {
       const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
       const int x = lane_x(place) * kBlockSize, y = lane_y(place) * kBlockSize;
-      lanes[place] &= rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
+      const int left_out = leak.x != 0 && plan.locations->x[s] < 128, above = leak.y != 0 && plan.locations->y[s] < 128;
+      lanes[place] &= rect_lanes(rect.x0 + left_out - x, rect.y0 + above - y, rect.x1 - x, rect.y1 - y);
     }
   }
   for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s)

@@ -252,6 +252,18 @@ def pass_faults(root):
                 yield f"{path.relative_to(root)}: neither a step of passes.def nor the file of a header beside it"
 
 
+def asked_faults(root):
+    """base/as_reference.def has the rows of deviations.md whose column says that they can be asked for."""
+    table = (root / "cts-subset/deviations.md").read_text().split("\n\n| id | what the reference does elsewhere")[0]
+    rows = re.findall(r"^\| ([\w-]+) \|.*\| (yes|no: [^|]+) \| `[^|]+\|$", table, re.MULTILINE)
+    for name in re.findall(r"^\| ([a-z][\w-]+) \|", table, re.MULTILINE):
+        if name not in [row for row, _ in rows] + ["id"]:
+            yield f"cts-subset/deviations.md: {name} does not say whether it can be asked for"
+    listed = set(re.findall(r'^VITRINE_DEVIATION\(\w+, "([\w-]+)"\)', (root / "base/as_reference.def").read_text(), re.MULTILINE))
+    for name in sorted(listed ^ {row for row, asked in rows if asked == "yes"}):
+        yield f"base/as_reference.def and cts-subset/deviations.md differ about {name}"
+
+
 def shape_faults(root):
     for folder in ORDER + FREE:
         for path in sources(root, folder):
@@ -274,7 +286,7 @@ def report_tail(root):
 
 
 CHECKS = (include_faults, part_faults, circle_faults, header_faults, room_faults, claim_faults, opcode_faults,
-          step_faults, capability_faults, dynamic_state_faults, pass_faults, shape_faults)
+          step_faults, capability_faults, dynamic_state_faults, pass_faults, asked_faults, shape_faults)
 
 
 def main():

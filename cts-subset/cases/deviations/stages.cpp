@@ -9,16 +9,15 @@ layout(location = 0) in vec4 position;
 layout(location = 1) in vec4 color;
 void main() { gl_Position = position; })";
 
-/// Patches of `corners` points, all levels 1.
-GraphicsSpec patches(uint32_t corners, const std::string& evaluation) {
+/// Patches of `corners` points, all levels the same.
+GraphicsSpec patches(uint32_t corners, const std::string& evaluation, const std::string& level = "1.0") {
   GraphicsSpec spec;
   spec.vertex = kPlainVertex;
   spec.control = "layout(vertices = " + std::to_string(corners) + R"() out;
 void main() {
   gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position;
-  for (int i = 0; i < 4; ++i) gl_TessLevelOuter[i] = 1.0;
-  for (int i = 0; i < 2; ++i) gl_TessLevelInner[i] = 1.0;
-})";
+  for (int i = 0; i < 4; ++i) gl_TessLevelOuter[i] = )" +
+                 level + ";\n  for (int i = 0; i < 2; ++i) gl_TessLevelInner[i] = " + level + ";\n}\n";
   spec.evaluation = evaluation;
   spec.fragment = "layout(location = 0) out vec4 result;\nvoid main() { result = vec4(1.0, 0.5, 0.25, 1.0); }\n";
   spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
@@ -53,6 +52,40 @@ void main() {
       control.scissors = spec.scissors;
       draw(run, "triangles", {}, control, colored({a, b, c, a, c, d, a, b, c, a, c, d}));
     });
+
+/// Corners of 18 squares, each of which becomes 4,225 vertices at levels of 64.
+std::vector<std::array<float, 4>> eighteen_squares() {
+  std::vector<std::array<float, 4>> corners;
+  for (int i = 0; i < 18; ++i) {
+    const float x = -0.95f + 0.32f * static_cast<float>(i % 6), y = -0.9f + 0.6f * static_cast<float>(i / 6);
+    corners.insert(corners.end(),
+                   {{x, y, 0, 1}, {x + 0.28f, y, 0, 1}, {x + 0.3f, y + 0.5f, 0, 1}, {x, y + 0.5f, 0, 1}});
+  }
+  return corners;
+}
+
+/// 76,050 vertices in one draw, then in two.
+const AddCase kManyVertices("tessellation", "deviation.tessellated_vertices", "tessellated-vertices",
+                            case_against_control, [](Run& run) {
+                              run.require(run.gpu.features.tessellationShader, "tessellation");
+                              GraphicsSpec spec = patches(
+                                  4, std::string("layout(quads) in;\nvoid main() {\n") + kQuadPosition + "}\n", "64.0");
+                              spec.floats({4, 4});
+                              const Buffer vertices = run.buffer_of(colored(eighteen_squares()));
+                              for (const uint32_t first : {72u, 36u}) {
+                                const Target target = make_target(run, {});
+                                const VkPipeline pipeline = make_pipeline(run, spec, target);
+                                run.once([&](VkCommandBuffer cmd) {
+                                  target.begin(cmd);
+                                  bind_pipeline(cmd, pipeline);
+                                  bind_vertices(cmd, vertices);
+                                  vkCmdDraw(cmd, first, 1, 0, 0);
+                                  if (first < 72) vkCmdDraw(cmd, 72 - first, 1, first, 0);
+                                  vkCmdEndRenderPass(cmd);
+                                });
+                                run.out(first == 72 ? "one_draw" : "two_draws", target.colors[0]);
+                              }
+                            });
 
 /// The second patch's number in its fragments: the built-in, then a varying.
 const AddCase kNumbers(

@@ -17,7 +17,7 @@ namespace {
 using spirv::BuiltIn;
 using spirv::InterfaceSlot;
 
-/// Patches that are worked on together: one wave of the control shader. Words in stage memory.
+/// Patches that are worked on together: one wave of the control shader, or all of the chunk. Words in stage memory.
 struct Batch {
   std::size_t first = 0;  ///< patch
   std::uint32_t count = 0;
@@ -41,14 +41,15 @@ void fill_tables(const StageContext& c, const Batch& batch) {
   }
 }
 
-void run_control(const StageContext& c, const Batch& batch) {
+/// One wave: `count` patches of the batch.
+void run_control_wave(const StageContext& c, const Batch& batch, std::uint32_t first, std::uint32_t count) {
   StageScratch& s = c.stages;
   const std::uint32_t invocations = c.plan.stages.tessellation.control_points;
-  const std::uint32_t lanes = batch.count * invocations;
+  const std::uint32_t lanes = count * invocations;
   for (const InterfaceSlot& slot : c.plan.stages.control->inputs) {
     std::uint32_t* lane = s.control.input(slot.reg).lane;
     for (std::uint32_t i = 0; i < lanes; ++i) {
-      const std::uint32_t patch = i / invocations;
+      const std::uint32_t patch = first + i / invocations;
       switch (slot.built_in) {
         case BuiltIn::kInvocationId:
           lane[i] = i % invocations;
@@ -76,7 +77,18 @@ void run_control(const StageContext& c, const Batch& batch) {
   }
   s.control.set_stage_memory(s.memory.data(), s.used);
   s.control.run(base::first_lanes(lanes), 0);
-  c.queries().count(Statistic::kTessellationControlPatches, batch.count);
+  c.queries().count(Statistic::kTessellationControlPatches, count);
+}
+
+/// Patches of one wave of the control shader.
+std::uint32_t patches_of_wave(const StageContext& c) {
+  return static_cast<std::uint32_t>(base::kWaveWidth) / c.plan.stages.tessellation.control_points;
+}
+
+void run_control(const StageContext& c, const Batch& batch) {
+  const std::uint32_t most = patches_of_wave(c);
+  for (std::uint32_t first = 0; first < batch.count; first += most)
+    run_control_wave(c, batch, first, std::min(batch.count - first, most));
 }
 
 /// Corners of what the tessellator makes.
@@ -90,6 +102,7 @@ void tessellate(const StageContext& c, const Batch& batch) {
   const spirv::StageModes& modes = c.plan.stages.tessellation;
   const bool flip = c.plan.state->domain_origin_lower_left;
   const std::uint32_t corners = tessellated_corners(modes);
+  const ReferenceWays& ways = c.plan.as_reference;
   s.points.clear();
   s.listed.clear();
   for (std::uint32_t p = 0; p < batch.count; ++p) {
@@ -103,8 +116,9 @@ void tessellate(const StageContext& c, const Batch& batch) {
     const std::vector<std::uint32_t>& indices = s.tessellator.indices();
     for (std::size_t i = 0; i + corners <= indices.size(); i += corners) {
       ListedPrimitive& primitive = s.listed.emplace_back();
-      primitive.id = s.patch_ids[batch.first + p];
-      for (std::uint32_t k = 0; k < 3; ++k) primitive.slot[k] = first + indices[i + (k < corners ? k : 0)];
+      primitive.id = ways.evaluated_ids ? 0 : s.patch_ids[batch.first + p];
+      for (std::uint32_t k = 0; k < 3; ++k)
+        primitive.slot[k] = (first + indices[i + (k < corners ? k : 0)]) & ways.tessellated_mask;
     }
   }
 }
@@ -207,7 +221,8 @@ void run_tessellation(const StageContext& c) {
   Batch batch;
   batch.patch_stride = modes.patch_words + modes.control_points * modes.vertex_words;
   const std::size_t mark = s.used;
-  const std::size_t most = base::kWaveWidth / modes.control_points;
+  const bool whole = c.plan.as_reference.tessellated_mask != ~0u;
+  const std::size_t most = whole ? std::max<std::size_t>(s.patch_ids.size(), 1) : patches_of_wave(c);
   for (; batch.first < s.patch_ids.size(); batch.first += most) {
     batch.count = static_cast<std::uint32_t>(std::min(s.patch_ids.size() - batch.first, most));
     batch.input_table = s.take(std::size_t{batch.count} * kMaxPatchVertices);

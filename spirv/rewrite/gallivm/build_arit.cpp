@@ -7,6 +7,7 @@
 // (lavapipe-optimizer.md section 6).
 #include <algorithm>
 
+#include "base/as_reference.h"
 #include "base/float_mode.h"
 #include "base/numeric.h"
 #include "spirv/rewrite/gallivm/passes.h"
@@ -44,10 +45,13 @@ class SharedRegisters {
 
 class ArithmeticBuilder {
  public:
-  explicit ArithmeticBuilder(Graph& graph) : graph_(graph), registers_(graph) {}
+  explicit ArithmeticBuilder(Graph& graph)
+      : graph_(graph), registers_(graph), truncates_(base::as_reference(base::Deviation::kSignedModulo)) {}
 
   void visit(InstId id) {
     id_ = id;
+    // (This device alone: deviations.md, signed-modulo.)
+    if (truncates_ && graph_.insts[id].op == Op::kIMod) graph_.insts[id].op = Op::kIRem;
     const Inst& inst = graph_.insts[id];
     if (inst.kind == Kind::kSized ? inst.width == 16 && inst.components != 1
                                   : inst.kind != Kind::kAlu || inst.components != 1)
@@ -334,6 +338,7 @@ class ArithmeticBuilder {
 
   Graph& graph_;
   SharedRegisters registers_;
+  bool truncates_;               ///< remainders have the dividend's sign
   std::vector<ValueId> poison_;  ///< literals that stand for undefined integers
   InstId id_ = kNone;
 };

@@ -294,6 +294,12 @@ class Command(unittest.TestCase):
         self.assertRegex(lines[1], r"^tests/glass/app/fill\.comp:8:.*\[vitrine/out-of-bounds-store\]$")
         self.assertRegex(lines[-3], "; 8 times$")
 
+    def test_rows_of_deviations_that_are_none(self):
+        result = self.run_without_command(VITRINE_AS_REFERENCE="point-clipping,no-such-row")
+        self.assertEqual(result.returncode, 0)
+        [line] = result.stderr.splitlines()
+        self.assertIn("VITRINE_AS_REFERENCE: 'no-such-row' cannot be asked for; there are all, point-clipping", line)
+
     def test_driver_stays_loaded_while_tools_are_on(self):
         code = ("import _ctypes, ctypes, sys; driver = ctypes.CDLL(sys.argv[1]);"
                 "driver.vk_icdGetInstanceProcAddr(None, b'vkCreateInstance'); _ctypes.dlclose(driver._handle);"

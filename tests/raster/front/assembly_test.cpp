@@ -15,7 +15,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// Corners as stream positions of every primitive of a draw, through runs of at most `limit` positions.
 std::vector<Triangle> decompose(const DrawCall& draw, std::uint32_t limit) {
   std::vector<Run> runs;
-  append_runs(draw, 0, piece_of(topology_shape(draw), limit), runs);
+  append_runs(draw, 0, piece_of(topology_shape(draw), limit), false, runs);
   const TopologyShape shape = topology_shape(draw);
   std::vector<Triangle> result;
   for (const Run& run : runs) {
@@ -73,7 +73,7 @@ TEST(Assembly, CuttingIntoRunsChangesNothing) {
 /// Positions of every primitive as a geometry shader sees them, through runs of at most `limit` positions.
 std::vector<std::array<std::uint32_t, 6>> input_positions(const DrawCall& draw, std::uint32_t limit) {
   std::vector<Run> runs;
-  append_runs(draw, 0, piece_of(topology_shape(draw), limit), runs);
+  append_runs(draw, 0, piece_of(topology_shape(draw), limit), false, runs);
   TopologyShape shape = topology_shape(draw);
   shape.neighbours = draw.state->topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY;
   std::vector<std::array<std::uint32_t, 6>> result;
@@ -129,6 +129,21 @@ TEST(Assembly, RestartSplitsStripsAndDropsIncompleteOnes) {
   draw.count = 12;  // three positions beyond the buffer read index 0
   EXPECT_EQ((std::vector<Triangle>{{0, 1, 2}, {7, 8, 9}, {8, 10, 9}, {9, 10, 11}}), decompose(draw, 1000));
   EXPECT_EQ(0u, read_index(draw, 9));
+}
+
+// deviations.md, patch-numbers: the reference counts gl_PrimitiveID anew in what it works on at a time.
+TEST(Assembly, NumbersPiecesAnewWhereAskedTo) {
+  State state;
+  state.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  DrawCall draw;
+  draw.state = &state;
+  draw.count = 3 * 10;
+  for (const bool anew : {false, true}) {
+    std::vector<Run> runs;
+    append_runs(draw, 0, 4, anew, runs);
+    ASSERT_EQ(runs.size(), 3u);
+    for (const Run& run : runs) EXPECT_EQ(run.first_id + run.begin, anew ? 0 : run.begin);
+  }
 }
 
 }  // namespace
