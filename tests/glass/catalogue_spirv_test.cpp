@@ -146,7 +146,7 @@ const char kSwitch[] =
     "OpFunctionEnd\n";
 
 /// Returns from two loops, which nothing else leaves.
-const char kReturns[] =
+const char kReturnsFromLoops[] =
     "%g = OpFunction %uint None %of_word\n%b = OpFunctionParameter %uint\n%begin = OpLabel\n"
     "%early = OpULessThan %bool %b %u2\nOpSelectionMerge %rest None\nOpBranchConditional %early %first %rest\n"
     "%first = OpLabel\nOpReturnValue %u7\n%rest = OpLabel\nOpBranch %outer\n"
@@ -212,7 +212,7 @@ std::vector<Text> flow() {
        merge_in_a_loop("%seven = OpUGreaterThanEqual %bool %x %u7\nOpBranchConditional %seven %never %on\n", "@"),
        merge_in_a_loop("OpBranch %on\n", ""),
        false},
-      {"unreachable_behind_returns", "unreachable", with_function(std::string(kSwitch) + kReturns),
+      {"unreachable_behind_returns", "unreachable", with_function(std::string(kSwitch) + kReturnsFromLoops),
        "%q = OpFunctionCall %uint %f %x\nOpStore %at %x\n", "%q = OpFunctionCall %uint %g %x\nOpStore %at %x\n", false},
       {"barrier_in_a_branch", "divergent-barrier", with_shared(),
        in_branch("OpULessThan %bool %x %u3", "@OpControlBarrier %u2 %u2 %u264\n"),

@@ -139,10 +139,10 @@ TEST(Assembly, NumbersPiecesAnewWhereAskedTo) {
   draw.state = &state;
   draw.count = 3 * 10;
   for (const bool anew : {false, true}) {
-    std::vector<Run> runs;
+    std::vector<raster::Run> runs;
     append_runs(draw, 0, 4, anew, runs);
     ASSERT_EQ(runs.size(), 3u);
-    for (const Run& run : runs) EXPECT_EQ(run.first_id + run.begin, anew ? 0 : run.begin);
+    for (const raster::Run& run : runs) EXPECT_EQ(run.first_id + run.begin, anew ? 0 : run.begin);
   }
 }
 
