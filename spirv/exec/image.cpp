@@ -295,13 +295,24 @@ base::LaneMask same_elements(Wave& wave, const ImageOp& op, base::LaneMask remai
   return remaining;
 }
 
+/// Who looks up: in fragment shaders whole quads, as in the reference (lavapipe-shader-math.md 9), because a later
+/// lookup may take the differences of coordinates that come of this one, also from those that do not run here.
+base::LaneMask lanes_of(const Wave& wave, const ImageOp& op) {
+  const bool looks_up = op.info.access == ImageAccess::kSample || op.info.access == ImageAccess::kGather ||
+                        op.info.access == ImageAccess::kQueryLod || op.info.access == ImageAccess::kFetch;
+  const bool same_for_all =
+      op.image_index.file != IndexOperand::File::kVarying && op.sampler_index.file != IndexOperand::File::kVarying;
+  if (!op.info.in_quads || !looks_up || !same_for_all || wave.active == wave.launched) return wave.active;
+  return base::quads_of_lanes(wave.active) * 15 & wave.launched;
+}
+
 }  // namespace
 
 const Instruction* image(Wave& wave, const Instruction* i) {
   const ImageOp& op = wave.program->image_ops[i->extra[0]];
   const ir::ImageInfo& info = op.info;
   Call call(wave, op);
-  for (base::LaneMask remaining = wave.active; remaining != 0;) {
+  for (base::LaneMask remaining = lanes_of(wave, op); remaining != 0;) {
     const int first = std::countr_zero(remaining);
     const base::LaneMask lanes = same_elements(wave, op, remaining);
     remaining &= ~lanes;

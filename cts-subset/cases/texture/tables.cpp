@@ -205,5 +205,15 @@ CTS_CASE("texture", "shape.wide_volume") {
           "3D");
 }
 
+/// Levels follow from the coordinates of a whole quad, which a lookup gives also where some of its pixels do not look
+/// up: post-processing does so (searches along edges).
+CTS_CASE("texture", "divergent.lookups_in_turn") {
+  const Image image = random_image(run, VK_FORMAT_R8G8B8A8_UNORM, {64, 64, 1}, 7, VK_IMAGE_VIEW_TYPE_2D);
+  look_up(run, image, run.sampler(VK_FILTER_LINEAR),
+          "(texture(t, p * 2.0).x < 0.6 ? texture(t, textureLod(t, p + 0.125, 0.0).xy + texelFetch(t, ivec2(p * 60.0), "
+          "0).yx) : vec4(p, 0.0, 1.0))",
+          "2D");
+}
+
 }  // namespace
 }  // namespace vitrine::cts
