@@ -72,6 +72,13 @@ base::LaneMask compress_quads(base::LaneMask lanes, base::LaneMask quads, std::u
   return result;
 }
 
+/// Of a draw that shades nothing.
+void count_block(TileWorker& worker, const BlockCoverage& block) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const std::uint32_t counted = plan.as_reference.one_sample_masks ? 1 : plan.samples;
+  for (std::uint32_t s = 0; s < counted; ++s) count_samples(worker, block.lanes[s]);
+}
+
 }  // namespace
 
 void append_quads(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& rasterized,
@@ -108,11 +115,7 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
   const PipelinePlan& plan = *worker.draw->plan;
   const base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
-  if (!plan.shades) {
-    const std::uint32_t counted = plan.as_reference.one_sample_masks ? 1 : plan.samples;
-    for (std::uint32_t s = 0; s < counted; ++s) count_samples(worker, block.lanes[s]);
-    return;
-  }
+  if (!plan.shades) return count_block(worker, block);
   const base::LaneMask quads = base::quads_of_lanes(any);
   const bool whole = quads == base::kFirstOfQuads;
   // The product's upper four bits are the sum of the 16 nibbles: the number of quads, modulo 16.
@@ -136,11 +139,7 @@ void emit_observed_block(TileWorker& worker, const Primitive& primitive, int x, 
   const PipelinePlan& plan = *worker.draw->plan;
   const base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
-  if (!plan.shades) {
-    const std::uint32_t counted = plan.as_reference.one_sample_masks ? 1 : plan.samples;
-    for (std::uint32_t s = 0; s < counted; ++s) count_samples(worker, block.lanes[s]);
-    return;
-  }
+  if (!plan.shades) return count_block(worker, block);
   const base::LaneMask quads = base::quads_of_lanes(any);
   if (quads != base::kFirstOfQuads) {
     append_quads(worker, primitive, x, y, rasterized, block, quads);
