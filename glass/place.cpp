@@ -18,7 +18,8 @@ const T& at(const std::vector<T>& table, std::uint32_t number) {
 std::string line_of(std::string_view text, std::uint32_t number) {
   for (std::uint32_t line = 1; number != 0 && !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    if (line == number) return std::string(text.substr(0, end));
+    // Sources written on Windows end their lines with two characters.
+    if (line == number) return std::string(text.substr(0, end - (end != 0 && text[end - 1] == '\r')));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return {};
