@@ -2,10 +2,14 @@
 #include "spirv/rewrite/passes.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "base/check.h"
 #include "base/log.h"
@@ -32,13 +36,21 @@ bool changes(const Step& step) {
 
 constexpr Pass kPasses[] = {
 #define VITRINE_PHASE(phase, rounds, what)
-#define VITRINE_PASS(phase, when, needed, function, file, mirrors, why)                                        \
-  {#function, [](Graph& graph) { return changes([&] { return function(graph); }); }, Phase::phase, When::when, \
-   Needed::needed},
+#define VITRINE_PASS(phase, when, needed, function, file, mirrors, why) \
+  {#function,      [](Graph& graph) { return changes([&] { return function(graph); }); }, Phase::phase, When::when,      \
+   Needed::needed, std::is_same_v<decltype(function(std::declval<Graph&>())), bool>},
 #include "spirv/rewrite/passes.def"
 #undef VITRINE_PHASE
 #undef VITRINE_PASS
 };
+
+/// By row: the first of the same function.
+constexpr auto kFirstRow = [] {
+  std::array<std::uint8_t, std::size(kPasses)> first{};
+  for (std::size_t row = 0; row < first.size(); ++row)
+    while (std::string_view(kPasses[first[row]].name) != kPasses[row].name) ++first[row];
+  return first;
+}();
 
 struct PhaseInfo {
   Phase phase;
@@ -169,7 +181,14 @@ class Runner {
   bool run_pass(const Pass& pass, int round) {
     if (choice_.leaves_out(pass, step_)) return false;
     step_ += pass.needed == Needed::kOptional ? 1 : 0;
+    std::uint32_t& idle_at = idle_at_[kFirstRow[static_cast<std::size_t>(&pass - kPasses)]];
+    if (idle_at == version_) {
+      VITRINE_ASSERT(!pass.run(graph_));
+      return false;
+    }
     const bool changed = pass.run(graph_);
+    if (changed || !pass.tells) ++version_;
+    if (!changed && pass.tells) idle_at = version_;
     printer_.after(pass, step_, round);
     verify(pass);
     return changed;
@@ -187,7 +206,11 @@ class Runner {
   Graph& graph_;
   const Choice choice_;
   Printer printer_;
-  std::uint32_t step_ = 0;  ///< optional steps that have run
+  std::uint32_t step_ = 0;     ///< optional steps that have run
+  std::uint32_t version_ = 1;  ///< of the graph: another one where a step has, or may have, changed it
+  /// By first row of a function: the last version that it left as it was. It need not see that again. (What a first
+  /// round allows on top, opt_trivial_continues did then.)
+  std::array<std::uint32_t, std::size(kPasses)> idle_at_{};
 };
 
 }  // namespace

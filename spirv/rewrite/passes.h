@@ -28,6 +28,7 @@ struct Pass {
   Phase phase;
   When when;
   Needed needed;
+  bool tells;  ///< whether it has changed something
 };
 
 /// All rows, in their order.

@@ -116,23 +116,27 @@ class Mixer {
 };
 
 template <class Chosen>
-void lower(Graph& graph, Chosen chosen) {
+bool lower(Graph& graph, Chosen chosen) {
   const base::ScopedFloatMode mode(base::Denormals::kHonour);
+  bool changed = false;
   auto visit = [&](InstId id) {
     const Inst& inst = graph.insts[id];
-    if (computes(inst) && inst.op == Op::kFLrp && chosen(inst)) Mixer(graph, id).run();
+    if (!computes(inst) || inst.op != Op::kFLrp || !chosen(inst)) return;
+    Mixer(graph, id).run();
+    changed = true;
   };
   for_each_inst(graph, graph.root, visit);
+  return changed;
 }
 
 }  // namespace
 
-void lower_flrp_but_half(Graph& graph) {
-  lower(graph, [](const Inst& mix) { return mix.width != 16; });
+bool lower_flrp_but_half(Graph& graph) {
+  return lower(graph, [](const Inst& mix) { return mix.width != 16; });
 }
 
-void lower_flrp(Graph& graph) {
-  lower(graph, [](const Inst&) { return true; });
+bool lower_flrp(Graph& graph) {
+  return lower(graph, [](const Inst&) { return true; });
 }
 
 }  // namespace vitrine::spirv::rewriting

@@ -74,9 +74,9 @@ bool lower_operations(Graph& graph);
 
 /// Mixes of 32 and 64 bits become sums of products before any rule sees them; no rule makes such a mix of anything
 /// else.
-void lower_flrp_but_half(Graph& graph);
+bool lower_flrp_but_half(Graph& graph);
 
 /// The same of all mixes: those of halves are single operations until the finalisation.
-void lower_flrp(Graph& graph);
+bool lower_flrp(Graph& graph);
 
 }  // namespace vitrine::spirv::rewriting

@@ -12,6 +12,7 @@
 #include "spirv/rewrite/graph/literals.h"
 #include "spirv/rewrite/graph/tree.h"
 #include "spirv/rewrite/nir/algebraic/pattern.h"
+#include "spirv/rewrite/nir/algebraic/shape_sets.h"
 #include "spirv/rewrite/nir/passes.h"
 #include "spirv/rewrite/nir/range_analysis.h"
 
@@ -20,12 +21,6 @@ namespace {
 
 using Kind = Inst::Kind;
 using Swizzle = std::array<std::uint8_t, 4>;
-
-/// Bit per shape of its operation that an instruction has.
-struct State {
-  std::uint64_t shapes = 0;
-  Op op = Op::kMov;  ///< shape_op()
-};
 
 constexpr unsigned kMaxOrders = 8;  ///< commutative operations of one search that are tried in both orders
 
@@ -41,8 +36,8 @@ struct Match {
 class Rewriter {
  public:
   /// `lowers`: only what programs do not have is replaced.
-  Rewriter(Graph& graph, const Rules& rules, bool lowers = false)
-      : graph_(graph), rules_(rules), lowers_(lowers), ranges_(graph) {
+  Rewriter(Graph& graph, const Rules& rules, const ShapeSets& sets, bool lowers = false)
+      : graph_(graph), rules_(rules), sets_(sets), lowers_(lowers), ranges_(graph) {
     states_.resize(graph.values.size());
     inexact_off_ = graph.function.forbids_inexact(32);
   }
@@ -68,43 +63,21 @@ class Rewriter {
  private:
   // ---- states
 
-  static bool has(const State& state, std::uint16_t shape) {
-    return static_cast<std::size_t>(state.op) == shape / kMaxShapes && (state.shapes >> shape % kMaxShapes & 1) != 0;
-  }
-
-  /// What shapes ask of an instruction's operands.
-  struct Operands {
-    std::array<State, kMaxChildren> state;
-    std::array<bool, kMaxChildren> constant;
-
-    bool has(unsigned operand, std::uint16_t shape) const {
-      if (shape == kAnyShape) return true;
-      return shape == kConstShape ? constant[operand] : Rewriter::has(state[operand], shape);
-    }
-  };
-
-  static bool fits(const Operands& operands, const Shape& shape) {
-    bool straight = true;
-    for (unsigned i = 0; i < shape.children && straight; ++i) straight = operands.has(i, shape.child[i]);
-    if (straight || !shape.commutative) return straight;
-    return operands.has(0, shape.child[1]) && operands.has(1, shape.child[0]) &&
-           (shape.children < 3 || operands.has(2, shape.child[2]));
-  }
-
   /// True when the state changed.
   bool update_state(InstId id) {
     const Inst& inst = graph_.insts[id];
-    Operands operands{};
-    for (unsigned i = 0; i < std::min<unsigned>(inst.count, kMaxChildren); ++i) {
-      const ValueId value = graph_.source(inst, i).value;
-      operands.state[i] = states_[value];
-      operands.constant[i] = graph_.constant(value) != nullptr;
+    const ShapeSet& shapes = sets_.shapes[static_cast<std::size_t>(shape_op(inst.op))];
+    std::array<ShapeState, kMaxChildren> operands{};
+    unsigned constant = 0;
+    if (!shapes.empty()) {
+      for (unsigned i = 0; i < std::min<unsigned>(inst.count, kMaxChildren); ++i) {
+        const ValueId value = graph_.source(inst, i).value;
+        operands[i] = states_[value];
+        constant |= graph_.constant(value) != nullptr ? 1u << i : 0;
+      }
     }
-    State state{0, shape_op(inst.op)};
-    const std::vector<Shape>& shapes = rules_.shapes[static_cast<std::size_t>(state.op)];
-    for (std::size_t i = 0; i < shapes.size(); ++i)
-      if (fits(operands, shapes[i])) state.shapes |= std::uint64_t{1} << i;
-    const State before = std::exchange(states_[inst.result], state);
+    const ShapeState state{shapes.fitting(operands, constant), shape_op(inst.op)};
+    const ShapeState before = std::exchange(states_[inst.result], state);
     return before.shapes != state.shapes || (state.shapes != 0 && before.op != state.op);
   }
 
@@ -509,27 +482,25 @@ class Rewriter {
   }
 
   bool rewrite(InstId id) {
-    const Op op = graph_.insts[id].op;
-    const ValueId result = graph_.insts[id].result;
-    for (const Candidate& candidate : rules_.by_op[static_cast<std::size_t>(op)]) {
-      if (candidate.shape != kAnyShape && !has(states_[result], candidate.shape)) continue;
-      const Rule& rule = rules_.rules[candidate.rule];
+    const CandidateSet& candidates = sets_.candidates[static_cast<std::size_t>(graph_.insts[id].op)];
+    return candidates.until(states_[graph_.insts[id].result].shapes, [&](std::uint16_t number) {
+      const Rule& rule = rules_.rules[number];
       Match match;
-      if (!try_rule(rule, graph_.insts[id], match)) continue;
+      if (!try_rule(rule, graph_.insts[id], match)) return false;
       const ValueId value = replacement(id, rule, match);
       replace_inst(graph_, id, value);
       wake_users(value);
       ranges_.clear();
       return true;
-    }
-    return false;
+    });
   }
 
   Graph& graph_;
   const Rules& rules_;
+  const ShapeSets& sets_;
   const bool lowers_;
   RangeAnalysis ranges_;
-  std::vector<State> states_;
+  std::vector<ShapeState> states_;
   std::deque<InstId> queue_;
   bool inexact_off_ = false;
   bool any_sized_ = false;  ///< there are numbers that do not have 32 bits
@@ -547,14 +518,14 @@ bool lower_operations(Graph& graph) {
   for_each_inst(graph, graph.root, visit);
   bool changed = false;
   while (any) {
-    any = Rewriter(graph, main_rules(), true).run();
+    any = Rewriter(graph, main_rules(), main_shape_sets(), true).run();
     any |= lower_alu_to_scalar(graph);
     changed |= any;
   }
   return changed;
 }
 
-bool opt_algebraic(Graph& graph) { return Rewriter(graph, main_rules()).run(); }
-bool opt_algebraic_late(Graph& graph) { return Rewriter(graph, late_rules()).run(); }
+bool opt_algebraic(Graph& graph) { return Rewriter(graph, main_rules(), main_shape_sets()).run(); }
+bool opt_algebraic_late(Graph& graph) { return Rewriter(graph, late_rules(), late_shape_sets()).run(); }
 
 }  // namespace vitrine::spirv::rewriting
