@@ -3,6 +3,7 @@
 
 #include "base/lasting.h"
 #include "base/loop_watch.h"
+#include "base/shake.h"
 
 #include <pthread.h>
 #include <sched.h>
@@ -176,6 +177,14 @@ Pool& pool() {
   return instance;
 }
 
+/// On the calling thread, so that the order is the same every time.
+void run_shuffled(std::size_t count, FunctionRef<void(std::size_t, std::size_t)> body) {
+  if (!inside_loop) current_worker = 0;
+  const Shuffle shuffle(count, next_choice());
+  const InsideLoop inside;
+  for (std::size_t i = 0; i < count; ++i) body(static_cast<std::size_t>(shuffle(i)), current_worker);
+}
+
 }  // namespace
 
 void set_loop_watch(LoopWatch watch) { loop_watch = watch; }
@@ -184,6 +193,7 @@ std::size_t worker_count() { return pool().size(); }
 
 void parallel_for(std::size_t count, FunctionRef<void(std::size_t, std::size_t)> body) {
   if (count == 0) return;
+  if (shakes(ShakeKind::kOrder)) return run_shuffled(count, body);
   if (count == 1 || inside_loop || pool().size() == 1) {
     if (!inside_loop) current_worker = 0;
     const InsideLoop inside;

@@ -17,7 +17,7 @@ std::size_t worker_count();
 /// the caller, as worker 0, when count <= 1, when there is one worker, or when called from inside a parallel loop. When
 /// the body throws, no further item starts and the first exception is rethrown here once all threads have left the
 /// loop. Each thread takes the caller's floating-point mode as it finds it: set one with ScopedFloatMode inside the
-/// body.
+/// body. Where VITRINE_SHAKE asks for another order (base/shake.h), one after the other in that, on the caller.
 void parallel_for(std::size_t count, FunctionRef<void(std::size_t index, std::size_t worker)> body);
 
 }  // namespace vitrine::base

@@ -9,6 +9,7 @@
 
 #include "base/float_mode.h"
 #include "base/lasting.h"
+#include "base/shake.h"
 #include "base/simd.h"
 #include "base/workers.h"
 #include "raster/arena.h"
@@ -317,7 +318,7 @@ struct Pass::Impl {
   void run_front() {
     std::vector<Command>& commands = scratch->commands;
     if (commands.empty()) return;
-    if (pending_positions < kInlinePositions) {
+    if (pending_positions < kInlinePositions && !base::shakes(base::ShakeKind::kOrder)) {
       for (std::size_t i = 0; i < commands.size(); ++i) front_item(i, 0);
     } else {
       base::parallel_for(commands.size(), [this](std::size_t i, std::size_t worker) { front_item(i, worker); });

@@ -189,6 +189,8 @@ struct Program {
   bool flush_denormals = false;  ///< floating-point mode of the preamble
   std::uint32_t local_size[3] = {1, 1, 1};
   std::uint32_t shared_bytes = 0;
+  std::vector<std::array<std::uint32_t, 2>> zeroed_shared;  ///< ShaderInterface::zeroed_shared
+  bool uses_subgroups = false;                              ///< an invocation may notice which others share its wave
   std::uint32_t groups_per_wave = 1;  ///< compute: small workgroups, adjacent in x, that share a wave
   std::shared_ptr<const exec::Observation> observation;  ///< null: nobody looks
 };

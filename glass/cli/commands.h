@@ -1,6 +1,7 @@
 // The subcommands of `vitrine`: each takes its options and gives the exit code.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,15 @@ struct TimelineOptions {
   CommandLine application;
 };
 int timeline(const TimelineOptions& options);
+
+struct ShakeOptions {
+  std::optional<std::uint64_t> seed;  ///< one run with it; none: runs are compared
+  std::uint64_t runs = 20;            ///< how many seeds are tried then
+  std::string kinds;                  ///< what is shaken (base/shake.def), comma-separated; empty: the usual
+  std::string sarif, json;            ///< files; empty: none
+  CommandLine application;
+};
+int shake(const ShakeOptions& options);
 
 struct DiffOptions {
   std::string before, after;

@@ -139,6 +139,22 @@ void add_timeline(CLI::App& app, const Words& words, TimelineOptions& options, i
   });
 }
 
+void add_shake(CLI::App& app, const Words& words, ShakeOptions& options, int& code) {
+  CLI::App* command =
+      add_runner(app, "shake", "Run it several times, in other orders that are legal, and say where the results part");
+  command->add_option("--seed", options.seed, "Run it once, with the choices that follow from this")
+      ->type_name("NUMBER");
+  command->add_option("--runs", options.runs, "How many seeds to try")->type_name("NUMBER")->capture_default_str();
+  command->add_option("--kinds", options.kinds, "What to shake, comma-separated: order, delays, poison, errors")
+      ->type_name("LIST");
+  command->add_option("--sarif", options.sarif, "Write what was found as SARIF 2.1.0")->type_name("FILE");
+  command->add_option("--json", options.json, "Write what was found as JSON")->type_name("FILE");
+  command->callback([=, &words, &options, &code] {
+    options.application = application_of(*command, words);
+    code = shake(options);
+  });
+}
+
 void add_diff(CLI::App& app, DiffOptions& options, int& code) {
   CLI::App* command = app.add_subcommand("diff", "Compare two files of counters");
   command->formatter(std::make_shared<Help>("BEFORE AFTER"));
@@ -171,12 +187,14 @@ int main_of(int argc, char** argv) {
   CoverageOptions coverage_options;
   CountOptions count_options;
   TimelineOptions timeline_options;
+  ShakeOptions shake_options;
   DiffOptions diff_options;
   add_run(app, words, code);
   add_check(app, words, check_options, code);
   add_coverage(app, words, coverage_options, code);
   add_count(app, words, count_options, code);
   add_timeline(app, words, timeline_options, code);
+  add_shake(app, words, shake_options, code);
   add_diff(app, diff_options, code);
   try {
     check_command(app, words);

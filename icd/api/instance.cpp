@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/as_reference.h"
+#include "base/shake.h"
 #include "glass/output.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
@@ -39,9 +40,11 @@ VkResult enable_instance_extensions(const VkInstanceCreateInfo& info, ExtensionS
   return VK_SUCCESS;
 }
 
-/// Whoever asks for a row that is none hears of it, once; the application goes on.
+/// Whoever asks for a row or a kind of shake that is none hears of it, once; the application goes on.
 void complain_of_rows() {
   static const bool said = [] {
+    for (const std::string& word : base::shake_settings().unknown)
+      glass::complain("VITRINE_SHAKE: '" + word + "' means nothing; there are a seed and " + base::names_of_shakes());
     for (const std::string& name : base::asked_rows().unknown)
       glass::complain("VITRINE_AS_REFERENCE: '" + name + "' cannot be asked for; there are all, " +
                       base::names_of_rows());

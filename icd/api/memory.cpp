@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/shake.h"
 #include "glass/memory_shadow.h"
 #include "glass/session.h"
 #include "icd/edge/diagnostics.h"
@@ -63,6 +64,7 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateMemory(VkDevice device, const VkMemoryAll
     report_error(d, ref(d), "memory", "allocation is larger than the heap");
     return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   }
+  if (base::fails_now()) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   const auto* file = find_in_chain<VkImportMemoryFdInfoKHR>(info->pNext);
   const auto* pages = find_in_chain<VkImportMemoryHostPointerInfoEXT>(info->pNext);
   const auto* exported = find_in_chain<VkExportMemoryAllocateInfo>(info->pNext);

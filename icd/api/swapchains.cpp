@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/shake.h"
 #include "glass/timeline.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
@@ -87,6 +88,7 @@ VkResult acquire(Swapchain& swapchain, std::uint64_t timeout, std::uint32_t& ind
   const auto ready = [&] { return swapchain.retired || swapchain.status < 0 || (slot = oldest_free(swapchain)); };
   if (!wait_for_images(swapchain, lock, timeout, ready)) return timeout == 0 ? VK_NOT_READY : VK_TIMEOUT;
   if (swapchain.retired) return VK_ERROR_OUT_OF_DATE_KHR;
+  if (base::fails_now()) swapchain.status = VK_ERROR_OUT_OF_DATE_KHR;
   if (swapchain.status < 0) return swapchain.status;
   slot->owner = Swapchain::Owner::kApplication;
   index = static_cast<std::uint32_t>(slot - swapchain.slots.data());

@@ -6,11 +6,16 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "base/shake.h"
+#include "glass/digest.h"
 #include "glass/memory_shadow.h"
 #include "glass/session.h"
 
 namespace vitrine::icd {
 namespace {
+
+/// Of an allocation: the pages of more would be in use from then on.
+constexpr VkDeviceSize kPoisonedBytes = VkDeviceSize{256} << 20;
 
 std::size_t page_size() { return static_cast<std::size_t>(sysconf(_SC_PAGESIZE)); }
 
@@ -42,10 +47,13 @@ DeviceMemory::DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<
   counted_ = &total;
   total += size;
   if (glass::session().shadows_memory()) glass::add_shadow(data, size);
+  if (glass::has_digest()) glass::add_digested(data, size);
+  if (base::shakes(base::ShakeKind::kPoison)) base::poison(data, std::min(size, kPoisonedBytes));
 }
 
 DeviceMemory::~DeviceMemory() {
   if (counted_ && glass::session().shadows_memory()) glass::remove_shadow(data);
+  if (counted_ && glass::has_digest()) glass::remove_digested(data);
   if (mapping_) munmap(mapping_, mapping_bytes_);
   if (file >= 0) close(file);
   if (counted_) *counted_ -= size;

@@ -4,14 +4,18 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <chrono>
 #include <mutex>
 #include <system_error>
 #include <thread>
 
+#include "base/shake.h"
+#include "glass/digest.h"
 #include "glass/session.h"
 #include "glass/timeline.h"
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
+#include "icd/replay/digested_replay.h"
 #include "icd/replay/observed_replay.h"
 
 namespace vitrine::icd {
@@ -27,6 +31,7 @@ struct Batch {
   Vector<SemaphoreOp> signals;
   std::vector<std::string> labels;  ///< of the queue when it was submitted; kept where tools are on
   VkFence fence = VK_NULL_HANDLE;
+  std::uint64_t number = 0;  ///< among those of its queue
   Batch* next = nullptr;
 };
 
@@ -38,6 +43,7 @@ struct QueueWorker {
   bool running = false;  ///< a batch is executing, on whatever thread
   bool stopping = false;
   std::thread thread;
+  std::uint64_t submitted = 0;
 
   bool idle() const { return first == nullptr && !running; }
 };
@@ -57,6 +63,7 @@ Batch* make_batch(Queue& queue, const BatchInfo& info) {
     batch->calls.assign(info.calls.begin(), info.calls.end());
     batch->signals.assign(info.signals.begin(), info.signals.end());
     batch->fence = info.fence;
+    batch->number = ++queue.worker->submitted;
     if (!glass::session().idle()) {
       const std::lock_guard lock(queue.label_mutex);
       batch->labels = queue.labels.open();
@@ -102,6 +109,7 @@ class BatchList {
 /// False if the device was lost.
 bool replay_all(Device& device, Batch& batch) noexcept {
   begin_observed_submission(device, std::move(batch.labels));
+  if (device.replay->observed && glass::has_digest()) digest_submission(*device.replay);
   const bool done = std::all_of(batch.command_buffers.begin(), batch.command_buffers.end(), [&](VkCommandBuffer b) {
     return replay(device, from_handle<CommandBuffer>(b)) == VK_SUCCESS;
   });
@@ -113,6 +121,7 @@ bool replay_all(Device& device, Batch& batch) noexcept {
 /// that nobody waits for ever.
 void execute(Device& device, Batch& batch) noexcept {
   bool lost = false;
+  base::restart_choices(batch.number);
   const glass::Span span("queue", "submission");
   for (const SemaphoreOp& op : batch.waits) {
     const glass::Span wait("wait", "wait for semaphore");
@@ -144,6 +153,12 @@ bool fits_inline(Device& device, const BatchInfo& info) {
                      [](const SemaphoreOp& op) { return is_reached(from_handle<Semaphore>(op.semaphore), op.value); });
 }
 
+/// Up to four milliseconds: long enough for the application to have read what is not there yet.
+void delay(const Batch& batch) {
+  base::restart_choices(batch.number);
+  std::this_thread::sleep_for(std::chrono::microseconds(base::next_choice() % 4000));
+}
+
 void work(Queue& queue, QueueWorker& worker) {
   pthread_setname_np(pthread_self(), "vitrine-queue");
   std::unique_lock lock(worker.mutex);
@@ -158,6 +173,7 @@ void work(Queue& queue, QueueWorker& worker) {
     if (!worker.first) worker.last = nullptr;
     worker.running = true;
     lock.unlock();
+    if (base::shakes(base::ShakeKind::kDelays)) delay(*batch);
     execute(queue.device, *batch);
     free_batch(batch);
     lock.lock();
@@ -221,7 +237,8 @@ VkResult submit(Queue& queue, std::span<const BatchInfo> batches) {
   QueueWorker& worker = *queue.worker;
   BatchList list;
   for (const BatchInfo& info : batches) list.append(make_batch(queue, info));
-  const bool small = std::all_of(batches.begin(), batches.end(),
+  const bool small = !base::shakes(base::ShakeKind::kDelays) &&
+                     std::all_of(batches.begin(), batches.end(),
                                  [&](const BatchInfo& info) { return fits_inline(queue.device, info); });
   std::unique_lock lock(worker.mutex);
   if ((small && worker.idle()) || !start_thread(queue, worker)) {

@@ -1,12 +1,14 @@
 // The loop over recorded commands.
 #include "icd/replay/replay.h"
 
+#include "glass/digest.h"
 #include "glass/place.h"
 #include "glass/session.h"
 #include "glass/timeline.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
+#include "icd/replay/digested_replay.h"
 #include "icd/replay/timed_replay.h"
 #include "icd/replay/written.h"
 
@@ -37,7 +39,7 @@ constexpr Executor kNotes[] = {
 #include "icd/record/commands.def"
 };
 
-/// One command of a timeline.
+/// One command of a timeline, or of digests.
 void run_command(ReplayState& state, const CommandHeader& header) {
   kExecutors[header.type](state, header.command());
   if (shadows_memory(state)) kNotes[header.type](state, header.command());
@@ -85,6 +87,7 @@ DeviceLoss loss_of(const spirv::Fault& fault, const char* reason) noexcept {
 
 void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
   if (state.observed && glass::has_timeline()) return replay_timed(state, buffer, run_command);
+  if (state.observed && glass::has_digest()) return replay_digested(state, buffer, run_command);
   const bool shadows = shadows_memory(state);
   for (const CommandHeader* header = buffer.arena.first(); header; header = header->next) {
     kExecutors[header->type](state, header->command());

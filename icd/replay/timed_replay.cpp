@@ -18,13 +18,6 @@ struct OpenLabel {
   Clock::time_point begin;
 };
 
-/// Whether a command does something that takes time: what binds and sets does not.
-bool is_work(std::string_view name) {
-  for (const std::string_view prefix : {"vkCmdBind", "vkCmdSet", "vkCmdPush", "vkCmdExecute"})
-    if (name.starts_with(prefix)) return false;
-  return true;
-}
-
 class TimedReplay {
  public:
   TimedReplay(ReplayState& state, void (*run)(ReplayState&, const CommandHeader&)) : state_(state), run_(run) {}
@@ -81,6 +74,12 @@ class TimedReplay {
 };
 
 }  // namespace
+
+bool is_work(std::string_view name) {
+  for (const std::string_view prefix : {"vkCmdBind", "vkCmdSet", "vkCmdPush", "vkCmdExecute"})
+    if (name.starts_with(prefix)) return false;
+  return true;
+}
 
 void replay_timed(ReplayState& state, const CommandBuffer& buffer, void (*run)(ReplayState&, const CommandHeader&)) {
   TimedReplay timed(state, run);

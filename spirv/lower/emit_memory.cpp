@@ -1,4 +1,5 @@
 // Emission of intrinsics: side table rows of memory and image instructions, environment values.
+#include "base/shake.h"
 #include "spirv/exec/atomics_half.h"
 #include "spirv/lower/emitter.h"
 
@@ -386,8 +387,9 @@ void Emitter::environment(const ScalarOp& op) {
   switch (op.op) {
     case Op::kBarrier:
       if (f_.ir->interface.local_size[0] * f_.ir->interface.local_size[1] * f_.ir->interface.local_size[2] <=
-          base::kWaveWidth)
-        return;  // a single wave is always at the same place
+              base::kWaveWidth &&
+          !base::shakes(base::ShakeKind::kOrder))
+        return;  // a single wave is always at the same place, unless it runs in parts
       program->has_barrier = true;
       append(exec::barrier, "barrier", op.instr);
       return;

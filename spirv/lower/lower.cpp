@@ -41,9 +41,11 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   program->flush_denormals = interface.stage != VK_SHADER_STAGE_COMPUTE_BIT;
   for (int i = 0; i < 3; ++i) program->local_size[i] = interface.local_size[i];
   program->groups_per_wave = scalars.groups_per_wave;
+  program->uses_subgroups = scalars.uses_subgroups;
   program->sources = std::move(function.sources);
   program->probes = std::move(function.probes);
   program->shared_bytes = interface.shared_bytes;
+  program->zeroed_shared = interface.zeroed_shared;
   if (observer) {
     program->observation = std::make_shared<exec::Observation>(exec::Observation{observer, interface, interest, {}});
     if (interest.accesses) exec::hook_accesses(*program);

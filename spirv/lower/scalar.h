@@ -96,7 +96,8 @@ struct ScalarFunction {
   /// For each join: the values it may take.
   std::vector<std::vector<ScalarId>> join_sources;
   bool writes_memory = false;
-  bool accesses_stay = false;  ///< somebody observes loads: each stays where and what it was
+  bool accesses_stay = false;   ///< somebody observes loads: each stays where and what it was
+  bool uses_subgroups = false;  ///< an invocation may notice which others share its wave
   std::uint32_t groups_per_wave = 1;
   std::vector<ScalarId> outputs;  ///< per interface.outputs: the value that leaves (kNoScalar: never stored)
   std::vector<ScalarId> preset;   ///< constants and uniforms that bind() keeps broadcast in registers

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/float_mode.h"
+#include "base/shake.h"
 #include "spirv/lower/scalarizer.h"
 #include "spirv/program.h"
 
@@ -41,13 +42,9 @@ bool writes_memory(const ir::NodeList& list) {
   return false;
 }
 
-/// Whether an instruction lets an invocation notice which others share its wave or workgroup.
-bool is_cooperative(Op op) {
+/// Whether an instruction lets an invocation notice which others share its wave.
+bool is_of_subgroups(Op op) {
   switch (op) {
-    case Op::kBarrier:
-    case Op::kLoadShared:
-    case Op::kStoreShared:
-    case Op::kAtomicShared:
     case Op::kElect:
     case Op::kReadFirst:
     case Op::kSubgroupId:
@@ -61,12 +58,17 @@ bool is_cooperative(Op op) {
   }
 }
 
-bool is_cooperative(const ir::NodeList& list) {
-  for (const auto& node : list)
-    if (is_cooperative(node->instr.op) || is_cooperative(node->then_list) || is_cooperative(node->else_list) ||
-        is_cooperative(node->body) || is_cooperative(node->continuing))
-      return true;
-  return false;
+/// Or its workgroup.
+bool is_cooperative(Op op) {
+  return op == Op::kBarrier || op == Op::kLoadShared || op == Op::kStoreShared || op == Op::kAtomicShared ||
+         is_of_subgroups(op);
+}
+
+bool has_any(const ir::NodeList& list, bool (*is)(Op)) {
+  return std::ranges::any_of(list, [&](const auto& node) {
+    return is(node->instr.op) || has_any(node->then_list, is) || has_any(node->else_list, is) ||
+           has_any(node->body, is) || has_any(node->continuing, is);
+  });
 }
 
 /// Small workgroups whose invocations work alone share a wave: how many.
@@ -74,7 +76,8 @@ std::uint32_t groups_per_wave(const ir::Function& function) {
   const auto& size = function.interface.local_size;
   const std::uint64_t invocations = std::uint64_t{size[0]} * size[1] * size[2];
   if (function.interface.stage != VK_SHADER_STAGE_COMPUTE_BIT || invocations == 0 ||
-      2 * invocations > base::kWaveWidth || is_cooperative(function.body))
+      2 * invocations > base::kWaveWidth || base::shakes(base::ShakeKind::kOrder) ||
+      has_any(function.body, is_cooperative))
     return 1;
   return static_cast<std::uint32_t>(base::kWaveWidth / invocations);
 }
@@ -87,6 +90,7 @@ Scalarizer::Scalarizer(const ir::Function& function, std::string& error, bool ac
   out_.ir = &function;
   out_.writes_memory = writes_memory(function.body);
   out_.groups_per_wave = groups_per_wave(function);
+  out_.uses_subgroups = has_any(function.body, is_of_subgroups);
   first_.assign(function.values.size(), kNoIndex);
 }
 
