@@ -1,6 +1,8 @@
 // The watches of several observers of a draw.
 #include "glass/draw_observers.h"
 
+#include <algorithm>
+
 namespace vitrine::glass {
 namespace {
 
@@ -31,6 +33,12 @@ class Watches : public DrawWatch {
   }
   void shaded(const FragmentGroup& group, LaneMask invocations, LaneMask helpers) override {
     for (const auto& watch : watches_) watch->shaded(group, invocations, helpers);
+  }
+  bool takes_whole_blocks() const override {
+    return std::all_of(watches_.begin(), watches_.end(), [](const auto& watch) { return watch->takes_whole_blocks(); });
+  }
+  void whole_blocks(const raster::WholeBlocks& whole) override {
+    for (const auto& watch : watches_) watch->whole_blocks(whole);
   }
   void passed(const FragmentGroup& group, SampleLanes lanes) override {
     for (const auto& watch : watches_) watch->passed(group, lanes);

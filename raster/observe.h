@@ -50,6 +50,16 @@ struct FragmentGroup {
 /// Lanes of a group, by sample.
 using SampleLanes = std::span<const base::LaneMask>;
 
+/// Blocks of a tile that one primitive covers as a whole, none of whose samples can fail a test.
+struct WholeBlocks {
+  int x = 0, y = 0;  ///< first pixel of the tile
+  std::uint32_t layer = 0;
+  std::uint32_t primitive = 0;  ///< gl_PrimitiveID
+  base::LaneMask places = 0;    ///< in quad order
+  std::uint32_t samples = 1;
+  std::span<const texel::ImageView* const> written;  ///< attachments that all samples are written to
+};
+
 /// What one thread sees of a draw: a chunk of it in the front end, or a tile of it in the back end. The thread makes,
 /// calls and destroys it.
 class DrawWatch {
@@ -71,6 +81,11 @@ class DrawWatch {
   virtual void shaded(const FragmentGroup&, base::LaneMask /*invocations*/, base::LaneMask /*helpers*/) {}
   /// Samples have passed all tests.
   virtual void passed(const FragmentGroup&, SampleLanes) {}
+  /// Whether whole_blocks() is called, where it can be, instead of the four that are above and below it.
+  virtual bool takes_whole_blocks() const { return false; }
+  /// Their fragments are generated, shaded, have passed and are written, or would be if what the draw or a later one
+  /// puts over them did not hide it. Other fragments of the tile may be told of in between.
+  virtual void whole_blocks(const WholeBlocks&) {}
   /// They are in an attachment.
   virtual void written(const FragmentGroup&, const texel::ImageView&, SampleLanes) {}
 };

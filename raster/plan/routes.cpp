@@ -21,13 +21,14 @@ bool reads_elsewhere(const PipelinePlan& plan) {
 void plan_routes(PipelinePlan& plan, bool general, bool observed) {
   plan.windows = !general && !observed && plan.samples == 1 && plan.raster_samples == 1 && plan.sample_mask != 0;
   const bool rare_tests = plan.tests.stencil || plan.tests.depth_bounds || plan.as_reference.first_sample_depth;
-  plan.tests_rows = !general && !observed && !rare_tests;
+  plan.tests_rows = !general && !rare_tests;
   // Depths beyond [0, 1] wrap in formats of fixed point.
   const bool clamps_inside = std::all_of(plan.viewport.begin(), plan.viewport.end(),
                                          [](const ViewportTransform& t) { return t.z_min >= 0 && t.z_max <= 1; });
-  plan.hides_blocks =
-      plan.tests_rows && plan.tests.depth && (plan.depth_order == TestOrder::kEarly || plan.early_reject) &&
-      has_limit(plan.state->depth_compare) && plan.restricts_depth && (!plan.clamps_depth || clamps_inside);
+  plan.hides_blocks = plan.tests_rows && !observed && plan.tests.depth &&
+                      (plan.depth_order == TestOrder::kEarly || plan.early_reject) &&
+                      has_limit(plan.state->depth_compare) && plan.restricts_depth &&
+                      (!plan.clamps_depth || clamps_inside);
   const FragmentRegisters& frag = plan.frag;
   const bool rare_inputs = frag.point_coord[0] != kNoReg || frag.point_coord[1] != kNoReg || frag.sample_id != kNoReg ||
                            frag.sample_position[0] != kNoReg || frag.sample_position[1] != kNoReg ||

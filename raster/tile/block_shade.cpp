@@ -10,6 +10,7 @@
 #include "raster/tile/fragment_outputs.h"
 #include "raster/tile/observed.h"
 #include "raster/tile/primitive_planes.h"
+#include "spirv/counted_runs.h"
 #include "spirv/shader_cost.h"
 
 namespace vitrine::raster {
@@ -157,6 +158,8 @@ void shade(TileWorker& worker, const Primitive& primitive, int x, int y, const B
   if (!worker.block_draw.solid) {
     set_inputs(worker, primitive, BlockPlace{x, y});
     alive = worker.runner.run(active, active & ~pixels);
+  } else if (kObserved && worker.block_draw.counted) {
+    spirv::count_run(*worker.draw->fragment.bound, active, active & ~pixels);
   }
   if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(pixels));
   const bool counts_early = plan.counts_early;  // also what the shader discards
@@ -229,9 +232,12 @@ void begin_blocks(TileWorker& worker) {
   const spirv::BoundShader* shader = worker.draw->fragment.bound;
   draw.is_short = shader == nullptr || spirv::is_short(shader->shader());
   draw.solid = !plan.may_kill && !plan.fragment->writes_memory;
+  draw.counted = draw.solid && worker.watch && shader != nullptr && spirv::is_counted(*shader);
   for (std::uint32_t i = 0; i < plan.color_count; ++i)
     for (const std::uint32_t reg : plan.frag.color[i])
-      if (plan.writer[i].function && reg != kNoReg) draw.solid = draw.solid && worker.runner.is_constant(reg);
+      if (plan.writer[i].function && reg != kNoReg)
+        draw.solid =
+            draw.solid && (draw.counted ? spirv::is_counted_constant(*shader, reg) : worker.runner.is_constant(reg));
   if (!draw.solid) return;
   for (std::uint32_t i = 0; i < plan.color_count; ++i)
     if (const BlockColorFunctions* functions = plan.writer[i].block)
@@ -245,6 +251,15 @@ void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, c
 void shade_observed_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {
   tell_block(worker, primitive, x, y, block);
   shade<true>(worker, primitive, x, y, block);
+}
+
+void shade_whole_block(TileWorker& worker, const Primitive& primitive, int x, int y, bool hidden) {
+  const BlockDraw& draw = worker.block_draw;
+  if (draw.counted && (draw.solid || hidden)) spirv::count_run(*worker.draw->fragment.bound, base::kAllLanes, 0);
+  if (draw.counted && hidden) return;
+  BlockCoverage block;
+  std::fill_n(block.lanes, worker.draw->plan->samples, base::kAllLanes);
+  shade<false>(worker, primitive, x, y, block);
 }
 
 void shade_spans(TileWorker& worker, const Primitive& primitive, SpanWave& wave) {

@@ -50,13 +50,36 @@ LaneMask stencil_writes(const State& state, const FailedTests& failed, LaneMask 
   return written;
 }
 
+const PixelRect& region_of(const PipelinePlan& plan, const Primitive& primitive) {
+  const bool wide = primitive.kind != PrimitiveKind::kTriangle && primitive.viewport == 0;
+  return wide ? plan.wide_region : plan.region[primitive.viewport];
+}
+
 /// The pixels of a block inside the primitive's draw region.
 LaneMask scissor_lanes(const PipelinePlan& plan, const Primitive& primitive, int x, int y) {
-  const bool wide = primitive.kind != PrimitiveKind::kTriangle && primitive.viewport == 0;
-  const PixelRect& region = wide ? plan.wide_region : plan.region[primitive.viewport];
-  if (x >= region.x0 && y >= region.y0 && x + kBlockSize <= region.x1 + 1 && y + kBlockSize <= region.y1 + 1)
-    return base::kAllLanes;
+  if (is_inside_region(plan, primitive, x, y, x + kBlockSize - 1, y + kBlockSize - 1)) return base::kAllLanes;
+  const PixelRect& region = region_of(plan, primitive);
   return rect_lanes(region.x0 - x, region.y0 - y, region.x1 - x, region.y1 - y);
+}
+
+/// Early tests of a block: row by row if there is depth alone.
+void test_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,
+                FailedTests* failed) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  if (!plan.tests_rows || !owns_square(worker, x, y, kBlockSize))
+    return test_any_block(worker, primitive, x, y, block, failed);
+  for (std::uint32_t s = 0; s < plan.samples; ++s) {
+    const LaneMask before = block.lanes[s];
+    if (before == 0) continue;
+    test_blocks(worker, primitive, s, x, y, 1, &block.lanes[s], plan.depth_order == TestOrder::kEarly);
+    failed[s].depth = before & ~block.lanes[s];
+  }
+}
+
+/// No sample can be lost, whole blocks are shaded at once, and nothing counts samples.
+bool has_whole_blocks(const PipelinePlan& plan) {
+  return plan.shades && plan.shades_blocks && !plan.may_kill && plan.depth_order == TestOrder::kNone &&
+         !plan.early_reject && plan.sample_mask == (1u << plan.samples) - 1;
 }
 
 }  // namespace
@@ -65,6 +88,24 @@ void begin_observed(TileWorker& worker, std::uint32_t tile) {
   const DrawCall& call = worker.draw->call;
   worker.watch = call.observer->watch_tile(call.vertex_resources.command, tile);
   if (!worker.watch) worker.watch = std::make_unique<DrawWatch>();
+  worker.tells_whole_blocks = worker.watch->takes_whole_blocks() && has_whole_blocks(*worker.draw->plan);
+}
+
+bool is_inside_region(const PipelinePlan& plan, const Primitive& primitive, int x0, int y0, int x1, int y1) {
+  const PixelRect& region = region_of(plan, primitive);
+  return x0 >= region.x0 && y0 >= region.y0 && x1 <= region.x1 && y1 <= region.y1;
+}
+
+void tell_whole_blocks(TileWorker& worker, const Primitive& primitive, LaneMask places) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const texel::ImageView* written[kMaxColorAttachments];
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < plan.color_count; ++i) {
+    const texel::ImageView& view = worker.pass->color[i];
+    if (plan.writer[i].function && worker.target.layer < view.layer_count) written[count++] = &view;
+  }
+  worker.watch->whole_blocks(
+      {worker.target.x, worker.target.y, worker.target.layer, primitive.id, places, plan.samples, {written, count}});
 }
 
 void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,
@@ -85,7 +126,7 @@ void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y,
   rasterized = block;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
     FailedTests failed[kMaxSamples];
-    test_any_block(worker, primitive, x, y, block, failed);
+    test_block(worker, primitive, x, y, block, failed);
     tell_tests(worker, failed, primitive.front ? 0xffffu : 0, 0, plan.samples, plan.depth_order == TestOrder::kEarly);
   }
   if (!plan.shades) tell_passed(worker);

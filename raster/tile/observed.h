@@ -8,6 +8,11 @@ namespace vitrine::raster {
 /// Begins to watch the tile for its draw.
 void begin_observed(TileWorker& worker, std::uint32_t tile);
 
+/// Whether pixels (x0, y0) to (x1, y1) are inside the primitive's draw region.
+bool is_inside_region(const PipelinePlan& plan, const Primitive& primitive, int x0, int y0, int x1, int y1);
+/// Blocks of the tile that the primitive covers as a whole, if worker.tells_whole_blocks.
+void tell_whole_blocks(TileWorker& worker, const Primitive& primitive, base::LaneMask places);
+
 /// A block of `primitive` at (x, y): what the scissor, the sample mask and the early tests leave of it, told. On return
 /// `rasterized` is what they were before the early tests.
 void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,

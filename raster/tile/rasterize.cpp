@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "raster/tile/block_shade.h"
 #include "raster/tile/coverage.h"
 #include "raster/tile/early_tests.h"
 #include "raster/tile/fragment.h"
@@ -139,6 +140,18 @@ void test_tile(TileWorker& worker, const Primitive& primitive, GridOrigin origin
   }
 }
 
+/// Whether a primitive none of whose edges cuts the tile has whole blocks alone, none of which has to wait for quads of
+/// the packed wave.
+bool is_whole(const TileWorker& worker, const Primitive& p, const PixelRect& rect) {
+  const TileTarget& target = worker.target;
+  if (worker.wave.quads != 0) return false;
+  if (((rect.x0 | rect.y0 | (rect.x1 + 1) | (rect.y1 + 1)) & (kBlockSize - 1)) != 0) return false;
+  if (target.x + rect.x1 >= target.right || target.y + rect.y1 >= target.bottom) return false;
+  const GridOrigin leak = leaked_pixels(*worker.draw->plan, p);
+  return leak == GridOrigin{} && is_inside_region(*worker.draw->plan, p, target.x + rect.x0, target.y + rect.y0,
+                                                  target.x + rect.x1, target.y + rect.y1);
+}
+
 /// The part of a tile a primitive may cover, pixels relative to the tile.
 PixelRect rect_in_tile(const TileTarget& target, const Primitive& p) {
   return intersect({p.x0 - target.x, p.y0 - target.y, p.x1 - target.x, p.y1 - target.y},
@@ -188,7 +201,7 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   }
 }
 
-void rasterize_observed_primitive(TileWorker& worker, const Primitive& primitive) {
+void rasterize_observed_primitive(TileWorker& worker, const Primitive& primitive, bool hidden) {
   const PipelinePlan& plan = *worker.draw->plan;
   const bool in_order = plan.in_order || plan.state->ordered_attachment_access;
   if (in_order && worker.wave.quads != 0) shade_wave(worker, worker.wave);
@@ -196,7 +209,17 @@ void rasterize_observed_primitive(TileWorker& worker, const Primitive& primitive
   if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
   const PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
-  base::LaneMask left = cover_tile(plan, primitive, edges, rect, places_of(rect), worker.covered);
+  base::LaneMask left = places_of(rect);
+  if (worker.tells_whole_blocks && edges.count == 0 && is_whole(worker, primitive, rect)) {
+    tell_whole_blocks(worker, primitive, left);
+    for (; left != 0; left &= left - 1) {
+      const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+      shade_whole_block(worker, primitive, worker.target.x + lane_x(place) * kBlockSize,
+                        worker.target.y + lane_y(place) * kBlockSize, hidden);
+    }
+    return;
+  }
+  left = cover_tile(plan, primitive, edges, rect, left, worker.covered);
   for (; left != 0; left &= left - 1) {
     const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
     const int x = worker.target.x + lane_x(place) * kBlockSize, y = worker.target.y + lane_y(place) * kBlockSize;

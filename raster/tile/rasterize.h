@@ -9,7 +9,7 @@ namespace vitrine::raster {
 /// Covers, tests early and packs one primitive.
 void rasterize_primitive(TileWorker& worker, const Primitive& primitive);
 
-/// The same for an observed draw, block by block of the tile's grid.
-void rasterize_observed_primitive(TileWorker& worker, const Primitive& primitive);
+/// The same for an observed draw, block by block of the tile's grid. `hidden`: its colours need not be written.
+void rasterize_observed_primitive(TileWorker& worker, const Primitive& primitive, bool hidden);
 
 }  // namespace vitrine::raster

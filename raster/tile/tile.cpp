@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 #include "base/float_mode.h"
 #include "raster/plan/fragment_operations.h"
@@ -12,6 +13,7 @@
 #include "raster/tile/observed.h"
 #include "raster/tile/rasterize.h"
 #include "raster/tile/windows.h"
+#include "spirv/counted_runs.h"
 #include "texel/transfer.h"
 
 namespace vitrine::raster {
@@ -95,10 +97,10 @@ void rasterize_primitives(TileWorker& worker, const TileItem& item, std::uint32_
   if (count != 0) emit_small_windows(worker, group, count);
 }
 
-/// The same for an observed draw: one by one.
-void rasterize_observed(TileWorker& worker, const TileItem& item, std::uint32_t first) {
+/// The same for an observed draw: one by one. The colours of those before `visible` are hidden.
+void rasterize_observed(TileWorker& worker, const TileItem& item, std::uint32_t first, std::uint32_t visible) {
   for (std::uint32_t k = first; k < item.count; ++k)
-    rasterize_observed_primitive(worker, item.primitives[item.index[k]]);
+    rasterize_observed_primitive(worker, item.primitives[item.index[k]], k < visible);
 }
 
 void begin_draw(TileWorker& worker, const DrawRecord* draw, std::uint32_t tile) {
@@ -155,31 +157,55 @@ bool hides_tile(const TileWorker& worker, const PipelinePlan& plan, const Primit
   return make_tile_edges(p, target.x, target.y, *plan.locations, edges) && edges.count == 0;
 }
 
-/// Whether the draw of an item does more than give colours.
-bool leaves_traces(const TileItem& item) {
+/// Whether the draw of an item does more than give colours that whoever observes it is not told of.
+bool leaves_marks(const TileItem& item) {
   if (item.clear) return false;
-  if (item.draw->call.fragment_resources.command) return true;  // somebody observes it
   const PipelinePlan& plan = *item.draw->plan;
   const QueryCounters& queries = item.draw->call.queries;
-  return item.draw->call.observer || queries.occlusion || queries.statistics || plan.depth_order != TestOrder::kNone ||
+  return queries.occlusion || queries.statistics || plan.depth_order != TestOrder::kNone ||
          (plan.fragment && plan.fragment->writes_memory);
 }
 
+/// Whether somebody observes the draw of an item.
+bool is_observed(const TileItem& item) {
+  return !item.clear && (item.draw->call.fragment_resources.command || item.draw->call.observer);
+}
+
+/// Whether the draw of an item does more than give colours.
+bool leaves_traces(const TileItem& item) { return is_observed(item) || leaves_marks(item); }
+
 /// The last primitive that hides the colours of everything before it, if nothing before it can be noticed otherwise.
 /// Clears of depth and stencil stay to be done.
-TileStart first_visible(const TileWorker& worker, const std::vector<TileItem>& items) {
+TileStart first_visible(const TileWorker& worker, const std::vector<TileItem>& items, bool (*leaves)(const TileItem&)) {
   for (std::size_t i = items.size(); i-- > 0;) {
     const TileItem& item = items[i];
     if (item.clear) continue;
-    if (leaves_traces(item)) return {};
+    if (leaves(item)) return {};
     const PipelinePlan& plan = *item.draw->plan;
     for (std::uint32_t k = plan.replaces_colors ? item.count : 0; k-- > 0;)
       if (hides_tile(worker, plan, item.primitives[item.index[k]])) {
-        const bool noticed = std::any_of(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(i), leaves_traces);
+        const bool noticed = std::any_of(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(i), leaves);
         return noticed ? TileStart{} : TileStart{i, k};
       }
   }
   return {};
+}
+
+/// Where the colours start of which those who observe draws can be told without drawing what lies before: no shader
+/// before could do anything else if it read colours that nobody has written.
+TileStart first_told(const TileWorker& worker, const std::vector<TileItem>& items) {
+  const TileStart start = first_visible(worker, items, leaves_marks);
+  const auto runs_freely = [](const TileItem& item) {
+    return !item.clear && (!item.draw->fragment.bound || !spirv::is_counted(*item.draw->fragment.bound));
+  };
+  const auto end = items.begin() + static_cast<std::ptrdiff_t>(start.item) + (start.primitive != 0 ? 1 : 0);
+  return std::any_of(items.begin(), end, runs_freely) ? TileStart{} : start;
+}
+
+/// How many of the item's primitives are in front of `visible`.
+std::uint32_t hidden_of(const TileItem& item, std::size_t index, const TileStart& visible) {
+  if (index != visible.item) return index < visible.item ? item.count : 0;
+  return visible.primitive;
 }
 
 void set_target(TileWorker& worker, const PassDesc& pass, const TileGrid& grid, std::uint32_t tile) {
@@ -222,7 +248,8 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
   worker.planes_of = nullptr;
   worker.pool.reset();
   if (pass.depth.format) worker.hierarchy.reset();
-  const TileStart start = first_visible(worker, items);
+  const TileStart start = first_visible(worker, items, leaves_traces);
+  std::optional<TileStart> visible;  // colours from here on; of what is before, observers of draws are only told
   Prefetcher prefetcher(items, start);
   for (std::size_t i = 0; i < items.size(); ++i) {
     const TileItem& item = items[i];
@@ -235,10 +262,11 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
     if (item.draw != worker.draw) {
       end_draw(worker);
       begin_draw(worker, item.draw, tile);
+      if (worker.watch && worker.tells_whole_blocks && !visible) visible = first_told(worker, items);
     }
     const std::uint32_t first = i == start.item ? start.primitive : 0;
     if (worker.watch)
-      rasterize_observed(worker, item, first);
+      rasterize_observed(worker, item, first, hidden_of(item, i, visible.value_or(TileStart{})));
     else
       rasterize_primitives(worker, item, first, prefetcher);
   }

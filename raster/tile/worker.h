@@ -89,6 +89,7 @@ struct TileTarget {
 struct BlockDraw {
   bool is_short = false;              ///< the shader: see spirv::is_short()
   bool solid = false;                 ///< every fragment has the colours `color`: the shader need not run
+  bool counted = false;               ///< but who observes it wants to know how often it would
   std::vector<BlockVarying> varying;  ///< perspective ones, then linear ones
   std::size_t perspective = 0;
   PackedBlock color[kMaxColorAttachments];
@@ -126,6 +127,7 @@ struct TileWorker {
   std::uint64_t fragment_invocations = 0;             ///< likewise
   std::unique_ptr<DrawWatch> watch;                   ///< null: nobody observes the draw
   ToldFragments told;
+  bool tells_whole_blocks = false;  ///< the watch takes them, and the draw has them
 };
 
 /// Whether rows of a square may be read and written without looking at their pixels: it lies inside all attachments,

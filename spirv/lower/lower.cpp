@@ -33,7 +33,7 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   lowering::select_operations(scalars);
   lowering::schedule_chains(scalars, interest.instructions);
   ShaderInterface interface = function.interface;
-  if (observer) lowering::keep_identity(scalars, interface);
+  if (observer && observer->interest() != exec::Interest{.blocks = true}) lowering::keep_identity(scalars, interface);
   const lowering::Allocation allocation = lowering::allocate(scalars);
   if (allocation.register_count > kMaxRegisters) return base::Error{"the shader keeps too many values alive"};
   std::unique_ptr<Program> program = lowering::emit(scalars, allocation, interface, error);

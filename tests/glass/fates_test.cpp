@@ -123,6 +123,38 @@ TEST(Fates, OverdrawAddsWholeBlocksAndPixels) {
   EXPECT_EQ(counts.overdraw().most, 4u);
 }
 
+TEST(Fates, CountsWholeBlocksAsTheirFragments) {
+  texel::ImageView color;
+  color.format = &texel::format_desc(VK_FORMAT_R8G8B8A8_UNORM);
+  const texel::ImageView* const written[] = {&color};
+  DrawCounts counts(false), singly(false);
+  const Command command(1, "", 1);
+  const base::LaneMask places = 0b1010011, all = base::kAllLanes;
+  auto whole = counts.watch_tile(&command, 3), tile = singly.watch_tile(&command, 3);
+  ASSERT_TRUE(whole->takes_whole_blocks());
+  for (int layer = 0; layer < 2; ++layer) whole->whole_blocks({64, 128, 0, 5, places, 1, written});
+  for (int layer = 0; layer < 2; ++layer)
+    base::for_each_lane(places, [&](std::size_t place) {
+      FragmentGroup block;
+      raster::place_block(64 + 8 * raster::lane_x(static_cast<std::uint32_t>(place)),
+                          128 + 8 * raster::lane_y(static_cast<std::uint32_t>(place)), block.position);
+      tile->generated(block, {&all, 1});
+      tile->shaded(block, all, 0);
+      tile->passed(block, {&all, 1});
+      tile->written(block, color, {&all, 1});
+    });
+  const FragmentGroup beside = quads();  // on parts of two of the blocks
+  for (auto* watch : {&whole, &tile}) {
+    (*watch)->shaded(beside, all, 0);
+    watch->reset();
+  }
+  for (const FateCounter& counter : fate_counters())
+    EXPECT_EQ(counter.value(counts.total()), counter.value(singly.total())) << counter.name;
+  EXPECT_EQ(value_of(counts.total(), "fragments/passed"), 2 * 64 * 4);
+  EXPECT_EQ(counts.overdraw().pixels, singly.overdraw().pixels);
+  EXPECT_EQ(counts.overdraw().most, singly.overdraw().most);
+}
+
 TEST(Fates, SeveralObserversHearTheSame) {
   DrawCounts one(false), two(false);
   DrawObservers both;

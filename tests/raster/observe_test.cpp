@@ -53,6 +53,8 @@ spirv::InterfaceSlot slot(spirv::BuiltIn built_in, std::uint32_t component, std:
 /// Counts what it is told.
 struct Counted : DrawObserver {
   std::mutex mutex;
+  bool takes_whole_blocks = false;
+  std::uint64_t whole = 0;  ///< blocks
   std::uint64_t vertices = 0, assembled = 0, generated = 0, invocations = 0, helpers = 0, passed = 0, written = 0;
   std::array<std::uint64_t, kPrimitiveFates> primitives{};
   std::array<std::uint64_t, kFragmentTests> lost{}, ended{};  ///< samples, and fragments whose last sample was lost
@@ -97,6 +99,15 @@ class Counter : public DrawWatch {
     add(out_.invocations, count(invocations));
     add(out_.helpers, count(helpers));
   }
+  bool takes_whole_blocks() const override { return out_.takes_whole_blocks; }
+  void whole_blocks(const WholeBlocks& blocks) override {
+    const std::uint64_t pixels = 64 * count(blocks.places);
+    add(out_.whole, count(blocks.places));
+    add(out_.generated, pixels);
+    add(out_.invocations, pixels);
+    add(out_.passed, pixels);
+    add(out_.written, pixels * blocks.samples * blocks.written.size());
+  }
   void passed(const FragmentGroup&, SampleLanes lanes) override { add(out_.passed, count(any_of(lanes))); }
   void written(const FragmentGroup&, const texel::ImageView&, SampleLanes lanes) override {
     add(out_.written, samples_in(lanes));
@@ -136,6 +147,11 @@ class Observed : public testing::Test {
   void add(std::array<float, 6> xy, float z = 0.5f, float cull_distance = 0) {
     for (std::size_t i = 0; i < 6; i += 2)
       corners.push_back({{xy[i] / kSide * 2 - 1, xy[i + 1] / kSide * 2 - 1, z, 1}, cull_distance});
+  }
+  /// A triangle over everything that nothing clips: the viewport is larger.
+  void add_whole(float z = 0.5f) {
+    state.viewport[0] = {-8, -8, 4 * kSide, 4 * kSide, 0, 1};
+    add({0, 0, 0, kSide, kSide, 0}, z);
   }
   /// Two triangles over everything.
   void add_screen(float z = 0.5f) {
@@ -243,6 +259,44 @@ TEST_F(Observed, TellsEarlyAndLateDepthTestsApartFromDiscards) {
   EXPECT_EQ(told.of(FragmentTest::kDepth), 64u * 64u);
   EXPECT_EQ(told.of(FragmentTest::kDiscard), 32u * 64u);
   EXPECT_EQ(told.passed, 32u * 64u);
+}
+
+TEST_F(Observed, TellsTheSameOfWholeBlocksAtOnce) {
+  constexpr std::uint64_t kPixels = std::uint64_t{kSide} * kSide, kBlocks = 64;
+  for (const bool whole : {false, true}) {
+    told.takes_whole_blocks = whole;
+    told.generated = told.invocations = told.passed = told.written = 0;
+    corners.clear();
+    for (int layer = 0; layer < 3; ++layer) add_whole();
+    add({4, 4, 4, 12, 12, 4});  // parts of blocks: half of 32 x 32 pixels
+    draw();
+    const std::uint64_t small = told.generated - 3 * kPixels;
+    EXPECT_TRUE(small > 450 && small < 600) << small;
+    EXPECT_EQ(told.invocations, told.generated);
+    EXPECT_EQ(told.passed, told.generated);
+    EXPECT_EQ(told.written, told.generated);
+    EXPECT_EQ(std::count(color.begin(), color.end(), 1.0f), 4 * kPixels);
+    std::fill(color.begin(), color.end(), 0.0f);
+  }
+  EXPECT_EQ(told.whole, 3 * kBlocks);
+}
+
+TEST_F(Observed, TellsOfWholeBlocksOnlyWhereNothingIsTested) {
+  told.takes_whole_blocks = true;
+  add_whole();
+  state.scissor[0] = {{16, 0}, {32, kSide}};
+  draw();
+  EXPECT_EQ(told.of(FragmentTest::kScissor), 32u * 64u);
+  state.scissor[0] = {{0, 0}, {kSide, kSide}};
+  discards = true;
+  draw();
+  EXPECT_EQ(told.of(FragmentTest::kDiscard), 32u * 64u);
+  discards = false;
+  state.depth_test = true;
+  state.depth_compare = VK_COMPARE_OP_NEVER;
+  draw();
+  EXPECT_EQ(told.of(FragmentTest::kDepth), 64u * 64u);
+  EXPECT_EQ(told.whole, 0u);
 }
 
 TEST_F(Observed, TellsOfSampleMasks) {
