@@ -51,8 +51,9 @@ class Observer {
   virtual std::unique_ptr<Watch> watch(const Wave& wave, const Instruction* start) const = 0;
 };
 
-/// Who observes a program, and what only the interface knows: where inputs and outputs lie. Its inputs hold what tells
-/// invocations apart, read by the shader or not: VertexIndex and InstanceIndex, FragCoord.xy.
+/// Who observes a program, and what only the interface knows: where inputs and outputs lie. Unless he wants to be told
+/// of blocks alone, its inputs hold what tells invocations apart, read by the shader or not: VertexIndex and
+/// InstanceIndex, FragCoord.xy.
 struct Observation {
   std::shared_ptr<const Observer> observer;
   ShaderInterface interface;
