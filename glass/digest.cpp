@@ -48,16 +48,17 @@ std::string hexadecimal(std::uint64_t digest) {
   return text;
 }
 
-/// "SUBMISSION:COMMAND:ALLOCATION".
+/// "SUBMISSION:COMMAND:ALLOCATION:OFFSET".
 struct Stop {
-  unsigned long long submission = 0, allocation = 0;
+  unsigned long long submission = 0, allocation = 0, offset = 0;
   unsigned command = 0;
   static Stop asked_for() {
     Stop stop;
     const char* text = std::getenv("VITRINE_DIGEST_AT");
-    if (text == nullptr || std::sscanf(text, "%llu:%u:%llu", &stop.submission, &stop.command, &stop.allocation) != 3)
-      return {};
-    return stop;
+    const int numbers = text == nullptr ? 0
+                                        : std::sscanf(text, "%llu:%u:%llu:%llu", &stop.submission, &stop.command,
+                                                      &stop.allocation, &stop.offset);
+    return numbers < 3 ? Stop{} : stop;
   }
 };
 
@@ -98,12 +99,22 @@ class Digests {
       if (std::exchange(allocation.digest, digest) != digest) changed[allocation.number] = hexadecimal(digest);
     }
     for (const auto& [number, digest] : changed) memory[std::to_string(number)] = digest;
-    lines_ += Json{{"submission", point.submission}, {"command", point.command},   {"name", point.name},
-                   {"labels", point.labels},         {"pipeline", point.pipeline}, {"memory", std::move(memory)}}
-                  .dump(-1, ' ', false, Json::error_handler_t::replace) +
-              '\n';
-    if (point.submission != stop_.submission || point.command != stop_.command) return std::nullopt;
-    return stop_here();
+    Json line{{"submission", point.submission}, {"command", point.command},   {"name", point.name},
+              {"labels", point.labels},         {"pipeline", point.pipeline}, {"memory", std::move(memory)}};
+    std::optional<Difference> difference;
+    if (point.submission == stop_.submission && point.command == stop_.command) difference = stop_here();
+    if (difference) line["differs"] = difference->offset;
+    lines_ += line.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+    return difference;
+  }
+
+  std::optional<DigestWord> word(std::uint64_t submission, std::uint32_t command) const {
+    if (submission != stop_.submission || command != stop_.command) return std::nullopt;
+    const std::lock_guard lock(mutex_);
+    for (const auto& [data, allocation] : live_)
+      if (allocation.number == stop_.allocation && stop_.offset < allocation.size)
+        return DigestWord{data + stop_.offset};
+    return std::nullopt;
   }
 
   std::string lines() const {
@@ -178,6 +189,11 @@ void remove_digested(const std::byte* data) noexcept {
 }
 
 std::optional<Difference> digest_command(const DigestPoint& point) { return asked_for.load()->command(point); }
+
+std::optional<DigestWord> watched_word(std::uint64_t submission, std::uint32_t command) {
+  const Digests* const digests = asked_for.load();
+  return digests ? digests->word(submission, command) : std::nullopt;
+}
 
 void report_difference(const DigestPoint& point, const Difference& difference, const std::string& what) {
   Finding finding;

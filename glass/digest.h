@@ -34,9 +34,15 @@ struct Difference {
   std::array<std::uint8_t, 4> here{}, there{};
 };
 
-/// Writes a line to VITRINE_DIGEST. If VITRINE_DIGEST_AT names this command ("SUBMISSION:COMMAND:ALLOCATION"), the
-/// bytes of that allocation go to VITRINE_DIGEST_SAVE, or are compared with those in VITRINE_DIGEST_COMPARE.
+/// Writes a line to VITRINE_DIGEST. If VITRINE_DIGEST_AT names this command ("SUBMISSION:COMMAND:ALLOCATION:OFFSET"),
+/// the bytes of that allocation go to VITRINE_DIGEST_SAVE, or are compared with those in VITRINE_DIGEST_COMPARE.
 std::optional<Difference> digest_command(const DigestPoint& point);
+
+/// The word that VITRINE_DIGEST_AT names, while that command runs; nothing: another one does.
+struct DigestWord {
+  const std::byte* at = nullptr;
+};
+std::optional<DigestWord> watched_word(std::uint64_t submission, std::uint32_t command);
 
 /// A finding: `what` says what the byte belongs to.
 void report_difference(const DigestPoint& point, const Difference& difference, const std::string& what);

@@ -8,8 +8,9 @@ namespace vitrine::glass::cli {
 namespace {
 
 DigestLine read_line(const nlohmann::json& json) {
-  DigestLine line{json.at("submission"), json.at("command"),  json.at("name"),
-                  json.at("labels"),     json.at("pipeline"), {}};
+  DigestLine line{
+      json.at("submission"), json.at("command"), json.at("name"), json.at("labels"), json.at("pipeline"), {}, {}};
+  if (json.contains("differs")) line.differs = json.at("differs").get<std::uint64_t>();
   for (const auto& [number, digest] : json.at("memory").items()) line.memory[std::stoull(number)] = digest;
   return line;
 }

@@ -18,6 +18,7 @@ struct DigestLine {
   std::vector<std::string> labels;
   std::string pipeline;
   std::map<std::uint64_t, std::string> memory;  ///< by number of the allocation
+  std::optional<std::uint64_t> differs;         ///< the first byte that is another one in the run compared with
 };
 using Digests = std::vector<DigestLine>;
 

@@ -32,7 +32,7 @@ bool demand_kinds(const std::string& kinds) {
 /// A run with digests, those of each process in the folder. `more`: variables besides.
 Ending run_digested(const ShakeOptions& options, std::uint64_t seed, const std::filesystem::path& folder,
                     Environment more = {}) {
-  more["VITRINE_TOOLS"] = "digest";
+  more.try_emplace("VITRINE_TOOLS", "digest");
   more["VITRINE_DIGEST"] = folder / "%p.jsonl";
   if (seed != 0) more["VITRINE_SHAKE"] = list_of(options, seed);
   return run_application(options.application, more);
@@ -49,6 +49,40 @@ std::optional<Digests> digests_in(const TemporaryFolder& folder) {
   return longest;
 }
 
+std::vector<Finding> findings_in(const TemporaryFolder& folder) {
+  std::vector<Finding> findings;
+  for (const std::filesystem::path& path : folder.files(".json")) {
+    std::string error;
+    if (const std::optional<std::string> text = read_file(path)) read_findings(*text, findings, error);
+  }
+  return findings;
+}
+
+/// One more run: which invocation writes that word last. Nothing: none that is seen does.
+std::optional<Finding> last_writer(const ShakeOptions& options, std::uint64_t seed, const std::string& word) {
+  const TemporaryFolder folder;
+  run_digested(options, seed, folder.path(),
+               {{"VITRINE_TOOLS", "digest,writers"},
+                {"VITRINE_THREADS", "1"},
+                {"VITRINE_DIGEST_AT", word},
+                {"VITRINE_REPORT", folder.path() / "%p.json"}});
+  std::vector<Finding> findings = findings_in(folder);
+  if (findings.empty()) return std::nullopt;
+  return std::move(findings.front());
+}
+
+/// Who wrote the word in either run; the finding's place becomes that of the shaken one.
+void add_writers(const ShakeOptions& options, std::uint64_t seed, const std::string& word, Finding& finding) {
+  const std::optional<Finding> here = last_writer(options, seed, word), there = last_writer(options, 0, word);
+  if (!here || !there) return;
+  const Address &a = here->address, &b = there->address;
+  finding.message += "; written last by " + to_text(a.invocation) + " here, by " + to_text(b.invocation) + " there";
+  if (!a.frames.empty() && !b.frames.empty() && to_text(a.frames.front()) != to_text(b.frames.front()))
+    finding.message += ", at " + to_text(b.frames.front());
+  if (a.invocation == b.invocation) finding.message += ": it has read other values";
+  finding.address = a;
+}
+
 /// Two more runs up to where memory parts: the second one says what the first byte is that differs.
 std::vector<Finding> find_byte(const ShakeOptions& options, std::uint64_t seed, const Parting& parting) {
   const TemporaryFolder usual, shaken;
@@ -59,11 +93,11 @@ std::vector<Finding> find_byte(const ShakeOptions& options, std::uint64_t seed, 
   run_digested(
       options, seed, shaken.path(),
       {{"VITRINE_DIGEST_AT", at}, {"VITRINE_DIGEST_COMPARE", saved}, {"VITRINE_REPORT", shaken.path() / "%p.json"}});
-  std::vector<Finding> findings;
-  for (const std::filesystem::path& path : shaken.files(".json")) {
-    std::string error;
-    if (const std::optional<std::string> text = read_file(path)) read_findings(*text, findings, error);
-  }
+  std::vector<Finding> findings = findings_in(shaken);
+  const std::optional<Digests> digests = digests_in(shaken);
+  if (findings.size() != 1 || !digests) return findings;
+  for (const DigestLine& line : *digests)
+    if (line.differs) add_writers(options, seed, at + ":" + std::to_string(*line.differs), findings.front());
   return findings;
 }
 

@@ -19,6 +19,7 @@ layout(binding = 0) buffer B { uint data[]; };
 layout(binding = 1, r32ui) uniform uimage2D texels;
 shared uint s[SIZE];
 """
+BODY_LINE = 8
 # Name, body that depends on the order, body of the twin. i: the invocation, l: in its workgroup, g: the workgroup.
 BODIES = [
     ("last_group_wins", "if (l == 0) data[0] = g;", "if (l == 0) data[g] = g;"),
@@ -78,7 +79,12 @@ class Shake(unittest.TestCase):
                 (finding,) = json.loads((self.folder / "found.json").read_text())["findings"]
                 self.assertEqual(finding["rule"], "order-dependent")
                 self.assertEqual(finding["address"]["commandName"], "vkCmdDispatch")
-                self.assertIn("memory at" if name.startswith("texel_") and "exchange" not in name else "of buffer (4 bytes", finding["message"])
+                if name.startswith("texel_") and "exchange" not in name:
+                    self.assertIn("of memory at offset", finding["message"])
+                else:
+                    self.assertIn("of buffer (4 bytes", finding["message"])
+                    self.assertIn("written last by invocation", finding["message"])
+                    self.assertEqual(finding["address"]["frames"][0]["line"], BODY_LINE)
                 count += 1
         self.assertGreaterEqual(count, 50)
 
