@@ -55,11 +55,19 @@ struct Address {
   std::vector<Frame> frames;  ///< innermost first, then the calls that lead there
 };
 
+/// Another access that a finding is about.
+struct RelatedAccess {
+  std::string message;  ///< "store of 4 bytes"
+  Address address;
+};
+
 struct Finding {
   const Rule* rule = nullptr;
-  std::string message;      ///< what was accessed, what is there
-  Address address;          ///< of the first invocation in order
-  std::uint64_t count = 1;  ///< invocations (times lanes come by) at this place
+  std::string message;                 ///< what was accessed, what is there
+  Address address;                     ///< of the first invocation in order
+  std::uint64_t count = 1;             ///< invocations (times lanes come by) at this place
+  std::vector<RelatedAccess> related;  ///< races: the access before
+  std::string remedy;                  ///< code that repairs it; empty: the rule's help says all
 };
 
 /// "submission 1, command 3 (vkCmdDispatch) in 'blur' > 'horizontal', pipeline 'gauss', compute shader main, invocation

@@ -55,6 +55,7 @@ class ProgramObserver : public spirv::exec::Observer {
       interest_.initialization |= wanted.initialization;
       interest_.blocks |= wanted.blocks;
       interest_.printf |= wanted.printf;
+      interest_.order |= wanted.order;
     }
   }
 
@@ -68,6 +69,10 @@ class ProgramObserver : public spirv::exec::Observer {
 
   void apart(const spirv::Wave& wave) const override {
     for (const auto& program : programs_) program->apart(wave);
+  }
+
+  bool in_order() const override {
+    return std::ranges::any_of(programs_, [](const auto& program) { return program->in_order(); });
   }
 
   void draw(const raster::DrawCall& call) const {

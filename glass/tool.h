@@ -30,8 +30,9 @@ class ProgramTool {
   virtual ~ProgramTool() = default;
   /// As spirv::exec::Observer::watch().
   virtual std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) = 0;
-  /// As spirv::exec::Observer::apart().
+  /// As spirv::exec::Observer::apart() and in_order().
   virtual void apart(const spirv::Wave&) {}
+  virtual bool in_order() const { return false; }
   /// The program is the vertex shader of a draw that comes next. The thread that replays calls it.
   virtual void draw(const raster::DrawCall&) {}
 };

@@ -106,6 +106,7 @@ inline std::uint32_t element_bytes(const std::array<std::uint32_t, 4>& imm) { re
 struct Origin {
   std::uint32_t spirv_id = 0;  ///< result id, 0: none
   std::uint32_t place = 0;     ///< SourceInfo::places, 0: unknown
+  std::uint32_t order = 0;     ///< MemoryOrder::word() (spirv/memory_order.h); 0: no access, or nobody asks
 };
 
 /// One instruction. `imm` and `data` mean what the op's row says.

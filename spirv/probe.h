@@ -50,6 +50,7 @@ struct Probe {
                    ///< distances from it; `number`: bytes of which it must be a multiple
     kDescriptor,   ///< an access comes next to descriptors whose index is not NonUniform: an index each
     kUnreachable,  ///< OpUnreachable
+    kOrder,        ///< a barrier or an end of a critical section comes next: `opcode`; `number`: MemoryOrder::word()
     kWrite,        ///< cells of variables get a value
     kRead,         ///< slots say which lanes read cells that have not been written
     kChoose,       ///< slots are those of one value or of another

@@ -101,6 +101,9 @@ bool read_findings(std::string_view report, std::vector<Finding>& findings, std:
       finding.message = row.at("message");
       finding.count = row.value("count", std::uint64_t{1});
       finding.address = address_of(row.at("address"));
+      for (const Json& other : row.value("related", Json::array()))
+        finding.related.push_back({other.at("message"), address_of(other.at("address"))});
+      finding.remedy = row.value("remedy", "");
       findings.push_back(std::move(finding));
     }
   } catch (const Json::exception& fault) {
@@ -128,13 +131,17 @@ std::vector<Finding> folded(std::vector<Finding> findings) {
 
 void quote_files(std::vector<Finding>& findings) {
   std::map<std::string, std::vector<std::string>> files;
-  for (Finding& finding : findings) {
-    for (Frame& frame : finding.address.frames) {
+  const auto quote = [&](Address& address) {
+    for (Frame& frame : address.frames) {
       if (!frame.text.empty() || frame.file.empty() || frame.line == 0) continue;
       const auto [entry, is_new] = files.try_emplace(frame.file);
       if (is_new) entry->second = lines_of(frame.file);
       if (frame.line <= entry->second.size()) frame.text = entry->second[frame.line - 1];
     }
+  };
+  for (Finding& finding : findings) {
+    quote(finding.address);
+    for (RelatedAccess& other : finding.related) quote(other.address);
   }
 }
 

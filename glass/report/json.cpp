@@ -67,11 +67,14 @@ ReportFrame json_frame() {
 }
 
 std::string json_entry(const Finding& finding) {
-  const Json json{{"rule", finding.rule->id},
-                  {"severity", severity_name(finding.rule->severity)},
-                  {"message", finding.message},
-                  {"count", finding.count},
-                  {"address", to_json(finding.address)}};
+  Json json{{"rule", finding.rule->id},
+            {"severity", severity_name(finding.rule->severity)},
+            {"message", finding.message},
+            {"count", finding.count},
+            {"address", to_json(finding.address)}};
+  for (const RelatedAccess& other : finding.related)
+    json["related"].push_back({{"message", other.message}, {"address", to_json(other.address)}});
+  if (!finding.remedy.empty()) json["remedy"] = finding.remedy;
   return to_line(json);
 }
 

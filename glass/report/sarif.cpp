@@ -65,6 +65,23 @@ Json flow_of(const std::vector<Frame>& frames) {
   return flow;
 }
 
+/// The other access and the one that the result is about, in this order.
+Json pair_flow_of(const RelatedAccess& other, const Finding& finding) {
+  Json steps = Json::array();
+  const auto add = [&](const Address& address, const std::string& text) {
+    Json location = result_location(address);
+    location["message"] = text_of(text);
+    steps.push_back({{"location", std::move(location)}});
+  };
+  add(other.address, other.message + " by " + to_text(other.address.invocation));
+  add(finding.address, finding.message);
+  Json thread = Json::object();
+  thread["locations"] = std::move(steps);
+  Json flow = Json::object();
+  flow["threadFlows"] = Json::array({std::move(thread)});
+  return flow;
+}
+
 Json descriptor_of(const Rule& rule) {
   return {{"id", sarif_rule_id(rule)},
           {"name", sarif_rule_name(rule)},
@@ -79,6 +96,7 @@ std::string message_of(const Finding& finding) {
   std::string text = finding.message;
   if (const std::string where = to_text(finding.address); !where.empty()) (text += "\nFirst at ") += where;
   if (finding.count > 1) (text += "; ") += std::to_string(finding.count) + " times";
+  if (!finding.remedy.empty()) (text += "\nMissing: ") += finding.remedy;
   return text;
 }
 
@@ -110,6 +128,13 @@ std::string sarif_entry(const Finding& finding) {
   if (finding.address.frames.size() > 1) {
     result["stacks"] = Json::array({stack_of(finding.address.frames)});
     result["codeFlows"] = Json::array({flow_of(finding.address.frames)});
+  }
+  for (const RelatedAccess& other : finding.related) {
+    Json location = result_location(other.address);
+    location["id"] = result["relatedLocations"].size();
+    location["message"] = text_of(other.message + " by " + to_text(other.address.invocation));
+    result["relatedLocations"].push_back(std::move(location));
+    result["codeFlows"].push_back(pair_flow_of(other, finding));
   }
   result["occurrenceCount"] = finding.count;
   result["partialFingerprints"]["vitrinePlace/v1"] = sarif_fingerprint(finding);

@@ -61,6 +61,22 @@ std::string stack_text(const std::vector<Frame>& frames) {
   return result;
 }
 
+/// The other access, as compilers write a note, and what repairs it.
+std::string related_text(const Finding& finding) {
+  std::string result;
+  for (const RelatedAccess& other : finding.related) {
+    const std::vector<Frame>& frames = other.address.frames;
+    result += frames.empty() ? "vitrine" : printable(to_text(frames[0]));
+    result += ": note: " + printable(other.message);
+    if (const std::string who = to_text(other.address.invocation); !who.empty()) result += " by " + who;
+    result += '\n';
+    if (!frames.empty()) result += quote(frames[0]);
+    result += stack_text(frames);
+  }
+  if (!finding.remedy.empty()) result += "  missing: " + printable(finding.remedy) + '\n';
+  return result;
+}
+
 /// "  first at submission 1, ..., 128 times".
 std::string address_text(const Finding& finding) {
   std::string result = to_text(finding.address);
@@ -83,6 +99,7 @@ std::string text_entry(const Finding& finding) {
   if (!finding.address.frames.empty()) text += quote(finding.address.frames[0]);
   text += stack_text(finding.address.frames);
   text += address_text(finding);
+  text += related_text(finding);
   return text += '\n';
 }
 

@@ -8,6 +8,7 @@
 #include "glass/sanitize/footprint.h"
 #include "glass/sanitize/image_lanes.h"
 #include "glass/sanitize/operands.h"
+#include "glass/sanitize/texel_address.h"
 
 namespace vitrine::glass::sanitize {
 namespace {
@@ -28,19 +29,6 @@ std::uintptr_t number_of(const std::byte* address) { return reinterpret_cast<std
 
 std::string nothing_written(std::string text, const std::string& what) {
   return text.append(", which nothing has written, of ").append(what);
-}
-
-/// Coordinates of a texel in front of the array layer, and whether that follows.
-struct Shape {
-  std::uint32_t dims = 2;
-  bool layered = false;
-};
-
-Shape shape_of(VkImageViewType type) {
-  const bool one = type == VK_IMAGE_VIEW_TYPE_1D || type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
-  if (one) return {1, type == VK_IMAGE_VIEW_TYPE_1D_ARRAY};
-  if (type == VK_IMAGE_VIEW_TYPE_3D) return {3, false};
-  return {2, type != VK_IMAGE_VIEW_TYPE_2D};
 }
 
 std::string texel_text(const ImageLanes& operands, std::uint32_t dimensions, std::size_t lane) {
@@ -113,8 +101,6 @@ class WrittenAccess {
   void texels(const Descriptor& image, std::uint32_t element, base::LaneMask lanes, Effect effect);
   void lookups(const Descriptor& image, std::uint32_t element, base::LaneMask lanes);
   const texel::Sampler* sampler_of(const Descriptor& image, std::size_t lane) const;
-  Piece texel_of(const ShadowRegion& region, const texel::ImageView& view, const ImageLanes& operands,
-                 std::size_t lane) const;
 
   /// A lane's access to a piece. False: it reads what nothing has written.
   bool touch(std::size_t lane, const Piece& piece, Effect effect) {
@@ -226,26 +212,6 @@ void WrittenAccess::global(const spirv::MemoryOp& row, Effect effect) {
   });
 }
 
-Piece WrittenAccess::texel_of(const ShadowRegion& region, const texel::ImageView& view, const ImageLanes& operands,
-                              std::size_t lane) const {
-  const Shape shape = shape_of(view.type);
-  std::int64_t at[3] = {};
-  for (std::uint32_t c = 0; c < shape.dims; ++c) at[c] = operands.coordinate(c, lane);
-  const std::int64_t layer = shape.layered ? operands.operand(ImageOperand::kCoord, shape.dims, lane).value_or(0) : 0;
-  const std::int64_t level = operands.operand(ImageOperand::kLod, 0, lane).value_or(0);
-  const std::int64_t sample = operands.operand(ImageOperand::kSample, 0, lane).value_or(0);
-  const auto inside = [](std::int64_t number, std::uint32_t size) { return number >= 0 && number < size; };
-  if (!inside(level, view.level_count) || !inside(layer, view.layer_count) || !inside(sample, view.samples)) return {};
-  const texel::Extent& extent = view.level[level].extent;
-  if (!inside(at[0], extent.width) || !inside(at[1], extent.height) || !inside(at[2], extent.depth)) return {};
-  const auto block = [](std::int64_t texel, std::uint32_t size) { return static_cast<std::uint32_t>(texel) / size; };
-  const std::byte* const address =
-      view.block(static_cast<std::uint32_t>(level), static_cast<std::uint32_t>(layer),
-                 static_cast<std::uint32_t>(sample), block(at[0], view.format->block_width),
-                 block(at[1], view.format->block_height), static_cast<std::uint32_t>(at[2]));
-  return {&region, number_of(address), view.format->block_bytes, Contents::kTexels};
-}
-
 void WrittenAccess::texels(const Descriptor& image, std::uint32_t element, base::LaneMask lanes, Effect effect) {
   const spirv::ImageOp& op = wave_.program->image_ops[i_->extra[0]];
   const bool buffer = op.info.dim == ImageDim::kBuffer;
@@ -259,15 +225,9 @@ void WrittenAccess::texels(const Descriptor& image, std::uint32_t element, base:
     return;
   const ImageLanes operands(wave_, op);
   base::for_each_lane(lanes, [&](std::size_t lane) {
-    Piece piece;
-    if (!buffer) {
-      piece = texel_of(*region, *view, operands, lane);
-    } else if (const std::int64_t x = operands.coordinate(0, lane);
-               x >= 0 && static_cast<std::uint64_t>(x) < image.texels->count) {
-      const std::uint32_t bytes = image.texels->format->block_bytes;
-      piece = {region, number_of(base) + static_cast<std::uint64_t>(x) * bytes, bytes, Contents::kBytes};
-    }
-    if (piece.region == nullptr || touch(lane, piece, effect)) return;
+    const TexelBytes texel = texel_bytes(image, op, operands, lane);
+    const Piece piece{region, texel.address, texel.bytes, buffer ? Contents::kBytes : Contents::kTexels};
+    if (texel.bytes == 0 || touch(lane, piece, effect)) return;
     const std::uint32_t set = op.info.set, slot = op.info.slot + element;
     std::string text = (op.info.access == ImageAccess::kAtomic ? "atomic operation on " : "load of ") +
                        texel_text(operands, std::min(operands.dimensions(), 3u), lane);

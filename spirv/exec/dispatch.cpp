@@ -186,7 +186,8 @@ void dispatch(const BoundShader& shader, const std::uint32_t base[3], const std:
   // Waves that wait for each other take turns: together they have the budget of one.
   launch.budget = exec::shader_budget() / (program.has_barrier ? launch.order.pieces() : 1);
   const std::uint64_t group_work = waves * program.code.size();
-  if (group_work * total <= kInlineWork || launch.order.shaken()) return run_range(launch, 0, total);
+  const bool in_order = program.observation && program.observation->observer->in_order();
+  if (in_order || launch.order.shaken() || group_work * total <= kInlineWork) return run_range(launch, 0, total);
   const std::uint64_t per_item =
       std::clamp<std::uint64_t>(kItemWork / group_work, 1, std::max<std::uint64_t>(1, total / base::worker_count()));
   base::parallel_for(static_cast<std::size_t>((total + per_item - 1) / per_item), [&](std::size_t item, std::size_t) {

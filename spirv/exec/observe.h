@@ -35,6 +35,7 @@ struct Interest {
   bool control = false;         ///< probes of what needs invocations together, and of what must not be reached
   bool blocks = false;          ///< probes where blocks begin
   bool printf = false;          ///< probes of NonSemantic.DebugPrintf
+  bool order = false;           ///< probes of barriers; what orders accesses in their Origin (spirv/memory_order.h)
   bool operator==(const Interest&) const = default;
 };
 
@@ -47,6 +48,8 @@ class Observer {
   virtual void made(const Program&) const {}
   /// Waves of a workgroup wait, as this one does, at a barrier that the others have not reached or will not reach.
   virtual void apart(const Wave&) const {}
+  /// Whether workgroups of a dispatch run one after the other, in order, on one thread.
+  virtual bool in_order() const { return false; }
   /// Called before each run. Null: this one is not watched.
   virtual std::unique_ptr<Watch> watch(const Wave& wave, const Instruction* start) const = 0;
 };

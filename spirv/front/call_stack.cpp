@@ -37,7 +37,7 @@ std::uint32_t inlined_place(Translator& t, std::uint32_t place) {
 ir::Origin origin_here(Translator& t) {
   if (t.inst == nullptr) return t.fallback;
   const std::uint32_t place = inlined_place(t, t.inst->origin.place);
-  return {t.inst->origin.spirv_id, place != 0 ? place : t.fallback.place};
+  return {t.inst->origin.spirv_id, place != 0 ? place : t.fallback.place, t.interest.order ? order_of(t, *t.inst) : 0};
 }
 
 }  // namespace vitrine::spirv::front

@@ -213,6 +213,10 @@ std::uint32_t inlined_place(Translator& t, std::uint32_t place);
 /// Of the instruction being translated.
 ir::Origin origin_here(Translator& t);
 
+// ---- memory_order.cpp
+/// MemoryOrder::word() (spirv/memory_order.h) of an access or a barrier; 0: it is neither.
+std::uint32_t order_of(const Translator& t, const Inst& inst);
+
 // ---- emit.cpp
 /// Appends an instruction with a result of `components`; returns the result.
 ir::ValueId emit(Translator& t, ir::Op op, std::uint32_t components, bool boolean, std::vector<ir::Src> src,

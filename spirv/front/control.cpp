@@ -452,6 +452,7 @@ void call(Translator& t, const Inst& inst);
 void translate_observed(Translator& t, const Inst& inst) {
   if (t.interest.control) probe_before(t, inst);
   if (t.interest.accesses) probe_access(t, inst);
+  if (t.interest.order) probe_order(t, inst);
   before_instruction(t, inst);
   translate_instruction(t, inst);
   after_instruction(t, inst);

@@ -19,6 +19,8 @@ void probe_before(Translator& t, const Inst& inst);
 void probe_after(Translator& t, const Inst& inst);
 /// What observers want to know before an access to memory or an image (access_checks.cpp).
 void probe_access(Translator& t, const Inst& inst);
+/// What orders accesses is told where it is (memory_order.cpp).
+void probe_order(Translator& t, const Inst& inst);
 /// Appends the words of a number, boolean or vector to `words` and says what they are.
 ProbeValue probe_value(Translator& t, const Inst& inst, std::uint32_t id, std::vector<ir::Src>& words);
 /// Appends a probe that reads `words`.

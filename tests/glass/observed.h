@@ -16,6 +16,7 @@ class ToolObserver : public spirv::exec::Observer {
   spirv::exec::Interest interest() const override { return tool_.interest(); }
   void made(const spirv::Program& program) const override { program_ = tool_.attach(shader_, program); }
   void draw(const raster::DrawCall& call) const { program_->draw(call); }
+  bool in_order() const override { return program_ && program_->in_order(); }
   std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) const override {
     return program_ ? program_->watch(wave, start) : nullptr;
   }

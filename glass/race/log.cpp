@@ -1,0 +1,159 @@
+// See log.h.
+#include "glass/race/log.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace vitrine::glass::race {
+namespace {
+
+std::uint64_t words_of(const Slots& slots) {
+  std::uint64_t words = 0;
+  for (std::uint32_t k = 0; k < kPageWords; ++k) words |= std::uint64_t{slots.time[k] != 0} << k;
+  return words;
+}
+
+void append(std::vector<Detail>& details, const Slots& slots, std::uint64_t words, const std::uint32_t* values) {
+  for (; words != 0; words &= words - 1) {
+    const int k = std::countr_zero(words);
+    details.push_back({slots.who[k], slots.site[k], values != nullptr ? values[k] : 0});
+  }
+}
+
+/// Holds the entries of one page against each other, in order.
+class PageSweep {
+ public:
+  PageSweep(const std::vector<Detail>& details, Pairs& pairs, const spirv::ObservedCommand* command)
+      : details_(details), pairs_(pairs), command_(command) {}
+
+  void add(const PageEntry& entry) {
+    compare(entry, Kind::kWrite, Kind::kWrite);
+    compare(entry, Kind::kWrite, Kind::kRead);
+    compare(entry, Kind::kWrite, Kind::kAtomic);
+    compare(entry, Kind::kRead, Kind::kWrite);
+    compare(entry, Kind::kRead, Kind::kAtomic);
+    compare(entry, Kind::kAtomic, Kind::kWrite);
+    compare(entry, Kind::kAtomic, Kind::kRead);
+    compare(entry, Kind::kAtomic, Kind::kAtomic);
+    for (const Kind kind : {Kind::kWrite, Kind::kRead, Kind::kAtomic}) {
+      const auto k = static_cast<std::size_t>(kind);
+      for (std::uint64_t fresh = words(entry, kind) & ~seen_[k]; fresh != 0; fresh &= fresh - 1)
+        first_[k][static_cast<std::size_t>(std::countr_zero(fresh))] = &entry;
+      seen_[k] |= words(entry, kind);
+    }
+  }
+
+ private:
+  enum class Kind : std::uint8_t { kWrite, kRead, kAtomic };
+
+  static std::uint64_t words(const PageEntry& entry, Kind kind) {
+    return kind == Kind::kWrite ? entry.writes : kind == Kind::kRead ? entry.reads : entry.atomics;
+  }
+  const Detail& detail(const PageEntry& entry, Kind kind, std::uint32_t word) const {
+    std::size_t at = entry.first;
+    if (kind != Kind::kWrite) at += static_cast<std::size_t>(std::popcount(entry.writes));
+    if (kind == Kind::kAtomic) at += static_cast<std::size_t>(std::popcount(entry.reads));
+    const std::uint64_t before = words(entry, kind) & ((std::uint64_t{1} << word) - 1);
+    return details_[at + static_cast<std::size_t>(std::popcount(before))];
+  }
+  static Access access_of(const PageEntry& entry, const Detail& detail) {
+    const std::uint32_t site = (detail.site & ~kInterlocked) >> 4;
+    if (!entry.program->compute()) return {entry.program, site, {{}, detail.who}};
+    const std::uint32_t* size = entry.program->size;
+    const std::uint32_t invocations = size[0] * size[1] * size[2];
+    Who who = entry.who;
+    who.group[0] += detail.who / invocations;
+    who.local = detail.who % invocations;
+    return {entry.program, site, who};
+  }
+
+  void compare(const PageEntry& entry, Kind now, Kind then) {
+    const auto k = static_cast<std::size_t>(then);
+    for (std::uint64_t both = words(entry, now) & seen_[k]; both != 0; both &= both - 1) {
+      const auto word = static_cast<std::uint32_t>(std::countr_zero(both));
+      meet(entry, detail(entry, now, word), *first_[k][word], detail(*first_[k][word], then, word), word);
+    }
+  }
+
+  void meet(const PageEntry& entry, const Detail& now, const PageEntry& other, const Detail& then, std::uint32_t word) {
+    const std::uint32_t bytes = now.site & then.site & 15;
+    if (bytes == 0) return;
+    Conflict conflict;
+    conflict.earlier = access_of(other, then);
+    conflict.later = access_of(entry, now);
+    const Site &a = conflict.earlier.what(), &b = conflict.later.what();
+    if (!a.writes() && !b.writes()) return;
+    if (a.is_atomic() && b.is_atomic()) {
+      if (covers_device(a.order.memory) && covers_device(b.order.memory)) return;
+      conflict.kind = Conflict::Kind::kScope;
+    }
+    // Critical sections of fragments of one pixel come one after the other.
+    if ((now.site & then.site & kInterlocked) != 0 && now.who == then.who) return;
+    conflict.equal = a.action == spirv::Access::kStore && b.action == spirv::Access::kStore && now.value == then.value;
+    conflict.address = entry.page * kPageBytes + word * 4 + static_cast<std::uint32_t>(std::countr_zero(bytes));
+    pairs_.add(conflict, command_);
+  }
+
+  const std::vector<Detail>& details_;
+  Pairs& pairs_;
+  const spirv::ObservedCommand* const command_;
+  std::uint64_t seen_[3] = {};
+  const PageEntry* first_[3][kPageWords] = {};
+};
+
+}  // namespace
+
+void CommandLog::add(const Told& program, const Who& who, Shadow& shadow) {
+  const std::lock_guard lock(mutex_);
+  compute_ = program.compute();
+  for (std::size_t i = 0; i < shadow.size(); ++i) {
+    const Page& page = shadow.at(i);
+    PageEntry entry;
+    entry.page = page.number;
+    entry.who = who;
+    entry.program = &program;
+    entry.writes = words_of(page.write);
+    entry.reads = words_of(page.read);
+    entry.atomics = words_of(page.atomic);
+    entry.first = details_.size();
+    append(details_, page.write, entry.writes, page.value);
+    append(details_, page.read, entry.reads, nullptr);
+    append(details_, page.atomic, entry.atomics, nullptr);
+    entries_.push_back(entry);
+  }
+}
+
+void CommandLog::settle(Pairs& pairs, const spirv::ObservedCommand* command) {
+  const std::lock_guard lock(mutex_);
+  // Waves of draws may be called the same: what they did tells them apart.
+  const auto content = [&](const PageEntry& entry) {
+    const auto count = static_cast<std::size_t>(std::popcount(entry.writes) + std::popcount(entry.reads) +
+                                                std::popcount(entry.atomics));
+    return std::span(details_).subspan(entry.first, count);
+  };
+  const auto key = [](const PageEntry& e) {
+    return std::tuple(e.page, std::tuple(e.who.group[2], e.who.group[1], e.who.group[0], e.who.local),
+                      e.program->context.stage, e.writes, e.reads, e.atomics);
+  };
+  const auto less = [](const Detail& a, const Detail& b) {
+    return std::tuple(a.who, a.site, a.value) < std::tuple(b.who, b.site, b.value);
+  };
+  std::sort(entries_.begin(), entries_.end(), [&](const PageEntry& a, const PageEntry& b) {
+    if (key(a) != key(b)) return key(a) < key(b);
+    const auto left = content(a), right = content(b);
+    return std::lexicographical_compare(left.begin(), left.end(), right.begin(), right.end(), less);
+  });
+  for (std::size_t first = 0; first < entries_.size();) {
+    std::size_t end = first + 1;
+    while (end < entries_.size() && entries_[end].page == entries_[first].page) ++end;
+    if (end - first > 1) {
+      PageSweep sweep(details_, pairs, command);
+      for (std::size_t i = first; i < end; ++i) sweep.add(entries_[i]);
+    }
+    first = end;
+  }
+  entries_.clear();
+  details_.clear();
+}
+
+}  // namespace vitrine::glass::race

@@ -1,0 +1,47 @@
+// What workgroups of a dispatch, or waves of a draw, did to device memory, held against each other when the command's
+// work is done: in the order of workgroups, whatever threads ran them.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "glass/race/pairs.h"
+#include "glass/race/shadow.h"
+
+namespace vitrine::glass::race {
+
+/// The last access of a kind to a word, of one workgroup.
+struct Detail {
+  std::uint32_t who = 0, site = 0, value = 0;  ///< site: as Slots has it
+};
+
+/// Set in Detail::who's site where fragments of a pixel were in their critical section.
+inline constexpr std::uint32_t kInterlocked = 1u << 31;
+
+/// A page of one workgroup: by kind the words, and details in the order of the bits.
+struct PageEntry {
+  std::uint64_t page = 0;
+  Who who;  ///< of the workgroup; of draws, the first of the wave
+  const Told* program = nullptr;
+  std::uint64_t writes = 0, reads = 0, atomics = 0;
+  std::size_t first = 0;  ///< in CommandLog::details: those of writes, of reads, of atomics
+};
+
+class CommandLog {
+ public:
+  /// Called by any thread.
+  void add(const Told& program, const Who& who, Shadow& shadow);
+  /// Finds what different workgroups did to the same bytes.
+  void settle(Pairs& pairs, const spirv::ObservedCommand* command);
+  /// Of a dispatch.
+  bool compute() const { return compute_; }
+
+ private:
+  std::mutex mutex_;
+  std::vector<PageEntry> entries_;
+  std::vector<Detail> details_;
+  bool compute_ = false;
+};
+
+}  // namespace vitrine::glass::race

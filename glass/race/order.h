@@ -1,0 +1,82 @@
+// What is ordered in one workgroup: barriers, fences and atomic operations, in times that only grow (Vulkan 1.3.239,
+// Memory Model). Of dispatches whose workgroups order each other by atomic operations, one after the other, all of
+// them.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "base/lanes.h"
+#include "glass/race/clock.h"
+
+namespace vitrine::glass::race {
+
+/// An access that has been recorded.
+struct Record {
+  std::uint32_t who = 0, time = 0, site = 0;
+};
+
+class Order {
+ public:
+  /// A dispatch, or a workgroup that nothing orders with others. `size`: invocations of a workgroup.
+  void begin(std::uint32_t size, bool vulkan_model);
+  /// The next workgroup of a dispatch.
+  void begin_group(std::uint32_t group);
+
+  std::uint32_t time() const { return time_; }
+  std::uint32_t group() const { return group_; }
+  /// Barriers have ordered what the workgroup did before this.
+  std::uint32_t from(Memory memory) const { return from_[static_cast<std::size_t>(memory)]; }
+
+  /// Lanes `lanes` of the wave whose lane 0 is invocation `first` come by OpMemoryBarrier.
+  void fence(const spirv::MemoryOrder& order, std::uint32_t first, base::LaneMask lanes);
+  /// All of the workgroup have come by OpControlBarrier; `fenced`: kinds of memory (a bit each) for which they have
+  /// come by OpMemoryBarrier before.
+  void barrier(const spirv::MemoryOrder& order, std::uint32_t fenced);
+  /// The same of a subgroup.
+  void subgroup_barrier(const spirv::MemoryOrder& order, std::uint32_t first);
+  /// An invocation does an atomic operation on what `location` tells apart.
+  void atomic(const Site& site, std::uint64_t location, std::uint32_t who);
+
+  /// Whether an access that was recorded happened before what `who` does now.
+  bool before(const Record& record, std::uint32_t who, Memory memory) const;
+  /// Whether barriers have ordered what was recorded, but have not made it available and visible (Vulkan memory model).
+  bool hidden(const Record& record, Memory memory) const;
+  /// Whether there are such barriers.
+  bool hides(Memory memory) const {
+    return visible_[static_cast<std::size_t>(memory)] != from_[static_cast<std::size_t>(memory)];
+  }
+  bool same_group(std::uint32_t a, std::uint32_t b) const { return a / size_ == b / size_; }
+
+  /// Kinds of memory that a barrier orders.
+  static std::uint32_t memories_of(std::uint32_t semantics);
+
+ private:
+  struct Invocation {
+    Clock known, pending;  ///< pending: read by atomic operations, not acquired
+    Times fenced{};        ///< accesses before it are released by atomic writes that follow
+    bool device = false;   ///< the fence's scope
+  };
+  struct Location {
+    Clock device, group;
+    std::uint32_t of_group = 0;  ///< whose `group` is
+  };
+
+  void acquire(Invocation& invocation, const Clock& from);
+  void release(Clock& to, std::uint32_t who, const Invocation& invocation, std::uint32_t memories, bool fence_only);
+  static bool visible_by(const spirv::MemoryOrder& order, bool vulkan_model);
+
+  std::uint32_t size_ = 1, time_ = 1, group_ = 0;
+  bool vulkan_model_ = false;
+  Times from_{}, visible_{};
+  std::vector<Times> subgroups_;  ///< by number in the workgroup
+  std::unordered_map<std::uint32_t, Invocation> invocations_;
+  // Through barriers:
+  Clock group_known_, group_pending_;
+  Times group_fenced_{};
+  bool group_device_ = false;
+  std::unordered_map<std::uint64_t, Location> locations_;
+};
+
+}  // namespace vitrine::glass::race

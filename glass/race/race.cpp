@@ -1,0 +1,214 @@
+// The tool `race`: two accesses to the same bytes by different invocations of one command, one of them a write, that
+// neither barriers nor atomic operations order (Vulkan 1.3.239, Memory Model: Data Race).
+#include <bit>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "glass/race/accesses.h"
+#include "glass/tools.h"
+#include "spirv/exec/invocation.h"
+
+namespace vitrine::glass {
+namespace {
+
+using race::CommandLog;
+using race::Group;
+using race::Told;
+using spirv::Instruction;
+using spirv::InstructionNote;
+using spirv::ObservedCommand;
+using spirv::Wave;
+
+constexpr std::uint16_t kOpControlBarrier = 224, kOpMemoryBarrier = 225, kOpBeginInterlock = 5364;
+
+const void* owner_of(const ObservedCommand* command) { return command != nullptr ? command->owner : nullptr; }
+
+/// What one thread runs.
+struct ThreadGroup {
+  explicit ThreadGroup(race::Pairs& pairs) : group(pairs) {}
+  std::mutex mutex;  ///< of beginnings and ends
+  Group group;
+  race::Tracked tracked;
+  const Told* tracked_program = nullptr;
+  const ObservedCommand* tracked_command = nullptr;
+  std::uint64_t tracked_number = 0;
+};
+
+/// Shared by the programs of a tool.
+class Races {
+ public:
+  ThreadGroup& here();
+  void begin(ThreadGroup& thread, const Told& program, const Wave& wave, const race::Who& who);
+  void end(ThreadGroup& thread);
+  /// What commands of `owner` did is held against each other. `but`: it goes on.
+  void settle(const void* owner, const ObservedCommand* but);
+
+  race::Pairs pairs;
+
+ private:
+  CommandLog& log_of(const ObservedCommand* command);
+  std::mutex mutex_;
+  std::map<std::thread::id, std::unique_ptr<ThreadGroup>> threads_;
+  std::map<const ObservedCommand*, std::unique_ptr<CommandLog>> logs_;
+};
+
+ThreadGroup& Races::here() {
+  const std::lock_guard lock(mutex_);
+  std::unique_ptr<ThreadGroup>& thread = threads_[std::this_thread::get_id()];
+  if (!thread) thread = std::make_unique<ThreadGroup>(pairs);
+  return *thread;
+}
+
+CommandLog& Races::log_of(const ObservedCommand* command) {
+  std::unique_ptr<CommandLog>& log = logs_[command];
+  if (!log) log = std::make_unique<CommandLog>();
+  return *log;
+}
+
+void Races::begin(ThreadGroup& thread, const Told& program, const Wave& wave, const race::Who& who) {
+  const ObservedCommand* const command = wave.resources->command;
+  // The dispatches of a device come one after the other.
+  if (program.compute() && !thread.group.runs(program, command)) settle(owner_of(command), command);
+  const bool whole = program.sites.orders_device;
+  if (!whole || !thread.group.runs(program, command)) end(thread);
+  const std::lock_guard lock(thread.mutex);
+  const std::uint64_t number = command != nullptr ? command->submission << 32 | command->command : 0;
+  const bool known = command != nullptr && thread.tracked_program == &program && thread.tracked_command == command &&
+                     thread.tracked_number == number;
+  if (!known) thread.tracked.update(program.sites, wave);
+  thread.tracked_program = &program;
+  thread.tracked_command = command;
+  thread.tracked_number = number;
+  thread.group.begin(program, command, who, whole, program.compute() ? wave.shared_size : 0);
+}
+
+void Races::end(ThreadGroup& thread) {
+  const std::lock_guard lock(mutex_);
+  const std::lock_guard own(thread.mutex);
+  if (thread.group.is_open()) thread.group.end(log_of(thread.group.command()));
+}
+
+void Races::settle(const void* owner, const ObservedCommand* but) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, thread] : threads_) {
+    const std::lock_guard own(thread->mutex);
+    const Group& group = thread->group;
+    if (!group.is_open() || owner_of(group.command()) != owner) continue;
+    if (but != nullptr && (group.command() == but || !group.program().compute())) continue;
+    thread->group.end(log_of(group.command()));
+  }
+  for (auto at = logs_.begin(); at != logs_.end();) {
+    const bool other = owner_of(at->first) != owner || (but != nullptr && (at->first == but || !at->second->compute()));
+    if (!other) at->second->settle(pairs, at->first);
+    at = other ? std::next(at) : logs_.erase(at);
+  }
+}
+
+class RaceWatch : public spirv::exec::Watch {
+ public:
+  RaceWatch(Races& races, const Told& program, const Wave& wave, const Instruction* start)
+      : races_(races), program_(program), thread_(races.here()) {
+    program.compute() ? begin_compute(wave, start) : begin_draw(wave);
+  }
+  RaceWatch(const RaceWatch&) = delete;
+  ~RaceWatch() override {
+    if (!program_.compute()) races_.end(thread_);
+  }
+
+  void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
+    const auto index = static_cast<std::size_t>(i - wave.program->code.data());
+    const std::uint32_t site = program_.sites.by_instruction[index];
+    if (site == race::Sites::kNone) return;
+    race::record_access(thread_.group, thread_.tracked, site, wave, i, note, first_,
+                        program_.compute() ? nullptr : names_);
+  }
+
+  void probe(const Wave& wave, const spirv::ProbeOp& op) override {
+    const spirv::Probe& probe = wave.program->probes[op.probe];
+    if (probe.kind != spirv::Probe::Kind::kOrder) return;
+    const base::LaneMask lanes = spirv::exec::lanes_at(wave, op) & wave.live;
+    const spirv::MemoryOrder order = spirv::MemoryOrder::of(probe.number);
+    if (lanes == 0) return;
+    if (probe.opcode == kOpMemoryBarrier) {
+      thread_.group.fence(number_, order, first_, lanes);
+    } else if (probe.opcode != kOpControlBarrier) {
+      thread_.group.interlock(probe.opcode == kOpBeginInterlock);
+    } else if (order.execution == spirv::MemoryScope::kSubgroup) {
+      if (program_.compute()) thread_.group.order().subgroup_barrier(order, first_);
+    } else if (program_.compute()) {
+      thread_.group.arrive(number_, order, !wave.program->has_barrier);
+    }
+  }
+
+ private:
+  void begin_compute(const Wave& wave, const Instruction* start) {
+    const bool begins = start == wave.program->code.data();
+    if (begins && wave.first_invocation == 0) {
+      race::Who who;
+      std::copy_n(wave.workgroup_id, 3, who.group.begin());
+      races_.begin(thread_, program_, wave, who);
+    }
+    number_ = wave.first_invocation / static_cast<std::uint32_t>(base::kWaveWidth);
+    first_ = thread_.group.base() + wave.first_invocation;
+    if (!begins) thread_.group.resume(number_);
+  }
+
+  void begin_draw(const Wave& wave) {
+    const spirv::exec::Invocations invocations(wave);
+    base::for_each_lane(wave.active, [&](std::size_t lane) {
+      const auto id = invocations(wave, lane);
+      names_[lane] = id[0] | id[1] << 16;
+    });
+    if (program_.context.stage != VK_SHADER_STAGE_FRAGMENT_BIT && program_.context.stage != VK_SHADER_STAGE_VERTEX_BIT)
+      for (std::uint32_t lane = 0; lane < base::kWaveWidth; ++lane) names_[lane] = lane;
+    races_.begin(thread_, program_, wave, {{}, wave.active != 0 ? names_[std::countr_zero(wave.active)] : 0});
+  }
+
+  Races& races_;
+  const Told& program_;
+  ThreadGroup& thread_;
+  std::uint32_t first_ = 0, number_ = 0;  ///< the wave's first invocation; its number in the workgroup
+  std::uint32_t names_[base::kWaveWidth] = {};
+};
+
+class RacedProgram : public ProgramTool {
+ public:
+  RacedProgram(Races& races, const Told& told) : races_(races), told_(told) {}
+  bool in_order() const override { return told_.sites.orders_device; }
+  std::unique_ptr<spirv::exec::Watch> watch(const Wave& wave, const Instruction* start) override {
+    if (told_.sites.all.empty()) return nullptr;
+    return std::make_unique<RaceWatch>(races_, told_, wave, start);
+  }
+
+ private:
+  Races& races_;
+  const Told& told_;
+};
+
+class RaceTool : public Tool {
+ public:
+  spirv::exec::Interest interest() const override { return {.accesses = true, .order = true}; }
+
+  std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
+    const std::lock_guard lock(mutex_);
+    programs_.push_back(std::make_unique<Told>(shader, program));
+    return std::make_shared<RacedProgram>(races_, *programs_.back());
+  }
+  void commands_done(const void* owner) override { races_.settle(owner, nullptr); }
+  std::vector<Finding> take_findings() override {
+    races_.settle(nullptr, nullptr);  // of programs that no device runs
+    return races_.pairs.take();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Told>> programs_;
+  Races races_;
+};
+
+}  // namespace
+
+std::unique_ptr<Tool> make_race() { return std::make_unique<RaceTool>(); }
+
+}  // namespace vitrine::glass
