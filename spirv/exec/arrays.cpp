@@ -65,8 +65,17 @@ const Instruction* store_array_lanes(Wave& wave, const Instruction* i) {
   return i + 1;
 }
 
+const Instruction* store_array_whole(Wave& wave, const Instruction* i) {
+  std::memcpy(element(wave, memory_op(wave, i), uniform_word(wave, i->src[0])), reg(wave, i->src[1]).lane,
+              sizeof(base::WaveRegister));
+  return i + 1;
+}
+
 Handler load_array_handler(bool uniform) { return uniform ? load_array_uniform : load_array_lanes; }
-Handler store_array_handler(bool uniform) { return uniform ? store_array_uniform : store_array_lanes; }
+Handler store_array_handler(bool uniform, bool whole) {
+  if (whole && uniform) return store_array_whole;
+  return uniform ? store_array_uniform : store_array_lanes;
+}
 
 }  // namespace vitrine::spirv::exec::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -83,7 +92,7 @@ const Instruction* clear_arrays(Wave& wave, const Instruction* i) {
 }
 
 Handler load_array(bool uniform) { return HWY_DYNAMIC_DISPATCH(load_array_handler)(uniform); }
-Handler store_array(bool uniform) { return HWY_DYNAMIC_DISPATCH(store_array_handler)(uniform); }
+Handler store_array(bool uniform, bool whole) { return HWY_DYNAMIC_DISPATCH(store_array_handler)(uniform, whole); }
 
 }  // namespace vitrine::spirv::exec
 #endif

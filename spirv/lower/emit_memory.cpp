@@ -283,7 +283,9 @@ void Emitter::local_array(const ScalarOp& op) {
   if (op.op == Op::kLoadArray) {
     append(exec::load_array(uniform), "load_array", op.instr, place(result(op, 0)), element);
   } else {
-    append(exec::store_array(uniform), "store_array", op.instr, {}, element, in_register(source(op, 1)));
+    const bool whole = op.instr->data[2] != 0;
+    append(exec::store_array(uniform, whole), whole ? "store_array.whole" : "store_array", op.instr, {}, element,
+           in_register(source(op, 1)));
   }
   attach(op, row);
 }

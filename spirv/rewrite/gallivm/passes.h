@@ -5,6 +5,10 @@
 
 namespace vitrine::spirv::rewriting {
 
+/// Fragment shaders: lookups and derivatives where lanes of a quad may wait read registers that those lanes do not
+/// write.
+void quad_registers(Graph& graph);
+
 /// Minima and maxima with an operand that is known to be a number become plain ones. The reference decides this on its
 /// intermediate code, before its code generator simplifies on its own.
 void choose_min_max(Graph& graph);

@@ -86,6 +86,17 @@ Src Builder::literal(unsigned components, bool boolean, const std::uint32_t* bit
   return place(graph_.create_const(static_cast<std::uint8_t>(components), boolean, bits));
 }
 
+Src Builder::access(Op op, unsigned components, std::initializer_list<Src> operands,
+                    std::array<std::uint32_t, 3> data) {
+  const InstId made = graph_.create(Kind::kIntrinsic, op, static_cast<std::uint8_t>(components), false,
+                                    static_cast<std::uint32_t>(operands.size()));
+  add_node(graph_, made);
+  std::uint32_t index = 0;
+  for (const Src& src : operands) graph_.set_source(made, index++, src);
+  for (std::size_t i = 0; i < data.size(); ++i) node_of(graph_, made).instr.data[i] = data[i];
+  return place(made);
+}
+
 Src Builder::undefined(unsigned components) {
   const InstId made = graph_.create(Kind::kIntrinsic, Op::kUndef, static_cast<std::uint8_t>(components), false, 0);
   add_node(graph_, made);

@@ -1,6 +1,7 @@
 // Makes instructions at one place of the graph.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <span>
 
@@ -47,6 +48,9 @@ class Builder {
   Src truth(bool value);
   /// Of `components` numbers or booleans.
   Src literal(unsigned components, bool boolean, const std::uint32_t* bits);
+
+  /// A load or store of an element of a local array: Op::kLoadArray, Op::kStoreArray (intrinsics.def).
+  Src access(Op op, unsigned components, std::initializer_list<Src> operands, std::array<std::uint32_t, 3> data);
 
   /// Of no value in particular.
   Src undefined(unsigned components);
