@@ -33,6 +33,10 @@ class Watches : public Watch {
               const spirv::InstructionNote& note) override {
     for (const auto& watch : watches_) watch->access(wave, instruction, note);
   }
+  void discard(const spirv::Wave& wave, const spirv::Instruction* instruction,
+               const spirv::InstructionNote& note) override {
+    for (const auto& watch : watches_) watch->discard(wave, instruction, note);
+  }
   void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override {
     for (const auto& watch : watches_) watch->probe(wave, op);
   }
@@ -49,6 +53,8 @@ class ProgramObserver : public spirv::exec::Observer {
       const Interest wanted = tool->interest();
       interest_.instructions |= wanted.instructions;
       interest_.accesses |= wanted.accesses;
+      interest_.images |= wanted.images;
+      interest_.discards |= wanted.discards;
       interest_.arithmetic |= wanted.arithmetic;
       interest_.numbers |= wanted.numbers;
       interest_.control |= wanted.control;
@@ -147,7 +153,7 @@ Session::Session() {
   // Whoever says where messages go wants them.
   const char* messages = std::getenv("VITRINE_PRINTF");
   const bool named = wanted != nullptr && names(wanted, "printf");
-  if (messages != nullptr && *messages != 0 && !named) tools_.push_back(make_printf());
+  if (messages != nullptr && *messages != 0 && !named) add(make_printf());
   if (idle()) return;
   stay_loaded();
   const char* report = std::getenv("VITRINE_REPORT");
@@ -158,6 +164,7 @@ Session::~Session() { write(); }
 
 void Session::add(std::unique_ptr<Tool> tool) {
   shadows_memory_ |= tool->shadows_memory();
+  needs_every_fragment_ |= tool->needs_every_fragment();
   if (raster::DrawObserver* draws = tool->draws()) draws_.add(*draws);
   tools_.push_back(std::move(tool));
 }

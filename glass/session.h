@@ -29,6 +29,8 @@ class Session {
   void broken(const spirv::ObservedCommand& command, std::string_view rule, const std::string& message);
   /// Whether any tool wants a shadow of device memory.
   bool shadows_memory() const { return shadows_memory_; }
+  /// Whether any tool must see every fragment.
+  bool needs_every_fragment() const { return needs_every_fragment_; }
   /// As Tool::commands_done().
   void commands_done(const void* owner);
   /// Who is told of draws; null: nobody.
@@ -41,6 +43,7 @@ class Session {
  private:
   std::vector<std::unique_ptr<Tool>> tools_;
   bool shadows_memory_ = false;
+  bool needs_every_fragment_ = false;
   DrawObservers draws_;
   std::unique_ptr<ReportFile> report_;  ///< null: VITRINE_REPORT names none
 };

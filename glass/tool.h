@@ -50,6 +50,8 @@ class Tool {
   /// The work of these commands is done, of all that have run since the last call for the same owner
   /// (ObservedCommand::owner): what one invocation read and another has written can be told apart.
   virtual void commands_done(const void* /*owner*/) {}
+  /// Whether it must see every fragment that is shaded, those behind others, too.
+  virtual bool needs_every_fragment() const { return true; }
   /// Who is told of draws; null: the tool does not want to be, and its draws are drawn as others are.
   virtual raster::DrawObserver* draws() { return nullptr; }
   /// A submission is done: what has been found since the last one, in an order that does not depend on threads.

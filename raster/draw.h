@@ -151,6 +151,7 @@ struct QueryCounters {
 
 struct NativeShader;  // raster/stage.h
 class DrawObserver;   // raster/observe.h
+class TileObserver;   // raster/observe.h
 
 struct DrawCall {
   const State* state = nullptr;  ///< lives until the flush
@@ -179,6 +180,7 @@ struct DrawCall {
   bool general_path = false;              ///< tests: without the fast paths, which must not be noticed otherwise
   TransformFeedback* feedback = nullptr;  ///< null: not active; lives until the flush
   DrawObserver* observer = nullptr;       ///< null: nobody observes
+  TileObserver* tile_observer = nullptr;  ///< null: nobody observes single tiles
 
   /// Whether only packed waves are drawn.
   bool takes_general_path() const { return general_path || observer != nullptr; }

@@ -12,6 +12,9 @@
 
 namespace vitrine::raster {
 
+struct PassDesc;   // raster/pass_desc.h
+struct Primitive;  // raster/primitive.h
+
 /// What becomes of a primitive. Each that is assembled, or that a tessellator or geometry shader makes, is culled or
 /// rasterized; one that is clipped becomes parts, each of which is culled or rasterized. Of polygons that are drawn as
 /// lines or points, and of smooth and stippled lines, the pieces are told of.
@@ -45,6 +48,7 @@ inline constexpr std::size_t kFragmentTests = static_cast<std::size_t>(FragmentT
 struct FragmentGroup {
   QuadPositions position;
   std::uint32_t primitive[base::kQuadsPerWave];  ///< gl_PrimitiveID by quad
+  const Primitive* from[base::kQuadsPerWave];    ///< by quad; null: it is not in use
   std::uint32_t layer = 0;
 };
 /// Lanes of a group, by sample.
@@ -77,8 +81,14 @@ class DrawWatch {
   virtual void generated(const FragmentGroup&, SampleLanes) {}
   /// Samples fail a test; `left`: those of the group that have failed none so far.
   virtual void failed(const FragmentGroup&, FragmentTest, SampleLanes /*lost*/, SampleLanes /*left*/) {}
+  /// Depths of lanes of the group in a sample, on their way to the depth test.
+  virtual void testing(const FragmentGroup&, std::uint32_t /*sample*/, const float* /*depth*/) {}
+  /// The fragment shader is about to run.
+  virtual void shading(const FragmentGroup&) {}
   /// The fragment shader runs: once for all samples, or, with sample shading, for one after the other.
   virtual void shaded(const FragmentGroup&, base::LaneMask /*invocations*/, base::LaneMask /*helpers*/) {}
+  /// What the shader gave to colour attachment number `attachment`, four registers, before any of it is blended.
+  virtual void coloring(const FragmentGroup&, std::uint32_t /*attachment*/, const base::WaveRegister* /*color*/) {}
   /// Samples have passed all tests.
   virtual void passed(const FragmentGroup&, SampleLanes) {}
   /// Whether whole_blocks() is called, where it can be, instead of the four that are above and below it.
@@ -98,6 +108,23 @@ class DrawObserver {
   virtual std::unique_ptr<DrawWatch> watch_chunk(const spirv::ObservedCommand* command) = 0;
   /// `tile`: number of the tile in its pass.
   virtual std::unique_ptr<DrawWatch> watch_tile(const spirv::ObservedCommand* command, std::uint32_t tile) = 0;
+};
+
+/// A tile that is being drawn: its first pixel and its layer.
+struct TilePlace {
+  const PassDesc* pass = nullptr;
+  int x = 0, y = 0;
+  std::uint32_t layer = 0;
+};
+
+/// Observes fragments on some tiles of a pass; elsewhere, and in the front end, a draw is drawn as if nobody observed.
+/// Shared by all threads that work on the draw; lives until the flush.
+class TileObserver {
+ public:
+  virtual ~TileObserver() = default;
+  virtual bool watches(const TilePlace& place) const = 0;
+  /// Null: the tile is not watched.
+  virtual std::unique_ptr<DrawWatch> watch_tile(const spirv::ObservedCommand* command, const TilePlace& place) = 0;
 };
 
 }  // namespace vitrine::raster

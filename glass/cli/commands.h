@@ -59,6 +59,19 @@ struct ShakeOptions {
 };
 int shake(const ShakeOptions& options);
 
+struct PixelOptions {
+  std::string position;             ///< "X,Y"
+  std::string image = "swapchain";  ///< "swapchain", a name, "#3": the third that the application made
+  std::string aspect;               ///< empty: colour, or depth
+  std::uint32_t level = 0, layer = 0, slice = 0;
+  std::optional<std::uint32_t> sample;             ///< none: all
+  std::optional<std::uint64_t> frame, submission;  ///< the history ends there; none: with the application
+  unsigned depth = 4;                              ///< how often sources of sources are followed
+  std::string json, html;                          ///< files; empty: none
+  CommandLine application;
+};
+int pixel(const PixelOptions& options);
+
 struct DiffOptions {
   std::string before, after;
   std::string pattern = "*";          ///< which counters, as the shell matches names

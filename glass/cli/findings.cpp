@@ -37,6 +37,8 @@ VkShaderStageFlagBits stage_of(std::string_view name) {
   return {};
 }
 
+}  // namespace
+
 Address address_of(const Json& json) {
   Address address;
   address.submission = json.value("submission", std::uint64_t{0});
@@ -51,6 +53,8 @@ Address address_of(const Json& json) {
   for (const Json& frame : json.value("frames", Json::array())) address.frames.push_back(frame_of(frame));
   return address;
 }
+
+namespace {
 
 const Rule* known_rule(const std::string& id) {
   const auto row = std::find_if(rules().begin(), rules().end(), [&](const Rule& rule) { return id == rule.id; });

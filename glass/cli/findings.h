@@ -1,6 +1,7 @@
 // Findings of several processes: read from their reports, the same ones made one.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "glass/finding.h"
 
 namespace vitrine::glass::cli {
+
+/// Of the shape that to_json(Address) has (glass/report/json.h). Throws for what is none.
+Address address_of(const nlohmann::json& json);
 
 /// The findings of a JSON report, in its order. False, and why: it is none, or one of another version.
 bool read_findings(std::string_view report, std::vector<Finding>& findings, std::string& error);

@@ -155,6 +155,33 @@ void add_shake(CLI::App& app, const Words& words, ShakeOptions& options, int& co
   });
 }
 
+void add_pixel(CLI::App& app, const Words& words, PixelOptions& options, int& code) {
+  CLI::App* command =
+      add_runner(app, "pixel", "Run it and tell everything that touched a pixel, backwards to its sources");
+  command->formatter(std::make_shared<Help>("X,Y " + std::string(kApplication)));
+  command->add_option("PIXEL", options.position, "Column and row, counted from 0")->required()->type_name("X,Y");
+  command->add_option("--image", options.image, "Image: swapchain, its debug name, or #N: the N-th that was made")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_option("--frame", options.frame, "As presented in this frame, counted from 1 (default: the last one)")
+      ->type_name("N");
+  command->add_option("--submission", options.submission, "As this submission leaves it")->type_name("N");
+  command->add_option("--layer", options.layer, "Array layer")->type_name("N");
+  command->add_option("--level", options.level, "Mip level")->type_name("N");
+  command->add_option("--slice", options.slice, "Slice of a 3D image")->type_name("N");
+  command->add_option("--sample", options.sample, "Sample (default: all)")->type_name("N");
+  command->add_option("--aspect", options.aspect, "color, depth, stencil, plane0, plane1 or plane2")->type_name("NAME");
+  command->add_option("--depth", options.depth, "How far sources of sources are followed, a run each")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--json", options.json, "Write what the driver recorded")->type_name("FILE");
+  command->add_option("--html", options.html, "Write the histories as a page")->type_name("FILE");
+  command->callback([=, &words, &options, &code] {
+    options.application = application_of(*command, words);
+    code = pixel(options);
+  });
+}
+
 void add_diff(CLI::App& app, DiffOptions& options, int& code) {
   CLI::App* command = app.add_subcommand("diff", "Compare two files of counters");
   command->formatter(std::make_shared<Help>("BEFORE AFTER"));
@@ -188,6 +215,7 @@ int main_of(int argc, char** argv) {
   CountOptions count_options;
   TimelineOptions timeline_options;
   ShakeOptions shake_options;
+  PixelOptions pixel_options;
   DiffOptions diff_options;
   add_run(app, words, code);
   add_check(app, words, check_options, code);
@@ -195,6 +223,7 @@ int main_of(int argc, char** argv) {
   add_count(app, words, count_options, code);
   add_timeline(app, words, timeline_options, code);
   add_shake(app, words, shake_options, code);
+  add_pixel(app, words, pixel_options, code);
   add_diff(app, diff_options, code);
   try {
     check_command(app, words);

@@ -4,10 +4,12 @@
 #include <cstring>
 
 #include "base/log.h"
+#include "glass/pixel/pixels.h"
 #include "glass/session.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
+#include "icd/object/image.h"
 #include "icd/object/object_notes.h"
 #include "icd/record/command_buffer.h"
 
@@ -110,7 +112,12 @@ VKAPI_ATTR void VKAPI_CALL SubmitDebugUtilsMessageEXT(VkInstance instance,
 
 VKAPI_ATTR VkResult VKAPI_CALL SetDebugUtilsObjectNameEXT(VkDevice device, const VkDebugUtilsObjectNameInfoEXT* info) {
   const std::lock_guard lock(from_handle<Device>(device).physical_device.instance.notes_mutex);
-  notes_of(object_of(info->objectType, info->objectHandle)).name = info->pObjectName ? info->pObjectName : "";
+  const char* const name = info->pObjectName ? info->pObjectName : "";
+  ObjectBase& object = object_of(info->objectType, info->objectHandle);
+  notes_of(object).name = name;
+  glass::pixel::Pixels* const pixels = glass::pixel::pixels();
+  if (pixels && info->objectType == VK_OBJECT_TYPE_IMAGE)
+    pixels->image_named(reinterpret_cast<const Image*>(info->objectHandle), name);
   return VK_SUCCESS;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "glass/pixel/pixels.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/address_book.h"
@@ -88,6 +89,17 @@ texel::ImageView view_of_aspect(const Image& image, VkImageAspectFlagBits aspect
   return texel::make_image_view(image.layout, memory, view_desc(aspect, type, format, range, components));
 }
 
+void watch_image(const Image& image, bool in_swapchain) {
+  glass::pixel::Pixels* const pixels = glass::pixel::pixels();
+  if (pixels)
+    pixels->image_made(&image, {&image.layout, &image.data, image.desc().disjoint ? &image.plane_data : nullptr},
+                       in_swapchain);
+}
+
+void forget_image(const Image& image) {
+  if (glass::pixel::Pixels* const pixels = glass::pixel::pixels()) pixels->image_gone(&image);
+}
+
 namespace entry {
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateImage(VkDevice device, const VkImageCreateInfo* info,
@@ -95,6 +107,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImage(VkDevice device, const VkImageCreateI
   Owned<Image> object(create_object<Image>(from_handle<Device>(device).memory, allocator));
   const VkResult result = init_image(*object, *info);
   if (result != VK_SUCCESS) return result;
+  watch_image(*object, false);
   *image = to_handle(object.release());
   return VK_SUCCESS;
 }
@@ -103,6 +116,7 @@ VKAPI_ATTR void VKAPI_CALL DestroyImage(VkDevice device, VkImage image, const Vk
   if (const Image* object = from_nullable<Image>(image)) {
     leave_address(from_handle<Device>(device), object);
     report_unbinding(from_handle<Device>(device), *object);
+    forget_image(*object);
   }
   destroy_handle<Image>(image);
 }

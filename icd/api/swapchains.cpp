@@ -38,6 +38,7 @@ VkResult create_images(Swapchain& swapchain, const VkSwapchainCreateInfoKHR& inf
     slot.backing = create_object<DeviceMemory>(swapchain.memory, nullptr, slot.image->layout.size, allocated_bytes());
     if (!slot.backing->data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     slot.image->data = slot.backing->data;
+    watch_image(*slot.image, true);
   }
   return VK_SUCCESS;
 }

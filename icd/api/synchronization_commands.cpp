@@ -3,6 +3,7 @@
 // off.
 #include <algorithm>
 
+#include "glass/pixel/pixels.h"
 #include "glass/session.h"
 #include "icd/entry_points.h"
 #include "icd/object/image.h"
@@ -14,10 +15,10 @@ namespace {
 
 bool discards(VkImageLayout from, VkImageLayout to) { return from == VK_IMAGE_LAYOUT_UNDEFINED && from != to; }
 
-/// Records the images whose contents barriers give up, where a tool shadows device memory.
+/// Records the images whose contents barriers give up, where a tool shadows device memory or watches texels.
 template <class Barrier>
 void record_discards(VkCommandBuffer buffer, std::span<const Barrier> barriers) {
-  if (!glass::session().shadows_memory()) return;
+  if (!glass::session().shadows_memory() && !glass::pixel::pixels()) return;
   const auto gives_up = [](const Barrier& b) { return discards(b.oldLayout, b.newLayout); };
   const auto count = static_cast<std::size_t>(std::count_if(barriers.begin(), barriers.end(), gives_up));
   if (count == 0) return;

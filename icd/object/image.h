@@ -66,6 +66,10 @@ texel::ImageView view_of_aspect(const Image& image, VkImageAspectFlagBits aspect
 /// memory.
 void report_unbinding(Device& device, const Image& image);
 
+/// The image exists, or ends: told to those who watch texels (glass/pixel/pixels.h).
+void watch_image(const Image& image, bool in_swapchain);
+void forget_image(const Image& image);
+
 /// Memory of a swapchain's image, for vkBindImageMemory2 with VkBindImageMemorySwapchainInfoKHR; null if there is no
 /// such image. Defined with the swapchain.
 std::byte* swapchain_image_memory(VkSwapchainKHR swapchain, std::uint32_t index);

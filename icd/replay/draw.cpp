@@ -45,6 +45,23 @@ raster::DrawObserver* observer_of(const ReplayState& state) {
   return state.observed ? glass::session().draws() : nullptr;
 }
 
+/// Nobody is told, but the draw is one that is observed: its fragments outside of the scissor, too.
+struct Nobody final : raster::DrawObserver {
+  std::unique_ptr<raster::DrawWatch> watch_chunk(const spirv::ObservedCommand*) override { return nullptr; }
+  std::unique_ptr<raster::DrawWatch> watch_tile(const spirv::ObservedCommand*, std::uint32_t) override {
+    return nullptr;
+  }
+};
+Nobody kNobody;
+
+/// Whether a scissor of the draw leaves out pixels that are watched.
+bool cuts_watched_pixels(const ReplayState& state) {
+  const raster::State& fixed = *state.draw.state;
+  for (std::uint32_t i = 0; i < std::min(fixed.viewport_count, raster::kMaxViewports); ++i)
+    if (!state.observed->pixel_pass->inside(fixed.scissor[i])) return true;
+  return false;
+}
+
 /// Brings `state.draw` up to date. False if there is nothing to draw with or to.
 bool prepare_draw(ReplayState& state) {
   const Pipeline* pipeline = state.graphics.pipeline;
@@ -69,9 +86,12 @@ bool prepare_draw(ReplayState& state) {
   state.dirty = 0;
   if (state.observed) {
     draw.vertex_resources.command = observe_command(state, *pipeline, draw.vertex_resources);
-    draw.fragment_resources.command = draw.vertex_resources.command;
+    const bool told = state.observed->every_fragment || (draw.fragment && draw.fragment->interface().writes_memory);
+    draw.fragment_resources.command = told ? draw.vertex_resources.command : nullptr;
+    draw.tile_observer = state.observed->pixel_pass.get();
   }
   draw.observer = observer_of(state);
+  if (draw.tile_observer && !draw.observer && cuts_watched_pixels(state)) draw.observer = &kNobody;
   draw.queries = state.counters;
   return true;
 }

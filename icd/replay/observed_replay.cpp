@@ -162,6 +162,7 @@ void begin_observed_submission(Device& device, std::vector<std::string> queue_la
   observed->objects.clear();
   observed->departed.clear();
   if (device.addresses) device.addresses->begin_submission();
+  if (observed->pixels) observed->pixels->submission_begins(observed->submission);
 }
 
 void end_observed_submission(Device& device) noexcept {
@@ -170,6 +171,7 @@ void end_observed_submission(Device& device) noexcept {
   try {
     glass::session().commands_done(&device);
     observed->commands.clear();
+    if (observed->pixels) observed->pixels->submission_ends();
     glass::session().end_submission([&](const glass::Finding& f) { send_finding(device, *observed, f); });
   } catch (...) {
     report_error(device, ref(device), "tools", "out of host memory while findings were delivered");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "glass/finding.h"
+#include "glass/pixel/pass.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/object/labels.h"
 #include "icd/replay/replay.h"
@@ -46,6 +47,13 @@ struct ObservedPass {
   std::array<VkRect2D, raster::kMaxColorAttachments + 2> drawn{};
 };
 
+/// A watched texel of an attachment, and what a load op does to it.
+struct LoadedTexel {
+  glass::pixel::Texel* texel = nullptr;
+  glass::pixel::EventKind kind{};
+  const char* text = "";
+};
+
 struct ObservedReplay {
   /// The objects of a draw or dispatch of the submission.
   struct Objects {
@@ -53,13 +61,17 @@ struct ObservedReplay {
     ObjectRef command_buffer, pipeline;
   };
 
-  bool shadows_memory = false;    ///< icd/replay/written.h is told
-  std::uint64_t submission = 0;   ///< counted from 1
-  std::uint32_t command = 0;      ///< of the submission, counted from 1; 0: none yet
-  const char* name = "";          ///< of the command
-  std::uint64_t pass_number = 0;  ///< of the draws at hand: spirv::ObservedCommand::pass
-  ObjectRef command_buffer;       ///< primary
-  LabelStack labels;              ///< of command buffers; they go on from one submission to the next
+  bool shadows_memory = false;             ///< icd/replay/written.h is told
+  glass::pixel::Pixels* pixels = nullptr;  ///< likewise, and icd/replay/texel_events.h; null: no texel is watched
+  std::shared_ptr<glass::pixel::PassPixels> pixel_pass;  ///< null: the pass has none of them
+  bool every_fragment = true;                            ///< some tool must see each
+  std::vector<LoadedTexel> loaded;                       ///< by the scope that begins
+  std::uint64_t submission = 0;                          ///< counted from 1
+  std::uint32_t command = 0;                             ///< of the submission, counted from 1; 0: none yet
+  const char* name = "";                                 ///< of the command
+  std::uint64_t pass_number = 0;                         ///< of the draws at hand: spirv::ObservedCommand::pass
+  ObjectRef command_buffer;                              ///< primary
+  LabelStack labels;  ///< of command buffers; they go on from one submission to the next
   std::vector<std::string> queue_labels;
   /// What descriptors that were hidden named, by their nulls; and the sets without such ones, as of how many
   /// departures.

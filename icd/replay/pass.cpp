@@ -5,6 +5,7 @@
 
 #include "glass/session.h"
 #include "icd/replay/scope.h"
+#include "icd/replay/texel_events.h"
 #include "icd/replay/written.h"
 #include "texel/transfer.h"
 
@@ -80,10 +81,10 @@ void note_loads(const ReplayState& state, std::uint32_t attachment, std::uint32_
   const Attachment& desc = state.instance->render_pass->attachments[attachment];
   const ImageView* view = attachment_view(state, attachment);
   if (!view) return;
-  if (state.views_loaded[attachment] == 0) note_undefined(*view, desc.undefined_aspects);
+  if (state.views_loaded[attachment] == 0) note_undefined(state, *view, desc.undefined_aspects);
   for_each_layer_range(views, state.scope.layers, [&](std::uint32_t layer, std::uint32_t layers) {
-    note_load({view, kAllButStencil, state.scope.area, layer, layers}, desc.load);
-    note_load({view, VK_IMAGE_ASPECT_STENCIL_BIT, state.scope.area, layer, layers}, desc.stencil_load);
+    note_load(state, {view, kAllButStencil, state.scope.area, layer, layers}, desc.load);
+    note_load(state, {view, VK_IMAGE_ASPECT_STENCIL_BIT, state.scope.area, layer, layers}, desc.stencil_load);
   });
 }
 
@@ -100,8 +101,8 @@ void note_stores(const ReplayState& state) {
     const ImageView* view = attachment_view(state, i);
     if (!view || !is_used(pass, i)) continue;
     for_each_layer_range(state.views_loaded[i], state.scope.layers, [&](std::uint32_t layer, std::uint32_t layers) {
-      note_store({view, kAllButStencil, state.scope.area, layer, layers}, pass.attachments[i].store);
-      note_store({view, VK_IMAGE_ASPECT_STENCIL_BIT, state.scope.area, layer, layers},
+      note_store(state, {view, kAllButStencil, state.scope.area, layer, layers}, pass.attachments[i].store);
+      note_store(state, {view, VK_IMAGE_ASPECT_STENCIL_BIT, state.scope.area, layer, layers},
                  pass.attachments[i].stencil_store);
     });
   }
@@ -112,7 +113,7 @@ void load_attachment(ReplayState& state, std::uint32_t attachment) {
   const ImageView* view = attachment_view(state, attachment);
   const VkImageAspectFlags aspects = cleared_aspects(state.instance->render_pass->attachments[attachment]);
   const std::uint32_t views = subpass.view_mask & ~state.views_loaded[attachment];
-  if (shadows_memory(state)) note_loads(state, attachment, views);
+  if (follows_attachments(state)) note_loads(state, attachment, views);
   state.views_loaded[attachment] |= subpass.view_mask;
   if (!view || !aspects || attachment >= state.instance->clear_values.size()) return;
   const VkClearValue& value = state.instance->clear_values[attachment];
@@ -160,7 +161,9 @@ void begin_subpass(ReplayState& state) {
   state.pass.emplace(desc);
   if (shadows_memory(state)) note_pass(state, desc);
   begin_observed_pass(state);
+  if (watches_texels(state)) begin_watched_pass(state, desc);
   for (const std::uint32_t attachment : current_subpass(state).first_uses) load_attachment(state, attachment);
+  if (watches_texels(state)) finish_loads(state);
 }
 
 void clear_rect(ReplayState& state, const VkClearAttachment& clear, const VkClearRect& rect) {
@@ -211,7 +214,7 @@ void execute(ReplayState& state, const CmdNextSubpass&) {
 void execute(ReplayState& state, const CmdEndRenderPass&) {
   if (!state.instance) return;
   end_scope(state);
-  if (shadows_memory(state)) note_stores(state);
+  if (follows_attachments(state)) note_stores(state);
   state.instance = nullptr;
 }
 

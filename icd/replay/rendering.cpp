@@ -4,6 +4,7 @@
 
 #include "icd/replay/observed_replay.h"
 #include "icd/replay/scope.h"
+#include "icd/replay/texel_events.h"
 #include "icd/replay/written.h"
 
 namespace vitrine::icd {
@@ -129,16 +130,16 @@ void for_each_part(const ReplayState& state, const CmdBeginRendering& command, F
 void note_loads(ReplayState& state, const CmdBeginRendering& command) {
   state.observed->rendering = &command;
   if (command.flags & VK_RENDERING_RESUMING_BIT) return;
-  for_each_part(state, command, [](const AttachmentPart& part, const RenderingAttachment& attachment) {
-    note_load(part, attachment.load);
+  for_each_part(state, command, [&](const AttachmentPart& part, const RenderingAttachment& attachment) {
+    note_load(state, part, attachment.load);
   });
 }
 
 void note_stores(ReplayState& state) {
   const CmdBeginRendering* command = std::exchange(state.observed->rendering, nullptr);
   if (!command || (command->flags & VK_RENDERING_SUSPENDING_BIT)) return;
-  for_each_part(state, *command, [](const AttachmentPart& part, const RenderingAttachment& attachment) {
-    note_store(part, attachment.store);
+  for_each_part(state, *command, [&](const AttachmentPart& part, const RenderingAttachment& attachment) {
+    note_store(state, part, attachment.store);
   });
 }
 
@@ -152,21 +153,23 @@ void execute(ReplayState& state, const CmdBeginRendering& recorded) {
   resolve_transients(recorded, command, state.scope);
   const raster::PassDesc desc = describe_pass(command, state.scope);
   state.pass.emplace(desc);
-  if (shadows_memory(state)) {
+  if (follows_attachments(state)) {
     note_pass(state, desc);
     note_loads(state, recorded);
   }
   begin_observed_pass(state);
+  if (watches_texels(state)) begin_watched_pass(state, desc);
   if (command.flags & VK_RENDERING_RESUMING_BIT) return;  // the one that was suspended has loaded
   for_each_layer_range(command.view_mask, command.layers, [&](std::uint32_t layer, std::uint32_t count) {
     clear_attachments(state, command, layer, count);
   });
+  if (watches_texels(state)) finish_loads(state);
 }
 
 void execute(ReplayState& state, const CmdEndRendering&) {
   if (!state.pass) return;
   end_scope(state);
-  if (shadows_memory(state)) note_stores(state);
+  if (follows_attachments(state)) note_stores(state);
 }
 
 }  // namespace vitrine::icd

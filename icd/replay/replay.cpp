@@ -9,6 +9,7 @@
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
 #include "icd/replay/digested_replay.h"
+#include "icd/replay/texel_events.h"
 #include "icd/replay/timed_replay.h"
 #include "icd/replay/written.h"
 
@@ -39,10 +40,23 @@ constexpr Executor kNotes[] = {
 #include "icd/record/commands.def"
 };
 
+/// What watched texels are told of a command.
+template <class T>
+void note_texels_erased(ReplayState& state, const void* command) {
+  if constexpr (requires(const T& typed) { note_texels(state, typed); })
+    note_texels(state, *static_cast<const T*>(command));
+}
+
+constexpr Executor kTexelNotes[] = {
+#define VITRINE_COMMAND(name) note_texels_erased<Cmd##name>,
+#include "icd/record/commands.def"
+};
+
 /// One command of a timeline, or of digests.
 void run_command(ReplayState& state, const CommandHeader& header) {
   kExecutors[header.type](state, header.command());
   if (shadows_memory(state)) kNotes[header.type](state, header.command());
+  if (watches_texels(state)) kTexelNotes[header.type](state, header.command());
 }
 
 /// A command buffer starts with nothing bound, and nothing that an earlier one bound may be touched again.
@@ -88,10 +102,11 @@ DeviceLoss loss_of(const spirv::Fault& fault, const char* reason) noexcept {
 void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
   if (state.observed && glass::has_timeline()) return replay_timed(state, buffer, run_command);
   if (state.observed && glass::has_digest()) return replay_digested(state, buffer, run_command);
-  const bool shadows = shadows_memory(state);
+  const bool shadows = shadows_memory(state), watches = watches_texels(state);
   for (const CommandHeader* header = buffer.arena.first(); header; header = header->next) {
     kExecutors[header->type](state, header->command());
     if (shadows) kNotes[header->type](state, header->command());
+    if (watches) kTexelNotes[header->type](state, header->command());
     if (state.fault.raised.load(std::memory_order_relaxed)) return;
   }
 }
@@ -126,6 +141,8 @@ void prepare_replay(Device& device) {
   if (glass::session().idle()) return;
   device.replay->observed = std::make_shared<ObservedReplay>();
   device.replay->observed->shadows_memory = glass::session().shadows_memory();
+  device.replay->observed->every_fragment = glass::session().needs_every_fragment();
+  device.replay->observed->pixels = glass::pixel::pixels();
 }
 
 void execute(ReplayState& state, const CmdExecuteCommands& command) {

@@ -32,6 +32,7 @@ VkRect2D clip_area(const VkRect2D& area, std::uint32_t width, std::uint32_t heig
 void end_scope(ReplayState& state) {
   flush_pass(state);
   state.pass.reset();
+  if (state.observed) state.observed->pixel_pass.reset();
   const DrawScope& scope = state.scope;
   for (std::uint32_t i = 0; i < scope.resolve_count; ++i) {
     const PendingResolve& r = scope.resolve[i];
@@ -40,7 +41,7 @@ void end_scope(ReplayState& state) {
     if (!source.format || !target.format) continue;
     for_each_layer_range(scope.view_mask, scope.layers, [&](std::uint32_t layer, std::uint32_t count) {
       texel::resolve_view(source, target, r.mode, scope.area, layer, count);
-      if (shadows_memory(state)) note_filled({r.target, r.aspect, scope.area, layer, count});
+      if (follows_attachments(state)) note_resolved(state, {r.target, r.aspect, scope.area, layer, count}, source);
     });
   }
   if (!scope.suspended) state.transients.clear();

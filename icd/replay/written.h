@@ -8,6 +8,10 @@
 namespace vitrine::icd {
 
 inline bool shadows_memory(const ReplayState& state) { return state.observed && state.observed->shadows_memory; }
+/// Whether anybody is told of what attachments hold: that shadow, or texels that are watched.
+inline bool follows_attachments(const ReplayState& state) {
+  return state.observed && (state.observed->shadows_memory || state.observed->pixels);
+}
 
 // After a command of that kind has been replayed.
 void note_written(ReplayState& state, const CmdCopyBuffer& command);
@@ -44,11 +48,12 @@ struct AttachmentPart {
 };
 /// "The contents of the attachment will be undefined inside the render area" (VK_ATTACHMENT_LOAD_OP_DONT_CARE, and the
 /// store op of that name).
-void note_load(const AttachmentPart& part, VkAttachmentLoadOp op);
-void note_store(const AttachmentPart& part, VkAttachmentStoreOp op);
-void note_filled(const AttachmentPart& part);
+void note_load(const ReplayState& state, const AttachmentPart& part, VkAttachmentLoadOp op);
+void note_store(const ReplayState& state, const AttachmentPart& part, VkAttachmentStoreOp op);
+/// It holds the resolved texels of `source`.
+void note_resolved(const ReplayState& state, const AttachmentPart& part, const texel::ImageView& source);
 /// All of a view, from VK_IMAGE_LAYOUT_UNDEFINED.
-void note_undefined(const ImageView& view, VkImageAspectFlags aspects);
+void note_undefined(const ReplayState& state, const ImageView& view, VkImageAspectFlags aspects);
 
 /// What is left of an image whose contents are given up. The host may write those of a linear one at any time.
 glass::ByteState discarded_state(const Image& image);

@@ -5,6 +5,7 @@
 
 #include "icd/object/image.h"
 #include "icd/replay/scope.h"
+#include "icd/replay/texel_events.h"
 #include "icd/replay/written.h"
 
 namespace vitrine::icd {
@@ -102,19 +103,26 @@ void fill_part(const AttachmentPart& part, ByteState state) {
 
 void note_pass(ReplayState& state, const raster::PassDesc& desc) { state.observed->pass = {desc, {}}; }
 
-void note_load(const AttachmentPart& part, VkAttachmentLoadOp op) {
+void note_load(const ReplayState& state, const AttachmentPart& part, VkAttachmentLoadOp op) {
   if (!part.view) return;
+  if (watches_texels(state)) note_texels_loaded(state, part, op);
   if (op == VK_ATTACHMENT_LOAD_OP_CLEAR) fill_part(part, ByteState::kWritten);
   if (op == VK_ATTACHMENT_LOAD_OP_DONT_CARE) fill_part(part, discarded_state(*part.view->image));
 }
 
-void note_store(const AttachmentPart& part, VkAttachmentStoreOp op) {
+void note_store(const ReplayState& state, const AttachmentPart& part, VkAttachmentStoreOp op) {
+  if (watches_texels(state) && part.view) note_texels_stored(state, part, op);
   if (part.view && op == VK_ATTACHMENT_STORE_OP_DONT_CARE) fill_part(part, discarded_state(*part.view->image));
 }
 
-void note_filled(const AttachmentPart& part) { fill_part(part, ByteState::kWritten); }
+void note_resolved(const ReplayState& state, const AttachmentPart& part, const texel::ImageView& source) {
+  fill_part(part, ByteState::kWritten);
+  if (watches_texels(state)) note_texels_resolved(state, part, source);
+}
 
-void note_undefined(const ImageView& view, VkImageAspectFlags aspects) {
+void note_undefined(const ReplayState& state, const ImageView& view, VkImageAspectFlags aspects) {
+  if (watches_texels(state) && aspects != 0)
+    note_texels_undefined(state, {&view, aspects, glass::kWholeArea, 0, UINT32_MAX});
   fill_part({&view, aspects, glass::kWholeArea, 0, UINT32_MAX}, discarded_state(*view.image));
 }
 

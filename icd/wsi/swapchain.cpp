@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "glass/pixel/pixels.h"
+
 namespace vitrine::icd {
 namespace {
 
@@ -20,6 +22,7 @@ wsi::Frame frame_of(const Swapchain& swapchain, const Image& image) {
 
 Swapchain::~Swapchain() {
   for (const Slot& slot : slots) {
+    if (slot.image) forget_image(*slot.image);
     destroy_object(slot.image);
     destroy_object(slot.backing);
   }
@@ -32,6 +35,7 @@ std::byte* swapchain_image_memory(VkSwapchainKHR swapchain, std::uint32_t index)
 
 void show_image(Swapchain& swapchain, std::uint32_t index) {
   const wsi::Frame frame = frame_of(swapchain, *swapchain.slots[index].image);
+  if (glass::pixel::Pixels* const pixels = glass::pixel::pixels()) pixels->presented(swapchain.slots[index].image);
   const bool in_order =
       swapchain.mode == VK_PRESENT_MODE_FIFO_KHR || swapchain.mode == VK_PRESENT_MODE_FIFO_RELAXED_KHR;
   const VkResult shown = swapchain.surface->window->present(frame, in_order);

@@ -126,6 +126,14 @@ void write_block(TileWorker& worker, int x, int y, const LaneMask* kept) {
   }
 }
 
+/// What the shader has given to the attachments.
+void tell_coloring(TileWorker& worker) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  for (std::uint32_t i = 0; i < plan.color_count; ++i)
+    if (plan.writer[i].function)
+      worker.watch->coloring(worker.told.group, i, collect_color(worker, plan.frag.color[i], false, worker.color));
+}
+
 void tell_written_colors(TileWorker& worker, const LaneMask* kept) {
   const PipelinePlan& plan = *worker.draw->plan;
   for (std::uint32_t i = 0; i < plan.color_count; ++i) {
@@ -157,6 +165,7 @@ void shade(TileWorker& worker, const Primitive& primitive, int x, int y, const B
   LaneMask alive = pixels;
   if (!worker.block_draw.solid) {
     set_inputs(worker, primitive, BlockPlace{x, y});
+    if constexpr (kObserved) worker.watch->shading(worker.told.group);
     alive = worker.runner.run(active, active & ~pixels);
   } else if (kObserved && worker.block_draw.counted) {
     spirv::count_run(*worker.draw->fragment.bound, active, active & ~pixels);
@@ -167,12 +176,15 @@ void shade(TileWorker& worker, const Primitive& primitive, int x, int y, const B
   LaneMask kept[kMaxSamples];
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
     kept[s] = block.lanes[s] & alive;
+    if constexpr (kObserved)
+      if (late) tell_block_depths(worker, primitive, x, y, s);
     if (late) test_blocks(worker, primitive, s, x, y, 1, &kept[s], true);
     count_samples(worker, counts_early ? block.lanes[s] : kept[s]);
   }
   if constexpr (kObserved) {
     worker.watch->shaded(worker.told.group, pixels, active & ~pixels);
     tell_shaded(worker, primitive, block, alive, late ? kept : nullptr);
+    tell_coloring(worker);
   }
   if (std::any_of(kept, kept + plan.samples, [](LaneMask lanes) { return lanes != 0; }))
     write_block(worker, x, y, kept);

@@ -35,22 +35,28 @@ HierarchicalTest hierarchical_test(TileWorker& worker, const Primitive& primitiv
 
 }  // namespace
 
+void block_depths(TileWorker& worker, const Primitive& primitive, int x, int y, std::uint32_t sample) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
+  const float dx = plan.locations->pixel_x(sample), dy = plan.locations->pixel_y(sample);
+  evaluate_block_depth(plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, plan.restricts_depth,
+                       worker.depth);
+  if (!plan.clamps_depth) return;
+  DepthRange range[base::kQuadsPerWave];
+  std::fill_n(range, base::kQuadsPerWave, depth_range(plan, primitive.viewport));
+  clamp_depth(range, plan.restricts_depth, base::kQuadsPerWave, worker.depth);
+}
+
 void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,
                     FailedTests* failed) {
   const PipelinePlan& plan = *worker.draw->plan;
-  const DepthPlane plane = depth_plane(current_planes(worker, primitive), primitive);
   QuadPositions quads;
   place_block(x, y, quads);
-  DepthRange range[base::kQuadsPerWave];
-  const bool clamps = plan.clamps_depth;
-  if (clamps) std::fill_n(range, base::kQuadsPerWave, depth_range(plan, primitive.viewport));
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
     if (!block.lanes[s]) continue;
     if (plan.tests.depth) {
-      const float dx = plan.locations->pixel_x(s), dy = plan.locations->pixel_y(s);
-      evaluate_block_depth(plane, static_cast<float>(x) + dx, static_cast<float>(y) + dy, plan.restricts_depth,
-                           worker.depth);
-      if (clamps) clamp_depth(range, plan.restricts_depth, base::kQuadsPerWave, worker.depth);
+      block_depths(worker, primitive, x, y, s);
+      if (failed) worker.watch->testing(worker.told.group, s, worker.depth);
     }
     block.lanes[s] = test_depth_stencil(plan.tests, worker.target.depth_stencil[s], quads,
                                         primitive.front ? 0xffffu : 0, worker.depth, nullptr, block.lanes[s],

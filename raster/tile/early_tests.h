@@ -10,6 +10,9 @@
 
 namespace vitrine::raster {
 
+/// The depths of a primitive in a sample of the block at (x, y), clamped, into worker.depth.
+void block_depths(TileWorker& worker, const Primitive& primitive, int x, int y, std::uint32_t sample);
+
 /// Tests a block before shading, whatever is tested and wherever it lies. Writes unless the test is only a preview of a
 /// late one. `failed`: what failed, by sample, for observers; or null.
 void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,

@@ -94,7 +94,10 @@ void test_late(ShadeRun& run) {
   [[maybe_unused]] FailedTests failed[kObserved ? kMaxSamples : 1];
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
     if (!run.kept[s]) continue;
-    if (plan.tests.depth) late_depth(run, s);
+    if (plan.tests.depth) {
+      late_depth(run, s);
+      if constexpr (kObserved) worker.watch->testing(worker.told.group, s, worker.depth);
+    }
     run.kept[s] = test_depth_stencil(plan.tests, worker.target.depth_stencil[s], run.wave.position, front, worker.depth,
                                      reference, run.kept[s], true, kObserved ? failed + s : nullptr);
     if (!plan.as_reference.first_sample_depth) continue;
@@ -118,6 +121,7 @@ void write_colors(ShadeRun& run) {
     const bool integer = numeric == texel::Numeric::kUint || numeric == texel::Numeric::kSint;
     const bool scaled = !integer || plan.as_reference.scales_integers;
     const WaveRegister* color = collect_color(worker, plan.frag.color[i], scaled, worker.color);
+    if constexpr (kObserved) worker.watch->coloring(worker.told.group, i, color);
     const bool dual = i == 0 && plan.dual_source;
     const WaveRegister* second = dual ? collect_color(worker, plan.frag.color_second, scaled, worker.second) : nullptr;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
@@ -146,6 +150,7 @@ void shade(ShadeRun& run) {
   if (plan.counts_early) count_kept(run);
   set_packed_inputs(run);
   const LaneMask active = plan.fragment->needs_helpers ? run.used : run.pixels;
+  if constexpr (kObserved) worker.watch->shading(worker.told.group);
   run.alive = worker.runner.run(active, active & ~run.pixels);
   if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(run.pixels));
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) run.kept[s] &= run.alive;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "raster/draw_watches.h"
 #include "raster/tile/early_tests.h"
 
 namespace vitrine::raster {
@@ -86,9 +87,23 @@ bool has_whole_blocks(const PipelinePlan& plan) {
 
 void begin_observed(TileWorker& worker, std::uint32_t tile) {
   const DrawCall& call = worker.draw->call;
-  worker.watch = call.observer->watch_tile(call.vertex_resources.command, tile);
-  if (!worker.watch) worker.watch = std::make_unique<DrawWatch>();
-  worker.tells_whole_blocks = worker.watch->takes_whole_blocks() && has_whole_blocks(*worker.draw->plan);
+  const spirv::ObservedCommand* const command = call.vertex_resources.command;
+  std::unique_ptr<DrawWatch> one =
+      call.tile_observer ? call.tile_observer->watch_tile(command, place_of(worker)) : nullptr;
+  if (call.observer) {
+    worker.watch = call.observer->watch_tile(command, tile);
+    if (!worker.watch) worker.watch = std::make_unique<DrawWatch>();
+  }
+  if (one && worker.watch) {
+    auto both = std::make_unique<DrawWatches>();
+    both->add(std::move(worker.watch));
+    both->add(std::move(one));
+    worker.watch = std::move(both);
+  } else if (one) {
+    worker.watch = std::move(one);
+  }
+  worker.tells_whole_blocks =
+      worker.watch && worker.watch->takes_whole_blocks() && has_whole_blocks(*worker.draw->plan);
 }
 
 bool is_inside_region(const PipelinePlan& plan, const Primitive& primitive, int x0, int y0, int x1, int y1) {
@@ -136,6 +151,7 @@ void tell_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
   FragmentGroup& group = worker.told.group;
   place_block(x, y, group.position);
   std::fill(std::begin(group.primitive), std::end(group.primitive), primitive.id);
+  std::fill(std::begin(group.from), std::end(group.from), &primitive);
   group.layer = worker.target.layer;
   std::copy_n(block.lanes, worker.draw->plan->samples, worker.told.left);
 }
@@ -143,7 +159,11 @@ void tell_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
 void tell_wave(TileWorker& worker, const PackedWave& wave) {
   FragmentGroup& group = worker.told.group;
   group.position = wave.position;
-  for (std::uint32_t q = 0; q < wave.quads; ++q) group.primitive[q] = wave.primitive[wave.slot[q]]->id;
+  for (std::uint32_t q = 0; q < wave.quads; ++q) {
+    group.from[q] = wave.primitive[wave.slot[q]];
+    group.primitive[q] = group.from[q]->id;
+  }
+  std::fill(group.from + wave.quads, std::end(group.from), nullptr);
   group.layer = worker.target.layer;
   std::copy_n(wave.coverage, worker.draw->plan->samples, worker.told.left);
 }
@@ -174,6 +194,12 @@ void tell_tests(TileWorker& worker, const FailedTests* failed, std::uint32_t fro
   }
   if (plan.tests.depth_write) tell_written(worker, worker.pass->depth, passed);
   if (plan.tests.stencil) tell_written(worker, worker.pass->stencil, replaced);
+}
+
+void tell_block_depths(TileWorker& worker, const Primitive& primitive, int x, int y, std::uint32_t sample) {
+  if (!worker.draw->plan->tests.depth) return;
+  block_depths(worker, primitive, x, y, sample);
+  worker.watch->testing(worker.told.group, sample, worker.depth);
 }
 
 void tell_colors(TileWorker& worker, const texel::ImageView& view, const LaneMask* kept, std::uint32_t first,

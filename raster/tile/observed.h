@@ -5,7 +5,11 @@
 
 namespace vitrine::raster {
 
-/// Begins to watch the tile for its draw.
+/// The tile at hand, for who observes tiles.
+inline TilePlace place_of(const TileWorker& worker) {
+  return {worker.pass, worker.target.x, worker.target.y, worker.target.layer};
+}
+/// Begins to watch the tile for its draw, if anybody does.
 void begin_observed(TileWorker& worker, std::uint32_t tile);
 
 /// Whether pixels (x0, y0) to (x1, y1) are inside the primitive's draw region.
@@ -28,6 +32,8 @@ void tell_lost(TileWorker& worker, FragmentTest test, const base::LaneMask* kept
 /// Tests of depth and stencil, by sample; `front`: bit q is the facing of quad q. `writes`: they have written, too.
 void tell_tests(TileWorker& worker, const FailedTests* failed, std::uint32_t front, std::uint32_t first,
                 std::uint32_t end, bool writes);
+/// The depth test, of a sample of the block at (x, y), compares the primitive's depths.
+void tell_block_depths(TileWorker& worker, const Primitive& primitive, int x, int y, std::uint32_t sample);
 /// Samples [first, end) of `kept` have been written to a colour attachment.
 void tell_colors(TileWorker& worker, const texel::ImageView& view, const base::LaneMask* kept, std::uint32_t first,
                  std::uint32_t end);

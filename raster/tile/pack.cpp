@@ -142,6 +142,8 @@ void emit_observed_block(TileWorker& worker, const Primitive& primitive, int x, 
   if (!plan.shades) return count_block(worker, block);
   const base::LaneMask quads = base::quads_of_lanes(any);
   if (quads != base::kFirstOfQuads) {
+    // Who watches pixels sees what each fragment finds there and leaves.
+    if (worker.draw->call.tile_observer && waits_in_wave(worker, x, y, quads)) shade_wave(worker, worker.wave);
     append_quads(worker, primitive, x, y, rasterized, block, quads);
     return;
   }

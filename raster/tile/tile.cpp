@@ -105,7 +105,7 @@ void rasterize_observed(TileWorker& worker, const TileItem& item, std::uint32_t 
 
 void begin_draw(TileWorker& worker, const DrawRecord* draw, std::uint32_t tile) {
   worker.draw = draw;
-  if (draw->call.observer) begin_observed(worker, tile);
+  if (draw->call.observer || draw->call.tile_observer) begin_observed(worker, tile);
   worker.counts = draw->call.queries.occlusion || draw->call.queries.statistics;
   worker.wave.quads = worker.wave.slots = 0;
   if (draw->plan->shades && !(worker.bound == draw->fragment)) {
@@ -169,6 +169,13 @@ bool leaves_marks(const TileItem& item) {
 /// Whether somebody observes the draw of an item.
 bool is_observed(const TileItem& item) {
   return !item.clear && (item.draw->call.fragment_resources.command || item.draw->call.observer);
+}
+
+/// Whether somebody observes the tile: all draws of a pass have the same observer of tiles.
+bool is_watched(const TileWorker& worker, const std::vector<TileItem>& items) {
+  const auto drawn = std::find_if(items.begin(), items.end(), [](const TileItem& item) { return !item.clear; });
+  const TileObserver* const observer = drawn == items.end() ? nullptr : drawn->draw->call.tile_observer;
+  return observer && observer->watches(place_of(worker));
 }
 
 /// Whether the draw of an item does more than give colours.
@@ -248,7 +255,7 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
   worker.planes_of = nullptr;
   worker.pool.reset();
   if (pass.depth.format) worker.hierarchy.reset();
-  const TileStart start = first_visible(worker, items, leaves_traces);
+  const TileStart start = is_watched(worker, items) ? TileStart{} : first_visible(worker, items, leaves_traces);
   std::optional<TileStart> visible;  // colours from here on; of what is before, observers of draws are only told
   Prefetcher prefetcher(items, start);
   for (std::size_t i = 0; i < items.size(); ++i) {

@@ -25,16 +25,46 @@ const Instruction* hook(Wave& wave, const Instruction* i) {
   return program.observation->hooked[index](wave, i);
 }
 
+const Instruction* hook_discard(Wave& wave, const Instruction* i) {
+  const Program& program = *wave.program;
+  const auto index = static_cast<std::size_t>(i - program.code.data());
+  if (wave.watch != nullptr) wave.watch->discard(wave, i, program.notes[index]);
+  return program.observation->hooked[index](wave, i);
+}
+
+/// Who tells of an instruction; null: nobody wants to know.
+Handler hook_of(const Interest& wanted, Access access, Handler handler) {
+  switch (access) {
+    case Access::kNone:
+      return wanted.discards && (handler == demote_all || handler == demote_if) ? hook_discard : nullptr;
+    case Access::kImage:
+      return wanted.accesses || wanted.images ? hook : nullptr;
+    default:
+      return wanted.accesses ? hook : nullptr;
+  }
+}
+
 }  // namespace
 
-void hook_accesses(Program& program) {
+base::LaneMask discarded_lanes(const Wave& wave, const Instruction* i) {
+  const Handler handler = wave.program->observation->hooked[static_cast<std::size_t>(i - wave.program->code.data())];
+  const base::LaneMask active = wave.active & wave.live;
+  return handler == demote_if ? active & wave.masks[i->src[0] / sizeof(base::LaneMask)] : active;
+}
+
+void hook_instructions(Program& program) {
   Observation observation = *program.observation;
+  const Interest& wanted = observation.interest;
   observation.hooked.assign(program.code.size(), nullptr);
+  bool any = false;
   for (std::size_t i = 0; i < program.code.size(); ++i) {
-    if (program.notes[i].access == Access::kNone) continue;
-    observation.hooked[i] = std::exchange(program.code[i].handler, hook);
+    const Handler by = hook_of(wanted, program.notes[i].access, program.code[i].handler);
+    if (by == nullptr) continue;
+    observation.hooked[i] = std::exchange(program.code[i].handler, by);
+    any = true;
   }
-  program.observation = std::make_shared<const Observation>(std::move(observation));
+  const bool nothing_else = wanted == Interest{.images = wanted.images, .discards = wanted.discards};
+  program.observation = any || !nothing_else ? std::make_shared<const Observation>(std::move(observation)) : nullptr;
 }
 
 void execute_observed(Wave& wave, const Instruction* start) {

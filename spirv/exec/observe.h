@@ -21,6 +21,8 @@ class Watch {
   virtual void after(const Wave&, const Instruction*, const Instruction* /*next*/) {}
   /// Before an instruction that reads or writes memory or an image, if Interest::accesses.
   virtual void access(const Wave&, const Instruction*, const InstructionNote&) {}
+  /// Before an instruction that may end invocations, if Interest::discards.
+  virtual void discard(const Wave&, const Instruction*, const InstructionNote&) {}
   /// The active lanes come by a probe.
   virtual void probe(const Wave&, const ProbeOp&) {}
 };
@@ -29,6 +31,8 @@ class Watch {
 struct Interest {
   bool instructions = false;    ///< all of them: no chains, every instruction leaves its result in a register
   bool accesses = false;        ///< of memory and images: each stays where and what the shader has it
+  bool images = false;          ///< accesses of images alone: nothing else changes
+  bool discards = false;        ///< instructions by which fragments end
   bool arithmetic = false;      ///< probes of operations that are undefined for some operands
   bool numbers = false;         ///< probes of floating-point results
   bool initialization = false;  ///< probes of variables that may not have been written where they are read
@@ -64,8 +68,9 @@ struct Observation {
   std::vector<Handler> hooked;  ///< per instruction that is watched: what it does; null: it is not
 };
 
-/// Lets the wave's watch be told before every instruction of `program` that accesses memory.
-void hook_accesses(Program& program);
+/// Lets the wave's watch be told before the instructions of `program` that its observer wants to know of: accesses and
+/// discards. A program without any is not observed if the observer wants nothing else.
+void hook_instructions(Program& program);
 
 /// As execute(), for a program with an Observation.
 void execute_observed(Wave& wave, const Instruction* start);
@@ -74,6 +79,9 @@ void execute_observed(Wave& wave, const Instruction* start);
 inline const InstructionNote& waits_at(const Wave& wave) {
   return wave.program->notes[static_cast<std::size_t>(wave.resume - wave.program->code.data()) - 1];
 }
+
+/// Of a hooked discard: the lanes that it ends.
+base::LaneMask discarded_lanes(const Wave& wave, const Instruction* i);
 
 /// The lanes that come by a probe.
 base::LaneMask lanes_at(const Wave& wave, const ProbeOp& op);

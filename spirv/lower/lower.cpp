@@ -48,8 +48,8 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   program->zeroed_shared = interface.zeroed_shared;
   if (observer) {
     program->observation = std::make_shared<exec::Observation>(exec::Observation{observer, interface, interest, {}});
-    if (interest.accesses) exec::hook_accesses(*program);
-    observer->made(*program);
+    if (interest.accesses || interest.images || interest.discards) exec::hook_instructions(*program);
+    if (program->observation) observer->made(*program);
   }
   if (base::log_enabled("shader")) base::log("shader", disassemble(*program));
   return std::make_unique<Shader>(std::move(interface), std::unique_ptr<const Program>(std::move(program)));

@@ -22,7 +22,7 @@ RASTER_PARTS = [
     ["front", "tile"],
     ["primitive"],
     ["plan"],
-    ["output", "pass_desc", "topology"],
+    ["draw_watches", "output", "pass_desc", "topology"],
     ["draw", "observe"],
     ["arena", "lane_bits", "pixel_order", "pixel_rect", "sample_locations", "stage"],
 ]

@@ -1,0 +1,58 @@
+// The tool `pixel`: what happened to the texels that VITRINE_PIXEL names, as JSON in VITRINE_PIXEL_HISTORY ("%p" is the
+// process; default pixel.json). VITRINE_PIXEL_UNTIL: "frame=N" or "submission=N", after which nothing is recorded.
+#include <cstdlib>
+#include <cstring>
+
+#include "base/lasting.h"
+#include "glass/output.h"
+#include "glass/pixel/shader_watch.h"
+#include "glass/tools.h"
+
+namespace vitrine::glass {
+namespace pixel {
+namespace {
+
+std::unique_ptr<Pixels>& instance() {
+  static std::unique_ptr<Pixels>& pixels = base::lasting([] { return std::unique_ptr<Pixels>(); });
+  return pixels;
+}
+
+std::uint64_t limit(const char* text, const char* key) {
+  const std::size_t length = std::strlen(key);
+  return text != nullptr && std::strncmp(text, key, length) == 0 ? std::strtoull(text + length, nullptr, 10) : 0;
+}
+
+std::unique_ptr<Pixels> make_pixels() {
+  const char* const text = std::getenv("VITRINE_PIXEL");
+  std::string error;
+  auto requests = parse_requests(text != nullptr ? text : "", error);
+  if (!requests) {
+    complain("VITRINE_PIXEL: " + error + "; \"320,240:image=NAME\" would");
+    requests.emplace();
+  }
+  const char* const until = std::getenv("VITRINE_PIXEL_UNTIL");
+  return std::make_unique<Pixels>(std::move(*requests), limit(until, "frame="), limit(until, "submission="));
+}
+
+class PixelTool final : public Tool {
+ public:
+  PixelTool() { instance() = make_pixels(); }
+
+  spirv::exec::Interest interest() const override { return {.images = true, .discards = true}; }
+  std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
+    return std::make_shared<PixelProgram>(*pixels(), shader, program);
+  }
+  bool needs_every_fragment() const override { return false; }
+  void commands_done(const void* owner) override { pixels()->commands_done(owner); }
+  void write() override { write_output("VITRINE_PIXEL_HISTORY", "pixel.json", pixels()->to_json()); }
+};
+
+}  // namespace
+
+Pixels* pixels() { return instance().get(); }
+
+}  // namespace pixel
+
+std::unique_ptr<Tool> make_pixel() { return std::make_unique<pixel::PixelTool>(); }
+
+}  // namespace vitrine::glass

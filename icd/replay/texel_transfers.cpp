@@ -1,0 +1,268 @@
+// What transfers do to watched texels, and which texels they read for that (Vulkan 1.3.239, Copy Commands).
+#include <algorithm>
+#include <cmath>
+
+#include "icd/object/image.h"
+#include "icd/object/memory.h"
+#include "icd/replay/texel_events.h"
+
+namespace vitrine::icd {
+namespace {
+
+using TexelEvent = glass::pixel::Event;
+using glass::pixel::EventKind;
+using glass::pixel::Source;
+using glass::pixel::Texel;
+using glass::pixel::TexelId;
+
+/// A texel with the third coordinate that transfers count in: layers, or slices of a 3D image.
+struct Place {
+  std::int64_t x = 0, y = 0, z = 0;
+};
+
+Place place_of(const Image& image, const TexelId& id) {
+  return {id.x, id.y, image.desc().type == VK_IMAGE_TYPE_3D ? id.slice : id.layer};
+}
+
+const texel::PlaneLayout& plane_of(const Image& image, VkImageAspectFlags aspect) {
+  return image.layout.plane[texel::plane_of_aspect(image.layout, static_cast<VkImageAspectFlagBits>(aspect))];
+}
+
+const texel::FormatDesc& format_of(const Image& image, VkImageAspectFlags aspect) {
+  return texel::format_desc(plane_of(image, aspect).format);
+}
+
+/// A texel of an image as a source; image 0: the image does not have it.
+Source source_of(const ReplayState& state, const Image& image, VkImageAspectFlags aspect, std::uint32_t level,
+                 std::uint32_t sample, const Place& at, float weight) {
+  const texel::PlaneLayout& plane = plane_of(image, aspect);
+  const texel::LevelLayout& layout = plane.level[level];
+  const texel::FormatDesc& format = texel::format_desc(plane.format);
+  const bool slices = image.desc().type == VK_IMAGE_TYPE_3D;
+  const std::int64_t depth = slices ? layout.extent.depth : image.desc().layers;
+  const std::byte* const memory =
+      image.memory_of_plane(texel::plane_of_aspect(image.layout, static_cast<VkImageAspectFlagBits>(aspect)));
+  if (memory == nullptr || at.x < 0 || at.y < 0 || at.z < 0 || at.x >= layout.extent.width ||
+      at.y >= layout.extent.height || at.z >= depth)
+    return {};
+  const auto number = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
+  const std::uint64_t offset = plane.offset + layout.offset +
+                               number(at.z) * (slices ? layout.slice_pitch : plane.layer_stride) +
+                               sample * layout.sample_stride + number(at.y) / format.block_height * layout.row_pitch +
+                               number(at.x) / format.block_width * format.block_bytes;
+  return state.observed->pixels->source_at(memory + offset, format, weight);
+}
+
+/// Whether a texel of an image lies in a level and layers that a region names.
+bool in_layers(const Image& image, const VkImageSubresourceLayers& layers, const TexelId& id) {
+  if (id.level != layers.mipLevel || (layers.aspectMask & id.aspect) == 0) return false;
+  return image.desc().type == VK_IMAGE_TYPE_3D ||
+         (id.layer >= layers.baseArrayLayer && id.layer - layers.baseArrayLayer < layers.layerCount);
+}
+
+std::int64_t first_z(const Image& image, const VkImageSubresourceLayers& layers, const VkOffset3D& offset) {
+  return image.desc().type == VK_IMAGE_TYPE_3D ? offset.z : std::int64_t{layers.baseArrayLayer};
+}
+
+void add(const ReplayState& state, Texel& texel, TexelEvent event, const Source& source) {
+  if (source.texel.image != 0) event.sources.push_back(source);
+  state.observed->pixels->add(texel, std::move(event));
+}
+
+/// One region of a copy on one texel.
+void note_copy(const ReplayState& state, const CmdCopyImage& command, const VkImageCopy& region, Texel& texel) {
+  const Image &from = *command.source, &to = *command.target;
+  const VkImageAspectFlags same = region.srcSubresource.aspectMask & texel.id.aspect;
+  const VkImageAspectFlags aspect = same != 0 ? same : region.srcSubresource.aspectMask;
+  if (texel.id.level != region.dstSubresource.mipLevel || (region.dstSubresource.aspectMask & texel.id.aspect) == 0)
+    return;
+  const texel::FormatDesc &source = format_of(from, aspect), &target = *texel.format;
+  const Place at = place_of(to, texel.id);
+  const std::int64_t column = at.x / target.block_width - region.dstOffset.x / target.block_width;
+  const std::int64_t row = at.y / target.block_height - region.dstOffset.y / target.block_height;
+  const std::int64_t slice = at.z - first_z(to, region.dstSubresource, region.dstOffset);
+  const auto blocks = [](std::uint32_t texels, std::uint32_t size) { return (texels + size - 1) / size; };
+  const bool inside =
+      column >= 0 && row >= 0 && slice >= 0 && column < blocks(region.extent.width, source.block_width) &&
+      row < blocks(region.extent.height, source.block_height) &&
+      slice < std::max({region.extent.depth, region.srcSubresource.layerCount, region.dstSubresource.layerCount});
+  if (!inside) return;
+  const Place read{(region.srcOffset.x / source.block_width + column) * source.block_width,
+                   (region.srcOffset.y / source.block_height + row) * source.block_height,
+                   first_z(from, region.srcSubresource, region.srcOffset) + slice};
+  add(state, texel, texel_event(state, EventKind::kCopy, "copied from another texel"),
+      source_of(state, from, aspect, region.srcSubresource.mipLevel, texel.id.sample, read, 1));
+}
+
+/// One axis of a blit: which texels, with which weights.
+struct Taps {
+  std::int64_t at[2] = {};
+  float weight[2] = {1, 0};
+};
+
+/// The middle of texel `to` in texels of the source; nothing: the region does not have it.
+std::optional<double> blit_coordinate(std::int64_t to, const std::int32_t (&target)[2],
+                                      const std::int32_t (&source)[2]) {
+  const std::int64_t low = std::min(target[0], target[1]), high = std::max(target[0], target[1]);
+  if (to < low || to >= high) return std::nullopt;
+  const double part = (static_cast<double>(to) + 0.5 - target[0]) / (target[1] - target[0]);
+  return source[0] + part * (source[1] - source[0]);
+}
+
+Taps taps_of(double u, bool linear, std::int64_t size) {
+  const auto clamp = [&](double value) {
+    return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(value)), 0, size - 1);
+  };
+  if (!linear) return {{clamp(u), 0}, {1, 0}};
+  const double fraction = u - 0.5 - std::floor(u - 0.5);
+  return {{clamp(u - 0.5), clamp(u + 0.5)}, {static_cast<float>(1 - fraction), static_cast<float>(fraction)}};
+}
+
+void add_taps(const ReplayState& state, const CmdBlitImage& command, const VkImageBlit& region,
+              VkImageAspectFlags aspect, const Taps (&taps)[3], TexelEvent& event) {
+  for (int z = 0; z < 2; ++z)
+    for (int y = 0; y < 2; ++y)
+      for (int x = 0; x < 2; ++x) {
+        const float weight = taps[0].weight[x] * taps[1].weight[y] * taps[2].weight[z];
+        if (weight == 0) continue;
+        Source source = source_of(state, *command.source, aspect, region.srcSubresource.mipLevel, 0,
+                                  {taps[0].at[x], taps[1].at[y], taps[2].at[z]}, weight);
+        const auto known = std::ranges::find(event.sources, source.texel, &Source::texel);
+        if (known != event.sources.end())
+          known->weight += weight;
+        else if (source.texel.image != 0)
+          event.sources.push_back(std::move(source));
+      }
+}
+
+void note_blit(const ReplayState& state, const CmdBlitImage& command, const VkImageBlit& region, Texel& texel) {
+  const Image &from = *command.source, &to = *command.target;
+  if (!in_layers(to, region.dstSubresource, texel.id)) return;
+  const Place at = place_of(to, texel.id);
+  const VkOffset3D(&d)[2] = region.dstOffsets;
+  const VkOffset3D(&s)[2] = region.srcOffsets;
+  const auto x = blit_coordinate(at.x, {d[0].x, d[1].x}, {s[0].x, s[1].x});
+  const auto y = blit_coordinate(at.y, {d[0].y, d[1].y}, {s[0].y, s[1].y});
+  const bool slices = to.desc().type == VK_IMAGE_TYPE_3D;
+  const auto z = slices ? blit_coordinate(at.z, {d[0].z, d[1].z}, {s[0].z, s[1].z})
+                        : std::optional(double(region.srcSubresource.baseArrayLayer) + 0.5 +
+                                        double(at.z - region.dstSubresource.baseArrayLayer));
+  if (!x || !y || !z) return;
+  const texel::Extent& extent = plane_of(from, texel.id.aspect).level[region.srcSubresource.mipLevel].extent;
+  const bool linear = command.filter != VK_FILTER_NEAREST, volume = from.desc().type == VK_IMAGE_TYPE_3D;
+  const Taps taps[3] = {taps_of(*x, linear, extent.width), taps_of(*y, linear, extent.height),
+                        taps_of(*z, linear && volume, volume ? extent.depth : from.desc().layers)};
+  TexelEvent event = texel_event(state, EventKind::kBlit, "blitted from other texels");
+  add_taps(state, command, region, texel.id.aspect, taps, event);
+  state.observed->pixels->add(texel, std::move(event));
+}
+
+void note_resolve(const ReplayState& state, const CmdResolveImage& command, const VkImageResolve& region,
+                  Texel& texel) {
+  const Image &from = *command.source, &to = *command.target;
+  const Place at = place_of(to, texel.id);
+  const std::int64_t x = at.x - region.dstOffset.x, y = at.y - region.dstOffset.y;
+  const std::int64_t z = at.z - first_z(to, region.dstSubresource, region.dstOffset);
+  if (!in_layers(to, region.dstSubresource, texel.id) || x < 0 || y < 0 || z < 0 || x >= region.extent.width ||
+      y >= region.extent.height)
+    return;
+  TexelEvent event = texel_event(state, EventKind::kResolve, "resolved from the samples of another texel");
+  const std::uint32_t samples = std::max(from.desc().samples, 1u);
+  for (std::uint32_t s = 0; s < samples; ++s)
+    event.sources.push_back(source_of(
+        state, from, texel.id.aspect, region.srcSubresource.mipLevel, s,
+        {region.srcOffset.x + x, region.srcOffset.y + y, first_z(from, region.srcSubresource, region.srcOffset) + z},
+        1 / static_cast<float>(samples)));
+  state.observed->pixels->add(texel, std::move(event));
+}
+
+void note_upload(const ReplayState& state, const CmdCopyBufferToImage& command, const VkBufferImageCopy& r,
+                 Texel& texel) {
+  const Image& to = *command.target;
+  const Place at = place_of(to, texel.id);
+  const std::int64_t x = at.x - r.imageOffset.x, y = at.y - r.imageOffset.y;
+  const std::int64_t z = at.z - first_z(to, r.imageSubresource, r.imageOffset);
+  if (!in_layers(to, r.imageSubresource, texel.id) || x < 0 || y < 0 || z < 0 || x >= r.imageExtent.width ||
+      y >= r.imageExtent.height || z >= std::max(r.imageExtent.depth, r.imageSubresource.layerCount))
+    return;
+  const texel::FormatDesc& format = *texel.format;
+  const auto blocks = [](std::int64_t texels, std::int64_t size) { return (texels + size - 1) / size; };
+  const std::int64_t columns = blocks(r.bufferRowLength ? r.bufferRowLength : r.imageExtent.width, format.block_width);
+  const std::int64_t rows =
+      blocks(r.bufferImageHeight ? r.bufferImageHeight : r.imageExtent.height, format.block_height);
+  const std::int64_t block = (z * rows + y / format.block_height) * columns + x / format.block_width;
+  const std::uint64_t offset = r.bufferOffset + static_cast<std::uint64_t>(block) * format.block_bytes;
+  std::string text = "copied from bytes at offset " + std::to_string(offset) + " of buffer ";
+  if (command.source->data) text += describe_bytes(state.device, command.source->data, command.source->size);
+  state.observed->pixels->add(texel, texel_event(state, EventKind::kUpload, std::move(text)));
+}
+
+/// Calls f(texel) for the watched texels of some levels and layers.
+template <class F>
+void for_each_in(const ReplayState& state, const Image& image, const VkImageSubresourceRange& recorded, F&& f) {
+  const std::vector<Texel*> texels = state.observed->pixels->texels_of(&image);
+  if (texels.empty()) return;
+  const VkImageSubresourceRange range = resolve_range(image, recorded);
+  const VkImageAspectFlags planes = (range.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) && image.layout.plane_count > 1
+                                        ? ~VkImageAspectFlags{0}
+                                        : range.aspectMask;
+  const auto inside = [](std::uint32_t at, std::uint32_t first, std::uint32_t count) {
+    return at >= first && at - first < count;
+  };
+  for (Texel* texel : texels) {
+    const TexelId& id = texel->id;
+    const bool layered =
+        image.desc().type == VK_IMAGE_TYPE_3D || inside(id.layer, range.baseArrayLayer, range.layerCount);
+    if ((planes & id.aspect) != 0 && layered && inside(id.level, range.baseMipLevel, range.levelCount)) f(*texel);
+  }
+}
+
+/// Calls f(region, texel) for all regions of a command on the watched texels of its target.
+template <class Command, class F>
+void for_each_region(const ReplayState& state, const Command& command, F&& f) {
+  const std::vector<Texel*> texels = state.observed->pixels->texels_of(command.target);
+  for (const auto& region : command.regions)
+    for (Texel* texel : texels) f(region, *texel);
+}
+
+}  // namespace
+
+void note_texels(ReplayState& state, const CmdCopyImage& command) {
+  for_each_region(state, command, [&](const VkImageCopy& r, Texel& t) { note_copy(state, command, r, t); });
+}
+
+void note_texels(ReplayState& state, const CmdBlitImage& command) {
+  for_each_region(state, command, [&](const VkImageBlit& r, Texel& t) { note_blit(state, command, r, t); });
+}
+
+void note_texels(ReplayState& state, const CmdResolveImage& command) {
+  for_each_region(state, command, [&](const VkImageResolve& r, Texel& t) { note_resolve(state, command, r, t); });
+}
+
+void note_texels(ReplayState& state, const CmdCopyBufferToImage& command) {
+  for_each_region(state, command, [&](const VkBufferImageCopy& r, Texel& t) { note_upload(state, command, r, t); });
+}
+
+void note_texels(ReplayState& state, const CmdClearColorImage& command) {
+  for (const VkImageSubresourceRange& range : command.ranges)
+    for_each_in(state, *command.image, range, [&](Texel& texel) {
+      state.observed->pixels->add(texel, texel_event(state, EventKind::kClear, "cleared"));
+    });
+}
+
+void note_texels(ReplayState& state, const CmdClearDepthStencilImage& command) {
+  for (const VkImageSubresourceRange& range : command.ranges)
+    for_each_in(state, *command.image, range, [&](Texel& texel) {
+      state.observed->pixels->add(texel, texel_event(state, EventKind::kClear, "cleared"));
+    });
+}
+
+void note_texels(ReplayState& state, const CmdDiscardImages& command) {
+  for (const DiscardedImage& discarded : command.images)
+    for_each_in(state, *discarded.image, discarded.range, [&](Texel& texel) {
+      state.observed->pixels->add(
+          texel, texel_event(state, EventKind::kUndefined, "undefined by a barrier from VK_IMAGE_LAYOUT_UNDEFINED"));
+    });
+}
+
+}  // namespace vitrine::icd
