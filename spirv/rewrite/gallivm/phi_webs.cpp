@@ -14,6 +14,8 @@ using Kind = Inst::Kind;
 
 /// Values times blocks: what is above costs more than it is worth.
 constexpr std::size_t kMaxLiveness = std::size_t{1} << 25;
+/// Pairs of definitions to compare, likewise.
+constexpr std::size_t kMaxPairs = std::size_t{1} << 24;
 
 class Coalescer {
  public:
@@ -29,7 +31,7 @@ class Coalescer {
       for (const std::uint32_t copy : copies_[&join - order_.joins.data()])
         if (copy != kNone) merge(phi_node(join), copy);
     for (BlockId block = 0; block < order_.blocks.size(); ++block) coalesce(block);
-    publish();
+    if (pairs_ <= kMaxPairs) publish();
     return std::move(webs_);
   }
 
@@ -129,7 +131,9 @@ class Coalescer {
     return a.block == b.block && b.position < a.last;
   }
 
-  bool sets_interfere(std::uint32_t a, std::uint32_t b) const {
+  bool sets_interfere(std::uint32_t a, std::uint32_t b) {
+    pairs_ += members_[a].size() * members_[b].size();
+    if (pairs_ > kMaxPairs) return true;
     for (const std::uint32_t x : members_[a])
       for (const std::uint32_t y : members_[b])
         if (interfere(nodes_[x], nodes_[y])) return true;
@@ -164,6 +168,7 @@ class Coalescer {
 
   const Graph& graph_;
   const ProgramOrder order_;
+  std::size_t pairs_ = 0;
   PhiWebs webs_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> node_of_;                ///< per value
