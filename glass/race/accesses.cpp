@@ -42,7 +42,7 @@ class Recorder {
   void buffer(const MemoryOp& row);
   void global(const MemoryOp& row);
   bool row_of_words(const MemoryOp& row, const Words& offsets, std::uint64_t base, std::uint64_t size);
-  void lane(const MemoryOp& row, std::size_t lane, std::uint64_t base, std::uint32_t offset, std::uint64_t size);
+  void range(const MemoryOp& row, const Words& offsets, base::LaneMask lanes, std::uint64_t base, std::uint64_t size);
   void bytes(std::size_t lane, std::uint64_t address, std::uint32_t count, std::uint32_t value);
   const std::uint32_t* values_of(const MemoryOp& row, std::uint32_t component) const;
 
@@ -71,16 +71,25 @@ void Recorder::bytes(std::size_t lane, std::uint64_t address, std::uint32_t coun
   }
 }
 
-void Recorder::lane(const MemoryOp& row, std::size_t lane, std::uint64_t base, std::uint32_t offset,
-                    std::uint64_t size) {
+void Recorder::range(const MemoryOp& row, const Words& offsets, base::LaneMask lanes, std::uint64_t base,
+                     std::uint64_t size) {
   const sanitize::Touched touched = sanitize::touched_by(row, note_.access);
   const std::uint32_t component_bytes = row.element_bytes;
+  std::uint64_t words[base::kWaveWidth];
   for (std::uint32_t c = 0; c < touched.count; ++c) {
-    const std::uint32_t at = offset + touched.at[c];
-    if (std::uint64_t{at} + component_bytes > size) continue;  // another tool's
     const std::uint32_t component = (touched.at[c] - row.added) / component_bytes;
     const std::uint32_t* const values = component < 4 ? values_of(row, component) : nullptr;
-    bytes(lane, base + at, component_bytes, values != nullptr ? values[lane] : 0);
+    base::LaneMask whole = 0;
+    base::for_each_lane(lanes, [&](std::size_t lane) {
+      const std::uint32_t at = offsets[lane] + touched.at[c];
+      if (std::uint64_t{at} + component_bytes > size) return;  // another tool's
+      words[lane] = (base + at) / 4;
+      if (component_bytes == 4 && ((base + at) & 3) == 0)
+        whole |= base::LaneMask{1} << lane;
+      else
+        bytes(lane, base + at, component_bytes, values != nullptr ? values[lane] : 0);
+    });
+    group_.touch_words(site_, whole, words, first_, names_, values);
   }
 }
 
@@ -104,18 +113,18 @@ bool Recorder::row_of_words(const MemoryOp& row, const Words& offsets, std::uint
 void Recorder::shared(const MemoryOp& row) {
   const Words offsets(wave_, {note_.files[1], i_->src[0]});
   if (row_of_words(row, offsets, 0, wave_.shared_size)) return;
-  base::for_each_lane(lanes_, [&](std::size_t l) { lane(row, l, 0, offsets[l], wave_.shared_size); });
+  range(row, offsets, lanes_, 0, wave_.shared_size);
 }
 
 void Recorder::buffer(const MemoryOp& row) {
   const Words offsets(wave_, {note_.files[1], i_->src[0]});
-  spirv::exec::for_each_buffer(
-      const_cast<Wave&>(wave_), row, lanes_, [&](const spirv::exec::Bytes& bytes, base::LaneMask same) {
-        if (bytes.data == nullptr) return;
-        const auto base = reinterpret_cast<std::uintptr_t>(bytes.data);
-        if (same == lanes_ && row_of_words(row, offsets, base, bytes.size)) return;
-        base::for_each_lane(same, [&](std::size_t l) { lane(row, l, base, offsets[l], bytes.size); });
-      });
+  spirv::exec::for_each_buffer(const_cast<Wave&>(wave_), row, lanes_,
+                               [&](const spirv::exec::Bytes& bytes, base::LaneMask same) {
+                                 if (bytes.data == nullptr) return;
+                                 const auto base = reinterpret_cast<std::uintptr_t>(bytes.data);
+                                 if (same == lanes_ && row_of_words(row, offsets, base, bytes.size)) return;
+                                 range(row, offsets, same, base, bytes.size);
+                               });
 }
 
 void Recorder::global(const MemoryOp& row) {

@@ -142,8 +142,7 @@ void Group::touch(std::uint32_t site, std::uint32_t who, const Touch& touch) {
 }
 
 bool Group::fast(const Site& site) const {
-  return !whole_ && !site.is_atomic() && !site.is_private && !order_.hides(site.memory) && !interlocked_ &&
-         program_->compute();
+  return !whole_ && !site.is_atomic() && !order_.hides(site.memory) && !interlocked_ && program_->compute();
 }
 
 void Group::touch_row(std::uint32_t site, std::uint32_t first, std::uint64_t word, const std::uint32_t* values) {
@@ -154,8 +153,9 @@ void Group::touch_row(std::uint32_t site, std::uint32_t first, std::uint64_t wor
     const std::uint32_t count = std::min<std::uint32_t>(kPageWords - k, base::kWaveWidth - lane);
     Page& page = page_of(now, word + lane);
     const std::uint32_t who = first + lane;
-    bool slow = !fast(now) || any_other(page.write, k, count, who, from) ||
-                any_other(page.atomic, k, count, who, from) || any_other(page.read, k, count, who, from);
+    const std::uint32_t written = values != nullptr ? from : writes_from(now);
+    bool slow = !fast(now) || any_other(page.write, k, count, who, written) ||
+                any_other(page.atomic, k, count, who, written) || any_other(page.read, k, count, who, from);
     if (!slow && values != nullptr) slow = any_other(page.other, k, count, who, from);
     if (slow) {
       for (std::uint32_t i = 0; i < count; ++i)
@@ -166,6 +166,49 @@ void Group::touch_row(std::uint32_t site, std::uint32_t first, std::uint64_t wor
     }
     lane += count;
   }
+}
+
+std::uint32_t Group::writes_from(const Site& site) const {
+  return site.memory != Memory::kShared && program_->sites.has_private ? 1 : order_.from(site.memory);
+}
+
+bool Group::load_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t from,
+                         std::uint32_t writes_from) {
+  const auto other = [&](const Slots& slots, std::uint32_t since) {
+    return slots.time[k] >= since && slots.who[k] != record.who;
+  };
+  if (other(page.write, writes_from) || other(page.atomic, writes_from)) return false;
+  if (!other(page.read, from)) {
+    put(page.read, k, record);
+  } else if (page.other.time[k] < from || page.other.who[k] == page.read.who[k]) {
+    put(page.other, k, record);
+  }
+  return true;
+}
+
+bool Group::store_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t value, std::uint32_t from) {
+  const auto other = [&](const Slots& slots) { return slots.time[k] >= from && slots.who[k] != record.who; };
+  if (other(page.write) || other(page.atomic) || other(page.read) || other(page.other)) return false;
+  put(page.write, k, record);
+  page.value[k] = value;
+  return true;
+}
+
+void Group::touch_words(std::uint32_t site, base::LaneMask lanes, const std::uint64_t* words, std::uint32_t first,
+                        const std::uint32_t* names, const std::uint32_t* values) {
+  const Site& now = program_->sites.all[site];
+  const bool quick = fast(now);
+  const std::uint32_t from = order_.from(now.memory);
+  Record record{0, order_.time(), site << 4 | 15};
+  base::for_each_lane(lanes, [&](std::size_t lane) {
+    record.who = names != nullptr ? names[lane] : first + static_cast<std::uint32_t>(lane);
+    const std::uint32_t value = values != nullptr ? values[lane] : 0;
+    const auto k = static_cast<std::uint32_t>(words[lane] % kPageWords);
+    if (quick && (now.writes() ? store_quickly(page_of(now, words[lane]), k, record, value, from)
+                               : load_quickly(page_of(now, words[lane]), k, record, from, writes_from(now))))
+      return;
+    touch(site, record.who, {words[lane], 15, value});
+  });
 }
 
 Group::WaveState& Group::state(std::uint32_t wave) {

@@ -43,6 +43,9 @@ class Group {
   void touch(std::uint32_t site, std::uint32_t who, const Touch& touch);
   /// The same of 64 lanes and adjacent words, for a load or store of whole words. `values`: of stores; or null.
   void touch_row(std::uint32_t site, std::uint32_t first, std::uint64_t word, const std::uint32_t* values);
+  /// The same of the words `words` of `lanes`; invocations are `names`, or `first` and those behind it.
+  void touch_words(std::uint32_t site, base::LaneMask lanes, const std::uint64_t* words, std::uint32_t first,
+                   const std::uint32_t* names, const std::uint32_t* values);
   /// Whether fragments of a pixel are in their critical section.
   void interlock(bool inside) { interlocked_ = inside; }
 
@@ -60,6 +63,12 @@ class Group {
 
   Page& page_of(const Site& site, std::uint64_t word);
   bool fast(const Site& site) const;
+  /// Writes before this are visible to a load: those that are private never are.
+  std::uint32_t writes_from(const Site& site) const;
+  /// The common case: nobody else has touched the word since the last barrier. False: it is not.
+  static bool load_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t from,
+                           std::uint32_t writes_from);
+  static bool store_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t value, std::uint32_t from);
   void check(const Slots& slots, std::uint32_t k, std::uint32_t site, std::uint32_t who, const Touch& touch,
              const Page& page);
   void tell(const Record& earlier, std::uint32_t site, std::uint32_t who, const Touch& touch, Conflict::Kind kind,

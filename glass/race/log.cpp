@@ -13,18 +13,34 @@ std::uint64_t words_of(const Slots& slots) {
   return words;
 }
 
-void append(std::vector<Detail>& details, const Slots& slots, std::uint64_t words, const std::uint32_t* values) {
-  for (; words != 0; words &= words - 1) {
-    const int k = std::countr_zero(words);
-    details.push_back({slots.who[k], slots.site[k], values != nullptr ? values[k] : 0});
+/// Whether the invocations of `words` lie one behind the other as the words do, at one place.
+bool is_row(const Slots& slots, std::uint64_t words) {
+  const int first = std::countr_zero(words);
+  for (std::uint64_t rest = words; rest != 0; rest &= rest - 1) {
+    const int k = std::countr_zero(rest);
+    if (slots.site[k] != slots.site[first]) return false;
+    if (slots.who[k] - slots.who[first] != static_cast<std::uint32_t>(k - first)) return false;
   }
+  return true;
+}
+
+/// Appends details, one for a row. Returns whether it is one.
+bool append(std::vector<Detail>& details, const Slots& slots, std::uint64_t words, const std::uint32_t* values) {
+  const bool row = words != 0 && is_row(slots, words);
+  for (std::uint64_t rest = words; rest != 0; rest &= rest - 1) {
+    const int k = std::countr_zero(rest);
+    details.push_back({slots.who[k], slots.site[k], values != nullptr ? values[k] : 0});
+    if (row) break;
+  }
+  return row;
 }
 
 /// Holds the entries of one page against each other, in order.
 class PageSweep {
  public:
-  PageSweep(const std::vector<Detail>& details, Pairs& pairs, const spirv::ObservedCommand* command)
-      : details_(details), pairs_(pairs), command_(command) {}
+  PageSweep(const std::vector<Detail>& details, const std::vector<std::uint32_t>& values, Pairs& pairs,
+            const spirv::ObservedCommand* command)
+      : details_(details), values_(values), pairs_(pairs), command_(command) {}
 
   void add(const PageEntry& entry) {
     compare(entry, Kind::kWrite, Kind::kWrite);
@@ -49,12 +65,21 @@ class PageSweep {
   static std::uint64_t words(const PageEntry& entry, Kind kind) {
     return kind == Kind::kWrite ? entry.writes : kind == Kind::kRead ? entry.reads : entry.atomics;
   }
-  const Detail& detail(const PageEntry& entry, Kind kind, std::uint32_t word) const {
+  static std::size_t details_of(const PageEntry& entry, Kind kind) {
+    if (entry.row[static_cast<std::size_t>(kind)]) return 1;
+    return static_cast<std::size_t>(std::popcount(words(entry, kind)));
+  }
+  Detail detail(const PageEntry& entry, Kind kind, std::uint32_t word) const {
     std::size_t at = entry.first;
-    if (kind != Kind::kWrite) at += static_cast<std::size_t>(std::popcount(entry.writes));
-    if (kind == Kind::kAtomic) at += static_cast<std::size_t>(std::popcount(entry.reads));
+    if (kind != Kind::kWrite) at += details_of(entry, Kind::kWrite);
+    if (kind == Kind::kAtomic) at += details_of(entry, Kind::kRead);
     const std::uint64_t before = words(entry, kind) & ((std::uint64_t{1} << word) - 1);
-    return details_[at + static_cast<std::size_t>(std::popcount(before))];
+    const auto number = static_cast<std::size_t>(std::popcount(before));
+    if (!entry.row[static_cast<std::size_t>(kind)]) return details_[at + number];
+    Detail detail = details_[at];
+    detail.who += word - static_cast<std::uint32_t>(std::countr_zero(words(entry, kind)));
+    if (kind == Kind::kWrite) detail.value = values_[entry.values + number];
+    return detail;
   }
   static Access access_of(const PageEntry& entry, const Detail& detail) {
     const std::uint32_t site = (detail.site & ~kInterlocked) >> 4;
@@ -95,6 +120,7 @@ class PageSweep {
   }
 
   const std::vector<Detail>& details_;
+  const std::vector<std::uint32_t>& values_;
   Pairs& pairs_;
   const spirv::ObservedCommand* const command_;
   std::uint64_t seen_[3] = {};
@@ -116,44 +142,59 @@ void CommandLog::add(const Told& program, const Who& who, Shadow& shadow) {
     entry.reads = words_of(page.read);
     entry.atomics = words_of(page.atomic);
     entry.first = details_.size();
-    append(details_, page.write, entry.writes, page.value);
-    append(details_, page.read, entry.reads, nullptr);
-    append(details_, page.atomic, entry.atomics, nullptr);
+    entry.row[0] = append(details_, page.write, entry.writes, page.value);
+    entry.row[1] = append(details_, page.read, entry.reads, nullptr);
+    entry.row[2] = append(details_, page.atomic, entry.atomics, nullptr);
+    entry.values = values_.size();
+    for (std::uint64_t rest = entry.row[0] ? entry.writes : 0; rest != 0; rest &= rest - 1)
+      values_.push_back(page.value[std::countr_zero(rest)]);
     entries_.push_back(entry);
   }
 }
 
+bool CommandLog::less(const PageEntry& a, const PageEntry& b) const {
+  // Waves of draws may be called the same: what they did tells them apart.
+  const auto key = [](const PageEntry& e) {
+    return std::tuple(std::tuple(e.who.group[2], e.who.group[1], e.who.group[0], e.who.local), e.program->context.stage,
+                      e.writes, e.reads, e.atomics);
+  };
+  if (key(a) != key(b)) return key(a) < key(b);
+  const auto content = [&](const PageEntry& entry) {
+    const auto count = [&](std::uint64_t words, bool row) {
+      return row ? std::size_t{1} : static_cast<std::size_t>(std::popcount(words));
+    };
+    return std::span(details_).subspan(
+        entry.first,
+        count(entry.writes, entry.row[0]) + count(entry.reads, entry.row[1]) + count(entry.atomics, entry.row[2]));
+  };
+  const auto left = content(a), right = content(b);
+  return std::lexicographical_compare(
+      left.begin(), left.end(), right.begin(), right.end(), [](const Detail& one, const Detail& other) {
+        return std::tuple(one.who, one.site, one.value) < std::tuple(other.who, other.site, other.value);
+      });
+}
+
 void CommandLog::settle(Pairs& pairs, const spirv::ObservedCommand* command) {
   const std::lock_guard lock(mutex_);
-  // Waves of draws may be called the same: what they did tells them apart.
-  const auto content = [&](const PageEntry& entry) {
-    const auto count = static_cast<std::size_t>(std::popcount(entry.writes) + std::popcount(entry.reads) +
-                                                std::popcount(entry.atomics));
-    return std::span(details_).subspan(entry.first, count);
-  };
-  const auto key = [](const PageEntry& e) {
-    return std::tuple(e.page, std::tuple(e.who.group[2], e.who.group[1], e.who.group[0], e.who.local),
-                      e.program->context.stage, e.writes, e.reads, e.atomics);
-  };
-  const auto less = [](const Detail& a, const Detail& b) {
-    return std::tuple(a.who, a.site, a.value) < std::tuple(b.who, b.site, b.value);
-  };
-  std::sort(entries_.begin(), entries_.end(), [&](const PageEntry& a, const PageEntry& b) {
-    if (key(a) != key(b)) return key(a) < key(b);
-    const auto left = content(a), right = content(b);
-    return std::lexicographical_compare(left.begin(), left.end(), right.begin(), right.end(), less);
-  });
-  for (std::size_t first = 0; first < entries_.size();) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // page, entry
+  order.reserve(entries_.size());
+  for (const PageEntry& entry : entries_) order.emplace_back(entry.page, static_cast<std::uint32_t>(order.size()));
+  if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
+  for (std::size_t first = 0; first < order.size();) {
     std::size_t end = first + 1;
-    while (end < entries_.size() && entries_[end].page == entries_[first].page) ++end;
+    while (end < order.size() && order[end].first == order[first].first) ++end;
     if (end - first > 1) {
-      PageSweep sweep(details_, pairs, command);
-      for (std::size_t i = first; i < end; ++i) sweep.add(entries_[i]);
+      const auto begin = order.begin();
+      std::sort(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(end),
+                [&](const auto& a, const auto& b) { return less(entries_[a.second], entries_[b.second]); });
+      PageSweep sweep(details_, values_, pairs, command);
+      for (std::size_t i = first; i < end; ++i) sweep.add(entries_[order[i].second]);
     }
     first = end;
   }
   entries_.clear();
   details_.clear();
+  values_.clear();
 }
 
 }  // namespace vitrine::glass::race

@@ -25,7 +25,9 @@ struct PageEntry {
   Who who;  ///< of the workgroup; of draws, the first of the wave
   const Told* program = nullptr;
   std::uint64_t writes = 0, reads = 0, atomics = 0;
-  std::size_t first = 0;  ///< in CommandLog::details: those of writes, of reads, of atomics
+  std::size_t first = 0;   ///< in CommandLog::details: those of writes, of reads, of atomics
+  bool row[3] = {};        ///< of a kind, one detail: invocations one behind the other at one place
+  std::size_t values = 0;  ///< in CommandLog::values: of writes that are a row
 };
 
 class CommandLog {
@@ -38,9 +40,12 @@ class CommandLog {
   bool compute() const { return compute_; }
 
  private:
+  /// The order of workgroups.
+  bool less(const PageEntry& a, const PageEntry& b) const;
   std::mutex mutex_;
   std::vector<PageEntry> entries_;
   std::vector<Detail> details_;
+  std::vector<std::uint32_t> values_;
   bool compute_ = false;
 };
 

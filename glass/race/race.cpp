@@ -68,14 +68,14 @@ CommandLog& Races::log_of(const ObservedCommand* command) {
 
 void Races::begin(ThreadGroup& thread, const Told& program, const Wave& wave, const race::Who& who) {
   const ObservedCommand* const command = wave.resources->command;
-  // The dispatches of a device come one after the other.
-  if (program.compute() && !thread.group.runs(program, command)) settle(owner_of(command), command);
-  const bool whole = program.sites.orders_device;
-  if (!whole || !thread.group.runs(program, command)) end(thread);
-  const std::lock_guard lock(thread.mutex);
   const std::uint64_t number = command != nullptr ? command->submission << 32 | command->command : 0;
   const bool known = command != nullptr && thread.tracked_program == &program && thread.tracked_command == command &&
                      thread.tracked_number == number;
+  // The dispatches of a device come one after the other.
+  if (program.compute() && !known) settle(owner_of(command), command);
+  const bool whole = program.sites.orders_device;
+  if (!whole || !thread.group.runs(program, command)) end(thread);
+  const std::lock_guard lock(thread.mutex);
   if (!known) thread.tracked.update(program.sites, wave);
   thread.tracked_program = &program;
   thread.tracked_command = command;
@@ -84,9 +84,10 @@ void Races::begin(ThreadGroup& thread, const Told& program, const Wave& wave, co
 }
 
 void Races::end(ThreadGroup& thread) {
+  if (!thread.group.is_open()) return;
   const std::lock_guard lock(mutex_);
   const std::lock_guard own(thread.mutex);
-  if (thread.group.is_open()) thread.group.end(log_of(thread.group.command()));
+  thread.group.end(log_of(thread.group.command()));
 }
 
 void Races::settle(const void* owner, const ObservedCommand* but) {

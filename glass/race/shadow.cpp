@@ -16,14 +16,14 @@ Page& Shadow::find(std::uint64_t number) {
     pages_[used_]->number = number;
     pages_[used_++]->clear();
   }
-  return *(last_ = pages_[at->second].get());
+  return *(recent_[number % kRecent] = pages_[at->second].get());
 }
 
 void Shadow::reset() {
   constexpr std::size_t kKept = 1024;
   by_number_.clear();
   used_ = 0;
-  last_ = nullptr;
+  recent_ = {};
   if (pages_.size() > kKept) pages_.resize(kKept);
 }
 

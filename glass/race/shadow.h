@@ -33,8 +33,8 @@ struct Page {
 class Shadow {
  public:
   Page& page(std::uint64_t number) {
-    if (last_ != nullptr && last_->number == number) return *last_;
-    return find(number);
+    Page* const page = recent_[number % kRecent];
+    return page != nullptr && page->number == number ? *page : find(number);
   }
   /// Forgets all; keeps the memory of a few pages.
   void reset();
@@ -43,7 +43,8 @@ class Shadow {
 
  private:
   Page& find(std::uint64_t number);
-  Page* last_ = nullptr;
+  static constexpr std::size_t kRecent = 64;
+  std::array<Page*, kRecent> recent_{};  ///< by number
   std::vector<std::unique_ptr<Page>> pages_;
   std::size_t used_ = 0;
   std::unordered_map<std::uint64_t, std::uint32_t> by_number_;

@@ -105,6 +105,7 @@ Sites::Sites(const ShaderIdentity& shader, const spirv::Program& program) {
         place_of(note.origin, static_cast<std::uint32_t>(site.memory) << 28 ^ site.set << 16 ^ site.slot, index);
     site.is_private = site.memory != Memory::kShared && !site.is_atomic() && is_private(*this, site.order);
     const bool device = site.memory != Memory::kShared;
+    has_private |= site.is_private;
     writes_device |= device && site.writes();
     writes_images |= image && site.writes();
     writes_global |= !image && note.space == MemorySpace::kGlobal && site.writes();

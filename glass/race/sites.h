@@ -41,6 +41,7 @@ struct Sites {
   bool vulkan_model = false;                  ///< the Vulkan memory model
   bool hlsl = false;                          ///< what a workgroup shares is coherent without saying so
   bool orders_device = false;                 ///< atomic operations and fences may order workgroups
+  bool has_private = false;                   ///< some access is
   bool writes_device = false, writes_images = false, writes_global = false;
 
   static constexpr std::uint32_t kNone = ~0u;
