@@ -36,6 +36,15 @@ TEST(CliFindings, RefuseWhatIsNoReport) {
   }
 }
 
+TEST(CliFindings, RacesKeepBothAccesses) {
+  const Finding race = race_finding();
+  std::vector<Finding> findings;
+  std::string error;
+  ASSERT_TRUE(read_findings(to_report(ReportFormat::kJson, {&race, 1}), findings, error)) << error;
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(to_report(ReportFormat::kText, findings), to_report(ReportFormat::kText, {&race, 1}));
+}
+
 TEST(CliFindings, SamePlacesAreOneFinding) {
   Finding again = whole_finding(), elsewhere = whole_finding();
   again.address.submission = 7;

@@ -19,6 +19,22 @@ inline Finding whole_finding() {
   return finding;
 }
 
+/// Two accesses.
+inline Finding race_finding() {
+  Finding finding;
+  finding.rule = &rule("race-shared");
+  finding.message = "load of 4 bytes races";
+  finding.address.invocation = {Invocation::Kind::kCompute, {2, 0, 0}};
+  finding.address.frames = {{"main", "a.comp", 9, 0, "x = s[i ^ 1];"}};
+  RelatedAccess other{"store of 4 bytes", finding.address};
+  other.address.invocation.id = {3, 0, 0};
+  other.address.frames[0].line = 8;
+  other.address.frames[0].text = "s[i] = i;";
+  finding.related.push_back(std::move(other));
+  finding.remedy = "barrier(); between them";
+  return finding;
+}
+
 /// Nothing but the rule is known.
 inline Finding bare_finding() {
   Finding finding;

@@ -29,6 +29,15 @@ TEST(ReportJson, HasEverythingThatIsKnown) {
       R"({"function": "main", "file": "shaders/blur.comp", "line": 30, "column": 5, "text": "    put(i);"})"_json);
 }
 
+TEST(ReportJson, RacesHaveBothAccesses) {
+  const Finding finding = race_finding();
+  const nlohmann::json first = report_of({&finding, 1}).at("findings").at(0);
+  EXPECT_EQ(first.at("remedy"), "barrier(); between them");
+  EXPECT_EQ(first.at("/related/0/message"_json_pointer), "store of 4 bytes");
+  EXPECT_EQ(first.at("/related/0/address/frames/0/line"_json_pointer), 8);
+  EXPECT_EQ(first.at("/related/0/address/invocation/id/0"_json_pointer), 3);
+}
+
 TEST(ReportJson, LeavesOutWhatIsUnknown) {
   const Finding finding = bare_finding();
   EXPECT_EQ(report_of({&finding, 1}).at("/findings/0/address"_json_pointer), nlohmann::json::object());

@@ -58,6 +58,16 @@ TEST(Sarif, ClaimsNoPlaceThatIsUnknown) {
   EXPECT_FALSE(result_of(finding).at("locations").at(0).contains("physicalLocation"));
 }
 
+TEST(Sarif, RacesHaveBothAccesses) {
+  const nlohmann::json result = nlohmann::json::parse(sarif_entry(race_finding()));
+  const std::string line = "/physicalLocation/region/startLine";
+  const auto at = [&](const std::string& pointer) { return result.at(nlohmann::json::json_pointer(pointer)); };
+  EXPECT_EQ(at("/locations/0" + line), 9);
+  EXPECT_EQ(at("/relatedLocations/0" + line), 8);
+  EXPECT_EQ(at("/codeFlows/0/threadFlows/0/locations/0/location" + line), 8);
+  EXPECT_EQ(at("/codeFlows/0/threadFlows/0/locations/1/location" + line), 9);
+}
+
 TEST(Sarif, FilesAreReferences) {
   EXPECT_EQ(sarif_uri("shaders/a b.comp"), "shaders/a%20b.comp");
   EXPECT_EQ(sarif_uri("/src/\xc3\xa4.comp"), "file:///src/%C3%A4.comp");

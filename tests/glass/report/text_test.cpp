@@ -21,6 +21,18 @@ TEST(ReportText, ParagraphSaysWhatAndWhere) {
             "invocation (5, 0, 0); 128 times\n\n");
 }
 
+TEST(ReportText, RacesHaveBothAccesses) {
+  EXPECT_EQ(text_of(race_finding()),
+            "a.comp:9: error: load of 4 bytes races [vitrine/race-shared]\n"
+            "    9 | x = s[i ^ 1];\n"
+            "  in function main\n"
+            "  at invocation (2, 0, 0)\n"
+            "a.comp:8: note: store of 4 bytes by invocation (3, 0, 0)\n"
+            "    8 | s[i] = i;\n"
+            "  in function main\n"
+            "  missing: barrier(); between them\n\n");
+}
+
 TEST(ReportText, LeavesOutWhatIsUnknown) {
   EXPECT_EQ(text_of(bare_finding()), "vitrine: error: more than 1000 instructions [vitrine/endless-shader]\n\n");
 }
