@@ -2,6 +2,7 @@
 #include "glass/race/group.h"
 
 #include <bit>
+#include <utility>
 
 namespace vitrine::glass::race {
 namespace {
@@ -145,29 +146,6 @@ bool Group::fast(const Site& site) const {
   return !whole_ && !site.is_atomic() && !order_.hides(site.memory) && !interlocked_ && program_->compute();
 }
 
-void Group::touch_row(std::uint32_t site, std::uint32_t first, std::uint64_t word, const std::uint32_t* values) {
-  const Site& now = program_->sites.all[site];
-  const std::uint32_t from = order_.from(now.memory), time = order_.time(), slot = site << 4 | 15;
-  for (std::uint32_t lane = 0; lane < base::kWaveWidth;) {
-    const auto k = static_cast<std::uint32_t>((word + lane) % kPageWords);
-    const std::uint32_t count = std::min<std::uint32_t>(kPageWords - k, base::kWaveWidth - lane);
-    Page& page = page_of(now, word + lane);
-    const std::uint32_t who = first + lane;
-    const std::uint32_t written = values != nullptr ? from : writes_from(now);
-    bool slow = !fast(now) || any_other(page.write, k, count, who, written) ||
-                any_other(page.atomic, k, count, who, written) || any_other(page.read, k, count, who, from);
-    if (!slow && values != nullptr) slow = any_other(page.other, k, count, who, from);
-    if (slow) {
-      for (std::uint32_t i = 0; i < count; ++i)
-        touch(site, who + i, {word + lane + i, 15, values != nullptr ? values[lane + i] : 0});
-    } else {
-      put_row(values != nullptr ? page.write : page.read, k, count, who, time, slot);
-      for (std::uint32_t i = 0; i < count && values != nullptr; ++i) page.value[k + i] = values[lane + i];
-    }
-    lane += count;
-  }
-}
-
 std::uint32_t Group::writes_from(const Site& site) const {
   return site.memory != Memory::kShared && program_->sites.has_private ? 1 : order_.from(site.memory);
 }
@@ -194,18 +172,51 @@ bool Group::store_quickly(Page& page, std::uint32_t k, const Record& record, std
   return true;
 }
 
+void Group::touch_row(std::uint32_t site, std::uint32_t first, std::uint64_t word, const std::uint32_t* values) {
+  const Site& now = program_->sites.all[site];
+  const std::uint32_t from = order_.from(now.memory), time = order_.time(), slot = site << 4 | 15;
+  for (std::uint32_t lane = 0; lane < base::kWaveWidth;) {
+    const auto k = static_cast<std::uint32_t>((word + lane) % kPageWords);
+    const std::uint32_t count = std::min<std::uint32_t>(kPageWords - k, base::kWaveWidth - lane);
+    Page& page = page_of(now, word + lane);
+    const std::uint32_t who = first + lane;
+    const std::uint32_t written = values != nullptr ? from : writes_from(now);
+    bool slow = !fast(now) || any_other(page.write, k, count, who, written) ||
+                any_other(page.atomic, k, count, who, written) || any_other(page.read, k, count, who, from);
+    if (!slow && values != nullptr) slow = any_other(page.other, k, count, who, from);
+    if (slow) {
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t value = values != nullptr ? values[lane + i] : 0;
+        const Record record{who + i, time, slot};
+        const bool done = fast(now) && (values != nullptr ? store_quickly(page, k + i, record, value, from)
+                                                          : load_quickly(page, k + i, record, from, written));
+        if (!done) touch(site, who + i, {word + lane + i, 15, value});
+      }
+    } else {
+      put_row(values != nullptr ? page.write : page.read, k, count, who, time, slot);
+      for (std::uint32_t i = 0; i < count && values != nullptr; ++i) page.value[k + i] = values[lane + i];
+    }
+    lane += count;
+  }
+}
+
 void Group::touch_words(std::uint32_t site, base::LaneMask lanes, const std::uint64_t* words, std::uint32_t first,
                         const std::uint32_t* names, const std::uint32_t* values) {
   const Site& now = program_->sites.all[site];
   const bool quick = fast(now);
   const std::uint32_t from = order_.from(now.memory);
+  const std::uint32_t written = writes_from(now);
   Record record{0, order_.time(), site << 4 | 15};
+  std::uint64_t last = ~std::uint64_t{0}, before = last;
   base::for_each_lane(lanes, [&](std::size_t lane) {
+    // Two readers of a word are kept: the others of a row add nothing.
+    if (quick && !now.writes() && words[lane] == last && last == before) return;
+    before = std::exchange(last, words[lane]);
     record.who = names != nullptr ? names[lane] : first + static_cast<std::uint32_t>(lane);
     const std::uint32_t value = values != nullptr ? values[lane] : 0;
     const auto k = static_cast<std::uint32_t>(words[lane] % kPageWords);
     if (quick && (now.writes() ? store_quickly(page_of(now, words[lane]), k, record, value, from)
-                               : load_quickly(page_of(now, words[lane]), k, record, from, writes_from(now))))
+                               : load_quickly(page_of(now, words[lane]), k, record, from, written)))
       return;
     touch(site, record.who, {words[lane], 15, value});
   });
