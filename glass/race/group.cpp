@@ -143,7 +143,9 @@ void Group::touch(std::uint32_t site, std::uint32_t who, const Touch& touch) {
 }
 
 bool Group::fast(const Site& site) const {
-  return !whole_ && !site.is_atomic() && !order_.hides(site.memory) && !interlocked_ && program_->compute();
+  if (whole_ || order_.hides(site.memory) || interlocked_ || !program_->compute()) return false;
+  if (!site.is_atomic()) return true;
+  return !program_->sites.has_narrow_scope && !site.order.releases() && !site.order.acquires() && order_.is_plain();
 }
 
 std::uint32_t Group::writes_from(const Site& site) const {
@@ -200,25 +202,33 @@ void Group::touch_row(std::uint32_t site, std::uint32_t first, std::uint64_t wor
   }
 }
 
+bool Group::operate_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t from) {
+  const auto other = [&](const Slots& slots) { return slots.time[k] >= from && slots.who[k] != record.who; };
+  if (other(page.write) || other(page.read) || other(page.other)) return false;
+  put(page.atomic, k, record);
+  return true;
+}
+
 void Group::touch_words(std::uint32_t site, base::LaneMask lanes, const std::uint64_t* words, std::uint32_t first,
                         const std::uint32_t* names, const std::uint32_t* values) {
   const Site& now = program_->sites.all[site];
   const bool quick = fast(now);
-  const std::uint32_t from = order_.from(now.memory);
-  const std::uint32_t written = writes_from(now);
+  const std::uint32_t from = order_.from(now.memory), written = writes_from(now);
   Record record{0, order_.time(), site << 4 | 15};
+  const auto quickly = [&](std::uint64_t word, std::uint32_t value) {
+    Page& page = page_of(now, word);
+    const auto k = static_cast<std::uint32_t>(word % kPageWords);
+    if (now.is_atomic()) return operate_quickly(page, k, record, from);
+    return now.writes() ? store_quickly(page, k, record, value, from) : load_quickly(page, k, record, from, written);
+  };
   std::uint64_t last = ~std::uint64_t{0}, before = last;
   base::for_each_lane(lanes, [&](std::size_t lane) {
     // Two readers of a word are kept: the others of a row add nothing.
-    if (quick && !now.writes() && words[lane] == last && last == before) return;
+    if (quick && now.action == spirv::Access::kLoad && words[lane] == last && last == before) return;
     before = std::exchange(last, words[lane]);
     record.who = names != nullptr ? names[lane] : first + static_cast<std::uint32_t>(lane);
     const std::uint32_t value = values != nullptr ? values[lane] : 0;
-    const auto k = static_cast<std::uint32_t>(words[lane] % kPageWords);
-    if (quick && (now.writes() ? store_quickly(page_of(now, words[lane]), k, record, value, from)
-                               : load_quickly(page_of(now, words[lane]), k, record, from, written)))
-      return;
-    touch(site, record.who, {words[lane], 15, value});
+    if (!quick || !quickly(words[lane], value)) touch(site, record.who, {words[lane], 15, value});
   });
 }
 

@@ -68,6 +68,7 @@ class Group {
   /// The common case: nobody else has touched the word since the last barrier. False: it is not.
   static bool load_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t from,
                            std::uint32_t writes_from);
+  static bool operate_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t from);
   static bool store_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t value, std::uint32_t from);
   void check(const Slots& slots, std::uint32_t k, std::uint32_t site, std::uint32_t who, const Touch& touch,
              const Page& page);

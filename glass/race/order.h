@@ -39,6 +39,9 @@ class Order {
   /// An invocation does an atomic operation on what `location` tells apart.
   void atomic(const Site& site, std::uint64_t location, std::uint32_t who);
 
+  /// Whether an atomic operation without semantics orders nothing: nobody has released or fenced anything.
+  bool is_plain() const { return locations_.empty() && invocations_.empty() && group_fenced_ == Times{}; }
+
   /// Whether an access that was recorded happened before what `who` does now.
   bool before(const Record& record, std::uint32_t who, Memory memory) const;
   /// Whether barriers have ordered what was recorded, but have not made it available and visible (Vulkan memory model).

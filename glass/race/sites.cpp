@@ -106,6 +106,7 @@ Sites::Sites(const ShaderIdentity& shader, const spirv::Program& program) {
     site.is_private = site.memory != Memory::kShared && !site.is_atomic() && is_private(*this, site.order);
     const bool device = site.memory != Memory::kShared;
     has_private |= site.is_private;
+    has_narrow_scope |= site.is_atomic() && !covers_device(site.order.memory);
     writes_device |= device && site.writes();
     writes_images |= image && site.writes();
     writes_global |= !image && note.space == MemorySpace::kGlobal && site.writes();

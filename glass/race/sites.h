@@ -42,6 +42,7 @@ struct Sites {
   bool hlsl = false;                          ///< what a workgroup shares is coherent without saying so
   bool orders_device = false;                 ///< atomic operations and fences may order workgroups
   bool has_private = false;                   ///< some access is
+  bool has_narrow_scope = false;              ///< an atomic operation's does not hold the device
   bool writes_device = false, writes_images = false, writes_global = false;
 
   static constexpr std::uint32_t kNone = ~0u;
