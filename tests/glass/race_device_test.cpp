@@ -169,5 +169,29 @@ TEST_P(RaceDevice, TwinIsSilent) { expect_no_race(GetParam()); }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, RaceDevice, testing::ValuesIn(kPlanted), race_name);
 
+TEST(Race, IsTheSameWhateverThreadsRunTheWorkgroups) {
+  const PlantedRace many{"",
+                         "",
+                         128,
+                         900,
+                         "shared uint s[64];",
+                         "s[i & 63u] = g;\nfor (uint k = 0u; k < 9u; ++k) v[(i + k) & 63u] = g + k;\n"
+                         "o[(i ^ g) & 63u] = s[63u - (i & 63u)];",
+                         ""};
+  const auto module =
+      race_module(VK_SHADER_STAGE_COMPUTE_BIT, text_of(many, many.fault), Language::kGlsl, DebugInfo::kLines, false);
+  std::vector<std::string> first;
+  for (int round = 0; round < 8; ++round) {
+    const auto tool = make_race();
+    Scene scene;
+    scene.groups = many.groups;
+    scene.run(*tool, VK_SHADER_STAGE_COMPUTE_BIT, module);
+    const std::vector<std::string> found = texts_of(*tool);
+    EXPECT_GE(found.size(), 4u);
+    if (round == 0) first = found;
+    EXPECT_EQ(found, first);
+  }
+}
+
 }  // namespace
 }  // namespace vitrine::glass::test
