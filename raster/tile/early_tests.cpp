@@ -54,10 +54,7 @@ void test_any_block(TileWorker& worker, const Primitive& primitive, int x, int y
   place_block(x, y, quads);
   for (std::uint32_t s = 0; s < plan.samples; ++s) {
     if (!block.lanes[s]) continue;
-    if (plan.tests.depth) {
-      block_depths(worker, primitive, x, y, s);
-      if (failed) worker.watch->testing(worker.told.group, s, worker.depth);
-    }
+    if (plan.tests.depth) block_depths(worker, primitive, x, y, s);
     block.lanes[s] = test_depth_stencil(plan.tests, worker.target.depth_stencil[s], quads,
                                         primitive.front ? 0xffffu : 0, worker.depth, nullptr, block.lanes[s],
                                         plan.depth_order == TestOrder::kEarly, failed ? failed + s : nullptr);

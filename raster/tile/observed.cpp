@@ -141,6 +141,9 @@ void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y,
   rasterized = block;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject) {
     FailedTests failed[kMaxSamples];
+    // Depths are worked out for those who watch pixels alone.
+    for (std::uint32_t s = 0; worker.draw->call.tile_observer && s < plan.samples; ++s)
+      tell_block_depths(worker, primitive, x, y, s);
     test_block(worker, primitive, x, y, block, failed);
     tell_tests(worker, failed, primitive.front ? 0xffffu : 0, 0, plan.samples, plan.depth_order == TestOrder::kEarly);
   }
