@@ -9,23 +9,13 @@
 #include "glass/cli/files.h"
 #include "glass/cli/pixel_history.h"
 #include "glass/cli/say.h"
+#include "glass/pixel/request.h"
 
 namespace vitrine::glass::cli {
 namespace {
 
 /// Texels that further runs watch: beyond that, what is still missing stays so.
 constexpr std::size_t kMostRequests = 1000;
-
-/// Characters that separate entries and values of VITRINE_PIXEL.
-std::string escaped(const std::string& name) {
-  std::string result;
-  for (const char c : name) {
-    char code[8];
-    std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    result += c == ':' || c == ';' || c == '%' ? std::string(code) : std::string(1, c);
-  }
-  return result;
-}
 
 bool parse(std::string_view text, std::uint32_t& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -47,7 +37,7 @@ std::string request_of(const TexelKey& key) {
 
 std::string request_of(const PixelQuestion& question) {
   std::string text = std::to_string(question.x) + "," + std::to_string(question.y) +
-                     ":image=" + escaped(question.image) + ":level=" + std::to_string(question.level) +
+                     ":image=" + glass::pixel::escaped(question.image) + ":level=" + std::to_string(question.level) +
                      ":layer=" + std::to_string(question.layer) + ":slice=" + std::to_string(question.slice);
   if (!question.aspect.empty()) text += ":aspect=" + question.aspect;
   if (question.sample) text += ":sample=" + std::to_string(*question.sample);
@@ -71,6 +61,7 @@ Run run_once(const PixelOptions& options, const std::string& requests) {
   if (options.frame) environment.emplace("VITRINE_PIXEL_UNTIL", "frame=" + std::to_string(*options.frame));
   if (options.submission)
     environment.emplace("VITRINE_PIXEL_UNTIL", "submission=" + std::to_string(*options.submission));
+  if (options.primitive) environment.emplace("VITRINE_PIXEL_PRIMITIVE", std::to_string(*options.primitive));
   run.ending = run_application(options.application, environment);
   for (const auto& path : folder.files(".json")) {
     std::optional<std::string> text = read_file(path);
@@ -144,6 +135,7 @@ int pixel(const PixelOptions& options) {
       continue;
     }
     std::fputs(to_text(*run.history, story).c_str(), stdout);
+    if (options.primitive) std::fputs(why_not(*run.history, story, *options.primitive).c_str(), stdout);
     if (values.size() > 1) say("the application does not draw the same in every run: this is the last one");
     if (story.cut || (!story.missing.empty() && options.depth > 0)) say("not all sources are told of");
     bool written = options.json.empty() || write_file(options.json, run.text);

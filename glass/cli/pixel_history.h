@@ -52,10 +52,18 @@ struct PixelImage {
   std::uint32_t levels = 1, layers = 1, samples = 1;
 };
 
+/// What became of primitives of a draw that have the number that was asked for.
+struct PixelPrimitive {
+  Address address;
+  std::string fate;
+  std::uint64_t count = 0;
+};
+
 struct PixelHistory {
   std::uint64_t frames = 0;  ///< presented
   std::vector<PixelImage> images;
   std::vector<PixelTexel> texels;
+  std::vector<PixelPrimitive> primitives;
 
   const PixelTexel* find(const TexelKey& key) const;
   const PixelImage* image(std::uint64_t number) const;
@@ -103,7 +111,9 @@ std::string to_text(const PixelHistory& history, const TexelKey& key);
 
 /// The story for people.
 std::string to_text(const PixelHistory& history, const PixelStory& story);
-/// The same as a page of its own.
+/// Why a primitive did not reach the pixel that the story is about.
+std::string why_not(const PixelHistory& history, const PixelStory& story, std::uint32_t primitive);
+/// The story as a page of its own.
 std::string to_html(const PixelHistory& history, const PixelStory& story);
 
 }  // namespace vitrine::glass::cli

@@ -53,14 +53,11 @@ std::string primitive_text(const Fragment& fragment) {
   return "primitive " + std::to_string(fragment.primitive) + " (" + kind + ")";
 }
 
-Address address_of(const spirv::ObservedCommand& command, const Fragment& fragment) {
-  Address address = fragment.discarded;
-  address.submission = command.submission;
-  address.command = command.command;
-  address.command_name = command.name;
-  address.labels = command.labels;
-  address.pipeline =
-      command.pipeline.empty() ? "pipeline " + std::to_string(command.pipeline_number) : command.pipeline;
+Address place_of(const spirv::ObservedCommand& command, const Fragment& fragment) {
+  Address address = address_of(command);
+  address.shader = fragment.discarded.shader;
+  address.spirv_id = fragment.discarded.spirv_id;
+  address.frames = fragment.discarded.frames;
   address.stage = VK_SHADER_STAGE_FRAGMENT_BIT;
   address.invocation = {Invocation::Kind::kFragment, {fragment.pixel->x, fragment.pixel->y}};
   return address;
@@ -107,7 +104,7 @@ std::vector<Pending> events_of(const Fragment& fragment, const spirv::ObservedCo
     if ((fragment.samples >> sample & 1) == 0) continue;
     Event event;
     event.kind = EventKind::kFragment;
-    event.address = address_of(command, fragment);
+    event.address = place_of(command, fragment);
     const Fragment::Failure* const failure = failure_of(fragment, sample);
     const Fragment::Write* const write = write_of(fragment, *at.texel);
     event.text = "fragment of " + primitive_text(fragment) + " ";

@@ -13,6 +13,17 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kKinds[] = {"clear", "load", "undefined", "fragment", "store",   "atomic",
                                   "copy",  "blit", "resolve",   "upload",   "present", "unknown"};
 
+/// By raster::PrimitiveFate.
+constexpr const char* kFates[] = {"is culled: all corners are outside of a cull distance",
+                                  "lies outside of the view volume or of a clip distance",
+                                  "is clipped: its parts come next",
+                                  "is culled because of where it faces",
+                                  "has no area",
+                                  "is too far away, or at coordinates that are no numbers",
+                                  "lies outside of scissor and framebuffer",
+                                  "covers no sample",
+                                  "is rasterized"};
+
 Json to_json(const TexelId& id) {
   return {{"image", id.image}, {"aspect", aspect_name(id.aspect)},
           {"level", id.level}, {"layer", id.layer},
@@ -67,6 +78,9 @@ std::string Pixels::to_json() const {
   Json json{{"format", "vitrine-pixel"}, {"version", 1}, {"frames", frame_ - 1}};
   json["images"] = Json::array();
   for (const auto& [number, note] : notes_) json["images"].push_back(pixel::to_json(number, note));
+  for (const auto& [key, note] : primitives_)
+    json["primitives"].push_back(
+        {{"address", glass::to_json(note.address)}, {"fate", kFates[std::get<2>(key)]}, {"count", note.count}});
   json["texels"] = Json::array();
   for (const auto& texel : texels_) json["texels"].push_back(pixel::to_json(*texel));
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';

@@ -37,6 +37,17 @@ bool names(const Request& request, const Image& image) {
 
 }  // namespace
 
+Address address_of(const spirv::ObservedCommand& command) {
+  Address address;
+  address.submission = command.submission;
+  address.command = command.command;
+  address.command_name = command.name;
+  address.labels = command.labels;
+  address.pipeline =
+      command.pipeline.empty() ? "pipeline " + std::to_string(command.pipeline_number) : command.pipeline;
+  return address;
+}
+
 void Pixels::image_made(const void* key, const ImagePlace& place, bool in_swapchain) {
   const std::lock_guard lock(mutex_);
   auto image = std::make_unique<Image>();
@@ -171,7 +182,7 @@ void Pixels::check(Texel& texel, const char* text) {
 }
 
 void Pixels::submission_begins(std::uint64_t submission) {
-  if (last_submission_ != 0 && submission > last_submission_) stopped_ = true;
+  if (limits_.last_submission != 0 && submission > limits_.last_submission) stopped_ = true;
   submission_ = submission;
   if (stopped()) return;
   const std::lock_guard lock(mutex_);
@@ -195,7 +206,7 @@ void Pixels::presented(const void* key) {
     add(*texel, std::move(event));
   }
   const std::lock_guard lock(mutex_);
-  if (last_frame_ != 0 && frame_ >= last_frame_) stopped_ = true;
+  if (limits_.last_frame != 0 && frame_ >= limits_.last_frame) stopped_ = true;
   ++frame_;
 }
 
@@ -224,6 +235,12 @@ void Pixels::commands_done(const void* owner) {
   }
   pending_.erase(mine, pending_.end());
   for (const auto& [texel, event] : last) event->after = texel->value = texel->read();
+}
+
+void Pixels::add_primitive(const spirv::ObservedCommand& command, std::size_t fate) {
+  const std::lock_guard lock(mutex_);
+  PrimitiveNote& note = primitives_[{command.submission, command.command, fate}];
+  if (note.count++ == 0) note.address = address_of(command);
 }
 
 Texel* Pixels::find(const std::byte* address) const {

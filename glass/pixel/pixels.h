@@ -7,8 +7,10 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "glass/pixel/locate.h"
@@ -42,10 +44,21 @@ struct Pending {
   Event event;
 };
 
+/// What has become of a primitive of a draw, and of how many that have its number.
+struct PrimitiveNote {
+  Address address;
+  std::uint64_t count = 0;
+};
+
+/// When to stop, and the primitive whose fate is wanted. 0: never.
+struct PixelLimits {
+  std::uint64_t last_frame = 0, last_submission = 0;
+  std::optional<std::uint32_t> primitive;  ///< gl_PrimitiveID
+};
+
 class Pixels {
  public:
-  explicit Pixels(std::vector<Request> requests, std::uint64_t last_frame, std::uint64_t last_submission)
-      : requests_(std::move(requests)), last_frame_(last_frame), last_submission_(last_submission) {}
+  Pixels(std::vector<Request> requests, const PixelLimits& limits) : requests_(std::move(requests)), limits_(limits) {}
 
   // Objects: any thread.
   void image_made(const void* key, const ImagePlace& place, bool in_swapchain);
@@ -69,6 +82,10 @@ class Pixels {
   void add(std::vector<Pending> pending);
   void commands_done(const void* owner);
 
+  /// The primitive of each draw whose fate is wanted; nothing: none. `fate`: a raster::PrimitiveFate.
+  std::optional<std::uint32_t> primitive() const { return limits_.primitive; }
+  void add_primitive(const spirv::ObservedCommand& command, std::size_t fate);
+
   /// The texel at an address; null: it is not watched. Any thread.
   Texel* find(const std::byte* address) const;
   /// Any texel of any image that has memory; image 0: none lies there.
@@ -91,7 +108,7 @@ class Pixels {
   void for_each_placed(F&& f);
 
   const std::vector<Request> requests_;
-  const std::uint64_t last_frame_, last_submission_;  ///< 0: all
+  const PixelLimits limits_;
   std::atomic<bool> stopped_{false};
   std::atomic<std::uint64_t> submission_{0};  ///< the last one that began
   mutable std::mutex mutex_;
@@ -101,8 +118,13 @@ class Pixels {
   std::vector<std::unique_ptr<Texel>> texels_;
   std::map<const std::byte*, Texel*> by_address_;
   std::vector<Pending> pending_;
+  /// By submission, command and fate.
+  std::map<std::tuple<std::uint64_t, std::uint32_t, std::size_t>, PrimitiveNote> primitives_;
   std::uint64_t image_count_ = 0;
 };
+
+/// Where a draw or dispatch is, without a shader.
+Address address_of(const spirv::ObservedCommand& command);
 
 /// Of this process; null: the tool is off.
 Pixels* pixels();

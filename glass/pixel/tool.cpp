@@ -1,5 +1,6 @@
 // The tool `pixel`: what happened to the texels that VITRINE_PIXEL names, as JSON in VITRINE_PIXEL_HISTORY ("%p" is the
 // process; default pixel.json). VITRINE_PIXEL_UNTIL: "frame=N" or "submission=N", after which nothing is recorded.
+// VITRINE_PIXEL_PRIMITIVE: a gl_PrimitiveID, what becomes of which is told, too.
 #include <cstdlib>
 #include <cstring>
 
@@ -31,7 +32,11 @@ std::unique_ptr<Pixels> make_pixels() {
     requests.emplace();
   }
   const char* const until = std::getenv("VITRINE_PIXEL_UNTIL");
-  return std::make_unique<Pixels>(std::move(*requests), limit(until, "frame="), limit(until, "submission="));
+  PixelLimits limits{limit(until, "frame="), limit(until, "submission="), std::nullopt};
+  const char* const primitive = std::getenv("VITRINE_PIXEL_PRIMITIVE");
+  if (primitive != nullptr && *primitive != 0)
+    limits.primitive = static_cast<std::uint32_t>(std::strtoul(primitive, nullptr, 10));
+  return std::make_unique<Pixels>(std::move(*requests), limits);
 }
 
 class PixelTool final : public Tool {

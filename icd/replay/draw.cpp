@@ -91,6 +91,8 @@ bool prepare_draw(ReplayState& state) {
     draw.tile_observer = state.observed->pixel_pass.get();
   }
   draw.observer = observer_of(state);
+  if (draw.tile_observer && !draw.observer && state.observed->primitives)
+    draw.observer = state.observed->primitives.get();
   if (draw.tile_observer && !draw.observer && cuts_watched_pixels(state)) draw.observer = &kNobody;
   draw.queries = state.counters;
   return true;

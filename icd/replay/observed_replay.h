@@ -12,6 +12,7 @@
 
 #include "glass/finding.h"
 #include "glass/pixel/pass.h"
+#include "glass/pixel/primitives.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/object/labels.h"
 #include "icd/replay/replay.h"
@@ -63,14 +64,15 @@ struct ObservedReplay {
 
   bool shadows_memory = false;             ///< icd/replay/written.h is told
   glass::pixel::Pixels* pixels = nullptr;  ///< likewise, and icd/replay/texel_events.h; null: no texel is watched
-  std::shared_ptr<glass::pixel::PassPixels> pixel_pass;  ///< null: the pass has none of them
-  bool every_fragment = true;                            ///< some tool must see each
-  std::vector<LoadedTexel> loaded;                       ///< by the scope that begins
-  std::uint64_t submission = 0;                          ///< counted from 1
-  std::uint32_t command = 0;                             ///< of the submission, counted from 1; 0: none yet
-  const char* name = "";                                 ///< of the command
-  std::uint64_t pass_number = 0;                         ///< of the draws at hand: spirv::ObservedCommand::pass
-  ObjectRef command_buffer;                              ///< primary
+  std::shared_ptr<glass::pixel::PassPixels> pixel_pass;         ///< null: the pass has none of them
+  std::unique_ptr<glass::pixel::PrimitiveObserver> primitives;  ///< null: no primitive is asked for
+  bool every_fragment = true;                                   ///< some tool must see each
+  std::vector<LoadedTexel> loaded;                              ///< by the scope that begins
+  std::uint64_t submission = 0;                                 ///< counted from 1
+  std::uint32_t command = 0;                                    ///< of the submission, counted from 1; 0: none yet
+  const char* name = "";                                        ///< of the command
+  std::uint64_t pass_number = 0;                                ///< of the draws at hand: spirv::ObservedCommand::pass
+  ObjectRef command_buffer;                                     ///< primary
   LabelStack labels;  ///< of command buffers; they go on from one submission to the next
   std::vector<std::string> queue_labels;
   /// What descriptors that were hidden named, by their nulls; and the sets without such ones, as of how many

@@ -142,7 +142,9 @@ void prepare_replay(Device& device) {
   device.replay->observed = std::make_shared<ObservedReplay>();
   device.replay->observed->shadows_memory = glass::session().shadows_memory();
   device.replay->observed->every_fragment = glass::session().needs_every_fragment();
-  device.replay->observed->pixels = glass::pixel::pixels();
+  glass::pixel::Pixels* const pixels = device.replay->observed->pixels = glass::pixel::pixels();
+  if (pixels && pixels->primitive())
+    device.replay->observed->primitives = std::make_unique<glass::pixel::PrimitiveObserver>(*pixels);
 }
 
 void execute(ReplayState& state, const CmdExecuteCommands& command) {

@@ -60,7 +60,7 @@ class Pixel(unittest.TestCase):
             if key["aspect"] == "color" and key["sample"] == 0:
                 values[names[key["image"]], key["level"], key["x"], key["y"]] = last
         lines = printed.split("\n")[:-1]
-        self.assertEqual(len(lines), 6 * 256 + 64)
+        self.assertEqual(len(lines), 7 * 256 + 64)
         for line in lines:
             name, level, x, y, value = line.split()
             self.assertTrue(values[name, int(level), int(x), int(y)].endswith(value), line)
@@ -123,6 +123,19 @@ class Pixel(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("does not draw the same in every run", result.stderr)
         self.assertNotIn("does not draw the same", self.run_it("5,5", "--image=last").stderr)
+
+    def test_why_not(self):
+        text = self.story("5,5", "--image=target", "--why-not=0", "--depth=0")
+        text = text[text.index("why not primitive 0:"):]
+        self.assertIn("primitive 0 is rasterized", text)
+        self.assertIn("fails the depth test; depth 0.75; stored depth (0.25)", text)
+        self.assertIn("is outside of the scissor", text)
+        self.assertIn("no draw to the pixel's image has primitive 7",
+                      self.story("5,5", "--image=target", "--why-not=7", "--depth=0"))
+        facing = self.story("5,5", "--image=culled", "--why-not=0", "--depth=0")
+        self.assertIn("primitive 0 is culled because of where it faces", facing)
+        self.assertIn("primitive 0 is rasterized, 3 times\n     at submission 1", facing)
+        self.assertIn("but does not cover the pixel", facing)
 
     def test_files(self):
         self.story("5,5", "--image=last", "--html=page.html", "--json=history.json")

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint32_t kSize = 16;
 constexpr VkFormat kColor = VK_FORMAT_R8G8B8A8_UNORM, kDepth = VK_FORMAT_D32_SFLOAT_S8_UINT;
-enum Mode { kPlain, kDiscard, kNoSamples, kSecondPass };
+enum Mode { kPlain, kDiscard, kNoSamples, kSecondPass, kCorner };
 
 void must(VkResult result, const char* what) {
   if (result == VK_SUCCESS) return;
@@ -213,6 +213,7 @@ struct Look {
   bool depth = false, blend = false, alpha_to_coverage = false;
   VkColorComponentFlags mask = 15;
   std::uint32_t sample_mask = ~0u;
+  VkCullModeFlags cull = VK_CULL_MODE_NONE;
 };
 
 VkPipeline make_pipeline(const char* name, const Look& look) {
@@ -228,6 +229,7 @@ VkPipeline make_pipeline(const char* name, const Look& look) {
   viewport.pViewports = &whole;
   VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
   raster.lineWidth = 1;
+  raster.cullMode = look.cull;
   VkPipelineMultisampleStateCreateInfo multisample{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
   multisample.rasterizationSamples = look.samples;
   multisample.pSampleMask = &look.sample_mask;
@@ -442,6 +444,21 @@ void draw_multisampled(const Image& samples, const Image& resolved) {
   end_label();
 }
 
+/// Primitives that do not reach pixel (5, 5): a viewport that does not cover it, and one that is culled.
+void draw_elsewhere(const Image& image) {
+  Look look;
+  const VkPipeline plain = make_pipeline("elsewhere", look);
+  look.cull = VK_CULL_MODE_BACK_BIT;
+  const VkPipeline culled = make_pipeline("culled", look);
+  begin(image, nullptr, nullptr);
+  scissor(0);
+  vkCmdSetStencilTestEnable(commands, VK_FALSE);
+  vkCmdSetDepthBoundsTestEnable(commands, VK_FALSE);
+  draw(culled, {{0, 1, 0, 1}, 0.25f, kPlain});
+  draw(plain, {{0, 1, 0, 1}, 0.25f, kCorner});
+  vkCmdEndRendering(commands);
+}
+
 void blit(const Image& from, std::uint32_t from_level, const Image& to, std::uint32_t to_level) {
   VkImageBlit region{};
   region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, from_level, 0, 1};
@@ -482,7 +499,7 @@ void make_commands() {
 
 void record(const std::vector<Image*>& colors, const Image& depth, const Buffer& upload, const Buffer& result) {
   Image &target = *colors[0], &samples = *colors[1], &resolved = *colors[2], &copy = *colors[3], &mips = *colors[4],
-        &last = *colors[5], &stored = *colors[6];
+        &last = *colors[5], &stored = *colors[6], &culled = *colors[7];
   for (const Image* image : colors) to_general(*image, VK_IMAGE_ASPECT_COLOR_BIT);
   to_general(depth, VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT);
   VkBufferImageCopy uploaded{};
@@ -493,6 +510,7 @@ void record(const std::vector<Image*>& colors, const Image& depth, const Buffer&
   draw_single_sampled(target, depth);
   wait();
   draw_multisampled(samples, resolved);
+  draw_elsewhere(culled);
   wait();
   VkImageCopy region{};
   region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
@@ -530,9 +548,10 @@ int main(int argc, char** argv) {
   Image target = make_image("target", kColor), samples = make_image("samples", kColor, VK_SAMPLE_COUNT_4_BIT),
         resolved = make_image("resolved", kColor), copy = make_image("copy", kColor),
         mips = make_image("mips", kColor, VK_SAMPLE_COUNT_1_BIT, 2), last = make_image("last", kColor),
-        stored = make_image("stored", kColor), depth = make_image("depth", kDepth);
+        stored = make_image("stored", kColor), culled = make_image("culled", kColor),
+        depth = make_image("depth", kDepth);
   make_set(mips, resolved, last, stored);
-  const std::vector<Image*> colors{&target, &samples, &resolved, &copy, &mips, &last, &stored};
+  const std::vector<Image*> colors{&target, &samples, &resolved, &copy, &mips, &last, &stored, &culled};
   const Buffer upload = make_buffer(kSize * kSize * 4), result = make_buffer(16 * kSize * kSize * 4);
   std::memset(upload.data, 0x42, kSize * kSize * 4);
   VkCommandBufferBeginInfo begin_info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
