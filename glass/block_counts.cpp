@@ -14,22 +14,27 @@ void add(std::atomic<std::uint64_t>& to, std::uint64_t more) {
 class BlockCounts::Counter : public spirv::exec::Watch {
  public:
   explicit Counter(Cells& cells) : cells_(cells) {}
-  static void* operator new(std::size_t, void* place) { return place; }
-  static void operator delete(void*) {}  // the memory is its thread's
   /// The driver's oldest SIMD target has POPCNT, though the compiler is not told of it.
   [[gnu::target("popcnt")]] void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override {
+    probes(wave, op, 1);
+  }
+  [[gnu::target("popcnt")]] void probes(const spirv::Wave& wave, const spirv::ProbeOp& op,
+                                        std::uint64_t times) override {
     const base::LaneMask lanes = op.guards.empty() ? wave.active : spirv::exec::lanes_at(wave, op);
     if (lanes == 0) return;
     Cell& cell = cells_[static_cast<std::size_t>(&op - wave.program->probe_ops.data())];
-    add(cell.invocations, static_cast<std::uint64_t>(__builtin_popcountll(lanes & wave.live)));
-    add(cell.waves, 1);
+    add(cell.invocations, times * static_cast<std::uint64_t>(__builtin_popcountll(lanes & wave.live)));
+    add(cell.waves, times);
     if (const base::LaneMask helpers = lanes & ~wave.live; helpers != 0)
-      add(cell.helpers, static_cast<std::uint64_t>(__builtin_popcountll(helpers)));
+      add(cell.helpers, times * static_cast<std::uint64_t>(__builtin_popcountll(helpers)));
   }
 
  private:
   Cells& cells_;
 };
+
+BlockCounts::OfThread::OfThread(std::size_t size) : cells(size), counter(std::make_unique<Counter>(cells)) {}
+BlockCounts::OfThread::~OfThread() = default;
 
 BlockCounts::BlockCounts(const spirv::Program& program)
     : serial_([] {
@@ -53,11 +58,9 @@ BlockCounts::OfThread& BlockCounts::of_this_thread() {
   return *mine;
 }
 
-std::unique_ptr<spirv::exec::Watch> BlockCounts::watch() {
-  static_assert(sizeof(Counter) <= sizeof(OfThread::counter));
-  OfThread& mine = of_this_thread();
-  return std::unique_ptr<spirv::exec::Watch>(new (mine.counter) Counter(mine.cells));
-}
+spirv::exec::Watch& BlockCounts::lasting_watch() { return *of_this_thread().counter; }
+
+std::unique_ptr<spirv::exec::Watch> BlockCounts::watch() { return std::make_unique<Counter>(of_this_thread().cells); }
 
 std::vector<BlockCounts::Count> BlockCounts::sum() const {
   std::vector<Count> sum(probes_);

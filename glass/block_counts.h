@@ -24,7 +24,9 @@ class BlockCounts {
 
   explicit BlockCounts(const spirv::Program& program);
 
-  /// Counts what a wave does.
+  /// Counts what waves of the calling thread do.
+  spirv::exec::Watch& lasting_watch();
+  /// The same for one that is destroyed after each.
   std::unique_ptr<spirv::exec::Watch> watch();
   /// So far, by row of Program::probes.
   std::vector<Count> sum() const;
@@ -37,10 +39,10 @@ class BlockCounts {
   using Cells = std::vector<Cell>;
   class Counter;
   struct OfThread {
-    explicit OfThread(std::size_t size) : cells(size) {}
+    explicit OfThread(std::size_t size);
+    ~OfThread();
     Cells cells;
-    /// Where the counter of the wave that the thread runs is: one at a time.
-    alignas(void*) std::byte counter[2 * sizeof(void*)];
+    std::unique_ptr<Counter> counter;
   };
 
   OfThread& of_this_thread();

@@ -45,6 +45,7 @@ class CountedProgram : public ProgramTool {
   std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave&, const spirv::Instruction*) override {
     return counts_.watch();
   }
+  spirv::exec::Watch* lasting_watch() override { return &counts_.lasting_watch(); }
   Costs costs() const;
   /// Calls f(file, line, instructions) for all places of its source; a place may come several times.
   void for_each_line(const std::function<void(const spirv::SourceFile&, std::uint32_t, std::uint64_t)>& f) const;

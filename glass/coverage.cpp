@@ -30,6 +30,7 @@ class CoverageProgram : public ProgramTool {
   std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave&, const spirv::Instruction*) override {
     return counts_.watch();
   }
+  spirv::exec::Watch* lasting_watch() override { return &counts_.lasting_watch(); }
 
   void add_to(Coverage& coverage) const;
 

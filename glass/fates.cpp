@@ -178,19 +178,19 @@ class DrawCounts::Watch : public raster::DrawWatch {
       if (const LaneMask lanes = invocations >> 4 * q & 15; lanes != 0)
         add_quad(pixels_->single.data(), group.position.x[q], group.position.y[q], lanes);
   }
-  bool takes_whole_blocks() const override { return true; }
-  void whole_blocks(const raster::WholeBlocks& whole) override {
-    const std::uint64_t pixels = count(whole.places) * kBlockSide * kBlockSide;
-    fates_.generated += pixels;
-    fates_.invocations += pixels;
-    fates_.passed += pixels;
-    for (const texel::ImageView* view : whole.written) {
-      fates_.texels += pixels * whole.samples;
-      fates_.bytes += pixels * whole.samples * view->format->block_bytes;
-    }
+  bool takes_numbers() const override { return true; }
+  void numbers(const raster::FragmentNumbers& numbers) override {
+    fates_.generated += numbers.generated;
+    for (std::size_t i = 0; i < numbers.ended.size(); ++i) fates_.ended[i] += numbers.ended[i];
+    fates_.passed += numbers.passed;
+    fates_.texels += numbers.texels;
+    fates_.bytes += numbers.bytes;
+  }
+  void shaded_blocks(LaneMask places) override {
+    fates_.invocations += count(places) * kBlockSide * kBlockSide;
     if (!pixels_) return;
-    for (LaneMask left = whole.places; left != 0; left &= left - 1) {
-      const auto place = static_cast<std::uint32_t>(__builtin_ctzll(left));
+    for (; places != 0; places &= places - 1) {
+      const auto place = static_cast<std::uint32_t>(__builtin_ctzll(places));
       ++pixels_->blocks[static_cast<std::size_t>(raster::lane_y(place)) * kBlockSide +
                         static_cast<std::size_t>(raster::lane_x(place))];
     }

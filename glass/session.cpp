@@ -40,6 +40,9 @@ class Watches : public Watch {
   void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override {
     for (const auto& watch : watches_) watch->probe(wave, op);
   }
+  void probes(const spirv::Wave& wave, const spirv::ProbeOp& op, std::uint64_t times) override {
+    for (const auto& watch : watches_) watch->probes(wave, op, times);
+  }
 
  private:
   std::vector<std::unique_ptr<Watch>> watches_;
@@ -84,6 +87,8 @@ class ProgramObserver : public spirv::exec::Observer {
   void draw(const raster::DrawCall& call) const {
     for (const auto& program : programs_) program->draw(call);
   }
+
+  Watch* lasting_watch() const override { return programs_.size() == 1 ? programs_[0]->lasting_watch() : nullptr; }
 
   std::unique_ptr<Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) const override {
     if (programs_.size() == 1) return programs_[0]->watch(wave, start);

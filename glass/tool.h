@@ -30,6 +30,8 @@ class ProgramTool {
   virtual ~ProgramTool() = default;
   /// As spirv::exec::Observer::watch().
   virtual std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) = 0;
+  /// As spirv::exec::Observer::lasting_watch(), for who wants blocks alone.
+  virtual spirv::exec::Watch* lasting_watch() { return nullptr; }
   /// As spirv::exec::Observer::apart() and in_order().
   virtual void apart(const spirv::Wave&) {}
   virtual bool in_order() const { return false; }

@@ -41,12 +41,16 @@ void DrawWatches::coloring(const FragmentGroup& group, std::uint32_t attachment,
   for (const auto& watch : watches_) watch->coloring(group, attachment, color);
 }
 
-bool DrawWatches::takes_whole_blocks() const {
-  return std::all_of(watches_.begin(), watches_.end(), [](const auto& watch) { return watch->takes_whole_blocks(); });
+bool DrawWatches::takes_numbers() const {
+  return std::all_of(watches_.begin(), watches_.end(), [](const auto& watch) { return watch->takes_numbers(); });
 }
 
-void DrawWatches::whole_blocks(const WholeBlocks& whole) {
-  for (const auto& watch : watches_) watch->whole_blocks(whole);
+void DrawWatches::numbers(const FragmentNumbers& numbers) {
+  for (const auto& watch : watches_) watch->numbers(numbers);
+}
+
+void DrawWatches::shaded_blocks(base::LaneMask places) {
+  for (const auto& watch : watches_) watch->shaded_blocks(places);
 }
 
 void DrawWatches::passed(const FragmentGroup& group, SampleLanes lanes) {

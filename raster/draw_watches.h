@@ -23,8 +23,9 @@ class DrawWatches : public DrawWatch {
   void shading(const FragmentGroup& group) override;
   void shaded(const FragmentGroup& group, base::LaneMask invocations, base::LaneMask helpers) override;
   void coloring(const FragmentGroup& group, std::uint32_t attachment, const base::WaveRegister* color) override;
-  bool takes_whole_blocks() const override;
-  void whole_blocks(const WholeBlocks& whole) override;
+  bool takes_numbers() const override;
+  void numbers(const FragmentNumbers& numbers) override;
+  void shaded_blocks(base::LaneMask places) override;
   void passed(const FragmentGroup& group, SampleLanes lanes) override;
   void written(const FragmentGroup& group, const texel::ImageView& view, SampleLanes lanes) override;
 

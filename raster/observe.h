@@ -2,6 +2,7 @@
 // waves and whole blocks alone, and leaves the same bytes; which it is, is decided once per draw, tile and wave.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -54,14 +55,12 @@ struct FragmentGroup {
 /// Lanes of a group, by sample.
 using SampleLanes = std::span<const base::LaneMask>;
 
-/// Blocks of a tile that one primitive covers as a whole, none of whose samples can fail a test.
-struct WholeBlocks {
-  int x = 0, y = 0;  ///< first pixel of the tile
-  std::uint32_t layer = 0;
-  std::uint32_t primitive = 0;  ///< gl_PrimitiveID
-  base::LaneMask places = 0;    ///< in quad order
-  std::uint32_t samples = 1;
-  std::span<const texel::ImageView* const> written;  ///< attachments that all samples are written to
+/// What became of the fragments of a draw in a tile.
+struct FragmentNumbers {
+  std::uint64_t generated = 0;
+  std::array<std::uint64_t, kFragmentTests> ended{};  ///< by the test that took the last sample
+  std::uint64_t passed = 0;
+  std::uint64_t texels = 0, bytes = 0;  ///< written to attachments
 };
 
 /// What one thread sees of a draw: a chunk of it in the front end, or a tile of it in the back end. The thread makes,
@@ -91,13 +90,16 @@ class DrawWatch {
   virtual void coloring(const FragmentGroup&, std::uint32_t /*attachment*/, const base::WaveRegister* /*color*/) {}
   /// Samples have passed all tests.
   virtual void passed(const FragmentGroup&, SampleLanes) {}
-  /// Whether whole_blocks() is called, where it can be, instead of the four that are above and below it.
-  virtual bool takes_whole_blocks() const { return false; }
-  /// Their fragments are generated, shaded, have passed and are written, or would be if what the draw or a later one
-  /// puts over them did not hide it. Other fragments of the tile may be told of in between.
-  virtual void whole_blocks(const WholeBlocks&) {}
   /// They are in an attachment.
   virtual void written(const FragmentGroup&, const texel::ImageView&, SampleLanes) {}
+
+  /// Whether it wants no more than numbers of a tile: those below, and shaded() where shaded_blocks() does not tell.
+  virtual bool takes_numbers() const { return false; }
+  /// At the end of the draw in the tile. Of fragments that what the draw or a later one puts over them hides, what
+  /// would have become of them.
+  virtual void numbers(const FragmentNumbers&) {}
+  /// As shaded(): blocks of the tile's grid with an invocation for each pixel, at quad-ordered places.
+  virtual void shaded_blocks(base::LaneMask /*places*/) {}
 };
 
 /// Shared by all threads that work on a draw; lives until the flush. Watches may be null. `command`: the draw; null:

@@ -9,7 +9,7 @@ namespace vitrine::spirv {
 
 class BoundShader;
 
-/// Whether who observes the shader is told the same by count_run() as by WaveRunner::run(): which lanes begin, and
+/// Whether who observes the shader is told the same by count_runs() as by WaveRunner::run(): which lanes begin, and
 /// nothing else. False: nobody does.
 bool is_counted(const BoundShader& shader);
 
@@ -17,7 +17,7 @@ bool is_counted(const BoundShader& shader);
 /// same in all lanes. is_counted() only.
 bool is_counted_constant(const BoundShader& shader, std::uint32_t reg);
 
-/// Tells of a run that is left out. is_counted() only.
-void count_run(const BoundShader& shader, base::LaneMask active, base::LaneMask helpers);
+/// Tells of `times` runs that are left out. is_counted() only.
+void count_runs(const BoundShader& shader, base::LaneMask active, base::LaneMask helpers, std::uint64_t times);
 
 }  // namespace vitrine::spirv

@@ -2,6 +2,9 @@
 #include "raster/front/observed.h"
 
 #include <algorithm>
+#include <cstdlib>
+
+#include "raster/front/window_coverage.h"
 
 namespace vitrine::raster {
 namespace {
@@ -36,7 +39,22 @@ bool covers_row(const PrimitiveEdges& edges, std::int64_t sx, std::int64_t sy, s
   return x0 <= x1;
 }
 
+/// Whether a triangle's pixels are those of a window at their first ones, so that it can be covered at once.
+bool fits_window(const PipelinePlan& plan, const Primitive& p, const PixelRect& rect) {
+  constexpr std::int32_t kReach = 24 << 8;  // of corners, from the window
+  if (plan.raster_samples != 1 || p.kind != PrimitiveKind::kTriangle || rect.empty()) return false;
+  const int x = rect.x0 & ~1, y = rect.y0 & ~1;
+  if (rect.x1 - x >= kBlockSize || rect.y1 - y >= kBlockSize) return false;
+  return std::all_of(p.x, p.x + 3, [&](std::int32_t at) { return std::abs(at - (x << 8)) <= kReach; }) &&
+         std::all_of(p.y, p.y + 3, [&](std::int32_t at) { return std::abs(at - (y << 8)) <= kReach; });
+}
+
 bool covers_sample(const PipelinePlan& plan, const Primitive& p, const PixelRect& rect) {
+  if (fits_window(plan, p, rect)) {
+    const int x = rect.x0 & ~1, y = rect.y0 & ~1;
+    const bool small = rect.x1 - x < 4 && rect.y1 - y < 4;
+    return (cover_window(p.x, p.y, x, y, small) & rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y)) != 0;
+  }
   const PrimitiveEdges edges = edges_of(p);
   for (int y = rect.y0; y <= rect.y1; ++y)
     for (std::uint32_t s = 0; s < plan.raster_samples; ++s)

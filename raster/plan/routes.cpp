@@ -25,10 +25,9 @@ void plan_routes(PipelinePlan& plan, bool general, bool observed) {
   // Depths beyond [0, 1] wrap in formats of fixed point.
   const bool clamps_inside = std::all_of(plan.viewport.begin(), plan.viewport.end(),
                                          [](const ViewportTransform& t) { return t.z_min >= 0 && t.z_max <= 1; });
-  plan.hides_blocks = plan.tests_rows && !observed && plan.tests.depth &&
-                      (plan.depth_order == TestOrder::kEarly || plan.early_reject) &&
-                      has_limit(plan.state->depth_compare) && plan.restricts_depth &&
-                      (!plan.clamps_depth || clamps_inside);
+  plan.hides_blocks =
+      plan.tests_rows && plan.tests.depth && (plan.depth_order == TestOrder::kEarly || plan.early_reject) &&
+      has_limit(plan.state->depth_compare) && plan.restricts_depth && (!plan.clamps_depth || clamps_inside);
   const FragmentRegisters& frag = plan.frag;
   const bool rare_inputs = frag.point_coord[0] != kNoReg || frag.point_coord[1] != kNoReg || frag.sample_id != kNoReg ||
                            frag.sample_position[0] != kNoReg || frag.sample_position[1] != kNoReg ||

@@ -6,8 +6,7 @@
 namespace vitrine::raster {
 
 /// Small windows, rows of depth, hidden blocks, shading of whole blocks. Wants all else that is planned. `general`:
-/// none of them, for tests. `observed`: rows of depth and the
-/// last one alone.
+/// none of them, for tests. `observed`: all but windows.
 void plan_routes(PipelinePlan& plan, bool general, bool observed);
 
 }  // namespace vitrine::raster

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/lane_count.h"
 #include "raster/tile/early_tests.h"
 #include "raster/tile/fragment_inputs.h"
 #include "raster/tile/fragment_outputs.h"
@@ -168,7 +169,7 @@ void shade(TileWorker& worker, const Primitive& primitive, int x, int y, const B
     if constexpr (kObserved) worker.watch->shading(worker.told.group);
     alive = worker.runner.run(active, active & ~pixels);
   } else if (kObserved && worker.block_draw.counted) {
-    spirv::count_run(*worker.draw->fragment.bound, active, active & ~pixels);
+    spirv::count_runs(*worker.draw->fragment.bound, active, active & ~pixels, 1);
   }
   if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(pixels));
   const bool counts_early = plan.counts_early;  // also what the shader discards
@@ -182,7 +183,7 @@ void shade(TileWorker& worker, const Primitive& primitive, int x, int y, const B
     count_samples(worker, counts_early ? block.lanes[s] : kept[s]);
   }
   if constexpr (kObserved) {
-    worker.watch->shaded(worker.told.group, pixels, active & ~pixels);
+    tell_shaded_block(worker, x, y, pixels, active & ~pixels);
     tell_shaded(worker, primitive, block, alive, late ? kept : nullptr);
     tell_coloring(worker);
   }
@@ -265,13 +266,18 @@ void shade_observed_block(TileWorker& worker, const Primitive& primitive, int x,
   shade<true>(worker, primitive, x, y, block);
 }
 
-void shade_whole_block(TileWorker& worker, const Primitive& primitive, int x, int y, bool hidden) {
+void shade_whole_blocks(TileWorker& worker, const Primitive& primitive, LaneMask places, bool hidden) {
   const BlockDraw& draw = worker.block_draw;
-  if (draw.counted && (draw.solid || hidden)) spirv::count_run(*worker.draw->fragment.bound, base::kAllLanes, 0);
+  if (draw.counted && (draw.solid || hidden))
+    spirv::count_runs(*worker.draw->fragment.bound, base::kAllLanes, 0, base::count_lanes(places));
   if (draw.counted && hidden) return;
   BlockCoverage block;
   std::fill_n(block.lanes, worker.draw->plan->samples, base::kAllLanes);
-  shade<false>(worker, primitive, x, y, block);
+  for (; places != 0; places &= places - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(places));
+    shade<false>(worker, primitive, worker.target.x + lane_x(place) * kBlockSize,
+                 worker.target.y + lane_y(place) * kBlockSize, block);
+  }
 }
 
 void shade_spans(TileWorker& worker, const Primitive& primitive, SpanWave& wave) {

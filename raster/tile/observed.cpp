@@ -2,7 +2,9 @@
 #include "raster/tile/observed.h"
 
 #include <algorithm>
+#include <bit>
 
+#include "base/lane_count.h"
 #include "raster/draw_watches.h"
 #include "raster/tile/early_tests.h"
 
@@ -13,6 +15,16 @@ using base::LaneMask;
 
 SampleLanes left_samples(const TileWorker& worker) { return {worker.told.left, worker.draw->plan->samples}; }
 
+LaneMask any_of(SampleLanes samples) {
+  LaneMask any = 0;
+  for (const LaneMask lanes : samples) any |= lanes;
+  return any;
+}
+
+std::uint64_t& ended_by(TileWorker& worker, FragmentTest test) {
+  return worker.numbers.ended[static_cast<std::size_t>(test)];
+}
+
 /// Takes `lost[s]` from what is left, for all samples.
 void tell_failed(TileWorker& worker, FragmentTest test, const LaneMask* lost) {
   const std::uint32_t samples = worker.draw->plan->samples;
@@ -21,13 +33,26 @@ void tell_failed(TileWorker& worker, FragmentTest test, const LaneMask* lost) {
     worker.told.left[s] &= ~lost[s];
     any |= lost[s];
   }
-  if (any != 0) worker.watch->failed(worker.told.group, test, {lost, samples}, left_samples(worker));
+  if (any == 0) return;
+  if (worker.tells_numbers)
+    ended_by(worker, test) += base::count_lanes(any & ~any_of(left_samples(worker)));
+  else
+    worker.watch->failed(worker.told.group, test, {lost, samples}, left_samples(worker));
+}
+
+void count_written(TileWorker& worker, const texel::ImageView& view, SampleLanes written) {
+  std::uint64_t texels = 0;
+  for (const LaneMask lanes : written) texels += base::count_lanes(lanes);
+  worker.numbers.texels += texels;
+  worker.numbers.bytes += texels * view.format->block_bytes;
 }
 
 void tell_written(TileWorker& worker, const texel::ImageView& view, const LaneMask* lanes) {
-  const std::uint32_t samples = worker.draw->plan->samples;
-  if (std::any_of(lanes, lanes + samples, [](LaneMask mask) { return mask != 0; }))
-    worker.watch->written(worker.told.group, view, {lanes, samples});
+  const SampleLanes written{lanes, worker.draw->plan->samples};
+  if (worker.tells_numbers)
+    count_written(worker, view, written);
+  else if (any_of(written) != 0)
+    worker.watch->written(worker.told.group, view, written);
 }
 
 LaneMask lanes_of_quads(std::uint32_t quads) {
@@ -77,10 +102,12 @@ void test_block(TileWorker& worker, const Primitive& primitive, int x, int y, Bl
   }
 }
 
-/// No sample can be lost, whole blocks are shaded at once, and nothing counts samples.
+bool has_full_mask(const PipelinePlan& plan) { return plan.sample_mask == (1u << plan.samples) - 1; }
+
+/// No sample can be lost, and whole blocks are shaded at once.
 bool has_whole_blocks(const PipelinePlan& plan) {
   return plan.shades && plan.shades_blocks && !plan.may_kill && plan.depth_order == TestOrder::kNone &&
-         !plan.early_reject && plan.sample_mask == (1u << plan.samples) - 1;
+         !plan.early_reject && has_full_mask(plan);
 }
 
 }  // namespace
@@ -102,8 +129,17 @@ void begin_observed(TileWorker& worker, std::uint32_t tile) {
   } else if (one) {
     worker.watch = std::move(one);
   }
-  worker.tells_whole_blocks =
-      worker.watch && worker.watch->takes_whole_blocks() && has_whole_blocks(*worker.draw->plan);
+  const PipelinePlan& plan = *worker.draw->plan;
+  const bool tests = plan.depth_order == TestOrder::kEarly || plan.early_reject;
+  worker.tells_numbers = worker.watch && worker.watch->takes_numbers();
+  worker.counts_tiles = worker.tells_numbers && has_full_mask(plan) && (plan.tests_rows || !tests);
+  worker.has_whole_blocks = worker.tells_numbers && has_whole_blocks(plan);
+  worker.numbers = {};
+}
+
+void end_observed(TileWorker& worker) {
+  if (worker.tells_numbers) worker.watch->numbers(worker.numbers);
+  worker.watch.reset();
 }
 
 bool is_inside_region(const PipelinePlan& plan, const Primitive& primitive, int x0, int y0, int x1, int y1) {
@@ -111,16 +147,39 @@ bool is_inside_region(const PipelinePlan& plan, const Primitive& primitive, int 
   return x0 >= region.x0 && y0 >= region.y0 && x1 <= region.x1 && y1 <= region.y1;
 }
 
-void tell_whole_blocks(TileWorker& worker, const Primitive& primitive, LaneMask places) {
+void count_whole_blocks(TileWorker& worker, LaneMask places) {
   const PipelinePlan& plan = *worker.draw->plan;
-  const texel::ImageView* written[kMaxColorAttachments];
-  std::size_t count = 0;
+  const std::uint64_t pixels = base::count_lanes(places) * base::kWaveWidth;
+  worker.numbers.passed += pixels;
   for (std::uint32_t i = 0; i < plan.color_count; ++i) {
     const texel::ImageView& view = worker.pass->color[i];
-    if (plan.writer[i].function && worker.target.layer < view.layer_count) written[count++] = &view;
+    if (!plan.writer[i].function || worker.target.layer >= view.layer_count) continue;
+    worker.numbers.texels += pixels * plan.samples;
+    worker.numbers.bytes += pixels * plan.samples * view.format->block_bytes;
   }
-  worker.watch->whole_blocks(
-      {worker.target.x, worker.target.y, worker.target.layer, primitive.id, places, plan.samples, {written, count}});
+  worker.watch->shaded_blocks(places);
+}
+
+std::uint64_t count_fragments(const PipelinePlan& plan, const TileCoverage& coverage, LaneMask places) {
+  std::uint64_t fragments = 0;
+  for (; places != 0; places &= places - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(places));
+    LaneMask any = 0;
+    for (std::uint32_t s = 0; s < plan.samples; ++s) any |= coverage.lanes[s][place];
+    fragments += base::count_lanes(any);
+  }
+  return fragments;
+}
+
+void count_early_tests(TileWorker& worker, LaneMask places, std::uint64_t tested) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  ended_by(worker, FragmentTest::kDepth) += tested - count_fragments(plan, worker.covered, places);
+  if (plan.depth_order != TestOrder::kEarly || !plan.tests.depth_write) return;
+  for (; places != 0; places &= places - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(places));
+    for (std::uint32_t s = 0; s < plan.samples; ++s)
+      count_written(worker, worker.pass->depth, {&worker.covered.lanes[s][place], 1});
+  }
 }
 
 void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,
@@ -128,7 +187,10 @@ void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y,
   const PipelinePlan& plan = *worker.draw->plan;
   if (any_sample(block, plan.samples) == 0) return;
   tell_block(worker, primitive, x, y, block);
-  worker.watch->generated(worker.told.group, left_samples(worker));
+  if (worker.tells_numbers)
+    worker.numbers.generated += base::count_lanes(any_of(left_samples(worker)));
+  else
+    worker.watch->generated(worker.told.group, left_samples(worker));
   if (const LaneMask inside = scissor_lanes(plan, primitive, x, y); inside != base::kAllLanes) {
     for (std::uint32_t s = 0; s < plan.samples; ++s) block.lanes[s] &= inside;
     tell_lost(worker, FragmentTest::kScissor, block.lanes, 0, plan.samples);
@@ -152,21 +214,31 @@ void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y,
 
 void tell_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {
   FragmentGroup& group = worker.told.group;
+  std::copy_n(block.lanes, worker.draw->plan->samples, worker.told.left);
+  if (worker.tells_numbers) return;
   place_block(x, y, group.position);
   std::fill(std::begin(group.primitive), std::end(group.primitive), primitive.id);
   std::fill(std::begin(group.from), std::end(group.from), &primitive);
   group.layer = worker.target.layer;
-  std::copy_n(block.lanes, worker.draw->plan->samples, worker.told.left);
+}
+
+void tell_shaded_block(TileWorker& worker, int x, int y, LaneMask invocations, LaneMask helpers) {
+  if (worker.tells_numbers && invocations == base::kAllLanes) {
+    const int column = (x - worker.target.x) / kBlockSize, row = (y - worker.target.y) / kBlockSize;
+    return worker.watch->shaded_blocks(rect_lanes(column, row, column, row));
+  }
+  if (worker.tells_numbers) place_block(x, y, worker.told.group.position);
+  worker.watch->shaded(worker.told.group, invocations, helpers);
 }
 
 void tell_wave(TileWorker& worker, const PackedWave& wave) {
   FragmentGroup& group = worker.told.group;
   group.position = wave.position;
-  for (std::uint32_t q = 0; q < wave.quads; ++q) {
+  for (std::uint32_t q = 0; q < wave.quads && !worker.tells_numbers; ++q) {
     group.from[q] = wave.primitive[wave.slot[q]];
     group.primitive[q] = group.from[q]->id;
   }
-  std::fill(group.from + wave.quads, std::end(group.from), nullptr);
+  if (!worker.tells_numbers) std::fill(group.from + wave.quads, std::end(group.from), nullptr);
   group.layer = worker.target.layer;
   std::copy_n(wave.coverage, worker.draw->plan->samples, worker.told.left);
 }
@@ -207,6 +279,7 @@ void tell_block_depths(TileWorker& worker, const Primitive& primitive, int x, in
 
 void tell_colors(TileWorker& worker, const texel::ImageView& view, const LaneMask* kept, std::uint32_t first,
                  std::uint32_t end) {
+  if (worker.tells_numbers) return count_written(worker, view, {kept + first, kept + end});
   LaneMask lanes[kMaxSamples] = {};
   std::copy(kept + first, kept + end, lanes + first);
   tell_written(worker, view, lanes);
@@ -214,7 +287,9 @@ void tell_colors(TileWorker& worker, const texel::ImageView& view, const LaneMas
 
 void tell_passed(TileWorker& worker) {
   const SampleLanes left = left_samples(worker);
-  if (std::any_of(left.begin(), left.end(), [](LaneMask mask) { return mask != 0; }))
+  if (worker.tells_numbers)
+    worker.numbers.passed += base::count_lanes(any_of(left));
+  else if (any_of(left) != 0)
     worker.watch->passed(worker.told.group, left);
 }
 

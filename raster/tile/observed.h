@@ -11,11 +11,18 @@ inline TilePlace place_of(const TileWorker& worker) {
 }
 /// Begins to watch the tile for its draw, if anybody does.
 void begin_observed(TileWorker& worker, std::uint32_t tile);
+/// The draw is done in the tile.
+void end_observed(TileWorker& worker);
 
 /// Whether pixels (x0, y0) to (x1, y1) are inside the primitive's draw region.
 bool is_inside_region(const PipelinePlan& plan, const Primitive& primitive, int x0, int y0, int x1, int y1);
-/// Blocks of the tile that the primitive covers as a whole, if worker.tells_whole_blocks.
-void tell_whole_blocks(TileWorker& worker, const Primitive& primitive, base::LaneMask places);
+/// Counts blocks of the tile none of whose samples a test can take any more as shaded, passed and written.
+void count_whole_blocks(TileWorker& worker, base::LaneMask places);
+/// Fragments in blocks of a tile.
+std::uint64_t count_fragments(const PipelinePlan& plan, const TileCoverage& coverage, base::LaneMask places);
+/// Counts early tests that took depth alone into account: of `tested` fragments worker.covered has those, in blocks of
+/// `places`, that have passed.
+void count_early_tests(TileWorker& worker, base::LaneMask places, std::uint64_t tested);
 
 /// A block of `primitive` at (x, y): what the scissor, the sample mask and the early tests leave of it, told. On return
 /// `rasterized` is what they were before the early tests.
@@ -24,6 +31,8 @@ void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y,
 
 /// The block's fragments are those that what follows is about.
 void tell_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block);
+/// An invocation of each pixel of `invocations` has shaded the block that was told of; `helpers` helped.
+void tell_shaded_block(TileWorker& worker, int x, int y, base::LaneMask invocations, base::LaneMask helpers);
 /// The wave's fragments are those that what follows is about.
 void tell_wave(TileWorker& worker, const PackedWave& wave);
 /// Of the samples [first, end) those that are no longer in `kept` failed a test.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/lane_count.h"
 #include "raster/tile/block_shade.h"
 #include "raster/tile/coverage.h"
 #include "raster/tile/early_tests.h"
@@ -140,16 +141,73 @@ void test_tile(TileWorker& worker, const Primitive& primitive, GridOrigin origin
   }
 }
 
-/// Whether a primitive none of whose edges cuts the tile has whole blocks alone, none of which has to wait for quads of
-/// the packed wave.
-bool is_whole(const TileWorker& worker, const Primitive& p, const PixelRect& rect) {
+/// Whether the scissor takes nothing of a part of a primitive.
+bool is_inside(const TileWorker& worker, const Primitive& p, const PixelRect& rect) {
   const TileTarget& target = worker.target;
-  if (worker.wave.quads != 0) return false;
-  if (((rect.x0 | rect.y0 | (rect.x1 + 1) | (rect.y1 + 1)) & (kBlockSize - 1)) != 0) return false;
-  if (target.x + rect.x1 >= target.right || target.y + rect.y1 >= target.bottom) return false;
-  const GridOrigin leak = leaked_pixels(*worker.draw->plan, p);
-  return leak == GridOrigin{} && is_inside_region(*worker.draw->plan, p, target.x + rect.x0, target.y + rect.y0,
-                                                  target.x + rect.x1, target.y + rect.y1);
+  return leaked_pixels(*worker.draw->plan, p) == GridOrigin{} &&
+         is_inside_region(*worker.draw->plan, p, target.x + rect.x0, target.y + rect.y0, target.x + rect.x1,
+                          target.y + rect.y1);
+}
+
+/// Whether a primitive none of whose edges cuts the tile has whole blocks alone.
+bool is_whole(const TileWorker& worker, const PixelRect& rect) {
+  const TileTarget& target = worker.target;
+  return ((rect.x0 | rect.y0 | (rect.x1 + 1) | (rect.y1 + 1)) & (kBlockSize - 1)) == 0 &&
+         target.x + rect.x1 < target.right && target.y + rect.y1 < target.bottom;
+}
+
+/// Blocks that no test has touched, of a draw that has no more tests: they are shaded and counted together. Returns the
+/// other ones.
+base::LaneMask shade_untouched(TileWorker& worker, const Primitive& primitive, base::LaneMask places) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  // Quads that wait may have to be shaded in between.
+  if (worker.wave.quads != 0 || !plan.shades || !plan.shades_blocks || plan.may_kill ||
+      plan.depth_order == TestOrder::kLate || plan.fragment->writes_memory)
+    return places;
+  const TileTarget& target = worker.target;
+  base::LaneMask untouched = places & rect_lanes(0, 0, (target.right - target.x) / kBlockSize - 1,
+                                                 (target.bottom - target.y) / kBlockSize - 1);
+  for (base::LaneMask left = untouched; left != 0; left &= left - 1) {
+    const base::LaneMask(*lanes)[base::kWaveWidth] = worker.covered.lanes;
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+    if (!std::all_of(lanes, lanes + plan.samples, [&](const auto& of) { return of[place] == base::kAllLanes; }))
+      untouched &= ~(left & -left);
+  }
+  if (untouched == 0) return places;
+  count_whole_blocks(worker, untouched);
+  shade_whole_blocks(worker, primitive, untouched, false);
+  return places & ~untouched;
+}
+
+/// An observed primitive inside the draw region, all of whose blocks are tested before any is shaded; `whole`: it
+/// covers all pixels of them.
+void rasterize_counted(TileWorker& worker, const Primitive& primitive, const TileEdges& edges, const PixelRect& rect,
+                       bool whole) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const bool tests = plan.depth_order == TestOrder::kEarly || plan.early_reject;
+  base::LaneMask places = places_of(rect), tested = places;
+  if (tests && plan.hides_blocks && (worker.hierarchy.known & places) != 0)
+    tested = unhidden_places(worker, primitive, places);
+  const base::LaneMask uncovered = whole ? places & ~tested : 0;  // need not be
+  places = cover_tile(plan, primitive, edges, rect, places & ~uncovered, worker.covered);
+  const std::uint64_t generated =
+      base::count_lanes(uncovered) * base::kWaveWidth + count_fragments(plan, worker.covered, places);
+  worker.numbers.generated += generated;
+  if (reads_rasterized(worker)) worker.rasterized = worker.covered;
+  places &= tested;
+  if (tests) {
+    test_tile(worker, primitive, {}, places, worker.covered);
+    count_early_tests(worker, places, generated);
+  }
+  if (!plan.shades) worker.numbers.passed += count_fragments(plan, worker.covered, places);
+  BlockCoverage rasterized{};
+  for (places = shade_untouched(worker, primitive, places); places != 0; places &= places - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(places));
+    if (reads_rasterized(worker)) rasterized = block_of(worker.rasterized, place, plan.samples);
+    emit_observed_block(worker, primitive, worker.target.x + lane_x(place) * kBlockSize,
+                        worker.target.y + lane_y(place) * kBlockSize, rasterized,
+                        block_of(worker.covered, place, plan.samples));
+  }
 }
 
 /// The part of a tile a primitive may cover, pixels relative to the tile.
@@ -210,14 +268,14 @@ void rasterize_observed_primitive(TileWorker& worker, const Primitive& primitive
   const PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
   base::LaneMask left = places_of(rect);
-  if (worker.tells_whole_blocks && edges.count == 0 && is_whole(worker, primitive, rect)) {
-    tell_whole_blocks(worker, primitive, left);
-    for (; left != 0; left &= left - 1) {
-      const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
-      shade_whole_block(worker, primitive, worker.target.x + lane_x(place) * kBlockSize,
-                        worker.target.y + lane_y(place) * kBlockSize, hidden);
-    }
-    return;
+  // Late tests of quads that wait may change what early tests of later blocks see.
+  const bool waits = worker.wave.quads != 0;
+  if (worker.counts_tiles && !(plan.early_reject && waits) && is_inside(worker, primitive, rect)) {
+    const bool whole = edges.count == 0 && is_whole(worker, rect);
+    if (!whole || waits || !worker.has_whole_blocks) return rasterize_counted(worker, primitive, edges, rect, whole);
+    worker.numbers.generated += base::count_lanes(left) * base::kWaveWidth;
+    count_whole_blocks(worker, left);
+    return shade_whole_blocks(worker, primitive, left, hidden);
   }
   left = cover_tile(plan, primitive, edges, rect, left, worker.covered);
   for (; left != 0; left &= left - 1) {

@@ -125,7 +125,7 @@ void end_draw(TileWorker& worker) {
   if (worker.fragment_invocations && fragments_have_effects(*worker.draw->plan))
     queries.count(Statistic::kFragmentInvocations, worker.fragment_invocations);
   worker.samples_passed = worker.fragment_invocations = 0;
-  worker.watch.reset();
+  if (worker.watch) end_observed(worker);
   worker.draw = nullptr;
 }
 
@@ -269,7 +269,7 @@ void process_tile(TileWorker& worker, const PassDesc& pass, const TileGrid& grid
     if (item.draw != worker.draw) {
       end_draw(worker);
       begin_draw(worker, item.draw, tile);
-      if (worker.watch && worker.tells_whole_blocks && !visible) visible = first_told(worker, items);
+      if (worker.watch && worker.has_whole_blocks && !visible) visible = first_told(worker, items);
     }
     const std::uint32_t first = i == start.item ? start.primitive : 0;
     if (worker.watch)

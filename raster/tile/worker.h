@@ -127,7 +127,10 @@ struct TileWorker {
   std::uint64_t fragment_invocations = 0;             ///< likewise
   std::unique_ptr<DrawWatch> watch;                   ///< null: nobody observes the draw
   ToldFragments told;
-  bool tells_whole_blocks = false;  ///< the watch takes them, and the draw has them
+  bool tells_numbers = false;     ///< the watch wants no more, which are
+  FragmentNumbers numbers;        ///< not yet told
+  bool counts_tiles = false;      ///< likewise, and primitives are tested by the tile where they can be
+  bool has_whole_blocks = false;  ///< likewise, and nothing can take samples of what a primitive covers
 };
 
 /// Whether rows of a square may be read and written without looking at their pixels: it lies inside all attachments,

@@ -24,7 +24,7 @@ bool is_counted_constant(const BoundShader& shader, std::uint32_t reg) {
                      [&](const Preset& p) { return p.to == reg * kRegisterStride; });
 }
 
-void count_run(const BoundShader& shader, base::LaneMask active, base::LaneMask helpers) {
+void count_runs(const BoundShader& shader, base::LaneMask active, base::LaneMask helpers, std::uint64_t times) {
   if (shader.fault().raised.load(std::memory_order_relaxed)) return;  // the device is lost: nothing runs
   const Program& program = shader.shader().program();
   Wave wave;
@@ -32,8 +32,9 @@ void count_run(const BoundShader& shader, base::LaneMask active, base::LaneMask 
   wave.resources = &shader.resources();
   wave.active = wave.launched = active;
   wave.live = active & ~helpers;
-  const auto watch = program.observation->observer->watch(wave, program.code.data());
-  if (watch) watch->probe(wave, program.probe_ops[0]);
+  const exec::Observer& observer = *program.observation->observer;
+  if (exec::Watch* lasting = observer.lasting_watch()) return lasting->probes(wave, program.probe_ops[0], times);
+  if (const auto watch = observer.watch(wave, program.code.data())) watch->probes(wave, program.probe_ops[0], times);
 }
 
 }  // namespace vitrine::spirv

@@ -69,6 +69,12 @@ void hook_instructions(Program& program) {
 
 void execute_observed(Wave& wave, const Instruction* start) {
   const Observation& observation = *wave.program->observation;
+  if (Watch* lasting = observation.observer->lasting_watch()) {
+    wave.watch = lasting;
+    execute(wave, start);
+    wave.watch = nullptr;
+    return;
+  }
   const std::unique_ptr<Watch> watch = observation.observer->watch(wave, start);
   wave.watch = watch.get();
   if (watch && observation.interest.instructions) {

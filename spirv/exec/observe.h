@@ -25,6 +25,10 @@ class Watch {
   virtual void discard(const Wave&, const Instruction*, const InstructionNote&) {}
   /// The active lanes come by a probe.
   virtual void probe(const Wave&, const ProbeOp&) {}
+  /// The same, of as many waves.
+  virtual void probes(const Wave& wave, const ProbeOp& op, std::uint64_t times) {
+    for (; times != 0; --times) probe(wave, op);
+  }
 };
 
 /// What an observer wants to be told. Fixed when a program is made.
@@ -54,6 +58,8 @@ class Observer {
   virtual void apart(const Wave&) const {}
   /// Whether workgroups of a dispatch run one after the other, in order, on one thread.
   virtual bool in_order() const { return false; }
+  /// A watch, the observer's own, of whatever the calling thread runs of the program; null: watch() makes one a run.
+  virtual Watch* lasting_watch() const { return nullptr; }
   /// Called before each run. Null: this one is not watched.
   virtual std::unique_ptr<Watch> watch(const Wave& wave, const Instruction* start) const = 0;
 };

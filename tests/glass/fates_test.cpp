@@ -126,13 +126,16 @@ TEST(Fates, OverdrawAddsWholeBlocksAndPixels) {
 TEST(Fates, CountsWholeBlocksAsTheirFragments) {
   texel::ImageView color;
   color.format = &texel::format_desc(VK_FORMAT_R8G8B8A8_UNORM);
-  const texel::ImageView* const written[] = {&color};
   DrawCounts counts(false), singly(false);
   const Command command(1, "", 1);
   const base::LaneMask places = 0b1010011, all = base::kAllLanes;
   auto whole = counts.watch_tile(&command, 3), tile = singly.watch_tile(&command, 3);
-  ASSERT_TRUE(whole->takes_whole_blocks());
-  for (int layer = 0; layer < 2; ++layer) whole->whole_blocks({64, 128, 0, 5, places, 1, written});
+  ASSERT_TRUE(whole->takes_numbers());
+  for (int layer = 0; layer < 2; ++layer) whole->shaded_blocks(places);
+  raster::FragmentNumbers numbers;
+  numbers.generated = numbers.passed = numbers.texels = 2 * 64 * 4;
+  numbers.bytes = 4 * numbers.texels;
+  whole->numbers(numbers);
   for (int layer = 0; layer < 2; ++layer)
     base::for_each_lane(places, [&](std::size_t place) {
       FragmentGroup block;

@@ -17,6 +17,7 @@ class ToolObserver : public spirv::exec::Observer {
   void made(const spirv::Program& program) const override { program_ = tool_.attach(shader_, program); }
   void draw(const raster::DrawCall& call) const { program_->draw(call); }
   bool in_order() const override { return program_ && program_->in_order(); }
+  spirv::exec::Watch* lasting_watch() const override { return program_ ? program_->lasting_watch() : nullptr; }
   std::unique_ptr<spirv::exec::Watch> watch(const spirv::Wave& wave, const spirv::Instruction* start) const override {
     return program_ ? program_->watch(wave, start) : nullptr;
   }

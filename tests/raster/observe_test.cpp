@@ -53,9 +53,10 @@ spirv::InterfaceSlot slot(spirv::BuiltIn built_in, std::uint32_t component, std:
 /// Counts what it is told.
 struct Counted : DrawObserver {
   std::mutex mutex;
-  bool takes_whole_blocks = false;
+  bool takes_numbers = false;
   std::uint64_t whole = 0;  ///< blocks
   std::uint64_t vertices = 0, assembled = 0, generated = 0, invocations = 0, helpers = 0, passed = 0, written = 0;
+  std::uint64_t bytes = 0;  ///< if it takes numbers
   std::array<std::uint64_t, kPrimitiveFates> primitives{};
   std::array<std::uint64_t, kFragmentTests> lost{}, ended{};  ///< samples, and fragments whose last sample was lost
 
@@ -99,14 +100,17 @@ class Counter : public DrawWatch {
     add(out_.invocations, count(invocations));
     add(out_.helpers, count(helpers));
   }
-  bool takes_whole_blocks() const override { return out_.takes_whole_blocks; }
-  void whole_blocks(const WholeBlocks& blocks) override {
-    const std::uint64_t pixels = 64 * count(blocks.places);
-    add(out_.whole, count(blocks.places));
-    add(out_.generated, pixels);
-    add(out_.invocations, pixels);
-    add(out_.passed, pixels);
-    add(out_.written, pixels * blocks.samples * blocks.written.size());
+  bool takes_numbers() const override { return out_.takes_numbers; }
+  void numbers(const FragmentNumbers& numbers) override {
+    add(out_.generated, numbers.generated);
+    for (std::size_t i = 0; i < kFragmentTests; ++i) add(out_.ended[i], numbers.ended[i]);
+    add(out_.passed, numbers.passed);
+    add(out_.written, numbers.texels);
+    add(out_.bytes, numbers.bytes);
+  }
+  void shaded_blocks(base::LaneMask places) override {
+    add(out_.whole, count(places));
+    add(out_.invocations, 64 * count(places));
   }
   void passed(const FragmentGroup&, SampleLanes lanes) override { add(out_.passed, count(any_of(lanes))); }
   void written(const FragmentGroup&, const texel::ImageView&, SampleLanes lanes) override {
@@ -261,10 +265,10 @@ TEST_F(Observed, TellsEarlyAndLateDepthTestsApartFromDiscards) {
   EXPECT_EQ(told.passed, 32u * 64u);
 }
 
-TEST_F(Observed, TellsTheSameOfWholeBlocksAtOnce) {
+TEST_F(Observed, TellsTheSameInNumbers) {
   constexpr std::uint64_t kPixels = std::uint64_t{kSide} * kSide, kBlocks = 64;
-  for (const bool whole : {false, true}) {
-    told.takes_whole_blocks = whole;
+  for (const bool numbers : {false, true}) {
+    told.takes_numbers = numbers;
     told.generated = told.invocations = told.passed = told.written = 0;
     corners.clear();
     for (int layer = 0; layer < 3; ++layer) add_whole();
@@ -278,25 +282,55 @@ TEST_F(Observed, TellsTheSameOfWholeBlocksAtOnce) {
     EXPECT_EQ(std::count(color.begin(), color.end(), 1.0f), 4 * kPixels);
     std::fill(color.begin(), color.end(), 0.0f);
   }
-  EXPECT_EQ(told.whole, 3 * kBlocks);
+  EXPECT_EQ(told.whole, 3 * kBlocks + 6);  // the small one has six
+  EXPECT_EQ(told.bytes, told.written * sizeof(color[0]) * color.size() / kPixels);
 }
 
-TEST_F(Observed, TellsOfWholeBlocksOnlyWhereNothingIsTested) {
-  told.takes_whole_blocks = true;
+TEST_F(Observed, TellsOfTestsInNumbers) {
+  told.takes_numbers = true;
   add_whole();
   state.scissor[0] = {{16, 0}, {32, kSide}};
   draw();
-  EXPECT_EQ(told.of(FragmentTest::kScissor), 32u * 64u);
+  EXPECT_EQ(told.ended[static_cast<std::size_t>(FragmentTest::kScissor)], 32u * 64u);
   state.scissor[0] = {{0, 0}, {kSide, kSide}};
   discards = true;
   draw();
-  EXPECT_EQ(told.of(FragmentTest::kDiscard), 32u * 64u);
-  discards = false;
-  state.depth_test = true;
-  state.depth_compare = VK_COMPARE_OP_NEVER;
-  draw();
-  EXPECT_EQ(told.of(FragmentTest::kDepth), 64u * 64u);
-  EXPECT_EQ(told.whole, 0u);
+  EXPECT_EQ(told.ended[static_cast<std::size_t>(FragmentTest::kDiscard)], 32u * 64u);
+}
+
+TEST_F(Observed, TellsTheSameOfDepthInNumbers) {
+  state.depth_test = state.depth_write = true;
+  state.depth_compare = VK_COMPARE_OP_LESS;
+  std::uint64_t generated = 0, ended = 0, passed = 0, written = 0, invocations = 0;
+  for (const bool numbers : {false, true}) {
+    told.takes_numbers = numbers;
+    told.generated = told.passed = told.written = told.invocations = 0;
+    told.ended = {};
+    corners.clear();
+    std::fill(depth.begin(), depth.end(), 1.0f);
+    for (const float z : {0.7f, 0.5f, 0.6f, 0.6f, 0.4f}) {  // what is behind learns from what was behind, too
+      add({0, 0, 0, 2 * kSide, 2 * kSide, 0}, z);
+      add({5, 5, 5, 60, 60, 5}, z - 0.05f);
+    }
+    draw();
+    const std::uint64_t lost = told.ended[static_cast<std::size_t>(FragmentTest::kDepth)];
+    EXPECT_EQ(told.generated, told.passed + lost);
+    EXPECT_EQ(told.invocations, told.passed);
+    EXPECT_EQ(told.written, 2 * told.passed);
+    if (numbers) {
+      EXPECT_EQ(told.generated, generated);
+      EXPECT_EQ(lost, ended);
+      EXPECT_EQ(told.passed, passed);
+      EXPECT_EQ(told.written, written);
+      EXPECT_EQ(told.invocations, invocations);
+    }
+    generated = told.generated;
+    ended = lost;
+    passed = told.passed;
+    written = told.written;
+    invocations = told.invocations;
+  }
+  EXPECT_GT(ended, 2u * kSide * kSide);
 }
 
 TEST_F(Observed, TellsOfSampleMasks) {

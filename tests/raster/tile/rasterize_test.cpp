@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cstring>
+#include <mutex>
 #include <random>
 #include <vector>
 
@@ -229,25 +230,89 @@ struct Scene {
   }
 };
 
-/// Samples by what becomes of them.
+std::uint64_t bits_of(base::LaneMask lanes) { return static_cast<std::uint64_t>(std::popcount(lanes)); }
+
+/// What becomes of samples; of fragments, as those are told who take numbers, and how they are shaded.
 struct FragmentSums : DrawObserver {
+  explicit FragmentSums(bool takes) : takes_numbers(takes) {}
+  const bool takes_numbers;
   std::atomic<std::uint64_t> generated{0}, lost{0}, passed{0};
+  std::mutex mutex;
+  FragmentNumbers numbers;
+  std::uint64_t invocations = 0, helpers = 0, waves = 0;
 
   struct Watch : DrawWatch {
     explicit Watch(FragmentSums& sums) : out(sums) {}
-    void generated(const FragmentGroup&, SampleLanes lanes) override { add(out.generated, lanes); }
-    void failed(const FragmentGroup&, FragmentTest, SampleLanes lost, SampleLanes) override { add(out.lost, lost); }
-    void passed(const FragmentGroup&, SampleLanes lanes) override { add(out.passed, lanes); }
+    ~Watch() override {
+      const std::lock_guard lock(out.mutex);
+      out.numbers.generated += mine.generated;
+      for (std::size_t i = 0; i < kFragmentTests; ++i) out.numbers.ended[i] += mine.ended[i];
+      out.numbers.passed += mine.passed;
+      out.numbers.texels += mine.texels;
+      out.numbers.bytes += mine.bytes;
+      out.invocations += invocations;
+      out.helpers += helpers;
+      out.waves += waves;
+    }
+    void generated(const FragmentGroup&, SampleLanes lanes) override {
+      add(out.generated, lanes);
+      mine.generated += fragments(lanes);
+    }
+    void failed(const FragmentGroup&, FragmentTest test, SampleLanes lost, SampleLanes left) override {
+      add(out.lost, lost);
+      mine.ended[static_cast<std::size_t>(test)] += bits_of(any_of(lost) & ~any_of(left));
+    }
+    void shaded(const FragmentGroup&, base::LaneMask used, base::LaneMask helping) override {
+      invocations += bits_of(used);
+      helpers += bits_of(helping);
+      ++waves;
+    }
+    void passed(const FragmentGroup&, SampleLanes lanes) override {
+      add(out.passed, lanes);
+      mine.passed += fragments(lanes);
+    }
+    void written(const FragmentGroup&, const texel::ImageView& view, SampleLanes lanes) override {
+      for (const base::LaneMask mask : lanes) {
+        mine.texels += bits_of(mask);
+        mine.bytes += bits_of(mask) * view.format->block_bytes;
+      }
+    }
+    bool takes_numbers() const override { return out.takes_numbers; }
+    void numbers(const FragmentNumbers& numbers) override { mine = numbers; }
+    void shaded_blocks(base::LaneMask places) override {
+      invocations += bits_of(places) * base::kWaveWidth;
+      waves += bits_of(places);
+    }
+
+    static base::LaneMask any_of(SampleLanes lanes) {
+      base::LaneMask any = 0;
+      for (const base::LaneMask mask : lanes) any |= mask;
+      return any;
+    }
+    static std::uint64_t fragments(SampleLanes lanes) { return bits_of(any_of(lanes)); }
     static void add(std::atomic<std::uint64_t>& sum, SampleLanes lanes) {
-      for (const base::LaneMask mask : lanes) sum += static_cast<std::uint64_t>(std::popcount(mask));
+      for (const base::LaneMask mask : lanes) sum += bits_of(mask);
     }
     FragmentSums& out;
+    FragmentNumbers mine;
+    std::uint64_t invocations = 0, helpers = 0, waves = 0;
   };
   std::unique_ptr<DrawWatch> watch_chunk(const spirv::ObservedCommand*) override { return nullptr; }
   std::unique_ptr<DrawWatch> watch_tile(const spirv::ObservedCommand*, std::uint32_t) override {
     return std::make_unique<Watch>(*this);
   }
 };
+
+void expect_same(const FragmentSums& one, const FragmentSums& other, int scene) {
+  EXPECT_EQ(one.numbers.generated, other.numbers.generated) << "case " << scene;
+  EXPECT_EQ(one.numbers.ended, other.numbers.ended) << "case " << scene;
+  EXPECT_EQ(one.numbers.passed, other.numbers.passed) << "case " << scene;
+  EXPECT_EQ(one.numbers.texels, other.numbers.texels) << "case " << scene;
+  EXPECT_EQ(one.numbers.bytes, other.numbers.bytes) << "case " << scene;
+  EXPECT_EQ(one.invocations, other.invocations) << "case " << scene;
+  EXPECT_EQ(one.helpers, other.helpers) << "case " << scene;
+  EXPECT_EQ(one.waves, other.waves) << "case " << scene;
+}
 
 Attachment copy_of(const Attachment& attachment, VkFormat format, std::uint32_t samples) {
   Attachment copy(format, samples);
@@ -273,19 +338,24 @@ TEST(Routes, FastPathsAndObservedDrawsEqualTheGeneralOne) {
       for (Attachment& attachment : depth) std::memcpy(attachment.memory.data() + i, &word, 4);
     }
     const std::vector<std::byte> before = color[0].memory;
-    Attachment observed_color = copy_of(color[0], scene.color_format, scene.samples);
-    Attachment observed_depth = copy_of(depth[0], depth_format, scene.samples);
+    const Attachment first_color = copy_of(color[0], scene.color_format, scene.samples);
+    const Attachment first_depth = copy_of(depth[0], depth_format, scene.samples);
     std::uint64_t passed[3];
     for (std::size_t i = 0; i < 2; ++i) scene.draw(i == 1, color[i], has_depth ? &depth[i] : nullptr, passed[i]);
     ASSERT_EQ(color[0].memory, color[1].memory) << "case " << n << ", format " << scene.color_format;
     ASSERT_EQ(depth[0].memory, depth[1].memory) << "case " << n << ", format " << depth_format;
     ASSERT_EQ(passed[0], passed[1]) << "case " << n;
-    FragmentSums sums;
-    scene.observer = &sums;
-    scene.draw(false, observed_color, has_depth ? &observed_depth : nullptr, passed[2]);
-    ASSERT_EQ(color[0].memory, observed_color.memory) << "observed, case " << n;
-    ASSERT_EQ(depth[0].memory, observed_depth.memory) << "observed, case " << n;
-    ASSERT_EQ(passed[0], passed[2]) << "observed, case " << n;
+    FragmentSums sums(false), numbers(true);
+    for (FragmentSums* observer : {&numbers, &sums}) {
+      Attachment observed_color = copy_of(first_color, scene.color_format, scene.samples);
+      Attachment observed_depth = copy_of(first_depth, depth_format, scene.samples);
+      scene.observer = observer;
+      scene.draw(false, observed_color, has_depth ? &observed_depth : nullptr, passed[2]);
+      ASSERT_EQ(color[0].memory, observed_color.memory) << "observed, case " << n;
+      ASSERT_EQ(depth[0].memory, observed_depth.memory) << "observed, case " << n;
+      ASSERT_EQ(passed[0], passed[2]) << "observed, case " << n;
+    }
+    expect_same(sums, numbers, n);
     ASSERT_EQ(sums.generated, sums.lost + sums.passed) << "case " << n;
     const bool counts_before = scene.fragment.interface.early_fragment_tests;
     ASSERT_TRUE(counts_before || sums.passed == passed[0]) << "case " << n;
