@@ -11,7 +11,7 @@ void add(std::atomic<std::uint64_t>& to, std::uint64_t more) {
 
 }  // namespace
 
-class BlockCounts::Counter : public spirv::exec::Watch {
+class BlockCounts::Counter final : public spirv::exec::Watch {
  public:
   explicit Counter(Cells& cells) : cells_(cells) {}
   /// The driver's oldest SIMD target has POPCNT, though the compiler is not told of it.

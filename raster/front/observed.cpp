@@ -49,12 +49,14 @@ bool fits_window(const PipelinePlan& plan, const Primitive& p, const PixelRect& 
          std::all_of(p.y, p.y + 3, [&](std::int32_t at) { return std::abs(at - (y << 8)) <= kReach; });
 }
 
+/// Its window.
+base::LaneMask window_of(const Primitive& p, const PixelRect& rect) {
+  const int x = rect.x0 & ~1, y = rect.y0 & ~1;
+  const bool small = rect.x1 - x < 4 && rect.y1 - y < 4;
+  return cover_window(p.x, p.y, x, y, small) & rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y);
+}
+
 bool covers_sample(const PipelinePlan& plan, const Primitive& p, const PixelRect& rect) {
-  if (fits_window(plan, p, rect)) {
-    const int x = rect.x0 & ~1, y = rect.y0 & ~1;
-    const bool small = rect.x1 - x < 4 && rect.y1 - y < 4;
-    return (cover_window(p.x, p.y, x, y, small) & rect_lanes(rect.x0 - x, rect.y0 - y, rect.x1 - x, rect.y1 - y)) != 0;
-  }
   const PrimitiveEdges edges = edges_of(p);
   for (int y = rect.y0; y <= rect.y1; ++y)
     for (std::uint32_t s = 0; s < plan.raster_samples; ++s)
@@ -71,7 +73,10 @@ void finish_observed(const Chunk& chunk, const PassDesc& pass, PrimitiveList& pr
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     Primitive& p = primitives[i];
     const PixelRect rect = intersect(bounds_of(plan, p), framebuffer);
-    const auto fate = covers_sample(plan, p, rect) ? PrimitiveFate::kRasterized : PrimitiveFate::kNoSample;
+    const bool small = fits_window(plan, p, rect);
+    if (small) p.window = window_of(p, rect);
+    const auto fate =
+        (small ? p.window != 0 : covers_sample(plan, p, rect)) ? PrimitiveFate::kRasterized : PrimitiveFate::kNoSample;
     for (int triangle = p.kind == PrimitiveKind::kRectangle ? 2 : 1; triangle > 0; --triangle)
       chunk.watch->primitive(p.id, fate);
     if (rect.empty()) continue;

@@ -179,8 +179,29 @@ base::LaneMask shade_untouched(TileWorker& worker, const Primitive& primitive, b
   return places & ~untouched;
 }
 
+/// Rows of a block's pixels, moved by less than a block.
+base::LaneMask moved_rows(base::LaneMask rows, int x, int y) {
+  const base::LaneMask columns = x >= 0 ? 0xffu << x & 0xffu : 0xffu >> -x;
+  rows = (x >= 0 ? rows << x : rows >> -x) & columns * 0x0101010101010101;
+  return y >= 0 ? rows << 8 * y : rows >> -8 * y;
+}
+
+/// As cover_tile(), for a primitive with a window.
+base::LaneMask cover_by_window(const TileWorker& worker, const Primitive& primitive, base::LaneMask places,
+                               TileCoverage& out) {
+  const base::LaneMask rows = rows_of_quads(primitive.window);
+  const int x = (primitive.x0 & ~1) - worker.target.x, y = (primitive.y0 & ~1) - worker.target.y;
+  for (base::LaneMask left = places; left != 0; left &= left - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
+    const base::LaneMask lanes =
+        quads_of_rows(moved_rows(rows, x - lane_x(place) * kBlockSize, y - lane_y(place) * kBlockSize));
+    for (std::uint32_t s = 0; s < worker.draw->plan->samples; ++s) out.lanes[s][place] = lanes;
+  }
+  return places;
+}
+
 /// An observed primitive inside the draw region, all of whose blocks are tested before any is shaded; `whole`: it
-/// covers all pixels of them.
+/// covers all pixels of them. `edges`: unless it has a window.
 void rasterize_counted(TileWorker& worker, const Primitive& primitive, const TileEdges& edges, const PixelRect& rect,
                        bool whole) {
   const PipelinePlan& plan = *worker.draw->plan;
@@ -189,7 +210,9 @@ void rasterize_counted(TileWorker& worker, const Primitive& primitive, const Til
   if (tests && plan.hides_blocks && (worker.hierarchy.known & places) != 0)
     tested = unhidden_places(worker, primitive, places);
   const base::LaneMask uncovered = whole ? places & ~tested : 0;  // need not be
-  places = cover_tile(plan, primitive, edges, rect, places & ~uncovered, worker.covered);
+  places &= ~uncovered;
+  places = primitive.window != 0 ? cover_by_window(worker, primitive, places, worker.covered)
+                                 : cover_tile(plan, primitive, edges, rect, places, worker.covered);
   const std::uint64_t generated =
       base::count_lanes(uncovered) * base::kWaveWidth + count_fragments(plan, worker.covered, places);
   worker.numbers.generated += generated;
@@ -263,14 +286,16 @@ void rasterize_observed_primitive(TileWorker& worker, const Primitive& primitive
   const PipelinePlan& plan = *worker.draw->plan;
   const bool in_order = plan.in_order || plan.state->ordered_attachment_access;
   if (in_order && worker.wave.quads != 0) shade_wave(worker, worker.wave);
-  TileEdges edges;
-  if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
   const PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
-  base::LaneMask left = places_of(rect);
   // Late tests of quads that wait may change what early tests of later blocks see.
   const bool waits = worker.wave.quads != 0;
-  if (worker.counts_tiles && !(plan.early_reject && waits) && is_inside(worker, primitive, rect)) {
+  const bool counted = worker.counts_tiles && !(plan.early_reject && waits) && is_inside(worker, primitive, rect);
+  TileEdges edges;
+  if (counted && primitive.window != 0) return rasterize_counted(worker, primitive, edges, rect, false);
+  if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
+  base::LaneMask left = places_of(rect);
+  if (counted) {
     const bool whole = edges.count == 0 && is_whole(worker, rect);
     if (!whole || waits || !worker.has_whole_blocks) return rasterize_counted(worker, primitive, edges, rect, whole);
     worker.numbers.generated += base::count_lanes(left) * base::kWaveWidth;
