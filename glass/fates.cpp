@@ -189,6 +189,10 @@ class DrawCounts::Watch : public raster::DrawWatch {
   void shaded_blocks(LaneMask places) override {
     fates_.invocations += count(places) * kBlockSide * kBlockSide;
     if (!pixels_) return;
+    if (places == base::kAllLanes) {
+      for (auto& fragments : pixels_->blocks) ++fragments;
+      return;
+    }
     for (; places != 0; places &= places - 1) {
       const auto place = static_cast<std::uint32_t>(__builtin_ctzll(places));
       ++pixels_->blocks[static_cast<std::size_t>(raster::lane_y(place)) * kBlockSide +
