@@ -88,6 +88,18 @@ class Shake(unittest.TestCase):
                 count += 1
         self.assertGreaterEqual(count, 50)
 
+    def test_the_last_writer_is_told(self):
+        # The tool by itself: word 3 of the first allocation, written by invocations 3 and 67 in this order, and word 100 by none.
+        shader = f"{self.compile('writer', 64, 'data[l] = i;')}:2"
+        for word, rules in (12, ["last-writer"]), (400, []):
+            subprocess.run([VITRINE, "run", "--", APPLICATION, shader], check=True, env={
+                **os.environ, "VITRINE_THREADS": "1", "VITRINE_TOOLS": "digest,writers", "VITRINE_DIGEST": f"{self.folder}/d",
+                "VITRINE_DIGEST_AT": f"1:8:1:{word}", "VITRINE_REPORT": f"{self.folder}/{word}.json"})
+            findings = json.loads((self.folder / f"{word}.json").read_text())["findings"]
+            self.assertEqual([finding["rule"] for finding in findings], rules)
+            if findings:
+                self.assertEqual(findings[0]["address"]["invocation"]["id"], [67, 0, 0])
+
     def test_twins_are_silent(self):
         words = [f"{self.compile(name, size, good)}:{groups}" for name, size, groups, _, good in programs()]
         result = self.shake("--", APPLICATION, *words)

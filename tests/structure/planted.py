@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks that every rule of the tools (glass/rules.def) is planted: a fault that breaks it, and a correct twin that nothing is
-said of, in the catalogue (tests/glass/catalogue_*_test.cpp), or in the tests that are named here.
+said of, in the catalogues (tests/glass/catalogue_*_test.cpp, race_*_test.cpp), or in the tests that are named here.
 
 usage: planted.py SOURCE_FOLDER
 """
@@ -9,6 +9,7 @@ import re
 import sys
 
 VERTICES, COMMANDS = "tests/glass/vertices_test.cpp Vertices.", "tests/icd/sanitized_commands_test.cpp SanitizedCommands."
+SHAKE = "tests/glass/shake_test.py Shake."
 PRINTF = "tests/glass/printf_test.cpp Printf."
 # What no shader alone can do, by rule: the test of the fault and that of the twin. One test may have both.
 ELSEWHERE = {
@@ -18,6 +19,8 @@ ELSEWHERE = {
     "out-of-bounds-arguments": (COMMANDS + "ArgumentsOutsideOfTheirBuffer", COMMANDS + "ArgumentsOutsideOfTheirBuffer"),
     "endless-shader": ("tests/icd/device_fault_test.cpp DeviceFault.TheVendorBinaryIsAHeaderAndAReport",
                        "tests/spirv/exec/budget_test.cpp Budget.LongBodiesSpendItSooner"),
+    "order-dependent": (SHAKE + "test_what_depends_on_the_order_is_found", SHAKE + "test_twins_are_silent"),
+    "last-writer": (SHAKE + "test_the_last_writer_is_told", SHAKE + "test_the_last_writer_is_told"),
     "printf": (PRINTF + "AssertionsAreErrors", PRINTF + "FilterNamesInvocations"),
     "assertion": (PRINTF + "AssertionsAreErrors", PRINTF + "AssertionsAreErrors"),
 }
@@ -26,7 +29,7 @@ ELSEWHERE = {
 def faults_of(root):
     rules = re.findall(r'VITRINE_RULE\("([^"]+)"', (root / "glass/rules.def").read_text())
     planted = set()
-    for path in sorted((root / "tests/glass").glob("catalogue_*_test.cpp")):
+    for path in sorted(p for name in ("catalogue", "race") for p in (root / "tests/glass").glob(f"{name}_*_test.cpp")):
         planted.update(re.findall(r'\{\s*"\w+",\s*"([a-z-]+)",', path.read_text()))
     for rule in rules:
         if (rule in planted) == (rule in ELSEWHERE):
@@ -36,8 +39,11 @@ def faults_of(root):
             yield f"{rule} is no rule"
         if rule not in (root / tests[0].split()[0]).read_text():
             yield f"{tests[0]}: nothing is said of {rule}"
-        for name, suite, test in (re.split("[ .](?=[A-Z])", test) for test in tests):
-            if not re.search(rf"TEST(_F)?\({suite}, {test}\)", (root / name).read_text()):
+        for name, suite, test in (re.fullmatch(r"(\S+) (\w+)\.(\w+)", test).groups() for test in tests):
+            text = (root / name).read_text()
+            here = re.search(rf"class {suite}\(", text) and f"def {test}(" in text if name.endswith(".py") else \
+                re.search(rf"TEST(_F)?\({suite}, {test}\)", text)
+            if not here:
                 yield f"{name}: there is no {suite}.{test}"
 
 
