@@ -131,7 +131,7 @@ void add_taps(const ReplayState& state, const CmdBlitImage& command, const VkIma
         if (known != event.sources.end())
           known->weight += weight;
         else if (source.texel.image != 0)
-          event.sources.push_back(std::move(source));
+          event.sources.push_back(source);
       }
 }
 
