@@ -90,7 +90,7 @@ class Digests {
     live_.erase(data);
   }
 
-  std::optional<Difference> command(const DigestPoint& point) {
+  std::optional<Difference> command(const Address& point) {
     const std::lock_guard lock(mutex_);
     Json memory = Json::object();
     std::map<std::uint64_t, std::string> changed;
@@ -99,7 +99,7 @@ class Digests {
       if (std::exchange(allocation.digest, digest) != digest) changed[allocation.number] = hexadecimal(digest);
     }
     for (const auto& [number, digest] : changed) memory[std::to_string(number)] = digest;
-    Json line{{"submission", point.submission}, {"command", point.command},   {"name", point.name},
+    Json line{{"submission", point.submission}, {"command", point.command},   {"name", point.command_name},
               {"labels", point.labels},         {"pipeline", point.pipeline}, {"memory", std::move(memory)}};
     std::optional<Difference> difference;
     if (point.submission == stop_.submission && point.command == stop_.command) difference = stop_here();
@@ -188,24 +188,20 @@ void remove_digested(const std::byte* data) noexcept {
   if (Digests* digests = asked_for.load()) digests->remove(data);
 }
 
-std::optional<Difference> digest_command(const DigestPoint& point) { return asked_for.load()->command(point); }
+std::optional<Difference> digest_command(const Address& point) { return asked_for.load()->command(point); }
 
 std::optional<DigestWord> watched_word(std::uint64_t submission, std::uint32_t command) {
   const Digests* const digests = asked_for.load();
   return digests ? digests->word(submission, command) : std::nullopt;
 }
 
-void report_difference(const DigestPoint& point, const Difference& difference, const std::string& what) {
+void report_difference(const Address& point, const Difference& difference, const std::string& what) {
   Finding finding;
   finding.rule = &rule("order-dependent");
   finding.message = "another order of invocations leaves other bytes: " + bytes_of(difference.here) + " here, " +
                     bytes_of(difference.there) + " there, of " + what;
   finding.count = difference.differing;
-  finding.address.submission = point.submission;
-  finding.address.command = point.command;
-  finding.address.command_name = point.name;
-  finding.address.labels = point.labels;
-  finding.address.pipeline = point.pipeline;
+  finding.address = point;
   const std::lock_guard lock(findings_mutex);
   findings.push_back(std::move(finding));
 }

@@ -7,7 +7,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
+
+#include "glass/finding.h"
 
 namespace vitrine::glass {
 
@@ -18,15 +19,6 @@ bool has_digest();
 void add_digested(const std::byte* data, std::uint64_t size) noexcept;
 void remove_digested(const std::byte* data) noexcept;
 
-/// A command that is done.
-struct DigestPoint {
-  std::uint64_t submission = 0;
-  std::uint32_t command = 0;  ///< 0: the submission begins
-  std::string name;
-  std::vector<std::string> labels;
-  std::string pipeline;
-};
-
 /// Where memory differs from that of the run that this one is compared with.
 struct Difference {
   const std::byte* at = nullptr;
@@ -36,7 +28,8 @@ struct Difference {
 
 /// Writes a line to VITRINE_DIGEST. If VITRINE_DIGEST_AT names this command ("SUBMISSION:COMMAND:ALLOCATION:OFFSET"),
 /// the bytes of that allocation go to VITRINE_DIGEST_SAVE, or are compared with those in VITRINE_DIGEST_COMPARE.
-std::optional<Difference> digest_command(const DigestPoint& point);
+/// `point`: the command that is done; number 0: the submission begins.
+std::optional<Difference> digest_command(const Address& point);
 
 /// The word that VITRINE_DIGEST_AT names, while that command runs; nothing: another one does.
 struct DigestWord {
@@ -45,6 +38,6 @@ struct DigestWord {
 std::optional<DigestWord> watched_word(std::uint64_t submission, std::uint32_t command);
 
 /// A finding: `what` says what the byte belongs to.
-void report_difference(const DigestPoint& point, const Difference& difference, const std::string& what);
+void report_difference(const Address& point, const Difference& difference, const std::string& what);
 
 }  // namespace vitrine::glass

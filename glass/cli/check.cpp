@@ -54,13 +54,6 @@ std::size_t summarize(const std::vector<Finding>& findings, std::size_t processe
   return errors + warnings;
 }
 
-bool write_reports(const CheckOptions& options, const std::vector<Finding>& findings) {
-  bool good = true;
-  if (!options.sarif.empty()) good &= write_file(options.sarif, to_report(ReportFormat::kSarif, findings));
-  if (!options.json.empty()) good &= write_file(options.json, to_report(ReportFormat::kJson, findings));
-  return good;
-}
-
 }  // namespace
 
 int check(const CheckOptions& options) {
@@ -82,7 +75,7 @@ int check(const CheckOptions& options) {
   std::vector<Finding> findings;
   const bool good = gather(reports, findings);
   if (!options.quiet) std::fputs(to_report(ReportFormat::kText, findings).c_str(), stderr);
-  const bool written = write_reports(options, findings);
+  const bool written = write_reports(options.sarif, options.json, findings);
   const bool found = !reports.empty() && summarize(findings, reports.size()) != 0;
   if (ending.code) return ending.code;
   if (found) return kFound;

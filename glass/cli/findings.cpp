@@ -1,5 +1,6 @@
 // Reads JSON reports (docs/glass/report.md section 2) and folds what several processes have found.
 #include "glass/cli/findings.h"
+#include "glass/report/report.h"
 
 #include <algorithm>
 #include <map>
@@ -147,6 +148,13 @@ void quote_files(std::vector<Finding>& findings) {
     quote(finding.address);
     for (RelatedAccess& other : finding.related) quote(other.address);
   }
+}
+
+bool write_reports(const std::string& sarif, const std::string& json, const std::vector<Finding>& findings) {
+  bool good = true;
+  if (!sarif.empty()) good &= write_file(sarif, to_report(ReportFormat::kSarif, findings));
+  if (!json.empty()) good &= write_file(json, to_report(ReportFormat::kJson, findings));
+  return good;
 }
 
 }  // namespace vitrine::glass::cli

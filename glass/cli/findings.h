@@ -23,4 +23,7 @@ std::vector<Finding> folded(std::vector<Finding> findings);
 /// Lines that the modules do not have, from the source files that they name, as far as they are there.
 void quote_files(std::vector<Finding>& findings);
 
+/// Writes them as SARIF and as JSON to the files that are named, or says why not (and gives false).
+bool write_reports(const std::string& sarif, const std::string& json, const std::vector<Finding>& findings);
+
 }  // namespace vitrine::glass::cli

@@ -1,7 +1,6 @@
 // vitrine shake: runs an application with choices of the device that are legal but unkind. One run with a given seed;
 // or several, until one leaves other bytes in memory than the usual order does: then says which command it was.
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "base/shake.h"
 #include "glass/cli/application.h"
@@ -101,13 +100,6 @@ std::vector<Finding> find_byte(const ShakeOptions& options, std::uint64_t seed, 
   return findings;
 }
 
-bool write_reports(const ShakeOptions& options, const std::vector<Finding>& findings) {
-  bool good = true;
-  if (!options.sarif.empty()) good &= write_file(options.sarif, to_report(ReportFormat::kSarif, findings));
-  if (!options.json.empty()) good &= write_file(options.json, to_report(ReportFormat::kJson, findings));
-  return good;
-}
-
 /// What is said of two runs that part.
 std::vector<Finding> explain(const ShakeOptions& options, std::uint64_t seed, const Parting& parting) {
   if (parting.point.command == 0) {
@@ -158,11 +150,11 @@ int compare_runs(const ShakeOptions& options) {
     if (!parting) return ending.code;
     const std::vector<Finding> findings = explain(options, seed, *parting);
     std::fputs(to_report(ReportFormat::kText, findings).c_str(), stderr);
-    return write_reports(options, findings) ? kFound : kCouldNotRun;
+    return write_reports(options.sarif, options.json, findings) ? kFound : kCouldNotRun;
   }
   say("the same bytes after each of " + std::to_string(before->size()) + " commands, with " +
       std::to_string(options.runs) + " seeds");
-  return write_reports(options, {}) ? 0 : kCouldNotRun;
+  return write_reports(options.sarif, options.json, {}) ? 0 : kCouldNotRun;
 }
 
 }  // namespace

@@ -10,10 +10,9 @@
 namespace vitrine::icd {
 namespace {
 
-glass::DigestPoint here(const ReplayState& state) {
+glass::Address here(const ReplayState& state) {
   const ObservedReplay& observed = *state.observed;
-  glass::DigestPoint point{observed.submission, observed.command, observed.name, observed.queue_labels, {}};
-  point.labels.insert(point.labels.end(), observed.labels.open().begin(), observed.labels.open().end());
+  glass::Address point = address_of(observed);
   if (!observed.objects.empty() && observed.objects.back().command == observed.command)
     point.pipeline = name_of(state.device.physical_device.instance, observed.objects.back().pipeline);
   return point;
@@ -28,7 +27,7 @@ std::string describe(const Device& device, const glass::Difference& difference) 
 }
 
 void digest(ReplayState& state) {
-  const glass::DigestPoint point = here(state);
+  const glass::Address point = here(state);
   if (const auto difference = glass::digest_command(point))
     glass::report_difference(point, *difference, describe(state.device, *difference));
 }
@@ -37,11 +36,8 @@ void digest(ReplayState& state) {
 
 void replay_digested(ReplayState& state, const CommandBuffer& buffer, void (*run)(ReplayState&, const CommandHeader&)) {
   for (const CommandHeader* header = buffer.arena.first(); header; header = header->next) {
-    const auto type = static_cast<CommandType>(header->type);
-    const bool told = type == kCommandType<CmdMark> || type == kCommandType<CmdBeginLabel> ||
-                      type == kCommandType<CmdEndLabel> || type == kCommandType<CmdInsertLabel>;
     run(state, *header);
-    if (told || !is_work(state.observed->name)) continue;
+    if (is_for_observers(static_cast<CommandType>(header->type)) || !is_work(state.observed->name)) continue;
     if (state.pass) flush_pass(state);
     digest(state);
     if (state.fault.raised.load(std::memory_order_relaxed)) return;

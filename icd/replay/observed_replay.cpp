@@ -107,6 +107,21 @@ std::uint64_t ReplayedCommand::push_range(VkShaderStageFlagBits stage) const {
   return words;
 }
 
+std::vector<std::string> open_labels(const ObservedReplay& observed) {
+  std::vector<std::string> labels = observed.queue_labels;
+  labels.insert(labels.end(), observed.labels.open().begin(), observed.labels.open().end());
+  return labels;
+}
+
+glass::Address address_of(const ObservedReplay& observed) {
+  glass::Address address;
+  address.submission = observed.submission;
+  address.command = observed.command;
+  address.command_name = observed.name;
+  address.labels = open_labels(observed);
+  return address;
+}
+
 const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline& pipeline,
                                               const spirv::ResourceTable& resources) {
   ObservedReplay& observed = *state.observed;
@@ -118,8 +133,7 @@ const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline
   made->submission = observed.submission;
   made->command = observed.command;
   made->name = observed.name;
-  made->labels = observed.queue_labels;
-  made->labels.insert(made->labels.end(), observed.labels.open().begin(), observed.labels.open().end());
+  made->labels = open_labels(observed);
   made->null_descriptors = state.device.features.test(Feature::nullDescriptor);
   made->robust_vertices = state.device.features.test(Feature::robustBufferAccess2);
   made->pushed = pushed_words(observed, *pipeline.layout);

@@ -87,6 +87,11 @@ struct ObservedReplay {
   std::array<std::span<const VkPushConstantRange>, spirv::kMaxPushConstantBytes / 4> pushed{};
 };
 
+/// Labels of the queue and of the command buffers that are open, outermost first.
+std::vector<std::string> open_labels(const ObservedReplay& observed);
+/// The command that is being replayed, by its numbers, name and labels.
+glass::Address address_of(const ObservedReplay& observed);
+
 /// What observers are told of the draw or dispatch that is being replayed.
 const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline& pipeline,
                                               const spirv::ResourceTable& resources);

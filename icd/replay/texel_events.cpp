@@ -63,11 +63,7 @@ TexelEvent texel_event(const ReplayState& state, EventKind kind, std::string tex
   TexelEvent event;
   event.kind = kind;
   event.text = std::move(text);
-  event.address.submission = observed.submission;
-  event.address.command = observed.command;
-  event.address.command_name = observed.name;
-  event.address.labels = observed.queue_labels;
-  event.address.labels.insert(event.address.labels.end(), observed.labels.open().begin(), observed.labels.open().end());
+  event.address = address_of(observed);
   event.replaces = kind != EventKind::kLoad;
   return event;
 }

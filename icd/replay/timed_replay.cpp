@@ -33,9 +33,7 @@ class TimedReplay {
       const auto& label = *static_cast<const CmdBeginLabel*>(header.command());
       labels_.push_back({std::string(label.name.data(), label.name.size()), Clock::now()});
     }
-    const bool told = type == kCommandType<CmdMark> || type == kCommandType<CmdBeginLabel> ||
-                      type == kCommandType<CmdEndLabel> || type == kCommandType<CmdInsertLabel>;
-    if (told)
+    if (is_for_observers(type))
       run_(state_, header);
     else
       work(header);
@@ -74,6 +72,11 @@ class TimedReplay {
 };
 
 }  // namespace
+
+bool is_for_observers(CommandType type) {
+  return type == kCommandType<CmdMark> || type == kCommandType<CmdBeginLabel> || type == kCommandType<CmdEndLabel> ||
+         type == kCommandType<CmdInsertLabel>;
+}
 
 bool is_work(std::string_view name) {
   for (const std::string_view prefix : {"vkCmdBind", "vkCmdSet", "vkCmdPush", "vkCmdExecute"})

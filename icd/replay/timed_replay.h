@@ -11,6 +11,8 @@ namespace vitrine::icd {
 /// Runs the commands of a buffer and notes when each ran. `run`: does one.
 void replay_timed(ReplayState& state, const CommandBuffer& buffer, void (*run)(ReplayState&, const CommandHeader&));
 
+/// Whether a command only tells observers where they are.
+bool is_for_observers(CommandType type);
 /// Whether a command of this name does something that takes time: what binds and sets does not.
 bool is_work(std::string_view name);
 
