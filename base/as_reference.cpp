@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "base/lasting.h"
+#include "base/words.h"
 
 namespace vitrine::base {
 namespace {
@@ -26,18 +27,15 @@ bool AskedRows::has(std::string_view row) const {
 
 AskedRows parse_rows(std::string_view list) {
   AskedRows asked;
-  for (std::string_view rest = list; !rest.empty();) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    const std::string_view name = rest.substr(0, comma);
-    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  for_each_word(list, [&](std::string_view name) {
     const auto* const found = std::find(std::begin(kRows), std::end(kRows), name);
     if (name == "all")
       asked.rows = ~std::uint64_t{0} >> (64 - std::size(kRows));
     else if (found != std::end(kRows))
       asked.rows |= std::uint64_t{1} << (found - kRows);
-    else if (!name.empty())
+    else
       asked.unknown.emplace_back(name);
-  }
+  });
   return asked;
 }
 

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "base/lasting.h"
+#include "base/words.h"
 
 namespace vitrine::base {
 namespace {
@@ -37,7 +38,7 @@ void read_word(std::string_view word, ShakeSettings& settings) {
       std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) { return r.kind == word; });
   if (row != std::end(kRows))
     settings.kinds |= 1u << (row - kRows);
-  else if (!word.empty())
+  else
     settings.unknown.emplace_back(word);
 }
 
@@ -51,12 +52,7 @@ ShakeSettings parse_shake(std::string_view list) {
   const std::string_view first = list.substr(0, list.find(','));
   const auto [end, error] = std::from_chars(first.data(), first.data() + first.size(), settings.seed);
   if (error != std::errc() || end != first.data() + first.size()) settings.unknown.emplace_back(first);
-  for (std::string_view rest = list.substr(first.size()); !rest.empty();) {
-    rest.remove_prefix(1);
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    read_word(rest.substr(0, comma), settings);
-    rest.remove_prefix(comma);
-  }
+  for_each_word(list.substr(first.size()), [&](std::string_view word) { read_word(word, settings); });
   if (settings.kinds == 0 && settings.unknown.empty()) settings.kinds = usual_kinds();
   return settings;
 }

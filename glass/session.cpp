@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/lasting.h"
+#include "base/words.h"
 #include "glass/output.h"
 #include "glass/tools.h"
 #include "raster/draw.h"
@@ -126,16 +127,6 @@ std::unique_ptr<Tool> make_tool(std::string_view name) {
   return nullptr;
 }
 
-/// Whether a list separated by commas has the word.
-bool names(std::string_view list, std::string_view word) {
-  for (std::size_t at = 0; at <= list.size();) {
-    const std::size_t comma = std::min(list.find(',', at), list.size());
-    if (list.substr(at, comma - at) == word) return true;
-    at = comma + 1;
-  }
-  return false;
-}
-
 /// The loader unloads the driver with its last instance, and applications make several, one after the other: what the
 /// tools know of the process must last until it ends.
 void stay_loaded() {
@@ -149,15 +140,12 @@ void stay_loaded() {
 
 Session::Session() {
   const char* wanted = std::getenv("VITRINE_TOOLS");
-  for (std::string_view rest = wanted ? wanted : ""; !rest.empty();) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    if (comma != 0)
-      if (auto tool = make_tool(rest.substr(0, comma))) add(std::move(tool));
-    rest.remove_prefix(std::min(comma + 1, rest.size()));
-  }
+  base::for_each_word(wanted ? wanted : "", [&](std::string_view name) {
+    if (auto tool = make_tool(name)) add(std::move(tool));
+  });
   // Whoever says where messages go wants them.
   const char* messages = std::getenv("VITRINE_PRINTF");
-  const bool named = wanted != nullptr && names(wanted, "printf");
+  const bool named = wanted != nullptr && base::has_word(wanted, "printf");
   if (messages != nullptr && *messages != 0 && !named) add(make_printf());
   if (idle()) return;
   stay_loaded();

@@ -13,6 +13,7 @@
 
 #include "base/check.h"
 #include "base/log.h"
+#include "base/words.h"
 #include "spirv/ir_passes.h"
 #include "spirv/rewrite/gallivm/passes.h"
 #include "spirv/rewrite/llvm/passes.h"
@@ -85,19 +86,10 @@ class Choice {
 
   /// `step`: how many have run.
   bool leaves_out(const Pass& pass, std::uint32_t step) const {
-    return pass.needed == Needed::kOptional && (step >= limit_ || is_off(pass.name));
+    return pass.needed == Needed::kOptional && (step >= limit_ || base::has_word(off_, pass.name));
   }
 
  private:
-  bool is_off(std::string_view name) const {
-    for (std::string_view rest = off_; !rest.empty();) {
-      const std::size_t comma = std::min(rest.find(','), rest.size());
-      if (rest.substr(0, comma) == name) return true;
-      rest.remove_prefix(std::min(comma + 1, rest.size()));
-    }
-    return false;
-  }
-
   std::string_view off_;
   std::uint32_t limit_ = ~std::uint32_t{0};
 };
