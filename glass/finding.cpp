@@ -37,6 +37,10 @@ std::string shader_text(const Address& address) {
   return text;
 }
 
+std::string of_instance(const Invocation& invocation) {
+  return invocation.id[2] != 0 ? " of instance " + std::to_string(invocation.id[2]) : "";
+}
+
 }  // namespace
 
 std::string to_text(const Address& address) {
@@ -60,8 +64,12 @@ std::string to_text(const Invocation& invocation) {
       return "pixel (" + number(0) + ", " + number(1) + ")";
     case Invocation::Kind::kCompute:
       return "invocation (" + number(0) + ", " + number(1) + ", " + number(2) + ")";
-    case Invocation::Kind::kOther:
-      return "invocation " + number(0);
+    case Invocation::Kind::kControl:
+      return "vertex " + number(0) + " of patch " + number(1) + of_instance(invocation);
+    case Invocation::Kind::kEvaluation:
+      return "domain point " + number(0) + " of patch " + number(1) + of_instance(invocation);
+    case Invocation::Kind::kGeometry:
+      return "invocation " + number(0) + " of primitive " + number(1) + of_instance(invocation);
   }
   return "";
 }

@@ -33,10 +33,12 @@ struct Frame {
 struct Invocation {
   enum class Kind : std::uint8_t {
     kNone,
-    kVertex,    ///< VertexIndex, InstanceIndex
-    kFragment,  ///< x, y of the pixel
-    kCompute,   ///< GlobalInvocationId
-    kOther,     ///< number of the invocation in its stage's order
+    kVertex,      ///< VertexIndex, InstanceIndex
+    kFragment,    ///< x, y of the pixel
+    kCompute,     ///< GlobalInvocationId
+    kControl,     ///< InvocationId, PrimitiveId of the patch, instance of the draw
+    kEvaluation,  ///< number of the domain point in its patch, PrimitiveId of the patch, instance of the draw
+    kGeometry,    ///< InvocationId (behind tessellation: over all primitives of a patch), primitive or patch, instance
   } kind = Kind::kNone;
   std::array<std::uint32_t, 3> id{};
   auto operator<=>(const Invocation&) const = default;

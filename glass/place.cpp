@@ -33,8 +33,14 @@ Invocation::Kind kind_of(VkShaderStageFlagBits stage) {
       return Invocation::Kind::kFragment;
     case VK_SHADER_STAGE_COMPUTE_BIT:
       return Invocation::Kind::kCompute;
+    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
+      return Invocation::Kind::kControl;
+    case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
+      return Invocation::Kind::kEvaluation;
+    case VK_SHADER_STAGE_GEOMETRY_BIT:
+      return Invocation::Kind::kGeometry;
     default:
-      return Invocation::Kind::kOther;
+      return Invocation::Kind::kNone;
   }
 }
 

@@ -46,6 +46,7 @@ enum class BuiltIn : std::uint8_t {
   kVertexTable,  ///< byte offset in stage memory of the invocation's row of vertex offsets
   kPatchOffset,  ///< byte offset in stage memory of the patch: read by evaluation, written by control shaders
   kEmitOffset,   ///< byte offset in stage memory of the vertices that the invocation emits
+  kIdentity,     ///< of observed programs: which invocation it is, three numbers (spirv/exec/invocation.h)
   // tessellation control out, evaluation in: words of the patch
   kTessLevelOuter,
   kTessLevelInner,

@@ -22,7 +22,7 @@ Frame frame_of(const Json& json) {
 
 Invocation invocation_of(const Json& json) {
   Invocation invocation;
-  for (int kind = 0; kind <= static_cast<int>(Invocation::Kind::kOther); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(Invocation::Kind::kGeometry); ++kind) {
     invocation.kind = static_cast<Invocation::Kind>(kind);
     if (json.at("kind") == invocation_name(invocation.kind).name) break;
   }

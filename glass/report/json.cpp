@@ -39,8 +39,12 @@ InvocationName invocation_name(Invocation::Kind kind) {
       return {"fragment", 2};
     case Invocation::Kind::kCompute:
       return {"compute", 3};
-    case Invocation::Kind::kOther:
-      return {"other", 1};
+    case Invocation::Kind::kControl:
+      return {"control", 3};
+    case Invocation::Kind::kEvaluation:
+      return {"evaluation", 3};
+    case Invocation::Kind::kGeometry:
+      return {"geometry", 3};
   }
   return {"none", 0};
 }

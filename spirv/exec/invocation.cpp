@@ -25,21 +25,24 @@ std::array<std::uint32_t, 3> compute_id(const Wave& wave, std::size_t lane) {
           wave.workgroup_id[2] * size[2] + local / size[0] / size[1]};
 }
 
-/// The two inputs of a stage; null: it has none.
-std::array<const base::WaveRegister*, 2> inputs_of(const Wave& wave) {
+/// The inputs of a stage that tell; null: there is none.
+std::array<const base::WaveRegister*, 3> inputs_of(const Wave& wave) {
   switch (wave.program->observation->interface.stage) {
     case VK_SHADER_STAGE_VERTEX_BIT:
       return {input_of(wave, BuiltIn::kVertexIndex, 0), input_of(wave, BuiltIn::kInstanceIndex, 0)};
     case VK_SHADER_STAGE_FRAGMENT_BIT:
       return {input_of(wave, BuiltIn::kFragCoord, 0), input_of(wave, BuiltIn::kFragCoord, 1)};
-    default:
+    case VK_SHADER_STAGE_COMPUTE_BIT:
       return {};
+    default:
+      return {input_of(wave, BuiltIn::kIdentity, 0), input_of(wave, BuiltIn::kIdentity, 1),
+              input_of(wave, BuiltIn::kIdentity, 2)};
   }
 }
 
 std::uint32_t number_of(const Wave& wave, const base::WaveRegister& input, std::size_t lane) {
-  const bool vertex = wave.program->observation->interface.stage == VK_SHADER_STAGE_VERTEX_BIT;
-  return vertex ? input.lane[lane] : base::truncate_to_uint(base::float_of(input.lane[lane]));
+  const bool fragment = wave.program->observation->interface.stage == VK_SHADER_STAGE_FRAGMENT_BIT;
+  return fragment ? base::truncate_to_uint(base::float_of(input.lane[lane])) : input.lane[lane];
 }
 
 }  // namespace
@@ -48,8 +51,10 @@ std::array<std::uint32_t, 3> invocation_of(const Wave& wave, std::size_t lane) {
 
 Invocations::Invocations(const Wave& wave) {
   const auto inputs = inputs_of(wave);
-  if (inputs[0] == nullptr || inputs[1] == nullptr) return;
-  for (; count_ < inputs.size(); ++count_) inputs_[count_] = *inputs[count_];
+  while (count_ < inputs.size() && inputs[count_] != nullptr) {
+    inputs_[count_] = *inputs[count_];
+    ++count_;
+  }
 }
 
 std::array<std::uint32_t, 3> Invocations::operator()(const Wave& wave, std::size_t lane) const {

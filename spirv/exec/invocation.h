@@ -8,8 +8,10 @@
 
 namespace vitrine::spirv::exec {
 
-/// Compute: GlobalInvocationId. Vertex: VertexIndex, InstanceIndex. Fragment: x and y of the pixel. Other stages:
-/// zeros. Of an observed program; but for compute only when it has just started, while its inputs are there.
+/// Compute: GlobalInvocationId. Vertex: VertexIndex, InstanceIndex. Fragment: x and y of the pixel. Tessellation and
+/// geometry: InvocationId (evaluation: the number of the domain point in its patch; geometry behind tessellation: over
+/// all primitives of the patch), PrimitiveId of what came to the stages, and the instance. Of an observed program; but
+/// for compute only when it has just started, while its inputs are there.
 std::array<std::uint32_t, 3> invocation_of(const Wave& wave, std::size_t lane);
 
 /// Keeps what tells the invocations of a wave apart, from its start on: the wave reuses those registers.
@@ -20,7 +22,7 @@ class Invocations {
   std::array<std::uint32_t, 3> operator()(const Wave& wave, std::size_t lane) const;
 
  private:
-  std::array<base::WaveRegister, 2> inputs_;  ///< unset where the wave has none
+  std::array<base::WaveRegister, 3> inputs_;  ///< unset where the wave has none
   std::uint8_t count_ = 0;                    ///< of inputs
 };
 

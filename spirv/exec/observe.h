@@ -66,7 +66,7 @@ class Observer {
 
 /// Who observes a program, and what only the interface knows: where inputs and outputs lie. Unless he wants to be told
 /// of blocks alone, its inputs hold what tells invocations apart, read by the shader or not: VertexIndex and
-/// InstanceIndex, FragCoord.xy.
+/// InstanceIndex, FragCoord.xy, kIdentity.
 struct Observation {
   std::shared_ptr<const Observer> observer;
   ShaderInterface interface;

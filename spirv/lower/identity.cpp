@@ -35,6 +35,8 @@ void keep_identity(ScalarFunction& function, ShaderInterface& interface) {
   } else if (interface.stage == VK_SHADER_STAGE_FRAGMENT_BIT) {
     keep(function, interface, BuiltIn::kFragCoord, 0);
     keep(function, interface, BuiltIn::kFragCoord, 1);
+  } else if (interface.stage != VK_SHADER_STAGE_COMPUTE_BIT) {
+    for (std::uint8_t i = 0; i < 3; ++i) keep(function, interface, BuiltIn::kIdentity, i);
   }
 }
 

@@ -33,7 +33,9 @@ TEST(Finding, AddressLeavesOutWhatIsUnknown) {
 
 TEST(Finding, InvocationsAreNumbersOfTheirStage) {
   EXPECT_EQ(to_text(Invocation{Invocation::Kind::kVertex, {9, 2, 0}}), "vertex 9 of instance 2");
-  EXPECT_EQ(to_text(Invocation{Invocation::Kind::kOther, {4, 0, 0}}), "invocation 4");
+  EXPECT_EQ(to_text(Invocation{Invocation::Kind::kControl, {4, 7, 0}}), "vertex 4 of patch 7");
+  EXPECT_EQ(to_text(Invocation{Invocation::Kind::kEvaluation, {4, 7, 2}}), "domain point 4 of patch 7 of instance 2");
+  EXPECT_EQ(to_text(Invocation{Invocation::Kind::kGeometry, {0, 7, 0}}), "invocation 0 of primitive 7");
 }
 
 TEST(Finding, FramesEndWhereKnowledgeDoes) {

@@ -32,6 +32,16 @@ PIPELINES = {
              "frag": "void main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n"
                      "  if ((at.x & 15) == 3 && (at.y & 7) == 5) debugPrintfEXT(\"pixel %v2d\\n\", at);\n"
                      "  if (at.x > 100) discard;\n}\n"},
+    "patches of instances": {
+        "vert": "layout(location = 0) out int instance;\nvoid main() {\n  gl_Position = vec4(0.1 * gl_VertexIndex);\n"
+                "  instance = gl_InstanceIndex;\n}\n",
+        "tesc": "layout(vertices = 3) out;\nlayout(location = 0) in int instance[];\nlayout(location = 0) out int next[];\nvoid main() {\n"
+                "  gl_TessLevelOuter[0] = gl_TessLevelOuter[1] = gl_TessLevelOuter[2] = gl_TessLevelInner[0] = 12.0;\n"
+                "  next[gl_InvocationID] = instance[gl_InvocationID];\n"
+                "  debugPrintfEXT(\"vertex %d of %d\\n\", gl_InvocationID, instance[gl_InvocationID]);\n}\n",
+        "tese": "layout(triangles) in;\nlayout(location = 0) in int instance[];\nvoid main() {\n  gl_Position = vec4(gl_TessCoord, sqrt(gl_TessCoord.x - 2.0));\n"
+                "  debugPrintfEXT(\"point %v3f of %d\\n\", gl_TessCoord, instance[0]);\n}\n",
+        "frag": "void main() {\n}\n"},
 }
 
 
@@ -81,7 +91,9 @@ class OrderTest(unittest.TestCase):
                                check=True, capture_output=True)
             written = self.assert_same(name, lambda place, files=files: [SPEAKER, "--many", *files])
             self.assertGreater(len(written["said.txt"].splitlines()), 1000)
-            self.assertIn(b'"draws"' if name == "draw" else b'"lines"', written["counts.json"])
+            if "tese" in shaders:
+                self.assertIn(b'"kind":"evaluation","id":[0,0,0]', written["found.json"].replace(b" ", b""))
+            self.assertIn(b'"draws"' if "vert" in shaders else b'"lines"', written["counts.json"])
 
 
 if __name__ == "__main__":

@@ -22,6 +22,13 @@ struct GeometryWave {
   std::size_t table = 0, emit = 0;  ///< words in stage memory
 };
 
+/// As spirv/exec/invocation.h.
+std::uint32_t identity_of(const GeometryInput& input, std::uint32_t component, std::uint32_t invocation,
+                          std::uint32_t invocations) {
+  const std::uint32_t numbers[] = {input.number * invocations + invocation, input.source, input.instance};
+  return numbers[component];
+}
+
 void fill_inputs(const StageContext& c, std::span<const GeometryInput> inputs, const GeometryWave& wave) {
   StageScratch& s = c.stages;
   const spirv::ShaderInterface& shader = *c.plan.stages.geometry;
@@ -46,6 +53,10 @@ void fill_inputs(const StageContext& c, std::span<const GeometryInput> inputs, c
           break;
         case BuiltIn::kEmitOffset:
           lane[i] = emit + i * lane_bytes;
+          break;
+        case BuiltIn::kIdentity:
+          lane[i] = identity_of(input_of(i), slot.component, static_cast<std::uint32_t>((wave.first + i) % invocations),
+                                invocations);
           break;
         case BuiltIn::kViewIndex:
           lane[i] = c.chunk.view;

@@ -17,13 +17,17 @@ namespace vitrine::raster {
 /// Byte offsets of vertices in stage memory, for one geometry shader primitive; unused ones repeat the first.
 struct GeometryInput {
   std::uint32_t vertex[6];
-  std::uint32_t id;  ///< gl_PrimitiveIDIn
+  std::uint32_t id;          ///< gl_PrimitiveIDIn
+  std::uint32_t source;      ///< primitive, or patch, of the draw that it comes from
+  std::uint32_t instance;    ///< without first_instance
+  std::uint32_t number = 0;  ///< among those of its patch
 };
 
 /// A domain point of one of the patches at hand.
 struct PatchPoint {
   float u, v;
   std::uint32_t patch;
+  std::uint32_t number;  ///< in the patch
 };
 
 /// Working memory of one thread, kept between chunks.
@@ -33,7 +37,8 @@ struct StageScratch {
   std::vector<std::uint32_t> memory;  ///< stage memory
   std::size_t used = 0;               ///< words of it
   Tessellator tessellator;
-  std::vector<std::uint32_t> patch_vertices, patch_ids;  ///< byte offsets, State::patch_control_points a patch
+  std::vector<std::uint32_t> patch_vertices;              ///< byte offsets, State::patch_control_points a patch
+  std::vector<std::uint32_t> patch_ids, patch_instances;  ///< gl_PrimitiveID; without first_instance
   std::vector<PatchPoint> points;
   std::vector<GeometryInput> inputs;
   std::vector<std::uint32_t> emitted;  ///< words in stage memory of vertices for the rasterizer

@@ -37,7 +37,8 @@ void list_inputs(const StageContext& c, std::uint32_t base, std::uint32_t stride
     GeometryInput& input = inputs.emplace_back();
     for (std::uint32_t v = 0; v < 6; ++v)
       input.vertex[v] = base + stride * c.vertices.slot[entry_of(vertices.at[v < vertices.count ? v : 0])];
-    input.id = run.first_id + i;
+    input.id = input.source = run.first_id + i;
+    input.instance = run.instance;
   });
 }
 
@@ -45,11 +46,13 @@ void list_patches(const StageContext& c, std::uint32_t base, std::uint32_t strid
   StageScratch& s = c.stages;
   s.patch_vertices.clear();
   s.patch_ids.clear();
+  s.patch_instances.clear();
   const std::uint32_t points = c.plan.shape.step;
   for_each_primitive(c.chunk, [&](const Run& run, std::uint32_t i, const auto& entry_of) {
     for (std::uint32_t v = 0; v < points; ++v)
       s.patch_vertices.push_back(base + stride * c.vertices.slot[entry_of(i * points + v)]);
     s.patch_ids.push_back(run.first_id + i);
+    s.patch_instances.push_back(run.instance);
   });
 }
 

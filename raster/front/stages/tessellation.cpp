@@ -41,6 +41,11 @@ void fill_tables(const StageContext& c, const Batch& batch) {
   }
 }
 
+/// What tells invocations of a patch apart (spirv/exec/invocation.h), of which `number` is one.
+std::uint32_t identity_of(const StageContext& c, std::size_t patch, std::uint32_t component, std::uint32_t number) {
+  return component == 0 ? number : component == 1 ? c.stages.patch_ids[patch] : c.stages.patch_instances[patch];
+}
+
 /// One wave: `count` patches of the batch.
 void run_control_wave(const StageContext& c, const Batch& batch, std::uint32_t first, std::uint32_t count) {
   StageScratch& s = c.stages;
@@ -59,6 +64,9 @@ void run_control_wave(const StageContext& c, const Batch& batch, std::uint32_t f
           break;
         case BuiltIn::kPatchVertices:
           lane[i] = c.plan.shape.step;
+          break;
+        case BuiltIn::kIdentity:
+          lane[i] = identity_of(c, batch.first + patch, slot.component, i % invocations);
           break;
         case BuiltIn::kVertexTable:
           lane[i] = byte_offset(batch.input_table + patch * kMaxPatchVertices);
@@ -112,7 +120,8 @@ void tessellate(const StageContext& c, const Batch& batch) {
     std::memcpy(levels.inner, words + 4, sizeof(levels.inner));
     s.tessellator.run({modes.domain, modes.spacing, modes.clockwise != flip, modes.point_mode}, levels);
     const auto first = static_cast<std::uint32_t>(s.points.size());
-    for (const DomainPoint& point : s.tessellator.points()) s.points.push_back({point.u, point.v, p});
+    for (const DomainPoint& point : s.tessellator.points())
+      s.points.push_back({point.u, point.v, p, static_cast<std::uint32_t>(s.points.size()) - first});
     const std::vector<std::uint32_t>& indices = s.tessellator.indices();
     for (std::size_t i = 0; i + corners <= indices.size(); i += corners) {
       ListedPrimitive& primitive = s.listed.emplace_back();
@@ -146,6 +155,9 @@ void run_evaluation_wave(const StageContext& c, const Batch& batch, std::uint32_
           break;
         case BuiltIn::kPatchVertices:
           lane[i] = modes.control_points;
+          break;
+        case BuiltIn::kIdentity:
+          lane[i] = identity_of(c, batch.first + point.patch, slot.component, point.number);
           break;
         case BuiltIn::kVertexTable:
           lane[i] = byte_offset(batch.output_table + point.patch * kMaxPatchVertices);
@@ -188,11 +200,16 @@ void evaluate_for_geometry(const StageContext& c, const Batch& batch) {
                         words);
   });
   s.inputs.clear();
+  std::uint32_t patch = 0, number = 0;
   for (const ListedPrimitive& primitive : s.listed) {
     GeometryInput& input = s.inputs.emplace_back();
+    if (const std::uint32_t from = s.points[primitive.slot[0]].patch; from != patch) patch = from, number = 0;
     for (std::uint32_t v = 0; v < 6; ++v)
       input.vertex[v] = byte_offset(first + std::size_t{primitive.slot[v < 3 ? v : 0]} * words);
     input.id = c.chunk.primitive_count ? (*c.chunk.primitive_count)++ : primitive.id;
+    input.source = s.patch_ids[batch.first + patch];
+    input.instance = s.patch_instances[batch.first + patch];
+    input.number = number++;
   }
   run_geometry(c, s.inputs);
 }
