@@ -79,6 +79,11 @@ void write_output(const char* variable, const char* otherwise, std::string_view 
   if (!failure.empty()) complain_once(std::string(variable) + ": '" + name + "' cannot be written: " + failure);
 }
 
+void write_named(const std::string& name, std::string_view text) {
+  const Failure failure = replace_file(name, text);
+  if (!failure.empty()) complain_once("'" + name + "' cannot be written: " + failure);
+}
+
 std::string name_of_source(const spirv::SourceFile& file) {
   std::error_code error;
   if (file.name.empty() || std::filesystem::exists(file.name, error)) return file.name;

@@ -147,6 +147,9 @@ Session::Session() {
   const char* messages = std::getenv("VITRINE_PRINTF");
   const bool named = wanted != nullptr && base::has_word(wanted, "printf");
   if (messages != nullptr && *messages != 0 && !named) add(make_printf());
+  // And who names commands wants files of them.
+  const char* commands = std::getenv("VITRINE_CAPTURE");
+  if (commands != nullptr && *commands != 0 && !base::has_word(wanted ? wanted : "", "capture")) add(make_capture());
   if (idle()) return;
   stay_loaded();
   const char* report = std::getenv("VITRINE_REPORT");

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "glass/cli/application.h"
+#include "glass/cli/bug_options.h"
 #include "glass/cli/commands.h"
 #include "glass/version.h"
 
@@ -38,15 +39,15 @@ struct Words {
   bool divided = false;  ///< there is a "--"
 };
 
-Words split(int argc, char** argv) {
+Words split(const std::vector<std::string>& line) {
   Words words;
-  for (int i = 1; i < argc; ++i) {
+  for (const std::string& word : line) {
     if (words.divided)
-      words.behind.emplace_back(argv[i]);
-    else if (std::string_view(argv[i]) == "--")
+      words.behind.push_back(word);
+    else if (word == "--")
       words.divided = true;
     else
-      words.ours.emplace_back(argv[i]);
+      words.ours.push_back(word);
   }
   return words;
 }
@@ -205,12 +206,12 @@ void check_command(const CLI::App& app, const Words& words) {
     throw CLI::ValidationError("vitrine", "there is no command '" + words.ours[0] + "'");
 }
 
-int main_of(int argc, char** argv) {
+int main_of(const std::vector<std::string>& line) {
   CLI::App app{"Runs applications on the Vulkan driver Vitrine, and tells what their shaders do.", "vitrine"};
   app.formatter(std::make_shared<Help>("COMMAND ..."));
   app.set_version_flag("--version", std::string("vitrine ") + kVersion);
   app.require_subcommand(1);
-  const Words words = split(argc, argv);
+  const Words words = split(line);
   int code = 0;
   CheckOptions check_options;
   CoverageOptions coverage_options;
@@ -219,6 +220,7 @@ int main_of(int argc, char** argv) {
   ShakeOptions shake_options;
   PixelOptions pixel_options;
   DiffOptions diff_options;
+  BugOptions bug_options;
   add_run(app, words, code);
   add_check(app, words, check_options, code);
   add_coverage(app, words, coverage_options, code);
@@ -227,6 +229,7 @@ int main_of(int argc, char** argv) {
   add_shake(app, words, shake_options, code);
   add_pixel(app, words, pixel_options, code);
   add_diff(app, diff_options, code);
+  add_bug_commands(app, bug_options, main_of, code);
   try {
     check_command(app, words);
     app.parse(std::vector<std::string>(words.ours.rbegin(), words.ours.rend()));  // the last one first
@@ -239,4 +242,4 @@ int main_of(int argc, char** argv) {
 }  // namespace
 }  // namespace vitrine::glass::cli
 
-int main(int argc, char** argv) { return vitrine::glass::cli::main_of(argc, argv); }
+int main(int argc, char** argv) { return vitrine::glass::cli::main_of({argv + 1, argv + argc}); }

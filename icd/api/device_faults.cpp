@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "glass/bug/capture.h"
 #include "glass/report/report.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
@@ -19,8 +20,9 @@ void copy_text(std::string_view text, char (&to)[VK_MAX_DESCRIPTION_SIZE]) {
   to[size] = 0;
 }
 
-/// "vendor-specific binary crash dump": the header that the specification asks for, and behind it what we know of the
-/// fault as a report in JSON (docs/glass/report.md section 2). Empty: no shader is at fault.
+/// "vendor-specific binary crash dump": the header that the specification asks for, and behind it the bug file, where
+/// commands are captured (docs/glass/bugfile.md), else what we know of the fault as a report in JSON
+/// (docs/glass/report.md section 2). Empty: no shader is at fault.
 std::string vendor_binary(const Device& device) {
   if (!device.features.test(Feature::deviceFaultVendorBinary) || !device.loss.of_shader) return {};
   glass::Finding finding;
@@ -36,8 +38,10 @@ std::string vendor_binary(const Device& device) {
   header.deviceID = properties.deviceID;
   header.driverVersion = properties.driverVersion;
   std::memcpy(header.pipelineCacheUUID, properties.pipelineCacheUUID, VK_UUID_SIZE);
-  return std::string(reinterpret_cast<const char*>(&header), sizeof header) +
-         glass::to_report(glass::ReportFormat::kJson, {&finding, 1});
+  const std::string start(reinterpret_cast<const char*>(&header), sizeof header);
+  const glass::bug::Captures* const captures = glass::bug::captures();
+  if (const std::string file = captures ? captures->file_of_loss(&device) : ""; !file.empty()) return start + file;
+  return start + glass::to_report(glass::ReportFormat::kJson, {&finding, 1});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/lanes.h"
+#include "glass/bug/capture.h"
 #include "glass/profile.h"
 #include "glass/session.h"
 #include "icd/edge/util.h"
@@ -160,7 +161,7 @@ StageResult compile_stage(Device& device, PipelineCache* cache, const StageReque
     compiled->subgroup_size = options.subgroup_size;
     compiled->representations = std::move(representations);
     compiled->live_color_outputs = request.live_color_outputs;
-    if (device.features.test(Feature::performanceCounterQueryPools))
+    if (device.features.test(Feature::performanceCounterQueryPools) || glass::bug::captures())
       compiled->kept = std::make_shared<KeptStage>(copy_stage(*request.stage, device.memory));
     out.shader = add_shader(device.shaders, key, compiled);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "glass/bug/capture.h"
 #include "glass/session.h"
 #include "icd/object/address_book.h"
 #include "icd/object/memory.h"
@@ -186,7 +187,13 @@ void end_observed_submission(Device& device) noexcept {
     glass::session().commands_done(&device);
     observed->commands.clear();
     if (observed->pixels) observed->pixels->submission_ends();
-    glass::session().end_submission([&](const glass::Finding& f) { send_finding(device, *observed, f); });
+    glass::bug::Captures* const captures = glass::bug::captures();
+    glass::session().end_submission([&](const glass::Finding& f) {
+      send_finding(device, *observed, f);
+      if (captures) captures->found(&device, f);
+    });
+    if (captures) captures->end_submission(&device);
+    observed->snapshots.clear();
   } catch (...) {
     report_error(device, ref(device), "tools", "out of host memory while findings were delivered");
   }

@@ -15,6 +15,7 @@
 #include "glass/pixel/primitives.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/object/labels.h"
+#include "icd/replay/captured_objects.h"
 #include "icd/replay/replay.h"
 #include "spirv/observed_command.h"
 
@@ -83,6 +84,9 @@ struct ObservedReplay {
   std::vector<Objects> objects;                                  ///< ascending commands
   ObservedPass pass;
   const CmdBeginRendering* rendering = nullptr;  ///< dynamic rendering that has begun
+  // Where commands are captured (icd/replay/captured_replay.h)
+  const CmdBeginRendering* captured_rendering = nullptr;  ///< the last that has begun
+  Snapshots snapshots;                                    ///< of the submission
   /// By word of the push constants: ranges of the layout that it was set with, in the command buffer; none: it was not.
   std::array<std::span<const VkPushConstantRange>, spirv::kMaxPushConstantBytes / 4> pushed{};
 };

@@ -1,6 +1,7 @@
 // The loop over recorded commands.
 #include "icd/replay/replay.h"
 
+#include "glass/bug/capture.h"
 #include "glass/digest.h"
 #include "glass/place.h"
 #include "glass/session.h"
@@ -8,6 +9,7 @@
 #include "icd/edge/diagnostics.h"
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
+#include "icd/replay/captured_replay.h"
 #include "icd/replay/digested_replay.h"
 #include "icd/replay/texel_events.h"
 #include "icd/replay/timed_replay.h"
@@ -102,6 +104,7 @@ DeviceLoss loss_of(const spirv::Fault& fault, const char* reason) noexcept {
 void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
   if (state.observed && glass::has_timeline()) return replay_timed(state, buffer, run_command);
   if (state.observed && glass::has_digest()) return replay_digested(state, buffer, run_command);
+  if (state.observed && glass::bug::captures()) return replay_captured(state, buffer, run_command);
   const bool shadows = shadows_memory(state), watches = watches_texels(state);
   for (const CommandHeader* header = buffer.arena.first(); header; header = header->next) {
     kExecutors[header->type](state, header->command());
@@ -130,7 +133,9 @@ VkResult replay(Device& device, const CommandBuffer& buffer) noexcept {
   state.pass.reset();
   state.instance = nullptr;
   if (!reason && !state.fault.raised.load()) return VK_SUCCESS;
-  lose_device(device, loss_of(state.fault, reason));
+  DeviceLoss loss = loss_of(state.fault, reason);
+  if (glass::bug::Captures* const captures = glass::bug::captures()) captures->lost(&device, loss.reason);
+  lose_device(device, std::move(loss));
   return VK_ERROR_DEVICE_LOST;
 }
 

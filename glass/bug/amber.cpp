@@ -1,0 +1,206 @@
+// See amber.h. A buffer of the file is a BUFFER of the script, by its number; shaders go in as words.
+#include "glass/bug/amber.h"
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+
+namespace vitrine::glass::bug {
+namespace {
+
+constexpr std::size_t kPerLine = 8;
+
+/// What the language has no words for.
+struct Unspeakable {
+  std::string what;
+};
+
+const char* stage_name(VkShaderStageFlagBits stage) {
+  if (stage != VK_SHADER_STAGE_COMPUTE_BIT) throw Unspeakable{"draws"};
+  return "compute";
+}
+
+std::string hexadecimal(std::uint64_t value, int digits) {
+  char text[20];
+  std::snprintf(text, sizeof text, "0x%0*llx", digits, static_cast<unsigned long long>(value));
+  return text;
+}
+
+/// Words of a module in lines, as SPIRV-HEX has them.
+void write_words(std::ostream& out, const Bytes& words) {
+  for (std::size_t i = 0; i < words.size() / 4; ++i) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, words.data() + i * 4, 4);
+    out << hexadecimal(word, 8) << ((i + 1) % kPerLine && (i + 1) * 4 < words.size() ? ' ' : '\n');
+  }
+}
+
+void write_shaders(std::ostream& out, const Bug& bug) {
+  for (std::size_t i = 0; i < bug.stages.size(); ++i) {
+    out << "SHADER " << stage_name(bug.stages[i].stage) << " shader" << i << " SPIRV-HEX\n";
+    write_words(out, *bug.stages[i].words);
+    out << "END\n\n";
+  }
+}
+
+/// BUFFER with its data, of words where that goes.
+void write_buffer(std::ostream& out, const std::string& name, const Bytes& bytes) {
+  const bool words = bytes.size() % 4 == 0;
+  const std::size_t step = words ? 4 : 1, count = bytes.size() / step;
+  out << "BUFFER " << name << " DATA_TYPE " << (words ? "uint32" : "uint8") << " STD430";
+  if (std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; })) {
+    out << " SIZE " << count << " FILL 0\n";
+    return;
+  }
+  out << " DATA\n";
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + i * step, step);
+    out << hexadecimal(value, static_cast<int>(step * 2)) << ((i + 1) % kPerLine && i + 1 < count ? ' ' : '\n');
+  }
+  out << "END\n";
+}
+
+bool overlaps(const Bug& bug, std::size_t number) {
+  const Buffer& a = bug.buffers[number];
+  for (std::size_t i = 0; i < bug.buffers.size(); ++i) {
+    const Buffer& b = bug.buffers[i];
+    if (i != number && a.memory == b.memory && a.offset < b.offset + b.size && b.offset < a.offset + a.size)
+      return true;
+  }
+  return false;
+}
+
+void write_buffers(std::ostream& out, const Bug& bug) {
+  for (std::size_t i = 0; i < bug.buffers.size(); ++i) {
+    if (overlaps(bug, i)) throw Unspeakable{"buffers that overlap"};
+    if (!bug.buffers[i].name.empty()) out << "# " << bug.buffers[i].name << "\n";
+    write_buffer(out, "buffer" + std::to_string(i), contents_of(bug, bug.buffers[i], false));
+    if (!bug.lost) write_buffer(out, "expected" + std::to_string(i), contents_of(bug, bug.buffers[i], true));
+  }
+  if (bug.push_constants && !bug.push_constants->empty()) write_buffer(out, "pushed", *bug.push_constants);
+  out << "\n";
+}
+
+const char* buffer_type(VkDescriptorType type) {
+  switch (type) {
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+      return "uniform";
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+      return "storage";
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC:
+      return "uniform_dynamic";
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
+      return "storage_dynamic";
+    case VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK:
+      throw Unspeakable{"inline uniform blocks"};
+    default:
+      throw Unspeakable{"images, samplers and texel buffers with the formats and contents of this one"};
+  }
+}
+
+bool is_dynamic(VkDescriptorType type) {
+  return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
+}
+
+/// All elements of a binding in one line: they must all be there.
+void write_binding(std::ostream& out, const Bug& bug, std::uint32_t set, const Binding& binding) {
+  std::vector<const Descriptor*> elements;
+  for (const Descriptor& d : bug.descriptors)
+    if (d.set == set && d.binding == binding.binding) elements.push_back(&d);
+  if (elements.empty()) return;
+  const char* const type = buffer_type(binding.type);
+  const bool array = elements.size() > 1;
+  if (elements.back()->element + 1 != elements.size()) throw Unspeakable{"arrays of descriptors with holes"};
+  std::string names, zeros, offsets, ranges;
+  for (const Descriptor* d : elements) {
+    names.append(" buffer").append(std::to_string(d->buffer));
+    zeros.append(" 0");
+    offsets.append(" ").append(std::to_string(d->offset));
+    ranges.append(" ").append(std::to_string(d->range));
+  }
+  out << "  BIND " << (array ? "BUFFER_ARRAY" : "BUFFER") << names << " AS " << type << " DESCRIPTOR_SET " << set
+      << " BINDING " << binding.binding;
+  if (is_dynamic(binding.type)) out << " OFFSET" << zeros;
+  out << " DESCRIPTOR_OFFSET" << offsets << " DESCRIPTOR_RANGE" << ranges << "\n";
+}
+
+/// SPECIALIZE takes 32 bits; the type does not matter to the bits of words.
+void write_constants(std::ostream& out, const Stage& stage) {
+  for (const VkSpecializationMapEntry& entry : stage.constants) {
+    if (entry.size != 4) throw Unspeakable{"specialization constants of other sizes than 32 bits"};
+    std::uint32_t value = 0;
+    std::memcpy(&value, stage.constant_data->data() + entry.offset, 4);
+    out << " SPECIALIZE " << entry.constantID << " AS uint32 " << value;
+  }
+}
+
+void write_pipeline(std::ostream& out, const Bug& bug) {
+  const Stage& stage = bug.stages[0];
+  out << "PIPELINE compute pipeline\n  ATTACH shader0";
+  if (!stage.constants.empty() || stage.entry_point != "main") out << " TYPE compute ENTRY_POINT " << stage.entry_point;
+  write_constants(out, stage);
+  out << "\n";
+  for (std::uint32_t set = 0; set < bug.sets.size(); ++set)
+    for (const Binding& binding : bug.sets[set].bindings) write_binding(out, bug, set, binding);
+  if (bug.push_constants && !bug.push_constants->empty()) out << "  BIND BUFFER pushed AS push_constant\n";
+  out << "END\n\n";
+}
+
+void write_run(std::ostream& out, const Bug& bug) {
+  std::array<std::uint32_t, 3> groups = bug.command.groups;
+  if (bug.command.arguments != kNone) {
+    const Bytes bytes = contents_of(bug, bug.buffers[bug.command.arguments], false);
+    const std::uint64_t at = bug.command.arguments_offset;
+    if (at > bytes.size() || bytes.size() - at < sizeof groups) throw Unspeakable{"arguments outside of their buffer"};
+    std::memcpy(groups.data(), bytes.data() + at, sizeof groups);
+  }
+  if (std::any_of(bug.command.base.begin(), bug.command.base.end(), [](std::uint32_t b) { return b != 0; }))
+    throw Unspeakable{"dispatches that do not begin with workgroup 0"};
+  out << "RUN pipeline " << groups[0] << " " << groups[1] << " " << groups[2] << "\n\n";
+  if (bug.lost) return;
+  for (std::size_t i = 0; i < bug.buffers.size(); ++i)
+    out << "EXPECT buffer" << i << " EQ_BUFFER expected" << i << "\n";
+}
+
+void write_head(std::ostream& out, const Bug& bug) {
+  out << "#!amber\n# Captured by Vitrine: " << bug.command_name << ", submission " << bug.submission << ", command "
+      << bug.command_number << ".\n";
+  for (const Found& found : bug.findings) {
+    std::string line = found.rule + ": " + found.message + (found.place.empty() ? "" : ", at " + found.place);
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    out << "# " << line << "\n";
+  }
+  out << "\n";
+}
+
+}  // namespace
+
+Bytes contents_of(const Bug& bug, const Buffer& buffer, bool after) {
+  Bytes out(buffer.size);
+  for (const Piece& piece : bug.memories[buffer.memory].pieces) {
+    const Bytes& bytes = after && piece.after ? *piece.after : *piece.before;
+    const std::uint64_t first = std::max(piece.offset, buffer.offset);
+    const std::uint64_t end = std::min(piece.offset + bytes.size(), buffer.offset + buffer.size);
+    if (first < end)
+      std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(first - piece.offset), end - first,
+                  out.begin() + static_cast<std::ptrdiff_t>(first - buffer.offset));
+  }
+  return out;
+}
+
+base::Result<std::string> to_amber(const Bug& bug) {
+  std::ostringstream out;
+  try {
+    write_head(out, bug);
+    write_shaders(out, bug);
+    write_buffers(out, bug);
+    write_pipeline(out, bug);
+    write_run(out, bug);
+  } catch (const Unspeakable& word) {
+    return base::Error{"AmberScript is not written for " + word.what};
+  }
+  return out.str();
+}
+
+}  // namespace vitrine::glass::bug

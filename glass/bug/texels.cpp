@@ -1,0 +1,19 @@
+// See texels.h (Vulkan 1.3.239, Copy Commands: Buffer and Image Addressing).
+#include "glass/bug/texels.h"
+
+namespace vitrine::glass::bug {
+
+std::uint64_t packed_bytes(const texel::ImageLayout& layout, VkImageAspectFlagBits aspect, std::uint32_t level,
+                           std::uint32_t layers) {
+  const texel::FormatDesc& whole = texel::format_desc(layout.desc.format);
+  if (layout.desc.samples != 1 || (whole.plane_count != 1 && !whole.is_depth_stencil())) return 0;
+  if (level >= layout.desc.levels || !(whole.aspects & aspect)) return 0;
+  const texel::PlaneLayout& plane = layout.plane[texel::plane_of_aspect(layout, aspect)];
+  const texel::FormatDesc& format = texel::format_desc(plane.format);
+  const texel::Extent& extent = plane.level[level].extent;
+  const auto blocks = [](std::uint64_t texels, std::uint64_t side) { return (texels + side - 1) / side; };
+  return blocks(extent.width, format.block_width) * blocks(extent.height, format.block_height) *
+         blocks(extent.depth, format.block_depth) * format.block_bytes * layers;
+}
+
+}  // namespace vitrine::glass::bug

@@ -1,0 +1,106 @@
+// See captured_descriptors.h.
+#include "icd/replay/captured_descriptors.h"
+
+#include <algorithm>
+
+namespace vitrine::icd {
+namespace {
+
+using glass::bug::Bug;
+using glass::bug::kNone;
+
+/// Where elements of a binding are found.
+struct Slots {
+  const DescriptorSet* set = nullptr;  ///< null: nothing is bound
+  const spirv::Descriptor* first = nullptr;
+  std::uint32_t count = 0;
+};
+
+Slots slots_of(const BindPoint& point, std::uint32_t number, const SetBinding& binding) {
+  const DescriptorSet* set = point.sets[number];
+  if (!set) return {};
+  if (!is_dynamic(binding.type)) {
+    if (binding.first_slot >= set->slot_count) return {};
+    return {set, set->slots + binding.first_slot, std::min(binding.count, set->slot_count - binding.first_slot)};
+  }
+  const std::uint32_t first = point.pipeline->layout->first_dynamic[number] + binding.first_slot;
+  if (first >= point.dynamic.size()) return {};
+  return {set, point.dynamic.data() + first,
+          std::min<std::uint32_t>(binding.count, static_cast<std::uint32_t>(point.dynamic.size()) - first)};
+}
+
+/// Says of a resource that is not there why.
+void note_missing(const glass::bug::Descriptor& at, Bug& bug) {
+  bug.notes.push_back("set " + std::to_string(at.set) + ", binding " + std::to_string(at.binding) + ", element " +
+                      std::to_string(at.element) + ": what is bound is gone; nothing is bound here");
+}
+
+void add_element(const spirv::Descriptor& bound, bool immutable, glass::bug::Descriptor at, CapturedObjects& objects,
+                 Bug& bug) {
+  if (bound.data) {
+    const CapturedObjects::Place place = objects.bytes(bound.data, bound.size);
+    at.buffer = place.buffer;
+    at.offset = place.offset;
+    at.range = bound.size;
+  }
+  if (bound.image) at.view = objects.view(*bound.image);
+  if (bound.texels) at.texels = objects.texels(*bound.texels);
+  if (bound.sampler && !immutable) at.sampler = objects.sampler(*bound.sampler);
+  const bool gone =
+      (bound.data && at.buffer == kNone) || (bound.image && at.view == kNone) || (bound.texels && at.texels == kNone);
+  if (gone) return note_missing(at, bug);
+  if (at.buffer != kNone || at.view != kNone || at.texels != kNone || at.sampler != kNone)
+    bug.descriptors.push_back(std::move(at));
+}
+
+glass::bug::Descriptor at(std::uint32_t set, const SetBinding& binding, std::uint32_t element) {
+  glass::bug::Descriptor out;
+  out.set = set;
+  out.binding = binding.binding;
+  out.element = element;
+  return out;
+}
+
+void add_elements(const BindPoint& point, std::uint32_t set, const SetBinding& binding, CapturedObjects& objects,
+                  Bug& bug) {
+  const Slots slots = slots_of(point, set, binding);
+  if (is_inline_block(binding.type)) {
+    if (!slots.first || !slots.first->data) return;
+    glass::bug::Descriptor block = at(set, binding, 0);
+    block.bytes = std::make_shared<glass::bug::Bytes>(slots.first->data, slots.first->data + slots.first->size);
+    bug.descriptors.push_back(std::move(block));
+    return;
+  }
+  for (std::uint32_t i = 0; i < slots.count; ++i)
+    add_element(slots.first[i], binding.immutable_samplers, at(set, binding, i), objects, bug);
+}
+
+glass::bug::Binding layout_of(const BindPoint& point, std::uint32_t set, const SetBinding& binding,
+                              CapturedObjects& objects) {
+  glass::bug::Binding out{binding.binding, binding.type, binding.stages, binding.count, 0, {}};
+  const bool variable = binding.flags & VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT;
+  if (variable && point.sets[set]) out.count = std::min(out.count, point.sets[set]->variable_count);
+  out.flags = binding.flags & VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT;
+  for (std::uint32_t i = 0; binding.immutable_samplers && i < binding.count; ++i)
+    out.samplers.push_back(objects.sampler(*binding.immutable_samplers[i]));
+  return out;
+}
+
+}  // namespace
+
+void add_descriptors(const BindPoint& point, CapturedObjects& objects, Bug& bug) {
+  const PipelineLayoutShape& layout = *point.pipeline->layout;
+  for (std::uint32_t set = 0; set < layout.sets.size() && set < spirv::kMaxSets; ++set) {
+    glass::bug::SetLayout out;
+    out.used = layout.sets[set] != nullptr;
+    if (out.used) {
+      for (const SetBinding& binding : layout.sets[set]->bindings) {
+        out.bindings.push_back(layout_of(point, set, binding, objects));
+        add_elements(point, set, binding, objects, bug);
+      }
+    }
+    bug.sets.push_back(std::move(out));
+  }
+}
+
+}  // namespace vitrine::icd

@@ -1,0 +1,288 @@
+// See captured_objects.h. Buffers and views are found in the device's book of addresses, since descriptors hold
+// addresses alone.
+#include "icd/replay/captured_objects.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "glass/bug/texels.h"
+#include "glass/memory_shadow.h"
+#include "icd/object/address_book.h"
+#include "texel/transfer.h"
+
+namespace vitrine::icd {
+namespace {
+
+using glass::bug::Blob;
+using glass::bug::Bytes;
+using glass::bug::kNone;
+
+template <class T>
+const T* find_object(const Device& device, const void* first, std::uint64_t bytes) {
+  const ObjectRef found = device.addresses ? device.addresses->find(first, bytes) : ObjectRef{};
+  return found.handle && found.type == T::kType ? reinterpret_cast<const T*>(found.handle) : nullptr;
+}
+
+template <class T>
+std::string name_of(const Device& device, const T& object) {
+  return icd::name_of(device.physical_device.instance, ref(object));
+}
+
+/// A copy of these bytes, or the one that was taken of them before if they are still the same.
+Blob snapshot(const std::byte* first, std::uint64_t size, Snapshots& snapshots) {
+  Blob& kept = snapshots[first];
+  if (!kept || kept->size() != size || std::memcmp(kept->data(), first, size) != 0)
+    kept = std::make_shared<Bytes>(first, first + size);
+  return kept;
+}
+
+bool is_zero(const std::byte* first, std::uint64_t size) {
+  return std::all_of(first, first + size, [](std::byte b) { return b == std::byte{0}; });
+}
+
+}  // namespace
+
+std::uint32_t CapturedObjects::add_buffer(const Buffer& buffer) {
+  const auto at = std::find(buffers_.begin(), buffers_.end(), &buffer);
+  if (at != buffers_.end()) return static_cast<std::uint32_t>(at - buffers_.begin());
+  buffers_.push_back(&buffer);
+  bug_.buffers.push_back({name_of(device_, buffer), buffer.size, buffer.usage, 0, 0});
+  return static_cast<std::uint32_t>(buffers_.size() - 1);
+}
+
+CapturedObjects::Place CapturedObjects::bytes(const std::byte* first, std::uint64_t size) {
+  const Buffer* found = first ? find_object<Buffer>(device_, first, size) : nullptr;
+  if (!found) return {};
+  const auto offset = static_cast<std::uint64_t>(first - found->data);
+  return {buffer(*found, offset, size), offset};
+}
+
+std::uint32_t CapturedObjects::buffer(const Buffer& buffer, std::uint64_t offset, std::uint64_t size) {
+  if (!buffer.data) return kNone;
+  std::byte* first = buffer.data + std::min<std::uint64_t>(offset, buffer.size);
+  std::byte* end = first + buffer.resolve_range(offset, size);
+  // What overlaps or touches becomes one.
+  auto at = touched_.upper_bound(end);
+  while (at != touched_.begin() && std::prev(at)->second >= first) {
+    at = std::prev(at);
+    first = std::min(first, at->first);
+    end = std::max(end, at->second);
+    at = touched_.erase(at);
+  }
+  if (first != end) touched_[first] = end;
+  return add_buffer(buffer);
+}
+
+std::uint32_t CapturedObjects::add_image(const Image& image) {
+  const auto at = std::find(images_.begin(), images_.end(), &image);
+  if (at != images_.end()) return static_cast<std::uint32_t>(at - images_.begin());
+  const texel::ImageDesc& desc = image.desc();
+  const texel::FormatDesc& format = texel::format_desc(desc.format);
+  if (desc.samples != 1) problem_ = "images of several samples are not kept";
+  if (format.plane_count != 1 && !format.is_depth_stencil()) problem_ = "images of several planes are not kept";
+  if (!image.data) problem_ = "an image has no memory";
+  images_.push_back(&image);
+  shown_.emplace_back();
+  glass::bug::Image out;
+  out.name = name_of(device_, image);
+  out.flags = image.flags;
+  out.usage = image.usage;
+  out.type = desc.type;
+  out.format = desc.format;
+  out.tiling = image.tiling;
+  out.extent = desc.extent;
+  out.levels = desc.levels;
+  out.layers = desc.layers;
+  out.samples = desc.samples;
+  bug_.images.push_back(std::move(out));
+  return static_cast<std::uint32_t>(images_.size() - 1);
+}
+
+std::uint32_t CapturedObjects::view(const ImageView& view) {
+  const auto [number, added] = numbers_.try_emplace(&view, static_cast<std::uint32_t>(bug_.views.size()));
+  if (!added) return number->second;
+  glass::bug::View out;
+  out.name = name_of(device_, view);
+  out.image = add_image(*view.image);
+  out.type = view.type;
+  out.format = view.format;
+  out.usage = view.usage;
+  out.swizzle = view.view.swizzle;
+  out.range = view.range;
+  const bool slices = view.image->desc().type == VK_IMAGE_TYPE_3D;
+  for (std::uint32_t i = 0; i < view.range.levelCount; ++i) {
+    const std::uint32_t first = slices ? 0 : view.range.baseArrayLayer, count = slices ? 1 : view.range.layerCount;
+    const auto [layers, fresh] = shown_[out.image].try_emplace(view.range.baseMipLevel + i, first, first + count);
+    layers->second = {std::min(layers->second.first, first), std::max(layers->second.second, first + count)};
+  }
+  bug_.views.push_back(std::move(out));
+  return number->second;
+}
+
+std::uint32_t CapturedObjects::view(const texel::ImageView& texels) {
+  const auto* found = find_object<ImageView>(device_, &texels, sizeof texels);
+  return found ? view(*found) : kNone;
+}
+
+std::uint32_t CapturedObjects::texels(const texel::BufferTexelView& view) {
+  const auto [number, added] = numbers_.try_emplace(&view, static_cast<std::uint32_t>(bug_.buffer_views.size()));
+  if (!added) return number->second;
+  const auto* found = find_object<BufferView>(device_, &view, sizeof view);
+  const std::uint64_t size = view.count * view.format->block_bytes;
+  const Place place = found ? bytes(view.data, size) : Place{};
+  if (place.buffer == kNone) {
+    numbers_.erase(number);
+    return kNone;
+  }
+  bug_.buffer_views.push_back({name_of(device_, *found), place.buffer, view.format->format, place.offset, size});
+  return number->second;
+}
+
+std::uint32_t CapturedObjects::sampler(const texel::Sampler& sampler) {
+  const auto [number, added] = numbers_.try_emplace(&sampler, static_cast<std::uint32_t>(bug_.samplers.size()));
+  if (!added) return number->second;
+  if (sampler.conversion.enabled) problem_ = "samplers with a conversion of colours are not kept";
+  const auto* found = find_object<Sampler>(device_, &sampler, sizeof sampler);
+  bug_.samplers.push_back({found ? name_of(device_, *found) : std::string(), sampler});
+  return number->second;
+}
+
+/// Buffers that overlap share memory.
+void CapturedObjects::place_buffers() {
+  std::vector<std::size_t> order(buffers_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return buffers_[a]->data < buffers_[b]->data; });
+  const std::byte *first = nullptr, *end = nullptr;
+  for (const std::size_t i : order) {
+    const Buffer& buffer = *buffers_[i];
+    if (buffer.data >= end) {
+      first = end = buffer.data;
+      bug_.memories.push_back({0, reinterpret_cast<std::uint64_t>(first), {}});
+    }
+    end = std::max(end, static_cast<const std::byte*>(buffer.data) + buffer.size);
+    bug_.memories.back().size = static_cast<std::uint64_t>(end - first);
+    bug_.buffers[i].memory = static_cast<std::uint32_t>(bug_.memories.size() - 1);
+    bug_.buffers[i].offset = static_cast<std::uint64_t>(buffer.data - first);
+  }
+}
+
+void CapturedObjects::add_piece(const Range& range, std::uint64_t begin, std::uint64_t end, bool unwritten,
+                                Snapshots& snapshots) {
+  if (begin == end) return;
+  glass::bug::Memory& memory = bug_.memories[range.memory];
+  std::byte* const first = range.first + begin;
+  pieces_.push_back({first, end - begin, range.memory, memory.pieces.size()});
+  memory.pieces.push_back({reinterpret_cast<std::uint64_t>(first) - memory.address, unwritten,
+                           snapshot(first, end - begin, snapshots), nullptr});
+}
+
+/// What nothing has written, and is zero, is told apart: it stays unwritten where it is replayed.
+void CapturedObjects::take_range(const Range& range, Snapshots& snapshots) {
+  const glass::ShadowRegion* shadow = keeps_shadow_ ? glass::find_shadow(range.first) : nullptr;
+  const auto address = reinterpret_cast<std::uintptr_t>(range.first);
+  if (!shadow || !shadow->contains(address, range.size)) return add_piece(range, 0, range.size, false, snapshots);
+  const auto written = [&](std::uint64_t at) {
+    return shadow->first_unwritten(address + at, range.size - at, glass::Contents::kBytes) / 4 * 4;
+  };
+  const auto unwritten = [&](std::uint64_t at) {
+    const std::uint64_t bytes = std::min<std::uint64_t>(4, range.size - at);
+    return shadow->first_unwritten(address + at, bytes, glass::Contents::kBytes) == 0 &&
+           is_zero(range.first + at, bytes);
+  };
+  for (std::uint64_t at = 0; at < range.size;) {
+    std::uint64_t end = at;
+    while (end < range.size && !unwritten(end)) end += std::max<std::uint64_t>(4, written(end));
+    end = std::min(end, range.size);
+    add_piece(range, at, end, false, snapshots);
+    for (at = end; end < range.size && unwritten(end);) end += 4;
+    end = std::min(end, range.size);
+    add_piece(range, at, end, true, snapshots);
+    at = end;
+  }
+}
+
+bool CapturedObjects::is_unwritten(const Image& image, const glass::bug::Texels& texels) const {
+  const glass::ShadowRegion* shadow = keeps_shadow_ ? glass::find_shadow(image.data) : nullptr;
+  if (!shadow || !is_zero(texels.before->data(), texels.before->size())) return false;
+  const texel::PlaneLayout& plane = image.layout.plane[texel::plane_of_aspect(image.layout, texels.aspect)];
+  const texel::LevelLayout& level = plane.level[texels.level];
+  for (std::uint32_t i = 0; i < texels.layers; ++i) {
+    const std::byte* first = image.data + plane.offset + level.offset + (texels.layer + i) * plane.layer_stride;
+    const std::uint64_t bytes = level.slice_pitch * level.extent.depth;
+    for (std::uint64_t at = 0; at < bytes; at += 4)
+      if (shadow->first_unwritten(reinterpret_cast<std::uintptr_t>(first + at), 4, glass::Contents::kTexels) != 0)
+        return false;
+  }
+  return true;
+}
+
+Bytes CapturedObjects::packed(const Image& image, const glass::bug::Texels& texels) const {
+  Bytes out(glass::bug::packed_bytes(image.layout, texels.aspect, texels.level, texels.layers));
+  const texel::PlaneLayout& plane = image.layout.plane[texel::plane_of_aspect(image.layout, texels.aspect)];
+  const texel::Extent& extent = plane.level[texels.level].extent;
+  VkBufferImageCopy region{};
+  region.imageSubresource = {static_cast<VkImageAspectFlags>(texels.aspect), texels.level, texels.layer, texels.layers};
+  region.imageExtent = {extent.width, extent.height, extent.depth};
+  texel::copy_image_to_buffer({&image.layout, image.data, nullptr}, out, region);
+  return out;
+}
+
+void CapturedObjects::take_image(std::uint32_t number, Snapshots& snapshots) {
+  const Image& image = *images_[number];
+  const VkImageAspectFlags aspects = texel::format_desc(image.desc().format).aspects;
+  for (const auto& [level, layers] : shown_[number]) {
+    for (const VkImageAspectFlagBits aspect :
+         {VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_ASPECT_STENCIL_BIT}) {
+      if (!(aspects & aspect)) continue;
+      glass::bug::Texels texels{aspect, level, layers.first, layers.second - layers.first, false, nullptr, nullptr};
+      const Bytes now = packed(image, texels);
+      const texel::PlaneLayout& plane = image.layout.plane[texel::plane_of_aspect(image.layout, aspect)];
+      Blob& kept = snapshots[image.data + plane.offset + plane.level[level].offset];
+      if (!kept || *kept != now) kept = std::make_shared<Bytes>(now);
+      texels.before = kept;
+      texels.unwritten = is_unwritten(image, texels);
+      bug_.images[number].texels.push_back(std::move(texels));
+    }
+  }
+}
+
+void CapturedObjects::take_before(Snapshots& snapshots) {
+  place_buffers();
+  for (const auto& [first, end] : touched_) {
+    const auto address = reinterpret_cast<std::uint64_t>(first);
+    const auto inside = [&](const glass::bug::Memory& m) {
+      return address >= m.address && address - m.address < m.size;
+    };
+    const auto memory = std::find_if(bug_.memories.begin(), bug_.memories.end(), inside);
+    Range range{first, static_cast<std::uint64_t>(end - first), 0, 0};
+    // Buffers that touch are apart, though what was touched of them is one range.
+    for (auto at = memory; range.size != 0 && at != bug_.memories.end(); ++at) {
+      range.memory = static_cast<std::uint32_t>(at - bug_.memories.begin());
+      const std::uint64_t left = at->address + at->size - reinterpret_cast<std::uint64_t>(range.first);
+      Range part = range;
+      part.size = std::min(range.size, left);
+      take_range(part, snapshots);
+      range.first += part.size;
+      range.size -= part.size;
+    }
+  }
+  for (std::uint32_t i = 0; i < images_.size(); ++i) take_image(i, snapshots);
+}
+
+void CapturedObjects::take_after() {
+  for (const Range& range : pieces_) {
+    glass::bug::Piece& piece = bug_.memories[range.memory].pieces[range.piece];
+    if (std::memcmp(piece.before->data(), range.first, range.size) != 0)
+      piece.after = std::make_shared<Bytes>(range.first, range.first + range.size);
+  }
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    for (glass::bug::Texels& texels : bug_.images[i].texels) {
+      Bytes now = packed(*images_[i], texels);
+      if (now != *texels.before) texels.after = std::make_shared<Bytes>(std::move(now));
+    }
+  }
+}
+
+}  // namespace vitrine::icd

@@ -1,0 +1,118 @@
+// Bug files: what is written is read again; what was cut off or altered is an error, never a crash.
+#include "glass/bug/file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "glass/bug/pack.h"
+#include "tests/glass/bug/bugs.h"
+
+namespace vitrine::glass::bug {
+namespace {
+
+TEST(BugFile, IsReadAsItWasWritten) {
+  const Bug bug = small_bug();
+  const base::Result<Bug> read = from_file(to_file(bug));
+  ASSERT_TRUE(read.ok()) << read.message();
+  EXPECT_EQ(describe(read.value()), describe(bug));
+  EXPECT_EQ(*read.value().memories[0].pieces[0].after, *bug.memories[0].pieces[0].after);
+  EXPECT_EQ(*read.value().stages[0].words, *bug.stages[0].words);
+}
+
+TEST(BugFile, KeepsStateAndNumbersThatAreNoNumbers) {
+  Bug bug = small_bug();
+  bug.stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+  bug.state.viewport[0] = {0, -1.5f, 1e30f, std::numeric_limits<float>::quiet_NaN(), 0, 1};
+  bug.state.depth_bias_clamp = -std::numeric_limits<float>::infinity();
+  bug.state.blend[2].src_color = VK_BLEND_FACTOR_SRC1_ALPHA;
+  bug.state.locations.x[3] = -7;
+  bug.rendering.area = {{-3, 4}, {5, 6}};
+  const base::Result<Bug> read = from_file(to_file(bug));
+  ASSERT_TRUE(read.ok()) << read.message();
+  const Bug& back = read.value();
+  EXPECT_EQ(back.state.viewport[0].y, -1.5f);
+  EXPECT_TRUE(std::isnan(back.state.viewport[0].height));
+  EXPECT_EQ(back.state.depth_bias_clamp, bug.state.depth_bias_clamp);
+  EXPECT_EQ(back.state.blend[2].src_color, VK_BLEND_FACTOR_SRC1_ALPHA);
+  EXPECT_EQ(back.state.locations.x[3], -7);
+  EXPECT_EQ(back.rendering.area.offset.x, -3);
+}
+
+TEST(BugFile, ThatEndsEarlyIsAnError) {
+  const std::string file = to_file(small_bug());
+  for (std::size_t size = 0; size < file.size(); ++size) {
+    const base::Result<Bug> read = from_file(std::string_view(file).substr(0, size));
+    EXPECT_FALSE(read.ok()) << size;
+    EXPECT_FALSE(read.message().empty());
+  }
+  EXPECT_FALSE(from_file(file + "x").ok());
+}
+
+TEST(BugFile, WithAnAlteredBitIsAnError) {
+  const std::string file = to_file(small_bug());
+  // gzip's header (RFC 1952) has a time, flags and a system that nothing depends on.
+  for (std::size_t i = 10; i < file.size(); ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string altered = file;
+      altered[i] = static_cast<char>(altered[i] ^ (1 << bit));
+      EXPECT_FALSE(from_file(altered).ok()) << i;
+    }
+  }
+}
+
+TEST(BugFile, OfSomethingElseIsAnError) {
+  EXPECT_EQ(from_file("no bug file").message(), "it is no bug file, or was altered");
+  EXPECT_EQ(from_file(pack("something else")).message(), "it is no bug file");
+  EXPECT_EQ(from_file(pack("vitrine-bug 2\n")).message(), "another version of Vitrine wrote it");
+  EXPECT_EQ(from_file(pack("vitrine-bug 1\nabc")).message(), "it ends too early");
+}
+
+TEST(BugFile, ThatWasAlteredAndPackedAgainNeverCrashes) {
+  const base::Result<std::string> bytes = unpack(to_file(small_bug()));
+  ASSERT_TRUE(bytes.ok());
+  std::mt19937 random(1);
+  std::size_t good = 0;
+  for (int round = 0; round < 3000; ++round) {
+    std::string altered = bytes.value();
+    for (std::uint32_t i = random() % 3 + 1; i > 0; --i) {
+      const std::size_t at = random() % altered.size();
+      if (random() % 4 == 0)
+        altered.erase(at, random() % 9);
+      else
+        altered[at] = random() % 2 ? static_cast<char>('0' + random() % 10) : static_cast<char>(random());
+      if (altered.empty()) break;
+    }
+    const base::Result<Bug> read = from_file(pack(altered));
+    if (!read.ok()) continue;
+    ++good;
+    EXPECT_EQ(fault_of(read.value()), "");
+    describe(read.value());
+  }
+  EXPECT_GT(good, 10u);
+}
+
+TEST(BugFile, MayNotNameWhatIsNotThere) {
+  const auto fault = [](auto change) {
+    Bug bug = small_bug();
+    change(bug);
+    return fault_of(bug);
+  };
+  EXPECT_EQ(fault([](Bug&) {}), "");
+  EXPECT_EQ(fault([](Bug& b) { b.buffers[0].memory = 1; }), "a buffer without memory");
+  EXPECT_EQ(fault([](Bug& b) { b.buffers[0].offset = ~std::uint64_t{0}; }), "a buffer outside of its memory");
+  EXPECT_EQ(fault([](Bug& b) { b.memories[0].pieces[0].offset = 49; }), "bytes outside of their memory");
+  EXPECT_EQ(fault([](Bug& b) { b.memories[0].pieces[0].after = blob({1}); }), "bytes that change their number");
+  EXPECT_EQ(fault([](Bug& b) { b.descriptors[0].range = 65; }), "a descriptor outside of its buffer");
+  EXPECT_EQ(fault([](Bug& b) { b.descriptors[0].set = 1; }), "a binding that there is not");
+  EXPECT_EQ(fault([](Bug& b) { b.descriptors[0].view = 0; }), "a descriptor of something that there is not");
+  EXPECT_EQ(fault([](Bug& b) { b.stages[0].constants[0].offset = 1; }), "a constant without a value");
+  EXPECT_EQ(fault([](Bug& b) { b.stages[0].words = blob({1}); }), "a shader that is none");
+  EXPECT_EQ(fault([](Bug& b) { b.rendering.colors = {0}; }), "an attachment that there is not");
+  EXPECT_EQ(fault([](Bug& b) { b.command.count_buffer = 1; }), "a buffer that there is not");
+}
+
+}  // namespace
+}  // namespace vitrine::glass::bug

@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""Bug files from the outside: what applications and scenes of the suite draw and dispatch is captured, replayed (the same
+bytes, the same findings), reduced and exported; what is no bug file is an error.
+
+usage: bugfile_test.py VITRINE CTS_SUBSET APPLICATION ORDERS PIXELS GLSLANG
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+VITRINE, SUITE, APPLICATION, ORDERS, PIXELS, GLSLANG = (str(pathlib.Path(path).resolve()) for path in sys.argv[-6:])
+MANIFEST = str(pathlib.Path(VITRINE).parent.parent / "icd" / "vitrine_icd.x86_64.json")
+REFERENCE = "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json"
+SCENES = ("compute.*:rasterization.random_triangles*:pipeline.random_depth_bounds*:pipeline.random_dynamic_state:"
+          "texture.minmax.*:geometry.random*:tessellation.random*:draw.indirect_count.*:draw.multi_draw.*:"
+          "draw.random_instance_divisor:descriptors.*:dynamic_rendering.*:renderpass.random*")
+ENDLESS = "#version 450\nlayout(local_size_x = 4) in;\nlayout(binding = 0) buffer B { uint data[]; };\n" \
+          "void main() {\n  while (data[0] == 0u) data[1] += 1u;\n}\n"
+
+
+class BugFileTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def run_it(self, *words, code=0, **environment):
+        result = subprocess.run([str(word) for word in words], capture_output=True, text=True, cwd=self.folder, check=False,
+                                env={**os.environ, "VK_DRIVER_FILES": MANIFEST, **environment})
+        if code is not None:
+            self.assertEqual(result.returncode, code, f"{words}\n{result.stdout}{result.stderr}")
+        return result
+
+    def capture(self, what, *words, code=0, **environment):
+        """The files of a run, in their order."""
+        self.run_it(*words, code=code, VITRINE_CAPTURE=what, VITRINE_CAPTURE_FILE="bug-%n.vitrine", **environment)
+        files = sorted(self.folder.glob("bug-*.vitrine"), key=lambda path: int(re.findall(r"\d+", path.name)[0]))
+        return files
+
+    def exported(self, file):
+        self.run_it(VITRINE, "export", file, "--files", self.folder / "parts")
+        return json.loads((self.folder / "parts" / "bug.json").read_text())
+
+    def test_a_dispatch_on_demand_gives_the_same_bytes(self):
+        self.run_it(APPLICATION, VITRINE_CAPTURE="1:3")
+        bug = self.folder / "bug-1-3.vitrine"
+        result = self.run_it(VITRINE, "replay", bug)
+        self.assertIn("the same bytes as when it was captured: 32, of which the command changed some", result.stdout)
+        self.assertEqual(self.exported(bug)["command"]["groups"], [1, 1, 1])
+        self.assertEqual((self.folder / "parts" / "buffer0.after").read_bytes(), bytes(sum(([i, 0, 0, 0] for i in range(8)), [])))
+
+    def test_other_bytes_are_told(self):
+        bug, = self.capture("1:3", APPLICATION)
+        words = bytearray((self.exported(bug), (self.folder / "parts" / "comp.spv").read_bytes())[1])
+        self.assertEqual(words[:4], b"\x03\x02\x23\x07")
+        result = self.run_it(VITRINE, "replay", bug, "shake", "--seed", "1", "--kinds", "order")
+        self.assertIn("the same bytes", result.stdout)
+
+    def test_a_finding_makes_a_file_and_is_found_again(self):
+        command = (VITRINE, "check", "--sanitize", "--json", self.folder / "first.json", APPLICATION, "1", "16")
+        bug, = self.capture("finding", *command, code=1)
+        self.run_it(VITRINE, "replay", bug, "check", "--sanitize", "--json", self.folder / "again.json", code=1)
+        first, again = (json.loads((self.folder / name).read_text())["findings"] for name in ("first.json", "again.json"))
+        for finding in first + again:
+            finding["address"].pop("submission")
+            finding["address"].pop("command")
+        self.assertEqual(first, again)
+        self.assertEqual(self.exported(bug)["findings"][0]["rule"], "out-of-bounds-store")
+
+    def test_no_finding_makes_no_file(self):
+        self.assertEqual(self.capture("finding", VITRINE, "check", "--sanitize", APPLICATION), [])
+
+    def test_every_draw_of_an_application_gives_the_same_bytes(self):
+        bugs = self.capture("all", PIXELS)
+        self.assertGreater(len(bugs), 5)
+        for bug in bugs:
+            self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug).stdout)
+
+    def test_scenes_of_the_suite_give_the_same_bytes(self):
+        bugs = self.capture("all", SUITE, f"--gtest_filter={SCENES}", "--count=1")
+        self.assertGreater(len(bugs), 100)
+        for bug in bugs[::max(1, len(bugs) // 150)]:
+            self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug).stdout, bug)
+
+    def test_any_tool_looks_at_it(self):
+        bug = self.capture("all", PIXELS)[0]
+        result = self.run_it(VITRINE, "replay", bug, "count", "-o", self.folder / "counts.json")
+        self.assertTrue((self.folder / "counts.json").exists(), result.stderr)
+
+    def test_a_lost_device_makes_a_file_that_loses_it_again(self):
+        (self.folder / "endless.comp").write_text(ENDLESS)
+        self.run_it(GLSLANG, "-V", "-g", "-o", "endless.spv", "endless.comp")
+        bug, = self.capture("lost", ORDERS, "endless.spv:1", code=None, VITRINE_SHADER_BUDGET="100000")
+        result = self.run_it(VITRINE, "replay", bug, VITRINE_SHADER_BUDGET="100000")
+        self.assertIn("the device is lost, as it was", result.stdout)
+
+    def test_it_becomes_smaller_and_what_was_found_stays(self):
+        bug, = self.capture("finding", VITRINE, "check", "--sanitize", APPLICATION, "1", "16", code=1)
+        result = self.run_it(VITRINE, "reduce", bug, "-o", "small.vitrine", "--tools", "sanitize")
+        self.assertIn("'out-of-bounds-store' stays", result.stderr)
+        small = self.folder / "small.vitrine"
+        self.assertLess(small.stat().st_size, bug.stat().st_size)
+        result = self.run_it(VITRINE, "replay", small, "--sanitize", code=1)
+        self.assertIn("[vitrine/out-of-bounds-store]", result.stderr)
+        self.assertIn("the same bytes", result.stdout)
+
+    def test_names_can_be_left_out(self):
+        bug, = self.capture("1:3", APPLICATION)
+        self.run_it(VITRINE, "export", bug, "--no-names", "-o", "nameless.vitrine")
+        self.exported(self.folder / "nameless.vitrine")
+        self.assertNotIn(b"fill.comp", (self.folder / "parts" / "comp.spv").read_bytes())
+        self.assertIn("the same bytes", self.run_it(VITRINE, "replay", "nameless.vitrine").stdout)
+
+    def test_amber_gets_a_script(self):
+        bug, = self.capture("1:3", APPLICATION)
+        self.run_it(VITRINE, "export", bug, "--amber", "bug.amber")
+        self.assertIn("RUN pipeline 1 1 1", (self.folder / "bug.amber").read_text())
+
+    def test_another_driver_gives_the_same_bytes(self):
+        if not os.path.exists(REFERENCE):
+            self.skipTest("the reference is not installed")
+        bug, = self.capture("1:3", APPLICATION)
+        self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug, "--driver", REFERENCE).stdout)
+
+    def test_what_is_no_bug_file_is_an_error(self):
+        bug, = self.capture("1:3", APPLICATION)
+        contents = bug.read_bytes()
+        broken = self.folder / "broken.vitrine"
+        for what in (b"", b"x" * 100, contents[:-9], contents[:20] + b"\0" + contents[21:], contents + b"more"):
+            broken.write_bytes(what)
+            for words in (["replay"], ["reduce", "-o", "small.vitrine"], ["export", "--amber", "x.amber"]):
+                result = self.run_it(VITRINE, words[0], broken, *words[1:], code=2)
+                self.assertIn("broken.vitrine: ", result.stderr)
+        self.run_it(VITRINE, "replay", self.folder / "nothing.vitrine", code=2)
+
+    def test_wrong_requests_are_told(self):
+        result = self.run_it(APPLICATION, VITRINE_CAPTURE="1:3,nonsense")
+        self.assertIn("'nonsense' is no command", result.stderr)
+
+
+if __name__ == "__main__":
+    del sys.argv[1:]
+    unittest.main()
