@@ -92,12 +92,12 @@ void Captures::done(const void* owner) {
   Owned& owned = owners_[owner];
   owned.running = false;
   owned.bytes += bytes_of(*owned.kept.back());
-  if (owned.bytes <= kMostBytes) return;
   const Bug& last = *owned.kept.back();
+  if (owned.bytes <= kMostBytes || is_wanted(last)) return;
   if (refused_.insert("full").second)
     complain("submission " + std::to_string(last.submission) + " from command " + std::to_string(last.command_number) +
              " on: too much memory to keep every command; name one in VITRINE_CAPTURE");
-  if (!is_wanted(last)) owned.kept.pop_back();
+  owned.kept.pop_back();
 }
 
 void Captures::found(const void* owner, const Finding& finding) {

@@ -22,7 +22,7 @@ bool strip(bug::Blob& words, const fs::path& folder) {
   const std::string from = folder / "named.spv", to = folder / "nameless.spv";
   if (!write_file(from, {reinterpret_cast<const char*>(words->data()), words->size()})) return false;
   const Ending ending = run_to_end({"spirv-opt", "--strip-debug", "--strip-nonsemantic", "--preserve-bindings",
-                                    "--preserve-interface", "--preserve-spec-constants", from, "-o", to},
+                                    "--preserve-spec-constants", from, "-o", to},
                                    {});
   const std::optional<std::string> stripped = ending.error.empty() && ending.code == 0 ? read_file(to) : std::nullopt;
   if (!stripped || stripped->size() % 4 != 0) {

@@ -44,6 +44,15 @@ std::size_t count_of(const std::vector<Finding>& findings, Severity severity) {
       findings.begin(), findings.end(), [&](const Finding& finding) { return finding.rule->severity == severity; }));
 }
 
+/// Asks for files of the commands in which something is found.
+void ask_for_bugs(const std::string& name, Environment& environment) {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::absolute(name, error);
+  std::filesystem::create_directories(folder, error);
+  environment["VITRINE_CAPTURE"] = "finding,lost";
+  environment["VITRINE_CAPTURE_FILE"] = folder / "bug-%s-%c.vitrine";
+}
+
 /// Errors and warnings; notes are what shaders say.
 std::size_t summarize(const std::vector<Finding>& findings, std::size_t processes) {
   const std::size_t errors = count_of(findings, Severity::kError), warnings = count_of(findings, Severity::kWarning);
@@ -68,6 +77,7 @@ int check(const CheckOptions& options) {
   if (folder.path().empty()) return kCouldNotRun;
   Environment environment{{"VITRINE_TOOLS", joined(options.tools)}, {"VITRINE_REPORT", folder.path() / "%p.json"}};
   if (!options.invocations.empty()) environment["VITRINE_PRINTF_FILTER"] = options.invocations;
+  if (!options.bugs.empty()) ask_for_bugs(options.bugs, environment);
   const Ending ending = run_application(options.application, environment);
   if (!ending.error.empty()) return kCouldNotRun;
   const auto reports = folder.files(".json");

@@ -21,6 +21,7 @@ int run(const CommandLine& application);
 struct CheckOptions {
   std::vector<std::string> tools;
   std::string sarif, json;  ///< files; empty: none
+  std::string bugs;         ///< folder for bug files; empty: none
   bool quiet = false;       ///< no text
   std::string invocations;  ///< whose messages are wanted, separated by semicolons; empty: all
   CommandLine application;

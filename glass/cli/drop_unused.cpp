@@ -22,7 +22,8 @@ class Kept {
     for (std::size_t i = 0; i < used_.size(); ++i) {
       if (!used_[i]) continue;
       numbers_[i] = next;
-      objects[next++] = std::move(objects[i]);
+      if (next != i) objects[next] = std::move(objects[i]);
+      ++next;
     }
     objects.resize(next);
   }

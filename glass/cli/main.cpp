@@ -89,6 +89,8 @@ void add_check(CLI::App& app, const Words& words, CheckOptions& options, int& co
       ->trigger_on_parse();
   command->add_option("--sarif", options.sarif, "Write the findings as SARIF 2.1.0")->type_name("FILE");
   command->add_option("--json", options.json, "Write the findings as JSON")->type_name("FILE");
+  command->add_option("--bugs", options.bugs, "Write the draws and dispatches in which something is found as bug files")
+      ->type_name("FOLDER");
   command->add_flag("-q,--quiet", options.quiet, "Print the summary alone");
   command->callback([=, &words, &options, &code] {
     options.application = application_of(*command, words);

@@ -4,6 +4,7 @@ bytes, the same findings), reduced and exported; what is no bug file is an error
 
 usage: bugfile_test.py VITRINE CTS_SUBSET APPLICATION ORDERS PIXELS GLSLANG
 """
+import gzip
 import json
 import os
 import pathlib
@@ -56,10 +57,14 @@ class BugFileTest(unittest.TestCase):
 
     def test_other_bytes_are_told(self):
         bug, = self.capture("1:3", APPLICATION)
-        words = bytearray((self.exported(bug), (self.folder / "parts" / "comp.spv").read_bytes())[1])
-        self.assertEqual(words[:4], b"\x03\x02\x23\x07")
-        result = self.run_it(VITRINE, "replay", bug, "shake", "--seed", "1", "--kinds", "order")
-        self.assertIn("the same bytes", result.stdout)
+        contents = bytearray(gzip.decompress(bug.read_bytes()))
+        length = int.from_bytes(contents[14:22], "little")
+        offset, size = json.loads(contents[22:22 + length])["memories"][0]["pieces"][0]["after"]
+        self.assertEqual(size, 32)
+        contents[22 + length + offset + 4] ^= 255
+        bug.write_bytes(gzip.compress(contents))
+        result = self.run_it(VITRINE, "replay", bug, code=1)
+        self.assertIn("buffer 0 differs: 1 of 32 bytes, the first at offset 4: 01 here, fe in the file", result.stdout)
 
     def test_a_finding_makes_a_file_and_is_found_again(self):
         command = (VITRINE, "check", "--sanitize", "--json", self.folder / "first.json", APPLICATION, "1", "16")
@@ -71,6 +76,10 @@ class BugFileTest(unittest.TestCase):
             finding["address"].pop("command")
         self.assertEqual(first, again)
         self.assertEqual(self.exported(bug)["findings"][0]["rule"], "out-of-bounds-store")
+
+    def test_check_writes_files_into_a_folder(self):
+        self.run_it(VITRINE, "check", "--sanitize", "--bugs", "bugs", APPLICATION, "1", "16", code=1)
+        self.assertEqual([path.name for path in (self.folder / "bugs").iterdir()], ["bug-1-3.vitrine"])
 
     def test_no_finding_makes_no_file(self):
         self.assertEqual(self.capture("finding", VITRINE, "check", "--sanitize", APPLICATION), [])

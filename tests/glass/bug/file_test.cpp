@@ -51,16 +51,22 @@ TEST(BugFile, ThatEndsEarlyIsAnError) {
   EXPECT_FALSE(from_file(file + "x").ok());
 }
 
-TEST(BugFile, WithAnAlteredBitIsAnError) {
-  const std::string file = to_file(small_bug());
-  // gzip's header (RFC 1952) has a time, flags and a system that nothing depends on.
-  for (std::size_t i = 10; i < file.size(); ++i) {
+TEST(BugFile, WithAnAlteredBitIsAnErrorOrTheSame) {
+  const std::string file = to_file(small_bug()), text = describe(small_bug());
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < file.size(); ++i) {
     for (int bit = 0; bit < 8; ++bit) {
       std::string altered = file;
       altered[i] = static_cast<char>(altered[i] ^ (1 << bit));
-      EXPECT_FALSE(from_file(altered).ok()) << i;
+      const base::Result<Bug> read = from_file(altered);
+      if (!read.ok()) continue;
+      EXPECT_EQ(describe(read.value()), text) << i;
+      ++same;
     }
   }
+  // Of a time, a system and flags in the header (RFC 1952), and what fills the last byte of data: nothing depends on
+  // it.
+  EXPECT_LE(same, 8u * 8);
 }
 
 TEST(BugFile, OfSomethingElseIsAnError) {
