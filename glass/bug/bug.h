@@ -120,6 +120,43 @@ struct Descriptor {
   Blob bytes;                           ///< of an inline uniform block
 };
 
+/// What a descriptor of a type points to.
+enum class ResourceKind : std::uint8_t { kBuffer, kImage, kTexels, kSampler, kBytes };
+constexpr ResourceKind kind_of(VkDescriptorType type) {
+  switch (type) {
+    case VK_DESCRIPTOR_TYPE_SAMPLER:
+      return ResourceKind::kSampler;
+    case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+    case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+      return ResourceKind::kTexels;
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC:
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
+      return ResourceKind::kBuffer;
+    case VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK:
+      return ResourceKind::kBytes;
+    default:
+      return ResourceKind::kImage;
+  }
+}
+/// Whether it has what its type needs.
+inline bool is_complete(const Descriptor& d, VkDescriptorType type) {
+  switch (kind_of(type)) {
+    case ResourceKind::kBuffer:
+      return d.buffer != kNone;
+    case ResourceKind::kImage:
+      return d.view != kNone;
+    case ResourceKind::kTexels:
+      return d.texels != kNone;
+    case ResourceKind::kSampler:
+      return d.sampler != kNone;
+    case ResourceKind::kBytes:
+      return d.bytes != nullptr;
+  }
+  return false;
+}
+
 /// A buffer that vertices or indices come from.
 struct Stream {
   std::uint32_t binding = 0;

@@ -89,8 +89,9 @@ std::string fault_of_descriptors(const Bug& bug) {
   for (const Descriptor& d : bug.descriptors) {
     const Binding* binding = d.set < bug.sets.size() ? find_binding(bug.sets[d.set], d.binding) : nullptr;
     if (!binding) return "a binding that there is not";
-    const bool block = binding->type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK;
+    const bool block = kind_of(binding->type) == ResourceKind::kBytes;
     if (block ? size_of(d.bytes) > binding->count : d.element >= binding->count) return "an element that there is not";
+    if (!is_complete(d, binding->type)) return "a descriptor of another type";
     if (!names(bug.buffers, d.buffer) || !names(bug.views, d.view) || !names(bug.samplers, d.sampler) ||
         !names(bug.buffer_views, d.texels))
       return "a descriptor of something that there is not";

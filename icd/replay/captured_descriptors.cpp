@@ -29,28 +29,38 @@ Slots slots_of(const BindPoint& point, std::uint32_t number, const SetBinding& b
           std::min<std::uint32_t>(binding.count, static_cast<std::uint32_t>(point.dynamic.size()) - first)};
 }
 
-/// Says of a resource that is not there why.
-void note_missing(const glass::bug::Descriptor& at, Bug& bug) {
+/// Says why nothing is bound.
+void note(const glass::bug::Descriptor& at, const char* what, Bug& bug) {
   bug.notes.push_back("set " + std::to_string(at.set) + ", binding " + std::to_string(at.binding) + ", element " +
-                      std::to_string(at.element) + ": what is bound is gone; nothing is bound here");
+                      std::to_string(at.element) + ": " + what);
 }
 
-void add_element(const spirv::Descriptor& bound, bool immutable, glass::bug::Descriptor at, CapturedObjects& objects,
-                 Bug& bug) {
-  if (bound.data) {
+/// What a descriptor of this type points to, if it is of that type: applications may have written another.
+void add_resource(const spirv::Descriptor& bound, const SetBinding& binding, CapturedObjects& objects,
+                  glass::bug::Descriptor& at) {
+  using glass::bug::ResourceKind;
+  const ResourceKind kind = glass::bug::kind_of(binding.type);
+  if (kind == ResourceKind::kBuffer && bound.data) {
     const CapturedObjects::Place place = objects.bytes(bound.data, bound.size);
     at.buffer = place.buffer;
     at.offset = place.offset;
     at.range = bound.size;
   }
-  if (bound.image) at.view = objects.view(*bound.image);
-  if (bound.texels) at.texels = objects.texels(*bound.texels);
-  if (bound.sampler && !immutable) at.sampler = objects.sampler(*bound.sampler);
-  const bool gone =
-      (bound.data && at.buffer == kNone) || (bound.image && at.view == kNone) || (bound.texels && at.texels == kNone);
-  if (gone) return note_missing(at, bug);
-  if (at.buffer != kNone || at.view != kNone || at.texels != kNone || at.sampler != kNone)
-    bug.descriptors.push_back(std::move(at));
+  if (kind == ResourceKind::kImage && bound.image) at.view = objects.view(*bound.image);
+  if (kind == ResourceKind::kTexels && bound.texels) at.texels = objects.texels(*bound.texels);
+  const bool samples =
+      binding.type == VK_DESCRIPTOR_TYPE_SAMPLER || binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  if (samples && bound.sampler && !binding.immutable_samplers) at.sampler = objects.sampler(*bound.sampler);
+}
+
+void add_element(const spirv::Descriptor& bound, const SetBinding& binding, glass::bug::Descriptor at,
+                 CapturedObjects& objects, Bug& bug) {
+  add_resource(bound, binding, objects, at);
+  const bool there = bound.data || bound.image || bound.texels;
+  const bool incomplete =
+      binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER && at.sampler == kNone && !binding.immutable_samplers;
+  if (glass::bug::is_complete(at, binding.type) && !incomplete) return bug.descriptors.push_back(std::move(at));
+  if (there) note(at, "what is bound is gone, or of another type; nothing is bound here", bug);
 }
 
 glass::bug::Descriptor at(std::uint32_t set, const SetBinding& binding, std::uint32_t element) {
@@ -72,7 +82,7 @@ void add_elements(const BindPoint& point, std::uint32_t set, const SetBinding& b
     return;
   }
   for (std::uint32_t i = 0; i < slots.count; ++i)
-    add_element(slots.first[i], binding.immutable_samplers, at(set, binding, i), objects, bug);
+    add_element(slots.first[i], binding, at(set, binding, i), objects, bug);
 }
 
 glass::bug::Binding layout_of(const BindPoint& point, std::uint32_t set, const SetBinding& binding,

@@ -15,7 +15,6 @@
 #include "glass/pixel/primitives.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/object/labels.h"
-#include "icd/replay/captured_objects.h"
 #include "icd/replay/replay.h"
 #include "spirv/observed_command.h"
 
@@ -86,7 +85,8 @@ struct ObservedReplay {
   const CmdBeginRendering* rendering = nullptr;  ///< dynamic rendering that has begun
   // Where commands are captured (icd/replay/captured_replay.h)
   const CmdBeginRendering* captured_rendering = nullptr;  ///< the last that has begun
-  Snapshots snapshots;                                    ///< of the submission
+  /// Of the submission: by where they were taken (Snapshots of icd/replay/captured_objects.h).
+  std::map<const std::byte*, std::shared_ptr<const std::vector<std::byte>>> snapshots;
   /// By word of the push constants: ranges of the layout that it was set with, in the command buffer; none: it was not.
   std::array<std::span<const VkPushConstantRange>, spirv::kMaxPushConstantBytes / 4> pushed{};
 };

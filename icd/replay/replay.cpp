@@ -134,7 +134,8 @@ VkResult replay(Device& device, const CommandBuffer& buffer) noexcept {
   state.instance = nullptr;
   if (!reason && !state.fault.raised.load()) return VK_SUCCESS;
   DeviceLoss loss = loss_of(state.fault, reason);
-  if (glass::bug::Captures* const captures = glass::bug::captures()) captures->lost(&device, loss.reason);
+  glass::bug::Captures* const captures = glass::bug::captures();
+  if (captures && loss.of_shader) captures->lost(&device, loss.reason);
   lose_device(device, std::move(loss));
   return VK_ERROR_DEVICE_LOST;
 }

@@ -114,6 +114,7 @@ TEST(BugFile, MayNotNameWhatIsNotThere) {
   EXPECT_EQ(fault([](Bug& b) { b.descriptors[0].range = 65; }), "a descriptor outside of its buffer");
   EXPECT_EQ(fault([](Bug& b) { b.descriptors[0].set = 1; }), "a binding that there is not");
   EXPECT_EQ(fault([](Bug& b) { b.descriptors[0].view = 0; }), "a descriptor of something that there is not");
+  EXPECT_EQ(fault([](Bug& b) { b.descriptors[0].buffer = kNone; }), "a descriptor of another type");
   EXPECT_EQ(fault([](Bug& b) { b.stages[0].constants[0].offset = 1; }), "a constant without a value");
   EXPECT_EQ(fault([](Bug& b) { b.stages[0].words = blob({1}); }), "a shader that is none");
   EXPECT_EQ(fault([](Bug& b) { b.rendering.colors = {0}; }), "an attachment that there is not");
