@@ -26,20 +26,21 @@ std::string hexadecimal(std::uint64_t value, int digits) {
   return text;
 }
 
-/// Words of a module in lines, as SPIRV-HEX has them.
-void write_words(std::ostream& out, const Bytes& words) {
-  for (std::size_t i = 0; i < words.size() / 4; ++i) {
-    std::uint32_t word = 0;
-    std::memcpy(&word, words.data() + i * 4, 4);
-    out << hexadecimal(word, 8) << ((i + 1) % kPerLine && (i + 1) * 4 < words.size() ? ' ' : '\n');
+/// A module as SPIRV-HEX: bytes. END follows the last one at once, since Amber waits for a number behind white space.
+void write_module(std::ostream& out, const Bytes& words) {
+  constexpr std::size_t kModuleBytesPerLine = 32;
+  char text[4];
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    std::snprintf(text, sizeof text, "%02x", std::to_integer<unsigned>(words[i]));
+    out << (i == 0 ? "" : i % kModuleBytesPerLine == 0 ? "\n" : " ") << text;
   }
+  out << "END\n\n";
 }
 
 void write_shaders(std::ostream& out, const Bug& bug) {
   for (std::size_t i = 0; i < bug.stages.size(); ++i) {
     out << "SHADER " << stage_name(bug.stages[i].stage) << " shader" << i << " SPIRV-HEX\n";
-    write_words(out, *bug.stages[i].words);
-    out << "END\n\n";
+    write_module(out, *bug.stages[i].words);
   }
 }
 

@@ -13,7 +13,7 @@ TEST(Amber, SaysADispatchWithItsData) {
   ASSERT_TRUE(script.ok()) << script.message();
   EXPECT_TRUE(script.value().starts_with("#!amber\n"));
   for (const char* const part :
-       {"SHADER compute shader0 SPIRV-HEX\n0x07230203 0x00010300 0x00000000 0x00000001 0x00000000\nEND\n",
+       {"SHADER compute shader0 SPIRV-HEX\n03 02 23 07 00 03 01 00 00 00 00 00 01 00 00 00 00 00 00 00END\n",
         "# particles\nBUFFER buffer0 DATA_TYPE uint32 STD430 DATA\n"
         "0x00000000 0x00000000 0x00000000 0x00000000 0x00000001 0x00000002 0x00000003 0x00000004\n",
         "ATTACH shader0 TYPE compute ENTRY_POINT main SPECIALIZE 3 AS uint32 5\n",
