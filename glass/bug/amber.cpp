@@ -5,15 +5,12 @@
 #include <cstring>
 #include <sstream>
 
+#include "glass/bug/amber_images.h"
+
 namespace vitrine::glass::bug {
 namespace {
 
 constexpr std::size_t kPerLine = 8;
-
-/// What the language has no words for.
-struct Unspeakable {
-  std::string what;
-};
 
 const char* stage_name(VkShaderStageFlagBits stage) {
   if (stage != VK_SHADER_STAGE_COMPUTE_BIT) throw Unspeakable{"draws"};
@@ -83,7 +80,17 @@ void write_buffers(std::ostream& out, const Bug& bug) {
   out << "\n";
 }
 
-const char* buffer_type(VkDescriptorType type) {
+void write_images(std::ostream& out, const Bug& bug) {
+  for (std::size_t i = 0; i < bug.images.size(); ++i) {
+    if (!bug.images[i].name.empty()) out << "# " << bug.images[i].name << "\n";
+    write_image(out, "image" + std::to_string(i), bug.images[i], false);
+    if (!bug.lost) write_image(out, "expected_image" + std::to_string(i), bug.images[i], true);
+  }
+  for (std::size_t i = 0; i < bug.samplers.size(); ++i)
+    write_sampler(out, "sampler" + std::to_string(i), bug.samplers[i].state);
+}
+
+const char* type_of(VkDescriptorType type) {
   switch (type) {
     case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
       return "uniform";
@@ -93,15 +100,42 @@ const char* buffer_type(VkDescriptorType type) {
       return "uniform_dynamic";
     case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
       return "storage_dynamic";
-    case VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK:
-      throw Unspeakable{"inline uniform blocks"};
+    case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE:
+      return "storage_image";
+    case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
+      return "sampled_image";
+    case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
+      return "combined_image_sampler";
+    case VK_DESCRIPTOR_TYPE_SAMPLER:
+      return "";
     default:
-      throw Unspeakable{"images, samplers and texel buffers with the formats and contents of this one"};
+      throw Unspeakable{"inline uniform blocks and texel buffers"};
   }
 }
 
 bool is_dynamic(VkDescriptorType type) {
   return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
+}
+
+std::string plural(const char* noun, bool array) { return std::string(noun) + (array ? "_ARRAY" : ""); }
+
+/// The names of one kind of object, and where in buffers descriptors begin and end.
+struct Operands {
+  std::string buffers, images, samplers, zeros, offsets, ranges;
+};
+
+Operands operands_of(const Bug& bug, const std::vector<const Descriptor*>& elements) {
+  Operands out;
+  for (const Descriptor* d : elements) {
+    if (d->view != kNone) demand_whole(bug.views[d->view], bug.images[bug.views[d->view].image]);
+    if (d->buffer != kNone) out.buffers.append(" buffer").append(std::to_string(d->buffer));
+    if (d->view != kNone) out.images.append(" image").append(std::to_string(bug.views[d->view].image));
+    if (d->sampler != kNone) out.samplers.append(" sampler").append(std::to_string(d->sampler));
+    out.zeros.append(" 0");
+    out.offsets.append(" ").append(std::to_string(d->offset));
+    out.ranges.append(" ").append(std::to_string(d->range));
+  }
+  return out;
 }
 
 /// All elements of a binding in one line: they must all be there.
@@ -110,20 +144,20 @@ void write_binding(std::ostream& out, const Bug& bug, std::uint32_t set, const B
   for (const Descriptor& d : bug.descriptors)
     if (d.set == set && d.binding == binding.binding) elements.push_back(&d);
   if (elements.empty()) return;
-  const char* const type = buffer_type(binding.type);
-  const bool array = elements.size() > 1;
+  if (!binding.samplers.empty()) throw Unspeakable{"immutable samplers"};
   if (elements.back()->element + 1 != elements.size()) throw Unspeakable{"arrays of descriptors with holes"};
-  std::string names, zeros, offsets, ranges;
-  for (const Descriptor* d : elements) {
-    names.append(" buffer").append(std::to_string(d->buffer));
-    zeros.append(" 0");
-    offsets.append(" ").append(std::to_string(d->offset));
-    ranges.append(" ").append(std::to_string(d->range));
-  }
-  out << "  BIND " << (array ? "BUFFER_ARRAY" : "BUFFER") << names << " AS " << type << " DESCRIPTOR_SET " << set
-      << " BINDING " << binding.binding;
-  if (is_dynamic(binding.type)) out << " OFFSET" << zeros;
-  out << " DESCRIPTOR_OFFSET" << offsets << " DESCRIPTOR_RANGE" << ranges << "\n";
+  const bool array = elements.size() > 1, sampler = binding.type == VK_DESCRIPTOR_TYPE_SAMPLER;
+  const Operands names = operands_of(bug, elements);
+  out << "  BIND "
+      << (sampler ? plural("SAMPLER", array) + names.samplers : plural("BUFFER", array) + names.buffers + names.images);
+  if (const char* const type = type_of(binding.type); *type) out << " AS " << type;
+  if (binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER)
+    out << " " << plural("SAMPLER", array) << names.samplers;
+  out << " DESCRIPTOR_SET " << set << " BINDING " << binding.binding;
+  if (is_dynamic(binding.type)) out << " OFFSET" << names.zeros;
+  if (kind_of(binding.type) == ResourceKind::kBuffer)
+    out << " DESCRIPTOR_OFFSET" << names.offsets << " DESCRIPTOR_RANGE" << names.ranges;
+  out << "\n";
 }
 
 /// SPECIALIZE takes 32 bits; the type does not matter to the bits of words.
@@ -142,6 +176,9 @@ void write_pipeline(std::ostream& out, const Bug& bug) {
   if (!stage.constants.empty() || stage.entry_point != "main") out << " TYPE compute ENTRY_POINT " << stage.entry_point;
   write_constants(out, stage);
   out << "\n";
+  if (stage.subgroup_size)
+    out << "  SUBGROUP shader0\n    FULLY_POPULATED off\n    VARYING_SIZE off\n    REQUIRED_SIZE "
+        << stage.subgroup_size << "\n  END\n";
   for (std::uint32_t set = 0; set < bug.sets.size(); ++set)
     for (const Binding& binding : bug.sets[set].bindings) write_binding(out, bug, set, binding);
   if (bug.push_constants && !bug.push_constants->empty()) out << "  BIND BUFFER pushed AS push_constant\n";
@@ -162,6 +199,8 @@ void write_run(std::ostream& out, const Bug& bug) {
   if (bug.lost) return;
   for (std::size_t i = 0; i < bug.buffers.size(); ++i)
     out << "EXPECT buffer" << i << " EQ_BUFFER expected" << i << "\n";
+  for (std::size_t i = 0; i < bug.images.size(); ++i)
+    out << "EXPECT image" << i << " EQ_BUFFER expected_image" << i << "\n";
 }
 
 void write_head(std::ostream& out, const Bug& bug) {
@@ -172,6 +211,9 @@ void write_head(std::ostream& out, const Bug& bug) {
     std::replace(line.begin(), line.end(), '\n', ' ');
     out << "# " << line << "\n";
   }
+  if (bug.stages[0].subgroup_size)
+    out << "DEVICE_FEATURE SubgroupSizeControl.subgroupSizeControl\n"
+           "DEVICE_FEATURE SubgroupSizeControl.computeFullSubgroups\nDEVICE_EXTENSION VK_EXT_subgroup_size_control\n";
   out << "\n";
 }
 
@@ -196,6 +238,7 @@ base::Result<std::string> to_amber(const Bug& bug) {
     write_head(out, bug);
     write_shaders(out, bug);
     write_buffers(out, bug);
+    write_images(out, bug);
     write_pipeline(out, bug);
     write_run(out, bug);
   } catch (const Unspeakable& word) {

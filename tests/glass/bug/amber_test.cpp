@@ -28,6 +28,49 @@ TEST(Amber, HasNoWordsForDraws) {
   EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for draws");
 }
 
+/// With an image of two texels at binding 1.
+Bug bug_with_image(VkFormat format) {
+  Bug bug = small_bug();
+  Image image;
+  image.format = format;
+  image.extent = {2, 1, 1};
+  image.texels = {{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1, false, blob({1, 0x3f800000}), nullptr}};
+  bug.images = {image};
+  View view;
+  view.image = 0;
+  view.format = format;
+  bug.views = {view};
+  Binding binding;
+  binding.binding = 1;
+  binding.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  binding.count = 1;
+  bug.sets[0].bindings.push_back(binding);
+  Descriptor descriptor;
+  descriptor.binding = 1;
+  descriptor.view = 0;
+  bug.descriptors.push_back(descriptor);
+  return bug;
+}
+
+TEST(Amber, SaysImagesWithTheirTexels) {
+  const base::Result<std::string> script = to_amber(bug_with_image(VK_FORMAT_R32_UINT));
+  ASSERT_TRUE(script.ok()) << script.message();
+  for (const char* const part :
+       {"IMAGE image0 FORMAT R32_UINT DIM_2D WIDTH 2 HEIGHT 1 DATA\n0x00000001 0x3f800000\nEND\n",
+        "BIND BUFFER image0 AS storage_image DESCRIPTOR_SET 0 BINDING 1\n",
+        "EXPECT image0 EQ_BUFFER expected_image0\n"})
+    EXPECT_NE(script.value().find(part), std::string::npos) << part << script.value();
+  EXPECT_NE(to_amber(bug_with_image(VK_FORMAT_R32_SFLOAT)).value().find("1.40129846e-45 1\n"), std::string::npos);
+}
+
+TEST(Amber, HasNoWordsForSomeImages) {
+  EXPECT_EQ(to_amber(bug_with_image(VK_FORMAT_R16_SFLOAT)).message(),
+            "AmberScript is not written for images of format 76");
+  Bug swizzled = bug_with_image(VK_FORMAT_R32_UINT);
+  swizzled.views[0].swizzle = {2, 1, 0, 3};
+  EXPECT_EQ(to_amber(swizzled).message(), "AmberScript is not written for views that show an image as another one");
+}
+
 TEST(Amber, ContentsAreThoseOfTheBuffer) {
   const Bug bug = small_bug();
   const Bytes before = contents_of(bug, bug.buffers[0], false), after = contents_of(bug, bug.buffers[0], true);

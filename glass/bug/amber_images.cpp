@@ -1,0 +1,120 @@
+// See amber_images.h. Of formats those whose texels are rows of equal numbers; of images those of one level and layer.
+#include "glass/bug/amber_images.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace vitrine::glass::bug {
+namespace {
+
+enum class Component : std::uint8_t { kByte, kWord, kFloat };
+
+struct Format {
+  VkFormat format;
+  const char* name;
+  std::size_t components;
+  Component component;
+};
+
+constexpr Format kFormats[] = {
+    {VK_FORMAT_R32_UINT, "R32_UINT", 1, Component::kWord},
+    {VK_FORMAT_R32_SINT, "R32_SINT", 1, Component::kWord},
+    {VK_FORMAT_R32_SFLOAT, "R32_SFLOAT", 1, Component::kFloat},
+    {VK_FORMAT_R32G32B32A32_UINT, "R32G32B32A32_UINT", 4, Component::kWord},
+    {VK_FORMAT_R32G32B32A32_SINT, "R32G32B32A32_SINT", 4, Component::kWord},
+    {VK_FORMAT_R32G32B32A32_SFLOAT, "R32G32B32A32_SFLOAT", 4, Component::kFloat},
+    {VK_FORMAT_R8G8B8A8_UNORM, "R8G8B8A8_UNORM", 4, Component::kByte},
+    {VK_FORMAT_R8G8B8A8_UINT, "R8G8B8A8_UINT", 4, Component::kByte},
+    {VK_FORMAT_B8G8R8A8_UNORM, "B8G8R8A8_UNORM", 4, Component::kByte},
+};
+
+const Format& format_of(const Image& image) {
+  for (const Format& format : kFormats)
+    if (format.format == image.format) return format;
+  throw Unspeakable{"images of format " + std::to_string(image.format)};
+}
+
+/// One number of the texels, as the language reads it.
+std::string number(const std::byte* at, Component component) {
+  if (component == Component::kByte) return std::to_string(std::to_integer<unsigned>(*at));
+  char text[32];
+  if (component == Component::kFloat) {
+    float value = 0;
+    std::memcpy(&value, at, sizeof value);
+    if (!std::isfinite(value)) throw Unspeakable{"texels that are no numbers"};
+    std::snprintf(text, sizeof text, "%.9g", static_cast<double>(value));
+  } else {
+    std::uint32_t value = 0;
+    std::memcpy(&value, at, sizeof value);
+    std::snprintf(text, sizeof text, "0x%08x", value);
+  }
+  return text;
+}
+
+void write_texels(std::ostream& out, const Format& format, const Bytes& bytes) {
+  constexpr std::size_t kPerLine = 8;
+  const std::size_t step = format.component == Component::kByte ? 1 : 4, count = bytes.size() / step;
+  out << " DATA\n";
+  for (std::size_t i = 0; i < count; ++i)
+    out << number(bytes.data() + i * step, format.component) << ((i + 1) % kPerLine && i + 1 < count ? ' ' : '\n');
+  out << "END\n";
+}
+
+const char* address_mode(VkSamplerAddressMode mode) {
+  constexpr const char* kModes[] = {"repeat", "mirrored_repeat", "clamp_to_edge", "clamp_to_border",
+                                    "mirrored_clamp_to_edge"};
+  return mode >= 0 && static_cast<std::size_t>(mode) < std::size(kModes)
+             ? kModes[mode]
+             : throw Unspeakable{"samplers with such a mode of addresses"};
+}
+
+/// Of floats.
+const char* border_color(const std::array<std::uint32_t, 4>& bits) {
+  constexpr std::uint32_t kOne = 0x3f800000;
+  if (bits == std::array<std::uint32_t, 4>{}) return "float_transparent_black";
+  if (bits == std::array<std::uint32_t, 4>{0, 0, 0, kOne}) return "float_opaque_black";
+  if (bits == std::array<std::uint32_t, 4>{kOne, kOne, kOne, kOne}) return "float_opaque_white";
+  throw Unspeakable{"samplers with such a border"};
+}
+
+}  // namespace
+
+void write_image(std::ostream& out, const std::string& name, const Image& image, bool after) {
+  const Format& format = format_of(image);
+  if (image.levels != 1 || image.layers != 1 || image.samples != 1 || image.texels.size() != 1)
+    throw Unspeakable{"images of several levels, layers or samples"};
+  const Texels& texels = image.texels[0];
+  const bool deep = image.type == VK_IMAGE_TYPE_3D, flat = image.type == VK_IMAGE_TYPE_1D;
+  out << "IMAGE " << name << " FORMAT " << format.name
+      << (deep   ? " DIM_3D"
+          : flat ? " DIM_1D"
+                 : " DIM_2D")
+      << " WIDTH " << image.extent.width;
+  if (!flat) out << " HEIGHT " << image.extent.height;
+  if (deep) out << " DEPTH " << image.extent.depth;
+  write_texels(out, format, after && texels.after ? *texels.after : *texels.before);
+}
+
+void write_sampler(std::ostream& out, const std::string& name, const texel::Sampler& s) {
+  constexpr const char* kFilters[] = {"nearest", "linear"};
+  const bool plain = s.mip_lod_bias == 0 && s.max_anisotropy <= 1 && !s.seams && !s.conversion.enabled &&
+                     s.reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE && !s.compare;
+  if (!plain || s.mag_filter > VK_FILTER_LINEAR || s.min_filter > VK_FILTER_LINEAR)
+    throw Unspeakable{"samplers with comparisons, biases, anisotropy or reductions"};
+  out << "SAMPLER " << name << " MAG_FILTER " << kFilters[s.mag_filter] << " MIN_FILTER " << kFilters[s.min_filter];
+  for (std::size_t i = 0; i < 3; ++i)
+    out << " ADDRESS_MODE_"
+        << "UVW"[i] << " " << address_mode(s.address[i]);
+  out << " BORDER_COLOR " << border_color(s.border) << " MIN_LOD " << std::to_string(s.min_lod) << " MAX_LOD "
+      << std::to_string(s.max_lod) << (s.unnormalized ? " UNNORMALIZED_COORDS" : "") << "\n";
+}
+
+void demand_whole(const View& view, const Image& image) {
+  const bool plain = view.type == static_cast<VkImageViewType>(image.type);  // 1D, 2D and 3D have the same numbers
+  const bool same = view.format == image.format && view.swizzle == std::array<std::uint8_t, 4>{0, 1, 2, 3};
+  if (!plain || !same) throw Unspeakable{"views that show an image as another one"};
+}
+
+}  // namespace vitrine::glass::bug

@@ -1,0 +1,23 @@
+// Images and samplers in AmberScript.
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "glass/bug/bug.h"
+
+namespace vitrine::glass::bug {
+
+/// What the language has no words for: thrown.
+struct Unspeakable {
+  std::string what;
+};
+
+/// IMAGE with its texels, by `name`.
+void write_image(std::ostream& out, const std::string& name, const Image& image, bool after);
+/// SAMPLER.
+void write_sampler(std::ostream& out, const std::string& name, const texel::Sampler& sampler);
+/// Throws unless the view shows the whole image as it is.
+void demand_whole(const View& view, const Image& image);
+
+}  // namespace vitrine::glass::bug
