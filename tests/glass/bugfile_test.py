@@ -107,6 +107,10 @@ class BugFileTest(unittest.TestCase):
         bug, = self.capture("lost", ORDERS, "endless.spv:1", code=None, VITRINE_SHADER_BUDGET="100000")
         result = self.run_it(VITRINE, "replay", bug, VITRINE_SHADER_BUDGET="100000")
         self.assertIn("the device is lost, as it was", result.stdout)
+        self.run_it(VITRINE, "reduce", bug, "-o", "small.vitrine", VITRINE_SHADER_BUDGET="100000")
+        self.assertLess((self.folder / "small.vitrine").stat().st_size, bug.stat().st_size)
+        result = self.run_it(VITRINE, "replay", "small.vitrine", VITRINE_SHADER_BUDGET="100000")
+        self.assertIn("the device is lost, as it was", result.stdout)
 
     def test_it_becomes_smaller_and_what_was_found_stays(self):
         bug, = self.capture("finding", VITRINE, "check", "--sanitize", APPLICATION, "1", "16", code=1)
