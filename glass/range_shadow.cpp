@@ -37,10 +37,9 @@ void copy_shadow(const std::byte* source, std::byte* target, std::uint64_t bytes
   std::memmove(to->states(number_of(target)), from->states(number_of(source)), bytes);
 }
 
-void fill_shadow(const texel::ImageView& view, const TexelBox& box, ByteState state) {
+void for_each_row(const texel::ImageView& view, const TexelBox& box,
+                  base::FunctionRef<void(const std::byte*, std::uint64_t)> f) {
   if (view.format == nullptr || box.level >= view.level_count) return;
-  const ShadowRegion* region = find_shadow(view.base);
-  if (region == nullptr) return;
   const texel::Extent& extent = view.level[box.level].extent;
   const Blocks x = cut(box.area.offset.x, box.area.extent.width, extent.width, view.format->block_width);
   const Blocks y = cut(box.area.offset.y, box.area.extent.height, extent.height, view.format->block_height);
@@ -53,11 +52,18 @@ void fill_shadow(const texel::ImageView& view, const TexelBox& box, ByteState st
   for (std::uint32_t layer = box.first_layer; layer < layers_end; ++layer)
     for (std::uint32_t sample = 0; sample < view.samples; ++sample)
       for (std::uint32_t slice = box.first_slice; slice < slices_end; ++slice)
-        for (std::uint64_t row = y.first; row < y.end; ++row) {
-          const std::byte* first = view.block(box.level, layer, sample, static_cast<std::uint32_t>(x.first),
-                                              static_cast<std::uint32_t>(row), slice);
-          region->fill(number_of(first), (x.end - x.first) * view.format->block_bytes, state);
-        }
+        for (std::uint64_t row = y.first; row < y.end; ++row)
+          f(view.block(box.level, layer, sample, static_cast<std::uint32_t>(x.first), static_cast<std::uint32_t>(row),
+                       slice),
+            (x.end - x.first) * view.format->block_bytes);
+}
+
+void fill_shadow(const texel::ImageView& view, const TexelBox& box, ByteState state) {
+  if (view.format == nullptr) return;
+  const ShadowRegion* region = find_shadow(view.base);
+  if (region == nullptr) return;
+  for_each_row(view, box,
+               [&](const std::byte* first, std::uint64_t bytes) { region->fill(number_of(first), bytes, state); });
 }
 
 }  // namespace vitrine::glass

@@ -1,6 +1,7 @@
 // The shadow of what commands write: ranges of buffers, and texels of images.
 #pragma once
 
+#include "base/function_ref.h"
 #include "glass/memory_shadow.h"
 #include "texel/view.h"
 
@@ -21,6 +22,10 @@ struct TexelBox {
   std::uint32_t first_slice = 0, slices = UINT32_MAX;
 };
 void fill_shadow(const texel::ImageView& view, const TexelBox& box, ByteState state);
+
+/// Calls f(first byte, bytes) for the rows of blocks of a box, which may be larger than the view.
+void for_each_row(const texel::ImageView& view, const TexelBox& box,
+                  base::FunctionRef<void(const std::byte*, std::uint64_t)> f);
 
 /// An area that every level lies in.
 inline constexpr VkRect2D kWholeArea{{0, 0}, {INT32_MAX, INT32_MAX}};

@@ -5,8 +5,7 @@
 #include "glass/known_shadow.h"
 #include "glass/sanitize/accesses.h"
 #include "glass/sanitize/descriptors.h"
-#include "glass/sanitize/footprint.h"
-#include "glass/sanitize/image_lanes.h"
+#include "glass/sanitize/lookups.h"
 #include "glass/sanitize/operands.h"
 #include "glass/sanitize/texel_address.h"
 
@@ -43,33 +42,6 @@ std::string texel_text(const ImageLanes& operands, std::uint32_t dimensions, std
   return text;
 }
 
-/// Whether a view has the dimension that the instruction gives coordinates for.
-bool has_dimension(ImageDim dim, VkImageViewType type) {
-  using enum ImageDim;
-  static constexpr ImageDim kDimensions[] = {k1D, k2D, k3D, kCube, k1D, k2D, kCube};  // by VkImageViewType
-  return dim == kDimensions[type];
-}
-
-Lookup lookup_of(const spirv::ImageOp& op, const ImageLanes& operands, std::size_t lane) {
-  const auto number = [&](ImageOperand which, std::uint32_t c) {
-    return std::bit_cast<float>(operands.operand(which, c, lane).value_or(0));
-  };
-  Lookup lookup;
-  const std::uint32_t dims = spirv::ir::coordinate_components(op.info.dim);
-  for (std::uint32_t c = 0; c < dims; ++c) {
-    lookup.at[c] = number(ImageOperand::kCoord, c);
-    lookup.offset[c] = operands.operand(ImageOperand::kOffset, c, lane).value_or(0);
-  }
-  if (op.info.arrayed) lookup.layer = number(ImageOperand::kCoord, dims);
-  lookup.gather = op.info.access == ImageAccess::kGather;
-  if (operands.operand(ImageOperand::kLod, 0, lane)) {
-    lookup.lod = number(ImageOperand::kLod, 0);
-  } else if (op.info.explicit_lod_zero) {
-    lookup.lod = 0.0f;
-  }
-  return lookup;
-}
-
 std::string point_text(const Lookup& lookup, ImageDim dim) {
   std::string text = "(";
   for (std::uint32_t c = 0; c < spirv::ir::coordinate_components(dim); ++c) {
@@ -100,7 +72,6 @@ class WrittenAccess {
   void global(const spirv::MemoryOp& row, Effect effect);
   void texels(const Descriptor& image, std::uint32_t element, base::LaneMask lanes, Effect effect);
   void lookups(const Descriptor& image, std::uint32_t element, base::LaneMask lanes);
-  const texel::Sampler* sampler_of(const Descriptor& image, std::size_t lane) const;
 
   /// A lane's access to a piece. False: it reads what nothing has written.
   bool touch(std::size_t lane, const Piece& piece, Effect effect) {
@@ -239,16 +210,6 @@ void WrittenAccess::texels(const Descriptor& image, std::uint32_t element, base:
   });
 }
 
-const texel::Sampler* WrittenAccess::sampler_of(const Descriptor& image, std::size_t lane) const {
-  const spirv::ImageOp& op = wave_.program->image_ops[i_->extra[0]];
-  if (op.info.immutable_sampler != nullptr) return op.info.immutable_sampler;
-  if (op.info.combined) return image.sampler;
-  const std::uint32_t element = element_of(wave_, op.sampler_index, lane);
-  if (element != 0 && element >= op.info.sampler_count) return nullptr;
-  const Descriptor* sampler = spirv::exec::find_descriptor(wave_, op.info.sampler_set, op.info.sampler_slot + element);
-  return sampler ? sampler->sampler : nullptr;
-}
-
 void WrittenAccess::lookups(const Descriptor& image, std::uint32_t element, base::LaneMask lanes) {
   const spirv::ImageOp& op = wave_.program->image_ops[i_->extra[0]];
   const texel::ImageView& view = *image.image;
@@ -257,7 +218,7 @@ void WrittenAccess::lookups(const Descriptor& image, std::uint32_t element, base
   if (is_all_written(*region, view, wave_.resources->command)) return;
   const ImageLanes operands(wave_, op);
   base::for_each_lane(lanes, [&](std::size_t lane) {
-    const texel::Sampler* sampler = sampler_of(image, lane);
+    const texel::Sampler* sampler = sampler_of(wave_, op, image, lane);
     if (sampler == nullptr) return;
     const Lookup lookup = lookup_of(op, operands, lane);
     const auto piece_of = [&](const std::byte* block) {

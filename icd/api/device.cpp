@@ -2,6 +2,7 @@
 #include "icd/object/device.h"
 
 #include "glass/session.h"
+#include "glass/sync/sync.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/address_book.h"
@@ -53,6 +54,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physical_device, co
 VKAPI_ATTR void VKAPI_CALL DestroyDevice(VkDevice device, const VkAllocationCallbacks*) {
   if (!device) return;
   if (stop_queue) stop_queue(from_handle<Device>(device).queue);
+  glass::sync::forget_owner(&from_handle<Device>(device));
   destroy_handle<Device>(device);
   glass::session().write();
 }

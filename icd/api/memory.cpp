@@ -7,6 +7,7 @@
 #include "base/shake.h"
 #include "glass/memory_shadow.h"
 #include "glass/session.h"
+#include "glass/sync/sync.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
@@ -41,6 +42,25 @@ void bind_image(Image& image, VkImageAspectFlagBits aspect, std::byte* memory) {
   image.plane_data[texel::plane_of_aspect(image.layout, aspect)] = memory;
   const auto last = image.plane_data.begin() + (image.desc().disjoint ? image.layout.plane_count : 1);
   if (std::find(image.plane_data.begin(), last, nullptr) == last) image.data = image.plane_data[0];
+}
+
+/// The application says that it has written mapped memory, or is about to read it: told to the tool sync.
+void tell_host_access(Device& device, std::span<const VkMappedMemoryRange> ranges, bool write) {
+  glass::sync::Hazards* const hazards = glass::sync::hazards_of(&device);
+  if (!hazards) return;
+  for (const VkMappedMemoryRange& range : ranges) {
+    const DeviceMemory& memory = from_handle<DeviceMemory>(range.memory);
+    if (range.offset >= memory.size) continue;
+    auto who = std::make_shared<glass::sync::Who>();
+    who->what = write ? "write by the host" : "read by the host";
+    who->address.command_name = write ? "vkFlushMappedMemoryRanges" : "vkInvalidateMappedMemoryRanges";
+    const std::string name = name_of(device.physical_device.instance, ref(memory));
+    who->resource = name.empty() ? "device memory" : "device memory '" + name + "'";
+    who->place = who->what + who->resource;
+    who->base = reinterpret_cast<std::uintptr_t>(memory.data);
+    const std::uintptr_t first = who->base + range.offset;
+    hazards->host_access({first, first + std::min(range.size, memory.size - range.offset)}, write, who);
+  }
 }
 
 }  // namespace
@@ -112,11 +132,15 @@ VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice, VkDeviceMemory memory, VkDevi
 
 VKAPI_ATTR void VKAPI_CALL UnmapMemory(VkDevice, VkDeviceMemory) {}
 
-VKAPI_ATTR VkResult VKAPI_CALL FlushMappedMemoryRanges(VkDevice, std::uint32_t, const VkMappedMemoryRange*) {
+VKAPI_ATTR VkResult VKAPI_CALL FlushMappedMemoryRanges(VkDevice device, std::uint32_t count,
+                                                       const VkMappedMemoryRange* ranges) {
+  tell_host_access(from_handle<Device>(device), {ranges, count}, true);
   return VK_SUCCESS;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL InvalidateMappedMemoryRanges(VkDevice, std::uint32_t, const VkMappedMemoryRange*) {
+VKAPI_ATTR VkResult VKAPI_CALL InvalidateMappedMemoryRanges(VkDevice device, std::uint32_t count,
+                                                            const VkMappedMemoryRange* ranges) {
+  tell_host_access(from_handle<Device>(device), {ranges, count}, false);
   return VK_SUCCESS;
 }
 

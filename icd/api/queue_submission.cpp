@@ -22,16 +22,19 @@ class BatchBuilder {
   BatchInfo& add_batch() { return batches_.emplace_back(); }
 
   std::span<const SemaphoreOp> add_semaphores(const VkSemaphore* handles, std::uint32_t count,
-                                              const std::uint64_t* values, std::uint32_t value_count) {
+                                              const std::uint64_t* values, std::uint32_t value_count,
+                                              const VkPipelineStageFlags* stages = nullptr) {
     const std::size_t first = semaphores_.size();
     for (std::uint32_t i = 0; i < count; ++i) {
       semaphores_.push_back({handles[i], values && i < value_count ? values[i] : 0});
+      if (stages) semaphores_.back().stages = stages[i];
     }
     return {semaphores_.data() + first, count};
   }
   std::span<const SemaphoreOp> add_semaphores(const VkSemaphoreSubmitInfo* infos, std::uint32_t count) {
     const std::size_t first = semaphores_.size();
-    for (std::uint32_t i = 0; i < count; ++i) semaphores_.push_back({infos[i].semaphore, infos[i].value});
+    for (std::uint32_t i = 0; i < count; ++i)
+      semaphores_.push_back({infos[i].semaphore, infos[i].value, infos[i].stageMask});
     return {semaphores_.data() + first, count};
   }
   std::span<const VkCommandBuffer> add_command_buffers(const VkCommandBufferSubmitInfo* infos, std::uint32_t count) {
@@ -60,10 +63,12 @@ class BatchBuilder {
 /// Of vkQueueSubmit or vkQueueBindSparse: waits and signals of one batch.
 template <class Info>
 void add_semaphores(const Info& info, BatchBuilder& builder, BatchInfo& batch) {
+  const VkPipelineStageFlags* stages = nullptr;
+  if constexpr (requires { info.pWaitDstStageMask; }) stages = info.pWaitDstStageMask;
   const auto* values = find_in_chain<VkTimelineSemaphoreSubmitInfo>(info.pNext);
   batch.waits = builder.add_semaphores(info.pWaitSemaphores, info.waitSemaphoreCount,
                                        values ? values->pWaitSemaphoreValues : nullptr,
-                                       values ? values->waitSemaphoreValueCount : 0);
+                                       values ? values->waitSemaphoreValueCount : 0, stages);
   batch.signals = builder.add_semaphores(info.pSignalSemaphores, info.signalSemaphoreCount,
                                          values ? values->pSignalSemaphoreValues : nullptr,
                                          values ? values->signalSemaphoreValueCount : 0);

@@ -13,15 +13,29 @@ void copy_references(const VkAttachmentReference2* references, std::uint32_t cou
   for (std::uint32_t i = 0; references && i < count; ++i) out.push_back(references[i].attachment);
 }
 
+void copy_layouts(const VkAttachmentReference2* references, std::uint32_t count, Vector<AttachmentReference>& out) {
+  for (std::uint32_t i = 0; references && i < count; ++i) {
+    const VkAttachmentReference2& r = references[i];
+    const auto* separate = find_in_chain<VkAttachmentReferenceStencilLayout>(r.pNext);
+    if (r.attachment != VK_ATTACHMENT_UNUSED)
+      out.push_back({r.attachment, {r.layout, separate ? separate->stencilLayout : r.layout}});
+  }
+}
+
 Subpass make_subpass(const VkSubpassDescription2& info, const HostMemory& memory) {
   Subpass subpass(memory);
   copy_references(info.pInputAttachments, info.inputAttachmentCount, subpass.inputs);
   copy_references(info.pColorAttachments, info.colorAttachmentCount, subpass.colors);
   copy_references(info.pResolveAttachments, info.colorAttachmentCount, subpass.resolves);
+  copy_layouts(info.pInputAttachments, info.inputAttachmentCount, subpass.layouts);
+  copy_layouts(info.pColorAttachments, info.colorAttachmentCount, subpass.layouts);
+  copy_layouts(info.pResolveAttachments, info.colorAttachmentCount, subpass.layouts);
+  copy_layouts(info.pDepthStencilAttachment, 1, subpass.layouts);
   if (info.pDepthStencilAttachment) subpass.depth_stencil = info.pDepthStencilAttachment->attachment;
   if (const auto* resolve = find_in_chain<VkSubpassDescriptionDepthStencilResolve>(info.pNext)) {
     if (const VkAttachmentReference2* target = resolve->pDepthStencilResolveAttachment) {
       subpass.depth_stencil_resolve = target->attachment;
+      copy_layouts(target, 1, subpass.layouts);
     }
     subpass.depth_resolve_mode = resolve->depthResolveMode;
     subpass.stencil_resolve_mode = resolve->stencilResolveMode;
@@ -59,15 +73,35 @@ VkImageAspectFlags undefined_aspects(const VkAttachmentDescription2& info) {
          (stencil == VK_IMAGE_LAYOUT_UNDEFINED ? kStencil : 0);
 }
 
+AttachmentLayout initial_layout(const VkAttachmentDescription2& info) {
+  const auto* separate = find_in_chain<VkAttachmentDescriptionStencilLayout>(info.pNext);
+  return {info.initialLayout, separate ? separate->stencilInitialLayout : info.initialLayout};
+}
+
+AttachmentLayout final_layout(const VkAttachmentDescription2& info) {
+  const auto* separate = find_in_chain<VkAttachmentDescriptionStencilLayout>(info.pNext);
+  return {info.finalLayout, separate ? separate->stencilFinalLayout : info.finalLayout};
+}
+
+SubpassDependency make_dependency(const VkSubpassDependency2& info) {
+  // A VkMemoryBarrier2 in the chain stands for the masks.
+  if (const auto* barrier = find_in_chain<VkMemoryBarrier2>(info.pNext))
+    return {info.srcSubpass,       info.dstSubpass,        barrier->srcStageMask,
+            barrier->dstStageMask, barrier->srcAccessMask, barrier->dstAccessMask};
+  return {info.srcSubpass,   info.dstSubpass,    info.srcStageMask,
+          info.dstStageMask, info.srcAccessMask, info.dstAccessMask};
+}
+
 // ---- VkRenderPassCreateInfo as VkRenderPassCreateInfo2
 
 /// The structures of the second form, made from the first; alive for one call.
 struct UpgradedInfo {
-  explicit UpgradedInfo(const HostMemory& m) : attachments(m), references(m), subpasses(m) {}
+  explicit UpgradedInfo(const HostMemory& m) : attachments(m), references(m), subpasses(m), dependencies(m) {}
 
   Vector<VkAttachmentDescription2> attachments;
   Vector<VkAttachmentReference2> references;
   Vector<VkSubpassDescription2> subpasses;
+  Vector<VkSubpassDependency2> dependencies;
   VkRenderPassCreateInfo2 info = make_struct<VkRenderPassCreateInfo2>();
 };
 
@@ -129,6 +163,21 @@ void upgrade_subpasses(const VkRenderPassCreateInfo& info, UpgradedInfo& out) {
   }
 }
 
+void upgrade_dependencies(const VkRenderPassCreateInfo& info, UpgradedInfo& out) {
+  for (std::uint32_t i = 0; i < info.dependencyCount; ++i) {
+    const VkSubpassDependency& a = info.pDependencies[i];
+    VkSubpassDependency2 b = make_struct<VkSubpassDependency2>();
+    b.srcSubpass = a.srcSubpass;
+    b.dstSubpass = a.dstSubpass;
+    b.srcStageMask = a.srcStageMask;
+    b.dstStageMask = a.dstStageMask;
+    b.srcAccessMask = a.srcAccessMask;
+    b.dstAccessMask = a.dstAccessMask;
+    b.dependencyFlags = a.dependencyFlags;
+    out.dependencies.push_back(b);
+  }
+}
+
 }  // namespace
 
 std::uint32_t forced_samples(const void* chain) {
@@ -146,6 +195,9 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateRenderPass(VkDevice device, const VkRenderP
   upgrade_subpasses(*info, upgraded);
   upgraded.info.attachmentCount = info->attachmentCount;
   upgraded.info.pAttachments = upgraded.attachments.data();
+  upgrade_dependencies(*info, upgraded);
+  upgraded.info.dependencyCount = info->dependencyCount;
+  upgraded.info.pDependencies = upgraded.dependencies.data();
   upgraded.info.subpassCount = info->subpassCount;
   upgraded.info.pSubpasses = upgraded.subpasses.data();
   return CreateRenderPass2(device, &upgraded.info, allocator, pass);
@@ -158,11 +210,14 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateRenderPass2(VkDevice device, const VkRender
   for (std::uint32_t i = 0; i < info->attachmentCount; ++i) {
     const VkAttachmentDescription2& a = info->pAttachments[i];
     object->attachments.push_back({a.format, static_cast<std::uint32_t>(a.samples), a.loadOp, a.stencilLoadOp,
-                                   a.storeOp, a.stencilStoreOp, undefined_aspects(a)});
+                                   a.storeOp, a.stencilStoreOp, undefined_aspects(a), initial_layout(a),
+                                   final_layout(a)});
   }
   for (std::uint32_t i = 0; i < info->subpassCount; ++i) {
     object->subpasses.push_back(make_subpass(info->pSubpasses[i], object->memory));
   }
+  for (std::uint32_t i = 0; i < info->dependencyCount; ++i)
+    object->dependencies.push_back(make_dependency(info->pDependencies[i]));
   find_first_uses(*object, d.memory);
   *pass = to_handle(object.release());
   return VK_SUCCESS;

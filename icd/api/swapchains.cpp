@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "base/shake.h"
+#include "glass/sync/sync.h"
 #include "glass/timeline.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
@@ -163,6 +164,9 @@ VKAPI_ATTR VkResult VKAPI_CALL AcquireNextImage2KHR(VkDevice device_handle, cons
   const glass::Span span("wait", "vkAcquireNextImageKHR");
   const VkResult result = acquire(from_handle<Swapchain>(info->swapchain), info->timeout, *index);
   if (result != VK_SUCCESS && result != VK_SUBOPTIMAL_KHR) return result;
+  if (glass::sync::Hazards* const hazards = glass::sync::hazards_of(&device))
+    hazards->acquire({from_nullable<Swapchain>(info->swapchain), *index}, from_nullable<Semaphore>(info->semaphore),
+                     from_nullable<Fence>(info->fence));
   // The image is free when it is handed out: showing it has ended.
   if (info->semaphore) signal_semaphore(device, from_handle<Semaphore>(info->semaphore), 0);
   if (info->fence) signal_fence(device, from_handle<Fence>(info->fence));

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "glass/sync/sync.h"
 #include "glass/timeline.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
@@ -38,6 +39,21 @@ void change_state(Device& device, Change change) {
     change();
   }
   device.sync_changed.notify_all();
+}
+
+/// Tells the tool sync that the host has waited for those of the fences that are signalled.
+void tell_waited(Device& device, std::span<const VkFence> fences) {
+  glass::sync::Hazards* const hazards = glass::sync::hazards_of(&device);
+  if (!hazards) return;
+  const std::lock_guard lock(device.sync_mutex);
+  for (const VkFence fence : fences)
+    if (from_handle<Fence>(fence).signaled) hazards->host_waited(&from_handle<Fence>(fence));
+}
+
+/// The same of a value of a timeline semaphore.
+void tell_waited(Device& device, VkSemaphore semaphore, std::uint64_t value) {
+  if (glass::sync::Hazards* const hazards = glass::sync::hazards_of(&device))
+    hazards->host_waited_for(&from_handle<Semaphore>(semaphore), value);
 }
 
 }  // namespace
@@ -106,6 +122,7 @@ VKAPI_ATTR VkResult VKAPI_CALL ResetFences(VkDevice device, std::uint32_t count,
 
 VKAPI_ATTR VkResult VKAPI_CALL GetFenceStatus(VkDevice device, VkFence fence) {
   Device& d = from_handle<Device>(device);
+  tell_waited(d, {&fence, 1});
   const std::lock_guard lock(d.sync_mutex);
   if (from_handle<Fence>(fence).signaled) return VK_SUCCESS;
   return d.lost ? VK_ERROR_DEVICE_LOST : VK_NOT_READY;
@@ -115,9 +132,11 @@ VKAPI_ATTR VkResult VKAPI_CALL WaitForFences(VkDevice device, std::uint32_t coun
                                              VkBool32 wait_all, std::uint64_t timeout) {
   const glass::Span span("wait", "vkWaitForFences");
   const auto signaled = [](VkFence fence) { return from_handle<Fence>(fence).signaled; };
-  return wait_until(from_handle<Device>(device), timeout, [&] {
+  const VkResult result = wait_until(from_handle<Device>(device), timeout, [&] {
     return wait_all ? std::all_of(fences, fences + count, signaled) : std::any_of(fences, fences + count, signaled);
   });
+  if (result == VK_SUCCESS) tell_waited(from_handle<Device>(device), {fences, count});
+  return result;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateSemaphore(VkDevice device, const VkSemaphoreCreateInfo* info,
@@ -135,11 +154,15 @@ VKAPI_ATTR VkResult VKAPI_CALL GetSemaphoreCounterValue(VkDevice device, VkSemap
   Device& d = from_handle<Device>(device);
   const std::lock_guard lock(d.sync_mutex);
   *value = from_handle<Semaphore>(semaphore).value;
+  tell_waited(d, semaphore, *value);
   return d.lost ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL SignalSemaphore(VkDevice device, const VkSemaphoreSignalInfo* info) {
-  signal_semaphore(from_handle<Device>(device), from_handle<Semaphore>(info->semaphore), info->value);
+  Device& d = from_handle<Device>(device);
+  if (glass::sync::Hazards* const hazards = glass::sync::hazards_of(&d))
+    hazards->signal_by_host(&from_handle<Semaphore>(info->semaphore), info->value);
+  signal_semaphore(d, from_handle<Semaphore>(info->semaphore), info->value);
   return VK_SUCCESS;
 }
 
@@ -152,7 +175,14 @@ VKAPI_ATTR VkResult VKAPI_CALL WaitSemaphores(VkDevice device, const VkSemaphore
     }
     return (info->flags & VK_SEMAPHORE_WAIT_ANY_BIT) ? reached > 0 : reached == info->semaphoreCount;
   };
-  return wait_until(from_handle<Device>(device), timeout, done);
+  Device& d = from_handle<Device>(device);
+  const VkResult result = wait_until(d, timeout, done);
+  if (result != VK_SUCCESS || !glass::sync::is_on()) return result;
+  const std::lock_guard lock(d.sync_mutex);
+  for (std::uint32_t i = 0; i < info->semaphoreCount; ++i)
+    if (is_reached(from_handle<Semaphore>(info->pSemaphores[i]), info->pValues[i]))
+      tell_waited(d, info->pSemaphores[i], info->pValues[i]);
+  return result;
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroySemaphore(VkDevice, VkSemaphore semaphore, const VkAllocationCallbacks*) {
@@ -177,6 +207,8 @@ VKAPI_ATTR VkResult VKAPI_CALL GetEventStatus(VkDevice device, VkEvent event) {
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL SetEvent(VkDevice device, VkEvent event) {
+  if (glass::sync::Hazards* const hazards = glass::sync::hazards_of(&from_handle<Device>(device)))
+    hazards->set_event_by_host(&from_handle<Event>(event));
   set_event(from_handle<Device>(device), from_handle<Event>(event), true);
   return VK_SUCCESS;
 }

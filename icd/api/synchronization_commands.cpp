@@ -9,6 +9,7 @@
 #include "icd/object/image.h"
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
+#include "icd/record/dependencies.h"
 
 namespace vitrine::icd {
 namespace {
@@ -37,21 +38,26 @@ void record_discards(VkCommandBuffer buffer, const VkDependencyInfo& info) {
 
 namespace entry {
 
-VKAPI_ATTR void VKAPI_CALL CmdPipelineBarrier(VkCommandBuffer buffer, VkPipelineStageFlags, VkPipelineStageFlags,
-                                              VkDependencyFlags, std::uint32_t, const VkMemoryBarrier*, std::uint32_t,
-                                              const VkBufferMemoryBarrier*, std::uint32_t count,
-                                              const VkImageMemoryBarrier* images) {
+VKAPI_ATTR void VKAPI_CALL CmdPipelineBarrier(VkCommandBuffer buffer, VkPipelineStageFlags first,
+                                              VkPipelineStageFlags second, VkDependencyFlags,
+                                              std::uint32_t memory_count, const VkMemoryBarrier* memory,
+                                              std::uint32_t buffer_count, const VkBufferMemoryBarrier* buffers,
+                                              std::uint32_t count, const VkImageMemoryBarrier* images) {
   record(buffer, icd::CmdPipelineBarrier{});
+  record_dependency(buffer, DependencyKind::kBarrier, {},
+                    {first, second, {memory, memory_count}, {buffers, buffer_count}, {images, count}});
   record_discards(buffer, std::span(images, count));
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdPipelineBarrier2(VkCommandBuffer buffer, const VkDependencyInfo* info) {
   record(buffer, icd::CmdPipelineBarrier{});
+  record_dependency(buffer, DependencyKind::kBarrier, {}, {info, 1});
   record_discards(buffer, *info);
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdSetEvent2(VkCommandBuffer buffer, VkEvent event, const VkDependencyInfo*) {
+VKAPI_ATTR void VKAPI_CALL CmdSetEvent2(VkCommandBuffer buffer, VkEvent event, const VkDependencyInfo* info) {
   record(buffer, icd::CmdSetEvent{&from_handle<Event>(event), true});
+  record_dependency(buffer, DependencyKind::kSetEvent, {&event, 1}, {info, 1});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdResetEvent2(VkCommandBuffer buffer, VkEvent event, VkPipelineStageFlags2) {
@@ -62,12 +68,16 @@ VKAPI_ATTR void VKAPI_CALL CmdWaitEvents2(VkCommandBuffer buffer, std::uint32_t 
                                           const VkDependencyInfo* infos) {
   CommandBuffer& b = from_handle<CommandBuffer>(buffer);
   record(b, icd::CmdWaitEvents{b.arena.copy_array(events, count)});
-  for (std::uint32_t i = 0; i < count; ++i) record_discards(buffer, infos[i]);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    record_dependency(buffer, DependencyKind::kWaitEvents, {&events[i], 1}, {&infos[i], 1});
+    record_discards(buffer, infos[i]);
+  }
   b.waits_for_host = true;
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdSetEvent(VkCommandBuffer buffer, VkEvent event, VkPipelineStageFlags) {
+VKAPI_ATTR void VKAPI_CALL CmdSetEvent(VkCommandBuffer buffer, VkEvent event, VkPipelineStageFlags stages) {
   record(buffer, icd::CmdSetEvent{&from_handle<Event>(event), true});
+  record_dependency(buffer, DependencyKind::kSetEvent, {&event, 1}, OldBarriers{stages, 0, {}, {}, {}});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdResetEvent(VkCommandBuffer buffer, VkEvent event, VkPipelineStageFlags) {
@@ -75,11 +85,14 @@ VKAPI_ATTR void VKAPI_CALL CmdResetEvent(VkCommandBuffer buffer, VkEvent event, 
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdWaitEvents(VkCommandBuffer buffer, std::uint32_t count, const VkEvent* events,
-                                         VkPipelineStageFlags, VkPipelineStageFlags, std::uint32_t,
-                                         const VkMemoryBarrier*, std::uint32_t, const VkBufferMemoryBarrier*,
+                                         VkPipelineStageFlags first, VkPipelineStageFlags second,
+                                         std::uint32_t memory_count, const VkMemoryBarrier* memory,
+                                         std::uint32_t buffer_count, const VkBufferMemoryBarrier* buffers,
                                          std::uint32_t image_count, const VkImageMemoryBarrier* images) {
   CommandBuffer& b = from_handle<CommandBuffer>(buffer);
   record(b, icd::CmdWaitEvents{b.arena.copy_array(events, count)});
+  record_dependency(buffer, DependencyKind::kWaitEvents, {events, count},
+                    {first, second, {memory, memory_count}, {buffers, buffer_count}, {images, image_count}});
   record_discards(buffer, std::span(images, image_count));
   b.waits_for_host = true;
 }

@@ -10,6 +10,7 @@
 #include "glass/digest.h"
 #include "glass/memory_shadow.h"
 #include "glass/session.h"
+#include "glass/sync/sync.h"
 
 namespace vitrine::icd {
 namespace {
@@ -52,6 +53,7 @@ DeviceMemory::DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<
 }
 
 DeviceMemory::~DeviceMemory() {
+  if (data) glass::sync::forget_memory(data, size);
   if (counted_ && glass::session().shadows_memory()) glass::remove_shadow(data);
   if (counted_ && glass::has_digest()) glass::remove_digested(data);
   if (mapping_) munmap(mapping_, mapping_bytes_);

@@ -12,6 +12,7 @@
 #include "base/shake.h"
 #include "glass/digest.h"
 #include "glass/session.h"
+#include "glass/sync/sync.h"
 #include "glass/timeline.h"
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
@@ -32,6 +33,7 @@ struct Batch {
   std::vector<std::string> labels;  ///< of the queue when it was submitted; kept where tools are on
   VkFence fence = VK_NULL_HANDLE;
   std::uint64_t number = 0;  ///< among those of its queue
+  std::uint64_t host = 0;    ///< what the host knew to be done (glass/sync/hazards.h)
   Batch* next = nullptr;
 };
 
@@ -64,6 +66,7 @@ Batch* make_batch(Queue& queue, const BatchInfo& info) {
     batch->signals.assign(info.signals.begin(), info.signals.end());
     batch->fence = info.fence;
     batch->number = ++queue.worker->submitted;
+    if (glass::sync::Hazards* const hazards = glass::sync::hazards_of(&queue.device)) batch->host = hazards->host();
     if (!glass::session().idle()) {
       const std::lock_guard lock(queue.label_mutex);
       batch->labels = queue.labels.open();
@@ -108,13 +111,39 @@ class BatchList {
 
 /// False if the device was lost.
 bool replay_all(Device& device, Batch& batch) noexcept {
-  begin_observed_submission(device, std::move(batch.labels));
+  begin_observed_submission(device, std::move(batch.labels), batch.host);
   if (device.replay->observed && glass::has_digest()) digest_submission(*device.replay);
   const bool done = std::all_of(batch.command_buffers.begin(), batch.command_buffers.end(), [&](VkCommandBuffer b) {
     return replay(device, from_handle<CommandBuffer>(b)) == VK_SUCCESS;
   });
   end_observed_submission(device);
   return done;
+}
+
+/// What the tool sync is told of a batch's semaphores and fence (glass/sync/hazards.h).
+void tell_waits(Device& device, const Batch& batch) {
+  glass::sync::Hazards* const hazards = glass::sync::hazards_of(&device);
+  if (!hazards) return;
+  if (batch.calls.empty()) {
+    for (const SemaphoreOp& op : batch.waits)
+      hazards->wait(&from_handle<Semaphore>(op.semaphore), op.value,
+                    glass::sync::second_scope(op.stages, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT));
+    return;
+  }
+  std::vector<const void*> semaphores;
+  for (const SemaphoreOp& op : batch.waits) semaphores.push_back(&from_handle<Semaphore>(op.semaphore));
+  std::vector<glass::sync::Hazards::SwapchainImage> images;
+  for (const QueueCall& call : batch.calls) images.emplace_back(call.object, call.argument);
+  hazards->present(images, semaphores);
+}
+
+void tell_signals(Device& device, const Batch& batch) {
+  glass::sync::Hazards* const hazards = glass::sync::hazards_of(&device);
+  if (!hazards) return;
+  for (const SemaphoreOp& op : batch.signals)
+    hazards->signal(&from_handle<Semaphore>(op.semaphore), op.value,
+                    glass::sync::first_scope(op.stages, VK_ACCESS_2_MEMORY_WRITE_BIT));
+  if (batch.fence) hazards->signal_fence(&from_handle<Fence>(batch.fence));
 }
 
 /// Executes one batch on the calling thread. After a device loss only the fences and swapchains are still served, so
@@ -127,12 +156,14 @@ void execute(Device& device, Batch& batch) noexcept {
     const glass::Span wait("wait", "wait for semaphore");
     lost |= !wait_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
   }
+  tell_waits(device, batch);
   if (!lost && !batch.command_buffers.empty()) lost = !replay_all(device, batch);
   for (const QueueCall& call : batch.calls) {
     const glass::Span present("present", "present");
     call.run(call.object, call.argument);
   }
   if (lost) return;
+  tell_signals(device, batch);
   for (const SemaphoreOp& op : batch.signals) {
     signal_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
   }
@@ -265,6 +296,7 @@ VkResult wait_idle(Queue& queue) {
     std::unique_lock lock(worker.mutex);
     worker.changed.wait(lock, [&] { return worker.idle(); });
   }
+  if (glass::sync::Hazards* const hazards = glass::sync::hazards_of(&queue.device)) hazards->host_waited_for_all();
   return is_lost(queue.device) ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
 }
 

@@ -20,6 +20,7 @@ struct QueueCall {
 struct SemaphoreOp {
   VkSemaphore semaphore = VK_NULL_HANDLE;
   std::uint64_t value = 0;
+  VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< what observers are told
 };
 
 /// One batch: waits, then executes, then signals. The spans are copied by submit().

@@ -324,6 +324,23 @@ struct CmdDiscardImages {
   std::span<const DiscardedImage> images;
 };
 
+/// A memory barrier: of all memory, a buffer or an image.
+struct RecordedBarrier {
+  VkPipelineStageFlags2 first_stages, second_stages;
+  VkAccessFlags2 first_accesses, second_accesses;
+  const Buffer* buffer;  ///< null: not of one
+  VkDeviceSize offset, size;
+  const Image* image;  ///< null: not of one
+  VkImageSubresourceRange range;
+  VkImageLayout from, to;
+};
+/// What orders commands, as the tool sync is told: behind the command that does it.
+struct CmdDependency {
+  enum class Kind : std::uint8_t { kBarrier, kSetEvent, kWaitEvents } kind;
+  std::span<const VkEvent> events;
+  std::span<const RecordedBarrier> barriers;
+};
+
 /// Every recorded command, numbered.
 enum class CommandType : std::uint32_t {
 #define VITRINE_COMMAND(name) k##name,

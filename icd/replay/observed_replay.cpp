@@ -167,7 +167,7 @@ void forget_push_constants(ReplayState& state) {
   if (state.observed) state.observed->pushed.fill({});
 }
 
-void begin_observed_submission(Device& device, std::vector<std::string> queue_labels) noexcept {
+void begin_observed_submission(Device& device, std::vector<std::string> queue_labels, std::uint64_t host) noexcept {
   ObservedReplay* observed = observed_of(device);
   if (!observed) return;
   ++observed->submission;
@@ -178,6 +178,7 @@ void begin_observed_submission(Device& device, std::vector<std::string> queue_la
   observed->departed.clear();
   if (device.addresses) device.addresses->begin_submission();
   if (observed->pixels) observed->pixels->submission_begins(observed->submission);
+  if (observed->hazards) observed->hazards->begin_submission(observed->submission, host);
 }
 
 void end_observed_submission(Device& device) noexcept {
@@ -186,6 +187,7 @@ void end_observed_submission(Device& device) noexcept {
   try {
     glass::session().commands_done(&device);
     observed->commands.clear();
+    if (observed->hazards) observed->hazards->end_submission();
     if (observed->pixels) observed->pixels->submission_ends();
     glass::bug::Captures* const captures = glass::bug::captures();
     glass::session().end_submission([&](const glass::Finding& f) {
@@ -209,6 +211,8 @@ void execute(ReplayState& state, const CmdMark& command) {
   ++state.observed->command;
   state.observed->name = command.name;
 }
+
+void execute(ReplayState&, const CmdDependency&) {}
 
 void execute(ReplayState& state, const CmdBeginLabel& command) {
   if (state.observed) state.observed->labels.begin({command.name.data(), command.name.size()});

@@ -13,6 +13,7 @@
 #include "glass/finding.h"
 #include "glass/pixel/pass.h"
 #include "glass/pixel/primitives.h"
+#include "glass/sync/sync.h"
 #include "icd/edge/diagnostics.h"
 #include "icd/object/labels.h"
 #include "icd/replay/replay.h"
@@ -55,6 +56,14 @@ struct LoadedTexel {
   const char* text = "";
 };
 
+/// What the tool sync remembers of a render pass instance.
+struct SyncedPass {
+  std::uint64_t number = 0;                                        ///< of the subpass, among all
+  glass::sync::Tag begin = 0;                                      ///< of the instance
+  std::map<const std::byte*, std::uint64_t> drawn;                 ///< planes that were written: in which subpass last
+  std::array<VkRect2D, raster::kMaxColorAttachments + 2> areas{};  ///< of them, as ObservedPass::drawn
+};
+
 struct ObservedReplay {
   /// The objects of a draw or dispatch of the submission.
   struct Objects {
@@ -66,14 +75,16 @@ struct ObservedReplay {
   glass::pixel::Pixels* pixels = nullptr;  ///< likewise, and icd/replay/texel_events.h; null: no texel is watched
   std::shared_ptr<glass::pixel::PassPixels> pixel_pass;         ///< null: the pass has none of them
   std::unique_ptr<glass::pixel::PrimitiveObserver> primitives;  ///< null: no primitive is asked for
-  bool every_fragment = true;                                   ///< some tool must see each
-  std::vector<LoadedTexel> loaded;                              ///< by the scope that begins
-  std::uint64_t submission = 0;                                 ///< counted from 1
-  std::uint32_t command = 0;                                    ///< of the submission, counted from 1; 0: none yet
-  const char* name = "";                                        ///< of the command
-  std::uint64_t pass_number = 0;                                ///< of the draws at hand: spirv::ObservedCommand::pass
-  ObjectRef command_buffer;                                     ///< primary
-  LabelStack labels;  ///< of command buffers; they go on from one submission to the next
+  glass::sync::Hazards* hazards = nullptr;                      ///< null: sync is off
+  SyncedPass synced;
+  bool every_fragment = true;       ///< some tool must see each
+  std::vector<LoadedTexel> loaded;  ///< by the scope that begins
+  std::uint64_t submission = 0;     ///< counted from 1
+  std::uint32_t command = 0;        ///< of the submission, counted from 1; 0: none yet
+  const char* name = "";            ///< of the command
+  std::uint64_t pass_number = 0;    ///< of the draws at hand: spirv::ObservedCommand::pass
+  ObjectRef command_buffer;         ///< primary
+  LabelStack labels;                ///< of command buffers; they go on from one submission to the next
   std::vector<std::string> queue_labels;
   /// What descriptors that were hidden named, by their nulls; and the sets without such ones, as of how many
   /// departures.
@@ -114,8 +125,9 @@ void forget_push_constants(ReplayState& state);
 /// A pass begins.
 void begin_observed_pass(ReplayState& state);
 
-/// A submission begins, on a queue with these labels. Nothing if nobody observes.
-void begin_observed_submission(Device& device, std::vector<std::string> queue_labels) noexcept;
+/// A submission begins, on a queue with these labels; `host`: what the host knew to be done when it made it
+/// (glass/sync/hazards.h). Nothing if nobody observes.
+void begin_observed_submission(Device& device, std::vector<std::string> queue_labels, std::uint64_t host) noexcept;
 /// It is done, or lost: what has been found goes to the application's messengers. No lock is held.
 void end_observed_submission(Device& device) noexcept;
 

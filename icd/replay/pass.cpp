@@ -5,6 +5,7 @@
 
 #include "glass/session.h"
 #include "icd/replay/scope.h"
+#include "icd/replay/sync_notes.h"
 #include "icd/replay/texel_events.h"
 #include "icd/replay/written.h"
 #include "texel/transfer.h"
@@ -159,7 +160,8 @@ void begin_subpass(ReplayState& state) {
   state.scope = describe_scope(state);
   const raster::PassDesc desc = describe_pass(state);
   state.pass.emplace(desc);
-  if (shadows_memory(state)) note_pass(state, desc);
+  if (follows_attachments(state)) note_pass(state, desc);
+  if (follows_hazards(state)) note_sync_subpass(state);
   begin_observed_pass(state);
   if (watches_texels(state)) begin_watched_pass(state, desc);
   for (const std::uint32_t attachment : current_subpass(state).first_uses) load_attachment(state, attachment);
@@ -215,6 +217,7 @@ void execute(ReplayState& state, const CmdEndRenderPass&) {
   if (!state.instance) return;
   end_scope(state);
   if (follows_attachments(state)) note_stores(state);
+  if (follows_hazards(state)) note_sync_end(state);
   state.instance = nullptr;
 }
 

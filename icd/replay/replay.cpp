@@ -11,6 +11,7 @@
 #include "icd/record/command_buffer.h"
 #include "icd/replay/captured_replay.h"
 #include "icd/replay/digested_replay.h"
+#include "icd/replay/sync_notes.h"
 #include "icd/replay/texel_events.h"
 #include "icd/replay/timed_replay.h"
 #include "icd/replay/written.h"
@@ -54,11 +55,24 @@ constexpr Executor kTexelNotes[] = {
 #include "icd/record/commands.def"
 };
 
+/// What the tool sync is told of a command.
+template <class T>
+void note_sync_erased(ReplayState& state, const void* command) {
+  if constexpr (requires(const T& typed) { note_sync(state, typed); })
+    note_sync(state, *static_cast<const T*>(command));
+}
+
+constexpr Executor kSyncNotes[] = {
+#define VITRINE_COMMAND(name) note_sync_erased<Cmd##name>,
+#include "icd/record/commands.def"
+};
+
 /// One command of a timeline, or of digests.
 void run_command(ReplayState& state, const CommandHeader& header) {
   kExecutors[header.type](state, header.command());
   if (shadows_memory(state)) kNotes[header.type](state, header.command());
   if (watches_texels(state)) kTexelNotes[header.type](state, header.command());
+  if (follows_hazards(state)) kSyncNotes[header.type](state, header.command());
 }
 
 /// A command buffer starts with nothing bound, and nothing that an earlier one bound may be touched again.
@@ -105,11 +119,12 @@ void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
   if (state.observed && glass::has_timeline()) return replay_timed(state, buffer, run_command);
   if (state.observed && glass::has_digest()) return replay_digested(state, buffer, run_command);
   if (state.observed && glass::bug::captures()) return replay_captured(state, buffer, run_command);
-  const bool shadows = shadows_memory(state), watches = watches_texels(state);
+  const bool shadows = shadows_memory(state), watches = watches_texels(state), follows = follows_hazards(state);
   for (const CommandHeader* header = buffer.arena.first(); header; header = header->next) {
     kExecutors[header->type](state, header->command());
     if (shadows) kNotes[header->type](state, header->command());
     if (watches) kTexelNotes[header->type](state, header->command());
+    if (follows) kSyncNotes[header->type](state, header->command());
     if (state.fault.raised.load(std::memory_order_relaxed)) return;
   }
 }
@@ -147,6 +162,7 @@ void prepare_replay(Device& device) {
   if (glass::session().idle()) return;
   device.replay->observed = std::make_shared<ObservedReplay>();
   device.replay->observed->shadows_memory = glass::session().shadows_memory();
+  device.replay->observed->hazards = glass::sync::hazards_of(&device);
   device.replay->observed->every_fragment = glass::session().needs_every_fragment();
   glass::pixel::Pixels* const pixels = device.replay->observed->pixels = glass::pixel::pixels();
   if (pixels && pixels->primitive())

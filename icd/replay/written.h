@@ -8,9 +8,9 @@
 namespace vitrine::icd {
 
 inline bool shadows_memory(const ReplayState& state) { return state.observed && state.observed->shadows_memory; }
-/// Whether anybody is told of what attachments hold: that shadow, or texels that are watched.
+/// Whether anybody is told of what attachments hold: that shadow, texels that are watched, or the tool sync.
 inline bool follows_attachments(const ReplayState& state) {
-  return state.observed && (state.observed->shadows_memory || state.observed->pixels);
+  return state.observed && (state.observed->shadows_memory || state.observed->pixels || state.observed->hazards);
 }
 
 // After a command of that kind has been replayed.
@@ -38,6 +38,9 @@ void note_written(ReplayState& state, const CmdClearAttachments& command);
 
 /// Draws and clears go to these attachments from now on.
 void note_pass(ReplayState& state, const raster::PassDesc& desc);
+/// Where a draw may leave fragments.
+VkRect2D drawn_area(const ObservedPass& pass, const raster::State& state);
+bool writes_stencil(const raster::State& state);
 
 /// An attachment and the part of it that a scope has, layers of its view.
 struct AttachmentPart {

@@ -5,6 +5,7 @@
 
 #include "icd/object/image.h"
 #include "icd/replay/scope.h"
+#include "icd/replay/sync_notes.h"
 #include "icd/replay/texel_events.h"
 #include "icd/replay/written.h"
 
@@ -38,14 +39,6 @@ bool same(const VkRect2D& a, const VkRect2D& b) {
          a.extent.height == b.extent.height;
 }
 
-/// Where the draw may leave fragments.
-VkRect2D drawn_area(const ObservedPass& pass, const raster::State& state) {
-  VkRect2D area{};
-  for (std::uint32_t i = 0; i < std::min(state.viewport_count, raster::kMaxViewports); ++i)
-    area = joined(area, state.scissor[i]);
-  return common(area, pass.desc.render_area);
-}
-
 /// Calls f(first layer, layers) for those that the pass draws to.
 template <class F>
 void for_each_drawn_layer(const raster::PassDesc& desc, F&& f) {
@@ -61,7 +54,7 @@ void fill_drawn(const raster::PassDesc& desc, const texel::ImageView& view, cons
   drawn = area;
 }
 
-bool writes_stencil(const raster::StencilFace& face) {
+bool writes(const raster::StencilFace& face) {
   constexpr VkStencilOp kKeep = VK_STENCIL_OP_KEEP;
   return face.write_mask != 0 && (face.fail != kKeep || face.pass != kKeep || face.depth_fail != kKeep);
 }
@@ -76,8 +69,7 @@ void note_drawn(ReplayState& state) {
     if (fixed->blend[i].write_mask != 0) fill_drawn(pass.desc, pass.desc.color[i], area, pass.drawn[i]);
   constexpr std::uint32_t kDepth = raster::kMaxColorAttachments;
   if (fixed->depth_test && fixed->depth_write) fill_drawn(pass.desc, pass.desc.depth, area, pass.drawn[kDepth]);
-  if (fixed->stencil_test && (writes_stencil(fixed->front) || writes_stencil(fixed->back)))
-    fill_drawn(pass.desc, pass.desc.stencil, area, pass.drawn[kDepth + 1]);
+  if (icd::writes_stencil(*fixed)) fill_drawn(pass.desc, pass.desc.stencil, area, pass.drawn[kDepth + 1]);
 }
 
 /// Calls f(view) for what the aspects of an attachment are.
@@ -101,22 +93,36 @@ void fill_part(const AttachmentPart& part, ByteState state) {
 
 }  // namespace
 
+VkRect2D drawn_area(const ObservedPass& pass, const raster::State& state) {
+  VkRect2D area{};
+  for (std::uint32_t i = 0; i < std::min(state.viewport_count, raster::kMaxViewports); ++i)
+    area = joined(area, state.scissor[i]);
+  return common(area, pass.desc.render_area);
+}
+
+bool writes_stencil(const raster::State& state) {
+  return state.stencil_test && (writes(state.front) || writes(state.back));
+}
+
 void note_pass(ReplayState& state, const raster::PassDesc& desc) { state.observed->pass = {desc, {}}; }
 
 void note_load(const ReplayState& state, const AttachmentPart& part, VkAttachmentLoadOp op) {
   if (!part.view) return;
   if (watches_texels(state)) note_texels_loaded(state, part, op);
+  if (follows_hazards(state)) note_sync_load(state, part, op);
   if (op == VK_ATTACHMENT_LOAD_OP_CLEAR) fill_part(part, ByteState::kWritten);
   if (op == VK_ATTACHMENT_LOAD_OP_DONT_CARE) fill_part(part, discarded_state(*part.view->image));
 }
 
 void note_store(const ReplayState& state, const AttachmentPart& part, VkAttachmentStoreOp op) {
   if (watches_texels(state) && part.view) note_texels_stored(state, part, op);
+  if (follows_hazards(state) && part.view) note_sync_store(state, part, op);
   if (part.view && op == VK_ATTACHMENT_STORE_OP_DONT_CARE) fill_part(part, discarded_state(*part.view->image));
 }
 
 void note_resolved(const ReplayState& state, const AttachmentPart& part, const texel::ImageView& source) {
   fill_part(part, ByteState::kWritten);
+  if (follows_hazards(state)) note_sync_resolved(state, part);
   if (watches_texels(state)) note_texels_resolved(state, part, source);
 }
 

@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 VITRINE, MANIFEST = map(os.path.abspath, sys.argv[-2:]) if __name__ == "__main__" else ("", "")
-TOOLS = "sanitize,race,numbers,printf,coverage,count,timeline"
+TOOLS = "sanitize,race,sync,numbers,printf,coverage,count,timeline"
 DISPLAY = ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24"]
 
 

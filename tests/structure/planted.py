@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks that every rule of the tools (glass/rules.def) is planted: a fault that breaks it, and a correct twin that nothing is
-said of, in the catalogues (tests/glass/catalogue_*_test.cpp, race_*_test.cpp), or in the tests that are named here.
+said of, in the catalogues (tests/glass/catalogue_*_test.cpp, race_*_test.cpp, tests/icd/sync_*_test.cpp), or in the tests that are named here.
 
 usage: planted.py SOURCE_FOLDER
 """
@@ -29,7 +29,9 @@ ELSEWHERE = {
 def faults_of(root):
     rules = re.findall(r'VITRINE_RULE\("([^"]+)"', (root / "glass/rules.def").read_text())
     planted = set()
-    for path in sorted(p for name in ("catalogue", "race") for p in (root / "tests/glass").glob(f"{name}_*_test.cpp")):
+    catalogues = [(root / "tests" / room).glob(f"{name}_*_test.cpp")
+                  for room, name in (("glass", "catalogue"), ("glass", "race"), ("icd", "sync"))]
+    for path in sorted(p for paths in catalogues for p in paths):
         planted.update(re.findall(r'\{\s*"\w+",\s*"([a-z-]+)",', path.read_text()))
     for rule in rules:
         if (rule in planted) == (rule in ELSEWHERE):
