@@ -81,6 +81,7 @@ CTS_CASE("api", "command_buffer.secondary_simultaneous") {
       vkCmdExecuteCommands(cmd, 1, &secondary);
       vkCmdExecuteCommands(cmd, 1, &secondary);
       vkCmdEndRenderPass(cmd);
+      run.barrier(cmd);
     }
   });
   out_target(run, triangle.target);

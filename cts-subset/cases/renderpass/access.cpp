@@ -58,12 +58,20 @@ Pass make_pass(Run& run, const Image& color, const Image* depth, bool input, VkI
   self.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
   self.dstAccessMask = input ? VK_ACCESS_INPUT_ATTACHMENT_READ_BIT : VK_ACCESS_SHADER_READ_BIT;
   self.dependencyFlags = VK_DEPENDENCY_BY_REGION_BIT | (input ? 0 : VK_DEPENDENCY_FEEDBACK_LOOP_BIT_EXT);
+  // Fragments sample the attachment in another layout than it has before the pass.
+  VkSubpassDependency before{VK_SUBPASS_EXTERNAL, 0};
+  before.srcStageMask = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+  before.dstStageMask = VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
+  before.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+  before.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+  const VkSubpassDependency dependencies[2] = {self, before};
   VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
   info.attachmentCount = static_cast<uint32_t>(attachments.size());
   info.pAttachments = attachments.data();
-  info.subpassCount = info.dependencyCount = 1;
+  info.subpassCount = 1;
   info.pSubpasses = &subpass;
-  info.pDependencies = &self;
+  info.dependencyCount = 2;
+  info.pDependencies = dependencies;
   Pass result;
   result.pass = make_render_pass(run, info);
   result.framebuffer = make_framebuffer(run, result.pass, views, kExtent);

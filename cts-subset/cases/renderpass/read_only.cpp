@@ -58,7 +58,15 @@ struct Pass {
     subpass.pDepthStencilAttachment = &depth_reference;
     subpass.inputAttachmentCount = input;
     subpass.pInputAttachments = &depth_reference;
+    // Fragments sample the attachment in another layout than it has before the pass.
+    VkSubpassDependency before{VK_SUBPASS_EXTERNAL, 0};
+    before.srcStageMask = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+    before.dstStageMask = VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
+    before.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+    before.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
     VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+    info.dependencyCount = 1;
+    info.pDependencies = &before;
     info.attachmentCount = 2;
     info.pAttachments = attachments;
     info.subpassCount = 1;
