@@ -1,10 +1,14 @@
 // The tool `race`: two accesses to the same bytes by different invocations of one command, one of them a write, that
 // neither barriers nor atomic operations order (Vulkan 1.3.239, Memory Model: Data Race).
 #include <bit>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <thread>
 
+#include "glass/output.h"
 #include "glass/race/accesses.h"
 #include "glass/tools.h"
 #include "spirv/exec/invocation.h"
@@ -173,18 +177,36 @@ class RaceWatch : public spirv::exec::Watch {
   std::uint32_t names_[base::kWaveWidth] = {};
 };
 
+/// VITRINE_RACE_SAMPLE: of how many workgroups one is watched.
+std::uint32_t wanted_sample() {
+  const char* const text = std::getenv("VITRINE_RACE_SAMPLE");
+  std::uint32_t sample = 1;
+  if (text == nullptr || *text == 0) return sample;
+  const auto [end, error] = std::from_chars(text, text + std::strlen(text), sample);
+  if (error == std::errc() && *end == 0 && sample != 0) return sample;
+  complain("VITRINE_RACE_SAMPLE: '" + std::string(text) + "' is no number from 1 on");
+  return 1;
+}
+
 class RacedProgram : public ProgramTool {
  public:
-  RacedProgram(Races& races, const Told& told) : races_(races), told_(told) {}
+  RacedProgram(Races& races, const Told& told, std::uint32_t sample) : races_(races), told_(told), sample_(sample) {}
   bool in_order() const override { return told_.sites.orders_device; }
   std::unique_ptr<spirv::exec::Watch> watch(const Wave& wave, const Instruction* start) override {
-    if (told_.sites.all.empty()) return nullptr;
+    if (told_.sites.all.empty() || !is_watched(wave)) return nullptr;
     return std::make_unique<RaceWatch>(races_, told_, wave, start);
   }
 
  private:
+  /// Whoever may order workgroups is watched in all of them: an order that is not seen looks like a race.
+  bool is_watched(const Wave& wave) const {
+    if (sample_ == 1 || !told_.compute() || told_.sites.orders_device) return true;
+    return (wave.workgroup_id[0] + wave.workgroup_id[1] + wave.workgroup_id[2]) % sample_ == 0;
+  }
+
   Races& races_;
   const Told& told_;
+  const std::uint32_t sample_;
 };
 
 class RaceTool : public Tool {
@@ -194,7 +216,7 @@ class RaceTool : public Tool {
   std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
     const std::lock_guard lock(mutex_);
     programs_.push_back(std::make_unique<Told>(shader, program));
-    return std::make_shared<RacedProgram>(races_, *programs_.back());
+    return std::make_shared<RacedProgram>(races_, *programs_.back(), sample_);
   }
   void commands_done(const void* owner) override { races_.settle(owner, nullptr); }
   std::vector<Finding> take_findings() override {
@@ -203,6 +225,7 @@ class RaceTool : public Tool {
   }
 
  private:
+  const std::uint32_t sample_ = wanted_sample();
   std::mutex mutex_;
   std::vector<std::unique_ptr<Told>> programs_;
   Races races_;

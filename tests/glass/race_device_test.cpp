@@ -1,4 +1,6 @@
 // Planted races of buffers, device addresses, images and texel buffers, inside of workgroups and between them.
+#include <cstdlib>
+
 #include "tests/glass/race_catalogue.h"
 
 namespace vitrine::glass::test {
@@ -191,6 +193,24 @@ TEST(Race, IsTheSameWhateverThreadsRunTheWorkgroups) {
     if (round == 0) first = found;
     EXPECT_EQ(found, first);
   }
+}
+
+/// Of every third workgroup's invocations, and of them alone.
+TEST(Race, SampledWorkgroupsAreThoseWhoseIndicesSayIt) {
+  const auto found_of = [](const char* body) {
+    const PlantedRace planted{"", "", 64, 7, "", body, ""};
+    return races_of(VK_SHADER_STAGE_COMPUTE_BIT,
+                    race_module(VK_SHADER_STAGE_COMPUTE_BIT, text_of(planted, body), Language::kGlsl, DebugInfo::kLines,
+                                false),
+                    planted.groups)
+        .size();
+  };
+  ASSERT_EQ(setenv("VITRINE_RACE_SAMPLE", "3", 1), 0);
+  EXPECT_EQ(found_of("if (g == 3u) { v[i] = i; o[i] = v[i ^ 1u]; }"), 1u);
+  EXPECT_EQ(found_of("if (g == 4u) { v[i] = i; o[i] = v[i ^ 1u]; }"), 0u);
+  EXPECT_EQ(found_of("if (i == 0u && (g == 3u || g == 6u)) v[5] = g;"), 1u) << "between two of them";
+  EXPECT_EQ(found_of("if (i == 0u && (g == 3u || g == 5u)) v[5] = g;"), 0u);
+  ASSERT_EQ(unsetenv("VITRINE_RACE_SAMPLE"), 0);
 }
 
 }  // namespace
