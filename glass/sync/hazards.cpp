@@ -309,6 +309,14 @@ void Hazards::add(const Clash& clash) {
   entry.last = clash.later.tag;
 }
 
+void Hazards::report(Tag tag, const Finding& finding) {
+  const std::lock_guard lock(mutex_);
+  Entry& entry = entries_[std::string(finding.rule->id) + finding.message + finding.address.command_name];
+  if (entry.count++ != 0) return;
+  entry.first = {tag, 0};
+  entry.finding = finding;
+}
+
 std::vector<Finding> Hazards::take() {
   const std::lock_guard lock(mutex_);
   std::vector<std::pair<std::pair<Tag, Tag>, Finding>> found;

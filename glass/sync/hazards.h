@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 
+#include "glass/sync/layouts.h"
 #include "glass/sync/records.h"
 
 namespace vitrine::glass::sync {
@@ -68,6 +69,11 @@ class Hazards {
   /// The host reads bytes, or has written them.
   void host_access(const Range& range, bool write, std::shared_ptr<const Who> who);
 
+  /// The layouts of images.
+  Layouts& layouts() { return layouts_; }
+  /// A command does something wrong by itself.
+  void report(Tag tag, const Finding& finding);
+
   /// Memory that is gone.
   void forget(const Range& range);
   /// Everything that was touched is held against what came before it.
@@ -120,6 +126,7 @@ class Hazards {
   std::map<const void*, std::vector<Signal>> signals_;
   std::map<const void*, Tag> fences_;
   std::map<SwapchainImage, Signal> presented_;
+  Layouts layouts_;
   std::map<std::string, Entry> entries_;
   std::uint64_t submission_ = 0;
   Tag floor_ = 0;  ///< what happened up to then happens before all that is touched from now on

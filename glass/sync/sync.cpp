@@ -115,6 +115,10 @@ void forget_owner(const void* owner) {
   if (SyncTool* const tool = current) tool->forget(owner);
 }
 
+void forget_image(const void* owner, const void* image) {
+  if (Hazards* const hazards = hazards_of(owner)) hazards->layouts().forget(image);
+}
+
 void forget_memory(const std::byte* data, std::uint64_t size) {
   const auto first = reinterpret_cast<std::uintptr_t>(data);
   if (SyncTool* const tool = current) tool->forget(Range{first, first + size});

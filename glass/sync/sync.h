@@ -12,6 +12,8 @@ bool is_on();
 Hazards* hazards_of(const void* owner);
 /// The device is gone.
 void forget_owner(const void* owner);
+/// An image is gone, which was a part of the owner's.
+void forget_image(const void* owner, const void* image);
 /// Memory is gone.
 void forget_memory(const std::byte* data, std::uint64_t size);
 

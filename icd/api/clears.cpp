@@ -2,6 +2,7 @@
 #include "icd/entry_points.h"
 #include "icd/object/image.h"
 #include "icd/record/command_buffer.h"
+#include "icd/record/dependencies.h"
 
 namespace vitrine::icd {
 namespace {
@@ -16,19 +17,21 @@ void add_cost(VkCommandBuffer buffer, const Image& image) {
 
 namespace entry {
 
-VKAPI_ATTR void VKAPI_CALL CmdClearColorImage(VkCommandBuffer buffer, VkImage image, VkImageLayout,
+VKAPI_ATTR void VKAPI_CALL CmdClearColorImage(VkCommandBuffer buffer, VkImage image, VkImageLayout layout,
                                               const VkClearColorValue* value, std::uint32_t count,
                                               const VkImageSubresourceRange* ranges) {
   const Image& i = from_handle<Image>(image);
   record(buffer, icd::CmdClearColorImage{&i, *value, copy_array(buffer, ranges, count)});
+  record_layouts(buffer, i, layout, {ranges, count});
   add_cost(buffer, i);
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdClearDepthStencilImage(VkCommandBuffer buffer, VkImage image, VkImageLayout,
+VKAPI_ATTR void VKAPI_CALL CmdClearDepthStencilImage(VkCommandBuffer buffer, VkImage image, VkImageLayout layout,
                                                      const VkClearDepthStencilValue* value, std::uint32_t count,
                                                      const VkImageSubresourceRange* ranges) {
   const Image& i = from_handle<Image>(image);
   record(buffer, icd::CmdClearDepthStencilImage{&i, *value, copy_array(buffer, ranges, count)});
+  record_layouts(buffer, i, layout, {ranges, count});
   add_cost(buffer, i);
 }
 

@@ -8,6 +8,7 @@
 #include "icd/object/image.h"
 #include "icd/object/memory.h"
 #include "icd/record/command_buffer.h"
+#include "icd/record/dependencies.h"
 
 namespace vitrine::icd {
 namespace {
@@ -104,6 +105,9 @@ VKAPI_ATTR void VKAPI_CALL CmdCopyImage2(VkCommandBuffer buffer, const VkCopyIma
   const auto regions = copy_regions<VkImageCopy>(buffer, info->pRegions, info->regionCount);
   const Image& source = from_handle<Image>(info->srcImage);
   record(buffer, icd::CmdCopyImage{&source, &from_handle<Image>(info->dstImage), regions});
+  record_layouts(buffer, source, info->srcImageLayout, regions, &VkImageCopy::srcSubresource);
+  record_layouts(buffer, from_handle<Image>(info->dstImage), info->dstImageLayout, regions,
+                 &VkImageCopy::dstSubresource);
   add_texel_cost(buffer, source, regions);
 }
 
@@ -127,6 +131,10 @@ VKAPI_ATTR void VKAPI_CALL CmdBlitImage2(VkCommandBuffer buffer, const VkBlitIma
   const auto regions = copy_regions<VkImageBlit>(buffer, info->pRegions, info->regionCount);
   record(buffer, icd::CmdBlitImage{&from_handle<Image>(info->srcImage), &from_handle<Image>(info->dstImage), regions,
                                    info->filter});
+  record_layouts(buffer, from_handle<Image>(info->srcImage), info->srcImageLayout, regions,
+                 &VkImageBlit::srcSubresource);
+  record_layouts(buffer, from_handle<Image>(info->dstImage), info->dstImageLayout, regions,
+                 &VkImageBlit::dstSubresource);
   for (const VkImageBlit& r : regions) {
     const std::int64_t width = std::abs(std::int64_t{r.dstOffsets[1].x} - r.dstOffsets[0].x);
     const std::int64_t height = std::abs(std::int64_t{r.dstOffsets[1].y} - r.dstOffsets[0].y);
@@ -152,6 +160,7 @@ VKAPI_ATTR void VKAPI_CALL CmdCopyBufferToImage2(VkCommandBuffer buffer, const V
   const auto regions = copy_regions<VkBufferImageCopy>(buffer, info->pRegions, info->regionCount);
   const Image& target = from_handle<Image>(info->dstImage);
   record(buffer, icd::CmdCopyBufferToImage{&from_handle<Buffer>(info->srcBuffer), &target, regions});
+  record_layouts(buffer, target, info->dstImageLayout, regions, &VkBufferImageCopy::imageSubresource);
   add_texel_cost(buffer, target, regions);
 }
 
@@ -173,6 +182,7 @@ VKAPI_ATTR void VKAPI_CALL CmdCopyImageToBuffer2(VkCommandBuffer buffer, const V
   const auto regions = copy_regions<VkBufferImageCopy>(buffer, info->pRegions, info->regionCount);
   const Image& source = from_handle<Image>(info->srcImage);
   record(buffer, icd::CmdCopyImageToBuffer{&source, &from_handle<Buffer>(info->dstBuffer), regions});
+  record_layouts(buffer, source, info->srcImageLayout, regions, &VkBufferImageCopy::imageSubresource);
   add_texel_cost(buffer, source, regions);
 }
 
@@ -195,6 +205,9 @@ VKAPI_ATTR void VKAPI_CALL CmdResolveImage2(VkCommandBuffer buffer, const VkReso
   const auto regions = copy_regions<VkImageResolve>(buffer, info->pRegions, info->regionCount);
   const Image& source = from_handle<Image>(info->srcImage);
   record(buffer, icd::CmdResolveImage{&source, &from_handle<Image>(info->dstImage), regions});
+  record_layouts(buffer, source, info->srcImageLayout, regions, &VkImageResolve::srcSubresource);
+  record_layouts(buffer, from_handle<Image>(info->dstImage), info->dstImageLayout, regions,
+                 &VkImageResolve::dstSubresource);
   add_texel_cost(buffer, source, regions);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glass/pixel/pixels.h"
+#include "glass/sync/sync.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/address_book.h"
@@ -117,6 +118,7 @@ VKAPI_ATTR void VKAPI_CALL DestroyImage(VkDevice device, VkImage image, const Vk
     leave_address(from_handle<Device>(device), object);
     report_unbinding(from_handle<Device>(device), *object);
     forget_image(*object);
+    glass::sync::forget_image(&from_handle<Device>(device), object);
   }
   destroy_handle<Image>(image);
 }

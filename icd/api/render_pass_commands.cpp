@@ -24,6 +24,8 @@ RenderingAttachment make_attachment(const VkRenderingAttachmentInfo* info) {
   out.load = info->loadOp;
   out.store = info->storeOp;
   out.clear = info->clearValue;
+  out.layout = info->imageLayout;
+  out.resolve_layout = info->resolveImageLayout;
   return out;
 }
 

@@ -190,6 +190,7 @@ struct RenderingAttachment {
   VkAttachmentLoadOp load;
   VkAttachmentStoreOp store;  ///< what observers are told
   VkClearValue clear;
+  VkImageLayout layout, resolve_layout;  ///< what observers are told
 };
 struct CmdBeginRendering {
   VkRenderingFlags flags;
@@ -339,6 +340,16 @@ struct CmdDependency {
   enum class Kind : std::uint8_t { kBarrier, kSetEvent, kWaitEvents } kind;
   std::span<const VkEvent> events;
   std::span<const RecordedBarrier> barriers;
+};
+
+struct UsedLayout {
+  const Image* image;
+  VkImageSubresourceRange range;
+  VkImageLayout layout;
+};
+/// The layouts that the command before it says images have.
+struct CmdUsedLayouts {
+  std::span<const UsedLayout> images;
 };
 
 /// Every recorded command, numbered.

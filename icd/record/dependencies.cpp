@@ -1,7 +1,6 @@
 // See dependencies.h.
 #include "icd/record/dependencies.h"
 
-#include "glass/sync/sync.h"
 #include "icd/object/image.h"
 #include "icd/object/memory.h"
 
@@ -45,6 +44,10 @@ void record_all(VkCommandBuffer buffer, DependencyKind kind, std::span<const VkE
 }
 
 }  // namespace
+
+void record_layouts(VkCommandBuffer buffer, std::span<const UsedLayout> used) {
+  record(buffer, CmdUsedLayouts{copy_array(buffer, used.data(), used.size())});
+}
 
 void record_dependency(VkCommandBuffer buffer, DependencyKind kind, std::span<const VkEvent> events,
                        std::span<const VkDependencyInfo> infos) {

@@ -154,7 +154,7 @@ void execute(ReplayState& state, const CmdBeginRendering& recorded) {
   resolve_transients(recorded, command, state.scope);
   const raster::PassDesc desc = describe_pass(command, state.scope);
   state.pass.emplace(desc);
-  if (follows_hazards(state) && !(command.flags & VK_RENDERING_RESUMING_BIT)) note_sync_rendering(state);
+  if (follows_hazards(state) && !(command.flags & VK_RENDERING_RESUMING_BIT)) note_sync_rendering(state, recorded);
   if (follows_attachments(state)) {
     note_pass(state, desc);
     note_loads(state, recorded);

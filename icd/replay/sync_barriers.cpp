@@ -23,33 +23,6 @@ constexpr SubpassDependency kImplicitFirst{
 constexpr SubpassDependency kImplicitLast{
     0, VK_SUBPASS_EXTERNAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_NONE, kAttachmentAccesses, 0};
 
-std::string layout_text(VkImageLayout layout) {
-  switch (layout) {
-#define LAYOUT(name)           \
-  case VK_IMAGE_LAYOUT_##name: \
-    return #name;
-    LAYOUT(UNDEFINED)
-    LAYOUT(GENERAL)
-    LAYOUT(COLOR_ATTACHMENT_OPTIMAL)
-    LAYOUT(DEPTH_STENCIL_ATTACHMENT_OPTIMAL)
-    LAYOUT(DEPTH_STENCIL_READ_ONLY_OPTIMAL)
-    LAYOUT(SHADER_READ_ONLY_OPTIMAL)
-    LAYOUT(TRANSFER_SRC_OPTIMAL)
-    LAYOUT(TRANSFER_DST_OPTIMAL)
-    LAYOUT(PREINITIALIZED)
-    LAYOUT(DEPTH_ATTACHMENT_OPTIMAL)
-    LAYOUT(DEPTH_READ_ONLY_OPTIMAL)
-    LAYOUT(STENCIL_ATTACHMENT_OPTIMAL)
-    LAYOUT(STENCIL_READ_ONLY_OPTIMAL)
-    LAYOUT(READ_ONLY_OPTIMAL)
-    LAYOUT(ATTACHMENT_OPTIMAL)
-    LAYOUT(PRESENT_SRC_KHR)
-#undef LAYOUT
-    default:
-      return std::to_string(static_cast<int>(layout));
-  }
-}
-
 std::shared_ptr<const glass::sync::Who> transition_of(const ReplayState& state, const Image& image, VkImageLayout from,
                                                       VkImageLayout to) {
   std::string what = "layout transition from ";
@@ -89,16 +62,22 @@ std::vector<Barrier> dependencies_to(const RenderPass& pass, std::uint32_t subpa
   return barriers;
 }
 
+void change_layout(const ReplayState& state, const Image& image, const VkImageSubresourceRange& range,
+                   VkImageLayout from, VkImageLayout to) {
+  use_layout(state, image, range, from);
+  set_layout(state, image, range, to);
+}
+
 /// Adds the transition of an attachment, a part of the dependencies that are there.
 void add_transition(const ReplayState& state, const ImageView* view, VkImageAspectFlags aspects, VkImageLayout from,
                     VkImageLayout to, std::span<const Barrier> sides, std::vector<Barrier>& transitions) {
-  if (!view || from == to) return;
-  Barrier out;
-  out.first = sides[0].first;
-  out.second = sides[0].second;
-  for (const Barrier& side : sides.subspan(1)) out.more.emplace_back(side.first, side.second);
+  if (!view) return;
   VkImageSubresourceRange range = view->range;
   range.aspectMask = texel::format_desc(view->image->desc().format).aspects & aspects;
+  if (range.aspectMask != 0) change_layout(state, *view->image, range, from, to);
+  if (from == to) return;
+  Barrier out;
+  for (const Barrier& side : sides) out.more.emplace_back(side.first, side.second);
   add_subresources(*view->image, range, out.ranges);
   out.who = transition_of(state, *view->image, from, to);
   if (!out.ranges.empty()) transitions.push_back(std::move(out));
@@ -136,7 +115,10 @@ void note_sync(ReplayState& state, const CmdDependency& command) {
   glass::sync::Hazards& hazards = *state.observed->hazards;
   state.observed->synced.areas.fill({});
   std::vector<Barrier> barriers;
-  for (const RecordedBarrier& b : command.barriers) barriers.push_back(barrier_of(state, b));
+  for (const RecordedBarrier& b : command.barriers) {
+    barriers.push_back(barrier_of(state, b));
+    if (b.image && command.kind != Kind::kSetEvent) change_layout(state, *b.image, b.range, b.from, b.to);
+  }
   const glass::sync::Tag tag = tag_of(state, Part::kBefore);
   if (command.kind == Kind::kBarrier) return hazards.depend(tag, barriers);
   if (command.kind == Kind::kSetEvent) {
@@ -175,7 +157,7 @@ void note_sync_subpass(ReplayState& state) {
     const AttachmentLayout* before = layout_before(pass, state.subpass, r.attachment);
     if (!before)
       add_transitions(state, r.attachment, pass.attachments[r.attachment].initial, r.layout, first_sides, transitions);
-    else if (!sides.empty())
+    else
       add_transitions(state, r.attachment, *before, r.layout, sides, transitions);
   }
   depend(state, Part::kBefore, external || transitions.empty() ? std::move(sides) : std::move(first_sides),
@@ -192,14 +174,6 @@ void note_sync_end(ReplayState& state) {
     if (const AttachmentLayout* before = layout_before(pass, subpasses, i))
       add_transitions(state, i, *before, pass.attachments[i].final, last_sides, transitions);
   depend(state, Part::kBehind, std::move(last_sides), std::move(transitions));
-}
-
-void note_sync_rendering(ReplayState& state) {
-  SyncedPass& synced = state.observed->synced;
-  synced.drawn.clear();
-  synced.begin = tag_of(state);
-  synced.areas.fill({});
-  ++synced.number;
 }
 
 }  // namespace vitrine::icd

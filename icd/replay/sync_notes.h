@@ -25,6 +25,7 @@ void note_sync(ReplayState& state, const CmdDrawByteCount& command);
 void note_sync(ReplayState& state, const CmdDispatchIndirect& command);
 void note_sync(ReplayState& state, const CmdBeginConditionalRendering& command);
 void note_sync(ReplayState& state, const CmdDependency& command);
+void note_sync(ReplayState& state, const CmdUsedLayouts& command);
 void note_sync(ReplayState& state, const CmdDraw& command);
 void note_sync(ReplayState& state, const CmdDrawIndexed& command);
 void note_sync(ReplayState& state, const CmdDrawMulti& command);
@@ -34,7 +35,7 @@ void note_sync(ReplayState& state, const CmdClearAttachments& command);
 /// The subpass of a render pass instance begins, before its load ops; or the last one has ended.
 void note_sync_subpass(ReplayState& state);
 /// The same of dynamic rendering.
-void note_sync_rendering(ReplayState& state);
+void note_sync_rendering(ReplayState& state, const CmdBeginRendering& command);
 void note_sync_end(ReplayState& state);
 /// As note_load(), note_store() and note_resolved() (icd/replay/written.h).
 void note_sync_load(const ReplayState& state, const AttachmentPart& part, VkAttachmentLoadOp op);
@@ -46,6 +47,12 @@ glass::sync::Tag tag_of(const ReplayState& state, glass::sync::Part part = glass
 std::shared_ptr<glass::sync::Who> sync_who(const ReplayState& state, std::string what, std::string resource);
 std::string sync_name(const ReplayState& state, const Image& image);
 std::string sync_name(const ReplayState& state, const Buffer& buffer);
+std::string layout_text(VkImageLayout layout);
+/// A command says that a part of an image has a layout, or gives it one.
+void use_layout(const ReplayState& state, const Image& image, const VkImageSubresourceRange& range,
+                VkImageLayout layout);
+void set_layout(const ReplayState& state, const Image& image, const VkImageSubresourceRange& range,
+                VkImageLayout layout);
 /// The bytes of a box of texels, added to `ranges`.
 void add_texels(const texel::ImageView& view, const glass::TexelBox& box, std::vector<glass::sync::Range>& ranges);
 void add_subresources(const Image& image, const VkImageSubresourceRange& range,

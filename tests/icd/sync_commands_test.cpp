@@ -428,7 +428,8 @@ void SyncScene::make_pass(const Words& words, VkRenderPassBeginInfo& begin) {
   attachment.initialLayout = kLayouts.at(from);
   attachment.finalLayout = kLayouts.at(to);
   const VkAttachmentReference references[] = {
-      {0, two ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL}, {0, VK_IMAGE_LAYOUT_GENERAL}};
+      {0, two || words[2] == "LOAD" ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL},
+      {0, VK_IMAGE_LAYOUT_GENERAL}};
   VkSubpassDescription subpasses[2] = {};
   subpasses[0].colorAttachmentCount = 1;
   subpasses[0].pColorAttachments = &references[0];
