@@ -49,7 +49,7 @@ def outputs(folder, setting, command):
     """Runs a command with all tools; what the tools wrote, by file name."""
     files = {"VITRINE_REPORT": folder / "found.json", "VITRINE_COVERAGE": folder / "lines.info",
              "VITRINE_COUNTS": folder / "counts.json", "VITRINE_PRINTF": folder / "said.txt"}
-    environment = {**os.environ, **setting, "VITRINE_TOOLS": "sanitize,race,numbers,printf,coverage,count",
+    environment = {**os.environ, **setting, "VITRINE_TOOLS": "sanitize,race,sync,numbers,printf,coverage,count",
                    "VITRINE_COUNT_LINES": "1", "VITRINE_COUNT_DRAWS": "1", "VITRINE_SOURCES": str(folder / "sources"),
                    "VK_DRIVER_FILES": MANIFEST, **{name: str(file) for name, file in files.items()}}
     subprocess.run(command, check=True, capture_output=True, env=environment, cwd=folder)
