@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "glass/sync/records.h"
+#include "glass/sync/range.h"
 
 namespace vitrine::glass::sync {
 
@@ -14,6 +14,8 @@ class ByteSet {
  public:
   ByteSet() = default;
   ByteSet(const ByteSet&) = delete;
+  ByteSet(ByteSet&&) = default;
+  ByteSet& operator=(ByteSet&&) = default;
 
   void add(std::uintptr_t address, std::uint64_t bytes) {
     while (bytes != 0) {
@@ -27,6 +29,10 @@ class ByteSet {
     }
   }
   bool empty() const { return pages_.empty(); }
+  bool contains(std::uintptr_t address) const {
+    const auto page = pages_.find(address / kPageBytes);
+    return page != pages_.end() && (page->second[address % kPageBytes / 64] >> address % 64 & 1) != 0;
+  }
   void add(const ByteSet& other);
   /// In ascending order.
   std::vector<Range> ranges() const;

@@ -28,7 +28,7 @@ std::string command_text(const Address& address) {
 }
 
 std::string bytes_text(const Told& told) {
-  const std::uintptr_t base = told.later.who->base;
+  const std::uintptr_t base = told.later.who_at(told.bytes.first).base;
   if (base == 0 || told.bytes.first < base) return {};
   const std::uint64_t size = told.bytes.end - told.bytes.first;
   return " (bytes " + std::to_string(told.bytes.first - base) + " to " +
@@ -90,14 +90,15 @@ std::string remedy_of(const Told& told) {
 }  // namespace
 
 std::string key_of(const Told& told) {
-  return std::string(rule_of(told)) + '\n' + told.later.who->place + '\n' + told.earlier.who->place + '\n' +
+  const std::uintptr_t at = told.bytes.first;
+  return std::string(rule_of(told)) + '\n' + told.later.who_at(at).place + '\n' + told.earlier.who_at(at).place + '\n' +
          std::to_string(static_cast<int>(told.standing)) + std::to_string(static_cast<int>(told.later.use.access)) +
          '\n' + std::to_string(static_cast<int>(told.earlier.use.access));
 }
 
 Finding finding_of(const Told& told) {
   Finding finding;
-  const Who &earlier = *told.earlier.who, &later = *told.later.who;
+  const Who &earlier = told.earlier.who_at(told.bytes.first), &later = told.later.who_at(told.bytes.first);
   finding.rule = &rule(rule_of(told));
   finding.address = later.address;
   finding.message = later.what;

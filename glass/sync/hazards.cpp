@@ -50,7 +50,7 @@ void Hazards::settle_locked() {
 }
 
 void Hazards::apply(Tag tag, const Touch& touch) {
-  const Past access{touch.use, tag, touch.pass, touch.who};
+  const Past access{touch.use, tag, touch.pass, touch.who, touch.several};
   if (!touch.alternatives.empty()) apply_alternatives(access, touch);
   for (const Range& range : touch.ranges) {
     records_.update(range, [&](const Range& bytes, State& state) {

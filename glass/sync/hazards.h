@@ -23,6 +23,7 @@ struct Touch {
   /// Instead of ranges: what is read is in one of these, and which is not known (levels of an image).
   std::vector<std::vector<Range>> alternatives{};
   Tag since = ~Tag{0};  ///< behind all that happened from then on: store operations are behind their pass
+  std::shared_ptr<const Several> several{};
 };
 
 /// One memory barrier.

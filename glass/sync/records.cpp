@@ -5,14 +5,6 @@
 
 namespace vitrine::glass::sync {
 
-void append(std::vector<Range>& ranges, std::uintptr_t first, std::uintptr_t end) {
-  if (first >= end) return;
-  if (!ranges.empty() && ranges.back().end == first)
-    ranges.back().end = end;
-  else
-    ranges.push_back({first, end});
-}
-
 void Records::split(std::uintptr_t at) {
   auto piece = pieces_.lower_bound(at);
   if (piece == pieces_.begin()) return;

@@ -7,17 +7,10 @@
 #include <vector>
 
 #include "glass/finding.h"
+#include "glass/sync/byte_set.h"
 #include "glass/sync/order.h"
 
 namespace vitrine::glass::sync {
-
-/// Bytes of device memory.
-struct Range {
-  std::uintptr_t first = 0, end = 0;
-  bool operator==(const Range&) const = default;
-};
-/// Adds a range behind those that are there; what adjoins the last one becomes part of it.
-void append(std::vector<Range>& ranges, std::uintptr_t first, std::uintptr_t end);
 
 /// One access of one command as findings tell of it.
 struct Who {
@@ -28,13 +21,26 @@ struct Who {
   std::uintptr_t base = 0;  ///< of the buffer; 0: it is none, offsets say nothing
 };
 
+/// Accesses of one command that use memory in one way, told apart only where somebody asks: so that what several lines
+/// of a shader touch in turns is not as many pieces.
+struct Several {
+  std::vector<std::pair<ByteSet, std::shared_ptr<const Who>>> parts;
+};
+
 /// An access that has happened.
 struct Past {
   Use use;
   Tag tag = 0;
-  std::uint64_t pass = 0;  ///< of accesses to attachments: the subpass; else 0
-  std::shared_ptr<const Who> who;
+  std::uint64_t pass = 0;                    ///< of accesses to attachments: the subpass; else 0
+  std::shared_ptr<const Who> who;            ///< null: none has; of several, the first
+  std::shared_ptr<const Several> several{};  ///< null: `who` alone
   bool operator==(const Past&) const = default;
+  /// Who touched a byte.
+  const Who& who_at(std::uintptr_t address) const {
+    for (std::size_t i = 0; several && i < several->parts.size(); ++i)
+      if (several->parts[i].first.contains(address)) return *several->parts[i].second;
+    return *who;
+  }
 };
 
 /// What is known of some bytes.

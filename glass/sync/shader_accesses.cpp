@@ -35,6 +35,64 @@ std::shared_ptr<const Who> who_of(const Told& told) {
   return who;
 }
 
+/// What threads have gathered of a site.
+struct Gathered {
+  ByteSet bytes;
+  std::vector<ByteSet> levels;
+};
+
+/// What a stage of a command did.
+bool same_run(const Told& a, const Told& b) {
+  return a.command == b.command && a.program->context.stage == b.program->context.stage;
+}
+
+class Run {
+ public:
+  Run(const Told& first, Hazards& hazards)
+      : hazards_(hazards),
+        tag_(make_tag(first.command->submission, first.command->command, Part::kWork)),
+        stage_(shader_stage(first.program->context.stage)) {}
+
+  void add(const Told& told, const Gathered& gathered) {
+    const Site& site = told.program->all[told.site];
+    const std::shared_ptr<const Who> who = who_of(told);
+    for (const auto& access : {site.read, site.write})
+      if (access && !gathered.bytes.empty()) add(*access, gathered.bytes, who);
+    std::vector<std::vector<Range>> levels;
+    for (const ByteSet& level : gathered.levels)
+      if (!level.empty()) levels.push_back(level.ranges());
+    if (site.read && !levels.empty()) hazards_.touch(tag_, {{stage_, *site.read}, 0, {}, who, std::move(levels)});
+  }
+
+  /// Sites that use memory in one way together.
+  void tell() {
+    for (auto& [access, uses] : uses_) {
+      const std::shared_ptr<const Who> who = uses.several->parts[0].second;
+      const bool alone = uses.several->parts.size() == 1;
+      Touch touch{{stage_, access}, 0, uses.bytes.ranges(), who, {}};
+      if (!alone) touch.several = std::move(uses.several);
+      hazards_.touch(tag_, std::move(touch));
+    }
+  }
+
+ private:
+  struct Uses {
+    ByteSet bytes;
+    std::shared_ptr<Several> several = std::make_shared<Several>();
+  };
+  void add(Access access, const ByteSet& bytes, const std::shared_ptr<const Who>& who) {
+    Uses& uses = uses_[access];
+    uses.bytes.add(bytes);
+    uses.several->parts.emplace_back().first.add(bytes);
+    uses.several->parts.back().second = who;
+  }
+
+  Hazards& hazards_;
+  const Tag tag_;
+  const Stage stage_;
+  std::map<Access, Uses> uses_;
+};
+
 }  // namespace
 
 ShaderAccesses::Thread& ShaderAccesses::thread() {
@@ -56,10 +114,6 @@ Touches* ShaderAccesses::here(const Sites& program, const spirv::ObservedCommand
 }
 
 void ShaderAccesses::tell(const void* owner, Hazards& hazards) {
-  struct Gathered {
-    ByteSet bytes;
-    std::vector<ByteSet> levels;
-  };
   std::map<Told, Gathered, Less> all;
   {
     const std::lock_guard lock(mutex_);
@@ -83,17 +137,11 @@ void ShaderAccesses::tell(const void* owner, Hazards& hazards) {
       }
     }
   }
-  for (const auto& [told, gathered] : all) {
-    const Site& site = told.program->all[told.site];
-    const Tag tag = make_tag(told.command->submission, told.command->command, Part::kWork);
-    const Stage stage = shader_stage(told.program->context.stage);
-    const std::shared_ptr<const Who> who = who_of(told);
-    const std::vector<Range> ranges = gathered.bytes.ranges();
-    std::vector<std::vector<Range>> levels;
-    for (const ByteSet& level : gathered.levels)
-      if (!level.empty()) levels.push_back(level.ranges());
-    if (site.read) hazards.touch(tag, {{stage, *site.read}, 0, ranges, who, std::move(levels)});
-    if (site.write) hazards.touch(tag, {{stage, *site.write}, 0, ranges, who, {}});
+  for (auto at = all.begin(); at != all.end();) {
+    const auto end = std::find_if(at, all.end(), [&](const auto& one) { return !same_run(one.first, at->first); });
+    Run run(at->first, hazards);
+    for (; at != end; ++at) run.add(at->first, at->second);
+    run.tell();
   }
 }
 

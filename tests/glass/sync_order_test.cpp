@@ -130,6 +130,27 @@ TEST_F(SyncHazards, ComeInTheOrderOfCommandsHoweverTheyAreTold) {
   EXPECT_EQ(found(), std::vector<std::string>{"sync-read-after-write 2 behind 1, 1"});
 }
 
+TEST_F(SyncHazards, NameThePlaceThatTouchedTheByte) {
+  hazards.begin_submission(1, 0);
+  const auto several = std::make_shared<Several>();
+  Touch both{{Stage::kCompute, Access::kStorageWrite}, 0, {{0, 64}}, nullptr, {}};
+  for (std::uintptr_t part = 0; part < 2; ++part) {
+    auto who = std::make_shared<Who>();
+    who->what = who->place = part == 0 ? "even" : "odd";
+    auto& [bytes, place] = several->parts.emplace_back();
+    for (std::uintptr_t at = part * 4; at < 64; at += 8) bytes.add(at, 4);
+    place = std::move(who);
+  }
+  both.who = several->parts[0].second;
+  both.several = several;
+  hazards.touch(work(1), std::move(both));
+  touch(2, kRead, {12, 16}, "copy");
+  hazards.end_submission();
+  const std::vector<Finding> findings = hazards.take();
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].related.at(0).message.substr(0, 3), "odd");
+}
+
 TEST_F(SyncHazards, EndWhereTheHostHasWaited) {
   hazards.begin_submission(1, 0);
   touch(1, kStore, {0, 64}, "store");
