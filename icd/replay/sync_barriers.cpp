@@ -12,7 +12,6 @@ namespace {
 
 using glass::sync::Barrier;
 using glass::sync::Part;
-using glass::sync::Range;
 
 constexpr VkAccessFlags2 kAttachmentAccesses =
     VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT |
