@@ -1,9 +1,9 @@
 // Vertex attributes and indices that draws fetch from outside of what is bound (Vulkan 1.3.239, Vertex Input Address
 // Calculation; Programmable Primitive Shading).
 #include <algorithm>
-#include <cstring>
 #include <string>
 
+#include "glass/indices.h"
 #include "glass/sanitize/checks.h"
 #include "raster/draw.h"
 #include "texel/format.h"
@@ -31,36 +31,6 @@ struct Outside {
   std::uint32_t vertex = 0, instance = 0;  ///< VertexIndex, InstanceIndex
   std::uint32_t element = 0;
 };
-
-template <class T>
-std::uint32_t index_at(const DrawCall& call, std::uint64_t position) {
-  T index = 0;
-  std::memcpy(&index, call.index_data + position * sizeof(T), sizeof(T));
-  return index;
-}
-
-/// Calls f(VertexIndex) for the indices of a draw that are there; an early `false` of f does not end it.
-template <class T, class F>
-void for_each_index(const DrawCall& call, F&& f) {
-  const std::uint64_t there = call.index_bytes / sizeof(T);
-  const std::uint64_t end = std::min(std::uint64_t{call.first} + call.count, there);
-  const bool restarts = call.state->primitive_restart;
-  for (std::uint64_t p = call.first; p < end; ++p) {
-    const std::uint32_t index = index_at<T>(call, p);
-    if (!restarts || index != static_cast<T>(~T{0})) f(index + static_cast<std::uint32_t>(call.vertex_offset));
-  }
-}
-
-template <class F>
-void for_each_vertex(const DrawCall& call, F&& f) {
-  if (call.index_type == VK_INDEX_TYPE_UINT32) return for_each_index<std::uint32_t>(call, f);
-  if (call.index_type == VK_INDEX_TYPE_UINT16) return for_each_index<std::uint16_t>(call, f);
-  for_each_index<std::uint8_t>(call, f);
-}
-
-std::uint32_t index_bytes(const DrawCall& call) {
-  return call.index_type == VK_INDEX_TYPE_UINT32 ? 4 : call.index_type == VK_INDEX_TYPE_UINT16 ? 2 : 1;
-}
 
 /// One draw.
 class DrawCheck {

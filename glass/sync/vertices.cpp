@@ -1,8 +1,8 @@
 // What the fixed stages in front of the vertex shader read (Vulkan 1.3.239, Programmable Primitive Shading; Vertex
 // Input Address Calculation).
 #include <algorithm>
-#include <cstring>
 
+#include "glass/indices.h"
 #include "glass/sync/shader_accesses.h"
 #include "texel/format.h"
 
@@ -13,23 +13,6 @@ using raster::DrawCall;
 
 /// Above so many ranges what lies between them counts as read, too.
 constexpr std::size_t kMostRanges = 4096;
-
-std::uint32_t index_bytes(const DrawCall& call) {
-  return call.index_type == VK_INDEX_TYPE_UINT32 ? 4 : call.index_type == VK_INDEX_TYPE_UINT16 ? 2 : 1;
-}
-
-/// Calls f(VertexIndex) for the indices of a draw that are there.
-template <class F>
-void for_each_index(const DrawCall& call, F&& f) {
-  const std::uint32_t bytes = index_bytes(call);
-  const std::uint32_t restart = bytes == 4 ? ~0u : (1u << 8 * bytes) - 1;
-  const std::uint64_t end = std::min(std::uint64_t{call.first} + call.count, call.index_bytes / bytes);
-  for (std::uint64_t p = call.first; p < end; ++p) {
-    std::uint32_t index = 0;
-    std::memcpy(&index, call.index_data + p * bytes, bytes);
-    if (!call.state->primitive_restart || index != restart) f(index + static_cast<std::uint32_t>(call.vertex_offset));
-  }
-}
 
 /// The bytes of an element that attributes of a binding read: [first, end).
 struct Element {
@@ -76,7 +59,7 @@ class Vertices {
       const std::uint64_t last = step != 0 ? (call_.instance_count - 1) / step : 0;
       for (std::uint64_t n = 0; n <= last; ++n) add(call_.first_instance + n);
     } else if (call_.index_data) {
-      for_each_index(call_, add);
+      for_each_vertex(call_, add);
     } else {
       for (std::uint64_t n = 0; n < call_.count; ++n) add(call_.first + n);
     }
