@@ -75,7 +75,8 @@ class TimedReplay {
 
 bool is_for_observers(CommandType type) {
   return type == kCommandType<CmdMark> || type == kCommandType<CmdBeginLabel> || type == kCommandType<CmdEndLabel> ||
-         type == kCommandType<CmdInsertLabel>;
+         type == kCommandType<CmdInsertLabel> || type == kCommandType<CmdDependency> ||
+         type == kCommandType<CmdUsedLayouts>;
 }
 
 bool is_work(std::string_view name) {
