@@ -128,17 +128,13 @@ void Recorder::buffer(const MemoryOp& row) {
 }
 
 void Recorder::global(const MemoryOp& row) {
-  const Words low(wave_, {note_.files[1], i_->src[0]}), high(wave_, {note_.files[2], i_->src[1]}),
-      distance(wave_, {note_.files[3], i_->src[2]});
+  const sanitize::Addresses addresses(wave_, *i_, note_);
   const sanitize::Touched touched = sanitize::touched_by(row, note_.access);
   base::for_each_lane(lanes_, [&](std::size_t l) {
-    const std::uint64_t pointer = std::uint64_t{high[l]} << 32 | low[l];
     for (std::uint32_t c = 0; c < touched.count; ++c) {
-      const auto offset = static_cast<std::int32_t>(distance[l] + touched.at[c]);
       const std::uint32_t component = (touched.at[c] - row.added) / row.element_bytes;
       const std::uint32_t* const values = component < 4 ? values_of(row, component) : nullptr;
-      bytes(l, pointer + static_cast<std::uint64_t>(std::int64_t{offset}), row.element_bytes,
-            values != nullptr ? values[l] : 0);
+      bytes(l, addresses(l, touched.at[c]), row.element_bytes, values != nullptr ? values[l] : 0);
     }
   });
 }

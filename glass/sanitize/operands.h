@@ -66,6 +66,20 @@ class Number {
   Words low_, high_;
 };
 
+/// The addresses of an access through a pointer: two words, and a signed distance.
+struct Addresses {
+  Words low, high, distance;
+  Addresses(const spirv::Wave& wave, const spirv::Instruction& i, const spirv::InstructionNote& note)
+      : low(wave, {note.files[1], i.src[0]}),
+        high(wave, {note.files[2], i.src[1]}),
+        distance(wave, {note.files[3], i.src[2]}) {}
+  /// Of what lies `added` bytes behind it.
+  std::uint64_t operator()(std::size_t lane, std::uint32_t added) const {
+    const auto offset = static_cast<std::int32_t>(distance[lane] + added);
+    return (std::uint64_t{high[lane]} << 32 | low[lane]) + static_cast<std::uint64_t>(std::int64_t{offset});
+  }
+};
+
 /// The lanes of `lanes` for which `holds(lane)`.
 template <class F>
 base::LaneMask lanes_where(base::LaneMask lanes, F&& holds) {

@@ -150,20 +150,17 @@ void WrittenAccess::buffer(const spirv::MemoryOp& row, Effect effect) {
 
 void WrittenAccess::global(const spirv::MemoryOp& row, Effect effect) {
   const Touched touched = touched_by(row, note_.access);
-  const Words low(wave_, {note_.files[1], i_->src[0]}), high(wave_, {note_.files[2], i_->src[1]}),
-      distance(wave_, {note_.files[3], i_->src[2]});
+  const Addresses addresses(wave_, *i_, note_);
   // What lies outside of live buffers is another rule's.
   const auto in_buffer = [command = wave_.resources->command](std::uintptr_t at, std::uint64_t bytes) {
     const spirv::AddressRange range = command != nullptr ? command->buffers_at(at) : spirv::find_addresses(at);
     return range.begin != range.end && range.end - at >= bytes;
   };
   base::for_each_lane(lanes_, [&](std::size_t lane) {
-    const std::uint64_t pointer = std::uint64_t{high[lane]} << 32 | low[lane];
     UnwrittenRead read;
     std::uintptr_t first = 0;
     for (std::uint32_t c = 0; c < touched.count; ++c) {
-      const auto offset = static_cast<std::int32_t>(distance[lane] + touched.at[c]);
-      const std::uintptr_t address = pointer + static_cast<std::uint64_t>(std::int64_t{offset});
+      const std::uintptr_t address = addresses(lane, touched.at[c]);
       const ShadowRegion* region = find_shadow(reinterpret_cast<const void*>(address));
       if (region == nullptr) continue;
       const Piece piece{region, address, row.element_bytes, Contents::kBytes};
