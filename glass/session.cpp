@@ -65,6 +65,7 @@ class ProgramObserver : public spirv::exec::Observer {
       interest_.initialization |= wanted.initialization;
       interest_.blocks |= wanted.blocks;
       interest_.printf |= wanted.printf;
+      interest_.debug |= wanted.debug;
       interest_.order |= wanted.order;
     }
   }

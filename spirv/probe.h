@@ -39,6 +39,13 @@ enum class Cost : std::uint8_t {
 };
 inline constexpr std::size_t kCosts = static_cast<std::size_t>(Cost::kCount);
 
+/// Why a step is told of.
+enum class StepKind : std::uint32_t {
+  kLine,    ///< a line begins
+  kReturn,  ///< a line goes on behind a call
+  kBreak,   ///< NonSemantic.DebugBreak
+};
+
 struct Probe {
   enum class Kind : std::uint8_t {
     kBlock,        ///< a block of the module begins: SPIR-V label `id`
@@ -55,6 +62,8 @@ struct Probe {
     kRead,         ///< slots say which lanes read cells that have not been written
     kChoose,       ///< slots are those of one value or of another
     kUse,          ///< something depends on slots
+    kStep,         ///< what another line stands for comes next; `number`: a StepKind
+    kAssign,       ///< cells of variables (spirv/source_variables.h) get values
   } kind = Kind::kBlock;
   std::uint32_t id = 0;     ///< SPIR-V id of the block or instruction
   std::uint32_t place = 0;  ///< SourceInfo::places
@@ -67,6 +76,7 @@ struct Probe {
   // kWrite, kRead, kUse: scalars of variables and phis are numbered cells, values that may be undefined numbered slots.
   // Operands: indices of elements, as unsigned words; ~0: not known any more. kChoose: by slot of the result a
   // condition, and in `slots` two entries, where it holds and where it does not
+  // kAssign: the operands are indices, one a step, then `cells` words
   std::uint32_t first_cell = 0, cells = 0;
   std::vector<std::array<std::uint32_t, 2>> steps;  ///< by operand: cells of an element, number of elements
   std::uint32_t first_slot = 0;                     ///< kRead, kChoose: of `cells` slots
@@ -74,7 +84,7 @@ struct Probe {
                                                     ///< defined); kUse: in [0], those that matter
   // kBlock
   std::uint32_t function = 0;         ///< id of the function that the block is in
-  bool enters = false;                ///< the block is its function's first
+  bool enters = false;                ///< the block is its function's first; kStep: the line is
   std::vector<std::uint32_t> places;  ///< of the block's instructions, in their order, without repetitions in a row
   std::array<std::uint32_t, kCosts> costs{};  ///< of one pass through the block, by Cost
   /// Instructions by place, in the order in which places first come.

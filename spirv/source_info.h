@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,11 +32,14 @@ struct SourcePlace {
   bool operator==(const SourcePlace&) const = default;
 };
 
+struct SourceVariables;  // spirv/source_variables.h
+
 struct SourceInfo {
   std::vector<SourceFile> files{1};
   std::vector<SourceFunction> functions{1};
   std::vector<SourceScope> scopes{1};
   std::vector<SourcePlace> places{1};
+  std::shared_ptr<const SourceVariables> variables;  ///< null: nobody asked for them (Interest::debug)
 
   const SourcePlace& place(std::uint32_t number) const { return places[number < places.size() ? number : 0]; }
   /// "file:line:column" as far as it is known; empty: nothing is.

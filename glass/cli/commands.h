@@ -74,6 +74,14 @@ struct PixelOptions {
 };
 int pixel(const PixelOptions& options);
 
+struct DebugOptions {
+  std::string script;  ///< file with commands; empty: none
+  bool json = false;   ///< stops and answers as lines of JSON
+  std::string port;    ///< of the Debug Adapter Protocol; empty: a prompt
+  CommandLine application;
+};
+int debug(const DebugOptions& options);
+
 struct DiffOptions {
   std::string before, after;
   std::string pattern = "*";          ///< which counters, as the shell matches names

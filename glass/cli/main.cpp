@@ -187,6 +187,18 @@ void add_pixel(CLI::App& app, const Words& words, PixelOptions& options, int& co
   });
 }
 
+void add_debug(CLI::App& app, const Words& words, DebugOptions& options, int& code) {
+  CLI::App* command = add_runner(app, "debug", "Run it and stop its shaders: a prompt, or a server for an editor");
+  command->add_option("-x,--script", options.script, "Commands, before those that are typed")->type_name("FILE");
+  command->add_flag("--json", options.json, "Print stops and answers as lines of JSON");
+  command->add_option("--dap", options.port, "Wait for an editor at this port of the loopback interface (0: any)")
+      ->type_name("PORT");
+  command->callback([=, &words, &options, &code] {
+    options.application = application_of(*command, words);
+    code = debug(options);
+  });
+}
+
 void add_diff(CLI::App& app, DiffOptions& options, int& code) {
   CLI::App* command = app.add_subcommand("diff", "Compare two files of counters");
   command->formatter(std::make_shared<Help>("BEFORE AFTER"));
@@ -221,6 +233,7 @@ int main_of(const std::vector<std::string>& line) {
   TimelineOptions timeline_options;
   ShakeOptions shake_options;
   PixelOptions pixel_options;
+  DebugOptions debug_options;
   DiffOptions diff_options;
   BugOptions bug_options;
   add_run(app, words, code);
@@ -230,6 +243,7 @@ int main_of(const std::vector<std::string>& line) {
   add_timeline(app, words, timeline_options, code);
   add_shake(app, words, shake_options, code);
   add_pixel(app, words, pixel_options, code);
+  add_debug(app, words, debug_options, code);
   add_diff(app, diff_options, code);
   add_bug_commands(app, bug_options, main_of, code);
   try {

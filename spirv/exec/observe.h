@@ -43,6 +43,7 @@ struct Interest {
   bool control = false;         ///< probes of what needs invocations together, and of what must not be reached
   bool blocks = false;          ///< probes where blocks begin
   bool printf = false;          ///< probes of NonSemantic.DebugPrintf
+  bool debug = false;           ///< probes of lines, and of the values that variables get: Probe::Kind::kStep, kAssign
   bool order = false;           ///< probes of barriers; what orders accesses in their Origin (spirv/memory_order.h)
   bool operator==(const Interest&) const = default;
 };

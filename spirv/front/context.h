@@ -105,6 +105,7 @@ struct Access {
 
 struct Assigned;  // initialization.h
 struct Initialization;
+struct Debugging;  // debugging.h
 
 inline constexpr std::uint32_t kNoLocal = ~std::uint32_t{0};
 
@@ -178,6 +179,7 @@ struct Translator {
   std::size_t arguments = 0;  ///< that values cross joins as, so far
 
   std::shared_ptr<Initialization> initialization;  ///< null: nobody asks which variables have been written
+  std::shared_ptr<Debugging> debugging;            ///< null: nobody asks for lines and variables
 
   const Inst* inst = nullptr;  ///< being translated
   bool exact = false;          ///< the instruction is decorated NoContraction

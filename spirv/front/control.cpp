@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "spirv/front/convergence.h"
+#include "spirv/front/debugging.h"
 #include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
 #include "spirv/front/initialization.h"
@@ -412,6 +413,7 @@ void build_selection(Translator& t, const Block& block, const Inst& branch) {
 std::uint32_t build_terminator(Translator& t, const Block& block, std::uint32_t end) {
   const Inst& inst = t.module.code[block.last];
   t.inst = &inst;
+  step_to(t, inst);
   if (inst.op == Op::OpBranchConditional || inst.op == Op::OpSwitch) use_in_branch(t, inst.operand(0));
   switch (inst.op) {
     case Op::OpBranch:
@@ -456,19 +458,22 @@ void translate_observed(Translator& t, const Inst& inst) {
   before_instruction(t, inst);
   translate_instruction(t, inst);
   after_instruction(t, inst);
+  show_result(t, inst);
   if (t.interest.arithmetic || t.interest.numbers) probe_after(t, inst);
 }
 
 void build_block(Translator& t, const Block& block) {
   if (t.interest.blocks) probe_block(t, block);
+  begin_lines(t);
   for (std::uint32_t i = block.first; i < block.last; i++) {
     const Inst& inst = t.module.code[i];
     t.inst = &inst;
     if (++t.steps > kMaxSteps) fail(inst, "the shader expands to too many instructions");
+    step_to(t, inst);
     if (inst.op == Op::OpPhi)
-      load_phi(t, inst);
+      load_phi(t, inst), show_result(t, inst);
     else if (inst.op == Op::OpFunctionCall)
-      call(t, inst);
+      call(t, inst), step_back(t, inst);
     else
       translate_observed(t, inst);
   }
@@ -548,6 +553,7 @@ void build_function(Translator& t, const Function& callee, std::uint32_t result_
   t.frames.push_back({&callee, result_local, t.scopes.size() - 1});
   {
     const Into into(t, list);
+    enter_function(t, callee);
     build(t, callee.entry, 0, false);
   }
   t.frames.pop_back();

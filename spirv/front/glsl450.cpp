@@ -5,6 +5,7 @@
 
 #include <spirv/unified1/GLSL.std.450.h>
 
+#include "spirv/front/debugging.h"
 #include "spirv/front/functions.h"
 
 namespace vitrine::spirv::front {
@@ -273,8 +274,9 @@ void extended_instruction(Translator& t, const Inst& inst, ir::Op) {
     case kExtDebugPrintf:
       return debug_printf(t, inst);
     case kExtNonSemantic:
+      return show_break(t, inst);
     case kExtDebugInfo:
-      return;
+      return show_debug_value(t, inst);
     default:
       fail(inst, "extended instruction set is not supported");
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "spirv/front/context.h"
+#include "spirv/front/debugging.h"
 #include "spirv/front/functions.h"
 #include "spirv/front/interface.h"
 
@@ -354,7 +355,10 @@ void load_instruction(Translator& t, const Inst& inst, ir::Op) {
   const bool is_volatile =
       pointer.is_volatile ||
       (inst.has(1) && (inst.operand(1) & static_cast<std::uint32_t>(spv::MemoryAccessMask::Volatile)) != 0);
-  if (!is_volatile) return set_value(t, inst, load(t, pointer).leaves);
+  if (!is_volatile) {
+    set_value(t, inst, load(t, pointer).leaves);
+    return show_input(t, pointer, t.values[inst.result]);
+  }
   // "the value of HelperInvocation changes" with demotion (Vulkan, Built-In Variables): read where it is loaded.
   const DecorationRow* built_in = t.module.decoration(pointer.variable, spv::Decoration::BuiltIn);
   if (built_in != nullptr && built_in->value == static_cast<std::uint32_t>(spv::BuiltIn::HelperInvocation))
@@ -367,19 +371,25 @@ void load_instruction(Translator& t, const Inst& inst, ir::Op) {
 void store_instruction(Translator& t, const Inst& inst, ir::Op) {
   const Pointer pointer = pointer_of(t, inst.operand(0));
   store(t, pointer, value_of(t, inst.operand(1)));
+  show_assignment(t, pointer, value_of(t, inst.operand(1)));
 }
 
 void copy_memory(Translator& t, const Inst& inst, ir::Op) {
   const Pointer target = pointer_of(t, inst.operand(0));
   const Pointer source = pointer_of(t, inst.operand(1));
-  store(t, target, load(t, source));
+  const Value value = load(t, source);
+  store(t, target, value);
+  show_assignment(t, target, value);
 }
 
 void function_variable(Translator& t, const Inst& inst, ir::Op) {
   const std::uint32_t type = t.module.type(inst.result_type).element;
   const Pointer pointer = local_pointer(t, new_local(t, type, spv::StorageClass::Function, inst.result));
   t.pointers[inst.result] = pointer;
-  if (inst.has(1)) store(t, pointer, value_of(t, inst.operand(1)));
+  show_variable(t, pointer, inst.result);
+  if (!inst.has(1)) return;
+  store(t, pointer, value_of(t, inst.operand(1)));
+  show_assignment(t, pointer, value_of(t, inst.operand(1)));
 }
 
 void array_length(Translator& t, const Inst& inst, ir::Op) {

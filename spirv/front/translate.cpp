@@ -2,6 +2,7 @@
 #include "spirv/front/translate.h"
 
 #include "spirv/front/context.h"
+#include "spirv/front/debugging.h"
 #include "spirv/front/initialization.h"
 #include "spirv/front/parse.h"
 #include "spirv/ir_passes.h"
@@ -16,12 +17,14 @@ ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& opt
   Module module = parse_module(words, options, observed ? SourceTexts::kKeep : SourceTexts::kDrop);
   Translator t(module, options, interest, std::move(module.sources));
   if (interest.initialization) t.initialization = begin_initialization(module);
+  if (interest.debug) t.debugging = begin_debugging(module);
   read_modes(t);
   t.fallback.place = entry_place(module);
   try {
     prepare_stage(t);
     const ir::Origin entry = std::exchange(t.fallback, {});
     translate_entry(t);
+    end_debugging(t);
     drop_idle_writes(t);
     t.fallback = entry;
     connect_interface(t);

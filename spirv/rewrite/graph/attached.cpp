@@ -167,14 +167,16 @@ void Attachments::unlink(GraphData& graph, InstId user) {
   }
 }
 
-void Attachments::replace_uses(GraphData& graph, ir::ValueId from, ir::ValueId to) {
+void Attachments::replace_uses(GraphData& graph, ir::ValueId from, Src to) {
   const auto [first, last] = uses_.equal_range(from);
   std::vector<Slot> slots;
   for (auto at = first; at != last; ++at) slots.push_back(at->second);
   uses_.erase(first, last);
   for (const Slot slot : slots) {
-    graph.sources[slot].src.value = to;
-    uses_.emplace(to, slot);
+    Src& src = graph.sources[slot].src;
+    src.value = to.value;
+    for (std::uint8_t& component : src.swizzle) component = to.swizzle[component];
+    uses_.emplace(to.value, slot);
   }
 }
 

@@ -49,7 +49,10 @@ class Attachments {
   void link(GraphData& graph, InstId user);
   void unlink(GraphData& graph, InstId user);
   bool reads(ir::ValueId value) const { return uses_.count(value) != 0; }
-  void replace_uses(GraphData& graph, ir::ValueId from, ir::ValueId to);
+  void replace_uses(GraphData& graph, ir::ValueId from, ir::ValueId to) {
+    replace_uses(graph, from, {to, {0, 1, 2, 3}});
+  }
+  void replace_uses(GraphData& graph, ir::ValueId from, Src to);
 
  private:
   void forget_list(GraphData& graph, const std::vector<InstId>& list);

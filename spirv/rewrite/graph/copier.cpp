@@ -57,6 +57,11 @@ std::vector<Src> Copier::operands_of(InstId id) const {
   return result;
 }
 
+void Copier::hand_over_attached() {
+  if (graph_.attached.empty()) return;
+  for (const auto& [value, copy] : map_) graph_.attached.replace_uses(graph_, value, copy);
+}
+
 ValueId Copier::fresh(ValueId value) {
   const Value like = graph_.values[value];
   const auto id = static_cast<ValueId>(graph_.values.size());

@@ -22,6 +22,8 @@ class Copier {
   /// Copies a branch without its final jump; returns the translated operands of the jump.
   std::vector<Src> copy_branch(BlockId block, BlockId to);
   std::vector<Src> operands_of(InstId id) const;
+  /// What is attached and reads the originals, which are about to go, reads the last copies instead.
+  void hand_over_attached();
 
  private:
   ValueId fresh(ValueId value);

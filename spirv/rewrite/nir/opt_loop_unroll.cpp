@@ -28,6 +28,7 @@ class Unroller {
     const std::vector<Src> values = iterate(0, made);
     graph_.splice_before(loop_, made);
     replace_results(graph_, loop_, values);
+    if (!branches_) copier_.hand_over_attached();
     graph_.remove(loop_);
   }
 
@@ -86,6 +87,7 @@ class Unroller {
   /// An If on an exit that is not counted, with the rest of the loop in the branch that stays.
   std::vector<Src> branch(unsigned number, std::size_t next, BlockId to) {
     const Exit& exit = info_.exits[next];
+    branches_ = true;
     const auto made = graph_.create(Kind::kIf, Op::kMov, 0, false, 1);
     graph_.set_source(made, 0, copier_.operands_of(exit.branch)[0]);
     auto description = std::make_unique<ir::Node>();
@@ -113,6 +115,7 @@ class Unroller {
   InstId loop_;
   LoopInfo info_;
   Copier copier_;
+  bool branches_ = false;  ///< no copy is the one that every way comes by
 };
 
 bool try_unroll(Graph& graph, InstId loop) {

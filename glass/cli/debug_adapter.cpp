@@ -1,0 +1,293 @@
+// See debug_adapter.h. https://microsoft.github.io/debug-adapter-protocol/specification
+#include "glass/cli/debug_adapter.h"
+
+#include <filesystem>
+#include <utility>
+
+namespace vitrine::glass::cli {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+
+/// Frames of an invocation: frameId = lane * kFrames + number + 1.
+constexpr std::size_t kFrames = 1024;
+
+std::string text_of(const json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+std::size_t number_of(const json& object, const char* key, std::size_t otherwise = 0) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number_unsigned() ? found->get<std::size_t>() : otherwise;
+}
+
+json list_of(const json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_array() ? *found : json::array();
+}
+
+json failure(const std::string& text) { return {{"error", text}}; }
+
+/// Rows of setBreakpoints as the driver wants them.
+json rows_of(const json& breakpoints) {
+  json rows = json::array();
+  for (const json& row : breakpoints)
+    if (row.is_object())
+      rows.push_back({{"line", number_of(row, "line")},
+                      {"name", text_of(row, "name")},
+                      {"condition", text_of(row, "condition")},
+                      {"hits", text_of(row, "hitCondition")},
+                      {"message", text_of(row, "logMessage")}});
+  return rows;
+}
+
+/// What the editor is told before there is a process.
+json unverified(const json& rows) {
+  json list = json::array();
+  for (const json& row : rows) list.push_back({{"verified", false}, {"line", row["line"]}});
+  return {{"breakpoints", std::move(list)}};
+}
+
+const char* reason_of(const std::string& reason) {
+  if (reason == "breakpoint" || reason == "pause") return reason == "pause" ? "pause" : "breakpoint";
+  if (reason == "watch") return "data breakpoint";
+  return reason == "break" ? "exception" : "step";
+}
+
+}  // namespace
+
+void DebugAdapter::event(const char* name, json body) {
+  wire_.send({{"type", "event"}, {"event", name}, {"body", std::move(body)}});
+}
+
+bool DebugAdapter::take(const json& request) {
+  const std::string command = text_of(request, "command");
+  const auto arguments = request.find("arguments");
+  json body = answer(command, arguments != request.end() && arguments->is_object() ? *arguments : json::object());
+  json response = {{"type", "response"}, {"command", command}, {"request_seq", number_of(request, "seq")}};
+  const bool failed = body.is_object() && body.contains("error");
+  response["success"] = !failed;
+  if (failed)
+    response["message"] = body["error"];
+  else
+    response["body"] = std::move(body);
+  wire_.send(std::move(response));
+  if (command == "initialize" && !failed) event("initialized", json::object());
+  return !leaving_;
+}
+
+json DebugAdapter::answer(const std::string& command, const json& arguments) {
+  if (command == "initialize") return initialize(arguments);
+  if (command == "launch" || command == "attach") {
+    stops_on_entry_ = arguments.value("stopOnEntry", json()) == json(true);
+    launched_ = true;
+    return json::object();
+  }
+  if (command == "configurationDone") return configured_ = true, json::object();
+  if (command == "setBreakpoints") return set_breakpoints(arguments);
+  if (command == "setFunctionBreakpoints") return set_functions(arguments);
+  if (command == "setExceptionBreakpoints") return {{"breakpoints", json::array()}};
+  if (command == "threads") return threads(arguments);
+  if (command == "stackTrace") return stack(arguments);
+  if (command == "scopes") return scopes(arguments);
+  if (command == "variables") return variables(arguments);
+  if (command == "evaluate") return evaluate(arguments);
+  if (command == "source") return source(arguments);
+  if (command == "exceptionInfo") return exception(arguments);
+  if (command == "continue") return move("continue", false, arguments);
+  if (command == "next") return move("next", false, arguments);
+  if (command == "stepIn") return move("step", false, arguments);
+  if (command == "stepOut") return move("finish", false, arguments);
+  if (command == "stepBack") return move("next", true, arguments);
+  if (command == "reverseContinue") return move("continue", true, arguments);
+  if (command == "pause") return ask({{"request", "pause"}}), json::object();
+  if (command == "disconnect" || command == "terminate") return leaving_ = true, json::object();
+  return failure("'" + command + "' is not supported");
+}
+
+json DebugAdapter::initialize(const json&) {
+  return {{"supportsConfigurationDoneRequest", true},
+          {"supportsFunctionBreakpoints", true},
+          {"supportsConditionalBreakpoints", true},
+          {"supportsHitConditionalBreakpoints", true},
+          {"supportsLogPoints", true},
+          {"supportsStepBack", true},
+          {"supportsEvaluateForHovers", true},
+          {"supportsExceptionInfoRequest", true},
+          {"exceptionBreakpointFilters", json::array()}};
+}
+
+json DebugAdapter::ask(json request) {
+  if (link_ == nullptr) return failure("no shader has run yet");
+  auto answer = link_->ask(std::move(request), [this](const json& event) { told(event); });
+  return answer ? std::move(*answer) : failure("the application has ended");
+}
+
+json DebugAdapter::ask_breakpoints(const json& request) {
+  const json answer = ask(request);
+  json list = json::array();
+  for (const json& row : list_of(answer, "list"))
+    list.push_back({{"id", number_of(row, "number")},
+                    {"verified", row.value("verified", json(false))},
+                    {"line", number_of(row, "line")}});
+  return {{"breakpoints", std::move(list)}};
+}
+
+json DebugAdapter::set_breakpoints(const json& arguments) {
+  const json source = arguments.value("source", json::object());
+  std::string file = source.is_object() ? text_of(source, "path") : std::string();
+  if (file.empty() && source.is_object()) file = text_of(source, "name");
+  const json request = {
+      {"request", "breakpoints"}, {"file", file}, {"list", rows_of(list_of(arguments, "breakpoints"))}};
+  lines_[file] = request;
+  return link_ == nullptr ? unverified(request["list"]) : ask_breakpoints(request);
+}
+
+json DebugAdapter::set_functions(const json& arguments) {
+  functions_ = {{"request", "functions"}, {"list", rows_of(list_of(arguments, "breakpoints"))}};
+  return link_ == nullptr ? unverified(functions_["list"]) : ask_breakpoints(functions_);
+}
+
+void DebugAdapter::send_breakpoints() {
+  for (const auto& [file, request] : lines_) ask(request);
+  if (!functions_.is_null()) ask(functions_);
+}
+
+void DebugAdapter::told(const json& message) {
+  const std::string name = text_of(message, "event"), reason = text_of(message, "reason");
+  if (name == "output") event("output", {{"category", "console"}, {"output", text_of(message, "text") + "\n"}});
+  if (name == "running") stopped_ = false;
+  if (name != "stopped") return;
+  if (reason == "start") {
+    send_breakpoints();
+    if (stops_on_entry_) ask({{"request", "pause"}});
+    ask({{"request", "go"}, {"how", "continue"}});
+    return;
+  }
+  stopped_ = true;
+  lane_ = number_of(message, "lane");
+  last_stop_ = message;
+  references_.clear();
+  json body = {{"reason", reason_of(reason)},
+               {"threadId", lane_ + 1},
+               {"allThreadsStopped", true},
+               {"description", text_of(message, "message")},
+               {"text", text_of(message, "text")}};
+  if (reason == "breakpoint") body["hitBreakpointIds"] = json::array({message.value("number", json(0))});
+  event("stopped", std::move(body));
+}
+
+void DebugAdapter::ended(int code) {
+  link_ = nullptr;
+  event("exited", {{"exitCode", code}});
+  event("terminated", json::object());
+}
+
+json DebugAdapter::threads(const json&) {
+  json list = json::array();
+  if (stopped_)
+    for (const json& row : list_of(ask({{"request", "lanes"}}), "list"))
+      list.push_back({{"id", number_of(row, "lane") + 1}, {"name", text_of(row, "name")}});
+  if (list.empty()) list.push_back({{"id", 1}, {"name", "shaders"}});
+  return {{"threads", std::move(list)}};
+}
+
+json DebugAdapter::source_of(const std::string& file) {
+  std::error_code error;
+  json result = {{"name", fs::path(file).filename().string()}};
+  if (fs::exists(file, error)) {
+    result["path"] = fs::absolute(file, error).string();
+    return result;
+  }
+  std::size_t number = 0;
+  while (number < files_.size() && files_[number] != file) ++number;
+  if (number == files_.size()) files_.push_back(file);
+  result["sourceReference"] = number + 1;
+  return result;
+}
+
+json DebugAdapter::stack(const json& arguments) {
+  const std::size_t lane = number_of(arguments, "threadId", 1) - 1;
+  const json answer = ask({{"request", "frames"}, {"lane", lane}});
+  if (answer.contains("error")) return answer;
+  json list = json::array();
+  std::size_t number = 0;
+  for (const json& row : list_of(answer, "list"))
+    list.push_back({{"id", lane * kFrames + ++number},
+                    {"name", text_of(row, "name")},
+                    {"source", source_of(text_of(row, "file"))},
+                    {"line", number_of(row, "line")},
+                    {"column", std::max<std::size_t>(number_of(row, "column"), 1)}});
+  return {{"stackFrames", list}, {"totalFrames", list.size()}};
+}
+
+int DebugAdapter::refer(json children) {
+  references_.push_back({std::move(children)});
+  return static_cast<int>(references_.size());
+}
+
+json DebugAdapter::scopes(const json& arguments) {
+  const std::size_t id = number_of(arguments, "frameId", 1) - 1;
+  json list = json::array();
+  for (const auto& [which, name] : {std::pair{"locals", "Locals"}, std::pair{"globals", "Globals"}}) {
+    json answer = ask({{"request", "variables"}, {"lane", id / kFrames}, {"frame", id % kFrames}, {"which", which}});
+    if (answer.contains("error")) return answer;
+    list.push_back({{"name", name}, {"variablesReference", refer(list_of(answer, "list"))}, {"expensive", false}});
+  }
+  return {{"scopes", std::move(list)}};
+}
+
+json DebugAdapter::variable_of(const json& tree) {
+  json children = list_of(tree, "children");
+  return {{"name", text_of(tree, "name")},
+          {"type", text_of(tree, "type")},
+          {"value", text_of(tree, "value")},
+          {"variablesReference", children.empty() ? 0 : refer(std::move(children))}};
+}
+
+json DebugAdapter::variables(const json& arguments) {
+  const std::size_t reference = number_of(arguments, "variablesReference");
+  if (reference == 0 || reference > references_.size()) return failure("that is gone");
+  json list = json::array();
+  for (const json& child : json(references_[reference - 1].children)) list.push_back(variable_of(child));
+  return {{"variables", std::move(list)}};
+}
+
+json DebugAdapter::evaluate(const json& arguments) {
+  const std::size_t id = number_of(arguments, "frameId", lane_ * kFrames + 1) - 1;
+  const json answer = ask({{"request", "evaluate"},
+                           {"lane", id / kFrames},
+                           {"frame", id % kFrames},
+                           {"text", text_of(arguments, "expression")}});
+  if (answer.contains("error")) return answer;
+  json variable = variable_of(answer);
+  return {{"result", variable["value"]},
+          {"type", variable["type"]},
+          {"variablesReference", variable["variablesReference"]}};
+}
+
+json DebugAdapter::source(const json& arguments) {
+  std::size_t reference = number_of(arguments, "sourceReference");
+  if (reference == 0 && arguments.value("source", json()).is_object())
+    reference = number_of(arguments["source"], "sourceReference");
+  if (reference == 0 || reference > files_.size()) return failure("there is no such source");
+  const json answer = ask({{"request", "source"}, {"file", files_[reference - 1]}});
+  return answer.contains("error") ? answer : json{{"content", text_of(answer, "text")}};
+}
+
+json DebugAdapter::exception(const json&) {
+  return {{"exceptionId", text_of(last_stop_, "reason")},
+          {"description", text_of(last_stop_, "text")},
+          {"breakMode", "always"}};
+}
+
+json DebugAdapter::move(const char* how, bool backward, const json& arguments) {
+  const std::size_t lane = number_of(arguments, "threadId", lane_ + 1) - 1;
+  const json answer = ask({{"request", "go"}, {"how", how}, {"backward", backward}, {"lane", lane}});
+  if (answer.contains("error")) return answer;
+  return {{"allThreadsContinued", true}};
+}
+
+}  // namespace vitrine::glass::cli

@@ -1,0 +1,70 @@
+// Between an editor (Debug Adapter Protocol) and a process whose shaders stop (debug_link.h). Threads are the
+// invocations of the wave that has stopped: number = lane + 1.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "glass/cli/debug_link.h"
+#include "glass/cli/debug_wire.h"
+
+namespace vitrine::glass::cli {
+
+class DebugAdapter {
+ public:
+  using json = nlohmann::json;
+
+  explicit DebugAdapter(DapWire& wire) : wire_(wire) {}
+
+  /// A request of the editor. False: it wants to leave.
+  bool take(const json& request);
+  /// The editor has set its breakpoints and wants the application to run.
+  bool wants_start() const { return launched_ && configured_; }
+  /// The process; null: there is none (any more).
+  void connect(DebugLink* link) { link_ = link; }
+  /// Something that the process says.
+  void told(const json& event);
+  /// The application has ended.
+  void ended(int code);
+
+ private:
+  struct Reference {
+    json children;  ///< list of {name, type, value, children}
+  };
+
+  json answer(const std::string& command, const json& arguments);
+  json initialize(const json& arguments);
+  json set_breakpoints(const json& arguments);
+  json set_functions(const json& arguments);
+  json threads(const json& arguments);
+  json stack(const json& arguments);
+  json scopes(const json& arguments);
+  json variables(const json& arguments);
+  json evaluate(const json& arguments);
+  json source(const json& arguments);
+  json move(const char* how, bool backward, const json& arguments);
+  json exception(const json& arguments);
+
+  json ask(json request);
+  json ask_breakpoints(const json& request);
+  void send_breakpoints();
+  json source_of(const std::string& file);
+  int refer(json children);
+  json variable_of(const json& tree);
+  void event(const char* name, json body);
+
+  DapWire& wire_;
+  DebugLink* link_ = nullptr;
+  bool launched_ = false, configured_ = false, stops_on_entry_ = false, leaving_ = false;
+  bool stopped_ = false;
+  std::size_t lane_ = 0;  ///< that has stopped
+  json last_stop_ = json::object();
+  std::map<std::string, json> lines_;  ///< requests of the driver, by file
+  json functions_;                     ///< the same; null: none
+  std::vector<std::string> files_;     ///< that are in modules alone, by sourceReference - 1
+  std::vector<Reference> references_;  ///< since the stop, by variablesReference - 1
+};
+
+}  // namespace vitrine::glass::cli

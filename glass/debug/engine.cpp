@@ -1,0 +1,303 @@
+// See engine.h.
+#include "glass/debug/engine.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "spirv/exec/observe.h"
+
+namespace vitrine::glass::debug {
+namespace {
+
+using spirv::StepKind;
+
+StepKind kind_of(const Run& run, const Run::Entry& entry) {
+  return static_cast<StepKind>(run.subject->probes[entry.probe].number);
+}
+
+/// What a log point says: expressions in braces are replaced by their values.
+std::string message_of(const std::string& text, const Viewer& viewer, const Names& names) {
+  std::string message;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t open = text.find('{', at), close = text.find('}', open);
+    if (open == std::string::npos || close == std::string::npos) return message += text.substr(at);
+    message += text.substr(at, open - at);
+    const auto value = evaluate(std::string_view(text).substr(open + 1, close - open - 1), viewer, names);
+    message += value ? to_text(viewer, value.value()) : '<' + value.message() + ">";
+    at = close + 1;
+  }
+  return message;
+}
+
+std::size_t first_lane(base::LaneMask lanes) { return static_cast<std::size_t>(__builtin_ctzll(lanes)); }
+
+}  // namespace
+
+void Engine::know(std::shared_ptr<const Subject> subject) {
+  const std::unique_lock lock(mutex_);
+  subjects_.push_back(std::move(subject));
+}
+
+void Engine::start() {
+  std::unique_lock lock(mutex_);
+  going_ = false;
+  face_.stopped(*this, {}, lock);
+}
+
+Viewer Engine::view(const Run& run, std::size_t lane) const {
+  const bool same =
+      live_ && (&run == live_.get() || (run.resources == live_->resources && run.shared == live_->shared &&
+                                        run.submission == live_->submission && run.command == live_->command));
+  return {&run, lane, same};
+}
+
+int Engine::add(Breakpoint breakpoint) {
+  breakpoint.number = ++last_number_;
+  breakpoints_[last_number_] = std::move(breakpoint);
+  stops_.clear();
+  return last_number_;
+}
+
+bool Engine::remove(int number) {
+  stops_.clear();
+  return breakpoints_.erase(number) + watchpoints_.erase(number) != 0;
+}
+
+int Engine::watch(Watchpoint watchpoint) {
+  watchpoint.number = ++last_number_;
+  watchpoints_[last_number_] = std::move(watchpoint);
+  return last_number_;
+}
+
+void Engine::go(const Motion& motion) {
+  motion_ = motion;
+  going_ = true;
+  if (motion.kind == Motion::Kind::kDetach) {
+    detached_ = true;
+    breakpoints_.clear();
+    watchpoints_.clear();
+    stops_.clear();
+  }
+  if (!focus_.run) return;
+  const std::uint32_t at = focus_.run->at(focus_.lane);
+  goal_depth_ = at == kNoProbe ? 0 : focus_.run->subject->depth(at);
+}
+
+const std::map<std::uint32_t, std::vector<int>>& Engine::stops_of(const Subject& subject) {
+  const auto [at, added] = stops_.try_emplace(&subject);
+  if (!added) return at->second;
+  for (const auto& [number, breakpoint] : breakpoints_)
+    for (const std::uint32_t step : steps_of(breakpoint, subject)) at->second[step].push_back(number);
+  return at->second;
+}
+
+bool Engine::is_wanted(const std::shared_ptr<const Subject>& subject, const spirv::Wave& wave, const Run* known) {
+  if (detached_) return false;
+  const bool steps = motion_.kind != Motion::Kind::kContinue && focus_.run;
+  if (known != nullptr || pausing_ || steps) return true;
+  for (const auto& [number, watchpoint] : watchpoints_)
+    if (watchpoint.subject == subject) return true;
+  if (!stops_of(*subject).empty()) return true;
+  for (const spirv::Probe& probe : subject->probes)
+    if (probe.kind == spirv::Probe::Kind::kStep && probe.number == static_cast<std::uint32_t>(StepKind::kBreak))
+      return true;
+  std::vector<const Breakpoint*> beginnings;
+  for (const auto& [number, breakpoint] : breakpoints_)
+    if (is_about_beginning(breakpoint)) beginnings.push_back(&breakpoint);
+  if (beginnings.empty()) return false;
+  const Run probe(subject, wave);
+  bool any = false;
+  base::for_each_lane(probe.launched, [&](std::size_t lane) {
+    for (const Breakpoint* breakpoint : beginnings) any |= begins(*breakpoint, probe, lane);
+  });
+  return any;
+}
+
+std::shared_ptr<Run> Engine::enter(const std::shared_ptr<const Subject>& subject, const spirv::Wave& wave,
+                                   bool begins) {
+  std::unique_lock lock(mutex_);
+  if (begins) waiting_.erase(&wave);
+  const auto known = waiting_.find(&wave);
+  if (!is_wanted(subject, wave, known == waiting_.end() ? nullptr : known->second.get())) return nullptr;
+  std::shared_ptr<Run> run = known == waiting_.end() ? nullptr : known->second;
+  // Behind a barrier, of a wave that was not watched before it: what its invocations are is not known any more.
+  if (!run && !begins) return nullptr;
+  lock.unlock();
+  turn_.lock();
+  lock.lock();
+  if (detached_) return turn_.unlock(), nullptr;
+  if (!run) run = std::make_shared<Run>(subject, wave);
+  live_ = run;
+  history_.enter(run);
+  return run;
+}
+
+void Engine::leave(const std::shared_ptr<Run>& run, const spirv::Wave& wave) {
+  std::unique_lock lock(mutex_);
+  const bool waits = wave.status == spirv::Wave::Status::kAtBarrier;
+  if (waits) {
+    waiting_[&wave] = run;
+  } else {
+    waiting_.erase(&wave);
+    if (!detached_ && focus_.run == run && motion_.kind != Motion::Kind::kContinue)
+      halt({Stop::Reason::kEnd, 0, invocation_text(*run, focus_.lane) + " has ended"}, lock), motion_ = {};
+  }
+  live_ = nullptr;
+  turn_.unlock();
+}
+
+void Engine::came_by(Run& run, const spirv::Wave& wave, const spirv::ProbeOp& op) {
+  std::unique_lock lock(mutex_);
+  if (detached_) return;
+  const spirv::Probe::Kind kind = run.subject->probes[op.probe].kind;
+  if (kind != spirv::Probe::Kind::kStep && kind != spirv::Probe::Kind::kAssign) return;
+  const base::LaneMask lanes = spirv::exec::lanes_at(wave, op) & run.launched;
+  if (lanes == 0) return;
+  run.record(wave, op, lanes);
+  const std::shared_ptr<Run> live = live_;
+  std::optional<Stop> stop = check(live, run.entry(run.size() - 1), true);
+  history_.grown();
+  if (stop) halt(std::move(*stop), lock);
+}
+
+void Engine::look_at(const std::shared_ptr<Run>& run, std::size_t lane) { focus_ = {run, lane, 0}; }
+
+std::optional<Stop> Engine::check(const std::shared_ptr<Run>& run, const Run::Entry& entry, bool live) {
+  return run->steps(entry) ? check_step(run, entry, live) : check_watches(run, entry);
+}
+
+std::optional<Stop> Engine::check_step(const std::shared_ptr<Run>& run, const Run::Entry& entry, bool live) {
+  const StepKind kind = kind_of(*run, entry);
+  const Lanes fresh = run->fresh_lanes(entry), seen = entry.lanes & ~run->helpers;
+  if (kind == StepKind::kBreak && seen != 0) {
+    if (focus_.run != run || (seen >> focus_.lane & 1) == 0) look_at(run, first_lane(seen));
+    return Stop{Stop::Reason::kBreak, 0, "DebugBreak"};
+  }
+  if (kind == StepKind::kLine) {
+    if (auto stop = check_breakpoints(run, entry, fresh & seen, live)) return stop;
+    if (pausing_ && seen != 0) {
+      pausing_ = false;
+      look_at(run, first_lane(seen));
+      return Stop{Stop::Reason::kPause, 0, "paused"};
+    }
+  }
+  if (!reaches_goal(*run, entry, fresh)) return std::nullopt;
+  focus_.frame = 0;
+  return Stop{Stop::Reason::kStep, 0, ""};
+}
+
+bool Engine::reaches_goal(const Run& run, const Run::Entry& entry, Lanes fresh) const {
+  if (motion_.kind == Motion::Kind::kContinue || focus_.run.get() != &run) return false;
+  if ((entry.lanes >> focus_.lane & 1) == 0 || (fresh >> focus_.lane & 1) == 0) return false;
+  const std::uint32_t depth = run.subject->depth(entry.probe);
+  const StepKind kind = kind_of(run, entry);
+  switch (motion_.kind) {
+    case Motion::Kind::kFinish:
+      return depth < goal_depth_;
+    case Motion::Kind::kNext:
+      return kind == StepKind::kLine && depth <= goal_depth_;
+    default:
+      return kind == StepKind::kLine;
+  }
+}
+
+bool Engine::hits(Breakpoint& breakpoint, const Run& run, std::size_t lane, bool live) {
+  const Viewer viewer = view(run, lane);
+  const std::vector<CodeFrame> frames = frames_at(run, lane);
+  const FrameNames names(run, frames.empty() ? nullptr : frames.data());
+  if (!breakpoint.condition.empty()) {
+    const auto value = evaluate(breakpoint.condition, viewer, names);
+    if (!value) return false;
+    const std::vector<Scalar> numbers =
+        value.value().place ? numbers_of(viewer, *value.value().place) : value.value().scalars;
+    if (numbers.empty() || !to_bool(numbers[0])) return false;
+  }
+  if (live) {
+    ++breakpoint.hits;
+    if (!wants_hit(breakpoint)) return false;
+  }
+  if (breakpoint.message.empty()) return true;
+  if (live) face_.output(message_of(breakpoint.message, viewer, names));
+  return false;
+}
+
+std::optional<Stop> Engine::check_breakpoints(const std::shared_ptr<Run>& run, const Run::Entry& entry, Lanes lanes,
+                                              bool live) {
+  const auto& stops = stops_of(*run->subject);
+  const auto here = stops.find(entry.probe);
+  int number = 0;
+  std::size_t where = 0;
+  const auto consider = [&](Breakpoint& breakpoint, std::size_t lane) {
+    if (!hits(breakpoint, *run, lane, live) || number != 0) return;
+    number = breakpoint.number;
+    where = lane;
+  };
+  base::for_each_lane(lanes, [&](std::size_t lane) {
+    if (here != stops.end())
+      for (const int one : here->second) consider(breakpoints_.at(one), lane);
+    if (!run->is_first(entry, lane)) return;
+    for (auto& [one, breakpoint] : breakpoints_)
+      if (begins(breakpoint, *run, lane)) consider(breakpoint, lane);
+  });
+  if (number == 0) return std::nullopt;
+  look_at(run, where);
+  Stop stop{Stop::Reason::kBreakpoint, number, "breakpoint " + std::to_string(number)};
+  if (breakpoints_.at(number).once) remove(number);
+  return stop;
+}
+
+std::optional<Stop> Engine::check_watches(const std::shared_ptr<Run>& run, const Run::Entry& entry) {
+  for (const auto& [number, watchpoint] : watchpoints_) {
+    if (watchpoint.subject != run->subject) continue;
+    std::optional<std::size_t> found;
+    base::for_each_lane(entry.lanes, [&](std::size_t lane) {
+      if (run->id[lane] == watchpoint.id && run->assigns(entry, lane, watchpoint.cell, watchpoint.count, false))
+        found = lane;
+    });
+    if (!found) continue;
+    look_at(run, *found);
+    return Stop{Stop::Reason::kWatch, number,
+                "watch " + std::to_string(number) + ": " + watchpoint.text + " has changed"};
+  }
+  return std::nullopt;
+}
+
+/// Asks the face until it wants the shader itself to go on.
+void Engine::halt(Stop stop, std::unique_lock<std::mutex>& lock) {
+  for (;;) {
+    going_ = false;
+    face_.stopped(*this, stop, lock);
+    if (motion_.kind == Motion::Kind::kDetach) {
+      while (history_.forward()) continue;
+      return;
+    }
+    if (motion_.backward) {
+      stop = travel_back(stop.reason == Stop::Reason::kEnd);
+      continue;
+    }
+    std::optional<Stop> reached = travel();
+    if (!reached) return;
+    stop = std::move(*reached);
+  }
+}
+
+/// Forward through what has been taken back; nothing: that is all.
+std::optional<Stop> Engine::travel() {
+  while (history_.forward()) {
+    const History::Done done = history_.done();
+    if (auto stop = check(done.run, *done.entry, false)) return stop;
+  }
+  return std::nullopt;
+}
+
+/// `from_end`: the last entry is one to stop at.
+Stop Engine::travel_back(bool from_end) {
+  while (std::exchange(from_end, false) || history_.backward()) {
+    const History::Done done = history_.done();
+    if (done.entry == nullptr) break;
+    if (auto stop = check(done.run, *done.entry, false)) return std::move(*stop);
+  }
+  return {Stop::Reason::kHistory, 0, "what was before is not recorded"};
+}
+
+}  // namespace vitrine::glass::debug

@@ -1,0 +1,140 @@
+// The debugger's engine: one wave runs at a time; it is told of every line and every value, decides whether to stop,
+// and then asks its face what to do. A thread that is stopped waits in the face; so does whoever waits for the command.
+#pragma once
+
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "glass/debug/breakpoint.h"
+#include "glass/debug/frame.h"
+#include "glass/debug/history.h"
+
+namespace vitrine::glass::debug {
+
+class Engine;
+
+struct Stop {
+  enum class Reason : std::uint8_t {
+    kStart,  ///< nothing has run
+    kStep,
+    kBreakpoint,
+    kBreak,    ///< NonSemantic.DebugBreak
+    kWatch,    ///< a watched value has changed
+    kEnd,      ///< the invocation has ended
+    kHistory,  ///< what was before is not known any more
+    kPause,
+  } reason = Reason::kStart;
+  int number = 0;    ///< of the breakpoint or watch
+  std::string text;  ///< for people
+};
+
+/// Who tells the engine what to do.
+class Face {
+ public:
+  virtual ~Face() = default;
+  /// The running thread has stopped; returns when it is to go on. `lock`: holds the engine, released while waiting.
+  virtual void stopped(Engine& engine, const Stop& stop, std::unique_lock<std::mutex>& lock) = 0;
+  /// A log point says something.
+  virtual void output(const std::string& text) = 0;
+};
+
+/// A value that is watched: cells of one invocation.
+struct Watchpoint {
+  int number = 0;
+  std::string text;
+  std::shared_ptr<const Subject> subject;
+  std::array<std::uint32_t, 3> id{};
+  std::uint32_t cell = 0, count = 0;
+};
+
+/// How to go on.
+struct Motion {
+  enum class Kind : std::uint8_t { kContinue, kStep, kNext, kFinish, kDetach } kind = Kind::kContinue;
+  bool backward = false;
+};
+
+/// Whom the person looks at.
+struct Focus {
+  std::shared_ptr<Run> run;  ///< null: nothing has begun
+  std::size_t lane = 0;
+  std::size_t frame = 0;
+};
+
+class Engine {
+ public:
+  explicit Engine(Face& face) : face_(face) {}
+
+  // ---- the threads that run shaders
+  /// Before anything runs: the face may set breakpoints.
+  void start();
+  /// A shader that may run from now on.
+  void know(std::shared_ptr<const Subject> subject);
+  /// A run of a wave: whether it is watched. Then nothing else runs until leave().
+  std::shared_ptr<Run> enter(const std::shared_ptr<const Subject>& subject, const spirv::Wave& wave, bool begins);
+  void came_by(Run& run, const spirv::Wave& wave, const spirv::ProbeOp& op);
+  void leave(const std::shared_ptr<Run>& run, const spirv::Wave& wave);
+
+  // ---- the face, with the engine held
+  std::mutex& mutex() { return mutex_; }
+  int add(Breakpoint breakpoint);
+  bool remove(int number);
+  int watch(Watchpoint watchpoint);
+  const std::map<int, Breakpoint>& breakpoints() const { return breakpoints_; }
+  const std::map<int, Watchpoint>& watchpoints() const { return watchpoints_; }
+  /// Stops at the next line of anything.
+  void pause() { pausing_ = true; }
+  /// What the stopped thread does next.
+  void go(const Motion& motion);
+  bool going() const { return going_; }
+  bool detached() const { return detached_; }
+  Focus& focus() { return focus_; }
+  const History& history() const { return history_; }
+  const std::vector<std::shared_ptr<const Subject>>& subjects() const { return subjects_; }
+  /// How to look at the variables of a run.
+  Viewer view(const Run& run, std::size_t lane) const;
+  /// The wave that runs; null: none does.
+  const Run* live() const { return live_.get(); }
+
+ private:
+  using Lanes = base::LaneMask;
+
+  bool is_wanted(const std::shared_ptr<const Subject>& subject, const spirv::Wave& wave, const Run* known);
+  const std::map<std::uint32_t, std::vector<int>>& stops_of(const Subject& subject);
+  std::optional<Stop> check(const std::shared_ptr<Run>& run, const Run::Entry& entry, bool live);
+  std::optional<Stop> check_step(const std::shared_ptr<Run>& run, const Run::Entry& entry, bool live);
+  std::optional<Stop> check_breakpoints(const std::shared_ptr<Run>& run, const Run::Entry& entry, Lanes lanes,
+                                        bool live);
+  std::optional<Stop> check_watches(const std::shared_ptr<Run>& run, const Run::Entry& entry);
+  bool hits(Breakpoint& breakpoint, const Run& run, std::size_t lane, bool live);
+  bool reaches_goal(const Run& run, const Run::Entry& entry, Lanes fresh) const;
+  void halt(Stop stop, std::unique_lock<std::mutex>& lock);
+  std::optional<Stop> travel();
+  Stop travel_back(bool from_end);
+  void look_at(const std::shared_ptr<Run>& run, std::size_t lane);
+
+  Face& face_;
+  std::mutex mutex_;
+  std::mutex turn_;  ///< of the wave that runs
+  std::map<int, Breakpoint> breakpoints_;
+  std::map<int, Watchpoint> watchpoints_;
+  int last_number_ = 0;
+  std::map<const Subject*, std::map<std::uint32_t, std::vector<int>>>
+      stops_;                                                             ///< by probe, for the breakpoints as they are
+  std::unordered_map<const spirv::Wave*, std::shared_ptr<Run>> waiting_;  ///< at barriers
+  std::vector<std::shared_ptr<const Subject>> subjects_;                  ///< of all shaders so far
+  History history_;
+  std::shared_ptr<Run> live_;
+  Focus focus_;
+  Motion motion_;
+  std::uint32_t goal_depth_ = 0;
+  bool going_ = true, detached_ = false, pausing_ = false;
+};
+
+}  // namespace vitrine::glass::debug

@@ -1,0 +1,56 @@
+// What has happened in the waves that a debugger watches, in the order in which it happened, and a position in it. One
+// wave runs at a time. Bounded: what is too old is forgotten.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+
+#include "glass/debug/run.h"
+
+namespace vitrine::glass::debug {
+
+/// Bytes of all logs together.
+inline constexpr std::size_t kMostHistory = std::size_t{256} << 20;
+
+class History {
+ public:
+  /// From here on entries are those of `run`: it starts, or goes on behind a barrier.
+  void enter(std::shared_ptr<Run> run);
+  /// The running wave has one more entry.
+  void grown();
+
+  /// Nothing has been taken back.
+  bool at_end() const { return segment_ + 1 >= segments_.size() && (segments_.empty() || next_ == last().end); }
+  /// Does the next entry again; false: there is none.
+  bool forward();
+  /// Takes the last one back; false: what was before it is forgotten.
+  bool backward();
+  struct Done {
+    std::shared_ptr<Run> run;  ///< null: there is none
+    const Run::Entry* entry = nullptr;
+  };
+  /// The last entry that is done.
+  Done done() const;
+  const std::shared_ptr<Run>& run() const { return run_; }
+  /// As run(), of the wave that runs.
+  const std::shared_ptr<Run>& running() const { return last().run; }
+  /// Entries of a run that are done.
+  std::size_t position_in(const Run& run) const;
+  bool empty() const { return segments_.empty(); }
+
+ private:
+  struct Segment {
+    std::shared_ptr<Run> run;
+    std::size_t begin = 0, end = 0;  ///< entries
+  };
+  const Segment& last() const { return segments_.back(); }
+  void forget_old();
+
+  std::deque<Segment> segments_;
+  std::size_t segment_ = 0, next_ = 0;  ///< position: the next entry
+  std::shared_ptr<Run> run_;            ///< whose entry was done or taken back last
+  std::size_t closed_bytes_ = 0;        ///< of the runs of all segments but the last
+};
+
+}  // namespace vitrine::glass::debug

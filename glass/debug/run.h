@@ -1,0 +1,98 @@
+// What has happened in one wave, and what its variables hold: a log of the lines that its lanes came to and of the
+// values that variables got. Every entry holds what it replaced: it can be taken back, and done again.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "glass/place.h"
+#include "spirv/program.h"
+#include "spirv/source_variables.h"
+
+namespace vitrine::glass::debug {
+
+inline constexpr std::uint32_t kNoProbe = ~std::uint32_t{0};
+
+/// A shader that may be stopped in.
+struct Subject {
+  Subject(const ShaderIdentity& shader, const spirv::Program& program)
+      : context(shader, program),
+        probes(program.probes),
+        variables(program.sources->variables),
+        program(spirv::disassemble(program)) {}
+
+  const spirv::SourcePlace& place(std::uint32_t probe) const { return context.sources->place(probes[probe].place); }
+  /// Calls that lead to a place.
+  std::uint32_t depth(std::uint32_t probe) const;
+
+  ShaderContext context;
+  std::vector<spirv::Probe> probes;
+  std::shared_ptr<const spirv::SourceVariables> variables;
+  std::string program;  ///< disassembled
+};
+
+class Run {
+ public:
+  struct Entry {
+    std::uint32_t probe = 0;
+    base::LaneMask lanes = 0;
+    std::size_t first = 0;  ///< of its words
+  };
+
+  Run(std::shared_ptr<const Subject> of, const spirv::Wave& wave);
+
+  /// The wave comes by a probe of Kind::kStep or kAssign.
+  void record(const spirv::Wave& wave, const spirv::ProbeOp& op, base::LaneMask lanes);
+  /// Takes an entry back, or does it again.
+  void exchange(const Entry& entry);
+
+  std::size_t size() const { return entries_.size(); }
+  const Entry& entry(std::size_t i) const { return entries_[i]; }
+  bool steps(const Entry& entry) const { return subject->probes[entry.probe].kind == spirv::Probe::Kind::kStep; }
+  /// Of a step that has been done: the lanes that were on another line before.
+  base::LaneMask fresh_lanes(const Entry& entry) const;
+  /// Of an assignment that has been done: whether it changed one of these cells of a lane; `any`: or gave it the value
+  /// that it had.
+  bool assigns(const Entry& entry, std::size_t lane, std::uint32_t cell, std::uint32_t count, bool any) const;
+  /// Of a compute shader.
+  std::array<std::uint32_t, 3> workgroup_of(std::size_t lane) const {
+    return {id[lane][0] / local_size[0], id[lane][1] / local_size[1], id[lane][2] / local_size[2]};
+  }
+  /// Whether a step that has been done is the first of a lane.
+  bool is_first(const Entry& entry, std::size_t lane) const;
+  /// Bytes that it takes.
+  std::size_t bytes() const;
+  /// Forgets the log, not the values.
+  void forget();
+
+  /// Step that a lane came to last; kNoProbe: none.
+  std::uint32_t at(std::size_t lane) const { return at_[lane]; }
+  bool known(std::uint32_t cell, std::size_t lane) const { return (known_[cell] >> lane & 1) != 0; }
+  std::uint32_t word(std::uint32_t cell, std::size_t lane) const { return cells_[cell].lane[lane]; }
+
+  const std::shared_ptr<const Subject> subject;
+  base::LaneMask launched = 0, helpers = 0;
+  std::array<std::array<std::uint32_t, 3>, base::kWaveWidth> id{};  ///< of invocations
+  std::array<std::uint32_t, 3> local_size{1, 1, 1};
+  std::uint64_t submission = 0;
+  std::uint32_t command = 0;
+  std::string where;                                ///< the command, for people
+  const spirv::ResourceTable* resources = nullptr;  ///< while its command runs
+  const std::byte* shared = nullptr;                ///< while its workgroup runs
+  std::uint32_t shared_size = 0;
+
+ private:
+  std::uint32_t cell_of(const spirv::Wave& wave, const spirv::ProbeOp& op, std::size_t lane) const;
+  void exchange_cell(std::uint32_t cell, base::LaneMask lanes, std::size_t& word);
+
+  std::vector<base::WaveRegister> cells_;
+  std::vector<base::LaneMask> known_;
+  std::array<std::uint32_t, base::kWaveWidth> at_;
+  std::vector<Entry> entries_;
+  std::vector<std::uint32_t> words_;
+};
+
+}  // namespace vitrine::glass::debug

@@ -1,0 +1,157 @@
+// Sessions of the debugger by script: compute shaders.
+#include "tests/glass/debug/scripted.h"
+#include "tests/glass/observed.h"
+
+namespace vitrine::glass::debug::test {
+namespace {
+
+using Lines = std::vector<std::string>;
+using vitrine::test::DebugInfo;
+
+constexpr char kShader[] = R"(#version 450
+layout(local_size_x = 8) in;
+struct Pair { float first; vec3 rest; };
+layout(std430, set = 0, binding = 0) buffer Data { uint data[]; };
+shared uint cache[8];
+float twice(float x, int n) {
+  float r = x;
+  for (int i = 0; i < n; ++i) {
+    r += x;
+  }
+  return r;
+}
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  Pair p;
+  p.first = float(data[i]);
+  p.rest = vec3(1.0, 2.0, float(i));
+  p.rest.y = 5.0;
+  cache[gl_LocalInvocationID.x] = data[i];
+  barrier();
+  float values[4];
+  for (int k = 0; k < 4; ++k) values[k] = float(k) * p.first;
+  if (i > 3u) {
+    p.first = twice(p.first, 2);
+  }
+  data[i] = uint(p.first + values[i & 3u]) + cache[7u - i % 8u];
+}
+)";
+
+struct Session {
+  std::string text;
+  std::vector<std::uint32_t> words;
+};
+
+Session session(Lines lines, const std::string& shader = kShader, DebugInfo info = DebugInfo::kNonSemantic,
+                std::uint32_t groups = 1) {
+  std::string log;
+  const auto module =
+      vitrine::test::compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, shader, vitrine::test::VulkanVersion::k12, log, info);
+  EXPECT_FALSE(module.empty()) << log;
+  ScriptedDebugger debugger(std::move(lines));
+  Session result;
+  for (std::uint32_t i = 0; i < 64; ++i) result.words.push_back(10 + i);
+  glass::test::run_observed(debugger.tool.get(), module, result.words, groups);
+  result.text = debugger.script.text();
+  return result;
+}
+
+/// What is said in this order, among other things.
+void expect_in_order(const std::string& text, const Lines& parts) {
+  std::size_t at = 0;
+  for (const std::string& part : parts) {
+    const std::size_t found = text.find(part, at);
+    ASSERT_NE(found, std::string::npos) << "'" << part << "' is missing behind " << at << " in\n" << text;
+    at = found + part.size();
+  }
+}
+
+TEST(Debugger, StopsAtALineAndShowsVariables) {
+  const Session s = session({"break shader.glsl:19", "run", "print i", "print p.first", "print p", "print p.rest.zx",
+                             "print i * 2u + 1u", "continue"});
+  expect_in_order(s.text, {"breakpoint 1: shader.glsl:19", "breakpoint 1\ninvocation (0, 0, 0)",
+                           "main at shader.glsl:19", "i = 0", "p.first = 10.0",
+                           "p = {first = 10.0, rest = (1.0, 5.0, 0.0)}", "p.rest.zx = (0.0, 1.0)", "i * 2u + 1u = 1"});
+}
+
+TEST(Debugger, ChangesNoResult) {
+  for (const DebugInfo info : {DebugInfo::kNone, DebugInfo::kLines, DebugInfo::kNonSemantic}) {
+    const Session plain = session({}, kShader, info, 2);
+    const Session stopped =
+        session({"break main", "run", "step", "step", "step", "back", "back", "next", "continue"}, kShader, info, 2);
+    EXPECT_EQ(plain.words, stopped.words);
+  }
+}
+
+TEST(Debugger, StopsWhereAConditionHolds) {
+  const Session s =
+      session({"break 25 if i == 5u && p.first > 40.0", "run", "print i", "print p.first", "info breakpoints"});
+  expect_in_order(s.text, {"invocation (5, 0, 0)", "i = 5", "p.first = 45.0", "hits: 1"});
+}
+
+TEST(Debugger, StepsIntoOverAndOut) {
+  const Session s = session({"break 24 if i == 6u", "run", "step", "print x", "backtrace", "next", "next", "next",
+                             "print r", "finish", "step", "print p.first"});
+  expect_in_order(s.text, {"main at shader.glsl:24", "twice at shader.glsl:7", "x = 16.0", "#0 twice at shader.glsl:7",
+                           "#1 main at shader.glsl:24", "twice at shader.glsl:8", "twice at shader.glsl:9",
+                           "twice at shader.glsl:8", "r = 32.0", "main at shader.glsl:24", "main at shader.glsl:26",
+                           "p.first = 48.0"});
+}
+
+TEST(Debugger, GoesOverFunctions) {
+  const Session s = session({"break 24 if i == 6u", "run", "next"});
+  expect_in_order(s.text, {"main at shader.glsl:24", "main at shader.glsl:26"});
+}
+
+TEST(Debugger, GoesBack) {
+  const Session s = session({"break 18", "break 26", "run", "print p.rest.y", "next", "print p.rest.y", "back",
+                             "print p.rest.y", "back", "print p.rest", "reverse-continue", "continue", "continue"});
+  expect_in_order(s.text,
+                  {"main at shader.glsl:18", "p.rest.y = 2.0", "main at shader.glsl:19", "p.rest.y = 5.0",
+                   "main at shader.glsl:18", "p.rest.y = 2.0", "main at shader.glsl:17", "<no value>", "not recorded",
+                   "breakpoint 1", "main at shader.glsl:18", "breakpoint 2", "main at shader.glsl:26"});
+}
+
+TEST(Debugger, ShowsAllLanes) {
+  const Session s = session({"break 26", "run", "print p.first @lanes", "info lanes", "lane 7", "print p.first"});
+  expect_in_order(s.text, {"lane  invocation", "0     invocation (0, 0, 0)", "10.0", "7     invocation (7, 0, 0)",
+                           "51.0", "* 0", "main at shader.glsl:26", "invocation (7, 0, 0), lane 7", "p.first = 51.0"});
+}
+
+TEST(Debugger, LooksAtMemory) {
+  const Session s = session({"break 26", "run", "print data[3]", "print cache", "print values", "print data[99]"});
+  expect_in_order(s.text, {"data[3] = 13", "cache = {10, 11, 12, 13, 14, 15, 16, 17}",
+                           "values = {0.0, 10.0, 20.0, 30.0}", "index 99 is out of range: there are 64"});
+}
+
+TEST(Debugger, WatchesAndTellsWhoWrote) {
+  const Session s = session({"break invocation 5,0,0", "run", "watch p.first", "continue", "continue", "print p.first",
+                             "whowrote p.first", "whowrote p.rest.y"});
+  expect_in_order(s.text,
+                  {"breakpoint 1: invocation 5,0,0", "invocation (5, 0, 0)", "watch 2: p.first of invocation (5, 0, 0)",
+                   "watch 2: p.first has changed", "watch 2: p.first has changed", "p.first = 45.0",
+                   "p.first was written at shader.glsl:24", "p.rest.y was written at shader.glsl:18"});
+}
+
+TEST(Debugger, ShowsIdsWhereNothingIsNamed) {
+  const Session s = session({"run", "break main", "run", "step", "step", "info globals"}, R"(#version 450
+layout(local_size_x = 1) in;
+layout(std430, set = 0, binding = 0) buffer Data { uint data[]; };
+void main() { data[0] = data[1] * 3u; }
+)",
+                            DebugInfo::kNone);
+  expect_in_order(s.text, {"nothing has run yet"});
+}
+
+TEST(Debugger, BadCommandsAreAnswered) {
+  const Session s = session({"nonsense", "break",     "break pixel 1", "print x",       "back",      "step",
+                             "print",    "print )",   "print i +",     "print nobody",  "print 1/0", "lane 99",
+                             "frame 7",  "up",        "down",          "delete 9",      "watch 3",   "whowrote data[0]",
+                             "list x",   "info what", "print i[3]",    "print p.nobody"});
+  expect_in_order(s.text, {"is no command", "where?", "numbers are wanted", "nothing has run yet",
+                           "nothing has run yet", "is missing", "no variable 'nobody'", "not defined", "no lane '99'",
+                           "no frame", "no breakpoint '9'", "no variable of the invocation"});
+}
+
+}  // namespace
+}  // namespace vitrine::glass::debug::test

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""Tests the prompt of `vitrine debug` with a small application (tests/glass/app/app.cpp).
+
+usage: debug_prompt_test.py VITRINE APPLICATION
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+
+class Prompt(unittest.TestCase):
+    vitrine, application = "", ""
+
+    def debug(self, script, *words, arguments=(), typed=False):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "script"
+            file.write_text("".join(line + "\n" for line in script))
+            source = [] if typed else ["-x", str(file)]
+            return subprocess.run([self.vitrine, "debug", *source, *words, "--", self.application, *arguments], text=True,
+                                  capture_output=True, check=False, timeout=120,
+                                  input=file.read_text() if typed else "", env={**os.environ, "TMPDIR": folder})
+
+    def in_order(self, text, *parts):
+        at = 0
+        for part in parts:
+            found = text.find(part, at)
+            self.assertGreaterEqual(found, 0, f"'{part}' is missing behind {at} in\n{text}")
+            at = found + len(part)
+
+    def test_script(self):
+        result = self.debug(["break fill.comp:8 if i == 5", "run", "print i", "backtrace", "list", "disassemble", "back",
+                             "print data", "continue", "continue"])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.in_order(result.stdout, "nothing has run yet", "breakpoint 1: fill.comp:8 if i == 5", "invocation (5, 0, 0)",
+                      "submission 1, command 3 (vkCmdDispatch)", "put at tests/glass/app/fill.comp:8", "data[i] = i;",
+                      "i = 5", "#0 put at", "#1 main at tests/glass/app/fill.comp:14", ">   data[i] = i;",
+                      "fill.comp:8", "main at tests/glass/app/fill.comp:14", "data = {0, 0, 0, 0, 0, 0, 0, 0}", "breakpoint 1")
+
+    def test_what_is_typed(self):
+        result = self.debug(["break put", "run", "print i @lanes"], typed=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.in_order(result.stdout, "put at tests/glass/app/fill.comp:8", "lane  invocation", "7     invocation (7, 0, 0)")
+
+    def test_json(self):
+        result = self.debug(["break main", "run", "step", "nonsense"], "--json")
+        rows = [json.loads(line) for line in result.stdout.splitlines() if line.startswith("{")]
+        stops = [row["reason"] for row in rows if row.get("event") == "stopped"]
+        self.assertEqual(stops, ["start", "breakpoint", "step"])
+        self.assertIn("is no command", rows[-3]["text"] + rows[-2]["text"] + rows[-1].get("text", ""))
+
+    def test_several_instances_and_the_end(self):
+        result = self.debug(["break main", "run", "continue", "finish", "step"], arguments=["3"])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout.count("main at tests/glass/app/fill.comp:12"), 3)
+        self.in_order(result.stdout, "invocation (0, 0, 0) has ended")
+
+    def test_nothing_to_follow(self):
+        self.assertEqual(self.debug([]).returncode, 0)
+        result = self.debug(["run"], "-x", "/nowhere/script", typed=True)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("cannot be read", result.stderr)
+
+    def test_the_tool_alone(self):
+        result = subprocess.run([self.vitrine, "run", "--", self.application], capture_output=True, text=True, check=False,
+                                env={**os.environ, "VITRINE_TOOLS": "debug", "VITRINE_DEBUG": "/nowhere"})
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("nobody listens", result.stderr)
+
+
+if __name__ == "__main__":
+    Prompt.vitrine, Prompt.application = sys.argv[1:3]
+    unittest.main(argv=sys.argv[:1])
