@@ -37,6 +37,8 @@ class Server {
       if (waited[3].revents != 0) hear_editor();
       if (waited[0].revents != 0) take_editor();
       if (waited[1].revents != 0) take_process();
+      // Questions to the process may have brought more than their answers.
+      tell_editor();
       if (waited[2].revents == 0) continue;
       if (adapter_) adapter_->ended(code);
       return;
@@ -69,9 +71,11 @@ class Server {
   }
 
   void hear_process() {
-    if (!link_->fill()) return drop_process();
-    while (auto message = link_->next())
-      if (adapter_) adapter_->told(*message);
+    if (link_ && !link_->fill()) drop_process();
+  }
+
+  void tell_editor() {
+    while (auto message = link_ ? link_->next() : std::nullopt) adapter_->told(*message);
   }
 
   void drop_process() {

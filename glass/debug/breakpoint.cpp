@@ -135,7 +135,8 @@ std::vector<std::uint32_t> steps_of(const Breakpoint& breakpoint, const Subject&
     }
     const std::string& file = sources.files[place.file].name;
     if (!breakpoint.file.empty() && base_name(file) != base_name(breakpoint.file)) continue;
-    if (breakpoint.kind != Kind::kLine || place.line < breakpoint.line || place.line > best) continue;
+    if (breakpoint.kind != Kind::kLine || breakpoint.line == 0) continue;
+    if (place.line < breakpoint.line || place.line > best) continue;
     if (place.line < best) steps.clear();
     best = place.line;
     steps.push_back(i);

@@ -1,0 +1,249 @@
+#!/usr/bin/env python3
+"""Tests `vitrine debug --dap` as an editor does, with a small client of the Debug Adapter Protocol, and with clients that
+behave badly.
+
+usage: debug_adapter_test.py VITRINE APPLICATION PIXELS
+"""
+import json
+import os
+import re
+import socket
+import subprocess
+import sys
+import time
+import unittest
+
+FILE = "tests/glass/app/fill.comp"
+
+
+class Client:
+    def __init__(self, port):
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=20)
+        self.text, self.sequence, self.events = b"", 0, []
+
+    def send(self, message):
+        body = json.dumps(message).encode()
+        self.socket.sendall(b"Content-Length: %d\r\n\r\n" % len(body) + body)
+
+    def receive(self):
+        while b"\r\n\r\n" not in self.text:
+            self.more()
+        header, _, rest = self.text.partition(b"\r\n\r\n")
+        length = int(header.split(b": ")[1])
+        while len(rest) < length:
+            self.more()
+            rest = self.text.partition(b"\r\n\r\n")[2]
+        self.text = rest[length:]
+        return json.loads(rest[:length])
+
+    def more(self):
+        part = self.socket.recv(65536)
+        if not part:
+            raise EOFError
+        self.text += part
+
+    def request(self, command, **arguments):
+        self.sequence += 1
+        self.send({"seq": self.sequence, "type": "request", "command": command, "arguments": arguments})
+        while True:
+            message = self.receive()
+            if message["type"] == "response":
+                assert message["request_seq"] == self.sequence, message
+                return message
+            self.events.append(message)
+
+    def ask(self, command, **arguments):
+        answer = self.request(command, **arguments)
+        assert answer["success"], answer
+        return answer["body"]
+
+    def wait(self, name):
+        while True:
+            for i, event in enumerate(self.events):
+                if event["event"] == name:
+                    del self.events[: i + 1]
+                    return event["body"]
+            self.events.append(self.receive())
+
+
+class Adapter(unittest.TestCase):
+    vitrine, application, pixels = "", "", ""
+
+    def serve(self, application=None):
+        server = subprocess.Popen([self.vitrine, "debug", "--dap", "0", "--", application or self.application],
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(lambda: (server.kill(), server.wait(), server.stdout.close(), server.stderr.close()))
+        line = server.stderr.readline()
+        return server, int(re.search(r":(\d+)$", line.strip())[1])
+
+    def client(self, port):
+        client = Client(port)
+        self.addCleanup(client.socket.close)
+        return client
+
+    def begin(self, client, breakpoints, **launch):
+        capabilities = client.ask("initialize", adapterID="vitrine")
+        self.assertTrue(capabilities["supportsStepBack"])
+        client.wait("initialized")
+        client.ask("setBreakpoints", source={"path": os.path.abspath(FILE)}, breakpoints=breakpoints)
+        client.ask("launch", **launch)
+        client.ask("configurationDone")
+
+    def at(self, client, thread):
+        frame = client.ask("stackTrace", threadId=thread)["stackFrames"][0]
+        return frame["name"], frame["line"], frame["id"]
+
+    def test_session(self):
+        server, port = self.serve()
+        client = self.client(port)
+        self.begin(client, [{"line": 8, "condition": "i == 5"}])
+        stop = client.wait("stopped")
+        self.assertEqual((stop["reason"], stop["threadId"]), ("breakpoint", 6))
+        threads = client.ask("threads")["threads"]
+        self.assertEqual((len(threads), threads[5]["name"]), (16, "invocation (5, 0, 0)"))
+        frames = client.ask("stackTrace", threadId=6)["stackFrames"]
+        self.assertEqual([(frame["name"], frame["line"]) for frame in frames], [("put", 8), ("main", 14)])
+        scopes = client.ask("scopes", frameId=frames[0]["id"])["scopes"]
+        self.assertEqual([scope["name"] for scope in scopes], ["Locals", "Globals"])
+        local = client.ask("variables", variablesReference=scopes[0]["variablesReference"])["variables"]
+        self.assertEqual([(row["name"], row["value"], row["type"]) for row in local], [("i", "5", "uint")])
+        shared = client.ask("variables", variablesReference=scopes[1]["variablesReference"])["variables"]
+        block = next(row for row in shared if row["variablesReference"] and "data" in row["value"])
+        data = client.ask("variables", variablesReference=block["variablesReference"])["variables"][0]
+        words = client.ask("variables", variablesReference=data["variablesReference"])["variables"]
+        self.assertEqual([row["name"] for row in words], [f"[{i}]" for i in range(8)])
+        self.assertEqual(client.ask("evaluate", expression="i * 2u", frameId=frames[0]["id"])["result"], "10")
+        self.assertFalse(client.request("evaluate", expression="nobody", frameId=frames[0]["id"])["success"])
+        client.ask("stepBack", threadId=6)
+        self.assertEqual(client.wait("stopped")["reason"], "step")
+        self.assertEqual(self.at(client, 6)[:2], ("main", 14))
+        client.ask("stepIn", threadId=6)
+        client.wait("stopped")
+        self.assertEqual(self.at(client, 6)[:2], ("put", 8))
+        client.ask("stepOut", threadId=6)
+        client.wait("stopped")
+        self.assertEqual(self.at(client, 6)[:2], ("main", 14))
+        client.ask("reverseContinue", threadId=6)
+        client.wait("stopped")
+        self.assertEqual(self.at(client, 6)[:2], ("put", 8))
+        self.assertIn("put at", client.ask("exceptionInfo", threadId=6)["description"])
+        client.ask("continue", threadId=6)
+        self.assertEqual(client.wait("exited")["exitCode"], 0)
+        client.wait("terminated")
+        self.assertEqual(server.wait(timeout=60), 0)
+
+    def test_log_points_and_hit_counts(self):
+        _, port = self.serve()
+        client = self.client(port)
+        self.begin(client, [{"line": 12, "logMessage": "here is {gl_GlobalInvocationID.x}"}, {"line": 14, "hitCondition": "4"}])
+        output = [client.wait("output")["output"] for _ in range(16)]
+        self.assertEqual(len(output), 16)
+        stop = client.wait("stopped")
+        self.assertEqual(stop["threadId"], 4)
+        client.ask("disconnect")
+
+    def test_functions_and_entry(self):
+        _, port = self.serve()
+        client = self.client(port)
+        client.ask("initialize")
+        client.ask("setFunctionBreakpoints", breakpoints=[{"name": "put"}])
+        client.ask("launch", stopOnEntry=True)
+        client.ask("configurationDone")
+        self.assertEqual(client.wait("stopped")["reason"], "pause")
+        self.assertEqual(self.at(client, 1)[:2], ("main", 12))
+        client.ask("next", threadId=1)
+        client.wait("stopped")
+        client.ask("continue", threadId=1)
+        client.wait("stopped")
+        self.assertEqual(self.at(client, 1)[:2], ("put", 8))
+        client.ask("setFunctionBreakpoints", breakpoints=[])
+        verified = client.ask("setBreakpoints", source={"path": FILE}, breakpoints=[{"line": 9}, {"line": 100}])["breakpoints"]
+        self.assertEqual([row["verified"] for row in verified], [True, False])
+        client.ask("continue", threadId=1)
+
+    def test_fragments(self):
+        server, port = self.serve(self.pixels)
+        client = self.client(port)
+        client.ask("initialize")
+        client.ask("setBreakpoints", source={"path": "/elsewhere/pixels.frag"}, breakpoints=[{"line": 14, "condition": "color.x < 0.0 || true"}])
+        client.ask("launch")
+        client.ask("configurationDone")
+        stop = client.wait("stopped")
+        thread = stop["threadId"]
+        self.assertIn("pixel (", stop["text"])
+        self.assertEqual(self.at(client, thread)[1], 14)
+        client.ask("setBreakpoints", source={"path": "/elsewhere/pixels.frag"}, breakpoints=[])
+        client.ask("next", threadId=thread)
+        client.wait("stopped")
+        frame = self.at(client, thread)[2]
+        result = client.ask("evaluate", expression="result", frameId=frame)["result"]
+        self.assertRegex(result, r"^\(.*, .*, .*, .*\)$")
+        client.ask("continue", threadId=thread)
+        client.wait("exited")
+        self.assertEqual(server.wait(timeout=60), 0)
+
+    def test_disconnect_in_the_middle(self):
+        server, port = self.serve()
+        client = self.client(port)
+        self.begin(client, [{"line": 8}])
+        client.wait("stopped")
+        client.socket.close()
+        self.assertEqual(server.wait(timeout=60), 0)
+
+    def test_rubbish(self):
+        server, port = self.serve()
+        for text in (b"\0\xff" * 5000, b"GET / HTTP/1.0\r\n\r\n", b"Content-Length: 5\r\n\r\n[1,2]", b"Content-Length: 999999999999999999999\r\n\r\n",
+                     b"Content-Length: -1\r\n\r\n", b"Content-Length: 3\r\n\r\n{{{", b""):
+            bad = socket.create_connection(("127.0.0.1", port), timeout=60)
+            bad.sendall(text)
+            if text:
+                self.assertEqual(self.rest_of(bad), b"", text[:20])
+            bad.close()
+            time.sleep(0.05)
+        client = self.client(port)
+        for command, arguments in (("nonsense", {}), ("variables", {"variablesReference": 7}), ("stackTrace", {"threadId": "x"}),
+                                   ("scopes", {}), ("evaluate", {"expression": 3}), ("continue", {}), ("source", {})):
+            self.assertFalse(client.request(command, **arguments)["success"], command)
+        client.ask("threads")
+        client.ask("setBreakpoints", breakpoints=[1, "x", {"line": -5}, {"line": 1e99}], source=7)
+        client.send({"seq": "x", "command": ["y"], "arguments": 3})
+        client.receive()
+        self.begin(client, [{"line": 8, "condition": ")("}, {"line": 12, "condition": "i.x.y.z"}, {"line": 14}])
+        client.wait("stopped")
+        for arguments in ({"threadId": 0}, {"threadId": 99999}, {"threadId": -1}):
+            client.request("stackTrace", **arguments)
+            client.request("scopes", frameId=arguments["threadId"])
+        client.ask("continue", threadId=99999)
+        client.wait("exited")
+        self.assertEqual(server.wait(timeout=60), 0)
+
+    def rest_of(self, connection):
+        try:
+            return connection.recv(1000)
+        except ConnectionResetError:
+            return b""
+
+    def test_two_clients(self):
+        server, port = self.serve()
+        client = self.client(port)
+        self.begin(client, [{"line": 8}])
+        client.wait("stopped")
+        second = socket.create_connection(("127.0.0.1", port), timeout=60)
+        self.assertEqual(self.rest_of(second), b"")
+        second.close()
+        self.assertEqual(self.at(client, 1)[:2], ("put", 8))
+        client.ask("disconnect")
+        self.assertEqual(server.wait(timeout=60), 0)
+
+    def test_port_in_use(self):
+        _, port = self.serve()
+        for word in (str(port), "x", "99999"):
+            result = subprocess.run([self.vitrine, "debug", "--dap", word, "--", self.application], capture_output=True, text=True,
+                                    check=False, timeout=60)
+            self.assertEqual(result.returncode, 2)
+            self.assertRegex(result.stderr, "not free|no port")
+
+
+if __name__ == "__main__":
+    Adapter.vitrine, Adapter.application, Adapter.pixels = sys.argv[1:4]
+    unittest.main(argv=sys.argv[:1])
