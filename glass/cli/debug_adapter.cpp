@@ -201,6 +201,12 @@ json DebugAdapter::source_of(const std::string& file) {
     result["path"] = fs::absolute(file, error).string();
     return result;
   }
+  // The person who has set breakpoints in it has it.
+  for (const auto& [path, request] : lines_)
+    if (fs::path(path).filename() == fs::path(file).filename() && fs::exists(path, error)) {
+      result["path"] = path;
+      return result;
+    }
   std::size_t number = 0;
   while (number < files_.size() && files_[number] != file) ++number;
   if (number == files_.size()) files_.push_back(file);

@@ -312,10 +312,10 @@ void add_global(Translator& t, const Inst& variable, const Pointer& pointer) {
 
 }  // namespace
 
-std::shared_ptr<Debugging> begin_debugging(const Module& module) {
+std::shared_ptr<Debugging> begin_debugging(const Module& module, const SourceInfo& sources) {
   auto debugging = std::make_shared<Debugging>(module);
   read_declarations(module, *debugging);
-  const std::vector<SourceFile>& files = module.sources.files;
+  const std::vector<SourceFile>& files = sources.files;
   debugging->ids = !files.empty() && files.back().name.ends_with(".spvasm");
   return debugging;
 }

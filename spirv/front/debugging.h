@@ -9,8 +9,8 @@
 
 namespace vitrine::spirv::front {
 
-/// Names that a module gives its variables.
-std::shared_ptr<Debugging> begin_debugging(const Module& module);
+/// Names that a module gives its variables. `sources`: the module's.
+std::shared_ptr<Debugging> begin_debugging(const Module& module, const SourceInfo& sources);
 /// The whole shader is translated: the tables of its variables go to t.sources.
 void end_debugging(Translator& t);
 

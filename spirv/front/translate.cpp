@@ -17,7 +17,7 @@ ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& opt
   Module module = parse_module(words, options, observed ? SourceTexts::kKeep : SourceTexts::kDrop);
   Translator t(module, options, interest, std::move(module.sources));
   if (interest.initialization) t.initialization = begin_initialization(module);
-  if (interest.debug) t.debugging = begin_debugging(module);
+  if (interest.debug) t.debugging = begin_debugging(module, t.sources);
   read_modes(t);
   t.fallback.place = entry_place(module);
   try {

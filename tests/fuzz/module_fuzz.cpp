@@ -89,7 +89,7 @@ Outcome run_module(VkShaderStageFlagBits stage, std::span<const std::uint32_t> w
   static_cast<void>(budget_is_set + threads_are_set);
   const spirv::CompileOptions options = options_of(stage);
   if (spirv::check_module(words).empty()) {
-    constexpr spirv::exec::Interest kAll{true, true, true, true, true, true, true, true};
+    constexpr spirv::exec::Interest kAll{true, true, true, true, true, true, true, true, true, true, true, true};
     for (const spirv::exec::Interest& interest : {spirv::exec::Interest{}, kAll}) {
       const base::Result<spirv::ir::Function> function = spirv::translate(words, options, interest);
       if (function) expect_none(spirv::ir::verify(function.value()));

@@ -1,4 +1,6 @@
 // Sessions of the debugger by script: compute shaders.
+#include <spirv-tools/libspirv.hpp>
+
 #include "tests/glass/debug/scripted.h"
 #include "tests/glass/observed.h"
 
@@ -134,13 +136,80 @@ TEST(Debugger, WatchesAndTellsWhoWrote) {
 }
 
 TEST(Debugger, ShowsIdsWhereNothingIsNamed) {
-  const Session s = session({"run", "break main", "run", "step", "step", "info globals"}, R"(#version 450
+  const std::string module = R"(OpCapability Shader
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %1 "main"
+OpExecutionMode %1 LocalSize 1 1 1
+OpDecorate %8 BufferBlock
+OpMemberDecorate %8 0 Offset 0
+OpDecorate %9 DescriptorSet 0
+OpDecorate %9 Binding 0
+%2 = OpTypeVoid
+%3 = OpTypeFunction %2
+%4 = OpTypeInt 32 0
+%5 = OpConstant %4 0
+%6 = OpConstant %4 3
+%8 = OpTypeStruct %4
+%10 = OpTypePointer Uniform %8
+%11 = OpTypePointer Uniform %4
+%9 = OpVariable %10 Uniform
+%1 = OpFunction %2 None %3
+%12 = OpLabel
+%13 = OpAccessChain %11 %9 %5
+%14 = OpLoad %4 %13
+%15 = OpIMul %4 %14 %6
+OpStore %13 %15
+OpReturn
+OpFunctionEnd
+)";
+  ScriptedDebugger debugger(
+      {"break main", "run", "step", "step", "print %14", "step", "print %15 + 1u", "back", "print %15"});
+  std::vector<std::uint32_t> words{7, 0, 0, 0};
+  std::vector<std::uint32_t> code;
+  ASSERT_TRUE(spvtools::SpirvTools(SPV_ENV_UNIVERSAL_1_3)
+                  .Assemble(module, &code, SPV_TEXT_TO_BINARY_OPTION_PRESERVE_NUMERIC_IDS));
+  glass::test::run_observed(debugger.tool.get(), code, words, 1);
+  EXPECT_EQ(words[0], 21u);
+  expect_in_order(debugger.script.text(), {"main.spvasm:", "OpAccessChain", "OpLoad", "OpIMul", "%14 = 7", "OpStore",
+                                           "%15 + 1u = 22", "OpIMul", "<no value>"});
+}
+
+TEST(Debugger, KnowsWhatLoopsLeaveBehind) {
+  const Session s = session({"break 12", "run", "print sum", "print last", "print early"}, R"(#version 450
 layout(local_size_x = 1) in;
 layout(std430, set = 0, binding = 0) buffer Data { uint data[]; };
-void main() { data[0] = data[1] * 3u; }
-)",
-                            DebugInfo::kNone);
-  expect_in_order(s.text, {"nothing has run yet"});
+void main() {
+  uint sum = 0u, last = 9u, early = 0u;
+  for (uint i = 0u; i < 4u; ++i) {
+    last = i * 2u;
+    if (i == 2u) early = sum + 100u;
+    sum += data[i];
+  }
+  uint kept = sum;
+  data[0] = kept;
+}
+)");
+  expect_in_order(s.text, {"main at shader.glsl:12", "sum = 46", "last = 6", "early = 121"});
+}
+
+TEST(Debugger, ForgetsWhatIsTooOld) {
+  const Session s =
+      session({"break 12", "run", "print sum", "reverse-continue", "print sum", "step", "step"}, R"(#version 450
+layout(local_size_x = 64) in;
+layout(std430, set = 0, binding = 0) buffer Data { uint data[]; };
+void main() {
+  uint sum = 0u;
+  uint i = 0u;
+  while (i < 200000u + data[0]) {
+    sum += i;
+    ++i;
+  }
+  uint kept = sum;
+  data[gl_LocalInvocationID.x] = kept;
+}
+)");
+  expect_in_order(s.text, {"main at shader.glsl:12", "sum = ", "what was before is not recorded",
+                           "sum = ", "main at shader.glsl:"});
 }
 
 TEST(Debugger, BadCommandsAreAnswered) {
