@@ -201,10 +201,7 @@ bool Engine::reaches_goal(const Run& run, const Run::Entry& entry, Lanes fresh) 
   }
 }
 
-bool Engine::hits(Breakpoint& breakpoint, const Run& run, std::size_t lane, bool live) {
-  const Viewer viewer = view(run, lane);
-  const std::vector<CodeFrame> frames = frames_at(run, lane);
-  const FrameNames names(run, frames.empty() ? nullptr : frames.data());
+bool Engine::hits(Breakpoint& breakpoint, const Viewer& viewer, const Names& names, bool live) {
   if (!breakpoint.condition.empty()) {
     const auto value = evaluate(breakpoint.condition, viewer, names);
     if (!value) return false;
@@ -225,17 +222,23 @@ std::optional<Stop> Engine::check_breakpoints(const std::shared_ptr<Run>& run, c
                                               bool live) {
   const auto& stops = stops_of(*run->subject);
   const auto here = stops.find(entry.probe);
+  const bool any_begins =
+      std::ranges::any_of(breakpoints_, [](const auto& row) { return is_about_beginning(row.second); });
+  if (lanes == 0 || (here == stops.end() && !any_begins)) return std::nullopt;
+  // All lanes have come to the same place by the same calls.
+  const std::vector<CodeFrame> frames = frames_at(*run, first_lane(lanes));
+  const FrameNames names(*run, frames.empty() ? nullptr : frames.data());
   int number = 0;
   std::size_t where = 0;
   const auto consider = [&](Breakpoint& breakpoint, std::size_t lane) {
-    if (!hits(breakpoint, *run, lane, live) || number != 0) return;
+    if (!hits(breakpoint, view(*run, lane), names, live) || number != 0) return;
     number = breakpoint.number;
     where = lane;
   };
   base::for_each_lane(lanes, [&](std::size_t lane) {
     if (here != stops.end())
       for (const int one : here->second) consider(breakpoints_.at(one), lane);
-    if (!run->is_first(entry, lane)) return;
+    if (!any_begins || !run->is_first(entry, lane)) return;
     for (auto& [one, breakpoint] : breakpoints_)
       if (begins(breakpoint, *run, lane)) consider(breakpoint, lane);
   });

@@ -112,7 +112,7 @@ class Engine {
   std::optional<Stop> check_breakpoints(const std::shared_ptr<Run>& run, const Run::Entry& entry, Lanes lanes,
                                         bool live);
   std::optional<Stop> check_watches(const std::shared_ptr<Run>& run, const Run::Entry& entry);
-  bool hits(Breakpoint& breakpoint, const Run& run, std::size_t lane, bool live);
+  bool hits(Breakpoint& breakpoint, const Viewer& viewer, const Names& names, bool live);
   bool reaches_goal(const Run& run, const Run::Entry& entry, Lanes fresh) const;
   void halt(Stop stop, std::unique_lock<std::mutex>& lock);
   std::optional<Stop> travel();
