@@ -61,6 +61,13 @@ TEST(Printf, SaysInUnrolledLoops) {
             (Texts{"0 of 0", "1 of 1", "2 of 2"}));
 }
 
+TEST(Printf, SaysWhatUnrolledLoopsLeaveBehind) {
+  EXPECT_EQ(
+      said("uint r = v[i]; if (i > 2u) { for (uint k = 0u; k < 2u; ++k) r += v[i]; debugPrintfEXT(\"r %u\", r); }\n"
+           "v[i] = r;"),
+      Texts{"r 9"});
+}
+
 TEST(Printf, SaysInLoopsThatStay) {
   EXPECT_EQ(said("for (uint k = 0u; k < v[i]; ++k) debugPrintfEXT(\"%u/%u\", k, i);", 1, 3),
             (Texts{"0/1", "0/2", "1/2"}));
