@@ -88,8 +88,10 @@ void Hazards::apply_alternatives(const Past& access, const Touch& touch) {
 
 void Hazards::check(const Range& bytes, const State& state, const Past& access, Tag since) {
   const bool write = writes(access.use.access);
-  // A read that is ordered has seen the write: to be behind the read is enough.
+  // A read that is ordered has seen the write: to be behind the read is enough. Atomic operations on the same bytes are
+  // no race (Vulkan 1.3.239, Memory Model: Data Race), whatever commands they are of.
   const auto in_order = [&](const Past& past) {
+    if (past.use.atomic && access.use.atomic) return true;
     return is_done(past) || past.tag == access.tag || past.tag >= since || same_pass(past, access);
   };
   if (!in_order(state.write) && !(write && !state.reads.empty())) {

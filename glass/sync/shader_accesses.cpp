@@ -57,7 +57,7 @@ class Run {
     const Site& site = told.program->all[told.site];
     const std::shared_ptr<const Who> who = who_of(told);
     for (const auto& access : {site.read, site.write})
-      if (access && !gathered.bytes.empty()) add(*access, gathered.bytes, who);
+      if (access && !gathered.bytes.empty()) add({*access, site.atomic}, gathered.bytes, who);
     std::vector<std::vector<Range>> levels;
     for (const ByteSet& level : gathered.levels)
       if (!level.empty()) levels.push_back(level.ranges());
@@ -66,10 +66,10 @@ class Run {
 
   /// Sites that use memory in one way together.
   void tell() {
-    for (auto& [access, uses] : uses_) {
+    for (auto& [way, uses] : uses_) {
       const std::shared_ptr<const Who> who = uses.several->parts[0].second;
       const bool alone = uses.several->parts.size() == 1;
-      Touch touch{{stage_, access}, 0, uses.bytes.ranges(), who, {}};
+      Touch touch{{stage_, way.first, way.second}, 0, uses.bytes.ranges(), who, {}};
       if (!alone) touch.several = std::move(uses.several);
       hazards_.touch(tag_, std::move(touch));
     }
@@ -80,8 +80,9 @@ class Run {
     ByteSet bytes;
     std::shared_ptr<Several> several = std::make_shared<Several>();
   };
-  void add(Access access, const ByteSet& bytes, const std::shared_ptr<const Who>& who) {
-    Uses& uses = uses_[access];
+  using Way = std::pair<Access, bool>;  ///< and whether by atomic operations
+  void add(Way way, const ByteSet& bytes, const std::shared_ptr<const Who>& who) {
+    Uses& uses = uses_[way];
     uses.bytes.add(bytes);
     uses.several->parts.emplace_back().first.add(bytes);
     uses.several->parts.back().second = who;
@@ -90,7 +91,7 @@ class Run {
   Hazards& hazards_;
   const Tag tag_;
   const Stage stage_;
-  std::map<Access, Uses> uses_;
+  std::map<Way, Uses> uses_;
 };
 
 }  // namespace

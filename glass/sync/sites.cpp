@@ -2,6 +2,7 @@
 #include "glass/sync/sites.h"
 
 #include "glass/sanitize/accesses.h"
+#include "spirv/memory_order.h"
 
 namespace vitrine::glass::sync {
 namespace {
@@ -71,6 +72,12 @@ bool image_site(const spirv::Program& program, const spirv::Instruction& i, Site
   }
 }
 
+bool is_atomic(const spirv::Program& program, const spirv::Instruction& i, const spirv::InstructionNote& note) {
+  if (!covers_device(spirv::MemoryOrder::of(note.origin.order).memory)) return false;
+  if (note.access != spirv::Access::kImage) return note.access == spirv::Access::kAtomic;
+  return program.image_ops[i.extra[0]].info.access == ImageAccess::kAtomic;
+}
+
 /// As race has it: the instruction of SPIR-V, or its line and what it touches.
 std::string place_of(std::uint64_t hash, const Site& site, std::size_t index) {
   std::string text = std::to_string(hash) + ":";
@@ -91,6 +98,7 @@ Sites::Sites(const ShaderIdentity& shader, const spirv::Program& program) : cont
     if (!(note.access == spirv::Access::kImage ? image_site(program, program.code[index], site)
                                                : memory_site(program, program.code[index], note, site)))
       continue;
+    site.atomic = is_atomic(program, program.code[index], note);
     site.origin = note.origin;
     site.place = place_of(hash, site, index);
     by_instruction[index] = static_cast<std::uint32_t>(all.size());

@@ -13,8 +13,9 @@ namespace vitrine::glass::sync {
 /// One instruction.
 struct Site {
   std::optional<Access> read, write;
-  std::string what;   ///< "store of 4 bytes"
-  std::string place;  ///< Who::place
+  bool atomic = false;  ///< Use::atomic
+  std::string what;     ///< "store of 4 bytes"
+  std::string place;    ///< Who::place
   spirv::ir::Origin origin;
   std::uint32_t set = 0, slot = 0;
 };

@@ -72,6 +72,7 @@ inline constexpr Stages kAllCommands = ((Stages{1} << kStages) - 1) & ~bit(Stage
 struct Use {
   Stage stage = Stage::kCopy;
   Access access = Access::kTransferRead;
+  bool atomic = false;  ///< an atomic operation whose scope holds the device
   bool operator==(const Use&) const = default;
 };
 bool writes(Access access);
