@@ -202,9 +202,10 @@ void Hazards::signal(const void* semaphore, std::uint64_t value, const Scope& fi
   if (signals.size() > kMostSignals) signals.erase(signals.begin());
 }
 
-void Hazards::wait(const void* semaphore, std::uint64_t value, const Scope& second) {
+void Hazards::wait(const void* semaphore, std::uint64_t value, const Scope& second, bool from_outside) {
   const std::lock_guard lock(mutex_);
   settle_locked();
+  if (from_outside) order_.after(second, everything_until(now()), true);
   const Signal* const signal = find_signal(semaphore, value);
   if (signal == nullptr) return;
   order_.after(second, signal->clock, true);

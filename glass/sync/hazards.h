@@ -49,7 +49,9 @@ class Hazards {
 
   // Semaphores, of the queue that runs at that moment. `value`: of a timeline; else 0.
   void signal(const void* semaphore, std::uint64_t value, const Scope& first);
-  void wait(const void* semaphore, std::uint64_t value, const Scope& second);
+  /// `from_outside`: another device may have signalled it, behind whatever of this one it has waited for: all is taken
+  /// to be done then.
+  void wait(const void* semaphore, std::uint64_t value, const Scope& second, bool from_outside = false);
   void signal_by_host(const void* semaphore, std::uint64_t value);
   /// Images go to the presentation engine behind what these semaphores wait for, and come back.
   using SwapchainImage = std::pair<const void*, std::uint32_t>;

@@ -1,6 +1,5 @@
-// External memory, fences and semaphores (Vulkan 1.3.239, Capabilities; Memory Allocation: File Descriptor External
-// Memory, Host External Memory). Memory can be a file or the application's pages; fences and semaphores cannot leave
-// the device.
+// External memory (Vulkan 1.3.239, Capabilities; Memory Allocation: File Descriptor External Memory, Host External
+// Memory): a file or the application's pages.
 #include <unistd.h>
 
 #include "icd/entry_points.h"
@@ -29,22 +28,6 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceExternalBufferProperties(VkPhysicalD
                                                                      const VkPhysicalDeviceExternalBufferInfo* info,
                                                                      VkExternalBufferProperties* out) {
   out->externalMemoryProperties = external_memory_properties(info->handleType);
-}
-
-VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceExternalFenceProperties(VkPhysicalDevice,
-                                                                    const VkPhysicalDeviceExternalFenceInfo*,
-                                                                    VkExternalFenceProperties* out) {
-  out->exportFromImportedHandleTypes = 0;
-  out->compatibleHandleTypes = 0;
-  out->externalFenceFeatures = 0;
-}
-
-VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceExternalSemaphoreProperties(VkPhysicalDevice,
-                                                                        const VkPhysicalDeviceExternalSemaphoreInfo*,
-                                                                        VkExternalSemaphoreProperties* out) {
-  out->exportFromImportedHandleTypes = 0;
-  out->compatibleHandleTypes = 0;
-  out->externalSemaphoreFeatures = 0;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetMemoryFdKHR(VkDevice, const VkMemoryGetFdInfoKHR* info, int* descriptor) {

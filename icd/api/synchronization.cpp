@@ -14,20 +14,54 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Waits on the device's condition variable until `done` or the timeout. VK_TIMEOUT, VK_SUCCESS or device lost.
-template <class Done>
-VkResult wait_until(Device& device, std::uint64_t timeout_ns, Done done) {
-  // About a century: beyond it the deadline would overflow the clock.
-  constexpr std::uint64_t kForever = std::uint64_t{3} * 1000 * 1000 * 1000 * 1000 * 1000 * 1000;
-  std::unique_lock lock(device.sync_mutex);
-  const auto ready = [&] { return device.lost || done(); };
-  if (timeout_ns >= kForever) {
+/// About a century: beyond it the deadline would overflow the clock.
+constexpr std::uint64_t kForever = std::uint64_t{3} * 1000 * 1000 * 1000 * 1000 * 1000 * 1000;
+
+/// Waits until `ready` or the timeout; false: timeout. `outside`: a payload that others can signal, if one is among
+/// what is waited for. They do not wake the condition variable: then the wait is for them, and looks at the rest every
+/// millisecond.
+template <class Ready>
+bool wait_for_change(Device& device, std::unique_lock<std::mutex>& lock, std::uint64_t timeout_ns,
+                     const std::shared_ptr<ExternalPayload>& outside, Ready ready) {
+  const bool forever = timeout_ns >= kForever;
+  const auto deadline = forever ? Clock::time_point::max() : Clock::now() + std::chrono::nanoseconds(timeout_ns);
+  if (!outside) {
+    if (!forever) return device.sync_changed.wait_until(lock, deadline, ready);
     device.sync_changed.wait(lock, ready);
-  } else if (!device.sync_changed.wait_until(lock, Clock::now() + std::chrono::nanoseconds(timeout_ns), ready)) {
-    return VK_TIMEOUT;
+    return true;
   }
-  if (done()) return VK_SUCCESS;
-  return VK_ERROR_DEVICE_LOST;
+  const std::shared_ptr<ExternalPayload> payload = outside;
+  for (;;) {
+    const std::uint32_t seen = payload->changes();
+    if (ready()) return true;
+    const std::chrono::nanoseconds left = deadline - Clock::now();
+    if (left.count() <= 0) return false;
+    lock.unlock();
+    payload->wait(seen, std::min<std::chrono::nanoseconds>(left, std::chrono::milliseconds(1)));
+    lock.lock();
+  }
+}
+
+/// The same until `done`: VK_TIMEOUT, VK_SUCCESS or device lost.
+template <class Done>
+VkResult wait_until(Device& device, std::unique_lock<std::mutex>& lock, std::uint64_t timeout_ns,
+                    const std::shared_ptr<ExternalPayload>& outside, Done done) {
+  if (!wait_for_change(device, lock, timeout_ns, outside, [&] { return device.lost || done(); })) return VK_TIMEOUT;
+  return done() ? VK_SUCCESS : VK_ERROR_DEVICE_LOST;
+}
+
+/// What others can signal of a fence or semaphore, or null.
+template <class T>
+const std::shared_ptr<ExternalPayload>& outside_of(const T& object) {
+  return object.temporary ? object.temporary : object.shared;
+}
+
+/// The first such payload of several objects.
+template <class T>
+std::shared_ptr<ExternalPayload> outside_of(std::span<const typename T::Handle> handles) {
+  for (const auto handle : handles)
+    if (const auto& payload = outside_of(from_handle<T>(handle))) return payload;
+  return nullptr;
 }
 
 /// Does nothing once the device is lost: who was told of the loss may have destroyed the object.
@@ -47,7 +81,7 @@ void tell_waited(Device& device, std::span<const VkFence> fences) {
   if (!hazards) return;
   const std::lock_guard lock(device.sync_mutex);
   for (const VkFence fence : fences)
-    if (from_handle<Fence>(fence).signaled) hazards->host_waited(&from_handle<Fence>(fence));
+    if (is_signaled(from_handle<Fence>(fence))) hazards->host_waited(&from_handle<Fence>(fence));
 }
 
 /// The same of a value of a timeline semaphore.
@@ -59,28 +93,65 @@ void tell_waited(Device& device, VkSemaphore semaphore, std::uint64_t value) {
 }  // namespace
 
 void signal_fence(Device& device, Fence& fence) {
-  change_state(device, [&] { fence.signaled = true; });
+  change_state(device, [&] {
+    if (const auto& payload = outside_of(fence)) return payload->set(true);
+    fence.signaled = true;
+  });
 }
 
-void signal_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value) {
-  change_state(device,
-               [&] { semaphore.value = semaphore.timeline ? std::max(semaphore.value, value) : semaphore.value + 1; });
+bool is_signaled(const Fence& fence) {
+  const auto& payload = outside_of(fence);
+  return payload ? payload->value() != 0 : fence.signaled;
+}
+
+void reset_fence(Fence& fence) {
+  fence.temporary.reset();
+  fence.signaled = false;
+  if (fence.shared) fence.shared->set(false);
+}
+
+void signal_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value,
+                      const std::shared_ptr<ExternalPayload>& temporary) {
+  change_state(device, [&] {
+    if (const auto& payload = temporary ? temporary : semaphore.shared) return payload->signal(value);
+    semaphore.value = semaphore.timeline ? std::max(semaphore.value, value) : semaphore.value + 1;
+  });
 }
 
 void set_event(Device& device, Event& event, bool set) {
   change_state(device, [&] { event.set = set; });
 }
 
-bool is_reached(const Semaphore& semaphore, std::uint64_t value) {
-  return semaphore.value >= (semaphore.timeline ? value : 1);
+std::uint64_t counter(const Semaphore& semaphore) {
+  const auto& payload = outside_of(semaphore);
+  return payload ? payload->value() : semaphore.value;
 }
 
-bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value) {
+bool is_reached(const Semaphore& semaphore, std::uint64_t value) {
+  return counter(semaphore) >= (semaphore.timeline ? value : 1);
+}
+
+bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value,
+                    const std::shared_ptr<ExternalPayload>& temporary) {
+  const auto& payload = temporary ? temporary : semaphore.shared;
+  const auto take = [&] {
+    if (semaphore.timeline) return (payload ? payload->value() : semaphore.value) >= value;
+    if (payload) return payload->take();
+    if (semaphore.value == 0) return false;
+    --semaphore.value;
+    return true;
+  };
   std::unique_lock lock(device.sync_mutex);
-  device.sync_changed.wait(lock, [&] { return device.lost || is_reached(semaphore, value); });
-  if (device.lost) return false;  // the semaphore may be gone, see change_state
-  if (!semaphore.timeline) --semaphore.value;
-  return true;
+  // Of a lost device the semaphore may be gone, see change_state.
+  bool taken = false;
+  wait_for_change(device, lock, kForever, payload, [&] { return device.lost || (taken = take()); });
+  return taken;
+}
+
+bool wait_fence(Device& device, const Fence& fence) {
+  std::unique_lock lock(device.sync_mutex);
+  const auto done = [&] { return is_signaled(fence); };
+  return wait_until(device, lock, kForever, outside_of(fence), done) == VK_SUCCESS;
 }
 
 bool wait_events(Device& device, const VkEvent* events, std::uint32_t count) {
@@ -104,9 +175,14 @@ namespace entry {
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateFence(VkDevice device, const VkFenceCreateInfo* info,
                                            const VkAllocationCallbacks* allocator, VkFence* fence) {
-  Fence* object = create_object<Fence>(from_handle<Device>(device).memory, allocator);
+  Owned<Fence> object(create_object<Fence>(from_handle<Device>(device).memory, allocator));
   object->signaled = info->flags & VK_FENCE_CREATE_SIGNALED_BIT;
-  *fence = to_handle(object);
+  const auto* exported = find_in_chain<VkExportFenceCreateInfo>(info->pNext);
+  if (exported && (exported->handleTypes & VK_EXTERNAL_FENCE_HANDLE_TYPE_OPAQUE_FD_BIT)) {
+    object->shared = ExternalPayload::make(ExternalPayload::Kind::kFence, object->signaled);
+    if (!object->shared) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  }
+  *fence = to_handle(object.release());
   return VK_SUCCESS;
 }
 
@@ -116,7 +192,7 @@ VKAPI_ATTR void VKAPI_CALL DestroyFence(VkDevice, VkFence fence, const VkAllocat
 
 VKAPI_ATTR VkResult VKAPI_CALL ResetFences(VkDevice device, std::uint32_t count, const VkFence* fences) {
   const std::lock_guard lock(from_handle<Device>(device).sync_mutex);
-  for (std::uint32_t i = 0; i < count; ++i) from_handle<Fence>(fences[i]).signaled = false;
+  for (std::uint32_t i = 0; i < count; ++i) reset_fence(from_handle<Fence>(fences[i]));
   return VK_SUCCESS;
 }
 
@@ -124,36 +200,44 @@ VKAPI_ATTR VkResult VKAPI_CALL GetFenceStatus(VkDevice device, VkFence fence) {
   Device& d = from_handle<Device>(device);
   tell_waited(d, {&fence, 1});
   const std::lock_guard lock(d.sync_mutex);
-  if (from_handle<Fence>(fence).signaled) return VK_SUCCESS;
+  if (is_signaled(from_handle<Fence>(fence))) return VK_SUCCESS;
   return d.lost ? VK_ERROR_DEVICE_LOST : VK_NOT_READY;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL WaitForFences(VkDevice device, std::uint32_t count, const VkFence* fences,
                                              VkBool32 wait_all, std::uint64_t timeout) {
   const glass::Span span("wait", "vkWaitForFences");
-  const auto signaled = [](VkFence fence) { return from_handle<Fence>(fence).signaled; };
-  const VkResult result = wait_until(from_handle<Device>(device), timeout, [&] {
+  const auto signaled = [](VkFence fence) { return is_signaled(from_handle<Fence>(fence)); };
+  Device& d = from_handle<Device>(device);
+  std::unique_lock lock(d.sync_mutex);
+  const VkResult result = wait_until(d, lock, timeout, outside_of<Fence>({fences, count}), [&] {
     return wait_all ? std::all_of(fences, fences + count, signaled) : std::any_of(fences, fences + count, signaled);
   });
-  if (result == VK_SUCCESS) tell_waited(from_handle<Device>(device), {fences, count});
+  lock.unlock();
+  if (result == VK_SUCCESS) tell_waited(d, {fences, count});
   return result;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateSemaphore(VkDevice device, const VkSemaphoreCreateInfo* info,
                                                const VkAllocationCallbacks* allocator, VkSemaphore* semaphore) {
-  Semaphore* object = create_object<Semaphore>(from_handle<Device>(device).memory, allocator);
+  Owned<Semaphore> object(create_object<Semaphore>(from_handle<Device>(device).memory, allocator));
   if (const auto* type = find_in_chain<VkSemaphoreTypeCreateInfo>(info->pNext)) {
     object->timeline = type->semaphoreType == VK_SEMAPHORE_TYPE_TIMELINE;
     object->value = type->initialValue;
   }
-  *semaphore = to_handle(object);
+  const auto* exported = find_in_chain<VkExportSemaphoreCreateInfo>(info->pNext);
+  if (exported && (exported->handleTypes & VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT)) {
+    object->shared = ExternalPayload::make(semaphore_kind(*object), object->value);
+    if (!object->shared) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  }
+  *semaphore = to_handle(object.release());
   return VK_SUCCESS;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetSemaphoreCounterValue(VkDevice device, VkSemaphore semaphore, std::uint64_t* value) {
   Device& d = from_handle<Device>(device);
   const std::lock_guard lock(d.sync_mutex);
-  *value = from_handle<Semaphore>(semaphore).value;
+  *value = counter(from_handle<Semaphore>(semaphore));
   tell_waited(d, semaphore, *value);
   return d.lost ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
 }
@@ -176,9 +260,10 @@ VKAPI_ATTR VkResult VKAPI_CALL WaitSemaphores(VkDevice device, const VkSemaphore
     return (info->flags & VK_SEMAPHORE_WAIT_ANY_BIT) ? reached > 0 : reached == info->semaphoreCount;
   };
   Device& d = from_handle<Device>(device);
-  const VkResult result = wait_until(d, timeout, done);
+  std::unique_lock lock(d.sync_mutex);
+  const VkResult result =
+      wait_until(d, lock, timeout, outside_of<Semaphore>({info->pSemaphores, info->semaphoreCount}), done);
   if (result != VK_SUCCESS || !glass::sync::is_on()) return result;
-  const std::lock_guard lock(d.sync_mutex);
   for (std::uint32_t i = 0; i < info->semaphoreCount; ++i)
     if (is_reached(from_handle<Semaphore>(info->pSemaphores[i]), info->pValues[i]))
       tell_waited(d, info->pSemaphores[i], info->pValues[i]);

@@ -30,6 +30,8 @@ struct Batch {
   Vector<VkCommandBuffer> command_buffers;
   Vector<QueueCall> calls;
   Vector<SemaphoreOp> signals;
+  /// Temporary payloads of the semaphores when the batch was submitted: of the waits, then the signals. Empty: none.
+  std::vector<std::shared_ptr<ExternalPayload>> temporary;
   std::vector<std::string> labels;  ///< of the queue when it was submitted; kept where tools are on
   VkFence fence = VK_NULL_HANDLE;
   std::uint64_t number = 0;  ///< among those of its queue
@@ -55,12 +57,28 @@ namespace {
 /// Work below this many estimated nanoseconds stays on the submitting thread.
 constexpr std::uint64_t kInlineCost = 150'000;
 
+bool has_temporary_payloads(const BatchInfo& info) {
+  const auto has = [](const SemaphoreOp& op) { return from_handle<Semaphore>(op.semaphore).temporary != nullptr; };
+  return std::ranges::any_of(info.waits, has) || std::ranges::any_of(info.signals, has);
+}
+
+/// What is submitted from here on meets the payloads that the semaphores of the waits had before (Vulkan 1.3.239,
+/// Synchronization and Cache Control: Importing Semaphore Payloads).
+void take_temporary_payloads(Batch& batch) noexcept {
+  if (batch.temporary.empty()) return;
+  std::size_t i = 0;
+  for (const SemaphoreOp& op : batch.waits)
+    batch.temporary[i++] = std::move(from_handle<Semaphore>(op.semaphore).temporary);
+  for (const SemaphoreOp& op : batch.signals) batch.temporary[i++] = from_handle<Semaphore>(op.semaphore).temporary;
+}
+
 Batch* make_batch(Queue& queue, const BatchInfo& info) {
   const HostMemory& memory = queue.device.memory;
   void* storage = memory.allocate(sizeof(Batch), alignof(Batch), VK_SYSTEM_ALLOCATION_SCOPE_DEVICE);
   Batch* batch = ::new (storage) Batch(memory);
   try {
     batch->waits.assign(info.waits.begin(), info.waits.end());
+    if (has_temporary_payloads(info)) batch->temporary.resize(info.waits.size() + info.signals.size());
     batch->command_buffers.assign(info.command_buffers.begin(), info.command_buffers.end());
     batch->calls.assign(info.calls.begin(), info.calls.end());
     batch->signals.assign(info.signals.begin(), info.signals.end());
@@ -125,9 +143,12 @@ void tell_waits(Device& device, const Batch& batch) {
   glass::sync::Hazards* const hazards = glass::sync::hazards_of(&device);
   if (!hazards) return;
   if (batch.calls.empty()) {
-    for (const SemaphoreOp& op : batch.waits)
-      hazards->wait(&from_handle<Semaphore>(op.semaphore), op.value,
-                    glass::sync::second_scope(op.stages, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT));
+    for (const SemaphoreOp& op : batch.waits) {
+      const Semaphore& semaphore = from_handle<Semaphore>(op.semaphore);
+      hazards->wait(&semaphore, op.value,
+                    glass::sync::second_scope(op.stages, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT),
+                    semaphore.shared || !batch.temporary.empty());
+    }
     return;
   }
   std::vector<const void*> semaphores;
@@ -152,9 +173,11 @@ void execute(Device& device, Batch& batch) noexcept {
   bool lost = false;
   base::restart_choices(batch.number);
   const glass::Span span("queue", "submission");
-  for (const SemaphoreOp& op : batch.waits) {
+  const auto temporary = [&](std::size_t i) { return batch.temporary.empty() ? nullptr : batch.temporary[i]; };
+  for (std::size_t i = 0; i < batch.waits.size(); ++i) {
     const glass::Span wait("wait", "wait for semaphore");
-    lost |= !wait_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
+    const SemaphoreOp& op = batch.waits[i];
+    lost |= !wait_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value, temporary(i));
   }
   tell_waits(device, batch);
   if (!lost && !batch.command_buffers.empty()) lost = !replay_all(device, batch);
@@ -164,8 +187,9 @@ void execute(Device& device, Batch& batch) noexcept {
   }
   if (lost) return;
   tell_signals(device, batch);
-  for (const SemaphoreOp& op : batch.signals) {
-    signal_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value);
+  for (std::size_t i = 0; i < batch.signals.size(); ++i) {
+    const SemaphoreOp& op = batch.signals[i];
+    signal_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value, temporary(batch.waits.size() + i));
   }
   if (batch.fence) signal_fence(device, from_handle<Fence>(batch.fence));
 }
@@ -178,7 +202,7 @@ bool fits_inline(Device& device, const BatchInfo& info) {
     if (buffer.waits_for_host) return false;
     cost += buffer.cost;
   }
-  if (cost > kInlineCost) return false;
+  if (cost > kInlineCost || has_temporary_payloads(info)) return false;
   const std::lock_guard lock(device.sync_mutex);
   return std::all_of(info.waits.begin(), info.waits.end(),
                      [](const SemaphoreOp& op) { return is_reached(from_handle<Semaphore>(op.semaphore), op.value); });
@@ -222,6 +246,7 @@ bool is_lost(Device& device) {
 void run_inline(Queue& queue, QueueWorker& worker, BatchList& list) noexcept {
   while (!list.empty()) {
     Batch* batch = list.take();
+    take_temporary_payloads(*batch);
     execute(queue.device, *batch);
     free_batch(batch);
   }
@@ -281,6 +306,7 @@ VkResult submit(Queue& queue, std::span<const BatchInfo> batches) {
   }
   while (!list.empty()) {
     Batch* batch = list.take();
+    take_temporary_payloads(*batch);
     (worker.last ? worker.last->next : worker.first) = batch;
     worker.last = batch;
   }
