@@ -32,6 +32,21 @@ VkResult create_surface(VkInstance instance, const VkAllocationCallbacks* alloca
   return VK_SUCCESS;
 }
 
+/// VK_EXT_surface_maintenance1. A swapchain may present in any mode in turn; images have the window's size.
+void write_maintenance(VkSurfaceCapabilities2KHR& capabilities) {
+  if (auto* scaling = find_in_out_chain<VkSurfacePresentScalingCapabilitiesEXT>(capabilities.pNext)) {
+    scaling->supportedPresentScaling = 0;
+    scaling->supportedPresentGravityX = scaling->supportedPresentGravityY = 0;
+    scaling->minScaledImageExtent = capabilities.surfaceCapabilities.minImageExtent;
+    scaling->maxScaledImageExtent = capabilities.surfaceCapabilities.maxImageExtent;
+  }
+  if (auto* modes = find_in_out_chain<VkSurfacePresentModeCompatibilityEXT>(capabilities.pNext)) {
+    OutArray<VkPresentModeKHR> array(&modes->presentModeCount, modes->pPresentModes);
+    for (const VkPresentModeKHR mode : kPresentModes) array.push(mode);
+    array.result();
+  }
+}
+
 }  // namespace
 
 VkResult surface_capabilities(Surface& surface, VkSurfaceCapabilitiesKHR& capabilities) {
@@ -113,7 +128,13 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceSurfaceCapabilitiesKHR(VkPhysica
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceSurfaceCapabilities2KHR(VkPhysicalDevice,
                                                                         const VkPhysicalDeviceSurfaceInfo2KHR* info,
                                                                         VkSurfaceCapabilities2KHR* capabilities) {
-  return surface_capabilities(from_handle<Surface>(info->surface), capabilities->surfaceCapabilities);
+  if (auto* protection = find_in_out_chain<VkSurfaceProtectedCapabilitiesKHR>(capabilities->pNext))
+    protection->supportsProtected = VK_FALSE;
+  // VK_GOOGLE_surfaceless_query: then only what is the same for every surface is asked for.
+  if (info->surface == VK_NULL_HANDLE) return VK_SUCCESS;
+  const VkResult result = surface_capabilities(from_handle<Surface>(info->surface), capabilities->surfaceCapabilities);
+  if (result == VK_SUCCESS) write_maintenance(*capabilities);
+  return result;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceSurfaceFormats2KHR(VkPhysicalDevice,

@@ -97,10 +97,23 @@ VkResult acquire(Swapchain& swapchain, std::uint64_t timeout, std::uint32_t& ind
   return swapchain.status;
 }
 
-void give_to_queue(Swapchain& swapchain, std::uint32_t index, std::uint64_t present_id) {
+bool is_in_order(VkPresentModeKHR mode) {
+  return mode == VK_PRESENT_MODE_FIFO_KHR || mode == VK_PRESENT_MODE_FIFO_RELAXED_KHR;
+}
+
+/// The image of the i-th swapchain of a present, with what the chain says of that present.
+void give_to_queue(const VkPresentInfoKHR& info, std::uint32_t i) {
+  const auto* ids = find_in_chain<VkPresentIdKHR>(info.pNext);
+  const auto* fences = find_in_chain<VkSwapchainPresentFenceInfoEXT>(info.pNext);
+  const auto* modes = find_in_chain<VkSwapchainPresentModeInfoEXT>(info.pNext);
+  Swapchain& swapchain = from_handle<Swapchain>(info.pSwapchains[i]);
   const std::lock_guard lock(swapchain.mutex);
-  swapchain.slots[index].present_id = present_id;
-  swapchain.slots[index].owner = Swapchain::Owner::kQueue;
+  if (modes && i < modes->swapchainCount) swapchain.mode = modes->pPresentModes[i];
+  Swapchain::Slot& slot = swapchain.slots[info.pImageIndices[i]];
+  slot.present_id = ids && ids->pPresentIds && i < ids->swapchainCount ? ids->pPresentIds[i] : 0;
+  slot.fence = fences && i < fences->swapchainCount ? from_nullable<Fence>(fences->pFences[i]) : nullptr;
+  slot.in_order = is_in_order(swapchain.mode);
+  slot.owner = Swapchain::Owner::kQueue;
 }
 
 void give_back(Swapchain& swapchain, std::uint32_t index) {
@@ -129,6 +142,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSwapchainKHR(VkDevice device_handle, const 
   retire(from_nullable<Swapchain>(info->oldSwapchain));
   Owned<Swapchain> swapchain_owner(create_object<Swapchain>(device.memory, allocator));
   Swapchain& swapchain = *swapchain_owner;
+  swapchain.device = &device;
   swapchain.surface = &from_handle<Surface>(info->surface);
   swapchain.extent = info->imageExtent;
   swapchain.mode = info->presentMode;
@@ -168,7 +182,8 @@ VKAPI_ATTR VkResult VKAPI_CALL AcquireNextImage2KHR(VkDevice device_handle, cons
     hazards->acquire({from_nullable<Swapchain>(info->swapchain), *index}, from_nullable<Semaphore>(info->semaphore),
                      from_nullable<Fence>(info->fence));
   // The image is free when it is handed out: showing it has ended.
-  if (info->semaphore) signal_semaphore(device, from_handle<Semaphore>(info->semaphore), 0);
+  if (Semaphore* const semaphore = from_nullable<Semaphore>(info->semaphore))
+    signal_semaphore(device, *semaphore, 0, semaphore->temporary);
   if (info->fence) signal_fence(device, from_handle<Fence>(info->fence));
   return result;
 }
@@ -194,11 +209,7 @@ VKAPI_ATTR VkResult VKAPI_CALL QueuePresentKHR(VkQueue queue_handle, const VkPre
   Vector<SemaphoreOp> waits{HostAllocator<SemaphoreOp>(queue.device.memory, VK_SYSTEM_ALLOCATION_SCOPE_COMMAND)};
   waits.reserve(info->waitSemaphoreCount);
   for (std::uint32_t i = 0; i < info->waitSemaphoreCount; ++i) waits.push_back({info->pWaitSemaphores[i], 0});
-  const auto* ids = find_in_chain<VkPresentIdKHR>(info->pNext);
-  for (std::uint32_t i = 0; i < info->swapchainCount; ++i) {
-    const std::uint64_t id = ids && ids->pPresentIds && i < ids->swapchainCount ? ids->pPresentIds[i] : 0;
-    give_to_queue(from_handle<Swapchain>(info->pSwapchains[i]), info->pImageIndices[i], id);
-  }
+  for (std::uint32_t i = 0; i < info->swapchainCount; ++i) give_to_queue(*info, i);
   BatchInfo batch;
   batch.waits = waits;
   batch.calls = calls;
@@ -215,6 +226,21 @@ VKAPI_ATTR VkResult VKAPI_CALL QueuePresentKHR(VkQueue queue_handle, const VkPre
     result = worse(result, one);
   }
   return result;
+}
+
+/// Acquired images come back without having been shown.
+VKAPI_ATTR VkResult VKAPI_CALL ReleaseSwapchainImagesEXT(VkDevice, const VkReleaseSwapchainImagesInfoEXT* info) {
+  Swapchain& swapchain = from_handle<Swapchain>(info->swapchain);
+  {
+    const std::lock_guard lock(swapchain.mutex);
+    for (std::uint32_t i = 0; i < info->imageIndexCount; ++i) {
+      Swapchain::Slot& slot = swapchain.slots[info->pImageIndices[i]];
+      slot.owner = Swapchain::Owner::kSwapchain;
+      slot.released = ++swapchain.release_count;
+    }
+  }
+  swapchain.image_released.notify_all();
+  return VK_SUCCESS;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL WaitForPresentKHR(VkDevice, VkSwapchainKHR handle, std::uint64_t present_id,

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "glass/pixel/pixels.h"
+#include "icd/object/sync.h"
 
 namespace vitrine::icd {
 namespace {
@@ -36,14 +37,15 @@ std::byte* swapchain_image_memory(VkSwapchainKHR swapchain, std::uint32_t index)
 void show_image(Swapchain& swapchain, std::uint32_t index) {
   const wsi::Frame frame = frame_of(swapchain, *swapchain.slots[index].image);
   if (glass::pixel::Pixels* const pixels = glass::pixel::pixels()) pixels->presented(swapchain.slots[index].image);
-  const bool in_order =
-      swapchain.mode == VK_PRESENT_MODE_FIFO_KHR || swapchain.mode == VK_PRESENT_MODE_FIFO_RELAXED_KHR;
-  const VkResult shown = swapchain.surface->window->present(frame, in_order);
+  Swapchain::Slot& slot = swapchain.slots[index];
+  const VkResult shown = swapchain.surface->window->present(frame, slot.in_order);
+  // Before the image is free: whoever waits for it may destroy the fence, or acquire the image and present it again.
+  if (slot.fence) signal_fence(*swapchain.device, *slot.fence);
   {
     const std::lock_guard lock(swapchain.mutex);
-    swapchain.slots[index].owner = Swapchain::Owner::kSwapchain;
-    swapchain.slots[index].released = ++swapchain.release_count;
-    swapchain.shown_id = std::max(swapchain.shown_id, swapchain.slots[index].present_id);
+    slot.owner = Swapchain::Owner::kSwapchain;
+    slot.released = ++swapchain.release_count;
+    swapchain.shown_id = std::max(swapchain.shown_id, slot.present_id);
     if (shown < 0 || swapchain.status == VK_SUCCESS || swapchain.status == VK_SUBOPTIMAL_KHR) swapchain.status = shown;
   }
   swapchain.image_released.notify_all();

@@ -12,6 +12,8 @@
 
 namespace vitrine::icd {
 
+struct Fence;
+
 struct Swapchain : Object<VkSwapchainKHR, VK_OBJECT_TYPE_SWAPCHAIN_KHR> {
   explicit Swapchain(const HostMemory& m) : Object(m), slots(m) {}
   ~Swapchain();
@@ -21,10 +23,14 @@ struct Swapchain : Object<VkSwapchainKHR, VK_OBJECT_TYPE_SWAPCHAIN_KHR> {
     Image* image = nullptr;
     DeviceMemory* backing = nullptr;
     Owner owner = Owner::kSwapchain;
-    std::uint64_t released = 0;    ///< order in which images came back: the one waiting longest is acquired first
-    std::uint64_t present_id = 0;  ///< of the present on the queue; 0: none
+    std::uint64_t released = 0;  ///< order in which images came back: the one waiting longest is acquired first
+    // Of the present on the queue:
+    std::uint64_t present_id = 0;  ///< 0: none
+    Fence* fence = nullptr;        ///< signalled when it is shown; null: none
+    bool in_order = true;          ///< behind what was presented before
   };
 
+  Device* device = nullptr;
   Surface* surface = nullptr;
   VkExtent2D extent{};
   VkPresentModeKHR mode = VK_PRESENT_MODE_FIFO_KHR;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "icd/object/image.h"
+#include "icd/wsi/swapchain.h"
 #include "tests/icd/fixture.h"
 
 namespace vitrine::icd::test {
@@ -29,6 +30,43 @@ class SurfaceTest : public ::testing::Test {
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
   VkSurfaceKHR surface = VK_NULL_HANDLE;
 };
+
+TEST_F(SurfaceTest, SaysWithoutASurfaceWhatIsTheSameForAll) {
+  std::uint32_t with = 0, without = 0;
+  EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceFormatsKHR)(physical_device, surface, &with, nullptr), VK_SUCCESS);
+  EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceFormatsKHR)(physical_device, VK_NULL_HANDLE, &without, nullptr),
+            VK_SUCCESS);
+  EXPECT_EQ(with, without);
+  EXPECT_EQ(
+      VK_GET(instance, GetPhysicalDeviceSurfacePresentModesKHR)(physical_device, VK_NULL_HANDLE, &without, nullptr),
+      VK_SUCCESS);
+  EXPECT_GT(without, 0u);
+  auto protection = make_struct<VkSurfaceProtectedCapabilitiesKHR>();
+  protection.supportsProtected = VK_TRUE;
+  auto capabilities = make_struct<VkSurfaceCapabilities2KHR>(&protection);
+  const auto info = make_struct<VkPhysicalDeviceSurfaceInfo2KHR>();
+  EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceCapabilities2KHR)(physical_device, &info, &capabilities),
+            VK_SUCCESS);
+  EXPECT_EQ(protection.supportsProtected, VK_FALSE);
+}
+
+TEST_F(SurfaceTest, EveryModeCanFollowEveryOther) {
+  VkPresentModeKHR list[8];
+  auto compatible = make_struct<VkSurfacePresentModeCompatibilityEXT>();
+  compatible.presentModeCount = 8;
+  compatible.pPresentModes = list;
+  auto scaling = make_struct<VkSurfacePresentScalingCapabilitiesEXT>(&compatible);
+  auto capabilities = make_struct<VkSurfaceCapabilities2KHR>(&scaling);
+  auto mode = make_struct<VkSurfacePresentModeEXT>();
+  mode.presentMode = VK_PRESENT_MODE_FIFO_KHR;
+  auto info = make_struct<VkPhysicalDeviceSurfaceInfo2KHR>(&mode);
+  info.surface = surface;
+  EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceCapabilities2KHR)(physical_device, &info, &capabilities),
+            VK_SUCCESS);
+  EXPECT_EQ(compatible.presentModeCount, 4u);
+  EXPECT_EQ(scaling.supportedPresentScaling, 0u);
+  EXPECT_EQ(scaling.maxScaledImageExtent.width, capabilities.surfaceCapabilities.maxImageExtent.width);
+}
 
 TEST_F(SurfaceTest, SaysWhatItCanDo) {
   VkBool32 supported = VK_FALSE;
@@ -230,6 +268,56 @@ TEST_F(SwapchainTest, PresentsAreWaitedForByTheirNumbers) {
   }
   EXPECT_EQ(wait(device, swapchain, 7, 0), VK_SUCCESS);
   EXPECT_EQ(wait(device, swapchain, 10, 1000), VK_TIMEOUT);
+  destroy(swapchain);
+}
+
+TEST_F(SwapchainTest, PresentsSignalTheirFencesAndChangeTheMode) {
+  const VkSwapchainKHR swapchain = create();
+  const auto fence_info = make_struct<VkFenceCreateInfo>();
+  VkFence fence = VK_NULL_HANDLE;
+  ASSERT_EQ(VK_GET(instance, CreateFence)(device, &fence_info, nullptr, &fence), VK_SUCCESS);
+  for (const VkPresentModeKHR mode : {VK_PRESENT_MODE_FIFO_KHR, VK_PRESENT_MODE_IMMEDIATE_KHR}) {
+    std::uint32_t index = 99;
+    ASSERT_EQ(acquire(swapchain, index, VK_NULL_HANDLE, fence, UINT64_MAX), VK_SUCCESS);
+    ASSERT_EQ(VK_GET(instance, ResetFences)(device, 1, &fence), VK_SUCCESS);
+    auto modes = make_struct<VkSwapchainPresentModeInfoEXT>();
+    modes.swapchainCount = 1;
+    modes.pPresentModes = &mode;
+    auto fences = make_struct<VkSwapchainPresentFenceInfoEXT>(&modes);
+    fences.swapchainCount = 1;
+    fences.pFences = &fence;
+    auto info = make_struct<VkPresentInfoKHR>(&fences);
+    info.swapchainCount = 1;
+    info.pSwapchains = &swapchain;
+    info.pImageIndices = &index;
+    ASSERT_EQ(VK_GET(instance, QueuePresentKHR)(queue, &info), VK_SUCCESS);
+    EXPECT_EQ(VK_GET(instance, WaitForFences)(device, 1, &fence, VK_TRUE, 5'000'000'000), VK_SUCCESS);
+    ASSERT_EQ(VK_GET(instance, ResetFences)(device, 1, &fence), VK_SUCCESS);
+    EXPECT_EQ(from_handle<Swapchain>(swapchain).mode, mode);
+  }
+  VK_GET(instance, DestroyFence)(device, fence, nullptr);
+  destroy(swapchain);
+}
+
+TEST_F(SwapchainTest, ImagesComeBackUnshown) {
+  const VkSwapchainKHR swapchain = create(VK_NULL_HANDLE, 2);
+  std::uint32_t indices[2] = {99, 99}, third = 99;
+  const auto fence_info = make_struct<VkFenceCreateInfo>();
+  VkFence fence = VK_NULL_HANDLE;
+  ASSERT_EQ(VK_GET(instance, CreateFence)(device, &fence_info, nullptr, &fence), VK_SUCCESS);
+  for (std::uint32_t& index : indices) {
+    ASSERT_EQ(acquire(swapchain, index, VK_NULL_HANDLE, fence), VK_SUCCESS);
+    ASSERT_EQ(VK_GET(instance, ResetFences)(device, 1, &fence), VK_SUCCESS);
+  }
+  EXPECT_EQ(acquire(swapchain, third, VK_NULL_HANDLE, fence), VK_NOT_READY);
+  auto info = make_struct<VkReleaseSwapchainImagesInfoEXT>();
+  info.swapchain = swapchain;
+  info.imageIndexCount = 1;
+  info.pImageIndices = &indices[1];
+  EXPECT_EQ(VK_GET(instance, ReleaseSwapchainImagesEXT)(device, &info), VK_SUCCESS);
+  EXPECT_EQ(acquire(swapchain, third, VK_NULL_HANDLE, fence), VK_SUCCESS);
+  EXPECT_EQ(third, indices[1]);
+  VK_GET(instance, DestroyFence)(device, fence, nullptr);
   destroy(swapchain);
 }
 
