@@ -29,6 +29,21 @@ VkResult enable_features(const PhysicalDevice& parent, const VkDeviceCreateInfo&
   return VK_SUCCESS;
 }
 
+/// A queue that is to be served before other processes' (VK_KHR_global_priority): not ours to grant.
+bool wants_more_than_others(const VkDeviceCreateInfo& info) {
+  for (std::uint32_t i = 0; i < info.queueCreateInfoCount; ++i) {
+    const auto* wanted = find_in_chain<VkDeviceQueueGlobalPriorityCreateInfoKHR>(info.pQueueCreateInfos[i].pNext);
+    if (wanted && wanted->globalPriority > VK_QUEUE_GLOBAL_PRIORITY_MEDIUM_KHR) return true;
+  }
+  return false;
+}
+
+void keep_memory_reports(const VkDeviceCreateInfo& info, Device& device) {
+  using Report = VkDeviceDeviceMemoryReportCreateInfoEXT;
+  for (const VkBaseInStructure& item : in_chain(info.pNext))
+    if (item.sType == kStructureTypeOf<Report>) device.memory_reports.push_back(reinterpret_cast<const Report&>(item));
+}
+
 }  // namespace
 
 namespace entry {
@@ -41,9 +56,11 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physical_device, co
   VkResult result = enable_device_extensions(parent, *info, extensions);
   if (result == VK_SUCCESS) result = enable_features(parent, *info, features);
   if (result != VK_SUCCESS) return result;
+  if (wants_more_than_others(*info)) return VK_ERROR_NOT_PERMITTED_KHR;
   Owned<Device> object(create_object<Device>(parent.instance.memory, allocator, parent));
   object->extensions = extensions;
   object->features = features;
+  keep_memory_reports(*info, *object);
   if (!glass::session().idle()) object->addresses = std::make_shared<AddressBook>();
   if (info->queueCreateInfoCount) object->queue.flags = info->pQueueCreateInfos[0].flags;
   if (start_queue) start_queue(object->queue);

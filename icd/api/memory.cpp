@@ -13,6 +13,7 @@
 #include "icd/entry_points.h"
 #include "icd/object/address_book.h"
 #include "icd/object/image.h"
+#include "icd/object/memory_report.h"
 #include "spirv/addresses.h"
 
 namespace vitrine::icd {
@@ -63,6 +64,37 @@ void tell_host_access(Device& device, std::span<const VkMappedMemoryRange> range
   }
 }
 
+/// The object and its bytes: a file of somebody's, the application's pages, a file of its own, or plain memory.
+VkResult make_memory(Device& d, const VkMemoryAllocateInfo& info, const VkAllocationCallbacks* allocator,
+                     DeviceMemory*& out) {
+  const VkPhysicalDeviceMemoryProperties& properties = d.physical_device.memory_properties;
+  if (info.memoryTypeIndex >= properties.memoryTypeCount || info.allocationSize > properties.memoryHeaps[0].size) {
+    report_error(d, ref(d), "memory", "allocation is larger than the heap");
+    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  }
+  if (base::fails_now()) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  const auto* file = find_in_chain<VkImportMemoryFdInfoKHR>(info.pNext);
+  const auto* pages = find_in_chain<VkImportMemoryHostPointerInfoEXT>(info.pNext);
+  const auto* exported = find_in_chain<VkExportMemoryAllocateInfo>(info.pNext);
+  if ((file && file->handleType) || (pages && pages->handleType) || (exported && exported->handleTypes)) {
+    Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info.allocationSize));
+    if (file && file->handleType) {
+      if (!object->map_file(file->fd)) return VK_ERROR_INVALID_EXTERNAL_HANDLE;
+    } else if (pages && pages->handleType) {
+      if (!object->use_host_pages(pages->pHostPointer)) return VK_ERROR_INVALID_EXTERNAL_HANDLE;
+    } else if (!object->map_new_file()) {
+      return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    }
+    object->imported = (file && file->handleType) || (pages && pages->handleType);
+    out = object.release();
+    return VK_SUCCESS;
+  }
+  Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info.allocationSize, allocated_bytes()));
+  if (!object->data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  out = object.release();
+  return VK_SUCCESS;
+}
+
 }  // namespace
 
 void report_unbinding(Device& device, const Image& image) {
@@ -79,44 +111,29 @@ namespace entry {
 VKAPI_ATTR VkResult VKAPI_CALL AllocateMemory(VkDevice device, const VkMemoryAllocateInfo* info,
                                               const VkAllocationCallbacks* allocator, VkDeviceMemory* memory) {
   Device& d = from_handle<Device>(device);
-  const VkPhysicalDeviceMemoryProperties& properties = d.physical_device.memory_properties;
-  if (info->memoryTypeIndex >= properties.memoryTypeCount || info->allocationSize > properties.memoryHeaps[0].size) {
-    report_error(d, ref(d), "memory", "allocation is larger than the heap");
-    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  DeviceMemory* object = nullptr;
+  if (const VkResult result = make_memory(d, *info, allocator, object); result != VK_SUCCESS) {
+    report_failed_allocation(d, *info);
+    return result;
   }
-  if (base::fails_now()) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-  const auto* file = find_in_chain<VkImportMemoryFdInfoKHR>(info->pNext);
-  const auto* pages = find_in_chain<VkImportMemoryHostPointerInfoEXT>(info->pNext);
-  const auto* exported = find_in_chain<VkExportMemoryAllocateInfo>(info->pNext);
-  if ((file && file->handleType) || (pages && pages->handleType) || (exported && exported->handleTypes)) {
-    Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info->allocationSize));
-    if (file && file->handleType) {
-      if (!object->map_file(file->fd)) return VK_ERROR_INVALID_EXTERNAL_HANDLE;
-    } else if (pages && pages->handleType) {
-      if (!object->use_host_pages(pages->pHostPointer)) return VK_ERROR_INVALID_EXTERNAL_HANDLE;
-    } else if (!object->map_new_file()) {
-      return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    }
-    spirv::add_addresses(object->data, object->size);
-    enter_address(d, {object->data, object->size, object->data, {}}, *object);
-    *memory = to_handle(object.release());
-    return VK_SUCCESS;
-  }
-  Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info->allocationSize, allocated_bytes()));
-  if (!object->data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   spirv::add_addresses(object->data, object->size);
   enter_address(d, {object->data, object->size, object->data, {}}, *object);
-  *memory = to_handle(object.release());
+  report_memory(d, *object, /*begins=*/true);
+  *memory = to_handle(object);
   return VK_SUCCESS;
 }
 
 VKAPI_ATTR void VKAPI_CALL FreeMemory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks*) {
   if (const auto* object = from_nullable<DeviceMemory>(memory)) {
+    report_memory(from_handle<Device>(device), *object, /*begins=*/false);
     leave_address(from_handle<Device>(device), object);
     spirv::remove_addresses(object->data);
   }
   destroy_handle<DeviceMemory>(memory);
 }
+
+/// All memory is the host's, which pages as it sees fit.
+VKAPI_ATTR void VKAPI_CALL SetDeviceMemoryPriorityEXT(VkDevice, VkDeviceMemory, float) {}
 
 VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size,
                                          VkMemoryMapFlags, void** data) {

@@ -104,6 +104,9 @@ void write_budget(const PhysicalDevice& device, VkPhysicalDeviceMemoryBudgetProp
 constexpr VkQueueFamilyProperties kUniversalFamily = {
     VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT, 1, 64, {1, 1, 1}};
 
+/// Threads of an ordinary process: nothing above what the system gives everybody.
+constexpr std::array kGlobalPriorities = {VK_QUEUE_GLOBAL_PRIORITY_LOW_KHR, VK_QUEUE_GLOBAL_PRIORITY_MEDIUM_KHR};
+
 }  // namespace
 
 PhysicalDevice::PhysicalDevice(const HostMemory& m, Instance& owner)
@@ -154,7 +157,13 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevi
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties2(VkPhysicalDevice, std::uint32_t* count,
                                                                    VkQueueFamilyProperties2* out) {
   OutArray<VkQueueFamilyProperties2> array(count, out);
-  if (VkQueueFamilyProperties2* family = array.next()) family->queueFamilyProperties = kUniversalFamily;
+  if (VkQueueFamilyProperties2* family = array.next()) {
+    family->queueFamilyProperties = kUniversalFamily;
+    if (auto* priorities = find_in_out_chain<VkQueueFamilyGlobalPriorityPropertiesKHR>(family->pNext)) {
+      priorities->priorityCount = static_cast<std::uint32_t>(kGlobalPriorities.size());
+      std::ranges::copy(kGlobalPriorities, priorities->priorities);
+    }
+  }
   array.result();
 }
 

@@ -46,7 +46,7 @@ struct DeviceLoss {
 
 struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {
   Device(const HostMemory& m, PhysicalDevice& parent)
-      : DispatchableObject(m), physical_device(parent), queue(m, *this), shaders(m) {}
+      : DispatchableObject(m), physical_device(parent), queue(m, *this), shaders(m), memory_reports(m) {}
 
   PhysicalDevice& physical_device;
   ExtensionSet extensions;  ///< enabled
@@ -55,6 +55,8 @@ struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {
   ShaderTable shaders;
   std::atomic<std::uint64_t> next_private_data_slot = 1;
   std::shared_ptr<ReplayState> replay;  ///< made with the first command pool; used by whoever runs a batch of the queue
+
+  Vector<VkDeviceDeviceMemoryReportCreateInfoEXT> memory_reports;  ///< who wants to hear of memory; constant
 
   std::shared_ptr<AddressBook> addresses;   ///< null: nobody observes
   std::shared_ptr<glass::Profile> profile;  ///< made with the first pool of performance queries; guarded by sync_mutex

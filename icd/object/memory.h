@@ -34,6 +34,7 @@ struct DeviceMemory : Object<VkDeviceMemory, VK_OBJECT_TYPE_DEVICE_MEMORY> {
   std::byte* data = nullptr;
   VkDeviceSize size = 0;
   int file = -1;
+  bool imported = false;  ///< somebody else's pages
 
  private:
   void* mapping_ = nullptr;  ///< what ends with the object; null: nothing

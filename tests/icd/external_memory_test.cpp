@@ -76,6 +76,40 @@ TEST_F(ExternalMemory, PagesOfTheApplicationAreUsedInPlace) {
   munmap(pages, 3 * kPage);
 }
 
+/// VK_EXT_queue_family_foreign: who has the buffer in between is not of this API; its bytes stay.
+TEST_F(ExternalMemory, BuffersGoToForeignQueuesAndComeBack) {
+  VkDeviceMemory memory;
+  ASSERT_EQ(allocate(4096, nullptr, &memory), VK_SUCCESS);
+  auto buffer_info = make_struct<VkBufferCreateInfo>();
+  buffer_info.size = 64;
+  buffer_info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  VkBuffer buffer;
+  ASSERT_EQ(VK_GET(instance, CreateBuffer)(device, &buffer_info, nullptr, &buffer), VK_SUCCESS);
+  ASSERT_EQ(VK_GET(instance, BindBufferMemory)(device, buffer, memory, 0), VK_SUCCESS);
+  auto barrier = make_struct<VkBufferMemoryBarrier>();
+  barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+  barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_FOREIGN_EXT;
+  barrier.buffer = buffer;
+  barrier.size = VK_WHOLE_SIZE;
+  run([&](VkCommandBuffer commands) {
+    VK_GET(instance, CmdFillBuffer)(commands, buffer, 0, 64, 0x01020304);
+    VK_GET(instance, CmdPipelineBarrier)
+    (commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 1, &barrier, 0, nullptr);
+  });
+  std::swap(barrier.srcQueueFamilyIndex, barrier.dstQueueFamilyIndex);
+  std::swap(barrier.srcAccessMask, barrier.dstAccessMask);
+  run([&](VkCommandBuffer commands) {
+    VK_GET(instance, CmdPipelineBarrier)
+    (commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 1, &barrier, 0, nullptr);
+    VK_GET(instance, CmdFillBuffer)(commands, buffer, 32, 32, 0);
+  });
+  const std::byte* bytes = map(memory);
+  EXPECT_EQ(bytes[31], std::byte{1});
+  EXPECT_EQ(bytes[32], std::byte{0});
+  VK_GET(instance, DestroyBuffer)(device, buffer, nullptr);
+  free(memory);
+}
+
 TEST_F(ExternalMemory, CapabilitiesNameTheHandles) {
   const auto features = [&](VkExternalMemoryHandleTypeFlagBits type) {
     auto info = make_struct<VkPhysicalDeviceExternalBufferInfo>();

@@ -106,8 +106,9 @@ class DeviceTest : public ::testing::Test {
     if (instance) VK_GET(instance, DestroyInstance)(instance, nullptr);
   }
 
-  /// One workgroup of a compute pipeline with set 0, run to its end.
-  void dispatch(VkPipeline pipeline, VkPipelineLayout layout, VkDescriptorSet set) {
+  /// What `record` puts into a command buffer, run to its end.
+  template <class Record>
+  void run(Record record) {
     const auto pool_info = make_struct<VkCommandPoolCreateInfo>();
     VkCommandPool pool;
     ASSERT_EQ(VK_GET(instance, CreateCommandPool)(device, &pool_info, nullptr, &pool), VK_SUCCESS);
@@ -118,10 +119,7 @@ class DeviceTest : public ::testing::Test {
     ASSERT_EQ(VK_GET(instance, AllocateCommandBuffers)(device, &allocate, &commands), VK_SUCCESS);
     const auto begin = make_struct<VkCommandBufferBeginInfo>();
     ASSERT_EQ(VK_GET(instance, BeginCommandBuffer)(commands, &begin), VK_SUCCESS);
-    VK_GET(instance, CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    const auto bind = VK_GET(instance, CmdBindDescriptorSets);
-    bind(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0, nullptr);
-    VK_GET(instance, CmdDispatch)(commands, 1, 1, 1);
+    record(commands);
     ASSERT_EQ(VK_GET(instance, EndCommandBuffer)(commands), VK_SUCCESS);
     auto submit = make_struct<VkSubmitInfo>();
     submit.commandBufferCount = 1;
@@ -131,6 +129,16 @@ class DeviceTest : public ::testing::Test {
     ASSERT_EQ(VK_GET(instance, QueueSubmit)(queue, 1, &submit, VK_NULL_HANDLE), VK_SUCCESS);
     ASSERT_EQ(VK_GET(instance, QueueWaitIdle)(queue), VK_SUCCESS);
     VK_GET(instance, DestroyCommandPool)(device, pool, nullptr);
+  }
+
+  /// One workgroup of a compute pipeline with set 0, run to its end.
+  void dispatch(VkPipeline pipeline, VkPipelineLayout layout, VkDescriptorSet set) {
+    run([&](VkCommandBuffer commands) {
+      VK_GET(instance, CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+      const auto bind = VK_GET(instance, CmdBindDescriptorSets);
+      bind(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0, nullptr);
+      VK_GET(instance, CmdDispatch)(commands, 1, 1, 1);
+    });
   }
 
   VkInstance instance = VK_NULL_HANDLE;

@@ -95,6 +95,33 @@ TEST_F(PhysicalDevice, OneUniversalQueueFamily) {
   EXPECT_EQ(family.queueFamilyProperties.queueCount, 1u);
 }
 
+TEST_F(PhysicalDevice, QueuesAreServedLikeOtherProcesses) {
+  auto priorities = make_struct<VkQueueFamilyGlobalPriorityPropertiesKHR>();
+  auto family = make_struct<VkQueueFamilyProperties2>(&priorities);
+  std::uint32_t count = 1;
+  VK_GET(instance, GetPhysicalDeviceQueueFamilyProperties2)(physical_device, &count, &family);
+  ASSERT_EQ(priorities.priorityCount, 2u);
+  EXPECT_EQ(priorities.priorities[0], VK_QUEUE_GLOBAL_PRIORITY_LOW_KHR);
+  EXPECT_EQ(priorities.priorities[1], VK_QUEUE_GLOBAL_PRIORITY_MEDIUM_KHR);
+  const auto create = [&](VkQueueGlobalPriorityKHR wanted) {
+    auto global = make_struct<VkDeviceQueueGlobalPriorityCreateInfoKHR>();
+    global.globalPriority = wanted;
+    const float priority = 1;
+    auto queue = make_struct<VkDeviceQueueCreateInfo>(&global);
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+    auto info = make_struct<VkDeviceCreateInfo>();
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queue;
+    VkDevice other = VK_NULL_HANDLE;
+    const VkResult result = VK_GET(instance, CreateDevice)(physical_device, &info, nullptr, &other);
+    if (result == VK_SUCCESS) VK_GET(instance, DestroyDevice)(other, nullptr);
+    return result;
+  };
+  EXPECT_EQ(create(VK_QUEUE_GLOBAL_PRIORITY_LOW_KHR), VK_SUCCESS);
+  EXPECT_EQ(create(VK_QUEUE_GLOBAL_PRIORITY_REALTIME_KHR), VK_ERROR_NOT_PERMITTED_KHR);
+}
+
 TEST_F(PhysicalDevice, OneMemoryTypeIsEverything) {
   VkPhysicalDeviceMemoryProperties memory;
   VK_GET(instance, GetPhysicalDeviceMemoryProperties)(physical_device, &memory);
@@ -104,12 +131,24 @@ TEST_F(PhysicalDevice, OneMemoryTypeIsEverything) {
   EXPECT_GT(memory.memoryHeaps[0].size, 1u << 20);
 }
 
-TEST_F(PhysicalDevice, ExternalHandlesAreUnsupported) {
+TEST_F(PhysicalDevice, ExternalHandlesOfOtherSystemsAreUnsupported) {
   auto buffer_info = make_struct<VkPhysicalDeviceExternalBufferInfo>();
   buffer_info.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_WIN32_BIT;
   auto buffer = make_struct<VkExternalBufferProperties>();
   VK_GET(instance, GetPhysicalDeviceExternalBufferProperties)(physical_device, &buffer_info, &buffer);
   EXPECT_EQ(buffer.externalMemoryProperties.externalMemoryFeatures, 0u);
+  auto semaphore_info = make_struct<VkPhysicalDeviceExternalSemaphoreInfo>();
+  semaphore_info.handleType = VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_WIN32_BIT;
+  auto semaphore = make_struct<VkExternalSemaphoreProperties>();
+  VK_GET(instance, GetPhysicalDeviceExternalSemaphoreProperties)(physical_device, &semaphore_info, &semaphore);
+  EXPECT_EQ(semaphore.externalSemaphoreFeatures, 0u);
+  // A sync file is signalled once: there are none of timelines.
+  auto type = make_struct<VkSemaphoreTypeCreateInfo>();
+  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  semaphore_info.pNext = &type;
+  semaphore_info.handleType = VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_SYNC_FD_BIT;
+  VK_GET(instance, GetPhysicalDeviceExternalSemaphoreProperties)(physical_device, &semaphore_info, &semaphore);
+  EXPECT_EQ(semaphore.externalSemaphoreFeatures, 0u);
 }
 
 TEST_F(PhysicalDevice, UnclaimedFeatureIsRefused) {
