@@ -8,7 +8,18 @@
 #include "icd/object/device.h"
 #include "spirv/compile.h"
 
-namespace vitrine::icd::entry {
+namespace vitrine::icd {
+namespace {
+
+void write_identifier(const ShaderKey& key, VkShaderModuleIdentifierEXT& out) {
+  static_assert(sizeof key <= VK_MAX_SHADER_MODULE_IDENTIFIER_SIZE_EXT);
+  out.identifierSize = sizeof key;
+  std::memcpy(out.identifier, key.data(), sizeof key);
+}
+
+}  // namespace
+
+namespace entry {
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* info,
                                                   const VkAllocationCallbacks* allocator, VkShaderModule* module) {
@@ -20,12 +31,23 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShade
   }
   Owned<ShaderModule> object(create_object<ShaderModule>(d.memory, allocator));
   object->words.assign(info->pCode, info->pCode + info->codeSize / sizeof(std::uint32_t));
+  object->identifier = identifier_of(object->words);
   *module = to_handle(object.release());
   return VK_SUCCESS;
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroyShaderModule(VkDevice, VkShaderModule module, const VkAllocationCallbacks*) {
   destroy_handle<ShaderModule>(module);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetShaderModuleIdentifierEXT(VkDevice, VkShaderModule module,
+                                                        VkShaderModuleIdentifierEXT* identifier) {
+  write_identifier(from_handle<ShaderModule>(module).identifier, *identifier);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetShaderModuleCreateInfoIdentifierEXT(VkDevice, const VkShaderModuleCreateInfo* info,
+                                                                  VkShaderModuleIdentifierEXT* identifier) {
+  write_identifier(identifier_of({info->pCode, info->codeSize / sizeof(std::uint32_t)}), *identifier);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreatePipelineCache(VkDevice device, const VkPipelineCacheCreateInfo*,
@@ -63,4 +85,5 @@ VKAPI_ATTR VkResult VKAPI_CALL MergePipelineCaches(VkDevice, VkPipelineCache, st
   return VK_SUCCESS;
 }
 
-}  // namespace vitrine::icd::entry
+}  // namespace entry
+}  // namespace vitrine::icd

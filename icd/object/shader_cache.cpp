@@ -65,9 +65,9 @@ std::uint32_t subgroup_size(const VkPipelineShaderStageCreateInfo& stage) {
 
 ShaderKey make_key(const StageRequest& request) {
   const VkPipelineShaderStageCreateInfo& stage = *request.stage;
-  const std::span<const std::uint32_t> words = words_of(stage);
   KeyBuilder key;
-  key.add(words.data(), words.size_bytes());
+  const ShaderKey words = identifier_of(stage);
+  key.add(words.data(), sizeof words);
   key.add(stage.stage);
   key.add(stage.pName, std::strlen(stage.pName));
   key.add(request.live_color_outputs);
@@ -139,6 +139,21 @@ std::span<const std::uint32_t> words_of(const VkPipelineShaderStageCreateInfo& s
   const auto* info = find_in_chain<VkShaderModuleCreateInfo>(stage.pNext);
   if (!info) return {};
   return {info->pCode, info->codeSize / sizeof(std::uint32_t)};
+}
+
+ShaderKey identifier_of(std::span<const std::uint32_t> words) {
+  KeyBuilder key;
+  key.add(words.data(), words.size_bytes());
+  return key.key();
+}
+
+ShaderKey identifier_of(const VkPipelineShaderStageCreateInfo& stage) {
+  if (stage.module) return from_handle<ShaderModule>(stage.module).identifier;
+  const auto* given = find_in_chain<VkPipelineShaderStageModuleIdentifierCreateInfoEXT>(stage.pNext);
+  ShaderKey key{};
+  if (!given || given->identifierSize != sizeof key) return identifier_of(words_of(stage));
+  std::memcpy(key.data(), given->pIdentifier, sizeof key);
+  return key;
 }
 
 StageResult compile_stage(Device& device, PipelineCache* cache, const StageRequest& request) {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "icd/object/object.h"
+#include "icd/object/shader_table.h"
 
 namespace vitrine::icd {
 
@@ -13,10 +14,16 @@ namespace vitrine::icd {
 struct ShaderModule : Object<VkShaderModule, VK_OBJECT_TYPE_SHADER_MODULE> {
   explicit ShaderModule(const HostMemory& m) : Object(m), words(m) {}
   Vector<std::uint32_t> words;
+  ShaderKey identifier{};  ///< of the words
 };
 
 /// The words of a stage: its module's, or those in the VkShaderModuleCreateInfo that stands for one.
 std::span<const std::uint32_t> words_of(const VkPipelineShaderStageCreateInfo& stage);
+
+/// What stands for the words: the same for equal ones, in every process (VK_EXT_shader_module_identifier).
+ShaderKey identifier_of(std::span<const std::uint32_t> words);
+/// Of a stage's words, or of those that it names by their identifier alone.
+ShaderKey identifier_of(const VkPipelineShaderStageCreateInfo& stage);
 
 struct CompiledShader;
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "icd/edge/diagnostics.h"
+#include "icd/object/shader_module.h"
 #include "tests/icd/fixture.h"
 #include "tests/icd/shaders.h"
 
@@ -163,6 +164,54 @@ TEST_F(PipelineCreation, NothingIsCompiledWhereThatIsNotWanted) {
   EXPECT_EQ(create(device, VK_NULL_HANDLE, 1, infos, nullptr, &pipelines[2]), VK_SUCCESS);
   VK_GET(instance, DestroyPipeline)(device, pipelines[1], nullptr);
   VK_GET(instance, DestroyPipeline)(device, pipelines[2], nullptr);
+}
+
+/// All accesses are checked, whatever a pipeline asks for: even without the features nothing less is promised.
+TEST_F(PipelineCreation, RobustnessIsTheSameForAll) {
+  auto properties = make_struct<VkPhysicalDevicePipelineRobustnessPropertiesEXT>();
+  auto whole = make_struct<VkPhysicalDeviceProperties2>(&properties);
+  VK_GET(instance, GetPhysicalDeviceProperties2)(physical_device, &whole);
+  EXPECT_EQ(properties.defaultRobustnessStorageBuffers,
+            VK_PIPELINE_ROBUSTNESS_BUFFER_BEHAVIOR_ROBUST_BUFFER_ACCESS_2_EXT);
+  EXPECT_EQ(properties.defaultRobustnessImages, VK_PIPELINE_ROBUSTNESS_IMAGE_BEHAVIOR_ROBUST_IMAGE_ACCESS_2_EXT);
+  VkPipeline pipelines[2] = {};
+  for (int i = 0; i < 2; ++i) {
+    auto robustness = make_struct<VkPipelineRobustnessCreateInfoEXT>();
+    robustness.storageBuffers = i ? VK_PIPELINE_ROBUSTNESS_BUFFER_BEHAVIOR_DISABLED_EXT
+                                  : VK_PIPELINE_ROBUSTNESS_BUFFER_BEHAVIOR_ROBUST_BUFFER_ACCESS_2_EXT;
+    const VkComputePipelineCreateInfo create = info(0, &robustness);
+    ASSERT_EQ(VK_GET(instance, CreateComputePipelines)(device, cache, 1, &create, nullptr, &pipelines[i]), VK_SUCCESS);
+  }
+  for (const VkPipeline pipeline : pipelines) VK_GET(instance, DestroyPipeline)(device, pipeline, nullptr);
+}
+
+TEST_F(PipelineCreation, ModulesCanBeNamedByTheirIdentifiers) {
+  auto of_module = make_struct<VkShaderModuleIdentifierEXT>(), of_words = make_struct<VkShaderModuleIdentifierEXT>();
+  VK_GET(instance, GetShaderModuleIdentifierEXT)(device, module, &of_module);
+  ASSERT_EQ(of_module.identifierSize, 16u);
+  const auto& words = from_handle<ShaderModule>(module).words;
+  auto module_info = make_struct<VkShaderModuleCreateInfo>();
+  module_info.codeSize = words.size() * sizeof words[0];
+  module_info.pCode = words.data();
+  VK_GET(instance, GetShaderModuleCreateInfoIdentifierEXT)(device, &module_info, &of_words);
+  EXPECT_EQ(std::memcmp(of_module.identifier, of_words.identifier, 16), 0);
+  module_info.codeSize -= sizeof words[0];
+  VK_GET(instance, GetShaderModuleCreateInfoIdentifierEXT)(device, &module_info, &of_words);
+  EXPECT_NE(std::memcmp(of_module.identifier, of_words.identifier, 16), 0) << "of other words";
+
+  const auto create = VK_GET(instance, CreateComputePipelines);
+  VkComputePipelineCreateInfo named = info(VK_PIPELINE_CREATE_FAIL_ON_PIPELINE_COMPILE_REQUIRED_BIT);
+  auto identifier = make_struct<VkPipelineShaderStageModuleIdentifierCreateInfoEXT>();
+  identifier.identifierSize = of_module.identifierSize;
+  identifier.pIdentifier = of_module.identifier;
+  named.stage.module = VK_NULL_HANDLE;
+  named.stage.pNext = &identifier;
+  VkPipeline pipelines[2];
+  EXPECT_EQ(create(device, VK_NULL_HANDLE, 1, &named, nullptr, &pipelines[0]), VK_PIPELINE_COMPILE_REQUIRED);
+  const VkComputePipelineCreateInfo whole = info(0);
+  ASSERT_EQ(create(device, cache, 1, &whole, nullptr, &pipelines[0]), VK_SUCCESS);
+  EXPECT_EQ(create(device, cache, 1, &named, nullptr, &pipelines[1]), VK_SUCCESS);
+  for (const VkPipeline pipeline : pipelines) VK_GET(instance, DestroyPipeline)(device, pipeline, nullptr);
 }
 
 TEST_F(Maintenance4, RequirementsNeedNoObject) {
