@@ -112,6 +112,7 @@ struct Capture {
 /// Ways of the reference that somebody asked for (deviations.md; base/as_reference.h), where they concern the draw.
 struct ReferenceWays {
   bool keeps_outside_points = false;  ///< point-clipping
+  float largest_point = 1024;         ///< pixels: pointSizeRange, or the reference's (large-points)
   std::uint32_t segment = 0;  ///< primitives that the reference works on at a time, where a chunk has to be that; or 0
   bool numbers_segments = false;            ///< each counts gl_PrimitiveID from 0 (patch-numbers)
   std::uint32_t tessellated_mask = ~0u;     ///< of numbers of vertices in a segment (tessellated-vertices)

@@ -230,7 +230,8 @@ void setup_point(const SetupContext& context, const Vertex* v, bool front) {
   const PipelinePlan& plan = *context.plan;
   const float limit = 32768;
   if (!(std::fabs(v[0]) < limit && std::fabs(v[1]) < limit)) return context.tell(PrimitiveFate::kTooFar);
-  const float size = std::min(plan.point_size_word == kNoReg ? 1.0f : v[plan.point_size_word], 255.0f);
+  const float size =
+      std::min(plan.point_size_word == kNoReg ? 1.0f : v[plan.point_size_word], plan.as_reference.largest_point);
   const std::int32_t width = std::max(256, base::round_half_away(256 * size));
   Primitive p{};
   p.x[0] = snap(v[0] - plan.pixel_offset) - width / 2;

@@ -66,6 +66,7 @@ void plan_reference_ways(PipelinePlan& plan, const DrawCall& draw, const PassDes
   plan_stages_ways(plan, draw);
   plan_line_ways(plan);
   ways.keeps_outside_points = as_reference(Deviation::kPointClipping);
+  if (as_reference(Deviation::kLargePoints)) ways.largest_point = 255;
   ways.divides = !(as_reference(Deviation::kIdentityViewport) && is_identity(*plan.state));
   ways.leaks_scissor = plan.raster_samples > 1 && as_reference(Deviation::kMultisampleScissor);
   ways.nine_vertices = as_reference(Deviation::kNineVertices) &&

@@ -38,6 +38,32 @@ const AddCase kScissor(
       draw(run, "whole", target, {}, values);
     });
 
+/// A point of 300 pixels, and the square of two triangles that it is.
+const AddCase kLargePoint("rasterization", "deviation.large_points", "large-points", case_against_control,
+                          [](Run& run) {
+                            run.require(run.gpu.features.largePoints, "largePoints");
+                            TargetSpec target;
+                            target.width = target.height = 320;
+                            GraphicsSpec points;
+                            points.assembly.topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+                            points.vertex =
+                                "layout(location = 0) in vec4 position;\nlayout(location = 1) in vec4 color;\n"
+                                "layout(location = 0) out vec4 passed;\n"
+                                "void main() {\n  passed = color;\n  gl_Position = position;\n"
+                                "  gl_PointSize = 300.0;\n}\n";
+                            draw(run, "point", target, points, colored({{0, 0, 0.5f, 1}}));
+                            constexpr float kEdge = 300.0f / 320;
+                            std::vector<float> square = colored({{-kEdge, -kEdge, 0.5f, 1},
+                                                                 {kEdge, -kEdge, 0.5f, 1},
+                                                                 {-kEdge, kEdge, 0.5f, 1},
+                                                                 {kEdge, -kEdge, 0.5f, 1},
+                                                                 {-kEdge, kEdge, 0.5f, 1},
+                                                                 {kEdge, kEdge, 0.5f, 1}});
+                            for (size_t i = 8; i < square.size(); ++i)
+                              if (i % 8 >= 4) square[i] = square[i - 8];
+                            draw(run, "square", target, {}, square);
+                          });
+
 /// A viewport that ends within pixels 46, and the same rectangle drawn in the whole one.
 const AddCase kViewport("rasterization", "deviation.viewport_scissor", "viewport-scissor", case_against_control,
                         [](Run& run) {
