@@ -20,39 +20,24 @@ using spirv::Wave;
 /// What one instruction does, lane by lane.
 class Recorder {
  public:
-  Recorder(Group& group, std::uint32_t site, const Wave& wave, const Instruction* i, const InstructionNote& note,
-           std::uint32_t first, const std::uint32_t* names)
-      : group_(group),
-        site_(site),
-        wave_(wave),
-        i_(i),
-        note_(note),
-        first_(first),
-        names_(names),
-        lanes_(wave.active & wave.live) {}
+  Recorder(Group& group, const Doing& by, const Wave& wave, const Instruction* i, const InstructionNote& note)
+      : group_(group), by_(by), wave_(wave), i_(i), note_(note), lanes_(wave.active & wave.live) {}
 
   void memory(const Site& site);
   void image();
 
  private:
-  std::uint32_t who(std::size_t lane) const {
-    return names_ != nullptr ? names_[lane] : first_ + static_cast<std::uint32_t>(lane);
-  }
-  void shared(const MemoryOp& row);
-  void buffer(const MemoryOp& row);
-  void global(const MemoryOp& row);
-  bool row_of_words(const MemoryOp& row, const Words& offsets, std::uint64_t base, std::uint64_t size);
-  void range(const MemoryOp& row, const Words& offsets, base::LaneMask lanes, std::uint64_t base, std::uint64_t size);
-  void bytes(std::size_t lane, std::uint64_t address, std::uint32_t count, std::uint32_t value);
+  /// Of the memory at `base`. `copied`: room for offsets that are nowhere.
+  Span span_of(const Site& site, const MemoryOp& row, std::uint32_t (&copied)[base::kWaveWidth]) const;
+  void buffer(const Span& span, const MemoryOp& row);
+  void global(const Site& site, const MemoryOp& row);
   const std::uint32_t* values_of(const MemoryOp& row, std::uint32_t component) const;
 
   Group& group_;
-  const std::uint32_t site_;
+  const Doing by_;
   const Wave& wave_;
   const Instruction* const i_;
   const InstructionNote& note_;
-  const std::uint32_t first_;
-  const std::uint32_t* const names_;
   const base::LaneMask lanes_;
 };
 
@@ -62,79 +47,39 @@ const std::uint32_t* Recorder::values_of(const MemoryOp& row, std::uint32_t comp
   return reinterpret_cast<const base::WaveRegister*>(wave_.registers + row.data[component])->lane;
 }
 
-void Recorder::bytes(std::size_t lane, std::uint64_t address, std::uint32_t count, std::uint32_t value) {
-  while (count != 0) {
-    const auto in_word = static_cast<std::uint32_t>(address & 3), part = std::min(count, 4 - in_word);
-    group_.touch(site_, who(lane), {address / 4, ((1u << part) - 1) << in_word, value});
-    address += part;
-    count -= part;
-  }
-}
-
-void Recorder::range(const MemoryOp& row, const Words& offsets, base::LaneMask lanes, std::uint64_t base,
-                     std::uint64_t size) {
-  const sanitize::Touched touched = sanitize::touched_by(row, note_.access);
-  const std::uint32_t component_bytes = row.element_bytes;
-  std::uint64_t words[base::kWaveWidth];
-  for (std::uint32_t c = 0; c < touched.count; ++c) {
-    const std::uint32_t component = (touched.at[c] - row.added) / component_bytes;
-    const std::uint32_t* const values = component < 4 ? values_of(row, component) : nullptr;
-    base::LaneMask whole = 0;
-    base::for_each_lane(lanes, [&](std::size_t lane) {
-      const std::uint32_t at = offsets[lane] + touched.at[c];
-      if (std::uint64_t{at} + component_bytes > size) return;  // another tool's
-      words[lane] = (base + at) / 4;
-      if (component_bytes == 4 && ((base + at) & 3) == 0)
-        whole |= base::LaneMask{1} << lane;
-      else
-        bytes(lane, base + at, component_bytes, values != nullptr ? values[lane] : 0);
-    });
-    group_.touch_words(site_, whole, words, first_, names_, values);
-  }
-}
-
-/// All lanes, one word each, one behind the other. False: it is not so.
-bool Recorder::row_of_words(const MemoryOp& row, const Words& offsets, std::uint64_t base, std::uint64_t size) {
-  const std::uint32_t* const at = offsets.in_register();
-  if (lanes_ != base::kAllLanes || at == nullptr || row.element_bytes != 4 || names_ != nullptr) return false;
-  if (note_.access == Access::kAtomic) return false;
-  const sanitize::Touched touched = sanitize::touched_by(row, note_.access);
-  if (touched.count != 1) return false;
-  const std::uint32_t start = at[0];
-  std::uint32_t wrong = start & 3;
-  for (std::uint32_t lane = 0; lane < base::kWaveWidth; ++lane) wrong |= at[lane] - start - lane * 4;
-  const std::uint64_t first = std::uint64_t{start} + touched.at[0];
-  if (wrong != 0 || ((base + first) & 3) != 0 || first + base::kWaveWidth * 4 > size) return false;
-  const std::uint32_t component = (touched.at[0] - row.added) / 4;
-  group_.touch_row(site_, first_, (base + first) / 4, component < 4 ? values_of(row, component) : nullptr);
-  return true;
-}
-
-void Recorder::shared(const MemoryOp& row) {
+Span Recorder::span_of(const Site& site, const MemoryOp& row, std::uint32_t (&copied)[base::kWaveWidth]) const {
   const Words offsets(wave_, {note_.files[1], i_->src[0]});
-  if (row_of_words(row, offsets, 0, wave_.shared_size)) return;
-  range(row, offsets, lanes_, 0, wave_.shared_size);
+  Span span{by_, lanes_, {offsets.in_register(), 0}, 0, wave_.shared_size};
+  if (offsets.is_uniform()) {
+    span.offsets.lane_0 = offsets[0];
+  } else if (span.offsets.words == nullptr) {
+    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) copied[lane] = offsets[lane];
+    span.offsets.words = copied;
+  }
+  if (site.writes())
+    for (std::uint32_t c = 0; c < 4; ++c) span.values[c] = values_of(row, c);
+  return span;
 }
 
-void Recorder::buffer(const MemoryOp& row) {
-  const Words offsets(wave_, {note_.files[1], i_->src[0]});
+void Recorder::buffer(const Span& span, const MemoryOp& row) {
   spirv::exec::for_each_buffer(const_cast<Wave&>(wave_), row, lanes_,
                                [&](const spirv::exec::Bytes& bytes, base::LaneMask same) {
                                  if (bytes.data == nullptr) return;
-                                 const auto base = reinterpret_cast<std::uintptr_t>(bytes.data);
-                                 if (same == lanes_ && row_of_words(row, offsets, base, bytes.size)) return;
-                                 range(row, offsets, same, base, bytes.size);
+                                 Span part = span;
+                                 part.lanes = same;
+                                 part.base = reinterpret_cast<std::uintptr_t>(bytes.data);
+                                 part.size = bytes.size;
+                                 group_.touch_span(part);
                                });
 }
 
-void Recorder::global(const MemoryOp& row) {
+void Recorder::global(const Site& site, const MemoryOp& row) {
   const sanitize::Addresses addresses(wave_, *i_, note_);
-  const sanitize::Touched touched = sanitize::touched_by(row, note_.access);
   base::for_each_lane(lanes_, [&](std::size_t l) {
-    for (std::uint32_t c = 0; c < touched.count; ++c) {
-      const std::uint32_t component = (touched.at[c] - row.added) / row.element_bytes;
-      const std::uint32_t* const values = component < 4 ? values_of(row, component) : nullptr;
-      bytes(l, addresses(l, touched.at[c]), row.element_bytes, values != nullptr ? values[l] : 0);
+    for (std::uint32_t c = 0; c < site.touched.count; ++c) {
+      const std::uint32_t* const values = values_of(row, site.component[c]);
+      group_.touch_bytes(by_, by_.who(l), addresses(l, site.touched.at[c]), row.element_bytes,
+                         values != nullptr ? values[l] : 0);
     }
   });
 }
@@ -142,8 +87,10 @@ void Recorder::global(const MemoryOp& row) {
 void Recorder::memory(const Site& site) {
   const MemoryOp& row = wave_.program->memory_ops[i_->extra[0]];
   if (lanes_ == 0) return;
-  if (site.memory == Memory::kShared) return shared(row);
-  note_.space == MemorySpace::kGlobal ? global(row) : buffer(row);
+  if (note_.space == MemorySpace::kGlobal) return global(site, row);
+  std::uint32_t copied[base::kWaveWidth];
+  const Span span = span_of(site, row, copied);
+  site.memory == Memory::kShared ? group_.touch_shared(span) : buffer(span, row);
 }
 
 void Recorder::image() {
@@ -158,9 +105,23 @@ void Recorder::image() {
         if (op.operand[static_cast<std::size_t>(spirv::ir::ImageOperand::kValue)][c] != spirv::kNoOperand)
           value = value * 31 +
                   static_cast<std::uint32_t>(operands.operand(spirv::ir::ImageOperand::kValue, c, l).value_or(0));
-      if (texel.bytes != 0) bytes(l, texel.address, texel.bytes, value);
+      if (texel.bytes != 0) group_.touch_bytes(by_, by_.who(l), texel.address, texel.bytes, value);
     });
   });
+}
+
+/// The common case of shared memory: it is only written down.
+bool log_shared(Group& group, const Doing& by, const Wave& wave, const spirv::OperandPlace& offset) {
+  Offsets offsets;
+  if (offset.file == 'r') {
+    offsets.words = reinterpret_cast<const base::WaveRegister*>(wave.registers + offset.offset)->lane;
+  } else if (offset.file == 'm') {
+    return false;
+  } else {
+    offsets.lane_0 = spirv::exec::word_of(wave, offset, 0);
+  }
+  const base::LaneMask lanes = wave.active & wave.live;
+  return lanes == 0 || group.log_shared(by, lanes, offsets);
 }
 
 struct Range {
@@ -213,8 +174,10 @@ void Tracked::update(const Sites& sites, const Wave& wave) {
 void record_access(Group& group, const Tracked& tracked, std::uint32_t site, const Wave& wave, const Instruction* i,
                    const InstructionNote& note, std::uint32_t first, const std::uint32_t* names) {
   if (!tracked[site]) return;
-  Recorder recorder(group, site, wave, i, note, first, names);
   const Site& what = group.program().sites.all[site];
+  const Doing by{site, first, names, group.order().time()};
+  if (what.is_logged() && log_shared(group, by, wave, {note.files[1], i->src[0]})) return;
+  Recorder recorder(group, by, wave, i, note);
   what.memory == Memory::kImage ? recorder.image() : recorder.memory(what);
 }
 

@@ -15,22 +15,7 @@ void put(Slots& slots, std::uint32_t k, const Record& record) {
   slots.who[k] = record.who;
   slots.time[k] = record.time;
   slots.site[k] = record.site;
-}
-
-/// Whether another invocation has done something to one of `count` words since `from`; who: `first` and those behind.
-bool any_other(const Slots& slots, std::uint32_t k, std::uint32_t count, std::uint32_t first, std::uint32_t from) {
-  std::uint32_t found = 0;
-  for (std::uint32_t i = 0; i < count; ++i)
-    found |= static_cast<std::uint32_t>(slots.time[k + i] >= from) &
-             static_cast<std::uint32_t>(slots.who[k + i] != first + i);
-  return found != 0;
-}
-
-void put_row(Slots& slots, std::uint32_t k, std::uint32_t count, std::uint32_t first, std::uint32_t time,
-             std::uint32_t site) {
-  for (std::uint32_t i = 0; i < count; ++i) slots.who[k + i] = first + i;
-  for (std::uint32_t i = 0; i < count; ++i) slots.time[k + i] = time;
-  for (std::uint32_t i = 0; i < count; ++i) slots.site[k + i] = site;
+  slots.used |= std::uint64_t{1} << k;
 }
 
 }  // namespace
@@ -49,6 +34,8 @@ void Group::begin(const Told& program, const spirv::ObservedCommand* command, co
   arrived_fenced_ = 0;
   ++generation_;
   shared_.resize((shared_bytes + kPageBytes - 1) / kPageBytes);
+  shared_bytes_ = shared_bytes;
+  log_.clear();
   if (!goes_on) {
     device_.reset();
     groups_.clear();
@@ -57,6 +44,7 @@ void Group::begin(const Told& program, const spirv::ObservedCommand* command, co
   groups_.push_back(who);
   if (goes_on) order_.begin_group(static_cast<std::uint32_t>(groups_.size() - 1));
   base_ = static_cast<std::uint32_t>(groups_.size() - 1) * size_;
+  logs_loads_ = program.compute() && !order_.hides(Memory::kShared);
 }
 
 void Group::end(CommandLog& log) {
@@ -118,7 +106,8 @@ void Group::check(const Slots& slots, std::uint32_t k, std::uint32_t site, std::
   }
 }
 
-void Group::touch(std::uint32_t site, std::uint32_t who, const Touch& touch) {
+void Group::touch(const Doing& by, std::uint32_t who, const Touch& touch) {
+  const std::uint32_t site = by.site;
   const Site& now = program_->sites.all[site];
   Page& page = page_of(now, touch.word);
   const auto k = static_cast<std::uint32_t>(touch.word % kPageWords);
@@ -128,7 +117,9 @@ void Group::touch(std::uint32_t site, std::uint32_t who, const Touch& touch) {
     check(page.read, k, site, who, touch, page);
     check(page.other, k, site, who, touch, page);
   }
-  const Record record{who, order_.time(), site << 4 | touch.bytes | (interlocked_ ? kInterlocked : 0)};
+  // Each lane of an atomic operation is a moment of its own.
+  const std::uint32_t time = now.is_atomic() ? order_.time() : by.time;
+  const Record record{who, time, site << 4 | touch.bytes | (interlocked_ ? kInterlocked : 0)};
   if (now.is_atomic()) {
     put(page.atomic, k, record);
     return order_.atomic(now, std::uint64_t{now.memory == Memory::kShared} << 63 | touch.word, who);
@@ -142,94 +133,14 @@ void Group::touch(std::uint32_t site, std::uint32_t who, const Touch& touch) {
   put(first ? page.read : page.other, k, record);
 }
 
-bool Group::fast(const Site& site) const {
-  if (whole_ || order_.hides(site.memory) || interlocked_ || !program_->compute()) return false;
-  if (!site.is_atomic()) return true;
-  return !program_->sites.has_narrow_scope && !site.order.releases() && !site.order.acquires() && order_.is_plain();
-}
-
-std::uint32_t Group::writes_from(const Site& site) const {
-  return site.memory != Memory::kShared && program_->sites.has_private ? 1 : order_.from(site.memory);
-}
-
-bool Group::load_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t from,
-                         std::uint32_t writes_from) {
-  const auto other = [&](const Slots& slots, std::uint32_t since) {
-    return slots.time[k] >= since && slots.who[k] != record.who;
-  };
-  if (other(page.write, writes_from) || other(page.atomic, writes_from)) return false;
-  if (!other(page.read, from)) {
-    put(page.read, k, record);
-  } else if (page.other.time[k] < from || page.other.who[k] == page.read.who[k]) {
-    put(page.other, k, record);
+void Group::touch_bytes(const Doing& by, std::uint32_t who, std::uint64_t address, std::uint32_t count,
+                        std::uint32_t value) {
+  while (count != 0) {
+    const auto in_word = static_cast<std::uint32_t>(address & 3), part = std::min(count, 4 - in_word);
+    touch(by, who, {address / 4, ((1u << part) - 1) << in_word, value});
+    address += part;
+    count -= part;
   }
-  return true;
-}
-
-bool Group::store_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t value, std::uint32_t from) {
-  const auto other = [&](const Slots& slots) { return slots.time[k] >= from && slots.who[k] != record.who; };
-  if (other(page.write) || other(page.atomic) || other(page.read) || other(page.other)) return false;
-  put(page.write, k, record);
-  page.value[k] = value;
-  return true;
-}
-
-void Group::touch_row(std::uint32_t site, std::uint32_t first, std::uint64_t word, const std::uint32_t* values) {
-  const Site& now = program_->sites.all[site];
-  const std::uint32_t from = order_.from(now.memory), time = order_.time(), slot = site << 4 | 15;
-  for (std::uint32_t lane = 0; lane < base::kWaveWidth;) {
-    const auto k = static_cast<std::uint32_t>((word + lane) % kPageWords);
-    const std::uint32_t count = std::min<std::uint32_t>(kPageWords - k, base::kWaveWidth - lane);
-    Page& page = page_of(now, word + lane);
-    const std::uint32_t who = first + lane;
-    const std::uint32_t written = values != nullptr ? from : writes_from(now);
-    bool slow = !fast(now) || any_other(page.write, k, count, who, written) ||
-                any_other(page.atomic, k, count, who, written) || any_other(page.read, k, count, who, from);
-    if (!slow && values != nullptr) slow = any_other(page.other, k, count, who, from);
-    if (slow) {
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t value = values != nullptr ? values[lane + i] : 0;
-        const Record record{who + i, time, slot};
-        const bool done = fast(now) && (values != nullptr ? store_quickly(page, k + i, record, value, from)
-                                                          : load_quickly(page, k + i, record, from, written));
-        if (!done) touch(site, who + i, {word + lane + i, 15, value});
-      }
-    } else {
-      put_row(values != nullptr ? page.write : page.read, k, count, who, time, slot);
-      for (std::uint32_t i = 0; i < count && values != nullptr; ++i) page.value[k + i] = values[lane + i];
-    }
-    lane += count;
-  }
-}
-
-bool Group::operate_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t from) {
-  const auto other = [&](const Slots& slots) { return slots.time[k] >= from && slots.who[k] != record.who; };
-  if (other(page.write) || other(page.read) || other(page.other)) return false;
-  put(page.atomic, k, record);
-  return true;
-}
-
-void Group::touch_words(std::uint32_t site, base::LaneMask lanes, const std::uint64_t* words, std::uint32_t first,
-                        const std::uint32_t* names, const std::uint32_t* values) {
-  const Site& now = program_->sites.all[site];
-  const bool quick = fast(now);
-  const std::uint32_t from = order_.from(now.memory), written = writes_from(now);
-  Record record{0, order_.time(), site << 4 | 15};
-  const auto quickly = [&](std::uint64_t word, std::uint32_t value) {
-    Page& page = page_of(now, word);
-    const auto k = static_cast<std::uint32_t>(word % kPageWords);
-    if (now.is_atomic()) return operate_quickly(page, k, record, from);
-    return now.writes() ? store_quickly(page, k, record, value, from) : load_quickly(page, k, record, from, written);
-  };
-  std::uint64_t last = ~std::uint64_t{0}, before = last;
-  base::for_each_lane(lanes, [&](std::size_t lane) {
-    // Two readers of a word are kept: the others of a row add nothing.
-    if (quick && now.action == spirv::Access::kLoad && words[lane] == last && last == before) return;
-    before = std::exchange(last, words[lane]);
-    record.who = names != nullptr ? names[lane] : first + static_cast<std::uint32_t>(lane);
-    const std::uint32_t value = values != nullptr ? values[lane] : 0;
-    if (!quick || !quickly(words[lane], value)) touch(site, record.who, {words[lane], 15, value});
-  });
 }
 
 Group::WaveState& Group::state(std::uint32_t wave) {
@@ -242,21 +153,32 @@ void Group::arrive(std::uint32_t wave, const spirv::MemoryOrder& order, bool alo
   ++here.rounds;
   arrived_ = order;
   arrived_fenced_ |= std::exchange(here.fenced, 0);
-  if (!alone) return;
-  rounds_ = here.rounds;
-  order_.barrier(arrived_, std::exchange(arrived_fenced_, 0));
+  if (alone) pass_barrier(here.rounds);
 }
 
 void Group::resume(std::uint32_t wave) {
   const WaveState& here = state(wave);
-  if (here.rounds <= rounds_) return;
-  rounds_ = here.rounds;
+  if (here.rounds > rounds_) pass_barrier(here.rounds);
+}
+
+void Group::pass_barrier(std::uint32_t rounds) {
+  rounds_ = rounds;
+  if (arrived_.memory == spirv::MemoryScope::kSubgroup) settle_shared();
+  const std::uint32_t from = order_.from(Memory::kShared);
   order_.barrier(arrived_, std::exchange(arrived_fenced_, 0));
+  if (order_.from(Memory::kShared) != from) log_.clear();
+  logs_loads_ = program_->compute() && !order_.hides(Memory::kShared);
 }
 
 void Group::fence(std::uint32_t wave, const spirv::MemoryOrder& order, std::uint32_t first, base::LaneMask lanes) {
+  if (log_.has_atomics()) settle_shared();
   if (covers_workgroup(order.memory) && order.releases()) state(wave).fenced |= Order::memories_of(order.bits);
   order_.fence(order, first, lanes);
+}
+
+void Group::subgroup_barrier(const spirv::MemoryOrder& order, std::uint32_t first) {
+  settle_shared();
+  order_.subgroup_barrier(order, first);
 }
 
 }  // namespace vitrine::glass::race

@@ -5,7 +5,8 @@
 #include "base/lanes.h"
 #include "glass/race/log.h"
 #include "glass/race/order.h"
-#include "glass/race/shadow.h"
+#include "glass/race/rows.h"
+#include "glass/race/shared_log.h"
 
 namespace vitrine::glass::race {
 
@@ -18,7 +19,8 @@ struct Touch {
 
 class Group {
  public:
-  explicit Group(Pairs& pairs) : pairs_(pairs) {}
+  /// `by_word`: nothing is looked at all at once or later. It finds the same.
+  explicit Group(Pairs& pairs, bool by_word = false) : pairs_(pairs), by_word_(by_word) {}
 
   /// A workgroup or wave of `program` begins. `whole`: its workgroups run in order and may order each other, so that
   /// what earlier ones did is kept.
@@ -35,17 +37,21 @@ class Group {
   const spirv::ObservedCommand* command() const { return command_; }
   const Told& program() const { return *program_; }
 
-  Order& order() { return order_; }
+  const Order& order() const { return order_; }
   /// The number of the workgroup's invocation 0.
   std::uint32_t base() const { return base_; }
 
   /// An access of one lane to a word.
-  void touch(std::uint32_t site, std::uint32_t who, const Touch& touch);
-  /// The same of 64 lanes and adjacent words, for a load or store of whole words. `values`: of stores; or null.
-  void touch_row(std::uint32_t site, std::uint32_t first, std::uint64_t word, const std::uint32_t* values);
-  /// The same of the words `words` of `lanes`; invocations are `names`, or `first` and those behind it.
-  void touch_words(std::uint32_t site, base::LaneMask lanes, const std::uint64_t* words, std::uint32_t first,
-                   const std::uint32_t* names, const std::uint32_t* values);
+  void touch(const Doing& by, std::uint32_t who, const Touch& touch);
+  /// The same of some bytes.
+  void touch_bytes(const Doing& by, std::uint32_t who, std::uint64_t address, std::uint32_t count, std::uint32_t value);
+  /// The same of what an instruction does to memory; what lies outside of it is another tool's.
+  void touch_span(const Span& span);
+  /// The same of shared memory, where it is no load or atomic operation that log_shared() takes.
+  void touch_shared(const Span& span);
+  /// A load or atomic operation of shared memory is written down, to be looked at when somebody can race with it.
+  /// False: that may be so now.
+  bool log_shared(const Doing& by, base::LaneMask lanes, const Offsets& offsets);
   /// Whether fragments of a pixel are in their critical section.
   void interlock(bool inside) { interlocked_ = inside; }
 
@@ -54,6 +60,7 @@ class Group {
   void resume(std::uint32_t wave);
   void arrive(std::uint32_t wave, const spirv::MemoryOrder& order, bool alone);
   void fence(std::uint32_t wave, const spirv::MemoryOrder& order, std::uint32_t first, base::LaneMask lanes);
+  void subgroup_barrier(const spirv::MemoryOrder& order, std::uint32_t first);
 
  private:
   struct WaveState {
@@ -62,14 +69,25 @@ class Group {
   };
 
   Page& page_of(const Site& site, std::uint64_t word);
+  /// What has been written down of shared memory is recorded.
+  void settle_shared();
+  /// All of the workgroup have come by a barrier.
+  void pass_barrier(std::uint32_t rounds);
   bool fast(const Site& site) const;
   /// Writes before this are visible to a load: those that are private never are.
   std::uint32_t writes_from(const Site& site) const;
+  void touch_spread(const Span& span, const Spread& spread);
+  /// Words at even distances, or some for each of the lanes. False: they are not.
+  bool touch_rows(const Span& span, const Spread& spread);
+  /// `offset`: of the first lane.
+  void touch_row(const Span& span, std::uint32_t offset, std::uint32_t step, const std::uint32_t* values);
+  /// The part of it in a page, whose word 0 is `word`. `values`: of stores, by lane.
+  void touch_page(const Doing& by, Page& page, std::uint64_t word, const Row& row, const std::uint32_t* values);
+  void touch_part(const Span& span, std::uint32_t part);
+  /// Whole words of lanes.
+  void touch_words(const Doing& by, base::LaneMask lanes, const std::uint64_t* words, const std::uint32_t* values);
   /// The common case: nobody else has touched the word since the last barrier. False: it is not.
-  static bool load_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t from,
-                           std::uint32_t writes_from);
-  static bool operate_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t from);
-  static bool store_quickly(Page& page, std::uint32_t k, const Record& record, std::uint32_t value, std::uint32_t from);
+  bool touch_quickly(const Site& site, const Record& record, std::uint64_t word, std::uint32_t value);
   void check(const Slots& slots, std::uint32_t k, std::uint32_t site, std::uint32_t who, const Touch& touch,
              const Page& page);
   void tell(const Record& earlier, std::uint32_t site, std::uint32_t who, const Touch& touch, Conflict::Kind kind,
@@ -78,6 +96,7 @@ class Group {
   WaveState& state(std::uint32_t wave);
 
   Pairs& pairs_;
+  const bool by_word_;
   const Told* program_ = nullptr;
   const spirv::ObservedCommand* command_ = nullptr;
   bool whole_ = false, interlocked_ = false;
@@ -86,6 +105,9 @@ class Group {
   Order order_;
   Shadow device_;
   std::vector<Page> shared_;
+  std::uint32_t shared_bytes_ = 0;
+  bool logs_loads_ = false;  ///< fast() of loads of shared memory
+  SharedLog log_;
   std::vector<WaveState> waves_;
   std::uint32_t rounds_ = 0;
   spirv::MemoryOrder arrived_;

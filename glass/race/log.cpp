@@ -4,35 +4,29 @@
 #include <algorithm>
 #include <bit>
 
+#include "glass/race/rows.h"
+
 namespace vitrine::glass::race {
 namespace {
 
-std::uint64_t words_of(const Slots& slots) {
-  std::uint64_t words = 0;
-  for (std::uint32_t k = 0; k < kPageWords; ++k) words |= std::uint64_t{slots.time[k] != 0} << k;
-  return words;
-}
-
-/// Whether the invocations of `words` lie one behind the other as the words do, at one place.
-bool is_row(const Slots& slots, std::uint64_t words) {
-  const int first = std::countr_zero(words);
-  for (std::uint64_t rest = words; rest != 0; rest &= rest - 1) {
-    const int k = std::countr_zero(rest);
-    if (slots.site[k] != slots.site[first]) return false;
-    if (slots.who[k] - slots.who[first] != static_cast<std::uint32_t>(k - first)) return false;
+/// Appends details, few for a row. Returns its period.
+std::uint8_t append(std::vector<Detail>& details, const Slots& slots, std::uint64_t words,
+                    const std::uint32_t* values) {
+  Row row;
+  for (const std::uint32_t shift : {0u, 2u, 1u}) {
+    if (words == 0 || !is_row(slots, words, shift, row)) continue;
+    const std::uint32_t period = 1u << shift;
+    for (std::uint32_t k = 0; k < period; ++k) {
+      const std::uint64_t there = words & row_words(k, shift);
+      details.push_back({row.who, there != 0 ? slots.site[std::countr_zero(there)] : 0, 0});
+    }
+    return static_cast<std::uint8_t>(period);
   }
-  return true;
-}
-
-/// Appends details, one for a row. Returns whether it is one.
-bool append(std::vector<Detail>& details, const Slots& slots, std::uint64_t words, const std::uint32_t* values) {
-  const bool row = words != 0 && is_row(slots, words);
   for (std::uint64_t rest = words; rest != 0; rest &= rest - 1) {
     const int k = std::countr_zero(rest);
     details.push_back({slots.who[k], slots.site[k], values != nullptr ? values[k] : 0});
-    if (row) break;
   }
-  return row;
+  return 0;
 }
 
 /// Holds the entries of one page against each other, in order.
@@ -66,7 +60,7 @@ class PageSweep {
     return kind == Kind::kWrite ? entry.writes : kind == Kind::kRead ? entry.reads : entry.atomics;
   }
   static std::size_t details_of(const PageEntry& entry, Kind kind) {
-    if (entry.row[static_cast<std::size_t>(kind)]) return 1;
+    if (const std::uint8_t period = entry.period[static_cast<std::size_t>(kind)]; period != 0) return period;
     return static_cast<std::size_t>(std::popcount(words(entry, kind)));
   }
   Detail detail(const PageEntry& entry, Kind kind, std::uint32_t word) const {
@@ -75,9 +69,10 @@ class PageSweep {
     if (kind == Kind::kAtomic) at += details_of(entry, Kind::kRead);
     const std::uint64_t before = words(entry, kind) & ((std::uint64_t{1} << word) - 1);
     const auto number = static_cast<std::size_t>(std::popcount(before));
-    if (!entry.row[static_cast<std::size_t>(kind)]) return details_[at + number];
-    Detail detail = details_[at];
-    detail.who += word - static_cast<std::uint32_t>(std::countr_zero(words(entry, kind)));
+    const std::uint32_t period = entry.period[static_cast<std::size_t>(kind)];
+    if (period == 0) return details_[at + number];
+    Detail detail = details_[at + word % period];
+    detail.who += word / period;
     if (kind == Kind::kWrite) detail.value = values_[entry.values + number];
     return detail;
   }
@@ -138,15 +133,15 @@ void CommandLog::add(const Told& program, const Who& who, Shadow& shadow) {
     entry.page = page.number;
     entry.who = who;
     entry.program = &program;
-    entry.writes = words_of(page.write);
-    entry.reads = words_of(page.read);
-    entry.atomics = words_of(page.atomic);
+    entry.writes = page.write.used;
+    entry.reads = page.read.used;
+    entry.atomics = page.atomic.used;
     entry.first = details_.size();
-    entry.row[0] = append(details_, page.write, entry.writes, page.value);
-    entry.row[1] = append(details_, page.read, entry.reads, nullptr);
-    entry.row[2] = append(details_, page.atomic, entry.atomics, nullptr);
+    entry.period[0] = append(details_, page.write, entry.writes, page.value);
+    entry.period[1] = append(details_, page.read, entry.reads, nullptr);
+    entry.period[2] = append(details_, page.atomic, entry.atomics, nullptr);
     entry.values = values_.size();
-    for (std::uint64_t rest = entry.row[0] ? entry.writes : 0; rest != 0; rest &= rest - 1)
+    for (std::uint64_t rest = entry.period[0] != 0 ? entry.writes : 0; rest != 0; rest &= rest - 1)
       values_.push_back(page.value[std::countr_zero(rest)]);
     entries_.push_back(entry);
   }
@@ -160,18 +155,24 @@ bool CommandLog::less(const PageEntry& a, const PageEntry& b) const {
   };
   if (key(a) != key(b)) return key(a) < key(b);
   const auto content = [&](const PageEntry& entry) {
-    const auto count = [&](std::uint64_t words, bool row) {
-      return row ? std::size_t{1} : static_cast<std::size_t>(std::popcount(words));
+    const auto count = [&](std::uint64_t words, std::uint8_t period) {
+      return period != 0 ? std::size_t{period} : static_cast<std::size_t>(std::popcount(words));
     };
-    return std::span(details_).subspan(
-        entry.first,
-        count(entry.writes, entry.row[0]) + count(entry.reads, entry.row[1]) + count(entry.atomics, entry.row[2]));
+    return std::span(details_).subspan(entry.first, count(entry.writes, entry.period[0]) +
+                                                        count(entry.reads, entry.period[1]) +
+                                                        count(entry.atomics, entry.period[2]));
   };
   const auto left = content(a), right = content(b);
   return std::lexicographical_compare(
       left.begin(), left.end(), right.begin(), right.end(), [](const Detail& one, const Detail& other) {
         return std::tuple(one.who, one.site, one.value) < std::tuple(other.who, other.site, other.value);
       });
+}
+
+bool CommandLog::is_small() const {
+  constexpr std::size_t kSmall = 64 << 20;  // bytes
+  return entries_.capacity() * sizeof(PageEntry) + details_.capacity() * sizeof(Detail) + values_.capacity() * 4 <
+         kSmall;
 }
 
 void CommandLog::settle(Pairs& pairs, const spirv::ObservedCommand* command) {

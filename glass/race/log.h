@@ -25,9 +25,11 @@ struct PageEntry {
   Who who;  ///< of the workgroup; of draws, the first of the wave
   const Told* program = nullptr;
   std::uint64_t writes = 0, reads = 0, atomics = 0;
-  std::size_t first = 0;   ///< in CommandLog::details: those of writes, of reads, of atomics
-  bool row[3] = {};        ///< of a kind, one detail: invocations one behind the other at one place
-  std::size_t values = 0;  ///< in CommandLog::values: of writes that are a row
+  std::size_t first = 0;  ///< in CommandLog::details: those of writes, of reads, of atomics
+  /// Of a kind, where its words are a row: as many details, for words k by k % period and relative to k / period. Else
+  /// 0, one for each.
+  std::uint8_t period[3] = {};
+  std::size_t values = 0;  ///< in CommandLog::values: of writes that are a row, a word each
 };
 
 class CommandLog {
@@ -36,6 +38,8 @@ class CommandLog {
   void add(const Told& program, const Who& who, Shadow& shadow);
   /// Finds what different workgroups did to the same bytes.
   void settle(Pairs& pairs, const spirv::ObservedCommand* command);
+  /// Whether it has not become so large that its memory should be given back.
+  bool is_small() const;
   /// Of a dispatch.
   bool compute() const { return compute_; }
 

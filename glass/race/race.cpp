@@ -1,5 +1,6 @@
 // The tool `race`: two accesses to the same bytes by different invocations of one command, one of them a write, that
 // neither barriers nor atomic operations order (Vulkan 1.3.239, Memory Model: Data Race).
+#include <atomic>
 #include <bit>
 #include <charconv>
 #include <cstdlib>
@@ -37,6 +38,7 @@ struct ThreadGroup {
   const Told* tracked_program = nullptr;
   const ObservedCommand* tracked_command = nullptr;
   std::uint64_t tracked_number = 0;
+  std::uint32_t names[base::kWaveWidth] = {};  ///< of a wave of a draw: what invocations are called by
 };
 
 /// Shared by the programs of a tool.
@@ -51,22 +53,32 @@ class Races {
   race::Pairs pairs;
 
  private:
+  /// A tool that is made where another one was is not the same.
+  static std::uint64_t next_number() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+  }
+  const std::uint64_t number_ = next_number();
   CommandLog& log_of(const ObservedCommand* command);
   std::mutex mutex_;
   std::map<std::thread::id, std::unique_ptr<ThreadGroup>> threads_;
   std::map<const ObservedCommand*, std::unique_ptr<CommandLog>> logs_;
+  std::unique_ptr<CommandLog> spare_;  ///< one that has been settled: its memory is there already
 };
 
 ThreadGroup& Races::here() {
+  thread_local std::pair<std::uint64_t, ThreadGroup*> recent{0, nullptr};
+  if (recent.first == number_) return *recent.second;
   const std::lock_guard lock(mutex_);
   std::unique_ptr<ThreadGroup>& thread = threads_[std::this_thread::get_id()];
   if (!thread) thread = std::make_unique<ThreadGroup>(pairs);
+  recent = {number_, thread.get()};
   return *thread;
 }
 
 CommandLog& Races::log_of(const ObservedCommand* command) {
   std::unique_ptr<CommandLog>& log = logs_[command];
-  if (!log) log = std::make_unique<CommandLog>();
+  if (!log) log = spare_ ? std::move(spare_) : std::make_unique<CommandLog>();
   return *log;
 }
 
@@ -105,7 +117,10 @@ void Races::settle(const void* owner, const ObservedCommand* but) {
   }
   for (auto at = logs_.begin(); at != logs_.end();) {
     const bool other = owner_of(at->first) != owner || (but != nullptr && (at->first == but || !at->second->compute()));
-    if (!other) at->second->settle(pairs, at->first);
+    if (!other) {
+      at->second->settle(pairs, at->first);
+      if (at->second->is_small()) spare_ = std::move(at->second);
+    }
     at = other ? std::next(at) : logs_.erase(at);
   }
 }
@@ -126,7 +141,7 @@ class RaceWatch : public spirv::exec::Watch {
     const std::uint32_t site = program_.sites.by_instruction[index];
     if (site == race::Sites::kNone) return;
     race::record_access(thread_.group, thread_.tracked, site, wave, i, note, first_,
-                        program_.compute() ? nullptr : names_);
+                        program_.compute() ? nullptr : thread_.names);
   }
 
   void probe(const Wave& wave, const spirv::ProbeOp& op) override {
@@ -140,7 +155,7 @@ class RaceWatch : public spirv::exec::Watch {
     } else if (probe.opcode != kOpControlBarrier) {
       thread_.group.interlock(probe.opcode == kOpBeginInterlock);
     } else if (order.execution == spirv::MemoryScope::kSubgroup) {
-      if (program_.compute()) thread_.group.order().subgroup_barrier(order, first_);
+      if (program_.compute()) thread_.group.subgroup_barrier(order, first_);
     } else if (program_.compute()) {
       thread_.group.arrive(number_, order, !wave.program->has_barrier);
     }
@@ -161,20 +176,20 @@ class RaceWatch : public spirv::exec::Watch {
 
   void begin_draw(const Wave& wave) {
     const spirv::exec::Invocations invocations(wave);
+    std::ranges::fill(thread_.names, 0u);
     base::for_each_lane(wave.active, [&](std::size_t lane) {
       const auto id = invocations(wave, lane);
-      names_[lane] = id[0] | id[1] << 16;
+      thread_.names[lane] = id[0] | id[1] << 16;
     });
     if (program_.context.stage != VK_SHADER_STAGE_FRAGMENT_BIT && program_.context.stage != VK_SHADER_STAGE_VERTEX_BIT)
-      for (std::uint32_t lane = 0; lane < base::kWaveWidth; ++lane) names_[lane] = lane;
-    races_.begin(thread_, program_, wave, {{}, wave.active != 0 ? names_[std::countr_zero(wave.active)] : 0});
+      for (std::uint32_t lane = 0; lane < base::kWaveWidth; ++lane) thread_.names[lane] = lane;
+    races_.begin(thread_, program_, wave, {{}, wave.active != 0 ? thread_.names[std::countr_zero(wave.active)] : 0});
   }
 
   Races& races_;
   const Told& program_;
   ThreadGroup& thread_;
   std::uint32_t first_ = 0, number_ = 0;  ///< the wave's first invocation; its number in the workgroup
-  std::uint32_t names_[base::kWaveWidth] = {};
 };
 
 /// VITRINE_RACE_SAMPLE: of how many workgroups one is watched.

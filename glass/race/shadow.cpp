@@ -6,7 +6,10 @@
 namespace vitrine::glass::race {
 
 void Page::clear() {
-  for (Slots* slots : {&write, &read, &other, &atomic}) std::memset(slots->time, 0, sizeof slots->time);
+  for (Slots* slots : {&write, &read, &other, &atomic}) {
+    std::memset(slots->time, 0, sizeof slots->time);
+    slots->used = 0;
+  }
 }
 
 Page& Shadow::find(std::uint64_t number) {

@@ -14,10 +14,11 @@ inline constexpr std::uint32_t kPageWords = 64;
 inline constexpr std::uint32_t kPageBytes = kPageWords * 4;
 
 /// The last accesses of a kind, by word.
-struct Slots {
+struct alignas(64) Slots {
   std::uint32_t who[kPageWords];   ///< the invocation (Group::who)
   std::uint32_t time[kPageWords];  ///< Group::time; 0: there is none
   std::uint32_t site[kPageWords];  ///< Sites::all << 4 | bytes of the word, a bit each
+  std::uint64_t used;              ///< words to which something has been done
 };
 
 /// 64 words. Of reads the first one since the last barrier and the last one of another invocation.
@@ -25,7 +26,7 @@ struct Page {
   std::uint64_t number = 0;      ///< address / kPageBytes
   std::uint32_t generation = 0;  ///< shared memory: of the workgroup
   Slots write, read, other, atomic;
-  std::uint32_t value[kPageWords];  ///< that `write` wrote
+  alignas(64) std::uint32_t value[kPageWords];  ///< that `write` wrote
   void clear();
 };
 

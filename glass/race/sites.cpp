@@ -1,9 +1,8 @@
 // See sites.h.
 #include "glass/race/sites.h"
 
+#include <algorithm>
 #include <span>
-
-#include "glass/sanitize/accesses.h"
 
 namespace vitrine::glass::race {
 namespace {
@@ -53,6 +52,12 @@ bool memory_site(const spirv::Program& program, const spirv::Instruction& i, con
   const sanitize::Extent extent = sanitize::extent_of(row, note.access);
   if (extent.end == 0) return false;
   site.bytes = extent.end - extent.first;
+  site.touched = sanitize::touched_by(row, note.access);
+  site.element_bytes = row.element_bytes;
+  site.first = row.added + extent.first;
+  site.end = row.added + extent.end;
+  for (std::uint32_t c = 0; c < site.touched.count; ++c)
+    site.component[c] = std::min((site.touched.at[c] - row.added) / row.element_bytes, 3u);
   site.set = row.set;
   site.slot = row.slot;
   return true;

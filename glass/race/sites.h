@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "glass/place.h"
+#include "glass/sanitize/accesses.h"
 #include "spirv/memory_order.h"
 #include "spirv/program.h"
 
@@ -25,11 +26,18 @@ struct Site {
   spirv::ir::Origin origin;
   std::uint64_t place = 0;  ///< tells it apart: what the compiler makes of one access, by parts, is one place
   std::uint32_t bytes = 4;  ///< that one lane touches
+  /// Of memory: parts of the access behind its address, a component each, their size, and which component each is.
+  sanitize::Touched touched;
+  std::uint32_t element_bytes = 4, component[4] = {};
+  std::uint32_t first = 0, end = 0;  ///< all parts: bytes behind its address
   std::uint32_t set = 0, slot = 0;
   bool is_texel = false;  ///< of an image or texel buffer
 
   bool writes() const { return action == spirv::Access::kStore || (action == spirv::Access::kAtomic && atomic_writes); }
   bool is_atomic() const { return action == spirv::Access::kAtomic; }
+  /// What Group::log_shared() may take.
+  bool is_logged() const { return memory == Memory::kShared && action != spirv::Access::kStore; }
+  bool loads() const { return action == spirv::Access::kLoad; }
 };
 
 /// The sites of a program. It keeps nothing of the program itself, which may be gone before the findings are told.
