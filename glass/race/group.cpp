@@ -11,6 +11,10 @@ std::uint32_t site_of(std::uint32_t slot) { return (slot & ~kInterlocked) >> 4; 
 
 Record record_of(const Slots& slots, std::uint32_t k) { return {slots.who[k], slots.time[k], slots.site[k]}; }
 
+/// Whether a write, or a read, does by itself what a barrier may do (Vulkan memory model).
+bool makes_available(const Site& site) { return (site.order.bits & spirv::MemoryOrder::kPointerAvailable) != 0; }
+bool makes_visible(const Site& site) { return (site.order.bits & spirv::MemoryOrder::kPointerVisible) != 0; }
+
 void put(Slots& slots, std::uint32_t k, const Record& record) {
   slots.who[k] = record.who;
   slots.time[k] = record.time;
@@ -39,7 +43,7 @@ void Group::begin(const Told& program, const spirv::ObservedCommand* command, co
   if (!goes_on) {
     device_.reset();
     groups_.clear();
-    order_.begin(size_, program.sites.vulkan_model);
+    order_.begin(size_, program.sites.vulkan_model, program.sites.has_narrow_scope);
   }
   groups_.push_back(who);
   if (goes_on) order_.begin_group(static_cast<std::uint32_t>(groups_.size() - 1));
@@ -48,7 +52,8 @@ void Group::begin(const Told& program, const spirv::ObservedCommand* command, co
 }
 
 void Group::end(CommandLog& log) {
-  if (!whole_ && device_.size() != 0) log.add(*program_, groups_[0], device_);
+  // Which waves of a draw atomic operations order is not followed.
+  if (!whole_ && !program_->sites.orders_waves && device_.size() != 0) log.add(*program_, groups_[0], device_);
   device_.reset();
   program_ = nullptr;
 }
@@ -89,8 +94,9 @@ void Group::check(const Slots& slots, std::uint32_t k, std::uint32_t site, std::
   const Site &now = program_->sites.all[site], &then = program_->sites.all[site_of(earlier.site)];
   Conflict::Kind kind = Conflict::Kind::kRace;
   if (now.is_atomic() && then.is_atomic()) {
-    const bool near = order_.same_group(who, earlier.who);
-    const auto covers = near ? spirv::covers_workgroup : spirv::covers_device;
+    const auto covers = order_.same_subgroup(who, earlier.who) ? covers_subgroup
+                        : order_.same_group(who, earlier.who)  ? spirv::covers_workgroup
+                                                               : spirv::covers_device;
     if (covers(now.order.memory) && covers(then.order.memory)) return;
     kind = Conflict::Kind::kScope;
   } else if (!now.writes() && !then.writes()) {
@@ -101,7 +107,8 @@ void Group::check(const Slots& slots, std::uint32_t k, std::uint32_t site, std::
     const bool locked = interlocked_ && (earlier.site & kInterlocked) != 0 && earlier.who == who;
     if (!locked) tell(earlier, site, who, touch, kind, both && page.value[k] == touch.value);
   } else if (then.writes() && now.action == spirv::Access::kLoad &&
-             (now.is_private || then.is_private || order_.hidden(earlier, now.memory))) {
+             (now.is_private || then.is_private ||
+              order_.hidden(earlier, now.memory, makes_available(then), makes_visible(now)))) {
     tell(earlier, site, who, touch, Conflict::Kind::kVisibility, false);
   }
 }

@@ -14,8 +14,6 @@ Times times_of(std::uint32_t memories, std::uint32_t time) {
   return times;
 }
 
-bool covers_subgroup(MemoryScope scope) { return covers_workgroup(scope) || scope == MemoryScope::kSubgroup; }
-
 }  // namespace
 
 std::uint32_t Order::memories_of(std::uint32_t semantics) {
@@ -24,14 +22,10 @@ std::uint32_t Order::memories_of(std::uint32_t semantics) {
          ((semantics & MemoryOrder::kImageMemory) != 0 ? 1u << static_cast<unsigned>(Memory::kImage) : 0);
 }
 
-bool Order::visible_by(const MemoryOrder& order, bool vulkan_model) {
-  constexpr std::uint32_t kBoth = MemoryOrder::kMakeAvailable | MemoryOrder::kMakeVisible;
-  return !vulkan_model || (order.bits & kBoth) == kBoth;
-}
-
-void Order::begin(std::uint32_t size, bool vulkan_model) {
+void Order::begin(std::uint32_t size, bool vulkan_model, bool narrow) {
   size_ = std::max(size, 1u);
   vulkan_model_ = vulkan_model;
+  narrow_ = narrow;
   time_ = 1;
   locations_.clear();
   begin_group(0);
@@ -40,7 +34,7 @@ void Order::begin(std::uint32_t size, bool vulkan_model) {
 void Order::begin_group(std::uint32_t group) {
   group_ = group;
   ++time_;
-  from_ = visible_ = times_of(7, time_);
+  from_ = visible_ = available_from_ = visible_from_ = times_of(7, time_);
   subgroups_.clear();
   invocations_.clear();
   group_known_.clear();
@@ -73,7 +67,11 @@ void Order::barrier(const MemoryOrder& order, std::uint32_t fenced) {
     for (std::uint32_t first = 0; first < size_; first += base::kWaveWidth) subgroup_barrier(order, first);
   raise(from_, times_of(memories, time_));
   raise(group_fenced_, times_of(fenced, time_));
-  if (visible_by(order, vulkan_model_)) raise(visible_, times_of(memories, time_));
+  const bool available = !vulkan_model_ || (order.bits & MemoryOrder::kMakeAvailable) != 0;
+  const bool visible = !vulkan_model_ || (order.bits & MemoryOrder::kMakeVisible) != 0;
+  if (available) raise(available_from_, times_of(memories, time_));
+  if (visible) raise(visible_from_, times_of(memories, time_));
+  if (available && visible) raise(visible_, times_of(memories, time_));
   for (const auto& [who, invocation] : invocations_) {
     group_known_.join(invocation.known);
     group_pending_.join(invocation.pending);
@@ -118,22 +116,28 @@ void Order::atomic(const Site& site, std::uint64_t location, std::uint32_t who) 
   if (!releases && !fenced && at == locations_.end()) return;
   Location& there = locations_[location];
   Invocation& invocation = invocations_[who];
+  const bool subgroup_valid = there.of_group == group_ && there.of_subgroup == subgroup_of(who);
   const bool group_valid = there.of_group == group_ && !there.group.empty();
   if (site.atomic_reads) {
     Clock seen;
     if (covers_device(order.memory)) seen.join(there.device);
     if (group_valid && covers_workgroup(order.memory)) seen.join(there.group);
+    if (subgroup_valid && covers_subgroup(order.memory)) seen.join(there.subgroup);
     invocation.pending.join(seen);
     if (order.acquires()) invocation.known.join(seen);
   } else {
     there.device.clear();
     there.group.clear();
+    there.subgroup.clear();
   }
   if (!site.atomic_writes || (!releases && !fenced)) return;
+  if (!subgroup_valid) there.subgroup.clear();
   if (there.of_group != group_) there.group.clear();
   there.of_group = group_;
+  there.of_subgroup = subgroup_of(who);
   ++time_;
   const std::uint32_t memories = releases ? memories_of(order.bits) : 0;
+  if (narrow_ && covers_subgroup(order.memory)) release(there.subgroup, who, invocation, memories, !releases);
   if (covers_workgroup(order.memory)) release(there.group, who, invocation, memories, !releases);
   if (covers_device(order.memory) && (releases || invocation.device || group_device_))
     release(there.device, who, invocation, memories, !releases);
@@ -155,9 +159,10 @@ bool Order::before(const Record& record, std::uint32_t who, Memory memory) const
   return own != invocations_.end() && own->second.known.knows(record.who, group, record.time, m);
 }
 
-bool Order::hidden(const Record& record, Memory memory) const {
+bool Order::hidden(const Record& record, Memory memory, bool available, bool visible) const {
   const auto m = static_cast<std::size_t>(memory);
-  return record.who / size_ == group_ && record.time < from_[m] && record.time >= visible_[m];
+  if (record.who / size_ != group_ || record.time >= from_[m]) return false;
+  return (!available && record.time >= available_from_[m]) || (!visible && record.time >= visible_from_[m]);
 }
 
 }  // namespace vitrine::glass::race

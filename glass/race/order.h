@@ -12,6 +12,10 @@
 
 namespace vitrine::glass::race {
 
+inline bool covers_subgroup(spirv::MemoryScope scope) {
+  return spirv::covers_workgroup(scope) || scope == spirv::MemoryScope::kSubgroup;
+}
+
 /// An access that has been recorded.
 struct Record {
   std::uint32_t who = 0, time = 0, site = 0;
@@ -20,7 +24,8 @@ struct Record {
 class Order {
  public:
   /// A dispatch, or a workgroup that nothing orders with others. `size`: invocations of a workgroup.
-  void begin(std::uint32_t size, bool vulkan_model);
+  /// `narrow`: some atomic operations' scope does not hold the device.
+  void begin(std::uint32_t size, bool vulkan_model, bool narrow);
   /// The next workgroup of a dispatch.
   void begin_group(std::uint32_t group);
 
@@ -44,13 +49,17 @@ class Order {
 
   /// Whether an access that was recorded happened before what `who` does now.
   bool before(const Record& record, std::uint32_t who, Memory memory) const;
-  /// Whether barriers have ordered what was recorded, but have not made it available and visible (Vulkan memory model).
-  bool hidden(const Record& record, Memory memory) const;
+  /// Whether barriers have ordered what was recorded, but nothing has made it available and visible (Vulkan memory
+  /// model). `available`, `visible`: the write or the read does so by itself.
+  bool hidden(const Record& record, Memory memory, bool available, bool visible) const;
   /// Whether there are such barriers.
   bool hides(Memory memory) const {
     return visible_[static_cast<std::size_t>(memory)] != from_[static_cast<std::size_t>(memory)];
   }
   bool same_group(std::uint32_t a, std::uint32_t b) const { return a / size_ == b / size_; }
+  bool same_subgroup(std::uint32_t a, std::uint32_t b) const {
+    return same_group(a, b) && subgroup_of(a) == subgroup_of(b);
+  }
 
   /// Kinds of memory that a barrier orders.
   static std::uint32_t memories_of(std::uint32_t semantics);
@@ -62,18 +71,23 @@ class Order {
     bool device = false;   ///< the fence's scope
   };
   struct Location {
-    Clock device, group;
-    std::uint32_t of_group = 0;  ///< whose `group` is
+    Clock device, group, subgroup;
+    std::uint32_t of_group = 0, of_subgroup = 0;  ///< whose `group` and `subgroup` are
   };
+
+  /// Its number in the workgroup. Of draws one wave is looked at.
+  std::uint32_t subgroup_of(std::uint32_t who) const {
+    return size_ == ~0u ? 0 : who % size_ / static_cast<std::uint32_t>(base::kWaveWidth);
+  }
 
   void acquire(Invocation& invocation, const Clock& from);
   void release(Clock& to, std::uint32_t who, const Invocation& invocation, std::uint32_t memories, bool fence_only);
-  static bool visible_by(const spirv::MemoryOrder& order, bool vulkan_model);
 
   std::uint32_t size_ = 1, time_ = 1, group_ = 0;
-  bool vulkan_model_ = false;
-  Times from_{}, visible_{};
-  std::vector<Times> subgroups_;  ///< by number in the workgroup
+  bool vulkan_model_ = false, narrow_ = false;
+  Times from_{}, visible_{};                 ///< visible: and have made it available and visible
+  Times available_from_{}, visible_from_{};  ///< each of the two alone
+  std::vector<Times> subgroups_;             ///< by number in the workgroup
   std::unordered_map<std::uint32_t, Invocation> invocations_;
   // Through barriers:
   Clock group_known_, group_pending_;

@@ -47,7 +47,8 @@ bool memory_site(const spirv::Program& program, const spirv::Instruction& i, con
   if (note.space == MemorySpace::kShared && !compute) return false;  // memory of the stage, not the shader's
   site.memory = note.space == MemorySpace::kShared ? Memory::kShared : Memory::kBuffer;
   site.action = note.access;
-  site.atomic_reads = sanitize::reads(row, note.access);
+  // An exchange reads, too: what sanitize says is about values that are used.
+  site.atomic_reads = note.access == Access::kAtomic && row.atomic != spirv::ir::AtomicOp::kStore;
   site.atomic_writes = note.access == Access::kAtomic && sanitize::writes(row, note.access);
   const sanitize::Extent extent = sanitize::extent_of(row, note.access);
   if (extent.end == 0) return false;
@@ -76,7 +77,7 @@ bool image_site(const spirv::Program& program, const spirv::Instruction& i, Site
       break;
     case ImageAccess::kAtomic:
       site.action = Access::kAtomic;
-      site.atomic_reads = info.atomic != AtomicOp::kStore && info.atomic != AtomicOp::kExchange;
+      site.atomic_reads = info.atomic != AtomicOp::kStore;
       site.atomic_writes = info.atomic != AtomicOp::kLoad;
       break;
     default:
@@ -121,6 +122,7 @@ Sites::Sites(const ShaderIdentity& shader, const spirv::Program& program) {
     all.push_back(site);
   }
   orders_device = orders && writes_device && shader.stage == VK_SHADER_STAGE_COMPUTE_BIT;
+  orders_waves = orders && shader.stage != VK_SHADER_STAGE_COMPUTE_BIT;
 }
 
 std::string what_text(const Site& site) {

@@ -49,6 +49,7 @@ struct Sites {
   bool vulkan_model = false;                  ///< the Vulkan memory model
   bool hlsl = false;                          ///< what a workgroup shares is coherent without saying so
   bool orders_device = false;                 ///< atomic operations and fences may order workgroups
+  bool orders_waves = false;                  ///< the same of waves of a draw
   bool has_private = false;                   ///< some access is
   bool has_narrow_scope = false;              ///< an atomic operation's does not hold the device
   bool writes_device = false, writes_images = false, writes_global = false;

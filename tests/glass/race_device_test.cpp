@@ -16,6 +16,9 @@ constexpr char kBytes[] = "layout(set = 0, binding = 9) coherent buffer W { uint
 constexpr char kVulkanModel[] =
     "#pragma use_vulkan_memory_model\nlayout(set = 0, binding = 9) nonprivate buffer W { uint w[]; };\n"
     "layout(set = 0, binding = 9) buffer X { uint x[]; };";
+constexpr char kCoherentModel[] =
+    "#pragma use_vulkan_memory_model\nlayout(set = 0, binding = 9) nonprivate buffer W { uint w[]; };\n"
+    "layout(set = 0, binding = 9) workgroupcoherent buffer Y { uint y[]; };";
 #define RACE_BARRIER(semantics) \
   "controlBarrier(gl_ScopeWorkgroup, gl_ScopeWorkgroup, gl_StorageSemanticsBuffer, " semantics ");\n"
 constexpr char kAvailable[] = "w[i] = i;\n" RACE_BARRIER(
@@ -57,6 +60,12 @@ constexpr PlantedRace kPlanted[] = {
     {"not_coherent", "race-visibility", 64, 1, kPlainBuffer,
      "#w[i] = i;\nmemoryBarrierBuffer();\nbarrier();\n@v[i] = w[i ^ 1u];", "w[i] = i;\nv[i] = w[i];"},
     // ---- the Vulkan memory model
+    {"write_that_is_available_but_not_visible", "race-visibility", 64, 1, kCoherentModel,
+     "#y[i] = i;\n" RACE_BARRIER("gl_SemanticsAcquireRelease") "@v[i] = w[i ^ 1u];",
+     "y[i] = i;\n" RACE_BARRIER("gl_SemanticsAcquireRelease") "v[i] = y[i ^ 1u];"},
+    {"write_that_is_visible_but_not_available", "race-visibility", 64, 1, kCoherentModel,
+     "#w[i] = i;\n" RACE_BARRIER("gl_SemanticsAcquireRelease") "@v[i] = y[i ^ 1u];",
+     "w[i] = i;\n" RACE_BARRIER("gl_SemanticsAcquireRelease | gl_SemanticsMakeAvailable") "v[i] = y[i ^ 1u];"},
     {"model_nothing_made_available", "race-visibility", 64, 1, kVulkanModel,
      "#w[i] = i;\n" RACE_BARRIER("gl_SemanticsAcquireRelease") "@v[i] = w[i ^ 1u];", kAvailable},
     {"model_nothing_made_visible", "race-visibility", 64, 1, kVulkanModel,

@@ -117,6 +117,23 @@ constexpr PlantedRace kPlanted[] = {
      "@OUT(s[127u - i]);",
      "s[i] = i;\ncontrolBarrier(gl_ScopeWorkgroup, gl_ScopeWorkgroup, gl_StorageSemanticsShared, "
      "gl_SemanticsAcquireRelease);\nOUT(s[127u - i]);"},
+    {"exchange_that_acquires_nothing", "race-shared", 8, 1, "shared uint s, flag;",
+     "if (i == 0u) flag = 0u;\nbarrier();\nif (i == 0u) {\n#s = 5u;\n"
+     "atomicExchange(flag, 1u, gl_ScopeWorkgroup, gl_StorageSemanticsShared, gl_SemanticsRelease);\n}\n"
+     "if (i == 1u && atomicExchange(flag, 2u) == 1u)\n@OUT(s);",
+     "if (i == 0u) flag = 0u;\nbarrier();\nif (i == 0u) {\ns = 5u;\n"
+     "atomicExchange(flag, 1u, gl_ScopeWorkgroup, gl_StorageSemanticsShared, gl_SemanticsRelease);\n}\n"
+     "if (i == 1u && atomicExchange(flag, 2u, gl_ScopeWorkgroup, gl_StorageSemanticsShared, gl_SemanticsAcquire) == "
+     "1u)\n"
+     "OUT(s);"},
+    {"relaxed_flag_of_a_subgroup", "race-shared", 128, 1, "shared uint s, flag;",
+     "if (i == 0u) flag = 0u;\nbarrier();\nif (i == 0u) {\n#s = 5u;\n"
+     "atomicStore(flag, 1u, gl_ScopeSubgroup, 0, 0);\n}\n"
+     "if (i == 1u && atomicLoad(flag, gl_ScopeSubgroup, 0, 0) == 1u)\n@OUT(s);",
+     "if (i == 0u) flag = 0u;\nbarrier();\nif (i == 0u) {\ns = 5u;\n"
+     "atomicStore(flag, 1u, gl_ScopeSubgroup, gl_StorageSemanticsShared, gl_SemanticsRelease);\n}\n"
+     "if (i == 1u && atomicLoad(flag, gl_ScopeSubgroup, gl_StorageSemanticsShared, gl_SemanticsAcquire) == 1u)\n"
+     "OUT(s);"},
     {"relaxed_flag", "race-shared", 8, 1, "shared uint s, flag;",
      "if (i == 0u) flag = 0u;\nbarrier();\nif (i == 0u) {\n#s = 5u;\natomicExchange(flag, 1u);\n}\n"
      "if (i == 1u && atomicOr(flag, 0u) == 1u)\n@OUT(s);",
