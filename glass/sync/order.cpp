@@ -21,6 +21,13 @@ bool comes_by(const Passage& passage, const Clock& clock) {
 /// Behind a passage to all stages is everything that comes later, also what waits for no stage.
 bool is_for_all(const Passage& passage) { return (~passage.second.executed & kAllCommands) == 0; }
 
+/// Nothing waits for a passage to no stage; what waits for all that came before it, its commands included, does.
+bool is_behind_all(const Passage& passage, const Clock& before) {
+  bool all = passage.second.executed == 0;
+  for_each_bit(kAllCommands, [&](std::size_t s) { all &= before.done[s] >= passage.tag; });
+  return all;
+}
+
 }  // namespace
 
 void Clock::join(const Clock& other) {
@@ -84,7 +91,7 @@ Standing Order::standing(const PastWrite& write, Use use) const {
 Standing Order::standing(const PastWrite& write, const Clock& before) {
   if (before.available[write_class(write.use)] >= write.tag) return Standing::kVisible;
   for (const Passage& passage : write.passages)
-    if (is_for_all(passage) || comes_by(passage, before)) return Standing::kVisible;
+    if (is_for_all(passage) || comes_by(passage, before) || is_behind_all(passage, before)) return Standing::kVisible;
   const bool ordered = before.done[index(write.use.stage)] >= write.tag;
   return ordered ? Standing::kNotAvailable : Standing::kUnordered;
 }

@@ -53,6 +53,17 @@ TEST(SyncOrder, AWriteIsUnorderedThenNotAvailableThenNotVisibleThenVisible) {
   EXPECT_EQ(order.standing({kStore, work(5), {}}, kLoad), Standing::kUnordered) << "it comes behind the barrier";
 }
 
+TEST(SyncOrder, WhatWaitsForAllComesBehindABarrierToNoStage) {
+  const Order order;
+  const Passage passages[] = {{second_scope(VK_PIPELINE_STAGE_2_NONE, 0), make_tag(1, 2, Part::kBefore)}};
+  const PastWrite write{kStore, work(1), passages};
+  const auto standing_before = [&](VkPipelineStageFlags2 first, std::uint32_t command) {
+    return Order::standing(write, order.before(first_scope(first, 0), make_tag(1, command, Part::kBefore)));
+  };
+  EXPECT_EQ(standing_before(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 3), Standing::kVisible);
+  EXPECT_EQ(standing_before(kCompute, 3), Standing::kNotAvailable);
+}
+
 TEST(SyncOrder, ChainsHoldWhereStagesMeet) {
   Order order;
   const PastWrite write{kStore, work(1), {}};
