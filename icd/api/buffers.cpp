@@ -40,13 +40,14 @@ VKAPI_ATTR VkDeviceAddress VKAPI_CALL GetBufferDeviceAddress(VkDevice, const VkB
   return reinterpret_cast<VkDeviceAddress>(from_handle<Buffer>(info->buffer).data);
 }
 
-// Nothing is captured: bufferDeviceAddressCaptureReplay is not claimed.
-VKAPI_ATTR std::uint64_t VKAPI_CALL GetBufferOpaqueCaptureAddress(VkDevice, const VkBufferDeviceAddressInfo*) {
-  return 0;
+/// A buffer's address is its memory's and where it lies in it: nothing else is to be given back.
+VKAPI_ATTR std::uint64_t VKAPI_CALL GetBufferOpaqueCaptureAddress(VkDevice device,
+                                                                  const VkBufferDeviceAddressInfo* info) {
+  return GetBufferDeviceAddress(device, info);
 }
-VKAPI_ATTR std::uint64_t VKAPI_CALL GetDeviceMemoryOpaqueCaptureAddress(VkDevice,
-                                                                        const VkDeviceMemoryOpaqueCaptureAddressInfo*) {
-  return 0;
+VKAPI_ATTR std::uint64_t VKAPI_CALL
+GetDeviceMemoryOpaqueCaptureAddress(VkDevice, const VkDeviceMemoryOpaqueCaptureAddressInfo* info) {
+  return reinterpret_cast<std::uint64_t>(from_handle<DeviceMemory>(info->memory).data);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateBufferView(VkDevice device, const VkBufferViewCreateInfo* info,

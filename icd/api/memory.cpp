@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/shake.h"
+#include "glass/bug/capture.h"
 #include "glass/memory_shadow.h"
 #include "glass/session.h"
 #include "glass/sync/sync.h"
@@ -43,6 +44,17 @@ void bind_image(Image& image, VkImageAspectFlagBits aspect, std::byte* memory) {
   image.plane_data[texel::plane_of_aspect(image.layout, aspect)] = memory;
   const auto last = image.plane_data.begin() + (image.desc().disjoint ? image.layout.plane_count : 1);
   if (std::find(image.plane_data.begin(), last, nullptr) == last) image.data = image.plane_data[0];
+}
+
+/// Captured commands that follow addresses are run again with memory at the same ones (docs/glass/bugfile.md).
+Placement placement_of(const VkMemoryAllocateInfo& info) {
+  const auto* again = find_in_chain<VkMemoryOpaqueCaptureAddressAllocateInfo>(info.pNext);
+  if (again && again->opaqueCaptureAddress) return {static_cast<std::uintptr_t>(again->opaqueCaptureAddress), false};
+  const auto* flags = find_in_chain<VkMemoryAllocateFlagsInfo>(info.pNext);
+  if (!flags) return {};
+  const bool addressed = flags->flags & VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  const bool captured = flags->flags & VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_CAPTURE_REPLAY_BIT;
+  return {0, captured || (addressed && glass::bug::captures())};
 }
 
 /// The application says that it has written mapped memory, or is about to read it: told to the tool sync.
@@ -89,8 +101,10 @@ VkResult make_memory(Device& d, const VkMemoryAllocateInfo& info, const VkAlloca
     out = object.release();
     return VK_SUCCESS;
   }
-  Owned<DeviceMemory> object(create_object<DeviceMemory>(d.memory, allocator, info.allocationSize, allocated_bytes()));
-  if (!object->data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  const Placement placement = placement_of(info);
+  Owned<DeviceMemory> object(
+      create_object<DeviceMemory>(d.memory, allocator, info.allocationSize, allocated_bytes(), placement));
+  if (!object->data) return placement.address ? VK_ERROR_INVALID_OPAQUE_CAPTURE_ADDRESS : VK_ERROR_OUT_OF_DEVICE_MEMORY;
   out = object.release();
   return VK_SUCCESS;
 }

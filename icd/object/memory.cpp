@@ -20,9 +20,22 @@ constexpr VkDeviceSize kPoisonedBytes = VkDeviceSize{256} << 20;
 
 std::size_t page_size() { return static_cast<std::size_t>(sysconf(_SC_PAGESIZE)); }
 
-/// NORESERVE: a large allocation that is never touched costs address space only.
-void* map_anonymous(std::size_t bytes) {
-  return mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+// Far from where Linux puts programs, their heaps and mappings of its own choice: what lies here is free in the next
+// process, too. Nothing comes twice in one process.
+constexpr std::uintptr_t kFirstThatComesAgain = 0x2000'0000'0000, kGrain = std::uintptr_t{1} << 21;
+std::atomic<std::uintptr_t> next_that_comes_again = kFirstThatComesAgain;
+
+/// NORESERVE: a large allocation that is never touched costs address space only. MAP_FAILED: not at this place.
+void* map_anonymous(std::size_t bytes, Placement placement = {}) {
+  void* wanted = reinterpret_cast<void*>(placement.address);
+  if (placement.comes_again)
+    wanted = reinterpret_cast<void*>(next_that_comes_again.fetch_add((bytes / kGrain + 1) * kGrain));
+  const int fixed = placement.address ? MAP_FIXED_NOREPLACE : 0;
+  void* mapping =
+      mmap(wanted, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | fixed, -1, 0);
+  if (!fixed || mapping == MAP_FAILED || mapping == wanted) return mapping;
+  munmap(mapping, bytes);  // a system before Linux 4.17
+  return MAP_FAILED;
 }
 
 bool is_readable(const void* address) {
@@ -38,10 +51,11 @@ std::atomic<VkDeviceSize>& allocated_bytes() {
   return bytes;
 }
 
-DeviceMemory::DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<VkDeviceSize>& total)
+DeviceMemory::DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<VkDeviceSize>& total,
+                           Placement placement)
     : Object(m), size(bytes) {
   mapping_bytes_ = size + kTailBytes;
-  void* mapping = map_anonymous(mapping_bytes_);
+  void* mapping = map_anonymous(mapping_bytes_, placement);
   if (mapping == MAP_FAILED) return;
   mapping_ = mapping;
   data = static_cast<std::byte*>(mapping);

@@ -11,14 +11,20 @@ namespace vitrine::icd {
 /// Readable bytes behind the last one of every allocation, so that vector loads of a tail need no care.
 inline constexpr VkDeviceSize kTailBytes = 64;
 
+/// Where an allocation lies in the address space, since device addresses are host addresses.
+struct Placement {
+  std::uintptr_t address = 0;  ///< of its first byte; 0: anywhere
+  bool comes_again = false;    ///< where another process can have it at the same address
+};
+
 /// Bytes of the live DeviceMemory of all instances of the process: a heap is the machine's, not an instance's.
 std::atomic<VkDeviceSize>& allocated_bytes();
 
 /// A zero-filled mapping; pages appear when they are touched. kTailBytes follow the last one. It is private, or of a
 /// file that other devices and processes can map, or the application's.
 struct DeviceMemory : Object<VkDeviceMemory, VK_OBJECT_TYPE_DEVICE_MEMORY> {
-  /// data stays null if the system has no memory. `total` counts the bytes while the object lives.
-  DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<VkDeviceSize>& total);
+  /// data stays null if the system has no memory, or not there. `total` counts the bytes while the object lives.
+  DeviceMemory(const HostMemory& m, VkDeviceSize bytes, std::atomic<VkDeviceSize>& total, Placement placement = {});
   /// Nothing yet: one of the functions below follows.
   DeviceMemory(const HostMemory& m, VkDeviceSize bytes) : Object(m), size(bytes) {}
   ~DeviceMemory();
