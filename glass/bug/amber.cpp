@@ -70,6 +70,7 @@ bool overlaps(const Bug& bug, std::size_t number) {
 }
 
 void write_buffers(std::ostream& out, const Bug& bug) {
+  if (!bug.addressed.empty()) throw Unspeakable{"shaders that follow device addresses"};
   for (std::size_t i = 0; i < bug.buffers.size(); ++i) {
     if (overlaps(bug, i)) throw Unspeakable{"buffers that overlap"};
     if (!bug.buffers[i].name.empty()) out << "# " << bug.buffers[i].name << "\n";

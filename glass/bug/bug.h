@@ -53,6 +53,7 @@ struct Buffer {
   VkBufferUsageFlags usage = 0;
   std::uint32_t memory = kNone;
   std::uint64_t offset = 0;
+  bool gone = false;  ///< it was destroyed before the command
 };
 
 /// Texels of some layers of one level and aspect, packed as vkCmdCopyImageToBuffer packs them.
@@ -61,7 +62,8 @@ struct Texels {
   std::uint32_t level = 0, layer = 0, layers = 1;
   bool unwritten = false;  ///< as of pieces
   Blob before;
-  Blob after;  ///< null: the same
+  Blob after;    ///< null: the same
+  Blob written;  ///< a byte a block: 0, nothing had written it; null: all are alike
 };
 
 struct Image {
@@ -118,6 +120,7 @@ struct Descriptor {
   std::uint32_t buffer = kNone, view = kNone, texels = kNone, sampler = kNone;
   std::uint64_t offset = 0, range = 0;  ///< of the buffer, dynamic offsets applied
   Blob bytes;                           ///< of an inline uniform block
+  bool gone = false;                    ///< what it names was destroyed before the command; nothing else is known of it
 };
 
 /// What a descriptor of a type points to.
@@ -142,6 +145,7 @@ constexpr ResourceKind kind_of(VkDescriptorType type) {
 }
 /// Whether it has what its type needs.
 inline bool is_complete(const Descriptor& d, VkDescriptorType type) {
+  if (d.gone) return true;
   switch (kind_of(type)) {
     case ResourceKind::kBuffer:
       return d.buffer != kNone;
@@ -198,6 +202,7 @@ struct Command {
 /// What a tool found, in words, or why the device was lost.
 struct Found {
   std::string rule, message, place;
+  std::string function;  ///< that the place is in
 };
 
 struct Bug {
@@ -223,7 +228,8 @@ struct Bug {
   Blob push_constants;
   std::uint64_t pushed = 0;  ///< words of them that were set, a bit each
   std::vector<Descriptor> descriptors;
-  raster::State state;  ///< of draws; dynamic state is in it
+  std::vector<std::uint32_t> addressed;  ///< buffers that shaders reach through device addresses: they keep them
+  raster::State state;                   ///< of draws; dynamic state is in it
   std::vector<Stream> streams;
   Rendering rendering;
   Command command;

@@ -105,8 +105,8 @@ void Captures::found(const void* owner, const Finding& finding) {
   const std::lock_guard lock(mutex_);
   for (const auto& bug : owners_[owner].kept) {
     if (bug->submission != finding.address.submission || bug->command_number != finding.address.command) continue;
-    const std::string place = finding.address.frames.empty() ? std::string() : to_text(finding.address.frames.front());
-    bug->findings.push_back({finding.rule->id, finding.message, place});
+    const Frame place = finding.address.frames.empty() ? Frame{} : finding.address.frames.front();
+    bug->findings.push_back({finding.rule->id, finding.message, to_text(place), place.function});
   }
 }
 
@@ -117,7 +117,7 @@ void Captures::lost(const void* owner, const std::string& reason) noexcept {
     if (!owned.running) return;
     Bug& bug = *owned.kept.back();
     bug.lost = true;
-    bug.findings.push_back({"device-lost", reason, {}});
+    bug.findings.push_back({"device-lost", reason, {}, {}});
     owned.loss = to_file(bug);
   } catch (const std::bad_alloc&) {
     complain("the command that lost the device is not captured: no memory");

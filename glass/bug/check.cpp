@@ -43,13 +43,21 @@ std::string fault_of_image(const Image& image) {
   return {};
 }
 
+bool has_live_buffer(const Bug& bug, std::uint32_t memory) {
+  return std::ranges::any_of(bug.buffers, [&](const Buffer& b) { return b.memory == memory && !b.gone; });
+}
+
 std::string fault_of_objects(const Bug& bug) {
   for (const Memory& memory : bug.memories)
     if (std::string fault = fault_of_memory(memory); !fault.empty()) return fault;
   for (const Buffer& b : bug.buffers) {
     if (b.memory >= bug.memories.size() || b.size == 0) return "a buffer without memory";
     if (!inside(b.offset, b.size, bug.memories[b.memory].size)) return "a buffer outside of its memory";
+    if (b.gone && !bug.memories[b.memory].pieces.empty() && !has_live_buffer(bug, b.memory))
+      return "contents of memory that is gone";
   }
+  for (const std::uint32_t number : bug.addressed)
+    if (number >= bug.buffers.size()) return "a buffer that there is not";
   for (const Image& image : bug.images)
     if (std::string fault = fault_of_image(image); !fault.empty()) return fault;
   for (const View& view : bug.views) {

@@ -77,6 +77,7 @@ void fields(V& v, Buffer& b) {
   v("usage", b.usage);
   v("memory", b.memory);
   v("offset", b.offset);
+  v("gone", b.gone);
 }
 template <class V>
 void fields(V& v, Texels& t) {
@@ -87,6 +88,7 @@ void fields(V& v, Texels& t) {
   v("unwritten", t.unwritten);
   v("before", t.before);
   v("after", t.after);
+  v("written", t.written);
 }
 template <class V>
 void fields(V& v, Image& i) {
@@ -179,6 +181,7 @@ void fields(V& v, Descriptor& d) {
   v("offset", d.offset);
   v("range", d.range);
   v("bytes", d.bytes);
+  v("gone", d.gone);
 }
 template <class V>
 void fields(V& v, Stream& s) {
@@ -227,6 +230,7 @@ void fields(V& v, Found& f) {
   v("rule", f.rule);
   v("message", f.message);
   v("place", f.place);
+  v("function", f.function);
 }
 template <class V>
 void fields(V& v, raster::VertexAttribute& a) {
@@ -346,6 +350,7 @@ void fields(V& v, Bug& b) {
   v("pushConstants", b.push_constants);
   v("pushed", b.pushed);
   v("descriptors", b.descriptors);
+  v("addressed", b.addressed);
   if (!b.dispatches()) v("state", b.state);
   v("streams", b.streams);
   if (!b.dispatches()) v("rendering", b.rendering);

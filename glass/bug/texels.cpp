@@ -3,6 +3,12 @@
 
 namespace vitrine::glass::bug {
 
+Blocks blocks_of(const texel::FormatDesc& format, const texel::Extent& extent) {
+  const auto blocks = [](std::uint32_t texels, std::uint32_t side) { return (texels + side - 1) / side; };
+  return {blocks(extent.width, format.block_width), blocks(extent.height, format.block_height),
+          blocks(extent.depth, format.block_depth)};
+}
+
 std::uint64_t packed_bytes(const texel::ImageLayout& layout, VkImageAspectFlagBits aspect, std::uint32_t level,
                            std::uint32_t layers) {
   const texel::FormatDesc& whole = texel::format_desc(layout.desc.format);
@@ -10,10 +16,7 @@ std::uint64_t packed_bytes(const texel::ImageLayout& layout, VkImageAspectFlagBi
   if (level >= layout.desc.levels || !(whole.aspects & aspect)) return 0;
   const texel::PlaneLayout& plane = layout.plane[texel::plane_of_aspect(layout, aspect)];
   const texel::FormatDesc& format = texel::format_desc(plane.format);
-  const texel::Extent& extent = plane.level[level].extent;
-  const auto blocks = [](std::uint64_t texels, std::uint64_t side) { return (texels + side - 1) / side; };
-  return blocks(extent.width, format.block_width) * blocks(extent.height, format.block_height) *
-         blocks(extent.depth, format.block_depth) * format.block_bytes * layers;
+  return blocks_of(format, plane.level[level].extent).count() * format.block_bytes * layers;
 }
 
 }  // namespace vitrine::glass::bug

@@ -21,6 +21,7 @@ struct ReduceOptions {
   std::string file, output;
   std::string tools = "sanitize,race";  ///< that find what is to stay
   std::string rule;                     ///< what is to stay; empty: the first that the file has
+  bool any_place = false;               ///< the rule alone is to stay
   std::uint64_t runs = 500;             ///< at most
   bool shaders = true;                  ///< by spirv-reduce, too
   std::string stage, words;             ///< for spirv-reduce itself: tries this file as that stage

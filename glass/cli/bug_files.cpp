@@ -84,7 +84,7 @@ bool remove_names(bug::Bug& bug) {
   bug.pipeline.clear();
   bug.labels.clear();
   // They quote names and sources.
-  for (bug::Found& found : bug.findings) found.message = found.place = "";
+  for (bug::Found& found : bug.findings) found.message = found.place = found.function = "";
   return true;
 }
 

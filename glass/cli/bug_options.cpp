@@ -40,6 +40,7 @@ void add_reduce(CLI::App& app, ReduceOptions& options, int& code) {
       ->capture_default_str();
   command->add_option("--rule", options.rule, "What is to stay (default: the first finding of the file)")
       ->type_name("RULE");
+  command->add_flag("--any-place", options.any_place, "The rule may move to another place in the source");
   command->add_option("--runs", options.runs, "At most so many replays, and as many of each shader")
       ->type_name("NUMBER")
       ->capture_default_str();

@@ -70,6 +70,7 @@ struct PixelOptions {
   std::optional<std::uint32_t> primitive;          ///< why it did not reach the pixel
   unsigned depth = 4;                              ///< how often sources of sources are followed
   std::string json, html;                          ///< files; empty: none
+  std::string bug;                                 ///< file for what made the pixel's value; empty: none
   CommandLine application;
 };
 int pixel(const PixelOptions& options);

@@ -40,6 +40,7 @@ class Kept {
 template <class F>
 void for_each_buffer(bug::Bug& bug, const F& f) {
   for (bug::Descriptor& d : bug.descriptors) f(d.buffer);
+  for (std::uint32_t& number : bug.addressed) f(number);
   for (bug::BufferView& view : bug.buffer_views) f(view.buffer);
   for (bug::Stream& stream : bug.streams) f(stream.buffer);
   f(bug.command.indices.buffer);

@@ -181,6 +181,8 @@ void add_pixel(CLI::App& app, const Words& words, PixelOptions& options, int& co
       ->type_name("N");
   command->add_option("--json", options.json, "Write what the driver recorded")->type_name("FILE");
   command->add_option("--html", options.html, "Write the histories as a page")->type_name("FILE");
+  command->add_option("--bug", options.bug, "Write the draw or dispatch that made the value as a bug file")
+      ->type_name("FILE");
   command->callback([=, &words, &options, &code] {
     options.application = application_of(*command, words);
     code = pixel(options);

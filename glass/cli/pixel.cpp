@@ -7,6 +7,7 @@
 #include "glass/cli/application.h"
 #include "glass/cli/commands.h"
 #include "glass/cli/files.h"
+#include "glass/cli/pixel_bug.h"
 #include "glass/cli/pixel_history.h"
 #include "glass/cli/say.h"
 #include "glass/pixel/request.h"
@@ -140,6 +141,7 @@ int pixel(const PixelOptions& options) {
     if (story.cut || (!story.missing.empty() && options.depth > 0)) say("not all sources are told of");
     bool written = options.json.empty() || write_file(options.json, run.text);
     written = (options.html.empty() || write_file(options.html, to_html(*run.history, story))) && written;
+    written = (options.bug.empty() || write_maker(story, options.application, options.bug)) && written;
     if (run.ending.code) return run.ending.code;
     return written ? 0 : kCouldNotRun;
   }

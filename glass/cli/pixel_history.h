@@ -95,6 +95,10 @@ struct PixelStory {
   std::vector<std::pair<const PixelEvent*, std::pair<TexelKey, std::string>>> labels;
 };
 
+/// The draw or dispatch that made what the pixel of a story holds, through copies, blits and resolves backwards; null:
+/// none is known.
+const PixelEvent* maker_of(const PixelStory& story);
+
 /// What was asked for: of a texel as it was presented in a frame, or at its end. `frame`: 0: the last one.
 struct PixelQuestion {
   std::string image;

@@ -17,11 +17,21 @@ namespace fs = std::filesystem;
 
 const char kLost[] = "device-lost";
 
+// Lines of the disassembly, which stands for a source where a module names none, move when the module is reduced.
+constexpr std::string_view kDisassembly = ".spvasm:";
+
 /// What is to stay.
 struct Wanted {
   std::string rule;
-  std::string place;  ///< of the source; empty: any
+  std::string place;     ///< of the source; empty: any
+  std::string function;  ///< that the place is in; empty: any
 };
+
+bool is_there(const Finding& finding, const Wanted& wanted) {
+  const Frame place = finding.address.frames.empty() ? Frame{} : finding.address.frames.front();
+  return finding.rule->id == wanted.rule && (wanted.place.empty() || to_text(place) == wanted.place) &&
+         (wanted.function.empty() || place.function == wanted.function);
+}
 
 /// Replays candidates, as long as there are runs left.
 class Candidates {
@@ -44,8 +54,10 @@ class Candidates {
   }
 
   std::uint64_t runs() const { return runs_; }
-  /// Lines move when shaders become smaller.
-  void forget_place() { wanted_.place.clear(); }
+  /// A shader becomes smaller.
+  void let_lines_move() {
+    if (wanted_.place.find(kDisassembly) != std::string::npos) wanted_.place.clear();
+  }
 
  private:
   bool has_wanted(const fs::path& report) const {
@@ -53,10 +65,7 @@ class Candidates {
     std::string error;
     const std::optional<std::string> text = read_file(report);
     if (!text || !read_findings(*text, findings, error)) return false;
-    return std::any_of(findings.begin(), findings.end(), [&](const Finding& f) {
-      const std::string place = f.address.frames.empty() ? "" : to_text(f.address.frames.front());
-      return f.rule->id == wanted_.rule && (wanted_.place.empty() || place == wanted_.place);
-    });
+    return std::any_of(findings.begin(), findings.end(), [&](const Finding& f) { return is_there(f, wanted_); });
   }
 
   const ReduceOptions& options_;
@@ -65,10 +74,13 @@ class Candidates {
 };
 
 /// What was found and is to stay; says so if there is nothing.
-std::optional<Wanted> choose(const bug::Bug& bug, const std::string& rule) {
-  for (const bug::Found& found : bug.findings)
-    if (rule.empty() || found.rule == rule) return Wanted{found.rule, found.place};
-  if (!rule.empty()) return Wanted{rule, {}};
+std::optional<Wanted> choose(const bug::Bug& bug, const ReduceOptions& options) {
+  const std::string& rule = options.rule;
+  for (const bug::Found& found : bug.findings) {
+    if (!rule.empty() && found.rule != rule) continue;
+    return options.any_place ? Wanted{found.rule, {}, {}} : Wanted{found.rule, found.place, found.function};
+  }
+  if (!rule.empty()) return Wanted{rule, {}, {}};
   say("nothing was found in the command when it was captured: --rule says what is to stay");
   return std::nullopt;
 }
@@ -90,11 +102,24 @@ void reduce_stage(bug::Bug& bug, std::size_t number, const ReduceOptions& option
   if (!write_file(from, {reinterpret_cast<const char*>(words->data()), words->size()})) return;
   std::error_code error;
   const std::string self = fs::read_symlink("/proc/self/exe", error);
-  const Ending ending =
-      run_quietly({"spirv-reduce", "--step-limit=" + std::to_string(options.runs),
-                   "--temp-file-prefix=" + (folder.path() / "step").string(), from, "-o", to, "--", self, "reduce",
-                   base, "--rule", rule, "--tools", options.tools, "--stage", std::to_string(number)},
-                  {});
+  std::vector<std::string> words_of_command{"spirv-reduce",
+                                            "--step-limit=" + std::to_string(options.runs),
+                                            "--temp-file-prefix=" + (folder.path() / "step").string(),
+                                            from,
+                                            "-o",
+                                            to,
+                                            "--",
+                                            self,
+                                            "reduce",
+                                            base,
+                                            "--rule",
+                                            rule,
+                                            "--tools",
+                                            options.tools,
+                                            "--stage",
+                                            std::to_string(number)};
+  if (options.any_place) words_of_command.emplace_back("--any-place");
+  const Ending ending = run_quietly(words_of_command, {});
   if (ending.code == 127) say("shaders stay as they are: spirv-reduce (Debian package spirv-tools) is not there");
   const std::optional<std::string> reduced = read_file(to);
   if (!reduced || reduced->size() % 4 != 0 || reduced->size() >= words->size()) return;
@@ -109,7 +134,7 @@ int try_stage(bug::Bug bug, const ReduceOptions& options, Candidates& candidates
   if (!words || number >= bug.stages.size()) return kCouldNotRun;
   const auto* first = reinterpret_cast<const std::byte*>(words->data());
   bug.stages[number].words = std::make_shared<bug::Bytes>(first, first + words->size());
-  candidates.forget_place();
+  candidates.let_lines_move();
   return candidates.still_found(bug) ? 0 : kFound;
 }
 
@@ -137,7 +162,7 @@ bool write_with_results(const bug::Bug& bug, const std::string& output) {
 
 int reduce(const ReduceOptions& options) {
   std::optional<bug::Bug> bug = read_bug(options.file);
-  const std::optional<Wanted> wanted = bug ? choose(*bug, options.rule) : std::nullopt;
+  const std::optional<Wanted> wanted = bug ? choose(*bug, options) : std::nullopt;
   if (!wanted) return kCouldNotRun;
   Candidates candidates(options, *wanted);
   forget_results(*bug);

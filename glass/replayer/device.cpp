@@ -79,17 +79,19 @@ Device make_device(const bug::Bug& bug) {
   info.enabledExtensionCount = static_cast<std::uint32_t>(features.extensions().size());
   info.ppEnabledExtensionNames = features.extensions().data();
   must(vkCreateDevice(d.physical, &info, nullptr, &d.device), "vkCreateDevice");
+  d.addresses_again = features.addresses_again();
   d.extensions.assign(features.extensions().begin(), features.extensions().end());
   vkGetDeviceQueue(d.device, queue.queueFamilyIndex, 0, &d.queue);
   return d;
 }
 
-VkDeviceMemory allocate(const Device& d, const VkMemoryRequirements& needs, bool host) {
+VkDeviceMemory allocate(const Device& d, const VkMemoryRequirements& needs, bool host, const void* next) {
   constexpr VkMemoryPropertyFlags kHost = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   const VkMemoryPropertyFlags wanted = host ? kHost : VkMemoryPropertyFlags{0};
   for (std::uint32_t i = 0; i < d.memory.memoryTypeCount; ++i) {
     if (!(needs.memoryTypeBits >> i & 1) || (d.memory.memoryTypes[i].propertyFlags & wanted) != wanted) continue;
     VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+    info.pNext = next;
     info.allocationSize = needs.size;
     info.memoryTypeIndex = i;
     VkDeviceMemory memory = VK_NULL_HANDLE;

@@ -33,6 +33,7 @@ struct Device {
   VkPhysicalDeviceMemoryProperties memory{};
   std::vector<std::string> extensions;  ///< enabled
   bool names = false;                   ///< VK_EXT_debug_utils is there
+  bool addresses_again = false;         ///< bufferDeviceAddressCaptureReplay is enabled
 
   bool has(const char* extension) const;
   template <class F>
@@ -47,8 +48,8 @@ struct Device {
 /// as the bug had it.
 Device make_device(const bug::Bug& bug);
 
-/// Memory for these needs. `host`: that can be mapped.
-VkDeviceMemory allocate(const Device& device, const VkMemoryRequirements& needs, bool host);
+/// Memory for these needs. `host`: that can be mapped; `next`: what else the allocation is to have.
+VkDeviceMemory allocate(const Device& device, const VkMemoryRequirements& needs, bool host, const void* next = nullptr);
 
 /// The name that the application gave, unless it is empty.
 void set_name(const Device& device, VkObjectType type, std::uint64_t handle, const std::string& name);

@@ -97,6 +97,8 @@ Features::~Features() = default;
 
 const void* Features::chain() const { return &structures_->core; }
 
+bool Features::addresses_again() const { return structures_->core12.bufferDeviceAddressCaptureReplay; }
+
 void Features::add_extensions(VkPhysicalDevice device, const bug::Bug& bug) {
   std::uint32_t count = 0;
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);

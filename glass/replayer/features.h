@@ -20,6 +20,8 @@ class Features {
 
   /// For VkDeviceCreateInfo; lives as long as this.
   const void* chain() const;
+  /// bufferDeviceAddressCaptureReplay.
+  bool addresses_again() const;
   const std::vector<const char*>& extensions() const { return extensions_; }
 
  private:

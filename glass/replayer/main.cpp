@@ -125,6 +125,7 @@ int replay(const bug::Bug& bug, const char* updated) {
   const Device d = make_device(bug);
   const Resources resources = make_resources(d, bug);
   Bound bound = make_sets(d, bug, resources);
+  destroy_gone(d, bug, resources);
   bound.pipeline =
       bug.dispatches() ? make_compute_pipeline(d, bug, bound.layout) : make_graphics_pipeline(d, bug, bound.layout);
   try {
@@ -135,6 +136,10 @@ int replay(const bug::Bug& bug, const char* updated) {
     return bug.lost || updated ? kSame : kDiffers;
   }
   const Staging staging = make_staging(d, for_each_content(bug, [](const auto&, std::uint64_t) {}));
+  // What lies in no buffer, since `vitrine reduce` has left it out, is as it was.
+  for_each_content(bug, [&](const auto& content, std::uint64_t at) {
+    std::memcpy(staging.bytes + at, content.before->data(), content.before->size());
+  });
   copy_contents(d, bug, resources, staging, true);
   if (updated) return update(bug, &staging, updated) ? kSame : kCouldNotRun;
   if (!bug.lost) return compare_all(bug, staging);

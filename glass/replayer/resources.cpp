@@ -14,36 +14,7 @@ constexpr VkImageCreateFlags kKeptFlags =
 constexpr VkImageUsageFlags kKeptImageUsage =
     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
     VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
-constexpr VkBufferUsageFlags kKeptBufferUsage =
-    VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT |
-    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
-    VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
-constexpr VkFlags kTransfer = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-static_assert(kTransfer == (VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT));
-
-void make_buffers(const Device& d, const bug::Bug& bug, Resources& out) {
-  std::vector<VkMemoryRequirements> needs(bug.memories.size());
-  for (std::size_t i = 0; i < needs.size(); ++i) needs[i] = {bug.memories[i].size, 16, ~0u};
-  for (const bug::Buffer& source : bug.buffers) {
-    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-    info.size = source.size;
-    info.usage = (source.usage & kKeptBufferUsage) | kTransfer;
-    VkBuffer buffer = VK_NULL_HANDLE;
-    must(vkCreateBuffer(d.device, &info, nullptr, &buffer), "vkCreateBuffer");
-    set_name(d, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer), source.name);
-    VkMemoryRequirements one;
-    vkGetBufferMemoryRequirements(d.device, buffer, &one);
-    VkMemoryRequirements& all = needs[source.memory];
-    all.size = std::max(all.size, source.offset + one.size);
-    all.memoryTypeBits &= one.memoryTypeBits;
-    if (source.offset % one.alignment != 0) throw Failure("buffers that overlap are not aligned for this driver");
-    out.buffers.push_back(buffer);
-  }
-  for (const VkMemoryRequirements& one : needs) out.memories.push_back(allocate(d, one, false));
-  for (std::size_t i = 0; i < bug.buffers.size(); ++i)
-    must(vkBindBufferMemory(d.device, out.buffers[i], out.memories[bug.buffers[i].memory], bug.buffers[i].offset),
-         "vkBindBufferMemory");
-}
+constexpr VkImageUsageFlags kTransfer = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
 VkImage make_image(const Device& d, const bug::Image& source) {
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};

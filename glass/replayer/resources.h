@@ -27,8 +27,14 @@ struct Resources {
   std::vector<VkSampler> samplers;
 };
 
+/// Memories and buffers, bound.
+void make_buffers(const Device& device, const bug::Bug& bug, Resources& out);
+
 /// Makes them all and fills them. What the bug does not know stays as the device allocates it.
 Resources make_resources(const Device& device, const bug::Bug& bug);
+
+/// Destroys what was gone when the command ran: everything is bound by now.
+void destroy_gone(const Device& device, const bug::Bug& bug, const Resources& resources);
 
 /// Checks that texels have as many bytes as a copy of them takes. Throws Failure.
 void check_texels(const bug::Bug& bug);

@@ -1,6 +1,8 @@
 // Descriptor set layouts, sets and what is written into them.
 #include <algorithm>
+#include <optional>
 
+#include "glass/replayer/departing.h"
 #include "glass/replayer/pipeline.h"
 
 namespace vitrine::glass::replayer {
@@ -77,6 +79,8 @@ void write(const Device& d, const bug::Bug& bug, const Resources& resources, con
   write.pBufferInfo = &buffer;
   write.pImageInfo = &image;
   if (at.texels != kNone) write.pTexelBufferView = &resources.buffer_views[at.texels];
+  std::optional<Departing> departing;
+  if (at.gone) departing.emplace(d, write.descriptorType).fill(buffer, image, write);
   if (write.descriptorType == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK) {
     block.dataSize = write.descriptorCount = static_cast<std::uint32_t>(bug::size_of(at.bytes));
     block.pData = at.bytes ? at.bytes->data() : nullptr;

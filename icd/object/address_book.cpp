@@ -49,9 +49,9 @@ bool AddressBook::depends(const Entry& entry, const Entry& gone) {
   return in_memory && gone.has(reinterpret_cast<std::uintptr_t>(entry.place.data), 0);
 }
 
-void AddressBook::depart(const Entry& entry, std::string text) {
+void AddressBook::depart(const Entry& entry, std::string name, std::string text) {
   departures_.fetch_add(1, std::memory_order_relaxed);
-  departed_.push_back({entry, std::move(text)});
+  departed_.push_back({entry, std::move(name), std::move(text)});
   if (departed_.size() > kMaxDeparted) departed_.pop_front();
 }
 
@@ -65,14 +65,14 @@ void AddressBook::remove(ObjectRef object, const Namer& name) noexcept {
         (is_memory ? " freed after submission " : " destroyed after submission ") + std::to_string(submission_.load());
     const std::string self = called(object, name);
     std::vector<std::uint64_t> dependent{object.handle};
-    if (at != entries_.end()) depart(gone, self + "," + when);
+    if (at != entries_.end()) depart(gone, name(object), self + "," + when);
     for (std::size_t i = 0; i < dependent.size(); ++i) {
       const Entry parent = i == 0 ? gone : entries_.at(dependent[i]);
       for (const auto& [handle, entry] : entries_) {
         if (handle == parent.object.handle || !depends(entry, parent)) continue;
         if (std::find(dependent.begin(), dependent.end(), handle) != dependent.end()) continue;
         dependent.push_back(handle);
-        depart(entry, called(entry.object, name) + ", whose " + self + " was" + when);
+        depart(entry, name(entry.object), called(entry.object, name) + ", whose " + self + " was" + when);
       }
     }
     for (const std::uint64_t handle : dependent) entries_.erase(handle);
@@ -115,6 +115,23 @@ std::vector<spirv::AddressRange> AddressBook::buffers() const {
   }
   ranges.resize(std::min(ranges.size(), kept + 1));
   return ranges;
+}
+
+std::vector<ObjectRef> AddressBook::objects(VkObjectType type) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<ObjectRef> found;
+  for (const auto& [handle, entry] : entries_)
+    if (entry.object.type == type) found.push_back(entry.object);
+  return found;
+}
+
+std::vector<AddressBook::GoneBuffer> AddressBook::gone_buffers() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<GoneBuffer> found;
+  for (auto at = departed_.rbegin(); at != departed_.rend(); ++at)
+    if (at->entry.object.type == VK_OBJECT_TYPE_BUFFER)
+      found.push_back({static_cast<const std::byte*>(at->entry.place.first), at->entry.place.bytes, at->name});
+  return found;
 }
 
 bool AddressBook::is_alive(const void* first, std::uint64_t bytes, std::uint64_t time) const {

@@ -40,6 +40,17 @@ class AddressBook {
   /// The bytes of all buffers, ascending; those that touch are one.
   std::vector<spirv::AddressRange> buffers() const;
 
+  /// All objects of a type.
+  std::vector<ObjectRef> objects(VkObjectType type) const;
+  /// A buffer that is gone.
+  struct GoneBuffer {
+    const std::byte* first = nullptr;
+    std::uint64_t bytes = 0;
+    std::string name;
+  };
+  /// Those that are remembered, the youngest first.
+  std::vector<GoneBuffer> gone_buffers() const;
+
   /// How many entries this process has made. What is written into a descriptor is older than that.
   static std::uint64_t clock() { return clock_.load(std::memory_order_relaxed); }
   /// Whether an object has these bytes, of those that were there at `time` of the clock.
@@ -65,12 +76,13 @@ class AddressBook {
   };
   struct Departed {
     Entry entry;
+    std::string name;
     std::string text;
   };
 
   /// Whether an entry goes with `gone`, and is not `gone` itself.
   static bool depends(const Entry& entry, const Entry& gone);
-  void depart(const Entry& entry, std::string text);
+  void depart(const Entry& entry, std::string name, std::string text);
 
   static inline std::atomic<std::uint64_t> clock_ = 0;
   std::atomic<std::uint64_t> departures_ = 0, submission_ = 0;

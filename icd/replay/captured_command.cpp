@@ -47,11 +47,11 @@ bool add_stage(const std::shared_ptr<const CompiledShader>& shader, Bug& bug) {
   return true;
 }
 
-std::string add_stages(const Pipeline& pipeline, Bug& bug) {
+std::string add_stages(const Pipeline& pipeline, Bug& bug, bool& follows_addresses) {
   for (const auto& shader : {pipeline.compute, pipeline.vertex, pipeline.control, pipeline.evaluation,
                              pipeline.geometry, pipeline.fragment}) {
     if (!add_stage(shader, bug)) return "its pipeline was made before anything was captured";
-    if (shader && uses_addresses(shader->kept->words)) return "its shader follows device addresses";
+    if (shader && uses_addresses(shader->kept->words)) follows_addresses = true;
   }
   return {};
 }
@@ -224,7 +224,9 @@ std::string describe_captured(ReplayState& state, const CommandHeader& header, C
   bug.pipeline = name_of(state.device.physical_device.instance, ref(pipeline));
   bug.null_descriptors = state.device.features.test(Feature::nullDescriptor);
   bug.robust_access2 = state.device.features.test(Feature::robustBufferAccess2);
-  if (std::string problem = add_stages(pipeline, bug); !problem.empty()) return problem;
+  bool follows_addresses = false;
+  if (std::string problem = add_stages(pipeline, bug, follows_addresses); !problem.empty()) return problem;
+  if (follows_addresses) objects.add_addressed();
   add_push_constants(state, pipeline, bug);
   add_descriptors(point, objects, bug);
   kFill[header.type](header.command(), objects, bug.command);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "icd/object/address_book.h"
+
 namespace vitrine::icd {
 namespace {
 
@@ -14,6 +16,7 @@ struct Slots {
   const DescriptorSet* set = nullptr;  ///< null: nothing is bound
   const spirv::Descriptor* first = nullptr;
   std::uint32_t count = 0;
+  const std::uint64_t* written = nullptr;  ///< when (AddressBook::clock()); null: nobody knows
 };
 
 Slots slots_of(const BindPoint& point, std::uint32_t number, const SetBinding& binding) {
@@ -21,12 +24,24 @@ Slots slots_of(const BindPoint& point, std::uint32_t number, const SetBinding& b
   if (!set) return {};
   if (!is_dynamic(binding.type)) {
     if (binding.first_slot >= set->slot_count) return {};
-    return {set, set->slots + binding.first_slot, std::min(binding.count, set->slot_count - binding.first_slot)};
+    return {set, set->slots + binding.first_slot, std::min(binding.count, set->slot_count - binding.first_slot),
+            set->written ? set->written + binding.first_slot : nullptr};
   }
   const std::uint32_t first = point.pipeline->layout->first_dynamic[number] + binding.first_slot;
   if (first >= point.dynamic.size()) return {};
   return {set, point.dynamic.data() + first,
-          std::min<std::uint32_t>(binding.count, static_cast<std::uint32_t>(point.dynamic.size()) - first)};
+          std::min<std::uint32_t>(binding.count, static_cast<std::uint32_t>(point.dynamic.size()) - first),
+          set->written ? set->written + set->slot_count + binding.first_slot : nullptr};
+}
+
+/// Whether one of the resources of a descriptor that was written at `time` is gone (as in departed_descriptors.cpp).
+bool is_gone(const spirv::Descriptor& bound, const SetBinding& binding, std::uint64_t time, const Device& device) {
+  const auto gone = [&](const void* first, std::uint64_t bytes) {
+    return first && bytes != 0 && !device.addresses->is_alive(first, bytes, time);
+  };
+  return device.addresses && (gone(bound.data, bound.size) || gone(bound.texels, sizeof *bound.texels) ||
+                              gone(bound.image, sizeof *bound.image) ||
+                              (!binding.immutable_samplers && gone(bound.sampler, sizeof *bound.sampler)));
 }
 
 /// Says why nothing is bound.
@@ -60,7 +75,7 @@ void add_element(const spirv::Descriptor& bound, const SetBinding& binding, glas
   const bool incomplete =
       binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER && at.sampler == kNone && !binding.immutable_samplers;
   if (glass::bug::is_complete(at, binding.type) && !incomplete) return bug.descriptors.push_back(std::move(at));
-  if (there) note(at, "what is bound is gone, or of another type; nothing is bound here", bug);
+  if (there) note(at, "what is bound is of another type; nothing is bound here", bug);
 }
 
 glass::bug::Descriptor at(std::uint32_t set, const SetBinding& binding, std::uint32_t element) {
@@ -81,8 +96,15 @@ void add_elements(const BindPoint& point, std::uint32_t set, const SetBinding& b
     bug.descriptors.push_back(std::move(block));
     return;
   }
-  for (std::uint32_t i = 0; i < slots.count; ++i)
-    add_element(slots.first[i], binding, at(set, binding, i), objects, bug);
+  for (std::uint32_t i = 0; i < slots.count; ++i) {
+    const std::uint64_t time = slots.written ? slots.written[i] : ~std::uint64_t{0};
+    if (is_gone(slots.first[i], binding, time, objects.device())) {
+      bug.descriptors.push_back(at(set, binding, i));
+      bug.descriptors.back().gone = true;
+    } else {
+      add_element(slots.first[i], binding, at(set, binding, i), objects, bug);
+    }
+  }
 }
 
 glass::bug::Binding layout_of(const BindPoint& point, std::uint32_t set, const SetBinding& binding,

@@ -2,14 +2,14 @@
 // addresses alone.
 #include "icd/replay/captured_objects.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstring>
 #include <numeric>
 
-#include "glass/bug/texels.h"
 #include "glass/memory_shadow.h"
 #include "icd/object/address_book.h"
-#include "texel/transfer.h"
 
 namespace vitrine::icd {
 namespace {
@@ -17,6 +17,9 @@ namespace {
 using glass::bug::Blob;
 using glass::bug::Bytes;
 using glass::bug::kNone;
+
+/// What sizes of buffers are multiples of in memory.
+constexpr std::uintptr_t kGrain = 64;
 
 template <class T>
 const T* find_object(const Device& device, const void* first, std::uint64_t bytes) {
@@ -44,11 +47,32 @@ bool is_zero(const std::byte* first, std::uint64_t size) {
 }  // namespace
 
 std::uint32_t CapturedObjects::add_buffer(const Buffer& buffer) {
-  const auto at = std::find(buffers_.begin(), buffers_.end(), &buffer);
-  if (at != buffers_.end()) return static_cast<std::uint32_t>(at - buffers_.begin());
-  buffers_.push_back(&buffer);
-  bug_.buffers.push_back({name_of(device_, buffer), buffer.size, buffer.usage, 0, 0});
-  return static_cast<std::uint32_t>(buffers_.size() - 1);
+  const auto [number, added] = numbers_.try_emplace(&buffer, static_cast<std::uint32_t>(buffers_.size()));
+  if (!added) return number->second;
+  buffers_.push_back({buffer.data, buffer.size});
+  bug_.buffers.push_back({name_of(device_, buffer), buffer.size, buffer.usage, 0, 0, false});
+  return number->second;
+}
+
+void CapturedObjects::add_gone(const std::byte* first, std::uint64_t bytes, const std::string& name) {
+  bug_.addressed.push_back(static_cast<std::uint32_t>(buffers_.size()));
+  buffers_.push_back({const_cast<std::byte*>(first), bytes});
+  bug_.buffers.push_back({name, bytes, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT, 0, 0, true});
+}
+
+void CapturedObjects::add_addressed() {
+  if (!device_.addresses) return;
+  for (const ObjectRef object : device_.addresses->objects(VK_OBJECT_TYPE_BUFFER)) {
+    const auto& live = *reinterpret_cast<const Buffer*>(object.handle);
+    if (!(live.usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) || !live.data) continue;
+    bug_.addressed.push_back(buffer(live, 0, live.size));
+  }
+  std::set<const std::byte*> known;
+  for (const AddressBook::GoneBuffer& gone : device_.addresses->gone_buffers()) {
+    const auto end = touched_.upper_bound(const_cast<std::byte*>(gone.first));
+    const bool covered = end != touched_.begin() && std::prev(end)->second > gone.first;
+    if (!covered && known.insert(gone.first).second) add_gone(gone.first, gone.bytes, gone.name);
+  }
 }
 
 CapturedObjects::Place CapturedObjects::bytes(const std::byte* first, std::uint64_t size) {
@@ -148,23 +172,30 @@ std::uint32_t CapturedObjects::sampler(const texel::Sampler& sampler) {
   return number->second;
 }
 
-/// Buffers that overlap share memory.
+/// Buffers that overlap share memory; of those that keep their addresses, those of one page, as an allocation has
+/// pages for itself.
 void CapturedObjects::place_buffers() {
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto page_of = [&](const std::byte* at) { return reinterpret_cast<std::uintptr_t>(at) / page * page; };
   std::vector<std::size_t> order(buffers_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return buffers_[a]->data < buffers_[b]->data; });
-  const std::byte *first = nullptr, *end = nullptr;
+            [&](std::size_t a, std::size_t b) { return buffers_[a].data < buffers_[b].data; });
+  const bool keeps_addresses = !bug_.addressed.empty();
+  std::uintptr_t first = 0, end = 0, end_of_pages = 0;
   for (const std::size_t i : order) {
-    const Buffer& buffer = *buffers_[i];
-    if (buffer.data >= end) {
-      first = end = buffer.data;
-      bug_.memories.push_back({0, reinterpret_cast<std::uint64_t>(first), {}});
+    const Placed& buffer = buffers_[i];
+    const auto data = reinterpret_cast<std::uintptr_t>(buffer.data);
+    if (data >= end && (!keeps_addresses || page_of(buffer.data) >= end_of_pages)) {
+      first = end = keeps_addresses ? page_of(buffer.data) : data;
+      bug_.memories.push_back({0, first, {}});
     }
-    end = std::max(end, static_cast<const std::byte*>(buffer.data) + buffer.size);
-    bug_.memories.back().size = static_cast<std::uint64_t>(end - first);
+    end = std::max(end, data + buffer.size);
+    // As the replayer asks for it.
+    end_of_pages = ((end + kGrain - 1) / kGrain * kGrain + kTailBytes + page - 1) / page * page;
+    bug_.memories.back().size = end - first;
     bug_.buffers[i].memory = static_cast<std::uint32_t>(bug_.memories.size() - 1);
-    bug_.buffers[i].offset = static_cast<std::uint64_t>(buffer.data - first);
+    bug_.buffers[i].offset = data - first;
   }
 }
 
@@ -200,51 +231,6 @@ void CapturedObjects::take_range(const Range& range, Snapshots& snapshots) {
     end = std::min(end, range.size);
     add_piece(range, at, end, true, snapshots);
     at = end;
-  }
-}
-
-bool CapturedObjects::is_unwritten(const Image& image, const glass::bug::Texels& texels) const {
-  const glass::ShadowRegion* shadow = keeps_shadow_ ? glass::find_shadow(image.data) : nullptr;
-  if (!shadow || !is_zero(texels.before->data(), texels.before->size())) return false;
-  const texel::PlaneLayout& plane = image.layout.plane[texel::plane_of_aspect(image.layout, texels.aspect)];
-  const texel::LevelLayout& level = plane.level[texels.level];
-  for (std::uint32_t i = 0; i < texels.layers; ++i) {
-    const std::byte* first = image.data + plane.offset + level.offset + (texels.layer + i) * plane.layer_stride;
-    const std::uint64_t bytes = level.slice_pitch * level.extent.depth;
-    for (std::uint64_t at = 0; at < bytes; at += 4)
-      if (shadow->first_unwritten(reinterpret_cast<std::uintptr_t>(first + at), 4, glass::Contents::kTexels) != 0)
-        return false;
-  }
-  return true;
-}
-
-Bytes CapturedObjects::packed(const Image& image, const glass::bug::Texels& texels) const {
-  Bytes out(glass::bug::packed_bytes(image.layout, texels.aspect, texels.level, texels.layers));
-  const texel::PlaneLayout& plane = image.layout.plane[texel::plane_of_aspect(image.layout, texels.aspect)];
-  const texel::Extent& extent = plane.level[texels.level].extent;
-  VkBufferImageCopy region{};
-  region.imageSubresource = {static_cast<VkImageAspectFlags>(texels.aspect), texels.level, texels.layer, texels.layers};
-  region.imageExtent = {extent.width, extent.height, extent.depth};
-  texel::copy_image_to_buffer({&image.layout, image.data, nullptr}, out, region);
-  return out;
-}
-
-void CapturedObjects::take_image(std::uint32_t number, Snapshots& snapshots) {
-  const Image& image = *images_[number];
-  const VkImageAspectFlags aspects = texel::format_desc(image.desc().format).aspects;
-  for (const auto& [level, layers] : shown_[number]) {
-    for (const VkImageAspectFlagBits aspect :
-         {VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_ASPECT_STENCIL_BIT}) {
-      if (!(aspects & aspect)) continue;
-      glass::bug::Texels texels{aspect, level, layers.first, layers.second - layers.first, false, nullptr, nullptr};
-      const Bytes now = packed(image, texels);
-      const texel::PlaneLayout& plane = image.layout.plane[texel::plane_of_aspect(image.layout, aspect)];
-      Blob& kept = snapshots[image.data + plane.offset + plane.level[level].offset];
-      if (!kept || *kept != now) kept = std::make_shared<Bytes>(now);
-      texels.before = kept;
-      texels.unwritten = is_unwritten(image, texels);
-      bug_.images[number].texels.push_back(std::move(texels));
-    }
   }
 }
 

@@ -35,12 +35,15 @@ class CapturedObjects {
   std::uint32_t view(const texel::ImageView& view);
   std::uint32_t texels(const texel::BufferTexelView& view);
   std::uint32_t sampler(const texel::Sampler& sampler);
+  /// All buffers that have device addresses, and those that had: the shader follows some that nobody foresees.
+  void add_addressed();
 
   /// All objects are known: takes what their memory holds.
   void take_before(Snapshots& snapshots);
   /// The command is done: takes what differs.
   void take_after();
 
+  const Device& device() const { return device_; }
   /// Why the command cannot be captured; empty: it can.
   const std::string& problem() const { return problem_; }
 
@@ -55,12 +58,19 @@ class CapturedObjects {
   /// Layers of the levels of an image that views show.
   using Layers = std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>>;
 
+  /// Where a buffer of the Bug lies.
+  struct Placed {
+    std::byte* data = nullptr;
+    std::uint64_t size = 0;
+  };
+
   std::uint32_t add_buffer(const Buffer& buffer);
+  void add_gone(const std::byte* first, std::uint64_t bytes, const std::string& name);
   std::uint32_t add_image(const Image& image);
   void place_buffers();
   void take_range(const Range& range, Snapshots& snapshots);
   void add_piece(const Range& range, std::uint64_t begin, std::uint64_t end, bool unwritten, Snapshots& snapshots);
-  bool is_unwritten(const Image& image, const glass::bug::Texels& texels) const;
+  void take_written(const Image& image, glass::bug::Texels& texels) const;
   void take_image(std::uint32_t number, Snapshots& snapshots);
   glass::bug::Bytes packed(const Image& image, const glass::bug::Texels& texels) const;
 
@@ -68,7 +78,7 @@ class CapturedObjects {
   const bool keeps_shadow_;
   glass::bug::Bug& bug_;
   std::string problem_;
-  std::vector<const Buffer*> buffers_;
+  std::vector<Placed> buffers_;
   std::vector<const Image*> images_;
   std::vector<Layers> shown_;                     ///< by image
   std::map<const void*, std::uint32_t> numbers_;  ///< of views, buffer views and samplers, by where they are

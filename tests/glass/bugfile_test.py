@@ -96,6 +96,28 @@ class BugFileTest(unittest.TestCase):
         for bug in bugs[::max(1, len(bugs) // 150)]:
             self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug).stdout, bug)
 
+    def test_a_pixel_makes_a_file_of_what_made_its_value(self):
+        # Drawn; copied to what is drawn with; drawn with that.
+        for image, command in ("target", "vkCmdDraw"), ("last", "vkCmdDraw"), ("copy", "vkCmdDraw"), ("stored", "vkCmdDispatch"):
+            result = self.run_it(VITRINE, "pixel", "5,5", "--image", image, "--bug", "pixel.vitrine", "--", PIXELS)
+            told = re.findall(r"\n +at submission (\d+), command (\d+)", result.stdout)
+            bug = self.exported(self.folder / "pixel.vitrine")
+            self.assertEqual(bug["commandName"], command)
+            self.assertIn((str(bug["submission"]), str(bug["commandNumber"])), told)
+            self.assertIn("the same bytes", self.run_it(VITRINE, "replay", "pixel.vitrine").stdout)
+        # Cleared.
+        self.run_it(VITRINE, "pixel", "0,0", "--image", "culled", "--bug", "none.vitrine", "--",
+                             PIXELS, code=2)
+        self.assertFalse((self.folder / "none.vitrine").exists())
+
+    def test_reduced_shaders_keep_the_place(self):
+        bug, = self.capture("finding", VITRINE, "check", "--sanitize", APPLICATION, "1", "16", code=1)
+        self.run_it(VITRINE, "reduce", bug, "-o", "small.vitrine", "--tools", "sanitize", "--runs", "60")
+        result = self.run_it(VITRINE, "replay", "small.vitrine", "--sanitize", code=1)
+        self.assertRegex(result.stderr, r"fill\.comp:8: error: store")
+        self.run_it(VITRINE, "reduce", bug, "-o", "smaller.vitrine", "--tools", "sanitize", "--runs", "60", "--any-place")
+        self.assertLessEqual((self.folder / "smaller.vitrine").stat().st_size, (self.folder / "small.vitrine").stat().st_size)
+
     def test_any_tool_looks_at_it(self):
         bug = self.capture("all", PIXELS)[0]
         result = self.run_it(VITRINE, "replay", bug, "count", "-o", self.folder / "counts.json")

@@ -162,6 +162,8 @@ inline std::vector<std::string> found_by(Tool& tool, VkShaderStageFlagBits stage
     const std::vector<Frame>& frames = finding.address.frames;
     texts.push_back(std::string(finding.rule->id) + ", line " + std::to_string(frames.empty() ? 0 : frames[0].line));
   }
+  keep_case(!texts.empty() && is_of_numbers(texts[0].substr(0, texts[0].find(','))) ? "numbers" : "sanitize", stage, 1,
+            module, texts);
   return texts;
 }
 

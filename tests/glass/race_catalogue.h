@@ -105,7 +105,9 @@ inline std::vector<std::string> races_of(VkShaderStageFlagBits stage, const std:
   Scene scene;
   scene.groups = groups;
   scene.run(*tool, stage, module);
-  return races_in(*tool);
+  std::vector<std::string> races = races_in(*tool);
+  keep_case("race", stage, groups, module, races);
+  return races;
 }
 
 inline std::vector<std::string> expected_race(const char* rule, const Marked& source) {

@@ -13,6 +13,7 @@
 #include "raster/pass.h"
 #include "spirv/addresses.h"
 #include "spirv/observed_command.h"
+#include "tests/glass/kept_catalogue.h"
 #include "tests/glass/observed.h"
 
 namespace vitrine::glass::test {
@@ -172,6 +173,7 @@ class Scene {
     std::string log;
     const auto module = vitrine::test::compile_glsl(stage, text, vitrine::test::VulkanVersion::k12, log);
     EXPECT_FALSE(module.empty()) << log;
+    keep_plain(stage, module);
     shader = compile(stage, module, nullptr);
     return shader.get();
   }

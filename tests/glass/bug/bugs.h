@@ -21,7 +21,7 @@ inline Bug small_bug() {
   bug.submission = 2;
   bug.command_number = 7;
   bug.labels = {"frame", "\xff not UTF-8"};
-  bug.findings = {{"out-of-bounds-store", "store of 4 bytes", "a.comp:8"}};
+  bug.findings = {{"out-of-bounds-store", "store of 4 bytes", "a.comp:8", "main"}};
   Stage stage;
   stage.entry_point = "main";
   stage.constants = {{3, 0, 4}};
