@@ -5,22 +5,30 @@
 #include <cstring>
 #include <sstream>
 
+#include "glass/bug/amber_draws.h"
 #include "glass/bug/amber_images.h"
+#include "glass/bug/contents.h"
 
 namespace vitrine::glass::bug {
 namespace {
 
-constexpr std::size_t kPerLine = 8;
-
 const char* stage_name(VkShaderStageFlagBits stage) {
-  if (stage != VK_SHADER_STAGE_COMPUTE_BIT) throw Unspeakable{"draws"};
-  return "compute";
-}
-
-std::string hexadecimal(std::uint64_t value, int digits) {
-  char text[20];
-  std::snprintf(text, sizeof text, "0x%0*llx", digits, static_cast<unsigned long long>(value));
-  return text;
+  switch (stage) {
+    case VK_SHADER_STAGE_VERTEX_BIT:
+      return "vertex";
+    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
+      return "tessellation_control";
+    case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
+      return "tessellation_evaluation";
+    case VK_SHADER_STAGE_GEOMETRY_BIT:
+      return "geometry";
+    case VK_SHADER_STAGE_FRAGMENT_BIT:
+      return "fragment";
+    case VK_SHADER_STAGE_COMPUTE_BIT:
+      return "compute";
+    default:
+      throw Unspeakable{"such a stage"};
+  }
 }
 
 /// A module as SPIRV-HEX: bytes. END follows the last one at once, since Amber waits for a number behind white space.
@@ -43,20 +51,7 @@ void write_shaders(std::ostream& out, const Bug& bug) {
 
 /// BUFFER with its data, of words where that goes.
 void write_buffer(std::ostream& out, const std::string& name, const Bytes& bytes) {
-  const bool words = bytes.size() % 4 == 0;
-  const std::size_t step = words ? 4 : 1, count = bytes.size() / step;
-  out << "BUFFER " << name << " DATA_TYPE " << (words ? "uint32" : "uint8") << " STD430";
-  if (std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; })) {
-    out << " SIZE " << count << " FILL 0\n";
-    return;
-  }
-  out << " DATA\n";
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + i * step, step);
-    out << hexadecimal(value, static_cast<int>(step * 2)) << ((i + 1) % kPerLine && i + 1 < count ? ' ' : '\n');
-  }
-  out << "END\n";
+  write_numbers(out, name, bytes, bytes.size() % 4 == 0 ? 4 : 1);
 }
 
 bool overlaps(const Bug& bug, std::size_t number) {
@@ -145,6 +140,7 @@ void write_binding(std::ostream& out, const Bug& bug, std::uint32_t set, const B
   for (const Descriptor& d : bug.descriptors)
     if (d.set == set && d.binding == binding.binding) elements.push_back(&d);
   if (elements.empty()) return;
+  if (std::ranges::any_of(elements, &Descriptor::gone)) throw Unspeakable{"descriptors of what was destroyed"};
   if (!binding.samplers.empty()) throw Unspeakable{"immutable samplers"};
   if (elements.back()->element + 1 != elements.size()) throw Unspeakable{"arrays of descriptors with holes"};
   const bool array = elements.size() > 1, sampler = binding.type == VK_DESCRIPTOR_TYPE_SAMPLER;
@@ -171,22 +167,28 @@ void write_constants(std::ostream& out, const Stage& stage) {
   }
 }
 
-void write_pipeline(std::ostream& out, const Bug& bug) {
-  const Stage& stage = bug.stages[0];
-  out << "PIPELINE compute pipeline\n  ATTACH shader0";
-  if (!stage.constants.empty() || stage.entry_point != "main") out << " TYPE compute ENTRY_POINT " << stage.entry_point;
+void write_stage(std::ostream& out, const Stage& stage, std::size_t number) {
+  out << "  ATTACH shader" << number;
+  if (!stage.constants.empty() || stage.entry_point != "main")
+    out << " TYPE " << stage_name(stage.stage) << " ENTRY_POINT " << stage.entry_point;
   write_constants(out, stage);
   out << "\n";
   if (stage.subgroup_size)
-    out << "  SUBGROUP shader0\n    FULLY_POPULATED off\n    VARYING_SIZE off\n    REQUIRED_SIZE "
+    out << "  SUBGROUP shader" << number << "\n    FULLY_POPULATED off\n    VARYING_SIZE off\n    REQUIRED_SIZE "
         << stage.subgroup_size << "\n  END\n";
+}
+
+void write_pipeline(std::ostream& out, const Bug& bug) {
+  out << "PIPELINE " << (bug.dispatches() ? "compute" : "graphics") << " pipeline\n";
+  for (std::size_t i = 0; i < bug.stages.size(); ++i) write_stage(out, bug.stages[i], i);
+  if (!bug.dispatches()) write_state_of_draw(out, bug);
   for (std::uint32_t set = 0; set < bug.sets.size(); ++set)
     for (const Binding& binding : bug.sets[set].bindings) write_binding(out, bug, set, binding);
   if (bug.push_constants && !bug.push_constants->empty()) out << "  BIND BUFFER pushed AS push_constant\n";
   out << "END\n\n";
 }
 
-void write_run(std::ostream& out, const Bug& bug) {
+void write_dispatch(std::ostream& out, const Bug& bug) {
   std::array<std::uint32_t, 3> groups = bug.command.groups;
   if (bug.command.arguments != kNone) {
     const Bytes bytes = contents_of(bug, bug.buffers[bug.command.arguments], false);
@@ -197,6 +199,9 @@ void write_run(std::ostream& out, const Bug& bug) {
   if (std::any_of(bug.command.base.begin(), bug.command.base.end(), [](std::uint32_t b) { return b != 0; }))
     throw Unspeakable{"dispatches that do not begin with workgroup 0"};
   out << "RUN pipeline " << groups[0] << " " << groups[1] << " " << groups[2] << "\n\n";
+}
+
+void write_expectations(std::ostream& out, const Bug& bug) {
   if (bug.lost) return;
   for (std::size_t i = 0; i < bug.buffers.size(); ++i)
     out << "EXPECT buffer" << i << " EQ_BUFFER expected" << i << "\n";
@@ -212,26 +217,14 @@ void write_head(std::ostream& out, const Bug& bug) {
     std::replace(line.begin(), line.end(), '\n', ' ');
     out << "# " << line << "\n";
   }
-  if (bug.stages[0].subgroup_size)
+  if (std::ranges::any_of(bug.stages, [](const Stage& s) { return s.subgroup_size != 0; }))
     out << "DEVICE_FEATURE SubgroupSizeControl.subgroupSizeControl\n"
            "DEVICE_FEATURE SubgroupSizeControl.computeFullSubgroups\nDEVICE_EXTENSION VK_EXT_subgroup_size_control\n";
+  if (!bug.dispatches()) write_features_of_draw(out, bug);
   out << "\n";
 }
 
 }  // namespace
-
-Bytes contents_of(const Bug& bug, const Buffer& buffer, bool after) {
-  Bytes out(buffer.size);
-  for (const Piece& piece : bug.memories[buffer.memory].pieces) {
-    const Bytes& bytes = after && piece.after ? *piece.after : *piece.before;
-    const std::uint64_t first = std::max(piece.offset, buffer.offset);
-    const std::uint64_t end = std::min(piece.offset + bytes.size(), buffer.offset + buffer.size);
-    if (first < end)
-      std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(first - piece.offset), end - first,
-                  out.begin() + static_cast<std::ptrdiff_t>(first - buffer.offset));
-  }
-  return out;
-}
 
 base::Result<std::string> to_amber(const Bug& bug) {
   std::ostringstream out;
@@ -240,8 +233,10 @@ base::Result<std::string> to_amber(const Bug& bug) {
     write_shaders(out, bug);
     write_buffers(out, bug);
     write_images(out, bug);
+    if (!bug.dispatches()) write_buffers_of_draw(out, bug);
     write_pipeline(out, bug);
-    write_run(out, bug);
+    bug.dispatches() ? write_dispatch(out, bug) : write_draw(out, bug);
+    write_expectations(out, bug);
   } catch (const Unspeakable& word) {
     return base::Error{"AmberScript is not written for " + word.what};
   }

@@ -1,6 +1,7 @@
 // See amber_images.h. Of formats those whose texels are rows of equal numbers; of images those of one level and layer.
 #include "glass/bug/amber_images.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +9,8 @@
 
 namespace vitrine::glass::bug {
 namespace {
+
+constexpr std::size_t kPerLine = 8;
 
 enum class Component : std::uint8_t { kByte, kWord, kFloat };
 
@@ -25,6 +28,7 @@ constexpr Format kFormats[] = {
     {VK_FORMAT_R32G32B32A32_UINT, "R32G32B32A32_UINT", 4, Component::kWord},
     {VK_FORMAT_R32G32B32A32_SINT, "R32G32B32A32_SINT", 4, Component::kWord},
     {VK_FORMAT_R32G32B32A32_SFLOAT, "R32G32B32A32_SFLOAT", 4, Component::kFloat},
+    {VK_FORMAT_D32_SFLOAT, "D32_SFLOAT", 1, Component::kFloat},
     {VK_FORMAT_R8G8B8A8_UNORM, "R8G8B8A8_UNORM", 4, Component::kByte},
     {VK_FORMAT_R8G8B8A8_UINT, "R8G8B8A8_UINT", 4, Component::kByte},
     {VK_FORMAT_B8G8R8A8_UNORM, "B8G8R8A8_UNORM", 4, Component::kByte},
@@ -54,7 +58,6 @@ std::string number(const std::byte* at, Component component) {
 }
 
 void write_texels(std::ostream& out, const Format& format, const Bytes& bytes) {
-  constexpr std::size_t kPerLine = 8;
   const std::size_t step = format.component == Component::kByte ? 1 : 4, count = bytes.size() / step;
   out << " DATA\n";
   for (std::size_t i = 0; i < count; ++i)
@@ -79,7 +82,29 @@ const char* border_color(const std::array<std::uint32_t, 4>& bits) {
   throw Unspeakable{"samplers with such a border"};
 }
 
+std::string hexadecimal(std::uint64_t value, int digits) {
+  char text[20];
+  std::snprintf(text, sizeof text, "0x%0*llx", digits, static_cast<unsigned long long>(value));
+  return text;
+}
+
 }  // namespace
+
+void write_numbers(std::ostream& out, const std::string& name, const Bytes& bytes, std::size_t step) {
+  const std::size_t count = bytes.size() / step;
+  out << "BUFFER " << name << " DATA_TYPE uint" << step * 8 << " STD430";
+  if (std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; })) {
+    out << " SIZE " << count << " FILL 0\n";
+    return;
+  }
+  out << " DATA\n";
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + i * step, step);
+    out << hexadecimal(value, static_cast<int>(step * 2)) << ((i + 1) % kPerLine && i + 1 < count ? ' ' : '\n');
+  }
+  out << "END\n";
+}
 
 void write_image(std::ostream& out, const std::string& name, const Image& image, bool after) {
   const Format& format = format_of(image);

@@ -1,4 +1,4 @@
-// Images and samplers in AmberScript.
+// Images, samplers and data in AmberScript.
 #pragma once
 
 #include <ostream>
@@ -13,6 +13,8 @@ struct Unspeakable {
   std::string what;
 };
 
+/// BUFFER with its data, of numbers of `step` bytes (1, 2 or 4).
+void write_numbers(std::ostream& out, const std::string& name, const Bytes& bytes, std::size_t step);
 /// IMAGE with its texels, by `name`.
 void write_image(std::ostream& out, const std::string& name, const Image& image, bool after);
 /// SAMPLER.

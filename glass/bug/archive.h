@@ -114,7 +114,9 @@ class Reader {
     } else if constexpr (std::is_floating_point_v<T>) {
       value = json.is_string() ? std::strtof(json.get_ref<const std::string&>().c_str(), nullptr) : number(json);
     } else if constexpr (std::is_enum_v<T>) {
-      value = static_cast<T>(integer<std::int32_t>(json));
+      const auto number = integer<std::int32_t>(json);
+      if (number < 0) throw std::out_of_range("a number that no enumeration has");
+      value = static_cast<T>(number);
     } else if constexpr (Number<T>) {
       value = integer<T>(json);
     } else if constexpr (std::is_same_v<T, Blob>) {

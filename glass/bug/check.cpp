@@ -138,7 +138,7 @@ std::string fault_of_command(const Bug& bug) {
 }  // namespace
 
 std::string fault_of(const Bug& bug) {
-  for (const auto& part : {fault_of_objects, fault_of_stages, fault_of_descriptors, fault_of_command})
+  for (const auto& part : {fault_of_objects, fault_of_stages, fault_of_descriptors, fault_of_command, fault_of_values})
     if (std::string fault = part(bug); !fault.empty()) return fault;
   return {};
 }

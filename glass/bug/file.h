@@ -21,6 +21,9 @@ base::Result<Bug> from_file(std::string_view contents);
 
 /// What is wrong with the numbers in it; empty: nothing.
 std::string fault_of(const Bug& bug);
+/// Its part that looks at numbers with a meaning (check_values.cpp): formats, enumerations, ranges of images. What
+/// names others is right already.
+std::string fault_of_values(const Bug& bug);
 
 /// The header as JSON with indentation, for people: blobs by their place in the file.
 std::string describe(const Bug& bug);

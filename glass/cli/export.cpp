@@ -2,11 +2,13 @@
 #include <filesystem>
 
 #include "glass/bug/amber.h"
+#include "glass/bug/contents.h"
 #include "glass/bug/file.h"
 #include "glass/cli/bug_commands.h"
 #include "glass/cli/bug_files.h"
 #include "glass/cli/commands.h"
 #include "glass/cli/files.h"
+#include "glass/cli/reduce_steps.h"
 #include "glass/cli/say.h"
 
 namespace vitrine::glass::cli {
@@ -49,7 +51,9 @@ bool write_files(const bug::Bug& bug, const fs::path& folder) {
   return good;
 }
 
-bool write_amber(const bug::Bug& bug, const std::string& file) {
+/// The script names everything that is bound, so that what no shader sees would only stand in the way.
+bool write_amber(bug::Bug bug, const std::string& file) {
+  drop_undeclared(bug);
   const base::Result<std::string> script = bug::to_amber(bug);
   if (!script) say(script.message());
   return script && write_file(file, script.value());

@@ -21,5 +21,7 @@ void reduce_state(bug::Bug& bug, const StillFound& still);
 
 /// Takes away objects that nothing names.
 void drop_unused(bug::Bug& bug);
+/// Takes away descriptors that no stage declares, and what only they named.
+void drop_undeclared(bug::Bug& bug);
 
 }  // namespace vitrine::glass::cli

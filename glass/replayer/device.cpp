@@ -67,6 +67,8 @@ Device make_device(const bug::Bug& bug) {
   d.instance = make_instance(d.names);
   choose_physical(d);
   Features features(d.physical, bug);
+  if (const char* const missing = features.missing(bug))
+    throw Failure(std::string("the command needs ") + missing + ", which this driver lacks");
   const float priority = 1;
   VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
   queue.queueFamilyIndex = find_family(d.physical);

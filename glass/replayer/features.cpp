@@ -5,6 +5,8 @@
 #include <cstring>
 #include <string>
 
+#include "glass/replayer/needs.h"
+
 namespace vitrine::glass::replayer {
 namespace {
 
@@ -91,6 +93,13 @@ Features::Features(VkPhysicalDevice device, const bug::Bug& bug) : structures_(s
   s.robustness.robustImageAccess2 &= VkBool32{bug.robust_access2};
   s.robustness.nullDescriptor &= VkBool32{bug.null_descriptors};
   s.core13.privateData = VK_FALSE;
+}
+
+const char* Features::missing(const bug::Bug& bug) const {
+  if (const char* const feature = missing_feature(bug, structures_->core.features)) return feature;
+  return missing_extension(bug, [&](const char* name) {
+    return std::ranges::any_of(extensions_, [&](const char* e) { return std::strcmp(e, name) == 0; });
+  });
 }
 
 Features::~Features() = default;

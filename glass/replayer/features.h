@@ -20,6 +20,8 @@ class Features {
 
   /// For VkDeviceCreateInfo; lives as long as this.
   const void* chain() const;
+  /// What the bug's state needs and the device lacks; null: nothing.
+  const char* missing(const bug::Bug& bug) const;
   /// bufferDeviceAddressCaptureReplay.
   bool addresses_again() const;
   const std::vector<const char*>& extensions() const { return extensions_; }

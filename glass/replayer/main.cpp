@@ -5,6 +5,7 @@
 //   vitrine-replay FILE [NEW]    NEW: the same file with what memory held here afterwards
 //
 // Exit code 0: the same bytes, or the device was lost as it was; 1: other bytes; 2: it could not run.
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -44,7 +45,7 @@ struct Difference {
 
 Difference compare(const std::byte* here, const bug::Bytes& expected) {
   Difference d;
-  if (std::memcmp(here, expected.data(), expected.size()) == 0) return d;
+  if (expected.empty() || std::memcmp(here, expected.data(), expected.size()) == 0) return d;
   for (std::uint64_t i = 0; i < expected.size(); ++i)
     if (here[i] != expected[i] && d.count++ == 0) d.first = i;
   return d;
@@ -138,7 +139,7 @@ int replay(const bug::Bug& bug, const char* updated) {
   const Staging staging = make_staging(d, for_each_content(bug, [](const auto&, std::uint64_t) {}));
   // What lies in no buffer, since `vitrine reduce` has left it out, is as it was.
   for_each_content(bug, [&](const auto& content, std::uint64_t at) {
-    std::memcpy(staging.bytes + at, content.before->data(), content.before->size());
+    std::copy(content.before->begin(), content.before->end(), staging.bytes + at);
   });
   copy_contents(d, bug, resources, staging, true);
   if (updated) return update(bug, &staging, updated) ? kSame : kCouldNotRun;

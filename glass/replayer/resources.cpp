@@ -153,7 +153,7 @@ Resources make_resources(const Device& d, const bug::Bug& bug) {
   const std::uint64_t size = for_each_content(bug, [](const auto&, std::uint64_t) {});
   const Staging staging = make_staging(d, size);
   for_each_content(bug, [&](const auto& content, std::uint64_t at) {
-    std::memcpy(staging.bytes + at, content.before->data(), content.before->size());
+    std::copy(content.before->begin(), content.before->end(), staging.bytes + at);
   });
   copy_contents(d, bug, out, staging, false);
   destroy(d, staging);

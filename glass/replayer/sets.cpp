@@ -1,5 +1,6 @@
 // Descriptor set layouts, sets and what is written into them.
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 
 #include "glass/replayer/departing.h"
@@ -121,7 +122,11 @@ Bound make_sets(const Device& d, const bug::Bug& bug, const Resources& resources
     for (const bug::Binding& b : bug.sets[i].bindings)
       if (is_dynamic(b.type)) out.dynamic_offsets.resize(out.dynamic_offsets.size() + b.count);
   }
-  for (const bug::Descriptor& at : bug.descriptors) write(d, bug, resources, at, out.sets[at.set]);
+  // What is gone is for tools to find; without any it would be read.
+  const char* const tools = std::getenv("VITRINE_TOOLS");
+  const bool watched = tools != nullptr && *tools != 0;
+  for (const bug::Descriptor& at : bug.descriptors)
+    if (!at.gone || watched) write(d, bug, resources, at, out.sets[at.set]);
   return out;
 }
 

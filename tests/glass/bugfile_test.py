@@ -162,6 +162,15 @@ class BugFileTest(unittest.TestCase):
         bug, = self.capture("1:3", APPLICATION)
         self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug, "--driver", REFERENCE).stdout)
 
+    def test_a_driver_without_a_feature_says_so(self):
+        if not os.path.exists(REFERENCE):
+            self.skipTest("the reference is not installed")
+        bugs = self.capture("all", SUITE, "--gtest_filter=pipeline.random_depth_bounds", "--count=1")
+        said = [self.run_it(VITRINE, "replay", bug, "--driver", REFERENCE, code=None) for bug in bugs]
+        self.assertTrue(any("needs depthBounds, which this driver lacks" in result.stderr for result in said))
+        for result in said:
+            self.assertIn("the same bytes" if result.returncode == 0 else "lacks", result.stdout + result.stderr)
+
     def test_what_is_no_bug_file_is_an_error(self):
         bug, = self.capture("1:3", APPLICATION)
         contents = bug.read_bytes()

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "glass/bug/contents.h"
 #include "tests/glass/bug/bugs.h"
 
 namespace vitrine::glass::bug {
@@ -22,19 +23,13 @@ TEST(Amber, SaysADispatchWithItsData) {
     EXPECT_NE(script.value().find(part), std::string::npos) << part << script.value();
 }
 
-TEST(Amber, HasNoWordsForDraws) {
-  Bug bug = small_bug();
-  bug.stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
-  EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for draws");
-}
-
 /// With an image of two texels at binding 1.
 Bug bug_with_image(VkFormat format) {
   Bug bug = small_bug();
   Image image;
   image.format = format;
   image.extent = {2, 1, 1};
-  image.texels = {{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1, false, blob({1, 0x3f800000}), nullptr}};
+  image.texels = {{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1, false, blob({1, 0x3f800000}), nullptr, nullptr}};
   bug.images = {image};
   View view;
   view.image = 0;
@@ -79,6 +74,83 @@ TEST(Amber, ContentsAreThoseOfTheBuffer) {
   EXPECT_EQ(before[28], std::byte{4});
   EXPECT_EQ(after[28], std::byte{5});
   EXPECT_EQ(after[63], std::byte{0});
+}
+
+/// Three vertices to an image of two texels.
+Bug drawing_bug() {
+  Bug bug = small_bug();
+  Stage fragment = bug.stages[0];
+  bug.stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+  fragment.stage = VK_SHADER_STAGE_FRAGMENT_BIT;
+  bug.stages.push_back(fragment);
+  Image target;
+  target.format = VK_FORMAT_R32_UINT;
+  target.extent = {2, 1, 1};
+  target.texels = {{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1, false, blob({1, 2}), blob({3, 4}), nullptr}};
+  bug.images = {target};
+  View view;
+  view.image = 0;
+  view.format = target.format;
+  bug.views = {view};
+  bug.rendering.colors = {0};
+  bug.rendering.area = {{0, 0}, {2, 1}};
+  bug.state.viewport_count = 1;
+  bug.state.viewport[0] = {0, 0, 2, 1, 0, 1};
+  bug.state.scissor[0] = {{0, 0}, {2, 1}};
+  bug.state.attribute_count = 1;
+  bug.state.attribute[0] = {3, 5, VK_FORMAT_R32G32_SFLOAT, 4};
+  Stream stream;
+  stream.binding = 5;
+  stream.buffer = 0;
+  stream.offset = 8;
+  stream.size = 56;
+  stream.stride = 16;
+  bug.streams = {stream};
+  bug.command.draws = {{3, 0, 0}};
+  return bug;
+}
+
+TEST(Amber, SaysADraw) {
+  const base::Result<std::string> script = to_amber(drawing_bug());
+  ASSERT_TRUE(script.ok()) << script.message();
+  for (const char* const part :
+       {"SHADER vertex shader0 SPIRV-HEX", "SHADER fragment shader1 SPIRV-HEX", "PIPELINE graphics pipeline\n",
+        "  FRAMEBUFFER_SIZE 2 1\n  BIND BUFFER image0 AS color LOCATION 0\n",
+        "  VERTEX_DATA buffer0 LOCATION 3 FORMAT R32G32_SFLOAT OFFSET 12 STRIDE 16\n",
+        "  VIEWPORT 0.0 0.0 SIZE 2.0 1.0 MIN_DEPTH 0.0 MAX_DEPTH 1.0\n",
+        "RUN pipeline DRAW_ARRAY AS TRIANGLE_LIST START_IDX 0 COUNT 3 START_INSTANCE 0 INSTANCE_COUNT 1\n",
+        "EXPECT image0 EQ_BUFFER expected_image0\n"})
+    EXPECT_NE(script.value().find(part), std::string::npos) << part << script.value();
+}
+
+TEST(Amber, SaysIndicesFromWhereTheyBegin) {
+  Bug bug = drawing_bug();
+  bug.command.indexed = true;
+  bug.command.index_type = VK_INDEX_TYPE_UINT32;
+  bug.command.indices.buffer = 0;
+  bug.command.indices.offset = 16;
+  bug.command.indices.size = 48;
+  const base::Result<std::string> script = to_amber(bug);
+  ASSERT_TRUE(script.ok()) << script.message();
+  for (const char* const part : {"BUFFER indices DATA_TYPE uint32 STD430 DATA\n0x00000001 0x00000002 0x00000003\nEND\n",
+                                 "  INDEX_DATA indices\n", " INDEXED START_IDX 0 COUNT 3 "})
+    EXPECT_NE(script.value().find(part), std::string::npos) << part << script.value();
+}
+
+TEST(Amber, HasNoWordsForSomeState) {
+  const auto said = [](const auto& change) {
+    Bug bug = drawing_bug();
+    change(bug);
+    return to_amber(bug).message();
+  };
+  EXPECT_EQ(said([](Bug& b) { b.state.cull_mode = VK_CULL_MODE_BACK_BIT; }),
+            "AmberScript is not written for culling, or front faces that are clockwise");
+  EXPECT_EQ(said([](Bug& b) { b.state.blend[0].write_mask = 7; }), "AmberScript is not written for masks of colours");
+  EXPECT_EQ(said([](Bug& b) { b.rendering.area.extent.width = 1; }),
+            "AmberScript is not written for scissors and render areas that leave something out");
+  EXPECT_EQ(said([](Bug& b) { b.command.draws.push_back({}); }), "AmberScript is not written for several draws");
+  EXPECT_EQ(said([](Bug& b) { b.addressed = {0}; }),
+            "AmberScript is not written for shaders that follow device addresses");
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ TEST(BugFile, KeepsStateAndNumbersThatAreNoNumbers) {
   bug.state.depth_bias_clamp = -std::numeric_limits<float>::infinity();
   bug.state.blend[2].src_color = VK_BLEND_FACTOR_SRC1_ALPHA;
   bug.state.locations.x[3] = -7;
-  bug.rendering.area = {{-3, 4}, {5, 6}};
+  bug.rendering.area = {{3, 4}, {5, 6}};
   const base::Result<Bug> read = from_file(to_file(bug));
   ASSERT_TRUE(read.ok()) << read.message();
   const Bug& back = read.value();
@@ -38,7 +38,7 @@ TEST(BugFile, KeepsStateAndNumbersThatAreNoNumbers) {
   EXPECT_EQ(back.state.depth_bias_clamp, bug.state.depth_bias_clamp);
   EXPECT_EQ(back.state.blend[2].src_color, VK_BLEND_FACTOR_SRC1_ALPHA);
   EXPECT_EQ(back.state.locations.x[3], -7);
-  EXPECT_EQ(back.rendering.area.offset.x, -3);
+  EXPECT_EQ(back.rendering.area.offset.x, 3);
 }
 
 TEST(BugFile, ThatEndsEarlyIsAnError) {
@@ -72,8 +72,43 @@ TEST(BugFile, WithAnAlteredBitIsAnErrorOrTheSame) {
 TEST(BugFile, OfSomethingElseIsAnError) {
   EXPECT_EQ(from_file("no bug file").message(), "it is no bug file, or was altered");
   EXPECT_EQ(from_file(pack("something else")).message(), "it is no bug file");
-  EXPECT_EQ(from_file(pack("vitrine-bug 2\n")).message(), "another version of Vitrine wrote it");
-  EXPECT_EQ(from_file(pack("vitrine-bug 1\nabc")).message(), "it ends too early");
+  EXPECT_EQ(from_file(pack("vitrine-bug 3\n")).message(), "another version of Vitrine wrote it");
+  EXPECT_EQ(from_file(pack("vitrine-bug 2\nabc")).message(), "it ends too early");
+}
+
+TEST(BugFile, ThatSaysWhatVulkanDoesNotKnowIsAnError) {
+  const auto said = [](const auto& change) {
+    Bug bug = small_bug();
+    Image image;
+    image.format = VK_FORMAT_R8G8B8A8_UNORM;
+    image.extent = {4, 4, 1};
+    image.levels = 3;
+    bug.images = {image};
+    View view;
+    view.image = 0;
+    view.format = image.format;
+    view.range = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    bug.views = {view};
+    EXPECT_EQ(fault_of(bug), "");
+    change(bug);
+    return from_file(to_file(bug)).message();
+  };
+  EXPECT_EQ(said([](Bug& b) { b.images[0].format = static_cast<VkFormat>(12345); }),
+            "it names an image that cannot be");
+  EXPECT_EQ(said([](Bug& b) { b.images[0].levels = 4; }), "it names an image that cannot be");
+  EXPECT_EQ(said([](Bug& b) { b.views[0].range.levelCount = 4; }), "it names a view that cannot be");
+  EXPECT_EQ(said([](Bug& b) { b.views[0].range.baseArrayLayer = 1; }), "it names a view that cannot be");
+  EXPECT_EQ(said([](Bug& b) { b.views[0].type = VK_IMAGE_VIEW_TYPE_CUBE; }), "it names a view that cannot be");
+  EXPECT_EQ(said([](Bug& b) { b.stages.push_back(b.stages[0]); }), "it names a stage twice, or none");
+  EXPECT_EQ(said([](Bug& b) { b.command.groups[1] = 65536; }), "it names more workgroups than there can be");
+  EXPECT_EQ(said([](Bug& b) { b.stages[0].stage = VK_SHADER_STAGE_FRAGMENT_BIT; }),
+            "it names stages that make no pipeline");
+  EXPECT_EQ(said([](Bug& b) {
+              b.stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+              b.rendering.colors = {0};
+              b.rendering.area.extent = {5, 4};
+            }),
+            "it names attachments that do not fit what is drawn");
 }
 
 TEST(BugFile, ThatWasAlteredAndPackedAgainNeverCrashes) {

@@ -25,6 +25,21 @@ TEST(Reduce, LeavesTheOneWorkgroupThatIsNeeded) {
   EXPECT_EQ(bug.command.groups, (std::array<std::uint32_t, 3>{1, 1, 1}));
 }
 
+TEST(Reduce, LeavesTheAddressedBufferThatIsNeeded) {
+  Bug bug = bug::small_bug();
+  bug.memories.push_back({64, 0x7f0000002000, {}});
+  bug.buffers.push_back({"far", 64, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT, 1, 0});
+  bug.buffers.push_back({"near", 64, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT, 1, 0});
+  bug.addressed = {1, 2};
+  const auto needed = [](const Bug& b) {
+    return std::ranges::any_of(b.addressed, [&](std::uint32_t number) { return b.buffers[number].name == "near"; });
+  };
+  reduce_descriptors(bug, needed);
+  ASSERT_EQ(bug.addressed.size(), 1u);
+  EXPECT_TRUE(needed(bug));
+  EXPECT_EQ(bug.buffers.size(), 1u);
+}
+
 TEST(Reduce, LeavesTheTriangleThatIsNeeded) {
   Bug bug = bug::small_bug();
   bug.stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;

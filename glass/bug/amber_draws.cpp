@@ -1,0 +1,279 @@
+// See amber_draws.h. Of draws those that are one, to whole images, with what the language has words for: it draws to
+// all of the attachments, and knows neither culling, masks of colours nor several viewports.
+#include "glass/bug/amber_draws.h"
+
+#include <algorithm>
+
+#include "glass/bug/contents.h"
+#include "texel/format.h"
+
+namespace vitrine::glass::bug {
+namespace {
+
+const char* word(const char* const* words, std::size_t count, int number, const char* what) {
+  if (number < 0 || static_cast<std::size_t>(number) >= count) throw Unspeakable{what};
+  return words[number];
+}
+template <std::size_t kCount>
+const char* word(const char* const (&words)[kCount], int number, const char* what) {
+  return word(words, kCount, number, what);
+}
+
+// In Vulkan's order.
+constexpr const char* kTopologies[] = {"POINT_LIST",
+                                       "LINE_LIST",
+                                       "LINE_STRIP",
+                                       "TRIANGLE_LIST",
+                                       "TRIANGLE_STRIP",
+                                       "TRIANGLE_FAN",
+                                       "LINE_LIST_WITH_ADJACENCY",
+                                       "LINE_STRIP_WITH_ADJACENCY",
+                                       "TRIANGLE_LIST_WITH_ADJACENCY",
+                                       "TRIANGLE_STRIP_WITH_ADJACENCY",
+                                       "PATCH_LIST"};
+constexpr const char* kCompares[] = {
+    "never", "less", "equal", "less_or_equal", "greater", "not_equal", "greater_or_equal", "always"};
+constexpr const char* kStencils[] = {"keep",
+                                     "zero",
+                                     "replace",
+                                     "increment_and_clamp",
+                                     "decrement_and_clamp",
+                                     "invert",
+                                     "increment_and_wrap",
+                                     "decrement_and_wrap"};
+constexpr const char* kFactors[] = {"zero",
+                                    "one",
+                                    "src_color",
+                                    "one_minus_src_color",
+                                    "dst_color",
+                                    "one_minus_dst_color",
+                                    "src_alpha",
+                                    "one_minus_src_alpha",
+                                    "dst_alpha",
+                                    "one_minus_dst_alpha",
+                                    "constant_color",
+                                    "one_minus_constant_color",
+                                    "constant_alpha",
+                                    "one_minus_constant_alpha",
+                                    "src_alpha_saturate",
+                                    "src1_color",
+                                    "one_minus_src1_color",
+                                    "src1_alpha",
+                                    "one_minus_src1_alpha"};
+// As Amber spells them.
+constexpr const char* kBlends[] = {"add", "substract", "reverse_substract", "min", "max"};
+constexpr const char* kPolygons[] = {"fill", "line", "point"};
+
+const char* on(bool enabled) { return enabled ? "on" : "off"; }
+
+void demand(bool can, const char* what) {
+  if (!can) throw Unspeakable{what};
+}
+
+bool has_stage(const Bug& bug, VkShaderStageFlagBits stage) {
+  return std::ranges::any_of(bug.stages, [&](const Stage& s) { return s.stage == stage; });
+}
+
+const Draw& draw_of(const Bug& bug) {
+  demand(bug.command.arguments == kNone, "draws whose arguments are in a buffer");
+  demand(bug.command.draws.size() == 1, "several draws");
+  demand(bug.command.draws[0].vertex_offset == 0, "draws with a vertex offset");
+  return bug.command.draws[0];
+}
+
+/// The size of all attachments.
+VkExtent2D size_of_attachments(const Bug& bug) {
+  VkExtent2D size{0, 0};
+  const Rendering& r = bug.rendering;
+  const auto look = [&](std::uint32_t number) {
+    if (number == kNone) return;
+    const View& view = bug.views[number];
+    const Image& image = bug.images[view.image];
+    demand_whole(view, image);
+    demand(size.width == 0 || (size.width == image.extent.width && size.height == image.extent.height),
+           "attachments of different sizes");
+    size = {image.extent.width, image.extent.height};
+  };
+  for (const std::uint32_t color : r.colors) {
+    demand(color != kNone, "attachments that are not used");
+    look(color);
+  }
+  look(r.depth);
+  look(r.stencil);
+  demand(size.width != 0, "draws without attachments");
+  return size;
+}
+
+void demand_plain_rasterization(const raster::State& s) {
+  demand(!s.rasterizer_discard, "draws that are not rasterized");
+  demand(s.cull_mode == VK_CULL_MODE_NONE && s.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE,
+         "culling, or front faces that are clockwise");
+  demand(s.line_width == 1 && !s.line_stipple && s.line_mode == VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT,
+         "lines that are wide, stippled or of another kind");
+  demand(!s.primitive_restart && !s.provoking_vertex_last && !s.domain_origin_lower_left,
+         "primitive restart, last provoking vertices or lower left domain origins");
+  demand(s.depth_clip != s.depth_clamp && !s.negative_one_to_one && !s.unrestricted_depth,
+         "depth that is clipped or ranges otherwise");
+  demand(s.samples == 1 && !s.sample_shading && (s.sample_mask & 1) && !s.alpha_to_coverage && !s.alpha_to_one &&
+             !s.custom_locations,
+         "samples");
+}
+
+void demand_plain_colors(const Bug& bug) {
+  const raster::State& s = bug.state;
+  demand(!s.logic_op_enable, "logical operations");
+  demand(s.blend_constants == decltype(s.blend_constants){}, "blend constants");
+  for (std::size_t i = 0; i < bug.rendering.colors.size(); ++i) {
+    const raster::BlendAttachment &a = s.blend[i], &first = s.blend[0];
+    demand(a.write_mask == 0xf, "masks of colours");
+    demand(a.enable == first.enable, "attachments that blend differently");
+    if (!a.enable) continue;
+    demand(a.src_color == first.src_color && a.dst_color == first.dst_color && a.color_op == first.color_op &&
+               a.src_alpha == first.src_alpha && a.dst_alpha == first.dst_alpha && a.alpha_op == first.alpha_op,
+           "attachments that blend differently");
+  }
+}
+
+void demand_whole_area(const Bug& bug, VkExtent2D size) {
+  const Rendering& r = bug.rendering;
+  const VkRect2D& scissor = bug.state.scissor[0];
+  const auto covers = [&](const VkRect2D& rect) {
+    return rect.offset.x <= 0 && rect.offset.y <= 0 && std::int64_t{rect.offset.x} + rect.extent.width >= size.width &&
+           std::int64_t{rect.offset.y} + rect.extent.height >= size.height;
+  };
+  demand(bug.state.viewport_count <= 1, "several viewports");
+  demand(covers(scissor) && covers(r.area), "scissors and render areas that leave something out");
+  demand(r.layers == 1 && r.view_mask == 0, "several layers or views");
+}
+
+void write_attachments(std::ostream& out, const Bug& bug, VkExtent2D size) {
+  out << "  FRAMEBUFFER_SIZE " << size.width << " " << size.height << "\n";
+  for (std::size_t i = 0; i < bug.rendering.colors.size(); ++i)
+    out << "  BIND BUFFER image" << bug.views[bug.rendering.colors[i]].image << " AS color LOCATION " << i << "\n";
+  const std::uint32_t depth = bug.rendering.depth;
+  demand(bug.rendering.stencil == kNone, "stencil attachments");
+  if (depth != kNone) out << "  BIND BUFFER image" << bug.views[depth].image << " AS depth_stencil\n";
+}
+
+void write_vertices(std::ostream& out, const Bug& bug) {
+  for (std::uint32_t i = 0; i < bug.state.attribute_count; ++i) {
+    const raster::VertexAttribute& a = bug.state.attribute[i];
+    const auto stream = std::ranges::find(bug.streams, a.binding, &Stream::binding);
+    demand(stream != bug.streams.end() && stream->buffer != kNone, "vertices from no buffer");
+    demand(stream->divisor == 1, "divisors of instances");
+    out << "  VERTEX_DATA buffer" << stream->buffer << " LOCATION " << a.location
+        << (stream->per_instance ? " RATE instance" : "") << " FORMAT " << texel::format_desc(a.format).name
+        << " OFFSET " << stream->offset + a.offset << " STRIDE " << stream->stride << "\n";
+  }
+  if (bug.state.attribute_count == 0) out << "  VERTEX_DATA unread LOCATION 0\n";
+  if (bug.command.indexed) out << "  INDEX_DATA indices\n";
+}
+
+void write_stencil(std::ostream& out, const Bug& bug) {
+  // Without an attachment there is nothing to test.
+  if (!bug.state.stencil_test || bug.rendering.stencil == kNone) return;
+  for (const bool back : {false, true}) {
+    const raster::StencilFace& f = back ? bug.state.back : bug.state.front;
+    const char* const what = "such a stencil test";
+    out << "  STENCIL " << (back ? "back" : "front") << "\n    TEST on\n    FAIL_OP " << word(kStencils, f.fail, what)
+        << "\n    PASS_OP " << word(kStencils, f.pass, what) << "\n    DEPTH_FAIL_OP "
+        << word(kStencils, f.depth_fail, what) << "\n    COMPARE_OP " << word(kCompares, f.compare, what)
+        << "\n    COMPARE_MASK " << f.compare_mask << "\n    WRITE_MASK " << f.write_mask << "\n    REFERENCE "
+        << f.reference << "\n  END\n";
+  }
+}
+
+void write_depth(std::ostream& out, const Bug& bug) {
+  const raster::State& s = bug.state;
+  const bool tests = bug.rendering.depth != kNone;
+  out << "  DEPTH\n    TEST " << on(tests && s.depth_test) << "\n    WRITE " << on(tests && s.depth_write)
+      << "\n    COMPARE_OP " << word(kCompares, s.depth_compare, "such a depth test") << "\n    CLAMP "
+      << on(s.depth_clamp) << "\n";
+  if (tests && s.depth_bounds_test)
+    out << "    BOUNDS min " << std::to_string(s.min_depth_bounds) << " max " << std::to_string(s.max_depth_bounds)
+        << "\n";
+  if (s.depth_bias)
+    out << "    BIAS constant " << std::to_string(s.depth_bias_constant) << " clamp "
+        << std::to_string(s.depth_bias_clamp) << " slope " << std::to_string(s.depth_bias_slope) << "\n";
+  out << "  END\n";
+}
+
+void write_blend(std::ostream& out, const Bug& bug) {
+  const raster::BlendAttachment& b = bug.state.blend[0];
+  if (bug.rendering.colors.empty() || !b.enable) return;
+  const char* const what = "such blending";
+  out << "  BLEND\n    SRC_COLOR_FACTOR " << word(kFactors, b.src_color, what) << "\n    DST_COLOR_FACTOR "
+      << word(kFactors, b.dst_color, what) << "\n    COLOR_OP " << word(kBlends, b.color_op, what)
+      << "\n    SRC_ALPHA_FACTOR " << word(kFactors, b.src_alpha, what) << "\n    DST_ALPHA_FACTOR "
+      << word(kFactors, b.dst_alpha, what) << "\n    ALPHA_OP " << word(kBlends, b.alpha_op, what) << "\n  END\n";
+}
+
+std::string number_of(float value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", static_cast<double>(value));
+  return std::string(text).find_first_of(".en") == std::string::npos ? std::string(text) + ".0" : text;
+}
+
+}  // namespace
+
+void write_features_of_draw(std::ostream& out, const Bug& bug) {
+  const raster::State& s = bug.state;
+  if (has_stage(bug, VK_SHADER_STAGE_GEOMETRY_BIT)) out << "DEVICE_FEATURE geometryShader\n";
+  if (has_stage(bug, VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT)) out << "DEVICE_FEATURE tessellationShader\n";
+  if (s.polygon_mode != VK_POLYGON_MODE_FILL) out << "DEVICE_FEATURE fillModeNonSolid\n";
+  if (s.depth_clamp) out << "DEVICE_FEATURE depthClamp\n";
+  if (s.depth_bounds_test && bug.rendering.depth != kNone) out << "DEVICE_FEATURE depthBounds\n";
+  const bool stores = std::ranges::any_of(bug.sets, [](const SetLayout& set) {
+    return std::ranges::any_of(set.bindings, [](const Binding& b) {
+      return b.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER || b.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC ||
+             b.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    });
+  });
+  if (stores) out << "DEVICE_FEATURE vertexPipelineStoresAndAtomics\nDEVICE_FEATURE fragmentStoresAndAtomics\n";
+}
+
+void write_buffers_of_draw(std::ostream& out, const Bug& bug) {
+  const Draw& draw = draw_of(bug);
+  const std::uint32_t count = draw.first + draw.count;
+  if (bug.state.attribute_count == 0)
+    out << "BUFFER unread DATA_TYPE uint32 STD430 SIZE " << std::max(count, 1u) << " FILL 0\n";
+  if (!bug.command.indexed) return;
+  const Stream& indices = bug.command.indices;
+  demand(indices.buffer != kNone, "indices from no buffer");
+  const std::size_t step = bug.command.index_type == VK_INDEX_TYPE_UINT32   ? 4
+                           : bug.command.index_type == VK_INDEX_TYPE_UINT16 ? 2
+                                                                            : 1;
+  const Bytes all = contents_of(bug, bug.buffers[indices.buffer], false);
+  demand(indices.size / step >= count, "indices outside of their buffer");
+  const auto first = all.begin() + static_cast<std::ptrdiff_t>(indices.offset);
+  write_numbers(out, "indices", Bytes(first, first + static_cast<std::ptrdiff_t>(count * step)), step);
+}
+
+void write_state_of_draw(std::ostream& out, const Bug& bug) {
+  const raster::State& s = bug.state;
+  const VkExtent2D size = size_of_attachments(bug);
+  demand_plain_rasterization(s);
+  demand_plain_colors(bug);
+  demand_whole_area(bug, size);
+  write_attachments(out, bug, size);
+  write_vertices(out, bug);
+  const VkViewport& v = s.viewport[0];
+  out << "  VIEWPORT " << number_of(v.x) << " " << number_of(v.y) << " SIZE " << number_of(v.width) << " "
+      << number_of(v.height) << " MIN_DEPTH " << number_of(v.minDepth) << " MAX_DEPTH " << number_of(v.maxDepth)
+      << "\n  POLYGON_MODE " << word(kPolygons, s.polygon_mode, "such polygons") << "\n";
+  if (s.topology == VK_PRIMITIVE_TOPOLOGY_PATCH_LIST)
+    out << "  PATCH_CONTROL_POINTS " << s.patch_control_points << "\n";
+  write_depth(out, bug);
+  write_stencil(out, bug);
+  write_blend(out, bug);
+}
+
+void write_draw(std::ostream& out, const Bug& bug) {
+  const Draw& draw = draw_of(bug);
+  demand(draw.count != 0 && bug.command.instances != 0, "draws of nothing");
+  out << "RUN pipeline DRAW_ARRAY AS " << word(kTopologies, bug.state.topology, "such primitives")
+      << (bug.command.indexed ? " INDEXED" : "") << " START_IDX " << draw.first << " COUNT " << draw.count
+      << " START_INSTANCE " << bug.command.first_instance << " INSTANCE_COUNT " << bug.command.instances << "\n\n";
+}
+
+}  // namespace vitrine::glass::bug
