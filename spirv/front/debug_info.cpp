@@ -68,6 +68,8 @@ void DebugInfo::take_definition(const Inst& inst, const Inst* line, std::uint32_
 
 std::optional<NonSemanticShaderDebugInfo100Instructions> DebugInfo::instruction(const Inst& inst) const {
   if (sets_.empty() || inst.op != Op::OpExtInst || !inst.has(1) || sets_.count(inst.operand(0)) == 0) return {};
+  // Modules may say any number, an enumeration may not.
+  if (inst.operand(1) > NonSemanticShaderDebugInfo100InstructionsMax) return {};
   return static_cast<Kind>(inst.operand(1));
 }
 

@@ -186,6 +186,9 @@ TEST_F(LyingDebugInfo, MutantsRunAsTheOriginal) {
   }
 }
 
+/// The argument of lies about the instruction's own number.
+constexpr std::uint32_t kItsNumber = ~1u;
+
 /// A lie: what it does to a module with NonSemantic.Shader.DebugInfo.100.
 struct Lie {
   const char* name;
@@ -212,6 +215,7 @@ const Lie kLies[] = {
     {"sources whose text is not there", 35, 1, absurd},
     {"sources that are their own text", 35, 1, itself},
     {"definitions of nothing", 101, 0, nothing},
+    {"instructions that there are not", 101, kItsNumber, absurd},
     {"lines of no file", 103, 0, nothing},
     {"lines that are no numbers", 103, 1, absurd},
     {"names of newlines", 0, 0, newlines},
@@ -232,7 +236,9 @@ TEST_F(LyingDebugInfo, OfEveryKindHidesNothing) {
                             ? op == kString
                             : op == kExtInst && module[at + 3] == set && module[at + 4] == lie.instruction;
       const std::uint32_t first = lie.instruction == 0 ? 2 : 5;
-      const std::uint32_t word = lie.argument == ~0u ? words - 1 : first + lie.argument;
+      const std::uint32_t word = lie.argument == ~0u          ? words - 1
+                                 : lie.argument == kItsNumber ? 4
+                                                              : first + lie.argument;
       if (here && word < words) told[at + word] = lie.word(module, at);
     });
     run_all(told, expected);
