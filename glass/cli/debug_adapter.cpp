@@ -50,10 +50,15 @@ json unverified(const json& rows) {
   return {{"breakpoints", std::move(list)}};
 }
 
+json filters() {
+  return json::array({{{"filter", "printf"}, {"label", "Messages (printf)"}},
+                      {{"filter", "nan"}, {"label", "Operations that make a NaN"}}});
+}
+
 const char* reason_of(const std::string& reason) {
   if (reason == "breakpoint" || reason == "pause") return reason == "pause" ? "pause" : "breakpoint";
   if (reason == "watch") return "data breakpoint";
-  return reason == "break" ? "exception" : "step";
+  return reason == "break" || reason == "exception" ? "exception" : "step";
 }
 
 }  // namespace
@@ -88,7 +93,7 @@ json DebugAdapter::answer(const std::string& command, const json& arguments) {
   if (command == "configurationDone") return configured_ = true, json::object();
   if (command == "setBreakpoints") return set_breakpoints(arguments);
   if (command == "setFunctionBreakpoints") return set_functions(arguments);
-  if (command == "setExceptionBreakpoints") return {{"breakpoints", json::array()}};
+  if (command == "setExceptionBreakpoints") return set_exceptions(arguments);
   if (command == "threads") return threads(arguments);
   if (command == "stackTrace") return stack(arguments);
   if (command == "scopes") return scopes(arguments);
@@ -116,7 +121,7 @@ json DebugAdapter::initialize(const json&) {
           {"supportsStepBack", true},
           {"supportsEvaluateForHovers", true},
           {"supportsExceptionInfoRequest", true},
-          {"exceptionBreakpointFilters", json::array()}};
+          {"exceptionBreakpointFilters", filters()}};
 }
 
 json DebugAdapter::ask(json request) {
@@ -150,7 +155,16 @@ json DebugAdapter::set_functions(const json& arguments) {
   return link_ == nullptr ? unverified(functions_["list"]) : ask_breakpoints(functions_);
 }
 
+json DebugAdapter::set_exceptions(const json& arguments) {
+  json list = list_of(arguments, "filters"), answers = json::array();
+  for (std::size_t i = 0; i < list.size(); ++i) answers.push_back({{"verified", true}});
+  exceptions_ = {{"request", "catch"}, {"list", std::move(list)}};
+  if (link_ != nullptr) ask(exceptions_);
+  return {{"breakpoints", std::move(answers)}};
+}
+
 void DebugAdapter::send_breakpoints() {
+  if (!exceptions_.is_null()) ask(exceptions_);
   for (const auto& [file, request] : lines_) ask(request);
   if (!functions_.is_null()) ask(functions_);
 }
@@ -284,7 +298,8 @@ json DebugAdapter::source(const json& arguments) {
 }
 
 json DebugAdapter::exception(const json&) {
-  return {{"exceptionId", text_of(last_stop_, "reason")},
+  const std::string reason = text_of(last_stop_, "reason"), message = text_of(last_stop_, "message");
+  return {{"exceptionId", reason == "exception" ? message.substr(0, message.find(':')) : reason},
           {"description", text_of(last_stop_, "text")},
           {"breakMode", "always"}};
 }

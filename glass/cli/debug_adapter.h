@@ -45,6 +45,7 @@ class DebugAdapter {
   json evaluate(const json& arguments);
   json source(const json& arguments);
   json move(const char* how, bool backward, const json& arguments);
+  json set_exceptions(const json& arguments);
   json exception(const json& arguments);
 
   json ask(json request);
@@ -62,7 +63,7 @@ class DebugAdapter {
   std::size_t lane_ = 0;  ///< that has stopped
   json last_stop_ = json::object();
   std::map<std::string, json> lines_;  ///< requests of the driver, by file
-  json functions_;                     ///< the same; null: none
+  json functions_, exceptions_;        ///< the same; null: none
   std::vector<std::string> files_;     ///< that are in modules alone, by sourceReference - 1
   std::vector<Reference> references_;  ///< since the stop, by variablesReference - 1
 };

@@ -44,6 +44,14 @@ std::string remove_one(Engine& engine, std::string_view rest) {
   return {};
 }
 
+std::string catch_it(Engine& engine, std::string_view rest) {
+  const unsigned bit = catch_of(rest);
+  if (bit == 0 && rest != "nothing") return "catch printf, nan or nothing\n";
+  engine.set_catches(bit == 0 ? 0 : engine.catches() | bit);
+  const std::string text = catches_text(engine.catches());
+  return text.empty() ? "nothing is caught\n" : "caught: " + text + "\n";
+}
+
 std::string move(Engine& engine, Motion motion) {
   if (!engine.focus().run && (motion.backward || motion.kind != Kind::kContinue)) {
     // Nothing has begun: the first line of anything is the next.
@@ -126,6 +134,8 @@ constexpr Row kRows[] = {
     {"break", "b", break_at,
      "FILE:LINE, LINE, FUNCTION, pixel X,Y, vertex N, workgroup X,Y,Z or invocation X,Y,Z; [if EXPRESSION]"},
     {"tbreak", "tb", break_once, "the same, once"},
+    {"catch", nullptr, catch_it,
+     "printf: messages; nan: operations that make a NaN, in shaders made from then on; nothing"},
     {"delete", "d", remove_one, "[NUMBER]: a breakpoint or watch; without a number, all"},
     {"run", "r", go<Kind::kContinue, false>, "the same as continue"},
     {"continue", "c", go<Kind::kContinue, false>, "to the next breakpoint"},

@@ -29,6 +29,21 @@ std::string message_of(const std::string& text, const Viewer& viewer, const Name
   return message;
 }
 
+/// Looks each name up once: for many lanes that are at one place.
+class KnownNames : public Names {
+ public:
+  explicit KnownNames(const Names& names) : names_(names) {}
+  std::optional<Place> find(std::string_view name) const override {
+    for (const auto& [known, place] : known_)
+      if (known == name) return place;
+    return known_.emplace_back(name, names_.find(name)).second;
+  }
+
+ private:
+  const Names& names_;
+  mutable std::vector<std::pair<std::string, std::optional<Place>>> known_;
+};
+
 std::size_t first_lane(base::LaneMask lanes) { return static_cast<std::size_t>(__builtin_ctzll(lanes)); }
 
 }  // namespace
@@ -76,6 +91,7 @@ void Engine::go(const Motion& motion) {
     detached_ = true;
     breakpoints_.clear();
     watchpoints_.clear();
+    catches_ = 0;
     stops_.clear();
   }
   if (!focus_.run) return;
@@ -97,7 +113,7 @@ bool Engine::is_wanted(const std::shared_ptr<const Subject>& subject, const spir
   if (known != nullptr || pausing_ || steps) return true;
   for (const auto& [number, watchpoint] : watchpoints_)
     if (watchpoint.subject == subject) return true;
-  if (!stops_of(*subject).empty()) return true;
+  if (!stops_of(*subject).empty() || may_raise(*subject, catches_)) return true;
   for (const spirv::Probe& probe : subject->probes)
     if (probe.kind == spirv::Probe::Kind::kStep && probe.number == static_cast<std::uint32_t>(StepKind::kBreak))
       return true;
@@ -150,7 +166,10 @@ void Engine::came_by(Run& run, const spirv::Wave& wave, const spirv::ProbeOp& op
   std::unique_lock lock(mutex_);
   if (detached_) return;
   const spirv::Probe::Kind kind = run.subject->probes[op.probe].kind;
-  if (kind != spirv::Probe::Kind::kStep && kind != spirv::Probe::Kind::kAssign) return;
+  if (kind != spirv::Probe::Kind::kStep && kind != spirv::Probe::Kind::kAssign) {
+    if (auto stop = check_exceptions(live_, wave, op)) halt(std::move(*stop), lock);
+    return;
+  }
   const base::LaneMask lanes = spirv::exec::lanes_at(wave, op) & run.launched;
   if (lanes == 0) return;
   run.record(wave, op, lanes);
@@ -227,7 +246,8 @@ std::optional<Stop> Engine::check_breakpoints(const std::shared_ptr<Run>& run, c
   if (lanes == 0 || (here == stops.end() && !any_begins)) return std::nullopt;
   // All lanes have come to the same place by the same calls.
   const std::vector<CodeFrame> frames = frames_at(*run, first_lane(lanes));
-  const FrameNames names(*run, frames.empty() ? nullptr : frames.data());
+  const FrameNames frame_names(*run, frames.empty() ? nullptr : frames.data());
+  const KnownNames names(frame_names);
   int number = 0;
   std::size_t where = 0;
   const auto consider = [&](Breakpoint& breakpoint, std::size_t lane) {
@@ -247,6 +267,18 @@ std::optional<Stop> Engine::check_breakpoints(const std::shared_ptr<Run>& run, c
   Stop stop{Stop::Reason::kBreakpoint, number, "breakpoint " + std::to_string(number)};
   if (breakpoints_.at(number).once) remove(number);
   return stop;
+}
+
+/// They are not in the record: going back does not stop at them.
+std::optional<Stop> Engine::check_exceptions(const std::shared_ptr<Run>& run, const spirv::Wave& wave,
+                                             const spirv::ProbeOp& op) {
+  if (catches_ == 0) return std::nullopt;
+  const base::LaneMask lanes = spirv::exec::lanes_at(wave, op) & run->launched & ~run->helpers;
+  const std::size_t preferred = focus_.run == run ? focus_.lane : first_lane(run->launched);
+  auto raised = raised_at(run->subject->probes[op.probe], wave, op, lanes, preferred, catches_);
+  if (!raised) return std::nullopt;
+  look_at(run, raised->lane);
+  return Stop{Stop::Reason::kException, 0, std::move(raised->text)};
 }
 
 std::optional<Stop> Engine::check_watches(const std::shared_ptr<Run>& run, const Run::Entry& entry) {

@@ -2,6 +2,7 @@
 // and then asks its face what to do. A thread that is stopped waits in the face; so does whoever waits for the command.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "glass/debug/breakpoint.h"
+#include "glass/debug/exceptions.h"
 #include "glass/debug/frame.h"
 #include "glass/debug/history.h"
 
@@ -30,6 +32,7 @@ struct Stop {
     kEnd,      ///< the invocation has ended
     kHistory,  ///< what was before is not known any more
     kPause,
+    kException,  ///< something that is caught has happened
   } reason = Reason::kStart;
   int number = 0;    ///< of the breakpoint or watch
   std::string text;  ///< for people
@@ -88,6 +91,9 @@ class Engine {
   int watch(Watchpoint watchpoint);
   const std::map<int, Breakpoint>& breakpoints() const { return breakpoints_; }
   const std::map<int, Watchpoint>& watchpoints() const { return watchpoints_; }
+  /// Bits of Catch: what stops a shader besides. NaNs are seen in shaders that are made from then on.
+  void set_catches(unsigned catches) { catches_ = catches; }
+  unsigned catches() const { return catches_; }
   /// Stops at the next line of anything.
   void pause() { pausing_ = true; }
   /// What the stopped thread does next.
@@ -112,6 +118,8 @@ class Engine {
   std::optional<Stop> check_breakpoints(const std::shared_ptr<Run>& run, const Run::Entry& entry, Lanes lanes,
                                         bool live);
   std::optional<Stop> check_watches(const std::shared_ptr<Run>& run, const Run::Entry& entry);
+  std::optional<Stop> check_exceptions(const std::shared_ptr<Run>& run, const spirv::Wave& wave,
+                                       const spirv::ProbeOp& op);
   bool hits(Breakpoint& breakpoint, const Viewer& viewer, const Names& names, bool live);
   bool reaches_goal(const Run& run, const Run::Entry& entry, Lanes fresh) const;
   void halt(Stop stop, std::unique_lock<std::mutex>& lock);
@@ -134,6 +142,7 @@ class Engine {
   Focus focus_;
   Motion motion_;
   std::uint32_t goal_depth_ = 0;
+  std::atomic<unsigned> catches_ = 0;  ///< shaders are made while others wait
   bool going_ = true, detached_ = false, pausing_ = false;
 };
 

@@ -74,6 +74,16 @@ json set_functions(Engine& engine, const json& request) {
   return replace(engine, request, "functions", Breakpoint::Kind::kFunction);
 }
 
+json set_catches(Engine& engine, const json& request) {
+  unsigned catches = 0;
+  const auto rows = request.find("list");
+  if (rows != request.end() && rows->is_array())
+    for (const json& row : *rows)
+      if (row.is_string()) catches |= catch_of(row.get<std::string>());
+  engine.set_catches(catches);
+  return json::object();
+}
+
 json lanes(Engine& engine, const json&) {
   json list = json::array();
   const Run* run = engine.focus().run.get();
@@ -163,6 +173,7 @@ struct Row {
 constexpr Row kRows[] = {{"command", false, run_command},
                          {"breakpoints", true, set_lines},
                          {"functions", true, set_functions},
+                         {"catch", true, set_catches},
                          {"lanes", false, lanes},
                          {"frames", false, frames},
                          {"variables", false, variables},
@@ -181,7 +192,8 @@ json answer(Engine& engine, const json& request, bool stopped) {
   return error("there is no request '" + name + "'");
 }
 
-constexpr const char* kReasons[] = {"start", "step", "breakpoint", "break", "watch", "end", "history", "pause"};
+constexpr const char* kReasons[] = {"start", "step",    "breakpoint", "break",    "watch",
+                                    "end",   "history", "pause",      "exception"};
 
 std::string dump(const json& object) { return object.dump(-1, ' ', false, json::error_handler_t::replace); }
 

@@ -48,7 +48,9 @@ class DebugTool : public Tool {
  public:
   explicit DebugTool(Engine& engine) : engine_(engine) {}
 
-  spirv::exec::Interest interest() const override { return {.debug = true}; }
+  spirv::exec::Interest interest() const override {
+    return {.numbers = (engine_.catches() & kCatchNan) != 0, .printf = true, .debug = true};
+  }
   std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
     if (!program.sources || !program.sources->variables) return nullptr;
     auto subject = std::make_shared<const Subject>(shader, program);

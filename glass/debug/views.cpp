@@ -123,6 +123,7 @@ std::string breakpoints_text(Engine& engine) {
     text += std::to_string(number) + "  " + to_text(breakpoint) + ", hits: " + std::to_string(breakpoint.hits) + "\n";
   for (const auto& [number, watchpoint] : engine.watchpoints())
     text += std::to_string(number) + "  watch " + watchpoint.text + "\n";
+  if (engine.catches() != 0) text += "catch " + catches_text(engine.catches()) + "\n";
   return text.empty() ? "none\n" : text;
 }
 

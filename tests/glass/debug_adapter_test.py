@@ -2,7 +2,7 @@
 """Tests `vitrine debug --dap` as an editor does, with a small client of the Debug Adapter Protocol, and with clients that
 behave badly.
 
-usage: debug_adapter_test.py VITRINE APPLICATION PIXELS
+usage: debug_adapter_test.py VITRINE APPLICATION PIXELS SPEAKER
 """
 import json
 import os
@@ -10,9 +10,18 @@ import re
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
+SAYS = """#version 450
+#extension GL_EXT_debug_printf : require
+layout(local_size_x = 4) in;
+void main() {
+  if (gl_LocalInvocationID.x == 2)
+    debugPrintfEXT("this is %u", gl_LocalInvocationID.x);
+}
+"""
 FILE = "tests/glass/app/fill.comp"
 
 
@@ -67,10 +76,10 @@ class Client:
 
 
 class Adapter(unittest.TestCase):
-    vitrine, application, pixels = "", "", ""
+    vitrine, application, pixels, speaker = "", "", "", ""
 
-    def serve(self, application=None):
-        server = subprocess.Popen([self.vitrine, "debug", "--dap", "0", "--", application or self.application],
+    def serve(self, application=None, *arguments):
+        server = subprocess.Popen([self.vitrine, "debug", "--dap", "0", "--", application or self.application, *arguments],
                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(lambda: (server.kill(), server.wait(), server.stdout.close(), server.stderr.close()))
         line = server.stderr.readline()
@@ -182,6 +191,31 @@ class Adapter(unittest.TestCase):
         client.wait("exited")
         self.assertEqual(server.wait(timeout=60), 0)
 
+    def test_exceptions(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        shader, module = os.path.join(folder.name, "says.comp"), os.path.join(folder.name, "says.comp.spv")
+        with open(shader, "w", encoding="utf-8") as file:
+            file.write(SAYS)
+        subprocess.run(["glslangValidator", "-V", "-g", "--quiet", "--target-env", "vulkan1.1", "-o", module, shader], check=True)
+        server, port = self.serve(self.speaker, module)
+        client = self.client(port)
+        filters = client.ask("initialize")["exceptionBreakpointFilters"]
+        self.assertEqual([row["filter"] for row in filters], ["printf", "nan"])
+        client.ask("setExceptionBreakpoints", filters=["printf"])
+        client.ask("launch")
+        client.ask("configurationDone")
+        stop = client.wait("stopped")
+        self.assertEqual(stop["reason"], "exception")
+        info = client.ask("exceptionInfo", threadId=stop["threadId"])
+        self.assertEqual(info["exceptionId"], "printf")
+        self.assertIn("printf: this is 2", info["description"])
+        self.assertEqual(self.at(client, stop["threadId"])[1], 6)
+        client.ask("setExceptionBreakpoints", filters=[])
+        client.ask("continue", threadId=stop["threadId"])
+        client.wait("exited")
+        server.wait(timeout=60)
+
     def test_disconnect_in_the_middle(self):
         server, port = self.serve()
         client = self.client(port)
@@ -245,5 +279,5 @@ class Adapter(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    Adapter.vitrine, Adapter.application, Adapter.pixels = sys.argv[1:4]
+    Adapter.vitrine, Adapter.application, Adapter.pixels, Adapter.speaker = sys.argv[1:5]
     unittest.main(argv=sys.argv[:1])

@@ -174,6 +174,46 @@ OpFunctionEnd
                                            "%15 + 1u = 22", "OpIMul", "<no value>"});
 }
 
+TEST(Debugger, StopsAtDebugBreak) {
+  const std::string module = R"(OpCapability Shader
+OpExtension "SPV_KHR_non_semantic_info"
+%20 = OpExtInstImport "NonSemantic.DebugBreak"
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %1 "main"
+OpExecutionMode %1 LocalSize 4 1 1
+OpDecorate %8 BufferBlock
+OpMemberDecorate %8 0 Offset 0
+OpDecorate %9 DescriptorSet 0
+OpDecorate %9 Binding 0
+%2 = OpTypeVoid
+%3 = OpTypeFunction %2
+%4 = OpTypeInt 32 0
+%5 = OpConstant %4 0
+%6 = OpConstant %4 3
+%8 = OpTypeStruct %4
+%10 = OpTypePointer Uniform %8
+%11 = OpTypePointer Uniform %4
+%9 = OpVariable %10 Uniform
+%1 = OpFunction %2 None %3
+%12 = OpLabel
+%13 = OpAccessChain %11 %9 %5
+%14 = OpLoad %4 %13
+%21 = OpExtInst %2 %20 1
+%15 = OpIMul %4 %14 %6
+OpStore %13 %15
+OpReturn
+OpFunctionEnd
+)";
+  ScriptedDebugger debugger({"run", "print %14", "print %15", "step", "step", "print %15", "reverse-continue"});
+  std::vector<std::uint32_t> words{7, 0, 0, 0}, code;
+  ASSERT_TRUE(spvtools::SpirvTools(SPV_ENV_UNIVERSAL_1_3)
+                  .Assemble(module, &code, SPV_TEXT_TO_BINARY_OPTION_PRESERVE_NUMERIC_IDS));
+  glass::test::run_observed(debugger.tool.get(), code, words, 1);
+  EXPECT_EQ(words[0], 21u);
+  expect_in_order(debugger.script.text(),
+                  {"DebugBreak\n", "invocation (0, 0, 0)", "%14 = 7", "<no value>", "%15 = 21", "DebugBreak\n"});
+}
+
 TEST(Debugger, KnowsWhatLoopsLeaveBehind) {
   const Session s = session({"break 12", "run", "print sum", "print last", "print early"}, R"(#version 450
 layout(local_size_x = 1) in;
@@ -190,6 +230,39 @@ void main() {
 }
 )");
   expect_in_order(s.text, {"main at shader.glsl:12", "sum = 46", "last = 6", "early = 121"});
+}
+
+TEST(Debugger, StopsAtMessages) {
+  const Session s = session({"catch printf", "info breakpoints", "run", "print i", "back", "continue", "catch nothing"},
+                            R"(#version 450
+#extension GL_EXT_debug_printf : require
+layout(local_size_x = 8) in;
+layout(std430, set = 0, binding = 0) buffer Data { uint data[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i > 2u && i < 5u)
+    debugPrintfEXT("i is %u", i);
+  data[i] = i;
+}
+)");
+  expect_in_order(s.text, {"caught: printf", "catch printf", "printf: i is 3", "invocation (3, 0, 0)",
+                           "main at shader.glsl:8", "i = 3", "main at shader.glsl:7"});
+  EXPECT_EQ(s.words[3], 3u);
+}
+
+TEST(Debugger, StopsWhereNaNsAreMade) {
+  const Session s = session({"catch nan", "run", "print x", "catch nothing", "next", "print y"}, R"(#version 450
+layout(local_size_x = 8) in;
+layout(std430, set = 0, binding = 0) buffer Data { uint data[]; };
+void main() {
+  float x = uintBitsToFloat(data[gl_LocalInvocationID.x] / 15u);
+  float y = uintBitsToFloat(0x7fc00000u) + 1.0;
+  y = x * (1.0 / x);
+  data[gl_LocalInvocationID.x] = floatBitsToUint(y);
+}
+)");
+  expect_in_order(s.text, {"caught: nan", "nan: NaN made of 0", "invocation (0, 0, 0)", "main at shader.glsl:7",
+                           "x = 0.0", "nothing is caught", "y = -nan"});
 }
 
 TEST(Debugger, ForgetsWhatIsTooOld) {
