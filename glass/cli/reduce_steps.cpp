@@ -126,7 +126,8 @@ void reduce_invocations(Bug& bug, const StillFound& still) {
 void reduce_descriptors(Bug& bug, const StillFound& still) {
   thin_out<std::uint32_t>(bug, still, [](Bug& b) -> std::vector<std::uint32_t>& { return b.addressed; });
   thin_out<bug::Descriptor>(bug, still, [](Bug& b) -> std::vector<bug::Descriptor>& { return b.descriptors; });
-  drop_unused(bug);
+  // Memory that nothing else is left in goes, too.
+  attempt(bug, still, [](Bug& b) { drop_unused(b); });
 }
 
 void reduce_memory(Bug& bug, const StillFound& still) {
