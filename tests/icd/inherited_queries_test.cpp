@@ -1,36 +1,19 @@
 // Queries of a primary command buffer that count what its secondary ones do (Vulkan 1.3.239, Command Buffers: Secondary
 // Command Buffer Execution; feature inheritedQueries).
-#include "tests/icd/fixture.h"
+#include "tests/icd/compute_fixture.h"
 #include "tests/icd/shaders.h"
 
 namespace vitrine::icd::test {
 namespace {
 
-class InheritedQueries : public DeviceTest {
+class InheritedQueries : public ComputeTest {
  protected:
   void SetUp() override {
-    DeviceTest::SetUp();
-    auto module_info = make_struct<VkShaderModuleCreateInfo>();
-    module_info.codeSize = sizeof kComputeWords;
-    module_info.pCode = kComputeWords;
-    ASSERT_EQ(VK_GET(instance, CreateShaderModule)(device, &module_info, nullptr, &module), VK_SUCCESS);
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_ALL, nullptr};
-    auto set_info = make_struct<VkDescriptorSetLayoutCreateInfo>();
-    set_info.bindingCount = 1;
-    set_info.pBindings = &binding;
-    ASSERT_EQ(VK_GET(instance, CreateDescriptorSetLayout)(device, &set_info, nullptr, &set_layout), VK_SUCCESS);
-    auto layout_info = make_struct<VkPipelineLayoutCreateInfo>();
-    layout_info.setLayoutCount = 1;
-    layout_info.pSetLayouts = &set_layout;
-    ASSERT_EQ(VK_GET(instance, CreatePipelineLayout)(device, &layout_info, nullptr, &layout), VK_SUCCESS);
+    ComputeTest::SetUp();
     auto info = make_struct<VkComputePipelineCreateInfo>();
-    info.stage = make_struct<VkPipelineShaderStageCreateInfo>();
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = module;
-    info.stage.pName = "main";
+    info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, kComputeWords);
     info.layout = layout;
-    ASSERT_EQ(VK_GET(instance, CreateComputePipelines)(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-              VK_SUCCESS);
+    ASSERT_EQ(VK_GET(instance, CreateComputePipelines)(device, cache, 1, &info, nullptr, &pipeline), VK_SUCCESS);
     auto query_info = make_struct<VkQueryPoolCreateInfo>();
     query_info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
     query_info.queryCount = 2;
@@ -43,10 +26,7 @@ class InheritedQueries : public DeviceTest {
     VK_GET(instance, DestroyCommandPool)(device, pool, nullptr);
     VK_GET(instance, DestroyQueryPool)(device, queries, nullptr);
     VK_GET(instance, DestroyPipeline)(device, pipeline, nullptr);
-    VK_GET(instance, DestroyPipelineLayout)(device, layout, nullptr);
-    VK_GET(instance, DestroyDescriptorSetLayout)(device, set_layout, nullptr);
-    VK_GET(instance, DestroyShaderModule)(device, module, nullptr);
-    DeviceTest::TearDown();
+    ComputeTest::TearDown();
   }
   void work(VkCommandBuffer commands, std::uint32_t groups) {
     VK_GET(instance, CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
@@ -71,9 +51,6 @@ class InheritedQueries : public DeviceTest {
     return out;
   }
 
-  VkShaderModule module = VK_NULL_HANDLE;
-  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
-  VkPipelineLayout layout = VK_NULL_HANDLE;
   VkPipeline pipeline = VK_NULL_HANDLE;
   VkQueryPool queries = VK_NULL_HANDLE;
   VkCommandPool pool = VK_NULL_HANDLE;

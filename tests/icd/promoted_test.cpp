@@ -7,7 +7,7 @@
 
 #include "icd/edge/diagnostics.h"
 #include "icd/object/shader_module.h"
-#include "tests/icd/fixture.h"
+#include "tests/icd/compute_fixture.h"
 #include "tests/icd/shaders.h"
 
 namespace vitrine::icd::test {
@@ -82,48 +82,21 @@ TEST_F(DebugUtils, MessagesCarryTheNamesOfObjects) {
   VK_GET(instance, DestroyDebugUtilsMessengerEXT)(instance, messenger, nullptr);
 }
 
-class PipelineCreation : public DeviceTest {
+class PipelineCreation : public ComputeTest {
  protected:
   void SetUp() override {
-    DeviceTest::SetUp();
-    auto module_info = make_struct<VkShaderModuleCreateInfo>();
-    module_info.codeSize = sizeof kComputeWords;
-    module_info.pCode = kComputeWords;
-    ASSERT_EQ(VK_GET(instance, CreateShaderModule)(device, &module_info, nullptr, &module), VK_SUCCESS);
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_ALL, nullptr};
-    auto set_info = make_struct<VkDescriptorSetLayoutCreateInfo>();
-    set_info.bindingCount = 1;
-    set_info.pBindings = &binding;
-    ASSERT_EQ(VK_GET(instance, CreateDescriptorSetLayout)(device, &set_info, nullptr, &set_layout), VK_SUCCESS);
-    auto layout_info = make_struct<VkPipelineLayoutCreateInfo>();
-    layout_info.setLayoutCount = 1;
-    layout_info.pSetLayouts = &set_layout;
-    ASSERT_EQ(VK_GET(instance, CreatePipelineLayout)(device, &layout_info, nullptr, &layout), VK_SUCCESS);
-    const auto cache_info = make_struct<VkPipelineCacheCreateInfo>();
-    ASSERT_EQ(VK_GET(instance, CreatePipelineCache)(device, &cache_info, nullptr, &cache), VK_SUCCESS);
-  }
-  void TearDown() override {
-    VK_GET(instance, DestroyPipelineCache)(device, cache, nullptr);
-    VK_GET(instance, DestroyPipelineLayout)(device, layout, nullptr);
-    VK_GET(instance, DestroyDescriptorSetLayout)(device, set_layout, nullptr);
-    VK_GET(instance, DestroyShaderModule)(device, module, nullptr);
-    DeviceTest::TearDown();
+    ComputeTest::SetUp();
+    main_stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, kComputeWords);
   }
   VkComputePipelineCreateInfo info(VkPipelineCreateFlags flags, void* next = nullptr) {
     auto out = make_struct<VkComputePipelineCreateInfo>(next);
     out.flags = flags;
-    out.stage = make_struct<VkPipelineShaderStageCreateInfo>();
-    out.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    out.stage.module = module;
-    out.stage.pName = "main";
+    out.stage = main_stage;
     out.layout = layout;
     return out;
   }
 
-  VkShaderModule module = VK_NULL_HANDLE;
-  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
-  VkPipelineLayout layout = VK_NULL_HANDLE;
-  VkPipelineCache cache = VK_NULL_HANDLE;
+  VkPipelineShaderStageCreateInfo main_stage{};
 };
 
 TEST_F(PipelineCreation, FeedbackTellsTimesAndCacheHits) {
@@ -187,9 +160,9 @@ TEST_F(PipelineCreation, RobustnessIsTheSameForAll) {
 
 TEST_F(PipelineCreation, ModulesCanBeNamedByTheirIdentifiers) {
   auto of_module = make_struct<VkShaderModuleIdentifierEXT>(), of_words = make_struct<VkShaderModuleIdentifierEXT>();
-  VK_GET(instance, GetShaderModuleIdentifierEXT)(device, module, &of_module);
+  VK_GET(instance, GetShaderModuleIdentifierEXT)(device, main_stage.module, &of_module);
   ASSERT_EQ(of_module.identifierSize, 16u);
-  const auto& words = from_handle<ShaderModule>(module).words;
+  const auto& words = from_handle<ShaderModule>(main_stage.module).words;
   auto module_info = make_struct<VkShaderModuleCreateInfo>();
   module_info.codeSize = words.size() * sizeof words[0];
   module_info.pCode = words.data();
