@@ -8,27 +8,16 @@
 #include "glass/bug/amber_draws.h"
 #include "glass/bug/amber_images.h"
 #include "glass/bug/contents.h"
+#include "glass/finding.h"
 
 namespace vitrine::glass::bug {
 namespace {
 
-const char* stage_name(VkShaderStageFlagBits stage) {
-  switch (stage) {
-    case VK_SHADER_STAGE_VERTEX_BIT:
-      return "vertex";
-    case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
-      return "tessellation_control";
-    case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
-      return "tessellation_evaluation";
-    case VK_SHADER_STAGE_GEOMETRY_BIT:
-      return "geometry";
-    case VK_SHADER_STAGE_FRAGMENT_BIT:
-      return "fragment";
-    case VK_SHADER_STAGE_COMPUTE_BIT:
-      return "compute";
-    default:
-      throw Unspeakable{"such a stage"};
-  }
+std::string amber_stage(VkShaderStageFlagBits stage) {
+  std::string name(glass::stage_name(stage));
+  if (name.empty()) throw Unspeakable{"such a stage"};
+  std::ranges::replace(name, ' ', '_');
+  return name;
 }
 
 /// A module as SPIRV-HEX: bytes. END follows the last one at once, since Amber waits for a number behind white space.
@@ -44,7 +33,7 @@ void write_module(std::ostream& out, const Bytes& words) {
 
 void write_shaders(std::ostream& out, const Bug& bug) {
   for (std::size_t i = 0; i < bug.stages.size(); ++i) {
-    out << "SHADER " << stage_name(bug.stages[i].stage) << " shader" << i << " SPIRV-HEX\n";
+    out << "SHADER " << amber_stage(bug.stages[i].stage) << " shader" << i << " SPIRV-HEX\n";
     write_module(out, *bug.stages[i].words);
   }
 }
@@ -170,7 +159,7 @@ void write_constants(std::ostream& out, const Stage& stage) {
 void write_stage(std::ostream& out, const Stage& stage, std::size_t number) {
   out << "  ATTACH shader" << number;
   if (!stage.constants.empty() || stage.entry_point != "main")
-    out << " TYPE " << stage_name(stage.stage) << " ENTRY_POINT " << stage.entry_point;
+    out << " TYPE " << amber_stage(stage.stage) << " ENTRY_POINT " << stage.entry_point;
   write_constants(out, stage);
   out << "\n";
   if (stage.subgroup_size)

@@ -7,19 +7,15 @@
 
 #include <cstring>
 
+#include "glass/debug/socket_io.h"
+
 namespace vitrine::glass::cli {
 
 using nlohmann::json;
 
 DebugLink::~DebugLink() { ::close(socket_); }
 
-bool DebugLink::fill() {
-  char part[4096];
-  const ssize_t count = ::recv(socket_, part, sizeof(part), 0);
-  if (count <= 0) return false;
-  text_.append(part, static_cast<std::size_t>(count));
-  return true;
-}
+bool DebugLink::fill() { return debug::append_received(socket_, text_); }
 
 std::optional<json> DebugLink::next() {
   const std::size_t end = text_.find('\n');
@@ -40,11 +36,7 @@ std::optional<json> DebugLink::ask(json request, const std::function<void(const 
   const int id = ++last_id_;
   request["id"] = id;
   const std::string line = request.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
-  for (std::size_t sent = 0; sent < line.size();) {
-    const ssize_t count = ::send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
-    if (count <= 0) return std::nullopt;
-    sent += static_cast<std::size_t>(count);
-  }
+  if (!debug::send_whole(socket_, line)) return std::nullopt;
   while (auto message = receive()) {
     if (message->value("id", 0) == id) return message;
     events(*message);

@@ -8,6 +8,8 @@
 #include <charconv>
 #include <string_view>
 
+#include "glass/debug/socket_io.h"
+
 namespace vitrine::glass::cli {
 
 using nlohmann::json;
@@ -40,13 +42,7 @@ int listen_on_loopback(std::uint16_t& port) {
 
 DapWire::~DapWire() { ::close(socket_); }
 
-bool DapWire::fill() {
-  char part[4096];
-  const ssize_t count = ::recv(socket_, part, sizeof(part), 0);
-  if (count <= 0) return false;
-  text_.append(part, static_cast<std::size_t>(count));
-  return true;
-}
+bool DapWire::fill() { return debug::append_received(socket_, text_); }
 
 std::optional<json> DapWire::next() {
   const std::size_t end = text_.find("\r\n\r\n");
@@ -75,12 +71,7 @@ std::optional<json> DapWire::next() {
 void DapWire::send(json message) {
   message["seq"] = ++sequence_;
   const std::string body = message.dump(-1, ' ', false, json::error_handler_t::replace);
-  const std::string text = std::string(kLength).append(std::to_string(body.size())).append("\r\n\r\n").append(body);
-  for (std::size_t sent = 0; sent < text.size();) {
-    const ssize_t count = ::send(socket_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
-    if (count <= 0) return;
-    sent += static_cast<std::size_t>(count);
-  }
+  debug::send_whole(socket_, std::string(kLength).append(std::to_string(body.size())).append("\r\n\r\n").append(body));
 }
 
 }  // namespace vitrine::glass::cli

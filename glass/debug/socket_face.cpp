@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "glass/debug/requests.h"
+#include "glass/debug/socket_io.h"
 
 namespace vitrine::glass::debug {
 namespace {
@@ -43,11 +44,7 @@ void SocketFace::listen(Engine& engine) {
 
 void SocketFace::read(Engine& engine) {
   std::string text;
-  char part[4096];
-  for (;;) {
-    const ssize_t count = ::recv(socket_, part, sizeof(part), 0);
-    if (count <= 0 || text.size() > kLongestLine) break;
-    text.append(part, static_cast<std::size_t>(count));
+  while (text.size() <= kLongestLine && append_received(socket_, text)) {
     std::size_t begin = 0;
     for (std::size_t end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1)
       take(engine, text.substr(begin, end - begin));
@@ -93,11 +90,7 @@ void SocketFace::output(const std::string& text) {
 
 void SocketFace::send(std::string line) {
   line += '\n';
-  for (std::size_t sent = 0; sent < line.size();) {
-    const ssize_t count = ::send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
-    if (count <= 0) return;
-    sent += static_cast<std::size_t>(count);
-  }
+  send_whole(socket_, line);
 }
 
 }  // namespace vitrine::glass::debug
