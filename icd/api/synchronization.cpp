@@ -18,8 +18,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t kForever = std::uint64_t{3} * 1000 * 1000 * 1000 * 1000 * 1000 * 1000;
 
 /// Waits until `ready` or the timeout; false: timeout. `outside`: a payload that others can signal, if one is among
-/// what is waited for. They do not wake the condition variable: then the wait is for them, and looks at the rest every
-/// millisecond.
+/// what is waited for; the caller holds it, as the object may give it up meanwhile. They do not wake the condition
+/// variable: then the wait is for them, and looks at the rest every millisecond.
 template <class Ready>
 bool wait_for_change(Device& device, std::unique_lock<std::mutex>& lock, std::uint64_t timeout_ns,
                      const std::shared_ptr<ExternalPayload>& outside, Ready ready) {
@@ -30,14 +30,13 @@ bool wait_for_change(Device& device, std::unique_lock<std::mutex>& lock, std::ui
     device.sync_changed.wait(lock, ready);
     return true;
   }
-  const std::shared_ptr<ExternalPayload> payload = outside;
   for (;;) {
-    const std::uint32_t seen = payload->changes();
+    const std::uint32_t seen = outside->changes();
     if (ready()) return true;
     const std::chrono::nanoseconds left = deadline - Clock::now();
     if (left.count() <= 0) return false;
     lock.unlock();
-    payload->wait(seen, std::min<std::chrono::nanoseconds>(left, std::chrono::milliseconds(1)));
+    outside->wait(seen, std::min<std::chrono::nanoseconds>(left, std::chrono::milliseconds(1)));
     lock.lock();
   }
 }
@@ -52,7 +51,7 @@ VkResult wait_until(Device& device, std::unique_lock<std::mutex>& lock, std::uin
 
 /// What others can signal of a fence or semaphore, or null.
 template <class T>
-const std::shared_ptr<ExternalPayload>& outside_of(const T& object) {
+std::shared_ptr<ExternalPayload> outside_of(const T& object) {
   return object.temporary ? object.temporary : object.shared;
 }
 
@@ -60,7 +59,7 @@ const std::shared_ptr<ExternalPayload>& outside_of(const T& object) {
 template <class T>
 std::shared_ptr<ExternalPayload> outside_of(std::span<const typename T::Handle> handles) {
   for (const auto handle : handles)
-    if (const auto& payload = outside_of(from_handle<T>(handle))) return payload;
+    if (auto payload = outside_of(from_handle<T>(handle))) return payload;
   return nullptr;
 }
 
@@ -94,13 +93,13 @@ void tell_waited(Device& device, VkSemaphore semaphore, std::uint64_t value) {
 
 void signal_fence(Device& device, Fence& fence) {
   change_state(device, [&] {
-    if (const auto& payload = outside_of(fence)) return payload->set(true);
+    if (const auto payload = outside_of(fence)) return payload->set(true);
     fence.signaled = true;
   });
 }
 
 bool is_signaled(const Fence& fence) {
-  const auto& payload = outside_of(fence);
+  const auto payload = outside_of(fence);
   return payload ? payload->value() != 0 : fence.signaled;
 }
 
@@ -123,7 +122,7 @@ void set_event(Device& device, Event& event, bool set) {
 }
 
 std::uint64_t counter(const Semaphore& semaphore) {
-  const auto& payload = outside_of(semaphore);
+  const auto payload = outside_of(semaphore);
   return payload ? payload->value() : semaphore.value;
 }
 
@@ -133,7 +132,7 @@ bool is_reached(const Semaphore& semaphore, std::uint64_t value) {
 
 bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value,
                     const std::shared_ptr<ExternalPayload>& temporary) {
-  const auto& payload = temporary ? temporary : semaphore.shared;
+  const std::shared_ptr<ExternalPayload> payload = temporary ? temporary : semaphore.shared;
   const auto take = [&] {
     if (semaphore.timeline) return (payload ? payload->value() : semaphore.value) >= value;
     if (payload) return payload->take();
