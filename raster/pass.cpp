@@ -14,6 +14,7 @@
 #include "base/workers.h"
 #include "raster/arena.h"
 #include "raster/front/assembly.h"
+#include "raster/front/collected.h"
 #include "raster/front/front.h"
 #include "raster/front/rectangles.h"
 #include "raster/plan/make_plan.h"
@@ -52,6 +53,7 @@ struct Scratch {
   std::vector<std::uint32_t> touched;        ///< tiles with items
   std::vector<Run> runs;
   std::deque<spirv::BoundShader> bound;
+  std::deque<ViewLayer> view_layers;
 };
 
 class ScratchPool {
@@ -283,7 +285,7 @@ struct Pass::Impl {
 
   /// Chunks that may share batches of clipped triangles, and whose vertices cannot be shaded again without notice.
   static bool works_in_order(const Command& command) {
-    if (command.clear) return false;
+    if (command.clear || command.chunk.view_layer) return false;
     const DrawRecord& draw = *command.chunk.draw;
     return draw.plan->rectangles.any && (draw.call.queries.statistics || draw.call.feedback || draw.call.observer ||
                                          draw.plan->vertex->writes_memory);
@@ -294,6 +296,7 @@ struct Pass::Impl {
     if (index + 1 >= scratch->commands.size()) return false;
     const Command &a = scratch->commands[index], &b = scratch->commands[index + 1];
     if (a.clear || b.clear || a.chunk.draw != b.chunk.draw || a.chunk.view != b.chunk.view) return false;
+    if (a.chunk.view_layer) return false;  // they have been worked on, in order
     return works_in_order(a) || (a.output.ends_clipped && b.output.begins_clipped);
   }
 
@@ -406,7 +409,7 @@ void Pass::draw(const DrawCall& draw) {
   if (!record) return unfinished.done();
   if (impl_->desc.view_mask == 0) impl_->draw_view(record, 0);
   ViewLayer* const view_layer =
-      record->plan->as_reference.first_layer ? new (impl_->scratch->arena.take<ViewLayer>(1)) ViewLayer{} : nullptr;
+      record->plan->as_reference.first_layer ? &impl_->scratch->view_layers.emplace_back() : nullptr;
   for (std::uint32_t view = 0; view < 32; ++view)
     if ((impl_->desc.view_mask >> view & 1) != 0) impl_->draw_view(record, view, view_layer);
   unfinished.done();
@@ -418,6 +421,7 @@ void Pass::flush() {
   impl_->run_back();
   impl_->last = nullptr;
   impl_->scratch->bound.clear();
+  impl_->scratch->view_layers.clear();
   impl_->scratch->arena.reset();
   unfinished.done();
 }

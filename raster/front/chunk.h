@@ -11,16 +11,11 @@
 namespace vitrine::raster {
 
 class ClippedBatch;  // raster/front/rectangles.h
+struct ViewLayer;    // raster/front/collected.h
 
 /// The stipple pattern runs on along a strip: its lines stay in one chunk, up to this many positions. Chunks of longer
 /// strips hand the counter on (Chunk::stipple_counter).
 inline constexpr std::uint32_t kStippledChunkPositions = 32768;
-
-/// What waits behind the reference's clipper, of all views of a draw (deviations.md, multiview-layers).
-struct ViewLayer {
-  bool any = false;
-  std::uint32_t layer = 0;
-};
 
 struct Chunk {
   const DrawRecord* draw = nullptr;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "raster/front/made_vertices.h"
+
 namespace vitrine::raster {
 namespace {
 
@@ -109,15 +111,6 @@ bool clip_by_plane(const ClipContext& context, std::uint32_t plane, const ClipPo
 }
 
 }  // namespace
-
-const Vertex* with_flat_values(const PipelinePlan& plan, Arena& arena, const Vertex* record, const Vertex* flat) {
-  if (!plan.flat_count || record == flat) return record;
-  Vertex* copy = arena.take<Vertex>(plan.vertex_stride);
-  std::memcpy(copy, record, plan.vertex_stride * sizeof(Vertex));
-  const std::uint32_t first = 4 + plan.perspective_count + plan.linear_count;
-  std::memcpy(copy + first, flat + first, plan.flat_count * sizeof(Vertex));
-  return copy;
-}
 
 bool clip_triangle(const ClipContext& context, std::uint32_t provoking, ClipPolygon& polygon) {
   const ClipCode planes = polygon.corner[0].code | polygon.corner[1].code | polygon.corner[2].code;

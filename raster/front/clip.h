@@ -39,9 +39,6 @@ struct ClipPolygon {
 /// corner `provoking`; false if nothing is left.
 bool clip_triangle(const ClipContext& context, std::uint32_t provoking, ClipPolygon& polygon);
 
-/// A copy of `record` with the flat values of `flat`; the record itself if they are the same or there are none.
-const Vertex* with_flat_values(const PipelinePlan& plan, Arena& arena, const Vertex* record, const Vertex* flat);
-
 /// Moves the ends onto the planes. False if nothing is left.
 bool clip_line(const ClipContext& context, std::uint32_t provoking, ClipVertex line[2]);
 

@@ -9,6 +9,8 @@
 #include "base/numeric.h"
 #include "raster/front/assembly.h"
 #include "raster/front/clip.h"
+#include "raster/front/collected.h"
+#include "raster/front/made_vertices.h"
 #include "raster/front/rectangles.h"
 #include "raster/front/setup_batch.h"
 #include "raster/front/setup_wide.h"
@@ -25,10 +27,11 @@ struct PrimitiveWork : PrimitiveContext {
   TriangleBatch batch;
   bool clips_segment = false;  ///< triangles go to `clipped`, not to setup
   ClippedBatch own_batch;
-  ClippedBatch& clipped;        ///< the chunk's own, or one that several chunks share
-  std::uint32_t base_layer;     ///< of the view
-  std::uint32_t discarded = 0;  ///< lines and triangles that the clipper leaves nothing of
-  std::uint32_t parts = 0;      ///< triangles that it makes beyond the first of a polygon
+  ClippedBatch& clipped;         ///< the chunk's own, or one that several chunks share
+  std::uint32_t base_layer;      ///< of the view
+  ViewLayer* waiting = nullptr;  ///< primitives go through the reference's clipper, and wait with those of other views
+  std::uint32_t discarded = 0;   ///< lines and triangles that the clipper leaves nothing of
+  std::uint32_t parts = 0;       ///< triangles that it makes beyond the first of a polygon
 
   explicit PrimitiveWork(const PrimitiveContext& context)
       : PrimitiveContext(context),
@@ -67,9 +70,25 @@ void choose_view_layer(PrimitiveWork& w, bool clips) {
   const State& state = *w.plan.state;
   clips |= w.plan.bias_in_vertices || w.plan.smooth_lines || w.plan.out.cull_count != 0 ||
            (w.plan.draws_lines && state.line_stipple);
-  if (!waiting.any || !clips) waiting.layer = w.chunk.view;
+  if (!waiting.any || !clips) {
+    waiting.layer = w.chunk.view;
+    waiting.alone = false;
+    waiting.collected.clear();
+  }
   waiting.any = clips;
+  waiting.collected.begin_segment();
+  if (clips) w.waiting = &waiting;
+  w.batches &= !clips;
   w.base_layer = waiting.layer;
+  w.setup.layer = static_cast<std::uint16_t>(w.base_layer);
+}
+
+/// Before a primitive is set up whose corners, and no others, the reference collects. (With several views no shader
+/// writes a layer.)
+void collect(PrimitiveWork& w, std::initializer_list<const Vertex*> corners) {
+  if (!w.waiting) return;
+  w.waiting->add(w.chunk.view, corners, w.plan.rectangles.batch_vertices);
+  w.base_layer = w.waiting->layer;
   w.setup.layer = static_cast<std::uint16_t>(w.base_layer);
 }
 
@@ -111,8 +130,7 @@ void choose_layer_and_viewport(PrimitiveWork& w, std::uint32_t provoking_slot) {
 /// A record transformed by the primitive's own viewport (1.2 form B), when the viewport is chosen per primitive.
 const Vertex* window_record(const PrimitiveWork& w, const ClipVertex& v) {
   if (!w.plan.per_vertex_viewport || v.code != 0) return v.record;
-  Vertex* copy = w.arena.take<Vertex>(w.plan.vertex_stride);
-  std::memcpy(copy, v.record, w.plan.vertex_stride * sizeof(Vertex));
+  Vertex* copy = copy_record(w.plan, w.arena, v.record);
   transform_vertex(v.clip, w.viewport, copy);
   return copy;
 }
@@ -121,23 +139,11 @@ SetupVertex setup_vertex(const PrimitiveWork& w, const Vertex* record) {
   return {record, snap_coordinate(record[0], w.plan.pixel_offset), snap_coordinate(record[1], w.plan.pixel_offset)};
 }
 
-Vertex* biased_copy(const PrimitiveWork& w, const Vertex* record, float offset) {
-  Vertex* copy = w.arena.take<Vertex>(w.plan.vertex_stride);
-  std::memcpy(copy, record, w.plan.vertex_stride * sizeof(Vertex));
-  const float z = copy[2] + offset;
-  copy[2] = z > 0 ? (z > 1 ? 1 : z) : 0;  // NaN: 0
-  return copy;
-}
-
-/// A vertex on the way from one to the other, in window space and without perspective; flat values as in the first.
-const Vertex* between(const PrimitiveWork& w, const Vertex* from, const Vertex* to, float t) {
-  Vertex* made = w.arena.take<Vertex>(w.plan.vertex_stride);
-  // (This device alone: deviations.md, stipple-flat-integers.)
-  const bool flushes = w.plan.as_reference.flushes_flat;
-  const std::uint32_t smooth = 4 + (flushes ? w.plan.varying_count() : w.plan.perspective_count + w.plan.linear_count);
-  for (std::uint32_t i = 0; i < smooth; ++i) made[i] = from[i] + t * (to[i] - from[i]);
-  std::memcpy(made + smooth, from + smooth, (w.plan.vertex_stride - smooth) * sizeof(Vertex));
-  return made;
+/// The corner of an outline, or the end of a line with pieces, that is not the provoking one: the reference collects a
+/// copy.
+const Vertex* flat_copy(const PrimitiveWork& w, const Vertex* record, const Vertex* provoking) {
+  if (w.waiting) record = copy_record(w.plan, w.arena, record);
+  return with_flat_values(w.plan, w.arena, record, provoking);
 }
 
 /// Length in units of the pattern (6.4): Euclidean, of Bresenham lines along the major axis.
@@ -147,7 +153,8 @@ float stipple_length(const State& state, const Vertex* v0, const Vertex* v1) {
   return base::max_second(std::fabs(dx), std::fabs(dy));
 }
 
-void emit_segment(const PrimitiveWork& w, const Vertex* v0, const Vertex* v1, bool front) {
+void emit_segment(PrimitiveWork& w, const Vertex* v0, const Vertex* v1, bool front) {
+  collect(w, {v0, v1});
   if (w.plan.smooth_lines)
     setup_smooth_line(w.setup, w.arena, v0, v1, front || w.plan.as_reference.smooth_outlines_face_front);
   else
@@ -157,16 +164,20 @@ void emit_segment(const PrimitiveWork& w, const Vertex* v0, const Vertex* v1, bo
 /// A line in window space: as a whole, or the stretches where the stipple pattern has ones.
 void emit_line(PrimitiveWork& w, const Vertex* v0, const Vertex* v1, bool front) {
   const State& state = *w.plan.state;
-  if (!state.line_stipple && !w.plan.smooth_lines) return setup_line(w.setup, v0, v1, front);
-  const Vertex* provoking = state.provoking_vertex_last ? v1 : v0;
-  v0 = with_flat_values(w.plan, w.arena, v0, provoking);
-  v1 = with_flat_values(w.plan, w.arena, v1, provoking);
+  if (!state.line_stipple && !w.plan.smooth_lines) return emit_segment(w, v0, v1, front);
+  if (w.plan.corners == 2) {  // an outline's corners are flat already
+    if (state.provoking_vertex_last)
+      v0 = flat_copy(w, v0, v1);
+    else
+      v1 = flat_copy(w, v1, v0);
+  }
   if (!state.line_stipple) return emit_segment(w, v0, v1, front);
   const float length = stipple_length(state, v0, v1);
   if (!std::isfinite(length)) return;
   const auto pixels = static_cast<std::uint32_t>(std::ceil(length));
   const auto segment = [&](float t0, float t1) {
-    emit_segment(w, t0 > 0 ? between(w, v0, v1, t0) : v0, t1 < 1 ? between(w, v0, v1, t1) : v1, front);
+    emit_segment(w, t0 > 0 ? between(w.plan, w.arena, v0, v1, t0) : v0,
+                 t1 < 1 ? between(w.plan, w.arena, v0, v1, t1) : v1, front);
   };
   const std::uint32_t factor = std::max<std::uint32_t>(state.line_stipple_factor, 1);
   bool drawing = false;
@@ -185,7 +196,13 @@ void emit_line(PrimitiveWork& w, const Vertex* v0, const Vertex* v1, bool front)
   w.stipple_counter += pixels;
 }
 
+void emit_point(PrimitiveWork& w, const Vertex* v, bool front) {
+  collect(w, {v});
+  setup_point(w.setup, v, front);
+}
+
 void emit_filled(PrimitiveWork& w, const Vertex* const v[3]) {
+  collect(w, {v[0], v[1], v[2]});
   setup_triangle(w.setup, setup_vertex(w, v[0]), setup_vertex(w, v[1]), setup_vertex(w, v[2]));
 }
 
@@ -195,16 +212,17 @@ void emit_unfilled(PrimitiveWork& w, const Vertex* const in[3], const bool edge[
   const Vertex* v[3] = {in[0], in[1], in[2]};
   if (w.plan.depth_bias) {
     const float offset = vertex_depth_bias(w.plan, w.pass, v[0], v[1], v[2]);
-    for (const Vertex*& corner : v) corner = biased_copy(w, corner, offset);
+    for (const Vertex*& corner : v) corner = biased_copy(w.plan, w.arena, corner, offset);
   }
   if (state.polygon_mode == VK_POLYGON_MODE_FILL) return emit_filled(w, v);
-  const Vertex* provoking = v[provoking_corner(3, state.provoking_vertex_last)];
-  for (const Vertex*& corner : v) corner = with_flat_values(w.plan, w.arena, corner, provoking);
+  const std::uint32_t provoking = provoking_corner(3, state.provoking_vertex_last);
+  for (std::uint32_t i = 0; i < 3; ++i)
+    if (i != provoking) v[i] = flat_copy(w, v[i], v[provoking]);
   const bool ccw = state.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE;
   const bool front = w.plan.as_reference.outlines_face_front || (ccw ? determinant < 0 : determinant > 0);
   if (state.polygon_mode == VK_POLYGON_MODE_POINT) {
     for (int i = 0; i < 3; ++i)
-      if (edge[i]) setup_point(w.setup, v[i], front);
+      if (edge[i]) emit_point(w, v[i], front);
     return;
   }
   if (edge[2]) emit_line(w, v[2], v[0], front);
@@ -316,7 +334,7 @@ void process_triangle(PrimitiveWork& w, const std::uint32_t slot[3]) {
   if (w.plan.out.cull_count && culled_by_distance(w, slot, 3)) return discard(w, PrimitiveFate::kCulledByDistance);
   const std::uint32_t provoking = provoking_corner(3, w.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(w, slot[provoking]);
-  const bool simple = (c0 | c1 | c2) == 0 && !w.plan.per_vertex_viewport && !w.plan.bias_in_vertices &&
+  const bool simple = !w.waiting && (c0 | c1 | c2) == 0 && !w.plan.per_vertex_viewport && !w.plan.bias_in_vertices &&
                       w.plan.out.cull_count == 0 && !w.clips_segment;
   if (simple) {
     const auto corner = [&](std::uint32_t i) {
@@ -358,11 +376,10 @@ void process_line(PrimitiveWork& w, const std::uint32_t slot[2]) {
 void process_outside_point(PrimitiveWork& w, const ClipVertex& v) {
   if (v.clip[3] <= 0 || !std::isfinite(v.clip[0]) || !std::isfinite(v.clip[1]))
     return w.setup.tell(PrimitiveFate::kOutside);
-  if (w.plan.fused_transform && !w.plan.per_vertex_viewport) return setup_point(w.setup, v.record, true);
-  Vertex* copy = w.arena.take<Vertex>(w.plan.vertex_stride);
-  std::memcpy(copy, v.record, w.plan.vertex_stride * sizeof(Vertex));
+  if (w.plan.fused_transform && !w.plan.per_vertex_viewport) return emit_point(w, v.record, true);
+  Vertex* copy = copy_record(w.plan, w.arena, v.record);
   std::copy_n(v.clip, 4, copy);
-  setup_point(w.setup, copy, true);
+  emit_point(w, copy, true);
 }
 
 /// Vulkan 1.3.239, Primitive Clipping: "If the primitive under consideration is a point, then clipping passes it
@@ -378,7 +395,7 @@ void process_point(PrimitiveWork& w, std::uint32_t slot) {
   if (code != 0 && !w.plan.as_reference.keeps_outside_points) return w.setup.tell(PrimitiveFate::kOutside);
   choose_layer_and_viewport(w, slot);
   if (code != 0) return process_outside_point(w, v);
-  setup_point(w.setup, window_record(w, v), true);
+  emit_point(w, window_record(w, v), true);
 }
 
 /// 10.1: a fan of four vertices that lies inside the view volume and has no flat values is set up from its centre on,

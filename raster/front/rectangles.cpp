@@ -138,19 +138,12 @@ void ClippedBatch::begin(const PipelinePlan& plan) {
 void ClippedBatch::clear(bool another) {
   alone_ = another && !alone_;
   triangles_.clear();
-  known_.assign(kTable, nullptr);
-  vertices_ = 0;
+  collected_.clear();
 }
 
 void ClippedBatch::add(const ClippedTriangle& triangle) {
   triangles_.push_back(triangle);
-  for (const Vertex* corner : triangle.v) {
-    auto at = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(corner) >> 4) * 0x9e3779b1u >> 22;
-    while (known_[at] != nullptr && known_[at] != corner) at = (at + 1) % kTable;
-    if (known_[at] == corner) continue;
-    known_[at] = corner;
-    ++vertices_;
-  }
+  collected_.add(triangle.v);
 }
 
 }  // namespace vitrine::raster

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "raster/front/collected.h"
 #include "raster/front/setup.h"
 
 namespace vitrine::raster {
@@ -45,25 +46,19 @@ class ClippedBatch {
   void begin(const PipelinePlan& plan);
   /// Whether the batch has to be worked off before another triangle comes: it is full, whatever the triangle's corners
   /// are; or the batch before it was, behind which a triangle is a batch of its own.
-  bool is_complete() const {
-    return alone_ || 3 * (triangles_.size() + 1) > kIndices || vertices_ + 3 > plan_->rectangles.batch_vertices;
-  }
+  bool is_complete() const { return alone_ || collected_.is_full(3, plan_->rectangles.batch_vertices); }
   /// The triangles that come are of another segment: it has vertices of its own.
-  void begin_segment() { known_.assign(kTable, nullptr); }
+  void begin_segment() { collected_.begin_segment(); }
   void add(const ClippedTriangle& triangle);
   std::span<const ClippedTriangle> triangles() const { return triangles_; }
   /// The batch has been worked off: because another triangle comes, or because none does.
   void clear(bool another);
 
  private:
-  static constexpr std::uint32_t kIndices = 1020;  ///< of a batch, at most
-  static constexpr std::uint32_t kTable = 1024;    ///< more than twice as many as a batch has vertices
-
   const PipelinePlan* plan_ = nullptr;
   std::vector<ClippedTriangle> triangles_;
-  std::uint32_t vertices_ = 0;  ///< distinct ones
-  bool alone_ = false;          ///< the next triangle, or the one that is there, is a batch of its own
-  std::vector<const Vertex*> known_;
+  CollectedVertices collected_;
+  bool alone_ = false;  ///< the next triangle, or the one that is there, is a batch of its own
 };
 
 }  // namespace vitrine::raster

@@ -76,6 +76,7 @@ std::uint32_t segment_of(const TopologyShape& shape, bool indexed) {
 void plan_rectangles(PipelinePlan& plan, const DrawCall& draw, const PassDesc& pass) {
   plan.guard_band = has_guard_band(plan, pass);
   plan.rectangles = {};
+  plan.rectangles.batch_vertices = kBatchBytes / (kAttributeBytes * attributes_of(plan));
   const VkPrimitiveTopology topology = plan.state->topology;
   const bool triangles = topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST ||
                          topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP ||
@@ -85,7 +86,6 @@ void plan_rectangles(PipelinePlan& plan, const DrawCall& draw, const PassDesc& p
   plan.rectangles.any = true;
   const std::uint32_t segment = segment_of(plan.shape, draw.index_data != nullptr);
   plan.rectangles.segment = plan.shape.step == 1 ? segment & ~1u : segment;  // strips keep an even number
-  plan.rectangles.batch_vertices = kBatchBytes / (kAttributeBytes * attributes_of(plan));
 }
 
 }  // namespace vitrine::raster

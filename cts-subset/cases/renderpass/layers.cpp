@@ -130,6 +130,7 @@ struct ViewScene {
   bool clears_inside;
   Buffer vertices;
   bool geometry = false, tessellates = false;
+  uint32_t drawn = 9;  ///< vertices in each subpass
 };
 
 struct ViewImages {
@@ -194,7 +195,7 @@ void draw_views(Run& run, const ViewScene& scene, const ViewImages& images, uint
     bind_pipeline(cmd, pipelines[0]);
     resources.bind(cmd);
     bind_vertices(cmd, scene.vertices);
-    vkCmdDraw(cmd, 9, 1, 0, 0);
+    vkCmdDraw(cmd, scene.drawn, 1, 0, 0);
     if (scene.clears_inside) {
       const VkClearAttachment clear{VK_IMAGE_ASPECT_COLOR_BIT, 0, {{{0.9f, 0.0f, 0.9f, 0.0f}}}};
       const VkClearRect rect{{{2, 3}, {scene.extent.width / 2, scene.extent.height / 3}}, 0, 1};
@@ -204,7 +205,7 @@ void draw_views(Run& run, const ViewScene& scene, const ViewImages& images, uint
     bind_pipeline(cmd, pipelines[1]);  // with multiview nothing stays bound over subpasses
     resources.bind(cmd);
     bind_vertices(cmd, scene.vertices);
-    vkCmdDraw(cmd, 9, 1, 9, 0);
+    vkCmdDraw(cmd, scene.drawn, 1, scene.drawn, 0);
     vkCmdEndRenderPass(cmd);
   });
 }
@@ -254,12 +255,13 @@ std::string judge_views(const std::vector<Output>& device, const std::vector<Out
   return "";
 }
 
-void draw_together_and_alone(Run& run, bool geometry, bool tessellates) {
+void draw_together_and_alone(Run& run, bool geometry, bool tessellates, uint32_t drawn = 9) {
   run.require(run.gpu.extension_features.multiview, "multiview");
   constexpr VkAttachmentLoadOp kClear = VK_ATTACHMENT_LOAD_OP_CLEAR;
-  ViewScene scene{{60, 50}, 3,          kClear,
-                  kClear,   true,       run.buffer_of(random_vertices(run.random, 18, geometry ? kInside : 1.2f)),
-                  geometry, tessellates};
+  ViewScene scene{
+      {60, 50}, 3,           kClear,
+      kClear,   true,        run.buffer_of(random_vertices(run.random, 2 * drawn, geometry ? kInside : 1.2f)),
+      geometry, tessellates, drawn};
   const ViewImages together = make_images(run, scene.extent, scene.layers);
   const ViewImages alone = make_images(run, scene.extent, scene.layers);
   draw_views(run, scene, together, 7);
@@ -270,6 +272,10 @@ void draw_together_and_alone(Run& run, bool geometry, bool tessellates) {
 
 const AddCase kViews("renderpass", "deviation.multiview_layers", "multiview-layers", judge_views,
                      [](Run& run) { draw_together_and_alone(run, false, false); });
+
+/// More than the reference collects at a time: then some views get to their layers.
+const AddCase kViewsOverflow("renderpass", "deviation.multiview_layers_of_many", "multiview-layers", judge_views,
+                             [](Run& run) { draw_together_and_alone(run, false, false, 180); });
 
 /// With stages behind the vertex shader the reference does it right.
 const AddCase kViewsBehindStages("renderpass", "multiview_behind_stages", [](Run& run) {
