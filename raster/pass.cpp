@@ -288,7 +288,8 @@ struct Pass::Impl {
     if (command.clear || command.chunk.view_layer) return false;
     const DrawRecord& draw = *command.chunk.draw;
     return draw.plan->rectangles.any && (draw.call.queries.statistics || draw.call.feedback || draw.call.observer ||
-                                         draw.plan->vertex->writes_memory);
+                                         draw.plan->vertex->writes_memory ||
+                                         (draw.plan->stages.geometry && draw.plan->stages.geometry->writes_memory));
   }
 
   /// Whether a batch of clipped triangles may go on from a command to the next one (ChunkOutput).

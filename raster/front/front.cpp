@@ -19,7 +19,8 @@ ChunkOutput work_on(const Chunk& chunk, const PassDesc& pass, const TileGrid& gr
   ClippedEnds clipped;
   scratch.capture.active = is_captured(chunk.draw->call);
   if (plan.stages.any()) {
-    process_stages({chunk, pass, arena, scratch.vertices, scratch.primitives, scratch.stages, scratch.capture, plan});
+    clipped.first = clipped.last = process_stages(
+        {chunk, pass, arena, scratch.vertices, scratch.primitives, scratch.stages, scratch.capture, plan});
   } else {
     shade_chunk_vertices(chunk, arena, scratch.vertices, scratch.capture);
     if (scratch.capture.active) capture_runs(chunk, scratch.vertices, scratch.capture);

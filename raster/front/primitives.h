@@ -4,23 +4,10 @@
 
 #include <span>
 
-#include "raster/arena.h"
 #include "raster/front/assembly.h"
-#include "raster/front/chunk.h"
-#include "raster/front/primitive_list.h"
-#include "raster/front/vertex_scratch.h"
-#include "raster/pass_desc.h"
+#include "raster/front/primitive_context.h"
 
 namespace vitrine::raster {
-
-/// What the primitives of a chunk are made from, and where they go.
-struct PrimitiveContext {
-  const Chunk& chunk;
-  const PassDesc& pass;
-  Arena& arena;
-  const VertexScratch& vertices;
-  PrimitiveList& primitives;  ///< what is visible is appended
-};
 
 /// Whether the first and the last segment of a chunk went through the clipper (ChunkOutput).
 struct ClippedEnds {
@@ -29,6 +16,10 @@ struct ClippedEnds {
 
 /// Culls, clips and sets up the primitives of a chunk whose vertices are shaded.
 ClippedEnds process_primitives(const PrimitiveContext& context);
+
+/// The same for a segment's strips of a geometry shader, whose triangles may form rectangles; `clips`: they go through
+/// the clipper (lavapipe-rasterization.md 9.2).
+void process_strips(const PrimitiveContext& context, std::span<const ListedPrimitive> listed, bool clips);
 
 /// The same for primitives of the last stage's vertices.
 void process_listed(const PrimitiveContext& context, std::span<const ListedPrimitive> listed);

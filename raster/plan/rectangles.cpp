@@ -21,6 +21,13 @@ bool reads(const PipelinePlan& plan, BuiltIn built_in) {
                                       [=](const InterfaceSlot& slot) { return slot.built_in == built_in; });
 }
 
+bool makes_triangles(const PipelinePlan& plan) {
+  if (plan.stages.geometry) return plan.corners == 3;
+  const VkPrimitiveTopology topology = plan.state->topology;
+  return topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST || topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP ||
+         topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN;
+}
+
 bool has_guard_band(const PipelinePlan& plan, const PassDesc& pass) {
   if (pass.color_count != 1 || !pass.color[0].format || !pass.plain_image || pass.samples > 1) return false;
   if (pass.color[0].format->format != VK_FORMAT_B8G8R8A8_UNORM) return false;
@@ -77,15 +84,15 @@ void plan_rectangles(PipelinePlan& plan, const DrawCall& draw, const PassDesc& p
   plan.guard_band = has_guard_band(plan, pass);
   plan.rectangles = {};
   plan.rectangles.batch_vertices = kBatchBytes / (kAttributeBytes * attributes_of(plan));
-  const VkPrimitiveTopology topology = plan.state->topology;
-  const bool triangles = topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST ||
-                         topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP ||
-                         topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN;
-  if (!plan.guard_band || !triangles || plan.stages.any() || plan.bias_in_vertices) return;
+  if (!plan.guard_band || !makes_triangles(plan) || plan.stages.evaluation || plan.bias_in_vertices) return;
   if (reads_flat(plan)) return;
   plan.rectangles.any = true;
   const std::uint32_t segment = segment_of(plan.shape, draw.index_data != nullptr);
   plan.rectangles.segment = plan.shape.step == 1 ? segment & ~1u : segment;  // strips keep an even number
+  if (plan.stages.geometry) {
+    plan.rectangles.segment = segment;
+    plan.chunk_positions = 1;  // a chunk for each: all of its primitives, or none, go through the clipper
+  }
 }
 
 }  // namespace vitrine::raster

@@ -18,11 +18,13 @@ const char kShown[] = R"(
 vec4 bits_of(float v) { return unpackUnorm4x8(floatBitsToUint(v)); }
 )";
 
-std::string vertex_text(const std::string& qualifiers, bool point_size) {
-  return "layout(location = 0) in vec4 position;\nlayout(location = 1) in vec4 first;\n"
+std::string vertex_text(const std::string& qualifiers, bool point_size, bool layer = false) {
+  return std::string(layer ? "#extension GL_ARB_shader_viewport_layer_array : require\n" : "") +
+         "layout(location = 0) in vec4 position;\nlayout(location = 1) in vec4 first;\n"
          "layout(location = 2) in vec4 second;\nlayout(location = 0) " +
          qualifiers + " out vec4 a;\nlayout(location = 1) out vec4 b;\nvoid main() {\n  a = first;\n  b = second;\n" +
-         "  gl_Position = position;\n" + (point_size ? "  gl_PointSize = 1.0;\n" : "") + "}\n";
+         "  gl_Position = position;\n" + (point_size ? "  gl_PointSize = 1.0;\n" : "") +
+         (layer ? "  gl_Layer = gl_VertexIndex / 6 % 2;\n" : "") + "}\n";
 }
 
 std::string fragment_text(Random& random, const std::string& qualifiers) {
@@ -205,6 +207,90 @@ void random_rectangles(Run& run, VkPrimitiveTopology topology, uint32_t most) {
       else
         vkCmdDraw(cmd, step, 1, first, 0);
     }
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+  run.may_be_blank();
+}
+
+/// A strip for every four vertices, and with `twice` a smaller one behind it.
+std::string geometry_text(const std::string& qualifiers, bool twice) {
+  return "layout(lines_adjacency) in;\nlayout(triangle_strip, max_vertices = 9) out;\nlayout(location = 0) " +
+         qualifiers + " in vec4 in_a[];\nlayout(location = 1) in vec4 in_b[];\nlayout(location = 0) " + qualifiers +
+         " out vec4 a;\nlayout(location = 1) out vec4 b;\nvoid main() {\n  for (int copy = 0; copy < " +
+         (twice ? "2" : "1") + "; ++copy) {\n" + R"(    for (int i = 0; i < 4; ++i) {
+      a = in_a[i];
+      b = in_b[i];
+      gl_Position = gl_in[i].gl_Position;
+      gl_Position.xy *= 1.0 - float(copy) * 0.5;
+      EmitVertex();
+    }
+    EndPrimitive();
+  }
+}
+)";
+}
+
+/// The quads of a strip each, made by a geometry shader.
+CTS_RANDOM("rasterization", "random_rectangles_geometry", 60) {
+  Random& random = run.random;
+  TargetSpec target_spec;
+  target_spec.width = 16 + random.below(150);
+  target_spec.height = 16 + random.below(150);
+  target_spec.colors = {VK_FORMAT_B8G8R8A8_UNORM};
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  const std::string qualifiers = random.pick<const char*>({"", "", "", "noperspective", "flat"});
+  spec.vertex = vertex_text(qualifiers, false);
+  spec.geometry = geometry_text(qualifiers, random.chance(0.3f));
+  spec.fragment = fragment_text(random, qualifiers);
+  run.note("fragment", spec.fragment);
+  spec.floats({4, 4, 4});
+  spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY;
+  random_state(run, spec, target_spec);
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  std::vector<Quad> quads;
+  const float reach = random.pick({0.5f, 0.9f, 1.2f, 3.0f});
+  const uint32_t most = random.pick({3u, 40u, 2500u});
+  for (uint32_t n = 1 + random.below(most); n > 0; --n) quads.push_back(random_quad(random, reach));
+  const Buffer vertices = run.buffer_of(corners_of(random, quads, true).values);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, static_cast<uint32_t>(quads.size()) * 4, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+  run.may_be_blank();
+}
+
+/// Lists whose vertex shader chooses the layer.
+CTS_RANDOM("rasterization", "random_rectangles_layers", 30) {
+  Random& random = run.random;
+  TargetSpec target_spec;
+  target_spec.width = target_spec.height = 64;
+  target_spec.layers = 2;
+  target_spec.colors = {VK_FORMAT_B8G8R8A8_UNORM};
+  const Target target = make_target(run, target_spec);
+  GraphicsSpec spec;
+  spec.vertex = vertex_text("", false, true);
+  spec.fragment = fragment_text(random, "");
+  spec.floats({4, 4, 4});
+  random_state(run, spec, target_spec);
+  const VkPipeline pipeline = make_pipeline(run, spec, target);
+  std::vector<Quad> quads;
+  const float reach = random.pick({0.5f, 0.9f, 1.2f});
+  for (uint32_t n = 1 + random.below(8); n > 0; --n) quads.push_back(random_quad(random, reach));
+  std::vector<float> values;
+  for (const Quad& quad : quads)
+    for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) append_corner(random, values, quad, corner, false);
+  const Buffer vertices = run.buffer_of(values);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, static_cast<uint32_t>(values.size()) / kFloats, 1, 0, 0);
     vkCmdEndRenderPass(cmd);
   });
   out_target(run, target);

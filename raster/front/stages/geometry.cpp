@@ -2,8 +2,10 @@
 #include "raster/front/stages/geometry.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "raster/front/gather.h"
+#include "raster/front/rectangles.h"
 #include "raster/front/vertices.h"
 #include "spirv/stage_memory.h"
 
@@ -118,14 +120,13 @@ void capture_streams(const StageContext& c, std::span<const GeometryInput> input
   }
 }
 
-/// Emitted vertices to records, wave by wave.
-void transform_emitted(const StageContext& c) {
+/// Emitted vertices to records of the vertices from `first` on, wave by wave. Those before stay where they are.
+void transform_emitted(const StageContext& c, std::uint32_t first) {
   VertexScratch& vertices = c.vertices;
   StageScratch& s = c.stages;
   const auto count = static_cast<std::uint32_t>(s.emitted.size());
   const std::uint32_t words = c.plan.stages.geometry->modes.vertex_words;
-  reserve_vertices(vertices, count);
-  vertices.records = c.arena.take<Vertex>(std::size_t{count} * c.plan.vertex_stride);
+  reserve_vertices(vertices, first + count);
   if (s.staging.size() < words) s.staging.resize(words);
   for (std::uint32_t base = 0; base < count; base += base::kWaveWidth) {
     const std::uint32_t lanes = std::min<std::uint32_t>(count - base, base::kWaveWidth);
@@ -133,7 +134,7 @@ void transform_emitted(const StageContext& c) {
       const std::uint32_t* vertex = s.memory.data() + s.emitted[base + i];
       for (std::uint32_t w = 0; w < words; ++w) s.staging[w].lane[i] = vertex[w];
     }
-    store_wave(c.plan, {nullptr, s.staging.data()}, base, lanes, vertices);
+    store_wave(c.plan, {nullptr, s.staging.data()}, first + base, lanes, vertices);
   }
   if (c.plan.out.primitive_id == kNoReg) return;
   const std::uint32_t provoking = provoking_corner(c.plan.corners, c.plan.state->provoking_vertex_last);
@@ -141,9 +142,69 @@ void transform_emitted(const StageContext& c) {
     primitive.id = s.memory[s.emitted[primitive.slot[provoking]] + c.plan.out.primitive_id];
 }
 
+/// Triangles that may form rectangles wait for all of their segment: they do not where one of its vertices is clipped,
+/// or where there are more than 65,535 of them (lavapipe-rasterization.md 9.2).
+class WaitingStrips {
+ public:
+  explicit WaitingStrips(const StageContext& context) : c_(context), chunk_(context.chunk) {
+    c_.stages.segment.clear();
+    clips_ = c_.plan.out.cull_count != 0;
+  }
+  /// The primitives of a wave.
+  void add() {
+    StageScratch& s = c_.stages;
+    const auto count = static_cast<std::uint32_t>(s.emitted.size());
+    reserve_records(count);
+    transform_emitted(c_, vertices_);
+    for (ListedPrimitive primitive : s.listed) {
+      for (std::uint32_t& slot : primitive.slot) slot += vertices_;
+      s.segment.push_back(primitive);
+    }
+    vertices_ += count;
+    if (vertices_ <= kMostVertices) return;
+    clips_ = true;
+    if (!chunk_.batch) {
+      batch_.begin(c_.plan);
+      chunk_.batch = &batch_;
+    }
+    chunk_.ends_batch = false;
+    work_off();
+  }
+  /// Returns whether they went through the clipper.
+  bool finish() {
+    const std::vector<ClipCode>& codes = c_.vertices.code;
+    clips_ = clips_ || std::any_of(codes.begin(), codes.begin() + vertices_, [](ClipCode code) { return code != 0; });
+    chunk_.ends_batch = c_.chunk.ends_batch;
+    work_off();
+    return clips_;
+  }
+
+ private:
+  static constexpr std::uint32_t kMostVertices = 65535;
+
+  void reserve_records(std::uint32_t count) {
+    if (vertices_ != 0 && vertices_ + count <= capacity_) return;
+    capacity_ = std::max(vertices_ + count, 2 * vertices_);
+    auto* const records = c_.arena.take<Vertex>(std::size_t{capacity_} * c_.plan.vertex_stride);
+    std::copy_n(c_.vertices.records, std::size_t{vertices_} * c_.plan.vertex_stride, records);
+    c_.vertices.records = records;
+  }
+  void work_off() {
+    process_strips({chunk_, c_.pass, c_.arena, c_.vertices, c_.primitives}, c_.stages.segment, clips_);
+    c_.stages.segment.clear();
+    vertices_ = 0;
+  }
+
+  const StageContext& c_;
+  Chunk chunk_;
+  ClippedBatch batch_;
+  std::uint32_t vertices_ = 0, capacity_ = 0;
+  bool clips_ = false;
+};
+
 }  // namespace
 
-void run_geometry(const StageContext& c, std::span<const GeometryInput> inputs) {
+bool run_geometry(const StageContext& c, std::span<const GeometryInput> inputs) {
   StageScratch& s = c.stages;
   const spirv::StageModes& modes = c.plan.stages.geometry->modes;
   const std::size_t mark = s.used;
@@ -152,6 +213,8 @@ void run_geometry(const StageContext& c, std::span<const GeometryInput> inputs) 
   wave.table = s.take(base::kWaveWidth * kTableWords);
   wave.emit = s.take(std::size_t{base::kWaveWidth} * modes.max_vertices * modes.vertex_words);
   s.geometry.set_stage_memory(s.memory.data(), s.used);
+  std::optional<WaitingStrips> strips;
+  if (c.plan.rectangles.any && !c.plan.state->rasterizer_discard) strips.emplace(c);
   const std::uint64_t total = std::uint64_t{inputs.size()} * modes.invocations;
   for (; wave.first < total; wave.first += base::kWaveWidth) {
     wave.lanes = static_cast<std::uint32_t>(std::min<std::uint64_t>(total - wave.first, base::kWaveWidth));
@@ -162,10 +225,16 @@ void run_geometry(const StageContext& c, std::span<const GeometryInput> inputs) 
     c.queries().count(Statistic::kGeometryInvocations, wave.lanes);
     c.queries().count(Statistic::kGeometryPrimitives, s.listed.size());
     if (c.plan.state->rasterizer_discard || s.listed.empty()) continue;
-    transform_emitted(c);
+    if (strips) {
+      strips->add();
+      continue;
+    }
+    c.vertices.records = c.arena.take<Vertex>(s.emitted.size() * c.plan.vertex_stride);
+    transform_emitted(c, 0);
     process_listed(c.primitive_context(), s.listed);
   }
   s.used = mark;
+  return strips && strips->finish();
 }
 
 }  // namespace vitrine::raster

@@ -8,6 +8,7 @@
 namespace vitrine::raster {
 
 /// Primitives in, primitives assembled.
-void run_geometry(const StageContext& context, std::span<const GeometryInput> inputs);
+/// Returns whether triangles that might have formed rectangles went through the clipper.
+bool run_geometry(const StageContext& context, std::span<const GeometryInput> inputs);
 
 }  // namespace vitrine::raster

@@ -43,6 +43,7 @@ struct StageScratch {
   std::vector<GeometryInput> inputs;
   std::vector<std::uint32_t> emitted;  ///< words in stage memory of vertices for the rasterizer
   std::vector<ListedPrimitive> listed;
+  std::vector<ListedPrimitive> segment;     ///< those of the waves before, where they are worked on together
   std::vector<base::WaveRegister> staging;  ///< emitted vertices of one wave, a register per word
 
   /// `words` words of zeros behind what is in use; their first word.

@@ -58,7 +58,7 @@ void list_patches(const StageContext& c, std::uint32_t base, std::uint32_t strid
 
 }  // namespace
 
-void process_stages(const StageContext& c) {
+bool process_stages(const StageContext& c) {
   StageScratch& s = c.stages;
   s.used = 0;
   const std::uint32_t count = gather_vertices(c.chunk, c.vertices);
@@ -68,10 +68,10 @@ void process_stages(const StageContext& c) {
   if (c.plan.stages.evaluation) {
     list_patches(c, base, stride);
     run_tessellation(c);
-  } else {
-    list_inputs(c, base, stride);
-    run_geometry(c, s.inputs);
+    return false;
   }
+  list_inputs(c, base, stride);
+  return run_geometry(c, s.inputs);
 }
 
 }  // namespace vitrine::raster

@@ -7,7 +7,8 @@
 
 namespace vitrine::raster {
 
-/// Shades the chunk's vertices, runs the stages, and appends the visible primitives to context.primitives.
-void process_stages(const StageContext& context);
+/// Shades the chunk's vertices, runs the stages, and appends the visible primitives to context.primitives. Returns
+/// whether triangles that might have formed rectangles went through the clipper.
+bool process_stages(const StageContext& context);
 
 }  // namespace vitrine::raster
