@@ -56,6 +56,7 @@ std::optional<VkImageLayout> Layouts::other_than(const ImagePart& part, VkImageL
   const std::lock_guard lock(mutex_);
   std::optional<VkImageLayout> other;
   if (layout == VK_IMAGE_LAYOUT_UNDEFINED || layout == VK_IMAGE_LAYOUT_PREINITIALIZED) return other;
+  if (shared_.contains(part.image)) return other;
   for_each(part, [&](VkImageLayout& has, bool stencil, bool depth) {
     if (!other && of_aspect(has, stencil, depth) != of_aspect(layout, stencil, depth)) other = has;
   });
@@ -67,9 +68,15 @@ void Layouts::set(const ImagePart& part, VkImageLayout layout) {
   for_each(part, [&](VkImageLayout& has, bool, bool) { has = layout; });
 }
 
+void Layouts::share(const void* image) {
+  const std::lock_guard lock(mutex_);
+  shared_.insert(image);
+}
+
 void Layouts::forget(const void* image) {
   const std::lock_guard lock(mutex_);
   layouts_.erase(image);
+  shared_.erase(image);
 }
 
 }  // namespace vitrine::glass::sync

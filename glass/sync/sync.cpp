@@ -115,6 +115,10 @@ void forget_owner(const void* owner) {
   if (SyncTool* const tool = current) tool->forget(owner);
 }
 
+void share_image(const void* owner, const void* image) {
+  if (Hazards* const hazards = hazards_of(owner)) hazards->layouts().share(image);
+}
+
 void forget_image(const void* owner, const void* image) {
   if (Hazards* const hazards = hazards_of(owner)) hazards->layouts().forget(image);
 }

@@ -12,6 +12,8 @@ bool is_on();
 Hazards* hazards_of(const void* owner);
 /// The device is gone.
 void forget_owner(const void* owner);
+/// Others see the memory of one of the owner's images, too.
+void share_image(const void* owner, const void* image);
 /// An image is gone, which was a part of the owner's.
 void forget_image(const void* owner, const void* image);
 /// Memory is gone.

@@ -289,6 +289,7 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice device, std::uint32_t c
     }
     std::byte* const data = memory.data + infos[i].memoryOffset;
     bind_image(image, aspect, data);
+    if (memory.file >= 0 || memory.imported) glass::sync::share_image(&from_handle<Device>(device), &image);
     report_binding(from_handle<Device>(device), ref(image), data, bytes_of(image.layout, aspect),
                    VK_DEVICE_ADDRESS_BINDING_TYPE_BIND_EXT);
   }

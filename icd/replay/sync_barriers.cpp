@@ -63,6 +63,8 @@ std::vector<Barrier> dependencies_to(const RenderPass& pass, std::uint32_t subpa
 
 void change_layout(const ReplayState& state, const Image& image, const VkImageSubresourceRange& range,
                    VkImageLayout from, VkImageLayout to) {
+  // From UNDEFINED to UNDEFINED there is no transition (Vulkan 1.3.239, Image Layout Transitions), nor a new layout.
+  if (from == VK_IMAGE_LAYOUT_UNDEFINED && to == from) return;
   use_layout(state, image, range, from);
   set_layout(state, image, range, to);
 }

@@ -62,6 +62,11 @@ constexpr PlantedHazard kPlanted[] = {
      "to M GENERAL>READ TOP.0>ALL.RW; to M READ>GENERAL ALL.W>ALL.RW; render M; draw; end"},
     {"pass_from_another_layout", "sync-wrong-layout", "pass M CLEAR READ>GENERAL ALL.W>COLOR.CRW -",
      "pass M CLEAR UNDEFINED>GENERAL ALL.W>COLOR.CRW -"},
+    {"layout_behind_no_transition", "sync-wrong-layout",
+     "to M GENERAL>TARGET TOP.0>ALL.RW; to M UNDEFINED>UNDEFINED ALL.W>ALL.RW; copy M A",
+     "to M UNDEFINED>UNDEFINED TOP.0>ALL.RW; copy M A"},
+    {"layout_that_others_may_give", "sync-read-after-write", "to X READ>GENERAL TOP.0>CLEAR.TW; clear X; copy X A",
+     "to X READ>GENERAL TOP.0>CLEAR.TW; clear X; barrier CLEAR.TW>COPY.TR X; copy X A"},
     // ---- draws
     {"draw_and_copy", "sync-read-after-write", "render M; draw; end; copy M A",
      "render M; draw; end; barrier COLOR.CW>COPY.TR; copy M A"},

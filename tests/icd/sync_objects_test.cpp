@@ -40,6 +40,7 @@ SyncScene::SyncScene() {
   make_image("S", VK_FORMAT_R8G8B8A8_UNORM, VK_SAMPLE_COUNT_4_BIT);
   make_image("D", VK_FORMAT_D32_SFLOAT, VK_SAMPLE_COUNT_1_BIT);
   make_image("L", VK_FORMAT_R8G8B8A8_UNORM, VK_SAMPLE_COUNT_1_BIT, 2);
+  make_image("X", VK_FORMAT_R8G8B8A8_UNORM, VK_SAMPLE_COUNT_1_BIT, 1, true);
   make_set();
   const auto pool_info = make_struct<VkCommandPoolCreateInfo>();
   EXPECT_EQ(VK_CALL(CreateCommandPool)(device, &pool_info, nullptr, &pool_), VK_SUCCESS);
@@ -111,7 +112,8 @@ void SyncScene::make_buffer(const char* text) {
   buffers_[text] = made;
 }
 
-void SyncScene::make_image(const char* text, VkFormat format, VkSampleCountFlagBits samples, std::uint32_t levels) {
+void SyncScene::make_image(const char* text, VkFormat format, VkSampleCountFlagBits samples, std::uint32_t levels,
+                           bool exported) {
   Image made;
   const bool depth = format == VK_FORMAT_D32_SFLOAT, single = samples == VK_SAMPLE_COUNT_1_BIT;
   made.format = format;
@@ -129,7 +131,9 @@ void SyncScene::make_image(const char* text, VkFormat format, VkSampleCountFlagB
   EXPECT_EQ(VK_CALL(CreateImage)(device, &info, nullptr, &made.image), VK_SUCCESS);
   VkMemoryRequirements needs;
   VK_CALL(GetImageMemoryRequirements)(device, made.image, &needs);
-  auto allocate = make_struct<VkMemoryAllocateInfo>();
+  auto handles = make_struct<VkExportMemoryAllocateInfo>();
+  handles.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+  auto allocate = make_struct<VkMemoryAllocateInfo>(exported ? &handles : nullptr);
   allocate.allocationSize = needs.size;
   EXPECT_EQ(VK_CALL(AllocateMemory)(device, &allocate, nullptr, &made.memory), VK_SUCCESS);
   EXPECT_EQ(VK_CALL(BindImageMemory)(device, made.image, made.memory, 0), VK_SUCCESS);

@@ -2,7 +2,8 @@
 //
 // A script is commands, one a line or with ';' between them: a word and its operands.
 //   buffers A, B, C (256 bytes; ranges "A:64+32"), images M, N (8 x 8, in GENERAL), S (four samples), D (depth), L (two
-//   levels) fill A | update A | copy A B | copy M A | copy A M | copy M N | clear M | clear L:1 (a level) | blit M N |
+//   levels), X (its memory can be exported)
+//   fill A | update A | copy A B | copy M A | copy A M | copy M N | clear M | clear L:1 (a level) | blit M N |
 //   resolve S M | queries A load A | store A | add A | uniform A | load M | store M | sample M       a dispatch that
 //   does it, in all words dispatch A (indirect) | draws A (indirect, by arguments) | indices A | vertices A render M
 //   [LOAD|CLEAR|DONT_CARE] | end | draw | draw load A | draw store A | draw sample M | draw lookup L | vertex load A
@@ -62,7 +63,8 @@ class SyncScene {
   };
 
   void make_buffer(const char* name);
-  void make_image(const char* name, VkFormat format, VkSampleCountFlagBits samples, std::uint32_t levels = 1);
+  void make_image(const char* name, VkFormat format, VkSampleCountFlagBits samples, std::uint32_t levels = 1,
+                  bool exported = false);
   void make_set();
   void to_general();
   template <class H>
