@@ -132,6 +132,8 @@ bool is_reached(const Semaphore& semaphore, std::uint64_t value) {
 
 bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value,
                     const std::shared_ptr<ExternalPayload>& temporary) {
+  std::unique_lock lock(device.sync_mutex);
+  if (device.lost) return false;  // the semaphore may be gone, see change_state
   const std::shared_ptr<ExternalPayload> payload = temporary ? temporary : semaphore.shared;
   const auto take = [&] {
     if (semaphore.timeline) return (payload ? payload->value() : semaphore.value) >= value;
@@ -140,8 +142,6 @@ bool wait_semaphore(Device& device, Semaphore& semaphore, std::uint64_t value,
     --semaphore.value;
     return true;
   };
-  std::unique_lock lock(device.sync_mutex);
-  // Of a lost device the semaphore may be gone, see change_state.
   bool taken = false;
   wait_for_change(device, lock, kForever, payload, [&] { return device.lost || (taken = take()); });
   return taken;

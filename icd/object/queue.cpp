@@ -138,16 +138,27 @@ bool replay_all(Device& device, Batch& batch) noexcept {
   return done;
 }
 
+/// Whether others can signal each of the semaphores that a batch has waited for. None once the device is lost: they may
+/// be gone.
+std::vector<bool> shared_waits(Device& device, const Batch& batch) {
+  std::vector<bool> shared;
+  const std::lock_guard lock(device.sync_mutex);
+  if (device.lost) return shared;
+  for (const SemaphoreOp& op : batch.waits) shared.push_back(from_handle<Semaphore>(op.semaphore).shared != nullptr);
+  return shared;
+}
+
 /// What the tool sync is told of a batch's semaphores and fence (glass/sync/hazards.h).
 void tell_waits(Device& device, const Batch& batch) {
   glass::sync::Hazards* const hazards = glass::sync::hazards_of(&device);
   if (!hazards) return;
   if (batch.calls.empty()) {
-    for (const SemaphoreOp& op : batch.waits) {
-      const Semaphore& semaphore = from_handle<Semaphore>(op.semaphore);
-      hazards->wait(&semaphore, op.value,
+    const std::vector<bool> shared = shared_waits(device, batch);
+    for (std::size_t i = 0; i < shared.size(); ++i) {
+      const SemaphoreOp& op = batch.waits[i];
+      hazards->wait(&from_handle<Semaphore>(op.semaphore), op.value,
                     glass::sync::second_scope(op.stages, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT),
-                    semaphore.shared || !batch.temporary.empty());
+                    shared[i] || !batch.temporary.empty());
     }
     return;
   }

@@ -156,8 +156,9 @@ TEST_F(TimelineSemaphore, TwoThreadsPassABatonThroughTheQueue) {
 }
 
 TEST_F(TimelineSemaphore, LosingTheDeviceEndsWaits) {
-  const VkSemaphore a = make(0), b = make(0);
+  const VkSemaphore a = make(0), b = make(0), c = make(0);
   ASSERT_EQ(submit(a, 1, b, 1), VK_SUCCESS);
+  ASSERT_EQ(submit(c, 1, c, 2), VK_SUCCESS) << "its turn comes when the semaphores may be gone";
   std::thread loser([&] { lose_device(from_handle<icd::Device>(device), {"a test", 0, {}}); });
   EXPECT_EQ(wait({b}, {1}, kForever), VK_ERROR_DEVICE_LOST);
   loser.join();
