@@ -38,6 +38,7 @@ class Reader {
   SourcePlace line_;                                                     ///< in force
   std::uint32_t scope_ = 0;                                              ///< of a DebugScope in force
   std::uint32_t function_ = 0;                                           ///< OpFunction
+  std::uint32_t call_place_ = 0;                                         ///< of a call that no line is in force for
   SourcePlace function_line_;                                            ///< in force there
   std::optional<std::uint32_t> function_scope_;                          ///< made when asked for
   std::optional<std::unordered_map<std::uint32_t, std::string>> names_;  ///< of functions
@@ -121,7 +122,13 @@ void Reader::take(Inst& inst) {
     line_.scope = scope_ != 0 ? scope_ : function_scope();
     inst.origin.place = tables_.place(line_);
     inst.line = module_.sources.place(inst.origin.place).line;
+    call_place_ = inst.origin.place;
+  } else if (inst.op == Op::OpFunctionCall) {
+    // A line ends with its block, and glslang does not begin it again behind `? :` in arguments: what lies in front of
+    // a call leads to what it calls.
+    inst.origin.place = call_place_;
   }
+  if (inst.op == Op::OpFunctionEnd) call_place_ = 0;
   if (!is_block_end(inst.op) && inst.op != Op::OpFunctionEnd) return;
   line_ = {};
   scope_ = 0;

@@ -214,6 +214,27 @@ OpFunctionEnd
                   {"DebugBreak\n", "invocation (0, 0, 0)", "%14 = 7", "<no value>", "%15 = 21", "DebugBreak\n"});
 }
 
+TEST(Debugger, KnowsWhoCallsBehindAChoice) {
+  for (const DebugInfo info : {DebugInfo::kLines, DebugInfo::kNonSemantic}) {
+    const Session s = session({"break 6 if x > 30u", "run", "backtrace"}, R"(#version 450
+layout(local_size_x = 8) in;
+layout(std430, set = 0, binding = 0) buffer Data { uint data[]; };
+uint last;
+uint keep(uint x) {
+  last = x;
+  return x + 1u;
+}
+void main() {
+  uint i = gl_LocalInvocationID.x;
+  uint v = keep(i > 3u ? data[i] * 3u : data[i + 1u] * 2u);
+  data[i] = v + last;
+}
+)",
+                              info);
+    expect_in_order(s.text, {"#0 keep at shader.glsl:6", "#1 main at shader.glsl:11"});
+  }
+}
+
 TEST(Debugger, KnowsWhatLoopsLeaveBehind) {
   const Session s = session({"break 12", "run", "print sum", "print last", "print early"}, R"(#version 450
 layout(local_size_x = 1) in;
