@@ -20,6 +20,22 @@ namespace {
 using spirv::exec::Interest;
 using spirv::exec::Watch;
 
+void add_to(Interest& interest, const Interest& wanted) {
+  interest.instructions |= wanted.instructions;
+  interest.accesses |= wanted.accesses;
+  interest.images |= wanted.images;
+  interest.discards |= wanted.discards;
+  interest.arithmetic |= wanted.arithmetic;
+  interest.numbers |= wanted.numbers;
+  interest.control |= wanted.control;
+  interest.initialization |= wanted.initialization;
+  interest.blocks |= wanted.blocks;
+  interest.printf |= wanted.printf;
+  interest.debug |= wanted.debug;
+  interest.order |= wanted.order;
+  interest.rehearsal |= wanted.rehearsal;
+}
+
 /// The watches of several tools.
 class Watches : public Watch {
  public:
@@ -54,23 +70,13 @@ class ProgramObserver : public spirv::exec::Observer {
  public:
   ProgramObserver(std::vector<Tool*> tools, const ShaderIdentity& shader) : tools_(std::move(tools)), shader_(shader) {
     for (const Tool* tool : tools_) {
-      const Interest wanted = tool->interest();
-      interest_.instructions |= wanted.instructions;
-      interest_.accesses |= wanted.accesses;
-      interest_.images |= wanted.images;
-      interest_.discards |= wanted.discards;
-      interest_.arithmetic |= wanted.arithmetic;
-      interest_.numbers |= wanted.numbers;
-      interest_.control |= wanted.control;
-      interest_.initialization |= wanted.initialization;
-      interest_.blocks |= wanted.blocks;
-      interest_.printf |= wanted.printf;
-      interest_.debug |= wanted.debug;
-      interest_.order |= wanted.order;
+      add_to(interest_, tool->interest());
+      add_to(rehearsed_, tool->rehearsed());
     }
   }
 
   Interest interest() const override { return interest_; }
+  Interest rehearsed() const override { return rehearsed_; }
 
   /// Before compile() returns: the words are still there.
   void made(const spirv::Program& program) const override {
@@ -104,7 +110,7 @@ class ProgramObserver : public spirv::exec::Observer {
  private:
   std::vector<Tool*> tools_;
   ShaderIdentity shader_;  ///< valid until made() has been called
-  Interest interest_;
+  Interest interest_, rehearsed_;
   mutable std::vector<std::shared_ptr<ProgramTool>> programs_;  ///< constant behind made()
 };
 

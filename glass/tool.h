@@ -43,6 +43,8 @@ class Tool {
  public:
   virtual ~Tool() = default;
   virtual spirv::exec::Interest interest() const = 0;
+  /// As spirv::exec::Observer::rehearsed().
+  virtual spirv::exec::Interest rehearsed() const { return {}; }
   /// A program has been made for a shader. It may be destroyed before the tool's state is.
   virtual std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) = 0;
   /// A command breaks a rule by itself, whatever its shaders do. The thread that replays calls it.

@@ -10,6 +10,7 @@
 
 #include "spirv/capabilities.h"
 #include "spirv/diagnosis.h"
+#include "spirv/exec/observe.h"
 #include "spirv/exec/trace.h"
 #include "spirv/front/translate.h"
 #include "spirv/ir_passes.h"
@@ -46,6 +47,29 @@ StepListener keep_steps(std::vector<Representation>& kept) {
   };
 }
 
+/// Of a program that no wave runs by itself.
+class Rehearsed : public exec::Observer {
+ public:
+  explicit Rehearsed(const exec::Interest& interest) : interest_(interest) {}
+  exec::Interest interest() const override { return interest_; }
+  std::unique_ptr<exec::Watch> watch(const Wave&, const Instruction*) const override { return nullptr; }
+
+ private:
+  exec::Interest interest_;
+};
+
+/// Null: there is none, as where it takes too many registers.
+std::shared_ptr<const Shader> compile_rehearsal(std::span<const std::uint32_t> words, const CompileOptions& options,
+                                                const exec::Observer& observer) {
+  if (!observer.interest().rehearsal) return nullptr;
+  base::Result<ir::Function> function = translate(words, options, observer.rehearsed());
+  if (!function) return nullptr;
+  rewrite(function.value(), {}, Steps::kNeeded);
+  ir::make_joins_whole(function.value());
+  auto shader = lower(function.take(), std::make_shared<Rehearsed>(observer.rehearsed()));
+  return shader ? std::shared_ptr<const Shader>(shader.take()) : nullptr;
+}
+
 }  // namespace
 
 std::string check_module(std::span<const std::uint32_t> words) {
@@ -74,7 +98,8 @@ base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> wor
   if (kept) kept->push_back({"SPIR-V", "the module as the application gave it, disassembled", module_text(words)});
   rewrite(function.value(), kept ? keep_steps(*kept) : StepListener());
   ir::make_joins_whole(function.value());
-  base::Result<std::unique_ptr<Shader>> shader = lower(function.take(), observer);
+  base::Result<std::unique_ptr<Shader>> shader =
+      lower(function.take(), observer, observer ? compile_rehearsal(words, options, *observer) : nullptr);
   if (kept && shader)
     kept->push_back(
         {"program", "the instructions that run, with their registers", disassemble(shader.value()->program())});

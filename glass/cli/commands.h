@@ -78,6 +78,7 @@ int pixel(const PixelOptions& options);
 struct DebugOptions {
   std::string script;  ///< file with commands; empty: none
   bool json = false;   ///< stops and answers as lines of JSON
+  bool exact = false;  ///< the shader as it always runs is shown
   std::string port;    ///< of the Debug Adapter Protocol; empty: a prompt
   CommandLine application;
 };

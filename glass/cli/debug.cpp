@@ -113,8 +113,10 @@ std::thread quiet_thread(std::function<void()> work) {
   return thread;
 }
 
-Environment debug_environment(const std::filesystem::path& socket) {
-  return {{"VITRINE_TOOLS", "debug"}, {"VITRINE_DEBUG", socket}, {"VITRINE_THREADS", "1"}};
+Environment debug_environment(const std::filesystem::path& socket, const DebugOptions& options) {
+  Environment environment{{"VITRINE_TOOLS", "debug"}, {"VITRINE_DEBUG", socket}, {"VITRINE_THREADS", "1"}};
+  if (options.exact) environment["VITRINE_DEBUG_EXACT"] = "1";
+  return environment;
 }
 
 int debug(const DebugOptions& options) {
@@ -133,7 +135,7 @@ int debug(const DebugOptions& options) {
     return kCouldNotRun;
   }
   std::thread face = quiet_thread([&] { converse(listener, ended[0], prompt); });
-  const Ending ending = run_application(options.application, debug_environment(path));
+  const Ending ending = run_application(options.application, debug_environment(path, options));
   ::close(ended[1]);
   face.join();
   ::close(ended[0]);

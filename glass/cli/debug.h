@@ -13,7 +13,7 @@ namespace vitrine::glass::cli {
 /// A thread that gets no signals.
 std::thread quiet_thread(std::function<void()> work);
 /// Of an application whose driver connects to this socket. One thread draws, so that every run is the same.
-Environment debug_environment(const std::filesystem::path& socket);
+Environment debug_environment(const std::filesystem::path& socket, const DebugOptions& options);
 /// The face for editors (debug_adapter.cpp).
 int debug_with_editor(const DebugOptions& options);
 

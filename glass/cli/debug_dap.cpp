@@ -130,7 +130,7 @@ int debug_with_editor(const DebugOptions& options) {
   Server server(editors, processes, ended[0]);
   std::thread face = quiet_thread([&] { server.serve(); });
   server.start.get_future().wait();
-  const Ending ending = run_application(options.application, debug_environment(path));
+  const Ending ending = run_application(options.application, debug_environment(path, options));
   server.code = ending.code;
   ::close(ended[1]);
   face.join();

@@ -193,6 +193,7 @@ void add_debug(CLI::App& app, const Words& words, DebugOptions& options, int& co
   CLI::App* command = add_runner(app, "debug", "Run it and stop its shaders: a prompt, or a server for an editor");
   command->add_option("-x,--script", options.script, "Commands, before those that are typed")->type_name("FILE");
   command->add_flag("--json", options.json, "Print stops and answers as lines of JSON");
+  command->add_flag("--exact", options.exact, "Show the shader as it always runs, not one that keeps all variables");
   command->add_option("--dap", options.port, "Wait for an editor at this port of the loopback interface (0: any)")
       ->type_name("PORT");
   command->callback([=, &words, &options, &code] {

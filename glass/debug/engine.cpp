@@ -2,8 +2,11 @@
 #include "glass/debug/engine.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstring>
 #include <utility>
 
+#include "base/numeric.h"
 #include "spirv/exec/observe.h"
 
 namespace vitrine::glass::debug {
@@ -145,12 +148,34 @@ std::shared_ptr<Run> Engine::enter(const std::shared_ptr<const Subject>& subject
   if (!run) run = std::make_shared<Run>(subject, wave);
   live_ = run;
   history_.enter(run);
+  note_reset(*run);
   return run;
 }
 
-void Engine::leave(const std::shared_ptr<Run>& run, const spirv::Wave& wave) {
+/// Between workgroups their memory has been reset: nobody but this tells.
+void Engine::note_reset(Run& run) {
+  if (run.shared == nullptr || run.subject->context.stage != VK_SHADER_STAGE_COMPUTE_BIT) return;
+  if (shared_.size() != run.shared_size || std::memcmp(shared_.data(), run.shared, shared_.size()) == 0) return;
+  run.begin_stores(0);
+  run.add_store(run.shared, run.shared_size, shared_.data());
+  history_.grown();
+}
+
+void Engine::writes(Run& run, const spirv::Wave& wave, const spirv::Instruction* i, const spirv::InstructionNote& note,
+                    StoreLog& log) {
+  bool any = false;
+  for_each_written(wave, i, note, [&](std::byte* at, std::uint32_t bytes) {
+    log.keep(at, bytes);
+    if (!std::exchange(any, true)) run.begin_stores(note.origin.place);
+    run.add_store(at, bytes);
+  });
+  if (!any) return;
+  const std::unique_lock lock(mutex_);
+  history_.grown();
+}
+
+void Engine::ended(const std::shared_ptr<Run>& run, const spirv::Wave& wave, bool waits) {
   std::unique_lock lock(mutex_);
-  const bool waits = wave.status == spirv::Wave::Status::kAtBarrier;
   if (waits) {
     waiting_[&wave] = run;
   } else {
@@ -158,8 +183,27 @@ void Engine::leave(const std::shared_ptr<Run>& run, const spirv::Wave& wave) {
     if (!detached_ && focus_.run == run && motion_.kind != Motion::Kind::kContinue)
       halt({Stop::Reason::kEnd, 0, invocation_text(*run, focus_.lane) + " has ended"}, lock), motion_ = {};
   }
+}
+
+void Engine::leave(const std::shared_ptr<Run>& run) {
+  const std::unique_lock lock(mutex_);
+  shared_.assign(run->shared, run->shared + (run->shared == nullptr ? 0 : run->shared_size));
   live_ = nullptr;
   turn_.unlock();
+}
+
+void Engine::differs(const Run& run, const StoreLog::Difference& difference) {
+  const std::unique_lock lock(mutex_);
+  if (detached_ || !differing_.insert(run.subject.get()).second) return;
+  const auto text = [](std::uint32_t bits) {
+    char number[64];
+    std::snprintf(number, sizeof(number), "0x%08x (%.9g)", bits, static_cast<double>(base::float_of(bits)));
+    return std::string(number);
+  };
+  face_.output("note: " + run.subject->context.entry_point + " as it always runs computes " + text(difference.there) +
+               " where what is shown computes " + text(difference.kept) + ", in " + std::to_string(difference.words) +
+               " words of the wave of " + invocation_text(run, first_lane(run.launched)) +
+               "; `vitrine debug --exact` shows the former");
 }
 
 void Engine::came_by(Run& run, const spirv::Wave& wave, const spirv::ProbeOp& op) {
@@ -182,6 +226,7 @@ void Engine::came_by(Run& run, const spirv::Wave& wave, const spirv::ProbeOp& op
 void Engine::look_at(const std::shared_ptr<Run>& run, std::size_t lane) { focus_ = {run, lane, 0}; }
 
 std::optional<Stop> Engine::check(const std::shared_ptr<Run>& run, const Run::Entry& entry, bool live) {
+  if (entry.probe == kStores) return std::nullopt;
   return run->steps(entry) ? check_step(run, entry, live) : check_watches(run, entry);
 }
 

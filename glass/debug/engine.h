@@ -17,6 +17,7 @@
 #include "glass/debug/exceptions.h"
 #include "glass/debug/frame.h"
 #include "glass/debug/history.h"
+#include "glass/debug/stores.h"
 
 namespace vitrine::glass::debug {
 
@@ -82,7 +83,14 @@ class Engine {
   /// A run of a wave: whether it is watched. Then nothing else runs until leave().
   std::shared_ptr<Run> enter(const std::shared_ptr<const Subject>& subject, const spirv::Wave& wave, bool begins);
   void came_by(Run& run, const spirv::Wave& wave, const spirv::ProbeOp& op);
-  void leave(const std::shared_ptr<Run>& run, const spirv::Wave& wave);
+  /// An instruction is about to write memory, perhaps: what it writes goes into `log`, too.
+  void writes(Run& run, const spirv::Wave& wave, const spirv::Instruction* i, const spirv::InstructionNote& note,
+              StoreLog& log);
+  /// The wave has ended, if it does not wait for others.
+  void ended(const std::shared_ptr<Run>& run, const spirv::Wave& wave, bool waits);
+  void leave(const std::shared_ptr<Run>& run);
+  /// The wave itself has done otherwise than its rehearsal did.
+  void differs(const Run& run, const StoreLog::Difference& difference);
 
   // ---- the face, with the engine held
   std::mutex& mutex() { return mutex_; }
@@ -111,6 +119,7 @@ class Engine {
  private:
   using Lanes = base::LaneMask;
 
+  void note_reset(Run& run);
   bool is_wanted(const std::shared_ptr<const Subject>& subject, const spirv::Wave& wave, const Run* known);
   const std::map<std::uint32_t, std::vector<int>>& stops_of(const Subject& subject);
   std::optional<Stop> check(const std::shared_ptr<Run>& run, const Run::Entry& entry, bool live);
@@ -139,6 +148,8 @@ class Engine {
   std::vector<std::shared_ptr<const Subject>> subjects_;                  ///< of all shaders so far
   History history_;
   std::shared_ptr<Run> live_;
+  std::vector<std::byte> shared_;       ///< what the memory of the last workgroup held when its wave stopped
+  std::set<const Subject*> differing_;  ///< those of which it has been said
   Focus focus_;
   Motion motion_;
   std::uint32_t goal_depth_ = 0;

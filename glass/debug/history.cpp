@@ -43,7 +43,7 @@ bool History::forward() {
   }
   if (segment_ >= segments_.size()) return false;
   run_ = segments_[segment_].run;
-  run_->exchange(run_->entry(next_++));
+  run_->exchange(run_->entry(next_++), false, *last().run);
   return true;
 }
 
@@ -54,7 +54,7 @@ bool History::backward() {
     next_ = segments_[--segment_].end;
   }
   run_ = segments_[segment_].run;
-  run_->exchange(run_->entry(--next_));
+  run_->exchange(run_->entry(--next_), true, *last().run);
   return true;
 }
 

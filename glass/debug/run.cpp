@@ -1,8 +1,10 @@
 // See run.h. Words of an entry: of a step, the probe by lane; of an assignment, by lane the first cell if its indices
-// are not constant, then by cell the mask of lanes that have a value, and the values by lane.
+// are not constant, then by cell the mask of lanes that have a value, and the values by lane; of stores, the place and
+// the number of parts, then by part the address (low, high), the number of bytes and the bytes.
 #include "glass/debug/run.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "spirv/exec/invocation.h"
@@ -41,6 +43,7 @@ Run::Run(std::shared_ptr<const Subject> of, const spirv::Wave& wave)
       launched(wave.launched),
       helpers(wave.launched & ~wave.live),
       local_size{wave.program->local_size[0], wave.program->local_size[1], wave.program->local_size[2]},
+      serial(wave.resources->serial),
       where(describe(wave.resources->command)),
       resources(wave.resources),
       shared(wave.shared),
@@ -87,7 +90,52 @@ void Run::record(const spirv::Wave& wave, const spirv::ProbeOp& op, base::LaneMa
     }
   }
   entries_.push_back(entry);
-  exchange(entry);
+  exchange_values(entry);
+}
+
+void Run::begin_stores(std::uint32_t place) {
+  entries_.push_back({kStores, 0, words_.size()});
+  words_.insert(words_.end(), {place, 0});
+}
+
+void Run::add_store(std::byte* at, std::uint32_t bytes) { add_store(at, bytes, at); }
+
+void Run::add_store(std::byte* at, std::uint32_t bytes, const std::byte* before) {
+  const auto address = reinterpret_cast<std::uintptr_t>(at);
+  ++words_[entries_.back().first + 1];
+  words_.insert(words_.end(), {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32), bytes});
+  const std::size_t first = words_.size();
+  words_.resize(first + (bytes + 3) / 4);
+  std::memcpy(&words_[first], before, bytes);
+}
+
+/// What has been freed is not written: while a submission runs, all that it uses is there (Vulkan 1.3.239, Object
+/// Lifetime); memory of workgroups is that of the one that runs.
+bool Run::has_memory(const std::byte* at, const Run& live) const {
+  if (submission != live.submission || (submission == 0 && serial != live.serial)) return false;
+  if (shared == nullptr || at < shared || at >= shared + shared_size) return true;
+  return serial == live.serial && shared == live.shared;
+}
+
+/// Parts may overlap: what was written last is taken back first.
+void Run::exchange_stores(const Entry& entry, bool back, const Run& live) {
+  std::size_t word = entry.first + 2;
+  std::vector<std::size_t> parts;
+  for (std::uint32_t part = 0; part < words_[entry.first + 1]; ++part) {
+    parts.push_back(word);
+    word += 3 + (words_[word + 2] + 3) / 4;
+  }
+  if (back) std::ranges::reverse(parts);
+  for (const std::size_t at : parts) {
+    auto* const data =
+        reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(std::uint64_t{words_[at + 1]} << 32 | words_[at]));
+    auto* const kept = reinterpret_cast<std::byte*>(&words_[at + 3]);
+    if (has_memory(data, live)) std::swap_ranges(kept, kept + words_[at + 2], data);
+  }
+}
+
+void Run::exchange(const Entry& entry, bool back, const Run& live) {
+  entry.probe == kStores ? exchange_stores(entry, back, live) : exchange_values(entry);
 }
 
 void Run::exchange_cell(std::uint32_t cell, base::LaneMask lanes, std::size_t& word) {
@@ -98,7 +146,7 @@ void Run::exchange_cell(std::uint32_t cell, base::LaneMask lanes, std::size_t& w
   base::for_each_lane(lanes, [&](std::size_t lane) { std::swap(cells_[cell].lane[lane], words_[word++]); });
 }
 
-void Run::exchange(const Entry& entry) {
+void Run::exchange_values(const Entry& entry) {
   const spirv::Probe& probe = subject->probes[entry.probe];
   std::size_t word = entry.first;
   if (probe.kind == spirv::Probe::Kind::kStep)
@@ -138,6 +186,7 @@ bool Run::is_first(const Entry& entry, std::size_t lane) const {
 }
 
 bool Run::assigns(const Entry& entry, std::size_t lane, std::uint32_t cell, std::uint32_t count, bool any) const {
+  if (entry.probe == kStores) return false;
   const spirv::Probe& probe = subject->probes[entry.probe];
   if (probe.kind != spirv::Probe::Kind::kAssign || (entry.lanes >> lane & 1) == 0) return false;
   const std::size_t lanes = count_of(entry.lanes), n = count_of(entry.lanes & ((base::LaneMask{1} << lane) - 1));

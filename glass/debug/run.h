@@ -1,5 +1,6 @@
 // What has happened in one wave, and what its variables hold: a log of the lines that its lanes came to and of the
-// values that variables got. Every entry holds what it replaced: it can be taken back, and done again.
+// values that variables got, and of what it has written to memory. Every entry holds what it replaced: it can be taken
+// back, and done again.
 #pragma once
 
 #include <array>
@@ -15,6 +16,8 @@
 namespace vitrine::glass::debug {
 
 inline constexpr std::uint32_t kNoProbe = ~std::uint32_t{0};
+/// Instead of a probe, in entries: memory is written.
+inline constexpr std::uint32_t kStores = kNoProbe - 1;
 
 /// A shader that may be stopped in.
 struct Subject {
@@ -46,12 +49,20 @@ class Run {
 
   /// The wave comes by a probe of Kind::kStep or kAssign.
   void record(const spirv::Wave& wave, const spirv::ProbeOp& op, base::LaneMask lanes);
-  /// Takes an entry back, or does it again.
-  void exchange(const Entry& entry);
+  /// Memory is about to be written, at a place (SourceInfo::places; 0: outside of the shader): the entry begins, and
+  /// gets its parts.
+  void begin_stores(std::uint32_t place);
+  void add_store(std::byte* at, std::uint32_t bytes);
+  /// The same of memory that has been written, with what it held before.
+  void add_store(std::byte* at, std::uint32_t bytes, const std::byte* before);
+  /// Takes an entry back, or does it again; memory, where it is that of `live`, which runs.
+  void exchange(const Entry& entry, bool back, const Run& live);
 
   std::size_t size() const { return entries_.size(); }
   const Entry& entry(std::size_t i) const { return entries_[i]; }
-  bool steps(const Entry& entry) const { return subject->probes[entry.probe].kind == spirv::Probe::Kind::kStep; }
+  bool steps(const Entry& entry) const {
+    return entry.probe != kStores && subject->probes[entry.probe].kind == spirv::Probe::Kind::kStep;
+  }
   /// Of a step that has been done: the lanes that were on another line before.
   base::LaneMask fresh_lanes(const Entry& entry) const;
   /// Of an assignment that has been done: whether it changed one of these cells of a lane; `any`: or gave it the value
@@ -77,15 +88,18 @@ class Run {
   base::LaneMask launched = 0, helpers = 0;
   std::array<std::array<std::uint32_t, 3>, base::kWaveWidth> id{};  ///< of invocations
   std::array<std::uint32_t, 3> local_size{1, 1, 1};
-  std::uint64_t submission = 0;
+  std::uint64_t submission = 0, serial = 0;  ///< of what the command has bound
   std::uint32_t command = 0;
   std::string where;                                ///< the command, for people
   const spirv::ResourceTable* resources = nullptr;  ///< while its command runs
-  const std::byte* shared = nullptr;                ///< while its workgroup runs
+  std::byte* shared = nullptr;                      ///< while its workgroup runs
   std::uint32_t shared_size = 0;
 
  private:
   std::uint32_t cell_of(const spirv::Wave& wave, const spirv::ProbeOp& op, std::size_t lane) const;
+  bool has_memory(const std::byte* at, const Run& live) const;
+  void exchange_values(const Entry& entry);
+  void exchange_stores(const Entry& entry, bool back, const Run& live);
   void exchange_cell(std::uint32_t cell, base::LaneMask lanes, std::size_t& word);
 
   std::vector<base::WaveRegister> cells_;

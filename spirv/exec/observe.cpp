@@ -52,6 +52,12 @@ base::LaneMask discarded_lanes(const Wave& wave, const Instruction* i) {
   return handler == demote_if ? active & wave.masks[i->src[0] / sizeof(base::LaneMask)] : active;
 }
 
+bool hold_the_same(const InterfaceSlot& a, const InterfaceSlot& b) {
+  return a.built_in == b.built_in && a.component == b.component && a.location == b.location && a.index == b.index &&
+         a.stream == b.stream && a.interpolation == b.interpolation && a.sample_location == b.sample_location &&
+         a.part == b.part;
+}
+
 void hook_instructions(Program& program) {
   Observation observation = *program.observation;
   const Interest& wanted = observation.interest;

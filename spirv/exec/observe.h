@@ -1,6 +1,9 @@
 // Observed programs: whoever observes one is told of what its waves do, as much as he asks for. Which loop runs is
 // decided before a draw or dispatch; the plain one knows nothing of observers. An observed program computes the same
 // bits.
+//
+// Who wants to see all that a shader says rehearses its waves: in front of a wave that runs he runs one of a second
+// program (Observation::rehearsal), which has been rewritten only as far as it must be, and takes back what that wrote.
 #pragma once
 
 #include <memory>
@@ -45,6 +48,7 @@ struct Interest {
   bool printf = false;          ///< probes of NonSemantic.DebugPrintf
   bool debug = false;           ///< probes of lines, and of the values that variables get: Probe::Kind::kStep, kAssign
   bool order = false;           ///< probes of barriers; what orders accesses in their Origin (spirv/memory_order.h)
+  bool rehearsal = false;       ///< Observation::rehearsal
   bool operator==(const Interest&) const = default;
 };
 
@@ -53,6 +57,8 @@ class Observer {
  public:
   virtual ~Observer() = default;
   virtual Interest interest() const { return {.instructions = true}; }
+  /// If Interest::rehearsal: the interest that the second program is made for.
+  virtual Interest rehearsed() const { return {}; }
   /// Called when a program that this observes has been made.
   virtual void made(const Program&) const {}
   /// Waves of a workgroup wait, as this one does, at a barrier that the others have not reached or will not reach.
@@ -73,7 +79,12 @@ struct Observation {
   ShaderInterface interface;
   Interest interest;
   std::vector<Handler> hooked;  ///< per instruction that is watched: what it does; null: it is not
+  /// The second program: no wave runs it by itself. The program's inputs are all that it has.
+  std::shared_ptr<const Shader> rehearsal;
 };
+
+/// Whether slots of two programs for the same shader hold the same.
+bool hold_the_same(const InterfaceSlot& a, const InterfaceSlot& b);
 
 /// Lets the wave's watch be told before the instructions of `program` that its observer wants to know of: accesses and
 /// discards. A program without any is not observed if the observer wants nothing else.

@@ -1,6 +1,9 @@
 // The passes of the lowering in their order.
 #include "spirv/lower/lower.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "base/log.h"
 #include "base/simd.h"
 #include "spirv/exec/observe.h"
@@ -16,7 +19,8 @@ constexpr std::uint32_t kMaxRegisters = 65536;
 
 }  // namespace
 
-base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared_ptr<const exec::Observer> observer) {
+base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared_ptr<const exec::Observer> observer,
+                                            std::shared_ptr<const Shader> rehearsal) {
   base::select_simd_target();
   const exec::Interest interest = observer ? observer->interest() : exec::Interest{};
   std::string error;
@@ -34,6 +38,7 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   lowering::schedule_chains(scalars, interest.instructions);
   ShaderInterface interface = function.interface;
   if (observer && observer->interest() != exec::Interest{.blocks = true}) lowering::keep_identity(scalars, interface);
+  if (rehearsal) lowering::keep_inputs(scalars, interface, rehearsal->interface());
   const lowering::Allocation allocation = lowering::allocate(scalars);
   if (allocation.register_count > kMaxRegisters) return base::Error{"the shader keeps too many values alive"};
   std::unique_ptr<Program> program = lowering::emit(scalars, allocation, interface, error);
@@ -41,13 +46,15 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   program->flush_denormals = interface.stage != VK_SHADER_STAGE_COMPUTE_BIT;
   for (int i = 0; i < 3; ++i) program->local_size[i] = interface.local_size[i];
   program->groups_per_wave = scalars.groups_per_wave;
+  if (rehearsal) program->groups_per_wave = std::min(program->groups_per_wave, rehearsal->program().groups_per_wave);
   program->uses_subgroups = scalars.uses_subgroups;
   program->sources = std::move(function.sources);
   program->probes = std::move(function.probes);
   program->shared_bytes = interface.shared_bytes;
   program->zeroed_shared = interface.zeroed_shared;
   if (observer) {
-    program->observation = std::make_shared<exec::Observation>(exec::Observation{observer, interface, interest, {}});
+    program->observation =
+        std::make_shared<exec::Observation>(exec::Observation{observer, interface, interest, {}, std::move(rehearsal)});
     if (interest.accesses || interest.images || interest.discards) exec::hook_instructions(*program);
     if (program->observation) observer->made(*program);
   }

@@ -158,4 +158,7 @@ void schedule_chains(ScalarFunction& function, bool apart);
 /// (spirv/exec/observe.h). Adds them to `interface`.
 void keep_identity(ScalarFunction& function, ShaderInterface& interface);
 
+/// The same of all inputs of `other`, another program for the same shader.
+void keep_inputs(ScalarFunction& function, ShaderInterface& interface, const ShaderInterface& other);
+
 }  // namespace vitrine::spirv::lowering

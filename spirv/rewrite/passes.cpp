@@ -70,7 +70,11 @@ constexpr PhaseInfo kPhases[] = {
 /// Which steps, of those that are not needed, run over one shader.
 class Choice {
  public:
-  explicit Choice(std::uint32_t shader) {
+  Choice(std::uint32_t shader, Steps steps) {
+    if (steps == Steps::kNeeded) {
+      limit_ = 0;
+      return;
+    }
     static const char* const off = std::getenv("VITRINE_PASS_OFF");
     static const char* const limit = std::getenv("VITRINE_PASS_LIMIT");
     if (off) off_ = off;
@@ -144,7 +148,7 @@ class Printer {
 /// Runs the phases over one shader.
 class Runner {
  public:
-  Runner(Graph& graph, const StepListener& listener) : Runner(graph, next_shader(), listener) {}
+  Runner(Graph& graph, const StepListener& listener, Steps steps) : Runner(graph, next_shader(), listener, steps) {}
 
   void run() {
     for (const PhaseInfo& phase : kPhases)
@@ -154,8 +158,8 @@ class Runner {
   }
 
  private:
-  Runner(Graph& graph, std::uint32_t shader, const StepListener& listener)
-      : graph_(graph), choice_(shader), printer_(graph, shader, listener) {}
+  Runner(Graph& graph, std::uint32_t shader, const StepListener& listener, Steps steps)
+      : graph_(graph), choice_(shader, steps), printer_(graph, shader, listener) {}
 
   /// True when another round is wanted.
   bool run_round(Phase phase, int round) {
@@ -215,6 +219,6 @@ const Pass* find_pass(std::string_view name) {
   return nullptr;
 }
 
-void run_passes(Graph& graph, const StepListener& listener) { Runner(graph, listener).run(); }
+void run_passes(Graph& graph, const StepListener& listener, Steps steps) { Runner(graph, listener, steps).run(); }
 
 }  // namespace vitrine::spirv::rewriting

@@ -37,9 +37,9 @@ std::span<const Pass> passes();
 /// The first row of this function, which runs like every other one of it; null: there is none.
 const Pass* find_pass(std::string_view name);
 
-/// Runs all steps in their order. Under VITRINE_LOG=ir prints the shader before them and after each that changes
+/// Runs the steps in their order. Under VITRINE_LOG=ir prints the shader before them and after each that changes
 /// something, and tells `listener` of the same; leaves out the steps that VITRINE_PASS_LIMIT and VITRINE_PASS_OFF name;
 /// verifies after each in debug builds.
-void run_passes(Graph& graph, const StepListener& listener = {});
+void run_passes(Graph& graph, const StepListener& listener = {}, Steps steps = Steps::kAll);
 
 }  // namespace vitrine::spirv::rewriting

@@ -24,9 +24,9 @@ void release_attached(rewriting::Graph& graph, const std::vector<Probe>& probes,
 
 }  // namespace
 
-void rewrite(ir::Function& function, const StepListener& listener) {
+void rewrite(ir::Function& function, const StepListener& listener, Steps steps) {
   rewriting::Graph graph(function);
-  rewriting::run_passes(graph, listener);
+  rewriting::run_passes(graph, listener, steps);
   if (!graph.attached.empty()) release_attached(graph, function.probes, listener);
   graph.write_back();
 }

@@ -14,6 +14,7 @@ class ToolObserver : public spirv::exec::Observer {
  public:
   ToolObserver(Tool& tool, ShaderIdentity shader) : tool_(tool), shader_(shader) {}
   spirv::exec::Interest interest() const override { return tool_.interest(); }
+  spirv::exec::Interest rehearsed() const override { return tool_.rehearsed(); }
   void made(const spirv::Program& program) const override { program_ = tool_.attach(shader_, program); }
   void draw(const raster::DrawCall& call) const { program_->draw(call); }
   bool in_order() const override { return program_ && program_->in_order(); }

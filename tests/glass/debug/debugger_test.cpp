@@ -45,12 +45,12 @@ struct Session {
 };
 
 Session session(Lines lines, const std::string& shader = kShader, DebugInfo info = DebugInfo::kNonSemantic,
-                std::uint32_t groups = 1) {
+                std::uint32_t groups = 1, Shown shown = Shown::kRehearsal) {
   std::string log;
   const auto module =
       vitrine::test::compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, shader, vitrine::test::VulkanVersion::k12, log, info);
   EXPECT_FALSE(module.empty()) << log;
-  ScriptedDebugger debugger(std::move(lines));
+  ScriptedDebugger debugger(std::move(lines), shown);
   Session result;
   for (std::uint32_t i = 0; i < 64; ++i) result.words.push_back(10 + i);
   glass::test::run_observed(debugger.tool.get(), module, result.words, groups);
@@ -83,6 +83,49 @@ TEST(Debugger, ChangesNoResult) {
         session({"break main", "run", "step", "step", "step", "back", "back", "next", "continue"}, kShader, info, 2);
     EXPECT_EQ(plain.words, stopped.words);
   }
+}
+
+/// pow(x, 2.0) is a product in the shader that always runs alone.
+constexpr char kPowers[] = R"(#version 450
+layout(local_size_x = 8) in;
+layout(std430, set = 0, binding = 0) buffer Data { uint data[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  float power = pow(float(data[i]) * 1.1, 2.0);
+  data[i] = floatBitsToUint(power);
+}
+)";
+
+TEST(Debugger, SaysWhatTheShaderComputesOtherwise) {
+  const Session plain = session({}, kPowers);
+  const Session shown = session({"break 7", "run", "print power", "continue"}, kPowers);
+  EXPECT_EQ(plain.words, shown.words);
+  expect_in_order(shown.text, {"power = ", "note: main as it always runs computes 0x",
+                               "words of the wave of invocation "
+                               "(0, 0, 0)"});
+  const Session exact =
+      session({"break 7", "run", "print power", "continue"}, kPowers, DebugInfo::kNonSemantic, 1, Shown::kExact);
+  EXPECT_EQ(plain.words, exact.words);
+  EXPECT_EQ(exact.text.find("note:"), std::string::npos) << exact.text;
+  expect_in_order(exact.text, {"power = " + to_text(Scalar{'F', 32, plain.words[0]})});
+}
+
+TEST(Debugger, ShowsMemoryAsItWas) {
+  const Session s = session({"tbreak 26", "run", "print data[1]", "print cache[2]", "next", "print data[1]", "back",
+                             "print data[1]", "back", "back", "back", "print cache[2]", "tbreak 26", "continue"});
+  expect_in_order(s.text, {"data[1] = 11", "cache[2] = 12", "has ended", "data[1] = 38", "main at shader.glsl:26",
+                           "data[1] = 11", "cache[2] = 12"});
+}
+
+TEST(Debugger, ShowsMemoryOfEarlierWorkgroups) {
+  const Session s = session(
+      {"tbreak 19 if i == 8u", "run", "print cache[0]", "tbreak 26 if i == 0u", "reverse-continue", "print cache[0]",
+       "print data[0]", "tbreak 20 if i == 8u", "continue", "print cache[0]", "print data[0]"},
+      kShader, DebugInfo::kNonSemantic, 2);
+  const Session plain = session({}, kShader, DebugInfo::kNonSemantic, 2);
+  EXPECT_EQ(plain.words, s.words);
+  expect_in_order(s.text, {"invocation (8, 0, 0)", "cache[0] = 0", "invocation (0, 0, 0)", "cache[0] = 10",
+                           "data[0] = 10", "invocation (8, 0, 0)", "cache[0] = 18", "data[0] = 27"});
 }
 
 TEST(Debugger, StopsWhereAConditionHolds) {
@@ -212,6 +255,29 @@ OpFunctionEnd
   EXPECT_EQ(words[0], 21u);
   expect_in_order(debugger.script.text(),
                   {"DebugBreak\n", "invocation (0, 0, 0)", "%14 = 7", "<no value>", "%15 = 21", "DebugBreak\n"});
+}
+
+TEST(Debugger, StopsInBranchesThatComputeNothing) {
+  const Session s = session({"break 9", "run", "step", "print v", "step", "step", "print v"}, R"(#version 450
+layout(local_size_x = 8) in;
+layout(std430, set = 0, binding = 0) buffer Data { uint data[]; };
+void main() {
+  uint id = gl_LocalInvocationID.x;
+  int v = 1;
+  if (data[8] > 9u) {
+    v = 2;
+    if (data[8] > 9u && (id == id)) {
+      v = 3;
+    } else {
+      v = int(id) + 2;
+    }
+    v = v + 5;
+  }
+  data[id] = 3;
+}
+)");
+  expect_in_order(s.text, {"main at shader.glsl:9", "main at shader.glsl:10", "v = 2", "main at shader.glsl:14",
+                           "main at shader.glsl:16", "v = 8"});
 }
 
 TEST(Debugger, KnowsWhoCallsBehindAChoice) {

@@ -43,9 +43,10 @@ class Script : public Face {
 
 /// A tool with a script; the engine lives as long.
 struct ScriptedDebugger {
-  explicit ScriptedDebugger(std::vector<std::string> lines) : script(std::move(lines)), engine(script) {
+  explicit ScriptedDebugger(std::vector<std::string> lines, Shown shown = Shown::kRehearsal)
+      : script(std::move(lines)), engine(script) {
     engine.start();
-    tool = make_tool(engine);
+    tool = make_tool(engine, shown);
   }
   Script script;
   Engine engine;
