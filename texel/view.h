@@ -77,6 +77,8 @@ struct ImageView {
   std::uint32_t layer_count = 1;
   std::uint32_t samples = 1;
   std::uint32_t base_level = 0;  ///< of the image; level[0] below is already this one
+  float min_lod = 0;             ///< the sampler goes no lower (VkImageViewMinLodCreateInfoEXT), from base_level on
+  std::uint32_t min_level = 0;   ///< its floor: levels in front of it have no texels for reads, writes and gathers
   Extent level0_extent;          ///< of the image's level 0: lavapipe decides power-of-two addressing by it
   std::array<LevelLayout, kMaxLevels> level{};  ///< [0] is the view's first level
   /// What a Y'CbCr conversion samples: views of FormatDesc::plane of the format; null for other formats.

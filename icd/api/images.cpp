@@ -90,6 +90,16 @@ texel::ImageView view_of_aspect(const Image& image, VkImageAspectFlagBits aspect
   return texel::make_image_view(image.layout, memory, view_desc(aspect, type, format, range, components));
 }
 
+namespace {
+
+/// VkImageViewMinLodCreateInfoEXT.
+void set_min_lod(texel::ImageView& view, float min_lod) {
+  view.min_lod = std::max(min_lod - static_cast<float>(view.base_level), 0.0f);
+  view.min_level = static_cast<std::uint32_t>(view.min_lod);
+}
+
+}  // namespace
+
 void watch_image(const Image& image, bool in_swapchain) {
   glass::pixel::Pixels* const pixels = glass::pixel::pixels();
   if (pixels)
@@ -155,6 +165,10 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
   constexpr VkImageAspectFlags kBoth = VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
   if ((aspects & kBoth) == kBoth) {
     object->stencil = view_of_aspect(image, VK_IMAGE_ASPECT_STENCIL_BIT, info->viewType, info->format, object->range);
+  }
+  if (const auto* min_lod = find_in_chain<VkImageViewMinLodCreateInfoEXT>(info->pNext)) {
+    set_min_lod(object->view, min_lod->minLod);
+    set_min_lod(object->stencil, min_lod->minLod);
   }
   enter_address(from_handle<Device>(device), {&object->view, sizeof object->view, image.data, ref(image)}, *object);
   *view = to_handle(object.release());

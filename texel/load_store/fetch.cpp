@@ -37,7 +37,9 @@ Place place_of(const Shape& shape, const FetchRequest& request, std::size_t lane
 }
 
 bool in_range(const ImageView& view, const Place& place) {
-  if (place.level >= view.level_count || place.layer >= view.layer_count || place.sample >= view.samples) return false;
+  if (place.level < view.min_level || place.level >= view.level_count || place.layer >= view.layer_count ||
+      place.sample >= view.samples)
+    return false;
   const Extent& extent = view.level[place.level].extent;
   return place.at[0] < extent.width && place.at[1] < extent.height && place.at[2] < extent.depth;
 }

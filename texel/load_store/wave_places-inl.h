@@ -60,7 +60,8 @@ HWY_INLINE std::uint32_t common_level(const ImageView& view, const base::WaveReg
 template <class Place>
 HWY_INLINE void for_each_level(const ImageView& view, const base::WaveRegister* lod, Place&& place) {
   const auto integer = [](auto value) { return static_cast<std::int32_t>(value); };
-  if (const std::uint32_t common = common_level(view, lod); common < view.level_count) {
+  const std::uint32_t common = common_level(view, lod);
+  if (common >= view.min_level && common < view.level_count) {
     const LevelLayout& level = view.level[common];
     const LevelFields fields{splat(integer(level.extent.width)), splat(integer(level.extent.height)),
                              splat(integer(level.extent.depth)), splat(integer(level.row_pitch)),
@@ -86,7 +87,8 @@ HWY_INLINE void for_each_level(const ImageView& view, const base::WaveRegister* 
   }
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI())) {
     VI level = load_or_zero(lod, first);
-    const auto exists = within(level, splat(integer(view.level_count)));
+    const auto exists = hn::And(within(level, splat(integer(view.level_count))),
+                                hn::Not(hn::Lt(level, splat(integer(view.min_level)))));
     level = hn::IfThenElseZero(exists, level);
     const auto of = [level](const Table& table) HWY_ATTR { return hn::GatherIndex(DI(), table.of, level); };
     place(first, exists,

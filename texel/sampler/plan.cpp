@@ -101,7 +101,8 @@ void set_lod_state(Plan& plan, SampleOp op, LodMode lod_mode) {
   plan.squared_rho = plan.dims > 1;
   const bool derived = lod_mode == LodMode::kImplicit || lod_mode == LodMode::kGrad;
   plan.shortcut_lod = derived && op != SampleOp::kQueryLod && !plan.anisotropic && sampler.mip_lod_bias == 0.0f &&
-                      !plan.apply_min_lod && !plan.apply_max_lod && plan.mip != MipFilter::kLinear;
+                      !plan.apply_min_lod && !plan.apply_max_lod && plan.mip != MipFilter::kLinear &&
+                      plan.view->min_lod == 0.0f;
 }
 
 bool simple_addresses(const Plan& plan) {
@@ -145,6 +146,7 @@ Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMo
   if (level_zero_only && sampler.max_lod > 0.0f && op != SampleOp::kQueryLod) plan.mip = MipFilter::kNone;
   const bool any_linear = plan.min_linear || plan.mag_linear || sampler.mip_mode == VK_SAMPLER_MIPMAP_MODE_LINEAR;
   plan.zero = !can_sample(*view.format) || (op == SampleOp::kSample && view.format->is_integer() && any_linear);
+  plan.zero |= plan.gather && view.min_level != 0;
   if (plan.gather) plan.mip = MipFilter::kNone;
   const std::uint32_t size[3] = {view.level0_extent.width, view.level0_extent.height, view.level0_extent.depth};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -218,6 +218,7 @@ Lod level_of_detail(const Plan& plan, const SampleRequest& request, const LanePo
   if (plan.apply_min_lod) lod.clamped = max_second(lod.clamped, sampler.min_lod);
   if (request.min_lod != nullptr) lod.clamped = max_second(lod.clamped, value_at(request.min_lod, lane));
   lod.minify = !(lod.clamped <= 0.0f);
+  if (plan.view->min_lod != 0.0f) lod.clamped = max_second(lod.clamped, plan.view->min_lod);
   choose_levels(plan, lod, plan.anisotropic ? base::truncate_to_int(lod.clamped) : base::round_to_int(lod.clamped));
   return lod;
 }

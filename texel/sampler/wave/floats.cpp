@@ -296,7 +296,8 @@ void query_lod(const PreparedSampler& p, const SampleRequest& request, const Sam
   const VF last = splat(static_cast<float>(plan.view->level_count - 1));
   WaveState state;
   for_each_slope(p, request, state, [&](std::size_t first, const Slopes& d) HWY_ATTR {
-    const LodLanes lod = find_lod(plan, request, slopes_to_rho(plan, request, d), first);
+    LodLanes lod = find_lod(plan, request, slopes_to_rho(plan, request, d), first);
+    if (plan.view->min_lod != 0.0f) lod.clamped = lanes_max_second(lod.clamped, splat(plan.view->min_lod));
     VF level = splat(0.0f);
     if (plan.mip == MipFilter::kNearest) level = hn::Round(lod.clamped);
     if (plan.mip == MipFilter::kLinear) level = lod.clamped;

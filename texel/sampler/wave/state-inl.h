@@ -241,8 +241,9 @@ HWY_INLINE void find_levels(const Plan& plan, const SampleRequest& request, cons
         plan, rho, plan.squared_rho ? hn::ShiftRight<1>(hn::Sub(exponent, splat(126))) : hn::Sub(exponent, splat(127)),
         first, state);
   }
-  const VF lod = find_lod(plan, request, rho, first).clamped;
+  VF lod = find_lod(plan, request, rho, first).clamped;
   set_minify(lod, 0.0f, first, state);
+  if (plan.view->min_lod != 0.0f) lod = lanes_max_second(lod, splat(plan.view->min_lod));
   choose_levels(plan, lod, plan.anisotropic ? lanes_truncate_to_int(lod) : lanes_round_to_int(lod), first, state);
 }
 
