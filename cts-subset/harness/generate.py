@@ -20,6 +20,7 @@ LEFT_OUT = {
     "VK_KHR_present_id": "VK_KHR_swapchain",
     "VK_KHR_present_wait": "VK_KHR_swapchain",
     "VK_EXT_swapchain_maintenance1": "VK_KHR_swapchain",
+    "VK_EXT_hdr_metadata": "VK_KHR_swapchain",
 }
 
 

@@ -243,6 +243,16 @@ VKAPI_ATTR VkResult VKAPI_CALL ReleaseSwapchainImagesEXT(VkDevice, const VkRelea
   return VK_SUCCESS;
 }
 
+VKAPI_ATTR void VKAPI_CALL SetHdrMetadataEXT(VkDevice, std::uint32_t count, const VkSwapchainKHR* swapchains,
+                                             const VkHdrMetadataEXT* metadata) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Swapchain& swapchain = from_handle<Swapchain>(swapchains[i]);
+    const std::lock_guard lock(swapchain.mutex);
+    swapchain.hdr_metadata = metadata[i];
+    swapchain.hdr_metadata->pNext = nullptr;
+  }
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL WaitForPresentKHR(VkDevice, VkSwapchainKHR handle, std::uint64_t present_id,
                                                  std::uint64_t timeout) {
   Swapchain& swapchain = from_handle<Swapchain>(handle);

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 
 #include "icd/object/device.h"
 #include "icd/object/image.h"
@@ -35,6 +36,8 @@ struct Swapchain : Object<VkSwapchainKHR, VK_OBJECT_TYPE_SWAPCHAIN_KHR> {
   VkExtent2D extent{};
   VkPresentModeKHR mode = VK_PRESENT_MODE_FIFO_KHR;
   bool red_first = false;  ///< R8G8B8A8 memory order
+  std::optional<VkHdrMetadataEXT>
+      hdr_metadata;  ///< as last set, without its chain: no window here shows more than sRGB
 
   std::mutex mutex;
   std::condition_variable image_released;

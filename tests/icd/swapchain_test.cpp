@@ -299,6 +299,20 @@ TEST_F(SwapchainTest, PresentsSignalTheirFencesAndChangeTheMode) {
   destroy(swapchain);
 }
 
+TEST_F(SwapchainTest, KeepsMetadataOfHighDynamicRange) {
+  const VkSwapchainKHR swapchains[2] = {create(), create()};
+  EXPECT_FALSE(from_handle<Swapchain>(swapchains[0]).hdr_metadata.has_value());
+  VkHdrMetadataEXT metadata[2] = {make_struct<VkHdrMetadataEXT>(), make_struct<VkHdrMetadataEXT>()};
+  metadata[0].maxLuminance = 1000;
+  metadata[1].maxLuminance = 400;
+  metadata[1].pNext = metadata;
+  VK_GET(instance, SetHdrMetadataEXT)(device, 2, swapchains, metadata);
+  EXPECT_EQ(from_handle<Swapchain>(swapchains[0]).hdr_metadata->maxLuminance, 1000);
+  EXPECT_EQ(from_handle<Swapchain>(swapchains[1]).hdr_metadata->maxLuminance, 400);
+  EXPECT_EQ(from_handle<Swapchain>(swapchains[1]).hdr_metadata->pNext, nullptr) << "it belongs to the application";
+  for (const VkSwapchainKHR swapchain : swapchains) destroy(swapchain);
+}
+
 TEST_F(SwapchainTest, ImagesComeBackUnshown) {
   const VkSwapchainKHR swapchain = create(VK_NULL_HANDLE, 2);
   std::uint32_t indices[2] = {99, 99}, third = 99;
