@@ -158,6 +158,23 @@ TEST_F(PipelineCreation, RobustnessIsTheSameForAll) {
   for (const VkPipeline pipeline : pipelines) VK_GET(instance, DestroyPipeline)(device, pipeline, nullptr);
 }
 
+/// Whether pipelines are for protected command buffers makes no difference where there are none.
+TEST_F(PipelineCreation, ProtectedAccessIsGivenAndTakenAway) {
+  auto access = make_struct<VkPhysicalDevicePipelineProtectedAccessFeaturesEXT>();
+  auto memory = make_struct<VkPhysicalDeviceProtectedMemoryFeatures>(&access);
+  auto features = make_struct<VkPhysicalDeviceFeatures2>(&memory);
+  VK_GET(instance, GetPhysicalDeviceFeatures2)(physical_device, &features);
+  EXPECT_TRUE(access.pipelineProtectedAccess);
+  EXPECT_FALSE(memory.protectedMemory);
+  for (const VkPipelineCreateFlagBits flag :
+       {VK_PIPELINE_CREATE_NO_PROTECTED_ACCESS_BIT_EXT, VK_PIPELINE_CREATE_PROTECTED_ACCESS_ONLY_BIT_EXT}) {
+    const VkComputePipelineCreateInfo create = info(flag);
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    ASSERT_EQ(VK_GET(instance, CreateComputePipelines)(device, cache, 1, &create, nullptr, &pipeline), VK_SUCCESS);
+    VK_GET(instance, DestroyPipeline)(device, pipeline, nullptr);
+  }
+}
+
 TEST_F(PipelineCreation, ModulesCanBeNamedByTheirIdentifiers) {
   auto of_module = make_struct<VkShaderModuleIdentifierEXT>(), of_words = make_struct<VkShaderModuleIdentifierEXT>();
   VK_GET(instance, GetShaderModuleIdentifierEXT)(device, main_stage.module, &of_module);
