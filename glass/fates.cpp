@@ -40,6 +40,7 @@ constexpr FateCounter kCounters[] = {
     {"primitives", "noSample", "that cover no sample", of<Fate::kNoSample>},
     {"primitives", "rasterized", "rasterized, parts of clipped ones one by one", of<Fate::kRasterized>},
     {"fragments", "generated", "fragments, before any test", [](const Fates& f) { return f.generated; }},
+    {"fragments", "discardRectangle", "fragments that discard rectangles ended", ended_by<Test::kDiscardRectangle>},
     {"fragments", "scissor", "fragments that the scissor ended", ended_by<Test::kScissor>},
     {"fragments", "sampleMask", "fragments that the pipeline's sample mask ended", ended_by<Test::kSampleMask>},
     {"fragments", "depthBounds", "fragments that the depth bounds test ended", ended_by<Test::kDepthBounds>},

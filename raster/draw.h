@@ -20,6 +20,7 @@ inline constexpr std::uint32_t kMaxViewports = 16;
 inline constexpr std::uint32_t kMaxVertexBindings = 32;
 inline constexpr std::uint32_t kMaxVertexAttributes = 32;
 inline constexpr std::uint32_t kMaxPatchVertices = 32;
+inline constexpr std::uint32_t kMaxDiscardRectangles = 8;
 
 struct VertexBinding {
   const std::byte* data = nullptr;  ///< null: reads as out of bounds
@@ -67,6 +68,9 @@ struct State {
   std::array<VkViewport, kMaxViewports> viewport{};
   std::array<VkRect2D, kMaxViewports> scissor{};
   bool negative_one_to_one = false;
+  std::uint32_t discard_count = 0;  ///< rectangles below that count
+  bool discard_inside = false;      ///< whether what they contain is discarded, or what they do not
+  std::array<VkRect2D, kMaxDiscardRectangles> discard{};
   // rasterization
   bool rasterizer_discard = false;
   bool depth_clamp = false;

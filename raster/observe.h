@@ -34,6 +34,7 @@ inline constexpr std::size_t kPrimitiveFates = static_cast<std::size_t>(Primitiv
 
 /// What a sample of a fragment can fail, in the order of Vulkan 1.3.239, Fragment Operations.
 enum class FragmentTest : std::uint8_t {
+  kDiscardRectangle,
   kScissor,
   kSampleMask,  ///< of the pipeline
   kDepthBounds,

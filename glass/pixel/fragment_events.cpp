@@ -16,6 +16,7 @@ struct TestName {
 };
 /// By FragmentTest.
 constexpr TestName kTests[] = {
+    {"discard rectangle", "is discarded by a discard rectangle"},
     {"scissor", "is outside of the scissor"},
     {"sample mask", "is not in the pipeline's sample mask"},
     {"depth bounds", "fails the depth bounds test"},

@@ -39,6 +39,11 @@ VKAPI_ATTR void VKAPI_CALL CmdSetScissor(VkCommandBuffer buffer, std::uint32_t f
   record(buffer, icd::CmdSetScissor{first, copy_array(buffer, scissors, count)});
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdSetDiscardRectangleEXT(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
+                                                     const VkRect2D* rectangles) {
+  record(buffer, icd::CmdSetDiscardRectangle{first, copy_array(buffer, rectangles, count)});
+}
+
 VKAPI_ATTR void VKAPI_CALL CmdSetDepthBias(VkCommandBuffer buffer, float constant, float clamp, float slope) {
   record(buffer, icd::CmdSetDepthBias{constant, clamp, slope});
 }

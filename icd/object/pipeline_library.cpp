@@ -23,6 +23,8 @@ void link_library(Pipeline& pipeline, const Pipeline& library) {
   if (library.parts & VK_GRAPHICS_PIPELINE_LIBRARY_VERTEX_INPUT_INTERFACE_BIT_EXT) pipeline.streams = library.streams;
   if (library.parts & VK_GRAPHICS_PIPELINE_LIBRARY_PRE_RASTERIZATION_SHADERS_BIT_EXT) {
     pipeline.clip_follows_clamp = library.clip_follows_clamp;
+    pipeline.state.discard_count = library.state.discard_count;
+    pipeline.state.discard_inside = library.state.discard_inside;
   }
   if (library.parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT) {
     pipeline.color_writes = library.color_writes;

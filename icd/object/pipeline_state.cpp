@@ -56,6 +56,13 @@ void fill_viewports(raster::State& state, const VkPipelineViewportStateCreateInf
   }
 }
 
+/// The rectangles may be dynamic, and a null pointer then.
+void fill_discard_rectangles(raster::State& state, const VkPipelineDiscardRectangleStateCreateInfoEXT& info) {
+  state.discard_count = std::min(info.discardRectangleCount, raster::kMaxDiscardRectangles);
+  state.discard_inside = info.discardRectangleMode == VK_DISCARD_RECTANGLE_MODE_EXCLUSIVE_EXT;
+  if (info.pDiscardRectangles) std::copy_n(info.pDiscardRectangles, state.discard_count, state.discard.begin());
+}
+
 void fill_lines(raster::State& state, const VkPipelineRasterizationLineStateCreateInfoEXT& info) {
   state.line_mode = info.lineRasterizationMode;
   state.line_stipple = info.stippledLineEnable;
@@ -201,6 +208,8 @@ void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& i
   if (before && tessellates(info) && info.pTessellationState) fill_tessellation(state, *info.pTessellationState);
   // Without rasterization, or without the attachments, the rest may be dangling pointers.
   if (pipeline.never_rasterizes()) return;
+  if (const auto* discard = find_in_chain<VkPipelineDiscardRectangleStateCreateInfoEXT>(info.pNext); before && discard)
+    fill_discard_rectangles(state, *discard);
   if (before && info.pViewportState) fill_viewports(state, *info.pViewportState, pipeline.dynamic);
   const bool shader = parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT;
   const bool output = parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT;

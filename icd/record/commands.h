@@ -61,6 +61,10 @@ struct CmdSetScissor {
   std::uint32_t first;
   std::span<const VkRect2D> scissors;
 };
+struct CmdSetDiscardRectangle {
+  std::uint32_t first;
+  std::span<const VkRect2D> rectangles;
+};
 struct CmdSetDepthBias {
   float constant, clamp, slope;
 };

@@ -54,6 +54,10 @@ void execute(ReplayState& state, const CmdSetScissor& command) {
   set_range(change(state).state.scissor, command.first, command.scissors);
 }
 
+void execute(ReplayState& state, const CmdSetDiscardRectangle& command) {
+  set_range(change(state).state.discard, command.first, command.rectangles);
+}
+
 void execute(ReplayState& state, const CmdSetDepthBias& command) {
   raster::State& out = change(state).state;
   out.depth_bias_constant = command.constant;

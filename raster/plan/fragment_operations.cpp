@@ -105,7 +105,8 @@ void plan_colors(PipelinePlan& plan, const PassDesc& pass, bool general) {
   plan.color_count = std::min(pass.color_count, kMaxColorAttachments);
   const ShaderInterface* fragment = plan.fragment;
   plan.replaces_colors = fragment && !plan.may_kill && !fragment->writes_memory && plan.color_count != 0 &&
-                         plan.depth_order == TestOrder::kNone && plan.sample_mask == (1u << plan.samples) - 1;
+                         plan.depth_order == TestOrder::kNone && plan.sample_mask == (1u << plan.samples) - 1 &&
+                         !plan.discards;
   const auto& second = plan.frag.color_second;
   plan.dual_source = std::any_of(second.begin(), second.end(), [](std::uint32_t reg) { return reg != kNoReg; });
   for (std::uint32_t i = 0; i < plan.color_count; ++i) {

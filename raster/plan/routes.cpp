@@ -19,7 +19,8 @@ bool reads_elsewhere(const PipelinePlan& plan) {
 }  // namespace
 
 void plan_routes(PipelinePlan& plan, bool general, bool observed) {
-  plan.windows = !general && !observed && plan.samples == 1 && plan.raster_samples == 1 && plan.sample_mask != 0;
+  plan.windows = !general && !observed && plan.samples == 1 && plan.raster_samples == 1 && plan.sample_mask != 0 &&
+                 !plan.discards && !plan.overestimates;
   const bool rare_tests = plan.tests.stencil || plan.tests.depth_bounds || plan.as_reference.first_sample_depth;
   plan.tests_rows = !general && !rare_tests;
   // Depths beyond [0, 1] wrap in formats of fixed point.

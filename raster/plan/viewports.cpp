@@ -53,6 +53,7 @@ void plan_viewports(PipelinePlan& plan, const PassDesc& pass) {
   }
   plan.wide_region = intersect(plan.region[0], viewport_rect(plan.viewport[0]));
   if (plan.guard_band || base::as_reference(Deviation::kViewportScissor)) plan.region[0] = plan.wide_region;
+  plan.discards = plan.state->discard_count != 0;
   plan.per_vertex_viewport = plan.out.viewport_index != kNoReg;
   plan.fused_transform = !plan.stages.any();
 }

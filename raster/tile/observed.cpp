@@ -6,6 +6,7 @@
 
 #include "base/lane_count.h"
 #include "raster/draw_watches.h"
+#include "raster/tile/discard_rectangles.h"
 #include "raster/tile/early_tests.h"
 
 namespace vitrine::raster {
@@ -191,6 +192,11 @@ void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y,
     worker.numbers.generated += base::count_lanes(any_of(left_samples(worker)));
   else
     worker.watch->generated(worker.told.group, left_samples(worker));
+  if (plan.discards) {
+    const LaneMask kept = undiscarded_lanes(plan, x, y);
+    for (std::uint32_t s = 0; s < plan.samples; ++s) block.lanes[s] &= kept;
+    tell_lost(worker, FragmentTest::kDiscardRectangle, block.lanes, 0, plan.samples);
+  }
   if (const LaneMask inside = scissor_lanes(plan, primitive, x, y); inside != base::kAllLanes) {
     for (std::uint32_t s = 0; s < plan.samples; ++s) block.lanes[s] &= inside;
     tell_lost(worker, FragmentTest::kScissor, block.lanes, 0, plan.samples);

@@ -24,8 +24,8 @@ std::uint64_t count_fragments(const PipelinePlan& plan, const TileCoverage& cove
 /// `places`, that have passed.
 void count_early_tests(TileWorker& worker, base::LaneMask places, std::uint64_t tested);
 
-/// A block of `primitive` at (x, y): what the scissor, the sample mask and the early tests leave of it, told. On return
-/// `rasterized` is what they were before the early tests.
+/// A block of `primitive` at (x, y): what discard rectangles, scissor, sample mask and early tests leave of it, told.
+/// On return `rasterized` is what they were before the early tests.
 void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y, BlockCoverage& block,
                    BlockCoverage& rasterized);
 

@@ -7,6 +7,7 @@
 #include "base/lane_count.h"
 #include "raster/tile/block_shade.h"
 #include "raster/tile/coverage.h"
+#include "raster/tile/discard_rectangles.h"
 #include "raster/tile/early_tests.h"
 #include "raster/tile/fragment.h"
 #include "raster/tile/observed.h"
@@ -113,6 +114,17 @@ void mask_samples(const PipelinePlan& plan, TileCoverage& out) {
     if ((plan.sample_mask >> s & 1) == 0) std::fill_n(out.lanes[s], base::kWaveWidth, 0);
 }
 
+/// Vulkan 1.3.239, Discard Rectangles Test: takes what it discards from the coverage of the blocks at `places`.
+void discard_rectangles(const TileWorker& worker, GridOrigin origin, base::LaneMask places, TileCoverage& out) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  for (; places != 0; places &= places - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(places));
+    const base::LaneMask kept = undiscarded_lanes(plan, worker.target.x + origin.x + lane_x(place) * kBlockSize,
+                                                  worker.target.y + origin.y + lane_y(place) * kBlockSize);
+    for (std::uint32_t s = 0; s < plan.samples; ++s) out.lanes[s][place] &= kept;
+  }
+}
+
 /// Early tests of the blocks at `places` of a grid.
 void test_tile(TileWorker& worker, const Primitive& primitive, GridOrigin origin, base::LaneMask places,
                TileCoverage& coverage) {
@@ -141,10 +153,10 @@ void test_tile(TileWorker& worker, const Primitive& primitive, GridOrigin origin
   }
 }
 
-/// Whether the scissor takes nothing of a part of a primitive.
+/// Whether scissor and discard rectangles take nothing of a part of a primitive.
 bool is_inside(const TileWorker& worker, const Primitive& p, const PixelRect& rect) {
   const TileTarget& target = worker.target;
-  return leaked_pixels(*worker.draw->plan, p) == GridOrigin{} &&
+  return leaked_pixels(*worker.draw->plan, p) == GridOrigin{} && !worker.draw->plan->discards &&
          is_inside_region(*worker.draw->plan, p, target.x + rect.x0, target.y + rect.y0, target.x + rect.x1,
                           target.y + rect.y1);
 }
@@ -268,6 +280,7 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   }
   places = cover_tile(plan, primitive, edges, rect, places, worker.covered);
   if (places == 0) return;
+  if (plan.discards) discard_rectangles(worker, origin, places, worker.covered);
   mask_samples(plan, worker.covered);
   if (reads_rasterized(worker)) worker.rasterized = worker.covered;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject)

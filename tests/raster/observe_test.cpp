@@ -233,6 +233,21 @@ TEST_F(Observed, TellsSliversFromWhatIsSeen) {
   EXPECT_EQ(told.of(PrimitiveFate::kRasterized), 1u);
 }
 
+TEST_F(Observed, CountsFragmentsInDiscardRectangles) {
+  state.discard_count = 2;
+  state.discard_inside = true;
+  state.discard[0] = {{0, 0}, {32, 16}};
+  state.discard[1] = {{16, 8}, {16, 16}};
+  state.scissor[0] = {{0, 0}, {kSide, 32}};
+  add_screen();
+  draw();
+  EXPECT_EQ(told.generated, 64u * 64u);
+  EXPECT_EQ(told.of(FragmentTest::kDiscardRectangle), 32u * 16u + 16u * 8u);
+  EXPECT_EQ(told.of(FragmentTest::kScissor), 64u * 32u);
+  EXPECT_EQ(told.passed, 64u * 32u - 32u * 16u - 16u * 8u);
+  EXPECT_EQ(color[0], 0.0f);
+  EXPECT_EQ(color[32 * 4], 1.0f);
+}
 TEST_F(Observed, CountsFragmentsOutsideOfTheScissor) {
   state.scissor[0] = {{16, 0}, {32, kSide}};
   add_screen();

@@ -194,6 +194,12 @@ struct Scene {
     blend.write_mask = random() % 3 ? 0xf : random() % 16;
     state.logic_op_enable = random() % 10 == 0;
     state.logic_op = static_cast<VkLogicOp>(random() % 16);
+    state.overestimates = random() % 8 == 0;
+    state.discard_count = random() % 6 ? 0 : 1 + random() % kMaxDiscardRectangles;
+    state.discard_inside = random() % 2;
+    for (VkRect2D& rect : state.discard)
+      rect = {{static_cast<std::int32_t>(random() % kWidth), static_cast<std::int32_t>(random() % kHeight)},
+              {static_cast<std::uint32_t>(random() % kWidth), static_cast<std::uint32_t>(random() % kHeight)}};
   }
 
   void set_shaders(std::mt19937& random) {
