@@ -81,6 +81,7 @@ struct State {
   VkFrontFace front_face = VK_FRONT_FACE_COUNTER_CLOCKWISE;
   bool depth_bias = false;
   float depth_bias_constant = 0, depth_bias_clamp = 0, depth_bias_slope = 0;
+  bool overestimates = false;  ///< conservative rasterization: whatever a triangle touches
   float line_width = 1;
   VkLineRasterizationModeEXT line_mode = VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;
   bool line_stipple = false;

@@ -169,6 +169,7 @@ struct PipelinePlan {
   PixelRect wide_region;                        ///< of viewport 0, for lines and points: with its rectangle
   float pixel_offset = 0.5f;                    ///< `po` of 3.1
   bool discards = false;                        ///< discard rectangles count
+  bool overestimates = false;                   ///< areas cover all pixels that they touch
   bool per_vertex_viewport = false;             ///< transform form B, viewport chosen by the primitive
   bool fused_transform = true;                  ///< form A; after tessellation and geometry stages form B
   bool draws_points = false, draws_lines = false;

@@ -145,6 +145,15 @@ VKAPI_ATTR void VKAPI_CALL CmdSetProvokingVertexModeEXT(VkCommandBuffer buffer, 
   record_value(buffer, DynamicState::kProvokingVertexMode, mode == VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT);
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdSetConservativeRasterizationModeEXT(VkCommandBuffer buffer,
+                                                                  VkConservativeRasterizationModeEXT mode) {
+  record_value(buffer, DynamicState::kConservativeRasterizationMode,
+               mode == VK_CONSERVATIVE_RASTERIZATION_MODE_OVERESTIMATE_EXT);
+}
+
+/// No more than the limit maxExtraPrimitiveOverestimationSize, which is 0.
+VKAPI_ATTR void VKAPI_CALL CmdSetExtraPrimitiveOverestimationSizeEXT(VkCommandBuffer, float) {}
+
 // Commands whose argument is the word that CmdSetValue takes.
 
 #define VITRINE_DYNAMIC_STATE(...)
@@ -157,12 +166,6 @@ VKAPI_ATTR void VKAPI_CALL CmdSetProvokingVertexModeEXT(VkCommandBuffer buffer, 
 
 // Commands of VK_EXT_extended_dynamic_state3 whose features are not claimed: they have addresses, but no valid call.
 
-VKAPI_ATTR void VKAPI_CALL CmdSetRasterizationStreamEXT(VkCommandBuffer, std::uint32_t) {}
-VKAPI_ATTR void VKAPI_CALL CmdSetConservativeRasterizationModeEXT(VkCommandBuffer, VkConservativeRasterizationModeEXT) {
-}
-VKAPI_ATTR void VKAPI_CALL CmdSetExtraPrimitiveOverestimationSizeEXT(VkCommandBuffer, float) {}
-VKAPI_ATTR void VKAPI_CALL CmdSetColorBlendAdvancedEXT(VkCommandBuffer, std::uint32_t, std::uint32_t,
-                                                       const VkColorBlendAdvancedEXT*) {}
 VKAPI_ATTR void VKAPI_CALL CmdSetViewportWScalingEnableNV(VkCommandBuffer, VkBool32) {}
 VKAPI_ATTR void VKAPI_CALL CmdSetViewportSwizzleNV(VkCommandBuffer, std::uint32_t, std::uint32_t,
                                                    const VkViewportSwizzleNV*) {}

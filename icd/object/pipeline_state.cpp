@@ -83,6 +83,13 @@ void fill_rasterization(Pipeline& pipeline, const VkPipelineRasterizationStateCr
   if (const auto* mode = find_in_chain<VkPipelineRasterizationProvokingVertexStateCreateInfoEXT>(info.pNext)) {
     state.provoking_vertex_last = mode->provokingVertexMode == VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
   }
+  if (const auto* stream = find_in_chain<VkPipelineRasterizationStateStreamCreateInfoEXT>(info.pNext)) {
+    state.rasterized_stream = stream->rasterizationStream;
+  }
+  if (const auto* conservative = find_in_chain<VkPipelineRasterizationConservativeStateCreateInfoEXT>(info.pNext)) {
+    state.overestimates =
+        conservative->conservativeRasterizationMode == VK_CONSERVATIVE_RASTERIZATION_MODE_OVERESTIMATE_EXT;
+  }
   if (const auto* lines = find_in_chain<VkPipelineRasterizationLineStateCreateInfoEXT>(info.pNext)) {
     fill_lines(state, *lines);
   }

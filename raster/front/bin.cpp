@@ -8,14 +8,15 @@ constexpr int kShift = 6;  // log2(kTileSize)
 static_assert(1 << kShift == kTileSize);
 
 /// Whether an edge of the triangle has the whole tile outside: the largest value of its function over the tile
-/// (samples lie within 64 pixels) is not positive. 3.2; the fill rule's unit only ever adds.
+/// (samples lie within 64 pixels; pixels that a triangle touches begin half of one before, coverage.h) is not positive.
+/// 3.2; the fill rule's unit only ever adds.
 bool outside_an_edge(const Primitive& p, int tile_x, int tile_y) {
   const std::int64_t left = std::int64_t{tile_x} * 256, top = std::int64_t{tile_y} * 256;
-  constexpr std::int64_t kSpan = std::int64_t{kTileSize} * 256;
+  constexpr std::int64_t kSpan = std::int64_t{kTileSize} * 256, kHalf = 128;
   for (int e = 0; e < 3; ++e) {
     const int n = e == 2 ? 0 : e + 1;
     const std::int64_t a = p.y[e] - p.y[n], b = p.x[e] - p.x[n];
-    const std::int64_t qx = a > 0 ? left : left + kSpan, qy = b > 0 ? top + kSpan : top;
+    const std::int64_t qx = a > 0 ? left - kHalf : left + kSpan, qy = b > 0 ? top + kSpan : top - kHalf;
     if (a * (p.x[e] - qx) - b * (p.y[e] - qy) + 1 <= 0) return true;
   }
   return false;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "raster/front/setup.h"
 #include "raster/front/window_coverage.h"
 
 namespace vitrine::raster {
@@ -12,6 +13,11 @@ namespace {
 /// Pixels of which a sample can be covered, as setup finds them, but cut to nothing.
 PixelRect bounds_of(const PipelinePlan& plan, const Primitive& p) {
   const int first = plan.raster_samples > 1 ? 0 : 255;
+  if (plan.overestimates && p.kind == PrimitiveKind::kTriangle) {
+    const auto [left, right] = std::minmax({p.x[0], p.x[1], p.x[2]});
+    const auto [top, bottom] = std::minmax({p.y[0], p.y[1], p.y[2]});
+    return pixels_between(plan, left, top, right, bottom);
+  }
   const int corners = p.kind == PrimitiveKind::kTriangle ? 3 : p.kind == PrimitiveKind::kLine ? 4 : 2;
   const auto [left, right] = std::minmax_element(p.x, p.x + corners);
   const auto [top, bottom] = std::minmax_element(p.y, p.y + corners);
@@ -42,7 +48,8 @@ bool covers_row(const PrimitiveEdges& edges, std::int64_t sx, std::int64_t sy, s
 /// Whether a triangle's pixels are those of a window at their first ones, so that it can be covered at once.
 bool fits_window(const PipelinePlan& plan, const Primitive& p, const PixelRect& rect) {
   constexpr std::int32_t kReach = 24 << 8;  // of corners, from the window
-  if (plan.raster_samples != 1 || p.kind != PrimitiveKind::kTriangle || rect.empty()) return false;
+  if (plan.raster_samples != 1 || p.kind != PrimitiveKind::kTriangle || plan.overestimates || rect.empty())
+    return false;
   const int x = rect.x0 & ~1, y = rect.y0 & ~1;
   if (rect.x1 - x >= kBlockSize || rect.y1 - y >= kBlockSize) return false;
   return std::all_of(p.x, p.x + 3, [&](std::int32_t at) { return std::abs(at - (x << 8)) <= kReach; }) &&
@@ -57,6 +64,7 @@ base::LaneMask window_of(const Primitive& p, const PixelRect& rect) {
 }
 
 bool covers_sample(const PipelinePlan& plan, const Primitive& p, const PixelRect& rect) {
+  if (plan.overestimates) return !rect.empty();
   const PrimitiveEdges edges = edges_of(p);
   for (int y = rect.y0; y <= rect.y1; ++y)
     for (std::uint32_t s = 0; s < plan.raster_samples; ++s)

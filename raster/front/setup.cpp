@@ -62,6 +62,13 @@ constexpr std::int32_t kWindowReach = 16 * 256;
 
 }  // namespace
 
+PixelRect pixels_between(const PipelinePlan& plan, std::int32_t left, std::int32_t top, std::int32_t right,
+                         std::int32_t bottom) {
+  const int first = plan.raster_samples > 1 ? 0 : plan.overestimates ? 128 : 255;
+  const int last = plan.overestimates ? first - 1 : -1;
+  return {(left + first) >> 8, (top + first) >> 8, (right + last) >> 8, (bottom + last) >> 8};
+}
+
 std::int32_t snap_coordinate(float window, float pixel_offset) {
   const float scaled = (window - pixel_offset) * 256.0f;
   if (!(scaled >= -2147483648.0f && scaled < 2147483648.0f)) return INT32_MIN;
@@ -125,8 +132,7 @@ void setup_triangle(const SetupContext& context, const SetupVertex& v0, const Se
   if (left < -kLimit || top < -kLimit || right > kLimit || bottom > kLimit || right - left > kLimit ||
       bottom - top > kLimit)
     return context.tell(PrimitiveFate::kTooFar);
-  const int first = plan.raster_samples > 1 ? 0 : 255;
-  const PixelRect bounds{(left + first) >> 8, (top + first) >> 8, (right - 1) >> 8, (bottom - 1) >> 8};
+  const PixelRect bounds = pixels_between(plan, left, top, right, bottom);
   PixelRect region = plan.region[context.viewport];
   if (plan.as_reference.leaks_scissor) leak(region);
   const PixelRect visible = intersect(bounds, region);

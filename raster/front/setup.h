@@ -40,6 +40,11 @@ struct SetupContext {
 /// Snapped coordinate of triangles: nearest even (3.1).
 std::int32_t snap_coordinate(float window, float pixel_offset);
 
+/// The pixels that a triangle between these coordinates can cover, in 24.8: those of which a sample lies inside, or,
+/// with conservative rasterization, whatever has a part inside.
+PixelRect pixels_between(const PipelinePlan& plan, std::int32_t left, std::int32_t top, std::int32_t right,
+                         std::int32_t bottom);
+
 /// Twice the signed area of window positions as the float cull computes it (2.2); negative is counter-clockwise.
 float window_determinant(const Vertex* v0, const Vertex* v1, const Vertex* v2);
 

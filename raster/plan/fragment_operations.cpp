@@ -44,6 +44,8 @@ void plan_rasterization(PipelinePlan& plan, const PassDesc& pass) {
   plan.smooth_lines = state.line_mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT &&
                       plan.raster_samples == 1 &&
                       (plan.draws_lines || (state.polygon_mode == VK_POLYGON_MODE_LINE && !plan.draws_points));
+  plan.overestimates =
+      state.overestimates && !plan.draws_lines && !plan.draws_points && state.polygon_mode == VK_POLYGON_MODE_FILL;
   plan.pixel_offset = plan.raster_samples > 1 ? 0.0f : 0.5f;
   plan.sample_mask = state.sample_mask & ((1u << plan.samples) - 1);
   const bool wants = state.sample_shading && std::ceil(static_cast<float>(plan.samples) * state.min_sample_shading) > 1;

@@ -176,17 +176,9 @@ void make_small_edges(const Primitive& p, int tile_x, int tile_y, TileEdges& out
   }
 }
 
-}  // namespace
-
-bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, const SampleLocations& samples,
-                     TileEdges& out) {
-  if (samples.count == 1 && is_small_triangle(primitive)) {
-    make_small_edges(primitive, tile_x, tile_y, out);
-    return true;
-  }
+/// False if the tile is outside. Edges that have all of it inside are dropped.
+bool place_edges(const PrimitiveEdges& edges, int tile_x, int tile_y, const SampleLocations& samples, TileEdges& out) {
   out.count = 0;
-  if (primitive.kind == PrimitiveKind::kRectangle) return true;  // its bounds say all
-  const PrimitiveEdges edges = edges_of(primitive);
   for (std::uint32_t i = 0; i < edges.count; ++i) {
     const PrimitiveEdge& e = edges.edge[i];
     const std::int64_t low = std::min<std::int64_t>(0, -63 * e.a) + std::min<std::int64_t>(0, 63 * e.b);
@@ -207,6 +199,34 @@ bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, const S
     for (std::uint32_t s = 0; s < samples.count; ++s) out.f[s][k] = static_cast<std::int32_t>(f[s]);
   }
   return true;
+}
+
+}  // namespace
+
+bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, const SampleLocations& samples,
+                     TileEdges& out) {
+  if (samples.count == 1 && is_small_triangle(primitive)) {
+    make_small_edges(primitive, tile_x, tile_y, out);
+    return true;
+  }
+  out.count = 0;
+  if (primitive.kind == PrimitiveKind::kRectangle) return true;  // its bounds say all
+  return place_edges(edges_of(primitive), tile_x, tile_y, samples, out);
+}
+
+bool make_touched_edges(const Primitive& primitive, int tile_x, int tile_y, const SampleLocations& samples,
+                        TileEdges& out) {
+  PrimitiveEdges edges = edges_of(primitive);
+  for (std::uint32_t i = 0; i < edges.count; ++i) {
+    PrimitiveEdge& e = edges.edge[i];
+    // From the pixel's centre to that corner of it that lies most inside, which the fill rule does not move.
+    e.c += 128 * (std::abs(e.a) + std::abs(e.b)) - (owns_edge(e.a, e.b) ? 1 : 0);
+  }
+  SampleLocations centers{samples.count, {}, {}};
+  const std::int32_t center = samples.count > 1 ? 128 : 0;
+  std::fill(std::begin(centers.x), std::end(centers.x), center);
+  std::fill(std::begin(centers.y), std::end(centers.y), center);
+  return place_edges(edges, tile_x, tile_y, centers, out);
 }
 
 void cover_blocks(const TileEdges& edges, std::uint32_t sample, base::LaneMask places, base::LaneMask out[64]) {

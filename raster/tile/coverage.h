@@ -25,6 +25,11 @@ struct TileEdges {
 bool make_tile_edges(const Primitive& primitive, int tile_x, int tile_y, const SampleLocations& samples,
                      TileEdges& edges);
 
+/// The same of every pixel that a triangle touches with more than an edge or a corner: all of its samples are covered
+/// where the pixel's square is not wholly outside of an edge. What lies outside of the bounds is not looked at.
+bool make_touched_edges(const Primitive& primitive, int tile_x, int tile_y, const SampleLocations& samples,
+                        TileEdges& edges);
+
 /// Columns and rows of the blocks with pixels of `rect`, which is in the tile, and their places.
 inline PixelRect blocks_of(const PixelRect& rect) {
   return {rect.x0 / kBlockSize, rect.y0 / kBlockSize, rect.x1 / kBlockSize, rect.y1 / kBlockSize};

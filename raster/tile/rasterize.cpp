@@ -26,7 +26,7 @@ BlockCoverage block_of(const TileCoverage& coverage, std::uint32_t place, std::u
 
 /// Whether something else than its edges limits the pixels of a primitive.
 bool is_cut(const PipelinePlan& plan, const Primitive& p) {
-  if (plan.raster_samples > 1 || p.kind != PrimitiveKind::kTriangle) return true;
+  if (plan.raster_samples > 1 || p.kind != PrimitiveKind::kTriangle || plan.overestimates) return true;
   const PixelRect& region = plan.region[p.viewport];
   if (p.x0 > region.x0 && p.y0 > region.y0 && p.x1 < region.x1 && p.y1 < region.y1) return false;
   const auto [left, right] = std::minmax({p.x[0], p.x[1], p.x[2]});
@@ -106,6 +106,13 @@ base::LaneMask cover_tile(const PipelinePlan& plan, const Primitive& primitive, 
   for (std::uint32_t s = plan.raster_samples; s < plan.samples; ++s)
     std::copy_n(out.lanes[0], base::kWaveWidth, out.lanes[s]);
   return any;
+}
+
+/// Edges of what a primitive covers in the tile, or, with conservative rasterization, of what it touches.
+bool make_edges(const TileWorker& worker, const Primitive& p, TileEdges& edges) {
+  const PipelinePlan& plan = *worker.draw->plan;
+  const bool touched = plan.overestimates && p.kind == PrimitiveKind::kTriangle;
+  return (touched ? make_touched_edges : make_tile_edges)(p, worker.target.x, worker.target.y, *plan.locations, edges);
 }
 
 /// 8.2.
@@ -262,7 +269,7 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
     return;
   }
   TileEdges edges;
-  if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
+  if (!make_edges(worker, primitive, edges)) return;
   PixelRect rect = rect_in_tile(worker.target, primitive);
   if (rect.empty()) return;
   base::LaneMask places = base::kAllLanes;
@@ -306,7 +313,7 @@ void rasterize_observed_primitive(TileWorker& worker, const Primitive& primitive
   const bool counted = worker.counts_tiles && !(plan.early_reject && waits) && is_inside(worker, primitive, rect);
   TileEdges edges;
   if (counted && primitive.window != 0) return rasterize_counted(worker, primitive, edges, rect, false);
-  if (!make_tile_edges(primitive, worker.target.x, worker.target.y, *plan.locations, edges)) return;
+  if (!make_edges(worker, primitive, edges)) return;
   base::LaneMask left = places_of(rect);
   if (counted) {
     const bool whole = edges.count == 0 && is_whole(worker, rect);
