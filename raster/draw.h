@@ -72,6 +72,7 @@ struct State {
   bool discard_inside = false;      ///< whether what they contain is discarded, or what they do not
   std::array<VkRect2D, kMaxDiscardRectangles> discard{};
   // rasterization
+  std::uint32_t rasterized_stream = 0;  ///< of a geometry shader's vertex streams
   bool rasterizer_discard = false;
   bool depth_clamp = false;
   bool depth_clip = true;

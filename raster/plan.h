@@ -210,6 +210,11 @@ struct PipelinePlan {
       false;  ///< nearly full blocks are shaded on their own, without packing (raster/tile/block_shade.h)
 };
 
+/// The vertex stream that is rasterized.
+inline std::uint32_t rasterized_stream(const PipelinePlan& plan) {
+  return plan.stages.geometry ? plan.state->rasterized_stream : 0;
+}
+
 /// Where depth clamp keeps the depths of a viewport.
 inline DepthRange depth_range(const PipelinePlan& plan, std::uint32_t viewport) {
   return {plan.viewport[viewport].z_min, plan.viewport[viewport].z_max};

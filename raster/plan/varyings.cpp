@@ -24,9 +24,10 @@ bool is_varying(const InterfaceSlot& slot) {
   }
 }
 
-std::uint32_t matching_output(const std::vector<InterfaceSlot>& outputs, const InterfaceSlot& input) {
-  for (const InterfaceSlot& slot : outputs) {
-    const bool same = slot.stream == 0 && slot.built_in == input.built_in && slot.component == input.component;
+std::uint32_t matching_output(const PipelinePlan& plan, const InterfaceSlot& input) {
+  for (const InterfaceSlot& slot : *plan.outputs) {
+    const bool same =
+        slot.stream == rasterized_stream(plan) && slot.built_in == input.built_in && slot.component == input.component;
     if (same && (slot.built_in != BuiltIn::kNone || slot.location == input.location)) return slot.reg;
   }
   return kNoReg;
@@ -56,7 +57,7 @@ void add_varyings(PipelinePlan& plan, Interpolation interpolation, std::uint32_t
     if (added && plan.varying_count() == kMaxVaryings) continue;
     const std::uint32_t varying = added ? plan.varying_count() : plan.read[known].varying;
     if (added) {
-      plan.varying[varying] = {matching_output(*plan.outputs, slot), interpolation};
+      plan.varying[varying] = {matching_output(plan, slot), interpolation};
       ++count;
     }
     source[plan.read_count] = static_cast<std::uint16_t>(i);

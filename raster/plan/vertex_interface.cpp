@@ -70,7 +70,7 @@ void plan_vertex_outputs(PipelinePlan& plan) {
   out.clip_distance.fill(kNoReg);
   out.cull_distance.fill(kNoReg);
   for (const InterfaceSlot& slot : *plan.outputs) {
-    if (slot.stream != 0) continue;
+    if (slot.stream != rasterized_stream(plan)) continue;
     switch (slot.built_in) {
       case BuiltIn::kPosition:
         out.position[slot.component & 3] = slot.reg;

@@ -221,7 +221,7 @@ bool run_geometry(const StageContext& c, std::span<const GeometryInput> inputs) 
     fill_inputs(c, inputs, wave);
     s.geometry.run(base::first_lanes(wave.lanes), 0);
     if (c.capture.active) capture_streams(c, inputs, wave);
-    collect(c, inputs, wave, 0);  // the rasterized stream
+    collect(c, inputs, wave, rasterized_stream(c.plan));
     c.queries().count(Statistic::kGeometryInvocations, wave.lanes);
     c.queries().count(Statistic::kGeometryPrimitives, s.listed.size());
     if (c.plan.state->rasterizer_discard || s.listed.empty()) continue;
