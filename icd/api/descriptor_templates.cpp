@@ -2,6 +2,7 @@
 // Descriptor Set Layouts).
 #include "icd/object/descriptor_template.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "icd/edge/util.h"
@@ -22,6 +23,18 @@ const Info* gather(const VkDescriptorUpdateTemplateEntry& entry, const void* dat
     source += entry.stride;
   }
   return out.data();
+}
+
+/// Whether the types of all mutable bindings are among those that one may have.
+bool has_mutable_types(const VkDescriptorSetLayoutCreateInfo& info) {
+  const auto* lists = find_in_chain<VkMutableDescriptorTypeCreateInfoEXT>(info.pNext);
+  for (std::uint32_t i = 0; lists && i < std::min(info.bindingCount, lists->mutableDescriptorTypeListCount); ++i) {
+    if (!is_mutable(info.pBindings[i].descriptorType)) continue;
+    const VkMutableDescriptorTypeListEXT& list = lists->pMutableDescriptorTypeLists[i];
+    for (std::uint32_t k = 0; k < list.descriptorTypeCount; ++k)
+      if (!takes_type(VK_DESCRIPTOR_TYPE_MUTABLE_EXT, list.pDescriptorTypes[k])) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -98,7 +111,7 @@ VKAPI_ATTR void VKAPI_CALL GetDescriptorSetLayoutSupport(VkDevice, const VkDescr
     descriptors += info->pBindings[i].descriptorCount;
     if (!last || info->pBindings[i].binding > last->binding) last = &info->pBindings[i];
   }
-  support->supported = descriptors <= kMaxDescriptors ? VK_TRUE : VK_FALSE;
+  support->supported = descriptors <= kMaxDescriptors && has_mutable_types(*info) ? VK_TRUE : VK_FALSE;
   auto* variable = find_in_out_chain<VkDescriptorSetVariableDescriptorCountLayoutSupport>(support->pNext);
   if (!variable) return;
   const auto* flags = find_in_chain<VkDescriptorSetLayoutBindingFlagsCreateInfo>(info->pNext);

@@ -47,13 +47,14 @@ class ElementCursor {
   std::uint32_t element_;
 };
 
-void write_image(const VkDescriptorImageInfo& info, const SetBinding& binding, spirv::Descriptor& slot) {
-  if (binding.type != VK_DESCRIPTOR_TYPE_SAMPLER) {
+/// `type`: the binding's, or the one that a mutable descriptor takes on.
+void write_image(const VkDescriptorImageInfo& info, VkDescriptorType type, const SetBinding& binding,
+                 spirv::Descriptor& slot) {
+  if (type != VK_DESCRIPTOR_TYPE_SAMPLER) {
     const auto* view = from_nullable<ImageView>(info.imageView);
     slot.image = view ? &view->view : nullptr;
   }
-  const bool has_sampler =
-      binding.type == VK_DESCRIPTOR_TYPE_SAMPLER || binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  const bool has_sampler = type == VK_DESCRIPTOR_TYPE_SAMPLER || type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   if (has_sampler && !binding.immutable_samplers) {
     const auto* sampler = from_nullable<Sampler>(info.sampler);
     slot.sampler = sampler ? &sampler->state : nullptr;
@@ -82,6 +83,7 @@ void write_dynamic_buffer(const VkDescriptorBufferInfo& info, DynamicBuffer& out
 }
 
 void write_element(const VkWriteDescriptorSet& write, std::uint32_t i, const ElementCursor& at, DescriptorSet& set) {
+  if (is_mutable(at.binding().type)) set.slots[at.slot()] = {};
   switch (write.descriptorType) {
     case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
     case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
@@ -93,7 +95,7 @@ void write_element(const VkWriteDescriptorSet& write, std::uint32_t i, const Ele
     case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
       return write_dynamic_buffer(write.pBufferInfo[i], set.dynamic[at.slot()]);
     default:
-      return write_image(write.pImageInfo[i], at.binding(), set.slots[at.slot()]);
+      return write_image(write.pImageInfo[i], write.descriptorType, at.binding(), set.slots[at.slot()]);
   }
 }
 
@@ -121,7 +123,7 @@ void copy_descriptors(const VkCopyDescriptorSet& copy) {
   for (std::uint32_t i = 0; i < copy.descriptorCount && source.valid() && target.valid();
        ++i, source.advance(), target.advance()) {
     const VkDescriptorType type = target.binding().type;
-    if (source.binding().type != type) return;
+    if (!takes_type(type, source.binding().type)) return;
     if (target_set.written && source_set.written && !is_inline_block(type))
       time_of(target_set, target) = time_of(source_set, source);
     if (is_dynamic(type)) {
@@ -146,7 +148,7 @@ void write_descriptors(const VkWriteDescriptorSet& write, DescriptorSet& set) {
   ElementCursor at(set, write.dstBinding, write.dstArrayElement);
   for (std::uint32_t i = 0; i < write.descriptorCount && at.valid(); ++i, at.advance()) {
     // The types agree in every valid call; where they do not, a slot must not change its meaning.
-    if (at.binding().type != write.descriptorType) return;
+    if (!takes_type(at.binding().type, write.descriptorType)) return;
     write_element(write, i, at, set);
     if (set.written) time_of(set, at) = AddressBook::clock();
   }

@@ -32,6 +32,16 @@ inline bool is_dynamic(VkDescriptorType type) {
 
 inline bool is_inline_block(VkDescriptorType type) { return type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK; }
 
+/// Whether descriptors of any type but those above may be written (VK_EXT_mutable_descriptor_type): slots have room for
+/// each, so that the list of types that a binding declares is of no account.
+inline bool is_mutable(VkDescriptorType type) { return type == VK_DESCRIPTOR_TYPE_MUTABLE_EXT; }
+
+/// Whether a descriptor of a type may be written to, or copied to or from, a binding of another.
+inline bool takes_type(VkDescriptorType binding, VkDescriptorType type) {
+  return binding == type || (is_mutable(binding) && !is_dynamic(type) && !is_inline_block(type)) ||
+         (is_mutable(type) && !is_dynamic(binding) && !is_inline_block(binding));
+}
+
 struct SetShape {
   explicit SetShape(const HostMemory& m) : bindings(m), samplers(m), sampler_pointers(m) {}
 

@@ -70,8 +70,12 @@ void add_resource(const spirv::Descriptor& bound, const SetBinding& binding, Cap
 
 void add_element(const spirv::Descriptor& bound, const SetBinding& binding, glass::bug::Descriptor at,
                  CapturedObjects& objects, Bug& bug) {
-  add_resource(bound, binding, objects, at);
   const bool there = bound.data || bound.image || bound.texels;
+  if (is_mutable(binding.type)) {
+    if (there || bound.sampler) note(at, "mutable descriptors are not captured; nothing is bound here", bug);
+    return;
+  }
+  add_resource(bound, binding, objects, at);
   const bool incomplete =
       binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER && at.sampler == kNone && !binding.immutable_samplers;
   if (glass::bug::is_complete(at, binding.type) && !incomplete) return bug.descriptors.push_back(std::move(at));

@@ -31,6 +31,8 @@ const char* kind_of(VkDescriptorType type) {
       return "input attachment";
     case VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK:
       return "inline uniform block";
+    case VK_DESCRIPTOR_TYPE_MUTABLE_EXT:
+      return "mutable descriptor";
     default:
       return "descriptor";
   }

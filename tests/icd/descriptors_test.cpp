@@ -192,6 +192,46 @@ TEST_F(DescriptorSets, CopiesMoveElementsBetweenSets) {
   EXPECT_EQ(from_handle<DescriptorSet>(sets[1]).slots[1].data, storage);
 }
 
+/// A mutable descriptor is what was last written to it, and nothing else; dynamic buffers and inline blocks are beyond
+/// it.
+TEST_F(DescriptorSets, MutableDescriptorsChangeTheirType) {
+  const VkDescriptorSetLayout layout = make_layout({{0, VK_DESCRIPTOR_TYPE_MUTABLE_EXT, 2, VK_SHADER_STAGE_ALL, {}}});
+  const VkDescriptorPool pool = make_pool(1, {{VK_DESCRIPTOR_TYPE_MUTABLE_EXT, 2}});
+  VkDescriptorSet set;
+  ASSERT_EQ(allocate(pool, {layout}, &set), VK_SUCCESS);
+  const std::vector<VkDescriptorBufferInfo> infos = {{to_handle(&fake_buffer(100)), 0, 16}};
+  VkWriteDescriptorSet write = buffer_write(set, 0, 1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, infos);
+  update(write);
+  const spirv::Descriptor& slot = from_handle<DescriptorSet>(set).slots[1];
+  EXPECT_EQ(slot.size, 16u);
+  const VkDescriptorImageInfo nothing{};
+  write.descriptorType = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+  write.pImageInfo = &nothing;
+  update(write);
+  EXPECT_EQ(slot.data, nullptr) << "no buffer any more";
+  write = buffer_write(set, 0, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC, infos);
+  update(write);
+  EXPECT_EQ(slot.data, nullptr) << "refused";
+}
+
+TEST_F(DescriptorSets, MutableTypesAreThoseThatSlotsHold) {
+  const VkDescriptorType good[] = {VK_DESCRIPTOR_TYPE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                         bad[] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK};
+  for (const auto* types : {&good, &bad}) {
+    const VkMutableDescriptorTypeListEXT list{2, *types};
+    auto lists = make_struct<VkMutableDescriptorTypeCreateInfoEXT>();
+    lists.mutableDescriptorTypeListCount = 1;
+    lists.pMutableDescriptorTypeLists = &list;
+    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_MUTABLE_EXT, 1, VK_SHADER_STAGE_ALL, nullptr};
+    auto info = make_struct<VkDescriptorSetLayoutCreateInfo>(&lists);
+    info.bindingCount = 1;
+    info.pBindings = &binding;
+    auto support = make_struct<VkDescriptorSetLayoutSupport>();
+    VK_GET(instance, GetDescriptorSetLayoutSupport)(device, &info, &support);
+    EXPECT_EQ(support.supported, types == &good ? VK_TRUE : VK_FALSE);
+  }
+}
+
 TEST_F(DescriptorSets, DynamicOffsetsStayInsideTheBuffer) {
   constexpr VkDescriptorType kType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
   const VkDescriptorSetLayout layout = make_layout({{0, kType, 2, VK_SHADER_STAGE_ALL, {}}});
