@@ -119,6 +119,13 @@ struct StageModes {
   std::uint32_t patch_words = 0;      ///< control shaders: in front of the vertices
 };
 
+/// Which invocations of a workgroup are a quad, for derivatives: execution modes DerivativeGroup*.
+enum class DerivativeGroup : std::uint8_t {
+  kNone,
+  kLinear,  ///< four with indices one behind the other
+  kQuads,   ///< those of two columns in two rows
+};
+
 struct ShaderInterface {
   VkShaderStageFlagBits stage = VK_SHADER_STAGE_VERTEX_BIT;
   std::vector<InterfaceSlot> inputs;   ///< only those the shader reads
@@ -128,6 +135,7 @@ struct ShaderInterface {
   bool captures = false;                          ///< execution mode Xfb
   std::uint32_t xfb_stride[kMaxXfbBuffers] = {};  ///< bytes
   std::uint32_t local_size[3] = {1, 1, 1};
+  DerivativeGroup derivative_group = DerivativeGroup::kNone;  ///< compute
   std::uint32_t shared_bytes = 0;
   std::uint32_t push_bytes = 0;                             ///< where the block of push constants ends
   std::vector<std::array<std::uint32_t, 2>> zeroed_shared;  ///< byte ranges [first, end) of it that shaders rely on

@@ -15,14 +15,22 @@ const base::WaveRegister* input_of(const Wave& wave, BuiltIn built_in, std::uint
   return nullptr;
 }
 
+/// As Scalarizer::quad_environment().
+std::array<std::uint32_t, 3> place_in_quads(const std::uint32_t* size, std::uint32_t local) {
+  const std::uint32_t quad = local / 4, columns = size[0] / 2, rows = size[1] / 2;
+  return {quad % columns * 2 + local % 2, quad / columns % rows * 2 + local % 4 / 2, quad / columns / rows};
+}
+
 std::array<std::uint32_t, 3> compute_id(const Wave& wave, std::size_t lane) {
   const std::uint32_t* size = wave.program->local_size;
   const std::uint32_t invocations = size[0] * size[1] * size[2];
   const std::uint32_t at = wave.first_invocation + static_cast<std::uint32_t>(lane);
   const std::uint32_t group = wave.program->groups_per_wave > 1 ? at / invocations : 0, local = at % invocations;
-  return {(wave.workgroup_id[0] + group) * size[0] + local % size[0],
-          wave.workgroup_id[1] * size[1] + local / size[0] % size[1],
-          wave.workgroup_id[2] * size[2] + local / size[0] / size[1]};
+  const bool quads = wave.program->observation->interface.derivative_group == DerivativeGroup::kQuads;
+  const auto [x, y, z] = quads ? place_in_quads(size, local)
+                               : std::array{local % size[0], local / size[0] % size[1], local / size[0] / size[1]};
+  return {(wave.workgroup_id[0] + group) * size[0] + x, wave.workgroup_id[1] * size[1] + y,
+          wave.workgroup_id[2] * size[2] + z};
 }
 
 /// The inputs of a stage that tell; null: there is none.

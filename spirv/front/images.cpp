@@ -192,7 +192,8 @@ ir::ImageInfo image_info(Translator& t, const ImageHandle& handle) {
   info.sampler_slot = handle.sampler.slot;
   info.sampler_count = handle.sampler.count;
   info.combined = handle.combined;
-  info.in_quads = t.options.stage == VK_SHADER_STAGE_FRAGMENT_BIT;
+  info.in_quads = t.options.stage == VK_SHADER_STAGE_FRAGMENT_BIT ||
+                  t.function.interface.derivative_group != DerivativeGroup::kNone;
   return info;
 }
 

@@ -45,6 +45,12 @@ void check_local_size(const ShaderInterface& interface) {
     product *= size;
   }
   if (product > kMost) throw Failure("local size is out of range");
+  // VUID-StandaloneSpirv-None-10129 and -10130, which later versions of the specification have.
+  const bool halves = interface.local_size[0] % 2 == 0 && interface.local_size[1] % 2 == 0;
+  if (interface.derivative_group == DerivativeGroup::kQuads && !halves)
+    throw Failure("local size is odd in a shader whose derivatives are of quads");
+  if (interface.derivative_group == DerivativeGroup::kLinear && product % 4 != 0)
+    throw Failure("local size is no multiple of 4 in a shader with derivatives");
 }
 
 /// Modes of tessellation and geometry stages. False: another one.
@@ -138,6 +144,12 @@ void read_modes(Translator& t) {
         set_local_size(t, size);
         break;
       }
+      case spv::ExecutionMode::DerivativeGroupQuadsNV:
+        interface.derivative_group = DerivativeGroup::kQuads;
+        break;
+      case spv::ExecutionMode::DerivativeGroupLinearNV:
+        interface.derivative_group = DerivativeGroup::kLinear;
+        break;
       case spv::ExecutionMode::Xfb:
         interface.captures = true;
         break;

@@ -225,6 +225,13 @@ ir::ValueId subgroup_built_in(Translator& t, spv::BuiltIn built_in) {
       return constant_u32(t, (local[0] * local[1] * local[2] + size - 1) / size);
     case spv::BuiltIn::SubgroupId:
       if (is_whole_wave(t)) return emit(t, ir::Op::kSubgroupId, 1, false, {});
+      if (t.function.interface.derivative_group == DerivativeGroup::kQuads) {
+        // Invocations do not follow each other by their indices.
+        const Expr wave{&t, emit(t, ir::Op::kSubgroupId, 1, false, {})};
+        const Expr in_wave{&t, emit(t, ir::Op::kSubgroupInvocation, 1, false, {})};
+        const Expr first = apply(ir::Op::kIMul, {wave, imm_u32(t, base::kWaveWidth)});
+        return (apply(ir::Op::kIAdd, {first, in_wave}) >> static_cast<std::uint32_t>(std::countr_zero(size))).id;
+      }
       return (Expr{&t, emit(t, ir::Op::kLocalInvocationIndex, 1, false, {})} >>
               static_cast<std::uint32_t>(std::countr_zero(size)))
           .id;

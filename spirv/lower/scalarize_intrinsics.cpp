@@ -91,7 +91,28 @@ void Scalarizer::build_wide(const ir::Instr& instr) {
   define(instr.result, emit_pure(op, key, sources, instr.components, instr.boolean, uniform));
 }
 
+/// The place of an invocation in a workgroup whose quads are two columns in two rows each (SPIR-V, execution mode
+/// DerivativeGroupQuads): wave after wave, quad after quad.
+std::vector<ScalarId> Scalarizer::quad_environment(Op op, const ir::Instr* instr) {
+  const auto& size = ir_.interface.local_size;
+  const ScalarId index = out_.groups_per_wave > 1 ? packed_environment(Op::kLocalInvocationIndex, 1, instr)[0]
+                                                  : read_environment(Op::kLocalInvocationIndex, 1, instr)[0];
+  const auto sum = [&](ScalarId a, ScalarId b) { return alu(Op::kIAdd, std::array<ScalarId, 2>{a, b}, instr); };
+  const auto times = [&](ScalarId a, std::uint32_t by) {
+    return alu(Op::kIMul, std::array<ScalarId, 2>{a, constant(by, false)}, instr);
+  };
+  const ScalarId quad = divide(index, 4), lane = remainder(index, 4);
+  const ScalarId x = sum(times(remainder(quad, size[0] / 2), 2), remainder(lane, 2));
+  const ScalarId row = divide(quad, size[0] / 2);
+  const ScalarId y = sum(times(remainder(row, size[1] / 2), 2), divide(lane, 2));
+  const ScalarId z = divide(row, size[1] / 2);
+  if (op == Op::kLocalInvocationId) return {x, y, z};
+  return {sum(sum(x, times(y, size[0])), times(z, size[0] * size[1]))};
+}
+
 std::vector<ScalarId> Scalarizer::environment(Op op, std::uint32_t count, const ir::Instr* instr) {
+  const bool placed = op == Op::kLocalInvocationId || op == Op::kLocalInvocationIndex;
+  if (placed && ir_.interface.derivative_group == DerivativeGroup::kQuads) return quad_environment(op, instr);
   return out_.groups_per_wave > 1 ? packed_environment(op, count, instr) : read_environment(op, count, instr);
 }
 

@@ -78,6 +78,7 @@ class Scalarizer {
   std::vector<ScalarId> packed_environment(Op op, std::uint32_t count, const ir::Instr* instr);
   ScalarId divide(ScalarId value, std::uint32_t by);
   ScalarId remainder(ScalarId value, std::uint32_t by);
+  std::vector<ScalarId> quad_environment(Op op, const ir::Instr* instr);
   std::vector<ScalarId> read_environment(Op op, std::uint32_t count, const ir::Instr* instr);
   void build_global_id(const ir::Instr& instr);
   void build_input(const ir::Instr& instr);
