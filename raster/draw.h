@@ -49,6 +49,11 @@ struct BlendAttachment {
   VkBlendFactor src_alpha = VK_BLEND_FACTOR_ONE, dst_alpha = VK_BLEND_FACTOR_ZERO;
   VkBlendOp color_op = VK_BLEND_OP_ADD, alpha_op = VK_BLEND_OP_ADD;
   VkColorComponentFlags write_mask = 0xf;
+  // of advanced operations (VK_EXT_blend_operation_advanced)
+  bool src_premultiplied = true, dst_premultiplied = true;
+  bool clamped = false;  ///< dynamic state alone
+  VkBlendOverlapEXT overlap = VK_BLEND_OVERLAP_UNCORRELATED_EXT;
+  bool advances() const { return color_op >= VK_BLEND_OP_ZERO_EXT && color_op <= VK_BLEND_OP_BLUE_EXT; }
 };
 
 /// Fixed-function state, named after the Vulkan structures it comes from. Plain values.

@@ -130,6 +130,18 @@ VKAPI_ATTR void VKAPI_CALL CmdSetColorBlendEquationEXT(VkCommandBuffer buffer, s
   });
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdSetColorBlendAdvancedEXT(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
+                                                       const VkColorBlendAdvancedEXT* blends) {
+  record_blend(buffer, DynamicState::kBlendAdvanced, first, count, [&](std::uint32_t i, raster::BlendAttachment& out) {
+    const VkColorBlendAdvancedEXT& b = blends[i];
+    out.color_op = out.alpha_op = b.advancedBlendOp;
+    out.src_premultiplied = b.srcPremultiplied != VK_FALSE;
+    out.dst_premultiplied = b.dstPremultiplied != VK_FALSE;
+    out.overlap = b.blendOverlap;
+    out.clamped = b.clampResults != VK_FALSE;
+  });
+}
+
 VKAPI_ATTR void VKAPI_CALL CmdSetColorWriteMaskEXT(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
                                                    const VkColorComponentFlags* masks) {
   record_blend(buffer, DynamicState::kWriteMask, first, count,

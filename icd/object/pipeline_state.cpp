@@ -163,8 +163,21 @@ void fill_blend(Pipeline& pipeline, const VkPipelineColorBlendStateCreateInfo& i
   for (std::uint32_t i = 0; info.pAttachments && i < std::min(info.attachmentCount, raster::kMaxColorAttachments);
        ++i) {
     const VkPipelineColorBlendAttachmentState& a = info.pAttachments[i];
-    state.blend[i] = {a.blendEnable != VK_FALSE, a.srcColorBlendFactor, a.dstColorBlendFactor, a.srcAlphaBlendFactor,
-                      a.dstAlphaBlendFactor,     a.colorBlendOp,        a.alphaBlendOp,        a.colorWriteMask};
+    state.blend[i] = {.enable = a.blendEnable != VK_FALSE,
+                      .src_color = a.srcColorBlendFactor,
+                      .dst_color = a.dstColorBlendFactor,
+                      .src_alpha = a.srcAlphaBlendFactor,
+                      .dst_alpha = a.dstAlphaBlendFactor,
+                      .color_op = a.colorBlendOp,
+                      .alpha_op = a.alphaBlendOp,
+                      .write_mask = a.colorWriteMask};
+  }
+  if (const auto* advanced = find_in_chain<VkPipelineColorBlendAdvancedStateCreateInfoEXT>(info.pNext)) {
+    for (raster::BlendAttachment& blend : state.blend) {
+      blend.src_premultiplied = advanced->srcPremultiplied;
+      blend.dst_premultiplied = advanced->dstPremultiplied;
+      blend.overlap = advanced->blendOverlap;
+    }
   }
 }
 

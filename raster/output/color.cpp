@@ -89,6 +89,9 @@ ColorWriter make_general_color_writer(VkFormat format, const BlendAttachment& bl
     // E6: a logic op disables blending; float and sRGB targets store the source whatever the op.
     writer.logic = type != BlendType::kFloat || writer.format->channel[0].numeric == Numeric::kSnorm;
     writer.logic_op = state.logic_op;
+  } else if (blend.enable && blend.advances()) {
+    writer.blend = type == BlendType::kNone ? type : BlendType::kAdvanced;
+    writer.advanced = blend;
   } else if (blend.enable) {
     writer.blend = type;
     const bool has_alpha = writer.format->rgba[3] >= 0;
@@ -106,7 +109,7 @@ ColorWriter make_general_color_writer(VkFormat format, const BlendAttachment& bl
 
 ColorWriter make_color_writer(VkFormat format, const BlendAttachment& blend, const State& state) {
   ColorWriter writer = make_general_color_writer(format, blend, state);
-  if (writer.function) {
+  if (writer.function && writer.blend != BlendType::kAdvanced) {
     if (is_four_bytes(*writer.format)) set_byte_places(writer);
     if (const ColorFunction fast = fast_color_function(writer)) writer.function = fast;
     writer.block = block_color_functions(writer);

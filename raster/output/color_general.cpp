@@ -1,9 +1,11 @@
 // Colour output in general: any format, any state, lane by lane. The fast functions give the same bits.
 #include "raster/output/color_general.h"
 
+#include <cmath>
 #include <cstring>
 
 #include "base/float_mode.h"
+#include "raster/output/advanced_blend.h"
 #include "raster/output/blend.h"
 #include "texel/codec/unorm_attachment.h"
 
@@ -94,6 +96,46 @@ StoredTexel blend_float(const ColorWriter& writer, const BlendShape& shape, cons
   return stored;
 }
 
+/// The range of a fixed-point attachment, to which fragments' colours are clamped before they are blended (Vulkan
+/// 1.3.239, Blending); of floats as it is.
+float clamp_to_format(const FormatDesc& format, float x) {
+  switch (format.channel[0].numeric) {
+    case Numeric::kUnorm:
+    case Numeric::kSrgb:
+      return base::min_second(base::max_second(x, 0.0f), 1.0f);
+    case Numeric::kSnorm:
+      return base::min_second(base::max_second(x, -1.0f), 1.0f);
+    default:
+      return x;
+  }
+}
+
+/// A component of the destination, whose decoder multiplies by a reciprocal that is not exact: operations with steps
+/// tell 0.6 from what lies next to it.
+float nearest_value(const Channel& channel, float decoded) {
+  if (channel.numeric != Numeric::kUnorm) return decoded;
+  const auto largest = static_cast<float>((1u << channel.bits) - 1);
+  return std::nearbyint(decoded * largest) / largest;
+}
+
+StoredTexel blend_with_operation(const ColorWriter& writer, const Texel& color, const std::byte* pixel) {
+  const FormatDesc& format = *writer.format;
+  Texel decoded;
+  texel::texel_decoder(format)(format, pixel, decoded);
+  std::array<float, 4> src, dst;
+  for (std::size_t c = 0; c < 4; ++c) {
+    src[c] = clamp_to_format(format, base::float_of(color[c]));
+    dst[c] = base::float_of(decoded[c]);
+    if (format.rgba[c] >= 0) dst[c] = nearest_value(format.channel[static_cast<std::size_t>(format.rgba[c])], dst[c]);
+  }
+  const std::array<float, 4> result = blend_advanced(writer.advanced, src, dst);
+  Texel bits;
+  for (std::size_t c = 0; c < 4; ++c) bits[c] = base::bits_of(result[c]);
+  StoredTexel stored;
+  texel::encode_texel(format, texel::Encoding::kAttachment, bits, stored.bytes.data());
+  return stored;
+}
+
 std::byte logic(VkLogicOp op, std::byte s, std::byte d) {
   switch (op) {
     case VK_LOGIC_OP_CLEAR:
@@ -140,6 +182,8 @@ StoredTexel shade_pixel(const ColorWriter& writer, const BlendShape& shape, cons
       return blend_normalized<16>(writer, shape, color, second, pixel);
     case BlendType::kFloat:
       return blend_float(writer, shape, color, second, pixel);
+    case BlendType::kAdvanced:
+      return blend_with_operation(writer, color, pixel);
     case BlendType::kNone:
       break;
   }

@@ -14,7 +14,7 @@
 namespace vitrine::raster {
 
 /// What arithmetic blending uses (E1).
-enum class BlendType : std::uint8_t { kNone, kByte, kWord, kFloat };
+enum class BlendType : std::uint8_t { kNone, kByte, kWord, kFloat, kAdvanced };
 
 /// One side of a blend equation after what E4 says of formats without alpha. Same numbers as VkBlendFactor.
 struct BlendEquation {
@@ -46,6 +46,7 @@ struct ColorWriter {
   BlendType blend = BlendType::kNone;
   BlendEquation rgb, alpha;
   float constants[4] = {};
+  BlendAttachment advanced;  ///< of BlendType::kAdvanced: advanced_blend.h
   bool logic = false;
   VkLogicOp logic_op = VK_LOGIC_OP_COPY;
   bool masked = false;            ///< some channel is not written
