@@ -94,7 +94,9 @@ bool can_be(const raster::StencilFace& f) {
 bool can_be(const raster::BlendAttachment& b) {
   const auto factor = [](VkBlendFactor f) { return up_to(f, VK_BLEND_FACTOR_ONE_MINUS_SRC1_ALPHA); };
   return factor(b.src_color) && factor(b.dst_color) && factor(b.src_alpha) && factor(b.dst_alpha) &&
-         up_to(b.color_op, VK_BLEND_OP_MAX) && up_to(b.alpha_op, VK_BLEND_OP_MAX) && b.write_mask <= 0xf;
+         (up_to(b.color_op, VK_BLEND_OP_MAX) || b.advances()) &&
+         (up_to(b.alpha_op, VK_BLEND_OP_MAX) || b.alpha_op == b.color_op) &&
+         up_to(b.overlap, VK_BLEND_OVERLAP_CONJOINT_EXT) && b.write_mask <= 0xf;
 }
 
 bool can_be(const VkRect2D& r) {
@@ -117,9 +119,11 @@ bool can_be(const raster::State& s) {
          up_to(s.line_mode, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT) && s.line_stipple_factor >= 1 &&
          s.line_stipple_factor <= 256 && s.line_width >= 0 && s.line_width < 256 && std::has_single_bit(s.samples) &&
          s.samples <= raster::kMaxSamples && up_to(s.depth_compare, VK_COMPARE_OP_ALWAYS) && can_be(s.front) &&
-         can_be(s.back) && up_to(s.logic_op, VK_LOGIC_OP_SET) &&
+         can_be(s.back) && s.discard_count <= raster::kMaxDiscardRectangles &&
+         s.rasterized_stream < raster::kMaxStreams && up_to(s.logic_op, VK_LOGIC_OP_SET) &&
          std::ranges::all_of(s.blend, [](const auto& b) { return can_be(b); }) &&
-         std::ranges::all_of(s.scissor, [](const auto& r) { return can_be(r); });
+         std::ranges::all_of(s.scissor, [](const auto& r) { return can_be(r); }) &&
+         std::ranges::all_of(s.discard, [](const auto& r) { return can_be(r); });
 }
 
 /// What is drawn to has the area, the layers and the samples.

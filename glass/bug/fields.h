@@ -259,6 +259,10 @@ void fields(V& v, raster::BlendAttachment& b) {
   v("colorOp", b.color_op);
   v("alphaOp", b.alpha_op);
   v("writeMask", b.write_mask);
+  v("srcPremultiplied", b.src_premultiplied);
+  v("dstPremultiplied", b.dst_premultiplied);
+  v("clamped", b.clamped);
+  v("overlap", b.overlap);
 }
 template <class V>
 void fields(V& v, raster::SampleLocations& l) {
@@ -280,6 +284,10 @@ void before_rasterization(V& v, raster::State& s) {
   v("viewports", s.viewport);
   v("scissors", s.scissor);
   v("negativeOneToOne", s.negative_one_to_one);
+  v("discardCount", s.discard_count);
+  v("discardInside", s.discard_inside);
+  v("discardRectangles", s.discard);
+  v("rasterizedStream", s.rasterized_stream);
   v("rasterizerDiscard", s.rasterizer_discard);
   v("depthClamp", s.depth_clamp);
   v("depthClip", s.depth_clip);
@@ -291,6 +299,7 @@ void before_rasterization(V& v, raster::State& s) {
   v("depthBiasConstant", s.depth_bias_constant);
   v("depthBiasClamp", s.depth_bias_clamp);
   v("depthBiasSlope", s.depth_bias_slope);
+  v("overestimates", s.overestimates);
   v("lineWidth", s.line_width);
   v("lineMode", s.line_mode);
   v("lineStipple", s.line_stipple);

@@ -55,9 +55,15 @@ constexpr CoreNeed kCore[] = {
 
 }  // namespace
 
-const Need kNeeds[7] = {
+const Need kNeeds[10] = {
     {VK_EXT_DEPTH_CLIP_CONTROL_EXTENSION_NAME, [](const Bug& b) { return b.state.negative_one_to_one; }},
     {VK_EXT_DEPTH_CLIP_ENABLE_EXTENSION_NAME, [](const Bug& b) { return b.state.depth_clip == b.state.depth_clamp; }},
+    {VK_EXT_BLEND_OPERATION_ADVANCED_EXTENSION_NAME,
+     [](const Bug& b) {
+       return std::ranges::any_of(b.state.blend, [](const auto& blend) { return blend.enable && blend.advances(); });
+     }},
+    {VK_EXT_DISCARD_RECTANGLES_EXTENSION_NAME, [](const Bug& b) { return b.state.discard_count != 0; }},
+    {VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME, [](const Bug& b) { return b.state.overestimates; }},
     {VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME, [](const Bug& b) { return b.state.provoking_vertex_last; }},
     {VK_EXT_LINE_RASTERIZATION_EXTENSION_NAME,
      [](const Bug& b) { return b.state.line_mode != VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT || b.state.line_stipple; }},

@@ -78,6 +78,12 @@ class GraphicsInfo {
       VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT};
   VkPipelineRasterizationLineStateCreateInfoEXT lines_{
       VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT};
+  VkPipelineRasterizationStateStreamCreateInfoEXT stream_{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_STREAM_CREATE_INFO_EXT};
+  VkPipelineRasterizationConservativeStateCreateInfoEXT conservative_{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_CONSERVATIVE_STATE_CREATE_INFO_EXT};
+  VkPipelineDiscardRectangleStateCreateInfoEXT discard_{
+      VK_STRUCTURE_TYPE_PIPELINE_DISCARD_RECTANGLE_STATE_CREATE_INFO_EXT};
   VkPipelineRasterizationStateCreateInfo rasterization_{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
   std::vector<VkSampleLocationEXT> locations_;
   VkPipelineSampleLocationsStateCreateInfoEXT custom_{
@@ -85,6 +91,8 @@ class GraphicsInfo {
   VkPipelineMultisampleStateCreateInfo multisample_{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
   VkPipelineDepthStencilStateCreateInfo depth_stencil_{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
   std::vector<VkPipelineColorBlendAttachmentState> blends_;
+  VkPipelineColorBlendAdvancedStateCreateInfoEXT advanced_{
+      VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_ADVANCED_STATE_CREATE_INFO_EXT};
   VkPipelineColorBlendStateCreateInfo blend_{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
   std::vector<VkFormat> formats_;
   VkPipelineRenderingCreateInfo rendering_{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
@@ -142,6 +150,10 @@ void GraphicsInfo::rasterization() {
   lines_.lineStippleFactor = s_.line_stipple_factor;
   lines_.lineStipplePattern = s_.line_stipple_pattern;
   if (s_.line_mode != VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT || s_.line_stipple) chain(rasterization_.pNext, lines_);
+  stream_.rasterizationStream = s_.rasterized_stream;
+  if (s_.rasterized_stream != 0) chain(rasterization_.pNext, stream_);
+  conservative_.conservativeRasterizationMode = VK_CONSERVATIVE_RASTERIZATION_MODE_OVERESTIMATE_EXT;
+  if (s_.overestimates) chain(rasterization_.pNext, conservative_);
 }
 
 void GraphicsInfo::multisample() {
@@ -185,6 +197,10 @@ void GraphicsInfo::blend() {
   blend_.logicOp = s_.logic_op;
   blend_.attachmentCount = static_cast<std::uint32_t>(blends_.size());
   blend_.pAttachments = blends_.data();
+  advanced_.srcPremultiplied = s_.blend[0].src_premultiplied;
+  advanced_.dstPremultiplied = s_.blend[0].dst_premultiplied;
+  advanced_.blendOverlap = s_.blend[0].overlap;
+  if (s_.blend[0].enable && s_.blend[0].advances()) chain(blend_.pNext, advanced_);
   std::copy(s_.blend_constants.begin(), s_.blend_constants.end(), blend_.blendConstants);
   if (s_.ordered_attachment_access && device_.has(VK_EXT_RASTERIZATION_ORDER_ATTACHMENT_ACCESS_EXTENSION_NAME))
     blend_.flags |= VK_PIPELINE_COLOR_BLEND_STATE_CREATE_RASTERIZATION_ORDER_ATTACHMENT_ACCESS_BIT_EXT;
@@ -197,6 +213,11 @@ void GraphicsInfo::rendering() {
   rendering_.pColorAttachmentFormats = formats_.data();
   rendering_.depthAttachmentFormat = format_of(bug_, bug_.rendering.depth);
   rendering_.stencilAttachmentFormat = format_of(bug_, bug_.rendering.stencil);
+  discard_.discardRectangleMode =
+      s_.discard_inside ? VK_DISCARD_RECTANGLE_MODE_EXCLUSIVE_EXT : VK_DISCARD_RECTANGLE_MODE_INCLUSIVE_EXT;
+  discard_.discardRectangleCount = s_.discard_count;
+  discard_.pDiscardRectangles = s_.discard.data();
+  if (s_.discard_count != 0) chain(rendering_.pNext, discard_);
 }
 
 VkGraphicsPipelineCreateInfo GraphicsInfo::info(VkPipelineLayout layout) {
