@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""What packed files have inside that others wrote: their notices, and a list in SPDX 2.3.
+
+usage: inside.py VERSION SECONDS NOTICES SPDX
+
+SECONDS since 1970 go into the list as its date, so that two builds give the same file. The versions are those of the
+installed packages; their notices are the copyright files that Debian installs with them.
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+# Package, what of it is inside.
+INSIDE = (
+    ("spirv-tools", "SPIRV-Tools, linked: names of instructions, reasons of refusals"),
+    ("spirv-headers", "SPIR-V's headers and grammar"),
+    ("libvulkan-dev", "Vulkan's headers and registry"),
+    ("libhwy-dev", "Highway, headers: SIMD"),
+    ("nlohmann-json3-dev", "JSON for Modern C++, headers: reports"),
+    ("libcli11-dev", "CLI11, headers: the command line"),
+    ("zlib1g-dev", "zlib, linked: bug files"),
+    ("libstdc++-12-dev", "GCC's C++ runtime, linked"),
+    ("libgcc-12-dev", "GCC's support routines, linked"),
+)
+
+
+def version_of(package):
+    return subprocess.run(["dpkg-query", "-W", "-f=${Version}", package], check=True, capture_output=True, text=True).stdout
+
+
+def main():
+    version, seconds, notices, spdx = sys.argv[1], int(sys.argv[2]), sys.argv[3], sys.argv[4]
+    text = ["Vitrine has parts of these inside. What follows are the notices that Debian's packages of them have.\n"]
+    packages = []
+    relations = []
+    for package, role in INSIDE:
+        number = version_of(package)
+        copyright_file = pathlib.Path("/usr/share/doc") / package / "copyright"
+        text.append(f"\n{'=' * 100}\n{package} {number}: {role}\n{'=' * 100}\n\n{copyright_file.read_text(errors='replace')}")
+        packages.append({
+            "SPDXID": f"SPDXRef-{package.replace('+', 'p')}", "name": package, "versionInfo": number,
+            "supplier": "Organization: Debian", "downloadLocation": "NOASSERTION", "filesAnalyzed": False,
+            "licenseConcluded": "NOASSERTION", "licenseDeclared": "NOASSERTION", "copyrightText": "NOASSERTION",
+            "comment": role,
+            "externalRefs": [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
+                              "referenceLocator": f"pkg:deb/debian/{package.replace('+', '%2B')}@{number.replace('+', '%2B')}?arch=amd64"}]})
+        relations.append({"spdxElementId": "SPDXRef-vitrine", "relationshipType": "CONTAINS",
+                          "relatedSpdxElement": packages[-1]["SPDXID"]})
+    packages.insert(0, {
+        "SPDXID": "SPDXRef-vitrine", "name": "vitrine", "versionInfo": version, "downloadLocation": "NOASSERTION",
+        "filesAnalyzed": False, "licenseConcluded": "MIT", "licenseDeclared": "MIT",
+        "copyrightText": "Copyright (c) 2026 The Vitrine authors"})
+    relations.insert(0, {"spdxElementId": "SPDXRef-DOCUMENT", "relationshipType": "DESCRIBES", "relatedSpdxElement": "SPDXRef-vitrine"})
+    pathlib.Path(notices).write_text("".join(text))
+    pathlib.Path(spdx).write_text(json.dumps({
+        "spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT", "name": f"vitrine-{version}",
+        "documentNamespace": f"https://spdx.org/spdxdocs/vitrine-{version}-{seconds}",
+        "creationInfo": {"created": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(seconds)), "creators": ["Tool: vitrine package"]},
+        "packages": packages, "relationships": relations}, indent=1) + "\n")
+
+
+main()
