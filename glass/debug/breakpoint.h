@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/result.h"
+#include "glass/debug/expression.h"
 #include "glass/debug/run.h"
 
 namespace vitrine::glass::debug {
@@ -26,7 +28,8 @@ struct Breakpoint {
   std::uint32_t line = 0;
   std::string function;
   std::array<std::uint32_t, 3> id{};
-  std::string condition;    ///< empty: always
+  std::string condition;                                   ///< empty: always
+  std::optional<base::Result<Expression>> read_condition;  ///< once it has been asked for
   std::string hits_wanted;  ///< "5" and ">= 5": from the fifth on; "== 5"; "% 5": every fifth; empty: always
   std::string message;      ///< a log point: {expressions} are replaced; empty: it stops
   bool once = false;        ///< it is gone when it has stopped

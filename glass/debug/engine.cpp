@@ -267,7 +267,9 @@ bool Engine::reaches_goal(const Run& run, const Run::Entry& entry, Lanes fresh) 
 
 bool Engine::hits(Breakpoint& breakpoint, const Viewer& viewer, const Names& names, bool live) {
   if (!breakpoint.condition.empty()) {
-    const auto value = evaluate(breakpoint.condition, viewer, names);
+    if (!breakpoint.read_condition) breakpoint.read_condition = Expression::read(breakpoint.condition);
+    if (!*breakpoint.read_condition) return false;
+    const auto value = breakpoint.read_condition->value().evaluate(viewer, names);
     if (!value) return false;
     const std::vector<Scalar> numbers =
         value.value().place ? numbers_of(viewer, *value.value().place) : value.value().scalars;

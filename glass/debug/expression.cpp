@@ -1,4 +1,4 @@
-// See expression.h: a parser by precedence that computes as it reads (GLSL 4.60, 5.1 Operators; without assignments).
+// See expression.h: a parser by precedence (GLSL 4.60, 5.1 Operators; without assignments), and what computes.
 #include "glass/debug/expression.h"
 
 #include <algorithm>
@@ -11,6 +11,14 @@
 #include "glass/debug/words.h"
 
 namespace vitrine::glass::debug {
+
+struct ExpressionNode {
+  enum class Kind : std::uint8_t { kConstant, kName, kChoice, kBinary, kPrefix, kElement, kMember, kCall } kind;
+  std::string word;  ///< a name, an operator
+  std::vector<ExpressionNode> parts;
+  std::vector<Scalar> constant;
+};
+
 namespace {
 
 struct Mistake : std::runtime_error {
@@ -24,16 +32,18 @@ constexpr const char* kOperators[][5] = {{"||"},       {"^^"},     {"&&"},      
 constexpr std::size_t kLevels = std::size(kOperators);
 constexpr int kMostNested = 100;
 
+using Node = ExpressionNode;
+
+/// Makes a tree of the text.
 class Parser {
  public:
-  Parser(std::string_view text, const Viewer& viewer, const Names& names)
-      : text_(text), viewer_(viewer), names_(names) {}
+  explicit Parser(std::string_view text) : text_(text) {}
 
-  Value all() {
-    Value value = ternary();
+  Node all() {
+    Node root = ternary();
     skip();
     if (at_ != text_.size()) throw Mistake(quoted(text_.substr(at_)) + " is not understood");
-    return value;
+    return root;
   }
 
  private:
@@ -68,71 +78,58 @@ class Parser {
     return nullptr;
   }
 
-  std::vector<Scalar> numbers(const Value& value) const {
-    std::vector<Scalar> result = value.place ? numbers_of(viewer_, *value.place) : value.scalars;
-    if (result.empty()) throw Mistake("a number or vector is wanted");
-    for (const Scalar& scalar : result)
-      if (scalar.type == '?') throw Mistake("a value that nobody has written");
-    return result;
+  static Node made(Node::Kind kind, std::string word, std::vector<Node> parts) {
+    return {kind, std::move(word), std::move(parts), {}};
   }
+  static Node constant(Scalar scalar) { return {Node::Kind::kConstant, {}, {}, {scalar}}; }
 
-  static Value of(std::vector<Scalar> scalars) { return {std::nullopt, std::move(scalars)}; }
-
-  Value ternary() {
+  Node ternary() {
     if (++nested_ > kMostNested) throw Mistake("too deeply nested");
-    Value value = binary(0);
+    Node node = binary(0);
     if (take("?")) {
-      const bool first = to_bool(numbers(value)[0]);
-      Value yes = ternary();
+      Node yes = ternary();
       demand(":");
-      Value no = ternary();
-      value = first ? yes : no;
+      Node no = ternary();
+      node = made(Node::Kind::kChoice, {}, {std::move(node), std::move(yes), std::move(no)});
     }
     --nested_;
-    return value;
+    return node;
   }
 
-  Value binary(std::size_t level) {
+  Node binary(std::size_t level) {
     if (level == kLevels) return unary();
-    Value left = binary(level + 1);
+    Node left = binary(level + 1);
     while (const char* const word = take_operator(level)) {
-      const Value right = binary(level + 1);
-      std::vector<Scalar> result;
-      std::string error;
-      if (!apply(word, numbers(left), numbers(right), result, error)) throw Mistake(error);
-      left = of(std::move(result));
+      Node right = binary(level + 1);
+      left = made(Node::Kind::kBinary, word, {std::move(left), std::move(right)});
     }
     return left;
   }
 
-  Value unary() {
+  Node unary() {
     if (++nested_ > kMostNested) throw Mistake("too deeply nested");
-    Value value = prefixed();
+    Node node = prefixed();
     --nested_;
-    return value;
+    return node;
   }
 
-  Value prefixed() {
-    for (const char sign : {'-', '!', '~', '+'}) {
-      if (!take(std::string_view(&sign, 1))) continue;
-      std::vector<Scalar> operand = numbers(unary());
-      for (Scalar& scalar : operand) scalar = negate(sign, scalar);
-      return of(std::move(operand));
-    }
+  Node prefixed() {
+    for (const char sign : {'-', '!', '~', '+'})
+      if (take(std::string_view(&sign, 1))) return made(Node::Kind::kPrefix, std::string(1, sign), {unary()});
     return postfix();
   }
 
-  Value postfix() {
-    Value value = primary();
+  Node postfix() {
+    Node node = primary();
     for (;;) {
       if (take("[")) {
-        const std::int64_t index = to_int(numbers(ternary())[0]);
+        Node index = ternary();
         demand("]");
-        value = element(value, index);
+        node = made(Node::Kind::kElement, {}, {std::move(node), std::move(index)});
       } else if (take(".")) {
-        value = member(value, word());
+        node = made(Node::Kind::kMember, word(), {std::move(node)});
       } else {
-        return value;
+        return node;
       }
     }
   }
@@ -145,6 +142,114 @@ class Parser {
       ++at_;
     if (at_ == begin) throw Mistake("a name or number is missing");
     return std::string(text_.substr(begin, at_ - begin));
+  }
+
+  Node primary() {
+    if (take("(")) {
+      Node node = ternary();
+      demand(")");
+      return node;
+    }
+    skip();
+    if (at_ < text_.size() && (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.'))
+      return number();
+    std::string name = word();
+    if (name == "true" || name == "false") return constant(make_bool(name == "true"));
+    if (!take("(")) return made(Node::Kind::kName, std::move(name), {});
+    std::vector<Node> arguments;
+    if (!take(")")) {
+      do arguments.push_back(ternary());
+      while (take(","));
+      demand(")");
+    }
+    return made(Node::Kind::kCall, std::move(name), std::move(arguments));
+  }
+
+  Node number() {
+    const std::string_view rest = text_.substr(at_);
+    const bool hex = rest.starts_with("0x") || rest.starts_with("0X");
+    std::size_t end = hex ? 2 : 0;
+    bool real = false;
+    for (; end < rest.size(); ++end) {
+      const char c = rest[end];
+      if (!hex && (c == '.' || c == 'e' || c == 'E')) real = true;
+      const bool sign = !hex && (c == '-' || c == '+') && (rest[end - 1] == 'e' || rest[end - 1] == 'E');
+      if (!std::isxdigit(static_cast<unsigned char>(c)) && c != '.' && !sign) break;
+      if (!hex && (c == 'f' || c == 'F')) break;
+    }
+    at_ += end;
+    const std::string_view digits = rest.substr(0, end);
+    if (take("f") || take("F")) real = true;
+    if (real) {
+      double value = 0;
+      const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+      if (error != std::errc() || stop != digits.data() + digits.size()) throw Mistake("that is no number");
+      return constant(make_float(value));
+    }
+    std::uint64_t value = 0;
+    const char* const begin = digits.data() + (hex ? 2 : 0);
+    const auto [stop, error] = std::from_chars(begin, digits.data() + digits.size(), value, hex ? 16 : 10);
+    if (error != std::errc() || stop != digits.data() + digits.size()) throw Mistake("that is no number");
+    const bool is_unsigned = take("u") || take("U");
+    return constant(is_unsigned ? make_uint(value) : make_int(static_cast<std::int64_t>(value)));
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int nested_ = 0;
+};
+
+/// Computes a tree for one invocation.
+class Evaluator {
+ public:
+  Evaluator(const Viewer& viewer, const Names& names) : viewer_(viewer), names_(names) {}
+
+  Value value_of(const Node& node) const {
+    using Kind = Node::Kind;
+    switch (node.kind) {
+      case Kind::kConstant:
+        return of(node.constant);
+      case Kind::kName:
+        if (const std::optional<Place> place = names_.find(node.word)) return {*place, {}};
+        throw Mistake("no variable '" + node.word + "' is visible here");
+      case Kind::kChoice:
+        return value_of(node.parts[to_bool(numbers(node.parts[0])[0]) ? 1 : 2]);
+      case Kind::kBinary:
+        return binary(node);
+      case Kind::kPrefix: {
+        std::vector<Scalar> operand = numbers(node.parts[0]);
+        for (Scalar& scalar : operand) scalar = negate(node.word[0], scalar);
+        return of(std::move(operand));
+      }
+      case Kind::kElement: {
+        const Value value = value_of(node.parts[0]);
+        return element(value, to_int(numbers(node.parts[1])[0]));
+      }
+      case Kind::kMember:
+        return member(value_of(node.parts[0]), node.word);
+      case Kind::kCall:
+        return call(node);
+    }
+    return {};
+  }
+
+ private:
+  static Value of(std::vector<Scalar> scalars) { return {std::nullopt, std::move(scalars)}; }
+
+  std::vector<Scalar> numbers(const Node& node) const {
+    Value value = value_of(node);
+    std::vector<Scalar> result = value.place ? numbers_of(viewer_, *value.place) : std::move(value.scalars);
+    if (result.empty()) throw Mistake("a number or vector is wanted");
+    for (const Scalar& scalar : result)
+      if (scalar.type == '?') throw Mistake("a value that nobody has written");
+    return result;
+  }
+
+  Value binary(const Node& node) const {
+    std::vector<Scalar> result;
+    std::string error;
+    if (!apply(node.word, numbers(node.parts[0]), numbers(node.parts[1]), result, error)) throw Mistake(error);
+    return of(std::move(result));
   }
 
   Value element(const Value& value, std::int64_t index) const {
@@ -183,79 +288,42 @@ class Parser {
     return of(std::move(result));
   }
 
-  Value primary() {
-    if (take("(")) {
-      Value value = ternary();
-      demand(")");
-      return value;
-    }
-    skip();
-    if (at_ < text_.size() && (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.'))
-      return number();
-    const std::string name = word();
-    if (name == "true" || name == "false") return of({make_bool(name == "true")});
-    if (const std::optional<Place> place = names_.find(name)) return {*place, {}};
-    if (take("(")) return call(name);
-    throw Mistake("no variable '" + name + "' is visible here");
-  }
-
-  Value number() {
-    const std::string_view rest = text_.substr(at_);
-    const bool hex = rest.starts_with("0x") || rest.starts_with("0X");
-    std::size_t end = hex ? 2 : 0;
-    bool real = false;
-    for (; end < rest.size(); ++end) {
-      const char c = rest[end];
-      if (!hex && (c == '.' || c == 'e' || c == 'E')) real = true;
-      const bool sign = !hex && (c == '-' || c == '+') && (rest[end - 1] == 'e' || rest[end - 1] == 'E');
-      if (!std::isxdigit(static_cast<unsigned char>(c)) && c != '.' && !sign) break;
-      if (!hex && (c == 'f' || c == 'F')) break;
-    }
-    at_ += end;
-    const std::string_view digits = rest.substr(0, end);
-    if (take("f") || take("F")) real = true;
-    if (real) {
-      double value = 0;
-      const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-      if (error != std::errc() || stop != digits.data() + digits.size()) throw Mistake("that is no number");
-      return of({make_float(value)});
-    }
-    std::uint64_t value = 0;
-    const char* const begin = digits.data() + (hex ? 2 : 0);
-    const auto [stop, error] = std::from_chars(begin, digits.data() + digits.size(), value, hex ? 16 : 10);
-    if (error != std::errc() || stop != digits.data() + digits.size()) throw Mistake("that is no number");
-    const bool is_unsigned = take("u") || take("U");
-    return of({is_unsigned ? make_uint(value) : make_int(static_cast<std::int64_t>(value))});
-  }
-
-  Value call(const std::string& name) {
+  Value call(const Node& node) const {
+    if (names_.find(node.word)) throw Mistake("'" + node.word + "' is a variable, and no function");
     std::vector<std::vector<Scalar>> arguments;
-    if (!take(")")) {
-      do arguments.push_back(numbers(ternary()));
-      while (take(","));
-      demand(")");
-    }
+    for (const Node& argument : node.parts) arguments.push_back(numbers(argument));
     std::vector<Scalar> result;
     std::string error;
-    if (!call_function(name, arguments, result, error)) throw Mistake(error);
+    if (!call_function(node.word, arguments, result, error)) throw Mistake(error);
     return of(std::move(result));
   }
 
-  std::string_view text_;
   const Viewer& viewer_;
   const Names& names_;
-  std::size_t at_ = 0;
-  int nested_ = 0;
 };
 
 }  // namespace
 
-base::Result<Value> evaluate(std::string_view text, const Viewer& viewer, const Names& names) {
+base::Result<Expression> Expression::read(std::string_view text) {
   try {
-    return Parser(text, viewer, names).all();
+    return Expression(std::make_shared<const Node>(Parser(text).all()));
   } catch (const Mistake& mistake) {
     return base::Error{mistake.what()};
   }
+}
+
+base::Result<Value> Expression::evaluate(const Viewer& viewer, const Names& names) const {
+  try {
+    return Evaluator(viewer, names).value_of(*root_);
+  } catch (const Mistake& mistake) {
+    return base::Error{mistake.what()};
+  }
+}
+
+base::Result<Value> evaluate(std::string_view text, const Viewer& viewer, const Names& names) {
+  const base::Result<Expression> expression = Expression::read(text);
+  if (!expression) return base::Error{expression.message()};
+  return expression.value().evaluate(viewer, names);
 }
 
 }  // namespace vitrine::glass::debug

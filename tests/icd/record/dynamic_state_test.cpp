@@ -15,7 +15,8 @@ namespace {
 /// States that are not in raster::State.
 bool lies_elsewhere(DynamicState s) {
   return s == DynamicState::kVertexStride || s == DynamicState::kColorWriteEnable ||
-         s == DynamicState::kPatchControlPoints || s == DynamicState::kTessellationDomainOrigin;
+         s == DynamicState::kPatchControlPoints || s == DynamicState::kTessellationDomainOrigin ||
+         s == DynamicState::kExtraPrimitiveOverestimationSize;
 }
 
 /// A state whose every byte that dynamic state can reach differs from the default.
@@ -43,6 +44,9 @@ raster::State unlike_default() {
   s.provoking_vertex_last = s.line_stipple = s.negative_one_to_one = true;
   s.logic_op = VK_LOGIC_OP_XOR;
   s.depth_clip = false;
+  s.discard.fill({{1, 2}, {3, 4}});
+  s.rasterized_stream = 2;
+  s.overestimates = true;
   s.polygon_mode = VK_POLYGON_MODE_LINE;
   s.samples = 4;
   s.line_mode = VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
