@@ -168,12 +168,37 @@ Geometry corners_of(Random& random, const std::vector<Quad>& quads, bool strip) 
   return out;
 }
 
+TargetSpec random_window(Random& random) {
+  TargetSpec spec;
+  spec.width = 16 + random.below(150);
+  spec.height = 16 + random.below(150);
+  spec.colors = {VK_FORMAT_B8G8R8A8_UNORM};
+  return spec;
+}
+
+std::vector<Quad> random_quads(Random& random, float reach, uint32_t most) {
+  std::vector<Quad> quads;
+  for (uint32_t n = 1 + random.below(most); n > 0; --n) quads.push_back(random_quad(random, reach));
+  return quads;
+}
+
+/// All vertices in one draw without indices.
+void draw_whole(Run& run, const Target& target, VkPipeline pipeline, const std::vector<float>& values) {
+  const Buffer vertices = run.buffer_of(values);
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    bind_pipeline(cmd, pipeline);
+    bind_vertices(cmd, vertices);
+    vkCmdDraw(cmd, static_cast<uint32_t>(values.size()) / kFloats, 1, 0, 0);
+    vkCmdEndRenderPass(cmd);
+  });
+  out_target(run, target);
+  run.may_be_blank();
+}
+
 void random_rectangles(Run& run, VkPrimitiveTopology topology, uint32_t most) {
   Random& random = run.random;
-  TargetSpec target_spec;
-  target_spec.width = 16 + random.below(150);
-  target_spec.height = 16 + random.below(150);
-  target_spec.colors = {VK_FORMAT_B8G8R8A8_UNORM};
+  const TargetSpec target_spec = random_window(random);
   const Target target = make_target(run, target_spec);
   GraphicsSpec spec;
   const std::string qualifiers = random.pick<const char*>({"", "", "", "noperspective", "flat"});
@@ -185,9 +210,8 @@ void random_rectangles(Run& run, VkPrimitiveTopology topology, uint32_t most) {
   random_state(run, spec, target_spec);
   const VkPipeline pipeline = make_pipeline(run, spec, target);
 
-  std::vector<Quad> quads;
   const float reach = random.pick({0.9f, 1.2f, 1.9f, 3.0f});
-  for (uint32_t n = 1 + random.below(most); n > 0; --n) quads.push_back(random_quad(random, reach));
+  const std::vector<Quad> quads = random_quads(random, reach, most);
   const bool list = topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, shared = list && random.chance(0.3f);
   const Geometry geometry = list ? list_of(random, quads, shared)
                                  : corners_of(random, quads, topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP);
@@ -234,10 +258,7 @@ std::string geometry_text(const std::string& qualifiers, bool twice) {
 /// The quads of a strip each, made by a geometry shader.
 CTS_RANDOM("rasterization", "random_rectangles_geometry", 60) {
   Random& random = run.random;
-  TargetSpec target_spec;
-  target_spec.width = 16 + random.below(150);
-  target_spec.height = 16 + random.below(150);
-  target_spec.colors = {VK_FORMAT_B8G8R8A8_UNORM};
+  const TargetSpec target_spec = random_window(random);
   const Target target = make_target(run, target_spec);
   GraphicsSpec spec;
   const std::string qualifiers = random.pick<const char*>({"", "", "", "noperspective", "flat"});
@@ -249,20 +270,9 @@ CTS_RANDOM("rasterization", "random_rectangles_geometry", 60) {
   spec.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY;
   random_state(run, spec, target_spec);
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  std::vector<Quad> quads;
   const float reach = random.pick({0.5f, 0.9f, 1.2f, 3.0f});
-  const uint32_t most = random.pick({3u, 40u, 2500u});
-  for (uint32_t n = 1 + random.below(most); n > 0; --n) quads.push_back(random_quad(random, reach));
-  const Buffer vertices = run.buffer_of(corners_of(random, quads, true).values);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    bind_vertices(cmd, vertices);
-    vkCmdDraw(cmd, static_cast<uint32_t>(quads.size()) * 4, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
-  out_target(run, target);
-  run.may_be_blank();
+  const std::vector<Quad> quads = random_quads(random, reach, random.pick({3u, 40u, 2500u}));
+  draw_whole(run, target, pipeline, corners_of(random, quads, true).values);
 }
 
 /// Lists whose vertex shader chooses the layer.
@@ -279,22 +289,11 @@ CTS_RANDOM("rasterization", "random_rectangles_layers", 30) {
   spec.floats({4, 4, 4});
   random_state(run, spec, target_spec);
   const VkPipeline pipeline = make_pipeline(run, spec, target);
-  std::vector<Quad> quads;
   const float reach = random.pick({0.5f, 0.9f, 1.2f});
-  for (uint32_t n = 1 + random.below(8); n > 0; --n) quads.push_back(random_quad(random, reach));
   std::vector<float> values;
-  for (const Quad& quad : quads)
+  for (const Quad& quad : random_quads(random, reach, 8))
     for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) append_corner(random, values, quad, corner, false);
-  const Buffer vertices = run.buffer_of(values);
-  run.once([&](VkCommandBuffer cmd) {
-    target.begin(cmd);
-    bind_pipeline(cmd, pipeline);
-    bind_vertices(cmd, vertices);
-    vkCmdDraw(cmd, static_cast<uint32_t>(values.size()) / kFloats, 1, 0, 0);
-    vkCmdEndRenderPass(cmd);
-  });
-  out_target(run, target);
-  run.may_be_blank();
+  draw_whole(run, target, pipeline, values);
 }
 
 CTS_RANDOM("rasterization", "random_rectangles_list", 60) {
