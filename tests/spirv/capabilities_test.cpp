@@ -81,7 +81,7 @@ TEST(Capabilities, OthersAreRefusedByName) {
   for (const std::string name :
        {"RayQueryKHR", "RayTracingKHR", "MeshShadingEXT", "FragmentShadingRateKHR", "FragmentBarycentricKHR",
         "Int64ImageEXT", "CooperativeMatrixNV", "ImageGatherBiasLodAMD", "FragmentDensityEXT",
-        "GroupNonUniformPartitionedNV", "FragmentFullyCoveredEXT", "Kernel"})
+        "GroupNonUniformPartitionedNV", "Kernel"})
     EXPECT_EQ(message_of(name), "capability " + name + " is not supported");
 }
 
