@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "glass/cli/annotations.h"
 #include "glass/cli/application.h"
 #include "glass/cli/commands.h"
 #include "glass/cli/files.h"
@@ -85,6 +86,7 @@ int check(const CheckOptions& options) {
   std::vector<Finding> findings;
   const bool good = gather(reports, findings);
   if (!options.quiet) std::fputs(to_report(ReportFormat::kText, findings).c_str(), stderr);
+  if (options.annotations) std::fputs(annotations(findings).c_str(), stderr);
   const bool written = write_reports(options.sarif, options.json, findings);
   const bool found = !reports.empty() && summarize(findings, reports.size()) != 0;
   if (ending.code) return ending.code;

@@ -91,6 +91,7 @@ void add_check(CLI::App& app, const Words& words, CheckOptions& options, int& co
   command->add_option("--json", options.json, "Write the findings as JSON")->type_name("FILE");
   command->add_option("--bugs", options.bugs, "Write the draws and dispatches in which something is found as bug files")
       ->type_name("FOLDER");
+  command->add_flag("--annotations", options.annotations, "Print the findings as commands for GitHub's runners, too");
   command->add_flag("-q,--quiet", options.quiet, "Print the summary alone");
   command->callback([=, &words, &options, &code] {
     options.application = application_of(*command, words);

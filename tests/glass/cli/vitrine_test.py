@@ -92,6 +92,11 @@ class Command(unittest.TestCase):
         result = self.check_it("--quiet", findings=[report(STORE)])
         self.assertEqual((result.returncode, result.stderr), (1, "vitrine: 1 error in 1 process\n"))
 
+    def test_annotations_are_commands_for_runners(self):
+        result = self.check_it("--quiet", "--annotations", findings=[report(STORE)])
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("::error file=a b.comp,line=12,col=3,title=vitrine/out-of-bounds-store::store past the end%0A", result.stderr)
+
     def test_failures_of_the_application_come_first(self):
         result = self.check_it(findings=[report(STORE)], end="kill -6 $$")
         self.assertEqual(result.returncode, 134)
