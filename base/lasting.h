@@ -3,8 +3,6 @@
 // main thread's thread_local values go earlier yet.
 #pragma once
 
-#include <utility>
-
 namespace vitrine::base {
 
 /// What is destroyed when the library is unloaded or the process has run its exit handlers.
@@ -28,20 +26,29 @@ auto& lasting(F&& make) {
   return node->value;
 }
 
-/// This thread's T, made at its first use and destroyed with the thread. A use after that, in an exit handler, makes
-/// another one.
+/// What is destroyed with its thread, or when the thread that it belongs to unloads the library. Not a thread_local
+/// with a destructor: that keeps the library loaded, with its threads, for as long as the thread lives.
+struct ThreadNode {
+  virtual ~ThreadNode() = default;
+  ThreadNode* next = nullptr;
+};
+
+/// Takes the node for the calling thread.
+void keep_with_thread(ThreadNode* node) noexcept;
+
+/// This thread's T, made at its first use and destroyed with the thread. A use after that makes another one.
 template <class T>
 T& per_thread() {
-  struct Owner {
-    T** slot;
-    ~Owner() { delete std::exchange(*slot, nullptr); }
-  };
   thread_local T* value = nullptr;
-  if (!value) {
-    thread_local const Owner owner{&value};
-    static_cast<void>(owner);
-    value = new T;
-  }
+  struct Node : ThreadNode {
+    explicit Node(T** place) : slot(place) { *slot = &kept; }
+    ~Node() override { *slot = nullptr; }
+    Node(const Node&) = delete;
+    Node& operator=(const Node&) = delete;
+    T** slot;
+    T kept{};
+  };
+  if (!value) keep_with_thread(new Node(&value));
   return *value;
 }
 

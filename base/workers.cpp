@@ -13,6 +13,7 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <system_error>
@@ -172,8 +173,17 @@ class Pool {
   bool exhausted_ = false;
 };
 
+Pool& pool();
+
+/// In a child that fork() made, which has this thread alone: the parent's pool is left as it is, since what its threads
+/// held stays held, and another one takes its place.
+void replace_pool() { std::construct_at(&pool(), pool().size()); }
+
 Pool& pool() {
-  static Pool& instance = lasting([] { return Pool(wanted_workers()); });
+  static Pool& instance = lasting([] {
+    pthread_atfork(nullptr, nullptr, &replace_pool);
+    return Pool(wanted_workers());
+  });
   return instance;
 }
 

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <thread>
 
+#include "base/lasting.h"
 #include "base/shake.h"
 #include "glass/digest.h"
 #include "glass/session.h"
@@ -48,6 +49,8 @@ struct QueueWorker {
   bool stopping = false;
   std::thread thread;
   std::uint64_t submitted = 0;
+  Queue* queue = nullptr;
+  QueueWorker* next = nullptr;  ///< among those that live (LiveQueues)
 
   bool idle() const { return first == nullptr && !running; }
 };
@@ -266,6 +269,74 @@ void run_inline(Queue& queue, QueueWorker& worker, BatchList& list) noexcept {
   worker.changed.notify_all();
 }
 
+/// All queues of the process, for fork(): the child has one thread, not those that the devices of its parent wait for,
+/// and shares their memory with it. There they are lost, so that nobody waits for ever, and can be destroyed.
+class LiveQueues {
+ public:
+  LiveQueues() { pthread_atfork(&prepare, &go_on, &lose); }
+
+  void add(QueueWorker& worker) {
+    const std::lock_guard lock(mutex_);
+    worker.next = first_;
+    first_ = &worker;
+  }
+  void remove(const QueueWorker& worker) {
+    const std::lock_guard lock(mutex_);
+    QueueWorker** place = &first_;
+    while (*place != &worker) place = &(*place)->next;
+    *place = worker.next;
+  }
+
+ private:
+  /// So that no thread that the child does not have is in the middle of something.
+  static void prepare();
+  static void go_on();
+  static void lose();
+
+  template <class F>
+  void for_each(F&& f) {
+    for (QueueWorker* worker = first_; worker; worker = worker->next) f(*worker, worker->queue->device);
+  }
+
+  std::mutex mutex_;
+  QueueWorker* first_ = nullptr;
+};
+
+LiveQueues& live_queues() {
+  static LiveQueues& queues = base::lasting([] { return LiveQueues(); });
+  return queues;
+}
+
+void LiveQueues::prepare() {
+  live_queues().mutex_.lock();
+  live_queues().for_each([](QueueWorker& worker, Device& device) {
+    worker.mutex.lock();
+    device.sync_mutex.lock();
+  });
+}
+
+void LiveQueues::go_on() {
+  live_queues().for_each([](QueueWorker& worker, Device& device) {
+    device.sync_mutex.unlock();
+    worker.mutex.unlock();
+  });
+  live_queues().mutex_.unlock();
+}
+
+/// What threads of the parent hold or wait at (a condition variable's waiters, too) is left as it is and made anew.
+void LiveQueues::lose() {
+  live_queues().for_each([](QueueWorker& worker, Device& device) {
+    device.lost = true;
+    device.loss.reason = "the process is a child that fork() made of the device's";
+    ::new (&device.sync_changed) std::condition_variable;
+    ::new (&worker.changed) std::condition_variable;
+    ::new (&worker.thread) std::thread;
+    worker.first = worker.last = nullptr;
+    worker.running = false;
+  });
+  go_on();
+}
+
 /// False when the system has no thread to give.
 bool start_thread(Queue& queue, QueueWorker& worker) {
   if (worker.thread.joinable()) return true;
@@ -283,11 +354,14 @@ void start_queue(Queue& queue) {
   const HostMemory& memory = queue.device.memory;
   void* storage = memory.allocate(sizeof(QueueWorker), alignof(QueueWorker), VK_SYSTEM_ALLOCATION_SCOPE_DEVICE);
   queue.worker = ::new (storage) QueueWorker;
+  queue.worker->queue = &queue;
+  live_queues().add(*queue.worker);
 }
 
 void stop_queue(Queue& queue) noexcept {
   QueueWorker* worker = queue.worker;
   if (!worker) return;
+  live_queues().remove(*worker);
   {
     const std::lock_guard lock(worker->mutex);
     worker->stopping = true;

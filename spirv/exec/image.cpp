@@ -1,4 +1,7 @@
 // Image instructions: operands gathered into texel's requests, once per distinct descriptor among the active lanes.
+#include <array>
+
+#include "base/lasting.h"
 #include "spirv/exec/atomic_ops.h"
 #include "spirv/exec/buffers.h"
 #include "spirv/exec/handlers.h"
@@ -96,7 +99,7 @@ struct KeptSampler {
 
 KeptSampler& kept_sampler(const Call& call, const texel::ImageView& view, const texel::Sampler& sampler) {
   constexpr std::size_t kKept = 8;
-  static thread_local KeptSampler kept[kKept];
+  std::array<KeptSampler, kKept>& kept = base::per_thread<std::array<KeptSampler, kKept>>();
   const std::uint64_t serial = call.wave.resources->serial;
   KeptSampler& entry = kept[static_cast<std::size_t>(&call.op - call.wave.program->image_ops.data()) % kKept];
   const bool same =

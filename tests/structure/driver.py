@@ -55,12 +55,15 @@ def faults(library, manifest):
         if name in undefined and not sanitized:
             yield f"calls {name}"
     # Statics with destructors are gone when the exit handlers of the application draw: base/lasting.h.
+    # A thread_local with a destructor keeps the library loaded until its thread ends.
     function = ""
     for line in () if sanitized else lines("objdump", "-d", "--no-show-raw-insn", library):
         if line.endswith(">:"):
             function = line.split("<")[1]
         elif "<__cxa_atexit" in line and "7vitrine" in function:
             yield f"{function[:-2]} has a static local with a destructor"
+        elif "<__cxa_thread_atexit" in line and "7vitrine" in function:
+            yield f"{function[:-2]} has a thread_local with a destructor"
     # The loader unloads a driver with its last instance, and applications make thousands of instances.
     growth = 0 if sanitized else heap_growth(library, 100)
     if growth > 1024:
