@@ -58,7 +58,7 @@ void retire(Swapchain* old) {
 /// OUT_OF_DATE when the window has another size than the images.
 VkResult check_window(const Swapchain& swapchain) {
   VkExtent2D extent{};
-  const VkResult result = swapchain.surface->window->extent(extent);
+  const VkResult result = swapchain.window->extent(extent);
   if (result != VK_SUCCESS || extent.width == 0xFFFFFFFF) return result;
   const bool same = extent.width == swapchain.extent.width && extent.height == swapchain.extent.height;
   return same ? VK_SUCCESS : VK_ERROR_OUT_OF_DATE_KHR;
@@ -143,7 +143,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSwapchainKHR(VkDevice device_handle, const 
   Owned<Swapchain> swapchain_owner(create_object<Swapchain>(device.memory, allocator));
   Swapchain& swapchain = *swapchain_owner;
   swapchain.device = &device;
-  swapchain.surface = &from_handle<Surface>(info->surface);
+  swapchain.window = from_handle<Surface>(info->surface).window;
   swapchain.extent = info->imageExtent;
   swapchain.mode = info->presentMode;
   swapchain.red_first = info->imageFormat == VK_FORMAT_R8G8B8A8_UNORM || info->imageFormat == VK_FORMAT_R8G8B8A8_SRGB;

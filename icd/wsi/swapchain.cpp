@@ -38,7 +38,7 @@ void show_image(Swapchain& swapchain, std::uint32_t index) {
   const wsi::Frame frame = frame_of(swapchain, *swapchain.slots[index].image);
   if (glass::pixel::Pixels* const pixels = glass::pixel::pixels()) pixels->presented(swapchain.slots[index].image);
   Swapchain::Slot& slot = swapchain.slots[index];
-  const VkResult shown = swapchain.surface->window->present(frame, slot.in_order);
+  const VkResult shown = swapchain.window->present(frame, slot.in_order);
   // Before the image is free: whoever waits for it may destroy the fence, or acquire the image and present it again.
   if (slot.fence) signal_fence(*swapchain.device, *slot.fence);
   {

@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 
@@ -32,7 +33,7 @@ struct Swapchain : Object<VkSwapchainKHR, VK_OBJECT_TYPE_SWAPCHAIN_KHR> {
   };
 
   Device* device = nullptr;
-  Surface* surface = nullptr;
+  std::shared_ptr<wsi::Window> window;  ///< the surface's
   VkExtent2D extent{};
   VkPresentModeKHR mode = VK_PRESENT_MODE_FIFO_KHR;
   bool red_first = false;  ///< R8G8B8A8 memory order

@@ -188,6 +188,23 @@ TEST_F(SwapchainTest, ImagesTakeTurns) {
   destroy(swapchain);
 }
 
+/// Programs whose display server has died destroy the lost surface first (vkcube does), though Vulkan 1.3.239,
+/// vkDestroySurfaceKHR, wants its swapchains gone before.
+TEST_F(SwapchainTest, TheWindowLastsAsLongAsTheSwapchain) {
+  const VkSwapchainKHR swapchain = create();
+  const VkSemaphore acquired = semaphore();
+  std::uint32_t index = 99;
+  ASSERT_EQ(acquire(swapchain, index, acquired, VK_NULL_HANDLE, UINT64_MAX), VK_SUCCESS);
+  VK_GET(instance, DestroySurfaceKHR)(instance, surface, nullptr);
+  surface = VK_NULL_HANDLE;
+  EXPECT_EQ(present(swapchain, index, acquired), VK_SUCCESS);
+  EXPECT_EQ(acquire(swapchain, index, acquired, VK_NULL_HANDLE, UINT64_MAX), VK_SUCCESS);
+  EXPECT_EQ(present(swapchain, index, acquired), VK_SUCCESS);
+  EXPECT_EQ(VK_GET(instance, QueueWaitIdle)(queue), VK_SUCCESS);
+  VK_GET(instance, DestroySemaphore)(device, acquired, nullptr);
+  destroy(swapchain);
+}
+
 TEST_F(SwapchainTest, ImagesShareTheMemoryOfTheSwapchains) {
   const VkSwapchainKHR swapchain = create();
   std::uint32_t count = 3;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the shape of the tree: include directions between rooms and inside them, rooms in the README, tests behind
+"""Checks the shape of the tree: include directions between rooms and inside them, rooms in CONTRIBUTING, tests behind
 claims, opcodes and steps, capabilities, dynamic states, long files.
 
 usage: structure.py SOURCE_FOLDER
@@ -129,22 +129,22 @@ def header_faults(root):
 
 
 def room_faults(root):
-    """Every room exists and the README's map names it, and the reverse."""
+    """Every room exists and CONTRIBUTING's map names it, and the reverse."""
     rooms = ORDER + FREE + DATA
     for room in rooms:
         if not (root / room).is_dir():
             yield f"{room}/: the room is missing"
-    readme = root / "README.md"
-    if not readme.exists():
-        yield "README.md is missing"
+    guide = root / "CONTRIBUTING.md"
+    if not guide.exists():
+        yield "CONTRIBUTING.md is missing"
         return
-    named = set(re.findall(r"^\|\s*`([\w-]+)/`", readme.read_text(), re.MULTILINE))
+    named = set(re.findall(r"^\|\s*`([\w-]+)/`", guide.read_text(), re.MULTILINE))
     for room in rooms:
         if room not in named:
-            yield f"README.md: the map of rooms lacks `{room}/`"
+            yield f"CONTRIBUTING.md: the map of rooms lacks `{room}/`"
     for name in sorted(named - set(rooms)):
         if not (root / name).is_dir():
-            yield f"README.md: names `{name}/`, which does not exist"
+            yield f"CONTRIBUTING.md: names `{name}/`, which does not exist"
 
 
 def known_tests(root):
