@@ -27,6 +27,13 @@ namespace {
 /// Positions that are gathered before the front end runs, and bytes of its results before the back end runs.
 constexpr std::uint64_t kPendingPositions = std::uint64_t{256} << 10;
 constexpr std::size_t kBinBytes = std::size_t{48} << 20;
+/// Positions of clipped triangles that wait for the end of their batch (lavapipe-rasterization.md 9.2), which is cut
+/// then.
+constexpr std::uint64_t kLongestBatch = 4 * kPendingPositions;
+/// Runs that are gathered before they are cut into chunks.
+constexpr std::size_t kPendingRuns = 4096;
+/// Bytes of draws and plans before the pass works off all it has.
+constexpr std::size_t kRecordBytes = std::size_t{32} << 20;
 /// Below this many positions waking another thread costs more than it brings.
 constexpr std::uint64_t kInlinePositions = 512;
 
@@ -47,7 +54,8 @@ struct Command {
 /// Memory of a pass, kept for the next one.
 struct Scratch {
   std::vector<std::unique_ptr<Worker>> workers;
-  Arena arena;  ///< draws, runs, clears, plans
+  Arena arena;          ///< draws, clears, plans
+  Arena run_arenas[2];  ///< runs of the commands in one; those of commands that are kept move to the other
   std::vector<Command> commands;
   std::vector<std::vector<TileItem>> items;  ///< by tile
   std::vector<std::uint32_t> touched;        ///< tiles with items
@@ -117,6 +125,7 @@ struct Pass::Impl {
   bool broken = false;  ///< an exception left the scratch memory in between: nothing in it may be used again
   const DrawRecord* last = nullptr;
   std::uint64_t pending_positions = 0;
+  std::size_t run_arena = 0;  ///< the one in use
   spirv::Fault unreported;
 
   explicit Impl(const PassDesc& pass_desc) : desc(pass_desc) {
@@ -195,7 +204,7 @@ struct Pass::Impl {
     const std::vector<Run>& runs = scratch->runs;
     const PipelinePlan& plan = *record->plan;
     const TopologyShape& shape = plan.shape;
-    Run* stored = scratch->arena.take<Run>(runs.size());
+    Run* stored = scratch->run_arenas[run_arena].take<Run>(runs.size());
     std::copy(runs.begin(), runs.end(), stored);
     std::size_t first = 0;
     std::uint32_t positions = 0;
@@ -211,7 +220,7 @@ struct Pass::Impl {
       positions = 0;
     }
     scratch->runs.clear();
-    if (pending_positions >= kPendingPositions) run_front();
+    if (pending_positions >= kPendingPositions) run_front(true);
   }
 
   void draw_view(const DrawRecord* record, std::uint32_t view, ViewLayer* view_layer = nullptr) {
@@ -220,23 +229,34 @@ struct Pass::Impl {
     const RectanglePlan& rectangles = record->plan->rectangles;
     const std::uint32_t segment = rectangles.any ? rectangles.segment : record->plan->as_reference.segment;
     const std::uint32_t piece = segment != 0 ? segment : piece_of(record->plan->shape, limit);
+    // Chunks that count are worked on at once, so that all instances can count in the same place.
+    std::uint32_t* const counters = scratch->arena.take<std::uint32_t>(2);
+    std::vector<Run>& runs = scratch->runs;
+    std::uint64_t positions = 0;
+    bool continues = false;  // a run goes on with a stippled strip
+    const auto cut = [&] {
+      if (runs.empty()) return;
+      cut_chunks(record, view, record->plan->counts_primitives ? counters : nullptr, continues ? counters + 1 : nullptr,
+                 view_layer);
+      positions = 0;
+      continues = false;
+    };
     for (std::uint32_t instance = record->call.skipped_instances; instance < record->call.instance_count; ++instance) {
-      const std::size_t before = scratch->runs.size();
-      append_runs(record->call, instance, piece, record->plan->as_reference.numbers_segments, scratch->runs);
-      if (scratch->runs.size() == before) break;  // too few vertices: no instance has a primitive
-      // Such draws are not parallel: every instance counts from 0.
-      const auto counter = [&] { return new (scratch->arena.take<std::uint32_t>(1)) std::uint32_t{0}; };
-      const auto first = scratch->runs.begin() + static_cast<std::ptrdiff_t>(before);
-      const bool counts_stipple =
-          stippled_strip && std::any_of(first, scratch->runs.end(), [](const Run& run) { return run.begin != 0; });
-      if (record->plan->counts_primitives)
-        cut_chunks(record, view, counter(), counts_stipple ? counter() : nullptr, view_layer);
-      else if (counts_stipple)
-        cut_chunks(record, view, nullptr, counter(), view_layer);
-      else if (scratch->runs.size() >= 4096)
-        cut_chunks(record, view, nullptr, nullptr, view_layer);
+      RunCutter cutter(record->call, instance, piece, record->plan->as_reference.numbers_segments);
+      counters[0] = counters[1] = 0;
+      bool any = false;
+      for (Run run; cutter.next(run); any = true) {
+        const bool full = runs.size() >= kPendingRuns || positions >= kPendingPositions;
+        // A stippled strip that is cut hands its counter on from chunk to chunk.
+        if (full && !(stippled_strip && run.begin != 0)) cut();
+        continues |= stippled_strip && run.begin != 0;
+        positions += std::uint64_t{run_span(record->plan->shape, run).count()} * record->plan->position_weight;
+        runs.push_back(run);
+      }
+      if (!any) break;  // too few vertices: no instance has a primitive
+      if (record->plan->counts_primitives || continues) cut();
     }
-    if (!scratch->runs.empty()) cut_chunks(record, view, nullptr, nullptr, view_layer);
+    cut();
   }
 
   void front_item(std::size_t index, std::size_t worker_index) {
@@ -301,12 +321,16 @@ struct Pass::Impl {
     return works_in_order(a) || (a.output.ends_clipped && b.output.begins_clipped);
   }
 
-  /// Works in order on chunks from `first` on that share a batch, again or for the first time; returns the first one
-  /// behind them.
-  std::size_t join_batches(std::size_t first) {
+  /// The first command behind those from `first` on that share a batch.
+  std::size_t batch_end(std::size_t first) const {
     std::size_t end = first + 1;
     while (shares_batch(end - 1)) ++end;
-    if (end - first == 1 && !works_in_order(scratch->commands[first])) return end;
+    return end;
+  }
+
+  /// Works in order on chunks that share a batch, again or for the first time.
+  void join_batch(std::size_t first, std::size_t end) {
+    if (end - first == 1 && !works_in_order(scratch->commands[first])) return;
     ClippedBatch batch;
     batch.begin(*scratch->commands[first].chunk.draw->plan);
     for (std::size_t i = first; i < end; ++i) {
@@ -315,33 +339,92 @@ struct Pass::Impl {
       command.chunk.ends_batch = i + 1 == end;
       command.output = process_chunk(command.chunk, desc, grid, scratch->workers[0]->arena, scratch->workers[0]->front);
     }
+  }
+
+  std::size_t arena_bytes() const {
+    std::size_t bytes = 0;
+    for (const std::unique_ptr<Worker>& worker : scratch->workers) bytes += worker->arena.used();
+    return bytes;
+  }
+
+  /// Runs the front end of commands from `first` on: of all, but of few at a time where stages may make many primitives
+  /// of one. Returns the first command whose front end has not run.
+  std::size_t run_some(std::size_t first) {
+    std::vector<Command>& commands = scratch->commands;
+    const std::size_t few = 2 * base::worker_count();
+    std::size_t end = first + 1;
+    while (end < commands.size() && (end - first < few || !amplifies(commands[end]))) ++end;
+    if (pending_positions < kInlinePositions && !base::shakes(base::ShakeKind::kOrder)) {
+      for (std::size_t i = first; i < end; ++i) front_item(i, 0);
+    } else {
+      base::parallel_for(end - first, [&](std::size_t i, std::size_t worker) { front_item(first + i, worker); });
+    }
     return end;
   }
 
-  /// Runs the front end of everything recorded and hands its results to the tiles, in order.
-  void run_front() {
+  /// Whether a chunk may leave more than its positions tell. Not where it may share a batch with those before it, which
+  /// need a look at it.
+  static bool amplifies(const Command& command) {
+    return !command.clear && !command.chunk.draw->plan->rectangles.any && command.chunk.draw->plan->stages.any();
+  }
+
+  /// Hands the results of a command to the tiles.
+  void hand_over(const Command& command) {
+    if (command.clear) add_clear(*command.clear);
+    if (command.output.capture) write_capture(*command.chunk.draw, *command.output.capture);
+    for (std::uint32_t i = 0; i < command.output.range_count; ++i) {
+      const TileRange& range = command.output.ranges[i];
+      add_item(range.tile, {nullptr, command.chunk.draw, command.output.primitives, range.index, range.count});
+    }
+  }
+
+  /// Whether a batch may go on from the last command to what the draw has yet.
+  bool may_go_on(std::size_t index) const {
+    const Command& command = scratch->commands[index];
+    if (command.clear || command.chunk.view_layer || command.chunk.primitive_count) return false;
+    return works_in_order(command) || command.output.ends_clipped;
+  }
+
+  /// Keeps the commands from `first` on for the next time, as if their front end had not run.
+  void keep(std::size_t first) {
+    std::vector<Command>& commands = scratch->commands;
+    commands.erase(commands.begin(), commands.begin() + static_cast<std::ptrdiff_t>(first));
+    Arena& from = scratch->run_arenas[run_arena];
+    run_arena ^= 1;
+    pending_positions = 0;
+    for (Command& command : commands) {
+      Chunk& chunk = command.chunk;
+      Run* const runs = scratch->run_arenas[run_arena].take<Run>(chunk.run_count);
+      std::copy_n(chunk.runs, chunk.run_count, runs);
+      chunk.runs = runs;
+      command.done = false;
+      command.output = {};
+      pending_positions += positions_of(chunk);
+    }
+    from.reset();
+  }
+
+  /// Runs the front end of everything recorded and hands its results to the tiles, in order. `more`: of a draw that
+  /// goes on; a batch at its end is kept for what follows, unless it is too long.
+  void run_front(bool more = false) {
     std::vector<Command>& commands = scratch->commands;
     if (commands.empty()) return;
-    if (pending_positions < kInlinePositions && !base::shakes(base::ShakeKind::kOrder)) {
-      for (std::size_t i = 0; i < commands.size(); ++i) front_item(i, 0);
-    } else {
-      base::parallel_for(commands.size(), [this](std::size_t i, std::size_t worker) { front_item(i, worker); });
-    }
-    for (std::size_t i = 0; i < commands.size();) i = join_batches(i);
-    for (std::unique_ptr<Worker>& worker : scratch->workers) worker->front.forget_stages();
-    for (const Command& command : commands) {
-      if (command.clear) add_clear(*command.clear);
-      if (command.output.capture) write_capture(*command.chunk.draw, *command.output.capture);
-      for (std::uint32_t i = 0; i < command.output.range_count; ++i) {
-        const TileRange& range = command.output.ranges[i];
-        add_item(range.tile, {nullptr, command.chunk.draw, command.output.primitives, range.index, range.count});
+    std::size_t handed = 0;
+    for (bool kept = false; !kept && handed < commands.size();) {
+      const std::size_t behind = run_some(handed);
+      while (handed < behind) {
+        const std::size_t end = batch_end(handed);
+        kept =
+            more && end == commands.size() && may_go_on(end - 1) && (handed != 0 || pending_positions < kLongestBatch);
+        if (kept) break;
+        join_batch(handed, end);
+        for (; handed < end; ++handed) hand_over(commands[handed]);
       }
+      for (std::unique_ptr<Worker>& worker : scratch->workers) worker->front.forget_stages();
+      if (kept && handed == 0) return;
+      if (arena_bytes() >= kBinBytes) run_back();
     }
-    commands.clear();
-    pending_positions = 0;
-    std::size_t bytes = 0;
-    for (const std::unique_ptr<Worker>& worker : scratch->workers) bytes += worker->arena.used();
-    if (bytes >= kBinBytes) run_back();
+    keep(handed);
   }
 
   /// Draws what the tiles have.
@@ -405,6 +488,7 @@ void Pass::clear_depth_stencil(VkImageAspectFlags aspects, const VkClearDepthSte
 
 void Pass::draw(const DrawCall& draw) {
   if (draw.count == 0 || draw.instance_count == 0 || impl_->grid.count() == 0 || !draw.state) return;
+  if (impl_->scratch->arena.used() >= kRecordBytes) flush();
   Impl::Unfinished unfinished(*impl_);
   const DrawRecord* record = impl_->record_draw(draw);
   if (!record) return unfinished.done();

@@ -19,21 +19,6 @@ std::uint32_t primitives_in(const TopologyShape& shape, std::uint32_t positions)
   return shape.corners == 0 || positions < shape.first ? 0 : (positions - shape.first) / shape.step + 1;
 }
 
-/// One strip of `positions` positions, in pieces of at most `piece` primitives.
-std::uint32_t append_strip(const TopologyShape& shape, const Run& strip, std::uint32_t positions, std::uint32_t piece,
-                           bool numbers_pieces, std::vector<Run>& runs) {
-  const std::uint32_t total = primitives_in(shape, positions);
-  for (std::uint32_t begin = 0; begin < total; begin += piece) {
-    Run run = strip;
-    run.begin = begin;
-    run.end = std::min(total, begin + piece);
-    run.ends = run.end == total;
-    if (numbers_pieces) run.first_id = 0 - begin;
-    runs.push_back(run);
-  }
-  return total;
-}
-
 }  // namespace
 
 std::uint32_t read_index(const DrawCall& draw, std::uint64_t position) {
@@ -57,22 +42,40 @@ RunSpan run_span(const TopologyShape& shape, const Run& run) {
   return {run.begin * shape.step, (run.end - 1) * shape.step + shape.first, false};
 }
 
-void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, bool numbers_pieces,
-                 std::vector<Run>& runs) {
-  const TopologyShape shape = topology_shape(draw);
-  Run strip{0, 0, 0, instance, 0, true};
-  if (!draw.index_data || !draw.state->primitive_restart) {
-    append_strip(shape, strip, draw.count, piece, numbers_pieces, runs);
-    return;
+RunCutter::RunCutter(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, bool numbers_pieces)
+    : draw_(draw),
+      shape_(topology_shape(draw)),
+      piece_(piece),
+      numbers_pieces_(numbers_pieces),
+      restarts_(draw.index_data && draw.state->primitive_restart),
+      strip_{0, 0, 0, instance, 0, true} {}
+
+bool RunCutter::open_strip() {
+  strip_.first_id += static_cast<std::uint32_t>(total_);
+  begin_ = total_ = 0;
+  const std::uint64_t count = draw_.count;
+  while (at_ < count && total_ == 0) {
+    std::uint64_t end = count;
+    if (restarts_) {
+      const std::uint32_t restart = restart_value(draw_.index_type);
+      for (end = at_; end < count && read_index(draw_, draw_.first + end) != restart;) ++end;
+    }
+    strip_.start = static_cast<std::uint32_t>(at_);
+    total_ = primitives_in(shape_, static_cast<std::uint32_t>(end - at_));
+    at_ = end + 1;
   }
-  const std::uint32_t restart = restart_value(draw.index_type);
-  std::uint32_t start = 0;
-  for (std::uint32_t i = 0; i <= draw.count; ++i) {
-    if (i < draw.count && read_index(draw, std::uint64_t{draw.first} + i) != restart) continue;
-    strip.start = start;
-    strip.first_id += append_strip(shape, strip, i - start, piece, numbers_pieces, runs);
-    start = i + 1;
-  }
+  return total_ != 0;
+}
+
+bool RunCutter::next(Run& run) {
+  if (begin_ == total_ && !open_strip()) return false;
+  run = strip_;
+  run.begin = static_cast<std::uint32_t>(begin_);
+  begin_ = std::min(total_, begin_ + piece_);
+  run.end = static_cast<std::uint32_t>(begin_);
+  run.ends = begin_ == total_;
+  if (numbers_pieces_) run.first_id = 0 - run.begin;
+  return true;
 }
 
 }  // namespace vitrine::raster

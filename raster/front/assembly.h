@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "raster/primitive.h"
 #include "raster/topology.h"
@@ -31,10 +30,28 @@ RunSpan run_span(const TopologyShape& shape, const Run& run);
 /// Primitives of about `positions` positions: an even number, so that strips which are cut there keep their parity.
 std::uint32_t piece_of(const TopologyShape& shape, std::uint32_t positions);
 
-/// Cuts one instance of a draw at restart indices and into stretches of at most `piece` primitives, and appends them.
-/// `numbers_pieces`: gl_PrimitiveID begins anew in each.
-void append_runs(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, bool numbers_pieces,
-                 std::vector<Run>& runs);
+/// Cuts one instance of a draw at restart indices and into stretches of at most `piece` primitives, one after the
+/// other: a draw of billions of vertices is never there as a whole.
+class RunCutter {
+ public:
+  /// `numbers_pieces`: gl_PrimitiveID begins anew in each. The draw outlives the cutter.
+  RunCutter(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, bool numbers_pieces);
+  /// The next stretch; false: there is none.
+  bool next(Run& run);
+
+ private:
+  /// Goes on to the next strip that has a primitive.
+  bool open_strip();
+
+  const DrawCall& draw_;
+  const TopologyShape shape_;
+  const std::uint64_t piece_;
+  const bool numbers_pieces_, restarts_;
+  Run strip_;
+  std::uint64_t at_ = 0;     ///< position where the next strip begins
+  std::uint64_t begin_ = 0;  ///< primitives of the strip that have been given
+  std::uint64_t total_ = 0;  ///< primitives of the strip
+};
 
 /// Index `position` of the bound index buffer; 0 beyond its end.
 std::uint32_t read_index(const DrawCall& draw, std::uint64_t position);

@@ -56,6 +56,7 @@ class Driver {
 /// What the process has of the system.
 struct Holdings {
   long kibibytes = 0, threads = 0, files = 0;
+  long most_kibibytes = 0;  ///< so far
 };
 
 Holdings holdings() {
@@ -63,6 +64,7 @@ Holdings holdings() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
     if (word == "VmRSS:") status >> found.kibibytes;
+    if (word == "VmHWM:") status >> found.most_kibibytes;
     if (word == "Threads:") status >> found.threads;
   }
   DIR* const folder = opendir("/proc/self/fd");
@@ -126,6 +128,52 @@ TEST(Loaded, TenThousandOfEachObjectLeaveNothingBehind) {
   }
   expect_same(before, holdings());
   check_results(p);
+  destroy(p);
+}
+
+/// Records a render pass with one draw.
+VkCommandBuffer record_draw(Program& p, std::uint32_t vertices, std::uint32_t instances) {
+  auto allocate = make_struct<VkCommandBufferAllocateInfo>();
+  allocate.commandPool = p.command_pool;
+  allocate.commandBufferCount = 1;
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  EXPECT_EQ(VK_GET(p.instance, AllocateCommandBuffers)(p.device, &allocate, &commands), VK_SUCCESS);
+  const auto begin = make_struct<VkCommandBufferBeginInfo>();
+  EXPECT_EQ(VK_GET(p.instance, BeginCommandBuffer)(commands, &begin), VK_SUCCESS);
+  const VkClearValue clear{};
+  auto render = make_struct<VkRenderPassBeginInfo>();
+  render.renderPass = p.render_pass;
+  render.framebuffer = p.framebuffer;
+  render.renderArea.extent = {64, 64};
+  render.clearValueCount = 1;
+  render.pClearValues = &clear;
+  VK_GET(p.instance, CmdBeginRenderPass)(commands, &render, VK_SUBPASS_CONTENTS_INLINE);
+  VK_GET(p.instance, CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p.pipelines[1]);
+  VK_GET(p.instance, CmdDraw)(commands, vertices, instances, 0, 0);
+  VK_GET(p.instance, CmdEndRenderPass)(commands);
+  EXPECT_EQ(VK_GET(p.instance, EndCommandBuffer)(commands), VK_SUCCESS);
+  return commands;
+}
+
+TEST(Loaded, MemoryDoesNotGrowWithADraw) {
+  const Driver driver;
+  Program p;
+  ASSERT_EQ(run(p), VK_SUCCESS);
+  VkQueue queue;
+  VK_GET(p.instance, GetDeviceQueue)(p.device, 0, 0, &queue);
+  const auto draw = [&](std::uint32_t vertices, std::uint32_t instances) {
+    p.commands = record_draw(p, vertices, instances);
+    auto info = make_struct<VkSubmitInfo>();
+    info.commandBufferCount = 1;
+    info.pCommandBuffers = &p.commands;
+    ASSERT_EQ(VK_GET(p.instance, QueueSubmit)(queue, 1, &info, VK_NULL_HANDLE), VK_SUCCESS);
+    ASSERT_EQ(VK_GET(p.instance, QueueWaitIdle)(queue), VK_SUCCESS);
+  };
+  ASSERT_NO_FATAL_FAILURE(draw(300'000, 1));
+  const Holdings before = holdings();
+  ASSERT_NO_FATAL_FAILURE(draw(12'000'000, 1));
+  ASSERT_NO_FATAL_FAILURE(draw(3, 4'000'000));
+  EXPECT_LE(holdings().most_kibibytes, before.most_kibibytes + 98304);
   destroy(p);
 }
 
