@@ -3,16 +3,14 @@
 // The input at hand is kept in "fuzz-input" in the working folder when the process dies.
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <vector>
 
-#include <fcntl.h>
-#include <unistd.h>
-
+#include "tests/fuzz/last_input.h"
 #include "tests/fuzz/module_fuzz.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/fuzz/seeds.h"
@@ -23,38 +21,14 @@ namespace {
 Words current;
 VkShaderStageFlagBits current_stage = VK_SHADER_STAGE_COMPUTE_BIT;
 
-void keep_input() {
-  const int file = open("fuzz-input", O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  const std::uint8_t stage = number_of(current_stage);
-  if (file < 0 || write(file, &stage, 1) != 1) return;
-  if (write(file, current.data(), current.size() * 4) < 0) return;
-  close(file);
-}
-
-constexpr int kDeaths[] = {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL};
-struct sigaction otherwise[std::size(kDeaths)];  // the sanitizer's
-
-extern "C" void on_death(int signal) {
-  keep_input();
-  for (std::size_t i = 0; i < std::size(kDeaths); i++)
-    if (kDeaths[i] == signal) sigaction(signal, &otherwise[i], nullptr);
-  if (signal == SIGABRT) std::raise(signal);  // the others come again where this returns to
-}
-
-/// On a stack of its own, as the usual one may be what has run out.
-void keep_input_on_death() {
-  static char stack[1 << 16];
-  stack_t given{};
-  if (sigaltstack(nullptr, &given) != 0 || given.ss_flags == SS_DISABLE) {
-    given.ss_sp = stack;
-    given.ss_size = sizeof stack;
-    given.ss_flags = 0;
-    sigaltstack(&given, nullptr);
-  }
-  struct sigaction action {};
-  action.sa_handler = on_death;
-  action.sa_flags = SA_ONSTACK;
-  for (std::size_t i = 0; i < std::size(kDeaths); i++) sigaction(kDeaths[i], &action, &otherwise[i]);
+/// As LLVMFuzzerTestOneInput() reads it: the stage, then the words.
+Outcome run_current() {
+  static std::vector<std::uint8_t> bytes;
+  bytes.assign(1, number_of(current_stage));
+  const auto* const words = reinterpret_cast<const std::uint8_t*>(current.data());
+  bytes.insert(bytes.end(), words, words + current.size() * 4);
+  set_input(bytes);
+  return run_module(current_stage, current);
 }
 
 /// Runs the seeds; empty if one is refused.
@@ -63,7 +37,7 @@ std::vector<Module> run_seeds() {
   for (const Module& seed : pool) {
     current_stage = seed.stage;
     current = seed.words;
-    if (run_module(current_stage, current) != Outcome::kRan) {
+    if (run_current() != Outcome::kRan) {
       std::fprintf(stderr, "a seed does not run\n");
       return {};
     }
@@ -84,7 +58,7 @@ void add_modules(std::vector<Module>& pool, char** paths, int count) {
     current = words_of(bytes);
     for (const VkShaderStageFlagBits stage : kStages) {
       current_stage = stage;
-      if (run_module(stage, current) != Outcome::kRan) continue;
+      if (run_current() != Outcome::kRan) continue;
       pool.push_back({stage, current});
       break;
     }
@@ -108,7 +82,7 @@ int loop(double seconds, std::uint64_t seed, char** modules, int count) {
     current = from.words;
     mutate(current, random);
     const std::clock_t before = std::clock();  // of the processor: others may be using it, too
-    const Outcome outcome = run_module(current_stage, current);
+    const Outcome outcome = run_current();
     if (const double took = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC; took > slowest) {
       slowest = took;
       if (took > 10) keep_input();
