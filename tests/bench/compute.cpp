@@ -1,4 +1,5 @@
-// Compute: streaming, matrix products, all-pairs forces; reduction, scan, histogram and blur with shared memory.
+// Compute: streaming, matrix products, all-pairs forces; reduction, scan, histograms and blur; rounds of hash
+// functions.
 #include <string>
 
 #include "bench.h"
@@ -125,6 +126,85 @@ Kernel histogram() {
       kCount / 1e9};
 }
 
+/// The same straight to the buffer's bins.
+Kernel histogram_global() {
+  constexpr std::uint32_t kCount = 1 << 20;
+  return {
+      "layout(local_size_x=256) in; layout(binding=0) buffer X { uint x[]; }; layout(binding=1) buffer H { uint h[]; "
+      "}; void main() { uint v = x[gl_GlobalInvocationID.x]; atomicAdd(h[v * 0x9e3779b1u >> 24], 1u); }",
+      {kCount * 4, 256 * 4},
+      {kCount / 256, 1, 1},
+      kCount / 1e9};
+}
+
+/// 64 rounds of eight variables that hand on their values, as the functions of SHA-2 do, with made-up constants.
+Kernel sha_rounds() {
+  constexpr std::uint32_t kCount = 1 << 15;
+  return {
+      "layout(local_size_x=64) in; layout(binding=0) buffer X { uint x[]; }; layout(binding=1) buffer Y { uint y[]; };"
+      "uint turn(uint v, int n) { return v >> n | v << 32 - n; }"
+      "void main() { uint i = gl_GlobalInvocationID.x, w[16]; for (int k = 0; k < 16; ++k) w[k] = x[i] * uint(2 * k + "
+      "1);"
+      "uint a = 0x6a09e667u, b = 0xbb67ae85u, c = 0x3c6ef372u, d = 0xa54ff53au, e = 0x510e527fu, f = 0x9b05688cu,"
+      "g = 0x1f83d9abu, h = 0x5be0cd19u; for (int r = 0; r < 64; ++r) {"
+      "uint s = turn(e, 6) ^ turn(e, 11) ^ turn(e, 25), t = h + s + (e & f ^ ~e & g) + uint(r) * 0x9e3779b9u + w[0];"
+      "uint u = (turn(a, 2) ^ turn(a, 13) ^ turn(a, 22)) + (a & b ^ a & c ^ b & c);"
+      "uint n = w[0] + (turn(w[1], 7) ^ turn(w[1], 18) ^ w[1] >> 3) + w[9] + (turn(w[14], 17) ^ turn(w[14], 19) ^ "
+      "w[14] >> 10);"
+      "for (int k = 0; k < 15; ++k) w[k] = w[k + 1]; w[15] = n;"
+      "h = g; g = f; f = e; e = d + t; d = c; c = b; b = a; a = t + u; } y[i] = a ^ e ^ c + g; }",
+      {kCount * 4, kCount * 4},
+      {kCount / 64, 1, 1},
+      kCount * 64.0 / 1e9};
+}
+
+/// The same with the words of the message derived from the invocation in every round: eight variables alone.
+Kernel hash_rounds() {
+  constexpr std::uint32_t kCount = 1 << 16;
+  return {
+      "layout(local_size_x=64) in; layout(binding=0) buffer X { uint x[]; }; layout(binding=1) buffer Y { uint y[]; };"
+      "uint turn(uint v, int n) { return v << n | v >> 32 - n; }"
+      "void main() { uint i = gl_GlobalInvocationID.x, k = x[i];"
+      "uint a = k, b = k ^ 0xbb67ae85u, c = 0x3c6ef372u, d = k + 0xa54ff53au, e = 0x510e527fu, f = k * 0x9b05688cu,"
+      "g = 0x1f83d9abu, h = 0x5be0cd19u; for (uint r = 0u; r < 48u; ++r) {"
+      "uint t = h + (turn(e, 26) ^ turn(e, 21) ^ turn(e, 7)) + (e & f ^ ~e & g) + (k ^ r * 0x428a2f98u);"
+      "uint u = (turn(a, 30) ^ turn(a, 19) ^ turn(a, 10)) + (a & b ^ a & c ^ b & c);"
+      "h = g; g = f; f = e; e = d + t; d = c; c = b; b = a; a = t + u; } y[i] = a ^ b ^ c ^ d ^ e ^ f ^ g ^ h; }",
+      {kCount * 4, kCount * 4},
+      {kCount / 64, 1, 1},
+      kCount * 48.0 / 1e9};
+}
+
+/// Ten double rounds of additions, exclusive ors and rotations on sixteen words, as ChaCha does.
+Kernel quarter_rounds() {
+  constexpr std::uint32_t kCount = 1 << 15;
+  const auto quarter = [](int a, int b, int c, int d) {
+    std::string text;
+    const auto step = [&](int to, int from, int turned, int by) {
+      const auto word = [](int k) { return "s[" + std::to_string(k) + "]"; };
+      text += word(to) + " += " + word(from) + "; " + word(turned) + " ^= " + word(to) + "; " + word(turned) + " = " +
+              word(turned) + " << " + std::to_string(by) + " | " + word(turned) + " >> " + std::to_string(32 - by) +
+              "; ";
+    };
+    step(a, b, d, 16);
+    step(c, d, b, 12);
+    step(a, b, d, 8);
+    step(c, d, b, 7);
+    return text;
+  };
+  std::string rounds;
+  for (int k = 0; k < 4; ++k) rounds += quarter(k, k + 4, k + 8, k + 12);
+  for (int k = 0; k < 4; ++k) rounds += quarter(k, 4 + (k + 1) % 4, 8 + (k + 2) % 4, 12 + (k + 3) % 4);
+  return {
+      "layout(local_size_x=64) in; layout(binding=0) buffer X { uint x[]; }; layout(binding=1) buffer Y { uint y[]; };"
+      "void main() { uint i = gl_GlobalInvocationID.x, s[16]; for (int k = 0; k < 16; ++k) s[k] = x[i] + uint(k) * "
+      "0x61707865u; for (int r = 0; r < 10; ++r) { " +
+          rounds + "} uint sum = 0u; for (int k = 0; k < 16; ++k) sum = sum * 31u + s[k]; y[i] = sum; }",
+      {kCount * 4, kCount * 4},
+      {kCount / 64, 1, 1},
+      kCount * 80.0 / 1e9};
+}
+
 /// Nine taps across a picture of floats, a row of the workgroup in shared memory.
 Kernel blur() {
   constexpr std::uint32_t kSide = 1024;
@@ -154,6 +234,10 @@ std::vector<Workload> compute_workloads() {
           row("c_reduce", "Gelem/s", reduce),
           row("c_prefix_sum", "Gelem/s", prefix_sum),
           row("c_histogram", "Gelem/s", histogram),
+          row("c_hist_global", "Gelem/s", histogram_global),
+          row("c_sha_rounds", "Ground/s", sha_rounds),
+          row("c_hash_rounds", "Ground/s", hash_rounds),
+          row("c_quarter_rounds", "Gquart/s", quarter_rounds),
           row("c_blur", "Mpix/s", blur)};
 }
 

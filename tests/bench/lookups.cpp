@@ -67,6 +67,21 @@ double load_image(Run& run, VkFormat format, const char* layout) {
       {cts::storage_image(0, image), cts::storage_buffer(1, run.buffer(kSide * kSide * 16))});
 }
 
+/// 25 loads around every pixel of a storage image, weighted, and a store.
+double stencil_image(Run& run, VkFormat format, const char* layout) {
+  const cts::Image from = make_image(run, format, VK_IMAGE_USAGE_STORAGE_BIT);
+  const cts::Image to = make_image(run, format, VK_IMAGE_USAGE_STORAGE_BIT);
+  const std::string qualifiers[] = {std::string("layout(binding=0, ") + layout + ") readonly uniform image2D t;",
+                                    std::string("layout(binding=1, ") + layout + ") writeonly uniform image2D u;"};
+  return measure_compute(
+      run,
+      qualifiers[0] + qualifiers[1] +
+          "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy); vec4 s = vec4(0); for (int y = -2; y <= 2; ++y)"
+          "for (int x = -2; x <= 2; ++x) s += imageLoad(t, clamp(p + ivec2(x, y), ivec2(0), ivec2(1023))) * "
+          "(1.0 / float(3 + x * x + y * y)); imageStore(u, p, s * 0.2); }",
+      {cts::storage_image(0, from), cts::storage_image(1, to)});
+}
+
 /// Texels of a uniform texel buffer, scattered over it.
 double fetch_texels(Run& run, VkFormat format, std::uint32_t bytes) {
   constexpr std::uint32_t kTexels = 1 << 16;
@@ -121,6 +136,9 @@ std::vector<Workload> lookup_workloads() {
       {"tbo_r8", "Mpix/s", false, [](Run& run) { return fetch_texels(run, VK_FORMAT_R8_UNORM, 1); }},
       {"img_load_rgba8", "Mpix/s", false, [](Run& run) { return load_image(run, VK_FORMAT_R8G8B8A8_UNORM, "rgba8"); }},
       {"img_load_r32f", "Mpix/s", false, [](Run& run) { return load_image(run, VK_FORMAT_R32_SFLOAT, "r32f"); }},
+      {"img_stencil_rgba8", "Mpix/s", false,
+       [](Run& run) { return stencil_image(run, VK_FORMAT_R8G8B8A8_UNORM, "rgba8"); }},
+      {"img_stencil_r32f", "Mpix/s", false, [](Run& run) { return stencil_image(run, VK_FORMAT_R32_SFLOAT, "r32f"); }},
       {"img_store_rgba8", "Mpix/s", false,
        [](Run& run) { return store_image(run, VK_FORMAT_R8G8B8A8_UNORM, "rgba8"); }},
       {"img_store_rgba16f", "Mpix/s", false,

@@ -30,6 +30,15 @@ const std::string kNoise =
     "void main() { float s = 0.0, a = 0.5; vec2 p = uv * 8.0; for (int i = 0; i < 5; ++i) { s += a * noise(p); p *= "
     "2.03;"
     "a *= 0.5; } o = vec4(s); }";
+/// Five octaves of values at the points of a lattice, made by hashing integers.
+const std::string kLattice =
+    kHead +
+    "uint mix32(uint h) { h ^= h >> 15; h *= 0x2c1b3c6du; h ^= h >> 12; h *= 0x297a2d39u; return h ^ h >> 15; }"
+    "float at(ivec2 p) { return float(mix32(uint(p.x) * 0x8da6b343u ^ uint(p.y) * 0xd8163841u) >> 8) / 16777216.0; }"
+    "float lattice(vec2 p) { ivec2 i = ivec2(floor(p)); vec2 f = p - floor(p); f = f * f * f * (f * (f * 6.0 - 15.0) + "
+    "10.0); return mix(mix(at(i), at(i + ivec2(1, 0)), f.x), mix(at(i + ivec2(0, 1)), at(i + ivec2(1)), f.x), f.y); }"
+    "void main() { vec2 p = uv * 9.0 + 3.0; float sum = 0.0, a = 0.5; for (int k = 0; k < 5; ++k) {"
+    "sum += a * lattice(p); p = mat2(1.6, 1.2, -1.2, 1.6) * p; a *= 0.5; } o = vec4(sum, sum * sum, 1.0 - sum, 1.0); }";
 const std::string kMandel = kHead +
                             "void main() { vec2 c = uv * vec2(3.0, 2.0) - vec2(2.2, 1.0), z = vec2(0); int n = 0;"
                             "for (; n < 64 && dot(z, z) < 4.0; ++n) z = vec2(z.x * z.x - z.y * z.y, 2.0 * z.x * z.y) + "
@@ -71,13 +80,10 @@ std::vector<Workload> shader_workloads() {
   const auto row = [](const char* name, std::string text) {
     return Workload{name, "Mpix/s", false, [text](Run& run) { return measure_fragments(run, text); }};
   };
-  return {row("fs_fma200", fma200()),
-          row("fs_mandel", kMandel),
-          row("fs_noise", kNoise),
-          row("fs_transc", kTransc),
-          row("fs_inthash", kIntHash),
-          row("scene_sdf", kSdf),
-          {"fs_deferred32", "Mpix/s", false, measure_deferred}};
+  return {row("fs_fma200", fma200()), row("fs_mandel", kMandel),
+          row("fs_noise", kNoise),    row("fs_lattice", kLattice),
+          row("fs_transc", kTransc),  row("fs_inthash", kIntHash),
+          row("scene_sdf", kSdf),     {"fs_deferred32", "Mpix/s", false, measure_deferred}};
 }
 
 }  // namespace vitrine::bench

@@ -74,6 +74,33 @@ double measure_vertex_bound(Run& run) {
   return kVertices / time_submissions(run, finish(cmd)) / 1e6;
 }
 
+/// A grid of cells of which every triangle faces away: fetching, a matrix, culling.
+double measure_culled(Run& run) {
+  const cts::Target target = make_screen(run, 512, 512);
+  const Grid grid = make_grid(512, 512, 1.6f);
+  const cts::Buffer vertices = run.buffer_of(grid.vertices), indices = run.buffer_of(grid.indices);
+  const cts::Resources resources = run.resources({}, 64);
+  cts::GraphicsSpec spec;
+  spec.vertex =
+      "layout(location=0) in vec4 p; layout(location=1) in vec4 q; layout(location=0) out vec4 c;"
+      "layout(push_constant) uniform P { mat4 m; } pc; void main() { gl_Position = pc.m * p; c = q; }";
+  spec.fragment = cts::kColorFragment;
+  spec.layout = resources.layout;
+  spec.floats({4, 4});
+  spec.raster.cullMode = VK_CULL_MODE_BACK_BIT;
+  const VkPipeline pipeline = cts::make_pipeline(run, spec, target);
+  const float matrix[16] = {0.9f, 0.1f, 0, 0, -0.1f, 0.9f, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  VkCommandBuffer cmd = begin_repeatable(run);
+  target.begin(cmd);
+  cts::bind_pipeline(cmd, pipeline);
+  vkCmdPushConstants(cmd, resources.layout, VK_SHADER_STAGE_ALL, 0, sizeof(matrix), matrix);
+  cts::bind_vertices(cmd, vertices);
+  vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT32);
+  vkCmdDrawIndexed(cmd, static_cast<std::uint32_t>(grid.indices.size()), 1, 0, 0, 0);
+  vkCmdEndRenderPass(cmd);
+  return static_cast<double>(grid.vertices.size() / 8) / time_submissions(run, finish(cmd)) / 1e6;
+}
+
 double measure_instanced(Run& run) {
   const cts::Target target = make_screen(run, 1280, 720);
   cts::GraphicsSpec spec;
@@ -297,6 +324,7 @@ std::vector<Workload> triangle_workloads() {
           grid("tri_5000px", 100, 16),
           grid("depth_only_tiny", 2, 1, true),
           {"vertex_bound", "Mvert/s", false, measure_vertex_bound},
+          {"vertex_culled", "Mvert/s", false, measure_culled},
           {"instanced", "Mtri/s", false, measure_instanced},
           {"indirect_objects", "Mtri/s", false, [](Run& run) { return measure_objects(run, 20, 8, 60, 50); }},
           {"indirect_small", "Mtri/s", false, [](Run& run) { return measure_objects(run, 6, 3, 200, 150); }},
