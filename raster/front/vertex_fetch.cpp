@@ -6,6 +6,7 @@
 
 #include "base/as_reference.h"
 #include "base/numeric.h"
+#include "raster/front/records.h"
 #include "texel/codec.h"
 #include "texel/format.h"
 
@@ -40,6 +41,7 @@ const FormatDesc& fetched_format(VkFormat format) {
 struct Addresses {
   const std::byte* at[base::kWaveWidth];  ///< null: out of bounds
   bool whole;                             ///< none is
+  bool four_words;                        ///< so many can be read at each, whatever the attribute has
 };
 
 void compute_addresses(const DrawRecord& draw, const VertexAttribute& attribute, std::uint32_t bytes,
@@ -47,11 +49,12 @@ void compute_addresses(const DrawRecord& draw, const VertexAttribute& attribute,
   const VertexBinding& binding = draw.call.vertex_binding[attribute.binding];
   if (!binding.data || binding.size < std::uint64_t{attribute.offset} + bytes) {
     std::fill_n(out.at, lanes.count, nullptr);
-    out.whole = false;
+    out.whole = out.four_words = false;
     return;
   }
   const std::uint64_t last = binding.size - attribute.offset - bytes;  // highest offset that may be read
   const std::byte* data = binding.data + attribute.offset;
+  std::uint64_t highest = 0;
   out.whole = true;
   for (std::uint32_t i = 0; i < lanes.count; ++i) {
     std::uint32_t element = lanes.vertex[i];
@@ -60,7 +63,9 @@ void compute_addresses(const DrawRecord& draw, const VertexAttribute& attribute,
     const std::uint64_t offset = std::uint64_t{element} * binding.stride;
     out.at[i] = offset <= last ? data + offset : nullptr;
     out.whole &= offset <= last;
+    highest = std::max(highest, offset);
   }
+  out.four_words = out.whole && highest + 16 <= binding.size - attribute.offset;
 }
 
 std::uint32_t missing_value(const FormatDesc& format, std::uint32_t component) {
@@ -176,6 +181,33 @@ void fetch_component(const FormatDesc& format, const Addresses& addresses, std::
         addresses.at[i] ? convert(channel, static_cast<std::uint32_t>(read_bits(addresses.at[i], channel))) : 0;
 }
 
+/// Component c is word c of an element.
+bool has_plain_words(const FormatDesc& format) {
+  for (std::size_t c = 0; c < 4; ++c) {
+    const int index = format.rgba[c];
+    if (index < 0) continue;
+    const Channel& channel = format.channel[static_cast<std::size_t>(index)];
+    if (channel.bits != 32 || channel.offset != 32 * c) return false;
+  }
+  return format.format != VK_FORMAT_E5B9G9R9_UFLOAT_PACK32;
+}
+
+/// Several components of plain words at once, from input `first` on, as many as are of one attribute: how many.
+std::uint32_t fetch_record(const PipelinePlan& plan, std::uint32_t first, const FormatDesc& format,
+                           const Addresses& addresses, std::uint32_t count, StageRunner& runner) {
+  std::uint32_t* to[4] = {};
+  std::uint32_t inputs = 0;
+  for (; first + inputs < plan.vertex_input_count; ++inputs) {
+    const VertexInput& input = plan.vertex_input[first + inputs];
+    if (input.source != VertexInput::Source::kAttribute || input.attribute != plan.vertex_input[first].attribute ||
+        input.component > 3 || format.rgba[input.component] < 0 || to[input.component] != nullptr)
+      break;
+    to[input.component] = runner.input(input.reg).lane;
+  }
+  if (inputs > 1) load_records(addresses.at, count, to);
+  return inputs > 1 ? inputs : 0;
+}
+
 void fill_built_in(const DrawRecord& draw, const VertexInput& input, const VertexLanes& lanes, std::uint32_t view,
                    WaveRegister& out) {
   using Source = VertexInput::Source;
@@ -223,6 +255,13 @@ void fetch_vertices(const DrawRecord& draw, const VertexLanes& lanes, std::uint3
     const FormatDesc& format = fetched_format(attribute.format);
     if (addressed != input.attribute) compute_addresses(draw, attribute, format.block_bytes, lanes, addresses);
     addressed = input.attribute;
+    if (addresses.four_words && has_plain_words(format)) {
+      const std::uint32_t fetched = fetch_record(plan, i, format, addresses, lanes.count, runner);
+      if (fetched != 0) {
+        i += fetched - 1;
+        continue;
+      }
+    }
     fetch_component(format, addresses, lanes.count, input.component, out);
   }
 }

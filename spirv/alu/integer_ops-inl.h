@@ -375,6 +375,103 @@ struct LaneOp<Op::kBfeI> {
   }
 };
 
+/// `a` turned right by `bits`, 0 to 31 of which count.
+template <class V>
+HWY_INLINE V turned_right(V a, V bits) {
+#if HWY_TARGET == HWY_AVX3
+  if constexpr (sizeof(V) == 64) return V{_mm512_rorv_epi32(a.raw, bits.raw)};
+#endif
+  return hn::Or(hn::Shr(a, shift_count(bits)), hn::Shl(a, shift_count(hn::Sub(lanes_set<V>(32u), bits))));
+}
+
+template <>
+struct LaneOp<Op::kRotR> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b) {
+    return turned_right(a, b);
+  }
+};
+
+template <>
+struct LaneOp<Op::kRotRXor> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return turned_right(hn::Xor(a, b), c);
+  }
+};
+
+template <>
+struct LaneOp<Op::kXorRotR> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return hn::Xor(a, turned_right(b, c));
+  }
+};
+
+template <>
+struct LaneOp<Op::kXorShr> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return hn::Xor(a, hn::Shr(b, shift_count(c)));
+  }
+};
+
+template <>
+struct LaneOp<Op::kXorShl> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return hn::Xor(a, hn::Shl(b, shift_count(c)));
+  }
+};
+
+template <>
+struct LaneOp<Op::kIAddShl> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return hn::Add(a, hn::Shl(b, shift_count(c)));
+  }
+};
+
+template <>
+struct LaneOp<Op::kIMulAdd> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return hn::Add(hn::Mul(a, b), c);
+  }
+};
+
+template <>
+struct LaneOp<Op::kIAdd3> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return hn::Add(hn::Add(a, b), c);
+  }
+};
+
+template <>
+struct LaneOp<Op::kXor3> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return hn::Xor3(a, b, c);
+  }
+};
+
+template <>
+struct LaneOp<Op::kBitSelect> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return hn::IfVecThenElse(a, b, c);
+  }
+};
+
+template <>
+struct LaneOp<Op::kMajority> {
+  template <class V>
+  static HWY_INLINE auto of(V a, V b, V c) {
+    return hn::IfVecThenElse(hn::Xor(a, b), c, a);
+  }
+};
+
 }  // namespace vitrine::spirv::alu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

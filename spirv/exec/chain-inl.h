@@ -40,8 +40,8 @@ using Repeat = Accumulator;
 template <Op op, int accumulator, unsigned uniform, unsigned index>
 struct LinkSource {
   using D = hn::ScalableTag<LaneType<shape(op).operand[index]>>;
-  static constexpr bool kAccumulator =
-      static_cast<int>(index) == accumulator || accumulator == exec::kAllSources || index >= shape(op).sources;
+  static constexpr bool kAccumulator = static_cast<int>(index) == accumulator ||
+                                       (accumulator == exec::kAllSources && index < 2) || index >= shape(op).sources;
   struct Nothing {
     HWY_INLINE Nothing(const Wave&, std::uint32_t) {}
   };
@@ -135,6 +135,25 @@ Handler link_handler() {
 }
 #endif
 
+/// Sources that a link takes from the uniform file only: how far to shift, of the operations that do so among others.
+constexpr unsigned counts_of_bits(Op op) {
+  switch (op) {
+    case Op::kRotR:
+      return 2;
+    case Op::kRotRXor:
+    case Op::kXorRotR:
+    case Op::kXorShr:
+    case Op::kXorShl:
+    case Op::kIAddShl:
+      return 4;
+    case Op::kBfeU:
+    case Op::kBfeI:
+      return 6;
+    default:
+      return 0;
+  }
+}
+
 /// Handlers of one op by uniform sources and link.
 template <Op op, int accumulator, unsigned... uniform>
 Handler find_link(UniformSources wanted, Link link, std::integer_sequence<unsigned, uniform...>) {
@@ -142,8 +161,8 @@ Handler find_link(UniformSources wanted, Link link, std::integer_sequence<unsign
   constexpr bool kMask = shape(op).result == kB;
   constexpr bool kStart = accumulator == exec::kNoAccumulator;
   const auto check = [&]<unsigned u>(std::integral_constant<unsigned, u>) HWY_ATTR {
-    constexpr unsigned kOwn = accumulator >= 0 && accumulator < 3 ? 1u << accumulator : 0;
-    if constexpr ((u & (boolean_sources(op) | kOwn)) == 0) {
+    constexpr unsigned kOwn = accumulator == exec::kAllSources ? 3 : accumulator >= 0 ? 1u << accumulator : 0;
+    if constexpr ((u & (boolean_sources(op) | kOwn)) == 0 && (u & counts_of_bits(op)) == counts_of_bits(op)) {
       if (u != wanted) return;
       if constexpr (!kMask) {
         if (link == Link::kKeep) found = link_handler<op, accumulator, u, Link::kKeep>();
@@ -171,8 +190,7 @@ Handler find_chain(int accumulator, UniformSources uniform, Link link) {
   if constexpr ((accumulators & 4) != 0)
     if (accumulator == 2) return find_link<op, 2>(uniform, link, kUniform);
   if constexpr ((accumulators & 8) != 0)
-    if (accumulator == exec::kAllSources)
-      return find_link<op, exec::kAllSources>(uniform, link, std::integer_sequence<unsigned, 0>());
+    if (accumulator == exec::kAllSources) return find_link<op, exec::kAllSources>(uniform, link, kUniform);
   return nullptr;
 }
 

@@ -7,7 +7,7 @@
 
 namespace vitrine::spirv::exec {
 
-/// Which source of an operation is the accumulator. kAllSources: the two sources are the same accumulator.
+/// Which source of an operation is the accumulator. kAllSources: the first two sources are the same accumulator.
 inline constexpr int kNoAccumulator = -1, kAllSources = 3;
 
 /// What a link of a chain does with its result.

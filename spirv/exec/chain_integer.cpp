@@ -1,4 +1,4 @@
-// Chain links of integer arithmetic.
+// Chain links of integer arithmetic and conversions.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spirv/exec/chain_integer.cpp"
 #include "base/simd.h"
@@ -6,6 +6,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "spirv/alu/convert_ops-inl.h"
 #include "spirv/alu/integer_ops-inl.h"
 #include "spirv/exec/chain-inl.h"
 

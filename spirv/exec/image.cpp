@@ -97,11 +97,17 @@ struct KeptSampler {
   texel::SampleResult result{};
 };
 
+/// What is kept of an image instruction, if it is not that of another one: filters written out have dozens of them.
+template <class Kept>
+Kept& kept_of(const Call& call) {
+  constexpr std::size_t kKept = 64;
+  std::array<Kept, kKept>& kept = base::per_thread<std::array<Kept, kKept>>();
+  return kept[static_cast<std::size_t>(&call.op - call.wave.program->image_ops.data()) % kKept];
+}
+
 KeptSampler& kept_sampler(const Call& call, const texel::ImageView& view, const texel::Sampler& sampler) {
-  constexpr std::size_t kKept = 8;
-  std::array<KeptSampler, kKept>& kept = base::per_thread<std::array<KeptSampler, kKept>>();
   const std::uint64_t serial = call.wave.resources->serial;
-  KeptSampler& entry = kept[static_cast<std::size_t>(&call.op - call.wave.program->image_ops.data()) % kKept];
+  auto& entry = kept_of<KeptSampler>(call);
   const bool same =
       serial != 0 && entry.serial == serial && entry.op == &call.op && entry.view == &view && entry.sampler == &sampler;
   if (same && entry.registers == call.wave.registers) return entry;
@@ -135,6 +141,15 @@ void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, 
   texel::sample(kept.prepared, kept.request, kept.result);
 }
 
+/// Where an instruction that reads without a sampler finds its operands and puts its results, kept likewise.
+struct KeptFetch {
+  std::uint64_t serial = 0;
+  const ImageOp* op = nullptr;
+  const std::byte* registers = nullptr;
+  texel::FetchRequest request;  ///< but not which lanes
+  texel::SampleResult result{};
+};
+
 texel::FetchRequest fetch_request(const Call& call, base::LaneMask lanes) {
   texel::FetchRequest request;
   request.active = lanes;
@@ -143,6 +158,15 @@ texel::FetchRequest fetch_request(const Call& call, base::LaneMask lanes) {
   request.sample = call.operand(ImageOperand::kSample);
   request.offset = call.operands<3>(ImageOperand::kOffset);
   return request;
+}
+
+KeptFetch& kept_fetch(const Call& call) {
+  const std::uint64_t serial = call.wave.resources->serial;
+  auto& entry = kept_of<KeptFetch>(call);
+  if (serial != 0 && entry.serial == serial && entry.op == &call.op && entry.registers == call.wave.registers)
+    return entry;
+  entry = {serial, &call.op, call.wave.registers, fetch_request(call, 0), sample_result(call)};
+  return entry;
 }
 
 bool is_buffer(const Call& call) { return call.op.info.dim == ir::ImageDim::kBuffer; }
@@ -155,11 +179,10 @@ bool is_null(const Call& call, const Descriptor& image) {
 /// Straight to the registers of the results.
 void read(Call& call, const Descriptor& image, base::LaneMask lanes) {
   if (is_null(call, image)) return zero_registers(call, lanes);
-  if (is_buffer(call)) {
-    texel::fetch_buffer(*image.texels, lanes, *call.operand(ImageOperand::kCoord), sample_result(call));
-  } else {
-    texel::fetch(*image.image, fetch_request(call, lanes), sample_result(call));
-  }
+  KeptFetch& kept = kept_fetch(call);
+  if (is_buffer(call)) return texel::fetch_buffer(*image.texels, lanes, *kept.request.coord[0], kept.result);
+  kept.request.active = lanes;
+  texel::fetch(*image.image, kept.request, kept.result);
 }
 
 void write(Call& call, const Descriptor& image, base::LaneMask lanes) {

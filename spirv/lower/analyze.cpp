@@ -177,6 +177,7 @@ class Uniformity {
         join(op, loop.masked);
         break;
       }
+      case Kind::kTurn:
       case Kind::kReturn:
       case Kind::kKill:
         break;

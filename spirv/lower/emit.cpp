@@ -67,6 +67,8 @@ class BodyEmitter {
         return emit_continuing(op);
       case Kind::kEndLoop:
         return emit_end_loop(op);
+      case Kind::kTurn:
+        return;
       case Kind::kBreak:
       case Kind::kContinue:
         return emit_leave(op, i);

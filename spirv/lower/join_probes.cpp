@@ -53,7 +53,9 @@ void join_probes(ScalarFunction& function) {
         end = i + 1;
         continue;
       }
-      function.joined_probes[body[first].instr].push_back(body[i].instr->data[0]);
+      std::vector<std::uint32_t>& joined = function.joined_probes[body[first].instr];
+      const std::uint32_t row = body[i].instr->data[0];  // known already where several turns of a loop are written out
+      if (std::ranges::find(joined, row) == joined.end()) joined.push_back(row);
       body[i].dead = true;
       // Out of the way of what lies between: no construct begins or ends there, so that nobody names those places.
       const auto at = body.begin() + static_cast<std::ptrdiff_t>(i);

@@ -34,6 +34,7 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   lowering::remove_dead(scalars);
   if (observer) lowering::join_probes(scalars);
   lowering::fuse_multiply_add(scalars);
+  lowering::fuse_integers(scalars);
   lowering::select_operations(scalars);
   lowering::schedule_chains(scalars, interest.instructions);
   ShaderInterface interface = function.interface;

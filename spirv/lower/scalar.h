@@ -46,6 +46,7 @@ enum class Kind : std::uint8_t {
   kLoop,        ///< src = initial values, dst = parameters
   kContinuing,  ///< src = values of the body that falls through, dst = continue parameters
   kEndLoop,     ///< src = next values, dst = parameters
+  kTurn,        ///< between parts of a loop that has several turns written out: nothing happens
   kBreak,       ///< src = values, dst = results of the loop; cond or kNoScalar
   kContinue,    ///< src = values, dst = continue parameters; cond or kNoScalar
   kReturn,      ///< cond or kNoScalar
@@ -84,7 +85,7 @@ struct ScalarOp {
   bool reads_condition() const { return cond != kNoScalar && test == ir::Op::kCount; }
   /// Whether source `k` comes in SIMD registers from the operation before.
   bool takes_accumulator(std::uint32_t k) const {
-    return accumulator == exec::kAllSources || accumulator == static_cast<int>(k);
+    return accumulator == static_cast<int>(k) || (accumulator == exec::kAllSources && k < 2);
   }
 };
 
@@ -147,6 +148,12 @@ void join_probes(ScalarFunction& function);
 
 /// Replaces `a * b` used once by an addition or subtraction by one operation (still two roundings).
 void fuse_multiply_add(ScalarFunction& function);
+
+/// How often each scalar is read.
+std::vector<std::uint32_t> count_uses(const ScalarFunction& function);
+
+/// Replaces integer operations that are used once by superinstructions that do several.
+void fuse_integers(ScalarFunction& function);
 
 /// Replaces operand combinations that have no handler by moves; decides how outputs leave. Drops dead operations.
 void select_operations(ScalarFunction& function);

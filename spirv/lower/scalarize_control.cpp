@@ -6,6 +6,24 @@
 namespace vitrine::spirv::lowering {
 namespace {
 
+/// Turns of a loop that are written out one after the other, and their operations.
+constexpr std::size_t kMaxTurns = 16, kMaxTurnOps = 1024;
+
+/// How many turns of a loop hand each variable a value that was computed in one of them, where `next` are the values
+/// for the next turn: that many written out need no copies from one variable to another.
+std::size_t turns_until_computed(const std::vector<ScalarId>& params, const std::vector<ScalarId>& next) {
+  std::size_t most = 1;
+  for (std::size_t i = 0; i < params.size(); ++i) {
+    std::size_t turns = 1;
+    ScalarId value = next[i];
+    for (auto from = std::ranges::find(params, value); from != params.end() && value != params[i] && turns < kMaxTurns;
+         from = std::ranges::find(params, value), ++turns)
+      value = next[static_cast<std::size_t>(from - params.begin())];
+    most = std::max(most, turns);
+  }
+  return most;
+}
+
 /// Branches up to this weight run unconditionally: skipping them would cost more than they do.
 constexpr std::uint32_t kFlattenWeight = 12;
 
@@ -236,6 +254,34 @@ std::uint32_t Scalarizer::add_marker(Kind kind) {
   return static_cast<std::uint32_t>(out_.body.size() - 1);
 }
 
+/// One turn of a loop: its body and what continues it, between which a marker goes, `continuing`.
+ListEnd Scalarizer::build_turn(const ir::Node& node, std::size_t mark, std::uint32_t& continuing) {
+  const ListEnd body_end = build_list(node.body, node.continue_params);
+  const bool has_continue = loops_.back().has_continue;
+  if (has_continue) forget(mark);  // lanes that continued early have not computed the rest of the body
+  here_ = &node.instr;
+  continuing = add_marker(Kind::kContinuing);
+  out_.body[continuing].falls = body_end.falls;
+  if (body_end.falls && !has_continue) {
+    define_all(node.continue_params, body_end.values);
+  } else if (body_end.falls) {
+    set_join(out_.body[continuing], body_end.values, loops_.back().continue_params);
+  }
+  if (!body_end.falls && !has_continue) return {false, {}};
+  return build_list(node.continuing, node.params);
+}
+
+/// How many turns of a loop, of which one is built, are written out one after the other. Variables that hand their
+/// values on do so by name then.
+std::size_t Scalarizer::turns_to_write(const std::vector<ScalarId>& params, const ListEnd& next,
+                                       std::uint32_t continuing) const {
+  const LoopContext& loop = loops_.back();
+  if (!next.falls || loop.has_continue || !out_.body[continuing].falls) return 1;
+  // Folding would honour denormals where the loop may not.
+  if (std::ranges::any_of(next.values, [&](ScalarId id) { return level(id) == Level::kConstant; })) return 1;
+  return std::min(turns_until_computed(params, next.values), kMaxTurnOps / (out_.body.size() - loop.op));
+}
+
 void Scalarizer::build_loop(const ir::Node& node) {
   const std::vector<ScalarId> init = arguments(node.init, node.params);
   const std::vector<ScalarId> params = new_joins(node.params);
@@ -252,19 +298,16 @@ void Scalarizer::build_loop(const ir::Node& node) {
   context.continue_params = new_joins(node.continue_params);
   loops_.push_back(std::move(context));
   const std::size_t mark = undo_.size();
-  const ListEnd body_end = build_list(node.body, node.continue_params);
-  const bool has_continue = loops_.back().has_continue;
-  if (has_continue) forget(mark);  // lanes that continued early have not computed the rest of the body
-  here_ = &node.instr;
-  const std::uint32_t continuing_index = add_marker(Kind::kContinuing);
-  out_.body[continuing_index].falls = body_end.falls;
-  if (body_end.falls && !has_continue) {
-    define_all(node.continue_params, body_end.values);
-  } else if (body_end.falls) {
-    set_join(out_.body[continuing_index], body_end.values, loops_.back().continue_params);
+  std::uint32_t continuing_index = kNoIndex;
+  ListEnd next = build_turn(node, mark, continuing_index);
+  const std::size_t turns = turns_to_write(params, next, continuing_index);
+  for (std::size_t turn = 1; turn < turns && next.falls; ++turn) {
+    out_.body[continuing_index].kind = Kind::kTurn;
+    add_marker(Kind::kTurn);
+    forget(mark);  // a turn is what it would be in a loop of its own: the same sums, in the same order
+    define_all(node.params, next.values);
+    next = build_turn(node, mark, continuing_index);
   }
-  ListEnd next{false, {}};
-  if (body_end.falls || has_continue) next = build_list(node.continuing, node.params);
   here_ = &node.instr;
   const std::uint32_t end_index = add_marker(Kind::kEndLoop);
   out_.body[end_index].falls = next.falls;

@@ -110,6 +110,8 @@ class Scalarizer {
   void join_branches(const ir::Node& node, ScalarId cond, std::uint32_t else_index, std::uint32_t end_index,
                      const std::vector<ScalarId>& a, const std::vector<ScalarId>& b);
   std::uint32_t add_marker(Kind kind);
+  ListEnd build_turn(const ir::Node& node, std::size_t mark, std::uint32_t& continuing);
+  std::size_t turns_to_write(const std::vector<ScalarId>& params, const ListEnd& next, std::uint32_t continuing) const;
   void build_loop(const ir::Node& node);
   const ir::Function& ir_;
   std::string& error_;

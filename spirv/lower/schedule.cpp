@@ -20,15 +20,6 @@ void count_sources(const ScalarFunction& f, const ScalarOp& op, std::vector<std:
   for (const ScalarId id : f.of(op.src)) ++uses[id];
 }
 
-std::vector<std::uint32_t> count_uses(const ScalarFunction& f) {
-  std::vector<std::uint32_t> uses(f.scalars.size(), 0);
-  for (const ScalarOp& op : f.body)
-    if (!op.dead) count_sources(f, op, uses);
-  for (const ScalarId id : f.outputs)
-    if (id != kNoScalar) ++uses[id];
-  return uses;
-}
-
 /// Uses in the program that nobody observes: without probes and the arithmetic that only they need.
 std::vector<std::uint32_t> count_plain_uses(const ScalarFunction& f) {
   std::vector<std::uint32_t> uses(f.scalars.size(), 0);
@@ -100,8 +91,11 @@ class MultiplyAdd {
   std::vector<std::uint32_t> product_;          ///< per scalar: the multiplication in the body that gives it
 };
 
-/// Whether the sources may be exchanged. Those of sums and products of floats are not: of two NaNs the first operand's
-/// survives, in a program that somebody observes, where chains are others, as in the plain one.
+/// Whether any two of three sources may be exchanged.
+bool is_symmetric(Op op) { return op == Op::kIAdd3 || op == Op::kXor3 || op == Op::kMajority; }
+
+/// Whether the first two sources may be exchanged. Those of sums and products of floats are not: of two NaNs the first
+/// operand's survives, in a program that somebody observes, where chains are others, as in the plain one.
 bool swappable(Op op) {
   switch (op) {
     case Op::kIAdd:
@@ -109,9 +103,11 @@ bool swappable(Op op) {
     case Op::kAnd:
     case Op::kOr:
     case Op::kXor:
+    case Op::kRotRXor:
+    case Op::kIMulAdd:
       return true;
     default:
-      return false;
+      return is_symmetric(op);
   }
 }
 
@@ -212,9 +208,10 @@ class ChainScheduler {
   bool set_accumulator(std::uint32_t user, ScalarId value) {
     ScalarOp& op = f_.body[begin_ + user];
     const auto sources = f_.of(op.src);
-    if (sources.size() == 2 && sources[0] == value && sources[1] == value &&
+    if (sources.size() >= 2 && sources[0] == value && sources[1] == value &&
         try_accumulator(user, exec::kAllSources, 3))
       return true;
+    if (is_symmetric(op.op) && sources[2] == value && sources[0] != value) std::swap(sources[0], sources[2]);
     if (swappable(op.op) && sources[1] == value && sources[0] != value) std::swap(sources[0], sources[1]);
     for (int k = 0; k < static_cast<int>(sources.size()); ++k)
       if (sources[static_cast<std::size_t>(k)] == value && try_accumulator(user, k, 1u << k)) return true;
@@ -240,6 +237,15 @@ class ChainScheduler {
 };
 
 }  // namespace
+
+std::vector<std::uint32_t> count_uses(const ScalarFunction& f) {
+  std::vector<std::uint32_t> uses(f.scalars.size(), 0);
+  for (const ScalarOp& op : f.body)
+    if (!op.dead) count_sources(f, op, uses);
+  for (const ScalarId id : f.outputs)
+    if (id != kNoScalar) ++uses[id];
+  return uses;
+}
 
 void fuse_multiply_add(ScalarFunction& function) { MultiplyAdd(function).run(); }
 void schedule_chains(ScalarFunction& function, bool apart) { ChainScheduler(function, apart).run(); }

@@ -23,7 +23,9 @@ HWY_INLINE VI load_or_zero(const base::WaveRegister* values, std::size_t first) 
 }
 
 /// 0 <= i < size.
-HWY_INLINE hn::Mask<DI> within(VI i, VI size) { return hn::And(hn::Not(hn::Lt(i, splat(0))), hn::Lt(i, size)); }
+HWY_INLINE hn::Mask<DI> within(VI i, VI size) {
+  return hn::RebindMask(DI(), hn::Lt(hn::BitCast(DU(), i), hn::BitCast(DU(), size)));
+}
 
 /// Where the texels of a wave lie in memory.
 struct Places {
@@ -104,7 +106,8 @@ inline HWY_NOINLINE void place_texels(const ImageView& view, const FetchRequest&
   const VI layer_count = count(view.layer_count), samples = count(view.samples);
   for_each_level(view, request.lod, [&](std::size_t first, hn::Mask<DI> exists, const LevelFields& level) HWY_ATTR {
     const auto at = [&](std::uint32_t i) HWY_ATTR {
-      return hn::Add(load_or_zero(request.coord[i], first), load_or_zero(request.offset[i], first));
+      const VI coord = load_or_zero(request.coord[i], first);
+      return request.offset[i] == nullptr ? coord : hn::Add(coord, load_ints(request.offset[i], first));
     };
     const auto active = hn::RebindMask(DI(), lanes_mask_from_bits(DU(), request.active >> first));
     auto valid = hn::And(active, exists);

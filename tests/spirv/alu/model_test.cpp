@@ -304,6 +304,28 @@ std::uint32_t integer_result(Op op, std::uint32_t a, std::uint32_t b, std::uint3
     case Op::kBfeU:
     case Op::kBfeI:
       return bit_field(op, a, b, c);
+    case Op::kRotR:
+      return std::rotr(a, static_cast<int>(b & 31));
+    case Op::kRotRXor:
+      return std::rotr(a ^ b, static_cast<int>(c & 31));
+    case Op::kXorRotR:
+      return a ^ std::rotr(b, static_cast<int>(c & 31));
+    case Op::kXorShr:
+      return a ^ b >> (c & 31);
+    case Op::kXorShl:
+      return a ^ b << (c & 31);
+    case Op::kIAddShl:
+      return a + (b << (c & 31));
+    case Op::kIMulAdd:
+      return a * b + c;
+    case Op::kIAdd3:
+      return a + b + c;
+    case Op::kXor3:
+      return a ^ b ^ c;
+    case Op::kBitSelect:
+      return (a & b) | (~a & c);
+    case Op::kMajority:
+      return (a & b) | (a & c) | (b & c);
     default:
       return divide(op, a, b);
   }

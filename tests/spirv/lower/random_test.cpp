@@ -50,7 +50,7 @@ class Generator {
 
   void arithmetic() {
     const Op ops[] = {Op::kIAdd, Op::kISub, Op::kIMul, Op::kXor, Op::kAnd, Op::kOr, Op::kUShr, Op::kIMax};
-    switch (pick(8)) {
+    switch (pick(10)) {
       case 0:
         words_.push_back(b_.alu(Op::kSelect, {boolean(), word(), word()}));
         break;
@@ -60,8 +60,35 @@ class Generator {
       case 2:
         words_.push_back(b_.alu(Op::kB2I, {boolean()}));
         break;
+      case 3:
+        words_.push_back(bits());
+        break;
       default:
         words_.push_back(b_.alu(ops[pick(8)], {word(), word()}));
+    }
+  }
+
+  /// What superinstructions of integers are made of.
+  ValueId bits() {
+    const ValueId a = word(), b = word(), c = word();
+    const std::uint32_t n = 1 + pick(31);
+    const auto shifted = [&](Op op, std::uint32_t by) { return b_.alu(op, {a, b_.constant(by)}); };
+    const auto both = [&](ValueId x, ValueId y) { return b_.alu(Op::kAnd, {x, y}); };
+    switch (pick(7)) {
+      case 0:
+        return b_.alu(pick(2) ? Op::kOr : Op::kXor, {shifted(Op::kShl, n), shifted(Op::kUShr, 32 - n)});
+      case 1:
+        return b_.alu(Op::kXor, {pick(2) ? a : b, shifted(pick(2) ? Op::kShl : Op::kUShr, n)});
+      case 2:
+        return b_.alu(Op::kIAdd, {b, shifted(Op::kShl, n)});
+      case 3:
+        return b_.alu(Op::kIAdd, {b_.alu(pick(2) ? Op::kIMul : Op::kIAdd, {a, b}), c});
+      case 4:
+        return b_.alu(pick(2) ? Op::kXor : Op::kOr, {both(a, b), both(b_.alu(Op::kNot, {a}), c)});
+      case 5:
+        return b_.alu(Op::kXor, {b_.alu(Op::kXor, {both(a, b), both(a, c)}), both(b, c)});
+      default:
+        return b_.alu(Op::kXor, {c, both(a, b_.alu(Op::kXor, {b, c}))});
     }
   }
 

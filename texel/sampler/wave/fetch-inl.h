@@ -1,6 +1,8 @@
 // Gathers texels of a vector of lanes and converts them to floats: the twin of decode_row for formats whose texels are
 // fields of at most 32 bits in up to four words.
 
+#include <array>
+
 #include "texel/codec/srgb-inl.h"
 #include "texel/sampler/wave/address-inl.h"
 
@@ -33,6 +35,14 @@ HWY_INLINE VF half_field_to_float(VU half) {
 HWY_INLINE VF half_field_to_float(VU half) { return lanes_half_to_float(half); }
 #endif
 
+/// 1 / (2^bits - 1): a division for every vector would take longer than the rest of the conversion.
+inline constexpr std::array<float, 33> kReciprocal = [] {
+  std::array<float, 33> table{};
+  for (std::uint32_t bits = 1; bits < table.size(); ++bits)
+    table[bits] = static_cast<float>(1.0 / static_cast<double>((1ull << bits) - 1));
+  return table;
+}();
+
 /// How a channel's bits become a value.
 template <Numeric kNumeric>
 HWY_INLINE VF convert_field(VU word, const Channel& channel) {
@@ -41,13 +51,11 @@ HWY_INLINE VF convert_field(VU word, const Channel& channel) {
   const auto mask = static_cast<std::uint32_t>((1ull << bits) - 1);
   const VU field = hn::And(hn::ShiftRightSame(word, static_cast<int>(shift)), hn::Set(DU(), mask));
   if constexpr (kNumeric == Numeric::kUnorm) {
-    const float scale = static_cast<float>(1.0 / static_cast<double>(mask));
-    return hn::Mul(lanes_int_to_float(hn::BitCast(DI(), field)), splat(scale));
+    return hn::Mul(lanes_int_to_float(hn::BitCast(DI(), field)), splat(kReciprocal[bits]));
   } else if constexpr (kNumeric == Numeric::kSnorm) {
     const int unused = static_cast<int>(32 - bits);
     const VI value = hn::ShiftRightSame(hn::ShiftLeftSame(hn::BitCast(DI(), field), unused), unused);
-    const float scale = static_cast<float>(1.0 / static_cast<double>(mask >> 1));
-    return lanes_max_second(hn::Mul(lanes_int_to_float(value), splat(scale)), splat(-1.0f));
+    return lanes_max_second(hn::Mul(lanes_int_to_float(value), splat(kReciprocal[bits - 1])), splat(-1.0f));
   } else if constexpr (kNumeric == Numeric::kSrgb) {
     if (channel.name == 'A') return hn::Mul(lanes_int_to_float(hn::BitCast(DI(), field)), splat(1.0f / 255.0f));
     return srgb_to_linear(hn::BitCast(DI(), field));
