@@ -384,6 +384,16 @@ HWY_INLINE V turned_right(V a, V bits) {
   return hn::Or(hn::Shr(a, shift_count(bits)), hn::Shl(a, shift_count(hn::Sub(lanes_set<V>(32u), bits))));
 }
 
+/// The bits of `yes` where `mask` has ones, of `no` elsewhere. (IfVecThenElse takes whole bytes in most targets.)
+template <class V>
+HWY_INLINE V chosen_bits(V mask, V yes, V no) {
+#if HWY_TARGET == HWY_AVX3
+  return hn::IfVecThenElse(mask, yes, no);
+#else
+  return hn::Xor(no, hn::And(mask, hn::Xor(yes, no)));
+#endif
+}
+
 template <>
 struct LaneOp<Op::kRotR> {
   template <class V>
@@ -460,7 +470,7 @@ template <>
 struct LaneOp<Op::kBitSelect> {
   template <class V>
   static HWY_INLINE auto of(V a, V b, V c) {
-    return hn::IfVecThenElse(a, b, c);
+    return chosen_bits(a, b, c);
   }
 };
 
@@ -468,7 +478,7 @@ template <>
 struct LaneOp<Op::kMajority> {
   template <class V>
   static HWY_INLINE auto of(V a, V b, V c) {
-    return hn::IfVecThenElse(hn::Xor(a, b), c, a);
+    return chosen_bits(hn::Xor(a, b), c, a);
   }
 };
 

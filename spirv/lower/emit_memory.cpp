@@ -379,7 +379,7 @@ void Emitter::probe(const ScalarOp& op) {
       row.operands.push_back({from.file, from.offset});
     }
   }
-  if (const auto joined = f_.joined_probes.find(op.instr); joined != f_.joined_probes.end()) row.also = joined->second;
+  if (op.joined != kNoIndex) row.also = f_.joined_probes[op.joined];
   append(exec::probe, "probe", op.instr).extra[0] = static_cast<std::uint32_t>(program->probe_ops.size());
   program->probe_ops.push_back(std::move(row));
 }

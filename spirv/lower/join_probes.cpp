@@ -53,9 +53,12 @@ void join_probes(ScalarFunction& function) {
         end = i + 1;
         continue;
       }
-      std::vector<std::uint32_t>& joined = function.joined_probes[body[first].instr];
-      const std::uint32_t row = body[i].instr->data[0];  // known already where several turns of a loop are written out
-      if (std::ranges::find(joined, row) == joined.end()) joined.push_back(row);
+      std::uint32_t& joined = body[first].joined;
+      if (joined == kNoIndex) {
+        joined = static_cast<std::uint32_t>(function.joined_probes.size());
+        function.joined_probes.emplace_back();
+      }
+      function.joined_probes[joined].push_back(body[i].instr->data[0]);
       body[i].dead = true;
       // Out of the way of what lies between: no construct begins or ends there, so that nobody names those places.
       const auto at = body.begin() + static_cast<std::ptrdiff_t>(i);

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -80,6 +79,7 @@ struct ScalarOp {
   std::uint32_t offset = 0;                      ///< memory: constant byte offset besides the instruction's own
   std::array<std::uint32_t, 4> at{0, 4, 8, 12};  ///< loads: byte offset of each result behind the first
   const ir::Instr* instr = nullptr;              ///< parameters of intrinsics, origin
+  std::uint32_t joined = kNoIndex;               ///< a probe of a block: row of ScalarFunction::joined_probes
 
   /// Whether `cond` itself is read.
   bool reads_condition() const { return cond != kNoScalar && test == ir::Op::kCount; }
@@ -102,9 +102,8 @@ struct ScalarFunction {
   std::uint32_t groups_per_wave = 1;
   std::vector<ScalarId> outputs;  ///< per interface.outputs: the value that leaves (kNoScalar: never stored)
   std::vector<ScalarId> preset;   ///< constants and uniforms that bind() keeps broadcast in registers
-  /// By the instruction of a probe of a block: further blocks that the same lanes come by, rows of
-  /// ir::Function::probes.
-  std::map<const ir::Instr*, std::vector<std::uint32_t>> joined_probes;
+  /// By ScalarOp::joined: further blocks that the same lanes come by, rows of ir::Function::probes.
+  std::vector<std::vector<std::uint32_t>> joined_probes;
   std::vector<ScalarId> observed;  ///< inputs that are there when the program starts, though no operation reads them
 
   ScalarId add(bool boolean, Level level) {

@@ -71,6 +71,12 @@ bool has_any(const ir::NodeList& list, bool (*is)(Op)) {
   });
 }
 
+/// The bits of 1 / x where that is exact and no denormal, x being a power of two; else 0.
+std::uint32_t exact_reciprocal(std::uint32_t x) {
+  const std::uint32_t sign = x & 0x80000000u, exponent = x >> 23 & 255;
+  return (x & 0x7fffffu) == 0 && exponent >= 1 && exponent <= 253 ? sign | (254 - exponent) << 23 : 0;
+}
+
 /// Small workgroups whose invocations work alone share a wave: how many.
 std::uint32_t groups_per_wave(const ir::Function& function) {
   const auto& size = function.interface.local_size;
@@ -200,6 +206,13 @@ ScalarId Scalarizer::alu(Op op, std::span<const ScalarId> given, const ir::Instr
   std::array<ScalarId, 3> copy{};
   std::copy(given.begin(), given.end(), copy.begin());
   if (commutes(op) && copy[1] < copy[0]) std::swap(copy[0], copy[1]);
+  if (op == Op::kFDiv && level(copy[1]) == Level::kConstant) {
+    // Both are the same number rounded once; LLVM multiplies, too (InstCombineMulDivRem.cpp: foldFDivConstantDivisor).
+    if (const std::uint32_t reciprocal = exact_reciprocal(out_.scalars[copy[1]].bits)) {
+      op = Op::kFMul;
+      copy[1] = constant(reciprocal, false);
+    }
+  }
   const std::span<const ScalarId> sources(copy.data(), given.size());
   const bool boolean = ir::alu_info(op).result == 'B';
   if (op == Op::kMov || op == Op::kMovB) return sources[0];

@@ -7,7 +7,7 @@ namespace vitrine::spirv::lowering {
 namespace {
 
 /// Turns of a loop that are written out one after the other, and their operations.
-constexpr std::size_t kMaxTurns = 16, kMaxTurnOps = 1024;
+constexpr std::size_t kMaxTurns = 16, kMaxTurnOps = 1024, kSmallTurn = 64;
 
 /// How many turns of a loop hand each variable a value that was computed in one of them, where `next` are the values
 /// for the next turn: that many written out need no copies from one variable to another.
@@ -272,14 +272,17 @@ ListEnd Scalarizer::build_turn(const ir::Node& node, std::size_t mark, std::uint
 }
 
 /// How many turns of a loop, of which one is built, are written out one after the other. Variables that hand their
-/// values on do so by name then.
+/// values on do so by name then; in two turns of a small loop those that depend on each other need no copies, either:
+/// the second turn gives the registers back that the first one takes.
 std::size_t Scalarizer::turns_to_write(const std::vector<ScalarId>& params, const ListEnd& next,
                                        std::uint32_t continuing) const {
   const LoopContext& loop = loops_.back();
   if (!next.falls || loop.has_continue || !out_.body[continuing].falls) return 1;
   // Folding would honour denormals where the loop may not.
   if (std::ranges::any_of(next.values, [&](ScalarId id) { return level(id) == Level::kConstant; })) return 1;
-  return std::min(turns_until_computed(params, next.values), kMaxTurnOps / (out_.body.size() - loop.op));
+  const std::size_t size = out_.body.size() - loop.op;
+  const std::size_t least = params.size() > 2 && size <= kSmallTurn ? 2 : 1;
+  return std::max(least, std::min(turns_until_computed(params, next.values), kMaxTurnOps / size));
 }
 
 void Scalarizer::build_loop(const ir::Node& node) {

@@ -14,6 +14,16 @@ code:
     0  FAdd           r0 r0 u0
     1  end
 )"},
+    {"quotients by powers of two are products", R"(
+StoreOutput FAdd(FDiv(%a, 16777216.0), FDiv(%b, 3.0))
+)",
+     R"(
+registers 2, masks 0, uniform words 2 (2 constants)
+code:
+    0  FDiv           r1 r1 u0
+    1  FMulAdd        r0 r0 u1 r1
+    2  end
+)"},
     {"equal expressions are one", R"(
 %x = FAdd %a, %b
 %y = FAdd %a, %b
