@@ -42,6 +42,27 @@ struct Indices {
     if (position < count) std::memcpy(&value, data + position * sizeof(T), sizeof(T));
     return value + offset;
   }
+
+  /// Extends a range by the indices at `positions` positions from `first` on.
+  void extend(std::uint64_t first, std::uint32_t positions, std::uint32_t& lowest, std::uint32_t& highest) const {
+    std::uint32_t low = lowest, high = highest;
+    const auto add = [&](std::uint32_t index) {
+      low = std::min(low, index);
+      high = std::max(high, index);
+    };
+    if (first + positions <= count) {
+      const std::byte* from = data + first * sizeof(T);
+      for (std::uint32_t i = 0; i < positions; ++i) {  // without a check for each, so that it becomes SIMD code
+        T value;
+        std::memcpy(&value, from + i * sizeof(T), sizeof(T));
+        add(value + offset);
+      }
+    } else {
+      for (std::uint32_t i = 0; i < positions; ++i) add((*this)[first + i]);
+    }
+    lowest = low;
+    highest = high;
+  }
 };
 
 struct Gather {
@@ -68,10 +89,13 @@ struct Gather {
     };
     if (positions > kHashSize / 2) return each([&](std::uint32_t index, const Run& run) { add_new(index, run); });
     std::uint32_t lowest = ~0u, highest = 0;
-    each([&](std::uint32_t index, const Run&) {
-      lowest = std::min(lowest, index);
-      highest = std::max(highest, index);
-    });
+    const TopologyShape& shape = chunk.draw->plan->shape;
+    for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
+      const RunSpan span = run_span(shape, chunk.runs[r]);
+      const std::uint64_t first = std::uint64_t{call.first} + chunk.runs[r].start;
+      if (span.center) indices.extend(first, 1, lowest, highest);
+      indices.extend(first + span.low, span.high - span.low, lowest, highest);
+    }
     const bool one_instance = chunk.runs[0].instance == chunk.runs[chunk.run_count - 1].instance;
     scratch.hash_slot.resize(kHashSize);
     if (one_instance && highest - lowest < kHashSize) {

@@ -14,6 +14,11 @@ constexpr char kBlur25[] =
     "uniform sampler2D t; void main() { vec4 s = vec4(0); float w = 0.0; for (int y = -2; y <= 2; ++y)"
     " for (int x = -2; x <= 2; ++x) { float g = exp2(-0.3 * float(x * x + y * y)); w += g;"
     " s += g * texture(t, uv + vec2(x, y) * 0.0021); } o = s / w; }";
+constexpr char kFetch25[] =
+    "uniform sampler2D t; void main() { ivec2 p = ivec2(uv * 507.0) + 2; vec4 s = vec4(0); for (int y = -2; y <= 2; "
+    "++y)"
+    " for (int x = -2; x <= 2; ++x) s += texelFetch(t, p + ivec2(x, y), 0) * (1.0 / float(1 + x * x + y * y)); o = s; "
+    "}";
 constexpr char kRadial[] =
     "uniform sampler2D t; void main() { vec2 d = (vec2(0.5, 0.4) - uv) / 24.0; vec2 p = uv; vec4 s = vec4(0);"
     " float a = 1.0; for (int i = 0; i < 24; ++i) { s += texture(t, p) * a; p += d; a *= 0.93; } o = s * 0.085; }";
@@ -101,6 +106,8 @@ std::vector<Workload> texture_workloads() {
   add("tex_blur8", {.body = kBlur});
   add("tex_radial", {.body = kRadial});
   add("tex_blur25_32f", {.body = kBlur25, .format = VK_FORMAT_R32G32B32A32_SFLOAT});
+  add("tex_near25_32f", {.body = kBlur25, .filter = VK_FILTER_NEAREST, .format = VK_FORMAT_R32G32B32A32_SFLOAT});
+  add("tex_fetch25_32f", {.body = kFetch25, .format = VK_FORMAT_R32G32B32A32_SFLOAT});
   add("tex_rgba16f", {.format = VK_FORMAT_R16G16B16A16_SFLOAT});
   add("tex_srgb", {.format = VK_FORMAT_R8G8B8A8_SRGB});
   add("tex_aniso8", {.body = kStretched, .levels = 10, .anisotropy = 8});
