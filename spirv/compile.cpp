@@ -58,17 +58,49 @@ class Rehearsed : public exec::Observer {
   exec::Interest interest_;
 };
 
-/// Null: there is none, as where it takes too many registers.
+/// Nothing: there is none, as where it takes too many registers. `homes`: variables lie where they can be changed.
 std::shared_ptr<const Shader> compile_rehearsal(std::span<const std::uint32_t> words, const CompileOptions& options,
-                                                const exec::Observer& observer) {
-  if (!observer.interest().rehearsal) return nullptr;
-  base::Result<ir::Function> function = translate(words, options, observer.rehearsed());
+                                                exec::Interest interest, bool homes) {
+  interest.rehearsal = homes;
+  base::Result<ir::Function> function = translate(words, options, interest);
   if (!function) return nullptr;
   rewrite(function.value(), {}, Steps::kNeeded);
   ir::make_joins_whole(function.value());
-  auto shader = lower(function.take(), std::make_shared<Rehearsed>(observer.rehearsed()));
+  interest.rehearsal = true;
+  auto shader = lower(function.take(), std::make_shared<Rehearsed>(interest));
   return shader ? std::shared_ptr<const Shader>(shader.take()) : nullptr;
 }
+
+std::shared_ptr<const Shader> compile_rehearsal(std::span<const std::uint32_t> words, const CompileOptions& options,
+                                                const exec::Observer& observer) {
+  auto shader = compile_rehearsal(words, options, observer.rehearsed(), true);
+  return shader ? shader : compile_rehearsal(words, options, observer.rehearsed(), false);
+}
+
+/// An observer who wanted a rehearsal where there is none: he sees the program itself with the rehearsal's probes.
+class WithoutRehearsal : public exec::Observer {
+ public:
+  explicit WithoutRehearsal(std::shared_ptr<const exec::Observer> observer)
+      : observer_(std::move(observer)), interest_(observer_->interest()) {
+    const exec::Interest rehearsed = observer_->rehearsed();
+    interest_.rehearsal = false;
+    interest_.numbers |= rehearsed.numbers;
+    interest_.printf |= rehearsed.printf;
+    interest_.debug |= rehearsed.debug;
+  }
+  exec::Interest interest() const override { return interest_; }
+  void made(const Program& program) const override { observer_->made(program); }
+  void apart(const Wave& wave) const override { observer_->apart(wave); }
+  bool in_order() const override { return observer_->in_order(); }
+  exec::Watch* lasting_watch() const override { return observer_->lasting_watch(); }
+  std::unique_ptr<exec::Watch> watch(const Wave& wave, const Instruction* start) const override {
+    return observer_->watch(wave, start);
+  }
+
+ private:
+  std::shared_ptr<const exec::Observer> observer_;
+  exec::Interest interest_;
+};
 
 }  // namespace
 
@@ -90,7 +122,12 @@ std::string check_module(std::span<const std::uint32_t> words) {
 base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> words, const CompileOptions& options) {
   if (std::string error = check_module(words); !error.empty()) return base::Error{error};
   if (std::string error = missing_device_capability(words); !error.empty()) return base::Error{error};
-  const auto observer = options.observer ? options.observer : exec::requested_tracer(options.stage);
+  auto observer = options.observer ? options.observer : exec::requested_tracer(options.stage);
+  std::shared_ptr<const Shader> rehearsal;
+  if (observer && observer->interest().rehearsal) {
+    rehearsal = compile_rehearsal(words, options, *observer);
+    if (!rehearsal) observer = std::make_shared<WithoutRehearsal>(std::move(observer));
+  }
   base::Result<ir::Function> function = translate(words, options, observer ? observer->interest() : exec::Interest{});
   if (!function) return explained(function.message(), words);
   log_diagnosis(words);
@@ -98,8 +135,7 @@ base::Result<std::unique_ptr<Shader>> compile(std::span<const std::uint32_t> wor
   if (kept) kept->push_back({"SPIR-V", "the module as the application gave it, disassembled", module_text(words)});
   rewrite(function.value(), kept ? keep_steps(*kept) : StepListener());
   ir::make_joins_whole(function.value());
-  base::Result<std::unique_ptr<Shader>> shader =
-      lower(function.take(), observer, observer ? compile_rehearsal(words, options, *observer) : nullptr);
+  base::Result<std::unique_ptr<Shader>> shader = lower(function.take(), observer, std::move(rehearsal));
   if (kept && shader)
     kept->push_back(
         {"program", "the instructions that run, with their registers", disassemble(shader.value()->program())});

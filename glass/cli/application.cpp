@@ -31,7 +31,7 @@ fs::path driver_manifest(const fs::path& command) {
   return {};
 }
 
-Ending run_application(const CommandLine& application, Environment environment) {
+Ending run_application(const CommandLine& application, Environment environment, const Interrupted& interrupted) {
   std::error_code error;
   const fs::path command = fs::read_symlink("/proc/self/exe", error), manifest = driver_manifest(command);
   if (manifest.empty()) {
@@ -40,7 +40,7 @@ Ending run_application(const CommandLine& application, Environment environment) 
   }
   environment["VK_DRIVER_FILES"] = manifest;
   environment["VK_ICD_FILENAMES"] = manifest;  // what loaders before 1.3.207 read
-  Ending ending = run_to_end(application, environment);
+  Ending ending = run_to_end(application, environment, interrupted);
   if (!ending.error.empty()) {
     say(application[0] + " cannot be started: " + ending.error);
     ending.code = kCouldNotRun;

@@ -16,7 +16,8 @@ std::filesystem::path driver_manifest(const std::filesystem::path& command);
 
 /// Runs it on this driver. Says whatever is not as usual: that it could not be started, failed, was ended by a signal.
 /// Ending::error: it did not run.
-Ending run_application(const CommandLine& application, Environment environment = {});
+Ending run_application(const CommandLine& application, Environment environment = {},
+                       const Interrupted& interrupted = {});
 
 /// The tool is in tools.def.
 bool is_tool(std::string_view name);

@@ -10,12 +10,14 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <mutex>
 #include <thread>
 
 #include "glass/cli/application.h"
 #include "glass/cli/debug_link.h"
 #include "glass/cli/files.h"
 #include "glass/cli/say.h"
+#include "glass/debug/socket_io.h"
 
 namespace vitrine::glass::cli {
 namespace {
@@ -69,6 +71,39 @@ class Prompt {
   std::string last_;
 };
 
+/// Ctrl-C: the shader that runs stops, or soon one that comes.
+class Pausing {
+ public:
+  /// Of the process that shaders run in; -1: none does.
+  void connect(int socket) {
+    const std::lock_guard lock(mutex_);
+    socket_ = socket;
+    state_ = State::kRuns;
+  }
+  void stopped(bool stopped) {
+    const std::lock_guard lock(mutex_);
+    state_ = stopped ? State::kStopped : State::kRuns;
+  }
+  /// False: the application is to end, it does not stop.
+  bool interrupt() {
+    const std::lock_guard lock(mutex_);
+    if (state_ == State::kStopped) {
+      std::fputs("\n(the shader waits; detach lets the application go on by itself)\n", stdout);
+      std::fflush(stdout);
+      return true;
+    }
+    if (socket_ < 0 || state_ == State::kPausing) return false;
+    state_ = State::kPausing;
+    return debug::send_whole(socket_, "{\"request\": \"pause\"}\n");
+  }
+
+ private:
+  enum class State : std::uint8_t { kRuns, kStopped, kPausing };
+  std::mutex mutex_;
+  int socket_ = -1;
+  State state_ = State::kRuns;
+};
+
 /// Asks the person until the shader goes on; false: the process has ended.
 bool answer_stop(DebugLink& link, Prompt& prompt) {
   for (;;) {
@@ -82,20 +117,33 @@ bool answer_stop(DebugLink& link, Prompt& prompt) {
   }
 }
 
-void follow(int socket, Prompt& prompt) {
-  DebugLink link(socket);
+void follow_link(DebugLink& link, Prompt& prompt, Pausing& pausing) {
   while (const auto message = link.receive()) {
+    // Answers without a question of the prompt: to Ctrl-C.
+    if (!message->contains("event")) continue;
+    const bool stopped = message->value("event", "") == "stopped";
+    if (stopped) pausing.stopped(true);
     prompt.show(*message, "");
-    if (message->value("event", "") == "stopped" && !answer_stop(link, prompt)) return;
+    if (!stopped) continue;
+    if (!answer_stop(link, prompt)) return;
+    pausing.stopped(false);
   }
 }
 
-void converse(int listener, int ended, Prompt& prompt) {
+void follow(int socket, Prompt& prompt, Pausing& pausing) {
+  DebugLink link(socket);
+  pausing.connect(socket);
+  follow_link(link, prompt, pausing);
+  pausing.connect(-1);
+}
+
+void converse(int listener, int ended, Prompt& prompt, Pausing& pausing) {
   for (;;) {
     pollfd waited[] = {{listener, POLLIN, 0}, {ended, POLLIN, 0}};
     if (::poll(waited, 2, -1) < 0) continue;
     if ((waited[0].revents & POLLIN) != 0) {
-      if (const int socket = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC); socket >= 0) follow(socket, prompt);
+      if (const int socket = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC); socket >= 0)
+        follow(socket, prompt, pausing);
       continue;
     }
     if (waited[1].revents != 0) return;
@@ -134,8 +182,10 @@ int debug(const DebugOptions& options) {
     say("no socket can be made");
     return kCouldNotRun;
   }
-  std::thread face = quiet_thread([&] { converse(listener, ended[0], prompt); });
-  const Ending ending = run_application(options.application, debug_environment(path, options));
+  Pausing pausing;
+  std::thread face = quiet_thread([&] { converse(listener, ended[0], prompt, pausing); });
+  const Ending ending =
+      run_application(options.application, debug_environment(path, options), [&] { return pausing.interrupt(); });
   ::close(ended[1]);
   face.join();
   ::close(ended[0]);

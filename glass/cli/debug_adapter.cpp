@@ -52,7 +52,8 @@ json unverified(const json& rows) {
 
 json filters() {
   return json::array({{{"filter", "printf"}, {"label", "Messages (printf)"}},
-                      {{"filter", "nan"}, {"label", "Operations that make a NaN"}}});
+                      {{"filter", "nan"}, {"label", "Operations that make a NaN"}},
+                      {{"filter", "findings"}, {"label", "What sanitize and race find"}}});
 }
 
 const char* reason_of(const std::string& reason) {
@@ -99,6 +100,10 @@ json DebugAdapter::answer(const std::string& command, const json& arguments) {
   if (command == "scopes") return scopes(arguments);
   if (command == "variables") return variables(arguments);
   if (command == "evaluate") return evaluate(arguments);
+  if (command == "setVariable") return set_variable(arguments);
+  if (command == "setExpression") return set_expression(arguments);
+  if (command == "dataBreakpointInfo") return data_breakpoint_info(arguments);
+  if (command == "setDataBreakpoints") return set_data_breakpoints(arguments);
   if (command == "source") return source(arguments);
   if (command == "exceptionInfo") return exception(arguments);
   if (command == "continue") return move("continue", false, arguments);
@@ -121,6 +126,9 @@ json DebugAdapter::initialize(const json&) {
           {"supportsStepBack", true},
           {"supportsEvaluateForHovers", true},
           {"supportsExceptionInfoRequest", true},
+          {"supportsSetVariable", true},
+          {"supportsSetExpression", true},
+          {"supportsDataBreakpoints", true},
           {"exceptionBreakpointFilters", filters()}};
 }
 
@@ -243,8 +251,8 @@ json DebugAdapter::stack(const json& arguments) {
   return {{"stackFrames", list}, {"totalFrames", list.size()}};
 }
 
-int DebugAdapter::refer(json children) {
-  references_.push_back({std::move(children)});
+int DebugAdapter::refer(json children, Owner owner) {
+  references_.push_back({std::move(children), std::move(owner)});
   return static_cast<int>(references_.size());
 }
 
@@ -254,35 +262,101 @@ json DebugAdapter::scopes(const json& arguments) {
   for (const auto& [which, name] : {std::pair{"locals", "Locals"}, std::pair{"globals", "Globals"}}) {
     json answer = ask({{"request", "variables"}, {"lane", id / kFrames}, {"frame", id % kFrames}, {"which", which}});
     if (answer.contains("error")) return answer;
-    list.push_back({{"name", name}, {"variablesReference", refer(list_of(answer, "list"))}, {"expensive", false}});
+    list.push_back({{"name", name},
+                    {"variablesReference", refer(list_of(answer, "list"), {id / kFrames, id % kFrames, ""})},
+                    {"expensive", false}});
   }
   return {{"scopes", std::move(list)}};
 }
 
-json DebugAdapter::variable_of(const json& tree) {
+json DebugAdapter::variable_of(const json& tree, Owner itself) {
   json children = list_of(tree, "children");
-  return {{"name", text_of(tree, "name")},
-          {"type", text_of(tree, "type")},
-          {"value", text_of(tree, "value")},
-          {"variablesReference", children.empty() ? 0 : refer(std::move(children))}};
+  json variable = {{"name", text_of(tree, "name")},
+                   {"type", text_of(tree, "type")},
+                   {"value", text_of(tree, "value")},
+                   {"evaluateName", itself.expression}};
+  variable["variablesReference"] = children.empty() ? 0 : refer(std::move(children), std::move(itself));
+  return variable;
+}
+
+/// Blocks without a name have one that begins with '%': their members are visible as variables.
+DebugAdapter::Owner DebugAdapter::child_of(const Owner& owner, const std::string& name) {
+  Owner child = owner;
+  if (owner.expression.empty() || owner.expression.starts_with('%'))
+    child.expression = name;
+  else
+    child.expression += name.starts_with('[') ? name : "." + name;
+  return child;
 }
 
 json DebugAdapter::variables(const json& arguments) {
   const std::size_t reference = number_of(arguments, "variablesReference");
   if (reference == 0 || reference > references_.size()) return failure("that is gone");
   json list = json::array();
-  for (const json& child : json(references_[reference - 1].children)) list.push_back(variable_of(child));
+  const Reference of = references_[reference - 1];
+  for (const json& child : of.children) list.push_back(variable_of(child, child_of(of.owner, text_of(child, "name"))));
   return {{"variables", std::move(list)}};
+}
+
+/// What a request names: a variable of a reference, or an expression in a frame.
+DebugAdapter::Owner DebugAdapter::named_by(const json& arguments, const char* expression) {
+  const std::size_t reference = number_of(arguments, "variablesReference");
+  if (reference != 0 && reference <= references_.size())
+    return child_of(references_[reference - 1].owner, text_of(arguments, "name"));
+  const std::size_t id = number_of(arguments, "frameId", lane_ * kFrames + 1) - 1;
+  return {id / kFrames, id % kFrames, text_of(arguments, expression)};
+}
+
+json DebugAdapter::set_variable(const json& arguments) { return set(named_by(arguments, "name"), arguments); }
+json DebugAdapter::set_expression(const json& arguments) {
+  return set(named_by({{"frameId", number_of(arguments, "frameId", lane_ * kFrames + 1)},
+                       {"expression", text_of(arguments, "expression")}},
+                      "expression"),
+             arguments);
+}
+
+json DebugAdapter::set(const Owner& owner, const json& arguments) {
+  const json answer = ask({{"request", "set"},
+                           {"lane", owner.lane},
+                           {"frame", owner.frame},
+                           {"text", owner.expression},
+                           {"value", text_of(arguments, "value")}});
+  return answer.contains("error") ? answer : variable_of(answer, owner);
+}
+
+json DebugAdapter::data_breakpoint_info(const json& arguments) {
+  const Owner owner = named_by(arguments, "name");
+  const json known =
+      ask({{"request", "evaluate"}, {"lane", owner.lane}, {"frame", owner.frame}, {"text", owner.expression}});
+  if (known.contains("error")) return {{"dataId", nullptr}, {"description", text_of(known, "error")}};
+  return {{"dataId", json{{"lane", owner.lane}, {"frame", owner.frame}, {"text", owner.expression}}.dump()},
+          {"description", owner.expression},
+          {"accessTypes", json::array({"write"})}};
+}
+
+json DebugAdapter::set_data_breakpoints(const json& arguments) {
+  const json rows = list_of(arguments, "breakpoints");
+  json list = json::array(), answers = json::array();
+  for (const json& row : rows) {
+    const json id = row.is_object() ? json::parse(text_of(row, "dataId"), nullptr, false) : json();
+    list.push_back(id.is_object() ? id : json::object());
+  }
+  const json answer = ask({{"request", "watches"}, {"list", std::move(list)}});
+  if (answer.contains("error")) return rows.empty() ? json{{"breakpoints", answers}} : answer;
+  for (const json& row : list_of(answer, "list"))
+    answers.push_back({{"id", number_of(row, "number")},
+                       {"verified", row.value("verified", json(false))},
+                       {"message", text_of(row, "message")}});
+  return {{"breakpoints", std::move(answers)}};
 }
 
 json DebugAdapter::evaluate(const json& arguments) {
   const std::size_t id = number_of(arguments, "frameId", lane_ * kFrames + 1) - 1;
-  const json answer = ask({{"request", "evaluate"},
-                           {"lane", id / kFrames},
-                           {"frame", id % kFrames},
-                           {"text", text_of(arguments, "expression")}});
+  const Owner owner{id / kFrames, id % kFrames, text_of(arguments, "expression")};
+  const json answer =
+      ask({{"request", "evaluate"}, {"lane", owner.lane}, {"frame", owner.frame}, {"text", owner.expression}});
   if (answer.contains("error")) return answer;
-  json variable = variable_of(answer);
+  json variable = variable_of(answer, owner);
   return {{"result", variable["value"]},
           {"type", variable["type"]},
           {"variablesReference", variable["variablesReference"]}};

@@ -30,8 +30,14 @@ class DebugAdapter {
   void ended(int code);
 
  private:
+  /// What an expression names in a frame of an invocation.
+  struct Owner {
+    std::size_t lane = 0, frame = 0;
+    std::string expression;  ///< empty: a scope
+  };
   struct Reference {
     json children;  ///< list of {name, type, value, children}
+    Owner owner;
   };
 
   json answer(const std::string& command, const json& arguments);
@@ -43,6 +49,11 @@ class DebugAdapter {
   json scopes(const json& arguments);
   json variables(const json& arguments);
   json evaluate(const json& arguments);
+  json set_variable(const json& arguments);
+  json set_expression(const json& arguments);
+  json set(const Owner& owner, const json& arguments);
+  json data_breakpoint_info(const json& arguments);
+  json set_data_breakpoints(const json& arguments);
   json source(const json& arguments);
   json move(const char* how, bool backward, const json& arguments);
   json set_exceptions(const json& arguments);
@@ -52,8 +63,10 @@ class DebugAdapter {
   json ask_breakpoints(const json& request);
   void send_breakpoints();
   json source_of(const std::string& file);
-  int refer(json children);
-  json variable_of(const json& tree);
+  int refer(json children, Owner owner);
+  json variable_of(const json& tree, Owner itself);
+  static Owner child_of(const Owner& owner, const std::string& name);
+  Owner named_by(const json& arguments, const char* expression);
   void event(const char* name, json body);
 
   DapWire& wire_;

@@ -65,12 +65,36 @@ int spawn(pid_t& child, std::vector<std::string> command, const Environment& env
   return error;
 }
 
-Ending wait_for(pid_t child, const sigset_t& held) {
+/// A child inherits that a signal is ignored.
+class IgnoredInterrupt {
+ public:
+  explicit IgnoredInterrupt(bool ignored) : ignored_(ignored) {
+    if (!ignored_) return;
+    struct sigaction ignore {};
+    ignore.sa_handler = SIG_IGN;
+    ::sigaction(SIGINT, &ignore, &before_);
+  }
+  IgnoredInterrupt(const IgnoredInterrupt&) = delete;
+  IgnoredInterrupt& operator=(const IgnoredInterrupt&) = delete;
+  ~IgnoredInterrupt() {
+    if (ignored_) ::sigaction(SIGINT, &before_, nullptr);
+  }
+
+ private:
+  bool ignored_;
+  struct sigaction before_ {};
+};
+
+Ending wait_for(pid_t child, const sigset_t& held, const Interrupted& interrupted) {
   for (;;) {
     siginfo_t info{};
     const int number = ::sigwaitinfo(&held, &info);
     // Signals of the terminal (SI_KERNEL) go to all of its foreground processes.
-    if (number > 0 && number != SIGCHLD && info.si_code <= 0) ::kill(child, number);
+    if (number == SIGINT && interrupted) {
+      if (!interrupted()) ::kill(child, SIGTERM);
+    } else if (number > 0 && number != SIGCHLD && info.si_code <= 0) {
+      ::kill(child, number);
+    }
     int status = 0;
     if (::waitpid(child, &status, WNOHANG) != child) continue;
     if (WIFEXITED(status)) return {"", WEXITSTATUS(status), 0};
@@ -80,11 +104,15 @@ Ending wait_for(pid_t child, const sigset_t& held) {
 
 }  // namespace
 
-Ending run_to_end(const std::vector<std::string>& command, const Environment& environment) {
+Ending run_to_end(const std::vector<std::string>& command, const Environment& environment,
+                  const Interrupted& interrupted) {
   const HeldSignals signals;
   pid_t child = 0;
-  if (const int error = spawn(child, command, environment, signals.before())) return {std::strerror(error), 0, 0};
-  return wait_for(child, signals.held());
+  {
+    const IgnoredInterrupt ignored(interrupted != nullptr);
+    if (const int error = spawn(child, command, environment, signals.before())) return {std::strerror(error), 0, 0};
+  }
+  return wait_for(child, signals.held(), interrupted);
 }
 
 }  // namespace vitrine::glass::cli

@@ -1,6 +1,7 @@
 // Runs an application: its signals are ours, its end is told.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,8 +17,12 @@ struct Ending {
 /// Variables that the application gets besides ours.
 using Environment = std::map<std::string, std::string>;
 
+/// What Ctrl-C does instead of ending the command. False: nothing, it is to end.
+using Interrupted = std::function<bool()>;
+
 /// Runs `command` (a name is looked up as shells do) to its end. Signals that somebody sends to us go to it; those of
-/// the terminal reach it anyway.
-Ending run_to_end(const std::vector<std::string>& command, const Environment& environment);
+/// the terminal reach it anyway. With `interrupted` it ignores SIGINT, and gets SIGTERM where that says so.
+Ending run_to_end(const std::vector<std::string>& command, const Environment& environment,
+                  const Interrupted& interrupted = {});
 
 }  // namespace vitrine::glass::cli

@@ -46,7 +46,7 @@ std::string remove_one(Engine& engine, std::string_view rest) {
 
 std::string catch_it(Engine& engine, std::string_view rest) {
   const unsigned bit = catch_of(rest);
-  if (bit == 0 && rest != "nothing") return "catch printf, nan or nothing\n";
+  if (bit == 0 && rest != "nothing") return "catch printf, nan, finding or nothing\n";
   engine.set_catches(bit == 0 ? 0 : engine.catches() | bit);
   const std::string text = catches_text(engine.catches());
   return text.empty() ? "nothing is caught\n" : "caught: " + text + "\n";
@@ -121,6 +121,10 @@ std::string list(Engine& engine, std::string_view rest) {
 std::string disassemble(Engine& engine, std::string_view) { return disassembly_text(engine); }
 std::string who_wrote(Engine& engine, std::string_view rest) { return who_wrote_text(engine, std::string(rest)); }
 std::string watch(Engine& engine, std::string_view rest) { return watch_text(engine, std::string(rest)); }
+std::string set_value(Engine& engine, std::string_view rest) {
+  if (rest.starts_with("var ") || rest.starts_with("variable ")) rest = trimmed(rest.substr(rest.find(' ')));
+  return set_text(engine, std::string(rest));
+}
 std::string help(Engine&, std::string_view);
 
 struct Row {
@@ -135,7 +139,9 @@ constexpr Row kRows[] = {
      "FILE:LINE, LINE, FUNCTION, pixel X,Y, vertex N, workgroup X,Y,Z or invocation X,Y,Z; [if EXPRESSION]"},
     {"tbreak", "tb", break_once, "the same, once"},
     {"catch", nullptr, catch_it,
-     "printf: messages; nan: operations that make a NaN, in shaders made from then on; nothing"},
+     "printf: messages; nan: operations that make a NaN; finding: what sanitize and race find; the latter two in "
+     "shaders "
+     "made from then on; nothing"},
     {"delete", "d", remove_one, "[NUMBER]: a breakpoint or watch; without a number, all"},
     {"run", "r", go<Kind::kContinue, false>, "the same as continue"},
     {"continue", "c", go<Kind::kContinue, false>, "to the next breakpoint"},
@@ -147,8 +153,10 @@ constexpr Row kRows[] = {
     {"reverse-finish", "rfin", go<Kind::kFinish, true>, "to the line that calls the function"},
     {"reverse-continue", "rc", go<Kind::kContinue, true>, "back to the last breakpoint"},
     {"print", "p", print, "EXPRESSION; EXPRESSION @lanes: in all lanes of the wave"},
-    {"watch", nullptr, watch, "VARIABLE: stop when it changes in this invocation"},
-    {"whowrote", nullptr, who_wrote, "VARIABLE: the line that gave it its value"},
+    {"watch", nullptr, watch,
+     "VARIABLE: stop when it changes in this invocation; MEMORY: when any invocation changes it"},
+    {"whowrote", nullptr, who_wrote, "VARIABLE or MEMORY: the line that gave it its value"},
+    {"set", nullptr, set_value, "VARIABLE or MEMORY = EXPRESSION: the run goes on with another value"},
     {"info", "i", info, "lanes, locals, globals or breakpoints"},
     {"lane", nullptr, choose_lane, "NUMBER: look at another invocation of the wave"},
     {"backtrace", "bt", backtrace, "the calls that lead here"},

@@ -113,9 +113,9 @@ const std::map<std::uint32_t, std::vector<int>>& Engine::stops_of(const Subject&
 bool Engine::is_wanted(const std::shared_ptr<const Subject>& subject, const spirv::Wave& wave, const Run* known) {
   if (detached_) return false;
   const bool steps = motion_.kind != Motion::Kind::kContinue && focus_.run;
-  if (known != nullptr || pausing_ || steps) return true;
+  if (known != nullptr || pausing_ || steps || (catches_ & kCatchFinding) != 0) return true;
   for (const auto& [number, watchpoint] : watchpoints_)
-    if (watchpoint.subject == subject) return true;
+    if (watchpoint.is_memory() || watchpoint.subject == subject) return true;
   if (!stops_of(*subject).empty() || may_raise(*subject, catches_)) return true;
   for (const spirv::Probe& probe : subject->probes)
     if (probe.kind == spirv::Probe::Kind::kStep && probe.number == static_cast<std::uint32_t>(StepKind::kBreak))
@@ -149,6 +149,7 @@ std::shared_ptr<Run> Engine::enter(const std::shared_ptr<const Subject>& subject
   live_ = run;
   history_.enter(run);
   note_reset(*run);
+  aim_watches(*run);
   return run;
 }
 
@@ -157,25 +158,47 @@ void Engine::note_reset(Run& run) {
   if (run.shared == nullptr || run.subject->context.stage != VK_SHADER_STAGE_COMPUTE_BIT) return;
   if (shared_.size() != run.shared_size || std::memcmp(shared_.data(), run.shared, shared_.size()) == 0) return;
   run.begin_stores(0);
-  run.add_store(run.shared, run.shared_size, shared_.data());
+  run.add_store({run.shared, run.shared_size, kNoLane, 1}, shared_.data());
   history_.grown();
+}
+
+/// Memory that is named by a variable lies somewhere else for every set of resources.
+void Engine::aim_watches(const Run& run) {
+  for (auto& [number, watchpoint] : watchpoints_)
+    if (watchpoint.is_memory() && watchpoint.subject == run.subject)
+      watchpoint.memory = memory_of_place(view(run, 0), *watchpoint.place);
 }
 
 void Engine::writes(Run& run, const spirv::Wave& wave, const spirv::Instruction* i, const spirv::InstructionNote& note,
                     StoreLog& log) {
   bool any = false;
-  for_each_written(wave, i, note, [&](std::byte* at, std::uint32_t bytes) {
-    log.keep(at, bytes);
-    if (!std::exchange(any, true)) run.begin_stores(note.origin.place);
-    run.add_store(at, bytes);
+  for_each_written(wave, i, note, [&](const Written& written) {
+    if (!std::exchange(any, true)) {
+      std::unique_lock lock(mutex_);
+      wave_ = &wave;
+      settle_stores(lock);
+      run.begin_stores(note.origin.place);
+    }
+    log.keep(written.at, written.bytes);
+    run.add_store(written);
   });
   if (!any) return;
   const std::unique_lock lock(mutex_);
   history_.grown();
+  unsettled_ = !watchpoints_.empty();
+}
+
+/// Stores are recorded before they are done: whether they have changed something is known when the next thing happens.
+void Engine::settle_stores(std::unique_lock<std::mutex>& lock) {
+  if (!std::exchange(unsettled_, false) || detached_ || !live_ || live_->size() == 0) return;
+  const std::shared_ptr<Run> live = live_;
+  if (auto stop = check_memory(live, live->entry(live->size() - 1))) halt(std::move(*stop), lock);
 }
 
 void Engine::ended(const std::shared_ptr<Run>& run, const spirv::Wave& wave, bool waits) {
   std::unique_lock lock(mutex_);
+  wave_ = nullptr;
+  settle_stores(lock);
   if (waits) {
     waiting_[&wave] = run;
   } else {
@@ -209,6 +232,9 @@ void Engine::differs(const Run& run, const StoreLog::Difference& difference) {
 void Engine::came_by(Run& run, const spirv::Wave& wave, const spirv::ProbeOp& op) {
   std::unique_lock lock(mutex_);
   if (detached_) return;
+  wave_ = &wave;
+  settle_stores(lock);
+  if (detached_) return;
   const spirv::Probe::Kind kind = run.subject->probes[op.probe].kind;
   if (kind != spirv::Probe::Kind::kStep && kind != spirv::Probe::Kind::kAssign) {
     if (auto stop = check_exceptions(live_, wave, op)) halt(std::move(*stop), lock);
@@ -226,7 +252,7 @@ void Engine::came_by(Run& run, const spirv::Wave& wave, const spirv::ProbeOp& op
 void Engine::look_at(const std::shared_ptr<Run>& run, std::size_t lane) { focus_ = {run, lane, 0}; }
 
 std::optional<Stop> Engine::check(const std::shared_ptr<Run>& run, const Run::Entry& entry, bool live) {
-  if (entry.probe == kStores) return std::nullopt;
+  if (entry.probe == kStores) return check_memory(run, entry);
   return run->steps(entry) ? check_step(run, entry, live) : check_watches(run, entry);
 }
 
@@ -330,7 +356,7 @@ std::optional<Stop> Engine::check_exceptions(const std::shared_ptr<Run>& run, co
 
 std::optional<Stop> Engine::check_watches(const std::shared_ptr<Run>& run, const Run::Entry& entry) {
   for (const auto& [number, watchpoint] : watchpoints_) {
-    if (watchpoint.subject != run->subject) continue;
+    if (watchpoint.is_memory() || watchpoint.subject != run->subject) continue;
     std::optional<std::size_t> found;
     base::for_each_lane(entry.lanes, [&](std::size_t lane) {
       if (run->id[lane] == watchpoint.id && run->assigns(entry, lane, watchpoint.cell, watchpoint.count, false))
@@ -342,6 +368,124 @@ std::optional<Stop> Engine::check_watches(const std::shared_ptr<Run>& run, const
                 "watch " + std::to_string(number) + ": " + watchpoint.text + " has changed"};
   }
   return std::nullopt;
+}
+
+std::optional<Stop> Engine::check_memory(const std::shared_ptr<Run>& run, const Run::Entry& entry) {
+  for (auto& [number, watchpoint] : watchpoints_) {
+    if (!watchpoint.is_memory()) continue;
+    const auto store = run->store_to(entry, watchpoint.memory, *history_.running());
+    if (!store || !store->changed || store->lane == kNoLane) continue;
+    look_at(run, store->lane);
+    std::string text = "watch " + std::to_string(number) + ": " + watchpoint.text + " has changed";
+    if (watchpoint.subject == run->subject) {
+      const std::string before =
+          std::exchange(watchpoint.value, to_text(view(*run, store->lane), {watchpoint.place, {}}));
+      if (before != watchpoint.value) text.append(": ").append(before).append(" -> ").append(watchpoint.value);
+    }
+    return Stop{Stop::Reason::kWatch, number, std::move(text)};
+  }
+  return std::nullopt;
+}
+
+void Engine::say(const std::string& text) {
+  const std::unique_lock lock(mutex_);
+  if (!detached_) face_.output(text);
+}
+
+std::string Engine::change(const Place& place, std::size_t lane, const std::vector<Scalar>& numbers) {
+  using Memory = spirv::SourceVariable::Memory;
+  const Memory memory = place.variable->memory;
+  if (!live_ || focus_.run != live_) return "only the wave that runs now can be changed";
+  if (!history_.at_end())
+    return "this has been done already: go forward to where the shader stands, or change it there";
+  if (memory == Memory::kPush) return "push constants cannot be changed";
+  const std::vector<Place> places = scalar_places(view(*live_, lane), place);
+  const std::string error =
+      memory == Memory::kCells ? change_cells(places, lane, numbers) : change_memory(places, lane, numbers);
+  if (!error.empty()) return error;
+  history_.grown();
+  live_->changed = true;
+  return {};
+}
+
+std::string Engine::change_cells(const std::vector<Place>& places, std::size_t lane,
+                                 const std::vector<Scalar>& numbers) {
+  if (stores_ == nullptr) return "the shader is shown as it always runs: its variables cannot be changed";
+  if (wave_ == nullptr) return "the invocation has ended";
+  std::vector<Run::Change> changes;
+  std::vector<std::uint32_t> homes;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Place& at = places[i];
+    const std::uint32_t words = numbers[i].width == 64 ? 2 : 1;
+    for (std::uint32_t part = 0; part < words; ++part) {
+      const std::uint32_t first = at.cell - words * at.component;
+      const auto home = live_->subject->home_of(first + part * at.components + at.component);
+      if (!home) return "it is no variable that keeps its value: parameters, inputs and names of results do not";
+      homes.push_back(*home);
+      changes.push_back({at.cell + part, static_cast<std::uint32_t>(numbers[i].bits >> 32 * part)});
+    }
+  }
+  for (std::size_t i = 0; i < homes.size(); ++i)
+    reinterpret_cast<base::WaveRegister*>(wave_->arrays + homes[i])->lane[lane] = changes[i].word;
+  live_->change(lane, changes);
+  return {};
+}
+
+std::string Engine::change_memory(const std::vector<Place>& places, std::size_t lane,
+                                  const std::vector<Scalar>& numbers) {
+  const Viewer viewer = view(*live_, lane);
+  std::vector<MemoryRange> ranges;
+  for (const Place& place : places) {
+    const std::vector<MemoryRange> one = memory_of_place(viewer, place);
+    if (one.size() != 1) return "no memory is bound there";
+    ranges.push_back(one[0]);
+  }
+  live_->begin_stores(0);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const Written written{ranges[i].at, static_cast<std::uint32_t>(ranges[i].bytes), static_cast<std::uint32_t>(lane),
+                          static_cast<std::uint32_t>(ranges[i].bytes)};
+    if (stores_ != nullptr) stores_->keep(written.at, written.bytes);
+    live_->add_store(written);
+    std::memcpy(written.at, &numbers[i].bits, written.bytes);
+  }
+  return {};
+}
+
+/// To where the invocation of a finding came to its line last, if that is recorded.
+bool Engine::go_back_to(const Finding& finding) {
+  const Address& address = finding.address;
+  const auto is_there = [&](const Run& run, const Run::Entry& entry, std::size_t lane) {
+    if ((entry.lanes >> lane & 1) == 0 || run.id[lane] != address.invocation.id) return false;
+    const spirv::SourcePlace& place = run.subject->place(entry.probe);
+    return address.frames.empty() || place.line == address.frames[0].line;
+  };
+  std::size_t steps = 0;
+  std::size_t found_lane = 0;
+  std::shared_ptr<Run> found;
+  history_.for_each_back([&](const std::shared_ptr<Run>& run, const Run::Entry& entry) {
+    ++steps;
+    if (!run->steps(entry) || run->subject->context.stage != address.stage) return true;
+    base::for_each_lane(run->launched, [&](std::size_t lane) {
+      if (!found && is_there(*run, entry, lane)) found = run, found_lane = lane;
+    });
+    return !found;
+  });
+  if (!found) return false;
+  for (; steps > 1; --steps) history_.backward();
+  look_at(found, found_lane);
+  return true;
+}
+
+void Engine::found(const std::shared_ptr<Run>& run, const std::vector<Finding>& findings) {
+  std::unique_lock lock(mutex_);
+  for (const Finding& finding : findings) {
+    if (detached_ || (catches_ & kCatchFinding) == 0) return;
+    const bool live = run != nullptr;
+    if (!live && !history_.empty()) history_.running()->shared_gone = true;
+    const std::string said = finding_text(finding);
+    if (!go_back_to(finding) && live) look_at(run, first_lane(run->launched));
+    halt({Stop::Reason::kException, 0, said}, lock);
+  }
 }
 
 /// Asks the face until it wants the shader itself to go on.

@@ -18,6 +18,7 @@
 #include "glass/debug/frame.h"
 #include "glass/debug/history.h"
 #include "glass/debug/stores.h"
+#include "glass/finding.h"
 
 namespace vitrine::glass::debug {
 
@@ -49,13 +50,17 @@ class Face {
   virtual void output(const std::string& text) = 0;
 };
 
-/// A value that is watched: cells of one invocation.
+/// A value that is watched: cells of one invocation, or memory.
 struct Watchpoint {
   int number = 0;
-  std::string text;
+  std::string text, owner;  ///< who has set it: requests replace their own
   std::shared_ptr<const Subject> subject;
   std::array<std::uint32_t, 3> id{};
   std::uint32_t cell = 0, count = 0;
+  std::optional<Place> place;       ///< of memory, in any invocation
+  std::vector<MemoryRange> memory;  ///< where that is for the run that began last
+  std::string value;                ///< what it held when it was looked at last
+  bool is_memory() const { return place.has_value(); }
 };
 
 /// How to go on.
@@ -86,6 +91,12 @@ class Engine {
   /// An instruction is about to write memory, perhaps: what it writes goes into `log`, too.
   void writes(Run& run, const spirv::Wave& wave, const spirv::Instruction* i, const spirv::InstructionNote& note,
               StoreLog& log);
+  /// Where a rehearsal keeps what it writes, while it runs; null: none does.
+  void rehearses(StoreLog* stores) { stores_ = stores; }
+  /// What tools have found in the run that goes on (null: in a command that is done).
+  void found(const std::shared_ptr<Run>& run, const std::vector<Finding>& findings);
+  /// Something that the person should know.
+  void say(const std::string& text);
   /// The wave has ended, if it does not wait for others.
   void ended(const std::shared_ptr<Run>& run, const spirv::Wave& wave, bool waits);
   void leave(const std::shared_ptr<Run>& run);
@@ -97,6 +108,8 @@ class Engine {
   int add(Breakpoint breakpoint);
   bool remove(int number);
   int watch(Watchpoint watchpoint);
+  /// Gives a variable or memory other values (fit_numbers()) in the lane in focus. Not empty: why that cannot be.
+  std::string change(const Place& place, std::size_t lane, const std::vector<Scalar>& numbers);
   const std::map<int, Breakpoint>& breakpoints() const { return breakpoints_; }
   const std::map<int, Watchpoint>& watchpoints() const { return watchpoints_; }
   /// Bits of Catch: what stops a shader besides. NaNs are seen in shaders that are made from then on.
@@ -115,6 +128,8 @@ class Engine {
   Viewer view(const Run& run, std::size_t lane) const;
   /// The wave that runs; null: none does.
   const Run* live() const { return live_.get(); }
+  /// Whether stores are recorded: not of shaders that are shown as they always run.
+  bool records_stores() const { return stores_ != nullptr; }
 
  private:
   using Lanes = base::LaneMask;
@@ -127,6 +142,12 @@ class Engine {
   std::optional<Stop> check_breakpoints(const std::shared_ptr<Run>& run, const Run::Entry& entry, Lanes lanes,
                                         bool live);
   std::optional<Stop> check_watches(const std::shared_ptr<Run>& run, const Run::Entry& entry);
+  std::optional<Stop> check_memory(const std::shared_ptr<Run>& run, const Run::Entry& entry);
+  void settle_stores(std::unique_lock<std::mutex>& lock);
+  void aim_watches(const Run& run);
+  std::string change_cells(const std::vector<Place>& places, std::size_t lane, const std::vector<Scalar>& numbers);
+  std::string change_memory(const std::vector<Place>& places, std::size_t lane, const std::vector<Scalar>& numbers);
+  bool go_back_to(const Finding& finding);
   std::optional<Stop> check_exceptions(const std::shared_ptr<Run>& run, const spirv::Wave& wave,
                                        const spirv::ProbeOp& op);
   bool hits(Breakpoint& breakpoint, const Viewer& viewer, const Names& names, bool live);
@@ -148,6 +169,9 @@ class Engine {
   std::vector<std::shared_ptr<const Subject>> subjects_;                  ///< of all shaders so far
   History history_;
   std::shared_ptr<Run> live_;
+  const spirv::Wave* wave_ = nullptr;   ///< the same, while a thread is in came_by() or writes()
+  StoreLog* stores_ = nullptr;          ///< of a rehearsal
+  bool unsettled_ = false;              ///< the last entry is of stores that were about to be done
   std::vector<std::byte> shared_;       ///< what the memory of the last workgroup held when its wave stopped
   std::set<const Subject*> differing_;  ///< those of which it has been said
   Focus focus_;

@@ -20,7 +20,7 @@ struct Row {
   const char* name;
   unsigned bit;
 };
-constexpr Row kRows[] = {{"printf", kCatchPrintf}, {"nan", kCatchNan}};
+constexpr Row kRows[] = {{"printf", kCatchPrintf}, {"nan", kCatchNan}, {"finding", kCatchFinding}};
 
 bool is_caught(const Probe& probe, unsigned catches) {
   if (probe.kind == Probe::Kind::kPrintf) return (catches & kCatchPrintf) != 0;
@@ -59,6 +59,7 @@ std::string printf_text(const Probe& probe, const spirv::Wave& wave, const Probe
 }  // namespace
 
 unsigned catch_of(std::string_view name) {
+  if (name == "findings") return kCatchFinding;
   for (const Row& row : kRows)
     if (name == row.name) return row.bit;
   return 0;
@@ -68,6 +69,18 @@ std::string catches_text(unsigned catches) {
   std::string text;
   for (const Row& row : kRows)
     if ((catches & row.bit) != 0) text.append(text.empty() ? "" : ", ").append(row.name);
+  return text;
+}
+
+std::string finding_text(const Finding& finding) {
+  std::string text = "finding: ";
+  text.append(severity_name(finding.rule->severity)).append(": ").append(finding.message);
+  text.append(" [vitrine/").append(finding.rule->id).append("]");
+  for (const RelatedAccess& other : finding.related) {
+    text.append("\n  ").append(other.message);
+    if (!other.address.frames.empty()) text.append(" at ").append(to_text(other.address.frames[0]));
+  }
+  if (!finding.remedy.empty()) text.append("\n  missing: ").append(finding.remedy);
   return text;
 }
 

@@ -6,22 +6,27 @@
 #include <string_view>
 
 #include "glass/debug/run.h"
+#include "glass/finding.h"
 
 namespace vitrine::glass::debug {
 
 /// Bits of what is caught.
 enum Catch : unsigned {
-  kCatchPrintf = 1,  ///< a message of NonSemantic.DebugPrintf
-  kCatchNan = 2,     ///< an operation makes a NaN of numbers
+  kCatchPrintf = 1,   ///< a message of NonSemantic.DebugPrintf
+  kCatchNan = 2,      ///< an operation makes a NaN of numbers
+  kCatchFinding = 4,  ///< the tools sanitize and race find something
 };
 
-/// "printf", "nan"; 0: it is none.
+/// "printf", "nan", "finding"; 0: it is none.
 unsigned catch_of(std::string_view name);
 /// Their names, separated by commas; empty: nothing is caught.
 std::string catches_text(unsigned catches);
 
 /// Whether the shader has probes of what is caught.
 bool may_raise(const Subject& subject, unsigned catches);
+
+/// "finding: error: load of 4 bytes ... [vitrine/race-shared]", with what it is about.
+std::string finding_text(const Finding& finding);
 
 struct Raised {
   std::size_t lane = 0;

@@ -252,7 +252,9 @@ class Evaluator {
     return of(std::move(result));
   }
 
-  Value element(const Value& value, std::int64_t index) const {
+  Value element(const Value& given, std::int64_t index) const {
+    // A texel's numbers are no places of their own.
+    const Value value = given.place && given.place->texel ? of(numbers_of(viewer_, *given.place)) : given;
     if (!value.place) {
       if (index < 0 || index >= static_cast<std::int64_t>(value.scalars.size())) throw Mistake("index out of range");
       return of({value.scalars[static_cast<std::size_t>(index)]});
@@ -282,13 +284,15 @@ class Evaluator {
         if (const std::size_t at = letters.find(letter); at != std::string_view::npos) component = at;
       if (component >= from.size() || name.size() > 4) throw Mistake("there is no member '" + name + "'");
       // One component stays where it is, so that it can be watched.
-      if (name.size() == 1 && value.place) return element(value, static_cast<std::int64_t>(component));
+      if (name.size() == 1 && value.place && !value.place->texel)
+        return element(value, static_cast<std::int64_t>(component));
       result.push_back(from[component]);
     }
     return of(std::move(result));
   }
 
   Value call(const Node& node) const {
+    if (node.word == "imageLoad" || node.word == "texelFetch") return texel(node);
     if (names_.find(node.word)) throw Mistake("'" + node.word + "' is a variable, and no function");
     std::vector<std::vector<Scalar>> arguments;
     for (const Node& argument : node.parts) arguments.push_back(numbers(argument));
@@ -296,6 +300,23 @@ class Evaluator {
     std::string error;
     if (!call_function(node.word, arguments, result, error)) throw Mistake(error);
     return of(std::move(result));
+  }
+
+  /// imageLoad(image, 1, 2), imageLoad(image, ivec2(1, 2)).
+  Value texel(const Node& node) const {
+    if (node.parts.empty()) throw Mistake("which image?");
+    Value value = value_of(node.parts[0]);
+    if (!value.place || value.place->descriptors ||
+        value.place->variable->memory != spirv::SourceVariable::Memory::kOpaque)
+      throw Mistake("that is no image");
+    TexelCoordinates at{};
+    std::size_t next = 0;
+    for (std::size_t i = 1; i < node.parts.size(); ++i)
+      for (const Scalar& number : numbers(node.parts[i]))
+        if (next < at.size()) at[next++] = to_int(number);
+    value.place->texel = at;
+    if (memory_of_place(viewer_, *value.place).empty()) throw Mistake("there is no such texel, or it is compressed");
+    return value;
   }
 
   const Viewer& viewer_;

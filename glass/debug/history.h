@@ -35,6 +35,16 @@ class History {
   const std::shared_ptr<Run>& run() const { return run_; }
   /// As run(), of the wave that runs.
   const std::shared_ptr<Run>& running() const { return last().run; }
+  /// Calls f(run, entry) for what is done, the last first, until it is false.
+  template <class F>
+  void for_each_back(F&& f) const {
+    for (std::size_t segment = segment_, end = next_; segment < segments_.size(); end = segments_[--segment].end) {
+      const Segment& at = segments_[segment];
+      for (std::size_t i = end; i-- > at.begin;)
+        if (!f(at.run, at.run->entry(i))) return;
+      if (segment == 0) return;
+    }
+  }
   /// Entries of a run that are done.
   std::size_t position_in(const Run& run) const;
   bool empty() const { return segments_.empty(); }

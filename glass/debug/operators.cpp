@@ -129,6 +129,28 @@ bool of_each(std::string_view name, const Scalar& from, Scalar& to) {
   return true;
 }
 
+/// The scalar constructor that a vector's constructor is made of, and how many numbers it makes; 0: it is none.
+std::uint32_t vector_constructor(std::string_view name, std::string_view& scalar) {
+  if (name.empty() || name.back() < '2' || name.back() > '4') return 0;
+  const std::string_view stem = name.substr(0, name.size() - 1);
+  scalar = stem == "vec"    ? "float"
+           : stem == "ivec" ? "int"
+           : stem == "uvec" ? "uint"
+           : stem == "dvec" ? "double"
+           : stem == "bvec" ? "bool"
+                            : "";
+  return scalar.empty() ? 0 : static_cast<std::uint32_t>(name.back() - '0');
+}
+
+/// False: the arguments are too few or too many.
+bool make_vector(std::string_view scalar, std::uint32_t count, const std::vector<std::vector<Scalar>>& arguments,
+                 std::vector<Scalar>& result) {
+  for (const std::vector<Scalar>& argument : arguments)
+    for (const Scalar& number : argument) convert(scalar, number, result.emplace_back());
+  if (result.size() == 1) result.resize(count, result[0]);
+  return result.size() == count;
+}
+
 double product(const std::vector<Scalar>& a, const std::vector<Scalar>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) sum += to_double(a[i]) * to_double(b[i]);
@@ -166,6 +188,9 @@ bool call_function(std::string_view name, const std::vector<std::vector<Scalar>>
                    std::vector<Scalar>& result, std::string& error) {
   error = "there is no function '" + std::string(name) + "' with " + std::to_string(arguments.size()) + " arguments";
   const auto holds = [](const Scalar& scalar) { return to_bool(scalar); };
+  std::string_view scalar;
+  if (const std::uint32_t count = vector_constructor(name, scalar); count != 0)
+    return make_vector(scalar, count, arguments, result);
   if (arguments.size() == 1) {
     const std::vector<Scalar>& a = arguments[0];
     if (name == "length") return result = {make_float(std::sqrt(product(a, a)))}, true;

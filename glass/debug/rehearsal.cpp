@@ -2,6 +2,7 @@
 #include "glass/debug/rehearsal.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace vitrine::glass::debug {
 namespace {
@@ -45,6 +46,8 @@ void Rehearsal::begin(const Wave& wave) {
   wave_.status = Wave::Status::kRunning;
   const spirv::Program& program = shader_->program();
   wave_.resume = program.code.data();
+  // What nobody has written to a variable is the same in every run.
+  if (wave_.arrays != nullptr) std::memset(wave_.arrays, 0, program.array_bytes);
   if (!program.cleared.empty()) spirv::exec::clear_undefined(program, wave_);
   const auto& inputs = wave.program->observation->interface.inputs;
   for (const InterfaceSlot& slot : shader_->interface().inputs)
@@ -58,6 +61,12 @@ void Rehearsal::run(const Wave& wave, spirv::exec::Watch& watch) {
     spirv::execute(wave_, wave_.resume);
   } while (waits() && !wave.program->has_barrier);
   wave_.watch = nullptr;
+}
+
+void Rehearsal::hand_over(Wave& wave) const {
+  for (const InterfaceSlot& slot : wave.program->observation->interface.outputs)
+    if (const InterfaceSlot* const shown = find(shader_->interface().outputs, slot))
+      register_of(wave, slot) = register_of(wave_, *shown);
 }
 
 std::optional<StoreLog::Difference> Rehearsal::compare(const Wave& wave) const {

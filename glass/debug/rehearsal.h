@@ -26,6 +26,11 @@ class Rehearsal {
   /// Or has not started.
   bool goes_on() const { return waits() || wave_.status == spirv::Wave::Status::kRunning; }
 
+  /// What runs.
+  const spirv::Wave& wave() const { return wave_; }
+  const spirv::Program& program() const { return shader_->program(); }
+  /// `wave`, which has ended, gets the results of the rehearsal instead of its own.
+  void hand_over(spirv::Wave& wave) const;
   /// Of registers of `wave`, which has ended, and memory: what it did otherwise.
   std::optional<StoreLog::Difference> compare(const spirv::Wave& wave) const;
 

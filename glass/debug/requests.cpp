@@ -1,6 +1,7 @@
 // See requests.h.
 #include "glass/debug/requests.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "glass/debug/commands.h"
@@ -26,6 +27,8 @@ json json_of(const Tree& tree) {
   for (const Tree& child : tree.children) children.push_back(json_of(child));
   return {{"name", tree.name}, {"type", tree.type}, {"value", tree.value}, {"children", std::move(children)}};
 }
+
+std::string dump(const json& object) { return object.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 json error(const std::string& text) { return {{"error", text}}; }
 
@@ -131,6 +134,44 @@ json evaluate_text(Engine& engine, const json& request) {
   return json_of(tree_of(engine.view(*engine.focus().run, lane), text, value.value()));
 }
 
+json set_value(Engine& engine, const json& request) {
+  const std::string text = text_of(request, "text");
+  const std::size_t lane = lane_of(engine, request);
+  const auto value = set_in(engine, text, text_of(request, "value"), lane, number_of(request, "frame"));
+  if (!value) return error(value.message());
+  return json_of(tree_of(engine.view(*engine.focus().run, lane), text, value.value()));
+}
+
+/// Replaces those of requests: they are kept where nothing has changed.
+json set_watches(Engine& engine, const json& request) {
+  const std::string owner = "watches";
+  std::vector<int> old;
+  for (const auto& [number, watchpoint] : engine.watchpoints())
+    if (watchpoint.owner.starts_with(owner)) old.push_back(number);
+  json list = json::array();
+  const auto rows = request.find("list");
+  if (rows != request.end() && rows->is_array()) {
+    for (const json& row : *rows) {
+      if (!row.is_object()) continue;
+      const std::string name = owner + " " + dump(row);
+      const auto known =
+          std::ranges::find_if(engine.watchpoints(), [&](const auto& one) { return one.second.owner == name; });
+      if (known != engine.watchpoints().end()) {
+        std::erase(old, known->first);
+        list.push_back({{"number", known->first}, {"verified", true}});
+        continue;
+      }
+      const auto number = watch_in(engine, text_of(row, "text"), lane_of(engine, row), number_of(row, "frame"), name);
+      if (number)
+        list.push_back({{"number", number.value()}, {"verified", true}});
+      else
+        list.push_back({{"verified", false}, {"message", number.message()}});
+    }
+  }
+  for (const int number : old) engine.remove(number);
+  return {{"list", std::move(list)}};
+}
+
 json source(Engine& engine, const json& request) {
   const std::string name = text_of(request, "file");
   for (const auto& subject : engine.subjects())
@@ -178,6 +219,8 @@ constexpr Row kRows[] = {{"command", false, run_command},
                          {"frames", false, frames},
                          {"variables", false, variables},
                          {"evaluate", false, evaluate_text},
+                         {"set", false, set_value},
+                         {"watches", false, set_watches},
                          {"source", true, source},
                          {"go", false, go},
                          {"pause", true, pause}};
@@ -194,8 +237,6 @@ json answer(Engine& engine, const json& request, bool stopped) {
 
 constexpr const char* kReasons[] = {"start", "step",    "breakpoint", "break",    "watch",
                                     "end",   "history", "pause",      "exception"};
-
-std::string dump(const json& object) { return object.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 }  // namespace
 

@@ -3,11 +3,13 @@
 //   command      text                                            -> text
 //   breakpoints  file, list of {line, condition, hits, message}  -> list of {number, verified, line}: all of the file
 //   functions    list of {name, condition, hits}                 -> the same
-//   catch        list of printf, nan: what else is a reason to stop
+//   catch        list of printf, nan, finding: what else is a reason to stop
 //   lanes                                                        -> list of {lane, name, where}
 //   frames       lane                                            -> list of {name, file, line, column}
 //   variables    lane, frame, which: locals or globals           -> list of {name, type, value, children}
 //   evaluate     lane, frame, text                               -> name, type, value, children
+//   set          lane, frame, text, value: an expression           -> the same, of what `text` names
+//   watches      list of {lane, frame, text}                     -> list of {number, verified, message}: all of them
 //   source       file                                            -> text
 //   go           how: continue, step, next, finish, detach; backward; lane
 //   pause

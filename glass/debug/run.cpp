@@ -1,6 +1,8 @@
 // See run.h. Words of an entry: of a step, the probe by lane; of an assignment, by lane the first cell if its indices
 // are not constant, then by cell the mask of lanes that have a value, and the values by lane; of stores, the place and
-// the number of parts, then by part the address (low, high), the number of bytes and the bytes.
+// the number of parts, then by part the address (low, high), the number of bytes, the lane and above it the bytes of
+// each lane, and the bytes; of a change, the number of cells, then by cell its number, 1 if it has a value, and the
+// value.
 #include "glass/debug/run.h"
 
 #include <algorithm>
@@ -9,6 +11,7 @@
 
 #include "spirv/exec/invocation.h"
 #include "spirv/exec/observe.h"
+#include "spirv/homes.h"
 
 namespace vitrine::glass::debug {
 namespace {
@@ -29,6 +32,14 @@ std::string describe(const spirv::ObservedCommand* command) {
 }
 
 }  // namespace
+
+std::optional<std::uint32_t> Subject::home_of(std::uint32_t cell) const {
+  for (const spirv::Probe& probe : probes) {
+    if (!spirv::is_home(probe) || cell < probe.first_cell || cell >= probe.first_cell + probe.cells) continue;
+    return probe.number - 1 + (cell - probe.first_cell) * static_cast<std::uint32_t>(sizeof(base::WaveRegister));
+  }
+  return std::nullopt;
+}
 
 std::uint32_t Subject::depth(std::uint32_t probe) const {
   const spirv::SourceInfo& sources = *context.sources;
@@ -98,44 +109,110 @@ void Run::begin_stores(std::uint32_t place) {
   words_.insert(words_.end(), {place, 0});
 }
 
-void Run::add_store(std::byte* at, std::uint32_t bytes) { add_store(at, bytes, at); }
+void Run::add_store(const Written& written) { add_store(written, written.at); }
 
-void Run::add_store(std::byte* at, std::uint32_t bytes, const std::byte* before) {
-  const auto address = reinterpret_cast<std::uintptr_t>(at);
+void Run::add_store(const Written& written, const std::byte* before) {
+  const auto address = reinterpret_cast<std::uintptr_t>(written.at);
   ++words_[entries_.back().first + 1];
-  words_.insert(words_.end(), {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32), bytes});
+  words_.insert(words_.end(), {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32),
+                               written.bytes, written.lane | written.lane_bytes << 8});
   const std::size_t first = words_.size();
-  words_.resize(first + (bytes + 3) / 4);
-  std::memcpy(&words_[first], before, bytes);
+  words_.resize(first + (written.bytes + 3) / 4);
+  std::memcpy(&words_[first], before, written.bytes);
 }
+
+void Run::change(std::size_t lane, const std::vector<Change>& changes) {
+  const Entry entry{kChange, base::LaneMask{1} << lane, words_.size()};
+  words_.push_back(static_cast<std::uint32_t>(changes.size()));
+  for (const Change& change : changes) words_.insert(words_.end(), {change.cell, 1, change.word});
+  entries_.push_back(entry);
+  exchange_change(entry);
+}
+
+void Run::exchange_change(const Entry& entry) {
+  std::size_t word = entry.first;
+  const std::size_t lane = static_cast<std::size_t>(__builtin_ctzll(entry.lanes));
+  for (std::uint32_t left = words_[word++]; left != 0; --left) {
+    const std::uint32_t cell = words_[word++];
+    const bool before = (known_[cell] & entry.lanes) != 0;
+    known_[cell] = words_[word] != 0 ? known_[cell] | entry.lanes : known_[cell] & ~entry.lanes;
+    words_[word++] = before ? 1 : 0;
+    std::swap(cells_[cell].lane[lane], words_[word++]);
+  }
+}
+
+namespace {
+
+/// One part of a store.
+struct Part {
+  std::byte* at;
+  std::uint32_t bytes, lane, lane_bytes;
+  std::size_t kept;  ///< word
+};
+
+/// Takes the part at `word`, which goes on to the next.
+Part take_part(const std::vector<std::uint32_t>& words, std::size_t& word) {
+  Part part{
+      reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(std::uint64_t{words[word + 1]} << 32 | words[word])),
+      words[word + 2], words[word + 3] & 0xff, words[word + 3] >> 8, word + 4};
+  word += 4 + (part.bytes + 3) / 4;
+  return part;
+}
+
+}  // namespace
 
 /// What has been freed is not written: while a submission runs, all that it uses is there (Vulkan 1.3.239, Object
 /// Lifetime); memory of workgroups is that of the one that runs.
 bool Run::has_memory(const std::byte* at, const Run& live) const {
   if (submission != live.submission || (submission == 0 && serial != live.serial)) return false;
   if (shared == nullptr || at < shared || at >= shared + shared_size) return true;
+  if (live.shared_gone) return false;
   return serial == live.serial && shared == live.shared;
 }
 
 /// Parts may overlap: what was written last is taken back first.
 void Run::exchange_stores(const Entry& entry, bool back, const Run& live) {
   std::size_t word = entry.first + 2;
-  std::vector<std::size_t> parts;
-  for (std::uint32_t part = 0; part < words_[entry.first + 1]; ++part) {
-    parts.push_back(word);
-    word += 3 + (words_[word + 2] + 3) / 4;
-  }
+  std::vector<Part> parts;
+  for (std::uint32_t part = 0; part < words_[entry.first + 1]; ++part) parts.push_back(take_part(words_, word));
   if (back) std::ranges::reverse(parts);
-  for (const std::size_t at : parts) {
-    auto* const data =
-        reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(std::uint64_t{words_[at + 1]} << 32 | words_[at]));
-    auto* const kept = reinterpret_cast<std::byte*>(&words_[at + 3]);
-    if (has_memory(data, live)) std::swap_ranges(kept, kept + words_[at + 2], data);
+  for (const Part& part : parts) {
+    auto* const kept = reinterpret_cast<std::byte*>(&words_[part.kept]);
+    if (has_memory(part.at, live)) std::swap_ranges(kept, kept + part.bytes, part.at);
   }
 }
 
+std::optional<Run::Store> Run::store_to(const Entry& entry, std::span<const MemoryRange> memory,
+                                        const Run& live) const {
+  std::optional<Store> found;
+  if (entry.probe != kStores) return found;
+  std::size_t word = entry.first + 2;
+  for (std::uint32_t number = 0; number < words_[entry.first + 1]; ++number) {
+    const Part part = take_part(words_, word);
+    const auto* const kept = reinterpret_cast<const std::byte*>(&words_[part.kept]);
+    for (const MemoryRange& range : memory) {
+      std::byte *const begin = std::max(part.at, range.at), *const end =
+                                                                std::min(part.at + part.bytes, range.at + range.bytes);
+      if (begin >= end) continue;
+      const auto from = static_cast<std::size_t>(begin - part.at), count = static_cast<std::size_t>(end - begin);
+      std::size_t at = from;
+      if (has_memory(begin, live)) {
+        const std::size_t same = static_cast<std::size_t>(std::mismatch(begin, end, kept + from).first - begin);
+        if (same != count) at = from + same;
+        found = Store{kNoLane, (found && found->changed) || same != count};
+      } else {
+        found = Store{kNoLane, found && found->changed};
+      }
+      if (part.lane != kNoLane)
+        found->lane = part.lane + static_cast<std::uint32_t>(at / std::max(part.lane_bytes, 1u));
+    }
+  }
+  return found;
+}
+
 void Run::exchange(const Entry& entry, bool back, const Run& live) {
-  entry.probe == kStores ? exchange_stores(entry, back, live) : exchange_values(entry);
+  if (entry.probe == kStores) return exchange_stores(entry, back, live);
+  entry.probe == kChange ? exchange_change(entry) : exchange_values(entry);
 }
 
 void Run::exchange_cell(std::uint32_t cell, base::LaneMask lanes, std::size_t& word) {
@@ -187,6 +264,7 @@ bool Run::is_first(const Entry& entry, std::size_t lane) const {
 
 bool Run::assigns(const Entry& entry, std::size_t lane, std::uint32_t cell, std::uint32_t count, bool any) const {
   if (entry.probe == kStores) return false;
+  if (entry.probe == kChange) return changes(entry, lane, cell, count);
   const spirv::Probe& probe = subject->probes[entry.probe];
   if (probe.kind != spirv::Probe::Kind::kAssign || (entry.lanes >> lane & 1) == 0) return false;
   const std::size_t lanes = count_of(entry.lanes), n = count_of(entry.lanes & ((base::LaneMask{1} << lane) - 1));
@@ -206,6 +284,15 @@ bool Run::assigns(const Entry& entry, std::size_t lane, std::uint32_t cell, std:
       was_known = ((words_[mask] | base::LaneMask{words_[mask + 1]} << 32) >> lane & 1) != 0;
     }
     if (!was_known || words_[before] != word(first + i, lane)) return true;
+  }
+  return false;
+}
+
+bool Run::changes(const Entry& entry, std::size_t lane, std::uint32_t cell, std::uint32_t count) const {
+  if ((entry.lanes >> lane & 1) == 0) return false;
+  for (std::uint32_t i = 0; i < words_[entry.first]; ++i) {
+    const std::uint32_t changed = words_[entry.first + 1 + 3 * i];
+    if (changed >= cell && changed < cell + count) return true;
   }
   return false;
 }

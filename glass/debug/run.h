@@ -6,9 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "glass/debug/stores.h"
 #include "glass/place.h"
 #include "spirv/program.h"
 #include "spirv/source_variables.h"
@@ -18,6 +21,10 @@ namespace vitrine::glass::debug {
 inline constexpr std::uint32_t kNoProbe = ~std::uint32_t{0};
 /// Instead of a probe, in entries: memory is written.
 inline constexpr std::uint32_t kStores = kNoProbe - 1;
+/// The same: somebody gives variables of one invocation values from outside.
+inline constexpr std::uint32_t kChange = kNoProbe - 2;
+/// Of a store: nobody's.
+inline constexpr std::uint32_t kNoLane = 0xff;
 
 /// A shader that may be stopped in.
 struct Subject {
@@ -34,7 +41,16 @@ struct Subject {
   ShaderContext context;
   std::vector<spirv::Probe> probes;
   std::shared_ptr<const spirv::SourceVariables> variables;
+  /// Where a cell of a rehearsed program lies, from Wave::arrays (spirv/homes.h), if it can be changed. Cells as their
+  /// homes have them: of a vector of 64-bit numbers the low words come first.
+  std::optional<std::uint32_t> home_of(std::uint32_t cell) const;
   std::string program;  ///< disassembled
+};
+
+/// Bytes of memory.
+struct MemoryRange {
+  std::byte* at = nullptr;
+  std::uint64_t bytes = 0;
 };
 
 class Run {
@@ -52,22 +68,37 @@ class Run {
   /// Memory is about to be written, at a place (SourceInfo::places; 0: outside of the shader): the entry begins, and
   /// gets its parts.
   void begin_stores(std::uint32_t place);
-  void add_store(std::byte* at, std::uint32_t bytes);
+  void add_store(const Written& written);
   /// The same of memory that has been written, with what it held before.
-  void add_store(std::byte* at, std::uint32_t bytes, const std::byte* before);
+  void add_store(const Written& written, const std::byte* before);
+  /// Cells of a lane get values from outside.
+  struct Change {
+    std::uint32_t cell = 0, word = 0;
+  };
+  void change(std::size_t lane, const std::vector<Change>& changes);
   /// Takes an entry back, or does it again; memory, where it is that of `live`, which runs.
   void exchange(const Entry& entry, bool back, const Run& live);
 
   std::size_t size() const { return entries_.size(); }
   const Entry& entry(std::size_t i) const { return entries_[i]; }
   bool steps(const Entry& entry) const {
-    return entry.probe != kStores && subject->probes[entry.probe].kind == spirv::Probe::Kind::kStep;
+    return entry.probe < kChange && subject->probes[entry.probe].kind == spirv::Probe::Kind::kStep;
   }
   /// Of a step that has been done: the lanes that were on another line before.
   base::LaneMask fresh_lanes(const Entry& entry) const;
   /// Of an assignment that has been done: whether it changed one of these cells of a lane; `any`: or gave it the value
   /// that it had.
   bool assigns(const Entry& entry, std::size_t lane, std::uint32_t cell, std::uint32_t count, bool any) const;
+  /// Of stores that have been done, `live` as above: the lane (kNoLane: nobody) that has written some of this memory
+  /// last, and whether that, and what comes to the same place with it, has changed it. Nothing: they have not written
+  /// it.
+  struct Store {
+    std::uint32_t lane = kNoLane;
+    bool changed = false;
+  };
+  std::optional<Store> store_to(const Entry& entry, std::span<const MemoryRange> memory, const Run& live) const;
+  /// SourceInfo::places of stores.
+  std::uint32_t place_of_stores(const Entry& entry) const { return words_[entry.first]; }
   /// Of a compute shader.
   std::array<std::uint32_t, 3> workgroup_of(std::size_t lane) const {
     return {id[lane][0] / local_size[0], id[lane][1] / local_size[1], id[lane][2] / local_size[2]};
@@ -94,12 +125,16 @@ class Run {
   const spirv::ResourceTable* resources = nullptr;  ///< while its command runs
   std::byte* shared = nullptr;                      ///< while its workgroup runs
   std::uint32_t shared_size = 0;
+  bool shared_gone = false;  ///< its workgroup has ended, and so has its command
+  bool changed = false;      ///< somebody has changed what it computes
 
  private:
   std::uint32_t cell_of(const spirv::Wave& wave, const spirv::ProbeOp& op, std::size_t lane) const;
   bool has_memory(const std::byte* at, const Run& live) const;
   void exchange_values(const Entry& entry);
   void exchange_stores(const Entry& entry, bool back, const Run& live);
+  void exchange_change(const Entry& entry);
+  bool changes(const Entry& entry, std::size_t lane, std::uint32_t cell, std::uint32_t count) const;
   void exchange_cell(std::uint32_t cell, base::LaneMask lanes, std::size_t& word);
 
   std::vector<base::WaveRegister> cells_;

@@ -19,36 +19,41 @@ using spirv::InstructionNote;
 using spirv::MemoryOp;
 using spirv::MemorySpace;
 using spirv::Wave;
-using Written = base::FunctionRef<void(std::byte*, std::uint32_t)>;
-
-/// Atomic operations on 64 bits are no wider than that.
-constexpr std::uint32_t kWidestAtomic = 8;
+using Take = base::FunctionRef<void(const Written&)>;
 
 /// Joins what lies side by side.
 class Joiner {
  public:
-  explicit Joiner(Written f) : f_(f) {}
+  explicit Joiner(Take take) : take_(take) {}
   ~Joiner() { flush(); }
   Joiner(const Joiner&) = delete;
   Joiner& operator=(const Joiner&) = delete;
 
-  void add(std::byte* at, std::uint32_t bytes) {
-    if (at_ != nullptr && at_ + bytes_ == at) {
-      bytes_ += bytes;
-      return;
+  void add(std::byte* at, std::uint32_t bytes, std::size_t lane) {
+    const bool beside = now_.at != nullptr && now_.at + now_.bytes == at;
+    const bool only = lane_ == now_.lane;
+    const bool same = beside && lane == lane_ && (only || of_lane_ + bytes <= now_.lane_bytes);
+    const bool next = beside && lane == lane_ + 1 && of_lane_ == now_.lane_bytes && bytes <= now_.lane_bytes;
+    if (!same && !next) {
+      flush();
+      now_ = {at, 0, static_cast<std::uint32_t>(lane), bytes};
+      of_lane_ = 0;
     }
-    flush();
-    at_ = at;
-    bytes_ = bytes;
+    if (next) of_lane_ = 0;
+    lane_ = lane;
+    of_lane_ += bytes;
+    now_.bytes += bytes;
+    if (lane == now_.lane) now_.lane_bytes = of_lane_;
   }
 
  private:
   void flush() {
-    if (at_ != nullptr) f_(at_, bytes_);
+    if (now_.at != nullptr) take_(now_);
   }
-  Written f_;
-  std::byte* at_ = nullptr;
-  std::uint32_t bytes_ = 0;
+  Take take_;
+  Written now_;
+  std::size_t lane_ = 0;       ///< the last one
+  std::uint32_t of_lane_ = 0;  ///< bytes of it
 };
 
 /// `offsets`: by lane, in front of MemoryOp::added.
@@ -61,8 +66,8 @@ void buffer_lanes(const MemoryOp& row, Access access, const spirv::exec::Bytes& 
     for (std::uint32_t c = 0; c < touched.count; ++c) {
       const std::uint64_t at = std::uint64_t{offsets[lane]} + touched.at[c];
       if (at >= memory.size) continue;
-      const std::uint64_t bytes = access == Access::kAtomic ? kWidestAtomic : row.element_bytes;
-      joiner.add(memory.data + at, static_cast<std::uint32_t>(std::min(bytes, memory.size - at)));
+      const std::uint64_t bytes = row.element_bytes;
+      joiner.add(memory.data + at, static_cast<std::uint32_t>(std::min(bytes, memory.size - at)), lane);
     }
   });
 }
@@ -98,14 +103,14 @@ void image_written(const Wave& wave, const Instruction* i, Joiner& joiner) {
     const sanitize::ImageLanes operands(wave, op);
     base::for_each_lane(lanes & wave.live, [&](std::size_t lane) {
       const sanitize::TexelBytes texel = sanitize::texel_bytes(*image, op, operands, lane);
-      if (texel.bytes != 0) joiner.add(reinterpret_cast<std::byte*>(texel.address), texel.bytes);
+      if (texel.bytes != 0) joiner.add(reinterpret_cast<std::byte*>(texel.address), texel.bytes, lane);
     });
   });
 }
 
 }  // namespace
 
-void for_each_written(const Wave& wave, const Instruction* i, const InstructionNote& note, Written f) {
+void for_each_written(const Wave& wave, const Instruction* i, const InstructionNote& note, Take f) {
   Joiner joiner(f);
   if (note.access == Access::kImage) return image_written(wave, i, joiner);
   if (note.access == Access::kStore || note.access == Access::kAtomic) memory_written(wave, i, note, joiner);

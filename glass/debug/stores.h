@@ -11,11 +11,18 @@
 
 namespace vitrine::glass::debug {
 
-/// Calls f(first byte, number of bytes) for the memory that an instruction of Interest::accesses is about to write, by
-/// lane; what neighbours write side by side together. Nothing where it only reads. Texels of compressed or planar
-/// images are left out: nothing stores to them.
+/// Bytes that one lane writes, or several whose numbers follow each other, `lane_bytes` each, the last one perhaps
+/// less.
+struct Written {
+  std::byte* at = nullptr;
+  std::uint32_t bytes = 0;
+  std::uint32_t lane = 0, lane_bytes = 1;
+};
+
+/// Calls f for the memory that an instruction of Interest::accesses is about to write. Nothing where it only reads.
+/// Texels of compressed or planar images are left out: nothing stores to them.
 void for_each_written(const spirv::Wave& wave, const spirv::Instruction* i, const spirv::InstructionNote& note,
-                      base::FunctionRef<void(std::byte*, std::uint32_t)> f);
+                      base::FunctionRef<void(const Written&)> f);
 
 /// Writes of one run of a wave.
 class StoreLog {

@@ -22,6 +22,21 @@ struct Bytes {
   std::uint64_t size = 0;
 };
 
+/// The descriptor of a buffer or image; null: nothing is bound there.
+const spirv::Descriptor* descriptor_of(const Viewer& viewer, const Place& place) {
+  const Run& run = *viewer.run;
+  if (!viewer.memory || run.resources == nullptr) return nullptr;
+  const std::uint32_t set = place.variable->set, slot = place.variable->slot + place.descriptor;
+  if (set > spirv::kMaxSets || run.resources->set[set] == nullptr || slot >= run.resources->set_size[set])
+    return nullptr;
+  return &run.resources->set[set][slot];
+}
+
+std::optional<StoredTexelAt> texel_of(const Viewer& viewer, const Place& place) {
+  const spirv::Descriptor* const image = descriptor_of(viewer, place);
+  return image == nullptr ? std::nullopt : find_texel(*image, *place.texel);
+}
+
 /// The memory that a variable lies in.
 Bytes memory_of(const Viewer& viewer, const Place& place) {
   const Run& run = *viewer.run;
@@ -33,11 +48,9 @@ Bytes memory_of(const Viewer& viewer, const Place& place) {
     case Memory::kShared:
       return {run.shared, run.shared_size};
     case Memory::kBuffer: {
-      const std::uint32_t set = place.variable->set, slot = place.variable->slot + place.descriptor;
-      if (set > spirv::kMaxSets || run.resources->set[set] == nullptr || slot >= run.resources->set_size[set])
-        return {};
-      const spirv::Descriptor& descriptor = run.resources->set[set][slot];
-      return {descriptor.data, descriptor.data == nullptr ? 0 : descriptor.size};
+      const spirv::Descriptor* const buffer = descriptor_of(viewer, place);
+      if (buffer == nullptr || buffer->data == nullptr) return {};
+      return {buffer->data, buffer->size};
     }
     default:
       return {};
@@ -77,8 +90,7 @@ Scalar read_cells(const Viewer& viewer, const Place& place, const spirv::SourceT
 
 Scalar read_memory(const Viewer& viewer, const Place& place, const spirv::SourceType& type) {
   const Bytes bytes = memory_of(viewer, place);
-  const bool words = place.variable->word_layout;
-  const std::uint64_t size = words ? 4ull * type.cells : type.kind == Kind::kBool ? 4 : type.width / 8;
+  const std::uint64_t size = stored_bytes(viewer, place);
   if (bytes.data == nullptr || place.offset > bytes.size || bytes.size - place.offset < size) return {};
   Scalar scalar{letter_of(type.kind), type.kind == Kind::kBool ? 32 : type.width, 0};
   std::memcpy(&scalar.bits, bytes.data + place.offset, size);
@@ -115,6 +127,7 @@ class Writer {
 
   std::string text(const Place& place) {
     const spirv::SourceType& type = type_at(viewer_.tables(), place);
+    if (place.texel) return numbers_text(numbers_of(viewer_, place));
     if (place.variable->memory == Memory::kOpaque) return "<image or sampler>";
     if (place.descriptors || type.kind == Kind::kArray || type.kind == Kind::kMatrix) return elements(place);
     if (type.kind == Kind::kStruct) return members(place, type);
@@ -158,6 +171,7 @@ class Writer {
 Tree make_tree(const Viewer& viewer, std::string name, const Place& place, std::size_t& rows) {
   const spirv::SourceType& type = type_at(viewer.tables(), place);
   Tree tree{std::move(name), type.name, Writer(viewer).text(place), {}};
+  if (place.texel) tree.type = "texel";
   if (++rows > kMostRows || place.variable->memory == Memory::kOpaque) return tree;
   if (type.kind == Kind::kStruct && !place.descriptors) {
     for (std::uint32_t i = 0; i < type.members.size(); ++i)
@@ -250,6 +264,8 @@ Place element_of(const spirv::SourceVariables& tables, const Place& place, std::
   }
   const spirv::SourceType& type = type_at(tables, place);
   if (type.kind == Kind::kMatrix && place.row_major) part.component_stride = place.matrix_stride;
+  part.component = type.kind == Kind::kVector ? index : 0;
+  part.components = type.kind == Kind::kVector ? type.count : 1;
   part.type = type.element;
   part.cell += index * tables.types[type.element].cells;
   part.offset += index * step_of(tables, place);
@@ -278,7 +294,103 @@ std::uint32_t count_of(const Viewer& viewer, const Place& place) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>((size - place.offset) / step, UINT32_MAX));
 }
 
+std::uint32_t stored_bytes(const Viewer& viewer, const Place& place) {
+  const spirv::SourceType& type = type_at(viewer.tables(), place);
+  if (place.variable->word_layout) return 4 * type.cells;
+  return type.kind == Kind::kBool ? 4 : type.width / 8;
+}
+
+std::vector<Place> scalar_places(const Viewer& viewer, const Place& place) {
+  const spirv::SourceType& type = type_at(viewer.tables(), place);
+  if (place.descriptors || place.variable->memory == Memory::kOpaque) return {};
+  if (is_number(type.kind)) return {place};
+  std::vector<Place> places;
+  for (std::uint32_t i = 0; type.kind == Kind::kVector && i < type.count; ++i)
+    places.push_back(element_of(viewer.tables(), place, i));
+  return places;
+}
+
+bool fit_numbers(const Viewer& viewer, const Place& place, std::vector<Scalar>& numbers) {
+  const std::vector<Place> places = scalar_places(viewer, place);
+  if (places.empty() || (numbers.size() != 1 && numbers.size() != places.size())) return false;
+  numbers.resize(places.size(), numbers[0]);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const spirv::SourceType& type = type_at(viewer.tables(), places[i]);
+    const Scalar& from = numbers[i];
+    switch (type.kind) {
+      case Kind::kBool:
+        numbers[i] = make_bool(to_bool(from));
+        break;
+      case Kind::kFloat:
+        numbers[i] = make_float(to_double(from), type.width);
+        break;
+      default:
+        numbers[i] = make_uint(static_cast<std::uint64_t>(to_int(from)), type.width);
+        numbers[i].type = letter_of(type.kind);
+    }
+  }
+  return true;
+}
+
+namespace {
+
+/// Most bytes that memory_of_place() tells.
+constexpr std::uint64_t kMostMemory = std::uint64_t{1} << 20;
+
+/// Appends what the place holds; false: it is too much.
+bool append_memory(const Viewer& viewer, const Place& place, std::vector<MemoryRange>& ranges, std::uint64_t& left) {
+  const spirv::SourceType& type = type_at(viewer.tables(), place);
+  if (is_number(type.kind) && !place.descriptors) {
+    const std::uint32_t size = stored_bytes(viewer, place);
+    const Bytes bytes = memory_of(viewer, place);
+    if (bytes.data == nullptr || place.offset > bytes.size || bytes.size - place.offset < size) return true;
+    if (left < size) return false;
+    left -= size;
+    auto* const at = const_cast<std::byte*>(bytes.data) + place.offset;
+    if (!ranges.empty() && ranges.back().at + ranges.back().bytes == at)
+      ranges.back().bytes += size;
+    else
+      ranges.push_back({at, size});
+    return true;
+  }
+  if (type.kind == Kind::kStruct && !place.descriptors) {
+    for (std::uint32_t i = 0; i < type.members.size(); ++i)
+      if (!append_memory(viewer, member_of(viewer.tables(), place, i), ranges, left)) return false;
+    return true;
+  }
+  if (type.kind == Kind::kOther) return true;
+  const std::uint32_t count = count_of(viewer, place);
+  if (count > left) return false;
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (!append_memory(viewer, element_of(viewer.tables(), place, i), ranges, left)) return false;
+  return true;
+}
+
+}  // namespace
+
+std::vector<MemoryRange> memory_of_place(const Viewer& viewer, const Place& place) {
+  if (place.texel) {
+    const auto texel = texel_of(viewer, place);
+    if (!texel) return {};
+    return {{texel->at, texel->bytes}};
+  }
+  if (place.variable->memory == Memory::kCells || place.variable->memory == Memory::kOpaque) return {};
+  std::vector<MemoryRange> ranges;
+  std::uint64_t left = kMostMemory;
+  if (!append_memory(viewer, place, ranges, left)) ranges.clear();
+  return ranges;
+}
+
 std::vector<Scalar> numbers_of(const Viewer& viewer, const Place& place) {
+  if (place.texel) {
+    std::vector<Scalar> numbers;
+    const auto texel = texel_of(viewer, place);
+    if (!texel) return numbers;
+    const texel::Kind kind = texel->format->kind;
+    const char letter = kind == texel::Kind::kFloat ? 'F' : kind == texel::Kind::kSint ? 'I' : 'U';
+    for (const std::uint32_t bits : decode(*texel)) numbers.push_back({letter, 32, bits});
+    return numbers;
+  }
   const spirv::SourceType& type = type_at(viewer.tables(), place);
   if (place.descriptors || place.variable->memory == Memory::kOpaque) return {};
   if (type.kind == Kind::kVector) {
@@ -299,6 +411,7 @@ std::string to_text(const Viewer& viewer, const Value& value) {
 }
 
 std::string type_of(const Viewer& viewer, const Value& value) {
+  if (value.place && value.place->texel) return "texel";
   if (value.place) return type_at(viewer.tables(), *value.place).name;
   if (value.scalars.empty()) return {};
   const char type = value.scalars[0].type;

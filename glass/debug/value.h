@@ -1,12 +1,15 @@
 // Values of a stopped shader: places of variables, numbers that expressions make of them, and both as text.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "glass/debug/run.h"
+#include "glass/debug/texels.h"
 
 namespace vitrine::glass::debug {
 
@@ -35,7 +38,7 @@ struct Viewer {
   const spirv::SourceVariables& tables() const { return *run->subject->variables; }
 };
 
-/// A variable, or a part of one.
+/// A variable, or a part of one; a texel of an image.
 struct Place {
   const spirv::SourceVariable* variable = nullptr;
   std::uint32_t type = 0;
@@ -45,7 +48,9 @@ struct Place {
   bool descriptors = false;         ///< the next index chooses one
   std::uint32_t matrix_stride = 0;  ///< of the member that it is in
   bool row_major = false;
-  std::uint32_t component_stride = 0;  ///< bytes between components of a column of a row-major matrix
+  std::uint32_t component_stride = 0;           ///< bytes between components of a column of a row-major matrix
+  std::uint32_t component = 0, components = 1;  ///< of the vector that it is in
+  std::optional<TexelCoordinates> texel;
 };
 
 struct Value {
@@ -61,6 +66,17 @@ Place member_of(const spirv::SourceVariables& tables, const Place& place, std::u
 std::uint32_t count_of(const Viewer& viewer, const Place& place);
 /// Numbers of a scalar or vector; empty: it is another thing.
 std::vector<Scalar> numbers_of(const Viewer& viewer, const Place& place);
+
+/// Memory that a place lies in, in pieces; nothing: it lies in cells, has none, or is too large (1 MiB).
+std::vector<MemoryRange> memory_of_place(const Viewer& viewer, const Place& place);
+
+/// The numbers of a scalar or vector in other types: what is stored where `place` is. False: they are as many as fit,
+/// or one for all.
+bool fit_numbers(const Viewer& viewer, const Place& place, std::vector<Scalar>& numbers);
+/// Where each of the numbers of a scalar or vector lies.
+std::vector<Place> scalar_places(const Viewer& viewer, const Place& place);
+/// Bytes of a number in memory: a word for booleans and where a word is a cell.
+std::uint32_t stored_bytes(const Viewer& viewer, const Place& place);
 
 /// "(1, 2)", "{first = 1, rest = ...}", "{0, 1, 2}". Long arrays are cut.
 std::string to_text(const Viewer& viewer, const Value& value);

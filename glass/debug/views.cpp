@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "glass/debug/words.h"
+
 namespace vitrine::glass::debug {
 namespace {
 
@@ -31,18 +33,59 @@ std::string variables_text(Engine& engine, const std::vector<const spirv::Source
   return text;
 }
 
-/// The cells of a variable that is watched or asked about. False: `error` says why there are none.
-bool cells_of(Engine& engine, const std::string& expression, std::uint32_t& cell, std::uint32_t& count,
-              std::string& error) {
-  if (!engine.focus().run) return error = kNothing, false;
-  const auto value = evaluate_in(engine, expression, engine.focus().lane, engine.focus().frame);
-  if (!value) return error = value.message() + "\n", false;
+constexpr char kExactMemory[] = "what the shader writes is not recorded where it is shown as it always runs (--exact)";
+
+/// The place of what is watched or asked about: cells, or memory that is there.
+base::Result<Place> place_in(Engine& engine, const std::string& expression, std::size_t lane, std::size_t frame) {
+  const auto value = evaluate_in(engine, expression, lane, frame);
+  if (!value) return base::Error{value.message()};
   const std::optional<Place>& place = value.value().place;
-  if (!place || place->variable->memory != spirv::SourceVariable::Memory::kCells)
-    return error = std::string("'") + expression + "' is no variable of the invocation\n", false;
-  cell = place->cell;
-  count = engine.focus().run->subject->variables->types[place->type].cells;
-  return true;
+  if (!place) return base::Error{quoted(expression) + " is no variable and no memory"};
+  if (place->variable->memory == spirv::SourceVariable::Memory::kCells) return *place;
+  if (memory_of_place(engine.view(*engine.focus().run, lane), *place).empty())
+    return base::Error{quoted(expression) + " is in no memory that is bound now, or more than 1 MiB"};
+  return *place;
+}
+
+bool in_cells(const Place& place) { return place.variable->memory == spirv::SourceVariable::Memory::kCells; }
+
+/// "x was written at a.comp:3", with the line; `by`: an invocation.
+std::string written_text(const std::string& expression, const Run& run, std::uint32_t number, const std::string& by) {
+  const spirv::SourceInfo& sources = *run.subject->context.sources;
+  const spirv::SourcePlace& place = sources.place(number);
+  return expression + " was written at " + sources.files[place.file].name + ":" + std::to_string(place.line) + by +
+         "\n" + numbered(sources, place.file, place.line, '|');
+}
+
+std::string who_wrote_cells(Engine& engine, const std::string& expression, const Place& place) {
+  const Focus& focus = engine.focus();
+  const Run& run = *focus.run;
+  const std::uint32_t count = run.subject->variables->types[place.type].cells;
+  for (std::size_t i = engine.history().position_in(run); i-- > 0;) {
+    if (!run.assigns(run.entry(i), focus.lane, place.cell, count, true)) continue;
+    if (run.entry(i).probe == kChange) return expression + " was set at the prompt\n";
+    return written_text(expression, run, run.subject->probes[run.entry(i).probe].place, {});
+  }
+  return "nothing that is recorded has written " + expression + "\n";
+}
+
+std::string who_wrote_memory(Engine& engine, const std::string& expression, const Place& place) {
+  const std::vector<MemoryRange> memory = memory_of_place(engine.view(*engine.focus().run, engine.focus().lane), place);
+  std::string text;
+  engine.history().for_each_back([&](const std::shared_ptr<Run>& run, const Run::Entry& entry) {
+    const auto store = run->store_to(entry, memory, *engine.history().running());
+    if (!store) return true;
+    const std::uint32_t number = run->place_of_stores(entry);
+    if (store->lane == kNoLane)
+      text = "nothing has written " + expression + " since the workgroup began\n";
+    else if (number == 0)
+      text = expression + " was set at the prompt\n";
+    else
+      text = written_text(expression, *run, number,
+                          " by " + invocation_text(*run, store->lane) + (run->where.empty() ? "" : ", " + run->where));
+    return false;
+  });
+  return text.empty() ? "nothing that is recorded has written " + expression + "\n" : text;
 }
 
 }  // namespace
@@ -170,31 +213,77 @@ std::string disassembly_text(Engine& engine) {
 }
 
 std::string who_wrote_text(Engine& engine, const std::string& expression) {
-  std::uint32_t cell = 0, count = 0;
-  std::string error;
-  if (!cells_of(engine, expression, cell, count, error)) return error;
-  const Focus& focus = engine.focus();
-  const Run& run = *focus.run;
-  for (std::size_t i = engine.history().position_in(run); i-- > 0;) {
-    if (!run.assigns(run.entry(i), focus.lane, cell, count, true)) continue;
-    const spirv::SourcePlace& place = run.subject->place(run.entry(i).probe);
-    const spirv::SourceInfo& sources = *run.subject->context.sources;
-    return expression + " was written at " + sources.files[place.file].name + ":" + std::to_string(place.line) + "\n" +
-           numbered(sources, place.file, place.line, '|');
+  if (!engine.focus().run) return kNothing;
+  const auto place = place_in(engine, expression, engine.focus().lane, engine.focus().frame);
+  if (!place) return place.message() + "\n";
+  if (in_cells(place.value())) return who_wrote_cells(engine, expression, place.value());
+  return engine.records_stores() ? who_wrote_memory(engine, expression, place.value())
+                                 : kExactMemory + std::string("\n");
+}
+
+base::Result<int> watch_in(Engine& engine, const std::string& expression, std::size_t lane, std::size_t frame,
+                           std::string owner) {
+  const auto place = place_in(engine, expression, lane, frame);
+  if (!place) return base::Error{place.message()};
+  const Run& run = *engine.focus().run;
+  Watchpoint watchpoint;
+  watchpoint.text = expression;
+  watchpoint.owner = std::move(owner);
+  watchpoint.subject = run.subject;
+  watchpoint.id = run.id[lane];
+  if (in_cells(place.value())) {
+    watchpoint.cell = place.value().cell;
+    watchpoint.count = run.subject->variables->types[place.value().type].cells;
+  } else {
+    if (!engine.records_stores()) return base::Error{kExactMemory};
+    const Viewer viewer = engine.view(run, lane);
+    watchpoint.place = place.value();
+    watchpoint.memory = memory_of_place(viewer, place.value());
+    watchpoint.value = to_text(viewer, {place.value(), {}});
   }
-  return "nothing that is recorded has written " + expression + "\n";
+  return engine.watch(std::move(watchpoint));
 }
 
 std::string watch_text(Engine& engine, const std::string& expression) {
-  Watchpoint watchpoint;
-  std::string error;
-  if (!cells_of(engine, expression, watchpoint.cell, watchpoint.count, error)) return error;
+  if (!engine.focus().run) return kNothing;
   const Focus& focus = engine.focus();
-  watchpoint.text = expression;
-  watchpoint.subject = focus.run->subject;
-  watchpoint.id = focus.run->id[focus.lane];
-  return "watch " + std::to_string(engine.watch(std::move(watchpoint))) + ": " + expression + " of " +
-         invocation_text(*focus.run, focus.lane) + "\n";
+  const auto number = watch_in(engine, expression, focus.lane, focus.frame, {});
+  if (!number) return number.message() + "\n";
+  std::string text = "watch " + std::to_string(number.value()) + ": " + expression;
+  if (!engine.watchpoints().at(number.value()).is_memory()) text += " of " + invocation_text(*focus.run, focus.lane);
+  return text + "\n";
+}
+
+base::Result<Value> set_in(Engine& engine, const std::string& target, const std::string& expression, std::size_t lane,
+                           std::size_t frame) {
+  const auto to = evaluate_in(engine, target, lane, frame), from = evaluate_in(engine, expression, lane, frame);
+  if (!to) return base::Error{to.message()};
+  if (!from) return base::Error{from.message()};
+  const Viewer viewer = engine.view(*engine.focus().run, lane);
+  const std::optional<Place>& place = to.value().place;
+  if (!place) return base::Error{quoted(target) + " is no variable and no memory"};
+  if (place->texel) return base::Error{"texels cannot be set"};
+  std::vector<Scalar> numbers = from.value().place ? numbers_of(viewer, *from.value().place) : from.value().scalars;
+  if (numbers.empty() || numbers[0].type == '?' || !fit_numbers(viewer, *place, numbers))
+    return base::Error{"numbers, vectors and their components can be set, to as many numbers or to one"};
+  const std::string error = engine.change(*place, lane, numbers);
+  if (!error.empty()) return base::Error{error};
+  return to.value();
+}
+
+std::string set_text(Engine& engine, const std::string& assignment) {
+  if (!engine.focus().run) return kNothing;
+  std::size_t at = std::string::npos;
+  for (std::size_t i = 1; i + 1 < assignment.size() && at == std::string::npos; ++i)
+    if (assignment[i] == '=' && assignment[i + 1] != '=' &&
+        std::string_view("=!<>").find(assignment[i - 1]) == std::string_view::npos)
+      at = i;
+  if (at == std::string::npos) return "set VARIABLE = EXPRESSION\n";
+  const std::string target(trimmed(std::string_view(assignment).substr(0, at)));
+  const bool first = !engine.focus().run->changed;
+  const auto value = set_in(engine, target, assignment.substr(at + 1), engine.focus().lane, engine.focus().frame);
+  if (!value) return value.message() + "\n";
+  return value_text(engine, target) + (first ? "from here on this run is another one than without the debugger\n" : "");
 }
 
 }  // namespace vitrine::glass::debug

@@ -25,7 +25,14 @@ std::string backtrace_text(Engine& engine);
 std::string list_text(Engine& engine, std::uint32_t line);
 std::string disassembly_text(Engine& engine);
 std::string who_wrote_text(Engine& engine, const std::string& expression);
-/// Watches it from now on.
+/// Watches it from now on; the number of the watch.
+base::Result<int> watch_in(Engine& engine, const std::string& expression, std::size_t lane, std::size_t frame,
+                           std::string owner);
 std::string watch_text(Engine& engine, const std::string& expression);
+/// Gives what `target` names the value of an expression; that value.
+base::Result<Value> set_in(Engine& engine, const std::string& target, const std::string& expression, std::size_t lane,
+                           std::size_t frame);
+/// "x = 3".
+std::string set_text(Engine& engine, const std::string& assignment);
 
 }  // namespace vitrine::glass::debug

@@ -305,9 +305,26 @@ void add_global(Translator& t, const Inst& variable, const Pointer& pointer) {
       break;
     default:
       row.memory = SourceVariable::Memory::kOpaque;
+      if (pointer.kind != Pointer::Kind::kDescriptor) break;
+      row.set = pointer.binding.set;
+      row.slot = pointer.binding.slot;
+      row.descriptors = pointer.descriptor_array ? pointer.binding.count : 0;
       break;
   }
   debugging.tables.variables.push_back(std::move(row));
+}
+
+/// Rows for the variables that can have homes, by the number of the local so far (resolve_arrays()).
+void add_homes(Translator& t) {
+  for (const auto& [local, cell] : t.debugging->cells) {
+    if (cell == kNoCell || t.locals[local].storage == spv::StorageClass::Input) continue;
+    Probe home;
+    home.kind = Probe::Kind::kAssign;
+    home.first_cell = cell;
+    home.cells = t.debugging->tables.types[t.debugging->types.number(t.locals[local].type)].cells;
+    home.number = local + 1;
+    t.function.probes.push_back(std::move(home));
+  }
 }
 
 }  // namespace
@@ -327,6 +344,8 @@ void end_debugging(Translator& t) {
     if (const auto pointer = t.pointers.find(variable.result); pointer != t.pointers.end())
       add_global(t, variable, pointer->second);
   }
+  // An interest in rehearsals, of what is a rehearsal: nothing else than the debugger sees its results.
+  if (t.interest.rehearsal) add_homes(t);
   t.sources.variables = std::make_shared<const SourceVariables>(std::move(t.debugging->tables));
   t.debugging.reset();
 }

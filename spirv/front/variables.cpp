@@ -3,6 +3,7 @@
 #include <set>
 
 #include "spirv/front/context.h"
+#include "spirv/homes.h"
 
 namespace vitrine::spirv::front {
 namespace {
@@ -49,6 +50,26 @@ void find_memory(Arrays& a) {
       }
       key.push_back(step.index);
     }
+  }
+}
+
+/// Variables that are to have homes stay in memory as a whole, but not where a dynamic index leads into a part of them:
+/// that one is clamped to the elements of the part.
+void find_homes(Arrays& a) {
+  for (const Probe& probe : a.t.function.probes) {
+    if (!is_home(probe)) continue;
+    const std::uint32_t local = probe.number - 1;
+    const auto part = a.in_memory.lower_bound({local});
+    if (part == a.in_memory.end() || part->front() != local) a.in_memory.insert({local});
+  }
+}
+
+/// Their rows name the arrays; those of variables that nothing accesses, or that have none, are no rows any more.
+void place_homes(Arrays& a) {
+  for (Probe& probe : a.t.function.probes) {
+    if (!is_home(probe)) continue;
+    const auto array = a.arrays.find({probe.number - 1});
+    probe.number = array == a.arrays.end() ? 0 : array->second + 1;
   }
 }
 
@@ -169,7 +190,9 @@ void resolve_arrays(Translator& t) {
   t.inst = nullptr;
   t.exact = false;
   find_memory(arrays);
+  find_homes(arrays);
   rewrite(arrays, t.function.body);
+  place_homes(arrays);
   t.fallback = {};
 }
 

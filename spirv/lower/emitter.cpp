@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "spirv/homes.h"
+
 namespace vitrine::spirv::lowering {
 
 Emitter::Emitter(const ScalarFunction& function, const Allocation& allocation, std::string& error)
@@ -14,6 +16,8 @@ Emitter::Emitter(const ScalarFunction& function, const Allocation& allocation, s
   for (const std::vector<ScalarOp>* list : {&f_.preamble, &f_.body})
     for (const ScalarOp& op : *list)
       if (op.op == ir::Op::kLoadArray || op.op == ir::Op::kStoreArray) used[op.instr->data[0]] = true;
+  for (const Probe& probe : f_.ir->probes)
+    if (is_home(probe)) used[probe.number - 1] = true;
   for (std::size_t i = 0; i < used.size(); i++) {
     array_base_.push_back(program->array_bytes);
     if (used[i]) program->array_bytes += f_.ir->arrays[i].elements * kRegisterStride;
@@ -263,6 +267,9 @@ std::unique_ptr<Program> Emitter::finish(ShaderInterface& interface) {
   interface.inputs = std::move(inputs);
   interface.outputs = std::move(outputs);
   clear_registers(interface);
+  program->probes = f_.ir->probes;
+  for (Probe& probe : program->probes)
+    if (is_home(probe)) probe.number = array_base_[probe.number - 1] + 1;
   program->uniform_words = std::max(program->uniform_words, program->draw_words);
   return std::move(program);
 }

@@ -16,6 +16,8 @@ namespace {
 
 /// Varying registers of a program: 16 MiB of wave memory.
 constexpr std::uint32_t kMaxRegisters = 65536;
+/// Of a rehearsal: with more of them a person waits for minutes.
+constexpr std::uint32_t kMaxRehearsedRegisters = 8192;
 
 }  // namespace
 
@@ -41,7 +43,9 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   if (observer && observer->interest() != exec::Interest{.blocks = true}) lowering::keep_identity(scalars, interface);
   if (rehearsal) lowering::keep_inputs(scalars, interface, rehearsal->interface());
   const lowering::Allocation allocation = lowering::allocate(scalars);
-  if (allocation.register_count > kMaxRegisters) return base::Error{"the shader keeps too many values alive"};
+  const bool rehearses = interest.rehearsal && !rehearsal;
+  if (allocation.register_count > (rehearses ? kMaxRehearsedRegisters : kMaxRegisters))
+    return base::Error{"the shader keeps too many values alive"};
   std::unique_ptr<Program> program = lowering::emit(scalars, allocation, interface, error);
   if (!error.empty()) return base::Error{error};
   program->flush_denormals = interface.stage != VK_SHADER_STAGE_COMPUTE_BIT;
@@ -50,7 +54,6 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   if (rehearsal) program->groups_per_wave = std::min(program->groups_per_wave, rehearsal->program().groups_per_wave);
   program->uses_subgroups = scalars.uses_subgroups;
   program->sources = std::move(function.sources);
-  program->probes = std::move(function.probes);
   program->shared_bytes = interface.shared_bytes;
   program->zeroed_shared = interface.zeroed_shared;
   if (observer) {

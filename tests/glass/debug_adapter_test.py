@@ -201,7 +201,7 @@ class Adapter(unittest.TestCase):
         server, port = self.serve(self.speaker, module)
         client = self.client(port)
         filters = client.ask("initialize")["exceptionBreakpointFilters"]
-        self.assertEqual([row["filter"] for row in filters], ["printf", "nan"])
+        self.assertEqual([row["filter"] for row in filters], ["printf", "nan", "findings"])
         client.ask("setExceptionBreakpoints", filters=["printf"])
         client.ask("launch")
         client.ask("configurationDone")
@@ -215,6 +215,72 @@ class Adapter(unittest.TestCase):
         client.ask("continue", threadId=stop["threadId"])
         client.wait("exited")
         server.wait(timeout=60)
+
+    def test_findings(self):
+        server, port = self.serve(self.application, "1", "12")
+        client = self.client(port)
+        client.ask("initialize")
+        client.ask("setExceptionBreakpoints", filters=["findings"])
+        client.ask("launch")
+        client.ask("configurationDone")
+        stop = client.wait("stopped")
+        self.assertEqual(stop["reason"], "exception")
+        info = client.ask("exceptionInfo", threadId=stop["threadId"])
+        self.assertEqual(info["exceptionId"], "finding")
+        self.assertIn("out-of-bounds-store", info["description"])
+        self.assertEqual(self.at(client, stop["threadId"])[:2], ("put", 8))
+        client.ask("setExceptionBreakpoints", filters=[])
+        client.ask("continue", threadId=stop["threadId"])
+        client.wait("exited")
+        server.wait(timeout=60)
+
+    def test_other_values_and_data_breakpoints(self):
+        server, port = self.serve()
+        client = self.client(port)
+        self.begin(client, [{"line": 14, "condition": "i == 2u"}])
+        stop = client.wait("stopped")
+        self.assertEqual(stop["threadId"], 3)
+        frame = self.at(client, 3)[2]
+        local, shared = client.ask("scopes", frameId=frame)["scopes"]
+        changed = client.ask("setVariable", variablesReference=local["variablesReference"], name="i", value="3u + 3u")
+        self.assertEqual((changed["value"], changed["type"]), ("6", "uint"))
+        block = next(row for row in client.ask("variables", variablesReference=shared["variablesReference"])["variables"]
+                     if row["variablesReference"] and "data" in row["value"])
+        data = client.ask("variables", variablesReference=block["variablesReference"])["variables"][0]
+        words = client.ask("variables", variablesReference=data["variablesReference"])["variables"]
+        self.assertEqual(words[6]["evaluateName"], "data[6]")
+        changed = client.ask("setVariable", variablesReference=data["variablesReference"], name="[7]", value="70")
+        self.assertEqual(changed["value"], "70")
+        self.assertEqual(client.ask("setExpression", expression="data[5]", value="data[7]", frameId=frame)["value"], "70")
+        self.assertFalse(client.request("setVariable", variablesReference=local["variablesReference"], name="i", value="nobody")["success"])
+        self.assertFalse(client.request("setExpression", expression="1", value="2", frameId=frame)["success"])
+        watched = client.ask("dataBreakpointInfo", variablesReference=data["variablesReference"], name="[6]")
+        self.assertEqual((watched["description"], watched["accessTypes"]), ("data[6]", ["write"]))
+        self.assertIsNone(client.ask("dataBreakpointInfo", name="nobody", frameId=frame)["dataId"])
+        answer = client.ask("setDataBreakpoints", breakpoints=[{"dataId": watched["dataId"]}, {"dataId": "x"}])["breakpoints"]
+        self.assertEqual([row["verified"] for row in answer], [True, False])
+        client.ask("setBreakpoints", source={"path": os.path.abspath(FILE)}, breakpoints=[])
+        client.ask("continue", threadId=3)
+        stop = client.wait("stopped")
+        self.assertEqual((stop["reason"], stop["description"]), ("data breakpoint", "watch 2: data[6] has changed: 0 -> 6"))
+        self.assertEqual(self.at(client, stop["threadId"])[:2], ("put", 8))
+        client.ask("setDataBreakpoints", breakpoints=[])
+        client.ask("continue", threadId=3)
+        client.wait("exited")
+        server.wait(timeout=60)
+
+    def test_pause(self):
+        _, port = self.serve(self.application, "3000")
+        client = self.client(port)
+        client.ask("initialize")
+        client.ask("launch")
+        client.ask("configurationDone")
+        time.sleep(0.5)
+        client.ask("pause", threadId=1)
+        stop = client.wait("stopped")
+        self.assertEqual(stop["reason"], "pause")
+        self.assertEqual(self.at(client, stop["threadId"])[:2], ("main", 12))
+        client.ask("disconnect")
 
     def test_disconnect_in_the_middle(self):
         server, port = self.serve()

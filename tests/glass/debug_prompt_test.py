@@ -6,9 +6,11 @@ usage: debug_prompt_test.py VITRINE APPLICATION
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 
@@ -57,6 +59,43 @@ class Prompt(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stdout.count("main at tests/glass/app/fill.comp:12"), 3)
         self.in_order(result.stdout, "invocation (0, 0, 0) has ended")
+
+    def test_another_value(self):
+        result = self.debug(["tbreak 14 if i == 2u", "run", "set i = 6", "set data[1] = 77", "print data[1]", "whowrote data[1]",
+                             "watch data[6]", "continue", "back", "set i = 0", "continue", "continue", "continue"])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.in_order(result.stdout, "i = 6", "from here on this run is another one than without the debugger", "data[1] = 77",
+                      "data[1] was set at the prompt", "watch 2: data[6]", "watch 2: data[6] has changed: 0 -> 6",
+                      "put at tests/glass/app/fill.comp:8", "this has been done already")
+
+    def test_findings(self):
+        result = self.debug(["catch finding", "run", "print i", "continue"], arguments=["1", "12"])
+        self.in_order(result.stdout, "caught: finding", "finding: error: store", "[vitrine/out-of-bounds-store]",
+                      "put at tests/glass/app/fill.comp:8", "i = ")
+
+    def test_interrupt(self):
+        process = subprocess.Popen([self.vitrine, "debug", "--", self.application, "3000"], stdin=subprocess.PIPE, text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+        self.addCleanup(lambda: (process.kill(), process.wait(), process.stdin.close(), process.stdout.close(), process.stderr.close()))
+        process.stdin.write("run\n")
+        process.stdin.flush()
+        self.assertIn("nothing has run yet", process.stdout.readline())
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        self.assertIn("paused", process.stdout.readline())
+        process.send_signal(signal.SIGINT)
+        text = ""
+        while "the shader waits" not in text:
+            text += process.stdout.readline()
+        self.assertIn("main at tests/glass/app/fill.comp:12", text)
+        process.stdin.write("step\nprint i\n")
+        process.stdin.flush()
+        while "i = " not in text:
+            text += process.stdout.readline()
+        process.stdin.write("detach\n")
+        process.stdin.flush()
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=60), 128 + signal.SIGTERM)
 
     def test_nothing_to_follow(self):
         self.assertEqual(self.debug([]).returncode, 0)

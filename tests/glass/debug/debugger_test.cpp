@@ -1,14 +1,10 @@
 // Sessions of the debugger by script: compute shaders.
 #include <spirv-tools/libspirv.hpp>
 
-#include "tests/glass/debug/scripted.h"
-#include "tests/glass/observed.h"
+#include "tests/glass/debug/sessions.h"
 
 namespace vitrine::glass::debug::test {
 namespace {
-
-using Lines = std::vector<std::string>;
-using vitrine::test::DebugInfo;
 
 constexpr char kShader[] = R"(#version 450
 layout(local_size_x = 8) in;
@@ -39,34 +35,8 @@ void main() {
 }
 )";
 
-struct Session {
-  std::string text;
-  std::vector<std::uint32_t> words;
-};
-
-Session session(Lines lines, const std::string& shader = kShader, DebugInfo info = DebugInfo::kNonSemantic,
-                std::uint32_t groups = 1, Shown shown = Shown::kRehearsal) {
-  std::string log;
-  const auto module =
-      vitrine::test::compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, shader, vitrine::test::VulkanVersion::k12, log, info);
-  EXPECT_FALSE(module.empty()) << log;
-  ScriptedDebugger debugger(std::move(lines), shown);
-  Session result;
-  for (std::uint32_t i = 0; i < 64; ++i) result.words.push_back(10 + i);
-  glass::test::run_observed(debugger.tool.get(), module, result.words, groups);
-  result.text = debugger.script.text();
-  return result;
-}
-
-/// What is said in this order, among other things.
-void expect_in_order(const std::string& text, const Lines& parts) {
-  std::size_t at = 0;
-  for (const std::string& part : parts) {
-    const std::size_t found = text.find(part, at);
-    ASSERT_NE(found, std::string::npos) << "'" << part << "' is missing behind " << at << " in\n" << text;
-    at = found + part.size();
-  }
-}
+using test::session;
+Session session(Lines lines) { return session(std::move(lines), kShader); }
 
 TEST(Debugger, StopsAtALineAndShowsVariables) {
   const Session s = session({"break shader.glsl:19", "run", "print i", "print p.first", "print p", "print p.rest.zx",
@@ -379,7 +349,7 @@ TEST(Debugger, BadCommandsAreAnswered) {
                              "list x",   "info what", "print i[3]",    "print p.nobody"});
   expect_in_order(s.text, {"is no command", "where?", "numbers are wanted", "nothing has run yet",
                            "nothing has run yet", "is missing", "no variable 'nobody'", "not defined", "no lane '99'",
-                           "no frame", "no breakpoint '9'", "no variable of the invocation"});
+                           "no frame", "no breakpoint '9'", "is no variable and no memory"});
 }
 
 }  // namespace

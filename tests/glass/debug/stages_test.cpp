@@ -107,5 +107,66 @@ void main() {
       {"main at shader.glsl:4", "main at shader.glsl:5", "u = "});
 }
 
+TEST(DebuggerStages, Texels) {
+  expect_in_order(session(VK_SHADER_STAGE_COMPUTE_BIT,
+                          {"break 9 if l == 0u",
+                           "run",
+                           "print imageLoad(picture, 1, 2)",
+                           "print imageLoad(picture, ivec2(1, 2)).x",
+                           "print imageLoad(layers, 1, 2, 1)",
+                           "print texelFetch(flats, ivec2(3, 3), 0)",
+                           "print texelFetch(texels, 2)",
+                           "print imageLoad(many[1], 0, 0)",
+                           "print imageLoad(many[2], 0, 0)",
+                           "print imageLoad(picture, 4, 0)",
+                           "print imageLoad(l, 0)",
+                           "watch imageLoad(picture, 1, 2)",
+                           "watch imageLoad(layers, 2, 2, 1)",
+                           "whowrote imageLoad(picture, 1, 2)",
+                           "continue",
+                           "whowrote imageLoad(picture, 1, 2)",
+                           "set imageLoad(picture, 1, 2) = 3",
+                           "continue",
+                           "reverse-continue",
+                           "print imageLoad(layers, 2, 2, 1)",
+                           "print imageLoad(picture, 1, 2)"},
+                          R"(#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+layout(local_size_x = 4) in;
+layout(set = 0, binding = 2, r32ui) uniform uimage2D picture; layout(set = 0, binding = 3, r32ui) uniform uimage2DArray layers;
+layout(set = 0, binding = 1) uniform utexture2D flats; layout(set = 0, binding = 4, r32ui) uniform uimageBuffer texels;
+layout(set = 0, binding = 6, r32ui) uniform uimage2D many[3];
+void main() {
+  uint l = gl_LocalInvocationIndex;
+  imageStore(picture, ivec2(int(l), 2), uvec4(50u + l));
+  imageAtomicAdd(layers, ivec3(2, int(l), 1), 7u);
+  l += texelFetch(flats, ivec2(0), 0).x + imageLoad(texels, 1).x + imageLoad(many[l & 1u], ivec2(0)).x;
+  imageStore(picture, ivec2(0), uvec4(l));
+})"),
+                  {"main at shader.glsl:9",
+                   "imageLoad(picture, 1, 2) = (",
+                   "imageLoad(picture, ivec2(1, 2)).x = ",
+                   "imageLoad(layers, 1, 2, 1) = (",
+                   "texelFetch(flats, ivec2(3, 3), 0) = (",
+                   "texelFetch(texels, 2) = (",
+                   "imageLoad(many[1], 0, 0) = (",
+                   "no such texel",
+                   "no such texel",
+                   "that is no image",
+                   "watch 2: imageLoad(picture, 1, 2)",
+                   "watch 3",
+                   "nothing that is recorded",
+                   "watch 2: imageLoad(picture, 1, 2) has changed: (",
+                   "-> (51, 0, 0, 1)",
+                   "main at shader.glsl:9",
+                   "was written at shader.glsl:9 by invocation (1, 0, 0)",
+                   "texels cannot be set",
+                   "watch 3: imageLoad(layers, 2, 2, 1) has changed",
+                   "main at shader.glsl:10",
+                   "watch 2",
+                   "imageLoad(layers, 2, 2, 1) = (",
+                   "imageLoad(picture, 1, 2) = (51, 0, 0, 1)"});
+}
+
 }  // namespace
 }  // namespace vitrine::glass::debug::test

@@ -1,0 +1,27 @@
+// Texels of the images that a stopped shader has: where they lie, and what they hold.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "spirv/resources.h"
+#include "texel/codec.h"
+
+namespace vitrine::glass::debug {
+
+/// Coordinates of a texel as imageLoad() has them, then the sample or level.
+using TexelCoordinates = std::array<std::int64_t, 5>;
+
+struct StoredTexelAt {
+  std::byte* at = nullptr;
+  std::uint32_t bytes = 0;
+  const texel::FormatDesc* format = nullptr;
+};
+
+/// Nothing: the image has no such texel, or it is compressed or lies in several planes.
+std::optional<StoredTexelAt> find_texel(const spirv::Descriptor& image, const TexelCoordinates& at);
+/// Without the view's swizzle.
+texel::Texel decode(const StoredTexelAt& texel);
+
+}  // namespace vitrine::glass::debug
