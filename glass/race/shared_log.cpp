@@ -23,7 +23,7 @@ bool SharedLog::met(Kind kind, Parts parts) const {
 
 void SharedLog::look_at_pending() {
   std::uint32_t offsets[base::kWaveWidth];
-  for (; looked_at_ < entries_.size(); ++looked_at_) {
+  for (; looked_at_ < count_; ++looked_at_) {
     Entry& entry = entries_[looked_at_];
     if (!entry.even) entry.spread = spread_of(unpack(entry, offsets), entry.lanes);
     marks_[static_cast<std::size_t>(entry.kind)] |= parts_of(std::uint64_t{entry.spread.least} + entry.site_first,

@@ -7,7 +7,6 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "glass/race/rows.h"
 #include "glass/race/span.h"
@@ -29,7 +28,7 @@ class SharedLog {
   /// The access counts as one that has come.
   bool meets(Kind kind, std::uint64_t first, std::uint64_t end);
 
-  bool empty() const { return entries_.empty(); }
+  bool empty() const { return count_ == 0; }
   bool has_atomics() const { return pending_[static_cast<std::size_t>(Kind::kAtomic)]; }
   bool is_full() const { return used_ + base::kWaveWidth > kRoom; }
   /// A load or an atomic operation, of bytes [site_first, site_end) behind offsets, is written down. False, and it is
@@ -41,8 +40,7 @@ class SharedLog {
   }
   /// Forgets what has been written down, but for that it has come.
   void forget() {
-    entries_.clear();
-    used_ = looked_at_ = 0;
+    count_ = used_ = looked_at_ = 0;
     pending_ = {};
   }
   /// Calls f(span, spread) for each access, in order.
@@ -50,7 +48,8 @@ class SharedLog {
   void for_each(std::uint64_t size, F&& f) {
     look_at_pending();
     std::uint32_t offsets[base::kWaveWidth];
-    for (const Entry& entry : entries_) {
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const Entry& entry = entries_[i];
       f(Span{{entry.site, entry.first, nullptr, entry.time}, entry.lanes, unpack(entry, offsets), 0, size},
         entry.spread);
     }
@@ -63,8 +62,8 @@ class SharedLog {
     std::uint32_t site_first, site_end;
     base::LaneMask lanes;
     Kind kind;
-    bool even;           ///< all lanes have the same offset, or they are a row: its spread has them
-    Spread spread = {};  ///< if it is even, or has been looked at
+    bool even;      ///< all lanes have the same offset, or they are a row: its spread has them
+    Spread spread;  ///< if it is even, or has been looked at
   };
   static constexpr std::uint32_t kRoom = 16384;
 
@@ -76,7 +75,16 @@ class SharedLog {
   }
   bool push(Kind kind, const Doing& by, base::LaneMask lanes, const Offsets& offsets, std::uint32_t site_first,
             std::uint32_t site_end) {
-    Entry entry{by.site, by.first, by.time, used_, site_first, site_end, lanes, kind, false};
+    // Written where it stays: a copy of what has just been written in parts waits for all of them.
+    Entry& entry = entries_[count_];
+    entry.site = by.site;
+    entry.first = by.first;
+    entry.time = by.time;
+    entry.offset = used_;
+    entry.site_first = site_first;
+    entry.site_end = site_end;
+    entry.lanes = lanes;
+    entry.kind = kind;
     if (!make_even(entry, offsets)) {
       if (!pack_offsets(offsets.words, lanes, packed_.get() + used_)) return false;
       used_ += static_cast<std::uint32_t>(base::kWaveWidth);
@@ -84,7 +92,7 @@ class SharedLog {
       return false;
     }
     ++used_;
-    entries_.push_back(entry);
+    ++count_;
     pending_[static_cast<std::size_t>(kind)] = true;
     return true;
   }
@@ -104,16 +112,19 @@ class SharedLog {
     const std::uint32_t step = same ? first == last ? 4 : 0 : step_of(offsets.words, entry.lanes);
     const std::uint32_t least = offsets[first];
     entry.even = same || step != 0;
-    entry.spread = {least, same ? least : least + (last - first) * step, step};
+    entry.spread.least = least;
+    entry.spread.most = same ? least : least + (last - first) * step;
+    entry.spread.step = step;
     return entry.even;
   }
   void look_at_pending();
   bool met(Kind kind, Parts parts) const;
 
-  std::vector<Entry> entries_;
+  std::unique_ptr<Entry[]> entries_{new Entry[kRoom]};  // NOLINT(modernize-make-unique): without values
+  std::uint32_t count_ = 0;                             ///< of entries
   std::unique_ptr<std::uint16_t[]> packed_ = std::make_unique<std::uint16_t[]>(kRoom);
   std::uint32_t used_ = 0;
-  std::size_t looked_at_ = 0;         ///< of entries, whose parts are in `marks_`
+  std::uint32_t looked_at_ = 0;       ///< of entries, whose parts are in `marks_`
   std::array<bool, 3> pending_ = {};  ///< kinds of entries
   std::array<Parts, 3> marks_ = {};   ///< by kind
 };

@@ -73,7 +73,7 @@ void main() {
 )");
 }
 
-/// Lanes write adjacent bytes; the buffer ends in the middle of a word.
+/// Lanes write bytes between those that others read; the buffer ends in the middle of a word, and of a half.
 CTS_CASE("glsl", "narrow.adjacent_bytes_and_bounds") {
   run_compute(run, std::string(kHead) + R"(
 layout(std430, binding = 0) buffer In { uint8_t v[]; } a;
@@ -81,7 +81,7 @@ layout(std430, binding = 0) buffer Half { float16_t h[]; } b;
 void main() {
   uint id = gl_GlobalInvocationID.x;
   uint8_t old = a.v[id + 10u];
-  float16_t h = b.h[id + 3u];
+  float16_t h = b.h[(id + 3u) | 1u];
   result[2u * id] = uint(old);
   result[2u * id + 1u] = floatBitsToUint(float(h));
   if ((id & 3u) == 2u) a.v[id + 10u] = uint8_t(old * uint8_t(3) + uint8_t(id));

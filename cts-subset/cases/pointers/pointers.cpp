@@ -414,7 +414,7 @@ void main() {
   atomicMax(p.c.u[4u + (i & 3u)], v);
   atomicXor(p.c.u[8u + (i & 3u)], v);
   atomicMin(p.c.i[i & 3u], int64_t(v));
-  r[i] = atomicExchange(p.c.i[64u - 1u - i % 32u], int64_t(v)) != 0l && i >= 32u ? 1ul : 0ul;
+  r[i] = i >= 32u && atomicExchange(p.c.i[64u - 1u - i % 32u], int64_t(v)) != 0l ? 1ul : 0ul;
   r[i] += atomicCompSwap(p.c.u[12u + i % 32u], uint64_t(i), v) * (i < 32u ? 1ul : 0ul);
 })",
                 {address_of(run, a)}, {storage_buffer(0, out)});
