@@ -28,7 +28,8 @@ PixelEvent event_of(const Json& json) {
   event.address = address_of(json.at("address"));
   for (const Json& fact : json.value("facts", Json::array())) event.facts.emplace_back(fact.at(0), fact.at(1));
   for (const Json& source : json.value("sources", Json::array()))
-    event.sources.push_back({key_of(source.at("texel")), source.value("value", ""), source.value("weight", 0.0)});
+    event.sources.push_back({key_of(source.at("texel")), source.value("value", ""), source.value("weight", 0.0),
+                             source.value("read", std::pair<std::uint64_t, std::uint32_t>())});
   return event;
 }
 

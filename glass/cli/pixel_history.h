@@ -23,7 +23,8 @@ struct TexelKey {
 struct PixelSource {
   TexelKey texel;
   std::string value;
-  double weight = 0;  ///< 0: not known
+  double weight = 0;                             ///< 0: not known
+  std::pair<std::uint64_t, std::uint32_t> read;  ///< submission and command that read it, if not the event's: 0, 0
 };
 
 struct PixelEvent {

@@ -152,7 +152,8 @@ class Teller {
     PixelChapter chapter{source.texel, "", texel, {}, source.value, false, ""};
     const Events& events = texel->events;
     std::size_t end = 0;
-    while (end < events.size() && events[end].place() < event.place()) ++end;
+    const auto read = source.read.first != 0 ? source.read : event.place();
+    while (end < events.size() && events[end].place() < read) ++end;
     while (end > 0 && events[end - 1].kind == "present") --end;
     take(events, last_start(events, end), end, chapter);
     chapter.differs = !source.value.empty() && !chapter.events.empty() && !chapter.value().empty() &&

@@ -32,8 +32,10 @@ struct TexelId {
 struct Source {
   TexelId texel;
   const texel::FormatDesc* format = nullptr;
-  Value value;       ///< then
-  float weight = 1;  ///< 0: not known
+  Value value;                   ///< then
+  float weight = 1;              ///< 0: not known
+  std::uint64_t submission = 0;  ///< in which it was read, if not by the event's command: 0
+  std::uint32_t command = 0;
 };
 
 enum class EventKind : std::uint8_t {

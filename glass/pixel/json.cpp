@@ -35,6 +35,7 @@ Json to_json(const Source& source) {
   Json json{{"texel", to_json(source.texel)}};
   if (source.value.size != 0 && source.format != nullptr) json["value"] = to_text(source.value, *source.format);
   if (source.weight > 0) json["weight"] = source.weight;
+  if (source.submission != 0) json["read"] = {source.submission, source.command};
   return json;
 }
 

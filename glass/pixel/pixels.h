@@ -15,6 +15,7 @@
 
 #include "glass/pixel/locate.h"
 #include "glass/pixel/request.h"
+#include "glass/pixel/staged.h"
 #include "spirv/observed_command.h"
 
 namespace vitrine::glass::pixel {
@@ -93,6 +94,9 @@ class Pixels {
   /// A texel as a source, with what it holds now.
   Source source_at(const std::byte* address, const texel::FormatDesc& format, float weight = 1) const;
 
+  /// Of the thread that replays, on one device.
+  Staged& staged() { return staged_; }
+
   /// Nothing is recorded any more: the frame or submission that was asked for is done.
   bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
 
@@ -121,6 +125,7 @@ class Pixels {
   /// By submission, command and fate.
   std::map<std::tuple<std::uint64_t, std::uint32_t, std::size_t>, PrimitiveNote> primitives_;
   std::uint64_t image_count_ = 0;
+  Staged staged_;
 };
 
 /// Where a draw or dispatch is, without a shader.

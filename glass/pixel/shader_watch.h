@@ -6,7 +6,7 @@
 
 namespace vitrine::glass::pixel {
 
-/// One program with image instructions or discards.
+/// One program.
 class PixelProgram final : public ProgramTool {
  public:
   PixelProgram(Pixels& pixels, const ShaderIdentity& shader, const spirv::Program& program);

@@ -37,7 +37,8 @@ struct Fragment {
   std::vector<Write> writes;
   Address discarded;  ///< where; no frames and no SPIR-V id: it has not been
   std::vector<Source> sources;
-  std::vector<std::string> lookups;  ///< in words
+  std::vector<std::string> lookups;                         ///< in words
+  std::vector<std::pair<std::string, std::string>> inputs;  ///< of the shader: "input 0": "(1, 0.5)"
 };
 
 class TileWatch final : public raster::DrawWatch {

@@ -43,7 +43,8 @@ class PixelTool final : public Tool {
  public:
   PixelTool() { instance() = make_pixels(); }
 
-  spirv::exec::Interest interest() const override { return {.images = true, .discards = true}; }
+  /// Messages are nothing to it, but who wants some observes shaders that do no more than compute: for their inputs.
+  spirv::exec::Interest interest() const override { return {.images = true, .discards = true, .printf = true}; }
   std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
     return std::make_shared<PixelProgram>(*pixels(), shader, program);
   }

@@ -12,6 +12,8 @@ void note_texels(ReplayState& state, const CmdCopyImage& command);
 void note_texels(ReplayState& state, const CmdBlitImage& command);
 void note_texels(ReplayState& state, const CmdResolveImage& command);
 void note_texels(ReplayState& state, const CmdCopyBufferToImage& command);
+void note_texels(ReplayState& state, const CmdCopyImageToBuffer& command);
+void note_texels(ReplayState& state, const CmdCopyBuffer& command);
 void note_texels(ReplayState& state, const CmdClearColorImage& command);
 void note_texels(ReplayState& state, const CmdClearDepthStencilImage& command);
 void note_texels(ReplayState& state, const CmdDiscardImages& command);

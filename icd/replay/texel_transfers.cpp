@@ -32,9 +32,9 @@ const texel::FormatDesc& format_of(const Image& image, VkImageAspectFlags aspect
   return texel::format_desc(plane_of(image, aspect).format);
 }
 
-/// A texel of an image as a source; image 0: the image does not have it.
-Source source_of(const ReplayState& state, const Image& image, VkImageAspectFlags aspect, std::uint32_t level,
-                 std::uint32_t sample, const Place& at, float weight) {
+/// Where a texel of an image lies; null: the image does not have it.
+const std::byte* address_of(const Image& image, VkImageAspectFlags aspect, std::uint32_t level, std::uint32_t sample,
+                            const Place& at) {
   const texel::PlaneLayout& plane = plane_of(image, aspect);
   const texel::LevelLayout& layout = plane.level[level];
   const texel::FormatDesc& format = texel::format_desc(plane.format);
@@ -44,13 +44,21 @@ Source source_of(const ReplayState& state, const Image& image, VkImageAspectFlag
       image.memory_of_plane(texel::plane_of_aspect(image.layout, static_cast<VkImageAspectFlagBits>(aspect)));
   if (memory == nullptr || at.x < 0 || at.y < 0 || at.z < 0 || at.x >= layout.extent.width ||
       at.y >= layout.extent.height || at.z >= depth)
-    return {};
+    return nullptr;
   const auto number = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
   const std::uint64_t offset = plane.offset + layout.offset +
                                number(at.z) * (slices ? layout.slice_pitch : plane.layer_stride) +
                                sample * layout.sample_stride + number(at.y) / format.block_height * layout.row_pitch +
                                number(at.x) / format.block_width * format.block_bytes;
-  return state.observed->pixels->source_at(memory + offset, format, weight);
+  return memory + offset;
+}
+
+/// A texel of an image as a source; image 0: the image does not have it.
+Source source_of(const ReplayState& state, const Image& image, VkImageAspectFlags aspect, std::uint32_t level,
+                 std::uint32_t sample, const Place& at, float weight) {
+  const std::byte* const address = address_of(image, aspect, level, sample, at);
+  if (address == nullptr) return {};
+  return state.observed->pixels->source_at(address, format_of(image, aspect), weight);
 }
 
 /// Whether a texel of an image lies in a level and layers that a region names.
@@ -176,6 +184,29 @@ void note_resolve(const ReplayState& state, const CmdResolveImage& command, cons
   state.observed->pixels->add(texel, std::move(event));
 }
 
+/// Where a region of a buffer has texel blocks.
+struct BufferBlocks {
+  BufferBlocks(const VkBufferImageCopy& region, const texel::FormatDesc& format)
+      : format_(format),
+        columns_(
+            blocks(region.bufferRowLength ? region.bufferRowLength : region.imageExtent.width, format.block_width)),
+        rows_(blocks(region.bufferImageHeight ? region.bufferImageHeight : region.imageExtent.height,
+                     format.block_height)),
+        first_(region.bufferOffset) {}
+
+  /// Of the block at these texels behind the region's first.
+  std::uint64_t offset(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    const std::int64_t block = (z * rows_ + y / format_.block_height) * columns_ + x / format_.block_width;
+    return first_ + static_cast<std::uint64_t>(block) * format_.block_bytes;
+  }
+  static std::int64_t blocks(std::int64_t texels, std::int64_t size) { return (texels + size - 1) / size; }
+
+ private:
+  const texel::FormatDesc& format_;
+  std::int64_t columns_, rows_;
+  std::uint64_t first_;
+};
+
 void note_upload(const ReplayState& state, const CmdCopyBufferToImage& command, const VkBufferImageCopy& r,
                  Texel& texel) {
   const Image& to = *command.target;
@@ -185,16 +216,48 @@ void note_upload(const ReplayState& state, const CmdCopyBufferToImage& command, 
   if (!in_layers(to, r.imageSubresource, texel.id) || x < 0 || y < 0 || z < 0 || x >= r.imageExtent.width ||
       y >= r.imageExtent.height || z >= std::max(r.imageExtent.depth, r.imageSubresource.layerCount))
     return;
-  const texel::FormatDesc& format = *texel.format;
-  const auto blocks = [](std::int64_t texels, std::int64_t size) { return (texels + size - 1) / size; };
-  const std::int64_t columns = blocks(r.bufferRowLength ? r.bufferRowLength : r.imageExtent.width, format.block_width);
-  const std::int64_t rows =
-      blocks(r.bufferImageHeight ? r.bufferImageHeight : r.imageExtent.height, format.block_height);
-  const std::int64_t block = (z * rows + y / format.block_height) * columns + x / format.block_width;
-  const std::uint64_t offset = r.bufferOffset + static_cast<std::uint64_t>(block) * format.block_bytes;
+  const std::uint64_t offset = BufferBlocks(r, *texel.format).offset(x, y, z);
   std::string text = "copied from bytes at offset " + std::to_string(offset) + " of buffer ";
-  if (command.source->data) text += describe_bytes(state.device, command.source->data, command.source->size);
-  state.observed->pixels->add(texel, texel_event(state, EventKind::kUpload, std::move(text)));
+  const std::byte* const data = command.source->data;
+  if (data) text += describe_bytes(state.device, data, command.source->size);
+  TexelEvent event = texel_event(state, EventKind::kUpload, std::move(text));
+  const std::uint32_t bytes = texel.format->block_bytes;
+  if (data && offset + bytes <= command.source->size) {
+    if (const auto staged = state.observed->pixels->staged().find(data + offset, bytes)) {
+      Source source{staged->texel, staged->format, {}, 1, staged->submission, staged->command};
+      source.value.size = std::min<std::uint8_t>(staged->format->block_bytes, sizeof source.value.bytes);
+      std::copy_n(data + offset, source.value.size, source.value.bytes.begin());
+      event.sources.push_back(source);
+      event.facts.emplace_back("copied to the buffer", "at submission " + std::to_string(staged->submission) +
+                                                           ", command " + std::to_string(staged->command) + " (" +
+                                                           std::string(staged->name) + ")");
+    }
+  }
+  state.observed->pixels->add(texel, std::move(event));
+}
+
+/// The rows of texel blocks that a region has copied to a buffer.
+void note_download(const ReplayState& state, const CmdCopyImageToBuffer& command, const VkBufferImageCopy& r) {
+  const Image& from = *command.source;
+  const VkImageAspectFlags aspect = r.imageSubresource.aspectMask;
+  const texel::FormatDesc& format = format_of(from, aspect);
+  const ObservedReplay& now = *state.observed;
+  const std::int64_t slices =
+      std::max(r.imageExtent.depth,
+               std::min(r.imageSubresource.layerCount, from.desc().layers - r.imageSubresource.baseArrayLayer));
+  const std::uint64_t bytes =
+      static_cast<std::uint64_t>(BufferBlocks::blocks(r.imageExtent.width, format.block_width)) * format.block_bytes;
+  for (std::int64_t z = 0; z < slices; ++z)
+    for (std::int64_t y = 0; y < r.imageExtent.height; y += format.block_height) {
+      const Place at{r.imageOffset.x, r.imageOffset.y + y, first_z(from, r.imageSubresource, r.imageOffset) + z};
+      const std::byte* const texel = address_of(from, aspect, r.imageSubresource.mipLevel, 0, at);
+      const std::uint64_t offset = BufferBlocks(r, format).offset(0, y, z);
+      if (texel == nullptr || offset + bytes > command.target->size) continue;
+      const TexelId id = state.observed->pixels->locate(texel);
+      if (id.image == 0) continue;
+      state.observed->pixels->staged().add(command.target->data + offset, bytes,
+                                           {id, &format, now.submission, now.command, now.name}, format.block_width);
+    }
 }
 
 /// Calls f(texel) for the watched texels of some levels and layers.
@@ -241,6 +304,19 @@ void note_texels(ReplayState& state, const CmdResolveImage& command) {
 
 void note_texels(ReplayState& state, const CmdCopyBufferToImage& command) {
   for_each_region(state, command, [&](const VkBufferImageCopy& r, Texel& t) { note_upload(state, command, r, t); });
+}
+
+void note_texels(ReplayState& state, const CmdCopyImageToBuffer& command) {
+  if (!command.target->data) return;
+  for (const VkBufferImageCopy& region : command.regions) note_download(state, command, region);
+}
+
+void note_texels(ReplayState& state, const CmdCopyBuffer& command) {
+  if (!command.source->data || !command.target->data) return;
+  for (const VkBufferCopy& r : command.regions)
+    state.observed->pixels->staged().copied(command.source->data + r.srcOffset, command.target->data + r.dstOffset,
+                                            std::min(command.source->resolve_range(r.srcOffset, r.size),
+                                                     command.target->resolve_range(r.dstOffset, r.size)));
 }
 
 void note_texels(ReplayState& state, const CmdClearColorImage& command) {

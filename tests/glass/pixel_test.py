@@ -60,7 +60,7 @@ class Pixel(unittest.TestCase):
             if key["aspect"] == "color" and key["sample"] == 0:
                 values[names[key["image"]], key["level"], key["x"], key["y"]] = last
         lines = printed.split("\n")[:-1]
-        self.assertEqual(len(lines), 7 * 256 + 64)
+        self.assertEqual(len(lines), 8 * 256 + 64)
         for line in lines:
             name, level, x, y, value = line.split()
             self.assertTrue(values[name, int(level), int(x), int(y)].endswith(value), line)
@@ -117,6 +117,21 @@ class Pixel(unittest.TestCase):
         self.assertIn("tests/glass/app/pixels.comp:9: store of a shader\n     9 |   imageStore(to, at, texel.bgra);", text)
         self.assertIn("invocation (5, 5, 0)", text)
         self.assertIn("copied from bytes at offset 340 of buffer", text)
+
+    def test_chains_lead_through_buffers(self):
+        text = self.story("5,6", "--image", "staged", "--depth", "3")
+        self.assertRegex(text, r"copied from bytes at offset \d+ of buffer")
+        self.assertRegex(text, r"copied to the buffer at submission 1, command \d+ \(vkCmdCopyImageToBuffer\)")
+        self.assertIn("from [a] texel (5, 6) of image #6 'last'", text)
+        self.assertIn("[a] texel (5, 6) of image #6 'last'", text)
+        self.assertIn("pipeline 'sampling'", text)
+        self.assertNotIn("undefined", text[text.index("\n[a]"):text.index("\n[b]")].split("cleared")[1])
+
+    def test_inputs_of_shaders_are_told(self):
+        text = self.story("5,5", "--image", "target")
+        self.assertIn("input 0 (-0.3125, -0.3125)\n     input 1.y (0)\n", text)
+        # What is killed before it is shaded has none.
+        self.assertNotIn("input", text[text.index("outside of the scissor"):text.index("fails the depth test")])
 
     def test_an_application_that_draws_something_else_every_time_is_found_out(self):
         result = self.run_it("5,5", "--image=last", arguments=["runs"])

@@ -480,6 +480,24 @@ void read_back(const Image& image, std::uint32_t level, const Buffer& buffer, Vk
   vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_GENERAL, buffer.buffer, 1, &region);
 }
 
+/// The middle of an image goes to another one by two places of a buffer.
+void stage(const Image& from, const Image& to, const Buffer& buffer) {
+  constexpr VkDeviceSize kFirst = 12 * kSize * kSize * 4, kSecond = 14 * kSize * kSize * 4;
+  read_back(from, 0, buffer, kFirst);
+  wait();
+  const VkBufferCopy bytes{kFirst, kSecond, kSize * kSize * 4};
+  vkCmdCopyBuffer(commands, buffer.buffer, buffer.buffer, 1, &bytes);
+  wait();
+  VkBufferImageCopy region{};
+  region.bufferOffset = kSecond + (4 * kSize + 4) * 4;
+  region.bufferRowLength = kSize;
+  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.imageOffset = {4, 4, 0};
+  region.imageExtent = {8, 8, 1};
+  vkCmdCopyBufferToImage(commands, buffer.buffer, to.image, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+  wait();
+}
+
 void print(const Image& image, std::uint32_t level, const unsigned char* data) {
   for (std::uint32_t y = 0; y < kSize >> level; ++y)
     for (std::uint32_t x = 0; x < kSize >> level; ++x, data += 4)
@@ -531,6 +549,7 @@ void record(const std::vector<Image*>& colors, const Image& depth, const Buffer&
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0, nullptr);
   vkCmdDispatch(commands, kSize / 4, kSize / 4, 1);
   wait();
+  stage(last, *colors[8], result);
   VkDeviceSize offset = 0;
   for (const Image* image : colors)
     for (std::uint32_t level = 0; level < image->levels; ++level, offset += kSize * kSize * 4)
@@ -549,9 +568,9 @@ int main(int argc, char** argv) {
         resolved = make_image("resolved", kColor), copy = make_image("copy", kColor),
         mips = make_image("mips", kColor, VK_SAMPLE_COUNT_1_BIT, 2), last = make_image("last", kColor),
         stored = make_image("stored", kColor), culled = make_image("culled", kColor),
-        depth = make_image("depth", kDepth);
+        depth = make_image("depth", kDepth), staged = make_image("staged", kColor);
   make_set(mips, resolved, last, stored);
-  const std::vector<Image*> colors{&target, &samples, &resolved, &copy, &mips, &last, &stored, &culled};
+  const std::vector<Image*> colors{&target, &samples, &resolved, &copy, &mips, &last, &stored, &culled, &staged};
   const Buffer upload = make_buffer(kSize * kSize * 4), result = make_buffer(16 * kSize * kSize * 4);
   std::memset(upload.data, 0x42, kSize * kSize * 4);
   VkCommandBufferBeginInfo begin_info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
