@@ -135,7 +135,7 @@ std::unique_ptr<Tool> make_tool(std::string_view name) {
 }
 
 /// The loader unloads the driver with its last instance, and applications make several, one after the other: what the
-/// tools know of the process must last until it ends.
+/// tools know of the process must last until it ends, and what is wrong with their names is said once.
 void stay_loaded() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&session), &info) != 0 && info.dli_fname != nullptr) {
@@ -157,6 +157,7 @@ Session::Session() {
   // And who names commands wants files of them.
   const char* commands = std::getenv("VITRINE_CAPTURE");
   if (commands != nullptr && *commands != 0 && !base::has_word(wanted ? wanted : "", "capture")) add(make_capture());
+  if (wanted != nullptr && *wanted != 0) stay_loaded();
   if (idle()) return;
   stay_loaded();
   const char* report = std::getenv("VITRINE_REPORT");
