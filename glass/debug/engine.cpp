@@ -355,7 +355,8 @@ std::optional<Stop> Engine::check_exceptions(const std::shared_ptr<Run>& run, co
 }
 
 std::optional<Stop> Engine::check_watches(const std::shared_ptr<Run>& run, const Run::Entry& entry) {
-  for (const auto& [number, watchpoint] : watchpoints_) {
+  for (const auto& [number, row] : watchpoints_) {
+    const Watchpoint& watchpoint = row;
     if (watchpoint.is_memory() || watchpoint.subject != run->subject) continue;
     std::optional<std::size_t> found;
     base::for_each_lane(entry.lanes, [&](std::size_t lane) {

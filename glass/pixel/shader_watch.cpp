@@ -159,7 +159,7 @@ class PixelProgram::Watch final : public spirv::exec::Watch {
     if (block == nullptr || fragment.sources.size() >= kMostSources) return;
     Source source = program_.pixels_.source_at(block, format, 0);
     const bool known = std::ranges::any_of(fragment.sources, [&](const Source& s) { return s.texel == source.texel; });
-    if (source.texel.image != 0 && !known) fragment.sources.push_back(std::move(source));
+    if (source.texel.image != 0 && !known) fragment.sources.push_back(source);
   }
 
   PixelProgram& program_;

@@ -188,7 +188,8 @@ void Group::touch_shared(const Span& span) {
   const Spread spread = spread_of(span.offsets, span.lanes);
   const bool met =
       log_.meets(kind_of(now), std::uint64_t{spread.least} + now.first, std::uint64_t{spread.most} + now.end);
-  if (met || !fast(now)) settle_shared();
+  if ((met && log_.meets_written(kind_of(now), span.by, span.lanes, spread, now.first, now.end)) || !fast(now))
+    settle_shared();
   touch_spread(span, spread);
 }
 

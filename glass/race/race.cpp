@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "glass/output.h"
 #include "glass/race/accesses.h"
@@ -135,6 +136,14 @@ class RaceWatch : public spirv::exec::Watch {
   ~RaceWatch() override {
     if (!program_.compute()) races_.end(thread_);
   }
+  /// One at a time of a thread, with every barrier a new one: its memory stays.
+  static void* operator new(std::size_t size) {
+    void* const kept = std::exchange(spare().memory, nullptr);
+    return kept != nullptr ? kept : ::operator new(size);
+  }
+  static void operator delete(void* memory) {
+    if (void* const other = std::exchange(spare().memory, memory)) ::operator delete(other);
+  }
 
   void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
     const auto index = static_cast<std::size_t>(i - wave.program->code.data());
@@ -184,6 +193,15 @@ class RaceWatch : public spirv::exec::Watch {
     if (program_.context.stage != VK_SHADER_STAGE_FRAGMENT_BIT && program_.context.stage != VK_SHADER_STAGE_VERTEX_BIT)
       for (std::uint32_t lane = 0; lane < base::kWaveWidth; ++lane) thread_.names[lane] = lane;
     races_.begin(thread_, program_, wave, {{}, wave.active != 0 ? thread_.names[std::countr_zero(wave.active)] : 0});
+  }
+
+  struct Spare {
+    void* memory = nullptr;
+    ~Spare() { ::operator delete(memory); }
+  };
+  static Spare& spare() {
+    thread_local Spare one;
+    return one;
   }
 
   Races& races_;

@@ -39,6 +39,31 @@ bool SharedLog::meets(Kind kind, std::uint64_t first, std::uint64_t end) {
   return result;
 }
 
+bool SharedLog::meets_written(Kind kind, const Doing& by, base::LaneMask lanes, const Spread& spread,
+                              std::uint32_t site_first, std::uint32_t site_end) {
+  constexpr std::uint32_t kFew = 32;
+  if (count_ > kFew) return true;
+  look_at_pending();
+  const auto lane_0 = [](const Spread& of, base::LaneMask active, std::uint32_t first) {
+    return of.least + first - static_cast<std::uint32_t>(std::countr_zero(active)) * of.step;
+  };
+  const std::uint64_t first = std::uint64_t{spread.least} + site_first, end = std::uint64_t{spread.most} + site_end;
+  const std::uint32_t bytes = site_end - site_first;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const Entry& entry = entries_[i];
+    if (entry.kind == kind && kind != Kind::kStore) continue;
+    if (std::uint64_t{entry.spread.least} + entry.site_first >= end ||
+        first >= std::uint64_t{entry.spread.most} + entry.site_end)
+      continue;
+    const bool own = by.names == nullptr && entry.first == by.first && entry.even && spread.step != 0 &&
+                     entry.spread.step == spread.step && bytes <= spread.step &&
+                     entry.site_end - entry.site_first == bytes &&
+                     lane_0(entry.spread, entry.lanes, entry.site_first) == lane_0(spread, lanes, site_first);
+    if (!own) return true;
+  }
+  return false;
+}
+
 bool SharedLog::add_looking(Kind kind, const Doing& by, base::LaneMask lanes, const Offsets& offsets,
                             std::uint32_t site_first, std::uint32_t site_end) {
   look_at_pending();

@@ -27,6 +27,10 @@ class SharedLog {
   /// Whether something that an access of this kind to these bytes, [first, end), may race with has come since clear().
   /// The access counts as one that has come.
   bool meets(Kind kind, std::uint64_t first, std::uint64_t end);
+  /// Whether that is something which has been written down: not where other bytes of the part are meant, or each lane
+  /// comes to what it alone has come to. If much has, it may be.
+  bool meets_written(Kind kind, const Doing& by, base::LaneMask lanes, const Spread& spread, std::uint32_t site_first,
+                     std::uint32_t site_end);
 
   bool empty() const { return count_ == 0; }
   bool has_atomics() const { return pending_[static_cast<std::size_t>(Kind::kAtomic)]; }
