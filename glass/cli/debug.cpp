@@ -84,10 +84,15 @@ class Pausing {
     const std::lock_guard lock(mutex_);
     state_ = stopped ? State::kStopped : State::kRuns;
   }
+  /// Nothing stops any more.
+  void detach() {
+    const std::lock_guard lock(mutex_);
+    socket_ = -1;
+  }
   /// False: the application is to end, it does not stop.
   bool interrupt() {
     const std::lock_guard lock(mutex_);
-    if (state_ == State::kStopped) {
+    if (state_ == State::kStopped && socket_ >= 0) {
       std::fputs("\n(the shader waits; detach lets the application go on by itself)\n", stdout);
       std::fflush(stdout);
       return true;
@@ -105,10 +110,11 @@ class Pausing {
 };
 
 /// Asks the person until the shader goes on; false: the process has ended.
-bool answer_stop(DebugLink& link, Prompt& prompt) {
+bool answer_stop(DebugLink& link, Prompt& prompt, Pausing& pausing) {
   for (;;) {
     std::optional<std::string> line = prompt.line();
     if (!line) line = "detach";
+    if (*line == "detach" || *line == "quit") pausing.detach();
     const auto answer =
         link.ask({{"request", "command"}, {"text", *line}}, [&](const json& event) { prompt.show(event, ""); });
     if (!answer) return false;
@@ -125,7 +131,7 @@ void follow_link(DebugLink& link, Prompt& prompt, Pausing& pausing) {
     if (stopped) pausing.stopped(true);
     prompt.show(*message, "");
     if (!stopped) continue;
-    if (!answer_stop(link, prompt)) return;
+    if (!answer_stop(link, prompt, pausing)) return;
     pausing.stopped(false);
   }
 }

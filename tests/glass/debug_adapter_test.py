@@ -269,6 +269,26 @@ class Adapter(unittest.TestCase):
         client.wait("exited")
         server.wait(timeout=60)
 
+    def test_another_color(self):
+        server, port = self.serve(self.pixels)
+        client = self.client(port)
+        client.ask("initialize")
+        client.ask("setBreakpoints", source={"path": "/elsewhere/pixels.frag"},
+                   breakpoints=[{"line": 20, "condition": "gl_FragCoord.x == 5.5 && gl_FragCoord.y == 6.5"}])
+        client.ask("launch")
+        client.ask("configurationDone")
+        thread = client.wait("stopped")["threadId"]
+        frame = self.at(client, thread)[2]
+        self.assertEqual(client.ask("setExpression", expression="result", value="vec4(0.0, 1.0, 0.0, 1.0)", frameId=frame)["value"],
+                         "(0.0, 1.0, 0.0, 1.0)")
+        client.ask("continue", threadId=thread)
+        client.wait("exited")
+        server.wait(timeout=60)
+        # What is fetched at the line is added: its red, and more than 1 of the others.
+        lines = server.stdout.read().splitlines()
+        self.assertIn("last 0 5 6 0xff00ff60", lines)
+        self.assertIn("last 0 5 5 0xff40809f", lines)
+
     def test_pause(self):
         _, port = self.serve(self.application, "3000")
         client = self.client(port)

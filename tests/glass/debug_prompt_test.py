@@ -92,9 +92,12 @@ class Prompt(unittest.TestCase):
         process.stdin.flush()
         while "i = " not in text:
             text += process.stdout.readline()
-        process.stdin.write("detach\n")
+        process.stdin.write("print 41 + 1\ndetach\n")
         process.stdin.flush()
-        process.send_signal(signal.SIGTERM)
+        while "= 42" not in text:
+            text += process.stdout.readline()
+        time.sleep(0.2)
+        process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=60), 128 + signal.SIGTERM)
 
     def test_nothing_to_follow(self):
