@@ -200,7 +200,7 @@ void Emitter::one_move(Place to, Place from, bool masked, const ir::Instr* instr
   settle_note();
 }
 
-void Emitter::moves(std::vector<Move> list, const ir::Instr* instr) {
+void Emitter::moves(const std::vector<Move>& list, const ir::Instr* instr) {
   struct Pending {
     Place to, from;
     bool masked;

@@ -54,7 +54,7 @@ class Emitter {
     ScalarId to, from;
     bool masked;
   };
-  void moves(std::vector<Move> moves, const ir::Instr* instr);
+  void moves(const std::vector<Move>& moves, const ir::Instr* instr);
 
   void fail(const char* what) {
     if (error_.empty()) error_ = what;

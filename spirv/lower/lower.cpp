@@ -57,10 +57,10 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   program->shared_bytes = interface.shared_bytes;
   program->zeroed_shared = interface.zeroed_shared;
   if (observer) {
-    program->observation =
-        std::make_shared<exec::Observation>(exec::Observation{observer, interface, interest, {}, std::move(rehearsal)});
+    program->observation = std::make_shared<exec::Observation>(
+        exec::Observation{std::move(observer), interface, interest, {}, std::move(rehearsal)});
     if (interest.accesses || interest.images || interest.discards) exec::hook_instructions(*program);
-    if (program->observation) observer->made(*program);
+    if (program->observation) program->observation->observer->made(*program);
   }
   if (base::log_enabled("shader")) base::log("shader", disassemble(*program));
   return std::make_unique<Shader>(std::move(interface), std::unique_ptr<const Program>(std::move(program)));
