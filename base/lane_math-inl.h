@@ -233,6 +233,11 @@ HWY_INLINE Rebound<std::uint32_t, V> lanes_float_to_half(V v) {
 /// Bits of a vector mask, lane 0 in bit 0.
 template <class D, class M>
 HWY_INLINE LaneMask lanes_mask_bits(D d, M mask) {
+#if HWY_TARGET == HWY_AVX3
+  // Straight from the mask register; through bytes it would be put together there a piece at a time.
+  constexpr LaneMask kLanes = hn::MaxLanes(d) >= 64 ? ~LaneMask{0} : (LaneMask{1} << hn::MaxLanes(d) % 64) - 1;
+  return static_cast<LaneMask>(mask.raw) & kLanes;
+#endif
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(d, mask, bytes);
   LaneMask bits;
