@@ -157,9 +157,8 @@ Session::Session() {
   // And who names commands wants files of them.
   const char* commands = std::getenv("VITRINE_CAPTURE");
   if (commands != nullptr && *commands != 0 && !base::has_word(wanted ? wanted : "", "capture")) add(make_capture());
-  if (wanted != nullptr && *wanted != 0) stay_loaded();
+  if (!idle() || (wanted != nullptr && *wanted != 0)) stay_loaded();
   if (idle()) return;
-  stay_loaded();
   const char* report = std::getenv("VITRINE_REPORT");
   if (report != nullptr && *report != 0) report_ = std::make_unique<ReportFile>(report);
 }
