@@ -49,12 +49,13 @@ HWY_INLINE CodeLanes unorm_codes(ComponentLanes x) {
 HWY_INLINE ComponentLanes srgb_texel_values(hn::Mask<ComponentTag> alpha, CodeLanes codes) {
   return hn::IfThenElse(alpha, unorm_values(codes), srgb_to_linear(codes));
 }
-/// As a colour attachment; only where cpu_has_rsqrt().
+/// As a colour attachment.
+template <class Rsqrt>
 HWY_INLINE CodeLanes srgb_texel_codes(hn::Mask<ComponentTag> alpha, ComponentLanes value) {
   const ComponentTag d;
   const auto x = lanes_min_second(lanes_max_second(value, hn::Zero(d)), hn::Set(d, 1.0f));
   const hn::RebindToSigned<ComponentTag> di;
-  return hn::IfThenElse(hn::RebindMask(di, alpha), unorm_codes(x), srgb_codes(RsqrtOfCpu(), x));
+  return hn::IfThenElse(hn::RebindMask(di, alpha), unorm_codes(x), srgb_codes(Rsqrt(), x));
 }
 
 }  // namespace vitrine::texel::HWY_NAMESPACE

@@ -67,12 +67,21 @@ std::size_t decode_srgb_bytes(const std::byte* from, std::size_t floats, std::ui
   });
 }
 
-/// encode_srgb_attachment of three components, UNORM of the fourth. Only where cpu_has_rsqrt().
-std::size_t encode_srgb_bytes(const std::uint32_t* from, std::size_t floats, std::byte* to) {
+/// encode_srgb_attachment of three components, UNORM of the fourth.
+template <class Rsqrt>
+std::size_t encode_srgb(const std::uint32_t* from, std::size_t floats, std::byte* to) {
   const auto alpha = alpha_lanes();
   return whole_vectors(floats, [&](std::size_t i) {
-    store_codes(srgb_texel_codes(alpha, hn::BitCast(D(), hn::LoadU(DU(), from + i))), to + i);
+    store_codes(srgb_texel_codes<Rsqrt>(alpha, hn::BitCast(D(), hn::LoadU(DU(), from + i))), to + i);
   });
+}
+
+/// Only where cpu_has_rsqrt().
+std::size_t encode_srgb_bytes(const std::uint32_t* from, std::size_t floats, std::byte* to) {
+  return encode_srgb<RsqrtOfCpu>(from, floats, to);
+}
+std::size_t encode_srgb_bytes_by_table(const std::uint32_t* from, std::size_t floats, std::byte* to) {
+  return encode_srgb<RsqrtByTable>(from, floats, to);
 }
 
 std::size_t decode_halves(const std::byte* from, std::size_t floats, std::uint32_t* to) {
@@ -108,6 +117,7 @@ HWY_EXPORT(encode_attachment_bytes);
 HWY_EXPORT(encode_stored_bytes);
 HWY_EXPORT(decode_srgb_bytes);
 HWY_EXPORT(encode_srgb_bytes);
+HWY_EXPORT(encode_srgb_bytes_by_table);
 HWY_EXPORT(decode_halves);
 HWY_EXPORT(encode_halves);
 
@@ -154,7 +164,7 @@ EncodeRow row_encoder(const FormatDesc& format, Encoding encoding) {
   base::select_simd_target();
   if (is_four_halves(format)) return HWY_DYNAMIC_DISPATCH(encode_halves);
   if (encoding == Encoding::kAttachment && is_srgb_bytes(format)) {
-    return cpu_has_rsqrt() ? HWY_DYNAMIC_DISPATCH(encode_srgb_bytes) : nullptr;
+    return cpu_has_rsqrt() ? HWY_DYNAMIC_DISPATCH(encode_srgb_bytes) : HWY_DYNAMIC_DISPATCH(encode_srgb_bytes_by_table);
   }
   if (encoding == Encoding::kClear || !is_four_bytes(format) || !has_simple_order(format)) return nullptr;
   return encoding == Encoding::kStore ? HWY_DYNAMIC_DISPATCH(encode_stored_bytes)

@@ -117,17 +117,18 @@ HWY_INLINE ComponentLanes average(ComponentLanes x, ComponentLanes y, const Squa
 }
 
 /// srgb_codes, in [0, 255] as x is in [0, 1]. RSQRTPS has no instance for 512 bits: halves from the start.
+template <class Rsqrt>
 HWY_INLINE CodeLanes codes_of_values(ComponentLanes x) {
 #if HWY_TARGET <= HWY_AVX3
   const hn::Half<D> half;
-  return hn::Combine(DI(), srgb_codes(RsqrtOfCpu(), hn::UpperHalf(half, x)),
-                     srgb_codes(RsqrtOfCpu(), hn::LowerHalf(half, x)));
+  return hn::Combine(DI(), srgb_codes(Rsqrt(), hn::UpperHalf(half, x)), srgb_codes(Rsqrt(), hn::LowerHalf(half, x)));
 #else
-  return srgb_codes(RsqrtOfCpu(), x);
+  return srgb_codes(Rsqrt(), x);
 #endif
 }
 
 /// The averages of a b over c d, one component of a vector of texels at a time.
+template <class Rsqrt>
 HWY_INLINE CodeLanes average_srgb_bytes(ComponentLanes weight_x, ComponentLanes weight_y, CodeLanes a, CodeLanes b,
                                         CodeLanes c, CodeLanes d) {
   const auto byte = [](CodeLanes word, auto shift)
@@ -135,7 +136,7 @@ HWY_INLINE CodeLanes average_srgb_bytes(ComponentLanes weight_x, ComponentLanes 
   const auto color = [&](auto shift) HWY_ATTR {
     const auto value = [&](CodeLanes word) HWY_ATTR { return srgb_to_linear(byte(word, shift)); };
     const Square square{{value(a), value(b)}, {value(c), value(d)}};
-    return hn::ShiftLeft<shift()>(codes_of_values(average(weight_x, weight_y, square)));
+    return hn::ShiftLeft<shift()>(codes_of_values<Rsqrt>(average(weight_x, weight_y, square)));
   };
   const auto opacity = [&](CodeLanes word)
                            HWY_ATTR { return unorm_values(byte(word, std::integral_constant<int, 24>())); };
@@ -196,10 +197,14 @@ HWY_INLINE void halve_pairs_of_words(const HalvedRow& row, Average&& average_of)
   std::memcpy(row.out + 4 * i, out, 4 * left);
 }
 
-void halve_srgb_bytes(const HalvedRow& row) {
+template <class Rsqrt>
+void halve_srgb(const HalvedRow& row) {
   halve_pairs_of_words(row, [](auto x, auto y, auto a, auto b, auto c, auto d)
-                                HWY_ATTR { return average_srgb_bytes(x, y, a, b, c, d); });
+                                HWY_ATTR { return average_srgb_bytes<Rsqrt>(x, y, a, b, c, d); });
 }
+/// Only where cpu_has_rsqrt().
+void halve_srgb_bytes(const HalvedRow& row) { halve_srgb<RsqrtOfCpu>(row); }
+void halve_srgb_bytes_by_table(const HalvedRow& row) { halve_srgb<RsqrtByTable>(row); }
 void halve_small_floats(const HalvedRow& row) {
   halve_pairs_of_words(row, [](auto x, auto y, auto a, auto b, auto c, auto d)
                                 HWY_ATTR { return average_small_floats(x, y, a, b, c, d); });
@@ -316,6 +321,7 @@ HWY_EXPORT(halve_words);
 HWY_EXPORT(halve_single_bytes);
 HWY_EXPORT(halve_small_floats);
 HWY_EXPORT(halve_srgb_bytes);
+HWY_EXPORT(halve_srgb_bytes_by_table);
 HWY_EXPORT(halve_four_halves);
 HWY_EXPORT(halve_texels);
 HWY_EXPORT(halve_two_halves);
@@ -340,7 +346,8 @@ RowHalver row_halver(const FormatDesc& format, bool bytes) {
   if (is_four_halves(format)) return HWY_DYNAMIC_DISPATCH(halve_four_halves);
   if (format.format == VK_FORMAT_R16G16_SFLOAT) return HWY_DYNAMIC_DISPATCH(halve_two_halves);
   if (format.format == VK_FORMAT_R32G32B32A32_SFLOAT) return texel_halver();
-  return is_srgb_bytes(format) && cpu_has_rsqrt() ? HWY_DYNAMIC_DISPATCH(halve_srgb_bytes) : nullptr;
+  if (!is_srgb_bytes(format)) return nullptr;
+  return cpu_has_rsqrt() ? HWY_DYNAMIC_DISPATCH(halve_srgb_bytes) : HWY_DYNAMIC_DISPATCH(halve_srgb_bytes_by_table);
 }
 
 }  // namespace vitrine::texel
