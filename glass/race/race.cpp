@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/lasting.h"
 #include "glass/output.h"
 #include "glass/race/accesses.h"
 #include "glass/tools.h"
@@ -199,10 +200,7 @@ class RaceWatch : public spirv::exec::Watch {
     void* memory = nullptr;
     ~Spare() { ::operator delete(memory); }
   };
-  static Spare& spare() {
-    thread_local Spare one;
-    return one;
-  }
+  static Spare& spare() { return base::per_thread<Spare>(); }
 
   Races& races_;
   const Told& program_;
