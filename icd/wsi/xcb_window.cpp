@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <mutex>
 #include <new>
 #include <vector>
 
@@ -74,6 +75,10 @@ Xcb& xcb() {
   return instance;
 }
 
+/// Held while a thread waits for a reply: libxcb 1.15 may loop for ever, with its lock held, when the server dies while
+/// several threads wait.
+std::mutex waiting;
+
 /// A System V segment that client and server share; unusable (data == null) when the server is elsewhere.
 class SharedSegment {
  public:
@@ -82,6 +87,7 @@ class SharedSegment {
     if (id < 0) return;
     void* address = shmat(id, nullptr, 0);
     if (address != reinterpret_cast<void*>(-1)) {
+      const std::lock_guard one_waits(waiting);
       segment_ = xcb().generate_id(connection);
       xcb_generic_error_t* error = xcb().request_check(
           connection, xcb().shm_attach_checked(connection, segment_, static_cast<std::uint32_t>(id), 1));
@@ -144,12 +150,16 @@ class XcbWindow final : public Window {
     }
     if (!put_shared(frame, depth)) put_through_socket(frame, depth);
     // A round trip: afterwards the server has read the pixels.
-    std::free(xcb().get_input_focus_reply(connection_, xcb().get_input_focus(connection_), nullptr));
+    const std::lock_guard one_waits(waiting);
+    if (!xcb().connection_has_error(connection_))
+      std::free(xcb().get_input_focus_reply(connection_, xcb().get_input_focus(connection_), nullptr));
     return xcb().connection_has_error(connection_) ? VK_ERROR_SURFACE_LOST_KHR : VK_SUCCESS;
   }
 
  private:
   VkResult geometry(VkExtent2D& extent, std::uint8_t& depth) {
+    const std::lock_guard one_waits(waiting);
+    if (xcb().connection_has_error(connection_)) return VK_ERROR_SURFACE_LOST_KHR;
     xcb_get_geometry_reply_t* reply =
         xcb().get_geometry_reply(connection_, xcb().get_geometry(connection_, window_), nullptr);
     if (!reply) return VK_ERROR_SURFACE_LOST_KHR;
