@@ -351,11 +351,12 @@ bool start_thread(Queue& queue, QueueWorker& worker) {
 }  // namespace
 
 void start_queue(Queue& queue) {
+  LiveQueues& live = live_queues();  // may throw: a worker that is there is among them
   const HostMemory& memory = queue.device.memory;
   void* storage = memory.allocate(sizeof(QueueWorker), alignof(QueueWorker), VK_SYSTEM_ALLOCATION_SCOPE_DEVICE);
   queue.worker = ::new (storage) QueueWorker;
   queue.worker->queue = &queue;
-  live_queues().add(*queue.worker);
+  live.add(*queue.worker);
 }
 
 void stop_queue(Queue& queue) noexcept {

@@ -63,13 +63,8 @@ TEST_F(Fork, TheInheritedDeviceIsLostAndCanBeDestroyed) {
 
 /// Records a wait for an event that the host sets.
 VkCommandBuffer record_wait(Program& p, VkEvent event) {
-  auto allocate = make_struct<VkCommandBufferAllocateInfo>();
-  allocate.commandPool = p.command_pool;
-  allocate.commandBufferCount = 1;
   VkCommandBuffer commands = VK_NULL_HANDLE;
-  EXPECT_EQ(VK_GET(p.instance, AllocateCommandBuffers)(p.device, &allocate, &commands), VK_SUCCESS);
-  const auto begin = make_struct<VkCommandBufferBeginInfo>();
-  EXPECT_EQ(VK_GET(p.instance, BeginCommandBuffer)(commands, &begin), VK_SUCCESS);
+  EXPECT_EQ(begin_commands(p, commands), VK_SUCCESS);
   VK_GET(p.instance, CmdWaitEvents)
   (commands, 1, &event, VK_PIPELINE_STAGE_HOST_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, nullptr, 0, nullptr, 0,
    nullptr);

@@ -170,6 +170,15 @@ VkResult make_pipelines(Program& p) {
   return make_graphics_pipeline(p);
 }
 
+VkResult begin_commands(Program& p, VkCommandBuffer& commands) {
+  auto allocate = make_struct<VkCommandBufferAllocateInfo>();
+  allocate.commandPool = p.command_pool;
+  allocate.commandBufferCount = 1;
+  VK_TRY(VK_CALL(AllocateCommandBuffers)(p.device, &allocate, &commands));
+  const auto begin = make_struct<VkCommandBufferBeginInfo>();
+  return VK_CALL(BeginCommandBuffer)(commands, &begin);
+}
+
 VkResult record(Program& p) {
   auto query_pool = make_struct<VkQueryPoolCreateInfo>();
   query_pool.queryType = VK_QUERY_TYPE_OCCLUSION;
@@ -177,12 +186,7 @@ VkResult record(Program& p) {
   VK_TRY(VK_CALL(CreateQueryPool)(p.device, &query_pool, p.allocator, &p.query_pool));
   const auto pool = make_struct<VkCommandPoolCreateInfo>();
   VK_TRY(VK_CALL(CreateCommandPool)(p.device, &pool, p.allocator, &p.command_pool));
-  auto allocate = make_struct<VkCommandBufferAllocateInfo>();
-  allocate.commandPool = p.command_pool;
-  allocate.commandBufferCount = 1;
-  VK_TRY(VK_CALL(AllocateCommandBuffers)(p.device, &allocate, &p.commands));
-  const auto begin = make_struct<VkCommandBufferBeginInfo>();
-  VK_TRY(VK_CALL(BeginCommandBuffer)(p.commands, &begin));
+  VK_TRY(begin_commands(p, p.commands));
   VK_CALL(CmdResetQueryPool)(p.commands, p.query_pool, 0, 1);
   VK_CALL(CmdBindPipeline)(p.commands, VK_PIPELINE_BIND_POINT_COMPUTE, p.pipelines[0]);
   VK_CALL(CmdBindDescriptorSets)

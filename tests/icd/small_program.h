@@ -40,6 +40,8 @@ VkResult make_pipelines(Program& p);
 VkResult record(Program& p);
 VkResult submit(Program& p);
 
+/// Another command buffer of the program's pool, to be recorded.
+VkResult begin_commands(Program& p, VkCommandBuffer& commands);
 /// All steps, up to the first that fails.
 VkResult run(Program& p);
 /// Expects what the program computes: 3 i + 1 in the buffer, magenta below the diagonal in the image.

@@ -111,19 +111,15 @@ TEST(Loaded, TenThousandOfEachObjectLeaveNothingBehind) {
     ASSERT_EQ(make_resources(again), VK_SUCCESS);
     ASSERT_EQ(make_pipelines(again), VK_SUCCESS);
     ASSERT_EQ(record(again), VK_SUCCESS);
-    const auto destroy_all = [&] {
-      const VkInstance instance = p.instance;
-      VK_GET(instance, DestroyCommandPool)(p.device, again.command_pool, nullptr);
-      VK_GET(instance, DestroyQueryPool)(p.device, again.query_pool, nullptr);
-      for (const VkPipeline pipeline : again.pipelines) VK_GET(instance, DestroyPipeline)(p.device, pipeline, nullptr);
-      for (const VkShaderModule module : again.modules)
-        VK_GET(instance, DestroyShaderModule)(p.device, module, nullptr);
-      VK_GET(instance, DestroyImageView)(p.device, again.view, nullptr);
-      VK_GET(instance, DestroyImage)(p.device, again.image, nullptr);
-      VK_GET(instance, DestroyBuffer)(p.device, again.buffer, nullptr);
-      VK_GET(instance, FreeMemory)(p.device, again.memory, nullptr);
-    };
-    destroy_all();
+    const VkInstance instance = p.instance;
+    VK_GET(instance, DestroyCommandPool)(p.device, again.command_pool, nullptr);
+    VK_GET(instance, DestroyQueryPool)(p.device, again.query_pool, nullptr);
+    for (const VkPipeline pipeline : again.pipelines) VK_GET(instance, DestroyPipeline)(p.device, pipeline, nullptr);
+    for (const VkShaderModule module : again.modules) VK_GET(instance, DestroyShaderModule)(p.device, module, nullptr);
+    VK_GET(instance, DestroyImageView)(p.device, again.view, nullptr);
+    VK_GET(instance, DestroyImage)(p.device, again.image, nullptr);
+    VK_GET(instance, DestroyBuffer)(p.device, again.buffer, nullptr);
+    VK_GET(instance, FreeMemory)(p.device, again.memory, nullptr);
     if (i == 1000) before = holdings();
   }
   expect_same(before, holdings());
@@ -133,13 +129,8 @@ TEST(Loaded, TenThousandOfEachObjectLeaveNothingBehind) {
 
 /// Records a render pass with one draw.
 VkCommandBuffer record_draw(Program& p, std::uint32_t vertices, std::uint32_t instances) {
-  auto allocate = make_struct<VkCommandBufferAllocateInfo>();
-  allocate.commandPool = p.command_pool;
-  allocate.commandBufferCount = 1;
   VkCommandBuffer commands = VK_NULL_HANDLE;
-  EXPECT_EQ(VK_GET(p.instance, AllocateCommandBuffers)(p.device, &allocate, &commands), VK_SUCCESS);
-  const auto begin = make_struct<VkCommandBufferBeginInfo>();
-  EXPECT_EQ(VK_GET(p.instance, BeginCommandBuffer)(commands, &begin), VK_SUCCESS);
+  EXPECT_EQ(begin_commands(p, commands), VK_SUCCESS);
   const VkClearValue clear{};
   auto render = make_struct<VkRenderPassBeginInfo>();
   render.renderPass = p.render_pass;
