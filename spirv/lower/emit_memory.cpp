@@ -372,9 +372,10 @@ void Emitter::probe(const ScalarOp& op) {
   row.probe = op.instr->data[0];
   const std::uint32_t guards = op.instr->data[1];
   for (std::uint32_t k = 0; k < op.src.count; ++k) {
+    if (k < guards && guard_outcome(f_, op, k)) continue;  // holds, or no probe were here
     const Place from = place(source(op, k));
     if (k < guards) {
-      row.guards.push_back({{from.file, from.offset}, (op.instr->data[2 + k / 32] >> k % 32 & 1) != 0});
+      row.guards.push_back({{from.file, from.offset}, guard_holds(*op.instr, k)});
     } else {
       row.operands.push_back({from.file, from.offset});
     }

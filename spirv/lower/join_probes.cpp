@@ -1,7 +1,5 @@
 // Blocks that the same lanes come by: one probe tells of them all, so that counting costs less, and does not stand
 // between operations that belong together.
-#include <algorithm>
-
 #include "spirv/lower/scalar.h"
 
 namespace vitrine::spirv::lowering {
@@ -9,6 +7,7 @@ namespace {
 
 /// Whether the lanes behind it are those in front of it.
 bool keeps_lanes(const ScalarOp& op) {
+  if (op.kind == Kind::kTurn) return true;
   if (op.kind != Kind::kIntrinsic)
     return op.kind == Kind::kAlu || op.kind == Kind::kMove || op.kind == Kind::kMaskedMove;
   switch (op.op) {
@@ -32,25 +31,41 @@ bool keeps_lanes(const ScalarOp& op) {
   }
 }
 
+bool is_probe(const ScalarOp& op) { return op.kind == Kind::kIntrinsic && op.op == ir::Op::kProbe; }
+
 /// A probe that tells of a block and of all active lanes.
 bool tells_of_block(const ScalarFunction& f, const ScalarOp& op) {
-  return op.kind == Kind::kIntrinsic && op.op == ir::Op::kProbe && op.instr->data[1] == 0 &&
-         f.ir->probes[op.instr->data[0]].kind == Probe::Kind::kBlock;
+  if (!is_probe(op) || f.ir->probes[op.instr->data[0]].kind != Probe::Kind::kBlock) return false;
+  for (std::uint32_t k = 0; k < op.instr->data[1]; ++k)
+    if (!guard_outcome(f, op, k)) return false;
+  return true;
+}
+
+/// Whether no lane can come by a probe.
+bool is_never_reached(const ScalarFunction& f, const ScalarOp& op) {
+  for (std::uint32_t k = 0; is_probe(op) && k < op.instr->data[1]; ++k)
+    if (guard_outcome(f, op, k) == false) return true;
+  return false;
 }
 
 }  // namespace
 
+std::optional<bool> guard_outcome(const ScalarFunction& function, const ScalarOp& probe, std::uint32_t guard) {
+  const Scalar& condition = function.scalars[function.of(probe.src)[guard]];
+  if (condition.level != Level::kConstant) return std::nullopt;
+  return (condition.bits != 0) == guard_holds(*probe.instr, guard);
+}
+
 void join_probes(ScalarFunction& function) {
   std::vector<ScalarOp>& body = function.body;
-  std::size_t first = body.size(), end = 0;  // the probe that tells of the others, and where those end that it tells of
+  std::size_t first = body.size();  // the probe that tells of the others
   for (std::size_t i = 0; i < body.size(); ++i) {
-    if (body[i].dead) continue;
+    if (body[i].dead || (body[i].dead = is_never_reached(function, body[i]))) continue;
     if (!keeps_lanes(body[i])) {
       first = body.size();
     } else if (tells_of_block(function, body[i])) {
       if (first == body.size()) {
         first = i;
-        end = i + 1;
         continue;
       }
       std::uint32_t& joined = body[first].joined;
@@ -60,9 +75,6 @@ void join_probes(ScalarFunction& function) {
       }
       function.joined_probes[joined].push_back(body[i].instr->data[0]);
       body[i].dead = true;
-      // Out of the way of what lies between: no construct begins or ends there, so that nobody names those places.
-      const auto at = body.begin() + static_cast<std::ptrdiff_t>(i);
-      std::rotate(body.begin() + static_cast<std::ptrdiff_t>(end++), at, at + 1);
     }
   }
 }

@@ -33,8 +33,8 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   lowering::hoist_invariants(scalars);
   lowering::fuse_tests(scalars);
   lowering::combine_loads(scalars);
-  lowering::remove_dead(scalars);
   if (observer) lowering::join_probes(scalars);
+  lowering::remove_dead(scalars);
   lowering::fuse_multiply_add(scalars);
   lowering::fuse_integers(scalars);
   lowering::select_operations(scalars);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -142,7 +143,16 @@ void fuse_tests(ScalarFunction& function);
 /// Moves constants into addresses and merges loads that share one.
 void combine_loads(ScalarFunction& function);
 
-/// Lets one probe tell of all blocks that the same lanes come by.
+/// Whether guard number `guard` of a probe must hold for lanes to come by, or must not.
+inline bool guard_holds(const ir::Instr& probe, std::uint32_t guard) {
+  return (probe.data[2 + guard / 32] >> guard % 32 & 1) != 0;
+}
+
+/// Whether the lanes that come by a probe fulfil its guard number `guard`, where that is known when the program is
+/// made.
+std::optional<bool> guard_outcome(const ScalarFunction& function, const ScalarOp& probe, std::uint32_t guard);
+
+/// Lets one probe tell of all blocks that the same lanes come by, and none of blocks that no lane comes by.
 void join_probes(ScalarFunction& function);
 
 /// Replaces `a * b` used once by an addition or subtraction by one operation (still two roundings).

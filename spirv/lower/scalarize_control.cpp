@@ -278,10 +278,19 @@ std::size_t Scalarizer::turns_to_write(const std::vector<ScalarId>& params, cons
                                        std::uint32_t continuing) const {
   const LoopContext& loop = loops_.back();
   if (!next.falls || loop.has_continue || !out_.body[continuing].falls) return 1;
-  // Folding would honour denormals where the loop may not.
-  if (std::ranges::any_of(next.values, [&](ScalarId id) { return level(id) == Level::kConstant; })) return 1;
-  const std::size_t size = out_.body.size() - loop.op;
-  const std::size_t least = params.size() > 2 && size <= kSmallTurn ? 2 : 1;
+  // Folding would honour denormals where the loop may not. Booleans have none: behind the first turn they are known.
+  std::size_t varied = 0;
+  for (const ScalarId id : next.values) {
+    if (level(id) != Level::kConstant) {
+      ++varied;
+    } else if (!out_.scalars[id].boolean) {
+      return 1;
+    }
+  }
+  // Without probes, so that an observed loop has as many turns.
+  const auto size = static_cast<std::size_t>(std::count_if(out_.body.begin() + loop.op, out_.body.end(),
+                                                           [](const ScalarOp& op) { return op.op != Op::kProbe; }));
+  const std::size_t least = varied > 2 && size <= kSmallTurn ? 2 : 1;
   return std::max(least, std::min(turns_until_computed(params, next.values), kMaxTurnOps / size));
 }
 

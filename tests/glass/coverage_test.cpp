@@ -66,6 +66,22 @@ TEST(BlockProbes, OneTellsOfBlocksThatTheSameLanesComeBy) {
   EXPECT_EQ(instructions, 5u) << "header and condition together";
 }
 
+TEST(BlockProbes, OneTellsOfALoopWithoutTurns) {
+  std::size_t instructions = 0;
+  EXPECT_EQ(counts_of("uint x = i; for (uint k = 0u; k < 5u; ++k) x = x * 5u + v[i + k]; v[i] = x;", &instructions),
+            (Counts{8, 48, 40, 8, 40, 48}));
+  EXPECT_EQ(instructions, 1u);
+}
+
+TEST(BlockProbes, OneTellsOfATurnOfThoseThatAreWrittenOut) {
+  std::size_t instructions = 0;
+  EXPECT_EQ(counts_of("uint a = i, b = 1u, c = 2u, d = 3u; for (uint k = 0u; k < i + 60u; ++k) {\n"
+                      "uint t = d + (a ^ b & c); d = c; c = b; b = a; a = t; } v[i] = a + b + c + d;",
+                      &instructions),
+            (Counts{8, 516, 508, 8, 508, 516}));
+  EXPECT_EQ(instructions, 8u) << "entry, end, four turns; the first one's header and what continues to it";
+}
+
 // Labels in the order in which glslang numbers them: entry, then, merge, else.
 TEST(BlockProbes, SeeBranchesThatBecomeSelections) {
   EXPECT_EQ(counts_of("uint x = 1u; if (i < 3u) x = 2u; else x = 5u; v[i] = x;"), (Counts{8, 3, 8, 5}));
