@@ -30,14 +30,20 @@ struct MemoryOrder {
   MemoryScope memory = MemoryScope::kUnknown;
   MemoryScope execution = MemoryScope::kUnknown;  ///< of control barriers
   bool coherent = false;                          ///< the variable is declared so, or nothing is known of it
+  bool alike = false;  ///< of shared memory: all workgroups do the same to it (spirv/lower/alike.h)
+  bool given = false;  ///< that holds if nothing writes what loads with this bit read
 
   constexpr std::uint32_t word() const {
     return bits | static_cast<std::uint32_t>(memory) << 16 | static_cast<std::uint32_t>(execution) << 20 |
-           std::uint32_t{coherent} << 24 | 1u << 31;
+           std::uint32_t{coherent} << 24 | std::uint32_t{alike} << 25 | std::uint32_t{given} << 26 | 1u << 31;
   }
   static constexpr MemoryOrder of(std::uint32_t word) {
-    return {static_cast<std::uint16_t>(word), static_cast<MemoryScope>(word >> 16 & 7),
-            static_cast<MemoryScope>(word >> 20 & 7), (word >> 24 & 1) != 0};
+    return {static_cast<std::uint16_t>(word),
+            static_cast<MemoryScope>(word >> 16 & 7),
+            static_cast<MemoryScope>(word >> 20 & 7),
+            (word >> 24 & 1) != 0,
+            (word >> 25 & 1) != 0,
+            (word >> 26 & 1) != 0};
   }
   constexpr bool acquires() const { return (bits & kAcquires) != 0; }
   constexpr bool releases() const { return (bits & kReleases) != 0; }

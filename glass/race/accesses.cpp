@@ -140,6 +140,23 @@ bool range_of(const Wave& wave, const MemoryOp& row, Range& range) {
 }  // namespace
 
 void Tracked::update(const Sites& sites, const Wave& wave) {
+  find(sites, wave);
+  sites_.assign(sites.by_instruction.size(), Sites::kNone);
+  device_sites_ = sites_;
+  has_device_sites_ = false;
+  alike_ = sites.alike;
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    const std::uint32_t site = sites.by_instruction[i];
+    if (site == Sites::kNone || tracked_[site] == 0) continue;
+    sites_[i] = site;
+    if (sites.all[site].memory == Memory::kShared) continue;
+    device_sites_[i] = site;
+    has_device_sites_ = true;
+    if (sites.all[site].order.given) alike_ = false;
+  }
+}
+
+void Tracked::find(const Sites& sites, const Wave& wave) {
   const spirv::Program& program = *wave.program;
   tracked_.assign(sites.all.size(), 1);
   bool anything = sites.writes_global || sites.writes_images;
@@ -171,9 +188,8 @@ void Tracked::update(const Sites& sites, const Wave& wave) {
   });
 }
 
-void record_access(Group& group, const Tracked& tracked, std::uint32_t site, const Wave& wave, const Instruction* i,
+void record_access(Group& group, std::uint32_t site, const Wave& wave, const Instruction* i,
                    const InstructionNote& note, std::uint32_t first, const std::uint32_t* names) {
-  if (!tracked[site]) return;
   const Site& what = group.program().sites.all[site];
   const Doing by{site, first, names, group.order().time()};
   if (what.is_logged() && log_shared(group, by, wave, {note.files[1], i->src[0]})) return;

@@ -10,16 +10,24 @@ namespace vitrine::glass::race {
 class Tracked {
  public:
   void update(const Sites& sites, const spirv::Wave& wave);
-  bool operator[](std::uint32_t site) const { return tracked_[site] != 0; }
+  /// Of an instruction, Sites::kNone where it can not.
+  std::uint32_t site(std::size_t instruction) const { return sites_[instruction]; }
+  /// The same without shared memory.
+  std::uint32_t device_site(std::size_t instruction) const { return device_sites_[instruction]; }
+  bool has_device_sites() const { return has_device_sites_; }
+  /// Whether all workgroups of the command do the same to shared memory.
+  bool alike() const { return alike_; }
 
  private:
-  std::vector<std::uint8_t> tracked_;
+  void find(const Sites& sites, const spirv::Wave& wave);
+  std::vector<std::uint8_t> tracked_;  ///< by site
+  std::vector<std::uint32_t> sites_, device_sites_;
+  bool has_device_sites_ = false, alike_ = false;
 };
 
 /// An instruction that accesses memory or an image is about to run. `who`: of lane 0, the others behind it; or, of
 /// draws, `names` of all lanes.
-void record_access(Group& group, const Tracked& tracked, std::uint32_t site, const spirv::Wave& wave,
-                   const spirv::Instruction* i, const spirv::InstructionNote& note, std::uint32_t first,
-                   const std::uint32_t* names);
+void record_access(Group& group, std::uint32_t site, const spirv::Wave& wave, const spirv::Instruction* i,
+                   const spirv::InstructionNote& note, std::uint32_t first, const std::uint32_t* names);
 
 }  // namespace vitrine::glass::race

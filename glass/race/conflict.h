@@ -4,10 +4,34 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <mutex>
+#include <optional>
+#include <tuple>
 
 #include "glass/race/sites.h"
 
 namespace vitrine::glass::race {
+
+/// For which commands a workgroup, which does the same to shared memory as all of the command do, has been found to be
+/// without races there.
+class SharedQuiet {
+ public:
+  void set(const spirv::ObservedCommand* command, bool always) {
+    const std::lock_guard lock(mutex_);
+    always_ |= always;
+    if (command != nullptr) last_.emplace(command->owner, command->submission, command->command);
+  }
+  bool holds(const spirv::ObservedCommand* command) const {
+    const std::lock_guard lock(mutex_);
+    return always_ || (command != nullptr && last_ == Last{command->owner, command->submission, command->command});
+  }
+
+ private:
+  using Last = std::tuple<const void*, std::uint64_t, std::uint32_t>;
+  mutable std::mutex mutex_;
+  bool always_ = false;
+  std::optional<Last> last_;
+};
 
 /// A program as findings tell of it: it lives as long as the tool.
 struct Told {
@@ -18,6 +42,7 @@ struct Told {
   const Sites sites;
   std::uint32_t size[3];  ///< of a workgroup
   bool compute() const { return context.stage == VK_SHADER_STAGE_COMPUTE_BIT; }
+  mutable SharedQuiet quiet;
 };
 
 /// An invocation: of a compute shader its workgroup and its number in it, of others what they are called by.

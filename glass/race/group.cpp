@@ -39,6 +39,7 @@ void Group::begin(const Told& program, const spirv::ObservedCommand* command, co
   ++generation_;
   shared_.resize((shared_bytes + kPageBytes - 1) / kPageBytes);
   shared_bytes_ = shared_bytes;
+  shared_is_quiet_ = true;
   log_.clear();
   if (!goes_on) {
     device_.reset();
@@ -78,6 +79,7 @@ Access Group::access_of(std::uint32_t site, std::uint32_t who) const {
 
 void Group::tell(const Record& earlier, std::uint32_t site, std::uint32_t who, const Touch& touch, Conflict::Kind kind,
                  bool equal) {
+  if (program_->sites.all[site].memory == Memory::kShared) shared_is_quiet_ = false;
   Conflict conflict;
   conflict.earlier = access_of(site_of(earlier.site), earlier.who);
   conflict.later = access_of(site, who);

@@ -35,6 +35,8 @@ class Group {
     return program_ == &program && command_ == command;
   }
   const spirv::ObservedCommand* command() const { return command_; }
+  /// Whether nothing has raced in shared memory since begin().
+  bool shared_is_quiet() const { return shared_is_quiet_; }
   const Told& program() const { return *program_; }
 
   const Order& order() const { return order_; }
@@ -106,6 +108,7 @@ class Group {
   Shadow device_;
   std::vector<Page> shared_;
   std::uint32_t shared_bytes_ = 0;
+  bool shared_is_quiet_ = true;
   bool logs_loads_ = false;  ///< fast() of loads of shared memory
   SharedLog log_;
   std::vector<WaveState> waves_;

@@ -40,6 +40,8 @@ struct ThreadGroup {
   const Told* tracked_program = nullptr;
   const ObservedCommand* tracked_command = nullptr;
   std::uint64_t tracked_number = 0;
+  bool shared_is_quiet = false;  ///< known of the workgroup that runs: what it does to shared memory is not looked at
+  bool idle = false;             ///< and it does nothing else
   std::uint32_t names[base::kWaveWidth] = {};  ///< of a wave of a draw: what invocations are called by
 };
 
@@ -48,6 +50,8 @@ class Races {
  public:
   ThreadGroup& here();
   void begin(ThreadGroup& thread, const Told& program, const Wave& wave, const race::Who& who);
+  /// The same of the workgroup of a wave.
+  void begin_compute(ThreadGroup& thread, const Told& program, const Wave& wave);
   void end(ThreadGroup& thread);
   /// What commands of `owner` did is held against each other. `but`: it goes on.
   void settle(const void* owner, const ObservedCommand* but);
@@ -62,6 +66,8 @@ class Races {
   }
   const std::uint64_t number_ = next_number();
   CommandLog& log_of(const ObservedCommand* command);
+  /// What its workgroup did goes into the log of its command. Both mutexes are locked.
+  void close(ThreadGroup& thread);
   std::mutex mutex_;
   std::map<std::thread::id, std::unique_ptr<ThreadGroup>> threads_;
   std::map<const ObservedCommand*, std::unique_ptr<CommandLog>> logs_;
@@ -98,14 +104,32 @@ void Races::begin(ThreadGroup& thread, const Told& program, const Wave& wave, co
   thread.tracked_program = &program;
   thread.tracked_command = command;
   thread.tracked_number = number;
+  if (!known) thread.shared_is_quiet = false;
+  if (!thread.shared_is_quiet && thread.tracked.alike()) thread.shared_is_quiet = program.quiet.holds(command);
+  thread.idle = thread.shared_is_quiet && !thread.tracked.has_device_sites();
+  if (thread.idle) return;
   thread.group.begin(program, command, who, whole, program.compute() ? wave.shared_size : 0);
+}
+
+void Races::begin_compute(ThreadGroup& thread, const Told& program, const Wave& wave) {
+  race::Who who;
+  std::copy_n(wave.workgroup_id, 3, who.group.begin());
+  begin(thread, program, wave, who);
 }
 
 void Races::end(ThreadGroup& thread) {
   if (!thread.group.is_open()) return;
   const std::lock_guard lock(mutex_);
   const std::lock_guard own(thread.mutex);
-  thread.group.end(log_of(thread.group.command()));
+  close(thread);
+}
+
+void Races::close(ThreadGroup& thread) {
+  Group& group = thread.group;
+  const Told& program = group.program();
+  if (!thread.shared_is_quiet && thread.tracked.alike() && group.shared_is_quiet())
+    program.quiet.set(group.command(), !program.sites.alike_if_given);
+  group.end(log_of(group.command()));
 }
 
 void Races::settle(const void* owner, const ObservedCommand* but) {
@@ -115,7 +139,7 @@ void Races::settle(const void* owner, const ObservedCommand* but) {
     const Group& group = thread->group;
     if (!group.is_open() || owner_of(group.command()) != owner) continue;
     if (but != nullptr && (group.command() == but || !group.program().compute())) continue;
-    thread->group.end(log_of(group.command()));
+    close(*thread);
   }
   for (auto at = logs_.begin(); at != logs_.end();) {
     const bool other = owner_of(at->first) != owner || (but != nullptr && (at->first == but || !at->second->compute()));
@@ -129,8 +153,9 @@ void Races::settle(const void* owner, const ObservedCommand* but) {
 
 class RaceWatch : public spirv::exec::Watch {
  public:
-  RaceWatch(Races& races, const Told& program, const Wave& wave, const Instruction* start)
-      : races_(races), program_(program), thread_(races.here()) {
+  /// Of a workgroup that has begun.
+  RaceWatch(Races& races, ThreadGroup& thread, const Told& program, const Wave& wave, const Instruction* start)
+      : races_(races), program_(program), thread_(thread) {
     program.compute() ? begin_compute(wave, start) : begin_draw(wave);
   }
   RaceWatch(const RaceWatch&) = delete;
@@ -148,10 +173,10 @@ class RaceWatch : public spirv::exec::Watch {
 
   void access(const Wave& wave, const Instruction* i, const InstructionNote& note) override {
     const auto index = static_cast<std::size_t>(i - wave.program->code.data());
-    const std::uint32_t site = program_.sites.by_instruction[index];
+    const race::Tracked& tracked = thread_.tracked;
+    const std::uint32_t site = thread_.shared_is_quiet ? tracked.device_site(index) : tracked.site(index);
     if (site == race::Sites::kNone) return;
-    race::record_access(thread_.group, thread_.tracked, site, wave, i, note, first_,
-                        program_.compute() ? nullptr : thread_.names);
+    race::record_access(thread_.group, site, wave, i, note, first_, program_.compute() ? nullptr : thread_.names);
   }
 
   void probe(const Wave& wave, const spirv::ProbeOp& op) override {
@@ -173,15 +198,9 @@ class RaceWatch : public spirv::exec::Watch {
 
  private:
   void begin_compute(const Wave& wave, const Instruction* start) {
-    const bool begins = start == wave.program->code.data();
-    if (begins && wave.first_invocation == 0) {
-      race::Who who;
-      std::copy_n(wave.workgroup_id, 3, who.group.begin());
-      races_.begin(thread_, program_, wave, who);
-    }
     number_ = wave.first_invocation / static_cast<std::uint32_t>(base::kWaveWidth);
     first_ = thread_.group.base() + wave.first_invocation;
-    if (!begins) thread_.group.resume(number_);
+    if (start != wave.program->code.data()) thread_.group.resume(number_);
   }
 
   void begin_draw(const Wave& wave) {
@@ -225,7 +244,12 @@ class RacedProgram : public ProgramTool {
   bool in_order() const override { return told_.sites.orders_device; }
   std::unique_ptr<spirv::exec::Watch> watch(const Wave& wave, const Instruction* start) override {
     if (told_.sites.all.empty() || !is_watched(wave)) return nullptr;
-    return std::make_unique<RaceWatch>(races_, told_, wave, start);
+    ThreadGroup& thread = races_.here();
+    if (told_.compute()) {
+      if (start == wave.program->code.data() && wave.first_invocation == 0) races_.begin_compute(thread, told_, wave);
+      if (thread.idle) return nullptr;
+    }
+    return std::make_unique<RaceWatch>(races_, thread, told_, wave, start);
   }
 
  private:

@@ -96,7 +96,7 @@ Sites::Sites(const ShaderIdentity& shader, const spirv::Program& program) {
   bool fences = false;
   read_module(shader.words, *this, fences);
   by_instruction.assign(program.code.size(), kNone);
-  bool orders = false;
+  bool orders = false, unlike = false;
   for (std::size_t index = 0; index < program.code.size(); ++index) {
     const spirv::InstructionNote& note = program.notes[index];
     Site site;
@@ -111,6 +111,8 @@ Sites::Sites(const ShaderIdentity& shader, const spirv::Program& program) {
         place_of(note.origin, static_cast<std::uint32_t>(site.memory) << 28 ^ site.set << 16 ^ site.slot, index);
     site.is_private = site.memory != Memory::kShared && !site.is_atomic() && is_private(*this, site.order);
     const bool device = site.memory != Memory::kShared;
+    if (!device) (site.order.alike ? alike : unlike) = true;
+    alike_if_given |= !device && site.order.given;
     has_private |= site.is_private;
     has_narrow_scope |= site.is_atomic() && !covers_device(site.order.memory);
     writes_device |= device && site.writes();
@@ -122,6 +124,7 @@ Sites::Sites(const ShaderIdentity& shader, const spirv::Program& program) {
     all.push_back(site);
   }
   orders_device = orders && writes_device && shader.stage == VK_SHADER_STAGE_COMPUTE_BIT;
+  alike &= !unlike && !orders_device && program.groups_per_wave == 1;
   orders_waves = orders && shader.stage != VK_SHADER_STAGE_COMPUTE_BIT;
 }
 

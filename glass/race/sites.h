@@ -52,6 +52,8 @@ struct Sites {
   bool orders_waves = false;                  ///< the same of waves of a draw
   bool has_private = false;                   ///< some access is
   bool has_narrow_scope = false;              ///< an atomic operation's does not hold the device
+  bool alike = false;                         ///< all workgroups do the same to shared memory, if
+  bool alike_if_given = false;                ///< nothing writes what MemoryOrder::given loads read
   bool writes_device = false, writes_images = false, writes_global = false;
 
   static constexpr std::uint32_t kNone = ~0u;

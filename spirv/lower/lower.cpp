@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/simd.h"
 #include "spirv/exec/observe.h"
+#include "spirv/lower/alike.h"
 #include "spirv/lower/emit.h"
 #include "spirv/lower/registers.h"
 #include "spirv/lower/scalar.h"
@@ -26,6 +27,7 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   base::select_simd_target();
   const exec::Interest interest = observer ? observer->interest() : exec::Interest{};
   std::string error;
+  if (interest.order) lowering::mark_alike(function);
   lowering::ScalarFunction scalars = lowering::scalarize(function, error, interest.accesses);
   if (!error.empty()) return base::Error{error};
   lowering::remove_dead(scalars);

@@ -175,6 +175,37 @@ constexpr PlantedRace kPlanted[] = {
      "atomicStore(flag, 1u, gl_ScopeWorkgroup, gl_StorageSemanticsShared, gl_SemanticsRelease);\n}\n"
      "if (i == 1u) atomicLoad(flag, gl_ScopeWorkgroup, gl_StorageSemanticsShared, gl_SemanticsAcquire);\nbarrier();\n"
      "if (i == 2u)\nOUT(s);"},
+    // ---- in the last of nine workgroups alone: nothing is to be concluded from the others (o[i] is i, v[i], too)
+    {"barrier_but_in_the_last_workgroup", "race-shared", 64, 9, "shared uint s[64];",
+     "#s[i] = i;\nif (g < 8u) barrier();\n@if (s[i ^ 1u] == 999u) o[i] = 1u;",
+     "s[i] = i;\nif (g < 9u) barrier();\nif (s[i ^ 1u] == 999u) o[i] = 1u;"},
+    {"offset_of_the_last_workgroup", "race-shared", 64, 9, "shared uint s[64];",
+     "#s[i] = i;\n@if (s[i ^ g / 8u] == 999u) o[i] = 1u;", "s[i] = i;\nif (s[i ^ g / 9u] == 999u) o[i] = 1u;"},
+    {"offset_from_a_buffer", "race-shared", 64, 9, "shared uint s[64];",
+     "#s[i] = i;\n@if (s[i ^ v[g] / 8u] == 999u) o[i] = 1u;", "s[i] = i;\nif (s[i ^ v[g] / 9u] == 999u) o[i] = 1u;"},
+    {"turns_of_the_last_workgroup", "race-shared", 64, 9, "shared uint s[64];",
+     "#s[i] = i;\nfor (uint k = 0u; k < g / 8u; ++k)\n@if (s[i ^ 1u] == 999u) o[i] = 1u;",
+     "s[i] = i;\nfor (uint k = 0u; k < g / 9u; ++k) if (s[i ^ 1u] == 999u) o[i] = 1u;"},
+    {"return_but_of_the_last_workgroup", "race-shared", 64, 9, "shared uint s[64];",
+     "#s[i] = i;\nfor (;;) {\nif (g < 8u) return;\n@if (s[i ^ 1u] == 999u) o[i] = 1u;\nbreak;\n}",
+     "#s[i] = i;\nfor (;;) {\nif (g < 9u) return;\n@if (s[i ^ 1u] == 999u) o[i] = 1u;\nbreak;\n}"},
+    {"break_but_of_the_last_workgroup", "race-shared", 64, 9, "shared uint s[64];",
+     "#s[i] = i;\nuint k = 0u;\nfor (; k < 4u; ++k) if (g < 8u && k == 1u) break;\n"
+     "@if (s[i ^ k / 4u] == 999u) o[i] = 1u;",
+     "s[i] = i;\nuint k = 0u;\nfor (; k < 4u; ++k) if (g < 9u && k == 1u) break;\n"
+     "if (s[i ^ k / 4u] == 999u) o[i] = 1u;"},
+    {"array_of_the_last_workgroup", "race-shared", 64, 9, "shared uint s[64];",
+     "uint a[8];\nfor (uint k = 0u; k < 8u; ++k) a[k] = 0u;\na[g & 7u] = g / 8u;\n#s[i] = i;\n"
+     "@if (s[i ^ a[g & 7u]] == 999u) o[i] = 1u;",
+     "uint a[8];\nfor (uint k = 0u; k < 8u; ++k) a[k] = 0u;\na[g & 7u] = g / 9u;\ns[i] = i;\n"
+     "if (s[i ^ a[g & 7u]] == 999u) o[i] = 1u;"},
+    {"value_from_the_last_workgroup", "race-shared", 64, 9, "shared uint s[64], t;",
+     "if (i == 0u) t = g / 8u;\nbarrier();\n#s[i] = i;\n@if (s[i ^ t] == 999u) o[i] = 1u;",
+     "if (i == 0u) t = g / 9u;\nbarrier();\ns[i] = i;\nif (s[i ^ t] == 999u) o[i] = 1u;"},
+    // ---- in all of them
+    {"in_all_of_nine_workgroups", "race-shared", 64, 9,
+     "shared uint s[64];\nlayout(push_constant) uniform C { uvec2 at; uint one; };",
+     "#s[i] = i;\n@if (s[i ^ one] == 999u) o[i] = 1u;", "s[i] = i;\nbarrier();\nif (s[i ^ one] == 999u) o[i] = 1u;"},
 };
 
 class RaceShared : public testing::TestWithParam<PlantedRace> {};
