@@ -13,8 +13,9 @@
 
 namespace vitrine::raster {
 
-struct PassDesc;   // raster/pass_desc.h
-struct Primitive;  // raster/primitive.h
+struct PassDesc;           // raster/pass_desc.h
+struct Primitive;          // raster/primitive.h
+class PrimitiveInstances;  // raster/primitive_instances.h
 
 /// What becomes of a primitive. Each that is assembled, or that a tessellator or geometry shader makes, is culled or
 /// rasterized; one that is clipped becomes parts, each of which is culled or rasterized. Of polygons that are drawn as
@@ -52,6 +53,7 @@ struct FragmentGroup {
   std::uint32_t primitive[base::kQuadsPerWave];  ///< gl_PrimitiveID by quad
   const Primitive* from[base::kQuadsPerWave];    ///< by quad; null: it is not in use
   std::uint32_t layer = 0;
+  const PrimitiveInstances* instances = nullptr;  ///< of `from`; null: the draw is not watched by pixels
 };
 /// Lanes of a group, by sample.
 using SampleLanes = std::span<const base::LaneMask>;

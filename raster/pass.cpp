@@ -62,6 +62,7 @@ struct Scratch {
   std::vector<Run> runs;
   std::deque<spirv::BoundShader> bound;
   std::deque<ViewLayer> view_layers;
+  std::deque<PrimitiveInstances> instances;
 };
 
 class ScratchPool {
@@ -194,6 +195,8 @@ struct Pass::Impl {
     bind_between(call.geometry, &DrawRecord::geometry);
     record->fragment = bind_stage(call.fragment, call.native_fragment, call.fragment_resources, fault,
                                   last ? last->fragment : Stage{});
+    if (call.tile_observer)
+      record->instances = &scratch->instances.emplace_back(call.first_instance, call.instance_count > 1);
     last = record;
     return record;
   }
@@ -507,6 +510,7 @@ void Pass::flush() {
   impl_->last = nullptr;
   impl_->scratch->bound.clear();
   impl_->scratch->view_layers.clear();
+  impl_->scratch->instances.clear();
   impl_->scratch->arena.reset();
   unfinished.done();
 }

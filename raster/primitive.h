@@ -109,11 +109,14 @@ struct Run {
   bool ends = true;        ///< the strip's last primitive is in here
 };
 
+class PrimitiveInstances;  // raster/primitive_instances.h
+
 /// A draw of the pass with everything derived from it; lives until the flush.
 struct DrawRecord {
   DrawCall call;
   const PipelinePlan* plan = nullptr;
   Stage vertex, control, evaluation, geometry, fragment;
+  PrimitiveInstances* instances = nullptr;  ///< null: nobody watches pixels of it
 };
 
 }  // namespace vitrine::raster

@@ -51,7 +51,9 @@ std::string primitive_text(const Fragment& fragment) {
                      : p.kind == raster::PrimitiveKind::kLine ? "line"
                      : p.front                                ? "front-facing triangle"
                                                               : "back-facing triangle";
-  return "primitive " + std::to_string(fragment.primitive) + " (" + kind + ")";
+  std::string text = "primitive " + std::to_string(fragment.primitive);
+  if (fragment.instance) text.append(" of instance ").append(std::to_string(*fragment.instance));
+  return text.append(" (").append(kind).append(")");
 }
 
 Address place_of(const spirv::ObservedCommand& command, const Fragment& fragment) {

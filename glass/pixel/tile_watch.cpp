@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "raster/primitive_instances.h"
+
 namespace vitrine::glass::pixel {
 namespace {
 
@@ -75,6 +77,7 @@ void TileWatch::generated(const FragmentGroup& group, SampleLanes lanes) {
     fragment.pixel = &pixel;
     fragment.from = group.from[q];
     fragment.primitive = group.primitive[q];
+    if (group.instances != nullptr) fragment.instance = group.instances->instance_of(group.from[q]);
     fragment.samples = samples_of(lanes, lane);
     by_pixel_[&pixel].push_back(&fragment);
   });

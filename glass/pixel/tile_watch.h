@@ -11,8 +11,9 @@ namespace vitrine::glass::pixel {
 struct Fragment {
   const WatchedPixel* pixel = nullptr;
   const raster::Primitive* from = nullptr;
-  std::uint32_t primitive = 0;  ///< gl_PrimitiveID
-  std::uint32_t samples = 0;    ///< covered
+  std::uint32_t primitive = 0;            ///< gl_PrimitiveID
+  std::optional<std::uint32_t> instance;  ///< gl_InstanceIndex, of draws with several
+  std::uint32_t samples = 0;              ///< covered
   bool shaded = false;
   struct Failure {
     raster::FragmentTest test{};

@@ -13,8 +13,9 @@ namespace vitrine::raster {
 /// A primitive between assembly and clipping: slots of the last stage's vertices.
 struct ListedPrimitive {
   std::uint32_t slot[3];
-  std::uint32_t id;        ///< gl_PrimitiveID
-  bool continues = false;  ///< a strip: the line stipple pattern goes on
+  std::uint32_t id;            ///< gl_PrimitiveID
+  bool continues = false;      ///< a strip: the line stipple pattern goes on
+  std::uint32_t instance = 0;  ///< without first_instance
 };
 
 /// Positions a run needs: [0] for fans, then [low, high).

@@ -14,7 +14,8 @@ namespace {
 ChunkOutput work_on(const Chunk& chunk, const PassDesc& pass, const TileGrid& grid, Arena& arena,
                     FrontScratch& scratch) {
   const base::ScopedFloatMode mode(base::Denormals::kFlush);
-  scratch.primitives.begin(arena);
+  PrimitiveInstances* const instances = chunk.draw->instances;
+  scratch.primitives.begin(arena, instances != nullptr);
   const PipelinePlan& plan = *chunk.draw->plan;
   ClippedEnds clipped;
   scratch.capture.active = is_captured(chunk.draw->call);
@@ -30,6 +31,7 @@ ChunkOutput work_on(const Chunk& chunk, const PassDesc& pass, const TileGrid& gr
   if (chunk.watch) finish_observed(chunk, pass, scratch.primitives);
   ChunkOutput output;
   if (!plan.state->rasterizer_discard) output = bin_chunk(scratch.primitives, grid, arena, scratch.bins);
+  if (instances) instances->add(scratch.primitives.data(), scratch.primitives.size(), scratch.primitives.marks());
   if (scratch.capture.active) output.capture = finish_capture(arena, scratch.capture);
   output.begins_clipped = clipped.first;
   output.ends_clipped = clipped.last;

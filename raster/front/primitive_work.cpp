@@ -213,6 +213,7 @@ void flush_clipped(PrimitiveWork& w, bool another) {
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const TriangleCorners& v = triangles[i].v;
     w.setup.id = triangles[i].id;
+    w.primitives.mark(triangles[i].instance);
     if (even && i % 2 == 0) {
       const TriangleCorners& next = triangles[i + 1].v;
       if (emit_pair(w, {v[0], v[1], v[2], next[0], next[1], next[2]})) {
@@ -223,6 +224,7 @@ void flush_clipped(PrimitiveWork& w, bool another) {
     emit_filled(w, v.data());
   }
   w.setup.id = id;
+  w.primitives.mark(w.instance);
   if (!triangles.empty()) w.clipped.clear(another);
 }
 
@@ -236,7 +238,7 @@ void emit_slow(PrimitiveWork& w, const Vertex* const v[3], const bool edge[3]) {
   }
   if (!w.clips_segment) return emit_filled(w, v);
   if (w.clipped.is_complete()) flush_clipped(w, true);
-  w.clipped.add({{v[0], v[1], v[2]}, w.setup.id});
+  w.clipped.add({{v[0], v[1], v[2]}, w.setup.id, w.instance});
 }
 
 void emit_clipped(PrimitiveWork& w, std::uint32_t provoking, ClipPolygon& polygon) {

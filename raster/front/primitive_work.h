@@ -24,6 +24,7 @@ struct PrimitiveWork : PrimitiveContext {
   ClippedBatch& clipped;         ///< the chunk's own, or one that several chunks share
   std::uint32_t base_layer;      ///< of the view
   ViewLayer* waiting = nullptr;  ///< primitives go through the reference's clipper, and wait with those of other views
+  std::uint32_t instance = 0;    ///< of what is worked on, without first_instance
   std::uint32_t discarded = 0;   ///< lines and triangles that the clipper leaves nothing of
   std::uint32_t parts = 0;       ///< triangles that it makes beyond the first of a polygon
 

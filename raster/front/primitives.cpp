@@ -14,6 +14,14 @@ void flush_batch(PrimitiveWork& w) {
   if (w.batch.count != 0) setup_triangles(w.setup, w.batch);
 }
 
+/// What comes from here on is of an instance. What waits is set up before, if it is told apart.
+void begin_instance(PrimitiveWork& w, std::uint32_t instance) {
+  w.instance = instance;
+  if (!w.primitives.has_marks()) return;
+  flush_batch(w);
+  w.primitives.mark(instance);
+}
+
 void add_to_batch(PrimitiveWork& w, const std::uint32_t slot[3]) {
   const VertexScratch& s = w.vertices;
   TriangleBatch& batch = w.batch;
@@ -216,6 +224,7 @@ ClippedEnds process_primitives(const PrimitiveContext& context) {
   w.primitives.reserve(expected);
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
     const RunSpan span = run_span(shape, chunk.runs[r]);
+    begin_instance(w, chunk.runs[r].instance);
     if (w.plan.rectangles.any)
       process_segment(w, chunk.runs[r], span, first_entry);
     else
@@ -242,8 +251,10 @@ void process_strips(const PrimitiveContext& context, std::span<const ListedPrimi
     flush_clipped(w, false);
   const bool invisible = w.plan.state->cull_mode == VK_CULL_MODE_FRONT_AND_BACK;
   const bool pairs = !clips && !invisible && !w.plan.state->provoking_vertex_last;
+  if (!listed.empty()) begin_instance(w, listed[0].instance);
   for (std::size_t i = 0; i < listed.size(); ++i) {
     w.setup.id = listed[i].id;
+    if (listed[i].instance != w.instance) begin_instance(w, listed[i].instance);
     if (invisible) {
       w.setup.tell(PrimitiveFate::kFacing);
     } else if (!pairs) {
@@ -272,8 +283,10 @@ void process_listed(const PrimitiveContext& context, std::span<const ListedPrimi
                       return (w.vertices.code[primitive.slot[0]] | w.vertices.code[primitive.slot[1]] |
                               w.vertices.code[primitive.slot[2]]) != 0;
                     }));
+  if (!listed.empty()) begin_instance(w, listed[0].instance);
   for (const ListedPrimitive& primitive : listed) {
     w.setup.id = primitive.id;
+    if (primitive.instance != w.instance) begin_instance(w, primitive.instance);
     if (invisible) {
       w.setup.tell(PrimitiveFate::kFacing);
       continue;

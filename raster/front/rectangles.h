@@ -37,7 +37,8 @@ void setup_rectangle(const SetupContext& context, const TrianglePair& pair);
 
 struct ClippedTriangle {
   TriangleCorners v;
-  std::uint32_t id;  ///< gl_PrimitiveID
+  std::uint32_t id;            ///< gl_PrimitiveID
+  std::uint32_t instance = 0;  ///< without first_instance
 };
 
 /// Triangles that have been through the clipper and wait for the others of their batch.

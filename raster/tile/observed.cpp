@@ -130,6 +130,7 @@ void begin_observed(TileWorker& worker, std::uint32_t tile) {
   } else if (one) {
     worker.watch = std::move(one);
   }
+  worker.told.group.instances = worker.draw->instances;
   const PipelinePlan& plan = *worker.draw->plan;
   const bool tests = plan.depth_order == TestOrder::kEarly || plan.early_reject;
   worker.tells_numbers = worker.watch && worker.watch->takes_numbers();

@@ -93,6 +93,12 @@ class Pixel(unittest.TestCase):
         self.assertIn("(1, 0, 0, 1) = 0xff0000ff -> (0.498039246, 0, 0.501960814, 1) = 0xff80007f", text)
         self.assertIn("cleared\n     at submission 1", self.story("1,1", "--image", "target"))
 
+    def test_instances_are_told_of_draws_with_several(self):
+        text = self.story("5,5", "--image", "samples", "--sample", "1")
+        self.assertIn("fragment of primitive 0 (back-facing triangle) is written", text)
+        self.assertLess(text.index("fragment of primitive 0 of instance 5 (back-facing triangle) is written"),
+                        text.index("fragment of primitive 0 of instance 6 (back-facing triangle) is written"))
+
     def test_depth_has_a_history_of_its_own(self):
         text = self.story("5,5", "--image=depth", "--aspect=depth")
         self.assertIn("(0.5) = 0x3f000000 -> (0.25) = 0x3e800000", text)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "raster/pass.h"
+#include "raster/primitive_instances.h"
 #include "raster/stage.h"
 
 namespace vitrine::raster {
@@ -354,6 +355,74 @@ TEST_F(Observed, TellsOfSampleMasks) {
   draw();
   EXPECT_EQ(told.of(FragmentTest::kSampleMask), 64u * 64u);
   EXPECT_EQ(told.invocations, 0u);
+}
+
+constexpr std::uint32_t kFirstInstance = 10;
+
+/// A triangle in the eight columns of each instance; those of odd ones reach out of the view volume.
+base::LaneMask shade_instances(const void*, const base::WaveRegister* in, base::WaveRegister* out,
+                               base::LaneMask active, base::LaneMask) {
+  base::for_each_lane(active, [&](std::size_t lane) {
+    const std::uint32_t corner = in[0].lane[lane], instance = in[1].lane[lane] - kFirstInstance;
+    const float x = static_cast<float>(instance * 8 + (corner == 2 ? 8 : 0));
+    const float y = corner == 1 ? 60.0f : instance % 2 == 0 ? 4.0f : -40.0f;
+    const float position[4] = {x / kSide * 2 - 1, y / kSide * 2 - 1, 0.5f, 1};
+    for (std::size_t c = 0; c < 4; ++c) out[c].lane[lane] = std::bit_cast<std::uint32_t>(position[c]);
+    out[4].lane[lane] = 0;
+  });
+  return active;
+}
+
+/// Of fragments, which instance each is of, by column / 8.
+struct ByInstance : TileObserver {
+  std::mutex mutex;
+  std::array<std::uint64_t, 8> right{}, wrong{};
+
+  struct Watch : DrawWatch {
+    explicit Watch(ByInstance& by) : out(by) {}
+    void generated(const FragmentGroup& group, SampleLanes lanes) override {
+      const std::lock_guard lock(out.mutex);
+      base::for_each_lane(any_of(lanes), [&](std::size_t lane) {
+        const std::uint32_t column = group.position.x[lane / 4] / 8;
+        const bool same = group.instances->instance_of(group.from[lane / 4]) == kFirstInstance + column;
+        ++(same ? out.right : out.wrong)[column];
+      });
+    }
+    ByInstance& out;
+  };
+  bool watches(const TilePlace&) const override { return true; }
+  std::unique_ptr<DrawWatch> watch_tile(const spirv::ObservedCommand*, const TilePlace&) override {
+    return std::make_unique<Watch>(*this);
+  }
+};
+
+TEST_F(Observed, TellsWhichInstancesFragmentsAreOf) {
+  for (const std::uint32_t general : {0u, 1u}) {
+    ByInstance by;
+    PassDesc desc;
+    desc.color[0] = view(VK_FORMAT_R32G32B32A32_SFLOAT, color);
+    desc.color_count = 1;
+    desc.render_area = {{0, 0}, {kSide, kSide}};
+    vertex.interface.inputs = {slot(spirv::BuiltIn::kVertexIndex, 0, 0), slot(spirv::BuiltIn::kInstanceIndex, 0, 1)};
+    vertex.run = shade_instances;
+    fragment.user = &discards;
+    DrawCall call;
+    call.state = &state;
+    call.native_vertex = &vertex;
+    call.native_fragment = &fragment;
+    call.count = 3;
+    call.instance_count = 8;
+    call.first_instance = kFirstInstance;
+    call.general_path = general != 0;
+    call.tile_observer = &by;
+    Pass pass(desc);
+    pass.draw(call);
+    pass.flush();
+    for (std::size_t column = 0; column < 8; ++column) {
+      EXPECT_GT(by.right[column], 100u) << column;
+      EXPECT_EQ(by.wrong[column], 0u) << column;
+    }
+  }
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ SHADER_HEADERS = ["shader.h", "shader_cost.h", "counted_runs.h", "stage_memory.h
 RASTER_PARTS = [
     ["pass"],
     ["front", "tile"],
+    ["primitive_instances"],
     ["primitive"],
     ["plan"],
     ["draw_watches", "output", "pass_desc", "topology"],

@@ -72,12 +72,13 @@ void fill_inputs(const StageContext& c, std::span<const GeometryInput> inputs, c
 }
 
 /// Primitives of the strip of emitted vertices [begin, end).
-void list_strip(const StageContext& c, std::uint32_t begin, std::uint32_t end, std::uint32_t id) {
+void list_strip(const StageContext& c, std::uint32_t begin, std::uint32_t end, const GeometryInput& input) {
   const std::uint32_t corners = c.plan.corners;
   const VkPrimitiveTopology output = c.plan.stages.geometry->modes.output;
   for (std::uint32_t i = 0; begin + i + corners <= end; ++i) {
     const Corners at = corners_of(output, c.plan.state->provoking_vertex_last, i);
-    c.stages.listed.push_back({{begin + at.at[0], begin + at.at[1], begin + at.at[2]}, id, i != 0});
+    c.stages.listed.push_back(
+        {{begin + at.at[0], begin + at.at[1], begin + at.at[2]}, input.id, i != 0, input.instance});
   }
 }
 
@@ -94,7 +95,7 @@ void collect(const StageContext& c, std::span<const GeometryInput> inputs, const
     if (slot.built_in == BuiltIn::kEmittedVertices) count = &slot;
   if (!count) return;
   for (std::uint32_t i = 0; i < wave.lanes; ++i) {
-    const std::uint32_t id = inputs[(wave.first + i) / modes.invocations].id;
+    const GeometryInput& input = inputs[(wave.first + i) / modes.invocations];
     const std::uint32_t vertices = std::min(s.geometry.output(count->reg).lane[i], modes.max_vertices);
     auto begin = static_cast<std::uint32_t>(s.emitted.size());
     std::size_t word = wave.emit + std::size_t{i} * modes.max_vertices * modes.vertex_words;
@@ -103,12 +104,12 @@ void collect(const StageContext& c, std::span<const GeometryInput> inputs, const
       if ((flags & spirv::kEmitStream) != stream) continue;
       const auto end = static_cast<std::uint32_t>(s.emitted.size());
       if ((flags & spirv::kEmitStarts) != 0) {
-        list_strip(c, begin, end, id);
+        list_strip(c, begin, end, input);
         begin = end;
       }
       s.emitted.push_back(static_cast<std::uint32_t>(word));
     }
-    list_strip(c, begin, static_cast<std::uint32_t>(s.emitted.size()), id);
+    list_strip(c, begin, static_cast<std::uint32_t>(s.emitted.size()), input);
   }
 }
 

@@ -126,6 +126,7 @@ void tessellate(const StageContext& c, const Batch& batch) {
     for (std::size_t i = 0; i + corners <= indices.size(); i += corners) {
       ListedPrimitive& primitive = s.listed.emplace_back();
       primitive.id = ways.evaluated_ids ? 0 : s.patch_ids[batch.first + p];
+      primitive.instance = s.patch_instances[batch.first + p];
       for (std::uint32_t k = 0; k < 3; ++k)
         primitive.slot[k] = (first + indices[i + (k < corners ? k : 0)]) & ways.tessellated_mask;
     }

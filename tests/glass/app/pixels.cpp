@@ -374,11 +374,11 @@ void begin(const Image& color, const Image* depth, const Image* resolve) {
   vkCmdBeginRendering(commands, &info);
 }
 
-void draw(VkPipeline pipeline, const Push& push) {
+void draw(VkPipeline pipeline, const Push& push, std::uint32_t instances = 1, std::uint32_t first_instance = 0) {
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
   vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
                      &push);
-  vkCmdDraw(commands, 3, 1, 0, 0);
+  vkCmdDraw(commands, 3, instances, 0, first_instance);
 }
 
 void scissor(std::int32_t x) {
@@ -438,7 +438,7 @@ void draw_multisampled(const Image& samples, const Image& resolved) {
   vkCmdSetStencilTestEnable(commands, VK_FALSE);
   vkCmdSetDepthBoundsTestEnable(commands, VK_FALSE);
   draw(plain, {{0, 1, 0, 1}, 0.25f, kPlain});
-  draw(few, {{1, 1, 0, 1}, 0.25f, kPlain});
+  draw(few, {{1, 1, 0, 1}, 0.25f, kPlain}, 2, 5);
   draw(by_alpha, {{1, 1, 1, 0}, 0.25f, kPlain});
   vkCmdEndRendering(commands);
   end_label();
