@@ -84,6 +84,7 @@ bool Engine::remove(int number) {
 int Engine::watch(Watchpoint watchpoint) {
   watchpoint.number = ++last_number_;
   watchpoints_[last_number_] = std::move(watchpoint);
+  if (live_) hold_watches(*live_);
   return last_number_;
 }
 
@@ -150,6 +151,8 @@ std::shared_ptr<Run> Engine::enter(const std::shared_ptr<const Subject>& subject
   history_.enter(run);
   note_reset(*run);
   aim_watches(*run);
+  from_others_ = changed_by_others(run->submission);
+  hold_watches(*run);
   return run;
 }
 
@@ -164,9 +167,57 @@ void Engine::note_reset(Run& run) {
 
 /// Memory that is named by a variable lies somewhere else for every set of resources.
 void Engine::aim_watches(const Run& run) {
+  for (auto& [number, watchpoint] : watchpoints_) {
+    if (!watchpoint.is_memory() || watchpoint.subject != run.subject) continue;
+    std::vector<MemoryRange> memory = memory_of_place(view(run, 0), *watchpoint.place);
+    if (memory != watchpoint.memory) watchpoint.held.clear();
+    watchpoint.memory = std::move(memory);
+    watchpoint.submission = run.submission;
+  }
+}
+
+namespace {
+
+std::vector<std::byte> bytes_of(const Watchpoint& watchpoint) {
+  std::vector<std::byte> bytes;
+  for (const MemoryRange& range : watchpoint.memory) bytes.insert(bytes.end(), range.at, range.at + range.bytes);
+  return bytes;
+}
+
+/// Shared memory is the workgroup's: between two of them it means nothing.
+bool lasts(const Watchpoint& watchpoint) {
+  return watchpoint.is_memory() && watchpoint.place->variable->memory != spirv::SourceVariable::Memory::kShared;
+}
+
+}  // namespace
+
+/// What has been freed is not looked at: while a submission runs, all that it uses is there.
+void Engine::hold_watches(const Run& run) {
   for (auto& [number, watchpoint] : watchpoints_)
-    if (watchpoint.is_memory() && watchpoint.subject == run.subject)
-      watchpoint.memory = memory_of_place(view(run, 0), *watchpoint.place);
+    if (lasts(watchpoint) && watchpoint.submission == run.submission) watchpoint.held = bytes_of(watchpoint);
+}
+
+std::optional<Stop> Engine::changed_by_others(std::uint64_t submission) {
+  for (auto& [number, watchpoint] : watchpoints_) {
+    if (!lasts(watchpoint) || watchpoint.submission != submission || watchpoint.held.empty()) continue;
+    std::vector<std::byte> now = bytes_of(watchpoint);
+    const bool same = now == watchpoint.held;
+    watchpoint.held = std::move(now);
+    if (same) continue;
+    std::string text = "watch " + std::to_string(number) + ": " + watchpoint.text + " has changed";
+    if (live_ && watchpoint.subject == live_->subject) {
+      const std::string before = std::exchange(watchpoint.value, to_text(view(*live_, 0), {watchpoint.place, {}}));
+      text.append(": ").append(before).append(" -> ").append(watchpoint.value);
+    }
+    return Stop{Stop::Reason::kWatch, number, text + ", by no shader: by a command, the host or what was drawn"};
+  }
+  return std::nullopt;
+}
+
+void Engine::commands_done() {
+  std::unique_lock lock(mutex_);
+  if (detached_ || live_ || history_.empty()) return;
+  if (auto stop = changed_by_others(history_.running()->submission)) halt(std::move(*stop), lock);
 }
 
 void Engine::writes(Run& run, const spirv::Wave& wave, const spirv::Instruction* i, const spirv::InstructionNote& note,
@@ -210,6 +261,7 @@ void Engine::ended(const std::shared_ptr<Run>& run, const spirv::Wave& wave, boo
 
 void Engine::leave(const std::shared_ptr<Run>& run) {
   const std::unique_lock lock(mutex_);
+  hold_watches(*run);
   shared_.assign(run->shared, run->shared + (run->shared == nullptr ? 0 : run->shared_size));
   live_ = nullptr;
   turn_.unlock();
@@ -234,6 +286,10 @@ void Engine::came_by(Run& run, const spirv::Wave& wave, const spirv::ProbeOp& op
   if (detached_) return;
   wave_ = &wave;
   settle_stores(lock);
+  if (auto stop = std::exchange(from_others_, std::nullopt); stop && !detached_) {
+    look_at(live_, first_lane(run.launched));
+    halt(std::move(*stop), lock);
+  }
   if (detached_) return;
   const spirv::Probe::Kind kind = run.subject->probes[op.probe].kind;
   if (kind != spirv::Probe::Kind::kStep && kind != spirv::Probe::Kind::kAssign) {
@@ -393,37 +449,35 @@ void Engine::say(const std::string& text) {
   if (!detached_) face_.output(text);
 }
 
-std::string Engine::change(const Place& place, std::size_t lane, const std::vector<Scalar>& numbers) {
+std::string Engine::change(const Place& place, std::size_t lane, const std::vector<PlacedScalar>& numbers) {
   using Memory = spirv::SourceVariable::Memory;
   const Memory memory = place.variable->memory;
   if (!live_ || focus_.run != live_) return "only the wave that runs now can be changed";
   if (!history_.at_end())
     return "this has been done already: go forward to where the shader stands, or change it there";
   if (memory == Memory::kPush) return "push constants cannot be changed";
-  const std::vector<Place> places = scalar_places(view(*live_, lane), place);
-  const std::string error =
-      memory == Memory::kCells ? change_cells(places, lane, numbers) : change_memory(places, lane, numbers);
+  const std::string error = place.texel                ? change_texel(place, lane, numbers)
+                            : memory == Memory::kCells ? change_cells(lane, numbers)
+                                                       : change_memory(lane, numbers);
   if (!error.empty()) return error;
   history_.grown();
   live_->changed = true;
   return {};
 }
 
-std::string Engine::change_cells(const std::vector<Place>& places, std::size_t lane,
-                                 const std::vector<Scalar>& numbers) {
+std::string Engine::change_cells(std::size_t lane, const std::vector<PlacedScalar>& numbers) {
   if (stores_ == nullptr) return "the shader is shown as it always runs: its variables cannot be changed";
   if (wave_ == nullptr) return "the invocation has ended";
   std::vector<Run::Change> changes;
   std::vector<std::uint32_t> homes;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const Place& at = places[i];
-    const std::uint32_t words = numbers[i].width == 64 ? 2 : 1;
+  for (const auto& [at, number] : numbers) {
+    const std::uint32_t words = number.width == 64 ? 2 : 1;
     for (std::uint32_t part = 0; part < words; ++part) {
       const std::uint32_t first = at.cell - words * at.component;
       const auto home = live_->subject->home_of(first + part * at.components + at.component);
       if (!home) return "it is no variable that keeps its value: parameters, inputs and names of results do not";
       homes.push_back(*home);
-      changes.push_back({at.cell + part, static_cast<std::uint32_t>(numbers[i].bits >> 32 * part)});
+      changes.push_back({at.cell + part, static_cast<std::uint32_t>(number.bits >> 32 * part)});
     }
   }
   for (std::size_t i = 0; i < homes.size(); ++i)
@@ -432,24 +486,40 @@ std::string Engine::change_cells(const std::vector<Place>& places, std::size_t l
   return {};
 }
 
-std::string Engine::change_memory(const std::vector<Place>& places, std::size_t lane,
-                                  const std::vector<Scalar>& numbers) {
+std::string Engine::change_memory(std::size_t lane, const std::vector<PlacedScalar>& numbers) {
   const Viewer viewer = view(*live_, lane);
-  std::vector<MemoryRange> ranges;
-  for (const Place& place : places) {
-    const std::vector<MemoryRange> one = memory_of_place(viewer, place);
-    if (one.size() != 1) return "no memory is bound there";
-    ranges.push_back(one[0]);
+  std::vector<Patch> patches;
+  for (const auto& [place, number] : numbers) {
+    const std::vector<MemoryRange> memory = memory_of_place(viewer, place);
+    if (memory.size() != 1) return "no memory is bound there";
+    Patch& patch = patches.emplace_back();
+    patch.at = memory[0];
+    std::memcpy(patch.bytes.data(), &number.bits, memory[0].bytes);
   }
-  live_->begin_stores(0);
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const Written written{ranges[i].at, static_cast<std::uint32_t>(ranges[i].bytes), static_cast<std::uint32_t>(lane),
-                          static_cast<std::uint32_t>(ranges[i].bytes)};
-    if (stores_ != nullptr) stores_->keep(written.at, written.bytes);
-    live_->add_store(written);
-    std::memcpy(written.at, &numbers[i].bits, written.bytes);
-  }
+  change_bytes(lane, patches);
   return {};
+}
+
+std::string Engine::change_texel(const Place& place, std::size_t lane, const std::vector<PlacedScalar>& numbers) {
+  const auto found = texel_at(view(*live_, lane), place);
+  if (!found) return "the image has no such texel";
+  texel::Texel texel{};
+  for (std::size_t i = 0; i < numbers.size() && i < texel.size(); ++i)
+    texel[i] = static_cast<std::uint32_t>(numbers[i].number.bits);
+  Patch patch{{found->at, found->bytes}};
+  if (!encode(*found, texel, patch.bytes)) return "texels of this format cannot be set";
+  change_bytes(lane, {patch});
+  return {};
+}
+
+void Engine::change_bytes(std::size_t lane, const std::vector<Patch>& patches) {
+  live_->begin_stores(0);
+  for (const Patch& patch : patches) {
+    const auto bytes = static_cast<std::uint32_t>(patch.at.bytes);
+    if (stores_ != nullptr) stores_->keep(patch.at.at, bytes);
+    live_->add_store({patch.at.at, bytes, static_cast<std::uint32_t>(lane), bytes});
+    std::memcpy(patch.at.at, patch.bytes.data(), bytes);
+  }
 }
 
 /// To where the invocation of a finding came to its line last, if that is recorded.

@@ -60,6 +60,8 @@ struct Watchpoint {
   std::optional<Place> place;       ///< of memory, in any invocation
   std::vector<MemoryRange> memory;  ///< where that is for the run that began last
   std::string value;                ///< what it held when it was looked at last
+  std::vector<std::byte> held;      ///< the same, bytes, when a run left it; empty: nobody knows
+  std::uint64_t submission = 0;     ///< in which `memory` is there
   bool is_memory() const { return place.has_value(); }
 };
 
@@ -100,6 +102,8 @@ class Engine {
   /// The wave has ended, if it does not wait for others.
   void ended(const std::shared_ptr<Run>& run, const spirv::Wave& wave, bool waits);
   void leave(const std::shared_ptr<Run>& run);
+  /// Work of commands is done: what is watched may have been changed by others than shaders.
+  void commands_done();
   /// The wave itself has done otherwise than its rehearsal did.
   void differs(const Run& run, const StoreLog::Difference& difference);
 
@@ -108,8 +112,9 @@ class Engine {
   int add(Breakpoint breakpoint);
   bool remove(int number);
   int watch(Watchpoint watchpoint);
-  /// Gives a variable or memory other values (fit_numbers()) in the lane in focus. Not empty: why that cannot be.
-  std::string change(const Place& place, std::size_t lane, const std::vector<Scalar>& numbers);
+  /// Gives a variable, memory or a texel other values (placed_numbers()) in the lane in focus. Not empty: why that
+  /// cannot be.
+  std::string change(const Place& place, std::size_t lane, const std::vector<PlacedScalar>& numbers);
   const std::map<int, Breakpoint>& breakpoints() const { return breakpoints_; }
   const std::map<int, Watchpoint>& watchpoints() const { return watchpoints_; }
   /// Bits of Catch: what stops a shader besides. NaNs are seen in shaders that are made from then on.
@@ -145,8 +150,17 @@ class Engine {
   std::optional<Stop> check_memory(const std::shared_ptr<Run>& run, const Run::Entry& entry);
   void settle_stores(std::unique_lock<std::mutex>& lock);
   void aim_watches(const Run& run);
-  std::string change_cells(const std::vector<Place>& places, std::size_t lane, const std::vector<Scalar>& numbers);
-  std::string change_memory(const std::vector<Place>& places, std::size_t lane, const std::vector<Scalar>& numbers);
+  void hold_watches(const Run& run);
+  std::optional<Stop> changed_by_others(std::uint64_t submission);
+  std::string change_cells(std::size_t lane, const std::vector<PlacedScalar>& numbers);
+  std::string change_memory(std::size_t lane, const std::vector<PlacedScalar>& numbers);
+  std::string change_texel(const Place& place, std::size_t lane, const std::vector<PlacedScalar>& numbers);
+  /// Other bytes of memory.
+  struct Patch {
+    MemoryRange at;
+    std::array<std::byte, 16> bytes{};
+  };
+  void change_bytes(std::size_t lane, const std::vector<Patch>& patches);
   bool go_back_to(const Finding& finding);
   std::optional<Stop> check_exceptions(const std::shared_ptr<Run>& run, const spirv::Wave& wave,
                                        const spirv::ProbeOp& op);
@@ -171,6 +185,7 @@ class Engine {
   std::shared_ptr<Run> live_;
   const spirv::Wave* wave_ = nullptr;   ///< the same, while a thread is in came_by() or writes()
   StoreLog* stores_ = nullptr;          ///< of a rehearsal
+  std::optional<Stop> from_others_;     ///< to be told at the next line
   bool unsettled_ = false;              ///< the last entry is of stores that were about to be done
   std::vector<std::byte> shared_;       ///< what the memory of the last workgroup held when its wave stopped
   std::set<const Subject*> differing_;  ///< those of which it has been said

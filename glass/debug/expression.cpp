@@ -13,10 +13,11 @@
 namespace vitrine::glass::debug {
 
 struct ExpressionNode {
-  enum class Kind : std::uint8_t { kConstant, kName, kChoice, kBinary, kPrefix, kElement, kMember, kCall } kind;
+  enum class Kind : std::uint8_t { kConstant, kName, kChoice, kBinary, kPrefix, kElement, kMember, kCall, kList } kind;
   std::string word;  ///< a name, an operator
   std::vector<ExpressionNode> parts;
   std::vector<Scalar> constant;
+  std::vector<std::string> names = {};  ///< of the parts of a list, if they have any
 };
 
 namespace {
@@ -123,9 +124,11 @@ class Parser {
     Node node = primary();
     for (;;) {
       if (take("[")) {
-        Node index = ternary();
+        std::vector<Node> parts = {std::move(node)};
+        do parts.push_back(ternary());
+        while (take(","));
         demand("]");
-        node = made(Node::Kind::kElement, {}, {std::move(node), std::move(index)});
+        node = made(Node::Kind::kElement, {}, std::move(parts));
       } else if (take(".")) {
         node = made(Node::Kind::kMember, word(), {std::move(node)});
       } else {
@@ -144,9 +147,40 @@ class Parser {
     return std::string(text_.substr(begin, at_ - begin));
   }
 
+  /// The name in front of '=' in a list; empty: there is none.
+  std::string take_name() {
+    const std::size_t begin = at_;
+    skip();
+    if (at_ < text_.size() && (std::isalpha(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_')) {
+      std::string name = word();
+      if (take("=") && !take("=")) return name;
+    }
+    at_ = begin;
+    return {};
+  }
+
+  /// {a, b}, {first = a, rest = b}: behind the brace.
+  Node list() {
+    Node node = made(Node::Kind::kList, {}, {});
+    do {
+      if (std::string name = take_name(); !name.empty()) node.names.push_back(std::move(name));
+      node.parts.push_back(ternary());
+    } while (take(","));
+    demand("}");
+    if (!node.names.empty() && node.names.size() != node.parts.size()) throw Mistake("some members have no names");
+    return node;
+  }
+
   Node primary() {
+    if (take("{")) return list();
     if (take("(")) {
       Node node = ternary();
+      // (a, b): as values are shown.
+      if (take(",")) {
+        node = made(Node::Kind::kList, {}, {std::move(node)});
+        do node.parts.push_back(ternary());
+        while (take(","));
+      }
       demand(")");
       return node;
     }
@@ -223,12 +257,20 @@ class Evaluator {
       }
       case Kind::kElement: {
         const Value value = value_of(node.parts[0]);
+        if (is_image(value)) return texel(value, node);
+        if (node.parts.size() != 2) throw Mistake("texels of images have several indices");
         return element(value, to_int(numbers(node.parts[1])[0]));
       }
       case Kind::kMember:
         return member(value_of(node.parts[0]), node.word);
       case Kind::kCall:
         return call(node);
+      case Kind::kList: {
+        Value value;
+        for (const Node& part : node.parts) value.list.push_back(value_of(part));
+        value.names = node.names;
+        return value;
+      }
     }
     return {};
   }
@@ -292,7 +334,10 @@ class Evaluator {
   }
 
   Value call(const Node& node) const {
-    if (node.word == "imageLoad" || node.word == "texelFetch") return texel(node);
+    if (node.word == "imageLoad" || node.word == "texelFetch") {
+      if (node.parts.empty()) throw Mistake("which image?");
+      return texel(value_of(node.parts[0]), node);
+    }
     if (names_.find(node.word)) throw Mistake("'" + node.word + "' is a variable, and no function");
     std::vector<std::vector<Scalar>> arguments;
     for (const Node& argument : node.parts) arguments.push_back(numbers(argument));
@@ -302,13 +347,14 @@ class Evaluator {
     return of(std::move(result));
   }
 
-  /// imageLoad(image, 1, 2), imageLoad(image, ivec2(1, 2)).
-  Value texel(const Node& node) const {
-    if (node.parts.empty()) throw Mistake("which image?");
-    Value value = value_of(node.parts[0]);
-    if (!value.place || value.place->descriptors ||
-        value.place->variable->memory != spirv::SourceVariable::Memory::kOpaque)
-      throw Mistake("that is no image");
+  static bool is_image(const Value& value) {
+    return value.place && !value.place->descriptors && !value.place->texel &&
+           value.place->variable->memory == spirv::SourceVariable::Memory::kOpaque;
+  }
+
+  /// imageLoad(image, 1, 2), imageLoad(image, ivec2(1, 2)), image[1, 2]: coordinates are all parts but the first.
+  Value texel(Value value, const Node& node) const {
+    if (!is_image(value)) throw Mistake("that is no image");
     TexelCoordinates at{};
     std::size_t next = 0;
     for (std::size_t i = 1; i < node.parts.size(); ++i)

@@ -51,6 +51,7 @@ struct Subject {
 struct MemoryRange {
   std::byte* at = nullptr;
   std::uint64_t bytes = 0;
+  bool operator==(const MemoryRange&) const = default;
 };
 
 class Run {

@@ -59,4 +59,11 @@ texel::Texel decode(const StoredTexelAt& texel) {
   return decoded;
 }
 
+bool encode(const StoredTexelAt& where, const texel::Texel& texel, std::array<std::byte, 16>& bytes) {
+  const texel::TexelEncoder encoder = texel::texel_encoder(*where.format, texel::Encoding::kStore);
+  if (encoder == nullptr || where.bytes > bytes.size()) return false;
+  encoder(*where.format, texel, bytes.data());
+  return true;
+}
+
 }  // namespace vitrine::glass::debug

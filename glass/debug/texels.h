@@ -23,5 +23,7 @@ struct StoredTexelAt {
 std::optional<StoredTexelAt> find_texel(const spirv::Descriptor& image, const TexelCoordinates& at);
 /// Without the view's swizzle.
 texel::Texel decode(const StoredTexelAt& texel);
+/// As imageStore() does it. False: texels of the format cannot be stored so.
+bool encode(const StoredTexelAt& where, const texel::Texel& texel, std::array<std::byte, 16>& bytes);
 
 }  // namespace vitrine::glass::debug

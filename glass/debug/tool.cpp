@@ -213,6 +213,7 @@ class DebugTool : public Tool {
   void commands_done(const void* owner) override {
     for (const auto& tool : finders_.tools) tool->commands_done(owner);
     if (!finders_.tools.empty()) engine_.found(nullptr, finders_.take());
+    engine_.commands_done();
   }
 
  private:

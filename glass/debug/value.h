@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "glass/debug/run.h"
 #include "glass/debug/texels.h"
 
@@ -56,6 +57,9 @@ struct Place {
 struct Value {
   std::optional<Place> place;  ///< nothing: `scalars` is a result
   std::vector<Scalar> scalars;
+  /// Of {a, b}, {first = a, rest = b}: it has no scalars of its own. Names are empty, or those of members.
+  std::vector<Value> list = {};
+  std::vector<std::string> names = {};
 };
 
 Place place_of(const spirv::SourceVariable& variable);
@@ -67,14 +71,21 @@ std::uint32_t count_of(const Viewer& viewer, const Place& place);
 /// Numbers of a scalar or vector; empty: it is another thing.
 std::vector<Scalar> numbers_of(const Viewer& viewer, const Place& place);
 
+/// The texel that a place is; nothing: it is none that is there.
+std::optional<StoredTexelAt> texel_at(const Viewer& viewer, const Place& place);
+
 /// Memory that a place lies in, in pieces; nothing: it lies in cells, has none, or is too large (1 MiB).
 std::vector<MemoryRange> memory_of_place(const Viewer& viewer, const Place& place);
 
-/// The numbers of a scalar or vector in other types: what is stored where `place` is. False: they are as many as fit,
-/// or one for all.
-bool fit_numbers(const Viewer& viewer, const Place& place, std::vector<Scalar>& numbers);
-/// Where each of the numbers of a scalar or vector lies.
-std::vector<Place> scalar_places(const Viewer& viewer, const Place& place);
+/// A number, and where it is stored, in the type that is stored there.
+struct PlacedScalar {
+  Place place;
+  Scalar number;
+};
+/// What is stored so that `place` holds a value: to a scalar or vector as many numbers, or one for all; to arrays,
+/// matrices and structures one of the same shape, a list of what their elements or members get, some members by name,
+/// or all numbers one behind the other. Of a texel: four numbers. Otherwise why it cannot be.
+base::Result<std::vector<PlacedScalar>> placed_numbers(const Viewer& viewer, const Place& place, const Value& value);
 /// Bytes of a number in memory: a word for booleans and where a word is a cell.
 std::uint32_t stored_bytes(const Viewer& viewer, const Place& place);
 

@@ -240,6 +240,7 @@ base::Result<int> watch_in(Engine& engine, const std::string& expression, std::s
     watchpoint.place = place.value();
     watchpoint.memory = memory_of_place(viewer, place.value());
     watchpoint.value = to_text(viewer, {place.value(), {}});
+    watchpoint.submission = run.submission;
   }
   return engine.watch(std::move(watchpoint));
 }
@@ -262,11 +263,9 @@ base::Result<Value> set_in(Engine& engine, const std::string& target, const std:
   const Viewer viewer = engine.view(*engine.focus().run, lane);
   const std::optional<Place>& place = to.value().place;
   if (!place) return base::Error{quoted(target) + " is no variable and no memory"};
-  if (place->texel) return base::Error{"texels cannot be set"};
-  std::vector<Scalar> numbers = from.value().place ? numbers_of(viewer, *from.value().place) : from.value().scalars;
-  if (numbers.empty() || numbers[0].type == '?' || !fit_numbers(viewer, *place, numbers))
-    return base::Error{"numbers, vectors and their components can be set, to as many numbers or to one"};
-  const std::string error = engine.change(*place, lane, numbers);
+  const auto placed = placed_numbers(viewer, *place, from.value());
+  if (!placed) return placed.error();
+  const std::string error = engine.change(*place, lane, placed.value());
   if (!error.empty()) return base::Error{error};
   return to.value();
 }

@@ -234,6 +234,23 @@ class Adapter(unittest.TestCase):
         client.wait("exited")
         server.wait(timeout=60)
 
+    def test_other_values_of_wholes(self):
+        _, port = self.serve()
+        client = self.client(port)
+        self.begin(client, [{"line": 14, "condition": "i == 2u"}])
+        client.wait("stopped")
+        frame = self.at(client, 3)[2]
+        shared = client.ask("scopes", frameId=frame)["scopes"][1]
+        block = next(row for row in client.ask("variables", variablesReference=shared["variablesReference"])["variables"]
+                     if row["variablesReference"] and "data" in row["value"])
+        changed = client.ask("setVariable", variablesReference=block["variablesReference"], name="data", value="{8, 7, 6, 5, 4, 3, 2, 1}")
+        self.assertEqual(changed["value"], "{8, 7, 6, 5, 4, 3, 2, 1}")
+        words = client.ask("variables", variablesReference=changed["variablesReference"])["variables"]
+        self.assertEqual([row["value"] for row in words], list("87654321"))
+        self.assertEqual(client.ask("setExpression", expression="data", value="{5, 6}", frameId=frame)["value"], "{5, 6, 6, 5, 4, 3, 2, 1}")
+        self.assertFalse(client.request("setExpression", expression="data", value="5", frameId=frame)["success"])
+        client.ask("disconnect")
+
     def test_other_values_and_data_breakpoints(self):
         server, port = self.serve()
         client = self.client(port)

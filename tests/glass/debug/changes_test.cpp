@@ -74,7 +74,7 @@ TEST(DebuggerChanges, AreRefusedWithAReason) {
               kSums);
   expect_in_order(
       s.text, {"nothing has run yet", "no variable 'nobody'", "set VARIABLE = EXPRESSION", "set VARIABLE = EXPRESSION",
-               "is no variable and no memory", "can be set", "can be set", "can be set", "inputs"});
+               "is no variable and no memory", "can be set", "can be set", "nobody has written", "inputs"});
   const Session exact =
       session({"break 14", "run", "set sum = 3", "watch data[3]"}, kSums, DebugInfo::kNonSemantic, 1, Shown::kExact);
   expect_in_order(exact.text, {"as it always runs: its variables cannot be changed", "--exact"});
@@ -94,6 +94,79 @@ void main() {
   EXPECT_EQ(session({"tbreak 7 if g == 1u", "run", "set data[1] = 100", "continue"}, shader, DebugInfo::kNonSemantic, 4)
                 .words[4],
             103u);
+}
+
+constexpr char kWhole[] = R"(#version 450
+layout(local_size_x = 8) in;
+struct Pair { float first; uvec3 rest; };
+struct Both { Pair pair[2]; mat2 m; bool flag; };
+layout(std430, set = 0, binding = 0) buffer Data { uint data[8]; Pair pairs[2]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  uint list[4] = uint[4](1u, 2u, 3u, i);
+  Both both;
+  both.pair[0] = Pair(1.5, uvec3(1u, 2u, i));
+  both.pair[1] = Pair(2.5, uvec3(4u, 5u, 6u));
+  both.m = mat2(1.0, 2.0, 3.0, 4.0);
+  both.flag = false;
+  Pair other = Pair(7.0, uvec3(7u, 8u, 9u));
+  data[i] = list[0] + list[3] * 10u + both.pair[1].rest.z * 100u + uint(both.m[1].y) * 1000u;
+  if (both.flag) data[i] += 100000u;
+  if (i == 2u) data[7] = other.rest.x + uint(other.first) * 10u;
+}
+)";
+
+TEST(DebuggerChanges, OfWholeArraysStructuresAndMatrices) {
+  const Session s = session({"tbreak 15 if i == 2u",
+                             "run",
+                             "set list = {9, 8, 7, 6}",
+                             "set both.m = {{5, 6}, {7, 8}}",
+                             "set both.m = {1, 2, 3, 9}",
+                             "print both.m[1].y",
+                             "set both.pair[1] = {4.25, {10, 11, 12}}",
+                             "set both.pair[0] = both.pair[1]",
+                             "set both.pair = {{first = 3}, {rest = (7, 7, 3), first = 1}}",
+                             "print both.pair",
+                             "set other = both.pair[1]",
+                             "set both.flag = true",
+                             "set pairs[1] = other",
+                             "set pairs = {{1, {1, 1, 1}}, pairs[1]}",
+                             "print pairs",
+                             "set data = data",
+                             "print {1, list}",
+                             "back",
+                             "print list",
+                             "next",
+                             "print list",
+                             "continue"},
+                            kWhole);
+  expect_in_order(
+      s.text,
+      {"list = {9, 8, 7, 6}", "both.m = {(5.0, 6.0), (7.0, 8.0)}", "both.m = {(1.0, 2.0), (3.0, 9.0)}",
+       "both.m[1].y = 9.0", "both.pair[1] = {first = 4.25, rest = (10, 11, 12)}",
+       "both.pair[0] = {first = 4.25, rest = (10, 11, 12)}",
+       "both.pair = {{first = 3.0, rest = (10, 11, 12)}, {first = 1.0, rest = (7, 7, 3)}}",
+       "other = {first = 1.0, rest = (7, 7, 3)}", "both.flag = true", "pairs[1] = {first = 1.0, rest = (7, 7, 3)}",
+       "pairs = {{first = 1.0, rest = (1, 1, 1)}, {first = 1.0, rest = (7, 7, 3)}}", "data = {",
+       "{1, list} = {1, {9, 8, 7, 6}}", "list = {1, 2, 3, 2}", "list = {9, 8, 7, 6}"});
+  EXPECT_EQ(s.words[2], 9 + 6 * 10 + 3 * 100 + 9 * 1000 + 100000u);
+  EXPECT_EQ(s.words[7], 7 + 10u);
+  EXPECT_EQ(s.words[3], 1 + 3 * 10 + 6 * 100 + 4 * 1000u);
+  // pairs[1], at 8 words and two vectors.
+  EXPECT_EQ(s.words[20], 7u);
+}
+
+TEST(DebuggerChanges, OfWholesAreRefusedWithAReason) {
+  const Session s =
+      session({"tbreak 15 if i == 2u", "run", "set list = {1, 2}", "set list = 3", "set list = other", "set both = {1}",
+               "set both = {{1, 2}, 2}", "set other = {second = 1}", "set other = {first = 1, 2}",
+               "set other = {1, {2, 3}}", "set other = {1, 2", "set other = both.pair", "print list", "print other"},
+              kWhole);
+  expect_in_order(s.text, {"can be set to {a, b} with what its parts get, or to 4 numbers", "or to 4 numbers",
+                           "can be set to what has the same parts", "or to 13 numbers", "Both has 3 parts, not 2",
+                           "there is no member 'second'", "some members have no names", "as many numbers or to one",
+                           "'}' is missing", "can be set to what has the same parts", "list = {1, 2, 3, 2}",
+                           "other = {first = 7.0, rest = (7, 8, 9)}"});
 }
 
 constexpr char kWidths[] = R"(#version 450
@@ -225,6 +298,27 @@ TEST(DebuggerMemory, StopsWhereItChanges) {
        "cache[2] = 12", "watch 2: data[3] has changed: 13 -> 48", "invocation (3, 0, 0), lane 3",
        "main at shader.glsl:23", "data[3] = 48", "data[3] was written at shader.glsl:23 by invocation (3, 0, 0)",
        "watch 3: cache[2] has changed", "cache[2] = 12", "data[3] = 13", "not recorded", "watch 3", "watch 2"});
+}
+
+/// Whatever the host or a command writes between shaders, and behind the last one.
+TEST(DebuggerMemory, IsChangedByOthersThanShaders) {
+  std::string log;
+  const auto module = vitrine::test::compile_glsl(VK_SHADER_STAGE_COMPUTE_BIT, kSums, vitrine::test::VulkanVersion::k12,
+                                                  log, DebugInfo::kNonSemantic);
+  ScriptedDebugger debugger({"break 13 if i == 0u", "run", "delete", "watch data[60]", "continue", "continue"});
+  std::vector<std::uint32_t> words(64, 10);
+  glass::test::run_observed(debugger.tool.get(), module, words, 1);
+  debugger.tool->commands_done(nullptr);
+  EXPECT_EQ(debugger.script.text().find("has changed"), std::string::npos) << debugger.script.text();
+  words[60] = 77;
+  glass::test::run_observed(debugger.tool.get(), module, words, 1);
+  debugger.tool->commands_done(nullptr);
+  expect_in_order(debugger.script.text(),
+                  {"watch 2: data[60]", "watch 2: data[60] has changed, by no shader", "invocation (0, 0, 0), lane 0"});
+  const std::size_t said = debugger.script.text().size();
+  words[60] = 78;
+  debugger.tool->commands_done(nullptr);
+  expect_in_order(debugger.script.text().substr(said), {"watch 2: data[60] has changed, by no shader"});
 }
 
 TEST(DebuggerMemory, SeesWorkgroups) {
