@@ -279,9 +279,11 @@ json DebugAdapter::variable_of(const json& tree, Owner itself) {
   return variable;
 }
 
-/// Blocks without a name have one that begins with '%': their members are visible as variables.
+/// Blocks without a name have one that begins with '%': their members are visible as variables. Names with a space are
+/// those of rows of texels, which have names of their own.
 DebugAdapter::Owner DebugAdapter::child_of(const Owner& owner, const std::string& name) {
   Owner child = owner;
+  if (name.starts_with("row ") || name.starts_with("layer ")) return child;
   if (owner.expression.empty() || owner.expression.starts_with('%'))
     child.expression = name;
   else

@@ -39,6 +39,20 @@ std::optional<StoredTexelAt> find_in_view(const texel::ImageView& view, const Te
 
 }  // namespace
 
+std::optional<ImageShape> shape_of(const spirv::Descriptor& image) {
+  ImageShape shape;
+  if (image.texels != nullptr && image.texels->data != nullptr) {
+    shape = {image.texels->format, 1, {static_cast<std::uint32_t>(image.texels->count)}};
+  } else if (image.image != nullptr && image.image->planes == nullptr && image.image->level_count != 0) {
+    const texel::ImageView& view = *image.image;
+    const texel::Extent& extent = view.level[0].extent;
+    shape = {view.format, dimensions_of(view.type), {extent.width, extent.height, extent.depth}};
+    if (is_layered(view.type)) shape.size[shape.dimensions++] = view.layer_count;
+  }
+  if (shape.format == nullptr || texel::texel_decoder(*shape.format) == nullptr) return std::nullopt;
+  return shape;
+}
+
 std::optional<StoredTexelAt> find_texel(const spirv::Descriptor& image, const TexelCoordinates& at) {
   std::optional<StoredTexelAt> found;
   if (image.texels != nullptr && image.texels->data != nullptr) {

@@ -19,6 +19,15 @@ struct StoredTexelAt {
   const texel::FormatDesc* format = nullptr;
 };
 
+/// How many texels an image has by coordinate of imageLoad(), of level 0, array layers last.
+struct ImageShape {
+  const texel::FormatDesc* format = nullptr;
+  std::uint32_t dimensions = 0;
+  std::array<std::uint32_t, 3> size{};
+};
+/// Nothing: it is no image, or one whose texels find_texel() does not find.
+std::optional<ImageShape> shape_of(const spirv::Descriptor& image);
+
 /// Nothing: the image has no such texel, or it is compressed or lies in several planes.
 std::optional<StoredTexelAt> find_texel(const spirv::Descriptor& image, const TexelCoordinates& at);
 /// Without the view's swizzle.

@@ -32,6 +32,13 @@ const spirv::Descriptor* descriptor_of(const Viewer& viewer, const Place& place)
   return &run.resources->set[set][slot];
 }
 
+/// The image that a place is; nothing: it is none, or none is bound there.
+std::optional<ImageShape> shape_at(const Viewer& viewer, const Place& place) {
+  if (place.variable->memory != Memory::kOpaque || place.texel) return std::nullopt;
+  const spirv::Descriptor* const image = descriptor_of(viewer, place);
+  return image == nullptr ? std::nullopt : shape_of(*image);
+}
+
 /// The memory that a variable lies in.
 Bytes memory_of(const Viewer& viewer, const Place& place) {
   const Run& run = *viewer.run;
@@ -123,7 +130,7 @@ class Writer {
   std::string text(const Place& place) {
     const spirv::SourceType& type = type_at(viewer_.tables(), place);
     if (place.texel) return numbers_text(numbers_of(viewer_, place));
-    if (place.variable->memory == Memory::kOpaque) return "<image or sampler>";
+    if (place.variable->memory == Memory::kOpaque && !place.descriptors) return image(place);
     if (place.descriptors || type.kind == Kind::kArray || type.kind == Kind::kMatrix) return elements(place);
     if (type.kind == Kind::kStruct) return members(place, type);
     return numbers_text(numbers_of(viewer_, place));
@@ -138,6 +145,34 @@ class Writer {
   }
 
  private:
+  /// "R32_UINT, 4 x 4", with the texels of small ones, the first coordinate inside.
+  std::string image(const Place& place) {
+    const std::optional<ImageShape> shape = shape_at(viewer_, place);
+    if (!shape) return "<image or sampler>";
+    std::string text(shape->format->name);
+    std::uint64_t texels = 1;
+    for (std::uint32_t i = 0; i < shape->dimensions; ++i) {
+      text.append(i == 0 ? ", " : " x ").append(std::to_string(shape->size[i]));
+      texels *= shape->size[i];
+    }
+    if (texels > kMostElements) return text;
+    TexelCoordinates at{};
+    return text + " " + texels_text(place, *shape, shape->dimensions, at);
+  }
+
+  std::string texels_text(Place place, const ImageShape& shape, std::uint32_t dimension, TexelCoordinates& at) {
+    if (dimension == 0) {
+      place.texel = at;
+      return text(place);
+    }
+    std::string all = "{";
+    for (std::uint32_t i = 0; i < shape.size[dimension - 1]; ++i) {
+      at[dimension - 1] = i;
+      all.append(i == 0 ? "" : ", ").append(texels_text(place, shape, dimension - 1, at));
+    }
+    return all += "}";
+  }
+
   std::string elements(const Place& place) {
     const std::uint32_t count = count_of(viewer_, place);
     std::string text = "{";
@@ -163,11 +198,37 @@ class Writer {
   std::size_t rows_ = 0;
 };
 
+/// Texels of an image, whose last coordinates are known: rows and layers have names with a space, which are no part of
+/// an expression.
+void add_texels(const Viewer& viewer, Place place, const ImageShape& shape, std::uint32_t dimension,
+                TexelCoordinates& at, Tree& tree, std::size_t& rows) {
+  const std::uint32_t count = std::min(shape.size[dimension - 1], kMostElements);
+  for (std::uint32_t i = 0; i < count && ++rows <= kMostRows; ++i) {
+    at[dimension - 1] = i;
+    if (dimension > 1) {
+      Tree& part = tree.children.emplace_back();
+      part.name = (dimension == 2 ? "row " : "layer ") + std::to_string(i);
+      add_texels(viewer, place, shape, dimension - 1, at, part, rows);
+      continue;
+    }
+    std::string name = "[";
+    for (std::uint32_t c = 0; c < shape.dimensions; ++c) name.append(c == 0 ? "" : ", ").append(std::to_string(at[c]));
+    place.texel = at;
+    tree.children.push_back({name + "]", "texel", Writer(viewer).text(place), {}});
+  }
+}
+
 Tree make_tree(const Viewer& viewer, std::string name, const Place& place, std::size_t& rows) {
   const spirv::SourceType& type = type_at(viewer.tables(), place);
   Tree tree{std::move(name), type.name, Writer(viewer).text(place), {}};
   if (place.texel) tree.type = "texel";
-  if (++rows > kMostRows || place.variable->memory == Memory::kOpaque) return tree;
+  if (++rows > kMostRows || place.texel) return tree;
+  if (const auto shape = place.descriptors ? std::nullopt : shape_at(viewer, place)) {
+    TexelCoordinates at{};
+    add_texels(viewer, place, *shape, shape->dimensions, at, tree, rows);
+    return tree;
+  }
+  if (place.variable->memory == Memory::kOpaque && !place.descriptors) return tree;
   if (type.kind == Kind::kStruct && !place.descriptors) {
     for (std::uint32_t i = 0; i < type.members.size(); ++i)
       tree.children.push_back(make_tree(viewer, type.members[i].name, member_of(viewer.tables(), place, i), rows));

@@ -191,6 +191,27 @@ class Adapter(unittest.TestCase):
         client.wait("exited")
         self.assertEqual(server.wait(timeout=60), 0)
 
+    def test_images(self):
+        server, port = self.serve(self.pixels)
+        client = self.client(port)
+        client.ask("initialize")
+        client.ask("setBreakpoints", source={"path": "/elsewhere/pixels.comp"}, breakpoints=[{"line": 9}])
+        client.ask("launch")
+        client.ask("configurationDone")
+        frame = self.at(client, client.wait("stopped")["threadId"])[2]
+        shared = client.ask("scopes", frameId=frame)["scopes"][1]
+        variables = client.ask("variables", variablesReference=shared["variablesReference"])["variables"]
+        image = next(row for row in variables if row["name"] == "to")
+        self.assertEqual(image["value"], "R8G8B8A8_UNORM, 16 x 16")
+        rows = client.ask("variables", variablesReference=image["variablesReference"])["variables"]
+        self.assertEqual([row["name"] for row in rows], [f"row {i}" for i in range(16)])
+        texels = client.ask("variables", variablesReference=rows[5]["variablesReference"])["variables"]
+        self.assertEqual((texels[3]["name"], texels[3]["evaluateName"]), ("[3, 5]", "to[3, 5]"))
+        changed = client.ask("setVariable", variablesReference=rows[5]["variablesReference"], name="[3, 5]", value="{1, 0.5, 0, 1}")
+        self.assertEqual(changed["value"], "(1.0, 0.5019608, 0.0, 1.0)")
+        client.ask("disconnect")
+        server.wait(timeout=60)
+
     def test_exceptions(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
