@@ -17,6 +17,7 @@
 #include "glass/debug/exceptions.h"
 #include "glass/debug/frame.h"
 #include "glass/debug/history.h"
+#include "glass/debug/placed.h"
 #include "glass/debug/stores.h"
 #include "glass/finding.h"
 

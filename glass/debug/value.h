@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/result.h"
 #include "glass/debug/run.h"
 #include "glass/debug/texels.h"
 
@@ -77,15 +76,6 @@ std::optional<StoredTexelAt> texel_at(const Viewer& viewer, const Place& place);
 /// Memory that a place lies in, in pieces; nothing: it lies in cells, has none, or is too large (1 MiB).
 std::vector<MemoryRange> memory_of_place(const Viewer& viewer, const Place& place);
 
-/// A number, and where it is stored, in the type that is stored there.
-struct PlacedScalar {
-  Place place;
-  Scalar number;
-};
-/// What is stored so that `place` holds a value: to a scalar or vector as many numbers, or one for all; to arrays,
-/// matrices and structures one of the same shape, a list of what their elements or members get, some members by name,
-/// or all numbers one behind the other. Of a texel: four numbers. Otherwise why it cannot be.
-base::Result<std::vector<PlacedScalar>> placed_numbers(const Viewer& viewer, const Place& place, const Value& value);
 /// Bytes of a number in memory: a word for booleans and where a word is a cell.
 std::uint32_t stored_bytes(const Viewer& viewer, const Place& place);
 
