@@ -156,7 +156,8 @@ namespace vitrine::icd::entry {{
         for name in sorted(self.registry.commands):
             command = self.registry.commands[name]
             rows = self._gate_rows(command.gates)
-            if not rows:
+            extension, revision = vkxml.REVISIONS.get(name, (None, 0))
+            if not rows or extension in self.claimed and self.claims.extensions[extension][0] < revision:
                 continue
             first = len(gates)
             gates += rows

@@ -10,6 +10,10 @@ from dataclasses import dataclass, field
 # Platforms whose declarations icd/edge/vulkan_api.h can supply without the window system's own headers.
 PLATFORMS = {None, "xcb", "xlib", "wayland"}
 APIS = {"vulkan", "vulkanbase", "vulkancompute", "vulkangraphics"}
+# The oldest registry that the driver is built with: its core version and its last extension's number. What came or became
+# core later is no name for sources that are built with that one, too.
+OLDEST_CORE = "1.3"
+OLDEST_LAST_EXTENSION = 498
 
 
 @dataclass
@@ -25,7 +29,7 @@ class Gate:
 @dataclass
 class Command:
     name: str
-    implementation: str  # the command that this one is an alias of, or itself
+    implementation: str  # what the sources call it and all its aliases, whatever the registry (Registry._stable_names)
     scope: str
     gates: list = field(default_factory=list)
 
@@ -40,7 +44,7 @@ class Member:
 
 @dataclass
 class Struct:
-    name: str
+    name: str  # of all its aliases the one that is in every registry (Registry._stable_names)
     stype: str
     extends: tuple
     members: list
@@ -96,6 +100,19 @@ def parse_depends(text):
     return expression() if tokens else []
 
 
+# What a later revision of an extension brought, which the registry does not tell apart.
+REVISIONS = {name: ("VK_EXT_discard_rectangles", 2)
+             for name in ("vkCmdSetDiscardRectangleEnableEXT", "vkCmdSetDiscardRectangleModeEXT",
+                          "VK_DYNAMIC_STATE_DISCARD_RECTANGLE_ENABLE_EXT", "VK_DYNAMIC_STATE_DISCARD_RECTANGLE_MODE_EXT")}
+LAST_RANK = 5
+
+
+def rank_of(extension):
+    """Where the names that an extension requires stand among their aliases: behind those of core, before what came later."""
+    author = extension.get("name").split("_")[1]
+    return LAST_RANK - 1 if int(extension.get("number")) > OLDEST_LAST_EXTENSION else {"KHR": 1, "EXT": 2}.get(author, 3)
+
+
 def in_api(element, attribute="api"):
     value = element.get(attribute)
     return value is None or bool(APIS & set(value.split(",")))
@@ -109,9 +126,11 @@ class Registry:
         self.commands = self._read_commands(root)
         self.extensions = {}
         self.core_versions = []
+        self.ranks = {}  # of each required name of a command or structure (rank_of)
         self._read_requirements(root)
         self.commands = {n: c for n, c in self.commands.items() if c.gates}
         self.structs = {n: s for n, s in self.structs.items() if s.gates}
+        self._stable_names()
 
     def _read_structs(self, root):
         structs = {}
@@ -164,8 +183,9 @@ class Registry:
             version = version_number(feature.get("number"))
             if version not in self.core_versions:
                 self.core_versions.append(version)
+            rank = 0 if version <= version_number(OLDEST_CORE) else LAST_RANK
             for require in feature.findall("require"):
-                self._apply(require, [Gate(version=version)])
+                self._apply(require, [Gate(version=version)], rank)
         for element in root.find("extensions"):
             supported = set((element.get("supported") or "").split(","))
             if not (APIS & supported) or element.get("platform") not in PLATFORMS or element.get("provisional"):
@@ -174,7 +194,7 @@ class Registry:
             self.extensions[name] = self._extension(element, name)
             for require in element.findall("require"):
                 if in_api(require):
-                    self._apply(require, self._require_gates(require, Gate(extensions=(name,))))
+                    self._apply(require, self._require_gates(require, Gate(extensions=(name,))), rank_of(element))
 
     @staticmethod
     def _extension(element, name):
@@ -197,12 +217,42 @@ class Registry:
                 gates = [g.both(d) for g in gates for d in parse_depends(require.get(attribute))]
         return gates
 
-    def _apply(self, require, gates):
+    def _apply(self, require, gates, rank):
         for command in require.findall("command"):
-            if command.get("name") in self.commands:
-                self.commands[command.get("name")].gates.extend(gates)
+            name = command.get("name")
+            self.ranks[name] = min(rank, self.ranks.get(name, rank))
+            if name in self.commands:
+                self.commands[name].gates.extend(gates)
         for type_element in require.findall("type"):
             name = type_element.get("name")
-            name = self.aliases.get(name, name)
+            self.ranks[name] = min(rank, self.ranks.get(name, rank))
+            name = self._resolve(name)
             if name in self.structs:
                 self.structs[name].gates.extend(gates)
+
+    def _resolve(self, name):
+        while name in self.aliases:
+            name = self.aliases[name]
+        return name
+
+    def _stable_names(self):
+        """Gives each group of aliases the name that is in the oldest registry, too. Which one a registry calls the
+        original is no guide: each makes the names that it had before aliases of those that became core meanwhile."""
+        groups = {}
+        for command in self.commands.values():
+            groups.setdefault(command.implementation, []).append(command)
+        for original, group in groups.items():
+            name = self._stable_name(original, [c.name for c in group])
+            for command in group:
+                command.implementation = name
+        groups = {}
+        for name in self.aliases:
+            groups.setdefault(self._resolve(name), []).append(name)
+        for original, others in groups.items():
+            if original in self.structs:
+                self.structs[original].name = self._stable_name(original, [original, *others])
+        self.structs = {s.name: s for s in self.structs.values()}
+
+    def _stable_name(self, original, names):
+        """Of names of the same rank the one that the registry calls the original, else the first."""
+        return min((n for n in names if n in self.ranks), key=lambda n: (self.ranks[n], n != original, n))
