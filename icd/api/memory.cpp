@@ -163,6 +163,18 @@ VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice, VkDeviceMemory memory, VkDevi
 
 VKAPI_ATTR void VKAPI_CALL UnmapMemory(VkDevice, VkDeviceMemory) {}
 
+#ifdef VK_KHR_map_memory2
+// Vulkan 1.4.309, VK_KHR_map_memory2: the same with structures, for others to extend.
+VKAPI_ATTR VkResult VKAPI_CALL MapMemory2KHR(VkDevice device, const VkMemoryMapInfoKHR* info, void** data) {
+  return MapMemory(device, info->memory, info->offset, info->size, info->flags, data);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL UnmapMemory2KHR(VkDevice device, const VkMemoryUnmapInfoKHR* info) {
+  UnmapMemory(device, info->memory);
+  return VK_SUCCESS;
+}
+#endif
+
 VKAPI_ATTR VkResult VKAPI_CALL FlushMappedMemoryRanges(VkDevice device, std::uint32_t count,
                                                        const VkMappedMemoryRange* ranges) {
   tell_host_access(from_handle<Device>(device), {ranges, count}, true);

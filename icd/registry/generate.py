@@ -204,7 +204,13 @@ namespace vitrine::icd::entry {{
             return "{" + self._initializer(nested) + "}"
         if limit is None:
             fail(f"{struct.name}::{member.name} has no value: add it to manifest/limits")
-        return limit.value
+        return self._known_bits(limit.value)
+
+    def _known_bits(self, value):
+        """Without the bits that this registry does not know: like an extension, they wait for newer headers."""
+        bits = value.split(" | ")
+        known = [b for b in bits if b in self.registry.enumerators or not re.fullmatch(r"VK_\w+", b)]
+        return " | ".join(known) if len(bits) > 1 else value
 
     def _initializer(self, struct):
         parts = []

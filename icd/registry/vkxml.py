@@ -122,6 +122,7 @@ class Registry:
     def __init__(self, path):
         root = ElementTree.parse(path).getroot()
         self.aliases = {}
+        self.enumerators = {e.get("name") for e in root.iter("enum")}
         self.structs = self._read_structs(root)
         self.commands = self._read_commands(root)
         self.extensions = {}
