@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """What packed files have inside that others wrote: their notices, and a list in SPDX 2.3.
 
-usage: inside.py VERSION SECONDS NOTICES SPDX
+usage: inside.py VERSION SECONDS NOTICES SPDX [HEADERS]
 
 SECONDS since 1970 go into the list as its date, so that two builds give the same file. The versions are those of the
-installed packages; their notices are the copyright files that Debian installs with them.
+installed packages; their notices are the copyright files that Debian installs with them. HEADERS: the folder usr/ where
+manifest/pack/newer-headers has unpacked packages, which then are those inside; without it, or empty, none.
 """
 import json
 import pathlib
@@ -26,18 +27,27 @@ INSIDE = (
 )
 
 
+def unpacked(headers):
+    """{package: version} of what newer-headers has put there."""
+    if not headers:
+        return {}
+    return dict(row.split()[:2] for row in (headers.parent / "complete").read_text().splitlines())
+
+
 def version_of(package):
     return subprocess.run(["dpkg-query", "-W", "-f=${Version}", package], check=True, capture_output=True, text=True).stdout
 
 
 def main():
     version, seconds, notices, spdx = sys.argv[1], int(sys.argv[2]), sys.argv[3], sys.argv[4]
+    headers = pathlib.Path(sys.argv[5]) if len(sys.argv) > 5 and sys.argv[5] else None
+    newer = unpacked(headers)
     text = ["Vitrine has parts of these inside. What follows are the notices that Debian's packages of them have.\n"]
     packages = []
     relations = []
     for package, role in INSIDE:
-        number = version_of(package)
-        copyright_file = pathlib.Path("/usr/share/doc") / package / "copyright"
+        number = newer.get(package) or version_of(package)
+        copyright_file = (headers if package in newer else pathlib.Path("/usr")) / "share/doc" / package / "copyright"
         text.append(f"\n{'=' * 100}\n{package} {number}: {role}\n{'=' * 100}\n\n{copyright_file.read_text(errors='replace')}")
         packages.append({
             "SPDXID": f"SPDXRef-{package.replace('+', 'p')}", "name": package, "versionInfo": number,

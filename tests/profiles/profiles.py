@@ -21,7 +21,10 @@ import sys
 import tempfile
 import xml.etree.ElementTree as ElementTree
 
-REGISTRY = pathlib.Path("/usr/share/vulkan/registry/vk.xml")
+# What manifest/pack/newer-headers has unpacked, else what is installed.
+REGISTRIES = [pathlib.Path(__file__).resolve().parents[2] / "build/headers/usr/share/vulkan/registry/vk.xml",
+              pathlib.Path("/usr/share/vulkan/registry/vk.xml")]
+REGISTRY = next((path for path in REGISTRIES if path.exists()), REGISTRIES[-1])
 
 # Members whose attribute says nothing, or the contrary of what is meant: more is better, or less.
 KNOWN_TYPES = {"minMemoryMapAlignment": "max", "mipmapPrecisionBits": "bits", "subPixelPrecisionBits": "bits",

@@ -10,6 +10,10 @@ import re
 import sys
 from xml.etree import ElementTree
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "icd" / "registry"))
+import claims as claims_module
+import vkxml
+
 # design.md section 2: a room may include itself and what stands to its right.
 ORDER = ["icd", "glass", "raster", "spirv", "texel", "base"]
 FREE = ["tests", "cts-subset"]
@@ -38,7 +42,12 @@ NEVER = [
 # Folders in which includes between parts still run in a circle.
 CIRCLES = ["icd", "icd/replay", "spirv", "spirv/exec", "spirv/lower", "spirv/rewrite", "texel"]
 LONG_FILE = 350
-REGISTRIES = ["/usr/share/vulkan/registry/vk.xml", "/usr/local/share/vulkan/registry/vk.xml"]
+# Relative to the tree: what manifest/pack/newer-headers has unpacked. Claims are held against each that is there.
+REGISTRIES = ["/usr/share/vulkan/registry/vk.xml", "/usr/local/share/vulkan/registry/vk.xml", "build/headers/usr/share/vulkan/registry/vk.xml"]
+
+
+def registries(root):
+    return [path for path in (root / name for name in REGISTRIES) if path.exists()]
 
 
 def sources(root, folder):
@@ -204,15 +213,20 @@ def capability_faults(root):
         return set(re.findall(r"^(\w+) *;", (root / file).read_text(), re.MULTILINE))
     listed = set(re.findall(r"^VITRINE_CAPABILITY\((\w+)\)", (root / "spirv/capabilities.def").read_text(), re.MULTILINE))
     claims = claimed("manifest/features") | claimed("manifest/extensions")
-    registries = [p for p in map(pathlib.Path, REGISTRIES) if p.exists()]
-    for row in ElementTree.parse(registries[0]).iter("spirvcapability") if registries else ():
-        needs = [enable.attrib for enable in row.findall("enable")]
-        if any("property" in need for need in needs):
-            continue
-        name = row.attrib["name"]
-        allowed = any("version" in n or n.get("feature") in claims or n.get("extension") in claims for n in needs)
-        if allowed != (name in listed):
-            yield f"spirv/capabilities.def: {name} is {'claimed but missing' if allowed else 'not claimed'}"
+    def stem(name):
+        """What the names of a capability share: registries call it by this author's or that one's, or by none."""
+        return re.sub("(KHR|EXT|NV)$", "", name)
+    stems = {stem(name) for name in listed}
+    for registry in registries(root):
+        needs = {}
+        for row in ElementTree.parse(registry).iter("spirvcapability"):
+            needs.setdefault(stem(row.attrib["name"]), []).extend(enable.attrib for enable in row.findall("enable"))
+        for name, ways in needs.items():
+            if any("property" in way for way in ways):
+                continue
+            allowed = any("version" in w or w.get("feature") in claims or w.get("extension") in claims for w in ways)
+            if allowed != (name in stems):
+                yield f"spirv/capabilities.def: {name} is {'claimed but missing' if allowed else 'not claimed'} ({registry})"
 
 
 def dynamic_state_faults(root):
@@ -223,14 +237,16 @@ def dynamic_state_faults(root):
     listed = set(re.findall(r"^VITRINE_DYNAMIC_\w+\(\w+, (\w+),", text, re.MULTILINE))
     claimed = {file: set(re.findall(r"^(\w+) *;", (root / "manifest" / file).read_text(), re.MULTILINE))
                for file in ("extensions", "features")}
-    for registry in [p for p in map(pathlib.Path, REGISTRIES) if p.exists()][:1]:
+    revisions = {f[0]: int(f[1]) for f, _ in claims_module.rows(root / "manifest/extensions")}
+    for registry in registries(root):
         for extension in ElementTree.parse(registry).iter("extension"):
             for row in extension.iterfind("require/enum[@extends='VkDynamicState']"):
                 state = row.attrib["name"].removeprefix("VK_DYNAMIC_STATE_")
                 feature = "extendedDynamicState3" + "".join(w.title() for w in state.split("_")[:-1])
                 third = extension.attrib["name"] == "VK_EXT_extended_dynamic_state3"
                 wanted = feature in claimed["features"] if third else extension.attrib["name"] in claimed["extensions"]
-                if "alias" not in row.attrib and wanted and state not in listed:
+                brought_by, revision = vkxml.REVISIONS.get(row.attrib["name"], (None, 0))
+                if "alias" not in row.attrib and wanted and state not in listed and revisions.get(brought_by, 0) >= revision:
                     yield f"icd/record/dynamic_state.def: lacks {state}, which {extension.attrib['name']} brings"
 
 
