@@ -13,6 +13,7 @@
 #include <string>
 
 #include "bench.h"
+#include "corpus/corpus.h"
 #include "harness/shader.h"
 
 namespace vitrine::bench {
@@ -228,6 +229,8 @@ int main(int argc, char** argv) {
   using namespace vitrine::bench;
   std::vector<Driver> drivers, with_tools;
   std::string filter;
+  CorpusOptions corpus;
+  std::string module;
   int rounds = 3;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
@@ -238,6 +241,12 @@ int main(int argc, char** argv) {
     if (const char* child = value("--child=")) return run_child(child);
     if (const char* text = value("--rounds=")) {
       rounds = std::max(1, std::atoi(text));
+    } else if (const char* folder = value("--corpus=")) {
+      corpus.folder = folder;
+    } else if (const char* every = value("--every=")) {
+      corpus.every = static_cast<unsigned>(std::max(1, std::atoi(every)));
+    } else if (const char* path = value("--corpus-module=")) {
+      module = path;
     } else if (const char* pattern = value("--filter=")) {
       filter = pattern;
     } else if (const char* icd = value("--icd=")) {
@@ -246,11 +255,17 @@ int main(int argc, char** argv) {
     } else if (const char* tools = value("--tools=")) {
       with_tools.push_back({tools, {}, tools});
     } else {
-      std::fprintf(stderr, "usage: %s [--rounds=N] [--filter=TEXT] [--icd=NAME=MANIFEST]... [--tools=LIST]...\n",
-                   argv[0]);
+      std::fprintf(stderr,
+                   "usage: %s [--rounds=N] [--filter=TEXT] [--icd=NAME=MANIFEST]... [--tools=LIST]...\n"
+                   "       %s --corpus=FOLDER [--every=N] [--rounds=N] [--icd=NAME=MANIFEST]\n",
+                   argv[0], argv[0]);
       return 2;
     }
   }
+  corpus.manifest = drivers.empty() ? BENCH_DEFAULT_ICD : drivers[0].manifest;
+  corpus.rounds = rounds;
+  if (!module.empty()) return run_corpus_module(module, corpus.manifest, rounds);
+  if (!corpus.folder.empty()) return run_corpus(corpus);
   if (drivers.empty()) {
     drivers.push_back({"vitrine", BENCH_DEFAULT_ICD});
     if (with_tools.empty()) add_peers(drivers);
