@@ -90,7 +90,7 @@ void fetch(const ImageView& view, const FetchRequest& request, const SampleResul
 void fetch_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
                   const SampleResult& result);
 
-/// What is stored, by component.
+/// What is stored, by component; null: 0.
 using StoredValue = std::array<const base::WaveRegister*, 4>;
 
 /// imageStore (part B conversions): out of range is dropped. Lanes are stored in increasing order.

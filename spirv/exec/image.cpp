@@ -5,6 +5,7 @@
 #include "spirv/exec/atomic_ops.h"
 #include "spirv/exec/buffers.h"
 #include "spirv/exec/handlers.h"
+#include "texel/load_store/prepared_fetch.h"
 #include "texel/sampler/prepared.h"
 
 namespace vitrine::spirv::exec {
@@ -16,10 +17,11 @@ using ir::ImageOperand;
 
 /// Operands and results of one image instruction in this wave.
 struct Call {
-  Call(Wave& w, const ImageOp& o) : wave(w), op(o) {}
+  Call(Wave& w, std::uint32_t i) : wave(w), op(w.program->image_ops[i]), index(i) {}
 
   Wave& wave;
   const ImageOp& op;
+  std::uint32_t index;     ///< of the operation in its program
   WaveRegister result[4];  ///< inactive lanes stay unset
 
   const WaveRegister* operand(ImageOperand which, std::uint32_t component = 0) const {
@@ -84,6 +86,12 @@ texel::SampleResult sample_result(const Call& call) {
   return result;
 }
 
+/// Whether what is kept is that of this instruction in this draw.
+template <class Kept>
+bool is_kept(const Wave& wave, const ImageOp& op, const Kept& entry) {
+  return entry.op == &op && entry.serial == wave.resources->serial && entry.serial != 0;
+}
+
 /// A sampler made ready for one image instruction and the registers that it works on, kept while the same draw runs on
 /// this thread.
 struct KeptSampler {
@@ -99,15 +107,15 @@ struct KeptSampler {
 
 /// What is kept of an image instruction, if it is not that of another one: filters written out have dozens of them.
 template <class Kept>
-Kept& kept_of(const Call& call) {
+Kept& kept_of(std::uint32_t index) {
   constexpr std::size_t kKept = 64;
   std::array<Kept, kKept>& kept = base::per_thread<std::array<Kept, kKept>>();
-  return kept[static_cast<std::size_t>(&call.op - call.wave.program->image_ops.data()) % kKept];
+  return kept[index % kKept];
 }
 
 KeptSampler& kept_sampler(const Call& call, const texel::ImageView& view, const texel::Sampler& sampler) {
   const std::uint64_t serial = call.wave.resources->serial;
-  auto& entry = kept_of<KeptSampler>(call);
+  auto& entry = kept_of<KeptSampler>(call.index);
   const bool same =
       serial != 0 && entry.serial == serial && entry.op == &call.op && entry.view == &view && entry.sampler == &sampler;
   if (same && entry.registers == call.wave.registers) return entry;
@@ -145,9 +153,12 @@ void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, 
 struct KeptFetch {
   std::uint64_t serial = 0;
   const ImageOp* op = nullptr;
+  const Descriptor* image = nullptr;
   const std::byte* registers = nullptr;
+  texel::PreparedFetch prepared;
   texel::FetchRequest request;  ///< but not which lanes
   texel::SampleResult result{};
+  std::uint32_t misses = 0;  ///< waves one after the other that `prepared` did not read
 };
 
 texel::FetchRequest fetch_request(const Call& call, base::LaneMask lanes) {
@@ -160,16 +171,23 @@ texel::FetchRequest fetch_request(const Call& call, base::LaneMask lanes) {
   return request;
 }
 
-KeptFetch& kept_fetch(const Call& call) {
-  const std::uint64_t serial = call.wave.resources->serial;
-  auto& entry = kept_of<KeptFetch>(call);
-  if (serial != 0 && entry.serial == serial && entry.op == &call.op && entry.registers == call.wave.registers)
-    return entry;
-  entry = {serial, &call.op, call.wave.registers, fetch_request(call, 0), sample_result(call)};
+bool is_buffer(const Call& call) { return call.op.info.dim == ir::ImageDim::kBuffer; }
+
+KeptFetch& kept_fetch(const Call& call, const Descriptor& image) {
+  auto& entry = kept_of<KeptFetch>(call.index);
+  const bool same = is_kept(call.wave, call.op, entry) && entry.image == &image;
+  if (same && entry.registers == call.wave.registers) return entry;
+  entry.request = fetch_request(call, 0);
+  entry.result = sample_result(call);
+  entry.prepared = is_buffer(call) ? texel::prepare_fetch(*image.texels, *entry.request.coord[0], entry.result)
+                                   : texel::prepare_fetch(*image.image, entry.request, entry.result);
+  entry.serial = call.wave.resources->serial;
+  entry.op = &call.op;
+  entry.image = &image;
+  entry.registers = call.wave.registers;
+  entry.misses = 0;
   return entry;
 }
-
-bool is_buffer(const Call& call) { return call.op.info.dim == ir::ImageDim::kBuffer; }
 
 /// Whether there is nothing of the kind that the instruction expects.
 bool is_null(const Call& call, const Descriptor& image) {
@@ -179,10 +197,27 @@ bool is_null(const Call& call, const Descriptor& image) {
 /// Straight to the registers of the results.
 void read(Call& call, const Descriptor& image, base::LaneMask lanes) {
   if (is_null(call, image)) return zero_registers(call, lanes);
-  KeptFetch& kept = kept_fetch(call);
+  KeptFetch& kept = kept_fetch(call, image);
   if (is_buffer(call)) return texel::fetch_buffer(*image.texels, lanes, *kept.request.coord[0], kept.result);
   kept.request.active = lanes;
   texel::fetch(*image.image, kept.request, kept.result);
+}
+
+/// A read by a whole wave as it was the last time, from the same descriptor; false: it is another one.
+bool read_again(const Wave& wave, std::uint32_t index) {
+  constexpr std::uint32_t kMisses = 8;
+  const ImageOp& op = wave.program->image_ops[index];
+  const bool reads = op.info.access == ImageAccess::kRead || op.info.access == ImageAccess::kFetch;
+  if (!reads || wave.active != base::kAllLanes || op.image_index.file != IndexOperand::File::kConstant) return false;
+  auto& entry = kept_of<KeptFetch>(index);
+  if (!is_kept(wave, op, entry) || entry.registers != wave.registers) return false;
+  if (entry.prepared.kernel == nullptr || entry.misses == kMisses) return false;
+  if (entry.prepared.kernel(entry.prepared)) {
+    entry.misses = 0;
+    return true;
+  }
+  ++entry.misses;
+  return false;
 }
 
 void write(Call& call, const Descriptor& image, base::LaneMask lanes) {
@@ -332,12 +367,10 @@ base::LaneMask lanes_of(const Wave& wave, const ImageOp& op) {
   return base::quads_of_lanes(wave.active) * 15 & wave.launched;
 }
 
-}  // namespace
-
-const Instruction* image(Wave& wave, const Instruction* i) {
-  const ImageOp& op = wave.program->image_ops[i->extra[0]];
+[[gnu::noinline]] void run_by_descriptors(Wave& wave, std::uint32_t index) {
+  Call call(wave, index);
+  const ImageOp& op = call.op;
   const ir::ImageInfo& info = op.info;
-  Call call(wave, op);
   for (base::LaneMask remaining = lanes_of(wave, op); remaining != 0;) {
     const int first = std::countr_zero(remaining);
     const base::LaneMask lanes = same_elements(wave, op, remaining);
@@ -354,6 +387,13 @@ const Instruction* image(Wave& wave, const Instruction* i) {
     run(call, image, sampler, lanes);
     if (has_result(info.access)) put_results(call, lanes);
   }
+}
+
+}  // namespace
+
+const Instruction* image(Wave& wave, const Instruction* i) {
+  const std::uint32_t index = i->extra[0];
+  if (!read_again(wave, index)) run_by_descriptors(wave, index);
   return i + 1;
 }
 

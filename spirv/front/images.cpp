@@ -197,6 +197,44 @@ ir::ImageInfo image_info(Translator& t, const ImageHandle& handle) {
   return info;
 }
 
+/// Components of texels of a declared format; 4 also where it is not told. "The image format ... must match" that of
+/// the view (Vulkan 1.3.239, Image Operations Overview), so that a store has no others.
+std::uint32_t components_of(spv::ImageFormat format) {
+  using F = spv::ImageFormat;
+  switch (format) {
+    case F::R32f:
+    case F::R16f:
+    case F::R16:
+    case F::R8:
+    case F::R16Snorm:
+    case F::R8Snorm:
+    case F::R32i:
+    case F::R16i:
+    case F::R8i:
+    case F::R32ui:
+    case F::R16ui:
+    case F::R8ui:
+      return 1;
+    case F::Rg32f:
+    case F::Rg16f:
+    case F::Rg16:
+    case F::Rg8:
+    case F::Rg16Snorm:
+    case F::Rg8Snorm:
+    case F::Rg32i:
+    case F::Rg16i:
+    case F::Rg8i:
+    case F::Rg32ui:
+    case F::Rg16ui:
+    case F::Rg8ui:
+      return 2;
+    case F::R11fG11fB10f:
+      return 3;
+    default:
+      return 4;
+  }
+}
+
 void add_elements(Translator& t, const ImageHandle& handle, ir::ImageInfo& info, ImageSources& sources) {
   auto choose = [&](ir::ValueId element, std::uint32_t& slot, std::uint32_t& count, ImageOperand operand) {
     if (element == ir::kNoValue) return 0u;
@@ -279,6 +317,7 @@ void image_access(Translator& t, const Inst& inst, ir::Op) {
   if (write) {
     t.function.interface.writes_memory = true;
     finish(t, std::move(info), sources, 0);
+    last_instr(t).data[0] = components_of(t.module.type(handle.image_type).format);
     return;
   }
   const std::uint32_t count = leaf_info(t, inst.result_type).components;

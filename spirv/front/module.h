@@ -75,6 +75,7 @@ struct Type {
   spv::StorageClass storage = spv::StorageClass::Function;
   spv::Dim dim = spv::Dim::Dim2D;
   bool depth = false, arrayed = false, multisampled = false;
+  spv::ImageFormat format = spv::ImageFormat::Unknown;
   std::uint32_t array_stride = 0;      ///< bytes, 0: undecorated
   std::uint32_t leaves = 0;            ///< IR values that a value of this type consists of
   std::uint32_t depth_of_nesting = 0;  ///< of aggregates

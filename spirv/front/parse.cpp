@@ -151,6 +151,7 @@ void read_type(Module& module, const Inst& inst) {
       type.depth = inst.operand(3) == 1;
       type.arrayed = inst.operand(4) != 0;
       type.multisampled = inst.operand(5) != 0;
+      type.format = static_cast<spv::ImageFormat>(inst.operand(7));
       break;
     case Op::OpTypeSampler:
       type.kind = Kind::kSampler;

@@ -303,7 +303,7 @@ void Emitter::image(const ScalarOp& op) {
     } else if (operand == ir::ImageOperand::kSamplerIndex) {
       row.sampler_index = index_operand(source(op, next++), row.info.sampler_slot, row.info.sampler_count);
     } else {
-      const std::uint32_t count = image_operand_components(row.info, operand);
+      const std::uint32_t count = image_operand_components(*op.instr, operand);
       for (std::uint32_t c = 0; c < count; ++c) row.operand[i][c] = in_register(source(op, next++)).offset;
     }
   }

@@ -121,8 +121,9 @@ struct ScalarFunction {
   std::span<const ScalarId> of(Range range) const { return std::span(operands).subspan(range.begin, range.count); }
 };
 
-/// Number of components of operand `operand` of an image instruction.
-std::uint32_t image_operand_components(const ir::ImageInfo& info, ir::ImageOperand operand);
+/// Number of components of operand `operand` of an image instruction. Of what is written only those that the image has
+/// as the shader declares it, as many as Instr::data[0] says (0: all four): what the others would have needed is dead.
+std::uint32_t image_operand_components(const ir::Instr& instr, ir::ImageOperand operand);
 
 /// Splits values into scalars, folds constants, merges equal expressions, moves draw-uniform work to the preamble and
 /// turns small branches into selects. `function` must outlive the result. `error` says what is not covered.

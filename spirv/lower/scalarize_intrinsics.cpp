@@ -222,12 +222,13 @@ void Scalarizer::build_image(const ir::Instr& instr) {
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(ir::ImageOperand::kCount); ++i) {
     if (!(instr.image->operands >> i & 1)) continue;
     if (next >= instr.src.size()) return fail("image instruction with too few sources");
-    append(sources, instr.src[next++], image_operand_components(*instr.image, static_cast<ir::ImageOperand>(i)));
+    append(sources, instr.src[next++], image_operand_components(instr, static_cast<ir::ImageOperand>(i)));
   }
   define(instr.result, emit(instr, sources, instr.components, false));
 }
 
-std::uint32_t image_operand_components(const ir::ImageInfo& info, ir::ImageOperand operand) {
+std::uint32_t image_operand_components(const ir::Instr& instr, ir::ImageOperand operand) {
+  const ir::ImageInfo& info = *instr.image;
   const std::uint32_t dimensions = ir::coordinate_components(info.dim);
   switch (operand) {
     case ir::ImageOperand::kCoord:
@@ -237,7 +238,8 @@ std::uint32_t image_operand_components(const ir::ImageInfo& info, ir::ImageOpera
     case ir::ImageOperand::kOffset:
       return dimensions;
     case ir::ImageOperand::kValue:
-      return info.access == ir::ImageAccess::kAtomic ? 1 : 4;
+      if (info.access == ir::ImageAccess::kAtomic) return 1;
+      return instr.data[0] == 0 ? 4 : instr.data[0];
     default:
       return 1;
   }

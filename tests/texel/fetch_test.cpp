@@ -12,6 +12,7 @@
 #include "tests/simd_targets.h"
 #include "texel/capabilities.h"
 #include "texel/codec.h"
+#include "texel/load_store/prepared_fetch.h"
 #include "texel/load_store/shape.h"
 #include "texel/sampler.h"
 #include "texel/sampler/plan.h"
@@ -210,6 +211,83 @@ void check_formats() {
       if (testing::Test::HasFailure()) return;
     }
   }
+}
+
+/// Rows of 4, 8, 16 or 64 texels, some of them partly outside, and now and then a lane that is elsewhere.
+Wave wave_of_rows(std::mt19937& random) {
+  Wave wave;
+  const std::uint32_t length = 4u << random() % 5 & ~32u, left = random() % 40 - 2, top = random() % 38 - 1;
+  for (std::uint32_t i = 0; i < base::kWaveWidth; ++i) {
+    const std::uint32_t row = length == 0 ? 0 : i / length;
+    wave.coord[0].lane[i] = left + (length == 0 ? i : i % length);
+    wave.coord[1].lane[i] = top + row;
+    wave.coord[2].lane[i] = top % 6 + row % 2;
+    wave.sample.lane[i] = top % 4;
+  }
+  if (random() % 3 == 0) wave.coord[random() % 2].lane[random() % base::kWaveWidth] = random() % 41 - 2;
+  return wave;
+}
+
+/// The kernels for rows against the general path, where they take a wave; true: they did. Results may overwrite
+/// coordinates.
+bool check_rows(const PreparedFetch& prepared, Wave& wave, const base::WaveRegister expected[4],
+                const SampleResult& result) {
+  const Wave before = wave;
+  if (prepared.kernel == nullptr) return false;
+  if (!prepared.kernel(prepared)) {
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_EQ(0, std::memcmp(&before.coord[c], &wave.coord[c], sizeof(wave.coord[c])));
+    return false;
+  }
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(0, std::memcmp(&expected[c], result[c], sizeof(expected[c])));
+  return true;
+}
+
+struct RowCounts {
+  int prepared = 0, done = 0;
+};
+
+void check_rows_of_format(const FormatDesc& format, std::mt19937& random, RowCounts& counts) {
+  for (const VkImageViewType type : {VK_IMAGE_VIEW_TYPE_1D, VK_IMAGE_VIEW_TYPE_2D, VK_IMAGE_VIEW_TYPE_3D,
+                                     VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_IMAGE_VIEW_TYPE_2D, VK_IMAGE_VIEW_TYPE_MAX_ENUM}) {
+    const bool is_buffer = type == VK_IMAGE_VIEW_TYPE_MAX_ENUM;
+    TestImage image = make_image(format, is_buffer ? VK_IMAGE_VIEW_TYPE_1D : type, 1);
+    for (std::byte& b : image.memory) b = static_cast<std::byte>(random());
+    const BufferTexelView texels{image.memory.data(), 61, &format};
+    for (int repeat = 0; repeat < 12 && !testing::Test::HasFailure(); ++repeat) {
+      Wave wave = wave_of_rows(random);
+      wave.active = base::kAllLanes;
+      base::WaveRegister expected[4], found[4];
+      SampleResult result{&found[0], &found[1], &found[2], &found[3]};
+      FetchRequest request = request_of(wave, image.view);
+      request.lod = nullptr;
+      const SampleResult general{&expected[0], &expected[1], &expected[2], &expected[3]};
+      if (is_buffer) {
+        fetch_buffer(texels, wave.active, wave.coord[0], general);
+      } else {
+        fetch(image.view, request, general);
+      }
+      if (random() % 2 == 0) result[random() % 4] = &wave.coord[0];
+      if (shape_of(image.view.type).dims > 1 && result[3] == &found[3]) result[3] = &wave.coord[1];
+      const PreparedFetch prepared =
+          is_buffer ? prepare_fetch(texels, wave.coord[0], result) : prepare_fetch(image.view, request, result);
+      counts.prepared += prepared.kernel != nullptr;
+      counts.done += check_rows(prepared, wave, expected, result);
+    }
+    EXPECT_FALSE(testing::Test::HasFailure()) << format.name << " type " << type;
+  }
+}
+
+TEST(Fetch, RowsEqualTheGeneralPath) {
+  base::for_each_simd_target([] {
+    std::mt19937 random(12);
+    RowCounts counts;
+    for (std::uint32_t i = 1; i <= VK_FORMAT_X8_D24_UNORM_PACK32 + 10 && !testing::Test::HasFailure(); ++i) {
+      const FormatDesc& format = format_desc(static_cast<VkFormat>(i));
+      if (can_decode(format)) check_rows_of_format(format, random, counts);
+    }
+    EXPECT_GT(counts.done, counts.prepared / 4);
+  });
 }
 
 TEST(Fetch, WavesEqualTheCodecs) {

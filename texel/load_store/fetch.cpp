@@ -63,7 +63,11 @@ void put(const Texel& texel, std::size_t lane, const SampleResult& result) {
 }
 
 Texel gather_texel(const StoredValue& value, std::size_t lane) {
-  return {value[0]->lane[lane], value[1]->lane[lane], value[2]->lane[lane], value[3]->lane[lane]};
+  Texel texel{};
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (value[c] != nullptr) texel[c] = value[c]->lane[lane];
+  }
+  return texel;
 }
 
 }  // namespace

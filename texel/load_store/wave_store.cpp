@@ -52,7 +52,8 @@ HWY_NOINLINE void encode_texels(const FormatDesc& format, const StoredValue& val
     VU word[4] = {hn::Zero(DU()), hn::Zero(DU()), hn::Zero(DU()), hn::Zero(DU())};
     for (std::size_t i = 0; i < format.channel_count; ++i) {
       const Channel& channel = format.channel[i];
-      const VU field = encode_field<kNumeric>(hn::Load(DU(), value[format.component[i]]->lane + first), channel.bits);
+      const base::WaveRegister* const component = value[format.component[i]];
+      const VU field = encode_field<kNumeric>(hn::BitCast(DU(), load_or_zero(component, first)), channel.bits);
       VU& to = word[channel.offset / 32];
       to = hn::Or(to, hn::ShiftLeftSame(field, channel.offset % 32));
     }

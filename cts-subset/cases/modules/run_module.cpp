@@ -22,11 +22,12 @@ using Type = Reflection::Type;
 void run_compute(Run& run, const Reflection& r, const std::vector<uint32_t>& words, const ModuleRun& how) {
   const Bound bound = bind_everything(run, r);
   const VkPipeline pipeline = run.compute(bound.layout, run.module(words));
+  const bool flat = r.local_size[1] <= 1;
   const auto groups = [&](int i) { return how.scale * std::max(1u, std::min(8u, 64u / r.local_size[i])); };
   how.submit(run, [&](VkCommandBuffer cmd) {
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     bound.bind(cmd, VK_PIPELINE_BIND_POINT_COMPUTE);
-    vkCmdDispatch(cmd, groups(0), r.local_size[1] > 1 ? groups(1) : 1, 1);
+    vkCmdDispatch(cmd, flat ? how.scale * groups(0) : groups(0), flat ? 1 : groups(1), 1);
   });
   bound.out(run);
 }
@@ -127,7 +128,7 @@ void run_fragment(Run& run, const Reflection& r, const std::vector<uint32_t>& wo
 void run_vertex(Run& run, const Reflection& r, const std::vector<uint32_t>& words, const ModuleRun& how) {
   run.require(run.gpu.has("VK_EXT_transform_feedback"), "transform feedback");
   constexpr uint32_t kVertices = 3;  // shaders index arrays of three
-  const uint32_t instances = 16 * how.scale;
+  const uint32_t instances = 16 * how.scale * how.scale;
   const Bound bound = bind_everything(run, r);
   uint32_t stride = 0;
   GraphicsSpec spec;

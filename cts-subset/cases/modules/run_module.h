@@ -14,7 +14,7 @@ struct ModuleRun {
 
   /// Called once all is prepared, with the dispatch or draw.
   std::function<void(Run&, const Record&)> submit = [](Run& run, const Record& record) { run.once(record); };
-  uint32_t scale = 1;               ///< so many times as many workgroups or pixels along x and y, or instances
+  uint32_t scale = 1;               ///< its square times as many workgroups, pixels or instances
   bool scaled_stages_only = false;  ///< nothing but compute, fragment and vertex shaders, which know `scale`
 };
 

@@ -2,6 +2,7 @@
 // modules with the kinds of instructions that they spend their time with.
 #include "corpus/corpus.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -21,7 +22,7 @@ namespace {
 
 struct ModuleTimes {
   std::string name;
-  double device = 0, reference = 0;                  ///< seconds per submission
+  double device = 0, reference = 0;                  ///< seconds per dispatch or draw
   double device_compile = 0, reference_compile = 0;  ///< seconds of the first beyond that
   bool same = true;
   double ratio() const { return reference / device; }
@@ -33,6 +34,7 @@ std::string output_of(const std::vector<std::string>& arguments, unsigned second
   if (pipe(ends) != 0) return {};
   const pid_t child = fork();
   if (child == 0) {
+    if (const int nothing = open("/dev/null", O_WRONLY); profile) dup2(nothing, STDOUT_FILENO);
     dup2(ends[1], profile ? STDERR_FILENO : STDOUT_FILENO);
     close(ends[0]);
     close(ends[1]);
