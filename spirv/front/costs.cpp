@@ -91,7 +91,8 @@ std::optional<Cost> cost_of_value(const Module& module, const Inst& inst) {
     return glsl ? std::optional(Cost::kArithmetic) : std::nullopt;
   }
   if (op == Op::OpSelect || in(op, Op::OpVectorExtractDynamic, Op::OpCopyObject) || op == Op::OpPhi ||
-      op == Op::OpAccessChain || op == Op::OpInBoundsAccessChain || op == Op::OpPtrAccessChain || op == Op::OpBitcast)
+      op == Op::OpExpectKHR || op == Op::OpAccessChain || op == Op::OpInBoundsAccessChain ||
+      op == Op::OpPtrAccessChain || op == Op::OpBitcast)
     return Cost::kMoves;
   if (in(op, Op::OpConvertFToU, Op::OpQuantizeToF16)) return Cost::kConversions;
   if (op == Op::OpTranspose || in(op, Op::OpSNegate, Op::OpNot) || in(op, Op::OpBitFieldInsert, Op::OpBitCount) ||

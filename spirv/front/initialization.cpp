@@ -323,6 +323,7 @@ SlotsOf slots_of_result(const Translator& t, const Inst& inst) {
   switch (inst.op) {
     case Op::OpCopyObject:
     case Op::OpCopyLogical:
+    case Op::OpExpectKHR:
       return slots_of(t, inst.operand(0));
     case Op::OpCompositeConstruct:
       return of_parts(t, inst);

@@ -77,6 +77,19 @@ TEST(RunSpirv, StructuresOfOneMemberAreCopiedLogically) {
   for (std::uint32_t i = 0; i < kCount; i++) EXPECT_EQ(copied[i], i + 7);
 }
 
+/// SPV_KHR_expect_assume: values are what they are, whatever is expected of them.
+TEST(RunSpirv, ExpectationsAreTheValues) {
+  const auto got = run_spirv(
+      "%low = OpULessThan %bool %x %u7\n%is = OpExpectKHR %bool %low %no\n%e = OpExpectKHR %uint %x %u7\n"
+      "%fits = OpUGreaterThanEqual %bool %e %u0\nOpAssumeTrueKHR %fits\n%more = OpIAdd %uint %e %u7\n"
+      "%pair = OpCompositeConstruct %uint2 %more %e\n%both = OpExpectKHR %uint2 %pair %sevens\n"
+      "%one = OpCompositeExtract %uint %both 0\n%other = OpCompositeExtract %uint %both 1\n"
+      "%r = OpSelect %uint %is %one %other\n",
+      "%no = OpConstantFalse %bool\n%uint2 = OpTypeVector %uint 2\n%sevens = OpConstantComposite %uint2 %u7 %u7\n",
+      "OpCapability ExpectAssumeKHR\nOpExtension \"SPV_KHR_expect_assume\"\n");
+  for (std::uint32_t i = 0; i < kCount; i++) EXPECT_EQ(got[i], i < 7 ? i + 7 : i);
+}
+
 TEST(RunSpirv, GroupsRotateAndCombineBooleans) {
   const std::string capabilities =
       "OpCapability GroupNonUniformArithmetic\nOpCapability GroupNonUniformRotateKHR\n"
