@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 
 #include "spirv/addresses.h"
 #include "spirv/exec/operands.h"
@@ -60,6 +61,11 @@ inline void for_each_buffer(Wave& wave, const MemoryOp& row, base::LaneMask acti
     f(buffer_bytes(wave, row, element), same);
     active &= ~same;
   }
+}
+
+/// The highest of `lanes`, if there is one.
+inline base::LaneMask last_lane(base::LaneMask lanes) {
+  return lanes == 0 ? 0 : base::LaneMask{1} << (std::bit_width(lanes) - 1);
 }
 
 /// Calls f(bytes, lanes, offsets) for the memory behind the pointers of `active`: lanes whose addresses lie in the same

@@ -267,6 +267,13 @@ void store_words(const Bytes& bytes, const MemoryOp& row, const Register& offset
   dense ? store_vectors(bytes, row, offset, active, words, from) : store_lanes(bytes, row, offset, active, from);
 }
 
+/// Lanes that store to one address do so in their order: the last remains, and nobody sees the others.
+template <bool kUniform>
+void store_words_in_order(const Bytes& bytes, const MemoryOp& row, const Register& offset, base::LaneMask active,
+                          const std::uint32_t* const from[4]) {
+  kUniform ? store_lanes(bytes, row, offset, last_lane(active), from) : store_words(bytes, row, offset, active, from);
+}
+
 template <bool kUniform>
 const Instruction* store_buffer_target(Wave& wave, const Instruction* i) {
   const MemoryOp& row = memory_op(wave, i);
@@ -274,8 +281,9 @@ const Instruction* store_buffer_target(Wave& wave, const Instruction* i) {
   results(wave, row, from);
   Register spare;
   const Register& offset = offsets(wave, i, kUniform, spare);
-  for_each_buffer(wave, row, wave.active & wave.live,
-                  [&](const Bytes& bytes, base::LaneMask active) { store_words(bytes, row, offset, active, from); });
+  for_each_buffer(wave, row, wave.active & wave.live, [&](const Bytes& bytes, base::LaneMask active) {
+    store_words_in_order<kUniform>(bytes, row, offset, active, from);
+  });
   return i + 1;
 }
 
@@ -285,7 +293,8 @@ const Instruction* store_shared_target(Wave& wave, const Instruction* i) {
   std::uint32_t* from[4];
   results(wave, row, from);
   Register spare;
-  store_words(shared_bytes(wave), row, offsets(wave, i, kUniform, spare), wave.active & wave.live, from);
+  const Register& offset = offsets(wave, i, kUniform, spare);
+  store_words_in_order<kUniform>(shared_bytes(wave), row, offset, wave.active & wave.live, from);
   return i + 1;
 }
 

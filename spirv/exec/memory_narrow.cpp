@@ -86,7 +86,7 @@ template <Space space, bool uniform>
 const Instruction* store_lanes(Wave& wave, const Instruction* i) {
   const MemoryOp& row = memory_op(wave, i);
   for_each_memory<space>(wave, row, wave.active & wave.live, [&](const Bytes& bytes, base::LaneMask active) {
-    base::for_each_lane(active, [&](std::size_t lane) {
+    base::for_each_lane(uniform ? last_lane(active) : active, [&](std::size_t lane) {
       store_components(wave, row, bytes, lane, offset_of<uniform>(wave, i, lane) + row.added);
     });
   });

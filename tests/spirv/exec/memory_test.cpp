@@ -81,6 +81,27 @@ TEST(Memory, StoresOfEveryPattern) {
   }
 }
 
+TEST(Memory, OfStoresToOneAddressTheLastLaneRemains) {
+  for (const base::LaneMask active : {base::kAllLanes, base::first_lanes(9), base::LaneMask{1} << 17}) {
+    std::vector<std::uint32_t> words(8, 7), want = words;
+    Buffers buffers{&words};
+    Builder b;
+    const ValueId value = b.append(Op::kVec, 2, false, {src(b.input(0)), src(b.input(1))}).result;
+    b.store(0, 0, b.constant(8), vec(value), 3);
+    b.store(0, 0, b.constant(400), src(b.input(0)));  // outside
+    ShaderRun run(b, buffers.table);
+    for (std::uint32_t lane = 0; lane < 64; ++lane) {
+      run.input(0)->lane[lane] = lane;
+      run.input(1)->lane[lane] = 100 + lane;
+    }
+    const base::LaneMask helpers = active == base::kAllLanes ? 0 : base::kAllLanes << 60;
+    run.wave.run(active | helpers, helpers);
+    want[2] = static_cast<std::uint32_t>(std::bit_width(active)) - 1;
+    want[3] = 100 + want[2];
+    EXPECT_EQ(words, want);
+  }
+}
+
 TEST(Memory, HelpersDoNotStore) {
   std::vector<std::uint32_t> words(64, 0);
   Buffers buffers{&words};
