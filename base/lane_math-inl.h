@@ -90,20 +90,57 @@ HWY_INLINE V lanes_fma(V a, V b, V c) {
 
 // ---- minimum, maximum
 
+#if HWY_TARGET == HWY_NEON
+namespace detail {
+
+/// Zero with the sign of v where v is zero, which denormals are while they are flushed: MINPS and MAXPS flush them,
+/// too.
+template <class V>
+HWY_INLINE V flushed(V v) {
+  const hn::DFromV<V> d;
+  return hn::IfThenElse(hn::Eq(v, hn::Zero(d)), hn::And(v, hn::SignBit(d)), v);
+}
+
+}  // namespace detail
+#endif
+
 /// MINPS / MAXPS: the second operand when the operands are equal or unordered.
 template <class V>
 HWY_INLINE V lanes_min_second(V a, V b) {
+#if HWY_TARGET == HWY_NEON
+  return detail::flushed(hn::IfThenElse(hn::Lt(a, b), a, b));
+#else
   return hn::Min(a, b);
+#endif
 }
 template <class V>
 HWY_INLINE V lanes_max_second(V a, V b) {
+#if HWY_TARGET == HWY_NEON
+  return detail::flushed(hn::IfThenElse(hn::Gt(a, b), a, b));
+#else
   return hn::Max(a, b);
+#endif
 }
 
 // ---- conversions
 
 namespace detail {
 
+#if HWY_TARGET == HWY_NEON
+/// AArch64 gives the nearest integer where there is none, and 0 for NaN.
+template <class V, class I>
+HWY_INLINE I or_least(V v, I integer) {
+  return hn::IfThenElse(lanes_mask_cast<I>(hn::Lt(v, lanes_set<V>(2147483648.0f))), integer, lanes_set<I>(INT32_MIN));
+}
+template <class V>
+HWY_INLINE Rebound<std::int32_t, V> truncate(V v) {
+  return or_least(v, hn::ConvertTo(hn::Rebind<std::int32_t, hn::DFromV<V>>(), v));
+}
+template <class V>
+HWY_INLINE Rebound<std::int32_t, V> round(V v) {
+  return or_least(v, hn::NearestInt(v));
+}
+#else
 template <std::size_t N>
 HWY_INLINE hn::Vec128<std::int32_t, N> truncate(hn::Vec128<float, N> v) {
   return hn::Vec128<std::int32_t, N>{_mm_cvttps_epi32(v.raw)};
@@ -112,6 +149,7 @@ template <std::size_t N>
 HWY_INLINE hn::Vec128<std::int32_t, N> round(hn::Vec128<float, N> v) {
   return hn::Vec128<std::int32_t, N>{_mm_cvtps_epi32(v.raw)};
 }
+#endif
 #if HWY_TARGET <= HWY_AVX2
 HWY_INLINE hn::Vec256<std::int32_t> truncate(hn::Vec256<float> v) {
   return hn::Vec256<std::int32_t>{_mm256_cvttps_epi32(v.raw)};

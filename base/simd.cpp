@@ -9,6 +9,9 @@
 namespace vitrine::base {
 namespace {
 
+#ifdef __aarch64__
+auto wanted_targets() { return HWY_NEON; }
+#else
 constexpr auto kUsed = HWY_SSE4 | HWY_AVX2 | HWY_AVX3;
 
 auto wanted_targets() {
@@ -18,6 +21,7 @@ auto wanted_targets() {
   if (name == "avx2") return HWY_SSE4 | HWY_AVX2;
   return kUsed;
 }
+#endif
 
 }  // namespace
 

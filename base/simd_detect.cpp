@@ -3,7 +3,6 @@
 // start of this driver), and because the headers are all that is needed otherwise.
 #include "base/simd.h"
 
-#include <cpuid.h>
 #include <hwy/targets.h>
 
 #include <atomic>
@@ -11,9 +10,16 @@
 
 #include "base/check.h"
 
+#ifndef __aarch64__
+#include <cpuid.h>
+#endif
+
 namespace vitrine::base {
 namespace {
 
+#ifdef __aarch64__
+std::int64_t detect_targets() { return HWY_NEON; }
+#else
 struct Registers {
   unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
 };
@@ -53,6 +59,7 @@ std::int64_t detect_targets() {
   if (avx2 && saves_zmm && has(leaf7.ebx, {16 /* F */, 17 /* DQ */, 30 /* BW */, 31 /* VL */})) targets |= HWY_AVX3;
   return targets;
 }
+#endif
 
 std::atomic<std::int64_t> disabled_targets{0};
 std::atomic<std::int64_t> forced_targets{0};

@@ -4,6 +4,13 @@
 namespace vitrine::glass {
 namespace {
 
+#ifdef __x86_64__
+/// The driver's oldest SIMD target has POPCNT, though the compiler is not told of it.
+#define VITRINE_POPCNT [[gnu::target("popcnt")]]
+#else
+#define VITRINE_POPCNT
+#endif
+
 /// Of a number that this thread alone writes.
 void add(std::atomic<std::uint64_t>& to, std::uint64_t more) {
   to.store(to.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
@@ -14,12 +21,8 @@ void add(std::atomic<std::uint64_t>& to, std::uint64_t more) {
 class BlockCounts::Counter final : public spirv::exec::Watch {
  public:
   explicit Counter(Cells& cells) : cells_(cells) {}
-  /// The driver's oldest SIMD target has POPCNT, though the compiler is not told of it.
-  [[gnu::target("popcnt")]] void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override {
-    probes(wave, op, 1);
-  }
-  [[gnu::target("popcnt")]] void probes(const spirv::Wave& wave, const spirv::ProbeOp& op,
-                                        std::uint64_t times) override {
+  VITRINE_POPCNT void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override { probes(wave, op, 1); }
+  VITRINE_POPCNT void probes(const spirv::Wave& wave, const spirv::ProbeOp& op, std::uint64_t times) override {
     const base::LaneMask lanes = op.guards.empty() ? wave.active : spirv::exec::lanes_at(wave, op);
     if (lanes == 0) return;
     Cell& cell = cells_[static_cast<std::size_t>(&op - wave.program->probe_ops.data())];

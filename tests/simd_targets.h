@@ -8,14 +8,20 @@
 
 namespace vitrine::base {
 
-/// Calls body() with each of sse4, avx2 and avx3 as the target of HWY_DYNAMIC_DISPATCH, then restores the usual one.
+#ifdef __aarch64__
+inline constexpr auto kSimdTargets = {HWY_NEON};
+#else
+inline constexpr auto kSimdTargets = {HWY_SSE4, HWY_AVX2, HWY_AVX3};
+#endif
+
+/// Calls body() with each of these targets as the target of HWY_DYNAMIC_DISPATCH, then restores the usual one.
 template <class Body>
 void for_each_simd_target(Body body) {
   select_simd_target();  // once per process: the choice below then stays
   hwy::DisableTargets(0);
   const auto supported = hwy::SupportedTargets();
-  ASSERT_NE(supported & HWY_SSE4, 0);
-  for (const auto target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+  ASSERT_NE(supported & *kSimdTargets.begin(), 0);
+  for (const auto target : kSimdTargets) {
     if ((supported & target) == 0) continue;
     SCOPED_TRACE(hwy::TargetName(target));
     hwy::SetSupportedTargetsForTest(target);

@@ -51,7 +51,7 @@ void set_options(Options value) { g_options = std::move(value); }
 Options parse_options(int argc, char** argv) {
   Options result;
   result.icd = from_environment("CTS_ICD", CTS_DEFAULT_ICD);
-  result.reference_icd = from_environment("CTS_REFERENCE_ICD", "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json");
+  result.reference_icd = from_environment("CTS_REFERENCE_ICD", CTS_LAVAPIPE_ICD);
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     const size_t equals = argument.find('=');

@@ -19,13 +19,19 @@ constexpr const char* kTools[] = {
 #undef VITRINE_TOOL
 };
 
+#ifdef __aarch64__
+constexpr const char* kManifest = "vitrine_icd.aarch64.json";
+#else
+constexpr const char* kManifest = "vitrine_icd.x86_64.json";
+#endif
+
 }  // namespace
 
 fs::path driver_manifest(const fs::path& command) {
   std::error_code error;
   const fs::path folder = command.parent_path();
   for (const char* const place : {"../icd", kDriverFolder, "."}) {
-    const fs::path manifest = (folder / place / "vitrine_icd.x86_64.json").lexically_normal();
+    const fs::path manifest = (folder / place / kManifest).lexically_normal();
     if (fs::exists(manifest, error)) return manifest;
   }
   return {};

@@ -53,6 +53,8 @@ class BytePacker {
     return hn::Vec<Bytes>{_mm512_packus_epi16(low.raw, high.raw)};
 #elif HWY_TARGET <= HWY_AVX2
     return hn::Vec<Bytes>{_mm256_packus_epi16(low.raw, high.raw)};
+#elif HWY_TARGET == HWY_NEON
+    return hn::Vec<Bytes>{vcombine_u8(vqmovun_s16(low.raw), vqmovun_s16(high.raw))};
 #else
     return hn::Vec<Bytes>{_mm_packus_epi16(low.raw, high.raw)};
 #endif

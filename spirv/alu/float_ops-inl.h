@@ -45,7 +45,7 @@ template <>
 struct LaneOp<Op::kFSub> {
   template <class V>
   static HWY_INLINE auto of(V a, V b) {
-    return hn::Sub(a, b);
+    return ordered_sub(a, b);
   }
 };
 
@@ -61,7 +61,7 @@ template <>
 struct LaneOp<Op::kFDiv> {
   template <class V>
   static HWY_INLINE auto of(V a, V b) {
-    return hn::Div(a, b);
+    return ordered_div(a, b);
   }
 };
 
@@ -69,7 +69,7 @@ template <>
 struct LaneOp<Op::kFRcp> {
   template <class V>
   static HWY_INLINE auto of(V a) {
-    return hn::Div(lanes_set<V>(1.0f), a);
+    return ordered_div(lanes_set<V>(1.0f), a);
   }
 };
 
@@ -77,7 +77,7 @@ template <>
 struct LaneOp<Op::kFSqrt> {
   template <class V>
   static HWY_INLINE auto of(V a) {
-    return hn::Sqrt(a);
+    return ordered_sqrt(a);
   }
 };
 
@@ -85,7 +85,7 @@ template <>
 struct LaneOp<Op::kFRsq> {
   template <class V>
   static HWY_INLINE auto of(V a) {
-    return hn::Div(lanes_set<V>(1.0f), hn::Sqrt(a));
+    return ordered_div(lanes_set<V>(1.0f), ordered_sqrt(a));
   }
 };
 
@@ -125,7 +125,7 @@ template <>
 struct LaneOp<Op::kFFract> {
   template <class V>
   static HWY_INLINE auto of(V a) {
-    return hn::Sub(a, hn::Floor(a));
+    return ordered_sub(a, hn::Floor(a));
   }
 };
 
@@ -178,7 +178,7 @@ template <>
 struct LaneOp<Op::kFDdx> {
   template <class V>
   static HWY_INLINE auto of(V a) {
-    return hn::Sub(hn::DupOdd(a), hn::DupEven(a));
+    return ordered_sub(hn::DupOdd(a), hn::DupEven(a));
   }
 };
 
@@ -189,8 +189,8 @@ struct LaneOp<Op::kFDdy> {
     const hn::Repartition<std::uint64_t, hn::DFromV<V>> d64;
     const auto rows = hn::BitCast(d64, a);
     const hn::DFromV<V> d;
-    return hn::Sub(hn::BitCast(d, hn::InterleaveUpper(d64, rows, rows)),
-                   hn::BitCast(d, hn::InterleaveLower(d64, rows, rows)));
+    return ordered_sub(hn::BitCast(d, hn::InterleaveUpper(d64, rows, rows)),
+                       hn::BitCast(d, hn::InterleaveLower(d64, rows, rows)));
   }
 };
 
@@ -216,7 +216,7 @@ template <>
 struct LaneOp<Op::kFMulSub> {
   template <class V>
   static HWY_INLINE auto of(V a, V b, V c) {
-    return hn::Sub(ordered_mul(a, b), c);
+    return ordered_sub(ordered_mul(a, b), c);
   }
 };
 
@@ -224,7 +224,7 @@ template <>
 struct LaneOp<Op::kFNMulAdd> {
   template <class V>
   static HWY_INLINE auto of(V a, V b, V c) {
-    return hn::Sub(c, ordered_mul(a, b));
+    return ordered_sub(c, ordered_mul(a, b));
   }
 };
 

@@ -35,20 +35,8 @@ HWY_INLINE hn::Vec<hn::ScalableTag<std::uint32_t>> pack_bytes(const Halves& halv
   return hn::Or(hn::BitCast(d, halves.even), hn::ShiftLeft<8>(hn::BitCast(d, halves.odd)));
 }
 
-// PMULHRSW: (a * b + 2^14) >> 15.
-HWY_INLINE hn::Vec128<std::int16_t> rounded_product(hn::Vec128<std::int16_t> a, hn::Vec128<std::int16_t> b) {
-  return hn::Vec128<std::int16_t>{_mm_mulhrs_epi16(a.raw, b.raw)};
-}
-#if HWY_TARGET <= HWY_AVX2
-HWY_INLINE hn::Vec256<std::int16_t> rounded_product(hn::Vec256<std::int16_t> a, hn::Vec256<std::int16_t> b) {
-  return hn::Vec256<std::int16_t>{_mm256_mulhrs_epi16(a.raw, b.raw)};
-}
-#endif
-#if HWY_TARGET <= HWY_AVX3
-HWY_INLINE hn::Vec512<std::int16_t> rounded_product(hn::Vec512<std::int16_t> a, hn::Vec512<std::int16_t> b) {
-  return hn::Vec512<std::int16_t>{_mm512_mulhrs_epi16(a.raw, b.raw)};
-}
-#endif
+/// (a * b + 2^14) >> 15.
+HWY_INLINE V16 rounded_product(V16 a, V16 b) { return hn::MulFixedPoint15(a, b); }
 
 /// 128 w in both 16-bit halves of a lane, for w in [0, 255].
 template <class VI32>

@@ -17,6 +17,7 @@ namespace vitrine::texel::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace vitrine::base::HWY_NAMESPACE;
 
+#if HWY_TARGET != HWY_NEON
 /// The CPU's RSQRTPS, which is not what Highway's approximation is with AVX-512. Only where cpu_has_rsqrt().
 struct RsqrtOfCpu {
   HWY_INLINE hn::Vec128<float> operator()(hn::Vec128<float> v) const { return hn::Vec128<float>{_mm_rsqrt_ps(v.raw)}; }
@@ -33,6 +34,7 @@ struct RsqrtOfCpu {
   }
 #endif
 };
+#endif
 
 /// approximate_rsqrt of positive normal numbers.
 struct RsqrtByTable {
@@ -48,6 +50,10 @@ struct RsqrtByTable {
     return hn::BitCast(hn::DFromV<V>(), hn::Add(start, hn::ShiftLeft<11>(significand)));
   }
 };
+
+#if HWY_TARGET == HWY_NEON
+using RsqrtOfCpu = RsqrtByTable;  // never asked for: cpu_has_rsqrt() is false
+#endif
 
 /// Codes before they are clamped to [0, 255]; x in [0, 1].
 template <class Rsqrt, class V>

@@ -97,7 +97,7 @@ HWY_NOINLINE void find_taps(const PreparedSampler& p, const SampleRequest& reque
       axis[i] = find_axis(level.axis[i], hn::LoadU(DF(), state.coord[i] + first), linear, first, taps.weight[i]);
     }
     VI x_first = axis[0].first, x_second = axis[0].second;
-    VI inner_x[2];
+    VI inner_x[2] = {splat(0), splat(0)};
     if (format.is_compressed()) {
       x_first = split_block(axis[0].first, format.block_width, inner_x[0]);
       x_second = split_block(axis[0].second, format.block_width, inner_x[1]);
