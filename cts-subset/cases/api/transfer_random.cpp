@@ -273,10 +273,12 @@ void random_buffer_transfers(Run& run) {
     for (int n = 0; n < 6; ++n) {
       const uint32_t at = random.below(1000) * 4;
       switch (random.below(3)) {
-        case 0:
+        case 0: {
+          const uint32_t word = random.bits();
           vkCmdFillBuffer(cmd, b.handle, at,
-                          random.chance(0.2f) ? VK_WHOLE_SIZE : (1 + random.below(1023 - at / 4)) * 4, random.bits());
+                          random.chance(0.2f) ? VK_WHOLE_SIZE : (1 + random.below(1023 - at / 4)) * 4, word);
           break;
+        }
         case 1: {
           std::vector<uint32_t> data(1 + random.below(20));
           for (uint32_t& word : data) word = random.bits();

@@ -34,7 +34,8 @@ void random_depths(Run& run) {
   const auto depth = [&] { return random.real(-2.0f, 3.0f); };
   const auto clear_depth = [&] { return floats ? depth() : random.unit(); };
   Target target = make_target(run, target_spec);
-  target.clears.back() = clear_value(target_spec.depth, clear_depth(), random.unit(), 0, 0);
+  const float cleared_stencil = random.unit();
+  target.clears.back() = clear_value(target_spec.depth, clear_depth(), cleared_stencil, 0, 0);
   GraphicsSpec spec;
   spec.vertex = kVertex;
   spec.fragment = std::string("layout(location = 0) in vec4 passed;\nlayout(location = 0) out vec4 result;\n") +

@@ -30,7 +30,8 @@ class MemoryWriter {
     std::string text;
     for (uint32_t n = 1 + random_.below(3); n > 0; n--) {
       if (random_.chance(0.25f)) {
-        text += "for (uint p = 0u; p < " + std::to_string(1 + random_.below(3)) + "u; p++) {\n" + phase() + "}\n";
+        const std::string body = phase();
+        text += "for (uint p = 0u; p < " + std::to_string(1 + random_.below(3)) + "u; p++) {\n" + body + "}\n";
       } else {
         text += phase();
       }
@@ -41,7 +42,10 @@ class MemoryWriter {
  private:
   std::string number(uint32_t below) { return std::to_string(random_.below(below)) + "u"; }
   std::string any_index() { return "(" + random_.pick<std::string>({"x", "r", "y", "l", "x >> 9", "l + r"}) + ")"; }
-  std::string other_slot() { return "(l * " + number(9) + " + " + number(64) + ") % " + local_size_ + "u"; }
+  std::string other_slot() {
+    const std::string by = number(64);
+    return "(l * " + number(9) + " + " + by + ") % " + local_size_ + "u";
+  }
   std::string own() { return "o[id * 4u + " + random_.pick<std::string>({number(4), "(y & 3u)", "(r & 3u)"}) + "]"; }
   std::string condition() {
     return random_.pick<std::string>({"(x & 1u) != 0u", "y < 8u", "(r & 4u) == 0u", "l % 3u != 1u", "y == 2u",
@@ -60,21 +64,29 @@ class MemoryWriter {
         return "s[l]";
       case 4:
         return "a[" + any_index() + " & 255u]";
-      case 5:
-        return "a[" + any_index() + random_.pick<std::string>({" % 300u]", " & 0x7fffu]", "]"});  // robust access
-      case 6:
-        return "v[" + any_index() + " & 63u]." + random_.pick<std::string>({"x", "y", "w", "zy.y"});
+      case 5: {
+        const std::string end = random_.pick<std::string>({" % 300u]", " & 0x7fffu]", "]"});  // robust access
+        return "a[" + any_index() + end;
+      }
+      case 6: {
+        const std::string component = random_.pick<std::string>({"x", "y", "w", "zy.y"});
+        return "v[" + any_index() + " & 63u]." + component;
+      }
       case 7:
         return own();
       case 8:
         return "q[l]." + random_.pick<std::string>({"x", "y"});
       case 9:
         return "u." + random_.pick<std::string>({"first", "row[1].z", "row[" + any_index() + " & 3u].y"});
-      case 10:
-        return "(" + word(depth - 1) + random_.pick<std::string>({" + ", " ^ ", " * ", " & ", " | ", " - "}) +
-               word(depth - 1) + ")";
-      default:
-        return "(" + condition() + " ? " + word(depth - 1) + " : " + word(depth - 1) + ")";
+      case 10: {
+        const std::string right = word(depth - 1);
+        const std::string op = random_.pick<std::string>({" + ", " ^ ", " * ", " & ", " | ", " - "});
+        return "(" + word(depth - 1) + op + right + ")";
+      }
+      default: {
+        const std::string no = word(depth - 1), yes = word(depth - 1);
+        return "(" + condition() + " ? " + yes + " : " + no + ")";
+      }
     }
   }
 
@@ -105,20 +117,28 @@ class MemoryWriter {
 
   std::string assignment() {
     switch (random_.below(10)) {
-      case 0:
-        return own() + " = " + word() + ";\n";
+      case 0: {
+        const std::string value = word();
+        return own() + " = " + value + ";\n";
+      }
       case 1:
         return "s[l] = " + word() + ";\n";
       case 2:
         return random_.pick<std::string>(
             {"q[l].x = " + word() + ";\n", "q[l] = q[l].yx + uvec2(" + word() + ", r);\n"});
-      case 3:
-        return "r ^= atomicExchange(" + random_.pick<std::string>({own(), "s[l]"}) + ", " + word() + ");\n";
-      case 4:
-        return "r += atomicCompSwap(" + random_.pick<std::string>({own(), "s[l]"}) + ", " +
-               random_.pick<std::string>({"r", "s[l]", "y"}) + ", " + word() + ");\n";
-      case 5:
-        return "r = r * 3u + atomicAdd(" + random_.pick<std::string>({own(), "s[l]"}) + ", " + word() + ");\n";
+      case 3: {
+        const std::string value = word();
+        return "r ^= atomicExchange(" + random_.pick<std::string>({own(), "s[l]"}) + ", " + value + ");\n";
+      }
+      case 4: {
+        const std::string value = word(), compared = random_.pick<std::string>({"r", "s[l]", "y"});
+        return "r += atomicCompSwap(" + random_.pick<std::string>({own(), "s[l]"}) + ", " + compared + ", " + value +
+               ");\n";
+      }
+      case 5: {
+        const std::string value = word();
+        return "r = r * 3u + atomicAdd(" + random_.pick<std::string>({own(), "s[l]"}) + ", " + value + ");\n";
+      }
       case 6:
       case 7:
         return accumulate();
@@ -137,31 +157,44 @@ class MemoryWriter {
 
   std::string statement(int depth) {
     switch (depth > 0 ? random_.below(7) : 0) {
-      case 1:
-        return "if (" + condition() + ") {\n" + block(depth - 1) + "}\n";
-      case 2:
-        return "if (" + condition() + ") {\n" + block(depth - 1) + "} else {\n" + block(depth - 1) + "}\n";
+      case 1: {
+        const std::string then = block(depth - 1);
+        return "if (" + condition() + ") {\n" + then + "}\n";
+      }
+      case 2: {
+        const std::string otherwise = block(depth - 1), then = block(depth - 1);
+        return "if (" + condition() + ") {\n" + then + "} else {\n" + otherwise + "}\n";
+      }
       case 3: {
         const std::string k = "k" + std::to_string(next_name_++);
-        const std::string leave = random_.chance(0.5f) ? "if (" + condition() + ") " +
-                                                             random_.pick<std::string>({"break", "continue"}) + ";\n"
-                                                       : "";
+        std::string leave;
+        if (random_.chance(0.5f)) {
+          const std::string jump = random_.pick<std::string>({"break", "continue"});
+          leave = "if (" + condition() + ") " + jump + ";\n";
+        }
+        const std::string body = block(depth - 1);
         return "for (uint " + k + " = 0u; " + k + " < (" + random_.pick<std::string>({"y", "x", "l"}) +
-               " & 3u) + 1u; " + k + "++) {\n" + block(depth - 1) + leave + "r += 3u;\n}\n";
+               " & 3u) + 1u; " + k + "++) {\n" + body + leave + "r += 3u;\n}\n";
       }
-      case 4:
-        return "switch (" + random_.pick<std::string>({"y", "r", "x"}) + " & 3u) {\ncase 0u:\n" + block(depth - 1) +
-               random_.pick<std::string>({"break;\n", ""}) + "case 2u:\n" + block(depth - 1) + "break;\ndefault:\n" +
-               block(depth - 1) + "}\n";
+      case 4: {
+        const std::string last = block(depth - 1), second = block(depth - 1);
+        const std::string end = random_.pick<std::string>({"break;\n", ""}), first = block(depth - 1);
+        return "switch (" + random_.pick<std::string>({"y", "r", "x"}) + " & 3u) {\ncase 0u:\n" + first + end +
+               "case 2u:\n" + second + "break;\ndefault:\n" + last + "}\n";
+      }
       default:
         return assignment();
     }
   }
 
   std::string phase() {
-    std::string text = block(3) + "barrier();\nr = r * 5u + s[" + other_slot() + "]";
+    const std::string slot = other_slot();
+    std::string text = block(3) + "barrier();\nr = r * 5u + s[" + slot + "]";
     if (random_.chance(0.5f)) text += " + q[" + other_slot() + "].y";
-    if (random_.chance(0.5f)) text += " + w[" + number(20) + "] + uint(wi[" + number(8) + "])";
+    if (random_.chance(0.5f)) {
+      const std::string sum = number(8);
+      text += " + w[" + number(20) + "] + uint(wi[" + sum + "])";
+    }
     return text + ";\nbarrier();\n";
   }
 

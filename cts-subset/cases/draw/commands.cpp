@@ -193,10 +193,14 @@ CTS_RANDOM("draw", "random", 80) {
     vkCmdBindIndexBuffer(cmd, indices.handle, 0, wide ? VK_INDEX_TYPE_UINT32 : VK_INDEX_TYPE_UINT16);
     for (uint32_t n = 1 + random.below(4); n > 0; --n) {
       const uint32_t first_instance = random.below(8), instances = 1 + random.below(8);
-      if (random.chance(0.5f))
-        vkCmdDraw(cmd, random.below(40), instances, random.below(24), first_instance);
-      else
-        vkCmdDrawIndexed(cmd, random.below(120), instances, random.below(80), random.between(0, 20), first_instance);
+      if (random.chance(0.5f)) {
+        const uint32_t first = random.below(24);
+        vkCmdDraw(cmd, random.below(40), instances, first, first_instance);
+      } else {
+        const int32_t vertex_offset = random.between(0, 20);
+        const uint32_t first = random.below(80);
+        vkCmdDrawIndexed(cmd, random.below(120), instances, first, vertex_offset, first_instance);
+      }
     }
   });
   run.may_be_blank();

@@ -3,6 +3,7 @@
 #include "cases/common/colored_vertices.h"
 #include "harness/case.h"
 #include "harness/graphics.h"
+#include "harness/random_clear.h"
 
 namespace vitrine::cts {
 namespace {
@@ -107,8 +108,8 @@ Rendering make_rendering(Run& run, const RenderingSpec& spec) {
     image.format = format;
     r.colors.push_back(run.image(image));
     clear_all(run, r.colors.back());
-    r.color_infos.push_back(attachment(
-        r.colors.back(), load(), clear_value(format, run.random.unit(), run.random.unit(), run.random.unit(), 1.0f)));
+    const VkClearValue clear = random_clear(run.random, format, 1.0f);
+    r.color_infos.push_back(attachment(r.colors.back(), load(), clear));
     if (!spec.resolve) continue;
     ImageSpec single = image;
     single.samples = VK_SAMPLE_COUNT_1_BIT;
@@ -123,8 +124,10 @@ Rendering make_rendering(Run& run, const RenderingSpec& spec) {
     image.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
     r.depth = run.image(image);
     clear_all(run, *r.depth);
-    r.depth_info = attachment(*r.depth, load(), clear_value(spec.depth, run.random.unit(), 0, 0, 0));
-    r.stencil_info = attachment(*r.depth, load(), clear_value(spec.depth, 0, run.random.unit(), 0, 0));
+    const VkClearValue depth = clear_value(spec.depth, run.random.unit(), 0, 0, 0);
+    r.depth_info = attachment(*r.depth, load(), depth);
+    const VkClearValue stencil = clear_value(spec.depth, 0, run.random.unit(), 0, 0);
+    r.stencil_info = attachment(*r.depth, load(), stencil);
     if (spec.resolve) {
       ImageSpec single = image;
       single.samples = VK_SAMPLE_COUNT_1_BIT;

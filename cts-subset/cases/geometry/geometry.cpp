@@ -485,15 +485,18 @@ CTS_RANDOM("geometry", "random", 40) {
   const float reach = target_spec.layers > 1 ? 0.3f : 1.0f;
   std::string body;
   body += "  for (int i = 0; i < " + std::to_string(steps) + " + gl_PrimitiveIDIn % 3; ++i) {\n";
-  if (random.chance(0.5f))
-    body += "    if (passed[i % N]." + std::string(random.pick({"x", "y", "z"})) + " > " +
-            number(random.real(0.5f, 1)) + ") " + random.pick({"continue", "EndPrimitive()", "break"}) + ";\n";
+  if (random.chance(0.5f)) {
+    const std::string jump = random.pick({"continue", "EndPrimitive()", "break"});
+    const std::string limit = number(random.real(0.5f, 1));
+    body += "    if (passed[i % N]." + std::string(random.pick({"x", "y", "z"})) + " > " + limit + ") " + jump + ";\n";
+  }
   body +=
       "    int v = " + std::string(random.pick({"i % N", "(i * 2 + gl_InvocationID) % N", "N - 1 - i % N"})) + ";\n";
   body += "    vec4 p = gl_in[v].gl_Position;\n";
-  body += "    p.xy = p.xy * " + number(random.real(0.3f, 1.2f) * reach) + " + vec2(float(i) * " +
-          number(random.real(-0.1f, 0.1f) * reach) + ", float(gl_InvocationID) * " +
-          number(random.real(-0.2f, 0.2f) * reach) + ") * p.w;\n";
+  const std::string by_invocation = number(random.real(-0.2f, 0.2f) * reach);
+  const std::string by_step = number(random.real(-0.1f, 0.1f) * reach);
+  body += "    p.xy = p.xy * " + number(random.real(0.3f, 1.2f) * reach) + " + vec2(float(i) * " + by_step +
+          ", float(gl_InvocationID) * " + by_invocation + ") * p.w;\n";
   if (kind == 0) body += "    p.xy = clamp(p.xy, -p.w, p.w);\n    gl_PointSize = 1.0 + 6.0 * passed[v].x;\n";
   body += "    gl_Position = p;\n";
   if (target_spec.layers > 1)

@@ -68,9 +68,10 @@ std::string ExpressionWriter::leaf(Type type) {
 std::string ExpressionWriter::expression(Type type, int depth) {
   if (depth <= 0 || random_.chance(0.1f)) return leaf(type);
   if (type.base == Base::kBool) return booleans(type, depth);
-  if (random_.chance(0.06f))
-    return "(" + booleans(scalar(Base::kBool), depth - 1) + " ? " + expression(type, depth - 1) + " : " +
-           expression(type, depth - 1) + ")";
+  if (random_.chance(0.06f)) {
+    const std::string no = expression(type, depth - 1), yes = expression(type, depth - 1);
+    return "(" + booleans(scalar(Base::kBool), depth - 1) + " ? " + yes + " : " + no + ")";
+  }
   if (grammar_.vectors && random_.chance(0.1f)) return swizzled_or_built(type, depth);
   if (grammar_.conversions && grammar_.integers && random_.chance(0.08f)) return converted(type, depth);
   return type.base == Base::kFloat ? floats(type, depth) : integers(type, depth);
@@ -111,10 +112,14 @@ std::string ExpressionWriter::float_function(Type type, int depth) {
   if (grammar_.vectors && random_.chance(0.3f)) return vector_function(type, depth);
   const std::string a = expression(type, depth - 1);
   switch (random_.below(12)) {
-    case 0:
-      return call(random_.pick({"min", "max"}), {a, expression(type, depth - 1)});
-    case 1:
-      return call(random_.pick({"mod", "step"}), {a, expression(type, depth - 1)});
+    case 0: {
+      const std::string b = expression(type, depth - 1);
+      return call(random_.pick({"min", "max"}), {a, b});
+    }
+    case 1: {
+      const std::string b = expression(type, depth - 1);
+      return call(random_.pick({"mod", "step"}), {a, b});
+    }
     case 2:
       return call("clamp", {a, random_.chance(0.5f) ? type_name(type) + "(0.0)" : expression(type, depth - 1),
                             random_.chance(0.5f) ? type_name(type) + "(1.0)" : expression(type, depth - 1)});
@@ -126,8 +131,10 @@ std::string ExpressionWriter::float_function(Type type, int depth) {
       return call("smoothstep", {a, "(" + a + " + " + divisor(type, depth - 1) + ")", expression(type, depth - 1)});
     case 6:
       return call("fma", {a, expression(type, depth - 1), expression(type, depth - 1)});
-    case 7:
-      return call(random_.pick({"sqrt", "inversesqrt"}), {random_.chance(0.7f) ? call("abs", {a}) : a});
+    case 7: {
+      const std::string of = random_.chance(0.7f) ? call("abs", {a}) : a;
+      return call(random_.pick({"sqrt", "inversesqrt"}), {of});
+    }
     case 8:
       return call(random_.pick({"radians", "degrees", "sign"}), {a});
     case 9:
@@ -149,10 +156,14 @@ std::string ExpressionWriter::transcendental(Type type, int depth) {
       return call("pow", {a, name + "(" + random_.pick<const char*>({"1.0", "2.0", "4.0", "0.5", "3.0", "2.2"}) + ")"});
     case 2:
       return call("atan", {a, expression(type, depth - 1)});
-    case 3:
-      return call(random_.pick({"asin", "acos"}), {random_.chance(0.6f) ? call("fract", {a}) : a});
-    case 4:
-      return call(random_.pick({"log", "log2", "acosh", "atanh"}), {random_.chance(0.6f) ? call("abs", {a}) : a});
+    case 3: {
+      const std::string of = random_.chance(0.6f) ? call("fract", {a}) : a;
+      return call(random_.pick({"asin", "acos"}), {of});
+    }
+    case 4: {
+      const std::string of = random_.chance(0.6f) ? call("abs", {a}) : a;
+      return call(random_.pick({"log", "log2", "acosh", "atanh"}), {of});
+    }
     case 5:
       return call(random_.pick({"exp", "exp2"}), {a});
     case 6:
@@ -166,8 +177,9 @@ std::string ExpressionWriter::vector_function(Type type, int depth) {
   if (type.size == 1) {
     const Type wide{Base::kFloat, 2 + random_.below(3)};
     const std::string a = expression(wide, depth - 1);
-    return random_.chance(0.3f) ? call("length", {a})
-                                : call(random_.pick({"dot", "distance"}), {a, expression(wide, depth - 1)});
+    if (random_.chance(0.3f)) return call("length", {a});
+    const std::string b = expression(wide, depth - 1);
+    return call(random_.pick({"dot", "distance"}), {a, b});
   }
   const std::string a = expression(type, depth - 1), b = expression(type, depth - 1);
   switch (random_.below(type.size == 3 ? 5 : 4)) {
@@ -246,31 +258,42 @@ std::string ExpressionWriter::integer_function(Type type, int depth) {
     case 6:
       if (type.base == Base::kInt) return call(random_.pick({"abs", "sign"}), {a});
       [[fallthrough]];
-    default:
-      return call(random_.pick({"min", "max"}), {a, expression(type, depth - 1)});
+    default: {
+      const std::string b = expression(type, depth - 1);
+      return call(random_.pick({"min", "max"}), {a, b});
+    }
   }
 }
 
 std::string ExpressionWriter::booleans(Type type, int depth) {
   const Base base = grammar_.integers ? random_.pick({Base::kFloat, Base::kInt, Base::kUint}) : Base::kFloat;
-  if (type.size > 1)
+  if (type.size > 1) {
+    const std::string a = expression(with(base, type), depth - 1), b = expression(with(base, type), depth - 1);
     return call(random_.pick({"lessThan", "lessThanEqual", "greaterThan", "greaterThanEqual", "equal", "notEqual"}),
-                {expression(with(base, type), depth - 1), expression(with(base, type), depth - 1)});
+                {a, b});
+  }
   switch (random_.below(10)) {
     case 0:
       return "(!" + expression(type, depth - 1) + ")";
-    case 1:
-      return "(" + expression(type, depth - 1) + random_.pick({" && ", " || ", " ^^ "}) + expression(type, depth - 1) +
-             ")";
-    case 2:
-      return call(random_.pick({"isnan", "isinf"}), {expression(scalar(Base::kFloat), depth - 1)});
+    case 1: {
+      const std::string right = expression(type, depth - 1), op = random_.pick({" && ", " || ", " ^^ "});
+      return "(" + expression(type, depth - 1) + op + right + ")";
+    }
+    case 2: {
+      const std::string of = expression(scalar(Base::kFloat), depth - 1);
+      return call(random_.pick({"isnan", "isinf"}), {of});
+    }
     case 3:
-      if (grammar_.vectors)
-        return call(random_.pick({"any", "all"}), {booleans({Base::kBool, 2 + random_.below(3)}, depth)});
+      if (grammar_.vectors) {
+        const std::string of = booleans({Base::kBool, 2 + random_.below(3)}, depth);
+        return call(random_.pick({"any", "all"}), {of});
+      }
       [[fallthrough]];
-    default:
-      return "(" + expression(scalar(base), depth - 1) + random_.pick({" < ", " <= ", " > ", " >= ", " == ", " != "}) +
-             expression(scalar(base), depth - 1) + ")";
+    default: {
+      const std::string right = expression(scalar(base), depth - 1);
+      const std::string op = random_.pick({" < ", " <= ", " > ", " >= ", " == ", " != "});
+      return "(" + expression(scalar(base), depth - 1) + op + right + ")";
+    }
   }
 }
 
@@ -301,7 +324,8 @@ std::string ExpressionWriter::converted(Type type, int depth) {
 std::string ExpressionWriter::swizzled_or_built(Type type, int depth) {
   if (type.size == 1) {
     const Type wide{type.base, 2 + random_.below(3)};
-    return "(" + expression(wide, depth - 1) + ")." + "xyzw"[random_.below(wide.size)];
+    const char component = "xyzw"[random_.below(wide.size)];
+    return "(" + expression(wide, depth - 1) + ")." + component;
   }
   std::string text = type_name(type) + "(" + expression(scalar(type.base), depth - 1);
   if (random_.chance(0.5f)) return text + ", " + expression({type.base, type.size - 1}, depth - 1) + ")";

@@ -92,11 +92,14 @@ class StatementWriter {
   std::string statement(int depth, int level) {
     if (depth <= 0) return assignment(level);
     switch (random_.below(8)) {
-      case 0:
-        return indent(level) + "if (" + condition() + ") " + block(depth, level) + "\n";
-      case 1:
-        return indent(level) + "if (" + condition() + ") " + block(depth, level) + " else " + block(depth, level) +
-               "\n";
+      case 0: {
+        const std::string then = block(depth, level);
+        return indent(level) + "if (" + condition() + ") " + then + "\n";
+      }
+      case 1: {
+        const std::string otherwise = block(depth, level), then = block(depth, level);
+        return indent(level) + "if (" + condition() + ") " + then + " else " + otherwise + "\n";
+      }
       case 2:
       case 3:
         return loop(depth, level);

@@ -25,9 +25,10 @@ class Writer {
 
   std::string expression(const Sized& type, int depth) {
     if (depth <= 0 || random_.chance(0.1f)) return leaf(type);
-    if (random_.chance(0.08f))
-      return "(" + condition(depth - 1) + " ? " + expression(type, depth - 1) + " : " + expression(type, depth - 1) +
-             ")";
+    if (random_.chance(0.08f)) {
+      const std::string no = expression(type, depth - 1), yes = expression(type, depth - 1);
+      return "(" + condition(depth - 1) + " ? " + yes + " : " + no + ")";
+    }
     if (random_.chance(0.15f)) return converted(type, depth);
     return type.kind == 'f' ? real(type, depth) : integer(type, depth);
   }
@@ -45,8 +46,9 @@ class Writer {
 
   std::string condition(int depth) {
     const Sized& type = any_type();
-    return "(" + expression(type, depth) + random_.pick<const char*>({" < ", " <= ", " == ", " != ", " >= "}) +
-           expression(type, depth) + ")";
+    const std::string right = expression(type, depth);
+    const std::string op = random_.pick<const char*>({" < ", " <= ", " == ", " != ", " >= "});
+    return "(" + expression(type, depth) + op + right + ")";
   }
 
   /// Never out of range of an integer: that is undefined.

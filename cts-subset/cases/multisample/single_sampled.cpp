@@ -10,6 +10,7 @@
 #include "harness/case.h"
 #include "harness/format.h"
 #include "harness/graphics.h"
+#include "harness/random_clear.h"
 
 namespace vitrine::cts {
 namespace {
@@ -88,8 +89,7 @@ Scope random_scope(Random& random, const Attachments& images) {
   }
   for (uint32_t i = 0; i < kColors; ++i) {
     scope.color_load[i] = load();
-    scope.clears[i] =
-        clear_value(images.colors[i].spec.format, random.unit(), random.unit(), random.unit(), random.unit());
+    scope.clears[i] = random_clear(random, images.colors[i].spec.format);
   }
   scope.depth_load = load();
   scope.stencil_load = load();

@@ -89,8 +89,10 @@ std::string call(Random& random, uint32_t samples, const std::string& interpolan
       return "interpolateAtSample(" + interpolant + ", " + std::to_string(random.below(samples)) + ")";
     case 2:
       return "interpolateAtSample(" + interpolant + ", index(" + std::to_string(samples) + "))";
-    case 3:
-      return "interpolateAtOffset(" + interpolant + ", vec2(" + offset() + ", " + offset() + "))";
+    case 3: {
+      const std::string y = offset();
+      return "interpolateAtOffset(" + interpolant + ", vec2(" + offset() + ", " + y + "))";
+    }
     default:
       return "interpolateAtOffset(" + interpolant + ", flat_vector - 0.5)";
   }

@@ -4,6 +4,7 @@
 #include "harness/case.h"
 
 #include "harness/graphics.h"
+#include "harness/random_clear.h"
 
 namespace vitrine::cts {
 namespace {
@@ -205,10 +206,11 @@ void random_draws(Run& run, Shape shape, bool multisample, bool clipped) {
   if (shape == Shape::kPolygonMode) run.require(run.gpu.features.fillModeNonSolid, "fillModeNonSolid");
   const TargetSpec target_spec = random_target(run, multisample);
   Target target = make_target(run, target_spec);
-  for (size_t i = 0; i < target_spec.colors.size(); ++i)
-    target.clears[i] = clear_value(target_spec.colors[i], random.unit(), random.unit(), random.unit(), random.unit());
-  if (target.depth)
-    target.clears.back() = clear_value(target_spec.depth, random.pick({1.0f, 0.5f, 0.7f}), random.unit(), 0, 0);
+  for (size_t i = 0; i < target_spec.colors.size(); ++i) target.clears[i] = random_clear(random, target_spec.colors[i]);
+  if (target.depth) {
+    const float stencil = random.unit();
+    target.clears.back() = clear_value(target_spec.depth, random.pick({1.0f, 0.5f, 0.7f}), stencil, 0, 0);
+  }
   GraphicsSpec spec;
   spec.vertex = kVertex;
   spec.fragment = fragment_text(random, target_spec);

@@ -2,6 +2,7 @@
 // resolves, render areas.
 #include "harness/case.h"
 #include "harness/graphics.h"
+#include "harness/random_clear.h"
 
 namespace vitrine::cts {
 namespace {
@@ -48,8 +49,7 @@ Plan random_plan(Run& run) {
   for (uint32_t n = 1 + random.below(3); n > 0; --n) {
     spec.format = random.pick({VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32,
                                VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT});
-    plan.colors.push_back(
-        {run.image(spec), op(), op(), clear_value(spec.format, random.unit(), random.unit(), random.unit(), 1.0f)});
+    plan.colors.push_back({run.image(spec), op(), op(), random_clear(random, spec.format, 1.0f)});
     ImageSpec single = spec;
     single.samples = VK_SAMPLE_COUNT_1_BIT;
     plan.resolves.push_back(plan.samples == VK_SAMPLE_COUNT_1_BIT ? Image{} : run.image(single));
@@ -57,8 +57,11 @@ Plan random_plan(Run& run) {
   if (plan.has_depth) {
     spec.format = random.pick({VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT, VK_FORMAT_D24_UNORM_S8_UINT});
     spec.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-    plan.depth = {run.image(spec), op(), op(),
-                  clear_value(spec.format, 0.6f + 0.4f * random.unit(), random.unit(), 0, 0)};
+    const auto clear = [&] {
+      const float stencil = random.unit();
+      return clear_value(spec.format, 0.6f + 0.4f * random.unit(), stencil, 0, 0);
+    };
+    plan.depth = {run.image(spec), op(), op(), clear()};
   }
   std::vector<bool> used(plan.colors.size());  // the first use of a cleared attachment may not be as an input
   for (uint32_t n = 1 + random.below(4); n > 0; --n) {

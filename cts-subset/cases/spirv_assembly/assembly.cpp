@@ -458,9 +458,12 @@ void convert_to_half(Run& run, const std::string& name, const Rounding& rounding
 /// Stores of binary16 that round toward zero, of floats around and beyond what binary16 holds.
 CTS_CASE("spirv_assembly", "convert_toward_zero") {
   std::vector<float> values(1024);
-  for (float& value : values) do
-      value = std::ldexp(run.random.real(-2, 2), static_cast<int>(run.random.below(46)) - 28);
-    while (rounds_up_to_half(value * kRatio));
+  for (float& value : values) {
+    do {
+      const int exponent = static_cast<int>(run.random.below(46)) - 28;
+      value = std::ldexp(run.random.real(-2, 2), exponent);
+    } while (rounds_up_to_half(value * kRatio));
+  }
   values[0] = std::numeric_limits<float>::infinity();
   values[1] = std::numeric_limits<float>::quiet_NaN();
   values[2] = -0.0f;

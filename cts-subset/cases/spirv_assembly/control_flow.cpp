@@ -81,8 +81,8 @@ class Generator {
   }
 
   std::string bits(uint32_t mask) {
-    const std::string shifted =
-        emit("OpShiftRightLogical %uint " + value() + " " + "%u" + std::to_string(random_.below(12)));
+    const std::string by = std::to_string(random_.below(12));
+    const std::string shifted = emit("OpShiftRightLogical %uint " + value() + " " + "%u" + by);
     return emit("OpBitwiseAnd %uint " + shifted + " %u" + std::to_string(mask));
   }
 
@@ -92,7 +92,8 @@ class Generator {
 
   /// Branches to a target with a value of this block.
   void jump(Target& target) {
-    target.from.emplace_back(emit("OpIAdd %uint " + value() + " " + number()), current_);
+    const std::string added = number();
+    target.from.emplace_back(emit("OpIAdd %uint " + value() + " " + added), current_);
     text_ += "OpBranch " + target.label + "\n";
   }
 

@@ -352,19 +352,23 @@ uint64_t operand(Random& random, const Number& type) {
       return number(sign, 0, random.pick<uint64_t>({0, 0, 1, ~uint64_t{0}, random.bits64()}));
     case 1:  // infinities and quiet NaN
       return number(sign, 2 * bias + 1, random.chance(0.5f) ? 0 : uint64_t{1} << (mantissa - 1));
-    case 2:
-      return number(sign, random.pick<uint64_t>({1, 2 * bias, bias, bias - 1, bias + 1}),
-                    random.pick<uint64_t>({0, 1, ~uint64_t{0}}));
-    case 3:  // halves of small integers
-      return number(sign, bias + random.below(4), random.bits64() & ~((uint64_t{1} << (mantissa - 4)) - 1));
+    case 2: {
+      const auto fraction = random.pick<uint64_t>({0, 1, ~uint64_t{0}});
+      return number(sign, random.pick<uint64_t>({1, 2 * bias, bias, bias - 1, bias + 1}), fraction);
+    }
+    case 3: {  // halves of small integers
+      const uint64_t fraction = random.bits64() & ~((uint64_t{1} << (mantissa - 4)) - 1);
+      return number(sign, bias + random.below(4), fraction);
+    }
     case 4: {  // anything but signalling NaN
       const uint64_t bits = random.bits64();
       return number(sign, bits % (2 * bias + 1), bits >> 11);
     }
     default: {
       const int32_t spread = type.width == 16 ? 6 : 40;
+      const uint64_t fraction = random.bits64();
       return number(sign, static_cast<uint64_t>(static_cast<int32_t>(bias) + random.between(-spread, spread)),
-                    random.bits64());
+                    fraction);
     }
   }
 }

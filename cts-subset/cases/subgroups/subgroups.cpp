@@ -226,13 +226,13 @@ std::string random_block(Random& random, int depth) {
                                                "subgroupAny(y > 13u)", "subgroupElect()"});
     const uint32_t kind = depth > 0 ? random.below(5) : 0;
     if (kind == 1) {
-      text += "if (" + condition + ") {\n" + random_block(random, depth - 1) + "} else {\n" +
-              random_block(random, depth - 1) + "}\n";
+      const std::string otherwise = random_block(random, depth - 1);
+      text += "if (" + condition + ") {\n" + random_block(random, depth - 1) + "} else {\n" + otherwise + "}\n";
     } else if (kind == 2) {
       const std::string k = "k" + std::to_string(depth);
+      const std::string jump = random.pick({"break", "continue"});
       text += "for (uint " + k + " = 0u; " + k + " < (y & 3u) + 1u; " + k + "++) {\n" +
-              random_block(random, depth - 1) + "if (" + condition + ") " + random.pick({"break", "continue"}) +
-              ";\nr += 3u;\n}\n";
+              random_block(random, depth - 1) + "if (" + condition + ") " + jump + ";\nr += 3u;\n}\n";
     } else {
       const std::string operand = random.pick({"x", "r", "y", "(x ^ r)"});
       text +=
@@ -251,7 +251,8 @@ std::string random_block(Random& random, int depth) {
 }
 
 CTS_RANDOM("subgroups", "random", 40) {
-  run_statements(run, random_block(run.random, 3), run.random.pick({8u, 5u, 40u, 64u}));
+  const uint32_t size = run.random.pick({8u, 5u, 40u, 64u});
+  run_statements(run, random_block(run.random, 3), size);
 }
 
 /// Quads of fragments, helpers at the edges included, as derivatives see them.

@@ -583,8 +583,8 @@ CTS_RANDOM("tessellation", "random", 40) {
   if (random.chance(0.4f)) target_spec.depth = VK_FORMAT_D32_SFLOAT;
   GraphicsSpec spec = base_spec(run);
   const std::string domain = kDomains[random.below(3)];
-  const std::string layout =
-      domain + ", " + kSpacings[random.below(3)] + random.pick({", cw", ", ccw", ", cw", ", cw, point_mode"});
+  const std::string order = random.pick({", cw", ", ccw", ", cw", ", cw, point_mode"});
+  const std::string layout = domain + ", " + kSpacings[random.below(3)] + order;
   const bool points = layout.find("point_mode") != std::string::npos;
   if (points) run.require(run.gpu.features.shaderTessellationAndGeometryPointSize, "point sizes of evaluation shaders");
   spec.evaluation = evaluation(layout, points);
@@ -597,10 +597,11 @@ CTS_RANDOM("tessellation", "random", 40) {
   if (!lines && random.chance(0.3f)) target_spec.samples = VK_SAMPLE_COUNT_4_BIT;
   const Target target = make_target(run, target_spec);
   run.note("evaluation", spec.evaluation);
-  draw(run, target, spec,
-       make_patches(random, 1 + random.below(5), 1 + random.below(5), random.chance(0.2f) ? 64.0f : 10.0f,
-                    random.chance(0.3f)),
-       1 + random.below(2));
+  const uint32_t instances = 1 + random.below(2);
+  const bool last = random.chance(0.3f);
+  const float most = random.chance(0.2f) ? 64.0f : 10.0f;
+  const uint32_t rows = 1 + random.below(5);
+  draw(run, target, spec, make_patches(random, 1 + random.below(5), rows, most, last), instances);
   run.may_be_blank();
 }
 

@@ -236,9 +236,10 @@ std::string lookup(Random& random, const Family& family, const Shape& shape) {
     case Kind::kGather: {
       const std::string component = random.chance(0.7f) ? "0" : std::to_string(random.below(4));
       if (shape.dimensions == 3 || random.chance(0.4f)) return "textureGather(t, " + c + ", " + component + ")";
-      return random.chance(0.3f) ? "textureGatherOffsets(t, " + c + ", ivec2[4](" + offset() + ", " + offset() + ", " +
-                                       offset() + ", " + offset() + "), " + component + ")"
-                                 : "textureGatherOffset(t, " + c + ", " + offset() + ", " + component + ")";
+      if (!random.chance(0.3f)) return "textureGatherOffset(t, " + c + ", " + offset() + ", " + component + ")";
+      const std::string fourth = offset(), third = offset(), second = offset();
+      return "textureGatherOffsets(t, " + c + ", ivec2[4](" + offset() + ", " + second + ", " + third + ", " + fourth +
+             "), " + component + ")";
     }
     case Kind::kFetch: {
       const std::string integer = shape.coordinates == 1 ? "int" : "ivec" + std::to_string(shape.coordinates);

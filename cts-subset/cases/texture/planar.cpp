@@ -160,13 +160,23 @@ std::vector<Plane> make_planes(Run& run, VkFormat format, VkExtent3D extent, uin
 
 VkExtent3D random_extent(Random& random) { return {2 * (4 + random.below(30)), 2 * (4 + random.below(30)), 1}; }
 
+std::vector<Plane> random_planes(Run& run, VkImageUsageFlags usage) {
+  const uint32_t layers = 1 + run.random.below(3);
+  const VkExtent3D extent = random_extent(run.random);
+  return make_planes(run, run.random.pick(planar_formats()), extent, layers, usage);
+}
+
 /// Between buffers, planes of two images, and images of one plane.
 CTS_RANDOM("api", "random_planar_copies", 60) {
   Random& random = run.random;
   const std::vector<VkFormat> formats = planar_formats();
   const uint32_t layers = 1 + random.below(3);
-  std::vector<Plane> planes = make_planes(run, random.pick(formats), random_extent(random), layers, 0);
-  const std::vector<Plane> others = make_planes(run, random.pick(formats), random_extent(random), layers, 0);
+  const auto make = [&] {
+    const VkExtent3D extent = random_extent(random);
+    return make_planes(run, random.pick(formats), extent, layers, 0);
+  };
+  std::vector<Plane> planes = make();
+  const std::vector<Plane> others = make();
   planes.insert(planes.end(), others.begin(), others.end());
   for (const VkFormat format :
        {VK_FORMAT_R8_UINT, VK_FORMAT_R8G8_UNORM, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R8G8B8A8_SNORM}) {
@@ -264,8 +274,7 @@ void draw(Run& run, const Target& target, const Resources& resources, const std:
 
 CTS_RANDOM("texture", "random_plane_sampled", 30) {
   Random& random = run.random;
-  const std::vector<Plane> planes = make_planes(run, random.pick(planar_formats()), random_extent(random),
-                                                1 + random.below(3), VK_IMAGE_USAGE_SAMPLED_BIT);
+  const std::vector<Plane> planes = random_planes(run, VK_IMAGE_USAGE_SAMPLED_BIT);
   const Image image = plane_view(run, random.pick(planes), VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT);
   const std::string prefix = glsl_prefix(format_info(image.spec.format));
   const bool linear = prefix.empty() && random.chance(0.6f);
@@ -286,8 +295,7 @@ CTS_RANDOM("texture", "random_plane_sampled", 30) {
 
 CTS_RANDOM("texture", "random_plane_stored", 30) {
   Random& random = run.random;
-  const std::vector<Plane> planes = make_planes(run, random.pick(planar_formats()), random_extent(random),
-                                                1 + random.below(3), VK_IMAGE_USAGE_STORAGE_BIT);
+  const std::vector<Plane> planes = random_planes(run, VK_IMAGE_USAGE_STORAGE_BIT);
   const Image image = plane_view(run, random.pick(planes), VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
   const std::string prefix = glsl_prefix(format_info(image.spec.format));
   const std::string value =
@@ -307,8 +315,7 @@ CTS_RANDOM("texture", "random_plane_stored", 30) {
 
 CTS_RANDOM("texture", "random_plane_drawn", 30) {
   Random& random = run.random;
-  const std::vector<Plane> planes = make_planes(run, random.pick(planar_formats()), random_extent(random),
-                                                1 + random.below(3), VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+  const std::vector<Plane> planes = random_planes(run, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
   const bool blends = random.chance(0.5f);
   const Image image =
       plane_view(run, random.pick(planes),

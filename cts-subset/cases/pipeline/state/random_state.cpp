@@ -9,6 +9,7 @@
 #include "cases/pipeline/state/render.h"
 #include "harness/case.h"
 #include "harness/execute.h"
+#include "harness/random_clear.h"
 
 namespace vitrine::cts {
 namespace {
@@ -408,13 +409,13 @@ void random_command(Random& second, const Scene& scene, RecordedDraw& draw) {
   VkClearAttachment& clear = draw.clear.emplace();
   if (colors == 0 || (depth && scene.target.depth)) {
     clear.aspectMask = aspects_of(scene.target.depth);
-    clear.clearValue = clear_value(scene.target.depth, second.unit(), second.unit(), 0, 0);
+    const float stencil = second.unit();
+    clear.clearValue = clear_value(scene.target.depth, second.unit(), stencil, 0, 0);
     return;
   }
   clear.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
   clear.colorAttachment = second.below(colors);
-  clear.clearValue = clear_value(scene.target.colors[clear.colorAttachment], second.unit(), second.unit(),
-                                 second.unit(), second.unit());
+  clear.clearValue = random_clear(second, scene.target.colors[clear.colorAttachment]);
 }
 
 /// What deviations.md lists is drawn, too; then the same again without it, which must be identical.
@@ -427,10 +428,11 @@ void random_state(Run& run, Random& second, bool unrestricted) {
     return result;
   }();
   std::vector<VkClearValue> clears;
-  for (const VkFormat format : scene.target.colors)
-    clears.push_back(clear_value(format, random.unit(), random.unit(), random.unit(), random.unit()));
-  if (scene.target.depth)
-    clears.push_back(clear_value(scene.target.depth, random.pick({1.0f, 0.5f, 0.7f}), random.unit(), 0, 0));
+  for (const VkFormat format : scene.target.colors) clears.push_back(random_clear(random, format));
+  if (scene.target.depth) {
+    const float stencil = random.unit();
+    clears.push_back(clear_value(scene.target.depth, random.pick({1.0f, 0.5f, 0.7f}), stencil, 0, 0));
+  }
   std::vector<std::unique_ptr<RecordedDraw>> draws;
   for (uint32_t n = 1 + random.below(3); n > 0; --n) {
     RecordedDraw& r = *draws.emplace_back(std::make_unique<RecordedDraw>());

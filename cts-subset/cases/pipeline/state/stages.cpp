@@ -173,9 +173,10 @@ void random_tessellation(Run& run, Stages& stages) {
   Random& random = run.random;
   const std::string domain = random.pick({"triangles", "quads", "isolines"});
   stages.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
+  const std::string order = random.pick({"cw", "ccw"});
   stages.tessellation = domain + ", " +
                         random.pick({"equal_spacing", "fractional_odd_spacing", "fractional_even_spacing"}) + ", " +
-                        random.pick({"cw", "ccw"});
+                        order;
   stages.drawn = domain == "isolines" ? Drawn::kLines : Drawn::kTriangles;
   if (random.chance(0.2f)) {
     stages.tessellation += ", point_mode";

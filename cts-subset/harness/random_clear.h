@@ -1,0 +1,19 @@
+// Clear values of random numbers.
+#pragma once
+
+#include "harness/graphics.h"
+#include "harness/random.h"
+
+namespace vitrine::cts {
+
+/// Of a color: components in [0, 1), of which the last is drawn first. `alpha`: the fourth instead.
+inline VkClearValue random_clear(Random& random, VkFormat format) {
+  const float a = random.unit(), b = random.unit(), g = random.unit();
+  return clear_value(format, random.unit(), g, b, a);
+}
+inline VkClearValue random_clear(Random& random, VkFormat format, float alpha) {
+  const float b = random.unit(), g = random.unit();
+  return clear_value(format, random.unit(), g, b, alpha);
+}
+
+}  // namespace vitrine::cts
