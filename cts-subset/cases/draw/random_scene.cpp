@@ -166,7 +166,8 @@ CTS_RANDOM("draw", "random_scene", 120) {
   std::vector<std::pair<Buffer, Buffer>> buffers;
   for (uint32_t n = 1 + random.below(3); n > 0; --n) {
     const Mesh& mesh = meshes.emplace_back(random_mesh(random));
-    buffers.emplace_back(run.buffer_of(mesh.vertices), run.buffer_of(mesh.indices));
+    const Buffer indices = run.buffer_of(mesh.indices);
+    buffers.emplace_back(run.buffer_of(mesh.vertices), indices);
   }
   const VkRect2D everything{{0, 0}, {target_spec.width, target_spec.height}};
   std::vector<SceneDraw> draws;

@@ -38,9 +38,11 @@ class StatementWriter {
 
   std::string assignment(int level) {
     const Variable& v = random_.pick(state_);
-    if (random_.chance(0.15f))
+    if (random_.chance(0.15f)) {
+      const std::string value = expressions_.expression({Base::kFloat, 1}, 2);
       return indent(level) + "array[(" + expressions_.expression({Base::kInt, 1}, 1) +
-             " & 0x7fffffff) % 7] = " + expressions_.expression({Base::kFloat, 1}, 2) + ";\n";
+             " & 0x7fffffff) % 7] = " + value + ";\n";
+    }
     if (random_.chance(0.1f) && v.type == Type{Base::kFloat, 1})
       return indent(level) + v.name + " = array[(" + expressions_.expression({Base::kInt, 1}, 1) +
              " & 0x7fffffff) % 7];\n";
@@ -58,7 +60,8 @@ class StatementWriter {
 
   std::string loop_exit(int level) {
     if (!random_.chance(0.5f)) return "";
-    return indent(level) + "if (" + condition() + ") " + random_.pick({"break", "continue"}) + ";\n";
+    const std::string exit = random_.pick({"break", "continue"});
+    return indent(level) + "if (" + condition() + ") " + exit + ";\n";
   }
 
   std::string loop(int depth, int level) {

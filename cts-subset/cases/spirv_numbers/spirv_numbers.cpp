@@ -190,7 +190,8 @@ class Module {
     switch (row.result) {
       case 'B': {
         const std::string id = fresh();
-        body_ += id + " = OpSelect %uint " + r + " " + constant(1) + " " + constant(0) + "\n";
+        const std::string no = constant(0), yes = constant(1);
+        body_ += id + " = OpSelect %uint " + r + " " + yes + " " + no + "\n";
         return store(row.name, id, number(32, 'u'));
       }
       case 'V':
@@ -272,8 +273,9 @@ class Module {
 
   std::string load_at(const std::string& id, uint32_t word) {
     const std::string at = fresh(), pointer = fresh();
-    return at + " = OpIAdd %uint %base " + constant(word) + "\n" + pointer + " = OpAccessChain %uint_ptr %in " +
-           constant(0) + " " + at + "\n" + id + " = OpLoad %uint " + pointer + "\n";
+    const std::string zero = constant(0), offset = constant(word);
+    return at + " = OpIAdd %uint %base " + offset + "\n" + pointer + " = OpAccessChain %uint_ptr %in " + zero + " " +
+           at + "\n" + id + " = OpLoad %uint " + pointer + "\n";
   }
 
   /// Two words as a number of the type.
@@ -294,10 +296,11 @@ class Module {
   void store(const std::string& name, std::string id, const Number& type) {
     const auto word = [&](const std::string& value, uint32_t part) {
       const std::string at = fresh(), pointer = fresh(), place = fresh();
-      body_ += place + " = OpIMul %uint %n " + constant(2) + "\n" + at + " = OpIAdd %uint " + place + " " +
-               constant(static_cast<uint32_t>(slots.size()) * 2 * kInvocations + part) + "\n" + pointer +
-               " = OpAccessChain %uint_ptr %out " + constant(0) + " " + at + "\nOpStore " + pointer + " " + value +
-               "\n";
+      const std::string zero = constant(0);
+      const std::string first = constant(static_cast<uint32_t>(slots.size()) * 2 * kInvocations + part);
+      body_ += place + " = OpIMul %uint %n " + constant(2) + "\n" + at + " = OpIAdd %uint " + place + " " + first +
+               "\n" + pointer + " = OpAccessChain %uint_ptr %out " + zero + " " + at + "\nOpStore " + pointer + " " +
+               value + "\n";
     };
     const auto make = [&](const std::string& operation) {
       const std::string result = fresh();
