@@ -230,7 +230,8 @@ const AddCase kCubeQuery("texture", "deviation.cube_query", "cube-query", case_a
     VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
     info.maxLod = VK_LOD_CLAMP_NONE;
-    put_picture_out(run, array ? "array" : "cube", run.image(spec), run.sampler(info),
+    const VkSampler sampler = run.sampler(info);
+    put_picture_out(run, array ? "array" : "cube", run.image(spec), sampler,
                     std::string(array ? "samplerCubeArray" : "samplerCube") +
                         " t;\nvoid main() {\n  precise vec3 c = (vec3(0.5, -0.25, 0.375) + gl_FragCoord.x * "
                         "vec3(0.03, -0.01, 0.02)) + gl_FragCoord.y * vec3(-0.02, 0.015, -0.05);\n"

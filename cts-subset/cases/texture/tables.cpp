@@ -68,7 +68,8 @@ void look_up_format(Run& run, VkFormat format, VkExtent3D extent, VkFilter filte
   spec.format = format;
   spec.extent = extent;
   spec.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-  look_up(run, random_or_stand_in(run, spec, features), run.sampler(filter), code, "2D");
+  const VkSampler sampler = run.sampler(filter);
+  look_up(run, random_or_stand_in(run, spec, features), sampler, code, "2D");
 }
 
 const bool kFormats = [] {
@@ -136,18 +137,22 @@ const bool kMipmaps = [] {
         };
         const VkFormat format = floats ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
         AddCase("texture", name + ".implicit", [=](Run& run) {
-          look_up(run, random_image(run, format, {50, 37, 1}, 6), make(run, 0), "texture(t, p * p * 9.0)", "2D");
+          const VkSampler sampler = make(run, 0);
+          look_up(run, random_image(run, format, {50, 37, 1}, 6), sampler, "texture(t, p * p * 9.0)", "2D");
         });
         AddCase("texture", name + ".bias", [=](Run& run) {
-          look_up(run, random_image(run, format, {64, 64, 1}, 7), make(run, 0.6f),
-                  "texture(t, p * p * 9.0, p.x * 3.0 - 1.0)", "2D");
+          const VkSampler sampler = make(run, 0.6f);
+          look_up(run, random_image(run, format, {64, 64, 1}, 7), sampler, "texture(t, p * p * 9.0, p.x * 3.0 - 1.0)",
+                  "2D");
         });
         AddCase("texture", name + ".explicit", [=](Run& run) {
-          look_up(run, random_image(run, format, {64, 64, 1}, 7), make(run, 0),
-                  "textureLod(t, p * 2.0, p.x * 8.0 - 1.0)", "2D");
+          const VkSampler sampler = make(run, 0);
+          look_up(run, random_image(run, format, {64, 64, 1}, 7), sampler, "textureLod(t, p * 2.0, p.x * 8.0 - 1.0)",
+                  "2D");
         });
         AddCase("texture", name + ".gradients", [=](Run& run) {
-          look_up(run, random_image(run, format, {50, 37, 1}, 6), make(run, 0),
+          const VkSampler sampler = make(run, 0);
+          look_up(run, random_image(run, format, {50, 37, 1}, 6), sampler,
                   "textureGrad(t, p * 2.0, p * 0.3, p.yx * 0.2)", "2D");
         });
       }
@@ -162,7 +167,8 @@ const bool kLargeBounds = [] {
       VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
       info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
       info.maxLod = bound;
-      look_up(run, random_image(run, VK_FORMAT_R32G32B32A32_SFLOAT, {64, 64, 1}, 7), run.sampler(info),
+      const VkSampler sampler = run.sampler(info);
+      look_up(run, random_image(run, VK_FORMAT_R32G32B32A32_SFLOAT, {64, 64, 1}, 7), sampler,
               "textureGrad(t, p, vec2(0.015625), vec2(0.0))", "2D");
     });
   }
