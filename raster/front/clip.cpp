@@ -41,7 +41,14 @@ float distance_to(const ClipContext& context, std::uint32_t plane, const ClipVer
   return ((p.x * v.clip[0] + p.y * v.clip[1]) + p.z * v.clip[2]) + p.w * v.clip[3];
 }
 
-float mix(float base, float other, float t) { return base + t * (other - base); }
+float mix(float base, float other, float t) {
+  const float value = base + t * (other - base);
+#ifdef __aarch64__
+  // The NaN of operations on numbers has a sign on x86, and none here (as in raster/tile/interpolate.cpp).
+  if (std::bit_cast<std::uint32_t>(value) == 0x7fc00000u) return -value;
+#endif
+  return value;
+}
 
 /// 1.5, noperspective: the parameter in window space, along the first axis on which the parents differ.
 float linear_parameter(const ClipVertex& base, const ClipVertex& other, const ClipVertex& made, float t) {

@@ -101,6 +101,20 @@ void point_planes(const Primitive& p, std::size_t count, std::size_t perspective
   }
 }
 
+/// The NaN of operations on numbers has a sign on x86, and none on AArch64. It is told from others by its bits: a quiet
+/// NaN without sign and payload that a vertex has gets a sign, too.
+template <class V>
+HWY_INLINE V with_signed_nan(V v) {
+#if HWY_TARGET == HWY_NEON
+  const hn::Rebind<std::uint32_t, hn::DFromV<V>> d;
+  const auto bits = hn::BitCast(d, v);
+  return hn::BitCast(hn::DFromV<V>(),
+                     hn::IfThenElse(hn::Eq(bits, hn::Set(d, 0x7fc00000u)), hn::Set(d, 0xffc00000u), bits));
+#else
+  return v;
+#endif
+}
+
 void evaluate(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale, float* out) {
   if (wave.slots == 1) {
     const F f;
@@ -109,7 +123,7 @@ void evaluate(const WavePlanes& wave, std::uint32_t plane, const WavePoints& poi
     for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(f)) {
       VF v = lanes_fma(dady, hn::Load(f, points.y + i), lanes_fma(dadx, hn::Load(f, points.x + i), a0));
       if (scale) v = hn::Mul(v, hn::Load(f, scale + i));
-      hn::Store(v, f, out + i);
+      hn::Store(with_signed_nan(v), f, out + i);
     }
     return;
   }
@@ -123,7 +137,7 @@ void evaluate(const WavePlanes& wave, std::uint32_t plane, const WavePoints& poi
           lanes_fma(hn::Set(d, set.dadx[plane]), hn::LoadU(d, points.x + lane), hn::Set(d, set.a0[plane]));
       auto v = lanes_fma(hn::Set(d, set.dady[plane]), hn::LoadU(d, points.y + lane), inner);
       if (scale) v = hn::Mul(v, hn::LoadU(d, scale + lane));
-      hn::StoreU(v, d, out + lane);
+      hn::StoreU(with_signed_nan(v), d, out + lane);
       lane += hn::Lanes(d);
     };
     const hn::CappedTag<float, 16> wide;
