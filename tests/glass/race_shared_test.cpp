@@ -188,7 +188,7 @@ constexpr PlantedRace kPlanted[] = {
      "s[i] = i;\nfor (uint k = 0u; k < g / 9u; ++k) if (s[i ^ 1u] == 999u) o[i] = 1u;"},
     {"return_but_of_the_last_workgroup", "race-shared", 64, 9, "shared uint s[64];",
      "#s[i] = i;\nfor (;;) {\nif (g < 8u) return;\n@if (s[i ^ 1u] == 999u) o[i] = 1u;\nbreak;\n}",
-     "#s[i] = i;\nfor (;;) {\nif (g < 9u) return;\n@if (s[i ^ 1u] == 999u) o[i] = 1u;\nbreak;\n}"},
+     "s[i] = i;\nfor (;;) {\nif (g < 9u) return;\nif (s[i ^ 1u] == 999u) o[i] = 1u;\nbreak;\n}"},
     {"break_but_of_the_last_workgroup", "race-shared", 64, 9, "shared uint s[64];",
      "#s[i] = i;\nuint k = 0u;\nfor (; k < 4u; ++k) if (g < 8u && k == 1u) break;\n"
      "@if (s[i ^ k / 4u] == 999u) o[i] = 1u;",
