@@ -1,39 +1,19 @@
 // How often the blocks of one program ran.
 #include "glass/block_counts.h"
 
+#include <atomic>
+
 namespace vitrine::glass {
-namespace {
 
-#ifdef __x86_64__
-/// The driver's oldest SIMD target has POPCNT, though the compiler is not told of it.
-#define VITRINE_POPCNT [[gnu::target("popcnt")]]
-#else
-#define VITRINE_POPCNT
-#endif
-
-/// Of a number that this thread alone writes.
-void add(std::atomic<std::uint64_t>& to, std::uint64_t more) {
-  to.store(to.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
-}
-
-}  // namespace
-
+/// Next to other watches, or of waves that need not run, it is told; otherwise probes count in its cells.
 class BlockCounts::Counter final : public spirv::exec::Watch {
  public:
-  explicit Counter(Cells& cells) : cells_(cells) {}
-  VITRINE_POPCNT void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override { probes(wave, op, 1); }
-  VITRINE_POPCNT void probes(const spirv::Wave& wave, const spirv::ProbeOp& op, std::uint64_t times) override {
-    const base::LaneMask lanes = op.guards.empty() ? wave.active : spirv::exec::lanes_at(wave, op);
-    if (lanes == 0) return;
-    Cell& cell = cells_[static_cast<std::size_t>(&op - wave.program->probe_ops.data())];
-    add(cell.invocations, times * static_cast<std::uint64_t>(__builtin_popcountll(lanes & wave.live)));
-    add(cell.waves, times);
-    if (const base::LaneMask helpers = lanes & ~wave.live; helpers != 0)
-      add(cell.helpers, times * static_cast<std::uint64_t>(__builtin_popcountll(helpers)));
+  explicit Counter(Cells& cells) { cells_ = cells.data(); }
+  void probe(const spirv::Wave& wave, const spirv::ProbeOp& op) override { probes(wave, op, 1); }
+  void probes(const spirv::Wave& wave, const spirv::ProbeOp& op, std::uint64_t times) override {
+    spirv::exec::BlockCell& cell = cells_[&op - wave.program->probe_ops.data()];
+    spirv::exec::count_block(wave, cell, spirv::exec::lanes_at(wave, op), times);
   }
-
- private:
-  Cells& cells_;
 };
 
 BlockCounts::OfThread::OfThread(std::size_t size) : cells(size), counter(std::make_unique<Counter>(cells)) {}

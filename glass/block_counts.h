@@ -1,7 +1,6 @@
 // How often the blocks of one program ran. Every thread counts for itself, so that counting waits for nobody.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -32,11 +31,7 @@ class BlockCounts {
   std::vector<Count> sum() const;
 
  private:
-  /// Written by one thread.
-  struct Cell {
-    std::atomic<std::uint64_t> invocations{0}, helpers{0}, waves{0};
-  };
-  using Cells = std::vector<Cell>;
+  using Cells = std::vector<spirv::exec::BlockCell>;
   class Counter;
   struct OfThread {
     explicit OfThread(std::size_t size);

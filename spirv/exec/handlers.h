@@ -67,6 +67,8 @@ Handler broadcast_active();
 
 /// Tells the wave's watch of row extra[0] of Program::probe_ops.
 const Instruction* probe(Wave&, const Instruction*);
+/// The same of a block, for who counts (Watch::cells()). The only condition, if there is one, is src[0].
+Handler block_probe(const ProbeOp& op);
 
 // ---- environment (spirv/exec/environment.cpp)
 

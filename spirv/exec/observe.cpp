@@ -3,7 +3,9 @@
 
 #include <utility>
 
+#include "base/lane_count.h"
 #include "spirv/exec/handlers.h"
+#include "spirv/exec/operands.h"
 
 namespace vitrine::spirv::exec {
 namespace {
@@ -30,6 +32,29 @@ const Instruction* hook_discard(Wave& wave, const Instruction* i) {
   const auto index = static_cast<std::size_t>(i - program.code.data());
   if (wave.watch != nullptr) wave.watch->discard(wave, i, program.notes[index]);
   return program.observation->hooked[index](wave, i);
+}
+
+/// Tells of a block: counts the lanes that `lanes_of` says come by.
+template <base::LaneMask (*lanes_of)(Wave& wave, const Instruction* i)>
+const Instruction* probe_block(Wave& wave, const Instruction* i) {
+  if (wave.watch == nullptr) return i + 1;
+  BlockCell* const cells = wave.watch->cells();
+  if (cells == nullptr) return probe(wave, i);
+  count_block(wave, cells[i->extra[0]], lanes_of(wave, i), 1);
+  return i + 1;
+}
+
+base::LaneMask active_lanes(Wave& wave, const Instruction*) { return wave.active; }
+base::LaneMask lanes_if(Wave& wave, const Instruction* i) { return wave.active & mask(wave, i->src[0]); }
+base::LaneMask lanes_unless(Wave& wave, const Instruction* i) { return wave.active & ~mask(wave, i->src[0]); }
+base::LaneMask all_lanes_if(Wave& wave, const Instruction* i) {
+  return uniform_word(wave, i->src[0]) != 0 ? wave.active : 0;
+}
+base::LaneMask all_lanes_unless(Wave& wave, const Instruction* i) {
+  return uniform_word(wave, i->src[0]) == 0 ? wave.active : 0;
+}
+base::LaneMask guarded_lanes(Wave& wave, const Instruction* i) {
+  return lanes_at(wave, wave.program->probe_ops[i->extra[0]]);
 }
 
 /// Who tells of an instruction; null: nobody wants to know.
@@ -111,6 +136,25 @@ base::LaneMask lanes_at(const Wave& wave, const ProbeOp& op) {
     lanes &= holds ? where : ~where;
   }
   return lanes;
+}
+
+void count_block(const Wave& wave, BlockCell& cell, base::LaneMask lanes, std::uint64_t times) {
+  const auto add = [](std::atomic<std::uint64_t>& to, std::uint64_t more) {
+    to.store(to.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
+  };
+  if (lanes == 0) return;
+  add(cell.waves, times);
+  const base::LaneMask helpers = lanes & ~wave.live;
+  add(cell.invocations, times * base::count_lanes(lanes & wave.live));
+  if (helpers != 0) add(cell.helpers, times * base::count_lanes(helpers));
+}
+
+Handler block_probe(const ProbeOp& op) {
+  if (op.guards.empty()) return probe_block<active_lanes>;
+  if (op.guards.size() > 1) return probe_block<guarded_lanes>;
+  const auto& [place, holds] = op.guards[0];
+  if (place.file == 'm') return holds ? probe_block<lanes_if> : probe_block<lanes_unless>;
+  return holds ? probe_block<all_lanes_if> : probe_block<all_lanes_unless>;
 }
 
 const Instruction* probe(Wave& wave, const Instruction* i) {

@@ -6,6 +6,7 @@
 // program (Observation::rehearsal), which has been rewritten only as far as it must be, and takes back what that wrote.
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "spirv/program.h"
@@ -13,11 +14,18 @@
 
 namespace vitrine::spirv::exec {
 
+/// How many came by a probe of blocks. Written by one thread.
+struct BlockCell {
+  std::atomic<std::uint64_t> invocations{0}, helpers{0}, waves{0};
+};
+
 /// One run of a wave: from its start or from a barrier to its end or the next barrier. The thread that runs the wave
 /// makes, calls and destroys it.
 class Watch {
  public:
   virtual ~Watch() = default;
+  /// Where probes of blocks count, by row of Program::probe_ops, instead of calling probe(). Null: they call.
+  BlockCell* cells() const { return cells_; }
   /// Around every instruction, if Interest::instructions.
   virtual void before(const Wave&, const Instruction*) {}
   /// `next`: what runs now; null: the wave has ended or waits.
@@ -32,6 +40,9 @@ class Watch {
   virtual void probes(const Wave& wave, const ProbeOp& op, std::uint64_t times) {
     for (; times != 0; --times) probe(wave, op);
   }
+
+ protected:
+  BlockCell* cells_ = nullptr;
 };
 
 /// What an observer wants to be told. Fixed when a program is made.
@@ -100,6 +111,9 @@ inline const InstructionNote& waits_at(const Wave& wave) {
 
 /// Of a hooked discard: the lanes that it ends.
 base::LaneMask discarded_lanes(const Wave& wave, const Instruction* i);
+
+/// Adds lanes that come by a probe of blocks, in as many waves.
+void count_block(const Wave& wave, BlockCell& cell, base::LaneMask lanes, std::uint64_t times);
 
 /// The lanes that come by a probe.
 base::LaneMask lanes_at(const Wave& wave, const ProbeOp& op);

@@ -381,7 +381,10 @@ void Emitter::probe(const ScalarOp& op) {
     }
   }
   if (op.joined != kNoIndex) row.also = f_.joined_probes[op.joined];
-  append(exec::probe, "probe", op.instr).extra[0] = static_cast<std::uint32_t>(program->probe_ops.size());
+  const bool of_block = f_.ir->probes[row.probe].kind == Probe::Kind::kBlock;
+  Instruction& instruction = append(of_block ? exec::block_probe(row) : exec::probe, "probe", op.instr);
+  if (!row.guards.empty()) instruction.src[0] = row.guards[0].first.offset;
+  instruction.extra[0] = static_cast<std::uint32_t>(program->probe_ops.size());
   program->probe_ops.push_back(std::move(row));
 }
 

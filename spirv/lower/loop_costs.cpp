@@ -16,8 +16,8 @@ bool is_slow(const InstructionNote& note) {
   return note.high == 'r' || std::string_view(note.name).starts_with("reduce");
 }
 
-std::uint32_t cost_of(const Instruction& instruction, const InstructionNote& note) {
-  if (instruction.handler == exec::probe) return 0;  // who looks changes nothing
+std::uint32_t cost_of(const InstructionNote& note) {
+  if (std::string_view(note.name) == "probe") return 0;  // who looks changes nothing
   if (note.extra == InstructionNote::Extra::kImage) return kImageCost;
   if (note.extra == InstructionNote::Extra::kMemory && note.data != 'u') return kMemoryCost;
   return is_slow(note) ? kSlowCost : 1;
@@ -27,8 +27,7 @@ std::uint32_t cost_of(const Instruction& instruction, const InstructionNote& not
 
 void charge_loops(Program& program) {
   std::vector<std::uint32_t> before(program.code.size() + 1);  ///< cost of all instructions before each
-  for (std::size_t i = 0; i < program.code.size(); ++i)
-    before[i + 1] = before[i] + cost_of(program.code[i], program.notes[i]);
+  for (std::size_t i = 0; i < program.code.size(); ++i) before[i + 1] = before[i] + cost_of(program.notes[i]);
   for (std::size_t i = 0; i < program.code.size(); ++i) {
     Instruction& end = program.code[i];
     if (end.handler != exec::loop_back && end.handler != exec::loop_back_mask) continue;

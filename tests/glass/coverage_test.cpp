@@ -63,7 +63,7 @@ TEST(BlockProbes, OneTellsOfBlocksThatTheSameLanesComeBy) {
   // Entry, loop header, merge, body, continue target, condition.
   EXPECT_EQ(counts_of("uint x = 0u; for (uint k = 0u; k < i; ++k) x += v[k]; v[i] = x;", &instructions),
             (Counts{8, 36, 28, 8, 28, 36}));
-  EXPECT_EQ(instructions, 5u) << "header and condition together";
+  EXPECT_EQ(instructions, 3u) << "one in front of the loop, one a turn, one behind it";
 }
 
 TEST(BlockProbes, OneTellsOfALoopWithoutTurns) {
@@ -73,13 +73,38 @@ TEST(BlockProbes, OneTellsOfALoopWithoutTurns) {
   EXPECT_EQ(instructions, 1u);
 }
 
+TEST(BlockProbes, OneTellsOfWhatIsInFrontOfABranchAndBehindIt) {
+  std::size_t instructions = 0;
+  // Entry, then, merge, inner then, inner merge.
+  EXPECT_EQ(counts_of("if (i < 6u) { v[i] = v[i + 8u] / 3u; if (i < 4u) v[i + 16u] = v[i] % 5u; v[i + 24u] = i; }\n"
+                      "v[i + 32u] = i;",
+                      &instructions),
+            (Counts{8, 6, 8, 4, 6}));
+  EXPECT_EQ(instructions, 3u);
+}
+
+TEST(BlockProbes, TellOfWhatIsBehindABranchThatLanesLeave) {
+  std::size_t instructions = 0;
+  // Entry, then, merge, then that returns, merge.
+  EXPECT_EQ(counts_of("if (i < 6u) { v[i] = v[i + 8u] / 3u; if (i < 4u) return; v[i + 24u] = i; } v[i + 32u] = i;",
+                      &instructions),
+            (Counts{8, 6, 4, 4, 2}));
+  EXPECT_EQ(instructions, 5u);
+}
+
+TEST(BlockProbes, OneTellsOfATurnWithABarrier) {
+  std::size_t instructions = 0;
+  counts_of("for (uint k = 4u; k != v[63] - 189u; --k) { if (i < k) v[i] += v[i + k]; barrier(); }", &instructions);
+  EXPECT_EQ(instructions, 4u) << "one in front of the loop, one a turn, one in the branch, one behind the loop";
+}
+
 TEST(BlockProbes, OneTellsOfATurnOfThoseThatAreWrittenOut) {
   std::size_t instructions = 0;
   EXPECT_EQ(counts_of("uint a = i, b = 1u, c = 2u, d = 3u; for (uint k = 0u; k < i + 60u; ++k) {\n"
                       "uint t = d + (a ^ b & c); d = c; c = b; b = a; a = t; } v[i] = a + b + c + d;",
                       &instructions),
             (Counts{8, 516, 508, 8, 508, 516}));
-  EXPECT_EQ(instructions, 8u) << "entry, end, four turns; the first one's header and what continues to it";
+  EXPECT_EQ(instructions, 6u) << "entry, end, four turns";
 }
 
 // Labels in the order in which glslang numbers them: entry, then, merge, else.
