@@ -13,27 +13,58 @@ namespace {
 
 std::uint32_t byte_of(const Capture& capture) { return capture.offset & spirv::kXfbBytes; }
 
-/// Room for one more primitive: all captures of all its vertices lie inside their buffers.
-bool fits(const TransformFeedback& feedback, const PipelinePlan& plan, std::span<const Capture> captures) {
-  for (const Capture& capture : captures) {
-    const XfbBuffer& buffer = feedback.buffer[capture.buffer];
-    const std::uint64_t last = buffer.offset + std::uint64_t{plan.corners - 1} * plan.xfb_stride[capture.buffer];
-    if (!buffer.data || last + byte_of(capture) + spirv::captured_bytes(capture.offset) > buffer.size) return false;
+/// Captures of a vertex that lie side by side: words [from, from + count) go to `byte` of its place in a buffer.
+struct CaptureRun {
+  std::uint32_t buffer = 0, byte = 0, from = 0, count = 0;
+  bool words = true;  ///< they are words; otherwise it is one capture of fewer bytes
+};
+
+std::vector<CaptureRun> runs_of(std::span<const Capture> captures) {
+  std::vector<CaptureRun> runs;
+  for (std::uint32_t k = 0; k < captures.size(); ++k) {
+    const Capture& capture = captures[k];
+    const bool words = spirv::captured_bytes(capture.offset) == 4;
+    if (words && !runs.empty() && runs.back().words && runs.back().buffer == capture.buffer &&
+        runs.back().byte + 4 * runs.back().count == byte_of(capture))
+      ++runs.back().count;
+    else
+      runs.push_back({capture.buffer, byte_of(capture), k, 1, words});
   }
-  return true;
+  return runs;
 }
 
-/// Writes one primitive and moves the buffers' offsets on.
-void write_primitive(TransformFeedback& feedback, const PipelinePlan& plan, std::span<const Capture> captures,
-                     const std::uint32_t* words) {
+/// How many of `primitives` have room: all captures of all their vertices lie inside their buffers.
+std::uint64_t fitting(const TransformFeedback& feedback, const PipelinePlan& plan, std::span<const Capture> captures,
+                      std::uint64_t primitives) {
+  for (const Capture& capture : captures) {
+    const XfbBuffer& buffer = feedback.buffer[capture.buffer];
+    const std::uint64_t stride = plan.xfb_stride[capture.buffer];
+    const std::uint64_t end =
+        buffer.offset + (plan.corners - 1) * stride + byte_of(capture) + spirv::captured_bytes(capture.offset);
+    if (!buffer.data || end > buffer.size) return 0;
+    if (stride != 0) primitives = std::min(primitives, (buffer.size - end) / (plan.corners * stride) + 1);
+  }
+  return primitives;
+}
+
+/// Writes vertices and moves the buffers' offsets on.
+void write_vertices(TransformFeedback& feedback, const PipelinePlan& plan, std::span<const Capture> captures,
+                    const std::uint32_t* words, std::uint64_t vertices) {
+  const std::vector<CaptureRun> runs = runs_of(captures);
   std::uint32_t used = 0;
-  for (const Capture& capture : captures) used |= 1u << capture.buffer;
-  for (std::uint32_t v = 0; v < plan.corners; ++v) {
-    for (const Capture& capture : captures) {
-      XfbBuffer& buffer = feedback.buffer[capture.buffer];
-      std::uint32_t bits = *words++;
-      if ((capture.offset & spirv::kXfbHalf) != 0) bits = base::float_to_half_nearest(std::bit_cast<float>(bits));
-      std::memcpy(buffer.data + buffer.offset + byte_of(capture), &bits, spirv::captured_bytes(capture.offset));
+  for (const CaptureRun& run : runs) used |= 1u << run.buffer;
+  for (std::uint64_t v = 0; v < vertices; ++v, words += captures.size()) {
+    for (const CaptureRun& run : runs) {
+      const XfbBuffer& buffer = feedback.buffer[run.buffer];
+      std::byte* const to = buffer.data + buffer.offset + run.byte;
+      if (run.words) {
+        for (std::uint32_t i = 0; i < run.count; ++i) std::memcpy(to + 4 * i, words + run.from + i, 4);
+        continue;
+      }
+      const std::uint32_t offset = captures[run.from].offset;
+      std::uint32_t bits = words[run.from];
+      if ((offset & spirv::kXfbHalf) != 0) bits = base::float_to_half_nearest(std::bit_cast<float>(bits));
+      std::memcpy(to, &bits, spirv::captured_bytes(offset));
     }
     for (std::uint32_t b = 0; b < spirv::kMaxXfbBuffers; ++b)
       if ((used >> b & 1) != 0) feedback.buffer[b].offset += plan.xfb_stride[b];
@@ -122,12 +153,8 @@ void write_capture(const DrawRecord& draw, const CaptureOutput& output) {
     const std::span<const Capture> captures = captures_of(plan, stream);
     std::uint64_t written = 0;
     if (feedback && !captures.empty()) {
-      const std::uint32_t* words = captured.words;
-      for (std::uint32_t p = 0; p < captured.primitives; ++p, words += captures.size() * plan.corners) {
-        if (!fits(*feedback, plan, captures)) continue;
-        write_primitive(*feedback, plan, captures, words);
-        ++written;
-      }
+      written = fitting(*feedback, plan, captures, captured.primitives);
+      write_vertices(*feedback, plan, captures, captured.words, written * plan.corners);
     }
     count(queries.generated[stream], captured.primitives);
     if (!feedback || !queries.feedback[stream]) continue;
