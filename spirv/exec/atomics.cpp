@@ -7,6 +7,7 @@
 #include "spirv/exec/atomic_ops.h"
 #include "spirv/exec/atomic_spaces.h"
 #include "spirv/exec/handlers.h"
+#include "spirv/exec/same_words.h"
 
 namespace vitrine::spirv::exec {
 namespace {
@@ -35,16 +36,19 @@ void run_lanes(Wave& wave, const Instruction* i, const MemoryOp& row, const Byte
 template <bool kAtomic>
 void run(Wave& wave, const Instruction* i, const MemoryOp& row, const Bytes& bytes, base::LaneMask active,
          bool uniform) {
-  if (!uniform) return run_lanes<kAtomic>(wave, i, row, bytes, active, reg(wave, i->src[0]).lane);
   if (active == 0) return;
-  const std::uint32_t offset = uniform_word(wave, i->src[0]);
-  std::uint32_t* word = aligned_word(bytes, offset + row.added);
+  base::WaveRegister same;
+  const base::WaveRegister& offsets = uniform ? same : reg(wave, i->src[0]);
+  if (uniform) {
+    std::fill_n(same.lane, base::kWaveWidth, uniform_word(wave, i->src[0]));
+  } else if (!is_several(active) || !have_same_word(offsets, active)) {
+    return run_lanes<kAtomic>(wave, i, row, bytes, active, offsets.lane);
+  }
+  std::uint32_t* word = aligned_word(bytes, offsets.lane[first_of(active)] + row.added);
   const std::uint32_t* operand = row.data[0] != kNoOperand ? reg(wave, row.data[0]).lane : nullptr;
   std::uint32_t* result = i->dst != kNoOperand ? reg(wave, i->dst).lane : nullptr;
   if (word != nullptr && operand != nullptr && combine_lanes<kAtomic>(row.atomic, word, operand, active, result))
     return;
-  base::WaveRegister offsets;
-  std::fill_n(offsets.lane, base::kWaveWidth, offset);
   run_lanes<kAtomic>(wave, i, row, bytes, active, offsets.lane);
 }
 

@@ -1,10 +1,12 @@
 // Image instructions: operands gathered into texel's requests, once per distinct descriptor among the active lanes.
+#include <algorithm>
 #include <array>
 
 #include "base/lasting.h"
 #include "spirv/exec/atomic_ops.h"
 #include "spirv/exec/buffers.h"
 #include "spirv/exec/handlers.h"
+#include "spirv/exec/same_words.h"
 #include "texel/load_store/prepared_fetch.h"
 #include "texel/sampler/prepared.h"
 
@@ -246,33 +248,57 @@ std::uint32_t* texel_word(const Call& call, const Descriptor& image, std::size_t
                               static_cast<std::uint32_t>(at(ImageOperand::kSample, 0)));
 }
 
+/// All lanes act on one texel.
+bool have_same_texel(const Call& call, base::LaneMask lanes) {
+  for (const WaveRegister* coord : {call.operand(ImageOperand::kCoord, 0), call.operand(ImageOperand::kCoord, 1),
+                                    call.operand(ImageOperand::kCoord, 2), call.operand(ImageOperand::kSample)})
+    if (coord != nullptr && !have_same_word(*coord, lanes)) return false;
+  return true;
+}
+
 void atomic(Call& call, const Descriptor& image, base::LaneMask lanes) {
   zero_result(call, lanes);
-  if (is_null(call, image)) return;
+  lanes &= call.wave.live;
+  if (is_null(call, image) || lanes == 0) return;
+  const ir::AtomicOp op = call.op.info.atomic;
   const WaveRegister* operand = call.operand(ImageOperand::kValue);
   const WaveRegister* compare = call.operand(ImageOperand::kCompare);
-  base::for_each_lane(lanes & call.wave.live, [&](std::size_t lane) {
+  std::uint32_t* const result = call.op.result[0] != kNoOperand ? call.result[0].lane : nullptr;
+  if (operand != nullptr && is_several(lanes) && have_same_texel(call, lanes)) {
+    std::uint32_t* const word = texel_word(call, image, first_of(lanes));
+    if (word == nullptr || combine_lanes<true>(op, word, operand->lane, lanes, result)) return;
+  }
+  base::for_each_lane(lanes, [&](std::size_t lane) {
     std::uint32_t* word = texel_word(call, image, lane);
     if (word == nullptr) return;
-    call.result[0].lane[lane] = apply_atomic<true>(call.op.info.atomic, word, operand ? operand->lane[lane] : 0,
-                                                   compare ? compare->lane[lane] : 0);
+    call.result[0].lane[lane] =
+        apply_atomic<true>(op, word, operand ? operand->lane[lane] : 0, compare ? compare->lane[lane] : 0);
   });
+}
+
+std::array<std::uint32_t, 3> query_of(const Call& call, const Descriptor& image, std::int32_t lod) {
+  switch (call.op.info.access) {
+    case ImageAccess::kQueryLevels:
+      return {image.image->level_count};
+    case ImageAccess::kQuerySamples:
+      return {image.image->samples};
+    default:
+      if (is_buffer(call)) return {static_cast<std::uint32_t>(image.texels->count)};
+      return texel::query_size(*image.image, lod);
+  }
 }
 
 void query(Call& call, const Descriptor& image, base::LaneMask lanes) {
   if (is_null(call, image)) return zero_result(call, lanes);
   const WaveRegister* lod = call.operand(ImageOperand::kLod);
+  if (lod == nullptr || have_same_word(*lod, lanes)) {
+    const std::int32_t level = lod ? static_cast<std::int32_t>(lod->lane[first_of(lanes)]) : 0;
+    const auto value = query_of(call, image, level);
+    for (std::uint32_t c = 0; c < 3; ++c) std::fill_n(call.result[c].lane, base::kWaveWidth, value[c]);
+    return;
+  }
   base::for_each_lane(lanes, [&](std::size_t lane) {
-    std::array<std::uint32_t, 3> value{};
-    if (call.op.info.access == ImageAccess::kQueryLevels) {
-      value[0] = image.image->level_count;
-    } else if (call.op.info.access == ImageAccess::kQuerySamples) {
-      value[0] = image.image->samples;
-    } else if (is_buffer(call)) {
-      value[0] = static_cast<std::uint32_t>(image.texels->count);
-    } else {
-      value = texel::query_size(*image.image, lod ? static_cast<std::int32_t>(lod->lane[lane]) : 0);
-    }
+    const auto value = query_of(call, image, static_cast<std::int32_t>(lod->lane[lane]));
     for (std::uint32_t c = 0; c < 3; ++c) call.result[c].lane[lane] = value[c];
   });
 }

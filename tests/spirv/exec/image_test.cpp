@@ -1,4 +1,6 @@
 // Image instructions: operands reach texel, descriptors are chosen per lane, null descriptors read 0, atomics count.
+#include <functional>
+
 #include "tests/spirv/shader_run.h"
 #include "texel/view.h"
 
@@ -98,6 +100,50 @@ TEST(Image, StoreAndAtomicAdd) {
   for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(image.texel(i, 3), i);
   EXPECT_EQ(image.texel(0, 0), 64u);
   for (std::uint32_t lane = 0; lane < 64; ++lane) EXPECT_EQ(run.output(0).lane[lane], lane);
+}
+
+/// Lanes of `active` do `op` with their own number on texel (`x`[lane], 0): the texels of the row and what lanes got
+/// are those of lane after lane.
+void expect_in_order(ir::AtomicOp op, base::LaneMask active, const std::function<std::uint32_t(std::uint32_t)>& x) {
+  Image image(VK_FORMAT_R32_UINT, 7);
+  Descriptor descriptor;
+  descriptor.image = &image.view;
+  ResourceTable table;
+  table.set[0] = &descriptor;
+  table.set_size[0] = 1;
+  Builder b;
+  const ValueId coord = b.append(Op::kVec, 2, false, {src(b.input(0)), src(b.constant(0))}).result;
+  ir::Instr& atomic =
+      image_instruction(b, ir::ImageAccess::kAtomic, bit(ir::ImageOperand::kCoord) | bit(ir::ImageOperand::kValue), 1,
+                        {vec(coord), src(b.input(1))});
+  auto info = std::make_shared<ir::ImageInfo>(*atomic.image);
+  info->atomic = op;
+  atomic.image = std::move(info);
+  b.output(0, atomic.result);
+  ShaderRun run(b, table);
+  for (std::uint32_t lane = 0; lane < 64; ++lane) {
+    run.input(0)->lane[lane] = x(lane);
+    run.input(1)->lane[lane] = lane;
+  }
+  run.wave.run(active, 0);
+  std::uint32_t want[4] = {7, 8, 9, 10};
+  for (std::uint32_t lane = 0; lane < 64; ++lane) {
+    if ((active >> lane & 1) == 0) continue;
+    std::uint32_t& word = want[x(lane)];
+    EXPECT_EQ(run.output(0).lane[lane], word) << lane;
+    word = op == ir::AtomicOp::kAdd ? word + lane : word ^ lane;
+  }
+  for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(image.texel(i, 0), want[i]);
+}
+
+TEST(Image, AtomicsOfLanesWithOneTexelAreThoseOfOneLaneAfterTheOther) {
+  const auto same = [](std::uint32_t) { return 2u; };
+  const auto one_differs = [](std::uint32_t lane) { return lane == 31 ? 1u : 2u; };
+  for (const ir::AtomicOp op : {ir::AtomicOp::kAdd, ir::AtomicOp::kXor})
+    for (const base::LaneMask active : {base::kAllLanes, base::LaneMask{0x00f0'8000'8000'0f00}, base::LaneMask{2}}) {
+      expect_in_order(op, active, same);
+      expect_in_order(op, active, one_differs);
+    }
 }
 
 TEST(Image, SampleNearest) {
