@@ -308,6 +308,43 @@ void query_lod(const PreparedSampler& p, const SampleRequest& request, const Sam
   });
 }
 
+/// Whether a texel is nearest on one level, and four words that are its values.
+bool is_four_values(const Call& call) {
+  const Plan& plan = call.plan();
+  const FormatDesc& format = *call.view().format;
+  const bool one = !plan.min_linear && !plan.mag_linear && (plan.mip != MipFilter::kLinear || !plan.lod_needed);
+  return one && !call.compare && !plan.seamless && format.block_bytes == 16 && !format.is_compressed() &&
+         format.channel[0].bits == 32;
+}
+
+/// From memory to the results in one walk.
+HWY_NOINLINE void sample_four_values(Call& call, const SampleResult& result) {
+  FloatTaps taps;
+  find_taps(call, 0, false, taps);
+  const ImageView& view = call.view();
+  const base::LaneMask active = call.request.active;
+  if (taps.outside[0] != 0) {
+    WaveTexels texels;
+    fetch_tap(call, taps, 0, texels);
+    return store_texels(view, texels, active, result);
+  }
+  const VU one = hn::Set(DU(), view.format->is_integer() ? 1u : 0x3f800000u);
+  const bool in_order = view.swizzle == std::array<std::uint8_t, 4>{0, 1, 2, 3};
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::MaxLanes(DU())) {
+    VU word[6];
+    load_word_quads(view.base, hn::Load(DI(), taps.place[0].offset.lane + first), word);
+    if (in_order) {
+      for (std::size_t c = 0; c < 4; ++c)
+        if (result[c] != nullptr) store_lanes(word[c], active, first, *result[c]);
+      continue;
+    }
+    word[4] = hn::Zero(DU());
+    word[5] = one;
+    for (std::size_t c = 0; c < 4; ++c)
+      if (result[c] != nullptr) store_lanes(word[view.swizzle[c]], active, first, *result[c]);
+  }
+}
+
 /// Of a call whose state is known.
 void sample_waves(Call& call, const SampleResult& result) {
   if (call.compare) {
@@ -315,6 +352,7 @@ void sample_waves(Call& call, const SampleResult& result) {
     load_reference(call);
   }
   if (call.plan().gather) return gather(call, result);
+  if (is_four_values(call)) return sample_four_values(call, result);
   WaveTexels texels;
   filter_levels(call, texels);
   if (call.compare) {
