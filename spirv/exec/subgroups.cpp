@@ -103,16 +103,23 @@ Word combine(Word value, Word sum) {
   }
 }
 
+/// Calls f(lane) for the lanes that take part of `size` from `first` on, the lowest first.
+template <class F>
+void for_participants(LaneMask lanes, std::uint32_t first, std::uint32_t size, F&& f) {
+  if (lanes != base::first_lanes(size) << first) return base::for_each_lane(lanes, f);
+  for (std::size_t lane = first; lane < first + size; ++lane) f(lane);
+}
+
 template <GroupOp kOp>
-std::uint32_t total(const std::uint32_t* from, LaneMask lanes) {
+std::uint32_t total(const std::uint32_t* from, LaneMask lanes, std::uint32_t first, std::uint32_t size) {
   auto sum = identity<kOp, std::uint32_t>();
-  base::for_each_lane(lanes, [&](std::size_t lane) { sum = combine<kOp>(from[lane], sum); });
+  for_participants(lanes, first, size, [&](std::size_t lane) { sum = combine<kOp>(from[lane], sum); });
   return sum;
 }
 
 template <GroupOp kOp>
 const Instruction* reduce_uniform(Wave& wave, const Instruction* i) {
-  uniform_word(wave, i->dst) = total<kOp>(reg(wave, i->src[0]).lane, exec::participants(wave));
+  uniform_word(wave, i->dst) = total<kOp>(reg(wave, i->src[0]).lane, exec::participants(wave), 0, base::kWaveWidth);
   return i + 1;
 }
 
@@ -124,10 +131,10 @@ const Instruction* reduce_lanes(Wave& wave, const Instruction* i) {
   for (std::uint32_t first = 0; first < base::kWaveWidth; first += size) {
     const LaneMask lanes = participants(wave, first, size);
     if constexpr (kMode == GroupMode::kReduce) {
-      std::fill_n(to + first, size, total<kOp>(from.lane, lanes));
+      std::fill_n(to + first, size, total<kOp>(from.lane, lanes, first, size));
     } else {
       auto sum = identity<kOp, std::uint32_t>();
-      base::for_each_lane(lanes, [&](std::size_t lane) {
+      for_participants(lanes, first, size, [&](std::size_t lane) {
         const std::uint32_t next = combine<kOp>(from.lane[lane], sum);
         to[lane] = kMode == GroupMode::kInclusive ? next : sum;
         sum = next;
@@ -148,7 +155,7 @@ const Instruction* reduce_pairs(Wave& wave, const Instruction* i) {
   for (std::uint32_t first = 0; first < base::kWaveWidth; first += size) {
     const LaneMask lanes = participants(wave, first, size);
     auto sum = identity<kOp, std::uint64_t>();
-    base::for_each_lane(lanes, [&](std::size_t lane) {
+    for_participants(lanes, first, size, [&](std::size_t lane) {
       const std::uint64_t next = combine<kOp>(std::uint64_t{high[lane]} << 32 | low[lane], sum);
       if (kMode != GroupMode::kReduce) put(lane, kMode == GroupMode::kInclusive ? next : sum);
       sum = next;
@@ -244,6 +251,11 @@ const Instruction* shuffle(Wave& wave, const Instruction* i) {
   const std::uint32_t* index = reg(wave, i->src[1]).lane;
   std::uint32_t* to = reg(wave, i->dst).lane;
   const std::uint32_t inside = i->extra[0] - 1;
+  if (wave.active == base::kAllLanes) {
+    for (std::uint32_t lane = 0; lane < base::kWaveWidth; ++lane)
+      to[lane] = from.lane[(lane & ~inside) | (index[lane] & inside)];
+    return i + 1;
+  }
   // What an inactive lane has is undefined, and could be another wave's.
   for (std::uint32_t lane = 0; lane < base::kWaveWidth; ++lane) {
     const std::uint32_t other = (lane & ~inside) | (index[lane] & inside);
