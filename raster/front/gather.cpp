@@ -46,22 +46,27 @@ struct Indices {
   /// Extends a range by the indices at `positions` positions from `first` on.
   void extend(std::uint64_t first, std::uint32_t positions, std::uint32_t& lowest, std::uint32_t& highest) const {
     std::uint32_t low = lowest, high = highest;
-    const auto add = [&](std::uint32_t index) {
+    for_each(first, positions, [&](std::uint32_t index) {
       low = std::min(low, index);
       high = std::max(high, index);
-    };
-    if (first + positions <= count) {
-      const std::byte* from = data + first * sizeof(T);
-      for (std::uint32_t i = 0; i < positions; ++i) {  // without a check for each, so that it becomes SIMD code
-        T value;
-        std::memcpy(&value, from + i * sizeof(T), sizeof(T));
-        add(value + offset);
-      }
-    } else {
-      for (std::uint32_t i = 0; i < positions; ++i) add((*this)[first + i]);
-    }
+    });
     lowest = low;
     highest = high;
+  }
+
+  /// Calls f(index) for these positions.
+  template <class F>
+  void for_each(std::uint64_t first, std::uint32_t positions, F&& f) const {
+    if (first + positions > count) {
+      for (std::uint32_t i = 0; i < positions; ++i) f((*this)[first + i]);
+      return;
+    }
+    const std::byte* from = data + first * sizeof(T);
+    for (std::uint32_t i = 0; i < positions; ++i) {  // without a check for each, so that it may become SIMD code
+      T value;
+      std::memcpy(&value, from + i * sizeof(T), sizeof(T));
+      f(value + offset);
+    }
   }
 };
 
@@ -100,7 +105,7 @@ struct Gather {
     scratch.hash_slot.resize(kHashSize);
     if (one_instance && highest - lowest < kHashSize) {
       std::fill_n(scratch.hash_slot.begin(), highest - lowest + 1, kNoSlot);
-      return each([&](std::uint32_t index, const Run& run) { add_in_range(index - lowest, index, run); });
+      return add_in_range(indices, lowest);
     }
     scratch.hash_key.assign(kHashSize, kEmptyKey);
     each([&](std::uint32_t index, const Run& run) {
@@ -119,15 +124,30 @@ struct Gather {
     }
   }
 
-  /// hash_slot is a table of the slots of all indices of the chunk, by distance from the lowest.
-  void add_in_range(std::uint32_t distance, std::uint32_t index, const Run& run) {
-    const std::uint16_t known = scratch.hash_slot[distance];
-    if (known == kNoSlot) {
-      scratch.hash_slot[distance] = static_cast<std::uint16_t>(count);
-      add_new(index, run);
-    } else {
-      scratch.slot[entry++] = known;
+  /// hash_slot is a table of the slots of all indices of the chunk, by distance from the lowest. Which indices are new
+  /// nobody can predict: what is said of a vertex is said again, behind the last one, where it is an old one.
+  template <class T>
+  void add_in_range(const Indices<T>& indices, std::uint32_t lowest) {
+    std::uint16_t *const table = scratch.hash_slot.data(), *to = scratch.slot.data();
+    std::uint32_t* const vertex = scratch.vertex.data();
+    std::uint32_t vertices = 0;
+    const auto add = [&](std::uint32_t index) {
+      std::uint16_t& place = table[index - lowest];
+      const std::uint32_t fresh = place == kNoSlot ? 1 : 0;
+      const auto slot = static_cast<std::uint16_t>(fresh != 0 ? vertices : place);
+      place = slot;
+      vertex[vertices] = index;
+      *to++ = slot;
+      vertices += fresh;
+    };
+    for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
+      const RunSpan span = run_span(chunk.draw->plan->shape, chunk.runs[r]);
+      const std::uint64_t first = std::uint64_t{chunk.draw->call.first} + chunk.runs[r].start;
+      if (span.center) add(indices[first]);
+      indices.for_each(first + span.low, span.high - span.low, add);
     }
+    std::fill_n(scratch.instance.begin(), vertices, chunk.runs[0].instance);
+    count = vertices;
   }
 
   void add_new(std::uint32_t index, const Run& run) {

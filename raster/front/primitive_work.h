@@ -17,6 +17,7 @@ struct PrimitiveWork : PrimitiveContext {
   SetupContext setup;
   ViewportTransform viewport;
   bool batches;                       ///< triangles inside the view volume need nothing but setup
+  bool inside = false;                ///< so are all vertices of the chunk
   std::uint32_t stipple_counter = 0;  ///< pixels of the pattern used up by earlier lines of the strip
   TriangleBatch batch;
   bool clips_segment = false;  ///< triangles go to `clipped`, not to setup

@@ -104,9 +104,35 @@ bool vanishes(const PrimitiveWork& w, const Run& run, const std::uint16_t* slots
   return !(same(0, 0, 1, 5) && same(0, 2, 3, 4) && same(1, 0, 3, 5) && same(1, 1, 2, 4));
 }
 
+/// Triangles [first, first + count) of a list, of which nothing is to be clipped; `slot`: three a triangle.
+void add_list_to_batch(PrimitiveWork& w, std::uint32_t first, std::uint32_t count, const std::uint16_t* slot) {
+  TriangleBatch& batch = w.batch;
+  const std::int32_t* const snapped = w.vertices.snapped.data();
+  const Vertex* const records = w.vertices.records;
+  const std::size_t stride = w.plan.vertex_stride;
+  while (count != 0) {
+    const std::uint32_t at = batch.count, some = std::min(TriangleBatch::kSize - at, count);
+    for (std::uint32_t c = 0; c < 3; ++c)
+      for (std::uint32_t t = 0; t < some; ++t) {
+        const std::size_t vertex = slot[3 * t + c];
+        batch.x[c][at + t] = snapped[2 * vertex];
+        batch.y[c][at + t] = snapped[2 * vertex + 1];
+        batch.record[c][at + t] = records + vertex * stride;
+      }
+    for (std::uint32_t t = 0; t < some; ++t) batch.id[at + t] = first + t;
+    batch.count += some;
+    if (batch.count == TriangleBatch::kSize) setup_triangles(w.setup, batch);
+    first += some;
+    count -= some;
+    slot += std::size_t{3} * some;
+  }
+}
+
 /// The most frequent topology, without tables.
 void process_triangle_list(PrimitiveWork& w, const Run& run, std::uint32_t first_entry) {
   const std::uint16_t* corner = w.vertices.slot.data() + first_entry;
+  if (w.batches && w.inside && !w.clips_segment)
+    return add_list_to_batch(w, run.first_id + run.begin, run.end - run.begin, corner);
   for (std::uint32_t i = run.begin; i < run.end; ++i, corner += 3) {
     const std::uint32_t slot[3] = {corner[0], corner[1], corner[2]};
     w.setup.id = run.first_id + i;
@@ -219,8 +245,9 @@ ClippedEnds process_primitives(const PrimitiveContext& context) {
   }
   if (chunk.stipple_counter) w.stipple_counter = *chunk.stipple_counter;
   const auto slots = w.vertices.slot.begin();
-  choose_view_layer(w, std::any_of(slots, slots + positions_of(chunk),
-                                   [&](std::uint16_t slot) { return w.vertices.code[slot] != 0; }));
+  w.inside =
+      std::none_of(slots, slots + positions_of(chunk), [&](std::uint16_t slot) { return w.vertices.code[slot] != 0; });
+  choose_view_layer(w, !w.inside);
   w.primitives.reserve(expected);
   for (std::uint32_t r = 0; r < chunk.run_count; ++r) {
     const RunSpan span = run_span(shape, chunk.runs[r]);

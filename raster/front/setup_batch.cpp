@@ -32,7 +32,7 @@ struct BatchFacts {
   alignas(64) std::int32_t x[3][TriangleBatch::kSize], y[3][TriangleBatch::kSize];  ///< in interpolation order
   alignas(64) std::int32_t x0[TriangleBatch::kSize], y0[TriangleBatch::kSize];      ///< pixels covered, before the cut
   alignas(64) std::int32_t x1[TriangleBatch::kSize], y1[TriangleBatch::kSize];      ///< to the draw region
-  alignas(64) std::uint32_t outside[TriangleBatch::kSize];                          ///< of a window's 16 lanes
+  alignas(64) std::uint32_t outside[TriangleBatch::kSize];                          ///< of a small window's 16 lanes
 };
 
 /// What is the same for all triangles of a draw.
@@ -137,14 +137,15 @@ void find_facts(const TriangleBatch& batch, const BatchConstants& constants, Bat
       hn::Store(corner_x[c], d, out.x[c] + i);
       hn::Store(corner_y[c], d, out.y[c] + i);
     }
-    LaneEdge edge[3] = {{ax, ay, bx, by, window_x, window_y},
-                        {bx, by, cx, cy, window_x, window_y},
-                        {cx, cy, ax, ay, window_x, window_y}};
     hn::Store(area, d, out.area + i);
     hn::Store(px0, d, out.x0 + i);
     hn::Store(py0, d, out.y0 + i);
     hn::Store(px1, d, out.x1 + i);
     hn::Store(py1, d, out.y1 + i);
+    if (hn::AllFalse(d, hn::Eq(step, constant(BatchStep::kSmallWindow)))) continue;
+    LaneEdge edge[3] = {{ax, ay, bx, by, window_x, window_y},
+                        {bx, by, cx, cy, window_x, window_y},
+                        {cx, cy, ax, ay, window_x, window_y}};
     hn::Store(outside_lanes(edge), d, reinterpret_cast<std::int32_t*>(out.outside) + i);
   }
 }
