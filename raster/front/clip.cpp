@@ -6,10 +6,16 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/x86_arithmetic.h"
 #include "raster/front/made_vertices.h"
 
 namespace vitrine::raster {
 namespace {
+
+using base::x86_add;
+using base::x86_div;
+using base::x86_mul;
+using base::x86_sub;
 
 /// Coefficients of planes 0..5 for (x, y, z, w).
 struct Plane {
@@ -41,23 +47,16 @@ float distance_to(const ClipContext& context, std::uint32_t plane, const ClipVer
   return ((p.x * v.clip[0] + p.y * v.clip[1]) + p.z * v.clip[2]) + p.w * v.clip[3];
 }
 
-float mix(float base, float other, float t) {
-  const float value = base + t * (other - base);
-#ifdef __aarch64__
-  // The NaN of operations on numbers has a sign on x86, and none here (as in raster/tile/interpolate.cpp).
-  if (std::bit_cast<std::uint32_t>(value) == 0x7fc00000u) return -value;
-#endif
-  return value;
-}
+float mix(float base, float other, float t) { return x86_add(x86_mul(x86_sub(other, base), t), base); }
 
 /// 1.5, noperspective: the parameter in window space, along the first axis on which the parents differ.
 float linear_parameter(const ClipVertex& base, const ClipVertex& other, const ClipVertex& made, float t) {
   for (int k = 0; k < 2; ++k) {
     if (base.clip[k] == other.clip[k]) continue;
-    const float in = other.clip[k] / other.clip[3];
-    const float out = base.clip[k] / base.clip[3];
-    const float at = made.clip[k] / made.clip[3];
-    return (at - out) / (in - out);
+    const float in = x86_div(other.clip[k], other.clip[3]);
+    const float out = x86_div(base.clip[k], base.clip[3]);
+    const float at = x86_div(made.clip[k], made.clip[3]);
+    return x86_div(x86_sub(at, out), x86_sub(in, out));
   }
   return t;
 }

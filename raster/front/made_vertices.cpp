@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "base/x86_arithmetic.h"
+
 namespace vitrine::raster {
 
 Vertex* copy_record(const PipelinePlan& plan, Arena& arena, const Vertex* record) {
@@ -31,7 +33,8 @@ const Vertex* between(const PipelinePlan& plan, Arena& arena, const Vertex* from
   // (This device alone: deviations.md, stipple-flat-integers.)
   const bool flushes = plan.as_reference.flushes_flat;
   const std::uint32_t smooth = 4 + (flushes ? plan.varying_count() : plan.perspective_count + plan.linear_count);
-  for (std::uint32_t i = 0; i < smooth; ++i) made[i] = from[i] + t * (to[i] - from[i]);
+  for (std::uint32_t i = 0; i < smooth; ++i)
+    made[i] = base::x86_add(base::x86_mul(base::x86_sub(to[i], from[i]), t), from[i]);
   std::memcpy(made + smooth, from + smooth, (plan.vertex_stride - smooth) * sizeof(Vertex));
   return made;
 }

@@ -2,6 +2,7 @@
 #include "raster/front/viewport.h"
 
 #include "base/simd.h"
+#include "base/x86_arithmetic.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/front/viewport.cpp"
@@ -9,14 +10,18 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "base/x86_arithmetic-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::raster::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using base::HWY_NAMESPACE::lanes_cast;
-using base::HWY_NAMESPACE::lanes_fma;
 using base::HWY_NAMESPACE::lanes_round_to_int;
+using base::HWY_NAMESPACE::x86_add;
+using base::HWY_NAMESPACE::x86_div;
+using base::HWY_NAMESPACE::x86_fma;
+using base::HWY_NAMESPACE::x86_mul;
 
 using F = hn::ScalableTag<float>;
 using U = hn::ScalableTag<std::uint32_t>;
@@ -59,10 +64,10 @@ void transform_lanes(const float* const clip[4], const TransformParameters& p, T
     const VF x = hn::Load(f, clip[0] + i), y = hn::Load(f, clip[1] + i);
     const VF z = hn::Load(f, clip[2] + i), w = hn::Load(f, clip[3] + i);
     hn::Store(clip_code(x, y, z, w, p), U(), out.code + i);
-    const VF oow = hn::Div(hn::Set(f, 1.0f), w);
+    const VF oow = x86_div(hn::Set(f, 1.0f), w);
     const auto window = [&](VF clip, float scale, float translate) HWY_ATTR {
-      const VF ndc = hn::Mul(clip, oow), s = hn::Set(f, scale), move = hn::Set(f, translate);
-      return p.fused ? lanes_fma(ndc, s, move) : hn::Add(hn::Mul(ndc, s), move);
+      const VF ndc = x86_mul(clip, oow), s = hn::Set(f, scale), move = hn::Set(f, translate);
+      return p.fused ? x86_fma(ndc, s, move) : x86_add(x86_mul(ndc, s), move);
     };
     const VF wx = window(x, t.sx, t.tx), wy = window(y, t.sy, t.ty), wz = window(z, t.sz, t.tz);
     hn::Store(wx, f, out.x + i);
@@ -87,10 +92,13 @@ void transform_wave(const float* const clip[4], const TransformParameters& param
 }
 
 void transform_vertex(const float clip[4], const ViewportTransform& viewport, float window[4]) {
-  const float oow = 1.0f / clip[3];
-  window[0] = (clip[0] * oow) * viewport.sx + viewport.tx;
-  window[1] = (clip[1] * oow) * viewport.sy + viewport.ty;
-  window[2] = (clip[2] * oow) * viewport.sz + viewport.tz;
+  const float oow = base::x86_div(1.0f, clip[3]);
+  const auto axis = [&](float place, float scale, float translate) {
+    return base::x86_add(base::x86_mul(base::x86_mul(place, oow), scale), translate);
+  };
+  window[0] = axis(clip[0], viewport.sx, viewport.tx);
+  window[1] = axis(clip[1], viewport.sy, viewport.ty);
+  window[2] = axis(clip[2], viewport.sz, viewport.tz);
   window[3] = oow;
 }
 

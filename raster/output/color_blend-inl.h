@@ -4,6 +4,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "base/x86_arithmetic-inl.h"
 #include "raster/output/blend.h"
 
 #if defined(VITRINE_RASTER_COLOR_BLEND_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -17,6 +18,10 @@ HWY_BEFORE_NAMESPACE();
 namespace vitrine::raster::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using base::HWY_NAMESPACE::x86_add;
+using base::HWY_NAMESPACE::x86_fma;
+using base::HWY_NAMESPACE::x86_mul;
+using base::HWY_NAMESPACE::x86_sub;
 
 /// blend_factor() of blend.h over what `in` knows to load and to subtract from one. Dual-source factors only where `in`
 /// has a second colour.
@@ -102,7 +107,7 @@ struct FloatFactors {
   HWY_INLINE VF load(const Floats& floats) const { return hn::Load(F32(), floats.lane + i); }
   HWY_INLINE VF zero() const { return hn::Zero(F32()); }
   HWY_INLINE VF one() const { return hn::Set(F32(), in.one); }
-  HWY_INLINE VF complement(VF v) const { return hn::Sub(one(), v); }
+  HWY_INLINE VF complement(VF v) const { return x86_sub(one(), v); }
   HWY_INLINE VF src() const { return load(in.src[c]); }
   HWY_INLINE VF src_alpha() const { return load(in.src[3]); }
   HWY_INLINE VF dst() const { return load(in.dst[c]); }
@@ -118,7 +123,7 @@ struct FloatFactors {
 };
 
 HWY_INLINE VF combine_floats(VkBlendOp op, VF a, VF b) {
-  return op == VK_BLEND_OP_ADD ? hn::Add(a, b) : op == VK_BLEND_OP_SUBTRACT ? hn::Sub(a, b) : hn::Sub(b, a);
+  return op == VK_BLEND_OP_ADD ? x86_add(a, b) : op == VK_BLEND_OP_SUBTRACT ? x86_sub(a, b) : x86_sub(b, a);
 }
 
 /// E5: factors f and 1 - f in a format of one channel.
@@ -127,12 +132,12 @@ HWY_INLINE VF blend_complementary(const BlendEquation& equation, bool at_source,
   const VF factor = blend_factor_lanes(at_source ? equation.src : equation.dst, in);
   if (equation.op == VK_BLEND_OP_ADD) {
     const VF from = at_source ? dst : src, to = at_source ? src : dst;
-    return base::HWY_NAMESPACE::lanes_fma(factor, hn::Sub(to, from), from);
+    return x86_fma(factor, x86_sub(to, from), from);
   }
-  const VF product = hn::Mul(hn::Add(src, dst), factor);
+  const VF product = x86_mul(x86_add(src, dst), factor);
   const bool product_first = (equation.op == VK_BLEND_OP_SUBTRACT) == at_source;
   const VF other = at_source ? dst : src;
-  return product_first ? hn::Sub(product, other) : hn::Sub(other, product);
+  return product_first ? x86_sub(product, other) : x86_sub(other, product);
 }
 
 /// blend_channel() of blend.h in binary32.
@@ -147,21 +152,21 @@ HWY_INLINE VF blend_floats(const BlendEquation& equation, const BlendShape& shap
   const VF src_factor = blend_factor_lanes(equation.src, in);
   if (factors && shape.common_factor) {
     const VF combined = combine_floats(op, src, dst);
-    return shape.src_one ? combined : shape.src_zero ? zero : hn::Mul(combined, src_factor);
+    return shape.src_one ? combined : shape.src_zero ? zero : x86_mul(combined, src_factor);
   }
-  const VF src_term = shape.src_one ? src : shape.src_zero ? zero : hn::Mul(src, src_factor);
-  const VF dst_term = shape.dst_one ? dst : shape.dst_zero ? zero : hn::Mul(dst, blend_factor_lanes(equation.dst, in));
+  const VF src_term = shape.src_one ? src : shape.src_zero ? zero : x86_mul(src, src_factor);
+  const VF dst_term = shape.dst_one ? dst : shape.dst_zero ? zero : x86_mul(dst, blend_factor_lanes(equation.dst, in));
   switch (op) {
     case VK_BLEND_OP_MIN:
       return base::HWY_NAMESPACE::lanes_min_second(src_term, dst_term);
     case VK_BLEND_OP_MAX:
       return base::HWY_NAMESPACE::lanes_max_second(src_term, dst_term);
     case VK_BLEND_OP_ADD:
-      return shape.src_zero ? dst_term : shape.dst_zero ? src_term : hn::Add(src_term, dst_term);
+      return shape.src_zero ? dst_term : shape.dst_zero ? src_term : x86_add(src_term, dst_term);
     case VK_BLEND_OP_SUBTRACT:
-      return shape.dst_zero ? src_term : hn::Sub(src_term, dst_term);
+      return shape.dst_zero ? src_term : x86_sub(src_term, dst_term);
     default:
-      return shape.src_zero ? dst_term : hn::Sub(dst_term, src_term);
+      return shape.src_zero ? dst_term : x86_sub(dst_term, src_term);
   }
 }
 

@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "base/x86_arithmetic-inl.h"
 #include "raster/lane_bits-inl.h"
 #include "raster/output/depth_formats-inl.h"
 
@@ -21,10 +22,11 @@ namespace vitrine::raster::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using base::HWY_NAMESPACE::lanes_fma;
 using base::HWY_NAMESPACE::lanes_mask_from_bits;
 using base::HWY_NAMESPACE::lanes_max_second;
 using base::HWY_NAMESPACE::lanes_min_second;
+using base::HWY_NAMESPACE::x86_add;
+using base::HWY_NAMESPACE::x86_fma;
 
 /// A vector of a square's pixels, in row order: several whole rows, or a part of one.
 template <std::size_t kSide>
@@ -97,13 +99,13 @@ class SquareTest {
     // All sums of places are exact: whole numbers, or a sample's eighths on top of them.
     for (std::size_t c = 0; c < kSide; c += Square::kRowLanes) {
       const VF fx = hn::Add(hn::Set(f, x + static_cast<float>(c)), lane_column_);
-      const VF inner = lanes_fma(dadx_, fx, a0_);
+      const VF inner = x86_fma(dadx_, fx, a0_);
       VF fy = hn::Add(hn::Set(f, y), lane_row_);
       std::byte* texels = first + c * Format::kBytes;
       for (std::size_t r = 0; r < kSide; r += Square::kRows) {
         const auto covered = static_cast<std::uint32_t>(rows >> (kSide * r + c)) & all;
         if (covered != 0) {
-          const auto value = Format::encode(restrict(lanes_fma(dady_, fy, inner)));
+          const auto value = Format::encode(restrict(x86_fma(dady_, fy, inner)));
           const auto stored = load_rows<Format, Square::kRows>(d, texels, pitch);
           const auto bits = static_cast<std::uint32_t>(bits_of_mask(compare<Format>(kOp, value, stored))) & covered;
           passed |= base::LaneMask{bits} << (kSide * r + c);
@@ -127,7 +129,7 @@ class SquareTest {
     std::uint64_t any = 0;
     for (std::size_t c = 0; c < kSide; c += n) {
       const VF fx = hn::Add(hn::Set(f, x + static_cast<float>(c)), lane_column_);
-      const VF inner = lanes_fma(dadx_, fx, a0_);
+      const VF inner = x86_fma(dadx_, fx, a0_);
       for (std::size_t w = 0; w < LargeWindow::kWords; ++w) {
         const std::uint64_t covered = window.rows[w] >> c & all;
         if (covered == 0) continue;
@@ -135,7 +137,7 @@ class SquareTest {
         std::byte* texels = first + c * Format::kBytes + 4 * w * pitch;
         std::uint64_t passed = 0;
         for (std::size_t r = 0; r < 4; ++r, texels += pitch) {
-          const auto value = Format::encode(restrict(lanes_fma(dady_, fy, inner)));
+          const auto value = Format::encode(restrict(x86_fma(dady_, fy, inner)));
           fy = hn::Add(fy, hn::Set(f, 1.0f));
           const auto stored = Format::load_row(d, texels);
           const std::uint64_t bits = bits_of_mask(compare<Format>(kOp, value, stored)) & covered >> 16 * r & all;
@@ -154,7 +156,7 @@ class SquareTest {
   /// The plane's value to a depth: bias, clamps.
   HWY_INLINE VF restrict(VF z) const {
     const Floats f;
-    z = hn::Add(z, offset_);
+    z = x86_add(z, offset_);
     if (restricts_) z = lanes_max_second(lanes_min_second(z, hn::Set(f, 1.0f)), hn::Zero(f));
     return clamps_ ? lanes_max_second(lanes_min_second(z, high_), low_) : z;
   }

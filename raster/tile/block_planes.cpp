@@ -9,13 +9,15 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "base/x86_arithmetic-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::raster::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using base::HWY_NAMESPACE::lanes_fma;
+using base::HWY_NAMESPACE::x86_fma;
+using base::HWY_NAMESPACE::x86_mul;
 
 /// Places of the lanes of one row of quads.
 alignas(64) constexpr float kRowX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
@@ -34,11 +36,11 @@ HWY_INLINE void evaluate_planes(const PlaneSet& planes, const BlockVarying* vary
     for (std::size_t k = 0; k < count; ++k) {
       const std::uint32_t plane = varying[k].plane;
       float* out = varying[k].out + i;
-      const auto inner = lanes_fma(hn::Set(f, planes.dadx[plane]), fx, hn::Set(f, planes.a0[plane]));
+      const auto inner = x86_fma(hn::Set(f, planes.dadx[plane]), fx, hn::Set(f, planes.a0[plane]));
       const auto dady = hn::Set(f, planes.dady[plane]);
       const auto store = [&](auto row_y, std::size_t r) {
-        auto v = lanes_fma(dady, row_y, inner);
-        if constexpr (kScales) v = hn::Mul(v, hn::Load(f, scale + 16 * r + i));
+        auto v = x86_fma(dady, row_y, inner);
+        if constexpr (kScales) v = x86_mul(v, hn::Load(f, scale + 16 * r + i));
         hn::Store(v, f, out + 16 * r);
       };
       store(y0, 0);
@@ -88,8 +90,8 @@ HWY_INLINE void evaluate_places(const PlaneSet& planes, const BlockVarying* vary
       const auto dady = hn::Set(f, planes.dady[v->plane]);
       float* out = v->out + i;
       const auto store = [&](auto x, auto y, std::size_t j) HWY_ATTR {
-        auto value = lanes_fma(dady, y, lanes_fma(dadx, x, a0));
-        if constexpr (kScales) value = hn::Mul(value, hn::Load(f, scale + i + j * n));
+        auto value = x86_fma(dady, y, x86_fma(dadx, x, a0));
+        if constexpr (kScales) value = x86_mul(value, hn::Load(f, scale + i + j * n));
         hn::Store(value, f, out + j * n);
       };
       store(x0, y0, 0);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/simd.h"
+#include "base/x86_arithmetic.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/tile/interpolate.cpp"
@@ -12,13 +13,18 @@
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "base/x86_arithmetic-inl.h"
 #include "raster/lane_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::raster::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using base::HWY_NAMESPACE::lanes_fma;
+using base::HWY_NAMESPACE::x86_add;
+using base::HWY_NAMESPACE::x86_div;
+using base::HWY_NAMESPACE::x86_fma;
+using base::HWY_NAMESPACE::x86_mul;
+using base::HWY_NAMESPACE::x86_sub;
 using F = hn::ScalableTag<float>;
 using Quad = hn::FixedTag<float, 4>;
 using VF = hn::Vec<F>;
@@ -36,7 +42,7 @@ HWY_INLINE VP vertex_values(const Vertex* v, std::size_t i, std::size_t perspect
   const VP place = hn::Iota(f, static_cast<float>(i));
   const auto perspective =
       hn::And(hn::Ge(place, hn::Set(f, 2.0f)), hn::Lt(place, hn::Set(f, static_cast<float>(perspective_end))));
-  return hn::Mul(raw, hn::IfThenElse(perspective, hn::Set(f, v[3]), hn::Set(f, 1.0f)));
+  return x86_mul(raw, hn::IfThenElse(perspective, hn::Set(f, v[3]), hn::Set(f, 1.0f)));
 }
 
 /// PlaneSet::unit_w from the first vector of planes.
@@ -52,18 +58,21 @@ HWY_INLINE bool has_unit_w(VP a0, VP dadx, VP dady) {
 void triangle_planes(const Primitive& p, float po, std::size_t count, std::size_t perspective_end, PlaneSet& out) {
   const P f;
   const Vertex *v0 = p.v[0], *v1 = p.v[1], *v2 = p.v[2];
-  const float dx01 = v0[0] - v1[0], dy01 = v0[1] - v1[1], dx20 = v2[0] - v0[0], dy20 = v2[1] - v0[1];
-  const float ooa = 1.0f / (dx01 * dy20 - dy01 * dx20);
-  const VP x20 = hn::Set(f, dx20 * ooa), y20 = hn::Set(f, dy20 * ooa);
-  const VP x01 = hn::Set(f, dx01 * ooa), y01 = hn::Set(f, dy01 * ooa);
-  const VP xc = hn::Set(f, v0[0] - po), yc = hn::Set(f, v0[1] - po);
+  const auto apart = [&](const Vertex* from, const Vertex* to, int axis) {
+    return base::x86_sub(from[axis], to[axis]);
+  };
+  const float dx01 = apart(v0, v1, 0), dy01 = apart(v0, v1, 1), dx20 = apart(v2, v0, 0), dy20 = apart(v2, v0, 1);
+  const float ooa = base::x86_div(1.0f, base::x86_sub(base::x86_mul(dx01, dy20), base::x86_mul(dy01, dx20)));
+  const VP x20 = hn::Set(f, base::x86_mul(dx20, ooa)), y20 = hn::Set(f, base::x86_mul(dy20, ooa));
+  const VP x01 = hn::Set(f, base::x86_mul(dx01, ooa)), y01 = hn::Set(f, base::x86_mul(dy01, ooa));
+  const VP xc = hn::Set(f, base::x86_sub(v0[0], po)), yc = hn::Set(f, base::x86_sub(v0[1], po));
   for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
     const VP a0 = vertex_values(v0, i, perspective_end);
-    const VP d01 = hn::Sub(a0, vertex_values(v1, i, perspective_end));
-    const VP d20 = hn::Sub(vertex_values(v2, i, perspective_end), a0);
-    const VP dadx = hn::Sub(hn::Mul(d01, y20), hn::Mul(d20, y01));
-    const VP dady = hn::Sub(hn::Mul(d20, x01), hn::Mul(d01, x20));
-    const VP origin = hn::Sub(a0, hn::Add(hn::Mul(dadx, xc), hn::Mul(dady, yc)));
+    const VP d01 = x86_sub(a0, vertex_values(v1, i, perspective_end));
+    const VP d20 = x86_sub(vertex_values(v2, i, perspective_end), a0);
+    const VP dadx = x86_sub(x86_mul(d01, y20), x86_mul(d20, y01));
+    const VP dady = x86_sub(x86_mul(d20, x01), x86_mul(d01, x20));
+    const VP origin = x86_sub(a0, x86_add(x86_mul(dadx, xc), x86_mul(dady, yc)));
     hn::Store(dadx, f, out.dadx + i);
     hn::Store(dady, f, out.dady + i);
     hn::Store(origin, f, out.a0 + i);
@@ -79,12 +88,12 @@ void line_planes(const Primitive& p, float idx, float idy, float ooa, std::size_
   const VP xc = hn::Set(f, v1[0] - 0.5f), yc = hn::Set(f, v1[1] - 0.5f);
   for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
     const VP a1 = vertex_values(v1, i, perspective_end);
-    const VP d = hn::Sub(a1, vertex_values(v2, i, perspective_end));
-    const VP dadx = hn::Mul(hn::Mul(d, hn::Set(f, idx)), hn::Set(f, ooa));
-    const VP dady = hn::Mul(hn::Mul(d, hn::Set(f, idy)), hn::Set(f, ooa));
+    const VP d = x86_sub(a1, vertex_values(v2, i, perspective_end));
+    const VP dadx = x86_mul(x86_mul(d, hn::Set(f, idx)), hn::Set(f, ooa));
+    const VP dady = x86_mul(x86_mul(d, hn::Set(f, idy)), hn::Set(f, ooa));
     hn::Store(dadx, f, out.dadx + i);
     hn::Store(dady, f, out.dady + i);
-    const VP origin = hn::Sub(a1, hn::Add(hn::Mul(dadx, xc), hn::Mul(dady, yc)));
+    const VP origin = x86_sub(a1, x86_add(x86_mul(dadx, xc), x86_mul(dady, yc)));
     hn::Store(origin, f, out.a0 + i);
     if (i == 0) out.unit_w = has_unit_w(origin, dadx, dady);
   }
@@ -101,29 +110,15 @@ void point_planes(const Primitive& p, std::size_t count, std::size_t perspective
   }
 }
 
-/// The NaN of operations on numbers has a sign on x86, and none on AArch64. It is told from others by its bits: a quiet
-/// NaN without sign and payload that a vertex has gets a sign, too.
-template <class V>
-HWY_INLINE V with_signed_nan(V v) {
-#if HWY_TARGET == HWY_NEON
-  const hn::Rebind<std::uint32_t, hn::DFromV<V>> d;
-  const auto bits = hn::BitCast(d, v);
-  return hn::BitCast(hn::DFromV<V>(),
-                     hn::IfThenElse(hn::Eq(bits, hn::Set(d, 0x7fc00000u)), hn::Set(d, 0xffc00000u), bits));
-#else
-  return v;
-#endif
-}
-
 void evaluate(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale, float* out) {
   if (wave.slots == 1) {
     const F f;
     const PlaneSet& set = *wave.set[0];
     const VF a0 = hn::Set(f, set.a0[plane]), dadx = hn::Set(f, set.dadx[plane]), dady = hn::Set(f, set.dady[plane]);
     for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(f)) {
-      VF v = lanes_fma(dady, hn::Load(f, points.y + i), lanes_fma(dadx, hn::Load(f, points.x + i), a0));
-      if (scale) v = hn::Mul(v, hn::Load(f, scale + i));
-      hn::Store(with_signed_nan(v), f, out + i);
+      VF v = x86_fma(dady, hn::Load(f, points.y + i), x86_fma(dadx, hn::Load(f, points.x + i), a0));
+      if (scale) v = x86_mul(v, hn::Load(f, scale + i));
+      hn::Store(v, f, out + i);
     }
     return;
   }
@@ -133,11 +128,10 @@ void evaluate(const WavePlanes& wave, std::uint32_t plane, const WavePoints& poi
     const PlaneSet& set = *wave.set[slot];
     const std::size_t end = std::size_t{4} * wave.end[slot];
     const auto step = [&](auto d) {
-      const auto inner =
-          lanes_fma(hn::Set(d, set.dadx[plane]), hn::LoadU(d, points.x + lane), hn::Set(d, set.a0[plane]));
-      auto v = lanes_fma(hn::Set(d, set.dady[plane]), hn::LoadU(d, points.y + lane), inner);
-      if (scale) v = hn::Mul(v, hn::LoadU(d, scale + lane));
-      hn::StoreU(with_signed_nan(v), d, out + lane);
+      const auto inner = x86_fma(hn::Set(d, set.dadx[plane]), hn::LoadU(d, points.x + lane), hn::Set(d, set.a0[plane]));
+      auto v = x86_fma(hn::Set(d, set.dady[plane]), hn::LoadU(d, points.y + lane), inner);
+      if (scale) v = x86_mul(v, hn::LoadU(d, scale + lane));
+      hn::StoreU(v, d, out + lane);
       lane += hn::Lanes(d);
     };
     const hn::CappedTag<float, 16> wide;
@@ -180,7 +174,7 @@ void points_of_quads(const QuadPositions& quads, float dx, float dy, WavePoints&
 void reciprocals(const float* in, float* out) {
   const F f;
   for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(f))
-    hn::Store(hn::Div(hn::Set(f, 1.0f), hn::Load(f, in + i)), f, out + i);
+    hn::Store(x86_div(hn::Set(f, 1.0f), hn::Load(f, in + i)), f, out + i);
 }
 
 void block_depth(const DepthPlane& plane, float x, float y, bool restricted, float* out) {
@@ -190,10 +184,10 @@ void block_depth(const DepthPlane& plane, float x, float y, bool restricted, flo
   for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
     // Both sums are exact: whole numbers, or a sample's eighths on top of them.
     const auto fx = hn::Add(hn::Set(f, x), hn::Load(f, kRowX + i));
-    const auto inner = lanes_fma(dadx, fx, a0);
+    const auto inner = x86_fma(dadx, fx, a0);
     for (std::size_t r = 0; r < 4; ++r) {
       const auto fy = hn::Add(hn::Set(f, y + static_cast<float>(2 * r)), hn::Load(f, kRowY + i));
-      auto z = hn::Add(lanes_fma(dady, fy, inner), offset);
+      auto z = x86_add(x86_fma(dady, fy, inner), offset);
       if (restricted) {
         const auto low = base::HWY_NAMESPACE::lanes_min_second(z, hn::Set(f, 1.0f));
         z = base::HWY_NAMESPACE::lanes_max_second(low, hn::Zero(f));
@@ -245,12 +239,12 @@ void point_coord_planes(const Primitive& p, std::uint32_t plane, PlaneSet& out) 
   const float ax = p.v[0][0] - 0.5f, ay = p.v[0][1] - 0.5f;
   const float x0 = static_cast<float>(0.5 - static_cast<double>(d * ax + 0 * ay));
   const float y0 = static_cast<float>(0.5 - static_cast<double>(0 * ax + d * ay));
-  out.a0[plane] = x0 * w;
-  out.dadx[plane] = d * w;
-  out.dady[plane] = 0 * w;
-  out.a0[plane + 1] = y0 * w;
-  out.dadx[plane + 1] = 0 * w;
-  out.dady[plane + 1] = d * w;
+  out.a0[plane] = base::x86_mul(x0, w);
+  out.dadx[plane] = base::x86_mul(d, w);
+  out.dady[plane] = base::x86_mul(0, w);
+  out.a0[plane + 1] = base::x86_mul(y0, w);
+  out.dadx[plane + 1] = base::x86_mul(0, w);
+  out.dady[plane + 1] = base::x86_mul(d, w);
 }
 
 }  // namespace

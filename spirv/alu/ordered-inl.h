@@ -2,13 +2,14 @@
 //
 // IEEE 754 leaves open which NaN survives; x86 keeps the first source operand's. The compiler, for which + and *
 // commute, orders the operands of each instruction as suits its registers, so the instruction is written out here.
-// AArch64 prefers signalling NaNs, and its own NaN of operations on numbers has no sign: NaNs are chosen by hand there.
+// AArch64, which chooses others, does as base/x86_arithmetic-inl.h says.
 
 #include "base/simd.h"
 
 #include <hwy/highway.h>
 
 #include "base/lane_math-inl.h"
+#include "base/x86_arithmetic-inl.h"
 
 #if defined(VITRINE_SPIRV_ALU_ORDERED_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VITRINE_SPIRV_ALU_ORDERED_INL_H_
@@ -23,26 +24,6 @@ namespace vitrine::spirv::alu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace base::HWY_NAMESPACE;
 
-#if HWY_TARGET == HWY_NEON
-namespace detail {
-
-/// What x86 leaves in lanes where `result` is a NaN: the first operand that is one, made quiet, or its own NaN.
-template <class V, class... Operands>
-HWY_INLINE V nan_of_x86(V result, Operands... operands) {
-  const auto lost = hn::IsNaN(result);
-  if (hn::AllFalse(hn::DFromV<V>(), lost)) return result;
-  const V in_order[] = {operands...};
-  V nan = lanes_cast<float>(lanes_set<Rebound<std::uint32_t, V>>(0xffc00000u));
-  for (std::size_t i = sizeof...(Operands); i-- > 0;) {
-    const V quiet = hn::Or(in_order[i], lanes_cast<float>(lanes_set<Rebound<std::uint32_t, V>>(0x00400000u)));
-    nan = hn::IfThenElse(hn::IsNaN(in_order[i]), quiet, nan);
-  }
-  return hn::IfThenElse(lost, nan, result);
-}
-
-}  // namespace detail
-#endif
-
 /// rnd(a + b); a's NaN if both are NaN.
 template <class V>
 HWY_INLINE V ordered_add(V a, V b) {
@@ -56,38 +37,26 @@ HWY_INLINE V ordered_add(V a, V b) {
   asm("vaddps %2, %1, %0" : "=v"(a.raw) : "v"(a.raw), "vm"(b.raw));
   return a;
 #else
-  return detail::nan_of_x86(hn::Add(a, b), a, b);
+  return x86_add(a, b);
 #endif
 }
 
 /// rnd(a - b); a's NaN if both are NaN.
 template <class V>
 HWY_INLINE V ordered_sub(V a, V b) {
-#if HWY_TARGET == HWY_NEON
-  return detail::nan_of_x86(hn::Sub(a, b), a, b);
-#else
-  return hn::Sub(a, b);
-#endif
+  return x86_sub(a, b);
 }
 
 /// rnd(a / b); a's NaN if both are NaN.
 template <class V>
 HWY_INLINE V ordered_div(V a, V b) {
-#if HWY_TARGET == HWY_NEON
-  return detail::nan_of_x86(hn::Div(a, b), a, b);
-#else
-  return hn::Div(a, b);
-#endif
+  return x86_div(a, b);
 }
 
 /// rnd(sqrt(a)).
 template <class V>
 HWY_INLINE V ordered_sqrt(V a) {
-#if HWY_TARGET == HWY_NEON
-  return detail::nan_of_x86(hn::Sqrt(a), a);
-#else
-  return hn::Sqrt(a);
-#endif
+  return x86_sqrt(a);
 }
 
 /// rnd(a * b); a's NaN if both are NaN.
@@ -103,7 +72,7 @@ HWY_INLINE V ordered_mul(V a, V b) {
   asm("vmulps %2, %1, %0" : "=v"(a.raw) : "v"(a.raw), "vm"(b.raw));
   return a;
 #else
-  return detail::nan_of_x86(hn::Mul(a, b), a, b);
+  return x86_mul(a, b);
 #endif
 }
 
@@ -117,7 +86,7 @@ HWY_INLINE V ordered_fma(V a, V b, V c) {
   asm("vfmadd231ps %2, %1, %0" : "+v"(c.raw) : "v"(a.raw), "vm"(b.raw));
   return c;
 #elif HWY_TARGET == HWY_NEON
-  return detail::nan_of_x86(hn::MulAdd(a, b, c), a, b, c);
+  return x86_fma(a, b, c);
 #else
   V result = lanes_fma(a, b, c);
   for (const V operand : {c, b, a})
