@@ -4,6 +4,7 @@
 #include "base/lasting.h"
 #include "base/loop_watch.h"
 #include "base/shake.h"
+#include "base/simulated_workers.h"
 
 #include <pthread.h>
 #include <sched.h>
@@ -28,6 +29,7 @@ thread_local bool inside_loop = false;
 thread_local std::size_t current_worker = 0;
 
 std::size_t wanted_workers() {
+  if (simulated_workers() != 0) return simulated_workers();
   if (const char* value = std::getenv("VITRINE_THREADS")) {
     const long count = std::strtol(value, nullptr, 10);
     if (count > 0) return static_cast<std::size_t>(std::min(count, 256L));
@@ -204,6 +206,13 @@ std::size_t worker_count() { return pool().size(); }
 void parallel_for(std::size_t count, FunctionRef<void(std::size_t, std::size_t)> body) {
   if (count == 0) return;
   if (shakes(ShakeKind::kOrder)) return run_shuffled(count, body);
+  if (simulated_workers() != 0 && count > 1 && !inside_loop) {
+    const InsideLoop inside;
+    return simulate_loop(count, [&](std::size_t index, std::size_t worker) {
+      current_worker = worker;
+      body(index, worker);
+    });
+  }
   if (count == 1 || inside_loop || pool().size() == 1) {
     if (!inside_loop) current_worker = 0;
     const InsideLoop inside;

@@ -185,6 +185,8 @@ struct Program {
   std::vector<ImageOp> image_ops;
   std::vector<ProbeOp> probe_ops;
   std::vector<Probe> probes;
+  /// About how many instructions a wave runs, with as many turns for every loop as most have at least.
+  std::uint64_t cost = 0;
   bool has_barrier = false;
   bool flush_denormals = false;  ///< floating-point mode of the preamble
   std::uint32_t local_size[3] = {1, 1, 1};

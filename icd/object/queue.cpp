@@ -11,6 +11,7 @@
 
 #include "base/lasting.h"
 #include "base/shake.h"
+#include "base/simulated_workers.h"
 #include "glass/digest.h"
 #include "glass/session.h"
 #include "glass/sync/sync.h"
@@ -132,6 +133,7 @@ class BatchList {
 
 /// False if the device was lost.
 bool replay_all(Device& device, Batch& batch) noexcept {
+  const base::SimulatedWork work;
   begin_observed_submission(device, std::move(batch.labels), batch.host);
   if (device.replay->observed && glass::has_digest()) digest_submission(*device.replay);
   const bool done = std::all_of(batch.command_buffers.begin(), batch.command_buffers.end(), [&](VkCommandBuffer b) {

@@ -23,6 +23,8 @@ constexpr std::uint64_t kWidth = base::kWaveWidth;
 constexpr std::uint64_t kInlineWork = 20000;
 /// Workgroups are handed out in items of about this much work.
 constexpr std::uint64_t kItemWork = 4000;
+/// But in as many for each thread at least, if there are enough workgroups: nobody knows how often their loops turn.
+constexpr std::uint64_t kItemsPerThread = 4;
 
 struct Launch {
   const BoundShader& shader;
@@ -185,11 +187,11 @@ void dispatch(const BoundShader& shader, const std::uint32_t base[3], const std:
   launch.invocations = invocations;
   // Waves that wait for each other take turns: together they have the budget of one.
   launch.budget = exec::shader_budget() / (program.has_barrier ? launch.order.pieces() : 1);
-  const std::uint64_t group_work = waves * program.code.size();
+  const std::uint64_t group_work = waves * program.cost;
   const bool in_order = program.observation && program.observation->observer->in_order();
   if (in_order || launch.order.shaken() || group_work * total <= kInlineWork) return run_range(launch, 0, total);
-  const std::uint64_t per_item =
-      std::clamp<std::uint64_t>(kItemWork / group_work, 1, std::max<std::uint64_t>(1, total / base::worker_count()));
+  const std::uint64_t most = std::max<std::uint64_t>(1, total / (kItemsPerThread * base::worker_count()));
+  const std::uint64_t per_item = std::clamp<std::uint64_t>(kItemWork / group_work, 1, most);
   base::parallel_for(static_cast<std::size_t>((total + per_item - 1) / per_item), [&](std::size_t item, std::size_t) {
     run_range(launch, item * per_item, std::min(total, (item + 1) * per_item));
   });

@@ -14,7 +14,7 @@ namespace vitrine::spirv::lowering {
 std::unique_ptr<Program> emit(const ScalarFunction& function, const Allocation& allocation, ShaderInterface& interface,
                               std::string& error);
 
-/// Writes into the end of each loop what a turn costs (spirv/exec/handlers.h: loop_back).
+/// Writes into the end of each loop what a turn costs (spirv/exec/handlers.h: loop_back), and Program::cost.
 void charge_loops(Program& program);
 
 }  // namespace vitrine::spirv::lowering

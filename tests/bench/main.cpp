@@ -15,6 +15,7 @@
 #include "bench.h"
 #include "corpus/corpus.h"
 #include "harness/shader.h"
+#include "threads.h"
 
 namespace vitrine::bench {
 namespace {
@@ -228,7 +229,7 @@ int run_parent(const std::vector<Driver>& drivers, int rounds, const std::string
 int main(int argc, char** argv) {
   using namespace vitrine::bench;
   std::vector<Driver> drivers, with_tools;
-  std::string filter;
+  std::string filter, threads;
   CorpusOptions corpus;
   std::string module;
   int rounds = 3;
@@ -241,6 +242,8 @@ int main(int argc, char** argv) {
     if (const char* child = value("--child=")) return run_child(child);
     if (const char* text = value("--rounds=")) {
       rounds = std::max(1, std::atoi(text));
+    } else if (const char* counts = value("--threads=")) {
+      threads = counts;
     } else if (const char* folder = value("--corpus=")) {
       corpus.folder = folder;
     } else if (const char* every = value("--every=")) {
@@ -257,8 +260,9 @@ int main(int argc, char** argv) {
     } else {
       std::fprintf(stderr,
                    "usage: %s [--rounds=N] [--filter=TEXT] [--icd=NAME=MANIFEST]... [--tools=LIST]...\n"
-                   "       %s --corpus=FOLDER [--every=N] [--rounds=N] [--icd=NAME=MANIFEST]\n",
-                   argv[0], argv[0]);
+                   "       %s --corpus=FOLDER [--every=N] [--rounds=N] [--icd=NAME=MANIFEST]\n"
+                   "       %s --threads=COUNT,... [--filter=TEXT] [--icd=NAME=MANIFEST]\n",
+                   argv[0], argv[0], argv[0]);
       return 2;
     }
   }
@@ -266,6 +270,7 @@ int main(int argc, char** argv) {
   corpus.rounds = rounds;
   if (!module.empty()) return run_corpus_module(module, corpus.manifest, rounds);
   if (!corpus.folder.empty()) return run_corpus(corpus);
+  if (!threads.empty()) return run_threads(corpus.manifest, threads, filter);
   if (drivers.empty()) {
     drivers.push_back({"vitrine", BENCH_DEFAULT_ICD});
     if (with_tools.empty()) add_peers(drivers);

@@ -1,7 +1,10 @@
 // The instruction budget of a wave: what turns of loops cost, whose fault counts. The budget of this process is
 // 1,000,000 (execute_test.cpp).
+#include <atomic>
 #include <cstring>
 
+#include "base/loop_watch.h"
+#include "base/workers.h"
 #include "tests/spirv/buffers.h"
 #include "tests/spirv/front/glsl.h"
 
@@ -44,6 +47,28 @@ std::uint32_t cost_of_turn(const std::string& body) {
     if (std::string(program.notes[k].name).starts_with("loop")) return program.code[k].extra[1];
   ADD_FAILURE() << disassemble(program);
   return 0;
+}
+
+std::atomic<std::size_t> handed_out;
+
+/// Items in which `groups` workgroups were handed to threads; 0: all ran on this one.
+std::size_t items_of(const std::string& body, std::uint32_t groups) {
+  const auto shader = compile_body("layout(local_size_x = 64) in;\n", body);
+  if (!shader) return 0;
+  handed_out = 0;
+  base::set_loop_watch([](auto, auto, std::size_t items) { handed_out += items; });
+  Fault fault;
+  run(*shader, groups, fault);
+  base::set_loop_watch(nullptr);
+  EXPECT_FALSE(fault.raised);
+  return handed_out;
+}
+
+TEST(Budget, FewWorkgroupsWithLoopsAreHandedToAllThreads) {
+  if (base::worker_count() == 1) GTEST_SKIP() << "one thread";
+  EXPECT_EQ(items_of("  x += v[i] * 3u;\n", 64), 0u);
+  const std::string loop = "  for (uint k = 0u; k < v[0] * 4096u; ++k) x = x * 5u + v[k];\n";
+  EXPECT_GE(items_of(loop, 64), std::min<std::size_t>(64, 4 * base::worker_count()));
 }
 
 TEST(Budget, TurnsCostTheInstructionsOfTheLoop) {
