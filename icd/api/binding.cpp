@@ -6,6 +6,7 @@
 #include "icd/object/memory.h"
 #include "icd/object/pipeline.h"
 #include "icd/record/command_buffer.h"
+#include "icd/record/stage_binding.h"
 
 namespace vitrine::icd::entry {
 
@@ -36,6 +37,20 @@ VKAPI_ATTR void VKAPI_CALL CmdPushConstants(VkCommandBuffer buffer, VkPipelineLa
                                        copy_array(buffer, ranges.data(), ranges.size())});
 }
 
+#ifdef VK_KHR_maintenance6
+// Vulkan 1.4.309, VK_KHR_maintenance6: the same with structures, for others to extend.
+VKAPI_ATTR void VKAPI_CALL CmdBindDescriptorSets2KHR(VkCommandBuffer buffer, const VkBindDescriptorSetsInfoKHR* info) {
+  for_each_bind_point(info->stageFlags, [&](VkPipelineBindPoint bind_point) {
+    CmdBindDescriptorSets(buffer, bind_point, info->layout, info->firstSet, info->descriptorSetCount,
+                          info->pDescriptorSets, info->dynamicOffsetCount, info->pDynamicOffsets);
+  });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdPushConstants2KHR(VkCommandBuffer buffer, const VkPushConstantsInfoKHR* info) {
+  CmdPushConstants(buffer, info->layout, info->stageFlags, info->offset, info->size, info->pValues);
+}
+#endif
+
 VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers(VkCommandBuffer buffer, std::uint32_t first, std::uint32_t count,
                                                 const VkBuffer* buffers, const VkDeviceSize* offsets) {
   CmdBindVertexBuffers2(buffer, first, count, buffers, offsets, nullptr, nullptr);
@@ -54,7 +69,15 @@ VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers2(VkCommandBuffer buffer, std::ui
 
 VKAPI_ATTR void VKAPI_CALL CmdBindIndexBuffer(VkCommandBuffer buffer, VkBuffer index_buffer, VkDeviceSize offset,
                                               VkIndexType type) {
-  record(buffer, icd::CmdBindIndexBuffer{from_nullable<Buffer>(index_buffer), offset, type});
+  record(buffer, icd::CmdBindIndexBuffer{from_nullable<Buffer>(index_buffer), offset, VK_WHOLE_SIZE, type});
 }
+
+#ifdef VK_KHR_maintenance5
+/// Vulkan 1.4.309, vkCmdBindIndexBuffer2: indices end with the range, not with the buffer.
+VKAPI_ATTR void VKAPI_CALL CmdBindIndexBuffer2KHR(VkCommandBuffer buffer, VkBuffer index_buffer, VkDeviceSize offset,
+                                                  VkDeviceSize size, VkIndexType type) {
+  record(buffer, icd::CmdBindIndexBuffer{from_nullable<Buffer>(index_buffer), offset, size, type});
+}
+#endif
 
 }  // namespace vitrine::icd::entry

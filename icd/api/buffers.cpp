@@ -11,6 +11,16 @@ namespace {
 // An allocation can be no larger, so neither can a buffer.
 constexpr VkDeviceSize kMaxBufferSize = kClaimedPhysicalDeviceMaintenance3Properties.maxMemoryAllocationSize;
 
+/// Of a create info, or those that its chain puts in their place. There are none here beyond the first 32.
+VkBufferUsageFlags usage_of(const VkBufferCreateInfo& info) {
+#ifdef VK_KHR_maintenance5
+  if (const auto* wide = find_in_chain<VkBufferUsageFlags2CreateInfoKHR>(info.pNext)) {
+    return static_cast<VkBufferUsageFlags>(wide->usage);
+  }
+#endif
+  return info.usage;
+}
+
 }  // namespace
 
 namespace entry {
@@ -20,7 +30,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateBuffer(VkDevice device, const VkBufferCreat
   if (info->size > kMaxBufferSize) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   Buffer* object = create_object<Buffer>(from_handle<Device>(device).memory, allocator);
   object->flags = info->flags;
-  object->usage = info->usage;
+  object->usage = usage_of(*info);
   object->size = info->size;
   *buffer = to_handle(object);
   return VK_SUCCESS;

@@ -25,10 +25,40 @@ Old downgrade(const New& region) {
   return out;
 }
 
+std::span<const VkBufferCopy> copy_regions(VkCommandBuffer buffer, const VkBufferCopy2* regions, std::uint32_t count) {
+  const auto out = from_handle<CommandBuffer>(buffer).arena.add_array<VkBufferCopy>(count);
+  std::transform(regions, regions + count, out.begin(), downgrade<VkBufferCopy, VkBufferCopy2>);
+  return out;
+}
+
+/// VK_REMAINING_ARRAY_LAYERS as a number (Vulkan 1.4.309, VkImageSubresourceLayers).
+void resolve_layers(const Image& image, VkImageSubresourceLayers& layers) {
+  const std::uint32_t all = image.desc().layers;
+  if (layers.layerCount == VK_REMAINING_ARRAY_LAYERS) layers.layerCount = all - std::min(all, layers.baseArrayLayer);
+}
+
+/// Regions of an image and a buffer.
+template <class New>
+std::span<const VkBufferImageCopy> copy_regions(VkCommandBuffer buffer, const New* regions, std::uint32_t count,
+                                                const Image& image) {
+  const auto out = from_handle<CommandBuffer>(buffer).arena.add_array<VkBufferImageCopy>(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    out[i] = downgrade<VkBufferImageCopy>(regions[i]);
+    resolve_layers(image, out[i].imageSubresource);
+  }
+  return out;
+}
+
+/// Regions of two images.
 template <class Old, class New>
-std::span<const Old> copy_regions(VkCommandBuffer buffer, const New* regions, std::uint32_t count) {
+std::span<const Old> copy_regions(VkCommandBuffer buffer, const New* regions, std::uint32_t count, const Image& source,
+                                  const Image& target) {
   const auto out = from_handle<CommandBuffer>(buffer).arena.add_array<Old>(count);
-  std::transform(regions, regions + count, out.begin(), [](const New& r) { return downgrade<Old>(r); });
+  for (std::uint32_t i = 0; i < count; ++i) {
+    out[i] = downgrade<Old>(regions[i]);
+    resolve_layers(source, out[i].srcSubresource);
+    resolve_layers(target, out[i].dstSubresource);
+  }
   return out;
 }
 
@@ -80,7 +110,7 @@ VKAPI_ATTR void VKAPI_CALL CmdCopyBuffer(VkCommandBuffer buffer, VkBuffer source
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdCopyBuffer2(VkCommandBuffer buffer, const VkCopyBufferInfo2* info) {
-  const auto regions = copy_regions<VkBufferCopy>(buffer, info->pRegions, info->regionCount);
+  const auto regions = copy_regions(buffer, info->pRegions, info->regionCount);
   record(buffer,
          icd::CmdCopyBuffer{&from_handle<Buffer>(info->srcBuffer), &from_handle<Buffer>(info->dstBuffer), regions});
   for (const VkBufferCopy& r : regions) add_cost(buffer, r.size);
@@ -102,12 +132,11 @@ VKAPI_ATTR void VKAPI_CALL CmdCopyImage(VkCommandBuffer buffer, VkImage source, 
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdCopyImage2(VkCommandBuffer buffer, const VkCopyImageInfo2* info) {
-  const auto regions = copy_regions<VkImageCopy>(buffer, info->pRegions, info->regionCount);
-  const Image& source = from_handle<Image>(info->srcImage);
-  record(buffer, icd::CmdCopyImage{&source, &from_handle<Image>(info->dstImage), regions});
+  const Image &source = from_handle<Image>(info->srcImage), &target = from_handle<Image>(info->dstImage);
+  const auto regions = copy_regions<VkImageCopy>(buffer, info->pRegions, info->regionCount, source, target);
+  record(buffer, icd::CmdCopyImage{&source, &target, regions});
   record_layouts(buffer, source, info->srcImageLayout, regions, &VkImageCopy::srcSubresource);
-  record_layouts(buffer, from_handle<Image>(info->dstImage), info->dstImageLayout, regions,
-                 &VkImageCopy::dstSubresource);
+  record_layouts(buffer, target, info->dstImageLayout, regions, &VkImageCopy::dstSubresource);
   add_texel_cost(buffer, source, regions);
 }
 
@@ -128,13 +157,11 @@ VKAPI_ATTR void VKAPI_CALL CmdBlitImage(VkCommandBuffer buffer, VkImage source, 
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdBlitImage2(VkCommandBuffer buffer, const VkBlitImageInfo2* info) {
-  const auto regions = copy_regions<VkImageBlit>(buffer, info->pRegions, info->regionCount);
-  record(buffer, icd::CmdBlitImage{&from_handle<Image>(info->srcImage), &from_handle<Image>(info->dstImage), regions,
-                                   info->filter});
-  record_layouts(buffer, from_handle<Image>(info->srcImage), info->srcImageLayout, regions,
-                 &VkImageBlit::srcSubresource);
-  record_layouts(buffer, from_handle<Image>(info->dstImage), info->dstImageLayout, regions,
-                 &VkImageBlit::dstSubresource);
+  const Image &source = from_handle<Image>(info->srcImage), &target = from_handle<Image>(info->dstImage);
+  const auto regions = copy_regions<VkImageBlit>(buffer, info->pRegions, info->regionCount, source, target);
+  record(buffer, icd::CmdBlitImage{&source, &target, regions, info->filter});
+  record_layouts(buffer, source, info->srcImageLayout, regions, &VkImageBlit::srcSubresource);
+  record_layouts(buffer, target, info->dstImageLayout, regions, &VkImageBlit::dstSubresource);
   for (const VkImageBlit& r : regions) {
     const std::int64_t width = std::abs(std::int64_t{r.dstOffsets[1].x} - r.dstOffsets[0].x);
     const std::int64_t height = std::abs(std::int64_t{r.dstOffsets[1].y} - r.dstOffsets[0].y);
@@ -157,8 +184,8 @@ VKAPI_ATTR void VKAPI_CALL CmdCopyBufferToImage(VkCommandBuffer buffer, VkBuffer
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdCopyBufferToImage2(VkCommandBuffer buffer, const VkCopyBufferToImageInfo2* info) {
-  const auto regions = copy_regions<VkBufferImageCopy>(buffer, info->pRegions, info->regionCount);
   const Image& target = from_handle<Image>(info->dstImage);
+  const auto regions = copy_regions(buffer, info->pRegions, info->regionCount, target);
   record(buffer, icd::CmdCopyBufferToImage{&from_handle<Buffer>(info->srcBuffer), &target, regions});
   record_layouts(buffer, target, info->dstImageLayout, regions, &VkBufferImageCopy::imageSubresource);
   add_texel_cost(buffer, target, regions);
@@ -179,8 +206,8 @@ VKAPI_ATTR void VKAPI_CALL CmdCopyImageToBuffer(VkCommandBuffer buffer, VkImage 
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdCopyImageToBuffer2(VkCommandBuffer buffer, const VkCopyImageToBufferInfo2* info) {
-  const auto regions = copy_regions<VkBufferImageCopy>(buffer, info->pRegions, info->regionCount);
   const Image& source = from_handle<Image>(info->srcImage);
+  const auto regions = copy_regions(buffer, info->pRegions, info->regionCount, source);
   record(buffer, icd::CmdCopyImageToBuffer{&source, &from_handle<Buffer>(info->dstBuffer), regions});
   record_layouts(buffer, source, info->srcImageLayout, regions, &VkBufferImageCopy::imageSubresource);
   add_texel_cost(buffer, source, regions);
@@ -202,12 +229,11 @@ VKAPI_ATTR void VKAPI_CALL CmdResolveImage(VkCommandBuffer buffer, VkImage sourc
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdResolveImage2(VkCommandBuffer buffer, const VkResolveImageInfo2* info) {
-  const auto regions = copy_regions<VkImageResolve>(buffer, info->pRegions, info->regionCount);
-  const Image& source = from_handle<Image>(info->srcImage);
-  record(buffer, icd::CmdResolveImage{&source, &from_handle<Image>(info->dstImage), regions});
+  const Image &source = from_handle<Image>(info->srcImage), &target = from_handle<Image>(info->dstImage);
+  const auto regions = copy_regions<VkImageResolve>(buffer, info->pRegions, info->regionCount, source, target);
+  record(buffer, icd::CmdResolveImage{&source, &target, regions});
   record_layouts(buffer, source, info->srcImageLayout, regions, &VkImageResolve::srcSubresource);
-  record_layouts(buffer, from_handle<Image>(info->dstImage), info->dstImageLayout, regions,
-                 &VkImageResolve::dstSubresource);
+  record_layouts(buffer, target, info->dstImageLayout, regions, &VkImageResolve::dstSubresource);
   add_texel_cost(buffer, source, regions);
 }
 

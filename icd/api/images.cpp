@@ -92,6 +92,19 @@ texel::ImageView view_of_aspect(const Image& image, VkImageAspectFlagBits aspect
 
 namespace {
 
+VkSubresourceLayout layout_of(const texel::ImageLayout& layout, const VkImageSubresource& subresource) {
+  const auto aspect = static_cast<VkImageAspectFlagBits>(subresource.aspectMask);
+  const texel::PlaneLayout& plane = layout.plane[texel::plane_of_aspect(layout, aspect)];
+  const texel::LevelLayout& level = plane.level[subresource.mipLevel];
+  VkSubresourceLayout out;
+  out.offset = plane.offset + level.offset + subresource.arrayLayer * plane.layer_stride;
+  out.size = level.slice_pitch * level.extent.depth;
+  out.rowPitch = level.row_pitch;
+  out.arrayPitch = plane.layer_stride;
+  out.depthPitch = level.slice_pitch;
+  return out;
+}
+
 /// VkImageViewMinLodCreateInfoEXT.
 void set_min_lod(texel::ImageView& view, float min_lod) {
   view.min_lod = std::max(min_lod - static_cast<float>(view.base_level), 0.0f);
@@ -135,16 +148,24 @@ VKAPI_ATTR void VKAPI_CALL DestroyImage(VkDevice device, VkImage image, const Vk
 
 VKAPI_ATTR void VKAPI_CALL GetImageSubresourceLayout(VkDevice, VkImage image, const VkImageSubresource* subresource,
                                                      VkSubresourceLayout* out) {
-  const texel::ImageLayout& layout = from_handle<Image>(image).layout;
-  const auto aspect = static_cast<VkImageAspectFlagBits>(subresource->aspectMask);
-  const texel::PlaneLayout& plane = layout.plane[texel::plane_of_aspect(layout, aspect)];
-  const texel::LevelLayout& level = plane.level[subresource->mipLevel];
-  out->offset = plane.offset + level.offset + subresource->arrayLayer * plane.layer_stride;
-  out->size = level.slice_pitch * level.extent.depth;
-  out->rowPitch = level.row_pitch;
-  out->arrayPitch = plane.layer_stride;
-  out->depthPitch = level.slice_pitch;
+  *out = layout_of(from_handle<Image>(image).layout, *subresource);
 }
+
+#ifdef VK_KHR_maintenance5
+VKAPI_ATTR void VKAPI_CALL GetImageSubresourceLayout2KHR(VkDevice, VkImage image,
+                                                         const VkImageSubresource2KHR* subresource,
+                                                         VkSubresourceLayout2KHR* out) {
+  out->subresourceLayout = layout_of(from_handle<Image>(image).layout, subresource->imageSubresource);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetDeviceImageSubresourceLayoutKHR(VkDevice device,
+                                                              const VkDeviceImageSubresourceInfoKHR* info,
+                                                              VkSubresourceLayout2KHR* out) {
+  Image image(from_handle<Device>(device).memory);
+  init_image(image, *info->pCreateInfo);
+  out->subresourceLayout = layout_of(image.layout, info->pSubresource->imageSubresource);
+}
+#endif
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageViewCreateInfo* info,
                                                const VkAllocationCallbacks* allocator, VkImageView* view) {

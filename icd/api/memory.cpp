@@ -109,6 +109,52 @@ VkResult make_memory(Device& d, const VkMemoryAllocateInfo& info, const VkAlloca
   return VK_SUCCESS;
 }
 
+VkResult bind(Device& device, const VkBindBufferMemoryInfo& info) {
+  Buffer& buffer = from_handle<Buffer>(info.buffer);
+  const DeviceMemory& memory = from_handle<DeviceMemory>(info.memory);
+  if (info.memoryOffset > memory.size || buffer.size > memory.size - info.memoryOffset) {
+    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  }
+  buffer.data = memory.data + info.memoryOffset;
+  enter_address(device, {buffer.data, buffer.size, buffer.data, ref(memory)}, buffer);
+  report_binding(device, ref(buffer), buffer.data, buffer.size, VK_DEVICE_ADDRESS_BINDING_TYPE_BIND_EXT);
+  return VK_SUCCESS;
+}
+
+VkResult bind(Device& device, const VkBindImageMemoryInfo& info) {
+  Image& image = from_handle<Image>(info.image);
+  if (const auto* swapchain = find_in_chain<VkBindImageMemorySwapchainInfoKHR>(info.pNext);
+      swapchain && swapchain->swapchain) {
+    image.data = swapchain_image_memory(swapchain->swapchain, swapchain->imageIndex);
+    return image.data ? VK_SUCCESS : VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  }
+  const DeviceMemory& memory = from_handle<DeviceMemory>(info.memory);
+  const auto* part = find_in_chain<VkBindImagePlaneMemoryInfo>(info.pNext);
+  const VkImageAspectFlagBits aspect = part ? part->planeAspect : VK_IMAGE_ASPECT_COLOR_BIT;
+  const VkDeviceSize bytes = bytes_of(image.layout, aspect);
+  if (info.memoryOffset > memory.size || bytes > memory.size - info.memoryOffset) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  std::byte* const data = memory.data + info.memoryOffset;
+  bind_image(image, aspect, data);
+  if (memory.file >= 0 || memory.imported) glass::sync::share_image(&device, &image);
+  report_binding(device, ref(image), data, bytes, VK_DEVICE_ADDRESS_BINDING_TYPE_BIND_EXT);
+  return VK_SUCCESS;
+}
+
+/// Binds whatever can be bound; the first failure is the result, and each one's own is where its chain asks for it
+/// (Vulkan 1.4.309, VkBindMemoryStatus).
+template <class Info>
+VkResult bind_all(Device& device, std::span<const Info> infos) {
+  VkResult result = VK_SUCCESS;
+  for (const Info& info : infos) {
+    const VkResult one = bind(device, info);
+#ifdef VK_KHR_maintenance6
+    if (const auto* status = find_in_chain<VkBindMemoryStatusKHR>(info.pNext)) *status->pResult = one;
+#endif
+    if (result == VK_SUCCESS) result = one;
+  }
+  return result;
+}
+
 }  // namespace
 
 void report_unbinding(Device& device, const Image& image) {
@@ -260,18 +306,7 @@ VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory(VkDevice device, VkBuffer buffer
 
 VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory2(VkDevice device, std::uint32_t count,
                                                  const VkBindBufferMemoryInfo* infos) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Buffer& buffer = from_handle<Buffer>(infos[i].buffer);
-    const DeviceMemory& memory = from_handle<DeviceMemory>(infos[i].memory);
-    if (infos[i].memoryOffset > memory.size || buffer.size > memory.size - infos[i].memoryOffset) {
-      return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    }
-    buffer.data = memory.data + infos[i].memoryOffset;
-    enter_address(from_handle<Device>(device), {buffer.data, buffer.size, buffer.data, ref(memory)}, buffer);
-    report_binding(from_handle<Device>(device), ref(buffer), buffer.data, buffer.size,
-                   VK_DEVICE_ADDRESS_BINDING_TYPE_BIND_EXT);
-  }
-  return VK_SUCCESS;
+  return bind_all(from_handle<Device>(device), std::span(infos, count));
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory(VkDevice device, VkImage image, VkDeviceMemory memory,
@@ -285,27 +320,7 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory(VkDevice device, VkImage image, V
 
 VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice device, std::uint32_t count,
                                                 const VkBindImageMemoryInfo* infos) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Image& image = from_handle<Image>(infos[i].image);
-    if (const auto* swapchain = find_in_chain<VkBindImageMemorySwapchainInfoKHR>(infos[i].pNext);
-        swapchain && swapchain->swapchain) {
-      image.data = swapchain_image_memory(swapchain->swapchain, swapchain->imageIndex);
-      if (!image.data) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-      continue;
-    }
-    const DeviceMemory& memory = from_handle<DeviceMemory>(infos[i].memory);
-    const auto* part = find_in_chain<VkBindImagePlaneMemoryInfo>(infos[i].pNext);
-    const VkImageAspectFlagBits aspect = part ? part->planeAspect : VK_IMAGE_ASPECT_COLOR_BIT;
-    if (infos[i].memoryOffset > memory.size || bytes_of(image.layout, aspect) > memory.size - infos[i].memoryOffset) {
-      return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    }
-    std::byte* const data = memory.data + infos[i].memoryOffset;
-    bind_image(image, aspect, data);
-    if (memory.file >= 0 || memory.imported) glass::sync::share_image(&from_handle<Device>(device), &image);
-    report_binding(from_handle<Device>(device), ref(image), data, bytes_of(image.layout, aspect),
-                   VK_DEVICE_ADDRESS_BINDING_TYPE_BIND_EXT);
-  }
-  return VK_SUCCESS;
+  return bind_all(from_handle<Device>(device), std::span(infos, count));
 }
 
 VKAPI_ATTR void VKAPI_CALL GetDeviceGroupPeerMemoryFeatures(VkDevice, std::uint32_t, std::uint32_t, std::uint32_t,

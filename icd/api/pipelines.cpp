@@ -21,6 +21,24 @@ std::uint64_t Pipeline::next_number() {
 
 namespace {
 
+VkPipelineCreateFlags flags_of([[maybe_unused]] const void* chain, VkPipelineCreateFlags narrow) {
+#ifdef VK_KHR_maintenance5
+  if (const auto* wide = find_in_chain<VkPipelineCreateFlags2CreateInfoKHR>(chain)) {
+    return static_cast<VkPipelineCreateFlags>(wide->flags);
+  }
+#endif
+  return narrow;
+}
+
+}  // namespace
+
+VkPipelineCreateFlags create_flags(const VkGraphicsPipelineCreateInfo& info) {
+  return flags_of(info.pNext, info.flags);
+}
+VkPipelineCreateFlags create_flags(const VkComputePipelineCreateInfo& info) { return flags_of(info.pNext, info.flags); }
+
+namespace {
+
 // Of a stage that does not compile: "an unknown error has occurred; either the application has provided invalid input,
 // or an implementation failure has occurred" (VK_ERROR_UNKNOWN); no code of core Vulkan says it better. A messenger
 // gets the reason.
@@ -171,9 +189,10 @@ VkResult create_graphics_pipeline(Device& device, PipelineCache* cache, const Vk
   const RenderPass* pass = from_nullable<RenderPass>(info.renderPass);
   const Subpass dynamic = make_subpass(info, device.memory);
   const Subpass& subpass = pass ? pass->subpasses[info.subpass] : dynamic;
-  StageCompiler compiler(device, cache, info.flags, info.pNext);
+  const VkPipelineCreateFlags flags = create_flags(info);
+  StageCompiler compiler(device, cache, flags, info.pNext);
   Owned<Pipeline> pipeline(create_object<Pipeline>(device.memory, allocator));
-  pipeline->captured = info.flags & VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
+  pipeline->captured = flags & VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
   if (const auto* layout = from_nullable<PipelineLayout>(info.layout)) pipeline->layout = layout->shape;
   if (const auto* libraries = find_in_chain<VkPipelineLibraryCreateInfoKHR>(info.pNext)) {
     for (std::uint32_t i = 0; i < libraries->libraryCount; ++i) {
@@ -183,7 +202,7 @@ VkResult create_graphics_pipeline(Device& device, PipelineCache* cache, const Vk
   const VkGraphicsPipelineLibraryFlagsEXT parts = own_parts(info);
   fill_static_state(*pipeline, info, subpass, parts);
   pipeline->state.unrestricted_depth = device.extensions.test(Extension::EXT_depth_range_unrestricted);
-  if (info.flags & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) {
+  if (flags & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) {
     for (std::uint32_t i = 0; i < info.stageCount; ++i) {
       if (!(info.pStages[i].stage & stages_of(parts))) continue;
       pipeline->library_stages.push_back(copy_stage(info.pStages[i], pipeline->memory));
@@ -200,9 +219,10 @@ VkResult create_graphics_pipeline(Device& device, PipelineCache* cache, const Vk
 
 VkResult create_compute_pipeline(Device& device, PipelineCache* cache, const VkComputePipelineCreateInfo& info,
                                  const VkAllocationCallbacks* allocator, VkPipeline* out) {
-  StageCompiler compiler(device, cache, info.flags, info.pNext);
+  const VkPipelineCreateFlags flags = create_flags(info);
+  StageCompiler compiler(device, cache, flags, info.pNext);
   Owned<Pipeline> pipeline(create_object<Pipeline>(device.memory, allocator));
-  pipeline->captured = info.flags & VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
+  pipeline->captured = flags & VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
   pipeline->bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
   pipeline->layout = from_handle<PipelineLayout>(info.layout).shape;
   pipeline->compute = compiler.compile(info.stage, 0, *pipeline, 0);
@@ -229,7 +249,7 @@ VkResult create_all(VkDevice device, VkPipelineCache cache, std::uint32_t count,
     }
     // An error says more than that a pipeline would have to be compiled.
     if (one < 0 || (one != VK_SUCCESS && result == VK_SUCCESS)) result = one;
-    if (one != VK_SUCCESS && (infos[i].flags & VK_PIPELINE_CREATE_EARLY_RETURN_ON_FAILURE_BIT)) break;
+    if (one != VK_SUCCESS && (create_flags(infos[i]) & VK_PIPELINE_CREATE_EARLY_RETURN_ON_FAILURE_BIT)) break;
   }
   return result;
 }

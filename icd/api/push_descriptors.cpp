@@ -6,6 +6,7 @@
 #include "icd/entry_points.h"
 #include "icd/object/descriptor_template.h"
 #include "icd/record/command_buffer.h"
+#include "icd/record/stage_binding.h"
 
 namespace vitrine::icd {
 namespace {
@@ -69,6 +70,21 @@ VKAPI_ATTR void VKAPI_CALL CmdPushDescriptorSetWithTemplateKHR(VkCommandBuffer h
   }
   record_bind(buffer, update_template.bind_point, layout, number, set);
 }
+
+#ifdef VK_KHR_maintenance6
+// Vulkan 1.4.309, VK_KHR_maintenance6: the same with structures, for others to extend.
+VKAPI_ATTR void VKAPI_CALL CmdPushDescriptorSet2KHR(VkCommandBuffer buffer, const VkPushDescriptorSetInfoKHR* info) {
+  for_each_bind_point(info->stageFlags, [&](VkPipelineBindPoint bind_point) {
+    CmdPushDescriptorSetKHR(buffer, bind_point, info->layout, info->set, info->descriptorWriteCount,
+                            info->pDescriptorWrites);
+  });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdPushDescriptorSetWithTemplate2KHR(VkCommandBuffer buffer,
+                                                                const VkPushDescriptorSetWithTemplateInfoKHR* info) {
+  CmdPushDescriptorSetWithTemplateKHR(buffer, info->descriptorUpdateTemplate, info->layout, info->set, info->pData);
+}
+#endif
 
 }  // namespace entry
 }  // namespace vitrine::icd

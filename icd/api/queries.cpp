@@ -11,6 +11,7 @@
 #include "icd/entry_points.h"
 #include "icd/object/memory.h"
 #include "icd/object/query_pool.h"
+#include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
@@ -155,8 +156,8 @@ VKAPI_ATTR VkResult VKAPI_CALL GetQueryPoolResults(VkDevice device, VkQueryPool 
     };
     std::unique_lock lock(d.sync_mutex);
     d.sync_changed.wait(lock, [&] { return d.lost || available(); });
-    if (!available()) return VK_ERROR_DEVICE_LOST;
   }
+  if (is_lost(d)) return VK_ERROR_DEVICE_LOST;
   return write_query_results(p, first, count, static_cast<std::byte*>(data), size, stride, flags);
 }
 

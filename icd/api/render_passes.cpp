@@ -231,6 +231,13 @@ VKAPI_ATTR void VKAPI_CALL GetRenderAreaGranularity(VkDevice, VkRenderPass, VkEx
   *granularity = {1, 1};
 }
 
+#ifdef VK_KHR_maintenance5
+VKAPI_ATTR void VKAPI_CALL GetRenderingAreaGranularityKHR(VkDevice, const VkRenderingAreaInfoKHR*,
+                                                          VkExtent2D* granularity) {
+  *granularity = {1, 1};
+}
+#endif
+
 VKAPI_ATTR VkResult VKAPI_CALL CreateFramebuffer(VkDevice device, const VkFramebufferCreateInfo* info,
                                                  const VkAllocationCallbacks* allocator, VkFramebuffer* framebuffer) {
   Owned<Framebuffer> object(create_object<Framebuffer>(from_handle<Device>(device).memory, allocator));

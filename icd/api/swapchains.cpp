@@ -139,6 +139,7 @@ namespace entry {
 VKAPI_ATTR VkResult VKAPI_CALL CreateSwapchainKHR(VkDevice device_handle, const VkSwapchainCreateInfoKHR* info,
                                                   const VkAllocationCallbacks* allocator, VkSwapchainKHR* out) {
   Device& device = from_handle<Device>(device_handle);
+  if (is_lost(device)) return VK_ERROR_DEVICE_LOST;
   retire(from_nullable<Swapchain>(info->oldSwapchain));
   Owned<Swapchain> swapchain_owner(create_object<Swapchain>(device.memory, allocator));
   Swapchain& swapchain = *swapchain_owner;
@@ -175,6 +176,7 @@ VKAPI_ATTR VkResult VKAPI_CALL GetSwapchainImagesKHR(VkDevice, VkSwapchainKHR sw
 VKAPI_ATTR VkResult VKAPI_CALL AcquireNextImage2KHR(VkDevice device_handle, const VkAcquireNextImageInfoKHR* info,
                                                     std::uint32_t* index) {
   Device& device = from_handle<Device>(device_handle);
+  if (is_lost(device)) return VK_ERROR_DEVICE_LOST;
   const glass::Span span("wait", "vkAcquireNextImageKHR");
   const VkResult result = acquire(from_handle<Swapchain>(info->swapchain), info->timeout, *index);
   if (result != VK_SUCCESS && result != VK_SUBOPTIMAL_KHR) return result;
@@ -253,8 +255,9 @@ VKAPI_ATTR void VKAPI_CALL SetHdrMetadataEXT(VkDevice, std::uint32_t count, cons
   }
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL WaitForPresentKHR(VkDevice, VkSwapchainKHR handle, std::uint64_t present_id,
+VKAPI_ATTR VkResult VKAPI_CALL WaitForPresentKHR(VkDevice device, VkSwapchainKHR handle, std::uint64_t present_id,
                                                  std::uint64_t timeout) {
+  if (is_lost(from_handle<Device>(device))) return VK_ERROR_DEVICE_LOST;
   Swapchain& swapchain = from_handle<Swapchain>(handle);
   std::unique_lock lock(swapchain.mutex);
   const auto ready = [&] { return swapchain.status < 0 || swapchain.shown_id >= present_id; };

@@ -46,7 +46,7 @@ template <class Done>
 VkResult wait_until(Device& device, std::unique_lock<std::mutex>& lock, std::uint64_t timeout_ns,
                     const std::shared_ptr<ExternalPayload>& outside, Done done) {
   if (!wait_for_change(device, lock, timeout_ns, outside, [&] { return device.lost || done(); })) return VK_TIMEOUT;
-  return done() ? VK_SUCCESS : VK_ERROR_DEVICE_LOST;
+  return device.lost ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
 }
 
 /// What others can signal of a fence or semaphore, or null.
@@ -170,6 +170,11 @@ void lose_device(Device& device, DeviceLoss loss) noexcept {
   });
 }
 
+bool is_lost(Device& device) {
+  const std::lock_guard lock(device.sync_mutex);
+  return device.lost;
+}
+
 namespace entry {
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateFence(VkDevice device, const VkFenceCreateInfo* info,
@@ -199,8 +204,8 @@ VKAPI_ATTR VkResult VKAPI_CALL GetFenceStatus(VkDevice device, VkFence fence) {
   Device& d = from_handle<Device>(device);
   tell_waited(d, {&fence, 1});
   const std::lock_guard lock(d.sync_mutex);
-  if (is_signaled(from_handle<Fence>(fence))) return VK_SUCCESS;
-  return d.lost ? VK_ERROR_DEVICE_LOST : VK_NOT_READY;
+  if (d.lost) return VK_ERROR_DEVICE_LOST;
+  return is_signaled(from_handle<Fence>(fence)) ? VK_SUCCESS : VK_NOT_READY;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL WaitForFences(VkDevice device, std::uint32_t count, const VkFence* fences,

@@ -41,6 +41,18 @@ PFN_vkVoidFunction instance_command(const Instance& instance, const char* name) 
   return thunk_of(*entry);
 }
 
+/// Up to which version a device tells of commands: with maintenance5 "core commands beyond" the version that the
+/// application asked for "will return NULL" (Vulkan 1.4.309, vkGetDeviceProcAddr).
+std::uint32_t core_version(const Device& device) {
+  const std::uint32_t version = device.physical_device.properties.apiVersion;
+#ifdef VK_KHR_maintenance5
+  if (device.features.test(Feature::maintenance5)) {
+    return std::min(version, device.physical_device.instance.api_version);
+  }
+#endif
+  return version;
+}
+
 }  // namespace
 
 namespace entry {
@@ -51,7 +63,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL GetDeviceProcAddr(VkDevice device, cons
   const Device& d = from_handle<Device>(device);
   ExtensionSet extensions = d.extensions;
   extensions |= d.physical_device.instance.extensions;  // VK_EXT_debug_utils has device commands
-  if (!is_open(*entry, d.physical_device.properties.apiVersion, extensions)) return nullptr;
+  if (!is_open(*entry, core_version(d), extensions)) return nullptr;
   return thunk_of(*entry);
 }
 

@@ -46,6 +46,11 @@ struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   std::shared_ptr<const CompiledShader> compute;
 };
 
+/// The flags of a create info, or those that its chain puts in their place (Vulkan 1.4.309,
+/// VkPipelineCreateFlags2CreateInfo). There are none here beyond the first 32.
+VkPipelineCreateFlags create_flags(const VkGraphicsPipelineCreateInfo& info);
+VkPipelineCreateFlags create_flags(const VkComputePipelineCreateInfo& info);
+
 /// "tessellation control", ...
 const char* stage_name(VkShaderStageFlagBits stage);
 

@@ -11,7 +11,7 @@ VkGraphicsPipelineLibraryFlagsEXT own_parts(const VkGraphicsPipelineCreateInfo& 
   if (const auto* parts = find_in_chain<VkGraphicsPipelineLibraryCreateInfoEXT>(info.pNext)) return parts->flags;
   const auto* libraries = find_in_chain<VkPipelineLibraryCreateInfoKHR>(info.pNext);
   const bool links = libraries && libraries->libraryCount;
-  return links || (info.flags & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) ? 0 : kAllPipelineParts;
+  return links || (create_flags(info) & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) ? 0 : kAllPipelineParts;
 }
 
 void link_library(Pipeline& pipeline, const Pipeline& library) {

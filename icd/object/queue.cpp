@@ -253,11 +253,6 @@ void work(Queue& queue, QueueWorker& worker) {
   }
 }
 
-bool is_lost(Device& device) {
-  const std::lock_guard lock(device.sync_mutex);
-  return device.lost;
-}
-
 /// Runs the batches here, each while the queue is marked busy. The caller has marked it.
 void run_inline(Queue& queue, QueueWorker& worker, BatchList& list) noexcept {
   while (!list.empty()) {

@@ -57,8 +57,9 @@ bool wait_fence(Device& device, const Fence& fence);
 /// Blocks until all events are set. False if the device was lost while waiting.
 bool wait_events(Device& device, const VkEvent* events, std::uint32_t count);
 
-/// Marks the device lost and wakes all waiters; every later wait or submission returns VK_ERROR_DEVICE_LOST.
-/// The first loss counts.
+/// Marks the device lost and wakes all waiters. The first loss counts. From then on every command that may return
+/// VK_ERROR_DEVICE_LOST does (Vulkan 1.4.309, Lost Device; without maintenance5 it may).
 void lose_device(Device& device, DeviceLoss loss) noexcept;
+bool is_lost(Device& device);
 
 }  // namespace vitrine::icd

@@ -50,6 +50,7 @@ struct CmdBindVertexBuffers {
 struct CmdBindIndexBuffer {
   const Buffer* buffer;
   VkDeviceSize offset;
+  VkDeviceSize size;  ///< VK_WHOLE_SIZE: to the end
   VkIndexType type;
 };
 struct CmdSetViewport {

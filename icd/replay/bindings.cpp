@@ -87,7 +87,7 @@ void execute(ReplayState& state, const CmdBindVertexBuffers& command) {
 
 void execute(ReplayState& state, const CmdBindIndexBuffer& command) {
   const Buffer* buffer = command.buffer;
-  const std::uint64_t size = buffer && buffer->data ? buffer->resolve_range(command.offset, VK_WHOLE_SIZE) : 0;
+  const std::uint64_t size = buffer && buffer->data ? buffer->resolve_range(command.offset, command.size) : 0;
   state.indices = {size ? buffer->data + command.offset : nullptr, size};
   state.draw.index_type = command.type;
 }

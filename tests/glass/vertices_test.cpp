@@ -178,6 +178,15 @@ TEST_F(Vertices, MayBeMissingWhereFeaturesSaySo) {
   EXPECT_EQ(found(), Texts{});
 }
 
+TEST_F(Vertices, IndicesMayBeMissingWhereFeaturesSaySo) {
+  use_indices<std::uint16_t>({0, 1, 2}, VK_INDEX_TYPE_UINT16);
+  call.index_bytes = 0;
+  command.null_descriptors = true;
+  EXPECT_EQ(found(), Texts{}) << "each is 0";
+  command.null_descriptors = false;
+  EXPECT_EQ(found().size(), 1u);
+}
+
 TEST_F(Vertices, OfNothingNeedNothing) {
   call.first = 1000;
   call.count = 0;

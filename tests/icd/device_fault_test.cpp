@@ -87,6 +87,51 @@ TEST_F(DeviceFault, NamesTheLoopAndTheCallsThatLeadThere) {
   EXPECT_EQ(VK_CALL(GetDeviceFaultInfoEXT)(device, &counts, &info), VK_INCOMPLETE);
 }
 
+/// Vulkan 1.4.309, Lost Device: once a command has told of the loss, "all device commands for which
+/// VK_ERROR_DEVICE_LOST is a valid return value" do, also of what was signalled before.
+TEST_F(DeviceFault, EveryCommandTellsOfTheLoss) {
+  auto fence_info = make_struct<VkFenceCreateInfo>();
+  fence_info.flags = VK_FENCE_CREATE_SIGNALED_BIT;
+  VkFence fence;
+  ASSERT_EQ(VK_CALL(CreateFence)(device, &fence_info, nullptr, &fence), VK_SUCCESS);
+  auto type = make_struct<VkSemaphoreTypeCreateInfo>();
+  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  type.initialValue = 5;
+  const auto semaphore_info = make_struct<VkSemaphoreCreateInfo>(&type);
+  VkSemaphore semaphore;
+  ASSERT_EQ(VK_CALL(CreateSemaphore)(device, &semaphore_info, nullptr, &semaphore), VK_SUCCESS);
+  const auto event_info = make_struct<VkEventCreateInfo>();
+  VkEvent event;
+  ASSERT_EQ(VK_CALL(CreateEvent)(device, &event_info, nullptr, &event), VK_SUCCESS);
+  auto pool_info = make_struct<VkQueryPoolCreateInfo>();
+  pool_info.queryType = VK_QUERY_TYPE_OCCLUSION;
+  pool_info.queryCount = 1;
+  VkQueryPool pool;
+  ASSERT_EQ(VK_CALL(CreateQueryPool)(device, &pool_info, nullptr, &pool), VK_SUCCESS);
+  auto wait = make_struct<VkSemaphoreWaitInfo>();
+  const std::uint64_t reached = 5;
+  wait.semaphoreCount = 1;
+  wait.pSemaphores = &semaphore;
+  wait.pValues = &reached;
+  std::uint64_t value = 0;
+  EXPECT_EQ(VK_CALL(WaitForFences)(device, 1, &fence, VK_TRUE, 0), VK_SUCCESS);
+  EXPECT_EQ(VK_CALL(WaitSemaphores)(device, &wait, 0), VK_SUCCESS);
+  ASSERT_EQ(lose(), VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(VK_CALL(GetFenceStatus)(device, fence), VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(VK_CALL(WaitForFences)(device, 1, &fence, VK_TRUE, 0), VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(VK_CALL(WaitSemaphores)(device, &wait, 0), VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(VK_CALL(GetSemaphoreCounterValue)(device, semaphore, &value), VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(VK_CALL(GetEventStatus)(device, event), VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(VK_CALL(GetQueryPoolResults)(device, pool, 0, 1, 8, &value, 8, 0), VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(VK_CALL(QueueSubmit)(queue, 0, nullptr, VK_NULL_HANDLE), VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(VK_CALL(QueueBindSparse)(queue, 0, nullptr, VK_NULL_HANDLE), VK_ERROR_DEVICE_LOST);
+  EXPECT_EQ(VK_CALL(DeviceWaitIdle)(device), VK_ERROR_DEVICE_LOST);
+  VK_CALL(DestroyQueryPool)(device, pool, nullptr);
+  VK_CALL(DestroyEvent)(device, event, nullptr);
+  VK_CALL(DestroySemaphore)(device, semaphore, nullptr);
+  VK_CALL(DestroyFence)(device, fence, nullptr);
+}
+
 TEST_F(DeviceFault, TheVendorBinaryIsAHeaderAndAReport) {
   ASSERT_EQ(lose(), VK_ERROR_DEVICE_LOST);
   auto counts = make_struct<VkDeviceFaultCountsEXT>();

@@ -87,6 +87,12 @@ TEST(Decode, FormatsThatTheReferenceLacks) {
   expect_floats(VK_FORMAT_R8_SRGB, 0x80, kSrgbToLinear[128], 0, 0, 1);
   expect_floats(VK_FORMAT_R8G8_SRGB, 0xFF01, kSrgbToLinear[1], kSrgbToLinear[255], 0, 1);
   expect_floats(VK_FORMAT_R4G4B4A4_UNORM_PACK16, 0xF00F, 1, 0, 0, 1);
+#ifdef VK_VERSION_1_4
+  expect_floats(VK_FORMAT_A8_UNORM, 0xFF, 0, 0, 0, 1);
+  EXPECT_EQ(decoded(VK_FORMAT_A8_UNORM, 0x33), (Texel{0, 0, 0, decoded(VK_FORMAT_R8_UNORM, 0x33)[0]}));
+  expect_floats(VK_FORMAT_A1B5G5R5_UNORM_PACK16, 0x801F, 1, 0, 0, 1);
+  expect_floats(VK_FORMAT_A1B5G5R5_UNORM_PACK16, 0x7C00, 0, 0, 1, 0);
+#endif
   EXPECT_EQ(decoded(VK_FORMAT_A2R10G10B10_SINT_PACK32, 0x9FF80201),
             (Texel{0x1FF, static_cast<std::uint32_t>(-512), static_cast<std::uint32_t>(-511),
                    static_cast<std::uint32_t>(-2)}));

@@ -118,6 +118,11 @@ constexpr SameValues kSameValues[] = {
     {VK_FORMAT_D32_SFLOAT, VK_FORMAT_R32_SFLOAT, [](std::uint32_t t) { return t; }},
     {VK_FORMAT_R4G4B4A4_UNORM_PACK16, VK_FORMAT_B4G4R4A4_UNORM_PACK16,
      [](std::uint32_t t) { return (t & 0x0f0fu) | (t >> 8 & 0xf0u) | (t & 0xf0u) << 8; }},
+#ifdef VK_VERSION_1_4
+    {VK_FORMAT_A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM, [](std::uint32_t t) { return t << 24; }},
+    {VK_FORMAT_A1B5G5R5_UNORM_PACK16, VK_FORMAT_A1R5G5B5_UNORM_PACK16,
+     [](std::uint32_t t) { return (t & 0x83e0u) | (t >> 10 & 0x1fu) | (t & 0x1fu) << 10; }},
+#endif
 };
 
 TEST(Sampler, FormatsOfTheSameValuesFilterAlike) {
@@ -194,6 +199,10 @@ constexpr VkFormat kFormats[] = {
     VK_FORMAT_R4G4B4A4_UNORM_PACK16,
     VK_FORMAT_R8_SRGB,
     VK_FORMAT_R8G8_SRGB,
+#ifdef VK_VERSION_1_4
+    VK_FORMAT_A8_UNORM,
+    VK_FORMAT_A1B5G5R5_UNORM_PACK16,
+#endif
 };
 
 Sampler random_sampler(Random& random, bool depth) {

@@ -210,6 +210,10 @@ constexpr VkFormat kBlitFormats[] = {
     VK_FORMAT_R4G4B4A4_UNORM_PACK16,
     VK_FORMAT_A2R10G10B10_UNORM_PACK32,
     VK_FORMAT_R8G8_SRGB,
+#ifdef VK_VERSION_1_4
+    VK_FORMAT_A8_UNORM,
+    VK_FORMAT_A1B5G5R5_UNORM_PACK16,
+#endif
 };
 
 /// Formats that are halved by way of bytes or values.
@@ -340,6 +344,12 @@ TEST(Blit, FormatsOfTheSameFieldsGetTheSameCodes) {
        [](std::uint32_t w) {
          return reorder(w, {{20, 10}, {10, 10}, {0, 10}, {30, 2}});
        }},
+#ifdef VK_VERSION_1_4
+      {VK_FORMAT_A1B5G5R5_UNORM_PACK16, VK_FORMAT_A1R5G5B5_UNORM_PACK16,
+       [](std::uint32_t w) {
+         return reorder(w, {{10, 5}, {5, 5}, {0, 5}, {15, 1}});
+       }},
+#endif
   };
   for (const Row& row : kRows) {
     for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR}) {
