@@ -157,7 +157,7 @@ class DrawCounts::Watch : public raster::DrawWatch {
     fates_.assembled += primitives;
   }
   void emitted(std::uint64_t primitives) override { fates_.emitted += primitives; }
-  void primitive(std::uint32_t, raster::PrimitiveFate fate) override {
+  void primitive(std::uint32_t, std::optional<std::uint32_t>, raster::PrimitiveFate fate) override {
     ++fates_.primitives[static_cast<std::size_t>(fate)];
   }
   void generated(const FragmentGroup&, SampleLanes lanes) override { fates_.generated += count(any_of(lanes)); }

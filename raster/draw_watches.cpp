@@ -13,8 +13,8 @@ void DrawWatches::emitted(std::uint64_t primitives) {
   for (const auto& watch : watches_) watch->emitted(primitives);
 }
 
-void DrawWatches::primitive(std::uint32_t id, PrimitiveFate fate) {
-  for (const auto& watch : watches_) watch->primitive(id, fate);
+void DrawWatches::primitive(std::uint32_t id, std::optional<std::uint32_t> instance, PrimitiveFate fate) {
+  for (const auto& watch : watches_) watch->primitive(id, instance, fate);
 }
 
 void DrawWatches::generated(const FragmentGroup& group, SampleLanes lanes) {

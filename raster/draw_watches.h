@@ -16,7 +16,7 @@ class DrawWatches : public DrawWatch {
   }
   void assembled(std::uint64_t vertices, std::uint64_t primitives) override;
   void emitted(std::uint64_t primitives) override;
-  void primitive(std::uint32_t id, PrimitiveFate fate) override;
+  void primitive(std::uint32_t id, std::optional<std::uint32_t> instance, PrimitiveFate fate) override;
   void generated(const FragmentGroup& group, SampleLanes lanes) override;
   void failed(const FragmentGroup& group, FragmentTest test, SampleLanes lost, SampleLanes left) override;
   void testing(const FragmentGroup& group, std::uint32_t sample, const float* depth) override;

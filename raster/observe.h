@@ -5,11 +5,16 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "raster/pixel_order.h"
 #include "spirv/resources.h"
 #include "texel/view.h"
+
+namespace vitrine::spirv {
+struct ShaderInterface;  // spirv/shader.h
+}
 
 namespace vitrine::raster {
 
@@ -47,6 +52,17 @@ enum class FragmentTest : std::uint8_t {
 };
 inline constexpr std::size_t kFragmentTests = static_cast<std::size_t>(FragmentTest::kAlphaToCoverage) + 1;
 
+/// What the fragment shader reads of varyings, of fragments for which it may never run. Worked out when it is asked
+/// for.
+class FragmentInputs {
+ public:
+  virtual ~FragmentInputs() = default;
+  virtual const spirv::ShaderInterface& interface() const = 0;
+  /// What is in an input register, in a lane: at centroids as if no test took a sample, at samples in the first covered
+  /// one. Nothing: the register holds no varying.
+  virtual std::optional<std::uint32_t> word(std::uint32_t reg, std::size_t lane) = 0;
+};
+
 /// Fragments that are dealt with together. Of quads that are not in use no lane is told of.
 struct FragmentGroup {
   QuadPositions position;
@@ -54,6 +70,7 @@ struct FragmentGroup {
   const Primitive* from[base::kQuadsPerWave];    ///< by quad; null: it is not in use
   std::uint32_t layer = 0;
   const PrimitiveInstances* instances = nullptr;  ///< of `from`; null: the draw is not watched by pixels
+  FragmentInputs* inputs = nullptr;  ///< of generated(); null: the same, or the draw has no fragment shader
 };
 /// Lanes of a group, by sample.
 using SampleLanes = std::span<const base::LaneMask>;
@@ -76,8 +93,8 @@ class DrawWatch {
   virtual void assembled(std::uint64_t /*vertices*/, std::uint64_t /*primitives*/) {}
   /// Primitives that tessellator or geometry shader have made for the rasterizer.
   virtual void emitted(std::uint64_t /*primitives*/) {}
-  /// `id`: gl_PrimitiveID.
-  virtual void primitive(std::uint32_t /*id*/, PrimitiveFate) {}
+  /// `id`: gl_PrimitiveID. `instance`: gl_InstanceIndex; nothing: the draw is not watched by pixels, or has none but 0.
+  virtual void primitive(std::uint32_t /*id*/, std::optional<std::uint32_t> /*instance*/, PrimitiveFate) {}
 
   /// A tile: samples of fragments are covered.
   virtual void generated(const FragmentGroup&, SampleLanes) {}

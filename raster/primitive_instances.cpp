@@ -33,7 +33,7 @@ std::optional<std::uint32_t> PrimitiveInstances::instance_of(const Primitive* pr
   const auto number = static_cast<std::uint32_t>(primitive - chunk.first);
   const auto mark = std::ranges::upper_bound(chunk.marks, number, std::less<>(), &InstanceMark::first);
   if (mark == chunk.marks.begin()) return std::nullopt;
-  return first_instance_ + std::prev(mark)->instance;
+  return index_of(std::prev(mark)->instance);
 }
 
 }  // namespace vitrine::raster

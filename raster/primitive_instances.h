@@ -23,7 +23,12 @@ class PrimitiveInstances {
   PrimitiveInstances(std::uint32_t first_instance, bool several) : first_instance_(first_instance), several_(several) {}
   /// The primitives of a chunk, where they lie. Nothing of what lay there is looked up any more.
   void add(const Primitive* first, std::uint32_t count, const std::vector<InstanceMark>& marks);
-  /// gl_InstanceIndex; nothing: it is not known, or the draw has no other than instance 0.
+  /// gl_InstanceIndex of an instance; nothing: the draw has no other than instance 0.
+  std::optional<std::uint32_t> index_of(std::uint32_t instance) const {
+    if (!several_ && first_instance_ == 0) return std::nullopt;
+    return first_instance_ + instance;
+  }
+  /// The same of a primitive; nothing: likewise, or it is not known.
   std::optional<std::uint32_t> instance_of(const Primitive* primitive) const;
 
  private:

@@ -68,7 +68,7 @@ struct PixelOptions {
   std::uint32_t level = 0, layer = 0, slice = 0;
   std::optional<std::uint32_t> sample;             ///< none: all
   std::optional<std::uint64_t> frame, submission;  ///< the history ends there; none: with the application
-  std::optional<std::uint32_t> primitive;          ///< why it did not reach the pixel
+  std::string primitive;                           ///< "7" or "7@3": why it did not reach the pixel; empty: none
   unsigned depth = 4;                              ///< how often sources of sources are followed
   std::string json, html;                          ///< files; empty: none
   std::string bug;                                 ///< file for what made the pixel's value; empty: none

@@ -178,8 +178,10 @@ void add_pixel(CLI::App& app, const Words& words, PixelOptions& options, int& co
   command->add_option("--depth", options.depth, "How far sources of sources are followed, a run each")
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--why-not", options.primitive, "What became of the primitives with this gl_PrimitiveID")
-      ->type_name("N");
+  command
+      ->add_option("--why-not", options.primitive,
+                   "What became of the primitives with this gl_PrimitiveID (of all instances, or one)")
+      ->type_name("N[@INSTANCE]");
   command->add_option("--json", options.json, "Write what the driver recorded")->type_name("FILE");
   command->add_option("--html", options.html, "Write the histories as a page")->type_name("FILE");
   command->add_option("--bug", options.bug, "Write the draw or dispatch that made the value as a bug file")

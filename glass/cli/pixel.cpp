@@ -62,7 +62,7 @@ Run run_once(const PixelOptions& options, const std::string& requests) {
   if (options.frame) environment.emplace("VITRINE_PIXEL_UNTIL", "frame=" + std::to_string(*options.frame));
   if (options.submission)
     environment.emplace("VITRINE_PIXEL_UNTIL", "submission=" + std::to_string(*options.submission));
-  if (options.primitive) environment.emplace("VITRINE_PIXEL_PRIMITIVE", std::to_string(*options.primitive));
+  if (!options.primitive.empty()) environment.emplace("VITRINE_PIXEL_PRIMITIVE", options.primitive);
   run.ending = run_application(options.application, environment);
   for (const auto& path : folder.files(".json")) {
     std::optional<std::string> text = read_file(path);
@@ -113,6 +113,11 @@ int pixel(const PixelOptions& options) {
     say("'" + options.position + "' is no pixel: X,Y is wanted");
     return kCouldNotRun;
   }
+  const auto primitive = glass::pixel::parse_primitive(options.primitive);
+  if (!options.primitive.empty() && !primitive) {
+    say("'" + options.primitive + "' is no primitive: N or N@INSTANCE is wanted");
+    return kCouldNotRun;
+  }
   if (!demand_tool("pixel")) return kCouldNotRun;
   std::string requests = request_of(question);
   std::size_t count = 1;
@@ -136,7 +141,7 @@ int pixel(const PixelOptions& options) {
       continue;
     }
     std::fputs(to_text(*run.history, story).c_str(), stdout);
-    if (options.primitive) std::fputs(why_not(*run.history, story, *options.primitive).c_str(), stdout);
+    if (primitive) std::fputs(why_not(*run.history, story, *primitive).c_str(), stdout);
     if (values.size() > 1) say("the application does not draw the same in every run: this is the last one");
     if (story.cut || (!story.missing.empty() && options.depth > 0)) say("not all sources are told of");
     bool written = options.json.empty() || write_file(options.json, run.text);

@@ -72,7 +72,8 @@ std::optional<PixelHistory> read_history(std::string_view text) {
     for (const Json& image : json.at("images")) history.images.push_back(image_of(image));
     for (const Json& texel : json.at("texels")) history.texels.push_back(texel_of(texel));
     for (const Json& p : json.value("primitives", Json::array()))
-      history.primitives.push_back({address_of(p.at("address")), p.at("fate"), p.at("count")});
+      history.primitives.push_back({address_of(p.at("address")), p.at("fate"), p.at("count"),
+                                    p.value("instances", std::vector<std::uint32_t>()), p.value("more", false)});
     return history;
   } catch (const Json::exception&) {
     return std::nullopt;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "glass/finding.h"
+#include "glass/pixel/request.h"
 
 namespace vitrine::glass::cli {
 
@@ -58,6 +59,8 @@ struct PixelPrimitive {
   Address address;
   std::string fate;
   std::uint64_t count = 0;
+  std::vector<std::uint32_t> instances;  ///< ascending; none: the draw has instance 0 alone
+  bool more = false;                     ///< instances
 };
 
 struct PixelHistory {
@@ -117,7 +120,8 @@ std::string to_text(const PixelHistory& history, const TexelKey& key);
 /// The story for people.
 std::string to_text(const PixelHistory& history, const PixelStory& story);
 /// Why a primitive did not reach the pixel that the story is about.
-std::string why_not(const PixelHistory& history, const PixelStory& story, std::uint32_t primitive);
+std::string why_not(const PixelHistory& history, const PixelStory& story,
+                    const glass::pixel::PrimitiveRequest& primitive);
 /// The story as a page of its own.
 std::string to_html(const PixelHistory& history, const PixelStory& story);
 

@@ -124,6 +124,10 @@ std::vector<Pending> events_of(const Fragment& fragment, const spirv::ObservedCo
     if (write != nullptr) event.before = write->before, event.after = write->after;
     event.facts.emplace_back("window coordinates", corners_of(*fragment.from));
     add_depth(fragment, sample, event, depth_format);
+    if (!fragment.shaded)
+      event.facts.emplace_back("no shader ran", !fragment.has_shader      ? "as the draw has none"
+                                                : fragment.inputs.empty() ? "for it"
+                                                                          : "for it; its inputs would be");
     event.facts.insert(event.facts.end(), fragment.inputs.begin(), fragment.inputs.end());
     if (fragment.shaded) add_colors(fragment, at, event);
     if (fragment.shaded || failure == nullptr) event.sources = fragment.sources;

@@ -72,6 +72,13 @@ Json to_json(std::uint64_t number, const ImageNote& note) {
   return json;
 }
 
+Json to_json(const PrimitiveNote& note, std::size_t fate) {
+  Json json{{"address", glass::to_json(note.address)}, {"fate", kFates[fate]}, {"count", note.count}};
+  if (!note.instances.empty()) json["instances"] = note.instances;
+  if (note.more) json["more"] = true;
+  return json;
+}
+
 }  // namespace
 
 std::string Pixels::to_json() const {
@@ -79,9 +86,7 @@ std::string Pixels::to_json() const {
   Json json{{"format", "vitrine-pixel"}, {"version", 1}, {"frames", frame_ - 1}};
   json["images"] = Json::array();
   for (const auto& [number, note] : notes_) json["images"].push_back(pixel::to_json(number, note));
-  for (const auto& [key, note] : primitives_)
-    json["primitives"].push_back(
-        {{"address", glass::to_json(note.address)}, {"fate", kFates[std::get<2>(key)]}, {"count", note.count}});
+  for (const auto& [key, note] : primitives_) json["primitives"].push_back(pixel::to_json(note, std::get<2>(key)));
   json["texels"] = Json::array();
   for (const auto& texel : texels_) json["texels"].push_back(pixel::to_json(*texel));
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';

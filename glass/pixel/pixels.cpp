@@ -10,6 +10,8 @@ namespace {
 
 /// Of a texel: the newest.
 constexpr std::size_t kMostEvents = 4096;
+/// Of a draw, that a primitive's fate is told of.
+constexpr std::size_t kMostInstances = 256;
 /// Of a process.
 constexpr std::size_t kMostTexels = 1 << 20;
 
@@ -237,10 +239,16 @@ void Pixels::commands_done(const void* owner) {
   for (const auto& [texel, event] : last) event->after = texel->value = texel->read();
 }
 
-void Pixels::add_primitive(const spirv::ObservedCommand& command, std::size_t fate) {
+void Pixels::add_primitive(const spirv::ObservedCommand& command, std::optional<std::uint32_t> instance,
+                           std::size_t fate) {
   const std::lock_guard lock(mutex_);
   PrimitiveNote& note = primitives_[{command.submission, command.command, fate}];
   if (note.count++ == 0) note.address = address_of(command);
+  if (instance) note.instances.insert(*instance);
+  if (note.instances.size() <= kMostInstances) return;
+  // Which ones are kept does not depend on the order in which they come.
+  note.instances.erase(std::prev(note.instances.end()));
+  note.more = true;
 }
 
 Texel* Pixels::find(const std::byte* address) const {

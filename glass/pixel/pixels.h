@@ -49,12 +49,14 @@ struct Pending {
 struct PrimitiveNote {
   Address address;
   std::uint64_t count = 0;
+  std::set<std::uint32_t> instances;  ///< the first ones; of a draw with instance 0 alone none
+  bool more = false;                  ///< instances
 };
 
-/// When to stop, and the primitive whose fate is wanted. 0: never.
+/// When to stop, and the primitives whose fate is wanted. 0: never.
 struct PixelLimits {
   std::uint64_t last_frame = 0, last_submission = 0;
-  std::optional<std::uint32_t> primitive;  ///< gl_PrimitiveID
+  std::optional<PrimitiveRequest> primitive;
 };
 
 class Pixels {
@@ -83,9 +85,9 @@ class Pixels {
   void add(std::vector<Pending> pending);
   void commands_done(const void* owner);
 
-  /// The primitive of each draw whose fate is wanted; nothing: none. `fate`: a raster::PrimitiveFate.
-  std::optional<std::uint32_t> primitive() const { return limits_.primitive; }
-  void add_primitive(const spirv::ObservedCommand& command, std::size_t fate);
+  /// The primitives of each draw whose fate is wanted; nothing: none. `fate`: a raster::PrimitiveFate.
+  const std::optional<PrimitiveRequest>& primitive() const { return limits_.primitive; }
+  void add_primitive(const spirv::ObservedCommand& command, std::optional<std::uint32_t> instance, std::size_t fate);
 
   /// The texel at an address; null: it is not watched. Any thread.
   Texel* find(const std::byte* address) const;

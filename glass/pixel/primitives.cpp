@@ -6,22 +6,23 @@ namespace {
 
 class PrimitiveWatch final : public raster::DrawWatch {
  public:
-  PrimitiveWatch(Pixels& pixels, const spirv::ObservedCommand& command, std::uint32_t asked)
+  PrimitiveWatch(Pixels& pixels, const spirv::ObservedCommand& command, const PrimitiveRequest& asked)
       : pixels_(pixels), command_(command), asked_(asked) {}
-  void primitive(std::uint32_t id, raster::PrimitiveFate fate) override {
-    if (id == asked_) pixels_.add_primitive(command_, static_cast<std::size_t>(fate));
+  void primitive(std::uint32_t id, std::optional<std::uint32_t> instance, raster::PrimitiveFate fate) override {
+    if (id != asked_.primitive || (asked_.instance && *asked_.instance != instance.value_or(0))) return;
+    pixels_.add_primitive(command_, instance, static_cast<std::size_t>(fate));
   }
 
  private:
   Pixels& pixels_;
   const spirv::ObservedCommand& command_;
-  const std::uint32_t asked_;
+  const PrimitiveRequest asked_;
 };
 
 }  // namespace
 
 std::unique_ptr<raster::DrawWatch> PrimitiveObserver::watch_chunk(const spirv::ObservedCommand* command) {
-  const std::optional<std::uint32_t> asked = pixels_.primitive();
+  const std::optional<PrimitiveRequest>& asked = pixels_.primitive();
   if (!asked || command == nullptr) return nullptr;
   return std::make_unique<PrimitiveWatch>(pixels_, *command, *asked);
 }

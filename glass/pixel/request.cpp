@@ -99,6 +99,15 @@ std::optional<std::vector<Request>> parse_requests(std::string_view text, std::s
   return requests;
 }
 
+std::optional<PrimitiveRequest> parse_primitive(std::string_view text) {
+  PrimitiveRequest request;
+  const std::size_t at = text.find('@');
+  if (!parse_number(text.substr(0, at), request.primitive)) return std::nullopt;
+  if (at != std::string_view::npos && !parse_number(text.substr(at + 1), request.instance.emplace()))
+    return std::nullopt;
+  return request;
+}
+
 std::string_view aspect_name(VkImageAspectFlags aspect) {
   for (const AspectName& row : kAspects)
     if (aspect == row.aspect) return row.name;

@@ -24,6 +24,15 @@ struct Request {
 /// semicolons, and what would separate is written as "%3A", "%3B" or "%25". Nothing, and `error`, for anything else.
 std::optional<std::vector<Request>> parse_requests(std::string_view text, std::string& error);
 
+/// Primitives whose fate is wanted.
+struct PrimitiveRequest {
+  std::uint32_t primitive = 0;            ///< gl_PrimitiveID
+  std::optional<std::uint32_t> instance;  ///< gl_InstanceIndex; none: all
+};
+
+/// "PRIMITIVE" or "PRIMITIVE@INSTANCE"; nothing for anything else.
+std::optional<PrimitiveRequest> parse_primitive(std::string_view text);
+
 /// "color", "depth", "stencil", "plane 0"...; empty: none of them alone.
 std::string_view aspect_name(VkImageAspectFlags aspect);
 

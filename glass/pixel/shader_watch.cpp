@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
 
+#include "glass/pixel/inputs.h"
 #include "glass/pixel/tile_watch.h"
 #include "glass/sanitize/footprint.h"
 #include "glass/sanitize/image_lanes.h"
@@ -88,35 +88,6 @@ const texel::Sampler* sampler_of(const Wave& wave, const ImageOp& op, const Desc
   const Descriptor* const found =
       spirv::exec::find_descriptor(wave, op.info.sampler_set, op.info.sampler_slot + element);
   return found != nullptr ? found->sampler : nullptr;
-}
-
-/// What a shader gets at locations, of a lane of a wave that is about to start.
-std::vector<std::pair<std::string, std::string>> inputs_of(const Wave& wave, std::size_t lane) {
-  std::map<std::uint32_t, std::vector<spirv::InterfaceSlot>> locations;
-  for (const spirv::InterfaceSlot& slot : wave.program->observation->interface.inputs)
-    if (slot.built_in == spirv::BuiltIn::kNone && slot.part == spirv::InputPart::kValue && !slot.implied)
-      locations[slot.location].push_back(slot);
-  std::vector<std::pair<std::string, std::string>> inputs;
-  for (auto& [location, slots] : locations) {
-    std::ranges::sort(slots, {}, &spirv::InterfaceSlot::component);
-    std::array<std::uint32_t, 4> words{};
-    std::size_t count = 0;
-    std::string letters;
-    for (const spirv::InterfaceSlot& slot : slots) {
-      if (count == words.size()) break;
-      words[count++] = spirv::exec::word_of(wave, {'r', slot.reg * spirv::kRegisterStride}, lane);
-      letters += "xyzw"[slot.component % 4u];
-    }
-    // Only components that the shader reads are there.
-    const bool from_x = std::string_view("xyzw").starts_with(letters);
-    const texel::Kind kind = slots[0].type == spirv::BaseType::kFloat ? texel::Kind::kFloat
-                             : slots[0].type == spirv::BaseType::kInt ? texel::Kind::kSint
-                                                                      : texel::Kind::kUint;
-    std::string name = "input " + std::to_string(location);
-    if (!from_x) name.append(".").append(letters);
-    inputs.emplace_back(std::move(name), to_text(words, count, kind));
-  }
-  return inputs;
 }
 
 }  // namespace
@@ -236,7 +207,10 @@ std::unique_ptr<spirv::exec::Watch> PixelProgram::watch(const Wave& wave, const 
   if (pixels_.stopped() || (tile == nullptr && !stores_)) return nullptr;
   if (tile != nullptr)
     base::for_each_lane(wave.active, [&](std::size_t lane) {
-      if (Fragment* const fragment = tile->fragment_of(lane)) fragment->inputs = inputs_of(wave, lane);
+      if (Fragment* const fragment = tile->fragment_of(lane))
+        fragment->inputs = inputs_text(wave.program->observation->interface, [&](std::uint32_t reg) {
+          return spirv::exec::word_of(wave, {'r', reg * spirv::kRegisterStride}, lane);
+        });
     });
   return std::make_unique<Watch>(*this, wave, tile);
 }

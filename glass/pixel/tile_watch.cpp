@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "glass/pixel/inputs.h"
 #include "raster/primitive_instances.h"
 
 namespace vitrine::glass::pixel {
@@ -79,6 +80,10 @@ void TileWatch::generated(const FragmentGroup& group, SampleLanes lanes) {
     fragment.primitive = group.primitive[q];
     if (group.instances != nullptr) fragment.instance = group.instances->instance_of(group.from[q]);
     fragment.samples = samples_of(lanes, lane);
+    fragment.has_shader = group.inputs != nullptr;
+    if (group.inputs != nullptr)
+      fragment.inputs = inputs_text(group.inputs->interface(),
+                                    [&](std::uint32_t reg) { return group.inputs->word(reg, lane).value_or(0); });
     by_pixel_[&pixel].push_back(&fragment);
   });
 }

@@ -14,7 +14,7 @@ struct Fragment {
   std::uint32_t primitive = 0;            ///< gl_PrimitiveID
   std::optional<std::uint32_t> instance;  ///< gl_InstanceIndex, of draws with several
   std::uint32_t samples = 0;              ///< covered
-  bool shaded = false;
+  bool shaded = false, has_shader = false;
   struct Failure {
     raster::FragmentTest test{};
     std::uint32_t samples = 0;
@@ -39,7 +39,7 @@ struct Fragment {
   Address discarded;  ///< where; no frames and no SPIR-V id: it has not been
   std::vector<Source> sources;
   std::vector<std::string> lookups;                         ///< in words
-  std::vector<std::pair<std::string, std::string>> inputs;  ///< of the shader: "input 0": "(1, 0.5)"
+  std::vector<std::pair<std::string, std::string>> inputs;  ///< of the shader, though it may not run
 };
 
 class TileWatch final : public raster::DrawWatch {

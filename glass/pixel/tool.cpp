@@ -1,6 +1,7 @@
 // The tool `pixel`: what happened to the texels that VITRINE_PIXEL names, as JSON in VITRINE_PIXEL_HISTORY ("%p" is the
 // process; default pixel.json). VITRINE_PIXEL_UNTIL: "frame=N" or "submission=N", after which nothing is recorded.
-// VITRINE_PIXEL_PRIMITIVE: a gl_PrimitiveID, what becomes of which is told, too.
+// VITRINE_PIXEL_PRIMITIVE: a gl_PrimitiveID, "@" and a gl_InstanceIndex behind it if only that is meant; what becomes
+// of such primitives is told, too.
 #include <cstdlib>
 #include <cstring>
 
@@ -34,8 +35,10 @@ std::unique_ptr<Pixels> make_pixels() {
   const char* const until = std::getenv("VITRINE_PIXEL_UNTIL");
   PixelLimits limits{limit(until, "frame="), limit(until, "submission="), std::nullopt};
   const char* const primitive = std::getenv("VITRINE_PIXEL_PRIMITIVE");
-  if (primitive != nullptr && *primitive != 0)
-    limits.primitive = static_cast<std::uint32_t>(std::strtoul(primitive, nullptr, 10));
+  if (primitive != nullptr && *primitive != 0) {
+    limits.primitive = parse_primitive(primitive);
+    if (!limits.primitive) complain("VITRINE_PIXEL_PRIMITIVE names no primitive; \"7\" or \"7@3\" would");
+  }
   return std::make_unique<Pixels>(std::move(*requests), limits);
 }
 

@@ -78,15 +78,19 @@ void finish_observed(const Chunk& chunk, const PassDesc& pass, PrimitiveList& pr
   const PipelinePlan& plan = *chunk.draw->plan;
   PixelRect framebuffer = pixel_rect(pass.render_area);
   framebuffer.x0 = framebuffer.y0 = 0;
+  auto mark = primitives.marks().begin();
+  std::optional<std::uint32_t> instance;
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     Primitive& p = primitives[i];
+    for (; mark != primitives.marks().end() && mark->first <= i; ++mark)
+      instance = chunk.draw->instances->index_of(mark->instance);
     const PixelRect rect = intersect(bounds_of(plan, p), framebuffer);
     const bool small = fits_window(plan, p, rect);
     if (small) p.window = window_of(p, rect);
     const auto fate =
         (small ? p.window != 0 : covers_sample(plan, p, rect)) ? PrimitiveFate::kRasterized : PrimitiveFate::kNoSample;
     for (int triangle = p.kind == PrimitiveKind::kRectangle ? 2 : 1; triangle > 0; --triangle)
-      chunk.watch->primitive(p.id, fate);
+      chunk.watch->primitive(p.id, instance, fate);
     if (rect.empty()) continue;
     p.x0 = static_cast<std::uint16_t>(rect.x0);
     p.y0 = static_cast<std::uint16_t>(rect.y0);

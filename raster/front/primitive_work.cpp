@@ -213,6 +213,7 @@ void flush_clipped(PrimitiveWork& w, bool another) {
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const TriangleCorners& v = triangles[i].v;
     w.setup.id = triangles[i].id;
+    w.setup.instance = index_of_instance(w, triangles[i].instance);
     w.primitives.mark(triangles[i].instance);
     if (even && i % 2 == 0) {
       const TriangleCorners& next = triangles[i + 1].v;
@@ -224,6 +225,7 @@ void flush_clipped(PrimitiveWork& w, bool another) {
     emit_filled(w, v.data());
   }
   w.setup.id = id;
+  w.setup.instance = index_of_instance(w, w.instance);
   w.primitives.mark(w.instance);
   if (!triangles.empty()) w.clipped.clear(another);
 }

@@ -44,6 +44,12 @@ struct PrimitiveWork : PrimitiveContext {
   }
 };
 
+/// gl_InstanceIndex, where the watch is told of it.
+inline std::optional<std::uint32_t> index_of_instance(const PrimitiveWork& w, std::uint32_t instance) {
+  const PrimitiveInstances* const instances = w.chunk.draw->instances;
+  return instances ? instances->index_of(instance) : std::nullopt;
+}
+
 /// The clipper's end of a line or triangle.
 inline void discard(PrimitiveWork& w, PrimitiveFate fate) {
   ++w.discarded;

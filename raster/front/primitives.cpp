@@ -20,6 +20,7 @@ void begin_instance(PrimitiveWork& w, std::uint32_t instance) {
   if (!w.primitives.has_marks()) return;
   flush_batch(w);
   w.primitives.mark(instance);
+  w.setup.instance = index_of_instance(w, instance);
 }
 
 void add_to_batch(PrimitiveWork& w, const std::uint32_t slot[3]) {
@@ -225,7 +226,7 @@ void tell_invisible(PrimitiveWork& w) {
   for (std::uint32_t r = 0; r < w.chunk.run_count; ++r) {
     const Run& run = w.chunk.runs[r];
     for (std::uint32_t i = run.begin; i < run.end; ++i)
-      w.setup.watch->primitive(run.first_id + i, PrimitiveFate::kFacing);
+      w.setup.watch->primitive(run.first_id + i, index_of_instance(w, run.instance), PrimitiveFate::kFacing);
   }
 }
 

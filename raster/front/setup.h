@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "raster/front/primitive_list.h"
 #include "raster/observe.h"
@@ -25,6 +26,7 @@ struct SetupContext {
   const PassDesc* pass;
   PrimitiveList* out;
   std::uint32_t id = 0;
+  std::optional<std::uint32_t> instance = std::nullopt;  ///< what the watch is told
   std::uint16_t layer = 0;
   std::uint8_t viewport = 0;
   bool of_line = false;  ///< the triangle is half of a smooth line: never culled or biased, faces as `line_front` says
@@ -33,7 +35,7 @@ struct SetupContext {
 
   /// A primitive ends here.
   void tell(PrimitiveFate fate) const {
-    if (watch) watch->primitive(id, fate);
+    if (watch) watch->primitive(id, instance, fate);
   }
 };
 

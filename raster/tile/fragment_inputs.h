@@ -28,6 +28,11 @@ const float* perspective_scale(TileWorker& worker, const Fragments& fragments) {
   return worker.reciprocal_w;
 }
 
+/// Of all fragments of a primitive.
+inline std::uint32_t flat_word(const Primitive& p, const VaryingRead& read) {
+  return base::bits_of(p.v[p.provoking][4 + read.varying]);
+}
+
 /// `Fragments` are the 64 lanes of one run of the shader:
 ///   has_unit_w()              1/w is 1 for all of them
 ///   reciprocal_w(out)         1/w at the pixels' centres
@@ -42,8 +47,7 @@ void set_common_inputs(TileWorker& worker, const Fragments& fragments) {
   const std::uint32_t smooth = plan.perspective_count + plan.linear_count;
   for (std::uint32_t i = 0; i < plan.read_count; ++i)
     if (const VaryingRead& read = plan.read[i]; read.varying >= smooth)
-      fragments.per_primitive(runner.input(read.reg),
-                              [&](const Primitive& p) { return base::bits_of(p.v[p.provoking][4 + read.varying]); });
+      fragments.per_primitive(runner.input(read.reg), [&](const Primitive& p) { return flat_word(p, read); });
   const auto& position = frag.frag_coord;
   const auto floats = [&](std::uint32_t reg) { return reg != kNoReg ? as_floats(runner.input(reg)) : nullptr; };
   if (position[0] != kNoReg || position[1] != kNoReg) fragments.position(floats(position[0]), floats(position[1]));

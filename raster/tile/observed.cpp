@@ -6,6 +6,7 @@
 
 #include "base/lane_count.h"
 #include "raster/draw_watches.h"
+#include "raster/tile/block_inputs.h"
 #include "raster/tile/discard_rectangles.h"
 #include "raster/tile/early_tests.h"
 
@@ -103,6 +104,14 @@ void test_block(TileWorker& worker, const Primitive& primitive, int x, int y, Bl
   }
 }
 
+void tell_generated(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block) {
+  BlockInputs inputs(worker, primitive, x, y, block);
+  const bool known = worker.draw->call.tile_observer != nullptr && worker.draw->plan->fragment != nullptr;
+  worker.told.group.inputs = known ? &inputs : nullptr;
+  worker.watch->generated(worker.told.group, left_samples(worker));
+  worker.told.group.inputs = nullptr;
+}
+
 bool has_full_mask(const PipelinePlan& plan) { return plan.sample_mask == (1u << plan.samples) - 1; }
 
 /// No sample can be lost, and whole blocks are shaded at once.
@@ -192,7 +201,7 @@ void observe_block(TileWorker& worker, const Primitive& primitive, int x, int y,
   if (worker.tells_numbers)
     worker.numbers.generated += base::count_lanes(any_of(left_samples(worker)));
   else
-    worker.watch->generated(worker.told.group, left_samples(worker));
+    tell_generated(worker, primitive, x, y, block);
   if (plan.discards) {
     const LaneMask kept = undiscarded_lanes(plan, x, y);
     for (std::uint32_t s = 0; s < plan.samples; ++s) block.lanes[s] &= kept;

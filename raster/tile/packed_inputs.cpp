@@ -56,24 +56,24 @@ void copy_plane_part(const WavePlanes& planes, std::uint32_t plane, spirv::Input
   }
 }
 
-/// Perspective and linear varyings.
+bool is_flat(const PipelinePlan& plan, const VaryingRead& read) {
+  return read.varying >= plan.perspective_count + plan.linear_count;
+}
+
+/// A perspective or linear varying. `prepared`: whose points worker.place has.
+void read_smooth(ShadeRun& run, const VaryingRead& read, spirv::SampleLocation& prepared, WaveRegister& out) {
+  const std::uint32_t plane = kFirstVaryingPlane + read.varying;
+  if (read.part != spirv::InputPart::kValue) return copy_plane_part(run.wave.planes, plane, read.part, out);
+  const float* scale = read.varying < run.plan.perspective_count ? run.scale : nullptr;
+  evaluate_plane(run.wave.planes, plane, points_of(run, read.location, prepared), scale, as_floats(out));
+}
+
 void read_varyings(ShadeRun& run) {
   const PipelinePlan& plan = run.plan;
-  TileWorker& worker = run.worker;
   auto prepared = spirv::SampleLocation::kCenter;
-  const std::uint32_t smooth = plan.perspective_count + plan.linear_count;
-  for (std::uint32_t i = 0; i < plan.read_count; ++i) {
-    const VaryingRead& read = plan.read[i];
-    const std::uint32_t plane = kFirstVaryingPlane + read.varying;
-    if (read.varying >= smooth) continue;
-    if (read.part != spirv::InputPart::kValue) {
-      copy_plane_part(run.wave.planes, plane, read.part, worker.runner.input(read.reg));
-    } else {
-      const float* scale = read.varying < plan.perspective_count ? run.scale : nullptr;
-      evaluate_plane(run.wave.planes, plane, points_of(run, read.location, prepared), scale,
-                     as_floats(worker.runner.input(read.reg)));
-    }
-  }
+  for (std::uint32_t i = 0; i < plan.read_count; ++i)
+    if (const VaryingRead& read = plan.read[i]; !is_flat(plan, read))
+      read_smooth(run, read, prepared, run.worker.runner.input(read.reg));
 }
 
 /// Where interpolateAt* evaluates planes.
@@ -164,6 +164,14 @@ void begin_packed_inputs(ShadeRun& run) {
                             plan.frag.point_coord[0] != kNoReg || plan.frag.point_coord[1] != kNoReg;
   if (interpolates) set_points(run.wave, center, center, run.worker.center);
   if (has_perspective(plan)) run.scale = perspective_scale(run.worker, PackedFragments{run});
+}
+
+void read_varying(ShadeRun& run, const VaryingRead& read, WaveRegister& out) {
+  auto prepared = spirv::SampleLocation::kCenter;
+  if (is_flat(run.plan, read))
+    PackedFragments{run}.per_primitive(out, [&](const Primitive& p) { return flat_word(p, read); });
+  else
+    read_smooth(run, read, prepared, out);
 }
 
 void set_packed_inputs(ShadeRun& run) {

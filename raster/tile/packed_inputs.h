@@ -11,4 +11,7 @@ void begin_packed_inputs(ShadeRun& run);
 /// All inputs of one run.
 void set_packed_inputs(ShadeRun& run);
 
+/// What one of the registers gets that hold a varying, of all lanes of one run.
+void read_varying(ShadeRun& run, const VaryingRead& read, base::WaveRegister& out);
+
 }  // namespace vitrine::raster

@@ -99,6 +99,13 @@ class Pixel(unittest.TestCase):
         self.assertLess(text.index("fragment of primitive 0 of instance 5 (back-facing triangle) is written"),
                         text.index("fragment of primitive 0 of instance 6 (back-facing triangle) is written"))
 
+    def test_instances_are_told_behind_tessellation_and_geometry_shaders(self):
+        for image, primitive in (("tessellated", 0), ("emitted", 10)):
+            text = self.story("5,5", "--image", image, "--depth=0")
+            places = [text.index(f"fragment of primitive {primitive} of instance {instance} (") for instance in (4, 5, 6)]
+            self.assertEqual(places, sorted(places))
+            self.assertEqual(text.count("fragment of"), 3)
+
     def test_depth_has_a_history_of_its_own(self):
         text = self.story("5,5", "--image=depth", "--aspect=depth")
         self.assertIn("(0.5) = 0x3f000000 -> (0.25) = 0x3e800000", text)
@@ -136,8 +143,20 @@ class Pixel(unittest.TestCase):
     def test_inputs_of_shaders_are_told(self):
         text = self.story("5,5", "--image", "target")
         self.assertIn("input 0 (-0.3125, -0.3125)\n     input 1.y (0)\n", text)
-        # What is killed before it is shaded has none.
-        self.assertNotIn("input", text[text.index("outside of the scissor"):text.index("fails the depth test")])
+        self.assertNotIn("no shader ran", text[text.index("is discarded by the shader"):text.index("pipeline 'masked'")])
+
+    def test_inputs_are_told_of_fragments_that_no_shader_runs_for(self):
+        text = self.story("5,5", "--image", "target", "--depth=0")
+        told = "no shader ran for it; its inputs would be\n     input 0 (-0.3125, -0.3125)\n     input 1.y (0)\n"
+        for fate in ("is outside of the scissor", "fails the depth test"):
+            self.assertIn(told, text[text.index(fate):].split("fragment of")[0], fate)
+        alone = text[text.index("pipeline 'depth alone'"):].split("cleared")[0]
+        self.assertIn("no shader ran as the draw has none", alone)
+        self.assertNotIn("input", alone)
+        few = self.story("5,5", "--image", "samples", "--sample=0", "--depth=0")
+        few = few[few.index("is not in the pipeline's sample mask"):]
+        self.assertNotIn("no shader ran", few.split("fragment of")[0])
+
 
     def test_an_application_that_draws_something_else_every_time_is_found_out(self):
         result = self.run_it("5,5", "--image=last", arguments=["runs"])
@@ -157,6 +176,32 @@ class Pixel(unittest.TestCase):
         self.assertIn("primitive 0 is culled because of where it faces", facing)
         self.assertIn("primitive 0 is rasterized, 3 times\n     at submission 1", facing)
         self.assertIn("but does not cover the pixel", facing)
+
+    def test_why_not_names_instances(self):
+        def why(image, primitive):
+            text = self.story("5,5", f"--image={image}", f"--why-not={primitive}", "--depth=0",
+                              f"--sample={int(image == 'samples')}")
+            return text[text.index("why not primitive"):]
+        text = why("samples", 0)
+        self.assertIn("primitive 0 of instances 5, 6 is rasterized, 4 times", text)
+        self.assertIn("fragment of primitive 0 of instance 5 (back-facing triangle) is written", text)
+        self.assertIn("  primitive 0 is rasterized, 2 times\n", text)  # of the draws of instance 0 alone
+        text = why("samples", "0@6")
+        self.assertIn("why not primitive 0 of instance 6:", text)
+        self.assertIn("  primitive 0 of instance 6 is rasterized, 2 times\n", text)
+        self.assertNotIn("instance 5", text)
+        self.assertNotIn("primitive 0 is", text)
+        text = why("samples", "0@0")
+        self.assertIn("  primitive 0 is rasterized, 2 times\n", text)
+        self.assertIn("fragment of primitive 0 (back-facing triangle)", text)
+        self.assertNotIn("of instance 5", text)
+        self.assertIn("no draw to the pixel's image has primitive 0 of instance 9", why("samples", "0@9"))
+        self.assertRegex(why("tessellated", 0), r"primitive 0 of instances 4 to 6 is \w+")
+        self.assertIn("primitive 10 of instances 4 to 6 is rasterized", why("emitted", 10))
+        self.assertIn("primitive 10 of instance 5 is rasterized", why("emitted", "10@5"))
+        result = self.run_it("5,5", "--image=target", "--why-not=x")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("'x' is no primitive", result.stderr)
 
     def test_files(self):
         self.story("5,5", "--image=last", "--html=page.html", "--json=history.json")

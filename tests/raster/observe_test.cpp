@@ -5,7 +5,9 @@
 
 #include <array>
 #include <bit>
+#include <map>
 #include <mutex>
+#include <set>
 #include <vector>
 
 #include "raster/pass.h"
@@ -89,7 +91,7 @@ class Counter : public DrawWatch {
     out_.vertices += vertices;
     out_.assembled += primitives;
   }
-  void primitive(std::uint32_t, PrimitiveFate fate) override {
+  void primitive(std::uint32_t, std::optional<std::uint32_t>, PrimitiveFate fate) override {
     add(out_.primitives[static_cast<std::size_t>(fate)], 1);
   }
   void generated(const FragmentGroup&, SampleLanes lanes) override { add(out_.generated, count(any_of(lanes))); }
@@ -423,6 +425,140 @@ TEST_F(Observed, TellsWhichInstancesFragmentsAreOf) {
       EXPECT_EQ(by.wrong[column], 0u) << column;
     }
   }
+}
+
+/// Of primitives, which instances each fate is told of.
+struct InstancesOfFates : DrawObserver {
+  std::mutex mutex;
+  std::map<PrimitiveFate, std::set<std::uint32_t>> instances;
+
+  struct Watch : DrawWatch {
+    explicit Watch(InstancesOfFates& to) : out(to) {}
+    void primitive(std::uint32_t, std::optional<std::uint32_t> instance, PrimitiveFate fate) override {
+      const std::lock_guard lock(out.mutex);
+      out.instances[fate].insert(instance.value_or(0));
+    }
+    InstancesOfFates& out;
+  };
+  std::unique_ptr<DrawWatch> watch_chunk(const spirv::ObservedCommand*) override {
+    return std::make_unique<Watch>(*this);
+  }
+  std::unique_ptr<DrawWatch> watch_tile(const spirv::ObservedCommand*, std::uint32_t) override { return nullptr; }
+};
+
+TEST_F(Observed, TellsWhichInstancesPrimitivesAreOf) {
+  for (const bool culls : {false, true}) {
+    ByInstance by;
+    InstancesOfFates fates;
+    PassDesc desc;
+    desc.color[0] = view(VK_FORMAT_R32G32B32A32_SFLOAT, color);
+    desc.color_count = 1;
+    desc.render_area = {{0, 0}, {kSide, kSide}};
+    vertex.interface.inputs = {slot(spirv::BuiltIn::kVertexIndex, 0, 0), slot(spirv::BuiltIn::kInstanceIndex, 0, 1)};
+    vertex.run = shade_instances;
+    fragment.user = &discards;
+    state.cull_mode = culls ? VK_CULL_MODE_FRONT_AND_BACK : VK_CULL_MODE_NONE;
+    DrawCall call;
+    call.state = &state;
+    call.native_vertex = &vertex;
+    call.native_fragment = &fragment;
+    call.count = 3;
+    call.instance_count = 8;
+    call.first_instance = kFirstInstance;
+    call.observer = &fates;
+    call.tile_observer = &by;
+    Pass pass(desc);
+    pass.draw(call);
+    pass.flush();
+    using Set = std::set<std::uint32_t>;
+    EXPECT_EQ(fates.instances[PrimitiveFate::kClipped], culls ? Set() : Set({11, 13, 15, 17}));
+    EXPECT_EQ(fates.instances[culls ? PrimitiveFate::kFacing : PrimitiveFate::kRasterized],
+              Set({10, 11, 12, 13, 14, 15, 16, 17}));
+  }
+}
+
+/// Output 5: a varying with perspective, 6: one without, 7: a flat one.
+base::LaneMask shade_varyings(const void*, const base::WaveRegister* in, base::WaveRegister* out, base::LaneMask active,
+                              base::LaneMask) {
+  base::for_each_lane(active, [&](std::size_t lane) {
+    const auto number = static_cast<float>(in[0].lane[lane]);
+    const float w = 1 + 0.37f * number;
+    const float values[] = {(in[0].lane[lane] % 3 == 1 ? 1.3f : -0.9f) * w,
+                            (in[0].lane[lane] % 3 == 2 ? 1.4f : -0.8f + 0.1f * number) * w,
+                            0.5f * w,
+                            w,
+                            0,
+                            3.3f * number - 1,
+                            0.7f * number,
+                            number};
+    for (std::size_t c = 0; c < std::size(values); ++c) out[c].lane[lane] = std::bit_cast<std::uint32_t>(values[c]);
+  });
+  return active;
+}
+
+base::LaneMask copy_varyings(const void*, const base::WaveRegister* in, base::WaveRegister* out, base::LaneMask active,
+                             base::LaneMask helpers) {
+  for (std::size_t c = 0; c < 4; ++c) out[c] = in[c % 3];
+  return active & ~helpers;
+}
+
+/// What fragments' inputs are said to be, by pixel: those of the last fragment.
+struct ByInputs : TileObserver {
+  std::vector<std::uint32_t> words = std::vector<std::uint32_t>(std::size_t{kSide} * kSide * 4);
+  std::mutex mutex;
+
+  struct Watch : DrawWatch {
+    explicit Watch(ByInputs& to) : out(to) {}
+    void generated(const FragmentGroup& group, SampleLanes lanes) override {
+      const std::lock_guard lock(out.mutex);
+      base::for_each_lane(any_of(lanes), [&](std::size_t lane) {
+        const std::size_t x = group.position.x[lane / 4] + (lane & 1), y = group.position.y[lane / 4] + (lane >> 1 & 1);
+        for (std::uint32_t c = 0; c < 4; ++c)
+          out.words[4 * (y * kSide + x) + c] = group.inputs->word(c % 3, lane).value_or(~0u);
+        EXPECT_FALSE(group.inputs->word(3, lane));
+      });
+    }
+    ByInputs& out;
+  };
+  bool watches(const TilePlace&) const override { return true; }
+  std::unique_ptr<DrawWatch> watch_tile(const spirv::ObservedCommand*, const TilePlace&) override {
+    return std::make_unique<Watch>(*this);
+  }
+};
+
+TEST_F(Observed, TellsWhatTheShaderGetsBeforeItRuns) {
+  vertex.run = shade_varyings;
+  fragment.run = copy_varyings;
+  constexpr spirv::Interpolation kKinds[] = {spirv::Interpolation::kPerspective, spirv::Interpolation::kLinear,
+                                             spirv::Interpolation::kFlat};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    spirv::InterfaceSlot varying = slot(spirv::BuiltIn::kNone, 0, 5 + i);
+    varying.location = static_cast<std::uint16_t>(i);
+    vertex.interface.outputs.push_back(varying);
+    varying.reg = i;
+    varying.interpolation = kKinds[i];
+    fragment.interface.inputs.push_back(varying);
+  }
+  ByInputs by;
+  PassDesc desc;
+  desc.color[0] = view(VK_FORMAT_R32G32B32A32_SFLOAT, color);
+  desc.color_count = 1;
+  desc.render_area = {{0, 0}, {kSide, kSide}};
+  DrawCall call;
+  call.state = &state;
+  call.native_vertex = &vertex;
+  call.native_fragment = &fragment;
+  call.count = 9;
+  call.tile_observer = &by;
+  Pass pass(desc);
+  pass.draw(call);
+  pass.flush();
+  std::size_t drawn = 0;
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(color[i]), by.words[i]) << i;
+    drawn += by.words[i] != 0;
+  }
+  EXPECT_GT(drawn, color.size() / 4);
 }
 
 }  // namespace

@@ -14,6 +14,9 @@
 
 #include "tests/glass/app/pixels_comp.h"
 #include "tests/glass/app/pixels_frag.h"
+#include "tests/glass/app/pixels_geom.h"
+#include "tests/glass/app/pixels_tesc.h"
+#include "tests/glass/app/pixels_tese.h"
 #include "tests/glass/app/pixels_vert.h"
 
 namespace {
@@ -93,7 +96,7 @@ void make_device() {
   VkPhysicalDeviceVulkan13Features features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
   features.dynamicRendering = VK_TRUE;
   VkPhysicalDeviceFeatures core{};
-  core.depthBounds = VK_TRUE;
+  core.depthBounds = core.tessellationShader = core.geometryShader = VK_TRUE;
   VkDeviceCreateInfo device_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features};
   device_info.queueCreateInfoCount = 1;
   device_info.pQueueCreateInfos = &queue_info;
@@ -214,15 +217,32 @@ struct Look {
   VkColorComponentFlags mask = 15;
   std::uint32_t sample_mask = ~0u;
   VkCullModeFlags cull = VK_CULL_MODE_NONE;
+  bool tessellates = false, emits = false;  ///< stages behind the vertex shader
+  bool shades = true;                       ///< there is a fragment shader
 };
 
+std::vector<VkPipelineShaderStageCreateInfo> stages_of(const Look& look) {
+  std::vector<VkPipelineShaderStageCreateInfo> stages{
+      stage(VK_SHADER_STAGE_VERTEX_BIT, make_module(pixels_vert, sizeof pixels_vert))};
+  const auto add = [&](VkShaderStageFlagBits which, const std::uint32_t* words, std::size_t bytes) {
+    stages.push_back(stage(which, make_module(words, bytes)));
+  };
+  if (look.tessellates) {
+    add(VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, pixels_tesc, sizeof pixels_tesc);
+    add(VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, pixels_tese, sizeof pixels_tese);
+  }
+  if (look.emits) add(VK_SHADER_STAGE_GEOMETRY_BIT, pixels_geom, sizeof pixels_geom);
+  if (look.shades) add(VK_SHADER_STAGE_FRAGMENT_BIT, pixels_frag, sizeof pixels_frag);
+  return stages;
+}
+
 VkPipeline make_pipeline(const char* name, const Look& look) {
-  const VkPipelineShaderStageCreateInfo stages[] = {
-      stage(VK_SHADER_STAGE_VERTEX_BIT, make_module(pixels_vert, sizeof pixels_vert)),
-      stage(VK_SHADER_STAGE_FRAGMENT_BIT, make_module(pixels_frag, sizeof pixels_frag))};
+  const std::vector<VkPipelineShaderStageCreateInfo> stages = stages_of(look);
   VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
-  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  assembly.topology = look.tessellates ? VK_PRIMITIVE_TOPOLOGY_PATCH_LIST : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  VkPipelineTessellationStateCreateInfo tessellation{VK_STRUCTURE_TYPE_PIPELINE_TESSELLATION_STATE_CREATE_INFO};
+  tessellation.patchControlPoints = 3;
   VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
   const VkViewport whole{0, 0, kSize, kSize, 0, 1};
   viewport.viewportCount = viewport.scissorCount = 1;
@@ -259,8 +279,9 @@ VkPipeline make_pipeline(const char* name, const Look& look) {
   rendering.pColorAttachmentFormats = &kColor;
   if (look.depth) rendering.depthAttachmentFormat = rendering.stencilAttachmentFormat = kDepth;
   VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, &rendering};
-  info.stageCount = 2;
-  info.pStages = stages;
+  info.stageCount = static_cast<std::uint32_t>(stages.size());
+  info.pStages = stages.data();
+  info.pTessellationState = &tessellation;
   info.pVertexInputState = &input;
   info.pInputAssemblyState = &assembly;
   info.pViewportState = &viewport;
@@ -395,6 +416,8 @@ void draw_single_sampled(const Image& target, const Image& depth) {
   const VkPipeline blended = make_pipeline("blended", look);
   look.mask = 0;
   const VkPipeline masked = make_pipeline("masked", look);
+  look.shades = false;
+  const VkPipeline depth_alone = make_pipeline("depth alone", look);
   label("scene");
   label("fates");
   begin(target, &depth, nullptr);
@@ -416,6 +439,7 @@ void draw_single_sampled(const Image& target, const Image& depth) {
   draw(plain, {{0, 1, 0, 1}, 0.25f, kNoSamples});
   draw(masked, {{0, 1, 0, 1}, 0.25f, kPlain});
   draw(blended, {{0, 0, blue, 0.5f}, 0.25f, kPlain});
+  draw(depth_alone, {{}, 0.25f, kPlain});
   const VkClearAttachment clear{VK_IMAGE_ASPECT_COLOR_BIT, 0, {{{0.25f, 0.5f, 0.75f, 1}}}};
   const VkClearRect rect{{{0, 0}, {2, 2}}, 0, 1};
   vkCmdClearAttachments(commands, 1, &clear, 1, &rect);
@@ -457,6 +481,18 @@ void draw_elsewhere(const Image& image) {
   draw(culled, {{0, 1, 0, 1}, 0.25f, kPlain});
   draw(plain, {{0, 1, 0, 1}, 0.25f, kCorner});
   vkCmdEndRendering(commands);
+}
+
+/// Instances 4 to 6, behind a tessellation or a geometry shader.
+void draw_stages(const Image& tessellated, const Image& emitted) {
+  for (const Image* image : {&tessellated, &emitted}) {
+    Look look;
+    look.tessellates = image == &tessellated;
+    look.emits = image == &emitted;
+    begin(*image, nullptr, nullptr);
+    draw(make_pipeline(image->name.c_str(), look), {{0, 1, 0, 1}, 0.25f, kPlain}, 3, 4);
+    vkCmdEndRendering(commands);
+  }
 }
 
 void blit(const Image& from, std::uint32_t from_level, const Image& to, std::uint32_t to_level) {
@@ -515,10 +551,12 @@ void make_commands() {
   must(vkAllocateCommandBuffers(device, &allocation, &commands), "vkAllocateCommandBuffers");
 }
 
-void record(const std::vector<Image*>& colors, const Image& depth, const Buffer& upload, const Buffer& result) {
+void record(const std::vector<Image*>& colors, const std::vector<Image*>& staged, const Image& depth,
+            const Buffer& upload, const Buffer& result) {
   Image &target = *colors[0], &samples = *colors[1], &resolved = *colors[2], &copy = *colors[3], &mips = *colors[4],
         &last = *colors[5], &stored = *colors[6], &culled = *colors[7];
   for (const Image* image : colors) to_general(*image, VK_IMAGE_ASPECT_COLOR_BIT);
+  for (const Image* image : staged) to_general(*image, VK_IMAGE_ASPECT_COLOR_BIT);
   to_general(depth, VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT);
   VkBufferImageCopy uploaded{};
   uploaded.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
@@ -529,6 +567,7 @@ void record(const std::vector<Image*>& colors, const Image& depth, const Buffer&
   wait();
   draw_multisampled(samples, resolved);
   draw_elsewhere(culled);
+  draw_stages(*staged[0], *staged[1]);
   wait();
   VkImageCopy region{};
   region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
@@ -568,14 +607,15 @@ int main(int argc, char** argv) {
         resolved = make_image("resolved", kColor), copy = make_image("copy", kColor),
         mips = make_image("mips", kColor, VK_SAMPLE_COUNT_1_BIT, 2), last = make_image("last", kColor),
         stored = make_image("stored", kColor), culled = make_image("culled", kColor),
-        depth = make_image("depth", kDepth), staged = make_image("staged", kColor);
+        depth = make_image("depth", kDepth), staged = make_image("staged", kColor),
+        tessellated = make_image("tessellated", kColor), emitted = make_image("emitted", kColor);
   make_set(mips, resolved, last, stored);
   const std::vector<Image*> colors{&target, &samples, &resolved, &copy, &mips, &last, &stored, &culled, &staged};
   const Buffer upload = make_buffer(kSize * kSize * 4), result = make_buffer(16 * kSize * kSize * 4);
   std::memset(upload.data, 0x42, kSize * kSize * 4);
   VkCommandBufferBeginInfo begin_info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   must(vkBeginCommandBuffer(commands, &begin_info), "vkBeginCommandBuffer");
-  record(colors, depth, upload, result);
+  record(colors, {&tessellated, &emitted}, depth, upload, result);
   must(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
   submit.commandBufferCount = 1;

@@ -51,5 +51,18 @@ TEST(PixelRequest, EscapedNamesComeBack) {
   EXPECT_EQ((*requests)[0].image, name);
 }
 
+TEST(PixelRequest, PrimitivesAreOfAllInstancesOrOfOne) {
+  const auto all = parse_primitive("7");
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->primitive, 7u);
+  EXPECT_FALSE(all->instance);
+  const auto one = parse_primitive("7@0");
+  ASSERT_TRUE(one);
+  EXPECT_EQ(one->primitive, 7u);
+  EXPECT_EQ(one->instance, 0u);
+  for (const char* text : {"", "@", "7@", "@3", "7@x", "7@3@1", "-1", "7 ", "99999999999"})
+    EXPECT_FALSE(parse_primitive(text)) << text;
+}
+
 }  // namespace
 }  // namespace vitrine::glass::pixel
