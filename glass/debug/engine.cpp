@@ -165,12 +165,28 @@ void Engine::note_reset(Run& run) {
   history_.grown();
 }
 
+namespace {
+
+/// Nobody knows what it held.
+void forget(Watchpoint& watchpoint) {
+  watchpoint.held.clear();
+  watchpoint.written.clear();
+}
+
+/// It holds this now, and that is known to whoever looks at it.
+void hold(Watchpoint& watchpoint, std::vector<std::byte> now) {
+  watchpoint.held = std::move(now);
+  watchpoint.written.clear();
+}
+
+}  // namespace
+
 /// Memory that is named by a variable lies somewhere else for every set of resources.
 void Engine::aim_watches(const Run& run) {
   for (auto& [number, watchpoint] : watchpoints_) {
     if (!watchpoint.is_memory() || watchpoint.subject != run.subject) continue;
     std::vector<MemoryRange> memory = memory_of_place(view(run, 0), *watchpoint.place);
-    if (memory != watchpoint.memory) watchpoint.held.clear();
+    if (memory != watchpoint.memory) forget(watchpoint);
     watchpoint.memory = std::move(memory);
     watchpoint.submission = run.submission;
   }
@@ -193,25 +209,62 @@ bool lasts(const Watchpoint& watchpoint) {
 
 /// What has been freed is not looked at: while a submission runs, all that it uses is there.
 void Engine::hold_watches(const Run& run) {
-  for (auto& [number, watchpoint] : watchpoints_)
-    if (lasts(watchpoint) && watchpoint.submission == run.submission) watchpoint.held = bytes_of(watchpoint);
+  for (auto& [number, watchpoint] : watchpoints_) {
+    if (!lasts(watchpoint) || watchpoint.submission != run.submission) continue;
+    std::vector<std::byte> now = bytes_of(watchpoint);
+    if (now != watchpoint.held && watchpoint.subject == run.subject)
+      watchpoint.value = to_text(view(run, 0), {watchpoint.place, {}});
+    hold(watchpoint, std::move(now));
+  }
+}
+
+/// In words, of a watch of which it is known.
+std::string Engine::change_by_others(Watchpoint& watchpoint, const std::vector<std::byte>& now) {
+  std::string text = "watch " + std::to_string(watchpoint.number) + ": " + watchpoint.text + " has changed";
+  if (live_ && watchpoint.subject == live_->subject) {
+    const std::string before = std::exchange(watchpoint.value, to_text(view(*live_, 0), {watchpoint.place, {}}));
+    text.append(": ").append(before).append(" -> ").append(watchpoint.value);
+  }
+  if (now == watchpoint.written) return text.append(", by ").append(watchpoint.writer);
+  return text.append(", by no shader: by a command, the host or what was drawn");
 }
 
 std::optional<Stop> Engine::changed_by_others(std::uint64_t submission) {
+  std::optional<Stop> stop;
   for (auto& [number, watchpoint] : watchpoints_) {
     if (!lasts(watchpoint) || watchpoint.submission != submission || watchpoint.held.empty()) continue;
     std::vector<std::byte> now = bytes_of(watchpoint);
-    const bool same = now == watchpoint.held;
-    watchpoint.held = std::move(now);
-    if (same) continue;
-    std::string text = "watch " + std::to_string(number) + ": " + watchpoint.text + " has changed";
-    if (live_ && watchpoint.subject == live_->subject) {
-      const std::string before = std::exchange(watchpoint.value, to_text(view(*live_, 0), {watchpoint.place, {}}));
-      text.append(": ").append(before).append(" -> ").append(watchpoint.value);
+    if (now != watchpoint.held) {
+      const std::string text = change_by_others(watchpoint, now);
+      if (stop)
+        stop->text.append("\n").append(text);
+      else
+        stop = Stop{Stop::Reason::kWatch, number, text};
     }
-    return Stop{Stop::Reason::kWatch, number, text + ", by no shader: by a command, the host or what was drawn"};
+    hold(watchpoint, std::move(now));
   }
-  return std::nullopt;
+  return stop;
+}
+
+/// Only what the command has written is looked at: that is there, whatever has become of the rest.
+void Engine::wrote(const std::byte* first, std::uint64_t size, const Address& command) {
+  const std::unique_lock lock(mutex_);
+  const std::byte* const end = first + size;
+  for (auto& [number, watchpoint] : watchpoints_) {
+    if (!lasts(watchpoint) || watchpoint.held.empty()) continue;
+    std::vector<std::byte> now = watchpoint.written.empty() ? watchpoint.held : watchpoint.written;
+    const std::vector<std::byte> before = now;
+    std::size_t at = 0;
+    for (const MemoryRange& range : watchpoint.memory) {
+      const std::byte* const from = std::max<const std::byte*>(range.at, first);
+      const std::byte* const to = std::min<const std::byte*>(range.at + range.bytes, end);
+      if (from < to) std::copy(from, to, now.begin() + static_cast<std::ptrdiff_t>(at) + (from - range.at));
+      at += range.bytes;
+    }
+    if (now == before) continue;
+    watchpoint.written = std::move(now);
+    watchpoint.writer = to_text(command);
+  }
 }
 
 void Engine::commands_done() {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "glass/debug/breakpoint.h"
+#include "glass/debug/command_watch.h"
 #include "glass/debug/exceptions.h"
 #include "glass/debug/frame.h"
 #include "glass/debug/history.h"
@@ -62,6 +63,8 @@ struct Watchpoint {
   std::vector<MemoryRange> memory;  ///< where that is for the run that began last
   std::string value;                ///< what it held when it was looked at last
   std::vector<std::byte> held;      ///< the same, bytes, when a run left it; empty: nobody knows
+  std::vector<std::byte> written;   ///< the same, as the last command left it that wrote there since; empty: none has
+  std::string writer;               ///< that command, in words
   std::uint64_t submission = 0;     ///< in which `memory` is there
   bool is_memory() const { return place.has_value(); }
 };
@@ -79,7 +82,7 @@ struct Focus {
   std::size_t frame = 0;
 };
 
-class Engine {
+class Engine : public CommandWatch {
  public:
   explicit Engine(Face& face) : face_(face) {}
 
@@ -103,6 +106,7 @@ class Engine {
   /// The wave has ended, if it does not wait for others.
   void ended(const std::shared_ptr<Run>& run, const spirv::Wave& wave, bool waits);
   void leave(const std::shared_ptr<Run>& run);
+  void wrote(const std::byte* first, std::uint64_t size, const Address& command) override;
   /// Work of commands is done: what is watched may have been changed by others than shaders.
   void commands_done();
   /// The wave itself has done otherwise than its rehearsal did.
@@ -153,6 +157,7 @@ class Engine {
   void aim_watches(const Run& run);
   void hold_watches(const Run& run);
   std::optional<Stop> changed_by_others(std::uint64_t submission);
+  std::string change_by_others(Watchpoint& watchpoint, const std::vector<std::byte>& now);
   std::string change_cells(std::size_t lane, const std::vector<PlacedScalar>& numbers);
   std::string change_memory(std::size_t lane, const std::vector<PlacedScalar>& numbers);
   std::string change_texel(const Place& place, std::size_t lane, const std::vector<PlacedScalar>& numbers);

@@ -3,6 +3,7 @@
 #include "glass/debug/tool.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <iterator>
 #include <map>
@@ -16,6 +17,9 @@
 namespace vitrine::glass {
 namespace debug {
 namespace {
+
+/// Of the tool that is connected.
+std::atomic<CommandWatch*> watch_of_commands = nullptr;
 
 /// The program as it always runs, with probes.
 class DebugWatch : public spirv::exec::Watch {
@@ -247,7 +251,11 @@ class ConnectedTool : public Tool {
     face_.listen(engine_);
     engine_.start();
     tool_ = std::make_unique<DebugTool>(engine_, shown);
+    watch_of_commands = &engine_;
   }
+  ~ConnectedTool() override { watch_of_commands = nullptr; }
+  ConnectedTool(const ConnectedTool&) = delete;
+  ConnectedTool& operator=(const ConnectedTool&) = delete;
 
   spirv::exec::Interest interest() const override { return tool_->interest(); }
   spirv::exec::Interest rehearsed() const override { return tool_->rehearsed(); }
@@ -274,6 +282,8 @@ class NoTool : public Tool {
 };
 
 }  // namespace
+
+CommandWatch* command_watch() { return watch_of_commands; }
 
 std::unique_ptr<Tool> make_tool(Engine& engine, Shown shown) { return std::make_unique<DebugTool>(engine, shown); }
 

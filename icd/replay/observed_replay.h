@@ -19,6 +19,10 @@
 #include "icd/replay/replay.h"
 #include "spirv/observed_command.h"
 
+namespace vitrine::glass::debug {
+class CommandWatch;  // glass/debug/command_watch.h
+}
+
 namespace vitrine::icd {
 
 /// A draw or dispatch as it is replayed: valid until its pass is flushed.
@@ -77,14 +81,15 @@ struct ObservedReplay {
   std::unique_ptr<glass::pixel::PrimitiveObserver> primitives;  ///< null: no primitive is asked for
   glass::sync::Hazards* hazards = nullptr;                      ///< null: sync is off
   SyncedPass synced;
-  bool every_fragment = true;       ///< some tool must see each
-  std::vector<LoadedTexel> loaded;  ///< by the scope that begins
-  std::uint64_t submission = 0;     ///< counted from 1
-  std::uint32_t command = 0;        ///< of the submission, counted from 1; 0: none yet
-  const char* name = "";            ///< of the command
-  std::uint64_t pass_number = 0;    ///< of the draws at hand: spirv::ObservedCommand::pass
-  ObjectRef command_buffer;         ///< primary
-  LabelStack labels;                ///< of command buffers; they go on from one submission to the next
+  glass::debug::CommandWatch* debugger = nullptr;  ///< null: nobody debugs
+  bool every_fragment = true;                      ///< some tool must see each
+  std::vector<LoadedTexel> loaded;                 ///< by the scope that begins
+  std::uint64_t submission = 0;                    ///< counted from 1
+  std::uint32_t command = 0;                       ///< of the submission, counted from 1; 0: none yet
+  const char* name = "";                           ///< of the command
+  std::uint64_t pass_number = 0;                   ///< of the draws at hand: spirv::ObservedCommand::pass
+  ObjectRef command_buffer;                        ///< primary
+  LabelStack labels;                               ///< of command buffers; they go on from one submission to the next
   std::vector<std::string> queue_labels;
   /// What descriptors that were hidden named, by their nulls; and the sets without such ones, as of how many
   /// departures.

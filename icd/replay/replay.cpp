@@ -2,6 +2,7 @@
 #include "icd/replay/replay.h"
 
 #include "glass/bug/capture.h"
+#include "glass/debug/command_watch.h"
 #include "glass/digest.h"
 #include "glass/place.h"
 #include "glass/session.h"
@@ -10,6 +11,7 @@
 #include "icd/object/sync.h"
 #include "icd/record/command_buffer.h"
 #include "icd/replay/captured_replay.h"
+#include "icd/replay/debug_writes.h"
 #include "icd/replay/digested_replay.h"
 #include "icd/replay/sync_notes.h"
 #include "icd/replay/texel_events.h"
@@ -67,12 +69,25 @@ constexpr Executor kSyncNotes[] = {
 #include "icd/record/commands.def"
 };
 
+/// What the debugger is told of a command.
+template <class T>
+void note_debug_erased(ReplayState& state, const void* command) {
+  if constexpr (requires(const T& typed) { note_debug(state, typed); })
+    note_debug(state, *static_cast<const T*>(command));
+}
+
+constexpr Executor kDebugNotes[] = {
+#define VITRINE_COMMAND(name) note_debug_erased<Cmd##name>,
+#include "icd/record/commands.def"
+};
+
 /// One command of a timeline, or of digests.
 void run_command(ReplayState& state, const CommandHeader& header) {
   kExecutors[header.type](state, header.command());
   if (shadows_memory(state)) kNotes[header.type](state, header.command());
   if (watches_texels(state)) kTexelNotes[header.type](state, header.command());
   if (follows_hazards(state)) kSyncNotes[header.type](state, header.command());
+  if (tells_debugger(state)) kDebugNotes[header.type](state, header.command());
 }
 
 /// A command buffer starts with nothing bound, and nothing that an earlier one bound may be touched again.
@@ -120,11 +135,13 @@ void replay_commands(ReplayState& state, const CommandBuffer& buffer) {
   if (state.observed && glass::has_digest()) return replay_digested(state, buffer, run_command);
   if (state.observed && glass::bug::captures()) return replay_captured(state, buffer, run_command);
   const bool shadows = shadows_memory(state), watches = watches_texels(state), follows = follows_hazards(state);
+  const bool debugs = tells_debugger(state);
   for (const CommandHeader* header = buffer.arena.first(); header; header = header->next) {
     kExecutors[header->type](state, header->command());
     if (shadows) kNotes[header->type](state, header->command());
     if (watches) kTexelNotes[header->type](state, header->command());
     if (follows) kSyncNotes[header->type](state, header->command());
+    if (debugs) kDebugNotes[header->type](state, header->command());
     if (state.fault.raised.load(std::memory_order_relaxed)) return;
   }
 }
@@ -163,6 +180,7 @@ void prepare_replay(Device& device) {
   device.replay->observed = std::make_shared<ObservedReplay>();
   device.replay->observed->shadows_memory = glass::session().shadows_memory();
   device.replay->observed->hazards = glass::sync::hazards_of(&device);
+  device.replay->observed->debugger = glass::debug::command_watch();
   device.replay->observed->every_fragment = glass::session().needs_every_fragment();
   glass::pixel::Pixels* const pixels = device.replay->observed->pixels = glass::pixel::pixels();
   if (pixels && pixels->primitive())

@@ -47,6 +47,19 @@ class Prompt(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.in_order(result.stdout, "put at tests/glass/app/fill.comp:8", "lane  invocation", "7     invocation (7, 0, 0)")
 
+    def test_watches_name_commands(self):
+        result = self.debug(["break put if i == 0", "run", "delete", "watch data[1]", "watch data[2]", "watch data[3]",
+                             "watch data[7]", "continue", "continue", "continue", "continue", "continue"],
+                            arguments=["1", "8", "copies"])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.in_order(result.stdout, "watch 2: data[1] has changed: 0 -> 1\n",
+                      "watch 2: data[1] has changed: 1 -> 70, by submission 1, command 5 (vkCmdFillBuffer)",
+                      "watch 3: data[2] has changed: 2 -> 80, by submission 1, command 6 (vkCmdUpdateBuffer)",
+                      "watch 4: data[3] has changed: 3 -> 80, by submission 1, command 8 (vkCmdCopyBuffer)",
+                      "invocation (0, 0, 0), lane 0, submission 1, command 10 (vkCmdDispatch)")
+        self.assertNotIn("by no shader", result.stdout)
+        self.assertNotIn("data[7] has changed", result.stdout)
+
     def test_json(self):
         result = self.debug(["break main", "run", "step", "nonsense"], "--json")
         rows = [json.loads(line) for line in result.stdout.splitlines() if line.startswith("{")]

@@ -1,9 +1,9 @@
 // A small application, linked to the loader, for the tests of tools and of the command `vitrine`: a compute shader
 // fills a buffer of eight words and says that it was there.
 //
-//   vitrine_test_app [ROUNDS] [COUNT]    ROUNDS: instances, one after the other; COUNT: words that it writes (8; more
-//   is
-//                                        a fault)
+//   vitrine_test_app [ROUNDS] [COUNT] [copies]    ROUNDS: instances, one after the other; COUNT: words that it writes
+//                                                 (8; more is a fault); copies: the buffer is filled, updated and
+//                                                 copied, too, and the shader runs again
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
@@ -57,7 +57,7 @@ Buffer make_buffer(VkDevice device, VkDeviceSize size) {
   Buffer b;
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = size;
-  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   must(vkCreateBuffer(device, &info, nullptr, &b.buffer), "vkCreateBuffer");
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(device, b.buffer, &needs);
@@ -128,7 +128,29 @@ VkDescriptorPool make_set(VkDevice device, const Program& program, const Buffer&
   return pool;
 }
 
-void dispatch(const Device& d, const Program& program, VkDescriptorSet set) {
+void wait(VkCommandBuffer commands) {
+  VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+  barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+  barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &barrier,
+                       0, nullptr, 0, nullptr);
+}
+
+/// Words 1, 2 and 3 become 70, 80 and 80; then the shader runs again.
+void copy_and_dispatch(VkCommandBuffer commands, VkBuffer buffer) {
+  wait(commands);
+  vkCmdFillBuffer(commands, buffer, 4, 4, 70);
+  const std::uint32_t word = 80;
+  vkCmdUpdateBuffer(commands, buffer, 8, 4, &word);
+  wait(commands);
+  const VkBufferCopy region{8, 12, 4};
+  vkCmdCopyBuffer(commands, buffer, buffer, 1, &region);
+  wait(commands);
+  vkCmdDispatch(commands, 1, 1, 1);
+}
+
+/// `copied`: the buffer, if it is copied, too.
+void dispatch(const Device& d, const Program& program, VkDescriptorSet set, VkBuffer copied) {
   VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   VkCommandPool pool;
   must(vkCreateCommandPool(d.device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
@@ -142,6 +164,7 @@ void dispatch(const Device& d, const Program& program, VkDescriptorSet set) {
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline);
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, 1, &set, 0, nullptr);
   vkCmdDispatch(commands, 1, 1, 1);
+  if (copied) copy_and_dispatch(commands, copied);
   must(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
   submit.commandBufferCount = 1;
@@ -151,13 +174,13 @@ void dispatch(const Device& d, const Program& program, VkDescriptorSet set) {
   vkDestroyCommandPool(d.device, pool, nullptr);
 }
 
-void run_round(std::uint32_t words) {
+void run_round(std::uint32_t words, bool copies) {
   const Device d = make_device();
   const Buffer buffer = make_buffer(d.device, 8 * sizeof(std::uint32_t));
   const Program program = make_program(d.device, words);
   VkDescriptorSet set;
   const VkDescriptorPool pool = make_set(d.device, program, buffer, set);
-  dispatch(d, program, set);
+  dispatch(d, program, set, copies ? buffer.buffer : VkBuffer{});
   vkDestroyDescriptorPool(d.device, pool, nullptr);
   vkDestroyPipeline(d.device, program.pipeline, nullptr);
   vkDestroyPipelineLayout(d.device, program.layout, nullptr);
@@ -174,5 +197,5 @@ void run_round(std::uint32_t words) {
 int main(int argc, char** argv) {
   const long rounds = argc > 1 ? std::strtol(argv[1], nullptr, 10) : 1;
   const unsigned long words = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 8;
-  for (long i = 0; i < rounds; ++i) run_round(static_cast<std::uint32_t>(words));
+  for (long i = 0; i < rounds; ++i) run_round(static_cast<std::uint32_t>(words), argc > 3);
 }
