@@ -56,7 +56,7 @@ struct Buffer {
   bool gone = false;  ///< it was destroyed before the command
 };
 
-/// Texels of some layers of one level and aspect, packed as vkCmdCopyImageToBuffer packs them.
+/// Texels of some layers of one level and aspect, packed as vkCmdCopyImageToBuffer packs them; sample after sample.
 struct Texels {
   VkImageAspectFlagBits aspect = VK_IMAGE_ASPECT_COLOR_BIT;
   std::uint32_t level = 0, layer = 0, layers = 1;

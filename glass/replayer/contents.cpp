@@ -1,6 +1,7 @@
 // What memory holds, through transfers: memory that tools watch stays unmapped, and what nothing has written unwritten.
 #include <algorithm>
 #include <cstring>
+#include <map>
 
 #include "glass/bug/texels.h"
 #include "glass/replayer/resources.h"
@@ -42,6 +43,33 @@ VkBufferImageCopy region_of(const bug::Image& image, const bug::Texels& texels, 
   region.imageSubresource = {static_cast<VkImageAspectFlags>(texels.aspect), texels.level, texels.layer, texels.layers};
   region.imageExtent = {side(image.extent.width), side(image.extent.height), side(image.extent.depth)};
   return region;
+}
+
+texel::ImageDesc desc_of(const bug::Image& image) {
+  texel::ImageDesc desc;
+  desc.type = image.type;
+  desc.format = image.format;
+  desc.extent = image.extent;
+  desc.levels = image.levels;
+  desc.layers = image.layers;
+  desc.samples = image.samples;
+  return desc;
+}
+
+/// Of an image of several samples, between its memory and what is packed: as Vitrine lays it out.
+void copy_samples(const Device& d, const bug::Image& image, VkDeviceMemory memory, const bug::Texels& texels,
+                  std::byte* packed, bool back) {
+  texel::ImageLayout layout;
+  if (!texel::make_image_layout(desc_of(image), layout)) throw Failure("the file has an image that cannot be");
+  void* mapped = nullptr;
+  must(vkMapMemory(d.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory");
+  auto* const held = static_cast<std::byte*>(mapped);
+  bug::for_each_sample_row(layout, texels.aspect, texels.layer, texels.layers,
+                           [&](std::uint64_t at, std::uint64_t bytes) {
+                             std::memcpy(back ? packed : held + at, back ? held + at : packed, bytes);
+                             packed += bytes;
+                           });
+  vkUnmapMemory(d.device, memory);
 }
 
 /// Of texels of which some were never written: those that were, row by row.
@@ -100,13 +128,7 @@ void destroy(const Device& d, const Staging& staging) {
 
 void check_texels(const bug::Bug& bug) {
   for (const bug::Image& image : bug.images) {
-    texel::ImageDesc desc;
-    desc.type = image.type;
-    desc.format = image.format;
-    desc.extent = image.extent;
-    desc.levels = image.levels;
-    desc.layers = image.layers;
-    desc.samples = image.samples;
+    const texel::ImageDesc desc = desc_of(image);
     texel::ImageLayout layout;
     const bool good = texel::format_desc(image.format).block_bytes != 0 && texel::make_image_layout(desc, layout);
     for (const bug::Texels& texels : image.texels) {
@@ -145,7 +167,7 @@ void copy_contents(const Device& d, const bug::Bug& bug, const Resources& resour
       for (const bug::Texels& texels : bug.images[i].texels) {
         const std::uint64_t from = at;
         next(texels);
-        if (texels.unwritten && fresh) continue;
+        if ((texels.unwritten && fresh) || bug.images[i].samples != 1) continue;
         const VkBufferImageCopy whole = region_of(bug.images[i], texels, from);
         if (back) {
           vkCmdCopyImageToBuffer(commands, resources.images[i], VK_IMAGE_LAYOUT_GENERAL, staging.buffer, 1, &whole);
@@ -158,6 +180,12 @@ void copy_contents(const Device& d, const bug::Bug& bug, const Resources& resour
     }
     barrier(commands);
   });
+  std::map<const void*, std::byte*> packed;
+  for_each_content(bug, [&](const auto& content, std::uint64_t at) { packed[&content] = staging.bytes + at; });
+  for (std::size_t i = 0; i < bug.images.size(); ++i)
+    for (const bug::Texels& texels : bug.images[i].texels)
+      if (bug.images[i].samples != 1)
+        copy_samples(d, bug.images[i], resources.image_memories[i], texels, packed.at(&texels), back);
 }
 
 }  // namespace vitrine::glass::replayer

@@ -16,7 +16,10 @@ constexpr VkImageUsageFlags kKeptImageUsage =
     VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
 constexpr VkImageUsageFlags kTransfer = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
-VkImage make_image(const Device& d, const bug::Image& source) {
+/// What no command fills is filled through the host.
+bool is_filled_by_host(const bug::Image& image) { return image.samples != 1 && !image.texels.empty(); }
+
+VkImage make_image(const Device& d, const bug::Image& source, VkDeviceMemory& memory) {
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.flags = source.flags & kKeptFlags;
   info.imageType = source.type;
@@ -32,7 +35,8 @@ VkImage make_image(const Device& d, const bug::Image& source) {
   set_name(d, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<std::uint64_t>(image), source.name);
   VkMemoryRequirements needs;
   vkGetImageMemoryRequirements(d.device, image, &needs);
-  must(vkBindImageMemory(d.device, image, allocate(d, needs, false), 0), "vkBindImageMemory");
+  memory = allocate(d, needs, is_filled_by_host(source));
+  must(vkBindImageMemory(d.device, image, memory, 0), "vkBindImageMemory");
   return image;
 }
 
@@ -144,7 +148,11 @@ Resources make_resources(const Device& d, const bug::Bug& bug) {
   check_texels(bug);
   Resources out;
   make_buffers(d, bug, out);
-  for (const bug::Image& image : bug.images) out.images.push_back(make_image(d, image));
+  const bool foreign = bug.device != d.properties.deviceName;
+  if (foreign && std::ranges::any_of(bug.images, is_filled_by_host))
+    throw Failure("images of several samples can be filled on the device alone that they were captured on");
+  for (const bug::Image& image : bug.images)
+    out.images.push_back(make_image(d, image, out.image_memories.emplace_back()));
   for (const bug::View& view : bug.views) out.views.push_back(make_view(d, view, out.images[view.image]));
   for (const bug::BufferView& view : bug.buffer_views)
     out.buffer_views.push_back(make_buffer_view(d, view, out.buffers[view.buffer]));

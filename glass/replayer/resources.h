@@ -22,6 +22,7 @@ struct Resources {
   std::vector<VkDeviceMemory> memories;
   std::vector<VkBuffer> buffers;
   std::vector<VkImage> images;
+  std::vector<VkDeviceMemory> image_memories;
   std::vector<VkImageView> views;
   std::vector<VkBufferView> buffer_views;
   std::vector<VkSampler> samplers;

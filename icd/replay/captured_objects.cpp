@@ -103,7 +103,6 @@ std::uint32_t CapturedObjects::add_image(const Image& image) {
   if (at != images_.end()) return static_cast<std::uint32_t>(at - images_.begin());
   const texel::ImageDesc& desc = image.desc();
   const texel::FormatDesc& format = texel::format_desc(desc.format);
-  if (desc.samples != 1) problem_ = "images of several samples are not kept";
   if (format.plane_count != 1 && !format.is_depth_stencil()) problem_ = "images of several planes are not kept";
   if (!image.data) problem_ = "an image has no memory";
   images_.push_back(&image);

@@ -15,7 +15,7 @@ using glass::bug::Bytes;
 /// Of blocks that nothing has written, as a tool knows, and that are zero: they stay unwritten where it is replayed.
 void CapturedObjects::take_written(const Image& image, glass::bug::Texels& texels) const {
   const glass::ShadowRegion* shadow = keeps_shadow_ ? glass::find_shadow(image.data) : nullptr;
-  if (!shadow) return;
+  if (!shadow || image.desc().samples != 1) return;
   const texel::PlaneLayout& plane = image.layout.plane[texel::plane_of_aspect(image.layout, texels.aspect)];
   const texel::LevelLayout& level = plane.level[texels.level];
   const texel::FormatDesc& format = texel::format_desc(plane.format);
@@ -41,6 +41,13 @@ void CapturedObjects::take_written(const Image& image, glass::bug::Texels& texel
 
 Bytes CapturedObjects::packed(const Image& image, const glass::bug::Texels& texels) const {
   Bytes out(glass::bug::packed_bytes(image.layout, texels.aspect, texels.level, texels.layers));
+  if (image.desc().samples != 1) {
+    std::byte* to = out.data();
+    glass::bug::for_each_sample_row(
+        image.layout, texels.aspect, texels.layer, texels.layers,
+        [&](std::uint64_t at, std::uint64_t bytes) { to = std::copy_n(image.data + at, bytes, to); });
+    return out;
+  }
   const texel::PlaneLayout& plane = image.layout.plane[texel::plane_of_aspect(image.layout, texels.aspect)];
   const texel::Extent& extent = plane.level[texels.level].extent;
   VkBufferImageCopy region{};

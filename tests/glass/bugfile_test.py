@@ -90,6 +90,24 @@ class BugFileTest(unittest.TestCase):
         for bug in bugs:
             self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug).stdout)
 
+    def test_images_of_several_samples_give_the_same_bytes(self):
+        # One draws to all samples, one to some, over what is there.
+        drawn = []
+        for bug in self.capture("all", PIXELS):
+            exported = self.exported(bug)
+            images = [image for image in exported["images"] if image["samples"] == 4]
+            for image in images if exported["commandName"] == "vkCmdDraw" else []:
+                texels, = image["texels"]
+                self.assertEqual(texels["before"][1], 4 * 16 * 16 * 4)
+                drawn.append(exported["pipeline"])
+                self.assertIn("the same bytes as when it was captured: 4096",
+                              self.run_it(VITRINE, "replay", bug).stdout)
+                self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug, "check", "--sanitize").stdout)
+                if os.path.exists(REFERENCE):
+                    self.assertIn("on the device alone that they were captured on",
+                                  self.run_it(VITRINE, "replay", bug, "--driver", REFERENCE, code=2).stderr)
+        self.assertEqual(drawn, ["samples", "few samples", "by alpha"])
+
     def test_scenes_of_the_suite_give_the_same_bytes(self):
         bugs = self.capture("all", SUITE, f"--gtest_filter={SCENES}", "--count=1")
         self.assertGreater(len(bugs), 100)
