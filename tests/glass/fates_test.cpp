@@ -52,7 +52,7 @@ void draw(raster::DrawObserver& observer, const Command& command) {
   }();
   const auto chunk = observer.watch_chunk(&command);
   chunk->assembled(3, 1);
-  chunk->primitive(0, raster::PrimitiveFate::kRasterized);
+  chunk->primitive(0, std::nullopt, raster::PrimitiveFate::kRasterized);
   const auto tile = observer.watch_tile(&command, 0);
   const FragmentGroup group = quads();
   const base::LaneMask all = 0xff, lost = 0x07, left = all & ~lost;
