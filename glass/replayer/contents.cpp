@@ -57,10 +57,13 @@ texel::ImageDesc desc_of(const bug::Image& image) {
 }
 
 /// Of an image of several samples, between its memory and what is packed: as Vitrine lays it out.
-void copy_samples(const Device& d, const bug::Image& image, VkDeviceMemory memory, const bug::Texels& texels,
-                  std::byte* packed, bool back) {
+void copy_samples(const Device& d, const bug::Image& image, VkImage made, VkDeviceMemory memory,
+                  const bug::Texels& texels, std::byte* packed, bool back) {
   texel::ImageLayout layout;
+  VkMemoryRequirements needs;
+  vkGetImageMemoryRequirements(d.device, made, &needs);
   if (!texel::make_image_layout(desc_of(image), layout)) throw Failure("the file has an image that cannot be");
+  if (layout.size > needs.size) throw Failure("this version lays images of several samples out in another way");
   void* mapped = nullptr;
   must(vkMapMemory(d.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory");
   auto* const held = static_cast<std::byte*>(mapped);
@@ -185,7 +188,8 @@ void copy_contents(const Device& d, const bug::Bug& bug, const Resources& resour
   for (std::size_t i = 0; i < bug.images.size(); ++i)
     for (const bug::Texels& texels : bug.images[i].texels)
       if (bug.images[i].samples != 1)
-        copy_samples(d, bug.images[i], resources.image_memories[i], texels, packed.at(&texels), back);
+        copy_samples(d, bug.images[i], resources.images[i], resources.image_memories[i], texels, packed.at(&texels),
+                     back);
 }
 
 }  // namespace vitrine::glass::replayer
