@@ -63,12 +63,12 @@ void copy_samples(const Device& d, const bug::Image& image, VkImage made, VkDevi
   VkMemoryRequirements needs;
   vkGetImageMemoryRequirements(d.device, made, &needs);
   if (!texel::make_image_layout(desc_of(image), layout)) throw Failure("the file has an image that cannot be");
-  if (layout.size > needs.size) throw Failure("this version lays images of several samples out in another way");
   void* mapped = nullptr;
   must(vkMapMemory(d.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory");
   auto* const held = static_cast<std::byte*>(mapped);
   bug::for_each_sample_row(layout, texels.aspect, texels.layer, texels.layers,
                            [&](std::uint64_t at, std::uint64_t bytes) {
+                             if (at + bytes > needs.size) throw Failure("the image is laid out in another way here");
                              std::memcpy(back ? packed : held + at, back ? held + at : packed, bytes);
                              packed += bytes;
                            });
