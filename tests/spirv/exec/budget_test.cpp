@@ -67,7 +67,7 @@ std::size_t items_of(const std::string& body, std::uint32_t groups) {
 TEST(Budget, FewWorkgroupsWithLoopsAreHandedToAllThreads) {
   if (base::worker_count() == 1) GTEST_SKIP() << "one thread";
   EXPECT_EQ(items_of("  x += v[i] * 3u;\n", 64), 0u);
-  const std::string loop = "  for (uint k = 0u; k < v[0] * 64u; ++k) x = x * 5u + v[k];\n";
+  const std::string loop = "  for (uint k = 0u; k < v[60000] * 64u; ++k) x = x * 5u + v[50000u + k];\n";
   EXPECT_GE(items_of(loop, 64), std::min<std::size_t>(64, 4 * base::worker_count()));
 }
 
