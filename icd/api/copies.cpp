@@ -9,6 +9,7 @@
 #include "icd/object/memory.h"
 #include "icd/record/command_buffer.h"
 #include "icd/record/dependencies.h"
+#include "icd/replay/host_copies.h"
 
 namespace vitrine::icd {
 namespace {
@@ -92,6 +93,20 @@ void add_texel_cost(VkCommandBuffer buffer, const Image& image, std::span<const 
     }
   }
 }
+
+#ifdef VK_EXT_host_image_copy
+/// A region of an image and host memory: as one of a buffer that begins at the host's pointer. The two structures are
+/// laid out alike, pointer for offset.
+template <class New>
+VkBufferImageCopy host_region(const New& region, const Image& image) {
+  static_assert(sizeof(New) == sizeof(VkBufferImageCopy2) &&
+                offsetof(New, imageSubresource) == offsetof(VkBufferImageCopy2, imageSubresource));
+  auto out = downgrade<VkBufferImageCopy>(region);
+  out.bufferOffset = 0;
+  resolve_layers(image, out.imageSubresource);
+  return out;
+}
+#endif
 
 }  // namespace
 
@@ -250,6 +265,50 @@ VKAPI_ATTR void VKAPI_CALL CmdFillBuffer(VkCommandBuffer buffer, VkBuffer target
   record(buffer, icd::CmdFillBuffer{&t, offset, size, value});
   add_cost(buffer, t.resolve_range(offset, size));
 }
+
+#ifdef VK_EXT_host_image_copy
+// Vulkan 1.4.309, Copy Commands, Copying Data Between Host Memory and Images: what commands do, by the thread that
+// calls, at once. VK_HOST_IMAGE_COPY_MEMCPY asks for the device's own arrangement of texels, whose packed form is the
+// plain one.
+VKAPI_ATTR VkResult VKAPI_CALL CopyMemoryToImageEXT(VkDevice device, const VkCopyMemoryToImageInfoEXT* info) {
+  const Image& target = from_handle<Image>(info->dstImage);
+  for (const auto& region : std::span(info->pRegions, info->regionCount)) {
+    const auto* const source = static_cast<const std::byte*>(region.pHostPointer);
+    copy_from_host(from_handle<Device>(device), source, target, host_region(region, target));
+  }
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CopyImageToMemoryEXT(VkDevice device, const VkCopyImageToMemoryInfoEXT* info) {
+  const Image& source = from_handle<Image>(info->srcImage);
+  for (const auto& region : std::span(info->pRegions, info->regionCount)) {
+    copy_to_host(from_handle<Device>(device), source, static_cast<std::byte*>(region.pHostPointer),
+                 host_region(region, source));
+  }
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CopyImageToImageEXT(VkDevice device, const VkCopyImageToImageInfoEXT* info) {
+  const Image &source = from_handle<Image>(info->srcImage), &target = from_handle<Image>(info->dstImage);
+  for (const VkImageCopy2& region : std::span(info->pRegions, info->regionCount)) {
+    auto out = downgrade<VkImageCopy>(region);
+    resolve_layers(source, out.srcSubresource);
+    resolve_layers(target, out.dstSubresource);
+    copy_by_host(from_handle<Device>(device), source, target, out);
+  }
+  return VK_SUCCESS;
+}
+
+/// Layouts are all the same here: those who watch them are told.
+VKAPI_ATTR VkResult VKAPI_CALL TransitionImageLayoutEXT(VkDevice device, std::uint32_t count,
+                                                        const VkHostImageLayoutTransitionInfoEXT* transitions) {
+  for (const auto& t : std::span(transitions, count)) {
+    const Image& image = from_handle<Image>(t.image);
+    transition_by_host(from_handle<Device>(device), image, resolve_range(image, t.subresourceRange), t.newLayout);
+  }
+  return VK_SUCCESS;
+}
+#endif
 
 }  // namespace entry
 }  // namespace vitrine::icd

@@ -59,6 +59,11 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(VkPhysica
   if (auto* external = find_in_out_chain<VkExternalImageFormatProperties>(out->pNext)) {
     external->externalMemoryProperties = shared;
   }
+#ifdef VK_EXT_host_image_copy
+  if (auto* access = find_in_out_chain<VkHostImageCopyDevicePerformanceQueryEXT>(out->pNext)) {
+    access->optimalDeviceAccess = access->identicalMemoryLayout = VK_TRUE;
+  }
+#endif
   if (auto* ycbcr = find_in_out_chain<VkSamplerYcbcrConversionImageFormatProperties>(out->pNext)) {
     ycbcr->combinedImageSamplerDescriptorCount = 1;
   }

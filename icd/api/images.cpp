@@ -10,6 +10,7 @@
 #include "icd/object/address_book.h"
 #include "icd/object/device.h"
 #include "icd/properties.h"
+#include "texel/transfer.h"
 
 namespace vitrine::icd {
 namespace {
@@ -84,6 +85,10 @@ VkImageSubresourceRange resolve_range(const Image& image, const VkImageSubresour
   return out;
 }
 
+texel::ImageMemory memory_of(const Image& image) {
+  return {&image.layout, image.data, image.desc().disjoint ? &image.plane_data : nullptr};
+}
+
 texel::ImageView view_of_aspect(const Image& image, VkImageAspectFlagBits aspect, VkImageViewType type, VkFormat format,
                                 const VkImageSubresourceRange& range, const VkComponentMapping& components) {
   std::byte* memory = image.memory_of_plane(texel::plane_of_aspect(image.layout, aspect));
@@ -104,6 +109,23 @@ VkSubresourceLayout layout_of(const texel::ImageLayout& layout, const VkImageSub
   out.depthPitch = level.slice_pitch;
   return out;
 }
+
+#ifdef VK_KHR_maintenance5
+/// With what the host needs for all of it with VK_HOST_IMAGE_COPY_MEMCPY: the same texels without gaps.
+void write_layout(const texel::ImageLayout& layout, const VkImageSubresource& subresource,
+                  VkSubresourceLayout2KHR& out) {
+  out.subresourceLayout = layout_of(layout, subresource);
+  if (auto* packed = find_in_out_chain<VkSubresourceHostMemcpySizeEXT>(out.pNext)) {
+    const auto aspect = first_aspect(subresource.aspectMask);
+    const texel::PlaneLayout& plane = layout.plane[texel::plane_of_aspect(layout, aspect)];
+    const texel::LevelLayout& level = plane.level[subresource.mipLevel];
+    const texel::FormatDesc& format = texel::format_desc(plane.format);
+    const auto blocks = [](std::uint32_t texels, std::uint32_t block) { return (texels + block - 1) / block; };
+    packed->size = VkDeviceSize{blocks(level.extent.width, format.block_width)} *
+                   blocks(level.extent.height, format.block_height) * level.extent.depth * format.block_bytes;
+  }
+}
+#endif
 
 /// VkImageViewMinLodCreateInfoEXT.
 void set_min_lod(texel::ImageView& view, float min_lod) {
@@ -155,7 +177,7 @@ VKAPI_ATTR void VKAPI_CALL GetImageSubresourceLayout(VkDevice, VkImage image, co
 VKAPI_ATTR void VKAPI_CALL GetImageSubresourceLayout2KHR(VkDevice, VkImage image,
                                                          const VkImageSubresource2KHR* subresource,
                                                          VkSubresourceLayout2KHR* out) {
-  out->subresourceLayout = layout_of(from_handle<Image>(image).layout, subresource->imageSubresource);
+  write_layout(from_handle<Image>(image).layout, subresource->imageSubresource, *out);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetDeviceImageSubresourceLayoutKHR(VkDevice device,
@@ -163,7 +185,7 @@ VKAPI_ATTR void VKAPI_CALL GetDeviceImageSubresourceLayoutKHR(VkDevice device,
                                                               VkSubresourceLayout2KHR* out) {
   Image image(from_handle<Device>(device).memory);
   init_image(image, *info->pCreateInfo);
-  out->subresourceLayout = layout_of(image.layout, info->pSubresource->imageSubresource);
+  write_layout(image.layout, info->pSubresource->imageSubresource, *out);
 }
 #endif
 

@@ -107,6 +107,56 @@ constexpr VkQueueFamilyProperties kUniversalFamily = {
 /// Threads of an ordinary process: nothing above what the system gives everybody.
 constexpr std::array kGlobalPriorities = {VK_QUEUE_GLOBAL_PRIORITY_LOW_KHR, VK_QUEUE_GLOBAL_PRIORITY_MEDIUM_KHR};
 
+#ifdef VK_EXT_host_image_copy
+/// Those that the host may copy into and out of: all that an image with contents can have.
+constexpr std::array kHostCopyLayouts = {VK_IMAGE_LAYOUT_GENERAL,
+                                         VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_STENCIL_READ_ONLY_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_STENCIL_ATTACHMENT_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_STENCIL_READ_ONLY_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_ATTACHMENT_OPTIMAL,
+                                         VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
+                                         VK_IMAGE_LAYOUT_ATTACHMENT_FEEDBACK_LOOP_OPTIMAL_EXT};
+
+void write_list(std::uint32_t& count, VkImageLayout* out) {
+  const auto all = static_cast<std::uint32_t>(kHostCopyLayouts.size());
+  count = out ? std::min(count, all) : all;
+  if (out) std::copy_n(kHostCopyLayouts.begin(), count, out);
+}
+
+/// Lists of layouts in a structure of properties: their counts and pointers are the application's, and are kept while
+/// the rest of the structure is written.
+template <class T>
+class LayoutLists {
+ public:
+  explicit LayoutLists(void* chain) : out_(find_in_out_chain<T>(chain)) {
+    if (out_) asked_ = *out_;
+  }
+  void write() {
+    if (!out_) return;
+    out_->copySrcLayoutCount = asked_.copySrcLayoutCount;
+    out_->copyDstLayoutCount = asked_.copyDstLayoutCount;
+    out_->pCopySrcLayouts = asked_.pCopySrcLayouts;
+    out_->pCopyDstLayouts = asked_.pCopyDstLayouts;
+    write_list(out_->copySrcLayoutCount, out_->pCopySrcLayouts);
+    write_list(out_->copyDstLayoutCount, out_->pCopyDstLayouts);
+  }
+
+ private:
+  T* out_;
+  T asked_{};
+};
+#endif
+
 }  // namespace
 
 PhysicalDevice::PhysicalDevice(const HostMemory& m, Instance& owner)
@@ -126,7 +176,13 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties(VkPhysicalDevice device, 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice device, VkPhysicalDeviceProperties2* out) {
   const PhysicalDevice& physical_device = from_handle<PhysicalDevice>(device);
   out->properties = physical_device.properties;
+#ifdef VK_EXT_host_image_copy
+  LayoutLists<VkPhysicalDeviceHostImageCopyPropertiesEXT> layouts(out->pNext);
   write_property_chain(out->pNext);
+  layouts.write();
+#else
+  write_property_chain(out->pNext);
+#endif
   if (auto* ids = find_in_out_chain<VkPhysicalDeviceIDProperties>(out->pNext)) write_identity(physical_device, *ids);
   if (auto* core = find_in_out_chain<VkPhysicalDeviceVulkan11Properties>(out->pNext);
       core && physical_device.properties.apiVersion >= VK_API_VERSION_1_2) {

@@ -5,6 +5,10 @@
 #include "texel/sampler.h"
 #include "texel/view.h"
 
+namespace vitrine::texel {
+struct ImageMemory;
+}
+
 namespace vitrine::icd {
 
 struct Device;
@@ -54,6 +58,9 @@ struct Sampler : Object<VkSampler, VK_OBJECT_TYPE_SAMPLER> {
 /// Fills `image.layout` and the rest from the create info. VK_ERROR_OUT_OF_DEVICE_MEMORY for sizes beyond what one
 /// allocation can be. Swapchain images use it too.
 VkResult init_image(Image& image, const VkImageCreateInfo& info);
+
+/// What copies, blits, resolves and clears of a whole image work on (texel/transfer.h).
+texel::ImageMemory memory_of(const Image& image);
 
 /// A range with VK_REMAINING_* replaced by numbers.
 VkImageSubresourceRange resolve_range(const Image& image, const VkImageSubresourceRange& range);

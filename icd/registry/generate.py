@@ -39,7 +39,8 @@ class Generator:
     def __init__(self, registry, claims):
         self.registry = registry
         self.claims = claims
-        self.version = vkxml.version_number(claims.api_version)
+        # An older registry does not know the version: that claim, too, waits for newer headers.
+        self.version = min(vkxml.version_number(claims.api_version), max(registry.core_versions))
         for name in claims.extensions:
             if name not in registry.extensions:
                 # An older registry does not know the extension: the claim waits for newer headers.

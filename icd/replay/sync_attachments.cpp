@@ -59,7 +59,7 @@ void touch(const ReplayState& state, Deed deed, std::vector<glass::sync::Range> 
 void touch_part(const ReplayState& state, const AttachmentPart& part, const texel::ImageView& plane, Deed deed) {
   std::vector<glass::sync::Range> ranges;
   add_texels(plane, {0, part.area, part.layer, part.layers}, ranges);
-  touch(state, std::move(deed), std::move(ranges), sync_name(state, *part.view->image));
+  touch(state, std::move(deed), std::move(ranges), sync_name(state.device, *part.view->image));
 }
 
 /// A draw or clear writes an area of an attachment of the pass.

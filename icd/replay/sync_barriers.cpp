@@ -26,7 +26,7 @@ std::shared_ptr<const glass::sync::Who> transition_of(const ReplayState& state, 
                                                       VkImageLayout to) {
   std::string what = "layout transition from ";
   what.append(layout_text(from)).append(" to ").append(layout_text(to));
-  return sync_who(state, std::move(what), sync_name(state, image));
+  return sync_who(state, std::move(what), sync_name(state.device, image));
 }
 
 Barrier barrier_of(const ReplayState& state, const RecordedBarrier& b) {

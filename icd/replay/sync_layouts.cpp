@@ -3,13 +3,10 @@
 #include "icd/replay/sync_notes.h"
 
 namespace vitrine::icd {
-namespace {
 
 glass::sync::ImagePart part_of(const Image& image, const VkImageSubresourceRange& range) {
   return {&image, image.desc().levels, image.desc().layers, resolve_range(image, range)};
 }
-
-}  // namespace
 
 std::string layout_text(VkImageLayout layout) {
   switch (layout) {
@@ -44,7 +41,7 @@ void use_layout(const ReplayState& state, const Image& image, const VkImageSubre
   glass::sync::Hazards& hazards = *state.observed->hazards;
   const auto other = hazards.layouts().other_than(part_of(image, range), layout);
   if (!other) return;
-  const std::shared_ptr<glass::sync::Who> who = sync_who(state, "use", sync_name(state, image));
+  const std::shared_ptr<glass::sync::Who> who = sync_who(state, "use", sync_name(state.device, image));
   glass::Finding finding;
   finding.rule = &glass::rule("sync-wrong-layout");
   finding.address = who->address;

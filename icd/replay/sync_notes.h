@@ -45,8 +45,9 @@ void note_sync_resolved(const ReplayState& state, const AttachmentPart& part);
 /// The command at hand does something to memory.
 glass::sync::Tag tag_of(const ReplayState& state, glass::sync::Part part = glass::sync::Part::kWork);
 std::shared_ptr<glass::sync::Who> sync_who(const ReplayState& state, std::string what, std::string resource);
-std::string sync_name(const ReplayState& state, const Image& image);
-std::string sync_name(const ReplayState& state, const Buffer& buffer);
+std::string sync_name(Device& device, const Image& image);
+std::string sync_name(Device& device, const Buffer& buffer);
+glass::sync::ImagePart part_of(const Image& image, const VkImageSubresourceRange& range);
 std::string layout_text(VkImageLayout layout);
 /// A command says that a part of an image has a layout, or gives it one.
 void use_layout(const ReplayState& state, const Image& image, const VkImageSubresourceRange& range,

@@ -22,12 +22,12 @@ constexpr Use kClearWrite{Stage::kClear, Access::kTransferWrite};
 std::uintptr_t number_of(const std::byte* address) { return reinterpret_cast<std::uintptr_t>(address); }
 
 void touch(const ReplayState& state, Use use, const Image& image, Ranges ranges, const char* what) {
-  auto who = sync_who(state, what, sync_name(state, image));
+  auto who = sync_who(state, what, sync_name(state.device, image));
   state.observed->hazards->touch(tag_of(state), {use, 0, std::move(ranges), std::move(who)});
 }
 
 void touch(const ReplayState& state, Use use, const Buffer& buffer, Ranges ranges, const char* what) {
-  auto who = sync_who(state, what, sync_name(state, buffer));
+  auto who = sync_who(state, what, sync_name(state.device, buffer));
   who->base = number_of(buffer.data);
   state.observed->hazards->touch(tag_of(state), {use, 0, std::move(ranges), std::move(who)});
 }
@@ -117,8 +117,8 @@ std::shared_ptr<glass::sync::Who> sync_who(const ReplayState& state, std::string
   return who;
 }
 
-std::string sync_name(const ReplayState& state, const Image& image) {
-  const std::string name = name_of(state.device.physical_device.instance, ref(image));
+std::string sync_name(Device& device, const Image& image) {
+  const std::string name = name_of(device.physical_device.instance, ref(image));
   const texel::Extent& extent = image.desc().extent;
   std::string text = named("image", name);
   text.append(std::to_string(extent.width)).append("x").append(std::to_string(extent.height));
@@ -126,8 +126,8 @@ std::string sync_name(const ReplayState& state, const Image& image) {
   return text.append(", ").append(texel::format_desc(image.desc().format).name).append(")");
 }
 
-std::string sync_name(const ReplayState& state, const Buffer& buffer) {
-  const std::string name = name_of(state.device.physical_device.instance, ref(buffer));
+std::string sync_name(Device& device, const Buffer& buffer) {
+  const std::string name = name_of(device.physical_device.instance, ref(buffer));
   return named("buffer", name).append(std::to_string(buffer.size)).append(" bytes)");
 }
 

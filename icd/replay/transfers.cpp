@@ -19,10 +19,6 @@ std::span<std::byte> bytes_of(const Buffer& buffer) {
   return {buffer.data, buffer.data ? static_cast<std::size_t>(buffer.size) : 0};
 }
 
-texel::ImageMemory memory_of(const Image& image) {
-  return {&image.layout, image.data, image.desc().disjoint ? &image.plane_data : nullptr};
-}
-
 /// Calls work(first byte, bytes) for all of [0, size), in parallel where it is large.
 template <class Work>
 void for_each_chunk(std::uint64_t size, Work work) {

@@ -1,4 +1,5 @@
-// A device with VK_KHR_maintenance5 and 6, and images and buffers that the host sees into.
+// A device with VK_KHR_maintenance5, VK_KHR_maintenance6 and VK_EXT_host_image_copy, and images and buffers that the
+// host sees into.
 #pragma once
 
 #include <iterator>
@@ -19,16 +20,18 @@ class Maintenance5Device : public DeviceTest {
     maintenance.maintenance5 = VK_TRUE;
     auto next = make_struct<VkPhysicalDeviceMaintenance6FeaturesKHR>(&maintenance);
     next.maintenance6 = VK_TRUE;
-    auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>(&next);
+    auto copies = make_struct<VkPhysicalDeviceHostImageCopyFeaturesEXT>(&next);
+    copies.hostImageCopy = VK_TRUE;
+    auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>(&copies);
     robustness.nullDescriptor = VK_TRUE;
     auto rendering = make_struct<VkPhysicalDeviceDynamicRenderingFeatures>(&robustness);
     rendering.dynamicRendering = VK_TRUE;
     auto features = make_struct<VkPhysicalDeviceFeatures2>(&rendering);
     features.features.fillModeNonSolid = features.features.vertexPipelineStoresAndAtomics = VK_TRUE;
     features.features.largePoints = features.features.occlusionQueryPrecise = VK_TRUE;
-    const char* const names[] = {VK_KHR_MAINTENANCE_5_EXTENSION_NAME, VK_KHR_MAINTENANCE_6_EXTENSION_NAME,
+    const char* const names[] = {VK_KHR_MAINTENANCE_5_EXTENSION_NAME,     VK_KHR_MAINTENANCE_6_EXTENSION_NAME,
                                  VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME,
-                                 VK_EXT_ROBUSTNESS_2_EXTENSION_NAME};
+                                 VK_EXT_ROBUSTNESS_2_EXTENSION_NAME,      VK_EXT_HOST_IMAGE_COPY_EXTENSION_NAME};
     const float priority = 1;
     auto queue = make_struct<VkDeviceQueueCreateInfo>();
     queue.queueCount = 1;

@@ -151,6 +151,9 @@ void SyncScene::command(const Words& words) {
   if (is_one_of({"barrier", "old", "to", "set", "wait"})) return order(words);
   if (is_one_of({"submit", "semaphore", "timeline", "fence", "idle"})) return submission(words);
   if (is_one_of({"flush", "invalidate"})) return host(words);
+#ifdef VK_EXT_host_image_copy
+  if (is_one_of({"put", "get", "turn"})) return host_copy(words);
+#endif
   if (verb == "pass") return pass(words);
   FAIL() << verb;
 }
@@ -393,6 +396,46 @@ void SyncScene::host(const Words& words) {
   else
     EXPECT_EQ(VK_CALL(InvalidateMappedMemoryRanges)(device, 1, &range), VK_SUCCESS);
 }
+
+#ifdef VK_EXT_host_image_copy
+/// Copies of the whole image and transitions that the host makes, without commands.
+void SyncScene::host_copy(const Words& words) {
+  const Image& used = image(words[1]);
+  std::array<std::uint32_t, kSize * kSize> texels{};
+  const VkImageSubresourceLayers all{used.aspect, 0, 0, 1};
+  if (words[0] == "put") {
+    auto region = make_struct<VkMemoryToImageCopyEXT>();
+    region.pHostPointer = texels.data();
+    region.imageSubresource = all;
+    region.imageExtent = {kSize, kSize, 1};
+    auto info = make_struct<VkCopyMemoryToImageInfoEXT>();
+    info.dstImage = used.image;
+    info.dstImageLayout = VK_IMAGE_LAYOUT_GENERAL;
+    info.regionCount = 1;
+    info.pRegions = &region;
+    EXPECT_EQ(VK_CALL(CopyMemoryToImageEXT)(device, &info), VK_SUCCESS);
+  } else if (words[0] == "get") {
+    auto region = make_struct<VkImageToMemoryCopyEXT>();
+    region.pHostPointer = texels.data();
+    region.imageSubresource = all;
+    region.imageExtent = {kSize, kSize, 1};
+    auto info = make_struct<VkCopyImageToMemoryInfoEXT>();
+    info.srcImage = used.image;
+    info.srcImageLayout = VK_IMAGE_LAYOUT_GENERAL;
+    info.regionCount = 1;
+    info.pRegions = &region;
+    EXPECT_EQ(VK_CALL(CopyImageToMemoryEXT)(device, &info), VK_SUCCESS);
+  } else {
+    const auto [from, to] = halves(words[2], '>');
+    auto info = make_struct<VkHostImageLayoutTransitionInfoEXT>();
+    info.image = used.image;
+    info.oldLayout = kLayouts.at(from);
+    info.newLayout = kLayouts.at(to);
+    info.subresourceRange = {used.aspect, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
+    EXPECT_EQ(VK_CALL(TransitionImageLayoutEXT)(device, 1, &info), VK_SUCCESS);
+  }
+}
+#endif
 
 /// pass IMAGE LOAD INITIAL>FINAL [MASKS in front] [MASKS behind]: one subpass that clears or loads; "-": no dependency.
 /// pass IMAGE two [MASKS]: a second subpass draws to what the first one has cleared.

@@ -49,6 +49,16 @@ constexpr PlantedHazard kPlanted[] = {
      "to M UNDEFINED>GENERAL TOP.0>BOTTOM.0; semaphore ALL; copy M A"},
     {"transition_in_a_chain", "sync-layout", "to M UNDEFINED>GENERAL TOP.0>BLIT.0; barrier CLEAR.0>COPY.TR; copy M A",
      "to M UNDEFINED>GENERAL TOP.0>BLIT.0; barrier BLIT.0>COPY.TR; copy M A"},
+#ifdef VK_EXT_host_image_copy
+    // ---- copies by the host
+    {"host_copies_into_what_is_read", "sync-host", "copy M A; submit; put M", "copy M A; fence; put M"},
+    {"host_copies_out_of_what_is_written", "sync-host", "clear M; barrier CLEAR.TW>HOST.HR; submit; get M",
+     "clear M; barrier CLEAR.TW>HOST.HR; fence; get M"},
+    {"host_copies_without_a_barrier", "sync-host", "clear M; fence; get M",
+     "clear M; barrier CLEAR.TW>HOST.HR; fence; get M"},
+    {"host_turns_to_another_layout", "sync-wrong-layout", "turn M GENERAL>READ; copy M A",
+     "turn M GENERAL>READ; turn M READ>GENERAL; put M; copy M A"},
+#endif
     // ---- layouts that images do not have
     {"copy_from_another_layout", "sync-wrong-layout", "to M GENERAL>TARGET TOP.0>ALL.RW; copy M A",
      "to M GENERAL>TARGET TOP.0>ALL.RW; to M TARGET>GENERAL ALL.W>ALL.RW; copy M A"},

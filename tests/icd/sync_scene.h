@@ -13,6 +13,7 @@
 //   set STAGES.ACCESSES>STAGES.ACCESSES | wait STAGES.ACCESSES>STAGES.ACCESSES   (an event)
 //   submit | semaphore STAGES (submits, and the next submission waits there) | timeline STAGES | fence | idle
 //   flush A | invalidate A
+//   put M | get M | turn M LAYOUT>LAYOUT   (the host copies all of an image, or transitions it)
 //   pass M KIND   a render pass of one subpass or two (sync_passes in the .cpp)
 #pragma once
 
@@ -88,6 +89,7 @@ class SyncScene {
   void event(const Words& words);
   void submission(const Words& words);
   void host(const Words& words);
+  void host_copy(const Words& words);
   void pass(const Words& words);
   void make_pass(const Words& words, VkRenderPassBeginInfo& begin);
 

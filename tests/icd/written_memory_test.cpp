@@ -203,6 +203,24 @@ TEST_F(WrittenMemory, BuffersAreCopiedToImages) {
   EXPECT_EQ(copy_and_load(false), kImage);
 }
 
+#ifdef VK_EXT_host_image_copy
+TEST_F(WrittenMemory, TheHostCopiesIntoImages) {
+  EXPECT_EQ(found_by([&](VkCommandBuffer c) { transition(c, VK_IMAGE_LAYOUT_UNDEFINED); }), kNothing);
+  const std::array<std::uint32_t, kSize * kSize> texels{};
+  auto region = make_struct<VkMemoryToImageCopyEXT>();
+  region.pHostPointer = texels.data();
+  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.imageExtent = {kSize, kSize, 1};
+  auto info = make_struct<VkCopyMemoryToImageInfoEXT>();
+  info.dstImage = image;
+  info.dstImageLayout = VK_IMAGE_LAYOUT_GENERAL;
+  info.regionCount = 1;
+  info.pRegions = &region;
+  EXPECT_EQ(VK_CALL(CopyMemoryToImageEXT)(device, &info), VK_SUCCESS);
+  EXPECT_EQ(found_by([&](VkCommandBuffer c) { load_image(c); }), kNothing);
+}
+#endif
+
 TEST_F(WrittenMemory, ImagesAreCopiedToBuffers) {
   const VkBufferImageCopy all{0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, {}, {kSize, kSize, 1}};
   const auto copy_and_read = [&](bool cleared) {
