@@ -56,6 +56,11 @@ struct BlendAttachment {
   bool advances() const { return color_op >= VK_BLEND_OP_ZERO_EXT && color_op <= VK_BLEND_OP_BLUE_EXT; }
 };
 
+/// What a depth bias's constant counts (Vulkan 1.4.309, Depth Bias Computation): units of the attachment's format,
+/// those of a fixed-point format also where it is one of floats, or depth itself. Exactly means that a unit of n bits
+/// is 2^-n and not what the reference takes.
+enum class DepthBiasUnit : std::uint8_t { kFormat, kExactFormat, kUnorm, kExactUnorm, kOne };
+
 /// Fixed-function state, named after the Vulkan structures it comes from. Plain values.
 struct State {
   // input assembly
@@ -87,7 +92,8 @@ struct State {
   VkFrontFace front_face = VK_FRONT_FACE_COUNTER_CLOCKWISE;
   bool depth_bias = false;
   float depth_bias_constant = 0, depth_bias_clamp = 0, depth_bias_slope = 0;
-  bool overestimates = false;  ///< conservative rasterization: whatever a triangle touches
+  DepthBiasUnit depth_bias_unit = DepthBiasUnit::kFormat;  ///< of the constant
+  bool overestimates = false;                              ///< conservative rasterization: whatever a triangle touches
   float line_width = 1;
   VkLineRasterizationModeEXT line_mode = VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;
   bool line_stipple = false;

@@ -8,6 +8,9 @@
 namespace vitrine::icd {
 namespace {
 
+// maxCommandBufferNestingLevel of manifest/limits.
+constexpr std::uint32_t kMaxNesting = 64;
+
 CommandBuffer* allocate_buffer(CommandPool& pool, VkCommandBufferLevel level) {
   CommandBuffer* buffer = create_object<CommandBuffer>(pool.memory, nullptr, pool);
   buffer->level = level;
@@ -42,6 +45,7 @@ void CommandBuffer::reset() noexcept {
   cost = 0;
   pass_pixels = 0;
   waits_for_host = false;
+  nesting = 0;
 }
 
 CommandPool::~CommandPool() {
@@ -130,6 +134,12 @@ VKAPI_ATTR void VKAPI_CALL CmdExecuteCommands(VkCommandBuffer buffer, std::uint3
     buffers[i] = &secondary;
     b.cost += secondary.cost;
     b.waits_for_host |= secondary.waits_for_host;
+    b.nesting = std::max(b.nesting, secondary.nesting + 1);
+  }
+  // Replay goes down into them, each on the stack.
+  if (b.nesting > kMaxNesting) {
+    stick_record_error(buffer, VK_ERROR_OUT_OF_HOST_MEMORY);
+    return;
   }
   record(b, icd::CmdExecuteCommands{buffers});
 }

@@ -52,7 +52,8 @@ void write_image(const VkDescriptorImageInfo& info, VkDescriptorType type, const
                  spirv::Descriptor& slot) {
   if (type != VK_DESCRIPTOR_TYPE_SAMPLER) {
     const auto* view = from_nullable<ImageView>(info.imageView);
-    slot.image = view ? &view->view : nullptr;
+    const bool stored = type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    slot.image = !view ? nullptr : stored ? &view->stored : &view->view;
   }
   const bool has_sampler = type == VK_DESCRIPTOR_TYPE_SAMPLER || type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   if (has_sampler && !binding.immutable_samplers) {

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "icd/entry_points.h"
+#include "icd/object/pipeline.h"
 #include "icd/record/command_buffer.h"
 
 namespace vitrine::icd {
@@ -45,8 +46,20 @@ VKAPI_ATTR void VKAPI_CALL CmdSetDiscardRectangleEXT(VkCommandBuffer buffer, std
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdSetDepthBias(VkCommandBuffer buffer, float constant, float clamp, float slope) {
-  record(buffer, icd::CmdSetDepthBias{constant, clamp, slope});
+  record(buffer, icd::CmdSetDepthBias{constant, clamp, slope, raster::DepthBiasUnit::kFormat});
 }
+
+#ifdef VK_EXT_depth_bias_control
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthBias2EXT(VkCommandBuffer buffer, const VkDepthBiasInfoEXT* info) {
+  record(buffer, icd::CmdSetDepthBias{info->depthBiasConstantFactor, info->depthBiasClamp, info->depthBiasSlopeFactor,
+                                      depth_bias_unit(info->pNext)});
+}
+#endif
+
+#ifdef VK_EXT_attachment_feedback_loop_dynamic_state
+/// Shaders see what is in memory, whether it is an attachment or not.
+VKAPI_ATTR void VKAPI_CALL CmdSetAttachmentFeedbackLoopEnableEXT(VkCommandBuffer, VkImageAspectFlags) {}
+#endif
 
 VKAPI_ATTR void VKAPI_CALL CmdSetBlendConstants(VkCommandBuffer buffer, const float constants[4]) {
   record(buffer, icd::CmdSetBlendConstants{{constants[0], constants[1], constants[2], constants[3]}});

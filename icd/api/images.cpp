@@ -133,6 +133,16 @@ void set_min_lod(texel::ImageView& view, float min_lod) {
   view.min_level = static_cast<std::uint32_t>(view.min_lod);
 }
 
+#ifdef VK_EXT_image_sliced_view_of_3d
+/// Of a view of one level: what lies outside of the level is nobody's.
+void set_slices(texel::ImageView& view, std::uint32_t offset, std::uint32_t count) {
+  texel::LevelLayout& level = view.level[0];
+  const std::uint32_t first = std::min(offset, level.extent.depth - 1);
+  view.base += first * level.slice_pitch;
+  level.extent.depth = std::min(count, level.extent.depth - first);
+}
+#endif
+
 }  // namespace
 
 void watch_image(const Image& image, bool in_swapchain) {
@@ -213,7 +223,16 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
     set_min_lod(object->view, min_lod->minLod);
     set_min_lod(object->stencil, min_lod->minLod);
   }
-  enter_address(from_handle<Device>(device), {&object->view, sizeof object->view, image.data, ref(image)}, *object);
+  object->stored = object->view;
+#ifdef VK_EXT_image_sliced_view_of_3d
+  if (const auto* slices = find_in_chain<VkImageViewSlicedCreateInfoEXT>(info->pNext)) {
+    object->is_sliced = true;
+    set_slices(object->stored, slices->sliceOffset, slices->sliceCount);
+  }
+#endif
+  const auto seen = static_cast<std::uint64_t>(reinterpret_cast<std::byte*>(&object->stored + 1) -
+                                               reinterpret_cast<std::byte*>(&object->view));
+  enter_address(from_handle<Device>(device), {&object->view, seen, image.data, ref(image)}, *object);
   *view = to_handle(object.release());
   return VK_SUCCESS;
 }

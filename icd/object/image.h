@@ -38,6 +38,9 @@ struct ImageView : Object<VkImageView, VK_OBJECT_TYPE_IMAGE_VIEW> {
   VkImageSubresourceRange range{};  ///< counts resolved
   /// What shaders, colour and depth attachments see: the colour aspect, or depth, or stencil where it is alone.
   texel::ImageView view;
+  /// What descriptors of storage images see: `view`, or some slices of it (VkImageViewSlicedCreateInfoEXT).
+  texel::ImageView stored;
+  bool is_sliced = false;
   /// The stencil plane of a view that has both aspects; else equal to `view`.
   texel::ImageView stencil;
   Vector<texel::ImageView> planes;  ///< what `view.planes` points to

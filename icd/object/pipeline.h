@@ -54,6 +54,9 @@ VkPipelineCreateFlags create_flags(const VkComputePipelineCreateInfo& info);
 /// "tessellation control", ...
 const char* stage_name(VkShaderStageFlagBits stage);
 
+/// What VkDepthBiasRepresentationInfoEXT in a chain says.
+raster::DepthBiasUnit depth_bias_unit(const void* chain);
+
 struct Subpass;
 
 /// Fills the state of `parts` from the create info; `subpass` tells which attachments there are.

@@ -100,6 +100,7 @@ void fill_rasterization(Pipeline& pipeline, const VkPipelineRasterizationStateCr
   state.depth_bias_constant = info.depthBiasConstantFactor;
   state.depth_bias_clamp = info.depthBiasClamp;
   state.depth_bias_slope = info.depthBiasSlopeFactor;
+  state.depth_bias_unit = depth_bias_unit(info.pNext);
   state.line_width = info.lineWidth;
 }
 
@@ -208,6 +209,20 @@ std::uint32_t live_colors(const Subpass& subpass) {
 }
 
 }  // namespace
+
+raster::DepthBiasUnit depth_bias_unit([[maybe_unused]] const void* chain) {
+  using Unit = raster::DepthBiasUnit;
+#ifdef VK_EXT_depth_bias_control
+  if (const auto* how = find_in_chain<VkDepthBiasRepresentationInfoEXT>(chain)) {
+    if (how->depthBiasRepresentation == VK_DEPTH_BIAS_REPRESENTATION_FLOAT_EXT) return Unit::kOne;
+    const bool unorm =
+        how->depthBiasRepresentation == VK_DEPTH_BIAS_REPRESENTATION_LEAST_REPRESENTABLE_VALUE_FORCE_UNORM_EXT;
+    if (unorm) return how->depthBiasExact ? Unit::kExactUnorm : Unit::kUnorm;
+    if (how->depthBiasExact) return Unit::kExactFormat;
+  }
+#endif
+  return Unit::kFormat;
+}
 
 void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& info, const Subpass& subpass,
                        VkGraphicsPipelineLibraryFlagsEXT parts) {

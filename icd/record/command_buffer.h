@@ -35,6 +35,7 @@ struct CommandBuffer : DispatchableObject<VkCommandBuffer, VK_OBJECT_TYPE_COMMAN
   /// Rough nanoseconds of work, from what recording knows: the queue keeps small work on the submitting thread.
   std::uint64_t cost = 0;
   std::uint64_t pass_pixels = 0;  ///< of the render pass being recorded; cost of its draws
+  std::uint32_t nesting = 0;      ///< command buffers within command buffers, at most
   bool waits_for_host = false;    ///< holds vkCmdWaitEvents: whoever replays it may have to wait
   /// Sets of push descriptors, in the arena: one for each time that descriptors were pushed.
   Vector<DescriptorSet*> pushed_sets;

@@ -68,6 +68,7 @@ struct CmdSetDiscardRectangle {
 };
 struct CmdSetDepthBias {
   float constant, clamp, slope;
+  raster::DepthBiasUnit unit;
 };
 struct CmdSetBlendConstants {
   std::array<float, 4> constants;

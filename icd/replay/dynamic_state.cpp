@@ -63,6 +63,7 @@ void execute(ReplayState& state, const CmdSetDepthBias& command) {
   out.depth_bias_constant = command.constant;
   out.depth_bias_clamp = command.clamp;
   out.depth_bias_slope = command.slope;
+  out.depth_bias_unit = command.unit;
 }
 
 void execute(ReplayState& state, const CmdSetBlendConstants& command) {

@@ -15,15 +15,22 @@ namespace {
 /// 5.1: the constant term in the units of the format, plus the slope term, clamped.
 float bias_offset(const State& state, const PassDesc& pass, float slope_term, float largest_z) {
   const texel::FormatDesc* format = pass.depth.format;
+  const bool floats = format && format->channel[0].numeric == texel::Numeric::kSfloat;
+  const DepthBiasUnit unit_kind = state.depth_bias_unit;
+  const bool exact = unit_kind == DepthBiasUnit::kExactFormat || unit_kind == DepthBiasUnit::kExactUnorm;
+  const bool unorm = unit_kind == DepthBiasUnit::kUnorm || unit_kind == DepthBiasUnit::kExactUnorm;
   float offset;
-  if (format && format->channel[0].numeric == texel::Numeric::kSfloat) {
+  if (unit_kind == DepthBiasUnit::kOne) {
+    offset = state.depth_bias_constant + slope_term;
+  } else if (floats && !unorm) {
     const auto exponent = static_cast<std::int32_t>(base::bits_of(largest_z) & 0x7f800000u) - (23 << 23);
     const float unit = base::float_of(static_cast<std::uint32_t>(std::max(exponent, 0)));
     offset = unit * state.depth_bias_constant + slope_term;
   } else {
+    // Of floats the mantissa's bits and one.
     const int bits = format && format->channel[0].bits == 16 ? 16 : 24;
-    const double resolution = 1.0 / static_cast<double>((1 << bits) - 1);
-    offset = static_cast<float>(static_cast<double>(state.depth_bias_constant) * resolution * 2) + slope_term;
+    const double unit = exact ? std::ldexp(1.0, -bits) : 1.0 / static_cast<double>((1 << bits) - 1) * 2;
+    offset = static_cast<float>(static_cast<double>(state.depth_bias_constant) * unit) + slope_term;
   }
   const float clamp = state.depth_bias_clamp;
   if (clamp > 0) offset = std::min(clamp, offset);

@@ -24,6 +24,9 @@ struct Draw {
   VkPolygonMode polygon_mode = VK_POLYGON_MODE_FILL;
   VkSampleMask sample_mask = ~0u;
   bool alpha_to_coverage = false, blends = false, as_library = false;
+  float depth_bias = 0;                 ///< the constant
+  const void* rasterization = nullptr;  ///< chained to that state
+  std::vector<VkDynamicState> dynamic;
   bool has_attribute = false;  ///< binding 0, one 32-bit integer a vertex
 };
 
@@ -120,6 +123,9 @@ class Maintenance5Draws : public Maintenance5Device {
     viewport.pViewports = &area;
     viewport.pScissors = &scissor;
     auto rasterization = make_struct<VkPipelineRasterizationStateCreateInfo>();
+    rasterization.pNext = draw.rasterization;
+    rasterization.depthBiasEnable = VK_TRUE;
+    rasterization.depthBiasConstantFactor = draw.depth_bias;
     rasterization.lineWidth = 1;
     rasterization.polygonMode = draw.polygon_mode;
     rasterization.rasterizerDiscardEnable = !rasterizes;
@@ -152,6 +158,10 @@ class Maintenance5Draws : public Maintenance5Device {
     info.pRasterizationState = &rasterization;
     info.pMultisampleState = &multisample;
     info.pColorBlendState = &blend;
+    auto dynamic = make_struct<VkPipelineDynamicStateCreateInfo>();
+    dynamic.dynamicStateCount = static_cast<std::uint32_t>(draw.dynamic.size());
+    dynamic.pDynamicStates = draw.dynamic.data();
+    info.pDynamicState = &dynamic;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
     EXPECT_EQ(VK_GET(instance, CreateGraphicsPipelines)(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),

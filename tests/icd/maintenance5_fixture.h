@@ -1,5 +1,5 @@
-// A device with VK_KHR_maintenance5, VK_KHR_maintenance6 and VK_EXT_host_image_copy, and images and buffers that the
-// host sees into.
+// A device with what newer headers than Vulkan 1.3.239's know: VK_KHR_maintenance5 and 6 and some more, and images and
+// buffers that the host sees into.
 #pragma once
 
 #include <iterator>
@@ -22,16 +22,34 @@ class Maintenance5Device : public DeviceTest {
     next.maintenance6 = VK_TRUE;
     auto copies = make_struct<VkPhysicalDeviceHostImageCopyFeaturesEXT>(&next);
     copies.hostImageCopy = VK_TRUE;
-    auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>(&copies);
+    auto biases = make_struct<VkPhysicalDeviceDepthBiasControlFeaturesEXT>(&copies);
+    biases.depthBiasControl = biases.leastRepresentableValueForceUnormRepresentation = VK_TRUE;
+    biases.floatRepresentation = biases.depthBiasExact = VK_TRUE;
+    auto slices = make_struct<VkPhysicalDeviceImageSlicedViewOf3DFeaturesEXT>(&biases);
+    slices.imageSlicedViewOf3D = VK_TRUE;
+    auto nested = make_struct<VkPhysicalDeviceNestedCommandBufferFeaturesEXT>(&slices);
+    nested.nestedCommandBuffer = nested.nestedCommandBufferRendering = VK_TRUE;
+    nested.nestedCommandBufferSimultaneousUse = VK_TRUE;
+    auto loops = make_struct<VkPhysicalDeviceAttachmentFeedbackLoopDynamicStateFeaturesEXT>(&nested);
+    loops.attachmentFeedbackLoopDynamicState = VK_TRUE;
+    auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>(&loops);
     robustness.nullDescriptor = VK_TRUE;
     auto rendering = make_struct<VkPhysicalDeviceDynamicRenderingFeatures>(&robustness);
     rendering.dynamicRendering = VK_TRUE;
     auto features = make_struct<VkPhysicalDeviceFeatures2>(&rendering);
     features.features.fillModeNonSolid = features.features.vertexPipelineStoresAndAtomics = VK_TRUE;
     features.features.largePoints = features.features.occlusionQueryPrecise = VK_TRUE;
-    const char* const names[] = {VK_KHR_MAINTENANCE_5_EXTENSION_NAME,     VK_KHR_MAINTENANCE_6_EXTENSION_NAME,
-                                 VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME,
-                                 VK_EXT_ROBUSTNESS_2_EXTENSION_NAME,      VK_EXT_HOST_IMAGE_COPY_EXTENSION_NAME};
+    const char* const names[] = {VK_KHR_MAINTENANCE_5_EXTENSION_NAME,
+                                 VK_KHR_MAINTENANCE_6_EXTENSION_NAME,
+                                 VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
+                                 VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME,
+                                 VK_EXT_ROBUSTNESS_2_EXTENSION_NAME,
+                                 VK_EXT_HOST_IMAGE_COPY_EXTENSION_NAME,
+                                 VK_EXT_DEPTH_BIAS_CONTROL_EXTENSION_NAME,
+                                 VK_EXT_IMAGE_SLICED_VIEW_OF_3D_EXTENSION_NAME,
+                                 VK_EXT_NESTED_COMMAND_BUFFER_EXTENSION_NAME,
+                                 VK_EXT_ATTACHMENT_FEEDBACK_LOOP_LAYOUT_EXTENSION_NAME,
+                                 VK_EXT_ATTACHMENT_FEEDBACK_LOOP_DYNAMIC_STATE_EXTENSION_NAME};
     const float priority = 1;
     auto queue = make_struct<VkDeviceQueueCreateInfo>();
     queue.queueCount = 1;
