@@ -22,6 +22,7 @@ LEFT_OUT = {
     "VK_EXT_swapchain_maintenance1": "VK_KHR_swapchain",
     "VK_EXT_hdr_metadata": "VK_KHR_swapchain",
     **dict.fromkeys(("VK_KHR_calibrated_timestamps", "VK_KHR_depth_clamp_zero_one",
+                     "VK_KHR_dynamic_rendering_local_read",
                      "VK_KHR_index_type_uint8", "VK_KHR_line_rasterization",
                      "VK_KHR_load_store_op_none", "VK_KHR_maintenance5",
                      "VK_KHR_maintenance6", "VK_KHR_map_memory2",

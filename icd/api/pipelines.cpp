@@ -123,7 +123,7 @@ std::shared_ptr<const CompiledShader>* shader_of(Pipeline& pipeline, VkShaderSta
 /// decide the coverage without one.
 std::uint32_t live_outputs(const Pipeline& pipeline) {
   const bool decides = pipeline.state.alpha_to_coverage || pipeline.dynamic.test(DynamicState::kAlphaToCoverageEnable);
-  return pipeline.live_colors | (decides ? 1u : 0u);
+  return located(pipeline.locations, pipeline.live_colors) | (decides ? 1u : 0u);
 }
 
 /// Compiles one stage if it takes part. False after a report.

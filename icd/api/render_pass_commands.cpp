@@ -76,6 +76,17 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRendering(VkCommandBuffer buffer, const VkRen
 
 VKAPI_ATTR void VKAPI_CALL CmdEndRendering(VkCommandBuffer buffer) { record(buffer, icd::CmdEndRendering{}); }
 
+#ifdef VK_KHR_dynamic_rendering_local_read
+// Both "must match the mappings provided to the bound pipeline" (Vulkan 1.4.309, vkCmdSetRenderingAttachmentLocations
+// and vkCmdSetRenderingInputAttachmentIndices): draws take the locations from there, and input attachments from their
+// descriptors, whatever index they have.
+VKAPI_ATTR void VKAPI_CALL CmdSetRenderingAttachmentLocationsKHR(VkCommandBuffer,
+                                                                 const VkRenderingAttachmentLocationInfoKHR*) {}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetRenderingInputAttachmentIndicesKHR(VkCommandBuffer,
+                                                                    const VkRenderingInputAttachmentIndexInfoKHR*) {}
+#endif
+
 VKAPI_ATTR void VKAPI_CALL CmdNextSubpass(VkCommandBuffer buffer, VkSubpassContents) {
   record(buffer, icd::CmdNextSubpass{});
 }

@@ -1,6 +1,7 @@
 // VkPipeline: compiled stages and the fixed-function state that does not change.
 #pragma once
 
+#include "icd/object/color_locations.h"
 #include "icd/object/descriptors.h"
 #include "icd/object/kept_stage.h"
 #include "icd/object/shader_cache.h"
@@ -35,6 +36,7 @@ struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   bool clip_follows_clamp = true;  ///< depth clipping is off where depth clamping is on
   VertexStreams streams{};
   std::uint32_t live_colors = 0;  ///< bit i: there is a colour attachment i
+  ColorLocations locations;       ///< of dynamic rendering's
   /// Of a library: the parts that it has, and its stages, not yet compiled.
   VkGraphicsPipelineLibraryFlagsEXT parts = 0;
   Vector<KeptStage> library_stages;

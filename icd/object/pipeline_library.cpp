@@ -29,6 +29,7 @@ void link_library(Pipeline& pipeline, const Pipeline& library) {
   if (library.parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT) {
     pipeline.color_writes = library.color_writes;
     pipeline.live_colors = library.live_colors;
+    pipeline.locations = library.locations;
   }
   pipeline.captured |= library.captured;
   pipeline.state.ordered_attachment_access |= library.state.ordered_attachment_access;

@@ -252,6 +252,7 @@ void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& i
   if (shader && has_depth_stencil(info, subpass, parts)) fill_depth_stencil(state, *info.pDepthStencilState);
   if (!output) return;
   pipeline.live_colors = live_colors(subpass);
+  if (!info.renderPass) pipeline.locations = color_locations(info.pNext);
   if (pipeline.live_colors && info.pColorBlendState) fill_blend(pipeline, *info.pColorBlendState);
 }
 

@@ -109,6 +109,17 @@ void add_subpass(const ReplayState& state, CapturedObjects& objects, glass::bug:
   if (aspects & VK_IMAGE_ASPECT_STENCIL_BIT) out.stencil = both;
 }
 
+/// By location, as the state has its blending.
+void add_colors(const CmdBeginRendering& dynamic, const ColorLocations& locations, CapturedObjects& objects,
+                glass::bug::Rendering& out) {
+  for (std::uint32_t i = 0; i < dynamic.colors.size(); ++i) {
+    const std::uint32_t at = locations.location(i);
+    if (at == ColorLocations::kNone) continue;
+    if (at >= out.colors.size()) out.colors.resize(at + 1, kNone);
+    out.colors[at] = attachment(dynamic.colors[i].view, objects);
+  }
+}
+
 std::string add_rendering(const ReplayState& state, CapturedObjects& objects, Bug& bug) {
   glass::bug::Rendering& out = bug.rendering;
   out.area = state.scope.area;
@@ -121,7 +132,7 @@ std::string add_rendering(const ReplayState& state, CapturedObjects& objects, Bu
     add_subpass(state, objects, out);
   } else if (dynamic) {
     if (dynamic->forced_samples > 1) return "it draws samples to attachments of one sample";
-    for (const RenderingAttachment& color : dynamic->colors) out.colors.push_back(attachment(color.view, objects));
+    add_colors(*dynamic, state.graphics.pipeline->locations, objects, out);
     out.depth = attachment(dynamic->depth.view, objects);
     out.stencil = attachment(dynamic->stencil.view, objects);
   }

@@ -67,6 +67,7 @@ bool prepare_draw(ReplayState& state) {
   const Pipeline* pipeline = state.graphics.pipeline;
   if (!pipeline || !state.pass || state.suppressed) return false;
   if (state.arena.used() > kArenaBudget) flush_pass(state);
+  follow_locations(state, pipeline->locations);
   raster::DrawCall& draw = state.draw;
   if (state.dirty & kDirtyState) {
     draw.state = resolve_state(state);

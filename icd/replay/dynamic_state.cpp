@@ -29,7 +29,8 @@ void for_each_face(raster::State& state, VkStencilFaceFlags faces, F f) {
 const raster::State* resolve_state(ReplayState& state) {
   const Pipeline& pipeline = *state.graphics.pipeline;
   const DynamicStates& dynamic = pipeline.dynamic;
-  if (dynamic.none()) return &pipeline.state;
+  const bool located = pipeline.locations != ColorLocations{};
+  if (dynamic.none() && !located) return &pipeline.state;
   auto* out = ::new (state.arena.take<raster::State>(1)) raster::State(pipeline.state);
   const DynamicValues& values = state.dynamic;
   for (std::uint8_t i = 0; i < static_cast<std::uint8_t>(DynamicState::kCount); ++i) {
@@ -38,6 +39,7 @@ const raster::State* resolve_state(ReplayState& state) {
   }
   if (pipeline.clip_follows_clamp) out->depth_clip = !out->depth_clamp;
   apply_color_writes(*out, dynamic.test(DynamicState::kColorWriteEnable) ? values.color_writes : pipeline.color_writes);
+  if (located) locate_blending(pipeline.locations, *out);
   return out;
 }
 

@@ -174,8 +174,9 @@ void clear_rect(ReplayState& state, const VkClearAttachment& clear, const VkClea
   for_each_layer_range(views, rect.layerCount, [&](std::uint32_t layer, std::uint32_t count) {
     const std::uint32_t first = views ? layer : rect.baseArrayLayer;
     if (clear.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) {
-      if (clear.colorAttachment >= raster::kMaxColorAttachments) return;
-      state.pass->clear_color(clear.colorAttachment, clear.clearValue.color, rect.rect, first, count);
+      const std::uint32_t location = state.scope.locations.location(clear.colorAttachment);
+      if (location == ColorLocations::kNone) return;
+      state.pass->clear_color(location, clear.clearValue.color, rect.rect, first, count);
     } else {
       state.pass->clear_depth_stencil(clear.aspectMask, clear.clearValue.depthStencil, rect.rect, first, count);
     }
@@ -224,6 +225,10 @@ void execute(ReplayState& state, const CmdEndRenderPass&) {
 void execute(ReplayState& state, const CmdClearAttachments& command) {
   if (!state.pass || state.suppressed) return;
   for (const VkClearAttachment& clear : command.attachments) {
+    // What the last pipeline could not reach can be cleared all the same.
+    const bool color = clear.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT;
+    if (color && state.scope.locations.location(clear.colorAttachment) == ColorLocations::kNone)
+      follow_locations(state, {});
     for (const VkClearRect& rect : command.rects) clear_rect(state, clear, rect);
   }
 }

@@ -43,17 +43,19 @@ DrawScope describe_scope(const CmdBeginRendering& command) {
 
 raster::PassDesc describe_pass(const CmdBeginRendering& command, const DrawScope& scope) {
   raster::PassDesc desc;
-  desc.color_count = std::min(static_cast<std::uint32_t>(command.colors.size()), raster::kMaxColorAttachments);
   desc.render_area = scope.area;
   desc.layers = scope.layers;
   desc.view_mask = scope.view_mask;
   const auto use = [&](const ImageView& view) { desc.samples = view.image->desc().samples; };
-  for (std::uint32_t i = 0; i < desc.color_count; ++i) {
+  for (std::uint32_t i = 0; i < command.colors.size(); ++i) {
     const ImageView* view = command.colors[i].view;
+    const std::uint32_t at = scope.locations.location(i);
+    if (at != ColorLocations::kNone) desc.color_count = std::max(desc.color_count, at + 1);
     if (!view) continue;
-    desc.color[i] = view->view;
-    if (i == 0) desc.plain_image = view->image->desc().type == VK_IMAGE_TYPE_2D && view->image->desc().layers == 1;
     use(*view);
+    if (at == ColorLocations::kNone) continue;
+    desc.color[at] = view->view;
+    if (at == 0) desc.plain_image = view->image->desc().type == VK_IMAGE_TYPE_2D && view->image->desc().layers == 1;
   }
   if (const ImageView* view = command.depth.view) {
     desc.depth = depth_stencil_plane(*view, VK_IMAGE_ASPECT_DEPTH_BIT);
@@ -146,10 +148,23 @@ void note_stores(ReplayState& state) {
 
 }  // namespace
 
+void follow_locations(ReplayState& state, const ColorLocations& locations) {
+  if (!state.rendering || state.scope.locations == locations) return;
+  flush_pass(state);
+  state.scope.locations = locations;
+  std::array<RenderingAttachment, raster::kMaxColorAttachments> colors{};
+  const raster::PassDesc desc = describe_pass(with_transients(state, *state.rendering, colors), state.scope);
+  state.pass.emplace(desc);
+  if (follows_attachments(state)) note_pass(state, desc);
+  if (follows_hazards(state)) state.observed->synced.areas.fill({});
+  if (watches_texels(state)) begin_watched_pass(state, desc);
+}
+
 void execute(ReplayState& state, const CmdBeginRendering& recorded) {
   if (!(recorded.flags & VK_RENDERING_RESUMING_BIT)) state.transients.clear();
   std::array<RenderingAttachment, raster::kMaxColorAttachments> colors{};
   const CmdBeginRendering command = with_transients(state, recorded, colors);
+  state.rendering = &recorded;
   state.scope = describe_scope(command);
   resolve_transients(recorded, command, state.scope);
   const raster::PassDesc desc = describe_pass(command, state.scope);
@@ -171,6 +186,7 @@ void execute(ReplayState& state, const CmdBeginRendering& recorded) {
 void execute(ReplayState& state, const CmdEndRendering&) {
   if (!state.pass) return;
   end_scope(state);
+  state.rendering = nullptr;
   if (follows_attachments(state)) note_stores(state);
 }
 

@@ -164,6 +164,7 @@ VkResult replay(Device& device, const CommandBuffer& buffer) noexcept {
   }
   state.pass.reset();
   state.instance = nullptr;
+  state.rendering = nullptr;
   if (!reason && !state.fault.raised.load()) return VK_SUCCESS;
   DeviceLoss loss = loss_of(state.fault, reason);
   glass::bug::Captures* const captures = glass::bug::captures();

@@ -47,7 +47,8 @@ struct DrawScope {
   std::uint32_t view_mask = 0;
   std::array<PendingResolve, raster::kMaxColorAttachments + 2> resolve{};
   std::uint32_t resolve_count = 0;
-  bool suspended = false;  ///< a later scope goes on with it
+  bool suspended = false;    ///< a later scope goes on with it
+  ColorLocations locations;  ///< of the colour attachments in the pass
 
   void add_resolve(const PendingResolve& r) {
     if (r.source && r.target && r.mode != VK_RESOLVE_MODE_NONE && resolve_count < resolve.size())
@@ -103,9 +104,10 @@ struct ReplayState {
   // The render pass instance
   const CmdBeginRenderPass* instance = nullptr;  ///< null: outside, or dynamic rendering
   std::uint32_t subpass = 0;
-  DrawScope scope;                   ///< while there is a pass
-  std::optional<raster::Pass> pass;  ///< none: outside
-  TransientAttachments transients;   ///< of the scope, or of one that was suspended
+  const CmdBeginRendering* rendering = nullptr;  ///< as it was recorded; null: outside, or a render pass
+  DrawScope scope;                               ///< while there is a pass
+  std::optional<raster::Pass> pass;              ///< none: outside
+  TransientAttachments transients;               ///< of the scope, or of one that was suspended
 
   raster::QueryCounters counters;              ///< of active queries
   const QueryPool* profiled = nullptr;         ///< of the performance query that is active; null: none is
@@ -128,6 +130,9 @@ void replay_commands(ReplayState& state, const CommandBuffer& buffer);
 /// points into the arena.
 void flush_pass(ReplayState& state);
 
+/// Makes a pass of dynamic rendering have its colour attachments at these locations.
+void follow_locations(ReplayState& state, const ColorLocations& locations);
+
 /// Nothing points into the arena any more: its memory can be used again.
 void reset_arena(ReplayState& state);
 
@@ -135,7 +140,7 @@ void reset_arena(ReplayState& state);
 void publish_queries(ReplayState& state);
 
 /// The bound pipeline's own state where nothing is dynamic, else a copy of it in the arena with the values that
-/// commands have set.
+/// commands have set. Blending is by location.
 const raster::State* resolve_state(ReplayState& state);
 
 /// Fills the parts of a resource table that the bound pipeline uses. Dynamic buffers and push constants are copied into

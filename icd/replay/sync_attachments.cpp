@@ -62,6 +62,12 @@ void touch_part(const ReplayState& state, const AttachmentPart& part, const texe
   touch(state, std::move(deed), std::move(ranges), sync_name(state.device, *part.view->image));
 }
 
+/// The colour attachment of a location.
+std::size_t attachment_at(const DrawScope& scope, std::uint32_t location) {
+  const auto& of = scope.locations.of;
+  return static_cast<std::size_t>(std::find(of.begin(), of.end(), location) - of.begin());
+}
+
 /// A draw or clear writes an area of an attachment of the pass.
 void touch_drawn(ReplayState& state, const texel::ImageView& plane, Kind kind, std::uint32_t slot, const VkRect2D& area,
                  const char* verb) {
@@ -80,7 +86,7 @@ void touch_drawn(ReplayState& state, const texel::ImageView& plane, Kind kind, s
   });
   std::string what = verb;
   what.append(kNames[static_cast<std::size_t>(kind)]).append(" attachment");
-  if (kind == Kind::kColor) what.append(" ").append(std::to_string(slot));
+  if (kind == Kind::kColor) what.append(" ").append(std::to_string(attachment_at(state.scope, slot)));
   touch(state, {write_of(kind, Stage::kLateTests), synced.number, std::move(what), tag_of(state)}, std::move(ranges),
         {});
 }
@@ -154,9 +160,9 @@ void note_sync(ReplayState& state, const CmdClearAttachments& command) {
   constexpr std::uint32_t kDepth = raster::kMaxColorAttachments;
   for (const VkClearAttachment& clear : command.attachments) {
     for (const VkClearRect& rect : command.rects) {
-      if ((clear.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) && clear.colorAttachment < desc.color_count)
-        touch_drawn(state, desc.color[clear.colorAttachment], Kind::kColor, clear.colorAttachment, rect.rect,
-                    "clear of ");
+      const std::uint32_t location = state.scope.locations.location(clear.colorAttachment);
+      if ((clear.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) && location < desc.color_count)
+        touch_drawn(state, desc.color[location], Kind::kColor, location, rect.rect, "clear of ");
       if (clear.aspectMask & VK_IMAGE_ASPECT_DEPTH_BIT)
         touch_drawn(state, desc.depth, Kind::kDepth, kDepth, rect.rect, "clear of ");
       if (clear.aspectMask & VK_IMAGE_ASPECT_STENCIL_BIT)

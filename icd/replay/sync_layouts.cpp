@@ -30,6 +30,9 @@ std::string layout_text(VkImageLayout layout) {
     LAYOUT(ATTACHMENT_OPTIMAL)
     LAYOUT(PRESENT_SRC_KHR)
     LAYOUT(ATTACHMENT_FEEDBACK_LOOP_OPTIMAL_EXT)
+#ifdef VK_KHR_dynamic_rendering_local_read
+    LAYOUT(RENDERING_LOCAL_READ_KHR)
+#endif
 #undef LAYOUT
     default:
       return std::to_string(static_cast<int>(layout));

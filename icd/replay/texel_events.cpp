@@ -38,10 +38,10 @@ void for_each_texel(const ReplayState& state, const AttachmentPart& part, F&& f)
 }
 
 /// Whether a clear names the attachment of a slot.
-bool names_slot(const VkClearAttachment& clear, std::uint32_t slot) {
+bool names_slot(const DrawScope& scope, const VkClearAttachment& clear, std::uint32_t slot) {
   if (slot == glass::pixel::kDepthSlot) return (clear.aspectMask & VK_IMAGE_ASPECT_DEPTH_BIT) != 0;
   if (slot == glass::pixel::kStencilSlot) return (clear.aspectMask & VK_IMAGE_ASPECT_STENCIL_BIT) != 0;
-  return (clear.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) != 0 && clear.colorAttachment == slot;
+  return (clear.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) != 0 && scope.locations.location(clear.colorAttachment) == slot;
 }
 
 bool is_cleared(const ReplayState& state, const CmdClearAttachments& command, const glass::pixel::PassTexel& at) {
@@ -50,7 +50,7 @@ bool is_cleared(const ReplayState& state, const CmdClearAttachments& command, co
       const bool layered = state.scope.view_mask != 0
                                ? (state.scope.view_mask >> at.layer & 1) != 0
                                : at.layer >= rect.baseArrayLayer && at.layer - rect.baseArrayLayer < rect.layerCount;
-      if (layered && names_slot(clear, at.slot) && contains(rect.rect, at.texel->id)) return true;
+      if (layered && names_slot(state.scope, clear, at.slot) && contains(rect.rect, at.texel->id)) return true;
     }
   }
   return false;

@@ -144,7 +144,8 @@ void note_written(ReplayState& state, const CmdClearAttachments& command) {
         });
       };
       const bool color = clear.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT;
-      if (color && clear.colorAttachment < desc.color_count) fill(desc.color[clear.colorAttachment]);
+      const std::uint32_t location = state.scope.locations.location(clear.colorAttachment);
+      if (color && location < desc.color_count) fill(desc.color[location]);
       if (clear.aspectMask & VK_IMAGE_ASPECT_DEPTH_BIT) fill(desc.depth);
       if (clear.aspectMask & VK_IMAGE_ASPECT_STENCIL_BIT) fill(desc.stencil);
     }
