@@ -68,6 +68,8 @@ std::string transition_text(const char* side, const Past& past, bool accesses) {
   return "in the barrier or subpass dependency that has the transition\n" + side_text(side, past, accesses);
 }
 
+bool reads_input(const Past& past) { return past.use.access == Access::kInputAttachmentRead; }
+
 std::string remedy_of(const Told& told) {
   const bool memory = is_write(told.earlier);
   if (is_host(told.later) && told.standing == Standing::kUnordered)
@@ -80,7 +82,9 @@ std::string remedy_of(const Told& told) {
          side_text("src", told.earlier, memory) + side_text("dst", told.later, memory) +
          "    };\n"
          "    const VkDependencyInfo info = {\n"
-         "        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,\n"
+         "        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,\n" +
+         // "dependencyFlags must include VK_DEPENDENCY_BY_REGION_BIT" within a render pass instance.
+         std::string(reads_input(told.later) ? "        .dependencyFlags = VK_DEPENDENCY_BY_REGION_BIT,\n" : "") +
          "        .memoryBarrierCount = 1,\n"
          "        .pMemoryBarriers = &barrier,\n"
          "    };\n"

@@ -513,7 +513,7 @@ std::vector<LocalReadDevice::Contents> LocalReadDevice::as_rendering(const Scene
     for (std::size_t i = 0; i < scene.steps.size(); ++i) {
       const Step& step = scene.steps[i];
       const VkCommandBuffer to = scene.in_secondaries ? make_secondary(scene, step) : commands;
-      if (i) barrier(to);
+      if (i && !scene.lacks_barriers) barrier(to);
       // What is cleared, the mapping before can reach.
       const StepMapping mapping(scene, step);
       if (!scene.in_secondaries) {

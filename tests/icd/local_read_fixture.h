@@ -37,6 +37,7 @@ struct Scene {
   // of dynamic rendering alone
   bool unnamed_depth = false;  ///< depth is the input attachment without an index
   bool as_libraries = false, in_secondaries = false;
+  bool lacks_barriers = false;
   VkImageLayout layout = VK_IMAGE_LAYOUT_RENDERING_LOCAL_READ_KHR;
 
   std::uint32_t depth_number() const { return static_cast<std::uint32_t>(colors.size()); }

@@ -1,6 +1,8 @@
 // VK_KHR_dynamic_rendering_local_read, which neither older headers nor the reference know: dynamic rendering that reads
 // its own attachments is held against a render pass with subpasses that does the same, which the suite holds against
 // the reference (cts-subset/cases/renderpass).
+#include <cstdlib>
+
 #include "tests/icd/local_read_fixture.h"
 
 #ifdef VK_KHR_dynamic_rendering_local_read
@@ -158,6 +160,46 @@ TEST_F(LocalRead, DepthAndStencilAreInputs) {
       expect_same(scene);
     }
   }
+}
+
+/// Where VITRINE_TOOLS=sync is on: what it finds.
+class LocalReadSync : public LocalReadDevice {
+ protected:
+  void SetUp() override {
+    if (!std::getenv("VITRINE_TOOLS")) GTEST_SKIP() << "needs VITRINE_TOOLS=sync";
+    LocalReadDevice::SetUp();
+    auto info = make_struct<VkDebugUtilsMessengerCreateInfoEXT>();
+    info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+    info.pUserData = this;
+    info.pfnUserCallback = [](VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                              const VkDebugUtilsMessengerCallbackDataEXT* data, void* self) -> VkBool32 {
+      static_cast<LocalReadSync*>(self)->found.emplace_back(data->pMessageIdName);
+      static_cast<LocalReadSync*>(self)->text = data->pMessage;
+      return VK_FALSE;
+    };
+    ASSERT_EQ(VK_GET(instance, CreateDebugUtilsMessengerEXT)(instance, &info, nullptr, &messenger), VK_SUCCESS);
+  }
+  void TearDown() override {
+    if (!messenger) return;
+    VK_GET(instance, DestroyDebugUtilsMessengerEXT)(instance, messenger, nullptr);
+    LocalReadDevice::TearDown();
+  }
+
+  VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+  std::vector<std::string> found;
+  std::string text;
+};
+
+TEST_F(LocalReadSync, MissesBarriersBeforeInputAttachments) {
+  Scene scene = deferred();
+  std::swap(scene.steps[0].colors[0], scene.steps[0].colors[2]);
+  as_rendering(scene);
+  EXPECT_EQ(found, std::vector<std::string>{}) << text;
+  scene.lacks_barriers = true;
+  as_rendering(scene);
+  EXPECT_EQ(found, std::vector<std::string>(3, "sync-read-after-write")) << "of each of the three";
+  EXPECT_NE(text.find("VK_DEPENDENCY_BY_REGION_BIT"), std::string::npos) << text;
 }
 
 }  // namespace
