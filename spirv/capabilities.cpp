@@ -13,8 +13,10 @@ namespace {
 
 constexpr spv::Capability kSupported[] = {
 #define VITRINE_CAPABILITY(name) spv::Capability::name,
+#define VITRINE_NUMBERED_CAPABILITY(name, number) static_cast<spv::Capability>(number),
 #include "spirv/capabilities.def"
 #undef VITRINE_CAPABILITY
+#undef VITRINE_NUMBERED_CAPABILITY
     // DXC declares it for every fetch from a multisampled image; the instructions that it allows are refused by name.
     spv::Capability::SparseResidency,
 };

@@ -256,6 +256,10 @@ struct Function {
   bool signed_zero_inf_nan_preserve = false;  ///< execution mode: inexact rewrites are off (section 4.1)
   bool denorm_flush_to_zero = false;
   std::uint8_t inexact_off = 0;  ///< sum of the widths, of 16 and 64, for which one of the two is declared
+  /// Sum of the widths for which no shortcut may lose a NaN, an infinity or the sign of zero, either
+  /// (lavapipe-optimizer.md 6.1).
+  std::uint8_t strict_specials = 0;
+  bool helpers_take_part = false;  ///< in group operations: MaximallyReconvergesKHR
 
   /// The inexact rewrites do not apply to numbers of `width` bits.
   bool forbids_inexact(std::uint32_t width) const {

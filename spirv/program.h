@@ -193,6 +193,7 @@ struct Program {
   std::uint32_t shared_bytes = 0;
   std::vector<std::array<std::uint32_t, 2>> zeroed_shared;  ///< ShaderInterface::zeroed_shared
   bool uses_subgroups = false;                              ///< an invocation may notice which others share its wave
+  bool helpers_take_part = false;                           ///< in group operations, beside other invocations
   std::uint32_t groups_per_wave = 1;  ///< compute: small workgroups, adjacent in x, that share a wave
   std::shared_ptr<const exec::Observation> observation;  ///< null: nobody looks
 };

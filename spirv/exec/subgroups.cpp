@@ -18,9 +18,7 @@ using ir::GroupOp;
 
 /// Lanes of the subgroup or cluster of `size` that starts at `first` which take part.
 LaneMask participants(const Wave& wave, std::uint32_t first, std::uint32_t size) {
-  const LaneMask all = base::first_lanes(size) << first;
-  const LaneMask lanes = wave.active & wave.live & all;
-  return lanes != 0 ? lanes : wave.active & all;
+  return exec::participants(wave, base::first_lanes(size) << first);
 }
 
 LaneMask ballot_of(const Wave& wave, LaneMask holds, std::uint32_t first, std::uint32_t size) {

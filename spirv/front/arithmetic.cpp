@@ -30,8 +30,7 @@ std::optional<Expr> convert_back(Translator& t, const Inst& inst, std::uint8_t w
   const Inst& inner = t.module.def(operand);
   const bool truncates = inst.op == spv::Op::OpConvertSToF && inner.op == spv::Op::OpConvertFToS;
   if (!truncates && !(int_from_float(inst.op) && float_from_int(inner.op))) return {};
-  for (const std::uint32_t id : {inst.result, inner.result})
-    if (t.module.decoration(id, spv::Decoration::NoContraction) != nullptr) return {};
+  if (is_exact(t, inst) || is_exact(t, inner)) return {};
   const Expr source = number_of(t, inner.operand(0));
   if (source.width != width || (width == 32 && number_of(t, operand).width == 32)) return {};
   return truncates ? apply(ir::Op::kFTrunc, {source}) : source;

@@ -181,8 +181,10 @@ struct Translator {
   std::shared_ptr<Initialization> initialization;  ///< null: nobody asks which variables have been written
   std::shared_ptr<Debugging> debugging;            ///< null: nobody asks for lines and variables
 
+  /// FPFastMathDefault by bits of the numbers; nothing: the module leaves that to Vulkan.
+  std::optional<std::map<std::uint32_t, std::uint32_t>> fast_math_defaults;
   const Inst* inst = nullptr;  ///< being translated
-  bool exact = false;          ///< the instruction is decorated NoContraction
+  bool exact = false;          ///< is_exact() of the instruction
 };
 
 /// A path of an interface variable (first step) that is stored to somewhere; kWholeVariable: at a dynamic index.
@@ -329,6 +331,13 @@ void set_buffer(ir::Instr& instr, const Pointer& pointer);
 void translate_entry(Translator& t);
 /// opcode_table.cpp: translates one instruction that is not control flow.
 void translate_instruction(Translator& t, const Inst& inst);
+
+// ---- fast_math.cpp
+/// What the module says of all floating-point numbers, into t.function and t.fast_math_defaults.
+void read_fast_math(Translator& t);
+/// Whether the instruction gives what it says, and may be no part of another computation: NoContraction, or no leave by
+/// FPFastMathMode or FPFastMathDefault.
+bool is_exact(const Translator& t, const Inst& inst);
 
 // ---- interface.cpp
 /// Execution modes into function.interface.

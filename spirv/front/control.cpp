@@ -379,14 +379,16 @@ void leave_function(Translator& t, const Inst& inst) {
   exit_scope(t, t.scopes[frame.scope]);
 }
 
-void end_invocation(Translator& t) {
+void end_invocation(Translator& t, const Inst& inst) {
   t.function.interface.uses_discard = true;
   jump_to_end(t, nullptr);
-  for (const Scope& scope : t.scopes)
-    if (scope.kind == Scope::Kind::kLoop) {
-      emit_effect(t, ir::Op::kKill);
-      return;
-    }
+  const bool leaves = t.function.helpers_take_part && inst.op == Op::OpTerminateInvocation;
+  if (leaves || std::any_of(t.scopes.begin(), t.scopes.end(),
+                            [](const Scope& scope) { return scope.kind == Scope::Kind::kLoop; })) {
+    // Helpers take part in group operations where invocations reconverge maximally: whoever is terminated is none.
+    emit_effect(t, ir::Op::kKill);
+    return;
+  }
   // Outside loops the lane goes on as a helper, as the reference lets it, so that later derivatives have its values.
   emit_effect(t, ir::Op::kDemote);
 }
@@ -433,7 +435,7 @@ std::uint32_t build_terminator(Translator& t, const Block& block, std::uint32_t 
       return 0;
     case Op::OpKill:
     case Op::OpTerminateInvocation:
-      end_invocation(t);
+      end_invocation(t, inst);
       return 0;
     case Op::OpUnreachable:
       if (t.interest.control) probe_before(t, inst);

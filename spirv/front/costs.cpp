@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "spirv/front/functions.h"
+#include "spirv/newer_numbers.h"
 
 namespace vitrine::spirv::front {
 namespace {
@@ -105,7 +106,9 @@ std::optional<Cost> cost_of_value(const Module& module, const Inst& inst) {
   if (in(op, Op::OpSampledImage, Op::OpImageQuerySamples) ||
       in(op, Op::OpImageSparseSampleImplicitLod, Op::OpImageSparseDrefGather))
     return Cost::kLookups;
-  if (in(op, Op::OpGroupNonUniformElect, Op::OpGroupNonUniformQuadSwap)) return Cost::kSubgroup;
+  if (in(op, Op::OpGroupNonUniformElect, Op::OpGroupNonUniformQuadSwap) || op == newer::kQuadAll ||
+      op == newer::kQuadAny)
+    return Cost::kSubgroup;
   return std::nullopt;
 }
 

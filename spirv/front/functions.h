@@ -6,8 +6,10 @@
 namespace vitrine::spirv::front {
 
 #define VITRINE_OPCODE(name, function, op, effect) void function(Translator& t, const Inst& inst, ir::Op op_column);
+#define VITRINE_NUMBERED_OPCODE(name, number, function, op, effect) VITRINE_OPCODE(name, function, op, effect)
 #include "spirv/opcodes.def"
 #undef VITRINE_OPCODE
+#undef VITRINE_NUMBERED_OPCODE
 
 /// A probe where a block begins (spirv/probe.h).
 void probe_block(Translator& t, const Block& block);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "spirv/front/functions.h"
+#include "spirv/newer_numbers.h"
 
 namespace vitrine::spirv::front {
 namespace {
@@ -118,6 +119,15 @@ bool read_stage_mode(StageModes& modes, spv::ExecutionMode mode, std::uint32_t v
   }
 }
 
+/// Modes that older headers do not know. False: another one.
+bool read_newer_mode(Translator& t, spv::ExecutionMode mode) {
+  // read_fast_math() reads it; derivatives are of quads anyway.
+  if (mode == newer::kFPFastMathDefault || mode == newer::kQuadDerivatives) return true;
+  t.function.helpers_take_part |= mode == newer::kMaximallyReconverges;
+  t.function.interface.needs_helpers |= mode == newer::kRequireFullQuads;
+  return mode == newer::kMaximallyReconverges || mode == newer::kRequireFullQuads;
+}
+
 /// The limits of the device hold; memory is sized by these numbers.
 void check_stage_modes(const StageModes& modes) {
   if (modes.max_vertices > 1024 || modes.invocations == 0 || modes.invocations > 32 || modes.control_points > 32)
@@ -131,6 +141,7 @@ void read_modes(Translator& t) {
   interface.stage = t.options.stage;
   interface.per_sample = t.options.stage == VK_SHADER_STAGE_FRAGMENT_BIT && shades_per_sample(t.module);
   for (const Inst& mode : t.module.modes) {
+    if (read_newer_mode(t, static_cast<spv::ExecutionMode>(mode.operand(1)))) continue;
     auto word = [&](std::uint32_t i) { return mode.operand(i + 2); };
     auto id = [&](std::uint32_t i) { return t.module.constant_u32(mode.operand(i + 2), mode); };
     switch (static_cast<spv::ExecutionMode>(mode.operand(1))) {
@@ -189,6 +200,7 @@ void read_modes(Translator& t) {
     }
   }
   check_stage_modes(interface.modes);
+  read_fast_math(t);
   // A constant decorated WorkgroupSize overrides the execution mode (Vulkan, Built-In Variables).
   for (const DecorationRow& row : t.module.decorations)
     if (row.kind == Decoration::BuiltIn && row.value == static_cast<std::uint32_t>(spv::BuiltIn::WorkgroupSize))

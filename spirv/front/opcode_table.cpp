@@ -16,8 +16,10 @@ struct Row {
 constexpr Row kRows[] = {
 #define VITRINE_OPCODE(name, function, op, effect) \
   {static_cast<std::uint16_t>(spv::Op::Op##name), ir::Op::k##op, function},
+#define VITRINE_NUMBERED_OPCODE(name, number, function, op, effect) {number, ir::Op::k##op, function},
 #include "spirv/opcodes.def"
 #undef VITRINE_OPCODE
+#undef VITRINE_NUMBERED_OPCODE
 };
 
 /// kRows sorted by opcode.
@@ -39,7 +41,7 @@ void translate_instruction(Translator& t, const Inst& inst) {
   const auto row = std::lower_bound(rows.begin(), rows.end(), opcode,
                                     [](const Row& a, std::uint16_t wanted) { return a.opcode < wanted; });
   if (row == rows.end() || row->opcode != opcode) fail(inst, "is not supported");
-  t.exact = inst.result != 0 && t.module.decoration(inst.result, spv::Decoration::NoContraction) != nullptr;
+  t.exact = is_exact(t, inst);
   row->translate(t, inst, row->op);
   t.exact = false;
 }

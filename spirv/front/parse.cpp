@@ -203,6 +203,20 @@ void read_group_decoration(Module& module, const Inst& inst) {
     }
 }
 
+/// What has a number of its own in opcodes.def.
+bool is_numbered(Op op) {
+  switch (static_cast<std::uint32_t>(op)) {
+#define VITRINE_OPCODE(name, function, op, effect)
+#define VITRINE_NUMBERED_OPCODE(name, number, function, op, effect) case number:
+#include "spirv/opcodes.def"
+#undef VITRINE_OPCODE
+#undef VITRINE_NUMBERED_OPCODE
+    return true;
+    default:
+      return false;
+  }
+}
+
 /// Splits the words into instructions.
 void split(Module& module, std::span<const std::uint32_t> words) {
   if (words.size() < 5 || words[0] != spv::MagicNumber) throw Failure("not a SPIR-V module");
@@ -214,6 +228,7 @@ void split(Module& module, std::span<const std::uint32_t> words) {
     inst.op = static_cast<Op>(words[at] & 0xffff);
     bool has_result = false, has_type = false;
     spv::HasResultAndType(inst.op, &has_result, &has_type);
+    if (is_numbered(inst.op)) has_result = has_type = true;
     if (has_type) inst.result_type = inst.words.size() > inst.first ? inst.words[inst.first] : 0, inst.first++;
     if (has_result) inst.result = inst.words.size() > inst.first ? inst.words[inst.first] : 0, inst.first++;
     if (inst.first > inst.words.size()) throw Failure("SPIR-V instruction is too short");

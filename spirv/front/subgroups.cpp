@@ -381,4 +381,17 @@ void quad_swap(Translator& t, const Inst& inst, ir::Op) {
   shuffle_from(t, inst, value, apply(ir::Op::kXor, {lane(t), imm_u32(t, (direction + 1) & 3)}));
 }
 
+/// Of the active invocations of the quad, helpers among them.
+void quad_vote(Translator& t, const Inst& inst, ir::Op op) {
+  t.function.interface.needs_helpers = true;
+  const bool all = op == ir::Op::kAndB;
+  Expr holds{&t, condition(t, inst.operand(0))};
+  if (all) holds = apply(ir::Op::kNotB, {holds});
+  const Expr own = apply(ir::Op::kB2I, {holds});
+  Expr any = own;
+  for (const std::uint32_t other : {1u, 2u, 3u})  // inactive ones give 0
+    any = any | shuffle(t, own.id, apply(ir::Op::kXor, {lane(t), imm_u32(t, other)}));
+  set_value(t, inst, apply(all ? ir::Op::kIEq : ir::Op::kINe, {any, imm_u32(t, 0)}).id);
+}
+
 }  // namespace vitrine::spirv::front

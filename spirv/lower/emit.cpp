@@ -250,10 +250,11 @@ class BodyEmitter {
   }
 
   /// Killed lanes go on as helpers (lavapipe-shader-math.md section 9), so that derivatives behind the discard have
-  /// their neighbours; inside a loop they end, because nothing else may make them leave it.
+  /// their neighbours; inside a loop they end, because nothing else may make them leave it. They end, too, where
+  /// helpers take part in group operations.
   void emit_kill(const ScalarOp& op) {
-    bool in_loop = false;
-    for (const Open& open : open_) in_loop |= open.is_loop;
+    bool ends = f_.ir->helpers_take_part;
+    for (const Open& open : open_) ends |= open.is_loop;
     const Label after = out_.new_label();
     if (op.cond != kNoScalar && varying(op.cond)) {
       out_.append(exec::demote_if, "discard_if", op.instr, {}, out_.in_register(op.cond));
@@ -262,7 +263,7 @@ class BodyEmitter {
       out_.append(exec::demote_all, "discard", op.instr);
       // Uniformly dead: with every lane of the wave a helper, the handler has ended the wave.
     }
-    if (in_loop) {
+    if (ends) {
       ScalarOp end = op;
       end.kind = Kind::kReturn;
       if (op.cond != kNoScalar && !varying(op.cond)) end.cond = kNoScalar;

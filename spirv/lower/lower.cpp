@@ -55,6 +55,7 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   program->groups_per_wave = scalars.groups_per_wave;
   if (rehearsal) program->groups_per_wave = std::min(program->groups_per_wave, rehearsal->program().groups_per_wave);
   program->uses_subgroups = scalars.uses_subgroups;
+  program->helpers_take_part = function.helpers_take_part;
   program->sources = std::move(function.sources);
   program->shared_bytes = interface.shared_bytes;
   program->zeroed_shared = interface.zeroed_shared;

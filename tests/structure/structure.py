@@ -188,7 +188,7 @@ def opcode_faults(root):
     """Every row of the opcode tables is in assembly among the tests, or tests/spirv/opcode_tests says what tests it."""
     text = "".join(p.read_text() for folder in ("tests/spirv", "cts-subset") for p in (root / folder).rglob("*.cpp"))
     listed = set(re.findall(r"^(\w+) *;", (root / "tests/spirv/opcode_tests").read_text(), re.MULTILINE))
-    for table, row, use in (("spirv/opcodes.def", r"^VITRINE_OPCODE\((\w+)", r"Op%s\b"),
+    for table, row, use in (("spirv/opcodes.def", r"^VITRINE(?:_NUMBERED)?_OPCODE\((\w+)", r"Op%s\b"),
                             ("spirv/front/glsl450.def", r"^VITRINE_GLSL\((\w+)", r"glsl %s\b")):
         for name in re.findall(row, (root / table).read_text(), re.MULTILINE):
             if name not in listed and not re.search(use % name, text):
@@ -211,7 +211,7 @@ def capability_faults(root):
     Those that a property of the device enables may stand there or not; so may what the registry does not know."""
     def claimed(file):
         return set(re.findall(r"^(\w+) *;", (root / file).read_text(), re.MULTILINE))
-    listed = set(re.findall(r"^VITRINE_CAPABILITY\((\w+)\)", (root / "spirv/capabilities.def").read_text(), re.MULTILINE))
+    listed = set(re.findall(r"^VITRINE(?:_NUMBERED)?_CAPABILITY\((\w+)", (root / "spirv/capabilities.def").read_text(), re.MULTILINE))
     claims = claimed("manifest/features") | claimed("manifest/extensions")
     def stem(name):
         """What the names of a capability share: registries call it by this author's or that one's, or by none."""

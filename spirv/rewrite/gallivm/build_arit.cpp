@@ -83,20 +83,24 @@ class ArithmeticBuilder {
     return !is_sum(next);
   }
 
+  /// (This device alone: FPFastMathMode without NotNaN, NotInf or NSZ.)
+  bool is_strict() const { return (graph_.function.strict_specials & graph_.insts[id_].width) != 0; }
+
   /// True when the operation is gone.
   bool shorten(Op op) {
     const Inst& inst = graph_.insts[id_];
     switch (op) {
       case Op::kFAdd:
-        return take_if(1, 0, 0) || take_if(0, 1, 0) || take_if(0, 1, kMinusZero) || take_if(1, 0, kMinusZero) ||
-               undefined_operand();
+        return (!is_strict() && (take_if(1, 0, 0) || take_if(0, 1, 0))) || take_if(0, 1, kMinusZero) ||
+               take_if(1, 0, kMinusZero) || undefined_operand();
       case Op::kFMul:
+        if (is_strict()) return take_if(1, 0, kOne) || take_if(0, 1, kOne) || undefined_operand();
         return take_if(0, 0, 0) || take_if(1, 0, kOne) || take_if(1, 1, 0) || take_if(0, 1, kOne) ||
                undefined_operand();
       case Op::kFDiv:
-        return divide();
+        return is_strict() ? take_if(0, 1, kOne) || undefined_operand() : divide();
       case Op::kFRcp:
-        if (!is(0, 0)) return undefined_operand();
+        if (is_strict() || !is(0, 0)) return undefined_operand();
         become_undefined();
         return true;
       case Op::kFMin:
@@ -121,7 +125,7 @@ class ArithmeticBuilder {
       case Op::kFNeu:
         return compare_undefined(op == Op::kFNeu);
       case Op::kFPow:
-        if (inst.width != 32 || !is(1, 0)) return false;
+        if (inst.width != 32 || is_strict() || !is(1, 0)) return false;
         power_of_zero();
         return true;
       default:

@@ -1,0 +1,21 @@
+// Numbers of SPIR-V that older headers do not know (1.3.239's): by the names of those that do. Capabilities and
+// instructions of that kind are rows of capabilities.def and opcodes.def with their numbers.
+#pragma once
+
+#include <cstdint>
+#include <spirv/unified1/spirv.hpp11>
+
+namespace vitrine::spirv::newer {
+
+inline constexpr auto kQuadDerivatives = static_cast<spv::ExecutionMode>(5088);
+inline constexpr auto kRequireFullQuads = static_cast<spv::ExecutionMode>(5089);
+inline constexpr auto kMaximallyReconverges = static_cast<spv::ExecutionMode>(6023);
+inline constexpr auto kFPFastMathDefault = static_cast<spv::ExecutionMode>(6028);
+
+inline constexpr auto kQuadAll = static_cast<spv::Op>(5110);
+inline constexpr auto kQuadAny = static_cast<spv::Op>(5111);
+
+/// FP Fast Math Mode.
+inline constexpr std::uint32_t kAllowTransform = 0x40000;
+
+}  // namespace vitrine::spirv::newer
