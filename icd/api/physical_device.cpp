@@ -178,8 +178,10 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice device,
   out->properties = physical_device.properties;
 #ifdef VK_EXT_host_image_copy
   LayoutLists<VkPhysicalDeviceHostImageCopyPropertiesEXT> layouts(out->pNext);
+  LayoutLists<VkPhysicalDeviceVulkan14Properties> core_layouts(out->pNext);
   write_property_chain(out->pNext);
   layouts.write();
+  core_layouts.write();
 #else
   write_property_chain(out->pNext);
 #endif

@@ -62,7 +62,7 @@ TEST(Registry, LimitsMeetTheSpecification) {
   }
 }
 
-/// Vulkan 1.3.239, Features: Feature Requirements.
+/// Vulkan 1.4.309, Features: Feature Requirements.
 TEST(Registry, TheVersionsFeaturesAreClaimed) {
   struct Requirement {
     std::uint32_t version;
@@ -98,6 +98,49 @@ TEST(Registry, TheVersionsFeaturesAreClaimed) {
       VITRINE_REQUIRED(VK_API_VERSION_1_3, dynamicRendering),
       VITRINE_REQUIRED(VK_API_VERSION_1_3, shaderIntegerDotProduct),
       VITRINE_REQUIRED(VK_API_VERSION_1_3, maintenance4),
+#ifdef VK_API_VERSION_1_4
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, fullDrawIndexUint32),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, imageCubeArray),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, independentBlend),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, sampleRateShading),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, drawIndirectFirstInstance),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, depthClamp),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, depthBiasClamp),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, samplerAnisotropy),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, fragmentStoresAndAtomics),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderStorageImageExtendedFormats),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderUniformBufferArrayDynamicIndexing),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderSampledImageArrayDynamicIndexing),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderStorageBufferArrayDynamicIndexing),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderStorageImageArrayDynamicIndexing),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderImageGatherExtended),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderInt16),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, largePoints),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, samplerYcbcrConversion),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, storageBuffer16BitAccess),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, variablePointers),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, variablePointersStorageBuffer),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, samplerMirrorClampToEdge),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, scalarBlockLayout),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderUniformTexelBufferArrayDynamicIndexing),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderStorageTexelBufferArrayDynamicIndexing),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderInt8),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, storageBuffer8BitAccess),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, globalPriorityQuery),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderSubgroupRotate),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderSubgroupRotateClustered),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderFloatControls2),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, shaderExpectAssume),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, bresenhamLines),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, vertexAttributeInstanceRateDivisor),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, indexTypeUint8),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, dynamicRenderingLocalRead),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, maintenance5),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, maintenance6),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, pipelineRobustness),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, hostImageCopy),
+      VITRINE_REQUIRED(VK_API_VERSION_1_4, pushDescriptor),
+#endif
   };
 #undef VITRINE_REQUIRED
   const std::span<const Feature> claimed = claimed_features();

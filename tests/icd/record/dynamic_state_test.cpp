@@ -14,6 +14,9 @@ namespace {
 
 /// States that are not in raster::State.
 bool lies_elsewhere(DynamicState s) {
+#ifdef VK_EXT_attachment_feedback_loop_dynamic_state
+  if (s == DynamicState::kAttachmentFeedbackLoopEnable) return true;
+#endif
   return s == DynamicState::kVertexStride || s == DynamicState::kColorWriteEnable ||
          s == DynamicState::kPatchControlPoints || s == DynamicState::kTessellationDomainOrigin ||
          s == DynamicState::kExtraPrimitiveOverestimationSize;
