@@ -25,7 +25,7 @@ LEFT_OUT = {
                      "VK_KHR_dynamic_rendering_local_read",
                      "VK_KHR_index_type_uint8", "VK_KHR_line_rasterization",
                      "VK_KHR_load_store_op_none", "VK_KHR_maintenance5",
-                     "VK_KHR_maintenance6", "VK_KHR_map_memory2",
+                     "VK_KHR_maintenance6", "VK_KHR_maintenance7", "VK_KHR_map_memory2",
                      "VK_KHR_shader_expect_assume", "VK_KHR_shader_subgroup_rotate",
                      "VK_KHR_vertex_attribute_divisor"),
                     "came after Vulkan 1.3.239: Debian 12's validation layer takes its structures for mistakes"),

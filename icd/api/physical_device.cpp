@@ -195,6 +195,11 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice device,
       core && physical_device.properties.apiVersion >= VK_API_VERSION_1_2) {
     write_driver_info(*core);
   }
+#ifdef VK_KHR_maintenance7
+  // Nothing lies underneath; the array is the application's.
+  if (auto* layered = find_in_out_chain<VkPhysicalDeviceLayeredApiPropertiesListKHR>(out->pNext))
+    layered->layeredApiCount = 0;
+#endif
 }
 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFeatures(VkPhysicalDevice device, VkPhysicalDeviceFeatures* out) {

@@ -17,15 +17,16 @@
 namespace vitrine::icd {
 namespace {
 
-/// Writes one value of a result in 32 or 64 bits; values that do not fit in 32 saturate.
+/// Writes one value of a result in 32 or 64 bits; values that do not fit in 32 saturate, or lose their high bits.
 class ResultWriter {
  public:
-  ResultWriter(std::byte* out, std::size_t size, bool wide) : out_(out), size_(size), wide_(wide) {}
+  ResultWriter(std::byte* out, std::size_t size, bool wide, bool wraps)
+      : out_(out), size_(size), wide_(wide), wraps_(wraps) {}
 
   void put(std::uint64_t value) {
     const std::size_t bytes = wide_ ? 8 : 4;
     if (size_ >= bytes) {
-      const std::uint64_t stored = wide_ ? value : std::min<std::uint64_t>(value, UINT32_MAX);
+      const std::uint64_t stored = wide_ || wraps_ ? value : std::min<std::uint64_t>(value, UINT32_MAX);
       std::memcpy(out_, &stored, bytes);  // little endian: the low word comes first
       out_ += bytes;
       size_ -= bytes;
@@ -40,7 +41,7 @@ class ResultWriter {
  private:
   std::byte* out_;
   std::size_t size_;
-  bool wide_;
+  bool wide_, wraps_;
 };
 
 void write_values(const QueryPool& pool, std::uint32_t query, bool write, ResultWriter& writer) {
@@ -72,6 +73,16 @@ std::shared_ptr<glass::Profile> profile_of(Device& device) {
   return device.profile;
 }
 
+/// "for an unsigned integer query, the 32-bit result value must be equal to the 32 least significant bits of the
+/// equivalent 64-bit result value" (Vulkan 1.4.309, VK_KHR_maintenance7); the reference saturates.
+bool wraps_results([[maybe_unused]] const Device& device) {
+#ifdef VK_KHR_maintenance7
+  return device.features.test(Feature::maintenance7);
+#else
+  return false;
+#endif
+}
+
 }  // namespace
 
 QueryPool::QueryPool(const HostMemory& m, Device& owner, const VkQueryPoolCreateInfo& info)
@@ -79,6 +90,7 @@ QueryPool::QueryPool(const HostMemory& m, Device& owner, const VkQueryPoolCreate
       type(info.queryType),
       statistics(info.pipelineStatistics),
       selected(m),
+      wraps(wraps_results(owner)),
       count(info.queryCount),
       stride(counters_per_query(info.queryType)) {
   const std::size_t counter_bytes = sizeof(*counters) * count * stride;
@@ -115,7 +127,7 @@ VkResult write_query_results(const QueryPool& pool, std::uint32_t first, std::ui
     const bool available = pool.available[first + i].load(std::memory_order_acquire);
     if (!available) result = VK_NOT_READY;
     const bool performance = pool.type == VK_QUERY_TYPE_PERFORMANCE_QUERY_KHR;  // VkPerformanceCounterResultKHR
-    ResultWriter writer(out + offset, size - offset, performance || (flags & VK_QUERY_RESULT_64_BIT));
+    ResultWriter writer(out + offset, size - offset, performance || (flags & VK_QUERY_RESULT_64_BIT), pool.wraps);
     write_values(pool, first + i, available || (flags & VK_QUERY_RESULT_PARTIAL_BIT), writer);
     if (flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT) writer.put(available);
   }

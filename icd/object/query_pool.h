@@ -19,6 +19,7 @@ struct QueryPool : Object<VkQueryPool, VK_OBJECT_TYPE_QUERY_POOL> {
   VkQueryType type;
   VkQueryPipelineStatisticFlags statistics;  ///< enabled ones: the values a result consists of
   Vector<std::uint32_t> selected;            ///< of performance queries: the counters that a result consists of
+  bool wraps;                                ///< results of 32 bits are the low ones of 64; else they saturate
   std::shared_ptr<glass::Profile> profile;   ///< of performance queries: what they read
   std::uint32_t count;
   std::uint32_t stride;  ///< counters per query: all statistics in bit order; written and needed primitives;

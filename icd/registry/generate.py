@@ -17,6 +17,8 @@ import vkxml
 # Members that got another name when their structure became core.
 CORE_NAMES = {"subgroupSupportedStages": "supportedStages", "subgroupSupportedOperations": "supportedOperations",
               "subgroupQuadOperationsInAllStages": "quadOperationsInAllStages"}
+# Structures of properties that hold an array of the application's: icd/api/physical_device.cpp fills them.
+WRITTEN_BY_HAND = {"VkPhysicalDeviceLayeredApiPropertiesListKHR"}
 BANNER = "// Generated from vk.xml and manifest/ by icd/registry/generate.py.\n"
 
 
@@ -231,6 +233,8 @@ namespace vitrine::icd::entry {{
         for struct in self.registry.structs.values():
             is_core = struct.name == "VkPhysicalDeviceProperties"
             if not is_core and "VkPhysicalDeviceProperties2" not in struct.extends or not self.available(struct):
+                continue
+            if struct.name in WRITTEN_BY_HAND:
                 continue
             start = "" if is_core else f".sType = {struct.stype}, .pNext = nullptr, "
             name = "kClaimed" + struct.name.removeprefix("Vk")

@@ -87,7 +87,9 @@ StepMapping::StepMapping(const Scene& scene, const Step& step)
 }
 
 void LocalReadDevice::make_device() {
-  auto local = make_struct<VkPhysicalDeviceDynamicRenderingLocalReadFeaturesKHR>();
+  auto maintenance = make_struct<VkPhysicalDeviceMaintenance7FeaturesKHR>();
+  maintenance.maintenance7 = VK_TRUE;
+  auto local = make_struct<VkPhysicalDeviceDynamicRenderingLocalReadFeaturesKHR>(&maintenance);
   local.dynamicRenderingLocalRead = VK_TRUE;
   auto ordered = make_struct<VkPhysicalDeviceRasterizationOrderAttachmentAccessFeaturesEXT>(&local);
   ordered.rasterizationOrderColorAttachmentAccess = VK_TRUE;
@@ -102,6 +104,7 @@ void LocalReadDevice::make_device() {
   auto features = make_struct<VkPhysicalDeviceFeatures2>(&rendering);
   features.features.sampleRateShading = features.features.independentBlend = VK_TRUE;
   const char* const names[] = {VK_KHR_DYNAMIC_RENDERING_LOCAL_READ_EXTENSION_NAME,
+                               VK_KHR_MAINTENANCE_7_EXTENSION_NAME,
                                VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
                                VK_KHR_DEPTH_STENCIL_RESOLVE_EXTENSION_NAME,
                                VK_KHR_CREATE_RENDERPASS_2_EXTENSION_NAME,
@@ -501,6 +504,7 @@ std::vector<LocalReadDevice::Contents> LocalReadDevice::as_rendering(const Scene
     for (const Target& target : targets) to_layout(commands, scene, target);
     auto begin = make_struct<VkRenderingInfo>();
     if (scene.in_secondaries) begin.flags = VK_RENDERING_CONTENTS_SECONDARY_COMMAND_BUFFERS_BIT;
+    if (scene.draws_inline_too) begin.flags |= VK_RENDERING_CONTENTS_INLINE_BIT_KHR;
     begin.renderArea = {{0, 0}, kSceneSize};
     begin.layerCount = scene.view_mask ? 1 : scene.layers;
     begin.viewMask = scene.view_mask;
@@ -512,16 +516,16 @@ std::vector<LocalReadDevice::Contents> LocalReadDevice::as_rendering(const Scene
     VK_CALL(CmdBeginRenderingKHR)(commands, &begin);
     for (std::size_t i = 0; i < scene.steps.size(); ++i) {
       const Step& step = scene.steps[i];
-      const VkCommandBuffer to = scene.in_secondaries ? make_secondary(scene, step) : commands;
+      const bool secondary = scene.in_secondaries && (i % 2 == 0 || !scene.draws_inline_too);
+      const VkCommandBuffer to = secondary ? make_secondary(scene, step) : commands;
       if (i && !scene.lacks_barriers) barrier(to);
-      // What is cleared, the mapping before can reach.
       const StepMapping mapping(scene, step);
-      if (!scene.in_secondaries) {
+      if (!secondary) {
         VK_CALL(CmdSetRenderingAttachmentLocationsKHR)(commands, &mapping.attachments);
         VK_CALL(CmdSetRenderingInputAttachmentIndicesKHR)(commands, &mapping.inputs);
       }
       draw_step(to, scene, step, make_pipeline(scene, i, VK_NULL_HANDLE), make_set(scene, step, targets), false);
-      if (!scene.in_secondaries) continue;
+      if (!secondary) continue;
       EXPECT_EQ(VK_CALL(EndCommandBuffer)(to), VK_SUCCESS);
       VK_CALL(CmdExecuteCommands)(commands, 1, &to);
     }

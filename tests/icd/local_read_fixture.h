@@ -37,6 +37,7 @@ struct Scene {
   // of dynamic rendering alone
   bool unnamed_depth = false;  ///< depth is the input attachment without an index
   bool as_libraries = false, in_secondaries = false;
+  bool draws_inline_too = false;  ///< every other step is in no secondary command buffer
   bool lacks_barriers = false;
   VkImageLayout layout = VK_IMAGE_LAYOUT_RENDERING_LOCAL_READ_KHR;
 

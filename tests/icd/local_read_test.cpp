@@ -111,6 +111,8 @@ TEST_F(LocalRead, LibrariesAndSecondariesBringTheirMappings) {
   expect_same(scene);
   scene.in_secondaries = true;
   expect_same(scene);
+  scene.draws_inline_too = true;  // VK_KHR_maintenance7
+  expect_same(scene);
 }
 
 TEST_F(LocalRead, BarriersLetAnAttachmentBeReadWhileItIsDrawnTo) {

@@ -37,9 +37,10 @@ TEST_F(NewerNames, AreOfferedWhereTheHeadersKnowThem) {
   for (const std::string name :
        {"VK_KHR_calibrated_timestamps", "VK_KHR_compute_shader_derivatives", "VK_KHR_depth_clamp_zero_one",
         "VK_KHR_dynamic_rendering_local_read", "VK_KHR_index_type_uint8", "VK_KHR_line_rasterization",
-        "VK_KHR_load_store_op_none", "VK_KHR_maintenance5", "VK_KHR_maintenance6", "VK_KHR_map_memory2",
-        "VK_KHR_shader_expect_assume", "VK_KHR_shader_float_controls2", "VK_KHR_shader_maximal_reconvergence",
-        "VK_KHR_shader_quad_control", "VK_KHR_shader_subgroup_rotate", "VK_KHR_vertex_attribute_divisor"}) {
+        "VK_KHR_load_store_op_none", "VK_KHR_maintenance5", "VK_KHR_maintenance6", "VK_KHR_maintenance7",
+        "VK_KHR_map_memory2", "VK_KHR_shader_expect_assume", "VK_KHR_shader_float_controls2",
+        "VK_KHR_shader_maximal_reconvergence", "VK_KHR_shader_quad_control", "VK_KHR_shader_subgroup_rotate",
+        "VK_KHR_vertex_attribute_divisor"}) {
     const bool is_offered = std::any_of(offered.begin(), offered.end(),
                                         [&](const VkExtensionProperties& e) { return name == e.extensionName; });
     EXPECT_EQ(is_offered, VK_HEADER_VERSION >= 309) << name;
