@@ -22,7 +22,7 @@ Suggests: libxcb1, libxcb-shm0, libwayland-client0, vulkan-validationlayers
 Section: libs
 Priority: optional
 Description: Vulkan device in software that shows what happens inside
- Vitrine is a Vulkan 1.3 driver that runs without a GPU: an interpreter of
+ Vitrine is a Vulkan 1.4 driver that runs without a GPU: an interpreter of
  SPIR-V over wide SIMD, a clipper and a rasterizer. Its pixels are those of
  Mesa's lavapipe bit by bit and depend neither on threads nor on the CPU.
  .
