@@ -5,7 +5,7 @@ usage: profiles.py [--device FILE] [--only PATTERN] [--expect PROFILE=COUNT ...]
 
 PROFILES_JSON: files of the Vulkan Profiles schema (Khronos' and LunarG's are in the repository Vulkan-Profiles, the
 folder profiles/). --device: what `vulkaninfo --json` wrote; without it vulkaninfo is run on the drivers that the loader
-finds. A file says nothing of instances, whose extensions then count as there. How a limit is compared (more, less, all bits, equal) says the attribute limittype of vk.xml.
+finds, and the loader for features that an older one does not know (loader.py). A file says nothing of instances, whose extensions then count as there. How a limit is compared (more, less, all bits, equal) says the attribute limittype of vk.xml.
 
 Prints the lacking items and a line a profile. Ends with 1 if a count is not the expected one (of a profile that no
 --expect names nothing is expected), with 2 if something cannot be read.
@@ -20,6 +20,8 @@ import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree as ElementTree
+
+import loader
 
 # What manifest/pack/newer-headers has unpacked, else what is installed.
 REGISTRIES = [pathlib.Path(__file__).resolve().parents[2] / "build/headers/usr/share/vulkan/registry/vk.xml",
@@ -184,7 +186,16 @@ def ask_vulkaninfo():
         subprocess.run(["vulkaninfo", "--json", "-o", "device.json"], **run)
         summary = subprocess.run(["vulkaninfo", "--summary"], **run).stdout
         told = json.loads(pathlib.Path(folder, "device.json").read_text())["capabilities"]["device"]
-    return Device(told, re.findall(r"^(VK_\w+) +: extension revision", summary, re.MULTILINE))
+    device = Device(told, re.findall(r"^(VK_\w+) +: extension revision", summary, re.MULTILINE))
+    more = loader.Asked(REGISTRY)
+    device.features |= more.features
+    for members in more.numbers.values():
+        device.members.update({m: value for m, value in members.items() if value and m not in device.members})
+    for struct in device.structures.values():
+        for member in ("supportedOperations", "subgroupSupportedOperations"):
+            if member in struct:
+                struct[member] = sorted({*struct[member], *more.operations})
+    return device
 
 
 def main():

@@ -1,14 +1,19 @@
 #!/usr/bin/env python3
-"""The profile checker on a made-up device: what is lacking is found, what is there is not.
+"""The profile checker on a made-up device: what is lacking is found, what is there is not. And what it asks the loader for,
+on the driver that VK_DRIVER_FILES names, if it names one.
 
 usage: profiles_test.py
 """
 import json
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
+
+import loader
+import profiles
 
 CHECKER = pathlib.Path(__file__).with_name("profiles.py")
 
@@ -106,6 +111,19 @@ class Profiles(unittest.TestCase):
         lacks = {"extensions": {"VK_KHR_swapchain": 1}}
         self.assertEqual(self.check(lacks, arguments=["--expect", "VP_test=1"])[1], 0)
         self.assertEqual(self.check(lacks, arguments=["--expect", "VP_test=0"])[1], 1)
+
+
+@unittest.skipUnless(os.environ.get("VK_DRIVER_FILES"), "VK_DRIVER_FILES names no driver")
+class Loader(unittest.TestCase):
+    def test_the_device_is_asked_for_what_the_registry_knows(self):
+        asked = loader.Asked(profiles.REGISTRY)
+        self.assertLessEqual({"multiview", "dynamicRendering", "timelineSemaphore", "descriptorIndexing"}, asked.features)
+        self.assertNotIn("meshShader", asked.features)
+        self.assertEqual(asked.numbers["VkPhysicalDeviceMultiviewProperties"]["maxMultiviewViewCount"], 6)
+        self.assertLessEqual({"VK_SUBGROUP_FEATURE_BASIC_BIT", "VK_SUBGROUP_FEATURE_QUAD_BIT"}, asked.operations)
+        if "VkPhysicalDeviceVulkan14Properties" in profiles.REGISTRY.read_text():
+            self.assertLessEqual({"pushDescriptor", "shaderFloatControls2", "dynamicRenderingLocalRead"}, asked.features)
+            self.assertIn("VK_SUBGROUP_FEATURE_ROTATE_CLUSTERED_BIT", asked.operations)
 
 
 if __name__ == "__main__":
