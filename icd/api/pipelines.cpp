@@ -210,7 +210,7 @@ VkResult create_graphics_pipeline(Device& device, PipelineCache* cache, const Vk
   } else {
     if (!compile_graphics(compiler, info, stages_of(parts), *pipeline)) return compiler.failure();
     pipeline->library_stages.clear();
-    if (pipeline->dynamic.none()) apply_color_writes(pipeline->state, pipeline->color_writes);
+    if (pipeline->dynamic.none()) leave_unnamed(*pipeline, pipeline->color_writes, pipeline->state);
   }
   compiler.finish();
   *out = to_handle(pipeline.release());

@@ -35,8 +35,9 @@ struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   ColorWrites color_writes = kAllColorWrites;
   bool clip_follows_clamp = true;  ///< depth clipping is off where depth clamping is on
   VertexStreams streams{};
-  std::uint32_t live_colors = 0;  ///< bit i: there is a colour attachment i
-  ColorLocations locations;       ///< of dynamic rendering's
+  std::uint32_t live_colors = 0;              ///< bit i: there is a colour attachment i
+  bool has_depth = true, has_stencil = true;  ///< of dynamic rendering, whether their formats are named
+  ColorLocations locations;                   ///< of dynamic rendering's
   /// Of a library: the parts that it has, and its stages, not yet compiled.
   VkGraphicsPipelineLibraryFlagsEXT parts = 0;
   Vector<KeptStage> library_stages;
@@ -64,6 +65,10 @@ struct Subpass;
 /// Fills the state of `parts` from the create info; `subpass` tells which attachments there are.
 void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& info, const Subpass& subpass,
                        VkGraphicsPipelineLibraryFlagsEXT parts);
+
+/// Lets state that is complete leave alone what the pipeline names no format for, though it may be there to be drawn to
+/// (Vulkan 1.4.309, VK_EXT_dynamic_rendering_unused_attachments). `writes`: by colour attachment.
+void leave_unnamed(const Pipeline& pipeline, ColorWrites writes, raster::State& state);
 
 /// The parts that a create info itself has: all, unless it makes or links libraries.
 VkGraphicsPipelineLibraryFlagsEXT own_parts(const VkGraphicsPipelineCreateInfo& info);

@@ -30,6 +30,8 @@ void link_library(Pipeline& pipeline, const Pipeline& library) {
     pipeline.color_writes = library.color_writes;
     pipeline.live_colors = library.live_colors;
     pipeline.locations = library.locations;
+    pipeline.has_depth = library.has_depth;
+    pipeline.has_stencil = library.has_stencil;
   }
   pipeline.captured |= library.captured;
   pipeline.state.ordered_attachment_access |= library.state.ordered_attachment_access;

@@ -252,8 +252,19 @@ void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& i
   if (shader && has_depth_stencil(info, subpass, parts)) fill_depth_stencil(state, *info.pDepthStencilState);
   if (!output) return;
   pipeline.live_colors = live_colors(subpass);
-  if (!info.renderPass) pipeline.locations = color_locations(info.pNext);
+  if (!info.renderPass) {
+    pipeline.locations = color_locations(info.pNext);
+    const auto* rendering = find_in_chain<VkPipelineRenderingCreateInfo>(info.pNext);
+    pipeline.has_depth = rendering && rendering->depthAttachmentFormat != VK_FORMAT_UNDEFINED;
+    pipeline.has_stencil = rendering && rendering->stencilAttachmentFormat != VK_FORMAT_UNDEFINED;
+  }
   if (pipeline.live_colors && info.pColorBlendState) fill_blend(pipeline, *info.pColorBlendState);
+}
+
+void leave_unnamed(const Pipeline& pipeline, ColorWrites writes, raster::State& state) {
+  apply_color_writes(state, writes & pipeline.live_colors);
+  if (!pipeline.has_depth) state.depth_test = state.depth_write = state.depth_bounds_test = false;
+  if (!pipeline.has_stencil) state.stencil_test = false;
 }
 
 }  // namespace vitrine::icd

@@ -38,7 +38,8 @@ const raster::State* resolve_state(ReplayState& state) {
     if (dynamic.test(which)) copy_state(values.state, which, *out);
   }
   if (pipeline.clip_follows_clamp) out->depth_clip = !out->depth_clamp;
-  apply_color_writes(*out, dynamic.test(DynamicState::kColorWriteEnable) ? values.color_writes : pipeline.color_writes);
+  const bool writes = dynamic.test(DynamicState::kColorWriteEnable);
+  leave_unnamed(pipeline, writes ? values.color_writes : pipeline.color_writes, *out);
   if (located) locate_blending(pipeline.locations, *out);
   return out;
 }

@@ -32,7 +32,9 @@ class Maintenance5Device : public DeviceTest {
     nested.nestedCommandBufferSimultaneousUse = VK_TRUE;
     auto loops = make_struct<VkPhysicalDeviceAttachmentFeedbackLoopDynamicStateFeaturesEXT>(&nested);
     loops.attachmentFeedbackLoopDynamicState = VK_TRUE;
-    auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>(&loops);
+    auto unused = make_struct<VkPhysicalDeviceDynamicRenderingUnusedAttachmentsFeaturesEXT>(&loops);
+    unused.dynamicRenderingUnusedAttachments = VK_TRUE;
+    auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>(&unused);
     robustness.nullDescriptor = VK_TRUE;
     auto rendering = make_struct<VkPhysicalDeviceDynamicRenderingFeatures>(&robustness);
     rendering.dynamicRendering = VK_TRUE;
@@ -48,6 +50,7 @@ class Maintenance5Device : public DeviceTest {
                                  VK_EXT_DEPTH_BIAS_CONTROL_EXTENSION_NAME,
                                  VK_EXT_IMAGE_SLICED_VIEW_OF_3D_EXTENSION_NAME,
                                  VK_EXT_NESTED_COMMAND_BUFFER_EXTENSION_NAME,
+                                 VK_EXT_DYNAMIC_RENDERING_UNUSED_ATTACHMENTS_EXTENSION_NAME,
                                  VK_EXT_ATTACHMENT_FEEDBACK_LOOP_LAYOUT_EXTENSION_NAME,
                                  VK_EXT_ATTACHMENT_FEEDBACK_LOOP_DYNAMIC_STATE_EXTENSION_NAME};
     const float priority = 1;

@@ -264,6 +264,85 @@ TEST_F(NestedCommands, AreAsDeepAsIsClaimed) {
   VK_CALL(DestroyCommandPool)(device, pool, nullptr);
 }
 
+// ---- VK_EXT_dynamic_rendering_unused_attachments
+
+class UnusedAttachments : public Maintenance5Draws {
+ protected:
+  /// Draws with a pipeline for `format`, in a rendering whose attachments are these, cleared to 1 and to the depth
+  /// 0.25.
+  void draw_into(const Draw& draw, VkImageView color, VkImageView depth) {
+    const VkPipeline pipeline = make_pipeline(draw);
+    run([&](VkCommandBuffer commands) {
+      auto color_attachment = make_struct<VkRenderingAttachmentInfo>(), depth_attachment = color_attachment;
+      color_attachment.imageView = color;
+      depth_attachment.imageView = depth;
+      for (VkRenderingAttachmentInfo* a : {&color_attachment, &depth_attachment}) {
+        a->imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+        a->loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+      }
+      color_attachment.clearValue.color = {{1, 1, 1, 1}};
+      depth_attachment.clearValue.depthStencil = {0.25f, 0};
+      auto info = make_struct<VkRenderingInfo>();
+      info.renderArea = {{0, 0}, {kSide, kSide}};
+      info.layerCount = 1;
+      info.colorAttachmentCount = 1;
+      info.pColorAttachments = &color_attachment;
+      info.pDepthAttachment = &depth_attachment;
+      VK_CALL(CmdBeginRenderingKHR)(commands, &info);
+      VK_CALL(CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+      VK_CALL(CmdBindDescriptorSets)(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set, 0, nullptr);
+      const VkColorComponentFlags all = 0xf;
+      VK_CALL(CmdSetColorWriteMaskEXT)(commands, 0, 1, &all);
+      VK_CALL(CmdSetDepthTestEnableEXT)(commands, VK_TRUE);
+      VK_CALL(CmdSetDepthWriteEnableEXT)(commands, VK_TRUE);
+      VK_CALL(CmdSetDepthCompareOpEXT)(commands, VK_COMPARE_OP_LESS);
+      VK_CALL(CmdDraw)(commands, 3, 1, 0, 0);
+      VK_CALL(CmdEndRenderingKHR)(commands);
+    });
+    VK_CALL(DestroyPipeline)(device, pipeline, nullptr);
+  }
+  static Draw writer(VkFormat format, std::vector<VkDynamicState> dynamic) {
+    Draw draw;
+    draw.fragment =
+        "layout(set = 0, binding = 0) buffer B { uint words[]; };\n"
+        "layout(location = 0) out vec4 c;\nvoid main() { atomicAdd(words[0], 1u); c = vec4(0, 1, 0, 1); }";
+    draw.format = format;
+    draw.dynamic = std::move(dynamic);
+    return draw;
+  }
+};
+
+/// Vulkan 1.4.309, Fragment Output Interface: what the pipeline names no format for is not written.
+TEST_F(UnusedAttachments, AreLeftAloneWhereThePipelineHasNone) {
+  const std::vector<VkDynamicState> dynamic{VK_DYNAMIC_STATE_COLOR_WRITE_MASK_EXT, VK_DYNAMIC_STATE_DEPTH_TEST_ENABLE,
+                                            VK_DYNAMIC_STATE_DEPTH_WRITE_ENABLE, VK_DYNAMIC_STATE_DEPTH_COMPARE_OP};
+  for (const auto& states : {std::vector<VkDynamicState>{}, dynamic}) {
+    const Picture depth = make_picture(VK_IMAGE_TYPE_2D, VK_FORMAT_D32_SFLOAT, {kSide, kSide, 1}, 1,
+                                       VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+    const auto depth_at = [&] {
+      float value;
+      std::memcpy(&value, depth.row(0, 3), sizeof value);
+      return value;
+    };
+    // A pipeline for a colour and no depth: the depth test, which none of its fragments at 0.5 would pass, is none.
+    const Picture drawn = make_picture(VK_IMAGE_TYPE_2D, VK_FORMAT_R8G8B8A8_UNORM, {kSide, kSide, 1}, 1);
+    draw_into(writer(VK_FORMAT_R8G8B8A8_UNORM, states), drawn.view, depth.view);
+    EXPECT_EQ(texel(drawn, 3, 3, 4), 0xff00ff00u);
+    EXPECT_EQ(depth_at(), 0.25f);
+    // One without a colour, too.
+    const Picture left = make_picture(VK_IMAGE_TYPE_2D, VK_FORMAT_R8G8B8A8_UNORM, {kSide, kSide, 1}, 1);
+    draw_into(writer(VK_FORMAT_UNDEFINED, states), left.view, depth.view);
+    EXPECT_EQ(texel(left, 3, 3, 4), 0xffffffffu);
+    EXPECT_EQ(depth_at(), 0.25f);
+  }
+}
+
+TEST_F(UnusedAttachments, MayBeAbsentWhereThePipelineHasThem) {
+  std::memset(results.data, 0, results.size);
+  draw_into(writer(VK_FORMAT_R16G16_SFLOAT, {}), VK_NULL_HANDLE, VK_NULL_HANDLE);
+  EXPECT_EQ(words(1)[0], kSide * kSide) << "its fragments are shaded";
+}
+
 // ---- VK_EXT_attachment_feedback_loop_dynamic_state
 
 using FeedbackLoopState = Maintenance5Draws;
