@@ -16,7 +16,12 @@ int __fxstat(int version, int descriptor, struct stat* out);
 
 namespace {
 
-constexpr int kStatVersion = 1;  // _STAT_VER of x86-64
+// _STAT_VER.
+#ifdef __aarch64__
+constexpr int kStatVersion = 0;
+#else
+constexpr int kStatVersion = 1;
+#endif
 
 struct Search {
   std::uintptr_t pc;

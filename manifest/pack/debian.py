@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Writes what a Debian package has beside the installed files.
 
-usage: debian.py VERSION SECONDS ROOT TREE
+usage: debian.py VERSION SECONDS ARCHITECTURE ROOT TREE SYMBOLS
 
-Control file, copyright, change log (from docs/changelog.md) and what lintian is told, into TREE (usr below it is there).
+Control file, copyright, change log (from docs/changelog.md) and what lintian is told, into TREE (usr below it is there);
+the control file of what debuggers want of it (.debug files are there), into SYMBOLS.
 """
 import email.utils
 import pathlib
@@ -13,7 +14,7 @@ import textwrap
 
 CONTROL = """Package: vitrine
 Version: {version}
-Architecture: amd64
+Architecture: {architecture}
 Maintainer: {maintainer}
 Installed-Size: {size}
 Depends: libc6 (>= 2.31)
@@ -28,6 +29,20 @@ Description: Vulkan device in software that shows what happens inside
  .
  The command vitrine runs programs on it and tells faults of shaders by
  source line, their coverage and counts, hazards, and why a pixel is as it is.
+"""
+# As debhelper writes it.
+SYMBOLS_CONTROL = """Package: vitrine-dbgsym
+Source: vitrine
+Version: {version}
+Auto-Built-Package: debug-symbols
+Architecture: {architecture}
+Maintainer: {maintainer}
+Installed-Size: {size}
+Depends: vitrine (= {version})
+Section: debug
+Priority: optional
+Description: debug symbols for vitrine
+Build-Ids: {ids}
 """
 MAINTAINER = "The Vitrine authors <vitrine@users.noreply.github.com>"
 OVERRIDES = """# One file for all of Debian 11 and newer: the C++ runtime, SPIRV-Tools and zlib are inside (NOTICES.gz).
@@ -48,8 +63,14 @@ def changelog(root, seconds):
     return "\n".join(out)
 
 
+def size_of(tree):
+    """In KiB."""
+    return sum(path.stat().st_size for path in (tree / "usr").rglob("*") if path.is_file() and not path.is_symlink()) // 1024 + 1
+
+
 def main():
-    version, seconds, root, tree = sys.argv[1], int(sys.argv[2]), pathlib.Path(sys.argv[3]), pathlib.Path(sys.argv[4])
+    version, seconds, architecture = sys.argv[1], int(sys.argv[2]), sys.argv[3]
+    root, tree, symbols = map(pathlib.Path, sys.argv[4:7])
     doc = tree / "usr/share/doc/vitrine"
     licence = (root / "LICENSE").read_text().split("\n\n", 2)[2].strip()
     paragraphs = "\n .\n".join(" " + p.replace("\n", "\n ") for p in licence.split("\n\n"))
@@ -59,8 +80,10 @@ def main():
     overrides = tree / "usr/share/lintian/overrides"
     overrides.mkdir(parents=True)
     (overrides / "vitrine").write_text(OVERRIDES)
-    size = sum(path.stat().st_size for path in (tree / "usr").rglob("*") if path.is_file()) // 1024 + 1
-    (tree / "DEBIAN/control").write_text(CONTROL.format(version=version, maintainer=MAINTAINER, size=size))
+    common = {"version": version, "architecture": architecture, "maintainer": MAINTAINER}
+    (tree / "DEBIAN/control").write_text(CONTROL.format(size=size_of(tree), **common))
+    ids = sorted(path.parent.name + path.stem for path in symbols.rglob("*.debug"))
+    (symbols / "DEBIAN/control").write_text(SYMBOLS_CONTROL.format(size=size_of(symbols), ids=" ".join(ids), **common))
 
 
 main()

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """What packed files have inside that others wrote: their notices, and a list in SPDX 2.3.
 
-usage: inside.py VERSION SECONDS NOTICES SPDX [HEADERS]
+usage: inside.py VERSION SECONDS ARCHITECTURE FOLDER HEADERS LIBRARIES
 
-SECONDS since 1970 go into the list as its date, so that two builds give the same file. The versions are those of the
-installed packages; their notices are the copyright files that Debian installs with them. HEADERS: the folder usr/ where
-manifest/pack/newer-headers has unpacked packages, which then are those inside; without it, or empty, none.
+NOTICES and vitrine.spdx.json, into FOLDER. SECONDS since 1970 go into the list as its date, so that two builds give the
+same file. The versions are those of the installed packages; their notices are the copyright files that Debian installs
+with them. HEADERS: the folder usr/ where manifest/pack/newer-headers has unpacked packages, which then are those inside;
+LIBRARIES: where manifest/pack/cross-root has unpacked those of another architecture. Both can be empty.
 """
 import json
 import pathlib
@@ -27,27 +28,38 @@ INSIDE = (
 )
 
 
-def unpacked(headers):
-    """{package: version} of what newer-headers has put there."""
-    if not headers:
-        return {}
-    return dict(row.split()[:2] for row in (headers.parent / "complete").read_text().splitlines())
+def unpacked(listing):
+    """{package: version} of what a script has unpacked and listed."""
+    return dict(row.split()[:2] for row in listing.read_text().splitlines())
 
 
-def version_of(package):
+def sources(architecture, headers, libraries):
+    """[(folder usr/, {package: version})]: the first that has a package has what is inside."""
+    found = []
+    if headers:
+        found.append((pathlib.Path(headers), unpacked(pathlib.Path(headers).parent / "complete")))
+    if libraries:
+        found.append((pathlib.Path(libraries) / "usr", unpacked(pathlib.Path(libraries) / f"architecture-{architecture}")))
+    return found
+
+
+def installed(package):
     return subprocess.run(["dpkg-query", "-W", "-f=${Version}", package], check=True, capture_output=True, text=True).stdout
 
 
 def main():
-    version, seconds, notices, spdx = sys.argv[1], int(sys.argv[2]), sys.argv[3], sys.argv[4]
-    headers = pathlib.Path(sys.argv[5]) if len(sys.argv) > 5 and sys.argv[5] else None
-    newer = unpacked(headers)
+    version, seconds, architecture, folder = sys.argv[1], int(sys.argv[2]), sys.argv[3], pathlib.Path(sys.argv[4])
+    apart = sources(architecture, *sys.argv[5:7])
     text = ["Vitrine has parts of these inside. What follows are the notices that Debian's packages of them have.\n"]
     packages = []
     relations = []
     for package, role in INSIDE:
-        number = newer.get(package) or version_of(package)
-        copyright_file = (headers if package in newer else pathlib.Path("/usr")) / "share/doc" / package / "copyright"
+        # The compiler's own libraries come with the compiler, here one for another architecture.
+        if sys.argv[6] and package.endswith("-12-dev"):
+            package += f"-{architecture}-cross"
+        usr, number = next(((usr, versions[package]) for usr, versions in apart if package in versions), (pathlib.Path("/usr"), None))
+        number = number or installed(package)
+        copyright_file = usr / "share/doc" / package / "copyright"
         text.append(f"\n{'=' * 100}\n{package} {number}: {role}\n{'=' * 100}\n\n{copyright_file.read_text(errors='replace')}")
         packages.append({
             "SPDXID": f"SPDXRef-{package.replace('+', 'p')}", "name": package, "versionInfo": number,
@@ -55,7 +67,7 @@ def main():
             "licenseConcluded": "NOASSERTION", "licenseDeclared": "NOASSERTION", "copyrightText": "NOASSERTION",
             "comment": role,
             "externalRefs": [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
-                              "referenceLocator": f"pkg:deb/debian/{package.replace('+', '%2B')}@{number.replace('+', '%2B')}?arch=amd64"}]})
+                              "referenceLocator": f"pkg:deb/debian/{package.replace('+', '%2B')}@{number.replace('+', '%2B')}?arch={architecture}"}]})
         relations.append({"spdxElementId": "SPDXRef-vitrine", "relationshipType": "CONTAINS",
                           "relatedSpdxElement": packages[-1]["SPDXID"]})
     packages.insert(0, {
@@ -63,8 +75,8 @@ def main():
         "filesAnalyzed": False, "licenseConcluded": "MIT", "licenseDeclared": "MIT",
         "copyrightText": "Copyright (c) 2026 The Vitrine authors"})
     relations.insert(0, {"spdxElementId": "SPDXRef-DOCUMENT", "relationshipType": "DESCRIBES", "relatedSpdxElement": "SPDXRef-vitrine"})
-    pathlib.Path(notices).write_text("".join(text))
-    pathlib.Path(spdx).write_text(json.dumps({
+    (folder / "NOTICES").write_text("".join(text))
+    (folder / "vitrine.spdx.json").write_text(json.dumps({
         "spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT", "name": f"vitrine-{version}",
         "documentNamespace": f"https://spdx.org/spdxdocs/vitrine-{version}-{seconds}",
         "creationInfo": {"created": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(seconds)), "creators": ["Tool: vitrine package"]},

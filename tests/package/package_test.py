@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""What ./package makes: runs where it was unpacked, asks for no newer C library than it says, and is the same twice.
+"""What ./package makes: runs where it was unpacked, asks for no newer C library than it says, has its debug symbols
+apart, passes lintian, and is the same twice. For 64-bit ARM the same, run by QEMU, with the picture of this machine's.
 
-usage: package_test.py ROOT WORK
+usage: package_test.py ROOT WORK [ARCHITECTURE]
 """
+import os
 import pathlib
 import re
 import shutil
@@ -13,53 +15,129 @@ import tarfile
 NEWEST_GLIBC = (2, 31)
 MOST_PACKED, MOST_UNPACKED = 6_000_000, 15_000_000
 PROGRAMS = ("lib/vitrine/libvitrine_icd.so", "bin/vitrine", "bin/vitrine-replay")
+MACHINES = {"amd64": "x86_64", "arm64": "aarch64"}
+# A function of each program that debuggers find, and its file.
+SEEN_BY_DEBUGGERS = {"lib/vitrine/libvitrine_icd.so": ("vk_icdGetInstanceProcAddr", "icd/"), "bin/vitrine": ("main", "glass/cli/main.cpp"),
+                     "bin/vitrine-replay": ("main", "glass/replayer/main.cpp")}
 
 
 def run(*command, **settings):
     return subprocess.run(command, check=True, capture_output=True, text=True, **settings).stdout
 
 
-def pack(root):
-    """The two files' bytes by name."""
-    run(root / "package")
+def pack(root, architecture):
+    """The files' bytes by name."""
+    shutil.rmtree(root / "build/packages", ignore_errors=True)
+    run(root / "package", "--arch", architecture)
     return {path.name: path.read_bytes() for path in (root / "build/packages").iterdir() if path.is_file()}
 
 
-def faults(root, work):
-    first = pack(root)
-    if sorted(pathlib.PurePath(name).suffix for name in first) != [".deb", ".gz"]:
+def faults_of_symbols(tree, tool):
+    """The programs' functions and lines are found, by build-id, in the tree that has both archives."""
+    for program, (function, source) in SEEN_BY_DEBUGGERS.items():
+        known = re.search(r"Build ID: ([0-9a-f]+)", run(tool + "readelf", "-n", tree / program))
+        if not known:
+            yield f"{program} has no build-id"
+            continue
+        if ".symtab" in run(tool + "readelf", "-SW", tree / program):
+            yield f"{program} is not stripped"
+        symbols = tree / "lib/debug/.build-id" / known[1][:2] / f"{known[1][2:]}.debug"
+        if not symbols.is_file():
+            yield f"{program} has no debug symbols of its build-id"
+            continue
+        address = re.search(rf"^([0-9a-f]+) T {function}$", run(tool + "nm", symbols), re.M)
+        place = run(tool + "addr2line", "-fe", symbols, address[1]).split() if address else []
+        if not place or not place[0].startswith(function) or f"/usr/src/vitrine/{source}" not in os.path.normpath(place[1]):
+            yield f"{program}: {function} is at {place}"
+
+
+def faults_of_gdb(tree):
+    """gdb, too, finds the driver's in the folder that it is told, where there is a gdb."""
+    if not shutil.which("gdb"):
+        return
+    said = run("gdb", "-nx", "-batch", "-iex", f"set debug-file-directory {tree / 'lib/debug'}", "-ex", "info line vk_icdGetInstanceProcAddr",
+               tree / PROGRAMS[0])
+    if not re.search(r'Line \d+ of ".*icd/edge/loader.cpp"', said):
+        yield f"gdb finds no line of the driver: {said}"
+
+
+def faults_of_debs(root, version, architecture):
+    packages = root / "build/packages"
+    files = [packages / f"{name}_{version}_{architecture}.deb" for name in ("vitrine", "vitrine-dbgsym")]
+    for file in files:
+        if run("dpkg-deb", "--field", file, "Architecture").strip() != architecture:
+            yield f"{file.name} is for another architecture"
+    if run("dpkg-deb", "--field", files[1], "Depends").strip() != f"vitrine (= {version})":
+        yield f"{files[1].name} is not that of its package"
+    if shutil.which("lintian"):
+        told = subprocess.run(["lintian", "--allow-root", "--fail-on", "error,warning", *files], capture_output=True, text=True)
+        if told.returncode:
+            yield f"lintian: {told.stdout}{told.stderr}"
+
+
+def faults_of_running(root, tree, architecture):
+    """The command finds its driver; for ARM the demo's picture is this machine's."""
+    if architecture == "amd64":
+        summary = run(tree / "bin/vitrine", "run", "vulkaninfo", "--summary", cwd="/")
+        if "deviceName         = Vitrine" not in summary:
+            yield f"the unpacked command runs on another device: {summary}"
+        return
+    demo = root / "build/arm64/tests/vitrine_demo"
+    if not shutil.which("qemu-aarch64-static") or not demo.is_file():
+        print(f"not run: {demo} or qemu-aarch64-static is missing")
+        return
+    pictures = []
+    for program, machine, folder in ((["qemu-aarch64-static", "-L", root / "build/arm64-root", demo], "aarch64", tree / "lib/vitrine"),
+                                     ([root / "build/release/tests/vitrine_demo"], "x86_64", root / "build/release/icd")):
+        picture = tree.parent / f"{machine}.png"
+        run(*program, picture, env=os.environ | {"VK_DRIVER_FILES": str(folder / f"vitrine_icd.{machine}.json")})
+        pictures.append(picture.read_bytes())
+    if pictures[0] != pictures[1]:
+        yield "the demo's picture is another one on ARM"
+
+
+def faults(root, work, architecture):
+    machine, tool = MACHINES[architecture], "aarch64-linux-gnu-" if architecture == "arm64" else ""
+    first = pack(root, architecture)
+    version = re.search(r"project\(vitrine VERSION ([0-9.]+)", (root / "CMakeLists.txt").read_text())[1]
+    archive, debug = f"vitrine-{version}-{machine}.tar.gz", f"vitrine-{version}-{machine}-debug.tar.gz"
+    if sorted(first) != sorted([archive, debug, f"vitrine_{version}_{architecture}.deb", f"vitrine-dbgsym_{version}_{architecture}.deb"]):
         yield f"unexpected files: {sorted(first)}"
-    name = next(name for name in first if name.endswith(".tar.gz"))
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
-    with tarfile.open(root / "build/packages" / name) as archive:
-        archive.extractall(work)
-    tree = work / name.removesuffix(".tar.gz")
+    tree = work / archive.removesuffix(".tar.gz")
+    with tarfile.open(root / "build/packages" / archive) as packed:
+        packed.extractall(work)
     unpacked = sum(path.stat().st_size for path in tree.rglob("*") if path.is_file())
-    if len(first[name]) > MOST_PACKED or unpacked > MOST_UNPACKED:
-        yield f"{len(first[name])} bytes, {unpacked} unpacked"
+    if len(first[archive]) > MOST_PACKED or unpacked > MOST_UNPACKED:
+        yield f"{len(first[archive])} bytes, {unpacked} unpacked"
+    with tarfile.open(root / "build/packages" / debug) as packed:
+        packed.extractall(work)
     for program in PROGRAMS:
-        for version in re.findall(r"GLIBC_([0-9.]+)", run("objdump", "-T", tree / program)):
-            if tuple(map(int, version.split("."))) > NEWEST_GLIBC:
-                yield f"{program} wants glibc {version}"
-        if "RUNPATH" in (dynamic := run("readelf", "-d", tree / program)) or "RPATH" in dynamic:
+        for wanted in re.findall(r"GLIBC_([0-9.]+)", run(tool + "objdump", "-T", tree / program)):
+            if tuple(map(int, wanted.split("."))) > NEWEST_GLIBC:
+                yield f"{program} wants glibc {wanted}"
+        if "RUNPATH" in (dynamic := run(tool + "readelf", "-d", tree / program)) or "RPATH" in dynamic:
             yield f"{program} has a path for libraries"
         if "libstdc++" in dynamic:
             yield f"{program} wants a C++ runtime"
-    summary = run(tree / "bin/vitrine", "run", "vulkaninfo", "--summary", cwd="/")
-    if "deviceName         = Vitrine" not in summary:
-        yield f"the unpacked command runs on another device: {summary}"
+    yield from faults_of_symbols(tree, tool)
+    if not tool:
+        yield from faults_of_gdb(tree)
+    yield from faults_of_debs(root, version, architecture)
+    yield from faults_of_running(root, tree, architecture)
     flags = run("pkg-config", "--variable=icd_manifest", "vitrine", env={"PKG_CONFIG_PATH": str(tree / "share/pkgconfig"), "PATH": "/usr/bin:/bin"})
     if not pathlib.Path(flags.strip()).is_file():
         yield f"pkg-config names {flags}"
-    shutil.rmtree(root / "build/portable")
-    for name, contents in pack(root).items():
+    shutil.rmtree(root / "build" / ("portable-arm64" if tool else "portable"))
+    for name, contents in pack(root, architecture).items():
         if first.get(name) != contents:
             yield f"{name} is another file the second time"
 
 
 def main():
-    found = list(faults(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])))
+    architecture = sys.argv[3] if len(sys.argv) > 3 else "amd64"
+    found = list(faults(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), architecture))
     print("\n".join(f"FAULT {fault}" for fault in found) or "packages: as they should be")
     return 1 if found else 0
 
