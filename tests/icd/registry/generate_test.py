@@ -131,12 +131,17 @@ class Tables(unittest.TestCase):
             self.assertLessEqual(set(first) - set(rows), OF_NV_EXTENSIONS)
             self.assertEqual({n: rows[n] for n in first if n in rows}, {n: t for n, t in first.items() if n in rows})
 
-    def test_commands_that_only_others_have_come_with_extensions_that_only_they_have(self):
+    def test_a_registry_claims_no_version_that_it_does_not_know(self):
+        for generator in self.known:
+            self.assertIn(generator.version, generator.registry.core_versions)
+            self.assertLessEqual(generator.version, vkxml.version_number(generator.claims.api_version))
+
+    def test_commands_that_only_others_have_come_with_extensions_or_versions_that_only_they_have(self):
         first = self.known[0]
         for other in self.known[1:]:
             for name in set(self.commands(other)) - set(self.commands(first)):
                 gates = [g for g in other.registry.commands[name].gates if other.holds(g)]
-                self.assertFalse([g for g in gates if set(g.extensions) <= first.claimed], name)
+                self.assertFalse([g for g in gates if g.version <= first.version and set(g.extensions) <= first.claimed], name)
 
     def test_structures_have_the_same_names(self):
         def names(generator):
