@@ -178,10 +178,14 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice device,
   out->properties = physical_device.properties;
 #ifdef VK_EXT_host_image_copy
   LayoutLists<VkPhysicalDeviceHostImageCopyPropertiesEXT> layouts(out->pNext);
+#ifdef VK_API_VERSION_1_4
   LayoutLists<VkPhysicalDeviceVulkan14Properties> core_layouts(out->pNext);
+#endif
   write_property_chain(out->pNext);
   layouts.write();
+#ifdef VK_API_VERSION_1_4
   core_layouts.write();
+#endif
 #else
   write_property_chain(out->pNext);
 #endif
