@@ -50,8 +50,8 @@ def plain_structs(root, extended, kinds):
 
 
 class Asked:
-    """`features`: names of those that are supported; `numbers`: {structure: {member: number or boolean}} of properties;
-    `operations`: names of the bits of subgroups' operations."""
+    """`version`: of the device, packed; `features`: names of those that are supported; `numbers`: {structure: {member: number
+    or boolean}} of properties; `operations`: names of the bits of subgroups' operations."""
 
     def __init__(self, registry):
         root = ElementTree.parse(registry).getroot()
@@ -100,6 +100,7 @@ class Asked:
         asked = self.structure(SUBGROUP_PROPERTIES, 4)
         whole = self.structure(PROPERTIES_2, PROPERTIES_BYTES // 4, asked)
         self.vulkan.vkGetPhysicalDeviceProperties2(self.device, whole)
+        self.version = whole[HEADER // 4]
         return {value.get("name") for value in root.iter("enum")
                 if value.get("bitpos") and value.get("name").startswith("VK_SUBGROUP_FEATURE_")
                 and asked[HEADER // 4 + 2] >> int(value.get("bitpos")) & 1}
