@@ -133,28 +133,13 @@ void write_list(std::uint32_t& count, VkImageLayout* out) {
   if (out) std::copy_n(kHostCopyLayouts.begin(), count, out);
 }
 
-/// Lists of layouts in a structure of properties: their counts and pointers are the application's, and are kept while
-/// the rest of the structure is written.
+/// Into the lists of a structure of properties.
 template <class T>
-class LayoutLists {
- public:
-  explicit LayoutLists(void* chain) : out_(find_in_out_chain<T>(chain)) {
-    if (out_) asked_ = *out_;
-  }
-  void write() {
-    if (!out_) return;
-    out_->copySrcLayoutCount = asked_.copySrcLayoutCount;
-    out_->copyDstLayoutCount = asked_.copyDstLayoutCount;
-    out_->pCopySrcLayouts = asked_.pCopySrcLayouts;
-    out_->pCopyDstLayouts = asked_.pCopyDstLayouts;
-    write_list(out_->copySrcLayoutCount, out_->pCopySrcLayouts);
-    write_list(out_->copyDstLayoutCount, out_->pCopyDstLayouts);
-  }
-
- private:
-  T* out_;
-  T asked_{};
-};
+void write_layouts(T* out) {
+  if (!out) return;
+  write_list(out->copySrcLayoutCount, out->pCopySrcLayouts);
+  write_list(out->copyDstLayoutCount, out->pCopyDstLayouts);
+}
 #endif
 
 }  // namespace
@@ -176,19 +161,7 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties(VkPhysicalDevice device, 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice device, VkPhysicalDeviceProperties2* out) {
   const PhysicalDevice& physical_device = from_handle<PhysicalDevice>(device);
   out->properties = physical_device.properties;
-#ifdef VK_EXT_host_image_copy
-  LayoutLists<VkPhysicalDeviceHostImageCopyPropertiesEXT> layouts(out->pNext);
-#ifdef VK_API_VERSION_1_4
-  LayoutLists<VkPhysicalDeviceVulkan14Properties> core_layouts(out->pNext);
-#endif
   write_property_chain(out->pNext);
-  layouts.write();
-#ifdef VK_API_VERSION_1_4
-  core_layouts.write();
-#endif
-#else
-  write_property_chain(out->pNext);
-#endif
   if (auto* ids = find_in_out_chain<VkPhysicalDeviceIDProperties>(out->pNext)) write_identity(physical_device, *ids);
   if (auto* core = find_in_out_chain<VkPhysicalDeviceVulkan11Properties>(out->pNext);
       core && physical_device.properties.apiVersion >= VK_API_VERSION_1_2) {
@@ -199,8 +172,14 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice device,
       core && physical_device.properties.apiVersion >= VK_API_VERSION_1_2) {
     write_driver_info(*core);
   }
+#ifdef VK_EXT_host_image_copy
+  write_layouts(find_in_out_chain<VkPhysicalDeviceHostImageCopyPropertiesEXT>(out->pNext));
+#endif
+#ifdef VK_API_VERSION_1_4
+  write_layouts(find_in_out_chain<VkPhysicalDeviceVulkan14Properties>(out->pNext));
+#endif
 #ifdef VK_KHR_maintenance7
-  // Nothing lies underneath; the array is the application's.
+  // Nothing lies underneath.
   if (auto* layered = find_in_out_chain<VkPhysicalDeviceLayeredApiPropertiesListKHR>(out->pNext))
     layered->layeredApiCount = 0;
 #endif

@@ -17,8 +17,6 @@ import vkxml
 # Members that got another name when their structure became core.
 CORE_NAMES = {"subgroupSupportedStages": "supportedStages", "subgroupSupportedOperations": "supportedOperations",
               "subgroupQuadOperationsInAllStages": "quadOperationsInAllStages"}
-# Structures of properties that hold an array of the application's: icd/api/physical_device.cpp fills them.
-WRITTEN_BY_HAND = {"VkPhysicalDeviceLayeredApiPropertiesListKHR"}
 BANNER = "// Generated from vk.xml and manifest/ by icd/registry/generate.py.\n"
 
 
@@ -217,8 +215,12 @@ namespace vitrine::icd::entry {{
 
     def _initializer(self, struct):
         parts = []
+        of_application = self._of_application(struct)
         for member in struct.members:
             if member.name in ("sType", "pNext"):
+                continue
+            if member.name in of_application:
+                parts.append(f".{member.name} = {{}}")
                 continue
             if struct.name == "VkPhysicalDeviceProperties" and member.name == "apiVersion":
                 value = f"VK_MAKE_API_VERSION(0, {self.version >> 22}, {self.version >> 12 & 0x3ff}, VK_HEADER_VERSION)"
@@ -234,14 +236,25 @@ namespace vitrine::icd::entry {{
             is_core = struct.name == "VkPhysicalDeviceProperties"
             if not is_core and "VkPhysicalDeviceProperties2" not in struct.extends or not self.available(struct):
                 continue
-            if struct.name in WRITTEN_BY_HAND:
-                continue
             start = "" if is_core else f".sType = {struct.stype}, .pNext = nullptr, "
             name = "kClaimed" + struct.name.removeprefix("Vk")
             constants.append(f"inline constexpr {struct.name} {name} = {{{start}{self._initializer(struct)}}};\n")
             if not is_core:
-                structs.append(f"    {{{struct.stype}, sizeof({struct.name}), &{name}}},\n")
+                kept = self._of_application(struct)
+                first, end = ((f"offsetof({struct.name}, {kept[0]})", f"offsetof({struct.name}, {kept[-1]}) + "
+                               f"sizeof({struct.name}::{kept[-1]})") if kept else [f"sizeof({struct.name})"] * 2)
+                structs.append(f"    {{{struct.stype}, sizeof({struct.name}), &{name}, {first}, {end}}},\n")
         return constants, structs
+
+    @staticmethod
+    def _of_application(struct):
+        """The members that say where lists go and how much room there is: names, which follow each other."""
+        names = [m.name for m in struct.members]
+        kept = {n for m in struct.members if m.length for n in (m.name, m.length)}
+        together = [n for n in names if n in kept]
+        if together and names[names.index(together[0]):][:len(together)] != together:
+            fail(f"{struct.name} has members between those of the application")
+        return together
 
     def properties(self):
         return f"""#pragma once

@@ -85,9 +85,12 @@ void write_property_chain(void* chain) {
   for (VkBaseOutStructure& item : out_chain(chain)) {
     const PropertyStruct* structure = find_by_type(property_structs(), item.sType);
     if (!structure) continue;
-    constexpr std::size_t kHeader = sizeof(VkBaseOutStructure);
-    std::memcpy(reinterpret_cast<std::byte*>(&item) + kHeader,
-                static_cast<const std::byte*>(structure->values) + kHeader, structure->size - kHeader);
+    const auto write = [&](std::size_t first, std::size_t end) {
+      std::memcpy(reinterpret_cast<std::byte*>(&item) + first, static_cast<const std::byte*>(structure->values) + first,
+                  end - first);
+    };
+    write(sizeof(VkBaseOutStructure), structure->kept_first);
+    write(structure->kept_end, structure->size);
   }
 }
 

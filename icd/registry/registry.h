@@ -71,11 +71,13 @@ struct FeatureStruct {
   std::size_t size;
 };
 
-/// A structure in the chain of VkPhysicalDeviceProperties2, with its claimed values.
+/// A structure in the chain of VkPhysicalDeviceProperties2, with its claimed values. Where it has lists, the members
+/// that say where they go and how much room there is are the application's.
 struct PropertyStruct {
   VkStructureType type;
   std::size_t size;
   const void* values;
+  std::size_t kept_first, kept_end;  ///< bytes of those members from the start of the structure; equal: there are none
 };
 
 struct FormatClaim {

@@ -40,6 +40,7 @@ class Member:
     type: str
     array: bool
     limittype: str
+    length: str  # of a pointer to an array: the member that counts its elements; else empty
 
 
 @dataclass
@@ -151,7 +152,9 @@ class Registry:
     @staticmethod
     def _member(element):
         tail = (element.find("name").tail or "")
-        return Member(element.find("name").text, element.find("type").text, "[" in tail, element.get("limittype") or "")
+        pointer = "*" in (element.find("type").tail or "")
+        return Member(element.find("name").text, element.find("type").text, "[" in tail, element.get("limittype") or "",
+                      (element.get("len") or "") if pointer else "")
 
     @staticmethod
     def _read_commands(root):
