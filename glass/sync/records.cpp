@@ -5,6 +5,15 @@
 
 namespace vitrine::glass::sync {
 
+std::shared_ptr<Who> host(bool writes, const char* command, std::string resource) {
+  auto who = std::make_shared<Who>();
+  who->what = writes ? "write by the host" : "read by the host";
+  who->address.command_name = command;
+  who->resource = std::move(resource);
+  who->place = who->address.command_name + who->what + who->resource;
+  return who;
+}
+
 void Records::split(std::uintptr_t at) {
   auto piece = pieces_.lower_bound(at);
   if (piece == pieces_.begin()) return;

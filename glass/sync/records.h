@@ -21,6 +21,9 @@ struct Who {
   std::uintptr_t base = 0;  ///< of the buffer; 0: it is none, offsets say nothing
 };
 
+/// The host, which calls that command.
+std::shared_ptr<Who> host(bool writes, const char* command, std::string resource);
+
 /// Accesses of one command that use memory in one way, told apart only where somebody asks: so that what several lines
 /// of a shader touch in turns is not as many pieces.
 struct Several {

@@ -52,8 +52,7 @@ void write_image(const VkDescriptorImageInfo& info, VkDescriptorType type, const
                  spirv::Descriptor& slot) {
   if (type != VK_DESCRIPTOR_TYPE_SAMPLER) {
     const auto* view = from_nullable<ImageView>(info.imageView);
-    const bool stored = type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    slot.image = !view ? nullptr : stored ? &view->stored : &view->view;
+    slot.image = !view ? nullptr : type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? &view->stored() : &view->view;
   }
   const bool has_sampler = type == VK_DESCRIPTOR_TYPE_SAMPLER || type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   if (has_sampler && !binding.immutable_samplers) {

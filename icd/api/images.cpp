@@ -223,14 +223,11 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
     set_min_lod(object->view, min_lod->minLod);
     set_min_lod(object->stencil, min_lod->minLod);
   }
-  object->stored = object->view;
 #ifdef VK_EXT_image_sliced_view_of_3d
-  if (const auto* slices = find_in_chain<VkImageViewSlicedCreateInfoEXT>(info->pNext)) {
-    object->is_sliced = true;
-    set_slices(object->stored, slices->sliceOffset, slices->sliceCount);
-  }
+  if (const auto* slices = find_in_chain<VkImageViewSlicedCreateInfoEXT>(info->pNext))
+    set_slices(object->slices.emplace(object->view), slices->sliceOffset, slices->sliceCount);
 #endif
-  const auto seen = static_cast<std::uint64_t>(reinterpret_cast<std::byte*>(&object->stored + 1) -
+  const auto seen = static_cast<std::uint64_t>(reinterpret_cast<std::byte*>(&object->slices + 1) -
                                                reinterpret_cast<std::byte*>(&object->view));
   enter_address(from_handle<Device>(device), {&object->view, seen, image.data, ref(image)}, *object);
   *view = to_handle(object.release());

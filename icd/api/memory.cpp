@@ -64,12 +64,9 @@ void tell_host_access(Device& device, std::span<const VkMappedMemoryRange> range
   for (const VkMappedMemoryRange& range : ranges) {
     const DeviceMemory& memory = from_handle<DeviceMemory>(range.memory);
     if (range.offset >= memory.size) continue;
-    auto who = std::make_shared<glass::sync::Who>();
-    who->what = write ? "write by the host" : "read by the host";
-    who->address.command_name = write ? "vkFlushMappedMemoryRanges" : "vkInvalidateMappedMemoryRanges";
     const std::string name = name_of(device.physical_device.instance, ref(memory));
-    who->resource = name.empty() ? "device memory" : "device memory '" + name + "'";
-    who->place = who->what + who->resource;
+    auto who = glass::sync::host(write, write ? "vkFlushMappedMemoryRanges" : "vkInvalidateMappedMemoryRanges",
+                                 name.empty() ? "device memory" : "device memory '" + name + "'");
     who->base = reinterpret_cast<std::uintptr_t>(memory.data);
     const std::uintptr_t first = who->base + range.offset;
     hazards->host_access({first, first + std::min(range.size, memory.size - range.offset)}, write, who);

@@ -1,6 +1,8 @@
 // VkImage, VkImageView, VkSampler: texels as objects.
 #pragma once
 
+#include <optional>
+
 #include "icd/object/object.h"
 #include "texel/sampler.h"
 #include "texel/view.h"
@@ -38,12 +40,13 @@ struct ImageView : Object<VkImageView, VK_OBJECT_TYPE_IMAGE_VIEW> {
   VkImageSubresourceRange range{};  ///< counts resolved
   /// What shaders, colour and depth attachments see: the colour aspect, or depth, or stencil where it is alone.
   texel::ImageView view;
-  /// What descriptors of storage images see: `view`, or some slices of it (VkImageViewSlicedCreateInfoEXT).
-  texel::ImageView stored;
-  bool is_sliced = false;
+  /// What descriptors of storage images see if it is only some slices of `view` (VkImageViewSlicedCreateInfoEXT).
+  std::optional<texel::ImageView> slices;
   /// The stencil plane of a view that has both aspects; else equal to `view`.
   texel::ImageView stencil;
   Vector<texel::ImageView> planes;  ///< what `view.planes` points to
+
+  const texel::ImageView& stored() const { return slices ? *slices : view; }
 };
 
 struct SamplerYcbcrConversion : Object<VkSamplerYcbcrConversion, VK_OBJECT_TYPE_SAMPLER_YCBCR_CONVERSION> {

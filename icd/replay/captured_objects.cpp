@@ -145,7 +145,7 @@ std::uint32_t CapturedObjects::view(const ImageView& view) {
 
 std::uint32_t CapturedObjects::view(const texel::ImageView& texels) {
   const auto* found = find_object<ImageView>(device_, &texels, sizeof texels);
-  if (found && found->is_sliced && &texels == &found->stored)
+  if (found && &texels != &found->view && &texels == &found->stored())
     problem_ = "views of some slices of an image are not kept";
   return found ? view(*found) : kNone;
 }

@@ -30,21 +30,11 @@ struct Texels {
 void note_access(Device& device, const Texels& texels, bool write, const char* command) {
   glass::sync::Hazards* const hazards = glass::sync::hazards_of(&device);
   if (!hazards) return;
-  auto who = std::make_shared<glass::sync::Who>();
-  who->what = write ? "write by the host" : "read by the host";
-  who->address.command_name = command;
-  who->resource = sync_name(device, texels.image);
-  who->place = who->address.command_name + who->what + who->resource;
+  const std::shared_ptr<const glass::sync::Who> who =
+      glass::sync::host(write, command, sync_name(device, texels.image));
   std::vector<glass::sync::Range> ranges;
   texels.for_each_box([&](const texel::ImageView& view, const glass::TexelBox& box) { add_texels(view, box, ranges); });
   for (const glass::sync::Range& range : ranges) hazards->host_access(range, write, who);
-}
-
-/// To the shadow of memory.
-void note_written(const Texels& texels) {
-  texels.for_each_box([](const texel::ImageView& view, const glass::TexelBox& box) {
-    glass::fill_shadow(view, box, glass::ByteState::kWritten);
-  });
 }
 
 Texels texels_of(const Image& image, const VkBufferImageCopy& r) {
@@ -57,7 +47,7 @@ void copy_from_host(Device& device, const std::byte* source, const Image& target
   const Texels written = texels_of(target, region);
   note_access(device, written, true, "vkCopyMemoryToImage");
   texel::copy_buffer_to_image({source, kUnknownSize}, memory_of(target), region);
-  note_written(written);
+  fill_region(target, written.layers, written.offset, written.extent);
 }
 
 void copy_to_host(Device& device, const Image& source, std::byte* target, const VkBufferImageCopy& region) {
@@ -71,7 +61,7 @@ void copy_by_host(Device& device, const Image& source, const Image& target, cons
   note_access(device, {source, region.srcSubresource, region.srcOffset, region.extent}, false, "vkCopyImageToImage");
   note_access(device, written, true, "vkCopyImageToImage");
   texel::copy_image(memory_of(source), memory_of(target), region);
-  note_written(written);
+  fill_region(target, written.layers, written.offset, written.extent);
 }
 
 void transition_by_host(Device& device, const Image& image, const VkImageSubresourceRange& range,

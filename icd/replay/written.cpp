@@ -29,11 +29,6 @@ void fill_region(const Image& image, const VkImageSubresourceLayers& layers, con
   });
 }
 
-void fill_region(const Image& image, const VkImageSubresourceLayers& layers, const VkOffset3D& offset,
-                 const VkExtent3D& extent) {
-  fill_region(image, layers, offset, end_of(offset, extent));
-}
-
 /// The states of an image, as if they were its memory.
 class ImageStates {
  public:
@@ -83,6 +78,11 @@ std::uint64_t bytes_of(const Image& image, const VkBufferImageCopy& r) {
 }
 
 }  // namespace
+
+void fill_region(const Image& image, const VkImageSubresourceLayers& layers, const VkOffset3D& offset,
+                 const VkExtent3D& extent) {
+  fill_region(image, layers, offset, end_of(offset, extent));
+}
 
 glass::ByteState discarded_state(const Image& image) {
   return image.tiling == VK_IMAGE_TILING_OPTIMAL ? ByteState::kDiscarded : ByteState::kFresh;

@@ -36,6 +36,10 @@ void note_written(ReplayState& state, const CmdDrawIndirect& command);
 void note_written(ReplayState& state, const CmdDrawByteCount& command);
 void note_written(ReplayState& state, const CmdClearAttachments& command);
 
+/// Something else than these commands has written a region.
+void fill_region(const Image& image, const VkImageSubresourceLayers& layers, const VkOffset3D& offset,
+                 const VkExtent3D& extent);
+
 /// Draws and clears go to these attachments from now on.
 void note_pass(ReplayState& state, const raster::PassDesc& desc);
 /// Where a draw may leave fragments.
