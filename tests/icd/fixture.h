@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <map>
 #include <mutex>
+#include <span>
 
 #include "icd/edge/util.h"
 #include "icd/edge/vulkan_api.h"
@@ -80,7 +81,8 @@ inline VkResult create_instance(VkInstance* instance, const VkAllocationCallback
 }
 
 inline VkResult create_device(VkInstance instance, VkPhysicalDevice physical_device, VkDevice* device,
-                              const VkAllocationCallbacks* allocator = nullptr, const void* next = nullptr) {
+                              const VkAllocationCallbacks* allocator = nullptr, const void* next = nullptr,
+                              std::span<const char* const> extensions = {}) {
   const float priority = 1;
   VkDeviceQueueCreateInfo queue = make_struct<VkDeviceQueueCreateInfo>();
   queue.queueCount = 1;
@@ -88,6 +90,8 @@ inline VkResult create_device(VkInstance instance, VkPhysicalDevice physical_dev
   VkDeviceCreateInfo info = make_struct<VkDeviceCreateInfo>(const_cast<void*>(next));
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   return VK_GET(instance, CreateDevice)(physical_device, &info, allocator, device);
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #ifdef VK_KHR_dynamic_rendering_local_read
 namespace vitrine::icd::test {
@@ -113,16 +114,7 @@ void LocalReadDevice::make_device() {
                                VK_EXT_GRAPHICS_PIPELINE_LIBRARY_EXTENSION_NAME,
                                VK_EXT_EXTENDED_DYNAMIC_STATE_3_EXTENSION_NAME,
                                VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME};
-  const float priority = 1;
-  auto queue = make_struct<VkDeviceQueueCreateInfo>();
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
-  auto info = make_struct<VkDeviceCreateInfo>(&features);
-  info.queueCreateInfoCount = 1;
-  info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = static_cast<std::uint32_t>(std::size(names));
-  info.ppEnabledExtensionNames = names;
-  ASSERT_EQ(VK_CALL(CreateDevice)(physical_device, &info, nullptr, &device), VK_SUCCESS);
+  ASSERT_EQ(create_device(instance, physical_device, &device, nullptr, &features, names), VK_SUCCESS);
 }
 
 void LocalReadDevice::SetUp() {
@@ -550,6 +542,8 @@ void LocalReadDevice::to_layout(VkCommandBuffer commands, const Scene& scene, co
 void LocalReadDevice::expect_same(const Scene& scene) {
   const std::vector<Contents> expected = as_subpasses(scene), drawn = as_rendering(scene);
   ASSERT_EQ(drawn.size(), expected.size());
+  const auto draws_something = [](const Contents& c) { return std::set<std::byte>(c.begin(), c.end()).size() > 20; };
+  EXPECT_TRUE(std::any_of(drawn.begin(), drawn.end(), draws_something));
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const auto& other = expected[i];
     const auto differs = std::mismatch(drawn[i].begin(), drawn[i].end(), other.begin(), other.end()).first;

@@ -53,16 +53,7 @@ class Maintenance5Device : public DeviceTest {
                                  VK_EXT_DYNAMIC_RENDERING_UNUSED_ATTACHMENTS_EXTENSION_NAME,
                                  VK_EXT_ATTACHMENT_FEEDBACK_LOOP_LAYOUT_EXTENSION_NAME,
                                  VK_EXT_ATTACHMENT_FEEDBACK_LOOP_DYNAMIC_STATE_EXTENSION_NAME};
-    const float priority = 1;
-    auto queue = make_struct<VkDeviceQueueCreateInfo>();
-    queue.queueCount = 1;
-    queue.pQueuePriorities = &priority;
-    auto info = make_struct<VkDeviceCreateInfo>(&features);
-    info.queueCreateInfoCount = 1;
-    info.pQueueCreateInfos = &queue;
-    info.enabledExtensionCount = static_cast<std::uint32_t>(std::size(names));
-    info.ppEnabledExtensionNames = names;
-    ASSERT_EQ(VK_GET(instance, CreateDevice)(physical_device, &info, nullptr, &device), VK_SUCCESS);
+    ASSERT_EQ(create_device(instance, physical_device, &device, nullptr, &features, names), VK_SUCCESS);
   }
 
   void TearDown() override {

@@ -50,17 +50,8 @@ TEST_F(Maintenance7, NarrowResultsAreTheLowBitsOfWideOnes) {
     auto features = make_struct<VkPhysicalDeviceMaintenance7FeaturesKHR>();
     features.maintenance7 = enabled;
     const char* const name = VK_KHR_MAINTENANCE_7_EXTENSION_NAME;
-    const float priority = 1;
-    auto queue = make_struct<VkDeviceQueueCreateInfo>();
-    queue.queueCount = 1;
-    queue.pQueuePriorities = &priority;
-    auto info = make_struct<VkDeviceCreateInfo>(&features);
-    info.queueCreateInfoCount = 1;
-    info.pQueueCreateInfos = &queue;
-    info.enabledExtensionCount = 1;
-    info.ppEnabledExtensionNames = &name;
     VkDevice other = VK_NULL_HANDLE;
-    ASSERT_EQ(VK_CALL(CreateDevice)(physical_device, &info, nullptr, &other), VK_SUCCESS);
+    ASSERT_EQ(create_device(instance, physical_device, &other, nullptr, &features, {&name, 1}), VK_SUCCESS);
     auto pool_info = make_struct<VkQueryPoolCreateInfo>();
     pool_info.queryType = VK_QUERY_TYPE_OCCLUSION;
     pool_info.queryCount = 1;

@@ -110,17 +110,8 @@ class SwapchainTest : public SurfaceTest {
  protected:
   void SetUp() override {
     SurfaceTest::SetUp();
-    const float priority = 1;
-    auto queue_info = make_struct<VkDeviceQueueCreateInfo>();
-    queue_info.queueCount = 1;
-    queue_info.pQueuePriorities = &priority;
-    const char* extension = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
-    auto info = make_struct<VkDeviceCreateInfo>();
-    info.queueCreateInfoCount = 1;
-    info.pQueueCreateInfos = &queue_info;
-    info.enabledExtensionCount = 1;
-    info.ppEnabledExtensionNames = &extension;
-    ASSERT_EQ(VK_GET(instance, CreateDevice)(physical_device, &info, nullptr, &device), VK_SUCCESS);
+    const char* const extension = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    ASSERT_EQ(create_device(instance, physical_device, &device, nullptr, nullptr, {&extension, 1}), VK_SUCCESS);
     VK_GET(instance, GetDeviceQueue)(device, 0, 0, &queue);
   }
   void TearDown() override {
