@@ -6,6 +6,7 @@
 #include "glass/sync/sync.h"
 #include "icd/replay/image_boxes.h"
 #include "icd/replay/sync_notes.h"
+#include "icd/replay/texel_events.h"
 #include "texel/transfer.h"
 
 namespace vitrine::icd {
@@ -45,9 +46,11 @@ Texels texels_of(const Image& image, const VkBufferImageCopy& r) {
 
 void copy_from_host(Device& device, const std::byte* source, const Image& target, const VkBufferImageCopy& region) {
   const Texels written = texels_of(target, region);
-  note_access(device, written, true, "vkCopyMemoryToImage");
+  constexpr char kCommand[] = "vkCopyMemoryToImage";
+  note_access(device, written, true, kCommand);
   texel::copy_buffer_to_image({source, kUnknownSize}, memory_of(target), region);
   fill_region(target, written.layers, written.offset, written.extent);
+  note_host_upload(target, region, kCommand);
 }
 
 void copy_to_host(Device& device, const Image& source, std::byte* target, const VkBufferImageCopy& region) {
@@ -58,10 +61,12 @@ void copy_to_host(Device& device, const Image& source, std::byte* target, const 
 void copy_by_host(Device& device, const Image& source, const Image& target, const VkImageCopy& region) {
   // Images of the same parameters: an extent is the same in both.
   const Texels written{target, region.dstSubresource, region.dstOffset, region.extent};
-  note_access(device, {source, region.srcSubresource, region.srcOffset, region.extent}, false, "vkCopyImageToImage");
-  note_access(device, written, true, "vkCopyImageToImage");
+  constexpr char kCommand[] = "vkCopyImageToImage";
+  note_access(device, {source, region.srcSubresource, region.srcOffset, region.extent}, false, kCommand);
+  note_access(device, written, true, kCommand);
   texel::copy_image(memory_of(source), memory_of(target), region);
   fill_region(target, written.layers, written.offset, written.extent);
+  note_host_copy(source, target, region, kCommand);
 }
 
 void transition_by_host(Device& device, const Image& image, const VkImageSubresourceRange& range,

@@ -19,6 +19,10 @@ void note_texels(ReplayState& state, const CmdClearDepthStencilImage& command);
 void note_texels(ReplayState& state, const CmdDiscardImages& command);
 void note_texels(ReplayState& state, const CmdClearAttachments& command);
 
+/// The host has copied, without a command buffer, from its memory or between images. `command`: what it called.
+void note_host_upload(const Image& to, const VkBufferImageCopy& region, const char* command);
+void note_host_copy(const Image& from, const Image& to, const VkImageCopy& region, const char* command);
+
 /// A pass with these attachments begins; its load ops come next.
 void begin_watched_pass(ReplayState& state, const raster::PassDesc& desc);
 /// Load ops, as note_load() and the others (icd/replay/written.h) are told of them: events when finish_loads() is

@@ -54,11 +54,10 @@ const std::byte* address_of(const Image& image, VkImageAspectFlags aspect, std::
 }
 
 /// A texel of an image as a source; image 0: the image does not have it.
-Source source_of(const ReplayState& state, const Image& image, VkImageAspectFlags aspect, std::uint32_t level,
+Source source_of(const glass::pixel::Pixels& pixels, const Image& image, VkImageAspectFlags aspect, std::uint32_t level,
                  std::uint32_t sample, const Place& at, float weight) {
   const std::byte* const address = address_of(image, aspect, level, sample, at);
-  if (address == nullptr) return {};
-  return state.observed->pixels->source_at(address, format_of(image, aspect), weight);
+  return address ? pixels.source_at(address, format_of(image, aspect), weight) : Source{};
 }
 
 /// Whether a texel of an image lies in a level and layers that a region names.
@@ -72,14 +71,14 @@ std::int64_t first_z(const Image& image, const VkImageSubresourceLayers& layers,
   return image.desc().type == VK_IMAGE_TYPE_3D ? offset.z : std::int64_t{layers.baseArrayLayer};
 }
 
-void add(const ReplayState& state, Texel& texel, TexelEvent event, const Source& source) {
+void add(glass::pixel::Pixels& pixels, Texel& texel, TexelEvent event, const Source& source) {
   if (source.texel.image != 0) event.sources.push_back(source);
-  state.observed->pixels->add(texel, std::move(event));
+  pixels.add(texel, std::move(event));
 }
 
 /// One region of a copy on one texel.
-void note_copy(const ReplayState& state, const CmdCopyImage& command, const VkImageCopy& region, Texel& texel) {
-  const Image &from = *command.source, &to = *command.target;
+void note_copy(glass::pixel::Pixels& pixels, const Image& from, const Image& to, const VkImageCopy& region,
+               Texel& texel, TexelEvent event) {
   const VkImageAspectFlags same = region.srcSubresource.aspectMask & texel.id.aspect;
   const VkImageAspectFlags aspect = same != 0 ? same : region.srcSubresource.aspectMask;
   if (texel.id.level != region.dstSubresource.mipLevel || (region.dstSubresource.aspectMask & texel.id.aspect) == 0)
@@ -98,9 +97,11 @@ void note_copy(const ReplayState& state, const CmdCopyImage& command, const VkIm
   const Place read{(region.srcOffset.x / source.block_width + column) * source.block_width,
                    (region.srcOffset.y / source.block_height + row) * source.block_height,
                    first_z(from, region.srcSubresource, region.srcOffset) + slice};
-  add(state, texel, texel_event(state, EventKind::kCopy, "copied from another texel"),
-      source_of(state, from, aspect, region.srcSubresource.mipLevel, texel.id.sample, read, 1));
+  add(pixels, texel, std::move(event),
+      source_of(pixels, from, aspect, region.srcSubresource.mipLevel, texel.id.sample, read, 1));
 }
+
+constexpr char kCopied[] = "copied from another texel";
 
 /// One axis of a blit: which texels, with which weights.
 struct Taps {
@@ -133,7 +134,7 @@ void add_taps(const ReplayState& state, const CmdBlitImage& command, const VkIma
       for (int x = 0; x < 2; ++x) {
         const float weight = taps[0].weight[x] * taps[1].weight[y] * taps[2].weight[z];
         if (weight == 0) continue;
-        Source source = source_of(state, *command.source, aspect, region.srcSubresource.mipLevel, 0,
+        Source source = source_of(*state.observed->pixels, *command.source, aspect, region.srcSubresource.mipLevel, 0,
                                   {taps[0].at[x], taps[1].at[y], taps[2].at[z]}, weight);
         const auto known = std::ranges::find(event.sources, source.texel, &Source::texel);
         if (known != event.sources.end())
@@ -178,7 +179,7 @@ void note_resolve(const ReplayState& state, const CmdResolveImage& command, cons
   const std::uint32_t samples = std::max(from.desc().samples, 1u);
   for (std::uint32_t s = 0; s < samples; ++s)
     event.sources.push_back(source_of(
-        state, from, texel.id.aspect, region.srcSubresource.mipLevel, s,
+        *state.observed->pixels, from, texel.id.aspect, region.srcSubresource.mipLevel, s,
         {region.srcOffset.x + x, region.srcOffset.y + y, first_z(from, region.srcSubresource, region.srcOffset) + z},
         1 / static_cast<float>(samples)));
   state.observed->pixels->add(texel, std::move(event));
@@ -207,16 +208,22 @@ struct BufferBlocks {
   std::uint64_t first_;
 };
 
-void note_upload(const ReplayState& state, const CmdCopyBufferToImage& command, const VkBufferImageCopy& r,
-                 Texel& texel) {
-  const Image& to = *command.target;
+/// Where a texel's block is among what a region copies to its image, in bytes; nothing: it is not in it.
+std::optional<std::uint64_t> offset_in(const VkBufferImageCopy& r, const Image& to, const Texel& texel) {
   const Place at = place_of(to, texel.id);
   const std::int64_t x = at.x - r.imageOffset.x, y = at.y - r.imageOffset.y;
   const std::int64_t z = at.z - first_z(to, r.imageSubresource, r.imageOffset);
   if (!in_layers(to, r.imageSubresource, texel.id) || x < 0 || y < 0 || z < 0 || x >= r.imageExtent.width ||
       y >= r.imageExtent.height || z >= std::max(r.imageExtent.depth, r.imageSubresource.layerCount))
-    return;
-  const std::uint64_t offset = BufferBlocks(r, *texel.format).offset(x, y, z);
+    return std::nullopt;
+  return BufferBlocks(r, *texel.format).offset(x, y, z);
+}
+
+void note_upload(const ReplayState& state, const CmdCopyBufferToImage& command, const VkBufferImageCopy& r,
+                 Texel& texel) {
+  const std::optional<std::uint64_t> place = offset_in(r, *command.target, texel);
+  if (!place) return;
+  const std::uint64_t offset = *place;
   std::string text = "copied from bytes at offset " + std::to_string(offset) + " of buffer ";
   const std::byte* const data = command.source->data;
   if (data) text += describe_bytes(state.device, data, command.source->size);
@@ -288,10 +295,39 @@ void for_each_region(const ReplayState& state, const Command& command, F&& f) {
     for (Texel* texel : texels) f(region, *texel);
 }
 
+/// By the host, which called that command.
+TexelEvent event_of_host(EventKind kind, const char* text, const char* command) {
+  TexelEvent event;
+  event.kind = kind;
+  event.text = text;
+  event.address.command_name = command;
+  event.replaces = true;
+  return event;
+}
+
 }  // namespace
 
+void note_host_upload(const Image& to, const VkBufferImageCopy& region, const char* command) {
+  glass::pixel::Pixels* const pixels = glass::pixel::pixels();
+  if (!pixels) return;
+  for (Texel* texel : pixels->texels_of(&to))
+    if (offset_in(region, to, *texel))
+      pixels->add(*texel, event_of_host(EventKind::kUpload, "copied from memory by the host", command));
+}
+
+void note_host_copy(const Image& from, const Image& to, const VkImageCopy& region, const char* command) {
+  glass::pixel::Pixels* const pixels = glass::pixel::pixels();
+  if (!pixels) return;
+  for (Texel* texel : pixels->texels_of(&to))
+    note_copy(*pixels, from, to, region, *texel,
+              event_of_host(EventKind::kCopy, "copied from another texel by the host", command));
+}
+
 void note_texels(ReplayState& state, const CmdCopyImage& command) {
-  for_each_region(state, command, [&](const VkImageCopy& r, Texel& t) { note_copy(state, command, r, t); });
+  for_each_region(state, command, [&](const VkImageCopy& r, Texel& t) {
+    note_copy(*state.observed->pixels, *command.source, *command.target, r, t,
+              texel_event(state, EventKind::kCopy, kCopied));
+  });
 }
 
 void note_texels(ReplayState& state, const CmdBlitImage& command) {

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <vector>
 
+#include "glass/pixel/pixels.h"
+#include "icd/object/image.h"
 #include "tests/icd/maintenance5_fixture.h"
 
 #ifdef VK_KHR_maintenance6
@@ -148,7 +150,7 @@ constexpr Part kParts[] = {
      1},
 };
 
-class HostImageCopy : public Maintenance5Device, public ::testing::WithParamInterface<Part> {
+class HostCopyDevice : public Maintenance5Device {
  protected:
   void TearDown() override {
     for (const VkImage image : images) VK_CALL(DestroyImage)(device, image, nullptr);
@@ -235,6 +237,21 @@ class HostImageCopy : public Maintenance5Device, public ::testing::WithParamInte
     return bytes;
   }
 
+  VkImageCopy2 copy_images(VkImage from, VkImage to, const Part& part) {
+    auto region = make_struct<VkImageCopy2>();
+    region.srcSubresource = region.dstSubresource = part.where;
+    region.srcOffset = region.dstOffset = part.offset;
+    region.extent = part.copied;
+    auto info = make_struct<VkCopyImageToImageInfoEXT>();
+    info.srcImage = from;
+    info.dstImage = to;
+    info.srcImageLayout = info.dstImageLayout = VK_IMAGE_LAYOUT_GENERAL;
+    info.regionCount = 1;
+    info.pRegions = &region;
+    EXPECT_EQ(VK_CALL(CopyImageToImageEXT)(device, &info), VK_SUCCESS);
+    return region;
+  }
+
   std::vector<std::byte> get_by_command(VkImage image, const Part& part) {
     const Bytes buffer = make_bytes(bytes_of(part));
     std::memset(buffer.data, 0x77, buffer.size);
@@ -284,6 +301,8 @@ class HostImageCopy : public Maintenance5Device, public ::testing::WithParamInte
   std::vector<VkDeviceMemory> memories;
 };
 
+class HostImageCopy : public HostCopyDevice, public ::testing::WithParamInterface<Part> {};
+
 TEST_P(HostImageCopy, GivesWhatCommandsGive) {
   const Part& part = GetParam();
   const auto texels = noise(bytes_of(part), 1);
@@ -303,17 +322,7 @@ TEST_P(HostImageCopy, CopiesBetweenImages) {
   const Part& part = GetParam();
   const VkImage from = make_image(part), to = make_image(part), by_command = make_image(part);
   put(from, part, noise(bytes_of(part), 2));
-  auto region = make_struct<VkImageCopy2>();
-  region.srcSubresource = region.dstSubresource = part.where;
-  region.srcOffset = region.dstOffset = part.offset;
-  region.extent = part.copied;
-  auto info = make_struct<VkCopyImageToImageInfoEXT>();
-  info.srcImage = from;
-  info.dstImage = to;
-  info.srcImageLayout = info.dstImageLayout = VK_IMAGE_LAYOUT_GENERAL;
-  info.regionCount = 1;
-  info.pRegions = &region;
-  EXPECT_EQ(VK_CALL(CopyImageToImageEXT)(device, &info), VK_SUCCESS);
+  const VkImageCopy2 region = copy_images(from, to, part);
   run([&](VkCommandBuffer commands) {
     auto command = make_struct<VkCopyImageInfo2>();
     command.srcImage = from;
@@ -411,6 +420,36 @@ TEST_F(HostImageCopyClaims, WhatCanBeSampledTheHostCanCopy) {
     EXPECT_TRUE(query.identicalMemoryLayout);
   }
   EXPECT_GT(seen, 100u);
+}
+
+/// The tool pixel watches texel (10, 6) of all images: inside of what is copied.
+TEST_F(HostCopyDevice, HistoriesOfTexelsTellOfIt) {
+  glass::pixel::Pixels* const pixels = glass::pixel::pixels();
+  if (!pixels) GTEST_SKIP() << "needs VITRINE_TOOLS=pixel";
+  Part part = kParts[0];
+  const VkImage from = make_image(part), to = make_image(part);
+  put(from, part, noise(bytes_of(part), 3));
+  copy_images(from, to, part);
+  part.offset.x = 11;  // beside the texel
+  part.copied.width = 4;
+  put(to, part, noise(bytes_of(part), 4));
+  const auto watched = [&](VkImage image) {
+    const auto texels = pixels->texels_of(&from_handle<Image>(image));
+    EXPECT_EQ(texels.size(), 1u);
+    return texels.front();
+  };
+  const glass::pixel::Texel &source = *watched(from), &target = *watched(to);
+  ASSERT_EQ(source.events.size(), 1u);
+  EXPECT_EQ(source.events[0].kind, glass::pixel::EventKind::kUpload);
+  EXPECT_EQ(source.events[0].address.command_name, "vkCopyMemoryToImage");
+  EXPECT_EQ(source.events[0].after, source.read());
+  EXPECT_NE(source.events[0].after, source.events[0].before);
+  ASSERT_EQ(target.events.size(), 1u);
+  EXPECT_EQ(target.events[0].kind, glass::pixel::EventKind::kCopy);
+  EXPECT_EQ(target.events[0].address.command_name, "vkCopyImageToImage");
+  EXPECT_EQ(target.events[0].after, source.read());
+  ASSERT_EQ(target.events[0].sources.size(), 1u);
+  EXPECT_EQ(target.events[0].sources[0].texel, source.id);
 }
 
 }  // namespace
