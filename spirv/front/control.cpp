@@ -382,11 +382,12 @@ void leave_function(Translator& t, const Inst& inst) {
 void end_invocation(Translator& t, const Inst& inst) {
   t.function.interface.uses_discard = true;
   jump_to_end(t, nullptr);
-  const bool leaves = t.function.helpers_take_part && inst.op == Op::OpTerminateInvocation;
+  // SPIR-V 1.6, OpTerminateInvocation: "Ceases all further processing in any invocation that executes it". Votes of
+  // quads, and all group operations where invocations reconverge maximally, tell helpers from those that are gone.
+  const bool leaves = (t.function.helpers_take_part || t.module.votes_in_quads) && inst.op == Op::OpTerminateInvocation;
   if (leaves || std::any_of(t.scopes.begin(), t.scopes.end(),
                             [](const Scope& scope) { return scope.kind == Scope::Kind::kLoop; })) {
-    // Helpers take part in group operations where invocations reconverge maximally: whoever is terminated is none.
-    emit_effect(t, ir::Op::kKill);
+    emit_effect(t, ir::Op::kKill).data[0] = leaves;
     return;
   }
   // Outside loops the lane goes on as a helper, as the reference lets it, so that later derivatives have its values.

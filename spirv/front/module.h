@@ -133,6 +133,7 @@ struct Module {
   std::vector<std::uint32_t> interface;  ///< ids named by OpEntryPoint
   std::vector<Inst> modes;               ///< execution modes of the entry point
   bool has_workgroup_blocks = false;     ///< variables of Workgroup memory are blocks
+  bool votes_in_quads = false;           ///< OpGroupNonUniformQuadAnyKHR, OpGroupNonUniformQuadAllKHR
   std::size_t constant_words = 0;        ///< of all constants
 
   const Type& type(std::uint32_t id) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "spirv/front/sources.h"
+#include "spirv/newer_numbers.h"
 
 namespace vitrine::spirv::front {
 
@@ -355,6 +356,9 @@ Module parse_module(std::span<const std::uint32_t> words, const CompileOptions& 
     if (inst.op == Op::OpVariable && !in_function) module.globals.push_back(i);
   }
   module.has_workgroup_blocks = has_workgroup_blocks(module);
+  module.votes_in_quads = std::any_of(module.code.begin(), module.code.end(), [](const Inst& inst) {
+    return inst.op == newer::kQuadAny || inst.op == newer::kQuadAll;
+  });
   read_functions(module);
   return module;
 }

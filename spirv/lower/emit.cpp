@@ -250,10 +250,10 @@ class BodyEmitter {
   }
 
   /// Killed lanes go on as helpers (lavapipe-shader-math.md section 9), so that derivatives behind the discard have
-  /// their neighbours; inside a loop they end, because nothing else may make them leave it. They end, too, where
-  /// helpers take part in group operations.
+  /// their neighbours; inside a loop they end, because nothing else may make them leave it. They end, too, where a
+  /// terminated invocation must not pass for a helper.
   void emit_kill(const ScalarOp& op) {
-    bool ends = f_.ir->helpers_take_part;
+    bool ends = op.instr != nullptr && op.instr->data[0] != 0;
     for (const Open& open : open_) ends |= open.is_loop;
     const Label after = out_.new_label();
     if (op.cond != kNoScalar && varying(op.cond)) {

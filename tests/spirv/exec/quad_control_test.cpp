@@ -161,6 +161,7 @@ TEST(QuadControl, DemotedInvocationsGoOnAsHelpers) {
 }
 
 TEST(QuadControl, TerminatedInvocationsTakeNoPart) {
+  expect_fragments("", false, "OpTerminateInvocation\n", Odd::kGone);
   expect_fragments(kReconverges, true, "OpTerminateInvocation\n", Odd::kGone);
 }
 
