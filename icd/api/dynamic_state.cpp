@@ -45,6 +45,17 @@ VKAPI_ATTR void VKAPI_CALL CmdSetDiscardRectangleEXT(VkCommandBuffer buffer, std
   record(buffer, icd::CmdSetDiscardRectangle{first, copy_array(buffer, rectangles, count)});
 }
 
+#if VK_EXT_DISCARD_RECTANGLES_SPEC_VERSION >= 2
+/// As many as the pipeline has (resolve_state()).
+VKAPI_ATTR void VKAPI_CALL CmdSetDiscardRectangleEnableEXT(VkCommandBuffer buffer, VkBool32 enable) {
+  record_value(buffer, DynamicState::kDiscardRectangleEnable, enable ? raster::kMaxDiscardRectangles : 0);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDiscardRectangleModeEXT(VkCommandBuffer buffer, VkDiscardRectangleModeEXT mode) {
+  record_value(buffer, DynamicState::kDiscardRectangleMode, mode == VK_DISCARD_RECTANGLE_MODE_EXCLUSIVE_EXT);
+}
+#endif
+
 VKAPI_ATTR void VKAPI_CALL CmdSetDepthBias(VkCommandBuffer buffer, float constant, float clamp, float slope) {
   record(buffer, icd::CmdSetDepthBias{constant, clamp, slope, raster::DepthBiasUnit::kFormat});
 }

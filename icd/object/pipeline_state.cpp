@@ -57,10 +57,20 @@ void fill_viewports(raster::State& state, const VkPipelineViewportStateCreateInf
 }
 
 /// The rectangles may be dynamic, and a null pointer then.
-void fill_discard_rectangles(raster::State& state, const VkPipelineDiscardRectangleStateCreateInfoEXT& info) {
-  state.discard_count = std::min(info.discardRectangleCount, raster::kMaxDiscardRectangles);
-  state.discard_inside = info.discardRectangleMode == VK_DISCARD_RECTANGLE_MODE_EXCLUSIVE_EXT;
-  if (info.pDiscardRectangles) std::copy_n(info.pDiscardRectangles, state.discard_count, state.discard.begin());
+/// Without the structure all rectangles count if commands set them and switch them on.
+void fill_discard_rectangles(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& info) {
+  raster::State& state = pipeline.state;
+  const bool dynamic = pipeline.dynamic.test(DynamicState::kDiscardRectangle);
+  if (const auto* discard = find_in_chain<VkPipelineDiscardRectangleStateCreateInfoEXT>(info.pNext)) {
+    state.discard_count = std::min(discard->discardRectangleCount, raster::kMaxDiscardRectangles);
+    state.discard_inside = discard->discardRectangleMode == VK_DISCARD_RECTANGLE_MODE_EXCLUSIVE_EXT;
+    if (!dynamic) std::copy_n(discard->pDiscardRectangles, state.discard_count, state.discard.begin());
+    return;
+  }
+#if VK_EXT_DISCARD_RECTANGLES_SPEC_VERSION >= 2
+  if (dynamic && pipeline.dynamic.test(DynamicState::kDiscardRectangleEnable))
+    state.discard_count = raster::kMaxDiscardRectangles;
+#endif
 }
 
 void fill_lines(raster::State& state, const VkPipelineRasterizationLineStateCreateInfoEXT& info) {
@@ -243,8 +253,7 @@ void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& i
   if (before && tessellates(info) && info.pTessellationState) fill_tessellation(state, *info.pTessellationState);
   // Without rasterization, or without the attachments, the rest may be dangling pointers.
   if (pipeline.never_rasterizes()) return;
-  if (const auto* discard = find_in_chain<VkPipelineDiscardRectangleStateCreateInfoEXT>(info.pNext); before && discard)
-    fill_discard_rectangles(state, *discard);
+  if (before) fill_discard_rectangles(pipeline, info);
   if (before && info.pViewportState) fill_viewports(state, *info.pViewportState, pipeline.dynamic);
   const bool shader = parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT;
   const bool output = parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT;

@@ -30,13 +30,16 @@ const raster::State* resolve_state(ReplayState& state) {
   const Pipeline& pipeline = *state.graphics.pipeline;
   const DynamicStates& dynamic = pipeline.dynamic;
   const bool located = pipeline.locations != ColorLocations{};
-  if (dynamic.none() && !located) return &pipeline.state;
+  if (dynamic.none() && !located && pipeline.state.rasterized_stream == 0) return &pipeline.state;
   auto* out = ::new (state.arena.take<raster::State>(1)) raster::State(pipeline.state);
   const DynamicValues& values = state.dynamic;
   for (std::uint8_t i = 0; i < static_cast<std::uint8_t>(DynamicState::kCount); ++i) {
     const auto which = static_cast<DynamicState>(i);
     if (dynamic.test(which)) copy_state(values.state, which, *out);
   }
+  // Without a geometry shader all primitives are of stream 0.
+  out->rasterizer_discard |= out->rasterized_stream != 0 && !pipeline.geometry;
+  out->discard_count = std::min(out->discard_count, pipeline.state.discard_count);
   if (pipeline.clip_follows_clamp) out->depth_clip = !out->depth_clamp;
   const bool writes = dynamic.test(DynamicState::kColorWriteEnable);
   leave_unnamed(pipeline, writes ? values.color_writes : pipeline.color_writes, *out);

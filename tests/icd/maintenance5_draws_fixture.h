@@ -27,7 +27,8 @@ struct Draw {
   float depth_bias = 0;                 ///< the constant
   const void* rasterization = nullptr;  ///< chained to that state
   std::vector<VkDynamicState> dynamic;
-  bool has_attribute = false;  ///< binding 0, one 32-bit integer a vertex
+  VkImageView depth = VK_NULL_HANDLE;  ///< of D32_SFLOAT; nothing is tested against it
+  bool has_attribute = false;          ///< binding 0, one 32-bit integer a vertex
 };
 
 class Maintenance5Draws : public Maintenance5Device {
@@ -144,6 +145,7 @@ class Maintenance5Draws : public Maintenance5Device {
     auto rendering = make_struct<VkPipelineRenderingCreateInfo>();
     rendering.colorAttachmentCount = 1;
     rendering.pColorAttachmentFormats = &draw.format;
+    if (draw.depth) rendering.depthAttachmentFormat = VK_FORMAT_D32_SFLOAT;
     auto parts = make_struct<VkGraphicsPipelineLibraryCreateInfoEXT>(&rendering);
     parts.flags = 0xf;
     auto flags =
@@ -157,6 +159,8 @@ class Maintenance5Draws : public Maintenance5Device {
     info.pViewportState = &viewport;
     info.pRasterizationState = &rasterization;
     info.pMultisampleState = &multisample;
+    const auto depth = make_struct<VkPipelineDepthStencilStateCreateInfo>();
+    if (draw.depth) info.pDepthStencilState = &depth;
     info.pColorBlendState = &blend;
     auto dynamic = make_struct<VkPipelineDynamicStateCreateInfo>();
     dynamic.dynamicStateCount = static_cast<std::uint32_t>(draw.dynamic.size());
@@ -185,6 +189,10 @@ class Maintenance5Draws : public Maintenance5Device {
       info.layerCount = 1;
       info.colorAttachmentCount = 1;
       info.pColorAttachments = &attachment;
+      auto depth = make_struct<VkRenderingAttachmentInfo>();
+      depth.imageView = draw.depth;
+      depth.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+      if (draw.depth) info.pDepthAttachment = &depth;
       VK_GET(instance, CmdBeginRenderingKHR)(commands, &info);
       VK_GET(instance, CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
       VK_GET(instance, CmdBindDescriptorSets)

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/icd/maintenance5_draws_fixture.h"
@@ -17,15 +18,17 @@ namespace {
 
 class DepthBiasControl : public Maintenance5Draws {
  protected:
-  /// The depth of a fragment at 0.5 that is biased by `constant`; the target has no depth attachment, so that a unit is
-  /// one of 24 bits. By the pipeline, or by the command.
-  double depth_of(float constant, VkDepthBiasRepresentationEXT representation, bool exact, bool by_command) {
+  /// The depth of a fragment at 0.5 that is biased by `constant`; without a depth attachment a unit is one of 24 bits.
+  /// By the pipeline, or by the command.
+  double depth_of(float constant, VkDepthBiasRepresentationEXT representation, bool exact, bool by_command,
+                  VkImageView depth_view = VK_NULL_HANDLE) {
     auto how = make_struct<VkDepthBiasRepresentationInfoEXT>();
     how.depthBiasRepresentation = representation;
     how.depthBiasExact = exact;
     Draw draw;
     draw.fragment = "layout(location = 0) out float c; void main() { c = gl_FragCoord.z; }";
     draw.format = VK_FORMAT_R32_SFLOAT;
+    draw.depth = depth_view;
     if (by_command) {
       draw.dynamic = {VK_DYNAMIC_STATE_DEPTH_BIAS};
     } else {
@@ -59,6 +62,16 @@ TEST_F(DepthBiasControl, UnitsAreThoseOfTheRepresentation) {
   }
 }
 
+/// "Its value must be at most r = 2 x 2^-n", n of floats being 24: here it is 2^-n whether or not that is asked for.
+TEST_F(DepthBiasControl, UnitsOfFloatsAreExact) {
+  const Picture depth = make_picture(VK_IMAGE_TYPE_2D, VK_FORMAT_D32_SFLOAT, {kSide, kSide, 1}, 1,
+                                     VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+  const auto representation = VK_DEPTH_BIAS_REPRESENTATION_LEAST_REPRESENTABLE_VALUE_FORCE_UNORM_EXT;
+  for (const bool by_command : {false, true})
+    for (const bool exact : {false, true})
+      EXPECT_EQ(depth_of(-4194304, representation, exact, by_command, depth.view), 0.25);
+}
+
 /// vkCmdSetDepthBias, and a pipeline that does not say: units of the format.
 TEST_F(DepthBiasControl, WithoutARepresentationItIsTheFormats) {
   Draw draw;
@@ -77,6 +90,63 @@ TEST_F(DepthBiasControl, WithoutARepresentationItIsTheFormats) {
   float depth;
   std::memcpy(&depth, picture.row(0), sizeof depth);
   EXPECT_NEAR(depth, 0.5 + 2 * std::ldexp(4096.0, -24), std::ldexp(1.0, -24));
+}
+
+// ---- VK_EXT_discard_rectangles, revision 2
+
+class DiscardRectangles : public Maintenance5Draws {
+ protected:
+  /// Whether the texels at (2, 2), in the rectangle that commands set, and at (12, 12) were drawn; `enable`, `mode`:
+  /// what commands say; no structure does.
+  std::pair<bool, bool> drawn(bool enable, VkDiscardRectangleModeEXT mode) {
+    Draw draw;
+    draw.fragment = "layout(location = 0) out vec4 c; void main() { c = vec4(1); }";
+    draw.dynamic = {VK_DYNAMIC_STATE_DISCARD_RECTANGLE_EXT, VK_DYNAMIC_STATE_DISCARD_RECTANGLE_ENABLE_EXT,
+                    VK_DYNAMIC_STATE_DISCARD_RECTANGLE_MODE_EXT};
+    const Picture picture = render(draw, [&](VkCommandBuffer commands) {
+      const VkRect2D rectangle{{0, 0}, {8, 8}};
+      VK_CALL(CmdSetDiscardRectangleEXT)(commands, 0, 1, &rectangle);
+      VK_CALL(CmdSetDiscardRectangleEnableEXT)(commands, enable);
+      VK_CALL(CmdSetDiscardRectangleModeEXT)(commands, mode);
+      VK_CALL(CmdDraw)(commands, 3, 1, 0, 0);
+    });
+    return {texel(picture, 2, 2, 4) != 0, texel(picture, 12, 12, 4) != 0};
+  }
+};
+
+TEST_F(DiscardRectangles, CommandsSwitchThemAndSayWhatIsDiscarded) {
+  using Pair = std::pair<bool, bool>;
+  EXPECT_EQ(drawn(true, VK_DISCARD_RECTANGLE_MODE_INCLUSIVE_EXT), Pair(true, false));
+  EXPECT_EQ(drawn(true, VK_DISCARD_RECTANGLE_MODE_EXCLUSIVE_EXT), Pair(false, true));
+  EXPECT_EQ(drawn(false, VK_DISCARD_RECTANGLE_MODE_INCLUSIVE_EXT), Pair(true, true));
+  EXPECT_EQ(drawn(false, VK_DISCARD_RECTANGLE_MODE_EXCLUSIVE_EXT), Pair(true, true));
+}
+
+// ---- VK_EXT_transform_feedback: the stream that is rasterized
+
+class RasterizedStream : public Maintenance5Draws {
+ protected:
+  /// Whether a draw without a geometry shader draws, `stream` being chosen by the pipeline or by the command.
+  bool draws(std::uint32_t stream, bool by_command) {
+    auto chosen = make_struct<VkPipelineRasterizationStateStreamCreateInfoEXT>();
+    chosen.rasterizationStream = by_command ? 1 - stream : stream;
+    Draw draw;
+    draw.fragment = "layout(location = 0) out vec4 c; void main() { c = vec4(1); }";
+    draw.rasterization = &chosen;
+    if (by_command) draw.dynamic = {VK_DYNAMIC_STATE_RASTERIZATION_STREAM_EXT};
+    const Picture picture = render(draw, [&](VkCommandBuffer commands) {
+      if (by_command) VK_CALL(CmdSetRasterizationStreamEXT)(commands, stream);
+      VK_CALL(CmdDraw)(commands, 3, 1, 0, 0);
+    });
+    return texel(picture, 5, 5, 4) != 0;
+  }
+};
+
+TEST_F(RasterizedStream, WithoutAGeometryShaderAllIsOfTheFirst) {
+  for (const bool by_command : {false, true}) {
+    EXPECT_TRUE(draws(0, by_command));
+    EXPECT_FALSE(draws(1, by_command));
+  }
 }
 
 // ---- VK_EXT_image_sliced_view_of_3d
