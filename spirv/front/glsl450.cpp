@@ -29,6 +29,15 @@ void two_results(Translator& t, const Inst& inst, bool has_pointer, Expr first, 
   result(t, inst, first);
 }
 
+/// SPV_KHR_float_controls2: NaN, infinities and the sign of zero count for numbers like `x`. (This device alone.)
+bool specials_count(const Expr& x) { return (x.t->function.strict_specials & x.width) != 0; }
+
+/// Where a choice of the lesser or the greater gives `chosen`: -0 is less than +0 where the sign of zero counts.
+Expr order_zeros(Expr chosen, Expr a, Expr b, ir::Op op) {
+  if (!specials_count(a)) return chosen;
+  return select(apply(ir::Op::kFEq, {a, b}), op == ir::Op::kFMin ? a | b : a & b, chosen);
+}
+
 Expr clamp(Translator& t, const Inst& inst, ir::Op lower, ir::Op upper) {
   return apply(lower, {apply(upper, {arg(t, inst, 0), arg(t, inst, 1)}), arg(t, inst, 2)});
 }
@@ -88,9 +97,23 @@ void ternary(Translator& t, const Inst& inst, ir::Op op) {
   result(t, inst, apply(op, {arg(t, inst, 0), arg(t, inst, 1), arg(t, inst, 2)}));
 }
 
-void binary_exact(Translator& t, const Inst& inst, ir::Op op) {
+void least(Translator& t, const Inst& inst, ir::Op op) {
+  const Expr a = arg(t, inst, 0), b = arg(t, inst, 1);
+  result(t, inst, order_zeros(apply(op, {a, b}), a, b, op));
+}
+
+void least_exact(Translator& t, const Inst& inst, ir::Op op) {
   const ExactScope exact(t);
-  binary(t, inst, op);
+  least(t, inst, op);
+}
+
+/// What is made of a NaN is one, where that counts.
+void power(Translator& t, const Inst& inst, ir::Op op) {
+  const Expr x = arg(t, inst, 0), y = arg(t, inst, 1);
+  Expr power = apply(op, {x, y});
+  if (specials_count(x))
+    for (const Expr& operand : {y, x}) power = select(apply(ir::Op::kFNeu, {operand, operand}), operand, power);
+  result(t, inst, power);
 }
 
 void radians(Translator& t, const Inst& inst, ir::Op) {
@@ -174,8 +197,13 @@ void modf(Translator& t, const Inst& inst, ir::Op) {
   const std::uint64_t sign_bit = std::uint64_t{1} << (x.width - 1);
   const Expr infinite = apply(ir::Op::kIEq, {size, constant_bits(t, infinity, x.width)});
   const Expr signed_zero = x & constant_bits(t, sign_bit, x.width);
-  const Expr fraction = select(infinite, signed_zero, direction * apply(ir::Op::kFFract, {size}));
-  const Expr whole_part = direction * apply(ir::Op::kFFloor, {size});
+  Expr fraction = select(infinite, signed_zero, direction * apply(ir::Op::kFFract, {size}));
+  Expr whole_part = direction * apply(ir::Op::kFFloor, {size});
+  // GLSL.std.450, Modf: "Both the fractional part and the whole number part have the same sign as the input."
+  if (specials_count(x)) {
+    fraction = fraction | signed_zero;
+    whole_part = whole_part | signed_zero;
+  }
   two_results(t, inst, inst.has(3), fraction, whole_part);
 }
 

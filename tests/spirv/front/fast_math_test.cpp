@@ -38,7 +38,8 @@ std::vector<float> run_saying(const Saying& saying, const std::string& body) {
   module.buffers = {"buffer"};
   module.declarations =
       "%float = OpTypeFloat 32\n%half = OpTypeFloat 16\n%double = OpTypeFloat 64\n%int = OpTypeInt 32 1\n"
-      "%float2 = OpTypeVector %float 2\n%zero = OpConstant %float 0\n%two = OpConstant %float 2\n"
+      "%float2 = OpTypeVector %float 2\n%parts = OpTypeStruct %float %float\n%zero = OpConstant %float 0\n%two = "
+      "OpConstant %float 2\n"
       "%tenth = OpConstant %float 0.1\n%large = OpConstant %float 1e10\n%zero16 = OpConstant %half 0\n"
       "%zero64 = OpConstant %double 0\n%long = OpTypeInt 64 1\n%mode = OpConstant %uint " +
       std::to_string(std::max(0, saying.default_mode)) + "\n";
@@ -137,6 +138,32 @@ TEST(FloatControls2, NumbersOfOtherWidthsKeepTheirZeros) {
     EXPECT_FALSE(std::signbit(minus_zero({.default_mode = kAnything}, type, zero))) << type;
     EXPECT_TRUE(std::signbit(minus_zero({.default_mode = kAnything, .default_type = type}, type, zero))) << type;
   }
+}
+
+/// -0 is less than +0 where the sign of zero counts; both parts of a number have its sign; what is made of a NaN is
+/// one.
+TEST(FloatControls2, SignsOfZeroAndNansPassThroughFunctions) {
+  const std::string copies = "%f2 = OpCopyObject %float %f1\n%f3 = OpCopyObject %float %f2\n";
+  const auto of_both = [&](const std::string& function) {
+    return "%negated = OpFNegate %float %a\n%f1 = OpExtInst %float %glsl " + function + " %a %negated\n" + copies;
+  };
+  const auto part = [](const std::string& number) {
+    return "%f1 = OpExtInst %parts %glsl ModfStruct %a\n%f2 = OpCompositeExtract %float %f1 " + number +
+           "\n%f3 = OpCopyObject %float %f2\n";
+  };
+  const auto fraction = [](float a) { return std::isinf(a) ? std::copysign(0.0f, a) : a - std::trunc(a); };
+  for (const int mode : {0, kOrdinaryNumbers & ~4, kAnything & ~7})
+    for (const Saying& saying : {Saying{.default_mode = mode}, Saying{.decorated = mode}}) {
+      for (const char* function : {"FMin", "NMin"})
+        EXPECT_EQ(count_different(run_saying(saying, of_both(function)), [](float a) { return -std::fabs(a); }), 0u);
+      for (const char* function : {"FMax", "NMax"})
+        EXPECT_EQ(count_different(run_saying(saying, of_both(function)), [](float a) { return std::fabs(a); }), 0u);
+      EXPECT_EQ(count_different(run_saying(saying, part("0")), [&](float a) { return std::copysign(fraction(a), a); }),
+                0u);
+      EXPECT_EQ(count_different(run_saying(saying, part("1")), [](float a) { return std::trunc(a); }), 0u);
+      const std::string power = "%f1 = OpExtInst %float %glsl Pow %a %tenth\n" + copies;
+      EXPECT_TRUE(std::isnan(run_saying(saying, power).back())) << mode;
+    }
 }
 
 /// A conversion there and back is no truncation, which would keep the sign of zero.
