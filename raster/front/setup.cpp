@@ -29,8 +29,9 @@ float bias_offset(const State& state, const PassDesc& pass, float slope_term, fl
   } else {
     // Of floats the mantissa's bits and one.
     const int bits = format && format->channel[0].bits == 16 ? 16 : 24;
-    // Vulkan 1.4.309, Depth Bias: "must be at most r = 2 x 2^-n"; of floats in such units the reference knows nothing.
-    const double unit = exact || floats ? std::ldexp(1.0, -bits) : 1.0 / static_cast<double>((1 << bits) - 1) * 2;
+    // Vulkan 1.4.309, Depth Bias: "must be at most r = 2 x 2^-n"; of units that are asked for the reference knows
+    // nothing.
+    const double unit = exact || unorm ? std::ldexp(1.0, -bits) : 1.0 / static_cast<double>((1 << bits) - 1) * 2;
     offset = static_cast<float>(static_cast<double>(state.depth_bias_constant) * unit) + slope_term;
   }
   const float clamp = state.depth_bias_clamp;

@@ -55,15 +55,17 @@ TEST_F(DepthBiasControl, UnitsAreThoseOfTheRepresentation) {
     const double unit = std::ldexp(1.0, -24);
     for (const auto representation : {VK_DEPTH_BIAS_REPRESENTATION_LEAST_REPRESENTABLE_VALUE_FORMAT_EXT,
                                       VK_DEPTH_BIAS_REPRESENTATION_LEAST_REPRESENTABLE_VALUE_FORCE_UNORM_EXT}) {
-      // "its value must be r = 2^-n"; else "must be at most r = 2 x 2^-n", here as the reference has it.
+      // "its value must be r = 2^-n"; else "must be at most r = 2 x 2^-n", of the format's as the reference has it.
       EXPECT_EQ(depth_of(4096, representation, true, by_command), 0.5 + 4096 * unit);
-      EXPECT_NEAR(depth_of(4096, representation, false, by_command), 0.5 + 2 * 4096 * unit, unit);
+      const bool forced = representation == VK_DEPTH_BIAS_REPRESENTATION_LEAST_REPRESENTABLE_VALUE_FORCE_UNORM_EXT;
+      EXPECT_NEAR(depth_of(4096, representation, false, by_command), 0.5 + (forced ? 1 : 2) * 4096 * unit,
+                  forced ? 0 : unit);
     }
   }
 }
 
-/// "Its value must be at most r = 2 x 2^-n", n of floats being 24: here it is 2^-n whether or not that is asked for.
-TEST_F(DepthBiasControl, UnitsOfFloatsAreExact) {
+/// n of floats is 24.
+TEST_F(DepthBiasControl, ForcedUnitsOfFloatsAreExact) {
   const Picture depth = make_picture(VK_IMAGE_TYPE_2D, VK_FORMAT_D32_SFLOAT, {kSide, kSide, 1}, 1,
                                      VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
   const auto representation = VK_DEPTH_BIAS_REPRESENTATION_LEAST_REPRESENTABLE_VALUE_FORCE_UNORM_EXT;

@@ -48,6 +48,8 @@ raster::State unlike_default() {
   s.logic_op = VK_LOGIC_OP_XOR;
   s.depth_clip = false;
   s.discard.fill({{1, 2}, {3, 4}});
+  s.discard_count = 3;
+  s.discard_inside = true;
   s.rasterized_stream = 2;
   s.overestimates = true;
   s.polygon_mode = VK_POLYGON_MODE_LINE;
