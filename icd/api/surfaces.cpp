@@ -1,4 +1,5 @@
 // Surfaces and queries of what they can do (Vulkan 1.3.239, Window System Integration: WSI Surface, Surface Queries).
+#include <algorithm>
 #include <array>
 
 #include "icd/edge/util.h"
@@ -33,7 +34,7 @@ VkResult create_surface(VkInstance instance, const VkAllocationCallbacks* alloca
 }
 
 /// VK_EXT_surface_maintenance1. A swapchain may present in any mode in turn; images have the window's size.
-void write_maintenance(VkSurfaceCapabilities2KHR& capabilities) {
+void write_maintenance(const VkPhysicalDeviceSurfaceInfo2KHR& info, VkSurfaceCapabilities2KHR& capabilities) {
   if (auto* scaling = find_in_out_chain<VkSurfacePresentScalingCapabilitiesEXT>(capabilities.pNext)) {
     scaling->supportedPresentScaling = 0;
     scaling->supportedPresentGravityX = scaling->supportedPresentGravityY = 0;
@@ -41,8 +42,12 @@ void write_maintenance(VkSurfaceCapabilities2KHR& capabilities) {
     scaling->maxScaledImageExtent = capabilities.surfaceCapabilities.maxImageExtent;
   }
   if (auto* modes = find_in_out_chain<VkSurfacePresentModeCompatibilityEXT>(capabilities.pNext)) {
+    // The mode that is asked about is in every list, however short.
+    std::array order = kPresentModes;
+    if (const auto* asked = find_in_chain<VkSurfacePresentModeEXT>(info.pNext))
+      std::stable_partition(order.begin(), order.end(), [&](VkPresentModeKHR m) { return m == asked->presentMode; });
     OutArray<VkPresentModeKHR> array(&modes->presentModeCount, modes->pPresentModes);
-    for (const VkPresentModeKHR mode : kPresentModes) array.push(mode);
+    for (const VkPresentModeKHR mode : order) array.push(mode);
     array.result();
   }
 }
@@ -133,7 +138,7 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceSurfaceCapabilities2KHR(VkPhysic
   // VK_GOOGLE_surfaceless_query: then only what is the same for every surface is asked for.
   if (info->surface == VK_NULL_HANDLE) return VK_SUCCESS;
   const VkResult result = surface_capabilities(from_handle<Surface>(info->surface), capabilities->surfaceCapabilities);
-  if (result == VK_SUCCESS) write_maintenance(*capabilities);
+  if (result == VK_SUCCESS) write_maintenance(*info, *capabilities);
   return result;
 }
 

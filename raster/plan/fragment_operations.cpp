@@ -115,7 +115,9 @@ void plan_colors(PipelinePlan& plan, const PassDesc& pass, bool general) {
     plan.writer[i] = {};
     if (!pass.color[i].format) continue;
     const auto& color = plan.frag.color[i];
-    const bool written = std::any_of(color.begin(), color.end(), [](std::uint32_t reg) { return reg != kNoReg; });
+    // Blending may have use for the second colour alone.
+    const bool written = (i == 0 && plan.dual_source) ||
+                         std::any_of(color.begin(), color.end(), [](std::uint32_t reg) { return reg != kNoReg; });
     const texel::FormatDesc* format = pass.color[i].format;
     if (!fragment || !written) {
       plan.replaces_colors = false;

@@ -124,6 +124,31 @@ TEST_F(DiscardRectangles, CommandsSwitchThemAndSayWhatIsDiscarded) {
   EXPECT_EQ(drawn(false, VK_DISCARD_RECTANGLE_MODE_EXCLUSIVE_EXT), Pair(true, true));
 }
 
+// ---- Dual-source blending
+
+using DualSource = Maintenance5Draws;
+
+/// Nothing is defined of the first colour, and nothing taken of it.
+TEST_F(DualSource, BlendingTakesTheSecondColorAlone) {
+  for (const char* first : {"", "layout(location = 0) out vec4 d; "}) {
+    Draw draw;
+    draw.fragment = std::string(first) +
+                    "layout(location = 0, index = 1) out vec4 c; void main() { c = vec4(0.25, 0.5, 0.75, 1); }";
+    draw.blends = true;
+    draw.dynamic = {VK_DYNAMIC_STATE_COLOR_BLEND_EQUATION_EXT};
+    const Picture picture = render(draw,
+                                   [&](VkCommandBuffer commands) {
+                                     const VkColorBlendEquationEXT equation{
+                                         VK_BLEND_FACTOR_ZERO, VK_BLEND_FACTOR_SRC1_COLOR, VK_BLEND_OP_ADD,
+                                         VK_BLEND_FACTOR_ZERO, VK_BLEND_FACTOR_SRC1_ALPHA, VK_BLEND_OP_ADD};
+                                     VK_CALL(CmdSetColorBlendEquationEXT)(commands, 0, 1, &equation);
+                                     VK_CALL(CmdDraw)(commands, 3, 1, 0, 0);
+                                   },
+                                   {{1, 1, 1, 1}});
+    EXPECT_EQ(texel(picture, 5, 5, 4), 0xffbf8040u) << first;
+  }
+}
+
 // ---- VK_EXT_transform_feedback: the stream that is rasterized
 
 class RasterizedStream : public Maintenance5Draws {

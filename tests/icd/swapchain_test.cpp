@@ -64,6 +64,13 @@ TEST_F(SurfaceTest, EveryModeCanFollowEveryOther) {
   EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceCapabilities2KHR)(physical_device, &info, &capabilities),
             VK_SUCCESS);
   EXPECT_EQ(compatible.presentModeCount, 4u);
+  // A list that is too short has the one that is asked about.
+  mode.presentMode = VK_PRESENT_MODE_FIFO_RELAXED_KHR;
+  compatible.presentModeCount = 1;
+  EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceCapabilities2KHR)(physical_device, &info, &capabilities),
+            VK_SUCCESS);
+  EXPECT_EQ(compatible.presentModeCount, 1u);
+  EXPECT_EQ(list[0], VK_PRESENT_MODE_FIFO_RELAXED_KHR);
   EXPECT_EQ(scaling.supportedPresentScaling, 0u);
   EXPECT_EQ(scaling.maxScaledImageExtent.width, capabilities.surfaceCapabilities.maxImageExtent.width);
 }
