@@ -90,7 +90,7 @@ class BodyEmitter {
   void move_all(const ScalarOp& op, bool masked) {
     std::vector<Emitter::Move> moves;
     for (std::uint32_t k = 0; k < op.src.count; ++k) moves.push_back({out_.result(op, k), out_.source(op, k), masked});
-    out_.moves(std::move(moves), op.instr);
+    out_.moves(moves, op.instr);
   }
 
   // ---- if
@@ -118,7 +118,7 @@ class BodyEmitter {
       const bool boolean = f_.scalars[to].boolean;
       moves.push_back({to, out_.source(op, k), kept && !boolean});
     }
-    out_.moves(std::move(moves), nullptr);
+    out_.moves(moves, nullptr);
     if (open.op->masked) {
       out_.bind(open.middle);
       out_.append_jump(exec::else_mask, "else", open.end, mask_slot(open.index, 0));
