@@ -6,28 +6,18 @@ Exit status 1 and the places; 77 if that clang-format is missing.
 """
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 
-VERSION = "14"
+import style_tool
+
 ROOMS = ["base", "texel", "spirv", "raster", "glass", "icd", "cts-subset", "tests"]
-
-
-def formatter():
-    for name in (f"clang-format-{VERSION}", "clang-format"):
-        if shutil.which(name):
-            version = subprocess.run([name, "--version"], capture_output=True, text=True, check=True).stdout
-            if re.search(rf"version {VERSION}\.", version):
-                return name
-    return None
 
 
 def main():
     root, fix = pathlib.Path(sys.argv[1]), "--fix" in sys.argv[2:]
-    name = formatter()
+    name = style_tool.find("clang-format")
     if not name:
-        print(f"clang-format {VERSION} is missing (Debian 12: apt-get install clang-format)")
         return 77
     files = sorted(p for room in ROOMS for pattern in ("*.h", "*.cpp") for p in (root / room).rglob(pattern))
     run = subprocess.run([name, *(["-i"] if fix else ["--dry-run", "-Werror"]), *files], capture_output=True, text=True)

@@ -3,7 +3,7 @@
 
 usage: tidy.py SOURCE_FOLDER BUILD_FOLDER [--jobs N] [PATH...]     PATH: only files below it
 A file that passed is remembered by the content of all that it includes (as the build noted it), its command, the checks
-and clang-tidy's version, in $XDG_CACHE_HOME/vitrine/clang-tidy: only what changed is run again, in any clone.
+and clang-tidy's version (Debian 12's, style_tool.py), in $XDG_CACHE_HOME/vitrine/clang-tidy: only what changed is run again, in any clone.
 Exit status 1 and clang-tidy's messages if there are findings; 77 if clang-tidy is missing.
 """
 import argparse
@@ -14,10 +14,11 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import time
+
+import style_tool
 
 KEPT_DAYS = 30  # how long a result that nobody asks for stays in the cache
 FINDING = re.compile(r"^(?P<where>\S+:\d+:\d+): (?:warning|error|fatal error): ")
@@ -77,7 +78,7 @@ class Cache:
             self.folder.mkdir(exist_ok=True)
         self.args = args
         self.read = dependencies(args.build)
-        version = subprocess.run(["clang-tidy", "--version"], capture_output=True, text=True, check=True).stdout
+        version = subprocess.run([args.tidy, "--version"], capture_output=True, text=True, check=True).stdout
         self.common = version + (args.source / ".clang-tidy").read_text()
         for entry in self.folder.iterdir():
             if time.time() - entry.stat().st_mtime > KEPT_DAYS * 86400:
@@ -106,7 +107,7 @@ class Cache:
 
 def findings(args, path):
     """What clang-tidy says of one file: [(place, message with its lines of context)]; clang's own warnings are no findings."""
-    run = subprocess.run(["clang-tidy", "-p", args.build, "--quiet", "--extra-arg=-Wno-error", path], capture_output=True, text=True)
+    run = subprocess.run([args.tidy, "-p", args.build, "--quiet", "--extra-arg=-Wno-error", path], capture_output=True, text=True)
     messages = []
     for line in run.stdout.splitlines():
         match = FINDING.match(line)
@@ -121,8 +122,8 @@ def findings(args, path):
 
 def main():
     args = arguments()
-    if not shutil.which("clang-tidy"):
-        print("clang-tidy is missing (apt-get install clang-tidy)")
+    args.tidy = style_tool.find("clang-tidy")
+    if not args.tidy:
         return 77
     cache = Cache(args)
     keys = {path: cache.key(command) for path, command in commands(args).items()}
