@@ -12,6 +12,10 @@ inline constexpr auto kRequireFullQuads = static_cast<spv::ExecutionMode>(5089);
 inline constexpr auto kMaximallyReconverges = static_cast<spv::ExecutionMode>(6023);
 inline constexpr auto kFPFastMathDefault = static_cast<spv::ExecutionMode>(6028);
 
+inline constexpr auto kExtInstWithForwardRefs = static_cast<spv::Op>(4433);
+inline constexpr auto kConstantCompositeReplicate = static_cast<spv::Op>(4461);
+inline constexpr auto kSpecConstantCompositeReplicate = static_cast<spv::Op>(4462);
+inline constexpr auto kCompositeConstructReplicate = static_cast<spv::Op>(4463);
 inline constexpr auto kQuadAll = static_cast<spv::Op>(5110);
 inline constexpr auto kQuadAny = static_cast<spv::Op>(5111);
 

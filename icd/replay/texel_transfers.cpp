@@ -152,13 +152,15 @@ void note_blit(const ReplayState& state, const CmdBlitImage& command, const VkIm
   const VkOffset3D(&s)[2] = region.srcOffsets;
   const auto x = blit_coordinate(at.x, {d[0].x, d[1].x}, {s[0].x, s[1].x});
   const auto y = blit_coordinate(at.y, {d[0].y, d[1].y}, {s[0].y, s[1].y});
-  const bool slices = to.desc().type == VK_IMAGE_TYPE_3D;
-  const auto z = slices ? blit_coordinate(at.z, {d[0].z, d[1].z}, {s[0].z, s[1].z})
+  const bool slices = to.desc().type == VK_IMAGE_TYPE_3D, volume = from.desc().type == VK_IMAGE_TYPE_3D;
+  // Layers count from the first one of their region, slices are what the offsets say.
+  const std::int64_t slice = slices ? at.z : at.z - region.dstSubresource.baseArrayLayer + std::min(d[0].z, d[1].z);
+  const auto z = volume ? blit_coordinate(slice, {d[0].z, d[1].z}, {s[0].z, s[1].z})
                         : std::optional(double(region.srcSubresource.baseArrayLayer) + 0.5 +
-                                        double(at.z - region.dstSubresource.baseArrayLayer));
+                                        double(slice - std::min(d[0].z, d[1].z)));
   if (!x || !y || !z) return;
   const texel::Extent& extent = plane_of(from, texel.id.aspect).level[region.srcSubresource.mipLevel].extent;
-  const bool linear = command.filter != VK_FILTER_NEAREST, volume = from.desc().type == VK_IMAGE_TYPE_3D;
+  const bool linear = command.filter != VK_FILTER_NEAREST;
   const Taps taps[3] = {taps_of(*x, linear, extent.width), taps_of(*y, linear, extent.height),
                         taps_of(*z, linear && volume, volume ? extent.depth : from.desc().layers)};
   TexelEvent event = texel_event(state, EventKind::kBlit, "blitted from other texels");

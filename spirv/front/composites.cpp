@@ -183,6 +183,23 @@ void composite_construct(Translator& t, const Inst& inst, ir::Op) {
   set_number(t, inst, vector_of(parts));
 }
 
+void composite_replicate(Translator& t, const Inst& inst, ir::Op) {
+  const Type& type = t.module.type(inst.result_type);
+  const std::uint32_t count = constituents(type);
+  if (is_too_large(type)) fail(inst, "composite is too large");
+  if (type.kind == Type::Kind::kVector) {
+    const Expr part = number_of(t, inst.operand(0));
+    if (part.width != number_type(t, inst.result_type).width || part.size() != 1)
+      fail(inst, "the part is no component of the vector");
+    return set_number(t, inst, vector_of(std::vector<Expr>(count, part)));
+  }
+  const Leaves part = value_of(t, inst.operand(0)).leaves;
+  if (std::uint64_t{count} * part.size() != type.leaves) fail(inst, "parts do not fill the composite");
+  Leaves leaves;
+  for (std::uint32_t i = 0; i < count; i++) leaves.insert(leaves.end(), part.begin(), part.end());
+  set_value(t, inst, std::move(leaves));
+}
+
 void composite_extract(Translator& t, const Inst& inst, ir::Op) {
   const Value& from = value_of(t, inst.operand(0));
   const Part part = find_part(t, inst, from.type, 1);

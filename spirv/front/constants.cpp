@@ -7,6 +7,7 @@
 
 #include "base/numeric.h"
 #include "spirv/front/module.h"
+#include "spirv/newer_numbers.h"
 
 namespace vitrine::spirv::front {
 namespace {
@@ -74,6 +75,16 @@ Words composite(const Module& module, const Inst& inst) {
     words.insert(words.end(), part.begin(), part.end());
     if (words.size() > kMaxScalars) fail(inst, "constant is too large");
   }
+  return words;
+}
+
+/// One constant for every constituent.
+Words replicated(const Module& module, const Inst& inst) {
+  const Words& part = operand_constant(module, inst, 0).words;
+  const Type& type = module.type(inst.result_type);
+  Words words;
+  if (std::uint64_t{constituents(type)} * part.size() != type.scalars) return words;
+  for (std::uint32_t i = 0; i < constituents(type); i++) words.insert(words.end(), part.begin(), part.end());
   return words;
 }
 
@@ -301,6 +312,10 @@ void fold_constant(Module& module, const Inst& inst, const CompileOptions& optio
     case Op::OpConstantComposite:
     case Op::OpSpecConstantComposite:
       value.words = composite(module, inst);
+      break;
+    case newer::kConstantCompositeReplicate:
+    case newer::kSpecConstantCompositeReplicate:
+      value.words = replicated(module, inst);
       break;
     case Op::OpConstantNull:
       value.words.assign(type.scalars, 0);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "spirv/front/functions.h"
+#include "spirv/newer_numbers.h"
 
 namespace vitrine::spirv::front {
 namespace {
@@ -319,8 +320,19 @@ void after_function(Translator& t, const Inst& inst) {
     set_slots(t, inst.result, of_operation(t, inst, 2, !mixes_components(function)));
 }
 
+/// One part in every place.
+SlotsOf of_replicas(const Translator& t, const Inst& inst) {
+  const SlotsOf part = slots_of(t, inst.operand(0));
+  SlotsOf slots;
+  for (std::uint32_t i = 0; !part.empty() && i < constituents(t.module.type(inst.result_type)); ++i)
+    slots.insert(slots.end(), part.begin(), part.end());
+  return slots;
+}
+
 SlotsOf slots_of_result(const Translator& t, const Inst& inst) {
   switch (inst.op) {
+    case newer::kCompositeConstructReplicate:
+      return of_replicas(t, inst);
     case Op::OpCopyObject:
     case Op::OpCopyLogical:
     case Op::OpExpectKHR:

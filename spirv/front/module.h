@@ -90,6 +90,11 @@ inline constexpr std::uint32_t kMaxScalars = 1u << 16;
 /// Whether a value of the type is beyond what the front end takes apart: too many scalars, or structures without any.
 inline bool is_too_large(const Type& type) { return type.scalars > kMaxScalars || type.parts > 16 * kMaxScalars; }
 
+/// Number of the constituents of a composite.
+inline std::uint32_t constituents(const Type& type) {
+  return type.kind == Type::Kind::kStruct ? static_cast<std::uint32_t>(type.members.size()) : type.count;
+}
+
 struct DecorationRow {
   std::uint32_t id = 0;
   std::uint32_t member = 0;  ///< member number + 1, 0: the id itself

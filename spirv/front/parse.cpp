@@ -204,8 +204,13 @@ void read_group_decoration(Module& module, const Inst& inst) {
     }
 }
 
-/// What has a number of its own in opcodes.def.
+bool is_replicated_constant(Op op) {
+  return op == newer::kConstantCompositeReplicate || op == newer::kSpecConstantCompositeReplicate;
+}
+
+/// What has a result and its type, and a number of its own in opcodes.def or newer_numbers.h.
 bool is_numbered(Op op) {
+  if (is_replicated_constant(op) || op == newer::kExtInstWithForwardRefs) return true;
   switch (static_cast<std::uint32_t>(op)) {
 #define VITRINE_OPCODE(name, function, op, effect)
 #define VITRINE_NUMBERED_OPCODE(name, number, function, op, effect) case number:
@@ -230,6 +235,8 @@ void split(Module& module, std::span<const std::uint32_t> words) {
     bool has_result = false, has_type = false;
     spv::HasResultAndType(inst.op, &has_result, &has_type);
     if (is_numbered(inst.op)) has_result = has_type = true;
+    // All that differs is that operands may be defined below, and those of sets without meaning are only looked up.
+    if (inst.op == newer::kExtInstWithForwardRefs) inst.op = Op::OpExtInst;
     if (has_type) inst.result_type = inst.words.size() > inst.first ? inst.words[inst.first] : 0, inst.first++;
     if (has_result) inst.result = inst.words.size() > inst.first ? inst.words[inst.first] : 0, inst.first++;
     if (inst.first > inst.words.size()) throw Failure("SPIR-V instruction is too short");
@@ -351,7 +358,8 @@ Module parse_module(std::span<const std::uint32_t> words, const CompileOptions& 
     if (inst.op == Op::OpFunction) in_function = true;
     if (Op::OpTypeVoid <= inst.op && inst.op <= Op::OpTypeFunction) read_type(module, inst);
     if (inst.op == Op::OpTypeForwardPointer) read_forward_pointer(module, inst);
-    if (Op::OpConstantTrue <= inst.op && inst.op <= Op::OpSpecConstantOp) fold_constant(module, inst, options);
+    if ((Op::OpConstantTrue <= inst.op && inst.op <= Op::OpSpecConstantOp) || is_replicated_constant(inst.op))
+      fold_constant(module, inst, options);
     if (inst.op == Op::OpUndef && !in_function) fold_constant(module, inst, options);
     if (inst.op == Op::OpVariable && !in_function) module.globals.push_back(i);
   }

@@ -34,7 +34,13 @@ class Maintenance5Device : public DeviceTest {
     loops.attachmentFeedbackLoopDynamicState = VK_TRUE;
     auto unused = make_struct<VkPhysicalDeviceDynamicRenderingUnusedAttachmentsFeaturesEXT>(&loops);
     unused.dynamicRenderingUnusedAttachments = VK_TRUE;
-    auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>(&unused);
+    auto eighth = make_struct<VkPhysicalDeviceMaintenance8FeaturesKHR>(&unused);
+    eighth.maintenance8 = VK_TRUE;
+    auto attributes = make_struct<VkPhysicalDeviceLegacyVertexAttributesFeaturesEXT>(&eighth);
+    attributes.legacyVertexAttributes = VK_TRUE;
+    auto inputs = make_struct<VkPhysicalDeviceVertexInputDynamicStateFeaturesEXT>(&attributes);
+    inputs.vertexInputDynamicState = VK_TRUE;
+    auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>(&inputs);
     robustness.nullDescriptor = VK_TRUE;
     auto rendering = make_struct<VkPhysicalDeviceDynamicRenderingFeatures>(&robustness);
     rendering.dynamicRendering = VK_TRUE;
@@ -43,6 +49,9 @@ class Maintenance5Device : public DeviceTest {
     features.features.largePoints = features.features.occlusionQueryPrecise = VK_TRUE;
     const char* const names[] = {VK_KHR_MAINTENANCE_5_EXTENSION_NAME,
                                  VK_KHR_MAINTENANCE_6_EXTENSION_NAME,
+                                 VK_KHR_MAINTENANCE_8_EXTENSION_NAME,
+                                 VK_EXT_LEGACY_VERTEX_ATTRIBUTES_EXTENSION_NAME,
+                                 VK_EXT_VERTEX_INPUT_DYNAMIC_STATE_EXTENSION_NAME,
                                  VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
                                  VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME,
                                  VK_EXT_ROBUSTNESS_2_EXTENSION_NAME,

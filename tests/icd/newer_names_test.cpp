@@ -34,13 +34,27 @@ TEST_F(NewerNames, AreOfferedWhereTheHeadersKnowThem) {
   ASSERT_EQ(enumerate(physical_device, nullptr, &count, nullptr), VK_SUCCESS);
   std::vector<VkExtensionProperties> offered(count);
   ASSERT_EQ(enumerate(physical_device, nullptr, &count, offered.data()), VK_SUCCESS);
-  for (const std::string name :
-       {"VK_KHR_calibrated_timestamps", "VK_KHR_compute_shader_derivatives", "VK_KHR_depth_clamp_zero_one",
-        "VK_KHR_dynamic_rendering_local_read", "VK_KHR_index_type_uint8", "VK_KHR_line_rasterization",
-        "VK_KHR_load_store_op_none", "VK_KHR_maintenance5", "VK_KHR_maintenance6", "VK_KHR_maintenance7",
-        "VK_KHR_map_memory2", "VK_KHR_shader_expect_assume", "VK_KHR_shader_float_controls2",
-        "VK_KHR_shader_maximal_reconvergence", "VK_KHR_shader_quad_control", "VK_KHR_shader_subgroup_rotate",
-        "VK_KHR_vertex_attribute_divisor"}) {
+  for (const std::string name : {"VK_KHR_calibrated_timestamps",
+                                 "VK_KHR_compute_shader_derivatives",
+                                 "VK_KHR_depth_clamp_zero_one",
+                                 "VK_KHR_dynamic_rendering_local_read",
+                                 "VK_KHR_index_type_uint8",
+                                 "VK_KHR_line_rasterization",
+                                 "VK_KHR_load_store_op_none",
+                                 "VK_KHR_maintenance5",
+                                 "VK_KHR_maintenance6",
+                                 "VK_KHR_maintenance7",
+                                 "VK_KHR_maintenance8",
+                                 "VK_KHR_map_memory2",
+                                 "VK_KHR_shader_expect_assume",
+                                 "VK_KHR_shader_float_controls2",
+                                 "VK_KHR_shader_maximal_reconvergence",
+                                 "VK_KHR_shader_quad_control",
+                                 "VK_KHR_shader_relaxed_extended_instruction",
+                                 "VK_KHR_shader_subgroup_rotate",
+                                 "VK_EXT_legacy_vertex_attributes",
+                                 "VK_EXT_shader_replicated_composites",
+                                 "VK_KHR_vertex_attribute_divisor"}) {
     const bool is_offered = std::any_of(offered.begin(), offered.end(),
                                         [&](const VkExtensionProperties& e) { return name == e.extensionName; });
     EXPECT_EQ(is_offered, VK_HEADER_VERSION >= 309) << name;
@@ -76,6 +90,8 @@ TEST_F(NewerNames, FeaturesAndPropertiesAreTold) {
   EXPECT_TRUE(features<VkPhysicalDeviceShaderFloatControls2FeaturesKHR>().shaderFloatControls2);
   EXPECT_TRUE(features<VkPhysicalDeviceShaderMaximalReconvergenceFeaturesKHR>().shaderMaximalReconvergence);
   EXPECT_TRUE(features<VkPhysicalDeviceShaderQuadControlFeaturesKHR>().shaderQuadControl);
+  EXPECT_TRUE(features<VkPhysicalDeviceShaderRelaxedExtendedInstructionFeaturesKHR>().shaderRelaxedExtendedInstruction);
+  EXPECT_TRUE(features<VkPhysicalDeviceShaderReplicatedCompositesFeaturesEXT>().shaderReplicatedComposites);
   const auto derivatives = features<VkPhysicalDeviceComputeShaderDerivativesFeaturesKHR>();
   EXPECT_TRUE(derivatives.computeDerivativeGroupQuads && derivatives.computeDerivativeGroupLinear);
   EXPECT_FALSE(properties<VkPhysicalDeviceComputeShaderDerivativesPropertiesKHR>().meshAndTaskShaderDerivatives);
