@@ -56,6 +56,15 @@ struct Features::Structures {
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_WORKGROUP_MEMORY_EXPLICIT_LAYOUT_FEATURES_KHR};
   VkPhysicalDeviceImage2DViewOf3DFeaturesEXT slices{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_2D_VIEW_OF_3D_FEATURES_EXT};
   VkPhysicalDeviceFaultFeaturesEXT fault{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT};
+#ifdef VK_KHR_maintenance8
+  VkPhysicalDeviceMaintenance8FeaturesKHR eighth{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_8_FEATURES_KHR};
+  VkPhysicalDeviceLegacyVertexAttributesFeaturesEXT attributes{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_LEGACY_VERTEX_ATTRIBUTES_FEATURES_EXT};
+  VkPhysicalDeviceShaderReplicatedCompositesFeaturesEXT replicas{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_REPLICATED_COMPOSITES_FEATURES_EXT};
+  VkPhysicalDeviceShaderRelaxedExtendedInstructionFeaturesKHR relaxed{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_RELAXED_EXTENDED_INSTRUCTION_FEATURES_KHR};
+#endif
 
   /// Calls f(extension, structure) for those of extensions.
   template <class F>
@@ -79,6 +88,12 @@ struct Features::Structures {
     f(VK_KHR_WORKGROUP_MEMORY_EXPLICIT_LAYOUT_EXTENSION_NAME, shared);
     f(VK_EXT_IMAGE_2D_VIEW_OF_3D_EXTENSION_NAME, slices);
     f(VK_EXT_DEVICE_FAULT_EXTENSION_NAME, fault);
+#ifdef VK_KHR_maintenance8
+    f(VK_KHR_MAINTENANCE_8_EXTENSION_NAME, eighth);
+    f(VK_EXT_LEGACY_VERTEX_ATTRIBUTES_EXTENSION_NAME, attributes);
+    f(VK_EXT_SHADER_REPLICATED_COMPOSITES_EXTENSION_NAME, replicas);
+    f(VK_KHR_SHADER_RELAXED_EXTENDED_INSTRUCTION_EXTENSION_NAME, relaxed);
+#endif
   }
 };
 
