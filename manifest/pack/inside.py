@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """What packed files have inside that others wrote: their notices, and a list in SPDX 2.3.
 
-usage: inside.py VERSION SECONDS ARCHITECTURE FOLDER HEADERS LIBRARIES
+usage: inside.py VERSION SECONDS ARCHITECTURE FOLDER HEADERS LIBRARIES COMPILER
 
 NOTICES and vitrine.spdx.json, into FOLDER. SECONDS since 1970 go into the list as its date, so that two builds give the
 same file. The versions are those of the installed packages; their notices are the copyright files that Debian installs
 with them. HEADERS: the folder usr/ where manifest/pack/newer-headers has unpacked packages, which then are those inside;
-LIBRARIES: where manifest/pack/cross-root has unpacked those of another architecture. Both can be empty.
+LIBRARIES: where manifest/pack/cross-root has unpacked those of another architecture. Both can be empty. COMPILER: whose own
+libraries are inside; dpkg tells their packages.
 """
 import json
 import pathlib
@@ -23,8 +24,11 @@ INSIDE = (
     ("nlohmann-json3-dev", "JSON for Modern C++, headers: reports"),
     ("libcli11-dev", "CLI11, headers: the command line"),
     ("zlib1g-dev", "zlib, linked: bug files"),
-    ("libstdc++-12-dev", "GCC's C++ runtime, linked"),
-    ("libgcc-12-dev", "GCC's support routines, linked"),
+)
+# File of the compiler, what of it is inside.
+OF_COMPILER = (
+    ("libstdc++.a", "GCC's C++ runtime, linked"),
+    ("libgcc.a", "GCC's support routines, linked"),
 )
 
 
@@ -47,16 +51,21 @@ def installed(package):
     return subprocess.run(["dpkg-query", "-W", "-f=${Version}", package], check=True, capture_output=True, text=True).stdout
 
 
+def owner(compiler, name):
+    """The installed package that has a library which the compiler links."""
+    file = subprocess.run([compiler, f"-print-file-name={name}"], check=True, capture_output=True, text=True).stdout.strip()
+    # "PACKAGE:ARCHITECTURE: FILE"
+    told = subprocess.run(["dpkg-query", "-S", str(pathlib.Path(file).resolve())], check=True, capture_output=True, text=True).stdout
+    return told.split(":")[0]
+
+
 def main():
     version, seconds, architecture, folder = sys.argv[1], int(sys.argv[2]), sys.argv[3], pathlib.Path(sys.argv[4])
-    apart = sources(architecture, *sys.argv[5:7])
+    apart, compiler = sources(architecture, *sys.argv[5:7]), sys.argv[7]
     text = ["Vitrine has parts of these inside. What follows are the notices that Debian's packages of them have.\n"]
     packages = []
     relations = []
-    for package, role in INSIDE:
-        # The compiler's own libraries come with the compiler, here one for another architecture.
-        if sys.argv[6] and package.endswith("-12-dev"):
-            package += f"-{architecture}-cross"
+    for package, role in INSIDE + tuple((owner(compiler, name), role) for name, role in OF_COMPILER):
         usr, number = next(((usr, versions[package]) for usr, versions in apart if package in versions), (pathlib.Path("/usr"), None))
         number = number or installed(package)
         copyright_file = usr / "share/doc" / package / "copyright"

@@ -16,7 +16,11 @@ import unittest
 
 ROOT = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else pathlib.Path(".")
 SETUP = ROOT / "manifest/pack/ci-setup"
-MANIFEST = "lib/vitrine/vitrine_icd.x86_64.json"
+MACHINE = os.uname().machine
+
+
+def manifest_of(machine):
+    return f"lib/vitrine/vitrine_icd.{machine}.json"
 
 
 def pack(path, files):
@@ -30,11 +34,15 @@ def pack(path, files):
 class Setup(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
-        self.archive = self.folder / "vitrine-9.9.9-x86_64.tar.gz"
-        pack(self.archive, {f"vitrine-9.9.9-x86_64/{MANIFEST}": "{}", "vitrine-9.9.9-x86_64/bin/vitrine": "#!/bin/sh\necho vitrine 9.9.9\n"})
+        self.archive = self.archive_for(MACHINE)
         self.sum = hashlib.sha256(self.archive.read_bytes()).hexdigest()
-        self.tree = self.folder / "tools it has/vitrine/vitrine-9.9.9-x86_64"
+        self.tree = self.folder / f"tools it has/vitrine/vitrine-9.9.9-{MACHINE}"
         self.github = {name: str(self.folder / name) for name in ("GITHUB_ENV", "GITHUB_PATH", "GITHUB_OUTPUT")}
+
+    def archive_for(self, machine):
+        archive, top = self.folder / f"vitrine-9.9.9-{machine}.tar.gz", f"vitrine-9.9.9-{machine}"
+        pack(archive, {f"{top}/{manifest_of(machine)}": "{}", f"{top}/bin/vitrine": "#!/bin/sh\necho vitrine 9.9.9\n"})
+        return archive
 
     def run_it(self, *command, **variables):
         plain = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
@@ -48,7 +56,7 @@ class Setup(unittest.TestCase):
     def test_the_next_steps_have_the_driver(self):
         result = self.run_it(SETUP, self.archive, self.sum, **self.github)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
-        manifest = self.tree / MANIFEST
+        manifest = self.tree / manifest_of(MACHINE)
         self.assertTrue(manifest.is_file())
         self.assertEqual(self.written("GITHUB_ENV"), f"VK_DRIVER_FILES={manifest}\nVK_ICD_FILENAMES={manifest}\n")
         self.assertEqual(self.written("GITHUB_PATH"), f"{self.tree}/bin\n")
@@ -65,7 +73,20 @@ class Setup(unittest.TestCase):
     def test_other_runners_evaluate_what_it_prints(self):
         again = ["bash", "-c", f'eval "$("{SETUP}" "{self.archive}")"; eval "$("{SETUP}" "{self.archive}")"; vitrine; echo "$VK_DRIVER_FILES"']
         result = self.run_it(*again)
-        self.assertEqual(result.stdout, f"vitrine 9.9.9\n{self.tree / MANIFEST}\n", result.stderr)
+        self.assertEqual(result.stdout, f"vitrine 9.9.9\n{self.tree / manifest_of(MACHINE)}\n", result.stderr)
+
+    def test_the_machine_says_which_driver(self):
+        (self.folder / "bin").mkdir()
+        uname = self.folder / "bin/uname"
+        for machine, other in (("x86_64", "aarch64"), ("aarch64", "x86_64")):
+            uname.write_text(f"#!/bin/sh\necho {machine}\n")
+            uname.chmod(0o755)
+            path = {"PATH": f"{uname.parent}:{os.environ['PATH']}"}
+            result = self.run_it(SETUP, self.archive_for(machine), **path)
+            self.assertIn(f"vitrine-9.9.9-{machine}/{manifest_of(machine)} ", result.stdout, result.stderr)
+            result = self.run_it(SETUP, self.archive_for(other), **path)
+            self.assertEqual((result.returncode, result.stdout), (1, ""))
+            self.assertIn(f"has a driver for another machine than {machine}", result.stderr)
 
     def test_another_file_than_wanted_changes_nothing(self):
         other = self.folder / "other.tar.gz"
