@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """What ./package makes: runs where it was unpacked, asks for no newer C library than it says, has its debug symbols
 apart, passes lintian, and is the same twice. For 64-bit ARM the same, run by QEMU, with the picture of this machine's.
+What it cannot check because a tool is missing it says at its end: "NOT CHECKED".
 
 usage: package_test.py ROOT WORK [ARCHITECTURE]
+
+WORK: a folder in the build tree that has this machine's demo and driver.
 """
 import os
 import pathlib
@@ -19,6 +22,17 @@ MACHINES = {"amd64": "x86_64", "arm64": "aarch64"}
 # A function of each program that debuggers find, and its file.
 SEEN_BY_DEBUGGERS = {"lib/vitrine/libvitrine_icd.so": ("vk_icdGetInstanceProcAddr", "icd/"), "bin/vitrine": ("main", "glass/cli/main.cpp"),
                      "bin/vitrine-replay": ("main", "glass/replayer/main.cpp")}
+
+
+unchecked = []  # what, and why
+
+
+def has(tool, what):
+    """Whether the tool is installed; else what it is for is not checked."""
+    if shutil.which(tool):
+        return True
+    unchecked.append(f"{what}: {tool} is missing (manifest/install-packages package)")
+    return False
 
 
 def run(*command, **settings):
@@ -52,8 +66,8 @@ def faults_of_symbols(tree, tool):
 
 
 def faults_of_gdb(tree):
-    """gdb, too, finds the driver's in the folder that it is told, where there is a gdb."""
-    if not shutil.which("gdb"):
+    """gdb, too, finds the driver's in the folder that it is told."""
+    if not has("gdb", "that gdb finds the driver's lines"):
         return
     said = run("gdb", "-nx", "-batch", "-iex", f"set debug-file-directory {tree / 'lib/debug'}", "-ex", "info line vk_icdGetInstanceProcAddr",
                tree / PROGRAMS[0])
@@ -69,31 +83,36 @@ def faults_of_debs(root, version, architecture):
             yield f"{file.name} is for another architecture"
     if run("dpkg-deb", "--field", files[1], "Depends").strip() != f"vitrine (= {version})":
         yield f"{files[1].name} is not that of its package"
-    if shutil.which("lintian"):
+    if has("lintian", "what lintian says of the Debian packages"):
         told = subprocess.run(["lintian", "--allow-root", "--fail-on", "error,warning", *files], capture_output=True, text=True)
         if told.returncode:
             yield f"lintian: {told.stdout}{told.stderr}"
 
 
 def faults_of_running(root, tree, architecture):
-    """The command finds its driver; for ARM the demo's picture is this machine's."""
+    """The command finds its driver; for ARM it starts, and the demo's picture is this machine's."""
     if architecture == "amd64":
         summary = run(tree / "bin/vitrine", "run", "vulkaninfo", "--summary", cwd="/")
         if "deviceName         = Vitrine" not in summary:
             yield f"the unpacked command runs on another device: {summary}"
         return
-    demo = root / "build/arm64/tests/vitrine_demo"
-    if not shutil.which("qemu-aarch64-static") or not demo.is_file():
-        print(f"not run: {demo} or qemu-aarch64-static is missing")
+    if not has("qemu-aarch64-static", "that what is packed for 64-bit ARM runs"):
         return
+    emulated = ("qemu-aarch64-static", "-L", root / "build/arm64-root")
+    version = tree.name.split("-")[1]
+    if version not in (said := run(*emulated, tree / "bin/vitrine", "--version")):
+        yield f"the command does not tell its version on ARM: {said}"
+    run("cmake", "--build", root / "build/portable-arm64", "--target", "vitrine_demo")
+    run("cmake", "--build", tree.parent.parent, "--target", "vitrine_demo", "vitrine_icd_library")
     pictures = []
-    for program, machine, folder in ((["qemu-aarch64-static", "-L", root / "build/arm64-root", demo], "aarch64", tree / "lib/vitrine"),
-                                     ([root / "build/release/tests/vitrine_demo"], "x86_64", root / "build/release/icd")):
+    for program, machine, folder in (([*emulated, root / "build/portable-arm64/tests/vitrine_demo"], "aarch64", tree / "lib/vitrine"),
+                                     ([tree.parent.parent / "tests/vitrine_demo"], "x86_64", tree.parent.parent / "icd")):
         picture = tree.parent / f"{machine}.png"
         run(*program, picture, env=os.environ | {"VK_DRIVER_FILES": str(folder / f"vitrine_icd.{machine}.json")})
         pictures.append(picture.read_bytes())
     if pictures[0] != pictures[1]:
         yield "the demo's picture is another one on ARM"
+    print(f"the demo's picture: {len(pictures[0])} bytes")
 
 
 def faults(root, work, architecture):
@@ -109,6 +128,7 @@ def faults(root, work, architecture):
     with tarfile.open(root / "build/packages" / archive) as packed:
         packed.extractall(work)
     unpacked = sum(path.stat().st_size for path in tree.rglob("*") if path.is_file())
+    print(f"{archive}: {len(first[archive])} bytes, {unpacked} unpacked")
     if len(first[archive]) > MOST_PACKED or unpacked > MOST_UNPACKED:
         yield f"{len(first[archive])} bytes, {unpacked} unpacked"
     with tarfile.open(root / "build/packages" / debug) as packed:
@@ -137,7 +157,8 @@ def faults(root, work, architecture):
 
 def main():
     architecture = sys.argv[3] if len(sys.argv) > 3 else "amd64"
-    found = list(faults(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), architecture))
+    found = list(faults(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), architecture))
+    print("\n".join(f"NOT CHECKED {what}" for what in unchecked))
     print("\n".join(f"FAULT {fault}" for fault in found) or "packages: as they should be")
     return 1 if found else 0
 
