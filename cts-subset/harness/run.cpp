@@ -1,6 +1,8 @@
 // Objects of a run: buffers, samplers, shaders, descriptors, command buffers.
 #include "harness/run.h"
 
+#include <algorithm>
+
 #include "harness/mutant.h"
 #include "harness/options.h"
 #include "harness/shader.h"

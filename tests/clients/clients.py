@@ -264,12 +264,14 @@ def chromium(device, page):
     server = http.server.ThreadingHTTPServer(("localhost", 0), functools.partial(Pages, directory=str(HERE)))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
-        shown = device.run(
-            "chromium", "--no-sandbox", "--headless=new", "--use-gl=angle", "--use-angle=vulkan",
-            "--use-vulkan=native", "--enable-features=Vulkan", "--ignore-gpu-blocklist", "--enable-unsafe-webgpu",
-            "--enable-webgpu-developer-features",
-            f"--user-data-dir={device.folder}/profile", "--virtual-time-budget=20000", "--dump-dom",
-            f"http://localhost:{server.server_port}/{page}").decode()
+        for _ in range(5):  # virtual time does not wait for what the device does: on a busy machine it can be over too soon
+            shown = device.run(
+                "chromium", "--no-sandbox", "--headless=new", "--use-gl=angle", "--use-angle=vulkan",
+                "--use-vulkan=native", "--enable-features=Vulkan", "--ignore-gpu-blocklist", "--enable-unsafe-webgpu",
+                "--enable-webgpu-developer-features", f"--user-data-dir={device.folder}/profile",
+                "--virtual-time-budget=20000", "--dump-dom", f"http://localhost:{server.server_port}/{page}").decode()
+            if ">nothing<" not in shown:
+                break
     finally:
         server.shutdown()
     found = re.search(r'<pre id="result">(.*?)</pre>', shown)

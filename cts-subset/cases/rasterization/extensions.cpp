@@ -1,5 +1,6 @@
 // Fixed-function state of extensions: provoking vertex, depth clipping, line rasterization, instance divisors, restart
 // of lists, stencil export, coverage after the depth test, viewport and layer from the vertex shader.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
