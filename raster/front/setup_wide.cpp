@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/angles.h"
 #include "base/numeric.h"
 
 namespace vitrine::raster {
@@ -201,7 +202,7 @@ void setup_line(const SetupContext& context, const Vertex* v1, const Vertex* v2,
 void setup_smooth_line(SetupContext context, Arena& arena, const Vertex* v0, const Vertex* v1, bool front) {
   const PipelinePlan& plan = *context.plan;
   const float dx = v1[0] - v0[0], dy = v1[1] - v0[1];
-  const float angle = std::atan2(dy, dx), c = std::cos(angle), s = std::sin(angle);
+  const auto [c, s] = base::direction_of(base::atan2(dy, dx));
   const float line_width = plan.state->line_width;
   const float half_width = line_width <= 1.0f ? 1.0f : 0.5f * line_width + 0.5f;
   const float half = 0.5f * std::sqrt(dx * dx + dy * dy);
