@@ -1,6 +1,7 @@
 // See angles.h.
 #include "base/angles.h"
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -59,11 +60,7 @@ float atan_of(float t) {
 
 /// The exponents' difference of two finite numbers that are not 0, as their words' tops have it.
 int exponents_apart(float a, float b) {
-  const auto word = [](float x) {
-    std::uint32_t bits;
-    __builtin_memcpy(&bits, &x, sizeof bits);
-    return static_cast<std::int32_t>(bits & 0x7fffffff);
-  };
+  const auto word = [](float x) { return static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(x) & 0x7fffffff); };
   return (word(a) - word(b)) >> 23;
 }
 

@@ -5,7 +5,7 @@
 namespace vitrine::base {
 
 /// The angle of (x, y) from the x axis, -pi to pi. The quotient is brought near one of four known angles, where a
-/// polynomial of degree 23 does the rest (S. Moshier's and FreeBSD's msun have the method, as fdlibm has).
+/// polynomial of degree 23 does the rest: the method of fdlibm.
 float atan2(float y, float x);
 
 struct Direction {

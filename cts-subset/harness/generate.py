@@ -31,7 +31,8 @@ LEFT_OUT = {
                      "VK_KHR_maintenance6", "VK_KHR_maintenance7", "VK_KHR_maintenance8",
                      "VK_KHR_map_memory2", "VK_KHR_shader_expect_assume", "VK_KHR_shader_float_controls2",
                      "VK_KHR_shader_maximal_reconvergence", "VK_KHR_shader_quad_control",
-                     "VK_KHR_shader_relaxed_extended_instruction", "VK_KHR_shader_subgroup_rotate", "VK_KHR_vertex_attribute_divisor"),
+                     "VK_KHR_shader_relaxed_extended_instruction", "VK_KHR_shader_subgroup_rotate",
+                     "VK_KHR_vertex_attribute_divisor"),
                     "came after Vulkan 1.3.239: Debian 12's validation layer takes its structures for mistakes"),
 }
 

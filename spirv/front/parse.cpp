@@ -362,11 +362,9 @@ Module parse_module(std::span<const std::uint32_t> words, const CompileOptions& 
       fold_constant(module, inst, options);
     if (inst.op == Op::OpUndef && !in_function) fold_constant(module, inst, options);
     if (inst.op == Op::OpVariable && !in_function) module.globals.push_back(i);
+    module.votes_in_quads |= inst.op == newer::kQuadAny || inst.op == newer::kQuadAll;
   }
   module.has_workgroup_blocks = has_workgroup_blocks(module);
-  module.votes_in_quads = std::any_of(module.code.begin(), module.code.end(), [](const Inst& inst) {
-    return inst.op == newer::kQuadAny || inst.op == newer::kQuadAll;
-  });
   read_functions(module);
   return module;
 }
