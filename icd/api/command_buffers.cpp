@@ -36,8 +36,8 @@ void stick_record_error(VkCommandBuffer command_buffer, VkResult error) {
 void mark_command(VkCommandBuffer command_buffer, const char* name) { record(command_buffer, CmdMark{name}); }
 
 void CommandBuffer::reset() noexcept {
-  for (DescriptorSet* set : pushed_sets) set->~DescriptorSet();
-  pushed_sets.clear();
+  for (DescriptorSet* set : own_sets) set->~DescriptorSet();
+  own_sets.clear();
   current_push = {};
   arena.release();
   state = RecordState::kInitial;

@@ -5,7 +5,7 @@
 
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
-#include "icd/object/descriptors.h"
+#include "icd/object/descriptor_bytes.h"
 #include "icd/object/image.h"
 
 namespace vitrine::icd {
@@ -56,10 +56,30 @@ void assign_slots(SetShape& shape) {
   }
 }
 
+/// Bytes of an element in a descriptor buffer. `types`: those that a mutable descriptor may take on, or null: any.
+std::uint32_t stride_of(VkDescriptorType type, const VkMutableDescriptorTypeListEXT* types) {
+  if (!is_mutable(type)) return descriptor_bytes(type);
+  if (!types) return descriptor_bytes(VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER);  // the largest
+  std::uint32_t most = 0;
+  for (std::uint32_t i = 0; i < types->descriptorTypeCount; ++i)
+    most = std::max(most, descriptor_bytes(types->pDescriptorTypes[i]));
+  return most;
+}
+
+/// Where bindings lie in a descriptor buffer: one after the other.
+void assign_offsets(SetShape& shape) {
+  for (SetBinding& b : shape.bindings) {
+    const std::uint64_t alignment = is_inline_block(b.type) ? kInlineBlockAlignment : kDescriptorByteAlignment;
+    b.buffer_offset = (shape.buffer_bytes + alignment - 1) & ~(alignment - 1);
+    shape.buffer_bytes = b.buffer_offset + std::uint64_t{b.count} * (is_inline_block(b.type) ? 1 : b.stride);
+  }
+}
+
 std::shared_ptr<const SetShape> make_set_shape(const HostMemory& memory, const VkDescriptorSetLayoutCreateInfo& info) {
   std::shared_ptr<SetShape> shape = make_shape<SetShape>(memory);
   shape->flags = info.flags;
   const auto* flags = find_in_chain<VkDescriptorSetLayoutBindingFlagsCreateInfo>(info.pNext);
+  const auto* types = find_in_chain<VkMutableDescriptorTypeCreateInfoEXT>(info.pNext);
   for (std::uint32_t i = 0; i < info.bindingCount; ++i) {
     const VkDescriptorSetLayoutBinding& source = info.pBindings[i];
     SetBinding b;
@@ -68,11 +88,14 @@ std::shared_ptr<const SetShape> make_set_shape(const HostMemory& memory, const V
     b.stages = source.stageFlags;
     b.count = source.descriptorCount;
     if (flags && i < flags->bindingCount) b.flags = flags->pBindingFlags[i];
+    const bool listed = types && i < types->mutableDescriptorTypeListCount;
+    b.stride = stride_of(b.type, listed ? &types->pMutableDescriptorTypeLists[i] : nullptr);
     shape->bindings.push_back(b);
   }
   std::sort(shape->bindings.begin(), shape->bindings.end(),
             [](const SetBinding& a, const SetBinding& b) { return a.binding < b.binding; });
   assign_slots(*shape);
+  assign_offsets(*shape);
   copy_immutable_samplers(info, *shape);
   return shape;
 }
@@ -113,6 +136,17 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorSetLayout(VkDevice device, const 
 VKAPI_ATTR void VKAPI_CALL DestroyDescriptorSetLayout(VkDevice, VkDescriptorSetLayout layout,
                                                       const VkAllocationCallbacks*) {
   destroy_handle<DescriptorSetLayout>(layout);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetDescriptorSetLayoutSizeEXT(VkDevice, VkDescriptorSetLayout layout, VkDeviceSize* bytes) {
+  *bytes = from_handle<DescriptorSetLayout>(layout).shape->buffer_bytes;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetDescriptorSetLayoutBindingOffsetEXT(VkDevice, VkDescriptorSetLayout layout,
+                                                                  std::uint32_t number, VkDeviceSize* offset) {
+  const Vector<SetBinding>& bindings = from_handle<DescriptorSetLayout>(layout).shape->bindings;
+  const auto at = std::ranges::find(bindings, number, &SetBinding::binding);
+  *offset = at == bindings.end() ? 0 : at->buffer_offset;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreatePipelineLayout(VkDevice device, const VkPipelineLayoutCreateInfo* info,

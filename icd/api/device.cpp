@@ -6,6 +6,7 @@
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/address_book.h"
+#include "icd/object/descriptor_bytes.h"
 
 namespace vitrine::icd {
 namespace {
@@ -62,6 +63,9 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physical_device, co
   object->features = features;
   keep_memory_reports(*info, *object);
   if (!glass::session().idle()) object->addresses = std::make_shared<AddressBook>();
+  if (features.test(Feature::descriptorBuffer))
+    object->described =
+        std::allocate_shared<DescribedObjects>(HostAllocator<DescribedObjects>(object->memory), object->memory);
   if (info->queueCreateInfoCount) object->queue.flags = info->pQueueCreateInfos[0].flags;
   if (start_queue) start_queue(object->queue);
   *device = to_handle(object.release());

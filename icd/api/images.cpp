@@ -8,6 +8,7 @@
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/address_book.h"
+#include "icd/object/descriptor_bytes.h"
 #include "icd/object/device.h"
 #include "icd/properties.h"
 #include "texel/transfer.h"
@@ -235,7 +236,9 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroyImageView(VkDevice device, VkImageView view, const VkAllocationCallbacks*) {
-  leave_address(from_handle<Device>(device), from_nullable<ImageView>(view));
+  const Device& d = from_handle<Device>(device);
+  leave_address(d, from_nullable<ImageView>(view));
+  if (d.described && view) d.described->views.forget(from_handle<ImageView>(view));
   destroy_handle<ImageView>(view);
 }
 

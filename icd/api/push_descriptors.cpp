@@ -5,39 +5,23 @@
 
 #include "icd/entry_points.h"
 #include "icd/object/descriptor_template.h"
-#include "icd/record/command_buffer.h"
+#include "icd/record/own_sets.h"
 #include "icd/record/stage_binding.h"
 
 namespace vitrine::icd {
 namespace {
 
 /// A new set for `number`; it begins as a copy of what was pushed before to a set of the same shape.
-DescriptorSet& add_set(CommandBuffer& buffer, VkPipelineBindPoint bind_point, const PipelineLayoutShape& layout,
-                       std::uint32_t number) {
-  const std::shared_ptr<const SetShape>& shape = layout.sets[number];
-  buffer.pushed_sets.reserve(buffer.pushed_sets.size() + 1);
-  void* storage = buffer.arena.add_data(set_bytes(*shape, 0));
-  DescriptorSet* set = construct_set(storage, buffer.memory, shape, 0);
-  buffer.pushed_sets.push_back(set);
+DescriptorSet& push_set(CommandBuffer& buffer, VkPipelineBindPoint bind_point, const PipelineLayoutShape& layout,
+                        std::uint32_t number) {
+  DescriptorSet& set = add_own_set(buffer, layout, number);
   DescriptorSet*& current = buffer.current_push[bind_point == VK_PIPELINE_BIND_POINT_COMPUTE][number];
-  if (current && current->shape == shape) {
-    std::copy_n(current->slots, set->slot_count, set->slots);
-    if (set->written && current->written) std::copy_n(current->written, set->slot_count, set->written);
+  if (current && current->shape == set.shape) {
+    std::copy_n(current->slots, set.slot_count, set.slots);
+    if (set.written && current->written) std::copy_n(current->written, set.slot_count, set.written);
   }
-  current = set;
-  return *set;
-}
-
-void record_bind(CommandBuffer& buffer, VkPipelineBindPoint bind_point, const PipelineLayoutShape& layout,
-                 std::uint32_t number, DescriptorSet& set) {
-  const auto sets = buffer.arena.add_array<DescriptorSet*>(1);
-  sets[0] = &set;
-  record(buffer, CmdBindDescriptorSets{
-                     bind_point, number, sets, buffer.arena.copy_array(&layout.first_dynamic[number], 1), {}});
-}
-
-bool has_set(const PipelineLayoutShape& layout, std::uint32_t number) {
-  return number < layout.sets.size() && number < spirv::kMaxSets && layout.sets[number];
+  current = &set;
+  return set;
 }
 
 }  // namespace
@@ -50,9 +34,9 @@ VKAPI_ATTR void VKAPI_CALL CmdPushDescriptorSetKHR(VkCommandBuffer handle, VkPip
   CommandBuffer& buffer = from_handle<CommandBuffer>(handle);
   const PipelineLayoutShape& layout = *from_handle<PipelineLayout>(layout_handle).shape;
   if (!has_set(layout, number)) return;
-  DescriptorSet& set = add_set(buffer, bind_point, layout, number);
+  DescriptorSet& set = push_set(buffer, bind_point, layout, number);
   for (std::uint32_t i = 0; i < count; ++i) write_descriptors(writes[i], set);
-  record_bind(buffer, bind_point, layout, number, set);
+  bind_own_set(buffer, bind_point, layout, number, set);
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdPushDescriptorSetWithTemplateKHR(VkCommandBuffer handle,
@@ -63,12 +47,12 @@ VKAPI_ATTR void VKAPI_CALL CmdPushDescriptorSetWithTemplateKHR(VkCommandBuffer h
   const auto& update_template = from_handle<DescriptorUpdateTemplate>(template_handle);
   const PipelineLayoutShape& layout = *from_handle<PipelineLayout>(layout_handle).shape;
   if (!has_set(layout, number)) return;
-  DescriptorSet& set = add_set(buffer, update_template.bind_point, layout, number);
+  DescriptorSet& set = push_set(buffer, update_template.bind_point, layout, number);
   TemplateScratch scratch(buffer.memory);
   for (const VkDescriptorUpdateTemplateEntry& e : update_template.entries) {
     write_descriptors(make_write(e, data, scratch), set);
   }
-  record_bind(buffer, update_template.bind_point, layout, number, set);
+  bind_own_set(buffer, update_template.bind_point, layout, number, set);
 }
 
 #ifdef VK_KHR_maintenance6

@@ -4,6 +4,7 @@
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/object/address_book.h"
+#include "icd/object/descriptor_bytes.h"
 #include "icd/object/image.h"
 #include "texel/sampler/plan.h"
 #include "texel/swizzle.h"
@@ -70,7 +71,9 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCre
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice device, VkSampler sampler, const VkAllocationCallbacks*) {
-  leave_address(from_handle<Device>(device), from_nullable<Sampler>(sampler));
+  const Device& d = from_handle<Device>(device);
+  leave_address(d, from_nullable<Sampler>(sampler));
+  if (d.described && sampler) d.described->samplers.forget(from_handle<Sampler>(sampler));
   destroy_handle<Sampler>(sampler);
 }
 

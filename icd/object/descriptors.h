@@ -24,6 +24,9 @@ struct SetBinding {
   VkDescriptorBindingFlags flags = 0;
   std::uint32_t first_slot = 0;                               ///< among the set's slots, or among its dynamic buffers
   const texel::Sampler* const* immutable_samplers = nullptr;  ///< `count` of them, or null
+  /// In a descriptor buffer: bytes of an element, and from the set's first byte to the first element.
+  std::uint32_t stride = 0;
+  std::uint64_t buffer_offset = 0;
 };
 
 inline bool is_dynamic(VkDescriptorType type) {
@@ -51,6 +54,7 @@ struct SetShape {
   std::uint32_t slot_count = 0;
   std::uint32_t dynamic_count = 0;
   std::uint32_t inline_bytes = 0;  ///< of all inline uniform blocks, each aligned to kInlineBlockAlignment
+  std::uint64_t buffer_bytes = 0;  ///< in a descriptor buffer
   VkDescriptorSetLayoutCreateFlags flags = 0;
 
   /// The binding whose count each set chooses, or null.

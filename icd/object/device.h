@@ -15,6 +15,7 @@ class Profile;
 namespace vitrine::icd {
 
 class AddressBook;
+struct DescribedObjects;
 struct Device;
 struct QueueWorker;
 struct ReplayState;
@@ -58,7 +59,8 @@ struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {
 
   Vector<VkDeviceDeviceMemoryReportCreateInfoEXT> memory_reports;  ///< who wants to hear of memory; constant
 
-  std::shared_ptr<AddressBook> addresses;   ///< null: nobody observes
+  std::shared_ptr<AddressBook> addresses;       ///< null: nobody observes
+  std::shared_ptr<DescribedObjects> described;  ///< null: descriptors do not lie in buffers (VK_EXT_descriptor_buffer)
   std::shared_ptr<glass::Profile> profile;  ///< made with the first pool of performance queries; guarded by sync_mutex
 
   /// Guards the states of fences, semaphores and events, and `lost` (icd/object/sync.h).

@@ -45,6 +45,7 @@ struct ImageView : Object<VkImageView, VK_OBJECT_TYPE_IMAGE_VIEW> {
   /// The stencil plane of a view that has both aspects; else equal to `view`.
   texel::ImageView stencil;
   Vector<texel::ImageView> planes;  ///< what `view.planes` points to
+  std::uint64_t described = 0;      ///< its name in descriptors of buffers (icd/object/descriptor_bytes.h)
 
   const texel::ImageView& stored() const { return slices ? *slices : view; }
 };
@@ -59,6 +60,7 @@ struct Sampler : Object<VkSampler, VK_OBJECT_TYPE_SAMPLER> {
   using Object::Object;
 
   texel::Sampler state;
+  std::uint64_t described = 0;  ///< as ImageView's
 };
 
 /// Fills `image.layout` and the rest from the create info. VK_ERROR_OUT_OF_DEVICE_MEMORY for sizes beyond what one

@@ -22,7 +22,7 @@ enum class RecordState : std::uint8_t { kInitial, kRecording, kExecutable, kInva
 
 struct CommandBuffer : DispatchableObject<VkCommandBuffer, VK_OBJECT_TYPE_COMMAND_BUFFER> {
   CommandBuffer(const HostMemory& m, CommandPool& owner)
-      : DispatchableObject(m), pool(owner), arena(owner.blocks), pushed_sets(m) {}
+      : DispatchableObject(m), pool(owner), arena(owner.blocks), own_sets(m) {}
   ~CommandBuffer() { reset(); }
 
   CommandPool& pool;
@@ -37,9 +37,9 @@ struct CommandBuffer : DispatchableObject<VkCommandBuffer, VK_OBJECT_TYPE_COMMAN
   std::uint64_t pass_pixels = 0;  ///< of the render pass being recorded; cost of its draws
   std::uint32_t nesting = 0;      ///< command buffers within command buffers, at most
   bool waits_for_host = false;    ///< holds vkCmdWaitEvents: whoever replays it may have to wait
-  /// Sets of push descriptors, in the arena: one for each time that descriptors were pushed.
-  Vector<DescriptorSet*> pushed_sets;
-  /// The last of them by bind point (compute last) and set number; null: nothing pushed.
+  /// Sets in the arena (icd/record/own_sets.h): one for each time that descriptors were pushed or samplers bound.
+  Vector<DescriptorSet*> own_sets;
+  /// The last that was pushed, by bind point (compute last) and set number; null: nothing pushed.
   std::array<std::array<DescriptorSet*, spirv::kMaxSets>, 2> current_push{};
 
   /// Back to the initial state; blocks return to the pool.

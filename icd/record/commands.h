@@ -25,6 +25,8 @@ struct RenderPass;
 
 // ---- state
 
+inline constexpr std::uint32_t kMaxDescriptorBuffers = 32;
+
 struct CmdBindPipeline {
   const Pipeline* pipeline;
 };
@@ -34,6 +36,17 @@ struct CmdBindDescriptorSets {
   std::span<DescriptorSet* const> sets;
   std::span<const std::uint32_t> first_dynamic;  ///< per set, in the pseudo set of dynamic buffers
   std::span<const std::uint32_t> offsets;        ///< dynamic offsets of all sets in order
+};
+/// Buffers that descriptors are read from, by index: their addresses.
+struct CmdBindDescriptorBuffers {
+  std::span<const VkDeviceAddress> addresses;  ///< at most kMaxDescriptorBuffers
+};
+/// Sets that are read there.
+struct CmdSetDescriptorBufferOffsets {
+  VkPipelineBindPoint bind_point;
+  std::uint32_t first_set;
+  std::span<const std::uint32_t> buffers;  ///< per set: index of the buffer
+  std::span<const VkDeviceSize> offsets;   ///< per set: bytes into it
 };
 struct CmdPushConstants {
   std::uint32_t offset;

@@ -8,10 +8,6 @@
 namespace vitrine::icd {
 namespace {
 
-BindPoint& bind_point(ReplayState& state, VkPipelineBindPoint which) {
-  return which == VK_PIPELINE_BIND_POINT_COMPUTE ? state.compute : state.graphics;
-}
-
 /// Applies the dynamic offsets of one set; returns how many it took.
 std::uint32_t bind_dynamic_buffers(BindPoint& point, const DescriptorSet& set, std::uint32_t first_slot,
                                    std::span<const std::uint32_t> offsets) {
@@ -57,6 +53,7 @@ void execute(ReplayState& state, const CmdBindDescriptorSets& command) {
   for (std::size_t i = 0; i < command.sets.size(); ++i) {
     const DescriptorSet* set = command.sets[i];
     point.sets[command.first_set + i] = set;
+    point.addresses[command.first_set + i] = 0;
     if (!set) continue;
     const std::uint32_t taken = bind_dynamic_buffers(point, *set, command.first_dynamic[i], offsets);
     offsets = offsets.subspan(std::min<std::size_t>(taken, offsets.size()));

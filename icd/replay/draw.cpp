@@ -67,6 +67,7 @@ bool prepare_draw(ReplayState& state) {
   const Pipeline* pipeline = state.graphics.pipeline;
   if (!pipeline || !state.pass || state.suppressed) return false;
   if (state.arena.used() > kArenaBudget) flush_pass(state);
+  if (state.dirty & kDirtyDescriptors) read_descriptor_buffers(state, state.graphics);
   follow_locations(state, pipeline->locations);
   raster::DrawCall& draw = state.draw;
   if (state.dirty & kDirtyState) {
@@ -180,6 +181,7 @@ bool read_arguments(ReplayState& state, const BindPoint& point, const char* what
 void dispatch(ReplayState& state, const std::uint32_t base[3], const std::uint32_t groups[3]) {
   const Pipeline* pipeline = state.compute.pipeline;
   if (!pipeline || state.suppressed || groups[0] == 0 || groups[1] == 0 || groups[2] == 0) return;
+  read_descriptor_buffers(state, state.compute);
   spirv::ResourceTable resources;
   fill_resources(state, state.compute, resources);
   resources.push_constants = state.push_constants.data();

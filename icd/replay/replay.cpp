@@ -93,8 +93,12 @@ void run_command(ReplayState& state, const CommandHeader& header) {
 /// A command buffer starts with nothing bound, and nothing that an earlier one bound may be touched again.
 void forget_bindings(ReplayState& state) {
   state.graphics.pipeline = state.compute.pipeline = nullptr;
-  state.graphics.sets.fill(nullptr);
-  state.compute.sets.fill(nullptr);
+  for (BindPoint* const point : {&state.graphics, &state.compute}) {
+    point->sets.fill(nullptr);
+    point->addresses.fill(0);
+    point->in_buffers = false;
+  }
+  state.descriptor_buffers.fill(0);
   state.vertex_buffers.fill({});
   state.indices = {};
   state.draw = {};

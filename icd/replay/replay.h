@@ -10,6 +10,7 @@
 #include "icd/object/render_pass.h"
 #include "icd/properties.h"
 #include "icd/record/commands.h"
+#include "icd/replay/descriptor_buffers.h"
 #include "icd/replay/transient.h"
 #include "raster/pass.h"
 
@@ -23,6 +24,9 @@ inline constexpr std::uint32_t kMaxDynamicBuffers =
 struct BindPoint {
   const Pipeline* pipeline = nullptr;
   std::array<const DescriptorSet*, spirv::kMaxSets> sets{};
+  /// Of sets that lie in buffers (icd/replay/descriptor_buffers.h), else 0.
+  std::array<VkDeviceAddress, spirv::kMaxSets> addresses{};
+  bool in_buffers = false;                                      ///< there may be such sets
   std::array<spirv::Descriptor, kMaxDynamicBuffers> dynamic{};  ///< offsets applied
 };
 
@@ -82,6 +86,7 @@ struct ReplayState {
   explicit ReplayState(Device& d)
       : device(d),
         arena({d.memory, VK_SYSTEM_ALLOCATION_SCOPE_DEVICE}),
+        kept_sets(d.memory),
         transients(d.memory),
         pending_queries(d.memory),
         views_loaded(d.memory) {}
@@ -92,6 +97,8 @@ struct ReplayState {
   std::shared_ptr<ObservedReplay> observed;  ///< null: nobody observes
 
   BindPoint graphics, compute;
+  std::array<VkDeviceAddress, kMaxDescriptorBuffers> descriptor_buffers{};
+  KeptSets kept_sets;
   alignas(16) std::array<std::byte, spirv::kMaxPushConstantBytes> push_constants{};
   std::array<BoundBuffer, raster::kMaxVertexBindings> vertex_buffers{};
   BoundBuffer indices;
@@ -142,6 +149,10 @@ void publish_queries(ReplayState& state);
 /// The bound pipeline's own state where nothing is dynamic, else a copy of it in the arena with the values that
 /// commands have set. Blending is by location.
 const raster::State* resolve_state(ReplayState& state);
+
+inline BindPoint& bind_point(ReplayState& state, VkPipelineBindPoint which) {
+  return which == VK_PIPELINE_BIND_POINT_COMPUTE ? state.compute : state.graphics;
+}
 
 /// Fills the parts of a resource table that the bound pipeline uses. Dynamic buffers and push constants are copied into
 /// the arena.

@@ -40,7 +40,9 @@ class Maintenance5Device : public DeviceTest {
     attributes.legacyVertexAttributes = VK_TRUE;
     auto inputs = make_struct<VkPhysicalDeviceVertexInputDynamicStateFeaturesEXT>(&attributes);
     inputs.vertexInputDynamicState = VK_TRUE;
-    auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>(&inputs);
+    auto descriptors = make_struct<VkPhysicalDeviceDescriptorBufferFeaturesEXT>(&inputs);
+    descriptors.descriptorBuffer = VK_TRUE;
+    auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>(&descriptors);
     robustness.nullDescriptor = VK_TRUE;
     auto rendering = make_struct<VkPhysicalDeviceDynamicRenderingFeatures>(&robustness);
     rendering.dynamicRendering = VK_TRUE;
@@ -54,6 +56,7 @@ class Maintenance5Device : public DeviceTest {
                                  VK_EXT_VERTEX_INPUT_DYNAMIC_STATE_EXTENSION_NAME,
                                  VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
                                  VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME,
+                                 VK_EXT_DESCRIPTOR_BUFFER_EXTENSION_NAME,
                                  VK_EXT_ROBUSTNESS_2_EXTENSION_NAME,
                                  VK_EXT_HOST_IMAGE_COPY_EXTENSION_NAME,
                                  VK_EXT_DEPTH_BIAS_CONTROL_EXTENSION_NAME,
