@@ -254,6 +254,7 @@ void write_buffers_of_draw(std::ostream& out, const Bug& bug) {
 void write_state_of_draw(std::ostream& out, const Bug& bug) {
   const raster::State& s = bug.state;
   const VkExtent2D size = size_of_attachments(bug);
+  demand(bug.feedback.empty(), "transform feedback");
   demand_plain_rasterization(s);
   demand_plain_colors(bug);
   demand_whole_area(bug, size);

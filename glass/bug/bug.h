@@ -161,7 +161,7 @@ inline bool is_complete(const Descriptor& d, VkDescriptorType type) {
   return false;
 }
 
-/// A buffer that vertices or indices come from.
+/// A buffer that vertices or indices come from, or go to.
 struct Stream {
   std::uint32_t binding = 0;
   std::uint32_t buffer = kNone;  ///< none: nothing is bound
@@ -231,6 +231,7 @@ struct Bug {
   std::vector<std::uint32_t> addressed;  ///< buffers that shaders reach through device addresses: they keep them
   raster::State state;                   ///< of draws; dynamic state is in it
   std::vector<Stream> streams;
+  std::vector<Stream> feedback;  ///< what transform feedback writes to, from where it stands; empty: it is not active
   Rendering rendering;
   Command command;
 

@@ -116,11 +116,17 @@ bool fits(const Bug& bug, const Stream& stream) {
 
 std::string fault_of_command(const Bug& bug) {
   const Command& c = bug.command;
-  if (!std::ranges::all_of(bug.streams, [&](const Stream& stream) { return fits(bug, stream); }) ||
-      !fits(bug, c.indices) || !names(bug.buffers, c.arguments) || !names(bug.buffers, c.count_buffer))
+  const auto all_fit = [&](const std::vector<Stream>& streams) {
+    return std::ranges::all_of(streams, [&](const Stream& stream) { return fits(bug, stream); });
+  };
+  if (!all_fit(bug.streams) || !all_fit(bug.feedback) || !fits(bug, c.indices) || !names(bug.buffers, c.arguments) ||
+      !names(bug.buffers, c.count_buffer))
     return "a buffer that there is not";
   for (const Stream& stream : bug.streams)
     if (stream.binding >= raster::kMaxVertexBindings) return "a vertex binding that there is not";
+  for (const Stream& stream : bug.feedback)
+    if (stream.binding >= spirv::kMaxXfbBuffers || stream.buffer == kNone)
+      return "a buffer of transform feedback that there is not";
   std::vector<std::uint32_t> views = bug.rendering.colors;
   views.insert(views.end(), {bug.rendering.depth, bug.rendering.stencil});
   if (bug.rendering.colors.size() > raster::kMaxColorAttachments) return "too many attachments";

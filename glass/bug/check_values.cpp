@@ -205,6 +205,10 @@ std::string fault_of_command(const Bug& bug) {
     return "indices that cannot be";
   for (const Stream& s : bug.streams)
     if (s.stride > 2048) return "vertices that are too far apart";
+  for (const Stream& s : bug.feedback)
+    if (s.offset % 4 != 0 || s.size == 0 ||
+        !(bug.buffers[s.buffer].usage & VK_BUFFER_USAGE_TRANSFORM_FEEDBACK_BUFFER_BIT_EXT))
+      return "transform feedback that cannot be";
   return {};
 }
 

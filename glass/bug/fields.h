@@ -362,6 +362,7 @@ void fields(V& v, Bug& b) {
   v("addressed", b.addressed);
   if (!b.dispatches()) v("state", b.state);
   v("streams", b.streams);
+  v("feedback", b.feedback);
   if (!b.dispatches()) v("rendering", b.rendering);
   v("command", b.command);
 }

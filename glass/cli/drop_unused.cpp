@@ -43,6 +43,7 @@ void for_each_buffer(bug::Bug& bug, const F& f) {
   for (std::uint32_t& number : bug.addressed) f(number);
   for (bug::BufferView& view : bug.buffer_views) f(view.buffer);
   for (bug::Stream& stream : bug.streams) f(stream.buffer);
+  for (bug::Stream& stream : bug.feedback) f(stream.buffer);
   f(bug.command.indices.buffer);
   f(bug.command.arguments);
   f(bug.command.count_buffer);

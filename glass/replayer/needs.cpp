@@ -55,7 +55,7 @@ constexpr CoreNeed kCore[] = {
 
 }  // namespace
 
-const Need kNeeds[10] = {
+const Need kNeeds[11] = {
     {VK_EXT_DEPTH_CLIP_CONTROL_EXTENSION_NAME, [](const Bug& b) { return b.state.negative_one_to_one; }},
     {VK_EXT_DEPTH_CLIP_ENABLE_EXTENSION_NAME, [](const Bug& b) { return b.state.depth_clip == b.state.depth_clamp; }},
     {VK_EXT_BLEND_OPERATION_ADVANCED_EXTENSION_NAME,
@@ -72,6 +72,8 @@ const Need kNeeds[10] = {
        return std::ranges::any_of(b.streams, [](const bug::Stream& s) { return s.per_instance && s.divisor != 1; });
      }},
     {VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME, [](const Bug& b) { return b.state.custom_locations; }},
+    {VK_EXT_TRANSFORM_FEEDBACK_EXTENSION_NAME,
+     [](const Bug& b) { return !b.feedback.empty() || b.state.rasterized_stream != 0; }},
     {VK_EXT_MULTI_DRAW_EXTENSION_NAME, [](const Bug& b) { return b.command.draws.size() > 1; }},
 };
 

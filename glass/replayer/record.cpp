@@ -116,6 +116,22 @@ void draw(const Device& d, VkCommandBuffer commands, const bug::Bug& bug, const 
   }
 }
 
+/// From where it stood: no counters are needed.
+void begin_feedback(const Device& d, VkCommandBuffer commands, const bug::Bug& bug, const Resources& resources) {
+  if (bug.feedback.empty()) return;
+  const auto bind = d.function<PFN_vkCmdBindTransformFeedbackBuffersEXT>("vkCmdBindTransformFeedbackBuffersEXT");
+  for (const bug::Stream& s : bug.feedback) {
+    const VkDeviceSize offset = s.offset, size = s.size;
+    bind(commands, s.binding, 1, &resources.buffers[s.buffer], &offset, &size);
+  }
+  d.function<PFN_vkCmdBeginTransformFeedbackEXT>("vkCmdBeginTransformFeedbackEXT")(commands, 0, 0, nullptr, nullptr);
+}
+
+void end_feedback(const Device& d, VkCommandBuffer commands, const bug::Bug& bug) {
+  if (bug.feedback.empty()) return;
+  d.function<PFN_vkCmdEndTransformFeedbackEXT>("vkCmdEndTransformFeedbackEXT")(commands, 0, 0, nullptr, nullptr);
+}
+
 /// The labels that were open, so that findings say the same.
 void begin_labels(const Device& d, VkCommandBuffer commands, const bug::Bug& bug) {
   if (!d.names) return;
@@ -144,7 +160,9 @@ void run(const Device& d, const bug::Bug& bug, const Resources& resources, const
     } else {
       bind_streams(commands, bug, resources);
       begin_rendering(commands, bug.rendering, resources);
+      begin_feedback(d, commands, bug, resources);
       draw(d, commands, bug, resources);
+      end_feedback(d, commands, bug);
       vkCmdEndRendering(commands);
     }
     end_labels(d, commands, bug);

@@ -185,6 +185,15 @@ void fill(const CmdDrawIndirect& c, CapturedObjects& objects, Command& out) {
   out.count_offset = c.count_offset;
 }
 
+/// As a draw of as many vertices as the counter says.
+void fill(const CmdDrawByteCount& c, CapturedObjects&, Command& out) {
+  std::uint32_t bytes = 0;
+  if (!read_counter(c.counter, bytes) || c.stride == 0) return;
+  out.draws.push_back({bytes > c.subtracted ? (bytes - c.subtracted) / c.stride : 0, 0, 0});
+  out.instances = c.instance_count;
+  out.first_instance = c.first_instance;
+}
+
 template <class T>
 void fill_erased(const void* command, CapturedObjects& objects, Command& out) {
   if constexpr (requires(const T& typed) { fill(typed, objects, out); })
@@ -198,11 +207,26 @@ constexpr void (*kFill[])(const void*, CapturedObjects&, Command&) = {
 
 bool is_dispatch(CommandType type) { return type == CommandType::kDispatch || type == CommandType::kDispatchIndirect; }
 
+void add_feedback(const raster::TransformFeedback& feedback, CapturedObjects& objects, Bug& bug) {
+  for (std::uint32_t i = 0; i < feedback.buffer.size(); ++i) {
+    const raster::XfbBuffer& buffer = feedback.buffer[i];
+    if (!buffer.data || buffer.offset >= buffer.size) continue;
+    glass::bug::Stream out;
+    out.binding = i;
+    out.size = buffer.size - buffer.offset;
+    const CapturedObjects::Place place = objects.bytes(buffer.data + buffer.offset, out.size);
+    if (place.buffer == kNone) continue;
+    out.buffer = place.buffer;
+    out.offset = place.offset;
+    bug.feedback.push_back(out);
+  }
+}
+
 std::string add_graphics(ReplayState& state, const Pipeline& pipeline, CapturedObjects& objects, Bug& bug) {
   if (!state.pass) return "it is in no render pass";
-  if (state.draw.feedback) return "transform feedback is active";
   bug.state = *resolve_state(state);
   add_streams(state, pipeline, objects, bug);
+  if (state.draw.feedback) add_feedback(*state.draw.feedback, objects, bug);
   if (bug.command.indexed) bug.command.indices = bound(state.indices, objects);
   bug.command.index_type = state.draw.index_type;
   return add_rendering(state, objects, bug);
@@ -230,7 +254,6 @@ std::string describe_captured(ReplayState& state, const CommandHeader& header, C
   const auto type = static_cast<CommandType>(header.type);
   const BindPoint& point = is_dispatch(type) ? state.compute : state.graphics;
   if (!point.pipeline) return "no pipeline is bound";
-  if (type == CommandType::kDrawByteCount) return "vkCmdDrawIndirectByteCountEXT is not kept";
   const Pipeline& pipeline = *point.pipeline;
   bug.pipeline = name_of(state.device.physical_device.instance, ref(pipeline));
   bug.null_descriptors = state.device.features.test(Feature::nullDescriptor);

@@ -114,6 +114,20 @@ class BugFileTest(unittest.TestCase):
         for bug in bugs[::max(1, len(bugs) // 150)]:
             self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug).stdout, bug)
 
+    def test_transform_feedback_goes_on_where_it_stood(self):
+        # Of the suite on this device and on the reference, some resumed by counters, some drawn by them.
+        bugs = self.capture("all", SUITE, "--gtest_filter=transform_feedback.*", "--count=2")
+        feeding = {bug: exported["feedback"] for bug in bugs if (exported := self.exported(bug))["feedback"]}
+        self.assertGreater(len(feeding), 10)
+        self.assertTrue(any(stream["offset"] > 0 for streams in feeding.values() for stream in streams))
+        commands = {self.exported(bug)["commandName"] for bug in bugs}
+        self.assertIn("vkCmdDrawIndirectByteCountEXT", commands)
+        for bug in bugs:
+            self.assertRegex(self.run_it(VITRINE, "replay", bug).stdout, "the same bytes", bug)
+        if os.path.exists(REFERENCE):
+            for bug in list(feeding)[:5]:
+                self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug, "--driver", REFERENCE).stdout, bug)
+
     def test_a_pixel_makes_a_file_of_what_made_its_value(self):
         # Drawn; copied to what is drawn with; drawn with that.
         for image, command in ("target", "vkCmdDraw"), ("last", "vkCmdDraw"), ("copy", "vkCmdDraw"), ("stored", "vkCmdDispatch"):
