@@ -1,7 +1,7 @@
 // Where the texels of an image lie: planes, layers, mip levels, samples (Vulkan 1.3.239, Resource Creation, "Images").
-#include <algorithm>
+#include "texel/layout.h"
 
-#include "texel/view.h"
+#include <algorithm>
 
 namespace vitrine::texel {
 namespace {
@@ -74,6 +74,27 @@ bool place_levels(const ImageDesc& desc, const Extent& extent, PlaneLayout& plan
   return true;
 }
 
+bool is_aligned(const PlanePlace& place) {
+  return place.offset % kRowAlignment == 0 && place.row_pitch % kRowAlignment == 0;
+}
+
+/// Moves a plane of one level to where somebody else wants it.
+bool move_plane(const ImageDesc& desc, const PlanePlace& place, PlaneLayout& plane) {
+  LevelLayout& level = plane.level[0];
+  const std::uint64_t rows = divide_up(level.extent.height, format_desc(plane.format).block_height);
+  if (!is_aligned(place) || place.row_pitch < level.row_pitch || place.offset >= kSizeLimit) return false;
+  std::uint64_t layer_bytes = 0;
+  if (!accumulate(layer_bytes, place.row_pitch, rows)) return false;
+  const bool layered = desc.layers > 1;
+  if (layered && (place.layer_stride % kRowAlignment != 0 || place.layer_stride < layer_bytes)) return false;
+  plane.offset = place.offset;
+  plane.layer_stride = layered ? place.layer_stride : layer_bytes;
+  plane.size = layer_bytes;
+  level.row_pitch = place.row_pitch;
+  level.slice_pitch = level.sample_stride = layer_bytes;
+  return accumulate(plane.size, plane.layer_stride, desc.layers - 1);
+}
+
 }  // namespace
 
 bool make_image_layout(const ImageDesc& desc, ImageLayout& layout) {
@@ -95,10 +116,33 @@ bool make_image_layout(const ImageDesc& desc, ImageLayout& layout) {
   return true;
 }
 
+bool make_image_layout(const ImageDesc& desc, std::span<const PlanePlace> places, ImageLayout& layout) {
+  const bool flat = desc.levels == 1 && desc.samples == 1 && desc.extent.depth == 1 && desc.layers != 0;
+  if (!flat || !make_image_layout(desc, layout) || places.size() != layout.plane_count) return false;
+  layout.size = 0;
+  for (std::uint32_t i = 0; i < layout.plane_count; ++i) {
+    PlaneLayout& plane = layout.plane[i];
+    if (!move_plane(desc, places[i], plane)) return false;
+    std::uint64_t end = plane.offset;
+    if (!accumulate(end, plane.size, 1)) return false;
+    layout.size = std::max(layout.size, end);
+  }
+  layout.size += kTailPadding;
+  return true;
+}
+
 std::uint32_t plane_of_aspect(const ImageLayout& layout, VkImageAspectFlagBits aspect) {
-  if (aspect == VK_IMAGE_ASPECT_STENCIL_BIT || aspect == VK_IMAGE_ASPECT_PLANE_1_BIT) return layout.plane_count > 1;
-  if (aspect == VK_IMAGE_ASPECT_PLANE_2_BIT && layout.plane_count > 2) return 2;
-  return 0;
+  switch (aspect) {
+    case VK_IMAGE_ASPECT_STENCIL_BIT:
+    case VK_IMAGE_ASPECT_PLANE_1_BIT:
+    case VK_IMAGE_ASPECT_MEMORY_PLANE_1_BIT_EXT:
+      return layout.plane_count > 1;
+    case VK_IMAGE_ASPECT_PLANE_2_BIT:
+    case VK_IMAGE_ASPECT_MEMORY_PLANE_2_BIT_EXT:
+      return layout.plane_count > 2 ? 2 : 0;
+    default:
+      return 0;
+  }
 }
 
 }  // namespace vitrine::texel

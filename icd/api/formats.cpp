@@ -4,8 +4,22 @@
 #include "icd/object/external.h"
 #include "icd/object/format_properties.h"
 #include "icd/registry/registry.h"
+#include "texel/format.h"
 
-namespace vitrine::icd::entry {
+namespace vitrine::icd {
+namespace {
+
+/// The modifiers of a format: the linear one where it is offered, in both widths of the flags.
+template <class List, class Modifier, class Flags>
+void write_modifiers(List& list, Modifier* modifiers, VkFormat format, Flags features) {
+  OutArray<Modifier> array(&list.drmFormatModifierCount, modifiers);
+  if (features != 0) array.push({kLinearModifier, texel::format_desc(format).plane_count, features});
+  array.result();
+}
+
+}  // namespace
+
+namespace entry {
 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties(VkPhysicalDevice, VkFormat format,
                                                              VkFormatProperties* out) {
@@ -20,6 +34,11 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice, 
     wide->optimalTilingFeatures = wide_features(format, out->formatProperties.optimalTilingFeatures);
     wide->bufferFeatures = wide_features(format, out->formatProperties.bufferFeatures);
   }
+  const VkFormatFeatureFlags shared = modifier_features(format);
+  if (auto* list = find_in_out_chain<VkDrmFormatModifierPropertiesListEXT>(out->pNext))
+    write_modifiers(*list, list->pDrmFormatModifierProperties, format, shared);
+  if (auto* list = find_in_out_chain<VkDrmFormatModifierPropertiesList2EXT>(out->pNext))
+    write_modifiers(*list, list->pDrmFormatModifierProperties, format, wide_features(format, shared));
   if (auto* resolve = find_in_out_chain<VkSubpassResolvePerformanceQueryEXT>(out->pNext)) resolve->optimal = VK_FALSE;
 }
 
@@ -88,4 +107,5 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceSparseImageFormatProperties2(VkPhysi
   *count = 0;
 }
 
-}  // namespace vitrine::icd::entry
+}  // namespace entry
+}  // namespace vitrine::icd

@@ -2,6 +2,7 @@
 #include "icd/object/image.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "glass/pixel/pixels.h"
 #include "glass/sync/sync.h"
@@ -10,7 +11,9 @@
 #include "icd/object/address_book.h"
 #include "icd/object/descriptor_bytes.h"
 #include "icd/object/device.h"
+#include "icd/object/format_properties.h"
 #include "icd/properties.h"
+#include "texel/layout.h"
 #include "texel/transfer.h"
 
 namespace vitrine::icd {
@@ -54,6 +57,43 @@ void add_sampled_planes(const Image& image, ImageView& view) {
 
 }  // namespace
 
+namespace {
+
+/// The places of the planes that a create info for VK_EXT_image_drm_format_modifier demands; none: the device's choice.
+/// False if no modifier of the device is asked for.
+bool read_modifier(const VkImageCreateInfo& info, std::vector<texel::PlanePlace>& places) {
+  if (const auto* list = find_in_chain<VkImageDrmFormatModifierListCreateInfoEXT>(info.pNext)) {
+    const std::uint64_t* const end = list->pDrmFormatModifiers + list->drmFormatModifierCount;
+    return std::find(list->pDrmFormatModifiers, end, kLinearModifier) != end;
+  }
+  const auto* exact = find_in_chain<VkImageDrmFormatModifierExplicitCreateInfoEXT>(info.pNext);
+  if (!exact || exact->drmFormatModifier != kLinearModifier || exact->drmFormatModifierPlaneCount > 3) return false;
+  for (std::uint32_t i = 0; i < exact->drmFormatModifierPlaneCount; ++i) {
+    const VkSubresourceLayout& plane = exact->pPlaneLayouts[i];
+    places.push_back({plane.offset, plane.rowPitch, plane.arrayPitch});
+  }
+  return !places.empty();
+}
+
+/// The layout of an image of the linear modifier. Whoever sent the places of its planes is not trusted.
+VkResult make_shared_layout(const VkImageCreateInfo& info, const texel::ImageDesc& desc, texel::ImageLayout& layout) {
+  std::vector<texel::PlanePlace> places;
+  const bool known = modifier_features(info.format) != 0 && desc.type == VK_IMAGE_TYPE_2D && desc.levels == 1 &&
+                     desc.samples == 1 && read_modifier(info, places);
+  if (!known) return VK_ERROR_INVALID_DRM_FORMAT_MODIFIER_PLANE_LAYOUT_EXT;
+  if (places.empty()) return texel::make_image_layout(desc, layout) ? VK_SUCCESS : VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  return texel::make_image_layout(desc, places, layout) ? VK_SUCCESS
+                                                        : VK_ERROR_INVALID_DRM_FORMAT_MODIFIER_PLANE_LAYOUT_EXT;
+}
+
+/// The layout that the tiling wants.
+VkResult make_layout(const VkImageCreateInfo& info, const texel::ImageDesc& desc, texel::ImageLayout& layout) {
+  if (info.tiling == VK_IMAGE_TILING_DRM_FORMAT_MODIFIER_EXT) return make_shared_layout(info, desc, layout);
+  return texel::make_image_layout(desc, layout) ? VK_SUCCESS : VK_ERROR_OUT_OF_DEVICE_MEMORY;
+}
+
+}  // namespace
+
 VkResult init_image(Image& image, const VkImageCreateInfo& info) {
   image.flags = info.flags;
   image.usage = info.usage;
@@ -65,14 +105,12 @@ VkResult init_image(Image& image, const VkImageCreateInfo& info) {
   desc.levels = info.mipLevels;
   desc.layers = info.arrayLayers;
   desc.samples = static_cast<std::uint32_t>(info.samples);
-  desc.linear_tiling = info.tiling == VK_IMAGE_TILING_LINEAR;
+  desc.linear_tiling = info.tiling != VK_IMAGE_TILING_OPTIMAL;
   desc.disjoint = (info.flags & VK_IMAGE_CREATE_DISJOINT_BIT) && texel::format_desc(info.format).plane_count > 1;
   const bool representable = info.mipLevels <= texel::kMaxLevels && info.samples <= VK_SAMPLE_COUNT_64_BIT;
-  if (!representable || texel::format_desc(info.format).block_bytes == 0 ||
-      !texel::make_image_layout(desc, image.layout) || image.layout.size > kMaxImageSize) {
-    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-  }
-  return VK_SUCCESS;
+  if (!representable || texel::format_desc(info.format).block_bytes == 0) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  if (const VkResult result = make_layout(info, desc, image.layout); result != VK_SUCCESS) return result;
+  return image.layout.size > kMaxImageSize ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_SUCCESS;
 }
 
 VkImageSubresourceRange resolve_range(const Image& image, const VkImageSubresourceRange& range) {
@@ -177,6 +215,12 @@ VKAPI_ATTR void VKAPI_CALL DestroyImage(VkDevice device, VkImage image, const Vk
     glass::sync::forget_image(&from_handle<Device>(device), object);
   }
   destroy_handle<Image>(image);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetImageDrmFormatModifierPropertiesEXT(VkDevice, VkImage,
+                                                                      VkImageDrmFormatModifierPropertiesEXT* out) {
+  out->drmFormatModifier = kLinearModifier;
+  return VK_SUCCESS;
 }
 
 VKAPI_ATTR void VKAPI_CALL GetImageSubresourceLayout(VkDevice, VkImage image, const VkImageSubresource* subresource,

@@ -16,6 +16,7 @@
 #include "icd/object/image.h"
 #include "icd/object/memory_report.h"
 #include "spirv/addresses.h"
+#include "texel/layout.h"
 
 namespace vitrine::icd {
 namespace {
@@ -28,7 +29,7 @@ VkDeviceSize bytes_of(const texel::ImageLayout& layout) { return layout.size - s
 
 /// What binding a part of an image takes: all of it, or the plane of a disjoint one.
 VkDeviceSize bytes_of(const texel::ImageLayout& layout, VkImageAspectFlagBits aspect) {
-  return layout.desc.disjoint ? layout.plane[texel::plane_of_aspect(layout, aspect)].size : bytes_of(layout);
+  return layout.desc.disjoint ? texel::end_of(layout.plane[texel::plane_of_aspect(layout, aspect)]) : bytes_of(layout);
 }
 
 void write_requirements(VkDeviceSize size, VkDeviceSize alignment, VkMemoryRequirements2& out) {
@@ -158,7 +159,7 @@ void report_unbinding(Device& device, const Image& image) {
   const bool disjoint = image.desc().disjoint;
   for (std::uint32_t i = 0; i < (disjoint ? image.layout.plane_count : 1u); ++i) {
     report_binding(device, ref(image), image.plane_data[i],
-                   disjoint ? image.layout.plane[i].size : bytes_of(image.layout),
+                   disjoint ? texel::end_of(image.layout.plane[i]) : bytes_of(image.layout),
                    VK_DEVICE_ADDRESS_BINDING_TYPE_UNBIND_EXT);
   }
 }

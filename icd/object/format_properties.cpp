@@ -113,24 +113,38 @@ VkFormatFeatureFlags2 wide_features(VkFormat format, VkFormatFeatureFlags featur
   return wide;
 }
 
+VkFormatFeatureFlags modifier_features(VkFormat format) {
+  const texel::FormatDesc& desc = texel::format_desc(format);
+  if (desc.is_depth_stencil() || desc.is_compressed()) return 0;
+  return format_properties(format).linearTilingFeatures;
+}
+
+VkFormatFeatureFlags features_of_tiling(const VkPhysicalDeviceImageFormatInfo2& info) {
+  if (info.tiling == VK_IMAGE_TILING_OPTIMAL) return format_properties(info.format).optimalTilingFeatures;
+  if (info.tiling == VK_IMAGE_TILING_LINEAR) return format_properties(info.format).linearTilingFeatures;
+  if (info.tiling != VK_IMAGE_TILING_DRM_FORMAT_MODIFIER_EXT) return 0;
+  const auto* modifier = find_in_chain<VkPhysicalDeviceImageDrmFormatModifierInfoEXT>(info.pNext);
+  return modifier && modifier->drmFormatModifier == kLinearModifier ? modifier_features(info.format) : 0;
+}
+
 VkResult image_format_properties(const VkPhysicalDeviceImageFormatInfo2& info, VkImageFormatProperties* out) {
   *out = {};
-  const VkFormatProperties format = format_properties(info.format);
-  const bool known_tiling = info.tiling == VK_IMAGE_TILING_LINEAR || info.tiling == VK_IMAGE_TILING_OPTIMAL;
-  const VkFormatFeatureFlags features =
-      info.tiling == VK_IMAGE_TILING_LINEAR ? format.linearTilingFeatures : format.optimalTilingFeatures;
+  const bool shared = info.tiling == VK_IMAGE_TILING_DRM_FORMAT_MODIFIER_EXT;
+  const VkFormatFeatureFlags features = features_of_tiling(info);
   // EXTENDED_USAGE lets views of compatible formats have usages that the image's own format lacks.
   const bool usage_ok = (info.flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT) || usage_supported(info.usage, features);
-  if (!known_tiling || features == 0 || !usage_ok || !flags_supported(info, features) || info.type > VK_IMAGE_TYPE_3D) {
+  if (features == 0 || !usage_ok || !flags_supported(info, features) || info.type > VK_IMAGE_TYPE_3D) {
     return VK_ERROR_FORMAT_NOT_SUPPORTED;
   }
+  // Other devices know pictures.
+  if (shared && info.type != VK_IMAGE_TYPE_2D) return VK_ERROR_FORMAT_NOT_SUPPORTED;
   const bool conversion = texel::format_desc(info.format).requires_conversion();
   if (conversion && (info.type != VK_IMAGE_TYPE_2D || (info.flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT))) {
     return VK_ERROR_FORMAT_NOT_SUPPORTED;
   }
   const VkPhysicalDeviceLimits& limits = kClaimedPhysicalDeviceProperties.limits;
   out->maxExtent = max_extent(info.type, info.flags);
-  out->maxMipLevels = conversion ? 1 : static_cast<std::uint32_t>(std::bit_width(out->maxExtent.width));
+  out->maxMipLevels = conversion || shared ? 1 : static_cast<std::uint32_t>(std::bit_width(out->maxExtent.width));
   out->maxArrayLayers = info.type == VK_IMAGE_TYPE_3D ? 1 : limits.maxImageArrayLayers;
   out->sampleCounts = conversion ? VkSampleCountFlags{VK_SAMPLE_COUNT_1_BIT} : sample_counts(info, features);
   // An image fills one allocation at most.

@@ -2,7 +2,6 @@
 #include "icd/object/memory.h"
 
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include "glass/memory_shadow.h"
 #include "glass/session.h"
 #include "glass/sync/sync.h"
+#include "icd/object/shared_file.h"
 
 namespace vitrine::icd {
 namespace {
@@ -76,8 +76,7 @@ DeviceMemory::~DeviceMemory() {
 }
 
 bool DeviceMemory::map_file(int descriptor) {
-  struct stat status {};
-  if (fstat(descriptor, &status) != 0 || static_cast<VkDeviceSize>(status.st_size) < size) return false;
+  if (lasting_bytes_of(descriptor) < size) return false;
   // The file lies over the front of an anonymous mapping that is a page longer.
   const std::size_t page = page_size();
   mapping_bytes_ = (size + page - 1) / page * page + page;
@@ -91,9 +90,9 @@ bool DeviceMemory::map_file(int descriptor) {
 }
 
 bool DeviceMemory::map_new_file() {
-  const int descriptor = memfd_create("vitrine-memory", MFD_CLOEXEC);
+  const int descriptor = make_shared_file(size);
   if (descriptor < 0) return false;
-  if (ftruncate(descriptor, static_cast<off_t>(size)) == 0 && map_file(descriptor)) return true;
+  if (map_file(descriptor)) return true;
   close(descriptor);
   return false;
 }

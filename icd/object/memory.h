@@ -29,8 +29,8 @@ struct DeviceMemory : Object<VkDeviceMemory, VK_OBJECT_TYPE_DEVICE_MEMORY> {
   DeviceMemory(const HostMemory& m, VkDeviceSize bytes) : Object(m), size(bytes) {}
   ~DeviceMemory();
 
-  /// Maps `size` bytes of the file and owns the descriptor. False: not that many bytes, or no memory; the descriptor is
-  /// the caller's again.
+  /// Maps `size` bytes of the file and owns the descriptor. False: not that many bytes, or not for good
+  /// (icd/object/shared_file.h), or no memory; the descriptor is the caller's again.
   bool map_file(int descriptor);
   /// Makes a file and maps it. False: the system has no memory.
   bool map_new_file();

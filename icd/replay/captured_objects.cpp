@@ -113,7 +113,8 @@ std::uint32_t CapturedObjects::add_image(const Image& image) {
   out.usage = image.usage;
   out.type = desc.type;
   out.format = desc.format;
-  out.tiling = image.tiling;
+  // What another device shares is linear to the file: nobody else is there when it is replayed.
+  out.tiling = image.tiling == VK_IMAGE_TILING_OPTIMAL ? VK_IMAGE_TILING_OPTIMAL : VK_IMAGE_TILING_LINEAR;
   out.extent = desc.extent;
   out.levels = desc.levels;
   out.layers = desc.layers;

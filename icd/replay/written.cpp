@@ -7,6 +7,7 @@
 #include "icd/object/image.h"
 #include "icd/object/memory.h"
 #include "icd/replay/image_boxes.h"
+#include "texel/layout.h"
 #include "texel/transfer.h"
 
 namespace vitrine::icd {
@@ -41,7 +42,7 @@ class ImageStates {
     for (std::uint32_t i = 0; i < (disjoint ? layout_.plane_count : 1u); ++i) {
       const std::byte* const first = disjoint ? image.plane_data[i] : image.data;
       const std::uint64_t whole = layout_.size - std::min<std::uint64_t>(layout_.size, kTailBytes);
-      const std::uint64_t bytes = disjoint ? layout_.plane[i].size : whole;
+      const std::uint64_t bytes = disjoint ? texel::end_of(layout_.plane[i]) : whole;
       const ShadowRegion* region = first ? glass::find_shadow(first) : nullptr;
       known_ = region && region->contains(number_of(first), bytes);
       if (!known_) return;

@@ -1,4 +1,5 @@
 // Memory that is a file or the application's own pages.
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -8,6 +9,8 @@
 
 namespace vitrine::icd::test {
 namespace {
+
+constexpr auto kDmaBuf = VK_EXTERNAL_MEMORY_HANDLE_TYPE_DMA_BUF_BIT_EXT;
 
 class ExternalMemory : public DeviceTest {
  protected:
@@ -20,6 +23,20 @@ class ExternalMemory : public DeviceTest {
     void* data = nullptr;
     EXPECT_EQ(VK_GET(instance, MapMemory)(device, memory, 0, VK_WHOLE_SIZE, 0, &data), VK_SUCCESS);
     return static_cast<std::byte*>(data);
+  }
+  int descriptor_of(VkDeviceMemory memory, VkExternalMemoryHandleTypeFlagBits type) {
+    auto get = make_struct<VkMemoryGetFdInfoKHR>();
+    get.memory = memory;
+    get.handleType = type;
+    int descriptor = -1;
+    EXPECT_EQ(VK_GET(instance, GetMemoryFdKHR)(device, &get, &descriptor), VK_SUCCESS);
+    return descriptor;
+  }
+  VkResult import_file(VkDeviceSize size, VkExternalMemoryHandleTypeFlagBits type, int file, VkDeviceMemory* memory) {
+    auto import = make_struct<VkImportMemoryFdInfoKHR>();
+    import.handleType = type;
+    import.fd = file;
+    return allocate(size, &import, memory);
   }
   void free(VkDeviceMemory memory) { VK_GET(instance, FreeMemory)(device, memory, nullptr); }
 };
@@ -50,6 +67,63 @@ TEST_F(ExternalMemory, FilesAreSharedAndOutliveTheirFirstOwner) {
   free(first);
   EXPECT_EQ(two[kSize / 2], std::byte{0x5a});
   free(second);
+}
+
+/// VK_EXT_external_memory_dma_buf: whoever gets the descriptor maps it, and no one can cut it off.
+TEST_F(ExternalMemory, DmaBufsAreMappedByOthers) {
+  auto exported = make_struct<VkExportMemoryAllocateInfo>();
+  exported.handleTypes = kDmaBuf | VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+  VkDeviceMemory first, second;
+  constexpr VkDeviceSize kSize = 100000;
+  ASSERT_EQ(allocate(kSize, &exported, &first), VK_SUCCESS);
+  const int descriptor = descriptor_of(first, kDmaBuf);
+  ASSERT_GE(descriptor, 0);
+  EXPECT_NE(fcntl(descriptor, F_GETFD) & FD_CLOEXEC, 0);
+  EXPECT_GE(lseek(descriptor, 0, SEEK_END), off_t{kSize});
+  EXPECT_NE(ftruncate(descriptor, 0), 0);
+  void* const mapped = mmap(nullptr, kSize, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  ASSERT_NE(mapped, MAP_FAILED);
+  std::memset(mapped, 0x33, kSize);
+  EXPECT_EQ(map(first)[kSize - 1], std::byte{0x33});
+  auto properties = make_struct<VkMemoryFdPropertiesKHR>();
+  const auto ask = VK_GET(instance, GetMemoryFdPropertiesKHR);
+  EXPECT_EQ(ask(device, kDmaBuf, descriptor, &properties), VK_SUCCESS);
+  EXPECT_EQ(properties.memoryTypeBits, 1u);
+  EXPECT_EQ(import_file(kSize, kDmaBuf, descriptor, &second), VK_SUCCESS);
+  free(first);
+  EXPECT_EQ(map(second)[7], std::byte{0x33});
+  const int again = descriptor_of(second, kDmaBuf);
+  EXPECT_GE(again, 0) << "what was imported can be given on";
+  close(again);
+  free(second);
+  munmap(mapped, kSize);
+}
+
+TEST_F(ExternalMemory, FilesThatSomebodyCouldCutOffAreRefused) {
+  const auto ask = VK_GET(instance, GetMemoryFdPropertiesKHR);
+  auto properties = make_struct<VkMemoryFdPropertiesKHR>();
+  int pipes[2];
+  ASSERT_EQ(pipe(pipes), 0);
+  const int sealed = memfd_create("sealed", MFD_ALLOW_SEALING), closed = memfd_create("closed", 0);
+  const int read_only = open("/proc/self/exe", O_RDONLY), zeros = open("/dev/zero", O_RDWR),
+            folder = open("/", O_RDONLY);
+  ASSERT_EQ(ftruncate(sealed, 8192), 0);
+  ASSERT_EQ(ftruncate(closed, 8192), 0);
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  for (const int hostile : {pipes[0], closed, read_only, zeros, folder, -1, 1 << 20}) {
+    EXPECT_EQ(ask(device, kDmaBuf, hostile, &properties), VK_ERROR_INVALID_EXTERNAL_HANDLE) << hostile;
+    for (const auto type : {kDmaBuf, VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT})
+      EXPECT_EQ(import_file(4096, type, hostile, &memory), VK_ERROR_INVALID_EXTERNAL_HANDLE) << hostile;
+  }
+  EXPECT_EQ(ask(device, VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT, sealed, &properties),
+            VK_ERROR_INVALID_EXTERNAL_HANDLE);
+  EXPECT_EQ(import_file(8193, kDmaBuf, sealed, &memory), VK_ERROR_INVALID_EXTERNAL_HANDLE) << "the file is smaller";
+  const int kept = dup(sealed);
+  ASSERT_EQ(import_file(8192, kDmaBuf, sealed, &memory), VK_SUCCESS);
+  EXPECT_NE(ftruncate(kept, 0), 0) << "its owner can no longer shrink it";
+  map(memory)[8191] = std::byte{1};
+  free(memory);
+  for (const int descriptor : {pipes[0], pipes[1], closed, read_only, zeros, folder, kept}) close(descriptor);
 }
 
 TEST_F(ExternalMemory, PagesOfTheApplicationAreUsedInPlace) {
@@ -120,6 +194,8 @@ TEST_F(ExternalMemory, CapabilitiesNameTheHandles) {
     return out.externalMemoryProperties.externalMemoryFeatures;
   };
   EXPECT_EQ(features(VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT),
+            VkFlags{VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT | VK_EXTERNAL_MEMORY_FEATURE_IMPORTABLE_BIT});
+  EXPECT_EQ(features(kDmaBuf),
             VkFlags{VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT | VK_EXTERNAL_MEMORY_FEATURE_IMPORTABLE_BIT});
   EXPECT_EQ(features(VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT),
             VkFlags{VK_EXTERNAL_MEMORY_FEATURE_IMPORTABLE_BIT});
