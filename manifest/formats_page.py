@@ -13,7 +13,8 @@ import sys
 HEAD = """# Formats
 
 Written by `manifest/formats_page.py` from `manifest/formats`; a test keeps it current. Every format that has image features can
-also be copied in both directions. *color* includes resolves; *linear* is linear filtering.
+also be copied in both directions. *color* includes resolves; *linear* is linear filtering, and cubic filtering of
+formats without chroma samples (VK_EXT_filter_cubic: `texel CubicFilter.*`, `icd CubicFilters.*`).
 
 What tests them, besides the unit tests of `texel`:
 

@@ -14,7 +14,7 @@ constexpr float kGreatest = 16384;
 
 /// Texels along one axis, the nearest first.
 struct Taps {
-  std::array<std::int32_t, 3> at{};
+  std::array<std::int32_t, 5> at{};
   std::uint32_t count = 1;
 };
 
@@ -35,19 +35,30 @@ std::int32_t wrap(std::int32_t i, std::int32_t size, VkSamplerAddressMode mode) 
   }
 }
 
+/// How far a lookup may look on each side of its point.
+enum class Reach { kNearest, kNeighbour, kCubic };
+
 /// `u` counts texels. False: it is not known, or the border is read.
-bool make_taps(float u, std::uint32_t texels, VkSamplerAddressMode mode, bool filters, Taps& taps) {
+bool make_taps(float u, std::uint32_t texels, VkSamplerAddressMode mode, Reach reach, Taps& taps) {
   if (!(std::fabs(u) < kGreatest)) return false;
   const auto size = static_cast<std::int32_t>(texels);
-  if (mode == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER && !(u >= 1 && u <= static_cast<float>(size) - 1)) return false;
+  const bool filters = reach != Reach::kNearest, cubic = reach == Reach::kCubic;
+  const float margin = cubic ? 2 : 1;
+  const bool inside = u >= margin && u <= static_cast<float>(size) - margin;
+  if (mode == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER && !inside) return false;
   const float floor = std::floor(u), fraction = u - floor;
   const auto nearest = static_cast<std::int32_t>(floor);
   const auto add = [&](std::int32_t i) { taps.at[taps.count++] = wrap(i, size, mode); };
   taps.at[0] = wrap(nearest, size, mode);
   taps.count = 1;
-  // A filter reads the neighbour on the side of which the point lies.
-  if (fraction < (filters ? 0.5f + kDoubt : kDoubt)) add(nearest - 1);
-  if (fraction > (filters ? 0.5f - kDoubt : 1 - kDoubt)) add(nearest + 1);
+  // A filter reads the neighbour on the side of which the point lies; a cubic one both, and one more there.
+  const std::int32_t far = cubic ? 2 : 1;
+  if (fraction < (filters ? 0.5f + kDoubt : kDoubt)) add(nearest - far);
+  if (fraction > (filters ? 0.5f - kDoubt : 1 - kDoubt)) add(nearest + far);
+  if (cubic) {
+    add(nearest - 1);
+    add(nearest + 1);
+  }
   return true;
 }
 
@@ -105,7 +116,7 @@ class Footprint {
       const float u = lookup_.at[axis] * size + static_cast<float>(lookup_.offset[axis]);
       const VkSamplerAddressMode mode =
           is_cube(view_) ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER : sampler_.address[axis];
-      if (!make_taps(u, sizes[axis], mode, filters(), taps[axis])) return false;
+      if (!make_taps(u, sizes[axis], mode, reach(), taps[axis])) return false;
     }
     for (std::uint32_t z = 0; z < taps[2].count; ++z)
       for (std::uint32_t y = 0; y < taps[1].count; ++y)
@@ -115,8 +126,11 @@ class Footprint {
   }
 
  private:
-  bool filters() const {
-    return lookup_.gather || sampler_.mag_filter != VK_FILTER_NEAREST || sampler_.min_filter != VK_FILTER_NEAREST;
+  Reach reach() const {
+    const VkFilter farther = std::max(sampler_.mag_filter, sampler_.min_filter);  // in this order
+    const bool flat = dims_ == 2 && !is_cube(view_);
+    if (farther == VK_FILTER_CUBIC_EXT && flat && !lookup_.gather) return Reach::kCubic;
+    return lookup_.gather || farther != VK_FILTER_NEAREST ? Reach::kNeighbour : Reach::kNearest;
   }
   const std::byte* block(std::uint32_t level, std::int32_t x, std::int32_t y, std::int32_t z) const {
     const texel::FormatDesc& format = *view_.format;

@@ -17,6 +17,16 @@ void write_modifiers(List& list, Modifier* modifiers, VkFormat format, Flags fea
   array.result();
 }
 
+/// Views of two dimensions, whatever the image is, have cubic filters.
+void write_cubic(const VkPhysicalDeviceImageFormatInfo2& info, VkFilterCubicImageViewImageFormatPropertiesEXT& out) {
+  const auto* view = find_in_chain<VkPhysicalDeviceImageViewImageFormatInfoEXT>(info.pNext);
+  const bool flat =
+      view && (view->imageViewType == VK_IMAGE_VIEW_TYPE_2D || view->imageViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY);
+  const VkFormatFeatureFlags features = features_of_tiling(info);
+  out.filterCubic = flat && (features & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_CUBIC_BIT_EXT);
+  out.filterCubicMinmax = out.filterCubic && (features & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_MINMAX_BIT);
+}
+
 }  // namespace
 
 namespace entry {
@@ -78,6 +88,8 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(VkPhysica
   if (auto* external = find_in_out_chain<VkExternalImageFormatProperties>(out->pNext)) {
     external->externalMemoryProperties = shared;
   }
+  if (auto* cubic = find_in_out_chain<VkFilterCubicImageViewImageFormatPropertiesEXT>(out->pNext))
+    write_cubic(*info, *cubic);
 #ifdef VK_EXT_host_image_copy
   if (auto* access = find_in_out_chain<VkHostImageCopyDevicePerformanceQueryEXT>(out->pNext)) {
     access->optimalDeviceAccess = access->identicalMemoryLayout = VK_TRUE;

@@ -310,7 +310,12 @@ inline constexpr LimitRule kLimitRules[] = {{
 
     def _format_table(self):
         def bits(words):
-            return " | ".join(f"VK_FORMAT_FEATURE_{w}_BIT" for w in words) or "0"
+            names = [f"VK_FORMAT_FEATURE_{w}_BIT" for w in words]
+            # Whatever is filtered linearly is so cubically, but for formats whose planes are.
+            cubic = "SAMPLED_IMAGE_FILTER_LINEAR" in words and "MIDPOINT_CHROMA_SAMPLES" not in words
+            if cubic and "VK_EXT_filter_cubic" in self.claimed:
+                names.append("VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_CUBIC_BIT_EXT")
+            return " | ".join(names) or "0"
 
         lines = []
         for name, (image, buffer) in self.claims.formats.items():

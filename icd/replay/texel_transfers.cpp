@@ -5,6 +5,7 @@
 #include "icd/object/image.h"
 #include "icd/object/memory.h"
 #include "icd/replay/texel_events.h"
+#include "texel/sampler/model/cubic.h"
 
 namespace vitrine::icd {
 namespace {
@@ -105,8 +106,8 @@ constexpr char kCopied[] = "copied from another texel";
 
 /// One axis of a blit: which texels, with which weights.
 struct Taps {
-  std::int64_t at[2] = {};
-  float weight[2] = {1, 0};
+  std::int64_t at[4] = {};
+  float weight[4] = {1, 0, 0, 0};
 };
 
 /// The middle of texel `to` in texels of the source; nothing: the region does not have it.
@@ -118,20 +119,25 @@ std::optional<double> blit_coordinate(std::int64_t to, const std::int32_t (&targ
   return source[0] + part * (source[1] - source[0]);
 }
 
-Taps taps_of(double u, bool linear, std::int64_t size) {
+Taps taps_of(double u, VkFilter filter, std::int64_t size) {
   const auto clamp = [&](double value) {
     return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(value)), 0, size - 1);
   };
-  if (!linear) return {{clamp(u), 0}, {1, 0}};
+  if (filter == VK_FILTER_NEAREST) return {{clamp(u)}, {1}};
   const double fraction = u - 0.5 - std::floor(u - 0.5);
+  if (filter == VK_FILTER_CUBIC_EXT) {
+    Taps taps{{clamp(u - 1.5), clamp(u - 0.5), clamp(u + 0.5), clamp(u + 1.5)}, {}};
+    texel::cubic_weights(static_cast<float>(fraction), taps.weight);
+    return taps;
+  }
   return {{clamp(u - 0.5), clamp(u + 0.5)}, {static_cast<float>(1 - fraction), static_cast<float>(fraction)}};
 }
 
 void add_taps(const ReplayState& state, const CmdBlitImage& command, const VkImageBlit& region,
               VkImageAspectFlags aspect, const Taps (&taps)[3], TexelEvent& event) {
   for (int z = 0; z < 2; ++z)
-    for (int y = 0; y < 2; ++y)
-      for (int x = 0; x < 2; ++x) {
+    for (int y = 0; y < 4; ++y)
+      for (int x = 0; x < 4; ++x) {
         const float weight = taps[0].weight[x] * taps[1].weight[y] * taps[2].weight[z];
         if (weight == 0) continue;
         Source source = source_of(*state.observed->pixels, *command.source, aspect, region.srcSubresource.mipLevel, 0,
@@ -160,9 +166,10 @@ void note_blit(const ReplayState& state, const CmdBlitImage& command, const VkIm
                                         double(slice - std::min(d[0].z, d[1].z)));
   if (!x || !y || !z) return;
   const texel::Extent& extent = plane_of(from, texel.id.aspect).level[region.srcSubresource.mipLevel].extent;
-  const bool linear = command.filter != VK_FILTER_NEAREST;
-  const Taps taps[3] = {taps_of(*x, linear, extent.width), taps_of(*y, linear, extent.height),
-                        taps_of(*z, linear && volume, volume ? extent.depth : from.desc().layers)};
+  const bool cubic = command.filter == VK_FILTER_CUBIC_EXT, flat = from.desc().type == VK_IMAGE_TYPE_2D;
+  const VkFilter filter = cubic && !flat ? VK_FILTER_LINEAR : command.filter;
+  const Taps taps[3] = {taps_of(*x, filter, extent.width), taps_of(*y, filter, extent.height),
+                        taps_of(*z, volume ? filter : VK_FILTER_NEAREST, volume ? extent.depth : from.desc().layers)};
   TexelEvent event = texel_event(state, EventKind::kBlit, "blitted from other texels");
   add_taps(state, command, region, texel.id.aspect, taps, event);
   state.observed->pixels->add(texel, std::move(event));

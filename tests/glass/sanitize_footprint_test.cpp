@@ -57,7 +57,7 @@ class FootprintTest : public ::testing::TestWithParam<Shape> {
 
   texel::Sampler random_sampler() {
     texel::Sampler sampler;
-    sampler.mag_filter = sampler.min_filter = pick({VK_FILTER_NEAREST, VK_FILTER_LINEAR});
+    sampler.mag_filter = sampler.min_filter = pick({VK_FILTER_NEAREST, VK_FILTER_LINEAR, VK_FILTER_CUBIC_EXT});
     sampler.mip_mode = pick({VK_SAMPLER_MIPMAP_MODE_NEAREST, VK_SAMPLER_MIPMAP_MODE_LINEAR});
     for (VkSamplerAddressMode& mode : sampler.address) mode = kModes[random_() % std::size(kModes)];
     sampler.max_lod = 2;

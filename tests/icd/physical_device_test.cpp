@@ -245,6 +245,11 @@ TEST_F(Formats, ClaimsDoNotExceedWhatTexelDoes) {
        [](const texel::FormatDesc& format) {
          return (texel::can_sample(format) && !format.is_integer()) || format.has_stencil();
        }},
+      {VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_CUBIC_BIT_EXT,
+       [](const texel::FormatDesc& format) {
+         return ((texel::can_sample(format) && !format.is_integer()) || format.has_stencil()) &&
+                !format.requires_conversion();
+       }},
       {VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT, texel::can_store},
       {VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT,
        [](const texel::FormatDesc& format) {

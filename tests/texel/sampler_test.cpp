@@ -214,6 +214,9 @@ Sampler random_sampler(Random& random, bool depth) {
   for (VkSamplerAddressMode& mode : sampler.address) mode = kModes[random.below(modes)];
   sampler.mag_filter = sampler.min_filter = static_cast<VkFilter>(random.below(2));
   if (random.below(3) == 0) sampler.min_filter = static_cast<VkFilter>(random.below(2));
+  if (random.below(5) == 0) sampler.mag_filter = VK_FILTER_CUBIC_EXT;
+  if (random.below(6) == 0) sampler.min_filter = VK_FILTER_CUBIC_EXT;
+  if (random.below(8) == 0) sampler.mag_filter = sampler.min_filter = VK_FILTER_CUBIC_EXT;
   sampler.mip_mode = static_cast<VkSamplerMipmapMode>(random.below(2));
   sampler.mip_lod_bias = random.below(2) ? random.between(-2, 2) : 0.0f;
   sampler.min_lod = random.below(3) ? 0.0f : random.between(0, 2);

@@ -97,12 +97,23 @@ void set_lod_state(Plan& plan, SampleOp op, LodMode lod_mode) {
     plan.apply_min_lod = sampler.min_lod > 0.0f;
     plan.apply_max_lod = sampler.max_lod < kNoMaxLod;
   }
-  plan.lod_needed = plan.min_linear != plan.mag_linear || plan.mip != MipFilter::kNone || op == SampleOp::kQueryLod;
+  plan.lod_needed = plan.two_filters || plan.mip != MipFilter::kNone || op == SampleOp::kQueryLod;
   plan.squared_rho = plan.dims > 1;
   const bool derived = lod_mode == LodMode::kImplicit || lod_mode == LodMode::kGrad;
   plan.shortcut_lod = derived && op != SampleOp::kQueryLod && !plan.anisotropic && sampler.mip_lod_bias == 0.0f &&
                       !plan.apply_min_lod && !plan.apply_max_lod && plan.mip != MipFilter::kLinear &&
                       plan.view->min_lod == 0.0f;
+}
+
+/// Cubic filters are those of flat images; views that they are not offered for are filtered linearly.
+void set_filters(Plan& plan) {
+  const Sampler& sampler = *plan.sampler;
+  const bool flat = plan.dims == 2 && !plan.cube && !plan.gather;
+  plan.min_linear = plan.gather || sampler.min_filter != VK_FILTER_NEAREST;
+  plan.mag_linear = plan.gather || sampler.mag_filter != VK_FILTER_NEAREST;
+  plan.min_cubic = flat && sampler.min_filter == VK_FILTER_CUBIC_EXT;
+  plan.mag_cubic = flat && sampler.mag_filter == VK_FILTER_CUBIC_EXT;
+  plan.two_filters = plan.min_linear != plan.mag_linear || plan.min_cubic != plan.mag_cubic;
 }
 
 bool simple_addresses(const Plan& plan) {
@@ -136,10 +147,9 @@ Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMo
   set_dimensions(plan);
   plan.seamless = plan.cube && !sampler.seams;
   plan.gather = op == SampleOp::kGather;
+  set_filters(plan);
   plan.anisotropic = sampler.max_anisotropy >= 2.0f && !plan.gather && plan.dims > 1 && !sampler.unnormalized &&
-                     !view.format->is_integer();
-  plan.min_linear = plan.gather || sampler.min_filter == VK_FILTER_LINEAR;
-  plan.mag_linear = plan.gather || sampler.mag_filter == VK_FILTER_LINEAR;
+                     !view.format->is_integer() && !plan.min_cubic && !plan.mag_cubic;
   plan.mip = sampler.mip_mode == VK_SAMPLER_MIPMAP_MODE_LINEAR ? MipFilter::kLinear : MipFilter::kNearest;
   // "level zero only" is the view's last level counted in the image.
   const bool level_zero_only = view.base_level + view.level_count == 1;
@@ -157,7 +167,7 @@ Plan make_plan(const ImageView& view, const Sampler& sampler, SampleOp op, LodMo
   const bool lod_per_lane = lod_mode != LodMode::kImplicit || (plan.cube && plan.mip != MipFilter::kNone);
   plan.aos = op == SampleOp::kSample && !sampler.compare && !plan.anisotropic && fits_bytes(*view.format) &&
              simple_addresses(plan) && (plan.min_linear == plan.mag_linear || !lod_per_lane) &&
-             !(plan.seamless && (plan.min_linear || plan.mag_linear));
+             !(plan.seamless && (plan.min_linear || plan.mag_linear)) && !plan.min_cubic && !plan.mag_cubic;
   plan.border = border_texel(*view.format, sampler);
   return plan;
 }

@@ -22,8 +22,11 @@ struct Plan {
   bool zero = false;  ///< integers with a linear filter, or a format that cannot be sampled: all components 0
   bool gather = false;
   bool anisotropic = false;
-  bool min_linear = false;
+  bool min_linear = false;  ///< several texels, cubic or not
   bool mag_linear = false;
+  bool min_cubic = false;  ///< sixteen texels of flat images (model/cubic.h)
+  bool mag_cubic = false;
+  bool two_filters = false;  ///< one for minified, another for magnified texels
   MipFilter mip = MipFilter::kNone;
   std::array<Address, 3> address{};
   std::array<bool, 3> pot{};  ///< by the image's level 0

@@ -54,5 +54,6 @@ PreparedSampler::Kernel float_kernel(
     const Plan& plan);                         ///< samples and gathers of everything else, but not anisotropic
 PreparedSampler::Kernel query_kernel();        ///< levels of detail
 PreparedSampler::Kernel anisotropic_kernel();  ///< two-dimensional, and cubes
+PreparedSampler::Kernel cubic_kernel();        ///< Plan::min_cubic, Plan::mag_cubic, or both
 
 }  // namespace vitrine::texel

@@ -32,13 +32,14 @@ bool small_enough(const ImageView& view) {
 /// levels too, where infinities make a difference.
 bool levels_matter(const Plan& plan) {
   if (!plan.lod_needed || plan.view->level_count > 1) return plan.lod_needed;
-  return plan.anisotropic || plan.min_linear != plan.mag_linear || (plan.mip == MipFilter::kLinear && !plan.aos);
+  return plan.anisotropic || plan.two_filters || (plan.mip == MipFilter::kLinear && !plan.aos);
 }
 
 PreparedSampler::Kernel choose_kernel(const Plan& plan, SampleOp op) {
   if (op == SampleOp::kQueryLod) return plan.zero ? sample_by_lane : query_kernel();
   if (plan.zero || !small_enough(*plan.view)) return sample_by_lane;
   if (plan.anisotropic) return anisotropic_kernel();
+  if (plan.min_cubic || plan.mag_cubic) return cubic_kernel();
   return plan.aos ? byte_kernel(plan) : float_kernel(plan);
 }
 

@@ -95,9 +95,9 @@ float source_depth(const Span& z, std::int32_t index) {
   return static_cast<float>(z.from0) + offset;
 }
 
-Sampler make_sampler(bool linear) {
+Sampler make_sampler(VkFilter filter) {
   Sampler sampler;
-  sampler.mag_filter = sampler.min_filter = linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  sampler.mag_filter = sampler.min_filter = filter;
   sampler.address.fill(VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
   return sampler;
 }
@@ -113,7 +113,7 @@ void encode_wave(const Blit& blit, const base::WaveRegister value[4], std::size_
 /// Scaled: coordinates from the quad's planes, filtered by the sampler.
 void sample_row(const Blit& blit, const ImageView& view, const Quad& quad, const Start& start, std::uint32_t row,
                 std::uint32_t slice, std::byte* to) {
-  const Sampler sampler = make_sampler(blit.linear);
+  const Sampler sampler = make_sampler(blit.filter);
   const std::int32_t py = start.y + static_cast<std::int32_t>(row);
   base::WaveRegister u{}, v{}, w{}, value[4];
   SampleRequest request;
@@ -186,9 +186,9 @@ void convert_row(const Blit& blit, const ImageView& view, const Start& start, st
 
 void run(const Blit& blit, const Start& start, bool by_texels) {
   const Quad quad = make_quad(blit);
-  if (blit.scaled && !by_texels) {
+  if (blit.scaled && !by_texels && blit.filter != VK_FILTER_CUBIC_EXT) {
     const auto view_of = [&](std::uint32_t slice) { return source_view(blit, slice); };
-    if (scale_rows(blit, quad, start, make_sampler(blit.linear), view_of)) return;
+    if (scale_rows(blit, quad, start, make_sampler(blit.filter), view_of)) return;
   }
   const std::size_t cost = blit.to.row_bytes() * 16;  // filtering costs more than bytes
   for_each_band(blit.to, cost, [&](std::uint32_t first, std::uint32_t count, std::uint32_t slice, std::uint32_t) {
@@ -262,7 +262,7 @@ void blit_by(const ImageMemory& source, const ImageMemory& destination, const Vk
                          .level[region.dstSubresource.mipLevel]
                          .extent;
     // Depth with stencil, and whatever is not scaled, is never filtered.
-    blit.linear = filter == VK_FILTER_LINEAR && blit.scaled && source.layout->plane_count == 1;
+    blit.filter = blit.scaled && source.layout->plane_count == 1 ? filter : VK_FILTER_NEAREST;
     if (is_plain_copy(blit, destination, filter)) {
       copy_plain(source, destination, region, blit);
     } else {

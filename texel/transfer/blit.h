@@ -33,7 +33,7 @@ struct Blit {
   Extent from_extent;  ///< of the source level
   Extent to_extent;
   bool scaled = false;
-  bool linear = false;
+  VkFilter filter = VK_FILTER_NEAREST;
   bool rectangle = false;  ///< one plane for both triangles
 };
 

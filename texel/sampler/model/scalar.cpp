@@ -7,6 +7,7 @@
 #include "texel/sampler/model/address.h"
 #include "texel/sampler/model/anisotropic.h"
 #include "texel/sampler/model/cube.h"
+#include "texel/sampler/model/cubic.h"
 #include "texel/sampler/model/level.h"
 #include "texel/sampler/model/lod.h"
 
@@ -117,10 +118,14 @@ Texel sample_lane(const LaneSample& lane, const SampleRequest& request, const La
     texel = sample_anisotropic(lane, point, lod.level0);
   } else {
     const bool linear = lod.minify ? plan.min_linear : plan.mag_linear;
-    const bool magnified_only = plan.min_linear != plan.mag_linear && !lod.minify;
+    const bool cubic = lod.minify ? plan.min_cubic : plan.mag_cubic;
+    const bool magnified_only = plan.two_filters && !lod.minify;
     const bool two_levels = plan.mip == MipFilter::kLinear && !magnified_only;
     if (plan.aos) {
       texel = sample_all_bytes(lane, lod, linear, two_levels);
+    } else if (cubic) {
+      texel = sample_cubic(lane, lod.level0);
+      if (two_levels) blend_levels(lane, lod.fraction, texel, sample_cubic(lane, lod.level1));
     } else {
       texel = sample_level(lane, lod.level0, linear);
       if (two_levels) blend_levels(lane, lod.fraction, texel, sample_level(lane, lod.level1, linear));

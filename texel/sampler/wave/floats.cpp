@@ -14,58 +14,13 @@
 #include "texel/sampler/wave/four-inl.h"
 #include "texel/sampler/wave/single_words-inl.h"
 #include "texel/sampler/wave/taps-inl.h"
-#include "texel/sampler/wave/texels-inl.h"
+#include "texel/sampler/wave/values-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
 namespace {
 
-// ---- texels
-
-HWY_NOINLINE void put_border(const Plan& plan, base::LaneMask outside, Components wanted, WaveTexels& texels) {
-  for (std::size_t c = 0; c < 4; ++c) {
-    if ((wanted >> c & 1) == 0) continue;
-    const VF border = as_float(hn::Set(DU(), plan.border[c]));
-    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
-      hn::BlendedStore(border, lanes_mask_from_bits(DF(), outside >> i), DF(), texels.c[c].lane + i);
-    }
-  }
-}
-
-/// Tap k as values; with a comparison its result as 0 or 1 in component 0.
-HWY_NOINLINE void fetch_tap(Call& call, const FloatTaps& taps, std::uint32_t k, WaveTexels& out) {
-  if (taps.outside[k] != base::kAllLanes) {
-    fetch_texels(call.view(), taps.place[k], call.request.active, call.wanted, out);
-  }
-  if (taps.outside[k] != 0) put_border(call.plan(), taps.outside[k], call.wanted, out);
-  if (!call.compare) return;
-  for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
-    const auto holds = compare_lanes(call.plan().sampler->compare_op, hn::Load(DF(), call.reference.lane + i),
-                                     hn::Load(DF(), out.c[0].lane + i));
-    hn::Store(hn::IfThenElseZero(holds, splat(1.0f)), DF(), out.c[0].lane + i);
-  }
-}
-
 // ---- filters
-
-HWY_INLINE VF lerp(VF weight, VF a, VF b) { return lanes_fma(weight, hn::Sub(b, a), a); }
-
-/// a becomes f(weight, a, b) in every wanted component.
-template <class F>
-HWY_INLINE void combine(Components wanted, const FloatLanes& weight, WaveTexels& a, const WaveTexels& b, F&& f) {
-  for (std::size_t c = 0; c < 4; ++c) {
-    if ((wanted >> c & 1) == 0) continue;
-    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
-      const VF value =
-          f(hn::Load(DF(), weight.lane + i), hn::Load(DF(), a.c[c].lane + i), hn::Load(DF(), b.c[c].lane + i));
-      hn::Store(value, DF(), a.c[c].lane + i);
-    }
-  }
-}
-
-HWY_NOINLINE void average(Components wanted, const FloatLanes& weight, WaveTexels& a, const WaveTexels& b) {
-  combine(wanted, weight, a, b, [](VF w, VF first, VF second) { return lerp(w, first, second); });
-}
 
 HWY_NOINLINE void reduce(const Call& call, const FloatLanes& weight, WaveTexels& a, const WaveTexels& b) {
   const VF zero = splat(0.0f);
@@ -96,13 +51,13 @@ HWY_NOINLINE void reduce_x(const Call& call, const FloatLanes& weight, WaveTexel
 /// Taps 4z..4z+3 (or the two of one dimension).
 HWY_NOINLINE void filter_slice(Call& call, const FloatTaps& taps, std::uint32_t k, WaveTexels& out) {
   WaveTexels second;
-  fetch_tap(call, taps, k, out);
-  fetch_tap(call, taps, k + 1, second);
+  fetch_tap(call, taps.place[k], taps.outside[k], out);
+  fetch_tap(call, taps.place[k + 1], taps.outside[k + 1], second);
   reduce_x(call, taps.weight[0], out, second);
   if (taps.count == 2) return;
   WaveTexels lower;
-  fetch_tap(call, taps, k + 2, lower);
-  fetch_tap(call, taps, k + 3, second);
+  fetch_tap(call, taps.place[k + 2], taps.outside[k + 2], lower);
+  fetch_tap(call, taps.place[k + 3], taps.outside[k + 3], second);
   reduce_x(call, taps.weight[0], lower, second);
   reduce(call, taps.weight[1], out, lower);
 }
@@ -128,7 +83,7 @@ void weigh_corners(const Call& call, const FloatTaps& taps, base::LaneMask corne
 
 HWY_NOINLINE void filter_cube(Call& call, const FloatTaps& taps, WaveTexels& out) {
   WaveTexels texels[4];
-  for (std::uint32_t k = 0; k < 4; ++k) fetch_tap(call, taps, k, texels[k]);
+  for (std::uint32_t k = 0; k < 4; ++k) fetch_tap(call, taps.place[k], taps.outside[k], texels[k]);
   const bool averaged = call.reduction() == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
   const base::LaneMask corners = averaged ? taps.corners & call.request.active : 0;
   WaveTexels at_corners;
@@ -176,7 +131,7 @@ HWY_NOINLINE void filter_level(Call& call, int which, bool linear, WaveTexels& o
     return filter_cube(call, taps, out);
   }
   find_taps(call, which, linear, taps);
-  if (!linear) return fetch_tap(call, taps, 0, out);
+  if (!linear) return fetch_tap(call, taps.place[0], taps.outside[0], out);
   if (filter_directly(call, taps, out)) return;
   filter_slice(call, taps, 0, out);
   if (taps.count < 8) return;
@@ -199,7 +154,7 @@ HWY_NOINLINE void replace(Components wanted, base::LaneMask lanes, const WaveTex
 HWY_NOINLINE void filter_levels(Call& call, WaveTexels& out) {
   const Plan& plan = call.plan();
   const base::LaneMask active = call.request.active;
-  const bool two_filters = plan.min_linear != plan.mag_linear;
+  const bool two_filters = plan.two_filters;
   // With two filters, magnified lanes take one level.
   const base::LaneMask minified = two_filters ? call.state.minify & active : active;
   if (minified != 0) {
@@ -232,7 +187,7 @@ void gather(Call& call, const SampleResult& result) {
     if (result[c] == nullptr && taps.corners == 0) continue;
     if (source < 4) {
       WaveTexels texels;
-      fetch_tap(call, taps, k, texels);
+      fetch_tap(call, taps.place[k], taps.outside[k], texels);
       value[k] = texels.c[source];
     } else {
       const std::uint32_t one = view.format->is_integer() ? 1u : 0x3f800000u;
@@ -253,15 +208,6 @@ void gather(Call& call, const SampleResult& result) {
     for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
       store_lanes(as_unsigned(hn::Load(DF(), value[kOrder[c]].lane + i)), call.request.active, i, *result[c]);
     }
-  }
-}
-
-void load_reference(Call& call) {
-  const bool fixed_point = call.view().format->channel[0].numeric != Numeric::kSfloat;
-  for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
-    VF reference = load_lanes(call.request.dref, i);
-    if (fixed_point) reference = lanes_max_second(lanes_min_second(reference, splat(1.0f)), splat(0.0f));
-    hn::Store(reference, DF(), call.reference.lane + i);
   }
 }
 
@@ -325,7 +271,7 @@ HWY_NOINLINE void sample_four_values(Call& call, const SampleResult& result) {
   const base::LaneMask active = call.request.active;
   if (taps.outside[0] != 0) {
     WaveTexels texels;
-    fetch_tap(call, taps, 0, texels);
+    fetch_tap(call, taps.place[0], taps.outside[0], texels);
     return store_texels(view, texels, active, result);
   }
   const VU one = hn::Set(DU(), view.format->is_integer() ? 1u : 0x3f800000u);
@@ -355,13 +301,7 @@ void sample_waves(Call& call, const SampleResult& result) {
   if (is_four_values(call)) return sample_four_values(call, result);
   WaveTexels texels;
   filter_levels(call, texels);
-  if (call.compare) {
-    for (std::size_t i = 0; i < base::kWaveWidth; i += hn::Lanes(DF())) {
-      hn::Store(splat(0.0f), DF(), texels.c[1].lane + i);
-      hn::Store(splat(0.0f), DF(), texels.c[2].lane + i);
-      hn::Store(splat(1.0f), DF(), texels.c[3].lane + i);
-    }
-  }
+  if (call.compare) complete_comparison(texels);
   store_texels(call.view(), texels, call.request.active, result);
 }
 
