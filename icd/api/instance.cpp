@@ -10,6 +10,7 @@
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
 #include "icd/properties.h"
+#include "icd/wsi/display.h"
 
 namespace vitrine::icd {
 namespace {
@@ -84,11 +85,14 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateInstance(const VkInstanceCreateInfo* info, 
     object->api_version = info->pApplicationInfo->apiVersion;
   }
   object->extensions = extensions;
-  *instance = to_handle(object);
+  Owned<Instance> owner(object);
+  if (extensions.test(Extension::KHR_display)) make_display(*object);
+  *instance = to_handle(owner.release());
   return VK_SUCCESS;
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroyInstance(VkInstance instance, const VkAllocationCallbacks*) {
+  if (const Instance* object = from_nullable<Instance>(instance)) destroy_display(*object);
   destroy_handle<Instance>(instance);
 }
 

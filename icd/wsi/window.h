@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "icd/wsi/display_setting.h"
+
 struct xcb_connection_t;
 struct wl_display;
 struct wl_surface;
@@ -42,6 +44,14 @@ std::unique_ptr<Window> open_xcb_window(xcb_connection_t* connection, std::uint3
 std::unique_ptr<Window> open_xlib_window(void* display, std::uint32_t window);
 std::unique_ptr<Window> open_wayland_window(wl_display* display, wl_surface* surface);
 std::unique_ptr<Window> open_headless_window();
+
+/// How a plane of a display lies over the black behind it.
+struct PlaneAlpha {
+  VkDisplayPlaneAlphaFlagBitsKHR mode = VK_DISPLAY_PLANE_ALPHA_OPAQUE_BIT_KHR;
+  float global = 1;  ///< with VK_DISPLAY_PLANE_ALPHA_GLOBAL_BIT_KHR
+};
+/// All of a display, whose frames go to the setting's file. A FIFO frame is shown a refresh after the one before.
+std::unique_ptr<Window> open_display_window(const DisplaySetting& setting, std::uint32_t millihertz, PlaneAlpha alpha);
 
 /// Whether windows of this visual can be presented to: 24 or 32 bits deep with B8G8R8 channel masks.
 bool xcb_presentation_supported(xcb_connection_t* connection, std::uint32_t visual);
