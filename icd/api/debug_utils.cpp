@@ -39,6 +39,15 @@ std::string name_of(Instance& instance, ObjectRef object) {
   return notes ? std::string(notes->name.begin(), notes->name.end()) : std::string();
 }
 
+std::string names_of(Instance& instance, std::span<const ObjectRef> objects) {
+  std::string names;
+  for (const ObjectRef& object : objects) {
+    const std::string name = name_of(instance, object);
+    if (!name.empty()) names.append(names.empty() ? "" : " + ").append(name);
+  }
+  return names;
+}
+
 void report(Instance& instance, VkDebugUtilsMessageSeverityFlagBitsEXT severity, ObjectRef object, const char* id,
             std::string_view message) noexcept {
   try {

@@ -121,6 +121,23 @@ std::vector<spirv::SetLayoutInfo> set_layout_infos(const PipelineLayoutShape& la
   return infos;
 }
 
+std::shared_ptr<const PipelineLayoutShape> make_layout_shape(const HostMemory& memory,
+                                                             std::span<const VkDescriptorSetLayout> sets,
+                                                             std::span<const VkPushConstantRange> push_ranges) {
+  std::shared_ptr<PipelineLayoutShape> shape = make_shape<PipelineLayoutShape>(memory);
+  for (const VkDescriptorSetLayout handle : sets) {
+    const auto* set = from_nullable<DescriptorSetLayout>(handle);
+    shape->sets.push_back(set ? set->shape : nullptr);
+    shape->first_dynamic.push_back(shape->dynamic_count);
+    if (set) shape->dynamic_count += set->shape->dynamic_count;
+  }
+  shape->push_ranges.assign(push_ranges.begin(), push_ranges.end());
+  std::sort(shape->push_ranges.begin(), shape->push_ranges.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.offset, a.size, a.stageFlags) < std::tie(b.offset, b.size, b.stageFlags);
+  });
+  return shape;
+}
+
 namespace entry {
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorSetLayout(VkDevice device, const VkDescriptorSetLayoutCreateInfo* info,
@@ -153,18 +170,8 @@ VKAPI_ATTR VkResult VKAPI_CALL CreatePipelineLayout(VkDevice device, const VkPip
                                                     const VkAllocationCallbacks* allocator, VkPipelineLayout* layout) {
   Device& d = from_handle<Device>(device);
   Owned<PipelineLayout> object(create_object<PipelineLayout>(d.memory, allocator));
-  std::shared_ptr<PipelineLayoutShape> shape = make_shape<PipelineLayoutShape>(d.memory);
-  for (std::uint32_t i = 0; i < info->setLayoutCount; ++i) {
-    const auto* set = from_nullable<DescriptorSetLayout>(info->pSetLayouts[i]);
-    shape->sets.push_back(set ? set->shape : nullptr);
-    shape->first_dynamic.push_back(shape->dynamic_count);
-    if (set) shape->dynamic_count += set->shape->dynamic_count;
-  }
-  shape->push_ranges.assign(info->pPushConstantRanges, info->pPushConstantRanges + info->pushConstantRangeCount);
-  std::sort(shape->push_ranges.begin(), shape->push_ranges.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.offset, a.size, a.stageFlags) < std::tie(b.offset, b.size, b.stageFlags);
-  });
-  object->shape = std::move(shape);
+  object->shape = make_layout_shape(d.memory, {info->pSetLayouts, info->setLayoutCount},
+                                    {info->pPushConstantRanges, info->pushConstantRangeCount});
   *layout = to_handle(object.release());
   return VK_SUCCESS;
 }

@@ -256,6 +256,11 @@ VkResult create_all(VkDevice device, VkPipelineCache cache, std::uint32_t count,
 
 }  // namespace
 
+std::array<ObjectRef, kGraphicsStages> objects_of(const Pipeline& pipeline) {
+  if (pipeline.shader_objects[0].handle) return pipeline.shader_objects;
+  return {ref(pipeline)};
+}
+
 const char* stage_name(VkShaderStageFlagBits stage) {
   switch (stage) {
     case VK_SHADER_STAGE_VERTEX_BIT:

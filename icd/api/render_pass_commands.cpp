@@ -78,10 +78,14 @@ VKAPI_ATTR void VKAPI_CALL CmdEndRendering(VkCommandBuffer buffer) { record(buff
 
 #ifdef VK_KHR_dynamic_rendering_local_read
 // Both "must match the mappings provided to the bound pipeline" (Vulkan 1.4.309, vkCmdSetRenderingAttachmentLocations
-// and vkCmdSetRenderingInputAttachmentIndices): draws take the locations from there, and input attachments from their
-// descriptors, whatever index they have.
-VKAPI_ATTR void VKAPI_CALL CmdSetRenderingAttachmentLocationsKHR(VkCommandBuffer,
-                                                                 const VkRenderingAttachmentLocationInfoKHR*) {}
+// and vkCmdSetRenderingInputAttachmentIndices): draws take the locations from there, but those of shader objects; and
+// input attachments from their descriptors, whatever index they have.
+VKAPI_ATTR void VKAPI_CALL CmdSetRenderingAttachmentLocationsKHR(
+    [[maybe_unused]] VkCommandBuffer buffer, [[maybe_unused]] const VkRenderingAttachmentLocationInfoKHR* info) {
+#ifdef VK_EXT_shader_object
+  record(buffer, icd::CmdSetColorLocations{color_locations(info)});
+#endif
+}
 
 VKAPI_ATTR void VKAPI_CALL CmdSetRenderingInputAttachmentIndicesKHR(VkCommandBuffer,
                                                                     const VkRenderingInputAttachmentIndexInfoKHR*) {}

@@ -1,6 +1,7 @@
 // Messages to the application: VK_EXT_debug_utils messengers first, VITRINE_LOG on stderr beside them.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,9 @@ ObjectRef ref(const T& object) {
 
 /// The name that the application gave an object; empty: none.
 std::string name_of(Instance& instance, ObjectRef object);
+
+/// Those of several, "mesh + lit": null ones and ones without a name are left out.
+std::string names_of(Instance& instance, std::span<const ObjectRef> objects);
 
 /// Calls every messenger that listens for the severity and type. No lock is held during callbacks.
 void send_message(Instance& instance, VkDebugUtilsMessageSeverityFlagBitsEXT severity,

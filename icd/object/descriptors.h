@@ -85,6 +85,11 @@ struct PipelineLayout : Object<VkPipelineLayout, VK_OBJECT_TYPE_PIPELINE_LAYOUT>
   std::shared_ptr<const PipelineLayoutShape> shape;
 };
 
+/// The shape of a pipeline layout, or of what a shader object has in its place.
+std::shared_ptr<const PipelineLayoutShape> make_layout_shape(const HostMemory& memory,
+                                                             std::span<const VkDescriptorSetLayout> sets,
+                                                             std::span<const VkPushConstantRange> push_ranges);
+
 /// The layout as spirv::compile() wants it.
 std::vector<spirv::SetLayoutInfo> set_layout_infos(const PipelineLayoutShape& layout);
 

@@ -6,6 +6,7 @@
 
 #include "icd/object/instance.h"
 #include "icd/object/labels.h"
+#include "icd/object/shader_links.h"
 #include "icd/object/shader_table.h"
 
 namespace vitrine::glass {
@@ -47,13 +48,19 @@ struct DeviceLoss {
 
 struct Device : DispatchableObject<VkDevice, VK_OBJECT_TYPE_DEVICE> {
   Device(const HostMemory& m, PhysicalDevice& parent)
-      : DispatchableObject(m), physical_device(parent), queue(m, *this), shaders(m), memory_reports(m) {}
+      : DispatchableObject(m),
+        physical_device(parent),
+        queue(m, *this),
+        shaders(m),
+        shader_links(m),
+        memory_reports(m) {}
 
   PhysicalDevice& physical_device;
   ExtensionSet extensions;  ///< enabled
   FeatureSet features;      ///< enabled
   Queue queue;
   ShaderTable shaders;
+  ShaderLinks shader_links;
   std::atomic<std::uint64_t> next_private_data_slot = 1;
   std::shared_ptr<ReplayState> replay;  ///< made with the first command pool; used by whoever runs a batch of the queue
 

@@ -1,10 +1,12 @@
 // VkPipeline: compiled stages and the fixed-function state that does not change.
 #pragma once
 
+#include "icd/edge/diagnostics.h"
 #include "icd/object/color_locations.h"
 #include "icd/object/descriptors.h"
 #include "icd/object/kept_stage.h"
 #include "icd/object/shader_cache.h"
+#include "icd/object/shader_links.h"
 #include "icd/record/dynamic_state.h"
 #include "raster/draw.h"
 
@@ -47,12 +49,17 @@ struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   }
   // compute
   std::shared_ptr<const CompiledShader> compute;
+  /// Where it is none of the application's, but stands for shader objects: those, the first ones of the array.
+  std::array<ObjectRef, kGraphicsStages> shader_objects{};
 };
 
 /// The flags of a create info, or those that its chain puts in their place (Vulkan 1.4.309,
 /// VkPipelineCreateFlags2CreateInfo). There are none here beyond the first 32.
 VkPipelineCreateFlags create_flags(const VkGraphicsPipelineCreateInfo& info);
 VkPipelineCreateFlags create_flags(const VkComputePipelineCreateInfo& info);
+
+/// The pipeline, or the shader objects that it stands for; null behind the last.
+std::array<ObjectRef, kGraphicsStages> objects_of(const Pipeline& pipeline);
 
 /// "tessellation control", ...
 const char* stage_name(VkShaderStageFlagBits stage);

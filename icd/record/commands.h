@@ -8,6 +8,8 @@
 #include <span>
 
 #include "icd/edge/vulkan_api.h"
+#include "icd/object/color_locations.h"
+#include "icd/object/shader_links.h"
 #include "icd/record/dynamic_state.h"
 
 namespace vitrine::icd {
@@ -22,6 +24,7 @@ struct ImageView;
 struct Pipeline;
 struct QueryPool;
 struct RenderPass;
+struct ShaderObject;
 
 // ---- state
 
@@ -30,6 +33,16 @@ inline constexpr std::uint32_t kMaxDescriptorBuffers = 32;
 struct CmdBindPipeline {
   const Pipeline* pipeline;
 };
+#ifdef VK_EXT_shader_object
+struct CmdBindShaders {
+  std::array<ShaderObject*, kGraphicsStages + 1> stages;  ///< graphics stages, then compute; null: none from now on
+  std::uint32_t bound;                                    ///< bit i: stages[i] counts
+};
+/// What shader objects draw to; pipelines know it themselves.
+struct CmdSetColorLocations {
+  ColorLocations locations;
+};
+#endif
 struct CmdBindDescriptorSets {
   VkPipelineBindPoint bind_point;
   std::uint32_t first_set;

@@ -22,6 +22,11 @@ class DynamicStates {
  public:
   constexpr bool test(DynamicState s) const { return bits_ >> static_cast<unsigned>(s) & 1; }
   constexpr void set(DynamicState s) { bits_ |= std::uint64_t{1} << static_cast<unsigned>(s); }
+  static constexpr DynamicStates all() {
+    DynamicStates states;
+    states.bits_ = (std::uint64_t{1} << static_cast<unsigned>(DynamicState::kCount)) - 1;
+    return states;
+  }
   constexpr bool none() const { return bits_ == 0; }
   constexpr DynamicStates& operator|=(const DynamicStates& other) {
     bits_ |= other.bits_;
@@ -30,7 +35,7 @@ class DynamicStates {
   constexpr bool operator==(const DynamicStates&) const = default;
 
  private:
-  static_assert(static_cast<unsigned>(DynamicState::kCount) <= 64);
+  static_assert(static_cast<unsigned>(DynamicState::kCount) < 64);
   std::uint64_t bits_ = 0;
 };
 

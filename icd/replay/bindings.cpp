@@ -42,6 +42,8 @@ void execute(ReplayState& state, const CmdBindPipeline& command) {
   if (command.pipeline->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE) {
     state.compute.pipeline = command.pipeline;
   } else if (state.graphics.pipeline != command.pipeline) {
+    state.shaders.any = false;
+    state.shaders.stages.fill(nullptr);
     state.graphics.pipeline = command.pipeline;
     state.dirty |= kDirtyState | kDirtyDescriptors | kDirtyVertexBuffers;
   }

@@ -252,10 +252,11 @@ bool is_captured(CommandType type) {
 
 std::string describe_captured(ReplayState& state, const CommandHeader& header, CapturedObjects& objects, Bug& bug) {
   const auto type = static_cast<CommandType>(header.type);
+  if (!is_dispatch(type)) link_shaders(state);
   const BindPoint& point = is_dispatch(type) ? state.compute : state.graphics;
   if (!point.pipeline) return "no pipeline is bound";
   const Pipeline& pipeline = *point.pipeline;
-  bug.pipeline = name_of(state.device.physical_device.instance, ref(pipeline));
+  bug.pipeline = names_of(state.device.physical_device.instance, objects_of(pipeline));
   bug.null_descriptors = state.device.features.test(Feature::nullDescriptor);
   bug.robust_access2 = state.device.features.test(Feature::robustBufferAccess2);
   bool follows_addresses = false;

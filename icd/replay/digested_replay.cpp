@@ -14,7 +14,7 @@ glass::Address here(const ReplayState& state) {
   const ObservedReplay& observed = *state.observed;
   glass::Address point = address_of(observed);
   if (!observed.objects.empty() && observed.objects.back().command == observed.command)
-    point.pipeline = name_of(state.device.physical_device.instance, observed.objects.back().pipeline);
+    point.pipeline = names_of(state.device.physical_device.instance, observed.objects.back().shaders);
   return point;
 }
 

@@ -64,6 +64,7 @@ bool cuts_watched_pixels(const ReplayState& state) {
 
 /// Brings `state.draw` up to date. False if there is nothing to draw with or to.
 bool prepare_draw(ReplayState& state) {
+  link_shaders(state);
   const Pipeline* pipeline = state.graphics.pipeline;
   if (!pipeline || !state.pass || state.suppressed) return false;
   if (state.arena.used() > kArenaBudget) flush_pass(state);
@@ -233,6 +234,7 @@ void execute(ReplayState& state, const CmdDrawIndirect& command) {
     return read_arguments(state, state.graphics, what, buffer, offset, out);
   };
   std::uint32_t count = command.draw_count;
+  link_shaders(state);
   if (command.count_buffer) {
     std::uint32_t stored = 0;
     if (!read("number of draws", *command.count_buffer, command.count_offset, stored)) return;

@@ -68,7 +68,7 @@ ObjectNames objects_of(Device& device, const ObservedReplay& observed, const gla
                        [](const auto& objects, std::uint32_t number) { return objects.command < number; });
   const bool known = address.submission == observed.submission && found != observed.objects.end();
   if (known && found->command == address.command) {
-    out.add(found->pipeline);
+    for (const ObjectRef& shaders : found->shaders) out.add(shaders);
     out.add(found->command_buffer);
   }
   out.add(ref(device.queue));

@@ -138,11 +138,11 @@ const spirv::ObservedCommand* observe_command(ReplayState& state, const Pipeline
   made->null_descriptors = state.device.features.test(Feature::nullDescriptor);
   made->robust_vertices = state.device.features.test(Feature::robustBufferAccess2);
   made->pushed = pushed_words(observed, *pipeline.layout);
-  made->pipeline = name_of(state.device.physical_device.instance, ref(pipeline));
+  made->pipeline = names_of(state.device.physical_device.instance, objects_of(pipeline));
   made->pipeline_number = pipeline.number;
   made->pass = state.pass ? observed.pass_number : 0;
   observed.commands.push_back(std::move(made));
-  observed.objects.push_back({observed.command, observed.command_buffer, ref(pipeline)});
+  observed.objects.push_back({observed.command, observed.command_buffer, objects_of(pipeline)});
   return observed.commands.back().get();
 }
 

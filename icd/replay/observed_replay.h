@@ -72,7 +72,8 @@ struct ObservedReplay {
   /// The objects of a draw or dispatch of the submission.
   struct Objects {
     std::uint32_t command;
-    ObjectRef command_buffer, pipeline;
+    ObjectRef command_buffer;
+    std::array<ObjectRef, kGraphicsStages> shaders;  ///< the pipeline, or shader objects; null behind the last
   };
 
   bool shadows_memory = false;             ///< icd/replay/written.h is told

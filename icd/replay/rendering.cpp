@@ -25,11 +25,19 @@ VkRect2D clip_to_attachments(const CmdBeginRendering& command) {
   return area;
 }
 
+std::uint32_t live_colors(const CmdBeginRendering& command) {
+  std::uint32_t live = 0;
+  for (std::size_t i = 0; i < std::min<std::size_t>(command.colors.size(), raster::kMaxColorAttachments); ++i)
+    live |= (command.colors[i].view ? 1u : 0u) << i;
+  return live;
+}
+
 DrawScope describe_scope(const CmdBeginRendering& command) {
   DrawScope scope;
   scope.area = clip_to_attachments(command);
   scope.layers = command.layers;
   scope.view_mask = command.view_mask;
+  scope.live_colors = live_colors(command);
   scope.suspended = command.flags & VK_RENDERING_SUSPENDING_BIT;
   if (scope.suspended) return scope;  // the one that ends it resolves
   for (const RenderingAttachment& color : command.colors) {
@@ -165,6 +173,8 @@ void execute(ReplayState& state, const CmdBeginRendering& recorded) {
   std::array<RenderingAttachment, raster::kMaxColorAttachments> colors{};
   const CmdBeginRendering command = with_transients(state, recorded, colors);
   state.rendering = &recorded;
+  state.shaders.locations = {};
+  state.dirty |= kDirtyShaders;
   state.scope = describe_scope(command);
   resolve_transients(recorded, command, state.scope);
   const raster::PassDesc desc = describe_pass(command, state.scope);

@@ -93,6 +93,7 @@ void run_command(ReplayState& state, const CommandHeader& header) {
 /// A command buffer starts with nothing bound, and nothing that an earlier one bound may be touched again.
 void forget_bindings(ReplayState& state) {
   state.graphics.pipeline = state.compute.pipeline = nullptr;
+  state.shaders = {};
   for (BindPoint* const point : {&state.graphics, &state.compute}) {
     point->sets.fill(nullptr);
     point->addresses.fill(0);

@@ -30,6 +30,14 @@ struct BindPoint {
   std::array<spirv::Descriptor, kMaxDynamicBuffers> dynamic{};  ///< offsets applied
 };
 
+/// Shader objects of the graphics stages. While they are bound, the pipeline that is bound stands for them.
+struct BoundShaders {
+  bool any = false;  ///< they are, not the application's pipeline
+  std::array<ShaderObject*, kGraphicsStages> stages{};
+  ColorLocations locations;  ///< of the rendering instance
+  LinkKey key{};             ///< of the pipeline that stands for them
+};
+
 /// What is readable of a bound buffer, from the bound offset on.
 struct BoundBuffer {
   const std::byte* data = nullptr;
@@ -51,8 +59,9 @@ struct DrawScope {
   std::uint32_t view_mask = 0;
   std::array<PendingResolve, raster::kMaxColorAttachments + 2> resolve{};
   std::uint32_t resolve_count = 0;
-  bool suspended = false;    ///< a later scope goes on with it
-  ColorLocations locations;  ///< of the colour attachments in the pass
+  bool suspended = false;                       ///< a later scope goes on with it
+  ColorLocations locations;                     ///< of the colour attachments in the pass
+  std::uint32_t live_colors = kAllColorWrites;  ///< bit i: there is a colour attachment i
 
   void add_resolve(const PendingResolve& r) {
     if (r.source && r.target && r.mode != VK_RESOLVE_MODE_NONE && resolve_count < resolve.size())
@@ -66,6 +75,7 @@ enum DirtyBit : std::uint32_t {
   kDirtyDescriptors = 1u << 1,
   kDirtyPushConstants = 1u << 2,
   kDirtyVertexBuffers = 1u << 3,
+  kDirtyShaders = 1u << 4,  ///< the pipeline that stands for shader objects
   kDirtyAll = ~0u,
 };
 
@@ -97,6 +107,7 @@ struct ReplayState {
   std::shared_ptr<ObservedReplay> observed;  ///< null: nobody observes
 
   BindPoint graphics, compute;
+  BoundShaders shaders;
   std::array<VkDeviceAddress, kMaxDescriptorBuffers> descriptor_buffers{};
   KeptSets kept_sets;
   alignas(16) std::array<std::byte, spirv::kMaxPushConstantBytes> push_constants{};
@@ -142,6 +153,10 @@ void follow_locations(ReplayState& state, const ColorLocations& locations);
 
 /// Nothing points into the arena any more: its memory can be used again.
 void reset_arena(ReplayState& state);
+
+/// Where shader objects are bound: binds the pipeline that stands for them. To be called before the graphics pipeline
+/// is looked at.
+void link_shaders(ReplayState& state);
 
 /// Makes ended queries readable.
 void publish_queries(ReplayState& state);

@@ -53,6 +53,7 @@ TEST_F(NewerNames, AreOfferedWhereTheHeadersKnowThem) {
                                  "VK_KHR_shader_relaxed_extended_instruction",
                                  "VK_KHR_shader_subgroup_rotate",
                                  "VK_EXT_legacy_vertex_attributes",
+                                 "VK_EXT_shader_object",
                                  "VK_EXT_shader_replicated_composites",
                                  "VK_KHR_vertex_attribute_divisor"}) {
     const bool is_offered = std::any_of(offered.begin(), offered.end(),
