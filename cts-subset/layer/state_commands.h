@@ -13,30 +13,23 @@ namespace vitrine::as_shader_objects {
 /// What a device is asked for by name.
 struct Functions {
   VkDevice device = VK_NULL_HANDLE;
-#define EACH_FUNCTION(X)                                                                                              \
-  X(CreateShadersEXT)                                                                                                 \
-  X(DestroyShaderEXT)                                                                                                 \
-  X(CmdBindShadersEXT)                                                                                                \
-  X(CmdSetVertexInputEXT) X(CmdSetPrimitiveTopologyEXT) X(CmdSetPrimitiveRestartEnableEXT)                            \
-      X(CmdSetPatchControlPointsEXT) X(CmdSetTessellationDomainOriginEXT) X(CmdSetViewportWithCountEXT)               \
-          X(CmdSetScissorWithCountEXT) X(CmdSetDepthClipNegativeOneToOneEXT) X(CmdSetRasterizerDiscardEnableEXT)      \
-              X(CmdSetDepthClampEnableEXT) X(CmdSetDepthClipEnableEXT) X(CmdSetPolygonModeEXT) X(CmdSetCullModeEXT)   \
-                  X(CmdSetFrontFaceEXT) X(CmdSetDepthBiasEnableEXT) X(CmdSetLineRasterizationModeEXT)                 \
-                      X(CmdSetLineStippleEnableEXT) X(CmdSetLineStippleEXT) X(CmdSetProvokingVertexModeEXT)           \
-                          X(CmdSetConservativeRasterizationModeEXT) X(CmdSetRasterizationStreamEXT)                   \
-                              X(CmdSetDiscardRectangleEXT) X(CmdSetDiscardRectangleEnableEXT)                         \
-                                  X(CmdSetDiscardRectangleModeEXT) X(CmdSetRasterizationSamplesEXT)                   \
-                                      X(CmdSetSampleMaskEXT) X(CmdSetAlphaToCoverageEnableEXT)                        \
-                                          X(CmdSetAlphaToOneEnableEXT) X(CmdSetSampleLocationsEnableEXT)              \
-                                              X(CmdSetSampleLocationsEXT) X(CmdSetDepthTestEnableEXT)                 \
-                                                  X(CmdSetDepthWriteEnableEXT) X(CmdSetDepthCompareOpEXT)             \
-                                                      X(CmdSetDepthBoundsTestEnableEXT) X(CmdSetStencilTestEnableEXT) \
-                                                          X(CmdSetStencilOpEXT) X(CmdSetLogicOpEnableEXT)             \
-                                                              X(CmdSetLogicOpEXT) X(CmdSetColorBlendEnableEXT)        \
-                                                                  X(CmdSetColorBlendEquationEXT)                      \
-                                                                      X(CmdSetColorBlendAdvancedEXT)                  \
-                                                                          X(CmdSetColorWriteMaskEXT)                  \
-                                                                              X(CmdSetColorWriteEnableEXT)
+// clang-format off
+#define EACH_FUNCTION(X) \
+  X(CreateShadersEXT) X(DestroyShaderEXT) X(CmdBindShadersEXT) X(CmdSetVertexInputEXT) \
+  X(CmdSetPrimitiveTopologyEXT) X(CmdSetPrimitiveRestartEnableEXT) X(CmdSetPatchControlPointsEXT) \
+  X(CmdSetTessellationDomainOriginEXT) X(CmdSetViewportWithCountEXT) X(CmdSetScissorWithCountEXT) \
+  X(CmdSetDepthClipNegativeOneToOneEXT) X(CmdSetRasterizerDiscardEnableEXT) X(CmdSetDepthClampEnableEXT) \
+  X(CmdSetDepthClipEnableEXT) X(CmdSetPolygonModeEXT) X(CmdSetCullModeEXT) X(CmdSetFrontFaceEXT) \
+  X(CmdSetDepthBiasEnableEXT) X(CmdSetLineRasterizationModeEXT) X(CmdSetLineStippleEnableEXT) \
+  X(CmdSetLineStippleEXT) X(CmdSetProvokingVertexModeEXT) X(CmdSetConservativeRasterizationModeEXT) X(CmdSetRasterizationStreamEXT) \
+  X(CmdSetDiscardRectangleEXT) X(CmdSetDiscardRectangleEnableEXT) X(CmdSetDiscardRectangleModeEXT) \
+  X(CmdSetRasterizationSamplesEXT) X(CmdSetSampleMaskEXT) X(CmdSetAlphaToCoverageEnableEXT) \
+  X(CmdSetAlphaToOneEnableEXT) X(CmdSetSampleLocationsEnableEXT) X(CmdSetSampleLocationsEXT) \
+  X(CmdSetDepthTestEnableEXT) X(CmdSetDepthWriteEnableEXT) X(CmdSetDepthCompareOpEXT) \
+  X(CmdSetDepthBoundsTestEnableEXT) X(CmdSetStencilTestEnableEXT) X(CmdSetStencilOpEXT) X(CmdSetLogicOpEnableEXT) \
+  X(CmdSetLogicOpEXT) X(CmdSetColorBlendEnableEXT) X(CmdSetColorBlendEquationEXT) X(CmdSetColorBlendAdvancedEXT) \
+  X(CmdSetColorWriteMaskEXT) X(CmdSetColorWriteEnableEXT)
+// clang-format on
 #define DECLARE(name) PFN_vk##name name = nullptr;
   EACH_FUNCTION(DECLARE)
 #undef DECLARE

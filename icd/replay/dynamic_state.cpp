@@ -31,9 +31,11 @@ const raster::State* resolve_state(ReplayState& state) {
   const DynamicStates& dynamic = pipeline.dynamic;
   const bool located = pipeline.locations != ColorLocations{};
   if (dynamic.none() && !located && pipeline.state.rasterized_stream == 0) return &pipeline.state;
-  auto* out = ::new (state.arena.take<raster::State>(1)) raster::State(pipeline.state);
   const DynamicValues& values = state.dynamic;
-  for (std::uint8_t i = 0; i < static_cast<std::uint8_t>(DynamicState::kCount); ++i) {
+  const bool all_dynamic = pipeline.shader_objects[0].handle != 0;
+  auto* out = ::new (state.arena.take<raster::State>(1)) raster::State(all_dynamic ? values.state : pipeline.state);
+  if (all_dynamic) out->unrestricted_depth = pipeline.state.unrestricted_depth;
+  for (std::uint8_t i = 0; i < static_cast<std::uint8_t>(DynamicState::kCount) && !all_dynamic; ++i) {
     const auto which = static_cast<DynamicState>(i);
     if (dynamic.test(which)) copy_state(values.state, which, *out);
   }

@@ -369,6 +369,81 @@ TEST_F(ShaderObjectDraws, WithoutStatesNothingBreaks) {
   EXPECT_EQ(drawn, render(picture, [](VkCommandBuffer) {})) << "the viewport is empty";
 }
 
+/// Stages that do not belong together, in states that suit neither them nor the attachments.
+TEST_F(ShaderObjectDraws, AnyStagesInAnyStateBreakNothing) {
+  const std::string points =
+      "layout(points) in;\nlayout(line_strip, max_vertices = 3) out;\nlayout(location = 2) in float n[];\n"
+      "layout(location = 0) out vec4 a;\n"
+      "void main() { for (int i = 0; i < 3; ++i) { a = vec4(n[0]); gl_Position = gl_in[0].gl_Position + 0.1 * i; "
+      "gl_ViewportIndex = 7; EmitVertex(); } }\n";
+  const std::string adjacent =
+      "layout(triangles_adjacency) in;\nlayout(points, max_vertices = 200) out;\n"
+      "void main() { gl_Layer = gl_PrimitiveIDIn; gl_Position = gl_in[5].gl_Position; EmitVertex(); }\n";
+  const std::string lines =
+      "layout(isolines, point_mode) in;\nlayout(location = 5) in vec3 q[];\nlayout(location = 6) patch in vec4 p;\n"
+      "layout(location = 0) out vec4 a;\n"
+      "void main() { a = vec4(q[3], 1) + p; gl_Position = gl_in[gl_PatchVerticesIn - 1].gl_Position; }\n";
+  const std::string reads =
+      "layout(location = 0) in vec4 position;\nlayout(location = 1) in ivec2 other;\n"
+      "void main() { gl_Position = position + other.xyxy; }\n";
+  const std::string integers =
+      "layout(location = 7) flat in ivec4 v;\nlayout(location = 0) out uvec4 o;\nlayout(location = 7) out vec4 last;\n"
+      "void main() { o = uvec4(v); last = vec4(gl_PrimitiveID); gl_FragDepth = 0.3; }\n";
+  std::map<VkShaderStageFlagBits, std::vector<VkShaderEXT>> all;
+  for (const auto& [stage, texts] : std::map<VkShaderStageFlagBits, std::vector<std::string>>{
+           {kVertexStage, {kVertex, reads}},
+           {kControlStage, {kControl}},
+           {kEvaluationStage, {kEvaluation, lines}},
+           {kGeometryStage, {kGeometry, points, adjacent}},
+           {kFragmentStage, {kFragment, kThreeOutputs, integers}}})
+    for (const std::string& text : texts) all[stage].push_back(make_shader(stage, text));
+  std::uint32_t state = 7;
+  const auto below = [&](std::uint32_t n) { return (state = state * 1664525 + 1013904223) / 65536 % n; };
+  Picture2D picture;
+  picture.depth = true;
+  picture.colors = {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_UNDEFINED, VK_FORMAT_R16G16_SFLOAT};
+  for (int i = 0; i < 40; ++i)
+    render(picture, [&](VkCommandBuffer commands) {
+      set_states(commands, picture);
+      for (int n = 0; n < 10; ++n) {
+        std::map<VkShaderStageFlagBits, VkShaderEXT> bound;
+        for (const auto& [stage, shaders] : all)
+          if (stage == kVertexStage || below(2))
+            bound[stage] = shaders[below(static_cast<std::uint32_t>(shaders.size()))];
+        bind(commands, bound);
+        const VkViewport viewport{0, 0, 50, 60, 0, 1};
+        const VkRect2D scissor{{0, 0}, {60, 60}};
+        const VkSampleMask mask = below(2) ? ~0u : below(16);
+        const VkVertexInputBindingDescription2EXT stream{VK_STRUCTURE_TYPE_VERTEX_INPUT_BINDING_DESCRIPTION_2_EXT,
+                                                         nullptr,
+                                                         below(3),
+                                                         below(20),
+                                                         VK_VERTEX_INPUT_RATE_VERTEX,
+                                                         1};
+        const VkVertexInputAttributeDescription2EXT attribute{
+            VK_STRUCTURE_TYPE_VERTEX_INPUT_ATTRIBUTE_DESCRIPTION_2_EXT,
+            nullptr,
+            below(3),
+            below(3),
+            VK_FORMAT_R32G32B32_SFLOAT,
+            below(9)};
+        VK_CALL(CmdSetVertexInputEXT)(commands, below(2), &stream, below(2), &attribute);
+        VK_CALL(CmdSetPrimitiveTopologyEXT)(commands, static_cast<VkPrimitiveTopology>(below(11)));
+        VK_CALL(CmdSetPrimitiveRestartEnableEXT)(commands, below(2));
+        VK_CALL(CmdSetPatchControlPointsEXT)(commands, below(34));
+        VK_CALL(CmdSetViewportWithCountEXT)(commands, below(2), &viewport);
+        VK_CALL(CmdSetScissorWithCountEXT)(commands, below(2), &scissor);
+        VK_CALL(CmdSetPolygonModeEXT)(commands, static_cast<VkPolygonMode>(below(3)));
+        VK_CALL(CmdSetSampleMaskEXT)(commands, VK_SAMPLE_COUNT_1_BIT, &mask);
+        VK_CALL(CmdSetAlphaToCoverageEnableEXT)(commands, below(2));
+        VK_CALL(CmdSetRasterizerDiscardEnableEXT)(commands, below(4) == 0);
+        VK_CALL(CmdSetStencilTestEnableEXT)(commands, below(2));
+        VK_CALL(CmdDraw)(commands, below(40), below(3), below(4), 0);
+        VK_CALL(CmdDrawIndexed)(commands, below(40), 1, 0, 0, 0);
+      }
+    });
+}
+
 /// Shaders whose use has ended are destroyed by one thread while another draws with the rest of them.
 TEST_F(ShaderObjectDraws, ShadersEndWhileOthersDraw) {
   Picture2D picture;
@@ -405,6 +480,74 @@ TEST_F(ShaderObjectDraws, ShadersEndWhileOthersDraw) {
   done = true;
   destroyer.join();
   EXPECT_EQ(from_handle<Device>(device).shader_links.links.size(), 0u);
+}
+
+class ShaderObjectExhaustion : public ShaderObjectDevice {
+ protected:
+  ShaderObjectExhaustion() { host = allocator.callbacks(); }
+
+  /// What a submission returns, or the wait for it, where the device's n-th allocation fails meanwhile.
+  VkResult submit(VkCommandBuffer commands, std::size_t n) {
+    VkQueue queue;
+    VK_CALL(GetDeviceQueue)(device, 0, 0, &queue);
+    auto info = make_struct<VkSubmitInfo>();
+    info.commandBufferCount = 1;
+    info.pCommandBuffers = &commands;
+    allocator.clear_failed();
+    allocator.fail_after(n);
+    const VkResult submitted = VK_CALL(QueueSubmit)(queue, 1, &info, VK_NULL_HANDLE);
+    const VkResult waited = VK_CALL(QueueWaitIdle)(queue);
+    allocator.fail_after(~std::size_t{0});
+    return submitted == VK_SUCCESS ? waited : submitted;
+  }
+
+  CountingAllocator allocator;
+};
+
+TEST_F(ShaderObjectExhaustion, InTheMidstOfADrawIsAnError) {
+  Picture2D picture;
+  picture.stages = {{kVertexStage, kVertex}, {kFragmentStage, kThreeOutputs}};
+  for (std::size_t n = 0;; ++n) {
+    const auto shaders = make_shaders(picture.stages);
+    const Picture target = make_picture(VK_IMAGE_TYPE_2D, picture.colors[0], {kCanvas.width, kCanvas.height, 1}, 1);
+    const auto pool_info = make_struct<VkCommandPoolCreateInfo>();
+    VkCommandPool pool;
+    ASSERT_EQ(VK_CALL(CreateCommandPool)(device, &pool_info, nullptr, &pool), VK_SUCCESS);
+    auto allocate = make_struct<VkCommandBufferAllocateInfo>();
+    allocate.commandPool = pool;
+    allocate.commandBufferCount = 1;
+    VkCommandBuffer commands;
+    ASSERT_EQ(VK_CALL(AllocateCommandBuffers)(device, &allocate, &commands), VK_SUCCESS);
+    const auto begin = make_struct<VkCommandBufferBeginInfo>();
+    ASSERT_EQ(VK_CALL(BeginCommandBuffer)(commands, &begin), VK_SUCCESS);
+    auto color = make_struct<VkRenderingAttachmentInfo>();
+    color.imageView = target.view;
+    color.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+    auto info = make_struct<VkRenderingInfo>();
+    info.renderArea = {{0, 0}, kCanvas};
+    info.layerCount = info.colorAttachmentCount = 1;
+    info.pColorAttachments = &color;
+    VK_CALL(CmdBeginRenderingKHR)(commands, &info);
+    set_states(commands, picture);
+    bind(commands, shaders);
+    VK_CALL(CmdDraw)(commands, 3, 2, 0, 0);
+    VK_CALL(CmdEndRenderingKHR)(commands);
+    ASSERT_EQ(VK_CALL(EndCommandBuffer)(commands), VK_SUCCESS);
+    const VkResult result = submit(commands, n);
+    if (!allocator.failed()) {
+      EXPECT_EQ(result, VK_SUCCESS);
+      EXPECT_GT(n, 3u) << "a link and its place in the lists";
+    } else {
+      EXPECT_TRUE(result == VK_ERROR_DEVICE_LOST || result == VK_ERROR_OUT_OF_HOST_MEMORY) << n << ": " << result;
+    }
+    VK_CALL(DestroyCommandPool)(device, pool, nullptr);
+    TearDown();
+    pictures.clear(), buffers.clear();
+    const bool done = !allocator.failed();
+    SetUp();
+    if (done) break;
+    ASSERT_LT(n, 100u);
+  }
 }
 
 TEST_F(ShaderObjectDraws, OutsideOfRenderingNothingHappens) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #ifdef VK_EXT_shader_object
 namespace vitrine::icd::test {
@@ -42,7 +43,7 @@ void ShaderObjectDevice::make_device() {
   const char* const names[] = {VK_EXT_SHADER_OBJECT_EXTENSION_NAME, VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
                                VK_KHR_DEPTH_STENCIL_RESOLVE_EXTENSION_NAME, VK_KHR_CREATE_RENDERPASS_2_EXTENSION_NAME,
                                VK_KHR_DYNAMIC_RENDERING_LOCAL_READ_EXTENSION_NAME};
-  ASSERT_EQ(create_device(instance, physical_device, &device, nullptr, &features, names), VK_SUCCESS);
+  ASSERT_EQ(create_device(instance, physical_device, &device, host, &features, names), VK_SUCCESS);
 }
 
 void ShaderObjectDevice::SetUp() {
@@ -79,10 +80,10 @@ void ShaderObjectDevice::SetUp() {
 }
 
 void ShaderObjectDevice::TearDown() {
-  for (const VkPipeline p : pipelines_) VK_CALL(DestroyPipeline)(device, p, nullptr);
-  for (const VkShaderModule m : modules_) VK_CALL(DestroyShaderModule)(device, m, nullptr);
+  for (const VkPipeline p : std::exchange(pipelines_, {})) VK_CALL(DestroyPipeline)(device, p, nullptr);
+  for (const VkShaderModule m : std::exchange(modules_, {})) VK_CALL(DestroyShaderModule)(device, m, nullptr);
   const auto destroy_shader = get<PFN_vkDestroyShaderEXT>(instance, "vkDestroyShaderEXT");
-  for (const VkShaderEXT s : shaders_) destroy_shader(device, s, nullptr);
+  for (const VkShaderEXT s : std::exchange(shaders_, {})) destroy_shader(device, s, nullptr);
   VK_CALL(DestroyPipelineLayout)(device, layout, nullptr);
   VK_CALL(DestroyDescriptorPool)(device, descriptor_pool, nullptr);
   VK_CALL(DestroyDescriptorSetLayout)(device, set_layout, nullptr);

@@ -56,6 +56,7 @@ class ShaderObjectDevice : public Maintenance5Device {
   /// Both, compared; something must have been drawn.
   void expect_same(const Picture2D& picture);
 
+  const VkAllocationCallbacks* host = nullptr;        ///< of the device
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;  ///< a storage buffer for all stages
   VkDescriptorPool descriptor_pool = VK_NULL_HANDLE;
   VkDescriptorSet set = VK_NULL_HANDLE;
