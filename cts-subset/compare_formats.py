@@ -22,7 +22,7 @@ OMITTED = [
     (lambda name: name.startswith("R64") or "SCALED" in name, SRC_BLIT | DST_BLIT,
      "no image can be made of them for a blit: they have no other feature, not even transfers"),
     (lambda name: name.startswith("R64"), UNIFORM_TEXEL,
-     "read by shaders with Int64ImageEXT alone, which the peer does not have"),
+     "read by shaders with Int64ImageEXT alone, whose image formats have one component"),
     (lambda name: name == "S8_UINT", DEPTH_COMPARISON, "there is no depth in it to compare with"),
     (lambda name: True, HOST_IMAGE_TRANSFER, "VK_EXT_host_image_copy is younger than the registry"),
 ]

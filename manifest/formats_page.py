@@ -27,7 +27,8 @@ What tests them, besides the unit tests of `texel`:
   lavapipe for an image of the decoded texels.
 - **peer**: lavapipe lacks the format or the marked use of it; unit tests of `texel` compare with a format of the same values,
   and the same cases of `cts-subset` with an image of the same values in a format that lavapipe has (A8 and A1B5G5R5, which
-  come with VK_KHR_maintenance5: `icd Maintenance5Draws.*` with one that this device has).
+  come with VK_KHR_maintenance5: `icd Maintenance5Draws.*` with one that this device has; R64: `image.random_wide_texels`,
+  `compute.image_atomics_64.*` with two words and with a buffer, `icd WideTexels.*` with known numbers).
 - **formulas**: lavapipe lacks the format; `texel Ycbcr.*` compares samples through every kind of conversion with the
   specification's formulas in double precision, `texture.ycbcr.*` of `cts-subset` the way through the API;
   `api.random_planar_copies` and `texture.random_plane_*` compare copies and views of planes with single images.
@@ -51,7 +52,7 @@ What exact means:
 # Formats that lavapipe lacks and another has the values of, with their exactness.
 PEERS = {"R4G4B4A4_UNORM_PACK16": "defined", "R8_SRGB": "reference curve", "R8G8_SRGB": "reference curve",
          "A2R10G10B10_SINT_PACK32": "defined", "A2B10G10R10_SINT_PACK32": "defined",
-         "A8_UNORM": "defined", "A1B5G5R5_UNORM_PACK16": "defined"}
+         "A8_UNORM": "defined", "A1B5G5R5_UNORM_PACK16": "defined", "R64_UINT": "defined", "R64_SINT": "defined"}
 # Uses of other formats that lavapipe does not claim.
 PEER_USES = {**dict.fromkeys(("D16_UNORM", "X8_D24_UNORM_PACK32", "D32_SFLOAT", "D24_UNORM_S8_UINT",
                               "D32_SFLOAT_S8_UINT"), "linear"),

@@ -201,6 +201,9 @@ constexpr std::uint32_t coordinate_components(ImageDim dim) {
 }
 enum class GroupMode : std::uint8_t { kReduce, kInclusive, kExclusive };
 
+/// Which words of texels of 64 bits a fetch or a lookup gives.
+enum class TexelWord : std::uint8_t { kAll, kLow, kHigh };
+
 struct ImageInfo {
   ImageAccess access = ImageAccess::kSample;
   std::uint32_t operands = 0;                  ///< bit i: ImageOperand i is present
@@ -217,6 +220,10 @@ struct ImageInfo {
   bool has_gather_offsets = false;
   std::array<std::array<std::int32_t, 2>, 4> gather_offsets{};
   AtomicOp atomic = AtomicOp::kAdd;
+  /// Texels are numbers of 64 bits. Components 0 and 1 of what is read, written and exchanged are the words of the only
+  /// component, low first; fetches and lookups of images give the components' words that `word` says.
+  bool wide = false;
+  TexelWord word = TexelWord::kAll;
 };
 
 struct Node;

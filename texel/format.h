@@ -73,4 +73,8 @@ struct FormatDesc {
 /// The description; for unknown values the one of VK_FORMAT_UNDEFINED (block_bytes 0). Never fails.
 const FormatDesc& format_desc(VkFormat format);
 
+/// The description that views of texels have. Those of R64_UINT and R64_SINT are plain: two channels, the low and the
+/// high word of the number, so that loads, stores and lookups move words. For other formats that of format_desc().
+const FormatDesc& view_format_desc(VkFormat format);
+
 }  // namespace vitrine::texel

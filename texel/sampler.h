@@ -36,6 +36,7 @@ struct Sampler {
   bool compare = false;
   VkCompareOp compare_op = VK_COMPARE_OP_NEVER;
   std::array<std::uint32_t, 4> border{};  ///< raw bits: floats or integers by the border colour's type
+  bool custom_border = false;             ///< the first two are one number where components have 64 bits
   bool unnormalized = false;
   bool seams = false;  ///< faces of cubes are images of two dimensions by themselves; else filters cross their edges
   VkSamplerReductionMode reduction = VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
@@ -98,9 +99,10 @@ void store(const ImageView& view, const FetchRequest& request, const StoredValue
 void store_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
                   const StoredValue& value);
 
-/// Address of a 32-bit texel for image atomics, null where out of range; lane by lane, by the caller.
-std::uint32_t* texel_address(const ImageView& view, std::int32_t x, std::int32_t y, std::int32_t z,
-                             std::uint32_t sample);
+/// Address of a texel for image atomics, null where out of range or of another size than `bytes`; lane by lane, by the
+/// caller.
+std::byte* texel_address(const ImageView& view, std::uint32_t bytes, const std::array<std::int32_t, 3>& coord,
+                         std::uint32_t sample);
 
 /// OpImageQuerySize(Lod): components as the instruction returns them (layers last).
 std::array<std::uint32_t, 3> query_size(const ImageView& view, std::int32_t lod);

@@ -36,7 +36,7 @@ ImageView make_image_view(const ImageLayout& layout, std::byte* memory, const Im
   const FormatDesc& stored = format_desc(plane.format);
   ImageView view;
   // An aspect of a depth/stencil image is read as the plain format of its plane.
-  view.format = stored.is_depth_stencil() ? &stored : &format_desc(desc.format);
+  view.format = stored.is_depth_stencil() ? &stored : &view_format_desc(desc.format);
   view.type = desc.type;
   view.level_count = std::min(desc.level_count, kMaxLevels - std::min(desc.base_level, kMaxLevels - 1));
   view.layer_count = desc.layer_count;
@@ -73,6 +73,20 @@ ImageView make_sampled_plane(const ImageLayout& layout, std::byte* memory, const
     view.level0_extent = view.level[0].extent = extent;
   }
   return view;
+}
+
+ImageView make_word_view(const ImageView& view, bool high) {
+  // By swizzle: the number is the only component, the others read 0, and alpha 1, whose high word is 0.
+  static constexpr std::uint8_t kZero = 4, kOne = 5;
+  static constexpr std::uint8_t kLow[] = {0, kZero, kZero, kOne, kZero, kOne};
+  ImageView words = view;
+  for (std::uint8_t& component : words.swizzle) {
+    if (high)
+      component = component == 0 ? 1 : kZero;
+    else
+      component = kLow[component];
+  }
+  return words;
 }
 
 }  // namespace vitrine::texel

@@ -70,7 +70,7 @@ std::uint32_t plane_of_aspect(const ImageLayout& layout, VkImageAspectFlagBits a
 struct ImageView {
   std::byte* base = nullptr;  ///< address of the plane, layer `base_layer` (memory + plane offset + layer offset)
   std::uint64_t layer_stride = 0;
-  const FormatDesc* format = nullptr;  ///< of the view (may differ from the image's: mutable formats)
+  const FormatDesc* format = nullptr;  ///< view_format_desc() of the view (which may differ from the image's)
   VkImageViewType type = VK_IMAGE_VIEW_TYPE_2D;
   std::array<std::uint8_t, 4> swizzle{0, 1, 2, 3};  ///< per output component: 0..3 = RGBA, 4 = zero, 5 = one
   std::uint32_t level_count = 1;
@@ -83,6 +83,9 @@ struct ImageView {
   std::array<LevelLayout, kMaxLevels> level{};  ///< [0] is the view's first level
   /// What a Y'CbCr conversion samples: views of FormatDesc::plane of the format; null for other formats.
   const ImageView* planes = nullptr;
+  /// Of a view of 64-bit texels: two views whose components are the low and the high words of its own components,
+  /// swizzled, for fetches and lookups (make_word_view). Null for other formats.
+  const ImageView* words = nullptr;
 
   std::byte* block(std::uint32_t lvl, std::uint32_t layer, std::uint32_t sample, std::uint32_t bx, std::uint32_t by,
                    std::uint32_t bz) const {
@@ -110,11 +113,14 @@ ImageView make_image_view(const ImageLayout& layout, std::byte* memory, const Im
 ImageView make_sampled_plane(const ImageLayout& layout, std::byte* memory, const ImageViewDesc& desc,
                              std::uint32_t index);
 
+/// ImageView::words[high] of a view whose format is R64_UINT or R64_SINT.
+ImageView make_word_view(const ImageView& view, bool high);
+
 /// A texel buffer.
 struct BufferTexelView {
   std::byte* data = nullptr;
-  std::uint64_t count = 0;  ///< texels
-  const FormatDesc* format = nullptr;
+  std::uint64_t count = 0;             ///< texels
+  const FormatDesc* format = nullptr;  ///< view_format_desc()
 };
 
 }  // namespace vitrine::texel

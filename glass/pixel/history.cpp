@@ -53,8 +53,19 @@ std::string to_text(const std::array<std::uint32_t, 4>& components, std::size_t 
   return text + ")";
 }
 
+std::string wide_text(std::uint64_t number, texel::Kind kind) {
+  return "(" +
+         (kind == texel::Kind::kSint ? std::to_string(static_cast<std::int64_t>(number)) : std::to_string(number)) +
+         ")";
+}
+
 std::string to_text(const Value& value, const texel::FormatDesc& format) {
   if (value.size == 0) return "unknown";
+  if (format.format == VK_FORMAT_R64_UINT || format.format == VK_FORMAT_R64_SINT) {
+    std::uint64_t number = 0;
+    std::memcpy(&number, value.bytes.data(), sizeof number);
+    return wide_text(number, format.kind) + " = " + hex(value);
+  }
   if (!texel::can_decode(format)) return hex(value);
   texel::Texel decoded;
   texel::texel_decoder(format)(format, value.bytes.data(), decoded);

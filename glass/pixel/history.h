@@ -85,6 +85,8 @@ struct Texel {
 std::string to_text(const Value& value, const texel::FormatDesc& format);
 /// The same of registers of a shader, of the kind that the format has.
 std::string to_text(const std::array<std::uint32_t, 4>& components, std::size_t count, texel::Kind kind);
+/// The only component of a texel of 64 bits.
+std::string wide_text(std::uint64_t number, texel::Kind kind);
 /// Components in R, G, B, A that a format has.
 std::size_t components_of(const texel::FormatDesc& format);
 

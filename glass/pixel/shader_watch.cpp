@@ -159,7 +159,10 @@ void PixelProgram::Watch::stores_to(const Wave& wave, const ImageOp& op, const t
     std::size_t count = 0;
     for (; count < 4 && operands.column(ImageOperand::kValue, static_cast<std::uint32_t>(count)); ++count)
       value[count] = operands.column(ImageOperand::kValue, static_cast<std::uint32_t>(count))[lane];
-    if (count != 0) event.facts.emplace_back("value", to_text(value, count, view.format->kind));
+    const texel::Kind kind = view.format->kind;
+    if (count != 0)
+      event.facts.emplace_back("value", op.info.wide ? wide_text(value[0] | std::uint64_t{value[1]} << 32, kind)
+                                                     : to_text(value, count, kind));
     pending_.push_back(std::move(pending));
   });
 }

@@ -63,7 +63,7 @@ GetDeviceMemoryOpaqueCaptureAddress(VkDevice, const VkDeviceMemoryOpaqueCaptureA
 VKAPI_ATTR VkResult VKAPI_CALL CreateBufferView(VkDevice device, const VkBufferViewCreateInfo* info,
                                                 const VkAllocationCallbacks* allocator, VkBufferView* view) {
   const Buffer& buffer = from_handle<Buffer>(info->buffer);
-  const texel::FormatDesc& format = texel::format_desc(info->format);
+  const texel::FormatDesc& format = texel::view_format_desc(info->format);
   if (format.block_bytes == 0) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   BufferView* object = create_object<BufferView>(from_handle<Device>(device).memory, allocator);
   object->view.data = buffer.data ? buffer.data + info->offset : nullptr;

@@ -55,6 +55,14 @@ void add_sampled_planes(const Image& image, ImageView& view) {
   view.view.planes = view.planes.data();
 }
 
+/// Gives a view of 64-bit texels those of its low and high words.
+void add_word_views(ImageView& view) {
+  if (view.format != VK_FORMAT_R64_UINT && view.format != VK_FORMAT_R64_SINT) return;
+  view.planes.reserve(2);
+  for (const bool high : {false, true}) view.planes.push_back(texel::make_word_view(view.view, high));
+  view.view.words = view.planes.data();
+}
+
 }  // namespace
 
 namespace {
@@ -272,6 +280,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
   if (const auto* slices = find_in_chain<VkImageViewSlicedCreateInfoEXT>(info->pNext))
     set_slices(object->slices.emplace(object->view), slices->sliceOffset, slices->sliceCount);
 #endif
+  add_word_views(*object);
   const auto seen = static_cast<std::uint64_t>(reinterpret_cast<std::byte*>(&object->slices + 1) -
                                                reinterpret_cast<std::byte*>(&object->view));
   enter_address(from_handle<Device>(device), {&object->view, seen, image.data, ref(image)}, *object);

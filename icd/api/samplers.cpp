@@ -53,7 +53,8 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCre
   state.compare = info->compareEnable;
   state.compare_op = info->compareOp;
   state.border = border_bits(info->borderColor);
-  if (is_custom(info->borderColor)) {
+  state.custom_border = is_custom(info->borderColor);
+  if (state.custom_border) {
     if (const auto* custom = find_in_chain<VkSamplerCustomBorderColorCreateInfoEXT>(info->pNext)) {
       std::memcpy(state.border.data(), &custom->customBorderColor, sizeof(state.border));
     }

@@ -44,7 +44,7 @@ struct ImageView : Object<VkImageView, VK_OBJECT_TYPE_IMAGE_VIEW> {
   std::optional<texel::ImageView> slices;
   /// The stencil plane of a view that has both aspects; else equal to `view`.
   texel::ImageView stencil;
-  Vector<texel::ImageView> planes;  ///< what `view.planes` points to
+  Vector<texel::ImageView> planes;  ///< what `view.planes` or `view.words` points to
   std::uint64_t described = 0;      ///< its name in descriptors of buffers (icd/object/descriptor_bytes.h)
 
   const texel::ImageView& stored() const { return slices ? *slices : view; }

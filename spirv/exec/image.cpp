@@ -94,6 +94,20 @@ bool is_kept(const Wave& wave, const ImageOp& op, const Kept& entry) {
   return entry.op == &op && entry.serial == wave.resources->serial && entry.serial != 0;
 }
 
+/// The view that an instruction reads: of 64-bit texels the words that it asks for. Null: there is none.
+const texel::ImageView* viewed(const Call& call, const Descriptor& image) {
+  const ir::TexelWord word = call.op.info.word;
+  if (word == ir::TexelWord::kAll || image.image == nullptr) return image.image;
+  return image.image->words != nullptr ? &image.image->words[word == ir::TexelWord::kHigh] : nullptr;
+}
+
+/// A sampler whose border colour is that of 64-bit texels in words. Those that are not custom are 0 and 1.
+texel::Sampler sampler_of_words(const texel::Sampler& sampler) {
+  texel::Sampler words = sampler;
+  if (!sampler.custom_border) words.border[1] = 0;
+  return words;
+}
+
 /// A sampler made ready for one image instruction and the registers that it works on, kept while the same draw runs on
 /// this thread.
 struct KeptSampler {
@@ -102,6 +116,7 @@ struct KeptSampler {
   const texel::ImageView* view = nullptr;
   const texel::Sampler* sampler = nullptr;
   const std::byte* registers = nullptr;
+  texel::Sampler of_words;  ///< what is prepared for 64-bit texels
   texel::PreparedSampler prepared;
   texel::SampleRequest request;  ///< but not which lanes
   texel::SampleResult result{};
@@ -126,7 +141,9 @@ KeptSampler& kept_sampler(const Call& call, const texel::ImageView& view, const 
   entry.registers = call.wave.registers;
   if (same) return entry;
   entry.serial = 0;  // until all of it is ready
-  texel::prepare(view, sampler, entry.request.op, entry.request.lod_mode, entry.prepared);
+  const bool words = call.op.info.word != ir::TexelWord::kAll;
+  if (words) entry.of_words = sampler_of_words(sampler);
+  texel::prepare(view, words ? entry.of_words : sampler, entry.request.op, entry.request.lod_mode, entry.prepared);
   entry.op = &call.op;
   entry.view = &view;
   entry.sampler = &sampler;
@@ -143,10 +160,9 @@ void zero_registers(const Call& call, base::LaneMask lanes) {
 
 /// Straight to the registers of the results.
 void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, base::LaneMask lanes) {
-  if (image.image == nullptr || sampler == nullptr || !has_dimension(call, *image.image)) {
-    return zero_registers(call, lanes);
-  }
-  KeptSampler& kept = kept_sampler(call, *image.image, *sampler);
+  const texel::ImageView* const view = viewed(call, image);
+  if (view == nullptr || sampler == nullptr || !has_dimension(call, *view)) return zero_registers(call, lanes);
+  KeptSampler& kept = kept_sampler(call, *view, *sampler);
   kept.request.active = lanes;
   texel::sample(kept.prepared, kept.request, kept.result);
 }
@@ -182,7 +198,7 @@ KeptFetch& kept_fetch(const Call& call, const Descriptor& image) {
   entry.request = fetch_request(call, 0);
   entry.result = sample_result(call);
   entry.prepared = is_buffer(call) ? texel::prepare_fetch(*image.texels, *entry.request.coord[0], entry.result)
-                                   : texel::prepare_fetch(*image.image, entry.request, entry.result);
+                                   : texel::prepare_fetch(*viewed(call, image), entry.request, entry.result);
   entry.serial = call.wave.resources->serial;
   entry.op = &call.op;
   entry.image = &image;
@@ -193,7 +209,7 @@ KeptFetch& kept_fetch(const Call& call, const Descriptor& image) {
 
 /// Whether there is nothing of the kind that the instruction expects.
 bool is_null(const Call& call, const Descriptor& image) {
-  return is_buffer(call) ? image.texels == nullptr : image.image == nullptr;
+  return is_buffer(call) ? image.texels == nullptr : viewed(call, image) == nullptr;
 }
 
 /// Straight to the registers of the results.
@@ -202,7 +218,7 @@ void read(Call& call, const Descriptor& image, base::LaneMask lanes) {
   KeptFetch& kept = kept_fetch(call, image);
   if (is_buffer(call)) return texel::fetch_buffer(*image.texels, lanes, *kept.request.coord[0], kept.result);
   kept.request.active = lanes;
-  texel::fetch(*image.image, kept.request, kept.result);
+  texel::fetch(*viewed(call, image), kept.request, kept.result);
 }
 
 /// A read by a whole wave as it was the last time, from the same descriptor; false: it is another one.
@@ -233,7 +249,9 @@ void write(Call& call, const Descriptor& image, base::LaneMask lanes) {
   }
 }
 
-std::uint32_t* texel_word(const Call& call, const Descriptor& image, std::size_t lane) {
+/// Null where the texel is out of range or no such word.
+template <class Word>
+Word* texel_word(const Call& call, const Descriptor& image, std::size_t lane) {
   const auto at = [&](ImageOperand which, std::uint32_t c) {
     const WaveRegister* operand = call.operand(which, c);
     return operand ? static_cast<std::int32_t>(operand->lane[lane]) : 0;
@@ -241,11 +259,13 @@ std::uint32_t* texel_word(const Call& call, const Descriptor& image, std::size_t
   const std::int32_t x = at(ImageOperand::kCoord, 0);
   if (is_buffer(call)) {
     const texel::BufferTexelView& texels = *image.texels;
-    if (x < 0 || static_cast<std::uint64_t>(x) >= texels.count || texels.format->block_bytes != 4) return nullptr;
-    return reinterpret_cast<std::uint32_t*>(texels.data) + x;
+    const bool fits = texels.format->block_bytes == sizeof(Word);
+    if (x < 0 || static_cast<std::uint64_t>(x) >= texels.count || !fits) return nullptr;
+    return reinterpret_cast<Word*>(texels.data) + x;
   }
-  return texel::texel_address(*image.image, x, at(ImageOperand::kCoord, 1), at(ImageOperand::kCoord, 2),
-                              static_cast<std::uint32_t>(at(ImageOperand::kSample, 0)));
+  return reinterpret_cast<Word*>(texel::texel_address(*image.image, sizeof(Word),
+                                                      {x, at(ImageOperand::kCoord, 1), at(ImageOperand::kCoord, 2)},
+                                                      static_cast<std::uint32_t>(at(ImageOperand::kSample, 0))));
 }
 
 /// All lanes act on one texel.
@@ -256,20 +276,40 @@ bool have_same_texel(const Call& call, base::LaneMask lanes) {
   return true;
 }
 
+/// A lane's operand as one number; an absent one is 0.
+std::uint64_t wide_operand(const Call& call, ImageOperand which, std::size_t lane) {
+  const WaveRegister *const low = call.operand(which, 0), *const high = call.operand(which, 1);
+  return (low ? low->lane[lane] : 0) | std::uint64_t{high ? high->lane[lane] : 0} << 32;
+}
+
+/// On 64-bit texels. Lanes act in increasing order.
+void atomic_wide(Call& call, const Descriptor& image, base::LaneMask lanes) {
+  base::for_each_lane(lanes, [&](std::size_t lane) {
+    auto* const word = texel_word<std::uint64_t>(call, image, lane);
+    if (word == nullptr) return;
+    const std::uint64_t old =
+        apply_atomic<true>(call.op.info.atomic, word, wide_operand(call, ImageOperand::kValue, lane),
+                           wide_operand(call, ImageOperand::kCompare, lane));
+    call.result[0].lane[lane] = static_cast<std::uint32_t>(old);
+    call.result[1].lane[lane] = static_cast<std::uint32_t>(old >> 32);
+  });
+}
+
 void atomic(Call& call, const Descriptor& image, base::LaneMask lanes) {
   zero_result(call, lanes);
   lanes &= call.wave.live;
   if (is_null(call, image) || lanes == 0) return;
+  if (call.op.info.wide) return atomic_wide(call, image, lanes);
   const ir::AtomicOp op = call.op.info.atomic;
   const WaveRegister* operand = call.operand(ImageOperand::kValue);
   const WaveRegister* compare = call.operand(ImageOperand::kCompare);
   std::uint32_t* const result = call.op.result[0] != kNoOperand ? call.result[0].lane : nullptr;
   if (operand != nullptr && is_several(lanes) && have_same_texel(call, lanes)) {
-    std::uint32_t* const word = texel_word(call, image, first_of(lanes));
+    auto* const word = texel_word<std::uint32_t>(call, image, first_of(lanes));
     if (word == nullptr || combine_lanes<true>(op, word, operand->lane, lanes, result)) return;
   }
   base::for_each_lane(lanes, [&](std::size_t lane) {
-    std::uint32_t* word = texel_word(call, image, lane);
+    auto* const word = texel_word<std::uint32_t>(call, image, lane);
     if (word == nullptr) return;
     call.result[0].lane[lane] =
         apply_atomic<true>(op, word, operand ? operand->lane[lane] : 0, compare ? compare->lane[lane] : 0);

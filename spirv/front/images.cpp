@@ -1,5 +1,6 @@
 // Image instructions (SPIR-V 3.42.10; Vulkan, Image Operations): gathers descriptors and operands into one Image
 // instruction. Projection is applied here, as multiplication by the reciprocal like the reference does.
+#include "spirv/front/expression.h"
 #include "spirv/front/functions.h"
 
 namespace vitrine::spirv::front {
@@ -49,9 +50,17 @@ ir::ValueId first_components(Translator& t, ir::ValueId vector, std::uint32_t co
   return vec(t, std::move(parts), false);
 }
 
-/// The texel of a store as four components, missing ones 0.
-ir::ValueId padded_texel(Translator& t, ir::ValueId texel) {
+/// The texel of a store as four components, missing ones 0: of numbers of 64 bits the words of the first.
+ir::ValueId padded_texel(Translator& t, std::uint32_t id, bool wide) {
   std::vector<ir::Src> parts;
+  if (wide) {
+    const Expr number = number_of(t, id);
+    if (number.width != 64) throw Failure("the texel is not as wide as those of the image");
+    parts = {splat(number.id, 0), splat(number.high, 0)};
+    for (int i = 0; i < 2; i++) parts.push_back(whole(constant_u32(t, 0)));
+    return vec(t, std::move(parts), false);
+  }
+  const ir::ValueId texel = scalar_or_vector(t, id);
   for (std::uint8_t i = 0; i < 4; i++)
     parts.push_back(i < components(t, texel) ? splat(texel, i) : whole(constant_u32(t, 0)));
   return vec(t, std::move(parts), false);
@@ -107,6 +116,32 @@ ir::ValueId finish(Translator& t, std::shared_ptr<ir::ImageInfo> info, ImageSour
     result = emit(t, ir::Op::kImage, count, false, std::move(src));
   last_instr(t).image = std::move(info);
   return result;
+}
+
+/// The components of a texel of 64 bits that was read as it lies: its words, the other components, and the alpha that
+/// it has not (Vulkan 1.3.239, Conversion to RGBA).
+void set_wide_texel(Translator& t, const Inst& inst, ir::ValueId texel, std::uint32_t count) {
+  const ir::ValueId zero = constant_u32(t, 0);
+  const auto parts = [&](ir::Src first, ir::Src last) {
+    std::vector<ir::Src> all{first, whole(zero), whole(zero), last};
+    all.resize(count);
+    return count == 1 ? extract(t, first.value, first.swizzle[0]) : vec(t, std::move(all), false);
+  };
+  set_value(t, inst, std::vector{parts(splat(texel, 0), splat(texel, 3)), parts(splat(texel, 1), whole(zero))});
+}
+
+/// What a fetch or a lookup of an image gives. Texels of 64 bits are looked up once for their low words and once for
+/// their high ones.
+void set_texels(Translator& t, const Inst& inst, std::shared_ptr<ir::ImageInfo> info, ImageSources& sources) {
+  const std::uint32_t count = leaf_info(t, inst.result_type).components;
+  if (!info->wide) return set_value(t, inst, finish(t, std::move(info), sources, count));
+  std::vector<ir::ValueId> words;
+  for (const ir::TexelWord word : {ir::TexelWord::kLow, ir::TexelWord::kHigh}) {
+    auto of_word = std::make_shared<ir::ImageInfo>(*info);
+    of_word->word = word;
+    words.push_back(finish(t, std::move(of_word), sources, count));
+  }
+  set_value(t, inst, std::move(words));
 }
 
 struct SampleShape {
@@ -176,6 +211,18 @@ std::vector<ir::Src> ImageSources::take() {
   return present;
 }
 
+namespace {
+
+/// Whether the Sampled Type is a number of 64 bits, an integer as it has to be.
+bool has_wide_texels(Translator& t, const Type& image) {
+  const Type& sampled = t.module.type(image.element);
+  if (sampled.width != 64) return false;
+  if (sampled.kind != Type::Kind::kInt) throw Failure("texels are not floats of 64 bits");
+  return true;
+}
+
+}  // namespace
+
 ir::ImageInfo image_info(Translator& t, const ImageHandle& handle) {
   ir::ImageInfo info;
   if (handle.image_type == 0) throw Failure("operand is a sampler, not an image");
@@ -185,6 +232,7 @@ ir::ImageInfo image_info(Translator& t, const ImageHandle& handle) {
   if (type.dim == spv::Dim::SubpassData) t.function.interface.reads_attachment = true;
   info.arrayed = type.arrayed;
   info.multisampled = type.multisampled;
+  info.wide = has_wide_texels(t, type);
   info.set = handle.image.set;
   info.slot = handle.image.slot;
   info.count = handle.image.count;
@@ -214,6 +262,8 @@ std::uint32_t components_of(spv::ImageFormat format) {
     case F::R32ui:
     case F::R16ui:
     case F::R8ui:
+    case F::R64i:
+    case F::R64ui:
       return 1;
     case F::Rg32f:
     case F::Rg16f:
@@ -293,8 +343,7 @@ void image_sample(Translator& t, const Inst& inst, ir::Op) {
   // An anisotropic sampler takes the derivatives of coordinates also where the level is explicit.
   const bool given = (info->operands >> static_cast<std::uint32_t>(ImageOperand::kGradX) & 1) != 0;
   if (info->in_quads && !given && !shape.gather) t.function.interface.needs_helpers = true;
-  const std::uint32_t count = leaf_info(t, inst.result_type).components;
-  set_value(t, inst, finish(t, std::move(info), sources, count));
+  set_texels(t, inst, std::move(info), sources);
 }
 
 void image_access(Translator& t, const Inst& inst, ir::Op) {
@@ -312,16 +361,18 @@ void image_access(Translator& t, const Inst& inst, ir::Op) {
   const ir::ValueId texel = first_components(t, coord, texel_components(*info));
   info->arrayed |= subpass;  // the view is the layer
   sources.add(ImageOperand::kCoord, subpass ? own_texel(t, texel) : texel);
-  if (write) sources.add(ImageOperand::kValue, padded_texel(t, scalar_or_vector(t, inst.operand(2))));
+  if (write) sources.add(ImageOperand::kValue, padded_texel(t, inst.operand(2), info->wide));
   add_image_operands(t, inst, write ? 3 : 2, {*info, sources});
   if (write) {
     t.function.interface.writes_memory = true;
+    const bool wide = info->wide;
     finish(t, std::move(info), sources, 0);
-    last_instr(t).data[0] = components_of(t.module.type(handle.image_type).format);
+    last_instr(t).data[0] = wide ? 2 : components_of(t.module.type(handle.image_type).format);
     return;
   }
-  const std::uint32_t count = leaf_info(t, inst.result_type).components;
-  set_value(t, inst, finish(t, std::move(info), sources, count));
+  if (!info->wide || (info->access == ImageAccess::kFetch && info->dim != ImageDim::kBuffer))
+    return set_texels(t, inst, std::move(info), sources);
+  set_wide_texel(t, inst, finish(t, std::move(info), sources, 4), leaf_info(t, inst.result_type).components);
 }
 
 void image_query(Translator& t, const Inst& inst, ir::Op) {

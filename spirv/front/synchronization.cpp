@@ -69,21 +69,52 @@ AtomicOperands atomic_operands(Translator& t, const Inst& inst, std::uint8_t wid
   }
 }
 
-void image_atomic(Translator& t, ir::AtomicOp op, const Pointer& pointer, const AtomicOperands& operands) {
-  ir::Instr& instr = last_instr(t);
+/// A scalar as one vector of its words, low first; nothing of an absent operand.
+ir::ValueId words_of(Translator& t, const Expr& operand) {
+  if (operand.high == ir::kNoValue) return operand.id;
+  return vec(t, {whole(operand.id), whole(operand.high)}, false);
+}
+
+/// On a texel, which has the width of the image's Sampled Type: an integer where that is 64.
+ir::ValueId image_atomic(Translator& t, ir::AtomicOp op, const Pointer& pointer, const AtomicOperands& operands) {
+  const std::uint32_t width = number_type(t, pointer.type).width;
   auto info = std::make_shared<ir::ImageInfo>(image_info(t, pointer.image));
+  if (width != (info->wide ? 64 : 32))
+    fail(*t.inst, std::to_string(width) + "-bit atomics on this image are not supported");
   info->access = ir::ImageAccess::kAtomic;
   info->atomic = op;
   ImageSources sources(*info);
   add_elements(t, pointer.image, *info, sources);
   sources.add(ir::ImageOperand::kCoord, pointer.coord);
   sources.add(ir::ImageOperand::kSample, pointer.sample);
-  sources.add(ir::ImageOperand::kValue, operands.value.id);
-  sources.add(ir::ImageOperand::kCompare, operands.comparator.id);
+  sources.add(ir::ImageOperand::kValue, words_of(t, operands.value));
+  sources.add(ir::ImageOperand::kCompare, words_of(t, operands.comparator));
   check_image(*t.inst, *info, 1);
-  instr.op = ir::Op::kImage;
-  instr.src = sources.take();
-  instr.image = std::move(info);
+  const ir::ValueId result = emit(t, ir::Op::kImage, info->wide ? 2 : 1, false, sources.take());
+  last_instr(t).image = std::move(info);
+  return result;
+}
+
+/// On what a pointer to a number of `width` bits leads to.
+ir::ValueId memory_atomic(Translator& t, ir::AtomicOp op, const Pointer& pointer, const AtomicOperands& operands,
+                          std::uint8_t width) {
+  std::vector<ir::Src> src;
+  const bool global = pointer.kind == Pointer::Kind::kGlobal, shared = pointer.kind == Pointer::Kind::kShared;
+  if (pointer.kind == Pointer::Kind::kStorage) src.push_back(whole(descriptor_element(t, pointer)));
+  if (global) src.insert(src.end(), {whole(pointer.low), whole(pointer.high)});
+  src.push_back(whole(dynamic_offset(t, pointer)));
+  add_words(src, operands.value);
+  add_words(src, operands.comparator);
+  if (!shared && !global && pointer.kind != Pointer::Kind::kStorage) fail(*t.inst, "storage class is not supported");
+  const bool wide = width == 64;
+  const ir::Op kind = shared ? ir::Op::kAtomicShared : global ? ir::Op::kAtomicGlobal : ir::Op::kAtomicStorage;
+  const ir::ValueId result = emit(t, kind, wide ? 2 : 1, false, std::move(src));
+  ir::Instr& instr = last_instr(t);
+  set_buffer(instr, pointer);
+  instr.imm[0] = static_cast<std::uint32_t>(op);
+  if (width == 16) instr.imm[2] = 1;  // binary16, in imm[1] bytes or, where every scalar has a word, in that
+  instr.imm[1] = wide ? 8 : width == 16 && !pointer.word_layout() ? 2 : 0;
+  return result;
 }
 
 /// Memory is coherent, so all that a barrier asks for is that loads behind it are made behind it.
@@ -109,33 +140,11 @@ void atomic(Translator& t, const Inst& inst, ir::Op) {
   for (const Expr& operand : {operands.value, operands.comparator})
     if (operand.id != ir::kNoValue && (operand.size() != 1 || operand.width != width))
       fail(inst, "operand does not fit its type");
-  std::vector<ir::Src> src;
-  const bool is_image = pointer.kind == Pointer::Kind::kTexel;
-  const bool global = pointer.kind == Pointer::Kind::kGlobal;
-  if (pointer.kind == Pointer::Kind::kStorage) src.push_back(whole(descriptor_element(t, pointer)));
-  if (global) src.insert(src.end(), {whole(pointer.low), whole(pointer.high)});
-  if (!is_image) src.push_back(whole(dynamic_offset(t, pointer)));
-  add_words(src, operands.value);
-  add_words(src, operands.comparator);
-  const bool shared = pointer.kind == Pointer::Kind::kShared;
-  if (!shared && !is_image && !global && pointer.kind != Pointer::Kind::kStorage)
-    fail(inst, "storage class is not supported");
-  if (is_image && width != 32) fail(inst, std::to_string(width) + "-bit atomics on images are not supported");
-  const bool wide = width == 64;
-  const ir::Op kind = shared ? ir::Op::kAtomicShared : global ? ir::Op::kAtomicGlobal : ir::Op::kAtomicStorage;
-  const ir::ValueId result = emit(t, kind, wide ? 2 : 1, false, std::move(src));
-  ir::Instr& instr = last_instr(t);
-  if (is_image) {
-    image_atomic(t, op, pointer, operands);
-  } else {
-    set_buffer(instr, pointer);
-    instr.imm[0] = static_cast<std::uint32_t>(op);
-    if (width == 16) instr.imm[2] = 1;  // binary16, in imm[1] bytes or, where every scalar has a word, in that
-    instr.imm[1] = wide ? 8 : width == 16 && !pointer.word_layout() ? 2 : 0;
-  }
-  if (!shared && op != ir::AtomicOp::kLoad) t.function.interface.writes_memory = true;
+  const ir::ValueId result = pointer.kind == Pointer::Kind::kTexel ? image_atomic(t, op, pointer, operands)
+                                                                   : memory_atomic(t, op, pointer, operands, width);
+  if (pointer.kind != Pointer::Kind::kShared && op != ir::AtomicOp::kLoad) t.function.interface.writes_memory = true;
   if (inst.result == 0) return;
-  set_value(t, inst, wide ? std::vector{extract(t, result, 0), extract(t, result, 1)} : std::vector{result});
+  set_value(t, inst, width == 64 ? std::vector{extract(t, result, 0), extract(t, result, 1)} : std::vector{result});
 }
 
 void barrier(Translator& t, const Inst& inst, ir::Op) {

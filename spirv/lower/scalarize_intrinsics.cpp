@@ -237,8 +237,10 @@ std::uint32_t image_operand_components(const ir::Instr& instr, ir::ImageOperand 
     case ir::ImageOperand::kGradY:
     case ir::ImageOperand::kOffset:
       return dimensions;
+    case ir::ImageOperand::kCompare:
+      return info.wide ? 2 : 1;
     case ir::ImageOperand::kValue:
-      if (info.access == ir::ImageAccess::kAtomic) return 1;
+      if (info.access == ir::ImageAccess::kAtomic) return info.wide ? 2 : 1;
       return instr.data[0] == 0 ? 4 : instr.data[0];
     default:
       return 1;

@@ -254,7 +254,8 @@ TEST_F(Formats, ClaimsDoNotExceedWhatTexelDoes) {
       {VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT,
        [](const texel::FormatDesc& format) {
          return format.format == VK_FORMAT_R32_UINT || format.format == VK_FORMAT_R32_SINT ||
-                format.format == VK_FORMAT_R32_SFLOAT;
+                format.format == VK_FORMAT_R32_SFLOAT || format.format == VK_FORMAT_R64_UINT ||
+                format.format == VK_FORMAT_R64_SINT;
        }},
       {VK_FORMAT_FEATURE_TRANSFER_SRC_BIT, [](const texel::FormatDesc& format) { return format.block_bytes != 0; }},
       {VK_FORMAT_FEATURE_BLIT_SRC_BIT, texel::can_sample},
@@ -278,7 +279,7 @@ TEST_F(Formats, ClaimsDoNotExceedWhatTexelDoes) {
     ASSERT_TRUE(texel::make_image_layout(desc, layout)) << texel::format_desc(claim.format).name;
     // Depth and stencil of a combined format are planes of their own.
     for (std::uint32_t plane = 0; plane < layout.plane_count; ++plane) {
-      const texel::FormatDesc& format = texel::format_desc(layout.plane[plane].format);
+      const texel::FormatDesc& format = texel::view_format_desc(layout.plane[plane].format);
       for (const Backing& row : kImage) {
         const bool claimed = claim.properties.optimalTilingFeatures & row.feature;
         EXPECT_TRUE(!claimed || row.can(format)) << format.name << " image feature " << row.feature;

@@ -55,4 +55,17 @@ const FormatDesc& format_desc(VkFormat format) {
   return found != kSortedRows.end() && value_of(*found) == value ? *found : kUndefined;
 }
 
+const FormatDesc& view_format_desc(VkFormat format) {
+  const auto in_words = [](VkFormat wide, VkFormat words) {
+    FormatDesc desc = format_desc(words);
+    desc.format = wide;
+    desc.name = format_desc(wide).name;
+    return desc;
+  };
+  static const FormatDesc unsigned_words = in_words(VK_FORMAT_R64_UINT, VK_FORMAT_R32G32_UINT);
+  static const FormatDesc signed_words = in_words(VK_FORMAT_R64_SINT, VK_FORMAT_R32G32_SINT);
+  if (format == VK_FORMAT_R64_UINT) return unsigned_words;
+  return format == VK_FORMAT_R64_SINT ? signed_words : format_desc(format);
+}
+
 }  // namespace vitrine::texel

@@ -127,16 +127,14 @@ void store_buffer(const BufferTexelView& view, base::LaneMask active, const base
   });
 }
 
-std::uint32_t* texel_address(const ImageView& view, std::int32_t x, std::int32_t y, std::int32_t z,
-                             std::uint32_t sample) {
+std::byte* texel_address(const ImageView& view, std::uint32_t bytes, const std::array<std::int32_t, 3>& coord,
+                         std::uint32_t sample) {
   const Shape shape = shape_of(view.type);
-  const std::int32_t coord[3] = {x, y, z};
   Place place;
   for (std::uint32_t i = 0; i < shape.dims; ++i) place.at[i] = static_cast<std::uint32_t>(coord[i]);
   if (shape.layered) place.layer = static_cast<std::uint32_t>(coord[shape.dims]);
   place.sample = sample;
-  if (view.format->block_bytes != sizeof(std::uint32_t) || !in_range(view, place)) return nullptr;
-  return reinterpret_cast<std::uint32_t*>(address_of(view, place));
+  return view.format->block_bytes == bytes && in_range(view, place) ? address_of(view, place) : nullptr;
 }
 
 std::array<std::uint32_t, 3> query_size(const ImageView& view, std::int32_t lod) {

@@ -33,7 +33,9 @@ void fill_range(const ImageMemory& image, VkImageAspectFlagBits aspect, const Vk
 StoredTexel encode_clear_color(const FormatDesc& format, const VkClearColorValue& color) {
   StoredTexel value;
   const Texel texel{color.uint32[0], color.uint32[1], color.uint32[2], color.uint32[3]};
-  encode_texel(format, Encoding::kClear, texel, value.bytes.data());
+  // Of a 64-bit component "the first 2 array elements ... are reinterpreted as a single 64-bit element" (Vulkan 1.4,
+  // Clear Values).
+  encode_texel(view_format_desc(format.format), Encoding::kClear, texel, value.bytes.data());
   return value;
 }
 

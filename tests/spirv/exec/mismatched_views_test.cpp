@@ -149,13 +149,45 @@ TEST(MismatchedViews, FetchesStoresAndAtomics) {
   if (samples != nullptr) run_on_all(*samples);
 }
 
+/// 64-bit texels, of views that have them and of others.
+constexpr char kWideTexels[] =
+    "#extension GL_EXT_shader_image_int64 : require\n"
+    "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n";
+
+std::string wide_accesses(const std::string& at) {
+  return "i64vec4 w = imageLoad(r, " + at + "); imageStore(r, " + at + ", w + 5l); w.x += imageAtomicAdd(r, " + at +
+         ", 5l) + imageAtomicCompSwap(r, " + at + ", 7l, 9l); v.x += float(w.x);";
+}
+
+std::unique_ptr<Shader> wide_shader_of(const std::string& dimension, const std::string& statement) {
+  const std::string text = std::string(kWideTexels) +
+                           "layout(location=0) in vec4 p;\nlayout(location=0) out vec4 color;\n"
+                           "layout(set=0,binding=0,r64i) uniform i64image" +
+                           dimension + " r;\nvoid main() {\n  vec4 v = vec4(0);\n  " + statement +
+                           "\n  color = v;\n}\n";
+  auto shader = compile(compile_glsl(VK_SHADER_STAGE_FRAGMENT_BIT, text), options_for(VK_SHADER_STAGE_FRAGMENT_BIT));
+  EXPECT_TRUE(shader) << shader.message() << text;
+  return shader ? shader.take() : nullptr;
+}
+
+TEST(MismatchedViews, WideTexels) {
+  const char* const kDimensions[][2] = {{"1D", "n.x"},       {"2D", "n.xy"},       {"3D", "n.xyz"},
+                                        {"1DArray", "n.xy"}, {"2DArray", "n.xyz"}, {"Cube", "n.xyz"}};
+  for (const auto& [dimension, at] : kDimensions) {
+    const auto shader = wide_shader_of(dimension, "ivec4 n = ivec4(p * 97.0) - 3; " + wide_accesses(at));
+    ASSERT_NE(shader, nullptr);
+    run_on_all(*shader);
+  }
+}
+
 TEST(MismatchedViews, TexelBuffers) {
   const std::string n = "int n = int(p.x * 97.0) - 3; ";
   const auto fetch = shader_of(") uniform samplerBuffer", n + "v += texelFetch(r, n); v.x += float(textureSize(r));");
   const auto access = shader_of(",r32f) uniform imageBuffer", n + "v += imageLoad(r, n); imageStore(r, n, p);");
   const auto atomic = shader_of(",r32ui) uniform uimageBuffer", n + "v.x += float(imageAtomicAdd(r, n, 5u));");
+  const auto wide = wide_shader_of("Buffer", n + wide_accesses("n"));
   for (const VkFormat format : kFormats) {
-    const texel::FormatDesc& desc = texel::format_desc(format);
+    const texel::FormatDesc& desc = texel::view_format_desc(format);
     constexpr std::size_t kTexels = 20;
     std::vector<std::byte> memory(kTexels * desc.block_bytes + 4096, kGuard);
     texel::BufferTexelView view;
@@ -164,7 +196,7 @@ TEST(MismatchedViews, TexelBuffers) {
     view.format = &desc;
     Descriptor descriptor;
     descriptor.texels = &view;
-    for (const auto* shader : {&fetch, &access, &atomic}) {
+    for (const auto* shader : {&fetch, &access, &atomic, &wide}) {
       ASSERT_NE(*shader, nullptr);
       run(**shader, descriptor);
       const auto behind = memory.begin() + static_cast<std::ptrdiff_t>(kTexels * desc.block_bytes);
