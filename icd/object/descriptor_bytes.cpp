@@ -83,7 +83,7 @@ void read_buffer(const Words& words, spirv::Descriptor& slot) {
 }
 
 void read_texels(const Words& words, texel::BufferTexelView& view, spirv::Descriptor& slot) {
-  const texel::FormatDesc& format = texel::format_desc(static_cast<VkFormat>(words[2]));
+  const texel::FormatDesc& format = texel::view_format_desc(static_cast<VkFormat>(words[2]));
   if (format.block_bytes == 0) return;
   const spirv::AddressRange memory = memory_at(words[0] & kValueMask, words[1]);
   view = {};
