@@ -107,13 +107,13 @@ VKAPI_ATTR void VKAPI_CALL DestroyShaderEXT(VkDevice, VkShaderEXT shader, const 
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetShaderBinaryDataEXT(VkDevice, VkShaderEXT shader, std::size_t* size, void* data) {
-  const Vector<std::uint32_t> binary = shader_binary(from_handle<ShaderObject>(shader).source);
-  const std::size_t bytes = binary.size() * sizeof(std::uint32_t);
+  const KeptStage& source = from_handle<ShaderObject>(shader).source;
+  const std::size_t bytes = shader_binary_bytes(source);
   if (data && *size < bytes) {
     *size = 0;
     return VK_INCOMPLETE;
   }
-  if (data) std::memcpy(data, binary.data(), bytes);
+  if (data) std::memcpy(data, shader_binary(source).data(), bytes);
   *size = bytes;
   return VK_SUCCESS;
 }

@@ -5,7 +5,7 @@
 //   then these: the SPIR-V, each entry's constant, offset and size, data and name, padded with zeros to words.
 //
 // A binary is nobody's promise: sizes, hash and entries are checked, and the SPIR-V is compiled as any other.
-#include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "icd/object/shader_object.h"
@@ -43,6 +43,18 @@ struct Sizes {
 };
 static_assert(sizeof(Sizes) == (kHeaderWords - kHashed) * sizeof(std::uint32_t));
 
+Sizes sizes_of(const KeptStage& source) {
+  return {static_cast<std::uint32_t>(source.stage),        source.subgroup_size,
+          static_cast<std::uint32_t>(source.words.size()), static_cast<std::uint32_t>(source.map.size()),
+          static_cast<std::uint32_t>(source.data.size()),  static_cast<std::uint32_t>(source.entry_point.size())};
+}
+
+/// Whether a subgroup size can be required; 0: none is.
+bool is_subgroup_size(std::uint32_t size) {
+  const auto& claimed = kClaimedPhysicalDeviceSubgroupSizeControlProperties;
+  return size == 0 || (std::has_single_bit(size) && size >= claimed.minSubgroupSize && size <= claimed.maxSubgroupSize);
+}
+
 /// Whether the header is ours and everything has the size that it says.
 bool read_sizes(const Vector<std::uint32_t>& words, Sizes& sizes) {
   const auto& claimed = kClaimedPhysicalDeviceShaderObjectPropertiesEXT;
@@ -50,19 +62,20 @@ bool read_sizes(const Vector<std::uint32_t>& words, Sizes& sizes) {
     return false;
   if (words[kVersion] != claimed.shaderBinaryVersion) return false;
   std::memcpy(&sizes, words.data() + kHashed, sizeof sizes);
-  if (sizes.total_words() != words.size()) return false;
+  if (sizes.total_words() != words.size() || !is_subgroup_size(sizes.subgroup_size)) return false;
   const ShaderKey hash = hash_of(words);
   return std::memcmp(words.data() + kHash, hash.data(), sizeof hash) == 0;
 }
 
 }  // namespace
 
+std::size_t shader_binary_bytes(const KeptStage& source) {
+  return sizes_of(source).total_words() * sizeof(std::uint32_t);
+}
+
 Vector<std::uint32_t> shader_binary(const KeptStage& source) {
   const auto& claimed = kClaimedPhysicalDeviceShaderObjectPropertiesEXT;
-  const Sizes sizes{
-      static_cast<std::uint32_t>(source.stage),        source.subgroup_size,
-      static_cast<std::uint32_t>(source.words.size()), static_cast<std::uint32_t>(source.map.size()),
-      static_cast<std::uint32_t>(source.data.size()),  static_cast<std::uint32_t>(source.entry_point.size())};
+  const Sizes sizes = sizes_of(source);
   Vector<std::uint32_t> out(kHeaderWords, 0, source.words.get_allocator());
   out.reserve(sizes.total_words());
   std::memcpy(out.data(), claimed.shaderBinaryUUID, VK_UUID_SIZE);

@@ -64,7 +64,7 @@ bool cuts_watched_pixels(const ReplayState& state) {
 
 /// Brings `state.draw` up to date. False if there is nothing to draw with or to.
 bool prepare_draw(ReplayState& state) {
-  link_shaders(state);
+  if (state.shaders.any) link_shaders(state);
   const Pipeline* pipeline = state.graphics.pipeline;
   if (!pipeline || !state.pass || state.suppressed) return false;
   if (state.arena.used() > kArenaBudget) flush_pass(state);

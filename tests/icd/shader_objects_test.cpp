@@ -415,6 +415,15 @@ TEST_F(HostileBinaries, AreIncompatibleInAnyOtherSizeOrStage) {
   EXPECT_EQ(create(binary.data(), binary.size() * 4, VK_SHADER_STAGE_VERTEX_BIT), VK_INCOMPATIBLE_SHADER_BINARY_EXT);
 }
 
+TEST_F(HostileBinaries, AreIncompatibleWhereTheyAskForSubgroupsThatCannotBe) {
+  for (const std::uint32_t size : {0u, 1u, 4u, 8u, 12u, 64u, 128u, ~0u}) {
+    std::vector<std::uint32_t> altered = binary;
+    altered[kHashed + 1] = size;
+    const bool can_be = size == 0 || size == 8 || size == 64;
+    EXPECT_EQ(create_hashed(altered), can_be ? VK_SUCCESS : VK_INCOMPATIBLE_SHADER_BINARY_EXT) << size;
+  }
+}
+
 TEST_F(HostileBinaries, WithTheRightHashDoNoHarm) {
   EXPECT_EQ(create_hashed(binary), VK_SUCCESS);
   std::uint32_t state = 1;
