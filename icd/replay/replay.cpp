@@ -94,6 +94,7 @@ void run_command(ReplayState& state, const CommandHeader& header) {
 void forget_bindings(ReplayState& state) {
   state.graphics.pipeline = state.compute.pipeline = nullptr;
   state.shaders = {};
+  state.dynamic = {};  // shader objects need no state that has no effect on them, and see none of earlier ones
   for (BindPoint* const point : {&state.graphics, &state.compute}) {
     point->sets.fill(nullptr);
     point->addresses.fill(0);

@@ -356,6 +356,14 @@ TEST_F(ShaderObjectDraws, OutputsGoToTheLocationsThatWereSet) {
   EXPECT_EQ(draw({}), plain);
 }
 
+/// The stream need not be set where no geometry shader is bound (Setting State): an earlier command buffer's is none.
+TEST_F(ShaderObjectDraws, StatesEndWithTheirCommandBuffer) {
+  Picture2D picture;
+  picture.stages = {{kVertexStage, kVertex}, {kFragmentStage, kFragment}};
+  run([&](VkCommandBuffer commands) { VK_CALL(CmdSetRasterizationStreamEXT)(commands, 1); });
+  expect_same(picture);
+}
+
 /// No valid use: every state has the value that it begins with.
 TEST_F(ShaderObjectDraws, WithoutStatesNothingBreaks) {
   Picture2D picture;
