@@ -200,7 +200,8 @@ VKAPI_ATTR void VKAPI_CALL CmdSetExtraPrimitiveOverestimationSizeEXT(VkCommandBu
   }
 #include "icd/record/dynamic_state.def"
 
-// Commands of VK_EXT_extended_dynamic_state3 whose features are not claimed: they have addresses, but no valid call.
+// Commands of VK_EXT_extended_dynamic_state3 and VK_EXT_shader_object whose features are not claimed: they have
+// addresses, but no valid call.
 
 VKAPI_ATTR void VKAPI_CALL CmdSetViewportWScalingEnableNV(VkCommandBuffer, VkBool32) {}
 VKAPI_ATTR void VKAPI_CALL CmdSetViewportSwizzleNV(VkCommandBuffer, std::uint32_t, std::uint32_t,
@@ -213,6 +214,10 @@ VKAPI_ATTR void VKAPI_CALL CmdSetCoverageModulationTableNV(VkCommandBuffer, std:
 VKAPI_ATTR void VKAPI_CALL CmdSetShadingRateImageEnableNV(VkCommandBuffer, VkBool32) {}
 VKAPI_ATTR void VKAPI_CALL CmdSetRepresentativeFragmentTestEnableNV(VkCommandBuffer, VkBool32) {}
 VKAPI_ATTR void VKAPI_CALL CmdSetCoverageReductionModeNV(VkCommandBuffer, VkCoverageReductionModeNV) {}
+#ifdef VK_EXT_depth_clamp_control
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthClampRangeEXT(VkCommandBuffer, VkDepthClampModeEXT, const VkDepthClampRangeEXT*) {
+}
+#endif
 
 }  // namespace entry
 }  // namespace vitrine::icd

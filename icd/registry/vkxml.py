@@ -105,6 +105,9 @@ def parse_depends(text):
 REVISIONS = {name: ("VK_EXT_discard_rectangles", 2)
              for name in ("vkCmdSetDiscardRectangleEnableEXT", "vkCmdSetDiscardRectangleModeEXT",
                           "VK_DYNAMIC_STATE_DISCARD_RECTANGLE_ENABLE_EXT", "VK_DYNAMIC_STATE_DISCARD_RECTANGLE_MODE_EXT")}
+# Extensions that have all their commands, those too which the registry ties to other extensions: the conformance suite asks
+# for them (dEQP-VK.shader_object.api.get_device_proc_addr), and what is not enabled has no valid call.
+WHOLE = {"VK_EXT_shader_object"}
 LAST_RANK = 5
 
 
@@ -198,7 +201,9 @@ class Registry:
             self.extensions[name] = self._extension(element, name)
             for require in element.findall("require"):
                 if in_api(require):
-                    self._apply(require, self._require_gates(require, Gate(extensions=(name,))), rank_of(element))
+                    gate = Gate(extensions=(name,))
+                    gates = [gate] if name in WHOLE else self._require_gates(require, gate)
+                    self._apply(require, gates, rank_of(element))
 
     @staticmethod
     def _extension(element, name):
