@@ -1,6 +1,7 @@
 // Memory that is a file or the application's own pages.
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <cstring>
@@ -11,6 +12,8 @@ namespace vitrine::icd::test {
 namespace {
 
 constexpr auto kDmaBuf = VK_EXTERNAL_MEMORY_HANDLE_TYPE_DMA_BUF_BIT_EXT;
+
+constexpr auto kDmaBufMagic = 0x444d4142;  ///< of their file system
 
 class ExternalMemory : public DeviceTest {
  protected:
@@ -79,6 +82,10 @@ TEST_F(ExternalMemory, DmaBufsAreMappedByOthers) {
   const int descriptor = descriptor_of(first, kDmaBuf);
   ASSERT_GE(descriptor, 0);
   EXPECT_NE(fcntl(descriptor, F_GETFD) & FD_CLOEXEC, 0);
+  struct statfs status {};
+  ASSERT_EQ(fstatfs(descriptor, &status), 0);
+  EXPECT_EQ(status.f_type == kDmaBufMagic, access("/dev/udmabuf", R_OK | W_OK) == 0)
+      << "a dma-buf where the kernel makes them, and where not, a file that is like one";
   EXPECT_GE(lseek(descriptor, 0, SEEK_END), off_t{kSize});
   EXPECT_NE(ftruncate(descriptor, 0), 0);
   void* const mapped = mmap(nullptr, kSize, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
