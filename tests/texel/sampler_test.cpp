@@ -140,7 +140,7 @@ TEST(Sampler, FormatsOfTheSameValuesFilterAlike) {
       std::memcpy(image.view.block(0, 0, 0, x, y, 0), &texel, bytes);
       std::memcpy(peer.view.block(0, 0, 0, x, y, 0), &other, peer.view.format->block_bytes);
     }
-    for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR}) {
+    for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR, VK_FILTER_CUBIC_EXT}) {
       Sampler sampler;
       sampler.mag_filter = sampler.min_filter = filter;
       for (int i = 0; i < 200; ++i) {
@@ -417,7 +417,7 @@ TEST(Sampler, LanesWithoutAQuadTouchNothing) {
       const std::size_t rows = std::size_t{1} << 9;  // in their lower half nothing may be read
       const std::size_t half = rows * image.view.level[0].row_pitch / pages.page() * pages.page();
       pages.close(half, pages.page() * ((image.layout.size - half) / pages.page()));
-      for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR}) {
+      for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR, VK_FILTER_CUBIC_EXT}) {
         for (const SampleOp op : {SampleOp::kSample, SampleOp::kGather}) {
           Sampler sampler;
           sampler.mag_filter = sampler.min_filter = filter;
@@ -442,7 +442,7 @@ TEST(Sampler, NothingIsReadBehindTheLastTexel) {
       const std::size_t bytes = 63 * level.row_pitch + 64 * image.view.format->block_bytes;
       LonePages pages(bytes);
       image.view.base = pages.end() - bytes;
-      for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR}) {
+      for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR, VK_FILTER_CUBIC_EXT}) {
         for (const VkSamplerAddressMode mode :
              {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
               VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER}) {
