@@ -17,7 +17,10 @@
 namespace vitrine::raster {
 
 inline constexpr std::uint32_t kNoReg = ~std::uint32_t{0};
-inline constexpr std::uint32_t kMaxVaryings = 128;
+/// Of components that are interpolated, with what the device needs itself: barycentric coordinates, smooth lines.
+inline constexpr std::uint32_t kMaxVaryings = 136;
+/// With the flat ones, each of three vertices.
+inline constexpr std::uint32_t kMaxRecordVaryings = kMaxVaryings + 3 * 128;
 inline constexpr std::uint32_t kMaxClipDistances = 8;
 inline constexpr int kTileSize = 64;
 /// Vertex or index positions of a chunk, about; runs are cut to this many.
@@ -33,6 +36,10 @@ struct ViewportTransform {
 struct Varying {
   std::uint32_t vertex_reg = kNoReg;  ///< kNoReg: not written, reads 0
   spirv::Interpolation interpolation = spirv::Interpolation::kPerspective;
+  /// Not kAnyCorner: of one corner of the primitive. Flat: what that has; else a barycentric coordinate, 1 there and 0
+  /// at the others (Vulkan 1.3.239, Barycentric Interpolation).
+  std::uint8_t corner = kAnyCorner;
+  static constexpr std::uint8_t kAnyCorner = 255;
 };
 
 /// A register of the fragment shader that takes something of a varying: its value somewhere, or a part of its plane.
@@ -154,7 +161,8 @@ struct PipelinePlan {
 
   /// Varyings in the order perspective, linear, flat.
   std::uint32_t perspective_count = 0, linear_count = 0, flat_count = 0;
-  std::array<Varying, kMaxVaryings> varying;
+  std::array<Varying, kMaxRecordVaryings> varying;
+  bool numbers_corners = false;  ///< some are of one corner: primitives have records of their own
   std::uint32_t varying_count() const { return perspective_count + linear_count + flat_count; }
   /// In the order values at the centre, at the centroid, at samples; parts of planes last.
   std::uint32_t read_count = 0;

@@ -26,8 +26,10 @@ enum class BaseType : std::uint8_t { kFloat, kInt, kUint };
 enum class Interpolation : std::uint8_t { kPerspective, kLinear, kFlat };
 enum class SampleLocation : std::uint8_t { kCenter, kCentroid, kSample };
 /// What a slot of an interpolated component holds: its value at the slot's SampleLocation, or a coefficient of its
-/// plane (raster's planes: value at the framebuffer's origin, change per pixel to the right, change per pixel down).
-enum class InputPart : std::uint8_t { kValue, kPlaneOrigin, kPlaneX, kPlaneY };
+/// plane (raster's planes: value at the framebuffer's origin, change per pixel to the right, change per pixel down), or
+/// what a vertex of the primitive has (PerVertexKHR).
+enum class InputPart : std::uint8_t { kValue, kPlaneOrigin, kPlaneX, kPlaneY, kVertex0, kVertex1, kVertex2 };
+inline bool is_of_vertex(InputPart part) { return part >= InputPart::kVertex0; }
 
 /// Values fixed function supplies or takes, besides the numbered locations. Booleans are 0 / 0xffffffff.
 enum class BuiltIn : std::uint8_t {
@@ -63,6 +65,8 @@ enum class BuiltIn : std::uint8_t {
   kFragCoord,
   kFrontFacing,
   kPointCoord,
+  kBaryCoord,
+  kBaryCoordNoPersp,
   kSampleId,
   kSamplePosition,
   kSampleMask,

@@ -49,11 +49,27 @@ void collect(PrimitiveWork& w, std::initializer_list<const Vertex*> corners) {
 
 }  // namespace
 
-ClipVertex clip_vertex(const PrimitiveWork& w, std::uint32_t slot) {
+void number_corners(PrimitiveWork& w, const std::uint32_t* slot, std::uint32_t corners) {
+  const PipelinePlan& plan = w.plan;
+  if (!plan.numbers_corners) return;
+  const auto shared = [&](std::uint32_t c) { return w.vertices.records + std::size_t{slot[c]} * plan.vertex_stride; };
+  const std::uint32_t smooth = plan.perspective_count + plan.linear_count;
+  for (std::uint32_t c = 0; c < corners; ++c) {
+    Vertex* const own = copy_record(plan, w.arena, shared(c));
+    for (std::uint32_t i = 0; i < plan.varying_count(); ++i) {
+      const std::uint32_t corner = plan.varying[i].corner;
+      if (corner == Varying::kAnyCorner) continue;
+      own[4 + i] = i >= smooth ? shared(std::min(corner, corners - 1))[4 + i] : c == corner ? 1.0f : 0.0f;
+    }
+    w.own[c] = own;
+  }
+}
+
+ClipVertex clip_vertex(const PrimitiveWork& w, std::uint32_t slot, std::uint32_t corner) {
   ClipVertex v;
   std::memcpy(v.clip, &w.vertices.clip[slot * 4], sizeof(v.clip));
   std::memcpy(v.distance, &w.vertices.clip_distance[slot * kMaxClipDistances], sizeof(v.distance));
-  v.record = w.vertices.records + std::size_t{slot} * w.plan.vertex_stride;
+  v.record = record_of(w, slot, corner);
   v.code = w.vertices.code[slot];
   return v;
 }
@@ -275,7 +291,8 @@ void process_line(PrimitiveWork& w, const std::uint32_t slot[2]) {
   if (w.plan.out.cull_count && culled_by_distance(w, slot, 2)) return discard(w, PrimitiveFate::kCulledByDistance);
   const std::uint32_t provoking = provoking_corner(2, w.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(w, slot[provoking]);
-  ClipVertex line[2] = {clip_vertex(w, slot[0]), clip_vertex(w, slot[1])};
+  number_corners(w, slot, 2);
+  ClipVertex line[2] = {clip_vertex(w, slot[0], 0), clip_vertex(w, slot[1], 1)};
   const ClipContext context{&w.plan, &w.viewport, &w.arena, w.plan.guard_band};
   if ((c0 | c1) != 0) {
     if (!clip_line(context, provoking, line)) return discard(w, PrimitiveFate::kOutside);
@@ -301,7 +318,8 @@ void process_outside_point(PrimitiveWork& w, const ClipVertex& v) {
 void process_point(PrimitiveWork& w, std::uint32_t slot) {
   const ClipCode code = w.vertices.code[slot];
   if ((code & ~kClipXY) != 0) return w.setup.tell(PrimitiveFate::kOutside);
-  const ClipVertex v = clip_vertex(w, slot);
+  number_corners(w, &slot, 1);
+  const ClipVertex v = clip_vertex(w, slot, 0);
   if (w.plan.out.cull_count && culled_by_distance(w, &slot, 1)) return w.setup.tell(PrimitiveFate::kCulledByDistance);
   // Clipping primitives: the reference's count, and any is allowed for what is outside.
   w.chunk.draw->call.queries.count(Statistic::kClippingPrimitives, 1);

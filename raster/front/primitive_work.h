@@ -28,6 +28,7 @@ struct PrimitiveWork : PrimitiveContext {
   std::uint32_t instance = 0;    ///< of what is worked on, without first_instance
   std::uint32_t discarded = 0;   ///< lines and triangles that the clipper leaves nothing of
   std::uint32_t parts = 0;       ///< triangles that it makes beyond the first of a polygon
+  const Vertex* own[3] = {};     ///< of the corners, where those are numbered
 
   explicit PrimitiveWork(const PrimitiveContext& context)
       : PrimitiveContext(context),
@@ -35,7 +36,7 @@ struct PrimitiveWork : PrimitiveContext {
         setup{&plan, &pass, &primitives},
         viewport(plan.viewport[0]),
         batches(plan.windows && plan.out.layer == kNoReg && !plan.per_vertex_viewport && !plan.bias_in_vertices &&
-                plan.out.cull_count == 0),
+                plan.out.cull_count == 0 && !plan.numbers_corners),
         clipped(chunk.batch ? *chunk.batch : own_batch),
         base_layer(chunk.view) {
     setup.layer = static_cast<std::uint16_t>(base_layer);
@@ -65,7 +66,16 @@ void count_behind_clipper(const PrimitiveWork& w, std::uint64_t input);
 /// that the first of it is of; what does not sends that off.
 void choose_view_layer(PrimitiveWork& w, bool clips);
 
-ClipVertex clip_vertex(const PrimitiveWork& w, std::uint32_t slot);
+/// Where corners are told apart, the primitive's corners get records of their own (Varying::corner). A line has no
+/// third corner, a point no second: what is asked of it is that of the last.
+void number_corners(PrimitiveWork& w, const std::uint32_t* slot, std::uint32_t corners);
+
+/// The record of corner `corner`.
+inline const Vertex* record_of(const PrimitiveWork& w, std::uint32_t slot, std::uint32_t corner) {
+  return w.plan.numbers_corners ? w.own[corner] : w.vertices.records + std::size_t{slot} * w.plan.vertex_stride;
+}
+
+ClipVertex clip_vertex(const PrimitiveWork& w, std::uint32_t slot, std::uint32_t corner);
 
 /// 1.7: dropped if all corners are outside of one cull distance.
 bool culled_by_distance(const PrimitiveWork& w, const std::uint32_t* slot, std::uint32_t corners);

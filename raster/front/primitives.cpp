@@ -45,26 +45,27 @@ void process_triangle(PrimitiveWork& w, const std::uint32_t slot[3]) {
   if (w.plan.out.cull_count && culled_by_distance(w, slot, 3)) return discard(w, PrimitiveFate::kCulledByDistance);
   const std::uint32_t provoking = provoking_corner(3, w.plan.state->provoking_vertex_last);
   choose_layer_and_viewport(w, slot[provoking]);
+  number_corners(w, slot, 3);
   const bool simple = !w.waiting && (c0 | c1 | c2) == 0 && !w.plan.per_vertex_viewport && !w.plan.bias_in_vertices &&
                       w.plan.out.cull_count == 0 && !w.clips_segment;
   if (simple) {
-    const auto corner = [&](std::uint32_t i) {
-      return SetupVertex{s.records + std::size_t{i} * w.plan.vertex_stride, s.snapped[i * 2], s.snapped[i * 2 + 1]};
+    const auto corner = [&](std::uint32_t c) {
+      return SetupVertex{record_of(w, slot[c], c), s.snapped[slot[c] * 2], s.snapped[slot[c] * 2 + 1]};
     };
-    setup_triangle(w.setup, corner(slot[0]), corner(slot[1]), corner(slot[2]));
+    setup_triangle(w.setup, corner(0), corner(1), corner(2));
     return;
   }
   w.stipple_counter = 0;
   if ((c0 | c1 | c2) == 0) {
     const Vertex* v[3];
-    for (int i = 0; i < 3; ++i) v[i] = window_record(w, clip_vertex(w, slot[i]));
+    for (int i = 0; i < 3; ++i) v[i] = window_record(w, clip_vertex(w, slot[i], static_cast<std::uint32_t>(i)));
     const bool outline[3] = {true, true, true};
     emit_slow(w, v, outline);
     return;
   }
   ClipPolygon polygon;
   polygon.count = 3;
-  for (int i = 0; i < 3; ++i) polygon.corner[i] = clip_vertex(w, slot[i]);
+  for (int i = 0; i < 3; ++i) polygon.corner[i] = clip_vertex(w, slot[i], static_cast<std::uint32_t>(i));
   emit_clipped(w, provoking, polygon);
 }
 
@@ -82,7 +83,7 @@ void process_primitive(PrimitiveWork& w, std::uint32_t corners, const std::uint3
 bool starts_at_center(const PrimitiveWork& w, const Run& run, const std::uint16_t* slot) {
   const PipelinePlan& plan = w.plan;
   if (plan.state->topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN || run.end - run.begin != 2 || !run.ends) return false;
-  if (run.begin != 0 || w.chunk.draw->call.index_data || plan.flat_count != 0) return false;
+  if (run.begin != 0 || w.chunk.draw->call.index_data || plan.flat_count != 0 || plan.numbers_corners) return false;
   if (plan.bias_in_vertices || plan.out.cull_count != 0 || plan.per_vertex_viewport) return false;
   for (int i = 0; i < 4; ++i) {
     if (w.vertices.code[slot[i]] != 0) return false;

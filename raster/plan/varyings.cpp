@@ -18,10 +18,18 @@ bool is_varying(const InterfaceSlot& slot) {
     case BuiltIn::kCullDistance:
     case BuiltIn::kLayer:
     case BuiltIn::kViewportIndex:
+    case BuiltIn::kBaryCoord:
+    case BuiltIn::kBaryCoordNoPersp:
       return true;
     default:
       return false;
   }
+}
+
+std::uint8_t corner_of(const InterfaceSlot& slot) {
+  if (slot.built_in == BuiltIn::kBaryCoord || slot.built_in == BuiltIn::kBaryCoordNoPersp) return slot.component;
+  if (!is_of_vertex(slot.part)) return Varying::kAnyCorner;
+  return static_cast<std::uint8_t>(static_cast<int>(slot.part) - static_cast<int>(spirv::InputPart::kVertex0));
 }
 
 std::uint32_t matching_output(const PipelinePlan& plan, const InterfaceSlot& input) {
@@ -40,13 +48,14 @@ Interpolation interpolation_of(const InterfaceSlot& slot) {
 
 bool same_varying(const InterfaceSlot& a, const InterfaceSlot& b) {
   return a.built_in == b.built_in && a.component == b.component && a.location == b.location &&
-         interpolation_of(a) == interpolation_of(b);
+         interpolation_of(a) == interpolation_of(b) && corner_of(a) == corner_of(b);
 }
 
 /// Slots that name the same component share a varying.
 void add_varyings(PipelinePlan& plan, Interpolation interpolation, std::uint32_t& count) {
   const std::vector<InterfaceSlot>& inputs = plan.fragment->inputs;
   const std::uint32_t first_read = plan.read_count;
+  const std::uint32_t most = interpolation == Interpolation::kFlat ? kMaxRecordVaryings : kMaxVaryings;
   std::array<std::uint16_t, kMaxVaryingReads> source;  // index in inputs, per read
   for (std::size_t i = 0; i < inputs.size() && plan.read_count < kMaxVaryingReads; ++i) {
     const InterfaceSlot& slot = inputs[i];
@@ -54,14 +63,16 @@ void add_varyings(PipelinePlan& plan, Interpolation interpolation, std::uint32_t
     std::uint32_t known = first_read;
     while (known < plan.read_count && !same_varying(inputs[source[known]], slot)) ++known;
     const bool added = known == plan.read_count;
-    if (added && plan.varying_count() == kMaxVaryings) continue;
+    if (added && plan.varying_count() == most) continue;
     const std::uint32_t varying = added ? plan.varying_count() : plan.read[known].varying;
     if (added) {
-      plan.varying[varying] = {matching_output(plan, slot), interpolation};
+      plan.varying[varying] = {matching_output(plan, slot), interpolation, corner_of(slot)};
+      plan.numbers_corners |= corner_of(slot) != Varying::kAnyCorner;
       ++count;
     }
     source[plan.read_count] = static_cast<std::uint16_t>(i);
-    plan.read[plan.read_count++] = {slot.reg, static_cast<std::uint16_t>(varying), slot.sample_location, slot.part};
+    const spirv::InputPart part = is_of_vertex(slot.part) ? spirv::InputPart::kValue : slot.part;
+    plan.read[plan.read_count++] = {slot.reg, static_cast<std::uint16_t>(varying), slot.sample_location, part};
   }
 }
 
@@ -151,6 +162,7 @@ void add_point_size(PipelinePlan& plan) {
 
 void plan_varyings(PipelinePlan& plan) {
   plan.perspective_count = plan.linear_count = plan.flat_count = plan.read_count = 0;
+  plan.numbers_corners = false;
   FragmentRegisters& frag = plan.frag;
   frag = {};
   frag.frag_coord.fill(kNoReg);

@@ -35,6 +35,8 @@ constexpr BuiltInRow kBuiltIns[] = {
     {spv::BuiltIn::FragCoord, BuiltIn::kFragCoord, ir::Op::kLoadInput, 4},
     {spv::BuiltIn::FrontFacing, BuiltIn::kFrontFacing, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::PointCoord, BuiltIn::kPointCoord, ir::Op::kLoadInput, 2},
+    {spv::BuiltIn::BaryCoordKHR, BuiltIn::kBaryCoord, ir::Op::kLoadInput, 3},
+    {spv::BuiltIn::BaryCoordNoPerspKHR, BuiltIn::kBaryCoordNoPersp, ir::Op::kLoadInput, 3},
     {spv::BuiltIn::SampleId, BuiltIn::kSampleId, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::SamplePosition, BuiltIn::kSamplePosition, ir::Op::kLoadInput, 2},
     {spv::BuiltIn::SampleMask, BuiltIn::kSampleMask, ir::Op::kLoadInput, 1},
@@ -100,6 +102,7 @@ struct Walk {
   bool captured = false;      ///< by transform feedback
   std::uint32_t xfb_offset = 0;
   std::uint32_t block = 0;  ///< number of the block in an array of them
+  InputPart part = InputPart::kValue;
 
   void leaf(std::uint32_t type_id, const Decorated& decorated) {
     Leaf leaf;
@@ -136,9 +139,10 @@ struct Walk {
   }
 
   void interpolation(InterfaceSlot& slot, const Decorated& decorated) const {
-    if (decorated.has(Decoration::Flat) || slot.type != BaseType::kFloat)
+    slot.part = part;
+    if (decorated.has(Decoration::Flat) || slot.type != BaseType::kFloat || is_of_vertex(part))
       slot.interpolation = Interpolation::kFlat;
-    else if (decorated.has(Decoration::NoPerspective))
+    else if (decorated.has(Decoration::NoPerspective) || slot.built_in == BuiltIn::kBaryCoordNoPersp)
       slot.interpolation = Interpolation::kLinear;
     if (decorated.has(Decoration::Sample))
       slot.sample_location = SampleLocation::kSample;
@@ -172,6 +176,21 @@ struct Walk {
     if (!captured) return;
     const std::uint32_t bytes = std::max(widest_number(t, type_id) / 8, 1u);
     xfb_offset = (xfb_offset + bytes - 1) & ~(bytes - 1);
+  }
+
+  /// PerVertexKHR: an array of what the vertices of the primitive have, each at the same locations (Vulkan 1.3.239,
+  /// Interface Matching).
+  void vertices(std::uint32_t type_id, const Decorated& decorated) {
+    const Type& array = t.module.type(type_id);
+    if (array.kind != Kind::kArray || array.count > 3) fail(variable, "what vertices have is an array of three");
+    for (std::uint32_t i = 0, first = location; i < array.count; i++) {
+      location = first;
+      part = static_cast<InputPart>(static_cast<std::uint32_t>(InputPart::kVertex0) + i);
+      path.push_back({false, i, ir::kNoValue});
+      type(array.element, decorated);
+      path.pop_back();
+    }
+    part = InputPart::kValue;
   }
 
   void type(std::uint32_t type_id, Decorated decorated) {
@@ -208,6 +227,18 @@ struct Walk {
     if (is_struct && decorated.member == 0 && t.module.decoration(type_id, Decoration::Block) != nullptr) block++;
   }
 };
+
+/// Whether an input is decorated PerVertexKHR, or the blocks that it is an array of are.
+bool is_per_vertex(const Translator& t, const Local& local) {
+  if (t.options.stage != VK_SHADER_STAGE_FRAGMENT_BIT || local.storage != spv::StorageClass::Input) return false;
+  if (t.module.decoration(local.variable, Decoration::PerVertexKHR) != nullptr) return true;
+  const Type& array = t.module.type(local.type);
+  if (array.kind != Kind::kArray) return false;
+  const Type& block = t.module.type(array.element);
+  for (std::uint32_t i = 0; block.kind == Kind::kStruct && i < block.members.size(); i++)
+    if (t.module.decoration(block.id, Decoration::PerVertexKHR, i + 1) != nullptr) return true;
+  return false;
+}
 
 std::vector<ir::ValueId> input_values(Translator& t, const Leaf& leaf) {
   const ir::ValueInfo info = leaf_info(t, leaf.type);
@@ -279,10 +310,11 @@ InterfaceSlot word_slot(const Leaf& leaf, std::uint32_t word) {
 
 std::vector<Leaf> interface_leaves(Translator& t, const Local& local) {
   const Inst& variable = t.module.def(local.variable);
-  Walk walk{t, variable, local.storage == spv::StorageClass::Input, {}, {}, 0, 0, false, 0, 0};
+  Walk walk{t, variable, local.storage == spv::StorageClass::Input, {}, {}, 0, 0, false, 0, 0, InputPart::kValue};
   if (const DecorationRow* row = t.module.decoration(local.variable, Decoration::Location)) walk.location = row->value;
   if (!walk.input) walk.start_capture(t.module.decoration(local.variable, Decoration::Offset));
-  walk.type(local.type, {t.module, local.variable, 0, 0});
+  const Decorated decorated{t.module, local.variable, 0, 0};
+  is_per_vertex(t, local) ? walk.vertices(local.type, decorated) : walk.type(local.type, decorated);
   return std::move(walk.leaves);
 }
 

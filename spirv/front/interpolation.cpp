@@ -59,7 +59,8 @@ Place place_of_sample(Translator& t, Expr sample) {
 
 bool is_interpolated(const InterfaceSlot& slot) {
   const bool numbered = slot.built_in == BuiltIn::kNone || slot.built_in == BuiltIn::kClipDistance ||
-                        slot.built_in == BuiltIn::kCullDistance;
+                        slot.built_in == BuiltIn::kCullDistance || slot.built_in == BuiltIn::kBaryCoord ||
+                        slot.built_in == BuiltIn::kBaryCoordNoPersp;
   return numbered && slot.interpolation != Interpolation::kFlat;
 }
 
