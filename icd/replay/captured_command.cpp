@@ -252,7 +252,6 @@ bool is_captured(CommandType type) {
 
 std::string describe_captured(ReplayState& state, const CommandHeader& header, CapturedObjects& objects, Bug& bug) {
   const auto type = static_cast<CommandType>(header.type);
-  if (!is_dispatch(type)) link_shaders(state);
   const BindPoint& point = is_dispatch(type) ? state.compute : state.graphics;
   if (!point.pipeline) return "no pipeline is bound";
   const Pipeline& pipeline = *point.pipeline;

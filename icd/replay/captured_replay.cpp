@@ -16,6 +16,7 @@ void capture(ReplayState& state, const CommandHeader& header, void (*run)(Replay
   glass::bug::Captures& captures = *glass::bug::captures();
   const ObservedReplay& observed = *state.observed;
   if (state.pass) flush_pass(state);
+  link_shaders(state);
   for (BindPoint* const point : {&state.graphics, &state.compute})
     if (point->pipeline) read_descriptor_buffers(state, *point);
   auto bug = std::make_unique<Bug>();

@@ -268,6 +268,43 @@ TEST_F(DescriptorBuffers, EveryKindIsAsInASet) {
   for (std::uint32_t i = 0; i < kKinds; ++i) EXPECT_EQ(result.floats[i], 0.0f) << i;
 }
 
+#ifdef VK_EXT_shader_object
+/// Shader objects have no flag for it: their set layouts say where descriptors lie.
+TEST_F(DescriptorBuffers, ShaderObjectsSeeThem) {
+  const VkDescriptorSetLayout inputs = make_buffer_layout_of(kTypes);
+  const VkDescriptorSetLayout out = make_buffer_layout_of(std::array{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+  const VkPipelineLayout layout = make_buffer_pipeline_layout(inputs);
+  for (std::uint32_t i = 0; i < kKinds; ++i) get(kTypes[i], place(inputs, 1, i), data);
+  dispatch_from_buffer(make_compute(layout), layout, 1);
+  const std::vector<float> wanted(result.floats, result.floats + kKinds);
+  EXPECT_EQ(wanted[2], 7.0f);
+  memories[2].floats[0] = 7;
+  data.floats[0] = 2;
+  const VkDescriptorSetLayout sets[] = {inputs, out};
+  const VkPushConstantRange range{VK_SHADER_STAGE_ALL, 0, 4};
+  auto info = make_struct<VkShaderCreateInfoEXT>();
+  info.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  info.codeType = VK_SHADER_CODE_TYPE_SPIRV_EXT;
+  info.codeSize = sizeof kEveryResourceWords;
+  info.pCode = kEveryResourceWords;
+  info.pName = "main";
+  info.setLayoutCount = 2;
+  info.pSetLayouts = sets;
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &range;
+  VkShaderEXT shader = VK_NULL_HANDLE;
+  ASSERT_EQ(VK_CALL(CreateShadersEXT)(device, 1, &info, nullptr, &shader), VK_SUCCESS);
+  std::fill_n(result.floats, kBytes / sizeof(float), -1.0f);
+  const VkCommandBuffer commands = begin();
+  VK_CALL(CmdBindShadersEXT)(commands, 1, &info.stage, &shader);
+  bind(commands, layout, 1, 3);
+  VK_CALL(CmdDispatch)(commands, 1, 1, 1);
+  run(commands);
+  EXPECT_EQ(std::vector<float>(result.floats, result.floats + kKinds), wanted);
+  VK_CALL(DestroyShaderEXT)(device, shader, nullptr);
+}
+#endif
+
 TEST_F(DescriptorBuffers, NullDescriptorsCanBeGot) {
   const VkDescriptorSetLayout inputs = make_buffer_layout_of(kTypes);
   const VkPipelineLayout layout = make_buffer_pipeline_layout(inputs);
