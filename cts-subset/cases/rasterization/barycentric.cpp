@@ -265,5 +265,33 @@ CTS_CASE("rasterization", "barycentric_types") {
   out_target(run, target);
 }
 
+/// Many of every vertex, with both coordinates. The reference has whole numbers in their place.
+CTS_CASE("rasterization", "barycentric_many_locations") {
+  const bool has = run.gpu.extension_features.fragmentShaderBarycentric;
+  // Debian 12's validation layer counts those of each vertex.
+  const uint32_t locations = run.gpu.properties.limits.maxFragmentInputComponents / 12 - 1;
+  const std::string count = std::to_string(std::min(locations, 31u));
+  const Target target = make_target(run, {.colors = {VK_FORMAT_R32G32B32A32_SFLOAT}});
+  const std::string position =
+      "  gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.5, 1.0);\n}\n";
+  const std::string value = "vec4 value(int l, int v) { return vec4(l, v, l * v, l + 3 * v); }\n";
+  GraphicsSpec spec;
+  spec.vertex = has ? "layout(location = 0) out vec4 a[" + count + "];\n" + value +
+                          "void main() {\n  for (int l = 0; l < " + count +
+                          "; ++l) a[l] = value(l, gl_VertexIndex);\n" + position
+                    : "void main() {\n" + position;
+  spec.fragment = (has ? "#extension GL_EXT_fragment_shader_barycentric : require\n"
+                         "layout(location = 0) pervertexEXT in vec4 a[3][" +
+                             count + "];\n#define VALUE(l, v) a[v][l]\n"
+                       : value + "#define VALUE(l, v) value(l, v)\n") +
+                  "layout(location = 0) out vec4 color;\nvoid main() {\n  vec4 sum = vec4(0.0);\n"
+                  "  for (int v = 0; v < 3; ++v)\n    for (int l = 0; l < " +
+                  count + "; ++l) sum += VALUE(l, v) * float((int(gl_FragCoord.x) >> (l % 6)) & 1);\n  float all = " +
+                  (has ? "dot(gl_BaryCoordEXT + gl_BaryCoordNoPerspEXT, vec3(0.5))" : "1.0") +
+                  ";\n  color = sum + floor(all + 0.5);\n}\n";
+  draw_once(run, target, make_pipeline(run, spec, target));
+  out_target(run, target);
+}
+
 }  // namespace
 }  // namespace vitrine::cts
