@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/lasting.h"
 #include "glass/output.h"
 #include "icd/wsi/png.h"
 
@@ -208,7 +209,7 @@ std::shared_ptr<FrameFile> frame_file_of(const DisplaySetting& setting, std::uin
     VkExtent2D extent{};
     std::shared_ptr<FrameFile> file;
   };
-  static Last last;
+  static Last& last = base::lasting([] { return Last{}; });
   const std::lock_guard lock(last.mutex);
   const bool same = last.file && last.name == setting.file && last.extent.width == setting.extent.width &&
                     last.extent.height == setting.extent.height;
