@@ -6,24 +6,30 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <mutex>
 #include <new>
+#include <string>
 #include <vector>
 
+#include "base/lasting.h"
 #include "icd/wsi/library.h"
 #include "icd/wsi/window.h"
 
 namespace vitrine::icd::wsi {
 namespace {
 
-/// The functions of libxcb, libxcb-shm and libX11-xcb that we call.
+/// The functions of libxcb, libxcb-shm, libX11-xcb and libX11 that we call.
 struct Xcb {
   Library core{"libxcb.so.1"};
   Library shm{"libxcb-shm.so.0"};
   Library x11{"libX11-xcb.so.1"};
+  Library xlib{"libX11.so.6"};
   bool usable = false;
   bool shm_usable = false;
 
+  decltype(xcb_connect)* connect;
+  decltype(xcb_disconnect)* disconnect;
   decltype(xcb_get_geometry)* get_geometry;
   decltype(xcb_get_geometry_reply)* get_geometry_reply;
   decltype(xcb_generate_id)* generate_id;
@@ -49,9 +55,13 @@ struct Xcb {
   decltype(xcb_shm_detach)* shm_detach;
   decltype(xcb_shm_put_image)* shm_put_image;
   xcb_connection_t* (*get_xcb_connection)(void* display);
+  bool xlib_usable = false;
+  char* (*display_string)(void* display);
+  int (*sync)(void* display, int discard);
 
   Xcb() {
-    usable = core.find("xcb_get_geometry", get_geometry) && core.find("xcb_get_geometry_reply", get_geometry_reply) &&
+    usable = core.find("xcb_connect", connect) && core.find("xcb_disconnect", disconnect) &&
+             core.find("xcb_get_geometry", get_geometry) && core.find("xcb_get_geometry_reply", get_geometry_reply) &&
              core.find("xcb_generate_id", generate_id) && core.find("xcb_create_gc", create_gc) &&
              core.find("xcb_free_gc", free_gc) && core.find("xcb_put_image", put_image) &&
              core.find("xcb_flush", flush) && core.find("xcb_get_input_focus", get_input_focus) &&
@@ -67,6 +77,7 @@ struct Xcb {
     shm_usable = usable && shm.find("xcb_shm_id", shm_id) && shm.find("xcb_shm_attach_checked", shm_attach_checked) &&
                  shm.find("xcb_shm_detach", shm_detach) && shm.find("xcb_shm_put_image", shm_put_image);
     x11.find("XGetXCBConnection", get_xcb_connection);
+    xlib_usable = xlib.find("XDisplayString", display_string) && xlib.find("XSync", sync);
   }
 };
 
@@ -211,6 +222,41 @@ class XcbWindow final : public Window {
   std::vector<std::byte> staging_;
 };
 
+/// Connections of our own to the servers of Xlib displays, one a server, for systems without libX11-xcb (a bare Debian
+/// 11 with vulkan-tools): there Xlib does not give out its own.
+class OwnConnections {
+ public:
+  ~OwnConnections() {
+    for (const auto& [name, connection] : connections_) xcb().disconnect(connection);
+  }
+
+  /// Null: none can be made.
+  xcb_connection_t* to_server_of(void* display) {
+    if (!xcb().xlib_usable) return nullptr;
+    xcb().sync(display, 0);  // what the application has asked for there exists, its window too
+    const std::lock_guard lock(mutex_);
+    const char* const name = xcb().display_string(display);
+    const auto known = connections_.find(name);
+    if (known != connections_.end() && !xcb().connection_has_error(known->second)) return known->second;
+    xcb_connection_t* const made = xcb().connect(name, nullptr);
+    if (xcb().connection_has_error(made)) {
+      xcb().disconnect(made);
+      return nullptr;
+    }
+    return connections_[name] = made;  // in place of a dead one, which windows may still hold
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, xcb_connection_t*> connections_;
+};
+
+xcb_connection_t* connection_of(void* display) {
+  static OwnConnections& own = base::lasting([] { return OwnConnections(); });
+  if (!xcb().usable) return nullptr;
+  return xcb().get_xcb_connection ? xcb().get_xcb_connection(display) : own.to_server_of(display);
+}
+
 bool visual_fits(const xcb_visualtype_t& visual) {
   return visual.red_mask == 0xff0000 && visual.green_mask == 0xff00 && visual.blue_mask == 0xff;
 }
@@ -223,8 +269,8 @@ std::unique_ptr<Window> open_xcb_window(xcb_connection_t* connection, std::uint3
 }
 
 std::unique_ptr<Window> open_xlib_window(void* display, std::uint32_t window) {
-  if (!xcb().usable || !xcb().get_xcb_connection) return nullptr;
-  return open_xcb_window(xcb().get_xcb_connection(display), window);
+  xcb_connection_t* const connection = connection_of(display);
+  return connection ? open_xcb_window(connection, window) : nullptr;
 }
 
 bool xcb_presentation_supported(xcb_connection_t* connection, std::uint32_t visual) {
@@ -241,8 +287,8 @@ bool xcb_presentation_supported(xcb_connection_t* connection, std::uint32_t visu
 }
 
 bool xlib_presentation_supported(void* display, std::uint32_t visual) {
-  return xcb().usable && xcb().get_xcb_connection &&
-         xcb_presentation_supported(xcb().get_xcb_connection(display), visual);
+  xcb_connection_t* const connection = connection_of(display);
+  return connection && xcb_presentation_supported(connection, visual);
 }
 
 }  // namespace vitrine::icd::wsi

@@ -76,6 +76,7 @@ def try_suite(folder, suite, archive, deb, demo):
         root.run("apt-get update && apt-get install -y --no-install-recommends vulkan-tools libvulkan1 libpng16-16* && apt-get clean")
         for file, name in (archive, "archive.tar.gz"), (deb, "vitrine.deb"), (demo, "demo"):
             shutil.copy(file, root.folder / "tmp" / name)
+        root.run("rm -rf /opt/vitrine; dpkg --purge vitrine", code=None)  # what a run that failed has left
         before = root.files()
         (root.folder / "opt/vitrine").mkdir()
         _, unpacked = root.run("tar xf /tmp/archive.tar.gz -C /opt/vitrine --strip-components=1")
