@@ -90,17 +90,32 @@ void run_command(ReplayState& state, const CommandHeader& header) {
   if (tells_debugger(state)) kDebugNotes[header.type](state, header.command());
 }
 
-/// A command buffer starts with nothing bound, and nothing that an earlier one bound may be touched again.
-void forget_bindings(ReplayState& state) {
-  state.graphics.pipeline = state.compute.pipeline = nullptr;
-  state.shaders = {};
-  state.dynamic = {};  // shader objects need no state that has no effect on them, and see none of earlier ones
+void forget_descriptor_buffers(ReplayState& state) {
   for (BindPoint* const point : {&state.graphics, &state.compute}) {
-    point->sets.fill(nullptr);
     point->addresses.fill(0);
     point->in_buffers = false;
   }
   state.descriptor_buffers.fill(0);
+}
+
+#ifdef VK_EXT_shader_object
+/// Draws by shader objects need no state that has no effect on them, and see none of earlier command buffers; those by
+/// pipelines have all that is dynamic set in their own.
+void forget_shaders(ReplayState& state) {
+  state.shaders = {};
+  state.dynamic = {};
+}
+#endif
+
+/// A command buffer starts with nothing bound, and nothing that an earlier one bound may be touched again.
+void forget_bindings(ReplayState& state) {
+  state.graphics.pipeline = state.compute.pipeline = nullptr;
+  state.graphics.sets.fill(nullptr);
+  state.compute.sets.fill(nullptr);
+  if (state.device.described) forget_descriptor_buffers(state);
+#ifdef VK_EXT_shader_object
+  if (state.device.features.test(Feature::shaderObject)) forget_shaders(state);
+#endif
   state.vertex_buffers.fill({});
   state.indices = {};
   state.draw = {};
