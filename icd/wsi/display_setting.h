@@ -3,6 +3,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
