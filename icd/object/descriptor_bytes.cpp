@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "icd/properties.h"
 #include "spirv/addresses.h"
 
 namespace vitrine::icd {
@@ -151,8 +152,7 @@ class SetReader {
     if (offset + binding.stride > bytes_.size) return;
     Words words{};
     std::memcpy(words.data(), bytes_.first + offset, std::min<std::size_t>(binding.stride, sizeof words));
-    if (words[0] == 0 && words[1] == 0) return;
-    if (words[0] && takes(binding.type, kind_of(words[0]))) read_resource(words, slot, out);
+    if (takes(binding.type, kind_of(words[0]))) read_resource(words, slot, out);
     const bool combined = binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER || is_mutable(binding.type);
     if (combined && !binding.immutable_samplers && kind_of(words[1]) == Kind::kSampler) out.sampler = sampler(words[1]);
   }
@@ -194,22 +194,33 @@ class SetReader {
 }  // namespace
 
 std::uint32_t descriptor_bytes(VkDescriptorType type) {
-  switch (type) {
-    case VK_DESCRIPTOR_TYPE_SAMPLER:
-    case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
-    case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE:
-    case VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT:
-      return 8;
-    case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
-    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
-    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
-      return 16;
-    case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
-    case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
-      return 24;
-    default:
-      return 0;
-  }
+  constexpr const auto& claimed = kClaimedPhysicalDeviceDescriptorBufferPropertiesEXT;
+  static_assert(claimed.uniformTexelBufferDescriptorSize == sizeof(Words), "the largest");
+  const auto size = [&] {
+    switch (type) {
+      case VK_DESCRIPTOR_TYPE_SAMPLER:
+        return claimed.samplerDescriptorSize;
+      case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
+        return claimed.sampledImageDescriptorSize;
+      case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE:
+        return claimed.storageImageDescriptorSize;
+      case VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT:
+        return claimed.inputAttachmentDescriptorSize;
+      case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
+        return claimed.combinedImageSamplerDescriptorSize;
+      case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+        return claimed.uniformBufferDescriptorSize;
+      case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+        return claimed.storageBufferDescriptorSize;
+      case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+        return claimed.uniformTexelBufferDescriptorSize;
+      case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+        return claimed.storageTexelBufferDescriptorSize;
+      default:
+        return std::size_t{0};
+    }
+  };
+  return static_cast<std::uint32_t>(size());
 }
 
 void write_descriptor_bytes(DescribedObjects& objects, const VkDescriptorGetInfoEXT& info, std::size_t size,

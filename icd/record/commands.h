@@ -10,6 +10,7 @@
 #include "icd/edge/vulkan_api.h"
 #include "icd/object/color_locations.h"
 #include "icd/object/shader_links.h"
+#include "icd/properties.h"
 #include "icd/record/dynamic_state.h"
 
 namespace vitrine::icd {
@@ -28,7 +29,8 @@ struct ShaderObject;
 
 // ---- state
 
-inline constexpr std::uint32_t kMaxDescriptorBuffers = 32;
+inline constexpr std::uint32_t kMaxDescriptorBuffers =
+    kClaimedPhysicalDeviceDescriptorBufferPropertiesEXT.maxDescriptorBufferBindings;
 
 struct CmdBindPipeline {
   const Pipeline* pipeline;

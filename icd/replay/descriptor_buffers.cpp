@@ -23,20 +23,22 @@ DescriptorBytes bytes_at(VkDeviceAddress address, const SetShape& shape) {
           std::min<std::uint64_t>(shape.buffer_bytes, memory.end - address)};
 }
 
+/// Elements of the binding with a variable count: buffers say nothing of it, so all that there can be.
+std::uint32_t variable_count_of(const SetShape& shape) {
+  const SetBinding* variable = shape.variable_binding();
+  return variable ? variable->count : 0;
+}
+
 /// An empty set of null descriptors. The shape has to outlive it.
 DescriptorSet& make_set(ReplayState& state, void* storage, const SetShape& shape) {
-  const SetBinding* variable = shape.variable_binding();
   const std::shared_ptr<const SetShape> borrowed(std::shared_ptr<const SetShape>(), &shape);
-  DescriptorSet& set = *construct_set(storage, state.device.memory, borrowed, variable ? variable->count : 0);
+  DescriptorSet& set = *construct_set(storage, state.device.memory, borrowed, variable_count_of(shape));
   set.written = nullptr;  // nobody knows when bytes were written
   if (state.observed) state.observed->alive.erase(&set);
   return set;
 }
 
-std::size_t bytes_of_set(const SetShape& shape) {
-  const SetBinding* variable = shape.variable_binding();
-  return set_bytes(shape, variable ? variable->count : 0);
-}
+std::size_t bytes_of_set(const SetShape& shape) { return set_bytes(shape, variable_count_of(shape)); }
 
 const DescriptorSet& read_small_set(ReplayState& state, DescriptorBytes bytes, const SetShape& shape) {
   DescriptorSet& set = make_set(state, state.arena.take_bytes(bytes_of_set(shape)), shape);
