@@ -23,6 +23,15 @@ TEST(Loader, NegotiatesTheSmallerVersion) {
   EXPECT_EQ(vk_icdNegotiateLoaderICDInterfaceVersion(&version), VK_ERROR_INCOMPATIBLE_DRIVER);
 }
 
+/// An application that hands the driver to the loader has this one function of it (VK_LUNARG_direct_driver_loading).
+TEST(Loader, OneFunctionLeadsToTheOthers) {
+  const auto negotiate = vk_icdGetInstanceProcAddr(nullptr, "vk_icdNegotiateLoaderICDInterfaceVersion");
+  EXPECT_EQ(negotiate, reinterpret_cast<PFN_vkVoidFunction>(&vk_icdNegotiateLoaderICDInterfaceVersion));
+  const auto of_physical_device = vk_icdGetInstanceProcAddr(nullptr, "vk_icdGetPhysicalDeviceProcAddr");
+  EXPECT_EQ(of_physical_device, reinterpret_cast<PFN_vkVoidFunction>(&vk_icdGetPhysicalDeviceProcAddr));
+  EXPECT_NE(vk_icdGetInstanceProcAddr(nullptr, "vkEnumerateInstanceExtensionProperties"), nullptr);
+}
+
 TEST(Loader, OnlyGlobalCommandsWithoutInstance) {
   EXPECT_NE(vk_icdGetInstanceProcAddr(nullptr, "vkCreateInstance"), nullptr);
   EXPECT_NE(vk_icdGetInstanceProcAddr(nullptr, "vkEnumerateInstanceVersion"), nullptr);
