@@ -30,7 +30,7 @@ LEFT_OUT = {
                      "VK_KHR_depth_clamp_zero_one", "VK_KHR_dynamic_rendering_local_read", "VK_KHR_index_type_uint8",
                      "VK_KHR_line_rasterization", "VK_KHR_load_store_op_none", "VK_KHR_maintenance5",
                      "VK_KHR_maintenance6", "VK_KHR_maintenance7", "VK_KHR_maintenance8",
-                     "VK_KHR_map_memory2", "VK_KHR_shader_expect_assume", "VK_KHR_shader_float_controls2",
+                     "VK_KHR_map_memory2", "VK_KHR_pipeline_binary", "VK_KHR_shader_expect_assume", "VK_KHR_shader_float_controls2",
                      "VK_KHR_shader_maximal_reconvergence", "VK_KHR_shader_quad_control",
                      "VK_KHR_shader_relaxed_extended_instruction", "VK_KHR_shader_subgroup_rotate",
                      "VK_KHR_vertex_attribute_divisor"),

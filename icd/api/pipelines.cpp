@@ -10,6 +10,7 @@
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
+#include "icd/object/pipeline_binary.h"
 #include "icd/object/render_pass.h"
 
 namespace vitrine::icd {
@@ -50,7 +51,8 @@ class StageCompiler {
   StageCompiler(Device& device, PipelineCache* cache, VkPipelineCreateFlags flags, const void* chain)
       : device_(device),
         cache_(cache),
-        may_compile_(!(flags & VK_PIPELINE_CREATE_FAIL_ON_PIPELINE_COMPILE_REQUIRED_BIT)),
+        given_(stages_of_binaries(chain, device.memory)),
+        may_compile_(!given_.empty() || !(flags & VK_PIPELINE_CREATE_FAIL_ON_PIPELINE_COMPILE_REQUIRED_BIT)),
         feedback_(find_in_chain<VkPipelineCreationFeedbackCreateInfo>(chain)) {
     if (feedback_) *feedback_->pPipelineCreationFeedback = {};
     for (std::uint32_t i = 0; feedback_ && i < feedback_->pipelineStageCreationFeedbackCount; ++i) {
@@ -67,7 +69,8 @@ class StageCompiler {
     if (feedback_ && index < feedback_->pipelineStageCreationFeedbackCount) {
       fill(feedback_->pPipelineStageCreationFeedbacks[index], start, result.was_in_cache);
     }
-    all_in_cache_ &= result.was_in_cache;
+    ++stages_;
+    hits_ += result.was_in_cache;
     if (!result.shader && result.problem.empty()) {
       failure_ = VK_PIPELINE_COMPILE_REQUIRED;
     } else if (!result.shader) {
@@ -77,9 +80,18 @@ class StageCompiler {
     return result.shader;
   }
 
+  /// What the application's binaries give in place of the pipeline's stages; empty: it gives none.
+  const KeptStages& given() const { return given_; }
+  /// Whether they suit a pipeline of these stages. False after a report.
+  bool check_given(const std::vector<VkShaderStageFlagBits>& stages) const {
+    const std::string problem = mismatch(given_, stages);
+    if (!problem.empty()) report_error(device_, ref(device_), "pipeline", problem);
+    return problem.empty();
+  }
+
   VkResult failure() const { return failure_; }
   void finish() {
-    if (feedback_) fill(*feedback_->pPipelineCreationFeedback, start_, all_in_cache_);
+    if (feedback_) fill(*feedback_->pPipelineCreationFeedback, start_, stages_ && hits_ == stages_);
   }
 
  private:
@@ -94,10 +106,11 @@ class StageCompiler {
 
   Device& device_;
   PipelineCache* cache_;
+  const KeptStages given_;
   bool may_compile_;
   const VkPipelineCreationFeedbackCreateInfo* feedback_;
   Clock::time_point start_ = Clock::now();
-  bool all_in_cache_ = true;
+  std::uint32_t stages_ = 0, hits_ = 0;  ///< that were compiled; in the application's cache
   VkResult failure_ = kCompileError;
 };
 
@@ -140,32 +153,39 @@ bool compile_graphics_stage(StageCompiler& compiler, const VkPipelineShaderStage
   return *shader != nullptr;
 }
 
-/// A stage that a library kept, as the application gave it.
-bool compile_library_stage(StageCompiler& compiler, const KeptStage& kept, Pipeline& pipeline) {
-  return compile_graphics_stage(compiler, StageInfo(kept).info(), UINT32_MAX, pipeline);
-}
-
-/// Compiles the stages of the info and of linked libraries. False after a report.
-bool compile_graphics(StageCompiler& compiler, const VkGraphicsPipelineCreateInfo& info, VkShaderStageFlags own_stages,
-                      Pipeline& pipeline) {
-  for (std::uint32_t i = 0; i < info.stageCount; ++i) {
-    if (!(info.pStages[i].stage & own_stages)) continue;
-    if (!compile_graphics_stage(compiler, info.pStages[i], i, pipeline)) return false;
+/// Compiles the pipeline's own stages and those that it has from libraries, or all from binaries. False after a report.
+bool compile_graphics(StageCompiler& compiler, const OwnStages& own, Pipeline& pipeline) {
+  for (const OwnStage& stage : own) {
+    if (!compiler.given().empty()) break;
+    if (!compile_graphics_stage(compiler, *stage.info, stage.index, pipeline)) return false;
   }
-  for (const KeptStage& kept : pipeline.library_stages) {
-    if (!compile_library_stage(compiler, kept, pipeline)) return false;
+  for (const auto& kept : pipeline.library_stages) {
+    const auto given =
+        std::find_if(own.begin(), own.end(), [&](const OwnStage& s) { return s.info->stage == kept->stage; });
+    const std::uint32_t index = given == own.end() ? UINT32_MAX : given->index;
+    if (!compile_graphics_stage(compiler, StageInfo(*kept).info(), index, pipeline)) return false;
   }
   return pipeline.vertex != nullptr;
 }
 
-/// The stages that parts of a pipeline have.
-VkShaderStageFlags stages_of(VkGraphicsPipelineLibraryFlagsEXT parts) {
-  VkShaderStageFlags stages = 0;
-  if (parts & VK_GRAPHICS_PIPELINE_LIBRARY_PRE_RASTERIZATION_SHADERS_BIT_EXT) {
-    stages |= VK_SHADER_STAGE_ALL_GRAPHICS & ~VK_SHADER_STAGE_FRAGMENT_BIT;
+/// Keeps a stage, of a module that is named by its identifier alone with the words that `compiled` came from. False if
+/// nobody has them.
+bool keep(Device& device, const VkPipelineShaderStageCreateInfo& stage, const CompiledShader* compiled,
+          KeptStages& out) {
+  const std::shared_ptr<KeptStage> kept = keep_stage(stage, device.memory);
+  if (kept->words.empty() && compiled && compiled->kept) kept->words = compiled->kept->words;
+  out.push_back(kept);
+  const bool named = !stage.module && find_in_chain<VkPipelineShaderStageModuleIdentifierCreateInfoEXT>(stage.pNext);
+  return !named || !kept->words.empty();
+}
+
+/// Keeps the own stages of a library, or of a pipeline that has been compiled. False if nobody has the words of one.
+bool keep_own(Device& device, const OwnStages& own, Pipeline& pipeline) {
+  for (const OwnStage& stage : own) {
+    const std::shared_ptr<const CompiledShader>* compiled = shader_of(pipeline, stage.info->stage);
+    if (!keep(device, *stage.info, compiled ? compiled->get() : nullptr, pipeline.library_stages)) return false;
   }
-  if (parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT) stages |= VK_SHADER_STAGE_FRAGMENT_BIT;
-  return stages;
+  return true;
 }
 
 /// The attachments that a pipeline of dynamic rendering names, as if they were a subpass's: colour i is attachment i.
@@ -184,6 +204,28 @@ Subpass make_subpass(const VkGraphicsPipelineCreateInfo& info, const HostMemory&
   return subpass;
 }
 
+/// The stages of a library, or those of a whole pipeline, which are compiled; and what binaries of either are made
+/// from.
+VkResult make_stages(Device& device, StageCompiler& compiler, VkPipelineCreateFlags flags, const OwnStages& own,
+                     Pipeline& pipeline) {
+  const bool library = flags & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR, captures = captures_binaries(flags);
+  const bool given = !compiler.given().empty();
+  if (given) {
+    std::vector<VkShaderStageFlagBits> stages;
+    for (const auto& kept : pipeline.library_stages) stages.push_back(kept->stage);
+    for (const OwnStage& stage : own) stages.push_back(stage.info->stage);
+    if (!compiler.check_given(stages)) return compiler.failure();
+    pipeline.library_stages = compiler.given();
+  }
+  if (!library && !compile_graphics(compiler, own, pipeline)) return compiler.failure();
+  if (!given && (library || captures) && !keep_own(device, own, pipeline)) return VK_PIPELINE_COMPILE_REQUIRED;
+  if (captures) pipeline.binary_stages = pipeline.library_stages;
+  if (library) return VK_SUCCESS;
+  pipeline.library_stages.clear();
+  if (pipeline.dynamic.none()) leave_unnamed(pipeline, pipeline.color_writes, pipeline.state);
+  return VK_SUCCESS;
+}
+
 VkResult create_graphics_pipeline(Device& device, PipelineCache* cache, const VkGraphicsPipelineCreateInfo& info,
                                   const VkAllocationCallbacks* allocator, VkPipeline* out) {
   const RenderPass* pass = from_nullable<RenderPass>(info.renderPass);
@@ -200,18 +242,10 @@ VkResult create_graphics_pipeline(Device& device, PipelineCache* cache, const Vk
     }
   }
   const VkGraphicsPipelineLibraryFlagsEXT parts = own_parts(info);
+  const OwnStages own = own_stages(info);
   fill_static_state(*pipeline, info, subpass, parts);
   pipeline->state.unrestricted_depth = device.extensions.test(Extension::EXT_depth_range_unrestricted);
-  if (flags & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) {
-    for (std::uint32_t i = 0; i < info.stageCount; ++i) {
-      if (!(info.pStages[i].stage & stages_of(parts))) continue;
-      pipeline->library_stages.push_back(copy_stage(info.pStages[i], pipeline->memory));
-    }
-  } else {
-    if (!compile_graphics(compiler, info, stages_of(parts), *pipeline)) return compiler.failure();
-    pipeline->library_stages.clear();
-    if (pipeline->dynamic.none()) leave_unnamed(*pipeline, pipeline->color_writes, pipeline->state);
-  }
+  if (const VkResult result = make_stages(device, compiler, flags, own, *pipeline); result != VK_SUCCESS) return result;
   compiler.finish();
   *out = to_handle(pipeline.release());
   return VK_SUCCESS;
@@ -225,8 +259,17 @@ VkResult create_compute_pipeline(Device& device, PipelineCache* cache, const VkC
   pipeline->captured = flags & VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
   pipeline->bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
   pipeline->layout = from_handle<PipelineLayout>(info.layout).shape;
-  pipeline->compute = compiler.compile(info.stage, 0, *pipeline, 0);
+  const KeptStages& given = compiler.given();
+  if (given.empty())
+    pipeline->compute = compiler.compile(info.stage, 0, *pipeline, 0);
+  else if (compiler.check_given({VK_SHADER_STAGE_COMPUTE_BIT}))
+    pipeline->compute = compiler.compile(StageInfo(*given[0]).info(), 0, *pipeline, 0);
   if (!pipeline->compute) return compiler.failure();
+  if (captures_binaries(flags)) {
+    pipeline->binary_stages = given;
+    if (given.empty() && !keep(device, info.stage, pipeline->compute.get(), pipeline->binary_stages))
+      return VK_PIPELINE_COMPILE_REQUIRED;
+  }
   compiler.finish();
   *out = to_handle(pipeline.release());
   return VK_SUCCESS;

@@ -8,6 +8,8 @@
 #include "icd/edge/diagnostics.h"
 #include "icd/edge/util.h"
 #include "icd/entry_points.h"
+#include "icd/object/stage_binary.h"
+#include "icd/properties.h"
 #include "icd/record/command_buffer.h"
 
 #ifdef VK_EXT_shader_object
@@ -17,6 +19,9 @@ namespace {
 // Of a stage that does not compile; a messenger gets the reason.
 constexpr VkResult kCompileError = VK_ERROR_INITIALIZATION_FAILED;
 
+constexpr const auto& kClaimed = kClaimedPhysicalDeviceShaderObjectPropertiesEXT;
+constexpr BinaryFormat kFormat{kClaimed.shaderBinaryUUID, kClaimed.shaderBinaryVersion};
+
 /// What the application gave as SPIR-V.
 void read_spirv(const VkShaderCreateInfoEXT& info, KeptStage& out) {
   out.stage = info.stage;
@@ -25,11 +30,7 @@ void read_spirv(const VkShaderCreateInfoEXT& info, KeptStage& out) {
   out.entry_point = info.pName ? info.pName : "";
   if (const auto* size = find_in_chain<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>(info.pNext))
     out.subgroup_size = size->requiredSubgroupSize;
-  if (const VkSpecializationInfo* s = info.pSpecializationInfo) {
-    out.map.assign(s->pMapEntries, s->pMapEntries + s->mapEntryCount);
-    const auto* bytes = static_cast<const std::byte*>(s->pData);
-    out.data.assign(bytes, bytes + s->dataSize);
-  }
+  copy_specialization(info.pSpecializationInfo, out);
 }
 
 std::uint32_t color_outputs(const spirv::ShaderInterface& interface) {
@@ -74,8 +75,8 @@ VkResult create_shader(Device& device, const VkShaderCreateInfoEXT& info, const 
   object->layout = make_layout_shape(device.memory, {info.pSetLayouts, info.setLayoutCount},
                                      {info.pPushConstantRanges, info.pushConstantRangeCount});
   if (info.codeType == VK_SHADER_CODE_TYPE_BINARY_EXT) {
-    const bool readable = read_shader_binary(info.pCode, info.codeSize, object->source);
-    if (!readable || object->source.stage != info.stage || !compile(device, *object))
+    const char* problem = read_stage_binary(info.pCode, info.codeSize, kFormat, object->source);
+    if (problem || object->source.stage != info.stage || !compile(device, *object))
       return VK_INCOMPATIBLE_SHADER_BINARY_EXT;
   } else {
     read_spirv(info, object->source);
@@ -108,12 +109,12 @@ VKAPI_ATTR void VKAPI_CALL DestroyShaderEXT(VkDevice, VkShaderEXT shader, const 
 
 VKAPI_ATTR VkResult VKAPI_CALL GetShaderBinaryDataEXT(VkDevice, VkShaderEXT shader, std::size_t* size, void* data) {
   const KeptStage& source = from_handle<ShaderObject>(shader).source;
-  const std::size_t bytes = shader_binary_bytes(source);
+  const std::size_t bytes = stage_binary_bytes(source);
   if (data && *size < bytes) {
     *size = 0;
     return VK_INCOMPLETE;
   }
-  if (data) std::memcpy(data, shader_binary(source).data(), bytes);
+  if (data) std::memcpy(data, stage_binary(source, kFormat).data(), bytes);
   *size = bytes;
   return VK_SUCCESS;
 }

@@ -19,20 +19,26 @@ StageInfo::StageInfo(const KeptStage& kept)
   stage_.pSpecializationInfo = &specialization_;
 }
 
-KeptStage copy_stage(const VkPipelineShaderStageCreateInfo& stage, const HostMemory& memory) {
-  KeptStage out(memory);
-  out.stage = stage.stage;
+void copy_specialization(const VkSpecializationInfo* info, KeptStage& out) {
+  if (!info) return;
+  const auto* bytes = static_cast<const std::byte*>(info->pData);
+  for (std::uint32_t i = 0; i < info->mapEntryCount; ++i) {
+    const VkSpecializationMapEntry& entry = info->pMapEntries[i];
+    out.map.push_back({entry.constantID, static_cast<std::uint32_t>(out.data.size()), entry.size});
+    out.data.insert(out.data.end(), bytes + entry.offset, bytes + entry.offset + entry.size);
+  }
+}
+
+std::shared_ptr<KeptStage> keep_stage(const VkPipelineShaderStageCreateInfo& stage, const HostMemory& memory) {
+  const auto out = std::allocate_shared<KeptStage>(HostAllocator<KeptStage>(memory), memory);
+  out->stage = stage.stage;
   const std::span<const std::uint32_t> words = words_of(stage);
-  out.words.assign(words.begin(), words.end());
-  out.entry_point = stage.pName;
+  out->words.assign(words.begin(), words.end());
+  out->entry_point = stage.pName;
   if (const auto* size = find_in_chain<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>(stage.pNext)) {
-    out.subgroup_size = size->requiredSubgroupSize;
+    out->subgroup_size = size->requiredSubgroupSize;
   }
-  if (const VkSpecializationInfo* s = stage.pSpecializationInfo) {
-    out.map.assign(s->pMapEntries, s->pMapEntries + s->mapEntryCount);
-    const auto* bytes = static_cast<const std::byte*>(s->pData);
-    out.data.assign(bytes, bytes + s->dataSize);
-  }
+  copy_specialization(stage.pSpecializationInfo, *out);
   return out;
 }
 

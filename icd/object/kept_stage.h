@@ -1,6 +1,8 @@
-// A stage of a pipeline as the application gave it, kept to be compiled later: of a library when it is linked, of a
-// device with performance queries when one of them sees it.
+// A stage of a pipeline as the application gave it, kept to be compiled later (of a library when it is linked, of a
+// device with performance queries when one of them sees it) or to be given back (binaries).
 #pragma once
+
+#include <memory>
 
 #include "icd/object/shader_module.h"
 
@@ -13,10 +15,13 @@ struct KeptStage {
   VkShaderStageFlagBits stage = VK_SHADER_STAGE_VERTEX_BIT;
   Vector<std::uint32_t> words;
   String entry_point;
-  std::uint32_t subgroup_size = 0;  ///< required; 0: none is
-  Vector<VkSpecializationMapEntry> map;
-  Vector<std::byte> data;
+  std::uint32_t subgroup_size = 0;       ///< required; 0: none is
+  Vector<VkSpecializationMapEntry> map;  ///< in the application's order
+  Vector<std::byte> data;                ///< of each entry in turn, without gaps
 };
+
+/// Stages that several pipelines may share, in memory of the device.
+using KeptStages = Vector<std::shared_ptr<const KeptStage>>;
 
 /// Such a stage as a create info, which points to it.
 class StageInfo {
@@ -33,6 +38,10 @@ class StageInfo {
   VkPipelineShaderStageCreateInfo stage_;
 };
 
-KeptStage copy_stage(const VkPipelineShaderStageCreateInfo& stage, const HostMemory& memory);
+/// What a stage is specialized with. `info` may be null.
+void copy_specialization(const VkSpecializationInfo* info, KeptStage& out);
+
+/// Without words if the application names them by their identifier alone.
+std::shared_ptr<KeptStage> keep_stage(const VkPipelineShaderStageCreateInfo& stage, const HostMemory& memory);
 
 }  // namespace vitrine::icd

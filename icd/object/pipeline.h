@@ -18,9 +18,9 @@ inline constexpr VkGraphicsPipelineLibraryFlagsEXT kAllPipelineParts =
     VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT |
     VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT;
 
-/// Immutable after creation.
+/// Immutable after creation, but for binary_stages.
 struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
-  explicit Pipeline(const HostMemory& m) : Object(m), library_stages(m) {}
+  explicit Pipeline(const HostMemory& m) : Object(m), library_stages(m), binary_stages(m) {}
 
   static std::uint64_t next_number();
 
@@ -42,13 +42,15 @@ struct Pipeline : Object<VkPipeline, VK_OBJECT_TYPE_PIPELINE> {
   ColorLocations locations;                   ///< of dynamic rendering's
   /// Of a library: the parts that it has, and its stages, not yet compiled.
   VkGraphicsPipelineLibraryFlagsEXT parts = 0;
-  Vector<KeptStage> library_stages;
+  KeptStages library_stages;
   /// Without rasterization for good: there is no fragment stage.
   bool never_rasterizes() const {
     return state.rasterizer_discard && !dynamic.test(DynamicState::kRasterizerDiscardEnable);
   }
   // compute
   std::shared_ptr<const CompiledShader> compute;
+  /// What its binaries are made from (icd/object/pipeline_binary.h), until the application releases it.
+  KeptStages binary_stages;
   /// Where it is none of the application's, but stands for shader objects: those, the first ones of the array.
   std::array<ObjectRef, kGraphicsStages> shader_objects{};
 };
@@ -79,6 +81,16 @@ void leave_unnamed(const Pipeline& pipeline, ColorWrites writes, raster::State& 
 
 /// The parts that a create info itself has: all, unless it makes or links libraries.
 VkGraphicsPipelineLibraryFlagsEXT own_parts(const VkGraphicsPipelineCreateInfo& info);
+
+/// A stage that a create info gives, and where it stands in pStages.
+struct OwnStage {
+  const VkPipelineShaderStageCreateInfo* info;
+  std::uint32_t index;
+};
+using OwnStages = std::vector<OwnStage>;
+/// Those of the parts that a create info itself has: others are ignored.
+OwnStages own_stages(const VkGraphicsPipelineCreateInfo& info);
+
 /// Takes over the parts and stages of a library.
 void link_library(Pipeline& pipeline, const Pipeline& library);
 

@@ -14,6 +14,20 @@ VkGraphicsPipelineLibraryFlagsEXT own_parts(const VkGraphicsPipelineCreateInfo& 
   return links || (create_flags(info) & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) ? 0 : kAllPipelineParts;
 }
 
+std::vector<OwnStage> own_stages(const VkGraphicsPipelineCreateInfo& info) {
+  const VkGraphicsPipelineLibraryFlagsEXT parts = own_parts(info);
+  VkShaderStageFlags wanted = 0;
+  if (parts & VK_GRAPHICS_PIPELINE_LIBRARY_PRE_RASTERIZATION_SHADERS_BIT_EXT) {
+    wanted |= VK_SHADER_STAGE_ALL_GRAPHICS & ~VK_SHADER_STAGE_FRAGMENT_BIT;
+  }
+  if (parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT) wanted |= VK_SHADER_STAGE_FRAGMENT_BIT;
+  std::vector<OwnStage> own;
+  for (std::uint32_t i = 0; wanted && i < info.stageCount; ++i) {
+    if (info.pStages[i].stage & wanted) own.push_back({&info.pStages[i], i});
+  }
+  return own;
+}
+
 void link_library(Pipeline& pipeline, const Pipeline& library) {
   for (std::uint8_t i = 0; i < static_cast<std::uint8_t>(DynamicState::kCount); ++i) {
     const auto state = static_cast<DynamicState>(i);

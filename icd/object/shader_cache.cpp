@@ -110,6 +110,15 @@ std::shared_ptr<const CompiledShader> find_alive(ShaderTable& table, const Shade
   return found == table.shaders.end() ? nullptr : found->second.lock();
 }
 
+/// Whether somebody may ask what a shader was compiled from: also a pipeline whose modules are named by identifiers,
+/// and of which binaries are to be made.
+bool keeps_stages(const Device& device) {
+#ifdef VK_KHR_pipeline_binary
+  if (device.features.test(Feature::pipelineBinaries)) return true;
+#endif
+  return device.features.test(Feature::performanceCounterQueryPools) || glass::bug::captures();
+}
+
 /// Adds a shader, or gives the one that another thread added meanwhile.
 std::shared_ptr<const CompiledShader> add_shader(ShaderTable& table, const ShaderKey& key,
                                                  std::shared_ptr<const CompiledShader> shader) {
@@ -176,8 +185,7 @@ StageResult compile_stage(Device& device, PipelineCache* cache, const StageReque
     compiled->subgroup_size = options.subgroup_size;
     compiled->representations = std::move(representations);
     compiled->live_color_outputs = request.live_color_outputs;
-    if (device.features.test(Feature::performanceCounterQueryPools) || glass::bug::captures())
-      compiled->kept = std::make_shared<KeptStage>(copy_stage(*request.stage, device.memory));
+    if (keeps_stages(device)) compiled->kept = keep_stage(*request.stage, device.memory);
     out.shader = add_shader(device.shaders, key, compiled);
   }
   if (cache) out.was_in_cache = keep(*cache, out.shader);

@@ -21,8 +21,8 @@ struct CompiledShader {
   std::uint32_t subgroup_size = 0;                     ///< invocations
   std::vector<spirv::Representation> representations;  ///< of captured shaders alone
   std::uint32_t live_color_outputs = 0xff;
-  /// On devices with performance queries, and where commands are captured: what it was compiled from. And the same
-  /// shader with its blocks counted, made when a query first sees it.
+  /// On devices with performance queries or pipeline binaries, and where commands are captured: what it was compiled
+  /// from. And the same shader with its blocks counted, made when a query first sees it.
   std::shared_ptr<const KeptStage> kept;
   mutable std::mutex counted_mutex;
   mutable std::unique_ptr<spirv::Shader> counted;

@@ -53,11 +53,5 @@ const Pipeline* link_stages(Device& device, const BoundStages& stages, const Lin
 /// The pipeline of a compute shader that has been compiled.
 std::shared_ptr<const Pipeline> make_compute_pipeline(const ShaderObject& shader);
 
-/// The shader as vkGetShaderBinaryDataEXT gives it: what the application gave, for compiling takes less than reading.
-Vector<std::uint32_t> shader_binary(const KeptStage& source);
-std::size_t shader_binary_bytes(const KeptStage& source);
-/// Such a binary read again. False if it is none of this format, for another stage, or damaged.
-bool read_shader_binary(const void* code, std::size_t bytes, KeptStage& out);
-
 }  // namespace vitrine::icd
 #endif

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <list>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/glsl/compile.h"
@@ -69,12 +70,12 @@ class Maintenance5Device : public DeviceTest {
   }
 
   void TearDown() override {
-    for (const Picture& p : pictures) {
+    for (const Picture& p : std::exchange(pictures, {})) {
       VK_GET(instance, DestroyImageView)(device, p.view, nullptr);
       VK_GET(instance, DestroyImage)(device, p.image, nullptr);
       VK_GET(instance, FreeMemory)(device, p.memory, nullptr);
     }
-    for (const Bytes& b : buffers) {
+    for (const Bytes& b : std::exchange(buffers, {})) {
       VK_GET(instance, DestroyBuffer)(device, b.buffer, nullptr);
       VK_GET(instance, FreeMemory)(device, b.memory, nullptr);
     }

@@ -46,6 +46,7 @@ TEST_F(NewerNames, AreOfferedWhereTheHeadersKnowThem) {
                                  "VK_KHR_maintenance7",
                                  "VK_KHR_maintenance8",
                                  "VK_KHR_map_memory2",
+                                 "VK_KHR_pipeline_binary",
                                  "VK_KHR_shader_expect_assume",
                                  "VK_KHR_shader_float_controls2",
                                  "VK_KHR_shader_maximal_reconvergence",

@@ -183,17 +183,20 @@ void ShaderObjectDevice::set_states(VkCommandBuffer commands, const Picture2D& p
   bind_sets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set, 0, nullptr);
 }
 
-VkPipeline ShaderObjectDevice::make_pipeline(const Picture2D& picture) {
+VkShaderModule ShaderObjectDevice::make_module(VkShaderStageFlagBits stage, const std::string& glsl) {
+  const std::vector<std::uint32_t> words = compile(stage, glsl);
+  const VkShaderModuleCreateInfo info = module_info(words);
+  VkShaderModule module = VK_NULL_HANDLE;
+  EXPECT_EQ(VK_CALL(CreateShaderModule)(device, &info, nullptr, &module), VK_SUCCESS);
+  return modules_.emplace_back(module);
+}
+
+void ShaderObjectDevice::with_pipeline_info(const Picture2D& picture, const Create& create) {
   std::vector<VkPipelineShaderStageCreateInfo> stages;
   for (const auto& [stage, glsl] : picture.stages) {
-    const std::vector<std::uint32_t> words = compile(stage, glsl);
-    const VkShaderModuleCreateInfo info = module_info(words);
-    VkShaderModule module = VK_NULL_HANDLE;
-    EXPECT_EQ(VK_CALL(CreateShaderModule)(device, &info, nullptr, &module), VK_SUCCESS);
-    modules_.push_back(module);
     auto out = make_struct<VkPipelineShaderStageCreateInfo>();
     out.stage = stage;
-    out.module = module;
+    out.module = make_module(stage, glsl);
     out.pName = "main";
     stages.push_back(out);
   }
@@ -234,10 +237,15 @@ VkPipeline ShaderObjectDevice::make_pipeline(const Picture2D& picture) {
   info.pDepthStencilState = &depth;
   info.pColorBlendState = &blend;
   info.layout = layout;
+  create(info, stages);
+}
+
+VkPipeline ShaderObjectDevice::make_pipeline(const Picture2D& picture) {
   VkPipeline pipeline = VK_NULL_HANDLE;
-  EXPECT_EQ(VK_CALL(CreateGraphicsPipelines)(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), VK_SUCCESS);
-  pipelines_.push_back(pipeline);
-  return pipeline;
+  with_pipeline_info(picture, [&](const VkGraphicsPipelineCreateInfo& info, auto) {
+    EXPECT_EQ(VK_CALL(CreateGraphicsPipelines)(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), VK_SUCCESS);
+  });
+  return pipelines_.emplace_back(pipeline);
 }
 
 ShaderObjectDevice::Contents ShaderObjectDevice::render(const Picture2D& picture, const Record& record,
@@ -280,7 +288,10 @@ ShaderObjectDevice::Contents ShaderObjectDevice::render(const Picture2D& picture
 }
 
 ShaderObjectDevice::Contents ShaderObjectDevice::by_pipeline(const Picture2D& picture) {
-  const VkPipeline pipeline = make_pipeline(picture);
+  return by_pipeline(picture, make_pipeline(picture));
+}
+
+ShaderObjectDevice::Contents ShaderObjectDevice::by_pipeline(const Picture2D& picture, VkPipeline pipeline) {
   return render(picture, [&](VkCommandBuffer commands) {
     set_states(commands, picture);
     VK_CALL(CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);

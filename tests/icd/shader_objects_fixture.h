@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,10 +49,15 @@ class ShaderObjectDevice : public Maintenance5Device {
   /// Every state that a draw by shader objects asks for.
   void set_states(VkCommandBuffer commands, const Picture2D& picture);
   VkPipeline make_pipeline(const Picture2D& picture);
+  /// Calls `create` with what makes that pipeline: the info, and its stages, which may be altered.
+  using Create = std::function<void(VkGraphicsPipelineCreateInfo&, std::span<VkPipelineShaderStageCreateInfo>)>;
+  void with_pipeline_info(const Picture2D& picture, const Create& create);
+  VkShaderModule make_module(VkShaderStageFlagBits stage, const std::string& glsl);
 
   /// The attachments after what `record` draws in a rendering instance.
   Contents render(const Picture2D& picture, const Record& record, VkRenderingFlags flags = 0);
   Contents by_pipeline(const Picture2D& picture);
+  Contents by_pipeline(const Picture2D& picture, VkPipeline pipeline);
   Contents by_objects(const Picture2D& picture);
   /// Both, compared; something must have been drawn.
   void expect_same(const Picture2D& picture);

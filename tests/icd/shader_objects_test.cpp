@@ -343,7 +343,7 @@ TEST_F(ShaderBinaries, ComeInTheSizeThatIsTold) {
 
 class HostileBinaries : public ShaderObjectDevice {
  protected:
-  static constexpr std::size_t kHash = 5, kHashed = 9;  ///< words of the format (icd/object/shader_binary.cpp)
+  static constexpr std::size_t kHash = 5, kHashed = 9;  ///< words of the format (icd/object/stage_binary.cpp)
 
   void SetUp() override {
     ShaderObjectDevice::SetUp();
