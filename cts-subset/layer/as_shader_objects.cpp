@@ -6,15 +6,8 @@
 // that both kinds alternate. They are bound inside of render pass objects, too, which the specification does not allow
 // and this driver does not mind: the suite draws mostly there.
 //
-// AS_SHADER_OBJECTS_COUNT=FILE appends how many pipelines became shader objects, and how many did not, when the process
-// ends.
-#include <dlfcn.h>
-#include <vulkan/vulkan.h>
-
+// LAYER_COUNTS=FILE appends how many pipelines became shader objects, and how many did not, when the process ends.
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -27,12 +20,7 @@
 namespace {
 
 using namespace vitrine::as_shader_objects;
-
-template <class F>
-F next(const char* name) {
-  return reinterpret_cast<F>(dlsym(RTLD_NEXT, name));
-}
-#define NEXT(name) next<PFN_##name>(#name)
+namespace layer = vitrine::layer;
 
 /// What is bound in a pipeline's place.
 struct Converted {
@@ -53,16 +41,7 @@ std::map<VkShaderModule, std::vector<uint32_t>> g_modules;
 std::map<VkPipelineLayout, Layout> g_layouts;
 std::map<VkPipeline, Converted> g_pipelines;
 
-struct Counts {
-  unsigned converted = 0, left = 0;
-  ~Counts() {
-    const char* path = std::getenv("AS_SHADER_OBJECTS_COUNT");
-    std::FILE* file = path && converted + left ? std::fopen(path, "a") : nullptr;
-    if (!file) return;
-    std::fprintf(file, "%u %u\n", converted, left);
-    std::fclose(file);
-  }
-} g_counts;
+layer::Counts g_counts;
 
 const Functions* functions_of(VkDevice device) {
   const auto found = g_devices.find(device);
@@ -130,18 +109,9 @@ void convert_all(VkDevice device, uint32_t count, const Info* infos, const VkPip
   for (uint32_t i = 0; i < count; ++i) {
     Converted made;
     const bool converted = pipelines[i] && convert(*f, infos[i], made);
-    ++(converted ? g_counts.converted : g_counts.left);
+    ++(converted ? g_counts.replaced : g_counts.left);
     if (converted) g_pipelines[pipelines[i]] = std::move(made);
   }
-}
-
-bool offers(VkPhysicalDevice physical, const char* name) {
-  uint32_t count = 0;
-  vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr);
-  std::vector<VkExtensionProperties> offered(count);
-  vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, offered.data());
-  return std::any_of(offered.begin(), offered.end(),
-                     [&](const VkExtensionProperties& e) { return !std::strcmp(e.extensionName, name); });
 }
 
 }  // namespace
@@ -150,13 +120,10 @@ extern "C" {
 
 VKAPI_ATTR VkResult VKAPI_CALL vkCreateDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
                                               const VkAllocationCallbacks* allocator, VkDevice* device) {
-  if (!offers(physical, VK_EXT_SHADER_OBJECT_EXTENSION_NAME))
+  if (!layer::offers(physical, VK_EXT_SHADER_OBJECT_EXTENSION_NAME))
     return NEXT(vkCreateDevice)(physical, info, allocator, device);
-  std::vector<const char*> names(info->ppEnabledExtensionNames,
-                                 info->ppEnabledExtensionNames + info->enabledExtensionCount);
-  for (const char* wanted : {VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME, VK_EXT_SHADER_OBJECT_EXTENSION_NAME})
-    if (std::none_of(names.begin(), names.end(), [&](const char* name) { return !std::strcmp(name, wanted); }))
-      names.push_back(wanted);
+  const std::vector<const char*> names =
+      layer::names_with(*info, {VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME, VK_EXT_SHADER_OBJECT_EXTENSION_NAME});
   VkPhysicalDeviceShaderObjectFeaturesEXT feature{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_OBJECT_FEATURES_EXT,
                                                   const_cast<void*>(info->pNext), VK_TRUE};
   VkDeviceCreateInfo more = *info;

@@ -7,6 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include "layer.h"
+
 #ifdef VK_EXT_shader_object
 namespace vitrine::as_shader_objects {
 
@@ -43,19 +45,8 @@ struct Functions {
 
 using Set = std::function<void(const Functions&, VkCommandBuffer)>;
 
-/// The structure of that type in a chain, or null.
-template <class T>
-const T* in_chain(const void* chain, VkStructureType type) {
-  for (const auto* s = static_cast<const VkBaseInStructure*>(chain); s; s = s->pNext)
-    if (s->sType == type) return reinterpret_cast<const T*>(s);
-  return nullptr;
-}
-
-/// Of an array that may be null.
-template <class T>
-std::vector<T> copy(const T* first, uint32_t count) {
-  return first ? std::vector<T>(first, first + count) : std::vector<T>();
-}
+using layer::copy;
+using layer::in_chain;
 
 /// Whether shader objects can have all of the pipeline's state.
 bool convertible(const VkGraphicsPipelineCreateInfo& info);

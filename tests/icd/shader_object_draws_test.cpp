@@ -1,5 +1,5 @@
 // VK_EXT_shader_object: draws by shader objects leave the bytes that pipelines leave. (All of the suite, drawn so:
-// cts-subset/compare_shader_objects.py.)
+// cts-subset/compare_layer.py.)
 #include <atomic>
 #include <cstring>
 #include <mutex>
