@@ -36,8 +36,6 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   plan_reference_ways(plan, draw, pass);
   plan_rectangles(plan, draw, pass);
   plan_viewports(plan, pass);
-  // 8.2: with one sample only a mask of all zeros has an effect.
-  if (plan.samples == 1 && draw.state->sample_mask != 0) plan.sample_mask = 1;
   plan_tests(plan, pass);
   plan_colors(plan, pass, draw.general_path);
   // Whoever observes a draw sees what its shaders do, wherever their colours go.

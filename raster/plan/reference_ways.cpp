@@ -63,6 +63,9 @@ void plan_reference_ways(PipelinePlan& plan, const DrawCall& draw, const PassDes
   const bool replaces = plan.frag.sample_mask != kNoReg || plan.frag.depth != kNoReg || plan.frag.stencil != kNoReg;
   plan.alpha_to_one = plan.state->alpha_to_one && !(replaces && as_reference(Deviation::kAlphaToOneBesideMask));
   if (base::asked_rows().rows == 0) return;
+  // lavapipe-rasterization.md 8.2
+  if (plan.samples == 1 && plan.state->sample_mask != 0 && as_reference(Deviation::kOneSampleMask))
+    plan.sample_mask = 1;
   plan_stages_ways(plan, draw);
   plan_line_ways(plan);
   ways.keeps_outside_points = as_reference(Deviation::kPointClipping);

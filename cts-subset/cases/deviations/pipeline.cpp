@@ -64,6 +64,18 @@ const AddCase kAlphaPerSample(
       draw(run, "all_samples", target, spec, values);
     });
 
+/// A mask without the one sample, and one without any.
+const AddCase kOneSampleMask(
+    "pipeline", "deviation.one_sample_mask", "one-sample-mask", case_against_control, [](Run& run) {
+      const std::vector<float> values = colored({{-0.7f, -0.7f, 0, 1}, {0.7f, -0.5f, 0, 1}, {0, 0.7f, 0, 1}});
+      for (const VkSampleMask mask : {0xfffffffeu, 0u}) {
+        GraphicsSpec spec;
+        spec.multisample.pSampleMask = &mask;
+        draw(run, mask ? "others" : "none", {}, spec, values);
+        run.outputs.back().may_be_blank = true;
+      }
+    });
+
 const AddCase kAlphaToOne(
     "pipeline", "deviation.alpha_to_one_beside_mask", "alpha-to-one-beside-mask", case_against_control, [](Run& run) {
       run.require(run.gpu.features.alphaToOne, "alphaToOne");

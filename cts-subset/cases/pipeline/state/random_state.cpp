@@ -255,6 +255,7 @@ void random_multisample(Random& random, const Scene& scene, DrawState& draw) {
   VkPipelineMultisampleStateCreateInfo& state = draw.spec.multisample;
   if (random.chance(0.2f) && !one_sample_lines(scene, draw)) {
     draw.sample_mask = random.chance(0.1f) ? random.bits() : random.bits() | 1u << random.below(scene.target.samples);
+    if (scene.target.samples == 1 && draw.sample_mask != 0) draw.sample_mask |= 1;  // deviations.md, one-sample-mask
     state.pSampleMask = &draw.sample_mask;
   }
   const bool float_first = !scene.target.colors.empty() && !is_integer(format_info(scene.target.colors[0]));
