@@ -157,10 +157,12 @@ void add_shadow(const std::byte* data, std::uint64_t size) noexcept {
   }
 }
 
-void remove_shadow(const std::byte* data) noexcept {
+void remove_shadow(const std::byte* data) noexcept try {
   Table& t = table();
   const std::lock_guard lock(t.mutex);
   if (t.regions.erase(reinterpret_cast<std::uintptr_t>(data)) != 0) t.version.fetch_add(1, std::memory_order_release);
+} catch (const std::bad_alloc&) {
+  // There is no table yet: nothing was added.
 }
 
 ShadowRegion* find_shadow(const void* address) {

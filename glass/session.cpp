@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iterator>
+#include <new>
 #include <string_view>
 
 #include "base/lasting.h"
@@ -201,8 +202,14 @@ void Session::end_submission(const std::function<void(const Finding&)>& deliver)
   for (const Finding& finding : findings) deliver(finding);
 }
 
-void Session::write() {
-  for (const auto& tool : tools_) tool->write();
+void Session::write() noexcept {
+  for (const auto& tool : tools_) {
+    try {
+      tool->write();
+    } catch (const std::bad_alloc&) {
+      complain("there is no memory left to write what a tool has seen");
+    }
+  }
 }
 
 Session& session() {

@@ -38,7 +38,7 @@ class Session {
   /// A submission is done: what the tools have found goes to the report and to `deliver`, in a fixed order.
   void end_submission(const std::function<void(const Finding&)>& deliver);
   /// The tools write what they write at the end.
-  void write();
+  void write() noexcept;
 
  private:
   std::vector<std::unique_ptr<Tool>> tools_;

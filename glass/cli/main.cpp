@@ -1,9 +1,12 @@
 // The command `vitrine`: its options, through CLI11.
 #include <CLI/CLI.hpp>
 
+#include <exception>
+
 #include "glass/cli/application.h"
 #include "glass/cli/bug_options.h"
 #include "glass/cli/commands.h"
+#include "glass/cli/say.h"
 #include "glass/version.h"
 
 namespace vitrine::glass::cli {
@@ -264,4 +267,9 @@ int main_of(const std::vector<std::string>& line) {
 }  // namespace
 }  // namespace vitrine::glass::cli
 
-int main(int argc, char** argv) { return vitrine::glass::cli::main_of({argv + 1, argv + argc}); }
+int main(int argc, char** argv) try {
+  return vitrine::glass::cli::main_of({argv + 1, argv + argc});
+} catch (const std::exception& error) {  // the system gives no memory, or no thread
+  vitrine::glass::cli::say(error.what());
+  return vitrine::glass::cli::kCouldNotRun;
+}

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "base/lasting.h"
 #include "glass/output.h"
 #include "glass/pixel/shader_watch.h"
 #include "glass/tools.h"
@@ -14,10 +13,7 @@ namespace vitrine::glass {
 namespace pixel {
 namespace {
 
-std::unique_ptr<Pixels>& instance() {
-  static std::unique_ptr<Pixels>& pixels = base::lasting([] { return std::unique_ptr<Pixels>(); });
-  return pixels;
-}
+Pixels* watched = nullptr;  ///< the tool's, while there is one
 
 std::uint64_t limit(const char* text, const char* key) {
   const std::size_t length = std::strlen(key);
@@ -44,7 +40,10 @@ std::unique_ptr<Pixels> make_pixels() {
 
 class PixelTool final : public Tool {
  public:
-  PixelTool() { instance() = make_pixels(); }
+  PixelTool() : pixels_(make_pixels()) { watched = pixels_.get(); }
+  ~PixelTool() override { watched = nullptr; }
+  PixelTool(const PixelTool&) = delete;
+  PixelTool& operator=(const PixelTool&) = delete;
 
   /// Messages are nothing to it, but who wants some observes shaders that do no more than compute: for their inputs.
   spirv::exec::Interest interest() const override { return {.images = true, .discards = true, .printf = true}; }
@@ -54,11 +53,14 @@ class PixelTool final : public Tool {
   bool needs_every_fragment() const override { return false; }
   void commands_done(const void* owner) override { pixels()->commands_done(owner); }
   void write() override { write_output("VITRINE_PIXEL_HISTORY", "pixel.json", pixels()->to_json()); }
+
+ private:
+  std::unique_ptr<Pixels> pixels_;
 };
 
 }  // namespace
 
-Pixels* pixels() { return instance().get(); }
+Pixels* pixels() { return watched; }
 
 }  // namespace pixel
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 
 #include "glass/session.h"
 #include "icd/entry_points.h"
@@ -79,11 +80,29 @@ VITRINE_EXPORT VKAPI_ATTR VkResult VKAPI_CALL vk_icdNegotiateLoaderICDInterfaceV
   return VK_SUCCESS;
 }
 
-VITRINE_EXPORT VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vk_icdGetPhysicalDeviceProcAddr(VkInstance instance,
-                                                                                        const char* name) {
+namespace {
+
+/// Without memory for the tools, which the first look-up makes, there is no command: the loader then finds no driver.
+template <class F>
+PFN_vkVoidFunction found_by(F&& look_up) noexcept {
+  try {
+    return look_up();
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
+PFN_vkVoidFunction physical_device_command(VkInstance instance, const char* name) {
   const EntryPoint* entry = find_entry_point(name);
   if (!entry || entry->scope != Scope::kPhysicalDevice) return nullptr;
   return instance_command(from_handle<Instance>(instance), name);
+}
+
+}  // namespace
+
+VITRINE_EXPORT VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vk_icdGetPhysicalDeviceProcAddr(VkInstance instance,
+                                                                                        const char* name) {
+  return found_by([=] { return physical_device_command(instance, name); });
 }
 
 VITRINE_EXPORT VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vk_icdGetInstanceProcAddr(VkInstance instance,
@@ -94,11 +113,13 @@ VITRINE_EXPORT VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vk_icdGetInstanceProcAdd
   if (std::strcmp(name, "vk_icdGetPhysicalDeviceProcAddr") == 0) {
     return reinterpret_cast<PFN_vkVoidFunction>(&vk_icdGetPhysicalDeviceProcAddr);
   }
-  if (is_always_global(name)) {
-    const EntryPoint* entry = find_entry_point(name);
-    return entry ? thunk_of(*entry) : nullptr;
-  }
-  return instance ? instance_command(from_handle<Instance>(instance), name) : nullptr;
+  return found_by([=]() -> PFN_vkVoidFunction {
+    if (is_always_global(name)) {
+      const EntryPoint* entry = find_entry_point(name);
+      return entry ? thunk_of(*entry) : nullptr;
+    }
+    return instance ? instance_command(from_handle<Instance>(instance), name) : nullptr;
+  });
 }
 
 namespace vitrine::icd::entry {

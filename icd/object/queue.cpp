@@ -132,7 +132,7 @@ class BatchList {
 };
 
 /// False if the device was lost.
-bool replay_all(Device& device, Batch& batch) noexcept {
+bool replay_all(Device& device, Batch& batch) {
   const base::SimulatedWork work;
   begin_observed_submission(device, std::move(batch.labels), batch.host);
   if (device.replay->observed && glass::has_digest()) digest_submission(*device.replay);
@@ -183,6 +183,19 @@ void tell_signals(Device& device, const Batch& batch) {
   if (batch.fence) hazards->signal_fence(&from_handle<Fence>(batch.fence));
 }
 
+/// What tools note of a batch. False: the memory for it is exhausted, and the device lost, as with memory for a
+/// command.
+template <class F>
+bool with_memory(Device& device, F&& act) noexcept {
+  try {
+    act();
+    return true;
+  } catch (const std::bad_alloc&) {
+    lose_device(device, {});
+    return false;
+  }
+}
+
 /// Executes one batch on the calling thread. After a device loss only the fences and swapchains are still served, so
 /// that nobody waits for ever.
 void execute(Device& device, Batch& batch) noexcept {
@@ -195,14 +208,15 @@ void execute(Device& device, Batch& batch) noexcept {
     const SemaphoreOp& op = batch.waits[i];
     lost |= !wait_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value, temporary(i));
   }
-  tell_waits(device, batch);
-  if (!lost && !batch.command_buffers.empty()) lost = !replay_all(device, batch);
+  lost |= !with_memory(device, [&] { tell_waits(device, batch); });
+  if (!lost && !batch.command_buffers.empty()) {
+    lost |= !with_memory(device, [&] { lost = !replay_all(device, batch); });
+  }
   for (const QueueCall& call : batch.calls) {
     const glass::Span present("present", "present");
     call.run(call.object, call.argument);
   }
-  if (lost) return;
-  tell_signals(device, batch);
+  if (lost || !with_memory(device, [&] { tell_signals(device, batch); })) return;
   for (std::size_t i = 0; i < batch.signals.size(); ++i) {
     const SemaphoreOp& op = batch.signals[i];
     signal_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value, temporary(batch.waits.size() + i));

@@ -167,7 +167,7 @@ void forget_push_constants(ReplayState& state) {
   if (state.observed) state.observed->pushed.fill({});
 }
 
-void begin_observed_submission(Device& device, std::vector<std::string> queue_labels, std::uint64_t host) noexcept {
+void begin_observed_submission(Device& device, std::vector<std::string> queue_labels, std::uint64_t host) {
   ObservedReplay* observed = observed_of(device);
   if (!observed) return;
   ++observed->submission;

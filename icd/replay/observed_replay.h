@@ -133,7 +133,7 @@ void begin_observed_pass(ReplayState& state);
 
 /// A submission begins, on a queue with these labels; `host`: what the host knew to be done when it made it
 /// (glass/sync/hazards.h). Nothing if nobody observes.
-void begin_observed_submission(Device& device, std::vector<std::string> queue_labels, std::uint64_t host) noexcept;
+void begin_observed_submission(Device& device, std::vector<std::string> queue_labels, std::uint64_t host);
 /// It is done, or lost: what has been found goes to the application's messengers. No lock is held.
 void end_observed_submission(Device& device) noexcept;
 

@@ -34,11 +34,22 @@ std::byte* swapchain_image_memory(VkSwapchainKHR swapchain, std::uint32_t index)
   return index < owner.slots.size() ? owner.slots[index].image->data : nullptr;
 }
 
+namespace {
+
+VkResult hand_to_window(Swapchain& swapchain, const Swapchain::Slot& slot) noexcept {
+  try {
+    if (glass::pixel::Pixels* const pixels = glass::pixel::pixels()) pixels->presented(slot.image);
+    return swapchain.window->present(frame_of(swapchain, *slot.image), slot.in_order);
+  } catch (const std::bad_alloc&) {
+    return VK_ERROR_OUT_OF_HOST_MEMORY;
+  }
+}
+
+}  // namespace
+
 void show_image(Swapchain& swapchain, std::uint32_t index) {
-  const wsi::Frame frame = frame_of(swapchain, *swapchain.slots[index].image);
-  if (glass::pixel::Pixels* const pixels = glass::pixel::pixels()) pixels->presented(swapchain.slots[index].image);
   Swapchain::Slot& slot = swapchain.slots[index];
-  const VkResult shown = swapchain.window->present(frame, slot.in_order);
+  const VkResult shown = hand_to_window(swapchain, slot);
   // Before the image is free: whoever waits for it may destroy the fence, or acquire the image and present it again.
   if (slot.fence) signal_fence(*swapchain.device, *slot.fence);
   {

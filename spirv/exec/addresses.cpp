@@ -59,13 +59,15 @@ void add_addresses(const std::byte* data, std::uint64_t size) {
   t.version.fetch_add(1, std::memory_order_release);
 }
 
-void remove_addresses(const std::byte* data) noexcept {
+void remove_addresses(const std::byte* data) noexcept try {
   Table& t = table();
   const std::lock_guard lock(t.mutex);
   const auto found = t.entries.find(reinterpret_cast<std::uintptr_t>(data));
   if (found == t.entries.end() || --found->second.count != 0) return;
   t.entries.erase(found);
   t.version.fetch_add(1, std::memory_order_release);
+} catch (const std::bad_alloc&) {
+  // There is no table yet: nothing was added.
 }
 
 AddressRange find_addresses(std::uint64_t address) {
