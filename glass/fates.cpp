@@ -175,6 +175,7 @@ class DrawCounts::Watch : public raster::DrawWatch {
       return;
     }
     if (pixels_->single.empty()) pixels_->single.resize(std::size_t{kTileSide} * kTileSide);
+    if (group.rate != 0) return count_fragments(group, invocations);
     for (std::uint32_t q = 0; q < base::kQuadsPerWave; ++q)
       if (const LaneMask lanes = invocations >> 4 * q & 15; lanes != 0)
         add_quad(pixels_->single.data(), group.position.x[q], group.position.y[q], lanes);
@@ -208,6 +209,17 @@ class DrawCounts::Watch : public raster::DrawWatch {
   }
 
  private:
+  /// Fragments of several pixels count in the first one.
+  void count_fragments(const FragmentGroup& group, LaneMask invocations) {
+    base::for_each_lane(invocations, [&](std::size_t lane) {
+      const std::uint32_t x =
+          group.position.x[lane / 4] + static_cast<std::uint32_t>(lane & 1) * raster::width_of(group.rate);
+      const std::uint32_t y =
+          group.position.y[lane / 4] + static_cast<std::uint32_t>(lane >> 1 & 1) * raster::height_of(group.rate);
+      add_quad(pixels_->single.data(), x, y, 1);
+    });
+  }
+
   DrawCounts& counts_;
   const spirv::ObservedCommand* command_;
   std::shared_ptr<TilePixels> pixels_;  ///< of the tile; null: not counted

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "raster/fragment_rate.h"
 #include "raster/sample_locations.h"
 #include "spirv/shader.h"
 #include "texel/view.h"
@@ -108,6 +109,9 @@ struct State {
   bool custom_locations = false;
   SampleLocations
       locations{};  ///< counts where custom_locations is set and its sample count is that of the attachments
+  // fragment shading rate
+  VkExtent2D fragment_size{1, 1};                                      ///< pixels
+  std::array<VkFragmentShadingRateCombinerOpKHR, 2> rate_combiners{};  ///< with the primitive's, with the attachment's
   /// Fragments see in input attachments what earlier primitives of the draw wrote.
   bool ordered_attachment_access = false;
   // depth and stencil

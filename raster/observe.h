@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "raster/fragment_rate.h"
 #include "raster/pixel_order.h"
 #include "spirv/resources.h"
 #include "texel/view.h"
@@ -69,6 +70,9 @@ struct FragmentGroup {
   std::uint32_t primitive[base::kQuadsPerWave];  ///< gl_PrimitiveID by quad
   const Primitive* from[base::kQuadsPerWave];    ///< by quad; null: it is not in use
   std::uint32_t layer = 0;
+  /// Of shading() and shaded(): the lanes of quad q are fragments of this size, the first of which begins at its
+  /// position. 0: they are pixels.
+  FragmentRate rate = 0;
   const PrimitiveInstances* instances = nullptr;  ///< of `from`; null: the draw is not watched by pixels
   FragmentInputs* inputs = nullptr;  ///< of generated(); null: the same, or the draw has no fragment shader
 };

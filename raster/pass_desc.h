@@ -16,8 +16,10 @@ namespace vitrine::raster {
 struct PassDesc {
   std::array<texel::ImageView, kMaxColorAttachments> color{};
   std::uint32_t color_count = 0;
-  texel::ImageView depth;    ///< the depth plane
-  texel::ImageView stencil;  ///< the stencil plane
+  texel::ImageView depth;               ///< the depth plane
+  texel::ImageView stencil;             ///< the stencil plane
+  texel::ImageView shading_rate;        ///< fragment shading rate attachment
+  VkExtent2D shading_rate_texel{8, 8};  ///< pixels for which a texel of it stands; whole blocks
   VkRect2D render_area{};
   std::uint32_t layers = 1;
   std::uint32_t view_mask = 0;
@@ -25,7 +27,7 @@ struct PassDesc {
   bool plain_image = false;  ///< color[0] is of a 2D image of one layer
 };
 
-/// Calls f(view) for the attachments that are there.
+/// Calls f(view) for the attachments that are drawn to.
 template <class F>
 void for_each_attachment(const PassDesc& desc, F&& f) {
   for (std::uint32_t i = 0; i < desc.color_count; ++i)

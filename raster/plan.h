@@ -85,6 +85,7 @@ struct VertexOutputs {
   std::array<std::uint32_t, kMaxClipDistances> clip_distance, cull_distance;
   std::uint32_t clip_count = 0, cull_count = 0;
   std::uint32_t point_size = kNoReg, layer = kNoReg, viewport_index = kNoReg, primitive_id = kNoReg;
+  std::uint32_t shading_rate = kNoReg;
 };
 
 /// Register numbers of the fragment stage; kNoReg where not read or written.
@@ -94,7 +95,7 @@ struct FragmentRegisters {
   std::array<std::uint32_t, 2 * kMaxSamples> interpolation_sample;
   std::uint32_t interpolation_scale = kNoReg;
   std::uint32_t front_facing = kNoReg, sample_id = kNoReg, sample_mask_in = kNoReg, primitive_id = kNoReg;
-  std::uint32_t helper = kNoReg, layer = kNoReg, view_index = kNoReg;
+  std::uint32_t helper = kNoReg, layer = kNoReg, view_index = kNoReg, shading_rate = kNoReg;
   std::array<std::array<std::uint32_t, 4>, kMaxColorAttachments> color;
   std::array<std::uint32_t, 4> color_second;  ///< attachment 0, index 1
   std::uint32_t depth = kNoReg, stencil = kNoReg, sample_mask = kNoReg;
@@ -193,6 +194,7 @@ struct PipelinePlan {
   std::uint32_t raster_samples = 1;  ///< locations at which coverage is computed: 1 for Bresenham lines
   const SampleLocations* locations = &kSingleSample;  ///< those
   bool sample_shading = false;
+  FragmentRates rates;
   std::uint32_t sample_mask = ~0u;  ///< 0: nothing is drawn
 
   TestOrder depth_order = TestOrder::kNone;

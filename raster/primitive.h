@@ -39,6 +39,7 @@ struct Primitive {
   PrimitiveKind kind;
   bool front;
   std::uint8_t provoking;  ///< index in v whose flat values hold
+  FragmentRate rate;       ///< FragmentRates::with_primitive; counts where FragmentRates::any
 };
 
 /// The fill rule (lavapipe-rasterization.md 3.2) for an edge from one corner to the next: whether samples on it are

@@ -61,6 +61,7 @@ enum class BuiltIn : std::uint8_t {
   kCullDistance,
   kLayer,
   kViewportIndex,
+  kPrimitiveShadingRate,
   // fragment in (kLayer, kViewportIndex, kClipDistance, kCullDistance, kViewIndex too)
   kFragCoord,
   kFrontFacing,
@@ -72,6 +73,7 @@ enum class BuiltIn : std::uint8_t {
   kSampleMask,
   kPrimitiveId,
   kHelperInvocation,
+  kShadingRate,  ///< as raster::FragmentRate
   // fragment in, for interpolateAt*: where planes are evaluated, in pixels
   kInterpolationCenter,  ///< x, y at the pixel's centre
   kInterpolationSample,  ///< component 2 s: x at sample s, 2 s + 1: y

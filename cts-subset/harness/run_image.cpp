@@ -86,7 +86,8 @@ Image Run::image(const ImageSpec& spec) {
   CTS_VK(vkBindImageMemory(device, result.handle, result.memory, 0));
   constexpr VkImageUsageFlags kViewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
                                           VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT |
-                                          VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+                                          VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                          VK_IMAGE_USAGE_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR;
   if (spec.usage & kViewable) {
     VkImageSubresourceRange range = result.range();
     const bool attachment = spec.usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;

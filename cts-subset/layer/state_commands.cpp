@@ -46,6 +46,7 @@ class States {
     add_viewports();
     add_discard_rectangles();
     add_samples();
+    add_shading_rate();
     add_depth_stencil();
     add_blend();
   }
@@ -216,6 +217,18 @@ class States {
       VkSampleLocationsInfoEXT again = info;
       again.pSampleLocations = places.data();
       f.CmdSetSampleLocationsEXT(b, &again);
+    });
+  }
+
+  void add_shading_rate() {
+    if (!f_->CmdSetFragmentShadingRateKHR) return;
+    VkPipelineFragmentShadingRateStateCreateInfoKHR rate{};
+    rate.fragmentSize = {1, 1};
+    if (const auto* given = in_chain<VkPipelineFragmentShadingRateStateCreateInfoKHR>(
+            info_.pNext, VK_STRUCTURE_TYPE_PIPELINE_FRAGMENT_SHADING_RATE_STATE_CREATE_INFO_KHR))
+      rate = *given;
+    add(VK_DYNAMIC_STATE_FRAGMENT_SHADING_RATE_KHR, [=](const Functions& f, VkCommandBuffer b) {
+      f.CmdSetFragmentShadingRateKHR(b, &rate.fragmentSize, rate.combinerOps);
     });
   }
 

@@ -30,7 +30,7 @@ struct Functions {
   X(CmdSetDepthTestEnableEXT) X(CmdSetDepthWriteEnableEXT) X(CmdSetDepthCompareOpEXT) \
   X(CmdSetDepthBoundsTestEnableEXT) X(CmdSetStencilTestEnableEXT) X(CmdSetStencilOpEXT) X(CmdSetLogicOpEnableEXT) \
   X(CmdSetLogicOpEXT) X(CmdSetColorBlendEnableEXT) X(CmdSetColorBlendEquationEXT) X(CmdSetColorBlendAdvancedEXT) \
-  X(CmdSetColorWriteMaskEXT) X(CmdSetColorWriteEnableEXT)
+  X(CmdSetColorWriteMaskEXT) X(CmdSetColorWriteEnableEXT) X(CmdSetFragmentShadingRateKHR)
 // clang-format on
 #define DECLARE(name) PFN_vk##name name = nullptr;
   EACH_FUNCTION(DECLARE)

@@ -114,6 +114,9 @@ void demand_plain_rasterization(const raster::State& s) {
          "primitive restart, last provoking vertices or lower left domain origins");
   demand(s.depth_clip != s.depth_clamp && !s.negative_one_to_one && !s.unrestricted_depth,
          "depth that is clipped or ranges otherwise");
+  demand(s.fragment_size.width * s.fragment_size.height == 1 &&
+             s.rate_combiners[0] == VK_FRAGMENT_SHADING_RATE_COMBINER_OP_KEEP_KHR,
+         "fragment shading rates");
   demand(s.discard_count == 0 && s.rasterized_stream == 0 && !s.overestimates,
          "discard rectangles, streams that are rasterized or conservative rasterization");
   demand(s.samples == 1 && !s.sample_shading && (s.sample_mask & 1) && !s.alpha_to_coverage && !s.alpha_to_one &&

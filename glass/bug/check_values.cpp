@@ -104,6 +104,13 @@ bool can_be(const VkRect2D& r) {
          r.extent.height <= INT32_MAX - static_cast<std::uint32_t>(r.offset.y);
 }
 
+bool is_fragment_size(VkExtent2D size) {
+  const auto side = [](std::uint32_t pixels) {
+    return std::has_single_bit(pixels) && pixels <= raster::kLargestFragment;
+  };
+  return side(size.width) && side(size.height);
+}
+
 bool can_be(const raster::State& s) {
   std::set<std::uint32_t> locations;
   for (std::uint32_t i = 0; i < s.attribute_count; ++i) {
@@ -119,7 +126,9 @@ bool can_be(const raster::State& s) {
          up_to(s.line_mode, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT) && s.line_stipple_factor >= 1 &&
          s.line_stipple_factor <= 256 && s.line_width >= 0 && s.line_width < 256 && std::has_single_bit(s.samples) &&
          s.samples <= raster::kMaxSamples && up_to(s.depth_compare, VK_COMPARE_OP_ALWAYS) && can_be(s.front) &&
-         can_be(s.back) && s.discard_count <= raster::kMaxDiscardRectangles &&
+         can_be(s.back) && s.discard_count <= raster::kMaxDiscardRectangles && is_fragment_size(s.fragment_size) &&
+         up_to(s.rate_combiners[0], VK_FRAGMENT_SHADING_RATE_COMBINER_OP_MUL_KHR) &&
+         up_to(s.rate_combiners[1], VK_FRAGMENT_SHADING_RATE_COMBINER_OP_MUL_KHR) &&
          s.rasterized_stream < raster::kMaxStreams && up_to(s.logic_op, VK_LOGIC_OP_SET) &&
          std::ranges::all_of(s.blend, [](const auto& b) { return can_be(b); }) &&
          std::ranges::all_of(s.scissor, [](const auto& r) { return can_be(r); }) &&

@@ -319,6 +319,9 @@ void fields(V& v, raster::State& s) {
   v("customLocations", s.custom_locations);
   v("locations", s.locations);
   v("orderedAttachmentAccess", s.ordered_attachment_access);
+  v("fragmentWidth", s.fragment_size.width);
+  v("fragmentHeight", s.fragment_size.height);
+  v("rateCombiners", s.rate_combiners);
   v("depthTest", s.depth_test);
   v("depthWrite", s.depth_write);
   v("depthBoundsTest", s.depth_bounds_test);

@@ -154,6 +154,8 @@ void reduce_state(Bug& bug, const StillFound& still) {
   reset(&raster::State::cull_mode);
   reset(&raster::State::polygon_mode);
   reset(&raster::State::sample_shading);
+  reset(&raster::State::fragment_size);
+  reset(&raster::State::rate_combiners);
   reset(&raster::State::alpha_to_coverage);
   reset(&raster::State::alpha_to_one);
   reset(&raster::State::line_stipple);

@@ -60,7 +60,20 @@ Fragment* TileWatch::find(const WatchedPixel& pixel, const raster::Primitive* fr
 }
 
 template <class F>
+void TileWatch::for_each_fragment(const FragmentGroup& group, LaneMask lanes, F&& f) {
+  const std::uint32_t width = raster::width_of(group.rate), height = raster::height_of(group.rate);
+  base::for_each_lane(lanes, [&](std::size_t lane) {
+    const auto q = static_cast<std::uint32_t>(lane / 4);
+    const std::uint32_t left = group.position.x[q] + static_cast<std::uint32_t>(lane & 1) * width;
+    const std::uint32_t top = group.position.y[q] + static_cast<std::uint32_t>(lane >> 1 & 1) * height;
+    for (std::uint32_t pixel = 0; group.from[q] != nullptr && pixel < width * height; ++pixel)
+      if (const WatchedPixel* const at = tile_.find(left + pixel % width, top + pixel / width)) f(*at, q, lane);
+  });
+}
+
+template <class F>
 void TileWatch::for_each(const FragmentGroup& group, LaneMask lanes, F&& f) {
+  if (group.rate != 0) return for_each_fragment(group, lanes, f);
   for (std::uint32_t q = 0; lanes != 0 && q < base::kQuadsPerWave; ++q) {
     const LaneMask quad = lanes >> 4 * q & 15;
     const std::uint32_t x = group.position.x[q], y = group.position.y[q];
@@ -117,8 +130,10 @@ void TileWatch::shading(const FragmentGroup& group) {
   running_.fill(nullptr);
   any_running_ = false;
   for_each(group, base::kAllLanes, [&](const WatchedPixel& pixel, std::uint32_t q, std::size_t lane) {
-    running_[lane] = find(pixel, group.from[q]);
-    any_running_ |= running_[lane] != nullptr;
+    // Of several watched pixels in one fragment, one is told what the shader does.
+    Fragment* const fragment = find(pixel, group.from[q]);
+    if (fragment != nullptr) running_[lane] = fragment;
+    any_running_ |= fragment != nullptr;
   });
 }
 

@@ -66,6 +66,8 @@ class TileWatch final : public raster::DrawWatch {
  private:
   /// Calls f(fragment, lane) for the lanes of a group that are on watched pixels.
   template <class F>
+  void for_each_fragment(const raster::FragmentGroup& group, base::LaneMask lanes, F&& f);  ///< of several pixels
+  template <class F>
   void for_each(const raster::FragmentGroup& group, base::LaneMask lanes, F&& f);
   Fragment* find(const WatchedPixel& pixel, const raster::Primitive* from);
   const texel::ImageView* view_of(std::uint32_t slot) const;

@@ -25,6 +25,13 @@ bool blends_second_source(const Bug& bug) {
                      });
 }
 
+/// Whether fragments may cover several pixels, by the pipeline or by a shader whose rates are combined with its.
+bool has_shading_rate(const Bug& bug) {
+  const VkExtent2D size = bug.state.fragment_size;
+  return size.width != 1 || size.height != 1 ||
+         bug.state.rate_combiners[0] != VK_FRAGMENT_SHADING_RATE_COMBINER_OP_KEEP_KHR;
+}
+
 struct CoreNeed {
   VkBool32 VkPhysicalDeviceFeatures::*feature;
   const char* name;
@@ -55,7 +62,8 @@ constexpr CoreNeed kCore[] = {
 
 }  // namespace
 
-const Need kNeeds[11] = {
+const Need kNeeds[12] = {
+    {VK_KHR_FRAGMENT_SHADING_RATE_EXTENSION_NAME, has_shading_rate},
     {VK_EXT_DEPTH_CLIP_CONTROL_EXTENSION_NAME, [](const Bug& b) { return b.state.negative_one_to_one; }},
     {VK_EXT_DEPTH_CLIP_ENABLE_EXTENSION_NAME, [](const Bug& b) { return b.state.depth_clip == b.state.depth_clamp; }},
     {VK_EXT_BLEND_OPERATION_ADVANCED_EXTENSION_NAME,

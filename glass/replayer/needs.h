@@ -18,7 +18,7 @@ struct Need {
   const char* extension;
   bool (*is_there)(const bug::Bug& bug);
 };
-extern const Need kNeeds[11];
+extern const Need kNeeds[12];
 
 template <class F>
 const char* missing_extension(const bug::Bug& bug, const F& has) {

@@ -84,6 +84,8 @@ class GraphicsInfo {
       VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_CONSERVATIVE_STATE_CREATE_INFO_EXT};
   VkPipelineDiscardRectangleStateCreateInfoEXT discard_{
       VK_STRUCTURE_TYPE_PIPELINE_DISCARD_RECTANGLE_STATE_CREATE_INFO_EXT};
+  VkPipelineFragmentShadingRateStateCreateInfoKHR rate_{
+      VK_STRUCTURE_TYPE_PIPELINE_FRAGMENT_SHADING_RATE_STATE_CREATE_INFO_KHR};
   VkPipelineRasterizationStateCreateInfo rasterization_{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
   std::vector<VkSampleLocationEXT> locations_;
   VkPipelineSampleLocationsStateCreateInfoEXT custom_{
@@ -218,6 +220,9 @@ void GraphicsInfo::rendering() {
   discard_.discardRectangleCount = s_.discard_count;
   discard_.pDiscardRectangles = s_.discard.data();
   if (s_.discard_count != 0) chain(rendering_.pNext, discard_);
+  rate_.fragmentSize = s_.fragment_size;
+  std::copy(s_.rate_combiners.begin(), s_.rate_combiners.end(), rate_.combinerOps);
+  if (device_.has(VK_KHR_FRAGMENT_SHADING_RATE_EXTENSION_NAME)) chain(rendering_.pNext, rate_);
 }
 
 VkGraphicsPipelineCreateInfo GraphicsInfo::info(VkPipelineLayout layout) {

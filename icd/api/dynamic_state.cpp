@@ -67,6 +67,11 @@ VKAPI_ATTR void VKAPI_CALL CmdSetDepthBias2EXT(VkCommandBuffer buffer, const VkD
 }
 #endif
 
+VKAPI_ATTR void VKAPI_CALL CmdSetFragmentShadingRateKHR(VkCommandBuffer buffer, const VkExtent2D* size,
+                                                        const VkFragmentShadingRateCombinerOpKHR combiners[2]) {
+  record(buffer, icd::CmdSetFragmentShadingRate{*size, {combiners[0], combiners[1]}});
+}
+
 #ifdef VK_EXT_attachment_feedback_loop_dynamic_state
 /// Shaders see what is in memory, whether it is an attachment or not.
 VKAPI_ATTR void VKAPI_CALL CmdSetAttachmentFeedbackLoopEnableEXT(VkCommandBuffer, VkImageAspectFlags) {}

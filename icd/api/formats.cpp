@@ -3,7 +3,9 @@
 #include "icd/entry_points.h"
 #include "icd/object/external.h"
 #include "icd/object/format_properties.h"
+#include "icd/properties.h"
 #include "icd/registry/registry.h"
+#include "raster/fragment_rate.h"
 #include "texel/format.h"
 
 namespace vitrine::icd {
@@ -58,6 +60,25 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMultisamplePropertiesEXT(VkPhysicalD
   write_property_chain(&claimed);
   const bool located = samples & claimed.sampleLocationSampleCounts;
   out->maxSampleLocationGridSize = located ? VkExtent2D{1, 1} : VkExtent2D{0, 0};
+}
+
+/// Vulkan 1.3.239, Fragment Shading Rates: from the largest width down, and of a width from the largest height down.
+VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceFragmentShadingRatesKHR(VkPhysicalDevice, std::uint32_t* count,
+                                                                        VkPhysicalDeviceFragmentShadingRateKHR* rates) {
+  OutArray<VkPhysicalDeviceFragmentShadingRateKHR> array(count, rates);
+  const VkSampleCountFlags possible = kClaimedPhysicalDeviceProperties.limits.framebufferColorSampleCounts;
+  for (std::uint32_t w = 3; w-- != 0;)
+    for (std::uint32_t h = 3; h-- != 0;) {
+      const raster::FragmentRate rate = raster::make_rate(w, h);
+      VkSampleCountFlags samples = rate == 0 ? ~VkSampleCountFlags{0} : 0;
+      for (VkSampleCountFlags bit = 1; bit <= possible; bit <<= 1)
+        if ((possible & bit) != 0 && raster::supports_rate(rate, bit)) samples |= bit;
+      if (VkPhysicalDeviceFragmentShadingRateKHR* const out = array.next()) {
+        out->sampleCounts = samples;
+        out->fragmentSize = {raster::width_of(rate), raster::height_of(rate)};
+      }
+    }
+  return array.result();
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysicalDevice, VkFormat format,

@@ -68,9 +68,12 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRendering(VkCommandBuffer buffer, const VkRen
   for (std::uint32_t i = 0; i < info->colorAttachmentCount; ++i) {
     colors[i] = make_attachment(&info->pColorAttachments[i]);
   }
+  const auto* rates = find_in_chain<VkRenderingFragmentShadingRateAttachmentInfoKHR>(info->pNext);
   record(b, icd::CmdBeginRendering{info->flags, info->renderArea, info->layerCount, info->viewMask,
                                    forced_samples(info->pNext), colors, make_attachment(info->pDepthAttachment),
-                                   make_attachment(info->pStencilAttachment)});
+                                   make_attachment(info->pStencilAttachment),
+                                   rates ? from_nullable<ImageView>(rates->imageView) : nullptr,
+                                   rates ? rates->shadingRateAttachmentTexelSize : VkExtent2D{}});
   add_cost(b, info->renderArea, info->layerCount);
 }
 

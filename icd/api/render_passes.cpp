@@ -40,6 +40,12 @@ Subpass make_subpass(const VkSubpassDescription2& info, const HostMemory& memory
     subpass.depth_resolve_mode = resolve->depthResolveMode;
     subpass.stencil_resolve_mode = resolve->stencilResolveMode;
   }
+  if (const auto* rates = find_in_chain<VkFragmentShadingRateAttachmentInfoKHR>(info.pNext);
+      rates && rates->pFragmentShadingRateAttachment) {
+    subpass.shading_rate = rates->pFragmentShadingRateAttachment->attachment;
+    subpass.shading_rate_texel = rates->shadingRateAttachmentTexelSize;
+    copy_layouts(rates->pFragmentShadingRateAttachment, 1, subpass.layouts);
+  }
   subpass.view_mask = info.viewMask;
   subpass.forced_samples = forced_samples(info.pNext);
   return subpass;

@@ -256,6 +256,11 @@ void fill_static_state(Pipeline& pipeline, const VkGraphicsPipelineCreateInfo& i
   if (before) fill_discard_rectangles(pipeline, info);
   if (before && info.pViewportState) fill_viewports(state, *info.pViewportState, pipeline.dynamic);
   const bool shader = parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT;
+  // Both parts have it, and agree on it.
+  if (const auto* rate = find_in_chain<VkPipelineFragmentShadingRateStateCreateInfoKHR>(info.pNext); rate && shader) {
+    state.fragment_size = rate->fragmentSize;
+    state.rate_combiners = {rate->combinerOps[0], rate->combinerOps[1]};
+  }
   const bool output = parts & VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT;
   if ((shader || output) && info.pMultisampleState) fill_multisample(pipeline, *info.pMultisampleState);
   if (shader && has_depth_stencil(info, subpass, parts)) fill_depth_stencil(state, *info.pDepthStencilState);

@@ -41,6 +41,8 @@ struct Subpass {
   Vector<std::uint32_t> inputs, colors, resolves;  ///< resolves: empty, or as many as colours
   std::uint32_t depth_stencil = VK_ATTACHMENT_UNUSED;
   std::uint32_t depth_stencil_resolve = VK_ATTACHMENT_UNUSED;
+  std::uint32_t shading_rate = VK_ATTACHMENT_UNUSED;
+  VkExtent2D shading_rate_texel{};  ///< pixels
   VkResolveModeFlagBits depth_resolve_mode = VK_RESOLVE_MODE_NONE, stencil_resolve_mode = VK_RESOLVE_MODE_NONE;
   std::uint32_t view_mask = 0;
   std::uint32_t forced_samples = 1;     ///< of single-sampled attachments while they are drawn to

@@ -98,6 +98,10 @@ struct CmdSetDepthBias {
   float constant, clamp, slope;
   raster::DepthBiasUnit unit;
 };
+struct CmdSetFragmentShadingRate {
+  VkExtent2D size;
+  std::array<VkFragmentShadingRateCombinerOpKHR, 2> combiners;
+};
 struct CmdSetBlendConstants {
   std::array<float, 4> constants;
 };
@@ -233,6 +237,8 @@ struct CmdBeginRendering {
   std::uint32_t forced_samples;  ///< of single-sampled attachments while they are drawn to
   std::span<const RenderingAttachment> colors;
   RenderingAttachment depth, stencil;
+  const ImageView* shading_rate;    ///< null: none
+  VkExtent2D shading_rate_texel{};  ///< of that
 };
 struct CmdEndRendering {};
 struct CmdNextSubpass {};

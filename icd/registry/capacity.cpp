@@ -2,6 +2,7 @@
 // that outgrows one of them does not compile.
 #include "icd/properties.h"
 #include "raster/draw.h"
+#include "raster/pixel_order.h"
 #include "raster/plan.h"
 #include "raster/sample_locations.h"
 #include "spirv/resources.h"
@@ -14,6 +15,8 @@ namespace {
 constexpr const VkPhysicalDeviceLimits& kLimits = kClaimedPhysicalDeviceProperties.limits;
 constexpr const VkPhysicalDeviceTransformFeedbackPropertiesEXT& kXfb =
     kClaimedPhysicalDeviceTransformFeedbackPropertiesEXT;
+constexpr const VkPhysicalDeviceFragmentShadingRatePropertiesKHR& kRates =
+    kClaimedPhysicalDeviceFragmentShadingRatePropertiesKHR;
 
 static_assert(kLimits.maxVertexInputBindings <= raster::kMaxVertexBindings);
 static_assert(kLimits.maxVertexInputAttributes <= raster::kMaxVertexAttributes);
@@ -24,6 +27,11 @@ static_assert(kLimits.maxCombinedClipAndCullDistances <= raster::kMaxClipDistanc
 static_assert(kLimits.maxViewports <= raster::kMaxViewports);
 static_assert(kLimits.maxColorAttachments <= raster::kMaxColorAttachments);
 static_assert(kLimits.framebufferColorSampleCounts < 2 * raster::kMaxSamples);
+static_assert(kRates.maxFragmentSize.width <= raster::kLargestFragment);
+static_assert(kRates.maxFragmentSize.height <= raster::kLargestFragment);
+static_assert(kRates.maxFragmentShadingRateCoverageSamples <= raster::kMaxFragmentSamples);
+static_assert(kRates.minFragmentShadingRateAttachmentTexelSize.width >= raster::kBlockSize);
+static_assert(kRates.minFragmentShadingRateAttachmentTexelSize.height >= raster::kBlockSize);
 static_assert(kLimits.maxBoundDescriptorSets <= spirv::kMaxSets);
 static_assert(kLimits.maxPushConstantsSize <= spirv::kMaxPushConstantBytes);
 static_assert(kLimits.maxImageDimension2D < 1u << texel::kMaxLevels);

@@ -10,7 +10,7 @@ IMAGE_WORDS = {"sampled": "SAMPLED_IMAGE", "linear": "SAMPLED_IMAGE_FILTER_LINEA
                "midpoint": "MIDPOINT_CHROMA_SAMPLES", "cosited": "COSITED_CHROMA_SAMPLES", "disjoint": "DISJOINT",
                "chroma_linear": "SAMPLED_IMAGE_YCBCR_CONVERSION_LINEAR_FILTER",
                "chroma_separate": "SAMPLED_IMAGE_YCBCR_CONVERSION_SEPARATE_RECONSTRUCTION_FILTER",
-               "blit_src": "BLIT_SRC", "blit_dst": "BLIT_DST"}
+               "blit_src": "BLIT_SRC", "blit_dst": "BLIT_DST", "shading_rate": "FRAGMENT_SHADING_RATE_ATTACHMENT"}
 BUFFER_WORDS = {"uniform_texel": "UNIFORM_TEXEL_BUFFER", "storage_texel": "STORAGE_TEXEL_BUFFER",
                 "storage_texel_atomic": "STORAGE_TEXEL_BUFFER_ATOMIC", "vertex": "VERTEX_BUFFER"}
 

@@ -310,7 +310,7 @@ inline constexpr LimitRule kLimitRules[] = {{
 
     def _format_table(self):
         def bits(words):
-            names = [f"VK_FORMAT_FEATURE_{w}_BIT" for w in words]
+            names = [f"VK_FORMAT_FEATURE_{w}_BIT" + ("_KHR" if w == "FRAGMENT_SHADING_RATE_ATTACHMENT" else "") for w in words]
             # Whatever is filtered linearly is so cubically, but for formats whose planes are.
             cubic = "SAMPLED_IMAGE_FILTER_LINEAR" in words and "MIDPOINT_CHROMA_SAMPLES" not in words
             if cubic and "VK_EXT_filter_cubic" in self.claimed:

@@ -129,9 +129,12 @@ std::string add_rendering(const ReplayState& state, CapturedObjects& objects, Bu
   if (state.instance) {
     if (state.instance->render_pass->subpasses[state.subpass].forced_samples > 1)
       return "it draws samples to attachments of one sample";
+    if (state.instance->render_pass->subpasses[state.subpass].shading_rate != VK_ATTACHMENT_UNUSED)
+      return "it has a fragment shading rate attachment";
     add_subpass(state, objects, out);
   } else if (dynamic) {
     if (dynamic->forced_samples > 1) return "it draws samples to attachments of one sample";
+    if (dynamic->shading_rate) return "it has a fragment shading rate attachment";
     add_colors(*dynamic, state.graphics.pipeline->locations, objects, out);
     out.depth = attachment(dynamic->depth.view, objects);
     out.stencil = attachment(dynamic->stencil.view, objects);

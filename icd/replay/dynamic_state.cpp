@@ -74,6 +74,12 @@ void execute(ReplayState& state, const CmdSetDepthBias& command) {
   out.depth_bias_unit = command.unit;
 }
 
+void execute(ReplayState& state, const CmdSetFragmentShadingRate& command) {
+  raster::State& out = change(state).state;
+  out.fragment_size = command.size;
+  out.rate_combiners = command.combiners;
+}
+
 void execute(ReplayState& state, const CmdSetBlendConstants& command) {
   change(state).state.blend_constants = command.constants;
 }

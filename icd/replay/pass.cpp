@@ -49,6 +49,7 @@ raster::PassDesc describe_pass(ReplayState& state) {
     desc.stencil = depth_stencil_plane(*view, VK_IMAGE_ASPECT_STENCIL_BIT);
     desc.samples = view->image->desc().samples;
   }
+  describe_shading_rate(attachment_view(state, subpass.shading_rate), subpass.shading_rate_texel, desc);
   return desc;
 }
 

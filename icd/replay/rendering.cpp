@@ -73,6 +73,7 @@ raster::PassDesc describe_pass(const CmdBeginRendering& command, const DrawScope
     desc.stencil = depth_stencil_plane(*view, VK_IMAGE_ASPECT_STENCIL_BIT);
     use(*view);
   }
+  describe_shading_rate(command.shading_rate, command.shading_rate_texel, desc);
   return desc;
 }
 

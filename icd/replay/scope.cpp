@@ -20,6 +20,12 @@ texel::ImageView depth_stencil_plane(const ImageView& view, VkImageAspectFlagBit
   return view_of_aspect(*view.image, aspect, view.type, view.format, view.range);
 }
 
+void describe_shading_rate(const ImageView* view, VkExtent2D texel, raster::PassDesc& desc) {
+  if (!view || texel.width < raster::kBlockSize || texel.height < raster::kBlockSize) return;
+  desc.shading_rate = view->view;
+  desc.shading_rate_texel = texel;
+}
+
 VkRect2D clip_area(const VkRect2D& area, std::uint32_t width, std::uint32_t height) {
   const std::int64_t x0 = std::max(area.offset.x, 0), y0 = std::max(area.offset.y, 0);
   const std::int64_t x1 = std::min<std::int64_t>(std::int64_t{area.offset.x} + area.extent.width, width);

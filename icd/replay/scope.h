@@ -12,6 +12,9 @@ namespace vitrine::icd {
 /// and stencil image subresources are used" (VkFramebufferCreateInfo). Without that aspect: an unused attachment.
 texel::ImageView depth_stencil_plane(const ImageView& view, VkImageAspectFlagBits aspect);
 
+/// The shading rate attachment of a pass. `view`: null: none. `texel`: shadingRateAttachmentTexelSize.
+void describe_shading_rate(const ImageView* view, VkExtent2D texel, raster::PassDesc& desc);
+
 /// Calls f(first layer, layer count) for what a scope draws to: each of its views, or all layers.
 template <class F>
 void for_each_layer_range(std::uint32_t views, std::uint32_t layers, F f) {

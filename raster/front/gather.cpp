@@ -169,6 +169,7 @@ void reserve_vertices(VertexScratch& s, std::uint32_t count) {
   s.cull_distance.resize(vertices * kMaxClipDistances);
   s.layer.resize(vertices);
   s.viewport_index.resize(vertices);
+  s.shading_rate.resize(vertices);
   s.code.resize(vertices);
   s.snapped.resize(vertices * 2);
 }

@@ -92,6 +92,8 @@ void choose_layer_and_viewport(PrimitiveWork& w, std::uint32_t provoking_slot) {
     const std::uint32_t layer = w.vertices.layer[provoking_slot] + w.base_layer;
     w.setup.layer = static_cast<std::uint16_t>(std::min(layer, std::max<std::uint32_t>(w.pass.layers, 1) - 1));
   }
+  if (w.plan.rates.any && w.plan.out.shading_rate != kNoReg)
+    w.setup.rate = w.plan.rates.with_primitive(w.vertices.shading_rate[provoking_slot]);
   if (!w.plan.per_vertex_viewport) return;
   const std::uint32_t index = w.vertices.viewport_index[provoking_slot];
   w.setup.viewport = index < kMaxViewports ? static_cast<std::uint8_t>(index) : std::uint8_t{0};

@@ -40,6 +40,7 @@ struct PrimitiveWork : PrimitiveContext {
         clipped(chunk.batch ? *chunk.batch : own_batch),
         base_layer(chunk.view) {
     setup.layer = static_cast<std::uint16_t>(base_layer);
+    if (plan.rates.any) setup.rate = plan.rates.with_primitive(0);
     if (plan.rectangles.any && !chunk.batch) own_batch.begin(plan);
     setup.watch = chunk.watch;
   }
@@ -80,7 +81,7 @@ ClipVertex clip_vertex(const PrimitiveWork& w, std::uint32_t slot, std::uint32_t
 /// 1.7: dropped if all corners are outside of one cull distance.
 bool culled_by_distance(const PrimitiveWork& w, const std::uint32_t* slot, std::uint32_t corners);
 
-/// 3.4: layer and viewport from the provoking vertex.
+/// 3.4: layer and viewport from the provoking vertex, and the shading rate.
 void choose_layer_and_viewport(PrimitiveWork& w, std::uint32_t provoking_slot);
 
 /// A record transformed by the primitive's own viewport (1.2 form B), when the viewport is chosen per primitive.

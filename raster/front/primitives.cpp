@@ -85,6 +85,7 @@ bool starts_at_center(const PrimitiveWork& w, const Run& run, const std::uint16_
   if (plan.state->topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN || run.end - run.begin != 2 || !run.ends) return false;
   if (run.begin != 0 || w.chunk.draw->call.index_data || plan.flat_count != 0 || plan.numbers_corners) return false;
   if (plan.bias_in_vertices || plan.out.cull_count != 0 || plan.per_vertex_viewport) return false;
+  if (plan.out.shading_rate != kNoReg) return false;
   for (int i = 0; i < 4; ++i) {
     if (w.vertices.code[slot[i]] != 0) return false;
     if (plan.out.layer != kNoReg && w.vertices.layer[slot[i]] != w.vertices.layer[slot[0]]) return false;

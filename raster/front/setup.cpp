@@ -116,6 +116,7 @@ void complete_triangle(const SetupContext& context, const TriangleFacts& facts, 
   p.window = facts.window;
   p.layer = context.layer;
   p.viewport = context.viewport;
+  p.rate = context.rate;
   p.kind = PrimitiveKind::kTriangle;
   p.front = facts.front;
   p.provoking = context.of_line || plan.state->provoking_vertex_last ? 2 : 0;

@@ -29,6 +29,7 @@ struct SetupContext {
   std::optional<std::uint32_t> instance = std::nullopt;  ///< what the watch is told
   std::uint16_t layer = 0;
   std::uint8_t viewport = 0;
+  FragmentRate rate = 0;
   bool of_line = false;  ///< the triangle is half of a smooth line: never culled or biased, faces as `line_front` says
   bool line_front = true;
   DrawWatch* watch = nullptr;  ///< null: nobody observes

@@ -165,6 +165,7 @@ void fill_common(const SetupContext& context, PrimitiveKind kind, bool front, Pr
   p.id = context.id;
   p.layer = context.layer;
   p.viewport = context.viewport;
+  p.rate = context.rate;
   p.kind = kind;
   p.front = front;
 }

@@ -20,7 +20,7 @@ struct VertexScratch {
   std::vector<std::uint32_t> vertex, instance;
   std::vector<float> clip;                          ///< 4 each
   std::vector<float> clip_distance, cull_distance;  ///< kMaxClipDistances each
-  std::vector<std::uint32_t> layer, viewport_index;
+  std::vector<std::uint32_t> layer, viewport_index, shading_rate;
   std::vector<ClipCode> code;
   std::vector<std::int32_t> snapped;  ///< 2 each
   Vertex* records = nullptr;

@@ -102,6 +102,7 @@ void store_wave(const PipelinePlan& plan, const WaveOutputs& outputs, std::uint3
   }
   if (out.clip_count + out.cull_count) scatter_distances(plan, outputs, base, lanes, s);
   if (out.layer != kNoReg) scatter(outputs, out.layer, lanes, s.layer.data() + base, 1);
+  if (out.shading_rate != kNoReg) scatter(outputs, out.shading_rate, lanes, s.shading_rate.data() + base, 1);
   if (out.viewport_index != kNoReg) scatter(outputs, out.viewport_index, lanes, s.viewport_index.data() + base, 1);
 }
 

@@ -2,6 +2,7 @@
 #include "raster/plan/make_plan.h"
 
 #include "raster/plan/fragment_operations.h"
+#include "raster/plan/fragment_rates.h"
 #include "raster/plan/rectangles.h"
 #include "raster/plan/reference_ways.h"
 #include "raster/plan/routes.h"
@@ -32,6 +33,7 @@ bool make_plan(const DrawCall& draw, const PassDesc& pass, PipelinePlan& plan) {
   plan_vertex_inputs(plan);
   plan_vertex_outputs(plan);
   plan_rasterization(plan, pass);
+  plan_fragment_rates(plan, pass);
   plan_varyings(plan);
   plan_reference_ways(plan, draw, pass);
   plan_rectangles(plan, draw, pass);

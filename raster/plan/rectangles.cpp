@@ -86,6 +86,7 @@ void plan_rectangles(PipelinePlan& plan, const DrawCall& draw, const PassDesc& p
   plan.rectangles.batch_vertices = kBatchBytes / (kAttributeBytes * attributes_of(plan));
   if (!plan.guard_band || !makes_triangles(plan) || plan.stages.evaluation || plan.bias_in_vertices) return;
   if (plan.overestimates) return;
+  if (plan.rates.any && plan.out.shading_rate != kNoReg) return;  // the two may have different ones
   if (reads_flat(plan) || plan.numbers_corners) return;
   plan.rectangles.any = true;
   const std::uint32_t segment = segment_of(plan.shape, draw.index_data != nullptr);

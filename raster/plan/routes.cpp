@@ -20,7 +20,7 @@ bool reads_elsewhere(const PipelinePlan& plan) {
 
 void plan_routes(PipelinePlan& plan, bool general, bool observed) {
   plan.windows = !general && !observed && plan.samples == 1 && plan.raster_samples == 1 && plan.sample_mask != 0 &&
-                 !plan.discards && !plan.overestimates;
+                 !plan.discards && !plan.overestimates && !plan.rates.any;
   const bool rare_tests = plan.tests.stencil || plan.tests.depth_bounds || plan.as_reference.first_sample_depth;
   plan.tests_rows = !general && !rare_tests;
   // Depths beyond [0, 1] wrap in formats of fixed point.
@@ -33,7 +33,8 @@ void plan_routes(PipelinePlan& plan, bool general, bool observed) {
   const bool rare_inputs = frag.point_coord[0] != kNoReg || frag.point_coord[1] != kNoReg || frag.sample_id != kNoReg ||
                            frag.sample_position[0] != kNoReg || frag.sample_position[1] != kNoReg ||
                            frag.sample_mask_in != kNoReg || frag.helper != kNoReg || frag.layer != kNoReg ||
-                           frag.view_index != kNoReg || reads_elsewhere(plan) || plan.as_reference.one_sample_masks ||
+                           frag.view_index != kNoReg || frag.shading_rate != kNoReg || plan.rates.any ||
+                           reads_elsewhere(plan) || plan.as_reference.one_sample_masks ||
                            plan.as_reference.first_sample_depth;
   const bool rare_outputs = frag.depth != kNoReg || frag.stencil != kNoReg || frag.sample_mask != kNoReg ||
                             plan.smooth_lines || plan.dual_source || plan.state->alpha_to_coverage || plan.alpha_to_one;

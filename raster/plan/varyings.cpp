@@ -113,6 +113,9 @@ void plan_fragment_inputs(PipelinePlan& plan) {
       case BuiltIn::kHelperInvocation:
         frag.helper = slot.reg;
         break;
+      case BuiltIn::kShadingRate:
+        frag.shading_rate = slot.reg;
+        break;
       case BuiltIn::kViewIndex:
         frag.view_index = slot.reg;
         break;

@@ -92,6 +92,9 @@ void plan_vertex_outputs(PipelinePlan& plan) {
       case BuiltIn::kViewportIndex:
         out.viewport_index = slot.reg;
         break;
+      case BuiltIn::kPrimitiveShadingRate:
+        out.shading_rate = slot.reg;
+        break;
       case BuiltIn::kPrimitiveId:
         out.primitive_id = slot.reg;
         break;

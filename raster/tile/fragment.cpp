@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/numeric.h"
+#include "raster/tile/coarse.h"
 #include "raster/tile/fragment_outputs.h"
 #include "raster/tile/observed.h"
 #include "raster/tile/packed_inputs.h"
@@ -32,10 +33,20 @@ void cover_smooth_lines(ShadeRun& run) {
         saturate(half_width[lane] - std::fabs(across[lane])) * saturate(half_length[lane] - std::fabs(along[lane]));
 }
 
+/// gl_SampleMask of fragments of several pixels.
+void mask_spread_coverage(ShadeRun& run) {
+  WaveRegister scratch;
+  const std::uint32_t* mask = output_of(run, run.plan.frag.sample_mask, scratch).lane;
+  for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
+    for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
+      if ((mask[lane] >> (run.spread->first_bit[lane] + s) & 1) == 0) run.kept[s] &= ~(LaneMask{1} << lane);
+}
+
 /// gl_SampleMask.
 void mask_coverage(ShadeRun& run) {
   const PipelinePlan& plan = run.plan;
   if (plan.frag.sample_mask == kNoReg) return;
+  if (run.spread) return mask_spread_coverage(run);
   const std::uint32_t* mask = run.worker.runner.output(plan.frag.sample_mask).lane;
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
@@ -46,7 +57,8 @@ void mask_coverage(ShadeRun& run) {
 void cover_by_alpha(ShadeRun& run) {
   const PipelinePlan& plan = run.plan;
   if (!plan.state->alpha_to_coverage || plan.frag.color[0][3] == kNoReg) return;
-  const std::uint32_t* alpha = run.worker.runner.output(plan.frag.color[0][3]).lane;
+  WaveRegister scratch;
+  const std::uint32_t* alpha = output_of(run, plan.frag.color[0][3], scratch).lane;
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
     const float limit = plan.samples == 1 ? 0.5f : static_cast<float>(s) / static_cast<float>(plan.samples);
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
@@ -69,12 +81,13 @@ void late_depth(ShadeRun& run, std::uint32_t sample) {
   TileWorker& worker = run.worker;
   const PipelinePlan& plan = run.plan;
   if (plan.frag.depth != kNoReg) {
-    const WaveRegister& written = worker.runner.output(plan.frag.depth);
+    WaveRegister scratch;
+    const WaveRegister& written = output_of(run, plan.frag.depth, scratch);
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) worker.depth[lane] = base::float_of(written.lane[lane]);
   } else {
     const bool located = plan.raster_samples > 1;
     WavePoints points;
-    if (located) set_points(run.wave, plan.locations->pixel_x(sample), plan.locations->pixel_y(sample), points);
+    if (located) set_points(run, plan.locations->pixel_x(sample), plan.locations->pixel_y(sample), points);
     evaluate_plane(run.wave.planes, kDepthPlane, located ? points : worker.center, nullptr, worker.depth);
     add_depth_offset(run.wave, worker.depth);
   }
@@ -90,7 +103,9 @@ void test_late(ShadeRun& run) {
   TileWorker& worker = run.worker;
   const PipelinePlan& plan = run.plan;
   const std::uint32_t front = facing_bits(run.wave);
-  const std::uint32_t* reference = plan.frag.stencil != kNoReg ? worker.runner.output(plan.frag.stencil).lane : nullptr;
+  WaveRegister scratch;
+  const std::uint32_t* reference =
+      plan.frag.stencil != kNoReg ? output_of(run, plan.frag.stencil, scratch).lane : nullptr;
   [[maybe_unused]] FailedTests failed[kObserved ? kMaxSamples : 1];
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) {
     if (!run.kept[s]) continue;
@@ -120,10 +135,11 @@ void write_colors(ShadeRun& run) {
     const texel::Numeric numeric = view.format->channel[0].numeric;
     const bool integer = numeric == texel::Numeric::kUint || numeric == texel::Numeric::kSint;
     const bool scaled = !integer || plan.as_reference.scales_integers;
-    const WaveRegister* color = collect_color(worker, plan.frag.color[i], scaled, worker.color);
+    const WaveRegister* color = collect_color(worker, plan.frag.color[i], scaled, worker.color, run.spread);
     if constexpr (kObserved) worker.watch->coloring(worker.told.group, i, color);
     const bool dual = i == 0 && plan.dual_source;
-    const WaveRegister* second = dual ? collect_color(worker, plan.frag.color_second, scaled, worker.second) : nullptr;
+    const WaveRegister* second =
+        dual ? collect_color(worker, plan.frag.color_second, scaled, worker.second, run.spread) : nullptr;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
       write_color(plan.writer[i], {&view, worker.target.layer, s, &run.wave.position, run.kept[s], color, second});
     if constexpr (kObserved) tell_colors(worker, view, run.kept, run.first_sample, run.end_sample);
@@ -133,6 +149,27 @@ void write_colors(ShadeRun& run) {
 void count_kept(ShadeRun& run) {
   if (run.plan.as_reference.one_sample_masks) return count_samples(run.worker, run.kept[0]);
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) count_samples(run.worker, run.kept[s]);
+}
+
+/// What becomes of `kept` behind the shader.
+template <bool kObserved>
+void finish(ShadeRun& run) {
+  TileWorker& worker = run.worker;
+  const PipelinePlan& plan = run.plan;
+  const auto tell = [&](FragmentTest test) {
+    if constexpr (kObserved) tell_lost(worker, test, run.kept, run.first_sample, run.end_sample);
+  };
+  tell(FragmentTest::kDiscard);
+  if (plan.smooth_lines) cover_smooth_lines(run);
+  if (plan.may_kill) {
+    mask_coverage(run);
+    tell(FragmentTest::kShaderMask);
+    cover_by_alpha(run);
+    tell(FragmentTest::kAlphaToCoverage);
+  }
+  if (plan.depth_order == TestOrder::kLate) test_late<kObserved>(run);
+  if (!plan.counts_early) count_kept(run);
+  write_colors<kObserved>(run);
 }
 
 template <bool kObserved>
@@ -154,21 +191,51 @@ void shade(ShadeRun& run) {
   run.alive = worker.runner.run(active, active & ~run.pixels);
   if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(run.pixels));
   for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s) run.kept[s] &= run.alive;
-  const auto tell = [&](FragmentTest test) {
-    if constexpr (kObserved) tell_lost(worker, test, run.kept, run.first_sample, run.end_sample);
-  };
   if constexpr (kObserved) worker.watch->shaded(worker.told.group, run.pixels, active & ~run.pixels);
-  tell(FragmentTest::kDiscard);
-  if (plan.smooth_lines) cover_smooth_lines(run);
-  if (plan.may_kill) {
-    mask_coverage(run);
-    tell(FragmentTest::kShaderMask);
-    cover_by_alpha(run);
-    tell(FragmentTest::kAlphaToCoverage);
+  finish<kObserved>(run);
+}
+
+/// What becomes of the pixels in quad `part` of each quad of fragments, which the shader has run for.
+template <bool kObserved>
+void finish_pixels(const ShadeRun& fragments, std::uint32_t part) {
+  TileWorker& worker = fragments.worker;
+  const PipelinePlan& plan = fragments.plan;
+  FragmentSpread spread;
+  if (!take_pixels(worker, part, spread)) return;
+  ShadeRun run{worker, worker.block, plan, base::first_lanes(4 * worker.block.quads), 0, 0, plan.samples, {}, 0};
+  run.spread = &spread;
+  if (plan.depth_order == TestOrder::kLate || plan.smooth_lines) begin_packed_inputs(run);
+  for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)
+    run.alive |= (fragments.alive >> spread.lane[lane] & 1) << lane;
+  for (std::uint32_t s = 0; s < plan.samples; ++s) run.kept[s] = worker.block.coverage[s] & run.alive;
+  if constexpr (kObserved) tell_wave(worker, worker.block);
+  finish<kObserved>(run);
+  if constexpr (kObserved) tell_passed(worker);
+}
+
+/// The packed wave of a draw whose fragments may cover several pixels: the shader runs once for each, tests and colours
+/// are of pixels.
+template <bool kObserved>
+void shade_coarse(ShadeRun& run) {
+  TileWorker& worker = run.worker;
+  const PipelinePlan& plan = run.plan;
+  const CoarseWave& coarse = worker.coarse;
+  run.pixels = covered_fragments(worker);
+  for (std::uint32_t part = 0; plan.counts_early && part < pixels_of(run.rate); ++part)
+    for (std::uint32_t s = 0; s < plan.samples; ++s) count_samples(worker, coarse.coverage[part][s]);
+  set_packed_inputs(run);
+  const LaneMask active = plan.fragment->needs_helpers ? run.used : run.pixels;
+  if constexpr (kObserved) {
+    tell_fragments(worker);
+    worker.watch->shading(worker.told.group);
   }
-  if (plan.depth_order == TestOrder::kLate) test_late<kObserved>(run);
-  if (!plan.counts_early) count_kept(run);
-  write_colors<kObserved>(run);
+  run.alive = worker.runner.run(active, active & ~run.pixels);
+  if (worker.counts) worker.fragment_invocations += static_cast<std::uint64_t>(std::popcount(run.pixels));
+  if constexpr (kObserved) {
+    worker.watch->shaded(worker.told.group, run.pixels, active & ~run.pixels);
+    worker.told.group.rate = 0;
+  }
+  for (std::uint32_t part = 0; part < pixels_of(run.rate); ++part) finish_pixels<kObserved>(run, part);
 }
 
 /// All runs of a wave.
@@ -194,8 +261,14 @@ void shade_wave(TileWorker& worker, PackedWave& wave) {
   // write.
   std::fill(wave.position.x + wave.quads, std::end(wave.position.x), wave.position.x[0]);
   std::fill(wave.position.y + wave.quads, std::end(wave.position.y), wave.position.y[0]);
+  if (plan.rates.any) {
+    run.coarse = &worker.coarse;
+    run.rate = worker.coarse.rate;
+  }
   begin_packed_inputs(run);
-  if (worker.watch) {
+  if (plan.rates.any) {
+    worker.watch ? shade_coarse<true>(run) : shade_coarse<false>(run);
+  } else if (worker.watch) {
     shade_samples<true>(run, wave);
     tell_passed(worker);
   } else {

@@ -4,15 +4,16 @@
 #include <algorithm>
 
 #include "base/numeric.h"
+#include "raster/tile/shade_run.h"
 
 namespace vitrine::raster {
 
 const base::WaveRegister* collect_color(const TileWorker& worker, const std::array<std::uint32_t, 4>& registers,
-                                        bool scaled, base::WaveRegister scratch[4]) {
+                                        bool scaled, base::WaveRegister scratch[4], const FragmentSpread* spread) {
   const StageRunner& runner = worker.runner;
   const PipelinePlan& plan = *worker.draw->plan;
   const bool written = std::find(registers.begin(), registers.end(), kNoReg) == registers.end();
-  if (written && !plan.alpha_to_one && !plan.smooth_lines) {
+  if (written && !plan.alpha_to_one && !plan.smooth_lines && !spread) {
     const base::WaveRegister* first = &runner.output(registers[0]);
     if (&runner.output(registers[1]) == first + 1 && &runner.output(registers[2]) == first + 2 &&
         &runner.output(registers[3]) == first + 3)
@@ -21,6 +22,8 @@ const base::WaveRegister* collect_color(const TileWorker& worker, const std::arr
   for (std::uint32_t c = 0; c < 4; ++c) {
     if (registers[c] == kNoReg)
       scratch[c] = {};
+    else if (spread)
+      spread_lanes(*spread, runner.output(registers[c]), scratch[c]);
     else
       scratch[c] = runner.output(registers[c]);
   }

@@ -278,6 +278,16 @@ void place_points(const QuadPositions& quads, float dx, float dy, WavePoints& ou
   HWY_DYNAMIC_DISPATCH(points_of_quads)(quads, dx, dy, out);
 }
 
+void place_fragments(const QuadPositions& quads, FragmentRate rate, float dx, float dy, WavePoints& out) {
+  const auto width = static_cast<float>(width_of(rate)), height = static_cast<float>(height_of(rate));
+  // All sums are exact: halves, or a sample's sixteenths.
+  const float x = (width - 1) / 2 + dx, y = (height - 1) / 2 + dy;
+  for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
+    out.x[lane] = static_cast<float>(quads.x[lane / 4]) + ((lane & 1) != 0 ? width : 0) + x;
+    out.y[lane] = static_cast<float>(quads.y[lane / 4]) + ((lane & 2) != 0 ? height : 0) + y;
+  }
+}
+
 void reciprocal(const float* in, float* out) { HWY_DYNAMIC_DISPATCH(reciprocals)(in, out); }
 
 void evaluate_block_depth(const DepthPlane& plane, float x, float y, bool restricted, float* out) {

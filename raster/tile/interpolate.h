@@ -49,6 +49,9 @@ struct WavePoints {
 /// Points of the pixels of all quads, moved by (dx, dy).
 void place_points(const QuadPositions& quads, float dx, float dy, WavePoints& out);
 
+/// The same of quads of larger fragments, whose centres are taken for those of pixels.
+void place_fragments(const QuadPositions& quads, FragmentRate rate, float dx, float dy, WavePoints& out);
+
 /// fma(dady, y, fma(dadx, x, a0)), times `scale` per lane if given (1/w of perspective planes).
 void evaluate_plane(const WavePlanes& wave, std::uint32_t plane, const WavePoints& points, const float* scale,
                     float* out);

@@ -259,6 +259,11 @@ void tell_wave(TileWorker& worker, const PackedWave& wave) {
   std::copy_n(wave.coverage, worker.draw->plan->samples, worker.told.left);
 }
 
+void tell_fragments(TileWorker& worker) {
+  tell_wave(worker, worker.wave);
+  worker.told.group.rate = worker.coarse.rate;
+}
+
 void tell_lost(TileWorker& worker, FragmentTest test, const LaneMask* kept, std::uint32_t first, std::uint32_t end) {
   LaneMask lost[kMaxSamples] = {};
   for (std::uint32_t s = first; s < end; ++s) lost[s] = worker.told.left[s] & ~kept[s];

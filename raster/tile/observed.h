@@ -35,6 +35,8 @@ void tell_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
 void tell_shaded_block(TileWorker& worker, int x, int y, base::LaneMask invocations, base::LaneMask helpers);
 /// The wave's fragments are those that what follows is about.
 void tell_wave(TileWorker& worker, const PackedWave& wave);
+/// The same of the fragments of the packed wave where they may cover several pixels, for what the shader does.
+void tell_fragments(TileWorker& worker);
 /// Of the samples [first, end) those that are no longer in `kept` failed a test.
 void tell_lost(TileWorker& worker, FragmentTest test, const base::LaneMask* kept, std::uint32_t first,
                std::uint32_t end);

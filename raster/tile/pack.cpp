@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "raster/tile/block_shade.h"
+#include "raster/tile/coarse_pack.h"
 #include "raster/tile/fragment.h"
 #include "raster/tile/fragment_outputs.h"
 #include "raster/tile/primitive_planes.h"
@@ -116,6 +117,7 @@ void emit_block(TileWorker& worker, const Primitive& primitive, int x, int y, co
   const base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
   if (!plan.shades) return count_block(worker, block);
+  if (plan.rates.any) return emit_coarse_block(worker, primitive, x, y, rasterized, block);
   const base::LaneMask quads = base::quads_of_lanes(any);
   const bool whole = quads == base::kFirstOfQuads;
   // The product's upper four bits are the sum of the 16 nibbles: the number of quads, modulo 16.
@@ -140,6 +142,7 @@ void emit_observed_block(TileWorker& worker, const Primitive& primitive, int x, 
   const base::LaneMask any = any_sample(block, plan.samples);
   if (!any) return;
   if (!plan.shades) return count_block(worker, block);
+  if (plan.rates.any) return emit_coarse_block(worker, primitive, x, y, rasterized, block);
   const base::LaneMask quads = base::quads_of_lanes(any);
   if (quads != base::kFirstOfQuads) {
     // Who watches pixels sees what each fragment finds there and leaves.

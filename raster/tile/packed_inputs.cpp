@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "raster/tile/coarse.h"
 #include "raster/tile/fragment_inputs.h"
 
 namespace vitrine::raster {
@@ -12,6 +13,36 @@ namespace {
 
 using base::LaneMask;
 using base::WaveRegister;
+
+/// The same of larger fragments: the first covered sample is that of the first pixel with one, rows first.
+void set_coarse_centroids(const ShadeRun& run, WavePoints& out) {
+  out = run.worker.center;
+  const CoarseWave& coarse = *run.coarse;
+  const std::uint32_t width = width_of(run.rate), height = height_of(run.rate);
+  const float center = run.plan.raster_samples > 1 ? 0.5f : 0.0f;
+  base::for_each_lane(run.used, [&](std::size_t lane) {
+    std::uint32_t missing = 0, first = ~0u;  // pixel * kMaxSamples + sample
+    for (std::uint32_t pixel = 0; pixel < pixels_of(run.rate); ++pixel) {
+      // The pixel's place in the quad of fragments.
+      const auto x = static_cast<std::uint32_t>(lane & 1) * width + pixel % width;
+      const auto y = static_cast<std::uint32_t>(lane >> 1 & 1) * height + pixel / width;
+      const std::size_t at = (lane & ~std::size_t{3}) + (y & 1) * 2 + (x & 1);
+      for (std::uint32_t s = 0; s < run.plan.samples; ++s) {
+        if ((coarse.coverage[y / 2 * width + x / 2][s] >> at & 1) == 0)
+          ++missing;
+        else
+          first = std::min(first, pixel * kMaxSamples + s);
+      }
+    }
+    if (missing == 0 || first == ~0u) return;
+    const std::uint32_t pixel = first / kMaxSamples, sample = first % kMaxSamples;
+    const bool located = run.plan.raster_samples > 1;
+    const float left = out.x[lane] - center - static_cast<float>(width - 1) / 2;
+    const float top = out.y[lane] - center - static_cast<float>(height - 1) / 2;
+    out.x[lane] = left + static_cast<float>(pixel % width) + (located ? run.plan.locations->pixel_x(sample) : 0.0f);
+    out.y[lane] = top + static_cast<float>(pixel / width) + (located ? run.plan.locations->pixel_y(sample) : 0.0f);
+  });
+}
 
 /// 8.4: the centre where all samples are covered or none is, else the first covered sample.
 void set_centroids(const ShadeRun& run, WavePoints& out) {
@@ -31,13 +62,14 @@ void set_centroids(const ShadeRun& run, WavePoints& out) {
 /// Points of a location other than the centre, in worker.place.
 const WavePoints& points_of(ShadeRun& run, spirv::SampleLocation location, spirv::SampleLocation& prepared) {
   TileWorker& worker = run.worker;
-  if (location == spirv::SampleLocation::kCenter || run.plan.raster_samples == 1) return worker.center;
+  if (location == spirv::SampleLocation::kCenter) return worker.center;
+  if ((run.plan.raster_samples == 1 || run.rate != 0) && !run.coarse) return worker.center;
   if (location == spirv::SampleLocation::kSample && !run.single()) return worker.center;
   if (prepared != location) {
     if (location == spirv::SampleLocation::kCentroid)
-      set_centroids(run, worker.place);
+      (run.coarse ? set_coarse_centroids : set_centroids)(run, worker.place);
     else
-      set_points(run.wave, run.x(), run.y(), worker.place);
+      set_points(run, run.x(), run.y(), worker.place);
     prepared = location;
   }
   return worker.place;
@@ -93,9 +125,26 @@ void set_interpolation_places(ShadeRun& run) {
     const std::uint32_t x = frag.interpolation_sample[2 * s], y = frag.interpolation_sample[2 * s + 1];
     if (x == kNoReg && y == kNoReg) continue;
     WavePoints points;
-    set_points(run.wave, run.plan.locations->pixel_x(s), run.plan.locations->pixel_y(s), points);
+    // Of the pixel that has the centre of a larger fragment, or is right and below of it.
+    const bool located = run.plan.raster_samples > 1;
+    const float right = located && log_width(run.rate) != 0 ? 0.5f : 0,
+                down = located && log_height(run.rate) != 0 ? 0.5f : 0;
+    set_points(run, run.plan.locations->pixel_x(s) + right, run.plan.locations->pixel_y(s) + down, points);
     copy(points.x, x);
     copy(points.y, y);
+  }
+}
+
+/// Vulkan 1.3.239, Multisampling: "the coverage index j is determined as a function of the pixel index p": the last
+/// pixel of a fragment has the lowest bits.
+void set_coarse_mask(const ShadeRun& run, WaveRegister& out) {
+  out = {};
+  const auto& samples = run.plan.fragment->post_depth_coverage ? run.coarse->coverage : run.coarse->rasterized;
+  for (std::uint32_t part = 0; part < pixels_of(run.rate); ++part) {
+    const FragmentSpread spread = spread_of(run.rate, part, run.plan.samples);
+    for (std::uint32_t s = 0; s < run.plan.samples; ++s)
+      base::for_each_lane(samples[part][s],
+                          [&](std::size_t lane) { out.lane[spread.lane[lane]] |= 1u << (spread.first_bit[lane] + s); });
   }
 }
 
@@ -109,6 +158,7 @@ void set_sample_inputs(ShadeRun& run) {
   if (frag.sample_position[1] != kNoReg)
     splat(runner.input(frag.sample_position[1]), base::bits_of(located ? run.y() : 0.5f));
   if (frag.sample_mask_in == kNoReg) return;
+  if (run.coarse) return set_coarse_mask(run, runner.input(frag.sample_mask_in));
   const LaneMask* samples = run.plan.fragment->post_depth_coverage ? run.wave.coverage : run.wave.rasterized;
   WaveRegister& out = runner.input(frag.sample_mask_in);
   for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
@@ -132,13 +182,13 @@ struct PackedFragments {
   }
   void position(float* x, float* y) const {
     WavePoints points;
-    set_points(run.wave, run.single() ? run.x() : 0.5f, run.single() ? run.y() : 0.5f, points);
+    set_points(run, run.single() ? run.x() : 0.5f, run.single() ? run.y() : 0.5f, points);
     if (x) std::copy_n(points.x, base::kWaveWidth, x);
     if (y) std::copy_n(points.y, base::kWaveWidth, y);
   }
   void depth(float* out) const {
     WavePoints points;
-    if (run.single()) set_points(run.wave, run.x(), run.y(), points);
+    if (run.single()) set_points(run, run.x(), run.y(), points);
     evaluate_plane(run.wave.planes, kDepthPlane, run.single() ? points : run.worker.center, nullptr, out);
     add_depth_offset(run.wave, out);
   }
@@ -162,7 +212,7 @@ void begin_packed_inputs(ShadeRun& run) {
   const bool interpolates = plan.perspective_count + plan.linear_count != 0 || plan.depth_order == TestOrder::kLate ||
                             plan.frag.frag_coord[2] != kNoReg || plan.frag.frag_coord[3] != kNoReg ||
                             plan.frag.point_coord[0] != kNoReg || plan.frag.point_coord[1] != kNoReg;
-  if (interpolates) set_points(run.wave, center, center, run.worker.center);
+  if (interpolates) set_points(run, center, center, run.worker.center);
   if (has_perspective(plan)) run.scale = perspective_scale(run.worker, PackedFragments{run});
 }
 
@@ -186,6 +236,7 @@ void set_packed_inputs(ShadeRun& run) {
                      as_floats(runner.input(frag.point_coord[c])));
   if (frag.view_index != kNoReg)
     splat(runner.input(frag.view_index), run.worker.pass->view_mask != 0 ? run.worker.target.layer : 0);
+  if (frag.shading_rate != kNoReg) splat(runner.input(frag.shading_rate), run.rate);
   if (frag.helper != kNoReg) {
     WaveRegister& out = runner.input(frag.helper);
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane)

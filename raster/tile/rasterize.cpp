@@ -280,7 +280,8 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   }
   if (emit_large_window(worker, primitive, edges, rect)) return;
   places &= places_of(rect);
-  const GridOrigin origin = grid_origin(primitive, rect);
+  // Fragments of several pixels lie on a grid of their own, which that of blocks is a part of.
+  const GridOrigin origin = plan.rates.any ? GridOrigin{} : grid_origin(primitive, rect);
   if (origin != GridOrigin{}) {
     move_origin(*plan.locations, origin, edges, rect);
     places = places_of(rect);

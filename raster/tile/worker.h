@@ -48,6 +48,16 @@ struct PackedWave {
                                                     ///< (lavapipe-rasterization.md 8.5)
 };
 
+/// Fragments of more than one pixel, or of one in draws that have both. The quads of the packed wave are then quads of
+/// such fragments, which lie in one block; each consists of as many quads of pixels as a fragment has pixels, numbered
+/// row by row.
+struct CoarseWave {
+  FragmentRate rate = 0;  ///< of all of the wave
+  /// Of the pixels, by quad of pixels and sample; lanes as those of the wave. What PackedWave has of these is not used.
+  base::LaneMask coverage[kMaxFragmentPixels][kMaxSamples];
+  base::LaneMask rasterized[kMaxFragmentPixels][kMaxSamples];
+};
+
 /// Quads of a tile: bit x / 2 of row y / 2.
 struct QuadMap {
   std::uint32_t row[kTileSize / 2];
@@ -108,6 +118,7 @@ struct TileWorker {
   const DrawRecord* draw = nullptr;  ///< of the packed wave
   PackedWave wave;                   ///< being packed
   QuadMap packed;                    ///< its quads
+  CoarseWave coarse;                 ///< the rest of it, where FragmentRates::any
   PackedWave block;                  ///< one whole block, shaded at once
   BlockDraw block_draw;
   TileCoverage covered, rasterized;  ///< of the primitive being rasterized: what passed so far, and before any test

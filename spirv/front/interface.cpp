@@ -32,6 +32,8 @@ constexpr BuiltInRow kBuiltIns[] = {
     {spv::BuiltIn::CullDistance, BuiltIn::kCullDistance, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::Layer, BuiltIn::kLayer, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::ViewportIndex, BuiltIn::kViewportIndex, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::PrimitiveShadingRateKHR, BuiltIn::kPrimitiveShadingRate, ir::Op::kLoadInput, 1},
+    {spv::BuiltIn::ShadingRateKHR, BuiltIn::kShadingRate, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::FragCoord, BuiltIn::kFragCoord, ir::Op::kLoadInput, 4},
     {spv::BuiltIn::FrontFacing, BuiltIn::kFrontFacing, ir::Op::kLoadInput, 1},
     {spv::BuiltIn::PointCoord, BuiltIn::kPointCoord, ir::Op::kLoadInput, 2},
