@@ -16,10 +16,10 @@ namespace vitrine::raster {
 struct PassDesc {
   std::array<texel::ImageView, kMaxColorAttachments> color{};
   std::uint32_t color_count = 0;
-  texel::ImageView depth;               ///< the depth plane
-  texel::ImageView stencil;             ///< the stencil plane
-  texel::ImageView shading_rate;        ///< fragment shading rate attachment
-  VkExtent2D shading_rate_texel{8, 8};  ///< pixels for which a texel of it stands; whole blocks
+  texel::ImageView depth;                          ///< the depth plane
+  texel::ImageView stencil;                        ///< the stencil plane
+  const texel::ImageView* shading_rate = nullptr;  ///< fragment shading rate attachment; lives until the flush
+  VkExtent2D shading_rate_texel{8, 8};             ///< pixels for which a texel of it stands; whole blocks
   VkRect2D render_area{};
   std::uint32_t layers = 1;
   std::uint32_t view_mask = 0;

@@ -22,7 +22,7 @@ texel::ImageView depth_stencil_plane(const ImageView& view, VkImageAspectFlagBit
 
 void describe_shading_rate(const ImageView* view, VkExtent2D texel, raster::PassDesc& desc) {
   if (!view || texel.width < raster::kBlockSize || texel.height < raster::kBlockSize) return;
-  desc.shading_rate = view->view;
+  desc.shading_rate = &view->view;
   desc.shading_rate_texel = texel;
 }
 

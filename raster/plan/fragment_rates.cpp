@@ -7,7 +7,7 @@ void plan_fragment_rates(PipelinePlan& plan, const PassDesc& pass) {
   const State& state = *plan.state;
   FragmentRates& rates = plan.rates;
   rates = {};
-  const bool attached = pass.shading_rate.format != nullptr;
+  const bool attached = pass.shading_rate != nullptr;
   const bool written = plan.out.shading_rate != kNoReg;
   if (state.fragment_size.width * state.fragment_size.height == 1 && !attached && !written) return;
   // Combining the Fragment Shading Rates: sample shading sets the rate to one pixel, whatever the number of samples.

@@ -26,16 +26,16 @@ QuadSpread spread_quad(FragmentRate rate, std::uint32_t part, std::uint32_t samp
 }  // namespace
 
 FragmentRate rate_in_block(const TileWorker& worker, const Primitive& primitive, int x, int y) {
-  const texel::ImageView& view = worker.pass->shading_rate;
+  const texel::ImageView* const view = worker.pass->shading_rate;
   std::uint32_t texel = 0;
-  if (view.format) {
+  if (view) {
     // Attachment Fragment Shading Rate. Outside of the attachment reads what is outside of an image.
     const VkExtent2D region = worker.pass->shading_rate_texel;
     const std::uint32_t column = static_cast<std::uint32_t>(x) / region.width;
     const std::uint32_t row = static_cast<std::uint32_t>(y) / region.height;
-    const std::uint32_t layer = view.layer_count > 1 ? worker.target.layer : 0;
-    if (column < view.level[0].extent.width && row < view.level[0].extent.height && layer < view.layer_count)
-      texel = std::to_integer<std::uint32_t>(*view.block(0, layer, 0, column, row, 0));
+    const std::uint32_t layer = view->layer_count > 1 ? worker.target.layer : 0;
+    if (column < view->level[0].extent.width && row < view->level[0].extent.height && layer < view->layer_count)
+      texel = std::to_integer<std::uint32_t>(*view->block(0, layer, 0, column, row, 0));
   }
   return worker.draw->plan->rates.with_attachment(primitive.rate, texel);
 }

@@ -118,7 +118,6 @@ struct TileWorker {
   const DrawRecord* draw = nullptr;  ///< of the packed wave
   PackedWave wave;                   ///< being packed
   QuadMap packed;                    ///< its quads
-  CoarseWave coarse;                 ///< the rest of it, where FragmentRates::any
   PackedWave block;                  ///< one whole block, shaded at once
   BlockDraw block_draw;
   TileCoverage covered, rasterized;  ///< of the primitive being rasterized: what passed so far, and before any test
@@ -142,6 +141,7 @@ struct TileWorker {
   FragmentNumbers numbers;        ///< not yet told
   bool counts_tiles = false;      ///< likewise, and primitives are tested by the tile where they can be
   bool has_whole_blocks = false;  ///< likewise, and nothing can take samples of what a primitive covers
+  CoarseWave coarse;              ///< the rest of `wave`, where FragmentRates::any
 };
 
 /// Whether rows of a square may be read and written without looking at their pixels: it lies inside all attachments,

@@ -23,7 +23,7 @@ TEST_F(Maintenance6, IsOffered) {
   VK_CALL(GetPhysicalDeviceProperties2)(physical_device, &whole);
   EXPECT_TRUE(properties.blockTexelViewCompatibleMultipleLayers);
   EXPECT_EQ(properties.maxCombinedImageSamplerDescriptorCount, 1u);
-  EXPECT_FALSE(properties.fragmentShadingRateClampCombinerInputs);
+  EXPECT_TRUE(properties.fragmentShadingRateClampCombinerInputs);
 }
 
 /// Vulkan 1.4.309, VkBindMemoryStatus: each resource has a result of its own, and those that can be bound are.

@@ -60,8 +60,8 @@ std::string combining(const Rates& rates, uint32_t samples) {
          ", a, b));\n}\n";
 }
 
-std::string vertex_shader(const Rates& rates, bool has) {
-  const bool writes = has && rates.of_primitives;
+/// `writes`: the rate of primitives.
+std::string vertex_shader(bool writes) {
   return std::string(writes ? "#extension GL_EXT_fragment_shading_rate : require\n" : "") + kData +
          "layout(location = 0) flat out uvec2 numbers;\nlayout(location = 1) noperspective out vec2 value;\n"
          "void main() {\n  V own = v[gl_VertexIndex];\n  numbers = uvec2(own.rate, own.id);\n  value = own.value;\n"
@@ -69,8 +69,19 @@ std::string vertex_shader(const Rates& rates, bool has) {
          (writes ? "  gl_PrimitiveShadingRateEXT = int(own.rate);\n" : "") + "}\n";
 }
 
+/// Hands triangles on.
+std::string geometry_shader(bool writes) {
+  return std::string(writes ? "#extension GL_EXT_fragment_shading_rate : require\n" : "") +
+         "layout(triangles) in;\nlayout(triangle_strip, max_vertices = 3) out;\n"
+         "layout(location = 0) flat in uvec2 numbers[];\nlayout(location = 1) noperspective in vec2 value[];\n"
+         "layout(location = 0) flat out uvec2 out_numbers;\nlayout(location = 1) noperspective out vec2 out_value;\n"
+         "void main() {\n  for (int i = 0; i < 3; ++i) {\n    out_numbers = numbers[i];\n    out_value = value[i];\n"
+         "    gl_Position = gl_in[i].gl_Position;\n" +
+         (writes ? "    gl_PrimitiveShadingRateEXT = int(numbers[i].x);\n" : "") + "    EmitVertex();\n  }\n}\n";
+}
+
 struct Ways {
-  bool drops = false, depth = false, multiview = false;
+  bool drops = false, depth = false, multiview = false, geometry = false;
 };
 
 std::string fragment_shader(const Rates& rates, uint32_t samples, const Ways& ways, bool has) {
@@ -224,6 +235,7 @@ CTS_RANDOM("rasterization", "random_shading_rate", 120) {
   ways.drops = random.chance(0.4f);
   ways.depth = random.chance(0.3f);
   ways.multiview = random.chance(0.2f);
+  ways.geometry = random.chance(0.2f) && run.gpu.features.geometryShader && !ways.multiview;
   TargetSpec target_spec;
   target_spec.colors = {VK_FORMAT_R16G16B16A16_UINT, VK_FORMAT_R32G32B32A32_SFLOAT};
   target_spec.width = 20 + random.below(120);
@@ -248,7 +260,10 @@ CTS_RANDOM("rasterization", "random_shading_rate", 120) {
   if (attached && !renders) attach(run, target, rates, *attached);
   GraphicsSpec spec;
   spec.layout = res.layout;
-  spec.vertex = vertex_shader(rates, has);
+  const bool writes = has && rates.of_primitives;
+  spec.vertex = vertex_shader(writes);
+  // What an earlier stage writes does not count.
+  if (ways.geometry) spec.geometry = geometry_shader(writes);
   spec.fragment = fragment_shader(rates, target_spec.samples, ways, has);
   spec.depth.depthTestEnable = spec.depth.depthWriteEnable = target_spec.depth != VK_FORMAT_UNDEFINED;
   spec.depth.depthCompareOp = VK_COMPARE_OP_LESS_OR_EQUAL;

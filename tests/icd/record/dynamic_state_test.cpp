@@ -57,6 +57,7 @@ raster::State unlike_default() {
   s.line_mode = VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
   s.custom_locations = true;
   s.locations = raster::kFourSamples;
+  s.fragment_size = {2, 4};
   return s;
 }
 

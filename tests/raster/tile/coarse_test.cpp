@@ -201,7 +201,7 @@ struct Scene {
     desc.render_area = {{0, 0}, {kWidth, kHeight}};
     desc.samples = samples;
     if (attached && !model) {
-      desc.shading_rate = texels.view;
+      desc.shading_rate = &texels.view;
       desc.shading_rate_texel = kTexel;
     }
     State used = state;
