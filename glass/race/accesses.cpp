@@ -17,6 +17,12 @@ using spirv::MemoryOp;
 using spirv::MemorySpace;
 using spirv::Wave;
 
+/// What a store writes; null: the component is not written.
+const std::uint32_t* values_of(const Wave& wave, const MemoryOp& row, std::uint32_t component) {
+  if (row.data[component] == spirv::kNoOperand) return nullptr;
+  return reinterpret_cast<const base::WaveRegister*>(wave.registers + row.data[component])->lane;
+}
+
 /// What one instruction does, lane by lane.
 class Recorder {
  public:
@@ -28,10 +34,9 @@ class Recorder {
 
  private:
   /// Of the memory at `base`. `copied`: room for offsets that are nowhere.
-  Span span_of(const Site& site, const MemoryOp& row, std::uint32_t (&copied)[base::kWaveWidth]) const;
+  Span span_of(const MemoryOp& row, std::uint32_t (&copied)[base::kWaveWidth]) const;
   void buffer(const Span& span, const MemoryOp& row);
   void global(const Site& site, const MemoryOp& row);
-  const std::uint32_t* values_of(const MemoryOp& row, std::uint32_t component) const;
 
   Group& group_;
   const Doing by_;
@@ -41,13 +46,7 @@ class Recorder {
   const base::LaneMask lanes_;
 };
 
-/// Null: it is no store.
-const std::uint32_t* Recorder::values_of(const MemoryOp& row, std::uint32_t component) const {
-  if (note_.access != Access::kStore || row.data[component] == spirv::kNoOperand) return nullptr;
-  return reinterpret_cast<const base::WaveRegister*>(wave_.registers + row.data[component])->lane;
-}
-
-Span Recorder::span_of(const Site& site, const MemoryOp& row, std::uint32_t (&copied)[base::kWaveWidth]) const {
+Span Recorder::span_of(const MemoryOp& row, std::uint32_t (&copied)[base::kWaveWidth]) const {
   const Words offsets(wave_, {note_.files[1], i_->src[0]});
   Span span{by_, lanes_, {offsets.in_register(), 0}, 0, wave_.shared_size};
   if (offsets.is_uniform()) {
@@ -56,8 +55,8 @@ Span Recorder::span_of(const Site& site, const MemoryOp& row, std::uint32_t (&co
     for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) copied[lane] = offsets[lane];
     span.offsets.words = copied;
   }
-  if (site.writes())
-    for (std::uint32_t c = 0; c < 4; ++c) span.values[c] = values_of(row, c);
+  if (note_.access == Access::kStore)
+    for (std::uint32_t c = 0; c < 4; ++c) span.values[c] = values_of(wave_, row, c);
   return span;
 }
 
@@ -77,7 +76,8 @@ void Recorder::global(const Site& site, const MemoryOp& row) {
   const sanitize::Addresses addresses(wave_, *i_, note_);
   base::for_each_lane(lanes_, [&](std::size_t l) {
     for (std::uint32_t c = 0; c < site.touched.count; ++c) {
-      const std::uint32_t* const values = values_of(row, site.component[c]);
+      const std::uint32_t* const values =
+          note_.access == Access::kStore ? values_of(wave_, row, site.component[c]) : nullptr;
       group_.touch_bytes(by_, by_.who(l), addresses(l, site.touched.at[c]), row.element_bytes,
                          values != nullptr ? values[l] : 0);
     }
@@ -89,7 +89,7 @@ void Recorder::memory(const Site& site) {
   if (lanes_ == 0) return;
   if (note_.space == MemorySpace::kGlobal) return global(site, row);
   std::uint32_t copied[base::kWaveWidth];
-  const Span span = span_of(site, row, copied);
+  const Span span = span_of(row, copied);
   site.memory == Memory::kShared ? group_.touch_shared(span) : buffer(span, row);
 }
 
@@ -110,18 +110,16 @@ void Recorder::image() {
   });
 }
 
-/// The common case of shared memory: it is only written down.
-bool log_shared(Group& group, const Doing& by, const Wave& wave, const spirv::OperandPlace& offset) {
-  Offsets offsets;
-  if (offset.file == 'r') {
-    offsets.words = reinterpret_cast<const base::WaveRegister*>(wave.registers + offset.offset)->lane;
-  } else if (offset.file == 'm') {
+/// The offsets of an access to memory. False: they are booleans.
+bool offsets_of(const Wave& wave, const spirv::OperandPlace& place, Offsets& offsets) {
+  if (place.file == 'r') {
+    offsets.words = reinterpret_cast<const base::WaveRegister*>(wave.registers + place.offset)->lane;
+  } else if (place.file == 'm') {
     return false;
   } else {
-    offsets.lane_0 = spirv::exec::word_of(wave, offset, 0);
+    offsets.lane_0 = spirv::exec::word_of(wave, place, 0);
   }
-  const base::LaneMask lanes = wave.active & wave.live;
-  return lanes == 0 || group.log_shared(by, lanes, offsets);
+  return true;
 }
 
 struct Range {
@@ -142,15 +140,16 @@ bool range_of(const Wave& wave, const MemoryOp& row, Range& range) {
 void Tracked::update(const Sites& sites, const Wave& wave) {
   find(sites, wave);
   sites_.assign(sites.by_instruction.size(), Sites::kNone);
-  device_sites_ = sites_;
+  device_sites_ = shared_sites_ = sites_;
   has_device_sites_ = false;
   alike_ = sites.alike;
   for (std::size_t i = 0; i < sites_.size(); ++i) {
     const std::uint32_t site = sites.by_instruction[i];
     if (site == Sites::kNone || tracked_[site] == 0) continue;
     sites_[i] = site;
-    if (sites.all[site].memory == Memory::kShared) continue;
-    device_sites_[i] = site;
+    const bool shared = sites.all[site].memory == Memory::kShared;
+    (shared ? shared_sites_ : device_sites_)[i] = site;
+    if (shared) continue;
     has_device_sites_ = true;
     if (sites.all[site].order.given) alike_ = false;
   }
@@ -188,11 +187,30 @@ void Tracked::find(const Sites& sites, const Wave& wave) {
   });
 }
 
+bool skip_shared(Group& group, std::uint32_t site, const Wave& wave, const Instruction* i, const InstructionNote& note,
+                 std::uint32_t first) {
+  const base::LaneMask lanes = wave.active & wave.live;
+  if (lanes == 0) return true;
+  const bool stores = note.access == spirv::Access::kStore;
+  Offsets offsets;
+  if (!offsets_of(wave, {note.files[1], i->src[0]}, offsets)) {
+    group.stop_following();
+    return false;
+  }
+  if (group.may_follow()) {
+    static constexpr Follower::Values kNothing = {};
+    const std::uint32_t* values[4];
+    const MemoryOp& row = wave.program->memory_ops[i->extra[0]];
+    for (std::uint32_t c = 0; c < 4 && stores; ++c) values[c] = values_of(wave, row, c);
+    if (group.follows(site, first, lanes, offsets, stores ? values : kNothing)) return true;
+  }
+  return !stores && group.log_shared({site, first, nullptr, group.order().time()}, lanes, offsets);
+}
+
 void record_access(Group& group, std::uint32_t site, const Wave& wave, const Instruction* i,
                    const InstructionNote& note, std::uint32_t first, const std::uint32_t* names) {
   const Site& what = group.program().sites.all[site];
   const Doing by{site, first, names, group.order().time()};
-  if (what.is_logged() && log_shared(group, by, wave, {note.files[1], i->src[0]})) return;
   Recorder recorder(group, by, wave, i, note);
   what.memory == Memory::kImage ? recorder.image() : recorder.memory(what);
 }

@@ -14,6 +14,8 @@ class Tracked {
   std::uint32_t site(std::size_t instruction) const { return sites_[instruction]; }
   /// The same without shared memory.
   std::uint32_t device_site(std::size_t instruction) const { return device_sites_[instruction]; }
+  /// The same of shared memory alone.
+  std::uint32_t shared_site(std::size_t instruction) const { return shared_sites_[instruction]; }
   bool has_device_sites() const { return has_device_sites_; }
   /// Whether all workgroups of the command do the same to shared memory.
   bool alike() const { return alike_; }
@@ -21,12 +23,17 @@ class Tracked {
  private:
   void find(const Sites& sites, const spirv::Wave& wave);
   std::vector<std::uint8_t> tracked_;  ///< by site
-  std::vector<std::uint32_t> sites_, device_sites_;
+  std::vector<std::uint32_t> sites_, device_sites_, shared_sites_;
   bool has_device_sites_ = false, alike_ = false;
 };
 
-/// An instruction that accesses memory or an image is about to run. `who`: of lane 0, the others behind it; or, of
-/// draws, `names` of all lanes.
+/// An instruction that accesses shared memory is about to run. Whether that need not be recorded: the workgroup follows
+/// another one, or it has been written down.
+bool skip_shared(Group& group, std::uint32_t site, const spirv::Wave& wave, const spirv::Instruction* i,
+                 const spirv::InstructionNote& note, std::uint32_t first);
+
+/// An instruction that accesses memory or an image, for which skip_shared() says no if that is shared, is about to run.
+/// `who`: of lane 0, the others behind it; or, of draws, `names` of all lanes.
 void record_access(Group& group, std::uint32_t site, const spirv::Wave& wave, const spirv::Instruction* i,
                    const spirv::InstructionNote& note, std::uint32_t first, const std::uint32_t* names);
 

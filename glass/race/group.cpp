@@ -50,9 +50,13 @@ void Group::begin(const Told& program, const spirv::ObservedCommand* command, co
   if (goes_on) order_.begin_group(static_cast<std::uint32_t>(groups_.size() - 1));
   base_ = static_cast<std::uint32_t>(groups_.size() - 1) * size_;
   logs_loads_ = program.compute() && !order_.hides(Memory::kShared);
+  const bool alone = by_word_ || whole || !program.compute() || program.sites.vulkan_model ||
+                     program.sites.orders_shared || shared_bytes == 0;
+  alone ? follower_.skip() : follower_.begin(program, shared_bytes);
 }
 
 void Group::end(CommandLog& log) {
+  if (follower_.is_on()) follower_.end(shared_is_quiet_);
   // Which waves of a draw atomic operations order is not followed.
   if (!whole_ && !program_->sites.orders_waves && device_.size() != 0) log.add(*program_, groups_[0], device_);
   device_.reset();
@@ -172,20 +176,28 @@ void Group::resume(std::uint32_t wave) {
 
 void Group::pass_barrier(std::uint32_t rounds) {
   rounds_ = rounds;
-  if (arrived_.memory == spirv::MemoryScope::kSubgroup) settle_shared();
+  if (arrived_.memory == spirv::MemoryScope::kSubgroup) {
+    stop_following();
+    settle_shared();
+  }
   const std::uint32_t from = order_.from(Memory::kShared);
   order_.barrier(arrived_, std::exchange(arrived_fenced_, 0));
-  if (order_.from(Memory::kShared) != from) log_.clear();
+  if (order_.from(Memory::kShared) != from) {
+    log_.clear();
+    if (follower_.is_on()) follower_.barrier();
+  }
   logs_loads_ = program_->compute() && !order_.hides(Memory::kShared);
 }
 
 void Group::fence(std::uint32_t wave, const spirv::MemoryOrder& order, std::uint32_t first, base::LaneMask lanes) {
+  if (program_->sites.has_atomics) stop_following();
   if (log_.has_atomics()) settle_shared();
   if (covers_workgroup(order.memory) && order.releases()) state(wave).fenced |= Order::memories_of(order.bits);
   order_.fence(order, first, lanes);
 }
 
 void Group::subgroup_barrier(const spirv::MemoryOrder& order, std::uint32_t first) {
+  stop_following();
   settle_shared();
   order_.subgroup_barrier(order, first);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/lanes.h"
+#include "glass/race/follow.h"
 #include "glass/race/log.h"
 #include "glass/race/order.h"
 #include "glass/race/rows.h"
@@ -54,6 +55,19 @@ class Group {
   /// A load or atomic operation of shared memory is written down, to be looked at when somebody can race with it.
   /// False: that may be so now.
   bool log_shared(const Doing& by, base::LaneMask lanes, const Offsets& offsets);
+  /// Whether the workgroup does what another one did that had no races in shared memory, so far: then an access of it
+  /// need not be recorded. `lanes`: one at least.
+  bool follows(std::uint32_t site, std::uint32_t first, base::LaneMask lanes, const Offsets& offsets,
+               const Follower::Values& values) {
+    const Follower::Way way = follower_.access(site, first, lanes, offsets, values);
+    if (way == Follower::Way::kSame) return true;
+    if (way == Follower::Way::kLeft) record_followed();
+    return false;
+  }
+  /// Something comes next that is not followed.
+  void stop_following();
+  /// Whether follows() has to be asked.
+  bool may_follow() const { return follower_.is_on(); }
   /// Whether fragments of a pixel are in their critical section.
   void interlock(bool inside) { interlocked_ = inside; }
 
@@ -73,6 +87,8 @@ class Group {
   Page& page_of(const Site& site, std::uint64_t word);
   /// What has been written down of shared memory is recorded.
   void settle_shared();
+  /// What the workgroup did since the last barrier, while it followed another one, is recorded.
+  void record_followed();
   /// All of the workgroup have come by a barrier.
   void pass_barrier(std::uint32_t rounds);
   bool fast(const Site& site) const;
@@ -111,6 +127,7 @@ class Group {
   bool shared_is_quiet_ = true;
   bool logs_loads_ = false;  ///< fast() of loads of shared memory
   SharedLog log_;
+  Follower follower_;
   std::vector<WaveState> waves_;
   std::uint32_t rounds_ = 0;
   spirv::MemoryOrder arrived_;

@@ -193,6 +193,19 @@ void Group::touch_shared(const Span& span) {
   touch_spread(span, spread);
 }
 
+void Group::stop_following() {
+  if (follower_.is_on() && follower_.give_up()) record_followed();
+}
+
+void Group::record_followed() {
+  follower_.for_each_since_barrier([&](std::uint32_t site, std::uint32_t first, base::LaneMask lanes,
+                                       const Offsets& offsets, const Follower::Values& values) {
+    Span span{{site, first, nullptr, order_.time()}, lanes, offsets, 0, shared_bytes_};
+    std::copy_n(values, 4, span.values);
+    if (!program_->sites.all[site].is_logged() || !log_shared(span.by, lanes, offsets)) touch_shared(span);
+  });
+}
+
 void Group::settle_shared() {
   if (log_.empty()) return;
   log_.for_each(shared_bytes_, [&](const Span& span, const Spread& spread) { touch_spread(span, spread); });

@@ -29,6 +29,14 @@ std::uint8_t append(std::vector<Detail>& details, const Slots& slots, std::uint6
   return 0;
 }
 
+void append_values(std::vector<std::uint32_t>& to, const std::uint32_t* from, std::uint64_t words) {
+  if (words == ~std::uint64_t{0}) {
+    to.insert(to.end(), from, from + kPageWords);
+    return;
+  }
+  for (; words != 0; words &= words - 1) to.push_back(from[std::countr_zero(words)]);
+}
+
 /// Holds the entries of one page against each other, in order.
 class PageSweep {
  public:
@@ -141,8 +149,7 @@ void CommandLog::add(const Told& program, const Who& who, Shadow& shadow) {
     entry.period[1] = append(details_, page.read, entry.reads, nullptr);
     entry.period[2] = append(details_, page.atomic, entry.atomics, nullptr);
     entry.values = values_.size();
-    for (std::uint64_t rest = entry.period[0] != 0 ? entry.writes : 0; rest != 0; rest &= rest - 1)
-      values_.push_back(page.value[std::countr_zero(rest)]);
+    if (entry.period[0] != 0) append_values(values_, page.value, entry.writes);
     entries_.push_back(entry);
   }
 }

@@ -108,7 +108,7 @@ void Races::begin(ThreadGroup& thread, const Told& program, const Wave& wave, co
   if (!thread.shared_is_quiet && thread.tracked.alike()) thread.shared_is_quiet = program.quiet.holds(command);
   thread.idle = thread.shared_is_quiet && !thread.tracked.has_device_sites();
   if (thread.idle) return;
-  thread.group.begin(program, command, who, whole, program.compute() ? wave.shared_size : 0);
+  thread.group.begin(program, command, who, whole, program.compute() && !thread.shared_is_quiet ? wave.shared_size : 0);
 }
 
 void Races::begin_compute(ThreadGroup& thread, const Told& program, const Wave& wave) {
@@ -176,6 +176,9 @@ class RaceWatch : public spirv::exec::Watch {
     const race::Tracked& tracked = thread_.tracked;
     const std::uint32_t site = thread_.shared_is_quiet ? tracked.device_site(index) : tracked.site(index);
     if (site == race::Sites::kNone) return;
+    if (tracked.shared_site(index) != race::Sites::kNone &&
+        race::skip_shared(thread_.group, site, wave, i, note, first_))
+      return;
     race::record_access(thread_.group, site, wave, i, note, first_, program_.compute() ? nullptr : thread_.names);
   }
 

@@ -154,6 +154,23 @@ std::uint32_t step_of_target(const std::uint32_t* offsets, base::LaneMask active
   return step;
 }
 
+bool are_behind_target(const std::uint32_t* offsets, base::LaneMask active, std::uint32_t base,
+                       const std::uint32_t* more) {
+  const Words d;
+  const auto start = hn::Set(d, base);
+  const auto wrong = [&](std::size_t k) {
+    return hn::Xor(hn::LoadU(d, offsets + k), hn::Add(hn::LoadU(d, more + k), start));
+  };
+  auto apart = hn::Zero(d);
+  if (active == base::kAllLanes)
+    for (std::size_t k = 0; k < base::kWaveWidth; k += hn::Lanes(d)) apart = hn::Or(apart, wrong(k));
+  else
+    for_each_vector(active, [&](std::size_t k, std::uint64_t part) {
+      apart = hn::Or(apart, hn::IfThenElseZero(lanes::lanes_mask_from_bits(d, part), wrong(k)));
+    });
+  return hn::AllTrue(d, hn::Eq(apart, hn::Zero(d)));
+}
+
 bool pack_offsets_target(const std::uint32_t* offsets, base::LaneMask active, std::uint16_t* packed) {
   const Words d;
   const hn::Rebind<std::uint16_t, Words> half;
@@ -182,6 +199,7 @@ HWY_EXPORT(is_row_target);
 HWY_EXPORT(spread_of_target);
 HWY_EXPORT(step_of_target);
 HWY_EXPORT(pack_offsets_target);
+HWY_EXPORT(are_behind_target);
 
 std::uint64_t others(const Slots& slots, const Row& row, std::uint32_t from) {
   return (slots.used & row.words) != 0 ? HWY_DYNAMIC_DISPATCH(others_target)(slots, row, from) : 0;
@@ -203,6 +221,9 @@ Spread spread_of(const Offsets& offsets, base::LaneMask lanes) {
 }
 std::uint32_t step_of(const std::uint32_t* offsets, base::LaneMask lanes) {
   return HWY_DYNAMIC_DISPATCH(step_of_target)(offsets, lanes);
+}
+bool are_behind(const std::uint32_t* offsets, base::LaneMask lanes, std::uint32_t base, const std::uint32_t* more) {
+  return HWY_DYNAMIC_DISPATCH(are_behind_target)(offsets, lanes, base, more);
 }
 bool pack_offsets(const std::uint32_t* offsets, base::LaneMask lanes, std::uint16_t* packed) {
   return HWY_DYNAMIC_DISPATCH(pack_offsets_target)(offsets, lanes, packed);

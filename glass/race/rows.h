@@ -40,6 +40,8 @@ struct Spread {
 Spread spread_of(const Offsets& offsets, base::LaneMask lanes);
 /// Spread::step alone.
 std::uint32_t step_of(const std::uint32_t* offsets, base::LaneMask lanes);
+/// Whether offsets of lanes are `base` and what `more` has for them; all of it wraps.
+bool are_behind(const std::uint32_t* offsets, base::LaneMask lanes, std::uint32_t base, const std::uint32_t* more);
 /// Offsets go to `packed`. False: one of the lanes' is not below 2^16.
 bool pack_offsets(const std::uint32_t* offsets, base::LaneMask lanes, std::uint16_t* packed);
 

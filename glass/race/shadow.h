@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <unordered_map>
 #include <vector>
 
 namespace vitrine::glass::race {
@@ -43,12 +42,21 @@ class Shadow {
   Page& at(std::size_t i) { return *pages_[i]; }
 
  private:
+  /// Where a page is, in a table of a power of two of them, half of it free at least: at its hash or behind.
+  struct Entry {
+    std::uint64_t number = 0;
+    std::uint32_t index = 0;
+    std::uint32_t round = 0;  ///< free, unless this is round_
+  };
   Page& find(std::uint64_t number);
+  Entry& entry_of(std::uint64_t number);
+  void grow();
   static constexpr std::size_t kRecent = 64;
   std::array<Page*, kRecent> recent_{};  ///< by number
   std::vector<std::unique_ptr<Page>> pages_;
   std::size_t used_ = 0;
-  std::unordered_map<std::uint64_t, std::uint32_t> by_number_;
+  std::vector<Entry> entries_;
+  std::uint32_t round_ = 1;  ///< of reset()
 };
 
 }  // namespace vitrine::glass::race

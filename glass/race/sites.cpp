@@ -114,6 +114,8 @@ Sites::Sites(const ShaderIdentity& shader, const spirv::Program& program) {
     if (!device) (site.order.alike ? alike : unlike) = true;
     alike_if_given |= !device && site.order.given;
     has_private |= site.is_private;
+    has_atomics |= site.is_atomic();
+    orders_shared |= site.is_atomic() && (site.order.acquires() || site.order.releases());
     has_narrow_scope |= site.is_atomic() && !covers_device(site.order.memory);
     writes_device |= device && site.writes();
     writes_images |= image && site.writes();

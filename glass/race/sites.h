@@ -51,6 +51,8 @@ struct Sites {
   bool orders_device = false;                 ///< atomic operations and fences may order workgroups
   bool orders_waves = false;                  ///< the same of waves of a draw
   bool has_private = false;                   ///< some access is
+  bool has_atomics = false;                   ///< some access is atomic
+  bool orders_shared = false;                 ///< atomic operations with semantics order accesses
   bool has_narrow_scope = false;              ///< an atomic operation's does not hold the device
   bool alike = false;                         ///< all workgroups do the same to shared memory, if
   bool alike_if_given = false;                ///< nothing writes what MemoryOrder::given loads read
