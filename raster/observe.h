@@ -14,7 +14,7 @@
 #include "texel/view.h"
 
 namespace vitrine::spirv {
-struct ShaderInterface;  // spirv/shader.h
+class Shader;  // spirv/shader.h
 }
 
 namespace vitrine::raster {
@@ -58,7 +58,7 @@ inline constexpr std::size_t kFragmentTests = static_cast<std::size_t>(FragmentT
 class FragmentInputs {
  public:
   virtual ~FragmentInputs() = default;
-  virtual const spirv::ShaderInterface& interface() const = 0;
+  virtual const spirv::Shader& shader() const = 0;
   /// What is in an input register, in a lane: at centroids as if no test took a sample, at samples in the first covered
   /// one. Nothing: the register holds no varying.
   virtual std::optional<std::uint32_t> word(std::uint32_t reg, std::size_t lane) = 0;

@@ -1,12 +1,14 @@
 // The variables of a shader as the person who wrote it knows them: names, types, where they lie. Made by the front end
-// for who asks for them (Interest::debug). Variables of functions, inputs, outputs and private ones consist of numbered
-// cells, a 32-bit word each (64-bit numbers: two, the low one first), which get values by probes
-// (Probe::Kind::kAssign).
+// for who asks for them (Interest::debug), names of inputs for whoever observes. Variables of functions, inputs,
+// outputs and private ones consist of numbered cells, a 32-bit word each (64-bit numbers: two, the low one first),
+// which get values by probes (Probe::Kind::kAssign).
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "spirv/shader.h"
 
 namespace vitrine::spirv {
 
@@ -50,10 +52,25 @@ struct SourceVariable {
   bool word_layout = false;         ///< kShared: a word per cell, without gaps
 };
 
+/// A scalar or vector of an input of a fragment shader, as the module names it: its words lie one behind the other from
+/// a component of a location, or of a built-in, on.
+struct SourceInput {
+  std::string name;  ///< "light.colors[1]"; empty: the module has no name for it
+  BuiltIn built_in = BuiltIn::kNone;
+  std::uint16_t location = 0;
+  std::uint8_t component = 0;
+  InputPart part = InputPart::kValue;  ///< or of which vertex
+  std::uint8_t words = 1;
+  SourceType::Kind kind = SourceType::Kind::kFloat;  ///< of its numbers
+  bool wide = false;                                 ///< they are of 64 bits: two words each, the low one first
+};
+
 struct SourceVariables {
   std::vector<SourceType> types{1};
   std::vector<SourceVariable> variables;
-  std::uint32_t cells = 0;  ///< of all variables
+  std::uint32_t cells = 0;          ///< of all variables
+  std::vector<SourceInput> inputs;  ///< of observed fragment shaders
+  bool inputs_alone = false;        ///< nobody has asked for anything else
 };
 
 }  // namespace vitrine::spirv

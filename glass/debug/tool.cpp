@@ -198,7 +198,7 @@ class DebugTool : public Tool {
   std::shared_ptr<ProgramTool> attach(const ShaderIdentity& shader, const spirv::Program& program) override {
     const std::shared_ptr<const spirv::Shader>& rehearsal = program.observation->rehearsal;
     const spirv::Program& shown = rehearsal ? rehearsal->program() : program;
-    if (!shown.sources || !shown.sources->variables) return nullptr;
+    if (!shown.sources || !shown.sources->variables || shown.sources->variables->inputs_alone) return nullptr;
     if (!exact_ && !rehearsal)
       engine_.say("note: " + std::string(shader.entry_point) +
                   " is shown as it always runs: line by line it keeps more values than there is room for");

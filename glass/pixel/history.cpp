@@ -11,14 +11,6 @@
 namespace vitrine::glass::pixel {
 namespace {
 
-std::string component_text(std::uint32_t bits, texel::Kind kind) {
-  if (kind == texel::Kind::kUint) return std::to_string(bits);
-  if (kind == texel::Kind::kSint) return std::to_string(static_cast<std::int32_t>(bits));
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", static_cast<double>(std::bit_cast<float>(bits)));
-  return text;
-}
-
 std::string hex(const Value& value) {
   std::string text = "0x";
   char digits[3];
@@ -37,6 +29,14 @@ Value Texel::read() const {
   value.size = format->block_bytes;
   std::memcpy(value.bytes.data(), address, value.size);
   return value;
+}
+
+std::string component_text(std::uint32_t bits, texel::Kind kind) {
+  if (kind == texel::Kind::kUint) return std::to_string(bits);
+  if (kind == texel::Kind::kSint) return std::to_string(static_cast<std::int32_t>(bits));
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", static_cast<double>(std::bit_cast<float>(bits)));
+  return text;
 }
 
 std::size_t components_of(const texel::FormatDesc& format) {

@@ -81,6 +81,8 @@ struct Texel {
   Value read() const;
 };
 
+/// A number of 32 bits.
+std::string component_text(std::uint32_t bits, texel::Kind kind);
 /// As words: components for plain formats, bytes for others.
 std::string to_text(const Value& value, const texel::FormatDesc& format);
 /// The same of registers of a shader, of the kind that the format has.

@@ -211,8 +211,8 @@ std::unique_ptr<spirv::exec::Watch> PixelProgram::watch(const Wave& wave, const 
   if (tile != nullptr)
     base::for_each_lane(wave.active, [&](std::size_t lane) {
       if (Fragment* const fragment = tile->fragment_of(lane))
-        fragment->inputs = inputs_text(wave.program->observation->interface, [&](std::uint32_t reg) {
-          return spirv::exec::word_of(wave, {'r', reg * spirv::kRegisterStride}, lane);
+        fragment->inputs = inputs_text(wave.program->observation->interface, *wave.program, [&](std::uint32_t reg) {
+          return std::optional(spirv::exec::word_of(wave, {'r', reg * spirv::kRegisterStride}, lane));
         });
     });
   return std::make_unique<Watch>(*this, wave, tile);

@@ -95,8 +95,8 @@ void TileWatch::generated(const FragmentGroup& group, SampleLanes lanes) {
     fragment.samples = samples_of(lanes, lane);
     fragment.has_shader = group.inputs != nullptr;
     if (group.inputs != nullptr)
-      fragment.inputs = inputs_text(group.inputs->interface(),
-                                    [&](std::uint32_t reg) { return group.inputs->word(reg, lane).value_or(0); });
+      fragment.inputs = inputs_text(group.inputs->shader().interface(), group.inputs->shader().program(),
+                                    [&](std::uint32_t reg) { return group.inputs->word(reg, lane); });
     by_pixel_[&pixel].push_back(&fragment);
   });
 }

@@ -10,7 +10,7 @@ class BlockInputs final : public FragmentInputs {
   /// The block at (x, y); `covered`: by sample. While it is in use nothing else uses the worker's block and points.
   BlockInputs(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& covered)
       : worker_(worker), primitive_(primitive), x_(x), y_(y), covered_(covered) {}
-  const spirv::ShaderInterface& interface() const override { return *worker_.draw->plan->fragment; }
+  const spirv::Shader& shader() const override { return *worker_.draw->call.fragment; }
   std::optional<std::uint32_t> word(std::uint32_t reg, std::size_t lane) override;
 
  private:

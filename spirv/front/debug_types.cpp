@@ -57,6 +57,11 @@ std::string DebugTypes::id_name(std::uint32_t id) const {
   return named.empty() ? '%' + std::to_string(id) : named;
 }
 
+std::string DebugTypes::member_name(std::uint32_t type_id, std::uint32_t member) const {
+  const auto found = member_names_.find({type_id, member});
+  return found != member_names_.end() && !found->second.empty() ? found->second : '_' + std::to_string(member);
+}
+
 std::uint32_t DebugTypes::number(std::uint32_t type_id) {
   const auto found = numbers_.find(type_id);
   if (found != numbers_.end()) return found->second;
@@ -118,9 +123,7 @@ void DebugTypes::add_members(std::uint32_t type_id, SourceType& made) {
   std::uint64_t cells = 0;
   for (std::uint32_t i = 0; i < type.members.size(); ++i) {
     SourceType::Member member;
-    const auto name = member_names_.find({type_id, i});
-    if (name != member_names_.end()) member.name = name->second;
-    if (member.name.empty()) member.name.append("_").append(std::to_string(i));
+    member.name = member_name(type_id, i);
     member.type = number(type.members[i]);
     if (const DecorationRow* row = module_.decoration(type_id, spv::Decoration::Offset, i + 1))
       member.offset = row->value;

@@ -22,6 +22,8 @@ class DebugTypes {
   std::string id_name(std::uint32_t id) const;
   /// As OpName says it; empty: it does not.
   std::string name(std::uint32_t id) const;
+  /// As OpMemberName says it, else "_2".
+  std::string member_name(std::uint32_t type_id, std::uint32_t member) const;
 
  private:
   SourceType make(std::uint32_t type_id);

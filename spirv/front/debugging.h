@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "spirv/front/context.h"
+#include "spirv/source_variables.h"
 
 namespace vitrine::spirv::front {
 
@@ -13,6 +14,9 @@ namespace vitrine::spirv::front {
 std::shared_ptr<Debugging> begin_debugging(const Module& module, const SourceInfo& sources);
 /// The whole shader is translated: the tables of its variables go to t.sources.
 void end_debugging(Translator& t);
+
+/// What the module calls the inputs of the shader.
+std::vector<SourceInput> input_names(Translator& t);
 
 /// A block begins: so does a line.
 void begin_lines(Translator& t);

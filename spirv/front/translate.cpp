@@ -12,6 +12,15 @@ namespace {
 
 using namespace front;
 
+/// For who observes fragments.
+void name_inputs(Translator& t) {
+  SourceVariables tables;
+  tables.inputs_alone = true;
+  if (t.sources.variables) tables = *t.sources.variables;
+  tables.inputs = input_names(t);
+  t.sources.variables = std::make_shared<const SourceVariables>(std::move(tables));
+}
+
 ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& options, const exec::Interest& interest) {
   const bool observed = interest != exec::Interest{};
   Module module = parse_module(words, options, observed ? SourceTexts::kKeep : SourceTexts::kDrop);
@@ -25,6 +34,7 @@ ir::Function run(std::span<const std::uint32_t> words, const CompileOptions& opt
     const ir::Origin entry = std::exchange(t.fallback, {});
     translate_entry(t);
     end_debugging(t);
+    if (observed && options.stage == VK_SHADER_STAGE_FRAGMENT_BIT) name_inputs(t);
     drop_idle_writes(t);
     t.fallback = entry;
     connect_interface(t);

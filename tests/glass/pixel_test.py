@@ -142,12 +142,20 @@ class Pixel(unittest.TestCase):
 
     def test_inputs_of_shaders_are_told(self):
         text = self.story("5,5", "--image", "target")
-        self.assertIn("input 0 (-0.3125, -0.3125)\n     input 1.y (0)\n", text)
+        self.assertIn("input place (-0.3125, -0.3125)\n     input numbers.y (0)\n", text)
         self.assertNotIn("no shader ran", text[text.index("is discarded by the shader"):text.index("pipeline 'masked'")])
+
+    def test_inputs_have_their_names_in_files_too(self):
+        self.story("5,5", "--image", "target", "--depth=0", "--json", "story.json", "--html", "story.html")
+        history = json.loads((self.path / "story.json").read_text())
+        facts = [fact for texel in history["texels"] for event in texel["events"] for fact in event.get("facts", [])]
+        for fact in (["input place", "(-0.3125, -0.3125)"], ["input numbers.y", "(0)"], ["input gl_FragCoord", "(5.5, 5.5)"]):
+            self.assertIn(fact, facts)
+        self.assertIn('<li>input numbers.y <span class="v">(0)</span></li>', (self.path / "story.html").read_text())
 
     def test_inputs_are_told_of_fragments_that_no_shader_runs_for(self):
         text = self.story("5,5", "--image", "target", "--depth=0")
-        told = "no shader ran for it; its inputs would be\n     input 0 (-0.3125, -0.3125)\n     input 1.y (0)\n"
+        told = "no shader ran for it; its inputs would be\n     input place (-0.3125, -0.3125)\n     input numbers.y (0)\n"
         for fate in ("is outside of the scissor", "fails the depth test"):
             self.assertIn(told, text[text.index(fate):].split("fragment of")[0], fate)
         alone = text[text.index("pipeline 'depth alone'"):].split("cleared")[0]
