@@ -38,9 +38,25 @@ void write_shaders(std::ostream& out, const Bug& bug) {
   }
 }
 
-/// BUFFER with its data, of words where that goes.
-void write_buffer(std::ostream& out, const std::string& name, const Bytes& bytes) {
+/// BUFFER with its data, of texels if it has a format, else of words where that goes.
+void write_buffer(std::ostream& out, const std::string& name, const Bytes& bytes,
+                  VkFormat format = VK_FORMAT_UNDEFINED) {
+  if (format != VK_FORMAT_UNDEFINED) return write_texel_buffer(out, name, bytes, format);
   write_numbers(out, name, bytes, bytes.size() % 4 == 0 ? 4 : 1);
+}
+
+/// The format in which texel buffers show a buffer: the language knows one, of the whole. Undefined: none does.
+VkFormat texel_format_of(const Bug& bug, std::size_t number) {
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  for (const Descriptor& d : bug.descriptors) {
+    if (d.texels == kNone || bug.buffer_views[d.texels].buffer != number) continue;
+    const BufferView& view = bug.buffer_views[d.texels];
+    const bool whole = view.offset == 0 && view.range >= bug.buffers[number].size;
+    if (!whole || (format != VK_FORMAT_UNDEFINED && format != view.format))
+      throw Unspeakable{"texel buffers that show parts of a buffer, or show it in several formats"};
+    format = view.format;
+  }
+  return format;
 }
 
 bool overlaps(const Bug& bug, std::size_t number) {
@@ -53,14 +69,22 @@ bool overlaps(const Bug& bug, std::size_t number) {
   return false;
 }
 
+/// An inline uniform block is a buffer of its own: shaders do not tell them apart.
+std::string block_name(const Descriptor& d) {
+  return "block" + std::to_string(d.set) + "_" + std::to_string(d.binding);
+}
+
 void write_buffers(std::ostream& out, const Bug& bug) {
   if (!bug.addressed.empty()) throw Unspeakable{"shaders that follow device addresses"};
   for (std::size_t i = 0; i < bug.buffers.size(); ++i) {
     if (overlaps(bug, i)) throw Unspeakable{"buffers that overlap"};
     if (!bug.buffers[i].name.empty()) out << "# " << bug.buffers[i].name << "\n";
-    write_buffer(out, "buffer" + std::to_string(i), contents_of(bug, bug.buffers[i], false));
-    if (!bug.lost) write_buffer(out, "expected" + std::to_string(i), contents_of(bug, bug.buffers[i], true));
+    const VkFormat format = texel_format_of(bug, i);
+    write_buffer(out, "buffer" + std::to_string(i), contents_of(bug, bug.buffers[i], false), format);
+    if (!bug.lost) write_buffer(out, "expected" + std::to_string(i), contents_of(bug, bug.buffers[i], true), format);
   }
+  for (const Descriptor& d : bug.descriptors)
+    if (d.bytes) write_buffer(out, block_name(d), *d.bytes);
   if (bug.push_constants && !bug.push_constants->empty()) write_buffer(out, "pushed", *bug.push_constants);
   out << "\n";
 }
@@ -78,6 +102,7 @@ void write_images(std::ostream& out, const Bug& bug) {
 const char* type_of(VkDescriptorType type) {
   switch (type) {
     case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+    case VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK:
       return "uniform";
     case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
       return "storage";
@@ -91,10 +116,14 @@ const char* type_of(VkDescriptorType type) {
       return "sampled_image";
     case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
       return "combined_image_sampler";
+    case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+      return "uniform_texel_buffer";
+    case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+      return "storage_texel_buffer";
     case VK_DESCRIPTOR_TYPE_SAMPLER:
       return "";
     default:
-      throw Unspeakable{"inline uniform blocks and texel buffers"};
+      throw Unspeakable{"input attachments"};
   }
 }
 
@@ -109,36 +138,74 @@ struct Operands {
   std::string buffers, images, samplers, zeros, offsets, ranges;
 };
 
-Operands operands_of(const Bug& bug, const std::vector<const Descriptor*>& elements) {
+Operands operands_of(const Bug& bug, const std::vector<Descriptor>& elements) {
   Operands out;
-  for (const Descriptor* d : elements) {
-    if (d->view != kNone) demand_whole(bug.views[d->view], bug.images[bug.views[d->view].image]);
-    if (d->buffer != kNone) out.buffers.append(" buffer").append(std::to_string(d->buffer));
-    if (d->view != kNone) out.images.append(" image").append(std::to_string(bug.views[d->view].image));
-    if (d->sampler != kNone) out.samplers.append(" sampler").append(std::to_string(d->sampler));
+  for (const Descriptor& d : elements) {
+    if (d.view != kNone) demand_whole(bug.views[d.view], bug.images[bug.views[d.view].image]);
+    const std::uint32_t buffer = d.texels != kNone ? bug.buffer_views[d.texels].buffer : d.buffer;
+    if (buffer != kNone) out.buffers.append(" buffer").append(std::to_string(buffer));
+    if (d.bytes) out.buffers.append(" ").append(block_name(d));
+    if (d.view != kNone) out.images.append(" image").append(std::to_string(bug.views[d.view].image));
+    if (d.sampler != kNone) out.samplers.append(" sampler").append(std::to_string(d.sampler));
     out.zeros.append(" 0");
-    out.offsets.append(" ").append(std::to_string(d->offset));
-    out.ranges.append(" ").append(std::to_string(d->range));
+    out.offsets.append(" ").append(std::to_string(d.offset));
+    out.ranges.append(" ").append(std::to_string(d.range));
   }
   return out;
 }
 
-/// All elements of a binding in one line: they must all be there.
-void write_binding(std::ostream& out, const Bug& bug, std::uint32_t set, const Binding& binding) {
-  std::vector<const Descriptor*> elements;
+/// All elements of a binding up to the last one that there is. Those between them that nothing has written nobody may
+/// read: they are as one of the others.
+std::vector<Descriptor> elements_of(const Bug& bug, std::uint32_t set, const Binding& binding) {
+  constexpr std::size_t kMost = 4096;
+  std::vector<Descriptor> elements;
+  std::vector<bool> there;
+  const auto at = [&](std::size_t element) -> Descriptor& {
+    if (element >= kMost) throw Unspeakable{"arrays of so many descriptors"};
+    if (element >= elements.size()) elements.resize(element + 1), there.resize(element + 1);
+    there[element] = true;
+    return elements[element];
+  };
   for (const Descriptor& d : bug.descriptors)
-    if (d.set == set && d.binding == binding.binding) elements.push_back(&d);
-  if (elements.empty()) return;
+    if (d.set == set && d.binding == binding.binding) at(d.element) = d;
+  // Immutable samplers are bound like others.
+  for (std::size_t i = 0; i < binding.samplers.size(); ++i)
+    if (binding.type == VK_DESCRIPTOR_TYPE_SAMPLER || (i < there.size() && there[i]))
+      at(i).sampler = binding.samplers[i];
   if (std::ranges::any_of(elements, &Descriptor::gone)) throw Unspeakable{"descriptors of what was destroyed"};
-  if (!binding.samplers.empty()) throw Unspeakable{"immutable samplers"};
-  if (elements.back()->element + 1 != elements.size()) throw Unspeakable{"arrays of descriptors with holes"};
+  const auto first = std::ranges::find(there, true) - there.begin();
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (there[i]) continue;
+    if (bug.null_descriptors) throw Unspeakable{"null descriptors"};
+    elements[i] = elements[static_cast<std::size_t>(first)];
+  }
+  return elements;
+}
+
+/// Of combined image samplers, the sampler of all elements: the language has one for a binding, and one for an image.
+std::uint32_t sampler_of(const Bug& bug, const std::vector<Descriptor>& elements) {
+  const auto has_another = [&](const Descriptor& d) {
+    return std::ranges::any_of(elements, [&](const Descriptor& e) {
+      return e.sampler != d.sampler && d.view != kNone && bug.views[e.view].image == bug.views[d.view].image;
+    });
+  };
+  const std::uint32_t sampler = elements[0].sampler;
+  if (std::ranges::any_of(elements, [&](const Descriptor& d) { return d.sampler != sampler; }) ||
+      std::ranges::any_of(bug.descriptors, [&](const Descriptor& d) { return d.sampler != kNone && has_another(d); }))
+    throw Unspeakable{"images with several samplers"};
+  return sampler;
+}
+
+/// All elements of a binding in one line.
+void write_binding(std::ostream& out, const Bug& bug, std::uint32_t set, const Binding& binding) {
+  const std::vector<Descriptor> elements = elements_of(bug, set, binding);
+  if (elements.empty()) return;
   const bool array = elements.size() > 1, sampler = binding.type == VK_DESCRIPTOR_TYPE_SAMPLER;
   const Operands names = operands_of(bug, elements);
   out << "  BIND "
       << (sampler ? plural("SAMPLER", array) + names.samplers : plural("BUFFER", array) + names.buffers + names.images);
   if (const char* const type = type_of(binding.type); *type) out << " AS " << type;
-  if (binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER)
-    out << " " << plural("SAMPLER", array) << names.samplers;
+  if (binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) out << " SAMPLER sampler" << sampler_of(bug, elements);
   out << " DESCRIPTOR_SET " << set << " BINDING " << binding.binding;
   if (is_dynamic(binding.type)) out << " OFFSET" << names.zeros;
   if (kind_of(binding.type) == ResourceKind::kBuffer)
@@ -167,10 +234,11 @@ void write_stage(std::ostream& out, const Stage& stage, std::size_t number) {
         << stage.subgroup_size << "\n  END\n";
 }
 
-void write_pipeline(std::ostream& out, const Bug& bug) {
-  out << "PIPELINE " << (bug.dispatches() ? "compute" : "graphics") << " pipeline\n";
+/// `run`: of draws, which of them.
+void write_pipeline(std::ostream& out, const Bug& bug, std::size_t run) {
+  out << "PIPELINE " << (bug.dispatches() ? "compute" : "graphics") << " " << pipeline_name(run) << "\n";
   for (std::size_t i = 0; i < bug.stages.size(); ++i) write_stage(out, bug.stages[i], i);
-  if (!bug.dispatches()) write_state_of_draw(out, bug);
+  if (!bug.dispatches()) write_state_of_draw(out, bug, run);
   for (std::uint32_t set = 0; set < bug.sets.size(); ++set)
     for (const Binding& binding : bug.sets[set].bindings) write_binding(out, bug, set, binding);
   if (bug.push_constants && !bug.push_constants->empty()) out << "  BIND BUFFER pushed AS push_constant\n";
@@ -223,8 +291,9 @@ base::Result<std::string> to_amber(const Bug& bug) {
     write_buffers(out, bug);
     write_images(out, bug);
     if (!bug.dispatches()) write_buffers_of_draw(out, bug);
-    write_pipeline(out, bug);
-    bug.dispatches() ? write_dispatch(out, bug) : write_draw(out, bug);
+    const std::size_t pipelines = bug.dispatches() ? 1 : pipelines_of_draw(bug);
+    for (std::size_t run = 0; run < pipelines; ++run) write_pipeline(out, bug, run);
+    bug.dispatches() ? write_dispatch(out, bug) : write_draws(out, bug);
     write_expectations(out, bug);
   } catch (const Unspeakable& word) {
     return base::Error{"AmberScript is not written for " + word.what};

@@ -1,8 +1,9 @@
-// See amber_draws.h. Of draws those that are one, to whole images, with what the language has words for: it draws to
+// See amber_draws.h. Of draws those to whole images, with what the language has words for: it draws to
 // all of the attachments, and knows neither culling, masks of colours nor several viewports.
 #include "glass/bug/amber_draws.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "glass/bug/contents.h"
 #include "texel/format.h"
@@ -31,8 +32,6 @@ constexpr const char* kTopologies[] = {"POINT_LIST",
                                        "TRIANGLE_LIST_WITH_ADJACENCY",
                                        "TRIANGLE_STRIP_WITH_ADJACENCY",
                                        "PATCH_LIST"};
-constexpr const char* kCompares[] = {
-    "never", "less", "equal", "less_or_equal", "greater", "not_equal", "greater_or_equal", "always"};
 constexpr const char* kStencils[] = {"keep",
                                      "zero",
                                      "replace",
@@ -74,12 +73,68 @@ bool has_stage(const Bug& bug, VkShaderStageFlagBits stage) {
   return std::ranges::any_of(bug.stages, [&](const Stage& s) { return s.stage == stage; });
 }
 
-const Draw& draw_of(const Bug& bug) {
-  demand(bug.command.arguments == kNone, "draws whose arguments are in a buffer");
-  demand(bug.command.draws.size() == 1, "several draws");
-  demand(bug.command.draws[0].vertex_offset == 0, "draws with a vertex offset");
-  return bug.command.draws[0];
+/// One draw, however its arguments were given.
+struct Run {
+  std::uint32_t count = 0, first = 0;  ///< of vertices or indices
+  std::int64_t vertex_offset = 0;      ///< added to indices
+  std::uint32_t instances = 0, first_instance = 0;
+};
+
+std::uint32_t word_at(const Bytes& bytes, std::uint64_t at) {
+  demand(at <= bytes.size() && bytes.size() - at >= 4, "arguments outside of their buffer");
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
 }
+
+/// As VkDrawIndirectCommand and VkDrawIndexedIndirectCommand lie in memory.
+std::vector<Run> runs_in_buffer(const Bug& bug) {
+  const Command& c = bug.command;
+  std::uint32_t count = c.draw_count;
+  if (c.count_buffer != kNone)
+    count = std::min(count, word_at(contents_of(bug, bug.buffers[c.count_buffer], false), c.count_offset));
+  const Bytes bytes = contents_of(bug, bug.buffers[c.arguments], false);
+  std::vector<Run> runs;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint64_t at = c.arguments_offset + std::uint64_t{i} * c.stride;
+    const auto argument = [&](std::uint32_t n) { return word_at(bytes, at + std::uint64_t{n} * 4); };
+    Run run{argument(0), argument(2), 0, argument(1), argument(c.indexed ? 4 : 3)};
+    if (c.indexed) run.vertex_offset = static_cast<std::int32_t>(argument(3));
+    runs.push_back(run);
+  }
+  return runs;
+}
+
+/// Whether some shader may ask which of several draws runs (Capability DrawParameters).
+bool counts_draws(const Bug& bug) {
+  constexpr std::uint32_t kOpCapability = 17, kDrawParameters = 4427;
+  return std::ranges::any_of(bug.stages, [](const Stage& stage) {
+    for (std::size_t at = 20; at + 8 <= stage.words->size(); at += 8) {
+      if (word_at(*stage.words, at) != (2u << 16 | kOpCapability)) return false;  // capabilities come first
+      if (word_at(*stage.words, at + 4) == kDrawParameters) return true;
+    }
+    return false;
+  });
+}
+
+/// Those of which something is left, one at least.
+std::vector<Run> runs_of(const Bug& bug) {
+  std::vector<Run> runs;
+  if (bug.command.arguments != kNone)
+    runs = runs_in_buffer(bug);
+  else
+    for (const Draw& draw : bug.command.draws)
+      runs.push_back({draw.count, draw.first, draw.vertex_offset, bug.command.instances, bug.command.first_instance});
+  demand(runs.size() <= 1 || !counts_draws(bug), "several draws whose shaders ask which one it is");
+  std::erase_if(runs, [](const Run& run) { return run.count == 0 || run.instances == 0; });
+  demand(!runs.empty(), "draws of nothing");
+  demand(runs.size() <= 64, "so many draws");
+  for (const Run& run : runs) demand(run.vertex_offset >= 0, "draws with a negative vertex offset");
+  return runs;
+}
+
+/// What runs of indices are called.
+std::string indices_name(std::size_t run) { return "indices" + (run == 0 ? "" : std::to_string(run)); }
 
 /// The size of all attachments.
 VkExtent2D size_of_attachments(const Bug& bug) {
@@ -100,17 +155,30 @@ VkExtent2D size_of_attachments(const Bug& bug) {
   }
   look(r.depth);
   look(r.stencil);
-  demand(size.width != 0, "draws without attachments");
+  // Without attachments it is Amber's own, of the render area.
+  if (size.width == 0) size = {r.area.offset.x + r.area.extent.width, r.area.offset.y + r.area.extent.height};
   return size;
 }
 
-void demand_plain_rasterization(const raster::State& s) {
+bool draws_lines(const Bug& bug) {
+  const VkPrimitiveTopology topology = bug.state.topology;
+  // What other stages make of primitives is not looked at.
+  return bug.stages.size() > 2 || bug.state.polygon_mode == VK_POLYGON_MODE_LINE ||
+         (topology >= VK_PRIMITIVE_TOPOLOGY_LINE_LIST && topology <= VK_PRIMITIVE_TOPOLOGY_LINE_STRIP) ||
+         (topology >= VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY &&
+          topology <= VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY);
+}
+
+void demand_plain_rasterization(const Bug& bug) {
+  const raster::State& s = bug.state;
   demand(!s.rasterizer_discard, "draws that are not rasterized");
   demand(s.cull_mode == VK_CULL_MODE_NONE && s.front_face == VK_FRONT_FACE_COUNTER_CLOCKWISE,
          "culling, or front faces that are clockwise");
-  demand(s.line_width == 1 && !s.line_stipple && s.line_mode == VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT,
-         "lines that are wide, stippled or of another kind");
-  demand(!s.primitive_restart && !s.provoking_vertex_last && !s.domain_origin_lower_left,
+  const bool plain_lines =
+      s.line_width == 1 && !s.line_stipple && s.line_mode == VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;
+  demand(plain_lines || !draws_lines(bug), "lines that are wide, stippled or of another kind");
+  demand(!(s.primitive_restart && bug.command.indexed) && !s.provoking_vertex_last &&
+             !(s.domain_origin_lower_left && s.topology == VK_PRIMITIVE_TOPOLOGY_PATCH_LIST),
          "primitive restart, last provoking vertices or lower left domain origins");
   demand(s.depth_clip != s.depth_clamp && !s.negative_one_to_one && !s.unrestricted_depth,
          "depth that is clipped or ranges otherwise");
@@ -160,7 +228,7 @@ void write_attachments(std::ostream& out, const Bug& bug, VkExtent2D size) {
   if (depth != kNone) out << "  BIND BUFFER image" << bug.views[depth].image << " AS depth_stencil\n";
 }
 
-void write_vertices(std::ostream& out, const Bug& bug) {
+void write_vertices(std::ostream& out, const Bug& bug, std::size_t run) {
   for (std::uint32_t i = 0; i < bug.state.attribute_count; ++i) {
     const raster::VertexAttribute& a = bug.state.attribute[i];
     const auto stream = std::ranges::find(bug.streams, a.binding, &Stream::binding);
@@ -171,7 +239,7 @@ void write_vertices(std::ostream& out, const Bug& bug) {
         << " OFFSET " << stream->offset + a.offset << " STRIDE " << stream->stride << "\n";
   }
   if (bug.state.attribute_count == 0) out << "  VERTEX_DATA unread LOCATION 0\n";
-  if (bug.command.indexed) out << "  INDEX_DATA indices\n";
+  if (bug.command.indexed) out << "  INDEX_DATA " << indices_name(run) << "\n";
 }
 
 void write_stencil(std::ostream& out, const Bug& bug) {
@@ -182,7 +250,7 @@ void write_stencil(std::ostream& out, const Bug& bug) {
     const char* const what = "such a stencil test";
     out << "  STENCIL " << (back ? "back" : "front") << "\n    TEST on\n    FAIL_OP " << word(kStencils, f.fail, what)
         << "\n    PASS_OP " << word(kStencils, f.pass, what) << "\n    DEPTH_FAIL_OP "
-        << word(kStencils, f.depth_fail, what) << "\n    COMPARE_OP " << word(kCompares, f.compare, what)
+        << word(kStencils, f.depth_fail, what) << "\n    COMPARE_OP " << compare_name(f.compare, what)
         << "\n    COMPARE_MASK " << f.compare_mask << "\n    WRITE_MASK " << f.write_mask << "\n    REFERENCE "
         << f.reference << "\n  END\n";
   }
@@ -192,7 +260,7 @@ void write_depth(std::ostream& out, const Bug& bug) {
   const raster::State& s = bug.state;
   const bool tests = bug.rendering.depth != kNone;
   out << "  DEPTH\n    TEST " << on(tests && s.depth_test) << "\n    WRITE " << on(tests && s.depth_write)
-      << "\n    COMPARE_OP " << word(kCompares, s.depth_compare, "such a depth test") << "\n    CLAMP "
+      << "\n    COMPARE_OP " << compare_name(s.depth_compare, "such a depth test") << "\n    CLAMP "
       << on(s.depth_clamp) << "\n";
   if (tests && s.depth_bounds_test)
     out << "    BOUNDS min " << std::to_string(s.min_depth_bounds) << " max " << std::to_string(s.max_depth_bounds)
@@ -237,11 +305,16 @@ void write_features_of_draw(std::ostream& out, const Bug& bug) {
   if (stores) out << "DEVICE_FEATURE vertexPipelineStoresAndAtomics\nDEVICE_FEATURE fragmentStoresAndAtomics\n";
 }
 
+std::string pipeline_name(std::size_t run) { return "pipeline" + (run == 0 ? "" : std::to_string(run)); }
+
+std::size_t pipelines_of_draw(const Bug& bug) { return bug.command.indexed ? runs_of(bug).size() : 1; }
+
 void write_buffers_of_draw(std::ostream& out, const Bug& bug) {
-  const Draw& draw = draw_of(bug);
-  const std::uint32_t count = draw.first + draw.count;
-  if (bug.state.attribute_count == 0)
-    out << "BUFFER unread DATA_TYPE uint32 STD430 SIZE " << std::max(count, 1u) << " FILL 0\n";
+  const std::vector<Run> runs = runs_of(bug);
+  std::uint64_t most = 1;
+  for (const Run& run : runs) most = std::max<std::uint64_t>(most, std::uint64_t{run.first} + run.count);
+  demand(most <= 1u << 24, "draws of so many vertices");
+  if (bug.state.attribute_count == 0) out << "BUFFER unread DATA_TYPE uint32 STD430 SIZE " << most << " FILL 0\n";
   if (!bug.command.indexed) return;
   const Stream& indices = bug.command.indices;
   demand(indices.buffer != kNone, "indices from no buffer");
@@ -249,20 +322,26 @@ void write_buffers_of_draw(std::ostream& out, const Bug& bug) {
                            : bug.command.index_type == VK_INDEX_TYPE_UINT16 ? 2
                                                                             : 1;
   const Bytes all = contents_of(bug, bug.buffers[indices.buffer], false);
-  demand(indices.size / step >= count, "indices outside of their buffer");
-  const auto first = all.begin() + static_cast<std::ptrdiff_t>(indices.offset);
-  write_numbers(out, "indices", Bytes(first, first + static_cast<std::ptrdiff_t>(count * step)), step);
+  demand(indices.size / step >= most, "indices outside of their buffer");
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    // START_IDX is what is added to indices, which begin with the first one; Amber counts it to them all the same.
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(indices.offset + std::uint64_t{runs[i].first} * step);
+    demand(runs[i].vertex_offset <= 1 << 24, "draws of so many vertices");
+    Bytes own(first, first + static_cast<std::ptrdiff_t>(runs[i].count * step));
+    own.resize(own.size() + static_cast<std::size_t>(runs[i].vertex_offset) * step);
+    write_numbers(out, indices_name(i), own, step);
+  }
 }
 
-void write_state_of_draw(std::ostream& out, const Bug& bug) {
+void write_state_of_draw(std::ostream& out, const Bug& bug, std::size_t run) {
   const raster::State& s = bug.state;
   const VkExtent2D size = size_of_attachments(bug);
   demand(bug.feedback.empty(), "transform feedback");
-  demand_plain_rasterization(s);
+  demand_plain_rasterization(bug);
   demand_plain_colors(bug);
   demand_whole_area(bug, size);
   write_attachments(out, bug, size);
-  write_vertices(out, bug);
+  write_vertices(out, bug, run);
   const VkViewport& v = s.viewport[0];
   out << "  VIEWPORT " << number_of(v.x) << " " << number_of(v.y) << " SIZE " << number_of(v.width) << " "
       << number_of(v.height) << " MIN_DEPTH " << number_of(v.minDepth) << " MAX_DEPTH " << number_of(v.maxDepth)
@@ -274,12 +353,17 @@ void write_state_of_draw(std::ostream& out, const Bug& bug) {
   write_blend(out, bug);
 }
 
-void write_draw(std::ostream& out, const Bug& bug) {
-  const Draw& draw = draw_of(bug);
-  demand(draw.count != 0 && bug.command.instances != 0, "draws of nothing");
-  out << "RUN pipeline DRAW_ARRAY AS " << word(kTopologies, bug.state.topology, "such primitives")
-      << (bug.command.indexed ? " INDEXED" : "") << " START_IDX " << draw.first << " COUNT " << draw.count
-      << " START_INSTANCE " << bug.command.first_instance << " INSTANCE_COUNT " << bug.command.instances << "\n\n";
+void write_draws(std::ostream& out, const Bug& bug) {
+  const std::vector<Run> runs = runs_of(bug);
+  const bool indexed = bug.command.indexed;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Run& run = runs[i];
+    out << "RUN " << pipeline_name(indexed ? i : 0) << " DRAW_ARRAY AS "
+        << word(kTopologies, bug.state.topology, "such primitives") << (indexed ? " INDEXED" : "") << " START_IDX "
+        << (indexed ? static_cast<std::uint64_t>(run.vertex_offset) : run.first) << " COUNT " << run.count
+        << " START_INSTANCE " << run.first_instance << " INSTANCE_COUNT " << run.instances << "\n";
+  }
+  out << "\n";
 }
 
 }  // namespace vitrine::glass::bug

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -12,7 +13,11 @@ namespace {
 
 constexpr std::size_t kPerLine = 8;
 
-enum class Component : std::uint8_t { kByte, kWord, kFloat };
+enum class Component : std::uint8_t { kByte, kShort, kWord, kHalf, kFloat };
+
+std::size_t bytes_of(Component component) {
+  return component == Component::kByte ? 1 : component == Component::kShort || component == Component::kHalf ? 2 : 4;
+}
 
 struct Format {
   VkFormat format;
@@ -21,44 +26,83 @@ struct Format {
   Component component;
 };
 
+// Normalized numbers are written as the integers that they are.
 constexpr Format kFormats[] = {
+    {VK_FORMAT_R8_UNORM, "R8_UNORM", 1, Component::kByte},
+    {VK_FORMAT_R8_SNORM, "R8_SNORM", 1, Component::kByte},
+    {VK_FORMAT_R8_UINT, "R8_UINT", 1, Component::kByte},
+    {VK_FORMAT_R8_SINT, "R8_SINT", 1, Component::kByte},
+    {VK_FORMAT_R8G8_UNORM, "R8G8_UNORM", 2, Component::kByte},
+    {VK_FORMAT_R8G8_SNORM, "R8G8_SNORM", 2, Component::kByte},
+    {VK_FORMAT_R8G8_UINT, "R8G8_UINT", 2, Component::kByte},
+    {VK_FORMAT_R8G8_SINT, "R8G8_SINT", 2, Component::kByte},
+    {VK_FORMAT_R8G8B8A8_UNORM, "R8G8B8A8_UNORM", 4, Component::kByte},
+    {VK_FORMAT_R8G8B8A8_SNORM, "R8G8B8A8_SNORM", 4, Component::kByte},
+    {VK_FORMAT_R8G8B8A8_UINT, "R8G8B8A8_UINT", 4, Component::kByte},
+    {VK_FORMAT_R8G8B8A8_SINT, "R8G8B8A8_SINT", 4, Component::kByte},
+    {VK_FORMAT_R8G8B8A8_SRGB, "R8G8B8A8_SRGB", 4, Component::kByte},
+    {VK_FORMAT_B8G8R8A8_UNORM, "B8G8R8A8_UNORM", 4, Component::kByte},
+    {VK_FORMAT_B8G8R8A8_SRGB, "B8G8R8A8_SRGB", 4, Component::kByte},
+    {VK_FORMAT_R16_UNORM, "R16_UNORM", 1, Component::kShort},
+    {VK_FORMAT_R16_UINT, "R16_UINT", 1, Component::kShort},
+    {VK_FORMAT_R16_SINT, "R16_SINT", 1, Component::kShort},
+    {VK_FORMAT_R16_SFLOAT, "R16_SFLOAT", 1, Component::kHalf},
+    {VK_FORMAT_R16G16_UNORM, "R16G16_UNORM", 2, Component::kShort},
+    {VK_FORMAT_R16G16_UINT, "R16G16_UINT", 2, Component::kShort},
+    {VK_FORMAT_R16G16_SINT, "R16G16_SINT", 2, Component::kShort},
+    {VK_FORMAT_R16G16_SFLOAT, "R16G16_SFLOAT", 2, Component::kHalf},
+    {VK_FORMAT_R16G16B16A16_UNORM, "R16G16B16A16_UNORM", 4, Component::kShort},
+    {VK_FORMAT_R16G16B16A16_UINT, "R16G16B16A16_UINT", 4, Component::kShort},
+    {VK_FORMAT_R16G16B16A16_SINT, "R16G16B16A16_SINT", 4, Component::kShort},
+    {VK_FORMAT_R16G16B16A16_SFLOAT, "R16G16B16A16_SFLOAT", 4, Component::kHalf},
     {VK_FORMAT_R32_UINT, "R32_UINT", 1, Component::kWord},
     {VK_FORMAT_R32_SINT, "R32_SINT", 1, Component::kWord},
     {VK_FORMAT_R32_SFLOAT, "R32_SFLOAT", 1, Component::kFloat},
+    {VK_FORMAT_R32G32_UINT, "R32G32_UINT", 2, Component::kWord},
+    {VK_FORMAT_R32G32_SINT, "R32G32_SINT", 2, Component::kWord},
+    {VK_FORMAT_R32G32_SFLOAT, "R32G32_SFLOAT", 2, Component::kFloat},
     {VK_FORMAT_R32G32B32A32_UINT, "R32G32B32A32_UINT", 4, Component::kWord},
     {VK_FORMAT_R32G32B32A32_SINT, "R32G32B32A32_SINT", 4, Component::kWord},
     {VK_FORMAT_R32G32B32A32_SFLOAT, "R32G32B32A32_SFLOAT", 4, Component::kFloat},
+    {VK_FORMAT_D16_UNORM, "D16_UNORM", 1, Component::kShort},
     {VK_FORMAT_D32_SFLOAT, "D32_SFLOAT", 1, Component::kFloat},
-    {VK_FORMAT_R8G8B8A8_UNORM, "R8G8B8A8_UNORM", 4, Component::kByte},
-    {VK_FORMAT_R8G8B8A8_UINT, "R8G8B8A8_UINT", 4, Component::kByte},
-    {VK_FORMAT_B8G8R8A8_UNORM, "B8G8R8A8_UNORM", 4, Component::kByte},
 };
 
-const Format& format_of(const Image& image) {
+const Format& format_of(VkFormat number, const char* what) {
   for (const Format& format : kFormats)
-    if (format.format == image.format) return format;
-  throw Unspeakable{"images of format " + std::to_string(image.format)};
+    if (format.format == number) return format;
+  throw Unspeakable{std::string(what) + " of format " + std::to_string(number)};
+}
+
+/// A number of 16 bits. Amber makes zeros of those that are too small to be normal.
+float float_of_half(std::uint32_t bits) {
+  const std::uint32_t exponent = bits >> 10 & 31;
+  if (exponent == 31) throw Unspeakable{"texels that are no numbers"};
+  if (exponent == 0 && (bits & 0x3ff) != 0) throw Unspeakable{"texels that are very small"};
+  const float value =
+      std::ldexp(static_cast<float>((bits & 0x3ff) | (exponent != 0 ? 0x400u : 0u)), static_cast<int>(exponent) - 25);
+  return (bits & 0x8000) != 0 ? -value : value;
 }
 
 /// One number of the texels, as the language reads it.
 std::string number(const std::byte* at, Component component) {
-  if (component == Component::kByte) return std::to_string(std::to_integer<unsigned>(*at));
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, at, bytes_of(component));
+  if (component == Component::kByte) return std::to_string(bits);
   char text[32];
-  if (component == Component::kFloat) {
-    float value = 0;
-    std::memcpy(&value, at, sizeof value);
+  if (component == Component::kFloat || component == Component::kHalf) {
+    const float value = component == Component::kHalf ? float_of_half(bits) : std::bit_cast<float>(bits);
     if (!std::isfinite(value)) throw Unspeakable{"texels that are no numbers"};
     std::snprintf(text, sizeof text, "%.9g", static_cast<double>(value));
+    if (std::string_view(text) == "-0") return "-0.0";  // an integer has one zero
   } else {
-    std::uint32_t value = 0;
-    std::memcpy(&value, at, sizeof value);
-    std::snprintf(text, sizeof text, "0x%08x", value);
+    std::snprintf(text, sizeof text, "0x%0*x", static_cast<int>(bytes_of(component) * 2), bits);
   }
   return text;
 }
 
 void write_texels(std::ostream& out, const Format& format, const Bytes& bytes) {
-  const std::size_t step = format.component == Component::kByte ? 1 : 4, count = bytes.size() / step;
+  const std::size_t step = bytes_of(format.component), count = bytes.size() / step;
   out << " DATA\n";
   for (std::size_t i = 0; i < count; ++i)
     out << number(bytes.data() + i * step, format.component) << ((i + 1) % kPerLine && i + 1 < count ? ' ' : '\n');
@@ -73,9 +117,11 @@ const char* address_mode(VkSamplerAddressMode mode) {
              : throw Unspeakable{"samplers with such a mode of addresses"};
 }
 
-/// Of floats.
+/// Of floats, or of integers.
 const char* border_color(const std::array<std::uint32_t, 4>& bits) {
   constexpr std::uint32_t kOne = 0x3f800000;
+  if (bits == std::array<std::uint32_t, 4>{0, 0, 0, 1}) return "int_opaque_black";
+  if (bits == std::array<std::uint32_t, 4>{1, 1, 1, 1}) return "int_opaque_white";
   if (bits == std::array<std::uint32_t, 4>{}) return "float_transparent_black";
   if (bits == std::array<std::uint32_t, 4>{0, 0, 0, kOne}) return "float_opaque_black";
   if (bits == std::array<std::uint32_t, 4>{kOne, kOne, kOne, kOne}) return "float_opaque_white";
@@ -106,8 +152,23 @@ void write_numbers(std::ostream& out, const std::string& name, const Bytes& byte
   out << "END\n";
 }
 
+void write_texel_buffer(std::ostream& out, const std::string& name, const Bytes& bytes, VkFormat number) {
+  const Format& format = format_of(number, "texel buffers");
+  if (bytes.size() % (format.components * bytes_of(format.component)) != 0)
+    throw Unspeakable{"texel buffers that end inside of a texel"};
+  out << "BUFFER " << name << " DATA_TYPE " << format.name << " STD430";
+  write_texels(out, format, bytes);
+}
+
+const char* compare_name(VkCompareOp op, const char* what) {
+  constexpr const char* kNames[] = {
+      "never", "less", "equal", "less_or_equal", "greater", "not_equal", "greater_or_equal", "always"};
+  if (op < 0 || static_cast<std::size_t>(op) >= std::size(kNames)) throw Unspeakable{what};
+  return kNames[op];
+}
+
 void write_image(std::ostream& out, const std::string& name, const Image& image, bool after) {
-  const Format& format = format_of(image);
+  const Format& format = format_of(image.format, "images");
   if (image.levels != 1 || image.layers != 1 || image.samples != 1 || image.texels.size() != 1)
     throw Unspeakable{"images of several levels, layers or samples"};
   const Texels& texels = image.texels[0];
@@ -125,15 +186,17 @@ void write_image(std::ostream& out, const std::string& name, const Image& image,
 void write_sampler(std::ostream& out, const std::string& name, const texel::Sampler& s) {
   constexpr const char* kFilters[] = {"nearest", "linear"};
   const bool plain = s.mip_lod_bias == 0 && s.max_anisotropy <= 1 && !s.seams && !s.conversion.enabled &&
-                     s.reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE && !s.compare;
+                     s.reduction == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
   if (!plain || s.mag_filter > VK_FILTER_LINEAR || s.min_filter > VK_FILTER_LINEAR)
-    throw Unspeakable{"samplers with comparisons, biases, anisotropy or reductions"};
+    throw Unspeakable{"samplers with biases, anisotropy, reductions or cubic filters"};
   out << "SAMPLER " << name << " MAG_FILTER " << kFilters[s.mag_filter] << " MIN_FILTER " << kFilters[s.min_filter];
   for (std::size_t i = 0; i < 3; ++i)
     out << " ADDRESS_MODE_"
         << "UVW"[i] << " " << address_mode(s.address[i]);
   out << " BORDER_COLOR " << border_color(s.border) << " MIN_LOD " << std::to_string(s.min_lod) << " MAX_LOD "
-      << std::to_string(s.max_lod) << (s.unnormalized ? " UNNORMALIZED_COORDS" : "") << "\n";
+      << std::to_string(s.max_lod) << (s.unnormalized ? " UNNORMALIZED_COORDS" : "");
+  if (s.compare) out << " COMPARE on COMPARE_OP " << compare_name(s.compare_op, "such a comparison of samplers");
+  out << "\n";
 }
 
 void demand_whole(const View& view, const Image& image) {

@@ -17,6 +17,10 @@ struct Unspeakable {
 void write_numbers(std::ostream& out, const std::string& name, const Bytes& bytes, std::size_t step);
 /// IMAGE with its texels, by `name`.
 void write_image(std::ostream& out, const std::string& name, const Image& image, bool after);
+/// BUFFER with its data as texels of a format.
+void write_texel_buffer(std::ostream& out, const std::string& name, const Bytes& bytes, VkFormat format);
+/// A comparison as the language calls it; `what` is thrown if there is no such one.
+const char* compare_name(VkCompareOp op, const char* what);
 /// SAMPLER.
 void write_sampler(std::ostream& out, const std::string& name, const texel::Sampler& sampler);
 /// Throws unless the view shows the whole image as it is.

@@ -123,10 +123,11 @@ bool can_be(const raster::State& s) {
          (s.topology != VK_PRIMITIVE_TOPOLOGY_PATCH_LIST || s.patch_control_points > 0) &&
          up_to(s.polygon_mode, VK_POLYGON_MODE_POINT) && s.cull_mode <= VK_CULL_MODE_FRONT_AND_BACK &&
          up_to(s.front_face, VK_FRONT_FACE_CLOCKWISE) &&
-         up_to(s.line_mode, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT) && s.line_stipple_factor >= 1 &&
-         s.line_stipple_factor <= 256 && s.line_width >= 0 && s.line_width < 256 && std::has_single_bit(s.samples) &&
-         s.samples <= raster::kMaxSamples && up_to(s.depth_compare, VK_COMPARE_OP_ALWAYS) && can_be(s.front) &&
-         can_be(s.back) && s.discard_count <= raster::kMaxDiscardRectangles && is_fragment_size(s.fragment_size) &&
+         up_to(s.line_mode, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT) &&
+         (!s.line_stipple || (s.line_stipple_factor >= 1 && s.line_stipple_factor <= 256)) && s.line_width >= 0 &&
+         s.line_width < 256 && std::has_single_bit(s.samples) && s.samples <= raster::kMaxSamples &&
+         up_to(s.depth_compare, VK_COMPARE_OP_ALWAYS) && can_be(s.front) && can_be(s.back) &&
+         s.discard_count <= raster::kMaxDiscardRectangles && is_fragment_size(s.fragment_size) &&
          up_to(s.rate_combiners[0], VK_FRAGMENT_SHADING_RATE_COMBINER_OP_MUL_KHR) &&
          up_to(s.rate_combiners[1], VK_FRAGMENT_SHADING_RATE_COMBINER_OP_MUL_KHR) &&
          s.rasterized_stream < raster::kMaxStreams && up_to(s.logic_op, VK_LOGIC_OP_SET) &&

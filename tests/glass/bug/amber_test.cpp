@@ -59,11 +59,104 @@ TEST(Amber, SaysImagesWithTheirTexels) {
 }
 
 TEST(Amber, HasNoWordsForSomeImages) {
-  EXPECT_EQ(to_amber(bug_with_image(VK_FORMAT_R16_SFLOAT)).message(),
-            "AmberScript is not written for images of format 76");
+  EXPECT_EQ(to_amber(bug_with_image(VK_FORMAT_A2B10G10R10_UNORM_PACK32)).message(),
+            "AmberScript is not written for images of format 64");
+  Bug infinite = bug_with_image(VK_FORMAT_R16_SFLOAT);
+  infinite.images[0].texels[0].before = blob({0x7c003c00});
+  EXPECT_EQ(to_amber(infinite).message(), "AmberScript is not written for texels that are no numbers");
   Bug swizzled = bug_with_image(VK_FORMAT_R32_UINT);
   swizzled.views[0].swizzle = {2, 1, 0, 3};
   EXPECT_EQ(to_amber(swizzled).message(), "AmberScript is not written for views that show an image as another one");
+}
+
+void expect_words(const Bug& bug, std::initializer_list<const char*> parts) {
+  const base::Result<std::string> script = to_amber(bug);
+  ASSERT_TRUE(script.ok()) << script.message();
+  for (const char* const part : parts)
+    EXPECT_NE(script.value().find(part), std::string::npos) << part << script.value();
+}
+
+TEST(Amber, SaysTexelsOfSixteenBits) {
+  Bug bug = bug_with_image(VK_FORMAT_R16_SFLOAT);
+  bug.images[0].texels[0].before = blob({0x80003c00});
+  expect_words(bug, {"IMAGE image0 FORMAT R16_SFLOAT DIM_2D WIDTH 2 HEIGHT 1 DATA\n1 -0.0\nEND\n"});
+  bug = bug_with_image(VK_FORMAT_R16G16_UNORM);
+  expect_words(bug, {"IMAGE image0 FORMAT R16G16_UNORM DIM_2D WIDTH 2 HEIGHT 1 DATA\n0x0001 0x0000 0x0000 0x3f80\n"});
+}
+
+/// With a descriptor at binding 2.
+Bug bug_with(VkDescriptorType type, const Descriptor& what) {
+  Bug bug = small_bug();
+  Binding binding;
+  binding.binding = 2;
+  binding.type = type;
+  binding.count = 1;
+  bug.sets[0].bindings.push_back(binding);
+  bug.descriptors.push_back(what);
+  bug.descriptors.back().binding = 2;
+  return bug;
+}
+
+TEST(Amber, SaysTexelBuffersOfWholeBuffers) {
+  Descriptor descriptor;
+  descriptor.texels = 0;
+  Bug bug = bug_with(VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, descriptor);
+  bug.buffers.push_back({"texels", 8, VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT, 1, 0});
+  bug.memories.push_back({8, 0, {{0, false, blob({0x04030201, 0x3f800000}), nullptr}}});
+  bug.buffer_views = {{"", 1, VK_FORMAT_R8G8B8A8_UINT, 0, 8}};
+  expect_words(bug, {"BUFFER buffer1 DATA_TYPE R8G8B8A8_UINT STD430 DATA\n1 2 3 4 0 0 128 63\nEND\n",
+                     "BUFFER expected1 DATA_TYPE R8G8B8A8_UINT STD430 DATA\n",
+                     "BIND BUFFER buffer1 AS storage_texel_buffer DESCRIPTOR_SET 0 BINDING 2\n"});
+  bug.buffer_views[0].range = 4;
+  EXPECT_EQ(to_amber(bug).message(),
+            "AmberScript is not written for texel buffers that show parts of a buffer, or show it in several formats");
+}
+
+TEST(Amber, SaysInlineUniformBlocksAsBuffers) {
+  Descriptor descriptor;
+  descriptor.bytes = blob({7, 8});
+  expect_words(bug_with(VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK, descriptor),
+               {"BUFFER block0_2 DATA_TYPE uint32 STD430 DATA\n0x00000007 0x00000008\nEND\n",
+                "BIND BUFFER block0_2 AS uniform DESCRIPTOR_SET 0 BINDING 2\n"});
+}
+
+TEST(Amber, SaysImmutableSamplersThatCompare) {
+  Bug bug = small_bug();
+  Binding binding;
+  binding.binding = 3;
+  binding.count = 2;
+  binding.samplers = {0, 0};
+  bug.sets[0].bindings.push_back(binding);
+  bug.samplers.resize(1);
+  bug.samplers[0].state.compare = true;
+  bug.samplers[0].state.compare_op = VK_COMPARE_OP_LESS_OR_EQUAL;
+  expect_words(bug, {" COMPARE on COMPARE_OP less_or_equal\n",
+                     "BIND SAMPLER_ARRAY sampler0 sampler0 DESCRIPTOR_SET 0 BINDING 3\n"});
+}
+
+TEST(Amber, SaysOneSamplerForImagesOfABinding) {
+  Bug bug = bug_with_image(VK_FORMAT_R32_UINT);
+  bug.sets[0].bindings[1].type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  bug.samplers.resize(2);
+  bug.descriptors[1].sampler = 0;
+  bug.descriptors.push_back(bug.descriptors[1]);
+  bug.descriptors[2].element = 1;
+  expect_words(bug, {"BIND BUFFER_ARRAY image0 image0 AS combined_image_sampler SAMPLER sampler0 DESCRIPTOR_SET 0"});
+  bug.descriptors[2].sampler = 1;
+  EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for images with several samplers");
+  bug.sets[0].bindings.push_back(bug.sets[0].bindings[1]);
+  bug.sets[0].bindings[2].binding = 2;
+  bug.descriptors[2].element = 0;
+  bug.descriptors[2].binding = 2;
+  EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for images with several samplers");
+}
+
+TEST(Amber, FillsHolesThatNobodyMayRead) {
+  Bug bug = small_bug();
+  bug.descriptors[0].element = 2;
+  expect_words(bug, {"BIND BUFFER_ARRAY buffer0 buffer0 buffer0 AS storage DESCRIPTOR_SET 0 BINDING 0 "});
+  bug.null_descriptors = true;
+  EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for null descriptors");
 }
 
 TEST(Amber, ContentsAreThoseOfTheBuffer) {
@@ -137,6 +230,42 @@ TEST(Amber, SaysIndicesFromWhereTheyBegin) {
     EXPECT_NE(script.value().find(part), std::string::npos) << part << script.value();
 }
 
+/// Amber's START_IDX is what is added to indices; they begin with the first one.
+TEST(Amber, SaysWhichIndicesAndWhatIsAddedToThem) {
+  Bug bug = drawing_bug();
+  bug.command.indexed = true;
+  bug.command.index_type = VK_INDEX_TYPE_UINT32;
+  bug.command.indices.buffer = 0;
+  bug.command.indices.offset = 16;
+  bug.command.indices.size = 48;
+  bug.command.draws = {{2, 1, 2}, {3, 0, 0}};
+  expect_words(bug, {"BUFFER indices DATA_TYPE uint32 STD430 DATA\n0x00000002 0x00000003 0x00000000 0x00000000\nEND\n",
+                     "BUFFER indices1 DATA_TYPE uint32 STD430 DATA\n0x00000001 0x00000002 0x00000003\nEND\n",
+                     "PIPELINE graphics pipeline1\n", "  INDEX_DATA indices1\n",
+                     "RUN pipeline DRAW_ARRAY AS TRIANGLE_LIST INDEXED START_IDX 2 COUNT 2 START_INSTANCE 0 ",
+                     "RUN pipeline1 DRAW_ARRAY AS TRIANGLE_LIST INDEXED START_IDX 0 COUNT 3 START_INSTANCE 0 "});
+}
+
+TEST(Amber, SaysDrawsWhoseArgumentsAreInABuffer) {
+  Bug bug = drawing_bug();
+  bug.memories[0].pieces[0] = {0, false, blob({3, 2, 1, 5, 0, 0, 0, 0, 6, 1, 0, 0}), nullptr};
+  bug.command.draws.clear();
+  bug.command.arguments = 0;
+  bug.command.draw_count = 3;
+  bug.command.stride = 16;
+  expect_words(bug,
+               {"RUN pipeline DRAW_ARRAY AS TRIANGLE_LIST START_IDX 1 COUNT 3 START_INSTANCE 5 INSTANCE_COUNT 2\n"
+                "RUN pipeline DRAW_ARRAY AS TRIANGLE_LIST START_IDX 0 COUNT 6 START_INSTANCE 0 INSTANCE_COUNT 1\n"});
+  bug.command.arguments_offset = 64;
+  EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for arguments outside of their buffer");
+}
+
+TEST(Amber, SaysDrawsWithoutAttachments) {
+  Bug bug = drawing_bug();
+  bug.rendering.colors.clear();
+  expect_words(bug, {"  FRAMEBUFFER_SIZE 2 1\n"});
+}
+
 TEST(Amber, HasNoWordsForSomeState) {
   const auto said = [](const auto& change) {
     Bug bug = drawing_bug();
@@ -145,10 +274,24 @@ TEST(Amber, HasNoWordsForSomeState) {
   };
   EXPECT_EQ(said([](Bug& b) { b.state.cull_mode = VK_CULL_MODE_BACK_BIT; }),
             "AmberScript is not written for culling, or front faces that are clockwise");
+  EXPECT_EQ(said([](Bug& b) {
+              b.state.topology = VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
+              b.state.line_width = 2;
+            }),
+            "AmberScript is not written for lines that are wide, stippled or of another kind");
+  EXPECT_EQ(said([](Bug& b) { b.state.line_width = 2; }), "");            // of triangles
+  EXPECT_EQ(said([](Bug& b) { b.state.primitive_restart = true; }), "");  // without indices
   EXPECT_EQ(said([](Bug& b) { b.state.blend[0].write_mask = 7; }), "AmberScript is not written for masks of colours");
   EXPECT_EQ(said([](Bug& b) { b.rendering.area.extent.width = 1; }),
             "AmberScript is not written for scissors and render areas that leave something out");
-  EXPECT_EQ(said([](Bug& b) { b.command.draws.push_back({}); }), "AmberScript is not written for several draws");
+  EXPECT_EQ(said([](Bug& b) { b.command.draws.clear(); }), "AmberScript is not written for draws of nothing");
+  EXPECT_EQ(said([](Bug& b) { b.command.draws[0].vertex_offset = -1; }),
+            "AmberScript is not written for draws with a negative vertex offset");
+  EXPECT_EQ(said([](Bug& b) {
+              b.command.draws.push_back({3, 0, 0});
+              b.stages[0].words = blob({0x07230203, 0x00010300, 0, 1, 0, 0x00020011, 1, 0x00020011, 4427});
+            }),
+            "AmberScript is not written for several draws whose shaders ask which one it is");
   EXPECT_EQ(said([](Bug& b) { b.addressed = {0}; }),
             "AmberScript is not written for shaders that follow device addresses");
 }

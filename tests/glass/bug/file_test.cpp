@@ -41,6 +41,17 @@ TEST(BugFile, KeepsStateAndNumbersThatAreNoNumbers) {
   EXPECT_EQ(back.rendering.area.offset.x, 3);
 }
 
+/// VkPipelineRasterizationLineStateCreateInfoEXT: only who stipples has to give a factor.
+TEST(BugFile, NeedsAFactorOfStipplesThatThereAre) {
+  Bug bug = small_bug();
+  bug.stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+  bug.rendering.area = {{0, 0}, {1, 1}};
+  bug.state.line_stipple_factor = 0;
+  EXPECT_TRUE(from_file(to_file(bug)).ok());
+  bug.state.line_stipple = true;
+  EXPECT_EQ(from_file(to_file(bug)).message(), "it names state that cannot be");
+}
+
 TEST(BugFile, ThatEndsEarlyIsAnError) {
   const std::string file = to_file(small_bug());
   for (std::size_t size = 0; size < file.size(); ++size) {
