@@ -148,7 +148,7 @@ struct Scene {
     state.scissor[0] = {{0, 0}, {kWidth, kHeight}};
     if (random() % 2) state.scissor[0] = {{static_cast<std::int32_t>(random() % 32), 5}, {91, 53}};
     state.samples = samples;
-    state.sample_mask = random() % 4 ? ~0u : static_cast<std::uint32_t>(random());
+    state.sample_mask = random() % 4 || samples == 1 ? ~0u : static_cast<std::uint32_t>(random());
     state.depth_test = random() % 4 != 0;
     state.depth_write = random() % 2;
     state.depth_compare = random() % 2 ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_GREATER_OR_EQUAL;
@@ -327,6 +327,20 @@ TEST(CoarseFragments, AreOfOnePixelWithSampleShading) {
     std::uint16_t rate;
     std::memcpy(&rate, color.memory.data() + 4, 2);
     EXPECT_EQ(rate, 1) << n;
+  }
+}
+
+/// Vulkan 1.3.239, Sample Mask Test: bit 0 of the mask is that of the only sample.
+TEST(CoarseFragments, HeedTheMaskOfOneSample) {
+  std::mt19937 random(9);
+  for (const std::uint32_t mask : {1u, 2u}) {
+    Scene scene(random);
+    scene.samples = 1;
+    cover(scene);
+    scene.state.fragment_size = {2, 2};
+    scene.state.sample_mask = mask;
+    Attachment color(VK_FORMAT_R16G16B16A16_UINT, 1), depth(VK_FORMAT_D32_SFLOAT, 1);
+    EXPECT_EQ(scene.draw(false, color, depth), mask == 1 ? kWidth * kHeight : 0) << mask;
   }
 }
 
