@@ -283,8 +283,9 @@ void place_fragments(const QuadPositions& quads, FragmentRate rate, float dx, fl
   // All sums are exact: halves, or a sample's sixteenths.
   const float x = (width - 1) / 2 + dx, y = (height - 1) / 2 + dy;
   for (std::size_t lane = 0; lane < base::kWaveWidth; ++lane) {
-    out.x[lane] = static_cast<float>(quads.x[lane / 4]) + ((lane & 1) != 0 ? width : 0) + x;
-    out.y[lane] = static_cast<float>(quads.y[lane / 4]) + ((lane & 2) != 0 ? height : 0) + y;
+    const std::size_t quad = lane / 4;
+    out.x[lane] = static_cast<float>(quads.x[quad]) + ((lane & 1) != 0 ? width : 0) + x;
+    out.y[lane] = static_cast<float>(quads.y[quad]) + ((lane & 2) != 0 ? height : 0) + y;
   }
 }
 

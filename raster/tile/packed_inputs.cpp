@@ -36,11 +36,12 @@ void set_coarse_centroids(const ShadeRun& run, WavePoints& out) {
     }
     if (missing == 0 || first == ~0u) return;
     const std::uint32_t pixel = first / kMaxSamples, sample = first % kMaxSamples;
+    const std::uint32_t column = pixel % width, row = pixel / width;
     const bool located = run.plan.raster_samples > 1;
     const float left = out.x[lane] - center - static_cast<float>(width - 1) / 2;
     const float top = out.y[lane] - center - static_cast<float>(height - 1) / 2;
-    out.x[lane] = left + static_cast<float>(pixel % width) + (located ? run.plan.locations->pixel_x(sample) : 0.0f);
-    out.y[lane] = top + static_cast<float>(pixel / width) + (located ? run.plan.locations->pixel_y(sample) : 0.0f);
+    out.x[lane] = left + static_cast<float>(column) + (located ? run.plan.locations->pixel_x(sample) : 0.0f);
+    out.y[lane] = top + static_cast<float>(row) + (located ? run.plan.locations->pixel_y(sample) : 0.0f);
   });
 }
 
