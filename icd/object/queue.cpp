@@ -183,13 +183,12 @@ void tell_signals(Device& device, const Batch& batch) {
   if (batch.fence) hazards->signal_fence(&from_handle<Fence>(batch.fence));
 }
 
-/// What tools note of a batch. False: the memory for it is exhausted, and the device lost, as with memory for a
-/// command.
+/// What `act` says, for what tools note of a batch. False, too, if the memory for it is exhausted: the device is then
+/// lost, as with memory for a command.
 template <class F>
 bool with_memory(Device& device, F&& act) noexcept {
   try {
-    act();
-    return true;
+    return act();
   } catch (const std::bad_alloc&) {
     lose_device(device, {});
     return false;
@@ -208,15 +207,13 @@ void execute(Device& device, Batch& batch) noexcept {
     const SemaphoreOp& op = batch.waits[i];
     lost |= !wait_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value, temporary(i));
   }
-  lost |= !with_memory(device, [&] { tell_waits(device, batch); });
-  if (!lost && !batch.command_buffers.empty()) {
-    lost |= !with_memory(device, [&] { lost = !replay_all(device, batch); });
-  }
+  lost |= !with_memory(device, [&] { return tell_waits(device, batch), true; });
+  if (!lost && !batch.command_buffers.empty()) lost = !with_memory(device, [&] { return replay_all(device, batch); });
   for (const QueueCall& call : batch.calls) {
     const glass::Span present("present", "present");
     call.run(call.object, call.argument);
   }
-  if (lost || !with_memory(device, [&] { tell_signals(device, batch); })) return;
+  if (lost || !with_memory(device, [&] { return tell_signals(device, batch), true; })) return;
   for (std::size_t i = 0; i < batch.signals.size(); ++i) {
     const SemaphoreOp& op = batch.signals[i];
     signal_semaphore(device, from_handle<Semaphore>(op.semaphore), op.value, temporary(batch.waits.size() + i));
