@@ -1,6 +1,7 @@
 // See tile_watch.h.
 #include "glass/pixel/tile_watch.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 

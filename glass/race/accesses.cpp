@@ -1,6 +1,8 @@
 // See accesses.h.
 #include "glass/race/accesses.h"
 
+#include <algorithm>
+
 #include "glass/sanitize/accesses.h"
 #include "glass/sanitize/image_lanes.h"
 #include "glass/sanitize/operands.h"

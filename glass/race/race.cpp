@@ -1,5 +1,6 @@
 // The tool `race`: two accesses to the same bytes by different invocations of one command, one of them a write, that
 // neither barriers nor atomic operations order (Vulkan 1.3.239, Memory Model: Data Race).
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <charconv>

@@ -2,6 +2,7 @@
 // that they need (Vulkan 1.3.239, Synchronization and Cache Control).
 #include "glass/sync/sync.h"
 
+#include <algorithm>
 #include <atomic>
 #include <iterator>
 

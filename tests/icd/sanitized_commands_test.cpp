@@ -1,4 +1,5 @@
 // What the tool sanitize tells an application of its commands and objects, through messengers.
+#include <algorithm>
 #include <string>
 
 #include "tests/icd/resources_fixture.h"

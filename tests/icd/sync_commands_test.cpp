@@ -1,4 +1,5 @@
 // The commands of the scripts of sync_scene.h.
+#include <algorithm>
 #include <array>
 #include <sstream>
 

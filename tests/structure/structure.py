@@ -42,6 +42,11 @@ NEVER = [
 # Folders in which includes between parts still run in a circle.
 CIRCLES = ["icd", "icd/replay", "spirv", "spirv/exec", "spirv/lower", "spirv/rewrite", "texel"]
 LONG_FILE = 350
+# What only <algorithm> has: min, copy, fill and their like come with every container, and these do, too, with some compilers.
+ALGORITHMS = re.compile(r"\bstd::(ranges::\w+|clamp|minmax|(stable_|partial_)?sort|nth_element|find(_if|_if_not|_first_of)?|(any|all|none)_of|copy_(n|if)"
+                        r"|count(_if)?|transform|reverse|unique|(upper|equal)_bound|equal_range|binary_search|remove_if|(min|max|minmax)_element|rotate"
+                        r"|generate(_n)?|for_each(_n)?|shuffle|is_sorted\w*|(stable_)?partition|set_\w+|includes|search|replace(_if)?|(inplace_)?merge"
+                        r"|\w+_heap|adjacent_find|next_permutation)[(<]")
 # Relative to the tree: what manifest/pack/newer-headers has unpacked. Claims are held against each that is there.
 REGISTRIES = ["/usr/share/vulkan/registry/vk.xml", "/usr/local/share/vulkan/registry/vk.xml", "build/headers/usr/share/vulkan/registry/vk.xml"]
 
@@ -296,6 +301,16 @@ def shape_faults(root):
                     yield f"{where}:{number}: the library never prints to stdout"
 
 
+def algorithm_faults(root):
+    """Who uses the standard library's algorithms includes them: that other headers bring them is one compiler's accident."""
+    for folder in ORDER + FREE:
+        for path in sources(root, folder):
+            text = path.read_text()
+            used = ALGORITHMS.search(text)
+            if used and "#include <algorithm>" not in text:
+                yield f"{path.relative_to(root)}: uses {used[0][:-1]} without <algorithm>"
+
+
 def report_tail(root):
     sizes = sorted(((len(p.read_text().splitlines()), p) for f in ORDER + FREE for p in sources(root, f)), reverse=True)
     print("longest files:")
@@ -304,7 +319,7 @@ def report_tail(root):
 
 
 CHECKS = (include_faults, part_faults, circle_faults, header_faults, room_faults, claim_faults, opcode_faults,
-          step_faults, capability_faults, dynamic_state_faults, pass_faults, asked_faults, shape_faults)
+          step_faults, capability_faults, dynamic_state_faults, pass_faults, asked_faults, shape_faults, algorithm_faults)
 
 
 def main():

@@ -2,6 +2,7 @@
 // in double precision. That whole waves have the bits of single lanes, tests/texel/sampler_test.cpp tells.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>

@@ -1,6 +1,7 @@
 // What the tool pixel calls the inputs of fragment shaders, and what it says that they hold.
 #include "glass/pixel/inputs.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "spirv/source_info.h"

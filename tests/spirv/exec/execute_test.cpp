@@ -1,4 +1,5 @@
 // The executor on hand-written functions: interface, preamble, branches, loops, buffers, compute.
+#include <algorithm>
 #include <cstdlib>
 
 #include "tests/spirv/shader_run.h"

@@ -1,5 +1,6 @@
 // SPV_KHR_maximal_reconvergence: random structured programs whose invocations note who executes an instruction with
 // them, against a model that walks over the same program with sets of invocations.
+#include <algorithm>
 #include <bit>
 #include <memory>
 #include <random>

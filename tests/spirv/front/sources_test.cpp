@@ -1,6 +1,7 @@
 // What instructions know of their sources: lines, functions and calls, from every kind of debug information.
 #include "spirv/front/sources.h"
 
+#include <algorithm>
 #include <random>
 #include <set>
 

@@ -1,6 +1,7 @@
 // What the front end makes of GLSL: shapes of control flow, interface, memory, refusals.
 #include "spirv/front/translate.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "spirv/ir_passes.h"

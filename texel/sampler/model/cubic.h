@@ -2,6 +2,7 @@
 // with the weights of Catmull and Rom.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "texel/sampler/model/level.h"
