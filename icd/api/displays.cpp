@@ -39,13 +39,9 @@ VkDisplayModePropertiesKHR properties_of(DisplayMode& mode) {
   return {to_handle(&mode), {mode.display.setting.extent, mode.millihertz}};
 }
 
-/// Calls f(properties) for each mode.
-template <class F>
-void for_each_mode(VkDisplayKHR handle, F f) {
-  Display& display = from_handle<Display>(handle);
-  const std::lock_guard lock(display.mutex);
-  f(properties_of(display.native));
-  for (DisplayMode* mode : display.made) f(properties_of(*mode));
+/// Of the one mode that is built in. Those that applications create are for who created them, and are not listed.
+VkDisplayModePropertiesKHR built_in_mode(VkDisplayKHR handle) {
+  return properties_of(from_handle<Display>(handle).native);
 }
 
 /// Planes show all of their image on all of the display.
@@ -132,7 +128,7 @@ VKAPI_ATTR VkResult VKAPI_CALL GetDisplayPlaneSupportedDisplaysKHR(VkPhysicalDev
 VKAPI_ATTR VkResult VKAPI_CALL GetDisplayModePropertiesKHR(VkPhysicalDevice, VkDisplayKHR display, std::uint32_t* count,
                                                            VkDisplayModePropertiesKHR* properties) {
   OutArray<VkDisplayModePropertiesKHR> array(count, properties);
-  for_each_mode(display, [&](const VkDisplayModePropertiesKHR& mode) { array.push(mode); });
+  array.push(built_in_mode(display));
   return array.result();
 }
 
@@ -140,9 +136,7 @@ VKAPI_ATTR VkResult VKAPI_CALL GetDisplayModeProperties2KHR(VkPhysicalDevice, Vk
                                                             std::uint32_t* count,
                                                             VkDisplayModeProperties2KHR* properties) {
   OutArray<VkDisplayModeProperties2KHR> array(count, properties);
-  for_each_mode(display, [&](const VkDisplayModePropertiesKHR& mode) {
-    if (VkDisplayModeProperties2KHR* slot = array.next()) slot->displayModeProperties = mode;
-  });
+  if (VkDisplayModeProperties2KHR* slot = array.next()) slot->displayModeProperties = built_in_mode(display);
   return array.result();
 }
 

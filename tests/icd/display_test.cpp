@@ -214,8 +214,8 @@ TEST_F(DisplayTest, HasModesOfItsSize) {
   const auto create = VK_GET(instance, CreateDisplayModeKHR);
   VkDisplayModeKHR mode = VK_NULL_HANDLE;
   ASSERT_EQ(create(physical_device, display.display, &info, nullptr, &mode), VK_SUCCESS);
-  ASSERT_EQ(modes(display.display).size(), 2u);
-  EXPECT_EQ(modes(display.display)[1].displayMode, mode);
+  EXPECT_NE(modes(display.display)[0].displayMode, mode);
+  EXPECT_EQ(modes(display.display).size(), 1u) << "only built-in modes are listed";
   for (const VkDisplayModeParametersKHR wrong : {VkDisplayModeParametersKHR{{kWidth + 1, kHeight}, 50000},
                                                  {{kWidth, 0}, 50000},
                                                  {{kWidth, kHeight}, 0},
@@ -235,7 +235,7 @@ TEST_F(DisplayTest, HasModesOfItsSize) {
   auto properties = make_struct<VkDisplayModeProperties2KHR>();
   std::uint32_t count = 1;
   EXPECT_EQ(VK_GET(instance, GetDisplayModeProperties2KHR)(physical_device, display.display, &count, &properties),
-            VK_INCOMPLETE);
+            VK_SUCCESS);
   EXPECT_EQ(properties.displayModeProperties.parameters.refreshRate, 30000u);
 }
 
