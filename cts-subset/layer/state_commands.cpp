@@ -197,11 +197,11 @@ class States {
     VkPipelineMultisampleStateCreateInfo m{};
     m.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
     if (info_.pMultisampleState) m = *info_.pMultisampleState;
-    const std::vector<VkSampleMask> mask = m.pSampleMask ? copy(m.pSampleMask, 1) : std::vector<VkSampleMask>{~0u};
+    const VkSampleMask mask = m.pSampleMask ? *m.pSampleMask : ~0u;
     const VkSampleCountFlagBits samples = m.rasterizationSamples;
     add(VK_DYNAMIC_STATE_RASTERIZATION_SAMPLES_EXT, &Functions::CmdSetRasterizationSamplesEXT, samples);
     add(VK_DYNAMIC_STATE_SAMPLE_MASK_EXT,
-        [=](const Functions& f, VkCommandBuffer b) { f.CmdSetSampleMaskEXT(b, samples, mask.data()); });
+        [=](const Functions& f, VkCommandBuffer b) { f.CmdSetSampleMaskEXT(b, samples, &mask); });
     add(VK_DYNAMIC_STATE_ALPHA_TO_COVERAGE_ENABLE_EXT, &Functions::CmdSetAlphaToCoverageEnableEXT,
         m.alphaToCoverageEnable);
     add(VK_DYNAMIC_STATE_ALPHA_TO_ONE_ENABLE_EXT, &Functions::CmdSetAlphaToOneEnableEXT, m.alphaToOneEnable);
