@@ -59,6 +59,7 @@ struct Scratch {
   std::vector<Command> commands;
   std::vector<std::vector<TileItem>> items;  ///< by tile
   std::vector<std::uint32_t> touched;        ///< tiles with items
+  std::vector<std::uint64_t> weights;        ///< by tile; of those without items, anything
   std::vector<Run> runs;
   std::deque<spirv::BoundShader> bound;
   std::deque<ViewLayer> view_layers;
@@ -430,9 +431,23 @@ struct Pass::Impl {
     keep(handed);
   }
 
+  /// Those with the most primitives first, so that none of them is begun when the other threads have nothing left.
+  void sort_tiles() {
+    std::vector<std::uint32_t>& touched = scratch->touched;
+    std::vector<std::uint64_t>& weights = scratch->weights;
+    weights.resize(scratch->items.size());
+    for (const std::uint32_t tile : touched) {
+      weights[tile] = 0;
+      for (const TileItem& item : scratch->items[tile]) weights[tile] += 1 + item.count;
+    }
+    std::stable_sort(touched.begin(), touched.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return weights[a] > weights[b]; });
+  }
+
   /// Draws what the tiles have.
   void run_back() {
     std::vector<std::uint32_t>& touched = scratch->touched;
+    sort_tiles();
     base::parallel_for(touched.size(), [&](std::size_t i, std::size_t worker) {
       std::vector<TileItem>& items = scratch->items[touched[i]];
       process_tile(scratch->workers[worker]->tile, desc, grid, touched[i], items);

@@ -4,13 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <mutex>
 #include <random>
 
 #include "base/float_mode.h"
+#include "base/workers.h"
 #include "raster/stage.h"
 
 namespace vitrine::raster {
@@ -298,6 +301,47 @@ TEST(Pass, WhatTheClipperKeepsCountsWhateverIsCulledLater) {
     scene.draw();
     EXPECT_EQ(counters[static_cast<std::size_t>(Statistic::kClippingPrimitives)], 4u) << "cull mode " << mode;
   }
+}
+
+struct Begun {
+  std::mutex mutex;
+  std::vector<std::uint32_t> tiles;  ///< 3 columns of them
+};
+
+base::LaneMask note_tiles(const void* user, const base::WaveRegister* in, base::WaveRegister* out,
+                          base::LaneMask active, base::LaneMask helpers) {
+  auto& begun = *static_cast<Begun*>(const_cast<void*>(user));
+  const std::lock_guard lock(begun.mutex);
+  base::for_each_lane(active & ~helpers, [&](std::size_t lane) {
+    const auto place = [&](std::size_t c) {
+      return static_cast<std::uint32_t>(std::bit_cast<float>(in[4 + c].lane[lane]));
+    };
+    const std::uint32_t tile = place(1) / 64 * 3 + place(0) / 64;
+    if (std::ranges::find(begun.tiles, tile) == begun.tiles.end()) begun.tiles.push_back(tile);
+  });
+  return pass_colors(nullptr, in, out, active, helpers);
+}
+
+/// Else the last tile keeps one thread busy when the others have nothing left.
+TEST(Pass, TilesWithMostPrimitivesAreBegunFirst) {
+  Scene scene;
+  const auto add = [&](float x0, float y0, float x1, float y1, float x2, float y2) {
+    for (const auto& [x, y] : {std::pair{x0, y0}, {x1, y1}, {x2, y2}})
+      scene.corners.push_back({x, y, 0.5f, 1.0f, {1, 1, 1, 1}});
+  };
+  add(-1, -1, 3, -1, -1, 3);
+  for (int i = 0; i < 100; ++i) add(0.8f, 0.8f, 0.9f, 0.8f, 0.8f, 0.9f);
+  scene.state.depth_test = false;
+  scene.state.scissor[0] = {{0, 0}, {kWidth, kHeight}};
+  for (std::uint32_t c = 0; c < 2; ++c)
+    scene.fragment.interface.inputs.push_back(slot(spirv::BuiltIn::kFragCoord, c, 4 + c));
+  Begun begun;
+  scene.fragment.run = note_tiles;
+  scene.fragment.user = &begun;
+  scene.draw();
+  ASSERT_EQ(begun.tiles.size(), 9u);
+  const auto heavy = std::ranges::find(begun.tiles, 5u) - begun.tiles.begin();
+  EXPECT_LT(static_cast<std::size_t>(heavy), base::worker_count());
 }
 
 TEST(Pass, SurvivesPositionsThatAreNotNumbers) {
