@@ -431,17 +431,24 @@ struct Pass::Impl {
     keep(handed);
   }
 
-  /// Those with the most primitives first, so that none of them is begun when the other threads have nothing left.
+  /// Those with many times the mean of primitives first, so that none of them is begun when the other threads have
+  /// nothing left. The others stay in their order, in which neighbours find primitives in the caches.
   void sort_tiles() {
     std::vector<std::uint32_t>& touched = scratch->touched;
     std::vector<std::uint64_t>& weights = scratch->weights;
     weights.resize(scratch->items.size());
+    std::uint64_t sum = 0, most = 0;
     for (const std::uint32_t tile : touched) {
-      weights[tile] = 0;
-      for (const TileItem& item : scratch->items[tile]) weights[tile] += 1 + item.count;
+      std::uint64_t weight = 0;
+      for (const TileItem& item : scratch->items[tile]) weight += 1 + item.count;
+      weights[tile] = weight;
+      sum += weight;
+      most = std::max(most, weight);
     }
+    const std::uint64_t mean = sum / std::max<std::size_t>(touched.size(), 1) + 1;
+    if (most < 2 * mean) return;
     std::stable_sort(touched.begin(), touched.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return weights[a] > weights[b]; });
+                     [&](std::uint32_t a, std::uint32_t b) { return weights[a] / mean > weights[b] / mean; });
   }
 
   /// Draws what the tiles have.
