@@ -24,9 +24,16 @@ std::string on_one_line(std::string name) {
   return name;
 }
 
+/// genhtml of lcov 2 refuses functions that begin on a line without code.
+std::uint32_t first_line_with_code(const FileCoverage& file, std::uint32_t line) {
+  const auto found = file.lines.lower_bound(line);
+  return found == file.lines.end() ? line : found->first;
+}
+
 void add_functions(std::string& text, const FileCoverage& file) {
   std::size_t hit = 0;
-  for (const auto& [name, function] : file.functions) add_line(text, "FN:", function.line, ",", on_one_line(name));
+  for (const auto& [name, function] : file.functions)
+    add_line(text, "FN:", first_line_with_code(file, function.line), ",", on_one_line(name));
   for (const auto& [name, function] : file.functions) {
     add_line(text, "FNDA:", function.count, ",", on_one_line(name));
     hit += function.count != 0;

@@ -24,6 +24,7 @@ struct FileCoverage {
 /// By file name.
 using Coverage = std::map<std::string, FileCoverage>;
 
+/// A function's line is the first behind its beginning that has code.
 std::string to_lcov(const Coverage& coverage);
 
 }  // namespace vitrine::glass

@@ -29,6 +29,11 @@ TEST(CliTracefiles, AddUp) {
             "end_of_record\nTN:\nSF:b,c.frag\nFNF:0\nFNH:0\nBRF:0\nBRH:0\nDA:5,1\nLF:1\nLH:1\nend_of_record\n");
 }
 
+TEST(CliTracefiles, FunctionsBeginWhereCodeIs) {
+  EXPECT_EQ(to_lcov(read({"SF:a.comp\nFN:7,put\nFNDA:4,put\nDA:8,4\nend_of_record\n"})),
+            "TN:\nSF:a.comp\nFN:8,put\nFNDA:4,put\nFNF:1\nFNH:1\nBRF:0\nBRH:0\nDA:8,4\nLF:1\nLH:1\nend_of_record\n");
+}
+
 TEST(CliTracefiles, SumsSayHowMuchRan) {
   const CoverageSummary summary = summary_of(read({kFirst}));
   EXPECT_EQ(summary.lines.hit, 1u);

@@ -269,7 +269,7 @@ class Command(unittest.TestCase):
         text = re.sub("<[^>]*>", "", page.read_text())
         self.assertRegex(text, r"(?m)^ +8 +: +24 :   data\[i\] = i;")
         self.assertRegex(text, r"(?m)^ +14 +\[ \+  \+ \]: +32 :   if \(i &lt; count\) put\(i\);")
-        self.assertRegex(text, r"(?m)^ +15 +: +: \}")
+        self.assertRegex(text, r"(?m)^ +15 +: +(32 )?: \}")  # Newer compilers say where functions end.
 
     def test_reports_do_not_depend_on_threads(self):
         reports = set()
