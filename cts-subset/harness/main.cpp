@@ -44,7 +44,7 @@ void register_cases() {
   // Mutants differ from the reference in other ways than a deviation's row says.
   if (options().mutate) std::erase_if(all, [](const Case& c) { return !c.deviation.empty(); });
   for (const Generator& generator : generators()) {
-    const uint32_t count = options().count ? options().count : generator.count;
+    const uint32_t count = options().count ? options().count : std::min(generator.count, options().at_most);
     for (uint32_t i = 0; i < count; ++i)
       all.push_back(
           {generator.group, generator.name + "/" + std::to_string(i), generator.body, {}, {}, i, generator.file});

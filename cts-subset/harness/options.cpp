@@ -30,6 +30,7 @@ constexpr char kUsage[] =
     "  --fingerprints=FILE  compare nothing: append each case's name and a hash of the device's bytes\n"
     "  --seed=N          seed of every random case (default 1)\n"
     "  --count=N         cases per random generator; those that draw nothing go on with other seeds\n"
+    "  --at-most=N       no more than N cases per random generator, each as in the default run\n"
     "  --validation=0|1  validation layer (default 1)\n"
     "  --mutate          fuzz: every shader of a case is changed at random, into one that is still valid\n"
     "  --isolate         run cases in child processes; a crash is counted and the rest goes on\n"
@@ -83,6 +84,8 @@ Options parse_options(int argc, char** argv) {
       result.seed = number();
     else if (name == "--count")
       result.count = small();
+    else if (name == "--at-most")
+      result.at_most = small();
     else if (name == "--validation")
       result.validation = number() != 0;
     else if (name == "--mutate")

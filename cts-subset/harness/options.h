@@ -18,17 +18,18 @@ struct Options {
   std::string results = "cts-results";
   std::string fingerprints;  ///< file that receives the name and a hash of every case instead of a comparison
   uint64_t seed = 1;
-  uint32_t count = 0;        ///< cases per random generator; 0 = each generator's default
-  bool validation = true;    ///< VK_LAYER_KHRONOS_validation on both devices
-  bool pictures = false;     ///< of every case, not only of those that differ
-  bool mutate = false;       ///< shaders of the cases are changed at random
-  bool isolate = false;      ///< run cases in child processes and survive crashes
-  bool self_test = false;    ///< only the cases that must fail
-  uint32_t jobs = 1;         ///< child processes at a time (with isolate)
-  uint32_t timeout_s = 120;  ///< a case running longer counts as crashed (with isolate)
-  uint32_t first = 0;        ///< child: index of the first case to run
-  uint32_t stride = 1;       ///< child: distance between its cases
-  std::string progress;      ///< child: file that receives one line per case begun and ended
+  uint32_t count = 0;             ///< cases per random generator; 0 = each generator's default
+  uint32_t at_most = UINT32_MAX;  ///< cases per random generator, if count is 0
+  bool validation = true;         ///< VK_LAYER_KHRONOS_validation on both devices
+  bool pictures = false;          ///< of every case, not only of those that differ
+  bool mutate = false;            ///< shaders of the cases are changed at random
+  bool isolate = false;           ///< run cases in child processes and survive crashes
+  bool self_test = false;         ///< only the cases that must fail
+  uint32_t jobs = 1;              ///< child processes at a time (with isolate)
+  uint32_t timeout_s = 120;       ///< a case running longer counts as crashed (with isolate)
+  uint32_t first = 0;             ///< child: index of the first case to run
+  uint32_t stride = 1;            ///< child: distance between its cases
+  std::string progress;           ///< child: file that receives one line per case begun and ended
 };
 
 /// Parses what GoogleTest left of argv. Prints usage and exits for an unknown argument.
