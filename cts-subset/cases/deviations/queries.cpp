@@ -52,7 +52,7 @@ const AddCase kDiscarded("clipping", "deviation.discarded_invocations", "discard
                            for (const VkBool32 discard : {VK_FALSE, VK_TRUE}) {
                              GraphicsSpec spec;
                              spec.vertex = kFullScreenVertex;
-                             spec.fragment = kWhite;
+                             if (!discard) spec.fragment = kWhite;
                              spec.raster.rasterizerDiscardEnable = discard;
                              pipelines.push_back(make_pipeline(run, spec, target));
                            }

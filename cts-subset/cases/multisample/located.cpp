@@ -137,13 +137,14 @@ const Seen kSeen[] = {
      "layout(location = 0) in vec2 place;\n"
      "layout(location = 0) out vec4 result;\n"
      "void main() {\n"
-     "  vec2 last = round(interpolateAtSample(place, COUNT - 1) * 16) / 16;\n"
-     "  vec2 some = round(interpolateAtSample(place, int(gl_FragCoord.x) % COUNT) * 16) / 16;\n"
-     "  result = vec4(last, some);\n"
+     "  vec2 one = round(interpolateAtOffset(place, vec2(-0.5, 0.25)) * 16) / 16;\n"
+     "  vec2 other = round(interpolateAtOffset(place, vec2(int(gl_FragCoord.x) % 8) / 16) * 16) / 16;\n"
+     "  result = vec4(one, other);\n"
      "}\n",
-     [](const Places& places, uint32_t, uint32_t x, uint32_t y, uint32_t) -> std::array<float, 4> {
-       const Place &last = places.back(), &some = places[x % places.size()];
-       return {at(last.x, x), at(last.y, y), at(some.x, x), at(some.y, y)};
+     // Offsets are the middle's, wherever samples are; interpolateAtSample is not allowed where they are placed.
+     [](const Places&, uint32_t, uint32_t x, uint32_t y, uint32_t) -> std::array<float, 4> {
+       const int other = 8 + static_cast<int>(x % 8);
+       return {at(0, x), at(12, y), at(other, x), at(other, y)};
      }},
     {false,
      "layout(location = 1) centroid in vec2 centroid_place;\n"

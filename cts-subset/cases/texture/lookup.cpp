@@ -33,10 +33,10 @@ VkFormat random_format(Random& random, const Family& family) {
     if ((info.numeric == Numeric::kDepth) != (family.kind == Kind::kShadow)) return false;
     if (family.kind == Kind::kShadow && info.format == VK_FORMAT_S8_UINT) return false;
     if (family.integer) return is_integer(info) && reference_has(info.format, kSampled);
-    const VkFormatFeatureFlags needed = family.anisotropic ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT
-                                        : family.reduced   ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_MINMAX_BIT
-                                                           : VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
-    return (gpus().reference.features_of(info.format) & needed) != 0;
+    VkFormatFeatureFlags needed = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
+    if (family.anisotropic) needed |= VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+    if (family.reduced) needed |= VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_MINMAX_BIT;
+    return (gpus().reference.features_of(info.format) & needed) == needed;
   };
   std::vector<VkFormat> formats;
   for (const FormatInfo& info : all_formats())

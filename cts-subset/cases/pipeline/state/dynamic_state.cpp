@@ -66,6 +66,8 @@ DynamicState::DynamicState(Run& run, Random& random, float share, const Graphics
   leave_multisample(samples);
   leave_blending(colors);
   leave_vertex_input();
+  // Only commands discard everything: a pipeline that does so by itself has neither a fragment shader nor its state.
+  spec_.raster.rasterizerDiscardEnable = VK_FALSE;
 }
 
 void DynamicState::set(VkCommandBuffer cmd, const Buffer& vertices) const {
