@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,10 @@ void must(VkResult result, const char* what) {
   std::fprintf(stderr, "%s: VkResult %d\n", what, result);
   std::exit(3);
 }
+
+/// What ends the objects that were made, the last of them first: some versions of the validation layer die of objects
+/// that are alive when the process ends.
+std::vector<std::function<void()>> ends;
 
 constexpr std::pair<const char*, VkShaderStageFlagBits> kStages[] = {
     {".comp.spv", VK_SHADER_STAGE_COMPUTE_BIT},
@@ -50,6 +55,7 @@ Device make_device() {
   VkInstanceCreateInfo instance{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
   instance.pApplicationInfo = &application;
   must(vkCreateInstance(&instance, nullptr, &d.instance), "vkCreateInstance");
+  ends.push_back([d] { vkDestroyInstance(d.instance, nullptr); });
   std::uint32_t count = 1;
   if (vkEnumeratePhysicalDevices(d.instance, &count, &d.physical) < 0 || count == 0) std::exit(3);
   const float priority = 1;
@@ -66,6 +72,7 @@ Device make_device() {
   device.enabledExtensionCount = 1;
   device.ppEnabledExtensionNames = &extension;
   must(vkCreateDevice(d.physical, &device, nullptr, &d.device), "vkCreateDevice");
+  ends.push_back([d] { vkDestroyDevice(d.device, nullptr); });
   vkGetDeviceQueue(d.device, 0, 0, &d.queue);
   return d;
 }
@@ -82,6 +89,7 @@ VkPipelineShaderStageCreateInfo stage_of(VkDevice device, const std::string& nam
   info.codeSize = words.size() * 4;
   info.pCode = words.data();
   must(vkCreateShaderModule(device, &info, nullptr, &stage.module), "vkCreateShaderModule");
+  ends.push_back([=] { vkDestroyShaderModule(device, stage.module, nullptr); });
   stage.pName = "main";
   return stage;
 }
@@ -95,6 +103,7 @@ VkRenderPass make_pass(VkDevice device) {
   info.pSubpasses = &subpass;
   VkRenderPass pass;
   must(vkCreateRenderPass(device, &info, nullptr, &pass), "vkCreateRenderPass");
+  ends.push_back([=] { vkDestroyRenderPass(device, pass, nullptr); });
   return pass;
 }
 
@@ -136,6 +145,7 @@ VkPipeline make_graphics(VkDevice device, const Stages& stages, VkPipelineLayout
   info.renderPass = pass;
   VkPipeline pipeline;
   must(vkCreateGraphicsPipelines(device, {}, 1, &info, nullptr, &pipeline), "vkCreateGraphicsPipelines");
+  ends.push_back([=] { vkDestroyPipeline(device, pipeline, nullptr); });
   return pipeline;
 }
 
@@ -145,6 +155,7 @@ VkPipeline make_compute(VkDevice device, const Stages& stages, VkPipelineLayout 
   info.layout = layout;
   VkPipeline pipeline;
   must(vkCreateComputePipelines(device, {}, 1, &info, nullptr, &pipeline), "vkCreateComputePipelines");
+  ends.push_back([=] { vkDestroyPipeline(device, pipeline, nullptr); });
   return pipeline;
 }
 
@@ -156,6 +167,7 @@ void draw(VkDevice device, VkCommandBuffer commands, VkRenderPass pass, VkPipeli
   info.layers = 1;
   VkFramebuffer framebuffer;
   must(vkCreateFramebuffer(device, &info, nullptr, &framebuffer), "vkCreateFramebuffer");
+  ends.push_back([=] { vkDestroyFramebuffer(device, framebuffer, nullptr); });
   VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
   begin.renderPass = pass;
   begin.framebuffer = framebuffer;
@@ -170,6 +182,7 @@ void record(VkDevice device, const Stages& stages, VkCommandBuffer commands) {
   VkPipelineLayoutCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
   VkPipelineLayout layout;
   must(vkCreatePipelineLayout(device, &info, nullptr, &layout), "vkCreatePipelineLayout");
+  ends.push_back([=] { vkDestroyPipelineLayout(device, layout, nullptr); });
   if (has(stages, VK_SHADER_STAGE_COMPUTE_BIT)) {
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, make_compute(device, stages, layout));
     vkCmdDispatch(commands, times, 1, 1);
@@ -193,6 +206,7 @@ int main(int argc, char** argv) {
   VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   VkCommandPool pool;
   must(vkCreateCommandPool(d.device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
+  ends.push_back([=] { vkDestroyCommandPool(d.device, pool, nullptr); });
   VkCommandBufferAllocateInfo allocation{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
   allocation.commandPool = pool;
   allocation.commandBufferCount = 1;
@@ -207,6 +221,9 @@ int main(int argc, char** argv) {
   submit.pCommandBuffers = &commands;
   must(vkQueueSubmit(d.queue, 1, &submit, {}), "vkQueueSubmit");
   must(vkQueueWaitIdle(d.queue), "vkQueueWaitIdle");
-  // The process ends with its objects alive: what is tested has been said.
+  while (!ends.empty()) {
+    ends.back()();
+    ends.pop_back();
+  }
   return 0;
 }

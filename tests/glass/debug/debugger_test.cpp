@@ -81,8 +81,10 @@ TEST(Debugger, SaysWhatTheShaderComputesOtherwise) {
 }
 
 TEST(Debugger, ShowsMemoryAsItWas) {
-  const Session s = session({"tbreak 26", "run", "print data[1]", "print cache[2]", "next", "print data[1]", "back",
-                             "print data[1]", "back", "back", "back", "print cache[2]", "tbreak 26", "continue"});
+  // finish: newer compilers have a line for the return at the end.
+  const Session s =
+      session({"tbreak 26", "run", "print data[1]", "print cache[2]", "finish", "print data[1]", "tbreak 26",
+               "reverse-continue", "print data[1]", "back", "back", "back", "print cache[2]", "tbreak 26", "continue"});
   expect_in_order(s.text, {"data[1] = 11", "cache[2] = 12", "has ended", "data[1] = 38", "main at shader.glsl:26",
                            "data[1] = 11", "cache[2] = 12"});
 }

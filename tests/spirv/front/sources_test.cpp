@@ -56,8 +56,7 @@ float twice(float x) {
   return x * 2.0;
 }
 void put(uint i, float x) {
-  b.v[i] =
-      twice(x);
+  b.v[i] = twice(x);
 }
 void main() {
   uint i = gl_GlobalInvocationID.x;
@@ -72,10 +71,10 @@ class SourcesOfGlsl : public testing::TestWithParam<DebugInfo> {};
 TEST_P(SourcesOfGlsl, CallsAreStacked) {
   const ir::Function function = translated(compile_glsl(kCompute, kCalls, GetParam()));
   EXPECT_EQ(stacks_of(function, ir::Op::kFMul),
-            (std::vector<std::string>{"5 twice < 9 put < 13 main", "5 twice < 9 put < 15 main"}));
+            (std::vector<std::string>{"5 twice < 8 put < 12 main", "5 twice < 8 put < 14 main"}));
   EXPECT_EQ(stacks_of(function, ir::Op::kStoreStorage),
-            (std::vector<std::string>{"9 put < 13 main", "9 put < 15 main"}));
-  EXPECT_EQ(stacks_of(function, ir::Op::kLoadStorage), (std::vector<std::string>{"13 main"}));
+            (std::vector<std::string>{"8 put < 12 main", "8 put < 14 main"}));
+  EXPECT_EQ(stacks_of(function, ir::Op::kLoadStorage), (std::vector<std::string>{"12 main"}));
 }
 
 TEST_P(SourcesOfGlsl, FilesHaveTheirTextForObservers) {
@@ -92,7 +91,7 @@ TEST_P(SourcesOfGlsl, FunctionsKnowWhereTheyBegin) {
   std::set<std::pair<std::string, std::uint32_t>> functions;
   for (const SourceFunction& row : function.sources->functions) functions.emplace(row.name, row.line);
   EXPECT_EQ(functions,
-            (std::set<std::pair<std::string, std::uint32_t>>{{"", 0}, {"twice", 4}, {"put", 7}, {"main", 11}}));
+            (std::set<std::pair<std::string, std::uint32_t>>{{"", 0}, {"twice", 4}, {"put", 7}, {"main", 10}}));
 }
 
 INSTANTIATE_TEST_SUITE_P(, SourcesOfGlsl, testing::Values(DebugInfo::kLines, DebugInfo::kNonSemantic),

@@ -50,8 +50,7 @@ void main() {
   float other = s[63u - gl_LocalInvocationIndex];       //@
   atomicAdd(c.n, 1u);                                   //@
   c.w[i] = bitfieldReverse(c.w[i + 64u]) % (i + 7u);    //@
-  b.v[i] =
-      other + sin(sum);                                 //@
+  b.v[i] = other + sin(sum);                            //@
 }
 )"},
     {"images", VK_SHADER_STAGE_COMPUTE_BIT, R"(
