@@ -29,18 +29,20 @@ struct Sums {
   Sums(const Sums&) = delete;
   Sums& operator=(const Sums&) = delete;
   ~Sums() {
-    const double alone = work - items;
+    const double alone = work - looped;
     char line[200];
     std::snprintf(
         line, sizeof line,
         "%zu: %.6f s by one, %.6f s by all: %.6f s outside of loops, %.6f s in %llu loops, %.6f s of longest items",
-        simulated_workers(), work, alone + spread, alone, spread, static_cast<unsigned long long>(loops), longest);
+        simulated_workers(), alone + items, alone + spread, alone, spread, static_cast<unsigned long long>(loops),
+        longest);
     log("threads", line);
   }
 
   std::mutex mutex;
   double work = 0;     ///< SimulatedWork
-  double items = 0;    ///< of it, in loops
+  double looped = 0;   ///< of it, in loops, with what it takes to time each item
+  double items = 0;    ///< in items
   double spread = 0;   ///< the same, by all threads
   double longest = 0;  ///< the longest item of each loop
   std::uint64_t loops = 0;
@@ -64,6 +66,7 @@ std::size_t simulated_workers() {
 void simulate_loop(std::size_t count, FunctionRef<void(std::size_t, std::size_t)> body) {
   std::vector<double> busy(simulated_workers());  // until when, by thread
   double items = 0, longest = 0;
+  const double start = thread_seconds();
   for (std::size_t i = 0; i < count; ++i) {
     const auto next = std::min_element(busy.begin(), busy.end());
     const double begin = thread_seconds();
@@ -75,6 +78,7 @@ void simulate_loop(std::size_t count, FunctionRef<void(std::size_t, std::size_t)
   }
   Sums& s = sums();
   const std::lock_guard lock(s.mutex);
+  s.looped += thread_seconds() - start;
   s.items += items;
   s.spread += *std::max_element(busy.begin(), busy.end());
   s.longest += longest;
