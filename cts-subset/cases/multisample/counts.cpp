@@ -304,7 +304,49 @@ void without_attachments(Run& run, uint32_t samples) {
   put(run, "runs", {2, 1}, 1, std::vector<uint32_t>(runs.as<uint32_t>(), runs.as<uint32_t>() + 8));
 }
 
+/// Without attachments each pipeline of a subpass has a count of its own (variableMultisampleRate).
+void several_counts(Run& run) {
+  const uint32_t kCounts[] = {4, 1, 8, 2};
+  std::vector<uint32_t> counted(8 * std::size(kCounts), 0);
+  if (!draws(run, 8)) {
+    for (size_t i = 0; i < std::size(kCounts); ++i)
+      for (uint32_t s = 0; s < kCounts[i]; ++s)
+        for (uint32_t y = 0; y < kSide; ++y)
+          for (uint32_t x = 0; x < kSide; ++x)
+            counted[8 * i + s] += covered(kCounts[i] == 1 ? Place{8, 8} : standard_places(kCounts[i])[s], x, y) ? 1 : 0;
+    put(run, "runs", {8, 1}, 1, counted);
+    return;
+  }
+  run.require(run.gpu.features.variableMultisampleRate, "variableMultisampleRate");
+  TargetSpec target_spec;
+  target_spec.colors.clear();
+  Target target = make_target(run, target_spec);
+  const Buffer runs = run.buffer_of(counted);
+  const Resources res = run.resources({storage_buffer(0, runs)});
+  std::vector<VkPipeline> pipelines;
+  for (size_t i = 0; i < std::size(kCounts); ++i) {
+    target.spec.samples = static_cast<VkSampleCountFlagBits>(kCounts[i]);
+    GraphicsSpec spec;
+    spec.vertex = kCutVertex;
+    spec.fragment = "layout(binding = 0) buffer Runs { uint runs[32]; };\nvoid main() { atomicAdd(runs[" +
+                    std::to_string(8 * i) + " + gl_SampleID], 1u); }\n";
+    spec.layout = res.layout;
+    pipelines.push_back(make_pipeline(run, spec, target));
+  }
+  run.once([&](VkCommandBuffer cmd) {
+    target.begin(cmd);
+    res.bind(cmd);
+    for (const VkPipeline pipeline : pipelines) {
+      bind_pipeline(cmd, pipeline);
+      vkCmdDraw(cmd, 3, 1, 0, 0);
+    }
+    vkCmdEndRenderPass(cmd);
+  });
+  put(run, "runs", {8, 1}, 1, std::vector<uint32_t>(runs.as<uint32_t>(), runs.as<uint32_t>() + counted.size()));
+}
+
 const bool kRegistered = [] {
+  AddCase("multisample", "several_counts", several_counts);
   for (const uint32_t samples : {2u, 4u, 8u}) {
     const std::string suffix = ".samples_" + std::to_string(samples);
     static const char* const kGenerators[] = {
