@@ -18,6 +18,14 @@ using Json = nlohmann::ordered_json;
 
 bool is_header(std::string_view name) { return name == "version" || name == "format"; }
 
+/// Whole where both are and their sum fits.
+Json sum_of(const Json& a, const Json& b) {
+  std::int64_t sum = 0;
+  const bool whole = a.is_number_integer() && b.is_number_integer();
+  if (whole && !__builtin_add_overflow(a.get<std::int64_t>(), b.get<std::int64_t>(), &sum)) return sum;
+  return a.get<double>() + b.get<double>();
+}
+
 void add(Json& sum, const Json& part) {
   for (const auto& [name, value] : part.items()) {
     Json* const there = sum.contains(name) ? &sum[name] : nullptr;
@@ -29,10 +37,8 @@ void add(Json& sum, const Json& part) {
       continue;
     else if (name.starts_with("most") && there->is_number() && value.is_number())
       *there = std::max(*there, value);
-    else if (there->is_number_integer() && value.is_number_integer())
-      *there = there->get<std::int64_t>() + value.get<std::int64_t>();
     else if (there->is_number() && value.is_number())
-      *there = there->get<double>() + value.get<double>();
+      *there = sum_of(*there, value);
   }
 }
 

@@ -18,6 +18,12 @@ TEST(CliCounters, AddUpByName) {
   EXPECT_NE(sum->find("\"version\": 1"), std::string::npos);
 }
 
+TEST(CliCounters, SumsThatDoNotFitAreRounded) {
+  const auto sum = sum_of_counters(R"({"adds": 9223372036854775807})", R"({"adds": 9223372036854775807})");
+  ASSERT_TRUE(sum);
+  EXPECT_EQ(read_counters(*sum), (Counters{{"adds", 18446744073709551614.0}}));
+}
+
 TEST(CliCounters, OfTheMostTheLargerCounts) {
   const auto sum = sum_of_counters(R"({"total": {"mostOverdraw": 3}})", R"({"total": {"mostOverdraw": 2}})");
   ASSERT_TRUE(sum);
