@@ -8,11 +8,19 @@
 #include "glass/cli/commands.h"
 #include "glass/cli/files.h"
 #include "glass/cli/findings.h"
+#include "glass/cli/places.h"
 #include "glass/cli/say.h"
 #include "glass/report/report.h"
 
 namespace vitrine::glass::cli {
 namespace {
+
+constexpr const char* kNothingChecked =
+    "nothing was checked: no process of the application used this driver (the loader, libvulkan.so.1, finds it by "
+    "VK_DRIVER_FILES, which the application has to leave as it is)";
+constexpr const char* kDisassembly =
+    "lines of .spvasm are those of shaders without debug information; compiled with it (glslangValidator -g, glslc -g, "
+    "dxc -fspv-debug=vulkan-with-source), findings lie at lines of their sources";
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
@@ -82,12 +90,13 @@ int check(const CheckOptions& options) {
   const Ending ending = run_application(options.application, environment);
   if (!ending.error.empty()) return kCouldNotRun;
   const auto reports = folder.files(".json");
-  if (reports.empty()) say("nothing was checked: no process of the application used this driver");
+  if (reports.empty()) say(kNothingChecked);
   std::vector<Finding> findings;
   const bool good = gather(reports, findings);
   if (!options.quiet) std::fputs(to_report(ReportFormat::kText, findings).c_str(), stderr);
-  if (options.annotations) std::fputs(annotations(findings).c_str(), stderr);
-  const bool written = write_reports(options.sarif, options.json, findings);
+  if (options.annotations) std::fputs(annotations(in_repository(findings)).c_str(), stderr);
+  const bool written = write_reports({options.sarif, options.json, options.code_quality}, findings);
+  if (any_in_disassembly(findings)) say(kDisassembly);
   const bool found = !reports.empty() && summarize(findings, reports.size()) != 0;
   if (ending.code) return ending.code;
   if (found) return kFound;

@@ -20,11 +20,11 @@ int run(const CommandLine& application);
 
 struct CheckOptions {
   std::vector<std::string> tools;
-  std::string sarif, json;   ///< files; empty: none
-  std::string bugs;          ///< folder for bug files; empty: none
-  bool annotations = false;  ///< for the runners of a code host
-  bool quiet = false;        ///< no text
-  std::string invocations;   ///< whose messages are wanted, separated by semicolons; empty: all
+  std::string sarif, json, code_quality;  ///< files; empty: none
+  std::string bugs;                       ///< folder for bug files; empty: none
+  bool annotations = false;               ///< for the runners of a code host
+  bool quiet = false;                     ///< no text
+  std::string invocations;                ///< whose messages are wanted, separated by semicolons; empty: all
   CommandLine application;
 };
 int check(const CheckOptions& options);

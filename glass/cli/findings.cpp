@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "glass/cli/code_quality.h"
 #include "glass/cli/files.h"
+#include "glass/cli/places.h"
 #include "glass/report/json.h"
 
 namespace vitrine::glass::cli {
@@ -150,10 +152,12 @@ void quote_files(std::vector<Finding>& findings) {
   }
 }
 
-bool write_reports(const std::string& sarif, const std::string& json, const std::vector<Finding>& findings) {
+bool write_reports(const ReportFiles& files, const std::vector<Finding>& findings) {
   bool good = true;
-  if (!sarif.empty()) good &= write_file(sarif, to_report(ReportFormat::kSarif, findings));
-  if (!json.empty()) good &= write_file(json, to_report(ReportFormat::kJson, findings));
+  const std::vector<Finding> placed = in_repository(findings);
+  if (!files.sarif.empty()) good &= write_file(files.sarif, to_report(ReportFormat::kSarif, placed));
+  if (!files.code_quality.empty()) good &= write_file(files.code_quality, code_quality(placed));
+  if (!files.json.empty()) good &= write_file(files.json, to_report(ReportFormat::kJson, findings));
   return good;
 }
 

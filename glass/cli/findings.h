@@ -23,7 +23,13 @@ std::vector<Finding> folded(std::vector<Finding> findings);
 /// Lines that the modules do not have, from the source files that they name, as far as they are there.
 void quote_files(std::vector<Finding>& findings);
 
-/// Writes them as SARIF and as JSON to the files that are named, or says why not (and gives false).
-bool write_reports(const std::string& sarif, const std::string& json, const std::vector<Finding>& findings);
+/// Files for reports; empty: none.
+struct ReportFiles {
+  std::string sarif, json, code_quality;
+};
+
+/// Writes them to the files that are named, or says why not (and gives false). What code hosts read (SARIF, code
+/// quality) has paths of the repository.
+bool write_reports(const ReportFiles& files, const std::vector<Finding>& findings);
 
 }  // namespace vitrine::glass::cli

@@ -92,6 +92,8 @@ void add_check(CLI::App& app, const Words& words, CheckOptions& options, int& co
       ->trigger_on_parse();
   command->add_option("--sarif", options.sarif, "Write the findings as SARIF 2.1.0")->type_name("FILE");
   command->add_option("--json", options.json, "Write the findings as JSON")->type_name("FILE");
+  command->add_option("--code-quality", options.code_quality, "Write the findings as GitLab's report of code quality")
+      ->type_name("FILE");
   command->add_option("--bugs", options.bugs, "Write the draws and dispatches in which something is found as bug files")
       ->type_name("FOLDER");
   command->add_flag("--annotations", options.annotations, "Print the findings as commands for GitHub's runners, too");

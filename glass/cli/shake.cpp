@@ -150,11 +150,11 @@ int compare_runs(const ShakeOptions& options) {
     if (!parting) return ending.code;
     const std::vector<Finding> findings = explain(options, seed, *parting);
     std::fputs(to_report(ReportFormat::kText, findings).c_str(), stderr);
-    return write_reports(options.sarif, options.json, findings) ? kFound : kCouldNotRun;
+    return write_reports({options.sarif, options.json, {}}, findings) ? kFound : kCouldNotRun;
   }
   say("the same bytes after each of " + std::to_string(before->size()) + " commands, with " +
       std::to_string(options.runs) + " seeds");
-  return write_reports(options.sarif, options.json, {}) ? 0 : kCouldNotRun;
+  return write_reports({options.sarif, options.json, {}}, {}) ? 0 : kCouldNotRun;
 }
 
 }  // namespace

@@ -97,6 +97,26 @@ class Command(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("::error file=a b.comp,line=12,col=3,title=vitrine/out-of-bounds-store::store past the end%0A", result.stderr)
 
+    def test_code_hosts_get_paths_of_the_repository(self):
+        (self.folder / ".git").mkdir()
+        (self.folder / "shaders").mkdir()
+        (self.folder / "shaders/a.comp").write_text("void main() {}\n")
+        for noted in (f"{self.folder}/shaders/a.comp", "../shaders/a.comp", "shaders/a.comp"):
+            finding = STORE | {"address": {"frames": [{"file": noted, "line": 1}]}}
+            result = self.check_it("--annotations", "--sarif=a.sarif", "--code-quality=a.json", findings=[report(finding)])
+            self.assertIn(f"{noted}:1: error", result.stderr)
+            self.assertIn("::error file=shaders/a.comp,line=1,", result.stderr)
+            place = json.loads((self.folder / "a.sarif").read_text())["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
+            self.assertEqual(place["artifactLocation"]["uri"], "shaders/a.comp")
+            rows = json.loads((self.folder / "a.json").read_text())
+            self.assertEqual([row["location"] for row in rows], [{"path": "shaders/a.comp", "lines": {"begin": 1}}])
+
+    def test_shaders_without_debug_information_are_told_how_to_get_it(self):
+        finding = STORE | {"address": {"frames": [{"file": "main.spvasm", "line": 89, "text": "OpStore %61 %60"}]}}
+        self.assertIn("-g", self.check_it("--quiet", findings=[report(finding)]).stderr)
+        (self.folder / "main.spvasm").write_text("; a file of the project's\n")
+        self.assertEqual(self.check_it("--quiet", findings=[report(finding)]).stderr, "vitrine: 1 error in 1 process\n")
+
     def test_failures_of_the_application_come_first(self):
         result = self.check_it(findings=[report(STORE)], end="kill -6 $$")
         self.assertEqual(result.returncode, 134)
