@@ -136,6 +136,8 @@ def faults(root, work, architecture):
     print(f"{archive}: {len(first[archive])} bytes, {unpacked} unpacked")
     if len(first[archive]) > MOST_PACKED or unpacked > MOST_UNPACKED:
         yield f"{len(first[archive])} bytes, {unpacked} unpacked"
+    if f"# Vitrine {version}" not in (tree / "README.md").read_text():
+        yield "the archive has no README of its version"
     with tarfile.open(root / "build/packages" / debug) as packed:
         packed.extractall(work)
     for program in PROGRAMS:
