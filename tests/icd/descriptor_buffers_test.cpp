@@ -217,11 +217,23 @@ TEST_F(DescriptorBuffers, EmbeddedSamplersNeedNoMemory) {
                                               "layout(set = 1, binding = 0) buffer O { float o[]; };\n"
                                               "layout(set = 2, binding = 0) uniform sampler s;\n"
                                               "void main() { o[0] = textureLod(sampler2D(t, s), vec2(0.5), 0).x; }");
-  for (const bool bound : {true, false}) {
+  const auto bind_samplers = [&](VkCommandBuffer commands, [[maybe_unused]] bool newer) {
+#ifdef VK_KHR_maintenance6
+    auto where = make_struct<VkBindDescriptorBufferEmbeddedSamplersInfoEXT>();
+    where.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
+    where.layout = layout;
+    where.set = 2;
+    if (newer) return VK_CALL(CmdBindDescriptorBufferEmbeddedSamplers2EXT)(commands, &where);
+#endif
+    VK_CALL(CmdBindDescriptorBufferEmbeddedSamplersEXT)(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 2);
+  };
+  for (const int way : {0, 1, 2}) {  // by the newer command, by the older one, not at all
+    const bool bound = way < 2;
+    result.floats[0] = 0;
     const VkCommandBuffer commands = begin();
     VK_CALL(CmdBindPipeline)(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     bind(commands, layout, 0, 3);
-    if (bound) VK_CALL(CmdBindDescriptorBufferEmbeddedSamplersEXT)(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 2);
+    if (bound) bind_samplers(commands, way == 0);
     VK_CALL(CmdDispatch)(commands, 1, 1, 1);
     run(commands);
     EXPECT_TRUE(!bound || result.floats[0] == 7.0f);

@@ -155,6 +155,16 @@ TEST_F(Replay, TimestampsGrowAndBecomeAvailable) {
   EXPECT_EQ(std::memcmp(words + 16, results, 32), 0) << "the host and the copy disagree";
   EXPECT_EQ(get(device, queries, 0, 3, sizeof results, results, 16, flags), VK_NOT_READY);
   EXPECT_EQ(results[2][1], 0u);
+  const VkCommandBuffer later = make_commands();
+  VK_GET(instance, CmdResetQueryPool)(later, queries, 0, 3);
+  const VkPipelineStageFlags2 stages[] = {VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_COPY_BIT,
+                                          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
+  for (std::uint32_t i = 0; i < 3; ++i) VK_GET(instance, CmdWriteTimestamp2)(later, stages[i], queries, i);
+  end_and_run(later);
+  const std::uint64_t before = results[1][0];
+  EXPECT_EQ(get(device, queries, 0, 3, sizeof results, results, 16, flags), VK_SUCCESS);
+  EXPECT_GE(results[0][0], before);
+  for (std::uint32_t i = 1; i < 3; ++i) EXPECT_GE(results[i][0], results[i - 1][0]);
   VK_GET(instance, DestroyQueryPool)(device, queries, nullptr);
 }
 

@@ -113,6 +113,38 @@ TEST_F(SurfaceTest, SaysWhatItCanDo) {
             VK_INCOMPLETE);
 }
 
+TEST_F(SurfaceTest, FormatsAreTheSameByBothDoors) {
+  auto info = make_struct<VkPhysicalDeviceSurfaceInfo2KHR>();
+  info.surface = surface;
+  VkSurfaceFormatKHR formats[8];
+  VkSurfaceFormat2KHR formats2[8];
+  for (VkSurfaceFormat2KHR& format : formats2) format = make_struct<VkSurfaceFormat2KHR>();
+  std::uint32_t count = 8, count2 = 8;
+  const auto two = VK_GET(instance, GetPhysicalDeviceSurfaceFormats2KHR);
+  EXPECT_EQ(VK_GET(instance, GetPhysicalDeviceSurfaceFormatsKHR)(physical_device, surface, &count, formats),
+            VK_SUCCESS);
+  EXPECT_EQ(two(physical_device, &info, &count2, formats2), VK_SUCCESS);
+  ASSERT_EQ(count2, count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    EXPECT_EQ(formats2[i].surfaceFormat.format, formats[i].format);
+    EXPECT_EQ(formats2[i].surfaceFormat.colorSpace, formats[i].colorSpace);
+  }
+  count2 = 1;
+  EXPECT_EQ(two(physical_device, &info, &count2, formats2), VK_INCOMPLETE);
+  EXPECT_EQ(count2, 1u);
+}
+
+TEST_F(SurfaceTest, OneDevicePresentsToTheWholeSurface) {
+  std::uint32_t count = 0;
+  const auto ask = VK_GET(instance, GetPhysicalDevicePresentRectanglesKHR);
+  EXPECT_EQ(ask(physical_device, surface, &count, nullptr), VK_SUCCESS);
+  ASSERT_EQ(count, 1u);
+  VkRect2D rectangle{{1, 1}, {}};
+  EXPECT_EQ(ask(physical_device, surface, &count, &rectangle), VK_SUCCESS);
+  EXPECT_EQ(rectangle.offset.x, 0);
+  EXPECT_EQ(rectangle.extent.width, 0xFFFFFFFFu) << "headless surfaces take their size from the swapchain";
+}
+
 class SwapchainTest : public SurfaceTest {
  protected:
   void SetUp() override {
@@ -183,6 +215,30 @@ TEST_F(SwapchainTest, ImagesTakeTurns) {
   }
   EXPECT_EQ(order, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2}));
   VK_GET(instance, DestroySemaphore)(device, acquired, nullptr);
+  destroy(swapchain);
+}
+
+TEST_F(SwapchainTest, TheDeviceIsAGroupOfOne) {
+  auto capabilities = make_struct<VkDeviceGroupPresentCapabilitiesKHR>();
+  ASSERT_EQ(VK_GET(instance, GetDeviceGroupPresentCapabilitiesKHR)(device, &capabilities), VK_SUCCESS);
+  EXPECT_EQ(capabilities.presentMask[0], 1u);
+  EXPECT_EQ(capabilities.presentMask[1], 0u);
+  VkDeviceGroupPresentModeFlagsKHR modes = 0;
+  ASSERT_EQ(VK_GET(instance, GetDeviceGroupSurfacePresentModesKHR)(device, surface, &modes), VK_SUCCESS);
+  EXPECT_EQ(modes, capabilities.modes);
+  EXPECT_EQ(modes, static_cast<VkFlags>(VK_DEVICE_GROUP_PRESENT_MODE_LOCAL_BIT_KHR));
+  const VkSwapchainKHR swapchain = create();
+  auto info = make_struct<VkAcquireNextImageInfoKHR>();
+  info.swapchain = swapchain;
+  info.timeout = UINT64_MAX;
+  info.semaphore = semaphore();
+  info.deviceMask = 1;
+  std::uint32_t index = 99;
+  ASSERT_EQ(VK_GET(instance, AcquireNextImage2KHR)(device, &info, &index), VK_SUCCESS);
+  EXPECT_EQ(index, 0u);
+  EXPECT_EQ(present(swapchain, index, info.semaphore), VK_SUCCESS);
+  EXPECT_EQ(VK_GET(instance, QueueWaitIdle)(queue), VK_SUCCESS);
+  VK_GET(instance, DestroySemaphore)(device, info.semaphore, nullptr);
   destroy(swapchain);
 }
 
