@@ -127,10 +127,6 @@ const char* type_of(VkDescriptorType type) {
   }
 }
 
-bool is_dynamic(VkDescriptorType type) {
-  return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
-}
-
 std::string plural(const char* noun, bool array) { return std::string(noun) + (array ? "_ARRAY" : ""); }
 
 /// The names of one kind of object, and where in buffers descriptors begin and end.
@@ -200,15 +196,17 @@ std::uint32_t sampler_of(const Bug& bug, const std::vector<Descriptor>& elements
 void write_binding(std::ostream& out, const Bug& bug, std::uint32_t set, const Binding& binding) {
   const std::vector<Descriptor> elements = elements_of(bug, set, binding);
   if (elements.empty()) return;
-  const bool array = elements.size() > 1, sampler = binding.type == VK_DESCRIPTOR_TYPE_SAMPLER;
+  const VkDescriptorType kind = plain_type(bug, set, binding);
+  if (kind == VK_DESCRIPTOR_TYPE_MUTABLE_EXT) throw Unspeakable{"arrays of descriptors of several types"};
+  const bool array = elements.size() > 1, sampler = kind == VK_DESCRIPTOR_TYPE_SAMPLER;
   const Operands names = operands_of(bug, elements);
   out << "  BIND "
       << (sampler ? plural("SAMPLER", array) + names.samplers : plural("BUFFER", array) + names.buffers + names.images);
-  if (const char* const type = type_of(binding.type); *type) out << " AS " << type;
-  if (binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) out << " SAMPLER sampler" << sampler_of(bug, elements);
+  if (const char* const type = type_of(kind); *type) out << " AS " << type;
+  if (kind == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) out << " SAMPLER sampler" << sampler_of(bug, elements);
   out << " DESCRIPTOR_SET " << set << " BINDING " << binding.binding;
-  if (is_dynamic(binding.type)) out << " OFFSET" << names.zeros;
-  if (kind_of(binding.type) == ResourceKind::kBuffer)
+  if (is_dynamic(kind)) out << " OFFSET" << names.zeros;
+  if (kind_of(kind) == ResourceKind::kBuffer)
     out << " DESCRIPTOR_OFFSET" << names.offsets << " DESCRIPTOR_RANGE" << names.ranges;
   out << "\n";
 }

@@ -45,6 +45,10 @@ class Writer {
   void operator()(const char* name, T& value) {
     object_[name] = json_of(value);
   }
+  template <class T>
+  void newer(const char* name, T& value) {
+    (*this)(name, value);
+  }
   Json take() { return std::move(object_); }
 
   template <class T>
@@ -105,6 +109,11 @@ class Reader {
   template <class T>
   void operator()(const char* name, T& value) {
     read(object_.at(name), value);
+  }
+  /// A member that stays as it is where the file has none.
+  template <class T>
+  void newer(const char* name, T& value) {
+    if (object_.contains(name)) read(object_[name], value);
   }
 
   template <class T>

@@ -107,6 +107,7 @@ struct Binding {
   std::uint32_t count = 0;  ///< bytes of an inline uniform block
   VkDescriptorBindingFlags flags = 0;
   std::vector<std::uint32_t> samplers;  ///< immutable ones; empty: none are
+  std::vector<VkDescriptorType> types;  ///< that descriptors of a mutable binding may take on; of others none
 };
 
 struct SetLayout {
@@ -121,7 +122,12 @@ struct Descriptor {
   std::uint64_t offset = 0, range = 0;  ///< of the buffer, dynamic offsets applied
   Blob bytes;                           ///< of an inline uniform block
   bool gone = false;                    ///< what it names was destroyed before the command; nothing else is known of it
+  VkDescriptorType type = VK_DESCRIPTOR_TYPE_MUTABLE_EXT;  ///< that it has taken on in a mutable binding
 };
+/// What it is where it is bound.
+inline VkDescriptorType type_of(const Descriptor& d, const Binding& binding) {
+  return binding.type == VK_DESCRIPTOR_TYPE_MUTABLE_EXT ? d.type : binding.type;
+}
 
 /// What a descriptor of a type points to.
 enum class ResourceKind : std::uint8_t { kBuffer, kImage, kTexels, kSampler, kBytes };
@@ -142,6 +148,9 @@ constexpr ResourceKind kind_of(VkDescriptorType type) {
     default:
       return ResourceKind::kImage;
   }
+}
+constexpr bool is_dynamic(VkDescriptorType type) {
+  return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
 }
 /// Whether it has what its type needs.
 inline bool is_complete(const Descriptor& d, VkDescriptorType type) {

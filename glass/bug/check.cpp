@@ -99,7 +99,8 @@ std::string fault_of_descriptors(const Bug& bug) {
     if (!binding) return "a binding that there is not";
     const bool block = kind_of(binding->type) == ResourceKind::kBytes;
     if (block ? size_of(d.bytes) > binding->count : d.element >= binding->count) return "an element that there is not";
-    if (!is_complete(d, binding->type)) return "a descriptor of another type";
+    const bool taken = binding->types.empty() || std::ranges::find(binding->types, d.type) != binding->types.end();
+    if (!taken || !is_complete(d, type_of(d, *binding))) return "a descriptor of another type";
     if (!names(bug.buffers, d.buffer) || !names(bug.views, d.view) || !names(bug.samplers, d.sampler) ||
         !names(bug.buffer_views, d.texels))
       return "a descriptor of something that there is not";

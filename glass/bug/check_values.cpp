@@ -174,8 +174,16 @@ std::string fault_of_stages(const Bug& bug) {
   return {};
 }
 
-bool is_type(VkDescriptorType type) {
-  return up_to(type, VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT) || type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK;
+/// A mutable binding says what its descriptors may be (VK_EXT_mutable_descriptor_type), no other does.
+bool has_types(const Binding& b) {
+  if (b.type != VK_DESCRIPTOR_TYPE_MUTABLE_EXT)
+    return b.types.empty() &&
+           (up_to(b.type, VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT) || b.type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK);
+  const auto may_be = [](VkDescriptorType t) {
+    return up_to(t, VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT) && !is_dynamic(t);
+  };
+  return !b.types.empty() && b.samplers.empty() && std::ranges::all_of(b.types, may_be) &&
+         std::set<VkDescriptorType>(b.types.begin(), b.types.end()).size() == b.types.size();
 }
 
 std::string fault_of_layout(const Bug& bug) {
@@ -183,7 +191,7 @@ std::string fault_of_layout(const Bug& bug) {
     std::set<std::uint32_t> numbers;
     for (const Binding& b : set.bindings) {
       const bool block = b.type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK;
-      if (!is_type(b.type) || b.binding > 1u << 24 || !numbers.insert(b.binding).second || (block && b.count % 4 != 0))
+      if (!has_types(b) || b.binding > 1u << 24 || !numbers.insert(b.binding).second || (block && b.count % 4 != 0))
         return "a binding that cannot be";
     }
   }

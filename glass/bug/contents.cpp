@@ -18,4 +18,15 @@ Bytes contents_of(const Bug& bug, const Buffer& buffer, bool after) {
   return out;
 }
 
+VkDescriptorType plain_type(const Bug& bug, std::uint32_t set, const Binding& binding) {
+  if (binding.type != VK_DESCRIPTOR_TYPE_MUTABLE_EXT) return binding.type;
+  const Descriptor* first = nullptr;
+  for (const Descriptor& d : bug.descriptors) {
+    if (d.set != set || d.binding != binding.binding) continue;
+    if (first && first->type != d.type) return VK_DESCRIPTOR_TYPE_MUTABLE_EXT;
+    first = &d;
+  }
+  return first ? first->type : binding.types.at(0);
+}
+
 }  // namespace vitrine::glass::bug

@@ -1,5 +1,6 @@
-// The members of a Bug by their names in the file: fields(visitor, value) calls visitor(name, member) for each. Reading
-// and writing are two visitors (glass/bug/file.cpp); there is no other list of members.
+// The members of a Bug by their names in the file: fields(visitor, value) calls visitor(name, member) for each, and
+// visitor.newer() for those that older files of this version lack. Reading and writing are two visitors
+// (glass/bug/file.cpp); there is no other list of members.
 #pragma once
 
 #include "glass/bug/bug.h"
@@ -163,6 +164,7 @@ void fields(V& v, Binding& b) {
   v("count", b.count);
   v("flags", b.flags);
   v("samplers", b.samplers);
+  v.newer("types", b.types);
 }
 template <class V>
 void fields(V& v, SetLayout& s) {
@@ -182,6 +184,7 @@ void fields(V& v, Descriptor& d) {
   v("range", d.range);
   v("bytes", d.bytes);
   v("gone", d.gone);
+  v.newer("type", d.type);
 }
 template <class V>
 void fields(V& v, Stream& s) {

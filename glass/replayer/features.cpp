@@ -63,6 +63,8 @@ struct Features::Structures {
   VkPhysicalDeviceWorkgroupMemoryExplicitLayoutFeaturesKHR shared{
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_WORKGROUP_MEMORY_EXPLICIT_LAYOUT_FEATURES_KHR};
   VkPhysicalDeviceImage2DViewOf3DFeaturesEXT slices{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_2D_VIEW_OF_3D_FEATURES_EXT};
+  VkPhysicalDeviceMutableDescriptorTypeFeaturesEXT mutable_types{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MUTABLE_DESCRIPTOR_TYPE_FEATURES_EXT};
   VkPhysicalDeviceFaultFeaturesEXT fault{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT};
 #ifdef VK_KHR_maintenance8
   VkPhysicalDeviceMaintenance8FeaturesKHR eighth{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_8_FEATURES_KHR};
@@ -99,6 +101,7 @@ struct Features::Structures {
     f(VK_KHR_SHADER_CLOCK_EXTENSION_NAME, clock);
     f(VK_KHR_WORKGROUP_MEMORY_EXPLICIT_LAYOUT_EXTENSION_NAME, shared);
     f(VK_EXT_IMAGE_2D_VIEW_OF_3D_EXTENSION_NAME, slices);
+    f(VK_EXT_MUTABLE_DESCRIPTOR_TYPE_EXTENSION_NAME, mutable_types);
     f(VK_EXT_DEVICE_FAULT_EXTENSION_NAME, fault);
 #ifdef VK_KHR_maintenance8
     f(VK_KHR_MAINTENANCE_8_EXTENSION_NAME, eighth);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "glass/bug/contents.h"
+
 namespace vitrine::glass::replayer {
 namespace {
 
@@ -33,6 +35,14 @@ bool has_shading_rate(const Bug& bug) {
 }
 
 struct CoreNeed {
+/// Whether descriptors of a binding are of several types. If they are of one, the binding can be of it.
+bool has_mixed_bindings(const Bug& bug) {
+  for (std::uint32_t set = 0; set < bug.sets.size(); ++set)
+    for (const bug::Binding& binding : bug.sets[set].bindings)
+      if (bug::plain_type(bug, set, binding) == VK_DESCRIPTOR_TYPE_MUTABLE_EXT) return true;
+  return false;
+}
+
   VkBool32 VkPhysicalDeviceFeatures::*feature;
   const char* name;
   bool (*is_there)(const Bug& bug);
@@ -62,7 +72,8 @@ constexpr CoreNeed kCore[] = {
 
 }  // namespace
 
-const Need kNeeds[12] = {
+const Need kNeeds[13] = {
+    {VK_EXT_MUTABLE_DESCRIPTOR_TYPE_EXTENSION_NAME, has_mixed_bindings, false},
     {VK_KHR_FRAGMENT_SHADING_RATE_EXTENSION_NAME, has_shading_rate},
     {VK_EXT_DEPTH_CLIP_CONTROL_EXTENSION_NAME, [](const Bug& b) { return b.state.negative_one_to_one; }},
     {VK_EXT_DEPTH_CLIP_ENABLE_EXTENSION_NAME, [](const Bug& b) { return b.state.depth_clip == b.state.depth_clamp; }},

@@ -9,7 +9,7 @@ namespace vitrine::glass::replayer {
 /// What shaders declare is the driver's to refuse.
 const char* missing_feature(const bug::Bug& bug, const VkPhysicalDeviceFeatures& has);
 
-/// The same of extensions that state needs: `has(name)` says whether one is there.
+/// The same of extensions that state and descriptors need: `has(name)` says whether one is there.
 template <class F>
 const char* missing_extension(const bug::Bug& bug, const F& has);
 
@@ -17,14 +17,14 @@ const char* missing_extension(const bug::Bug& bug, const F& has);
 struct Need {
   const char* extension;
   bool (*is_there)(const bug::Bug& bug);
+  bool of_draws = true;  ///< of dispatches it is not asked
 };
-extern const Need kNeeds[12];
+extern const Need kNeeds[13];
 
 template <class F>
 const char* missing_extension(const bug::Bug& bug, const F& has) {
-  if (bug.dispatches()) return nullptr;
   for (const Need& need : kNeeds)
-    if (need.is_there(bug) && !has(need.extension)) return need.extension;
+    if (!(need.of_draws && bug.dispatches()) && need.is_there(bug) && !has(need.extension)) return need.extension;
   return nullptr;
 }
 

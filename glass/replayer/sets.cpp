@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "glass/bug/contents.h"
 #include "glass/replayer/departing.h"
 #include "glass/replayer/pipeline.h"
 
@@ -11,18 +12,24 @@ namespace {
 
 using bug::kNone;
 
-bool is_dynamic(VkDescriptorType type) {
-  return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
+/// Mutable bindings are of one type on drivers that have none, where their descriptors are.
+VkDescriptorType type_here(const Device& d, const bug::Bug& bug, std::uint32_t set, const bug::Binding& binding) {
+  return d.has(VK_EXT_MUTABLE_DESCRIPTOR_TYPE_EXTENSION_NAME) ? binding.type : bug::plain_type(bug, set, binding);
 }
 
-VkDescriptorSetLayout make_layout(const Device& d, const bug::SetLayout& set, const Resources& resources) {
+VkDescriptorSetLayout make_layout(const Device& d, const bug::Bug& bug, std::uint32_t number,
+                                  const Resources& resources) {
+  const bug::SetLayout& set = bug.sets[number];
   std::vector<std::vector<VkSampler>> samplers(set.bindings.size());
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   std::vector<VkDescriptorBindingFlags> flags;
+  std::vector<VkMutableDescriptorTypeListEXT> lists;
   for (std::size_t i = 0; i < set.bindings.size(); ++i) {
     const bug::Binding& b = set.bindings[i];
     for (const std::uint32_t sampler : b.samplers) samplers[i].push_back(resources.samplers[sampler]);
-    bindings.push_back({b.binding, b.type, b.count, b.stages, b.samplers.empty() ? nullptr : samplers[i].data()});
+    bindings.push_back({b.binding, type_here(d, bug, number, b), b.count, b.stages,
+                        b.samplers.empty() ? nullptr : samplers[i].data()});
+    lists.push_back({static_cast<std::uint32_t>(b.types.size()), b.types.data()});
     flags.push_back(b.flags);
   }
   VkDescriptorSetLayoutBindingFlagsCreateInfo more{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO};
@@ -30,6 +37,10 @@ VkDescriptorSetLayout make_layout(const Device& d, const bug::SetLayout& set, co
   more.pBindingFlags = flags.data();
   VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   if (std::any_of(flags.begin(), flags.end(), [](VkFlags f) { return f != 0; })) info.pNext = &more;
+  VkMutableDescriptorTypeCreateInfoEXT types{VK_STRUCTURE_TYPE_MUTABLE_DESCRIPTOR_TYPE_CREATE_INFO_EXT, info.pNext,
+                                             static_cast<std::uint32_t>(lists.size()), lists.data()};
+  const auto is_mutable = [](const auto& b) { return b.descriptorType == VK_DESCRIPTOR_TYPE_MUTABLE_EXT; };
+  if (std::ranges::any_of(bindings, is_mutable)) info.pNext = &types;
   info.bindingCount = static_cast<std::uint32_t>(bindings.size());
   info.pBindings = bindings.data();
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
@@ -41,9 +52,9 @@ VkDescriptorPool make_pool(const Device& d, const bug::Bug& bug) {
   std::vector<VkDescriptorPoolSize> sizes;
   VkDescriptorPoolInlineUniformBlockCreateInfo blocks{
       VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_INLINE_UNIFORM_BLOCK_CREATE_INFO};
-  for (const bug::SetLayout& set : bug.sets) {
-    for (const bug::Binding& b : set.bindings) {
-      if (b.count) sizes.push_back({b.type, b.count});
+  for (std::uint32_t set = 0; set < bug.sets.size(); ++set) {
+    for (const bug::Binding& b : bug.sets[set].bindings) {
+      if (b.count) sizes.push_back({type_here(d, bug, set, b), b.count});
       blocks.maxInlineUniformBlockBindings += b.type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK;
     }
   }
@@ -59,9 +70,7 @@ VkDescriptorPool make_pool(const Device& d, const bug::Bug& bug) {
 }
 
 VkDescriptorType type_of(const bug::Bug& bug, const bug::Descriptor& at) {
-  const auto& bindings = bug.sets[at.set].bindings;
-  return std::find_if(bindings.begin(), bindings.end(), [&](const bug::Binding& b) { return b.binding == at.binding; })
-      ->type;
+  return bug::type_of(at, *std::ranges::find(bug.sets[at.set].bindings, at.binding, &bug::Binding::binding));
 }
 
 void write(const Device& d, const bug::Bug& bug, const Resources& resources, const bug::Descriptor& at,
@@ -108,7 +117,7 @@ VkPipelineLayout make_pipeline_layout(const Device& d, const bug::Bug& bug,
 Bound make_sets(const Device& d, const bug::Bug& bug, const Resources& resources) {
   Bound out;
   std::vector<VkDescriptorSetLayout> layouts;
-  for (const bug::SetLayout& set : bug.sets) layouts.push_back(make_layout(d, set, resources));
+  for (std::uint32_t set = 0; set < bug.sets.size(); ++set) layouts.push_back(make_layout(d, bug, set, resources));
   out.layout = make_pipeline_layout(d, bug, layouts);
   const VkDescriptorPool pool = make_pool(d, bug);
   for (std::size_t i = 0; i < layouts.size(); ++i) {
@@ -120,7 +129,7 @@ Bound make_sets(const Device& d, const bug::Bug& bug, const Resources& resources
     must(vkAllocateDescriptorSets(d.device, &info, &set), "vkAllocateDescriptorSets");
     out.sets.push_back(set);
     for (const bug::Binding& b : bug.sets[i].bindings)
-      if (is_dynamic(b.type)) out.dynamic_offsets.resize(out.dynamic_offsets.size() + b.count);
+      if (bug::is_dynamic(b.type)) out.dynamic_offsets.resize(out.dynamic_offsets.size() + b.count);
   }
   // What is gone is for tools to find; without any it would be read.
   const char* const tools = std::getenv("VITRINE_TOOLS");

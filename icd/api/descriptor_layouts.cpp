@@ -66,6 +66,14 @@ std::uint32_t stride_of(VkDescriptorType type, const VkMutableDescriptorTypeList
   return most;
 }
 
+/// As SetBinding::types.
+std::uint32_t bits_of(const VkMutableDescriptorTypeListEXT& types) {
+  std::uint32_t bits = 0;
+  for (std::uint32_t i = 0; i < types.descriptorTypeCount; ++i)
+    if (types.pDescriptorTypes[i] <= VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT) bits |= 1u << types.pDescriptorTypes[i];
+  return bits;
+}
+
 /// Where bindings lie in a descriptor buffer: one after the other.
 void assign_offsets(SetShape& shape) {
   for (SetBinding& b : shape.bindings) {
@@ -90,6 +98,7 @@ std::shared_ptr<const SetShape> make_set_shape(const HostMemory& memory, const V
     if (flags && i < flags->bindingCount) b.flags = flags->pBindingFlags[i];
     const bool listed = types && i < types->mutableDescriptorTypeListCount;
     b.stride = stride_of(b.type, listed ? &types->pMutableDescriptorTypeLists[i] : nullptr);
+    if (is_mutable(b.type) && listed) b.types = bits_of(types->pMutableDescriptorTypeLists[i]);
     shape->bindings.push_back(b);
   }
   std::sort(shape->bindings.begin(), shape->bindings.end(),

@@ -24,6 +24,8 @@ struct SetBinding {
   VkDescriptorBindingFlags flags = 0;
   std::uint32_t first_slot = 0;                               ///< among the set's slots, or among its dynamic buffers
   const texel::Sampler* const* immutable_samplers = nullptr;  ///< `count` of them, or null
+  std::uint32_t types =
+      0;  ///< that mutable descriptors may take on as the layout lists them: 1 << VkDescriptorType each
   /// In a descriptor buffer: bytes of an element, and from the set's first byte to the first element.
   std::uint32_t stride = 0;
   std::uint64_t buffer_offset = 0;

@@ -2,7 +2,9 @@
 #include "icd/replay/captured_descriptors.h"
 
 #include <algorithm>
+#include <bit>
 
+#include "glass/bug/declared.h"
 #include "icd/object/address_book.h"
 
 namespace vitrine::icd {
@@ -50,11 +52,42 @@ void note(const glass::bug::Descriptor& at, const char* what, Bug& bug) {
                       std::to_string(at.element) + ": " + what);
 }
 
+constexpr std::uint32_t bit(VkDescriptorType type) { return 1u << type; }
+
+/// All that a mutable descriptor may be if its layout does not say (VK_EXT_mutable_descriptor_type).
+constexpr std::uint32_t kTakenOn =
+    (bit(VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT) << 1) - 1 -
+    (bit(VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC) | bit(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC));
+
+std::uint32_t listed(const SetBinding& binding) {
+  return binding.types & kTakenOn ? binding.types & kTakenOn : kTakenOn;
+}
+
+/// The types that what a slot holds may have; of nothing any.
+std::uint32_t fitting(const spirv::Descriptor& bound) {
+  if (bound.data) return bit(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER) | bit(VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
+  if (bound.texels) return bit(VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER) | bit(VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER);
+  if (bound.image && bound.sampler) return bit(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+  if (bound.sampler) return bit(VK_DESCRIPTOR_TYPE_SAMPLER);
+  return bound.image ? bit(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) | bit(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE) |
+                           bit(VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT)
+                     : ~0u;
+}
+
+/// The type that a mutable descriptor has taken on. Slots do not know which of two that look alike it is; shaders take
+/// it for one of those that they declare.
+VkDescriptorType type_of(std::uint32_t fitting, const SetBinding& binding, std::uint32_t declared) {
+  std::uint32_t types = fitting;
+  for (const std::uint32_t among : {listed(binding), declared})
+    if (types & among) types &= among;
+  return static_cast<VkDescriptorType>(std::countr_zero(types));
+}
+
 /// What a descriptor of this type points to, if it is of that type: applications may have written another.
-void add_resource(const spirv::Descriptor& bound, const SetBinding& binding, CapturedObjects& objects,
-                  glass::bug::Descriptor& at) {
+void add_resource(const spirv::Descriptor& bound, VkDescriptorType type, const SetBinding& binding,
+                  CapturedObjects& objects, glass::bug::Descriptor& at) {
   using glass::bug::ResourceKind;
-  const ResourceKind kind = glass::bug::kind_of(binding.type);
+  const ResourceKind kind = glass::bug::kind_of(type);
   if (kind == ResourceKind::kBuffer && bound.data) {
     const CapturedObjects::Place place = objects.bytes(bound.data, bound.size);
     at.buffer = place.buffer;
@@ -63,22 +96,18 @@ void add_resource(const spirv::Descriptor& bound, const SetBinding& binding, Cap
   }
   if (kind == ResourceKind::kImage && bound.image) at.view = objects.view(*bound.image);
   if (kind == ResourceKind::kTexels && bound.texels) at.texels = objects.texels(*bound.texels);
-  const bool samples =
-      binding.type == VK_DESCRIPTOR_TYPE_SAMPLER || binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  const bool samples = type == VK_DESCRIPTOR_TYPE_SAMPLER || type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   if (samples && bound.sampler && !binding.immutable_samplers) at.sampler = objects.sampler(*bound.sampler);
 }
 
 void add_element(const spirv::Descriptor& bound, const SetBinding& binding, glass::bug::Descriptor at,
                  CapturedObjects& objects, Bug& bug) {
   const bool there = bound.data || bound.image || bound.texels;
-  if (is_mutable(binding.type)) {
-    if (there || bound.sampler) note(at, "mutable descriptors are not captured; nothing is bound here", bug);
-    return;
-  }
-  add_resource(bound, binding, objects, at);
+  const VkDescriptorType type = is_mutable(binding.type) ? at.type : binding.type;
+  add_resource(bound, type, binding, objects, at);
   const bool incomplete =
-      binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER && at.sampler == kNone && !binding.immutable_samplers;
-  if (glass::bug::is_complete(at, binding.type) && !incomplete) return bug.descriptors.push_back(std::move(at));
+      type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER && at.sampler == kNone && !binding.immutable_samplers;
+  if (glass::bug::is_complete(at, type) && !incomplete) return bug.descriptors.push_back(std::move(at));
   if (there) note(at, "what is bound is of another type; nothing is bound here", bug);
 }
 
@@ -90,8 +119,9 @@ glass::bug::Descriptor at(std::uint32_t set, const SetBinding& binding, std::uin
   return out;
 }
 
-void add_elements(const BindPoint& point, std::uint32_t set, const SetBinding& binding, CapturedObjects& objects,
-                  Bug& bug) {
+/// `declared`: the types that shaders declare there, as glass::bug::Declared has them.
+void add_elements(const BindPoint& point, std::uint32_t set, const SetBinding& binding, std::uint32_t declared,
+                  CapturedObjects& objects, Bug& bug) {
   const Slots slots = slots_of(point, set, binding);
   if (is_inline_block(binding.type)) {
     if (!slots.first || !slots.first->data) return;
@@ -102,37 +132,49 @@ void add_elements(const BindPoint& point, std::uint32_t set, const SetBinding& b
   }
   for (std::uint32_t i = 0; i < slots.count; ++i) {
     const std::uint64_t time = slots.written ? slots.written[i] : ~std::uint64_t{0};
-    if (is_gone(slots.first[i], binding, time, objects.device())) {
-      bug.descriptors.push_back(at(set, binding, i));
-      bug.descriptors.back().gone = true;
-    } else {
-      add_element(slots.first[i], binding, at(set, binding, i), objects, bug);
-    }
+    glass::bug::Descriptor element = at(set, binding, i);
+    if (is_mutable(binding.type)) element.type = type_of(fitting(slots.first[i]), binding, declared);
+    element.gone = is_gone(slots.first[i], binding, time, objects.device());
+    if (element.gone)
+      bug.descriptors.push_back(std::move(element));
+    else
+      add_element(slots.first[i], binding, std::move(element), objects, bug);
   }
 }
 
 glass::bug::Binding layout_of(const BindPoint& point, std::uint32_t set, const SetBinding& binding,
                               CapturedObjects& objects) {
-  glass::bug::Binding out{binding.binding, binding.type, binding.stages, binding.count, 0, {}};
+  glass::bug::Binding out{binding.binding, binding.type, binding.stages, binding.count, 0, {}, {}};
   const bool variable = binding.flags & VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT;
   if (variable && point.sets[set]) out.count = std::min(out.count, point.sets[set]->variable_count);
   out.flags = binding.flags & VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT;
   for (std::uint32_t i = 0; binding.immutable_samplers && i < binding.count; ++i)
     out.samplers.push_back(objects.sampler(*binding.immutable_samplers[i]));
+  for (std::uint32_t i = 0; is_mutable(binding.type) && i <= VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT; ++i)
+    if (listed(binding) >> i & 1) out.types.push_back(static_cast<VkDescriptorType>(i));
   return out;
+}
+
+bool has_mutable(const PipelineLayoutShape& layout) {
+  return std::ranges::any_of(layout.sets, [](const std::shared_ptr<const SetShape>& set) {
+    return set && std::ranges::any_of(set->bindings, is_mutable, &SetBinding::type);
+  });
 }
 
 }  // namespace
 
 void add_descriptors(const BindPoint& point, CapturedObjects& objects, Bug& bug) {
   const PipelineLayoutShape& layout = *point.pipeline->layout;
+  glass::bug::Declared declared;
+  if (has_mutable(layout)) declared = glass::bug::declared_in(bug);
   for (std::uint32_t set = 0; set < layout.sets.size() && set < spirv::kMaxSets; ++set) {
     glass::bug::SetLayout out;
     out.used = layout.sets[set] != nullptr;
     if (out.used) {
       for (const SetBinding& binding : layout.sets[set]->bindings) {
         out.bindings.push_back(layout_of(point, set, binding, objects));
-        add_elements(point, set, binding, objects, bug);
+        const auto types = declared.find({set, binding.binding});
+        add_elements(point, set, binding, types == declared.end() ? 0 : types->second, objects, bug);
       }
     }
     bug.sets.push_back(std::move(out));

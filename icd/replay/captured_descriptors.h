@@ -6,6 +6,7 @@
 namespace vitrine::icd {
 
 /// As the pipeline's layout has them: pushed sets become sets as others, a variable number of descriptors what it is.
+/// The bug has its stages already.
 void add_descriptors(const BindPoint& point, CapturedObjects& objects, glass::bug::Bug& bug);
 
 }  // namespace vitrine::icd

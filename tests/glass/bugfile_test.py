@@ -20,6 +20,7 @@ REFERENCE = "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json"
 SCENES = ("compute.*:rasterization.random_triangles*:pipeline.random_depth_bounds*:pipeline.random_dynamic_state:"
           "texture.minmax.*:geometry.random*:tessellation.random*:draw.indirect_count.*:draw.multi_draw.*:"
           "draw.random_instance_divisor:descriptors.*:dynamic_rendering.*:renderpass.random*")
+MUTABLE = 1000351000  # VK_DESCRIPTOR_TYPE_MUTABLE_EXT
 ENDLESS = "#version 450\nlayout(local_size_x = 4) in;\nlayout(binding = 0) buffer B { uint data[]; };\n" \
           "void main() {\n  while (data[0] == 0u) data[1] += 1u;\n}\n"
 
@@ -113,6 +114,23 @@ class BugFileTest(unittest.TestCase):
         self.assertGreater(len(bugs), 100)
         for bug in bugs[::max(1, len(bugs) // 150)]:
             self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug).stdout, bug)
+
+    def test_mutable_descriptors_are_what_they_were(self):
+        bugs = self.capture("all", SUITE, "--gtest_filter=descriptor_indexing.mutable*", "--count=6")
+        changing = 0
+        for bug in bugs:
+            exported = self.exported(bug)
+            self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug).stdout, bug)
+            kinds = {binding["binding"]: binding["type"] for binding in exported["sets"][0]["bindings"]}
+            types = {d["binding"]: d["type"] if kinds[d["binding"]] == MUTABLE else kinds[d["binding"]]
+                     for d in exported["descriptors"]}
+            # A uniform and a storage buffer, a sampled and a storage image, texels and a sampler.
+            self.assertEqual(types, {0: 6, 1: 7, 2: 2, 3: 3, 4: 4, 5: 0})
+            changing += sum(kind == MUTABLE for kind in kinds.values())
+            self.run_it(VITRINE, "export", bug, "--amber", "bug.amber")
+            if os.path.exists(REFERENCE):
+                self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug, "--driver", REFERENCE).stdout, bug)
+        self.assertGreater(changing, 6)
 
     def test_transform_feedback_goes_on_where_it_stood(self):
         # Of the suite on this device and on the reference, some resumed by counters, some drawn by them.

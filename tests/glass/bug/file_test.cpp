@@ -146,6 +146,63 @@ TEST(BugFile, ThatWasAlteredAndPackedAgainNeverCrashes) {
   EXPECT_GT(good, 10u);
 }
 
+/// Two descriptors of a mutable binding, of which one is a sampler.
+Bug bug_with_mutable_binding() {
+  Bug bug = small_bug();
+  bug.samplers.resize(1);
+  Binding& binding = bug.sets[0].bindings[0];
+  binding.type = VK_DESCRIPTOR_TYPE_MUTABLE_EXT;
+  binding.count = 2;
+  binding.types = {VK_DESCRIPTOR_TYPE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
+  bug.descriptors[0].type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  Descriptor second;
+  second.element = 1;
+  second.sampler = 0;
+  second.type = VK_DESCRIPTOR_TYPE_SAMPLER;
+  bug.descriptors.push_back(second);
+  return bug;
+}
+
+TEST(BugFile, SaysWhatMutableDescriptorsAre) {
+  const base::Result<Bug> read = from_file(to_file(bug_with_mutable_binding()));
+  ASSERT_TRUE(read.ok()) << read.message();
+  EXPECT_EQ(read.value().sets[0].bindings[0].types.size(), 2u);
+  EXPECT_EQ(read.value().descriptors[0].type, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+  EXPECT_EQ(read.value().descriptors[1].type, VK_DESCRIPTOR_TYPE_SAMPLER);
+  const auto fault = [](auto change) {
+    Bug bug = bug_with_mutable_binding();
+    change(bug, bug.sets[0].bindings[0]);
+    return fault_of(bug);
+  };
+  const char* const other = "a descriptor of another type";
+  const char* const none = "a binding that cannot be";
+  EXPECT_EQ(fault([](Bug& b, Binding&) { b.descriptors[0].type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER; }), other);
+  EXPECT_EQ(fault([](Bug& b, Binding&) { b.descriptors[1].sampler = kNone; }), other);
+  EXPECT_EQ(fault([](Bug&, Binding& b) { b.types.push_back(VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC); }), none);
+  EXPECT_EQ(fault([](Bug&, Binding& b) { b.types.push_back(VK_DESCRIPTOR_TYPE_SAMPLER); }), none);
+  EXPECT_EQ(fault([](Bug& bug, Binding& b) { b.types.clear(), bug.descriptors.clear(); }), none);
+  EXPECT_EQ(fault([](Bug& bug, Binding& b) { b.type = VK_DESCRIPTOR_TYPE_SAMPLER, bug.descriptors.clear(); }), none);
+}
+
+TEST(BugFile, OfBeforeThereWereMutableDescriptorsIsRead) {
+  std::string bytes = unpack(to_file(small_bug())).value();
+  constexpr std::size_t kLengthAt = 14, kHeaderAt = kLengthAt + 8;
+  std::uint64_t length = 0;
+  std::memcpy(&length, bytes.data() + kLengthAt, sizeof length);
+  std::string header = bytes.substr(kHeaderAt, length);
+  for (const std::string member : {",\"types\":[]", ",\"type\":1000351000"}) {
+    const std::size_t at = header.find(member);
+    ASSERT_NE(at, std::string::npos) << member;
+    header.erase(at, member.size());
+  }
+  bytes.replace(kHeaderAt, length, header);
+  length = header.size();
+  std::memcpy(bytes.data() + kLengthAt, &length, sizeof length);
+  const base::Result<Bug> read = from_file(pack(bytes));
+  ASSERT_TRUE(read.ok()) << read.message();
+  EXPECT_EQ(describe(read.value()), describe(small_bug()));
+}
+
 TEST(BugFile, MayNotNameWhatIsNotThere) {
   const auto fault = [](auto change) {
     Bug bug = small_bug();
