@@ -203,7 +203,7 @@ void write_binding(std::ostream& out, const Bug& bug, std::uint32_t set, const B
   out << "  BIND "
       << (sampler ? plural("SAMPLER", array) + names.samplers : plural("BUFFER", array) + names.buffers + names.images);
   if (const char* const type = type_of(kind); *type) out << " AS " << type;
-  if (kind == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) out << " SAMPLER sampler" << sampler_of(bug, elements);
+  if (kind == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) out << " SAMPLER sampler" << sampler_of(elements);
   out << " DESCRIPTOR_SET " << set << " BINDING " << binding.binding;
   if (is_dynamic(kind)) out << " OFFSET" << names.zeros;
   if (kind_of(kind) == ResourceKind::kBuffer)

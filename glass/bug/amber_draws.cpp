@@ -182,7 +182,7 @@ void demand_plain_rasterization(const Bug& bug) {
          "primitive restart, last provoking vertices or lower left domain origins");
   demand(s.depth_clip != s.depth_clamp && !s.negative_one_to_one && !s.unrestricted_depth,
          "depth that is clipped or ranges otherwise");
-  demand(s.fragment_size.width * s.fragment_size.height == 1 &&
+  demand(s.fragment_size.width * s.fragment_size.height == 1 && bug.rendering.rate == kNone &&
              s.rate_combiners[0] == VK_FRAGMENT_SHADING_RATE_COMBINER_OP_KEEP_KHR,
          "fragment shading rates");
   demand(s.discard_count == 0 && s.rasterized_stream == 0 && !s.overestimates,

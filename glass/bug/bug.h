@@ -183,6 +183,8 @@ struct Stream {
 struct Rendering {
   std::vector<std::uint32_t> colors;  ///< views; kNone: unused
   std::uint32_t depth = kNone, stencil = kNone;
+  std::uint32_t rate = kNone;   ///< the fragment shading rate attachment
+  VkExtent2D rate_texel{1, 1};  ///< pixels for which a texel of it stands
   VkRect2D area{};
   std::uint32_t layers = 1, view_mask = 0;
 };

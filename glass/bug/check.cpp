@@ -129,7 +129,7 @@ std::string fault_of_command(const Bug& bug) {
     if (stream.binding >= spirv::kMaxXfbBuffers || stream.buffer == kNone)
       return "a buffer of transform feedback that there is not";
   std::vector<std::uint32_t> views = bug.rendering.colors;
-  views.insert(views.end(), {bug.rendering.depth, bug.rendering.stencil});
+  views.insert(views.end(), {bug.rendering.depth, bug.rendering.stencil, bug.rendering.rate});
   if (bug.rendering.colors.size() > raster::kMaxColorAttachments) return "too many attachments";
   for (const std::uint32_t view : views)
     if (!names(bug.views, view)) return "an attachment that there is not";

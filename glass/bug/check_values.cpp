@@ -136,9 +136,28 @@ bool can_be(const raster::State& s) {
          std::ranges::all_of(s.discard, [](const auto& r) { return can_be(r); });
 }
 
+/// A shading rate attachment has bytes for all of the area (Vulkan 1.3.239, Attachment Fragment Shading Rate).
+bool has_rates(const Rendering& r, const Bug& bug) {
+  constexpr std::uint32_t kMost = 256;
+  if (r.rate == kNone) return true;
+  const View& view = bug.views[r.rate];
+  const Image& image = bug.images[view.image];
+  const auto texels = [&](std::uint32_t whole) { return std::max(whole >> view.range.baseMipLevel, 1u); };
+  const auto covers = [](std::uint32_t count, std::uint32_t pixels, std::int32_t first, std::uint32_t size) {
+    return std::has_single_bit(pixels) && pixels <= kMost &&
+           inside(static_cast<std::uint32_t>(first), size, std::uint64_t{count} * pixels);
+  };
+  const std::uint32_t layers = std::max(r.layers, static_cast<std::uint32_t>(std::bit_width(r.view_mask)));
+  return view.format == VK_FORMAT_R8_UINT && view.range.levelCount == 1 && image.samples == 1 &&
+         (view.range.layerCount == 1 || layers <= view.range.layerCount) &&
+         covers(texels(image.extent.width), r.rate_texel.width, r.area.offset.x, r.area.extent.width) &&
+         covers(texels(image.extent.height), r.rate_texel.height, r.area.offset.y, r.area.extent.height);
+}
+
 /// What is drawn to has the area, the layers and the samples.
 bool can_be(const Rendering& r, const Bug& bug) {
   if (!can_be(r.area) || r.layers == 0 || r.area.extent.width == 0 || r.area.extent.height == 0) return false;
+  if (!has_rates(r, bug)) return false;
   std::vector<std::uint32_t> numbers = r.colors;
   numbers.insert(numbers.end(), {r.depth, r.stencil});
   return std::ranges::all_of(numbers, [&](std::uint32_t number) {

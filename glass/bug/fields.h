@@ -204,6 +204,9 @@ void fields(V& v, Rendering& r) {
   v("area", r.area);
   v("layers", r.layers);
   v("viewMask", r.view_mask);
+  v.newer("rate", r.rate);
+  v.newer("rateTexelWidth", r.rate_texel.width);
+  v.newer("rateTexelHeight", r.rate_texel.height);
 }
 template <class V>
 void fields(V& v, Draw& d) {

@@ -54,6 +54,7 @@ void for_each_view(bug::Bug& bug, const F& f) {
   for (std::uint32_t& color : bug.rendering.colors) f(color);
   f(bug.rendering.depth);
   f(bug.rendering.stencil);
+  f(bug.rendering.rate);
 }
 template <class F>
 void for_each_sampler(bug::Bug& bug, const F& f) {

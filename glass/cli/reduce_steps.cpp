@@ -156,6 +156,7 @@ void reduce_state(Bug& bug, const StillFound& still) {
   reset(&raster::State::sample_shading);
   reset(&raster::State::fragment_size);
   reset(&raster::State::rate_combiners);
+  if (bug.rendering.rate != kNone) attempt(bug, still, [](Bug& b) { b.rendering.rate = kNone, drop_unused(b); });
   reset(&raster::State::alpha_to_coverage);
   reset(&raster::State::alpha_to_one);
   reset(&raster::State::line_stipple);

@@ -127,9 +127,12 @@ Features::Features(VkPhysicalDevice device, const bug::Bug& bug) : structures_(s
 
 const char* Features::missing(const bug::Bug& bug) const {
   if (const char* const feature = missing_feature(bug, structures_->core.features)) return feature;
-  return missing_extension(bug, [&](const char* name) {
+  const char* const extension = missing_extension(bug, [&](const char* name) {
     return std::ranges::any_of(extensions_, [&](const char* e) { return std::strcmp(e, name) == 0; });
   });
+  if (extension) return extension;
+  const bool has_rates = bug.rendering.rate == bug::kNone || structures_->rates.attachmentFragmentShadingRate;
+  return has_rates ? nullptr : "attachmentFragmentShadingRate";
 }
 
 Features::~Features() = default;

@@ -27,14 +27,14 @@ bool blends_second_source(const Bug& bug) {
                      });
 }
 
-/// Whether fragments may cover several pixels, by the pipeline or by a shader whose rates are combined with its.
+/// Whether fragments may cover several pixels, by the pipeline, by an attachment or by a shader whose rates are
+/// combined with the pipeline's.
 bool has_shading_rate(const Bug& bug) {
   const VkExtent2D size = bug.state.fragment_size;
-  return size.width != 1 || size.height != 1 ||
+  return bug.rendering.rate != bug::kNone || size.width != 1 || size.height != 1 ||
          bug.state.rate_combiners[0] != VK_FRAGMENT_SHADING_RATE_COMBINER_OP_KEEP_KHR;
 }
 
-struct CoreNeed {
 /// Whether descriptors of a binding are of several types. If they are of one, the binding can be of it.
 bool has_mixed_bindings(const Bug& bug) {
   for (std::uint32_t set = 0; set < bug.sets.size(); ++set)
@@ -43,6 +43,7 @@ bool has_mixed_bindings(const Bug& bug) {
   return false;
 }
 
+struct CoreNeed {
   VkBool32 VkPhysicalDeviceFeatures::*feature;
   const char* name;
   bool (*is_there)(const Bug& bug);

@@ -232,6 +232,7 @@ VkGraphicsPipelineCreateInfo GraphicsInfo::info(VkPipelineLayout layout) {
   }
   VkGraphicsPipelineCreateInfo out{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
   out.pNext = &rendering_;
+  if (bug_.rendering.rate != kNone) out.flags |= VK_PIPELINE_CREATE_RENDERING_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR;
   out.stageCount = static_cast<std::uint32_t>(stages_.size());
   out.pStages = stages_.data();
   out.pVertexInputState = &input_;

@@ -60,6 +60,12 @@ void begin_rendering(VkCommandBuffer commands, const bug::Rendering& r, const Re
   info.pColorAttachments = colors.data();
   if (r.depth != kNone) info.pDepthAttachment = &depth;
   if (r.stencil != kNone) info.pStencilAttachment = &stencil;
+  VkRenderingFragmentShadingRateAttachmentInfoKHR rate{
+      VK_STRUCTURE_TYPE_RENDERING_FRAGMENT_SHADING_RATE_ATTACHMENT_INFO_KHR};
+  rate.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+  rate.shadingRateAttachmentTexelSize = r.rate_texel;
+  if (r.rate != kNone) rate.imageView = resources.views[r.rate];
+  if (r.rate != kNone) info.pNext = &rate;
   vkCmdBeginRendering(commands, &info);
 }
 

@@ -13,8 +13,16 @@ constexpr VkImageCreateFlags kKeptFlags =
     VK_IMAGE_CREATE_SAMPLE_LOCATIONS_COMPATIBLE_DEPTH_BIT_EXT | VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT;
 constexpr VkImageUsageFlags kKeptImageUsage =
     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
-    VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
+    VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT |
+    VK_IMAGE_USAGE_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR;
 constexpr VkImageUsageFlags kTransfer = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+
+/// Without what the device does not know: where nothing needs it, it was taken out or is not drawn with.
+VkImageUsageFlags usage_here(const Device& d, VkImageUsageFlags usage) {
+  const bool rates = d.has(VK_KHR_FRAGMENT_SHADING_RATE_EXTENSION_NAME);
+  return usage & kKeptImageUsage &
+         ~(rates ? VkImageUsageFlags{0} : VkImageUsageFlags{VK_IMAGE_USAGE_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR});
+}
 
 /// What no command fills is filled through the host.
 bool is_filled_by_host(const bug::Image& image) { return image.samples != 1 && !image.texels.empty(); }
@@ -29,7 +37,7 @@ VkImage make_image(const Device& d, const bug::Image& source, VkDeviceMemory& me
   info.arrayLayers = source.layers;
   info.samples = static_cast<VkSampleCountFlagBits>(source.samples);
   info.tiling = source.tiling;
-  info.usage = (source.usage & kKeptImageUsage) | kTransfer;
+  info.usage = usage_here(d, source.usage) | kTransfer;
   VkImage image = VK_NULL_HANDLE;
   must(vkCreateImage(d.device, &info, nullptr, &image), "vkCreateImage");
   set_name(d, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<std::uint64_t>(image), source.name);
@@ -49,7 +57,7 @@ VkComponentSwizzle component(std::uint8_t selected) {
 
 VkImageView make_view(const Device& d, const bug::View& source, VkImage image) {
   VkImageViewUsageCreateInfo usage{VK_STRUCTURE_TYPE_IMAGE_VIEW_USAGE_CREATE_INFO};
-  usage.usage = source.usage & kKeptImageUsage;
+  usage.usage = usage_here(d, source.usage);
   VkImageViewCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
   if (usage.usage != 0) info.pNext = &usage;
   info.image = image;

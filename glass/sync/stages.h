@@ -21,6 +21,7 @@ enum class Stage : std::uint8_t {
   kEvaluation,
   kGeometry,
   kFeedback,
+  kShadingRate,
   kEarlyTests,
   kFragment,
   kLateTests,
@@ -33,7 +34,7 @@ enum class Stage : std::uint8_t {
   kHost,
   kTransition,  ///< of image layouts: in no stage, but before what waits for all commands
 };
-inline constexpr std::size_t kStages = 20;
+inline constexpr std::size_t kStages = 21;
 using Stages = std::uint32_t;  ///< a bit each
 
 enum class Access : std::uint8_t {
@@ -57,9 +58,10 @@ enum class Access : std::uint8_t {
   kCounterRead,
   kCounterWrite,
   kConditionalRead,
+  kShadingRateRead,
   kTransitionWrite,
 };
-inline constexpr std::size_t kAccesses = 21;
+inline constexpr std::size_t kAccesses = 22;
 using Accesses = std::uint32_t;  ///< a bit each
 
 constexpr Stages bit(Stage stage) { return Stages{1} << static_cast<unsigned>(stage); }

@@ -101,6 +101,8 @@ void add_subpass(const ReplayState& state, CapturedObjects& objects, glass::bug:
     return attachment(number < views.size() ? views[number] : nullptr, objects);
   };
   for (const std::uint32_t color : subpass.colors) out.colors.push_back(view(color));
+  out.rate = view(subpass.shading_rate);
+  if (out.rate != kNone) out.rate_texel = subpass.shading_rate_texel;
   const std::uint32_t both = view(subpass.depth_stencil);
   if (both == kNone) return;
   const VkImageAspectFlags aspects =
@@ -129,15 +131,14 @@ std::string add_rendering(const ReplayState& state, CapturedObjects& objects, Bu
   if (state.instance) {
     if (state.instance->render_pass->subpasses[state.subpass].forced_samples > 1)
       return "it draws samples to attachments of one sample";
-    if (state.instance->render_pass->subpasses[state.subpass].shading_rate != VK_ATTACHMENT_UNUSED)
-      return "it has a fragment shading rate attachment";
     add_subpass(state, objects, out);
   } else if (dynamic) {
     if (dynamic->forced_samples > 1) return "it draws samples to attachments of one sample";
-    if (dynamic->shading_rate) return "it has a fragment shading rate attachment";
     add_colors(*dynamic, state.graphics.pipeline->locations, objects, out);
     out.depth = attachment(dynamic->depth.view, objects);
     out.stencil = attachment(dynamic->stencil.view, objects);
+    out.rate = attachment(dynamic->shading_rate, objects);
+    if (out.rate != kNone) out.rate_texel = dynamic->shading_rate_texel;
   }
   return {};
 }

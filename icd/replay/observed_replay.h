@@ -65,7 +65,7 @@ struct SyncedPass {
   std::uint64_t number = 0;                                        ///< of the subpass, among all
   glass::sync::Tag begin = 0;                                      ///< of the instance
   std::map<const std::byte*, std::uint64_t> drawn;                 ///< planes that were written: in which subpass last
-  std::array<VkRect2D, raster::kMaxColorAttachments + 2> areas{};  ///< of them, as ObservedPass::drawn
+  std::array<VkRect2D, raster::kMaxColorAttachments + 3> areas{};  ///< of them, as ObservedPass::drawn; of rates
 };
 
 struct ObservedReplay {

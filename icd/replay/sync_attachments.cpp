@@ -18,6 +18,9 @@ using glass::sync::Use;
 /// Planes of an attachment.
 enum class Kind : std::uint8_t { kColor, kDepth, kStencil };
 
+/// Of SyncedPass::areas.
+constexpr std::size_t kRateSlot = raster::kMaxColorAttachments + 2;
+
 constexpr const char* kNames[] = {"colour", "depth", "stencil"};
 
 /// Calls f(view, kind) for what the aspects of an attachment are.
@@ -68,16 +71,21 @@ std::size_t attachment_at(const DrawScope& scope, std::uint32_t location) {
   return static_cast<std::size_t>(std::find(of.begin(), of.end(), location) - of.begin());
 }
 
+/// Whether the last draw of the subpass has touched another area.
+bool is_new(VkRect2D& before, const VkRect2D& area) {
+  if (before.extent.width != 0 && before.offset.x == area.offset.x && before.offset.y == area.offset.y &&
+      before.extent.width == area.extent.width && before.extent.height == area.extent.height)
+    return false;
+  before = area;
+  return true;
+}
+
 /// A draw or clear writes an area of an attachment of the pass.
 void touch_drawn(ReplayState& state, const texel::ImageView& plane, Kind kind, std::uint32_t slot, const VkRect2D& area,
                  const char* verb) {
   SyncedPass& synced = state.observed->synced;
   if (!plane.format) return;
-  VkRect2D& before = synced.areas[slot];
-  if (before.extent.width != 0 && before.offset.x == area.offset.x && before.offset.y == area.offset.y &&
-      before.extent.width == area.extent.width && before.extent.height == area.extent.height)
-    return;  // an earlier draw of the subpass has written it
-  before = area;
+  if (!is_new(synced.areas[slot], area)) return;  // an earlier draw of the subpass has written it
   synced.drawn[plane.base] = synced.number;
   std::vector<glass::sync::Range> ranges;
   const raster::PassDesc& desc = state.observed->pass.desc;
@@ -91,12 +99,42 @@ void touch_drawn(ReplayState& state, const texel::ImageView& plane, Kind kind, s
         {});
 }
 
+/// The texels of the shading rate attachment that stand for an area (Vulkan 1.3.239, Attachment Fragment Shading Rate).
+void touch_rates(ReplayState& state, const raster::State& fixed, const VkRect2D& area) {
+  const raster::PassDesc& desc = state.observed->pass.desc;
+  if (!desc.shading_rate || fixed.rate_combiners[1] == VK_FRAGMENT_SHADING_RATE_COMBINER_OP_KEEP_KHR) return;
+  const auto divide = [](std::int32_t first, std::uint32_t count, std::uint32_t size, std::int32_t& at,
+                         std::uint32_t& texels) {
+    const auto begin = static_cast<std::uint32_t>(first) / size;
+    at = static_cast<std::int32_t>(begin);
+    texels = (static_cast<std::uint32_t>(first) + count + size - 1) / size - begin;
+  };
+  VkRect2D texels{};
+  divide(area.offset.x, area.extent.width, desc.shading_rate_texel.width, texels.offset.x, texels.extent.width);
+  divide(area.offset.y, area.extent.height, desc.shading_rate_texel.height, texels.offset.y, texels.extent.height);
+  if (!is_new(state.observed->synced.areas[kRateSlot], texels)) return;
+  std::vector<glass::sync::Range> ranges;
+  // An attachment of one layer stands for all of them.
+  const bool layered = desc.shading_rate->layer_count > 1;
+  for_each_layer_range(layered ? desc.view_mask : 0, layered ? desc.layers : 1,
+                       [&](std::uint32_t layer, std::uint32_t layers) {
+                         add_texels(*desc.shading_rate, {0, texels, layer, layers}, ranges);
+                       });
+  touch(state,
+        {{Stage::kShadingRate, Access::kShadingRateRead},
+         state.observed->synced.number,
+         "read of fragment shading rate attachment",
+         tag_of(state)},
+        std::move(ranges), {});
+}
+
 void note_drawn(ReplayState& state) {
   const raster::State* fixed = state.draw.state;
   if (!state.pass || state.suppressed || !fixed || fixed->rasterizer_discard || !state.transients.empty()) return;
   const ObservedPass& pass = state.observed->pass;
   const VkRect2D area = drawn_area(pass, *fixed);
   if (area.extent.width == 0) return;
+  touch_rates(state, *fixed, area);
   constexpr std::uint32_t kDepth = raster::kMaxColorAttachments;
   for (std::uint32_t i = 0; i < pass.desc.color_count; ++i)
     if (fixed->blend[i].write_mask != 0) touch_drawn(state, pass.desc.color[i], Kind::kColor, i, area, "write of ");

@@ -20,6 +20,7 @@ REFERENCE = "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json"
 SCENES = ("compute.*:rasterization.random_triangles*:pipeline.random_depth_bounds*:pipeline.random_dynamic_state:"
           "texture.minmax.*:geometry.random*:tessellation.random*:draw.indirect_count.*:draw.multi_draw.*:"
           "draw.random_instance_divisor:descriptors.*:dynamic_rendering.*:renderpass.random*")
+NONE = 2**32 - 1  # glass::bug::kNone
 MUTABLE = 1000351000  # VK_DESCRIPTOR_TYPE_MUTABLE_EXT
 ENDLESS = "#version 450\nlayout(local_size_x = 4) in;\nlayout(binding = 0) buffer B { uint data[]; };\n" \
           "void main() {\n  while (data[0] == 0u) data[1] += 1u;\n}\n"
@@ -131,6 +132,24 @@ class BugFileTest(unittest.TestCase):
             if os.path.exists(REFERENCE):
                 self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug, "--driver", REFERENCE).stdout, bug)
         self.assertGreater(changing, 6)
+
+    def test_rates_of_an_attachment_are_what_they_were(self):
+        # Of render passes and of dynamic rendering; the reference has none.
+        attached = 0
+        for bug in self.capture("all", SUITE, "--gtest_filter=rasterization.random_shading_rate*", "--count=12"):
+            exported = self.exported(bug)
+            self.assertIn("the same bytes", self.run_it(VITRINE, "replay", bug).stdout, bug)
+            rendering = exported.get("rendering")  # none of dispatches
+            if not rendering or rendering["rate"] == NONE:
+                continue
+            attached += 1
+            image = exported["images"][exported["views"][rendering["rate"]]["image"]]
+            self.assertEqual(image["format"], 13)  # VK_FORMAT_R8_UINT
+            self.assertGreaterEqual(rendering["rateTexelWidth"], 8)
+            if os.path.exists(REFERENCE):
+                self.assertIn("needs VK_KHR_fragment_shading_rate, which this driver lacks",
+                              self.run_it(VITRINE, "replay", bug, "--driver", REFERENCE, code=2).stderr)
+        self.assertGreater(attached, 2)
 
     def test_transform_feedback_goes_on_where_it_stood(self):
         # Of the suite on this device and on the reference, some resumed by counters, some drawn by them.

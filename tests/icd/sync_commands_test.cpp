@@ -28,6 +28,7 @@ const std::map<std::string, VkPipelineStageFlags2> kStages{
     {"ATTRIBUTE", VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT},
     {"INDIRECT", VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT},
     {"COLOR", VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT},
+    {"RATES", VK_PIPELINE_STAGE_2_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR},
     {"EARLY", VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT},
     {"LATE", VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT},
     {"TESTS", VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT},
@@ -53,6 +54,7 @@ const std::map<std::string, VkAccessFlags2> kAccesses{
     {"DW", VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT},
     {"DRW", VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT},
     {"AR", VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT},
+    {"RR", VK_ACCESS_2_FRAGMENT_SHADING_RATE_ATTACHMENT_READ_BIT_KHR},
     {"XR", VK_ACCESS_2_INDEX_READ_BIT},
     {"VR", VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT},
     {"IR", VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT},
@@ -148,7 +150,7 @@ void SyncScene::command(const Words& words) {
   if (is_one_of({"fill", "update", "copy", "clear", "blit", "resolve", "queries"})) return transfer(words);
   if (is_one_of({"load", "store", "add", "sample", "uniform"})) return dispatch(body_of(verb, words[1]));
   if (is_one_of({"dispatch", "draws", "indices", "vertices", "draw", "vertex"})) return fixed_stage(words);
-  if (is_one_of({"render", "depth", "end"})) return rendering(words);
+  if (is_one_of({"render", "depth", "rates", "kept", "end"})) return rendering(words);
   if (is_one_of({"barrier", "old", "to", "set", "wait"})) return order(words);
   if (is_one_of({"submit", "semaphore", "timeline", "fence", "idle"})) return submission(words);
   if (is_one_of({"flush", "invalidate"})) return host(words);
@@ -286,12 +288,14 @@ void SyncScene::fixed_stage(const Words& words) {
 void SyncScene::rendering(const Words& words) {
   if (words[0] == "end") return VK_CALL(CmdEndRendering)(commands_);
   has_depth_ = words[0] == "depth";
+  has_rates_ = words[0] == "rates";
+  const bool attached = has_rates_ || words[0] == "kept";
   auto attachment = make_struct<VkRenderingAttachmentInfo>();
   attachment.imageView = image(words[1]).view;
   attachment.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
-  attachment.loadOp = words.size() < 3 || words[2] == "CLEAR" ? VK_ATTACHMENT_LOAD_OP_CLEAR
-                      : words[2] == "LOAD"                    ? VK_ATTACHMENT_LOAD_OP_LOAD
-                                                              : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+  attachment.loadOp = attached || words.size() < 3 || words[2] == "CLEAR" ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                      : words[2] == "LOAD"                                ? VK_ATTACHMENT_LOAD_OP_LOAD
+                                                                          : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   auto info = make_struct<VkRenderingInfo>();
   info.renderArea.extent = {kSize, kSize};
@@ -299,6 +303,11 @@ void SyncScene::rendering(const Words& words) {
   info.colorAttachmentCount = has_depth_ ? 0 : 1;
   info.pColorAttachments = &attachment;
   if (has_depth_) info.pDepthAttachment = &attachment;
+  auto rate = make_struct<VkRenderingFragmentShadingRateAttachmentInfoKHR>();
+  rate.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+  rate.shadingRateAttachmentTexelSize = {8, 8};
+  if (attached) rate.imageView = image(words[2]).view;
+  if (attached) info.pNext = &rate;
   VK_CALL(CmdBeginRendering)(commands_, &info);
 }
 

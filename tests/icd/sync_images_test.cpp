@@ -127,6 +127,15 @@ constexpr PlantedHazard kPlanted[] = {
      "clear L; barrier CLEAR.TW>FRAGMENT.SR; render M; draw lookup L; end"},
     {"lookup_in_a_level_that_may_be_another", "sync-read-after-write",
      "clear L; barrier CLEAR.TW>COPY.TR; render M; draw lookup L; end", "clear L:1; render M; draw lookup L; end"},
+    // ---- rates
+    {"rates_are_read", "sync-read-after-write", "clear R; rates M R; draw; end",
+     "clear R; barrier CLEAR.TW>RATES.RR; rates M R; draw; draw; end"},
+    {"rates_that_no_draw_looks_at", "sync-read-after-write", "clear R; rates M R; draws A; end",
+     "clear R; kept M R; draws A; end"},
+    {"rates_are_read_before_tests", "sync-read-after-write", "clear R; barrier CLEAR.TW>EARLY.R; rates M R; draw; end",
+     "clear R; barrier CLEAR.TW>GRAPHICS.R; rates M R; draw; end"},
+    {"rates_that_change", "sync-write-after-read", "rates M R; draw; end; barrier VERTEX.0>CLEAR.0; clear R",
+     "rates M R; draw; end; barrier EARLY.0>CLEAR.0; clear R"},
     // ---- render passes
     {"no_dependency_in_front", "sync-layout", "clear M; pass M CLEAR GENERAL>GENERAL - -",
      "clear M; pass M CLEAR GENERAL>GENERAL TRANSFER.TW>COLOR.CW -"},

@@ -40,6 +40,7 @@ SyncScene::SyncScene() {
   make_image("S", VK_FORMAT_R8G8B8A8_UNORM, VK_SAMPLE_COUNT_4_BIT);
   make_image("D", VK_FORMAT_D32_SFLOAT, VK_SAMPLE_COUNT_1_BIT);
   make_image("L", VK_FORMAT_R8G8B8A8_UNORM, VK_SAMPLE_COUNT_1_BIT, 2);
+  make_image("R", VK_FORMAT_R8_UINT, VK_SAMPLE_COUNT_1_BIT);
   make_image("X", VK_FORMAT_R8G8B8A8_UNORM, VK_SAMPLE_COUNT_1_BIT, 1, true);
   make_set();
   const auto pool_info = make_struct<VkCommandPoolCreateInfo>();
@@ -116,6 +117,7 @@ void SyncScene::make_image(const char* text, VkFormat format, VkSampleCountFlagB
                            bool exported) {
   Image made;
   const bool depth = format == VK_FORMAT_D32_SFLOAT, single = samples == VK_SAMPLE_COUNT_1_BIT;
+  const VkImageUsageFlags rates = VK_IMAGE_USAGE_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR;
   made.format = format;
   if (depth) made.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
   auto info = make_struct<VkImageCreateInfo>();
@@ -125,9 +127,11 @@ void SyncScene::make_image(const char* text, VkFormat format, VkSampleCountFlagB
   info.mipLevels = levels;
   info.arrayLayers = 1;
   info.samples = samples;
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-               (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) |
-               (single && !depth && levels == 1 ? VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT : 0);
+  info.usage =
+      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+      (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) |
+      (single && !depth && levels == 1 ? VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT : 0) |
+      (format == VK_FORMAT_R8_UINT ? rates : 0);
   EXPECT_EQ(VK_CALL(CreateImage)(device, &info, nullptr, &made.image), VK_SUCCESS);
   VkMemoryRequirements needs;
   VK_CALL(GetImageMemoryRequirements)(device, made.image, &needs);
@@ -255,7 +259,12 @@ VkPipeline SyncScene::draw_pipeline(const std::string& vertex, const std::string
   rendering.colorAttachmentCount = has_depth_ ? 0 : 1;
   rendering.pColorAttachmentFormats = &format;
   rendering.depthAttachmentFormat = has_depth_ ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_UNDEFINED;
+  auto rates = make_struct<VkPipelineFragmentShadingRateStateCreateInfoKHR>();
+  rates.fragmentSize = {1, 1};
+  if (has_rates_) rates.combinerOps[1] = VK_FRAGMENT_SHADING_RATE_COMBINER_OP_REPLACE_KHR;
+  rendering.pNext = &rates;
   auto info = make_struct<VkGraphicsPipelineCreateInfo>(pass ? nullptr : &rendering);
+  if (!pass) info.flags = VK_PIPELINE_CREATE_RENDERING_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR;
   info.stageCount = 2;
   info.pStages = stages.data();
   info.pVertexInputState = &vertices;

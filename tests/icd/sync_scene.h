@@ -2,12 +2,12 @@
 //
 // A script is commands, one a line or with ';' between them: a word and its operands.
 //   buffers A, B, C (256 bytes; ranges "A:64+32"), images M, N (8 x 8, in GENERAL), S (four samples), D (depth), L (two
-//   levels), X (its memory can be exported)
+//   levels), X (its memory can be exported), R (shading rates)
 //   fill A | update A | copy A B | copy M A | copy A M | copy M N | clear M | clear L:1 (a level) | blit M N |
 //   resolve S M | queries A load A | store A | add A | uniform A | load M | store M | sample M       a dispatch that
 //   does it, in all words dispatch A (indirect) | draws A (indirect, by arguments) | indices A | vertices A render M
 //   [LOAD|CLEAR|DONT_CARE] | end | draw | draw load A | draw store A | draw sample M | draw lookup L | vertex load A
-//   depth D [LOAD|CLEAR] (rendering with depth)
+//   depth D [LOAD|CLEAR] (rendering with depth) | rates M R (rendering with rates) | kept M R (that no draw looks at)
 //   barrier STAGES.ACCESSES>STAGES.ACCESSES [A or M] | old ... (the same by vkCmdPipelineBarrier)
 //   to M LAYOUT>LAYOUT STAGES.ACCESSES>STAGES.ACCESSES
 //   set STAGES.ACCESSES>STAGES.ACCESSES | wait STAGES.ACCESSES>STAGES.ACCESSES   (an event)
@@ -119,6 +119,7 @@ class SyncScene {
   VkPipelineStageFlags wait_stages_ = 0;
   std::uint32_t bodies_ = 0;
   bool has_depth_ = false;  ///< the rendering at hand
+  bool has_rates_ = false;
   std::vector<VkPipeline> pipelines_;
   std::vector<VkSemaphore> semaphores_;
   std::vector<VkRenderPass> passes_;

@@ -122,6 +122,36 @@ TEST(BugFile, ThatSaysWhatVulkanDoesNotKnowIsAnError) {
             "it names attachments that do not fit what is drawn");
 }
 
+TEST(BugFile, HasRatesForAllThatIsDrawnTo) {
+  const auto fault = [](const auto& change) {
+    Bug bug = small_bug();
+    bug.stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+    Image image;
+    image.format = VK_FORMAT_R8_UINT;
+    image.extent = {3, 2, 1};
+    bug.images = {image};
+    View view;
+    view.image = 0;
+    view.format = image.format;
+    view.range = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    bug.views = {view};
+    bug.rendering.rate = 0;
+    bug.rendering.rate_texel = {16, 8};
+    bug.rendering.area = {{8, 0}, {40, 16}};
+    change(bug);
+    return fault_of(bug);
+  };
+  const char* const other = "attachments that do not fit what is drawn";
+  EXPECT_EQ(fault([](Bug&) {}), "");
+  EXPECT_EQ(fault([](Bug& b) { b.rendering.area.extent.width = 41; }), other);
+  EXPECT_EQ(fault([](Bug& b) { b.rendering.area.offset.y = 1; }), other);
+  EXPECT_EQ(fault([](Bug& b) { b.rendering.rate_texel.height = 0; }), other);
+  EXPECT_EQ(fault([](Bug& b) { b.rendering.rate_texel.width = 24; }), other);
+  EXPECT_EQ(fault([](Bug& b) { b.rendering.rate_texel.height = 512; }), other);
+  EXPECT_EQ(fault([](Bug& b) { b.images[0].format = b.views[0].format = VK_FORMAT_R8_UNORM; }), other);
+  EXPECT_EQ(fault([](Bug& b) { b.rendering.rate = 1; }), "an attachment that there is not");
+}
+
 TEST(BugFile, ThatWasAlteredAndPackedAgainNeverCrashes) {
   const base::Result<std::string> bytes = unpack(to_file(small_bug()));
   ASSERT_TRUE(bytes.ok());

@@ -103,6 +103,34 @@ TEST(Reduce, KeepsStateThatMatters) {
   EXPECT_FALSE(bug.state.depth_test);
 }
 
+/// A draw with a shading rate attachment that `bug` has last.
+void attach_rates(Bug& bug) {
+  bug.stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+  bug.images.resize(2);
+  bug.images[1].name = "rates";
+  bug.views.resize(2);
+  bug.views[0].image = 0;
+  bug.views[1].image = 1;
+  bug.rendering.rate = 1;
+  bug.state.rate_combiners[1] = VK_FRAGMENT_SHADING_RATE_COMBINER_OP_REPLACE_KHR;
+}
+
+TEST(Reduce, LeavesRatesOutThatAreNotNeeded) {
+  Bug bug = bug::small_bug();
+  attach_rates(bug);
+  Bug same = bug;
+  reduce_state(bug, [](const Bug&) { return true; });
+  EXPECT_EQ(bug.rendering.rate, bug::kNone);
+  EXPECT_TRUE(bug.images.empty());
+  const auto needed = [](const Bug& b) {
+    return b.rendering.rate != bug::kNone && b.images[b.views[b.rendering.rate].image].name == "rates";
+  };
+  reduce_state(same, needed);
+  drop_unused(same);
+  EXPECT_TRUE(needed(same));
+  EXPECT_EQ(same.images.size(), 1u);
+}
+
 TEST(Reduce, NothingThatIsAllNeeded) {
   const Bug bug = bug::small_bug();
   Bug same = bug;
