@@ -5,6 +5,7 @@
 #include <cstring>
 #include <sstream>
 
+#include "glass/bug/amber_buffers.h"
 #include "glass/bug/amber_draws.h"
 #include "glass/bug/amber_images.h"
 #include "glass/bug/contents.h"
@@ -38,62 +39,11 @@ void write_shaders(std::ostream& out, const Bug& bug) {
   }
 }
 
-/// BUFFER with its data, of texels if it has a format, else of words where that goes.
-void write_buffer(std::ostream& out, const std::string& name, const Bytes& bytes,
-                  VkFormat format = VK_FORMAT_UNDEFINED) {
-  if (format != VK_FORMAT_UNDEFINED) return write_texel_buffer(out, name, bytes, format);
-  write_numbers(out, name, bytes, bytes.size() % 4 == 0 ? 4 : 1);
-}
-
-/// The format in which texel buffers show a buffer: the language knows one, of the whole. Undefined: none does.
-VkFormat texel_format_of(const Bug& bug, std::size_t number) {
-  VkFormat format = VK_FORMAT_UNDEFINED;
-  for (const Descriptor& d : bug.descriptors) {
-    if (d.texels == kNone || bug.buffer_views[d.texels].buffer != number) continue;
-    const BufferView& view = bug.buffer_views[d.texels];
-    const bool whole = view.offset == 0 && view.range >= bug.buffers[number].size;
-    if (!whole || (format != VK_FORMAT_UNDEFINED && format != view.format))
-      throw Unspeakable{"texel buffers that show parts of a buffer, or show it in several formats"};
-    format = view.format;
-  }
-  return format;
-}
-
-bool overlaps(const Bug& bug, std::size_t number) {
-  const Buffer& a = bug.buffers[number];
-  for (std::size_t i = 0; i < bug.buffers.size(); ++i) {
-    const Buffer& b = bug.buffers[i];
-    if (i != number && a.memory == b.memory && a.offset < b.offset + b.size && b.offset < a.offset + a.size)
-      return true;
-  }
-  return false;
-}
-
-/// An inline uniform block is a buffer of its own: shaders do not tell them apart.
-std::string block_name(const Descriptor& d) {
-  return "block" + std::to_string(d.set) + "_" + std::to_string(d.binding);
-}
-
-void write_buffers(std::ostream& out, const Bug& bug) {
-  if (!bug.addressed.empty()) throw Unspeakable{"shaders that follow device addresses"};
-  for (std::size_t i = 0; i < bug.buffers.size(); ++i) {
-    if (overlaps(bug, i)) throw Unspeakable{"buffers that overlap"};
-    if (!bug.buffers[i].name.empty()) out << "# " << bug.buffers[i].name << "\n";
-    const VkFormat format = texel_format_of(bug, i);
-    write_buffer(out, "buffer" + std::to_string(i), contents_of(bug, bug.buffers[i], false), format);
-    if (!bug.lost) write_buffer(out, "expected" + std::to_string(i), contents_of(bug, bug.buffers[i], true), format);
-  }
-  for (const Descriptor& d : bug.descriptors)
-    if (d.bytes) write_buffer(out, block_name(d), *d.bytes);
-  if (bug.push_constants && !bug.push_constants->empty()) write_buffer(out, "pushed", *bug.push_constants);
-  out << "\n";
-}
-
 void write_images(std::ostream& out, const Bug& bug) {
-  for (std::size_t i = 0; i < bug.images.size(); ++i) {
+  for (std::uint32_t i = 0; i < bug.images.size(); ++i) {
     if (!bug.images[i].name.empty()) out << "# " << bug.images[i].name << "\n";
-    write_image(out, "image" + std::to_string(i), bug.images[i], false);
-    if (!bug.lost) write_image(out, "expected_image" + std::to_string(i), bug.images[i], true);
+    write_image(out, "image" + std::to_string(i), bug, i, false);
+    if (!bug.lost) write_image(out, "expected_image" + std::to_string(i), bug, i, true);
   }
   for (std::size_t i = 0; i < bug.samplers.size(); ++i)
     write_sampler(out, "sampler" + std::to_string(i), bug.samplers[i].state);
@@ -137,10 +87,8 @@ struct Operands {
 Operands operands_of(const Bug& bug, const std::vector<Descriptor>& elements) {
   Operands out;
   for (const Descriptor& d : elements) {
-    if (d.view != kNone) demand_whole(bug.views[d.view], bug.images[bug.views[d.view].image]);
-    const std::uint32_t buffer = d.texels != kNone ? bug.buffer_views[d.texels].buffer : d.buffer;
-    if (buffer != kNone) out.buffers.append(" buffer").append(std::to_string(buffer));
-    if (d.bytes) out.buffers.append(" ").append(block_name(d));
+    if (d.view != kNone) demand_plain(bug.views[d.view], bug.images[bug.views[d.view].image]);
+    if (const std::string name = buffer_name(bug, d); !name.empty()) out.buffers.append(" ").append(name);
     if (d.view != kNone) out.images.append(" image").append(std::to_string(bug.views[d.view].image));
     if (d.sampler != kNone) out.samplers.append(" sampler").append(std::to_string(d.sampler));
     out.zeros.append(" 0");
@@ -178,17 +126,11 @@ std::vector<Descriptor> elements_of(const Bug& bug, std::uint32_t set, const Bin
   return elements;
 }
 
-/// Of combined image samplers, the sampler of all elements: the language has one for a binding, and one for an image.
-std::uint32_t sampler_of(const Bug& bug, const std::vector<Descriptor>& elements) {
-  const auto has_another = [&](const Descriptor& d) {
-    return std::ranges::any_of(elements, [&](const Descriptor& e) {
-      return e.sampler != d.sampler && d.view != kNone && bug.views[e.view].image == bug.views[d.view].image;
-    });
-  };
+/// Of combined image samplers, the sampler of all elements: the language has one for a binding.
+std::uint32_t sampler_of(const std::vector<Descriptor>& elements) {
   const std::uint32_t sampler = elements[0].sampler;
-  if (std::ranges::any_of(elements, [&](const Descriptor& d) { return d.sampler != sampler; }) ||
-      std::ranges::any_of(bug.descriptors, [&](const Descriptor& d) { return d.sampler != kNone && has_another(d); }))
-    throw Unspeakable{"images with several samplers"};
+  if (std::ranges::any_of(elements, [&](const Descriptor& d) { return d.sampler != sampler; }))
+    throw Unspeakable{"arrays of images with several samplers"};
   return sampler;
 }
 
@@ -258,8 +200,7 @@ void write_dispatch(std::ostream& out, const Bug& bug) {
 
 void write_expectations(std::ostream& out, const Bug& bug) {
   if (bug.lost) return;
-  for (std::size_t i = 0; i < bug.buffers.size(); ++i)
-    out << "EXPECT buffer" << i << " EQ_BUFFER expected" << i << "\n";
+  write_expectations_of_buffers(out, bug);
   for (std::size_t i = 0; i < bug.images.size(); ++i)
     out << "EXPECT image" << i << " EQ_BUFFER expected_image" << i << "\n";
 }

@@ -61,6 +61,53 @@ constexpr const char* kFactors[] = {"zero",
                                     "one_minus_src1_alpha"};
 // As Amber spells them.
 constexpr const char* kBlends[] = {"add", "substract", "reverse_substract", "min", "max"};
+// From VK_BLEND_OP_ZERO_EXT on.
+constexpr const char* kAdvancedBlends[] = {"zero",
+                                           "src",
+                                           "dst",
+                                           "src_over",
+                                           "dst_over",
+                                           "src_in",
+                                           "dst_in",
+                                           "src_out",
+                                           "dst_out",
+                                           "src_atop",
+                                           "dst_atop",
+                                           "xor",
+                                           "multiply",
+                                           "screen",
+                                           "overlay",
+                                           "darken",
+                                           "lighten",
+                                           "color_dodge",
+                                           "color_burn",
+                                           "hard_light",
+                                           "soft_light",
+                                           "difference",
+                                           "exclusion",
+                                           "invert",
+                                           "invert_rgb",
+                                           "linear_dodge",
+                                           "linear_burn",
+                                           "vivid_light",
+                                           "linear_light",
+                                           "pin_light",
+                                           "hard_mix",
+                                           "hsl_hue",
+                                           "hsl_saturation",
+                                           "hsl_color",
+                                           "hsl_luminosity",
+                                           "plus",
+                                           "plus_clamped",
+                                           "plus_clamped_alpha",
+                                           "plus_darker",
+                                           "minus",
+                                           "minus_clamped",
+                                           "contrast",
+                                           "invert_org",
+                                           "red",
+                                           "green",
+                                           "blue"};
 constexpr const char* kPolygons[] = {"fill", "line", "point"};
 
 const char* on(bool enabled) { return enabled ? "on" : "off"; }
@@ -144,10 +191,11 @@ VkExtent2D size_of_attachments(const Bug& bug) {
     if (number == kNone) return;
     const View& view = bug.views[number];
     const Image& image = bug.images[view.image];
-    demand_whole(view, image);
-    demand(size.width == 0 || (size.width == image.extent.width && size.height == image.extent.height),
+    demand_plain(view, image);
+    const texel::Extent extent = extent_shown(image);
+    demand(size.width == 0 || (size.width == extent.width && size.height == extent.height),
            "attachments of different sizes");
-    size = {image.extent.width, image.extent.height};
+    size = {extent.width, extent.height};
   };
   for (const std::uint32_t color : r.colors) {
     demand(color != kNone, "attachments that are not used");
@@ -201,6 +249,9 @@ void demand_plain_colors(const Bug& bug) {
     demand(a.write_mask == 0xf, "masks of colours");
     demand(a.enable == first.enable, "attachments that blend differently");
     if (!a.enable) continue;
+    demand(
+        !a.advances() || (a.src_premultiplied && a.dst_premultiplied && a.overlap == VK_BLEND_OVERLAP_UNCORRELATED_EXT),
+        "advanced blending of colours that are not premultiplied, or overlap");
     demand(a.src_color == first.src_color && a.dst_color == first.dst_color && a.color_op == first.color_op &&
                a.src_alpha == first.src_alpha && a.dst_alpha == first.dst_alpha && a.alpha_op == first.alpha_op,
            "attachments that blend differently");
@@ -271,14 +322,24 @@ void write_depth(std::ostream& out, const Bug& bug) {
   out << "  END\n";
 }
 
+const char* blend_name(const raster::BlendAttachment& b, VkBlendOp op) {
+  const char* const what = "such blending";
+  return b.advances() ? word(kAdvancedBlends, op - VK_BLEND_OP_ZERO_EXT, what) : word(kBlends, op, what);
+}
+
+bool blends_in_advanced_ways(const Bug& bug) {
+  const raster::BlendAttachment& b = bug.state.blend[0];
+  return !bug.rendering.colors.empty() && b.enable && b.advances();
+}
+
 void write_blend(std::ostream& out, const Bug& bug) {
   const raster::BlendAttachment& b = bug.state.blend[0];
   if (bug.rendering.colors.empty() || !b.enable) return;
   const char* const what = "such blending";
   out << "  BLEND\n    SRC_COLOR_FACTOR " << word(kFactors, b.src_color, what) << "\n    DST_COLOR_FACTOR "
-      << word(kFactors, b.dst_color, what) << "\n    COLOR_OP " << word(kBlends, b.color_op, what)
+      << word(kFactors, b.dst_color, what) << "\n    COLOR_OP " << blend_name(b, b.color_op)
       << "\n    SRC_ALPHA_FACTOR " << word(kFactors, b.src_alpha, what) << "\n    DST_ALPHA_FACTOR "
-      << word(kFactors, b.dst_alpha, what) << "\n    ALPHA_OP " << word(kBlends, b.alpha_op, what) << "\n  END\n";
+      << word(kFactors, b.dst_alpha, what) << "\n    ALPHA_OP " << blend_name(b, b.alpha_op) << "\n  END\n";
 }
 
 std::string number_of(float value) {
@@ -295,6 +356,7 @@ void write_features_of_draw(std::ostream& out, const Bug& bug) {
   if (has_stage(bug, VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT)) out << "DEVICE_FEATURE tessellationShader\n";
   if (s.polygon_mode != VK_POLYGON_MODE_FILL) out << "DEVICE_FEATURE fillModeNonSolid\n";
   if (s.depth_clamp) out << "DEVICE_FEATURE depthClamp\n";
+  if (blends_in_advanced_ways(bug)) out << "DEVICE_EXTENSION VK_EXT_blend_operation_advanced\n";
   if (s.depth_bounds_test && bug.rendering.depth != kNone) out << "DEVICE_FEATURE depthBounds\n";
   const bool stores = std::ranges::any_of(bug.sets, [](const SetLayout& set) {
     return std::ranges::any_of(set.bindings, [](const Binding& b) {

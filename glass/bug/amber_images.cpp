@@ -1,4 +1,5 @@
-// See amber_images.h. Of formats those whose texels are rows of equal numbers; of images those of one level and layer.
+// See amber_images.h. Of formats those whose texels are rows of equal numbers, packed ones being one number; of images
+// the one level and layer that a command sees, as an image of its own.
 #include "glass/bug/amber_images.h"
 
 #include <algorithm>
@@ -13,10 +14,20 @@ namespace {
 
 constexpr std::size_t kPerLine = 8;
 
-enum class Component : std::uint8_t { kByte, kShort, kWord, kHalf, kFloat };
+enum class Component : std::uint8_t { kByte, kShort, kWord, kLong, kHalf, kFloat };
 
 std::size_t bytes_of(Component component) {
-  return component == Component::kByte ? 1 : component == Component::kShort || component == Component::kHalf ? 2 : 4;
+  switch (component) {
+    case Component::kByte:
+      return 1;
+    case Component::kShort:
+    case Component::kHalf:
+      return 2;
+    case Component::kLong:
+      return 8;
+    default:
+      return 4;
+  }
 }
 
 struct Format {
@@ -32,26 +43,34 @@ constexpr Format kFormats[] = {
     {VK_FORMAT_R8_SNORM, "R8_SNORM", 1, Component::kByte},
     {VK_FORMAT_R8_UINT, "R8_UINT", 1, Component::kByte},
     {VK_FORMAT_R8_SINT, "R8_SINT", 1, Component::kByte},
+    {VK_FORMAT_R8_SRGB, "R8_SRGB", 1, Component::kByte},
     {VK_FORMAT_R8G8_UNORM, "R8G8_UNORM", 2, Component::kByte},
     {VK_FORMAT_R8G8_SNORM, "R8G8_SNORM", 2, Component::kByte},
     {VK_FORMAT_R8G8_UINT, "R8G8_UINT", 2, Component::kByte},
     {VK_FORMAT_R8G8_SINT, "R8G8_SINT", 2, Component::kByte},
+    {VK_FORMAT_R8G8_SRGB, "R8G8_SRGB", 2, Component::kByte},
     {VK_FORMAT_R8G8B8A8_UNORM, "R8G8B8A8_UNORM", 4, Component::kByte},
     {VK_FORMAT_R8G8B8A8_SNORM, "R8G8B8A8_SNORM", 4, Component::kByte},
     {VK_FORMAT_R8G8B8A8_UINT, "R8G8B8A8_UINT", 4, Component::kByte},
     {VK_FORMAT_R8G8B8A8_SINT, "R8G8B8A8_SINT", 4, Component::kByte},
     {VK_FORMAT_R8G8B8A8_SRGB, "R8G8B8A8_SRGB", 4, Component::kByte},
     {VK_FORMAT_B8G8R8A8_UNORM, "B8G8R8A8_UNORM", 4, Component::kByte},
+    {VK_FORMAT_B8G8R8A8_SNORM, "B8G8R8A8_SNORM", 4, Component::kByte},
+    {VK_FORMAT_B8G8R8A8_UINT, "B8G8R8A8_UINT", 4, Component::kByte},
+    {VK_FORMAT_B8G8R8A8_SINT, "B8G8R8A8_SINT", 4, Component::kByte},
     {VK_FORMAT_B8G8R8A8_SRGB, "B8G8R8A8_SRGB", 4, Component::kByte},
     {VK_FORMAT_R16_UNORM, "R16_UNORM", 1, Component::kShort},
+    {VK_FORMAT_R16_SNORM, "R16_SNORM", 1, Component::kShort},
     {VK_FORMAT_R16_UINT, "R16_UINT", 1, Component::kShort},
     {VK_FORMAT_R16_SINT, "R16_SINT", 1, Component::kShort},
     {VK_FORMAT_R16_SFLOAT, "R16_SFLOAT", 1, Component::kHalf},
     {VK_FORMAT_R16G16_UNORM, "R16G16_UNORM", 2, Component::kShort},
+    {VK_FORMAT_R16G16_SNORM, "R16G16_SNORM", 2, Component::kShort},
     {VK_FORMAT_R16G16_UINT, "R16G16_UINT", 2, Component::kShort},
     {VK_FORMAT_R16G16_SINT, "R16G16_SINT", 2, Component::kShort},
     {VK_FORMAT_R16G16_SFLOAT, "R16G16_SFLOAT", 2, Component::kHalf},
     {VK_FORMAT_R16G16B16A16_UNORM, "R16G16B16A16_UNORM", 4, Component::kShort},
+    {VK_FORMAT_R16G16B16A16_SNORM, "R16G16B16A16_SNORM", 4, Component::kShort},
     {VK_FORMAT_R16G16B16A16_UINT, "R16G16B16A16_UINT", 4, Component::kShort},
     {VK_FORMAT_R16G16B16A16_SINT, "R16G16B16A16_SINT", 4, Component::kShort},
     {VK_FORMAT_R16G16B16A16_SFLOAT, "R16G16B16A16_SFLOAT", 4, Component::kHalf},
@@ -66,6 +85,27 @@ constexpr Format kFormats[] = {
     {VK_FORMAT_R32G32B32A32_SFLOAT, "R32G32B32A32_SFLOAT", 4, Component::kFloat},
     {VK_FORMAT_D16_UNORM, "D16_UNORM", 1, Component::kShort},
     {VK_FORMAT_D32_SFLOAT, "D32_SFLOAT", 1, Component::kFloat},
+    {VK_FORMAT_R64_UINT, "R64_UINT", 1, Component::kLong},
+    {VK_FORMAT_R64_SINT, "R64_SINT", 1, Component::kLong},
+    {VK_FORMAT_R4G4_UNORM_PACK8, "R4G4_UNORM_PACK8", 1, Component::kByte},
+    {VK_FORMAT_R4G4B4A4_UNORM_PACK16, "R4G4B4A4_UNORM_PACK16", 1, Component::kShort},
+    {VK_FORMAT_B4G4R4A4_UNORM_PACK16, "B4G4R4A4_UNORM_PACK16", 1, Component::kShort},
+    {VK_FORMAT_R5G6B5_UNORM_PACK16, "R5G6B5_UNORM_PACK16", 1, Component::kShort},
+    {VK_FORMAT_B5G6R5_UNORM_PACK16, "B5G6R5_UNORM_PACK16", 1, Component::kShort},
+    {VK_FORMAT_R5G5B5A1_UNORM_PACK16, "R5G5B5A1_UNORM_PACK16", 1, Component::kShort},
+    {VK_FORMAT_B5G5R5A1_UNORM_PACK16, "B5G5R5A1_UNORM_PACK16", 1, Component::kShort},
+    {VK_FORMAT_A1R5G5B5_UNORM_PACK16, "A1R5G5B5_UNORM_PACK16", 1, Component::kShort},
+    {VK_FORMAT_A8B8G8R8_UNORM_PACK32, "A8B8G8R8_UNORM_PACK32", 1, Component::kWord},
+    {VK_FORMAT_A8B8G8R8_SNORM_PACK32, "A8B8G8R8_SNORM_PACK32", 1, Component::kWord},
+    {VK_FORMAT_A8B8G8R8_UINT_PACK32, "A8B8G8R8_UINT_PACK32", 1, Component::kWord},
+    {VK_FORMAT_A8B8G8R8_SINT_PACK32, "A8B8G8R8_SINT_PACK32", 1, Component::kWord},
+    {VK_FORMAT_A8B8G8R8_SRGB_PACK32, "A8B8G8R8_SRGB_PACK32", 1, Component::kWord},
+    {VK_FORMAT_A2R10G10B10_UNORM_PACK32, "A2R10G10B10_UNORM_PACK32", 1, Component::kWord},
+    {VK_FORMAT_A2R10G10B10_UINT_PACK32, "A2R10G10B10_UINT_PACK32", 1, Component::kWord},
+    {VK_FORMAT_A2B10G10R10_UNORM_PACK32, "A2B10G10R10_UNORM_PACK32", 1, Component::kWord},
+    {VK_FORMAT_A2B10G10R10_UINT_PACK32, "A2B10G10R10_UINT_PACK32", 1, Component::kWord},
+    {VK_FORMAT_B10G11R11_UFLOAT_PACK32, "B10G11R11_UFLOAT_PACK32", 1, Component::kWord},
+    {VK_FORMAT_X8_D24_UNORM_PACK32, "X8_D24_UNORM_PACK32", 1, Component::kWord},
 };
 
 const Format& format_of(VkFormat number, const char* what) {
@@ -86,8 +126,9 @@ float float_of_half(std::uint32_t bits) {
 
 /// One number of the texels, as the language reads it.
 std::string number(const std::byte* at, Component component) {
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, at, bytes_of(component));
+  std::uint64_t whole = 0;
+  std::memcpy(&whole, at, bytes_of(component));
+  const auto bits = static_cast<std::uint32_t>(whole);
   if (component == Component::kByte) return std::to_string(bits);
   char text[32];
   if (component == Component::kFloat || component == Component::kHalf) {
@@ -96,7 +137,8 @@ std::string number(const std::byte* at, Component component) {
     std::snprintf(text, sizeof text, "%.9g", static_cast<double>(value));
     if (std::string_view(text) == "-0") return "-0.0";  // an integer has one zero
   } else {
-    std::snprintf(text, sizeof text, "0x%0*x", static_cast<int>(bytes_of(component) * 2), bits);
+    std::snprintf(text, sizeof text, "0x%0*llx", static_cast<int>(bytes_of(component) * 2),
+                  static_cast<unsigned long long>(whole));
   }
   return text;
 }
@@ -134,6 +176,35 @@ std::string hexadecimal(std::uint64_t value, int digits) {
   return text;
 }
 
+const Bytes& bytes_of(const Texels& texels, bool after) {
+  return after && texels.after ? *texels.after : *texels.before;
+}
+
+/// Whether several levels can be told: Amber fills each with the first texels of the first one, and reads each back to
+/// where the first one is.
+bool repeats_its_first_level(const Bug& bug, std::uint32_t number) {
+  const Image& image = bug.images[number];
+  if (image.type != VK_IMAGE_TYPE_2D || image.texels.size() < 2) return false;
+  const Texels& first = image.texels[0];
+  const auto levels = static_cast<std::uint32_t>(image.texels.size());
+  const texel::Extent extent = extent_shown(image);
+  if (levels > texel::kMaxLevels || (extent.width >> (levels - 1)) == 0 || (extent.height >> (levels - 1)) == 0)
+    return false;
+  const auto begins = [&](const Texels& t, bool after) {
+    const Bytes &part = bytes_of(t, after), &whole = bytes_of(first, after);
+    return part.size() <= whole.size() && std::equal(part.begin(), part.end(), whole.begin());
+  };
+  for (std::uint32_t i = 0; i < levels; ++i) {
+    const Texels& t = image.texels[i];
+    if (t.level != first.level + i || t.aspect != first.aspect || t.layer != first.layer || t.layers != 1 ||
+        !begins(t, false) || !begins(t, true))
+      return false;
+  }
+  return std::ranges::all_of(bug.views, [&](const View& v) {
+    return v.image != number || (v.range.baseMipLevel == first.level && v.range.levelCount == levels);
+  });
+}
+
 }  // namespace
 
 void write_numbers(std::ostream& out, const std::string& name, const Bytes& bytes, std::size_t step) {
@@ -167,20 +238,32 @@ const char* compare_name(VkCompareOp op, const char* what) {
   return kNames[op];
 }
 
-void write_image(std::ostream& out, const std::string& name, const Image& image, bool after) {
-  const Format& format = format_of(image.format, "images");
-  if (image.levels != 1 || image.layers != 1 || image.samples != 1 || image.texels.size() != 1)
-    throw Unspeakable{"images of several levels, layers or samples"};
+VkFormat format_shown(const Bug& bug, std::uint32_t number) {
+  VkFormat shown = VK_FORMAT_UNDEFINED;
+  for (const View& view : bug.views) {
+    if (view.image != number) continue;
+    if (shown != VK_FORMAT_UNDEFINED && shown != view.format) throw Unspeakable{"images that are shown in two formats"};
+    shown = view.format;
+  }
+  return shown == VK_FORMAT_UNDEFINED ? bug.images[number].format : shown;
+}
+
+void write_image(std::ostream& out, const std::string& name, const Bug& bug, std::uint32_t number, bool after) {
+  const Image& image = bug.images[number];
+  const Format& format = format_of(format_shown(bug, number), "images");
+  if (image.samples != 1) throw Unspeakable{"images of several samples"};
+  const bool repeats = repeats_its_first_level(bug, number);
+  if (image.texels.size() != 1 && !repeats) throw Unspeakable{"images of which several levels or aspects are seen"};
+  if (image.texels[0].layers != 1) throw Unspeakable{"images of which several layers are seen"};
   const Texels& texels = image.texels[0];
+  const texel::Extent extent = extent_shown(image);
   const bool deep = image.type == VK_IMAGE_TYPE_3D, flat = image.type == VK_IMAGE_TYPE_1D;
-  out << "IMAGE " << name << " FORMAT " << format.name
-      << (deep   ? " DIM_3D"
-          : flat ? " DIM_1D"
-                 : " DIM_2D")
-      << " WIDTH " << image.extent.width;
-  if (!flat) out << " HEIGHT " << image.extent.height;
-  if (deep) out << " DEPTH " << image.extent.depth;
-  write_texels(out, format, after && texels.after ? *texels.after : *texels.before);
+  out << "IMAGE " << name << " FORMAT " << format.name;
+  if (repeats) out << " MIP_LEVELS " << image.texels.size();
+  out << (deep ? " DIM_3D" : flat ? " DIM_1D" : " DIM_2D") << " WIDTH " << extent.width;
+  if (!flat) out << " HEIGHT " << extent.height;
+  if (deep) out << " DEPTH " << extent.depth;
+  write_texels(out, format, bytes_of(texels, after));
 }
 
 void write_sampler(std::ostream& out, const std::string& name, const texel::Sampler& s) {
@@ -199,10 +282,16 @@ void write_sampler(std::ostream& out, const std::string& name, const texel::Samp
   out << "\n";
 }
 
-void demand_whole(const View& view, const Image& image) {
+void demand_plain(const View& view, const Image& image) {
   const bool plain = view.type == static_cast<VkImageViewType>(image.type);  // 1D, 2D and 3D have the same numbers
-  const bool same = view.format == image.format && view.swizzle == std::array<std::uint8_t, 4>{0, 1, 2, 3};
-  if (!plain || !same) throw Unspeakable{"views that show an image as another one"};
+  if (!plain) throw Unspeakable{"arrays of images, cubes, or slices"};
+  if (view.swizzle != std::array<std::uint8_t, 4>{0, 1, 2, 3}) throw Unspeakable{"views that swap components"};
+}
+
+texel::Extent extent_shown(const Image& image) {
+  const std::uint32_t level = image.texels.empty() ? 0 : image.texels[0].level;
+  const auto side = [&](std::uint32_t whole) { return std::max(whole >> level, 1u); };
+  return {side(image.extent.width), side(image.extent.height), side(image.extent.depth)};
 }
 
 }  // namespace vitrine::glass::bug

@@ -23,6 +23,13 @@ TEST(Amber, SaysADispatchWithItsData) {
     EXPECT_NE(script.value().find(part), std::string::npos) << part << script.value();
 }
 
+void expect_words(const Bug& bug, std::initializer_list<const char*> parts) {
+  const base::Result<std::string> script = to_amber(bug);
+  ASSERT_TRUE(script.ok()) << script.message();
+  for (const char* const part : parts)
+    EXPECT_NE(script.value().find(part), std::string::npos) << part << script.value();
+}
+
 /// With an image of two texels at binding 1.
 Bug bug_with_image(VkFormat format) {
   Bug bug = small_bug();
@@ -59,21 +66,85 @@ TEST(Amber, SaysImagesWithTheirTexels) {
 }
 
 TEST(Amber, HasNoWordsForSomeImages) {
-  EXPECT_EQ(to_amber(bug_with_image(VK_FORMAT_A2B10G10R10_UNORM_PACK32)).message(),
-            "AmberScript is not written for images of format 64");
+  EXPECT_EQ(to_amber(bug_with_image(VK_FORMAT_R8G8B8_UNORM)).message(),
+            "AmberScript is not written for images of format 23");
   Bug infinite = bug_with_image(VK_FORMAT_R16_SFLOAT);
   infinite.images[0].texels[0].before = blob({0x7c003c00});
   EXPECT_EQ(to_amber(infinite).message(), "AmberScript is not written for texels that are no numbers");
   Bug swizzled = bug_with_image(VK_FORMAT_R32_UINT);
   swizzled.views[0].swizzle = {2, 1, 0, 3};
-  EXPECT_EQ(to_amber(swizzled).message(), "AmberScript is not written for views that show an image as another one");
+  EXPECT_EQ(to_amber(swizzled).message(), "AmberScript is not written for views that swap components");
+  const auto said = [](const auto& change) {
+    Bug bug = bug_with_image(VK_FORMAT_R32_UINT);
+    change(bug, bug.images[0]);
+    return to_amber(bug).message();
+  };
+  EXPECT_EQ(said([](Bug& b, Image&) { b.views[0].type = VK_IMAGE_VIEW_TYPE_2D_ARRAY; }),
+            "AmberScript is not written for arrays of images, cubes, or slices");
+  EXPECT_EQ(said([](Bug&, Image& i) { i.samples = 4; }), "AmberScript is not written for images of several samples");
+  EXPECT_EQ(said([](Bug&, Image& i) { i.texels.push_back(i.texels[0]); }),
+            "AmberScript is not written for images of which several levels or aspects are seen");
+  EXPECT_EQ(said([](Bug&, Image& i) { i.texels[0].layers = 2; }),
+            "AmberScript is not written for images of which several layers are seen");
+  EXPECT_EQ(said([](Bug& b, Image&) {
+              b.views.push_back(b.views[0]);
+              b.views[1].format = VK_FORMAT_R32_SINT;
+            }),
+            "AmberScript is not written for images that are shown in two formats");
 }
 
-void expect_words(const Bug& bug, std::initializer_list<const char*> parts) {
-  const base::Result<std::string> script = to_amber(bug);
-  ASSERT_TRUE(script.ok()) << script.message();
-  for (const char* const part : parts)
-    EXPECT_NE(script.value().find(part), std::string::npos) << part << script.value();
+TEST(Amber, SaysTheLevelAndLayerOfAnImageThatIsSeen) {
+  Bug bug = bug_with_image(VK_FORMAT_R32_UINT);
+  bug.images[0].extent = {9, 4, 1};
+  bug.images[0].levels = 4;
+  bug.images[0].layers = 7;
+  bug.images[0].texels[0].level = 2;
+  bug.images[0].texels[0].layer = 5;
+  bug.views[0].range = {VK_IMAGE_ASPECT_COLOR_BIT, 2, 1, 5, 1};
+  expect_words(bug, {"IMAGE image0 FORMAT R32_UINT DIM_2D WIDTH 2 HEIGHT 1 DATA\n0x00000001 0x3f800000\nEND\n"});
+}
+
+TEST(Amber, SaysLevelsThatAreAllAlike) {
+  Bug bug = bug_with_image(VK_FORMAT_R32_UINT);
+  Image& image = bug.images[0];
+  image.extent = {4, 4, 1};
+  image.levels = 3;
+  image.texels[0].level = 1;
+  image.texels[0].before = blob({7, 8, 9, 5});
+  image.texels.push_back(image.texels[0]);
+  image.texels[1].level = 2;
+  image.texels[1].before = blob({7});
+  bug.views[0].range = {VK_IMAGE_ASPECT_COLOR_BIT, 1, 2, 0, 1};
+  expect_words(bug, {"IMAGE image0 FORMAT R32_UINT MIP_LEVELS 2 DIM_2D WIDTH 2 HEIGHT 2 DATA\n"
+                     "0x00000007 0x00000008 0x00000009 0x00000005\nEND\n"});
+  const auto said = [&](const auto& change) {
+    Bug other = bug;
+    change(other, other.images[0].texels[1]);
+    return to_amber(other).message();
+  };
+  const char* const none = "AmberScript is not written for images of which several levels or aspects are seen";
+  EXPECT_EQ(said([](Bug&, Texels& t) { t.before = blob({8}); }), none);
+  EXPECT_EQ(said([](Bug&, Texels& t) { t.after = blob({8}); }), none);
+  EXPECT_EQ(said([](Bug& b, Texels&) { b.images[0].texels[0].after = blob({6, 8, 9, 5}); }), none);
+  EXPECT_EQ(said([](Bug& b, Texels&) { b.images[0].extent.height = 2; }), none);  // no level has no rows in Amber
+  EXPECT_EQ(said([](Bug& b, Texels&) { b.views[0].range.levelCount = 1; }), none);
+  EXPECT_EQ(said([](Bug&, Texels& t) { t.aspect = VK_IMAGE_ASPECT_STENCIL_BIT; }), none);
+}
+
+TEST(Amber, SaysImagesInTheFormatOfTheirViews) {
+  Bug bug = bug_with_image(VK_FORMAT_R32_UINT);
+  bug.views[0].format = VK_FORMAT_R32_SFLOAT;
+  expect_words(bug, {"IMAGE image0 FORMAT R32_SFLOAT DIM_2D WIDTH 2 HEIGHT 1 DATA\n1.40129846e-45 1\nEND\n"});
+}
+
+TEST(Amber, SaysPackedAndLongTexelsAsOneNumber) {
+  expect_words(bug_with_image(VK_FORMAT_A2B10G10R10_UNORM_PACK32),
+               {"IMAGE image0 FORMAT A2B10G10R10_UNORM_PACK32 DIM_2D WIDTH 2 HEIGHT 1 DATA\n0x00000001 0x3f800000\n"});
+  Bug bug = bug_with_image(VK_FORMAT_R64_UINT);
+  bug.images[0].extent = {1, 1, 1};
+  expect_words(bug, {"IMAGE image0 FORMAT R64_UINT DIM_2D WIDTH 1 HEIGHT 1 DATA\n0x3f80000000000001\nEND\n"});
+  bug = bug_with_image(VK_FORMAT_R5G6B5_UNORM_PACK16);
+  expect_words(bug, {"FORMAT R5G6B5_UNORM_PACK16 DIM_2D WIDTH 2 HEIGHT 1 DATA\n0x0001 0x0000 0x0000 0x3f80\nEND\n"});
 }
 
 TEST(Amber, SaysTexelsOfSixteenBits) {
@@ -107,9 +178,50 @@ TEST(Amber, SaysTexelBuffersOfWholeBuffers) {
   expect_words(bug, {"BUFFER buffer1 DATA_TYPE R8G8B8A8_UINT STD430 DATA\n1 2 3 4 0 0 128 63\nEND\n",
                      "BUFFER expected1 DATA_TYPE R8G8B8A8_UINT STD430 DATA\n",
                      "BIND BUFFER buffer1 AS storage_texel_buffer DESCRIPTOR_SET 0 BINDING 2\n"});
-  bug.buffer_views[0].range = 4;
-  EXPECT_EQ(to_amber(bug).message(),
-            "AmberScript is not written for texel buffers that show parts of a buffer, or show it in several formats");
+}
+
+/// Two words at binding 2, of which a view shows the second one, with what it becomes.
+Bug bug_with_a_part(std::uint32_t after) {
+  Descriptor descriptor;
+  descriptor.texels = 0;
+  Bug bug = bug_with(VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, descriptor);
+  bug.buffers.push_back({"texels", 8, VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT, 1, 0});
+  bug.memories.push_back({8, 0, {{0, false, blob({5, 0x3f800000}), blob({5, after})}}});
+  bug.buffer_views = {{"", 1, VK_FORMAT_R32_SFLOAT, 4, 4}};
+  return bug;
+}
+
+TEST(Amber, SaysTexelBuffersOfPartsAsBuffersOfTheirOwn) {
+  const Bug bug = bug_with_a_part(0x40000000);
+  expect_words(bug, {"BUFFER texels0 DATA_TYPE R32_SFLOAT STD430 DATA\n1\nEND\n",
+                     "BUFFER expected_texels0 DATA_TYPE R32_SFLOAT STD430 DATA\n2\nEND\n",
+                     "BIND BUFFER texels0 AS storage_texel_buffer DESCRIPTOR_SET 0 BINDING 2\n",
+                     "EXPECT texels0 EQ_BUFFER expected_texels0\n"});
+  EXPECT_EQ(to_amber(bug).value().find("buffer1 "), std::string::npos);
+  Bug formats = bug;
+  formats.buffer_views = {{"", 1, VK_FORMAT_R32_SFLOAT, 0, 8}, {"", 1, VK_FORMAT_R32_UINT, 0, 8}};
+  formats.memories[1].pieces[0].after = nullptr;
+  expect_words(formats, {"BUFFER texels0 DATA_TYPE R32_SFLOAT STD430 DATA\n7.00649232e-45 1\nEND\n",
+                         "BUFFER texels1 DATA_TYPE R32_UINT STD430 DATA\n0x00000005 0x3f800000\nEND\n"});
+}
+
+TEST(Amber, HasNoWordsForPartsThatChangeWhereOthersSeeThem) {
+  const char* const said =
+      "AmberScript is not written for texel buffers that change and show parts of a buffer that is bound otherwise, "
+      "too";
+  Bug shared = bug_with_a_part(0x40000000);
+  shared.descriptors[0].buffer = 1;
+  shared.descriptors[0].range = 8;
+  EXPECT_EQ(to_amber(shared).message(), said);
+  Bug twice = bug_with_a_part(0x40000000);
+  twice.buffer_views.push_back({"", 1, VK_FORMAT_R32_UINT, 0, 8});
+  EXPECT_EQ(to_amber(twice).message(), said);
+  twice.buffer_views[1].range = 4;
+  EXPECT_TRUE(to_amber(twice).ok());
+  Bug read = bug_with_a_part(0x3f800000);
+  read.descriptors[0].buffer = 1;
+  read.descriptors[0].range = 8;
+  EXPECT_TRUE(to_amber(read).ok());
 }
 
 TEST(Amber, SaysInlineUniformBlocksAsBuffers) {
@@ -143,12 +255,13 @@ TEST(Amber, SaysOneSamplerForImagesOfABinding) {
   bug.descriptors[2].element = 1;
   expect_words(bug, {"BIND BUFFER_ARRAY image0 image0 AS combined_image_sampler SAMPLER sampler0 DESCRIPTOR_SET 0"});
   bug.descriptors[2].sampler = 1;
-  EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for images with several samplers");
+  EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for arrays of images with several samplers");
   bug.sets[0].bindings.push_back(bug.sets[0].bindings[1]);
   bug.sets[0].bindings[2].binding = 2;
   bug.descriptors[2].element = 0;
   bug.descriptors[2].binding = 2;
-  EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for images with several samplers");
+  expect_words(bug, {"BIND BUFFER image0 AS combined_image_sampler SAMPLER sampler0 DESCRIPTOR_SET 0 BINDING 1\n",
+                     "BIND BUFFER image0 AS combined_image_sampler SAMPLER sampler1 DESCRIPTOR_SET 0 BINDING 2\n"});
 }
 
 TEST(Amber, FillsHolesThatNobodyMayRead) {
@@ -258,6 +371,26 @@ TEST(Amber, SaysDrawsWhoseArgumentsAreInABuffer) {
                 "RUN pipeline DRAW_ARRAY AS TRIANGLE_LIST START_IDX 0 COUNT 6 START_INSTANCE 0 INSTANCE_COUNT 1\n"});
   bug.command.arguments_offset = 64;
   EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for arguments outside of their buffer");
+}
+
+TEST(Amber, SaysAdvancedBlending) {
+  Bug bug = drawing_bug();
+  raster::BlendAttachment& blend = bug.state.blend[0];
+  blend.enable = true;
+  blend.color_op = blend.alpha_op = VK_BLEND_OP_HSL_HUE_EXT;
+  blend.src_premultiplied = blend.dst_premultiplied = true;
+  blend.overlap = VK_BLEND_OVERLAP_UNCORRELATED_EXT;
+  expect_words(
+      bug, {"DEVICE_EXTENSION VK_EXT_blend_operation_advanced\n", "    COLOR_OP hsl_hue\n", "    ALPHA_OP hsl_hue\n"});
+  for (const auto& [op, name] : {std::pair(VK_BLEND_OP_ZERO_EXT, "COLOR_OP zero\n"),
+                                 std::pair(VK_BLEND_OP_PLUS_CLAMPED_ALPHA_EXT, "COLOR_OP plus_clamped_alpha\n"),
+                                 std::pair(VK_BLEND_OP_BLUE_EXT, "COLOR_OP blue\n")}) {
+    blend.color_op = blend.alpha_op = op;
+    expect_words(bug, {name});
+  }
+  blend.dst_premultiplied = false;
+  EXPECT_EQ(to_amber(bug).message(),
+            "AmberScript is not written for advanced blending of colours that are not premultiplied, or overlap");
 }
 
 TEST(Amber, SaysDrawsWithoutAttachments) {
