@@ -9,6 +9,7 @@
 #include "glass/bug/amber_draws.h"
 #include "glass/bug/amber_images.h"
 #include "glass/bug/contents.h"
+#include "glass/bug/declared.h"
 #include "glass/finding.h"
 
 namespace vitrine::glass::bug {
@@ -134,10 +135,13 @@ std::uint32_t sampler_of(const std::vector<Descriptor>& elements) {
   return sampler;
 }
 
-/// All elements of a binding in one line.
+/// All elements of a binding in one line. Layouts of pipelines are made of what is bound.
 void write_binding(std::ostream& out, const Bug& bug, std::uint32_t set, const Binding& binding) {
   const std::vector<Descriptor> elements = elements_of(bug, set, binding);
-  if (elements.empty()) return;
+  if (elements.empty()) {
+    if (declared_in(bug).contains({set, binding.binding})) throw Unspeakable{"descriptors that nothing has written"};
+    return;
+  }
   const VkDescriptorType kind = plain_type(bug, set, binding);
   if (kind == VK_DESCRIPTOR_TYPE_MUTABLE_EXT) throw Unspeakable{"arrays of descriptors of several types"};
   const bool array = elements.size() > 1, sampler = kind == VK_DESCRIPTOR_TYPE_SAMPLER;

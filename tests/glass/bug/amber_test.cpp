@@ -264,6 +264,15 @@ TEST(Amber, SaysOneSamplerForImagesOfABinding) {
                      "BIND BUFFER image0 AS combined_image_sampler SAMPLER sampler1 DESCRIPTOR_SET 0 BINDING 2\n"});
 }
 
+TEST(Amber, HasNoWordsForDescriptorsThatNothingHasWritten) {
+  Bug bug = small_bug();
+  bug.sets[0].bindings.push_back(bug.sets[0].bindings[0]);
+  bug.sets[0].bindings[1].binding = 5;
+  EXPECT_TRUE(to_amber(bug).ok());
+  bug.stages[0].words = blob({0x07230203, 0x00010300, 0, 9, 0, 0x00040047, 7, 34, 0, 0x00040047, 7, 33, 5});
+  EXPECT_EQ(to_amber(bug).message(), "AmberScript is not written for descriptors that nothing has written");
+}
+
 TEST(Amber, FillsHolesThatNobodyMayRead) {
   Bug bug = small_bug();
   bug.descriptors[0].element = 2;
