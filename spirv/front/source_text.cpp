@@ -15,7 +15,7 @@ using spv::Op;
 /// Operands of OpSource.
 constexpr std::uint32_t kSourceFile = 2, kSourceText = 3;
 /// Arguments of DebugSource and DebugSourceContinued.
-constexpr std::uint32_t kDebugFile = 0, kDebugText = 1, kDebugContinuedText = 0;
+constexpr std::uint32_t kDebugText = 1, kDebugContinuedText = 0;
 
 /// What glslang puts in front of the text for SPIR-V 1.0: comments, and the line that the text begins with. Its length.
 std::size_t preamble(std::string_view text) {

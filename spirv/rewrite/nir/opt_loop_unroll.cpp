@@ -128,7 +128,7 @@ bool try_unroll(Graph& graph, InstId loop) {
   }
   convert_to_lcssa(graph, loop);
   if (!info.once) {
-    const std::vector<Join> joins = joins_in(graph, loop);
+    const std::vector<BranchJoin> joins = joins_in(graph, loop);
     pass_through_registers(graph, loop);
     join_through_registers(graph, joins);
     leave_through_registers(graph, loop);

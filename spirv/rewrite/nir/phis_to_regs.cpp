@@ -98,8 +98,8 @@ void leave_through_registers(Graph& graph, InstId loop) {
       graph.set_source(id, i, through_register(graph, id, graph.source(graph.insts[id], i), results[i]));
 }
 
-std::vector<Join> joins_in(const Graph& graph, InstId loop) {
-  std::vector<Join> joins;
+std::vector<BranchJoin> joins_in(const Graph& graph, InstId loop) {
+  std::vector<BranchJoin> joins;
   for (InstId id = graph.blocks[graph.insts[loop].child[0]].head; id != kNone; id = graph.insts[id].next) {
     const Inst& inst = graph.insts[id];
     if (inst.kind != Kind::kIf || !ends_in(graph, inst.child[0], Op::kYield) ||
@@ -110,7 +110,7 @@ std::vector<Join> joins_in(const Graph& graph, InstId loop) {
   return joins;
 }
 
-void join_through_registers(Graph& graph, const std::vector<Join>& joins) {
+void join_through_registers(Graph& graph, const std::vector<BranchJoin>& joins) {
   for (const auto& [branch, count] : joins)
     for (std::uint32_t i = 0; i < count; ++i) {
       const ValueId result = node_of(graph, branch).results[i];

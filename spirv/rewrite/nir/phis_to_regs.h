@@ -20,13 +20,13 @@ void pass_through_registers(Graph& graph, InstId loop);
 void leave_through_registers(Graph& graph, InstId loop);
 
 /// The results of an If at the top level of a loop's body, before registers join them.
-struct Join {
+struct BranchJoin {
   InstId branch = kNone;
   std::size_t results = 0;
 };
-std::vector<Join> joins_in(const Graph& graph, InstId loop);
+std::vector<BranchJoin> joins_in(const Graph& graph, InstId loop);
 
 /// All that those Ifs hand on, which is read from its register behind each.
-void join_through_registers(Graph& graph, const std::vector<Join>& joins);
+void join_through_registers(Graph& graph, const std::vector<BranchJoin>& joins);
 
 }  // namespace vitrine::spirv::rewriting
