@@ -23,6 +23,8 @@ ROOT = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else None
 MACHINE = os.uname().machine
 VERSION = re.search(r"project\(vitrine VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1] if ROOT else ""
 NAME = f"vitrine-{VERSION}-{MACHINE}"
+# The tree is built by ninja; make need not be there.
+GENERATOR = {"CMAKE_GENERATOR": "Ninja"}
 # The line of shaders/fill.comp, and what is wrong with it.
 LINE, FAULTS = 10, {"vitrine/out-of-bounds-store", "vitrine/uninitialized-variable"}
 
@@ -85,7 +87,7 @@ class Stranger(unittest.TestCase):
     def run_shell(cls, script, folder, variables):
         """Runs it as the runners do: it ends with the first command that fails."""
         plain = {name: os.environ[name] for name in ("PATH", "HOME", "TMPDIR", "LD_LIBRARY_PATH", "LD_PRELOAD", "LLVM_PROFILE_FILE") if name in os.environ}
-        return subprocess.run(["bash", "-e", "-o", "pipefail", "-c", script], cwd=folder, env=plain | variables, text=True,
+        return subprocess.run(["bash", "-e", "-o", "pipefail", "-c", script], cwd=folder, env=plain | GENERATOR | variables, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
 
     def shell(self, script, folder=None, path="", **variables):
