@@ -97,14 +97,16 @@ class Device:
             program.wait()
 
     def _still(self, program, display, seconds):
-        last, end = b"", time.monotonic() + 10 * seconds
+        """Three pictures alike: on a busy machine windows stand half drawn for a while."""
+        last, alike, end = b"", 0, time.monotonic() + 10 * seconds
         while time.monotonic() < end:
             time.sleep(seconds / 3)
             if program.poll() is not None:
                 raise Failed(f"ended by itself: {last_line((self.folder / 'window.log').read_bytes())}")
             now = subprocess.run(["import", "-display", display, "-window", "root", "-depth", "8", "rgb:-"],
                                  check=True, capture_output=True).stdout
-            if now == last and colours(now) > 2:
+            alike = alike + 1 if now == last else 0
+            if alike == 2 and colours(now) > 2:
                 return now
             last = now
         return last
