@@ -434,6 +434,7 @@ struct Pass::Impl {
   /// Those with many times the mean of primitives first, so that none of them is begun when the other threads have
   /// nothing left. The others stay in their order, in which neighbours find primitives in the caches.
   void sort_tiles() {
+    if (base::worker_count() == 1) return;
     std::vector<std::uint32_t>& touched = scratch->touched;
     std::vector<std::uint64_t>& weights = scratch->weights;
     weights.resize(scratch->items.size());
