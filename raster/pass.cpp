@@ -431,7 +431,7 @@ struct Pass::Impl {
     keep(handed);
   }
 
-  /// Those with many times the mean of primitives first, so that none of them is begun when the other threads have
+  /// Those with more primitives than the mean first, so that none of them is begun when the other threads have
   /// nothing left. The others stay in their order, in which neighbours find primitives in the caches.
   void sort_tiles() {
     if (base::worker_count() == 1) return;

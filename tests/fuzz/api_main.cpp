@@ -1,10 +1,8 @@
 // A loop over random runs of the API for compilers without libFuzzer. usage: vitrine_api_fuzz [SECONDS [SEED]] or
 // FILE...
-#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <random>
 #include <vector>
 
@@ -44,10 +42,9 @@ void loop(double seconds, std::uint64_t seed) {
 
 int main(int count, char** arguments) {
   setenv("VITRINE_SHADER_BUDGET", "2000000", 0);
-  if (count > 1 && std::isdigit(static_cast<unsigned char>(arguments[1][0])) == 0) {
+  if (names_files(count, arguments)) {
     for (int i = 1; i < count; ++i) {
-      std::ifstream file(arguments[i], std::ios::binary);
-      const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+      const std::vector<std::uint8_t> bytes = read_bytes(arguments[i]);
       run_api(bytes.data(), bytes.size());
     }
     return 0;

@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <cctype>
+#include <fstream>
 
 #include <csignal>
 #include <iterator>
@@ -46,6 +48,15 @@ void keep_input_on_death() {
   action.sa_handler = on_death;
   action.sa_flags = SA_ONSTACK;
   for (std::size_t i = 0; i < std::size(kDeaths); i++) sigaction(kDeaths[i], &action, &otherwise[i]);
+}
+
+bool names_files(int count, char** arguments) {
+  return count > 1 && std::isdigit(static_cast<unsigned char>(arguments[1][0])) == 0;
+}
+
+std::vector<std::uint8_t> read_bytes(const char* path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 }  // namespace vitrine::fuzz

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace vitrine::fuzz {
 
@@ -12,5 +13,9 @@ void keep_input_on_death();
 void set_input(std::span<const std::uint8_t> bytes);
 /// Writes it now.
 void keep_input();
+
+/// Whether the words behind a fuzzer's name are files to be run again, not seconds.
+bool names_files(int count, char** arguments);
+std::vector<std::uint8_t> read_bytes(const char* path);
 
 }  // namespace vitrine::fuzz

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
 #include <iterator>
 #include <vector>
 
@@ -43,11 +42,6 @@ std::vector<Module> run_seeds() {
     }
   }
   return pool;
-}
-
-std::vector<std::uint8_t> read_bytes(const char* path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 /// Modules of files, each for its first entry point; those that do not run are left out.
@@ -101,7 +95,7 @@ int loop(double seconds, std::uint64_t seed, char** modules, int count) {
 
 int main(int count, char** arguments) {
   keep_input_on_death();
-  if (count > 1 && std::isdigit(static_cast<unsigned char>(arguments[1][0])) == 0) {
+  if (names_files(count, arguments)) {
     // What other shaders leave in registers must not matter.
     if (run_seeds().empty()) return 1;
     for (int i = 1; i < count; i++) {

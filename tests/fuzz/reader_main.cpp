@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <random>
@@ -159,10 +158,9 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "a seed of reader %d is not taken\n", seed[0]);
     return 1;
   }
-  if (count > 1 && std::isdigit(static_cast<unsigned char>(arguments[1][0])) == 0) {
+  if (names_files(count, arguments)) {
     for (int i = 1; i < count; ++i) {
-      std::ifstream file(arguments[i], std::ios::binary);
-      const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+      const std::vector<std::uint8_t> bytes = read_bytes(arguments[i]);
       LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
     }
     return 0;
