@@ -87,19 +87,24 @@ TEST(BugFile, OfSomethingElseIsAnError) {
   EXPECT_EQ(from_file(pack("vitrine-bug 2\nabc")).message(), "it ends too early");
 }
 
+/// Its one image, and a view of the first level.
+void show_image(Bug& bug, VkFormat format, texel::Extent extent, std::uint32_t levels) {
+  Image image;
+  image.format = format;
+  image.extent = extent;
+  image.levels = levels;
+  bug.images = {image};
+  View view;
+  view.image = 0;
+  view.format = format;
+  view.range = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  bug.views = {view};
+}
+
 TEST(BugFile, ThatSaysWhatVulkanDoesNotKnowIsAnError) {
   const auto said = [](const auto& change) {
     Bug bug = small_bug();
-    Image image;
-    image.format = VK_FORMAT_R8G8B8A8_UNORM;
-    image.extent = {4, 4, 1};
-    image.levels = 3;
-    bug.images = {image};
-    View view;
-    view.image = 0;
-    view.format = image.format;
-    view.range = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    bug.views = {view};
+    show_image(bug, VK_FORMAT_R8G8B8A8_UNORM, {4, 4, 1}, 3);
     EXPECT_EQ(fault_of(bug), "");
     change(bug);
     return from_file(to_file(bug)).message();
@@ -126,15 +131,7 @@ TEST(BugFile, HasRatesForAllThatIsDrawnTo) {
   const auto fault = [](const auto& change) {
     Bug bug = small_bug();
     bug.stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
-    Image image;
-    image.format = VK_FORMAT_R8_UINT;
-    image.extent = {3, 2, 1};
-    bug.images = {image};
-    View view;
-    view.image = 0;
-    view.format = image.format;
-    view.range = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    bug.views = {view};
+    show_image(bug, VK_FORMAT_R8_UINT, {3, 2, 1}, 1);
     bug.rendering.rate = 0;
     bug.rendering.rate_texel = {16, 8};
     bug.rendering.area = {{8, 0}, {40, 16}};
