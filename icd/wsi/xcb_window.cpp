@@ -1,11 +1,14 @@
 // X11 windows through XCB: MIT-SHM where the server shares memory with us, PutImage where it does not.
+#include <pthread.h>
 #include <sys/ipc.h>
 #include <sys/shm.h>
 #include <xcb/shm.h>
 #include <xcb/xcb.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <map>
 #include <mutex>
 #include <new>
@@ -90,6 +93,29 @@ Xcb& xcb() {
 /// several threads wait.
 std::mutex waiting;
 
+/// While it lives, what this thread writes to a server that has died raises no SIGPIPE, which ends a process that does
+/// not expect it (libxcb writes without MSG_NOSIGNAL).
+class NoBrokenPipe {
+ public:
+  explicit NoBrokenPipe(xcb_connection_t* connection) : connection_(connection) {
+    sigemptyset(&pipe_);
+    sigaddset(&pipe_, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  ~NoBrokenPipe() {
+    if (sigismember(&before_, SIGPIPE)) return;  // the application's
+    const timespec now{};
+    if (xcb().connection_has_error(connection_)) sigtimedwait(&pipe_, nullptr, &now);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  NoBrokenPipe(const NoBrokenPipe&) = delete;
+  NoBrokenPipe& operator=(const NoBrokenPipe&) = delete;
+
+ private:
+  xcb_connection_t* connection_;
+  sigset_t pipe_{}, before_{};
+};
+
 /// A System V segment that client and server share; unusable (data == null) when the server is elsewhere.
 class SharedSegment {
  public:
@@ -138,16 +164,20 @@ class XcbWindow final : public Window {
 
   ~XcbWindow() override {
     if (gc_ == 0 || xcb().connection_has_error(connection_)) return;
+    const NoBrokenPipe guard(connection_);
+    segment_.reset();
     xcb().free_gc(connection_, gc_);
     xcb().flush(connection_);
   }
 
   VkResult extent(VkExtent2D& extent) override {
+    const NoBrokenPipe guard(connection_);
     std::uint8_t depth;
     return geometry(extent, depth);
   }
 
   VkResult present(const Frame& frame, bool) override {
+    const NoBrokenPipe guard(connection_);
     VkExtent2D size;
     std::uint8_t depth;
     if (const VkResult result = geometry(size, depth); result != VK_SUCCESS) return result;
