@@ -1,6 +1,8 @@
 // What a run does, one after the other.
 #include "tests/fuzz/api_run.h"
 
+#include "tests/fuzz/target.h"
+
 namespace vitrine::fuzz {
 
 using icd::make_struct;
@@ -38,7 +40,10 @@ bool Run::go() {
   return waited == VK_SUCCESS;
 }
 
-void run_api(const std::uint8_t* data, std::size_t size) {
+}  // namespace vitrine::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace vitrine::fuzz;
   Choices choices({data, size});
   bool lives = true;
   {
@@ -46,6 +51,5 @@ void run_api(const std::uint8_t* data, std::size_t size) {
     lives = run.go();
   }
   if (!lives) replace_device();
+  return 0;
 }
-
-}  // namespace vitrine::fuzz

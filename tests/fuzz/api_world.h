@@ -3,17 +3,13 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "icd/edge/util.h"
 #include "icd/edge/vulkan_api.h"
-
-extern "C" VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vk_icdGetInstanceProcAddr(VkInstance instance, const char* name);
+#include "tests/fuzz/demand.h"
 
 namespace vitrine::fuzz {
-
-#define FUZZ_CALL(instance, name) reinterpret_cast<PFN_vk##name>(vk_icdGetInstanceProcAddr(instance, "vk" #name))
 
 /// Bindings of set 0.
 inline constexpr std::array<VkDescriptorType, 6> kBindings{
@@ -32,15 +28,9 @@ struct World {
   std::vector<VkShaderModule> vertex, control, evaluation, geometry, fragment, compute;
 };
 
-/// Ends the process with a message where something that must work does not.
-void demand(bool condition, const std::string& what);
-
 /// The world as it is now; made at the first call.
 World& world();
 /// The device is lost: another one.
 void replace_device();
-
-/// A run over the bytes. Ends the process where the driver gives an error that it must not give.
-void run_api(const std::uint8_t* data, std::size_t size);
 
 }  // namespace vitrine::fuzz

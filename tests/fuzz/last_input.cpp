@@ -3,11 +3,15 @@
 
 #include <fcntl.h>
 #include <unistd.h>
-#include <cctype>
-#include <fstream>
 
+#include <algorithm>
+#include <cctype>
 #include <csignal>
+#include <cstdio>
+#include <fstream>
 #include <iterator>
+
+#include "tests/fuzz/target.h"
 
 namespace vitrine::fuzz {
 namespace {
@@ -54,7 +58,27 @@ bool names_files(int count, char** arguments) {
   return count > 1 && std::isdigit(static_cast<unsigned char>(arguments[1][0])) == 0;
 }
 
-std::vector<std::uint8_t> read_bytes(const char* path) {
+int run_files(int count, char** arguments) {
+  std::vector<std::filesystem::path> files;
+  for (int i = 1; i < count; ++i) {
+    const std::size_t before = files.size();
+    if (std::filesystem::is_directory(arguments[i])) {
+      for (const auto& entry : std::filesystem::directory_iterator(arguments[i])) files.push_back(entry.path());
+    } else {
+      files.emplace_back(arguments[i]);
+    }
+    std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end());
+  }
+  for (const std::filesystem::path& file : files) {
+    const std::vector<std::uint8_t> bytes = read_bytes(file);
+    set_input(bytes);
+    LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
+  }
+  std::printf("%zu inputs\n", files.size());
+  return files.empty() ? 1 : 0;
+}
+
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }

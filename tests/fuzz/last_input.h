@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,10 @@ void set_input(std::span<const std::uint8_t> bytes);
 /// Writes it now.
 void keep_input();
 
-/// Whether the words behind a fuzzer's name are files to be run again, not seconds.
+/// Whether the words behind a fuzzer's name are files or folders of inputs to be run again, not seconds.
 bool names_files(int count, char** arguments);
-std::vector<std::uint8_t> read_bytes(const char* path);
+/// Runs them, those of a folder in the order of their names. The status to exit with.
+int run_files(int count, char** arguments);
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path);
 
 }  // namespace vitrine::fuzz

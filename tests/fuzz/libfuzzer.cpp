@@ -1,4 +1,4 @@
-// What libFuzzer asks for beside LLVMFuzzerTestOneInput (module_fuzz.cpp): mutation that knows what a module is.
+// What libFuzzer asks for beside the target (module_fuzz.cpp): mutation that knows what a module is.
 // Without a corpus it starts from the seeds.
 #include <cstddef>
 #include <cstdint>

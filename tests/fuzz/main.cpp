@@ -98,11 +98,7 @@ int main(int count, char** arguments) {
   if (names_files(count, arguments)) {
     // What other shaders leave in registers must not matter.
     if (run_seeds().empty()) return 1;
-    for (int i = 1; i < count; i++) {
-      const std::vector<std::uint8_t> bytes = read_bytes(arguments[i]);
-      LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
-    }
-    return 0;
+    return run_files(count, arguments);
   }
   const double seconds = count > 1 ? std::atof(arguments[1]) : 60;
   return loop(seconds, count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1, arguments + 3, std::max(count - 3, 0));

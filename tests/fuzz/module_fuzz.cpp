@@ -11,6 +11,7 @@
 #include "spirv/ir_passes.h"
 #include "spirv/program.h"
 #include "spirv/shader.h"
+#include "tests/fuzz/target.h"
 
 namespace vitrine::fuzz {
 namespace {

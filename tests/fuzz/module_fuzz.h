@@ -31,5 +31,3 @@ std::vector<std::uint32_t> words_of(std::span<const std::uint8_t> bytes);
 Outcome run_bytes(std::span<const std::uint8_t> bytes);
 
 }  // namespace vitrine::fuzz
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

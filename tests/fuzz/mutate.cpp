@@ -19,8 +19,6 @@ struct Place {
   std::uint32_t first = 1;  ///< operand behind type and result
 };
 
-std::size_t below(Random& random, std::size_t count) { return static_cast<std::size_t>(random() % count); }
-
 std::vector<Place> instructions(const Words& words) {
   std::vector<Place> list;
   for (std::size_t at = 5; at < words.size();) {

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <random>
 #include <vector>
+
+#include "tests/fuzz/random.h"
 
 namespace vitrine::fuzz {
 
 using Words = std::vector<std::uint32_t>;
-using Random = std::mt19937_64;
 
 /// One to a few changes; most modules stay valid or nearly so.
 void mutate(Words& words, Random& random);

@@ -23,6 +23,7 @@
 #include "glass/debug/expression.h"
 #include "glass/debug/requests.h"
 #include "glass/report/report.h"
+#include "tests/fuzz/target.h"
 #include "texel/block/block.h"
 #include "texel/format.h"
 

@@ -19,5 +19,3 @@ bool read_input(std::span<const std::uint8_t> bytes);
 std::vector<std::string> reader_seeds();
 
 }  // namespace vitrine::fuzz
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
