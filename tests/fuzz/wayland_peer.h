@@ -9,8 +9,8 @@
 
 namespace vitrine::fuzz {
 
-/// Knows what the driver and run_peer() ask of a compositor: wl_display, wl_registry, wl_compositor, wl_surface, wl_shm
-/// with its pools and buffers (wayland.xml). Behaves until a surface has been made.
+/// Knows what the driver and peer_run.cpp ask of a compositor: wl_display, wl_registry, wl_compositor, wl_surface,
+/// wl_shm with its pools and buffers (wayland.xml). Behaves until a surface has been made.
 class WaylandPeer final : public Peer {
  public:
   using Peer::Peer;
