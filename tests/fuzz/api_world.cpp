@@ -158,25 +158,15 @@ void make_layout(World& w) {
   demand(FUZZ_CALL(w.instance, CreatePipelineLayout)(w.device, &info, nullptr, &w.layout) == VK_SUCCESS, "a layout");
 }
 
-void make_device(World& w) {
+void open_device(World& w) {
   auto robustness = make_struct<VkPhysicalDeviceRobustness2FeaturesEXT>();
   auto of13 = make_struct<VkPhysicalDeviceVulkan13Features>(&robustness);
   auto of12 = make_struct<VkPhysicalDeviceVulkan12Features>(&of13);
   auto of11 = make_struct<VkPhysicalDeviceVulkan11Features>(&of12);
   auto features = make_struct<VkPhysicalDeviceFeatures2>(&of11);
   FUZZ_CALL(w.instance, GetPhysicalDeviceFeatures2)(w.physical_device, &features);
-  const char* extensions[] = {VK_EXT_ROBUSTNESS_2_EXTENSION_NAME, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME};
-  const float priority = 1;
-  auto queue = make_struct<VkDeviceQueueCreateInfo>();
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
-  auto info = make_struct<VkDeviceCreateInfo>(&features);
-  info.queueCreateInfoCount = 1;
-  info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = static_cast<std::uint32_t>(std::size(extensions));
-  info.ppEnabledExtensionNames = extensions;
-  demand(FUZZ_CALL(w.instance, CreateDevice)(w.physical_device, &info, nullptr, &w.device) == VK_SUCCESS, "a device");
-  FUZZ_CALL(w.instance, GetDeviceQueue)(w.device, 0, 0, &w.queue);
+  const char* const extensions[] = {VK_EXT_ROBUSTNESS_2_EXTENSION_NAME, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME};
+  make_device(w, extensions, &features);
   make_layout(w);
   make_modules(w);
 }
@@ -184,14 +174,8 @@ void make_device(World& w) {
 World make_world() {
   setenv("VITRINE_SHADER_BUDGET", "2000000", 0);
   World w;
-  auto application = make_struct<VkApplicationInfo>();
-  application.apiVersion = VK_API_VERSION_1_3;
-  auto info = make_struct<VkInstanceCreateInfo>();
-  info.pApplicationInfo = &application;
-  demand(FUZZ_CALL(nullptr, CreateInstance)(&info, nullptr, &w.instance) == VK_SUCCESS, "an instance");
-  std::uint32_t count = 1;
-  FUZZ_CALL(w.instance, EnumeratePhysicalDevices)(w.instance, &count, &w.physical_device);
-  make_device(w);
+  make_instance(w, {});
+  open_device(w);
   return w;
 }
 
@@ -212,7 +196,7 @@ void replace_device() {
   FUZZ_CALL(w.instance, DestroyPipelineLayout)(w.device, w.layout, nullptr);
   FUZZ_CALL(w.instance, DestroyDescriptorSetLayout)(w.device, w.set_layout, nullptr);
   FUZZ_CALL(w.instance, DestroyDevice)(w.device, nullptr);
-  make_device(w);
+  open_device(w);
 }
 
 }  // namespace vitrine::fuzz

@@ -7,7 +7,7 @@
 
 #include "icd/edge/util.h"
 #include "icd/edge/vulkan_api.h"
-#include "tests/fuzz/demand.h"
+#include "tests/fuzz/driver.h"
 
 namespace vitrine::fuzz {
 
@@ -18,11 +18,7 @@ inline constexpr std::array<VkDescriptorType, 6> kBindings{
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,   VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER};
 inline constexpr std::uint32_t kPushBytes = 32;
 
-struct World {
-  VkInstance instance = VK_NULL_HANDLE;
-  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
-  VkDevice device = VK_NULL_HANDLE;
-  VkQueue queue = VK_NULL_HANDLE;
+struct World : Driver {
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;
   std::vector<VkShaderModule> vertex, control, evaluation, geometry, fragment, compute;

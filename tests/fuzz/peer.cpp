@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <array>
 
-#include "tests/fuzz/demand.h"
+#include "tests/fuzz/driver.h"
 
 namespace vitrine::fuzz {
 namespace {

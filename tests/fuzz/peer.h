@@ -37,6 +37,14 @@ class Message {
   std::string bytes_;
 };
 
+/// The number at a byte; 0 where it is not all there.
+template <class T>
+T number_at(std::span<const std::byte> bytes, std::size_t at) {
+  T value{};
+  if (at + sizeof value <= bytes.size()) std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
 class Peer {
  public:
   explicit Peer(std::span<const std::uint8_t> choices);

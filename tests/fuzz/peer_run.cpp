@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "icd/edge/util.h"
-#include "tests/fuzz/demand.h"
+#include "tests/fuzz/driver.h"
 #include "tests/fuzz/target.h"
 #include "tests/fuzz/wayland_peer.h"
 #include "tests/fuzz/x11_peer.h"
@@ -15,11 +15,7 @@ namespace {
 
 using icd::make_struct;
 
-struct Screen {
-  VkInstance instance = VK_NULL_HANDLE;
-  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
-  VkDevice device = VK_NULL_HANDLE;
-  VkQueue queue = VK_NULL_HANDLE;
+struct Screen : Driver {
   VkFence fence = VK_NULL_HANDLE;
 };
 
@@ -28,26 +24,11 @@ struct Screen {
 
 Screen make_screen() {
   Screen s;
-  const char* const extensions[] = {VK_KHR_SURFACE_EXTENSION_NAME, VK_KHR_XCB_SURFACE_EXTENSION_NAME,
-                                    VK_KHR_WAYLAND_SURFACE_EXTENSION_NAME};
-  auto info = make_struct<VkInstanceCreateInfo>();
-  info.enabledExtensionCount = static_cast<std::uint32_t>(std::size(extensions));
-  info.ppEnabledExtensionNames = extensions;
-  demand(FUZZ_CALL(nullptr, CreateInstance)(&info, nullptr, &s.instance) == VK_SUCCESS, "an instance");
-  std::uint32_t count = 1;
-  FUZZ_CALL(s.instance, EnumeratePhysicalDevices)(s.instance, &count, &s.physical_device);
-  const char* const swapchains = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
-  const float priority = 1;
-  auto queue = make_struct<VkDeviceQueueCreateInfo>();
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
-  auto device = make_struct<VkDeviceCreateInfo>();
-  device.queueCreateInfoCount = 1;
-  device.pQueueCreateInfos = &queue;
-  device.enabledExtensionCount = 1;
-  device.ppEnabledExtensionNames = &swapchains;
-  demand(FUZZ_CALL(s.instance, CreateDevice)(s.physical_device, &device, nullptr, &s.device) == VK_SUCCESS, "a device");
-  FUZZ_CALL(s.instance, GetDeviceQueue)(s.device, 0, 0, &s.queue);
+  const char* const of_instance[] = {VK_KHR_SURFACE_EXTENSION_NAME, VK_KHR_XCB_SURFACE_EXTENSION_NAME,
+                                     VK_KHR_WAYLAND_SURFACE_EXTENSION_NAME};
+  make_instance(s, of_instance);
+  const char* const of_device[] = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+  make_device(s, of_device, nullptr);
   const auto fence = make_struct<VkFenceCreateInfo>();
   demand(FUZZ_CALL(s.instance, CreateFence)(s.device, &fence, nullptr, &s.fence) == VK_SUCCESS, "a fence");
   return s;

@@ -8,9 +8,7 @@ namespace vitrine::fuzz {
 namespace {
 
 std::uint32_t word(std::span<const std::byte> body, std::size_t index) {
-  std::uint32_t value = 0;
-  if (index * 4 + 4 <= body.size()) std::memcpy(&value, body.data() + index * 4, sizeof value);
-  return value;
+  return number_at<std::uint32_t>(body, index * 4);
 }
 
 void add_text(Message& message, std::string_view text) {
@@ -33,7 +31,9 @@ bool WaylandPeer::serve() {
 
 bool WaylandPeer::answer(std::uint32_t object, std::uint16_t opcode, std::span<const std::byte> body) {
   const std::uint32_t first = word(body, 0);
-  switch (objects_.contains(object) ? objects_[object] : Kind::kNone) {
+  const auto known = objects_.find(object);
+  if (known == objects_.end()) return true;
+  switch (known->second) {
     case Kind::kDisplay:
       return display(opcode, first);
     case Kind::kRegistry:
@@ -54,9 +54,8 @@ bool WaylandPeer::answer(std::uint32_t object, std::uint16_t opcode, std::span<c
     case Kind::kBuffer:
       std::erase(held_, object);
       return forget(object);
-    default:
-      return true;
   }
+  return true;
 }
 
 bool WaylandPeer::display(std::uint16_t opcode, std::uint32_t made) {

@@ -16,7 +16,7 @@ class WaylandPeer final : public Peer {
   using Peer::Peer;
 
  private:
-  enum class Kind : std::uint8_t { kNone, kDisplay, kRegistry, kCompositor, kSurface, kShm, kPool, kBuffer, kCallback };
+  enum class Kind : std::uint8_t { kDisplay, kRegistry, kCompositor, kSurface, kShm, kPool, kBuffer };
 
   bool serve() override;
   bool give_withheld() override;
@@ -27,7 +27,7 @@ class WaylandPeer final : public Peer {
   bool global(std::uint32_t registry, std::uint32_t name, std::string_view interface, std::uint32_t version);
   bool bound(std::span<const std::byte> body);
   bool commit();
-  /// The end of a message with what the choices add.
+  /// An event, behind what misbehave() adds.
   bool event(std::uint32_t object, std::uint16_t opcode, const Message& body);
   bool send(std::uint32_t object, std::uint16_t opcode, const Message& body);
   bool forget(std::uint32_t object);

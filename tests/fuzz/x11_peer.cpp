@@ -19,13 +19,6 @@ enum : std::uint8_t {
 constexpr std::uint8_t kDepths[] = {24, 32, 24, 16, 8, 1, 0, 255};
 constexpr std::uint16_t kSides[] = {64, 48, 1, 7, 0, 200, 16384, 16385, 65535};
 
-template <class T>
-T of_request(std::span<const std::byte> body, std::size_t at) {
-  T value{};
-  if (at + sizeof value <= body.size()) std::memcpy(&value, body.data() + at, sizeof value);
-  return value;
-}
-
 }  // namespace
 
 bool X11Peer::greet() {
@@ -132,7 +125,7 @@ bool X11Peer::geometry() {
 
 bool X11Peer::extension(std::span<const std::byte> body) {
   const std::span<const std::byte> text = body.subspan(std::min<std::size_t>(4, body.size()));
-  const std::size_t length = std::min<std::size_t>(of_request<std::uint16_t>(body, 0), text.size());
+  const std::size_t length = std::min<std::size_t>(number_at<std::uint16_t>(body, 0), text.size());
   const std::string_view name(reinterpret_cast<const char*>(text.data()), length);
   Message message = reply(0);
   message.put(8, static_cast<std::uint8_t>(c_.one_in(4) ? 0 : 1));
