@@ -47,6 +47,7 @@ struct Wayland {
   decltype(wl_display_dispatch_queue)* dispatch;
   decltype(wl_display_dispatch_queue_pending)* dispatch_pending;
   decltype(wl_display_flush)* flush;
+  decltype(wl_display_get_error)* get_error;
   const wl_interface* registry_interface;
   const wl_interface* shm_interface;
   const wl_interface* shm_pool_interface;
@@ -62,9 +63,9 @@ struct Wayland {
              l.find("wl_event_queue_destroy", queue_destroy) && l.find("wl_display_roundtrip_queue", roundtrip) &&
              l.find("wl_display_dispatch_queue", dispatch) &&
              l.find("wl_display_dispatch_queue_pending", dispatch_pending) && l.find("wl_display_flush", flush) &&
-             l.find("wl_registry_interface", registry_interface) && l.find("wl_shm_interface", shm_interface) &&
-             l.find("wl_shm_pool_interface", shm_pool_interface) && l.find("wl_buffer_interface", buffer_interface) &&
-             l.find("wl_callback_interface", callback_interface);
+             l.find("wl_display_get_error", get_error) && l.find("wl_registry_interface", registry_interface) &&
+             l.find("wl_shm_interface", shm_interface) && l.find("wl_shm_pool_interface", shm_pool_interface) &&
+             l.find("wl_buffer_interface", buffer_interface) && l.find("wl_callback_interface", callback_interface);
   }
 };
 
@@ -112,7 +113,7 @@ class WaylandWindow final : public Window {
     wayland().set_queue(surface_, queue_);
     registry_ = wayland().marshal(display_wrapper_, kDisplayGetRegistry, wayland().registry_interface,
                                   wayland().get_version(display_wrapper_), 0, nullptr);
-    if (!registry_) return;
+    if (!registry_ || wayland().get_error(display_) != 0) return;
     wayland().add_listener(registry_, const_cast<Listener*>(kRegistryListener.data()), this);
     wayland().roundtrip(display_, queue_);
   }
@@ -136,7 +137,7 @@ class WaylandWindow final : public Window {
 
   VkResult present(const Frame& frame, bool wait_for_display) override {
     while (wait_for_display && frame_pending_) {
-      if (wayland().dispatch(display_, queue_) < 0) return VK_ERROR_SURFACE_LOST_KHR;
+      if (!wait_for_events()) return VK_ERROR_SURFACE_LOST_KHR;
     }
     ShmBuffer* buffer = free_buffer(frame.extent);
     if (!buffer) return VK_ERROR_SURFACE_LOST_KHR;
@@ -174,6 +175,10 @@ class WaylandWindow final : public Window {
     wayland().add_listener(frame_callback_, const_cast<Listener*>(kFrameListener.data()), &frame_pending_);
   }
 
+  /// False: the compositor has gone. libwayland is not asked again after an error: where that was EAGAIN, as after an
+  /// event that the interface does not have, it would never come back.
+  bool wait_for_events() { return wayland().get_error(display_) == 0 && wayland().dispatch(display_, queue_) >= 0; }
+
   /// A buffer of this size that the compositor does not hold; waits for one.
   ShmBuffer* free_buffer(VkExtent2D extent) {
     for (;;) {
@@ -184,7 +189,7 @@ class WaylandWindow final : public Window {
         buffer.release();
         return create(buffer, extent) ? &buffer : nullptr;
       }
-      if (wayland().dispatch(display_, queue_) < 0) return nullptr;
+      if (!wait_for_events()) return nullptr;
     }
   }
 

@@ -304,7 +304,7 @@ std::unique_ptr<Window> open_xlib_window(void* display, std::uint32_t window) {
 }
 
 bool xcb_presentation_supported(xcb_connection_t* connection, std::uint32_t visual) {
-  if (!xcb().usable) return false;
+  if (!xcb().usable || xcb().connection_has_error(connection)) return false;
   for (auto screen = xcb().setup_roots_iterator(xcb().get_setup(connection)); screen.rem; xcb().screen_next(&screen)) {
     for (auto depth = xcb().screen_allowed_depths_iterator(screen.data); depth.rem; xcb().depth_next(&depth)) {
       if (depth.data->depth != 24 && depth.data->depth != 32) continue;

@@ -142,12 +142,12 @@ bool X11Peer::send(Message message) {
       message.put(8 + c_.below(24), static_cast<std::uint8_t>(c_.below(256)));
       break;
     case 2:
-      be_odd();
-      message.put(4, c_.below(40));
+      message.put(4, c_.between(1, 40));
+      message.zeros(std::size_t{number_at<std::uint32_t>(message.bytes(), 4)} * 4);
       break;
     case 3:
       be_odd();
-      message.put(2, static_cast<std::uint16_t>(sequence_ + c_.between(0, 6) - 3));
+      message.put(2, answered_);
       break;
     case 4:
       be_odd();
@@ -164,6 +164,7 @@ bool X11Peer::send(Message message) {
     default:
       break;
   }
+  answered_ = sequence_;
   return write(message.bytes());
 }
 

@@ -6,7 +6,7 @@
 namespace vitrine::fuzz {
 
 /// Knows what the driver asks of a server: the X Window System Protocol, version 11, its encoding, with MIT-SHM and
-/// BIG-REQUESTS. Every number is a window.
+/// BIG-REQUESTS. Every number is a window. Gives no reply to a request that has none: libxcb ends the process.
 class X11Peer final : public Peer {
  public:
   using Peer::Peer;
@@ -27,6 +27,7 @@ class X11Peer final : public Peer {
 
   bool greeted_ = false;
   std::uint16_t sequence_ = 0;
+  std::uint16_t answered_ = 0;  ///< the request with the last reply
   std::uint8_t opcode_ = 0;
   std::uint16_t width_ = 64, height_ = 48;
   std::uint8_t depth_ = 24;
