@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "glass/cli/debug_json.h"
+
 namespace vitrine::glass::cli {
 namespace fs = std::filesystem;
 namespace {
@@ -12,21 +14,8 @@ using nlohmann::json;
 
 /// Frames of an invocation: frameId = lane * kFrames + number + 1.
 constexpr std::size_t kFrames = 1024;
-
-std::string text_of(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-std::size_t number_of(const json& object, const char* key, std::size_t otherwise = 0) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number_unsigned() ? found->get<std::size_t>() : otherwise;
-}
-
-json list_of(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_array() ? *found : json::array();
-}
+/// The editor's numbers of watches: those of the process behind this one, so that they are no breakpoints'.
+constexpr std::size_t kWatches = std::size_t{1} << 20;
 
 json failure(const std::string& text) { return {{"error", text}}; }
 
@@ -41,13 +30,6 @@ json rows_of(const json& breakpoints) {
                       {"hits", text_of(row, "hitCondition")},
                       {"message", text_of(row, "logMessage")}});
   return rows;
-}
-
-/// What the editor is told before there is a process.
-json unverified(const json& rows) {
-  json list = json::array();
-  for (const json& row : rows) list.push_back({{"verified", false}, {"line", row["line"]}});
-  return {{"breakpoints", std::move(list)}};
 }
 
 json filters() {
@@ -138,29 +120,22 @@ json DebugAdapter::ask(json request) {
   return answer ? std::move(*answer) : failure("the application has ended");
 }
 
-json DebugAdapter::ask_breakpoints(const json& request) {
-  const json answer = ask(request);
-  json list = json::array();
-  for (const json& row : list_of(answer, "list"))
-    list.push_back({{"id", number_of(row, "number")},
-                    {"verified", row.value("verified", json(false))},
-                    {"line", number_of(row, "line")}});
-  return {{"breakpoints", std::move(list)}};
+json DebugAdapter::set_owned(const std::string& owner, json request) {
+  breakpoints_.replace(owner, request);
+  if (link_ != nullptr) breakpoints_.learn(owner, ask(std::move(request)));
+  return breakpoints_.answer(owner);
 }
 
 json DebugAdapter::set_breakpoints(const json& arguments) {
   const json source = arguments.value("source", json::object());
   std::string file = source.is_object() ? text_of(source, "path") : std::string();
   if (file.empty() && source.is_object()) file = text_of(source, "name");
-  const json request = {
-      {"request", "breakpoints"}, {"file", file}, {"list", rows_of(list_of(arguments, "breakpoints"))}};
-  lines_[file] = request;
-  return link_ == nullptr ? unverified(request["list"]) : ask_breakpoints(request);
+  return set_owned(file,
+                   {{"request", "breakpoints"}, {"file", file}, {"list", rows_of(list_of(arguments, "breakpoints"))}});
 }
 
 json DebugAdapter::set_functions(const json& arguments) {
-  functions_ = {{"request", "functions"}, {"list", rows_of(list_of(arguments, "breakpoints"))}};
-  return link_ == nullptr ? unverified(functions_["list"]) : ask_breakpoints(functions_);
+  return set_owned("", {{"request", "functions"}, {"list", rows_of(list_of(arguments, "breakpoints"))}});
 }
 
 json DebugAdapter::set_exceptions(const json& arguments) {
@@ -173,8 +148,12 @@ json DebugAdapter::set_exceptions(const json& arguments) {
 
 void DebugAdapter::send_breakpoints() {
   if (!exceptions_.is_null()) ask(exceptions_);
-  for (const auto& [file, request] : lines_) ask(request);
-  if (!functions_.is_null()) ask(functions_);
+  for (const auto& [owner, request] : breakpoints_.requests()) breakpoints_.learn(owner, ask(request));
+}
+
+void DebugAdapter::tell_placed() {
+  if (breakpoints_.are_all_verified()) return;
+  for (json& news : breakpoints_.learn_placed(ask({{"request", "placed"}}))) event("breakpoint", std::move(news));
 }
 
 void DebugAdapter::told(const json& message) {
@@ -188,6 +167,7 @@ void DebugAdapter::told(const json& message) {
     ask({{"request", "go"}, {"how", "continue"}});
     return;
   }
+  tell_placed();
   stopped_ = true;
   lane_ = number_of(message, "lane");
   last_stop_ = message;
@@ -197,7 +177,8 @@ void DebugAdapter::told(const json& message) {
                {"allThreadsStopped", true},
                {"description", text_of(message, "message")},
                {"text", text_of(message, "text")}};
-  if (reason == "breakpoint") body["hitBreakpointIds"] = json::array({message.value("number", json(0))});
+  if (const json id = breakpoints_.id_of(number_of(message, "number")); reason == "breakpoint" && !id.is_null())
+    body["hitBreakpointIds"] = json::array({id});
   event("stopped", std::move(body));
 }
 
@@ -224,7 +205,7 @@ json DebugAdapter::source_of(const std::string& file) {
     return result;
   }
   // The person who has set breakpoints in it has it.
-  for (const auto& [path, request] : lines_)
+  for (const auto& [path, request] : breakpoints_.requests())
     if (fs::path(path).filename() == fs::path(file).filename() && fs::exists(path, error)) {
       result["path"] = path;
       return result;
@@ -346,7 +327,7 @@ json DebugAdapter::set_data_breakpoints(const json& arguments) {
   const json answer = ask({{"request", "watches"}, {"list", std::move(list)}});
   if (answer.contains("error")) return rows.empty() ? json{{"breakpoints", answers}} : answer;
   for (const json& row : list_of(answer, "list"))
-    answers.push_back({{"id", number_of(row, "number")},
+    answers.push_back({{"id", kWatches + number_of(row, "number")},
                        {"verified", row.value("verified", json(false))},
                        {"message", text_of(row, "message")}});
   return {{"breakpoints", std::move(answers)}};

@@ -2,11 +2,11 @@
 // invocations of the wave that has stopped: number = lane + 1.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "glass/cli/debug_breakpoints.h"
 #include "glass/cli/debug_link.h"
 #include "glass/cli/debug_wire.h"
 
@@ -60,7 +60,10 @@ class DebugAdapter {
   json exception(const json& arguments);
 
   json ask(json request);
-  json ask_breakpoints(const json& request);
+  /// Breakpoints of a file, or of functions.
+  json set_owned(const std::string& owner, json request);
+  /// Tells the editor of breakpoints that shaders have by now.
+  void tell_placed();
   void send_breakpoints();
   json source_of(const std::string& file);
   int refer(json children, Owner owner);
@@ -75,8 +78,8 @@ class DebugAdapter {
   bool stopped_ = false;
   std::size_t lane_ = 0;  ///< that has stopped
   json last_stop_ = json::object();
-  std::map<std::string, json> lines_;  ///< requests of the driver, by file
-  json functions_, exceptions_;        ///< the same; null: none
+  Breakpoints breakpoints_;
+  json exceptions_;                    ///< the request of the driver; null: none
   std::vector<std::string> files_;     ///< that are in modules alone, by sourceReference - 1
   std::vector<Reference> references_;  ///< since the stop, by variablesReference - 1
 };

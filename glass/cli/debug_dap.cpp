@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <charconv>
+#include <chrono>
 #include <future>
 
 #include "glass/cli/application.h"
@@ -15,6 +16,8 @@
 
 namespace vitrine::glass::cli {
 namespace {
+
+constexpr std::chrono::milliseconds kPatience{500};
 
 /// Everything that the face's thread waits for.
 class Server {
@@ -41,11 +44,23 @@ class Server {
       tell_editor();
       if (waited[2].revents == 0) continue;
       if (adapter_) adapter_->ended(code);
-      return;
+      return take_leave();
     }
   }
 
  private:
+  /// The application has ended: the editor says that it leaves, too, and may wait for the answer. One that says nothing
+  /// is not waited for.
+  void take_leave() {
+    const auto until = std::chrono::steady_clock::now() + kPatience;
+    while (wire_) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+      pollfd waited{wire_->socket(), POLLIN, 0};
+      if (left.count() <= 0 || ::poll(&waited, 1, static_cast<int>(left.count())) <= 0) return;
+      hear_editor();
+    }
+  }
+
   /// One editor at a time, and none when the application has run without one.
   void take_editor() {
     const int socket = ::accept4(editors_, nullptr, nullptr, SOCK_CLOEXEC);

@@ -77,6 +77,14 @@ json set_functions(Engine& engine, const json& request) {
   return replace(engine, request, "functions", Breakpoint::Kind::kFunction);
 }
 
+json placed(Engine& engine, const json&) {
+  json list = json::array();
+  for (const auto& [number, breakpoint] : engine.breakpoints())
+    if (const std::uint32_t line = line_of(engine, breakpoint); line != 0)
+      list.push_back({{"number", number}, {"line", line}});
+  return {{"list", std::move(list)}};
+}
+
 json set_catches(Engine& engine, const json& request) {
   unsigned catches = 0;
   const auto rows = request.find("list");
@@ -214,6 +222,7 @@ struct Row {
 constexpr Row kRows[] = {{"command", false, run_command},
                          {"breakpoints", true, set_lines},
                          {"functions", true, set_functions},
+                         {"placed", true, placed},
                          {"catch", true, set_catches},
                          {"lanes", false, lanes},
                          {"frames", false, frames},

@@ -3,8 +3,8 @@
 //   command      text                                            -> text
 //   breakpoints  file, list of {line, condition, hits, message}  -> list of {number, verified, line}: all of the file
 //   functions    list of {name, condition, hits}                 -> the same
-//   catch        list of printf, nan, finding: what else is a reason to stop
-//   lanes                                                        -> list of {lane, name, where}
+//   placed                                                       -> list of {number, line}: breakpoints that shaders
+//   have catch        list of printf, nan, finding: what else is a reason to stop lanes -> list of {lane, name, where}
 //   frames       lane                                            -> list of {name, file, line, column}
 //   variables    lane, frame, which: locals or globals           -> list of {name, type, value, children}
 //   evaluate     lane, frame, text                               -> name, type, value, children

@@ -139,7 +139,31 @@ class Adapter(unittest.TestCase):
         client.ask("continue", threadId=6)
         self.assertEqual(client.wait("exited")["exitCode"], 0)
         client.wait("terminated")
+        client.ask("disconnect")
         self.assertEqual(server.wait(timeout=60), 0)
+
+    def test_breakpoints_are_verified_when_a_shader_has_them(self):
+        _, port = self.serve()
+        client = self.client(port)
+        client.ask("initialize")
+        set_before = client.ask("setBreakpoints", source={"path": FILE}, breakpoints=[{"line": 8}, {"line": 100}])["breakpoints"]
+        functions = client.ask("setFunctionBreakpoints", breakpoints=[{"name": "nobody"}])["breakpoints"]
+        self.assertEqual([row["verified"] for row in set_before + functions], [False] * 3)
+        ids = [row["id"] for row in set_before + functions]
+        self.assertEqual(len(set(ids)), 3)
+        client.ask("launch")
+        client.ask("configurationDone")
+        news = client.wait("breakpoint")
+        self.assertEqual((news["reason"], news["breakpoint"]), ("changed", {"id": ids[0], "verified": True, "line": 8}))
+        stop = client.wait("stopped")
+        self.assertEqual(stop["hitBreakpointIds"], [ids[0]])
+        # The same ones again: others for the editor, and known at once.
+        again = client.ask("setBreakpoints", source={"path": FILE}, breakpoints=[{"line": 8}])["breakpoints"]
+        self.assertTrue(again[0]["verified"])
+        client.ask("stepIn", threadId=stop["threadId"])
+        client.wait("stopped")
+        self.assertFalse([event for event in client.events if event["event"] == "breakpoint"])
+        client.ask("disconnect")
 
     def test_log_points_and_hit_counts(self):
         _, port = self.serve()
