@@ -8,6 +8,7 @@
 #include <cctype>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
@@ -76,6 +77,13 @@ int run_files(int count, char** arguments) {
   }
   std::printf("%zu inputs\n", files.size());
   return files.empty() ? 1 : 0;
+}
+
+Rounds rounds_of(int count, char** arguments) {
+  Rounds rounds;
+  if (count > 1) rounds.seconds = std::atof(arguments[1]);
+  if (count > 2) rounds.seed = std::strtoull(arguments[2], nullptr, 10);
+  return rounds;
 }
 
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path) {

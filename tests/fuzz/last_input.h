@@ -19,6 +19,12 @@ void keep_input();
 bool names_files(int count, char** arguments);
 /// Runs them, those of a folder in the order of their names. The status to exit with.
 int run_files(int count, char** arguments);
+/// SECONDS and SEED behind its name, else a minute and 1.
+struct Rounds {
+  double seconds = 60;
+  std::uint64_t seed = 1;
+};
+Rounds rounds_of(int count, char** arguments);
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path);
 
 }  // namespace vitrine::fuzz

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <iterator>
 #include <vector>
@@ -60,17 +59,17 @@ void add_modules(std::vector<Module>& pool, char** paths, int count) {
 }
 
 /// Mutants of seeds, of modules and of mutants that ran.
-int loop(double seconds, std::uint64_t seed, char** modules, int count) {
+int loop(const Rounds& rounds, char** modules, int count) {
   std::vector<Module> pool = run_seeds();
   if (pool.empty()) return 1;
   add_modules(pool, modules, count);
   const std::size_t seeds = pool.size();
-  Random random(seed);
+  Random random(rounds.seed);
   std::size_t runs = 0, ran = 0;
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   double slowest = 0;
-  while (elapsed() < seconds) {
+  while (elapsed() < rounds.seconds) {
     const Module& from = pool[static_cast<std::size_t>(random() % pool.size())];
     current_stage = from.stage;
     current = from.words;
@@ -100,8 +99,7 @@ int main(int count, char** arguments) {
     if (run_seeds().empty()) return 1;
     return run_files(count, arguments);
   }
-  const double seconds = count > 1 ? std::atof(arguments[1]) : 60;
-  return loop(seconds, count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1, arguments + 3, std::max(count - 3, 0));
+  return loop(rounds_of(count, arguments), arguments + 3, std::max(count - 3, 0));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 // more than five seconds in "fuzz-input-slow".
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <random>
 
 #include "tests/fuzz/last_input.h"
@@ -14,8 +13,8 @@ namespace {
 
 constexpr std::size_t kBytes = 2048;  // more choices than a run makes
 
-void loop(double seconds, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
+void loop(const Rounds& rounds) {
+  std::mt19937_64 random(rounds.seed);
   std::vector<std::uint8_t> bytes(kBytes);
   std::size_t runs = 0;
   double slowest = 0;
@@ -23,7 +22,7 @@ void loop(double seconds, std::uint64_t seed) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   };
   const double start = now();
-  for (double at = start; at - start < seconds;) {
+  for (double at = start; at - start < rounds.seconds;) {
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
     set_input(bytes);
     keep_input();  // a process that is killed for its memory says nothing
@@ -46,6 +45,6 @@ void loop(double seconds, std::uint64_t seed) {
 int main(int count, char** arguments) {
   using namespace vitrine::fuzz;
   if (names_files(count, arguments)) return run_files(count, arguments);
-  loop(count > 1 ? std::atof(arguments[1]) : 60, count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1);
+  loop(rounds_of(count, arguments));
   return 0;
 }

@@ -2,7 +2,6 @@
 // are mutated beside the seeds. The input at hand is kept in "fuzz-input" in the working folder when the process dies.
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <iterator>
 #include <map>
 
@@ -27,18 +26,18 @@ void keep(Pool& pool, std::string text, Random& random) {
     pool.inputs[pool.seeds + below(random, kKept)] = std::move(text);
 }
 
-void loop(double seconds, std::uint64_t seed) {
+void loop(const Rounds& rounds) {
   constexpr std::size_t kLongest = 20000;
   std::map<char, Pool> pools;
   for (const std::string& input : reader_seeds()) {
     pools[input[0]].inputs.push_back(input.substr(1));
     ++pools[input[0]].seeds;
   }
-  Random random(seed);
+  Random random(rounds.seed);
   std::size_t runs = 0, taken = 0;
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  while (elapsed() < seconds) {
+  while (elapsed() < rounds.seconds) {
     auto& [reader, pool] = *std::next(pools.begin(), static_cast<std::ptrdiff_t>(below(random, pools.size())));
     std::string text = pool.inputs[below(random, pool.inputs.size())];
     mutate_text(text, pool.inputs, random);
@@ -62,7 +61,7 @@ int main(int count, char** arguments) {
     return 1;
   }
   if (names_files(count, arguments)) return run_files(count, arguments);
-  loop(count > 1 ? std::atof(arguments[1]) : 60, count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1);
+  loop(rounds_of(count, arguments));
   return 0;
 }
 
