@@ -1,11 +1,13 @@
 // Wayland surfaces through wl_shm. Talks on an event queue of its own, so that the application's events are not
 // touched.
+#include <poll.h>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <wayland-client-core.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <string_view>
 
@@ -17,6 +19,7 @@ namespace {
 
 // Requests and formats of the core protocol (wayland.xml), numbered in the order of their interface.
 enum : std::uint32_t {
+  kDisplaySync = 0,
   kDisplayGetRegistry = 1,
   kRegistryBind = 0,
   kShmCreatePool = 0,
@@ -43,8 +46,10 @@ struct Wayland {
   decltype(wl_proxy_get_version)* get_version;
   decltype(wl_display_create_queue)* create_queue;
   decltype(wl_event_queue_destroy)* queue_destroy;
-  decltype(wl_display_roundtrip_queue)* roundtrip;
-  decltype(wl_display_dispatch_queue)* dispatch;
+  decltype(wl_display_prepare_read_queue)* prepare_read;
+  decltype(wl_display_cancel_read)* cancel_read;
+  decltype(wl_display_read_events)* read_events;
+  decltype(wl_display_get_fd)* get_fd;
   decltype(wl_display_dispatch_queue_pending)* dispatch_pending;
   decltype(wl_display_flush)* flush;
   decltype(wl_display_get_error)* get_error;
@@ -60,12 +65,13 @@ struct Wayland {
              l.find("wl_proxy_create_wrapper", create_wrapper) && l.find("wl_proxy_wrapper_destroy", wrapper_destroy) &&
              l.find("wl_proxy_set_queue", set_queue) && l.find("wl_proxy_destroy", proxy_destroy) &&
              l.find("wl_proxy_get_version", get_version) && l.find("wl_display_create_queue", create_queue) &&
-             l.find("wl_event_queue_destroy", queue_destroy) && l.find("wl_display_roundtrip_queue", roundtrip) &&
-             l.find("wl_display_dispatch_queue", dispatch) &&
-             l.find("wl_display_dispatch_queue_pending", dispatch_pending) && l.find("wl_display_flush", flush) &&
-             l.find("wl_display_get_error", get_error) && l.find("wl_registry_interface", registry_interface) &&
-             l.find("wl_shm_interface", shm_interface) && l.find("wl_shm_pool_interface", shm_pool_interface) &&
-             l.find("wl_buffer_interface", buffer_interface) && l.find("wl_callback_interface", callback_interface);
+             l.find("wl_event_queue_destroy", queue_destroy) && l.find("wl_display_prepare_read_queue", prepare_read) &&
+             l.find("wl_display_cancel_read", cancel_read) && l.find("wl_display_read_events", read_events) &&
+             l.find("wl_display_get_fd", get_fd) && l.find("wl_display_dispatch_queue_pending", dispatch_pending) &&
+             l.find("wl_display_flush", flush) && l.find("wl_display_get_error", get_error) &&
+             l.find("wl_registry_interface", registry_interface) && l.find("wl_shm_interface", shm_interface) &&
+             l.find("wl_shm_pool_interface", shm_pool_interface) && l.find("wl_buffer_interface", buffer_interface) &&
+             l.find("wl_callback_interface", callback_interface);
   }
 };
 
@@ -115,7 +121,7 @@ class WaylandWindow final : public Window {
                                   wayland().get_version(display_wrapper_), 0, nullptr);
     if (!registry_ || wayland().get_error(display_) != 0) return;
     wayland().add_listener(registry_, const_cast<Listener*>(kRegistryListener.data()), this);
-    wayland().roundtrip(display_, queue_);
+    round_trip();
   }
 
   ~WaylandWindow() override {
@@ -175,9 +181,34 @@ class WaylandWindow final : public Window {
     wayland().add_listener(frame_callback_, const_cast<Listener*>(kFrameListener.data()), &frame_pending_);
   }
 
-  /// False: the compositor has gone. libwayland is not asked again after an error: where that was EAGAIN, as after an
-  /// event that the interface does not have, it would never come back.
-  bool wait_for_events() { return wayland().get_error(display_) == 0 && wayland().dispatch(display_, queue_) >= 0; }
+  /// False: the compositor has gone. libwayland's own wait may never end then: 1.21's where an error was EAGAIN, as
+  /// after an event that the interface does not have, 1.23's where the last message is not whole.
+  bool wait_for_events() {
+    if (wayland().get_error(display_) != 0) return false;
+    if (wayland().prepare_read(display_, queue_) != 0) return wayland().dispatch_pending(display_, queue_) >= 0;
+    const bool is_full = wayland().flush(display_) < 0 && errno == EAGAIN;
+    pollfd ready{wayland().get_fd(display_), static_cast<short>(is_full ? POLLIN | POLLOUT : POLLIN), 0};
+    if (poll(&ready, 1, -1) < 0) {
+      const bool again = errno == EINTR;
+      wayland().cancel_read(display_);
+      return again;
+    }
+    if (wayland().read_events(display_) < 0) return false;
+    const int events = wayland().dispatch_pending(display_, queue_);
+    return events > 0 || (events == 0 && (ready.revents & POLLHUP) == 0);
+  }
+
+  /// What the compositor has to say by now has been heard, or it has gone.
+  void round_trip() {
+    bool pending = true;
+    wl_proxy* const callback = wayland().marshal(display_wrapper_, kDisplaySync, wayland().callback_interface,
+                                                 wayland().get_version(display_wrapper_), 0, nullptr);
+    if (!callback) return;
+    wayland().add_listener(callback, const_cast<Listener*>(kFrameListener.data()), &pending);
+    while (pending && wait_for_events()) {
+    }
+    if (pending) wayland().proxy_destroy(callback);
+  }
 
   /// A buffer of this size that the compositor does not hold; waits for one.
   ShmBuffer* free_buffer(VkExtent2D extent) {

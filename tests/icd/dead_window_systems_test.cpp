@@ -97,37 +97,62 @@ std::string global(Word name, std::string interface, Word version) {
   return bytes_of(name, length) + interface + bytes_of(version);
 }
 
-TEST(DeadWaylandCompositor, LosesTheSurfaceAndNotTheThread) {
-  Server server;
-  wl_display* const display = wl_display_connect_to_fd(server.client_end());
-  ASSERT_NE(display, nullptr);
-  wl_registry* const registry = wl_display_get_registry(display);
-  auto* const compositor = static_cast<wl_compositor*>(wl_registry_bind(registry, 1, &wl_compositor_interface, 4));
-  wl_surface* const surface = wl_compositor_create_surface(compositor);
-  const auto id = [](auto* proxy) { return wl_proxy_get_id(reinterpret_cast<wl_proxy*>(proxy)); };
-  ASSERT_EQ(id(registry), kOwnRegistry);
-  ASSERT_EQ(id(compositor), kCompositor);
-  ASSERT_EQ(id(surface), kSurface);
+class DeadWaylandCompositor : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    display = wl_display_connect_to_fd(server.client_end());
+    ASSERT_NE(display, nullptr);
+    registry = wl_display_get_registry(display);
+    compositor = static_cast<wl_compositor*>(wl_registry_bind(registry, 1, &wl_compositor_interface, 4));
+    surface = wl_compositor_create_surface(compositor);
+    const auto id = [](auto* proxy) { return wl_proxy_get_id(reinterpret_cast<wl_proxy*>(proxy)); };
+    ASSERT_EQ(id(registry), kOwnRegistry);
+    ASSERT_EQ(id(compositor), kCompositor);
+    ASSERT_EQ(id(surface), kSurface);
+    server.say(event(kRegistry, 0, global(2, "wl_shm", 1)) + event(kRoundTrip, 0, bytes_of(Word{0})));
+    window = open_wayland_window(display, surface);
+    ASSERT_NE(window, nullptr);
+    EXPECT_EQ(window->present(frame, true), VK_SUCCESS);
+  }
+  void TearDown() override {
+    server.hang_up();
+    for (const bool wait_for_display : {true, false}) {
+      EXPECT_EQ(window->present(frame, wait_for_display), VK_ERROR_SURFACE_LOST_KHR);
+    }
+    window.reset();
+    EXPECT_EQ(open_wayland_window(display, surface), nullptr);
+    wl_surface_destroy(surface);
+    wl_compositor_destroy(compositor);
+    wl_registry_destroy(registry);
+    wl_display_disconnect(display);
+  }
 
-  server.say(event(kRegistry, 0, global(2, "wl_shm", 1)) + event(kRoundTrip, 0, bytes_of(Word{0})));
-  std::unique_ptr<Window> window = open_wayland_window(display, surface);
-  ASSERT_NE(window, nullptr);
+  Server server;
+  wl_display* display = nullptr;
+  wl_registry* registry = nullptr;
+  wl_compositor* compositor = nullptr;
+  wl_surface* surface = nullptr;
+  std::unique_ptr<Window> window;
   const Word pixel = 0;
   const Frame frame{reinterpret_cast<const std::byte*>(&pixel), 4, {1, 1}, false};
-  EXPECT_EQ(window->present(frame, true), VK_SUCCESS);
-  server.say(event(kRegistry, 99, {}));  // no such event: libwayland sets no errno, and remembers what it was
+};
+
+TEST_F(DeadWaylandCompositor, LosesTheSurfaceAfterAnUnknownEvent) {
+  server.say(event(kRegistry, 99, {}));  // libwayland sets no errno, and remembers what it was
   errno = EAGAIN;
   EXPECT_EQ(window->present(frame, true), VK_ERROR_SURFACE_LOST_KHR);
+}
+
+TEST_F(DeadWaylandCompositor, LosesTheSurfaceInTheMiddleOfAMessage) {
+  server.say(bytes_of(Half{1}));
   server.hang_up();
-  for (const bool wait_for_display : {true, false}) {
-    EXPECT_EQ(window->present(frame, wait_for_display), VK_ERROR_SURFACE_LOST_KHR);
-  }
-  window.reset();
+  EXPECT_EQ(window->present(frame, true), VK_ERROR_SURFACE_LOST_KHR);
+}
+
+TEST_F(DeadWaylandCompositor, OpensNoWindowInTheMiddleOfAMessage) {
+  server.say(bytes_of(Half{1}));
+  server.hang_up();
   EXPECT_EQ(open_wayland_window(display, surface), nullptr);
-  wl_surface_destroy(surface);
-  wl_compositor_destroy(compositor);
-  wl_registry_destroy(registry);
-  wl_display_disconnect(display);
 }
 
 }  // namespace
