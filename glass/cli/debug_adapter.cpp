@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "glass/cli/debug_json.h"
+#include "glass/json_members.h"
 
 namespace vitrine::glass::cli {
 namespace fs = std::filesystem;
@@ -177,8 +177,9 @@ void DebugAdapter::told(const json& message) {
                {"allThreadsStopped", true},
                {"description", text_of(message, "message")},
                {"text", text_of(message, "text")}};
-  if (const json id = breakpoints_.id_of(number_of(message, "number")); reason == "breakpoint" && !id.is_null())
-    body["hitBreakpointIds"] = json::array({id});
+  if (reason == "breakpoint")
+    if (const json id = breakpoints_.id_of(number_of(message, "number")); !id.is_null())
+      body["hitBreakpointIds"] = json::array({id});
   event("stopped", std::move(body));
 }
 

@@ -4,20 +4,20 @@
 #include <algorithm>
 #include <utility>
 
-#include "glass/cli/debug_json.h"
+#include "glass/json_members.h"
 
 namespace vitrine::glass::cli {
 
 void Breakpoints::replace(const std::string& owner, json request) {
-  Set& set = sets_[owner];
-  set.rows.clear();
-  for (const json& row : list_of(request, "list")) set.rows.push_back({++last_id_, 0, number_of(row, "line"), false});
-  set.request = std::move(request);
+  std::vector<Row>& rows = rows_[owner];
+  rows.clear();
+  for (const json& row : list_of(request, "list")) rows.push_back({++last_id_, 0, number_of(row, "line"), false});
+  requests_[owner] = std::move(request);
 }
 
 void Breakpoints::learn(const std::string& owner, const json& answer) {
   const json list = list_of(answer, "list");
-  std::vector<Row>& rows = sets_[owner].rows;
+  std::vector<Row>& rows = rows_[owner];
   for (std::size_t i = 0; i < std::min(list.size(), rows.size()); ++i) {
     rows[i].number = number_of(list[i], "number");
     rows[i].verified = list[i].value("verified", json(false)) == json(true);
@@ -25,17 +25,23 @@ void Breakpoints::learn(const std::string& owner, const json& answer) {
   }
 }
 
+Breakpoints::Row* Breakpoints::find(std::size_t number) {
+  if (number == 0) return nullptr;
+  for (auto& [owner, rows] : rows_) {
+    const auto row = std::ranges::find(rows, number, &Row::number);
+    if (row != rows.end()) return &*row;
+  }
+  return nullptr;
+}
+
 std::vector<Breakpoints::json> Breakpoints::learn_placed(const json& answer) {
   std::vector<json> news;
   for (const json& placed : list_of(answer, "list")) {
-    for (auto& [owner, set] : sets_) {
-      for (Row& row : set.rows) {
-        if (row.verified || row.number == 0 || row.number != number_of(placed, "number")) continue;
-        row.verified = true;
-        row.line = number_of(placed, "line", row.line);
-        news.push_back({{"reason", "changed"}, {"breakpoint", describe(row)}});
-      }
-    }
+    Row* const row = find(number_of(placed, "number"));
+    if (row == nullptr || row->verified) continue;
+    row->verified = true;
+    row->line = number_of(placed, "line", row->line);
+    news.push_back({{"reason", "changed"}, {"breakpoint", describe(*row)}});
   }
   return news;
 }
@@ -48,27 +54,18 @@ Breakpoints::json Breakpoints::describe(const Row& row) {
 
 Breakpoints::json Breakpoints::answer(const std::string& owner) const {
   json list = json::array();
-  if (const auto set = sets_.find(owner); set != sets_.end())
-    for (const Row& row : set->second.rows) list.push_back(describe(row));
+  if (const auto rows = rows_.find(owner); rows != rows_.end())
+    for (const Row& row : rows->second) list.push_back(describe(row));
   return {{"breakpoints", std::move(list)}};
 }
 
-Breakpoints::json Breakpoints::id_of(std::size_t number) const {
-  for (const auto& [owner, set] : sets_)
-    for (const Row& row : set.rows)
-      if (row.number == number && number != 0) return row.id;
-  return {};
-}
-
-std::map<std::string, Breakpoints::json> Breakpoints::requests() const {
-  std::map<std::string, json> requests;
-  for (const auto& [owner, set] : sets_) requests.emplace(owner, set.request);
-  return requests;
+Breakpoints::json Breakpoints::id_of(std::size_t number) {
+  const Row* const row = find(number);
+  return row != nullptr ? json(row->id) : json();
 }
 
 bool Breakpoints::are_all_verified() const {
-  return std::ranges::all_of(sets_,
-                             [](const auto& set) { return std::ranges::all_of(set.second.rows, &Row::verified); });
+  return std::ranges::all_of(rows_, [](const auto& set) { return std::ranges::all_of(set.second, &Row::verified); });
 }
 
 }  // namespace vitrine::glass::cli

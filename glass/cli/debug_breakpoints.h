@@ -24,9 +24,9 @@ class Breakpoints {
   /// The body of the editor's answer.
   json answer(const std::string& owner) const;
   /// Null: none.
-  json id_of(std::size_t number) const;
+  json id_of(std::size_t number);
   /// By owner.
-  std::map<std::string, json> requests() const;
+  const std::map<std::string, json>& requests() const { return requests_; }
   bool are_all_verified() const;
 
  private:
@@ -36,13 +36,12 @@ class Breakpoints {
     std::size_t line = 0;
     bool verified = false;
   };
-  struct Set {
-    json request;
-    std::vector<Row> rows;
-  };
+  /// By the process's number; null: none.
+  Row* find(std::size_t number);
   static json describe(const Row& row);
 
-  std::map<std::string, Set> sets_;
+  std::map<std::string, json> requests_;
+  std::map<std::string, std::vector<Row>> rows_;  ///< of each request
   std::size_t last_id_ = 0;
 };
 

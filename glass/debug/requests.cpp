@@ -6,21 +6,12 @@
 
 #include "glass/debug/commands.h"
 #include "glass/debug/views.h"
+#include "glass/json_members.h"
 
 namespace vitrine::glass::debug {
 namespace {
 
 using nlohmann::json;
-
-std::string text_of(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-std::uint32_t number_of(const json& object, const char* key, std::uint32_t otherwise = 0) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number_unsigned() ? found->get<std::uint32_t>() : otherwise;
-}
 
 json json_of(const Tree& tree) {
   json children = json::array();
@@ -58,7 +49,7 @@ json replace(Engine& engine, const json& request, const std::string& owner, Brea
     breakpoint.kind = kind;
     breakpoint.owner = owner;
     breakpoint.file = text_of(request, "file");
-    breakpoint.line = number_of(row, "line");
+    breakpoint.line = number_of<std::uint32_t>(row, "line");
     breakpoint.function = text_of(row, "name");
     breakpoint.condition = text_of(row, "condition");
     breakpoint.hits_wanted = text_of(row, "hits");
@@ -108,7 +99,7 @@ json lanes(Engine& engine, const json&) {
 
 /// The lane that a request names, if it is one.
 std::size_t lane_of(Engine& engine, const json& request) {
-  const std::uint32_t lane = number_of(request, "lane", static_cast<std::uint32_t>(engine.focus().lane));
+  const std::uint32_t lane = number_of<std::uint32_t>(request, "lane", static_cast<std::uint32_t>(engine.focus().lane));
   return lane < base::kWaveWidth ? lane : engine.focus().lane;
 }
 
@@ -124,7 +115,7 @@ json frames(Engine& engine, const json& request) {
 json variables(Engine& engine, const json& request) {
   if (!engine.focus().run) return error("nothing has run yet");
   const Run& run = *engine.focus().run;
-  const std::size_t lane = lane_of(engine, request), frame = number_of(request, "frame");
+  const std::size_t lane = lane_of(engine, request), frame = number_of<std::uint32_t>(request, "frame");
   const std::vector<CodeFrame> frames = frames_at(run, lane);
   const FrameNames names(run, frame < frames.size() ? &frames[frame] : nullptr);
   json list = json::array();
@@ -137,7 +128,7 @@ json variables(Engine& engine, const json& request) {
 json evaluate_text(Engine& engine, const json& request) {
   const std::string text = text_of(request, "text");
   const std::size_t lane = lane_of(engine, request);
-  const auto value = evaluate_in(engine, text, lane, number_of(request, "frame"));
+  const auto value = evaluate_in(engine, text, lane, number_of<std::uint32_t>(request, "frame"));
   if (!value) return error(value.message());
   return json_of(tree_of(engine.view(*engine.focus().run, lane), text, value.value()));
 }
@@ -145,7 +136,7 @@ json evaluate_text(Engine& engine, const json& request) {
 json set_value(Engine& engine, const json& request) {
   const std::string text = text_of(request, "text");
   const std::size_t lane = lane_of(engine, request);
-  const auto value = set_in(engine, text, text_of(request, "value"), lane, number_of(request, "frame"));
+  const auto value = set_in(engine, text, text_of(request, "value"), lane, number_of<std::uint32_t>(request, "frame"));
   if (!value) return error(value.message());
   return json_of(tree_of(engine.view(*engine.focus().run, lane), text, value.value()));
 }
@@ -169,7 +160,8 @@ json set_watches(Engine& engine, const json& request) {
         list.push_back({{"number", known->first}, {"verified", true}});
         continue;
       }
-      const auto number = watch_in(engine, text_of(row, "text"), lane_of(engine, row), number_of(row, "frame"), name);
+      const auto number =
+          watch_in(engine, text_of(row, "text"), lane_of(engine, row), number_of<std::uint32_t>(row, "frame"), name);
       if (number)
         list.push_back({{"number", number.value()}, {"verified", true}});
       else

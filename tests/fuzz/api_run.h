@@ -14,7 +14,7 @@
 namespace vitrine::fuzz {
 
 /// A function of the driver, in Run.
-#define VK_CALL(name) FUZZ_CALL(w_.instance, name)
+#define VK_CALL(name) VK_GET(w_.instance, name)
 
 struct Free {
   void operator()(void* memory) const { std::free(memory); }

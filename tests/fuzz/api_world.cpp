@@ -136,7 +136,7 @@ void make_modules(World& w) {
     info.codeSize = words.size() * 4;
     info.pCode = words.data();
     VkShaderModule module = VK_NULL_HANDLE;
-    demand(FUZZ_CALL(w.instance, CreateShaderModule)(w.device, &info, nullptr, &module) == VK_SUCCESS, "a module");
+    demand(VK_GET(w.instance, CreateShaderModule)(w.device, &info, nullptr, &module) == VK_SUCCESS, "a module");
     modules_of(w, source.stage).push_back(module);
   }
 }
@@ -147,7 +147,7 @@ void make_layout(World& w) {
   auto set_info = make_struct<VkDescriptorSetLayoutCreateInfo>();
   set_info.bindingCount = static_cast<std::uint32_t>(bindings.size());
   set_info.pBindings = bindings.data();
-  demand(FUZZ_CALL(w.instance, CreateDescriptorSetLayout)(w.device, &set_info, nullptr, &w.set_layout) == VK_SUCCESS,
+  demand(VK_GET(w.instance, CreateDescriptorSetLayout)(w.device, &set_info, nullptr, &w.set_layout) == VK_SUCCESS,
          "a set layout");
   const VkPushConstantRange range{VK_SHADER_STAGE_ALL, 0, kPushBytes};
   auto info = make_struct<VkPipelineLayoutCreateInfo>();
@@ -155,7 +155,7 @@ void make_layout(World& w) {
   info.pSetLayouts = &w.set_layout;
   info.pushConstantRangeCount = 1;
   info.pPushConstantRanges = &range;
-  demand(FUZZ_CALL(w.instance, CreatePipelineLayout)(w.device, &info, nullptr, &w.layout) == VK_SUCCESS, "a layout");
+  demand(VK_GET(w.instance, CreatePipelineLayout)(w.device, &info, nullptr, &w.layout) == VK_SUCCESS, "a layout");
 }
 
 void open_device(World& w) {
@@ -164,7 +164,7 @@ void open_device(World& w) {
   auto of12 = make_struct<VkPhysicalDeviceVulkan12Features>(&of13);
   auto of11 = make_struct<VkPhysicalDeviceVulkan11Features>(&of12);
   auto features = make_struct<VkPhysicalDeviceFeatures2>(&of11);
-  FUZZ_CALL(w.instance, GetPhysicalDeviceFeatures2)(w.physical_device, &features);
+  VK_GET(w.instance, GetPhysicalDeviceFeatures2)(w.physical_device, &features);
   const char* const extensions[] = {VK_EXT_ROBUSTNESS_2_EXTENSION_NAME, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME};
   make_device(w, extensions, &features);
   make_layout(w);
@@ -190,12 +190,12 @@ void replace_device() {
   World& w = world();
   for (std::vector<VkShaderModule>* list :
        {&w.vertex, &w.control, &w.evaluation, &w.geometry, &w.fragment, &w.compute}) {
-    for (const VkShaderModule module : *list) FUZZ_CALL(w.instance, DestroyShaderModule)(w.device, module, nullptr);
+    for (const VkShaderModule module : *list) VK_GET(w.instance, DestroyShaderModule)(w.device, module, nullptr);
     list->clear();
   }
-  FUZZ_CALL(w.instance, DestroyPipelineLayout)(w.device, w.layout, nullptr);
-  FUZZ_CALL(w.instance, DestroyDescriptorSetLayout)(w.device, w.set_layout, nullptr);
-  FUZZ_CALL(w.instance, DestroyDevice)(w.device, nullptr);
+  VK_GET(w.instance, DestroyPipelineLayout)(w.device, w.layout, nullptr);
+  VK_GET(w.instance, DestroyDescriptorSetLayout)(w.device, w.set_layout, nullptr);
+  VK_GET(w.instance, DestroyDevice)(w.device, nullptr);
   open_device(w);
 }
 

@@ -23,24 +23,16 @@ void make_instance(Driver& driver, std::span<const char* const> extensions) {
   info.pApplicationInfo = &application;
   info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
-  demand(FUZZ_CALL(nullptr, CreateInstance)(&info, nullptr, &driver.instance) == VK_SUCCESS, "an instance");
+  demand(VK_GET(nullptr, CreateInstance)(&info, nullptr, &driver.instance) == VK_SUCCESS, "an instance");
   std::uint32_t count = 1;
-  FUZZ_CALL(driver.instance, EnumeratePhysicalDevices)(driver.instance, &count, &driver.physical_device);
+  VK_GET(driver.instance, EnumeratePhysicalDevices)(driver.instance, &count, &driver.physical_device);
 }
 
 void make_device(Driver& driver, std::span<const char* const> extensions, void* features) {
-  const float priority = 1;
-  auto queue = make_struct<VkDeviceQueueCreateInfo>();
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
-  auto info = make_struct<VkDeviceCreateInfo>(features);
-  info.queueCreateInfoCount = 1;
-  info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
-  info.ppEnabledExtensionNames = extensions.data();
-  demand(FUZZ_CALL(driver.instance, CreateDevice)(driver.physical_device, &info, nullptr, &driver.device) == VK_SUCCESS,
+  demand(icd::test::create_device(driver.instance, driver.physical_device, &driver.device, nullptr, features,
+                                  extensions) == VK_SUCCESS,
          "a device");
-  FUZZ_CALL(driver.instance, GetDeviceQueue)(driver.device, 0, 0, &driver.queue);
+  VK_GET(driver.instance, GetDeviceQueue)(driver.device, 0, 0, &driver.queue);
 }
 
 }  // namespace vitrine::fuzz

@@ -20,7 +20,7 @@ struct Screen : Driver {
 };
 
 /// A function of the driver, of the instance that all runs share.
-#define SCREEN_CALL(name) FUZZ_CALL(screen().instance, name)
+#define SCREEN_CALL(name) VK_GET(screen().instance, name)
 
 Screen make_screen() {
   Screen s;
@@ -30,7 +30,7 @@ Screen make_screen() {
   const char* const of_device[] = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
   make_device(s, of_device, nullptr);
   const auto fence = make_struct<VkFenceCreateInfo>();
-  demand(FUZZ_CALL(s.instance, CreateFence)(s.device, &fence, nullptr, &s.fence) == VK_SUCCESS, "a fence");
+  demand(VK_GET(s.instance, CreateFence)(s.device, &fence, nullptr, &s.fence) == VK_SUCCESS, "a fence");
   return s;
 }
 

@@ -9,18 +9,9 @@
 #include <mutex>
 #include <span>
 
-#include "icd/edge/util.h"
-#include "icd/edge/vulkan_api.h"
-
-extern "C" VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vk_icdGetInstanceProcAddr(VkInstance instance, const char* name);
+#include "tests/icd/calls.h"
 
 namespace vitrine::icd::test {
-
-template <class F>
-F get(VkInstance instance, const char* name) {
-  return reinterpret_cast<F>(vk_icdGetInstanceProcAddr(instance, name));
-}
-#define VK_GET(instance, name) ::vitrine::icd::test::get<PFN_vk##name>(instance, "vk" #name)
 
 /// Allocation callbacks that count, fail at will and know what is still alive. Thread-safe: queues allocate too.
 class CountingAllocator {
@@ -78,21 +69,6 @@ inline VkResult create_instance(VkInstance* instance, const VkAllocationCallback
   info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
   info.ppEnabledExtensionNames = extensions.begin();
   return VK_GET(nullptr, CreateInstance)(&info, allocator, instance);
-}
-
-inline VkResult create_device(VkInstance instance, VkPhysicalDevice physical_device, VkDevice* device,
-                              const VkAllocationCallbacks* allocator = nullptr, const void* next = nullptr,
-                              std::span<const char* const> extensions = {}) {
-  const float priority = 1;
-  VkDeviceQueueCreateInfo queue = make_struct<VkDeviceQueueCreateInfo>();
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
-  VkDeviceCreateInfo info = make_struct<VkDeviceCreateInfo>(const_cast<void*>(next));
-  info.queueCreateInfoCount = 1;
-  info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
-  info.ppEnabledExtensionNames = extensions.data();
-  return VK_GET(instance, CreateDevice)(physical_device, &info, allocator, device);
 }
 
 /// An instance, its physical device and a device.

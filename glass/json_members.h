@@ -4,16 +4,17 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace vitrine::glass::cli {
+namespace vitrine::glass {
 
 inline std::string text_of(const nlohmann::json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-inline std::size_t number_of(const nlohmann::json& object, const char* key, std::size_t otherwise = 0) {
+template <class T = std::size_t>
+T number_of(const nlohmann::json& object, const char* key, T otherwise = 0) {
   const auto found = object.find(key);
-  return found != object.end() && found->is_number_unsigned() ? found->get<std::size_t>() : otherwise;
+  return found != object.end() && found->is_number_unsigned() ? found->get<T>() : otherwise;
 }
 
 inline nlohmann::json list_of(const nlohmann::json& object, const char* key) {
@@ -21,4 +22,4 @@ inline nlohmann::json list_of(const nlohmann::json& object, const char* key) {
   return found != object.end() && found->is_array() ? *found : nlohmann::json::array();
 }
 
-}  // namespace vitrine::glass::cli
+}  // namespace vitrine::glass
