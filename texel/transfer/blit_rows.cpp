@@ -371,11 +371,18 @@ void scale_band(const Scaler& scaler, const ImageView& view, std::uint32_t first
   }
 }
 
+/// Four texels at a time: a loop of one is a sixth slower where it happens to lie across two lines of the code.
 template <std::size_t kBytes>
 void pick_texels(const std::byte* from, const TapList& taps, std::size_t first, std::size_t end, std::byte* to) {
-  for (std::size_t i = first; i < end; ++i) {
-    std::memcpy(to + i * kBytes, from + static_cast<std::size_t>(taps.first[i]) * kBytes, kBytes);
+  const std::int32_t* columns = taps.first.data();
+  const auto texel = [&](std::size_t i) { return from + static_cast<std::size_t>(columns[i]) * kBytes; };
+  std::size_t i = first;
+  for (; i + 4 <= end; i += 4) {
+    std::byte four[4 * kBytes];
+    for (std::size_t k = 0; k < 4; ++k) std::memcpy(four + k * kBytes, texel(i + k), kBytes);
+    std::memcpy(to + i * kBytes, four, sizeof four);
   }
+  for (; i < end; ++i) std::memcpy(to + i * kBytes, texel(i), kBytes);
 }
 
 void pick_texels(std::size_t bytes, const std::byte* from, const TapList& taps, std::size_t first, std::size_t end,
