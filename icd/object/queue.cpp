@@ -4,6 +4,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <system_error>
@@ -50,6 +51,7 @@ struct QueueWorker {
   bool stopping = false;
   std::thread thread;
   std::uint64_t submitted = 0;
+  std::atomic<Batch*> spare = nullptr;  ///< done, for the next submission
   Queue* queue = nullptr;
   QueueWorker* next = nullptr;  ///< among those that live (LiveQueues)
 
@@ -76,10 +78,32 @@ void take_temporary_payloads(Batch& batch) noexcept {
   for (const SemaphoreOp& op : batch.signals) batch.temporary[i++] = from_handle<Semaphore>(op.semaphore).temporary;
 }
 
-Batch* make_batch(Queue& queue, const BatchInfo& info) {
+/// The queue's spare one, or one of new memory.
+Batch* empty_batch(Queue& queue) {
+  if (Batch* const spare = queue.worker->spare.exchange(nullptr)) return spare;
   const HostMemory& memory = queue.device.memory;
   void* storage = memory.allocate(sizeof(Batch), alignof(Batch), VK_SYSTEM_ALLOCATION_SCOPE_DEVICE);
-  Batch* batch = ::new (storage) Batch(memory);
+  return ::new (storage) Batch(memory);
+}
+
+void free_batch(Batch* batch) noexcept {
+  const HostMemory memory = batch->memory;
+  batch->~Batch();
+  memory.free(batch);
+}
+
+/// Keeps one that is done for the next submission, with the room of its lists.
+void put_back(QueueWorker& worker, Batch* batch) noexcept {
+  batch->temporary.clear();
+  batch->labels.clear();
+  batch->host = 0;
+  batch->next = nullptr;
+  Batch* none = nullptr;
+  if (!worker.spare.compare_exchange_strong(none, batch)) free_batch(batch);
+}
+
+Batch* make_batch(Queue& queue, const BatchInfo& info) {
+  Batch* const batch = empty_batch(queue);
   try {
     batch->waits.assign(info.waits.begin(), info.waits.end());
     if (has_temporary_payloads(info)) batch->temporary.resize(info.waits.size() + info.signals.size());
@@ -94,17 +118,10 @@ Batch* make_batch(Queue& queue, const BatchInfo& info) {
       batch->labels = queue.labels.open();
     }
   } catch (...) {
-    batch->~Batch();
-    memory.free(storage);
+    free_batch(batch);
     throw;
   }
   return batch;
-}
-
-void free_batch(Batch* batch) noexcept {
-  const HostMemory memory = batch->memory;
-  batch->~Batch();
-  memory.free(batch);
 }
 
 /// Batches between creation and the queue.
@@ -257,7 +274,7 @@ void work(Queue& queue, QueueWorker& worker) {
     lock.unlock();
     if (base::shakes(base::ShakeKind::kDelays)) delay(*batch);
     execute(queue.device, *batch);
-    free_batch(batch);
+    put_back(worker, batch);
     lock.lock();
     worker.running = false;
     worker.changed.notify_all();
@@ -270,7 +287,7 @@ void run_inline(Queue& queue, QueueWorker& worker, BatchList& list) noexcept {
     Batch* batch = list.take();
     take_temporary_payloads(*batch);
     execute(queue.device, *batch);
-    free_batch(batch);
+    put_back(worker, batch);
   }
   const std::lock_guard lock(worker.mutex);
   worker.running = false;
@@ -377,6 +394,7 @@ void stop_queue(Queue& queue) noexcept {
   }
   worker->changed.notify_all();
   if (worker->thread.joinable()) worker->thread.join();
+  if (Batch* const spare = worker->spare) free_batch(spare);
   worker->~QueueWorker();
   queue.device.memory.free(worker);
   queue.worker = nullptr;

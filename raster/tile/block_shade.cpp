@@ -273,10 +273,14 @@ void shade_whole_blocks(TileWorker& worker, const Primitive& primitive, LaneMask
   if (draw.counted && hidden) return;
   BlockCoverage block;
   std::fill_n(block.lanes, worker.draw->plan->samples, base::kAllLanes);
+  const bool only_writes = draw.solid && !worker.counts && worker.draw->plan->depth_order != TestOrder::kLate;
   for (; places != 0; places &= places - 1) {
     const auto place = static_cast<std::uint32_t>(std::countr_zero(places));
-    shade<false>(worker, primitive, worker.target.x + lane_x(place) * kBlockSize,
-                 worker.target.y + lane_y(place) * kBlockSize, block);
+    const int x = worker.target.x + lane_x(place) * kBlockSize, y = worker.target.y + lane_y(place) * kBlockSize;
+    if (only_writes)
+      write_block(worker, x, y, block.lanes);
+    else
+      shade<false>(worker, primitive, x, y, block);
   }
 }
 

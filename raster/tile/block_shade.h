@@ -17,7 +17,8 @@ void shade_block(TileWorker& worker, const Primitive& primitive, int x, int y, c
 /// The same for an observed draw, whose watch is told.
 void shade_observed_block(TileWorker& worker, const Primitive& primitive, int x, int y, const BlockCoverage& block);
 
-/// Blocks of count_whole_blocks(). `hidden`: their colours need not be written.
+/// All pixels of blocks; what observes the draw is told of them by count_whole_blocks(). `hidden`: their colours need
+/// not be written.
 void shade_whole_blocks(TileWorker& worker, const Primitive& primitive, base::LaneMask places, bool hidden);
 
 /// Shades and writes a wave, nothing of which is tested any more, and cuts its rows to what was written.

@@ -175,14 +175,13 @@ bool is_whole(const TileWorker& worker, const PixelRect& rect) {
          target.x + rect.x1 < target.right && target.y + rect.y1 < target.bottom;
 }
 
-/// Blocks that no test has touched, of a draw that has no more tests: they are shaded and counted together. Returns the
-/// other ones.
-base::LaneMask shade_untouched(TileWorker& worker, const Primitive& primitive, base::LaneMask places) {
+/// Of `places`, blocks that no test has touched, of a draw that has no more tests: they can be shaded together.
+base::LaneMask untouched_blocks(const TileWorker& worker, base::LaneMask places) {
   const PipelinePlan& plan = *worker.draw->plan;
   // Quads that wait may have to be shaded in between.
   if (worker.wave.quads != 0 || !plan.shades || !plan.shades_blocks || plan.may_kill ||
       plan.depth_order == TestOrder::kLate || plan.fragment->writes_memory)
-    return places;
+    return 0;
   const TileTarget& target = worker.target;
   base::LaneMask untouched = places & rect_lanes(0, 0, (target.right - target.x) / kBlockSize - 1,
                                                  (target.bottom - target.y) / kBlockSize - 1);
@@ -192,6 +191,12 @@ base::LaneMask shade_untouched(TileWorker& worker, const Primitive& primitive, b
     if (!std::all_of(lanes, lanes + plan.samples, [&](const auto& of) { return of[place] == base::kAllLanes; }))
       untouched &= ~(left & -left);
   }
+  return untouched;
+}
+
+/// Shades and counts those of an observed primitive. Returns the other ones.
+base::LaneMask count_untouched(TileWorker& worker, const Primitive& primitive, base::LaneMask places) {
+  const base::LaneMask untouched = untouched_blocks(worker, places);
   if (untouched == 0) return places;
   count_whole_blocks(worker, untouched);
   shade_whole_blocks(worker, primitive, untouched, false);
@@ -243,7 +248,7 @@ void rasterize_counted(TileWorker& worker, const Primitive& primitive, const Til
   }
   if (!plan.shades) worker.numbers.passed += count_fragments(plan, worker.covered, places);
   BlockCoverage rasterized{};
-  for (places = shade_untouched(worker, primitive, places); places != 0; places &= places - 1) {
+  for (places = count_untouched(worker, primitive, places); places != 0; places &= places - 1) {
     const auto place = static_cast<std::uint32_t>(std::countr_zero(places));
     if (reads_rasterized(worker)) rasterized = block_of(worker.rasterized, place, plan.samples);
     emit_observed_block(worker, primitive, worker.target.x + lane_x(place) * kBlockSize,
@@ -293,6 +298,11 @@ void rasterize_primitive(TileWorker& worker, const Primitive& primitive) {
   if (reads_rasterized(worker)) worker.rasterized = worker.covered;
   if (plan.depth_order == TestOrder::kEarly || plan.early_reject)
     test_tile(worker, primitive, origin, places, worker.covered);
+  if (edges.count == 0 && !plan.rates.any && origin == GridOrigin{}) {
+    const base::LaneMask untouched = untouched_blocks(worker, places);
+    shade_whole_blocks(worker, primitive, untouched, false);
+    places &= ~untouched;
+  }
   BlockCoverage rasterized{};
   for (base::LaneMask left = places; left != 0; left &= left - 1) {
     const auto place = static_cast<std::uint32_t>(std::countr_zero(left));

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
-#include <new>
+#include <cstddef>
+#include <memory>
 #include <utility>
 
 #include "base/float_mode.h"
@@ -29,8 +29,12 @@ BoundShader::BoundShader(const Shader& shader, const ResourceTable& resources, F
   static std::atomic<std::uint64_t> last_serial{0};
   resources_.serial = last_serial.fetch_add(1, std::memory_order_relaxed) + 1;
   const Program& program = shader.program();
-  uniforms_ = static_cast<std::uint32_t*>(
-      ::operator new ((program.draw_words + 1) * sizeof(std::uint32_t), std::align_val_t{64}));
+  constexpr std::size_t kAlignment = 64;
+  const std::size_t bytes = (program.draw_words + 1) * sizeof(std::uint32_t);
+  std::size_t room = bytes + kAlignment;
+  storage_ = std::make_unique_for_overwrite<std::byte[]>(room);
+  void* aligned = storage_.get();
+  uniforms_ = static_cast<std::uint32_t*>(std::align(kAlignment, bytes, aligned, room));
   std::copy(program.constants.begin(), program.constants.end(), uniforms_);
   if (program.preamble.size() <= 1) return;
   const base::ScopedFloatMode mode(program.flush_denormals ? base::Denormals::kFlush : base::Denormals::kHonour);
@@ -42,15 +46,8 @@ BoundShader::BoundShader(const Shader& shader, const ResourceTable& resources, F
   (exec::profile_enabled() ? exec::execute_profiled : execute)(wave, program.preamble.data());
 }
 
-BoundShader::~BoundShader() {
-  if (uniforms_) ::operator delete (uniforms_, std::align_val_t{64});
-}
-
-BoundShader::BoundShader(BoundShader&& other) noexcept
-    : shader_(other.shader_),
-      resources_(other.resources_),
-      fault_(other.fault_),
-      uniforms_(std::exchange(other.uniforms_, nullptr)) {}
+BoundShader::~BoundShader() = default;
+BoundShader::BoundShader(BoundShader&&) noexcept = default;
 
 struct WaveRunner::State {
   exec::WaveMemory memory;

@@ -313,10 +313,6 @@ void fold_constant(Module& module, const Inst& inst, const CompileOptions& optio
     case Op::OpSpecConstantComposite:
       value.words = composite(module, inst);
       break;
-    case newer::kConstantCompositeReplicate:
-    case newer::kSpecConstantCompositeReplicate:
-      value.words = replicated(module, inst);
-      break;
     case Op::OpConstantNull:
       value.words.assign(type.scalars, 0);
       break;
@@ -328,7 +324,9 @@ void fold_constant(Module& module, const Inst& inst, const CompileOptions& optio
       value.words = spec_constant_op(module, inst);
       break;
     default:
-      fail(inst, "is not supported");
+      if (inst.op != newer::kConstantCompositeReplicate && inst.op != newer::kSpecConstantCompositeReplicate)
+        fail(inst, "is not supported");
+      value.words = replicated(module, inst);
   }
   if (value.words.size() != type.scalars) fail(inst, "constant does not fit its type");
   module.constant_words += value.words.size();

@@ -330,9 +330,8 @@ SlotsOf of_replicas(const Translator& t, const Inst& inst) {
 }
 
 SlotsOf slots_of_result(const Translator& t, const Inst& inst) {
+  if (inst.op == newer::kCompositeConstructReplicate) return of_replicas(t, inst);
   switch (inst.op) {
-    case newer::kCompositeConstructReplicate:
-      return of_replicas(t, inst);
     case Op::OpCopyObject:
     case Op::OpCopyLogical:
     case Op::OpExpectKHR:

@@ -56,6 +56,28 @@ TEST(Exhaustion, EveryFailingAllocationIsAnErrorAndLeaksNothing) {
   EXPECT_LT(n, 2000u);
 }
 
+TEST(Exhaustion, SubmittingAgainAsksTheApplicationForNoMemory) {
+  CountingAllocator allocator;
+  Program p;
+  p.allocator = allocator.callbacks();
+  ASSERT_EQ(run(p), VK_SUCCESS);
+  VkQueue queue;
+  VK_GET(p.instance, GetDeviceQueue)(p.device, 0, 0, &queue);
+  ASSERT_EQ(VK_GET(p.instance, QueueWaitIdle)(queue), VK_SUCCESS);
+  allocator.fail_after(0);
+  auto info = make_struct<VkSubmitInfo>();
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &p.commands;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(VK_GET(p.instance, QueueSubmit)(queue, 1, &info, VK_NULL_HANDLE), VK_SUCCESS);
+    EXPECT_EQ(VK_GET(p.instance, QueueWaitIdle)(queue), VK_SUCCESS);
+  }
+  EXPECT_FALSE(allocator.failed());
+  allocator.fail_after(~std::size_t{0});
+  destroy(p);
+  EXPECT_EQ(allocator.live(), 0u);
+}
+
 /// Runs the steps that compile shaders and draw while every allocation from the n-th on, on any thread, throws.
 VkResult run_starved(Program& p, long n) {
   VkResult result = VK_SUCCESS;

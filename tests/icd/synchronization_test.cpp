@@ -140,6 +140,20 @@ TEST_F(TimelineSemaphore, ABatchMayWaitForWhatIsSignalledLater) {
   EXPECT_EQ(value_of(b), 2u);
 }
 
+/// What the queue keeps of batches that stood in a row for the next ones does not hold on to that row.
+TEST_F(TimelineSemaphore, RowsOfBatchesComeOneAfterTheOther) {
+  const VkSemaphore a = make(0), b = make(0);
+  std::uint64_t done = 0;
+  for (std::uint64_t row = 1; row <= 20; ++row) {
+    for (int i = 0; i < 3; ++i, ++done) ASSERT_EQ(submit(a, row, b, done + 1), VK_SUCCESS);
+    ASSERT_EQ(signal(a, row), VK_SUCCESS);
+    ASSERT_EQ(wait({b}, {done}, kForever), VK_SUCCESS);
+    ASSERT_EQ(submit(a, row, b, ++done), VK_SUCCESS) << "one that need not wait";
+  }
+  EXPECT_EQ(VK_GET(instance, QueueWaitIdle)(queue), VK_SUCCESS);
+  EXPECT_EQ(value_of(b), done);
+}
+
 TEST_F(TimelineSemaphore, TwoThreadsPassABatonThroughTheQueue) {
   const VkSemaphore a = make(0), b = make(0);
   constexpr std::uint64_t kRounds = 200;

@@ -117,6 +117,27 @@ TEST(Copy, SlicesBecomeLayers) {
   EXPECT_EQ(result[64], std::byte{0});
 }
 
+/// Rows of any length end where they should: whatever is beside them stays.
+TEST(Clear, RowsOfAllLengths) {
+  constexpr std::size_t kRows = 2;
+  const std::vector<std::byte> random = random_bytes(16);
+  StoredTexel value;
+  std::memcpy(value.bytes.data(), random.data(), random.size());
+  base::for_each_simd_target([&] {
+    for (const std::size_t block : {1, 2, 3, 4, 6, 8, 12, 16}) {
+      for (std::size_t length = block; length <= 600; length += block) {
+        const std::size_t pitch = length + 5;
+        std::vector<std::byte> filled(kRows * pitch + 1, std::byte{0xee});
+        std::vector<std::byte> expected = filled;
+        for (std::size_t row = 0; row < kRows; ++row)
+          for (std::size_t i = 0; i < length; ++i) expected[1 + row * pitch + i] = value.bytes[i % block];
+        fill_rows(filled.data() + 1, pitch, length, kRows, value, block);
+        ASSERT_EQ(filled, expected) << "texels of " << block << " bytes, rows of " << length;
+      }
+    }
+  });
+}
+
 TEST(Clear, RangesAndRects) {
   TestImage image(VK_FORMAT_R32G32B32_SFLOAT, {70, 5, 1}, 2, 2);
   VkClearColorValue color{};

@@ -16,7 +16,28 @@ namespace vitrine::texel::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Three vectors of any target: a multiple of every block size that has a clear value (1, 2, 3, 4, 6, 8, 12, 16 bytes).
+/// A pattern has as many bytes and one vector more, so that it can be read from everywhere in the first 192.
 inline constexpr std::size_t kPatternBytes = 192;
+
+/// The end of a row: fewer than kPatternBytes, which begin with the pattern. `after`: bytes of the row in front of
+/// them.
+template <class D>
+HWY_INLINE void fill_end(D d, std::uint8_t* to, std::size_t left, std::size_t after, const std::uint8_t* pattern) {
+  const std::size_t n = hn::Lanes(d);
+  std::size_t at = 0;
+  for (; at + n <= left; at += n) hn::StoreU(hn::LoadU(d, pattern + at), d, to + at);
+  if (at == left) return;
+  if (after + left >= n) {  // one more vector, which ends where the row does
+    const std::size_t phase = left >= n ? left - n : kPatternBytes + left - n;
+    hn::StoreU(hn::LoadU(d, pattern + phase), d, to + left - n);
+    return;
+  }
+  if constexpr (hn::MaxLanes(D()) > 16) {
+    fill_end(hn::CappedTag<std::uint8_t, 16>(), to, left, after, pattern);
+  } else {
+    for (; at < left; ++at) to[at] = pattern[at];
+  }
+}
 
 void fill(std::byte* first, std::uint64_t pitch, std::size_t row_bytes, std::size_t rows, const std::byte* pattern) {
   const hn::CappedTag<std::uint8_t, kPatternBytes / 3> d;
@@ -31,7 +52,7 @@ void fill(std::byte* first, std::uint64_t pitch, std::size_t row_bytes, std::siz
       hn::StoreU(b, d, to + n);
       hn::StoreU(c, d, to + 2 * n);
     }
-    std::memcpy(to, from, left);
+    fill_end(d, to, left, row_bytes - left, from);
   }
 }
 
@@ -45,11 +66,10 @@ HWY_EXPORT(fill);
 
 void fill_rows(std::byte* first, std::uint64_t pitch, std::size_t row_bytes, std::size_t rows, const StoredTexel& value,
                std::size_t block_bytes) {
-  constexpr std::size_t kBytes = 192;
-  std::array<std::byte, kBytes> pattern;
-  std::memcpy(pattern.data(), value.bytes.data(), block_bytes);
-  for (std::size_t filled = block_bytes; filled < kBytes; filled += block_bytes)
-    std::memcpy(pattern.data() + filled, value.bytes.data(), block_bytes);
+  constexpr std::size_t kBytes = 192 + 64;
+  std::array<std::byte, kBytes + sizeof(value.bytes)> pattern;  // the last value may begin anywhere in front of kBytes
+  for (std::size_t filled = 0; filled < kBytes; filled += block_bytes)
+    std::memcpy(pattern.data() + filled, value.bytes.data(), sizeof(value.bytes));
   base::select_simd_target();
   HWY_DYNAMIC_DISPATCH(fill)(first, pitch, row_bytes, rows, pattern.data());
 }
