@@ -297,6 +297,8 @@ def shape_faults(root):
             if re.search(r"^\s*#\s*if\s+0\b", text, re.MULTILINE):
                 yield f"{where}: dead code under #if 0"
             for number, line in enumerate(text.splitlines(), 1):
+                if re.search(r"\bcase newer::", line):
+                    yield f"{where}:{number}: older headers have no such enumerator, and GCC refuses it as a case (-Wswitch)"
                 if re.search(r"\bstd::(cout|printf|puts)\b|(^|[^\w.>])printf\(", line) and folder in ORDER:
                     yield f"{where}:{number}: the library never prints to stdout"
 
