@@ -244,9 +244,10 @@ void Run::submit(VkCommandBuffer cmd) {
   info.commandBufferCount = 1;
   info.pCommandBuffers = &cmd;
   CTS_VK(vkQueueSubmit(gpu.queue, 1, &info, fence));
-  const VkResult waited = vkWaitForFences(device, 1, &fence, VK_TRUE, 60'000'000'000u);
+  const std::uint64_t patience = std::uint64_t{options().timeout_s} * 1'000'000'000;
+  const VkResult waited = vkWaitForFences(device, 1, &fence, VK_TRUE, patience);
   CTS_VK(waited);
-  if (waited == VK_TIMEOUT) throw std::runtime_error("the submission did not end within a minute");
+  if (waited == VK_TIMEOUT) throw std::runtime_error("the submission did not end within the time of a case");
 }
 
 void Run::once(const std::function<void(VkCommandBuffer)>& record) {
