@@ -16,6 +16,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import time
 
 import style_tool
@@ -35,11 +36,16 @@ def arguments():
     return parsed
 
 
+def database(build):
+    """The build's commands without what only GCC knows, which clang-tidy takes for an error."""
+    return json.loads(re.sub(r" -mmem(?:cpy|set)-strategy=[^ ]+", "", (build / "compile_commands.json").read_text()))
+
+
 def commands(args):
     """{file: compile command} of our own sources; a file that two targets compile is checked once."""
     wanted = [args.source / p for p in args.paths] or [args.source]
     result = {}
-    for entry in json.loads((args.build / "compile_commands.json").read_text()):
+    for entry in args.database:
         path = pathlib.Path(entry["file"])
         if args.build not in path.parents and any(w == path or w in path.parents for w in wanted):
             result.setdefault(path, entry["command"])
@@ -107,7 +113,7 @@ class Cache:
 
 def findings(args, path):
     """What clang-tidy says of one file: [(place, message with its lines of context)]; clang's own warnings are no findings."""
-    run = subprocess.run([args.tidy, "-p", args.build, "--quiet", "--extra-arg=-Wno-error", path], capture_output=True, text=True)
+    run = subprocess.run([args.tidy, "-p", args.commands, "--quiet", "--extra-arg=-Wno-error", path], capture_output=True, text=True)
     messages = []
     for line in run.stdout.splitlines():
         match = FINDING.match(line)
@@ -125,12 +131,14 @@ def main():
     args.tidy = style_tool.find("clang-tidy")
     if not args.tidy:
         return 77
+    args.database = database(args.build)
     cache = Cache(args)
     keys = {path: cache.key(command) for path, command in commands(args).items()}
     todo = sorted(path for path, key in keys.items() if not cache.has(key))
     print(f"clang-tidy: {len(keys)} files, {len(keys) - len(todo)} of them unchanged since they passed", flush=True)
     printed = set()  # a finding in a header comes up in every file that includes it
-    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+    with tempfile.TemporaryDirectory() as args.commands, concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+        (pathlib.Path(args.commands) / "compile_commands.json").write_text(json.dumps(args.database))
         for path, messages in zip(todo, pool.map(lambda path: findings(args, path), todo)):
             if not messages:
                 cache.add(keys[path])
