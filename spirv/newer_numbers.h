@@ -22,4 +22,9 @@ inline constexpr auto kQuadAny = static_cast<spv::Op>(5111);
 /// FP Fast Math Mode.
 inline constexpr std::uint32_t kAllowTransform = 0x40000;
 
+/// A constant whose components are one other constant.
+constexpr bool is_replicated_constant(spv::Op op) {
+  return op == kConstantCompositeReplicate || op == kSpecConstantCompositeReplicate;
+}
+
 }  // namespace vitrine::spirv::newer

@@ -324,8 +324,7 @@ void fold_constant(Module& module, const Inst& inst, const CompileOptions& optio
       value.words = spec_constant_op(module, inst);
       break;
     default:
-      if (inst.op != newer::kConstantCompositeReplicate && inst.op != newer::kSpecConstantCompositeReplicate)
-        fail(inst, "is not supported");
+      if (!newer::is_replicated_constant(inst.op)) fail(inst, "is not supported");
       value.words = replicated(module, inst);
   }
   if (value.words.size() != type.scalars) fail(inst, "constant does not fit its type");

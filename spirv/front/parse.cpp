@@ -204,13 +204,9 @@ void read_group_decoration(Module& module, const Inst& inst) {
     }
 }
 
-bool is_replicated_constant(Op op) {
-  return op == newer::kConstantCompositeReplicate || op == newer::kSpecConstantCompositeReplicate;
-}
-
 /// What has a result and its type, and a number of its own in opcodes.def or newer_numbers.h.
 bool is_numbered(Op op) {
-  if (is_replicated_constant(op) || op == newer::kExtInstWithForwardRefs) return true;
+  if (newer::is_replicated_constant(op) || op == newer::kExtInstWithForwardRefs) return true;
   switch (static_cast<std::uint32_t>(op)) {
 #define VITRINE_OPCODE(name, function, op, effect)
 #define VITRINE_NUMBERED_OPCODE(name, number, function, op, effect) case number:
@@ -358,7 +354,7 @@ Module parse_module(std::span<const std::uint32_t> words, const CompileOptions& 
     if (inst.op == Op::OpFunction) in_function = true;
     if (Op::OpTypeVoid <= inst.op && inst.op <= Op::OpTypeFunction) read_type(module, inst);
     if (inst.op == Op::OpTypeForwardPointer) read_forward_pointer(module, inst);
-    if ((Op::OpConstantTrue <= inst.op && inst.op <= Op::OpSpecConstantOp) || is_replicated_constant(inst.op))
+    if ((Op::OpConstantTrue <= inst.op && inst.op <= Op::OpSpecConstantOp) || newer::is_replicated_constant(inst.op))
       fold_constant(module, inst, options);
     if (inst.op == Op::OpUndef && !in_function) fold_constant(module, inst, options);
     if (inst.op == Op::OpVariable && !in_function) module.globals.push_back(i);
