@@ -287,10 +287,15 @@ class Evaluator {
     return result;
   }
 
+  /// Where the left operand of && or || decides, the right one is not looked at (GLSL 4.60, 5.9 Expressions).
   Value binary(const Node& node) const {
+    const std::vector<Scalar> left = numbers(node.parts[0]);
+    const bool is_and = node.word == "&&";
+    if ((is_and || node.word == "||") && left.size() == 1 && to_bool(left[0]) != is_and)
+      return of({make_bool(!is_and)});
     std::vector<Scalar> result;
     std::string error;
-    if (!apply(node.word, numbers(node.parts[0]), numbers(node.parts[1]), result, error)) throw Mistake(error);
+    if (!apply(node.word, left, numbers(node.parts[1]), result, error)) throw Mistake(error);
     return of(std::move(result));
   }
 

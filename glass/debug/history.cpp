@@ -4,7 +4,7 @@
 namespace vitrine::glass::debug {
 
 void History::enter(std::shared_ptr<Run> run) {
-  if (!segments_.empty()) closed_bytes_ += last().run->bytes();
+  close_last(run);
   run_ = run;
   next_ = run->size();
   segments_.push_back({std::move(run), next_, next_});
@@ -13,20 +13,36 @@ void History::enter(std::shared_ptr<Run> run) {
 }
 
 /// Of a run with several segments its bytes count for each: the bound is kept, not met.
+void History::close_last(const std::shared_ptr<Run>& next) {
+  if (segments_.empty()) return;
+  Segment& closed = segments_.back();
+  if (closed.run != next) closed.run->pack();
+  closed.bytes = closed.run->bytes();
+  closed_bytes_ += closed.bytes;
+}
+
 void History::forget_old() {
   while (segments_.size() > 1 && closed_bytes_ > kMostHistory / 2) {
-    const std::size_t bytes = segments_.front().run->bytes();
-    closed_bytes_ -= bytes < closed_bytes_ ? bytes : closed_bytes_;
+    closed_bytes_ -= segments_.front().bytes;
     segments_.pop_front();
     if (segment_ > 0) --segment_;
   }
 }
 
+void History::go_to(std::size_t segment) {
+  const std::shared_ptr<Run>& left = segments_[segment_].run;
+  if (left != segments_[segment].run && left != last().run) left->pack();
+  segment_ = segment;
+}
+
 void History::grown() {
   Segment& segment = segments_.back();
   if (segment.run->bytes() > kMostHistory / 2) {
-    for (std::size_t i = segments_.size() - 1; i-- > 0;)
-      if (segments_[i].run == segment.run) segments_.erase(segments_.begin() + static_cast<std::ptrdiff_t>(i));
+    for (std::size_t i = segments_.size() - 1; i-- > 0;) {
+      if (segments_[i].run != segment.run) continue;
+      closed_bytes_ -= segments_[i].bytes;
+      segments_.erase(segments_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
     segment_ = segments_.size() - 1;
     Segment& left = segments_.back();
     left.run->forget();
@@ -39,7 +55,8 @@ void History::grown() {
 bool History::forward() {
   while (segment_ < segments_.size() && next_ == segments_[segment_].end) {
     if (segment_ + 1 == segments_.size()) return false;
-    next_ = segments_[++segment_].begin;
+    go_to(segment_ + 1);
+    next_ = segments_[segment_].begin;
   }
   if (segment_ >= segments_.size()) return false;
   run_ = segments_[segment_].run;
@@ -51,7 +68,8 @@ bool History::backward() {
   if (segments_.empty()) return false;
   while (next_ == segments_[segment_].begin) {
     if (segment_ == 0) return false;
-    next_ = segments_[--segment_].end;
+    go_to(segment_ - 1);
+    next_ = segments_[segment_].end;
   }
   run_ = segments_[segment_].run;
   run_->exchange(run_->entry(--next_), true, *last().run);

@@ -42,6 +42,7 @@ class History {
       const Segment& at = segments_[segment];
       for (std::size_t i = end; i-- > at.begin;)
         if (!f(at.run, at.run->entry(i))) return;
+      if (at.run != run_ && at.run != last().run) at.run->pack();
       if (segment == 0) return;
     }
   }
@@ -53,9 +54,13 @@ class History {
   struct Segment {
     std::shared_ptr<Run> run;
     std::size_t begin = 0, end = 0;  ///< entries
+    std::size_t bytes = 0;           ///< that count in closed_bytes_
   };
   const Segment& last() const { return segments_.back(); }
+  /// `next` comes behind it.
+  void close_last(const std::shared_ptr<Run>& next);
   void forget_old();
+  void go_to(std::size_t segment);
 
   std::deque<Segment> segments_;
   std::size_t segment_ = 0, next_ = 0;  ///< position: the next entry

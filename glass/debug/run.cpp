@@ -84,7 +84,7 @@ void Run::record(const spirv::Wave& wave, const spirv::ProbeOp& op, base::LaneMa
   const spirv::Probe& probe = subject->probes[op.probe];
   const Entry entry{op.probe, lanes, words_.size()};
   if (probe.kind == spirv::Probe::Kind::kStep) {
-    words_.insert(words_.end(), count_of(lanes), op.probe);
+    words_.append(count_of(lanes), op.probe);
   } else {
     const bool indexed = !probe.steps.empty();
     if (indexed) base::for_each_lane(lanes, [&](std::size_t lane) { words_.push_back(cell_of(wave, op, lane)); });
@@ -106,7 +106,7 @@ void Run::record(const spirv::Wave& wave, const spirv::ProbeOp& op, base::LaneMa
 
 void Run::begin_stores(std::uint32_t place) {
   entries_.push_back({kStores, 0, words_.size()});
-  words_.insert(words_.end(), {place, 0});
+  words_.append({place, 0});
 }
 
 void Run::add_store(const Written& written) { add_store(written, written.at); }
@@ -114,17 +114,17 @@ void Run::add_store(const Written& written) { add_store(written, written.at); }
 void Run::add_store(const Written& written, const std::byte* before) {
   const auto address = reinterpret_cast<std::uintptr_t>(written.at);
   ++words_[entries_.back().first + 1];
-  words_.insert(words_.end(), {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32),
-                               written.bytes, written.lane | written.lane_bytes << 8});
+  words_.append({static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32), written.bytes,
+                 written.lane | written.lane_bytes << 8});
   const std::size_t first = words_.size();
-  words_.resize(first + (written.bytes + 3) / 4);
+  words_.append((written.bytes + 3) / 4, 0);
   std::memcpy(&words_[first], before, written.bytes);
 }
 
 void Run::change(std::size_t lane, const std::vector<Change>& changes) {
   const Entry entry{kChange, base::LaneMask{1} << lane, words_.size()};
   words_.push_back(static_cast<std::uint32_t>(changes.size()));
-  for (const Change& change : changes) words_.insert(words_.end(), {change.cell, 1, change.word});
+  for (const Change& change : changes) words_.append({change.cell, 1, change.word});
   entries_.push_back(entry);
   exchange_change(entry);
 }
@@ -151,7 +151,7 @@ struct Part {
 };
 
 /// Takes the part at `word`, which goes on to the next.
-Part take_part(const std::vector<std::uint32_t>& words, std::size_t& word) {
+Part take_part(const WordLog& words, std::size_t& word) {
   Part part{
       reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(std::uint64_t{words[word + 1]} << 32 | words[word])),
       words[word + 2], words[word + 3] & 0xff, words[word + 3] >> 8, word + 4};
@@ -299,12 +299,17 @@ bool Run::changes(const Entry& entry, std::size_t lane, std::uint32_t cell, std:
 
 std::size_t Run::bytes() const {
   return sizeof(*this) + cells_.size() * (sizeof(base::WaveRegister) + sizeof(base::LaneMask)) +
-         entries_.capacity() * sizeof(Entry) + words_.capacity() * sizeof(std::uint32_t);
+         entries_.capacity() * sizeof(Entry) + words_.bytes();
 }
 
 void Run::forget() {
   entries_.clear();
   words_.clear();
+}
+
+void Run::pack() {
+  entries_.shrink_to_fit();
+  words_.pack();
 }
 
 }  // namespace vitrine::glass::debug

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "glass/debug/stores.h"
+#include "glass/debug/word_log.h"
 #include "glass/place.h"
 #include "spirv/program.h"
 #include "spirv/source_variables.h"
@@ -110,6 +111,8 @@ class Run {
   std::size_t bytes() const;
   /// Forgets the log, not the values.
   void forget();
+  /// Nothing happens to it for a while: its log takes less room until it is asked for again.
+  void pack();
 
   /// Step that a lane came to last; kNoProbe: none.
   std::uint32_t at(std::size_t lane) const { return at_[lane]; }
@@ -142,7 +145,7 @@ class Run {
   std::vector<base::LaneMask> known_;
   std::array<std::uint32_t, base::kWaveWidth> at_;
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> words_;
+  WordLog words_;
 };
 
 }  // namespace vitrine::glass::debug

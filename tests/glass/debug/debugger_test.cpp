@@ -106,6 +106,13 @@ TEST(Debugger, StopsWhereAConditionHolds) {
   expect_in_order(s.text, {"invocation (5, 0, 0)", "i = 5", "p.first = 45.0", "hits: 1"});
 }
 
+TEST(Debugger, LeavesOutOperandsThatDecideNothing) {
+  const Session s = session({"break 17", "run", "print i > 100u && p.rest.y > 1.0", "print i < 100u || p.rest.y > 1.0",
+                             "print i < 100u && p.rest.y > 1.0", "print i < 100u && i < 99u"});
+  expect_in_order(
+      s.text, {"p.rest.y > 1.0 = false", "p.rest.y > 1.0 = true", "a value that nobody has written", "i < 99u = true"});
+}
+
 TEST(Debugger, StepsIntoOverAndOut) {
   const Session s = session({"break 24 if i == 6u", "run", "step", "print x", "backtrace", "next", "next", "next",
                              "print r", "finish", "step", "print p.first"});
@@ -342,6 +349,48 @@ void main() {
 )");
   expect_in_order(s.text, {"main at shader.glsl:12", "sum = ", "what was before is not recorded",
                            "sum = ", "main at shader.glsl:"});
+}
+
+TEST(Debugger, GoesBackOverAMillionInvocations) {
+  const Session s = session({"break 8 if i == 0u", "break 8 if i == 999999u", "run", "continue", "print b",
+                             "reverse-continue", "print i", "print b", "print a"},
+                            R"(#version 450
+layout(local_size_x = 64) in;
+layout(std430, set = 0, binding = 0) buffer Data { uint data[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  float a = float(i) * 0.5;
+  vec4 b = vec4(a, a + 1.0, a * a, 2.0);
+  data[i & 63u] = uint(b.x);
+}
+)",
+                            DebugInfo::kNonSemantic, 15625);
+  expect_in_order(s.text, {"breakpoint 1", "breakpoint 2", "invocation (999999, 0, 0)", "b = (499999.5", "breakpoint 1",
+                           "invocation (0, 0, 0)", "i = 0", "b = (0.0, 1.0, 0.0, 2.0)", "a = 0.0"});
+  EXPECT_EQ(s.words[63], 499999u);
+}
+
+TEST(WordLog, HoldsWhatItWasGiven) {
+  std::vector<std::uint32_t> words;
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    words.insert(words.end(), i % 7, i);
+    words.push_back(words.size() % 3 == 0 ? 1 : i * i);
+  }
+  const std::vector<std::uint32_t> packed = pack_words(words);
+  EXPECT_LT(packed.size(), words.size());
+  EXPECT_EQ(unpack_words(packed), words);
+  EXPECT_TRUE(pack_words({}).empty() && unpack_words({}).empty());
+  WordLog log;
+  log.append(1000, 5);
+  const std::size_t before = log.bytes();
+  log.pack();
+  EXPECT_LT(log.bytes(), before / 100);
+  log.push_back(6);
+  EXPECT_EQ(log[999], 5u);
+  EXPECT_EQ(log[1000], 6u);
+  log.pack();
+  log.clear();
+  EXPECT_EQ(log.size(), 0u);
 }
 
 TEST(Debugger, BadCommandsAreAnswered) {
