@@ -34,8 +34,9 @@ class Order {
   /// Barriers have ordered what the workgroup did before this.
   std::uint32_t from(Memory memory) const { return from_[static_cast<std::size_t>(memory)]; }
 
-  /// Lanes `lanes` of the wave whose lane 0 is invocation `first` come by OpMemoryBarrier.
-  void fence(const spirv::MemoryOrder& order, std::uint32_t first, base::LaneMask lanes);
+  /// Lanes `lanes` of the wave whose lane 0 is invocation `first` (of draws: whose invocations are `names`, by lane)
+  /// come by OpMemoryBarrier.
+  void fence(const spirv::MemoryOrder& order, std::uint32_t first, base::LaneMask lanes, const std::uint32_t* names);
   /// All of the workgroup have come by OpControlBarrier; `fenced`: kinds of memory (a bit each) for which they have
   /// come by OpMemoryBarrier before.
   void barrier(const spirv::MemoryOrder& order, std::uint32_t fenced);

@@ -190,7 +190,7 @@ class RaceWatch : public spirv::exec::Watch {
     const spirv::MemoryOrder order = spirv::MemoryOrder::of(probe.number);
     if (lanes == 0) return;
     if (probe.opcode == kOpMemoryBarrier) {
-      thread_.group.fence(number_, order, first_, lanes);
+      thread_.group.fence(number_, order, first_, lanes, program_.compute() ? nullptr : thread_.names);
     } else if (probe.opcode != kOpControlBarrier) {
       thread_.group.interlock(probe.opcode == kOpBeginInterlock);
     } else if (order.execution == spirv::MemoryScope::kSubgroup) {

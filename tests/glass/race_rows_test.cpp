@@ -87,7 +87,7 @@ void order(std::mt19937& random, Group (&groups)[2]) {
                     spirv::MemoryScope::kWorkgroup};
   const std::uint32_t kind = random() % 12, wave = random() % 4;
   for (Group& group : groups) {
-    if (kind == 0) group.fence(wave, order, wave * 64, base::kAllLanes);
+    if (kind == 0) group.fence(wave, order, wave * 64, base::kAllLanes, nullptr);
     if (kind == 1) {
       order.memory = order.execution = spirv::MemoryScope::kSubgroup;
       group.subgroup_barrier(order, wave * 64);

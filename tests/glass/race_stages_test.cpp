@@ -27,6 +27,15 @@ constexpr Drawn kDrawn[] = {
      "imageStore(img, ivec2(n & 3u, n / 4u), uvec4(n));"},
     {"fragments_add_to_a_texel", "race-image", kFragment, "",
      "@imageStore(img, ivec2(0), imageLoad(img, ivec2(0)) + 1u);", "imageAtomicAdd(img, ivec2(0), 1u);"},
+    {"fragments_fence_behind_the_flag", "race-buffer", kFragment, "",
+     "#v[n] = n;\natomicStore(o[n], 1u, gl_ScopeSubgroup, 0, 0);\n"
+     "memoryBarrier(gl_ScopeSubgroup, gl_StorageSemanticsBuffer, gl_SemanticsRelease);\n"
+     "if (atomicLoad(o[n ^ 1u], gl_ScopeSubgroup, gl_StorageSemanticsBuffer, gl_SemanticsAcquire) == 1u)\n"
+     "@imageStore(img, ivec2(n & 3u, n / 4u), uvec4(v[n ^ 1u]));",
+     "v[n] = n;\nmemoryBarrier(gl_ScopeSubgroup, gl_StorageSemanticsBuffer, gl_SemanticsRelease);\n"
+     "atomicStore(o[n], 1u, gl_ScopeSubgroup, 0, 0);\n"
+     "if (atomicLoad(o[n ^ 1u], gl_ScopeSubgroup, gl_StorageSemanticsBuffer, gl_SemanticsAcquire) == 1u)\n"
+     "imageStore(img, ivec2(n & 3u, n / 4u), uvec4(v[n ^ 1u]));"},
     {"interlock_of_other_pixels", "race-buffer", kFragment, "layout(pixel_interlock_ordered) in;",
      "beginInvocationInterlockARB();\n@v[0] += 1u;\nendInvocationInterlockARB();",
      "beginInvocationInterlockARB();\nv[n] += 1u;\nendInvocationInterlockARB();"},
