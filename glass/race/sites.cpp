@@ -12,7 +12,7 @@ using spirv::MemoryOrder;
 using spirv::MemorySpace;
 using spirv::ir::ImageAccess;
 
-constexpr std::uint32_t kOpSource = 3, kOpMemoryModel = 14, kOpFunction = 54, kOpMemoryBarrier = 225;
+constexpr std::uint32_t kOpSource = 3, kOpMemoryModel = 14, kOpMemoryBarrier = 225;
 constexpr std::uint32_t kHlsl = 5, kVulkan = 3;
 
 /// What a module says of itself: the language, the memory model, and whether it has barriers of memory alone.
