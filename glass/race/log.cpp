@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "glass/race/rows.h"
 
@@ -133,7 +134,6 @@ class PageSweep {
 }  // namespace
 
 void CommandLog::add(const Told& program, const Who& who, Shadow& shadow) {
-  const std::lock_guard lock(mutex_);
   compute_ = program.compute();
   for (std::size_t i = 0; i < shadow.size(); ++i) {
     const Page& page = shadow.at(i);
@@ -152,6 +152,27 @@ void CommandLog::add(const Told& program, const Who& who, Shadow& shadow) {
     if (entry.period[0] != 0) append_values(values_, page.value, entry.writes);
     entries_.push_back(entry);
   }
+}
+
+void CommandLog::take(CommandLog& other) {
+  if (empty()) {
+    std::swap(*this, other);
+    return;
+  }
+  for (PageEntry entry : other.entries_) {
+    entry.first += details_.size();
+    entry.values += values_.size();
+    entries_.push_back(entry);
+  }
+  details_.insert(details_.end(), other.details_.begin(), other.details_.end());
+  values_.insert(values_.end(), other.values_.begin(), other.values_.end());
+  other.clear();
+}
+
+void CommandLog::clear() {
+  entries_.clear();
+  details_.clear();
+  values_.clear();
 }
 
 bool CommandLog::less(const PageEntry& a, const PageEntry& b) const {
@@ -183,7 +204,6 @@ bool CommandLog::is_small() const {
 }
 
 void CommandLog::settle(Pairs& pairs, const spirv::ObservedCommand* command) {
-  const std::lock_guard lock(mutex_);
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // page, entry
   order.reserve(entries_.size());
   for (const PageEntry& entry : entries_) order.emplace_back(entry.page, static_cast<std::uint32_t>(order.size()));
@@ -200,9 +220,7 @@ void CommandLog::settle(Pairs& pairs, const spirv::ObservedCommand* command) {
     }
     first = end;
   }
-  entries_.clear();
-  details_.clear();
-  values_.clear();
+  clear();
 }
 
 }  // namespace vitrine::glass::race

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <mutex>
 #include <vector>
 
 #include "glass/race/pairs.h"
@@ -32,21 +31,24 @@ struct PageEntry {
   std::size_t values = 0;  ///< in CommandLog::values: of writes that are a row, a word each
 };
 
+/// By one thread at a time.
 class CommandLog {
  public:
-  /// Called by any thread.
   void add(const Told& program, const Who& who, Shadow& shadow);
+  /// Takes what another one has, which is empty then.
+  void take(CommandLog& other);
   /// Finds what different workgroups did to the same bytes.
   void settle(Pairs& pairs, const spirv::ObservedCommand* command);
   /// Whether it has not become so large that its memory should be given back.
   bool is_small() const;
   /// Of a dispatch.
   bool compute() const { return compute_; }
+  bool empty() const { return entries_.empty(); }
 
  private:
+  void clear();
   /// The order of workgroups.
   bool less(const PageEntry& a, const PageEntry& b) const;
-  std::mutex mutex_;
   std::vector<PageEntry> entries_;
   std::vector<Detail> details_;
   std::vector<std::uint32_t> values_;

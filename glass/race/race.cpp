@@ -35,8 +35,11 @@ const void* owner_of(const ObservedCommand* command) { return command != nullptr
 /// What one thread runs.
 struct ThreadGroup {
   explicit ThreadGroup(race::Pairs& pairs) : group(pairs) {}
-  std::mutex mutex;  ///< of beginnings and ends
+  std::mutex mutex;  ///< of beginnings and ends, and of the log
   Group group;
+  /// What its workgroups that have ended did, of one command, until that has another one or is settled.
+  CommandLog log;
+  const ObservedCommand* log_command = nullptr;
   race::Tracked tracked;
   const Told* tracked_program = nullptr;
   const ObservedCommand* tracked_command = nullptr;
@@ -67,8 +70,10 @@ class Races {
   }
   const std::uint64_t number_ = next_number();
   CommandLog& log_of(const ObservedCommand* command);
-  /// What its workgroup did goes into the log of its command. Both mutexes are locked.
-  void close(ThreadGroup& thread);
+  /// What its workgroup did goes into a log. The thread's mutex is locked.
+  void close(ThreadGroup& thread, CommandLog& log);
+  /// What its log has goes into that of the command. Both mutexes are locked.
+  void hand_over(ThreadGroup& thread);
   std::mutex mutex_;
   std::map<std::thread::id, std::unique_ptr<ThreadGroup>> threads_;
   std::map<const ObservedCommand*, std::unique_ptr<CommandLog>> logs_;
@@ -118,29 +123,40 @@ void Races::begin_compute(ThreadGroup& thread, const Told& program, const Wave& 
   begin(thread, program, wave, who);
 }
 
+/// Threads meet once a command, not once a workgroup.
 void Races::end(ThreadGroup& thread) {
   if (!thread.group.is_open()) return;
-  const std::lock_guard lock(mutex_);
+  if (thread.log_command != thread.group.command()) {
+    const std::lock_guard lock(mutex_);
+    const std::lock_guard own(thread.mutex);
+    hand_over(thread);
+    thread.log_command = thread.group.command();
+  }
   const std::lock_guard own(thread.mutex);
-  close(thread);
+  close(thread, thread.log);
 }
 
-void Races::close(ThreadGroup& thread) {
+void Races::hand_over(ThreadGroup& thread) {
+  if (!thread.log.empty()) log_of(thread.log_command).take(thread.log);
+}
+
+void Races::close(ThreadGroup& thread, CommandLog& log) {
   Group& group = thread.group;
   const Told& program = group.program();
   if (!thread.shared_is_quiet && thread.tracked.alike() && group.shared_is_quiet())
     program.quiet.set(group.command(), !program.sites.alike_if_given);
-  group.end(log_of(group.command()));
+  group.end(log);
 }
 
 void Races::settle(const void* owner, const ObservedCommand* but) {
   const std::lock_guard lock(mutex_);
   for (const auto& [id, thread] : threads_) {
     const std::lock_guard own(thread->mutex);
+    if (!thread->log.empty() && owner_of(thread->log_command) == owner) hand_over(*thread);
     const Group& group = thread->group;
     if (!group.is_open() || owner_of(group.command()) != owner) continue;
     if (but != nullptr && (group.command() == but || !group.program().compute())) continue;
-    close(*thread);
+    close(*thread, log_of(group.command()));
   }
   for (auto at = logs_.begin(); at != logs_.end();) {
     const bool other = owner_of(at->first) != owner || (but != nullptr && (at->first == but || !at->second->compute()));
