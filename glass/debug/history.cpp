@@ -4,19 +4,23 @@
 namespace vitrine::glass::debug {
 
 void History::enter(std::shared_ptr<Run> run) {
-  close_last(run);
   run_ = run;
   next_ = run->size();
   segments_.push_back({std::move(run), next_, next_});
   segment_ = segments_.size() - 1;
+  close_previous();
   forget_old();
 }
 
+void History::pack(const Segment& segment) const {
+  if (segment.run != last().run && segment.begin == 0 && segment.end == segment.run->size()) segment.run->pack();
+}
+
 /// Of a run with several segments its bytes count for each: the bound is kept, not met.
-void History::close_last(const std::shared_ptr<Run>& next) {
-  if (segments_.empty()) return;
-  Segment& closed = segments_.back();
-  if (closed.run != next) closed.run->pack();
+void History::close_previous() {
+  if (segments_.size() < 2) return;
+  Segment& closed = segments_[segments_.size() - 2];
+  pack(closed);
   closed.bytes = closed.run->bytes();
   closed_bytes_ += closed.bytes;
 }
@@ -30,8 +34,7 @@ void History::forget_old() {
 }
 
 void History::go_to(std::size_t segment) {
-  const std::shared_ptr<Run>& left = segments_[segment_].run;
-  if (left != segments_[segment].run && left != last().run) left->pack();
+  pack(segments_[segment_]);
   segment_ = segment;
 }
 

@@ -42,7 +42,7 @@ class History {
       const Segment& at = segments_[segment];
       for (std::size_t i = end; i-- > at.begin;)
         if (!f(at.run, at.run->entry(i))) return;
-      if (at.run != run_ && at.run != last().run) at.run->pack();
+      if (at.run != run_) pack(at);
       if (segment == 0) return;
     }
   }
@@ -57,9 +57,12 @@ class History {
     std::size_t bytes = 0;           ///< that count in closed_bytes_
   };
   const Segment& last() const { return segments_.back(); }
-  /// `next` comes behind it.
-  void close_last(const std::shared_ptr<Run>& next);
+  /// It is left. A run that waits at barriers is left as often as others run in between, and stays as it is.
+  void pack(const Segment& segment) const;
+  /// The last segment but one has ended.
+  void close_previous();
   void forget_old();
+  /// The position moves to another segment.
   void go_to(std::size_t segment);
 
   std::deque<Segment> segments_;
