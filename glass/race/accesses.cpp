@@ -80,7 +80,7 @@ void Recorder::global(const Site& site, const MemoryOp& row) {
     for (std::uint32_t c = 0; c < site.touched.count; ++c) {
       const std::uint32_t* const values =
           note_.access == Access::kStore ? values_of(wave_, row, site.component[c]) : nullptr;
-      group_.touch_bytes(by_, by_.who(l), addresses(l, site.touched.at[c]), row.element_bytes,
+      group_.touch_bytes(by_, by_.wave[l], addresses(l, site.touched.at[c]), row.element_bytes,
                          values != nullptr ? values[l] : 0);
     }
   });
@@ -107,7 +107,7 @@ void Recorder::image() {
         if (op.operand[static_cast<std::size_t>(spirv::ir::ImageOperand::kValue)][c] != spirv::kNoOperand)
           value = value * 31 +
                   static_cast<std::uint32_t>(operands.operand(spirv::ir::ImageOperand::kValue, c, l).value_or(0));
-      if (texel.bytes != 0) group_.touch_bytes(by_, by_.who(l), texel.address, texel.bytes, value);
+      if (texel.bytes != 0) group_.touch_bytes(by_, by_.wave[l], texel.address, texel.bytes, value);
     });
   });
 }
@@ -206,13 +206,13 @@ bool skip_shared(Group& group, std::uint32_t site, const Wave& wave, const Instr
     for (std::uint32_t c = 0; c < 4 && stores; ++c) values[c] = values_of(wave, row, c);
     if (group.follows(site, first, lanes, offsets, stores ? values : kNothing)) return true;
   }
-  return !stores && group.log_shared({site, first, nullptr, group.order().time()}, lanes, offsets);
+  return !stores && group.log_shared({site, {first}, group.order().time()}, lanes, offsets);
 }
 
 void record_access(Group& group, std::uint32_t site, const Wave& wave, const Instruction* i,
-                   const InstructionNote& note, std::uint32_t first, const std::uint32_t* names) {
+                   const InstructionNote& note, const WaveNames& names) {
   const Site& what = group.program().sites.all[site];
-  const Doing by{site, first, names, group.order().time()};
+  const Doing by{site, names, group.order().time()};
   Recorder recorder(group, by, wave, i, note);
   what.memory == Memory::kImage ? recorder.image() : recorder.memory(what);
 }

@@ -33,8 +33,7 @@ bool skip_shared(Group& group, std::uint32_t site, const spirv::Wave& wave, cons
                  const spirv::InstructionNote& note, std::uint32_t first);
 
 /// An instruction that accesses memory or an image, for which skip_shared() says no if that is shared, is about to run.
-/// `who`: of lane 0, the others behind it; or, of draws, `names` of all lanes.
 void record_access(Group& group, std::uint32_t site, const spirv::Wave& wave, const spirv::Instruction* i,
-                   const spirv::InstructionNote& note, std::uint32_t first, const std::uint32_t* names);
+                   const spirv::InstructionNote& note, const WaveNames& names);
 
 }  // namespace vitrine::glass::race

@@ -189,12 +189,11 @@ void Group::pass_barrier(std::uint32_t rounds) {
   logs_loads_ = program_->compute() && !order_.hides(Memory::kShared);
 }
 
-void Group::fence(std::uint32_t wave, const spirv::MemoryOrder& order, std::uint32_t first, base::LaneMask lanes,
-                  const std::uint32_t* names) {
+void Group::fence(std::uint32_t wave, const spirv::MemoryOrder& order, const WaveNames& names, base::LaneMask lanes) {
   if (program_->sites.has_atomics) stop_following();
   if (log_.has_atomics()) settle_shared();
   if (covers_workgroup(order.memory) && order.releases()) state(wave).fenced |= Order::memories_of(order.bits);
-  order_.fence(order, first, lanes, names);
+  order_.fence(order, names, lanes);
 }
 
 void Group::subgroup_barrier(const spirv::MemoryOrder& order, std::uint32_t first) {

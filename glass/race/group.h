@@ -75,8 +75,7 @@ class Group {
   /// A wave goes on behind its n-th barrier.
   void resume(std::uint32_t wave);
   void arrive(std::uint32_t wave, const spirv::MemoryOrder& order, bool alone);
-  void fence(std::uint32_t wave, const spirv::MemoryOrder& order, std::uint32_t first, base::LaneMask lanes,
-             const std::uint32_t* names);
+  void fence(std::uint32_t wave, const spirv::MemoryOrder& order, const WaveNames& names, base::LaneMask lanes);
   void subgroup_barrier(const spirv::MemoryOrder& order, std::uint32_t first);
 
  private:

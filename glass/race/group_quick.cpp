@@ -96,19 +96,19 @@ void Group::touch_page(const Doing& by, Page& page, std::uint64_t word, const Ro
   Row rest = row;
   rest.words &= ~slow;
   put(now.is_atomic() ? page.atomic : now.loads() ? page.read : page.write, rest);
-  const std::uint32_t lane_0 = row.who - by.first;  // of the page's word 0; it may lie in front of the wave
+  const std::uint32_t lane_0 = row.who - by.wave.first;  // of the page's word 0; it may lie in front of the wave
   if (values != nullptr) put_words(page.value, rest.words, values, lane_0, row.shift);
   base::for_each_lane(slow, [&](std::size_t at) {
     const auto k = static_cast<std::uint32_t>(at), lane = lane_0 + (k >> row.shift);
     const std::uint32_t value = values != nullptr ? values[lane] : 0;
-    const Record record{by.first + lane, row.time, row.site};
+    const Record record{by.wave.first + lane, row.time, row.site};
     if (!quick || !touch_quickly(now, record, word + k, value)) touch(by, record.who, {word + k, 15, value});
   });
 }
 
 bool Group::touch_rows(const Span& span, const Spread& spread) {
   const Site& now = program_->sites.all[span.by.site];
-  if (by_word_ || spread.step == 0 || now.element_bytes != 4 || span.by.names != nullptr) return false;
+  if (by_word_ || spread.step == 0 || now.element_bytes != 4 || span.by.wave.names != nullptr) return false;
   if (((span.base + spread.least + now.first) & 3) != 0 || std::uint64_t{spread.most} + now.end > span.size)
     return false;
   for (std::uint32_t part = 0; part < now.touched.count; ++part)
@@ -127,7 +127,7 @@ void Group::touch_row(const Span& span, std::uint32_t offset, std::uint32_t step
     const auto k = static_cast<std::uint32_t>(word % kPageWords);
     const std::uint32_t count = std::min<std::uint32_t>(((kPageWords - 1 - k) >> shift) + 1, base::kWaveWidth - lane);
     const Row row{spaced(span.lanes >> lane & base::first_lanes(count), shift) << k,
-                  span.by.first + lane - (k >> shift), shift, span.by.time, span.by.site << 4 | 15};
+                  span.by.wave.first + lane - (k >> shift), shift, span.by.time, span.by.site << 4 | 15};
     if (row.words != 0) touch_page(span.by, page_of(now, word), word - k, row, values);
     word += std::uint64_t{count} << shift;
     lane += count;
@@ -147,7 +147,7 @@ void Group::touch_part(const Span& span, std::uint32_t part) {
     if (bytes == 4 && ((span.base + at) & 3) == 0)
       whole |= base::LaneMask{1} << lane;
     else
-      touch_bytes(span.by, span.by.who(lane), span.base + at, bytes, values != nullptr ? values[lane] : 0);
+      touch_bytes(span.by, span.by.wave[lane], span.base + at, bytes, values != nullptr ? values[lane] : 0);
   });
   touch_words(span.by, whole, words, values);
 }
@@ -161,7 +161,7 @@ void Group::touch_words(const Doing& by, base::LaneMask lanes, const std::uint64
     // Two readers of a word are kept: the others of a row add nothing.
     if (quick && now.loads() && words[lane] == last && last == before) return;
     before = std::exchange(last, words[lane]);
-    const Record record{by.who(lane), by.time, by.site << 4 | 15};
+    const Record record{by.wave[lane], by.time, by.site << 4 | 15};
     const std::uint32_t value = values != nullptr ? values[lane] : 0;
     if (!quick || !touch_quickly(now, record, words[lane], value)) touch(by, record.who, {words[lane], 15, value});
   });
@@ -200,7 +200,7 @@ void Group::stop_following() {
 void Group::record_followed() {
   follower_.for_each_since_barrier([&](std::uint32_t site, std::uint32_t first, base::LaneMask lanes,
                                        const Offsets& offsets, const Follower::Values& values) {
-    Span span{{site, first, nullptr, order_.time()}, lanes, offsets, 0, shared_bytes_};
+    Span span{{site, {first}, order_.time()}, lanes, offsets, 0, shared_bytes_};
     std::copy_n(values, 4, span.values);
     if (!program_->sites.all[site].is_logged() || !log_shared(span.by, lanes, offsets)) touch_shared(span);
   });

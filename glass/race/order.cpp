@@ -43,12 +43,12 @@ void Order::begin_group(std::uint32_t group) {
   group_device_ = false;
 }
 
-void Order::fence(const MemoryOrder& order, std::uint32_t first, base::LaneMask lanes, const std::uint32_t* names) {
+void Order::fence(const MemoryOrder& order, const WaveNames& wave, base::LaneMask lanes) {
   const std::uint32_t memories = memories_of(order.bits);
   if (memories == 0 || (!order.acquires() && !order.releases())) return;
   ++time_;
   base::for_each_lane(lanes, [&](std::size_t lane) {
-    Invocation& invocation = invocations_[names != nullptr ? names[lane] : first + static_cast<std::uint32_t>(lane)];
+    Invocation& invocation = invocations_[wave[lane]];
     if (order.releases()) {
       raise(invocation.fenced, times_of(memories, time_));
       invocation.device = covers_device(order.memory);

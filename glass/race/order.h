@@ -16,6 +16,16 @@ inline bool covers_subgroup(spirv::MemoryScope scope) {
   return spirv::covers_workgroup(scope) || scope == spirv::MemoryScope::kSubgroup;
 }
 
+/// What the invocations of a wave are called, by lane.
+struct WaveNames {
+  std::uint32_t first = 0;               ///< of lane 0, the others behind it; or
+  const std::uint32_t* names = nullptr;  ///< those of all lanes
+
+  std::uint32_t operator[](std::size_t lane) const {
+    return names != nullptr ? names[lane] : first + static_cast<std::uint32_t>(lane);
+  }
+};
+
 /// An access that has been recorded.
 struct Record {
   std::uint32_t who = 0, time = 0, site = 0;
@@ -34,9 +44,8 @@ class Order {
   /// Barriers have ordered what the workgroup did before this.
   std::uint32_t from(Memory memory) const { return from_[static_cast<std::size_t>(memory)]; }
 
-  /// Lanes `lanes` of the wave whose lane 0 is invocation `first` (of draws: whose invocations are `names`, by lane)
-  /// come by OpMemoryBarrier.
-  void fence(const spirv::MemoryOrder& order, std::uint32_t first, base::LaneMask lanes, const std::uint32_t* names);
+  /// Lanes `lanes` of a wave come by OpMemoryBarrier.
+  void fence(const spirv::MemoryOrder& order, const WaveNames& wave, base::LaneMask lanes);
   /// All of the workgroup have come by OpControlBarrier; `fenced`: kinds of memory (a bit each) for which they have
   /// come by OpMemoryBarrier before.
   void barrier(const spirv::MemoryOrder& order, std::uint32_t fenced);

@@ -196,7 +196,7 @@ class RaceWatch : public spirv::exec::Watch {
     if (tracked.shared_site(index) != race::Sites::kNone &&
         race::skip_shared(thread_.group, site, wave, i, note, first_))
       return;
-    race::record_access(thread_.group, site, wave, i, note, first_, program_.compute() ? nullptr : thread_.names);
+    race::record_access(thread_.group, site, wave, i, note, names());
   }
 
   void probe(const Wave& wave, const spirv::ProbeOp& op) override {
@@ -206,7 +206,7 @@ class RaceWatch : public spirv::exec::Watch {
     const spirv::MemoryOrder order = spirv::MemoryOrder::of(probe.number);
     if (lanes == 0) return;
     if (probe.opcode == kOpMemoryBarrier) {
-      thread_.group.fence(number_, order, first_, lanes, program_.compute() ? nullptr : thread_.names);
+      thread_.group.fence(number_, order, names(), lanes);
     } else if (probe.opcode != kOpControlBarrier) {
       thread_.group.interlock(probe.opcode == kOpBeginInterlock);
     } else if (order.execution == spirv::MemoryScope::kSubgroup) {
@@ -222,6 +222,8 @@ class RaceWatch : public spirv::exec::Watch {
     first_ = thread_.group.base() + wave.first_invocation;
     if (start != wave.program->code.data()) thread_.group.resume(number_);
   }
+
+  race::WaveNames names() const { return {first_, program_.compute() ? nullptr : thread_.names}; }
 
   void begin_draw(const Wave& wave) {
     const spirv::exec::Invocations invocations(wave);

@@ -55,7 +55,7 @@ bool SharedLog::meets_written(Kind kind, const Doing& by, base::LaneMask lanes, 
     if (std::uint64_t{entry.spread.least} + entry.site_first >= end ||
         first >= std::uint64_t{entry.spread.most} + entry.site_end)
       continue;
-    const bool own = by.names == nullptr && entry.first == by.first && entry.even && spread.step != 0 &&
+    const bool own = by.wave.names == nullptr && entry.first == by.wave.first && entry.even && spread.step != 0 &&
                      entry.spread.step == spread.step && bytes <= spread.step &&
                      entry.site_end - entry.site_first == bytes &&
                      lane_0(entry.spread, entry.lanes, entry.site_first) == lane_0(spread, lanes, site_first);

@@ -82,7 +82,7 @@ class SharedLog {
     // Written where it stays: a copy of what has just been written in parts waits for all of them.
     Entry& entry = entries_[count_];
     entry.site = by.site;
-    entry.first = by.first;
+    entry.first = by.wave.first;
     entry.time = by.time;
     entry.offset = used_;
     entry.site_first = site_first;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/lanes.h"
+#include "glass/race/order.h"
 #include "glass/race/shadow.h"
 
 namespace vitrine::glass::race {
@@ -11,13 +12,8 @@ namespace vitrine::glass::race {
 /// Who does what, when.
 struct Doing {
   std::uint32_t site = 0;
-  std::uint32_t first = 0;               ///< the invocation of lane 0, the others behind it; or
-  const std::uint32_t* names = nullptr;  ///< those of all lanes
-  std::uint32_t time = 0;                ///< Order::time()
-
-  std::uint32_t who(std::size_t lane) const {
-    return names != nullptr ? names[lane] : first + static_cast<std::uint32_t>(lane);
-  }
+  WaveNames wave = {};
+  std::uint32_t time = 0;  ///< Order::time()
 };
 
 /// A number for each lane; without words, that of lane 0, and what each of the others has more than the one before.

@@ -106,7 +106,7 @@ struct Both {
     MemoryOrder order{static_cast<std::uint16_t>(kShared), spirv::MemoryScope::kWorkgroup,
                       spirv::MemoryScope::kWorkgroup};
     for (Group& group : groups) {
-      if (step.kind == Step::Kind::kFence) group.fence(step.wave, order, step.wave * 64, base::kAllLanes, nullptr);
+      if (step.kind == Step::Kind::kFence) group.fence(step.wave, order, {step.wave * 64}, base::kAllLanes);
       for (std::uint32_t w = 0; w < 2 && step.kind == Step::Kind::kBarrier; ++w) group.arrive(w, order, false);
       for (std::uint32_t w = 0; w < 2 && step.kind == Step::Kind::kBarrier; ++w) group.resume(w);
       if (step.kind != Step::Kind::kSubgroup) continue;

@@ -64,7 +64,7 @@ void access(std::mt19937& random, const Told& told, Group (&groups)[2], std::uin
   choose_offsets(random, 4096, offsets);
   for (auto& component : values)
     for (std::uint32_t& value : component) value = random() % 2;
-  Span span{{site, first}, choose_lanes(random), {offsets, 0}};
+  Span span{{site, {first}}, choose_lanes(random), {offsets, 0}};
   if (random() % 8 == 0) span.offsets = {nullptr, static_cast<std::uint32_t>(random() % 1024) * 4};
   span.base = shared ? 0 : 0x10000;
   span.size = shared ? 12288 : 4096;
@@ -87,7 +87,7 @@ void order(std::mt19937& random, Group (&groups)[2]) {
                     spirv::MemoryScope::kWorkgroup};
   const std::uint32_t kind = random() % 12, wave = random() % 4;
   for (Group& group : groups) {
-    if (kind == 0) group.fence(wave, order, wave * 64, base::kAllLanes, nullptr);
+    if (kind == 0) group.fence(wave, order, {wave * 64}, base::kAllLanes);
     if (kind == 1) {
       order.memory = order.execution = spirv::MemoryScope::kSubgroup;
       group.subgroup_barrier(order, wave * 64);
