@@ -137,7 +137,9 @@ void Races::end(ThreadGroup& thread) {
 }
 
 void Races::hand_over(ThreadGroup& thread) {
-  if (!thread.log.empty()) log_of(thread.log_command).take(thread.log);
+  if (thread.log.empty()) return;
+  log_of(thread.log_command).take(thread.log);
+  if (!thread.log.is_small()) thread.log = {};
 }
 
 void Races::close(ThreadGroup& thread, CommandLog& log) {
