@@ -78,19 +78,21 @@ class Rounds:
     def __init__(self, options, folder, files):
         self.options, self.folder, self.files = options, folder, files
         self.end = time.monotonic() + options.seconds
-        self.words = collections.Counter()
         self.faults = []
 
     def run(self, job):
+        """How often each outcome came."""
+        outcomes = collections.Counter()
         at_random = random.Random(self.options.seed * 1000 + job)
         number = 0
         while time.monotonic() < self.end:
             number += 1
             file = self.folder / f"altered-{job}-{number}.vitrine"
             file.write_bytes(altered_file(at_random.choice(self.files), at_random))
-            self.words[self.replay(file)] += 1
+            outcomes[self.replay(file)] += 1
             file.unlink(missing_ok=True)
             file.with_suffix(".said").unlink(missing_ok=True)
+        return outcomes
 
     def replay(self, file):
         said = file.with_suffix(".said")
@@ -132,9 +134,9 @@ def main():
         rounds = Rounds(options, folder, [path.read_bytes() for path in paths[:MOST_FILES]])
         print(f"{len(paths)} bug files, {len(rounds.files)} of them are altered", flush=True)
         assert len(rounds.files) > 20
-        list(pool.map(rounds.run, range(options.jobs)))
-    for word, count in rounds.words.most_common():
-        print(f"{word}: {count}")
+        outcomes = sum(pool.map(rounds.run, range(options.jobs)), collections.Counter())
+    for outcome, count in outcomes.most_common():
+        print(f"{outcome}: {count}")
     print("\n".join(rounds.faults))
     return 1 if rounds.faults else 0
 
