@@ -266,6 +266,15 @@ HWY_INLINE void store_components(ComponentLanes value, std::byte* to) {
   }
 }
 
+/// Four weights, or of two components as many as a vector holds texels.
+template <std::size_t kComponents>
+HWY_INLINE ComponentLanes load_weights(const float* from) {
+  if constexpr (kComponents == 4)
+    return hn::LoadDup128(D(), from);
+  else
+    return hn::ZeroExtendVector(D(), hn::LoadU(hn::Half<D>(), from));
+}
+
 /// The components of some texels at a time: blocks of 128 bits are texels of four, 64 bits texels of two.
 template <bool kHalves, std::size_t kComponents>
 HWY_INLINE void halve_components(const HalvedRow& row) {
@@ -288,10 +297,9 @@ HWY_INLINE void halve_components(const HalvedRow& row) {
       }
     };
     const std::byte *top = row.upper + 2 * kTexel * i, *bottom = row.lower + 2 * kTexel * i;
-    // As many weights are read, whatever the size of vectors.
-    if (i + (kComponents == 4 ? 4 : hn::Lanes(D())) <= row.count) {
-      const auto weights = kComponents == 4 ? hn::LoadDup128(D(), row.weight_x + i) : hn::LoadU(D(), row.weight_x + i);
-      const auto x = hn::TableLookupLanes(weights, texel_of_lane);
+    // Of four components, as many weights are read, whatever the size of vectors.
+    if (i + (kComponents == 4 ? 4 : texels) <= row.count) {
+      const auto x = hn::TableLookupLanes(load_weights<kComponents>(row.weight_x + i), texel_of_lane);
       store_components<kHalves>(mix(weight_y, mix_pairs(x, top), mix_pairs(x, bottom)), row.out + kTexel * i);
       continue;
     }
