@@ -74,7 +74,7 @@ def main():
     parser.add_argument("--seconds", type=int, default=0)
     parser.add_argument("--add", type=pathlib.Path, action="append", default=[], help="a folder of inputs to be merged, too")
     parser.add_argument("fuzzers", nargs="*", metavar="FUZZER", help=", ".join(LONGEST))
-    arguments = parser.parse_args()
+    arguments = parser.parse_intermixed_args()
     for name in arguments.fuzzers or LONGEST:
         if name not in LONGEST:
             parser.error(f"no fuzzer is called {name}")
