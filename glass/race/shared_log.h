@@ -54,7 +54,7 @@ class SharedLog {
     std::uint32_t offsets[base::kWaveWidth];
     for (std::uint32_t i = 0; i < count_; ++i) {
       const Entry& entry = entries_[i];
-      f(Span{{entry.site, entry.first, nullptr, entry.time}, entry.lanes, unpack(entry, offsets), 0, size},
+      f(Span{{entry.site, {entry.first, nullptr}, entry.time}, entry.lanes, unpack(entry, offsets), 0, size},
         entry.spread);
     }
   }

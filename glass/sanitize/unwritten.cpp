@@ -42,14 +42,13 @@ void UnwrittenReads::add(const ReadPlace& place, const spirv::ObservedCommand* c
 }
 
 void UnwrittenReads::tell(const Key& key, const Reads& reads) {
-  const auto& [owner, program, number, rule_id] = key;
   if (reads.kept.empty()) return;
   const Read& first = *std::min_element(reads.kept.begin(), reads.kept.end());
-  program->places.add({number, rule_id}, reads.kept.size() + reads.others, first.order, [&] {
+  key.program->places.add({key.number, key.rule}, reads.kept.size() + reads.others, first.order, [&] {
     Finding finding;
-    finding.rule = &rule(rule_id);
+    finding.rule = &rule(key.rule);
     finding.message = first.read.message();
-    finding.address = program->context.address(first.command, first.id, reads.origin.spirv_id, reads.origin.place);
+    finding.address = key.program->context.address(first.command, first.id, reads.origin.spirv_id, reads.origin.place);
     return finding;
   });
 }
@@ -59,7 +58,7 @@ void UnwrittenReads::settle(const void* owner) {
   const std::lock_guard lock(mutex_);
   const auto begin = reads_.lower_bound({owner, nullptr, 0, {}});
   auto end = begin;
-  for (; end != reads_.end() && std::get<0>(end->first) == owner; ++end) {
+  for (; end != reads_.end() && end->first.owner == owner; ++end) {
     std::erase_if(end->second.kept, [](const Read& r) { return !r.read.holds(); });
     tell(end->first, end->second);
   }

@@ -4,11 +4,12 @@
 #pragma once
 
 #include <atomic>
+#include <compare>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <string>
-#include <tuple>
+#include <string_view>
 #include <vector>
 
 #include "glass/memory_shadow.h"
@@ -67,7 +68,13 @@ class UnwrittenReads {
     std::vector<Read> kept;  ///< a heap, last in order on top, once there are kMostReads
     std::uint64_t others = 0;
   };
-  using Key = std::tuple<const void*, ProgramPlaces*, std::uint64_t, std::string_view>;
+  struct Key {
+    const void* owner;
+    ProgramPlaces* program;
+    std::uint64_t number;
+    std::string_view rule;
+    auto operator<=>(const Key&) const = default;
+  };
   using All = std::map<Key, Reads>;
 
   static void tell(const Key& key, const Reads& reads);

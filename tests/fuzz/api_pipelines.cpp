@@ -132,7 +132,7 @@ void Run::make_graphics() {
   info.pDepthStencilState = &depth;
   info.pColorBlendState = &blend;
   info.layout = w_.layout;
-  demand(VK_CALL(CreateGraphicsPipelines)(w_.device, VK_NULL_HANDLE, 1, &info, nullptr, &graphics_) == VK_SUCCESS,
+  demand(VK_CALL(CreateGraphicsPipelines)(w_.device, w_.pipelines, 1, &info, nullptr, &graphics_) == VK_SUCCESS,
          "a pipeline");
 }
 
@@ -140,7 +140,7 @@ void Run::make_compute() {
   auto info = make_struct<VkComputePipelineCreateInfo>();
   info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, one_of(w_.compute));
   info.layout = w_.layout;
-  demand(VK_CALL(CreateComputePipelines)(w_.device, VK_NULL_HANDLE, 1, &info, nullptr, &compute_) == VK_SUCCESS,
+  demand(VK_CALL(CreateComputePipelines)(w_.device, w_.pipelines, 1, &info, nullptr, &compute_) == VK_SUCCESS,
          "a compute pipeline");
 }
 

@@ -169,6 +169,8 @@ void open_device(World& w) {
   make_device(w, extensions, &features);
   make_layout(w);
   make_modules(w);
+  const auto cache = make_struct<VkPipelineCacheCreateInfo>();
+  demand(VK_GET(w.instance, CreatePipelineCache)(w.device, &cache, nullptr, &w.pipelines) == VK_SUCCESS, "a cache");
 }
 
 World make_world() {
@@ -193,6 +195,7 @@ void replace_device() {
     for (const VkShaderModule module : *list) VK_GET(w.instance, DestroyShaderModule)(w.device, module, nullptr);
     list->clear();
   }
+  VK_GET(w.instance, DestroyPipelineCache)(w.device, w.pipelines, nullptr);
   VK_GET(w.instance, DestroyPipelineLayout)(w.device, w.layout, nullptr);
   VK_GET(w.instance, DestroyDescriptorSetLayout)(w.device, w.set_layout, nullptr);
   VK_GET(w.instance, DestroyDevice)(w.device, nullptr);

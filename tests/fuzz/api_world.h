@@ -21,6 +21,7 @@ inline constexpr std::uint32_t kPushBytes = 32;
 struct World : Driver {
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;
+  VkPipelineCache pipelines = VK_NULL_HANDLE;  ///< the few shaders are translated once, not for each run
   std::vector<VkShaderModule> vertex, control, evaluation, geometry, fragment, compute;
 };
 
