@@ -216,13 +216,14 @@ VkResult submit(Program& p) {
   auto info = make_struct<VkSubmitInfo>();
   info.commandBufferCount = 1;
   info.pCommandBuffers = &p.commands;
-  VK_TRY(VK_CALL(QueueSubmit)(queue, 1, &info, p.fence));
-  return VK_CALL(WaitForFences)(p.device, 1, &p.fence, VK_TRUE, ~std::uint64_t{0});
+  return VK_CALL(QueueSubmit)(queue, 1, &info, p.fence);
 }
+
+VkResult wait(Program& p) { return VK_CALL(WaitForFences)(p.device, 1, &p.fence, VK_TRUE, ~std::uint64_t{0}); }
 
 VkResult run(Program& p) {
   for (const auto step :
-       {make_device, make_resources, make_descriptors, make_render_pass, make_pipelines, record, submit}) {
+       {make_device, make_resources, make_descriptors, make_render_pass, make_pipelines, record, submit, wait}) {
     VK_TRY(step(p));
   }
   return VK_SUCCESS;
@@ -245,23 +246,31 @@ void check_results(Program& p) {
   EXPECT_GT(passed, 0u);
 }
 
+void destroy_recorded(Program& p) {
+  VK_CALL(DestroyCommandPool)(p.device, p.command_pool, p.allocator);
+  VK_CALL(DestroyQueryPool)(p.device, p.query_pool, p.allocator);
+  for (const VkPipeline pipeline : p.pipelines) VK_CALL(DestroyPipeline)(p.device, pipeline, p.allocator);
+  for (const VkShaderModule module : p.modules) VK_CALL(DestroyShaderModule)(p.device, module, p.allocator);
+}
+
+void destroy_objects(Program& p) {
+  VK_CALL(DestroyFence)(p.device, p.fence, p.allocator);
+  destroy_recorded(p);
+  VK_CALL(DestroyFramebuffer)(p.device, p.framebuffer, p.allocator);
+  VK_CALL(DestroyRenderPass)(p.device, p.render_pass, p.allocator);
+  VK_CALL(DestroyPipelineLayout)(p.device, p.layout, p.allocator);
+  VK_CALL(DestroyDescriptorPool)(p.device, p.descriptor_pool, p.allocator);
+  VK_CALL(DestroyDescriptorSetLayout)(p.device, p.set_layout, p.allocator);
+  VK_CALL(DestroyImageView)(p.device, p.view, p.allocator);
+  VK_CALL(DestroyImage)(p.device, p.image, p.allocator);
+  VK_CALL(DestroyBuffer)(p.device, p.buffer, p.allocator);
+  VK_CALL(FreeMemory)(p.device, p.memory, p.allocator);
+}
+
 void destroy(Program& p) {
   if (!p.instance) return;
   if (p.device) {
-    VK_CALL(DestroyFence)(p.device, p.fence, p.allocator);
-    VK_CALL(DestroyCommandPool)(p.device, p.command_pool, p.allocator);
-    VK_CALL(DestroyQueryPool)(p.device, p.query_pool, p.allocator);
-    for (const VkPipeline pipeline : p.pipelines) VK_CALL(DestroyPipeline)(p.device, pipeline, p.allocator);
-    for (const VkShaderModule module : p.modules) VK_CALL(DestroyShaderModule)(p.device, module, p.allocator);
-    VK_CALL(DestroyFramebuffer)(p.device, p.framebuffer, p.allocator);
-    VK_CALL(DestroyRenderPass)(p.device, p.render_pass, p.allocator);
-    VK_CALL(DestroyPipelineLayout)(p.device, p.layout, p.allocator);
-    VK_CALL(DestroyDescriptorPool)(p.device, p.descriptor_pool, p.allocator);
-    VK_CALL(DestroyDescriptorSetLayout)(p.device, p.set_layout, p.allocator);
-    VK_CALL(DestroyImageView)(p.device, p.view, p.allocator);
-    VK_CALL(DestroyImage)(p.device, p.image, p.allocator);
-    VK_CALL(DestroyBuffer)(p.device, p.buffer, p.allocator);
-    VK_CALL(FreeMemory)(p.device, p.memory, p.allocator);
+    destroy_objects(p);
     VK_CALL(DestroyDevice)(p.device, p.allocator);
   }
   VK_CALL(DestroyInstance)(p.instance, p.allocator);

@@ -38,7 +38,8 @@ VkResult make_descriptors(Program& p);
 VkResult make_render_pass(Program& p);
 VkResult make_pipelines(Program& p);
 VkResult record(Program& p);
-VkResult submit(Program& p);
+VkResult submit(Program& p);  // of threads that share the device, one at a time
+VkResult wait(Program& p);
 
 /// Another command buffer of the program's pool, to be recorded.
 VkResult begin_commands(Program& p, VkCommandBuffer& commands);
@@ -46,7 +47,11 @@ VkResult begin_commands(Program& p, VkCommandBuffer& commands);
 VkResult run(Program& p);
 /// Expects what the program computes: 3 i + 1 in the buffer, magenta below the diagonal in the image.
 void check_results(Program& p);
-/// What has been made; a program that failed anywhere, too.
+/// What make_pipelines() and record() have made.
+void destroy_recorded(Program& p);
+/// What has been made of the device.
+void destroy_objects(Program& p);
+/// That, the device and the instance; of a program that failed anywhere, too.
 void destroy(Program& p);
 
 }  // namespace vitrine::icd::test

@@ -8,6 +8,7 @@ FAILING_CALLS: the library of failing_calls.cpp. BUILD_FOLDER: where the program
 """
 import argparse
 import collections
+import contextlib
 import os
 import pathlib
 import shutil
@@ -16,6 +17,8 @@ import struct
 import subprocess
 import sys
 import tempfile
+
+from display_servers import x_server
 
 KINDS = ("memory", "threads", "files")
 SECONDS = 120  # after which a program hangs
@@ -26,27 +29,8 @@ TERMINATED = "terminate called"
 WRITES_JSON = ("compute, watched by eight tools", "every stage, history of a pixel", "every stage, all commands as bug files")
 
 
-class Display:
-    """A virtual X display, or none where Xvfb is missing."""
-
-    def __init__(self):
-        self.server = None
-        if shutil.which("Xvfb"):
-            ready, told = os.pipe()
-            self.server = subprocess.Popen(["Xvfb", "-displayfd", str(told), "-noreset", "-screen", "0", "640x480x24"], pass_fds=[told],
-                                           stderr=subprocess.DEVNULL)
-            os.close(told)
-            with os.fdopen(ready) as numbers:
-                self.name = ":" + numbers.readline().strip()
-
-    def close(self):
-        if self.server:
-            self.server.kill()
-            self.server.wait()
-
-
-def programs(args, display, folder):
-    """{name: (command, variables)} of what is there to run."""
+def programs(args, window, folder):
+    """{name: (command, variables)} of what is there to run. `window`: the variables of a display, None without one."""
     tests, command = args.build / "tests", args.build / "bin/vitrine"
     (folder / "script").write_text("break workgroup 0,0,0\nrun\nstep\ninfo locals\nback\ncontinue\n")
     found = {
@@ -63,8 +47,7 @@ def programs(args, display, folder):
         "bug file, replayed": ([command, "replay", *sorted(folder.glob("kept/*.vitrine"))[:1]], {}),
         "vulkaninfo": (["vulkaninfo"], {}),
     }
-    if display.server:
-        window = {"DISPLAY": display.name}
+    if window:
         found["window"] = (["vkcube", "--c", "4", "--suppress_popups"], window)
         found["window, watched"] = (["vkcube", "--c", "4", "--suppress_popups"], window | {"VITRINE_TOOLS": "sanitize,sync"})
         found["window, C++"] = (["vkcubepp", "--c", "4", "--suppress_popups"], window)
@@ -123,32 +106,29 @@ def main():
     args = parser.parse_args()
     args.manifest, args.library, args.build = (path.resolve() for path in (args.manifest, args.library, args.build))
     faults = []
-    display = Display()
-    try:
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            (folder / "kept").mkdir()
-            subprocess.run([args.build / "tests/vitrine_test_app"], cwd=folder / "kept", check=True, stdout=subprocess.DEVNULL,
-                           env=dict(os.environ, VK_DRIVER_FILES=str(args.manifest), VITRINE_CAPTURE="all"))
-            print("| program | kind | calls | refused | ran all the same | ended with an error | ended in a report |\n|---|---|---|---|---|---|---|")
-            for title, (command, variables) in programs(args, display, folder).items():
-                if args.only not in title:
-                    continue
-                run = Run(args, folder, command, variables, title in WRITES_JSON)
-                for kind in KINDS:
-                    wrong, calls, end = run.end(kind, -1)
-                    if wrong or end != "well":
-                        raise SystemExit(f"{title} does not run: {wrong or run.said}")
-                    ends = collections.Counter()
-                    for at in points(calls, args.points, 1 if kind == "memory" else 0):
-                        for further in (False, True):
-                            wrong, _, end = run.end(kind, at, further)
-                            ends[end] += 1
-                            if wrong:
-                                faults.append(f"{title}: {kind} {at}{' and all further' if further else ''}: {wrong}")
-                    print(f"| {title} | {kind} | {calls} | {sum(ends.values())} | {ends['well']} | {ends['error']} | {ends['json']} |", flush=True)
-    finally:
-        display.close()
+    with contextlib.ExitStack() as stack:
+        folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        window = stack.enter_context(x_server())[1] if shutil.which("Xvfb") else None
+        (folder / "kept").mkdir()
+        subprocess.run([args.build / "tests/vitrine_test_app"], cwd=folder / "kept", check=True, stdout=subprocess.DEVNULL,
+                       env=dict(os.environ, VK_DRIVER_FILES=str(args.manifest), VITRINE_CAPTURE="all"))
+        print("| program | kind | calls | refused | ran all the same | ended with an error | ended in a report |\n|---|---|---|---|---|---|---|")
+        for title, (command, variables) in programs(args, window, folder).items():
+            if args.only not in title:
+                continue
+            run = Run(args, folder, command, variables, title in WRITES_JSON)
+            for kind in KINDS:
+                wrong, calls, end = run.end(kind, -1)
+                if wrong or end != "well":
+                    raise SystemExit(f"{title} does not run: {wrong or run.said}")
+                ends = collections.Counter()
+                for at in points(calls, args.points, 1 if kind == "memory" else 0):
+                    for further in (False, True):
+                        wrong, _, end = run.end(kind, at, further)
+                        ends[end] += 1
+                        if wrong:
+                            faults.append(f"{title}: {kind} {at}{' and all further' if further else ''}: {wrong}")
+                print(f"| {title} | {kind} | {calls} | {sum(ends.values())} | {ends['well']} | {ends['error']} | {ends['json']} |", flush=True)
     print(*faults, sep="\n")
     sys.exit(1 if faults else 0)
 

@@ -111,11 +111,8 @@ TEST(Loaded, TenThousandOfEachObjectLeaveNothingBehind) {
     ASSERT_EQ(make_resources(again), VK_SUCCESS);
     ASSERT_EQ(make_pipelines(again), VK_SUCCESS);
     ASSERT_EQ(record(again), VK_SUCCESS);
+    destroy_recorded(again);
     const VkInstance instance = p.instance;
-    VK_GET(instance, DestroyCommandPool)(p.device, again.command_pool, nullptr);
-    VK_GET(instance, DestroyQueryPool)(p.device, again.query_pool, nullptr);
-    for (const VkPipeline pipeline : again.pipelines) VK_GET(instance, DestroyPipeline)(p.device, pipeline, nullptr);
-    for (const VkShaderModule module : again.modules) VK_GET(instance, DestroyShaderModule)(p.device, module, nullptr);
     VK_GET(instance, DestroyImageView)(p.device, again.view, nullptr);
     VK_GET(instance, DestroyImage)(p.device, again.image, nullptr);
     VK_GET(instance, DestroyBuffer)(p.device, again.buffer, nullptr);

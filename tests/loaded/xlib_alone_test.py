@@ -11,6 +11,8 @@ import sys
 import tempfile
 import unittest
 
+from display_servers import x_server
+
 MANIFEST = sys.argv.pop(1) if len(sys.argv) > 1 else ""
 
 
@@ -18,19 +20,12 @@ class XlibAlone(unittest.TestCase):
     def test_a_window_has_a_surface(self):
         if not shutil.which("Xvfb") or not shutil.which("vulkaninfo"):
             self.skipTest("needs Xvfb and vulkaninfo")
-        ready, told = os.pipe()
-        server = subprocess.Popen(["Xvfb", "-displayfd", str(told), "-noreset", "-screen", "0", "320x240x24"], pass_fds=[told],
-                                  stderr=subprocess.DEVNULL)
-        self.addCleanup(server.wait)
-        self.addCleanup(server.kill)
-        os.close(told)
-        with os.fdopen(ready) as numbers:
-            display = ":" + numbers.readline().strip()
+        _, variables = self.enterContext(x_server())
         with tempfile.TemporaryDirectory() as folder:
             # What is no library hides the one that the system has.
             (pathlib.Path(folder) / "libX11-xcb.so.1").touch()
             result = subprocess.run(["vulkaninfo"], capture_output=True, text=True, check=False,
-                                    env={**os.environ, "VK_DRIVER_FILES": MANIFEST, "DISPLAY": display, "LD_LIBRARY_PATH": folder,
+                                    env={**os.environ, **variables, "VK_DRIVER_FILES": MANIFEST, "LD_LIBRARY_PATH": folder,
                                          "XDG_RUNTIME_DIR": folder, "WAYLAND_DISPLAY": ""})
         self.assertEqual(result.returncode, 0, result.stdout[:300] + result.stderr)
         surfaces = result.stdout.partition("Presentable Surfaces:")[2].partition("Groups:")[0]
