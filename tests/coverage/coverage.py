@@ -23,7 +23,7 @@ LEAST = 90  # percent of lines; rooms and files below are explained
 BIG = 100  # lines of files that are
 # What runs the same code again, or another build.
 WITHOUT = "^(sanitized_driver|cts_sanitized|cts_sse4|cts_same_bytes|package_stranger)$"
-FUZZERS = ("tests/fuzz/vitrine_fuzz", "tests/fuzz/vitrine_api_fuzz", "tests/fuzz/vitrine_reader_fuzz",
+FUZZERS = ("tests/fuzz/vitrine_fuzz", "tests/fuzz/vitrine_api_fuzz", "tests/fuzz/vitrine_object_fuzz", "tests/fuzz/vitrine_reader_fuzz",
            "tests/fuzz/vitrine_peer_fuzz")
 OBJECTS = ("icd/libvitrine_icd.so", *(f"tests/{room}_test" for room in ROOMS[:-1]), *FUZZERS, "bin/vitrine", "bin/vitrine-replay", "tests/vitrine_step",
            "cts-subset/cts_subset")
