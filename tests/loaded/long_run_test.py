@@ -19,6 +19,8 @@ from display_servers import wayland_server, x_server
 FRAMES = "1000000000"
 # What the C library and the peer's buffers come and go by.
 KIBIBYTES = 2048
+# So long may others have the processors.
+STILL_SECONDS = 60
 
 
 class Program:
@@ -26,7 +28,7 @@ class Program:
         self.name = name
         self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=dict(os.environ, **variables))
         self.first = self.most = None
-        self.ticks = 0
+        self.ticks, self.still_since = 0, time.monotonic()
 
     def look(self):
         """What is wrong, or None."""
@@ -36,8 +38,9 @@ class Program:
         status = dict(line.split(":", 1) for line in (folder / "status").read_text().splitlines())
         held = (int(status["VmRSS"].split()[0]), int(status["Threads"]), len(list((folder / "fd").iterdir())))
         spent = sum(map(int, (folder / "stat").read_text().rpartition(")")[2].split()[11:13]))
-        still, self.ticks = spent == self.ticks, spent
-        if still:
+        if spent != self.ticks:
+            self.ticks, self.still_since = spent, time.monotonic()
+        if time.monotonic() - self.still_since > STILL_SECONDS:
             return f"{self.name}: draws no more"
         self.first = self.first or held
         self.most = tuple(map(max, self.most or held, held))

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The packages in bare roots of other systems, made by debootstrap: what a user does there, and that nothing is left
-afterwards. Needs root and the packages debootstrap and xvfb; a suite takes a few minutes. Prints a table.
+afterwards. Needs root and the packages debootstrap and xvfb, for Ubuntu ubuntu-keyring, too; a suite takes a few
+minutes. Prints a table.
 
-usage: roots.py WORK ARCHIVE DEB DEMO SUITE...    e.g. roots.py /tmp/roots build/packages/*.tar.gz … bullseye bookworm trixie
+usage: roots.py WORK ARCHIVE DEB DEMO SUITE...    e.g. roots.py /tmp/roots build/packages/*.tar.gz … bullseye bookworm trixie jammy
 
 WORK: folder for the roots, kept for the next time. DEMO: vitrine_demo, linked with the C library of the packages (build target
 vitrine_demo of the preset portable with VITRINE_TESTS=ON), an offscreen program.
@@ -14,7 +15,11 @@ import subprocess
 import sys
 import time
 
-MIRROR = "http://deb.debian.org/debian"
+DEBIAN = "http://deb.debian.org/debian"
+UBUNTU = "http://archive.ubuntu.com/ubuntu", "--components=main,universe", "--keyring=/usr/share/keyrings/ubuntu-archive-keyring.gpg"
+SUITES_OF_UBUNTU = ("focal", "jammy", "noble")
+# Their vulkaninfo does not know --summary.
+WITHOUT_SUMMARY = ("bullseye", "focal")
 # What is no trace of the packages: what apt, dpkg and the loader's programs keep for themselves.
 NOT_TRACES = ("proc", "sys", "dev", "tmp", "run", "var/cache", "var/log", "var/lib/apt", "var/lib/dpkg", "root/.cache")
 DISPLAY = ":97"
@@ -24,7 +29,8 @@ class Root:
     def __init__(self, folder, suite):
         self.folder = folder / suite
         if not (self.folder / "usr/bin/apt-get").exists():
-            subprocess.run(["debootstrap", "--variant=minbase", suite, self.folder, MIRROR], check=True, capture_output=True)
+            mirror, *options = UBUNTU if suite in SUITES_OF_UBUNTU else (DEBIAN,)
+            subprocess.run(["debootstrap", "--variant=minbase", *options, suite, self.folder, mirror], check=True, capture_output=True)
         for system in ("proc", "dev"):
             if not os.path.ismount(self.folder / system):
                 subprocess.run(["mount", "--bind", f"/{system}", self.folder / system], check=True)
@@ -59,7 +65,7 @@ class Root:
 def look(root, where, prefix):
     """Programs on the device: `prefix` runs one."""
     row = {}
-    summary, row["vulkaninfo"] = root.run(f"{prefix} vulkaninfo{' --summary' if root.folder.name != 'bullseye' else ''}")
+    summary, row["vulkaninfo"] = root.run(f"{prefix} vulkaninfo{' --summary' if root.folder.name not in WITHOUT_SUMMARY else ''}")
     if "Vitrine" not in summary:
         raise SystemExit(f"{root.folder.name}, {where}: vulkaninfo does not tell of the device\n{summary}")
     if any(word in summary for word in ("WARNING", "ERROR")):
