@@ -100,13 +100,11 @@ QueryPool::QueryPool(const HostMemory& m, Device& owner, const VkQueryPoolCreate
     selected.assign(wanted->pCounterIndices, wanted->pCounterIndices + wanted->counterIndexCount);
     std::erase_if(selected, [&](std::uint32_t index) { return index >= stride; });
   }
-  auto* storage =
-      static_cast<std::byte*>(m.allocate(counter_bytes + sizeof(*available) * count,
-                                         alignof(std::atomic<std::uint64_t>), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT));
+  // Atomics of zero. Not written here: of the billions that may be asked for, few are used.
+  auto* storage = static_cast<std::byte*>(
+      m.allocate_zeros(counter_bytes + sizeof(*available) * count, VK_SYSTEM_ALLOCATION_SCOPE_OBJECT));
   counters = reinterpret_cast<std::atomic<std::uint64_t>*>(storage);
   available = reinterpret_cast<std::atomic<std::uint8_t>*>(storage + counter_bytes);
-  std::uninitialized_value_construct_n(counters, std::size_t{count} * stride);
-  std::uninitialized_value_construct_n(available, count);
 }
 
 QueryPool::~QueryPool() { memory.free(counters); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <utility>
 
 namespace vitrine::icd {
@@ -17,6 +18,13 @@ void* HostMemory::allocate(std::size_t size, std::size_t alignment, VkSystemAllo
   } else if (size <= std::numeric_limits<std::size_t>::max() - alignment) {
     memory = std::aligned_alloc(alignment, (size + alignment - 1) & ~(alignment - 1));
   }
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+void* HostMemory::allocate_zeros(std::size_t size, VkSystemAllocationScope scope) const {
+  if (callbacks_.pfnAllocation) return std::memset(allocate(size, alignof(std::max_align_t), scope), 0, size);
+  void* memory = std::calloc(std::max<std::size_t>(size, 1), 1);
   if (!memory) throw std::bad_alloc();
   return memory;
 }

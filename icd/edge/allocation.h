@@ -23,6 +23,8 @@ class HostMemory {
 
   /// Throws std::bad_alloc. `alignment` is a power of two.
   void* allocate(std::size_t size, std::size_t alignment, VkSystemAllocationScope scope) const;
+  /// Zeros, aligned for any scalar; of the C heap they take no pages until they are written to.
+  void* allocate_zeros(std::size_t size, VkSystemAllocationScope scope) const;
   void free(void* memory) const noexcept;
 
  private:

@@ -24,7 +24,7 @@ Objects::~Objects() {
 
 void Objects::go() {
   for (std::uint32_t i = c_.between(20, 150); i-- != 0;) {
-    switch (c_.below(12)) {
+    switch (c_.below(13)) {
       case 0:
       case 1:
         if (const Ref thing = any()) destroy(thing);
@@ -42,6 +42,9 @@ void Objects::go() {
         break;
       case 7:
         reset_something();
+        break;
+      case 8:
+        make_absurd();
         break;
       default:
         make();

@@ -113,6 +113,8 @@ class Objects {
   void make_graphics_pipeline();
   void make_commands(bool secondary);
 
+  void make_absurd();
+
   void update_set();
   void write(const Ref& set, std::uint32_t binding);
   void reset_something();

@@ -124,6 +124,32 @@ TEST(Loaded, TenThousandOfEachObjectLeaveNothingBehind) {
   destroy(p);
 }
 
+TEST(Loaded, QueriesThatAreNotUsedTakeNoMemory) {
+  const Driver driver;
+  Program p;
+  ASSERT_EQ(make_device(p), VK_SUCCESS);
+  const Holdings before = holdings();
+  auto info = make_struct<VkQueryPoolCreateInfo>();
+  info.queryType = VK_QUERY_TYPE_OCCLUSION;
+  for (const std::uint32_t count : {100'000'000u, ~0u}) {
+    info.queryCount = count;
+    VkQueryPool pool = VK_NULL_HANDLE;
+    const VkResult result = VK_GET(p.instance, CreateQueryPool)(p.device, &info, nullptr, &pool);
+    // Where the system does not give as much as it has not.
+    EXPECT_TRUE(result == VK_SUCCESS || result == VK_ERROR_OUT_OF_HOST_MEMORY) << result;
+    EXPECT_LE(holdings().most_kibibytes, before.most_kibibytes + 4096);
+    std::uint64_t counter = 7;
+    if (result == VK_SUCCESS) {
+      EXPECT_EQ(VK_GET(p.instance, GetQueryPoolResults)(p.device, pool, count - 1, 1, sizeof counter, &counter, 8,
+                                                        VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_PARTIAL_BIT),
+                VK_NOT_READY);
+      EXPECT_EQ(counter, 0u);
+    }
+    VK_GET(p.instance, DestroyQueryPool)(p.device, pool, nullptr);
+  }
+  destroy(p);
+}
+
 /// Records a render pass with one draw.
 VkCommandBuffer record_draw(Program& p, std::uint32_t vertices, std::uint32_t instances) {
   VkCommandBuffer commands = VK_NULL_HANDLE;
