@@ -56,7 +56,7 @@ def grow(build, name, seconds, added):
     inputs, least = work / "inputs", work / "least"
     unpack(PACKED / f"{name}.tar.xz", inputs)
     # Without its statistics of rare features, which take most of the time where inputs are many and runs are short.
-    common = ["-len_control=0", "-entropic=0", f"-max_len={LONGEST[name]}", "-timeout=100", "-rss_limit_mb=6000"]
+    common = ["-len_control=0", "-entropic=0", f"-max_len={LONGEST[name]}", "-timeout=100", "-rss_limit_mb=6000", "-malloc_limit_mb=10000000"]
     if seconds:
         report = run([program(build, name), *common, f"-max_total_time={seconds}", "-print_final_stats=1", inputs], work)
         print("\n".join(f"{name}: {line}" for line in report.splitlines() if line.startswith("stat::number_of_exec")))
