@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <utility>
 
 #include "base/numeric.h"
@@ -159,7 +158,7 @@ std::shared_ptr<Run> Engine::enter(const std::shared_ptr<const Subject>& subject
 /// Between workgroups their memory has been reset: nobody but this tells.
 void Engine::note_reset(Run& run) {
   if (run.shared == nullptr || run.subject->context.stage != VK_SHADER_STAGE_COMPUTE_BIT) return;
-  if (shared_.size() != run.shared_size || std::memcmp(shared_.data(), run.shared, shared_.size()) == 0) return;
+  if (shared_.size() != run.shared_size || std::equal(shared_.begin(), shared_.end(), run.shared)) return;
   run.begin_stores(0);
   run.add_store({run.shared, run.shared_size, kNoLane, 1}, shared_.data());
   history_.grown();
