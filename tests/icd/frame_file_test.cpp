@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <random>
@@ -79,14 +80,16 @@ TEST_F(FrameFiles, ReadersThatStopCostASecondOnce) {
             }),
             0.9);
   std::string got;
+  std::atomic<bool> enough = false;
   std::thread frames([&] {
-    for (int i = 0; i < 200 && got.size() < 3 * kFrame; ++i) {
+    for (int i = 0; i < 200 && !enough; ++i) {
       file.add(frame);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   });
   for (const auto end = Clock::now() + std::chrono::seconds(5); got.size() < 3 * kFrame && Clock::now() < end;)
     got += take(slow);
+  enough = true;
   frames.join();
   const std::size_t first = got.find('\n') + 1;
   ASSERT_GE(got.size(), first + 2 * kFrame);

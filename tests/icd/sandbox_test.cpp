@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "tests/icd/small_program.h"
+#include "tests/sanitized.h"
 
 namespace vitrine::icd::test {
 namespace {
@@ -85,9 +86,7 @@ bool lock_in(const std::vector<int>& allowed) {
 class Sandbox : public ::testing::Test {
  protected:
   void SetUp() override {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "sanitizers make calls of their own";
-#endif
+    if (vitrine::test::kSanitized) GTEST_SKIP() << "sanitizers make calls of their own";
     GTEST_FLAG_SET(death_test_style, "threadsafe");
   }
 };
