@@ -2,6 +2,7 @@
 #include "tests/fuzz/objects.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "tests/fuzz/target.h"
 
@@ -9,6 +10,25 @@
 
 namespace vitrine::fuzz {
 namespace {
+
+/// A device that runs share.
+struct Shared : Driver {
+  VkPipelineCache cache = VK_NULL_HANDLE;
+
+  Shared() {
+    make_instance(*this, {});
+    open();
+  }
+  void open() {
+    make_device(*this, {}, nullptr);
+    const auto info = icd::make_struct<VkPipelineCacheCreateInfo>();
+    demand(VK_GET(instance, CreatePipelineCache)(device, &info, nullptr, &cache) == VK_SUCCESS, "a cache");
+  }
+  void close() const {
+    VK_GET(instance, DestroyPipelineCache)(device, cache, nullptr);
+    VK_GET(instance, DestroyDevice)(device, nullptr);
+  }
+};
 
 bool reaches(const Ref& from, const Ref& thing) {
   return from &&
@@ -61,11 +81,16 @@ Ref Objects::one_of(const std::vector<Ref>& list) {
   return list.empty() ? nullptr : list[c_.below(static_cast<std::uint32_t>(list.size()))];
 }
 
-Ref Objects::some(Kind kind, std::uint32_t agreed) {
+Ref Objects::one_that(base::FunctionRef<bool(const Ref&)> fits) {
   std::vector<Ref> found;
-  for (const Ref& thing : things_)
-    if (thing->kind == kind && (agreed == ~0u || thing->agreed == agreed) && usable(thing)) found.push_back(thing);
+  std::ranges::copy_if(things_, std::back_inserter(found), fits);
   return one_of(found);
+}
+
+Ref Objects::some(Kind kind, std::uint32_t agreed) {
+  return one_that([&](const Ref& thing) {
+    return thing->kind == kind && (agreed == ~0u || thing->agreed == agreed) && usable(thing);
+  });
 }
 
 Ref Objects::need(Kind kind, std::uint32_t agreed) {
@@ -81,10 +106,7 @@ Ref Objects::any() {
 }
 
 Ref Objects::living(Kind kind) {
-  std::vector<Ref> found;
-  for (const Ref& thing : things_)
-    if (thing->kind == kind && thing->lives) found.push_back(thing);
-  return one_of(found);
+  return one_that([&](const Ref& thing) { return thing->kind == kind && thing->lives; });
 }
 
 void Objects::finish() {
@@ -201,31 +223,6 @@ void Objects::end_children(const Ref& pool) {
   }
 }
 
-}  // namespace vitrine::fuzz
-
-namespace vitrine::fuzz {
-namespace {
-
-/// A device that runs share.
-struct Shared : Driver {
-  VkPipelineCache cache = VK_NULL_HANDLE;
-
-  Shared() {
-    make_instance(*this, {});
-    open();
-  }
-  void open() {
-    make_device(*this, {}, nullptr);
-    const auto info = icd::make_struct<VkPipelineCacheCreateInfo>();
-    demand(VK_GET(instance, CreatePipelineCache)(device, &info, nullptr, &cache) == VK_SUCCESS, "a cache");
-  }
-  void close() const {
-    VK_GET(instance, DestroyPipelineCache)(device, cache, nullptr);
-    VK_GET(instance, DestroyDevice)(device, nullptr);
-  }
-};
-
-}  // namespace
 }  // namespace vitrine::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/function_ref.h"
 #include "icd/edge/util.h"
 #include "tests/fuzz/choices.h"
 #include "tests/fuzz/driver.h"
@@ -53,9 +54,8 @@ struct Thing {
   bool ready = false;  ///< command buffers: recorded; semaphores: signalled; fences: signalled or going to be
 };
 
-/// The words of the shader: a compute shader that uses every binding, a vertex and a fragment shader.
+/// A compute shader that uses every binding, a vertex and a fragment shader.
 enum class Shader : std::uint8_t { kCompute, kVertex, kFragment, kCount };
-std::span<const std::uint32_t> words_of(Shader shader);
 
 class Objects {
  public:
@@ -73,6 +73,7 @@ class Objects {
 
   bool usable(const Ref& thing) const;
   Ref one_of(const std::vector<Ref>& list);
+  Ref one_that(base::FunctionRef<bool(const Ref&)> fits);
   /// One that can be used, of the kind; null: there is none. `agreed`: with this, ~0: any.
   Ref some(Kind kind, std::uint32_t agreed = ~0u);
   /// The same; where there is none, one is made, with what it needs, as far as that can be.

@@ -1,5 +1,6 @@
 // Objects by kind, of those that are there.
 #include <array>
+#include <span>
 #include <string>
 
 #include "tests/fuzz/objects.h"
@@ -51,8 +52,6 @@ VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits bit, const Ref& modu
   return info;
 }
 
-}  // namespace
-
 std::span<const std::uint32_t> words_of(Shader shader) {
   constexpr VkShaderStageFlagBits kStages[] = {VK_SHADER_STAGE_COMPUTE_BIT, VK_SHADER_STAGE_VERTEX_BIT,
                                                VK_SHADER_STAGE_FRAGMENT_BIT};
@@ -65,6 +64,8 @@ std::span<const std::uint32_t> words_of(Shader shader) {
   }
   return compiled[i];
 }
+
+}  // namespace
 
 Ref Objects::keep(Kind kind, std::uint64_t handle, std::vector<Ref> of) {
   auto thing = std::make_shared<Thing>();

@@ -50,21 +50,17 @@ class Program:
 
 
 def programs(stack, manifest):
-    def of(server, command):
-        if not shutil.which(command[0]):
-            return
-        name = f"{command[0]} under {server[1] or 'nothing'}"
-        variables = server[0] | {"VK_DRIVER_FILES": manifest, "VITRINE_TOOLS": server[1], "VITRINE_LOG": "error"}
-        yield Program(name, command, variables)
-
+    """Those that are there to run, running."""
+    wanted = []
     if shutil.which("Xvfb"):
         _, display = stack.enter_context(x_server())
-        for tools in ("", "sanitize,sync,count"):
-            yield from of((display, tools), ["vkcube", "--c", FRAMES, "--suppress_popups"])
-        yield from of((display, ""), ["vkcubepp", "--c", FRAMES, "--suppress_popups"])
+        wanted += [("vkcube", "", display), ("vkcube", "sanitize,sync,count", display), ("vkcubepp", "", display)]
     if shutil.which("weston"):
         _, display = stack.enter_context(wayland_server(stack.enter_context(tempfile.TemporaryDirectory())))
-        yield from of((display, ""), ["vkcube-wayland", "--c", FRAMES])
+        wanted.append(("vkcube-wayland", "", display))
+    return [Program(f"{command} under {tools or 'nothing'}", [command, "--c", FRAMES, "--suppress_popups"],
+                    display | {"VK_DRIVER_FILES": manifest, "VITRINE_TOOLS": tools, "VITRINE_LOG": "error"})
+            for command, tools, display in wanted if shutil.which(command)]
 
 
 def main():
@@ -74,7 +70,7 @@ def main():
     arguments = parser.parse_args()
     faults = []
     with contextlib.ExitStack() as stack:
-        running = list(programs(stack, arguments.manifest))
+        running = programs(stack, arguments.manifest)
         try:
             start = time.monotonic()
             time.sleep(min(30, arguments.seconds / 4))
