@@ -37,7 +37,7 @@ void DrawWatches::shaded(const FragmentGroup& group, base::LaneMask invocations,
   for (const auto& watch : watches_) watch->shaded(group, invocations, helpers);
 }
 
-void DrawWatches::coloring(const FragmentGroup& group, std::uint32_t attachment, const base::WaveRegister* color) {
+void DrawWatches::coloring(const FragmentGroup& group, std::uint32_t attachment, const ColorRegisters& color) {
   for (const auto& watch : watches_) watch->coloring(group, attachment, color);
 }
 

@@ -22,7 +22,7 @@ class DrawWatches : public DrawWatch {
   void testing(const FragmentGroup& group, std::uint32_t sample, const float* depth) override;
   void shading(const FragmentGroup& group) override;
   void shaded(const FragmentGroup& group, base::LaneMask invocations, base::LaneMask helpers) override;
-  void coloring(const FragmentGroup& group, std::uint32_t attachment, const base::WaveRegister* color) override;
+  void coloring(const FragmentGroup& group, std::uint32_t attachment, const ColorRegisters& color) override;
   bool takes_numbers() const override;
   void numbers(const FragmentNumbers& numbers) override;
   void shaded_blocks(base::LaneMask places) override;

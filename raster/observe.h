@@ -9,6 +9,7 @@
 #include <span>
 
 #include "raster/fragment_rate.h"
+#include "raster/output/color_registers.h"
 #include "raster/pixel_order.h"
 #include "spirv/resources.h"
 #include "texel/view.h"
@@ -111,7 +112,7 @@ class DrawWatch {
   /// The fragment shader runs: once for all samples, or, with sample shading, for one after the other.
   virtual void shaded(const FragmentGroup&, base::LaneMask /*invocations*/, base::LaneMask /*helpers*/) {}
   /// What the shader gave to colour attachment number `attachment`, four registers, before any of it is blended.
-  virtual void coloring(const FragmentGroup&, std::uint32_t /*attachment*/, const base::WaveRegister* /*color*/) {}
+  virtual void coloring(const FragmentGroup&, std::uint32_t /*attachment*/, const ColorRegisters& /*color*/) {}
   /// Samples have passed all tests.
   virtual void passed(const FragmentGroup&, SampleLanes) {}
   /// They are in an attachment.

@@ -246,7 +246,7 @@ struct Pass::Impl {
       continues = false;
     };
     for (std::uint32_t instance = record->call.skipped_instances; instance < record->call.instance_count; ++instance) {
-      RunCutter cutter(record->call, instance, piece, record->plan->as_reference.numbers_segments);
+      RunCutter cutter(record->call, record->plan->shape, instance, piece, record->plan->as_reference.numbers_segments);
       counters[0] = counters[1] = 0;
       bool any = false;
       for (Run run; cutter.next(run); any = true) {

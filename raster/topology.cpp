@@ -50,6 +50,11 @@ const Topology& topology_of(VkPrimitiveTopology topology) {
   return kTopologies[index < std::size(kTopologies) ? index : 0];
 }
 
+bool is_list_in_order(VkPrimitiveTopology name) {
+  return name == VK_PRIMITIVE_TOPOLOGY_POINT_LIST || name == VK_PRIMITIVE_TOPOLOGY_LINE_LIST ||
+         name == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+}
+
 TopologyShape topology_shape(const DrawCall& draw) {
   if (draw.state->topology == VK_PRIMITIVE_TOPOLOGY_PATCH_LIST) {
     const std::uint32_t points = draw.evaluation ? std::min(draw.state->patch_control_points, kMaxPatchVertices) : 0;

@@ -45,6 +45,9 @@ std::span<const Topology> topologies();
 /// The row of a topology, or of a list of points for those the table lacks.
 const Topology& topology_of(VkPrimitiveTopology topology);
 
+/// Whether the corners of its primitives are all positions, one after the other: lists without adjacent vertices.
+bool is_list_in_order(VkPrimitiveTopology topology);
+
 /// The shape of what a draw assembles: the table's, but for the control points of patches and for adjacent vertices
 /// that only geometry shaders see. Patches without tessellation stages have no corners.
 TopologyShape topology_shape(const DrawCall& draw);

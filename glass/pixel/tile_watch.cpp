@@ -146,7 +146,7 @@ void TileWatch::shaded(const FragmentGroup& group, LaneMask invocations, LaneMas
   });
 }
 
-void TileWatch::coloring(const FragmentGroup& group, std::uint32_t attachment, const base::WaveRegister* color) {
+void TileWatch::coloring(const FragmentGroup& group, std::uint32_t attachment, const raster::ColorRegisters& color) {
   for_each(group, base::kAllLanes, [&](const WatchedPixel& pixel, std::uint32_t q, std::size_t lane) {
     Fragment* const fragment = find(pixel, group.from[q]);
     if (fragment == nullptr) return;

@@ -54,7 +54,8 @@ class TileWatch final : public raster::DrawWatch {
   void testing(const raster::FragmentGroup& group, std::uint32_t sample, const float* depth) override;
   void shading(const raster::FragmentGroup& group) override;
   void shaded(const raster::FragmentGroup& group, base::LaneMask invocations, base::LaneMask helpers) override;
-  void coloring(const raster::FragmentGroup& group, std::uint32_t attachment, const base::WaveRegister* color) override;
+  void coloring(const raster::FragmentGroup& group, std::uint32_t attachment,
+                const raster::ColorRegisters& color) override;
   void written(const raster::FragmentGroup& group, const texel::ImageView& view, raster::SampleLanes lanes) override;
 
   /// What this thread watches; null: nothing.

@@ -42,9 +42,10 @@ RunSpan run_span(const TopologyShape& shape, const Run& run) {
   return {run.begin * shape.step, (run.end - 1) * shape.step + shape.first, false};
 }
 
-RunCutter::RunCutter(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, bool numbers_pieces)
+RunCutter::RunCutter(const DrawCall& draw, const TopologyShape& shape, std::uint32_t instance, std::uint32_t piece,
+                     bool numbers_pieces)
     : draw_(draw),
-      shape_(topology_shape(draw)),
+      shape_(shape),
       piece_(piece),
       numbers_pieces_(numbers_pieces),
       restarts_(draw.index_data && draw.state->primitive_restart),

@@ -36,7 +36,8 @@ std::uint32_t piece_of(const TopologyShape& shape, std::uint32_t positions);
 class RunCutter {
  public:
   /// `numbers_pieces`: gl_PrimitiveID begins anew in each. The draw outlives the cutter.
-  RunCutter(const DrawCall& draw, std::uint32_t instance, std::uint32_t piece, bool numbers_pieces);
+  RunCutter(const DrawCall& draw, const TopologyShape& shape, std::uint32_t instance, std::uint32_t piece,
+            bool numbers_pieces);
   /// The next stretch; false: there is none.
   bool next(Run& run);
 

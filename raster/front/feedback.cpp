@@ -6,6 +6,8 @@
 #include <cstring>
 
 #include "base/numeric.h"
+#include "raster/front/records.h"
+#include "raster/topology.h"
 #include "spirv/stage_memory.h"
 
 namespace vitrine::raster {
@@ -33,6 +35,11 @@ std::vector<CaptureRun> runs_of(std::span<const Capture> captures) {
   return runs;
 }
 
+/// Whether vertices lie in the buffer as they were gathered.
+bool is_whole_vertex(const PipelinePlan& plan, std::span<const Capture> captures, const CaptureRun& run) {
+  return run.words && run.byte == 0 && run.count == captures.size() && plan.xfb_stride[run.buffer] == 4 * run.count;
+}
+
 /// How many of `primitives` have room: all captures of all their vertices lie inside their buffers.
 std::uint64_t fitting(const TransformFeedback& feedback, const PipelinePlan& plan, std::span<const Capture> captures,
                       std::uint64_t primitives) {
@@ -51,6 +58,12 @@ std::uint64_t fitting(const TransformFeedback& feedback, const PipelinePlan& pla
 void write_vertices(TransformFeedback& feedback, const PipelinePlan& plan, std::span<const Capture> captures,
                     const std::uint32_t* words, std::uint64_t vertices) {
   const std::vector<CaptureRun> runs = runs_of(captures);
+  if (const CaptureRun& run = runs[0]; is_whole_vertex(plan, captures, run)) {
+    XfbBuffer& buffer = feedback.buffer[run.buffer];
+    std::memcpy(buffer.data + buffer.offset, words, vertices * plan.xfb_stride[run.buffer]);
+    buffer.offset += vertices * plan.xfb_stride[run.buffer];
+    return;
+  }
   std::uint32_t used = 0;
   for (const CaptureRun& run : runs) used |= 1u << run.buffer;
   for (std::uint64_t v = 0; v < vertices; ++v, words += captures.size()) {
@@ -58,7 +71,7 @@ void write_vertices(TransformFeedback& feedback, const PipelinePlan& plan, std::
       const XfbBuffer& buffer = feedback.buffer[run.buffer];
       std::byte* const to = buffer.data + buffer.offset + run.byte;
       if (run.words) {
-        for (std::uint32_t i = 0; i < run.count; ++i) std::memcpy(to + 4 * i, words + run.from + i, 4);
+        std::memcpy(to, words + run.from, std::size_t{4} * run.count);
         continue;
       }
       const std::uint32_t offset = captures[run.from].offset;
@@ -92,11 +105,37 @@ void capture_wave(const PipelinePlan& plan, const WaveOutputs& outputs, std::uin
                   CaptureScratch& scratch) {
   const std::span<const Capture> captures = captures_of(plan, 0);
   const std::size_t stride = captures.size();
-  if (scratch.vertices.size() < (std::size_t{base} + lanes) * stride) scratch.vertices.resize((base + lanes) * stride);
-  for (std::size_t k = 0; k < stride; ++k) {
-    const std::uint32_t* lane = outputs.at(captures[k].reg).lane;
-    for (std::uint32_t i = 0; i < lanes; ++i) scratch.vertices[(base + i) * stride + k] = lane[i];
+  constexpr std::size_t kGroup = 4;  // of a record, store_records
+  const std::size_t words = (std::size_t{base} + lanes) * stride + kGroup;
+  if (scratch.vertices.size() < words) scratch.vertices.resize(words);
+  std::uint32_t* const to = scratch.vertices.data() + std::size_t{base} * stride;
+  const auto lanes_of = [&](std::size_t k) { return outputs.at(captures[k].reg).lane; };
+  if (stride < kGroup) {
+    for (std::size_t k = 0; k < stride; ++k)
+      for (std::uint32_t i = 0; i < lanes; ++i) to[i * stride + k] = lanes_of(k)[i];
+    return;
   }
+  // The last group may reach into the vertex behind: that one's first group comes after it.
+  for (std::size_t k = (stride - 1) / kGroup * kGroup + kGroup; k != 0;) {
+    k -= kGroup;
+    const std::uint32_t* from[kGroup];
+    for (std::size_t c = 0; c < kGroup; ++c) from[c] = lanes_of(std::min(k + c, stride - 1));
+    store_records(from, lanes, to + k, static_cast<std::uint32_t>(stride));
+  }
+}
+
+/// Primitives whose corners are these slots, one after the other.
+void capture_list(const PipelinePlan& plan, std::span<const std::uint16_t> slots, CaptureScratch& scratch) {
+  const std::size_t stride = captures_of(plan, 0).size();
+  std::vector<std::uint32_t>& words = scratch.words[0];
+  for (std::size_t begin = 0, end = 0; begin < slots.size(); begin = end) {
+    // Vertices that no primitives share lie as they are wanted.
+    for (end = begin + 1; end < slots.size() && slots[end] == slots[end - 1] + 1; ++end)
+      ;
+    const std::uint32_t* const from = scratch.vertices.data() + slots[begin] * stride;
+    words.insert(words.end(), from, from + (end - begin) * stride);
+  }
+  scratch.primitives[0] += static_cast<std::uint32_t>(slots.size()) / plan.corners;
 }
 
 void capture_primitive(const PipelinePlan& plan, const std::uint32_t* slot, CaptureScratch& scratch) {
@@ -111,6 +150,7 @@ void capture_primitive(const PipelinePlan& plan, const std::uint32_t* slot, Capt
 void capture_runs(const Chunk& chunk, const VertexScratch& vertices, CaptureScratch& scratch) {
   const PipelinePlan& plan = *chunk.draw->plan;
   const State& state = *plan.state;
+  if (is_list_in_order(state.topology)) return capture_list(plan, {vertices.slot.data(), positions_of(chunk)}, scratch);
   for_each_primitive(chunk, [&](const Run&, std::uint32_t i, const auto& entry_of) {
     const Corners corners = corners_of(state.topology, state.provoking_vertex_last, i);
     std::uint32_t slot[3] = {};

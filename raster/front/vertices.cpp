@@ -114,7 +114,7 @@ void shade_chunk_vertices(const Chunk& chunk, Arena& arena, VertexScratch& s, Ca
   VertexLanes lanes;
   for (std::uint32_t base = 0; base < count; base += base::kWaveWidth) {
     shade_vertex_wave(draw, base, std::min<std::uint32_t>(count - base, base::kWaveWidth), chunk.view, lanes, s);
-    store_wave(plan, {&s.runner, nullptr}, base, lanes.count, s);
+    if (!plan.state->rasterizer_discard) store_wave(plan, {&s.runner, nullptr}, base, lanes.count, s);
     if (capture.active) capture_wave(plan, {&s.runner, nullptr}, base, lanes.count, capture);
   }
   draw.call.queries.count(Statistic::kClippingInvocations, count_assembly(chunk, count));

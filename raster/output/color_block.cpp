@@ -46,7 +46,7 @@ alignas(64) constexpr std::int32_t kRowsOf4[4] = {0, 1, 2, 3};
 /// Colours of a wave as vectors of such pixels.
 class PackedColors {
  public:
-  PackedColors(const ColorWriter& writer, const base::WaveRegister* color)
+  PackedColors(const ColorWriter& writer, const ColorRegisters& color)
       : packer_(writer), color_(color), order_(hn::SetTableIndices(Pixels(), kRows)) {}
   HWY_INLINE VB at(std::size_t i) const {
     return hn::BitCast(Bytes(), hn::TableLookupLanes(packer_.pack(color_, i), order_));
@@ -56,7 +56,7 @@ class PackedColors {
   static constexpr std::size_t n = hn::MaxLanes(Pixels());
   static constexpr const std::int32_t* kRows = n == 16 ? kRowsOf16 : n == 8 ? kRowsOf8 : kRowsOf4;
   BytePacker packer_;
-  const base::WaveRegister* color_;
+  const ColorRegisters& color_;
   decltype(hn::SetTableIndices(Pixels(), kRowsOf16)) order_;
 };
 
@@ -68,7 +68,7 @@ struct StoredColors {
   }
 };
 
-void pack_bytes(const ColorWriter& writer, const base::WaveRegister* color, PackedBlock& out) {
+void pack_bytes(const ColorWriter& writer, const ColorRegisters& color, PackedBlock& out) {
   const PackedColors colors(writer, color);
   for (std::size_t i = 0; i < kWaveWidth; i += hn::Lanes(Pixels()))
     hn::Store(hn::BitCast(hn::RebindToUnsigned<Pixels>(), colors.at(i)), hn::RebindToUnsigned<Pixels>(), out.texel + i);
@@ -370,7 +370,7 @@ struct ByteBlocks {
     else
       write_colors(writer, StoredColors{colors}, BlockRows{pixels, rows});
   }
-  static void write(const ColorWriter& writer, const base::WaveRegister* color, const BlockPixels& pixels,
+  static void write(const ColorWriter& writer, const ColorRegisters& color, const BlockPixels& pixels,
                     base::LaneMask rows) {
     write_colors(writer, PackedColors(writer, color), BlockRows{pixels, rows});
   }
@@ -378,7 +378,7 @@ struct ByteBlocks {
                                  const SpanWave& wave) {
     write_colors(writer, StoredColors{colors}, SpanRows{pixels, wave, reads(writer)});
   }
-  static void write_spans(const ColorWriter& writer, const base::WaveRegister* color, const BlockPixels& pixels,
+  static void write_spans(const ColorWriter& writer, const ColorRegisters& color, const BlockPixels& pixels,
                           const SpanWave& wave) {
     write_colors(writer, PackedColors(writer, color), SpanRows{pixels, wave, reads(writer)});
   }

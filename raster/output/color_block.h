@@ -18,17 +18,16 @@ struct alignas(64) PackedBlock {
 /// How blocks reach a colour attachment.
 struct BlockColorFunctions {
   /// Four registers in quad order, converted: for colours that are written more than once.
-  void (*pack)(const ColorWriter& writer, const base::WaveRegister* color, PackedBlock& out);
+  void (*pack)(const ColorWriter& writer, const ColorRegisters& color, PackedBlock& out);
   /// Stores or blends the pixels of `rows` (row order).
   void (*write_packed)(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels,
                        base::LaneMask rows);
   /// Both at once.
-  void (*write)(const ColorWriter& writer, const base::WaveRegister* color, const BlockPixels& pixels,
-                base::LaneMask rows);
+  void (*write)(const ColorWriter& writer, const ColorRegisters& color, const BlockPixels& pixels, base::LaneMask rows);
   /// The last two for a wave of spans (raster/pixel_order.h); `pixels`: of the attachment, from (0, 0).
   void (*write_packed_spans)(const ColorWriter& writer, const PackedBlock& colors, const BlockPixels& pixels,
                              const SpanWave& wave);
-  void (*write_spans)(const ColorWriter& writer, const base::WaveRegister* color, const BlockPixels& pixels,
+  void (*write_spans)(const ColorWriter& writer, const ColorRegisters& color, const BlockPixels& pixels,
                       const SpanWave& wave);
 };
 

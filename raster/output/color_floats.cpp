@@ -45,8 +45,8 @@ HWY_INLINE VF to_floats(hn::Vec<Elements16> halves) { return texel::HWY_NAMESPAC
 HWY_INLINE VF to_floats(hn::Vec<Elements32> words) { return hn::BitCast(F32(), words); }
 
 /// Four colours of floats to texels; channels that the texels lack are not read.
-template <class Texels, class Channel>
-HWY_INLINE void pack(const Channel color[4], Texels& out) {
+template <class Texels, class Color>
+HWY_INLINE void pack(const Color& color, Texels& out) {
   const hn::Rebind<typename Texels::Element, F32> d;
   const auto channel = [&](std::size_t c, std::size_t i) HWY_ATTR {
     return to_elements(d, hn::Load(F32(), reinterpret_cast<const float*>(color[c].lane) + i));

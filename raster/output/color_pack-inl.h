@@ -26,7 +26,7 @@ class BytePacker {
   explicit BytePacker(const ColorWriter& writer) : places_(hn::LoadDup128(Bytes(), writer.pack_places)) {}
 
   /// Texels of lanes [i, i + lanes).
-  HWY_INLINE hn::Vec<Texels> pack(const base::WaveRegister* color, std::size_t i) const {
+  HWY_INLINE hn::Vec<Texels> pack(const ColorRegisters& color, std::size_t i) const {
     // Both narrowings saturate. The four pixels of a quad become r r r r g g g g b b b b a a a a.
     const Words d16;
     const auto rg = hn::ReorderDemote2To(d16, to_bytes(color[0], i), to_bytes(color[1], i));

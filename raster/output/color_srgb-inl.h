@@ -30,7 +30,7 @@ class SrgbPacker {
   }
 
   /// Texels of lanes [i, i + lanes).
-  HWY_INLINE hn::Vec<Texels> pack(const base::WaveRegister* color, std::size_t i) const {
+  HWY_INLINE hn::Vec<Texels> pack(const ColorRegisters& color, std::size_t i) const {
     auto texel = hn::ShiftLeftSame(alpha(load(color[3], i)), shift_[3]);
     for (std::size_t c = 0; c < 3; ++c) texel = hn::Or(texel, hn::ShiftLeftSame(code(load(color[c], i)), shift_[c]));
     return texel;

@@ -7,6 +7,7 @@
 
 #include "base/lanes.h"
 #include "raster/draw.h"
+#include "raster/output/color_registers.h"
 #include "raster/pixel_order.h"
 #include "texel/codec.h"
 #include "texel/view.h"
@@ -31,9 +32,9 @@ struct ColorWave {
   std::uint32_t layer;  ///< within the view
   std::uint32_t sample;
   const QuadPositions* quads;
-  base::LaneMask mask;               ///< covered lanes that passed all tests
-  const base::WaveRegister* color;   ///< four registers: RGBA, raw bits
-  const base::WaveRegister* second;  ///< four registers: dual-source colour, or null
+  base::LaneMask mask;  ///< covered lanes that passed all tests
+  ColorRegisters color;
+  ColorRegisters second;  ///< of dual-source blending, or none
 };
 
 using ColorFunction = void (*)(const ColorWriter& writer, const ColorWave& wave);

@@ -98,14 +98,16 @@ LaneMask whole_quads(LaneMask lanes) { return base::quads_of_lanes(lanes) * 15; 
 void write_block(TileWorker& worker, int x, int y, const LaneMask* kept) {
   const PipelinePlan& plan = *worker.draw->plan;
   BlockDraw& draw = worker.block_draw;
+  QuadPositions quads;
+  bool placed = false;
   for (std::uint32_t i = 0; i < plan.color_count; ++i) {
     const texel::ImageView& view = worker.pass->color[i];
     const ColorWriter& writer = plan.writer[i];
     if (!writer.function || worker.target.layer >= view.layer_count) continue;
     if (!writer.block) {
-      QuadPositions quads;
-      place_block(x, y, quads);
-      const WaveRegister* color = collect_color(worker, plan.frag.color[i], false, worker.color);
+      if (!placed) place_block(x, y, quads);
+      placed = true;
+      const ColorRegisters color = collect_color(worker, plan.frag.color[i], false, worker.color);
       for (std::uint32_t s = 0; s < plan.samples; ++s)
         write_color(writer, {&view, worker.target.layer, s, &quads, kept[s], color, nullptr});
       continue;

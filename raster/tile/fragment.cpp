@@ -135,10 +135,10 @@ void write_colors(ShadeRun& run) {
     const texel::Numeric numeric = view.format->channel[0].numeric;
     const bool integer = numeric == texel::Numeric::kUint || numeric == texel::Numeric::kSint;
     const bool scaled = !integer || plan.as_reference.scales_integers;
-    const WaveRegister* color = collect_color(worker, plan.frag.color[i], scaled, worker.color, run.spread);
+    const ColorRegisters color = collect_color(worker, plan.frag.color[i], scaled, worker.color, run.spread);
     if constexpr (kObserved) worker.watch->coloring(worker.told.group, i, color);
     const bool dual = i == 0 && plan.dual_source;
-    const WaveRegister* second =
+    const ColorRegisters second =
         dual ? collect_color(worker, plan.frag.color_second, scaled, worker.second, run.spread) : nullptr;
     for (std::uint32_t s = run.first_sample; s < run.end_sample; ++s)
       write_color(plan.writer[i], {&view, worker.target.layer, s, &run.wave.position, run.kept[s], color, second});

@@ -6,19 +6,18 @@
 #include <cstdint>
 
 #include "base/lanes.h"
+#include "raster/output/color_registers.h"
 #include "raster/tile/worker.h"
 
 namespace vitrine::raster {
 
 struct FragmentSpread;  // raster/tile/shade_run.h
 
-/// The four registers of a colour: the shader's own where they lie next to each other and nothing is changed, else
-/// copies in `scratch`. Components that are not written are 0. `scaled`: of smooth lines, alpha is scaled by the
-/// coverage. `spread`: the colours are those of larger fragments, and go
-/// to their pixels.
-const base::WaveRegister* collect_color(const TileWorker& worker, const std::array<std::uint32_t, 4>& registers,
-                                        bool scaled, base::WaveRegister scratch[4],
-                                        const FragmentSpread* spread = nullptr);
+/// The four registers of a colour: the shader's own where nothing is changed, else copies in `scratch`. Components that
+/// are not written are 0. `scaled`: of smooth lines, alpha is scaled by the coverage. `spread`: the colours are those
+/// of larger fragments, and go to their pixels.
+ColorRegisters collect_color(const TileWorker& worker, const std::array<std::uint32_t, 4>& registers, bool scaled,
+                             base::WaveRegister scratch[4], const FragmentSpread* spread = nullptr);
 
 /// Counts fragments that passed all tests in the draw's queries.
 inline void count_samples(TileWorker& worker, base::LaneMask lanes) {

@@ -15,7 +15,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// Corners as stream positions of every primitive of a draw, through runs of at most `limit` positions.
 std::vector<Triangle> decompose(const DrawCall& draw, std::uint32_t limit) {
   std::vector<raster::Run> runs;
-  RunCutter cutter(draw, 0, piece_of(topology_shape(draw), limit), false);
+  RunCutter cutter(draw, topology_shape(draw), 0, piece_of(topology_shape(draw), limit), false);
   for (raster::Run run; cutter.next(run);) runs.push_back(run);
   const TopologyShape shape = topology_shape(draw);
   std::vector<Triangle> result;
@@ -74,7 +74,7 @@ TEST(Assembly, CuttingIntoRunsChangesNothing) {
 /// Positions of every primitive as a geometry shader sees them, through runs of at most `limit` positions.
 std::vector<std::array<std::uint32_t, 6>> input_positions(const DrawCall& draw, std::uint32_t limit) {
   std::vector<raster::Run> runs;
-  RunCutter cutter(draw, 0, piece_of(topology_shape(draw), limit), false);
+  RunCutter cutter(draw, topology_shape(draw), 0, piece_of(topology_shape(draw), limit), false);
   for (raster::Run run; cutter.next(run);) runs.push_back(run);
   TopologyShape shape = topology_shape(draw);
   shape.neighbours = draw.state->topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY;
@@ -142,7 +142,7 @@ TEST(Assembly, NumbersPiecesAnewWhereAskedTo) {
   draw.count = 3 * 10;
   for (const bool anew : {false, true}) {
     std::vector<raster::Run> runs;
-    RunCutter cutter(draw, 0, 4, anew);
+    RunCutter cutter(draw, topology_shape(draw), 0, 4, anew);
     for (raster::Run run; cutter.next(run);) runs.push_back(run);
     ASSERT_EQ(runs.size(), 3u);
     for (const raster::Run& run : runs) EXPECT_EQ(run.first_id + run.begin, anew ? 0 : run.begin);
