@@ -8,8 +8,8 @@
 #include <optional>
 #include <span>
 
+#include "raster/color_registers.h"
 #include "raster/fragment_rate.h"
-#include "raster/output/color_registers.h"
 #include "raster/pixel_order.h"
 #include "spirv/resources.h"
 #include "texel/view.h"

@@ -251,6 +251,8 @@ struct ValueInfo {
 /// dynamically.
 struct Array {
   std::uint32_t elements = 0;
+  /// Its elements where all invocations have the same from the first load on, and nothing stores them; or empty.
+  std::vector<std::uint32_t> table{};
 };
 
 struct Function {

@@ -112,7 +112,8 @@ struct MemoryOp {
   std::array<std::uint32_t, 4> data{kNoOperand, kNoOperand, kNoOperand, kNoOperand};  ///< result / value operands
   std::uint32_t compare = kNoOperand;
   ir::AtomicOp atomic = ir::AtomicOp::kAdd;
-  std::uint32_t array_base = 0, array_elements = 0;    ///< local arrays: byte offset of element 0, number of elements
+  std::uint32_t array_base = 0, array_elements = 0;  ///< local arrays: byte offset of element 0 (in Program::tables, of
+                                                     ///< tables), number of elements
   std::uint32_t length_offset = 0, length_stride = 1;  ///< ArrayLength
 };
 
@@ -177,6 +178,7 @@ struct Program {
   std::uint32_t register_count = 0;
   std::uint32_t mask_count = 0;
   std::uint32_t array_bytes = 0;
+  std::vector<std::uint32_t> tables;  ///< of ir::Array, each filled up to a multiple of 16 words
   std::vector<Preset> mask_presets, register_presets;
   /// What every wave begins with as zeros: registers whose inactive lanes a neighbour in the quad may read (an
   /// undefined value, which must not be that of an earlier wave).

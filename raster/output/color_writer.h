@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "base/lanes.h"
+#include "raster/color_registers.h"
 #include "raster/draw.h"
-#include "raster/output/color_registers.h"
 #include "raster/pixel_order.h"
 #include "texel/codec.h"
 #include "texel/view.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "base/lanes.h"
-#include "raster/output/color_registers.h"
+#include "raster/color_registers.h"
 #include "raster/tile/worker.h"
 
 namespace vitrine::raster {

@@ -1,5 +1,5 @@
 // Local arrays that stayed in memory: element e of lane l lies at array_base + e*256 + l*4. Indices are clamped to the
-// last element (lavapipe-shader-math.md section 10).
+// last element (lavapipe-shader-math.md section 10). Tables: arrays whose elements are known.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spirv/exec/arrays.cpp"
 #include <algorithm>
@@ -71,6 +71,39 @@ const Instruction* store_array_whole(Wave& wave, const Instruction* i) {
   return i + 1;
 }
 
+const std::uint32_t* table_of(const Wave& wave, const MemoryOp& row) {
+  return wave.program->tables.data() + row.array_base / sizeof(std::uint32_t);
+}
+
+const Instruction* load_table_uniform(Wave& wave, const Instruction* i) {
+  const MemoryOp& row = memory_op(wave, i);
+  const std::uint32_t index = uniform_word(wave, i->src[0]) + row.added;
+  uniform_word(wave, i->dst) = table_of(wave, row)[std::min(index, row.array_elements - 1)];
+  return i + 1;
+}
+
+const Instruction* load_table_lanes(Wave& wave, const Instruction* i) {
+  const hn::ScalableTag<std::uint32_t> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const MemoryOp& row = memory_op(wave, i);
+  std::uint32_t* to = reg(wave, i->dst).lane;
+  const std::uint32_t* index = reg(wave, i->src[0]).lane;
+  const std::uint32_t* table = table_of(wave, row);
+  const auto added = hn::Set(d, row.added), last = hn::Set(d, row.array_elements - 1);
+  const auto each = [&](auto&& element) HWY_ATTR {
+    for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d))
+      hn::Store(element(hn::Min(hn::Add(hn::Load(d, index + lane), added), last)), d, to + lane);
+  };
+  if (row.array_elements <= hn::Lanes(d)) {
+    const auto all = hn::LoadU(d, table);
+    each([&](auto at) HWY_ATTR { return hn::TableLookupLanes(all, hn::IndicesFromVec(d, at)); });
+  } else {
+    each([&](auto at) HWY_ATTR { return hn::GatherIndex(d, table, hn::BitCast(di, at)); });
+  }
+  return i + 1;
+}
+
+Handler load_table_handler(bool uniform) { return uniform ? load_table_uniform : load_table_lanes; }
 Handler load_array_handler(bool uniform) { return uniform ? load_array_uniform : load_array_lanes; }
 Handler store_array_handler(bool uniform, bool whole) {
   if (whole && uniform) return store_array_whole;
@@ -84,6 +117,7 @@ HWY_AFTER_NAMESPACE();
 namespace vitrine::spirv::exec {
 
 HWY_EXPORT(load_array_handler);
+HWY_EXPORT(load_table_handler);
 HWY_EXPORT(store_array_handler);
 
 const Instruction* clear_arrays(Wave& wave, const Instruction* i) {
@@ -92,6 +126,7 @@ const Instruction* clear_arrays(Wave& wave, const Instruction* i) {
 }
 
 Handler load_array(bool uniform) { return HWY_DYNAMIC_DISPATCH(load_array_handler)(uniform); }
+Handler load_table(bool uniform) { return HWY_DYNAMIC_DISPATCH(load_table_handler)(uniform); }
 Handler store_array(bool uniform, bool whole) { return HWY_DYNAMIC_DISPATCH(store_array_handler)(uniform, whole); }
 
 }  // namespace vitrine::spirv::exec

@@ -134,6 +134,8 @@ const Instruction* atomic_global(Wave&, const Instruction*);
 /// Local arrays: src[0] = element (register or uniform word), register dst / src[1].
 const Instruction* clear_arrays(Wave&, const Instruction*);
 Handler load_array(bool uniform);
+/// An element of a table; `uniform`: to a uniform word.
+Handler load_table(bool uniform);
 /// `whole`: of all lanes, also those that do not run; the element is shared by all.
 Handler store_array(bool uniform, bool whole);
 

@@ -193,6 +193,8 @@ class Uniformity {
   bool intrinsic_varies(const ScalarOp& op) const {
     if (ir::is_wide(op.op)) return any_source_varies(op);
     switch (op.op) {
+      case Op::kLoadArray:
+        return f_.ir->arrays[op.instr->data[0]].table.empty() || any_source_varies(op);
       case Op::kWorkgroupId:
       case Op::kNumWorkgroups:
       case Op::kSubgroupId:

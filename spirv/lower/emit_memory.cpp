@@ -277,10 +277,15 @@ void Emitter::local_array(const ScalarOp& op) {
   MemoryOp row;
   row.array_base = array_base_[array];
   row.array_elements = f_.ir->arrays[array].elements;
+  const bool table = !f_.ir->arrays[array].table.empty();
   row.added = op.instr->data[1];
   const Place element = place(source(op, 0));
   const bool uniform = element.file == 'u';
-  if (op.op == Op::kLoadArray) {
+  if (op.op == Op::kLoadArray && table) {
+    const Place to = place(result(op, 0));
+    append(exec::load_table(to.file == 'u'), "load_table", op.instr, to,
+           to.file == 'u' ? element : in_register(source(op, 0)));
+  } else if (op.op == Op::kLoadArray) {
     append(exec::load_array(uniform), "load_array", op.instr, place(result(op, 0)), element);
   } else {
     const bool whole = op.instr->data[2] != 0;

@@ -19,6 +19,13 @@ Emitter::Emitter(const ScalarFunction& function, const Allocation& allocation, s
   for (const Probe& probe : f_.ir->probes)
     if (is_home(probe)) used[probe.number - 1] = true;
   for (std::size_t i = 0; i < used.size(); i++) {
+    const std::vector<std::uint32_t>& table = f_.ir->arrays[i].table;
+    if (used[i] && !table.empty()) {
+      array_base_.push_back(static_cast<std::uint32_t>(program->tables.size() * sizeof(std::uint32_t)));
+      program->tables.insert(program->tables.end(), table.begin(), table.end());
+      program->tables.resize((program->tables.size() + 15) / 16 * 16);
+      continue;
+    }
     array_base_.push_back(program->array_bytes);
     if (used[i]) program->array_bytes += f_.ir->arrays[i].elements * kRegisterStride;
   }

@@ -11,6 +11,7 @@
 #include "spirv/lower/emit.h"
 #include "spirv/lower/registers.h"
 #include "spirv/lower/scalar.h"
+#include "spirv/lower/tables.h"
 
 namespace vitrine::spirv {
 namespace {
@@ -28,6 +29,7 @@ base::Result<std::unique_ptr<Shader>> lower(ir::Function&& function, std::shared
   const exec::Interest interest = observer ? observer->interest() : exec::Interest{};
   std::string error;
   if (interest.order) lowering::mark_alike(function);
+  lowering::make_tables(function);
   lowering::ScalarFunction scalars = lowering::scalarize(function, error, interest.accesses);
   if (!error.empty()) return base::Error{error};
   lowering::remove_dead(scalars);

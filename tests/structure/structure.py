@@ -29,7 +29,7 @@ RASTER_PARTS = [
     ["plan"],
     ["draw_watches", "output", "pass_desc", "topology"],
     ["draw", "observe"],
-    ["arena", "fragment_rate", "lane_bits", "pixel_order", "pixel_rect", "sample_locations", "stage"],
+    ["arena", "fragment_rate", "lane_bits", "color_registers", "pixel_order", "pixel_rect", "sample_locations", "stage"],
 ]
 # What must not be included from where, besides: files whose path begins so, and the beginnings of paths they must not see.
 NEVER = [

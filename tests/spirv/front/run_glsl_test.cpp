@@ -199,6 +199,17 @@ TEST(RunGlsl, LocalArrays) {
   });
 }
 
+TEST(RunGlsl, TablesOfConstants) {
+  EXPECT_SAME(uint f(uint x) {
+    const uint few[3] = {7u, 11u, 13u};
+    const uint many[20] = {2u,  3u,  5u,  7u,  11u, 13u, 17u, 19u, 23u, 29u,
+                           31u, 37u, 41u, 43u, 47u, 53u, 59u, 61u, 67u, 71u};
+    uint s = few[x % 3u] * many[x % 20u];
+    for (uint i = 0u; i < x % 20u; i++) s = s * 5u + many[19u - i] + few[i % 3u];
+    return s;
+  });
+}
+
 TEST(RunGlsl, SignedArithmeticAndShifts) {
   EXPECT_SAME(uint f(uint x) {
     int a = int(x) - 128;
