@@ -14,7 +14,7 @@ class ColorRegisters {
                  const base::WaveRegister* alpha)
       : component_{red, green, blue, alpha} {}
   /// Four that lie side by side; null: none.
-  ColorRegisters(const base::WaveRegister* four)
+  ColorRegisters(const base::WaveRegister* four)  // NOLINT(google-explicit-constructor)
       : component_{four, four ? four + 1 : four, four ? four + 2 : four, four ? four + 3 : four} {}
 
   explicit operator bool() const { return component_[0] != nullptr; }
