@@ -57,6 +57,7 @@ std::uint64_t fitting(const TransformFeedback& feedback, const PipelinePlan& pla
 /// Writes vertices and moves the buffers' offsets on.
 void write_vertices(TransformFeedback& feedback, const PipelinePlan& plan, std::span<const Capture> captures,
                     const std::uint32_t* words, std::uint64_t vertices) {
+  if (vertices == 0) return;  // there may be no buffer
   const std::vector<CaptureRun> runs = runs_of(captures);
   if (const CaptureRun& run = runs[0]; is_whole_vertex(plan, captures, run)) {
     XfbBuffer& buffer = feedback.buffer[run.buffer];

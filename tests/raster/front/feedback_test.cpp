@@ -108,5 +108,11 @@ TEST(Feedback, PrimitivesWithoutRoomAreLeftOut) {
   EXPECT_EQ(captured.write(16, 19), expected({0, 1, 2, 3}, 4, 16, 19));
 }
 
+TEST(Feedback, WithoutABufferNothingIsWritten) {
+  Captured captured(VK_PRIMITIVE_TOPOLOGY_POINT_LIST, 4, {0, 1});
+  captured.shade(4);
+  EXPECT_EQ(captured.write(16, 0), std::vector<std::uint32_t>());
+}
+
 }  // namespace
 }  // namespace vitrine::raster
