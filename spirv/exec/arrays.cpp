@@ -28,20 +28,27 @@ const Instruction* load_array_uniform(Wave& wave, const Instruction* i) {
   return i + 1;
 }
 
+/// Stores load(element, first lane) for every vector of elements that the lanes ask for.
+template <class F>
+HWY_INLINE void load_elements(Wave& wave, const Instruction* i, const MemoryOp& row, F&& load) {
+  const hn::ScalableTag<std::uint32_t> d;
+  std::uint32_t* to = reg(wave, i->dst).lane;
+  const std::uint32_t* index = reg(wave, i->src[0]).lane;
+  const auto added = hn::Set(d, row.added), last = hn::Set(d, row.array_elements - 1);
+  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d))
+    hn::Store(load(hn::Min(hn::Add(hn::Load(d, index + lane), added), last), lane), d, to + lane);
+}
+
 const Instruction* load_array_lanes(Wave& wave, const Instruction* i) {
   const hn::ScalableTag<std::uint32_t> d;
   const hn::RebindToSigned<decltype(d)> di;
   const MemoryOp& row = memory_op(wave, i);
-  std::uint32_t* to = reg(wave, i->dst).lane;
-  const std::uint32_t* index = reg(wave, i->src[0]).lane;
   const auto* words = reinterpret_cast<const std::uint32_t*>(wave.arrays + row.array_base);
-  const auto added = hn::Set(d, row.added), last = hn::Set(d, row.array_elements - 1);
-  for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d)) {
-    const auto clamped = hn::Min(hn::Add(hn::Load(d, index + lane), added), last);
+  load_elements(wave, i, row, [&](auto element, std::size_t lane) HWY_ATTR {
     static_assert(base::kWaveWidth == 64);
-    const auto word = hn::Add(hn::ShiftLeft<6>(clamped), hn::Iota(d, static_cast<std::uint32_t>(lane)));
-    hn::Store(hn::GatherIndex(d, words, hn::BitCast(di, word)), d, to + lane);
-  }
+    const auto word = hn::Add(hn::ShiftLeft<6>(element), hn::Iota(d, static_cast<std::uint32_t>(lane)));
+    return hn::GatherIndex(d, words, hn::BitCast(di, word));
+  });
   return i + 1;
 }
 
@@ -86,19 +93,16 @@ const Instruction* load_table_lanes(Wave& wave, const Instruction* i) {
   const hn::ScalableTag<std::uint32_t> d;
   const hn::RebindToSigned<decltype(d)> di;
   const MemoryOp& row = memory_op(wave, i);
-  std::uint32_t* to = reg(wave, i->dst).lane;
-  const std::uint32_t* index = reg(wave, i->src[0]).lane;
   const std::uint32_t* table = table_of(wave, row);
-  const auto added = hn::Set(d, row.added), last = hn::Set(d, row.array_elements - 1);
-  const auto each = [&](auto&& element) HWY_ATTR {
-    for (std::size_t lane = 0; lane < base::kWaveWidth; lane += hn::Lanes(d))
-      hn::Store(element(hn::Min(hn::Add(hn::Load(d, index + lane), added), last)), d, to + lane);
-  };
   if (row.array_elements <= hn::Lanes(d)) {
     const auto all = hn::LoadU(d, table);
-    each([&](auto at) HWY_ATTR { return hn::TableLookupLanes(all, hn::IndicesFromVec(d, at)); });
+    load_elements(wave, i, row, [&](auto element, std::size_t) HWY_ATTR {
+      return hn::TableLookupLanes(all, hn::IndicesFromVec(d, element));
+    });
   } else {
-    each([&](auto at) HWY_ATTR { return hn::GatherIndex(d, table, hn::BitCast(di, at)); });
+    load_elements(wave, i, row, [&](auto element, std::size_t) HWY_ATTR {
+      return hn::GatherIndex(d, table, hn::BitCast(di, element));
+    });
   }
   return i + 1;
 }
