@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 
@@ -17,7 +18,7 @@ namespace vitrine::spirv::exec {
 /// on x86): of a NaN, quiet or signaling, and a number it is the number; of two NaN the operand; of equal ones the old.
 template <class Word, class Float>
 inline Word extremum(ir::AtomicOp op, Word old, Word operand, Float a, Float b) {
-  return a != a || (op == ir::AtomicOp::kFMin ? b < a : b > a) ? operand : old;
+  return std::isnan(a) || (op == ir::AtomicOp::kFMin ? b < a : b > a) ? operand : old;
 }
 
 /// On binary32 or binary64.

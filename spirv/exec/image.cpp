@@ -7,7 +7,7 @@
 #include "spirv/exec/buffers.h"
 #include "spirv/exec/handlers.h"
 #include "spirv/exec/same_words.h"
-#include "texel/load_store/prepared_fetch.h"
+#include "texel/load_store/prepared_access.h"
 #include "texel/sampler/prepared.h"
 
 namespace vitrine::spirv::exec {
@@ -176,7 +176,6 @@ struct KeptFetch {
   texel::PreparedFetch prepared;
   texel::FetchRequest request;  ///< but not which lanes
   texel::SampleResult result{};
-  std::uint32_t misses = 0;  ///< waves one after the other that `prepared` did not read
 };
 
 texel::FetchRequest fetch_request(const Call& call, base::LaneMask lanes) {
@@ -203,7 +202,6 @@ KeptFetch& kept_fetch(const Call& call, const Descriptor& image) {
   entry.op = &call.op;
   entry.image = &image;
   entry.registers = call.wave.registers;
-  entry.misses = 0;
   return entry;
 }
 
@@ -216,31 +214,40 @@ bool is_null(const Call& call, const Descriptor& image) {
 void read(Call& call, const Descriptor& image, base::LaneMask lanes) {
   if (is_null(call, image)) return zero_registers(call, lanes);
   KeptFetch& kept = kept_fetch(call, image);
+  if (kept.prepared.is_ready()) return texel::fetch(kept.prepared, lanes);
   if (is_buffer(call)) return texel::fetch_buffer(*image.texels, lanes, *kept.request.coord[0], kept.result);
   kept.request.active = lanes;
   texel::fetch(*viewed(call, image), kept.request, kept.result);
 }
 
-/// A read by a whole wave as it was the last time, from the same descriptor; false: it is another one.
-bool read_again(const Wave& wave, std::uint32_t index) {
-  constexpr std::uint32_t kMisses = 8;
-  const ImageOp& op = wave.program->image_ops[index];
-  const bool reads = op.info.access == ImageAccess::kRead || op.info.access == ImageAccess::kFetch;
-  if (!reads || wave.active != base::kAllLanes || op.image_index.file != IndexOperand::File::kConstant) return false;
-  auto& entry = kept_of<KeptFetch>(index);
-  if (!is_kept(wave, op, entry) || entry.registers != wave.registers) return false;
-  if (entry.prepared.kernel == nullptr || entry.misses == kMisses) return false;
-  if (entry.prepared.kernel(entry.prepared)) {
-    entry.misses = 0;
-    return true;
-  }
-  ++entry.misses;
-  return false;
+/// Where an instruction that writes finds its operands, kept likewise.
+struct KeptStore {
+  std::uint64_t serial = 0;
+  const ImageOp* op = nullptr;
+  const Descriptor* image = nullptr;
+  const std::byte* registers = nullptr;
+  texel::PreparedStore prepared;
+};
+
+KeptStore& kept_store(const Call& call, const Descriptor& image) {
+  auto& entry = kept_of<KeptStore>(call.index);
+  if (is_kept(call.wave, call.op, entry) && entry.image == &image && entry.registers == call.wave.registers)
+    return entry;
+  const texel::StoredValue value = call.operands<4>(ImageOperand::kValue);
+  entry.prepared = is_buffer(call) ? texel::prepare_store(*image.texels, *call.operand(ImageOperand::kCoord), value)
+                                   : texel::prepare_store(*image.image, fetch_request(call, 0), value);
+  entry.serial = call.wave.resources->serial;
+  entry.op = &call.op;
+  entry.image = &image;
+  entry.registers = call.wave.registers;
+  return entry;
 }
 
 void write(Call& call, const Descriptor& image, base::LaneMask lanes) {
   lanes &= call.wave.live;
   if (is_null(call, image) || lanes == 0) return;
+  const KeptStore& kept = kept_store(call, image);
+  if (kept.prepared.is_ready()) return texel::store(kept.prepared, lanes);
   const texel::StoredValue value = call.operands<4>(ImageOperand::kValue);
   if (is_buffer(call)) {
     texel::store_buffer(*image.texels, lanes, *call.operand(ImageOperand::kCoord), value);
@@ -455,11 +462,36 @@ base::LaneMask lanes_of(const Wave& wave, const ImageOp& op) {
   }
 }
 
+/// What is kept of an instruction on one descriptor, if this one accesses the same registers again and is ready.
+template <class Kept>
+const Kept* kept_again(const Wave& wave, std::uint32_t index) {
+  const auto& entry = kept_of<Kept>(index);
+  const bool same = is_kept(wave, wave.program->image_ops[index], entry) && entry.registers == wave.registers;
+  return same && entry.prepared.is_ready() ? &entry : nullptr;
+}
+
+/// A read or write as it was the last time, at the same descriptor; false: it is another one.
+bool access_again(const Wave& wave, std::uint32_t index) {
+  const ImageOp& op = wave.program->image_ops[index];
+  if (op.image_index.file != IndexOperand::File::kConstant) return false;
+  if (op.info.access == ImageAccess::kRead || op.info.access == ImageAccess::kFetch) {
+    const auto* const kept = kept_again<KeptFetch>(wave, index);
+    if (kept != nullptr) texel::fetch(kept->prepared, lanes_of(wave, op));
+    return kept != nullptr;
+  }
+  if (op.info.access == ImageAccess::kWrite) {
+    const auto* const kept = kept_again<KeptStore>(wave, index);
+    if (kept != nullptr) texel::store(kept->prepared, wave.active & wave.live);
+    return kept != nullptr;
+  }
+  return false;
+}
+
 }  // namespace
 
 const Instruction* image(Wave& wave, const Instruction* i) {
   const std::uint32_t index = i->extra[0];
-  if (!read_again(wave, index)) run_by_descriptors(wave, index);
+  if (!access_again(wave, index)) run_by_descriptors(wave, index);
   return i + 1;
 }
 

@@ -6,6 +6,12 @@
 namespace vitrine::spirv::lowering {
 namespace {
 
+/// Whether an operand is the level 0 of a fetch, which is that without the operand.
+bool is_first_level(ir::ImageAccess access, ir::ImageOperand operand, const Scalar& value) {
+  return access == ir::ImageAccess::kFetch && operand == ir::ImageOperand::kLod && value.level == Level::kConstant &&
+         value.bits == 0;
+}
+
 using ir::Op;
 
 /// A slot that lies in no set: the null descriptor.
@@ -309,7 +315,10 @@ void Emitter::image(const ScalarOp& op) {
       row.sampler_index = index_operand(source(op, next++), row.info.sampler_slot, row.info.sampler_count);
     } else {
       const std::uint32_t count = image_operand_components(*op.instr, operand);
-      for (std::uint32_t c = 0; c < count; ++c) row.operand[i][c] = in_register(source(op, next++)).offset;
+      for (std::uint32_t c = 0; c < count; ++c, ++next) {
+        if (!is_first_level(row.info.access, operand, f_.scalars[source(op, next)]))
+          row.operand[i][c] = in_register(source(op, next)).offset;
+      }
     }
   }
   for (std::uint32_t c = 0; c < op.dst.count && c < 4; ++c) row.result[c] = place(result(op, c)).offset;

@@ -5,6 +5,7 @@
 #include "texel/block/block.h"
 #include "texel/capabilities.h"
 #include "texel/codec.h"
+#include "texel/load_store/prepared_access.h"
 #include "texel/load_store/shape.h"
 #include "texel/load_store/wave_access.h"
 #include "texel/sampler.h"
@@ -73,7 +74,13 @@ Texel gather_texel(const StoredValue& value, std::size_t lane) {
 }  // namespace
 
 void fetch(const ImageView& view, const FetchRequest& request, const SampleResult& result) {
-  if (fetch_wave(view, request, result)) return;
+  if (const PreparedFetch prepared = prepare_fetch(view, request, result); prepared.is_ready())
+    return fetch(prepared, request.active);
+  if (const PreparedFetch prepared = prepare_conversion(view, result); prepared.convert != nullptr) {
+    base::WaveRegister words[4];
+    load_levels(view, request, words);
+    return prepared.convert(prepared, request.active, words);
+  }
   if (view.planes != nullptr) return fetch(*view.planes, request, result);
   const FormatDesc& format = *view.format;
   const Shape shape = shape_of(view.type);
@@ -96,7 +103,8 @@ void fetch(const ImageView& view, const FetchRequest& request, const SampleResul
 
 void fetch_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
                   const SampleResult& result) {
-  if (fetch_buffer_wave(view, active, index, result)) return;
+  if (const PreparedFetch prepared = prepare_fetch(view, index, result); prepared.is_ready())
+    return fetch(prepared, active);
   const FormatDesc& format = *view.format;
   const TexelDecoder decode = texel_decoder(format);
   base::for_each_lane(active, [&](std::size_t lane) {
@@ -108,7 +116,9 @@ void fetch_buffer(const BufferTexelView& view, base::LaneMask active, const base
 }
 
 void store(const ImageView& view, const FetchRequest& request, const StoredValue& value) {
-  if (!can_store(*view.format) || store_wave(view, request, value)) return;
+  if (!can_store(*view.format)) return;
+  if (const PreparedStore prepared = prepare_store(view, request, value); prepared.is_ready())
+    return store(prepared, request.active);
   const Shape shape = shape_of(view.type);
   const TexelEncoder encode = texel_encoder(*view.format, Encoding::kStore);
   base::for_each_lane(request.active, [&](std::size_t lane) {
@@ -119,7 +129,9 @@ void store(const ImageView& view, const FetchRequest& request, const StoredValue
 
 void store_buffer(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
                   const StoredValue& value) {
-  if (!can_store(*view.format) || store_buffer_wave(view, active, index, value)) return;
+  if (!can_store(*view.format)) return;
+  if (const PreparedStore prepared = prepare_store(view, index, value); prepared.is_ready())
+    return store(prepared, active);
   const TexelEncoder encode = texel_encoder(*view.format, Encoding::kStore);
   base::for_each_lane(active, [&](std::size_t lane) {
     const std::uint64_t i = index.lane[lane];

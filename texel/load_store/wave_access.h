@@ -1,21 +1,20 @@
-// The vector paths of reads and writes by integer coordinates: the twins of fetch, fetch_buffer, store and
-// store_buffer. False if there is none for the view, and then nothing is written.
+// The vector paths of reads and writes by integer coordinates: the parts that they are made of. Null where the formats
+// are such that there is none.
 #pragma once
 
-#include "texel/sampler.h"
+#include "texel/load_store/prepared.h"
 
 namespace vitrine::texel {
 
-/// Plain single texels whose places fit 31 bits.
-bool offsets_fit(const ImageView& view);
-bool offsets_fit(const BufferTexelView& view);
+PreparedFetch::Convert field_conversion(const FormatDesc& format);
+PreparedStore::Encode field_encoder(const FormatDesc& format);
 
-bool fetch_wave(const ImageView& view, const FetchRequest& request, const SampleResult& result);
-bool fetch_buffer_wave(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
-                       const SampleResult& result);
+/// Of plain formats.
+PreparedFetch::Load texel_load(const FormatDesc& format);
+PreparedStore::Store texel_store(const FormatDesc& format);
 
-bool store_wave(const ImageView& view, const FetchRequest& request, const StoredValue& value);
-bool store_buffer_wave(const BufferTexelView& view, base::LaneMask active, const base::WaveRegister& index,
-                       const StoredValue& value);
+/// The words of the texels of any request; those of what lies outside, and of lanes that are not active, are 0. The
+/// view is that of a plain format whose places fit 31 bits.
+void load_levels(const ImageView& view, const FetchRequest& request, base::WaveRegister words[4]);
 
 }  // namespace vitrine::texel

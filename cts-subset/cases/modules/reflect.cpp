@@ -47,6 +47,7 @@ void read_mode(Reflection& r, std::span<const uint32_t> inst) {
 Reflection::Reflection(std::span<const uint32_t> words) {
   bool in_function = false;
   std::map<uint32_t, std::vector<uint32_t>> composites;
+  std::vector<uint32_t> size_ids;
   for_each_instruction(words, [&](Op op, std::span<const uint32_t> inst, size_t) {
     if (op == Op::OpFunction) in_function = true;
     if (in_function) {
@@ -67,6 +68,8 @@ Reflection::Reflection(std::span<const uint32_t> words) {
       for (size_t i = behind_string(inst, 3); i < inst.size(); i++) interface.insert(inst[i]);
     } else if (op == Op::OpExecutionMode)
       read_mode(*this, inst);
+    else if (op == Op::OpExecutionModeId && static_cast<spv::ExecutionMode>(inst[2]) == spv::ExecutionMode::LocalSizeId)
+      size_ids.assign(inst.begin() + 3, inst.end());
     else if (op == Op::OpDecorate || op == Op::OpMemberDecorate)
       read_decoration(*this, inst, op == Op::OpMemberDecorate);
     else if (op == Op::OpConstant || op == Op::OpSpecConstant)
@@ -76,6 +79,7 @@ Reflection::Reflection(std::span<const uint32_t> words) {
     else if (op == Op::OpVariable)
       variables.push_back({inst[2], types.at(inst[1]).operands.at(1), static_cast<spv::StorageClass>(inst[3])});
   });
+  for (size_t i = 0; i < size_ids.size(); i++) local_size[i] = constants.at(size_ids[i]);
   for (const auto& [id, parts] : composites)
     if (decoration(id, spv::Decoration::BuiltIn) == static_cast<uint32_t>(spv::BuiltIn::WorkgroupSize))
       for (size_t i = 0; i < 3; i++) local_size[i] = constants.at(parts.at(i));

@@ -73,7 +73,7 @@ VkFormat sampled_format(const Reflection& r, const Type& image) {
   return is_depth(r, image) ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
 }
 
-Image make_image(Run& run, const Reflection& r, const Type& image) {
+Image make_image(Run& run, const Reflection& r, const Type& image, uint32_t scale) {
   const auto dim = static_cast<spv::Dim>(image.operands[1]);
   const bool arrayed = image.operands[3] != 0, multisampled = image.operands[4] != 0;
   const bool storage = image.operands[5] == 2 && dim != spv::Dim::SubpassData;
@@ -94,6 +94,10 @@ Image make_image(Run& run, const Reflection& r, const Type& image) {
   } else if (arrayed) {
     spec.view = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
     spec.layers = 4;
+  }
+  if (storage && dim == spv::Dim::Dim2D && !multisampled) {
+    spec.extent.width *= scale;
+    spec.extent.height *= scale;
   }
   if (multisampled) {
     if (spec.format == VK_FORMAT_D32_SFLOAT) spec.format = VK_FORMAT_R8G8B8A8_UNORM;
@@ -174,7 +178,7 @@ void add_descriptor(Run& run, const Reflection& r, const Reflection::Variable& v
     if (storage) bound.buffers.emplace_back(name, buffer);
     return;
   }
-  const Image made = make_image(run, r, image);
+  const Image made = make_image(run, r, image, bound.image_scale);
   const VkSampler sampler = t.op == Op::OpTypeSampledImage ? make_sampler(run, r, is_depth(r, image)) : VK_NULL_HANDLE;
   binding.images.push_back({sampler, made.view, VK_IMAGE_LAYOUT_GENERAL});
   binding.type = t.op == Op::OpTypeSampledImage ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
@@ -210,8 +214,9 @@ void Bound::out(Run& run) const {
   for (const auto& [name, image] : images) run.out(name, image);
 }
 
-Bound bind_everything(Run& run, const Reflection& r) {
+Bound bind_everything(Run& run, const Reflection& r, uint32_t image_scale) {
   Bound bound;
+  bound.image_scale = image_scale;
   std::map<uint32_t, std::vector<Binding>> sets;
   std::set<std::pair<uint32_t, uint32_t>> seen;
   for (const Reflection::Variable& v : r.variables) {

@@ -17,11 +17,12 @@ struct Bound {
   std::vector<std::pair<std::string, Buffer>> buffers;
   std::vector<std::pair<std::string, Image>> images;
   std::vector<unsigned char> push;
+  uint32_t image_scale = 1;  ///< storage images are 64 times as wide and high
 
   void bind(VkCommandBuffer cmd, VkPipelineBindPoint point) const;
   void out(Run& run) const;
 };
 
-Bound bind_everything(Run& run, const Reflection& r);
+Bound bind_everything(Run& run, const Reflection& r, uint32_t image_scale = 1);
 
 }  // namespace vitrine::cts

@@ -20,7 +20,7 @@ namespace {
 using Type = Reflection::Type;
 
 void run_compute(Run& run, const Reflection& r, const std::vector<uint32_t>& words, const ModuleRun& how) {
-  const Bound bound = bind_everything(run, r);
+  const Bound bound = bind_everything(run, r, how.scale);  // texels for all
   const VkPipeline pipeline = run.compute(bound.layout, run.module(words));
   const bool flat = r.local_size[1] <= 1;
   const auto groups = [&](int i) { return how.scale * std::max(1u, std::min(8u, 64u / r.local_size[i])); };

@@ -40,6 +40,11 @@ HWY_INLINE VI load_ints(const base::WaveRegister* values, std::size_t first) {
   return hn::BitCast(DI(), hn::Load(DU(), values->lane + first));
 }
 
+/// 0 <= i < size.
+HWY_INLINE hn::Mask<DI> within(VI i, VI size) {
+  return hn::RebindMask(DI(), hn::Lt(hn::BitCast(DU(), i), hn::BitCast(DU(), size)));
+}
+
 HWY_INLINE VF square_of(VF v) { return hn::Mul(v, v); }
 HWY_INLINE VF flip_sign(VF v, VU sign) { return as_float(hn::Xor(as_unsigned(v), sign)); }
 HWY_INLINE VF negated(VF v) { return flip_sign(v, hn::Set(DU(), 0x80000000u)); }

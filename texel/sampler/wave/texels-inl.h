@@ -47,9 +47,7 @@ HWY_INLINE void place_texels(const FormatDesc& format, const LevelLanes& level, 
             out.offset.lane + first);
 }
 
-struct alignas(64) WordLanes {
-  std::uint32_t lane[base::kWaveWidth];
-};
+using WordLanes = base::WaveRegister;
 
 /// Texels of the lanes of a vector, one by one, which is faster than gathering; and nothing beside them: that may be
 /// another tile's, which is being written, or lie behind a buffer.
@@ -74,9 +72,9 @@ HWY_INLINE void load_lanes_of_texels(const std::byte* base, const IntLanes& offs
   }
 }
 
-/// Calls body<bytes of a texel>() of a plain format.
+/// What body<bytes of a texel>() of a plain format returns.
 template <class Body>
-HWY_INLINE void by_texel_bytes(const FormatDesc& format, Body&& body) {
+HWY_INLINE auto by_texel_bytes(const FormatDesc& format, Body&& body) {
   switch (format.block_bytes) {
     case 1:
       return body.template operator()<1>();

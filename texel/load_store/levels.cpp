@@ -1,30 +1,27 @@
-// Where the texels that integer coordinates name lie in the memory of a view, for a wave (lavapipe-texture-blend.md
-// A10), and their words in lanes.
-
+// Loads the words of texels that integer coordinates name (lavapipe-texture-blend.md A10) in levels that the lanes
+// choose, or moved by offsets.
 #include <algorithm>
 #include <bit>
 #include <cstring>
 
 #include "texel/load_store/shape.h"
-#include "texel/sampler/wave/texels-inl.h"
+#include "texel/load_store/wave_access.h"
 
-#if defined(VITRINE_TEXEL_WAVE_PLACES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef VITRINE_TEXEL_WAVE_PLACES_INL_H_
-#undef VITRINE_TEXEL_WAVE_PLACES_INL_H_
-#else
-#define VITRINE_TEXEL_WAVE_PLACES_INL_H_
-#endif
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "texel/load_store/levels.cpp"
+#include "base/simd.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "texel/sampler/wave/texels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrine::texel::HWY_NAMESPACE {
+namespace {
 
 HWY_INLINE VI load_or_zero(const base::WaveRegister* values, std::size_t first) {
   return values != nullptr ? load_ints(values, first) : splat(0);
-}
-
-/// 0 <= i < size.
-HWY_INLINE hn::Mask<DI> within(VI i, VI size) {
-  return hn::RebindMask(DI(), hn::Lt(hn::BitCast(DU(), i), hn::BitCast(DU(), size)));
 }
 
 /// Where the texels of a wave lie in memory.
@@ -33,14 +30,6 @@ struct Places {
   base::LaneMask wanted = 0;  ///< the lane is active and inside the level
 
   HWY_INLINE hn::Mask<DI> valid(std::size_t first) const { return lanes_mask_from_bits(DI(), wanted >> first); }
-
-  /// Whether all lanes of a vector want texels and these follow one another.
-  HWY_INLINE bool adjacent(std::size_t first, std::int32_t texel_bytes) const {
-    const base::LaneMask all = base::first_lanes(hn::Lanes(DI()));
-    if ((wanted >> first & all) != all) return false;
-    const VI expected = hn::Add(splat(offset.lane[first]), hn::Mul(hn::Iota(DI(), 0), splat(texel_bytes)));
-    return hn::AllTrue(DI(), hn::Eq(hn::Load(DI(), offset.lane + first), expected));
-  }
 };
 
 /// One level of a view, or that of each lane.
@@ -99,7 +88,7 @@ HWY_INLINE void for_each_level(const ImageView& view, const base::WaveRegister* 
 }
 
 /// Of views whose bytes' offsets fit 31 bits.
-inline HWY_NOINLINE void place_texels(const ImageView& view, const FetchRequest& request, Places& out) {
+HWY_NOINLINE void place_texels(const ImageView& view, const FetchRequest& request, Places& out) {
   const Shape shape = shape_of(view.type);
   const auto count = [](std::uint64_t value) { return splat(static_cast<std::int32_t>(value)); };
   const VI texel_bytes = count(view.format->block_bytes), layer_stride = count(view.layer_stride);
@@ -126,20 +115,57 @@ inline HWY_NOINLINE void place_texels(const ImageView& view, const FetchRequest&
   });
 }
 
-/// Of texels of a buffer.
-inline HWY_NOINLINE void place_texels(const BufferTexelView& view, base::LaneMask active,
-                                      const base::WaveRegister& index, Places& out) {
-  const VI count = splat(static_cast<std::int32_t>(view.count));
-  const VI texel_bytes = splat(static_cast<std::int32_t>(view.format->block_bytes));
+/// Lanes that want no texel get the place of one that does: wherever else they read, another tile may be writing.
+HWY_INLINE void share_place(Places& places) {
+  if (places.wanted == base::kAllLanes) return;
+  const VI shared = splat(places.offset.lane[std::countr_zero(places.wanted)]);
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI())) {
-    const VI i = load_ints(&index, first);
-    const auto valid = hn::And(hn::RebindMask(DI(), lanes_mask_from_bits(DU(), active >> first)), within(i, count));
-    hn::Store(hn::Mul(i, texel_bytes), DI(), out.offset.lane + first);
-    out.wanted |= static_cast<base::LaneMask>(lanes_mask_bits(DI(), valid)) << first;
+    const VI offset = hn::Load(DI(), places.offset.lane + first);
+    hn::Store(hn::IfThenElse(places.valid(first), offset, shared), DI(), places.offset.lane + first);
   }
 }
 
+template <std::size_t kBytes>
+HWY_NOINLINE void load_places(const std::byte* base, const Places& places, WordLanes words[4]) {
+  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI())) {
+    load_lanes_of_texels<kBytes>(base, places.offset, first, words);
+    if (places.wanted == base::kAllLanes) continue;
+    for (std::size_t i = 0; i < (kBytes + 3) / 4; ++i) {
+      const VU word = hn::Load(DU(), words[i].lane + first);
+      hn::Store(hn::IfThenElseZero(hn::RebindMask(DU(), places.valid(first)), word), DU(), words[i].lane + first);
+    }
+  }
+}
+
+void load_of_levels(const ImageView& view, const FetchRequest& request, WordLanes words[4]) {
+  Places places;
+  place_texels(view, request, places);
+  if (places.wanted == 0) {
+    std::memset(words, 0, 4 * sizeof(WordLanes));
+    return;
+  }
+  share_place(places);
+  by_texel_bytes(*view.format, [&]<std::size_t kBytes>() { load_places<kBytes>(view.base, places, words); });
+}
+
+}  // namespace
 }  // namespace vitrine::texel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace vitrine::texel {
+namespace {
+
+HWY_EXPORT(load_of_levels);
+
+}  // namespace
+
+void load_levels(const ImageView& view, const FetchRequest& request, base::WaveRegister words[4]) {
+  base::select_simd_target();
+  HWY_DYNAMIC_DISPATCH(load_of_levels)(view, request, words);
+}
+
+}  // namespace vitrine::texel
 
 #endif
