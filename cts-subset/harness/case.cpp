@@ -5,8 +5,7 @@ namespace vitrine::cts {
 namespace {
 
 /// The compiler names a file from the build folder on, or from "/" on.
-std::string file_of(const std::source_location& where) {
-  const std::string path = where.file_name();
+std::string file_of(const std::string& path) {
   const size_t start = path.rfind("cts-subset/");
   return start == std::string::npos ? path : path.substr(start);
 }
@@ -23,18 +22,18 @@ std::vector<Generator>& generators() {
   return list;
 }
 
-AddCase::AddCase(const char* group, std::string name, std::function<void(Run&)> body, std::source_location where) {
-  cases().push_back({group, std::move(name), std::move(body), {}, {}, 0, file_of(where)});
+AddCase::AddCase(const char* group, std::string name, std::function<void(Run&)> body, const char* file) {
+  cases().push_back({group, std::move(name), std::move(body), {}, {}, 0, file_of(file)});
 }
 
 AddCase::AddCase(const char* group, std::string name, const char* deviation, DeviationCheck check,
-                 std::function<void(Run&)> body, std::source_location where) {
-  cases().push_back({group, std::move(name), std::move(body), deviation, std::move(check), 0, file_of(where)});
+                 std::function<void(Run&)> body, const char* file) {
+  cases().push_back({group, std::move(name), std::move(body), deviation, std::move(check), 0, file_of(file)});
 }
 
 AddGenerator::AddGenerator(const char* group, const char* name, uint32_t count, std::function<void(Run&)> body,
-                           std::source_location where) {
-  generators().push_back({group, name, count, std::move(body), file_of(where)});
+                           const char* file) {
+  generators().push_back({group, name, count, std::move(body), file_of(file)});
 }
 
 }  // namespace vitrine::cts

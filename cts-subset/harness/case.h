@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <source_location>
 #include <string>
 #include <vector>
 
@@ -37,17 +36,16 @@ struct Generator {
 std::vector<Case>& cases();
 std::vector<Generator>& generators();
 
-/// Static registration objects; a case file defines one per case.
+/// Static registration objects; a case file defines one per case. (Clang 14, Debian 12's, has no std::source_location.)
 struct AddCase {
-  AddCase(const char* group, std::string name, std::function<void(Run&)> body,
-          std::source_location where = std::source_location::current());
+  AddCase(const char* group, std::string name, std::function<void(Run&)> body, const char* file = __builtin_FILE());
   /// A listed deviation: the outputs must differ, exactly as `check` says.
   AddCase(const char* group, std::string name, const char* deviation, DeviationCheck check,
-          std::function<void(Run&)> body, std::source_location where = std::source_location::current());
+          std::function<void(Run&)> body, const char* file = __builtin_FILE());
 };
 struct AddGenerator {
   AddGenerator(const char* group, const char* name, uint32_t count, std::function<void(Run&)> body,
-               std::source_location where = std::source_location::current());
+               const char* file = __builtin_FILE());
 };
 
 }  // namespace vitrine::cts

@@ -52,7 +52,7 @@ std::vector<spirv::SetLayoutInfo> layout_of(const Words& words) {
     const std::uint32_t set = sets.contains(id) ? sets[id] : 0;
     if (set >= kSets) continue;
     auto& rows = layout[set].bindings;
-    const auto same = [&](const spirv::BindingInfo& row) { return row.binding == binding; };
+    const auto same = [number = binding](const spirv::BindingInfo& row) { return row.binding == number; };
     if (std::any_of(rows.begin(), rows.end(), same)) continue;
     const auto slot = kElements * static_cast<std::uint32_t>(rows.size());
     rows.push_back({binding, VK_DESCRIPTOR_TYPE_MUTABLE_EXT, set, slot, kElements, nullptr});

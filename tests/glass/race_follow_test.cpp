@@ -74,7 +74,7 @@ struct Both {
       stored[lane] = step.value;
     }
     const bool stores = told.sites.all[step.site].action == Access::kStore;
-    Span span{{step.site, step.wave * 64}, step.lanes, {offsets}, 0, kBytes};
+    Span span{{step.site, {step.wave * 64}}, step.lanes, {.words = offsets}, 0, kBytes};
     if (step.kind == Step::Kind::kOneWord) span.offsets = {nullptr, step.offset, 0};
     if (stores) span.values[0] = stored;
     for (Group& group : groups) {

@@ -349,8 +349,8 @@ TEST_F(DrmModifier, DisjointPlanesAreBoundByTheirMemoryPlanes) {
   const VkDeviceMemory memory = make_memory();
   const VkBuffer seen = make_buffer(memory);
   for (const auto& [aspect, value] : {std::pair{VK_IMAGE_ASPECT_PLANE_0_BIT, 1}, {VK_IMAGE_ASPECT_PLANE_1_BIT, 2}}) {
-    run([&](VkCommandBuffer commands) {
-      whole_image(commands, image, seen, static_cast<VkImageAspectFlags>(aspect), {4, 2});
+    run([&, plane = aspect](VkCommandBuffer commands) {
+      whole_image(commands, image, seen, static_cast<VkImageAspectFlags>(plane), {4, 2});
     });
     EXPECT_EQ(map(memory)[0], value);
   }

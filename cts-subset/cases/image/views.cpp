@@ -11,8 +11,6 @@
 namespace vitrine::cts {
 namespace {
 
-constexpr VkImageLayout kGeneral = VK_IMAGE_LAYOUT_GENERAL;
-
 /// Triangles in random colours, blended where `blends`.
 void draw_triangles(Run& run, const Target& target, bool blends, const std::string& geometry = "") {
   Random& random = run.random;

@@ -163,10 +163,10 @@ const bool kMipmaps = [] {
 /// to level 1, where a level of detail of 0.5 is rounded to 0 (lavapipe-texture-blend.md A4).
 const bool kLargeBounds = [] {
   for (const auto& [name, bound] : {std::pair("13_5", 13.5f), {"14", 14.0f}, {"14_5", 14.5f}, {"15", 15.0f}}) {
-    AddCase("texture", std::string("mipmap.max_lod_") + name, [bound](Run& run) {
+    AddCase("texture", std::string("mipmap.max_lod_") + name, [most = bound](Run& run) {
       VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
       info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
-      info.maxLod = bound;
+      info.maxLod = most;
       const VkSampler sampler = run.sampler(info);
       look_up(run, random_image(run, VK_FORMAT_R32G32B32A32_SFLOAT, {64, 64, 1}, 7), sampler,
               "textureGrad(t, p, vec2(0.015625), vec2(0.0))", "2D");

@@ -260,7 +260,11 @@ class Maker {
     return [=, slot = counter.slot, more = more.value](Machine& m) {
       reset(m);
       m.memory[slot] = 0;
-      const auto holds = [&] { return come(m), (m.memory[slot] < most) & (more(m) != 0); };
+      const auto holds = [&] {
+        come(m);
+        const bool goes_on = more(m) != 0;
+        return m.memory[slot] < most && goes_on;
+      };
       if (tests_first && !holds()) return Flow::kNext;
       do {
         count(m);
