@@ -6,6 +6,10 @@
 #include <cmath>
 #include <cstdint>
 
+#if defined(__clang__) && defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 namespace vitrine::base {
 
 inline std::uint32_t bits_of(float value) { return std::bit_cast<std::uint32_t>(value); }
@@ -34,9 +38,15 @@ inline std::int32_t round_half_away(float value) {
   return truncate_to_int(value >= 0.0f ? value + 0.5f : value - 0.5f);
 }
 
-/// MINPS / MAXPS: the second operand when the operands are equal or unordered.
+/// MINPS / MAXPS: the second operand when the operands are equal or unordered. GCC makes one instruction of the choice,
+/// clang at times a comparison and a move, which keeps a denormal that the instruction flushes.
+#if defined(__clang__) && defined(__SSE__)
+inline float min_second(float a, float b) { return _mm_cvtss_f32(_mm_min_ss(_mm_set_ss(a), _mm_set_ss(b))); }
+inline float max_second(float a, float b) { return _mm_cvtss_f32(_mm_max_ss(_mm_set_ss(a), _mm_set_ss(b))); }
+#else
 inline float min_second(float a, float b) { return a < b ? a : b; }
 inline float max_second(float a, float b) { return a > b ? a : b; }
+#endif
 
 /// fma(a, b, c) with one rounding, also at compile time and where the CPU has no such instruction: the product is exact
 /// in binary64, and its sum with c is rounded to odd there, so that the rounding to binary32 is the only visible one.
