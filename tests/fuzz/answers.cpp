@@ -88,7 +88,7 @@ std::string refusal(const Words& words) {
 }
 
 /// Messages that differ in numbers alone are one.
-std::string without_numbers(std::string message) {
+std::string without_numbers(const std::string& message) {
   std::string result;
   for (const char c : message) {
     const bool digit = c >= '0' && c <= '9';
