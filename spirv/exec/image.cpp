@@ -167,12 +167,26 @@ void sample(Call& call, const Descriptor& image, const texel::Sampler* sampler, 
   texel::sample(kept.prepared, kept.request, kept.result);
 }
 
-/// Where an instruction that reads without a sampler finds its operands and puts its results, kept likewise.
-struct KeptFetch {
+/// What an access without a sampler that is kept likewise is one of.
+struct KeptAccess {
   std::uint64_t serial = 0;
   const ImageOp* op = nullptr;
   const Descriptor* image = nullptr;
   const std::byte* registers = nullptr;
+
+  bool is_of(const Call& call, const Descriptor& accessed) const {
+    return is_kept(call.wave, call.op, *this) && image == &accessed && registers == call.wave.registers;
+  }
+  void set(const Call& call, const Descriptor& accessed) {
+    serial = call.wave.resources->serial;
+    op = &call.op;
+    image = &accessed;
+    registers = call.wave.registers;
+  }
+};
+
+/// Where an instruction that reads finds its operands and puts its results.
+struct KeptFetch : KeptAccess {
   texel::PreparedFetch prepared;
   texel::FetchRequest request;  ///< but not which lanes
   texel::SampleResult result{};
@@ -192,16 +206,12 @@ bool is_buffer(const Call& call) { return call.op.info.dim == ir::ImageDim::kBuf
 
 KeptFetch& kept_fetch(const Call& call, const Descriptor& image) {
   auto& entry = kept_of<KeptFetch>(call.index);
-  const bool same = is_kept(call.wave, call.op, entry) && entry.image == &image;
-  if (same && entry.registers == call.wave.registers) return entry;
+  if (entry.is_of(call, image)) return entry;
   entry.request = fetch_request(call, 0);
   entry.result = sample_result(call);
   entry.prepared = is_buffer(call) ? texel::prepare_fetch(*image.texels, *entry.request.coord[0], entry.result)
                                    : texel::prepare_fetch(*viewed(call, image), entry.request, entry.result);
-  entry.serial = call.wave.resources->serial;
-  entry.op = &call.op;
-  entry.image = &image;
-  entry.registers = call.wave.registers;
+  entry.set(call, image);
   return entry;
 }
 
@@ -220,26 +230,18 @@ void read(Call& call, const Descriptor& image, base::LaneMask lanes) {
   texel::fetch(*viewed(call, image), kept.request, kept.result);
 }
 
-/// Where an instruction that writes finds its operands, kept likewise.
-struct KeptStore {
-  std::uint64_t serial = 0;
-  const ImageOp* op = nullptr;
-  const Descriptor* image = nullptr;
-  const std::byte* registers = nullptr;
+/// Where an instruction that writes finds its operands.
+struct KeptStore : KeptAccess {
   texel::PreparedStore prepared;
 };
 
 KeptStore& kept_store(const Call& call, const Descriptor& image) {
   auto& entry = kept_of<KeptStore>(call.index);
-  if (is_kept(call.wave, call.op, entry) && entry.image == &image && entry.registers == call.wave.registers)
-    return entry;
+  if (entry.is_of(call, image)) return entry;
   const texel::StoredValue value = call.operands<4>(ImageOperand::kValue);
   entry.prepared = is_buffer(call) ? texel::prepare_store(*image.texels, *call.operand(ImageOperand::kCoord), value)
                                    : texel::prepare_store(*image.image, fetch_request(call, 0), value);
-  entry.serial = call.wave.resources->serial;
-  entry.op = &call.op;
-  entry.image = &image;
-  entry.registers = call.wave.registers;
+  entry.set(call, image);
   return entry;
 }
 

@@ -61,24 +61,19 @@ HWY_INLINE VU encode_field(VU value, std::uint32_t bits) {
 /// The words of texels of a whole wave.
 template <Numeric kNumeric>
 HWY_NOINLINE void encode(const PreparedStore& prepared, WordLanes words[4]) {
-  std::uint32_t begun = 0;  // words that have a field
-  for (std::size_t i = 0; i < prepared.field_count; ++i) {
-    const TexelField<const base::WaveRegister> field = prepared.field[i];
-    const std::uint32_t bits = field.channel.bits;
-    const int shift = field.channel.offset;
-    WordLanes& word = words[field.word];
-    const VU kept = hn::Set(DU(), (begun >> field.word & 1) != 0 ? ~0u : 0u);
-    begun |= 1u << field.word;
-    for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DU())) {
-      const VU value = encode_field<kNumeric>(hn::Load(DU(), field.values->lane + first), bits);
-      const VU before = hn::And(hn::Load(DU(), word.lane + first), kept);
-      hn::Store(hn::Or(before, hn::ShiftLeftSame(value, shift)), DU(), word.lane + first);
-    }
-  }
   for (std::size_t i = 0; i < prepared.word_count; ++i) {
-    if ((begun >> i & 1) != 0) continue;
     for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DU()))
       hn::Store(hn::Zero(DU()), DU(), words[i].lane + first);
+  }
+  for (std::size_t i = 0; i < prepared.field_count; ++i) {
+    const TexelField<const base::WaveRegister> field = prepared.field[i];
+    const int shift = field.channel.offset;
+    WordLanes& word = words[field.word];
+    for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DU())) {
+      const VU value = encode_field<kNumeric>(hn::Load(DU(), field.values->lane + first), field.channel.bits);
+      const VU others = hn::Load(DU(), word.lane + first);
+      hn::Store(hn::Or(others, hn::ShiftLeftSame(value, shift)), DU(), word.lane + first);
+    }
   }
 }
 

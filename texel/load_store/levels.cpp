@@ -1,8 +1,6 @@
 // Loads the words of texels that integer coordinates name (lavapipe-texture-blend.md A10) in levels that the lanes
 // choose, or moved by offsets.
 #include <algorithm>
-#include <bit>
-#include <cstring>
 
 #include "texel/load_store/shape.h"
 #include "texel/load_store/wave_access.h"
@@ -28,8 +26,6 @@ HWY_INLINE VI load_or_zero(const base::WaveRegister* values, std::size_t first) 
 struct Places {
   IntLanes offset;            ///< bytes; anything where no texel is wanted
   base::LaneMask wanted = 0;  ///< the lane is active and inside the level
-
-  HWY_INLINE hn::Mask<DI> valid(std::size_t first) const { return lanes_mask_from_bits(DI(), wanted >> first); }
 };
 
 /// One level of a view, or that of each lane.
@@ -115,36 +111,17 @@ HWY_NOINLINE void place_texels(const ImageView& view, const FetchRequest& reques
   });
 }
 
-/// Lanes that want no texel get the place of one that does: wherever else they read, another tile may be writing.
-HWY_INLINE void share_place(Places& places) {
-  if (places.wanted == base::kAllLanes) return;
-  const VI shared = splat(places.offset.lane[std::countr_zero(places.wanted)]);
-  for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI())) {
-    const VI offset = hn::Load(DI(), places.offset.lane + first);
-    hn::Store(hn::IfThenElse(places.valid(first), offset, shared), DI(), places.offset.lane + first);
-  }
-}
-
 template <std::size_t kBytes>
-HWY_NOINLINE void load_places(const std::byte* base, const Places& places, WordLanes words[4]) {
+HWY_NOINLINE void load_places(const std::byte* base, Places& places, WordLanes words[4]) {
   for (std::size_t first = 0; first < base::kWaveWidth; first += hn::Lanes(DI())) {
-    load_lanes_of_texels<kBytes>(base, places.offset, first, words);
-    if (places.wanted == base::kAllLanes) continue;
-    for (std::size_t i = 0; i < (kBytes + 3) / 4; ++i) {
-      const VU word = hn::Load(DU(), words[i].lane + first);
-      hn::Store(hn::IfThenElseZero(hn::RebindMask(DU(), places.valid(first)), word), DU(), words[i].lane + first);
-    }
+    const base::LaneMask wanted = places.wanted >> first & base::first_lanes(hn::Lanes(DI()));
+    load_wanted_lanes<kBytes>(base, wanted, places.offset, first, words);
   }
 }
 
 void load_of_levels(const ImageView& view, const FetchRequest& request, WordLanes words[4]) {
   Places places;
   place_texels(view, request, places);
-  if (places.wanted == 0) {
-    std::memset(words, 0, 4 * sizeof(WordLanes));
-    return;
-  }
-  share_place(places);
   by_texel_bytes(*view.format, [&]<std::size_t kBytes>() { load_places<kBytes>(view.base, places, words); });
 }
 

@@ -97,6 +97,18 @@ PreparedStore prepare_fields(const FormatDesc& format, const StoredValue& value)
   return prepared;
 }
 
+PreparedFetch on_grid(PreparedFetch prepared, const FormatDesc& format, const TexelGrid& grid) {
+  if (prepared.convert != nullptr) prepared.load = texel_load(format);
+  prepared.grid = grid;
+  return prepared;
+}
+
+PreparedStore on_grid(PreparedStore prepared, const FormatDesc& format, const TexelGrid& grid) {
+  if (prepared.is_ready()) prepared.store = texel_store(format);
+  prepared.grid = grid;
+  return prepared;
+}
+
 }  // namespace
 
 PreparedFetch prepare_conversion(const ImageView& view, const SampleResult& result) {
@@ -105,34 +117,22 @@ PreparedFetch prepare_conversion(const ImageView& view, const SampleResult& resu
 
 PreparedFetch prepare_fetch(const ImageView& view, const FetchRequest& request, const SampleResult& result) {
   if (!is_in_grid(view, request)) return {};
-  PreparedFetch prepared = prepare_fields(*view.format, view.swizzle, result);
-  if (prepared.convert != nullptr) prepared.load = texel_load(*view.format);
-  prepared.grid = grid_of(view, request);
-  return prepared;
+  return on_grid(prepare_fields(*view.format, view.swizzle, result), *view.format, grid_of(view, request));
 }
 
 PreparedFetch prepare_fetch(const BufferTexelView& view, const base::WaveRegister& index, const SampleResult& result) {
   if (!offsets_fit(view)) return {};
-  PreparedFetch prepared = prepare_fields(*view.format, kIdentity, result);
-  if (prepared.convert != nullptr) prepared.load = texel_load(*view.format);
-  prepared.grid = grid_of(view, index);
-  return prepared;
+  return on_grid(prepare_fields(*view.format, kIdentity, result), *view.format, grid_of(view, index));
 }
 
 PreparedStore prepare_store(const ImageView& view, const FetchRequest& request, const StoredValue& value) {
   if (!is_in_grid(view, request)) return {};
-  PreparedStore prepared = prepare_fields(*view.format, value);
-  if (prepared.is_ready()) prepared.store = texel_store(*view.format);
-  prepared.grid = grid_of(view, request);
-  return prepared;
+  return on_grid(prepare_fields(*view.format, value), *view.format, grid_of(view, request));
 }
 
 PreparedStore prepare_store(const BufferTexelView& view, const base::WaveRegister& index, const StoredValue& value) {
   if (!offsets_fit(view)) return {};
-  PreparedStore prepared = prepare_fields(*view.format, value);
-  if (prepared.is_ready()) prepared.store = texel_store(*view.format);
-  prepared.grid = grid_of(view, index);
-  return prepared;
+  return on_grid(prepare_fields(*view.format, value), *view.format, grid_of(view, index));
 }
 
 }  // namespace vitrine::texel

@@ -154,19 +154,8 @@ template <std::size_t kBytes>
 HWY_NOINLINE void load_others(const TexelGrid& grid, base::LaneMask active, std::size_t first,
                               base::WaveRegister words[4]) {
   IntLanes offset;
-  const base::LaneMask wanted = place_lanes(grid, active, first, offset), all = base::first_lanes(kLanes);
-  const auto none = hn::Not(lanes_mask_from_bits(DU(), wanted));
-  if (wanted != 0) {
-    // Lanes that want no texel get one that another wants: wherever else they read, another tile may be writing.
-    if (wanted != all) {
-      const VI shared = splat(offset.lane[first + static_cast<std::size_t>(std::countr_zero(wanted))]);
-      hn::BlendedStore(shared, hn::RebindMask(DI(), none), DI(), offset.lane + first);
-    }
-    load_lanes_of_texels<kBytes>(grid.base, offset, first, words);
-  }
-  if (wanted == all) return;
-  for (std::size_t i = 0; i < (kBytes + 3) / 4; ++i)
-    hn::BlendedStore(hn::Zero(DU()), none, DU(), words[i].lane + first);
+  const base::LaneMask wanted = place_lanes(grid, active, first, offset);
+  load_wanted_lanes<kBytes>(grid.base, wanted, offset, first, words);
 }
 
 template <std::size_t kBytes>

@@ -68,7 +68,8 @@ Reflection::Reflection(std::span<const uint32_t> words) {
       for (size_t i = behind_string(inst, 3); i < inst.size(); i++) interface.insert(inst[i]);
     } else if (op == Op::OpExecutionMode)
       read_mode(*this, inst);
-    else if (op == Op::OpExecutionModeId && static_cast<spv::ExecutionMode>(inst[2]) == spv::ExecutionMode::LocalSizeId)
+    else if (op == Op::OpExecutionModeId && inst[1] == entry &&
+             static_cast<spv::ExecutionMode>(inst[2]) == spv::ExecutionMode::LocalSizeId)
       size_ids.assign(inst.begin() + 3, inst.end());
     else if (op == Op::OpDecorate || op == Op::OpMemberDecorate)
       read_decoration(*this, inst, op == Op::OpMemberDecorate);

@@ -1,5 +1,7 @@
 // One texel per lane as values: words loaded one by one, converted by SIMD. The twin of fetch_texel.
 
+#include <bit>
+
 #include "texel/sampler/wave/block-inl.h"
 #include "texel/sampler/wave/fetch-inl.h"
 #include "texel/sampler/wave/pairs-inl.h"
@@ -70,6 +72,22 @@ HWY_INLINE void load_lanes_of_texels(const std::byte* base, const IntLanes& offs
     std::memcpy(word, base + offset.lane[lane], kBytes);
     for (std::size_t i = 0; i < kWords; ++i) words[i].lane[lane] = word[i];
   }
+}
+
+/// The same of the lanes that `wanted` has bits for, the vector's first one lowest; 0 for the others.
+template <std::size_t kBytes>
+HWY_INLINE void load_wanted_lanes(const std::byte* base, base::LaneMask wanted, IntLanes& offset, std::size_t first,
+                                  WordLanes words[4]) {
+  if (wanted == base::first_lanes(hn::Lanes(DI()))) return load_lanes_of_texels<kBytes>(base, offset, first, words);
+  const auto none = hn::Not(lanes_mask_from_bits(DU(), wanted));
+  if (wanted != 0) {
+    // Lanes that want no texel get one that another wants: wherever else they read, another tile may be writing.
+    const VI shared = splat(offset.lane[first + static_cast<std::size_t>(std::countr_zero(wanted))]);
+    hn::BlendedStore(shared, hn::RebindMask(DI(), none), DI(), offset.lane + first);
+    load_lanes_of_texels<kBytes>(base, offset, first, words);
+  }
+  for (std::size_t i = 0; i < (kBytes + 3) / 4; ++i)
+    hn::BlendedStore(hn::Zero(DU()), none, DU(), words[i].lane + first);
 }
 
 /// What body<bytes of a texel>() of a plain format returns.
